@@ -1,0 +1,44 @@
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "imager/beam.h"
+#include "imager/geometry.h"
+#include "imager/image.h"
+#include "imager/observation.h"
+
+namespace misfit::imager {
+
+/// A number for the header, with its comment.
+struct HeaderCard {
+  std::string keyword;  ///< at most 8 characters
+  double value = 0;
+  std::string comment;
+};
+
+/// An image on the sky with what its header states. FITS axes: RA---SIN, DEC--SIN, FREQ, STOKES (I), in this order.
+struct SkyImage {
+  Image image;
+  ImageGeometry geometry;
+  Observation observation;
+  std::string unit = "Jy/beam";
+  bool has_beam = false;
+  Beam beam;
+  std::vector<HeaderCard> cards;
+  std::vector<std::string> history;
+};
+
+enum class PixelFormat { float32, float64 };
+
+/// Writes `image` to `path`, replacing what is there. The file appears under its name only when complete (it is written
+/// beside it and renamed). Throws std::runtime_error that names the path and CFITSIO's reason.
+void write_fits(const SkyImage& image, const std::string& path, PixelFormat format);
+
+/// Reads the first plane of the primary image of a FITS file with a SIN (or no) projection, in any pixel type. Throws
+/// std::runtime_error that names the path when it cannot be read, is no two-dimensional image (axes beyond the second must have
+/// length 1), has pixels that are not square, or has its reference pixel elsewhere than misfit's phase centre pixel.
+SkyImage read_fits(const std::string& path);
+
+}  // namespace misfit::imager

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+namespace misfit::imager {
+
+/// A plane of pixels, row-major [row][column] = [m][l]; see ImageGeometry for where they lie.
+struct Image {
+  int width = 0;
+  int height = 0;
+  std::vector<double> pixel;  ///< [height][width]
+
+  Image() = default;
+  Image(int image_width, int image_height)
+      : width(image_width),
+        height(image_height),
+        pixel(static_cast<std::size_t>(image_width) * static_cast<std::size_t>(image_height)) {}
+
+  double* row(int r) { return pixel.data() + static_cast<std::size_t>(r) * static_cast<std::size_t>(width); }
+  const double* row(int r) const { return pixel.data() + static_cast<std::size_t>(r) * static_cast<std::size_t>(width); }
+  double& at(int r, int column) { return row(r)[column]; }
+  double at(int r, int column) const { return row(r)[column]; }
+};
+
+}  // namespace misfit::imager

@@ -1,0 +1,60 @@
+#pragma once
+
+#include <complex>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+namespace misfit::imager {
+
+/// What became of the samples read, in Stokes samples (row × channel). Each sample left out is counted once, under the first
+/// of these reasons that applies, in the order in which they stand here.
+struct SampleCounts {
+  std::uint64_t rows_read = 0;
+  std::uint64_t samples_read = 0;
+  std::uint64_t autocorrelations = 0;
+  std::uint64_t flagged = 0;
+  std::uint64_t nonfinite = 0;     ///< NaN or infinity in data, weight or UVW
+  std::uint64_t zero_weight = 0;   ///< weight zero or negative
+  std::uint64_t outside_grid = 0;  ///< |u| or |v| beyond 1/(2 cell); known only once the image is
+  std::uint64_t used = 0;
+
+  SampleCounts& operator+=(const SampleCounts& other);
+};
+
+/// Where samples lie: rows of UVW, each seen at every channel.
+struct SampleCoordinates {
+  std::vector<double> uvw_m;         ///< [row][3], metres, with the sign stored in the MeasurementSet
+  std::vector<double> frequency_hz;  ///< [channel]
+
+  std::size_t rows() const { return uvw_m.size() / 3; }
+  std::size_t channels() const { return frequency_hz.size(); }
+  std::size_t samples() const { return rows() * channels(); }
+};
+
+/// A run of visibilities of one Stokes parameter that share their channels.
+struct VisibilityBlock : SampleCoordinates {
+  std::vector<std::complex<float>> visibility;  ///< [row][channel], Jy; finite wherever the weight is not 0
+  std::vector<float> weight;                    ///< [row][channel], 1/Jy² up to a common factor; 0 = unusable, never negative
+  SampleCounts counts;                          ///< of this block alone
+};
+
+/// Hands out blocks in a fixed order.
+class BlockStream {
+ public:
+  virtual ~BlockStream() = default;
+  /// The next block, or null at the end.
+  virtual std::shared_ptr<const VisibilityBlock> next() = 0;
+};
+
+/// Visibilities that can be read any number of times, always in the same blocks.
+class VisibilitySource {
+ public:
+  virtual ~VisibilitySource() = default;
+  virtual std::unique_ptr<BlockStream> open() const = 0;
+  /// Samples that a full pass hands out, usable or not.
+  virtual std::uint64_t samples() const = 0;
+};
+
+}  // namespace misfit::imager

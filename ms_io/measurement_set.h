@@ -1,0 +1,38 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+
+#include "imager/observation.h"
+#include "imager/visibilities.h"
+
+namespace misfit::ms_io {
+
+/// Which samples of a MeasurementSet are meant, in casacore's MSSelection syntax; empty means all.
+struct Selection {
+  std::string field;            ///< e.g. "0", "3C295", "3C*"
+  std::string spectral_window;  ///< e.g. "0", "0:4~60", "1~2:1.4~1.5GHz"
+};
+
+/// A selected part of a MeasurementSet as visibilities of Stokes I, opened read-only and streamed in blocks. Only the columns
+/// and channels that are needed are read. A block never mixes DATA_DESC_IDs. Reading never runs in two threads at once.
+class MeasurementSet : public imager::VisibilitySource {
+ public:
+  /// Opens `path`. `data_column` names the column with the visibilities ("DATA", "CORRECTED_DATA", …). Throws
+  /// std::runtime_error when the path is no MeasurementSet, the column is missing, the selection is empty or wrong, Stokes I
+  /// cannot be formed (the message lists the correlations there are), or the rows selected have several phase centres.
+  MeasurementSet(const std::string& path, const Selection& selection, const std::string& data_column);
+  ~MeasurementSet() override;
+
+  const imager::Observation& observation() const;
+  std::uint64_t rows() const;
+  std::uint64_t samples() const override;
+  std::unique_ptr<imager::BlockStream> open() const override;
+
+ private:
+  struct Impl;
+  std::shared_ptr<const Impl> impl_;
+};
+
+}  // namespace misfit::ms_io

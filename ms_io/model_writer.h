@@ -1,0 +1,31 @@
+#pragma once
+
+#include <complex>
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "imager/visibilities.h"
+#include "ms_io/measurement_set.h"
+
+namespace misfit::ms_io {
+
+/// Computes the Stokes I visibilities [row][channel], in Jy, at the coordinates given.
+using Predict = std::function<std::vector<std::complex<double>>(const imager::SampleCoordinates&)>;
+
+struct ModelWriteReport {
+  std::uint64_t rows = 0;
+  std::uint64_t samples = 0;             ///< Stokes samples: rows × channels
+  std::uint64_t nonfinite_uvw_rows = 0;  ///< rows that got 0
+};
+
+/// Writes predicted visibilities into `column` of the MeasurementSet at `path`, for every sample selected whatever its flags
+/// and weights, auto-correlations included. XX, YY, RR and LL get I; cross-hand correlations get 0. A column that does not
+/// exist is created with the shape and storage of DATA, and rows outside the selection are left alone (0 in a new column).
+/// `column` may not be DATA. `progress(done, total)` is called after every block, in samples. Throws std::runtime_error as
+/// MeasurementSet does.
+ModelWriteReport write_model(const std::string& path, const Selection& selection, const std::string& column,
+                             const Predict& predict, const std::function<void(std::uint64_t, std::uint64_t)>& progress);
+
+}  // namespace misfit::ms_io

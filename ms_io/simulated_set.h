@@ -1,0 +1,42 @@
+#pragma once
+
+#include <array>
+#include <complex>
+#include <cstddef>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "imager/geometry.h"
+#include "imager/visibilities.h"
+
+namespace misfit::ms_io {
+
+/// A synthetic observation: one field, one spectral window, linear feeds with correlations XX and YY.
+struct SimulatedObservation {
+  std::string telescope = "EVLA";
+  std::string field_name = "SIMULATED";
+  imager::SkyDirection phase_centre;
+  std::vector<std::string> antenna_name;
+  std::vector<std::array<double, 3>> antenna_itrf_m;
+  double dish_diameter_m = 25;
+  std::vector<double> time_mjd_s;  ///< middle of each integration, UTC, seconds as in the column TIME
+  double interval_s = 10;
+  std::vector<double> frequency_hz;  ///< [channel]
+  double channel_width_hz = 0;
+  double noise_jy = 0;  ///< standard deviation of real and imaginary part, independent per correlation
+  unsigned seed = 1;
+};
+
+/// UVW in metres [baseline][3] of one integration; baselines run over antenna1 < antenna2, antenna2 fastest.
+using BaselineUvw = std::function<std::vector<double>(std::size_t integration)>;
+/// Stokes I visibilities [row][channel], Jy, at the coordinates given.
+using ExactVisibilities = std::function<std::vector<std::complex<double>>(const imager::SampleCoordinates&)>;
+
+/// Writes a new MeasurementSet at `path`, with all of the required subtables filled. WEIGHT is 1/noise² (1 without noise),
+/// SIGMA the noise (1 without). The table is written beside `path` and renamed when complete. Throws std::runtime_error when
+/// `path` exists or cannot be written.
+void write_simulated_set(const std::string& path, const SimulatedObservation& observation, const BaselineUvw& uvw,
+                         const ExactVisibilities& visibilities, const std::function<void(std::size_t, std::size_t)>& progress);
+
+}  // namespace misfit::ms_io
