@@ -1,0 +1,80 @@
+#include "kernels/map_error.h"
+
+#include <cmath>
+#include <numbers>
+
+#include "kernels/quadrature.h"
+
+namespace misfit::kernels {
+namespace {
+
+/// Re and Im of Σ_r C_r(t) exp(2πi(s_r−t)x): what a unit visibility at t looks like at x, before correction. [x][t]
+struct Response {
+  Eigen::ArrayXXd real;
+  Eigen::ArrayXXd imaginary;
+};
+
+/// C(−u) = C(u) makes the response at −t the conjugate of that at t, so that t ≥ 0 suffices everywhere.
+Response response(const TapFunction& taps, const Eigen::VectorXd& x, const Eigen::VectorXd& t) {
+  const auto width = static_cast<int>(taps(0).size());
+  Eigen::MatrixXd cosine(x.size(), width);
+  Eigen::MatrixXd sine(x.size(), width);
+  for (int r = 0; r < width; ++r) {
+    const Eigen::ArrayXd phase = 2 * std::numbers::pi * (r - (width - 1) / 2.0) * x.array();
+    cosine.col(r) = phase.cos();
+    sine.col(r) = phase.sin();
+  }
+  Eigen::MatrixXd tap(width, t.size());
+  for (Eigen::Index i = 0; i < t.size(); ++i) tap.col(i) = taps(t[i]);
+  const Eigen::ArrayXXd real = cosine * tap;
+  const Eigen::ArrayXXd imaginary = sine * tap;
+  const Eigen::ArrayXXd phase = 2 * std::numbers::pi * (x * t.transpose()).array();
+  return {real * phase.cos() + imaginary * phase.sin(), imaginary * phase.cos() - real * phase.sin()};
+}
+
+/// Enough points for the square of a tap, a polynomial of degree 40 at most, times a slowly turning phase.
+Quadrature half_cell() {
+  Quadrature rule = gauss_legendre(28, 0, 0.5);
+  rule.weight *= 2;
+  return rule;
+}
+
+/// c(x) is the mean of the response over t, and Σ_n c(x−n)² the mean of its square (Parseval over the period 1 of ν).
+Eigen::VectorXd correction(const Response& seen, const Eigen::VectorXd& weight) {
+  const Eigen::VectorXd c = seen.real.matrix() * weight;
+  const Eigen::VectorXd power = (seen.real.square() + seen.imaginary.square()).matrix() * weight;
+  return c.cwiseQuotient(power);
+}
+
+/// |1 − h(x) response(x, t)|²
+Eigen::ArrayXXd squared_error(const Response& seen, const Eigen::VectorXd& h) {
+  return (seen.real.colwise() * h.array() - 1).square() + (seen.imaginary.colwise() * h.array()).square();
+}
+
+}  // namespace
+
+Eigen::VectorXd optimal_correction(const TapFunction& taps, const Eigen::VectorXd& x) {
+  const Quadrature t = half_cell();
+  return correction(response(taps, x, t.node), t.weight);
+}
+
+Eigen::VectorXd map_error(const TapFunction& taps, const Eigen::VectorXd& x) {
+  const Quadrature t = half_cell();
+  const Response seen = response(taps, x, t.node);
+  return squared_error(seen, correction(seen, t.weight)).matrix() * t.weight;
+}
+
+Misfit misfit(const TapFunction& taps, double x0) {
+  const Quadrature rule = gauss_legendre(48, 0, x0);
+  Eigen::VectorXd x(rule.node.size() + 1);
+  x << rule.node, x0;
+  Eigen::VectorXd weight(x.size());
+  weight << rule.weight / x0, 0;
+
+  const Eigen::VectorXd error = map_error(taps, x);
+  const Eigen::VectorXd position = Eigen::VectorXd::LinSpaced(65, 0, 0.5);
+  const Eigen::ArrayXXd at_position = squared_error(response(taps, x, position), optimal_correction(taps, x));
+  return {weight.dot(error), error.maxCoeff(), (weight.transpose() * at_position.matrix()).maxCoeff(), at_position.maxCoeff()};
+}
+
+}  // namespace misfit::kernels

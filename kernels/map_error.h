@@ -1,0 +1,30 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include "kernels/piecewise_polynomial.h"
+
+namespace misfit::kernels {
+
+/// Everything here is derived from the taps alone, however they are evaluated.
+
+/// The optimal correction h(x) = c(x) / Σ_n c(x−n)², where c(x) = ∫ C(u) exp(2πiux) du: it minimises the map error at every x
+/// (Ye, Gull, Tan & Nikolic 2020, eq. 13). The image is multiplied by h(x)·h(y); x is the pixel's offset from the phase centre
+/// over the size of the FFT.
+Eigen::VectorXd optimal_correction(const TapFunction& taps, const Eigen::VectorXd& x);
+
+/// The map error ℓ(x) = ∫ dν |1 − h(x) Σ_r C(r−ν) exp(2πi(r−ν)x)|² with the optimal correction (ibid., eq. 10), as a sum of
+/// squares: exact down to the square of the rounding of doubles.
+Eigen::VectorXd map_error(const TapFunction& taps, const Eigen::VectorXd& x);
+
+/// How far a kernel is from the exact transform over |x| ≤ x0; squares of relative errors of a one-dimensional transform.
+struct Misfit {
+  double mean = 0;        ///< E: mean of ℓ over |x| ≤ x0
+  double max = 0;         ///< largest ℓ over |x| ≤ x0
+  double worst_mean = 0;  ///< mean over |x| ≤ x0 of the squared error at the worst position of a visibility in its cell
+  double worst = 0;       ///< largest squared error over |x| ≤ x0 and all positions
+};
+
+Misfit misfit(const TapFunction& taps, double x0);
+
+}  // namespace misfit::kernels

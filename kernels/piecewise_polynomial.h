@@ -1,0 +1,27 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <functional>
+
+namespace misfit::kernels {
+
+/// The W values that a gridding function C takes on the grid around a visibility: tap r is C(s_r − t), where t in [−½, ½] is
+/// the position of the visibility from the middle of its cell and s_r = r − (W−1)/2. Writing it this way serves odd and even W
+/// alike, and C may jump where cells meet.
+using TapFunction = std::function<Eigen::VectorXd(double t)>;
+
+/// A gridding function as one polynomial a cell: C(s_r − t) = Σ_d coefficient(d, r) t^d.
+struct PiecewisePolynomial {
+  Eigen::MatrixXd coefficient;  ///< [degree + 1][W]
+
+  int width() const { return static_cast<int>(coefficient.cols()); }
+  int degree() const { return static_cast<int>(coefficient.rows()) - 1; }
+  /// The taps at t, by Horner's rule.
+  Eigen::VectorXd operator()(double t) const;
+};
+
+/// The best polynomial of `degree` in each cell in the sense of least squares over t: the truncated Legendre series. The
+/// symmetry C(−u) = C(u) holds exactly in the result.
+PiecewisePolynomial fit_polynomial(const TapFunction& taps, int degree);
+
+}  // namespace misfit::kernels
