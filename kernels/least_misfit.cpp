@@ -169,6 +169,8 @@ Minimum minimise(const Problem& problem, VectorXd h, int width, double x0) {
       damping = std::max(10 * damping, 1e-2 * here.mean_error);
     }
   }
+  constexpr double rounding_of_doubles = 1e-27;
+  if (here.mean_error < rounding_of_doubles) return {h, here.mean_error, most_iterations};
   throw std::runtime_error("least-misfit kernel of width " + std::to_string(width) + " at x0 = " + std::to_string(x0) +
                            " did not converge within " + std::to_string(most_iterations) + " iterations");
 }

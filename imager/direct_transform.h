@@ -1,0 +1,44 @@
+#pragma once
+
+#include "imager/geometry.h"
+#include "imager/transform.h"
+
+namespace misfit::imager {
+
+/// A point of the sky with its flux; the sum of them is a model without pixels.
+struct PointSource {
+  DirectionCosines position;
+  double flux_jy = 0;
+};
+
+/// The defining sums in double precision, w included: the oracle that everything else is measured against. Costs samples ×
+/// pixels.
+class DirectTransform : public Transform {
+ public:
+  DirectTransform(const ImageGeometry& geometry, int threads) : geometry_(geometry), threads_(threads) {}
+
+  std::unique_ptr<AdjointSum> adjoint(bool with_psf) const override;
+  /// Only the pixels that are not 0 cost time.
+  std::unique_ptr<Prediction> predict(const Image& model) const override;
+
+ private:
+  ImageGeometry geometry_;
+  int threads_;
+};
+
+/// V [row][channel] = Σ S exp(+2πi(ul+vm+w(n−1))) over point sources.
+std::vector<std::complex<double>> predict_sources(const std::vector<PointSource>& sources, const SampleCoordinates& at,
+                                                  int threads);
+
+/// A pixel of an image.
+struct Pixel {
+  int row = 0;
+  int column = 0;
+};
+
+/// Adds the direct sums of `block` at a few pixels: sum[k] += Σ w Re[V exp(−2πi(ul+vm+w(n−1)))]. Samples beyond 1/(2 cell) are
+/// left out, as in imaging.
+void add_direct_pixels(const VisibilityBlock& block, const ImageGeometry& geometry, const std::vector<Pixel>& pixels,
+                       int threads, std::vector<double>& sum);
+
+}  // namespace misfit::imager

@@ -1,0 +1,255 @@
+#include "imager/plane_transform.h"
+
+#include <algorithm>
+#include <numeric>
+#include <stdexcept>
+#include <string>
+
+#include "imager/half_grid.h"
+#include "imager/parallel.h"
+#include "imager/tile_loops.h"
+#include "imager/tile_order.h"
+
+namespace misfit::imager {
+namespace {
+
+/// Everything that both directions share.
+template <typename Real>
+struct Setup {
+  ImageGeometry geometry;
+  GridShape shape;
+  TapTable<Real> taps_u;
+  TapTable<Real> taps_v;
+  ImageCorrection correction;
+  int threads;
+};
+
+std::vector<double> axis_correction(const kernels::Kernel& kernel, int pixels, int fft_size) {
+  const Eigen::VectorXd x = (Eigen::VectorXd::LinSpaced(pixels, 0, pixels - 1).array() - pixels / 2) / fft_size;
+  const Eigen::VectorXd h = kernels::optimal_correction(kernel.polynomial, x);
+  return {h.begin(), h.end()};
+}
+
+/// Tiles that may be flushed at the same time: their buffers reach into the next tile, so every other one along both axes.
+struct TileTask {
+  int tile_u;
+  int tile_v;
+  std::size_t tile;
+};
+
+/// The four colours of tiles that hold samples, fullest first within a colour so that no thread starts the longest task last.
+std::vector<std::vector<TileTask>> coloured_tasks(const TileOrder& order, const GridShape& shape) {
+  std::vector<std::vector<TileTask>> colours(4);
+  for (int v = 0; v < shape.tiles_v(); ++v)
+    for (int u = 0; u < shape.tiles_u(); ++u) {
+      const auto tile = static_cast<std::size_t>(v * shape.tiles_u() + u);
+      if (order.samples[tile] != 0) colours[static_cast<std::size_t>(v % 2 * 2 + u % 2)].push_back({u, v, tile});
+    }
+  for (std::vector<TileTask>& tasks : colours)
+    std::stable_sort(tasks.begin(), tasks.end(),
+                     [&](const TileTask& a, const TileTask& b) { return order.samples[a.tile] > order.samples[b.tile]; });
+  return colours;
+}
+
+/// Walks through a tile's samples in batches: fill(batch index, sample index, conjugate) for each, then done(batch).
+template <typename Real, typename Fill, typename Done>
+void for_each_batch(const Setup<Real>& setup, const SampleCoordinates& at, const TileOrder& order, const TileTask& task,
+                    TileBatch<Real>& batch, const Fill& fill, const Done& done) {
+  const CellScale scale(setup.shape, setup.geometry.cell_rad);
+  const int left = task.tile_u * setup.shape.tile;
+  const int bottom = task.tile_v * setup.shape.tile;
+  batch.count = 0;
+  for (std::size_t r = order.begin[task.tile]; r < order.begin[task.tile + 1]; ++r) {
+    const ChannelRun run = order.run[r];
+    const FoldedRow row(&at.uvw_m[std::size_t{3} * run.row], scale);
+    for (std::size_t channel = run.first; channel < std::size_t{run.first} + run.count; ++channel) {
+      const double frequency = at.frequency_hz[channel];
+      const PeriodicPosition position(row.u_per_hz * frequency, row.v_per_hz * frequency, row.folded, setup.shape);
+      const TapPosition u(position.u, setup.shape.width);
+      const TapPosition v(position.v, setup.shape.width);
+      const int i = batch.count++;
+      batch.column[i] = setup.shape.first_column(u.first) - left;
+      batch.row[i] = setup.shape.first_row(v.first) - bottom;
+      batch.tu[i] = static_cast<Real>(u.t);
+      batch.tv[i] = static_cast<Real>(v.t);
+      fill(i, run.row * at.channels() + channel, position.conjugate);
+      if (batch.count == TileBatch<Real>::capacity) {
+        done(batch);
+        batch.count = 0;
+      }
+    }
+  }
+  if (batch.count > 0) done(batch);
+}
+
+template <typename Real>
+class PlaneAdjoint : public AdjointSum {
+ public:
+  PlaneAdjoint(const Setup<Real>& setup, bool with_psf) : setup_(setup), grid_(setup.shape, with_psf) {}
+
+  void add(const VisibilityBlock& block) override {
+    accumulate(block, nullptr, [&](std::size_t i) { return std::complex<double>(block.visibility[i]); });
+  }
+  void add(const VisibilityBlock& block, const std::vector<std::complex<double>>& visibility) override {
+    accumulate(block, &visibility, [&](std::size_t i) { return visibility[i]; });
+  }
+
+  AdjointResult finish() override {
+    AdjointResult result;
+    result.sums = sums_;
+    result.image = grid_to_image(setup_.shape, grid_.real.data(), grid_.imaginary.data(), setup_.correction, setup_.threads);
+    if (!grid_.weight.empty())
+      result.psf = grid_to_image<Real>(setup_.shape, grid_.weight.data(), nullptr, setup_.correction, setup_.threads);
+    return result;
+  }
+
+ private:
+  template <typename Visibility>
+  void accumulate(const VisibilityBlock& block, const std::vector<std::complex<double>>* other, const Visibility& visibility) {
+    const TileOrder order =
+        order_by_tile(block, other, setup_.shape, setup_.geometry.cell_rad, Wanted::imaging, setup_.threads);
+    sums_ += order.sums;
+    for (const std::vector<TileTask>& tasks : coloured_tasks(order, setup_.shape)) {
+      parallel_for(tasks.size(), setup_.threads, [&](std::size_t i) {
+        TileBuffer<Real> buffer(setup_.shape.tile, setup_.taps_u.padded, grid_.weight.empty() ? 2 : 3);
+        TileBatch<Real> batch;
+        // The grid holds conj(V), whose backward transform is the image; see tile_order.h for the axes.
+        const auto fill = [&](int at, std::size_t sample, bool conjugate) {
+          const double weight = block.weight[sample];
+          const std::complex<double> value = visibility(sample);
+          batch.real[at] = static_cast<Real>(weight * value.real());
+          batch.imaginary[at] = static_cast<Real>(conjugate ? weight * value.imag() : -weight * value.imag());
+          batch.weight[at] = static_cast<Real>(weight);
+        };
+        for_each_batch(setup_, block, order, tasks[i], batch, fill,
+                       [&](TileBatch<Real>& full) { spread(setup_.taps_u, setup_.taps_v, full, buffer); });
+        flush(tasks[i], buffer);
+      });
+    }
+  }
+
+  void flush(const TileTask& task, TileBuffer<Real>& buffer) {
+    const int reach = setup_.shape.tile + setup_.shape.width - 1;
+    std::vector<Real>* const planes[3] = {&grid_.real, &grid_.imaginary, &grid_.weight};
+    for (int r = 0; r < reach; ++r) {
+      const std::size_t start =
+          static_cast<std::size_t>(task.tile_v * setup_.shape.tile + r) * static_cast<std::size_t>(setup_.shape.columns()) +
+          static_cast<std::size_t>(task.tile_u * setup_.shape.tile);
+      for (int plane = 0; plane < buffer.planes; ++plane) {
+        const Real* from = buffer.row(r, plane);
+        Real* to = planes[plane]->data() + start;
+        for (int c = 0; c < reach; ++c) to[c] += from[c];
+      }
+    }
+  }
+
+  const Setup<Real>& setup_;
+  HalfGrid<Real> grid_;
+  SampleSums sums_;
+};
+
+template <typename Real>
+class PlanePrediction : public Prediction {
+ public:
+  PlanePrediction(const Setup<Real>& setup, const Image& model) : setup_(setup), grid_(setup.shape, false) {
+    image_to_grid(model, setup.correction, setup.threads, grid_);
+  }
+
+  std::vector<std::complex<double>> at(const SampleCoordinates& coordinates) const override {
+    VisibilityBlock block;
+    static_cast<SampleCoordinates&>(block) = coordinates;
+    return degrid(block, Wanted::all);
+  }
+  std::vector<std::complex<double>> at_usable(const VisibilityBlock& block) const override {
+    return degrid(block, Wanted::usable);
+  }
+
+ private:
+  std::vector<std::complex<double>> degrid(const VisibilityBlock& block, Wanted wanted) const {
+    const TileOrder order = order_by_tile(block, nullptr, setup_.shape, setup_.geometry.cell_rad, wanted, setup_.threads);
+    std::vector<std::complex<double>> visibility(block.samples());
+    std::vector<TileTask> tasks;
+    for (const std::vector<TileTask>& colour : coloured_tasks(order, setup_.shape))
+      tasks.insert(tasks.end(), colour.begin(), colour.end());
+    parallel_for(tasks.size(), setup_.threads, [&](std::size_t i) {
+      const TileBuffer<Real> buffer = load(tasks[i]);
+      TileBatch<Real> batch;
+      std::size_t sample_of[TileBatch<Real>::capacity];
+      bool conjugate_of[TileBatch<Real>::capacity];
+      const auto fill = [&](int at, std::size_t sample, bool conjugate) {
+        sample_of[at] = sample;
+        conjugate_of[at] = conjugate;
+      };
+      for_each_batch(setup_, block, order, tasks[i], batch, fill, [&](TileBatch<Real>& full) {
+        interpolate(setup_.taps_u, setup_.taps_v, buffer, full);
+        for (int k = 0; k < full.count; ++k)
+          visibility[sample_of[k]] = {double{full.real[k]},
+                                      conjugate_of[k] ? double{full.imaginary[k]} : -double{full.imaginary[k]}};
+      });
+    });
+    return visibility;
+  }
+
+  TileBuffer<Real> load(const TileTask& task) const {
+    TileBuffer<Real> buffer(setup_.shape.tile, setup_.taps_u.padded, 2);
+    const int reach = setup_.shape.tile + setup_.shape.width - 1;
+    for (int r = 0; r < reach; ++r) {
+      const std::size_t start =
+          static_cast<std::size_t>(task.tile_v * setup_.shape.tile + r) * static_cast<std::size_t>(setup_.shape.columns()) +
+          static_cast<std::size_t>(task.tile_u * setup_.shape.tile);
+      std::copy_n(grid_.real.data() + start, reach, buffer.row(r, 0));
+      std::copy_n(grid_.imaginary.data() + start, reach, buffer.row(r, 1));
+    }
+    return buffer;
+  }
+
+  const Setup<Real>& setup_;
+  HalfGrid<Real> grid_;
+};
+
+template <typename Real>
+class PlaneTransform : public Transform {
+ public:
+  explicit PlaneTransform(const PlaneTransformOptions& o)
+      : setup_{o.geometry,
+               {o.nu, o.nv, o.kernel_u.width(), 16},
+               TapTable<Real>(o.kernel_u.polynomial),
+               TapTable<Real>(o.kernel_v.polynomial),
+               {axis_correction(o.kernel_u, o.geometry.width, o.nu), axis_correction(o.kernel_v, o.geometry.height, o.nv)},
+               o.threads} {}
+
+  std::unique_ptr<AdjointSum> adjoint(bool with_psf) const override {
+    return std::make_unique<PlaneAdjoint<Real>>(setup_, with_psf);
+  }
+  std::unique_ptr<Prediction> predict(const Image& model) const override {
+    return std::make_unique<PlanePrediction<Real>>(setup_, model);
+  }
+
+ private:
+  Setup<Real> setup_;
+};
+
+void check_axis(const char* axis, int pixels, int fft_size, const kernels::Kernel& kernel) {
+  if (fft_size % 2 != 0 || fft_size < pixels || fft_size < 4 * kernel.width())
+    throw std::invalid_argument("FFT length " + std::to_string(fft_size) + " along " + axis +
+                                " is not even, below the image's " + std::to_string(pixels) +
+                                " pixels, or below 4 kernel widths");
+  const double x0 = static_cast<double>(pixels / 2) / fft_size;
+  if (kernel.x0 < x0 - 1e-12)
+    throw std::invalid_argument("kernel made for x0 = " + std::to_string(kernel.x0) + " along " + axis +
+                                ", but the image reaches " + std::to_string(x0));
+}
+
+}  // namespace
+
+std::unique_ptr<Transform> make_plane_transform(const PlaneTransformOptions& options) {
+  check_axis("u", options.geometry.width, options.nu, options.kernel_u);
+  check_axis("v", options.geometry.height, options.nv, options.kernel_v);
+  if (options.kernel_u.width() != options.kernel_v.width())
+    throw std::invalid_argument("kernels of widths " + std::to_string(options.kernel_u.width()) + " along u and " +
+                                std::to_string(options.kernel_v.width()) + " along v; one width is expected");
+  if (options.precision == Precision::single_precision) return std::make_unique<PlaneTransform<float>>(options);
+  return std::make_unique<PlaneTransform<double>>(options);
+}
+
+}  // namespace misfit::imager

@@ -1,0 +1,27 @@
+#pragma once
+
+#include "imager/geometry.h"
+#include "imager/transform.h"
+#include "kernels/kernel.h"
+
+namespace misfit::imager {
+
+enum class Precision { single_precision, double_precision };
+
+/// What a PlaneTransform is made of. Both kernels have one width, and x0 at least image size / (2 · FFT size) on their axis.
+struct PlaneTransformOptions {
+  ImageGeometry geometry;
+  int nu = 0;  ///< FFT lengths, even, at least the image's size
+  int nv = 0;
+  kernels::Kernel kernel_u;
+  kernels::Kernel kernel_v;
+  Precision precision = Precision::double_precision;  ///< of taps, grid and FFT; coordinates are always double
+  int threads = 1;
+};
+
+/// The transform in two dimensions by gridding and FFT: w(n−1) is taken as 0. Forward and adjoint are exact transposes of each
+/// other, and the result does not depend on the number of threads. Throws std::invalid_argument when the options contradict
+/// each other.
+std::unique_ptr<Transform> make_plane_transform(const PlaneTransformOptions& options);
+
+}  // namespace misfit::imager

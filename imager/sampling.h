@@ -1,0 +1,29 @@
+#pragma once
+
+#include <cmath>
+#include <complex>
+#include <vector>
+
+#include "imager/constants.h"
+#include "imager/transform.h"
+
+namespace misfit::imager {
+
+/// Whether an image with this cell can represent a sample: |u| and |v| up to 1/(2 cell), in turns per cell up to ½.
+inline bool inside_grid(double u_turns, double v_turns) {
+  return std::abs(u_turns) <= 0.5 && std::abs(v_turns) <= 0.5;
+}
+
+/// Adds one sample to the sums, without counting it.
+inline void add_to_sums(SampleSums& sums, double weight, std::complex<double> visibility) {
+  const double square = std::norm(visibility);
+  sums.weight += weight;
+  sums.weight_abs += weight * std::sqrt(square);
+  sums.weight_square += weight * square;
+  sums.weight2_square += weight * weight * square;
+}
+
+/// Which samples [row][channel] take part in imaging: weight not 0 and inside the grid. Counts them, and those outside.
+std::vector<char> samples_inside(const VisibilityBlock& block, double cell_rad, SampleSums& sums);
+
+}  // namespace misfit::imager

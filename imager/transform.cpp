@@ -1,0 +1,15 @@
+#include "imager/transform.h"
+
+namespace misfit::imager {
+
+SampleSums& SampleSums::operator+=(const SampleSums& other) {
+  used += other.used;
+  outside_grid += other.outside_grid;
+  weight += other.weight;
+  weight_abs += other.weight_abs;
+  weight_square += other.weight_square;
+  weight2_square += other.weight2_square;
+  return *this;
+}
+
+}  // namespace misfit::imager

@@ -1,0 +1,63 @@
+#pragma once
+
+#include <complex>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "imager/image.h"
+#include "imager/visibilities.h"
+
+namespace misfit::imager {
+
+/// Sums over the samples that an adjoint took in.
+struct SampleSums {
+  std::uint64_t used = 0;
+  std::uint64_t outside_grid = 0;  ///< usable samples beyond |u| or |v| = 1/(2 cell), left out
+  double weight = 0;               ///< Σ w
+  double weight_abs = 0;           ///< Σ w |V|
+  double weight_square = 0;        ///< Σ w |V|²
+  double weight2_square = 0;       ///< Σ w² |V|²
+
+  SampleSums& operator+=(const SampleSums& other);
+};
+
+/// Images made from all samples added, not yet divided by Σ w.
+struct AdjointResult {
+  Image image;  ///< Σ w Re[V exp(−2πi(ul+vm+w(n−1)))]
+  Image psf;    ///< the same with V = 1; empty unless it was asked for
+  SampleSums sums;
+};
+
+/// The adjoint transform, accumulated block by block. Adding the same blocks in the same order gives the same bits.
+class AdjointSum {
+ public:
+  virtual ~AdjointSum() = default;
+  virtual void add(const VisibilityBlock& block) = 0;
+  /// Adds the samples of `block` with `visibility` [row][channel] in place of its own.
+  virtual void add(const VisibilityBlock& block, const std::vector<std::complex<double>>& visibility) = 0;
+  /// To be called once, after the last block.
+  virtual AdjointResult finish() = 0;
+};
+
+/// The forward transform of one model image.
+class Prediction {
+ public:
+  virtual ~Prediction() = default;
+  /// V [row][channel] at every coordinate, beyond 1/(2 cell) too: the model is periodic in u and v.
+  virtual std::vector<std::complex<double>> at(const SampleCoordinates& coordinates) const = 0;
+  /// V [row][channel] where the block's weight is not 0, and 0 elsewhere.
+  virtual std::vector<std::complex<double>> at_usable(const VisibilityBlock& block) const = 0;
+};
+
+/// The linear operator A of interferometric imaging and its adjoint,
+///   V(u,v,w) = Σ_pixels I(l,m) exp(+2πi(ul+vm+w(n−1))),   u, v, w = UVW · frequency / c,
+/// in one of several implementations. With the same samples, ⟨A x, y⟩ = ⟨x, A* y⟩ (real parts) up to rounding.
+class Transform {
+ public:
+  virtual ~Transform() = default;
+  virtual std::unique_ptr<AdjointSum> adjoint(bool with_psf) const = 0;
+  virtual std::unique_ptr<Prediction> predict(const Image& model) const = 0;
+};
+
+}  // namespace misfit::imager
