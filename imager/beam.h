@@ -14,10 +14,9 @@ struct Beam {
 /// The pixels of a PSF that a beam is fitted to. The main lobe is the pixels connected to the centre above 0.35 of its height.
 enum class BeamRegion {
   /// All pixels to the north and west, eight times as far as the main lobe reaches. WSClean 3.1 fits these alone, since its
-  /// unsigned offsets put the other three quadrants at infinity; no lobe or box about the centre gives its beams to 1 %. A PSF
-  /// is
-  /// symmetric about its centre, so this is half of what there is to know: the beam of a PSF that is no Gaussian depends on
-  /// which half. Where the quadrant fits no bounded Gaussian the main lobe is used.
+  /// unsigned offsets put the other three quadrants at infinity; no lobe or box about the centre gives its beams to 1 %. By
+  /// the PSF's symmetry this is half of what there is to know, and the beam of a PSF that is no Gaussian depends on which
+  /// half. Where the quadrant fits no bounded Gaussian the main lobe is used.
   quadrant,
   main_lobe,  ///< every pixel of the main lobe and no other: CASA tclean's choice; turns with the PSF
 };
