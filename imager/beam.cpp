@@ -1,0 +1,138 @@
+#include "imager/beam.h"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace misfit::imager {
+namespace {
+
+constexpr double lobe_cutoff = 0.35;
+const double fwhm_per_sigma = std::sqrt(8 * std::log(2.0));
+
+/// A pixel, its place relative to the PSF's centre in units of `Lobe::scale` pixels.
+struct Sample {
+  double east = 0;
+  double north = 0;
+  double value = 0;
+};
+
+struct Lobe {
+  std::vector<Sample> samples;
+  double scale = 1;  ///< radius in pixels of the circle of the same area
+  int reach = 0;     ///< pixels from the centre to the farthest row or column
+};
+
+Lobe main_lobe(const Image& psf) {
+  struct Place {
+    int row, column;
+  };
+  const Place centre{psf.height / 2, psf.width / 2};
+  std::vector<char> seen(psf.pixel.size());
+  std::vector<Place> queue;
+  const auto visit = [&](int row, int column) {
+    if (row < 0 || row >= psf.height || column < 0 || column >= psf.width || !(psf.at(row, column) > lobe_cutoff)) return;
+    char& mark = seen[static_cast<std::size_t>(row) * static_cast<std::size_t>(psf.width) + static_cast<std::size_t>(column)];
+    if (!mark) queue.push_back({row, column});
+    mark = 1;
+  };
+  Lobe lobe;
+  visit(centre.row, centre.column);
+  for (std::size_t i = 0; i < queue.size(); ++i) {
+    const auto [row, column] = queue[i];
+    const int east = centre.column - column, north = row - centre.row;
+    lobe.samples.push_back({double(east), double(north), psf.at(row, column)});
+    lobe.reach = std::max({lobe.reach, std::abs(east), std::abs(north)});
+    visit(row - 1, column);
+    visit(row + 1, column);
+    visit(row, column - 1);
+    visit(row, column + 1);
+  }
+  lobe.scale = std::sqrt(static_cast<double>(queue.size()) / M_PI);
+  for (Sample& sample : lobe.samples) sample = {sample.east / lobe.scale, sample.north / lobe.scale, sample.value};
+  return lobe;
+}
+
+std::vector<Sample> quadrant(const Image& psf, const Lobe& lobe) {
+  const int row0 = psf.height / 2, column0 = psf.width / 2;
+  const int rows = std::min(8 * lobe.reach, psf.height - row0), columns = std::min(8 * lobe.reach, psf.width - column0);
+  std::vector<Sample> samples;
+  for (int r = 0; r < rows; ++r)
+    for (int c = 0; c < columns; ++c)
+      if (const double value = psf.at(row0 + r, column0 + c); std::isfinite(value))
+        samples.push_back({-c / lobe.scale, r / lobe.scale, value});
+  return samples;
+}
+
+/// Normal equations of Σ (exp(−½(p₀e² + 2p₁en + p₂n²)) − value)² at p.
+struct Normal {
+  Eigen::Matrix3d matrix = Eigen::Matrix3d::Zero();
+  Eigen::Vector3d gradient = Eigen::Vector3d::Zero();
+  double cost = 0;
+
+  Normal(const std::vector<Sample>& samples, const Eigen::Vector3d& p) {
+    for (const auto& [east, north, value] : samples) {
+      const Eigen::Vector3d x(east * east, 2 * east * north, north * north);
+      const double model = std::exp(-0.5 * p.dot(x)), residual = model - value;
+      const Eigen::Vector3d derivative = -0.5 * model * x;
+      matrix += derivative * derivative.transpose();
+      gradient += derivative * residual;
+      cost += residual * residual;
+    }
+  }
+};
+
+/// Levenberg–Marquardt from a circle; empty when it ends at a Gaussian that is not bounded.
+std::optional<Eigen::Matrix2d> fit_precision(const std::vector<Sample>& samples) {
+  // The circle of radius 1 is where a round beam falls to the cutoff.
+  Eigen::Vector3d p = -2 * std::log(lobe_cutoff) * Eigen::Vector3d(1, 0, 1);
+  Normal here(samples, p);
+  double damping = 1e-3;
+  for (int iteration = 0; iteration < 200 && damping < 1e12; ++iteration) {
+    Eigen::Matrix3d damped = here.matrix;
+    damped.diagonal() *= 1 + damping;
+    const Eigen::Vector3d step = -damped.ldlt().solve(here.gradient);
+    const Normal there(samples, p + step);
+    const bool better = there.cost < here.cost;
+    damping *= better ? 0.1 : 10;
+    if (better) p += step, here = there;
+    if (step.norm() < 1e-14 * p.norm()) break;
+  }
+  const Eigen::Matrix2d precision{{p[0], p[1]}, {p[1], p[2]}};
+  const bool bounded = p.allFinite() && p[0] > 0 && precision.determinant() > 1e-12 * precision.squaredNorm();
+  return bounded ? std::optional(precision) : std::nullopt;
+}
+
+Beam beam_of(const Eigen::Matrix2d& precision, double unit_rad) {
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes(precision);  // the major axis has the smaller eigenvalue
+  const Eigen::Vector2d major = axes.eigenvectors().col(0);              // (east, north)
+  double angle = std::atan2(major[0], major[1]);
+  if (angle <= -M_PI_2) angle += M_PI;
+  if (angle > M_PI_2) angle -= M_PI;
+  const Eigen::Vector2d width = fwhm_per_sigma * unit_rad * axes.eigenvalues().cwiseSqrt().cwiseInverse();
+  return {width[0], width[1], angle};
+}
+
+}  // namespace
+
+Beam fit_beam(const Image& psf, double cell_rad, BeamRegion region) {
+  const Lobe lobe = main_lobe(psf);
+  // Pixels come in equal pairs about the centre, and each pair is one equation; beyond the lobe lie further ones.
+  const std::size_t needed = region == BeamRegion::main_lobe ? 7 : 5;
+  std::optional<Eigen::Matrix2d> precision;
+  if (lobe.samples.size() >= needed) {
+    if (region == BeamRegion::quadrant) precision = fit_precision(quadrant(psf, lobe));
+    if (!precision) precision = fit_precision(lobe.samples);
+  }
+  if (!precision)
+    throw std::runtime_error("no beam can be fitted to the " + std::to_string(lobe.samples.size()) +
+                             " pixels of the PSF's main lobe; expected at least " + std::to_string(needed) +
+                             " in both directions: use a smaller cell");
+  return beam_of(*precision, lobe.scale * cell_rad);
+}
+
+}  // namespace misfit::imager

@@ -1,0 +1,192 @@
+#include "imager/beam.h"
+
+#include <boost/test/unit_test.hpp>
+#include <cmath>
+#include <limits>
+#include <string>
+
+namespace {
+
+using namespace misfit::imager;
+
+constexpr double cell_rad = 1e-6;
+constexpr double degree = M_PI / 180;
+
+/// The beam's height at an offset from its peak.
+double gaussian(const Beam& beam, double east_rad, double north_rad) {
+  const double s = std::sin(beam.position_angle_rad), c = std::cos(beam.position_angle_rad);
+  const double along = (s * east_rad + c * north_rad) / beam.major_rad;
+  const double across = (c * east_rad - s * north_rad) / beam.minor_rad;
+  return std::exp2(-4 * (along * along + across * across));
+}
+
+Image sampled(const Beam& beam, int width, int height) {
+  Image image(width, height);
+  for (int r = 0; r < height; ++r)
+    for (int c = 0; c < width; ++c) image.at(r, c) = gaussian(beam, (width / 2 - c) * cell_rad, (r - height / 2) * cell_rad);
+  return image;
+}
+
+/// Turns a square image of odd size from north to east.
+Image turned(const Image& image) {
+  Image result(image.width, image.height);
+  for (int r = 0; r < image.height; ++r)
+    for (int c = 0; c < image.width; ++c) result.at(image.width - 1 - c, r) = image.at(r, c);
+  return result;
+}
+
+double angle_between(double a_rad, double b_rad) {
+  return std::abs(std::remainder(a_rad - b_rad, M_PI));
+}
+
+Image components() {
+  Image model(40, 30);
+  model.at(0, 0) = 1.5;
+  model.at(0, 39) = -0.25;
+  model.at(29, 0) = 2;
+  model.at(29, 39) = 0.125;
+  model.at(13, 17) = 3;
+  model.at(14, 17) = 1;
+  return model;
+}
+
+const Beam oblique{7.3 * cell_rad, 4.1 * cell_rad, 0.6};
+
+}  // namespace
+
+BOOST_AUTO_TEST_SUITE(beam)
+
+BOOST_AUTO_TEST_CASE(a_sampled_gaussian_is_recovered) {
+  // The residual is zero at the solution, so only rounding and the stop of the iteration (1e-14) remain; 1e-6 is the promise.
+  for (const double major : {2.0, 3.3, 8.0, 40.0})
+    for (const double ratio : {1.0, 0.8, 0.5, 0.25})
+      for (const double angle_deg : {-75.0, -45.0, 0.0, 10.0, 45.0, 60.0, 90.0}) {
+        if (major * ratio < 2) continue;
+        const Beam expected{major * cell_rad, major * ratio * cell_rad, angle_deg * degree};
+        const Beam fitted = fit_beam(sampled(expected, 201, 200), cell_rad);
+        BOOST_TEST_INFO("major " << major << " ratio " << ratio << " angle " << angle_deg);
+        BOOST_TEST(std::abs(fitted.major_rad / expected.major_rad - 1) < 1e-6);
+        BOOST_TEST(std::abs(fitted.minor_rad / expected.minor_rad - 1) < 1e-6);
+        BOOST_TEST((ratio == 1 || angle_between(fitted.position_angle_rad, expected.position_angle_rad) < 1e-6));
+        BOOST_TEST((fitted.position_angle_rad > -M_PI_2 && fitted.position_angle_rad <= M_PI_2));
+      }
+}
+
+BOOST_AUTO_TEST_CASE(the_main_lobe_alone_recovers_a_sampled_gaussian) {
+  for (const double major : {3.3, 8.0, 40.0})
+    for (const double angle_deg : {-75.0, 0.0, 45.0, 90.0}) {
+      const Beam expected{major * cell_rad, 0.8 * major * cell_rad, angle_deg * degree};
+      const Beam fitted = fit_beam(sampled(expected, 128, 101), cell_rad, BeamRegion::main_lobe);
+      BOOST_TEST(std::abs(fitted.major_rad / expected.major_rad - 1) < 1e-6);
+      BOOST_TEST(std::abs(fitted.minor_rad / expected.minor_rad - 1) < 1e-6);
+      BOOST_TEST(angle_between(fitted.position_angle_rad, expected.position_angle_rad) < 1e-6);
+    }
+}
+
+BOOST_AUTO_TEST_CASE(the_angle_grows_from_north_towards_lower_columns) {
+  Image psf(33, 33);
+  for (int i = -6; i <= 6; ++i)
+    for (int j = -3; j <= 3; ++j) psf.at(16 + i, 16 - i + j) = std::exp(-0.05 * i * i - 0.3 * j * j);
+  const double angle_rad = fit_beam(psf, cell_rad, BeamRegion::main_lobe).position_angle_rad;
+  BOOST_TEST((angle_rad > 0.1 && angle_rad < M_PI_2));
+}
+
+BOOST_AUTO_TEST_CASE(turning_the_psf_by_a_right_angle_turns_the_beam) {
+  // No Gaussian: the main lobe's fit must turn all the same. 1e-9: least squares stops within about √(rounding) of its minimum.
+  Image psf = sampled(oblique, 65, 65);
+  for (double& value : psf.pixel) value = std::pow(value, 1.4) * 0.7 + 0.3 * std::sqrt(value);
+  const Beam before = fit_beam(psf, cell_rad, BeamRegion::main_lobe);
+  const Beam after = fit_beam(turned(psf), cell_rad, BeamRegion::main_lobe);
+  const double expected_rad = before.position_angle_rad + M_PI_2;
+  BOOST_TEST(std::abs(after.major_rad / before.major_rad - 1) < 1e-7);
+  BOOST_TEST(std::abs(after.minor_rad / before.minor_rad - 1) < 1e-7);
+  BOOST_TEST(angle_between(after.position_angle_rad, expected_rad) < 1e-7);
+}
+
+BOOST_AUTO_TEST_CASE(the_quadrant_is_the_one_to_the_north_west) {
+  Image psf = sampled(oblique, 65, 65);
+  const Beam before = fit_beam(psf, cell_rad);
+  for (int r = 0; r < 65; ++r)
+    for (int c = 0; c < 65; ++c)
+      if ((r < 32 || c < 32) && std::abs(r - 32) + std::abs(c - 32) > 12) psf.at(r, c) += 0.2;
+  BOOST_TEST(fit_beam(psf, cell_rad).major_rad == before.major_rad);
+}
+
+BOOST_AUTO_TEST_CASE(where_the_quadrant_fits_no_bounded_gaussian_the_main_lobe_is_fitted) {
+  Image psf(101, 101);
+  for (int r = -50; r <= 50; ++r)
+    for (int c = -50; c <= 50; ++c) psf.at(50 + r, 50 + c) = std::exp(-0.005 * (r * r + c * c) - 0.1 * std::abs(r * c));
+  const Beam beam = fit_beam(psf, cell_rad), lobe = fit_beam(psf, cell_rad, BeamRegion::main_lobe);
+  BOOST_TEST(beam.major_rad == lobe.major_rad);
+  BOOST_TEST(beam.minor_rad == lobe.minor_rad);
+}
+
+BOOST_AUTO_TEST_CASE(the_beam_is_proportional_to_the_cell) {
+  const Image psf = sampled(oblique, 65, 65);
+  BOOST_TEST(std::abs(fit_beam(psf, 3 * cell_rad).major_rad / oblique.major_rad - 3) < 1e-6);
+}
+
+BOOST_AUTO_TEST_CASE(a_main_lobe_of_too_few_pixels_is_an_error_that_names_them) {
+  Image psf = sampled({1.2 * cell_rad, 1.2 * cell_rad, 0}, 32, 32);
+  BOOST_CHECK_EXCEPTION(fit_beam(psf, cell_rad), std::runtime_error, [](const std::exception& error) {
+    const std::string message = error.what();
+    return message.find(" 1 pixels") != message.npos && message.find("smaller cell") != message.npos;
+  });
+  psf.at(16, 16) = std::numeric_limits<double>::quiet_NaN();
+  BOOST_CHECK_THROW(fit_beam(psf, cell_rad), std::runtime_error);
+  BOOST_CHECK_THROW(fit_beam(Image(), cell_rad), std::runtime_error);
+}
+
+BOOST_AUTO_TEST_CASE(a_psf_without_slopes_is_an_error) {
+  Image psf(16, 16);
+  for (double& value : psf.pixel) value = 1;
+  BOOST_CHECK_THROW(fit_beam(psf, cell_rad), std::runtime_error);
+}
+
+BOOST_AUTO_TEST_CASE(an_isolated_component_keeps_its_flux_as_its_peak) {
+  Image model(21, 20);
+  model.at(10, 5) = 2.7;
+  BOOST_TEST(convolve_with_beam(model, oblique, cell_rad, 1).at(10, 5) == 2.7);
+}
+
+BOOST_AUTO_TEST_CASE(the_total_is_the_flux_times_the_sum_over_the_beam) {
+  Image model(61, 61);
+  model.at(30, 30) = 2;
+  model.at(29, 33) = 1;
+  double total = 0, beam_sum = 0;
+  for (const double value : convolve_with_beam(model, oblique, cell_rad, 1).pixel) total += value;
+  for (const double value : sampled(oblique, 61, 61).pixel) beam_sum += value >= 1e-8 ? value : 0;
+  BOOST_TEST(std::abs(total / (3 * beam_sum) - 1) < 1e-12);
+}
+
+BOOST_AUTO_TEST_CASE(convolution_equals_the_double_sum_over_pixels) {
+  // Rounding of a few dozen additions; both leave out what lies below 1e-8 of the peak.
+  const Image model = components(), fast = convolve_with_beam(model, oblique, cell_rad, 2);
+  for (int r = 0; r < model.height; ++r)
+    for (int c = 0; c < model.width; ++c) {
+      double sum = 0;
+      for (int y = 0; y < model.height; ++y)
+        for (int x = 0; x < model.width; ++x) {
+          const double height = gaussian(oblique, (x - c) * cell_rad, (r - y) * cell_rad);
+          if (height >= 1e-8) sum += model.at(y, x) * height;
+        }
+      BOOST_REQUIRE(std::abs(fast.at(r, c) - sum) < 1e-12);
+    }
+}
+
+BOOST_AUTO_TEST_CASE(convolution_gives_the_same_bits_on_any_number_of_threads) {
+  const Image model = components(), one = convolve_with_beam(model, oblique, cell_rad, 1);
+  for (const int threads : {2, 3, 50}) BOOST_TEST((convolve_with_beam(model, oblique, cell_rad, threads).pixel == one.pixel));
+}
+
+BOOST_AUTO_TEST_CASE(a_beam_wider_than_the_image_is_cut_at_its_border) {
+  const Image out = convolve_with_beam(components(), {1.0, 1.0, 0}, cell_rad, 1);
+  // Flat to 1e-9 over the image: every pixel is the sum of the components.
+  for (const double value : out.pixel) BOOST_REQUIRE(std::abs(value - 7.375) < 1e-7);
+}
+
+BOOST_AUTO_TEST_CASE(a_beam_without_extent_is_an_error) {
+  BOOST_CHECK_THROW(convolve_with_beam(components(), {cell_rad, 0, 0}, cell_rad, 1), std::invalid_argument);
+}
+
+BOOST_AUTO_TEST_SUITE_END()

@@ -1,0 +1,296 @@
+#include "imager/fits_image.h"
+
+#include <unistd.h>
+
+#include <boost/test/unit_test.hpp>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <limits>
+#include <random>
+
+namespace {
+
+using namespace misfit::imager;
+namespace fs = std::filesystem;
+
+constexpr double degree = M_PI / 180;
+
+struct TemporaryFolder {
+  fs::path path = fs::temp_directory_path() / ("misfit_fits_image_" + std::to_string(getpid()));
+  TemporaryFolder() { fs::create_directory(path); }
+  ~TemporaryFolder() { fs::remove_all(path); }
+  std::string file(const std::string& name) const { return (path / name).string(); }
+};
+
+SkyImage example(int width = 7, int height = 4) {
+  SkyImage sky;
+  sky.image = Image(width, height);
+  std::mt19937 random(1);
+  std::normal_distribution<double> normal;
+  for (double& value : sky.image.pixel) value = normal(random);
+  sky.geometry = {width, height, 0.2 / 3600 * degree, {187.7 * degree, -12.3 * degree, "FK5"}};
+  sky.observation = {"EVLA", "me", "M87", "2026-01-31T12:00:00.0", sky.geometry.phase_centre, 1.5e9, 64e6, "TOPOCENT"};
+  sky.has_beam = true;
+  sky.beam = {3e-6, 2e-6, -0.4};
+  return sky;
+}
+
+std::string contents(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+/// The card that begins with `keyword`, 80 characters.
+std::string card(const std::string& fits, const std::string& keyword) {
+  for (std::size_t i = 0; i + 80 <= fits.size(); i += 80)
+    if (fits.compare(i, 8, (keyword + "        ").substr(0, 8)) == 0) return fits.substr(i, 80);
+  return "";
+}
+
+double number(const std::string& fits, const std::string& keyword) {
+  return std::stod(card(fits, keyword).substr(9));
+}
+
+/// Writes the example with one header card exchanged.
+void write_altered(const std::string& path, const std::string& keyword, const std::string& new_card) {
+  write_fits(example(), path, PixelFormat::float64);
+  std::string fits = contents(path);
+  fits.replace(fits.find(card(fits, keyword)), 80, (new_card + std::string(80, ' ')).substr(0, 80));
+  std::ofstream(path, std::ios::binary) << fits;
+}
+
+void check_error_names(const std::string& path, const std::string& expected, const std::function<void()>& action) {
+  BOOST_CHECK_EXCEPTION(action(), std::runtime_error, [&](const std::exception& error) {
+    const std::string message = error.what();
+    BOOST_TEST_INFO(message);
+    BOOST_TEST(message.find(expected) != message.npos);
+    return message.find(path) != message.npos;
+  });
+}
+
+}  // namespace
+
+BOOST_AUTO_TEST_SUITE(fits_image)
+
+BOOST_AUTO_TEST_CASE(pixels_of_64_bits_come_back_bit_for_bit) {
+  const TemporaryFolder folder;
+  SkyImage sky = example(300, 200);
+  sky.image.at(0, 1) = std::numeric_limits<double>::denorm_min();
+  sky.image.at(1, 2) = std::numeric_limits<double>::infinity();
+  sky.image.at(2, 2) = std::numeric_limits<double>::max();
+  write_fits(sky, folder.file("a.fits"), PixelFormat::float64);
+  const SkyImage read = read_fits(folder.file("a.fits"));
+  BOOST_TEST(read.image.width == 300);
+  BOOST_TEST(read.image.height == 200);
+  BOOST_TEST((read.image.pixel == sky.image.pixel));
+}
+
+BOOST_AUTO_TEST_CASE(pixels_of_32_bits_come_back_rounded_to_single_precision) {
+  const TemporaryFolder folder;
+  const SkyImage sky = example();
+  write_fits(sky, folder.file("a.fits"), PixelFormat::float32);
+  const SkyImage read = read_fits(folder.file("a.fits"));
+  for (std::size_t i = 0; i < sky.image.pixel.size(); ++i)
+    BOOST_TEST(read.image.pixel[i] == static_cast<double>(static_cast<float>(sky.image.pixel[i])));
+}
+
+BOOST_AUTO_TEST_CASE(blank_pixels_stay_blank) {
+  const TemporaryFolder folder;
+  for (const PixelFormat format : {PixelFormat::float32, PixelFormat::float64}) {
+    SkyImage sky = example();
+    sky.image.at(2, 3) = std::numeric_limits<double>::quiet_NaN();
+    write_fits(sky, folder.file("a.fits"), format);
+    const SkyImage read = read_fits(folder.file("a.fits"));
+    BOOST_TEST(std::isnan(read.image.at(2, 3)));
+    BOOST_TEST(std::isfinite(read.image.at(2, 4)));
+  }
+}
+
+BOOST_AUTO_TEST_CASE(what_the_header_states_comes_back) {
+  const TemporaryFolder folder;
+  const SkyImage sky = example();
+  write_fits(sky, folder.file("a.fits"), PixelFormat::float32);
+  const SkyImage read = read_fits(folder.file("a.fits"));
+  const double rounding = 1e-14;  // 15 digits are written
+  BOOST_TEST(read.geometry.width == 7);
+  BOOST_TEST(read.geometry.height == 4);
+  BOOST_TEST(std::abs(read.geometry.cell_rad / sky.geometry.cell_rad - 1) < rounding);
+  BOOST_TEST(std::abs(read.geometry.phase_centre.ra_rad / sky.geometry.phase_centre.ra_rad - 1) < rounding);
+  BOOST_TEST(std::abs(read.geometry.phase_centre.dec_rad / sky.geometry.phase_centre.dec_rad - 1) < rounding);
+  BOOST_TEST(read.observation.phase_centre.frame == "FK5");
+  BOOST_TEST(read.observation.frequency_hz == 1.5e9);
+  BOOST_TEST(read.observation.bandwidth_hz == 64e6);
+  BOOST_TEST(read.observation.telescope == "EVLA");
+  BOOST_TEST(read.observation.object == "M87");
+  BOOST_TEST(read.observation.date_obs == "2026-01-31T12:00:00.0");
+  BOOST_TEST(read.observation.spectral_frame == "TOPOCENT");
+  BOOST_TEST(read.unit == "Jy/beam");
+  BOOST_TEST(read.has_beam);
+  BOOST_TEST(std::abs(read.beam.major_rad / sky.beam.major_rad - 1) < rounding);
+  BOOST_TEST(std::abs(read.beam.minor_rad / sky.beam.minor_rad - 1) < rounding);
+  BOOST_TEST(std::abs(read.beam.position_angle_rad / sky.beam.position_angle_rad - 1) < rounding);
+}
+
+BOOST_AUTO_TEST_CASE(every_frame_comes_back) {
+  const TemporaryFolder folder;
+  for (const char* frame : {"ICRS", "FK5", "FK4"}) {
+    SkyImage sky = example();
+    sky.geometry.phase_centre.frame = frame;
+    write_fits(sky, folder.file("a.fits"), PixelFormat::float32);
+    BOOST_TEST(read_fits(folder.file("a.fits")).geometry.phase_centre.frame == frame);
+  }
+}
+
+BOOST_AUTO_TEST_CASE(the_header_places_pixels_where_the_geometry_has_them) {
+  const TemporaryFolder folder;
+  const SkyImage sky = example();
+  write_fits(sky, folder.file("a.fits"), PixelFormat::float32);
+  const std::string fits = contents(folder.file("a.fits"));
+  for (int column = 0; column < 7; ++column) {
+    const double x_deg = (column + 1 - number(fits, "CRPIX1")) * number(fits, "CDELT1");
+    BOOST_TEST(std::abs(x_deg * degree - sky.geometry.l(column)) < 1e-14 * sky.geometry.cell_rad * 7);
+  }
+  for (int row = 0; row < 4; ++row) {
+    const double y_deg = (row + 1 - number(fits, "CRPIX2")) * number(fits, "CDELT2");
+    BOOST_TEST(std::abs(y_deg * degree - sky.geometry.m(row)) < 1e-14 * sky.geometry.cell_rad * 7);
+  }
+  BOOST_TEST(number(fits, "CRPIX1") == 4);
+  BOOST_TEST(number(fits, "CRPIX2") == 3);
+  BOOST_TEST(number(fits, "NAXIS") == 4);
+  BOOST_TEST(number(fits, "CRVAL1") == 187.7);
+  BOOST_TEST(number(fits, "CRVAL2") == -12.3);
+  BOOST_TEST(number(fits, "RESTFRQ") == 1.5e9);
+  BOOST_TEST(number(fits, "EQUINOX") == 2000);
+  for (const auto& [key, value] : {std::pair("CTYPE1", "'RA---SIN'"),
+                                   {"CTYPE2", "'DEC--SIN'"},
+                                   {"CTYPE3", "'FREQ"},
+                                   {"CTYPE4", "'STOKES"},
+                                   {"RADESYS", "'FK5"},
+                                   {"BUNIT", "'Jy/beam"},
+                                   {"BTYPE", "'Intensity"},
+                                   {"ORIGIN", "'misfit"},
+                                   {"TIMESYS", "'UTC"}})
+    BOOST_TEST(card(fits, key).find(value) != std::string::npos);
+}
+
+BOOST_AUTO_TEST_CASE(cards_and_long_history_are_written) {
+  const TemporaryFolder folder;
+  SkyImage sky = example();
+  sky.cards = {{"MFERRRMS", 2.5e-7, "expected error"}};
+  sky.history = {"misfit image " + std::string(200, 'x'), "done"};
+  write_fits(sky, folder.file("a.fits"), PixelFormat::float32);
+  const std::string fits = contents(folder.file("a.fits"));
+  BOOST_TEST(number(fits, "MFERRRMS") == 2.5e-7);
+  BOOST_TEST(card(fits, "MFERRRMS").find("/ expected error") != std::string::npos);
+  std::string history;
+  for (std::size_t i = 0; i + 80 <= fits.size(); i += 80)
+    if (fits.compare(i, 8, "HISTORY ") == 0) history += fits.substr(i + 8, 72);
+  BOOST_TEST(history.find(sky.history[0]) == 0);
+  BOOST_TEST(history.find("done") != std::string::npos);
+}
+
+BOOST_AUTO_TEST_CASE(an_image_without_beam_has_none) {
+  const TemporaryFolder folder;
+  SkyImage sky = example();
+  sky.has_beam = false;
+  write_fits(sky, folder.file("a.fits"), PixelFormat::float32);
+  BOOST_TEST(card(contents(folder.file("a.fits")), "BMAJ").empty());
+  BOOST_TEST(!read_fits(folder.file("a.fits")).has_beam);
+}
+
+BOOST_AUTO_TEST_CASE(names_that_cfitsio_would_parse_are_plain_names) {
+  const TemporaryFolder folder;
+  const auto before = fs::current_path();
+  fs::current_path(folder.path);
+  for (const char* name : {"a[1:2,3].fits", "b(c).fits", "d+1", "!e.fits", "~f.fits", "mem:g.fits", " h i.fits"}) {
+    BOOST_TEST_INFO(name);
+    write_fits(example(), name, PixelFormat::float32);
+    BOOST_TEST(fs::exists(name));
+    BOOST_CHECK_NO_THROW(read_fits(name));
+  }
+  fs::current_path(before);
+}
+
+BOOST_AUTO_TEST_CASE(writing_replaces_and_leaves_nothing_else_behind) {
+  const TemporaryFolder folder;
+  write_fits(example(7, 4), folder.file("a.fits"), PixelFormat::float32);
+  write_fits(example(5, 6), folder.file("a.fits"), PixelFormat::float32);
+  BOOST_TEST(read_fits(folder.file("a.fits")).image.width == 5);
+  BOOST_TEST(std::distance(fs::directory_iterator(folder.path), fs::directory_iterator()) == 1);
+}
+
+BOOST_AUTO_TEST_CASE(a_place_that_cannot_be_written_is_an_error_that_names_it) {
+  const TemporaryFolder folder;
+  const std::string missing = folder.file("no/such/folder.fits"), taken = folder.file("taken");
+  check_error_names(missing, "write", [&] { write_fits(example(), missing, PixelFormat::float32); });
+  fs::create_directories(taken + "/full");
+  check_error_names(taken, "write", [&] { write_fits(example(), taken, PixelFormat::float32); });
+  BOOST_TEST(std::distance(fs::directory_iterator(folder.path), fs::directory_iterator()) == 1);
+}
+
+BOOST_AUTO_TEST_CASE(a_card_that_cannot_be_written_leaves_no_file) {
+  const TemporaryFolder folder;
+  SkyImage sky = example();
+  sky.cards = {{"BAD", std::numeric_limits<double>::quiet_NaN(), ""}};
+  check_error_names(folder.file("a.fits"), "", [&] { write_fits(sky, folder.file("a.fits"), PixelFormat::float32); });
+  BOOST_TEST(fs::is_empty(folder.path));
+}
+
+BOOST_AUTO_TEST_CASE(a_file_that_is_missing_cut_short_or_no_image_is_an_error_that_names_it) {
+  const TemporaryFolder folder;
+  const std::string path = folder.file("a.fits");
+  check_error_names(path, "read", [&] { read_fits(path); });
+  write_fits(example(100, 100), path, PixelFormat::float64);
+  fs::resize_file(path, fs::file_size(path) / 2);
+  check_error_names(path, "read", [&] { read_fits(path); });
+  std::ofstream(path) << "not FITS at all";
+  check_error_names(path, "read", [&] { read_fits(path); });
+  write_altered(path, "NAXIS1", "NAXIS1  =           2000000000");
+  check_error_names(path, "read", [&] { read_fits(path); });
+}
+
+BOOST_AUTO_TEST_CASE(geometry_that_is_not_known_is_an_error_that_says_why) {
+  const TemporaryFolder folder;
+  const std::string path = folder.file("a.fits");
+  const auto refused = [&](const std::string& keyword, const std::string& new_card, const std::string& expected) {
+    write_altered(path, keyword, new_card);
+    check_error_names(path, expected, [&] { read_fits(path); });
+  };
+  refused("CDELT1", "CDELT1  = -5.6E-05", "square");
+  refused("CDELT1", "CDELT1  = 5.55555555555556E-05", "square");
+  refused("CDELT2", "COMMENT", "CDELT2");
+  refused("CRPIX1", "CRPIX1  = 3.0", "reference pixel");
+  refused("CTYPE1", "CTYPE1  = 'RA---TAN'", "RA---TAN");
+  refused("BTYPE", "CROTA2  = 12.0", "CROTA2");
+  refused("CDELT2", "CDELT2  = 'wide'", "read");
+}
+
+BOOST_AUTO_TEST_CASE(a_stack_of_planes_is_no_image) {
+  const TemporaryFolder folder;
+  const std::string path = folder.file("a.fits");
+  write_altered(path, "NAXIS3", "NAXIS3  =                    2");
+  check_error_names(path, "two-dimensional", [&] { read_fits(path); });
+}
+
+BOOST_AUTO_TEST_CASE(integers_with_a_scale_and_blanks_are_read) {
+  const TemporaryFolder folder;
+  std::string fits;
+  for (const char* text :
+       {"SIMPLE  =                    T", "BITPIX  =                   16", "NAXIS   =                    2",
+        "NAXIS1  =                    2", "NAXIS2  =                    1", "BSCALE  =                  0.5",
+        "BZERO   =                   1.0", "BLANK   =                   -1", "CRPIX1  =                  2.0",
+        "CRPIX2  =                  1.0", "CDELT1  =                 -0.1", "CDELT2  =                  0.1", "END"})
+    fits += (text + std::string(80, ' ')).substr(0, 80);
+  fits.resize(2880, ' ');
+  fits += std::string("\x00\x06\xff\xff", 4);
+  fits.resize(2 * 2880, '\0');
+  std::ofstream(folder.file("a.fits"), std::ios::binary) << fits;
+  const SkyImage read = read_fits(folder.file("a.fits"));
+  BOOST_TEST(read.image.at(0, 0) == 4);
+  BOOST_TEST(std::isnan(read.image.at(0, 1)));
+  BOOST_TEST(read.geometry.phase_centre.frame == "ICRS");
+}
+
+BOOST_AUTO_TEST_SUITE_END()
