@@ -11,20 +11,20 @@ struct Beam {
   double position_angle_rad = 0;  ///< in (−π/2, π/2]
 };
 
-/// The pixels of a PSF that a beam is fitted to. The main lobe is the pixels connected to the centre above 0.35 of its height.
+/// The pixels of a PSF that a beam is fitted to.
 enum class BeamRegion {
-  /// All pixels to the north and west, eight times as far as the main lobe reaches. WSClean 3.1 fits these alone, since its
-  /// unsigned offsets put the other three quadrants at infinity; no lobe or box about the centre gives its beams to 1 %. By
-  /// the PSF's symmetry this is half of what there is to know, and the beam of a PSF that is no Gaussian depends on which
-  /// half. Where the quadrant fits no bounded Gaussian the main lobe is used.
+  /// The pixels connected to the centre above 0.35 of its height, CASA tclean's choice: the fit turns with the PSF.
+  main_lobe,
+  /// The pixels to the north and west alone, eight times as far as the main lobe reaches. WSClean 3.1 fits these, since its
+  /// unsigned offsets put the other three quadrants at infinity, and no lobe or box about the centre gives its beams; the fit
+  /// depends on how the PSF is turned. For comparison only. Where the quadrant fits no bounded Gaussian the main lobe is used.
   quadrant,
-  main_lobe,  ///< every pixel of the main lobe and no other: CASA tclean's choice; turns with the PSF
 };
 
 /// The Gaussian exp(−½ xᵀ P x) that fits `psf` best in the least-squares sense, with its peak of height 1 at the centre pixel
 /// (row height/2, column width/2). Throws std::runtime_error when the main lobe holds too few pixels for three unknowns, or the
 /// fit fails.
-Beam fit_beam(const Image& psf, double cell_rad, BeamRegion region = BeamRegion::quadrant);
+Beam fit_beam(const Image& psf, double cell_rad, BeamRegion region = BeamRegion::main_lobe);
 
 /// model ⊗ beam, where the beam has peak 1: Jy/pixel in, Jy/beam out. Summed over the components directly, out to where the
 /// beam falls below 1e-8 of its peak; the same bits for any number of threads. Throws std::invalid_argument when an axis of

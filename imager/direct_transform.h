@@ -1,15 +1,10 @@
 #pragma once
 
 #include "imager/geometry.h"
+#include "imager/point_source.h"
 #include "imager/transform.h"
 
 namespace misfit::imager {
-
-/// A point of the sky with its flux; the sum of them is a model without pixels.
-struct PointSource {
-  DirectionCosines position;
-  double flux_jy = 0;
-};
 
 /// The defining sums in double precision, w included: the oracle that everything else is measured against. Costs samples ×
 /// pixels.

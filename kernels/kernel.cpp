@@ -7,11 +7,11 @@ namespace misfit::kernels {
 Kernel make_kernel(const std::string& name, double x0, const TapFunction& taps) {
   // Powers of t amplify rounding with their degree; 16 is where that outgrows what a term can still add.
   constexpr int highest_degree = 16;
-  const double target = 1.005 * misfit(taps, x0).mean;
+  const double target = 1.005 * judge(taps, x0).mean;
   Kernel best{name, x0, {}, {.mean = std::numeric_limits<double>::infinity()}};
   for (int degree = 0; degree <= highest_degree && best.misfit.mean > target; ++degree) {
     const PiecewisePolynomial polynomial = fit_polynomial(taps, degree);
-    const Misfit judged = misfit(polynomial, x0);
+    const Misfit judged = judge(polynomial, x0);
     if (judged.mean < best.misfit.mean) best = {name, x0, polynomial, judged};
   }
   return best;

@@ -126,7 +126,7 @@ class Problem {
 /// visible.
 double negligible(double mean_error) {
   constexpr double rounding = std::numeric_limits<double>::epsilon();
-  return 1e-8 + 0.1 * rounding / std::sqrt(mean_error) + 200 * rounding * rounding / mean_error;
+  return 1e-13 + 0.1 * rounding / std::sqrt(mean_error) + 200 * rounding * rounding / mean_error;
 }
 
 struct Minimum {

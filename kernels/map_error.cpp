@@ -64,7 +64,7 @@ Eigen::VectorXd map_error(const TapFunction& taps, const Eigen::VectorXd& x) {
   return squared_error(seen, correction(seen, t.weight)).matrix() * t.weight;
 }
 
-Misfit misfit(const TapFunction& taps, double x0) {
+Misfit judge(const TapFunction& taps, double x0) {
   const Quadrature rule = gauss_legendre(48, 0, x0);
   Eigen::VectorXd x(rule.node.size() + 1);
   x << rule.node, x0;

@@ -25,6 +25,6 @@ struct Misfit {
   double worst = 0;       ///< largest squared error over |x| ≤ x0 and all positions
 };
 
-Misfit misfit(const TapFunction& taps, double x0);
+Misfit judge(const TapFunction& taps, double x0);
 
 }  // namespace misfit::kernels

@@ -46,19 +46,23 @@ constexpr std::array<Approximation, 5> approximations{
 
 }  // namespace
 
-Kernel spheroidal(int width, double x0) {
+TapFunction spheroidal_taps(int width) {
   if (width < 4 || width > 8)
     throw std::invalid_argument("spheroidal kernel: width " + std::to_string(width) +
                                 " not in [4, 8], where Schwab's approximations exist");
   const Approximation& psi = approximations[static_cast<std::size_t>(width - 4)];
-  return make_kernel("spheroidal", x0, [&psi, width](double t) {
+  return [&psi, width](double t) {
     Eigen::VectorXd taps(width);
     for (int r = 0; r < width; ++r) {
       const double eta = std::abs(r - (width - 1) / 2.0 - t) / (width / 2.0);
       taps[r] = (1 - eta * eta) * (eta < psi.inner.edge ? psi.inner : psi.outer)(eta);
     }
     return taps;
-  });
+  };
+}
+
+Kernel spheroidal(int width, double x0) {
+  return make_kernel("spheroidal", x0, spheroidal_taps(width));
 }
 
 }  // namespace misfit::kernels

@@ -8,6 +8,9 @@ namespace misfit::kernels {
 /// approximations (F. R. Schwab 1984, "Optimal gridding of visibility data in radio interferometry", in Indirect Imaging, ed.
 /// J. A. Roberts, Cambridge University Press, p. 333; coefficients good to about 7 digits). The gridding function of AIPS and
 /// CASA for W = 6. Throws std::invalid_argument for other widths.
+TapFunction spheroidal_taps(int width);
+
+/// The same, stored as a polynomial.
 Kernel spheroidal(int width, double x0);
 
 }  // namespace misfit::kernels

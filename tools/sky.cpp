@@ -11,6 +11,8 @@
 namespace misfit::tools {
 namespace {
 
+using imager::PointSource;
+
 constexpr double degree = M_PI / 180;
 constexpr double arcsec = degree / 3600;
 
@@ -70,11 +72,10 @@ PointSource source_of(const Fields& fields, const Columns& columns, const imager
   const double x = number(fields[columns.x]), y = number(fields[columns.y]), flux_jy = number(fields[columns.flux]);
   if (columns.equatorial) {
     if (std::abs(y) > 90) throw std::runtime_error("declination " + std::to_string(y) + ", expected -90 to 90 degrees");
-    const auto [l, m] = imager::direction_cosines({x * degree, y * degree, phase_centre.frame}, phase_centre);
-    return {l, m, flux_jy};
+    return {imager::direction_cosines({x * degree, y * degree, phase_centre.frame}, phase_centre), flux_jy};
   }
-  const PointSource source{x * arcsec, y * arcsec, flux_jy};
-  if (std::hypot(source.l, source.m) >= 1) throw std::runtime_error("l² + m² is not below 1: not on the sky");
+  const PointSource source{{x * arcsec, y * arcsec}, flux_jy};
+  if (std::hypot(source.position.l, source.position.m) >= 1) throw std::runtime_error("l² + m² is not below 1: not on the sky");
   return source;
 }
 
@@ -119,7 +120,7 @@ std::vector<PointSource> read_component_list(const std::string& path, const imag
 
 std::vector<PointSource> test_card(double cell_rad) {
   std::vector<PointSource> sources;
-  for (const auto& [x, y, flux_jy] : card) sources.push_back({x * cell_rad, y * cell_rad, double(flux_jy)});
+  for (const auto& [x, y, flux_jy] : card) sources.push_back({{x * cell_rad, y * cell_rad}, double(flux_jy)});
   return sources;
 }
 

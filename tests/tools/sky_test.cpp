@@ -11,7 +11,7 @@
 namespace {
 
 using namespace misfit;
-using misfit::tools::PointSource;
+using misfit::imager::PointSource;
 
 constexpr double degree = M_PI / 180;
 const imager::SkyDirection phase_centre{60 * degree, 40 * degree, "FK5"};
@@ -43,8 +43,8 @@ BOOST_AUTO_TEST_SUITE(sky)
 BOOST_AUTO_TEST_CASE(direction_cosines_are_given_in_arcseconds) {
   const auto sources = read("l_arcsec,m_arcsec,flux_jy\n3600,-7200,1.5\n0,0,-2e-3\n");
   BOOST_REQUIRE(sources.size() == 2u);
-  BOOST_TEST(std::abs(sources[0].l / degree - 1) < 1e-15);
-  BOOST_TEST(std::abs(sources[0].m / degree + 2) < 1e-15);
+  BOOST_TEST(std::abs(sources[0].position.l / degree - 1) < 1e-15);
+  BOOST_TEST(std::abs(sources[0].position.m / degree + 2) < 1e-15);
   BOOST_TEST(sources[0].flux_jy == 1.5);
   BOOST_TEST(sources[1].flux_jy == -2e-3);
 }
@@ -52,18 +52,18 @@ BOOST_AUTO_TEST_CASE(direction_cosines_are_given_in_arcseconds) {
 BOOST_AUTO_TEST_CASE(equatorial_positions_become_direction_cosines) {
   const auto sources = read("ra_deg,dec_deg,flux_jy\n60,40,1\n60,41,1\n60.5,40,1\n");
   BOOST_REQUIRE(sources.size() == 3u);
-  BOOST_TEST(std::hypot(sources[0].l, sources[0].m) < 1e-15);
-  BOOST_TEST(std::abs(sources[1].m - std::sin(degree)) < 1e-15);
+  BOOST_TEST(std::hypot(sources[0].position.l, sources[0].position.m) < 1e-15);
+  BOOST_TEST(std::abs(sources[1].position.m - std::sin(degree)) < 1e-15);
   const auto expected = imager::direction_cosines({60.5 * degree, 40 * degree, "FK5"}, phase_centre);
-  BOOST_TEST(sources[2].l == expected.l);
-  BOOST_TEST(sources[2].l > 0);
+  BOOST_TEST(sources[2].position.l == expected.l);
+  BOOST_TEST(sources[2].position.l > 0);
 }
 
 BOOST_AUTO_TEST_CASE(columns_may_come_in_any_order_among_comments_blanks_and_carriage_returns) {
   const auto sources = read("# made by hand\r\n\r\n flux_jy , m_arcsec,\tl_arcsec\r\n# one\r\n +2 , 10,20 \r\n   \r\n");
   BOOST_REQUIRE(sources.size() == 1u);
   BOOST_TEST(sources[0].flux_jy == 2);
-  BOOST_TEST(std::abs(sources[0].l / sources[0].m - 2) < 1e-15);
+  BOOST_TEST(std::abs(sources[0].position.l / sources[0].position.m - 2) < 1e-15);
 }
 
 BOOST_AUTO_TEST_CASE(errors_name_the_file_the_line_and_what_was_expected) {
@@ -97,13 +97,13 @@ BOOST_AUTO_TEST_CASE(the_test_card_has_34_sources_within_390_cells) {
   double total_jy = 0, farthest = 0;
   for (const PointSource& source : card) {
     total_jy += source.flux_jy;
-    farthest = std::max({farthest, std::abs(source.l), std::abs(source.m)});
+    farthest = std::max({farthest, std::abs(source.position.l), std::abs(source.position.m)});
   }
   BOOST_TEST(total_jy == 52);  // 10 of 2 Jy, 20 of 1 Jy, 4 of 3 Jy
   BOOST_TEST(std::abs(farthest / cell_rad - 390) < 1e-9);
   // The third source tells east from west and north from south.
-  BOOST_TEST(std::abs(card[2].l / cell_rad + 120) < 1e-9);
-  BOOST_TEST(std::abs(card[2].m / cell_rad - 180) < 1e-9);
+  BOOST_TEST(std::abs(card[2].position.l / cell_rad + 120) < 1e-9);
+  BOOST_TEST(std::abs(card[2].position.m / cell_rad - 180) < 1e-9);
 }
 
 BOOST_AUTO_TEST_SUITE_END()

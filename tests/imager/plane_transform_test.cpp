@@ -1,0 +1,241 @@
+#include "imager/plane_transform.h"
+
+#include <boost/test/data/test_case.hpp>
+#include <boost/test/unit_test.hpp>
+
+#include "imager/direct_transform.h"
+#include "imager/fft.h"
+#include "kernels/catalogue.h"
+#include "tests/imager/random_samples.h"
+
+namespace bdata = boost::unit_test::data;
+using namespace misfit;
+using namespace misfit::imager;
+using misfit::imager::testing::random_samples;
+
+namespace {
+
+constexpr double cell_rad = 1e-5;
+
+PlaneTransformOptions options(int width, int height, int kernel_width, double padding,
+                              const std::string& family = "least-misfit") {
+  PlaneTransformOptions o;
+  o.geometry = {width, height, cell_rad, {}};
+  o.nu = fast_fft_size(std::max(static_cast<int>(padding * width), 4 * kernel_width));
+  o.nv = fast_fft_size(std::max(static_cast<int>(padding * height), 4 * kernel_width));
+  const auto kernel = [&](int pixels, int fft) {
+    return kernels::kernel_family(family).make(kernel_width, std::clamp(0.5 * pixels / fft, 0.05, 0.49));
+  };
+  o.kernel_u = kernel(width, o.nu);
+  o.kernel_v = kernel(height, o.nv);
+  o.threads = 2;
+  return o;
+}
+
+double norm(const std::vector<double>& x) {
+  double sum = 0;
+  for (const double v : x) sum += v * v;
+  return std::sqrt(sum);
+}
+
+double relative_error(const std::vector<double>& is, const std::vector<double>& should) {
+  std::vector<double> difference(is.size());
+  for (std::size_t i = 0; i < is.size(); ++i) difference[i] = is[i] - should[i];
+  return norm(difference) / norm(should);
+}
+
+AdjointResult adjoint_of(const Transform& transform, const VisibilityBlock& block) {
+  const auto sum = transform.adjoint(true);
+  sum->add(block);
+  return sum->finish();
+}
+
+/// What theory expects of random data: two axes add their E, and a finite sample strays from the mean by much less than half.
+double expected_error(const PlaneTransformOptions& o) {
+  return std::sqrt(o.kernel_u.misfit.mean + o.kernel_v.misfit.mean);
+}
+
+Image random_image(int width, int height, unsigned seed) {
+  std::mt19937_64 random(seed);
+  std::normal_distribution<double> normal;
+  Image image(width, height);
+  for (double& pixel : image.pixel) pixel = normal(random);
+  return image;
+}
+
+std::vector<double> parts(const std::vector<std::complex<double>>& z) {
+  std::vector<double> out;
+  for (const auto& v : z) {
+    out.push_back(v.real());
+    out.push_back(v.imag());
+  }
+  return out;
+}
+
+}  // namespace
+
+BOOST_AUTO_TEST_SUITE(plane_transform)
+
+BOOST_DATA_TEST_CASE(dirty_image_and_psf_equal_the_direct_transform_within_the_kernel_error,
+                     bdata::xrange(1, 12) * bdata::make({1.25, 1.5, 2.0}), kernel_width, padding) {
+  const PlaneTransformOptions o = options(64, 48, kernel_width, padding);
+  const VisibilityBlock block = random_samples(150, 3, cell_rad, 1);
+  const AdjointResult gridded = adjoint_of(*make_plane_transform(o), block);
+  const AdjointResult direct = adjoint_of(DirectTransform(o.geometry, 2), block);
+  // The dirty image of random data has random phases. 1e-14 is the rounding of doubles.
+  BOOST_TEST(relative_error(gridded.image.pixel, direct.image.pixel) < 1.5 * expected_error(o) + 1e-14);
+  // The PSF's phases are not random, but no sample's error exceeds the worst position's.
+  const double worst = std::sqrt(o.kernel_u.misfit.worst_mean + o.kernel_v.misfit.worst_mean);
+  BOOST_TEST(relative_error(gridded.psf.pixel, direct.psf.pixel) < 1.5 * worst + 1e-14);
+  BOOST_TEST(gridded.sums.used == block.samples());
+  BOOST_TEST(gridded.sums.weight == direct.sums.weight, boost::test_tools::tolerance(1e-12));
+}
+
+BOOST_DATA_TEST_CASE(predicted_visibilities_equal_the_direct_transform_within_the_kernel_error,
+                     bdata::xrange(1, 12) * bdata::make({1.25, 2.0}), kernel_width, padding) {
+  const PlaneTransformOptions o = options(64, 48, kernel_width, padding);
+  const VisibilityBlock block = random_samples(300, 2, cell_rad, 2);
+  const Image model = random_image(64, 48, 3);
+  const auto gridded = parts(make_plane_transform(o)->predict(model)->at(block));
+  const auto direct = parts(DirectTransform(o.geometry, 2).predict(model)->at(block));
+  BOOST_TEST(relative_error(gridded, direct) < 1.5 * expected_error(o) + 1e-14);
+}
+
+BOOST_DATA_TEST_CASE(image_shapes_odd_thin_and_tiny_are_as_exact,
+                     bdata::make({331, 7, 1, 1, 64, 2}) ^ bdata::make({17, 50, 1, 40, 1, 3}), width, height) {
+  const PlaneTransformOptions o = options(width, height, 7, 2.0);
+  const VisibilityBlock block = random_samples(60, 2, cell_rad, 4);
+  const AdjointResult gridded = adjoint_of(*make_plane_transform(o), block);
+  const AdjointResult direct = adjoint_of(DirectTransform(o.geometry, 1), block);
+  // A handful of pixels is no average over the field: the largest error at the worst position bounds it.
+  const double bound = std::sqrt(o.kernel_u.misfit.worst) + std::sqrt(o.kernel_v.misfit.worst);
+  const double data = std::sqrt(direct.sums.weight2_square * static_cast<double>(o.geometry.pixels()));
+  std::vector<double> difference(gridded.image.pixel.size());
+  for (std::size_t i = 0; i < difference.size(); ++i) difference[i] = gridded.image.pixel[i] - direct.image.pixel[i];
+  BOOST_TEST(norm(difference) < 3 * bound * data);
+}
+
+BOOST_DATA_TEST_CASE(adjoint_is_the_transpose_of_prediction, bdata::make({1, 2, 5, 8, 11}), kernel_width) {
+  const PlaneTransformOptions o = options(50, 37, kernel_width, 1.3);
+  const auto transform = make_plane_transform(o);
+  VisibilityBlock y = random_samples(200, 3, cell_rad, 5);
+  std::fill(y.weight.begin(), y.weight.end(), 1.0F);
+  const Image x = random_image(50, 37, 6);
+  const auto ax = transform->predict(x)->at(y);
+  const Image aty = adjoint_of(*transform, y).image;
+  double left = 0;
+  for (std::size_t i = 0; i < ax.size(); ++i) left += std::real(ax[i] * std::conj(std::complex<double>(y.visibility[i])));
+  double right = 0;
+  for (std::size_t i = 0; i < x.pixel.size(); ++i) right += x.pixel[i] * aty.pixel[i];
+  BOOST_TEST(std::abs(left - right) < 1e-12 * norm(x.pixel) * norm(aty.pixel));
+}
+
+BOOST_DATA_TEST_CASE(result_is_the_same_bit_for_bit_for_any_number_of_threads, bdata::make({true, false}), single) {
+  PlaneTransformOptions o = options(200, 150, 6, 1.5);
+  o.precision = single ? Precision::single_precision : Precision::double_precision;
+  const VisibilityBlock block = random_samples(3000, 4, cell_rad, 7);
+  const Image model = random_image(200, 150, 8);
+  o.threads = 1;
+  const AdjointResult one = adjoint_of(*make_plane_transform(o), block);
+  const auto predicted = make_plane_transform(o)->predict(model)->at(block);
+  for (const int threads : {2, 3, 7}) {
+    o.threads = threads;
+    const AdjointResult many = adjoint_of(*make_plane_transform(o), block);
+    BOOST_TEST((many.image.pixel == one.image.pixel));
+    BOOST_TEST((many.psf.pixel == one.psf.pixel));
+    BOOST_TEST(many.sums.weight_square == one.sums.weight_square);
+    BOOST_TEST((make_plane_transform(o)->predict(model)->at(block) == predicted));
+  }
+}
+
+BOOST_AUTO_TEST_CASE(single_precision_is_exact_to_its_rounding) {
+  PlaneTransformOptions o = options(128, 128, 8, 2.0);
+  o.precision = Precision::single_precision;
+  const VisibilityBlock block = random_samples(2000, 2, cell_rad, 9);
+  const AdjointResult gridded = adjoint_of(*make_plane_transform(o), block);
+  const AdjointResult direct = adjoint_of(DirectTransform(o.geometry, 2), block);
+  // 6e-8 per operation, of which taps, sums and the FFT add a few dozen in quadrature.
+  BOOST_TEST(relative_error(gridded.image.pixel, direct.image.pixel) < 1e-6);
+}
+
+BOOST_AUTO_TEST_CASE(samples_on_the_edge_of_the_grid_count_and_those_beyond_do_not) {
+  const PlaneTransformOptions o = options(40, 40, 8, 1.5);
+  VisibilityBlock block = random_samples(6, 1, cell_rad, 10);
+  const double edge = speed_of_light_m_s / block.frequency_hz[0] / (2 * cell_rad);
+  const double u[] = {edge, -edge, 0, 0, 1.001 * edge, 0};
+  const double v[] = {0, edge, -edge, edge, 0, -1.001 * edge};
+  for (std::size_t row = 0; row < 6; ++row) {
+    block.uvw_m[3 * row] = u[row] * (1 - 1e-15);
+    block.uvw_m[3 * row + 1] = v[row] * (1 - 1e-15);
+  }
+  const AdjointResult gridded = adjoint_of(*make_plane_transform(o), block);
+  const AdjointResult direct = adjoint_of(DirectTransform(o.geometry, 1), block);
+  BOOST_TEST(gridded.sums.used == 4U);
+  BOOST_TEST(gridded.sums.outside_grid == 2U);
+  BOOST_TEST(direct.sums.outside_grid == 2U);
+  const double bound = std::sqrt(o.kernel_u.misfit.worst_mean + o.kernel_v.misfit.worst_mean);
+  BOOST_TEST(relative_error(gridded.image.pixel, direct.image.pixel) < 2 * bound);
+}
+
+BOOST_AUTO_TEST_CASE(prediction_beyond_the_grid_is_periodic_and_exact) {
+  const PlaneTransformOptions o = options(40, 30, 8, 2.0);
+  const VisibilityBlock block = random_samples(200, 2, cell_rad, 11, 7.3);
+  const Image model = random_image(40, 30, 12);
+  const auto gridded = parts(make_plane_transform(o)->predict(model)->at(block));
+  const auto direct = parts(DirectTransform(o.geometry, 2).predict(model)->at(block));
+  BOOST_TEST(relative_error(gridded, direct) < 1.5 * expected_error(o));
+}
+
+BOOST_AUTO_TEST_CASE(samples_of_weight_zero_neither_image_nor_predict) {
+  const PlaneTransformOptions o = options(40, 30, 6, 1.5);
+  VisibilityBlock block = random_samples(50, 2, cell_rad, 13);
+  VisibilityBlock kept = block;
+  for (std::size_t i = 0; i < block.samples(); i += 3) {
+    block.weight[i] = 0;
+    block.visibility[i] = {std::nanf(""), 1};
+    kept.weight[i] = 0;
+  }
+  const auto transform = make_plane_transform(o);
+  BOOST_TEST((adjoint_of(*transform, block).image.pixel == adjoint_of(*transform, kept).image.pixel));
+  const auto prediction = transform->predict(random_image(40, 30, 14));
+  const auto all = prediction->at(block);
+  const auto usable = prediction->at_usable(block);
+  for (std::size_t i = 0; i < all.size(); ++i)
+    BOOST_TEST(usable[i] == (block.weight[i] == 0 ? std::complex<double>(0) : all[i]));
+}
+
+BOOST_AUTO_TEST_CASE(replaced_visibilities_are_gridded_like_the_blocks_own) {
+  const PlaneTransformOptions o = options(40, 30, 6, 1.5);
+  const VisibilityBlock block = random_samples(50, 2, cell_rad, 15);
+  const auto transform = make_plane_transform(o);
+  const auto sum = transform->adjoint(false);
+  sum->add(block, {block.visibility.begin(), block.visibility.end()});
+  const AdjointResult replaced = sum->finish();
+  BOOST_TEST((replaced.image.pixel == adjoint_of(*transform, block).image.pixel));
+  BOOST_TEST(replaced.psf.pixel.empty());
+}
+
+BOOST_AUTO_TEST_CASE(a_single_visibility_is_exact_within_the_worst_position) {
+  const PlaneTransformOptions o = options(64, 64, 7, 2.0);
+  const double bound = std::sqrt(o.kernel_u.misfit.worst_mean + o.kernel_v.misfit.worst_mean);
+  for (unsigned seed = 0; seed < 30; ++seed) {
+    const VisibilityBlock block = random_samples(1, 1, cell_rad, seed);
+    const AdjointResult gridded = adjoint_of(*make_plane_transform(o), block);
+    const AdjointResult direct = adjoint_of(DirectTransform(o.geometry, 1), block);
+    BOOST_TEST(relative_error(gridded.image.pixel, direct.image.pixel) < 1.5 * bound);
+  }
+}
+
+BOOST_AUTO_TEST_CASE(contradicting_options_are_refused) {
+  PlaneTransformOptions o = options(64, 64, 6, 1.5);
+  o.nu = 60;
+  BOOST_CHECK_THROW(make_plane_transform(o), std::invalid_argument);
+  o = options(64, 64, 6, 2.0);
+  o.nv = 80;
+  BOOST_CHECK_THROW(make_plane_transform(o), std::invalid_argument);
+  o = options(64, 64, 6, 1.5);
+  o.kernel_v = kernels::kernel_family("least-misfit").make(5, o.kernel_v.x0);
+  BOOST_CHECK_THROW(make_plane_transform(o), std::invalid_argument);
+}
+
+BOOST_AUTO_TEST_SUITE_END()

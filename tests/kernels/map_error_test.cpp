@@ -1,0 +1,100 @@
+#include "kernels/map_error.h"
+
+#include <boost/test/data/test_case.hpp>
+#include <boost/test/unit_test.hpp>
+#include <cmath>
+#include <complex>
+
+#include "kernels/catalogue.h"
+
+using namespace misfit::kernels;
+namespace bdata = boost::unit_test::data;
+
+namespace {
+
+constexpr double pi = 3.14159265358979323846;
+
+/// |1 − h(x) Σ_r C(r−ν) exp(2πi(r−ν)x)|², written as the definition has it.
+double error_at(const TapFunction& taps, double h, double x, double t) {
+  const Eigen::VectorXd c = taps(t);
+  std::complex<double> sum = 0;
+  for (Eigen::Index r = 0; r < c.size(); ++r)
+    sum += c[r] * std::polar(1.0, 2 * pi * (double(r) - double(c.size() - 1) / 2 - t) * x);
+  return std::norm(1.0 - h * sum);
+}
+
+Eigen::VectorXd single(double x) {
+  return Eigen::VectorXd::Constant(1, x);
+}
+
+/// The mean over t of the definition by the midpoint rule, good to 1e-4 with 400 points.
+double map_error_by_midpoints(const TapFunction& taps, double h, double x) {
+  double sum = 0;
+  for (int i = 0; i < 400; ++i) sum += error_at(taps, h, x, (i + 0.5) / 400 - 0.5) / 400;
+  return sum;
+}
+
+}  // namespace
+
+BOOST_AUTO_TEST_SUITE(map_error)
+
+BOOST_DATA_TEST_CASE(equals_its_definition, bdata::make({2, 5, 8}) * bdata::make({0.0, 0.11, 0.25, 0.4}), width, x) {
+  const Kernel kernel = kernel_family("least-misfit").make(width, 0.3);
+  const double h = optimal_correction(kernel.polynomial, single(x))[0];
+  const double defined = map_error_by_midpoints(kernel.polynomial, h, x);
+  BOOST_TEST(misfit::kernels::map_error(kernel.polynomial, single(x))[0] == defined, boost::test_tools::tolerance(1e-3));
+}
+
+BOOST_DATA_TEST_CASE(optimal_correction_is_a_minimum_at_every_x, bdata::make({0.0, 0.1, 0.2, 0.3}), x) {
+  for (const KernelFamily& family : kernel_catalogue()) {
+    const Kernel kernel = family.make(5, 0.3);
+    const double h = optimal_correction(kernel.polynomial, single(x))[0];
+    const double best = map_error_by_midpoints(kernel.polynomial, h, x);
+    BOOST_TEST(map_error_by_midpoints(kernel.polynomial, h * 1.001, x) > best);
+    BOOST_TEST(map_error_by_midpoints(kernel.polynomial, h * 0.999, x) > best);
+  }
+}
+
+BOOST_DATA_TEST_CASE(misfit_means_and_maxima_are_those_of_the_definition, bdata::make({1, 4, 7}), width) {
+  const Kernel kernel = kernel_family("least-misfit").make(width, 0.25);
+  double mean = 0;
+  double max = 0;
+  double worst = 0;
+  std::vector<double> mean_at(201);
+  constexpr int points = 200;
+  for (int i = 0; i <= points; ++i) {
+    const double x = 0.25 * i / points;
+    const double h = optimal_correction(kernel.polynomial, single(x))[0];
+    const double error = misfit::kernels::map_error(kernel.polynomial, single(x))[0];
+    const double weight = (i == 0 || i == points ? 0.5 : 1.0) / points;
+    mean += weight * error;
+    max = std::max(max, error);
+    for (int j = 0; j <= 200; ++j) {
+      const double at = error_at(kernel.polynomial, h, x, j / 400.0);
+      worst = std::max(worst, at);
+      mean_at[static_cast<std::size_t>(j)] += weight * at;
+    }
+  }
+  // 1%: the trapezium rule and grids of 200 points stand for integrals and maxima.
+  BOOST_TEST(kernel.misfit.mean == mean, boost::test_tools::tolerance(0.01));
+  BOOST_TEST(kernel.misfit.max == max, boost::test_tools::tolerance(0.01));
+  BOOST_TEST(kernel.misfit.worst == worst, boost::test_tools::tolerance(0.01));
+  BOOST_TEST(kernel.misfit.worst_mean == *std::max_element(mean_at.begin(), mean_at.end()), boost::test_tools::tolerance(0.01));
+}
+
+BOOST_AUTO_TEST_CASE(every_catalogue_kernel_stores_within_half_a_percent_of_its_taps) {
+  for (const KernelFamily& family : kernel_catalogue())
+    for (int width = family.min_width; width <= family.max_width; ++width) {
+      const Kernel kernel = family.make(width, 0.4);
+      BOOST_TEST(kernel.width() == width);
+      BOOST_TEST(kernel.polynomial.degree() <= width + 1);
+    }
+}
+
+BOOST_AUTO_TEST_CASE(unknown_kernels_are_refused_with_the_names_there_are) {
+  BOOST_CHECK_EXCEPTION(kernel_family("kaiser"), std::invalid_argument, [](const std::invalid_argument& e) {
+    return std::string(e.what()) == "kernel \"kaiser\" is not known; expected one of: least-misfit, spheroidal";
+  });
+}
+
+BOOST_AUTO_TEST_SUITE_END()

@@ -1,0 +1,27 @@
+#include "kernels/quadrature.h"
+
+#include <boost/test/data/test_case.hpp>
+#include <boost/test/unit_test.hpp>
+#include <cmath>
+
+using misfit::kernels::gauss_legendre;
+
+BOOST_AUTO_TEST_SUITE(quadrature)
+
+BOOST_DATA_TEST_CASE(integrates_polynomials_of_degree_2n_minus_1_exactly, boost::unit_test::data::xrange(1, 65), points) {
+  const auto rule = gauss_legendre(points, -0.5, 1.5);
+  for (int degree = 0; degree < 2 * points; ++degree) {
+    const double integral = rule.weight.dot(rule.node.array().pow(degree).matrix());
+    const double exact = (std::pow(1.5, degree + 1) - std::pow(-0.5, degree + 1)) / (degree + 1);
+    BOOST_TEST(std::abs(integral / exact - 1) < 1e-13);  // a few dozen roundings
+  }
+}
+
+BOOST_AUTO_TEST_CASE(nodes_ascend_inside_the_interval) {
+  const auto rule = gauss_legendre(31, 2, 3);
+  BOOST_TEST(rule.node[0] > 2);
+  BOOST_TEST(rule.node[30] < 3);
+  for (int i = 1; i < 31; ++i) BOOST_TEST(rule.node[i] > rule.node[i - 1]);
+}
+
+BOOST_AUTO_TEST_SUITE_END()
