@@ -9,8 +9,8 @@ namespace misfit::kernels {
 
 const std::vector<KernelFamily>& kernel_catalogue() {
   static const std::vector<KernelFamily> families{
-      {"least-misfit", 1, least_misfit_max_width, least_misfit_min_x0, least_misfit_max_x0, least_misfit},
-      {"spheroidal", 4, 8, 0.05, 0.49, spheroidal},
+      {"least-misfit", 1, least_misfit_max_width, least_misfit_min_x0, least_misfit_max_x0, least_misfit_up_to},
+      {"spheroidal", 4, 8, 0.05, 0.49, spheroidal_up_to},
   };
   return families;
 }

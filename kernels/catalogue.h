@@ -15,7 +15,10 @@ struct KernelFamily {
   int max_width = 1;
   double min_x0 = 0;
   double max_x0 = 0.5;
-  std::function<Kernel(int width, double x0)> make;
+  /// The kernels of widths min_width … `width`, narrowest first: some solvers find the narrower on their way to the wider.
+  std::function<std::vector<Kernel>(int width, double x0)> make_up_to;
+
+  Kernel make(int width, double x0) const { return make_up_to(width, x0).back(); }
 };
 
 /// Every family there is. A new one is a line here.

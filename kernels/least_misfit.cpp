@@ -235,8 +235,10 @@ std::vector<LeastMisfit> solve_least_misfit(int width, double x0) {
   return solutions;
 }
 
-Kernel least_misfit(int width, double x0) {
-  return make_kernel("least-misfit", x0, solve_least_misfit(width, x0).back().taps);
+std::vector<Kernel> least_misfit_up_to(int width, double x0) {
+  std::vector<Kernel> kernels;
+  for (const LeastMisfit& solution : solve_least_misfit(width, x0)) kernels.push_back(make_kernel("least-misfit", x0, solution.taps));
+  return kernels;
 }
 
 }  // namespace misfit::kernels

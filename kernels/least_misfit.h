@@ -26,7 +26,7 @@ struct LeastMisfit {
 /// converge. E is converged to 1e-6 relative where it exceeds 1e-29; below that it is rounding of doubles.
 std::vector<LeastMisfit> solve_least_misfit(int width, double x0);
 
-/// The least-misfit function of one width, stored as a polynomial.
-Kernel least_misfit(int width, double x0);
+/// The least-misfit functions of widths 1 … `width`, stored as polynomials.
+std::vector<Kernel> least_misfit_up_to(int width, double x0);
 
 }  // namespace misfit::kernels

@@ -27,6 +27,9 @@ struct Approximation {
   Rational outer;
 };
 
+constexpr int min_width = 4;
+constexpr int max_width = 8;
+
 constexpr Rational m4{1.0, {5.007900e-2, -1.971357e-1, 2.363775e-1, -1.215569e-1, 2.853104e-2}, {1, 4.228767e-1, 5.655715e-2}};
 constexpr Rational m5{
     1.0, {1.466325e-2, -9.858686e-2, 2.180684e-1, -2.347118e-1, 1.464354e-1, -5.350728e-2, 1.624782e-2}, {1, 2.177793e-1}};
@@ -47,10 +50,10 @@ constexpr std::array<Approximation, 5> approximations{
 }  // namespace
 
 TapFunction spheroidal_taps(int width) {
-  if (width < 4 || width > 8)
+  if (width < min_width || width > max_width)
     throw std::invalid_argument("spheroidal kernel: width " + std::to_string(width) +
                                 " not in [4, 8], where Schwab's approximations exist");
-  const Approximation& psi = approximations[static_cast<std::size_t>(width - 4)];
+  const Approximation& psi = approximations[static_cast<std::size_t>(width - min_width)];
   return [&psi, width](double t) {
     Eigen::VectorXd taps(width);
     for (int r = 0; r < width; ++r) {
@@ -61,8 +64,10 @@ TapFunction spheroidal_taps(int width) {
   };
 }
 
-Kernel spheroidal(int width, double x0) {
-  return make_kernel("spheroidal", x0, spheroidal_taps(width));
+std::vector<Kernel> spheroidal_up_to(int width, double x0) {
+  std::vector<Kernel> kernels;
+  for (int m = min_width; m <= width; ++m) kernels.push_back(make_kernel("spheroidal", x0, spheroidal_taps(m)));
+  return kernels;
 }
 
 }  // namespace misfit::kernels

@@ -64,7 +64,7 @@ BOOST_AUTO_TEST_CASE(solver_converges_over_its_whole_range_and_width_always_help
 BOOST_DATA_TEST_CASE(stored_polynomial_costs_less_than_half_a_percent, bdata::xrange(1, 12) * bdata::make({0.25, 0.33, 0.45}),
                      width, x0) {
   const LeastMisfit solved = solve_least_misfit(width, x0).back();
-  const Kernel kernel = misfit::kernels::least_misfit(width, x0);
+  const Kernel kernel = least_misfit_up_to(width, x0).back();
   BOOST_TEST(kernel.misfit.mean < 1.0051 * solved.mean_error);
 }
 

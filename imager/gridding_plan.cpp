@@ -1,0 +1,161 @@
+#include "imager/gridding_plan.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <optional>
+#include <stdexcept>
+
+#include "imager/fft.h"
+#include "kernels/catalogue.h"
+
+namespace misfit::imager {
+namespace {
+
+constexpr double single_rounding = 2e-6;   ///< relative RMS of taps, sums and FFT in single precision, measured with margin
+constexpr double double_rounding = 1e-14;  ///< the same in double
+constexpr double single_from = 1e-4;       ///< single precision leaves 99.9% of such an accuracy to the kernel
+constexpr int smallest_fft = 64;           ///< so that the widest kernel never meets its own periodic copy
+
+std::string text(const char* format, double value) {
+  char buffer[64];
+  std::snprintf(buffer, sizeof buffer, format, value);
+  return buffer;
+}
+
+/// One way to do it.
+struct Candidate {
+  double padding = 0;
+  int nu = 0;
+  int nv = 0;
+  kernels::Kernel kernel_u;
+  kernels::Kernel kernel_v;
+  double cost_ns = 0;
+
+  double worst_error() const { return std::sqrt(kernel_u.misfit.worst_mean + kernel_v.misfit.worst_mean); }
+};
+
+/// Time on one core, from counts of operations: constants are of one machine, fixed so that the choice depends on options and data
+/// alone. Samples: ordering, polynomials, and three planes of W × padded-W cells; FFTs: half the rows and the kept columns, twice
+/// (image and PSF).
+double cost_ns(const GriddingRequest& request, int nu, int nv, int width) {
+  const double padded = (width + 3) / 4 * 4;
+  const double per_sample = 15 + 0.15 * width * padded;
+  const double row = nu * std::log2(nu);
+  const double column = nv * std::log2(nv);
+  const double fft = 2 * (0.5 * nv * row + 0.5 * request.geometry.width * column) * 0.6;
+  return static_cast<double>(request.samples) * per_sample + fft;
+}
+
+double axis_x0(int pixels, int fft_size, const kernels::KernelFamily& family) {
+  return std::clamp(0.5 * pixels / fft_size, family.min_x0, family.max_x0);
+}
+
+int fft_size(int pixels, double padding) {
+  return fast_fft_size(std::max(smallest_fft, static_cast<int>(std::ceil(padding * pixels))));
+}
+
+/// All widths at one padding, narrowest first.
+std::vector<Candidate> candidates(const GriddingRequest& request, const kernels::KernelFamily& family, double padding) {
+  const int nu = fft_size(request.geometry.width, padding);
+  const int nv = fft_size(request.geometry.height, padding);
+  const double x0_u = axis_x0(request.geometry.width, nu, family);
+  const double x0_v = axis_x0(request.geometry.height, nv, family);
+  const int widest = request.kernel_width == 0 ? family.max_width : request.kernel_width;
+  const std::vector<kernels::Kernel> along_u = family.make_up_to(widest, x0_u);
+  const std::vector<kernels::Kernel> along_v = x0_v == x0_u ? along_u : family.make_up_to(widest, x0_v);
+  std::vector<Candidate> found;
+  for (std::size_t i = 0; i < along_u.size(); ++i) {
+    if (request.kernel_width != 0 && along_u[i].width() != request.kernel_width) continue;
+    found.push_back({padding, nu, nv, along_u[i], along_v[i], cost_ns(request, nu, nv, along_u[i].width())});
+  }
+  return found;
+}
+
+struct Choice {
+  std::optional<Candidate> cheapest;   ///< of those that reach the accuracy
+  std::optional<Candidate> most_exact;
+  std::string rejected;                ///< cheapest of each other padding
+};
+
+Choice choose(const GriddingRequest& request, const kernels::KernelFamily& family) {
+  static const std::vector<double> usual{1.15, 1.25, 1.4, 1.6, 2.0};
+  const std::vector<double> paddings = request.padding == 0 ? usual : std::vector<double>{request.padding};
+  const double target = request.accuracy == 0 ? HUGE_VAL : std::sqrt(std::max(0.0, request.accuracy * request.accuracy - double_rounding * double_rounding));
+  Choice choice;
+  std::vector<Candidate> reaching;
+  for (const double padding : paddings) {
+    for (const Candidate& candidate : candidates(request, family, padding)) {
+      if (!choice.most_exact || candidate.worst_error() < choice.most_exact->worst_error()) choice.most_exact = candidate;
+      if (candidate.worst_error() > target) continue;
+      reaching.push_back(candidate);
+      if (!choice.cheapest || candidate.cost_ns < choice.cheapest->cost_ns) choice.cheapest = candidate;
+      break;  // a wider kernel at the same padding only costs more
+    }
+  }
+  for (const Candidate& candidate : reaching)
+    if (candidate.padding != choice.cheapest->padding)
+      choice.rejected += (choice.rejected.empty() ? "" : ", ") + std::string("width ") + std::to_string(candidate.kernel_u.width()) +
+                         " at padding " + text("%.2f", candidate.padding) + " costs " +
+                         text("%.2f×", candidate.cost_ns / choice.cheapest->cost_ns);
+  return choice;
+}
+
+void check(const GriddingRequest& request, const kernels::KernelFamily& family) {
+  if (request.kernel_width != 0 && (request.kernel_width < family.min_width || request.kernel_width > family.max_width))
+    throw std::invalid_argument("kernel width " + std::to_string(request.kernel_width) + " not in [" + std::to_string(family.min_width) +
+                                ", " + std::to_string(family.max_width) + "], which kernel " + family.name + " offers");
+  if (request.padding != 0 && !(request.padding >= 1.02 && request.padding <= 10))
+    throw std::invalid_argument("padding " + text("%g", request.padding) + " not in [1.02, 10]");
+  if (!(request.accuracy >= 0 && request.accuracy < 1))
+    throw std::invalid_argument("accuracy " + text("%g", request.accuracy) + " not in (0, 1)");
+}
+
+Plan decisions_of(const GriddingRequest& request, const GriddingPlan& plan, const std::string& rejected) {
+  const PlaneTransformOptions& o = plan.options;
+  const std::string because_accuracy =
+      request.accuracy == 0 ? "as asked" : "worst position within a cell gives " + text("%.2g", plan.worst_error) + ", accuracy asked " + text("%.2g", request.accuracy);
+  const std::string others = rejected.empty() ? "" : "; " + rejected;
+  return {
+      {"kernel", o.kernel_u.name, "expected error of random data " + text("%.2g", plan.expected_error)},
+      {"kernel width", std::to_string(o.kernel_u.width()), because_accuracy},
+      {"FFT size", std::to_string(o.nu) + " × " + std::to_string(o.nv),
+       "padding " + text("%.3f", static_cast<double>(o.nu) / o.geometry.width) + " along u is the cheapest that keeps the accuracy" + others},
+      {"kernel evaluation", "polynomials of degree " + std::to_string(o.kernel_u.polynomial.degree()), "adds less than 0.5% to the kernel's squared error"},
+      {"precision of grid and FFT", o.precision == Precision::single_precision ? "single" : "double",
+       o.precision == Precision::single_precision ? "rounding of " + text("%.0e", single_rounding) + " is far below the accuracy asked"
+                                                  : "rounding of " + text("%.0e", single_rounding) + " in single precision is too near the accuracy asked"},
+      {"half of the uv plane", "gridded alone", "the image is real, so V(−u, −v) = conj V(u, v): half the memory, half the FFT"},
+  };
+}
+
+}  // namespace
+
+GriddingPlan plan_gridding(const GriddingRequest& request) {
+  const kernels::KernelFamily& family = kernels::kernel_family(request.kernel);
+  check(request, family);
+  const Choice choice = choose(request, family);
+  if (!choice.cheapest)
+    throw std::invalid_argument("accuracy " + text("%g", request.accuracy) + " is out of reach of kernel " + family.name +
+                                (request.kernel_width == 0 ? "" : " of width " + std::to_string(request.kernel_width)) +
+                                (request.padding == 0 ? "" : " at padding " + text("%g", request.padding)) + "; it can reach " +
+                                text("%.2g", 1.01 * choice.most_exact->worst_error() + double_rounding) + " for this image, with width " +
+                                std::to_string(choice.most_exact->kernel_u.width()) + " at padding " + text("%g", choice.most_exact->padding));
+  const Candidate& best = *choice.cheapest;
+  GriddingPlan plan;
+  plan.options.geometry = request.geometry;
+  plan.options.nu = best.nu;
+  plan.options.nv = best.nv;
+  plan.options.kernel_u = best.kernel_u;
+  plan.options.kernel_v = best.kernel_v;
+  const double wanted = request.accuracy == 0 ? best.worst_error() : request.accuracy;
+  plan.options.precision = wanted >= single_from ? Precision::single_precision : Precision::double_precision;
+  plan.options.threads = request.threads;
+  plan.expected_error = std::sqrt(best.kernel_u.misfit.mean + best.kernel_v.misfit.mean);
+  plan.worst_error = best.worst_error();
+  plan.largest_error = (1 + std::sqrt(best.kernel_u.misfit.worst)) * (1 + std::sqrt(best.kernel_v.misfit.worst)) - 1;
+  plan.decisions = decisions_of(request, plan, choice.rejected);
+  return plan;
+}
+
+}  // namespace misfit::imager

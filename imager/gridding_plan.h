@@ -1,0 +1,35 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "imager/plan.h"
+#include "imager/plane_transform.h"
+
+namespace misfit::imager {
+
+/// What is asked of a transform.
+struct GriddingRequest {
+  ImageGeometry geometry;
+  double accuracy = 1e-6;               ///< ε: ‖I − I_DFT‖₂ ≤ ε ‖I_DFT‖₂; 0 = whatever the given width and padding reach
+  std::string kernel = "least-misfit";  ///< a name of the catalogue
+  int kernel_width = 0;                 ///< cells; 0 = chosen
+  double padding = 0;                   ///< FFT size over image size, at least 1.02; 0 = chosen
+  std::uint64_t samples = 0;            ///< visibilities in a pass
+  int threads = 1;
+};
+
+/// How it will be done: the cheapest that keeps the promise.
+struct GriddingPlan {
+  PlaneTransformOptions options;
+  double expected_error = 0;  ///< RMS error of image and prediction relative to data with random phases, √(E_u + E_v)
+  double worst_error = 0;     ///< the same when all samples lie at the worst position within their cells
+  double largest_error = 0;   ///< strict bound on any pixel's error over Σ w|V| / Σ w, whatever the data
+  Plan decisions;
+};
+
+/// Throws std::invalid_argument when the accuracy is out of reach of the kernel or of double precision; the message says what can be
+/// reached.
+GriddingPlan plan_gridding(const GriddingRequest& request);
+
+}  // namespace misfit::imager

@@ -1,0 +1,76 @@
+#include "imager/imaging.h"
+
+#include <stdexcept>
+
+namespace misfit::imager {
+namespace {
+
+void divide(Image& image, double by) {
+  for (double& pixel : image.pixel) pixel /= by;
+}
+
+/// Calls visit(block) for every block of one pass.
+template <typename Visit>
+void for_each_block(const VisibilitySource& source, const Progress& progress, StageTimes& times, const Visit& visit) {
+  const auto stream = source.open();
+  std::uint64_t done = 0;
+  while (true) {
+    std::shared_ptr<const VisibilityBlock> block;
+    {
+      const StageTimer timer(times, "read");
+      block = stream->next();
+    }
+    if (!block) return;
+    visit(*block);
+    done += block->samples();
+    progress(done, source.samples());
+  }
+}
+
+AdjointResult finish(AdjointSum& sum, StageTimes& times) {
+  const StageTimer timer(times, "fft");
+  return sum.finish();
+}
+
+}  // namespace
+
+DirtyImages make_dirty_images(const VisibilitySource& source, const Transform& transform, bool with_psf, const Progress& progress,
+                              StageTimes& times) {
+  const auto sum = transform.adjoint(with_psf);
+  for_each_block(source, progress, times, [&](const VisibilityBlock& block) {
+    const StageTimer timer(times, "grid");
+    sum->add(block);
+  });
+  AdjointResult result = finish(*sum, times);
+  if (result.sums.weight == 0)
+    throw std::runtime_error("no visibility can be imaged: " + std::to_string(result.sums.outside_grid) +
+                             " usable samples lie beyond 1/(2 cell), none within");
+  divide(result.image, result.sums.weight);
+  divide(result.psf, result.sums.weight);
+  return {std::move(result.image), std::move(result.psf), result.sums};
+}
+
+Image make_residual_image(const VisibilitySource& source, const Transform& transform, const Image& model, const Progress& progress,
+                          StageTimes& times) {
+  std::unique_ptr<Prediction> prediction;
+  {
+    const StageTimer timer(times, "fft");
+    prediction = transform.predict(model);
+  }
+  const auto sum = transform.adjoint(false);
+  for_each_block(source, progress, times, [&](const VisibilityBlock& block) {
+    std::vector<std::complex<double>> residual;
+    {
+      const StageTimer timer(times, "degrid");
+      residual = prediction->at_usable(block);
+      for (std::size_t i = 0; i < residual.size(); ++i) residual[i] = std::complex<double>(block.visibility[i]) - residual[i];
+    }
+    const StageTimer timer(times, "grid");
+    sum->add(block, residual);
+  });
+  AdjointResult result = finish(*sum, times);
+  divide(result.image, result.sums.weight);
+  return std::move(result.image);
+}
+
+}  // namespace misfit::imager

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+
+#include "imager/stage_times.h"
+#include "imager/transform.h"
+
+namespace misfit::imager {
+
+/// Told after every block how many samples of how many are done. It may throw to end the work.
+using Progress = std::function<void(std::uint64_t done, std::uint64_t total)>;
+
+struct DirtyImages {
+  Image dirty;  ///< Jy/beam: the adjoint over Σ w
+  Image psf;    ///< 1 at the centre up to the accuracy; empty unless asked for
+  SampleSums sums;
+};
+
+/// One pass over the visibilities. Stages timed: "read", "grid", "fft". Throws std::runtime_error when no sample can be used.
+DirtyImages make_dirty_images(const VisibilitySource& source, const Transform& transform, bool with_psf, const Progress& progress,
+                              StageTimes& times);
+
+/// The dirty image of data − model: the model is predicted at every usable sample and subtracted. Stages timed: "read", "fft",
+/// "degrid", "grid".
+Image make_residual_image(const VisibilitySource& source, const Transform& transform, const Image& model, const Progress& progress,
+                          StageTimes& times);
+
+}  // namespace misfit::imager
