@@ -117,7 +117,7 @@ std::string beam_outline(const imager::Beam& beam, const Frame& frame) {
   return lines.str();
 }
 
-void colour_bar(std::ostream& script, const Stretch& stretch, const std::string& unit) {
+void colour_bar(std::ostream& script, const Stretch& stretch, const std::string& unit, double width) {
   script << "set cbrange [" << stretch(stretch.low) << ':' << stretch(stretch.high) << "]\nset cbtics (";
   const char* comma = "";
   for (const Tick& tick : stretch_ticks(stretch)) {
@@ -126,7 +126,7 @@ void colour_bar(std::ostream& script, const Stretch& stretch, const std::string&
   }
   const std::string kind =
       stretch.knee > 0 ? ", asinh stretch, linear below " + significant(stretch.knee, 2) : ", linear stretch";
-  script << ")\nset cblabel " << quoted(unit + kind) << " offset 1.5,0\n";
+  script << ")\nset label 3 " << quoted(unit + kind) << " at screen " << 1 - 18 / width << ", graph 0.5 rotate by 90 center\n";
 }
 
 /// Draws picture `number`, with its data in number.data and its result in number.png.
@@ -134,8 +134,8 @@ void script_picture(std::ostream& script, const Picture& picture, std::size_t nu
   const imager::SkyImage& sky = *picture.image;
   Stretch stretch = choose_stretch(sky.image);
   const ScaledUnit unit = scaled_unit(std::max(std::abs(stretch.low), std::abs(stretch.high)), sky.unit);
-  stretch = {stretch.low / unit.size, stretch.high / unit.size, stretch.knee / unit.size};
-  const ReducedImage reduced = reduce(sky.image, plot_side);
+  for (double* limit : {&stretch.low, &stretch.high, &stretch.knee}) *limit /= unit.size;
+  const ReducedImage reduced = reduce(sky.image, stretch.sparse ? plot_side / 3 : plot_side);
   write_shades(folder / (std::to_string(number) + ".data"), reduced.image, stretch, unit.size);
 
   const Frame frame = frame_of(sky.geometry);
@@ -146,24 +146,24 @@ void script_picture(std::ostream& script, const Picture& picture, std::size_t nu
   const int height = plot_height + margin_top + margin_bottom;
   const double step = reduced.block * sky.geometry.cell_rad / frame.unit.size;
 
-  script << "reset\nset terminal pngcairo noenhanced background rgb 'white' font 'sans,11' size " << width << ',' << height
-         << '\n'
-         << "set output '" << number << ".png'\n"
-         << "set lmargin at screen " << double(margin_left) / width << "\nset rmargin at screen "
-         << double(margin_left + plot_width) / width << "\nset bmargin at screen " << double(margin_bottom) / height
-         << "\nset tmargin at screen " << double(margin_bottom + plot_height) / height << '\n'
-         << "set palette defined (0 '#000004', 1 '#1f0c48', 2 '#550f6d', 3 '#88226a', 4 '#bb3754', 5 '#e35933', 6 '#f98e09', 7 "
-            "'#f9c932', "
-            "8 '#fcffa4')\n"
-         << "set border lw 1 lc rgb '#444444'\nset tics out nomirror textcolor rgb '#222222'\nunset key\n"
-         << "set label 1 " << quoted(picture.title) << " at graph 0, screen " << 1 - 24.0 / height << " font 'sans:Bold,14'\n"
-         << "set label 2 " << quoted(subtitle(sky)) << " at graph 0, screen " << 1 - 50.0 / height
-         << " font 'sans,10' tc rgb '#555555'\n"
-         << "set xlabel " << quoted("offset east, " + frame.unit.name) << "\nset ylabel "
-         << quoted("offset north, " + frame.unit.name) << '\n'
-         << "set xrange [" << frame.east << ':' << frame.west << "]\nset yrange [" << frame.south << ':' << frame.north
-         << "]\n";
-  colour_bar(script, stretch, unit.name);
+  script
+      << "reset\nset encoding utf8\nset minussign\nset terminal pngcairo noenhanced background rgb 'white' font 'sans,11' size "
+      << width << ',' << height << '\n'
+      << "set output '" << number << ".png'\n"
+      << "set lmargin at screen " << double(margin_left) / width << "\nset rmargin at screen "
+      << double(margin_left + plot_width) / width << "\nset bmargin at screen " << double(margin_bottom) / height
+      << "\nset tmargin at screen " << double(margin_bottom + plot_height) / height << '\n'
+      << "set palette defined (0 '#000004', 1 '#1f0c48', 2 '#550f6d', 3 '#88226a', 4 '#bb3754', 5 '#e35933', 6 '#f98e09', 7 "
+         "'#f9c932', "
+         "8 '#fcffa4')\n"
+      << "set border lw 1 lc rgb '#444444'\nset tics out nomirror textcolor rgb '#222222'\nunset key\n"
+      << "set label 1 " << quoted(picture.title) << " at graph 0, screen " << 1 - 24.0 / height << " font 'sans:Bold,14'\n"
+      << "set label 2 " << quoted(subtitle(sky)) << " at graph 0, screen " << 1 - 50.0 / height
+      << " font 'sans,10' tc rgb '#555555'\n"
+      << "set xlabel " << quoted("offset east, " + frame.unit.name) << "\nset ylabel "
+      << quoted("offset north, " + frame.unit.name) << '\n'
+      << "set xrange [" << frame.east << ':' << frame.west << "]\nset yrange [" << frame.south << ':' << frame.north << "]\n";
+  colour_bar(script, stretch, unit.name, width);
   if (sky.has_beam) script << "$beam << EOD\n" << beam_outline(sky.beam, frame) << "EOD\n";
   script << "plot '" << number << ".data' binary array=(" << reduced.image.width << ',' << reduced.image.height
          << ") format='%float' origin=(" << frame.east - (reduced.image.width - 0.5) * step << ',' << frame.south + step / 2

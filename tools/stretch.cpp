@@ -63,10 +63,10 @@ Stretch choose_stretch(const imager::Image& image) {
   if (min == max) return {.low = std::min(0.0, min), .high = min < 0 ? 0 : min > 0 ? min : 1};
 
   const double noise = robust_noise(std::move(finite));
-  Stretch stretch{.low = min, .high = max};
-  if (max > 0 && noise > 0) stretch.low = std::max(min, -3 * noise);
-  if (max > 0 && noise == 0) stretch.low = std::max(min, -max);
-  if (max > 30 * noise) stretch.knee = noise > 0 ? 3 * noise : max / 300;
+  Stretch stretch{.low = min, .high = max, .sparse = noise == 0};
+  if (max <= 0) return stretch;
+  if (max > 30 * noise) stretch.knee = stretch.sparse ? max / 300 : 3 * noise;
+  stretch.low = std::max(min, stretch.sparse ? -stretch.knee : -3 * noise);
   return stretch;
 }
 

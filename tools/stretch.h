@@ -12,14 +12,15 @@ namespace misfit::tools {
 struct Stretch {
   double low = 0;
   double high = 1;
-  double knee = 0;  ///< 0 for the linear stretch
+  double knee = 0;      ///< 0 for the linear stretch
+  bool sparse = false;  ///< most pixels are equal, as in a model of point sources
 
   double operator()(double value) const;
 };
 
 /// Limits from the noise, estimated as 1.4826 × the median absolute deviation: low is −3 noise (not below the smallest pixel),
-/// high the largest pixel. Linear up to a peak of 30 noise, else asinh with the knee at 3 noise (at high / 300 where most
-/// pixels are equal). Pixels that are not finite do not count.
+/// high the largest pixel. Linear up to a peak of 30 noise, else asinh with the knee at 3 noise. A sparse image has no
+/// noise: its knee is high / 300, and low −knee, so that 0 stays dark. Pixels that are not finite do not count.
 Stretch choose_stretch(const imager::Image& image);
 
 /// A mark of the colour bar.
