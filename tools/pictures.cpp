@@ -24,11 +24,11 @@ namespace {
 namespace fs = std::filesystem;
 
 /// The plot area's longer side, screen pixels, and the room around it.
-constexpr int plot_side = 720;
-constexpr int margin_left = 84;
-constexpr int margin_right = 134;
-constexpr int margin_top = 70;
-constexpr int margin_bottom = 66;
+constexpr int plot_side = 640;
+constexpr int margin_left = 92;
+constexpr int margin_right = 170;
+constexpr int margin_top = 78;
+constexpr int margin_bottom = 70;
 
 /// A folder beside the picture, so that finished files can be renamed to their places; removed with all it holds.
 class WorkFolder {
@@ -126,7 +126,7 @@ void colour_bar(std::ostream& script, const Stretch& stretch, const std::string&
   }
   const std::string kind =
       stretch.knee > 0 ? ", asinh stretch, linear below " + significant(stretch.knee, 2) : ", linear stretch";
-  script << ")\nset label 3 " << quoted(unit + kind) << " at screen " << 1 - 18 / width << ", graph 0.5 rotate by 90 center\n";
+  script << ")\nset label 3 " << quoted(unit + kind) << " at screen " << 1 - 20 / width << ", graph 0.5 rotate by 90 center\n";
 }
 
 /// Draws picture `number`, with its data in number.data and its result in number.png.
@@ -147,7 +147,7 @@ void script_picture(std::ostream& script, const Picture& picture, std::size_t nu
   const double step = reduced.block * sky.geometry.cell_rad / frame.unit.size;
 
   script
-      << "reset\nset encoding utf8\nset minussign\nset terminal pngcairo noenhanced background rgb 'white' font 'sans,11' size "
+      << "reset\nset encoding utf8\nset minussign\nset terminal pngcairo noenhanced background rgb 'white' font 'sans,13' size "
       << width << ',' << height << '\n'
       << "set output '" << number << ".png'\n"
       << "set lmargin at screen " << double(margin_left) / width << "\nset rmargin at screen "
@@ -157,9 +157,9 @@ void script_picture(std::ostream& script, const Picture& picture, std::size_t nu
          "'#f9c932', "
          "8 '#fcffa4')\n"
       << "set border lw 1 lc rgb '#444444'\nset tics out nomirror textcolor rgb '#222222'\nunset key\n"
-      << "set label 1 " << quoted(picture.title) << " at graph 0, screen " << 1 - 24.0 / height << " font 'sans:Bold,14'\n"
-      << "set label 2 " << quoted(subtitle(sky)) << " at graph 0, screen " << 1 - 50.0 / height
-      << " font 'sans,10' tc rgb '#555555'\n"
+      << "set label 1 " << quoted(picture.title) << " at graph 0, screen " << 1 - 26.0 / height << " font 'sans:Bold,17'\n"
+      << "set label 2 " << quoted(subtitle(sky)) << " at graph 0, screen " << 1 - 56.0 / height
+      << " font 'sans,11' tc rgb '#555555'\n"
       << "set xlabel " << quoted("offset east, " + frame.unit.name) << "\nset ylabel "
       << quoted("offset north, " + frame.unit.name) << '\n'
       << "set xrange [" << frame.east << ':' << frame.west << "]\nset yrange [" << frame.south << ':' << frame.north << "]\n";
