@@ -76,10 +76,8 @@ std::string table(const Row& headings, const std::vector<Row>& rows) {
   std::string body;
   for (const Row& row : rows) body += row_of(row, "td");
   if (rows.empty()) return "";
-  const bool narrow = headings.size() < 4 && headings.back().starts_with('#');
-  return tag("div", tag("table", tag("thead", row_of(headings, "th")) + tag("tbody", body)),
-             narrow ? "scroll narrow" : "scroll") +
-         "\n";
+  const std::string kind = headings.size() > 4 ? "scroll wide" : headings.back().starts_with('#') ? "scroll narrow" : "scroll";
+  return tag("div", tag("table", tag("thead", row_of(headings, "th")) + tag("tbody", body)), kind) + "\n";
 }
 
 std::string beam_text(const json& beam) {

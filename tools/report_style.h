@@ -34,6 +34,7 @@ table { border-collapse: collapse; width: 100%; font-size: .92rem; font-variant-
 th { text-align: left; font-weight: 500; font-size: .8rem; }
 th, td { padding: .35rem 1rem .35rem 0; border-bottom: 1px solid var(--line); vertical-align: top; }
 td:last-child, th:last-child { padding-right: 0; }
+.wide td { white-space: nowrap; }
 .narrow { max-width: 34rem; }
 .number { text-align: right; white-space: nowrap; }
 .bars td { padding-top: .25rem; padding-bottom: .25rem; }
@@ -49,7 +50,7 @@ code, pre { font: .88rem/1.5 ui-monospace, "SF Mono", "DejaVu Sans Mono", monosp
 pre { background: var(--tint); padding: .8rem 1rem; border-radius: 6px; white-space: pre-wrap; overflow-wrap: anywhere; margin: 0; }
 td { overflow-wrap: break-word; }
 @media (max-width: 36rem) { main { padding: 1.25rem 1rem 3rem; } .facts { grid-template-columns: 1fr 1fr; } .facts dd { font-size: 1.05rem; }
-  table { font-size: .85rem; } th, td { padding-right: .7rem; } .scroll td:not(.number) { min-width: 7rem; } .bars .bar { width: 30%; } }
+  table { font-size: .85rem; } th, td { padding-right: .7rem; } .bars .bar { width: 30%; } }
 @media print { main { max-width: none; padding: 0; } section, figure, .facts { break-inside: avoid; } .pictures { grid-template-columns: 1fr 1fr; } }
 )css";
 
