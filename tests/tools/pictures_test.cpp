@@ -1,0 +1,148 @@
+#include "tools/pictures.h"
+
+#include <unistd.h>
+
+#include <boost/test/unit_test.hpp>
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <limits>
+#include <sstream>
+
+using misfit::imager::Image;
+using misfit::imager::SkyImage;
+using misfit::tools::draw_pictures;
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A folder whose name is hard to quote, removed at the end.
+struct Folder {
+  fs::path path = fs::temp_directory_path() / ("misfit \"pictures' $x " + std::to_string(getpid()));
+  Folder() { fs::create_directories(path); }
+  Folder(const Folder&) = delete;
+  Folder& operator=(const Folder&) = delete;
+  ~Folder() { fs::remove_all(path); }
+  std::string file(const std::string& name) const { return (path / name).string(); }
+};
+
+SkyImage sky_image(int width, int height) {
+  SkyImage sky;
+  sky.image = Image(width, height);
+  sky.geometry = {width, height, 2.4e-7, {3.276, -0.2, "ICRS"}};
+  return sky;
+}
+
+std::string bytes_of(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  std::ostringstream bytes;
+  bytes << file.rdbuf();
+  return bytes.str();
+}
+
+bool is_png(const std::string& path) {
+  return bytes_of(path).starts_with("\x89PNG\r\n\x1a\n");
+}
+
+struct Mean {
+  double x = 0;
+  double y = 0;
+  double count = 0;
+  void add(double more_x, double more_y) {
+    x += more_x;
+    y += more_y;
+    ++count;
+  }
+};
+
+/// How far the screen pixels of colour #fcffa4 (the brightest) lie on average from those of #000004 (the darkest), to the
+/// right and up, as gnuplot itself reads the PNG file.
+struct Offset {
+  double right = 0;
+  double up = 0;
+};
+Offset bright_from_dark(const Folder& folder, const std::string& name) {
+  std::ofstream(folder.path / "measure") << "set table 'pixels'\n"
+                                         << "plot '" << name << "' binary filetype=png using 1:2:3:4:5 with rgbimage\n";
+  const fs::path before = fs::current_path();
+  fs::current_path(folder.path);
+  const int status = std::system("gnuplot -d measure 2> said");
+  fs::current_path(before);
+  BOOST_TEST_REQUIRE(status == 0);
+
+  Mean dark;
+  Mean bright;
+  std::ifstream pixels(folder.path / "pixels");
+  for (std::string line; std::getline(pixels, line);) {
+    std::istringstream words(line);
+    double x = 0, y = 0;
+    int red = 0, green = 0, blue = 0;
+    if (!(words >> x >> y >> red >> green >> blue)) continue;
+    if (red == 0 && blue == 4) dark.add(x, y);
+    if (red == 252 && blue == 164) bright.add(x, y);
+  }
+  BOOST_TEST_REQUIRE(dark.count > 0);
+  BOOST_TEST_REQUIRE(bright.count > 0);
+  return {bright.x / bright.count - dark.x / dark.count, bright.y / bright.count - dark.y / dark.count};
+}
+
+}  // namespace
+
+BOOST_AUTO_TEST_SUITE(pictures)
+
+BOOST_AUTO_TEST_CASE(every_image_is_drawn_and_nothing_else_is_left) {
+  SkyImage zero = sky_image(30, 20);
+  SkyImage blank = sky_image(20, 64);
+  for (double& pixel : blank.image.pixel) pixel = std::numeric_limits<double>::quiet_NaN();
+  SkyImage large = sky_image(1500, 1200);
+  large.image.at(600, 700) = 1;
+  large.image.at(10, 10) = std::numeric_limits<double>::infinity();
+  large.has_beam = true;
+  large.beam = {2e-6, 1e-6, 0.5};
+
+  const Folder folder;
+  BOOST_TEST(draw_pictures({}) == "");
+  BOOST_TEST(draw_pictures({{&zero, "it's {zero}_0 \\ `ls` @x", folder.file("it's zero.png")},
+                            {&blank, "two\nlines", folder.file("blank.png")},
+                            {&large, "large", folder.file("large.png")}}) == "");
+  for (const char* name : {"it's zero.png", "blank.png", "large.png"}) BOOST_TEST(is_png(folder.file(name)), name);
+  BOOST_TEST(std::distance(fs::directory_iterator(folder.path), fs::directory_iterator()) == 3);
+}
+
+BOOST_AUTO_TEST_CASE(east_is_left_and_north_is_up) {
+  const Folder folder;
+  for (const int column : {2, 8}) {
+    for (const int row : {1, 7}) {
+      SkyImage sky = sky_image(10, 10);
+      sky.image.at(row, column) = 1;
+      BOOST_TEST_REQUIRE(draw_pictures({{&sky, "one source", folder.file("one.png")}}) == "");
+      const Offset offset = bright_from_dark(folder, "one.png");
+      // An image pixel is 64 screen pixels wide; the ends of the colour bar, of the same colours, move the averages by less
+      // than half of that.
+      BOOST_TEST(std::abs(offset.right - (column - 4.5) * 64) < 32);
+      BOOST_TEST(std::abs(offset.up - (row - 4.5) * 64) < 32);
+    }
+  }
+}
+
+BOOST_AUTO_TEST_CASE(without_gnuplot_the_reason_is_returned) {
+  const SkyImage sky = sky_image(10, 10);
+  const Folder folder;
+  const std::string path = std::getenv("PATH");
+  setenv("PATH", folder.path.c_str(), 1);
+  const std::string said = draw_pictures({{&sky, "one", folder.file("one.png")}});
+  setenv("PATH", path.c_str(), 1);
+  BOOST_TEST(said == "Pictures are left out because gnuplot is not installed.");
+  BOOST_TEST(fs::is_empty(folder.path));
+}
+
+BOOST_AUTO_TEST_CASE(a_folder_that_is_not_there_is_named) {
+  const SkyImage sky = sky_image(10, 10);
+  BOOST_CHECK_EXCEPTION(
+      draw_pictures({{&sky, "one", "/no such folder/one.png"}}), std::runtime_error,
+      [](const std::runtime_error& e) { return std::string(e.what()) == "cannot write pictures in /no such folder"; });
+}
+
+BOOST_AUTO_TEST_SUITE_END()

@@ -1,0 +1,113 @@
+#include "tools/report_page.h"
+
+#include <boost/test/unit_test.hpp>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <set>
+
+using nlohmann::json;
+
+namespace {
+
+json full_report() {
+  return json::parse(R"({
+    "version": "0.1.0", "command_line": "misfit image --vis 'a b.ms'", "warnings": ["w reaches 0.8 rad & more <here>"],
+    "options": {"imagename": "out/<m87>", "imsize": [1024, 768], "cell": "0.05arcsec", "niter": 100, "mask": null},
+    "plan": [{"item": "kernel", "decision": "W = 7", "because": "4e-7 < 1e-6"}],
+    "kernel": {"name": "least-misfit", "width": 7, "x0": 0.25, "padding": 2.0, "evaluation": "polynomial"},
+    "error": {"requested": 1e-6, "expected_rms": 4e-7, "bound_rms": null, "bound_max": null, "measured_rms": 2e-6,
+              "measured_max": 3e-6, "measured_predict_rms": null},
+    "visibilities": {"rows_read": 351, "samples_read": 1404, "used": 1300, "flagged": 100, "nonfinite": 4, "zero_weight": 0,
+                     "autocorrelations": 0, "outside_grid": 0},
+    "timings_s": {"read": 0.5, "grid": 1.0, "total": 2.0}, "memory_gib_peak": 0.2,
+    "beam": {"major_arcsec": 0.4, "minor_arcsec": 0.3, "pa_deg": -12.5},
+    "clean": {"iterations": 100, "major_cycles": 2, "stop_code": 1, "stop_reason": "iteration limit", "peak_residual_jy": 0.01,
+              "rms_jy": 0.001, "model_flux_jy": 2.5,
+              "major_cycles_log": [
+                {"iterations": 0, "peak_residual_jy": 1.0, "rms_jy": 0.1, "model_flux_jy": 0, "reason": "start"},
+                {"iterations": 50, "peak_residual_jy": 0.1, "rms_jy": 0.01, "model_flux_jy": 2, "reason": "cycle"},
+                {"iterations": 100, "peak_residual_jy": 0.01, "rms_jy": 0.001, "model_flux_jy": 2.5, "reason": "limit"}]}
+  })");
+}
+
+bool contains(const std::string& page, const std::string& text) {
+  return page.find(text) != std::string::npos;
+}
+
+/// Whether every element that is opened is closed, in the right order; attributes hold no '>'.
+bool balanced(const std::string& page) {
+  const std::set<std::string> empty_elements{"meta", "img", "!DOCTYPE"};
+  std::vector<std::string> open;
+  for (std::size_t at = page.find('<'); at != std::string::npos; at = page.find('<', at + 1)) {
+    const bool closes = page[at + 1] == '/';
+    const std::size_t start = at + (closes ? 2 : 1);
+    const std::string name = page.substr(start, page.find_first_of(" >", start) - start);
+    if (closes) {
+      if (open.empty() || open.back() != name) return false;
+      open.pop_back();
+    } else if (!empty_elements.contains(name)) {
+      open.push_back(name);
+    }
+  }
+  return open.empty();
+}
+
+}  // namespace
+
+BOOST_AUTO_TEST_SUITE(report_page)
+
+BOOST_AUTO_TEST_CASE(every_element_is_closed_whatever_is_missing) {
+  BOOST_TEST(balanced(misfit::tools::report_page(full_report(), {{"Image", "bytes"}})));
+  BOOST_TEST(balanced(misfit::tools::report_page(json::object(), {})));
+  const json complete = full_report();
+  for (const auto& [key, value] : complete.items()) {
+    json report = complete;
+    report[key] = nullptr;
+    BOOST_TEST(balanced(misfit::tools::report_page(report, {})), key);
+    for (const auto& [inner, ignored] : value.items()) {
+      if (!value.is_object()) break;
+      json partial = complete;
+      partial[key][inner] = nullptr;
+      BOOST_TEST(balanced(misfit::tools::report_page(partial, {})), key + "." + inner);
+    }
+  }
+}
+
+BOOST_AUTO_TEST_CASE(text_is_escaped) {
+  const std::string page = misfit::tools::report_page(full_report(), {{"\"Image\" <1>", "bytes"}});
+  BOOST_TEST(contains(page, "out/&lt;m87&gt;"));
+  BOOST_TEST(contains(page, "0.8 rad &amp; more &lt;here&gt;"));
+  BOOST_TEST(contains(page, "alt=\"&quot;Image&quot; &lt;1&gt;\""));
+  BOOST_TEST(contains(page, "misfit image --vis &#39;a b.ms&#39;"));
+}
+
+BOOST_AUTO_TEST_CASE(the_page_needs_nothing_from_elsewhere) {
+  const std::string page = misfit::tools::report_page(full_report(), {{"Image", "foo"}});
+  BOOST_TEST(contains(page, "src=\"data:image/png;base64,Zm9v\""));
+  for (const char* outside : {"http", "<script", "<link", "@import", "url("}) BOOST_TEST(!contains(page, outside), outside);
+}
+
+BOOST_AUTO_TEST_CASE(what_was_not_measured_is_said_so) {
+  json report = full_report();
+  report["error"]["measured_rms"] = std::numeric_limits<double>::quiet_NaN();
+  const std::string page = misfit::tools::report_page(report, {});
+  BOOST_TEST(contains(page, "not measured"));
+  BOOST_TEST(!contains(page, "NaN"));
+  BOOST_TEST(!contains(page, "nan"));
+  BOOST_TEST(!contains(page, "null"));
+}
+
+BOOST_AUTO_TEST_CASE(an_error_beyond_what_was_asked_stands_out) {
+  json report = full_report();
+  BOOST_TEST(contains(misfit::tools::report_page(report, {}), "✗ exceeds 10<sup>−6</sup> asked for"));
+  report["error"]["measured_rms"] = nullptr;
+  BOOST_TEST(contains(misfit::tools::report_page(report, {}), "✓ within 10<sup>−6</sup> asked for"));
+}
+
+BOOST_AUTO_TEST_CASE(times_are_shares_of_the_wall_clock) {
+  const std::string page = misfit::tools::report_page(full_report(), {});
+  BOOST_TEST(contains(page, "<td>grid</td><td class=\"number\">1 s</td><td class=\"number\">50 %</td>"));
+  BOOST_TEST(contains(page, "<td>everything else</td><td class=\"number\">500 ms</td><td class=\"number\">25 %</td>"));
+}
+
+BOOST_AUTO_TEST_SUITE_END()

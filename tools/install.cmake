@@ -1,0 +1,21 @@
+# cmake --install: the program, the libraries with their headers, and the package that find_package(misfit) finds.
+# Headers keep their folders: #include "imager/geometry.h" works for a consumer as it does here.
+include(CMakePackageConfigHelpers)
+
+set(headers ${CMAKE_INSTALL_INCLUDEDIR}/misfit)
+set(package ${CMAKE_INSTALL_LIBDIR}/cmake/misfit)
+
+foreach(folder kernels imager ms_io)
+  set_target_properties(misfit_${folder} PROPERTIES EXPORT_NAME ${folder})
+  install(TARGETS misfit_${folder} EXPORT misfitTargets INCLUDES DESTINATION ${headers})
+  install(DIRECTORY ${folder} DESTINATION ${headers} FILES_MATCHING PATTERN "*.h" PATTERN "*_internal.h" EXCLUDE)
+endforeach()
+if(TARGET misfit)
+  install(TARGETS misfit)
+endif()
+install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})
+
+configure_package_config_file(tools/misfitConfig.cmake.in ${PROJECT_BINARY_DIR}/misfitConfig.cmake INSTALL_DESTINATION ${package})
+write_basic_package_version_file(${PROJECT_BINARY_DIR}/misfitConfigVersion.cmake COMPATIBILITY SameMinorVersion)
+install(EXPORT misfitTargets NAMESPACE misfit:: DESTINATION ${package})
+install(FILES ${PROJECT_BINARY_DIR}/misfitConfig.cmake ${PROJECT_BINARY_DIR}/misfitConfigVersion.cmake DESTINATION ${package})

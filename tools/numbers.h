@@ -1,0 +1,34 @@
+#pragma once
+
+#include <string>
+
+#include "imager/geometry.h"
+
+namespace misfit::tools {
+
+/// `value` rounded to `digits` significant digits, in plain notation from 1e-4 to 1e6 and as 1.2e-07 outside, with a true
+/// minus sign and no trailing zeros.
+std::string significant(double value, int digits);
+
+/// `count` with a thin space between groups of three digits.
+std::string grouped(long long count);
+
+/// A duration with the units a reader wants: 35 ms, 4.21 s, 2 min 05 s, 3 h 07 min.
+std::string duration(double seconds);
+
+/// A unit in which a number of magnitude `value` is easy to read: `value / size` lies between 1 and 1000 where it can.
+struct ScaledUnit {
+  double size = 1;   ///< in base units
+  std::string name;  ///< e.g. "mJy/beam"
+};
+
+/// `base` (a unit such as "Jy/beam") with an SI prefix between n and k.
+ScaledUnit scaled_unit(double value, const std::string& base);
+
+/// An angle's unit for something of size `angle_rad`: mas, arcsec, arcmin or deg; `size` is in radians.
+ScaledUnit angle_unit(double angle_rad);
+
+/// A direction as "12h 30m 49.42s  +12° 23′ 28.0″".
+std::string sexagesimal(const imager::SkyDirection& direction);
+
+}  // namespace misfit::tools

@@ -1,0 +1,222 @@
+#include "tools/pictures.h"
+
+#include <fcntl.h>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <numbers>
+#include <sstream>
+#include <stdexcept>
+
+#include "tools/numbers.h"
+#include "tools/stretch.h"
+
+namespace misfit::tools {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// The plot area's longer side, screen pixels, and the room around it.
+constexpr int plot_side = 640;
+constexpr int margin_left = 92;
+constexpr int margin_right = 170;
+constexpr int margin_top = 78;
+constexpr int margin_bottom = 70;
+
+/// A folder beside the picture, so that finished files can be renamed to their places; removed with all it holds.
+class WorkFolder {
+ public:
+  explicit WorkFolder(const fs::path& parent) {
+    std::string name = (parent / ".pictures-XXXXXX").string();
+    if (mkdtemp(name.data()) == nullptr) throw std::runtime_error("cannot write pictures in " + parent.string());
+    path_ = name;
+  }
+  WorkFolder(const WorkFolder&) = delete;
+  WorkFolder& operator=(const WorkFolder&) = delete;
+  ~WorkFolder() {
+    std::error_code ignored;
+    fs::remove_all(path_, ignored);
+  }
+  const fs::path& path() const { return path_; }
+
+ private:
+  fs::path path_;
+};
+
+/// `text` as a gnuplot string.
+std::string quoted(const std::string& text) {
+  std::string result = "'";
+  for (const char c : text) {
+    if (c == '\'') result += '\'';
+    result += c >= 0 && c < ' ' ? ' ' : c;
+  }
+  return result + "'";
+}
+
+/// The shades as 32-bit floats, rows from south to north and columns from west to east, as gnuplot counts.
+void write_shades(const fs::path& path, const imager::Image& image, const Stretch& stretch, double unit) {
+  std::vector<float> shades;
+  shades.reserve(image.pixel.size());
+  for (int row = 0; row < image.height; ++row) {
+    for (int column = image.width - 1; column >= 0; --column)
+      shades.push_back(static_cast<float>(stretch(image.at(row, column) / unit)));
+  }
+  std::ofstream file(path, std::ios::binary);
+  file.write(reinterpret_cast<const char*>(shades.data()), static_cast<std::streamsize>(shades.size() * sizeof(float)));
+  if (!file.flush()) throw std::runtime_error("cannot write pictures in " + path.parent_path().string());
+}
+
+std::string subtitle(const imager::SkyImage& sky) {
+  const imager::SkyDirection& centre = sky.geometry.phase_centre;
+  std::string text = sexagesimal(centre) + " (" + centre.frame + ")";
+  if (sky.observation.frequency_hz > 0) text += "   " + significant(sky.observation.frequency_hz / 1e9, 5) + " GHz";
+  if (sky.has_beam) {
+    const ScaledUnit unit = angle_unit(sky.beam.major_rad);
+    text += "   beam " + significant(sky.beam.major_rad / unit.size, 3) + " × " +
+            significant(sky.beam.minor_rad / unit.size, 3) + " " + unit.name;
+  }
+  return text;
+}
+
+/// The offsets from the phase centre that an image covers, in `unit`.
+struct Frame {
+  ScaledUnit unit;
+  double east, west, south, north;
+};
+Frame frame_of(const imager::ImageGeometry& geometry) {
+  const ScaledUnit unit = angle_unit(std::max(geometry.width, geometry.height) * geometry.cell_rad);
+  const double cell = geometry.cell_rad / unit.size;
+  return {.unit = unit,
+          .east = (geometry.centre_column() + 0.5) * cell,
+          .west = (geometry.centre_column() + 0.5 - geometry.width) * cell,
+          .south = (-geometry.centre_row() - 0.5) * cell,
+          .north = (geometry.height - geometry.centre_row() - 0.5) * cell};
+}
+
+/// The beam to scale in the lower left corner, as the lines of a gnuplot data block.
+std::string beam_outline(const imager::Beam& beam, const Frame& frame) {
+  const double inset =
+      0.03 * std::max(frame.east - frame.west, frame.north - frame.south) + beam.major_rad / 2 / frame.unit.size;
+  const double sine = std::sin(beam.position_angle_rad);
+  const double cosine = std::cos(beam.position_angle_rad);
+  std::ostringstream lines;
+  for (int step = 0; step <= 72; ++step) {
+    const double angle = step * std::numbers::pi / 36;
+    const double along = beam.major_rad / 2 * std::cos(angle) / frame.unit.size;
+    const double across = beam.minor_rad / 2 * std::sin(angle) / frame.unit.size;
+    lines << frame.east - inset + along * sine - across * cosine << ' ' << frame.south + inset + along * cosine + across * sine
+          << '\n';
+  }
+  return lines.str();
+}
+
+void colour_bar(std::ostream& script, const Stretch& stretch, const std::string& unit, double width) {
+  script << "set cbrange [" << stretch(stretch.low) << ':' << stretch(stretch.high) << "]\nset cbtics (";
+  const char* comma = "";
+  for (const Tick& tick : stretch_ticks(stretch)) {
+    script << comma << quoted(tick.label) << ' ' << stretch(tick.value);
+    comma = ", ";
+  }
+  const std::string kind =
+      stretch.knee > 0 ? ", asinh stretch, linear below " + significant(stretch.knee, 2) : ", linear stretch";
+  script << ")\nset label 3 " << quoted(unit + kind) << " at screen " << 1 - 20 / width << ", graph 0.5 rotate by 90 center\n";
+}
+
+/// Draws picture `number`, with its data in number.data and its result in number.png.
+void script_picture(std::ostream& script, const Picture& picture, std::size_t number, const fs::path& folder) {
+  const imager::SkyImage& sky = *picture.image;
+  Stretch stretch = choose_stretch(sky.image);
+  const ScaledUnit unit = scaled_unit(std::max(std::abs(stretch.low), std::abs(stretch.high)), sky.unit);
+  for (double* limit : {&stretch.low, &stretch.high, &stretch.knee}) *limit /= unit.size;
+  const ReducedImage reduced = reduce(sky.image, stretch.sparse ? plot_side / 3 : plot_side);
+  write_shades(folder / (std::to_string(number) + ".data"), reduced.image, stretch, unit.size);
+
+  const Frame frame = frame_of(sky.geometry);
+  const double longer = std::max(sky.image.width, sky.image.height);
+  const int plot_width = std::max(240, static_cast<int>(std::lround(plot_side * sky.image.width / longer)));
+  const int plot_height = std::max(240, static_cast<int>(std::lround(plot_side * sky.image.height / longer)));
+  const int width = plot_width + margin_left + margin_right;
+  const int height = plot_height + margin_top + margin_bottom;
+  const double step = reduced.block * sky.geometry.cell_rad / frame.unit.size;
+
+  script
+      << "reset\nset encoding utf8\nset minussign\nset terminal pngcairo noenhanced background rgb 'white' font 'sans,13' size "
+      << width << ',' << height << '\n'
+      << "set output '" << number << ".png'\n"
+      << "set lmargin at screen " << double(margin_left) / width << "\nset rmargin at screen "
+      << double(margin_left + plot_width) / width << "\nset bmargin at screen " << double(margin_bottom) / height
+      << "\nset tmargin at screen " << double(margin_bottom + plot_height) / height << '\n'
+      << "set palette defined (0 '#000004', 1 '#1f0c48', 2 '#550f6d', 3 '#88226a', 4 '#bb3754', 5 '#e35933', 6 '#f98e09', 7 "
+         "'#f9c932', "
+         "8 '#fcffa4')\n"
+      << "set border lw 1 lc rgb '#444444'\nset tics out nomirror textcolor rgb '#222222'\nunset key\n"
+      << "set label 1 " << quoted(picture.title) << " at graph 0, screen " << 1 - 26.0 / height << " font 'sans:Bold,17'\n"
+      << "set label 2 " << quoted(subtitle(sky)) << " at graph 0, screen " << 1 - 56.0 / height
+      << " font 'sans,11' tc rgb '#555555'\n"
+      << "set xlabel " << quoted("offset east, " + frame.unit.name) << "\nset ylabel "
+      << quoted("offset north, " + frame.unit.name) << '\n'
+      << "set xrange [" << frame.east << ':' << frame.west << "]\nset yrange [" << frame.south << ':' << frame.north << "]\n";
+  colour_bar(script, stretch, unit.name, width);
+  if (sky.has_beam) script << "$beam << EOD\n" << beam_outline(sky.beam, frame) << "EOD\n";
+  script << "plot '" << number << ".data' binary array=(" << reduced.image.width << ',' << reduced.image.height
+         << ") format='%float' origin=(" << frame.east - (reduced.image.width - 0.5) * step << ',' << frame.south + step / 2
+         << ") dx=" << step << " dy=" << step << " with image";
+  if (sky.has_beam) script << ", $beam with filledcurves fc rgb '#ffffff' fs solid border lc rgb '#999999'";
+  script << "\nunset output\n";
+}
+
+/// Runs gnuplot in `folder` with what it says going to the file "said"; false when there is no gnuplot.
+bool run_gnuplot(const fs::path& folder, int& status) {
+  posix_spawn_file_actions_t actions;
+  posix_spawn_file_actions_init(&actions);
+  posix_spawn_file_actions_addchdir_np(&actions, folder.c_str());
+  posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
+  posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, "said", O_WRONLY | O_CREAT, 0600);
+  posix_spawn_file_actions_adddup2(&actions, STDOUT_FILENO, STDERR_FILENO);
+  std::string program = "gnuplot";
+  std::string no_user_settings = "-d";
+  std::string script = "script";
+  char* arguments[] = {program.data(), no_user_settings.data(), script.data(), nullptr};
+  pid_t process = 0;
+  const int error = posix_spawnp(&process, "gnuplot", &actions, nullptr, arguments, environ);
+  posix_spawn_file_actions_destroy(&actions);
+  if (error != 0) return false;
+  while (waitpid(process, &status, 0) < 0 && errno == EINTR) {
+  }
+  return true;
+}
+
+}  // namespace
+
+std::string draw_pictures(const std::vector<Picture>& pictures) {
+  if (pictures.empty()) return "";
+  const WorkFolder work(fs::absolute(pictures.front().path).parent_path());
+  std::ofstream script(work.path() / "script");
+  script.precision(12);
+  for (std::size_t number = 0; number < pictures.size(); ++number)
+    script_picture(script, pictures[number], number, work.path());
+  script.close();
+
+  int status = 0;
+  if (!run_gnuplot(work.path(), status)) return "Pictures are left out because gnuplot is not installed.";
+  if (status != 0) {
+    std::ifstream said(work.path() / "said");
+    std::string line;
+    while (line.find_first_not_of(" \t^") == std::string::npos && std::getline(said, line)) {
+    }
+    return "Pictures are left out because gnuplot failed: " + line;
+  }
+  for (std::size_t number = 0; number < pictures.size(); ++number) {
+    fs::rename(work.path() / (std::to_string(number) + ".png"), pictures[number].path);
+  }
+  return "";
+}
+
+}  // namespace misfit::tools

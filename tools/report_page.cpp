@@ -1,0 +1,293 @@
+#include "tools/report_page.h"
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <utility>
+
+#include "tools/clean_curve.h"
+#include "tools/html.h"
+#include "tools/numbers.h"
+#include "tools/report_style.h"
+
+namespace misfit::tools {
+namespace {
+
+using nlohmann::json;
+
+const std::string not_measured = "<span class=\"none\">not measured</span>";
+
+/// The member `key` of an object, or null.
+const json& member(const json& object, const std::string& key) {
+  static const json none;
+  if (!object.is_object()) return none;
+  const auto found = object.find(key);
+  return found == object.end() ? none : *found;
+}
+
+/// Any JSON value as text: strings as they are, lists separated by commas.
+std::string plain(const json& value) {
+  if (value.is_string()) return html_escaped(value.get<std::string>());
+  if (value.is_boolean()) return value.get<bool>() ? "yes" : "no";
+  if (value.is_number_float()) return significant(value.get<double>(), 6);
+  if (!value.is_array()) return value.is_null() ? not_measured : html_escaped(value.dump());
+  std::string text;
+  for (const json& element : value) text += (text.empty() ? "" : ", ") + plain(element);
+  return text;
+}
+
+std::string relative(const json& value) {
+  return value.is_number() ? html_power(value.get<double>()) : not_measured;
+}
+
+std::string whole(const json& value) {
+  return value.is_number() ? grouped(std::llround(value.get<double>())) : not_measured;
+}
+
+std::string with_unit(const json& value, const std::string& unit) {
+  if (!value.is_number()) return not_measured;
+  const double number = value.get<double>();
+  const ScaledUnit scaled = scaled_unit(number, unit);
+  return significant(number / scaled.size, 3) + " " + scaled.name;
+}
+
+/// An element; `content` is HTML already.
+std::string tag(const std::string& name, const std::string& content, const std::string& kind = "") {
+  return "<" + name + (kind.empty() ? "" : " class=\"" + kind + "\"") + ">" + content + "</" + name + ">";
+}
+
+std::string section(const std::string& title, const std::string& content) {
+  return content.empty() ? "" : "<section>\n" + tag("h2", title) + "\n" + content + "</section>\n";
+}
+
+using Row = std::vector<std::string>;
+
+/// A table that scrolls sideways where it is too wide. Columns whose heading begins with # hold numbers.
+std::string table(const Row& headings, const std::vector<Row>& rows) {
+  const auto row_of = [&](const Row& cells, const std::string& element) {
+    std::string line;
+    for (std::size_t k = 0; k < cells.size(); ++k) {
+      const bool number = headings[k].starts_with('#');
+      line += tag(element, element == "th" && number ? cells[k].substr(1) : cells[k], number ? "number" : "");
+    }
+    return tag("tr", line) + "\n";
+  };
+  std::string body;
+  for (const Row& row : rows) body += row_of(row, "td");
+  if (rows.empty()) return "";
+  const std::string kind = headings.size() > 4 ? "scroll wide" : headings.back().starts_with('#') ? "scroll narrow" : "scroll";
+  return tag("div", tag("table", tag("thead", row_of(headings, "th")) + tag("tbody", body)), kind) + "\n";
+}
+
+std::string beam_text(const json& beam) {
+  const json& major = member(beam, "major_arcsec");
+  const json& minor = member(beam, "minor_arcsec");
+  const json& angle = member(beam, "pa_deg");
+  if (!major.is_number() || !minor.is_number() || !angle.is_number()) return not_measured;
+  const bool tiny = major.get<double>() < 0.1;
+  const double scale = tiny ? 1000 : 1;
+  return significant(major.get<double>() * scale, 3) + " × " + significant(minor.get<double>() * scale, 3) +
+         (tiny ? " mas" : "″") + tag("small", "position angle " + significant(angle.get<double>(), 3) + "°");
+}
+
+std::string image_text(const json& options) {
+  const json& size = member(options, "imsize");
+  std::string text;
+  if (size.is_array()) {
+    for (const json& side : size) text += (text.empty() ? "" : " × ") + plain(side);
+    if (size.size() == 1) text += " × " + text;
+  } else if (!size.is_null()) {
+    text = plain(size) + " × " + plain(size);
+  }
+  const json& cell = member(options, "cell");
+  return text.empty() ? not_measured : text + " pixels" + (cell.is_null() ? "" : tag("small", "of " + plain(cell)));
+}
+
+/// The error against the direct transform: measured where it was, else expected, and whether it keeps what was asked.
+std::string accuracy_text(const json& error) {
+  const json& requested = member(error, "requested");
+  const bool measured = member(error, "measured_rms").is_number();
+  const json& reached = member(error, measured ? "measured_rms" : "expected_rms");
+  if (!reached.is_number()) return not_measured;
+  std::string text = html_power(reached.get<double>()) + tag("small", measured ? "measured" : "expected, not measured");
+  if (requested.is_number()) {
+    const bool kept = reached.get<double>() <= requested.get<double>();
+    text += tag("small", (kept ? "✓ within " : "✗ exceeds ") + html_power(requested.get<double>()) + " asked for",
+                kept ? "good" : "bad");
+  }
+  return text;
+}
+
+std::string headline(const json& report) {
+  const json& visibilities = member(report, "visibilities");
+  const json& clean = member(report, "clean");
+  std::vector<std::pair<std::string, std::string>> facts{{"Image", image_text(member(report, "options"))},
+                                                         {"Beam", beam_text(member(report, "beam"))},
+                                                         {"Image error", accuracy_text(member(report, "error"))}};
+  facts.emplace_back("Visibilities used", whole(member(visibilities, "used")) +
+                                              tag("small", "of " + whole(member(visibilities, "samples_read")) + " read"));
+  if (clean.is_object()) {
+    facts.emplace_back("Residual", with_unit(member(clean, "rms_jy"), "Jy/beam") +
+                                       tag("small", "RMS; peak " + with_unit(member(clean, "peak_residual_jy"), "Jy/beam")));
+  }
+  const json& total = member(member(report, "timings_s"), "total");
+  const json& memory = member(report, "memory_gib_peak");
+  facts.emplace_back("Run",
+                     (total.is_number() ? duration(total.get<double>()) : not_measured) +
+                         (memory.is_number() ? tag("small", significant(memory.get<double>(), 2) + " GiB at most") : ""));
+  std::string content;
+  for (const auto& [name, value] : facts) content += tag("div", tag("dt", name) + tag("dd", value)) + "\n";
+  return tag("dl", content, "facts") + "\n";
+}
+
+std::string warnings(const json& list) {
+  std::string content;
+  if (list.is_array()) {
+    for (const json& warning : list) content += tag("p", tag("strong", "Warning.") + " " + plain(warning)) + "\n";
+  }
+  return content.empty() ? "" : tag("aside", content);
+}
+
+std::string figures(const std::vector<PagePicture>& pictures) {
+  std::string content;
+  for (const PagePicture& picture : pictures) {
+    content += "<figure><img alt=\"" + html_escaped(picture.title) + "\" src=\"data:image/png;base64," + base64(picture.png) +
+               "\"></figure>\n";
+  }
+  return content.empty() ? "" : tag("div", content, "pictures") + "\n";
+}
+
+std::string plan(const json& list) {
+  std::vector<Row> rows;
+  for (const json& step : list.is_array() ? list : json::array()) {
+    rows.push_back({plain(member(step, "item")), tag("b", plain(member(step, "decision"))), plain(member(step, "because"))});
+  }
+  return table({"Item", "Decision", "Because"}, rows);
+}
+
+std::string errors(const json& error, const json& kernel) {
+  std::string content;
+  if (error.is_object()) {
+    content = table({"Relative to the direct transform", "#Value"},
+                    {{"asked for, RMS", relative(member(error, "requested"))},
+                     {"expected, RMS", relative(member(error, "expected_rms"))},
+                     {"bound, RMS", relative(member(error, "bound_rms"))},
+                     {"bound, worst pixel", relative(member(error, "bound_max"))},
+                     {"measured in the image, RMS", relative(member(error, "measured_rms"))},
+                     {"measured in the image, worst pixel", relative(member(error, "measured_max"))},
+                     {"measured in predicted visibilities, RMS", relative(member(error, "measured_predict_rms"))}});
+  }
+  if (kernel.is_object()) {
+    content += tag("p", "Kernel: " + plain(member(kernel, "name")) + ", width " + plain(member(kernel, "width")) +
+                            " cells, x0 " + plain(member(kernel, "x0")) + ", padding " + plain(member(kernel, "padding")) +
+                            ", evaluated as " + plain(member(kernel, "evaluation")) + ".") +
+               "\n";
+  }
+  return content;
+}
+
+std::string left_out(const json& visibilities) {
+  if (!visibilities.is_object()) return "";
+  const json& read = member(visibilities, "samples_read");
+  const auto row = [&](const std::string& name, const std::string& key) -> Row {
+    const json& count = member(visibilities, key);
+    const bool share = count.is_number() && read.is_number() && read.get<double>() > 0;
+    return {name, whole(count), share ? significant(100 * count.get<double>() / read.get<double>(), 3) + " %" : ""};
+  };
+  return table({"Stokes samples", "#Count", "#Share"},
+               {row("read", "samples_read"), row("auto-correlations", "autocorrelations"), row("flagged", "flagged"),
+                row("not finite", "nonfinite"), row("zero or negative weight", "zero_weight"),
+                row("outside the grid", "outside_grid"), row("used", "used")});
+}
+
+std::string timings(const json& stages) {
+  std::vector<std::pair<double, std::string>> bars;
+  double sum = 0;
+  if (stages.is_object()) {
+    for (const auto& [name, seconds] : stages.items()) {
+      if (!seconds.is_number() || name == "total") continue;
+      bars.emplace_back(seconds.get<double>(), name);
+      sum += seconds.get<double>();
+    }
+  }
+  const json& total = member(stages, "total");
+  const double wall = total.is_number() ? std::max(total.get<double>(), sum) : sum;
+  if (!(wall > 0)) return "";
+  std::sort(bars.rbegin(), bars.rend());
+  if (wall > sum) bars.emplace_back(wall - sum, "everything else");
+  std::ostringstream content;
+  content.precision(3);
+  for (const auto& [seconds, name] : bars) {
+    std::string label = name;
+    std::replace(label.begin(), label.end(), '_', ' ');
+    const double percent = 100 * seconds / wall;
+    content << "<tr><td>" << html_escaped(label) << "</td><td class=\"number\">" << duration(seconds)
+            << "</td><td class=\"number\">" << significant(percent, percent < 10 ? 1 : 2)
+            << " %</td><td class=\"bar\"><i style=\"width:" << percent << "%\"></i></td></tr>\n";
+  }
+  content << "<tr class=\"sum\"><td>wall clock</td><td class=\"number\">" << duration(wall) << "</td><td></td><td></td></tr>\n";
+  return tag("table", tag("tbody", content.str()), "bars") + "\n";
+}
+
+std::vector<CurvePoint> curve_points(const json& log) {
+  std::vector<CurvePoint> points;
+  for (const json& cycle : log) {
+    const json& peak = member(cycle, "peak_residual_jy");
+    const json& iterations = member(cycle, "iterations");
+    if (peak.is_number() && iterations.is_number()) points.push_back({iterations.get<double>(), std::abs(peak.get<double>())});
+  }
+  return points;
+}
+
+std::string clean_section(const json& clean) {
+  if (!clean.is_object()) return "";
+  const json& log = member(clean, "major_cycles_log");
+  std::vector<Row> rows;
+  for (const json& cycle : log.is_array() ? log : json::array()) {
+    rows.push_back({std::to_string(rows.size() + 1), whole(member(cycle, "iterations")),
+                    with_unit(member(cycle, "peak_residual_jy"), "Jy/beam"), with_unit(member(cycle, "rms_jy"), "Jy/beam"),
+                    with_unit(member(cycle, "model_flux_jy"), "Jy"), plain(member(cycle, "reason"))});
+  }
+  return tag("p", whole(member(clean, "iterations")) + " iterations in " + whole(member(clean, "major_cycles")) +
+                      " major cycles; stopped: " + plain(member(clean, "stop_reason")) + " (code " +
+                      plain(member(clean, "stop_code")) + "). Model flux " + with_unit(member(clean, "model_flux_jy"), "Jy") +
+                      ".") +
+         "\n" + (log.is_array() ? clean_curve(curve_points(log)) : "") +
+         table({"#Cycle", "#Iterations", "#Peak residual", "#RMS", "#Model flux", "Ended by"}, rows);
+}
+
+std::string options(const json& used) {
+  std::vector<Row> rows;
+  if (used.is_object()) {
+    for (const auto& [name, value] : used.items()) {
+      if (!value.is_null()) rows.push_back({tag("code", "--" + html_escaped(name)), plain(value)});
+    }
+  }
+  return table({"Option", "Value"}, rows);
+}
+
+}  // namespace
+
+std::string report_page(const json& report, const std::vector<PagePicture>& pictures) {
+  const json& name = member(member(report, "options"), "imagename");
+  const std::string title = name.is_string() ? plain(name) : "misfit";
+  const json& command = member(report, "command_line");
+  std::string page = "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n";
+  page += "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n";
+  page += tag("title", title + " — misfit") + "\n" + tag("style", report_style) + "\n</head>\n<body>\n<main>\n";
+  page += tag("header", tag("h1", title) + tag("p", "misfit " + plain(member(report, "version")))) + "\n";
+  page += warnings(member(report, "warnings"));
+  page += headline(report);
+  page += figures(pictures);
+  page += section("Plan", plan(member(report, "plan")));
+  page += section("Error", errors(member(report, "error"), member(report, "kernel")));
+  page += section("What was used and what was left out", left_out(member(report, "visibilities")));
+  page += section("CLEAN", clean_section(member(report, "clean")));
+  page += section("Time", timings(member(report, "timings_s")));
+  page += section("Options", options(member(report, "options")));
+  page += section("Command line", command.is_string() ? tag("pre", plain(command)) : "");
+  return page + "</main>\n</body>\n</html>\n";
+}
+
+}  // namespace misfit::tools

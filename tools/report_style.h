@@ -1,0 +1,57 @@
+#pragma once
+
+namespace misfit::tools {
+
+/// The page's looks: one column of text, pictures side by side where there is room, dark where the reader's system is.
+inline constexpr const char* report_style = R"css(
+:root { color-scheme: light dark; --text: #1d1d1f; --soft: #62646a; --line: #dcdde1; --page: #ffffff; --tint: #f5f5f7;
+  --accent: #88226a; --bad: #b3261e; --good: #2b6e3f; --warn: #fff4d6; --warn-line: #e0a100; }
+@media (prefers-color-scheme: dark) { :root { --text: #e4e4e7; --soft: #a0a1a8; --line: #34353b; --page: #141417; --tint: #1d1e22;
+  --accent: #e35933; --bad: #ff8a80; --good: #81c995; --warn: #33290f; --warn-line: #c98f00; } img { filter: brightness(.82); } }
+* { box-sizing: border-box; }
+body { margin: 0; background: var(--page); color: var(--text); font: 16px/1.5 system-ui, -apple-system, "Segoe UI", "DejaVu Sans", sans-serif; }
+main { max-width: 1060px; margin: 0 auto; padding: 2rem 1.25rem 4rem; }
+header { display: flex; flex-wrap: wrap; align-items: baseline; justify-content: space-between; gap: 0 1rem; margin-bottom: 1.25rem; }
+h1 { font-size: 1.7rem; line-height: 1.2; margin: 0; overflow-wrap: anywhere; }
+h2 { font-size: 1.05rem; margin: 2.75rem 0 .6rem; padding-bottom: .35rem; border-bottom: 1px solid var(--line); }
+header p, small, th, .none { color: var(--soft); }
+header p { margin: 0; }
+aside { background: var(--warn); border-left: 4px solid var(--warn-line); padding: .6rem 1rem; margin: 0 0 1.25rem; border-radius: 0 6px 6px 0; }
+aside p { margin: .25rem 0; }
+.facts { display: grid; grid-template-columns: repeat(auto-fit, minmax(16rem, 1fr)); gap: 1px; margin: 0; background: var(--line);
+  border: 1px solid var(--line); border-radius: 8px; overflow: hidden; }
+.facts div { background: var(--page); padding: .8rem 1rem; }
+.facts dt { font-size: .8rem; color: var(--soft); }
+.facts dd { margin: .1rem 0 0; font-size: 1.2rem; line-height: 1.35; font-variant-numeric: tabular-nums; }
+small { display: block; font-size: .8rem; }
+small.good { color: var(--good); } small.bad { color: var(--bad); }
+sup { line-height: 0; font-size: .75em; }
+.pictures { display: grid; grid-template-columns: repeat(auto-fit, minmax(min(100%, 28rem), 1fr)); gap: 1rem; margin-top: 1.5rem; }
+figure { margin: 0; }
+img { display: block; width: 100%; height: auto; border: 1px solid var(--line); border-radius: 8px; background: #fff; }
+.scroll { overflow-x: auto; }
+table { border-collapse: collapse; width: 100%; font-size: .92rem; font-variant-numeric: tabular-nums; }
+th { text-align: left; font-weight: 500; font-size: .8rem; }
+th, td { padding: .35rem 1rem .35rem 0; border-bottom: 1px solid var(--line); vertical-align: top; }
+td:last-child, th:last-child { padding-right: 0; }
+.wide td { white-space: nowrap; }
+.narrow { max-width: 34rem; }
+.number { text-align: right; white-space: nowrap; }
+.bars td { padding-top: .25rem; padding-bottom: .25rem; }
+.bars td:first-child { white-space: nowrap; }
+.bars .bar { width: 55%; vertical-align: middle; }
+.bar i { display: block; height: .7rem; min-width: 1px; background: var(--accent); border-radius: 2px; -webkit-print-color-adjust: exact;
+  print-color-adjust: exact; }
+.sum td { border-bottom: 0; font-weight: 600; }
+.curve { display: block; width: 100%; max-width: 34rem; margin: .5rem 0 1rem; }
+.curve path { fill: none; stroke: var(--line); } .curve polyline { fill: none; stroke: var(--accent); stroke-width: 2; }
+.curve circle { fill: var(--accent); } .curve text { fill: var(--soft); font-size: 12px; }
+code, pre { font: .88rem/1.5 ui-monospace, "SF Mono", "DejaVu Sans Mono", monospace; }
+pre { background: var(--tint); padding: .8rem 1rem; border-radius: 6px; white-space: pre-wrap; overflow-wrap: anywhere; margin: 0; }
+td { overflow-wrap: break-word; }
+@media (max-width: 36rem) { main { padding: 1.25rem 1rem 3rem; } .facts { grid-template-columns: 1fr 1fr; } .facts dd { font-size: 1.05rem; }
+  table { font-size: .85rem; } th, td { padding-right: .7rem; } .bars .bar { width: 30%; } }
+@media print { main { max-width: none; padding: 0; } section, figure, .facts { break-inside: avoid; } .pictures { grid-template-columns: 1fr 1fr; } }
+)css";
+
+}  // namespace misfit::tools
