@@ -35,9 +35,9 @@ struct Candidate {
   double worst_error() const { return std::sqrt(kernel_u.misfit.worst_mean + kernel_v.misfit.worst_mean); }
 };
 
-/// Time on one core, from counts of operations: constants are of one machine, fixed so that the choice depends on options and data
-/// alone. Samples: ordering, polynomials, and three planes of W × padded-W cells; FFTs: half the rows and the kept columns, twice
-/// (image and PSF).
+/// Time on one core, from counts of operations: constants are of one machine, fixed so that the choice depends on options and
+/// data alone. Samples: ordering, polynomials, and three planes of W × padded-W cells; FFTs: half the rows and the kept
+/// columns, twice (image and PSF).
 double cost_ns(const GriddingRequest& request, int nu, int nv, int width) {
   const double padded = (width + 3) / 4 * 4;
   const double per_sample = 15 + 0.15 * width * padded;
@@ -73,15 +73,17 @@ std::vector<Candidate> candidates(const GriddingRequest& request, const kernels:
 }
 
 struct Choice {
-  std::optional<Candidate> cheapest;   ///< of those that reach the accuracy
+  std::optional<Candidate> cheapest;  ///< of those that reach the accuracy
   std::optional<Candidate> most_exact;
-  std::string rejected;                ///< cheapest of each other padding
+  std::string rejected;  ///< cheapest of each other padding
 };
 
 Choice choose(const GriddingRequest& request, const kernels::KernelFamily& family) {
   static const std::vector<double> usual{1.15, 1.25, 1.4, 1.6, 2.0};
   const std::vector<double> paddings = request.padding == 0 ? usual : std::vector<double>{request.padding};
-  const double target = request.accuracy == 0 ? HUGE_VAL : std::sqrt(std::max(0.0, request.accuracy * request.accuracy - double_rounding * double_rounding));
+  const double target = request.accuracy == 0
+                            ? HUGE_VAL
+                            : std::sqrt(std::max(0.0, request.accuracy * request.accuracy - double_rounding * double_rounding));
   Choice choice;
   std::vector<Candidate> reaching;
   for (const double padding : paddings) {
@@ -95,16 +97,17 @@ Choice choose(const GriddingRequest& request, const kernels::KernelFamily& famil
   }
   for (const Candidate& candidate : reaching)
     if (candidate.padding != choice.cheapest->padding)
-      choice.rejected += (choice.rejected.empty() ? "" : ", ") + std::string("width ") + std::to_string(candidate.kernel_u.width()) +
-                         " at padding " + text("%.2f", candidate.padding) + " costs " +
-                         text("%.2f×", candidate.cost_ns / choice.cheapest->cost_ns);
+      choice.rejected += (choice.rejected.empty() ? "" : ", ") + std::string("width ") +
+                         std::to_string(candidate.kernel_u.width()) + " at padding " + text("%.2f", candidate.padding) +
+                         " costs " + text("%.2f×", candidate.cost_ns / choice.cheapest->cost_ns);
   return choice;
 }
 
 void check(const GriddingRequest& request, const kernels::KernelFamily& family) {
   if (request.kernel_width != 0 && (request.kernel_width < family.min_width || request.kernel_width > family.max_width))
-    throw std::invalid_argument("kernel width " + std::to_string(request.kernel_width) + " not in [" + std::to_string(family.min_width) +
-                                ", " + std::to_string(family.max_width) + "], which kernel " + family.name + " offers");
+    throw std::invalid_argument("kernel width " + std::to_string(request.kernel_width) + " not in [" +
+                                std::to_string(family.min_width) + ", " + std::to_string(family.max_width) +
+                                "], which kernel " + family.name + " offers");
   if (request.padding != 0 && !(request.padding >= 1.02 && request.padding <= 10))
     throw std::invalid_argument("padding " + text("%g", request.padding) + " not in [1.02, 10]");
   if (!(request.accuracy >= 0 && request.accuracy < 1))
@@ -113,19 +116,25 @@ void check(const GriddingRequest& request, const kernels::KernelFamily& family) 
 
 Plan decisions_of(const GriddingRequest& request, const GriddingPlan& plan, const std::string& rejected) {
   const PlaneTransformOptions& o = plan.options;
-  const std::string because_accuracy =
-      request.accuracy == 0 ? "as asked" : "worst position within a cell gives " + text("%.2g", plan.worst_error) + ", accuracy asked " + text("%.2g", request.accuracy);
+  const std::string because_accuracy = request.accuracy == 0
+                                           ? "as asked"
+                                           : "worst position within a cell gives " + text("%.2g", plan.worst_error) +
+                                                 ", accuracy asked " + text("%.2g", request.accuracy);
   const std::string others = rejected.empty() ? "" : "; " + rejected;
   return {
       {"kernel", o.kernel_u.name, "expected error of random data " + text("%.2g", plan.expected_error)},
       {"kernel width", std::to_string(o.kernel_u.width()), because_accuracy},
       {"FFT size", std::to_string(o.nu) + " × " + std::to_string(o.nv),
-       "padding " + text("%.3f", static_cast<double>(o.nu) / o.geometry.width) + " along u is the cheapest that keeps the accuracy" + others},
-      {"kernel evaluation", "polynomials of degree " + std::to_string(o.kernel_u.polynomial.degree()), "adds less than 0.5% to the kernel's squared error"},
+       "padding " + text("%.3f", static_cast<double>(o.nu) / o.geometry.width) +
+           " along u is the cheapest that keeps the accuracy" + others},
+      {"kernel evaluation", "polynomials of degree " + std::to_string(o.kernel_u.polynomial.degree()),
+       "adds less than 0.5% to the kernel's squared error"},
       {"precision of grid and FFT", o.precision == Precision::single_precision ? "single" : "double",
-       o.precision == Precision::single_precision ? "rounding of " + text("%.0e", single_rounding) + " is far below the accuracy asked"
-                                                  : "rounding of " + text("%.0e", single_rounding) + " in single precision is too near the accuracy asked"},
-      {"half of the uv plane", "gridded alone", "the image is real, so V(−u, −v) = conj V(u, v): half the memory, half the FFT"},
+       o.precision == Precision::single_precision
+           ? "rounding of " + text("%.0e", single_rounding) + " is far below the accuracy asked"
+           : "rounding of " + text("%.0e", single_rounding) + " in single precision is too near the accuracy asked"},
+      {"half of the uv plane", "gridded alone",
+       "the image is real, so V(−u, −v) = conj V(u, v): half the memory, half the FFT"},
   };
 }
 
@@ -139,8 +148,9 @@ GriddingPlan plan_gridding(const GriddingRequest& request) {
     throw std::invalid_argument("accuracy " + text("%g", request.accuracy) + " is out of reach of kernel " + family.name +
                                 (request.kernel_width == 0 ? "" : " of width " + std::to_string(request.kernel_width)) +
                                 (request.padding == 0 ? "" : " at padding " + text("%g", request.padding)) + "; it can reach " +
-                                text("%.2g", 1.01 * choice.most_exact->worst_error() + double_rounding) + " for this image, with width " +
-                                std::to_string(choice.most_exact->kernel_u.width()) + " at padding " + text("%g", choice.most_exact->padding));
+                                text("%.2g", 1.01 * choice.most_exact->worst_error() + double_rounding) +
+                                " for this image, with width " + std::to_string(choice.most_exact->kernel_u.width()) +
+                                " at padding " + text("%g", choice.most_exact->padding));
   const Candidate& best = *choice.cheapest;
   GriddingPlan plan;
   plan.options.geometry = request.geometry;

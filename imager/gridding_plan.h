@@ -11,7 +11,7 @@ namespace misfit::imager {
 /// What is asked of a transform.
 struct GriddingRequest {
   ImageGeometry geometry;
-  double accuracy = 1e-6;               ///< ε: ‖I − I_DFT‖₂ ≤ ε ‖I_DFT‖₂; 0 = whatever the given width and padding reach
+  double accuracy = 1e-6;  ///< ε: ‖I − I_DFT‖₂ ≤ ε ‖I_DFT‖₂; 0 = whatever the given width and padding reach
   std::string kernel = "least-misfit";  ///< a name of the catalogue
   int kernel_width = 0;                 ///< cells; 0 = chosen
   double padding = 0;                   ///< FFT size over image size, at least 1.02; 0 = chosen
@@ -28,8 +28,8 @@ struct GriddingPlan {
   Plan decisions;
 };
 
-/// Throws std::invalid_argument when the accuracy is out of reach of the kernel or of double precision; the message says what can be
-/// reached.
+/// Throws std::invalid_argument when the accuracy is out of reach of the kernel or of double precision; the message says what
+/// can be reached.
 GriddingPlan plan_gridding(const GriddingRequest& request);
 
 }  // namespace misfit::imager

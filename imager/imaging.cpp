@@ -34,8 +34,8 @@ AdjointResult finish(AdjointSum& sum, StageTimes& times) {
 
 }  // namespace
 
-DirtyImages make_dirty_images(const VisibilitySource& source, const Transform& transform, bool with_psf, const Progress& progress,
-                              StageTimes& times) {
+DirtyImages make_dirty_images(const VisibilitySource& source, const Transform& transform, bool with_psf,
+                              const Progress& progress, StageTimes& times) {
   const auto sum = transform.adjoint(with_psf);
   for_each_block(source, progress, times, [&](const VisibilityBlock& block) {
     const StageTimer timer(times, "grid");
@@ -50,8 +50,8 @@ DirtyImages make_dirty_images(const VisibilitySource& source, const Transform& t
   return {std::move(result.image), std::move(result.psf), result.sums};
 }
 
-Image make_residual_image(const VisibilitySource& source, const Transform& transform, const Image& model, const Progress& progress,
-                          StageTimes& times) {
+Image make_residual_image(const VisibilitySource& source, const Transform& transform, const Image& model,
+                          const Progress& progress, StageTimes& times) {
   std::unique_ptr<Prediction> prediction;
   {
     const StageTimer timer(times, "fft");

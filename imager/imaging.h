@@ -18,12 +18,12 @@ struct DirtyImages {
 };
 
 /// One pass over the visibilities. Stages timed: "read", "grid", "fft". Throws std::runtime_error when no sample can be used.
-DirtyImages make_dirty_images(const VisibilitySource& source, const Transform& transform, bool with_psf, const Progress& progress,
-                              StageTimes& times);
+DirtyImages make_dirty_images(const VisibilitySource& source, const Transform& transform, bool with_psf,
+                              const Progress& progress, StageTimes& times);
 
 /// The dirty image of data − model: the model is predicted at every usable sample and subtracted. Stages timed: "read", "fft",
 /// "degrid", "grid".
-Image make_residual_image(const VisibilitySource& source, const Transform& transform, const Image& model, const Progress& progress,
-                          StageTimes& times);
+Image make_residual_image(const VisibilitySource& source, const Transform& transform, const Image& model,
+                          const Progress& progress, StageTimes& times);
 
 }  // namespace misfit::imager

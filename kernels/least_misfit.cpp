@@ -237,7 +237,8 @@ std::vector<LeastMisfit> solve_least_misfit(int width, double x0) {
 
 std::vector<Kernel> least_misfit_up_to(int width, double x0) {
   std::vector<Kernel> kernels;
-  for (const LeastMisfit& solution : solve_least_misfit(width, x0)) kernels.push_back(make_kernel("least-misfit", x0, solution.taps));
+  for (const LeastMisfit& solution : solve_least_misfit(width, x0))
+    kernels.push_back(make_kernel("least-misfit", x0, solution.taps));
   return kernels;
 }
 

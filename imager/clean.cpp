@@ -1,0 +1,94 @@
+#include "imager/clean.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <optional>
+
+#include "imager/hogbom.h"
+#include "imager/noise.h"
+
+namespace misfit::imager {
+namespace {
+
+MajorCycle state_of(const CleanResult& result) {
+  return {result.report.iterations, std::abs(find_peak(result.residual).value), robust_noise(result.residual),
+          std::accumulate(result.model.pixel.begin(), result.model.pixel.end(), 0.0), 0};
+}
+
+struct Ending {
+  CleanStop stop;
+  std::string reason;
+};
+
+/// What ends CLEAN before another minor cycle, if anything.
+std::optional<Ending> ending(const CleanOptions& o, const std::vector<MajorCycle>& cycles) {
+  const MajorCycle& now = cycles.back();
+  if (o.stop_requested && o.stop_requested()) return Ending{CleanStop::user, "stopped by the user"};
+  if (now.peak_residual_jy <= o.threshold_jy) return Ending{CleanStop::threshold, "the peak residual reached the threshold"};
+  if (o.nsigma > 0 && now.peak_residual_jy <= o.nsigma * now.rms_jy)
+    return Ending{CleanStop::nsigma, "the peak residual reached nsigma times the noise"};
+  if (now.iterations >= o.max_iterations) return Ending{CleanStop::iteration_limit, "the iteration limit was reached"};
+  if (o.max_major_cycles >= 0 && static_cast<int>(cycles.size()) > o.max_major_cycles)
+    return Ending{CleanStop::major_cycle_limit, "the limit of major cycles was reached"};
+  if (cycles.size() > 1 && now.iterations == cycles[cycles.size() - 2].iterations)
+    return Ending{CleanStop::no_change, "a minor cycle found nothing to clean"};
+  return std::nullopt;
+}
+
+/// The depth of the next minor cycle: where the sidelobes of the brightest source could pass for sources.
+double cycle_threshold(const CleanOptions& o, double max_sidelobe, const MajorCycle& now) {
+  const double fraction = std::clamp(o.cycle_factor * max_sidelobe, o.min_psf_fraction, o.max_psf_fraction);
+  return std::max({fraction * now.peak_residual_jy, o.threshold_jy, o.nsigma * now.rms_jy});
+}
+
+}  // namespace
+
+double largest_sidelobe(const Image& psf, const Image& beam) {
+  double largest = 0;
+  for (std::size_t i = 0; i < psf.pixel.size(); ++i) largest = std::max(largest, std::abs(psf.pixel[i] - beam.pixel[i]));
+  return largest;
+}
+
+CleanResult clean(const VisibilitySource& source, const Transform& transform, const DirtyImages& images, const Image& beam,
+                  const CleanOptions& options, const Progress& progress, const CycleProgress& cycle_progress,
+                  StageTimes& times) {
+  constexpr double divergence = 3;  // tclean's factor
+  CleanResult result{Image(images.dirty.width, images.dirty.height), images.dirty, {}};
+  result.report.max_sidelobe = largest_sidelobe(images.psf, beam);
+  result.report.cycles = {state_of(result)};
+  CleanResult best = result;
+  std::optional<Ending> end;
+  while (!(end = ending(options, result.report.cycles))) {
+    const MajorCycle now = result.report.cycles.back();
+    const double depth = cycle_threshold(options, result.report.max_sidelobe, now);
+    {
+      const StageTimer timer(times, "minor cycles");
+      result.report.iterations += hogbom(result.residual, images.psf,
+                                         {.gain = options.gain,
+                                          .max_iterations = options.max_iterations - now.iterations,
+                                          .threshold_jy = depth,
+                                          .threads = options.threads,
+                                          .stop_requested = options.stop_requested},
+                                         result.model)
+                                      .iterations;
+    }
+    result.residual = make_residual_image(source, transform, result.model, progress, times);
+    result.report.cycles.push_back(state_of(result));
+    result.report.cycles.back().cycle_threshold_jy = depth;
+    cycle_progress(result.report.cycles.back());
+    if (result.report.cycles.back().peak_residual_jy < best.report.cycles.back().peak_residual_jy) best = result;
+    if (result.report.cycles.back().peak_residual_jy > divergence * best.report.cycles.back().peak_residual_jy) {
+      const CleanReport report = result.report;
+      result = best;
+      result.report.cycles = report.cycles;
+      end = Ending{CleanStop::diverging, "the residual grew to more than three times its smallest; the best model was kept"};
+      break;
+    }
+  }
+  result.report.stop = end->stop;
+  result.report.stop_reason = end->reason;
+  return result;
+}
+
+}  // namespace misfit::imager

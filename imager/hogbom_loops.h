@@ -1,0 +1,11 @@
+#pragma once
+
+namespace misfit::imager {
+
+/// residual[i] −= factor · psf[i] for i in [0, count); returns the largest |residual[i]| afterwards.
+float subtract_and_peak(float* residual, const float* psf, int count, float factor);
+
+/// The largest |value[i]| for i in [0, count).
+float peak_magnitude(const float* value, int count);
+
+}  // namespace misfit::imager

@@ -1,0 +1,21 @@
+#pragma once
+
+#include "imager/direct_transform.h"
+#include "imager/imaging.h"
+
+namespace misfit::imager {
+
+/// Measured differences from the direct transform, w included. Relative to the RMS of the whole dirty image (the first two) or
+/// of the predicted visibilities.
+struct MeasuredError {
+  double rms = 0;          ///< of the dirty image, over random pixels
+  double max = 0;          ///< the largest among them
+  double predict_rms = 0;  ///< of prediction, over random samples
+};
+
+/// Compares the dirty image with direct sums at `count` random pixels, and predicted visibilities with direct sums at `count`
+/// random samples, for a model of `count` random pixels. The choice depends on `count` alone.
+MeasuredError measure_error(const VisibilitySource& source, const Transform& transform, const ImageGeometry& geometry,
+                            const DirtyImages& images, int count, int threads, const Progress& progress);
+
+}  // namespace misfit::imager
