@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <stdexcept>
 
 namespace misfit::ms_io {
@@ -13,53 +14,58 @@ constexpr int code_i = 1, code_rr = 5, code_ll = 8, code_xx = 9, code_yy = 12;
 constexpr std::array<const char*, 13> names = {"undefined", "I", "Q", "U", "V", "RR", "RL", "LR", "LL", "XX", "XY", "YX", "YY"};
 
 /// 0 when x is finite, NaN otherwise.
-inline float finite_probe(float x) {
+inline float probe(float x) {
   return x - x;
 }
-inline float finite_probe(std::complex<float> x) {
-  return finite_probe(x.real()) + finite_probe(x.imag());
+
+struct Unusable {
+  std::uint32_t flagged = 0, nonfinite = 0, zero_weight = 0;
+};
+
+/// The strides lead from channel to channel; floats come in pairs of real and imaginary part. Numbers known to the compiler,
+/// no branch, no alias and no bool in memory: that lets GCC vectorise the loop (with -fno-trapping-math).
+template <std::size_t stride, std::size_t weight_stride>
+Unusable form_channels(const StokesI& recipe, const float* __restrict data, const unsigned char* __restrict flags,
+                       const float* __restrict weights, float uvw_probe, std::size_t channels, float* __restrict visibility,
+                       float* __restrict weight) {
+  const std::size_t a = recipe.first, b = recipe.second;
+  const float own_weight = a == b ? 2.0F : 1.0F;  // a stored I keeps its weight: 2 · w/2
+  std::uint32_t flagged = 0, nonfinite = 0, zero_weight = 0;
+  for (std::size_t c = 0; c < channels; ++c) {
+    const float a_re = data[2 * (c * stride + a)], a_im = data[2 * (c * stride + a) + 1];
+    const float b_re = data[2 * (c * stride + b)], b_im = data[2 * (c * stride + b) + 1];
+    const float a_weight = weights[c * weight_stride + a], b_weight = weights[c * weight_stride + b];
+    // 1/(1/a + 1/b), arranged so that it cannot overflow and equal weights give exactly a/2.
+    const float low = a_weight < b_weight ? a_weight : b_weight, high = a_weight < b_weight ? b_weight : a_weight;
+    const float w = own_weight * (low / (1 + low / high));
+    const float all = probe(a_re) + probe(a_im) + probe(b_re) + probe(b_im) + probe(a_weight) + probe(b_weight) + uvw_probe;
+    const std::uint32_t flag = flags[c * stride + a] | flags[c * stride + b];
+    const std::uint32_t finite = all == 0;
+    // Two weights near 1e-38 may combine to 0.
+    const std::uint32_t weighted = static_cast<std::uint32_t>(low > 0) & static_cast<std::uint32_t>(w > 0);
+    const std::uint32_t usable = (1U - flag) & finite & weighted;
+    flagged += flag;
+    nonfinite += (1U - flag) & (1U - finite);
+    zero_weight += (1U - flag) & finite & (1U - weighted);
+    // Halves are summed, not the sum halved: this cannot overflow.
+    const float re = 0.5F * a_re + 0.5F * b_re, im = 0.5F * a_im + 0.5F * b_im;
+    visibility[2 * c] = usable != 0 ? re : 0;
+    visibility[2 * c + 1] = usable != 0 ? im : 0;
+    weight[c] = usable != 0 ? w : 0;
+  }
+  return {flagged, nonfinite, zero_weight};
 }
 
-/// 1/(1/a + 1/b) for a, b > 0, without overflow. Equal weights give exactly a/2.
-inline float harmonic(float a, float b) {
-  const float smaller = std::min(a, b);
-  return smaller / (1 + smaller / std::max(a, b));
-}
-
-/// The strides are in floats and bools from channel to channel; known numbers let the compiler vectorise the loop.
 template <std::size_t stride, std::size_t weight_stride>
 void form(const StokesI& recipe, const StoredSamples& stored, const StokesSamples& formed, imager::SampleCounts& counts) {
-  const std::complex<float>* const first = stored.data + recipe.first;
-  const std::complex<float>* const second = stored.data + recipe.second;
-  const bool* const first_flag = stored.flag + recipe.first;
-  const bool* const second_flag = stored.flag + recipe.second;
-  const float* const first_weight = stored.weight + recipe.first;
-  const float* const second_weight = stored.weight + recipe.second;
-  const float own_weight = recipe.first == recipe.second ? 2.0F : 1.0F;  // a stored I keeps its weight: 2 · w/2
-  std::uint32_t flagged = 0, nonfinite = 0, zero_weight = 0;
-  for (std::size_t c = 0; c < stored.channels; ++c) {
-    const std::complex<float> a = first[c * stride], b = second[c * stride];
-    const float wa = first_weight[c * weight_stride], wb = second_weight[c * weight_stride];
-    const std::uint32_t is_flagged = first_flag[c * stride] | second_flag[c * stride];
-    const float probe = finite_probe(a) + finite_probe(b) + finite_probe(wa) + finite_probe(wb);
-    const std::uint32_t is_finite = static_cast<std::uint32_t>(probe == 0) & static_cast<std::uint32_t>(stored.uvw_is_finite);
-    const float w = own_weight * harmonic(wa, wb);
-    // w > 0 is part of it, since a weight below 1e-38 can vanish when it is combined.
-    const std::uint32_t is_weighted =
-        static_cast<std::uint32_t>(wa > 0) & static_cast<std::uint32_t>(wb > 0) & static_cast<std::uint32_t>(w > 0);
-    flagged += is_flagged;
-    nonfinite += (1U - is_flagged) & (1U - is_finite);
-    zero_weight += (1U - is_flagged) & is_finite & (1U - is_weighted);
-    const bool usable = ((1U - is_flagged) & is_finite & is_weighted) != 0;
-    // Halves are summed, not the sum halved: this cannot overflow.
-    const float re = 0.5F * a.real() + 0.5F * b.real(), im = 0.5F * a.imag() + 0.5F * b.imag();
-    formed.visibility[c] = {usable ? re : 0.0F, usable ? im : 0.0F};
-    formed.weight[c] = usable ? w : 0.0F;
-  }
-  counts.flagged += flagged;
-  counts.nonfinite += nonfinite;
-  counts.zero_weight += zero_weight;
-  counts.used += stored.channels - flagged - nonfinite - zero_weight;
+  const float uvw_probe = stored.uvw_is_finite ? 0.0F : std::numeric_limits<float>::quiet_NaN();
+  const Unusable unusable = form_channels<stride, weight_stride>(
+      recipe, reinterpret_cast<const float*>(stored.data), reinterpret_cast<const unsigned char*>(stored.flag), stored.weight,
+      uvw_probe, stored.channels, reinterpret_cast<float*>(formed.visibility), formed.weight);
+  counts.flagged += unusable.flagged;
+  counts.nonfinite += unusable.nonfinite;
+  counts.zero_weight += unusable.zero_weight;
+  counts.used += stored.channels - unusable.flagged - unusable.nonfinite - unusable.zero_weight;
 }
 
 template <std::size_t stride>
