@@ -5,7 +5,9 @@
 #include <casacore/tables/Tables/ArrayColumn.h>
 #include <casacore/tables/Tables/ScalarColumn.h>
 
+#include <algorithm>
 #include <cmath>
+#include <sstream>
 
 #include "ms_io/setup_internal.h"
 #include "ms_io/table_access_internal.h"
