@@ -25,7 +25,7 @@ class MeasurementSet : public imager::VisibilitySource {
   /// short names data, corrected and model stand for DATA, CORRECTED_DATA and MODEL_DATA. A block holds whole rows, about
   /// `block_samples` samples of them; what is read does not depend on that number.
   MeasurementSet(const std::string& path, const Selection& selection, const std::string& data_column,
-                 std::uint64_t block_samples = std::uint64_t{1} << 22);
+                 std::uint64_t block_samples = std::uint64_t{1} << 20);
   ~MeasurementSet() override;
 
   const imager::Observation& observation() const;
