@@ -24,11 +24,11 @@ struct Unusable {
 
 /// The strides lead from channel to channel; floats come in pairs of real and imaginary part. Numbers known to the compiler,
 /// no branch, no alias and no bool in memory: that lets GCC vectorise the loop (with -fno-trapping-math).
-template <std::size_t stride, std::size_t weight_stride>
+template <std::size_t stride, std::size_t weight_stride, bool first_and_last>
 Unusable form_channels(const StokesI& recipe, const float* __restrict data, const unsigned char* __restrict flags,
                        const float* __restrict weights, float uvw_probe, std::size_t channels, float* __restrict visibility,
                        float* __restrict weight) {
-  const std::size_t a = recipe.first, b = recipe.second;
+  const std::size_t a = first_and_last ? 0 : recipe.first, b = first_and_last ? stride - 1 : recipe.second;
   const float own_weight = a == b ? 2.0F : 1.0F;  // a stored I keeps its weight: 2 · w/2
   std::uint32_t flagged = 0, nonfinite = 0, zero_weight = 0;
   for (std::size_t c = 0; c < channels; ++c) {
@@ -56,16 +56,23 @@ Unusable form_channels(const StokesI& recipe, const float* __restrict data, cons
   return {flagged, nonfinite, zero_weight};
 }
 
-template <std::size_t stride, std::size_t weight_stride>
+template <std::size_t stride, std::size_t weight_stride, bool first_and_last>
 void form(const StokesI& recipe, const StoredSamples& stored, const StokesSamples& formed, imager::SampleCounts& counts) {
   const float uvw_probe = stored.uvw_is_finite ? 0.0F : std::numeric_limits<float>::quiet_NaN();
-  const Unusable unusable = form_channels<stride, weight_stride>(
+  const Unusable unusable = form_channels<stride, weight_stride, first_and_last>(
       recipe, reinterpret_cast<const float*>(stored.data), reinterpret_cast<const unsigned char*>(stored.flag), stored.weight,
       uvw_probe, stored.channels, reinterpret_cast<float*>(formed.visibility), formed.weight);
   counts.flagged += unusable.flagged;
   counts.nonfinite += unusable.nonfinite;
   counts.zero_weight += unusable.zero_weight;
   counts.used += stored.channels - unusable.flagged - unusable.nonfinite - unusable.zero_weight;
+}
+
+template <std::size_t stride, std::size_t weight_stride>
+void form(const StokesI& recipe, const StoredSamples& stored, const StokesSamples& formed, imager::SampleCounts& counts) {
+  const bool first_and_last = recipe.first == 0 && recipe.second == stride - 1;  // the usual order of correlations
+  first_and_last ? form<stride, weight_stride, true>(recipe, stored, formed, counts)
+                 : form<stride, weight_stride, false>(recipe, stored, formed, counts);
 }
 
 template <std::size_t stride>
