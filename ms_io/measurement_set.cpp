@@ -1,0 +1,60 @@
+#include "ms_io/measurement_set.h"
+
+#include <utility>
+
+#include "ms_io/metadata_internal.h"
+#include "ms_io/table_access_internal.h"
+#include "ms_io/visibility_reader_internal.h"
+
+namespace misfit::ms_io {
+namespace {
+
+std::shared_ptr<const OpenSet> open_selected(const std::string& path, const Selection& selection,
+                                             const std::string& data_column, std::uint64_t block_samples) {
+  const auto opened = std::make_shared<OpenSet>();
+  opened->path = path;
+  opened->data_column = column_name(data_column);
+  opened->set = open_measurement_set(path, Access::read);
+  require_visibility_column(opened->set, path, opened->data_column);
+  opened->selected = select_rows(opened->set, path, selection, block_samples);
+  for (const Setup& setup : opened->selected.setups) {
+    try {
+      opened->stokes.push_back(stokes_i(setup.correlation_types));
+    } catch (const std::runtime_error& error) {
+      throw std::runtime_error(path + ", DATA_DESC_ID " + std::to_string(setup.data_description) + ": " + error.what());
+    }
+  }
+  return opened;
+}
+
+}  // namespace
+
+struct MeasurementSet::Impl {
+  std::shared_ptr<const OpenSet> open_set;
+  imager::Observation observation;
+};
+
+MeasurementSet::MeasurementSet(const std::string& path, const Selection& selection, const std::string& data_column,
+                               std::uint64_t block_samples) {
+  const auto impl = std::make_shared<Impl>();
+  impl->open_set = open_selected(path, selection, data_column, block_samples);
+  impl->observation = describe(impl->open_set->set, path, impl->open_set->selected);
+  impl_ = impl;
+}
+
+MeasurementSet::~MeasurementSet() = default;
+
+const imager::Observation& MeasurementSet::observation() const {
+  return impl_->observation;
+}
+std::uint64_t MeasurementSet::rows() const {
+  return impl_->open_set->selected.rows;
+}
+std::uint64_t MeasurementSet::samples() const {
+  return impl_->open_set->selected.samples;
+}
+std::unique_ptr<imager::BlockStream> MeasurementSet::open() const {
+  return read_blocks(impl_->open_set);
+}
+
+}  // namespace misfit::ms_io

@@ -24,7 +24,8 @@ struct ModelWriteReport {
 /// and weights, auto-correlations included. XX, YY, RR and LL get I; cross-hand correlations get 0. A column that does not
 /// exist is created with the shape and storage of DATA, and rows outside the selection are left alone (0 in a new column).
 /// `column` may not be DATA. `progress(done, total)` is called after every block, in samples. Throws std::runtime_error as
-/// MeasurementSet does.
+/// MeasurementSet does (but correlations from which I cannot be formed are written all the same), and std::invalid_argument
+/// when `predict` returns the wrong number of values.
 ModelWriteReport write_model(const std::string& path, const Selection& selection, const std::string& column,
                              const Predict& predict, const std::function<void(std::uint64_t, std::uint64_t)>& progress);
 

@@ -34,8 +34,9 @@ using BaselineUvw = std::function<std::vector<double>(std::size_t integration)>;
 using ExactVisibilities = std::function<std::vector<std::complex<double>>(const imager::SampleCoordinates&)>;
 
 /// Writes a new MeasurementSet at `path`, with all of the required subtables filled. WEIGHT is 1/noise² (1 without noise),
-/// SIGMA the noise (1 without). The table is written beside `path` and renamed when complete. Throws std::runtime_error when
-/// `path` exists or cannot be written.
+/// SIGMA the noise (1 without). The table is written beside `path` and renamed when complete. `progress(done, total)` is
+/// called after every integration, and counts them. Throws std::runtime_error when `path` exists or cannot be written, and
+/// std::invalid_argument when the observation is incomplete or a function returns the wrong number of values.
 void write_simulated_set(const std::string& path, const SimulatedObservation& observation, const BaselineUvw& uvw,
                          const ExactVisibilities& visibilities, const std::function<void(std::size_t, std::size_t)>& progress);
 

@@ -1,0 +1,67 @@
+#pragma once
+
+#include <casacore/casa/Arrays/Array.h>
+#include <casacore/tables/Tables/ArrayColumn.h>
+#include <casacore/tables/Tables/RefRows.h>
+#include <casacore/tables/Tables/ScalarColumn.h>
+
+#include <string>
+
+#include "ms_io/selection_internal.h"
+#include "ms_io/table_access_internal.h"
+
+namespace misfit::ms_io {
+
+/// The rows of one access to the table.
+class Rows {
+ public:
+  explicit Rows(const std::vector<Run>& runs);
+
+  std::uint64_t count() const { return count_; }
+  bool contiguous() const { return contiguous_; }
+  casacore::Slicer range() const;                              ///< only when contiguous
+  const casacore::RefRows& listed() const { return listed_; }  ///< always
+  const casacore::Vector<casacore::rownr_t>& numbers() const { return numbers_; }
+
+ private:
+  bool contiguous_;
+  casacore::rownr_t first_;
+  std::uint64_t count_;
+  casacore::Vector<casacore::rownr_t> numbers_;
+  casacore::RefRows listed_;
+};
+
+/// `runs` cut into pieces of at most `rows` rows.
+std::vector<Rows> pieces(const std::vector<Run>& runs, std::uint64_t rows);
+
+/// All correlations of the channels from the first selected to the last one.
+casacore::Slicer channel_slice(const Setup& setup, std::size_t correlations);
+
+template <typename T>
+void read(const casacore::ScalarColumn<T>& column, const Rows& rows, casacore::Vector<T>& values) {
+  if (rows.contiguous()) {
+    column.getColumnRange(rows.range(), values, true);
+  } else {
+    column.getColumnCells(rows.listed(), values, true);
+  }
+}
+
+template <typename T>
+void read(const casacore::ArrayColumn<T>& column, const Rows& rows, casacore::Array<T>& values) {
+  if (rows.contiguous()) {
+    column.getColumnRange(rows.range(), values, true);
+  } else {
+    column.getColumnCells(rows.listed(), values, true);
+  }
+}
+
+template <typename T>
+void read(const casacore::ArrayColumn<T>& column, const Rows& rows, const casacore::Slicer& slice, casacore::Array<T>& values) {
+  if (rows.contiguous()) {
+    column.getColumnRange(rows.range(), slice, values, true);
+  } else {
+    column.getColumnCells(rows.listed(), slice, values, true);
+  }
+}
+
+}  // namespace misfit::ms_io

@@ -1,0 +1,111 @@
+#include <casacore/tables/Tables/ScalarColumn.h>
+
+#include <algorithm>
+#include <limits>
+#include <stdexcept>
+
+#include "ms_io/selection_internal.h"
+#include "ms_io/setup_internal.h"
+#include "ms_io/table_access_internal.h"
+
+namespace misfit::ms_io {
+namespace {
+
+constexpr std::size_t not_selected = std::numeric_limits<std::size_t>::max();
+
+/// Sorts rows, met in the order of the table, into blocks of one setup each.
+class BlockBuilder {
+ public:
+  BlockBuilder(const SetupTable& table, const ParsedSelection& parsed, std::uint64_t block_samples)
+      : table_(table), parsed_(parsed), block_samples_(block_samples) {}
+
+  void add(std::uint64_t row, int data_description, int field) {
+    if (!parsed_.has_field(field)) return;
+    const std::size_t setup = setup_of(data_description);
+    if (setup == not_selected) return;
+    if (result_.rows++ == 0) result_.first_row = row;
+    result_.first_row_of_field.emplace(field, row);
+    BlockRows& block = pending_[setup];
+    append(block.runs, row);
+    if (++block.rows >= rows_per_block_[setup]) flush(setup);
+  }
+
+  SelectedRows finish() {
+    for (std::size_t s = 0; s < pending_.size(); ++s) flush(s);
+    return std::move(result_);
+  }
+
+ private:
+  std::size_t setup_of(int data_description) {
+    if (last_ && data_description == last_description_) return last_setup_;
+    last_ = true;
+    last_description_ = data_description;
+    const auto known = setup_.find(data_description);
+    last_setup_ = known == setup_.end() ? make_setup(data_description) : known->second;
+    return last_setup_;
+  }
+
+  std::size_t make_setup(int data_description) {
+    std::size_t& index = setup_[data_description] = not_selected;
+    if (!parsed_.has_window(table_.spectral_window(data_description))) return index;
+    index = result_.setups.size();
+    result_.setups.push_back(table_.setup(data_description, parsed_));
+    rows_per_block_.push_back(std::max<std::uint64_t>(1, block_samples_ / result_.setups.back().frequency_hz.size()));
+    pending_.push_back({index, {}, 0});
+    return index;
+  }
+
+  void flush(std::size_t setup) {
+    BlockRows& block = pending_[setup];
+    if (block.rows == 0) return;
+    result_.samples += block.rows * result_.setups[setup].frequency_hz.size();
+    result_.blocks.push_back(std::move(block));
+    block = {setup, {}, 0};
+  }
+
+  const SetupTable& table_;
+  const ParsedSelection& parsed_;
+  std::uint64_t block_samples_;
+  SelectedRows result_;
+  std::map<int, std::size_t> setup_;  ///< by DATA_DESC_ID
+  std::vector<BlockRows> pending_;    ///< [setup]
+  std::vector<std::uint64_t> rows_per_block_;
+  bool last_ = false;
+  int last_description_ = 0;
+  std::size_t last_setup_ = 0;
+};
+
+}  // namespace
+
+void append(std::vector<Run>& runs, std::uint64_t index) {
+  if (runs.empty() || runs.back().first + runs.back().count != index) {
+    runs.push_back({index, 1});
+  } else {
+    ++runs.back().count;
+  }
+}
+
+SelectedRows select_rows(const casacore::MeasurementSet& set, const std::string& path, const Selection& selection,
+                         std::uint64_t block_samples) {
+  const SetupTable table(set, path);
+  const ParsedSelection parsed = parse_selection(set, path, selection);
+  BlockBuilder builder(table, parsed, block_samples);
+  constexpr std::uint64_t rows_at_once = 1 << 20;
+  for (std::uint64_t first = 0; first < set.nrow(); first += rows_at_once) {
+    const std::uint64_t count = std::min<std::uint64_t>(rows_at_once, set.nrow() - first);
+    const casacore::Slicer rows(casacore::IPosition(1, static_cast<ssize_t>(first)),
+                                casacore::IPosition(1, static_cast<ssize_t>(count)));
+    const auto ids = [&](const char* column) {
+      return translated("cannot read " + std::string(column) + " of " + path,
+                        [&] { return casacore::ScalarColumn<int>(set, column).getColumnRange(rows).tovector(); });
+    };
+    const std::vector<int> description = ids("DATA_DESC_ID"), field = ids("FIELD_ID");
+    for (std::uint64_t r = 0; r < count; ++r) builder.add(first + r, description[r], field[r]);
+  }
+  SelectedRows selected = builder.finish();
+  if (selected.rows > 0) return selected;
+  throw std::runtime_error(path + ": the selection field='" + selection.field + "', spw='" + selection.spectral_window +
+                           "' contains none of its " + std::to_string(set.nrow()) + " rows");
+}
+
+}  // namespace misfit::ms_io

@@ -1,0 +1,63 @@
+#pragma once
+
+#include <casacore/ms/MeasurementSets/MeasurementSet.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "ms_io/measurement_set.h"
+
+namespace misfit::ms_io {
+
+/// Consecutive rows of the main table, or consecutive channels.
+struct Run {
+  std::uint64_t first = 0;
+  std::uint64_t count = 0;
+};
+
+/// One DATA_DESC_ID of the selection: what its rows have in common.
+struct Setup {
+  int data_description = 0;
+  int spectral_window = 0;
+  std::string spectral_frame;            ///< FITS SPECSYS
+  std::vector<int> correlation_types;    ///< casacore's Stokes codes
+  std::size_t stored_channels = 0;       ///< in a cell
+  std::vector<Run> channels;             ///< selected, ascending
+  std::vector<double> frequency_hz;      ///< [selected channel]
+  std::vector<double> channel_width_hz;  ///< [selected channel], positive
+
+  std::uint64_t first_channel() const { return channels.front().first; }
+  std::uint64_t last_channel() const { return channels.back().first + channels.back().count - 1; }
+  /// Channels from the first selected to the last selected one.
+  std::uint64_t channel_span() const { return last_channel() - first_channel() + 1; }
+};
+
+/// Rows of one setup that are handed out together, ascending.
+struct BlockRows {
+  std::size_t setup = 0;
+  std::vector<Run> runs;
+  std::uint64_t rows = 0;
+};
+
+/// The selection, resolved into what is to be read.
+struct SelectedRows {
+  std::vector<Setup> setups;
+  std::vector<BlockRows> blocks;  ///< in the order of the table, as far as several setups allow
+  std::uint64_t rows = 0;
+  std::uint64_t samples = 0;                        ///< rows × selected channels
+  std::uint64_t first_row = 0;                      ///< the first row selected
+  std::map<int, std::uint64_t> first_row_of_field;  ///< for the fields that have selected rows
+};
+
+/// Finds the rows and channels that `selection` means, in blocks of about `block_samples` samples. Throws
+/// std::runtime_error, which begins with `path`, for a wrong or empty selection and for rows that point nowhere.
+SelectedRows select_rows(const casacore::MeasurementSet& set, const std::string& path, const Selection& selection,
+                         std::uint64_t block_samples);
+
+/// Appends the row or channel `index` to ascending runs.
+void append(std::vector<Run>& runs, std::uint64_t index);
+
+}  // namespace misfit::ms_io

@@ -1,0 +1,87 @@
+#include <casacore/casa/Logging/LogSink.h>
+#include <casacore/casa/Logging/NullLogSink.h>
+#include <casacore/tables/Tables/ColumnDesc.h>
+#include <casacore/tables/Tables/TableDesc.h>
+
+#include <filesystem>
+#include <map>
+#include <mutex>
+#include <sstream>
+
+#include "ms_io/table_access_internal.h"
+
+namespace misfit::ms_io {
+namespace {
+
+void silence_casacore() {
+  static std::once_flag once;
+  std::call_once(once, [] {
+    casacore::LogSinkInterface* silent = new casacore::NullLogSink;  // owned by casacore from here on
+    casacore::LogSink::globalSink(silent);
+  });
+}
+
+bool is_visibility_column(const casacore::ColumnDesc& column) {
+  return column.isArray() && column.dataType() == casacore::TpComplex;
+}
+
+std::string visibility_columns(const casacore::TableDesc& description) {
+  std::string list;
+  for (casacore::uInt i = 0; i < description.ncolumn(); ++i) {
+    if (is_visibility_column(description[i])) list += (list.empty() ? "" : ", ") + description[i].name();
+  }
+  return list.empty() ? "none" : list;
+}
+
+void require_main_columns(const casacore::Table& table, const std::string& path) {
+  const char* const needed[] = {"ANTENNA1", "ANTENNA2", "DATA_DESC_ID", "FIELD_ID", "FLAG",
+                                "FLAG_ROW", "INTERVAL", "TIME",         "UVW",      "WEIGHT"};
+  for (const char* column : needed) {
+    if (!table.tableDesc().isColumn(column)) {
+      throw std::runtime_error(path + " is a table but not a MeasurementSet: it has no column " + column);
+    }
+  }
+}
+
+}  // namespace
+
+std::string one_line(const std::string& message) {
+  std::istringstream words(message);
+  std::string line;
+  for (std::string word; words >> word;) line += (line.empty() ? "" : " ") + word;
+  return line;
+}
+
+casacore::MeasurementSet open_measurement_set(const std::string& path, Access access) {
+  silence_casacore();
+  std::error_code ignored;
+  if (!std::filesystem::exists(path, ignored)) throw std::runtime_error(path + " does not exist; expected a MeasurementSet");
+  return translated("cannot open " + path, [&] {
+    if (!casacore::Table::isReadable(path)) {
+      throw std::runtime_error(path + " is not a casacore table; expected the directory of a MeasurementSet");
+    }
+    require_main_columns(casacore::Table(path), path);
+    if (access == Access::update && !casacore::Table::isWritable(path)) {
+      throw std::runtime_error(path + " is read-only; writing a column needs write permission");
+    }
+    const auto option = access == Access::update ? casacore::Table::Update : casacore::Table::Old;
+    const auto lock = access == Access::update ? casacore::TableLock::AutoLocking : casacore::TableLock::AutoNoReadLocking;
+    return casacore::MeasurementSet(path, casacore::TableLock(lock), option);
+  });
+}
+
+std::string column_name(const std::string& name) {
+  static const std::map<std::string, std::string> full = {
+      {"data", "DATA"}, {"corrected", "CORRECTED_DATA"}, {"model", "MODEL_DATA"}};
+  const auto found = full.find(name);
+  return found == full.end() ? name : found->second;
+}
+
+void require_visibility_column(const casacore::Table& table, const std::string& path, const std::string& column) {
+  const casacore::TableDesc& description = table.tableDesc();
+  if (description.isColumn(column) && is_visibility_column(description[column])) return;
+  throw std::runtime_error(path + " has no visibilities in a column '" + column +
+                           "'; columns with visibilities: " + visibility_columns(description));
+}
+
+}  // namespace misfit::ms_io

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <casacore/casa/Exceptions/Error.h>
+#include <casacore/ms/MeasurementSets/MeasurementSet.h>
+
+#include <stdexcept>
+#include <string>
+
+namespace misfit::ms_io {
+
+/// `message` with every run of white space, line ends included, as one blank.
+std::string one_line(const std::string& message);
+
+/// The result of `action`, with casacore's exceptions turned into std::runtime_error("`doing`: reason") of one line.
+template <typename Action>
+auto translated(const std::string& doing, const Action& action) -> decltype(action()) {
+  try {
+    return action();
+  } catch (const casacore::AipsError& error) {
+    throw std::runtime_error(doing + ": " + one_line(error.getMesg()));
+  }
+}
+
+enum class Access { read, update };
+
+/// Opens the MeasurementSet at `path`, and silences casacore's log, since nothing below the program prints. Throws
+/// std::runtime_error when there is none, or when it cannot be written but `access` asks for it.
+casacore::MeasurementSet open_measurement_set(const std::string& path, Access access);
+
+/// `name`, with the short names data, corrected and model spelt out.
+std::string column_name(const std::string& name);
+
+/// Throws std::runtime_error, which lists the columns there are, unless `column` holds complex visibilities.
+void require_visibility_column(const casacore::Table& table, const std::string& path, const std::string& column);
+
+}  // namespace misfit::ms_io

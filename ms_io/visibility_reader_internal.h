@@ -1,0 +1,23 @@
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "ms_io/selection_internal.h"
+#include "ms_io/stokes.h"
+
+namespace misfit::ms_io {
+
+/// A MeasurementSet with what is to be read from it. It lives as long as a stream reads it.
+struct OpenSet {
+  std::string path;
+  std::string data_column;
+  casacore::MeasurementSet set;
+  SelectedRows selected;
+  std::vector<StokesI> stokes;  ///< [setup]
+};
+
+/// Streams the blocks of `open_set`.
+std::unique_ptr<imager::BlockStream> read_blocks(std::shared_ptr<const OpenSet> open_set);
+
+}  // namespace misfit::ms_io
