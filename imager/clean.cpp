@@ -57,7 +57,8 @@ CleanResult clean(const VisibilitySource& source, const Transform& transform, co
   CleanResult result{Image(images.dirty.width, images.dirty.height), images.dirty, {}};
   result.report.max_sidelobe = largest_sidelobe(images.psf, beam);
   result.report.cycles = {state_of(result)};
-  CleanResult best = result;
+  Image best_model = result.model;
+  Image best_residual = result.residual;
   std::optional<Ending> end;
   while (!(end = ending(options, result.report.cycles))) {
     const MajorCycle now = result.report.cycles.back();
@@ -77,15 +78,19 @@ CleanResult clean(const VisibilitySource& source, const Transform& transform, co
     result.report.cycles.push_back(state_of(result));
     result.report.cycles.back().cycle_threshold_jy = depth;
     cycle_progress(result.report.cycles.back());
-    if (result.report.cycles.back().peak_residual_jy < best.report.cycles.back().peak_residual_jy) best = result;
-    if (result.report.cycles.back().peak_residual_jy > divergence * best.report.cycles.back().peak_residual_jy) {
-      const CleanReport report = result.report;
-      result = best;
-      result.report.cycles = report.cycles;
+    const std::vector<MajorCycle>& cycles = result.report.cycles;
+    if (cycles.back().peak_residual_jy < cycles[result.report.kept].peak_residual_jy) {
+      result.report.kept = cycles.size() - 1;
+      best_model = result.model;
+      best_residual = result.residual;
+    } else if (cycles.back().peak_residual_jy > divergence * cycles[result.report.kept].peak_residual_jy) {
       end = Ending{CleanStop::diverging, "the residual grew to more than three times its smallest; the best model was kept"};
+      result.model = std::move(best_model);
+      result.residual = std::move(best_residual);
       break;
     }
   }
+  if (end->stop != CleanStop::diverging) result.report.kept = result.report.cycles.size() - 1;
   result.report.stop = end->stop;
   result.report.stop_reason = end->reason;
   return result;

@@ -48,6 +48,9 @@ struct CleanReport {
   std::string stop_reason;
   double max_sidelobe = 0;         ///< of the PSF, outside the fitted beam
   std::vector<MajorCycle> cycles;  ///< [0] is the state before the first
+  std::size_t kept = 0;            ///< the cycle whose model was kept; the last unless CLEAN diverged
+
+  const MajorCycle& final_state() const { return cycles[kept]; }
 };
 
 struct CleanResult {

@@ -144,14 +144,14 @@ GriddingPlan plan_gridding(const GriddingRequest& request) {
   const kernels::KernelFamily& family = kernels::kernel_family(request.kernel);
   check(request, family);
   const Choice choice = choose(request, family);
-  if (!choice.cheapest)
+  if (!choice.cheapest && !request.best_effort)
     throw std::invalid_argument("accuracy " + text("%g", request.accuracy) + " is out of reach of kernel " + family.name +
                                 (request.kernel_width == 0 ? "" : " of width " + std::to_string(request.kernel_width)) +
                                 (request.padding == 0 ? "" : " at padding " + text("%g", request.padding)) + "; it can reach " +
                                 text("%.2g", 1.01 * choice.most_exact->worst_error() + double_rounding) +
                                 " for this image, with width " + std::to_string(choice.most_exact->kernel_u.width()) +
                                 " at padding " + text("%g", choice.most_exact->padding));
-  const Candidate& best = *choice.cheapest;
+  const Candidate& best = choice.cheapest ? *choice.cheapest : *choice.most_exact;
   GriddingPlan plan;
   plan.options.geometry = request.geometry;
   plan.options.nu = best.nu;
@@ -163,7 +163,8 @@ GriddingPlan plan_gridding(const GriddingRequest& request) {
   plan.options.threads = request.threads;
   plan.expected_error = std::sqrt(best.kernel_u.misfit.mean + best.kernel_v.misfit.mean);
   plan.worst_error = best.worst_error();
-  plan.largest_error = (1 + std::sqrt(best.kernel_u.misfit.worst)) * (1 + std::sqrt(best.kernel_v.misfit.worst)) - 1;
+  plan.bound_rms = (1 + std::sqrt(best.kernel_u.misfit.worst_mean)) * (1 + std::sqrt(best.kernel_v.misfit.worst_mean)) - 1;
+  plan.bound_max = (1 + std::sqrt(best.kernel_u.misfit.worst)) * (1 + std::sqrt(best.kernel_v.misfit.worst)) - 1;
   plan.decisions = decisions_of(request, plan, choice.rejected);
   return plan;
 }

@@ -15,6 +15,7 @@ struct GriddingRequest {
   std::string kernel = "least-misfit";  ///< a name of the catalogue
   int kernel_width = 0;                 ///< cells; 0 = chosen
   double padding = 0;                   ///< FFT size over image size, at least 1.02; 0 = chosen
+  bool best_effort = false;             ///< take the most exact kernel when the accuracy is out of reach
   std::uint64_t samples = 0;            ///< visibilities in a pass
   int threads = 1;
 };
@@ -24,7 +25,8 @@ struct GriddingPlan {
   PlaneTransformOptions options;
   double expected_error = 0;  ///< RMS error of image and prediction relative to data with random phases, √(E_u + E_v)
   double worst_error = 0;     ///< the same when all samples lie at the worst position within their cells
-  double largest_error = 0;   ///< strict bound on any pixel's error over Σ w|V| / Σ w, whatever the data
+  double bound_rms = 0;       ///< bound on the RMS error of the image over Σ w|V| / Σ w, whatever the data
+  double bound_max = 0;       ///< bound on any pixel's error over Σ w|V| / Σ w, whatever the data
   Plan decisions;
 };
 

@@ -1,0 +1,53 @@
+#include "imager/extent.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "imager/constants.h"
+
+namespace misfit::imager {
+namespace {
+
+/// 1 − n without cancellation.
+double one_minus_n(double l, double m) {
+  const double r2 = l * l + m * m;
+  return r2 >= 1 ? 1 : r2 / (1 + std::sqrt(1 - r2));
+}
+
+}  // namespace
+
+void UvwExtent::add(const VisibilityBlock& block) {
+  std::size_t i = 0;
+  for (std::size_t row = 0; row < block.rows(); ++row) {
+    double top_hz = 0;
+    double weighted_square_hz = 0;
+    for (const double frequency : block.frequency_hz) {
+      const double w = block.weight[i++];
+      if (w == 0) continue;
+      top_hz = std::max(top_hz, frequency);
+      weight += w;
+      weighted_square_hz += w * frequency * frequency;
+    }
+    if (top_hz == 0) continue;
+    const double* uvw_m = &block.uvw_m[3 * row];
+    const double per_m = top_hz / speed_of_light_m_s;
+    max_abs_u = std::max(max_abs_u, std::abs(uvw_m[0]) * per_m);
+    max_abs_v = std::max(max_abs_v, std::abs(uvw_m[1]) * per_m);
+    max_abs_w = std::max(max_abs_w, std::abs(uvw_m[2]) * per_m);
+    weighted_w_square += weighted_square_hz * (uvw_m[2] / speed_of_light_m_s) * (uvw_m[2] / speed_of_light_m_s);
+  }
+}
+
+NeglectedPhase neglected_w_phase(const UvwExtent& extent, const ImageGeometry& geometry) {
+  const double corner = one_minus_n(geometry.l(0), geometry.m(0));
+  double square = 0;
+  for (int row = 0; row < geometry.height; ++row)
+    for (int column = 0; column < geometry.width; ++column) {
+      const double x = one_minus_n(geometry.l(column), geometry.m(row));
+      square += x * x;
+    }
+  const double rms_w = extent.weight == 0 ? 0 : std::sqrt(extent.weighted_w_square / extent.weight);
+  return {2 * pi * extent.max_abs_w * corner, 2 * pi * rms_w * std::sqrt(square / static_cast<double>(geometry.pixels()))};
+}
+
+}  // namespace misfit::imager

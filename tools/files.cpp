@@ -1,0 +1,49 @@
+#include "tools/files.h"
+
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <stdexcept>
+
+namespace misfit::tools {
+
+namespace fs = std::filesystem;
+
+void check_writable_folder(const std::string& path) {
+  fs::path folder = fs::path(path).parent_path();
+  if (folder.empty()) folder = ".";
+  if (!fs::is_directory(folder)) throw std::runtime_error("output folder " + folder.string() + " does not exist");
+  if (access(folder.c_str(), W_OK | X_OK) != 0)
+    throw std::runtime_error("output folder " + folder.string() + " cannot be written: " + std::strerror(errno));
+}
+
+void write_file(const std::string& path, const std::string& content) {
+  const std::string part = path + ".part";
+  std::ofstream file(part, std::ios::binary);
+  file.write(content.data(), static_cast<std::streamsize>(content.size()));
+  file.close();
+  if (!file) {
+    std::remove(part.c_str());
+    throw std::runtime_error("cannot write " + path + ": " + std::strerror(errno));
+  }
+  std::error_code error;
+  fs::rename(part, path, error);
+  if (error) {
+    std::remove(part.c_str());
+    throw std::runtime_error("cannot write " + path + ": " + error.message());
+  }
+}
+
+std::string read_file(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  std::ostringstream content;
+  content << file.rdbuf();
+  if (!file) throw std::runtime_error("cannot read " + path);
+  return content.str();
+}
+
+}  // namespace misfit::tools

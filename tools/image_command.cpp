@@ -1,0 +1,246 @@
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+
+#include "imager/parallel.h"
+#include "tools/command.h"
+#include "tools/files.h"
+#include "tools/image_options.h"
+#include "tools/image_products.h"
+#include "tools/interrupt.h"
+#include "tools/load.h"
+#include "tools/numbers.h"
+#include "tools/pictures.h"
+#include "tools/progress.h"
+#include "tools/report_page.h"
+#include "tools/run_report.h"
+
+namespace misfit::tools {
+namespace {
+
+/// One run of `misfit image`, from options to files. The steps are called in the order in which they stand here.
+class ImageRun {
+ public:
+  ImageRun(const ImageOptions& options, std::string command_line, nlohmann::json option_values)
+      : o_(options), threads_(options.threads == 0 ? imager::available_threads() : options.threads), progress_(options.quiet) {
+    report_.command_line = std::move(command_line);
+    report_.options = std::move(option_values);
+    report_.times = &times_;
+  }
+
+  void run() {
+    open();
+    load();
+    make_dirty();
+    if (o_.verify > 0) verify();
+    fit_beams();
+    if (o_.niter > 0) clean();
+    write_images();
+    write_report();
+    summarise();
+    if (cleaned_ && cleaned_->report.stop == imager::CleanStop::user) throw Interrupted();
+  }
+
+ private:
+  imager::Progress progress() {
+    return [this](std::uint64_t done, std::uint64_t total) { progress_.update(done, total); };
+  }
+  void decide(const std::string& item, const std::string& decision, const std::string& because) {
+    report_.plan.push_back({item, decision, because});
+  }
+  void warn(const std::string& sentence) {
+    report_.warnings.push_back(sentence);
+    progress_.say("warning: " + sentence);
+  }
+
+  void open() {
+    const imager::StageTimer timer(times_, "open");
+    check_writable_folder(o_.imagename);
+    set_ = std::make_unique<ms_io::MeasurementSet>(o_.vis, o_.selection, o_.datacolumn);
+    geometry_ = geometry_of(o_, set_->observation().phase_centre);
+  }
+
+  void load() {
+    progress_.begin("read");
+    loaded_ = load_visibilities(*set_, progress(), times_);
+    report_.counts = loaded_.counts;
+    progress_.end();
+    report_.plan.insert(report_.plan.end(), loaded_.decisions.begin(), loaded_.decisions.end());
+    phase_ = imager::neglected_w_phase(loaded_.extent, geometry_);
+    const std::string phase = significant(phase_.max_rad, 2) + " rad";
+    decide("w term", "left out", "the largest phase it turns at the image's corner is " + phase);
+    if (phase_.max_rad > (o_.accuracy == 0 ? 1e-6 : o_.accuracy))
+      warn("w is neglected although its phase reaches " + phase + " at the image's corner, above the accuracy of " +
+           significant(o_.accuracy, 2) + ": the image's error there is of that size");
+  }
+
+  void make_dirty() {
+    imager::GriddingRequest request;
+    request.geometry = geometry_;
+    request.accuracy = o_.accuracy;
+    request.kernel = o_.kernel;
+    request.kernel_width = o_.kernel_width;
+    request.padding = o_.padding;
+    request.samples = loaded_.counts.used;
+    request.threads = threads_;
+    progress_.begin("dirty image and PSF");
+    made_ = imager::make_accurate_images(*loaded_.source, request, progress(), times_);
+    progress_.end();
+    report_.plan.insert(report_.plan.end(), made_.plan.decisions.begin(), made_.plan.decisions.end());
+    report_.accuracy = o_.accuracy;
+    report_.gridding = &made_.plan;
+    account_for_edges();
+    image_rms_ = imager::root_mean_square(made_.images.dirty);
+    theory_ = imager::theoretical_error(made_.plan, made_.images.sums, image_rms_, phase_);
+    report_.theory = &theory_;
+    if (!made_.promise_kept)
+      warn("the accuracy of " + significant(o_.accuracy, 2) +
+           " is out of reach: the image is weak against its data, and its expected error is " +
+           significant(theory_.expected_rms, 2));
+  }
+
+  /// Samples that the pixel size cannot represent, and the pixel size that could.
+  void account_for_edges() {
+    const imager::SampleSums& sums = made_.images.sums;
+    report_.counts.outside_grid = sums.outside_grid;
+    report_.counts.used = sums.used;
+    if (sums.outside_grid == 0) return;
+    const double reach = std::max(loaded_.extent.max_abs_u, loaded_.extent.max_abs_v);
+    const ScaledUnit unit = angle_unit(0.5 / reach);
+    warn(grouped(static_cast<long long>(sums.outside_grid)) + " samples lie beyond 1/(2 cell) and were left out; a cell of " +
+         significant(std::floor(0.5 / reach / unit.size * 1e4) / 1e4, 4) + unit.name + " would keep them");
+  }
+
+  void verify() {
+    const imager::StageTimer timer(times_, "verify");
+    progress_.begin("verify");
+    measured_ =
+        imager::measure_error(*loaded_.source, *made_.transform, geometry_, made_.images, o_.verify, threads_, progress());
+    progress_.end();
+    report_.measured = &measured_;
+  }
+
+  void fit_beams() {
+    const imager::StageTimer timer(times_, "fit beam");
+    try {
+      beam_ = imager::fit_beam(made_.images.psf, geometry_.cell_rad);
+      report_.beam = &beam_;
+      quadrant_beam_ = imager::fit_beam(made_.images.psf, geometry_.cell_rad, imager::BeamRegion::quadrant);
+      report_.quadrant_beam = &quadrant_beam_;
+    } catch (const std::runtime_error& error) {
+      if (o_.niter > 0) throw;
+      warn(error.what());
+    }
+  }
+
+  void clean() {
+    imager::CleanOptions options = clean_options(o_, threads_);
+    options.stop_requested = interrupted;
+    imager::Image point(geometry_.width, geometry_.height);
+    point.at(geometry_.centre_row(), geometry_.centre_column()) = 1;
+    const imager::Image beam = imager::convolve_with_beam(point, beam_, geometry_.cell_rad, threads_);
+    progress_.begin("CLEAN", true);
+    cleaned_ = std::make_unique<imager::CleanResult>(imager::clean(
+        *loaded_.source, *made_.transform, made_.images, beam, options, progress(),
+        [this](const imager::MajorCycle& cycle) {
+          progress_.say("  " + grouped(cycle.iterations) + " components, peak residual " + flux(cycle.peak_residual_jy) +
+                        ", noise " + flux(cycle.rms_jy));
+        },
+        times_));
+    progress_.end();
+    report_.clean = &cleaned_->report;
+    if (cleaned_->report.stop == imager::CleanStop::diverging) warn("CLEAN diverged: " + cleaned_->report.stop_reason);
+  }
+
+  void write_images() {
+    products_ = std::make_unique<ImageProducts>(o_.imagename, geometry_, set_->observation(), o_.accuracy);
+    products_->set_history(report_.command_line);
+    products_->set_cards(error_cards(report_));
+    if (report_.beam != nullptr) products_->set_beam(beam_);
+    products_->add("psf", "PSF", "Jy/beam", std::move(made_.images.psf));
+    if (!cleaned_) {
+      products_->add("residual", "Dirty image", "Jy/beam", std::move(made_.images.dirty));
+    } else {
+      const imager::StageTimer timer(times_, "restore");
+      imager::Image restored = imager::convolve_with_beam(cleaned_->model, beam_, geometry_.cell_rad, threads_);
+      for (std::size_t i = 0; i < restored.pixel.size(); ++i) restored.pixel[i] += cleaned_->residual.pixel[i];
+      products_->add("residual", "Residual", "Jy/beam", std::move(cleaned_->residual));
+      products_->add("model", "Model", "Jy/pixel", std::move(cleaned_->model));
+      products_->add("image", "Restored image", "Jy/beam", std::move(restored));
+    }
+    const imager::StageTimer timer(times_, "write images");
+    products_->write();
+  }
+
+  void write_report() {
+    std::vector<PagePicture> pictures;
+    {
+      const imager::StageTimer timer(times_, "draw pictures");
+      const std::string failure = products_->draw(pictures);
+      if (!failure.empty()) warn(failure);
+    }
+    report_.wall_clock_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+    const nlohmann::json json = report_json(report_);
+    write_file(o_.imagename + ".report.json", json.dump(2) + "\n");
+    write_file(o_.imagename + ".report.html", report_page(json, pictures));
+  }
+
+  static std::string flux(double jy) {
+    const ScaledUnit unit = scaled_unit(jy, "Jy/beam");
+    return significant(jy / unit.size, 3) + " " + unit.name;
+  }
+
+  void summarise() const {
+    if (o_.quiet) return;
+    std::printf("%s of %s samples imaged; expected error %s", grouped(static_cast<long long>(report_.counts.used)).c_str(),
+                grouped(static_cast<long long>(report_.counts.samples_read)).c_str(),
+                significant(theory_.expected_rms, 2).c_str());
+    if (report_.measured != nullptr)
+      std::printf(", measured %s (prediction %s)", significant(measured_.rms, 2).c_str(),
+                  significant(measured_.predict_rms, 2).c_str());
+    std::printf("\n");
+    if (cleaned_)
+      std::printf("%s components, model flux %s; %s\n", grouped(cleaned_->report.iterations).c_str(),
+                  significant(cleaned_->report.final_state().model_flux_jy, 4).c_str(), cleaned_->report.stop_reason.c_str());
+    std::printf("%s.report.html\n", o_.imagename.c_str());
+  }
+
+  const ImageOptions& o_;
+  int threads_;
+  ProgressLine progress_;
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+  imager::StageTimes times_;
+  RunReport report_;
+
+  std::unique_ptr<ms_io::MeasurementSet> set_;
+  imager::ImageGeometry geometry_;
+  LoadedVisibilities loaded_;
+  imager::NeglectedPhase phase_;
+  imager::AccurateImages made_;
+  double image_rms_ = 0;
+  imager::TheoreticalError theory_;
+  imager::MeasuredError measured_;
+  imager::Beam beam_;
+  imager::Beam quadrant_beam_;
+  std::unique_ptr<imager::CleanResult> cleaned_;
+  std::unique_ptr<ImageProducts> products_;
+};
+
+}  // namespace
+
+void add_image_command(CLI::App& program, const std::string& command_line) {
+  CLI::App* command = program.add_subcommand("image", "Image and CLEAN a MeasurementSet");
+  const auto options = std::make_shared<ImageOptions>();
+  declare(*command, *options);
+  command->set_config("--config", "", "Read options from an INI file; those given here win");
+  command->callback([command, options, command_line] {
+    const bool accuracy_given = command->get_option("--accuracy")->count() > 0;
+    if (!accuracy_given && options->kernel_width != 0 && options->padding != 0) options->accuracy = 0;
+    check(*options);
+    ImageRun(*options, command_line, option_values(*command)).run();
+    write_file(options->imagename + ".last.ini", command->config_to_str(true, false));
+  });
+}
+
+}  // namespace misfit::tools

@@ -1,0 +1,112 @@
+#include "tools/image_options.h"
+
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+
+#include "imager/gridding_plan.h"
+#include "tools/quantity.h"
+
+namespace misfit::tools {
+namespace {
+
+[[noreturn]] void refuse(const std::string& option, const std::string& value, const std::string& expected) {
+  throw std::invalid_argument("--" + option + " " + value + ": expected " + expected);
+}
+
+std::string text(double value) {
+  char buffer[32];
+  std::snprintf(buffer, sizeof buffer, "%g", value);
+  return buffer;
+}
+
+void check_image(const ImageOptions& o) {
+  constexpr int largest = 65536;
+  for (const int size : o.imsize)
+    if (size < 1 || size > largest) refuse("imsize", std::to_string(size), "1 to 65536 pixels");
+  if (!(parse_angle_rad(o.cell) > 0)) refuse("cell", o.cell, "an angle above 0");
+  if (parse_angle_rad(o.cell) > 0.5) refuse("cell", o.cell, "less than 0.5 rad");
+}
+
+void check_clean(const ImageOptions& o) {
+  if (o.niter < 0) refuse("niter", std::to_string(o.niter), "0 or more");
+  if (!(o.gain > 0 && o.gain <= 1)) refuse("gain", text(o.gain), "more than 0 and at most 1");
+  if (!(parse_flux_jy(o.threshold) >= 0)) refuse("threshold", o.threshold, "0 or more");
+  if (!(o.nsigma >= 0)) refuse("nsigma", text(o.nsigma), "0 or more");
+  if (!(o.cyclefactor > 0)) refuse("cyclefactor", text(o.cyclefactor), "more than 0");
+  if (!(o.minpsffraction > 0 && o.minpsffraction <= 1))
+    refuse("minpsffraction", text(o.minpsffraction), "more than 0 and at most 1");
+  if (!(o.maxpsffraction >= o.minpsffraction && o.maxpsffraction <= 1))
+    refuse("maxpsffraction", text(o.maxpsffraction), "minpsffraction to 1");
+  if (o.nmajor < -1) refuse("nmajor", std::to_string(o.nmajor), "-1 (no limit) or more");
+}
+
+}  // namespace
+
+void declare(CLI::App& command, ImageOptions& o) {
+  command.add_option("--vis", o.vis, "MeasurementSet; opened read-only")->required();
+  command.add_option("--imagename", o.imagename, "Names of the output files begin with this")->required();
+  command.add_option("--imsize", o.imsize, "Width, or width and height, in pixels")->required()->expected(1, 2);
+  command.add_option("--cell", o.cell, "Size of a pixel: 0.2arcsec, 3mas, …")->required();
+  command.add_option("--field", o.selection.field, "Fields, in CASA's selection syntax; all when empty");
+  command.add_option("--spw", o.selection.spectral_window,
+                     "Spectral windows and channels, in CASA's selection syntax; all when empty");
+  command.add_option("--datacolumn", o.datacolumn, "data, corrected, model, or a column's name");
+  command.add_option("--weighting", o.weighting, "Weighting")->check(CLI::IsMember({"natural"}));
+  command.add_option("--kernel", o.kernel, "Gridding function: least-misfit or spheroidal");
+  command.add_option("--accuracy", o.accuracy,
+                     "Largest error of the whole image relative to the direct transform, RMS over RMS");
+  command.add_option("--kernel-width", o.kernel_width, "Cells a visibility touches per axis; chosen when 0");
+  command.add_option("--padding", o.padding, "FFT size over image size; chosen when 0");
+  command.add_option("--niter", o.niter, "CLEAN components to find at most; 0 makes the dirty image");
+  command.add_option("--gain", o.gain, "Part of a peak that a component takes");
+  command.add_option("--threshold", o.threshold, "Stop when the peak residual reaches this flux density");
+  command.add_option("--nsigma", o.nsigma, "Stop when it reaches this many times the noise; 0 = never");
+  command.add_option("--cyclefactor", o.cyclefactor, "Minor cycles go down to the peak times the largest sidelobe times this");
+  command.add_option("--minpsffraction", o.minpsffraction, "… at most this deep, as a part of the peak");
+  command.add_option("--maxpsffraction", o.maxpsffraction, "… and at least this deep");
+  command.add_option("--nmajor", o.nmajor, "Major cycles at most; -1 = no limit");
+  command.add_option("--verify", o.verify, "Compare this many random pixels and visibilities with the direct transform")
+      ->check(CLI::NonNegativeNumber);
+  command.add_option("--threads", o.threads, "Threads; 0 means all cores")->check(CLI::NonNegativeNumber);
+  command.add_flag("--quiet", o.quiet, "Print nothing but errors");
+}
+
+void check(const ImageOptions& o) {
+  check_image(o);
+  check_clean(o);
+  if (!(o.accuracy >= 0 && o.accuracy < 1)) refuse("accuracy", text(o.accuracy), "a number above 0 and below 1");
+}
+
+imager::ImageGeometry geometry_of(const ImageOptions& o, const imager::SkyDirection& phase_centre) {
+  return {o.imsize.front(), o.imsize.back(), parse_angle_rad(o.cell), phase_centre};
+}
+
+imager::CleanOptions clean_options(const ImageOptions& o, int threads) {
+  imager::CleanOptions clean;
+  clean.max_iterations = o.niter;
+  clean.gain = o.gain;
+  clean.threshold_jy = parse_flux_jy(o.threshold);
+  clean.nsigma = o.nsigma;
+  clean.cycle_factor = o.cyclefactor;
+  clean.min_psf_fraction = o.minpsffraction;
+  clean.max_psf_fraction = o.maxpsffraction;
+  clean.max_major_cycles = o.nmajor;
+  clean.threads = threads;
+  return clean;
+}
+
+nlohmann::json option_values(const CLI::App& command) {
+  nlohmann::json values = nlohmann::json::object();
+  for (const CLI::Option* option : command.get_options()) {
+    if (option->get_lnames().empty() || !option->get_configurable()) continue;
+    std::string value = option->get_default_str();
+    if (option->count() > 0) {
+      value.clear();
+      for (const std::string& part : option->results()) value += (value.empty() ? "" : " ") + part;
+    }
+    values[option->get_lnames().front()] = value;
+  }
+  return values;
+}
+
+}  // namespace misfit::tools

@@ -1,0 +1,52 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <vector>
+
+#include "imager/clean.h"
+#include "imager/geometry.h"
+#include "ms_io/measurement_set.h"
+
+namespace misfit::tools {
+
+/// Options of `misfit image` as typed; names and meaning are tclean's where the meaning is the same.
+struct ImageOptions {
+  std::string vis;
+  std::string imagename;
+  std::vector<int> imsize;  ///< width, or width and height
+  std::string cell;
+  ms_io::Selection selection;
+  std::string datacolumn = "data";
+  std::string weighting = "natural";
+  std::string kernel = "least-misfit";
+  double accuracy = 1e-6;
+  int kernel_width = 0;
+  double padding = 0;
+  int niter = 0;
+  double gain = 0.1;
+  std::string threshold = "0Jy";
+  double nsigma = 0;
+  double cyclefactor = 1;
+  double minpsffraction = 0.05;
+  double maxpsffraction = 0.8;
+  int nmajor = -1;
+  int verify = 0;
+  int threads = 0;
+  bool quiet = false;
+};
+
+/// Declares the options on `command`.
+void declare(CLI::App& command, ImageOptions& options);
+
+/// Throws std::invalid_argument that names the option, its value and what was expected.
+void check(const ImageOptions& options);
+
+imager::ImageGeometry geometry_of(const ImageOptions& options, const imager::SkyDirection& phase_centre);
+imager::CleanOptions clean_options(const ImageOptions& options, int threads);
+
+/// Every option of `command` with the value in force.
+nlohmann::json option_values(const CLI::App& command);
+
+}  // namespace misfit::tools

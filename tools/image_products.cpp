@@ -1,0 +1,58 @@
+#include "tools/image_products.h"
+
+#include "tools/files.h"
+#include "tools/pictures.h"
+
+namespace misfit::tools {
+
+std::vector<imager::HeaderCard> error_cards(const RunReport& report) {
+  std::vector<imager::HeaderCard> cards;
+  if (report.accuracy != 0) cards.push_back({"ERRASKED", report.accuracy, "accuracy asked: RMS error over image RMS"});
+  if (report.theory != nullptr) {
+    cards.push_back({"ERREXPEC", report.theory->expected_rms, "expected RMS error over image RMS"});
+    cards.push_back({"ERRBOUND", report.theory->bound_rms, "bound on it, whatever the data"});
+    cards.push_back({"ERRBMAX", report.theory->bound_max, "bound on any pixel's error over image RMS"});
+  }
+  if (report.measured != nullptr) {
+    cards.push_back({"ERRMEAS", report.measured->rms, "measured RMS error over image RMS"});
+    cards.push_back({"ERRMMAX", report.measured->max, "largest measured error over image RMS"});
+    cards.push_back({"ERRPRED", report.measured->predict_rms, "measured RMS error of prediction"});
+  }
+  return cards;
+}
+
+ImageProducts::ImageProducts(std::string imagename, const imager::ImageGeometry& geometry,
+                             const imager::Observation& observation, double accuracy)
+    : imagename_(std::move(imagename)),
+      format_(accuracy != 0 && accuracy < 1e-7 ? imager::PixelFormat::float64 : imager::PixelFormat::float32) {
+  common_.geometry = geometry;
+  common_.observation = observation;
+}
+
+void ImageProducts::set_beam(const imager::Beam& beam) {
+  common_.has_beam = true;
+  common_.beam = beam;
+}
+
+void ImageProducts::add(const std::string& kind, const std::string& title, const std::string& unit, imager::Image image) {
+  Product product{kind, title, common_};
+  product.image.unit = unit;
+  product.image.image = std::move(image);
+  products_.push_back(std::move(product));
+}
+
+void ImageProducts::write() const {
+  for (const Product& product : products_) imager::write_fits(product.image, path(product, "fits"), format_);
+}
+
+std::string ImageProducts::draw(std::vector<PagePicture>& pictures) const {
+  std::vector<Picture> wanted;
+  for (auto product = products_.rbegin(); product != products_.rend(); ++product)
+    wanted.push_back({&product->image, product->title, path(*product, "png")});
+  std::string failure = draw_pictures(wanted);
+  if (failure.empty())
+    for (const Picture& picture : wanted) pictures.push_back({picture.title, read_file(picture.path)});
+  return failure;
+}
+
+}  // namespace misfit::tools

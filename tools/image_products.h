@@ -1,0 +1,48 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "imager/fits_image.h"
+#include "tools/report_page.h"
+#include "tools/run_report.h"
+
+namespace misfit::tools {
+
+/// Header cards for the errors that are known.
+std::vector<imager::HeaderCard> error_cards(const RunReport& report);
+
+/// The images of a run, as files and as pictures. What is set applies to images added afterwards.
+class ImageProducts {
+ public:
+  /// Files are 64-bit when the accuracy asked is below 1e-7, 32-bit otherwise.
+  ImageProducts(std::string imagename, const imager::ImageGeometry& geometry, const imager::Observation& observation,
+                double accuracy);
+
+  void set_history(const std::string& line) { common_.history = {line}; }
+  void set_cards(std::vector<imager::HeaderCard> cards) { common_.cards = std::move(cards); }
+  void set_beam(const imager::Beam& beam);
+  void add(const std::string& kind, const std::string& title, const std::string& unit, imager::Image image);
+
+  /// Writes <imagename>.<kind>.fits for each.
+  void write() const;
+  /// Draws <imagename>.<kind>.png for each, the last added first in `pictures`. Returns why there are none, or an empty string.
+  std::string draw(std::vector<PagePicture>& pictures) const;
+
+ private:
+  struct Product {
+    std::string kind;
+    std::string title;
+    imager::SkyImage image;
+  };
+  std::string path(const Product& product, const std::string& extension) const {
+    return imagename_ + "." + product.kind + "." + extension;
+  }
+
+  std::string imagename_;
+  imager::PixelFormat format_;
+  imager::SkyImage common_;
+  std::vector<Product> products_;
+};
+
+}  // namespace misfit::tools

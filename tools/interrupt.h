@@ -1,0 +1,16 @@
+#pragma once
+
+#include <stdexcept>
+
+namespace misfit::tools {
+
+/// Thrown where work ends because the user pressed Ctrl-C or asked the process to terminate.
+struct Interrupted : std::runtime_error {
+  Interrupted() : std::runtime_error("stopped by the user") {}
+};
+
+/// From here on the first SIGINT or SIGTERM only sets a flag; a second ends the process at once.
+void catch_interrupts();
+bool interrupted();
+
+}  // namespace misfit::tools

@@ -1,0 +1,45 @@
+#include <cstdio>
+#include <exception>
+#include <stdexcept>
+
+#include "tools/command.h"
+#include "tools/interrupt.h"
+#include "tools/version.h"
+
+namespace {
+
+enum ExitCode { done = 0, unusable_data = 1, wrong_usage = 2, stopped_by_user = 130 };
+
+int fail(const char* message, ExitCode code) {
+  std::fprintf(stderr, "misfit: %s\n", message);
+  return code;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  using namespace misfit::tools;
+  catch_interrupts();
+  CLI::App program("misfit images radio-interferometry MeasurementSets with least-misfit gridding functions", "misfit");
+  program.set_version_flag("--version", "misfit " + std::string(version));
+  program.require_subcommand(1);
+  program.option_defaults()->always_capture_default();
+  std::string line = "misfit";
+  for (int i = 1; i < argc; ++i) line += std::string(" ") + argv[i];
+  add_image_command(program, line);
+  add_predict_command(program);
+  add_simulate_command(program);
+  try {
+    program.parse(argc, argv);
+    return done;
+  } catch (const CLI::ParseError& error) {
+    if (error.get_exit_code() == 0) return program.exit(error);
+    return fail(error.what(), wrong_usage);
+  } catch (const Interrupted& error) {
+    return fail(error.what(), stopped_by_user);
+  } catch (const std::invalid_argument& error) {
+    return fail(error.what(), wrong_usage);
+  } catch (const std::exception& error) {
+    return fail(error.what(), unusable_data);
+  }
+}

@@ -1,0 +1,131 @@
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <memory>
+
+#include "imager/direct_transform.h"
+#include "imager/extent.h"
+#include "imager/fits_image.h"
+#include "imager/gridding_plan.h"
+#include "imager/parallel.h"
+#include "ms_io/measurement_set.h"
+#include "ms_io/model_writer.h"
+#include "tools/command.h"
+#include "tools/numbers.h"
+#include "tools/progress.h"
+#include "tools/sky.h"
+
+namespace misfit::tools {
+namespace {
+
+struct PredictOptions {
+  std::string vis;
+  std::string model;
+  std::string components;
+  std::string column = "MODEL_DATA";
+  ms_io::Selection selection;
+  double accuracy = 1e-6;
+  std::string kernel = "least-misfit";
+  int threads = 0;
+  bool quiet = false;
+};
+
+/// How far apart two centres may lie, as a part of a pixel: less than what a transform to 1e-7 notices.
+constexpr double same_centre_pixels = 1e-3;
+
+void check_centre(const imager::SkyImage& model, const imager::SkyDirection& centre, const std::string& path) {
+  const imager::SkyDirection& has = model.geometry.phase_centre;
+  const imager::DirectionCosines offset = imager::direction_cosines(has, centre);
+  if (has.frame != centre.frame || std::hypot(offset.l, offset.m) > same_centre_pixels * model.geometry.cell_rad)
+    throw std::runtime_error(path + " is centred on " + sexagesimal(has) + " (" + has.frame +
+                             "), expected the phase centre of the visibilities, " + sexagesimal(centre) + " (" + centre.frame +
+                             ")");
+}
+
+/// The model as an operator from coordinates to visibilities.
+struct Model {
+  std::unique_ptr<imager::Transform> transform;  // outlives the prediction
+  std::unique_ptr<imager::Prediction> prediction;
+  ms_io::Predict predict;
+};
+
+void warn_of_w(const ms_io::MeasurementSet& set, const imager::ImageGeometry& geometry, double accuracy,
+               ProgressLine& progress) {
+  imager::UvwExtent extent;
+  const auto stream = set.open();
+  while (const auto block = stream->next()) extent.add(*block);
+  const double phase = imager::neglected_w_phase(extent, geometry).max_rad;
+  if (phase > accuracy)
+    progress.say("warning: w is neglected; its largest phase error is " + significant(phase, 2) +
+                 " rad, above the accuracy of " + significant(accuracy, 2));
+}
+
+Model image_model(const PredictOptions& o, const ms_io::MeasurementSet& set, int threads, ProgressLine& progress) {
+  const imager::SkyImage image = imager::read_fits(o.model);
+  check_centre(image, set.observation().phase_centre, o.model);
+  if (!std::all_of(image.image.pixel.begin(), image.image.pixel.end(), [](double x) { return std::isfinite(x); }))
+    throw std::runtime_error(o.model + " has pixels that are not finite; a model needs a number in each");
+  warn_of_w(set, image.geometry, o.accuracy, progress);
+  imager::GriddingRequest request;
+  request.geometry = image.geometry;
+  request.accuracy = o.accuracy;
+  request.kernel = o.kernel;
+  request.samples = set.samples();
+  request.threads = threads;
+  Model model;
+  model.transform = imager::make_plane_transform(imager::plan_gridding(request).options);
+  model.prediction = model.transform->predict(image.image);
+  model.predict = [prediction = model.prediction.get()](const imager::SampleCoordinates& at) { return prediction->at(at); };
+  return model;
+}
+
+Model component_model(const PredictOptions& o, const ms_io::MeasurementSet& set, int threads) {
+  Model model;
+  model.predict = [sources = read_component_list(o.components, set.observation().phase_centre),
+                   threads](const imager::SampleCoordinates& at) { return imager::predict_sources(sources, at, threads); };
+  return model;
+}
+
+void predict(const PredictOptions& o) {
+  if (o.model.empty() == o.components.empty()) throw std::invalid_argument("expected either --model or --components");
+  ProgressLine progress(o.quiet);
+  const int threads = o.threads == 0 ? imager::available_threads() : o.threads;
+  Model model;
+  {
+    const ms_io::MeasurementSet set(o.vis, o.selection, "DATA");
+    model = o.model.empty() ? component_model(o, set, threads) : image_model(o, set, threads, progress);
+  }
+  progress.begin("predict");
+  const ms_io::ModelWriteReport report =
+      ms_io::write_model(o.vis, o.selection, o.column, model.predict,
+                         [&](std::uint64_t done, std::uint64_t total) { progress.update(done, total); });
+  progress.end();
+  if (o.quiet) return;
+  std::printf("%s: %s visibilities in %s rows written to %s\n", o.vis.c_str(),
+              grouped(static_cast<long long>(report.samples)).c_str(), grouped(static_cast<long long>(report.rows)).c_str(),
+              o.column.c_str());
+  if (report.nonfinite_uvw_rows > 0)
+    std::printf("%s rows have UVW that are not finite and got 0\n",
+                grouped(static_cast<long long>(report.nonfinite_uvw_rows)).c_str());
+}
+
+}  // namespace
+
+void add_predict_command(CLI::App& program) {
+  CLI::App* command = program.add_subcommand("predict", "Write the visibilities of a model into a column of a MeasurementSet");
+  const auto o = std::make_shared<PredictOptions>();
+  command->add_option("--vis", o->vis, "MeasurementSet; only the column is written")->required();
+  command->add_option("--model", o->model, "FITS image in Jy/pixel, centred on the phase centre");
+  command->add_option("--components", o->components,
+                      "CSV file with ra_deg,dec_deg,flux_jy or l_arcsec,m_arcsec,flux_jy, summed directly with w");
+  command->add_option("--column", o->column, "Column to write; made when it does not exist");
+  command->add_option("--field", o->selection.field, "Fields, in CASA's selection syntax");
+  command->add_option("--spw", o->selection.spectral_window, "Spectral windows and channels, in CASA's selection syntax");
+  command->add_option("--accuracy", o->accuracy, "Relative accuracy of the visibilities")->check(CLI::Range(1e-14, 0.5));
+  command->add_option("--kernel", o->kernel, "Gridding function");
+  command->add_option("--threads", o->threads, "Threads; 0 means all cores")->check(CLI::NonNegativeNumber);
+  command->add_flag("--quiet", o->quiet, "Print nothing");
+  command->callback([o] { predict(*o); });
+}
+
+}  // namespace misfit::tools

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <string>
+
+namespace misfit::tools {
+
+/// Says on stderr what a run is doing: on a terminal one live line with percentage and time left, elsewhere a plain line when a
+/// stage ends. Throws Interrupted from update() once the user asked to stop, unless a stage finishes by itself.
+class ProgressLine {
+ public:
+  explicit ProgressLine(bool quiet);
+  ~ProgressLine();
+
+  void begin(const std::string& stage, bool stops_itself = false);
+  void update(std::uint64_t done, std::uint64_t total);
+  void end();
+  /// A line of its own, whatever stage is running.
+  void say(const std::string& line);
+
+ private:
+  double elapsed_s() const;
+  void clear();
+
+  bool quiet_;
+  bool live_;
+  bool open_ = false;
+  bool stops_itself_ = false;
+  std::string stage_;
+  std::chrono::steady_clock::time_point start_;
+  std::chrono::steady_clock::time_point drawn_;
+};
+
+}  // namespace misfit::tools

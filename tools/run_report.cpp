@@ -1,0 +1,131 @@
+#include "tools/run_report.h"
+
+#include <sys/resource.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "tools/version.h"
+
+namespace misfit::tools {
+namespace {
+
+using nlohmann::json;
+
+constexpr double arcsec = std::numbers::pi / 180 / 3600;
+
+/// JSON has no number for what is not finite.
+json number(double value) {
+  return std::isfinite(value) ? json(value) : json();
+}
+
+json plan_json(const imager::Plan& plan) {
+  json list = json::array();
+  for (const imager::Decision& d : plan) list.push_back({{"item", d.item}, {"decision", d.decision}, {"because", d.because}});
+  return list;
+}
+
+json axis_json(const std::string& axis, const kernels::Kernel& kernel, int pixels, int fft_size) {
+  return {{"axis", axis}, {"width", kernel.width()}, {"x0", kernel.x0}, {"padding", static_cast<double>(fft_size) / pixels}};
+}
+
+json kernel_json(const imager::GriddingPlan* gridding) {
+  if (gridding == nullptr) return nullptr;
+  const imager::PlaneTransformOptions& o = gridding->options;
+  json kernel = axis_json("u", o.kernel_u, o.geometry.width, o.nu);
+  kernel.erase("axis");
+  kernel["name"] = o.kernel_u.name;
+  kernel["evaluation"] = "polynomial of degree " + std::to_string(o.kernel_u.polynomial.degree());
+  kernel["axes"] = {axis_json("u", o.kernel_u, o.geometry.width, o.nu), axis_json("v", o.kernel_v, o.geometry.height, o.nv)};
+  return kernel;
+}
+
+json error_json(const RunReport& r) {
+  json error = {{"requested", r.accuracy == 0 ? json() : json(r.accuracy)},
+                {"expected_rms", nullptr},
+                {"bound_rms", nullptr},
+                {"bound_max", nullptr},
+                {"measured_rms", nullptr},
+                {"measured_max", nullptr},
+                {"measured_predict_rms", nullptr}};
+  if (r.theory != nullptr) {
+    error["expected_rms"] = number(r.theory->expected_rms);
+    error["bound_rms"] = number(r.theory->bound_rms);
+    error["bound_max"] = number(r.theory->bound_max);
+  }
+  if (r.measured != nullptr) {
+    error["measured_rms"] = number(r.measured->rms);
+    error["measured_max"] = number(r.measured->max);
+    error["measured_predict_rms"] = number(r.measured->predict_rms);
+  }
+  return error;
+}
+
+json beam_json(const imager::Beam* beam) {
+  if (beam == nullptr) return nullptr;
+  return {{"major_arcsec", beam->major_rad / arcsec},
+          {"minor_arcsec", beam->minor_rad / arcsec},
+          {"pa_deg", beam->position_angle_rad * 180 / std::numbers::pi}};
+}
+
+json cycle_json(const imager::MajorCycle& cycle) {
+  return {{"iterations", cycle.iterations},
+          {"peak_residual_jy", number(cycle.peak_residual_jy)},
+          {"rms_jy", number(cycle.rms_jy)},
+          {"model_flux_jy", number(cycle.model_flux_jy)},
+          {"cycle_threshold_jy", number(cycle.cycle_threshold_jy)}};
+}
+
+json clean_json(const imager::CleanReport* clean) {
+  if (clean == nullptr) return nullptr;
+  json log = json::array();
+  for (const imager::MajorCycle& cycle : clean->cycles) log.push_back(cycle_json(cycle));
+  json report = cycle_json(clean->final_state());
+  report.erase("cycle_threshold_jy");
+  report["iterations"] = clean->iterations;
+  report["major_cycles"] = clean->cycles.size() - 1;
+  report["stop_code"] = static_cast<int>(clean->stop);
+  report["stop_reason"] = clean->stop_reason;
+  report["max_sidelobe"] = number(clean->max_sidelobe);
+  report["major_cycles_log"] = log;
+  return report;
+}
+
+json counts_json(const imager::SampleCounts& c) {
+  return {{"rows_read", c.rows_read},
+          {"samples_read", c.samples_read},
+          {"used", c.used},
+          {"flagged", c.flagged},
+          {"nonfinite", c.nonfinite},
+          {"zero_weight", c.zero_weight},
+          {"autocorrelations", c.autocorrelations},
+          {"outside_grid", c.outside_grid}};
+}
+
+json timings_json(const RunReport& r) {
+  json timings = json::object();
+  if (r.times != nullptr)
+    for (const auto& [stage, seconds] : r.times->stages()) timings[stage] = seconds;
+  timings["total"] = r.wall_clock_s;
+  return timings;
+}
+
+double peak_memory_gib() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<double>(usage.ru_maxrss) / (1024.0 * 1024.0);  // Linux counts KiB
+}
+
+}  // namespace
+
+json report_json(const RunReport& r) {
+  return {{"version", version},           {"command_line", r.command_line},
+          {"options", r.options},         {"plan", plan_json(r.plan)},
+          {"warnings", r.warnings},       {"kernel", kernel_json(r.gridding)},
+          {"error", error_json(r)},       {"visibilities", counts_json(r.counts)},
+          {"timings_s", timings_json(r)}, {"memory_gib_peak", peak_memory_gib()},
+          {"beam", beam_json(r.beam)},    {"beam_by_quadrant", beam_json(r.quadrant_beam)},
+          {"clean", clean_json(r.clean)}};
+}
+
+}  // namespace misfit::tools

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "imager/accurate_imaging.h"
+#include "imager/beam.h"
+#include "imager/clean.h"
+#include "imager/plan.h"
+#include "imager/verify.h"
+
+namespace misfit::tools {
+
+/// What a run of `misfit image` has to tell; a part that does not exist is null in report.json.
+struct RunReport {
+  std::string command_line;
+  nlohmann::json options;
+  imager::Plan plan;
+  std::vector<std::string> warnings;
+  double accuracy = 0;  ///< 0 = none was asked
+  const imager::GriddingPlan* gridding = nullptr;
+  const imager::TheoreticalError* theory = nullptr;
+  const imager::MeasuredError* measured = nullptr;
+  imager::SampleCounts counts;
+  const imager::Beam* beam = nullptr;
+  const imager::Beam* quadrant_beam = nullptr;  ///< by WSClean's rule, for comparison; see imager::BeamRegion
+  const imager::CleanReport* clean = nullptr;
+  double wall_clock_s = 0;
+  const imager::StageTimes* times = nullptr;
+};
+
+/// report.json, with the keys of the project's design; `beam_by_quadrant`, `warnings`, `command_line`, `timings_s.total` and
+/// `clean.major_cycles_log` are additions.
+nlohmann::json report_json(const RunReport& report);
+
+}  // namespace misfit::tools

@@ -1,0 +1,133 @@
+#include <cmath>
+#include <cstdio>
+#include <memory>
+#include <numbers>
+
+#include "imager/direct_transform.h"
+#include "imager/parallel.h"
+#include "ms_io/simulated_set.h"
+#include "tools/array.h"
+#include "tools/command.h"
+#include "tools/numbers.h"
+#include "tools/progress.h"
+#include "tools/quantity.h"
+#include "tools/sky.h"
+
+namespace misfit::tools {
+namespace {
+
+constexpr double j2000_mjd_s = 51544.5 * 86400;  // near where a position of date is that of J2000
+
+struct SimulateOptions {
+  std::string output;
+  std::string sky = "testcard";
+  std::string array = "vla-a";
+  bool coplanar = false;
+  bool noncoplanar = false;
+  std::string cell = "0.05arcsec";
+  std::string ra = "60deg";
+  std::string dec = "40deg";
+  double hours = 0;
+  double interval = 10;
+  std::string frequency = "4GHz";
+  int channels = 1;
+  std::string channel_width = "2MHz";
+  std::string noise = "0Jy";
+  unsigned seed = 1;
+  int threads = 0;
+  bool quiet = false;
+};
+
+void check(const SimulateOptions& o) {
+  if (o.channels < 1) throw std::invalid_argument("--channels " + std::to_string(o.channels) + ": expected at least 1");
+  if (!(o.hours >= 0)) throw std::invalid_argument("--hours " + std::to_string(o.hours) + ": expected 0 (a snapshot) or more");
+  if (!(o.interval > 0))
+    throw std::invalid_argument("--interval " + std::to_string(o.interval) + ": expected more than 0 seconds");
+  if (!(parse_angle_rad(o.cell) > 0)) throw std::invalid_argument("--cell " + o.cell + ": expected more than 0");
+  if (!(parse_flux_jy(o.noise) >= 0)) throw std::invalid_argument("--noise " + o.noise + ": expected 0 or more");
+  if (!(parse_frequency_hz(o.frequency) > 0))
+    throw std::invalid_argument("--frequency " + o.frequency + ": expected more than 0");
+  if (std::abs(parse_angle_rad(o.dec)) > std::numbers::pi / 2)
+    throw std::invalid_argument("--dec " + o.dec + ": expected -90deg to 90deg");
+}
+
+ms_io::SimulatedObservation observation_of(const SimulateOptions& o, const AntennaArray& array) {
+  ms_io::SimulatedObservation observation;
+  observation.telescope = array.telescope;
+  observation.antenna_name = array.name;
+  observation.antenna_itrf_m = array.itrf_m;
+  observation.dish_diameter_m = array.dish_diameter_m;
+  observation.phase_centre = {parse_angle_rad(o.ra), parse_angle_rad(o.dec), "FK5"};
+  observation.interval_s = o.interval;
+  observation.channel_width_hz = parse_frequency_hz(o.channel_width);
+  for (int channel = 0; channel < o.channels; ++channel)
+    observation.frequency_hz.push_back(parse_frequency_hz(o.frequency) + channel * observation.channel_width_hz);
+  observation.noise_jy = parse_flux_jy(o.noise);
+  observation.seed = o.seed;
+  const double transit = transit_mjd_s(array, observation.phase_centre, j2000_mjd_s);
+  const auto integrations = std::max(1L, std::lround(o.hours * 3600 / o.interval));
+  for (long i = 0; i < integrations; ++i)
+    observation.time_mjd_s.push_back(transit +
+                                     (static_cast<double>(i) - 0.5 * static_cast<double>(integrations - 1)) * o.interval);
+  return observation;
+}
+
+void simulate(const SimulateOptions& o) {
+  check(o);
+  const AntennaArray array = antenna_array(o.array);
+  const ms_io::SimulatedObservation observation = observation_of(o, array);
+  const bool test_card_sky = o.sky == "testcard";
+  const bool coplanar = o.coplanar || (test_card_sky && !o.noncoplanar);
+  const std::vector<imager::PointSource> sources =
+      test_card_sky ? test_card(parse_angle_rad(o.cell)) : read_component_list(o.sky, observation.phase_centre);
+  const int threads = o.threads == 0 ? imager::available_threads() : o.threads;
+
+  ProgressLine progress(o.quiet);
+  progress.begin("simulate");
+  const auto baselines = [&](std::size_t integration) {
+    const double hour_angle = hour_angle_rad(array, observation.phase_centre, observation.time_mjd_s[integration]);
+    std::vector<double> baseline = uvw(array, {hour_angle, observation.phase_centre.dec_rad});
+    if (coplanar)
+      for (std::size_t i = 2; i < baseline.size(); i += 3) baseline[i] = 0;
+    return baseline;
+  };
+  const auto exact = [&](const imager::SampleCoordinates& at) { return imager::predict_sources(sources, at, threads); };
+  ms_io::write_simulated_set(o.output, observation, baselines, exact,
+                             [&](std::size_t done, std::size_t total) { progress.update(done, total); });
+  progress.end();
+  const std::size_t antennas = array.name.size();
+  const auto visibilities =
+      static_cast<long long>(antennas * (antennas - 1) / 2 * observation.time_mjd_s.size() * observation.frequency_hz.size());
+  if (!o.quiet)
+    std::printf("%s: %s visibilities of %zu sources, %s, w %s\n", o.output.c_str(), grouped(visibilities).c_str(),
+                sources.size(), o.array.c_str(), coplanar ? "= 0" : "kept");
+}
+
+}  // namespace
+
+void add_simulate_command(CLI::App& program) {
+  CLI::App* command = program.add_subcommand("simulate", "Write a MeasurementSet with exact visibilities of point sources");
+  const auto o = std::make_shared<SimulateOptions>();
+  command->add_option("--output", o->output, "MeasurementSet to make")->required();
+  command->add_option(
+      "--sky", o->sky,
+      "testcard: the 34 sources of Ye et al. 2020; or a CSV file with ra_deg,dec_deg,flux_jy or l_arcsec,m_arcsec,flux_jy");
+  command->add_option("--array", o->array, "vla-a, vla-b, vla-c or vla-d");
+  CLI::Option* coplanar = command->add_flag("--coplanar", o->coplanar, "Set w to 0 (the default with the test card)");
+  command->add_flag("--noncoplanar", o->noncoplanar, "Keep w (the default otherwise)")->excludes(coplanar);
+  command->add_option("--cell", o->cell, "The test card's cell");
+  command->add_option("--ra", o->ra, "Right ascension of the phase centre, J2000");
+  command->add_option("--dec", o->dec, "Its declination");
+  command->add_option("--hours", o->hours, "Length of the track around transit; 0 is a snapshot");
+  command->add_option("--interval", o->interval, "Integration time in seconds");
+  command->add_option("--frequency", o->frequency, "Frequency of the first channel");
+  command->add_option("--channels", o->channels, "Number of channels");
+  command->add_option("--channel-width", o->channel_width, "Channel spacing");
+  command->add_option("--noise", o->noise, "Noise of each correlation's real and imaginary part");
+  command->add_option("--seed", o->seed, "Seed of the noise");
+  command->add_option("--threads", o->threads, "Threads; 0 means all cores")->check(CLI::NonNegativeNumber);
+  command->add_flag("--quiet", o->quiet, "Print nothing");
+  command->callback([o] { simulate(*o); });
+}
+
+}  // namespace misfit::tools
