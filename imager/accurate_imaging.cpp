@@ -53,7 +53,11 @@ TheoreticalError theoretical_error(const GriddingPlan& plan, const SampleSums& s
 AccurateImages make_accurate_images(const VisibilitySource& source, const GriddingRequest& request, const Progress& progress,
                                     StageTimes& times) {
   AccurateImages made = make_images(source, request, progress, times);
-  const double weak = weakness(made.images);
+  double weak = 1;
+  {
+    const StageTimer timer(times, "statistics");
+    weak = weakness(made.images);
+  }
   const auto keeps = [&] { return request.accuracy == 0 || made.plan.expected_error * weak <= request.accuracy; };
   if (!keeps()) {
     GriddingRequest stricter = request;

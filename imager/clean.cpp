@@ -36,10 +36,11 @@ std::optional<Ending> ending(const CleanOptions& o, const std::vector<MajorCycle
   return std::nullopt;
 }
 
-/// The depth of the next minor cycle: where the sidelobes of the brightest source could pass for sources.
+/// The depth of the next minor cycle: where the sidelobes of the brightest source could pass for sources. Five percent below the nsigma
+/// limit, since the noise falls as sources go, and cycles that chase it by less are wasted.
 double cycle_threshold(const CleanOptions& o, double max_sidelobe, const MajorCycle& now) {
   const double fraction = std::clamp(o.cycle_factor * max_sidelobe, o.min_psf_fraction, o.max_psf_fraction);
-  return std::max({fraction * now.peak_residual_jy, o.threshold_jy, o.nsigma * now.rms_jy});
+  return std::max({fraction * now.peak_residual_jy, o.threshold_jy, 0.95 * o.nsigma * now.rms_jy});
 }
 
 }  // namespace
@@ -55,8 +56,14 @@ CleanResult clean(const VisibilitySource& source, const Transform& transform, co
                   StageTimes& times) {
   constexpr double divergence = 3;  // tclean's factor
   CleanResult result{Image(images.dirty.width, images.dirty.height), images.dirty, {}};
+  const auto take_state = [&](double depth) {
+    const StageTimer timer(times, "statistics");
+    MajorCycle state = state_of(result);
+    state.cycle_threshold_jy = depth;
+    result.report.cycles.push_back(state);
+  };
   result.report.max_sidelobe = largest_sidelobe(images.psf, beam);
-  result.report.cycles = {state_of(result)};
+  take_state(0);
   Image best_model = result.model;
   Image best_residual = result.residual;
   std::optional<Ending> end;
@@ -75,8 +82,7 @@ CleanResult clean(const VisibilitySource& source, const Transform& transform, co
                                       .iterations;
     }
     result.residual = make_residual_image(source, transform, result.model, progress, times);
-    result.report.cycles.push_back(state_of(result));
-    result.report.cycles.back().cycle_threshold_jy = depth;
+    take_state(depth);
     cycle_progress(result.report.cycles.back());
     const std::vector<MajorCycle>& cycles = result.report.cycles;
     if (cycles.back().peak_residual_jy < cycles[result.report.kept].peak_residual_jy) {

@@ -27,24 +27,31 @@ void for_each_block(const VisibilitySource& source, const Progress& progress, St
   }
 }
 
-AdjointResult finish(AdjointSum& sum, StageTimes& times) {
+std::unique_ptr<AdjointSum> begin(const Transform& transform, bool with_psf, StageTimes& times) {
+  const StageTimer timer(times, "grid");
+  return transform.adjoint(with_psf);
+}
+
+/// Also frees the grid.
+AdjointResult finish(std::unique_ptr<AdjointSum> sum, StageTimes& times) {
   const StageTimer timer(times, "fft");
-  return sum.finish();
+  return sum->finish();
 }
 
 }  // namespace
 
 DirtyImages make_dirty_images(const VisibilitySource& source, const Transform& transform, bool with_psf,
                               const Progress& progress, StageTimes& times) {
-  const auto sum = transform.adjoint(with_psf);
+  auto sum = begin(transform, with_psf, times);
   for_each_block(source, progress, times, [&](const VisibilityBlock& block) {
     const StageTimer timer(times, "grid");
     sum->add(block);
   });
-  AdjointResult result = finish(*sum, times);
+  AdjointResult result = finish(std::move(sum), times);
   if (result.sums.weight == 0)
     throw std::runtime_error("no visibility can be imaged: " + std::to_string(result.sums.outside_grid) +
                              " usable samples lie beyond 1/(2 cell), none within");
+  const StageTimer timer(times, "fft");
   divide(result.image, result.sums.weight);
   divide(result.psf, result.sums.weight);
   return {std::move(result.image), std::move(result.psf), result.sums};
@@ -57,7 +64,7 @@ Image make_residual_image(const VisibilitySource& source, const Transform& trans
     const StageTimer timer(times, "fft");
     prediction = transform.predict(model);
   }
-  const auto sum = transform.adjoint(false);
+  auto sum = begin(transform, false, times);
   for_each_block(source, progress, times, [&](const VisibilityBlock& block) {
     std::vector<std::complex<double>> residual;
     {
@@ -68,7 +75,7 @@ Image make_residual_image(const VisibilitySource& source, const Transform& trans
     const StageTimer timer(times, "grid");
     sum->add(block, residual);
   });
-  AdjointResult result = finish(*sum, times);
+  AdjointResult result = finish(std::move(sum), times);
   divide(result.image, result.sums.weight);
   return std::move(result.image);
 }

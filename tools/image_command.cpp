@@ -91,8 +91,8 @@ class ImageRun {
     report_.accuracy = o_.accuracy;
     report_.gridding = &made_.plan;
     account_for_edges();
-    image_rms_ = imager::root_mean_square(made_.images.dirty);
-    theory_ = imager::theoretical_error(made_.plan, made_.images.sums, image_rms_, phase_);
+    const imager::StageTimer timer(times_, "statistics");
+    theory_ = imager::theoretical_error(made_.plan, made_.images.sums, imager::root_mean_square(made_.images.dirty), phase_);
     report_.theory = &theory_;
     if (!made_.promise_kept)
       warn("the accuracy of " + significant(o_.accuracy, 2) +
@@ -218,7 +218,6 @@ class ImageRun {
   LoadedVisibilities loaded_;
   imager::NeglectedPhase phase_;
   imager::AccurateImages made_;
-  double image_rms_ = 0;
   imager::TheoreticalError theory_;
   imager::MeasuredError measured_;
   imager::Beam beam_;

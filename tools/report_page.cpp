@@ -80,15 +80,23 @@ std::string table(const Row& headings, const std::vector<Row>& rows) {
   return tag("div", tag("table", tag("thead", row_of(headings, "th")) + tag("tbody", body)), kind) + "\n";
 }
 
-std::string beam_text(const json& beam) {
+/// "0.52 × 0.51″" and the position angle in small, or nothing.
+std::string beam_size(const json& beam, const std::string& before) {
   const json& major = member(beam, "major_arcsec");
   const json& minor = member(beam, "minor_arcsec");
   const json& angle = member(beam, "pa_deg");
-  if (!major.is_number() || !minor.is_number() || !angle.is_number()) return not_measured;
+  if (!major.is_number() || !minor.is_number() || !angle.is_number()) return "";
   const bool tiny = major.get<double>() < 0.1;
   const double scale = tiny ? 1000 : 1;
-  return significant(major.get<double>() * scale, 3) + " × " + significant(minor.get<double>() * scale, 3) +
-         (tiny ? " mas" : "″") + tag("small", "position angle " + significant(angle.get<double>(), 3) + "°");
+  const std::string size =
+      significant(major.get<double>() * scale, 3) + " × " + significant(minor.get<double>() * scale, 3) + (tiny ? " mas" : "″");
+  const std::string at = significant(angle.get<double>(), 3) + "°";
+  return before.empty() ? size + tag("small", "position angle " + at) : tag("small", before + " " + size + " at " + at);
+}
+
+std::string beam_text(const json& report) {
+  const std::string fitted = beam_size(member(report, "beam"), "");
+  return fitted.empty() ? not_measured : fitted + beam_size(member(report, "beam_by_quadrant"), "WSClean’s rule gives");
 }
 
 std::string image_text(const json& options) {
@@ -123,7 +131,7 @@ std::string headline(const json& report) {
   const json& visibilities = member(report, "visibilities");
   const json& clean = member(report, "clean");
   std::vector<std::pair<std::string, std::string>> facts{{"Image", image_text(member(report, "options"))},
-                                                         {"Beam", beam_text(member(report, "beam"))},
+                                                         {"Beam", beam_text(report)},
                                                          {"Image error", accuracy_text(member(report, "error"))}};
   facts.emplace_back("Visibilities used", whole(member(visibilities, "used")) +
                                               tag("small", "of " + whole(member(visibilities, "samples_read")) + " read"));
@@ -245,16 +253,18 @@ std::string clean_section(const json& clean) {
   const json& log = member(clean, "major_cycles_log");
   std::vector<Row> rows;
   for (const json& cycle : log.is_array() ? log : json::array()) {
-    rows.push_back({std::to_string(rows.size() + 1), whole(member(cycle, "iterations")),
+    const bool start = rows.empty();
+    rows.push_back({start ? "start" : std::to_string(rows.size()), whole(member(cycle, "iterations")),
                     with_unit(member(cycle, "peak_residual_jy"), "Jy/beam"), with_unit(member(cycle, "rms_jy"), "Jy/beam"),
-                    with_unit(member(cycle, "model_flux_jy"), "Jy"), plain(member(cycle, "reason"))});
+                    with_unit(member(cycle, "model_flux_jy"), "Jy"),
+                    start ? "" : with_unit(member(cycle, "cycle_threshold_jy"), "Jy/beam")});
   }
   return tag("p", whole(member(clean, "iterations")) + " iterations in " + whole(member(clean, "major_cycles")) +
                       " major cycles; stopped: " + plain(member(clean, "stop_reason")) + " (code " +
                       plain(member(clean, "stop_code")) + "). Model flux " + with_unit(member(clean, "model_flux_jy"), "Jy") +
                       ".") +
          "\n" + (log.is_array() ? clean_curve(curve_points(log)) : "") +
-         table({"#Cycle", "#Iterations", "#Peak residual", "#RMS", "#Model flux", "Ended by"}, rows);
+         table({"#Cycle", "#Iterations", "#Peak residual", "#RMS", "#Model flux", "#Cleaned down to"}, rows);
 }
 
 std::string options(const json& used) {

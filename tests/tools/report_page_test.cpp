@@ -24,9 +24,9 @@ json full_report() {
     "clean": {"iterations": 100, "major_cycles": 2, "stop_code": 1, "stop_reason": "iteration limit", "peak_residual_jy": 0.01,
               "rms_jy": 0.001, "model_flux_jy": 2.5,
               "major_cycles_log": [
-                {"iterations": 0, "peak_residual_jy": 1.0, "rms_jy": 0.1, "model_flux_jy": 0, "reason": "start"},
-                {"iterations": 50, "peak_residual_jy": 0.1, "rms_jy": 0.01, "model_flux_jy": 2, "reason": "cycle"},
-                {"iterations": 100, "peak_residual_jy": 0.01, "rms_jy": 0.001, "model_flux_jy": 2.5, "reason": "limit"}]}
+                {"iterations": 0, "peak_residual_jy": 1.0, "rms_jy": 0.1, "model_flux_jy": 0, "cycle_threshold_jy": 0},
+                {"iterations": 50, "peak_residual_jy": 0.1, "rms_jy": 0.01, "model_flux_jy": 2, "cycle_threshold_jy": 0.12},
+                {"iterations": 100, "peak_residual_jy": 0.01, "rms_jy": 0.001, "model_flux_jy": 2.5, "cycle_threshold_jy": 0.02}]}
   })");
 }
 
