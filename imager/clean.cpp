@@ -36,8 +36,8 @@ std::optional<Ending> ending(const CleanOptions& o, const std::vector<MajorCycle
   return std::nullopt;
 }
 
-/// The depth of the next minor cycle: where the sidelobes of the brightest source could pass for sources. Five percent below the nsigma
-/// limit, since the noise falls as sources go, and cycles that chase it by less are wasted.
+/// The depth of the next minor cycle: where the sidelobes of the brightest source could pass for sources. Five percent below
+/// the nsigma limit, since the noise falls as sources go, and cycles that chase it by less are wasted.
 double cycle_threshold(const CleanOptions& o, double max_sidelobe, const MajorCycle& now) {
   const double fraction = std::clamp(o.cycle_factor * max_sidelobe, o.min_psf_fraction, o.max_psf_fraction);
   return std::max({fraction * now.peak_residual_jy, o.threshold_jy, 0.95 * o.nsigma * now.rms_jy});

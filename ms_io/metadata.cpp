@@ -97,7 +97,7 @@ FieldCentre common_centre(const casacore::MeasurementSet& set, const std::string
 
 imager::SkyDirection sky_direction(const casacore::MDirection& direction) {
   constexpr double turn = 2 * 3.14159265358979323846;
-  const auto angles = direction.getValue();
+  const auto& angles = direction.getValue();
   imager::SkyDirection sky;
   sky.ra_rad = angles.getLong() < 0 ? angles.getLong() + turn : angles.getLong();
   sky.dec_rad = angles.getLat();

@@ -25,7 +25,7 @@ casacore::IPosition tile_shape(const casacore::MeasurementSet& set, const casaco
     if (std::find(columns.begin(), columns.end(), "DATA") == columns.end()) continue;
     const casacore::Record& specification = manager.asRecord("SPEC");
     if (!specification.isDefined("DEFAULTTILESHAPE")) break;
-    const casacore::IPosition shape(specification.toArrayInt("DEFAULTTILESHAPE"));
+    casacore::IPosition shape(specification.toArrayInt("DEFAULTTILESHAPE"));
     if (shape.nelements() == 3 && shape.product() > 0) return shape;
   }
   return casacore::IPosition(3, cell(0), cell(1), std::max<ssize_t>(1, tile_samples / std::max<ssize_t>(1, cell.product())));

@@ -96,11 +96,11 @@ void simulate(const SimulateOptions& o) {
                              [&](std::size_t done, std::size_t total) { progress.update(done, total); });
   progress.end();
   const std::size_t antennas = array.name.size();
-  const auto visibilities =
-      static_cast<long long>(antennas * (antennas - 1) / 2 * observation.time_mjd_s.size() * observation.frequency_hz.size());
+  const auto visibilities = antennas * (antennas - 1) / 2 * observation.time_mjd_s.size() * observation.frequency_hz.size();
   if (!o.quiet)
-    std::printf("%s: %s visibilities of %zu sources, %s, w %s\n", o.output.c_str(), grouped(visibilities).c_str(),
-                sources.size(), o.array.c_str(), coplanar ? "= 0" : "kept");
+    std::printf("%s: %s visibilities of %zu sources, %s, w %s\n", o.output.c_str(),
+                grouped(static_cast<long long>(visibilities)).c_str(), sources.size(), o.array.c_str(),
+                coplanar ? "= 0" : "kept");
 }
 
 }  // namespace
