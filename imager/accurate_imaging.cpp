@@ -42,11 +42,12 @@ TheoreticalError theoretical_error(const GriddingPlan& plan, const SampleSums& s
                                    const NeglectedPhase& w) {
   const double phase_rms = std::min(w.rms_rad, std::sqrt(2.0));  // unit phasors at random are √2 apart
   const double phase_max = std::min(w.max_rad, 2.0);
-  const double flux = sums.weight_abs / sums.weight;
+  const auto over_image = [image_rms](double x) { return x == 0 ? 0 : x / image_rms; };
+  const double flux = over_image(sums.weight_abs / sums.weight);
   TheoreticalError error;
-  error.expected_rms = std::hypot(plan.expected_error, phase_rms) * std::max(1.0, random_image_rms(sums) / image_rms);
-  error.bound_rms = ((1 + plan.bound_rms) * (1 + phase_max) - 1) * flux / image_rms;
-  error.bound_max = ((1 + plan.bound_max) * (1 + phase_max) - 1) * flux / image_rms;
+  error.expected_rms = std::hypot(plan.expected_error, phase_rms) * std::max(1.0, over_image(random_image_rms(sums)));
+  error.bound_rms = ((1 + plan.bound_rms) * (1 + phase_max) - 1) * flux;
+  error.bound_max = ((1 + plan.bound_max) * (1 + phase_max) - 1) * flux;
   return error;
 }
 

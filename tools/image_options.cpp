@@ -4,6 +4,7 @@
 #include <stdexcept>
 
 #include "imager/gridding_plan.h"
+#include "tools/memory.h"
 #include "tools/quantity.h"
 
 namespace misfit::tools {
@@ -23,6 +24,14 @@ void check_image(const ImageOptions& o) {
   constexpr int largest = 65536;
   for (const int size : o.imsize)
     if (size < 1 || size > largest) refuse("imsize", std::to_string(size), "1 to 65536 pixels");
+  // Dirty image, PSF, model and residual in double; three half planes of the grid and one of its transform at the least
+  // padding.
+  constexpr double bytes_a_pixel = 4 * 8 + 1.15 * 1.15 / 2 * 3 * 4 + 1.15 / 2 * 8;
+  const double needed = bytes_a_pixel * o.imsize.front() * o.imsize.back();
+  if (needed > physical_memory_bytes())
+    refuse("imsize", std::to_string(o.imsize.front()) + " " + std::to_string(o.imsize.back()),
+           "an image that fits this machine's " + text(physical_memory_bytes() / gib) + " GiB; this one needs " +
+               text(needed / gib) + " GiB");
   if (!(parse_angle_rad(o.cell) > 0)) refuse("cell", o.cell, "an angle above 0");
   if (parse_angle_rad(o.cell) > 0.5) refuse("cell", o.cell, "less than 0.5 rad");
 }
@@ -74,7 +83,9 @@ void declare(CLI::App& command, ImageOptions& o) {
 void check(const ImageOptions& o) {
   check_image(o);
   check_clean(o);
-  if (!(o.accuracy >= 0 && o.accuracy < 1)) refuse("accuracy", text(o.accuracy), "a number above 0 and below 1");
+  const bool kernel_given = o.kernel_width != 0 && o.padding != 0;  // accuracy 0: whatever that kernel reaches
+  if (!(o.accuracy >= 0 && o.accuracy < 1) || (o.accuracy == 0 && !kernel_given))
+    refuse("accuracy", text(o.accuracy), "a number above 0 and below 1");
 }
 
 imager::ImageGeometry geometry_of(const ImageOptions& o, const imager::SkyDirection& phase_centre) {

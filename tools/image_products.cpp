@@ -1,5 +1,8 @@
 #include "tools/image_products.h"
 
+#include <algorithm>
+#include <cmath>
+
 #include "tools/files.h"
 #include "tools/pictures.h"
 
@@ -18,6 +21,9 @@ std::vector<imager::HeaderCard> error_cards(const RunReport& report) {
     cards.push_back({"ERRMMAX", report.measured->max, "largest measured error over image RMS"});
     cards.push_back({"ERRPRED", report.measured->predict_rms, "measured RMS error of prediction"});
   }
+  cards.erase(
+      std::remove_if(cards.begin(), cards.end(), [](const imager::HeaderCard& card) { return !std::isfinite(card.value); }),
+      cards.end());
   return cards;
 }
 

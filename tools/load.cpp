@@ -1,25 +1,18 @@
 #include "tools/load.h"
 
-#include <unistd.h>
-
 #include <stdexcept>
 
 #include "imager/stored_visibilities.h"
+#include "tools/memory.h"
 #include "tools/numbers.h"
 
 namespace misfit::tools {
 namespace {
 
-constexpr double gib = 1024.0 * 1024 * 1024;
-
 /// Of a block in memory: a visibility and a weight per sample, UVW per row.
 double bytes_of(const ms_io::MeasurementSet& set) {
   return static_cast<double>(set.samples()) * (sizeof(std::complex<float>) + sizeof(float)) +
          static_cast<double>(set.rows()) * 3 * sizeof(double);
-}
-
-double physical_memory_bytes() {
-  return static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGE_SIZE));
 }
 
 void require_usable(const imager::SampleCounts& c) {

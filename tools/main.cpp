@@ -1,5 +1,6 @@
 #include <cstdio>
 #include <exception>
+#include <new>
 #include <stdexcept>
 
 #include "tools/command.h"
@@ -39,6 +40,8 @@ int main(int argc, char** argv) {
     return fail(error.what(), stopped_by_user);
   } catch (const std::invalid_argument& error) {
     return fail(error.what(), wrong_usage);
+  } catch (const std::bad_alloc&) {
+    return fail("out of memory", unusable_data);
   } catch (const std::exception& error) {
     return fail(error.what(), unusable_data);
   }

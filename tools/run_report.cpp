@@ -1,10 +1,9 @@
 #include "tools/run_report.h"
 
-#include <sys/resource.h>
-
 #include <cmath>
 #include <numbers>
 
+#include "tools/memory.h"
 #include "tools/version.h"
 
 namespace misfit::tools {
@@ -110,12 +109,6 @@ json timings_json(const RunReport& r) {
   return timings;
 }
 
-double peak_memory_gib() {
-  rusage usage{};
-  getrusage(RUSAGE_SELF, &usage);
-  return static_cast<double>(usage.ru_maxrss) / (1024.0 * 1024.0);  // Linux counts KiB
-}
-
 }  // namespace
 
 json report_json(const RunReport& r) {
@@ -123,7 +116,7 @@ json report_json(const RunReport& r) {
           {"options", r.options},         {"plan", plan_json(r.plan)},
           {"warnings", r.warnings},       {"kernel", kernel_json(r.gridding)},
           {"error", error_json(r)},       {"visibilities", counts_json(r.counts)},
-          {"timings_s", timings_json(r)}, {"memory_gib_peak", peak_memory_gib()},
+          {"timings_s", timings_json(r)}, {"memory_gib_peak", peak_memory_bytes() / gib},
           {"beam", beam_json(r.beam)},    {"beam_by_quadrant", beam_json(r.quadrant_beam)},
           {"clean", clean_json(r.clean)}};
 }

@@ -39,7 +39,7 @@ class Unpacked {
 
 /// Reads everything, and checks what holds for any set.
 AllSamples read_checked(const MeasurementSet& set) {
-  const AllSamples all = read_all(set);
+  AllSamples all = read_all(set);
   const imager::SampleCounts& n = all.counts;
   BOOST_TEST(n.rows_read == set.rows());
   BOOST_TEST(n.samples_read == set.samples());
