@@ -18,8 +18,9 @@ constexpr int lengths[] = {2, 6, 64, 210, 3360};
 
 /// exp(2πi k/n) for k = 0 … n − 1.
 std::vector<Exact> roots(int n) {
-  std::vector<Exact> root;
-  for (int k = 0; k < n; ++k) root.push_back(std::polar(1.0L, 2 * std::acos(-1.0L) * k / n));
+  std::vector<Exact> root(static_cast<std::size_t>(n));
+  for (std::size_t k = 0; k < root.size(); ++k)
+    root[k] = std::polar(1.0L, 2 * std::acos(-1.0L) * static_cast<long double>(k) / n);
   return root;
 }
 
@@ -40,8 +41,8 @@ template <typename Real>
 std::vector<Exact> random_values(int n, bool complex) {
   std::mt19937_64 random(static_cast<unsigned>(n));
   std::normal_distribution<Real> normal;
-  std::vector<Exact> x;
-  for (int i = 0; i < n; ++i) x.emplace_back(normal(random), complex ? normal(random) : Real(0));
+  std::vector<Exact> x(static_cast<std::size_t>(n));
+  for (Exact& value : x) value = {normal(random), complex ? normal(random) : Real(0)};
   return x;
 }
 

@@ -30,12 +30,16 @@ ImageCorrection correction(int width, int height) {
   return h;
 }
 
+std::size_t index(const GridShape& s, int p, int q) {
+  const int i = s.first_row(q) * s.columns() + s.first_column(p);
+  return static_cast<std::size_t>(i);
+}
+
 /// Calls visit(p, q, index in the grid) for every cell that holds data, margins included.
 template <typename Visit>
 void for_each_cell(const GridShape& s, const Visit& visit) {
   for (int q = -s.margin(); q <= s.nv / 2 + s.margin() + 1; ++q)
-    for (int p = -s.nu / 2 - s.margin(); p <= s.nu / 2 + s.margin() + 1; ++p)
-      visit(p, q, static_cast<std::size_t>(s.first_row(q) * s.columns() + s.first_column(p)));
+    for (int p = -s.nu / 2 - s.margin(); p <= s.nu / 2 + s.margin() + 1; ++p) visit(p, q, index(s, p, q));
 }
 
 template <typename Real>
@@ -52,8 +56,8 @@ HalfGrid<Real> random_grid(const GridShape& shape) {
 
 /// exp(2πi(px/nu + qy/nv)) at an image's pixel.
 Complex turn(const GridShape& s, const Image& image, int p, int q, int row, int column) {
-  const double x = column - image.width / 2, y = row - image.height / 2;
-  return std::polar(1.0, 2 * pi * (p * x / s.nu + q * y / s.nv));
+  const int x = column - image.width / 2, y = row - image.height / 2;
+  return std::polar(1.0, 2 * pi * (1.0 * p * x / s.nu + 1.0 * q * y / s.nv));
 }
 
 /// h(x) h(y) Re Σ G exp(+2πi(px/nu + qy/nv)).

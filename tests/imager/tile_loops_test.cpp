@@ -74,8 +74,9 @@ TileBuffer<Real> random_buffer(int padded, int planes) {
 }
 
 template <typename Real>
-double cell_of(const TileBuffer<Real>& buffer, int row, int plane, int column) {
-  return double{buffer.cell[static_cast<std::size_t>((row * buffer.planes + plane) * buffer.columns + column)]};
+std::size_t index(const TileBuffer<Real>& buffer, int row, int plane, int column) {
+  const int i = (row * buffer.planes + plane) * buffer.columns + column;
+  return static_cast<std::size_t>(i);
 }
 
 /// No tap exceeds Σ_d 2^−d < 2, so no term exceeds 4; it is rounded once for each of some 2 · degree + 4 operations, and every
@@ -104,8 +105,7 @@ BOOST_AUTO_TEST_CASE_TEMPLATE(spread_adds_the_plain_double_loop_for_every_width_
           for (int r = 0; r < width; ++r)
             for (int plane = 0; plane < planes; ++plane)
               for (int c = 0; c < width; ++c)
-                should[static_cast<std::size_t>(((batch.row[i] + r) * planes + plane) * buffer.columns + batch.column[i] +
-                                                c)] += along_u[c] * along_v[r] * value[plane];
+                should[index(buffer, batch.row[i] + r, plane, batch.column[i] + c)] += along_u[c] * along_v[r] * value[plane];
         }
         spread(table_u, table_v, batch, buffer);
         double largest = 0;
@@ -128,8 +128,8 @@ BOOST_AUTO_TEST_CASE_TEMPLATE(interpolation_is_the_plain_double_sum_for_every_wi
       double real = 0, imaginary = 0;
       for (int r = 0; r < width; ++r)
         for (int c = 0; c < width; ++c) {
-          real += along_u[c] * along_v[r] * cell_of(buffer, batch.row[i] + r, 0, batch.column[i] + c);
-          imaginary += along_u[c] * along_v[r] * cell_of(buffer, batch.row[i] + r, 1, batch.column[i] + c);
+          real += along_u[c] * along_v[r] * double{buffer.cell[index(buffer, batch.row[i] + r, 0, batch.column[i] + c)]};
+          imaginary += along_u[c] * along_v[r] * double{buffer.cell[index(buffer, batch.row[i] + r, 1, batch.column[i] + c)]};
         }
       largest = std::max({largest, std::abs(batch.real[i] - real), std::abs(batch.imaginary[i] - imaginary)});
     }

@@ -43,7 +43,8 @@ std::size_t expected_tile(Turns at, const GridShape& s) {
   const double sign = at.v < 0 ? -1 : 1;
   const double p = -sign * at.u * s.nu, q = sign * at.v * s.nv;
   const auto first = [&](double cells) { return static_cast<int>(std::ceil(cells - s.width / 2.0)); };
-  return static_cast<std::size_t>(s.first_row(first(q)) / s.tile * s.tiles_u() + s.first_column(first(p)) / s.tile);
+  const int tile = s.first_row(first(q)) / s.tile * s.tiles_u() + s.first_column(first(p)) / s.tile;
+  return static_cast<std::size_t>(tile);
 }
 
 /// Visits (tile, sample) in order.
