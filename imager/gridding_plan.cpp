@@ -51,14 +51,15 @@ double axis_x0(int pixels, int fft_size, const kernels::KernelFamily& family) {
   return std::clamp(0.5 * pixels / fft_size, family.min_x0, family.max_x0);
 }
 
-int fft_size(int pixels, double padding) {
-  return fast_fft_size(std::max(smallest_fft, static_cast<int>(std::ceil(padding * pixels))));
+int fft_size(int pixels, double padding, const kernels::KernelFamily& family) {
+  const double needed = std::max(padding, 0.5 / family.max_x0) * pixels;
+  return fast_fft_size(std::max(smallest_fft, static_cast<int>(std::ceil(needed))));
 }
 
 /// All widths at one padding, narrowest first.
 std::vector<Candidate> candidates(const GriddingRequest& request, const kernels::KernelFamily& family, double padding) {
-  const int nu = fft_size(request.geometry.width, padding);
-  const int nv = fft_size(request.geometry.height, padding);
+  const int nu = fft_size(request.geometry.width, padding, family);
+  const int nv = fft_size(request.geometry.height, padding, family);
   const double x0_u = axis_x0(request.geometry.width, nu, family);
   const double x0_v = axis_x0(request.geometry.height, nv, family);
   const int widest = request.kernel_width == 0 ? family.max_width : request.kernel_width;
@@ -144,11 +145,11 @@ GriddingPlan plan_gridding(const GriddingRequest& request) {
   const kernels::KernelFamily& family = kernels::kernel_family(request.kernel);
   check(request, family);
   const Choice choice = choose(request, family);
-  if (!choice.cheapest && !request.best_effort)
+  if (!choice.cheapest && !request.best_effort)  // 1.06: two digits may round down by 5%
     throw std::invalid_argument("accuracy " + text("%g", request.accuracy) + " is out of reach of kernel " + family.name +
                                 (request.kernel_width == 0 ? "" : " of width " + std::to_string(request.kernel_width)) +
                                 (request.padding == 0 ? "" : " at padding " + text("%g", request.padding)) + "; it can reach " +
-                                text("%.2g", 1.01 * choice.most_exact->worst_error() + double_rounding) +
+                                text("%.2g", 1.06 * choice.most_exact->worst_error() + double_rounding) +
                                 " for this image, with width " + std::to_string(choice.most_exact->kernel_u.width()) +
                                 " at padding " + text("%g", choice.most_exact->padding));
   const Candidate& best = choice.cheapest ? *choice.cheapest : *choice.most_exact;

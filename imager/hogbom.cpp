@@ -74,6 +74,7 @@ MinorCycleReport hogbom(const Image& residual, const Image& psf, const MinorCycl
   Search search(residual, psf);
   MinorCycleReport report;
   bool done = false;
+  float factor = 0;  // what all threads subtract; the peak itself changes while they do
   // Runs in one thread while the others wait: take the peak, or end.
   const auto take = [&]() noexcept {
     const double value = search.value();
@@ -85,6 +86,7 @@ MinorCycleReport hogbom(const Image& residual, const Image& psf, const MinorCycl
     model.at(search.row(), search.column()) += component;
     report.flux_jy += component;
     ++report.iterations;
+    factor = static_cast<float>(component);
   };
   const auto next = [&]() noexcept {
     search.find();
@@ -98,7 +100,7 @@ MinorCycleReport hogbom(const Image& residual, const Image& psf, const MinorCycl
     const int first = residual.height * thread / threads;
     const int last = residual.height * (thread + 1) / threads;
     while (!done) {
-      search.subtract(search.row(), search.column(), static_cast<float>(options.gain * search.value()), first, last);
+      search.subtract(search.row(), search.column(), factor, first, last);
       barrier.arrive_and_wait();
     }
   };

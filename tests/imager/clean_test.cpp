@@ -1,0 +1,195 @@
+#include "imager/clean.h"
+
+#include <boost/test/unit_test.hpp>
+#include <numeric>
+
+#include "imager/beam.h"
+#include "imager/gridding_plan.h"
+#include "imager/noise.h"
+#include "tests/imager/comparison.h"
+#include "tests/imager/vla_samples.h"
+
+using namespace misfit;
+using namespace misfit::imager;
+using namespace misfit::imager::testing;
+
+namespace {
+
+constexpr double arcsec = pi / 180 / 3600;
+const ImageGeometry geometry{128, 96, 0.08 * arcsec, {}};
+
+struct Sky {
+  int row, column;
+  double flux_jy;
+};
+constexpr Sky sky[] = {{48, 64, 1}, {20, 100, 0.5}, {70, 30, 0.3}, {80, 90, -0.2}};
+
+/// Everything that clean() takes, for sources on pixels seen by 13 snapshots.
+struct Scene {
+  StoredVisibilities source;
+  std::unique_ptr<Transform> transform;
+  DirtyImages images;
+  Image beam;
+};
+
+const Scene& scene() {
+  static const Scene made = [] {
+    std::vector<PointSource> sources;
+    for (const Sky& s : sky) sources.push_back({{geometry.l(s.column), geometry.m(s.row)}, s.flux_jy});
+    VisibilityBlock block = vla_samples(13);
+    observe(sources, block);
+    GriddingRequest request;
+    request.geometry = geometry;
+    request.accuracy = 1e-5;
+    request.threads = 2;
+    Scene s;
+    s.source = stored({block});
+    s.transform = make_plane_transform(plan_gridding(request).options);
+    StageTimes times;
+    s.images = make_dirty_images(s.source, *s.transform, true, ignore_progress, times);
+    Image centre(geometry.width, geometry.height);
+    centre.at(geometry.centre_row(), geometry.centre_column()) = 1;
+    s.beam = convolve_with_beam(centre, fit_beam(s.images.psf, geometry.cell_rad), geometry.cell_rad, 1);
+    return s;
+  }();
+  return made;
+}
+
+CleanResult cleaned(const CleanOptions& options, const DirtyImages& images = scene().images) {
+  StageTimes times;
+  const auto ignore_cycle = [](const MajorCycle&) {};
+  return imager::clean(scene().source, *scene().transform, images, scene().beam, options, ignore_progress, ignore_cycle, times);
+}
+
+/// Options that stop at 1% of the brightest source.
+CleanOptions deep() {
+  CleanOptions options;
+  options.max_iterations = 10000;
+  options.threshold_jy = 0.01;
+  options.threads = 2;
+  return options;
+}
+
+double peak_magnitude(const Image& image) {
+  return std::abs(find_peak(image).value);
+}
+
+double total(const Image& image) {
+  return std::accumulate(image.pixel.begin(), image.pixel.end(), 0.0);
+}
+
+/// The residual's own definition: the dirty image of data − model.
+void check_consistent(const CleanResult& result) {
+  StageTimes times;
+  const Image residual = make_residual_image(scene().source, *scene().transform, result.model, ignore_progress, times);
+  BOOST_TEST((residual.pixel == result.residual.pixel));
+  BOOST_TEST(result.report.final_state().peak_residual_jy == peak_magnitude(result.residual));
+  BOOST_TEST(result.report.final_state().model_flux_jy == total(result.model));
+}
+
+}  // namespace
+
+BOOST_AUTO_TEST_SUITE(clean)
+
+BOOST_AUTO_TEST_CASE(the_peak_residual_falls_to_the_threshold_and_the_flux_is_recovered) {
+  const CleanResult result = cleaned(deep());
+  BOOST_TEST((result.report.stop == CleanStop::threshold));
+  BOOST_TEST(peak_magnitude(result.residual) <= 0.01);
+  check_consistent(result);
+  for (const Sky& s : sky) {
+    double flux = 0;
+    for (int r = s.row - 1; r <= s.row + 1; ++r)
+      for (int c = s.column - 1; c <= s.column + 1; ++c) flux += result.model.at(r, c);
+    // The residual at the source is what its components lack; sidelobes of the others' residuals add a little.
+    BOOST_TEST(std::abs(flux - s.flux_jy) < 2 * 0.01);
+  }
+}
+
+BOOST_AUTO_TEST_CASE(the_result_does_not_depend_on_the_number_of_threads) {
+  CleanOptions options = deep();
+  const CleanResult two = cleaned(options);
+  options.threads = 1;
+  BOOST_TEST((cleaned(options).model.pixel == two.model.pixel));
+}
+
+BOOST_AUTO_TEST_CASE(no_iterations_leave_the_dirty_image) {
+  CleanOptions options = deep();
+  options.max_iterations = 0;
+  const CleanResult result = cleaned(options);
+  BOOST_TEST((result.report.stop == CleanStop::iteration_limit));
+  BOOST_TEST((result.residual.pixel == scene().images.dirty.pixel));
+  BOOST_TEST(norm(result.model.pixel) == 0);
+  BOOST_TEST(result.report.cycles.size() == 1U);
+}
+
+BOOST_AUTO_TEST_CASE(the_iteration_limit_is_not_passed) {
+  CleanOptions options = deep();
+  options.max_iterations = 37;
+  const CleanResult result = cleaned(options);
+  BOOST_TEST((result.report.stop == CleanStop::iteration_limit));
+  BOOST_TEST(result.report.iterations == 37);
+  check_consistent(result);
+}
+
+BOOST_AUTO_TEST_CASE(the_limit_of_major_cycles_is_not_passed) {
+  CleanOptions options = deep();
+  for (const int limit : {0, 1, 2}) {
+    options.max_major_cycles = limit;
+    const CleanResult result = cleaned(options);
+    BOOST_TEST((result.report.stop == CleanStop::major_cycle_limit));
+    BOOST_TEST(static_cast<int>(result.report.cycles.size()) == limit + 1);
+  }
+}
+
+BOOST_AUTO_TEST_CASE(nsigma_stops_at_that_many_times_the_noise) {
+  CleanOptions options = deep();
+  options.threshold_jy = 0;
+  options.nsigma = 20;
+  const CleanResult result = cleaned(options);
+  BOOST_TEST((result.report.stop == CleanStop::nsigma));
+  BOOST_TEST(result.report.final_state().peak_residual_jy <= 20 * result.report.final_state().rms_jy);
+}
+
+BOOST_AUTO_TEST_CASE(the_user_stops_it_with_a_valid_result) {
+  CleanOptions options = deep();
+  int asked = 0;
+  options.stop_requested = [&] { return ++asked > 3; };
+  const CleanResult result = cleaned(options);
+  BOOST_TEST((result.report.stop == CleanStop::user));
+  check_consistent(result);
+}
+
+BOOST_AUTO_TEST_CASE(a_minor_cycle_that_finds_nothing_ends_it) {
+  CleanOptions options = deep();
+  options.cycle_factor = 1000;
+  options.max_psf_fraction = 1.01;  // above the peak itself
+  const CleanResult result = cleaned(options);
+  BOOST_TEST((result.report.stop == CleanStop::no_change));
+  BOOST_TEST(result.report.iterations == 0);
+}
+
+BOOST_AUTO_TEST_CASE(a_wrong_psf_diverges_and_the_best_model_is_kept) {
+  DirtyImages wrong = scene().images;
+  std::fill(wrong.psf.pixel.begin(), wrong.psf.pixel.end(), 0.0);  // every pixel of a beam would be a source of its own
+  wrong.psf.at(geometry.centre_row(), geometry.centre_column()) = 1;
+  CleanOptions options = deep();
+  options.max_iterations = 1000000;
+  options.max_psf_fraction = 0.05;
+  const CleanResult result = cleaned(options, wrong);
+  BOOST_TEST((result.report.stop == CleanStop::diverging));
+  const auto& cycles = result.report.cycles;
+  BOOST_TEST(cycles.back().peak_residual_jy > 3 * result.report.final_state().peak_residual_jy);
+  for (const MajorCycle& cycle : cycles) BOOST_TEST(cycle.peak_residual_jy >= result.report.final_state().peak_residual_jy);
+  BOOST_TEST(peak_magnitude(result.residual) == result.report.final_state().peak_residual_jy);
+  BOOST_TEST(total(result.model) == result.report.final_state().model_flux_jy);
+}
+
+BOOST_AUTO_TEST_CASE(the_largest_sidelobe_is_what_the_beam_does_not_explain) {
+  Image psf(5, 5), beam(5, 5);
+  psf.at(2, 2) = beam.at(2, 2) = 1;
+  psf.at(2, 3) = 0.5, beam.at(2, 3) = 0.6;
+  psf.at(0, 4) = -0.3;
+  BOOST_TEST(largest_sidelobe(psf, beam) == 0.3);
+}
+
+BOOST_AUTO_TEST_SUITE_END()

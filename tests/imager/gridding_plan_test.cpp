@@ -1,0 +1,165 @@
+#include "imager/gridding_plan.h"
+
+#include <boost/test/data/test_case.hpp>
+#include <boost/test/unit_test.hpp>
+#include <optional>
+#include <string>
+
+namespace bdata = boost::unit_test::data;
+using namespace misfit::imager;
+
+namespace {
+
+struct Size {
+  int width, height;
+};
+constexpr Size sizes[] = {{1, 1}, {7, 7}, {63, 63}, {5000, 5000}, {5000, 3}, {331, 2000}};
+
+GriddingRequest request(Size size, double accuracy, const std::string& kernel = "least-misfit") {
+  GriddingRequest r;
+  r.geometry = {size.width, size.height, 1e-6, {}};
+  r.accuracy = accuracy;
+  r.kernel = kernel;
+  r.samples = 1000000;
+  return r;
+}
+
+/// What the message of a refusal says can be reached.
+double named_accuracy(const GriddingRequest& r) {
+  try {
+    plan_gridding(r);
+  } catch (const std::invalid_argument& error) {
+    const std::string message = error.what(), before = "it can reach ";
+    const std::size_t at = message.find(before);
+    if (at != message.npos) return std::stod(message.substr(at + before.size()));
+  }
+  BOOST_FAIL("accuracy " << r.accuracy << " was not refused");
+  return 0;
+}
+
+/// A refusal names an accuracy that is granted.
+void check_refusal(GriddingRequest r) {
+  const double asked = r.accuracy;
+  r.accuracy = named_accuracy(r);
+  BOOST_TEST(r.accuracy > asked);
+  BOOST_CHECK_NO_THROW(plan_gridding(r));
+}
+
+/// Either the accuracy is promised, or refused with one that is granted.
+void check_refusal_or_promise(const GriddingRequest& r) {
+  GriddingRequest best = r;
+  best.best_effort = true;
+  if (plan_gridding(best).worst_error > r.accuracy) check_refusal(r);
+}
+
+}  // namespace
+
+BOOST_AUTO_TEST_SUITE(gridding_plan)
+
+BOOST_DATA_TEST_CASE(the_worst_error_is_within_the_accuracy_and_less_accuracy_never_costs_more, bdata::xrange(std::size(sizes)),
+                     i) {
+  const Size size = sizes[i];
+  std::optional<GriddingPlan> stricter;
+  for (const double accuracy : {1e-10, 1e-6, 1e-4, 1e-2}) {
+    const GriddingPlan plan = plan_gridding(request(size, accuracy));
+    BOOST_TEST_CONTEXT(size.width << " × " << size.height << " at " << accuracy) {
+      BOOST_TEST(plan.worst_error <= accuracy);
+      BOOST_TEST(plan.expected_error <= plan.worst_error);
+      BOOST_TEST(plan.worst_error <= plan.bound_rms);
+      BOOST_TEST(plan.bound_rms <= plan.bound_max);
+      BOOST_TEST((plan.options.precision == Precision::single_precision) == (accuracy >= 1e-4));
+      BOOST_CHECK_NO_THROW(make_plane_transform(plan.options));
+    }
+    if (stricter) {
+      const PlaneTransformOptions &a = plan.options, &b = stricter->options;
+      BOOST_TEST(!(a.kernel_u.width() >= b.kernel_u.width() && a.nu >= b.nu && a.nv >= b.nv &&
+                   plan.worst_error > stricter->worst_error));
+    }
+    stricter = plan;
+  }
+}
+
+BOOST_AUTO_TEST_CASE(less_accuracy_takes_no_wider_kernel_at_a_given_padding) {
+  int width = 0;
+  for (const double accuracy : {0.5, 1e-2, 1e-4, 1e-6, 1e-8, 1e-10}) {
+    GriddingRequest r = request({512, 512}, accuracy);
+    r.padding = 2;
+    const int needed = plan_gridding(r).options.kernel_u.width();
+    BOOST_TEST(needed >= width);
+    width = needed;
+  }
+}
+
+BOOST_AUTO_TEST_CASE(out_of_reach_is_refused_with_what_can_be_reached) {
+  for (const Size size : {Size{1, 1}, {64, 64}, {5000, 300}}) {
+    for (const double accuracy : {1e-12, 1e-17}) check_refusal_or_promise(request(size, accuracy));
+    check_refusal(request(size, 1e-9, "spheroidal"));
+  }
+  for (int width = 2; width <= 6; ++width)
+    for (const double padding : {1.1, 1.5}) {
+      GriddingRequest r = request({1000, 1000}, 1e-15);
+      r.kernel_width = width;
+      r.padding = padding;
+      check_refusal(r);
+    }
+}
+
+BOOST_AUTO_TEST_CASE(best_effort_takes_the_most_exact_kernel) {
+  GriddingRequest r = request({500, 400}, 1e-17);
+  r.best_effort = true;
+  const GriddingPlan best = plan_gridding(r);
+  r.accuracy = 1e-10;
+  BOOST_TEST(best.worst_error <= plan_gridding(r).worst_error);
+  BOOST_TEST((best.options.precision == Precision::double_precision));
+}
+
+BOOST_AUTO_TEST_CASE(the_spheroidal_function_keeps_the_accuracies_it_reaches) {
+  for (const Size size : sizes) {
+    const GriddingPlan plan = plan_gridding(request(size, 1e-2, "spheroidal"));
+    BOOST_TEST(plan.worst_error <= 1e-2);
+    BOOST_TEST(plan.options.kernel_u.name == "spheroidal");
+  }
+}
+
+BOOST_AUTO_TEST_CASE(a_given_width_and_padding_are_taken) {
+  for (const int width : {1, 4, 9})
+    for (const double padding : {1.02, 1.1, 1.5, 3.0})
+      for (const Size size : {Size{50, 50}, {1000, 600}, {8031, 40}}) {
+        GriddingRequest r = request(size, 0);
+        r.kernel_width = width;
+        r.padding = padding;
+        const GriddingPlan plan = plan_gridding(r);
+        BOOST_TEST(plan.options.kernel_u.width() == width);
+        BOOST_TEST(plan.options.kernel_v.width() == width);
+        BOOST_TEST(plan.options.nu >= padding * size.width);
+        BOOST_TEST(plan.options.nv >= padding * size.height);
+        BOOST_TEST_INFO("padding " << padding << " of " << size.width << " × " << size.height);
+        BOOST_CHECK_NO_THROW(make_plane_transform(plan.options));
+      }
+}
+
+BOOST_AUTO_TEST_CASE(what_cannot_be_meant_is_refused) {
+  const auto refused = [](auto change) {
+    GriddingRequest r = request({64, 64}, 1e-6);
+    change(r);
+    BOOST_CHECK_THROW(plan_gridding(r), std::invalid_argument);
+  };
+  refused([](GriddingRequest& r) { r.accuracy = -1e-6; });
+  refused([](GriddingRequest& r) { r.accuracy = 1; });
+  refused([](GriddingRequest& r) { r.accuracy = std::nan(""); });
+  refused([](GriddingRequest& r) { r.kernel = "spline"; });
+  refused([](GriddingRequest& r) { r.kernel_width = 12; });
+  refused([](GriddingRequest& r) { r.kernel_width = -1; });
+  refused([](GriddingRequest& r) { r.padding = 1.01; });
+  refused([](GriddingRequest& r) { r.padding = 11; });
+}
+
+BOOST_AUTO_TEST_CASE(every_decision_says_why) {
+  for (const Decision& decision : plan_gridding(request({640, 480}, 1e-5)).decisions) {
+    BOOST_TEST(!decision.item.empty());
+    BOOST_TEST(!decision.decision.empty());
+    BOOST_TEST(!decision.because.empty());
+  }
+}
+
+BOOST_AUTO_TEST_SUITE_END()

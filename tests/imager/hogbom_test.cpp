@@ -1,0 +1,154 @@
+#include "imager/hogbom.h"
+
+#include <boost/test/data/test_case.hpp>
+#include <boost/test/unit_test.hpp>
+
+#include "imager/noise.h"
+#include "tests/imager/comparison.h"
+
+namespace bdata = boost::unit_test::data;
+using namespace misfit;
+using namespace misfit::imager;
+using namespace misfit::imager::testing;
+
+namespace {
+
+/// 1 at the centre pixel, random sidelobes elsewhere.
+Image random_psf(int width, int height, double sidelobes) {
+  Image psf = random_image(width, height, 99);
+  for (double& pixel : psf.pixel) pixel *= sidelobes;
+  psf.at(height / 2, width / 2) = 1;
+  return psf;
+}
+
+struct Cleaned {
+  MinorCycleReport report;
+  Image model;
+};
+
+Cleaned cleaned(const Image& residual, const Image& psf, const MinorCycleOptions& options) {
+  Cleaned result{{}, Image(residual.width, residual.height)};
+  result.report = hogbom(residual, psf, options, result.model);
+  return result;
+}
+
+/// The definition, in double precision.
+Cleaned plain(Image residual, const Image& psf, const MinorCycleOptions& options) {
+  Cleaned result{{}, Image(residual.width, residual.height)};
+  while (true) {
+    const Peak peak = find_peak(residual);
+    result.report.peak_jy = std::abs(peak.value);
+    if (result.report.iterations == options.max_iterations || result.report.peak_jy <= options.threshold_jy) return result;
+    const double component = options.gain * peak.value;
+    result.model.at(peak.row, peak.column) += component;
+    result.report.flux_jy += component;
+    ++result.report.iterations;
+    for (int r = 0; r < residual.height; ++r)
+      for (int c = 0; c < residual.width; ++c) {
+        const int psf_row = r - peak.row + psf.height / 2, psf_column = c - peak.column + psf.width / 2;
+        if (psf_row >= 0 && psf_row < psf.height && psf_column >= 0 && psf_column < psf.width)
+          residual.at(r, c) -= component * psf.at(psf_row, psf_column);
+      }
+  }
+}
+
+}  // namespace
+
+BOOST_AUTO_TEST_SUITE(hogbom)
+
+BOOST_DATA_TEST_CASE(components_are_those_of_the_plain_double_loop,
+                     bdata::make({1, 2, 7, 16, 33, 40}) ^ bdata::make({1, 5, 1, 16, 21, 150}), width, height) {
+  const Image residual = random_image(width, height, 1), psf = random_psf(width, height, 0.05);
+  for (const double gain : {0.1, 0.5, 1.0}) {
+    const MinorCycleOptions options{
+        .gain = gain, .max_iterations = 100, .threshold_jy = 0.3, .threads = 3, .stop_requested = {}};
+    const Cleaned is = cleaned(residual, psf, options), should = plain(residual, psf, options);
+    BOOST_TEST(is.report.iterations == should.report.iterations);
+    // Single precision: each of 100 subtractions rounds by 6e-8 of a value near 1.
+    BOOST_TEST(distance(is.model.pixel, should.model.pixel) <= 1e-5 * norm(should.model.pixel));
+    BOOST_TEST(std::abs(is.report.flux_jy - should.report.flux_jy) < 1e-4);
+    BOOST_TEST(std::abs(is.report.peak_jy - should.report.peak_jy) < 1e-5);
+  }
+}
+
+BOOST_AUTO_TEST_CASE(the_result_is_the_same_bit_for_bit_for_any_number_of_threads) {
+  const Image residual = random_image(50, 400, 2), psf = random_psf(50, 400, 0.03);
+  MinorCycleOptions options{.gain = 0.2, .max_iterations = 300, .threshold_jy = 0, .threads = 1, .stop_requested = {}};
+  const Cleaned one = cleaned(residual, psf, options);
+  for (const int threads : {2, 3, 6, 50}) {
+    options.threads = threads;
+    const Cleaned many = cleaned(residual, psf, options);
+    BOOST_TEST((many.model.pixel == one.model.pixel));
+    BOOST_TEST(many.report.peak_jy == one.report.peak_jy);
+    BOOST_TEST(many.report.flux_jy == one.report.flux_jy);
+  }
+}
+
+BOOST_AUTO_TEST_CASE(an_image_of_zeros_has_nothing_to_clean) {
+  const Cleaned is = cleaned(Image(9, 7), random_psf(9, 7, 0.1), {.max_iterations = 10, .stop_requested = {}});
+  BOOST_TEST(is.report.iterations == 0);
+  BOOST_TEST(is.report.peak_jy == 0);
+  BOOST_TEST(norm(is.model.pixel) == 0);
+}
+
+BOOST_AUTO_TEST_CASE(a_single_pixel_loses_gain_times_its_value_each_time) {
+  Image residual(1, 1), psf(1, 1);
+  residual.at(0, 0) = 2;
+  psf.at(0, 0) = 1;
+  const Cleaned is = cleaned(residual, psf, {.gain = 0.25, .max_iterations = 3, .stop_requested = {}});
+  BOOST_TEST(is.report.peak_jy == 2 * 0.75 * 0.75 * 0.75);
+  BOOST_TEST(is.model.at(0, 0) == 2 - is.report.peak_jy);
+}
+
+BOOST_AUTO_TEST_CASE(a_negative_peak_becomes_a_negative_component) {
+  Image residual(8, 8);
+  residual.at(2, 5) = -4;
+  residual.at(6, 1) = 3;
+  const Cleaned is = cleaned(residual, random_psf(8, 8, 0), {.gain = 0.5, .max_iterations = 1, .stop_requested = {}});
+  BOOST_TEST(is.model.at(2, 5) == -2);
+  BOOST_TEST(is.report.flux_jy == -2);
+  BOOST_TEST(is.report.peak_jy == 3);
+}
+
+BOOST_AUTO_TEST_CASE(gain_one_takes_isolated_sources_at_once) {
+  Image sky(30, 20);
+  sky.at(0, 0) = 1;
+  sky.at(19, 29) = -2;
+  sky.at(7, 13) = 3;
+  const Cleaned is = cleaned(sky, random_psf(30, 20, 0), {.gain = 1, .max_iterations = 10, .stop_requested = {}});
+  BOOST_TEST(is.report.iterations == 3);
+  BOOST_TEST((is.model.pixel == sky.pixel));
+}
+
+BOOST_AUTO_TEST_CASE(a_threshold_at_or_above_the_peak_leaves_everything) {
+  Image residual(5, 5);
+  residual.at(1, 1) = 0.5;
+  for (const double threshold : {0.5, 0.6}) {
+    const MinorCycleOptions options{.max_iterations = 10, .threshold_jy = threshold, .stop_requested = {}};
+    const Cleaned is = cleaned(residual, random_psf(5, 5, 0), options);
+    BOOST_TEST(is.report.iterations == 0);
+    BOOST_TEST(is.report.peak_jy == 0.5);
+  }
+}
+
+BOOST_AUTO_TEST_CASE(components_add_to_the_model_that_is_there) {
+  Image residual(5, 5), model(5, 5);
+  residual.at(1, 1) = model.at(1, 1) = model.at(0, 0) = 1;
+  imager::hogbom(residual, random_psf(5, 5, 0), {.gain = 0.5, .max_iterations = 1, .stop_requested = {}}, model);
+  BOOST_TEST(model.at(1, 1) == 1.5);
+  BOOST_TEST(model.at(0, 0) == 1);
+}
+
+BOOST_AUTO_TEST_CASE(the_user_can_stop_it) {
+  const MinorCycleOptions options{.max_iterations = 1000000, .stop_requested = [] { return true; }};
+  const Cleaned is = cleaned(random_image(8, 8, 3), random_psf(8, 8, 0), options);
+  BOOST_TEST(is.report.iterations == 0);
+}
+
+BOOST_AUTO_TEST_CASE(images_of_different_sizes_are_refused) {
+  Image model(5, 5);
+  BOOST_CHECK_THROW(imager::hogbom(Image(5, 5), Image(5, 6), {}, model), std::invalid_argument);
+  BOOST_CHECK_THROW(imager::hogbom(Image(6, 5), Image(6, 5), {}, model), std::invalid_argument);
+}
+
+BOOST_AUTO_TEST_SUITE_END()

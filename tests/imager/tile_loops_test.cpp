@@ -1,0 +1,144 @@
+#include "imager/tile_loops.h"
+
+#include <hwy/targets.h>
+
+#include <boost/mpl/list.hpp>
+#include <boost/test/unit_test.hpp>
+#include <limits>
+#include <random>
+
+using namespace misfit;
+using namespace misfit::imager;
+
+namespace {
+
+using Precisions = boost::mpl::list<float, double>;
+
+constexpr int tile = 16;
+constexpr int degree = 5;
+
+/// Makes the loops run with one instruction set while it lives.
+class OnlyTarget {
+ public:
+  explicit OnlyTarget(std::int64_t target) { hwy::SetSupportedTargetsForTest(target); }
+  ~OnlyTarget() { hwy::SetSupportedTargetsForTest(0); }
+  OnlyTarget(const OnlyTarget&) = delete;
+  OnlyTarget& operator=(const OnlyTarget&) = delete;
+};
+
+/// Calls test(width) for every width with every instruction set of this machine.
+template <typename Test>
+void for_each_width_and_target(const Test& test) {
+  for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {
+    const OnlyTarget only(target);
+    for (int width = 1; width <= 16; ++width) {
+      BOOST_TEST_CONTEXT("target " << hwy::TargetName(target) << " width " << width) {
+        test(width);
+      }
+    }
+  }
+}
+
+kernels::PiecewisePolynomial random_polynomial(int width, unsigned seed) {
+  std::mt19937_64 random(seed);
+  std::uniform_real_distribution<double> uniform(-1, 1);
+  kernels::PiecewisePolynomial polynomial{Eigen::MatrixXd(degree + 1, width)};
+  for (double& coefficient : polynomial.coefficient.reshaped()) coefficient = uniform(random);
+  return polynomial;
+}
+
+template <typename Real>
+TileBatch<Real> random_batch(int count) {
+  std::mt19937_64 random(1);
+  std::uniform_real_distribution<Real> uniform(-1, 1);
+  TileBatch<Real> batch;
+  batch.count = count;
+  for (int i = 0; i < count; ++i) {
+    batch.column[i] = static_cast<int>(random() % tile);
+    batch.row[i] = static_cast<int>(random() % tile);
+    for (Real* values : {batch.real, batch.imaginary, batch.weight}) values[i] = uniform(random);
+    batch.tu[i] = uniform(random) / 2;
+    batch.tv[i] = uniform(random) / 2;
+  }
+  if (count > 1) batch.column[0] = batch.row[0] = tile - 1, batch.column[1] = batch.row[1] = 0;
+  return batch;
+}
+
+template <typename Real>
+TileBuffer<Real> random_buffer(int padded, int planes) {
+  std::mt19937_64 random(2);
+  std::uniform_real_distribution<Real> uniform(-1, 1);
+  TileBuffer<Real> buffer(tile, padded, planes);
+  for (Real& cell : buffer.cell) cell = uniform(random);
+  return buffer;
+}
+
+template <typename Real>
+std::size_t index(const TileBuffer<Real>& buffer, int row, int plane, int column) {
+  const int i = (row * buffer.planes + plane) * buffer.columns + column;
+  return static_cast<std::size_t>(i);
+}
+
+/// No tap exceeds Σ_d 2^−d < 2, so no term exceeds 4; it is rounded once for each of some 2 · degree + 4 operations, and every
+/// one of `terms` additions rounds a sum of no more than that.
+template <typename Real>
+double rounding(int terms) {
+  return 4.0 * terms * (2 * degree + 4 + terms) * double{std::numeric_limits<Real>::epsilon()};
+}
+
+}  // namespace
+
+BOOST_AUTO_TEST_SUITE(tile_loops)
+
+BOOST_AUTO_TEST_CASE_TEMPLATE(spread_adds_the_plain_double_loop_for_every_width_and_instruction_set, Real, Precisions) {
+  for_each_width_and_target([](int width) {
+    const auto u = random_polynomial(width, 3), v = random_polynomial(width, 4);
+    const TapTable<Real> table_u(u), table_v(v);
+    for (const int planes : {2, 3})
+      for (const int count : {0, 1, 20}) {
+        const TileBatch<Real> batch = random_batch<Real>(count);
+        TileBuffer<Real> buffer = random_buffer<Real>(table_u.padded, planes);
+        std::vector<double> should(buffer.cell.begin(), buffer.cell.end());
+        for (int i = 0; i < count; ++i) {
+          const Eigen::VectorXd along_u = u(double{batch.tu[i]}), along_v = v(double{batch.tv[i]});
+          const double value[] = {double{batch.real[i]}, double{batch.imaginary[i]}, double{batch.weight[i]}};
+          for (int r = 0; r < width; ++r)
+            for (int plane = 0; plane < planes; ++plane)
+              for (int c = 0; c < width; ++c)
+                should[index(buffer, batch.row[i] + r, plane, batch.column[i] + c)] += along_u[c] * along_v[r] * value[plane];
+        }
+        spread(table_u, table_v, batch, buffer);
+        double largest = 0;
+        for (std::size_t i = 0; i < should.size(); ++i) largest = std::max(largest, std::abs(buffer.cell[i] - should[i]));
+        BOOST_TEST(largest <= rounding<Real>(count));
+      }
+  });
+}
+
+BOOST_AUTO_TEST_CASE_TEMPLATE(interpolation_is_the_plain_double_sum_for_every_width_and_instruction_set, Real, Precisions) {
+  for_each_width_and_target([](int width) {
+    const auto u = random_polynomial(width, 5), v = random_polynomial(width, 6);
+    const TapTable<Real> table_u(u), table_v(v);
+    const TileBuffer<Real> buffer = random_buffer<Real>(table_u.padded, 2);
+    TileBatch<Real> batch = random_batch<Real>(TileBatch<Real>::capacity);
+    interpolate(table_u, table_v, buffer, batch);
+    double largest = 0;
+    for (int i = 0; i < batch.count; ++i) {
+      const Eigen::VectorXd along_u = u(double{batch.tu[i]}), along_v = v(double{batch.tv[i]});
+      double real = 0, imaginary = 0;
+      for (int r = 0; r < width; ++r)
+        for (int c = 0; c < width; ++c) {
+          real += along_u[c] * along_v[r] * double{buffer.cell[index(buffer, batch.row[i] + r, 0, batch.column[i] + c)]};
+          imaginary += along_u[c] * along_v[r] * double{buffer.cell[index(buffer, batch.row[i] + r, 1, batch.column[i] + c)]};
+        }
+      largest = std::max({largest, std::abs(batch.real[i] - real), std::abs(batch.imaginary[i] - imaginary)});
+    }
+    BOOST_TEST(largest <= rounding<Real>(width * width));
+  });
+}
+
+BOOST_AUTO_TEST_CASE(a_kernel_wider_than_the_loops_is_refused) {
+  BOOST_CHECK_THROW(TapTable<float>(random_polynomial(17, 7)), std::invalid_argument);
+}
+
+BOOST_AUTO_TEST_SUITE_END()

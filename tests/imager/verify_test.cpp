@@ -1,0 +1,94 @@
+#include "imager/verify.h"
+
+#include <boost/test/unit_test.hpp>
+
+#include "imager/gridding_plan.h"
+#include "tests/imager/comparison.h"
+#include "tests/imager/random_samples.h"
+
+using namespace misfit::imager;
+using namespace misfit::imager::testing;
+
+namespace {
+
+constexpr int count = 400;
+const ImageGeometry geometry{50, 40, 1e-5, {}};
+
+std::vector<VisibilityBlock> samples() {
+  return {random_samples(100, 3, geometry.cell_rad, 1), random_samples(80, 2, geometry.cell_rad, 2)};
+}
+
+DirtyImages images_of(const Transform& transform) {
+  StageTimes times;
+  return make_dirty_images(stored(samples()), transform, true, ignore_progress, times);
+}
+
+MeasuredError measured(const Transform& transform, const DirtyImages& images) {
+  return measure_error(stored(samples()), transform, geometry, images, count, 2, ignore_progress);
+}
+
+std::unique_ptr<Transform> bad_transform(int kernel_width) {
+  GriddingRequest request;
+  request.geometry = geometry;
+  request.accuracy = 0;
+  request.kernel_width = kernel_width;
+  request.padding = 1.3;
+  return make_plane_transform(plan_gridding(request).options);
+}
+
+}  // namespace
+
+BOOST_AUTO_TEST_SUITE(verify)
+
+BOOST_AUTO_TEST_CASE(an_exact_transform_has_no_error_but_rounding) {
+  const DirectTransform exact(geometry, 2);
+  const MeasuredError error = measured(exact, images_of(exact));
+  // Sums of 460 terms in two orders.
+  BOOST_TEST(error.rms < 1e-13);
+  BOOST_TEST(error.max < 1e-12);
+  BOOST_TEST(error.predict_rms < 1e-13);
+}
+
+BOOST_AUTO_TEST_CASE(the_error_of_a_bad_kernel_is_that_of_the_whole_image) {
+  const Image exact = images_of(DirectTransform(geometry, 2)).dirty;
+  for (const int kernel_width : {2, 3, 4}) {
+    const auto transform = bad_transform(kernel_width);
+    const DirtyImages images = images_of(*transform);
+    const MeasuredError error = measured(*transform, images);
+    const double truth = distance(images.dirty.pixel, exact.pixel) / norm(images.dirty.pixel);
+    // 400 of 2000 pixels: their mean square scatters by less than a tenth.
+    BOOST_TEST(error.rms < 1.5 * truth);
+    BOOST_TEST(error.rms > truth / 1.5);
+    BOOST_TEST(error.max >= error.rms);
+  }
+}
+
+BOOST_AUTO_TEST_CASE(the_error_of_prediction_is_that_of_all_samples) {
+  const VisibilityBlock block = random_samples(2000, 1, geometry.cell_rad, 3);
+  const Image model = random_image(geometry.width, geometry.height, 4);
+  for (const int kernel_width : {2, 3, 4}) {
+    const auto transform = bad_transform(kernel_width);
+    const double truth =
+        relative_error(transform->predict(model)->at(block), DirectTransform(geometry, 2).predict(model)->at(block));
+    const double is = measured(*transform, images_of(*transform)).predict_rms;
+    // Another model and other samples, as random as these.
+    BOOST_TEST(is < 1.5 * truth);
+    BOOST_TEST(is > truth / 1.5);
+  }
+}
+
+BOOST_AUTO_TEST_CASE(a_neglected_w_counts_as_error) {
+  const ImageGeometry wide{50, 40, 1e-2, {}};
+  VisibilityBlock block = random_samples(100, 1, wide.cell_rad, 5);
+  for (std::size_t row = 0; row < 100; ++row) block.uvw_m[3 * row + 2] = 30;
+  GriddingRequest request;
+  request.geometry = wide;
+  const auto transform = make_plane_transform(plan_gridding(request).options);
+  StageTimes times;
+  const DirtyImages images = make_dirty_images(stored({block}), *transform, true, ignore_progress, times);
+  const MeasuredError error = measure_error(stored({block}), *transform, wide, images, count, 2, ignore_progress);
+  BOOST_TEST(error.rms > 0.1);
+  BOOST_TEST(error.predict_rms > 0.1);
+}
+
+BOOST_AUTO_TEST_SUITE_END()
