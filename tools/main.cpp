@@ -1,5 +1,7 @@
 #include <cstdio>
+#include <cstdlib>
 #include <exception>
+#include <new>
 #include <stdexcept>
 
 #include "tools/command.h"
@@ -20,6 +22,7 @@ int fail(const char* message, ExitCode code) {
 int main(int argc, char** argv) {
   using namespace misfit::tools;
   catch_interrupts();
+  setenv("HOME", "/", 0);  // casacore looks for its settings there, and ends where there is none
   CLI::App program("misfit images radio-interferometry MeasurementSets with least-misfit gridding functions", "misfit");
   program.set_version_flag("--version", "misfit " + std::string(version));
   program.require_subcommand(1);
@@ -39,6 +42,8 @@ int main(int argc, char** argv) {
     return fail(error.what(), stopped_by_user);
   } catch (const std::invalid_argument& error) {
     return fail(error.what(), wrong_usage);
+  } catch (const std::bad_alloc&) {
+    return fail("out of memory; expected a smaller image, or memory for this one", unusable_data);
   } catch (const std::exception& error) {
     return fail(error.what(), unusable_data);
   }
