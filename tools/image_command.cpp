@@ -59,6 +59,7 @@ class ImageRun {
     check_writable_folder(o_.imagename);
     set_ = std::make_unique<ms_io::MeasurementSet>(o_.vis, o_.selection, o_.datacolumn);
     geometry_ = geometry_of(o_, set_->observation().phase_centre);
+    require_memory(geometry_, o_.niter > 0 ? 5 : 2);  // dirty image and PSF; residual, model and restored image
   }
 
   void load() {

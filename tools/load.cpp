@@ -59,4 +59,13 @@ LoadedVisibilities load_visibilities(const ms_io::MeasurementSet& set, const ima
   return loaded;
 }
 
+void require_memory(const imager::ImageGeometry& geometry, int images) {
+  const double bytes = static_cast<double>(geometry.pixels()) * sizeof(double) * images;
+  if (bytes < physical_memory_bytes()) return;
+  throw std::runtime_error("an image of " + std::to_string(geometry.width) + " × " + std::to_string(geometry.height) +
+                           " pixels needs at least " + significant(bytes / gib, 3) +
+                           " GiB; expected one that fits the machine's " + significant(physical_memory_bytes() / gib, 3) +
+                           " GiB");
+}
+
 }  // namespace misfit::tools

@@ -23,4 +23,7 @@ struct LoadedVisibilities {
 LoadedVisibilities load_visibilities(const ms_io::MeasurementSet& set, const imager::Progress& progress,
                                      imager::StageTimes& times);
 
+/// Throws std::runtime_error unless `images` images of this size, in double precision, fit the machine's memory.
+void require_memory(const imager::ImageGeometry& geometry, int images);
+
 }  // namespace misfit::tools
