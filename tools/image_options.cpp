@@ -4,6 +4,7 @@
 #include <stdexcept>
 
 #include "imager/gridding_plan.h"
+#include "tools/config_file.h"
 #include "tools/quantity.h"
 
 namespace misfit::tools {
@@ -97,15 +98,7 @@ imager::CleanOptions clean_options(const ImageOptions& o, int threads) {
 
 nlohmann::json option_values(const CLI::App& command) {
   nlohmann::json values = nlohmann::json::object();
-  for (const CLI::Option* option : command.get_options()) {
-    if (option->get_lnames().empty() || !option->get_configurable()) continue;
-    std::string value = option->get_default_str();
-    if (option->count() > 0) {
-      value.clear();
-      for (const std::string& part : option->results()) value += (value.empty() ? "" : " ") + part;
-    }
-    values[option->get_lnames().front()] = value;
-  }
+  for (const auto& [name, value] : options_in_force(command)) values[name] = value;
   return values;
 }
 
