@@ -179,6 +179,18 @@ BOOST_AUTO_TEST_CASE(data_of_zeros_make_an_image_of_zeros) {
     for (const double pixel : pixels_of(folder / "a", kind).pixel) BOOST_REQUIRE_EQUAL(pixel, 0);
 }
 
+BOOST_AUTO_TEST_CASE(a_clean_that_diverges_says_so_and_keeps_a_model_no_worse_than_none) {
+  const TemporaryFolder folder;
+  // Sources outside so small an image cannot be cleaned away.
+  succeed({"image", "--vis", snapshot(), "--imagename", folder / "a", "--imsize", "64", "--cell", "0.2arcsec", "--niter",
+           "1000000"});
+  const json clean = report_of(folder / "a")["clean"];
+  BOOST_TEST(clean["stop_code"] == 5);
+  BOOST_TEST(clean["peak_residual_jy"].get<double>() <= clean["major_cycles_log"][0]["peak_residual_jy"].get<double>());
+  for (const char* kind : {"residual", "model", "image"})
+    for (const double pixel : pixels_of(folder / "a", kind).pixel) BOOST_REQUIRE(std::isfinite(pixel));
+}
+
 BOOST_AUTO_TEST_CASE(the_number_of_threads_changes_no_bit) {
   const TemporaryFolder folder;
   const Arguments clean{"--niter", "100", "--threads"};
