@@ -43,7 +43,7 @@ int main(int argc, char** argv) {
   } catch (const std::invalid_argument& error) {
     return fail(error.what(), wrong_usage);
   } catch (const std::bad_alloc&) {
-    return fail("out of memory; expected a smaller image, or memory for this one", unusable_data);
+    return fail("out of memory; expected fewer pixels or channels, or more memory", unusable_data);
   } catch (const std::exception& error) {
     return fail(error.what(), unusable_data);
   }
