@@ -128,10 +128,14 @@ Beam fit_beam(const Image& psf, double cell_rad, BeamRegion region) {
     if (region == BeamRegion::quadrant) precision = fit_precision(quadrant(psf, lobe));
     if (!precision) precision = fit_precision(lobe.samples);
   }
-  if (!precision)
+  if (!precision) {
+    const bool too_few = lobe.samples.size() < needed;
     throw std::runtime_error("no beam can be fitted to the " + std::to_string(lobe.samples.size()) +
-                             " pixels of the PSF's main lobe; expected at least " + std::to_string(needed) +
-                             " in both directions: use a smaller cell");
+                             " pixels of the PSF's main lobe; expected " +
+                             (too_few ? "at least " + std::to_string(needed) + ": use a smaller cell"
+                                      : "a lobe that falls off in every direction within the image: "
+                                        "use a larger image, or data that cover more of the uv plane"));
+  }
   return beam_of(*precision, lobe.scale * cell_rad);
 }
 

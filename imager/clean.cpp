@@ -89,7 +89,7 @@ CleanResult clean(const VisibilitySource& source, const Transform& transform, co
       result.report.kept = cycles.size() - 1;
       best_model = result.model;
       best_residual = result.residual;
-    } else if (cycles.back().peak_residual_jy > divergence * cycles[result.report.kept].peak_residual_jy) {
+    } else if (!(cycles.back().peak_residual_jy <= divergence * cycles[result.report.kept].peak_residual_jy)) {
       end = Ending{CleanStop::diverging, "the residual grew to more than three times its smallest; the best model was kept"};
       result.model = std::move(best_model);
       result.residual = std::move(best_residual);

@@ -104,17 +104,6 @@ Choice choose(const GriddingRequest& request, const kernels::KernelFamily& famil
   return choice;
 }
 
-void check(const GriddingRequest& request, const kernels::KernelFamily& family) {
-  if (request.kernel_width != 0 && (request.kernel_width < family.min_width || request.kernel_width > family.max_width))
-    throw std::invalid_argument("kernel width " + std::to_string(request.kernel_width) + " not in [" +
-                                std::to_string(family.min_width) + ", " + std::to_string(family.max_width) +
-                                "], which kernel " + family.name + " offers");
-  if (request.padding != 0 && !(request.padding >= 1.02 && request.padding <= 10))
-    throw std::invalid_argument("padding " + text("%g", request.padding) + " not in [1.02, 10]");
-  if (!(request.accuracy >= 0 && request.accuracy < 1))
-    throw std::invalid_argument("accuracy " + text("%g", request.accuracy) + " not in (0, 1)");
-}
-
 Plan decisions_of(const GriddingRequest& request, const GriddingPlan& plan, const std::string& rejected) {
   const PlaneTransformOptions& o = plan.options;
   const std::string because_accuracy = request.accuracy == 0
@@ -141,9 +130,21 @@ Plan decisions_of(const GriddingRequest& request, const GriddingPlan& plan, cons
 
 }  // namespace
 
-GriddingPlan plan_gridding(const GriddingRequest& request) {
+void check_request(const GriddingRequest& request) {
   const kernels::KernelFamily& family = kernels::kernel_family(request.kernel);
-  check(request, family);
+  if (request.kernel_width != 0 && (request.kernel_width < family.min_width || request.kernel_width > family.max_width))
+    throw std::invalid_argument("kernel width " + std::to_string(request.kernel_width) + " not in [" +
+                                std::to_string(family.min_width) + ", " + std::to_string(family.max_width) +
+                                "], which kernel " + family.name + " offers");
+  if (request.padding != 0 && !(request.padding >= 1.02 && request.padding <= 10))
+    throw std::invalid_argument("padding " + text("%g", request.padding) + " not in [1.02, 10]");
+  if (!(request.accuracy >= 0 && request.accuracy < 1))
+    throw std::invalid_argument("accuracy " + text("%g", request.accuracy) + " not in (0, 1)");
+}
+
+GriddingPlan plan_gridding(const GriddingRequest& request) {
+  check_request(request);
+  const kernels::KernelFamily& family = kernels::kernel_family(request.kernel);
   const Choice choice = choose(request, family);
   if (!choice.cheapest && !request.best_effort)  // 1.06: two digits may round down by 5%
     throw std::invalid_argument("accuracy " + text("%g", request.accuracy) + " is out of reach of kernel " + family.name +

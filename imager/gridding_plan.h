@@ -30,8 +30,12 @@ struct GriddingPlan {
   Plan decisions;
 };
 
-/// Throws std::invalid_argument when the accuracy is out of reach of the kernel or of double precision; the message says what
-/// can be reached.
+/// Throws std::invalid_argument when the kernel is not known, or its width, the padding or the accuracy lie outside what can be
+/// asked; whether the accuracy can be reached takes plan_gridding to tell.
+void check_request(const GriddingRequest& request);
+
+/// Throws std::invalid_argument as check_request does, and when the accuracy is out of reach of the kernel or of double
+/// precision; the message says what can be reached.
 GriddingPlan plan_gridding(const GriddingRequest& request);
 
 }  // namespace misfit::imager

@@ -71,7 +71,9 @@ MinorCycleReport hogbom(const Image& residual, const Image& psf, const MinorCycl
       residual.height != model.height)
     throw std::invalid_argument("residual of " + std::to_string(residual.width) + " × " + std::to_string(residual.height) +
                                 " pixels: PSF and model are expected to have the same size");
+  constexpr double divergence = 3;  // as clean() judges major cycles
   Search search(residual, psf);
+  const double first_peak = std::abs(search.value());
   MinorCycleReport report;
   bool done = false;
   float factor = 0;  // what all threads subtract; the peak itself changes while they do
@@ -80,7 +82,8 @@ MinorCycleReport hogbom(const Image& residual, const Image& psf, const MinorCycl
     const double value = search.value();
     report.peak_jy = std::abs(value);
     const bool stopped = options.stop_requested && report.iterations % 64 == 0 && options.stop_requested();
-    done = stopped || report.iterations >= options.max_iterations || !(report.peak_jy > options.threshold_jy);
+    done = stopped || report.iterations >= options.max_iterations || !(report.peak_jy > options.threshold_jy) ||
+           !(report.peak_jy <= divergence * first_peak);
     if (done) return;
     const double component = options.gain * value;
     model.at(search.row(), search.column()) += component;

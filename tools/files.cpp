@@ -19,6 +19,8 @@ void check_writable_folder(const std::string& path) {
   if (!fs::is_directory(folder)) throw std::runtime_error("output folder " + folder.string() + " does not exist");
   if (access(folder.c_str(), W_OK | X_OK) != 0)
     throw std::runtime_error("output folder " + folder.string() + " cannot be written: " + std::strerror(errno));
+  if (fs::exists(folder / "table.dat"))
+    throw std::runtime_error("output folder " + folder.string() + " is a casacore table; expected a folder of files");
 }
 
 void write_file(const std::string& path, const std::string& content) {
@@ -40,9 +42,10 @@ void write_file(const std::string& path, const std::string& content) {
 
 std::string read_file(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
+  file.peek();  // a folder opens, and fails here
   std::ostringstream content;
   content << file.rdbuf();
-  if (!file) throw std::runtime_error("cannot read " + path);
+  if (!file.is_open() || file.bad()) throw std::runtime_error("cannot read " + path);
   return content.str();
 }
 

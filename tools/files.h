@@ -4,7 +4,8 @@
 
 namespace misfit::tools {
 
-/// Throws std::runtime_error that names the folder when no file can be made beside `path`.
+/// Throws std::runtime_error that names the folder when no file can or should be made beside `path`:
+/// casacore deletes a table with all that lies in it.
 void check_writable_folder(const std::string& path);
 
 /// Writes `content`; the file appears under its name only when complete. Throws std::runtime_error that names the path.

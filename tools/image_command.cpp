@@ -5,6 +5,7 @@
 
 #include "imager/parallel.h"
 #include "tools/command.h"
+#include "tools/config_file.h"
 #include "tools/files.h"
 #include "tools/image_options.h"
 #include "tools/image_products.h"
@@ -231,14 +232,17 @@ class ImageRun {
 void add_image_command(CLI::App& program, const std::string& command_line) {
   CLI::App* command = program.add_subcommand("image", "Image and CLEAN a MeasurementSet");
   const auto options = std::make_shared<ImageOptions>();
+  add_config_option(*command);
   declare(*command, *options);
-  command->set_config("--config", "", "Read options from an INI file; those given here win");
   command->callback([command, options, command_line] {
-    const bool accuracy_given = command->get_option("--accuracy")->count() > 0;
-    if (!accuracy_given && options->kernel_width != 0 && options->padding != 0) options->accuracy = 0;
+    CLI::Option* accuracy = command->get_option("--accuracy");
+    if (accuracy->count() == 0 && options->kernel_width != 0 && options->padding != 0) {
+      options->accuracy = 0;
+      accuracy->default_str("0");
+    }
     check(*options);
     ImageRun(*options, command_line, option_values(*command)).run();
-    write_file(options->imagename + ".last.ini", command->config_to_str(true, false));
+    write_file(options->imagename + ".last.ini", config_text(*command));
   });
 }
 

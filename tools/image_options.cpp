@@ -4,6 +4,7 @@
 #include <stdexcept>
 
 #include "imager/gridding_plan.h"
+#include "tools/config_file.h"
 #include "tools/memory.h"
 #include "tools/quantity.h"
 
@@ -21,6 +22,8 @@ std::string text(double value) {
 }
 
 void check_image(const ImageOptions& o) {
+  if (o.imagename.empty() || o.imagename.back() == '/')
+    refuse("imagename", "'" + o.imagename + "'", "a name for files to begin with, not a folder");
   constexpr int largest = 65536;
   for (const int size : o.imsize)
     if (size < 1 || size > largest) refuse("imsize", std::to_string(size), "1 to 65536 pixels");
@@ -49,6 +52,18 @@ void check_clean(const ImageOptions& o) {
   if (o.nmajor < -1) refuse("nmajor", std::to_string(o.nmajor), "-1 (no limit) or more");
 }
 
+/// What needs neither the data nor the kernel's solution.
+void check_gridding(const ImageOptions& o) {
+  const bool accuracy_is_free = o.kernel_width != 0 && o.padding != 0;
+  if (!(o.accuracy > 0 && o.accuracy < 1) && !(o.accuracy == 0 && accuracy_is_free))
+    refuse("accuracy", text(o.accuracy), "a number above 0 and below 1");
+  imager::GriddingRequest request;
+  request.kernel = o.kernel;
+  request.kernel_width = o.kernel_width;
+  request.padding = o.padding;
+  imager::check_request(request);
+}
+
 }  // namespace
 
 void declare(CLI::App& command, ImageOptions& o) {
@@ -74,18 +89,17 @@ void declare(CLI::App& command, ImageOptions& o) {
   command.add_option("--minpsffraction", o.minpsffraction, "… at most this deep, as a part of the peak");
   command.add_option("--maxpsffraction", o.maxpsffraction, "… and at least this deep");
   command.add_option("--nmajor", o.nmajor, "Major cycles at most; -1 = no limit");
-  command.add_option("--verify", o.verify, "Compare this many random pixels and visibilities with the direct transform")
-      ->check(CLI::NonNegativeNumber);
-  command.add_option("--threads", o.threads, "Threads; 0 means all cores")->check(CLI::NonNegativeNumber);
+  command.add_option("--verify", o.verify, "Compare this many random pixels and visibilities with the direct transform");
+  command.add_option("--threads", o.threads, "Threads; 0 means all cores");
   command.add_flag("--quiet", o.quiet, "Print nothing but errors");
 }
 
 void check(const ImageOptions& o) {
   check_image(o);
   check_clean(o);
-  const bool kernel_given = o.kernel_width != 0 && o.padding != 0;  // accuracy 0: whatever that kernel reaches
-  if (!(o.accuracy >= 0 && o.accuracy < 1) || (o.accuracy == 0 && !kernel_given))
-    refuse("accuracy", text(o.accuracy), "a number above 0 and below 1");
+  check_gridding(o);
+  if (o.verify < 0) refuse("verify", std::to_string(o.verify), "0 or more");
+  if (o.threads < 0) refuse("threads", std::to_string(o.threads), "0 (all cores) or more");
 }
 
 imager::ImageGeometry geometry_of(const ImageOptions& o, const imager::SkyDirection& phase_centre) {
@@ -108,15 +122,7 @@ imager::CleanOptions clean_options(const ImageOptions& o, int threads) {
 
 nlohmann::json option_values(const CLI::App& command) {
   nlohmann::json values = nlohmann::json::object();
-  for (const CLI::Option* option : command.get_options()) {
-    if (option->get_lnames().empty() || !option->get_configurable()) continue;
-    std::string value = option->get_default_str();
-    if (option->count() > 0) {
-      value.clear();
-      for (const std::string& part : option->results()) value += (value.empty() ? "" : " ") + part;
-    }
-    values[option->get_lnames().front()] = value;
-  }
+  for (const auto& [name, value] : options_in_force(command)) values[name] = value;
   return values;
 }
 

@@ -1,6 +1,5 @@
 #include "tools/image_products.h"
 
-#include <algorithm>
 #include <cmath>
 
 #include "tools/files.h"
@@ -21,9 +20,8 @@ std::vector<imager::HeaderCard> error_cards(const RunReport& report) {
     cards.push_back({"ERRMMAX", report.measured->max, "largest measured error over image RMS"});
     cards.push_back({"ERRPRED", report.measured->predict_rms, "measured RMS error of prediction"});
   }
-  cards.erase(
-      std::remove_if(cards.begin(), cards.end(), [](const imager::HeaderCard& card) { return !std::isfinite(card.value); }),
-      cards.end());
+  // An image of zeros has no relative error, and a FITS header no number for that.
+  std::erase_if(cards, [](const imager::HeaderCard& card) { return !std::isfinite(card.value); });
   return cards;
 }
 

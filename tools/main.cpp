@@ -1,4 +1,5 @@
 #include <cstdio>
+#include <cstdlib>
 #include <exception>
 #include <new>
 #include <stdexcept>
@@ -21,6 +22,7 @@ int fail(const char* message, ExitCode code) {
 int main(int argc, char** argv) {
   using namespace misfit::tools;
   catch_interrupts();
+  setenv("HOME", "/", 0);  // casacore looks for its settings there, and ends where there is none
   CLI::App program("misfit images radio-interferometry MeasurementSets with least-misfit gridding functions", "misfit");
   program.set_version_flag("--version", "misfit " + std::string(version));
   program.require_subcommand(1);
@@ -41,7 +43,7 @@ int main(int argc, char** argv) {
   } catch (const std::invalid_argument& error) {
     return fail(error.what(), wrong_usage);
   } catch (const std::bad_alloc&) {
-    return fail("out of memory", unusable_data);
+    return fail("out of memory; expected fewer pixels or channels, or more memory", unusable_data);
   } catch (const std::exception& error) {
     return fail(error.what(), unusable_data);
   }

@@ -193,6 +193,16 @@ bool run_gnuplot(const fs::path& folder, int& status) {
   return true;
 }
 
+/// Whether a PNG file is there to its last chunk, IEND; gnuplot says nothing when the disk is full.
+bool is_complete(const fs::path& path) {
+  const std::string end("IEND\xae\x42\x60\x82", 8);
+  std::ifstream file(path, std::ios::binary);
+  file.seekg(-static_cast<std::streamoff>(end.size()), std::ios::end);
+  std::string last(end.size(), '\0');
+  file.read(last.data(), static_cast<std::streamsize>(last.size()));
+  return file && last == end;
+}
+
 }  // namespace
 
 std::string draw_pictures(const std::vector<Picture>& pictures) {
@@ -213,9 +223,10 @@ std::string draw_pictures(const std::vector<Picture>& pictures) {
     }
     return "Pictures are left out because gnuplot failed: " + line;
   }
-  for (std::size_t number = 0; number < pictures.size(); ++number) {
-    fs::rename(work.path() / (std::to_string(number) + ".png"), pictures[number].path);
-  }
+  const auto drawn = [&](std::size_t number) { return work.path() / (std::to_string(number) + ".png"); };
+  for (std::size_t number = 0; number < pictures.size(); ++number)
+    if (!is_complete(drawn(number))) return "Pictures are left out because gnuplot could not finish them; is the disk full?";
+  for (std::size_t number = 0; number < pictures.size(); ++number) fs::rename(drawn(number), pictures[number].path);
   return "";
 }
 

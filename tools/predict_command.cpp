@@ -62,6 +62,8 @@ void warn_of_w(const ms_io::MeasurementSet& set, const imager::ImageGeometry& ge
 
 Model image_model(const PredictOptions& o, const ms_io::MeasurementSet& set, int threads, ProgressLine& progress) {
   const imager::SkyImage image = imager::read_fits(o.model);
+  if (image.unit != "Jy/pixel")
+    throw std::runtime_error(o.model + " has the unit " + (image.unit.empty() ? "none" : image.unit) + ", expected Jy/pixel");
   check_centre(image, set.observation().phase_centre, o.model);
   if (!std::all_of(image.image.pixel.begin(), image.image.pixel.end(), [](double x) { return std::isfinite(x); }))
     throw std::runtime_error(o.model + " has pixels that are not finite; a model needs a number in each");
@@ -87,6 +89,9 @@ Model component_model(const PredictOptions& o, const ms_io::MeasurementSet& set,
 }
 
 void predict(const PredictOptions& o) {
+  if (!(o.accuracy > 0 && o.accuracy < 1))
+    throw std::invalid_argument("--accuracy " + significant(o.accuracy, 3) + ": expected a number above 0 and below 1");
+  if (o.threads < 0) throw std::invalid_argument("--threads " + std::to_string(o.threads) + ": expected 0 (all cores) or more");
   if (o.model.empty() == o.components.empty()) throw std::invalid_argument("expected either --model or --components");
   ProgressLine progress(o.quiet);
   const int threads = o.threads == 0 ? imager::available_threads() : o.threads;
@@ -121,9 +126,9 @@ void add_predict_command(CLI::App& program) {
   command->add_option("--column", o->column, "Column to write; made when it does not exist");
   command->add_option("--field", o->selection.field, "Fields, in CASA's selection syntax");
   command->add_option("--spw", o->selection.spectral_window, "Spectral windows and channels, in CASA's selection syntax");
-  command->add_option("--accuracy", o->accuracy, "Relative accuracy of the visibilities")->check(CLI::Range(1e-14, 0.5));
+  command->add_option("--accuracy", o->accuracy, "Relative accuracy of the visibilities");
   command->add_option("--kernel", o->kernel, "Gridding function");
-  command->add_option("--threads", o->threads, "Threads; 0 means all cores")->check(CLI::NonNegativeNumber);
+  command->add_option("--threads", o->threads, "Threads; 0 means all cores");
   command->add_flag("--quiet", o->quiet, "Print nothing");
   command->callback([o] { predict(*o); });
 }

@@ -23,7 +23,7 @@ double parse(const std::string& text, const std::string& what, const Units& unit
   const char* end = text.data() + text.size();
   double number = 0;
   const auto [rest, error] = std::from_chars(begin, end, number);
-  if (error != std::errc() || !std::isfinite(number)) fail();
+  if (text.starts_with("+-") || error != std::errc() || !std::isfinite(number)) fail();
   std::string unit(rest, end);
   unit.erase(0, unit.find_first_not_of(' '));
   for (const auto& [name, size] : units)

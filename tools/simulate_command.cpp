@@ -43,6 +43,15 @@ void check(const SimulateOptions& o) {
   if (!(o.hours >= 0)) throw std::invalid_argument("--hours " + std::to_string(o.hours) + ": expected 0 (a snapshot) or more");
   if (!(o.interval > 0))
     throw std::invalid_argument("--interval " + std::to_string(o.interval) + ": expected more than 0 seconds");
+  if (o.threads < 0) throw std::invalid_argument("--threads " + std::to_string(o.threads) + ": expected 0 (all cores) or more");
+  constexpr double most_integrations = 1e7;
+  constexpr int most_channels = 1 << 20;
+  if (o.channels > most_channels)
+    throw std::invalid_argument("--channels " + std::to_string(o.channels) + ": expected at most " +
+                                std::to_string(most_channels));
+  if (o.hours * 3600 / o.interval > most_integrations)
+    throw std::invalid_argument("--hours " + std::to_string(o.hours) + " at --interval " + std::to_string(o.interval) +
+                                ": expected at most 10000000 integrations");
   if (!(parse_angle_rad(o.cell) > 0)) throw std::invalid_argument("--cell " + o.cell + ": expected more than 0");
   if (!(parse_flux_jy(o.noise) >= 0)) throw std::invalid_argument("--noise " + o.noise + ": expected 0 or more");
   if (!(parse_frequency_hz(o.frequency) > 0))
@@ -125,7 +134,7 @@ void add_simulate_command(CLI::App& program) {
   command->add_option("--channel-width", o->channel_width, "Channel spacing");
   command->add_option("--noise", o->noise, "Noise of each correlation's real and imaginary part");
   command->add_option("--seed", o->seed, "Seed of the noise");
-  command->add_option("--threads", o->threads, "Threads; 0 means all cores")->check(CLI::NonNegativeNumber);
+  command->add_option("--threads", o->threads, "Threads; 0 means all cores");
   command->add_flag("--quiet", o->quiet, "Print nothing");
   command->callback([o] { simulate(*o); });
 }

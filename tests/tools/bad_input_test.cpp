@@ -1,0 +1,231 @@
+// What cannot be done is refused with one line that says why, and leaves nothing behind.
+#include "tests/tools/program.h"
+#include "tests/tools/set_changes.h"
+
+namespace {
+
+using namespace misfit::tools::testing;
+
+bool contains(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
+
+/// The program must end with `code`, print nothing but one line with all of `parts`, and write nothing into `folder`.
+void check_refused(const Arguments& arguments, int code, const std::vector<std::string>& parts, const std::string& folder) {
+  const auto before = files_below(folder);
+  const Outcome outcome = run(arguments + Arguments{"--quiet"});
+  BOOST_TEST_CONTEXT(outcome.err) {
+    BOOST_TEST(outcome.code == code);
+    BOOST_TEST(outcome.out == "");
+    BOOST_TEST(std::count(outcome.err.begin(), outcome.err.end(), '\n') == 1);
+    BOOST_TEST(contains(outcome.err, "misfit: "));
+    for (const std::string& part : parts) {
+      BOOST_TEST_INFO(part);
+      BOOST_TEST(contains(outcome.err, part));
+    }
+    BOOST_TEST((files_below(folder) == before));
+  }
+}
+
+void replace(Arguments& arguments, const std::string& option, const std::string& value) {
+  const auto at = std::find(arguments.begin(), arguments.end(), option);
+  if (at == arguments.end())
+    arguments.insert(arguments.end(), {option, value});
+  else
+    at[1] = value;
+}
+
+/// A folder for what should not be written.
+struct Scene {
+  TemporaryFolder folder;
+  std::string out = folder / "out";
+  Scene() { std::filesystem::create_directory(out); }
+  Arguments image(const std::string& option = "", const std::string& value = "") const {
+    Arguments arguments = small_image(snapshot(), out + "/a");
+    if (!option.empty()) replace(arguments, option, value);
+    return arguments;
+  }
+  void usage(const std::string& option, const std::string& value, const std::string& expected) const {
+    check_refused(image(option, value), 2, {value, expected}, out);
+  }
+  void unusable(const std::string& option, const std::string& value, const std::string& expected) const {
+    check_refused(image(option, value), 1, {value, expected}, out);
+  }
+};
+
+/// A temporary copy of the snapshot.
+std::string copy_of_snapshot(const TemporaryFolder& folder) {
+  std::filesystem::copy(snapshot(), folder / "copy.ms", std::filesystem::copy_options::recursive);
+  return folder / "copy.ms";
+}
+
+/// Nothing unfinished, and no image that cannot be read.
+void check_complete(const std::string& folder) {
+  for (const auto& [path, bytes] : files_below(folder)) {
+    BOOST_TEST_CONTEXT(path) {
+      BOOST_TEST(!contains(path, ".part"));
+      BOOST_TEST(!contains(path, ".pictures"));
+      if (path.ends_with(".fits")) BOOST_CHECK_NO_THROW(misfit::imager::read_fits(path));
+    }
+  }
+}
+
+}  // namespace
+
+BOOST_AUTO_TEST_SUITE(bad_input)
+
+BOOST_AUTO_TEST_CASE(options_with_impossible_values_are_wrong_usage) {
+  const Scene scene;
+  scene.usage("--imsize", "0", "expected 1 to 65536");
+  scene.usage("--imsize", "-5", "expected 1 to 65536");
+  scene.usage("--imsize", "65537", "expected 1 to 65536");
+  scene.usage("--imsize", "64.5", "");
+  scene.usage("--cell", "0", "expected an angle above 0");
+  scene.usage("--cell", "-1arcsec", "expected an angle above 0");
+  scene.usage("--cell", "1parsec", "expected a number with a unit");
+  scene.usage("--cell", "1rad", "expected less than 0.5 rad");
+  scene.usage("--accuracy", "0", "expected a number above 0");
+  scene.usage("--accuracy", "2", "below 1");
+  scene.usage("--accuracy", "1e-13", "it can reach");
+  scene.usage("--kernel", "sinc", "least-misfit, spheroidal");
+  scene.usage("--kernel-width", "99", "not in [1, 11]");
+  scene.usage("--padding", "0.5", "not in [1.02, 10]");
+  scene.usage("--niter", "-1", "expected 0 or more");
+  scene.usage("--niter", "many", "");
+  scene.usage("--gain", "0", "expected more than 0");
+  scene.usage("--gain", "1.5", "at most 1");
+  scene.usage("--gain", "nan", "at most 1");
+  scene.usage("--threshold", "-1Jy", "expected 0 or more");
+  scene.usage("--threshold", "1mK", "Jy, mJy, uJy");
+  scene.usage("--nsigma", "-1", "expected 0 or more");
+  scene.usage("--cyclefactor", "0", "more than 0");
+  scene.usage("--nmajor", "-2", "-1");
+  scene.usage("--threads", "-1", "expected 0 (all cores) or more");
+  scene.usage("--verify", "-1", "expected 0 or more");
+  scene.usage("--weighting", "bright", "natural");
+}
+
+BOOST_AUTO_TEST_CASE(unknown_options_and_missing_ones_are_wrong_usage) {
+  const Scene scene;
+  check_refused(scene.image("--bogus", "3"), 2, {"--bogus"}, scene.out);
+  check_refused(scene.image() + Arguments{"surplus"}, 2, {"surplus"}, scene.out);
+  check_refused(scene.image() + Arguments{"--cell", "2arcsec"}, 2, {"--cell"}, scene.out);
+  check_refused({"image", "--vis", snapshot()}, 2, {"is required"}, scene.out);
+  check_refused({"predict", "--vis", snapshot()}, 2, {"--model or --components"}, scene.out);
+}
+
+BOOST_AUTO_TEST_CASE(data_that_cannot_be_used_are_named) {
+  const Scene scene;
+  scene.unusable("--vis", scene.folder / "none.ms", "expected a MeasurementSet");
+  scene.unusable("--vis", scene.out, "expected the directory of a MeasurementSet");
+  scene.unusable("--vis", MISFIT_PROGRAM, "expected the directory of a MeasurementSet");
+  scene.unusable("--vis", snapshot() + "/ANTENNA", "not a MeasurementSet");
+  scene.unusable("--datacolumn", "CORRECTED_DATA", "columns with visibilities: DATA");
+  scene.unusable("--datacolumn", "FLAG", "columns with visibilities: DATA");
+  scene.unusable("--field", "nosuch", "No match");
+  scene.unusable("--field", "7", "no match");
+  scene.unusable("--spw", "3", "No match");
+  scene.unusable("--spw", "0:~", "Parse error");
+  scene.unusable("--config", scene.folder / "none.ini", "cannot read");
+}
+
+BOOST_AUTO_TEST_CASE(nothing_left_after_flags_says_what_became_of_the_samples) {
+  const Scene scene;
+  const TemporaryFolder folder;
+  const std::string set = copy_of_snapshot(folder);
+  flag_all(set);
+  check_refused(scene.image("--vis", set), 1, {"no visibility is left of 351", "351 flagged"}, scene.out);
+}
+
+BOOST_AUTO_TEST_CASE(a_cell_too_large_for_every_sample_is_named) {
+  const Scene scene;
+  check_refused(scene.image("--cell", "20deg"), 1, {"351 usable samples lie beyond 1/(2 cell)"}, scene.out);
+}
+
+BOOST_AUTO_TEST_CASE(an_output_that_cannot_be_written_is_named) {
+  const Scene scene;
+  check_refused(scene.image("--imagename", scene.folder / "none/a"), 1, {scene.folder / "none", "does not exist"}, scene.out);
+  scene.unusable("--imagename", "/proc/a", "/proc");
+  std::filesystem::permissions(scene.out, std::filesystem::perms::owner_read | std::filesystem::perms::owner_exec);
+  if (access(scene.out.c_str(), W_OK) != 0)
+    check_refused(scene.image(), 1, {scene.out, "cannot be written"}, scene.out);
+  else
+    BOOST_TEST_MESSAGE("skipped: this user may write where nobody may");
+  std::filesystem::permissions(scene.out, std::filesystem::perms::owner_all);
+}
+
+BOOST_AUTO_TEST_CASE(a_name_that_ends_in_a_slash_is_no_name) {
+  const Scene scene;
+  check_refused(scene.image("--imagename", scene.out + "/"), 2, {"--imagename", "expected a name"}, scene.out);
+  check_refused(scene.image("--imagename", ""), 2, {"--imagename", "expected a name"}, scene.out);
+}
+
+BOOST_AUTO_TEST_CASE(images_are_not_put_inside_a_measurement_set) {
+  const Scene scene;
+  const TemporaryFolder folder;
+  const std::string set = copy_of_snapshot(folder);
+  check_refused(scene.image("--imagename", set + "/a"), 1, {set, "expected a folder of files"}, set);
+}
+
+BOOST_AUTO_TEST_CASE(a_set_that_exists_is_not_simulated_again) {
+  const Scene scene;
+  check_refused({"simulate", "--output", snapshot()}, 1, {snapshot(), "exists already"}, scene.out);
+  check_refused({"simulate", "--output", scene.out + "/x.ms", "--array", "mars"}, 2, {"mars", "vla-a"}, scene.out);
+  check_refused({"simulate", "--output", scene.folder / "none/x.ms"}, 1, {"none/x.ms"}, scene.out);
+  check_refused({"simulate", "--output", scene.out + "/x.ms", "--sky", scene.folder / "none.csv"}, 1, {"none.csv"}, scene.out);
+}
+
+BOOST_AUTO_TEST_CASE(a_model_must_be_an_image_on_the_phase_centre) {
+  const Scene scene;
+  const TemporaryFolder folder;
+  const std::string set = copy_of_snapshot(folder);
+  const auto predict = [&](const std::string& model) { return Arguments{"predict", "--vis", set, "--model", model}; };
+  check_refused(predict(folder / "none.fits"), 1, {"none.fits"}, set);
+  check_refused(predict(MISFIT_PROGRAM), 1, {MISFIT_PROGRAM}, set);
+  succeed(small_image(set, folder / "a") + Arguments{"--niter", "5"});
+  misfit::imager::SkyImage model = misfit::imager::read_fits(folder / "a.model.fits");
+  model.geometry.phase_centre.ra_rad += 0.01;
+  misfit::imager::write_fits(model, folder / "moved.fits", misfit::imager::PixelFormat::float32);
+  check_refused(predict(folder / "moved.fits"), 1, {"moved.fits is centred on", "expected the phase centre"}, set);
+  check_refused(predict(folder / "a.model.fits") + Arguments{"--column", "DATA"}, 1, {"DATA"}, set);
+}
+
+BOOST_AUTO_TEST_CASE(an_image_too_large_for_the_memory_is_refused_before_work_begins) {
+  const Scene scene;
+  const long double memory = static_cast<long double>(sysconf(_SC_PHYS_PAGES)) * sysconf(_SC_PAGE_SIZE);
+  if (memory > 16.0L * 65536 * 65536) return;  // dirty image and PSF would fit
+  check_refused(scene.image("--imsize", "65536"), 2, {"65536", "GiB"}, scene.out);
+}
+
+BOOST_AUTO_TEST_CASE(the_first_interrupt_ends_a_run_and_leaves_only_complete_files) {
+  const Scene scene;
+  Child child({"image", "--vis", track(), "--imagename", scene.out + "/a", "--imsize", "1024", "--cell", "0.05arcsec",
+               "--niter", "2000000000", "--gain", "0.001"});
+  child.wait_for("dirty image and PSF");
+  child.signal(SIGINT);
+  const Outcome outcome = child.wait();
+  BOOST_TEST(outcome.code == 130);
+  BOOST_TEST(contains(outcome.err, "stopped by the user"));
+  check_complete(scene.out);
+}
+
+BOOST_AUTO_TEST_CASE(an_interrupt_before_there_is_an_image_leaves_nothing) {
+  const Scene scene;
+  Child child({"simulate", "--output", scene.out + "/a.ms", "--hours", "0.2", "--channels", "512"});
+  while (!child.ended() && files_below(scene.out).empty()) std::this_thread::yield();
+  child.signal(SIGTERM);
+  const Outcome outcome = child.wait();
+  BOOST_TEST(outcome.code == 130);
+  BOOST_TEST(files_below(scene.out).empty());
+}
+
+BOOST_AUTO_TEST_CASE(a_home_is_not_needed) {
+  const Scene scene;
+  const char* const home = std::getenv("HOME");
+  const std::string kept = home == nullptr ? "" : home;
+  unsetenv("HOME");
+  succeed(scene.image());
+  if (home != nullptr) setenv("HOME", kept.c_str(), 1);
+}
+
+BOOST_AUTO_TEST_SUITE_END()

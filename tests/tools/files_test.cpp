@@ -1,0 +1,54 @@
+#include "tools/files.h"
+
+#include <boost/test/unit_test.hpp>
+
+#include "tests/tools/program.h"
+
+using namespace misfit::tools;
+using misfit::tools::testing::files_below;
+using misfit::tools::testing::TemporaryFolder;
+
+BOOST_AUTO_TEST_SUITE(files)
+
+BOOST_AUTO_TEST_CASE(bytes_written_are_read_back_and_replace_what_was_there) {
+  const TemporaryFolder folder;
+  const std::string path = folder / "a 'file'", bytes("zero \0 and \n\xff", 12);
+  write_file(path, "longer than what follows");
+  write_file(path, bytes);
+  BOOST_TEST(read_file(path) == bytes);
+  write_file(path, "");
+  BOOST_TEST(read_file(path) == "");
+  BOOST_TEST(files_below(folder / "").size() == 1U);
+}
+
+BOOST_AUTO_TEST_CASE(a_file_that_cannot_be_written_is_named_and_leaves_nothing) {
+  const TemporaryFolder folder;
+  std::filesystem::create_directory(folder / "taken");
+  std::filesystem::create_directory(folder / "taken/child");
+  const auto before = files_below(folder / "");
+  for (const std::string& path : {folder / "none/a", folder / "taken"}) {
+    BOOST_CHECK_EXCEPTION(write_file(path, "text"), std::runtime_error, [&](const std::exception& error) {
+      return std::string(error.what()).find("cannot write " + path) == 0;
+    });
+  }
+  BOOST_TEST((files_below(folder / "") == before));
+}
+
+BOOST_AUTO_TEST_CASE(a_file_that_cannot_be_read_is_named) {
+  const TemporaryFolder folder;
+  for (const std::string& path : {folder / "none", folder / ""}) {
+    BOOST_CHECK_EXCEPTION(read_file(path), std::runtime_error,
+                          [&](const std::exception& error) { return error.what() == "cannot read " + path; });
+  }
+}
+
+BOOST_AUTO_TEST_CASE(the_folder_of_an_output_must_exist_and_be_no_table) {
+  const TemporaryFolder folder;
+  BOOST_CHECK_NO_THROW(check_writable_folder(folder / "a"));
+  BOOST_CHECK_NO_THROW(check_writable_folder("a"));
+  BOOST_CHECK_THROW(check_writable_folder(folder / "none/a"), std::runtime_error);
+  write_file(folder / "table.dat", "");
+  BOOST_CHECK_THROW(check_writable_folder(folder / "a"), std::runtime_error);
+}
+
+BOOST_AUTO_TEST_SUITE_END()

@@ -1,0 +1,265 @@
+// From a MeasurementSet to the files of an image.
+#include "tests/tools/program.h"
+#include "tests/tools/set_changes.h"
+#include "tools/sky.h"
+
+namespace {
+
+using namespace misfit;
+using namespace misfit::tools::testing;
+using imager::Image;
+using imager::PointSource;
+using nlohmann::json;
+
+constexpr double arcsec = M_PI / 180 / 3600;
+constexpr double card_cell_rad = 0.05 * arcsec;
+
+struct Pixel {
+  int row = 0;
+  int column = 0;
+};
+
+Pixel pixel_of(const PointSource& source, const imager::ImageGeometry& g) {
+  return {g.centre_row() + static_cast<int>(std::lround(source.position.m / g.cell_rad)),
+          g.centre_column() - static_cast<int>(std::lround(source.position.l / g.cell_rad))};
+}
+
+/// How far the summit of the parabola through three values lies from the middle one.
+double summit(double before, double middle, double after) {
+  return 0.5 * (after - before) / (2 * middle - before - after);
+}
+
+/// Sources with no other within `radius_rad`.
+std::vector<PointSource> isolated(const std::vector<PointSource>& sources, double radius_rad) {
+  std::vector<PointSource> lonely;
+  for (const PointSource& a : sources) {
+    int near = 0;
+    for (const PointSource& b : sources)
+      near += std::hypot(a.position.l - b.position.l, a.position.m - b.position.m) < radius_rad;
+    if (near == 1) lonely.push_back(a);
+  }
+  return lonely;
+}
+
+Arguments card_image(const std::string& vis, const std::string& imagename) {
+  return {"image", "--vis", vis, "--imagename", imagename, "--imsize", "1024", "--cell", "0.05arcsec"};
+}
+
+void check_keys(const json& object, std::vector<std::string> keys) {
+  for (const std::string& key : keys) {
+    BOOST_TEST_INFO(key);
+    BOOST_TEST(object.contains(key));
+  }
+}
+
+}  // namespace
+
+BOOST_AUTO_TEST_SUITE(image_command)
+
+BOOST_AUTO_TEST_CASE(cleaned_sources_have_their_positions_and_fluxes_in_all_four_quadrants) {
+  const TemporaryFolder folder;
+  succeed(card_image(track(), folder / "card") + Arguments{"--niter", "20000", "--threshold", "2mJy"});
+  const imager::SkyImage sky = imager::read_fits(folder / "card.image.fits");
+  BOOST_REQUIRE(sky.has_beam);
+  // Beyond three beams a Gaussian is below 1e-10: only isolated sources have peaks of their own.
+  const auto sources = isolated(tools::test_card(card_cell_rad), 3 * sky.beam.major_rad);
+  std::map<std::pair<bool, bool>, int> quadrant;
+  for (const PointSource& source : sources) {
+    const auto [r, c] = pixel_of(source, sky.geometry);
+    ++quadrant[{source.position.l > 0, source.position.m > 0}];
+    BOOST_TEST_CONTEXT("row " << r << ", column " << c) {
+      // Every source lies on a pixel. The residual is at most the threshold, of either sign, anywhere, and model and residual
+      // add up to the data: 1 - 2 thresholds are off the peak, and 4 allow for the sidelobes of what the others still lack.
+      BOOST_TEST(std::abs(sky.image.at(r, c) - source.flux_jy) < 4 * 2e-3);
+      // Near its peak a Gaussian falls by flux·4·ln2·(pixel/FWHM)² within a pixel: at least 2.4% of 1 Jy for a beam of
+      // 10.5 pixels. Neighbours that differ by up to 2 thresholds shift the summit by a quarter of 4 mJy / 24 mJy.
+      BOOST_TEST(std::abs(summit(sky.image.at(r, c - 1), sky.image.at(r, c), sky.image.at(r, c + 1))) < 0.05);
+      BOOST_TEST(std::abs(summit(sky.image.at(r - 1, c), sky.image.at(r, c), sky.image.at(r + 1, c))) < 0.05);
+    }
+  }
+  BOOST_TEST(quadrant.size() == 4U);
+  BOOST_TEST(sources.size() >= 20U);
+}
+
+BOOST_AUTO_TEST_CASE(the_measured_error_is_below_the_accuracy_asked_and_less_costs_less) {
+  const TemporaryFolder folder;
+  std::vector<double> cost;
+  for (const char* accuracy : {"1e-2", "1e-3", "1e-4", "1e-5", "1e-6", "1e-7"}) {
+    BOOST_TEST_CONTEXT("accuracy " << accuracy) {
+      succeed(card_image(snapshot(), folder / "card") + Arguments{"--accuracy", accuracy, "--verify", "500"});
+      const json report = report_of(folder / "card");
+      const double asked = std::stod(accuracy);
+      BOOST_TEST(report["error"]["requested"].get<double>() == asked);
+      BOOST_TEST(report["error"]["measured_rms"].get<double>() <= asked);
+      BOOST_TEST(report["error"]["measured_predict_rms"].get<double>() <= asked);
+      // The kernel's cells times the FFT's area: what grows with either.
+      const json& kernel = report["kernel"];
+      cost.push_back(std::pow(kernel["width"].get<double>() * kernel["padding"].get<double>(), 2));
+      // The PSF is made to the same accuracy, and its own RMS is below its peak.
+      const Image psf = pixels_of(folder / "card", "psf");
+      BOOST_TEST(std::abs(psf.at(512, 512) - 1) < std::max(asked, 1e-6));
+    }
+  }
+  for (std::size_t i = 1; i < cost.size(); ++i) BOOST_TEST(cost[i - 1] <= cost[i]);
+  BOOST_TEST(cost.front() < cost.back() / 4);
+}
+
+BOOST_AUTO_TEST_CASE(the_psf_peaks_at_1_in_images_of_odd_and_unequal_sides) {
+  const TemporaryFolder folder;
+  for (const auto& [width, height] : {std::pair(1, 1), {2, 1}, {1, 64}, {7, 7}, {63, 65}, {128, 31}}) {
+    BOOST_TEST_CONTEXT(width << " by " << height) {
+      succeed({"image", "--vis", snapshot(), "--imagename", folder / "odd", "--imsize", std::to_string(width),
+               std::to_string(height), "--cell", "0.1arcsec", "--quiet"});
+      const Image psf = pixels_of(folder / "odd", "psf");
+      BOOST_TEST(psf.width == width);
+      BOOST_TEST(psf.height == height);
+      BOOST_TEST(std::abs(psf.at(height / 2, width / 2) - 1) < 1e-5);
+    }
+  }
+}
+
+BOOST_AUTO_TEST_CASE(the_report_has_every_key_that_others_rely_on) {
+  const TemporaryFolder folder;
+  succeed(small_image(snapshot(), folder / "a") + Arguments{"--niter", "10", "--verify", "5"});
+  const json report = report_of(folder / "a");
+  check_keys(report, {"version", "options", "plan", "kernel", "error", "visibilities", "timings_s", "memory_gib_peak", "beam",
+                      "clean"});
+  check_keys(report["kernel"], {"name", "width", "x0", "padding", "evaluation", "axes"});
+  BOOST_TEST(report["kernel"]["axes"].size() == 2U);
+  for (const json& axis : report["kernel"]["axes"]) check_keys(axis, {"axis", "width", "x0", "padding"});
+  check_keys(report["error"],
+             {"requested", "expected_rms", "bound_rms", "bound_max", "measured_rms", "measured_max", "measured_predict_rms"});
+  check_keys(report["visibilities"],
+             {"rows_read", "samples_read", "used", "flagged", "nonfinite", "zero_weight", "autocorrelations", "outside_grid"});
+  check_keys(report["beam"], {"major_arcsec", "minor_arcsec", "pa_deg"});
+  check_keys(report["clean"],
+             {"iterations", "major_cycles", "stop_code", "stop_reason", "peak_residual_jy", "rms_jy", "model_flux_jy"});
+  BOOST_TEST(!report["plan"].empty());
+  for (const json& decision : report["plan"]) check_keys(decision, {"item", "decision", "because"});
+}
+
+BOOST_AUTO_TEST_CASE(unusable_samples_are_counted_once_under_the_first_reason_that_applies) {
+  const TemporaryFolder folder;
+  const std::string set = folder / "spoilt.ms";
+  std::filesystem::copy(snapshot(), set, std::filesystem::copy_options::recursive);
+  const float nan = std::nanf("");
+  make_autocorrelation(set, 0);
+  flag_row(set, 0);
+  flag_row(set, 1);
+  flag_sample(set, 2);
+  put_data(set, 2, nan);
+  put_data(set, 3, nan);
+  put_data(set, 4, {0, INFINITY});
+  put_weight(set, 5, nan);
+  put_u(set, 6, INFINITY);
+  put_weight(set, 6, 0);
+  put_weight(set, 7, 0);
+  put_weight(set, 8, -1);
+  put_u(set, 9, 1e6);  // far beyond 1/(2 cell)
+  succeed(small_image(set, folder / "a"));
+  const json counts = report_of(folder / "a")["visibilities"];
+  BOOST_TEST(counts["rows_read"] == 351);
+  BOOST_TEST(counts["samples_read"] == 351);
+  BOOST_TEST(counts["autocorrelations"] == 1);
+  BOOST_TEST(counts["flagged"] == 2);
+  BOOST_TEST(counts["nonfinite"] == 4);
+  BOOST_TEST(counts["zero_weight"] == 2);
+  BOOST_TEST(counts["outside_grid"] == 1);
+  BOOST_TEST(counts["used"] == 341);
+  for (const double pixel : pixels_of(folder / "a", "residual").pixel) BOOST_REQUIRE(std::isfinite(pixel));
+}
+
+BOOST_AUTO_TEST_CASE(data_of_zeros_make_an_image_of_zeros) {
+  const TemporaryFolder folder;
+  const std::string set = folder / "zero.ms";
+  std::filesystem::copy(snapshot(), set, std::filesystem::copy_options::recursive);
+  scale_data(set, 0);
+  succeed(small_image(set, folder / "a") + Arguments{"--niter", "10", "--verify", "5"});
+  for (const char* kind : {"residual", "model", "image"})
+    for (const double pixel : pixels_of(folder / "a", kind).pixel) BOOST_REQUIRE_EQUAL(pixel, 0);
+}
+
+BOOST_AUTO_TEST_CASE(a_clean_that_diverges_says_so_and_keeps_a_model_no_worse_than_none) {
+  const TemporaryFolder folder;
+  // Sources outside so small an image cannot be cleaned away.
+  succeed({"image", "--vis", snapshot(), "--imagename", folder / "a", "--imsize", "64", "--cell", "0.2arcsec", "--niter",
+           "1000000"});
+  const json clean = report_of(folder / "a")["clean"];
+  BOOST_TEST(clean["stop_code"] == 5);
+  BOOST_TEST(clean["peak_residual_jy"].get<double>() <= clean["major_cycles_log"][0]["peak_residual_jy"].get<double>());
+  for (const char* kind : {"residual", "model", "image"})
+    for (const double pixel : pixels_of(folder / "a", kind).pixel) BOOST_REQUIRE(std::isfinite(pixel));
+}
+
+BOOST_AUTO_TEST_CASE(the_number_of_threads_changes_no_bit) {
+  const TemporaryFolder folder;
+  const Arguments clean{"--niter", "100", "--threads"};
+  for (const char* threads : {"1", "2", "5"}) succeed(small_image(track(), folder / threads) + clean + Arguments{threads});
+  for (const char* kind : {"psf", "residual", "model", "image"}) {
+    const Image one = pixels_of(folder / "1", kind);
+    BOOST_TEST((one.pixel == pixels_of(folder / "2", kind).pixel));
+    BOOST_TEST((one.pixel == pixels_of(folder / "5", kind).pixel));
+  }
+}
+
+BOOST_AUTO_TEST_CASE(the_options_written_repeat_the_run_bit_for_bit) {
+  const TemporaryFolder folder;
+  const std::vector<Arguments> runs{{"--niter", "50", "--gain", "0.2", "--threshold", "3mJy", "--spw", "0:0"},
+                                    {"--kernel-width", "5", "--padding", "1.5"},
+                                    {"--accuracy", "1e-8", "--kernel", "least-misfit"}};
+  for (const Arguments& options : runs) {
+    const std::string name = folder / "it's \"one\"";
+    succeed(Arguments{"image", "--vis", snapshot(), "--imagename", name, "--imsize", "64", "48", "--cell", "0.1arcsec"} +
+            options);
+    const json report = report_of(name);
+    const Image image = pixels_of(name, "residual");
+    succeed({"image", "--config", name + ".last.ini"});
+    BOOST_TEST(image.height == 48);
+    BOOST_TEST((pixels_of(name, "residual").pixel == image.pixel));
+    json again = report_of(name)["options"];
+    again["quiet"] = report["options"]["quiet"];
+    BOOST_TEST(again == report["options"]);
+  }
+}
+
+BOOST_AUTO_TEST_CASE(options_typed_win_over_those_of_the_file) {
+  const TemporaryFolder folder;
+  std::ofstream(folder / "run.ini") << "; comment\n# another\n\n vis = " << snapshot()
+                                    << "\nimsize=32 16\ncell=\"0.1arcsec\"\n";
+  succeed({"image", "--imsize", "20", "--config", folder / "run.ini", "--imagename", folder / "a"});
+  BOOST_TEST(pixels_of(folder / "a", "psf").width == 20);
+  BOOST_TEST(pixels_of(folder / "a", "psf").height == 20);
+}
+
+BOOST_AUTO_TEST_CASE(imaging_changes_nothing_in_the_measurement_set) {
+  const TemporaryFolder folder;
+  std::filesystem::create_directory(folder / "in");
+  const std::string set = folder / "in/card.ms";
+  std::filesystem::copy(snapshot(), set, std::filesystem::copy_options::recursive);
+  const auto before = files_below(folder / "in");
+  succeed(small_image(set, folder / "a") + Arguments{"--niter", "10", "--verify", "5"});
+  BOOST_TEST((files_below(folder / "in") == before));
+}
+
+BOOST_AUTO_TEST_CASE(only_the_files_promised_appear) {
+  const TemporaryFolder folder;
+  std::filesystem::create_directory(folder / "out");
+  succeed(small_image(snapshot(), folder / "out/a") + Arguments{"--niter", "10"});
+  for (const char* name : {"psf.fits", "residual.fits", "model.fits", "image.fits", "report.json", "report.html", "last.ini"}) {
+    BOOST_TEST_INFO(name);
+    BOOST_TEST(std::filesystem::remove(folder / "out/a." + name));
+  }
+  for (const auto& entry : std::filesystem::directory_iterator(folder / "out"))
+    BOOST_TEST(entry.path().extension() == ".png");  // pictures, where gnuplot is installed
+}
+
+BOOST_AUTO_TEST_CASE(a_name_with_blanks_quotes_and_umlauts_is_a_name) {
+  const TemporaryFolder folder;
+  const std::string odd = folder / "a 'b' \"c\" ü;$(d)";
+  std::filesystem::create_directory(odd);
+  std::filesystem::copy(snapshot(), odd + "/s.ms", std::filesystem::copy_options::recursive);
+  succeed(small_image(odd + "/s.ms/", odd + "/%d a"));
+  BOOST_TEST(pixels_of(odd + "/%d a", "psf").width == 64);
+}
+
+BOOST_AUTO_TEST_SUITE_END()

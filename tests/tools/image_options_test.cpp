@@ -1,0 +1,100 @@
+#include "tools/image_options.h"
+
+#include <boost/test/unit_test.hpp>
+#include <functional>
+#include <nlohmann/json.hpp>
+
+namespace {
+
+using namespace misfit::tools;
+
+ImageOptions good() {
+  ImageOptions options;
+  options.vis = "a.ms";
+  options.imagename = "a";
+  options.imsize = {64};
+  options.cell = "1arcsec";
+  return options;
+}
+
+bool is_refused(const std::function<void(ImageOptions&)>& change) {
+  ImageOptions options = good();
+  change(options);
+  try {
+    check(options);
+  } catch (const std::invalid_argument&) {
+    return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+BOOST_AUTO_TEST_SUITE(image_options)
+
+BOOST_AUTO_TEST_CASE(limits_belong_to_what_is_allowed) {
+  BOOST_TEST(!is_refused([](ImageOptions&) {}));
+  BOOST_TEST(!is_refused([](ImageOptions& o) { o.imsize = {1, 65536}; }));
+  BOOST_TEST(!is_refused([](ImageOptions& o) { o.gain = 1; }));
+  BOOST_TEST(!is_refused([](ImageOptions& o) { o.nmajor = -1; }));
+  BOOST_TEST(!is_refused([](ImageOptions& o) { o.minpsffraction = o.maxpsffraction = 1; }));
+  BOOST_TEST(is_refused([](ImageOptions& o) { o.imsize = {65537, 1}; }));
+  BOOST_TEST(is_refused([](ImageOptions& o) { o.imsize = {64, 0}; }));
+  BOOST_TEST(is_refused([](ImageOptions& o) { o.gain = 1.0001; }));
+  BOOST_TEST(is_refused([](ImageOptions& o) { o.nmajor = -2; }));
+  BOOST_TEST(is_refused([](ImageOptions& o) { o.maxpsffraction = 0.01; }));
+  BOOST_TEST(is_refused([](ImageOptions& o) { o.minpsffraction = 0; }));
+}
+
+BOOST_AUTO_TEST_CASE(no_accuracy_is_asked_only_where_width_and_padding_are) {
+  BOOST_TEST(is_refused([](ImageOptions& o) { o.accuracy = 0; }));
+  BOOST_TEST(is_refused([](ImageOptions& o) { o.accuracy = 0, o.kernel_width = 5; }));
+  BOOST_TEST(!is_refused([](ImageOptions& o) { o.accuracy = 0, o.kernel_width = 5, o.padding = 1.5; }));
+  BOOST_TEST(is_refused([](ImageOptions& o) { o.accuracy = std::nan(""); }));
+}
+
+BOOST_AUTO_TEST_CASE(one_size_is_a_square_and_two_are_width_and_height) {
+  ImageOptions options = good();
+  BOOST_TEST(geometry_of(options, {}).width == 64);
+  BOOST_TEST(geometry_of(options, {}).height == 64);
+  options.imsize = {64, 48};
+  BOOST_TEST(geometry_of(options, {}).width == 64);
+  BOOST_TEST(geometry_of(options, {}).height == 48);
+}
+
+BOOST_AUTO_TEST_CASE(clean_gets_every_option_that_is_its_own) {
+  ImageOptions options = good();
+  options.niter = 7;
+  options.gain = 0.25;
+  options.threshold = "3mJy";
+  options.nsigma = 4;
+  options.cyclefactor = 1.5;
+  options.minpsffraction = 0.1;
+  options.maxpsffraction = 0.7;
+  options.nmajor = 9;
+  const misfit::imager::CleanOptions clean = clean_options(options, 3);
+  BOOST_TEST(clean.max_iterations == 7);
+  BOOST_TEST(clean.gain == 0.25);
+  BOOST_TEST(clean.threshold_jy == 3e-3);
+  BOOST_TEST(clean.nsigma == 4);
+  BOOST_TEST(clean.cycle_factor == 1.5);
+  BOOST_TEST(clean.min_psf_fraction == 0.1);
+  BOOST_TEST(clean.max_psf_fraction == 0.7);
+  BOOST_TEST(clean.max_major_cycles == 9);
+  BOOST_TEST(clean.threads == 3);
+}
+
+BOOST_AUTO_TEST_CASE(values_in_force_are_those_typed_or_the_defaults) {
+  CLI::App app;
+  app.option_defaults()->always_capture_default();
+  ImageOptions options;
+  declare(app, options);
+  app.parse("--vis a.ms --imagename a --imsize 64 32 --cell 1arcsec --quiet");
+  const nlohmann::json values = option_values(app);
+  BOOST_TEST(values.at("imsize") == "64 32");
+  BOOST_TEST(values.at("gain") == "0.1");
+  BOOST_TEST(values.at("quiet") == "true");
+  BOOST_TEST(!values.contains("help"));
+}
+
+BOOST_AUTO_TEST_SUITE_END()

@@ -1,0 +1,154 @@
+#pragma once
+
+#include <fcntl.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <boost/test/unit_test.hpp>
+#include <chrono>
+#include <csignal>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "imager/fits_image.h"
+
+namespace misfit::tools::testing {
+
+/// A folder that lives as long as the test.
+class TemporaryFolder {
+ public:
+  TemporaryFolder() {
+    std::string name = (std::filesystem::temp_directory_path() / "misfit_tools_XXXXXX").string();
+    BOOST_REQUIRE(mkdtemp(name.data()) != nullptr);
+    path_ = name;
+  }
+  TemporaryFolder(const TemporaryFolder&) = delete;
+  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+  ~TemporaryFolder() { std::filesystem::remove_all(path_); }
+  std::string operator/(const std::string& name) const { return (path_ / name).string(); }
+
+ private:
+  std::filesystem::path path_;
+};
+
+using Arguments = std::vector<std::string>;
+
+inline Arguments operator+(Arguments a, const Arguments& b) {
+  a.insert(a.end(), b.begin(), b.end());
+  return a;
+}
+
+inline std::string content(const std::string& path) {
+  std::ostringstream text;
+  text << std::ifstream(path, std::ios::binary).rdbuf();
+  return text.str();
+}
+
+/// What a run of the program said, and how it ended.
+struct Outcome {
+  int code = -1;  ///< exit code, or minus the signal that ended it
+  std::string out;
+  std::string err;
+};
+
+/// The program as a child process; its output goes to files in a folder of its own.
+class Child {
+ public:
+  explicit Child(const Arguments& arguments) {
+    std::vector<char*> argv{const_cast<char*>(MISFIT_PROGRAM)};
+    for (const std::string& argument : arguments) argv.push_back(const_cast<char*>(argument.c_str()));
+    argv.push_back(nullptr);
+    const std::string out = folder_ / "out", err = folder_ / "err";
+    pid_ = fork();
+    BOOST_REQUIRE(pid_ >= 0);
+    if (pid_ != 0) return;
+    dup2(open(out.c_str(), O_WRONLY | O_CREAT, 0600), STDOUT_FILENO);
+    dup2(open(err.c_str(), O_WRONLY | O_CREAT, 0600), STDERR_FILENO);
+    execv(argv[0], argv.data());
+    _exit(127);
+  }
+
+  /// Waits until stderr holds `text`, or the program has ended.
+  void wait_for(const std::string& text) {
+    while (!ended() && content(folder_ / "err").find(text) == std::string::npos)
+      std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  }
+  bool ended() {
+    if (!ended_) ended_ = waitpid(pid_, &status_, WNOHANG) == pid_;
+    return ended_;
+  }
+  void signal(int number) const { kill(pid_, number); }
+  Outcome wait() {
+    if (!ended_) waitpid(pid_, &status_, 0);
+    ended_ = true;
+    return {WIFEXITED(status_) ? WEXITSTATUS(status_) : -WTERMSIG(status_), content(folder_ / "out"), content(folder_ / "err")};
+  }
+
+ private:
+  TemporaryFolder folder_;
+  pid_t pid_ = -1;
+  int status_ = 0;
+  bool ended_ = false;
+};
+
+inline Outcome run(const Arguments& arguments) {
+  return Child(arguments).wait();
+}
+
+/// Runs the program, which must succeed.
+inline void succeed(const Arguments& arguments) {
+  const Outcome outcome = run(arguments + Arguments{"--quiet"});
+  BOOST_TEST_INFO(outcome.err);
+  BOOST_REQUIRE_EQUAL(outcome.code, 0);
+  BOOST_TEST(outcome.err == "");
+  BOOST_TEST(outcome.out == "");
+}
+
+inline nlohmann::json report_of(const std::string& imagename) {
+  return nlohmann::json::parse(content(imagename + ".report.json"));
+}
+
+inline imager::Image pixels_of(const std::string& imagename, const std::string& kind) {
+  return imager::read_fits(imagename + "." + kind + ".fits").image;
+}
+
+/// Names of everything in the folder of `path`, and below.
+inline std::map<std::string, std::string> files_below(const std::string& folder) {
+  std::map<std::string, std::string> files;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(folder))
+    files[entry.path()] = entry.is_regular_file() ? content(entry.path()) : "";
+  return files;
+}
+
+/// A snapshot of the test card: 351 visibilities, VLA A-array at 4 GHz, cell 0.05 arcsec.
+inline const std::string& snapshot() {
+  static const TemporaryFolder folder;
+  static const std::string path = [] {
+    succeed({"simulate", "--output", folder / "snapshot.ms"});
+    return folder / "snapshot.ms";
+  }();
+  return path;
+}
+
+/// An hour of it, 21 060 visibilities without noise.
+inline const std::string& track() {
+  static const TemporaryFolder folder;
+  static const std::string path = [] {
+    succeed({"simulate", "--output", folder / "track.ms", "--hours", "1", "--interval", "60"});
+    return folder / "track.ms";
+  }();
+  return path;
+}
+
+/// A small image of the snapshot, where only files and counts matter.
+inline Arguments small_image(const std::string& vis, const std::string& imagename) {
+  return {"image", "--vis", vis, "--imagename", imagename, "--imsize", "64", "--cell", "0.1arcsec"};
+}
+
+}  // namespace misfit::tools::testing

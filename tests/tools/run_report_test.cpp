@@ -1,0 +1,78 @@
+#include "tools/run_report.h"
+
+#include <boost/test/unit_test.hpp>
+#include <limits>
+#include <numbers>
+
+using namespace misfit;
+using nlohmann::json;
+
+BOOST_AUTO_TEST_SUITE(run_report)
+
+BOOST_AUTO_TEST_CASE(what_does_not_exist_is_null) {
+  const json report = tools::report_json({});
+  for (const char* part : {"kernel", "beam", "clean"}) {
+    BOOST_TEST_INFO(part);
+    BOOST_TEST(report.at(part).is_null());
+  }
+  for (const auto& [name, value] : report.at("error").items()) {
+    BOOST_TEST_INFO(name);
+    BOOST_TEST(value.is_null());
+  }
+}
+
+BOOST_AUTO_TEST_CASE(what_is_not_finite_is_null) {
+  tools::RunReport run;
+  imager::TheoreticalError theory;
+  theory.expected_rms = std::numeric_limits<double>::quiet_NaN();
+  theory.bound_rms = std::numeric_limits<double>::infinity();
+  theory.bound_max = 0.5;
+  run.theory = &theory;
+  const json error = tools::report_json(run).at("error");
+  BOOST_TEST(error.at("expected_rms").is_null());
+  BOOST_TEST(error.at("bound_rms").is_null());
+  BOOST_TEST(error.at("bound_max") == 0.5);
+}
+
+BOOST_AUTO_TEST_CASE(beams_are_in_arcseconds_and_degrees) {
+  tools::RunReport run;
+  const imager::Beam beam{std::numbers::pi / 180 / 3600, std::numbers::pi / 180 / 7200, -std::numbers::pi / 6};
+  run.beam = &beam;
+  const json json_beam = tools::report_json(run).at("beam");
+  // Each is two or three products away.
+  BOOST_TEST(std::abs(json_beam.at("major_arcsec").get<double>() - 1) < 1e-15);
+  BOOST_TEST(std::abs(json_beam.at("minor_arcsec").get<double>() - 0.5) < 1e-15);
+  BOOST_TEST(std::abs(json_beam.at("pa_deg").get<double>() + 30) < 1e-13);
+}
+
+BOOST_AUTO_TEST_CASE(clean_states_the_cycle_that_was_kept) {
+  tools::RunReport run;
+  imager::CleanReport clean;
+  clean.iterations = 30;
+  clean.stop = imager::CleanStop::diverging;
+  clean.stop_reason = "it grew";
+  clean.cycles = {{0, 3, 0.3, 0, 0}, {10, 1, 0.1, 5, 0.5}, {30, 9, 0.9, 7, 0.2}};
+  clean.kept = 1;
+  run.clean = &clean;
+  const json report = tools::report_json(run).at("clean");
+  BOOST_TEST(report.at("iterations") == 30);
+  BOOST_TEST(report.at("major_cycles") == 2);
+  BOOST_TEST(report.at("stop_code") == 5);
+  BOOST_TEST(report.at("stop_reason") == "it grew");
+  BOOST_TEST(report.at("peak_residual_jy") == 1);
+  BOOST_TEST(report.at("model_flux_jy") == 5);
+  BOOST_TEST(report.at("major_cycles_log").size() == 3U);
+}
+
+BOOST_AUTO_TEST_CASE(timings_are_the_stages_and_the_total) {
+  tools::RunReport run;
+  imager::StageTimes times;
+  times.add("grid", 1.5);
+  times.add("fft", 0.25);
+  times.add("grid", 0.5);
+  run.times = &times;
+  run.wall_clock_s = 3;
+  BOOST_TEST((tools::report_json(run).at("timings_s") == json{{"grid", 2.0}, {"fft", 0.25}, {"total", 3.0}}));
+}
+
+BOOST_AUTO_TEST_SUITE_END()

@@ -1,0 +1,65 @@
+#include "tests/tools/set_changes.h"
+
+#include <casacore/casa/Arrays/ArrayMath.h>
+#include <casacore/ms/MeasurementSets/MeasurementSet.h>
+#include <casacore/tables/Tables/ArrayColumn.h>
+#include <casacore/tables/Tables/ScalarColumn.h>
+
+namespace misfit::tools::testing {
+namespace {
+
+casacore::MeasurementSet opened(const std::string& set) {
+  return casacore::MeasurementSet(set, casacore::Table::Update);
+}
+
+template <typename T>
+void put_first(const std::string& set, const std::string& column, std::size_t row, T value) {
+  const casacore::MeasurementSet open = opened(set);
+  casacore::ArrayColumn<T> cells(open, column);
+  casacore::Array<T> cell = cells(row);
+  *cell.data() = value;
+  cells.put(row, cell);
+}
+
+}  // namespace
+
+void put_data(const std::string& set, std::size_t row, std::complex<float> value) {
+  put_first(set, "DATA", row, value);
+}
+
+void put_weight(const std::string& set, std::size_t row, float value) {
+  put_first(set, "WEIGHT", row, value);
+}
+
+void put_u(const std::string& set, std::size_t row, double u_m) {
+  put_first(set, "UVW", row, u_m);
+}
+
+void flag_sample(const std::string& set, std::size_t row) {
+  put_first(set, "FLAG", row, true);
+}
+
+void flag_row(const std::string& set, std::size_t row) {
+  casacore::ScalarColumn<bool>(opened(set), "FLAG_ROW").put(row, true);
+}
+
+void flag_all(const std::string& set) {
+  casacore::ScalarColumn<bool>(opened(set), "FLAG_ROW").fillColumn(true);
+}
+
+void make_autocorrelation(const std::string& set, std::size_t row) {
+  const casacore::MeasurementSet open = opened(set);
+  casacore::ScalarColumn<int>(open, "ANTENNA2").put(row, casacore::ScalarColumn<int>(open, "ANTENNA1")(row));
+}
+
+void scale_data(const std::string& set, float factor) {
+  const casacore::MeasurementSet open = opened(set);
+  casacore::ArrayColumn<casacore::Complex> data(open, "DATA");
+  data.putColumn(data.getColumn() * casacore::Complex(factor));
+}
+
+std::vector<std::complex<float>> visibilities(const std::string& set, const std::string& column) {
+  return casacore::ArrayColumn<casacore::Complex>(casacore::MeasurementSet(set), column).getColumn().tovector();
+}
+
+}  // namespace misfit::tools::testing

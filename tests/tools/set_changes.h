@@ -1,0 +1,23 @@
+#pragma once
+
+#include <complex>
+#include <cstddef>
+#include <string>
+#include <vector>
+
+namespace misfit::tools::testing {
+
+/// What tests do to simulated MeasurementSets: one channel, XX and YY. Apart because casacore needs C++17.
+void put_data(const std::string& set, std::size_t row, std::complex<float> value);  ///< in XX
+void put_weight(const std::string& set, std::size_t row, float value);              ///< in XX
+void put_u(const std::string& set, std::size_t row, double u_m);
+void flag_sample(const std::string& set, std::size_t row);  ///< in XX
+void flag_row(const std::string& set, std::size_t row);
+void flag_all(const std::string& set);
+void make_autocorrelation(const std::string& set, std::size_t row);
+void scale_data(const std::string& set, float factor);
+
+/// All of a column, [row][correlation].
+std::vector<std::complex<float>> visibilities(const std::string& set, const std::string& column);
+
+}  // namespace misfit::tools::testing
