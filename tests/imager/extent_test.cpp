@@ -68,7 +68,9 @@ BOOST_AUTO_TEST_CASE(reach_and_neglected_phase_are_those_of_every_usable_sample_
     BOOST_TEST(extent.max_abs_w == e.extent.max_abs_w, close);
     BOOST_TEST(extent.weight == e.extent.weight, close);
     BOOST_TEST(phase.max_rad == e.max_rad, close);
-    BOOST_TEST(phase.rms_rad == std::sqrt(e.weighted_square / e.extent.weight / static_cast<double>(geometry.pixels())), close);
+    const double rms_rad = std::sqrt(e.weighted_square / e.extent.weight / static_cast<double>(geometry.pixels()));
+    // Beyond 256 pixels the mean is taken over every few of them.
+    BOOST_TEST(phase.rms_rad == rms_rad, boost::test_tools::tolerance(width > 256 ? 0.01 : 1e-8));
   }
 }
 
