@@ -9,19 +9,26 @@
 namespace misfit::imager {
 namespace {
 
-double n_minus_1(DirectionCosines at) {
-  const double r2 = at.l * at.l + at.m * at.m;
-  return -r2 / (1 + std::sqrt(1 - r2));
-}
+/// A position as the phase sees it.
+struct Direction {
+  double l = 0;
+  double m = 0;
+  double n_minus_1 = 0;
 
-/// 2π(ul + vm + w(n−1)) at unit frequency: the path difference in turns per Hz.
-double phase_per_hz(const double* uvw_m, DirectionCosines at) {
-  return 2 * pi / speed_of_light_m_s * (uvw_m[0] * at.l + uvw_m[1] * at.m + uvw_m[2] * n_minus_1(at));
+  explicit Direction(DirectionCosines at, bool with_w = true) : l(at.l), m(at.m) {
+    const double r2 = l * l + m * m;
+    if (with_w) n_minus_1 = -r2 / (1 + std::sqrt(1 - r2));
+  }
+};
+
+/// 2π(ul + vm + w(n−1)) at unit frequency.
+double phase_per_hz(const double* uvw_m, const Direction& at) {
+  return 2 * pi / speed_of_light_m_s * (uvw_m[0] * at.l + uvw_m[1] * at.m + uvw_m[2] * at.n_minus_1);
 }
 
 /// Σ w Re[V exp(−i phase)] over one block, with `value(i)` = w V.
 template <typename Value>
-double direct_sum(const VisibilityBlock& block, const std::vector<char>& inside, DirectionCosines at, const Value& value) {
+double direct_sum(const VisibilityBlock& block, const std::vector<char>& inside, const Direction& at, const Value& value) {
   double sum = 0;
   std::size_t i = 0;
   for (std::size_t row = 0; row < block.rows(); ++row) {
@@ -61,7 +68,7 @@ class DirectAdjoint : public AdjointSum {
     parallel_for(static_cast<std::size_t>(geometry_.height), threads_, [&](std::size_t r) {
       const int row = static_cast<int>(r);
       for (int column = 0; column < geometry_.width; ++column) {
-        const DirectionCosines at{geometry_.l(column), geometry_.m(row)};
+        const Direction at({geometry_.l(column), geometry_.m(row)});
         result_.image.at(row, column) +=
             direct_sum(block, inside, at, [&](std::size_t i) { return double{block.weight[i]} * visibility(i); });
         if (!result_.psf.pixel.empty())
@@ -114,7 +121,7 @@ std::vector<std::complex<double>> predict_sources(const std::vector<PointSource>
   std::vector<std::complex<double>> visibility(at.samples());
   parallel_for(at.rows(), threads, [&](std::size_t row) {
     for (const PointSource& source : sources) {
-      const double phase = phase_per_hz(&at.uvw_m[3 * row], source.position);
+      const double phase = phase_per_hz(&at.uvw_m[3 * row], Direction(source.position));
       for (std::size_t channel = 0; channel < at.channels(); ++channel)
         visibility[row * at.channels() + channel] += std::polar(source.flux_jy, phase * at.frequency_hz[channel]);
     }
@@ -122,13 +129,12 @@ std::vector<std::complex<double>> predict_sources(const std::vector<PointSource>
   return visibility;
 }
 
-void add_direct_pixels(const VisibilityBlock& block, const ImageGeometry& geometry, const std::vector<Pixel>& pixels,
-                       int threads, std::vector<double>& sum) {
+void add_direct_pixels(const VisibilityBlock& block, const DirectPixels& at, std::vector<double>& sum) {
   SampleSums unused;
-  const std::vector<char> inside = samples_inside(block, geometry.cell_rad, unused);
-  parallel_for(pixels.size(), threads, [&](std::size_t k) {
-    const DirectionCosines at{geometry.l(pixels[k].column), geometry.m(pixels[k].row)};
-    sum[k] += direct_sum(block, inside, at,
+  const std::vector<char> inside = samples_inside(block, at.geometry.cell_rad, unused);
+  parallel_for(at.pixel.size(), at.threads, [&](std::size_t k) {
+    const Direction direction({at.geometry.l(at.pixel[k].column), at.geometry.m(at.pixel[k].row)}, at.with_w);
+    sum[k] += direct_sum(block, inside, direction,
                          [&](std::size_t i) { return double{block.weight[i]} * std::complex<double>(block.visibility[i]); });
   });
 }

@@ -31,9 +31,16 @@ struct Pixel {
   int column = 0;
 };
 
-/// Adds the direct sums of `block` at a few pixels: sum[k] += Σ w Re[V exp(−2πi(ul+vm+w(n−1)))]. Samples beyond 1/(2 cell) are
-/// left out, as in imaging.
-void add_direct_pixels(const VisibilityBlock& block, const ImageGeometry& geometry, const std::vector<Pixel>& pixels,
-                       int threads, std::vector<double>& sum);
+/// Pixels at which direct sums are taken.
+struct DirectPixels {
+  ImageGeometry geometry;
+  std::vector<Pixel> pixel;
+  bool with_w = true;  ///< otherwise w is taken as 0
+  int threads = 1;
+};
+
+/// Adds the direct sums of `block`: sum[k] += Σ w Re[V exp(−2πi(ul+vm+w(n−1)))]. Samples beyond 1/(2 cell) are left out, as in
+/// imaging.
+void add_direct_pixels(const VisibilityBlock& block, const DirectPixels& at, std::vector<double>& sum);
 
 }  // namespace misfit::imager

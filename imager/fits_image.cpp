@@ -206,7 +206,7 @@ Image read_plane(const FitsFile& file) {
 }
 
 std::string read_frame(const HeaderReader& header) {
-  if (const std::string frame = header.text("RADESYS"); !frame.empty()) return frame;
+  if (std::string frame = header.text("RADESYS"); !frame.empty()) return frame;
   const std::optional<double> equinox = header.number("EQUINOX");
   if (!equinox) return "ICRS";
   return *equinox < 1984 ? "FK4" : "FK5";  // Calabretta & Greisen 2002, section 3.1

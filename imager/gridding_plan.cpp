@@ -30,10 +30,21 @@ struct Candidate {
   int nv = 0;
   kernels::Kernel kernel_u;
   kernels::Kernel kernel_v;
+  kernels::Misfit misfit_u;  ///< over this image's pixels
+  kernels::Misfit misfit_v;
   double cost_ns = 0;
 
-  double worst_error() const { return std::sqrt(kernel_u.misfit.worst_mean + kernel_v.misfit.worst_mean); }
+  /// An image of a single visibility at the worst position of its cell, or the visibilities of a single pixel at the corner.
+  double worst_error() const {
+    return std::sqrt(std::max(misfit_u.worst_mean + misfit_v.worst_mean, misfit_u.max + misfit_v.max));
+  }
 };
+
+/// Over many pixels the kernel's own means over |x| ≤ x0 serve.
+kernels::Misfit misfit_of(const kernels::Kernel& kernel, int pixels, int fft_size) {
+  constexpr int continuum = 128;
+  return pixels < continuum ? kernels::judge_pixels(kernel.polynomial, pixels, fft_size) : kernel.misfit;
+}
 
 /// Time on one core, from counts of operations: constants are of one machine, fixed so that the choice depends on options and
 /// data alone. Samples: ordering, polynomials, and three planes of W × padded-W cells; FFTs: half the rows and the kept
@@ -68,7 +79,8 @@ std::vector<Candidate> candidates(const GriddingRequest& request, const kernels:
   std::vector<Candidate> found;
   for (std::size_t i = 0; i < along_u.size(); ++i) {
     if (request.kernel_width != 0 && along_u[i].width() != request.kernel_width) continue;
-    found.push_back({padding, nu, nv, along_u[i], along_v[i], cost_ns(request, nu, nv, along_u[i].width())});
+    found.push_back({padding, nu, nv, along_u[i], along_v[i], misfit_of(along_u[i], request.geometry.width, nu),
+                     misfit_of(along_v[i], request.geometry.height, nv), cost_ns(request, nu, nv, along_u[i].width())});
   }
   return found;
 }
@@ -106,10 +118,10 @@ Choice choose(const GriddingRequest& request, const kernels::KernelFamily& famil
 
 Plan decisions_of(const GriddingRequest& request, const GriddingPlan& plan, const std::string& rejected) {
   const PlaneTransformOptions& o = plan.options;
-  const std::string because_accuracy = request.accuracy == 0
-                                           ? "as asked"
-                                           : "worst position within a cell gives " + text("%.2g", plan.worst_error) +
-                                                 ", accuracy asked " + text("%.2g", request.accuracy);
+  const std::string because_accuracy = request.accuracy == 0 ? "as asked"
+                                                             : "worst position within a cell, or pixel at the corner, gives " +
+                                                                   text("%.2g", plan.worst_error) + ", accuracy asked " +
+                                                                   text("%.2g", request.accuracy);
   const std::string others = rejected.empty() ? "" : "; " + rejected;
   return {
       {"kernel", o.kernel_u.name, "expected error of random data " + text("%.2g", plan.expected_error)},
@@ -150,7 +162,7 @@ GriddingPlan plan_gridding(const GriddingRequest& request) {
     throw std::invalid_argument("accuracy " + text("%g", request.accuracy) + " is out of reach of kernel " + family.name +
                                 (request.kernel_width == 0 ? "" : " of width " + std::to_string(request.kernel_width)) +
                                 (request.padding == 0 ? "" : " at padding " + text("%g", request.padding)) + "; it can reach " +
-                                text("%.2g", 1.06 * choice.most_exact->worst_error() + double_rounding) +
+                                text("%.2g", 1.06 * std::hypot(choice.most_exact->worst_error(), double_rounding)) +
                                 " for this image, with width " + std::to_string(choice.most_exact->kernel_u.width()) +
                                 " at padding " + text("%g", choice.most_exact->padding));
   const Candidate& best = choice.cheapest ? *choice.cheapest : *choice.most_exact;
@@ -163,10 +175,10 @@ GriddingPlan plan_gridding(const GriddingRequest& request) {
   const double wanted = request.accuracy == 0 ? best.worst_error() : request.accuracy;
   plan.options.precision = wanted >= single_from ? Precision::single_precision : Precision::double_precision;
   plan.options.threads = request.threads;
-  plan.expected_error = std::sqrt(best.kernel_u.misfit.mean + best.kernel_v.misfit.mean);
+  plan.expected_error = std::sqrt(best.misfit_u.mean + best.misfit_v.mean);
   plan.worst_error = best.worst_error();
-  plan.bound_rms = (1 + std::sqrt(best.kernel_u.misfit.worst_mean)) * (1 + std::sqrt(best.kernel_v.misfit.worst_mean)) - 1;
-  plan.bound_max = (1 + std::sqrt(best.kernel_u.misfit.worst)) * (1 + std::sqrt(best.kernel_v.misfit.worst)) - 1;
+  plan.bound_rms = (1 + std::sqrt(best.misfit_u.worst_mean)) * (1 + std::sqrt(best.misfit_v.worst_mean)) - 1;
+  plan.bound_max = (1 + std::sqrt(best.misfit_u.worst)) * (1 + std::sqrt(best.misfit_v.worst)) - 1;
   plan.decisions = decisions_of(request, plan, choice.rejected);
   return plan;
 }

@@ -59,115 +59,134 @@ bool gather_row(const GridShape& s, const Real* real, const Real* imaginary, int
   return any;
 }
 
-}  // namespace
-
+/// The part of the uv plane that lies between the two transforms: rows of the grid, columns of the image. [q][image column]
 template <typename Real>
-Image grid_to_image(const GridShape& s, const Real* real, const Real* imaginary, const ImageCorrection& h, int threads) {
-  using Complex = std::complex<Real>;
-  const int width = static_cast<int>(h.column.size());
-  const int height = static_cast<int>(h.row.size());
-  const int half_rows = s.nv / 2 + 1;
-  std::vector<Complex> kept(index(half_rows, width));  // [q][image column]
+struct KeptColumns {
+  int width;
+  std::vector<std::complex<Real>> value;
 
+  KeptColumns(int half_rows, int image_width) : width(image_width), value(index(half_rows, image_width)) {}
+  std::complex<Real>* row(int q) { return value.data() + index(q, width); }
+  const std::complex<Real>* row(int q) const { return value.data() + index(q, width); }
+};
+
+/// Calls body(begin, end) for consecutive pieces of [0, count), shared among threads.
+template <typename Body>
+void in_pieces(int count, int threads, const Body& body) {
+  const std::size_t pieces = static_cast<std::size_t>((count + columns_at_once - 1) / columns_at_once);
+  parallel_for(pieces, threads, [&](std::size_t piece) {
+    const int begin = static_cast<int>(piece) * columns_at_once;
+    body(begin, std::min(begin + columns_at_once, count));
+  });
+}
+
+/// The first step from grid to image: transforms along u the rows that hold anything.
+template <typename Real>
+KeptColumns<Real> transform_rows(const GridShape& s, const Real* real, const Real* imaginary, int width, int threads) {
+  const int half_rows = s.nv / 2 + 1;
+  KeptColumns<Real> kept(half_rows, width);
   const Fft<Real> along_u(s.nu);
-  const std::size_t row_blocks = static_cast<std::size_t>((half_rows + columns_at_once - 1) / columns_at_once);
-  parallel_for(row_blocks, threads, [&](std::size_t block) {
+  in_pieces(half_rows, threads, [&](int begin, int end) {
     const auto buffer = along_u.complex_buffer();
-    const int begin = static_cast<int>(block) * columns_at_once;
-    for (int q = begin; q < std::min(begin + columns_at_once, half_rows); ++q) {
+    for (int q = begin; q < end; ++q) {
       if (!gather_row(s, real, imaginary, q, buffer.get())) continue;
       along_u.complex_to_complex(buffer.get(), Fft<Real>::Sign::backward);
       const Real half = q == 0 || q == half_rows - 1 ? Real(1) : Real(0.5);  // complex_to_real doubles the others
-      Complex* out = &kept[index(q, width)];
-      for (int c = 0; c < width; ++c) out[c] = half * buffer[static_cast<std::size_t>(wrap(c - width / 2, s.nu))];
+      for (int c = 0; c < width; ++c) kept.row(q)[c] = half * buffer.get()[wrap(c - width / 2, s.nu)];
     }
   });
+  return kept;
+}
 
-  Image image(width, height);
+/// The second: transforms along v the image's columns, some at a time so that memory is read in lines.
+template <typename Real>
+Image transform_columns(const GridShape& s, const KeptColumns<Real>& kept, const ImageCorrection& h, int threads) {
+  Image image(kept.width, static_cast<int>(h.row.size()));
   const Fft<Real> along_v(s.nv);
-  const std::size_t column_blocks = static_cast<std::size_t>((width + columns_at_once - 1) / columns_at_once);
-  parallel_for(column_blocks, threads, [&](std::size_t block) {
-    const int begin = static_cast<int>(block) * columns_at_once;
-    const int count = std::min(columns_at_once, width - begin);
+  in_pieces(image.width, threads, [&](int begin, int end) {
     std::vector<typename Fft<Real>::ComplexBuffer> spectrum;
-    for (int c = 0; c < count; ++c) spectrum.push_back(along_v.complex_buffer());
-    for (int q = 0; q < half_rows; ++q)
-      for (int c = 0; c < count; ++c)
-        spectrum[static_cast<std::size_t>(c)][static_cast<std::size_t>(q)] =
-            kept[index(q, width) + static_cast<std::size_t>(begin + c)];
     std::vector<typename Fft<Real>::RealBuffer> column;
-    for (int c = 0; c < count; ++c) {
+    for (int c = begin; c < end; ++c) {
+      spectrum.push_back(along_v.complex_buffer());
       column.push_back(along_v.real_buffer());
-      along_v.complex_to_real(spectrum[static_cast<std::size_t>(c)].get(), column.back().get());
     }
-    for (int r = 0; r < height; ++r) {
-      const auto y = static_cast<std::size_t>(wrap(r - height / 2, s.nv));
-      double* out = image.row(r) + begin;
-      for (int c = 0; c < count; ++c)
-        out[c] = h.row[static_cast<std::size_t>(r)] * h.column[static_cast<std::size_t>(begin + c)] *
-                 double{column[static_cast<std::size_t>(c)][y]};
+    for (int q = 0; q <= s.nv / 2; ++q)
+      for (int c = begin; c < end; ++c) spectrum[static_cast<std::size_t>(c - begin)].get()[q] = kept.row(q)[c];
+    for (std::size_t c = 0; c < column.size(); ++c) along_v.complex_to_real(spectrum[c].get(), column[c].get());
+    for (int r = 0; r < image.height; ++r) {
+      const double h_row = h.row[static_cast<std::size_t>(r)];
+      const int y = wrap(r - image.height / 2, s.nv);
+      for (int c = begin; c < end; ++c)
+        image.at(r, c) =
+            h_row * h.column[static_cast<std::size_t>(c)] * double{column[static_cast<std::size_t>(c - begin)].get()[y]};
     }
   });
   return image;
 }
 
+/// The first step from image to grid: transforms along v the image's columns.
 template <typename Real>
-void image_to_grid(const Image& image, const ImageCorrection& h, int threads, HalfGrid<Real>& grid) {
-  using Complex = std::complex<Real>;
-  const GridShape& s = grid.shape;
-  const int half_rows = s.nv / 2 + 1;
-  std::vector<Complex> kept(index(half_rows, image.width));
-
+KeptColumns<Real> transform_image_columns(const GridShape& s, const Image& image, const ImageCorrection& h, int threads) {
+  KeptColumns<Real> kept(s.nv / 2 + 1, image.width);
   const Fft<Real> along_v(s.nv);
-  const std::size_t column_blocks = static_cast<std::size_t>((image.width + columns_at_once - 1) / columns_at_once);
-  parallel_for(column_blocks, threads, [&](std::size_t block) {
-    const int begin = static_cast<int>(block) * columns_at_once;
-    const int count = std::min(columns_at_once, image.width - begin);
+  in_pieces(image.width, threads, [&](int begin, int end) {
     std::vector<typename Fft<Real>::RealBuffer> column;
-    for (int c = 0; c < count; ++c) {
+    for (int c = begin; c < end; ++c) {
       column.push_back(along_v.real_buffer());
       std::fill_n(column.back().get(), s.nv, Real(0));
     }
     for (int r = 0; r < image.height; ++r) {
-      const auto y = static_cast<std::size_t>(wrap(r - image.height / 2, s.nv));
-      const double* in = image.row(r) + begin;
-      for (int c = 0; c < count; ++c)
-        column[static_cast<std::size_t>(c)][y] =
-            static_cast<Real>(h.row[static_cast<std::size_t>(r)] * h.column[static_cast<std::size_t>(begin + c)] * in[c]);
+      const double h_row = h.row[static_cast<std::size_t>(r)];
+      const int y = wrap(r - image.height / 2, s.nv);
+      for (int c = begin; c < end; ++c)
+        column[static_cast<std::size_t>(c - begin)].get()[y] =
+            static_cast<Real>(h_row * h.column[static_cast<std::size_t>(c)] * image.at(r, c));
     }
     const auto spectrum = along_v.complex_buffer();
-    for (int c = 0; c < count; ++c) {
-      along_v.real_to_complex(column[static_cast<std::size_t>(c)].get(), spectrum.get());
-      for (int q = 0; q < half_rows; ++q)
-        kept[index(q, image.width) + static_cast<std::size_t>(begin + c)] = spectrum[static_cast<std::size_t>(q)];
+    for (int c = begin; c < end; ++c) {
+      along_v.real_to_complex(column[static_cast<std::size_t>(c - begin)].get(), spectrum.get());
+      for (int q = 0; q <= s.nv / 2; ++q) kept.row(q)[c] = spectrum.get()[q];
     }
   });
+  return kept;
+}
 
+/// Stores canonical row `row` [nu] as row q, margins along u included; conjugated and reversed for rows in the margins along v.
+template <typename Real>
+void store_row(const std::complex<Real>* row, int q, bool reflect, HalfGrid<Real>& grid) {
+  const GridShape& s = grid.shape;
   const CellRange cells = stored_cells(s);
-  const auto store = [&](const Complex* row, int q, bool reflect) {
-    const std::size_t start = index(s.first_row(q), s.columns());
-    for (int p = cells.first; p <= cells.last; ++p) {
-      const Complex value = row[wrap(reflect ? -p : p, s.nu)];
-      const std::size_t at = start + static_cast<std::size_t>(s.first_column(p));
-      grid.real[at] = value.real();
-      grid.imaginary[at] = reflect ? -value.imag() : value.imag();
-    }
-  };
+  const std::size_t start = index(s.first_row(q), s.columns());
+  for (int p = cells.first; p <= cells.last; ++p) {
+    const std::complex<Real> value = row[wrap(reflect ? -p : p, s.nu)];
+    const std::size_t at = start + static_cast<std::size_t>(s.first_column(p));
+    grid.real[at] = value.real();
+    grid.imaginary[at] = reflect ? -value.imag() : value.imag();
+  }
+}
+
+}  // namespace
+
+template <typename Real>
+Image grid_to_image(const GridShape& s, const Real* real, const Real* imaginary, const ImageCorrection& h, int threads) {
+  return transform_columns(s, transform_rows(s, real, imaginary, static_cast<int>(h.column.size()), threads), h, threads);
+}
+
+template <typename Real>
+void image_to_grid(const Image& image, const ImageCorrection& h, int threads, HalfGrid<Real>& grid) {
+  const GridShape& s = grid.shape;
+  const KeptColumns<Real> kept = transform_image_columns<Real>(s, image, h, threads);
   const Fft<Real> along_u(s.nu);
-  const std::size_t row_blocks = static_cast<std::size_t>((half_rows + columns_at_once - 1) / columns_at_once);
-  parallel_for(row_blocks, threads, [&](std::size_t block) {
+  in_pieces(s.nv / 2 + 1, threads, [&](int begin, int end) {
     const auto buffer = along_u.complex_buffer();
-    const int begin = static_cast<int>(block) * columns_at_once;
-    for (int q = begin; q < std::min(begin + columns_at_once, half_rows); ++q) {
-      std::fill_n(buffer.get(), s.nu, Complex(0));
-      for (int c = 0; c < image.width; ++c)
-        buffer[static_cast<std::size_t>(wrap(c - image.width / 2, s.nu))] =
-            kept[index(q, image.width) + static_cast<std::size_t>(c)];
+    for (int q = begin; q < end; ++q) {
+      std::fill_n(buffer.get(), s.nu, std::complex<Real>(0));
+      for (int c = 0; c < image.width; ++c) buffer.get()[wrap(c - image.width / 2, s.nu)] = kept.row(q)[c];
       along_u.complex_to_complex(buffer.get(), Fft<Real>::Sign::forward);
-      store(buffer.get(), q, false);
-      if (q > 0 && q <= s.margin()) store(buffer.get(), -q, true);
+      store_row(buffer.get(), q, false, grid);
+      if (q > 0 && q <= s.margin()) store_row(buffer.get(), -q, true, grid);
       const int from_top = s.nv / 2 - q;
-      if (from_top > 0 && from_top <= s.margin() + 1) store(buffer.get(), s.nv / 2 + from_top, true);
+      if (from_top > 0 && from_top <= s.margin() + 1) store_row(buffer.get(), s.nv / 2 + from_top, true, grid);
     }
   });
 }

@@ -22,6 +22,12 @@ double robust_noise(const Image& image) {
   return 1.4826 * median(values);
 }
 
+double root_mean_square(const Image& image) {
+  double square = 0;
+  for (const double pixel : image.pixel) square += pixel * pixel;
+  return std::sqrt(square / static_cast<double>(std::max<std::size_t>(image.pixel.size(), 1)));
+}
+
 Peak find_peak(const Image& image) {
   const auto largest =
       std::max_element(image.pixel.begin(), image.pixel.end(), [](double a, double b) { return std::abs(a) < std::abs(b); });

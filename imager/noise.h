@@ -7,6 +7,9 @@ namespace misfit::imager {
 /// 1.4826 × the median absolute deviation from the median: the standard deviation of the noise where few pixels hold sources.
 double robust_noise(const Image& image);
 
+/// √(mean of squares); 0 of an image without pixels.
+double root_mean_square(const Image& image);
+
 /// The pixel of largest magnitude.
 struct Peak {
   int row = 0;

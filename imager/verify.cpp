@@ -4,18 +4,10 @@
 #include <cmath>
 #include <random>
 
+#include "imager/noise.h"
+
 namespace misfit::imager {
 namespace {
-
-std::vector<Pixel> random_pixels(const ImageGeometry& geometry, int count, std::mt19937_64& random) {
-  std::vector<Pixel> pixels;
-  for (int i = 0; i < count; ++i) {
-    const std::uint64_t at = random() % geometry.pixels();
-    pixels.push_back({static_cast<int>(at / static_cast<std::uint64_t>(geometry.width)),
-                      static_cast<int>(at % static_cast<std::uint64_t>(geometry.width))});
-  }
-  return pixels;
-}
 
 /// Indices of samples in ascending order, so that one pass finds them.
 std::vector<std::uint64_t> random_samples(std::uint64_t samples, int count, std::mt19937_64& random) {
@@ -39,16 +31,37 @@ void collect(const VisibilityBlock& block, std::uint64_t first, const std::vecto
   }
 }
 
-double root_mean_square(double sum_of_squares, std::size_t count) {
-  return std::sqrt(sum_of_squares / static_cast<double>(std::max<std::size_t>(count, 1)));
+}  // namespace
+
+std::vector<Pixel> random_pixels(const ImageGeometry& geometry, int count) {
+  std::mt19937_64 random(20200112);
+  const auto width = static_cast<std::uint64_t>(geometry.width);
+  std::vector<Pixel> pixels;
+  for (int i = 0; i < count; ++i) {
+    const std::uint64_t at = random() % geometry.pixels();
+    pixels.push_back({static_cast<int>(at / width), static_cast<int>(at % width)});
+  }
+  return pixels;
 }
 
-}  // namespace
+PixelError pixel_error(const Image& dirty, const std::vector<Pixel>& pixels, const std::vector<double>& direct_sums,
+                       double weight) {
+  PixelError error;
+  double square = 0;
+  for (std::size_t k = 0; k < pixels.size(); ++k) {
+    const double difference = dirty.at(pixels[k].row, pixels[k].column) - direct_sums[k] / weight;
+    square += difference * difference;
+    error.max = std::max(error.max, std::abs(difference));
+  }
+  error.rms = std::sqrt(square / static_cast<double>(std::max<std::size_t>(pixels.size(), 1)));
+  return error;
+}
 
 MeasuredError measure_error(const VisibilitySource& source, const Transform& transform, const ImageGeometry& geometry,
                             const DirtyImages& images, int count, int threads, const Progress& progress) {
   std::mt19937_64 random(20200112);
-  const std::vector<Pixel> pixels = random_pixels(geometry, count, random);
+  const std::vector<Pixel> pixels = random_pixels(geometry, count);
+  const DirectPixels direct_pixels{geometry, pixels, true, threads};
   const std::vector<std::uint64_t> chosen = random_samples(source.samples(), count, random);
 
   std::vector<double> sum(pixels.size());
@@ -56,23 +69,15 @@ MeasuredError measure_error(const VisibilitySource& source, const Transform& tra
   std::uint64_t done = 0;
   const auto stream = source.open();
   while (const auto block = stream->next()) {
-    add_direct_pixels(*block, geometry, pixels, threads, sum);
+    add_direct_pixels(*block, direct_pixels, sum);
     collect(*block, done, chosen, samples);
     done += block->samples();
     progress(done, source.samples());
   }
 
-  MeasuredError error;
-  double square = 0;
-  for (const double value : images.dirty.pixel) square += value * value;
-  const double image_rms = root_mean_square(square, images.dirty.pixel.size());
-  square = 0;
-  for (std::size_t k = 0; k < pixels.size(); ++k) {
-    const double difference = images.dirty.at(pixels[k].row, pixels[k].column) - sum[k] / images.sums.weight;
-    square += difference * difference;
-    error.max = std::max(error.max, std::abs(difference) / image_rms);
-  }
-  error.rms = root_mean_square(square, pixels.size()) / image_rms;
+  const double image_rms = root_mean_square(images.dirty);
+  const PixelError of_pixels = pixel_error(images.dirty, pixels, sum, images.sums.weight);
+  MeasuredError error{of_pixels.rms / image_rms, of_pixels.max / image_rms, 0};
 
   Image model(geometry.width, geometry.height);
   for (const Pixel& pixel : pixels) model.at(pixel.row, pixel.column) = random() % 2 == 0 ? 1 : -1;

@@ -5,6 +5,19 @@
 
 namespace misfit::imager {
 
+/// `count` pixels at random, always the same.
+std::vector<Pixel> random_pixels(const ImageGeometry& geometry, int count);
+
+/// How far an image is from direct sums at some of its pixels, in Jy/beam.
+struct PixelError {
+  double rms = 0;
+  double max = 0;
+};
+
+/// Of a dirty image whose samples weigh `weight` in all, given Σ w Re[…] at the pixels.
+PixelError pixel_error(const Image& dirty, const std::vector<Pixel>& pixels, const std::vector<double>& direct_sums,
+                       double weight);
+
 /// Measured differences from the direct transform, w included. Relative to the RMS of the whole dirty image (the first two) or
 /// of the predicted visibilities.
 struct MeasuredError {

@@ -51,6 +51,18 @@ Eigen::ArrayXXd squared_error(const Response& seen, const Eigen::VectorXd& h) {
   return (seen.real.colwise() * h.array() - 1).square() + (seen.imaginary.colwise() * h.array()).square();
 }
 
+/// Means by the weights of x, maxima over its nodes.
+Misfit judge_at(const TapFunction& taps, const Quadrature& x) {
+  const Quadrature t = half_cell();
+  const Response seen = response(taps, x.node, t.node);
+  const Eigen::VectorXd h = correction(seen, t.weight);
+  const Eigen::VectorXd error = squared_error(seen, h).matrix() * t.weight;
+  const Eigen::VectorXd position = Eigen::VectorXd::LinSpaced(65, 0, 0.5);
+  const Eigen::ArrayXXd at_position = squared_error(response(taps, x.node, position), h);
+  return {x.weight.dot(error), error.maxCoeff(), (x.weight.transpose() * at_position.matrix()).maxCoeff(),
+          at_position.maxCoeff()};
+}
+
 }  // namespace
 
 Eigen::VectorXd optimal_correction(const TapFunction& taps, const Eigen::VectorXd& x) {
@@ -66,15 +78,15 @@ Eigen::VectorXd map_error(const TapFunction& taps, const Eigen::VectorXd& x) {
 
 Misfit judge(const TapFunction& taps, double x0) {
   const Quadrature rule = gauss_legendre(48, 0, x0);
-  Eigen::VectorXd x(rule.node.size() + 1);
-  x << rule.node, x0;
-  Eigen::VectorXd weight(x.size());
-  weight << rule.weight / x0, 0;
+  Quadrature x{Eigen::VectorXd(rule.node.size() + 1), Eigen::VectorXd(rule.node.size() + 1)};
+  x.node << rule.node, x0;
+  x.weight << rule.weight / x0, 0;
+  return judge_at(taps, x);
+}
 
-  const Eigen::VectorXd error = map_error(taps, x);
-  const Eigen::VectorXd position = Eigen::VectorXd::LinSpaced(65, 0, 0.5);
-  const Eigen::ArrayXXd at_position = squared_error(response(taps, x, position), optimal_correction(taps, x));
-  return {weight.dot(error), error.maxCoeff(), (weight.transpose() * at_position.matrix()).maxCoeff(), at_position.maxCoeff()};
+Misfit judge_pixels(const TapFunction& taps, int pixels, int fft_size) {
+  const Eigen::VectorXd pixel = Eigen::VectorXd::LinSpaced(pixels, -(pixels / 2), (pixels - 1) / 2);
+  return judge_at(taps, {pixel / fft_size, Eigen::VectorXd::Constant(pixels, 1.0 / pixels)});
 }
 
 }  // namespace misfit::kernels

@@ -27,4 +27,8 @@ struct Misfit {
 
 Misfit judge(const TapFunction& taps, double x0);
 
+/// The same over the pixels of an image, x = (−pixels/2 … (pixels−1)/2) / fft_size with integer division: what counts where few
+/// pixels are no continuum.
+Misfit judge_pixels(const TapFunction& taps, int pixels, int fft_size);
+
 }  // namespace misfit::kernels

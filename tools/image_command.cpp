@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <memory>
 
+#include "imager/noise.h"
 #include "imager/parallel.h"
 #include "tools/command.h"
 #include "tools/config_file.h"

@@ -128,7 +128,7 @@ BOOST_AUTO_TEST_CASE(a_few_pixels_equal_those_of_the_whole_image) {
   const AdjointResult whole = adjoint_of(block);
   const std::vector<Pixel> pixels{{0, 0}, {16, 23}, {8, 12}, {3, 20}};
   std::vector<double> sum(4, 1.0);
-  add_direct_pixels(block, geometry, pixels, 2, sum);
+  add_direct_pixels(block, {geometry, pixels, true, 2}, sum);
   for (std::size_t k = 0; k < 4; ++k)
     BOOST_TEST(std::abs(sum[k] - 1 - whole.image.at(pixels[k].row, pixels[k].column)) < 1e-12 * whole.sums.weight_abs);
   BOOST_TEST(whole.sums.outside_grid == 3U);
