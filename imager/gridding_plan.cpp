@@ -12,10 +12,11 @@
 namespace misfit::imager {
 namespace {
 
-constexpr double single_rounding = 2e-6;   ///< relative RMS of taps, sums and FFT in single precision, measured with margin
-constexpr double double_rounding = 1e-14;  ///< the same in double
-constexpr double single_from = 1e-4;       ///< single precision leaves 99.9% of such an accuracy to the kernel
-constexpr int smallest_fft = 64;           ///< so that the widest kernel never meets its own periodic copy
+/// Relative RMS of taps, sums and FFT, for a noise gain of 1: twice the unit of rounding, as measured.
+constexpr double single_rounding = 1.2e-7;
+constexpr double double_rounding = 2.2e-16;
+constexpr double single_from = 1e-4;  ///< below, sums of millions of samples lose what single precision has left
+constexpr int smallest_fft = 64;      ///< so that the widest kernel never meets its own periodic copy
 
 std::string text(const char* format, double value) {
   char buffer[64];
@@ -30,13 +31,20 @@ struct Candidate {
   int nv = 0;
   kernels::Kernel kernel_u;
   kernels::Kernel kernel_v;
-  kernels::Misfit misfit_u;  ///< over this image's pixels
-  kernels::Misfit misfit_v;
+  kernels::Misfit misfit_u{};  ///< over this image's pixels
+  kernels::Misfit misfit_v{};
+  Precision precision = Precision::double_precision;
+  double noise_gain = 1;
   double cost_ns = 0;
 
+  double rounding() const {
+    return noise_gain * (precision == Precision::single_precision ? single_rounding : double_rounding);
+  }
+  /// Of data with random phases.
+  double expected_error() const { return std::hypot(std::sqrt(misfit_u.mean + misfit_v.mean), rounding()); }
   /// An image of a single visibility at the worst position of its cell, or the visibilities of a single pixel at the corner.
   double worst_error() const {
-    return std::sqrt(std::max(misfit_u.worst_mean + misfit_v.worst_mean, misfit_u.max + misfit_v.max));
+    return std::hypot(std::sqrt(std::max(misfit_u.worst_mean + misfit_v.worst_mean, misfit_u.max + misfit_v.max)), rounding());
   }
 };
 
@@ -49,13 +57,14 @@ kernels::Misfit misfit_of(const kernels::Kernel& kernel, int pixels, int fft_siz
 /// Time on one core, from counts of operations: constants are of one machine, fixed so that the choice depends on options and
 /// data alone. Samples: ordering, polynomials, and three planes of W × padded-W cells; FFTs: half the rows and the kept
 /// columns, twice (image and PSF).
-double cost_ns(const GriddingRequest& request, int nu, int nv, int width) {
+double cost_ns(const GriddingRequest& request, int nu, int nv, int width, Precision precision) {
   const double padded = (width + 3) / 4 * 4;
   const double per_sample = 15 + 0.15 * width * padded;
   const double row = nu * std::log2(nu);
   const double column = nv * std::log2(nv);
   const double fft = 2 * (0.5 * nv * row + 0.5 * request.geometry.width * column) * 0.6;
-  return static_cast<double>(request.samples) * per_sample + fft;
+  const double widening = precision == Precision::single_precision ? 1 : 1.5;  // twice the bytes, half the lanes
+  return (static_cast<double>(request.samples) * per_sample + fft) * widening;
 }
 
 double axis_x0(int pixels, int fft_size, const kernels::KernelFamily& family) {
@@ -79,8 +88,17 @@ std::vector<Candidate> candidates(const GriddingRequest& request, const kernels:
   std::vector<Candidate> found;
   for (std::size_t i = 0; i < along_u.size(); ++i) {
     if (request.kernel_width != 0 && along_u[i].width() != request.kernel_width) continue;
-    found.push_back({padding, nu, nv, along_u[i], along_v[i], misfit_of(along_u[i], request.geometry.width, nu),
-                     misfit_of(along_v[i], request.geometry.height, nv), cost_ns(request, nu, nv, along_u[i].width())});
+    Candidate candidate{padding, nu, nv, along_u[i], along_v[i]};
+    candidate.misfit_u = misfit_of(along_u[i], request.geometry.width, nu);
+    candidate.misfit_v = misfit_of(along_v[i], request.geometry.height, nv);
+    candidate.noise_gain = kernels::noise_gain(along_u[i].polynomial, x0_u) * kernels::noise_gain(along_v[i].polynomial, x0_v);
+    const double wanted = request.accuracy == 0 ? candidate.worst_error() : request.accuracy;
+    for (const Precision precision : {Precision::single_precision, Precision::double_precision}) {
+      if (precision == Precision::single_precision && wanted < single_from) continue;
+      candidate.precision = precision;
+      candidate.cost_ns = cost_ns(request, nu, nv, along_u[i].width(), precision);
+      found.push_back(candidate);
+    }
   }
   return found;
 }
@@ -94,9 +112,7 @@ struct Choice {
 Choice choose(const GriddingRequest& request, const kernels::KernelFamily& family) {
   static const std::vector<double> usual{1.15, 1.25, 1.4, 1.6, 2.0};
   const std::vector<double> paddings = request.padding == 0 ? usual : std::vector<double>{request.padding};
-  const double target = request.accuracy == 0
-                            ? HUGE_VAL
-                            : std::sqrt(std::max(0.0, request.accuracy * request.accuracy - double_rounding * double_rounding));
+  const double target = request.accuracy == 0 ? HUGE_VAL : request.accuracy;
   Choice choice;
   std::vector<Candidate> reaching;
   for (const double padding : paddings) {
@@ -118,6 +134,7 @@ Choice choose(const GriddingRequest& request, const kernels::KernelFamily& famil
 
 Plan decisions_of(const GriddingRequest& request, const GriddingPlan& plan, const std::string& rejected) {
   const PlaneTransformOptions& o = plan.options;
+  const bool single = o.precision == Precision::single_precision;
   const std::string because_accuracy = request.accuracy == 0 ? "as asked"
                                                              : "worst position within a cell, or pixel at the corner, gives " +
                                                                    text("%.2g", plan.worst_error) + ", accuracy asked " +
@@ -131,10 +148,10 @@ Plan decisions_of(const GriddingRequest& request, const GriddingPlan& plan, cons
            " along u is the cheapest that keeps the accuracy" + others},
       {"kernel evaluation", "polynomials of degree " + std::to_string(o.kernel_u.polynomial.degree()),
        "adds less than 0.5% to the kernel's squared error"},
-      {"precision of grid and FFT", o.precision == Precision::single_precision ? "single" : "double",
-       o.precision == Precision::single_precision
-           ? "rounding of " + text("%.0e", single_rounding) + " is far below the accuracy asked"
-           : "rounding of " + text("%.0e", single_rounding) + " in single precision is too near the accuracy asked"},
+      {"precision of grid and FFT", single ? "single" : "double",
+       single ? "rounding adds " + text("%.1g", plan.rounding)
+              : "single precision would add " + text("%.1g", plan.rounding * single_rounding / double_rounding) +
+                    " of rounding, and is not trusted below " + text("%.0e", single_from)},
       {"half of the uv plane", "gridded alone",
        "the image is real, so V(−u, −v) = conj V(u, v): half the memory, half the FFT"},
   };
@@ -162,9 +179,9 @@ GriddingPlan plan_gridding(const GriddingRequest& request) {
     throw std::invalid_argument("accuracy " + text("%g", request.accuracy) + " is out of reach of kernel " + family.name +
                                 (request.kernel_width == 0 ? "" : " of width " + std::to_string(request.kernel_width)) +
                                 (request.padding == 0 ? "" : " at padding " + text("%g", request.padding)) + "; it can reach " +
-                                text("%.2g", 1.06 * std::hypot(choice.most_exact->worst_error(), double_rounding)) +
-                                " for this image, with width " + std::to_string(choice.most_exact->kernel_u.width()) +
-                                " at padding " + text("%g", choice.most_exact->padding));
+                                text("%.2g", 1.06 * choice.most_exact->worst_error()) + " for this image, with width " +
+                                std::to_string(choice.most_exact->kernel_u.width()) + " at padding " +
+                                text("%g", choice.most_exact->padding));
   const Candidate& best = choice.cheapest ? *choice.cheapest : *choice.most_exact;
   GriddingPlan plan;
   plan.options.geometry = request.geometry;
@@ -172,13 +189,15 @@ GriddingPlan plan_gridding(const GriddingRequest& request) {
   plan.options.nv = best.nv;
   plan.options.kernel_u = best.kernel_u;
   plan.options.kernel_v = best.kernel_v;
-  const double wanted = request.accuracy == 0 ? best.worst_error() : request.accuracy;
-  plan.options.precision = wanted >= single_from ? Precision::single_precision : Precision::double_precision;
+  plan.options.precision = best.precision;
   plan.options.threads = request.threads;
-  plan.expected_error = std::sqrt(best.misfit_u.mean + best.misfit_v.mean);
+  plan.expected_error = best.expected_error();
+  plan.rounding = best.rounding();
   plan.worst_error = best.worst_error();
-  plan.bound_rms = (1 + std::sqrt(best.misfit_u.worst_mean)) * (1 + std::sqrt(best.misfit_v.worst_mean)) - 1;
-  plan.bound_max = (1 + std::sqrt(best.misfit_u.worst)) * (1 + std::sqrt(best.misfit_v.worst)) - 1;
+  constexpr double several = 6;  // rounding is random; six times its RMS bounds it for practical purposes
+  plan.bound_rms =
+      (1 + std::sqrt(best.misfit_u.worst_mean)) * (1 + std::sqrt(best.misfit_v.worst_mean)) - 1 + several * plan.rounding;
+  plan.bound_max = (1 + std::sqrt(best.misfit_u.worst)) * (1 + std::sqrt(best.misfit_v.worst)) - 1 + several * plan.rounding;
   plan.decisions = decisions_of(request, plan, choice.rejected);
   return plan;
 }

@@ -25,6 +25,7 @@ struct GriddingPlan {
   PlaneTransformOptions options;
   double expected_error = 0;  ///< RMS error of image and prediction relative to data with random phases, √(E_u + E_v)
   double worst_error = 0;     ///< the same for the worst position of samples in their cells, or the worst pixel of a model
+  double rounding = 0;        ///< the part of rounding in both
   double bound_rms = 0;       ///< bound on the RMS error of the image over Σ w|V| / Σ w, whatever the data
   double bound_max = 0;       ///< bound on any pixel's error over Σ w|V| / Σ w, whatever the data
   Plan decisions;

@@ -89,4 +89,13 @@ Misfit judge_pixels(const TapFunction& taps, int pixels, int fft_size) {
   return judge_at(taps, {pixel / fft_size, Eigen::VectorXd::Constant(pixels, 1.0 / pixels)});
 }
 
+double noise_gain(const TapFunction& taps, double x0) {
+  const Quadrature x = gauss_legendre(48, 0, x0);
+  const double h_square = x.weight.dot(optimal_correction(taps, x.node).cwiseAbs2()) / x0;
+  const Quadrature t = half_cell();
+  double c_square = 0;
+  for (Eigen::Index i = 0; i < t.node.size(); ++i) c_square += t.weight[i] * taps(t.node[i]).squaredNorm();
+  return std::sqrt(h_square * c_square);
+}
+
 }  // namespace misfit::kernels

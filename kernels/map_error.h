@@ -31,4 +31,9 @@ Misfit judge(const TapFunction& taps, double x0);
 /// pixels are no continuum.
 Misfit judge_pixels(const TapFunction& taps, int pixels, int fft_size);
 
+/// How much the correction amplifies noise that is white over the cells of the grid, as rounding is, relative to the image of
+/// one visibility: √(mean of h² over |x| ≤ x0) · √(∫ C² du). Near x0 = ½ it grows without limit, since there h makes up for c →
+/// 0.
+double noise_gain(const TapFunction& taps, double x0);
+
 }  // namespace misfit::kernels

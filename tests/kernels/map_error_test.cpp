@@ -91,6 +91,25 @@ BOOST_AUTO_TEST_CASE(every_catalogue_kernel_stores_within_half_a_percent_of_its_
     }
 }
 
+BOOST_AUTO_TEST_CASE(noise_gain_is_that_of_white_noise_on_the_grid) {
+  // Of the box (W = 1, C = 1, c = sinc): h = 1/sinc up to aliases; by the midpoint rule from the optimal correction itself.
+  const TapFunction box = [](double) -> Eigen::VectorXd { return Eigen::VectorXd::Ones(1); };
+  double h_square = 0;
+  for (int i = 0; i < 1000; ++i) h_square += std::pow(optimal_correction(box, single((i + 0.5) * 0.25 / 1000))[0], 2) / 1000;
+  BOOST_TEST(noise_gain(box, 0.25) == std::sqrt(h_square), boost::test_tools::tolerance(1e-6));
+  // Towards x0 = 1/2 it grows without limit.
+  const KernelFamily& family = kernel_family("least-misfit");
+  BOOST_TEST(noise_gain(family.make(9, 0.45).polynomial, 0.45) > 10 * noise_gain(family.make(9, 0.25).polynomial, 0.25));
+}
+
+BOOST_DATA_TEST_CASE(judging_many_pixels_tends_to_the_integral, bdata::make({2, 6}), width) {
+  const Kernel kernel = kernel_family("least-misfit").make(width, 0.3);
+  const Misfit pixels = judge_pixels(kernel.polynomial, 6000, 10000);
+  BOOST_TEST(pixels.mean == kernel.misfit.mean, boost::test_tools::tolerance(0.01));
+  BOOST_TEST(pixels.max == kernel.misfit.max, boost::test_tools::tolerance(0.01));
+  BOOST_TEST(pixels.worst_mean == kernel.misfit.worst_mean, boost::test_tools::tolerance(0.01));
+}
+
 BOOST_AUTO_TEST_CASE(unknown_kernels_are_refused_with_the_names_there_are) {
   BOOST_CHECK_EXCEPTION(kernel_family("kaiser"), std::invalid_argument, [](const std::invalid_argument& e) {
     return std::string(e.what()) == "kernel \"kaiser\" is not known; expected one of: least-misfit, spheroidal";

@@ -45,7 +45,7 @@ Arguments card_image(const std::string& vis, const std::string& imagename) {
   return {"image", "--vis", vis, "--imagename", imagename, "--imsize", "1024", "--cell", "0.05arcsec"};
 }
 
-void check_keys(const json& object, std::vector<std::string> keys) {
+void check_keys(const json& object, const std::vector<std::string>& keys) {
   for (const std::string& key : keys) {
     BOOST_TEST_INFO(key);
     BOOST_TEST(object.contains(key));
