@@ -23,8 +23,8 @@ void parallel_for(std::size_t count, int threads, const std::function<void(std::
     }
   };
   std::vector<std::thread> others;
-  const std::size_t helpers = std::min(static_cast<std::size_t>(std::max(threads, 1)), count);
-  for (std::size_t i = 1; i < helpers; ++i) others.emplace_back(work);
+  const std::size_t workers = std::min(static_cast<std::size_t>(std::max(threads, 1)), count);
+  for (std::size_t i = 1; i < workers; ++i) others.emplace_back(work);
   work();
   for (std::thread& other : others) other.join();
   if (failure) std::rethrow_exception(failure);
