@@ -18,8 +18,8 @@ struct DirectionCosines {
   double m = 0;
 };
 
-/// The direction cosines of `direction` as seen from `centre` (SIN projection; Thompson, Moran & Swenson 2017, eq. 3.11).
-/// Throws std::invalid_argument when it lies more than 90° away.
+/// The direction cosines of `direction` as seen from `centre` (SIN projection; Thompson, Moran & Swenson 2017, Interferometry
+/// and Synthesis in Radio Astronomy). Throws std::invalid_argument when it lies more than 90° away.
 DirectionCosines direction_cosines(const SkyDirection& direction, const SkyDirection& centre);
 
 /// The pixels of an image. Column c lies at l = −(c − width/2)·cell, so that east is on the left; row r lies at

@@ -12,7 +12,7 @@ inline constexpr double least_misfit_min_x0 = 0.05;
 inline constexpr double least_misfit_max_x0 = 0.49;
 
 /// A least-misfit gridding function as solved, before it is stored as a polynomial: C and h together minimise E, the mean over
-/// |x| ≤ x0 of the map error ℓ(x) (Ye, Gull, Tan & Nikolic 2020, MNRAS 491, 1146, sect. 3). Normalised to h(0) = 1.
+/// |x| ≤ x0 of the map error ℓ(x) (Ye, Gull, Tan & Nikolic 2020, MNRAS 491, 1146). Normalised to h(0) = 1.
 struct LeastMisfit {
   int width = 0;
   double x0 = 0;

@@ -9,11 +9,11 @@ namespace misfit::kernels {
 /// Everything here is derived from the taps alone, however they are evaluated.
 
 /// The optimal correction h(x) = c(x) / Σ_n c(x−n)², where c(x) = ∫ C(u) exp(2πiux) du: it minimises the map error at every x
-/// (Ye, Gull, Tan & Nikolic 2020, eq. 13). The image is multiplied by h(x)·h(y); x is the pixel's offset from the phase centre
-/// over the size of the FFT.
+/// (Ye, Gull, Tan & Nikolic 2020, MNRAS 491, 1146). The image is multiplied by h(x)·h(y); x is the pixel's offset from the
+/// phase centre over the size of the FFT.
 Eigen::VectorXd optimal_correction(const TapFunction& taps, const Eigen::VectorXd& x);
 
-/// The map error ℓ(x) = ∫ dν |1 − h(x) Σ_r C(r−ν) exp(2πi(r−ν)x)|² with the optimal correction (ibid., eq. 10), as a sum of
+/// The map error ℓ(x) = ∫ dν |1 − h(x) Σ_r C(r−ν) exp(2πi(r−ν)x)|² with the optimal correction (ibid.), as a sum of
 /// squares: exact down to the square of the rounding of doubles.
 Eigen::VectorXd map_error(const TapFunction& taps, const Eigen::VectorXd& x);
 

@@ -26,7 +26,8 @@ struct LocalDirection {
 AntennaArray antenna_array(const std::string& name);
 
 /// UVW in metres [baseline][3] over antenna1 < antenna2, antenna2 fastest: position of antenna 2 − position of antenna 1 along
-/// u to the east, v to the north and w towards the source (Thompson, Moran & Swenson 2017, eq. 4.1).
+/// u to the east, v to the north and w towards the source (Thompson, Moran & Swenson 2017, Interferometry and Synthesis in
+/// Radio Astronomy).
 std::vector<double> uvw(const AntennaArray& array, const LocalDirection& source);
 
 /// Greenwich mean sidereal time in [0, 2π), IAU 1982 (Aoki et al. 1982, A&A 105, 359), of a time in MJD seconds. UT1 is taken

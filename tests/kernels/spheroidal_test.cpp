@@ -15,7 +15,7 @@ namespace {
 
 /// (1 − η²) ψ(η) with ψ the spheroidal function of order α = 1 and bandwidth c = πm/2, from its definition: ψ is the
 /// eigenfunction of the finite Fourier transform ∫ exp(icηt) (1 − t²) ψ(t) dt = λ ψ(η) that belongs to the largest |λ| (Schwab
-/// 1984, eq. 7).
+/// 1984).
 class ExactSpheroidal {
  public:
   explicit ExactSpheroidal(int m) : rule_(gauss_legendre(60, 0, 1)), c_(std::acos(-1.0) * m / 2) {
