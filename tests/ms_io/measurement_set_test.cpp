@@ -297,12 +297,12 @@ BOOST_AUTO_TEST_CASE(a_selection_without_rows_is_an_error) {
 BOOST_AUTO_TEST_CASE(a_path_that_is_no_measurement_set_is_named) {
   const SmallSet set;
   const TemporaryFolder folder;
-  std::ofstream(folder.file("text.ms")) << "text";
-  std::filesystem::create_directory(folder.file("empty.ms"));
+  std::ofstream((folder / "text.ms")) << "text";
+  std::filesystem::create_directory((folder / "empty.ms"));
   const auto error = [](const std::string& path) { return testing::error_of([&] { MeasurementSet(path, {}, "DATA"); }); };
   BOOST_TEST(contains(error("/nowhere/a.ms"), "/nowhere/a.ms does not exist"));
-  BOOST_TEST(contains(error(folder.file("text.ms")), "text.ms is not a casacore table"));
-  BOOST_TEST(contains(error(folder.file("empty.ms")), "empty.ms is not a casacore table"));
+  BOOST_TEST(contains(error((folder / "text.ms")), "text.ms is not a casacore table"));
+  BOOST_TEST(contains(error((folder / "empty.ms")), "empty.ms is not a casacore table"));
   BOOST_TEST(contains(error(set.path() + "/ANTENNA"), "not a MeasurementSet"));
 }
 

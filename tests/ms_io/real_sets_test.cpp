@@ -1,4 +1,4 @@
-// Observations of other people, kept outside the project (see data_folder); skipped where they are absent.
+// Observations of other people; see Unpacked.
 #include <boost/test/unit_test.hpp>
 #include <cmath>
 #include <map>
@@ -8,34 +8,9 @@
 namespace misfit::ms_io {
 
 using namespace testing;
+using misfit::testing::Unpacked;
 
 namespace {
-
-std::filesystem::path data_folder() {
-  const char* const folder = std::getenv("MISFIT_TEST_DATA");
-  return folder != nullptr ? folder : std::filesystem::path(MISFIT_SOURCE_DIR) / ".." / "shared" / "data";
-}
-
-/// An archive, unpacked for the length of a test.
-class Unpacked {
- public:
-  explicit Unpacked(const std::string& name) {
-    const std::filesystem::path archive = data_folder() / (name + ".tar.xz");
-    present_ = std::filesystem::exists(archive);
-    if (!present_) {
-      BOOST_TEST_MESSAGE("skipped: there is no " << archive);
-      return;
-    }
-    const std::string command = "tar -xJf '" + archive.string() + "' -C '" + folder_.file("") + "'";
-    BOOST_REQUIRE_EQUAL(std::system(command.c_str()), 0);
-  }
-  bool present() const { return present_; }
-  std::string set(const std::string& name) const { return folder_.file(name + ".ms"); }
-
- private:
-  TemporaryFolder folder_;
-  bool present_ = false;
-};
 
 /// Reads everything, and checks what holds for any set.
 AllSamples read_checked(const MeasurementSet& set) {
@@ -61,7 +36,7 @@ BOOST_AUTO_TEST_SUITE(real_sets)
 BOOST_AUTO_TEST_CASE(alma_has_three_windows_and_is_56_percent_flagged) {
   const Unpacked data("alma_hd142527_b9");
   if (!data.present()) return;
-  const MeasurementSet set(data.set("alma_hd142527_b9"), {}, "DATA");
+  const MeasurementSet set(data / "alma_hd142527_b9.ms", {}, "DATA");
   const AllSamples all = read_checked(set);
   BOOST_TEST(all.frequency_hz.size() == 3U);
   BOOST_TEST(all.counts.samples_read == 78375U);
@@ -71,7 +46,7 @@ BOOST_AUTO_TEST_CASE(alma_has_three_windows_and_is_56_percent_flagged) {
   BOOST_TEST(set.observation().spectral_frame == "TOPOCENT");
   std::uint64_t sum = 0;
   for (const char* window : {"0", "1", "2"}) {
-    sum += MeasurementSet(data.set("alma_hd142527_b9"), {"", window}, "DATA").samples();
+    sum += MeasurementSet(data / "alma_hd142527_b9.ms", {"", window}, "DATA").samples();
   }
   BOOST_TEST(sum == 78375U);
 }
@@ -79,7 +54,7 @@ BOOST_AUTO_TEST_CASE(alma_has_three_windows_and_is_56_percent_flagged) {
 BOOST_AUTO_TEST_CASE(lofar_has_122_autocorrelation_rows) {
   const Unpacked data("lofar_3c295_snapshot");
   if (!data.present()) return;
-  const MeasurementSet set(data.set("lofar_3c295_snapshot"), {}, "corrected");
+  const MeasurementSet set(data / "lofar_3c295_snapshot.ms", {}, "corrected");
   const AllSamples all = read_checked(set);
   BOOST_TEST(all.counts.rows_read == 3782U);
   BOOST_TEST(all.counts.autocorrelations == 122U);
@@ -89,7 +64,7 @@ BOOST_AUTO_TEST_CASE(lofar_has_122_autocorrelation_rows) {
 BOOST_AUTO_TEST_CASE(vlba_has_two_windows_of_circular_feeds) {
   const Unpacked data("vlba_m87_mojave");
   if (!data.present()) return;
-  const MeasurementSet set(data.set("vlba_m87_mojave"), {}, "DATA");
+  const MeasurementSet set(data / "vlba_m87_mojave.ms", {}, "DATA");
   const AllSamples all = read_checked(set);
   BOOST_TEST(all.frequency_hz.size() == 2U);
   BOOST_TEST(all.counts.samples_read == 6300U);
@@ -102,7 +77,7 @@ BOOST_AUTO_TEST_CASE(vlba_has_two_windows_of_circular_feeds) {
 BOOST_AUTO_TEST_CASE(askap_has_four_descending_channels) {
   const Unpacked data("askap36_sim_4chan");
   if (!data.present()) return;
-  const AllSamples all = read_checked(MeasurementSet(data.set("askap36_sim_4chan"), {}, "DATA"));
+  const AllSamples all = read_checked(MeasurementSet(data / "askap36_sim_4chan.ms", {}, "DATA"));
   BOOST_TEST(all.counts.used == 90720U * 4U);
   BOOST_TEST(all.frequency_hz.size() == 4U);
   BOOST_TEST(all.frequency_hz[0] > all.frequency_hz[3]);
@@ -111,7 +86,7 @@ BOOST_AUTO_TEST_CASE(askap_has_four_descending_channels) {
 BOOST_AUTO_TEST_CASE(atca_leaves_its_unflagged_autocorrelations_out) {
   const Unpacked data("atca_sim_tileddata");
   if (!data.present()) return;
-  const AllSamples all = read_checked(MeasurementSet(data.set("atca_sim_tileddata"), {}, "CORRECTED_DATA"));
+  const AllSamples all = read_checked(MeasurementSet(data / "atca_sim_tileddata.ms", {}, "CORRECTED_DATA"));
   BOOST_TEST(all.counts.samples_read == 8820U * 13U);
   BOOST_TEST(all.counts.autocorrelations > 0U);
 }
@@ -131,7 +106,7 @@ BOOST_AUTO_TEST_CASE(a_bad_input_is_read_without_nans_or_named_with_its_fault) {
   };
   for (const auto& [name, fault] : faults) {
     BOOST_TEST_CONTEXT(name) {
-      const std::string path = data.set("bad_inputs/" + name);
+      const std::string path = data / ("bad_inputs/" + name + ".ms");
       const std::string error = error_of([&] { read_checked(MeasurementSet(path, {}, "DATA")); });
       BOOST_TEST(error.empty() == fault.empty());
       BOOST_TEST(contains(error, fault));
@@ -144,7 +119,7 @@ BOOST_AUTO_TEST_CASE(a_bad_input_is_read_without_nans_or_named_with_its_fault) {
 BOOST_AUTO_TEST_CASE(bad_inputs_are_described_as_far_as_they_go) {
   const Unpacked data("bad_inputs");
   if (!data.present()) return;
-  const auto open = [&](const std::string& name) { return MeasurementSet(data.set("bad_inputs/" + name), {}, "DATA"); };
+  const auto open = [&](const std::string& name) { return MeasurementSet(data / ("bad_inputs/" + name + ".ms"), {}, "DATA"); };
   BOOST_TEST(read_all(open("mwa_allflag_zeroweight")).counts.used == 0U);
   BOOST_TEST(open("lofar_bda_badframe").observation().spectral_frame.empty());
   BOOST_TEST(read_all(open("lofar_bda_badframe")).frequency_hz.size() == 3U + 4U + 1U + 8U);

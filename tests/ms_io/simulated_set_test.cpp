@@ -52,8 +52,8 @@ BOOST_AUTO_TEST_CASE(noise_is_white_and_independent_between_correlations) {
   const auto silent = [](const imager::SampleCoordinates& where) {
     return std::vector<std::complex<double>>(where.samples(), 0.0);
   };
-  write_simulated_set(folder.file("noise.ms"), observation, small_uvw, silent, {});
-  const casacore::MeasurementSet ms(folder.file("noise.ms"));
+  write_simulated_set((folder / "noise.ms"), observation, small_uvw, silent, {});
+  const casacore::MeasurementSet ms((folder / "noise.ms"));
   const casacore::Array<casacore::Complex> data = casacore::ArrayColumn<casacore::Complex>(ms, "DATA").getColumn();
   std::array<double, 4> square = {};
   double cross = 0;
@@ -99,8 +99,8 @@ BOOST_AUTO_TEST_CASE(a_failure_leaves_nothing_behind) {
   const auto fail = [](const imager::SampleCoordinates&) -> std::vector<std::complex<double>> {
     throw std::runtime_error("no sky");
   };
-  BOOST_CHECK_THROW(write_simulated_set(folder.file("a.ms"), small_observation(), small_uvw, fail, {}), std::runtime_error);
-  BOOST_CHECK(std::filesystem::is_empty(folder.file("")));
+  BOOST_CHECK_THROW(write_simulated_set((folder / "a.ms"), small_observation(), small_uvw, fail, {}), std::runtime_error);
+  BOOST_CHECK(std::filesystem::is_empty((folder / "")));
 }
 
 BOOST_AUTO_TEST_CASE(a_path_that_cannot_be_written_is_named) {
@@ -115,7 +115,7 @@ BOOST_AUTO_TEST_CASE(an_observation_that_is_incomplete_is_refused) {
   const auto refused = [&](const std::function<void(SimulatedObservation&)>& spoil) {
     SimulatedObservation observation = small_observation();
     spoil(observation);
-    BOOST_CHECK_THROW(write_simulated_set(folder.file("a.ms"), observation, small_uvw, small_visibilities, {}),
+    BOOST_CHECK_THROW(write_simulated_set((folder / "a.ms"), observation, small_uvw, small_visibilities, {}),
                       std::invalid_argument);
   };
   refused([](auto& o) { o.antenna_itrf_m.pop_back(); });
@@ -130,7 +130,7 @@ BOOST_AUTO_TEST_CASE(an_observation_that_is_incomplete_is_refused) {
 BOOST_AUTO_TEST_CASE(progress_counts_integrations) {
   const TemporaryFolder folder;
   std::vector<std::size_t> done;
-  write_simulated_set(folder.file("a.ms"), small_observation(), small_uvw, small_visibilities,
+  write_simulated_set((folder / "a.ms"), small_observation(), small_uvw, small_visibilities,
                       [&](std::size_t d, std::size_t total) {
                         done.push_back(d);
                         BOOST_TEST(total == integrations);

@@ -18,6 +18,7 @@
 
 #include "ms_io/measurement_set.h"
 #include "ms_io/simulated_set.h"
+#include "tests/observations.h"
 
 namespace misfit::ms_io::testing {
 
@@ -25,22 +26,7 @@ constexpr double nan_value = std::numeric_limits<double>::quiet_NaN();
 constexpr float nan_float = std::numeric_limits<float>::quiet_NaN();
 constexpr float infinite_float = std::numeric_limits<float>::infinity();
 
-/// A folder that lives as long as the test.
-class TemporaryFolder {
- public:
-  TemporaryFolder() {
-    std::string name = (std::filesystem::temp_directory_path() / "misfit_ms_io_XXXXXX").string();
-    if (mkdtemp(name.data()) == nullptr) throw std::runtime_error("cannot create a folder " + name);
-    path_ = name;
-  }
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-  ~TemporaryFolder() { std::filesystem::remove_all(path_); }
-  std::string file(const std::string& name) const { return (path_ / name).string(); }
-
- private:
-  std::filesystem::path path_;
-};
+using misfit::testing::TemporaryFolder;
 
 constexpr std::size_t antennas = 4, baselines = 6, integrations = 5, channels = 6, rows = baselines * integrations;
 
@@ -83,7 +69,7 @@ class SmallSet {
     write_simulated_set(path(), observation, small_uvw, small_visibilities, {});
   }
 
-  std::string path() const { return folder_.file("small.ms"); }
+  std::string path() const { return (folder_ / "small.ms"); }
 
   void modify(const std::function<void(casacore::MeasurementSet&)>& change) const {
     casacore::MeasurementSet set(path(), casacore::Table::Update);

@@ -1,36 +1,11 @@
-// Observations of other people, kept outside the project; skipped where they are absent.
+// Observations of other people; see Unpacked.
 #include "tests/tools/program.h"
 
 namespace {
 
 using namespace misfit;
 using namespace misfit::tools::testing;
-
-std::filesystem::path data_folder() {
-  const char* const folder = std::getenv("MISFIT_TEST_DATA");
-  return folder != nullptr ? folder : std::filesystem::path(MISFIT_SOURCE_DIR) / ".." / "shared" / "data";
-}
-
-/// An archive, unpacked for the length of a test.
-class Unpacked {
- public:
-  explicit Unpacked(const std::string& name) {
-    const std::filesystem::path archive = data_folder() / (name + ".tar.xz");
-    present_ = std::filesystem::exists(archive);
-    if (!present_) {
-      BOOST_TEST_MESSAGE("skipped: there is no " << archive);
-      return;
-    }
-    const std::string command = "tar -xJf '" + archive.string() + "' -C '" + (folder_ / "") + "'";
-    BOOST_REQUIRE_EQUAL(std::system(command.c_str()), 0);
-  }
-  bool present() const { return present_; }
-  std::string operator/(const std::string& name) const { return folder_ / name; }
-
- private:
-  TemporaryFolder folder_;
-  bool present_ = false;
-};
+using misfit::testing::Unpacked;
 
 double peak(const imager::Image& image) {
   return *std::max_element(image.pixel.begin(), image.pixel.end());
