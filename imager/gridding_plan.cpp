@@ -16,7 +16,7 @@ namespace {
 constexpr double single_rounding = 1.2e-7;
 constexpr double double_rounding = 2.2e-16;
 constexpr double single_from = 1e-4;  ///< below, sums of millions of samples lose what single precision has left
-constexpr int smallest_fft = 64;      ///< so that the widest kernel never meets its own periodic copy
+constexpr int smallest_fft = 64;
 
 std::string text(const char* format, double value) {
   char buffer[64];
@@ -71,35 +71,48 @@ double axis_x0(int pixels, int fft_size, const kernels::KernelFamily& family) {
   return std::clamp(0.5 * pixels / fft_size, family.min_x0, family.max_x0);
 }
 
-int fft_size(int pixels, double padding, const kernels::KernelFamily& family) {
+/// At least four widths, so that a kernel never meets its own periodic copy.
+int fft_size(int pixels, int width, double padding, const kernels::KernelFamily& family) {
   const double needed = std::max(padding, 0.5 / family.max_x0) * pixels;
-  return fast_fft_size(std::max(smallest_fft, static_cast<int>(std::ceil(needed))));
+  return fast_fft_size(std::max({smallest_fft, 4 * width, static_cast<int>(std::ceil(needed))}));
 }
 
-/// All widths at one padding, narrowest first.
-std::vector<Candidate> candidates(const GriddingRequest& request, const kernels::KernelFamily& family, double padding) {
-  const int nu = fft_size(request.geometry.width, padding, family);
-  const int nv = fft_size(request.geometry.height, padding, family);
+/// One width at one padding, in each precision that may be trusted.
+std::vector<Candidate> candidates(const GriddingRequest& request, const kernels::KernelFamily& family, double padding,
+                                  int width) {
+  const int nu = fft_size(request.geometry.width, width, padding, family);
+  const int nv = fft_size(request.geometry.height, width, padding, family);
   const double x0_u = axis_x0(request.geometry.width, nu, family);
   const double x0_v = axis_x0(request.geometry.height, nv, family);
-  const int widest = request.kernel_width == 0 ? family.max_width : request.kernel_width;
-  const std::vector<kernels::Kernel> along_u = family.make_up_to(widest, x0_u);
-  const std::vector<kernels::Kernel> along_v = x0_v == x0_u ? along_u : family.make_up_to(widest, x0_v);
+  Candidate candidate{padding, nu, nv, family.make(width, x0_u), {}};
+  candidate.kernel_v = x0_v == x0_u ? candidate.kernel_u : family.make(width, x0_v);
+  candidate.misfit_u = misfit_of(candidate.kernel_u, request.geometry.width, nu);
+  candidate.misfit_v = misfit_of(candidate.kernel_v, request.geometry.height, nv);
+  candidate.noise_gain =
+      kernels::noise_gain(candidate.kernel_u.polynomial, x0_u) * kernels::noise_gain(candidate.kernel_v.polynomial, x0_v);
+  const double wanted = request.accuracy == 0 ? candidate.worst_error() : request.accuracy;
   std::vector<Candidate> found;
-  for (std::size_t i = 0; i < along_u.size(); ++i) {
-    if (request.kernel_width != 0 && along_u[i].width() != request.kernel_width) continue;
-    Candidate candidate{padding, nu, nv, along_u[i], along_v[i]};
-    candidate.misfit_u = misfit_of(along_u[i], request.geometry.width, nu);
-    candidate.misfit_v = misfit_of(along_v[i], request.geometry.height, nv);
-    candidate.noise_gain = kernels::noise_gain(along_u[i].polynomial, x0_u) * kernels::noise_gain(along_v[i].polynomial, x0_v);
-    const double wanted = request.accuracy == 0 ? candidate.worst_error() : request.accuracy;
-    for (const Precision precision : {Precision::single_precision, Precision::double_precision}) {
-      if (precision == Precision::single_precision && wanted < single_from) continue;
-      candidate.precision = precision;
-      candidate.cost_ns = cost_ns(request, nu, nv, along_u[i].width(), precision);
-      found.push_back(candidate);
-    }
+  for (const Precision precision : {Precision::single_precision, Precision::double_precision}) {
+    if (precision == Precision::single_precision && wanted < single_from) continue;
+    candidate.precision = precision;
+    candidate.cost_ns = cost_ns(request, nu, nv, width, precision);
+    found.push_back(candidate);
   }
+  return found;
+}
+
+/// Narrowest first, until one reaches `target` or wider ones would only gather rounding.
+std::vector<Candidate> widths_at(const GriddingRequest& request, const kernels::KernelFamily& family, double padding,
+                                 double target) {
+  std::vector<Candidate> found;
+  const int first = request.kernel_width == 0 ? family.min_width : request.kernel_width;
+  const int last = request.kernel_width == 0 ? family.max_width : request.kernel_width;
+  for (int width = first; width <= last; ++width)
+    for (const Candidate& candidate : candidates(request, family, padding, width)) {
+      found.push_back(candidate);
+      const bool precise = candidate.precision == Precision::double_precision;
+      if (candidate.worst_error() <= target || (precise && candidate.worst_error() < 2 * candidate.rounding())) return found;
+    }
   return found;
 }
 
@@ -116,7 +129,7 @@ Choice choose(const GriddingRequest& request, const kernels::KernelFamily& famil
   Choice choice;
   std::vector<Candidate> reaching;
   for (const double padding : paddings) {
-    for (const Candidate& candidate : candidates(request, family, padding)) {
+    for (const Candidate& candidate : widths_at(request, family, padding, target)) {
       if (!choice.most_exact || candidate.worst_error() < choice.most_exact->worst_error()) choice.most_exact = candidate;
       if (candidate.worst_error() > target) continue;
       reaching.push_back(candidate);

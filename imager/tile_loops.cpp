@@ -108,8 +108,10 @@ HWY_ATTR void spread_padded(const TapTable<Real>& u, const TapTable<Real>& v, co
       return spread_planes<Real, 8>(u, v, samples, buffer);
     case 12:
       return spread_planes<Real, 12>(u, v, samples, buffer);
-    default:
+    case 16:
       return spread_planes<Real, 16>(u, v, samples, buffer);
+    default:
+      return spread_planes<Real, 20>(u, v, samples, buffer);
   }
 }
 
@@ -123,8 +125,10 @@ HWY_ATTR void interpolate_padded(const TapTable<Real>& u, const TapTable<Real>& 
       return interpolate_samples<Real, 8>(u, v, buffer, samples);
     case 12:
       return interpolate_samples<Real, 12>(u, v, buffer, samples);
-    default:
+    case 16:
       return interpolate_samples<Real, 16>(u, v, buffer, samples);
+    default:
+      return interpolate_samples<Real, 20>(u, v, buffer, samples);
   }
 }
 
@@ -162,7 +166,7 @@ HWY_EXPORT(interpolate_double);
 template <typename Real>
 TapTable<Real>::TapTable(const kernels::PiecewisePolynomial& kernel)
     : width(kernel.width()), padded((kernel.width() + 3) / 4 * 4), degree(kernel.degree()) {
-  if (padded > 16) throw std::invalid_argument("kernel width " + std::to_string(width) + " not in [1, 16]");
+  if (padded > 20) throw std::invalid_argument("kernel width " + std::to_string(width) + " not in [1, 20]");
   coefficient.resize((static_cast<std::size_t>(degree) + 1) * static_cast<std::size_t>(padded));
   for (int power = 0; power <= degree; ++power)
     for (int tap = 0; tap < width; ++tap)

@@ -1,16 +1,35 @@
 #include "kernels/catalogue.h"
 
+#include <sstream>
 #include <stdexcept>
 
-#include "kernels/least_misfit.h"
-#include "kernels/spheroidal.h"
+#include "kernels/families/families.h"
 
 namespace misfit::kernels {
+namespace {
+
+std::string text_of(double value) {
+  std::ostringstream out;
+  out << value;
+  return out.str();
+}
+
+}  // namespace
+
+Kernel KernelFamily::make(int width, double x0) const {
+  if (width < min_width || width > max_width)
+    throw std::invalid_argument("kernel width " + std::to_string(width) + " not in [" + std::to_string(min_width) + ", " +
+                                std::to_string(max_width) + "], which kernel " + name + " offers");
+  if (!(x0 >= min_x0 && x0 <= max_x0))
+    throw std::invalid_argument("x0 = " + text_of(x0) + " not in [" + text_of(min_x0) + ", " + text_of(max_x0) +
+                                "], which kernel " + name + " offers");
+  return solve(width, x0);
+}
 
 const std::vector<KernelFamily>& kernel_catalogue() {
   static const std::vector<KernelFamily> families{
-      {"least-misfit", 1, least_misfit_max_width, least_misfit_min_x0, least_misfit_max_x0, least_misfit_up_to},
-      {"spheroidal", 4, 8, 0.05, 0.49, spheroidal_up_to},
+      least_misfit_family(),
+      spheroidal_family(),
   };
   return families;
 }

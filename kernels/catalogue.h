@@ -11,14 +11,15 @@ namespace misfit::kernels {
 /// A family of gridding functions: one kernel for each width and retained fraction.
 struct KernelFamily {
   std::string name;
+  std::string description;  ///< a line for a person who chooses
   int min_width = 1;
   int max_width = 1;
-  double min_x0 = 0;
-  double max_x0 = 0.5;
-  /// The kernels of widths min_width … `width`, narrowest first: some solvers find the narrower on their way to the wider.
-  std::function<std::vector<Kernel>(int width, double x0)> make_up_to;
+  double min_x0 = 0.01;
+  double max_x0 = 0.49;
+  std::function<Kernel(int width, double x0)> solve;  ///< for arguments in these ranges
 
-  Kernel make(int width, double x0) const { return make_up_to(width, x0).back(); }
+  /// The kernel of `width` for `x0`; std::invalid_argument names what lies outside the ranges.
+  Kernel make(int width, double x0) const;
 };
 
 /// Every family there is. A new one is a line here.

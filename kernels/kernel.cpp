@@ -4,29 +4,22 @@
 
 namespace misfit::kernels {
 
-Kernel make_kernel(const std::string& name, double x0, const TapFunction& taps) {
-  // Powers of t amplify rounding with their degree; 16 is where that outgrows what a term can still add.
-  constexpr int highest_degree = 16;
-  const double target = 1.005 * judge(taps, x0).mean;
-  const auto stored = [&](int degree) {
-    const PiecewisePolynomial polynomial = fit_polynomial(taps, degree);
-    return Kernel{name, x0, polynomial, judge(polynomial, x0)};
-  };
-  int degree = std::max(0, static_cast<int>(taps(0).size()) - 2);  // W − 1 … W + 1 is what most kernels need
-  Kernel best = stored(degree);
-  if (best.misfit.mean <= target) {
-    while (degree > 0) {
-      const Kernel lower = stored(--degree);
-      if (lower.misfit.mean > target) break;
-      best = lower;
-    }
-    return best;
+Kernel make_kernel(const std::string& name, double x0, const TapFunction& taps, const std::optional<Origin>& origin) {
+  constexpr double true_value = 1e-10;
+  constexpr double true_to_error = 1e-7;
+  Kernel kernel{name, x0, {}, {}, {}};
+  if (origin) {
+    kernel.origin = *origin;
+  } else {
+    const Misfit misfit = judge(taps, x0);
+    kernel.origin.mean_error = misfit.mean;
+    kernel.origin.max_error = misfit.max;
   }
-  while (best.misfit.mean > target && degree < highest_degree) {
-    const Kernel higher = stored(++degree);
-    if (higher.misfit.mean < best.misfit.mean) best = higher;
-  }
-  return best;
+  const double gain = noise_gain(taps, x0);
+  const double allowed = std::min(true_value * true_value, true_to_error * kernel.origin.mean_error / (gain * gain));
+  kernel.polynomial = fit_polynomial_within(taps, allowed);
+  kernel.misfit = judge(kernel.polynomial, x0);
+  return kernel;
 }
 
 }  // namespace misfit::kernels

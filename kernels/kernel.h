@@ -1,11 +1,23 @@
 #pragma once
 
+#include <limits>
+#include <optional>
 #include <string>
 
 #include "kernels/map_error.h"
 #include "kernels/piecewise_polynomial.h"
 
 namespace misfit::kernels {
+
+/// What was known of the gridding function before it was stored, and how it was found.
+struct Origin {
+  double mean_error = 0;                                              ///< E, the mean of ℓ over |x| ≤ x0
+  double max_error = 0;                                               ///< largest ℓ over |x| ≤ x0
+  double max_error_bound = std::numeric_limits<double>::quiet_NaN();  ///< below which no function's max ℓ lies, where known
+  double condition = std::numeric_limits<double>::quiet_NaN();        ///< of the normal equations for C, where solved
+  int iterations = 0;
+  std::string precision = "double";  ///< the arithmetic of the solution: double, quadruple or 256 bits
+};
 
 /// A gridding function, made for the retained fraction 2·x0 of an FFT image. Everything else (correction, map error) derives
 /// from the polynomial.
@@ -14,12 +26,13 @@ struct Kernel {
   double x0 = 0.25;                ///< half the retained fraction of the FFT image: image size / (2 × FFT size), below 1/2
   PiecewisePolynomial polynomial;  ///< the stored form; evaluation anywhere goes through it
   Misfit misfit;                   ///< of the stored polynomial over |x| ≤ x0
+  Origin origin;
 
   int width() const { return polynomial.width(); }
 };
 
-/// Stores `taps` as the polynomial of lowest degree that adds less than 0.5% to the mean map error, or
-/// that comes closest where the rounding of doubles allows none.
-Kernel make_kernel(const std::string& name, double x0, const TapFunction& taps);
+/// Stores `taps` as the polynomial of lowest degree that is true to them: values to 1e-10, and E to 1e-7 of itself, as far as
+/// doubles hold it. Without an `origin` the taps are judged as they are.
+Kernel make_kernel(const std::string& name, double x0, const TapFunction& taps, const std::optional<Origin>& origin = {});
 
 }  // namespace misfit::kernels

@@ -1,14 +1,13 @@
 #pragma once
 
-#include <functional>
-#include <vector>
+#include <string>
 
 #include "kernels/kernel.h"
 
 namespace misfit::kernels {
 
-inline constexpr int least_misfit_max_width = 11;
-inline constexpr double least_misfit_min_x0 = 0.05;
+inline constexpr int least_misfit_max_width = 20;
+inline constexpr double least_misfit_min_x0 = 0.01;
 inline constexpr double least_misfit_max_x0 = 0.49;
 
 /// A least-misfit gridding function as solved, before it is stored as a polynomial: C and h together minimise E, the mean over
@@ -16,17 +15,17 @@ inline constexpr double least_misfit_max_x0 = 0.49;
 struct LeastMisfit {
   int width = 0;
   double x0 = 0;
-  double mean_error = 0;  ///< E
-  int iterations = 0;
-  TapFunction taps;
+  Origin origin;      ///< E, max ℓ, condition, iterations, precision
+  double h_step = 0;  ///< relative size of the last step in h: what h may still be off by
+  TapFunction taps;   ///< solved for every t anew; in the arithmetic of the solution, then rounded to doubles
 };
 
-/// Solves for widths 1 … `width` at `x0`, since each solution starts the next, and returns them all ([0] is W = 1).
-/// Width must lie in [1, 11] and x0 in [0.05, 0.49] (std::invalid_argument). Throws std::runtime_error when a solution does not
-/// converge. E is converged to 1e-6 relative where it exceeds 1e-29; below that it is rounding of doubles.
-std::vector<LeastMisfit> solve_least_misfit(int width, double x0);
+/// Solves for `width` at `x0`. The arithmetic is the narrowest whose rounding leaves E right to 1e-6 and h to 1e-8: double, or
+/// quadruple, or 256 bits. Width must lie in [1, 20] and x0 in [0.01, 0.49] (std::invalid_argument). Throws std::runtime_error
+/// when the iteration does not converge.
+LeastMisfit solve_least_misfit(int width, double x0);
 
-/// The least-misfit functions of widths 1 … `width`, stored as polynomials.
-std::vector<Kernel> least_misfit_up_to(int width, double x0);
+/// The solution stored as a polynomial.
+Kernel store_least_misfit(const LeastMisfit& solution);
 
 }  // namespace misfit::kernels

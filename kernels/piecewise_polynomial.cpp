@@ -1,5 +1,9 @@
 #include "kernels/piecewise_polynomial.h"
 
+#include <algorithm>
+#include <stdexcept>
+#include <string>
+
 #include "kernels/quadrature.h"
 
 namespace misfit::kernels {
@@ -17,6 +21,29 @@ Eigen::MatrixXd legendre_in_powers(int degree) {
   return power;
 }
 
+/// Legendre coefficients of the taps in t: [degree][tap].
+Eigen::MatrixXd legendre_series(const TapFunction& taps, int degree) {
+  const Quadrature rule = gauss_legendre(degree + 14, -0.5, 0.5);
+  Eigen::MatrixXd series = Eigen::MatrixXd::Zero(degree + 1, taps(0).size());
+  Eigen::VectorXd legendre(degree + 1);
+  for (Eigen::Index i = 0; i < rule.node.size(); ++i) {
+    for (int k = 0; k <= degree; ++k) legendre[k] = (2 * k + 1) * LegendrePair<double>(k, 2 * rule.node[i]).last;
+    series += rule.weight[i] * legendre * taps(rule.node[i]).transpose();
+  }
+  return series;
+}
+
+/// The series in powers of t, with C(−u) = C(u) made exact.
+PiecewisePolynomial in_powers(const Eigen::MatrixXd& series) {
+  const auto degree = static_cast<int>(series.rows()) - 1;
+  PiecewisePolynomial result{legendre_in_powers(degree) * series};
+  for (int d = 0; d <= degree; ++d) {
+    const Eigen::RowVectorXd mirrored = (d % 2 == 0 ? 1 : -1) * result.coefficient.row(d).reverse();
+    result.coefficient.row(d) = (result.coefficient.row(d) + mirrored).eval() / 2;
+  }
+  return result;
+}
+
 }  // namespace
 
 Eigen::VectorXd PiecewisePolynomial::operator()(double t) const {
@@ -26,26 +53,25 @@ Eigen::VectorXd PiecewisePolynomial::operator()(double t) const {
 }
 
 PiecewisePolynomial fit_polynomial(const TapFunction& taps, int degree) {
-  const Quadrature rule = gauss_legendre(degree + 14, -0.5, 0.5);
-  const Eigen::Index width = taps(0).size();
-  const Eigen::MatrixXd powers = legendre_in_powers(degree);
-  Eigen::MatrixXd series = Eigen::MatrixXd::Zero(degree + 1, width);
-  for (Eigen::Index i = 0; i < rule.node.size(); ++i) {
-    Eigen::RowVectorXd monomial(degree + 1);
-    monomial[0] = 1;
-    for (int d = 1; d <= degree; ++d) monomial[d] = monomial[d - 1] * rule.node[i];
-    const Eigen::RowVectorXd legendre = monomial * powers;
-    series += rule.weight[i] * legendre.transpose() * taps(rule.node[i]).transpose();
-  }
-  for (int k = 0; k <= degree; ++k) series.row(k) *= 2 * k + 1;
+  if (degree < 0 || degree > highest_degree)
+    throw std::invalid_argument("polynomial degree " + std::to_string(degree) + " not in [0, " +
+                                std::to_string(highest_degree) + "]");
+  return in_powers(legendre_series(taps, degree));
+}
 
-  PiecewisePolynomial result{powers * series};
-  for (int d = 0; d <= degree; ++d) {
-    const double parity = d % 2 == 0 ? 1 : -1;
-    const Eigen::RowVectorXd mirrored = parity * result.coefficient.row(d).reverse();
-    result.coefficient.row(d) = (result.coefficient.row(d) + mirrored).eval() / 2;
+PiecewisePolynomial fit_polynomial_within(const TapFunction& taps, double mean_square) {
+  const Eigen::MatrixXd series = legendre_series(taps, highest_degree);
+  // Of taps that were rounded to doubles the high terms are noise: their sum would never fall below what doubles hold.
+  constexpr double unit = 0x1p-53;
+  const double noise = unit * unit * static_cast<double>(series.cols());
+  double left = 0;
+  int degree = highest_degree;
+  for (; degree > 0; --degree) {
+    const double term = series.row(degree).squaredNorm() / (2 * degree + 1);
+    if (term > noise) left += term;
+    if (left > mean_square) break;
   }
-  return result;
+  return in_powers(series.topRows(degree + 1));
 }
 
 }  // namespace misfit::kernels

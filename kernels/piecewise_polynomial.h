@@ -20,8 +20,15 @@ struct PiecewisePolynomial {
   Eigen::VectorXd operator()(double t) const;
 };
 
+/// The highest degree that is ever stored: beyond, a Legendre term of a double is rounding.
+inline constexpr int highest_degree = 24;
+
 /// The best polynomial of `degree` in each cell in the sense of least squares over t: the truncated Legendre series. The
-/// symmetry C(−u) = C(u) holds exactly in the result.
+/// symmetry C(−u) = C(u) holds exactly in the result. The degree lies in [0, 24] (std::invalid_argument).
 PiecewisePolynomial fit_polynomial(const TapFunction& taps, int degree);
+
+/// The same of the lowest degree that leaves a mean square Σ_r ∫ |fit_r − C_r|² dt of at most `mean_square`, or of
+/// highest_degree.
+PiecewisePolynomial fit_polynomial_within(const TapFunction& taps, double mean_square);
 
 }  // namespace misfit::kernels

@@ -1,17 +1,93 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cmath>
+#include <limits>
 
 namespace misfit::kernels {
 
-/// Nodes and weights: ∫ f ≈ Σ weight_i f(node_i).
-struct Quadrature {
-  Eigen::VectorXd node;
-  Eigen::VectorXd weight;
+/// Nodes and weights: ∫ f ≈ Σ weight_i f(node_i). `Real` is double or one of the types of extended_precision.h.
+template <typename Real>
+struct QuadratureOf {
+  Eigen::Matrix<Real, Eigen::Dynamic, 1> node;
+  Eigen::Matrix<Real, Eigen::Dynamic, 1> weight;
+};
+using Quadrature = QuadratureOf<double>;
+
+/// P_n and P_{n−1} at x.
+template <typename Real>
+struct LegendrePair {
+  Real last = 1;
+  Real before = 0;
+
+  LegendrePair(int n, const Real& x) {
+    for (int k = 1; k <= n; ++k) {
+      const Real next = ((2 * k - 1) * x * last - (k - 1) * before) / k;
+      before = last;
+      last = next;
+    }
+  }
 };
 
 /// The Gauss–Legendre rule of `points` points on [from, to], exact for polynomials of degree 2·points − 1
 /// (Abramowitz & Stegun 1964, eq. 25.4.29).
-Quadrature gauss_legendre(int points, double from, double to);
+template <typename Real>
+QuadratureOf<Real> gauss_legendre_in(int points, const Real& from, const Real& to) {
+  using std::abs;
+  QuadratureOf<Real> rule;
+  rule.node.resize(points);
+  rule.weight.resize(points);
+  const Real half = (to - from) / 2;
+  for (int i = 0; i < points; ++i) {
+    Real x = static_cast<Real>(std::cos(std::acos(-1.0) * (i + 0.75) / (points + 0.5)));
+    Real slope = 0;
+    for (int newton = 0; newton < 12; ++newton) {
+      const LegendrePair<Real> p(points, x);
+      slope = points * (x * p.last - p.before) / (x * x - 1);
+      const Real step = p.last / slope;
+      x -= step;
+      if (abs(step) < std::numeric_limits<Real>::epsilon()) break;
+    }
+    rule.node[points - 1 - i] = from + half * (1 + x);
+    rule.weight[points - 1 - i] = half * 2 / ((1 - x * x) * slope * slope);
+  }
+  return rule;
+}
+
+/// The Gauss–Lobatto rule of `points` ≥ 2 points on [from, to], both ends among them, exact for polynomials of degree
+/// 2·points − 3 (ibid., eq. 25.4.32).
+template <typename Real>
+QuadratureOf<Real> gauss_lobatto_in(int points, const Real& from, const Real& to) {
+  using std::abs;
+  const int n = points - 1;  // the inner nodes are the zeros of P_n'
+  QuadratureOf<Real> rule;
+  rule.node.resize(points);
+  rule.weight.resize(points);
+  const Real half = (to - from) / 2;
+  for (int i = 0; i < points; ++i) {
+    Real x = static_cast<Real>(std::cos(std::acos(-1.0) * i / n));
+    const bool end = i == 0 || i == n;
+    if (end) x = i == 0 ? 1 : -1;
+    for (int newton = 0; newton < 12 && !end; ++newton) {
+      const LegendrePair<Real> p(n, x);
+      const Real slope = n * (x * p.last - p.before) / (x * x - 1);
+      const Real curvature = (2 * x * slope - n * (n + 1) * p.last) / (1 - x * x);  // Legendre's equation
+      const Real step = slope / curvature;
+      x -= step;
+      if (abs(step) < std::numeric_limits<Real>::epsilon()) break;
+    }
+    const Real value = LegendrePair<Real>(n, x).last;
+    rule.node[points - 1 - i] = from + half * (1 + x);
+    rule.weight[points - 1 - i] = half * 2 / (n * (n + 1) * value * value);
+  }
+  return rule;
+}
+
+/// In doubles, correctly rounded but for a bit: computed in long double, since Newton's last step and the weights would lose
+/// two digits.
+inline Quadrature gauss_legendre(int points, double from, double to) {
+  const QuadratureOf<long double> rule = gauss_legendre_in<long double>(points, from, to);
+  return {rule.node.cast<double>(), rule.weight.cast<double>()};
+}
 
 }  // namespace misfit::kernels

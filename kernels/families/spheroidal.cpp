@@ -1,8 +1,10 @@
-#include "kernels/spheroidal.h"
+#include "kernels/families/spheroidal.h"
 
 #include <array>
 #include <cmath>
 #include <stdexcept>
+
+#include "kernels/families/families.h"
 
 namespace misfit::kernels {
 namespace {
@@ -64,10 +66,14 @@ TapFunction spheroidal_taps(int width) {
   };
 }
 
-std::vector<Kernel> spheroidal_up_to(int width, double x0) {
-  std::vector<Kernel> kernels;
-  for (int m = min_width; m <= width; ++m) kernels.push_back(make_kernel("spheroidal", x0, spheroidal_taps(m)));
-  return kernels;
+KernelFamily spheroidal_family() {
+  return {"spheroidal",
+          "Schwab's approximation of the spheroidal function of order 1, as in AIPS and CASA",
+          min_width,
+          max_width,
+          0.01,
+          0.49,
+          [](int width, double x0) { return make_kernel("spheroidal", x0, spheroidal_taps(width)); }};
 }
 
 }  // namespace misfit::kernels

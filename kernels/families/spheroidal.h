@@ -10,7 +10,4 @@ namespace misfit::kernels {
 /// CASA for W = 6. Throws std::invalid_argument for other widths.
 TapFunction spheroidal_taps(int width);
 
-/// The same of widths 4 … `width`, stored as polynomials.
-std::vector<Kernel> spheroidal_up_to(int width, double x0);
-
 }  // namespace misfit::kernels

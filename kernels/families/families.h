@@ -1,0 +1,11 @@
+#pragma once
+
+#include "kernels/catalogue.h"
+
+/// The families of the catalogue, one file each.
+namespace misfit::kernels {
+
+KernelFamily least_misfit_family();
+KernelFamily spheroidal_family();
+
+}  // namespace misfit::kernels
