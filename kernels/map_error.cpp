@@ -3,7 +3,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "kernels/quadrature.h"
+#include "kernels/positions_internal.h"
 
 namespace misfit::kernels {
 namespace {
@@ -32,11 +32,8 @@ Response response(const TapFunction& taps, const Eigen::VectorXd& x, const Eigen
   return {real * phase.cos() + imaginary * phase.sin(), imaginary * phase.cos() - real * phase.sin()};
 }
 
-/// Enough points for the square of a tap, a polynomial of degree 40 at most, times a slowly turning phase.
-Quadrature half_cell() {
-  Quadrature rule = gauss_legendre(28, 0, 0.5);
-  rule.weight *= 2;
-  return rule;
+Positions positions(int steps_per_cell) {
+  return steps_per_cell > 0 ? stepped_positions(steps_per_cell) : smooth_positions();
 }
 
 /// c(x) is the mean of the response over t, and Σ_n c(x−n)² the mean of its square (Parseval over the period 1 of ν).
@@ -51,48 +48,52 @@ Eigen::ArrayXXd squared_error(const Response& seen, const Eigen::VectorXd& h) {
   return (seen.real.colwise() * h.array() - 1).square() + (seen.imaginary.colwise() * h.array()).square();
 }
 
+Eigen::VectorXd correction_by(const JudgeOptions& options, const Response& seen, const Quadrature& t,
+                              const Eigen::VectorXd& x) {
+  return options.correction ? options.correction(x) : correction(seen, t.weight);
+}
+
 /// Means by the weights of x, maxima over its nodes.
-Misfit judge_at(const TapFunction& taps, const Quadrature& x) {
-  const Quadrature t = half_cell();
-  const Response seen = response(taps, x.node, t.node);
-  const Eigen::VectorXd h = correction(seen, t.weight);
-  const Eigen::VectorXd error = squared_error(seen, h).matrix() * t.weight;
-  const Eigen::VectorXd position = Eigen::VectorXd::LinSpaced(65, 0, 0.5);
-  const Eigen::ArrayXXd at_position = squared_error(response(taps, x.node, position), h);
+Misfit judge_at(const TapFunction& taps, const Quadrature& x, const JudgeOptions& options) {
+  const Positions t = positions(options.steps_per_cell);
+  const Response seen = response(taps, x.node, t.mean.node);
+  const Eigen::VectorXd h = correction_by(options, seen, t.mean, x.node);
+  const Eigen::VectorXd error = squared_error(seen, h).matrix() * t.mean.weight;
+  const Eigen::ArrayXXd at_position = squared_error(response(taps, x.node, t.extreme), h);
   return {x.weight.dot(error), error.maxCoeff(), (x.weight.transpose() * at_position.matrix()).maxCoeff(),
           at_position.maxCoeff()};
 }
 
 }  // namespace
 
-Eigen::VectorXd optimal_correction(const TapFunction& taps, const Eigen::VectorXd& x) {
-  const Quadrature t = half_cell();
+Eigen::VectorXd optimal_correction(const TapFunction& taps, const Eigen::VectorXd& x, int steps_per_cell) {
+  const Quadrature t = positions(steps_per_cell).mean;
   return correction(response(taps, x, t.node), t.weight);
 }
 
-Eigen::VectorXd map_error(const TapFunction& taps, const Eigen::VectorXd& x) {
-  const Quadrature t = half_cell();
+Eigen::VectorXd map_error(const TapFunction& taps, const Eigen::VectorXd& x, const JudgeOptions& options) {
+  const Quadrature t = positions(options.steps_per_cell).mean;
   const Response seen = response(taps, x, t.node);
-  return squared_error(seen, correction(seen, t.weight)).matrix() * t.weight;
+  return squared_error(seen, correction_by(options, seen, t, x)).matrix() * t.weight;
 }
 
-Misfit judge(const TapFunction& taps, double x0) {
+Misfit judge(const TapFunction& taps, double x0, const JudgeOptions& options) {
   const Quadrature rule = gauss_legendre(48, 0, x0);
   Quadrature x{Eigen::VectorXd(rule.node.size() + 1), Eigen::VectorXd(rule.node.size() + 1)};
   x.node << rule.node, x0;
   x.weight << rule.weight / x0, 0;
-  return judge_at(taps, x);
+  return judge_at(taps, x, options);
 }
 
 Misfit judge_pixels(const TapFunction& taps, int pixels, int fft_size) {
   const Eigen::VectorXd pixel = Eigen::VectorXd::LinSpaced(pixels, -(pixels / 2), (pixels - 1) / 2);
-  return judge_at(taps, {pixel / fft_size, Eigen::VectorXd::Constant(pixels, 1.0 / pixels)});
+  return judge_at(taps, {pixel / fft_size, Eigen::VectorXd::Constant(pixels, 1.0 / pixels)}, {});
 }
 
 double noise_gain(const TapFunction& taps, double x0) {
   const Quadrature x = gauss_legendre(48, 0, x0);
   const double h_square = x.weight.dot(optimal_correction(taps, x.node).cwiseAbs2()) / x0;
-  const Quadrature t = half_cell();
+  const Quadrature t = smooth_positions().mean;
   double c_square = 0;
   for (Eigen::Index i = 0; i < t.node.size(); ++i) c_square += t.weight[i] * taps(t.node[i]).squaredNorm();
   return std::sqrt(h_square * c_square);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <functional>
 
 #include "kernels/piecewise_polynomial.h"
 
@@ -8,14 +9,25 @@ namespace misfit::kernels {
 
 /// Everything here is derived from the taps alone, however they are evaluated.
 
+/// h at many x.
+using Correction = std::function<Eigen::VectorXd(const Eigen::VectorXd& x)>;
+
+/// What is judged besides the taps.
+struct JudgeOptions {
+  /// The taps are smooth in t only between multiples of 1/(2·steps_per_cell), as those of a lookup table of so many entries a
+  /// cell are; 0 = smooth over the cell. For taps that carry the rounding of single precision, 64 average it to 2%.
+  int steps_per_cell = 0;
+  Correction correction = {};  ///< h that the image is multiplied by; empty = the optimal one
+};
+
 /// The optimal correction h(x) = c(x) / Σ_n c(x−n)², where c(x) = ∫ C(u) exp(2πiux) du: it minimises the map error at every x
 /// (Ye, Gull, Tan & Nikolic 2020, MNRAS 491, 1146). The image is multiplied by h(x)·h(y); x is the pixel's offset from the
-/// phase centre over the size of the FFT.
-Eigen::VectorXd optimal_correction(const TapFunction& taps, const Eigen::VectorXd& x);
+/// phase centre over the size of the FFT. For `steps_per_cell` see JudgeOptions.
+Eigen::VectorXd optimal_correction(const TapFunction& taps, const Eigen::VectorXd& x, int steps_per_cell = 0);
 
-/// The map error ℓ(x) = ∫ dν |1 − h(x) Σ_r C(r−ν) exp(2πi(r−ν)x)|² with the optimal correction (ibid.), as a sum of
-/// squares: exact down to the square of the rounding of doubles.
-Eigen::VectorXd map_error(const TapFunction& taps, const Eigen::VectorXd& x);
+/// The map error ℓ(x) = ∫ dν |1 − h(x) Σ_r C(r−ν) exp(2πi(r−ν)x)|² (ibid.), as a sum of squares: exact down to the
+/// square of the rounding of doubles.
+Eigen::VectorXd map_error(const TapFunction& taps, const Eigen::VectorXd& x, const JudgeOptions& options = {});
 
 /// How far a kernel is from the exact transform over |x| ≤ x0; squares of relative errors of a one-dimensional transform.
 struct Misfit {
@@ -25,7 +37,7 @@ struct Misfit {
   double worst = 0;       ///< largest squared error over |x| ≤ x0 and all positions
 };
 
-Misfit judge(const TapFunction& taps, double x0);
+Misfit judge(const TapFunction& taps, double x0, const JudgeOptions& options = {});
 
 /// The same over the pixels of an image, x = (−pixels/2 … (pixels−1)/2) / fft_size with integer division: what counts where few
 /// pixels are no continuum.

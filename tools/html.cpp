@@ -49,16 +49,16 @@ std::string base64(const std::string& bytes) {
   return result;
 }
 
-std::string html_power(double value) {
+std::string html_power(double value, int digits) {
   const double magnitude = std::abs(value);
-  if (value == 0 || !std::isfinite(value) || (magnitude >= 0.01 && magnitude < 1000)) return significant(value, 2);
+  if (value == 0 || !std::isfinite(value) || (magnitude >= 0.01 && magnitude < 1000)) return significant(value, digits);
   std::array<char, 32> text{};
-  std::snprintf(text.data(), text.size(), "%.1e", magnitude);
+  std::snprintf(text.data(), text.size(), "%.*e", digits - 1, magnitude);
   const std::string_view shown(text.data());
   const auto split = shown.find('e');
   const int exponent = std::stoi(std::string(shown.substr(split + 1)));
   std::string factor(shown.substr(0, split));
-  if (factor.ends_with(".0")) factor.resize(factor.size() - 2);
+  if (factor.find('.') != std::string::npos) factor.resize(factor.find_last_not_of(".0") + 1);
   const std::string power = "10<sup>" + significant(exponent, 3) + "</sup>";
   return (value < 0 ? "−" : "") + (factor == "1" ? power : factor + " × " + power);
 }

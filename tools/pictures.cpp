@@ -1,20 +1,14 @@
 #include "tools/pictures.h"
 
-#include <fcntl.h>
-#include <spawn.h>
-#include <sys/wait.h>
-#include <unistd.h>
-
 #include <algorithm>
-#include <cerrno>
 #include <cmath>
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <numbers>
 #include <sstream>
 #include <stdexcept>
 
+#include "tools/gnuplot.h"
 #include "tools/numbers.h"
 #include "tools/stretch.h"
 
@@ -29,36 +23,6 @@ constexpr int margin_left = 92;
 constexpr int margin_right = 170;
 constexpr int margin_top = 78;
 constexpr int margin_bottom = 70;
-
-/// A folder beside the picture, so that finished files can be renamed to their places; removed with all it holds.
-class WorkFolder {
- public:
-  explicit WorkFolder(const fs::path& parent) {
-    std::string name = (parent / ".pictures-XXXXXX").string();
-    if (mkdtemp(name.data()) == nullptr) throw std::runtime_error("cannot write pictures in " + parent.string());
-    path_ = name;
-  }
-  WorkFolder(const WorkFolder&) = delete;
-  WorkFolder& operator=(const WorkFolder&) = delete;
-  ~WorkFolder() {
-    std::error_code ignored;
-    fs::remove_all(path_, ignored);
-  }
-  const fs::path& path() const { return path_; }
-
- private:
-  fs::path path_;
-};
-
-/// `text` as a gnuplot string.
-std::string quoted(const std::string& text) {
-  std::string result = "'";
-  for (const char c : text) {
-    if (c == '\'') result += '\'';
-    result += c >= 0 && c < ' ' ? ' ' : c;
-  }
-  return result + "'";
-}
 
 /// The shades as 32-bit floats, rows from south to north and columns from west to east, as gnuplot counts.
 void write_shades(const fs::path& path, const imager::Image& image, const Stretch& stretch, double unit) {
@@ -121,12 +85,13 @@ void colour_bar(std::ostream& script, const Stretch& stretch, const std::string&
   script << "set cbrange [" << stretch(stretch.low) << ':' << stretch(stretch.high) << "]\nset cbtics (";
   const char* comma = "";
   for (const Tick& tick : stretch_ticks(stretch)) {
-    script << comma << quoted(tick.label) << ' ' << stretch(tick.value);
+    script << comma << gnuplot_quoted(tick.label) << ' ' << stretch(tick.value);
     comma = ", ";
   }
   const std::string kind =
       stretch.knee > 0 ? ", asinh stretch, linear below " + significant(stretch.knee, 2) : ", linear stretch";
-  script << ")\nset label 3 " << quoted(unit + kind) << " at screen " << 1 - 20 / width << ", graph 0.5 rotate by 90 center\n";
+  script << ")\nset label 3 " << gnuplot_quoted(unit + kind) << " at screen " << 1 - 20 / width
+         << ", graph 0.5 rotate by 90 center\n";
 }
 
 /// Draws picture `number`, with its data in number.data and its result in number.png.
@@ -157,11 +122,12 @@ void script_picture(std::ostream& script, const Picture& picture, std::size_t nu
          "'#f9c932', "
          "8 '#fcffa4')\n"
       << "set border lw 1 lc rgb '#444444'\nset tics out nomirror textcolor rgb '#222222'\nunset key\n"
-      << "set label 1 " << quoted(picture.title) << " at graph 0, screen " << 1 - 26.0 / height << " font 'sans:Bold,17'\n"
-      << "set label 2 " << quoted(subtitle(sky)) << " at graph 0, screen " << 1 - 56.0 / height
+      << "set label 1 " << gnuplot_quoted(picture.title) << " at graph 0, screen " << 1 - 26.0 / height
+      << " font 'sans:Bold,17'\n"
+      << "set label 2 " << gnuplot_quoted(subtitle(sky)) << " at graph 0, screen " << 1 - 56.0 / height
       << " font 'sans,11' tc rgb '#555555'\n"
-      << "set xlabel " << quoted("offset east, " + frame.unit.name) << "\nset ylabel "
-      << quoted("offset north, " + frame.unit.name) << '\n'
+      << "set xlabel " << gnuplot_quoted("offset east, " + frame.unit.name) << "\nset ylabel "
+      << gnuplot_quoted("offset north, " + frame.unit.name) << '\n'
       << "set xrange [" << frame.east << ':' << frame.west << "]\nset yrange [" << frame.south << ':' << frame.north << "]\n";
   colour_bar(script, stretch, unit.name, width);
   if (sky.has_beam) script << "$beam << EOD\n" << beam_outline(sky.beam, frame) << "EOD\n";
@@ -170,27 +136,6 @@ void script_picture(std::ostream& script, const Picture& picture, std::size_t nu
          << ") dx=" << step << " dy=" << step << " with image";
   if (sky.has_beam) script << ", $beam with filledcurves fc rgb '#ffffff' fs solid border lc rgb '#999999'";
   script << "\nunset output\n";
-}
-
-/// Runs gnuplot in `folder` with what it says going to the file "said"; false when there is no gnuplot.
-bool run_gnuplot(const fs::path& folder, int& status) {
-  posix_spawn_file_actions_t actions;
-  posix_spawn_file_actions_init(&actions);
-  posix_spawn_file_actions_addchdir_np(&actions, folder.c_str());
-  posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
-  posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, "said", O_WRONLY | O_CREAT, 0600);
-  posix_spawn_file_actions_adddup2(&actions, STDOUT_FILENO, STDERR_FILENO);
-  std::string program = "gnuplot";
-  std::string no_user_settings = "-d";
-  std::string script = "script";
-  char* arguments[] = {program.data(), no_user_settings.data(), script.data(), nullptr};
-  pid_t process = 0;
-  const int error = posix_spawnp(&process, "gnuplot", &actions, nullptr, arguments, environ);
-  posix_spawn_file_actions_destroy(&actions);
-  if (error != 0) return false;
-  while (waitpid(process, &status, 0) < 0 && errno == EINTR) {
-  }
-  return true;
 }
 
 /// Whether a PNG file is there to its last chunk, IEND; gnuplot says nothing when the disk is full.
@@ -214,15 +159,8 @@ std::string draw_pictures(const std::vector<Picture>& pictures) {
     script_picture(script, pictures[number], number, work.path());
   script.close();
 
-  int status = 0;
-  if (!run_gnuplot(work.path(), status)) return "Pictures are left out because gnuplot is not installed.";
-  if (status != 0) {
-    std::ifstream said(work.path() / "said");
-    std::string line;
-    while (line.find_first_not_of(" \t^") == std::string::npos && std::getline(said, line)) {
-    }
-    return "Pictures are left out because gnuplot failed: " + line;
-  }
+  const std::string failure = run_gnuplot(work);
+  if (!failure.empty()) return "Pictures are left out because " + failure + ".";
   const auto drawn = [&](std::size_t number) { return work.path() / (std::to_string(number) + ".png"); };
   for (std::size_t number = 0; number < pictures.size(); ++number)
     if (!is_complete(drawn(number))) return "Pictures are left out because gnuplot could not finish them; is the disk full?";

@@ -8,12 +8,16 @@
 
 #include "tools/clean_curve.h"
 #include "tools/html.h"
+#include "tools/html_elements.h"
 #include "tools/numbers.h"
-#include "tools/report_style.h"
 
 namespace misfit::tools {
 namespace {
 
+using html::Row;
+using html::section;
+using html::table;
+using html::tag;
 using nlohmann::json;
 
 const std::string not_measured = "<span class=\"none\">not measured</span>";
@@ -50,34 +54,6 @@ std::string with_unit(const json& value, const std::string& unit) {
   const double number = value.get<double>();
   const ScaledUnit scaled = scaled_unit(number, unit);
   return significant(number / scaled.size, 3) + " " + scaled.name;
-}
-
-/// An element; `content` is HTML already.
-std::string tag(const std::string& name, const std::string& content, const std::string& kind = "") {
-  return "<" + name + (kind.empty() ? "" : " class=\"" + kind + "\"") + ">" + content + "</" + name + ">";
-}
-
-std::string section(const std::string& title, const std::string& content) {
-  return content.empty() ? "" : "<section>\n" + tag("h2", title) + "\n" + content + "</section>\n";
-}
-
-using Row = std::vector<std::string>;
-
-/// A table that scrolls sideways where it is too wide. Columns whose heading begins with # hold numbers.
-std::string table(const Row& headings, const std::vector<Row>& rows) {
-  const auto row_of = [&](const Row& cells, const std::string& element) {
-    std::string line;
-    for (std::size_t k = 0; k < cells.size(); ++k) {
-      const bool number = headings[k].starts_with('#');
-      line += tag(element, element == "th" && number ? cells[k].substr(1) : cells[k], number ? "number" : "");
-    }
-    return tag("tr", line) + "\n";
-  };
-  std::string body;
-  for (const Row& row : rows) body += row_of(row, "td");
-  if (rows.empty()) return "";
-  const std::string kind = headings.size() > 4 ? "scroll wide" : headings.back().starts_with('#') ? "scroll narrow" : "scroll";
-  return tag("div", tag("table", tag("thead", row_of(headings, "th")) + tag("tbody", body)), kind) + "\n";
 }
 
 /// "0.52 × 0.51″" and the position angle in small, or nothing.
@@ -283,21 +259,18 @@ std::string report_page(const json& report, const std::vector<PagePicture>& pict
   const json& name = member(member(report, "options"), "imagename");
   const std::string title = name.is_string() ? plain(name) : "misfit";
   const json& command = member(report, "command_line");
-  std::string page = "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n";
-  page += "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n";
-  page += tag("title", title + " — misfit") + "\n" + tag("style", report_style) + "\n</head>\n<body>\n<main>\n";
-  page += tag("header", tag("h1", title) + tag("p", "misfit " + plain(member(report, "version")))) + "\n";
-  page += warnings(member(report, "warnings"));
-  page += headline(report);
-  page += figures(pictures);
-  page += section("Plan", plan(member(report, "plan")));
-  page += section("Error", errors(member(report, "error"), member(report, "kernel")));
-  page += section("What was used and what was left out", left_out(member(report, "visibilities")));
-  page += section("CLEAN", clean_section(member(report, "clean")));
-  page += section("Time", timings(member(report, "timings_s")));
-  page += section("Options", options(member(report, "options")));
-  page += section("Command line", command.is_string() ? tag("pre", plain(command)) : "");
-  return page + "</main>\n</body>\n</html>\n";
+  std::string content = html::header(title, "misfit " + plain(member(report, "version")));
+  content += warnings(member(report, "warnings"));
+  content += headline(report);
+  content += figures(pictures);
+  content += section("Plan", plan(member(report, "plan")));
+  content += section("Error", errors(member(report, "error"), member(report, "kernel")));
+  content += section("What was used and what was left out", left_out(member(report, "visibilities")));
+  content += section("CLEAN", clean_section(member(report, "clean")));
+  content += section("Time", timings(member(report, "timings_s")));
+  content += section("Options", options(member(report, "options")));
+  content += section("Command line", command.is_string() ? tag("pre", plain(command)) : "");
+  return html::page(title + " — misfit", content);
 }
 
 }  // namespace misfit::tools

@@ -7,7 +7,7 @@ inline constexpr const char* report_style = R"css(
 :root { color-scheme: light dark; --text: #1d1d1f; --soft: #62646a; --line: #dcdde1; --page: #ffffff; --tint: #f5f5f7;
   --accent: #88226a; --bad: #b3261e; --good: #2b6e3f; --warn: #fff4d6; --warn-line: #e0a100; }
 @media (prefers-color-scheme: dark) { :root { --text: #e4e4e7; --soft: #a0a1a8; --line: #34353b; --page: #141417; --tint: #1d1e22;
-  --accent: #e35933; --bad: #ff8a80; --good: #81c995; --warn: #33290f; --warn-line: #c98f00; } img { filter: brightness(.82); } }
+  --accent: #e35933; --bad: #ff8a80; --good: #81c995; --warn: #33290f; --warn-line: #c98f00; } img, .drawing svg { filter: brightness(.82); } }
 * { box-sizing: border-box; }
 body { margin: 0; background: var(--page); color: var(--text); font: 16px/1.5 system-ui, -apple-system, "Segoe UI", "DejaVu Sans", sans-serif; }
 main { max-width: 1060px; margin: 0 auto; padding: 2rem 1.25rem 4rem; }
@@ -29,6 +29,9 @@ sup { line-height: 0; font-size: .75em; }
 .pictures { display: grid; grid-template-columns: repeat(auto-fit, minmax(min(100%, 28rem), 1fr)); gap: 1rem; margin-top: 1.5rem; }
 figure { margin: 0; }
 img { display: block; width: 100%; height: auto; border: 1px solid var(--line); border-radius: 8px; background: #fff; }
+.drawing, .data { margin: 1.25rem 0 2rem; max-width: 48rem; } .data { max-width: none; }
+.drawing svg { display: block; width: 100%; height: auto; border: 1px solid var(--line); border-radius: 8px; background: #fff; }
+figcaption { font-size: .92rem; margin: .5rem 0; max-width: 48rem; }
 .scroll { overflow-x: auto; }
 table { border-collapse: collapse; width: 100%; font-size: .92rem; font-variant-numeric: tabular-nums; }
 th { text-align: left; font-weight: 500; font-size: .8rem; }
@@ -51,7 +54,8 @@ pre { background: var(--tint); padding: .8rem 1rem; border-radius: 6px; white-sp
 td { overflow-wrap: break-word; }
 @media (max-width: 36rem) { main { padding: 1.25rem 1rem 3rem; } .facts { grid-template-columns: 1fr 1fr; } .facts dd { font-size: 1.05rem; }
   table { font-size: .85rem; } th, td { padding-right: .7rem; } .bars .bar { width: 30%; } }
-@media print { main { max-width: none; padding: 0; } section, figure, .facts { break-inside: avoid; } .pictures { grid-template-columns: 1fr 1fr; } }
+@media print { main { max-width: none; padding: 0; } section, figure, .facts { break-inside: avoid; } .pictures { grid-template-columns: 1fr 1fr; }
+  .drawing { max-width: none; } h2 { break-after: avoid; } }
 )css";
 
 }  // namespace misfit::tools

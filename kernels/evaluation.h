@@ -1,0 +1,39 @@
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <string>
+
+#include "kernels/least_misfit.h"
+#include "kernels/lookup_table.h"
+#include "kernels/map_error.h"
+
+namespace misfit::kernels {
+
+/// What positions, stored numbers and arithmetic are in.
+enum class Precision { single_precision, double_precision };
+
+/// A way to have a gridding function as values. judge(way.taps, x0, way.judging()) is what it really does.
+struct Evaluation {
+  std::string name;  ///< as in "cubic table, Ms = 64"
+  Precision precision = Precision::double_precision;
+  std::size_t bytes = 0;   ///< of the numbers it keeps; 0 where nothing is tabulated
+  int steps_per_cell = 0;  ///< see JudgeOptions
+  TapFunction taps;
+  /// Σ over the positions of all taps. For measuring time: no cost but that of the taps.
+  std::function<double(const Eigen::VectorXd& t)> total;
+
+  JudgeOptions judging() const { return {steps_per_cell, {}}; }
+};
+
+/// Solves for the taps at every t anew, in the arithmetic of the solution. In single precision positions and values are
+/// rounded.
+Evaluation evaluate_directly(const LeastMisfit& solution, Precision precision);
+
+/// Looks the taps up; see LookupTable.
+Evaluation evaluate_by_table(const PiecewisePolynomial& kernel, const TableOptions& options, Precision precision);
+
+/// Horner's rule in even and odd halves; see EvenOddPolynomial. Lower degrees are truncations: fit_polynomial(kernel, degree).
+Evaluation evaluate_by_polynomial(const PiecewisePolynomial& kernel, Precision precision);
+
+}  // namespace misfit::kernels

@@ -1,0 +1,60 @@
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "kernels/piecewise_polynomial.h"
+
+namespace misfit::kernels {
+
+/// How a lookup table is read between its entries: the nearest entry, or the polynomial of degree 1, 2, 3 through as many
+/// entries more. The value is the degree.
+enum class Interpolation { nearest, linear, quadratic, cubic };
+
+/// A table's shape.
+struct TableOptions {
+  int samples_per_cell = 64;  ///< Ms: entries lie 1/Ms of a cell apart; in [1, 2^24]
+  Interpolation interpolation = Interpolation::cubic;
+};
+
+/// A gridding function sampled at t = k/Ms, read by Newton's forward differences: p in [0, 1] cells of the table from entry k,
+/// C ≈ Σ_j binomial(p, j) Δ^j C_k (Abramowitz & Stegun 1964, eq. 25.2.28; Ye, Gull, Tan & Nikolic 2020, MNRAS 491, 1146,
+/// tabulate so). Every cell of C has a table of its own, continued beyond the cell's end by the cell's polynomial, so that
+/// nothing is interpolated across the jumps of C. C(−u) = C(u): entries for t ≥ 0 serve t < 0 with the taps in reverse, half of
+/// what W cells would take. `Real`, float or double, is what entries and arithmetic are in.
+template <typename Real>
+class LookupTable {
+ public:
+  /// std::invalid_argument when Ms lies outside its range.
+  LookupTable(const PiecewisePolynomial& kernel, const TableOptions& options);
+
+  /// Writes the W taps at t to `out`.
+  void taps(Real t, Real* out) const;
+
+  int width() const { return width_; }
+  const TableOptions& options() const { return options_; }
+  std::size_t bytes() const { return entry_.size() * sizeof(Real); }
+
+ private:
+  int width_;
+  TableOptions options_;
+  int last_;                 ///< the last entry from which a stencil starts
+  std::vector<Real> entry_;  ///< [k][tap]
+};
+
+extern template class LookupTable<float>;
+extern template class LookupTable<double>;
+
+/// The factor κ of a table's error. Interpolation of degree d leaves C^(d+1) binomial(p, d+1) / Ms^(d+1), and κ is the RMS of
+/// the binomial over the part of the stencil that is read, p in [0, 1] (nearest: p in [−½, ½]): the roots of 1/12, 1/120, 2/945
+/// and 313/362880.
+double interpolation_error_factor(Interpolation interpolation);
+
+/// The E that a table of Ms entries a cell adds to that of its function, whatever the function, as long as the correction is
+/// that of the function:
+///   e² = κ² (2π x0)^(2d+2) / ((2d+3) Ms^(2d+2)),
+/// since h Σ_r C_r(t) exp(2πi s_r x) is close to exp(2πitx), whose (d+1)-th derivative has the size (2πx)^(d+1), squared and
+/// averaged over |x| ≤ x0.
+double table_misfit(const TableOptions& options, double x0);
+
+}  // namespace misfit::kernels

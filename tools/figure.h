@@ -1,0 +1,49 @@
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace misfit::tools {
+
+/// A curve: y over x, of one length. What is not finite, or not positive on a logarithmic axis, leaves a gap.
+struct Series {
+  std::string label;  ///< for the legend, unlike all others of the figure
+  std::vector<double> x;
+  std::vector<double> y;
+  bool points = false;  ///< marks at its points
+  bool line = true;     ///< a line through them
+  bool law = false;     ///< thin, dashed and black: what theory says of the series around it
+};
+
+struct Axis {
+  std::string label;
+  bool logarithmic = false;
+  std::optional<double> from;  ///< without: as the data ask
+  std::optional<double> to;
+};
+
+/// A figure with the numbers behind it. All text is plain UTF-8.
+struct Figure {
+  std::string name;  ///< stem of its files: letters, digits and hyphens
+  std::string title;
+  std::string caption;
+  Axis x;
+  Axis y;
+  std::vector<Series> series;
+};
+
+/// The figure as an SVG element, drawn by gnuplot: curves differ in colour and in dashes or marks, the legend lies outside the
+/// axes, text is about 10 points where the figure fills a printed page. Ids in it begin with the figure's name. Throws
+/// std::logic_error for a figure without a point to draw, with labels that repeat or series of unequal lengths;
+/// std::runtime_error where gnuplot is not installed or fails.
+std::string draw_svg(const Figure& figure);
+
+/// "series,x,y" and a line for each point, with as many digits as doubles need.
+std::string figure_csv(const Figure& figure);
+
+/// {name, title, caption, x: {label, logarithmic}, y, series: [{label, x, y}]}.
+nlohmann::json figure_json(const Figure& figure);
+
+}  // namespace misfit::tools
