@@ -58,7 +58,7 @@ void check_gridding(const ImageOptions& o) {
   if (!(o.accuracy > 0 && o.accuracy < 1) && !(o.accuracy == 0 && accuracy_is_free))
     refuse("accuracy", text(o.accuracy), "a number above 0 and below 1");
   imager::GriddingRequest request;
-  request.kernel = o.kernel;
+  request.kernel = kernels::kernel_family(o.kernel);
   request.kernel_width = o.kernel_width;
   request.padding = o.padding;
   imager::check_request(request);

@@ -1,0 +1,91 @@
+#include "kernels/families/tuned.h"
+
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "kernels/map_error.h"
+#include "kernels/quadrature.h"
+
+namespace misfit::kernels {
+namespace {
+
+/// E for one width and x0 as a function of β, with as many nodes in x as its zeros and its rise towards x0 need.
+class MeanError {
+ public:
+  MeanError(const TapsOfParameter& taps, int width, double x0)
+      : taps_(taps), width_(width), x0_(x0), x_(gauss_legendre(14 + width + width / 2 + (x0 > 0.42 ? 8 : 0), 0, x0)) {}
+
+  /// All three functions have about this best bandwidth: their transform falls until |x| = 1 − x0, where aliases begin.
+  double natural() const { return std::numbers::pi * width_ * (1 - x0_); }
+
+  double operator()(double parameter) const { return x_.weight.dot(map_error(taps_(width_, parameter), x_.node)) / x0_; }
+
+ private:
+  const TapsOfParameter& taps_;
+  int width_;
+  double x0_;
+  Quadrature x_;
+};
+
+/// The minimum between `low` and `high` by golden sections, to `tolerance`.
+double golden_section(const MeanError& error, double low, double high, double tolerance) {
+  const double shrink = std::numbers::phi - 1;
+  double left = high - shrink * (high - low);
+  double right = low + shrink * (high - low);
+  double at_left = error(left);
+  double at_right = error(right);
+  while (high - low > tolerance) {
+    const bool go_left = at_left < at_right;
+    (go_left ? high : low) = go_left ? right : left;
+    if (go_left) {
+      right = left;
+      at_right = at_left;
+      left = high - shrink * (high - low);
+      at_left = error(left);
+    } else {
+      left = right;
+      at_left = at_right;
+      right = low + shrink * (high - low);
+      at_right = error(right);
+    }
+  }
+  return (low + high) / 2;
+}
+
+/// Below this E rounding, some 1e-31, would choose β.
+constexpr double clear_of_rounding = 1e-25;
+
+}  // namespace
+
+double tune_parameter(const TapsOfParameter& taps, int width, double x0) {
+  // Where E is rounding, β per cell is taken from the widest function whose E is not: it hardly changes any more with width.
+  int judged = width;
+  while (judged > 2 && MeanError(taps, judged, x0)(MeanError(taps, judged, x0).natural()) < clear_of_rounding) --judged;
+  const MeanError error(taps, judged, x0);
+  // Short functions fall short of the natural bandwidth most. For small x0 there are minima about 1/(4W) apart.
+  const double low = error.natural() * (1 - 1.0 / judged);
+  const double high = error.natural() * 1.06;
+  constexpr int steps = 24;
+  const double step = (high - low) / steps;
+  double best = low;
+  double least = std::numeric_limits<double>::infinity();
+  for (int i = 0; i <= steps; ++i) {
+    const double mean_error = error(low + i * step);
+    if (mean_error >= least) continue;
+    least = mean_error;
+    best = low + i * step;
+  }
+  return golden_section(error, best - step, best + step, 1e-4 * best) * width / judged;
+}
+
+KernelFamily tuned_family(const std::string& name, const std::string& description, const TapsOfParameter& taps) {
+  return {name, description, 2, 20, 0.01, 0.49, [name, taps](int width, double x0) {
+            const double parameter = tune_parameter(taps, width, x0);
+            Kernel kernel = make_kernel(name, x0, taps(width, parameter));
+            kernel.origin.parameter = parameter;
+            return kernel;
+          }};
+}
+
+}  // namespace misfit::kernels
