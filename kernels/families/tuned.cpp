@@ -18,7 +18,7 @@ class MeanError {
   MeanError(const TapsOfParameter& taps, int width, double x0)
       : taps_(taps), width_(width), x0_(x0), x_(gauss_legendre(14 + width + width / 2 + (x0 > 0.42 ? 8 : 0), 0, x0)) {}
 
-  /// All three functions have about this best bandwidth: their transform falls until |x| = 1 − x0, where aliases begin.
+  /// About the best β of all such functions: it concentrates their transform in |x| < 1 − x0, whose aliases stay off |x| < x0.
   double natural() const { return std::numbers::pi * width_ * (1 - x0_); }
 
   double operator()(double parameter) const { return x_.weight.dot(map_error(taps_(width_, parameter), x_.node)) / x0_; }
@@ -65,8 +65,8 @@ int widest_clear_of_rounding(const TapsOfParameter& taps, int width, double x0) 
   return width;
 }
 
-/// The global minimum. Short functions fall short of the natural bandwidth most, and for small x0 there are several minima,
-/// about natural/(2W) apart.
+/// The global minimum. It lies below the natural parameter, most so for short functions, or a percent above; for small x0 there
+/// are several minima, about natural/(2W) apart.
 double minimum(const MeanError& error, int width) {
   constexpr int steps = 24;
   const double low = error.natural() * (1 - 1.0 / width);
