@@ -181,7 +181,8 @@ class Search {
       const Outcome outcome = consider(sized(width, padding_u, padding_v, precision));
       if (outcome != Outcome::not_exact_enough) return width;
       const GriddingCandidate& c = considered_.back().candidate;
-      if (exhausted(c) || c.worst_error > narrower / 2) return {};
+      constexpr double stored = 1e-13;  // below, the rounding of the stored kernel may hold the error up
+      if (exhausted(c) || (c.worst_error < stored && c.worst_error > narrower / 2)) return {};
       narrower = c.worst_error;
     }
     return {};

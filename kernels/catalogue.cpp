@@ -1,20 +1,12 @@
 #include "kernels/catalogue.h"
 
-#include <sstream>
+#include <optional>
 #include <stdexcept>
 
 #include "kernels/families/families.h"
+#include "kernels/text_internal.h"
 
 namespace misfit::kernels {
-namespace {
-
-std::string text_of(double value) {
-  std::ostringstream out;
-  out << value;
-  return out.str();
-}
-
-}  // namespace
 
 Kernel KernelFamily::make(int width, double x0) const {
   if (width < min_width || width > max_width)

@@ -76,7 +76,8 @@ void declare(CLI::App& command, ImageOptions& o) {
                      "Spectral windows and channels, in CASA's selection syntax; all when empty");
   command.add_option("--datacolumn", o.datacolumn, "data, corrected, model, or a column's name");
   command.add_option("--weighting", o.weighting, "Weighting")->check(CLI::IsMember({"natural"}));
-  command.add_option("--kernel", o.kernel, "Gridding function: least-misfit or spheroidal");
+  command.add_option("--kernel", o.kernel,
+                     "Gridding function: least-misfit, spheroidal, kaiser-bessel …; an unknown name lists all");
   command.add_option("--accuracy", o.accuracy,
                      "Largest error of the whole image relative to the direct transform, RMS over RMS");
   command.add_option("--kernel-width", o.kernel_width, "Cells a visibility touches per axis; chosen when 0");

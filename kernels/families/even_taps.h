@@ -6,7 +6,7 @@
 
 namespace misfit::kernels {
 
-/// The taps of a function that is given by its values at |u| ≤ W/2, u in cells: `value(|u|)`, or `value(η)` with η = 2|u|/W.
+/// The taps of C(u) = value(|u|), |u| ≤ W/2 in cells.
 template <typename Value>
 TapFunction taps_over_cells(int width, Value value) {
   return [width, value](double t) {
@@ -16,6 +16,7 @@ TapFunction taps_over_cells(int width, Value value) {
   };
 }
 
+/// The taps of C(u) = value(η), η = 2|u|/W in [0, 1].
 template <typename Value>
 TapFunction taps_over_support(int width, Value value) {
   return taps_over_cells(width, [half = width / 2.0, value](double u) { return value(u / half); });

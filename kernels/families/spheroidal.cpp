@@ -2,11 +2,11 @@
 
 #include <array>
 #include <cmath>
-#include <sstream>
 #include <stdexcept>
 
 #include "kernels/families/even_taps.h"
 #include "kernels/families/families.h"
+#include "kernels/text_internal.h"
 
 namespace misfit::kernels {
 namespace {
@@ -92,12 +92,6 @@ constexpr std::array<Piece, 8> pieces{{
        {{5.259595e-4, -7.144198e-3, 3.238633e-2, -6.946769e-2, 7.873067e-2, -4.889490e-2}, {1.168075e+0, 4.135871e-1}},
        {{9.255826e-4, -1.038126e-2, 4.083176e-2, -7.815954e-2, 8.054087e-2, -4.552077e-2}, {1.111893e+0, 3.744076e-1}}}}},
 }};
-
-std::string text_of(double value) {
-  std::ostringstream out;
-  out << value;
-  return out.str();
-}
 
 double psi(int m, std::size_t order, double eta) {
   for (const Piece& piece : pieces)

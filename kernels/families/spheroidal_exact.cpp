@@ -5,14 +5,17 @@
 #include <cmath>
 #include <numbers>
 #include <stdexcept>
+#include <string>
 #include <system_error>
 
 #include "kernels/families/even_taps.h"
 #include "kernels/families/families.h"
+#include "kernels/text_internal.h"
 
 namespace misfit::kernels {
 namespace {
 
+constexpr const char* family_name = "spheroidal-exact";
 constexpr double max_order = 10;
 constexpr double max_bandwidth = 200;
 
@@ -62,13 +65,14 @@ class Series {
   Eigen::VectorXd coefficient_;
 };
 
-std::string range_of_orders() {
-  return "[0, " + std::to_string(static_cast<int>(max_order)) + "]";
+std::string range_up_to(double limit) {
+  return "[0, " + text_of(limit) + "]";
 }
 
 KernelFamily family_of(const std::string& name, double alpha) {
+  const std::string others = name == family_name ? "; " + name + "-<order> is that of any other" : "";
   return {name,
-          "the spheroidal function of order α, exactly (-<α> after the name; 1 without)",
+          "the spheroidal function of order " + text_of(alpha) + " itself" + others,
           1,
           20,
           0.01,
@@ -83,26 +87,26 @@ KernelFamily family_of(const std::string& name, double alpha) {
 TapFunction spheroidal_exact_taps(int width, double alpha, double bandwidth) {
   if (width < 1) throw std::invalid_argument("spheroidal function: width " + std::to_string(width) + ", expected 1 or more");
   if (!(alpha >= 0 && alpha <= max_order))
-    throw std::invalid_argument("spheroidal function: order " + std::to_string(alpha) + " not in " + range_of_orders());
+    throw std::invalid_argument("spheroidal function: order " + text_of(alpha) + " not in " + range_up_to(max_order));
   if (!(bandwidth >= 0 && bandwidth <= max_bandwidth))
-    throw std::invalid_argument("spheroidal function: bandwidth " + std::to_string(bandwidth) + " not in [0, " +
-                                std::to_string(static_cast<int>(max_bandwidth)) + "]");
+    throw std::invalid_argument("spheroidal function: bandwidth " + text_of(bandwidth) + " not in " +
+                                range_up_to(max_bandwidth));
   return taps_over_support(width, Series(alpha, bandwidth));
 }
 
 KernelFamily spheroidal_exact_family() {
-  return family_of("spheroidal-exact", 1);
+  return family_of(family_name, 1);
 }
 
 std::optional<KernelFamily> spheroidal_exact_family(const std::string& name) {
-  const std::string prefix = "spheroidal-exact-";
+  const std::string prefix = std::string(family_name) + "-";
   if (name.rfind(prefix, 0) != 0) return {};
   const char* const end = name.data() + name.size();
   double alpha = 0;
   const auto [rest, error] = std::from_chars(name.data() + prefix.size(), end, alpha);
   if (error != std::errc() || rest != end || !(alpha >= 0 && alpha <= max_order))
     throw std::invalid_argument("kernel \"" + name + "\": order \"" + name.substr(prefix.size()) + "\" is not a number in " +
-                                range_of_orders());
+                                range_up_to(max_order));
   return family_of(name, alpha);
 }
 

@@ -12,7 +12,8 @@ namespace misfit::kernels {
 /// the eigenfunction of ∫ exp(icηt) (1 − t²)^α ψ(t) dt with the largest eigenvalue (F. R. Schwab 1984, "Optimal gridding of
 /// visibility data in radio interferometry", in Indirect Imaging, ed. J. A. Roberts, Cambridge University Press, p. 333). α = 0
 /// is the prolate function of order 0. `bandwidth` is c; c = πW/2 is the usual one.
-/// Exact to some 1e-13. Width must be 1 or more, `alpha` lie in [0, 10] and `bandwidth` in [0, 200] (std::invalid_argument).
+/// Right to 1e-12 of the peak. Width must be 1 or more, `alpha` lie in [0, 10] and `bandwidth` in [0, 200]
+/// (std::invalid_argument).
 TapFunction spheroidal_exact_taps(int width, double alpha, double bandwidth);
 
 }  // namespace misfit::kernels
