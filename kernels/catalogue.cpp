@@ -1,5 +1,6 @@
 #include "kernels/catalogue.h"
 
+#include <algorithm>
 #include <sstream>
 #include <stdexcept>
 
@@ -41,6 +42,17 @@ const KernelFamily& kernel_family(const std::string& name) {
     known += (known.empty() ? "" : ", ") + family.name;
   }
   throw std::invalid_argument("kernel \"" + name + "\" is not known; expected one of: " + known);
+}
+
+KernelFamily family_of(const Kernel& kernel) {
+  constexpr double least_x0 = 1e-3;  // less than images have, which are padded to 80 pixels at most
+  const auto judged = [kernel](int, double x0) {
+    Kernel same = kernel;
+    same.x0 = x0;
+    if (x0 != kernel.x0) same.misfit = judge(kernel.polynomial, x0);
+    return same;
+  };
+  return {kernel.name, "one kernel", kernel.width(), kernel.width(), std::min(least_x0, kernel.x0), kernel.x0, judged};
 }
 
 }  // namespace misfit::kernels

@@ -70,6 +70,11 @@ Eigen::VectorXd optimal_correction(const TapFunction& taps, const Eigen::VectorX
   return correction(response(taps, x, t.node), t.weight);
 }
 
+Eigen::VectorXd image_taper(const TapFunction& taps, const Eigen::VectorXd& x) {
+  const Quadrature t = half_cell();
+  return response(taps, x, t.node).real.matrix() * t.weight;
+}
+
 Eigen::VectorXd map_error(const TapFunction& taps, const Eigen::VectorXd& x) {
   const Quadrature t = half_cell();
   const Response seen = response(taps, x, t.node);

@@ -13,6 +13,9 @@ namespace misfit::kernels {
 /// phase centre over the size of the FFT.
 Eigen::VectorXd optimal_correction(const TapFunction& taps, const Eigen::VectorXd& x);
 
+/// The taper c(x) = ∫ C(u) exp(2πiux) du that gridding leaves on an image; the correction in common use is 1/c.
+Eigen::VectorXd image_taper(const TapFunction& taps, const Eigen::VectorXd& x);
+
 /// The map error ℓ(x) = ∫ dν |1 − h(x) Σ_r C(r−ν) exp(2πi(r−ν)x)|² with the optimal correction (ibid.), as a sum of
 /// squares: exact down to the square of the rounding of doubles.
 Eigen::VectorXd map_error(const TapFunction& taps, const Eigen::VectorXd& x);
