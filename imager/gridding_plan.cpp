@@ -7,7 +7,6 @@
 #include <stdexcept>
 
 #include "imager/fft.h"
-#include "kernels/catalogue.h"
 
 namespace misfit::imager {
 namespace {
@@ -73,8 +72,21 @@ double axis_x0(int pixels, int fft_size, const kernels::KernelFamily& family) {
 
 /// At least four widths, so that a kernel never meets its own periodic copy.
 int fft_size(int pixels, int width, double padding, const kernels::KernelFamily& family) {
-  const double needed = std::max(padding, 0.5 / family.max_x0) * pixels;
+  const double least = 0.5 / family.max_x0 * (1 - 1e-12);  // x0 came from a padding, and is rounded
+  const double needed = std::max(padding, least) * pixels;
   return fast_fft_size(std::max({smallest_fft, 4 * width, static_cast<int>(std::ceil(needed))}));
+}
+
+/// The padding asked for, or the usual ones that the family can do with, from the least.
+std::vector<double> paddings(const GriddingRequest& request) {
+  if (request.padding != 0) return {request.padding};
+  const double least = 0.5 / request.kernel.max_x0;
+  std::vector<double> found;
+  for (const double usual : {1.15, 1.25, 1.4, 1.6, 2.0}) {
+    if (usual < least && found.empty()) found.push_back(least);
+    if (usual >= least) found.push_back(usual);
+  }
+  return found;
 }
 
 /// One width at one padding, in each precision that may be trusted.
@@ -123,12 +135,10 @@ struct Choice {
 };
 
 Choice choose(const GriddingRequest& request, const kernels::KernelFamily& family) {
-  static const std::vector<double> usual{1.15, 1.25, 1.4, 1.6, 2.0};
-  const std::vector<double> paddings = request.padding == 0 ? usual : std::vector<double>{request.padding};
   const double target = request.accuracy == 0 ? HUGE_VAL : request.accuracy;
   Choice choice;
   std::vector<Candidate> reaching;
-  for (const double padding : paddings) {
+  for (const double padding : paddings(request)) {
     for (const Candidate& candidate : widths_at(request, family, padding, target)) {
       if (!choice.most_exact || candidate.worst_error() < choice.most_exact->worst_error()) choice.most_exact = candidate;
       if (candidate.worst_error() > target) continue;
@@ -173,20 +183,25 @@ Plan decisions_of(const GriddingRequest& request, const GriddingPlan& plan, cons
 }  // namespace
 
 void check_request(const GriddingRequest& request) {
-  const kernels::KernelFamily& family = kernels::kernel_family(request.kernel);
+  const kernels::KernelFamily& family = request.kernel;
   if (request.kernel_width != 0 && (request.kernel_width < family.min_width || request.kernel_width > family.max_width))
     throw std::invalid_argument("kernel width " + std::to_string(request.kernel_width) + " not in [" +
                                 std::to_string(family.min_width) + ", " + std::to_string(family.max_width) +
                                 "], which kernel " + family.name + " offers");
   if (request.padding != 0 && !(request.padding >= 1.02 && request.padding <= 10))
     throw std::invalid_argument("padding " + text("%g", request.padding) + " not in [1.02, 10]");
+  constexpr double typed = 1e-3;  // what a padding of four digits may be off by
+  if (request.padding != 0 && request.padding < (1 - typed) * 0.5 / family.max_x0)
+    throw std::invalid_argument("padding " + text("%g", request.padding) + " is less than " +
+                                text("%.4g", 0.5 / family.max_x0) + ", which kernel " + family.name +
+                                " needs, made for x0 up to " + text("%.4g", family.max_x0));
   if (!(request.accuracy >= 0 && request.accuracy < 1))
     throw std::invalid_argument("accuracy " + text("%g", request.accuracy) + " not in (0, 1)");
 }
 
 GriddingPlan plan_gridding(const GriddingRequest& request) {
   check_request(request);
-  const kernels::KernelFamily& family = kernels::kernel_family(request.kernel);
+  const kernels::KernelFamily& family = request.kernel;
   const Choice choice = choose(request, family);
   if (!choice.cheapest && !request.best_effort)  // 1.06: two digits may round down by 5%
     throw std::invalid_argument("accuracy " + text("%g", request.accuracy) + " is out of reach of kernel " + family.name +

@@ -1,10 +1,10 @@
 #pragma once
 
 #include <cstdint>
-#include <string>
 
 #include "imager/plan.h"
 #include "imager/plane_transform.h"
+#include "kernels/catalogue.h"
 
 namespace misfit::imager {
 
@@ -12,11 +12,11 @@ namespace misfit::imager {
 struct GriddingRequest {
   ImageGeometry geometry;
   double accuracy = 1e-6;  ///< ε: ‖I − I_DFT‖₂ ≤ ε ‖I_DFT‖₂; 0 = whatever the given width and padding reach
-  std::string kernel = "least-misfit";  ///< a name of the catalogue
-  int kernel_width = 0;                 ///< cells; 0 = chosen
-  double padding = 0;                   ///< FFT size over image size, at least 1.02; 0 = chosen
-  bool best_effort = false;             ///< take the most exact kernel when the accuracy is out of reach
-  std::uint64_t samples = 0;            ///< visibilities in a pass
+  kernels::KernelFamily kernel = kernels::kernel_family("least-misfit");
+  int kernel_width = 0;       ///< cells; 0 = chosen
+  double padding = 0;         ///< FFT size over image size, at least 1.02; 0 = chosen
+  bool best_effort = false;   ///< take the most exact kernel when the accuracy is out of reach
+  std::uint64_t samples = 0;  ///< visibilities in a pass
   int threads = 1;
 };
 
@@ -31,8 +31,8 @@ struct GriddingPlan {
   Plan decisions;
 };
 
-/// Throws std::invalid_argument when the kernel is not known, or its width, the padding or the accuracy lie outside what can be
-/// asked; whether the accuracy can be reached takes plan_gridding to tell.
+/// Throws std::invalid_argument when the kernel's width, the padding or the accuracy lie outside what can be asked; whether the
+/// accuracy can be reached takes plan_gridding to tell.
 void check_request(const GriddingRequest& request);
 
 /// Throws std::invalid_argument as check_request does, and when the accuracy is out of reach of the kernel or of double

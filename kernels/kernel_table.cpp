@@ -156,8 +156,10 @@ void write_polynomial(const FitsMemory& file, const Kernel& kernel, const std::o
   file.check(
       fits_create_tbl(file.get(), BINARY_TBL, coefficient.cols(), 1, names.data(), formats.data(), nullptr, "POLY", &status));
   write_facts(file, kernel, sampling);
-  HeaderWriter(file).comment("Row r = 0 ... W-1: ascending powers of t, the visibility's place from the middle of its cell");
-  HeaderWriter(file).comment("in [-1/2, 1/2]; their sum is the value of the function at r - (W-1)/2 - t.");
+  const HeaderWriter header(file);
+  header.comment("Row r = 0 ... W-1: the value at r - (W-1)/2 - t in cells, as a");
+  header.comment("polynomial in ascending powers of t, -1/2 <= t <= 1/2: the place of");
+  header.comment("the visibility from the middle of its cell.");
   file.check(fits_write_col(file.get(), TDOUBLE, 1, 1, 1, coefficient.size(), coefficient.data(), &status));
   add_checksum(file);
 }

@@ -34,16 +34,17 @@ std::vector<HostTable> host_tables(const Kernel& kernel, int per_cell) {
   return {
       {"CONVFUNC",
        {{"U", step / per_cell}, {"C", c}},
-       {"C at |u| = U in cells, from POLY. C may jump where two cells meet, at whole U for",
-        "even W and at halves for odd W: there the mean of both sides is given, and at W/2", "the limit from inside."}},
+       {"C at |u| = U in cells, from POLY. C may jump where two cells meet, at",
+        "whole U for even W and at halves for odd W. There the mean of both",
+        "sides is given, and at U = W/2 the limit from inside."}},
       {"CORRECT",
        {{"X", x}, {"H", optimal_correction(taps, x)}, {"ONE_OVER_C", image_taper(taps, x).cwiseInverse()}},
-       {"What an image is multiplied by along each axis; X is the offset from the phase",
-        "centre over the size of the FFT. H makes the map error least. ONE_OVER_C undoes the",
-        "taper c(x), the Fourier transform of C, and is what is usual."}},
+       {"What an image is multiplied by along each axis. X is the offset from",
+        "the phase centre over the size of the FFT. H makes the map error",
+        "least; ONE_OVER_C undoes the taper c(x), C's Fourier transform, and", "is what is usual."}},
       {"MAPERROR",
        {{"X", part / 2}, {"ELL", map_error(taps, part / 2)}},
-       {"Mean square error relative to the exact transform, with the correction H."}},
+       {"Mean square error relative to the exact transform, corrected with H."}},
   };
 }
 
