@@ -61,7 +61,7 @@ KernelFamily cached(KernelFamily family, const fs::path& folder) {
     const Key key{name, width, x0};
     const fs::path path = folder / file_name(key);
     if (const std::optional<Kernel> found = kept(path, key)) return *found;
-    const Kernel kernel = solve(width, x0);
+    Kernel kernel = solve(width, x0);
     keep(path, kernel);
     return kernel;
   };

@@ -34,7 +34,7 @@ kernels::KernelFamily family_of_file(const std::string& path) {
 }  // namespace
 
 fs::path default_cache_folder() {
-  if (const fs::path given = path_in_environment("MISFIT_CACHE"); !given.empty()) return given;
+  if (fs::path given = path_in_environment("MISFIT_CACHE"); !given.empty()) return given;
   // The XDG Base Directory Specification has relative paths ignored.
   if (const fs::path cache = path_in_environment("XDG_CACHE_HOME"); cache.is_absolute()) return cache / "misfit";
   const fs::path home = path_in_environment("HOME");

@@ -51,6 +51,7 @@ kernels::Kernel truncated(kernels::Kernel kernel, int degree) {
   return kernel;
 }
 
+/// Twelve columns for `item`; blanks at its end make up for letters of several bytes.
 void print_line(const char* item, const std::string& value) {
   std::printf("  %-12s %s\n", item, value.c_str());
 }
@@ -61,9 +62,9 @@ void print(const kernels::KernelTable& table, const std::string& path) {
               significant(k.x0, 6).c_str(), significant(0.5 / k.x0, 6).c_str());
   print_line("E",
              significant(k.misfit.mean, 6) + ", an RMS error of " + significant(std::sqrt(k.misfit.mean), 4) + " per axis");
-  print_line("largest ℓ", significant(k.misfit.max, 6));
+  print_line("largest ℓ   ", significant(k.misfit.max, 6));
   print_line("worst place", "mean " + significant(k.misfit.worst_mean, 6) + ", largest " + significant(k.misfit.worst, 6));
-  print_line("optimum", "E " + significant(k.origin.mean_error, 6) + ", largest ℓ " + significant(k.origin.max_error, 6));
+  print_line("as solved", "E " + significant(k.origin.mean_error, 6) + ", largest ℓ " + significant(k.origin.max_error, 6));
   if (std::isfinite(k.origin.max_error_bound))
     print_line("bound", "no function's largest ℓ is below " + significant(k.origin.max_error_bound, 6));
   if (std::isfinite(k.origin.condition)) print_line("condition", significant(k.origin.condition, 4));
@@ -130,7 +131,7 @@ void make(const KernelOptions& o) {
   print({kernel, o.sampling, "", kernels::solver_version, true}, o.output);
   const double excess = kernel.misfit.mean / kernel.origin.mean_error;
   if (excess > 1.01)
-    std::printf("  E is %s times the optimum's: %s\n", significant(excess, 3).c_str(),
+    std::printf("  E is %s times that of the function as solved: %s\n", significant(excess, 3).c_str(),
                 kernel.polynomial.degree() < made.polynomial.degree()
                     ? "polynomials of this degree hold no more"
                     : "doubles hold no more, since each rounds by 1.1e-16 of itself");

@@ -152,6 +152,7 @@ BOOST_AUTO_TEST_CASE(what_cannot_be_meant_is_refused) {
     r.kernel = misfit::kernels::family_of(r.kernel.make(7, 0.25));
     r.padding = 1.9;
   });
+  refused([](GriddingRequest& r) { r.kernel_width = 21; });
   refused([](GriddingRequest& r) { r.kernel_width = -1; });
   refused([](GriddingRequest& r) { r.padding = 1.01; });
   refused([](GriddingRequest& r) { r.padding = 11; });
