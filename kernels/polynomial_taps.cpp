@@ -1,0 +1,68 @@
+#include "kernels/polynomial_taps.h"
+
+#include <algorithm>
+#include <array>
+
+namespace misfit::kernels {
+namespace {
+
+/// value_r = Σ_k coefficient[k][r] x^k, by Horner's rule in all cells together.
+template <typename Real>
+void horner(const std::vector<Real>& coefficient, int cells, Real x, Real* value) {
+  std::fill(value, value + cells, Real(0));
+  const Real* c = coefficient.data();
+  for (std::size_t rows = coefficient.size() / static_cast<std::size_t>(cells); rows > 0; --rows, c += cells)
+    for (int r = 0; r < cells; ++r) value[r] = value[r] * x + c[r];
+}
+
+/// Rows `first`, `first` + `step`, …, from the highest power down, of the first `cells` columns.
+template <typename Real>
+std::vector<Real> powers(const Eigen::MatrixXd& coefficient, int first, int step, int cells) {
+  std::vector<Real> found;
+  const auto degree = static_cast<int>(coefficient.rows()) - 1;
+  for (int d = degree - (degree - first) % step; d >= first; d -= step)
+    for (int r = 0; r < cells; ++r) found.push_back(static_cast<Real>(coefficient(d, r)));
+  return found;
+}
+
+}  // namespace
+
+template <typename Real>
+PlainPolynomial<Real>::PlainPolynomial(const PiecewisePolynomial& kernel)
+    : width_(kernel.width()), coefficient_(powers<Real>(kernel.coefficient, 0, 1, width_)) {}
+
+template <typename Real>
+void PlainPolynomial<Real>::taps(Real t, Real* out) const {
+  horner(coefficient_, width_, t, out);
+}
+
+template <typename Real>
+EvenOddPolynomial<Real>::EvenOddPolynomial(const PiecewisePolynomial& kernel)
+    : width_(kernel.width()),
+      cells_((width_ + 1) / 2),
+      even_(powers<Real>(kernel.coefficient, 0, 2, cells_)),
+      odd_(powers<Real>(kernel.coefficient, 1, 2, width_ / 2)) {}
+
+template <typename Real>
+void EvenOddPolynomial<Real>::taps(Real t, Real* out) const {
+  horner(even_, cells_, t * t, out);
+  const int pairs = width_ / 2;
+  if (pairs == 0) return;
+  Real* odd = out + cells_;  // the mirrored taps' places, until they are known
+  horner(odd_, pairs, t * t, odd);
+  for (int r = 0; r < pairs; ++r) odd[r] *= t;
+  std::reverse(odd, odd + pairs);
+  for (int r = 0; r < pairs; ++r) {
+    const Real even_part = out[r];
+    Real& mirrored = out[width_ - 1 - r];
+    out[r] = even_part + mirrored;
+    mirrored = even_part - mirrored;
+  }
+}
+
+template class PlainPolynomial<float>;
+template class PlainPolynomial<double>;
+template class EvenOddPolynomial<float>;
+template class EvenOddPolynomial<double>;
+
+}  // namespace misfit::kernels
