@@ -20,6 +20,7 @@ template <typename Real>
 std::vector<Real> powers(const Eigen::MatrixXd& coefficient, int first, int step, int cells) {
   std::vector<Real> found;
   const auto degree = static_cast<int>(coefficient.rows()) - 1;
+  if (degree < first) return found;
   for (int d = degree - (degree - first) % step; d >= first; d -= step)
     for (int r = 0; r < cells; ++r) found.push_back(static_cast<Real>(coefficient(d, r)));
   return found;
