@@ -12,146 +12,44 @@
 namespace misfit::imager {
 namespace {
 
-/// Relative RMS of taps, sums and FFT, for a noise gain of 1: twice the unit of rounding, as measured.
-constexpr double single_rounding = 1.2e-7;
-constexpr double double_rounding = 2.2e-16;
-constexpr double single_from = 1e-4;  ///< below, sums of millions of samples lose what single precision has left
-constexpr int smallest_fft = 64;
-
 std::string text(const char* format, double value) {
   char buffer[64];
   std::snprintf(buffer, sizeof buffer, format, value);
   return buffer;
 }
 
-/// One way to do it.
-struct Candidate {
-  double padding = 0;
-  int nu = 0;
-  int nv = 0;
-  kernels::Kernel kernel_u;
-  kernels::Kernel kernel_v;
-  kernels::Misfit misfit_u{};  ///< over this image's pixels
-  kernels::Misfit misfit_v{};
-  Precision precision = Precision::double_precision;
-  double noise_gain = 1;
-  double cost_ns = 0;
+std::string width_and_padding(const GriddingCandidate& c) {
+  return "width " + std::to_string(c.work.width) + " at padding " + text("%.2f", c.padding_u);
+}
 
-  double rounding() const {
-    return noise_gain * (precision == Precision::single_precision ? single_rounding : double_rounding);
+/// "width 9 at padding 1.40 costs 1.21×, width 7 at padding 1.60 is off by 2e-6"
+std::string text_of(const GriddingChoice& choice) {
+  std::string all;
+  for (const RejectedCandidate& r : choice.rejected) {
+    const bool dear = r.reason == Rejection::costs_more;
+    all += (all.empty() ? "" : ", ") + width_and_padding(r.candidate) +
+           (dear ? " costs " + text("%.2f×", r.candidate.cost_s / choice.best.cost_s)
+                 : " reaches " + text("%.2g", r.candidate.worst_error));
   }
-  /// Of data with random phases.
-  double expected_error() const { return std::hypot(std::sqrt(misfit_u.mean + misfit_v.mean), rounding()); }
-  /// An image of a single visibility at the worst position of its cell, or the visibilities of a single pixel at the corner.
-  double worst_error() const {
-    return std::hypot(std::sqrt(std::max(misfit_u.worst_mean + misfit_v.worst_mean, misfit_u.max + misfit_v.max)), rounding());
-  }
-};
-
-/// Over many pixels the kernel's own means over |x| ≤ x0 serve.
-kernels::Misfit misfit_of(const kernels::Kernel& kernel, int pixels, int fft_size) {
-  constexpr int continuum = 128;
-  return pixels < continuum ? kernels::judge_pixels(kernel.polynomial, pixels, fft_size) : kernel.misfit;
+  return all;
 }
 
-/// Time on one core, from counts of operations: constants are of one machine, fixed so that the choice depends on options and
-/// data alone. Samples: ordering, polynomials, and three planes of W × padded-W cells; FFTs: half the rows and the kept
-/// columns, twice (image and PSF).
-double cost_ns(const GriddingRequest& request, int nu, int nv, int width, Precision precision) {
-  const double padded = (width + 3) / 4 * 4;
-  const double per_sample = 15 + 0.15 * width * padded;
-  const double row = nu * std::log2(nu);
-  const double column = nv * std::log2(nv);
-  const double fft = 2 * (0.5 * nv * row + 0.5 * request.geometry.width * column) * 0.6;
-  const double widening = precision == Precision::single_precision ? 1 : 1.5;  // twice the bytes, half the lanes
-  return (static_cast<double>(request.samples) * per_sample + fft) * widening;
+/// Stores the kernel as the lowest degree that costs less than half a percent of its squared error.
+void simplify(AxisKernel& axis, int pixels, int fft_size) {
+  constexpr double excess = 0.005;
+  axis.kernel.polynomial = kernels::cheapest_polynomial(axis.kernel, excess);
+  axis.kernel.misfit = kernels::judge(axis.kernel.polynomial, axis.kernel.x0);
+  axis.misfit = axis_misfit(axis.kernel, pixels, fft_size);
 }
 
-double axis_x0(int pixels, int fft_size, const kernels::KernelFamily& family) {
-  return std::clamp(0.5 * pixels / fft_size, family.min_x0, family.max_x0);
-}
-
-/// At least four widths, so that a kernel never meets its own periodic copy.
-int fft_size(int pixels, int width, double padding, const kernels::KernelFamily& family) {
-  const double needed = std::max(padding, 0.5 / family.max_x0) * pixels;
-  return fast_fft_size(std::max({smallest_fft, 4 * width, static_cast<int>(std::ceil(needed))}));
-}
-
-/// One width at one padding, in each precision that may be trusted.
-std::vector<Candidate> candidates(const GriddingRequest& request, const kernels::KernelFamily& family, double padding,
-                                  int width) {
-  const int nu = fft_size(request.geometry.width, width, padding, family);
-  const int nv = fft_size(request.geometry.height, width, padding, family);
-  const double x0_u = axis_x0(request.geometry.width, nu, family);
-  const double x0_v = axis_x0(request.geometry.height, nv, family);
-  Candidate candidate{padding, nu, nv, family.make(width, x0_u), {}};
-  candidate.kernel_v = x0_v == x0_u ? candidate.kernel_u : family.make(width, x0_v);
-  candidate.misfit_u = misfit_of(candidate.kernel_u, request.geometry.width, nu);
-  candidate.misfit_v = misfit_of(candidate.kernel_v, request.geometry.height, nv);
-  candidate.noise_gain =
-      kernels::noise_gain(candidate.kernel_u.polynomial, x0_u) * kernels::noise_gain(candidate.kernel_v.polynomial, x0_v);
-  const double wanted = request.accuracy == 0 ? candidate.worst_error() : request.accuracy;
-  std::vector<Candidate> found;
-  for (const Precision precision : {Precision::single_precision, Precision::double_precision}) {
-    if (precision == Precision::single_precision && wanted < single_from) continue;
-    candidate.precision = precision;
-    candidate.cost_ns = cost_ns(request, nu, nv, width, precision);
-    found.push_back(candidate);
-  }
-  return found;
-}
-
-/// Narrowest first, until one reaches `target` or wider ones would only gather rounding.
-std::vector<Candidate> widths_at(const GriddingRequest& request, const kernels::KernelFamily& family, double padding,
-                                 double target) {
-  std::vector<Candidate> found;
-  const int first = request.kernel_width == 0 ? family.min_width : request.kernel_width;
-  const int last = request.kernel_width == 0 ? family.max_width : request.kernel_width;
-  for (int width = first; width <= last; ++width)
-    for (const Candidate& candidate : candidates(request, family, padding, width)) {
-      found.push_back(candidate);
-      const bool precise = candidate.precision == Precision::double_precision;
-      if (candidate.worst_error() <= target || (precise && candidate.worst_error() < 2 * candidate.rounding())) return found;
-    }
-  return found;
-}
-
-struct Choice {
-  std::optional<Candidate> cheapest;  ///< of those that reach the accuracy
-  std::optional<Candidate> most_exact;
-  std::string rejected;  ///< cheapest of each other padding
-};
-
-Choice choose(const GriddingRequest& request, const kernels::KernelFamily& family) {
-  static const std::vector<double> usual{1.15, 1.25, 1.4, 1.6, 2.0};
-  const std::vector<double> paddings = request.padding == 0 ? usual : std::vector<double>{request.padding};
-  const double target = request.accuracy == 0 ? HUGE_VAL : request.accuracy;
-  Choice choice;
-  std::vector<Candidate> reaching;
-  for (const double padding : paddings) {
-    for (const Candidate& candidate : widths_at(request, family, padding, target)) {
-      if (!choice.most_exact || candidate.worst_error() < choice.most_exact->worst_error()) choice.most_exact = candidate;
-      if (candidate.worst_error() > target) continue;
-      reaching.push_back(candidate);
-      if (!choice.cheapest || candidate.cost_ns < choice.cheapest->cost_ns) choice.cheapest = candidate;
-      break;  // a wider kernel at the same padding only costs more
-    }
-  }
-  for (const Candidate& candidate : reaching)
-    if (candidate.padding != choice.cheapest->padding)
-      choice.rejected += (choice.rejected.empty() ? "" : ", ") + std::string("width ") +
-                         std::to_string(candidate.kernel_u.width()) + " at padding " + text("%.2f", candidate.padding) +
-                         " costs " + text("%.2f×", candidate.cost_ns / choice.cheapest->cost_ns);
-  return choice;
-}
-
-Plan decisions_of(const GriddingRequest& request, const GriddingPlan& plan, const std::string& rejected) {
+Plan decisions_of(const GriddingRequest& request, const GriddingPlan& plan) {
   const PlaneTransformOptions& o = plan.options;
   const bool single = o.precision == Precision::single_precision;
   const std::string because_accuracy = request.accuracy == 0 ? "as asked"
                                                              : "worst position within a cell, or pixel at the corner, gives " +
                                                                    text("%.2g", plan.worst_error) + ", accuracy asked " +
                                                                    text("%.2g", request.accuracy);
+  const std::string rejected = text_of(plan.choice);
   const std::string others = rejected.empty() ? "" : "; " + rejected;
   return {
       {"kernel", o.kernel_u.name, "expected error of random data " + text("%.2g", plan.expected_error)},
@@ -163,7 +61,7 @@ Plan decisions_of(const GriddingRequest& request, const GriddingPlan& plan, cons
        "adds less than 0.5% to the kernel's squared error"},
       {"precision of grid and FFT", single ? "single" : "double",
        single ? "rounding adds " + text("%.1g", plan.rounding)
-              : "single precision would add " + text("%.1g", plan.rounding * single_rounding / double_rounding) +
+              : "single precision would add " + text("%.1g", plan.rounding * single_over_double) +
                     " of rounding, and is not trusted below " + text("%.0e", single_from)},
       {"half of the uv plane", "gridded alone",
        "the image is real, so V(−u, −v) = conj V(u, v): half the memory, half the FFT"},
@@ -173,7 +71,7 @@ Plan decisions_of(const GriddingRequest& request, const GriddingPlan& plan, cons
 }  // namespace
 
 void check_request(const GriddingRequest& request) {
-  const kernels::KernelFamily& family = kernels::kernel_family(request.kernel);
+  const kernels::KernelFamily& family = request.kernel;
   if (request.kernel_width != 0 && (request.kernel_width < family.min_width || request.kernel_width > family.max_width))
     throw std::invalid_argument("kernel width " + std::to_string(request.kernel_width) + " not in [" +
                                 std::to_string(family.min_width) + ", " + std::to_string(family.max_width) +
@@ -186,32 +84,31 @@ void check_request(const GriddingRequest& request) {
 
 GriddingPlan plan_gridding(const GriddingRequest& request) {
   check_request(request);
-  const kernels::KernelFamily& family = kernels::kernel_family(request.kernel);
-  const Choice choice = choose(request, family);
-  if (!choice.cheapest && !request.best_effort)  // 1.06: two digits may round down by 5%
-    throw std::invalid_argument("accuracy " + text("%g", request.accuracy) + " is out of reach of kernel " + family.name +
+  GriddingPlan plan;
+  plan.choice = choose_gridding(request);
+  GriddingCandidate best = plan.choice.best;
+  if (!plan.choice.reached && !request.best_effort)  // 1.06: two digits may round down by 5%
+    throw std::invalid_argument("accuracy " + text("%g", request.accuracy) + " is out of reach of kernel " +
+                                request.kernel.name +
                                 (request.kernel_width == 0 ? "" : " of width " + std::to_string(request.kernel_width)) +
                                 (request.padding == 0 ? "" : " at padding " + text("%g", request.padding)) + "; it can reach " +
-                                text("%.2g", 1.06 * choice.most_exact->worst_error()) + " for this image, with width " +
-                                std::to_string(choice.most_exact->kernel_u.width()) + " at padding " +
-                                text("%g", choice.most_exact->padding));
-  const Candidate& best = choice.cheapest ? *choice.cheapest : *choice.most_exact;
-  GriddingPlan plan;
-  plan.options.geometry = request.geometry;
-  plan.options.nu = best.nu;
-  plan.options.nv = best.nv;
-  plan.options.kernel_u = best.kernel_u;
-  plan.options.kernel_v = best.kernel_v;
-  plan.options.precision = best.precision;
-  plan.options.threads = request.threads;
-  plan.expected_error = best.expected_error();
-  plan.rounding = best.rounding();
-  plan.worst_error = best.worst_error();
+                                text("%.2g", 1.06 * best.worst_error) + " for this image, with width " +
+                                std::to_string(best.work.width) + " at padding " + text("%g", best.padding_u));
+  const GriddingCandidate exact = best;
+  simplify(best.u, request.geometry.width, best.work.nu);
+  simplify(best.v, request.geometry.height, best.work.nv);
+  judge(best);
+  if (request.accuracy != 0 && best.worst_error > std::max(request.accuracy, exact.worst_error)) best = exact;
+  plan.options = {request.geometry, best.work.nu,        best.work.nv,   best.u.kernel,
+                  best.v.kernel,    best.work.precision, request.threads};
+  plan.expected_error = best.expected_error;
+  plan.rounding = best.rounding;
+  plan.worst_error = best.worst_error;
   constexpr double several = 6;  // rounding is random; six times its RMS bounds it for practical purposes
-  plan.bound_rms =
-      (1 + std::sqrt(best.misfit_u.worst_mean)) * (1 + std::sqrt(best.misfit_v.worst_mean)) - 1 + several * plan.rounding;
-  plan.bound_max = (1 + std::sqrt(best.misfit_u.worst)) * (1 + std::sqrt(best.misfit_v.worst)) - 1 + several * plan.rounding;
-  plan.decisions = decisions_of(request, plan, choice.rejected);
+  const auto both = [](double u, double v) { return (1 + std::sqrt(u)) * (1 + std::sqrt(v)) - 1; };
+  plan.bound_rms = both(best.u.misfit.worst_mean, best.v.misfit.worst_mean) + several * plan.rounding;
+  plan.bound_max = both(best.u.misfit.worst, best.v.misfit.worst) + several * plan.rounding;
+  plan.decisions = decisions_of(request, plan);
   return plan;
 }
 

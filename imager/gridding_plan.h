@@ -1,24 +1,9 @@
 #pragma once
 
-#include <cstdint>
-#include <string>
-
+#include "imager/gridding_choice.h"
 #include "imager/plan.h"
-#include "imager/plane_transform.h"
 
 namespace misfit::imager {
-
-/// What is asked of a transform.
-struct GriddingRequest {
-  ImageGeometry geometry;
-  double accuracy = 1e-6;  ///< ε: ‖I − I_DFT‖₂ ≤ ε ‖I_DFT‖₂; 0 = whatever the given width and padding reach
-  std::string kernel = "least-misfit";  ///< a name of the catalogue
-  int kernel_width = 0;                 ///< cells; 0 = chosen
-  double padding = 0;                   ///< FFT size over image size, at least 1.02; 0 = chosen
-  bool best_effort = false;             ///< take the most exact kernel when the accuracy is out of reach
-  std::uint64_t samples = 0;            ///< visibilities in a pass
-  int threads = 1;
-};
 
 /// How it will be done: the cheapest that keeps the promise.
 struct GriddingPlan {
@@ -28,6 +13,7 @@ struct GriddingPlan {
   double rounding = 0;        ///< the part of rounding in both
   double bound_rms = 0;       ///< bound on the RMS error of the image over Σ w|V| / Σ w, whatever the data
   double bound_max = 0;       ///< bound on any pixel's error over Σ w|V| / Σ w, whatever the data
+  GriddingChoice choice;      ///< with the neighbours that were rejected
   Plan decisions;
 };
 

@@ -29,6 +29,7 @@ Kernel KernelFamily::make(int width, double x0) const {
 const std::vector<KernelFamily>& kernel_catalogue() {
   static const std::vector<KernelFamily> families{
       least_misfit_family(),
+      minimax_family(),
       spheroidal_family(),
   };
   return families;

@@ -87,18 +87,18 @@ MisfitSolution least_misfit_solution(int width, double x0) {
   return last;
 }
 
-LeastMisfit solve_least_misfit(int width, double x0) {
+void check_least_misfit_request(const std::string& name, int width, double x0) {
   if (width < 1 || width > least_misfit_max_width)
-    throw std::invalid_argument("least-misfit kernel: width " + std::to_string(width) + " not in [1, " +
+    throw std::invalid_argument(name + " kernel: width " + std::to_string(width) + " not in [1, " +
                                 std::to_string(least_misfit_max_width) + "]");
   if (!(x0 >= least_misfit_min_x0 && x0 <= least_misfit_max_x0))
-    throw std::invalid_argument("least-misfit kernel: x0 = " + std::to_string(x0) + " not in [0.01, 0.49]");
-  const MisfitSolution solution = least_misfit_solution(width, x0);
-  return {width, x0, solution.origin(), solution.minimum.step, solution.minimum.taps};
+    throw std::invalid_argument(name + " kernel: x0 = " + std::to_string(x0) + " not in [0.01, 0.49]");
 }
 
-Kernel store_least_misfit(const LeastMisfit& solution) {
-  return make_kernel("least-misfit", solution.x0, solution.taps, solution.origin);
+LeastMisfit solve_least_misfit(int width, double x0) {
+  check_least_misfit_request("least-misfit", width, x0);
+  const MisfitSolution solution = least_misfit_solution(width, x0);
+  return {width, x0, solution.origin(), solution.minimum.step, solution.minimum.taps};
 }
 
 }  // namespace misfit::kernels

@@ -25,7 +25,9 @@ struct LeastMisfit {
 /// when the iteration does not converge.
 LeastMisfit solve_least_misfit(int width, double x0);
 
-/// The solution stored as a polynomial.
-Kernel store_least_misfit(const LeastMisfit& solution);
+/// The solution stored as a polynomial under the name of its family.
+inline Kernel store(const std::string& name, const LeastMisfit& solution) {
+  return make_kernel(name, solution.x0, solution.taps, solution.origin);
+}
 
 }  // namespace misfit::kernels

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <string>
 
 #include "kernels/kernel.h"
 
@@ -63,6 +64,9 @@ struct MisfitSolution {
 /// Solves in the arithmetic given, or in the first wider one whose rounding leaves E right to `rounding` of itself and h to a
 /// hundred times the problem's step.
 MisfitSolution minimise_misfit(const MisfitProblem& problem, Arithmetic arithmetic, double rounding);
+
+/// Throws std::invalid_argument that names the kernel when the width or x0 lie outside what can be solved.
+void check_least_misfit_request(const std::string& name, int width, double x0);
 
 /// The least-misfit function: widths 1 … `width` in turn, since each solution starts the next.
 MisfitSolution least_misfit_solution(int width, double x0);

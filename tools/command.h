@@ -11,5 +11,6 @@ namespace misfit::tools {
 void add_image_command(CLI::App& program, const std::string& command_line);
 void add_predict_command(CLI::App& program);
 void add_simulate_command(CLI::App& program);
+void add_report_command(CLI::App& program);
 
 }  // namespace misfit::tools

@@ -6,6 +6,7 @@
 namespace misfit::kernels {
 
 KernelFamily least_misfit_family();
+KernelFamily minimax_family();
 KernelFamily spheroidal_family();
 
 }  // namespace misfit::kernels

@@ -45,7 +45,7 @@ BOOST_DATA_TEST_CASE(solution_agrees_with_independent_values, bdata::make(testin
 }
 
 BOOST_DATA_TEST_CASE(the_stored_polynomial_is_as_good_as_the_solution, bdata::make(testing::reference_kernels()), reference) {
-  const Kernel kernel = store_least_misfit(solve_least_misfit(reference.width, reference.x0));
+  const Kernel kernel = store("least-misfit", solve_least_misfit(reference.width, reference.x0));
   // 1e-6, and what doubles hold: an RMS of some units of rounding, 1.1e-16, which adds to that of the function.
   BOOST_TEST(std::sqrt(kernel.misfit.mean) < (1 + 1e-6) * std::sqrt(reference.mean_error) + 1e-15);
   BOOST_TEST(kernel.origin.mean_error == reference.mean_error, boost::test_tools::tolerance(1e-6));

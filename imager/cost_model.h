@@ -1,0 +1,39 @@
+#pragma once
+
+#include "imager/plane_transform.h"
+
+namespace misfit::imager {
+
+/// What gridding and its FFTs have to do, in numbers.
+struct GriddingWork {
+  double samples = 0;  ///< visibilities
+  int width = 1;       ///< cells a visibility touches along u and along v
+  int width_w = 1;     ///< planes it touches; 1 without a w axis
+  int degree = 0;      ///< of the kernels' polynomials
+  int nu = 0;          ///< FFT lengths
+  int nv = 0;
+  int columns = 0;  ///< of the FFT's image that are kept
+  int planes = 1;   ///< FFTs of two dimensions: one for each w plane
+  Precision precision = Precision::double_precision;
+};
+
+/// Time on one core for a dirty image and its PSF, from counts of operations. The default constants are of one machine, fixed:
+/// what is chosen with them depends on options and data alone. Those of the machine at hand (measure_costs) predict seconds.
+struct CostModel {
+  double sample_ns = 15;     ///< a sample's ordering and coordinates
+  double cell_ns = 0.15;     ///< a cell of width × padded width in three planes
+  double tap_ns = 0.012;     ///< a coefficient of the polynomials, for each padded tap of both axes
+  double fft_ns = 0.6;       ///< a point and binary logarithm of an FFT
+  double double_cost = 1.5;  ///< over single precision: twice the bytes, half the lanes
+
+  double seconds(const GriddingWork& work) const;
+};
+
+/// The operation count of the literature (after Ye, Gull, Tan & Nikolic 2020): W² multiply-adds a visibility (W² W_w with a w
+/// axis), and N log2 N for an FFT of N points.
+double operation_count(const GriddingWork& work);
+
+/// The constants of this machine, from gridding a million random samples in all; takes about half a second.
+CostModel measure_costs();
+
+}  // namespace misfit::imager

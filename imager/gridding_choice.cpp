@@ -1,0 +1,222 @@
+#include "imager/gridding_choice.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <optional>
+
+#include "imager/fft.h"
+
+namespace misfit::imager {
+namespace {
+
+/// Relative RMS of taps, sums and FFT in double, for a noise gain of 1: twice the unit of rounding, as measured.
+constexpr double double_rounding = 2.2e-16;
+constexpr int smallest_fft = 64;
+
+/// From the one that needs the narrowest kernel down: what the wider padding cannot reach, no other can.
+constexpr std::array<double, 5> usual_paddings{2.0, 1.6, 1.4, 1.25, 1.15};
+constexpr std::array<double, 4> usual_w_paddings{2.5, 2.0, 1.6, 1.3};
+
+/// Makes each kernel once.
+class KernelShelf {
+ public:
+  explicit KernelShelf(const GriddingRequest& request) : family_(request.kernel) {}
+
+  /// Over `pixels` of an FFT of a given size.
+  const AxisKernel& axis(int width, int pixels, int fft_size) {
+    return made({width, pixels, fft_size}, 0.5 * pixels / fft_size,
+                [&](const kernels::Kernel& kernel) { return axis_misfit(kernel, pixels, fft_size); });
+  }
+  const AxisKernel& w_axis(int width, double padding) {
+    const int thousandths = static_cast<int>(std::lround(1000 * padding));
+    return made({width, 0, thousandths}, 0.5 / padding, [](const kernels::Kernel& kernel) { return kernel.misfit; });
+  }
+
+ private:
+  template <typename Judge>
+  const AxisKernel& made(const std::array<int, 3>& key, double x0, const Judge& misfit_of) {
+    const auto found = shelf_.find(key);
+    if (found != shelf_.end()) return found->second;
+    AxisKernel axis{family_.make(key[0], std::clamp(x0, family_.min_x0, family_.max_x0)), {}, 1};
+    axis.misfit = misfit_of(axis.kernel);
+    axis.noise_gain = kernels::noise_gain(axis.kernel.polynomial, axis.kernel.x0);
+    return shelf_.emplace(key, axis).first->second;
+  }
+
+  kernels::KernelFamily family_;
+  std::map<std::array<int, 3>, AxisKernel> shelf_;
+};
+
+class Search {
+ public:
+  explicit Search(const GriddingRequest& request)
+      : request_(request), shelf_(request), target_(request.accuracy == 0 ? HUGE_VAL : request.accuracy) {}
+
+  GriddingChoice run() {
+    for (const Precision precision : {Precision::single_precision, Precision::double_precision}) {
+      if (precision == Precision::single_precision && request_.accuracy != 0 && request_.accuracy < single_from) continue;
+      search(precision);
+      if (best_ && request_.accuracy == 0) break;
+    }
+    GriddingChoice choice;
+    choice.reached = best_.has_value();
+    choice.best = best_ ? *best_ : *most_exact_;
+    choice.rejected = neighbours(choice.best);
+    return choice;
+  }
+
+ private:
+  std::vector<double> paddings() const {
+    if (request_.padding != 0) return {request_.padding};
+    return {usual_paddings.begin(), usual_paddings.end()};
+  }
+  int narrowest() const { return request_.kernel_width != 0 ? request_.kernel_width : request_.kernel.min_width; }
+  int widest() const { return request_.kernel_width != 0 ? request_.kernel_width : request_.kernel.max_width; }
+
+  /// At least four widths, so that a kernel never meets its own periodic copy.
+  int fft_size(int pixels, double padding, int width) const {
+    const double needed = std::max(padding, 0.5 / request_.kernel.max_x0) * pixels;
+    return fast_fft_size(std::max({smallest_fft, 4 * width, static_cast<int>(std::ceil(needed))}));
+  }
+
+  /// Sizes and cost, for which no kernel is needed.
+  GriddingCandidate sized(int width, double padding_u, double padding_v, Precision precision) const {
+    GriddingCandidate c;
+    c.padding_u = padding_u;
+    c.padding_v = padding_v;
+    const ImageGeometry& g = request_.geometry;
+    c.work = {static_cast<double>(request_.samples),
+              width,
+              1,
+              width,  // close to the degree that will do
+              fft_size(g.width, padding_u, width),
+              fft_size(g.height, padding_v, width),
+              g.width,
+              1,
+              precision};
+    c.cost_s = CostModel().seconds(c.work);
+    return c;
+  }
+
+  void judge_plane(GriddingCandidate& c) {
+    c.u = shelf_.axis(c.work.width, request_.geometry.width, c.work.nu);
+    c.v = shelf_.axis(c.work.width, request_.geometry.height, c.work.nv);
+    judge(c);
+    if (!most_exact_ || c.worst_error < most_exact_->worst_error) most_exact_ = c;
+  }
+
+  /// Whether a wider kernel would only gather rounding.
+  static bool exhausted(const GriddingCandidate& c) { return c.worst_error < 2 * c.rounding; }
+  bool costs_less(const GriddingCandidate& c) const { return !best_ || c.cost_s < best_->cost_s; }
+  bool trusted(const GriddingCandidate& c) const {
+    return c.work.precision == Precision::double_precision || request_.accuracy != 0 || c.worst_error >= single_from;
+  }
+  void offer(const GriddingCandidate& c) {
+    if (trusted(c) && costs_less(c)) best_ = c;
+  }
+
+  /// Padding falls along both axes, so that the width needed only grows, and what one padding cannot reach, no smaller one can.
+  void search(Precision precision) {
+    const std::vector<double> along = paddings();
+    std::vector<int> needed(along.size(), narrowest());  // at the padding of u before, for every padding of v
+    for (const double padding_u : along)
+      for (std::size_t i = 0; i < along.size(); ++i) {
+        const int least = std::max(needed[i], i == 0 ? narrowest() : needed[i - 1]);
+        const std::optional<int> width = narrowest_reaching(least, padding_u, along[i], precision);
+        if (!width && i == 0) return;
+        if (!width) break;
+        needed[i] = *width;
+      }
+  }
+
+  /// The narrowest width from `least` on that reaches the accuracy, offered; or the first that costs too much, not judged; or
+  /// none.
+  std::optional<int> narrowest_reaching(int least, double padding_u, double padding_v, Precision precision) {
+    for (int width = least; width <= widest(); ++width) {
+      GriddingCandidate c = sized(width, padding_u, padding_v, precision);
+      if (!costs_less(c)) {
+        considered_.push_back({c, Rejection::costs_more});
+        return width;
+      }
+      judge_plane(c);
+      const bool reaches = c.worst_error <= target_;
+      considered_.push_back({c, reaches ? Rejection::costs_more : Rejection::not_exact_enough});
+      if (reaches) {
+        request_.w_turns > 0 ? offer_with_w(c) : offer(c);
+        return width;
+      }
+      if (exhausted(c)) return {};
+    }
+    return {};
+  }
+
+  /// Adds a w axis: each plane is an FFT, and each sample touches W_w of them.
+  void offer_with_w(const GriddingCandidate& plane) {
+    const int first = std::max(1, request_.kernel.min_width);
+    int least = first;
+    for (const double padding : usual_w_paddings)
+      for (int width = least; width <= request_.kernel.max_width; ++width) {
+        GriddingCandidate c = plane;
+        c.padding_w = padding;
+        c.work.width_w = width;
+        c.work.planes = static_cast<int>(std::ceil(padding * request_.w_turns)) + width;
+        c.cost_s = CostModel().seconds(c.work);
+        if (!costs_less(c)) break;
+        c.w = shelf_.w_axis(width, padding);
+        judge(c);
+        if (c.worst_error > target_ && !exhausted(c)) continue;
+        if (c.worst_error <= target_) offer(c);
+        least = width;
+        break;
+      }
+  }
+
+  /// The cheapest at each other padding, and the next narrower width at the best one.
+  std::vector<RejectedCandidate> neighbours(const GriddingCandidate& best) const {
+    std::map<double, RejectedCandidate> cheapest;
+    std::vector<RejectedCandidate> found;
+    for (const RejectedCandidate& r : considered_) {
+      const GriddingCandidate& c = r.candidate;
+      if (c.work.precision != best.work.precision) continue;
+      const bool same = c.padding_u == best.padding_u && c.padding_v == best.padding_v;
+      if (same && r.reason == Rejection::not_exact_enough && c.work.width == best.work.width - 1) found.push_back(r);
+      if (same || c.padding_u != c.padding_v || r.reason == Rejection::not_exact_enough) continue;
+      const auto [at, first] = cheapest.emplace(c.padding_u, r);
+      if (!first && c.cost_s < at->second.candidate.cost_s) at->second = r;
+    }
+    for (const auto& [padding, rejected] : cheapest) found.push_back(rejected);
+    return found;
+  }
+
+  GriddingRequest request_;
+  KernelShelf shelf_;
+  double target_;
+  std::optional<GriddingCandidate> best_;
+  std::optional<GriddingCandidate> most_exact_;
+  std::vector<RejectedCandidate> considered_;
+};
+
+}  // namespace
+
+kernels::Misfit axis_misfit(const kernels::Kernel& kernel, int pixels, int fft_size) {
+  constexpr int continuum = 128;
+  return pixels < continuum ? kernels::judge_pixels(kernel.polynomial, pixels, fft_size) : kernel.misfit;
+}
+
+void judge(GriddingCandidate& c) {
+  const bool single = c.work.precision == Precision::single_precision;
+  c.rounding = c.u.noise_gain * c.v.noise_gain * c.w.noise_gain * double_rounding * (single ? single_over_double : 1);
+  const kernels::Misfit &u = c.u.misfit, &v = c.v.misfit, &w = c.w.misfit;
+  // An image of a single visibility at the worst position of its cell, or the visibilities of a single pixel at the corner.
+  const double worst = std::max(u.worst_mean + v.worst_mean + w.worst_mean, u.max + v.max + w.max);
+  c.expected_error = std::hypot(std::sqrt(u.mean + v.mean + w.mean), c.rounding);
+  c.worst_error = std::hypot(std::sqrt(worst), c.rounding);
+}
+
+GriddingChoice choose_gridding(const GriddingRequest& request) {
+  return Search(request).run();
+}
+
+}  // namespace misfit::imager

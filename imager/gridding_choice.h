@@ -1,0 +1,77 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "imager/cost_model.h"
+#include "kernels/catalogue.h"
+
+namespace misfit::imager {
+
+/// What is asked of a transform.
+struct GriddingRequest {
+  ImageGeometry geometry;
+  double accuracy = 1e-6;  ///< ε: ‖I − I_DFT‖₂ ≤ ε ‖I_DFT‖₂; 0 = whatever the given width and padding reach
+  kernels::KernelFamily kernel = kernels::kernel_family("least-misfit");
+  int kernel_width = 0;       ///< cells along u and v; 0 = chosen
+  double padding = 0;         ///< FFT size over image size along u and v, at least 1.02; 0 = chosen
+  bool best_effort = false;   ///< take the most exact kernel when the accuracy is out of reach
+  std::uint64_t samples = 0;  ///< visibilities in a pass
+  int threads = 1;
+  /// Turns of phase that w makes: range of w in wavelengths times range of n − 1 over the image. 0 = no w axis. The transform
+  /// in the plane has none; a choice can be made for one.
+  double w_turns = 0;
+};
+
+/// Rounding of single precision over that of double, in taps, sums and FFT.
+inline constexpr double single_over_double = 0x1p29;
+inline constexpr double single_from = 1e-4;  ///< below, sums of millions of samples lose what single precision has left
+
+/// One axis of the transform: a kernel over the pixels of an image.
+struct AxisKernel {
+  kernels::Kernel kernel;
+  kernels::Misfit misfit;  ///< over this image's pixels
+  double noise_gain = 1;
+};
+
+/// Over the pixels of an image. Over many the kernel's own means over |x| ≤ x0 serve.
+kernels::Misfit axis_misfit(const kernels::Kernel& kernel, int pixels, int fft_size);
+
+/// One way to do it, with what it costs and how exact it is.
+struct GriddingCandidate {
+  GriddingWork work;
+  double padding_u = 1;
+  double padding_v = 1;
+  double padding_w = 1;
+  AxisKernel u;
+  AxisKernel v;
+  AxisKernel w;               ///< all zero errors without a w axis
+  double cost_s = 0;          ///< by the fixed constants; see CostModel
+  double rounding = 0;        ///< RMS of rounding, relative
+  double expected_error = 0;  ///< RMS error of image and prediction relative to data with random phases, √(E_u + E_v + E_w)
+  double worst_error = 0;     ///< the same for the worst position of samples in their cells, or the worst pixel of a model
+};
+
+/// Fills in the errors from the axes and the precision.
+void judge(GriddingCandidate& candidate);
+
+enum class Rejection { costs_more, not_exact_enough };
+
+/// A neighbour of the choice that was not taken. One that costs more may not have been judged: its width is then the least that
+/// can do.
+struct RejectedCandidate {
+  GriddingCandidate candidate;
+  Rejection reason = Rejection::costs_more;
+};
+
+struct GriddingChoice {
+  GriddingCandidate best;  ///< the cheapest that reaches the accuracy, or the most exact
+  bool reached = true;
+  std::vector<RejectedCandidate> rejected;  ///< the cheapest at each other padding, and the widths next to the best
+};
+
+/// The cheapest way that reaches the accuracy, by the fixed constants of CostModel: width along u and v and along w, padding
+/// for each axis, precision, and degree of the polynomials.
+GriddingChoice choose_gridding(const GriddingRequest& request);
+
+}  // namespace misfit::imager
