@@ -8,6 +8,7 @@
 
 #include "imager/fft.h"
 #include "kernels/catalogue.h"
+#include "kernels/cheapest_polynomial.h"
 
 namespace misfit::imager {
 namespace {

@@ -59,7 +59,7 @@ BOOST_AUTO_TEST_CASE(halves_are_half_the_bytes) {
 
 BOOST_DATA_TEST_CASE(every_way_in_double_has_the_error_of_the_function, bdata::make({2, 5, 8}), width) {
   const LeastMisfit solution = solve_least_misfit(width, 0.25);
-  const Kernel kernel = store_least_misfit(solution);
+  const Kernel kernel = make_kernel("least-misfit", solution.x0, solution.taps, solution.origin);
   for (const Evaluation& way : {evaluate_directly(solution, Precision::double_precision),
                                 evaluate_by_polynomial(kernel.polynomial, Precision::double_precision),
                                 evaluate_by_halves(kernel.polynomial, Precision::double_precision),
@@ -103,7 +103,7 @@ BOOST_DATA_TEST_CASE(solving_in_single_rounds_positions_and_values, bdata::make(
 
 BOOST_AUTO_TEST_CASE(totals_are_the_sums_of_all_taps) {
   const LeastMisfit solution = solve_least_misfit(5, 0.25);
-  const PiecewisePolynomial polynomial = store_least_misfit(solution).polynomial;
+  const PiecewisePolynomial polynomial = make_kernel("least-misfit", solution.x0, solution.taps, solution.origin).polynomial;
   const Eigen::VectorXd t = Eigen::VectorXd::LinSpaced(11, -0.5, 0.5);
   for (const Precision precision : {Precision::single_precision, Precision::double_precision})
     for (const Evaluation& way :
