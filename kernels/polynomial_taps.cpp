@@ -2,17 +2,41 @@
 
 #include <algorithm>
 #include <array>
+#include <stdexcept>
+#include <string>
+#include <utility>
 
 namespace misfit::kernels {
 namespace {
 
-/// value_r = Σ_k coefficient[k][r] x^k, by Horner's rule in all cells together.
+constexpr int most_cells = 20;
+
+/// out_r = Σ_k coefficient[k][r] x^k by Horner's rule, in all cells together.
+template <typename Real, int Cells>
+void horner_in(const std::vector<Real>& coefficient, Real x, Real* out) {
+  std::array<Real, Cells> value{};
+  const Real* const end = coefficient.data() + coefficient.size();
+  for (const Real* c = coefficient.data(); c != end; c += Cells)
+    for (int r = 0; r < Cells; ++r) value[static_cast<std::size_t>(r)] = value[static_cast<std::size_t>(r)] * x + c[r];
+  std::copy(value.begin(), value.end(), out);
+}
+
+template <typename Real, std::size_t... Index>
+auto horners(std::index_sequence<Index...>) {
+  return std::array{&horner_in<Real, static_cast<int>(Index) + 1>...};
+}
+
+/// The number of cells is made known to the compiler, which then keeps the values in registers.
 template <typename Real>
-void horner(const std::vector<Real>& coefficient, int cells, Real x, Real* value) {
-  std::fill(value, value + cells, Real(0));
-  const Real* c = coefficient.data();
-  for (std::size_t rows = coefficient.size() / static_cast<std::size_t>(cells); rows > 0; --rows, c += cells)
-    for (int r = 0; r < cells; ++r) value[r] = value[r] * x + c[r];
+void horner(const std::vector<Real>& coefficient, int cells, Real x, Real* out) {
+  static const auto of_cells = horners<Real>(std::make_index_sequence<most_cells>());
+  of_cells[static_cast<std::size_t>(cells - 1)](coefficient, x, out);
+}
+
+int checked_width(int width) {
+  if (width < 1 || width > most_cells)
+    throw std::invalid_argument("taps of " + std::to_string(width) + " cells; expected 1 to " + std::to_string(most_cells));
+  return width;
 }
 
 /// Rows `first`, `first` + `step`, …, from the highest power down, of the first `cells` columns.
@@ -30,7 +54,7 @@ std::vector<Real> powers(const Eigen::MatrixXd& coefficient, int first, int step
 
 template <typename Real>
 PlainPolynomial<Real>::PlainPolynomial(const PiecewisePolynomial& kernel)
-    : width_(kernel.width()), coefficient_(powers<Real>(kernel.coefficient, 0, 1, width_)) {}
+    : width_(checked_width(kernel.width())), coefficient_(powers<Real>(kernel.coefficient, 0, 1, width_)) {}
 
 template <typename Real>
 void PlainPolynomial<Real>::taps(Real t, Real* out) const {
@@ -39,7 +63,7 @@ void PlainPolynomial<Real>::taps(Real t, Real* out) const {
 
 template <typename Real>
 EvenOddPolynomial<Real>::EvenOddPolynomial(const PiecewisePolynomial& kernel)
-    : width_(kernel.width()),
+    : width_(checked_width(kernel.width())),
       cells_((width_ + 1) / 2),
       even_(powers<Real>(kernel.coefficient, 0, 2, cells_)),
       odd_(powers<Real>(kernel.coefficient, 1, 2, width_ / 2)) {}

@@ -7,7 +7,8 @@
 
 namespace misfit::kernels {
 
-/// Taps of a polynomial for loops that want no allocation. `Real`, float or double, is what coefficients and arithmetic are in.
+/// Taps of a polynomial for loops that want no allocation; widths to 20, std::invalid_argument beyond. `Real`, float or double,
+/// is what coefficients and arithmetic are in.
 
 /// Horner's rule in every cell.
 template <typename Real>

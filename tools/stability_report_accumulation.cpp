@@ -158,7 +158,8 @@ ReportSection accumulation_section() {
       ones_counted<double>(most_equal) + ". Of as many tenths the sum is off by " + power_of_ten(single_end, 2) +
       " of itself in single and by " + power_of_ten(double_end, 2) + " in double.";
   const std::string others =
-      "Equal terms are the worst case: each rounding in one power of 2 has one sign. Random terms err less, until "
+      "While a sum of equal terms stays between two powers of 2, all its roundings have one sign. Those of random terms "
+      "differ, until "
       "the sum is so large that single precision loses most of each term: at " +
       grouped(static_cast<long long>(most_random)) + " terms by " + power_of_ten(random.series[0].y.back(), 2) +
       ". A compensated sum in single precision errs by " + power_of_ten(random.series[1].y.back(), 2) +

@@ -146,15 +146,14 @@ ReportSection conditioning_section(const std::vector<RoundingLoss>& losses) {
       "optimal h, and the taps judged.",
       "Taps that are doubles, and a judge that computes in doubles, have a floor of their own: the smallest E here is " +
           power_of_ten(smallest_stored(losses), 2) +
-          ". Where the optimum is smaller, each of these ratios says how far the optimum lies below doubles. That is why "
-          "solutions "
-          "below E = 10⁻²⁶ are computed in wider arithmetic, and why storing them gains nothing below 10⁻³¹."};
+          ". Where the optimum is smaller, each of these ratios says how far the optimum lies below doubles, which is why such "
+          "functions are solved in wider arithmetic, and what storing them in doubles loses."};
   section.figures = {over_widths(losses,
                                  {.name = "condition",
                                   .title = "Condition of the normal equations for C",
                                   .caption = "In the 2-norm, at the optimal h.",
                                   .x = {},
-                                  .y = {.label = "condition number"},
+                                  .y = {.label = "condition number", .logarithmic = true, .from = {}, .to = {}},
                                   .series = {}},
                                  [](const RoundingLoss& l) { return l.optimum.condition; }),
                      excess_figure(losses,

@@ -69,8 +69,7 @@ std::string best_at_049(const std::vector<RoundingLoss>& losses) {
   for (const RoundingLoss& l : losses)
     if (l.x0 == 0.49 && (best == nullptr || l.stored_in_double < best->stored_in_double)) best = &l;
   return "Of the widths tried, W = " + std::to_string(best->width) +
-         " is the best at x₀ = 0.49 in doubles, with E = " + power_of_ten(best->stored_in_double, 2) +
-         "; wider ones are worse.";
+         " is the best at x₀ = 0.49 in doubles, with E = " + power_of_ten(best->stored_in_double, 2) + ".";
 }
 
 std::string towards_zero(const std::vector<RoundingLoss>& losses) {
@@ -104,7 +103,7 @@ ReportSection limits_section(const std::vector<RoundingLoss>& losses) {
                     .title = "The range of h over |x| ≤ x₀",
                     .caption = "Largest over smallest.",
                     .x = {},
-                    .y = {.label = "max h / min h"},
+                    .y = {.label = "max h / min h", .logarithmic = true, .from = {}, .to = {}},
                     .series = {}},
                    [](const RoundingLoss& l) { return l.correction_range; }),
       limit_figure(losses,
@@ -112,7 +111,7 @@ ReportSection limits_section(const std::vector<RoundingLoss>& losses) {
                     .title = "How much rounding of the grid is amplified",
                     .caption = "√(mean of h²) √(∫ C² du): white noise on the grid, relative to the image of a visibility.",
                     .x = {},
-                    .y = {.label = "noise gain"},
+                    .y = {.label = "noise gain", .logarithmic = true, .from = {}, .to = {}},
                     .series = {}},
                    [](const RoundingLoss& l) { return l.noise_gain; })};
   return section;
