@@ -12,5 +12,6 @@ void add_image_command(CLI::App& program, const std::string& command_line);
 void add_kernel_command(CLI::App& program);
 void add_predict_command(CLI::App& program);
 void add_simulate_command(CLI::App& program);
+void add_report_command(CLI::App& program);
 
 }  // namespace misfit::tools

@@ -147,7 +147,9 @@ std::string element_of(const std::string& file, const Figure& figure) {
   std::string element = file.substr(start, end + 6 - start);
   element = replaced(element, "id='gp", "id='" + id + "_gp");
   element = replaced(element, "#gp", "#" + id + "_gp");
-  element = replaced(element, "gnuplot_canvas", id + "_canvas");
+  for (const std::string_view shared : {"gnuplot_canvas", "greybox", "textbox"})
+    element = replaced(element, shared, id + "_" + std::string(shared));
+  element = replaced(element, "\"DejaVu Sans\"", "\"DejaVu Sans, Verdana, sans-serif\"");
   element = replaced(element, "<title>" + id + "</title>", "<title>" + html_escaped(figure.title) + "</title>");
   return element + "\n";
 }

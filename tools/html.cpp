@@ -1,9 +1,6 @@
 #include "tools/html.h"
 
-#include <array>
-#include <cmath>
 #include <cstdint>
-#include <cstdio>
 #include <string_view>
 
 #include "tools/numbers.h"
@@ -50,17 +47,7 @@ std::string base64(const std::string& bytes) {
 }
 
 std::string html_power(double value, int digits) {
-  const double magnitude = std::abs(value);
-  if (value == 0 || !std::isfinite(value) || (magnitude >= 0.01 && magnitude < 1000)) return significant(value, digits);
-  std::array<char, 32> text{};
-  std::snprintf(text.data(), text.size(), "%.*e", digits - 1, magnitude);
-  const std::string_view shown(text.data());
-  const auto split = shown.find('e');
-  const int exponent = std::stoi(std::string(shown.substr(split + 1)));
-  std::string factor(shown.substr(0, split));
-  if (factor.find('.') != std::string::npos) factor.resize(factor.find_last_not_of(".0") + 1);
-  const std::string power = "10<sup>" + significant(exponent, 3) + "</sup>";
-  return (value < 0 ? "−" : "") + (factor == "1" ? power : factor + " × " + power);
+  return power_of_ten(value, digits, [](int exponent) { return "10<sup>" + significant(exponent, 3) + "</sup>"; });
 }
 
 }  // namespace misfit::tools

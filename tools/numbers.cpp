@@ -47,6 +47,25 @@ std::string significant(double value, int digits) {
   return (value < 0 ? "−" : "") + text + power;
 }
 
+std::string power_of_ten(double value, int digits, const std::function<std::string(int exponent)>& power) {
+  const double magnitude = std::abs(value);
+  if (value == 0 || !std::isfinite(value) || (magnitude >= 0.01 && magnitude < 1000)) return significant(value, digits);
+  const std::string text = print("%.*e", digits - 1, magnitude);
+  const auto split = text.find('e');
+  const std::string factor = significant(std::stod(text.substr(0, split)), digits);
+  const std::string raised = power(std::stoi(text.substr(split + 1)));
+  return (value < 0 ? "−" : "") + (factor == "1" ? raised : factor + " × " + raised);
+}
+
+std::string power_of_ten(double value, int digits) {
+  return power_of_ten(value, digits, [](int exponent) {
+    constexpr std::array<const char*, 10> raised{"⁰", "¹", "²", "³", "⁴", "⁵", "⁶", "⁷", "⁸", "⁹"};
+    std::string power = "10";
+    for (const char c : std::to_string(exponent)) power += c == '-' ? "⁻" : raised[static_cast<std::size_t>(c - '0')];
+    return power;
+  });
+}
+
 std::string grouped(long long count) {
   std::string text = std::to_string(count);
   for (int at = static_cast<int>(text.size()) - 3; at > (count < 0 ? 1 : 0); at -= 3)

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <string>
 
 #include "imager/geometry.h"
@@ -9,6 +10,12 @@ namespace misfit::tools {
 /// `value` rounded to `digits` significant digits, in plain notation from 1e-4 to 1e6 and as 1.2e-07 outside, with a true
 /// minus sign and no trailing zeros.
 std::string significant(double value, int digits);
+
+/// `value` as "3.2 × 10⁻⁷" in plain text, to so many significant digits; plain notation from 0.01 to 1000.
+std::string power_of_ten(double value, int digits);
+
+/// The same with the power as `power` writes it, given the exponent.
+std::string power_of_ten(double value, int digits, const std::function<std::string(int exponent)>& power);
 
 /// `count` with a thin space between groups of three digits.
 std::string grouped(long long count);
