@@ -22,7 +22,7 @@ namespace {
 
 /// The drawing's size in units of which 15 are a line of text: 10 points where 760 are the 18 cm of a printed page.
 constexpr int drawing_width = 760;
-constexpr int drawing_height = 470;
+constexpr int drawing_height = 430;  // two to a printed page
 constexpr int font_size = 15;
 /// Labels up to this many letters go to the right of the axes, longer ones below.
 constexpr std::size_t narrow_label = 24;
