@@ -1,4 +1,3 @@
-#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -30,15 +29,18 @@ constexpr std::array<Rival, 5> rivals{{{"spheroidal-exact", "spheroidal"},
                                        {"prolate", "prolate, order 0"},
                                        {"minimax", "minimax"}}};
 
-/// Where a family's solution was judged in wider arithmetic than doubles, that counts.
+/// What rounding leaves of E in doubles is some 3e-31; below this it would be seen.
+constexpr double smallest_in_doubles = 1e-29;
+
 Errors errors_of(const Rival& rival, double x0) {
   Errors errors{rival.label, {}, {}, {}};
   const kernels::KernelFamily family = kernels::kernel_family(rival.family);
-  for (int width = narrowest; width <= std::min(widest, family.max_width); ++width) {
-    const kernels::Kernel kernel = family.make(width, x0);
+  for (int width = narrowest; width <= widest; ++width) {
+    const kernels::Origin origin = family.make(width, x0).origin;
+    const bool rounded = origin.precision == "double" && origin.mean_error < smallest_in_doubles;
     errors.width.push_back(width);
-    errors.mean.push_back(kernel.origin.mean_error);
-    errors.max.push_back(kernel.origin.max_error);
+    errors.mean.push_back(rounded ? std::nan("") : origin.mean_error);
+    errors.max.push_back(rounded ? std::nan("") : origin.max_error);
   }
   return errors;
 }
@@ -53,48 +55,59 @@ Errors least_misfit_errors(SolvedKernels& solved, double x0) {
   return errors;
 }
 
-Series ratio_curve(const Errors& errors, const std::vector<double>& values, const std::vector<double>& best) {
+/// One of the two ways to measure a function.
+struct Norm {
+  const char* name;
+  const char* title;
+  const char* symbol;
+  const char* caption;
+  std::vector<double> Errors::*values;
+};
+const std::array<Norm, 2> norms{
+    {{"rms", "RMS error", "√E",
+      "1 is the least-misfit function as wide; none can be below. What doubles cannot tell from rounding is left out.",
+      &Errors::mean},
+     {"max", "Largest error", "√(max ℓ)",
+      "In the largest error minimax wins, which is made for that; the least-misfit function is made for the mean.",
+      &Errors::max}}};
+
+/// Least-misfit first.
+using AllErrors = std::vector<Errors>;
+
+Series ratio_curve(const Errors& errors, const Errors& best, const Norm& norm) {
   Series result{.label = errors.label, .x = errors.width, .y = {}, .points = true};
-  for (std::size_t k = 0; k < values.size(); ++k) result.y.push_back(std::sqrt(values[k] / best[k]));
+  for (std::size_t k = 0; k < result.x.size(); ++k)
+    result.y.push_back(std::sqrt((errors.*norm.values)[k] / (best.*norm.values)[k]));
   return result;
 }
 
-Figure ratio_figure(const std::string& name, const std::string& title, const std::string& what) {
-  return {.name = name,
-          .title = title,
-          .caption = "",
-          .x = {.label = "width W", .from = narrowest - 0.5, .to = widest + 0.5},
-          .y = {.label = what + ", over that of least-misfit", .logarithmic = true},
-          .series = {}};
+std::string name_of(const Norm& norm, double x0) {
+  return std::string("rivals-") + norm.name + "-" + std::to_string(std::lround(100 * x0));
 }
 
-void add_figures(ReportSection& section, SolvedKernels& solved, double x0) {
-  const std::string suffix = "-" + std::to_string(std::lround(100 * x0));
-  const Errors best = least_misfit_errors(solved, x0);
-  Figure rms = ratio_figure("rivals-rms" + suffix, "RMS of rivals, " + x0_label(x0), "√E");
-  Figure max = ratio_figure("rivals-max" + suffix, "Largest error of rivals, " + x0_label(x0), "√(max ℓ)");
-  rms.caption = "1 is the least-misfit function as wide; none can be below.";
-  max.caption = "In the largest error others win: below 1 lie functions that bound the worst place better than the least-misfit "
-                "function does, minimax best of all.";
-  DataTable table{.name = "rivals" + suffix,
-                  .title = "Errors behind these figures, " + x0_label(x0),
-                  .caption = "Least-misfit: √E and √(max ℓ); rivals: the same as multiples of these.",
-                  .columns = {"W", "√E", "√(max ℓ)"},
+Figure ratio_figure(const AllErrors& all, const Norm& norm, double x0) {
+  Figure figure{.name = name_of(norm, x0),
+                .title = norm.title + (" of rivals, " + x0_label(x0)),
+                .caption = norm.caption,
+                .x = {.label = "width W", .from = narrowest - 0.5, .to = widest + 0.5},
+                .y = {.label = norm.symbol + std::string(", over that of least-misfit"), .logarithmic = true},
+                .series = {}};
+  for (std::size_t k = 1; k < all.size(); ++k) figure.series.push_back(ratio_curve(all[k], all[0], norm));
+  return figure;
+}
+
+DataTable errors_table(const AllErrors& all, const Norm& norm, double x0) {
+  DataTable table{.name = name_of(norm, x0) + "-errors",
+                  .title = norm.title + (", " + x0_label(x0)),
+                  .caption = norm.symbol + std::string(", relative to the exact transform in one dimension."),
+                  .columns = {"W"},
                   .rows = {}};
-  for (std::size_t k = 0; k < best.width.size(); ++k)
-    table.rows.push_back({best.width[k], std::sqrt(best.mean[k]), std::sqrt(best.max[k])});
-  for (const Rival& rival : rivals) {
-    const Errors errors = errors_of(rival, x0);
-    for (Figure* figure : {&rms, &max}) {
-      figure->series.push_back(figure == &rms ? ratio_curve(errors, errors.mean, best.mean)
-                                              : ratio_curve(errors, errors.max, best.max));
-      table.columns.push_back(std::string(rival.label) + (figure == &rms ? ", √E" : ", max"));
-      for (std::size_t k = 0; k < table.rows.size(); ++k) table.rows[k].emplace_back(figure->series.back().y.at(k));
-    }
+  for (const double width : all[0].width) table.rows.push_back({width});
+  for (const Errors& errors : all) {
+    table.columns.push_back(errors.label);
+    for (std::size_t k = 0; k < table.rows.size(); ++k) table.rows[k].emplace_back(std::sqrt((errors.*norm.values)[k]));
   }
-  section.figures.push_back(rms);
-  section.figures.push_back(max);
-  section.tables.push_back(table);
+  return table;
 }
 
 }  // namespace
@@ -106,7 +119,14 @@ ReportSection rivals_section(SolvedKernels& solved) {
                                        "has none. All get their optimal correction."},
                         .figures = {},
                         .tables = {}};
-  for (const double x0 : {0.25, 0.4}) add_figures(section, solved, x0);
+  for (const double x0 : {0.25, 0.4}) {
+    AllErrors all{least_misfit_errors(solved, x0)};
+    for (const Rival& rival : rivals) all.push_back(errors_of(rival, x0));
+    for (const Norm& norm : norms) {
+      section.figures.push_back(ratio_figure(all, norm, x0));
+      section.tables.push_back(errors_table(all, norm, x0));
+    }
+  }
   return section;
 }
 

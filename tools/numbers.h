@@ -11,7 +11,8 @@ namespace misfit::tools {
 /// minus sign and no trailing zeros.
 std::string significant(double value, int digits);
 
-/// `value` as "3.2 × 10⁻⁷" in plain text, to so many significant digits; plain notation from 0.01 to 1000.
+/// `value` as "3.2 × 10⁻⁷" in plain text with spaces that do not break, to so many significant digits; plain notation from 0.01
+/// to 1000.
 std::string power_of_ten(double value, int digits);
 
 /// The same with the power as `power` writes it, given the exponent.
