@@ -117,37 +117,73 @@ class Search {
     if (trusted(c) && costs_less(c)) best_ = c;
   }
 
-  /// Padding falls along both axes, so that the width needed only grows, and what one padding cannot reach, no smaller one can.
+  /// Padding falls, so that the width needed only grows, and what one padding cannot reach, no smaller one can. One axis alone
+  /// may do with the next smaller padding at the same width.
   void search(Precision precision) {
-    const std::vector<double> along = paddings();
-    std::vector<int> needed(along.size(), narrowest());  // at the padding of u before, for every padding of v
-    for (const double padding_u : along)
-      for (std::size_t i = 0; i < along.size(); ++i) {
-        const int least = std::max(needed[i], i == 0 ? narrowest() : needed[i - 1]);
-        const std::optional<int> width = narrowest_reaching(least, padding_u, along[i], precision);
-        if (!width && i == 0) return;
-        if (!width) break;
-        needed[i] = *width;
-      }
+    int width = narrowest();
+    for (const double padding : paddings()) {
+      const std::optional<int> needed = narrowest_reaching(width, padding, padding, precision);
+      if (!needed) break;
+      width = *needed;
+    }
+    if (!best_ || request_.padding != 0 || best_->work.precision != precision) return;
+    const GriddingCandidate square = *best_;
+    const auto smaller = std::find(usual_paddings.begin(), usual_paddings.end(), square.padding_u) + 1;
+    if (smaller == usual_paddings.end()) return;
+    for (const auto& [u, v] : {std::pair(*smaller, square.padding_v), std::pair(square.padding_u, *smaller)})
+      consider(sized(square.work.width, u, v, precision));
   }
 
-  /// The narrowest width from `least` on that reaches the accuracy, offered; or the first that costs too much, not judged; or
-  /// none.
-  std::optional<int> narrowest_reaching(int least, double padding_u, double padding_v, Precision precision) {
-    for (int width = least; width <= widest(); ++width) {
-      GriddingCandidate c = sized(width, padding_u, padding_v, precision);
-      if (!costs_less(c)) {
-        considered_.push_back({c, Rejection::costs_more});
-        return width;
-      }
+  enum class Outcome { reaches, costs_too_much, not_exact_enough };
+
+  Outcome consider(GriddingCandidate c) {
+    if (!costs_less(c)) {
+      considered_.push_back({c, Rejection::costs_more});
+      return Outcome::costs_too_much;
+    }
+    judge_plane(c);
+    const bool reaches = c.worst_error <= target_;
+    considered_.push_back({c, reaches ? Rejection::costs_more : Rejection::not_exact_enough});
+    if (!reaches) return Outcome::not_exact_enough;
+    request_.w_turns > 0 ? offer_with_w(c) : offer(c);
+    return Outcome::reaches;
+  }
+
+  /// How the kernel's error falls with width at these paddings.
+  struct Forecast {
+    double log_error = 0;  ///< at `width`
+    double log_rate = 0;   ///< change for one more cell, negative
+    int width = 0;
+
+    double at(int other) const { return std::exp(log_error + log_rate * (other - width)); }
+  };
+  /// From two narrow kernels, which are solved in no time; wide ones take extended arithmetic. None for families of few widths.
+  std::optional<Forecast> forecast(double padding_u, double padding_v, Precision precision) {
+    const int width = std::max(narrowest(), 5);
+    if (width + 2 > widest()) return {};
+    double log_error[2];
+    for (int i = 0; i < 2; ++i) {
+      GriddingCandidate c = sized(width + i, padding_u, padding_v, precision);
       judge_plane(c);
-      const bool reaches = c.worst_error <= target_;
-      considered_.push_back({c, reaches ? Rejection::costs_more : Rejection::not_exact_enough});
-      if (reaches) {
-        request_.w_turns > 0 ? offer_with_w(c) : offer(c);
-        return width;
-      }
-      if (exhausted(c)) return {};
+      log_error[i] = std::log(std::max(c.worst_error * c.worst_error - c.rounding * c.rounding, 1e-40)) / 2;
+    }
+    return Forecast{log_error[1], std::min(-0.1, log_error[1] - log_error[0]), width + 1};
+  }
+
+  /// The narrowest width from `least` on that reaches the accuracy, offered; or one that costs too much, not judged; or none.
+  std::optional<int> narrowest_reaching(int least, double padding_u, double padding_v, Precision precision) {
+    const std::optional<Forecast> expected = forecast(padding_u, padding_v, precision);
+    const auto hopeful = [&](int width) { return !expected || expected->at(width) < 10 * target_; };
+    int width = least;
+    while (width < widest() && !hopeful(width)) ++width;
+    double narrower = HUGE_VAL;
+    for (; width <= widest() && hopeful(width); ++width) {
+      const Outcome outcome = consider(sized(width, padding_u, padding_v, precision));
+      if (outcome != Outcome::not_exact_enough) return width;
+      const GriddingCandidate& c = considered_.back().candidate;
+      constexpr double stored = 1e-13;  // below, the rounding of the stored kernel may hold the error up
+      if (exhausted(c) || (c.worst_error < stored && c.worst_error > narrower / 2)) return {};
+      narrower = c.worst_error;
     }
     return {};
   }

@@ -3,11 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <optional>
 #include <stdexcept>
 
-#include "imager/fft.h"
-#include "kernels/catalogue.h"
 #include "kernels/cheapest_polynomial.h"
 
 namespace misfit::imager {

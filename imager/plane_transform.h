@@ -3,10 +3,11 @@
 #include "imager/geometry.h"
 #include "imager/transform.h"
 #include "kernels/kernel.h"
+#include "kernels/precision.h"
 
 namespace misfit::imager {
 
-enum class Precision { single_precision, double_precision };
+using kernels::Precision;
 
 /// What a PlaneTransform is made of. Both kernels have one width, and x0 at least image size / (2 · FFT size) on their axis.
 struct PlaneTransformOptions {

@@ -1,20 +1,12 @@
 #include "kernels/catalogue.h"
 
-#include <sstream>
+#include <optional>
 #include <stdexcept>
 
 #include "kernels/families/families.h"
+#include "kernels/text_internal.h"
 
 namespace misfit::kernels {
-namespace {
-
-std::string text_of(double value) {
-  std::ostringstream out;
-  out << value;
-  return out.str();
-}
-
-}  // namespace
 
 Kernel KernelFamily::make(int width, double x0) const {
   if (width < min_width || width > max_width)
@@ -28,20 +20,22 @@ Kernel KernelFamily::make(int width, double x0) const {
 
 const std::vector<KernelFamily>& kernel_catalogue() {
   static const std::vector<KernelFamily> families{
-      least_misfit_family(),
-      minimax_family(),
-      spheroidal_family(),
+      least_misfit_family(),  minimax_family(),       spheroidal_family(1),    spheroidal_family(0),
+      spheroidal_family(0.5), spheroidal_family(1.5), spheroidal_family(2),    spheroidal_exact_family(),
+      prolate_family(),       kaiser_bessel_family(), exp_semicircle_family(), nearest_family(),
+      linear_family(),        sinc_family(),          gaussian_family(),       gaussian_sinc_family(),
   };
   return families;
 }
 
-const KernelFamily& kernel_family(const std::string& name) {
+KernelFamily kernel_family(const std::string& name) {
   std::string known;
   for (const KernelFamily& family : kernel_catalogue()) {
     if (family.name == name) return family;
     known += (known.empty() ? "" : ", ") + family.name;
   }
-  throw std::invalid_argument("kernel \"" + name + "\" is not known; expected one of: " + known);
+  if (const std::optional<KernelFamily> family = spheroidal_exact_family(name)) return *family;
+  throw std::invalid_argument("kernel \"" + name + "\" is not known; expected one of: " + known + ", spheroidal-exact-<order>");
 }
 
 }  // namespace misfit::kernels

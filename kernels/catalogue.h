@@ -25,7 +25,8 @@ struct KernelFamily {
 /// Every family there is. A new one is a line here.
 const std::vector<KernelFamily>& kernel_catalogue();
 
-/// The family called `name`; std::invalid_argument lists the names for any other.
-const KernelFamily& kernel_family(const std::string& name);
+/// The family called `name`: one of the catalogue, or spheroidal-exact-<α> for any order α from 0 to 10. For any other name
+/// std::invalid_argument lists those there are.
+KernelFamily kernel_family(const std::string& name);
 
 }  // namespace misfit::kernels

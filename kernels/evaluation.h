@@ -7,11 +7,9 @@
 #include "kernels/least_misfit.h"
 #include "kernels/lookup_table.h"
 #include "kernels/map_error.h"
+#include "kernels/precision.h"
 
 namespace misfit::kernels {
-
-/// What positions, stored numbers and arithmetic are in.
-enum class Precision { single_precision, double_precision };
 
 /// A way to have a gridding function as values. judge(way.taps, x0, way.judging()) is what it really does.
 struct Evaluation {

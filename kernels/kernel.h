@@ -15,6 +15,7 @@ struct Origin {
   double max_error = 0;                                               ///< largest ℓ over |x| ≤ x0
   double max_error_bound = std::numeric_limits<double>::quiet_NaN();  ///< below which no function's max ℓ lies, where known
   double condition = std::numeric_limits<double>::quiet_NaN();        ///< of the normal equations for C, where solved
+  double parameter = std::numeric_limits<double>::quiet_NaN();        ///< β or bandwidth of a family that has one
   int iterations = 0;
   std::string precision = "double";  ///< the arithmetic of the solution: double, quadruple or 256 bits
 };

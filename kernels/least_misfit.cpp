@@ -65,8 +65,6 @@ MisfitSolution least_misfit_solution(int width, double x0) {
   MisfitSolution last;
   MisfitSolution before;
   for (int w = 1; w <= width; ++w) {
-    const bool final = w == width;
-    const double rounding = final ? rounding_of_a_result : rounding_of_a_start;
     const int nodes = nodes_for(w, x0);
     const MisfitProblem problem{w,
                                 x0,
@@ -74,17 +72,22 @@ MisfitSolution least_misfit_solution(int width, double x0) {
                                 Eigen::VectorXd::Ones(nodes),
                                 last.minimum.log_h,
                                 w == 2 ? last.minimum.log_h : before.minimum.log_h,
-                                final ? 1e-10 : 1e-3,
-                                final ? 1e-8 : 1e-2};
+                                w == width ? 1e-6 : 1e-3,
+                                1e-2};
     Arithmetic arithmetic = Arithmetic::binary64;
     if (w > 2) {
       const double ratio = last.minimum.mean_error / before.minimum.mean_error;
-      arithmetic = arithmetic_for(last.minimum.mean_error * ratio, last.minimum.h_range, rounding);
+      arithmetic = arithmetic_for(last.minimum.mean_error * ratio, last.minimum.h_range, rounding_of_a_start);
     }
     before = last;
-    last = minimise_misfit(problem, arithmetic, rounding);
+    last = minimise_misfit(problem, arithmetic, rounding_of_a_start);
   }
-  return last;
+  // What the start is good for already is not asked of the wider arithmetic again.
+  const int nodes = nodes_for(width, x0);
+  const MisfitProblem problem{width, x0,  nodes, Eigen::VectorXd::Ones(nodes), last.minimum.log_h, last.minimum.log_h,
+                              1e-10, 1e-8};
+  return minimise_misfit(problem, arithmetic_for(last.minimum.mean_error, last.minimum.h_range, rounding_of_a_result),
+                         rounding_of_a_result);
 }
 
 void check_least_misfit_request(const std::string& name, int width, double x0) {

@@ -58,6 +58,22 @@ std::size_t write_data(std::ostream& script, const Figure& figure, std::size_t n
   return points;
 }
 
+/// Whether gnuplot labels every power of ten, on a logarithmic axis; where it leaves some out, its finer marks are a jumble.
+bool labels_each_decade(const Axis& axis, const Figure& figure, std::vector<double> Series::*values) {
+  constexpr double most_decades = 8;
+  if (!axis.logarithmic) return true;
+  double low = axis.from.value_or(HUGE_VAL);
+  double high = axis.to.value_or(0);
+  for (const Series& series : figure.series) {
+    for (const double value : series.*values) {
+      if (!drawable(value, axis)) continue;
+      if (!axis.from) low = std::min(low, value);
+      if (!axis.to) high = std::max(high, value);
+    }
+  }
+  return std::log10(high / low) <= most_decades;
+}
+
 void script_axis(std::ostream& script, const std::string& name, const Axis& axis) {
   script << "set " << name << "label " << gnuplot_quoted(axis.label) << " noenhanced\n";
   if (axis.logarithmic) script << "set logscale " << name << "\nset format " << name << " '10^{%L}'\n";
@@ -105,7 +121,7 @@ void script_legend(std::ostream& script, const Figure& figure) {
     script << "unset key\n";
   } else {
     script << "set key noenhanced Left reverse samplen 3.2 spacing 1.15 "
-           << (below ? "below vertical maxcols 1\n" : "outside right top vertical\n");
+           << (below ? "below vertical maxcols 1\nset xlabel offset 0,0.4\n" : "outside right top vertical\n");
   }
 }
 
@@ -118,6 +134,8 @@ std::string script_of(const Figure& figure) {
             "set grid lw 0.6 lc rgb '#dddddd' dt solid\n";
   script_axis(script, "x", figure.x);
   script_axis(script, "y", figure.y);
+  if (!labels_each_decade(figure.x, figure, &Series::x)) script << "unset mxtics\n";
+  if (!labels_each_decade(figure.y, figure, &Series::y)) script << "unset mytics\n";
   std::size_t points = 0;
   for (std::size_t number = 0; number < figure.series.size(); ++number) points += write_data(script, figure, number);
   if (points == 0) throw std::logic_error("figure " + figure.name + " has no point to draw");

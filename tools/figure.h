@@ -20,8 +20,8 @@ struct Series {
 struct Axis {
   std::string label;
   bool logarithmic = false;
-  std::optional<double> from;  ///< without: as the data ask
-  std::optional<double> to;
+  std::optional<double> from{};  ///< without: as the data ask
+  std::optional<double> to{};
 };
 
 /// A figure with the numbers behind it. All text is plain UTF-8.

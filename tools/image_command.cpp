@@ -81,7 +81,7 @@ class ImageRun {
     imager::GriddingRequest request;
     request.geometry = geometry_;
     request.accuracy = o_.accuracy;
-    request.kernel = o_.kernel;
+    request.kernel = kernels::kernel_family(o_.kernel);
     request.kernel_width = o_.kernel_width;
     request.padding = o_.padding;
     request.samples = loaded_.counts.used;

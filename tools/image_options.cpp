@@ -58,7 +58,7 @@ void check_gridding(const ImageOptions& o) {
   if (!(o.accuracy > 0 && o.accuracy < 1) && !(o.accuracy == 0 && accuracy_is_free))
     refuse("accuracy", text(o.accuracy), "a number above 0 and below 1");
   imager::GriddingRequest request;
-  request.kernel = o.kernel;
+  request.kernel = kernels::kernel_family(o.kernel);
   request.kernel_width = o.kernel_width;
   request.padding = o.padding;
   imager::check_request(request);
@@ -76,7 +76,8 @@ void declare(CLI::App& command, ImageOptions& o) {
                      "Spectral windows and channels, in CASA's selection syntax; all when empty");
   command.add_option("--datacolumn", o.datacolumn, "data, corrected, model, or a column's name");
   command.add_option("--weighting", o.weighting, "Weighting")->check(CLI::IsMember({"natural"}));
-  command.add_option("--kernel", o.kernel, "Gridding function: least-misfit or spheroidal");
+  command.add_option("--kernel", o.kernel,
+                     "Gridding function: least-misfit, spheroidal, kaiser-bessel …; an unknown name lists all");
   command.add_option("--accuracy", o.accuracy,
                      "Largest error of the whole image relative to the direct transform, RMS over RMS");
   command.add_option("--kernel-width", o.kernel_width, "Cells a visibility touches per axis; chosen when 0");

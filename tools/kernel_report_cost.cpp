@@ -21,21 +21,25 @@ struct Pair {
   int degree = 0;
 };
 
+Pair pair_of(const kernels::LeastMisfit& solution) {
+  return {solution.width, solution.x0, solution.origin.mean_error, store("least-misfit", solution).polynomial.degree()};
+}
+
 /// The x0 at which the least-misfit function of `width` has the misfit `wanted`, by bisection: E grows with x0.
-Pair pair_of(int width, double wanted) {
+Pair pair_like(int width, double wanted) {
   double low = kernels::least_misfit_min_x0;
   double high = kernels::least_misfit_max_x0;
   for (int halving = 0; halving < 14; ++halving) {  // x0 to 3e-5
     const double middle = (low + high) / 2;
     (kernels::solve_least_misfit(width, middle).origin.mean_error < wanted ? low : high) = middle;
   }
-  const kernels::LeastMisfit solution = kernels::solve_least_misfit(width, low);
-  return {width, low, solution.origin.mean_error, store_least_misfit(solution).polynomial.degree()};
+  return pair_of(kernels::solve_least_misfit(width, low));
 }
 
 std::vector<Pair> pairs_like(const kernels::LeastMisfit& reference) {
   std::vector<Pair> pairs;
-  for (int width = shown_widths.front(); width <= widest; ++width) pairs.push_back(pair_of(width, reference.origin.mean_error));
+  for (int width = shown_widths.front(); width <= widest; ++width)
+    pairs.push_back(pair_like(width, reference.origin.mean_error));
   return pairs;
 }
 
@@ -52,18 +56,18 @@ double operations(const Pair& pair, double visibilities) {
 
 double seconds(const Pair& pair, double visibilities) {
   const int size = static_cast<int>(std::lround(fft_size(pair)));
-  return imager::CostModel{}.seconds({.samples = visibilities,
-                                      .width = pair.width,
-                                      .degree = pair.degree,
-                                      .nu = size,
-                                      .nv = size,
-                                      .columns = image_size});
+  return imager::CostModel{}.seconds(
+      {.samples = visibilities, .width = pair.width, .degree = pair.degree, .nu = size, .nv = size, .columns = image_size});
 }
 
 template <typename Cost>
 Figure cost_figure(const std::vector<Pair>& pairs, Cost cost) {
-  Figure figure{.name = "", .title = "", .caption = "", .x = {.label = "visibilities", .logarithmic = true},
-                .y = {.label = "", .logarithmic = true}, .series = {}};
+  Figure figure{.name = "",
+                .title = "",
+                .caption = "",
+                .x = {.label = "visibilities", .logarithmic = true},
+                .y = {.label = "", .logarithmic = true},
+                .series = {}};
   std::vector<double> visibilities;
   for (int step = 0; step <= 120; ++step) visibilities.push_back(std::pow(10, 4 + step / 20.0));
   Series least{.label = "least of W = 5…12", .x = visibilities, .y = {}, .law = true};
@@ -89,8 +93,8 @@ DataTable pairs_table(const std::vector<Pair>& pairs) {
                   .columns = {"W", "x₀", "padding", "N", "√E"},
                   .rows = {}};
   for (const Pair& pair : pairs)
-    table.rows.push_back({static_cast<double>(pair.width), pair.x0, 1 / (2 * pair.x0), std::round(fft_size(pair)),
-                          std::sqrt(pair.mean_error)});
+    table.rows.push_back(
+        {static_cast<double>(pair.width), pair.x0, 1 / (2 * pair.x0), std::round(fft_size(pair)), std::sqrt(pair.mean_error)});
   return table;
 }
 
@@ -102,19 +106,22 @@ ReportSection cost_section(SolvedKernels& solved) {
   Figure count = cost_figure(pairs, operations);
   count.name = "cost-operations";
   count.title = "Operations to grid and transform 4096² pixels";
-  count.caption = "W² + 2W(D + 1) for each visibility, D the degree of the taps' polynomials, and 5 N² log₂N for the FFT of real "
-                  "images. Few visibilities want little padding and a wide function, many the opposite.";
+  count.caption =
+      "W² + 2W(D + 1) for each visibility, D the degree of the taps' polynomials, and 5 N² log₂N for the FFT of real "
+      "images. Few visibilities want little padding and a wide function, many the opposite.";
   count.y.label = "operations";
   Figure time = cost_figure(pairs, seconds);
   time.name = "cost-seconds";
   time.title = "Seconds on one core, by the cost model of this program";
-  time.caption = "With the model's fixed constants, for dirty image and PSF in double precision: memory makes a cell of the grid "
-                 "dearer than an operation of the FFT.";
+  time.caption =
+      "With the model's fixed constants, for dirty image and PSF in double precision: memory makes a cell of the grid "
+      "dearer than an operation of the FFT.";
   time.y.label = "seconds";
   return {.heading = "Cost",
-          .paragraphs = {"The paper compares five pairs of W and x₀ of equal accuracy. Which ones could not be looked up; these all "
-                         "have the misfit of W = 7 at x₀ = 0.25, √E = " +
-                         power_of_ten(std::sqrt(reference.origin.mean_error), 3) + ", found by a search over x₀."},
+          .paragraphs =
+              {"The paper compares five pairs of W and x₀ of equal accuracy. Which ones could not be looked up; these all "
+               "have the misfit of W = 7 at x₀ = 0.25, √E = " +
+               power_of_ten(std::sqrt(reference.origin.mean_error), 3) + ", found by a search over x₀."},
           .figures = {count, time},
           .tables = {pairs_table(pairs)}};
 }

@@ -43,8 +43,9 @@ JudgedTable table_of(const kernels::Kernel& kernel, const kernels::TableOptions&
 }
 
 Figure map_error_of_tables(const kernels::Kernel& kernel, const Degree& degree) {
-  Figure figure = map_error_figure("table-" + std::string(degree.label), "Map error of lookup tables, " +
-                                   std::string(degree.label) + " interpolation, W = 7, x₀ = 0.25", 1e-16, 1);
+  Figure figure = map_error_figure(
+      "table-" + std::string(degree.label),
+      "Map error of lookup tables, " + std::string(degree.label) + " interpolation, W = 7, x₀ = 0.25", 1e-16, 1);
   figure.caption = "Ms is the number of entries a cell. The correction is that of the function.";
   for (const int samples : degree.samples) {
     const JudgedTable table = table_of(kernel, {samples, degree.interpolation});
@@ -58,8 +59,9 @@ Figure map_error_of_tables(const kernels::Kernel& kernel, const Degree& degree) 
 Figure rms_of_tables(const kernels::Kernel& kernel) {
   Figure figure{.name = "table-rms",
                 .title = "RMS error of lookup tables, W = 7, x₀ = 0.25",
-                .caption = "Marks are measured; the law is √(E + e²), e = κ (2πx₀)^(d+1) / (√(2d+3) Ms^(d+1)) for degree d, "
-                           "κ = 0.28868, 0.091287, 0.046004, 0.029369, whatever the function.",
+                .caption =
+                    "Marks are measured; the law is √(E + e²), e = κ (2πx₀)^(d+1) / (√(2d+3) Ms^(d+1)) for degree d, "
+                    "κ = 0.28868, 0.091287, 0.046004, 0.029369, whatever the function.",
                 .x = {.label = "Ms, entries a cell", .logarithmic = true},
                 .y = {.label = "√E", .logarithmic = true},
                 .series = {}};
@@ -106,23 +108,25 @@ void add_way(DataTable& table, const Evaluation& way, double best, int positions
 DataTable ways_to_evaluate(const kernels::LeastMisfit& solution, const kernels::Kernel& kernel) {
   DataTable table{.name = "evaluation",
                   .title = "Ways to evaluate the function of W = 7, x₀ = 0.25",
-                  .caption = "E is what each really has, with the correction that is optimal for it; at the worst position of a "
-                             "visibility in its cell, the mean over |x| ≤ x₀ and the largest squared error. Time is for the 7 "
-                             "taps of one axis on one core of this machine.",
+                  .caption =
+                      "E is what each really has, with the correction that is optimal for it; at the worst position of a "
+                      "visibility in its cell, the mean over |x| ≤ x₀ and the largest squared error. Time is for the 7 "
+                      "taps of one axis on one core of this machine.",
                   .columns = {"way", "bytes", "E", "E / optimum", "worst ν, mean", "worst ν, max", "ns a visibility"},
                   .rows = {}};
   const double best = solution.origin.mean_error;
   for (const Precision precision : {Precision::double_precision, Precision::single_precision}) {
     add_way(table, kernels::evaluate_directly(solution, precision), best, 1000);
     constexpr std::array<kernels::TableOptions, 5> shapes{{{65536, Interpolation::nearest},
-                                                          {2048, Interpolation::linear},
-                                                          {128, Interpolation::quadratic},
-                                                          {32, Interpolation::cubic},
-                                                          {64, Interpolation::cubic}}};
+                                                           {2048, Interpolation::linear},
+                                                           {128, Interpolation::quadratic},
+                                                           {32, Interpolation::cubic},
+                                                           {64, Interpolation::cubic}}};
     for (const kernels::TableOptions& shape : shapes)
       add_way(table, kernels::evaluate_by_table(kernel.polynomial, shape, precision), best, 200000);
     for (const int degree : {width - 1, width, width + 1, kernel.polynomial.degree()})
-      add_way(table, kernels::evaluate_by_polynomial(kernels::fit_polynomial(kernel.polynomial, degree), precision), best, 200000);
+      add_way(table, kernels::evaluate_by_polynomial(kernels::fit_polynomial(kernel.polynomial, degree), precision), best,
+              200000);
   }
   return table;
 }
@@ -131,12 +135,13 @@ DataTable ways_to_evaluate(const kernels::LeastMisfit& solution, const kernels::
 
 ReportSection evaluation_section(SolvedKernels& solved) {
   const kernels::LeastMisfit& solution = solved(width, x0);
-  const kernels::Kernel kernel = store_least_misfit(solution);
-  ReportSection section{.heading = "Tables and other ways to evaluate",
-                        .paragraphs = {"Tables are read between their entries by Newton's forward differences, without crossing "
-                                       "the jumps of C."},
-                        .figures = {},
-                        .tables = {ways_to_evaluate(solution, kernel)}};
+  const kernels::Kernel kernel = store("least-misfit", solution);
+  ReportSection section{
+      .heading = "Tables and other ways to evaluate",
+      .paragraphs = {"Tables are read between their entries by Newton's forward differences, without crossing "
+                     "the jumps of C."},
+      .figures = {},
+      .tables = {ways_to_evaluate(solution, kernel)}};
   for (const Degree& degree : degrees) section.figures.push_back(map_error_of_tables(kernel, degree));
   section.figures.push_back(rms_of_tables(kernel));
   return section;

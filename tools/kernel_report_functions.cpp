@@ -49,8 +49,9 @@ Eigen::VectorXd image_taper(const TapFunction& taps, const Eigen::VectorXd& x) {
 Figure corrections_of(const TapFunction& taps) {
   Figure figure{.name = "spheroidal-6-corrections",
                 .title = "Two corrections of the spheroidal function, W = 6",
-                .caption = "The optimal h and 1/c, the reciprocal of the taper, part only towards the image's edge, where the "
-                           "optimal one gives up on what the aliases have spoilt.",
+                .caption =
+                    "The optimal h and 1/c, the reciprocal of the taper, part only towards the image's edge, where the "
+                    "optimal one gives up on what the aliases have spoilt.",
                 .x = {.label = "x, offset from the phase centre / size of the FFT", .from = 0, .to = 0.5},
                 .y = {.label = "correction, 1 at x = 0", .logarithmic = true},
                 .series = {}};
@@ -87,8 +88,9 @@ void add_widths(Figure& figure, SolvedKernels& solved, Curve curve_of) {
 Figure functions_figure(SolvedKernels& solved) {
   Figure figure{.name = "least-misfit-functions",
                 .title = "Least-misfit functions C(u) at x₀ = 0.25",
-                .caption = "Scaled so that h(0) = 1. C jumps where cells meet: at whole u for even W, at half ones for odd W. The "
-                           "jumps shrink as W grows.",
+                .caption =
+                    "Scaled so that h(0) = 1. C jumps where cells meet: at whole u for even W, at half ones for odd W. The "
+                    "jumps shrink as W grows.",
                 .x = {.label = "u, cells", .from = 0},
                 .y = {.label = "C(u)"},
                 .series = {}};
@@ -97,13 +99,15 @@ Figure functions_figure(SolvedKernels& solved) {
 }
 
 Figure least_misfit_corrections_figure(SolvedKernels& solved) {
-  Figure figure{.name = "least-misfit-corrections",
-                .title = "Their corrections h(x)",
-                .caption = "What the image is multiplied by: the wider C, the narrower its taper, the more h rises to the edge.",
-                .x = {.label = "x, offset from the phase centre / size of the FFT", .from = 0, .to = x0},
-                .y = {.label = "h(x)"},
-                .series = {}};
-  add_widths(figure, solved, [](const std::string& label, const TapFunction& taps) { return correction_curve(label, taps, x0); });
+  Figure figure{
+      .name = "least-misfit-corrections",
+      .title = "Their corrections h(x)",
+      .caption = "What the image is multiplied by: the wider C, the narrower its taper, the more h rises to the edge.",
+      .x = {.label = "x, offset from the phase centre / size of the FFT", .from = 0, .to = x0},
+      .y = {.label = "h(x)"},
+      .series = {}};
+  add_widths(figure, solved,
+             [](const std::string& label, const TapFunction& taps) { return correction_curve(label, taps, x0); });
   return figure;
 }
 
@@ -114,8 +118,9 @@ ReportSection classical_section(SolvedKernels& solved) {
   figure.caption = "With the correction that is optimal for each; sinc, Gaussian and their product are cut off at 4 cells.";
   DataTable table{.name = "classical-functions-rms",
                   .title = "The same in numbers",
-                  .caption = "RMS error √E over |x| ≤ 0.25, largest ℓ there, and √E as a multiple of that of the least-misfit "
-                             "function as wide.",
+                  .caption =
+                      "RMS error √E over |x| ≤ 0.25, largest ℓ there, and √E as a multiple of that of the least-misfit "
+                      "function as wide.",
                   .columns = {"function", "W", "√E", "max ℓ", "× least-misfit"},
                   .rows = {}};
   for (const auto& [family, label, width] : classical) {
@@ -132,7 +137,7 @@ ReportSection classical_section(SolvedKernels& solved) {
 }
 
 ReportSection spheroidal_section(SolvedKernels& /*solved*/) {
-  Figure figure = map_error_figure("spheroidal-functions", "Map error of spheroidal functions", 1e-24, 1);
+  Figure figure = map_error_figure("spheroidal-functions", "Map error of spheroidal functions", 1e-21, 1);
   figure.caption = "(1 − η²) ψ(η), order α = 1, c = πW/2, computed exactly, with the optimal correction.";
   const kernels::KernelFamily family = kernels::kernel_family("spheroidal-exact");
   for (int width = 6; width <= 14; ++width)
@@ -152,7 +157,8 @@ ReportSection least_misfit_section(SolvedKernels& solved) {
   for (const double kept : {0.1, 0.15, 0.2, 0.25, 0.3, 0.35, 0.4, 0.45})
     by_x0.series.push_back(map_error_curve(x0_label(kept), solved(8, kept).taps));
   Figure by_width = map_error_figure("least-misfit-by-width", "Map error of least-misfit functions at x₀ = 0.25", 1e-32, 1);
-  by_width.caption = "Taps solved for every position, then rounded to doubles. A width more divides ℓ by about 100 where |x| ≤ x₀.";
+  by_width.caption =
+      "Taps solved for every position, then rounded to doubles. A width more divides ℓ by about 100 where |x| ≤ x₀.";
   for (int width = 6; width <= 14; ++width)
     by_width.series.push_back(map_error_curve(width_label(width), solved(width, x0).taps));
   return {.heading = "Least-misfit functions",

@@ -67,7 +67,7 @@ Row spheroidal_row(const kernels::LeastMisfit& seven) {
 
 Row short_table_row(const kernels::LeastMisfit& three) {
   const kernels::Kernel casa = kernels::kernel_family("spheroidal-exact").make(6, x0);
-  const kernels::Kernel kernel = store_least_misfit(three);
+  const kernels::Kernel kernel = store("least-misfit", three);
   return {"W = 3 with a table of 300 entries", "accurate as CASA",
           "√E = " + number(table_rms(kernel, {100, Interpolation::linear})) + " (Ms = 100, linear) or " +
               number(table_rms(kernel, {200, Interpolation::nearest})) +
@@ -81,7 +81,8 @@ std::string on_table(const kernels::LeastMisfit& solution, Interpolation interpo
 }
 
 Row table_size_row(const kernels::LeastMisfit& seven) {
-  return {"W = 7: entries a cell, Ms, for E within 10 % of the function's", "64 with cubic interpolation is as good as exact values",
+  return {"W = 7: entries a cell, Ms, for E within 10 % of the function's",
+          "64 with cubic interpolation is as good as exact values",
           "nearest " + on_table(seven, Interpolation::nearest) + ", linear " + on_table(seven, Interpolation::linear) +
               ", quadratic " + on_table(seven, Interpolation::quadratic) + ", cubic " + on_table(seven, Interpolation::cubic),
           "agrees"};
@@ -102,8 +103,9 @@ ReportSection paper_section(SolvedKernels& solved) {
   const kernels::LeastMisfit& seven = solved(7, x0);
   const DataTable table{.name = "paper",
                         .title = "What the paper says and what we find",
-                        .caption = "Our numbers are computed by this run. The statement on table sizes is that of the authors' "
-                                   "published tutorial.",
+                        .caption =
+                            "Our numbers are computed by this run. The statement on table sizes is that of the authors' "
+                            "published tutorial.",
                         .columns = {"statement", "the paper", "our numbers", ""},
                         .rows = {largest_error_row(seven), widest_row(solved(20, x0)), spheroidal_row(seven),
                                  short_table_row(solved(3, x0)), table_size_row(seven), machine_precision_row(solved)}};

@@ -71,7 +71,7 @@ Model image_model(const PredictOptions& o, const ms_io::MeasurementSet& set, int
   imager::GriddingRequest request;
   request.geometry = image.geometry;
   request.accuracy = o.accuracy;
-  request.kernel = o.kernel;
+  request.kernel = kernels::kernel_family(o.kernel);
   request.samples = set.samples();
   request.threads = threads;
   Model model;

@@ -31,7 +31,8 @@ void write(const ReportOptions& o, MakeReport make) {
 void add_report(CLI::App& reports, const std::string& name, const std::string& description, MakeReport make) {
   CLI::App* command = reports.add_subcommand(name, description);
   const auto o = std::make_shared<ReportOptions>();
-  command->add_option("--output", o->output, "Folder for index.html, SVG, CSV and report.json; made where there is none")->required();
+  command->add_option("--output", o->output, "Folder for index.html, SVG, CSV and report.json; made where there is none")
+      ->required();
   command->add_flag("--quiet", o->quiet, "Print nothing");
   command->callback([o, make] { write(*o, make); });
 }
@@ -41,7 +42,8 @@ void add_report(CLI::App& reports, const std::string& name, const std::string& d
 void add_report_command(CLI::App& program) {
   CLI::App* reports = program.add_subcommand("report", "Write pages of figures and tables, with the numbers behind them");
   reports->require_subcommand(1);
-  add_report(*reports, "kernels", "Gridding functions: the figures of Ye et al. 2020 from our own numbers, and rivals", kernel_report);
+  add_report(*reports, "kernels", "Gridding functions: the figures of Ye et al. 2020 from our own numbers, and rivals",
+             kernel_report);
   add_report(*reports, "stability", "What rounding does to kernels, gridding and sums", stability_report);
 }
 

@@ -4,10 +4,11 @@
 
 namespace misfit::kernels {
 
-/// The prolate spheroidal function ψ of order α = 1, times 1 − η², over a width of W = m = 4…8 cells, by Schwab's rational
-/// approximations (F. R. Schwab 1984, "Optimal gridding of visibility data in radio interferometry", in Indirect Imaging, ed.
-/// J. A. Roberts, Cambridge University Press, p. 333; coefficients good to about 7 digits). The gridding function of AIPS and
-/// CASA for W = 6. Throws std::invalid_argument for other widths.
-TapFunction spheroidal_taps(int width);
+/// The spheroidal gridding function (1 − η²)^α ψ(η), η = 2u/W, of bandwidth c = πW/2, by Schwab's rational approximations for
+/// widths W = m = 4…8 and orders α = 0, ½, 1, 1½, 2 (F. R. Schwab 1984, "Optimal gridding of visibility data in radio
+/// interferometry", in Indirect Imaging, ed. J. A. Roberts, Cambridge University Press, p. 333; coefficients good to about 7
+/// digits). With α = 1 and W = 6 the gridding function of AIPS and CASA. Throws std::invalid_argument for any other width or
+/// order. spheroidal_exact.h has the function itself.
+TapFunction spheroidal_taps(int width, double alpha = 1);
 
 }  // namespace misfit::kernels

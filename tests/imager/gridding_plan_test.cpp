@@ -19,7 +19,7 @@ GriddingRequest request(Size size, double accuracy, const std::string& kernel = 
   GriddingRequest r;
   r.geometry = {size.width, size.height, 1e-6, {}};
   r.accuracy = accuracy;
-  r.kernel = kernel;
+  r.kernel = misfit::kernels::kernel_family(kernel);
   r.samples = 1000000;
   return r;
 }
@@ -147,8 +147,7 @@ BOOST_AUTO_TEST_CASE(what_cannot_be_meant_is_refused) {
   refused([](GriddingRequest& r) { r.accuracy = -1e-6; });
   refused([](GriddingRequest& r) { r.accuracy = 1; });
   refused([](GriddingRequest& r) { r.accuracy = std::nan(""); });
-  refused([](GriddingRequest& r) { r.kernel = "spline"; });
-  refused([](GriddingRequest& r) { r.kernel_width = 12; });
+  refused([](GriddingRequest& r) { r.kernel_width = 21; });
   refused([](GriddingRequest& r) { r.kernel_width = -1; });
   refused([](GriddingRequest& r) { r.padding = 1.01; });
   refused([](GriddingRequest& r) { r.padding = 11; });

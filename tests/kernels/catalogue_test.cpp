@@ -1,6 +1,7 @@
 #include "kernels/catalogue.h"
 
 #include <boost/test/unit_test.hpp>
+#include <cmath>
 
 using namespace misfit::kernels;
 
@@ -15,6 +16,34 @@ BOOST_AUTO_TEST_CASE(every_family_makes_what_it_offers) {
       BOOST_TEST(kernel.x0 == 0.4);
       BOOST_TEST(!family.description.empty());
     }
+}
+
+BOOST_AUTO_TEST_CASE(no_family_is_better_than_least_misfit) {
+  for (const double x0 : {0.02, 0.1, 0.25, 0.4, 0.49})
+    for (int width = 1; width <= 8; ++width) {
+      const double least = kernel_family("least-misfit").make(width, x0).origin.mean_error;
+      for (const KernelFamily& family : kernel_catalogue()) {
+        if (family.name == "least-misfit" || width < family.min_width || width > family.max_width) continue;
+        const Kernel kernel = family.make(width, x0);
+        // The least is known to 1e-6.
+        BOOST_TEST(kernel.misfit.mean > (1 - 1e-6) * least, family.name << ", W = " << width << ", x0 = " << x0);
+        BOOST_TEST(kernel.origin.mean_error > (1 - 1e-6) * least, family.name << ", W = " << width << ", x0 = " << x0);
+      }
+    }
+}
+
+BOOST_AUTO_TEST_CASE(what_is_stored_is_as_good_as_what_it_stands_for) {
+  for (const double x0 : {0.05, 0.25, 0.4})
+    for (const KernelFamily& family : kernel_catalogue())
+      for (int width = family.min_width; width <= std::min(family.max_width, family.name == "least-misfit" ? 9 : 20);
+           width += 3) {
+        const Kernel kernel = family.make(width, x0);
+        // 1% of E, and what doubles hold: some units of rounding, amplified by the correction.
+        const double rounding = 20 * 0x1p-53 * noise_gain(kernel.polynomial, x0);
+        BOOST_TEST(std::abs(std::sqrt(kernel.misfit.mean) - std::sqrt(kernel.origin.mean_error)) <
+                       0.005 * std::sqrt(kernel.origin.mean_error) + rounding,
+                   family.name << ", W = " << width << ", x0 = " << x0);
+      }
 }
 
 BOOST_AUTO_TEST_CASE(what_a_family_does_not_offer_is_refused) {

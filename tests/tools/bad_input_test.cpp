@@ -87,7 +87,8 @@ BOOST_AUTO_TEST_CASE(options_with_impossible_values_are_wrong_usage) {
   scene.usage("--accuracy", "0", "expected a number above 0");
   scene.usage("--accuracy", "2", "below 1");
   scene.usage("--accuracy", "1e-13", "it can reach");
-  scene.usage("--kernel", "sinc", "least-misfit, spheroidal");
+  scene.usage("--kernel", "boxcar", "least-misfit, spheroidal");
+  scene.usage("--kernel", "spheroidal-exact-wide", "is not a number in [0, 10]");
   scene.usage("--kernel-width", "99", "not in [1, 11]");
   scene.usage("--padding", "0.5", "not in [1.02, 10]");
   scene.usage("--niter", "-1", "expected 0 or more");

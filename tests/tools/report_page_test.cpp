@@ -3,8 +3,11 @@
 #include <boost/test/unit_test.hpp>
 #include <limits>
 #include <nlohmann/json.hpp>
-#include <set>
 
+#include "tests/tools/markup.h"
+
+using misfit::tools::testing::balanced;
+using misfit::tools::testing::contains;
 using nlohmann::json;
 
 namespace {
@@ -28,28 +31,6 @@ json full_report() {
                 {"iterations": 50, "peak_residual_jy": 0.1, "rms_jy": 0.01, "model_flux_jy": 2, "cycle_threshold_jy": 0.12},
                 {"iterations": 100, "peak_residual_jy": 0.01, "rms_jy": 0.001, "model_flux_jy": 2.5, "cycle_threshold_jy": 0.02}]}
   })");
-}
-
-bool contains(const std::string& page, const std::string& text) {
-  return page.find(text) != std::string::npos;
-}
-
-/// Whether every element that is opened is closed, in the right order; attributes hold no '>'.
-bool balanced(const std::string& page) {
-  const std::set<std::string> empty_elements{"meta", "img", "!DOCTYPE"};
-  std::vector<std::string> open;
-  for (std::size_t at = page.find('<'); at != std::string::npos; at = page.find('<', at + 1)) {
-    const bool closes = page[at + 1] == '/';
-    const std::size_t start = at + (closes ? 2 : 1);
-    const std::string name = page.substr(start, page.find_first_of(" >", start) - start);
-    if (closes) {
-      if (open.empty() || open.back() != name) return false;
-      open.pop_back();
-    } else if (!empty_elements.contains(name)) {
-      open.push_back(name);
-    }
-  }
-  return open.empty();
 }
 
 }  // namespace
