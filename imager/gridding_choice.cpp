@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "imager/fft.h"
+#include "kernels/cheapest_polynomial.h"
 
 namespace misfit::imager {
 namespace {
@@ -62,7 +63,7 @@ class Search {
     }
     GriddingChoice choice;
     choice.reached = best_.has_value();
-    choice.best = best_ ? *best_ : *most_exact_;
+    choice.best = simplified(best_ ? *best_ : *most_exact_);
     choice.rejected = neighbours(choice.best);
     return choice;
   }
@@ -215,6 +216,30 @@ class Search {
         least = width;
         break;
       }
+  }
+
+  /// With the polynomials of lowest degree that cost less than half a percent of the squared error.
+  GriddingCandidate simplified(const GriddingCandidate& exact) const {
+    GriddingCandidate simple = exact;
+    const auto cut = [](AxisKernel& axis) {
+      constexpr double excess = 0.005;
+      axis.kernel.polynomial = kernels::cheapest_polynomial(axis.kernel, excess);
+      axis.kernel.misfit = kernels::judge(axis.kernel.polynomial, axis.kernel.x0);
+    };
+    cut(simple.u);
+    cut(simple.v);
+    simple.u.misfit = axis_misfit(simple.u.kernel, request_.geometry.width, exact.work.nu);
+    simple.v.misfit = axis_misfit(simple.v.kernel, request_.geometry.height, exact.work.nv);
+    if (exact.work.planes > 1) {
+      cut(simple.w);
+      simple.w.misfit = simple.w.kernel.misfit;
+    }
+    judge(simple);
+    const bool lost = simple.worst_error > std::max(target_, exact.worst_error);
+    GriddingCandidate result = lost ? exact : simple;
+    result.work.degree = result.u.kernel.polynomial.degree();
+    result.cost_s = CostModel().seconds(result.work);
+    return result;
   }
 
   /// The cheapest at each other padding, and the next narrower width at the best one.

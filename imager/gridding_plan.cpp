@@ -5,8 +5,6 @@
 #include <cstdio>
 #include <stdexcept>
 
-#include "kernels/cheapest_polynomial.h"
-
 namespace misfit::imager {
 namespace {
 
@@ -30,14 +28,6 @@ std::string text_of(const GriddingChoice& choice) {
                  : " reaches " + text("%.2g", r.candidate.worst_error));
   }
   return all;
-}
-
-/// Stores the kernel as the lowest degree that costs less than half a percent of its squared error.
-void simplify(AxisKernel& axis, int pixels, int fft_size) {
-  constexpr double excess = 0.005;
-  axis.kernel.polynomial = kernels::cheapest_polynomial(axis.kernel, excess);
-  axis.kernel.misfit = kernels::judge(axis.kernel.polynomial, axis.kernel.x0);
-  axis.misfit = axis_misfit(axis.kernel, pixels, fft_size);
 }
 
 Plan decisions_of(const GriddingRequest& request, const GriddingPlan& plan) {
@@ -89,7 +79,7 @@ GriddingPlan plan_gridding(const GriddingRequest& request) {
   check_request(request);
   GriddingPlan plan;
   plan.choice = choose_gridding(request);
-  GriddingCandidate best = plan.choice.best;
+  const GriddingCandidate& best = plan.choice.best;
   if (!plan.choice.reached && !request.best_effort)  // 1.06: two digits may round down by 5%
     throw std::invalid_argument("accuracy " + text("%g", request.accuracy) + " is out of reach of kernel " +
                                 request.kernel.name +
@@ -97,11 +87,6 @@ GriddingPlan plan_gridding(const GriddingRequest& request) {
                                 (request.padding == 0 ? "" : " at padding " + text("%g", request.padding)) + "; it can reach " +
                                 text("%.2g", 1.06 * best.worst_error) + " for this image, with width " +
                                 std::to_string(best.work.width) + " at padding " + text("%g", best.padding_u));
-  const GriddingCandidate exact = best;
-  simplify(best.u, request.geometry.width, best.work.nu);
-  simplify(best.v, request.geometry.height, best.work.nv);
-  judge(best);
-  if (request.accuracy != 0 && best.worst_error > std::max(request.accuracy, exact.worst_error)) best = exact;
   plan.options = {request.geometry, best.work.nu,        best.work.nv,   best.u.kernel,
                   best.v.kernel,    best.work.precision, request.threads};
   plan.expected_error = best.expected_error;

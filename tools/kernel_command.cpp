@@ -8,7 +8,9 @@
 #include "kernels/map_error.h"
 #include "tools/command.h"
 #include "tools/files.h"
+#include "tools/kernel_advice.h"
 #include "tools/kernel_choice.h"
+#include "tools/machine_costs.h"
 #include "tools/numbers.h"
 
 namespace misfit::tools {
@@ -25,6 +27,7 @@ struct KernelOptions {
   std::string inspect;
   bool json = false;
   bool quiet = false;
+  KernelJob job;  ///< for which width and padding are chosen when it has an accuracy
 };
 
 void refuse(bool wrong, const std::string& option, const std::string& value, const std::string& expected) {
@@ -137,6 +140,17 @@ void make(const KernelOptions& o) {
                     : "doubles hold no more, since each rounds by 1.1e-16 of itself");
 }
 
+/// Fills in width and padding.
+void choose(KernelOptions& o) {
+  if (o.width != 0 || o.x0 != 0 || o.padding != 0)
+    throw std::invalid_argument("--accuracy chooses width and padding; expected it without --width, --x0 and --padding");
+  o.job.kernel = o.kernel;
+  const imager::GriddingChoice choice = choose_for(o.job);
+  if (!o.quiet) std::printf("%s", text_of(choice, machine_costs(default_cache_folder())).c_str());
+  o.width = choice.best.work.width;
+  o.x0 = choice.best.u.kernel.x0;
+}
+
 }  // namespace
 
 void add_kernel_command(CLI::App& program) {
@@ -146,17 +160,28 @@ void add_kernel_command(CLI::App& program) {
   command->add_option("--width", o->width, "Cells a visibility touches per axis");
   command->add_option("--x0", o->x0, "Half the part of the FFT image that is kept; or give --padding");
   command->add_option("--padding", o->padding, "FFT size over image size, 1 / (2 x0)");
+  CLI::Option* accuracy =
+      command->add_option("--accuracy", o->job.accuracy, "Choose width and padding that reach it at the least cost");
+  command->add_option("--imsize", o->job.imsize, "Of the image: width, or width and height, in pixels")
+      ->expected(1, 2)
+      ->needs(accuracy);
+  command->add_option("--samples", o->job.samples, "Visibilities to be gridded")->needs(accuracy);
+  command->add_option("--w-turns", o->job.w_turns, "Range of w in wavelengths times the image's range of n - 1; 0 = no w axis")
+      ->needs(accuracy);
   command->add_option("--sampling", o->sampling.per_cell, "Rows of the lookup table a cell");
   command->add_option("--interpolation", o->sampling.interpolation, "Degree to which a host is to interpolate it, 0 to 3");
   command->add_option("--degree", o->degree, "Cut the polynomials to this degree; -1 = as many terms as the kernel has");
   CLI::Option* output = command->add_option("--output", o->output, "FITS file to write");
   CLI::Option* inspected = command->add_option("--inspect", o->inspect, "Kernel-table file to show");
-  inspected->excludes(output);
+  inspected->excludes(output)->excludes(accuracy);
   command->add_flag("--json", o->json, "Show it for machines")->needs(inspected);
   command->add_flag("--quiet", o->quiet, "Print nothing but errors");
   command->callback([o] {
-    if (o->output.empty() == o->inspect.empty()) throw std::invalid_argument("expected either --output or --inspect");
-    o->inspect.empty() ? make(*o) : inspect(*o);
+    const bool choosing = o->job.accuracy != 0;
+    if (!o->inspect.empty()) return inspect(*o);
+    if (choosing) choose(*o);
+    if (o->output.empty() && !choosing) throw std::invalid_argument("expected one of --output, --inspect and --accuracy");
+    if (!o->output.empty()) make(*o);
   });
 }
 

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "imager/gridding_choice.h"
+
+namespace misfit::tools {
+
+/// A job for which width, padding, precision and degree are to be chosen.
+struct KernelJob {
+  std::string kernel = "least-misfit";
+  double accuracy = 0;
+  std::vector<int> imsize;  ///< width, or width and height, in pixels
+  double samples = 0;       ///< visibilities
+  double w_turns = 0;       ///< range of w in wavelengths times the image's range of n − 1; 0 = two axes
+};
+
+/// The cheapest gridding for the job; std::invalid_argument names what cannot be meant, or what accuracy can be had.
+imager::GriddingChoice choose_for(const KernelJob& job);
+
+/// The choice, what it costs by this machine's constants and in operations, and its rejected neighbours, as lines of text.
+std::string text_of(const imager::GriddingChoice& choice, const imager::CostModel& costs);
+
+}  // namespace misfit::tools

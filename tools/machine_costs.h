@@ -1,0 +1,14 @@
+#pragma once
+
+#include <filesystem>
+
+#include "imager/cost_model.h"
+
+namespace misfit::tools {
+
+/// The cost constants of this machine: measured once for a processor and version of misfit, and kept as costs.json in `folder`.
+/// A file that is damaged, of another machine or of another version is measured anew; where nothing can be kept, they are
+/// measured each time.
+imager::CostModel machine_costs(const std::filesystem::path& folder);
+
+}  // namespace misfit::tools
