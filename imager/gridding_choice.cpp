@@ -70,14 +70,22 @@ class Search {
  private:
   std::vector<double> paddings() const {
     if (request_.padding != 0) return {request_.padding};
-    return {usual_paddings.begin(), usual_paddings.end()};
+    std::vector<double> found;
+    for (const double usual : usual_paddings) {
+      found.push_back(std::max(usual, least_padding()));
+      if (usual <= least_padding()) break;
+    }
+    return found;
   }
   int narrowest() const { return request_.kernel_width != 0 ? request_.kernel_width : request_.kernel.min_width; }
   int widest() const { return request_.kernel_width != 0 ? request_.kernel_width : request_.kernel.max_width; }
 
+  /// For which the family's widest x0 serves; x0 came from a padding, and is rounded.
+  double least_padding() const { return 0.5 / request_.kernel.max_x0 * (1 - 1e-12); }
+
   /// At least four widths, so that a kernel never meets its own periodic copy.
   int fft_size(int pixels, double padding, int width) const {
-    const double needed = std::max(padding, 0.5 / request_.kernel.max_x0) * pixels;
+    const double needed = std::max(padding, least_padding()) * pixels;
     return fast_fft_size(std::max({smallest_fft, 4 * width, static_cast<int>(std::ceil(needed))}));
   }
 

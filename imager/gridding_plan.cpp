@@ -76,6 +76,11 @@ void check_request(const GriddingRequest& request) {
                                 "], which kernel " + family.name + " offers");
   if (request.padding != 0 && !(request.padding >= 1.02 && request.padding <= 10))
     throw std::invalid_argument("padding " + text("%g", request.padding) + " not in [1.02, 10]");
+  constexpr double typed = 1e-3;  // what a padding of four digits may be off by
+  if (request.padding != 0 && request.padding < (1 - typed) * 0.5 / family.max_x0)
+    throw std::invalid_argument("padding " + text("%g", request.padding) + " is less than " +
+                                text("%.4g", 0.5 / family.max_x0) + ", which kernel " + family.name +
+                                " needs, made for x0 up to " + text("%.4g", family.max_x0));
   if (!(request.accuracy >= 0 && request.accuracy < 1))
     throw std::invalid_argument("accuracy " + text("%g", request.accuracy) + " not in (0, 1)");
 }

@@ -17,8 +17,8 @@ struct GriddingPlan {
   Plan decisions;
 };
 
-/// Throws std::invalid_argument when the kernel is not known, or its width, the padding or the accuracy lie outside what can be
-/// asked; whether the accuracy can be reached takes plan_gridding to tell.
+/// Throws std::invalid_argument when the kernel's width, the padding or the accuracy lie outside what can be asked; whether the
+/// accuracy can be reached takes plan_gridding to tell.
 void check_request(const GriddingRequest& request);
 
 /// Throws std::invalid_argument as check_request does, and when the accuracy is out of reach of the kernel or of double

@@ -1,6 +1,8 @@
 #include "kernels/catalogue.h"
 
+#include <algorithm>
 #include <optional>
+#include <sstream>
 #include <stdexcept>
 
 #include "kernels/families/families.h"
@@ -36,6 +38,17 @@ KernelFamily kernel_family(const std::string& name) {
   }
   if (const std::optional<KernelFamily> family = spheroidal_exact_family(name)) return *family;
   throw std::invalid_argument("kernel \"" + name + "\" is not known; expected one of: " + known + ", spheroidal-exact-<order>");
+}
+
+KernelFamily family_of(const Kernel& kernel) {
+  constexpr double least_x0 = 1e-3;  // less than images have, which are padded to 80 pixels at most
+  const auto judged = [kernel](int, double x0) {
+    Kernel same = kernel;
+    same.x0 = x0;
+    if (x0 != kernel.x0) same.misfit = judge(kernel.polynomial, x0);
+    return same;
+  };
+  return {kernel.name, "one kernel", kernel.width(), kernel.width(), std::min(least_x0, kernel.x0), kernel.x0, judged};
 }
 
 }  // namespace misfit::kernels

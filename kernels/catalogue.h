@@ -17,6 +17,7 @@ struct KernelFamily {
   double min_x0 = 0.01;
   double max_x0 = 0.49;
   std::function<Kernel(int width, double x0)> solve;  ///< for arguments in these ranges
+  bool costly = false;                                ///< solving takes longer than reading the solution from a file
 
   /// The kernel of `width` for `x0`; std::invalid_argument names what lies outside the ranges.
   Kernel make(int width, double x0) const;
@@ -28,5 +29,9 @@ const std::vector<KernelFamily>& kernel_catalogue();
 /// The family called `name`: one of the catalogue, or spheroidal-exact-<α> for any order α from 0 to 10. For any other name
 /// std::invalid_argument lists those there are.
 KernelFamily kernel_family(const std::string& name);
+
+/// The family that holds `kernel` alone: its width, and any x0 up to its own, over which it is judged anew; what its origin
+/// says stays that of its own x0.
+KernelFamily family_of(const Kernel& kernel);
 
 }  // namespace misfit::kernels

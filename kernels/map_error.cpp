@@ -71,6 +71,11 @@ Eigen::VectorXd optimal_correction(const TapFunction& taps, const Eigen::VectorX
   return correction(response(taps, x, t.node), t.weight);
 }
 
+Eigen::VectorXd image_taper(const TapFunction& taps, const Eigen::VectorXd& x) {
+  const Quadrature t = positions(0).mean;
+  return response(taps, x, t.node).real.matrix() * t.weight;
+}
+
 Eigen::VectorXd map_error(const TapFunction& taps, const Eigen::VectorXd& x, const JudgeOptions& options) {
   const Quadrature t = positions(options.steps_per_cell).mean;
   const Response seen = response(taps, x, t.node);

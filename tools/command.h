@@ -9,6 +9,7 @@ namespace misfit::tools {
 /// and reports. They throw std::invalid_argument for wrong usage, std::runtime_error for data or files that cannot be used, and
 /// Interrupted.
 void add_image_command(CLI::App& program, const std::string& command_line);
+void add_kernel_command(CLI::App& program);
 void add_predict_command(CLI::App& program);
 void add_simulate_command(CLI::App& program);
 void add_report_command(CLI::App& program);

@@ -11,6 +11,7 @@
 #include "tools/image_options.h"
 #include "tools/image_products.h"
 #include "tools/interrupt.h"
+#include "tools/kernel_choice.h"
 #include "tools/load.h"
 #include "tools/numbers.h"
 #include "tools/pictures.h"
@@ -81,7 +82,7 @@ class ImageRun {
     imager::GriddingRequest request;
     request.geometry = geometry_;
     request.accuracy = o_.accuracy;
-    request.kernel = kernels::kernel_family(o_.kernel);
+    request.kernel = kernel_;
     request.kernel_width = o_.kernel_width;
     request.padding = o_.padding;
     request.samples = loaded_.counts.used;
@@ -209,6 +210,7 @@ class ImageRun {
   }
 
   const ImageOptions& o_;
+  const kernels::KernelFamily kernel_ = choose_kernel(o_.kernel);
   int threads_;
   ProgressLine progress_;
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
@@ -237,7 +239,7 @@ void add_image_command(CLI::App& program, const std::string& command_line) {
   declare(*command, *options);
   command->callback([command, options, command_line] {
     CLI::Option* accuracy = command->get_option("--accuracy");
-    if (accuracy->count() == 0 && options->kernel_width != 0 && options->padding != 0) {
+    if (accuracy->count() == 0 && kernel_is_given(*options)) {
       options->accuracy = 0;
       accuracy->default_str("0");
     }

@@ -5,6 +5,7 @@
 
 #include "imager/gridding_plan.h"
 #include "tools/config_file.h"
+#include "tools/kernel_choice.h"
 #include "tools/memory.h"
 #include "tools/quantity.h"
 
@@ -54,11 +55,11 @@ void check_clean(const ImageOptions& o) {
 
 /// What needs neither the data nor the kernel's solution.
 void check_gridding(const ImageOptions& o) {
-  const bool accuracy_is_free = o.kernel_width != 0 && o.padding != 0;
+  const bool accuracy_is_free = kernel_is_given(o);
   if (!(o.accuracy > 0 && o.accuracy < 1) && !(o.accuracy == 0 && accuracy_is_free))
     refuse("accuracy", text(o.accuracy), "a number above 0 and below 1");
   imager::GriddingRequest request;
-  request.kernel = kernels::kernel_family(o.kernel);
+  request.kernel = choose_kernel(o.kernel);
   request.kernel_width = o.kernel_width;
   request.padding = o.padding;
   imager::check_request(request);
@@ -77,7 +78,7 @@ void declare(CLI::App& command, ImageOptions& o) {
   command.add_option("--datacolumn", o.datacolumn, "data, corrected, model, or a column's name");
   command.add_option("--weighting", o.weighting, "Weighting")->check(CLI::IsMember({"natural"}));
   command.add_option("--kernel", o.kernel,
-                     "Gridding function: least-misfit, spheroidal, kaiser-bessel …; an unknown name lists all");
+                     "Gridding function: a name such as least-misfit or spheroidal, or a kernel-table file");
   command.add_option("--accuracy", o.accuracy,
                      "Largest error of the whole image relative to the direct transform, RMS over RMS");
   command.add_option("--kernel-width", o.kernel_width, "Cells a visibility touches per axis; chosen when 0");
@@ -93,6 +94,10 @@ void declare(CLI::App& command, ImageOptions& o) {
   command.add_option("--verify", o.verify, "Compare this many random pixels and visibilities with the direct transform");
   command.add_option("--threads", o.threads, "Threads; 0 means all cores");
   command.add_flag("--quiet", o.quiet, "Print nothing but errors");
+}
+
+bool kernel_is_given(const ImageOptions& o) {
+  return is_kernel_file(o.kernel) || (o.kernel_width != 0 && o.padding != 0);
 }
 
 void check(const ImageOptions& o) {

@@ -40,7 +40,11 @@ struct ImageOptions {
 /// Declares the options on `command`.
 void declare(CLI::App& command, ImageOptions& options);
 
-/// Throws std::invalid_argument that names the option, its value and what was expected.
+/// Whether the options leave nothing of the kernel to choose: a file, or width and padding. Then no accuracy need be asked.
+bool kernel_is_given(const ImageOptions& options);
+
+/// Throws std::invalid_argument that names the option, its value and what was expected; std::runtime_error when the kernel is a
+/// file that cannot be used.
 void check(const ImageOptions& options);
 
 imager::ImageGeometry geometry_of(const ImageOptions& options, const imager::SkyDirection& phase_centre);

@@ -32,6 +32,7 @@ int main(int argc, char** argv) {
   add_image_command(program, line);
   add_predict_command(program);
   add_simulate_command(program);
+  add_kernel_command(program);
   add_report_command(program);
   try {
     program.parse(argc, argv);

@@ -11,6 +11,7 @@
 #include "ms_io/measurement_set.h"
 #include "ms_io/model_writer.h"
 #include "tools/command.h"
+#include "tools/kernel_choice.h"
 #include "tools/numbers.h"
 #include "tools/progress.h"
 #include "tools/sky.h"
@@ -25,6 +26,7 @@ struct PredictOptions {
   std::string column = "MODEL_DATA";
   ms_io::Selection selection;
   double accuracy = 1e-6;
+  bool accuracy_is_typed = false;
   std::string kernel = "least-misfit";
   int threads = 0;
   bool quiet = false;
@@ -61,6 +63,8 @@ void warn_of_w(const ms_io::MeasurementSet& set, const imager::ImageGeometry& ge
 }
 
 Model image_model(const PredictOptions& o, const ms_io::MeasurementSet& set, int threads, ProgressLine& progress) {
+  imager::GriddingRequest request;
+  request.kernel = choose_kernel(o.kernel);
   const imager::SkyImage image = imager::read_fits(o.model);
   if (image.unit != "Jy/pixel")
     throw std::runtime_error(o.model + " has the unit " + (image.unit.empty() ? "none" : image.unit) + ", expected Jy/pixel");
@@ -68,10 +72,8 @@ Model image_model(const PredictOptions& o, const ms_io::MeasurementSet& set, int
   if (!std::all_of(image.image.pixel.begin(), image.image.pixel.end(), [](double x) { return std::isfinite(x); }))
     throw std::runtime_error(o.model + " has pixels that are not finite; a model needs a number in each");
   warn_of_w(set, image.geometry, o.accuracy, progress);
-  imager::GriddingRequest request;
   request.geometry = image.geometry;
-  request.accuracy = o.accuracy;
-  request.kernel = kernels::kernel_family(o.kernel);
+  request.accuracy = is_kernel_file(o.kernel) && !o.accuracy_is_typed ? 0 : o.accuracy;
   request.samples = set.samples();
   request.threads = threads;
   Model model;
@@ -127,10 +129,13 @@ void add_predict_command(CLI::App& program) {
   command->add_option("--field", o->selection.field, "Fields, in CASA's selection syntax");
   command->add_option("--spw", o->selection.spectral_window, "Spectral windows and channels, in CASA's selection syntax");
   command->add_option("--accuracy", o->accuracy, "Relative accuracy of the visibilities");
-  command->add_option("--kernel", o->kernel, "Gridding function");
+  command->add_option("--kernel", o->kernel, "Gridding function: a name or a kernel-table file");
   command->add_option("--threads", o->threads, "Threads; 0 means all cores");
   command->add_flag("--quiet", o->quiet, "Print nothing");
-  command->callback([o] { predict(*o); });
+  command->callback([command, o] {
+    o->accuracy_is_typed = command->get_option("--accuracy")->count() > 0;
+    predict(*o);
+  });
 }
 
 }  // namespace misfit::tools

@@ -11,7 +11,8 @@ KernelFamily least_misfit_family() {
           least_misfit_max_width,
           least_misfit_min_x0,
           least_misfit_max_x0,
-          [](int width, double x0) { return store("least-misfit", solve_least_misfit(width, x0)); }};
+          [](int width, double x0) { return store("least-misfit", solve_least_misfit(width, x0)); },
+          true};
 }
 
 }  // namespace misfit::kernels

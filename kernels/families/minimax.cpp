@@ -11,7 +11,8 @@ KernelFamily minimax_family() {
           least_misfit_max_width,
           least_misfit_min_x0,
           least_misfit_max_x0,
-          [](int width, double x0) { return store("minimax", solve_minimax(width, x0)); }};
+          [](int width, double x0) { return store("minimax", solve_minimax(width, x0)); },
+          true};
 }
 
 }  // namespace misfit::kernels

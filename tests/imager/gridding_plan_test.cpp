@@ -148,9 +148,31 @@ BOOST_AUTO_TEST_CASE(what_cannot_be_meant_is_refused) {
   refused([](GriddingRequest& r) { r.accuracy = 1; });
   refused([](GriddingRequest& r) { r.accuracy = std::nan(""); });
   refused([](GriddingRequest& r) { r.kernel_width = 21; });
+  refused([](GriddingRequest& r) {
+    r.kernel = misfit::kernels::family_of(r.kernel.make(7, 0.25));
+    r.padding = 1.9;
+  });
+  refused([](GriddingRequest& r) { r.kernel_width = 21; });
   refused([](GriddingRequest& r) { r.kernel_width = -1; });
   refused([](GriddingRequest& r) { r.padding = 1.01; });
   refused([](GriddingRequest& r) { r.padding = 11; });
+}
+
+BOOST_AUTO_TEST_CASE(a_single_kernel_is_padded_for_its_own_x0_and_judged_over_what_is_left) {
+  for (const double x0 : {0.45, 0.25, 0.06}) {
+    GriddingRequest r = request({100, 331}, 0);
+    const misfit::kernels::Kernel kernel = r.kernel.make(5, x0);
+    r.kernel = misfit::kernels::family_of(kernel);
+    const PlaneTransformOptions options = plan_gridding(r).options;
+    for (const auto& [used, pixels, fft] :
+         {std::tuple(options.kernel_u, 100, options.nu), {options.kernel_v, 331, options.nv}}) {
+      BOOST_TEST(used.x0 == 0.5 * pixels / fft);
+      BOOST_TEST(used.x0 <= x0);
+      BOOST_TEST(used.x0 > 0.9 * x0);  // sizes that FFTs are fast at lie closer than that
+      BOOST_TEST((used.polynomial.coefficient == kernel.polynomial.coefficient));
+      BOOST_TEST(used.misfit.mean == misfit::kernels::judge(kernel.polynomial, used.x0).mean);
+    }
+  }
 }
 
 BOOST_AUTO_TEST_CASE(every_decision_says_why) {

@@ -86,10 +86,11 @@ BOOST_AUTO_TEST_CASE(options_with_impossible_values_are_wrong_usage) {
   scene.usage("--cell", "1rad", "expected less than 0.5 rad");
   scene.usage("--accuracy", "0", "expected a number above 0");
   scene.usage("--accuracy", "2", "below 1");
-  scene.usage("--accuracy", "1e-13", "it can reach");
-  scene.usage("--kernel", "boxcar", "least-misfit, spheroidal");
+  scene.usage("--accuracy", "1e-16", "it can reach");
+  scene.usage("--kernel", "nosuch", "least-misfit, minimax");
   scene.usage("--kernel", "spheroidal-exact-wide", "is not a number in [0, 10]");
-  scene.usage("--kernel-width", "99", "not in [1, 11]");
+  scene.usage("--kernel", "nosuch", "or a kernel-table file");
+  scene.usage("--kernel-width", "99", "not in [1, 20]");
   scene.usage("--padding", "0.5", "not in [1.02, 10]");
   scene.usage("--niter", "-1", "expected 0 or more");
   scene.usage("--niter", "many", "");
@@ -128,6 +129,24 @@ BOOST_AUTO_TEST_CASE(data_that_cannot_be_used_are_named) {
   scene.unusable("--spw", "3", "No match");
   scene.unusable("--spw", "0:~", "Parse error");
   scene.unusable("--config", scene.folder / "none.ini", "cannot read");
+}
+
+BOOST_AUTO_TEST_CASE(a_kernel_file_must_be_whole_and_is_padded_as_it_needs) {
+  const Scene scene;
+  const std::string file = scene.folder / "k.fits", text = scene.folder / "text.fits", none = scene.folder / "none.fits";
+  succeed({"kernel", "--width", "5", "--padding", "2", "--output", file});
+  check_refused(scene.image("--kernel", file) + Arguments{"--padding", "1.5"}, 2, {file, "padding 1.5 is less than 2"},
+                scene.out);
+  check_refused(scene.image("--kernel", file) + Arguments{"--kernel-width", "6"}, 2, {file, "6 not in [5, 5]"}, scene.out);
+  check_refused(scene.image("--kernel", file) + Arguments{"--accuracy", "1e-9"}, 2, {file, "it can reach"}, scene.out);
+  scene.unusable("--kernel", none, "does not exist");
+  std::ofstream(text) << "least-misfit\n";
+  scene.unusable("--kernel", text, "no FITS file");
+  std::string bytes = content(file);
+  bytes[bytes.size() - 2880 + 3] ^= 1;
+  std::ofstream(text, std::ios::binary) << bytes;
+  scene.unusable("--kernel", text, "does not match its checksum");
+  check_refused({"predict", "--vis", snapshot(), "--model", file, "--kernel", text}, 1, {text, "checksum"}, scene.out);
 }
 
 BOOST_AUTO_TEST_CASE(nothing_left_after_flags_says_what_became_of_the_samples) {

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "kernels/kernel_table.h"
+
+namespace misfit::kernels {
+
+/// A number of a kernel and the header key that holds it.
+struct Fact {
+  const char* key;
+  double* value;
+  const char* comment;
+  bool may_lack = false;  ///< NaN, which a header cannot hold, is left out
+};
+
+/// Every number of `kernel` but the polynomial's.
+std::array<Fact, 10> facts_of(Kernel& kernel);
+
+/// A table that follows from the kernel.
+struct HostTable {
+  struct Column {
+    const char* name;
+    Eigen::VectorXd value;
+  };
+  const char* name;
+  std::vector<Column> columns;
+  std::vector<const char*> comments;
+};
+
+/// CONVFUNC, CORRECT and MAPERROR.
+std::vector<HostTable> host_tables(const Kernel& kernel, int per_cell);
+
+/// Throws std::invalid_argument for what a kernel table cannot hold.
+void check_storable(const Kernel& kernel, const std::optional<TableSampling>& sampling);
+
+}  // namespace misfit::kernels

@@ -1,0 +1,32 @@
+#include "kernels/sampled_function.h"
+
+namespace misfit::kernels {
+namespace {
+
+double tap(const PiecewisePolynomial& polynomial, Eigen::Index r, double t) {
+  double value = 0;
+  for (Eigen::Index d = polynomial.degree(); d >= 0; --d) value = value * t + polynomial.coefficient(d, r);
+  return value;
+}
+
+}  // namespace
+
+Eigen::VectorXd sampled_function(const PiecewisePolynomial& polynomial, int per_cell) {
+  const Eigen::Index width = polynomial.width();
+  const Eigen::Index cell = 2 * Eigen::Index{per_cell};  // in units of half a step, as the edges of cells are whole numbers
+  Eigen::VectorXd value(width * per_cell / 2 + 1);
+  for (Eigen::Index i = 0; i < value.size(); ++i) {
+    const Eigen::Index from_left = 2 * i + width * per_cell;
+    const Eigen::Index r = from_left / cell;
+    const Eigen::Index within = from_left % cell;
+    if (within != 0)
+      value[i] = tap(polynomial, r, 0.5 - static_cast<double>(within) / static_cast<double>(cell));
+    else if (r == width)
+      value[i] = tap(polynomial, r - 1, -0.5);
+    else
+      value[i] = r == 0 ? tap(polynomial, r, 0.5) : (tap(polynomial, r - 1, -0.5) + tap(polynomial, r, 0.5)) / 2;
+  }
+  return value;
+}
+
+}  // namespace misfit::kernels

@@ -1,0 +1,61 @@
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+#include <random>
+#include <sstream>
+#include <stdexcept>
+
+#include "kernels/whole_file_internal.h"
+
+namespace misfit::kernels {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A name beside `path` that nobody else uses, in another process or on another machine either.
+fs::path temporary_beside(const fs::path& path) {
+  std::random_device random;
+  std::ostringstream name;
+  name << path.string() << '.' << std::hex << random() << random() << ".part";
+  return name.str();
+}
+
+[[noreturn]] void fail(const std::string& doing, const fs::path& path, const std::string& reason) {
+  throw std::runtime_error("cannot " + doing + " " + path.string() + ": " + reason);
+}
+
+}  // namespace
+
+std::vector<char> read_whole_file(const fs::path& path, std::size_t limit) {
+  std::error_code error;
+  const fs::file_status status = fs::status(path, error);
+  if (!fs::exists(status))
+    fail("read", path, status.type() == fs::file_type::not_found ? "it does not exist" : error.message());
+  if (!fs::is_regular_file(status)) fail("read", path, "it is no regular file");
+  const std::uintmax_t size = fs::file_size(path, error);
+  if (error) fail("read", path, error.message());
+  if (size > limit) fail("read", path, "it has " + std::to_string(size) + " bytes, expected at most " + std::to_string(limit));
+  std::vector<char> bytes(size);
+  errno = 0;
+  std::ifstream file(path, std::ios::binary);
+  if (!file.read(bytes.data(), static_cast<std::streamsize>(size)))
+    fail("read", path, errno != 0 ? std::strerror(errno) : "it ends early");
+  return bytes;
+}
+
+void write_whole_file(const fs::path& path, const char* bytes, std::size_t size) {
+  const fs::path temporary = temporary_beside(path);
+  errno = 0;
+  std::ofstream file(temporary, std::ios::binary);
+  file.write(bytes, static_cast<std::streamsize>(size));
+  file.close();
+  std::error_code error;
+  if (!file) error = {errno != 0 ? errno : EIO, std::generic_category()};
+  if (!error) fs::rename(temporary, path, error);
+  if (!error) return;
+  std::error_code ignored;
+  fs::remove(temporary, ignored);
+  fail("write", path, error.message());
+}
+
+}  // namespace misfit::kernels

@@ -1,0 +1,16 @@
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <vector>
+
+namespace misfit::kernels {
+
+/// The bytes of the regular file at `path`, at most `limit`. Throws std::runtime_error that names the path.
+std::vector<char> read_whole_file(const std::filesystem::path& path, std::size_t limit);
+
+/// Writes `size` bytes; the file appears under its name only when complete, and whoever writes the same name at the same time
+/// does no harm. Throws std::runtime_error that names the path, and leaves nothing behind then.
+void write_whole_file(const std::filesystem::path& path, const char* bytes, std::size_t size);
+
+}  // namespace misfit::kernels

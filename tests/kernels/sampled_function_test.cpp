@@ -1,0 +1,53 @@
+#include "kernels/sampled_function.h"
+
+#include <boost/test/data/test_case.hpp>
+#include <boost/test/unit_test.hpp>
+#include <cmath>
+
+#include "kernels/least_misfit.h"
+
+using namespace misfit::kernels;
+namespace bdata = boost::unit_test::data;
+
+namespace {
+
+/// C(u) from the cell that holds u; on an edge, from the side of larger u.
+double from_right(const PiecewisePolynomial& c, double u) {
+  const double middle = (c.width() - 1) / 2.0;
+  const auto r = static_cast<int>(std::floor(u + middle + 0.5));
+  return r < 0 || r >= c.width() ? 0 : c(r - middle - u)[r];
+}
+
+/// A function that is different in each cell: c(−u) = c(u), and it jumps everywhere.
+PiecewisePolynomial steps(int width) {
+  PiecewisePolynomial c{Eigen::MatrixXd::Zero(1, width)};
+  for (int r = 0; r < width; ++r) c.coefficient(0, r) = 1 + std::min(r, width - 1 - r);
+  return c;
+}
+
+}  // namespace
+
+BOOST_AUTO_TEST_SUITE(sampled_function)
+
+BOOST_DATA_TEST_CASE(every_row_within_a_cell_is_the_polynomial_there,
+                     bdata::make({1, 2, 3, 6, 7, 12}) * bdata::make({1, 2, 5, 64, 100}), width, per_cell) {
+  const PiecewisePolynomial c = store("least-misfit", solve_least_misfit(width, 0.25)).polynomial;
+  const Eigen::VectorXd value = misfit::kernels::sampled_function(c, per_cell);
+  BOOST_REQUIRE(value.size() == width * per_cell / 2 + 1);
+  for (Eigen::Index i = 0; i < value.size(); ++i) {
+    if ((2 * i + width * per_cell) % (2 * per_cell) == 0) continue;
+    // Both compute the same t to a rounding.
+    BOOST_TEST(std::abs(value[i] - from_right(c, static_cast<double>(i) / per_cell)) < 1e-14);
+  }
+}
+
+BOOST_AUTO_TEST_CASE(a_jump_has_the_mean_of_both_sides_and_the_edge_the_limit_from_inside) {
+  const auto sampled = [](int width, int per_cell) { return misfit::kernels::sampled_function(steps(width), per_cell); };
+  BOOST_TEST(sampled(4, 2) == (Eigen::VectorXd(5) << 2, 2, 1.5, 1, 1).finished());
+  BOOST_TEST(sampled(3, 2) == (Eigen::VectorXd(4) << 2, 1.5, 1, 1).finished());
+  BOOST_TEST(sampled(2, 1) == (Eigen::VectorXd(2) << 1, 1).finished());
+  BOOST_TEST(sampled(1, 2) == (Eigen::VectorXd(2) << 1, 1).finished());
+  BOOST_TEST(sampled(3, 1) == (Eigen::VectorXd(2) << 2, 1).finished());
+}
+
+BOOST_AUTO_TEST_SUITE_END()

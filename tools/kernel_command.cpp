@@ -1,0 +1,163 @@
+#include <cmath>
+#include <cstdio>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+
+#include "kernels/kernel_table.h"
+#include "kernels/map_error.h"
+#include "tools/command.h"
+#include "tools/files.h"
+#include "tools/kernel_choice.h"
+#include "tools/numbers.h"
+
+namespace misfit::tools {
+namespace {
+
+struct KernelOptions {
+  std::string kernel = "least-misfit";
+  int width = 0;
+  double x0 = 0;
+  double padding = 0;
+  kernels::TableSampling sampling;
+  int degree = -1;
+  std::string output;
+  std::string inspect;
+  bool json = false;
+  bool quiet = false;
+};
+
+void refuse(bool wrong, const std::string& option, const std::string& value, const std::string& expected) {
+  if (wrong) throw std::invalid_argument("--" + option + " " + value + ": expected " + expected);
+}
+
+void check(const KernelOptions& o) {
+  const auto range = [](int value, int least, int most, const std::string& option) {
+    refuse(value < least || value > most, option, std::to_string(value), std::to_string(least) + " to " + std::to_string(most));
+  };
+  if (o.width == 0) throw std::invalid_argument("expected --width, the number of cells a visibility touches per axis");
+  if ((o.x0 == 0) == (o.padding == 0)) throw std::invalid_argument("expected either --x0 or --padding");
+  refuse(o.padding != 0 && !(o.padding > 1), "padding", significant(o.padding, 6), "more than 1");
+  range(o.sampling.per_cell, 1, kernels::kernel_table_max_per_cell, "sampling");
+  range(o.sampling.interpolation, 0, 3, "interpolation");
+  if (o.degree != -1) range(o.degree, 0, kernels::highest_degree, "degree");
+}
+
+/// The kernel with its polynomials cut to `degree`, where they are of a higher one.
+kernels::Kernel truncated(kernels::Kernel kernel, int degree) {
+  if (degree >= kernel.polynomial.degree()) return kernel;
+  kernel.polynomial = kernels::fit_polynomial(kernel.polynomial, degree);
+  kernel.misfit = kernels::judge(kernel.polynomial, kernel.x0);
+  return kernel;
+}
+
+/// Twelve columns for `item`; blanks at its end make up for letters of several bytes.
+void print_line(const char* item, const std::string& value) {
+  std::printf("  %-12s %s\n", item, value.c_str());
+}
+
+void print(const kernels::KernelTable& table, const std::string& path) {
+  const kernels::Kernel& k = table.kernel;
+  std::printf("%s: %s, width %d, x0 %s, for a padding of %s or more\n", path.c_str(), k.name.c_str(), k.width(),
+              significant(k.x0, 6).c_str(), significant(0.5 / k.x0, 6).c_str());
+  print_line("E",
+             significant(k.misfit.mean, 6) + ", an RMS error of " + significant(std::sqrt(k.misfit.mean), 4) + " per axis");
+  print_line("largest ℓ   ", significant(k.misfit.max, 6));
+  print_line("worst place", "mean " + significant(k.misfit.worst_mean, 6) + ", largest " + significant(k.misfit.worst, 6));
+  print_line("as solved", "E " + significant(k.origin.mean_error, 6) + ", largest ℓ " + significant(k.origin.max_error, 6));
+  if (std::isfinite(k.origin.max_error_bound))
+    print_line("bound", "no function's largest ℓ is below " + significant(k.origin.max_error_bound, 6));
+  if (std::isfinite(k.origin.condition)) print_line("condition", significant(k.origin.condition, 4));
+  print_line("arithmetic", k.origin.precision + ", " + std::to_string(k.origin.iterations) + " iterations");
+  print_line("polynomials", std::to_string(k.width()) + " of degree " + std::to_string(k.polynomial.degree()));
+  if (table.sampling)
+    print_line("lookup table", std::to_string(table.sampling->per_cell) + " rows a cell, to be interpolated to degree " +
+                                   std::to_string(table.sampling->interpolation));
+  if (!table.version.empty()) print_line("written by", "misfit " + table.version);
+}
+
+/// JSON has no number for what is not known.
+nlohmann::json number(double value) {
+  return std::isfinite(value) ? nlohmann::json(value) : nlohmann::json();
+}
+
+nlohmann::json json_of(const kernels::KernelTable& table) {
+  const kernels::Kernel& k = table.kernel;
+  nlohmann::json json = {{"kernel", k.name},
+                         {"width", k.width()},
+                         {"x0", k.x0},
+                         {"padding", 0.5 / k.x0},
+                         {"sampling", nullptr},
+                         {"interpolation", nullptr},
+                         {"degree", k.polynomial.degree()},
+                         {"E", k.misfit.mean},
+                         {"max_ell", k.misfit.max},
+                         {"worst_mean", k.misfit.worst_mean},
+                         {"worst", k.misfit.worst},
+                         {"E_optimum", k.origin.mean_error},
+                         {"max_ell_optimum", k.origin.max_error},
+                         {"max_ell_bound", number(k.origin.max_error_bound)},
+                         {"condition", number(k.origin.condition)},
+                         {"iterations", k.origin.iterations},
+                         {"precision", k.origin.precision},
+                         {"version", table.version},
+                         {"checksum_ok", table.checksum_ok}};
+  if (table.sampling) {
+    json["sampling"] = table.sampling->per_cell;
+    json["interpolation"] = table.sampling->interpolation;
+  }
+  return json;
+}
+
+void inspect(const KernelOptions& o) {
+  const kernels::KernelTable table = kernels::read_kernel_table(o.inspect);
+  if (o.json)
+    std::printf("%s\n", json_of(table).dump(2).c_str());
+  else
+    print(table, o.inspect);
+  if (!table.checksum_ok)
+    throw std::runtime_error("warning: " + o.inspect +
+                             " does not match its checksum; expected the file as it was written, without a change");
+}
+
+void make(const KernelOptions& o) {
+  check(o);
+  const kernels::KernelFamily family = choose_kernel(o.kernel);
+  check_writable_folder(o.output);
+  const kernels::Kernel made = family.make(o.width, o.x0 != 0 ? o.x0 : 0.5 / o.padding);
+  const kernels::Kernel kernel = o.degree == -1 ? made : truncated(made, o.degree);
+  kernels::write_kernel_table(kernel, o.sampling, o.output);
+  if (o.quiet) return;
+  print({kernel, o.sampling, "", kernels::solver_version, true}, o.output);
+  const double excess = kernel.misfit.mean / kernel.origin.mean_error;
+  if (excess > 1.01)
+    std::printf("  E is %s times that of the function as solved: %s\n", significant(excess, 3).c_str(),
+                kernel.polynomial.degree() < made.polynomial.degree()
+                    ? "polynomials of this degree hold no more"
+                    : "doubles hold no more, since each rounds by 1.1e-16 of itself");
+}
+
+}  // namespace
+
+void add_kernel_command(CLI::App& program) {
+  CLI::App* command = program.add_subcommand("kernel", "Make a kernel-table file, or show what is in one");
+  const auto o = std::make_shared<KernelOptions>();
+  command->add_option("--kernel", o->kernel, "Gridding function: a name, or a kernel-table file to tabulate anew");
+  command->add_option("--width", o->width, "Cells a visibility touches per axis");
+  command->add_option("--x0", o->x0, "Half the part of the FFT image that is kept; or give --padding");
+  command->add_option("--padding", o->padding, "FFT size over image size, 1 / (2 x0)");
+  command->add_option("--sampling", o->sampling.per_cell, "Rows of the lookup table a cell");
+  command->add_option("--interpolation", o->sampling.interpolation, "Degree to which a host is to interpolate it, 0 to 3");
+  command->add_option("--degree", o->degree, "Cut the polynomials to this degree; -1 = as many terms as the kernel has");
+  CLI::Option* output = command->add_option("--output", o->output, "FITS file to write");
+  CLI::Option* inspected = command->add_option("--inspect", o->inspect, "Kernel-table file to show");
+  inspected->excludes(output);
+  command->add_flag("--json", o->json, "Show it for machines")->needs(inspected);
+  command->add_flag("--quiet", o->quiet, "Print nothing but errors");
+  command->callback([o] {
+    if (o->output.empty() == o->inspect.empty()) throw std::invalid_argument("expected either --output or --inspect");
+    o->inspect.empty() ? make(*o) : inspect(*o);
+  });
+}
+
+}  // namespace misfit::tools
