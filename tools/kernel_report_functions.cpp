@@ -53,7 +53,9 @@ struct CorrectionErrors {
 };
 CorrectionErrors correction_errors_of(const TapFunction& taps) {
   CorrectionErrors result{map_error_figure("spheroidal-6-map-error", "Map error of the spheroidal function, W = 6", 1e-10, 10)};
-  const auto reciprocal = [&](const Eigen::VectorXd& x) -> Eigen::VectorXd { return kernels::image_taper(taps, x).cwiseInverse(); };
+  const auto reciprocal = [&](const Eigen::VectorXd& x) -> Eigen::VectorXd {
+    return kernels::image_taper(taps, x).cwiseInverse();
+  };
   const Series optimal = map_error_curve("optimal h", taps);
   const Series usual = map_error_curve("1/c", taps, {.correction = reciprocal});
   for (std::size_t k = 0; k < optimal.y.size(); ++k)
