@@ -5,7 +5,7 @@
 #include <memory>
 #include <vector>
 
-#include "kernels/even_odd_polynomial.h"
+#include "kernels/polynomial_taps.h"
 
 namespace misfit::kernels {
 namespace {
@@ -88,8 +88,14 @@ Evaluation evaluate_by_table(const PiecewisePolynomial& kernel, const TableOptio
 }
 
 Evaluation evaluate_by_polynomial(const PiecewisePolynomial& kernel, Precision precision) {
-  Evaluation way = evaluation_in<EvenOddPolynomial>(precision, kernel);
+  Evaluation way = evaluation_in<PlainPolynomial>(precision, kernel);
   way.name = "polynomial of degree " + std::to_string(kernel.degree()) + in_precision(precision);
+  return way;
+}
+
+Evaluation evaluate_by_halves(const PiecewisePolynomial& kernel, Precision precision) {
+  Evaluation way = evaluation_in<EvenOddPolynomial>(precision, kernel);
+  way.name = "even and odd halves of degree " + std::to_string(kernel.degree()) + in_precision(precision);
   return way;
 }
 

@@ -31,7 +31,10 @@ Evaluation evaluate_directly(const LeastMisfit& solution, Precision precision);
 /// Looks the taps up; see LookupTable.
 Evaluation evaluate_by_table(const PiecewisePolynomial& kernel, const TableOptions& options, Precision precision);
 
-/// Horner's rule in even and odd halves; see EvenOddPolynomial. Lower degrees are truncations: fit_polynomial(kernel, degree).
+/// By Horner's rule. Lower degrees are truncations: fit_polynomial(kernel, degree).
 Evaluation evaluate_by_polynomial(const PiecewisePolynomial& kernel, Precision precision);
+
+/// By Horner's rule in even and odd halves; see EvenOddPolynomial.
+Evaluation evaluate_by_halves(const PiecewisePolynomial& kernel, Precision precision);
 
 }  // namespace misfit::kernels

@@ -6,6 +6,7 @@
 #include <complex>
 
 #include "kernels/catalogue.h"
+#include "kernels/evaluation.h"
 
 using namespace misfit::kernels;
 namespace bdata = boost::unit_test::data;
@@ -99,6 +100,56 @@ BOOST_DATA_TEST_CASE(judging_many_pixels_tends_to_the_integral, bdata::make({2, 
   BOOST_TEST(pixels.mean == kernel.misfit.mean, boost::test_tools::tolerance(0.01));
   BOOST_TEST(pixels.max == kernel.misfit.max, boost::test_tools::tolerance(0.01));
   BOOST_TEST(pixels.worst_mean == kernel.misfit.worst_mean, boost::test_tools::tolerance(0.01));
+}
+
+BOOST_DATA_TEST_CASE(means_over_steps_equal_brute_force, bdata::make({1, 2, 7, 64, 121, 600, 1001, 5000}) * bdata::xrange(0, 4),
+                     samples, degree) {
+  // Tables whose error is far above their function's, alike and far below, whether all their steps are looked at or a few.
+  const Kernel kernel = kernel_family("least-misfit").make(6, 0.25);
+  const Evaluation table =
+      evaluate_by_table(kernel.polynomial, {samples, static_cast<Interpolation>(degree)}, Precision::double_precision);
+  for (const double x : {0.05, 0.25}) {
+    const double h = optimal_correction(kernel.polynomial, single(x))[0];
+    const JudgeOptions options{samples, [h](const Eigen::VectorXd& at) { return Eigen::VectorXd::Constant(at.size(), h); }};
+    double brute = 0;
+    const int points = samples * std::max(40, 20000 / samples);  // 40 midpoints or more in every step: 6e-4 of its part
+    for (int i = 0; i < points; ++i) brute += error_at(table.taps, h, x, (i + 0.5) / points - 0.5) / points;
+    BOOST_TEST(misfit::kernels::map_error(table.taps, single(x), options)[0] == brute, boost::test_tools::tolerance(2e-3));
+  }
+}
+
+BOOST_AUTO_TEST_CASE(worst_position_of_a_table_lies_between_its_entries) {
+  const Kernel kernel = kernel_family("least-misfit").make(7, 0.25);
+  for (const int samples : {64, 4000}) {
+    const Evaluation table =
+        evaluate_by_table(kernel.polynomial, {samples, Interpolation::linear}, Precision::double_precision);
+    const Correction h = [&](const Eigen::VectorXd& x) { return optimal_correction(kernel.polynomial, x); };
+    // Half-way between entries linear interpolation errs by (2πx)²/(8 Ms²), at x = x0 most; E itself adds little at 64.
+    const double law = std::pow(pi * pi / (32.0 * samples * samples), 2);
+    if (samples == 64)
+      BOOST_TEST(judge(table.taps, 0.25, {samples, h}).worst == law, boost::test_tools::tolerance(1e-2));
+    else
+      BOOST_TEST(judge(table.taps, 0.25, {samples, h}).worst >= kernel.misfit.worst * 0.9);
+  }
+}
+
+BOOST_DATA_TEST_CASE(steps_change_nothing_for_smooth_taps, bdata::make({1, 3, 64, 2000}) * bdata::make({2, 9}), steps, width) {
+  const Kernel kernel = kernel_family("least-misfit").make(width, 0.3);
+  const Misfit stepped = judge(kernel.polynomial, 0.3, {steps, {}});
+  BOOST_TEST(stepped.mean == kernel.misfit.mean, boost::test_tools::tolerance(1e-5));
+  BOOST_TEST(stepped.max == kernel.misfit.max, boost::test_tools::tolerance(1e-5));
+  BOOST_TEST(stepped.worst == kernel.misfit.worst, boost::test_tools::tolerance(5e-2));  // found on different points
+}
+
+BOOST_DATA_TEST_CASE(the_error_of_another_correction_is_that_of_the_definition, bdata::make({0.0, 0.1, 0.24}), x) {
+  const Kernel kernel = kernel_family("least-misfit").make(5, 0.25);
+  const JudgeOptions options{0, [](const Eigen::VectorXd& at) -> Eigen::VectorXd { return 1 + at.array(); }};
+  const double defined = map_error_by_midpoints(kernel.polynomial, 1 + x, x);
+  BOOST_TEST(misfit::kernels::map_error(kernel.polynomial, single(x), options)[0] == defined,
+             boost::test_tools::tolerance(1e-4));
+  // The mean over x, with the optimal correction handed in, is E.
+  const Correction optimal = [&](const Eigen::VectorXd& at) { return optimal_correction(kernel.polynomial, at); };
+  BOOST_TEST(judge(kernel.polynomial, 0.25, {0, optimal}).mean == kernel.misfit.mean, boost::test_tools::tolerance(1e-12));
 }
 
 BOOST_AUTO_TEST_SUITE_END()

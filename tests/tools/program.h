@@ -57,7 +57,8 @@ class Child {
     std::vector<char*> argv{const_cast<char*>(MISFIT_PROGRAM)};
     for (const std::string& argument : arguments) argv.push_back(const_cast<char*>(argument.c_str()));
     argv.push_back(nullptr);
-    const std::string out = folder_ / "out", err = folder_ / "err", cache = kernel_cache();
+    const std::string out = folder_ / "out", err = folder_ / "err";
+    const std::string& cache = kernel_cache();
     pid_ = fork();
     BOOST_REQUIRE(pid_ >= 0);
     if (pid_ != 0) return;
