@@ -28,7 +28,7 @@ bool is_text(const DataTable::Cell& cell) {
 std::string cell_html(const DataTable::Cell& cell, int digits) {
   if (is_text(cell)) return html_escaped(std::get<std::string>(cell));
   const double value = std::get<double>(cell);
-  if (std::abs(value) < 1e6 && value == std::round(value)) return grouped(std::llround(value));
+  if (std::abs(value) < 1e9 && value == std::round(value)) return grouped(std::llround(value));
   return std::isfinite(value) ? html_power(value, digits) : "–";
 }
 

@@ -39,7 +39,7 @@ Pair pair_like(int width, double wanted) {
 std::vector<Pair> pairs_like(const kernels::LeastMisfit& reference) {
   std::vector<Pair> pairs;
   for (int width = shown_widths.front(); width <= widest; ++width)
-    pairs.push_back(pair_like(width, reference.origin.mean_error));
+    pairs.push_back(width == reference.width ? pair_of(reference) : pair_like(width, reference.origin.mean_error));
   return pairs;
 }
 
@@ -113,9 +113,7 @@ ReportSection cost_section(SolvedKernels& solved) {
   Figure time = cost_figure(pairs, seconds);
   time.name = "cost-seconds";
   time.title = "Seconds on one core, by the cost model of this program";
-  time.caption =
-      "With the model's fixed constants, for dirty image and PSF in double precision: memory makes a cell of the grid "
-      "dearer than an operation of the FFT.";
+  time.caption = "With the model's fixed constants, for dirty image and PSF in double precision.";
   time.y.label = "seconds";
   return {.heading = "Cost",
           .paragraphs =

@@ -1,9 +1,7 @@
 #include <array>
 #include <cmath>
-#include <numbers>
 
 #include "kernels/catalogue.h"
-#include "kernels/quadrature.h"
 #include "tools/kernel_report.h"
 #include "tools/numbers.h"
 
@@ -32,20 +30,6 @@ DataTable::Cell number(double value) {
   return value;
 }
 
-/// c(x) = Σ_r ∫ C_r(t) cos 2π(s_r − t)x dt
-Eigen::VectorXd image_taper(const TapFunction& taps, const Eigen::VectorXd& x) {
-  const kernels::Quadrature t = kernels::gauss_legendre(40, -0.5, 0.5);
-  Eigen::VectorXd c = Eigen::VectorXd::Zero(x.size());
-  for (Eigen::Index i = 0; i < t.node.size(); ++i) {
-    const Eigen::VectorXd tap = taps(t.node[i]);
-    for (Eigen::Index r = 0; r < tap.size(); ++r) {
-      const double u = static_cast<double>(r) - static_cast<double>(tap.size() - 1) / 2 - t.node[i];
-      c += t.weight[i] * tap[r] * (2 * std::numbers::pi * u * x).array().cos().matrix();
-    }
-  }
-  return c;
-}
-
 Figure corrections_of(const TapFunction& taps) {
   Figure figure{.name = "spheroidal-6-corrections",
                 .title = "Two corrections of the spheroidal function, W = 6",
@@ -57,7 +41,7 @@ Figure corrections_of(const TapFunction& taps) {
                 .series = {}};
   const Eigen::VectorXd x = places(0.5);
   const Eigen::VectorXd h = kernels::optimal_correction(taps, x);
-  const Eigen::VectorXd reciprocal = image_taper(taps, x).cwiseInverse();
+  const Eigen::VectorXd reciprocal = kernels::image_taper(taps, x).cwiseInverse();
   figure.series = {curve("optimal h", x, h / h[0]), curve("1/c", x, reciprocal / reciprocal[0])};
   return figure;
 }
@@ -69,7 +53,9 @@ struct CorrectionErrors {
 };
 CorrectionErrors correction_errors_of(const TapFunction& taps) {
   CorrectionErrors result{map_error_figure("spheroidal-6-map-error", "Map error of the spheroidal function, W = 6", 1e-10, 10)};
-  const auto reciprocal = [&](const Eigen::VectorXd& x) -> Eigen::VectorXd { return image_taper(taps, x).cwiseInverse(); };
+  const auto reciprocal = [&](const Eigen::VectorXd& x) -> Eigen::VectorXd {
+    return kernels::image_taper(taps, x).cwiseInverse();
+  };
   const Series optimal = map_error_curve("optimal h", taps);
   const Series usual = map_error_curve("1/c", taps, {.correction = reciprocal});
   for (std::size_t k = 0; k < optimal.y.size(); ++k)

@@ -58,15 +58,15 @@ std::string power_of_ten(double value, int digits, const std::function<std::stri
 }
 
 std::string power_of_ten(double value, int digits) {
-  const std::string text = power_of_ten(value, digits, [](int exponent) {
+  std::string text = power_of_ten(value, digits, [](int exponent) {
     constexpr std::array<const char*, 10> raised{"⁰", "¹", "²", "³", "⁴", "⁵", "⁶", "⁷", "⁸", "⁹"};
     std::string power = "10";
     for (const char c : std::to_string(exponent)) power += c == '-' ? "⁻" : raised[static_cast<std::size_t>(c - '0')];
     return power;
   });
   const auto times = text.find(" × ");
-  if (times == std::string::npos) return text;
-  return text.substr(0, times) + "\u00a0×\u00a0" + text.substr(times + std::string(" × ").size());
+  if (times != std::string::npos) text.replace(times, std::string(" × ").size(), "\u00a0×\u00a0");
+  return text;
 }
 
 std::string grouped(long long count) {

@@ -55,7 +55,8 @@ td { overflow-wrap: break-word; }
 @media (max-width: 36rem) { main { padding: 1.25rem 1rem 3rem; } .facts { grid-template-columns: 1fr 1fr; } .facts dd { font-size: 1.05rem; }
   table { font-size: .85rem; } th, td { padding-right: .7rem; } .bars .bar { width: 30%; } }
 @media print { main { max-width: none; padding: 0; } section, figure, .facts { break-inside: avoid; } .pictures { grid-template-columns: 1fr 1fr; }
-  .drawing { max-width: none; margin: .5rem 0; } section:has(.drawing) { break-inside: auto; } h2 { break-after: avoid; } }
+  .drawing { max-width: none; margin: .5rem 0; } section:has(.drawing) { break-inside: auto; }
+  .wide table { font-size: .68rem; } .wide th { font-size: .62rem; } .wide th, .wide td { padding-right: .4rem; } h2 { break-after: avoid; } }
 )css";
 
 }  // namespace misfit::tools

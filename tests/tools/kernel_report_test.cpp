@@ -5,7 +5,6 @@
 #include <cmath>
 
 using namespace misfit::tools;
-namespace kernels = misfit::kernels;
 
 namespace {
 

@@ -19,6 +19,13 @@ BOOST_AUTO_TEST_CASE(significant_digits_are_kept_and_trailing_zeros_are_not) {
   BOOST_TEST(significant(std::numeric_limits<double>::quiet_NaN(), 3) == "not finite");
 }
 
+BOOST_AUTO_TEST_CASE(powers_of_ten_are_written_out_and_do_not_break) {
+  BOOST_TEST(power_of_ten(3.24e-7, 2) == "3.2\u00a0×\u00a010⁻⁷");
+  BOOST_TEST(power_of_ten(-2.488e12, 4) == "−2.488\u00a0×\u00a010¹²");
+  BOOST_TEST(power_of_ten(9.99e-7, 2) == "10⁻⁶");
+  BOOST_TEST(power_of_ten(315.4, 3) == "315");
+}
+
 BOOST_AUTO_TEST_CASE(groups_have_three_digits) {
   BOOST_TEST(grouped(7) == "7");
   BOOST_TEST(grouped(123) == "123");
