@@ -126,15 +126,15 @@ std::vector<RoundingLoss> rounding_losses(ProgressLine& progress) {
   std::vector<RoundingLoss> losses;
   progress.begin("solve and judge");
   // The time of a solution grows steeply with the width: count in such units.
-  const auto work = [](int width) { return static_cast<std::uint64_t>(width * width * width); };
+  const auto work = [](std::uint64_t width) { return width * width * width; };
   std::uint64_t row = 0;
-  for (const int width : widths) row += work(width);
+  for (const int width : widths) row += work(static_cast<std::uint64_t>(width));
   std::uint64_t done = 0;
   for (const double x0 : fractions) {
     for (const int width : widths) {
       progress.update(done, row * fractions.size());
       losses.push_back(rounding_loss(width, x0));
-      done += work(width);
+      done += work(static_cast<std::uint64_t>(width));
     }
   }
   progress.end();

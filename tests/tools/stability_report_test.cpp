@@ -1,13 +1,11 @@
 #include "tools/stability_report.h"
 
-#include <boost/test/data/test_case.hpp>
 #include <boost/test/unit_test.hpp>
 #include <cmath>
 
 #include "tools/numbers.h"
 
 using namespace misfit::tools;
-namespace bdata = boost::unit_test::data;
 
 namespace {
 
