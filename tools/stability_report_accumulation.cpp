@@ -92,6 +92,7 @@ std::vector<Series> random_curves() {
                              {.label = "single, compensated", .x = {}, .y = {}, .points = true},
                              {.label = "double", .x = {}, .y = {}, .points = true},
                              {.label = "extended", .x = {}, .y = {}, .points = true}};
+  constexpr double tenth = 0.1;  // double and extended would add the terms themselves without rounding
   float single = 0;
   CompensatedSum<float> compensated;
   double twice = 0;
@@ -107,14 +108,14 @@ std::vector<Series> random_curves() {
       exact += bits;
       single += term;
       compensated.add(term);
-      twice += static_cast<double>(term);
-      extended += static_cast<long double>(term) * 0x1.999999999999ap-4L;  // by 0.1, so that extended has something to round
+      twice += static_cast<double>(term) * tenth;
+      extended += static_cast<long double>(term) * tenth;
     }
     const long double truth = static_cast<long double>(exact) * 0x1p-24L;
     add_point(curves[0], count, single, truth);
     add_point(curves[1], count, compensated.sum(), truth);
-    add_point(curves[2], count, twice, truth);
-    add_point(curves[3], count, extended, truth * 0x1.999999999999ap-4L);
+    add_point(curves[2], count, twice, truth * tenth);
+    add_point(curves[3], count, extended, truth * tenth);
   }
   return curves;
 }
@@ -146,7 +147,8 @@ ReportSection accumulation_section() {
        .series = {equal_curve<float>("single"), equal_curve<double>("double"), equal_curve<long double>("extended")}});
   Figure random = sum_figure({.name = "random-sums",
                               .title = "Sums of random positive terms",
-                              .caption = "Uniform between 0 and 1, multiples of 2⁻²⁴, so that integers sum them exactly.",
+                              .caption = "Uniform between 0 and 1, multiples of 2⁻²⁴, so that integers sum them exactly; "
+                                         "double and extended, which would too, add a tenth of each.",
                               .x = {},
                               .y = {},
                               .series = random_curves()});

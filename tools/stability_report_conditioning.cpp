@@ -82,8 +82,12 @@ DataTable onsets(const std::vector<RoundingLoss>& losses) {
   for (const double x0 : fractions) {
     const double rule = first_width(
         losses, x0, [](const RoundingLoss& l) { return 4 * unit * unit * l.optimum.condition >= l.optimum.mean_error; });
-    table.rows.push_back({x0, first(x0, &RoundingLoss::normal_equations), rule, first(x0, &RoundingLoss::orthogonal),
-                          first(x0, &RoundingLoss::stored_in_double), first(x0, &RoundingLoss::stored_in_single)});
+    std::vector<DataTable::Cell>& row = table.rows.emplace_back();  // one by one: g++ 12 takes a list for uninitialised
+    row.emplace_back(x0);
+    row.emplace_back(first(x0, &RoundingLoss::normal_equations));
+    row.emplace_back(rule);
+    for (const auto error : {&RoundingLoss::orthogonal, &RoundingLoss::stored_in_double, &RoundingLoss::stored_in_single})
+      row.emplace_back(first(x0, error));
   }
   return table;
 }
@@ -122,15 +126,15 @@ std::vector<RoundingLoss> rounding_losses(ProgressLine& progress) {
   std::vector<RoundingLoss> losses;
   progress.begin("solve and judge");
   // The time of a solution grows steeply with the width: count in such units.
-  const auto work = [](int width) { return static_cast<std::uint64_t>(width * width * width); };
+  const auto work = [](std::uint64_t width) { return width * width * width; };
   std::uint64_t row = 0;
-  for (const int width : widths) row += work(width);
+  for (const int width : widths) row += work(static_cast<std::uint64_t>(width));
   std::uint64_t done = 0;
   for (const double x0 : fractions) {
     for (const int width : widths) {
       progress.update(done, row * fractions.size());
       losses.push_back(rounding_loss(width, x0));
-      done += work(width);
+      done += work(static_cast<std::uint64_t>(width));
     }
   }
   progress.end();

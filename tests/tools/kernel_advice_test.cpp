@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "tests/observations.h"
+#include "tests/temporary_folder.h"
 #include "tools/machine_costs.h"
 
 using namespace misfit;
@@ -62,13 +62,13 @@ BOOST_AUTO_TEST_CASE(the_text_names_cost_operations_and_neighbours) {
 
 BOOST_AUTO_TEST_CASE(costs_are_measured_once_and_kept_and_damaged_files_are_not_trusted) {
   const testing::TemporaryFolder folder;
-  const std::filesystem::path file = std::filesystem::path(folder.path()) / "costs.json";
-  const imager::CostModel measured = machine_costs(folder.path());
-  BOOST_TEST(machine_costs(folder.path()).sample_ns == measured.sample_ns);  // two measurements would differ
+  const std::filesystem::path file = folder / "costs.json";
+  const imager::CostModel measured = machine_costs(folder / "");
+  BOOST_TEST(machine_costs(folder / "").sample_ns == measured.sample_ns);  // two measurements would differ
   BOOST_TEST(measured.fft_ns > 0);
   for (const char* damage : {"", "{\"machine\": 3}", "[1, 2"}) {
     std::ofstream(file) << damage;
-    BOOST_TEST(machine_costs(folder.path()).cell_ns > 0);
+    BOOST_TEST(machine_costs(folder / "").cell_ns > 0);
     std::ifstream in(file);
     std::string first;
     std::getline(in, first);
