@@ -151,10 +151,11 @@ class Search {
       return Outcome::costs_too_much;
     }
     judge_plane(c);
+    if (c.worst_error <= target_ && request_.w_turns > 0) c = with_w(c);
     const bool reaches = c.worst_error <= target_;
     considered_.push_back({c, reaches ? Rejection::costs_more : Rejection::not_exact_enough});
     if (!reaches) return Outcome::not_exact_enough;
-    request_.w_turns > 0 ? offer_with_w(c) : offer(c);
+    offer(c);
     return Outcome::reaches;
   }
 
@@ -197,10 +198,11 @@ class Search {
     return {};
   }
 
-  /// Adds a w axis: each plane is an FFT, and each sample touches W_w of them.
-  void offer_with_w(const GriddingCandidate& plane) {
-    const int first = std::max(1, request_.kernel.min_width);
-    int least = first;
+  /// With the cheapest w axis that keeps the accuracy: each plane is an FFT, and each sample touches W_w of them. Where none
+  /// does, with an infinite error.
+  GriddingCandidate with_w(const GriddingCandidate& plane) {
+    std::optional<GriddingCandidate> cheapest;
+    int least = request_.kernel.min_width;
     for (const double padding : usual_w_paddings)
       for (int width = least; width <= request_.kernel.max_width; ++width) {
         GriddingCandidate c = plane;
@@ -208,14 +210,18 @@ class Search {
         c.work.width_w = width;
         c.work.planes = static_cast<int>(std::ceil(padding * request_.w_turns)) + width;
         c.cost_s = CostModel().seconds(c.work);
-        if (!costs_less(c)) break;
+        if (cheapest && c.cost_s >= cheapest->cost_s) break;
         c.w = shelf_.w_axis(width, padding);
         judge(c);
         if (c.worst_error > target_ && !exhausted(c)) continue;
-        if (c.worst_error <= target_) offer(c);
+        if (c.worst_error <= target_) cheapest = c;
         least = width;
         break;
       }
+    if (cheapest) return *cheapest;
+    GriddingCandidate none = plane;
+    none.worst_error = HUGE_VAL;
+    return none;
   }
 
   /// With the polynomials of lowest degree that cost less than half a percent of the squared error.

@@ -86,8 +86,10 @@ MisfitSolution least_misfit_solution(int width, double x0) {
   const int nodes = nodes_for(width, x0);
   const MisfitProblem problem{width, x0,  nodes, Eigen::VectorXd::Ones(nodes), last.minimum.log_h, last.minimum.log_h,
                               1e-10, 1e-8};
-  return minimise_misfit(problem, arithmetic_for(last.minimum.mean_error, last.minimum.h_range, rounding_of_a_result),
-                         rounding_of_a_result);
+  MisfitSolution found = minimise_misfit(
+      problem, arithmetic_for(last.minimum.mean_error, last.minimum.h_range, rounding_of_a_result), rounding_of_a_result);
+  found.minimum.iterations += last.minimum.iterations;
+  return found;
 }
 
 void check_least_misfit_request(const std::string& name, int width, double x0) {

@@ -134,7 +134,7 @@ BOOST_AUTO_TEST_CASE(a_changed_file_is_shown_with_a_warning) {
 BOOST_AUTO_TEST_CASE(what_cannot_be_meant_is_wrong_usage) {
   const Scene scene;
   const auto refused = [&](const Arguments& more, const std::string& part) { check_refused(scene.make(more), 2, part); };
-  check_refused({"kernel"}, 2, "either --output or --inspect");
+  check_refused({"kernel"}, 2, "one of --output, --inspect and --accuracy");
   refused({}, "--width");
   refused({"--width", "7"}, "either --x0 or --padding");
   refused({"--width", "7", "--x0", "0.25", "--padding", "2"}, "either --x0 or --padding");
@@ -147,7 +147,7 @@ BOOST_AUTO_TEST_CASE(what_cannot_be_meant_is_wrong_usage) {
   refused({"--width", "7", "--x0", "0.25", "--sampling", "0"}, "--sampling 0: expected 1 to");
   refused({"--width", "7", "--x0", "0.25", "--interpolation", "4"}, "--interpolation 4: expected 0 to 3");
   refused({"--width", "7", "--x0", "0.25", "--degree", "25"}, "--degree 25: expected 0 to 24");
-  refused({"--width", "7", "--x0", "0.25", "--kernel", "nosuch"}, "least-misfit, spheroidal");
+  refused({"--width", "7", "--x0", "0.25", "--kernel", "nosuch"}, "least-misfit, minimax");
   refused({"--inspect", scene.file}, "--inspect");
   refused({"--json"}, "--inspect");
   BOOST_TEST(!std::filesystem::exists(scene.file));
