@@ -35,8 +35,7 @@ BOOST_AUTO_TEST_CASE(no_family_is_better_than_least_misfit) {
 BOOST_AUTO_TEST_CASE(what_is_stored_is_as_good_as_what_it_stands_for) {
   for (const double x0 : {0.05, 0.25, 0.4})
     for (const KernelFamily& family : kernel_catalogue())
-      for (int width = family.min_width; width <= std::min(family.max_width, family.costly ? 9 : 20);
-           width += 3) {
+      for (int width = family.min_width; width <= std::min(family.max_width, family.costly ? 9 : 20); width += 3) {
         const Kernel kernel = family.make(width, x0);
         // 1% of E, and what doubles hold: some units of rounding, amplified by the correction.
         const double rounding = 20 * 0x1p-53 * noise_gain(kernel.polynomial, x0);
