@@ -167,10 +167,13 @@ class Search {
 
     double at(int other) const { return std::exp(log_error + log_rate * (other - width)); }
   };
-  /// From two narrow kernels, which are solved in no time; wide ones take extended arithmetic. None for families of few widths.
+  /// From two narrow kernels, which are solved in no time; wide ones take extended arithmetic. None where all are
+  /// quickly made.
   std::optional<Forecast> forecast(double padding_u, double padding_v, Precision precision) {
+    constexpr int continuum = 128;  // few pixels are no mean over the field, and need no wide kernels
     const int width = std::max(narrowest(), 5);
-    if (width + 2 > widest()) return {};
+    const bool small = std::min(request_.geometry.width, request_.geometry.height) < continuum;
+    if (!request_.kernel.costly || small || width + 2 > widest()) return {};
     double log_error[2];
     for (int i = 0; i < 2; ++i) {
       GriddingCandidate c = sized(width + i, padding_u, padding_v, precision);
@@ -226,6 +229,7 @@ class Search {
 
   /// With the polynomials of lowest degree that cost less than half a percent of the squared error.
   GriddingCandidate simplified(const GriddingCandidate& exact) const {
+    if (request_.kernel.min_width == request_.kernel.max_width) return exact;  // somebody's own: used as it is
     GriddingCandidate simple = exact;
     const auto cut = [](AxisKernel& axis) {
       constexpr double excess = 0.005;

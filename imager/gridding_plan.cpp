@@ -75,25 +75,32 @@ void check_request(const GriddingRequest& request) {
     throw std::invalid_argument("accuracy " + text("%g", request.accuracy) + " not in (0, 1)");
 }
 
+double nameable_accuracy(double worst_error) {
+  constexpr double two_digits = 1.06;  // may round down by 5%
+  constexpr double stored = 1e-13;     // below, the rounding of stored kernels differs from width to width
+  return (worst_error < stored ? 2 : two_digits) * worst_error;
+}
+
 GriddingPlan plan_gridding(const GriddingRequest& request) {
   check_request(request);
   GriddingPlan plan;
   plan.choice = choose_gridding(request);
   const GriddingCandidate& best = plan.choice.best;
-  if (!plan.choice.reached && !request.best_effort)  // 1.06: two digits may round down by 5%
+  if (!plan.choice.reached && !request.best_effort)
     throw std::invalid_argument("accuracy " + text("%g", request.accuracy) + " is out of reach of kernel " +
                                 request.kernel.name +
                                 (request.kernel_width == 0 ? "" : " of width " + std::to_string(request.kernel_width)) +
                                 (request.padding == 0 ? "" : " at padding " + text("%g", request.padding)) + "; it can reach " +
-                                text("%.2g", 1.06 * best.worst_error) + " for this image, with width " +
+                                text("%.2g", nameable_accuracy(best.worst_error)) + " for this image, with width " +
                                 std::to_string(best.work.width) + " at padding " + text("%g", best.padding_u));
   plan.options = {request.geometry, best.work.nu,        best.work.nv,   best.u.kernel,
                   best.v.kernel,    best.work.precision, request.threads};
   plan.expected_error = best.expected_error;
   plan.rounding = best.rounding;
   plan.worst_error = best.worst_error;
-  constexpr double several = 6;  // rounding is random; six times its RMS bounds it for practical purposes
-  const auto both = [](double u, double v) { return (1 + std::sqrt(u)) * (1 + std::sqrt(v)) - 1; };
+  constexpr double several = 6;     // rounding is random; six times its RMS bounds it for practical purposes
+  constexpr double between = 1.01;  // maxima were looked for at points, and lie between them
+  const auto both = [](double u, double v) { return (1 + between * std::sqrt(u)) * (1 + between * std::sqrt(v)) - 1; };
   plan.bound_rms = both(best.u.misfit.worst_mean, best.v.misfit.worst_mean) + several * plan.rounding;
   plan.bound_max = both(best.u.misfit.worst, best.v.misfit.worst) + several * plan.rounding;
   plan.decisions = decisions_of(request, plan);

@@ -5,14 +5,14 @@
 #include <limits>
 #include <type_traits>
 
-#if defined(__SIZEOF_FLOAT128__) && !defined(__STRICT_ANSI__)
+#if defined(__SIZEOF_FLOAT128__) && !defined(__STRICT_ANSI__) && __has_include(<quadmath.h>)
 #include <boost/multiprecision/float128.hpp>
 #endif
 
 namespace misfit::kernels {
 
 /// IEEE binary128, as the compiler has it where it has one: five times as fast as a class.
-#if defined(__SIZEOF_FLOAT128__) && !defined(__STRICT_ANSI__)
+#if defined(__SIZEOF_FLOAT128__) && !defined(__STRICT_ANSI__) && __has_include(<quadmath.h>)
 using Quadruple = boost::multiprecision::number<boost::multiprecision::float128_backend, boost::multiprecision::et_off>;
 #else
 using Quadruple = std::conditional_t<

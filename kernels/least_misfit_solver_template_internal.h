@@ -306,7 +306,7 @@ MisfitMinimum Solver<Real>::minimise() const {
                              " at x0 = " + std::to_string(problem_.x0) + " did not converge within " +
                              std::to_string(iteration) + " iterations");
   const VectorOf<Real> best = retracted(h);
-  const Real centre = best[best.size() - 1];
+  const Real& centre = best[best.size() - 1];
   MisfitMinimum minimum;
   minimum.log_h = series(best / centre);
   minimum.error = here.error.template cast<double>();

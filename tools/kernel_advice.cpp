@@ -3,6 +3,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "imager/gridding_plan.h"
 #include "tools/kernel_choice.h"
 #include "tools/numbers.h"
 
@@ -44,7 +45,7 @@ imager::GriddingChoice choose_for(const KernelJob& job) {
   imager::GriddingChoice choice = imager::choose_gridding(request);
   if (!choice.reached)
     throw std::invalid_argument("accuracy " + significant(job.accuracy, 3) + " is out of reach of kernel " + job.kernel +
-                                "; it can reach " + significant(1.06 * choice.best.worst_error, 2));
+                                "; it can reach " + significant(imager::nameable_accuracy(choice.best.worst_error), 2));
   return choice;
 }
 
