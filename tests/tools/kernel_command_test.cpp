@@ -171,11 +171,16 @@ BOOST_AUTO_TEST_CASE(an_image_made_with_a_file_is_that_made_with_its_kernel) {
     const Arguments image = Arguments{"image", "--vis", snapshot(), "--imsize", "160", "--cell", "0.05arcsec"};
     succeed(image + Arguments{"--imagename", scene.folder / "file", "--kernel", scene.file});
     succeed(image + Arguments{"--imagename", scene.folder / "name", "--kernel-width", width, "--padding", padding});
-    const json by_file = report_of(scene.folder / "file")["kernel"], by_name = report_of(scene.folder / "name")["kernel"];
+    const json report = report_of(scene.folder / "file");
+    json by_file = report["kernel"], by_name = report_of(scene.folder / "name")["kernel"];
+    // A file's kernel is used as it is; by name its polynomials are cut to what half a percent of E allows.
+    by_file.erase("evaluation");
+    by_name.erase("evaluation");
     BOOST_TEST(by_file == by_name);
+    const double kernel_error = report["error"]["expected_rms"];
     for (const char* kind : {"residual", "psf"}) {
       const auto a = pixels_of(scene.folder / "file", kind).pixel, b = pixels_of(scene.folder / "name", kind).pixel;
-      BOOST_TEST(relative_difference(a, b) < 1e-7);  // of images in single precision
+      BOOST_TEST(relative_difference(a, b) < kernel_error + 1e-7);  // and images in single precision
     }
     // The run can be repeated.
     succeed({"image", "--config", scene.folder / "file.last.ini", "--imagename", scene.folder / "again"});
