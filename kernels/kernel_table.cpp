@@ -9,6 +9,7 @@
 #include <mutex>
 #include <stdexcept>
 
+#include "kernels/fits_sizes_internal.h"
 #include "kernels/kernel_table_content_internal.h"
 #include "kernels/whole_file_internal.h"
 
@@ -18,7 +19,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::size_t largest_file = std::size_t{1} << 28;  // 2^20 rows a cell, 16 bytes each, in half of 20 cells: 168 MB
-constexpr int fits_block = 2880;
 
 /// Builds of CFITSIO need not be safe in threads.
 std::mutex& cfitsio_mutex() {
@@ -253,7 +253,7 @@ PiecewisePolynomial read_polynomial(const FitsMemory& file, int width) {
   return polynomial;
 }
 
-/// Every HDU as it was written, and nothing behind them.
+/// Whether every HDU is as it was written, and nothing behind them.
 bool is_intact(const FitsMemory& file, std::size_t size) {
   int status = 0, count = 0;
   bool intact = file.end() == size;
@@ -289,16 +289,13 @@ KernelTable read_kernel_table(const fs::path& path) {
   std::vector<char> bytes = read_whole_file(path, largest_file);
   const std::size_t size = bytes.size();
   const std::string doing = "read kernel table " + path.string();
-  if (std::string(bytes.data(), std::min<std::size_t>(size, 9)) != "SIMPLE  =")
-    throw std::runtime_error("cannot " + doing + ": it is no FITS file, which begins with \"SIMPLE  =\"");
-  if (size % fits_block != 0)
-    throw std::runtime_error("cannot " + doing + ": it has " + std::to_string(size) + " bytes, expected a multiple of " +
-                             std::to_string(fits_block) + ": it was cut short");
+  try {
+    check_fits_sizes({bytes.data(), size});
+  } catch (const std::runtime_error& error) {
+    throw std::runtime_error("cannot " + doing + ": " + error.what());
+  }
   const std::lock_guard<std::mutex> lock(cfitsio_mutex());
   const FitsMemory file(doing, std::move(bytes));
-  if (file.end() > size)
-    file.fail("it has " + std::to_string(size) + " bytes, its headers announce " + std::to_string(file.end()) +
-              ": it was cut short");
   KernelTable table = read_facts(file);
   const HeaderReader header(file);
   const int width = header.needed("W", header.whole("W", 1, kernel_table_max_width));
