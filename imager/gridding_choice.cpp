@@ -15,6 +15,7 @@ namespace {
 /// Relative RMS of taps, sums and FFT in double, for a noise gain of 1: twice the unit of rounding, as measured.
 constexpr double double_rounding = 2.2e-16;
 constexpr int smallest_fft = 64;
+constexpr int continuum = 128;  ///< fewer pixels are no mean over the field, and need no wide kernels
 
 /// From the one that needs the narrowest kernel down: what the wider padding cannot reach, no other can.
 constexpr std::array<double, 5> usual_paddings{2.0, 1.6, 1.4, 1.25, 1.15};
@@ -137,8 +138,9 @@ class Search {
     }
     if (!best_ || request_.padding != 0 || best_->work.precision != precision) return;
     const GriddingCandidate square = *best_;
-    const auto smaller = std::find(usual_paddings.begin(), usual_paddings.end(), square.padding_u) + 1;
-    if (smaller == usual_paddings.end()) return;
+    const auto smaller = std::find_if(usual_paddings.begin(), usual_paddings.end(),
+                                      [&](double usual) { return usual < square.padding_u; });
+    if (smaller == usual_paddings.end() || *smaller < least_padding()) return;
     for (const auto& [u, v] : {std::pair(*smaller, square.padding_v), std::pair(square.padding_u, *smaller)})
       consider(sized(square.work.width, u, v, precision));
   }
@@ -170,7 +172,6 @@ class Search {
   /// From two narrow kernels, which are solved in no time; wide ones take extended arithmetic. None where all are
   /// quickly made.
   std::optional<Forecast> forecast(double padding_u, double padding_v, Precision precision) {
-    constexpr int continuum = 128;  // few pixels are no mean over the field, and need no wide kernels
     const int width = std::max(narrowest(), 5);
     const bool small = std::min(request_.geometry.width, request_.geometry.height) < continuum;
     if (!request_.kernel.costly || small || width + 2 > widest()) return {};
@@ -280,7 +281,6 @@ class Search {
 }  // namespace
 
 kernels::Misfit axis_misfit(const kernels::Kernel& kernel, int pixels, int fft_size) {
-  constexpr int continuum = 128;
   return pixels < continuum ? kernels::judge_pixels(kernel.polynomial, pixels, fft_size) : kernel.misfit;
 }
 

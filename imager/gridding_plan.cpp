@@ -18,7 +18,7 @@ std::string width_and_padding(const GriddingCandidate& c) {
   return "width " + std::to_string(c.work.width) + " at padding " + text("%.2f", c.padding_u);
 }
 
-/// "width 9 at padding 1.40 costs 1.21×, width 7 at padding 1.60 is off by 2e-6"
+/// "width 9 at padding 1.40 costs 1.21×, width 7 at padding 1.60 reaches 2e-6"
 std::string text_of(const GriddingChoice& choice) {
   std::string all;
   for (const RejectedCandidate& r : choice.rejected) {
@@ -83,6 +83,8 @@ double nameable_accuracy(double worst_error) {
 
 GriddingPlan plan_gridding(const GriddingRequest& request) {
   check_request(request);
+  if (request.w_turns != 0)
+    throw std::invalid_argument("w_turns is " + text("%g", request.w_turns) + ", expected 0: the plane transform has no w axis");
   GriddingPlan plan;
   plan.choice = choose_gridding(request);
   const GriddingCandidate& best = plan.choice.best;
