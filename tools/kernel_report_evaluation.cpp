@@ -1,10 +1,9 @@
 #include <array>
-#include <chrono>
 #include <cmath>
 #include <limits>
-#include <random>
 
 #include "kernels/evaluation.h"
+#include "tools/evaluation_speed.h"
 #include "tools/kernel_report.h"
 #include "tools/numbers.h"
 
@@ -83,50 +82,33 @@ Figure rms_of_tables(const kernels::Kernel& kernel) {
   return figure;
 }
 
-/// Nanoseconds for all taps of a position: the fastest of three rounds.
-double time_of(const Evaluation& way, int positions) {
-  std::mt19937_64 random(1);
-  std::uniform_real_distribution<double> within(-0.5, 0.5);
-  const Eigen::VectorXd t = Eigen::VectorXd::NullaryExpr(positions, [&] { return within(random); });
-  double fastest = std::numeric_limits<double>::infinity();
-  double total = 0;
-  for (int round = 0; round < 3; ++round) {
-    const auto start = std::chrono::steady_clock::now();
-    total += way.total(t);
-    const std::chrono::duration<double, std::nano> taken = std::chrono::steady_clock::now() - start;
-    fastest = std::min(fastest, taken.count() / positions);
-  }
-  return std::isfinite(total) ? fastest : std::numeric_limits<double>::quiet_NaN();
-}
-
-void add_way(DataTable& table, const Evaluation& way, double best, int positions) {
-  const kernels::Misfit misfit = judge(way.taps, x0, way.judging());
-  table.rows.push_back({way.name, static_cast<double>(way.bytes), misfit.mean, misfit.mean / best, misfit.worst_mean,
-                        misfit.worst, time_of(way, positions)});
-}
-
 DataTable ways_to_evaluate(const kernels::LeastMisfit& solution, const kernels::Kernel& kernel) {
   DataTable table{.name = "evaluation",
                   .title = "Ways to evaluate the function of W = 7, x₀ = 0.25",
                   .caption =
                       "E is what each really has, with the correction that is optimal for it; at the worst position of a "
-                      "visibility in its cell, the mean over |x| ≤ x₀ and the largest squared error. Time is for the 7 "
-                      "taps of one axis on one core of this machine.",
+                      "visibility in its cell, the mean over |x| ≤ x₀ and the largest squared error. Time is for the "
+                      "taps of both axes on one core of this machine.",
                   .columns = {"way", "bytes", "E", "E / optimum", "worst ν, mean", "worst ν, max", "ns a visibility"},
                   .rows = {}};
-  const double best = solution.origin.mean_error;
+  constexpr std::array<kernels::TableOptions, 5> shapes{{{65536, Interpolation::nearest},
+                                                         {2048, Interpolation::linear},
+                                                         {128, Interpolation::quadratic},
+                                                         {32, Interpolation::cubic},
+                                                         {64, Interpolation::cubic}}};
+  std::vector<Evaluation> ways;
   for (const Precision precision : {Precision::double_precision, Precision::single_precision}) {
-    add_way(table, kernels::evaluate_directly(solution, precision), best, 1000);
-    constexpr std::array<kernels::TableOptions, 5> shapes{{{65536, Interpolation::nearest},
-                                                           {2048, Interpolation::linear},
-                                                           {128, Interpolation::quadratic},
-                                                           {32, Interpolation::cubic},
-                                                           {64, Interpolation::cubic}}};
+    ways.push_back(kernels::evaluate_directly(solution, precision));
     for (const kernels::TableOptions& shape : shapes)
-      add_way(table, kernels::evaluate_by_table(kernel.polynomial, shape, precision), best, 200000);
+      ways.push_back(kernels::evaluate_by_table(kernel.polynomial, shape, precision));
     for (const int degree : {width - 1, width, width + 1, kernel.polynomial.degree()})
-      add_way(table, kernels::evaluate_by_polynomial(kernels::fit_polynomial(kernel.polynomial, degree), precision), best,
-              200000);
+      ways.push_back(kernels::evaluate_by_polynomial(kernels::fit_polynomial(kernel.polynomial, degree), precision));
+  }
+  const std::vector<double> time_ns = nanoseconds_a_visibility(ways, {});
+  for (std::size_t i = 0; i < ways.size(); ++i) {
+    const kernels::Misfit misfit = judge(ways[i].taps, x0, ways[i].judging());
+    table.rows.push_back({ways[i].name, static_cast<double>(ways[i].bytes), misfit.mean,
+                          misfit.mean / solution.origin.mean_error, misfit.worst_mean, misfit.worst, time_ns[i]});
   }
   return table;
 }
