@@ -138,8 +138,8 @@ class Search {
     }
     if (!best_ || request_.padding != 0 || best_->work.precision != precision) return;
     const GriddingCandidate square = *best_;
-    const auto smaller = std::find_if(usual_paddings.begin(), usual_paddings.end(),
-                                      [&](double usual) { return usual < square.padding_u; });
+    const auto smaller =
+        std::find_if(usual_paddings.begin(), usual_paddings.end(), [&](double usual) { return usual < square.padding_u; });
     if (smaller == usual_paddings.end() || *smaller < least_padding()) return;
     for (const auto& [u, v] : {std::pair(*smaller, square.padding_v), std::pair(square.padding_u, *smaller)})
       consider(sized(square.work.width, u, v, precision));

@@ -84,7 +84,8 @@ double nameable_accuracy(double worst_error) {
 GriddingPlan plan_gridding(const GriddingRequest& request) {
   check_request(request);
   if (request.w_turns != 0)
-    throw std::invalid_argument("w_turns is " + text("%g", request.w_turns) + ", expected 0: the plane transform has no w axis");
+    throw std::invalid_argument("w_turns is " + text("%g", request.w_turns) +
+                                ", expected 0: the plane transform has no w axis");
   GriddingPlan plan;
   plan.choice = choose_gridding(request);
   const GriddingCandidate& best = plan.choice.best;

@@ -1,8 +1,8 @@
-#include "kernels/fits_sizes_internal.h"
-
 #include <cstdlib>
 #include <stdexcept>
 #include <string>
+
+#include "kernels/fits_sizes_internal.h"
 
 namespace misfit::kernels {
 namespace {
@@ -70,7 +70,8 @@ std::size_t hdu_size(std::string_view rest, bool primary) {
   const long long bits = cards.whole("BITPIX", -64, 64);
   const long long axes = cards.whole("NAXIS", 0, most_axes);
   double data = axes == 0 ? 0 : static_cast<double>(std::llabs(bits)) / 8;
-  for (long long axis = 1; axis <= axes; ++axis) data *= static_cast<double>(cards.whole("NAXIS" + std::to_string(axis), 0, any));
+  for (long long axis = 1; axis <= axes; ++axis)
+    data *= static_cast<double>(cards.whole("NAXIS" + std::to_string(axis), 0, any));
   if (!primary) {
     const auto heap = static_cast<double>(cards.whole("PCOUNT", 0, any));
     data = (data + heap * static_cast<double>(std::llabs(bits)) / 8) * static_cast<double>(cards.whole("GCOUNT", 1, 1));
