@@ -1,6 +1,7 @@
 #include "kernels/catalogue.h"
 
 #include <algorithm>
+#include <limits>
 #include <optional>
 #include <sstream>
 #include <stdexcept>
@@ -44,8 +45,12 @@ KernelFamily family_of(const Kernel& kernel) {
   constexpr double least_x0 = 1e-3;  // less than images have, which are padded to 80 pixels at most
   const auto judged = [kernel](int, double x0) {
     Kernel same = kernel;
+    if (x0 == kernel.x0) return same;
     same.x0 = x0;
-    if (x0 != kernel.x0) same.misfit = judge(kernel.polynomial, x0);
+    same.misfit = judge(kernel.polynomial, x0);
+    same.origin.mean_error = same.misfit.mean;
+    same.origin.max_error = same.misfit.max;
+    same.origin.max_error_bound = same.origin.condition = std::numeric_limits<double>::quiet_NaN();
     return same;
   };
   return {kernel.name, "one kernel", kernel.width(), kernel.width(), std::min(least_x0, kernel.x0), kernel.x0, judged};

@@ -30,8 +30,8 @@ const std::vector<KernelFamily>& kernel_catalogue();
 /// std::invalid_argument lists those there are.
 KernelFamily kernel_family(const std::string& name);
 
-/// The family that holds `kernel` alone: its width, and any x0 up to its own, over which it is judged anew; what its origin
-/// says stays that of its own x0.
+/// The family that holds `kernel` alone: its width, and any x0 up to its own, over which it is judged anew; what
+/// was known of the optimum at its own x0 is dropped.
 KernelFamily family_of(const Kernel& kernel);
 
 }  // namespace misfit::kernels

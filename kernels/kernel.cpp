@@ -4,7 +4,9 @@
 
 namespace misfit::kernels {
 
-Kernel make_kernel(const std::string& name, double x0, const TapFunction& taps, const std::optional<Origin>& origin) {
+Kernel make_kernel(const std::string& name, double x0, const TapFunction& function, const std::optional<Origin>& origin) {
+  const double scale = optimal_correction(function, Eigen::VectorXd::Zero(1))[0];
+  const TapFunction taps = [&function, scale](double t) { return Eigen::VectorXd(scale * function(t)); };
   constexpr double true_value = 1e-10;
   constexpr double true_to_error = 1e-7;
   Kernel kernel{name, x0, {}, {}, {}};
@@ -18,6 +20,7 @@ Kernel make_kernel(const std::string& name, double x0, const TapFunction& taps, 
   const double gain = noise_gain(taps, x0);
   const double allowed = std::min(true_value * true_value, true_to_error * kernel.origin.mean_error / (gain * gain));
   kernel.polynomial = fit_polynomial_within(taps, allowed);
+  kernel.polynomial.coefficient *= optimal_correction(kernel.polynomial, Eigen::VectorXd::Zero(1))[0];
   kernel.misfit = judge(kernel.polynomial, x0);
   return kernel;
 }

@@ -32,8 +32,8 @@ struct Kernel {
   int width() const { return polynomial.width(); }
 };
 
-/// Stores `taps` as the polynomial of lowest degree that is true to them: values to 1e-10, and E to 1e-7 of itself, as far as
-/// doubles hold it. Without an `origin` the taps are judged as they are.
-Kernel make_kernel(const std::string& name, double x0, const TapFunction& taps, const std::optional<Origin>& origin = {});
+/// Stores `function`, scaled so that h(0) = 1, as the polynomial of lowest degree that is true to it: values to 1e-10, and E to
+/// 1e-7 of itself, as far as doubles and highest_degree hold it. Without an `origin` the function is judged as it is.
+Kernel make_kernel(const std::string& name, double x0, const TapFunction& function, const std::optional<Origin>& origin = {});
 
 }  // namespace misfit::kernels

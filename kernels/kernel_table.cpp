@@ -11,7 +11,7 @@
 
 #include "kernels/fits_sizes_internal.h"
 #include "kernels/kernel_table_content_internal.h"
-#include "kernels/whole_file_internal.h"
+#include "kernels/whole_file.h"
 
 namespace misfit::kernels {
 namespace {
@@ -253,6 +253,13 @@ PiecewisePolynomial read_polynomial(const FitsMemory& file, int width) {
   return polynomial;
 }
 
+bool has_table(const FitsMemory& file, std::string name) {
+  int status = 0;
+  const bool found = fits_movnam_hdu(file.get(), BINARY_TBL, name.data(), 0, &status) == 0;
+  fits_clear_errmsg();
+  return found;
+}
+
 /// Whether every HDU is as it was written, and nothing behind them.
 bool is_intact(const FitsMemory& file, std::size_t size) {
   int status = 0, count = 0;
@@ -301,6 +308,10 @@ KernelTable read_kernel_table(const fs::path& path) {
   const int width = header.needed("W", header.whole("W", 1, kernel_table_max_width));
   table.kernel.polynomial = read_polynomial(file, width);
   table.checksum_ok = is_intact(file, size);
+  if (table.sampling && !has_table(file, "CONVFUNC")) {  // cut off between two HDUs
+    table.sampling.reset();
+    table.checksum_ok = false;
+  }
   return table;
 }
 

@@ -10,7 +10,7 @@ namespace misfit::kernels {
 
 /// Counted up whenever any bit of a kernel that the catalogue makes changes: what older versions left in caches is then made
 /// anew.
-inline constexpr int solver_version = 1;
+inline constexpr int solver_version = 2;
 
 inline constexpr int kernel_table_max_width = 20;
 inline constexpr int kernel_table_max_per_cell = 1 << 20;
@@ -18,7 +18,7 @@ inline constexpr int kernel_table_max_per_cell = 1 << 20;
 /// How a host is to look C up in the table CONVFUNC.
 struct TableSampling {
   int per_cell = 128;     ///< Ms: rows for |u| = i / Ms
-  int interpolation = 1;  ///< degree of the polynomial through rows next to each other, 0 (nearest row) to 3
+  int interpolation = 3;  ///< degree of the polynomial through rows next to each other, 0 (nearest row) to 3
 };
 
 /// What a kernel-table file holds. Its HDUs are

@@ -14,6 +14,7 @@ BOOST_AUTO_TEST_CASE(every_family_makes_what_it_offers) {
       BOOST_TEST(kernel.name == family.name);
       BOOST_TEST(kernel.width() == width);
       BOOST_TEST(kernel.x0 == 0.4);
+      BOOST_TEST(std::abs(optimal_correction(kernel.polynomial, Eigen::VectorXd::Zero(1))[0] - 1) < 1e-14);
       BOOST_TEST(!family.description.empty());
     }
 }

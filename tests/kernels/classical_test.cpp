@@ -4,8 +4,10 @@
 #include <functional>
 
 #include "kernels/catalogue.h"
+#include "tests/kernels/kernels.h"
 
 using namespace misfit::kernels;
+using misfit::kernels::testing::normalised;
 namespace bdata = boost::unit_test::data;
 
 namespace {
@@ -22,13 +24,15 @@ Kernel only_kernel(const std::string& name) {
   return family.make(family.min_width, 0.25);
 }
 
-/// Largest difference of the stored taps from C(s_r − t).
+/// Largest difference of the stored taps from C(s_r − t), scaled so that h(0) = 1.
 double difference(const Kernel& kernel, const std::function<double(double u)>& c) {
+  const TapFunction function = normalised([&](double t) {
+    return Eigen::VectorXd(Eigen::VectorXd::NullaryExpr(
+        kernel.width(), [&](Eigen::Index r) { return c(static_cast<double>(r) - (kernel.width() - 1) / 2.0 - t); }));
+  });
   double largest = 0;
   for (const double t : {-0.5, -0.31, 0.0, 0.17, 0.5}) {
-    const Eigen::VectorXd taps = kernel.polynomial(t);
-    for (int r = 0; r < kernel.width(); ++r)
-      largest = std::max(largest, std::abs(taps[r] - c(r - (kernel.width() - 1) / 2.0 - t)));
+    largest = std::max(largest, (kernel.polynomial(t) - function(t)).cwiseAbs().maxCoeff());
   }
   return largest;
 }

@@ -154,7 +154,7 @@ BOOST_AUTO_TEST_CASE(the_header_says_what_the_kernel_is) {
   BOOST_TEST(host.header("X0") == 0.25);
   BOOST_TEST(host.header("PADDING") == 2);
   BOOST_TEST(host.header("MS") == 128);
-  BOOST_TEST(host.header("INTERP") == 1);
+  BOOST_TEST(host.header("INTERP") == 3);
   BOOST_TEST(host.header("E") == judge(example().polynomial, 0.25).mean);
   BOOST_TEST(host.header("MAXELL") == judge(example().polynomial, 0.25).max);
   BOOST_TEST(host.header("EOPT") == example().origin.mean_error);

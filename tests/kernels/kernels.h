@@ -13,6 +13,12 @@
 
 namespace misfit::kernels::testing {
 
+/// The same function, scaled so that h(0) = 1 as stored kernels are.
+inline TapFunction normalised(const TapFunction& taps) {
+  const double scale = optimal_correction(taps, Eigen::VectorXd::Zero(1))[0];
+  return [taps, scale](double t) { return Eigen::VectorXd(scale * taps(t)); };
+}
+
 inline std::uint64_t bits(double value) {
   std::uint64_t bits = 0;
   std::memcpy(&bits, &value, sizeof bits);
