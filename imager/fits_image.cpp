@@ -10,6 +10,8 @@
 #include <stdexcept>
 #include <system_error>
 
+#include "kernels/whole_file.h"
+
 namespace misfit::imager {
 namespace {
 
@@ -148,7 +150,7 @@ void write_file(const SkyImage& sky, const std::string& path, const std::string&
                             const_cast<double*>(sky.image.pixel.data()), &status));
   file.close();
   std::error_code error;
-  std::filesystem::rename(temporary, path, error);
+  std::filesystem::rename(temporary, kernels::writable_target(path), error);
   if (error) file.fail(error.message());
 }
 
@@ -256,7 +258,7 @@ Observation read_observation(const HeaderReader& header) {
 }  // namespace
 
 void write_fits(const SkyImage& image, const std::string& path, PixelFormat format) {
-  const std::string temporary = path + ".part";
+  const std::string temporary = kernels::writable_target(path).string() + ".part";
   std::error_code ignored;
   std::filesystem::remove(temporary, ignored);
   try {

@@ -1,11 +1,11 @@
+#include "kernels/whole_file.h"
+
 #include <cerrno>
 #include <cstring>
 #include <fstream>
 #include <random>
 #include <sstream>
 #include <stdexcept>
-
-#include "kernels/whole_file_internal.h"
 
 namespace misfit::kernels {
 namespace {
@@ -43,7 +43,20 @@ std::vector<char> read_whole_file(const fs::path& path, std::size_t limit) {
   return bytes;
 }
 
-void write_whole_file(const fs::path& path, const char* bytes, std::size_t size) {
+fs::path writable_target(const fs::path& path) {
+  std::error_code error;
+  fs::path target = path;
+  for (int links = 0; links < 40 && fs::is_symlink(target, error); ++links) {
+    const fs::path to = fs::read_symlink(target, error);
+    target = to.is_absolute() ? to : target.parent_path() / to;
+  }
+  const fs::file_status status = fs::status(target, error);
+  if (fs::exists(status) && !fs::is_regular_file(status)) fail("write", path, "it is no regular file");
+  return target;
+}
+
+void write_whole_file(const fs::path& name, const char* bytes, std::size_t size) {
+  const fs::path path = writable_target(name);
   const fs::path temporary = temporary_beside(path);
   errno = 0;
   std::ofstream file(temporary, std::ios::binary);

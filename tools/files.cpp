@@ -9,6 +9,8 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "kernels/whole_file.h"
+
 namespace misfit::tools {
 
 namespace fs = std::filesystem;
@@ -24,20 +26,7 @@ void check_writable_folder(const std::string& path) {
 }
 
 void write_file(const std::string& path, const std::string& content) {
-  const std::string part = path + ".part";
-  std::ofstream file(part, std::ios::binary);
-  file.write(content.data(), static_cast<std::streamsize>(content.size()));
-  file.close();
-  if (!file) {
-    std::remove(part.c_str());
-    throw std::runtime_error("cannot write " + path + ": " + std::strerror(errno));
-  }
-  std::error_code error;
-  fs::rename(part, path, error);
-  if (error) {
-    std::remove(part.c_str());
-    throw std::runtime_error("cannot write " + path + ": " + error.message());
-  }
+  kernels::write_whole_file(path, content.data(), content.size());
 }
 
 std::string read_file(const std::string& path) {

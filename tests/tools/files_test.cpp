@@ -1,5 +1,7 @@
 #include "tools/files.h"
 
+#include <sys/stat.h>
+
 #include <boost/test/unit_test.hpp>
 
 #include "tests/tools/program.h"
@@ -32,6 +34,19 @@ BOOST_AUTO_TEST_CASE(a_file_that_cannot_be_written_is_named_and_leaves_nothing) 
     });
   }
   BOOST_TEST((files_below(folder / "") == before));
+}
+
+BOOST_AUTO_TEST_CASE(links_are_followed_and_devices_are_not_replaced) {
+  const TemporaryFolder folder;
+  write_file(folder / "file", "old");
+  std::filesystem::create_symlink("file", folder / "link");
+  write_file(folder / "link", "new");
+  BOOST_TEST(std::filesystem::is_symlink(folder / "link"));
+  BOOST_TEST(read_file(folder / "file") == "new");
+  const std::string pipe = folder / "pipe";
+  BOOST_REQUIRE(mkfifo(pipe.c_str(), 0600) == 0);
+  BOOST_CHECK_THROW(write_file(pipe, "text"), std::runtime_error);
+  BOOST_TEST(std::filesystem::is_fifo(pipe));
 }
 
 BOOST_AUTO_TEST_CASE(a_file_that_cannot_be_read_is_named) {

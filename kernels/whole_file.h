@@ -9,6 +9,10 @@ namespace misfit::kernels {
 /// The bytes of the regular file at `path`, at most `limit`. Throws std::runtime_error that names the path.
 std::vector<char> read_whole_file(const std::filesystem::path& path, std::size_t limit);
 
+/// Where a file called `path` is to be written: links are followed. Throws std::runtime_error where something lies that is no
+/// regular file, as a device or a folder, since a new file would take its place.
+std::filesystem::path writable_target(const std::filesystem::path& path);
+
 /// Writes `size` bytes; the file appears under its name only when complete, and whoever writes the same name at the same time
 /// does no harm. Throws std::runtime_error that names the path, and leaves nothing behind then.
 void write_whole_file(const std::filesystem::path& path, const char* bytes, std::size_t size);
