@@ -120,8 +120,10 @@ class Search {
   /// Whether a wider kernel would only gather rounding.
   static bool exhausted(const GriddingCandidate& c) { return c.worst_error < 2 * c.rounding; }
   bool costs_less(const GriddingCandidate& c) const { return !best_ || c.cost_s < best_->cost_s; }
+  /// Where no accuracy is asked, single precision must not be what limits it.
   bool trusted(const GriddingCandidate& c) const {
-    return c.work.precision == Precision::double_precision || request_.accuracy != 0 || c.worst_error >= single_from;
+    if (c.work.precision == Precision::double_precision || request_.accuracy != 0) return true;
+    return c.worst_error >= single_from && c.rounding < 0.1 * c.worst_error;
   }
   void offer(const GriddingCandidate& c) {
     if (trusted(c) && costs_less(c)) best_ = c;
@@ -230,7 +232,11 @@ class Search {
 
   /// With the polynomials of lowest degree that cost less than half a percent of the squared error.
   GriddingCandidate simplified(const GriddingCandidate& exact) const {
-    if (request_.kernel.min_width == request_.kernel.max_width) return exact;  // somebody's own: used as it is
+    if (request_.kernel.min_width == request_.kernel.max_width) {  // somebody's own: used as it is
+      GriddingCandidate same = exact;
+      same.work.degree = exact.u.kernel.polynomial.degree();
+      return same;
+    }
     GriddingCandidate simple = exact;
     const auto cut = [](AxisKernel& axis) {
       constexpr double excess = 0.005;
@@ -248,8 +254,7 @@ class Search {
     judge(simple);
     const bool lost = simple.worst_error > std::max(target_, exact.worst_error);
     GriddingCandidate result = lost ? exact : simple;
-    result.work.degree = result.u.kernel.polynomial.degree();
-    result.cost_s = CostModel().seconds(result.work);
+    result.work.degree = result.u.kernel.polynomial.degree();  // costs stay comparable: all by the degree assumed
     return result;
   }
 

@@ -138,6 +138,18 @@ BOOST_AUTO_TEST_CASE(a_given_width_and_padding_are_taken) {
       }
 }
 
+BOOST_AUTO_TEST_CASE(single_precision_never_limits_a_given_width_and_padding) {
+  for (const double padding : {1.05, 1.1, 1.15, 1.5, 2.0})
+    for (const int width : {3, 5, 10, 14}) {
+      GriddingRequest r = request({256, 256}, 0);
+      r.kernel_width = width;
+      r.padding = padding;
+      const GriddingPlan plan = plan_gridding(r);
+      const bool single = plan.options.precision == Precision::single_precision;
+      BOOST_TEST((!single || plan.rounding < 0.1 * plan.worst_error), "width " << width << ", padding " << padding);
+    }
+}
+
 BOOST_AUTO_TEST_CASE(what_cannot_be_meant_is_refused) {
   const auto refused = [](auto change) {
     GriddingRequest r = request({64, 64}, 1e-6);
