@@ -10,8 +10,8 @@
 namespace misfit::tools {
 namespace {
 
-void refuse(bool wrong, const std::string& option, const std::string& expected) {
-  if (wrong) throw std::invalid_argument("--" + option + ": expected " + expected);
+void refuse(bool wrong, const std::string& option, double value, const std::string& expected) {
+  if (wrong) throw std::invalid_argument("--" + option + " " + significant(value, 6) + ": expected " + expected);
 }
 
 std::string padding_of(const imager::GriddingCandidate& c) {
@@ -31,11 +31,13 @@ std::string candidate(const imager::GriddingCandidate& c) {
 
 imager::GriddingChoice choose_for(const KernelJob& job) {
   constexpr int largest = 65536;
-  refuse(!(job.accuracy > 0 && job.accuracy < 1), "accuracy", "a number above 0 and below 1");
-  refuse(job.imsize.empty(), "imsize", "the image's width, or width and height, beside --accuracy");
-  for (const int size : job.imsize) refuse(size < 1 || size > largest, "imsize", "1 to 65536 pixels");
-  refuse(!(job.samples >= 1 && job.samples <= 1e18), "samples", "the number of visibilities, 1 to 1e18, beside --accuracy");
-  refuse(!(job.w_turns >= 0 && job.w_turns <= 1e6), "w-turns", "0 (two axes) to 1e6");
+  refuse(!(job.accuracy > 0 && job.accuracy < 1), "accuracy", job.accuracy, "a number above 0 and below 1");
+  if (job.imsize.empty())
+    throw std::invalid_argument("expected --imsize, the image's width, or width and height, beside --accuracy");
+  for (const int size : job.imsize) refuse(size < 1 || size > largest, "imsize", size, "1 to 65536 pixels");
+  refuse(!(job.samples >= 1 && job.samples <= 1e18), "samples", job.samples,
+         "the number of visibilities, 1 to 1e18, beside --accuracy");
+  refuse(!(job.w_turns >= 0 && job.w_turns <= 1e6), "w-turns", job.w_turns, "0 (two axes) to 1e6");
   imager::GriddingRequest request;
   request.geometry = {job.imsize.front(), job.imsize.back(), 1e-6, {}};
   request.accuracy = job.accuracy;

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <memory>
@@ -5,6 +6,7 @@
 #include <stdexcept>
 
 #include "kernels/kernel_table.h"
+#include "kernels/lookup_table.h"
 #include "kernels/map_error.h"
 #include "tools/command.h"
 #include "tools/files.h"
@@ -40,7 +42,8 @@ void check(const KernelOptions& o) {
   };
   if (o.width == 0) throw std::invalid_argument("expected --width, the number of cells a visibility touches per axis");
   if ((o.x0 == 0) == (o.padding == 0)) throw std::invalid_argument("expected either --x0 or --padding");
-  refuse(o.padding != 0 && !(o.padding > 1), "padding", significant(o.padding, 6), "more than 1");
+  refuse(o.padding != 0 && !(o.padding > 1 && o.padding <= 500), "padding", significant(o.padding, 6),
+         "more than 1, at most 500");
   range(o.sampling.per_cell, 1, kernels::kernel_table_max_per_cell, "sampling");
   range(o.sampling.interpolation, 0, 3, "interpolation");
   if (o.degree != -1) range(o.degree, 0, kernels::highest_degree, "degree");
@@ -52,6 +55,12 @@ kernels::Kernel truncated(kernels::Kernel kernel, int degree) {
   kernel.polynomial = kernels::fit_polynomial(kernel.polynomial, degree);
   kernel.misfit = kernels::judge(kernel.polynomial, kernel.x0);
   return kernel;
+}
+
+/// What looking the table up adds to E.
+double table_error(const kernels::KernelTable& table) {
+  const auto degree = static_cast<kernels::Interpolation>(table.sampling->interpolation);
+  return kernels::table_misfit({table.sampling->per_cell, degree}, table.kernel.x0);
 }
 
 /// Twelve columns for `item`; blanks at its end make up for letters of several bytes.
@@ -75,7 +84,8 @@ void print(const kernels::KernelTable& table, const std::string& path) {
   print_line("polynomials", std::to_string(k.width()) + " of degree " + std::to_string(k.polynomial.degree()));
   if (table.sampling)
     print_line("lookup table", std::to_string(table.sampling->per_cell) + " rows a cell, to be interpolated to degree " +
-                                   std::to_string(table.sampling->interpolation));
+                                   std::to_string(table.sampling->interpolation) + "; reading it adds " +
+                                   significant(table_error(table), 2) + " to E");
   if (!table.version.empty()) print_line("written by", "misfit " + table.version);
 }
 
@@ -142,13 +152,15 @@ void make(const KernelOptions& o) {
 
 /// Fills in width and padding.
 void choose(KernelOptions& o) {
-  if (o.width != 0 || o.x0 != 0 || o.padding != 0)
-    throw std::invalid_argument("--accuracy chooses width and padding; expected it without --width, --x0 and --padding");
+  if (o.width != 0 || o.x0 != 0 || o.padding != 0 || o.degree != -1)
+    throw std::invalid_argument(
+        "--accuracy chooses width, padding and degree; expected it without --width, --x0, --padding and --degree");
   o.job.kernel = o.kernel;
   const imager::GriddingChoice choice = choose_for(o.job);
   if (!o.quiet) std::printf("%s", text_of(choice, machine_costs(default_cache_folder())).c_str());
   o.width = choice.best.work.width;
-  o.x0 = choice.best.u.kernel.x0;
+  o.x0 = std::max(choice.best.u.kernel.x0, choice.best.v.kernel.x0);  // one function serves both axes
+  o.degree = choice.best.work.degree;
 }
 
 }  // namespace
@@ -172,10 +184,13 @@ void add_kernel_command(CLI::App& program) {
   command->add_option("--interpolation", o->sampling.interpolation, "Degree to which a host is to interpolate it, 0 to 3");
   command->add_option("--degree", o->degree, "Cut the polynomials to this degree; -1 = as many terms as the kernel has");
   CLI::Option* output = command->add_option("--output", o->output, "FITS file to write");
+  command->add_flag("--quiet", o->quiet, "Print nothing but errors");
   CLI::Option* inspected = command->add_option("--inspect", o->inspect, "Kernel-table file to show");
   inspected->excludes(output)->excludes(accuracy);
+  for (const char* making :
+       {"--kernel", "--width", "--x0", "--padding", "--sampling", "--interpolation", "--degree", "--quiet"})
+    inspected->excludes(command->get_option(making));
   command->add_flag("--json", o->json, "Show it for machines")->needs(inspected);
-  command->add_flag("--quiet", o->quiet, "Print nothing but errors");
   command->callback([o] {
     const bool choosing = o->job.accuracy != 0;
     if (!o->inspect.empty()) return inspect(*o);

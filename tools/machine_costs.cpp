@@ -59,7 +59,7 @@ imager::CostModel machine_costs(const fs::path& folder) {
   if (folder.empty()) return imager::measure_costs();
   const std::string file = folder / "costs.json";
   std::error_code none;
-  if (fs::exists(file, none))
+  if (fs::is_regular_file(file, none))
     if (const auto kept = costs_in(read_file(file))) return *kept;
   const imager::CostModel measured = imager::measure_costs();
   fs::create_directories(folder, none);

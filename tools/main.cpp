@@ -21,7 +21,6 @@ int fail(const char* message, ExitCode code) {
 
 int main(int argc, char** argv) {
   using namespace misfit::tools;
-  catch_interrupts();
   setenv("HOME", "/", 0);  // casacore looks for its settings there, and ends where there is none
   CLI::App program("misfit images radio-interferometry MeasurementSets with least-misfit gridding functions", "misfit");
   program.set_version_flag("--version", "misfit " + std::string(version));

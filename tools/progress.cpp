@@ -9,7 +9,9 @@
 
 namespace misfit::tools {
 
-ProgressLine::ProgressLine(bool quiet) : quiet_(quiet), live_(!quiet && isatty(STDERR_FILENO) != 0) {}
+ProgressLine::ProgressLine(bool quiet) : quiet_(quiet), live_(!quiet && isatty(STDERR_FILENO) != 0) {
+  catch_interrupts();
+}
 
 ProgressLine::~ProgressLine() {
   clear();
