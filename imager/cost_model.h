@@ -33,7 +33,7 @@ struct CostModel {
 /// axis), and N log2 N for an FFT of N points.
 double operation_count(const GriddingWork& work);
 
-/// The constants of this machine, from gridding a million random samples in all; takes about half a second.
+/// The constants of this machine, from gridding 1.8 million random samples in all; takes about half a second.
 CostModel measure_costs();
 
 }  // namespace misfit::imager
