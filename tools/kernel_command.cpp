@@ -150,7 +150,7 @@ void make(const KernelOptions& o) {
                     : "doubles hold no more, since each rounds by 1.1e-16 of itself");
 }
 
-/// Fills in width and padding.
+/// Fills in width, x0 and degree.
 void choose(KernelOptions& o) {
   if (o.width != 0 || o.x0 != 0 || o.padding != 0 || o.degree != -1)
     throw std::invalid_argument(
@@ -160,7 +160,7 @@ void choose(KernelOptions& o) {
   if (!o.quiet) std::printf("%s", text_of(choice, machine_costs(default_cache_folder())).c_str());
   o.width = choice.best.work.width;
   o.x0 = std::max(choice.best.u.kernel.x0, choice.best.v.kernel.x0);  // one function serves both axes
-  o.degree = choice.best.work.degree;
+  o.degree = std::max(choice.best.u.kernel.polynomial.degree(), choice.best.v.kernel.polynomial.degree());
 }
 
 }  // namespace
