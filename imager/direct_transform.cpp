@@ -16,8 +16,7 @@ struct Direction {
   double n_minus_1 = 0;
 
   explicit Direction(DirectionCosines at, bool with_w = true) : l(at.l), m(at.m) {
-    const double r2 = l * l + m * m;
-    if (with_w) n_minus_1 = -r2 / (1 + std::sqrt(1 - r2));
+    if (with_w) n_minus_1 = imager::n_minus_1(at);
   }
 };
 
@@ -112,7 +111,8 @@ std::unique_ptr<Prediction> DirectTransform::predict(const Image& model) const {
   std::vector<PointSource> sources;
   for (int row = 0; row < model.height; ++row)
     for (int column = 0; column < model.width; ++column)
-      if (model.at(row, column) != 0) sources.push_back({{geometry_.l(column), geometry_.m(row)}, model.at(row, column)});
+      if (model.at(row, column) != 0 && !std::isnan(n_minus_1({geometry_.l(column), geometry_.m(row)})))
+        sources.push_back({{geometry_.l(column), geometry_.m(row)}, model.at(row, column)});
   return std::make_unique<DirectPrediction>(std::move(sources), threads_);
 }
 

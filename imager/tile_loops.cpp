@@ -6,35 +6,12 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "imager/tap_vectors_internal.h"
+
 HWY_BEFORE_NAMESPACE();
 namespace misfit::imager::HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
-
-/// `Padded` taps as vectors of the widest kind that divides them.
-template <typename Real, int Padded>
-struct Taps {
-  static constexpr int cap = Padded % 16 == 0 ? 16 : Padded % 8 == 0 ? 8 : 4;
-  using Tag = hn::CappedTag<Real, cap>;
-  static constexpr int lanes = static_cast<int>(hn::MaxLanes(Tag()));
-  static constexpr int vectors = Padded / lanes;
-  hn::Vec<Tag> value[vectors];
-
-  /// Σ_d coefficient_d t^d for all taps at once.
-  HWY_ATTR Taps(const TapTable<Real>& table, Real t) {
-    const Tag d;
-    const auto x = hn::Set(d, t);
-    const Real* c = table.coefficient.data() + table.degree * Padded;
-    for (int k = 0; k < vectors; ++k) value[k] = hn::LoadU(d, c + k * lanes);
-    for (int power = table.degree - 1; power >= 0; --power) {
-      c -= Padded;
-      for (int k = 0; k < vectors; ++k) value[k] = hn::MulAdd(value[k], x, hn::LoadU(d, c + k * lanes));
-    }
-  }
-  HWY_ATTR void store(Real* out) const {
-    for (int k = 0; k < vectors; ++k) hn::StoreU(value[k], Tag(), out + k * lanes);
-  }
-};
 
 template <typename Real, int Padded, int Planes>
 HWY_ATTR void spread_samples(const TapTable<Real>& u, const TapTable<Real>& v, const TileBatch<Real>& samples,
@@ -153,29 +130,12 @@ HWY_ATTR void interpolate_double(const TapTable<double>& u, const TapTable<doubl
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
-#include <stdexcept>
-#include <string>
-
 namespace misfit::imager {
 
 HWY_EXPORT(spread_float);
 HWY_EXPORT(spread_double);
 HWY_EXPORT(interpolate_float);
 HWY_EXPORT(interpolate_double);
-
-template <typename Real>
-TapTable<Real>::TapTable(const kernels::PiecewisePolynomial& kernel)
-    : width(kernel.width()), padded((kernel.width() + 3) / 4 * 4), degree(kernel.degree()) {
-  if (padded > 20) throw std::invalid_argument("kernel width " + std::to_string(width) + " not in [1, 20]");
-  coefficient.resize((static_cast<std::size_t>(degree) + 1) * static_cast<std::size_t>(padded));
-  for (int power = 0; power <= degree; ++power)
-    for (int tap = 0; tap < width; ++tap)
-      coefficient[static_cast<std::size_t>(power) * static_cast<std::size_t>(padded) + static_cast<std::size_t>(tap)] =
-          static_cast<Real>(kernel.coefficient(power, tap));
-}
-
-template struct TapTable<float>;
-template struct TapTable<double>;
 
 void spread(const TapTable<float>& u, const TapTable<float>& v, const TileBatch<float>& samples, TileBuffer<float>& buffer) {
   HWY_DYNAMIC_DISPATCH(spread_float)(u, v, samples, buffer);

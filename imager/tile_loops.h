@@ -2,20 +2,9 @@
 
 #include <vector>
 
-#include "kernels/piecewise_polynomial.h"
+#include "imager/tap_table.h"
 
 namespace misfit::imager {
-
-/// A kernel's polynomials as the inner loops want them: [power][tap], taps padded with zeros to a multiple of 4.
-template <typename Real>
-struct TapTable {
-  int width = 0;
-  int padded = 0;
-  int degree = 0;
-  std::vector<Real> coefficient;
-
-  explicit TapTable(const kernels::PiecewisePolynomial& kernel);
-};
 
 /// Samples on their way to or from one tile. Column and row are those of the first tap in the tile's buffer; t as in
 /// kernels::TapFunction.

@@ -29,4 +29,15 @@ inline VisibilityBlock random_samples(std::size_t rows, std::size_t channels, do
   return block;
 }
 
+/// The same with w anywhere up to `max_w` wavelengths at the highest frequency, of both signs.
+inline VisibilityBlock random_samples_with_w(std::size_t rows, std::size_t channels, double cell_rad, double max_w,
+                                             unsigned seed, double reach = 0.99) {
+  VisibilityBlock block = random_samples(rows, channels, cell_rad, seed, reach);
+  std::mt19937_64 random(seed + 1000);
+  std::uniform_real_distribution<double> uniform(-1, 1);
+  const double most_m = max_w * speed_of_light_m_s / block.frequency_hz.back();
+  for (std::size_t row = 0; row < rows; ++row) block.uvw_m[3 * row + 2] = most_m * uniform(random);
+  return block;
+}
+
 }  // namespace misfit::imager::testing

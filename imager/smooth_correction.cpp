@@ -1,0 +1,29 @@
+#include "imager/smooth_correction.h"
+
+#include <cmath>
+
+#include "imager/constants.h"
+
+namespace misfit::imager {
+
+SmoothCorrection::SmoothCorrection(const kernels::Kernel& kernel) {
+  const double end = std::min(0.4999, 1.01 * kernel.x0);
+  scale_ = 2 / (end * end);
+  constexpr int nodes = 64;
+  Eigen::VectorXd x(nodes);
+  for (int i = 0; i < nodes; ++i) x[i] = end * std::sqrt((1 + std::cos(pi * (i + 0.5) / nodes)) / 2);
+  const Eigen::VectorXd h = kernels::optimal_correction(kernel.polynomial, x);
+  const double size = h.cwiseAbs().maxCoeff();
+  int terms = 1;
+  std::vector<double> coefficient;
+  for (int k = 0; k < nodes; ++k) {
+    double sum = 0;
+    for (int i = 0; i < nodes; ++i) sum += h[i] * std::cos(pi * k * (i + 0.5) / nodes);
+    coefficient.push_back((k == 0 ? 1.0 : 2.0) / nodes * sum);
+    if (std::abs(coefficient.back()) > 1e-16 * size) terms = k + 1;
+  }
+  coefficient.resize(static_cast<std::size_t>(terms));
+  coefficient_ = coefficient;
+}
+
+}  // namespace misfit::imager

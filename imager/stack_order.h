@@ -1,0 +1,70 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+#include "imager/facet.h"
+#include "imager/plane_stack.h"
+#include "imager/visibilities.h"
+
+namespace misfit::imager {
+
+/// Turns UVW into cells of the planes of a facet.
+struct StackScale {
+  StackScale(const StackShape& shape, const Facet& facet, double plane_step);
+
+  double u_cells_per_m_hz = 0;
+  double v_cells_per_m_hz = 0;
+  double planes_per_m_hz = 0;
+  double turns_per_m_hz = 0;  ///< 1/c
+  Facet facet;
+};
+
+/// A row of UVW at unit frequency, folded to w ≥ 0 and sheared for the facet.
+struct StackRow {
+  double u_per_hz = 0;      ///< cells
+  double v_per_hz = 0;      ///< cells
+  double w_per_hz = 0;      ///< planes
+  double turns_per_hz = 0;  ///< u l_0 + v m_0 + w middle: the phase of the facet's middle pixel
+  bool folded = false;      ///< (u, v, w) were negated; the visibility is the conjugate
+
+  StackRow(const double* uvw_m, const StackScale& scale);
+};
+
+/// Cells reduced by the grid's period to [0, n).
+inline double reduced(double cells, int n) {
+  return cells - n * std::floor(cells / n);
+}
+
+/// Consecutive channels of one row that fall into one tile and have one lowest plane.
+struct StackRun {
+  std::uint32_t block;
+  std::uint32_t row;
+  std::int32_t plane;
+  std::uint32_t first : 20;
+  std::uint32_t count : 12;
+};
+
+/// Samples in the order in which tiles are visited: runs of tile i are run[begin[i]] … run[begin[i + 1] − 1], by plane and then
+/// in the order of the blocks.
+struct StackOrder {
+  std::vector<std::size_t> begin;  ///< [tile + 1]
+  std::vector<StackRun> run;
+  int first_plane = 0;           ///< that holds any tap
+  std::vector<char> plane_used;  ///< from first_plane on: whether any tap falls there
+};
+
+struct StackOrderOptions {
+  StackShape shape;
+  int width_w = 1;
+  StackScale scale;
+  int threads = 1;
+};
+
+/// Orders the samples that `wanted(block, sample)` accepts by the tile and the plane of their first tap.
+StackOrder order_for_stack(const std::vector<const SampleCoordinates*>& blocks,
+                           const std::function<bool(std::size_t block, std::size_t sample)>& wanted,
+                           const StackOrderOptions& options);
+
+}  // namespace misfit::imager

@@ -1,0 +1,199 @@
+#include "imager/wide_transform.h"
+
+#include <boost/test/data/test_case.hpp>
+#include <boost/test/unit_test.hpp>
+
+#include "imager/direct_transform.h"
+#include "imager/facet.h"
+#include "imager/fft.h"
+#include "imager/gridding_choice.h"
+#include "kernels/catalogue.h"
+#include "tests/imager/comparison.h"
+#include "tests/imager/random_samples.h"
+
+namespace bdata = boost::unit_test::data;
+using namespace misfit;
+using namespace misfit::imager;
+using namespace misfit::imager::testing;
+
+namespace {
+
+struct Case {
+  ImageGeometry geometry;
+  int width = 7;
+  double padding = 1.6;
+  int facets_l = 1;
+  int facets_m = 1;
+};
+
+WideTransformOptions options(const Case& c) {
+  WideTransformOptions o;
+  o.geometry = c.geometry;
+  o.facets_l = c.facets_l;
+  o.facets_m = c.facets_m;
+  const auto fft = [&](int pixels, int facets) {
+    return fast_fft_size(std::max(static_cast<int>(c.padding * ((pixels + facets - 1) / facets)), 4 * c.width));
+  };
+  o.nu = fft(c.geometry.width, c.facets_l);
+  o.nv = fft(c.geometry.height, c.facets_m);
+  const auto kernel = [&](int pixels, int facets, int n) {
+    const double x0 = 0.5 * ((pixels + facets - 1) / facets) / n;
+    return kernels::kernel_family("least-misfit").make(c.width, std::clamp(x0, 0.05, 0.49));
+  };
+  o.kernel_u = kernel(c.geometry.width, c.facets_l, o.nu);
+  o.kernel_v = kernel(c.geometry.height, c.facets_m, o.nv);
+  o.kernel_w = kernels::kernel_family("least-misfit").make(c.width, 0.5 / 2);
+  o.threads = 2;
+  return o;
+}
+
+AdjointResult adjoint_of(const Transform& transform, const VisibilityBlock& block) {
+  const auto sum = transform.adjoint(true);
+  sum->add(block);
+  return sum->finish();
+}
+
+/// Pixels above the horizon.
+std::vector<double> seen(const Image& image) {
+  std::vector<double> pixels;
+  for (const double p : image.pixel)
+    if (!std::isnan(p)) pixels.push_back(p);
+  return pixels;
+}
+
+/// E of the three axes, over the pixels of the largest facet: few are no mean over the field.
+double expected_error(const WideTransformOptions& o) {
+  const auto largest = [](int pixels, int facets) { return (pixels + facets - 1) / facets; };
+  return std::sqrt(axis_misfit(o.kernel_u, largest(o.geometry.width, o.facets_l), o.nu).mean +
+                   axis_misfit(o.kernel_v, largest(o.geometry.height, o.facets_m), o.nv).mean + o.kernel_w.misfit.mean);
+}
+double worst_error(const WideTransformOptions& o) {
+  return std::sqrt(o.kernel_u.misfit.worst_mean + o.kernel_v.misfit.worst_mean + o.kernel_w.misfit.worst_mean);
+}
+
+/// 20° across with w of several hundred wavelengths: tens of turns at the corners.
+const ImageGeometry field{64, 48, 0.0055, {}};
+const double most_w = 600;
+
+}  // namespace
+
+BOOST_AUTO_TEST_SUITE(wide_transform)
+
+BOOST_DATA_TEST_CASE(dirty_image_and_psf_equal_the_direct_transform_within_the_kernel_error,
+                     bdata::xrange(2, 15) * bdata::make({1, 2, 3}), width, facets) {
+  const WideTransformOptions o = options({field, width, 1.6, facets, 3 - facets / 2});
+  const VisibilityBlock block = random_samples_with_w(150, 3, field.cell_rad, most_w, 1);
+  const AdjointResult gridded = adjoint_of(*make_wide_transform(o), block);
+  const AdjointResult direct = adjoint_of(DirectTransform(field, 2), block);
+  constexpr double rounding = 3e-13;  // of phases of some hundred turns
+  BOOST_TEST(relative_error(gridded.image.pixel, direct.image.pixel) < 1.5 * expected_error(o) + rounding);
+  BOOST_TEST(relative_error(gridded.psf.pixel, direct.psf.pixel) < 1.5 * worst_error(o) + rounding);
+  BOOST_TEST(gridded.sums.used == block.samples());
+}
+
+BOOST_DATA_TEST_CASE(predicted_visibilities_equal_the_direct_transform_within_the_kernel_error,
+                     bdata::xrange(2, 15) * bdata::make({1, 2}), width, facets) {
+  const WideTransformOptions o = options({field, width, 1.6, facets, facets});
+  const VisibilityBlock block = random_samples_with_w(200, 2, field.cell_rad, most_w, 2, 2.3);
+  const Image model = random_image(field.width, field.height, 3);
+  const auto gridded = make_wide_transform(o)->predict(model)->at(block);
+  const auto direct = DirectTransform(field, 2).predict(model)->at(block);
+  BOOST_TEST(relative_error(gridded, direct) < 1.5 * expected_error(o) + 3e-13);
+}
+
+BOOST_DATA_TEST_CASE(adjoint_is_the_transpose_of_prediction, bdata::make({1, 2, 5, 8, 14, 20}) * bdata::make({1, 2}), width,
+                     facets) {
+  const WideTransformOptions o = options({{51, 37, 0.008, {}, {0.1, -0.05}}, width, 1.3, facets, facets});
+  const auto transform = make_wide_transform(o);
+  VisibilityBlock y = random_samples_with_w(200, 3, o.geometry.cell_rad, 300, 5);
+  std::fill(y.weight.begin(), y.weight.end(), 1.0F);
+  const Image x = random_image(51, 37, 6);
+  const auto ax = transform->predict(x)->at(y);
+  const Image aty = adjoint_of(*transform, y).image;
+  double left = 0;
+  for (std::size_t i = 0; i < ax.size(); ++i) left += std::real(ax[i] * std::conj(std::complex<double>(y.visibility[i])));
+  double right = 0;
+  for (std::size_t i = 0; i < x.pixel.size(); ++i) right += x.pixel[i] * aty.pixel[i];
+  BOOST_TEST(std::abs(left - right) < 1e-12 * norm(x.pixel) * norm(aty.pixel));
+}
+
+BOOST_DATA_TEST_CASE(the_whole_hemisphere_is_exact_and_nothing_lies_beyond_the_horizon, bdata::make({1, 3, 8}), facets) {
+  const ImageGeometry sky{150, 140, 2.1 / 150, {}};
+  const WideTransformOptions o = options({sky, 9, 1.6, facets, facets});
+  const VisibilityBlock block = random_samples_with_w(200, 1, sky.cell_rad, 30, 7);
+  const AdjointResult gridded = adjoint_of(*make_wide_transform(o), block);
+  const AdjointResult direct = adjoint_of(DirectTransform(sky, 2), block);
+  for (std::size_t i = 0; i < direct.image.pixel.size(); ++i)
+    BOOST_REQUIRE(std::isnan(gridded.image.pixel[i]) == std::isnan(direct.image.pixel[i]));
+  BOOST_TEST(relative_error(seen(gridded.image), seen(direct.image)) < 1.5 * expected_error(o) + 1e-13);
+  Image model = random_image(sky.width, sky.height, 8);
+  const auto transform = make_wide_transform(o);
+  const auto predicted = transform->predict(model)->at(block);
+  for (std::size_t i = 0; i < model.pixel.size(); ++i)
+    if (std::isnan(direct.image.pixel[i])) model.pixel[i] = 1e6;
+  BOOST_TEST((transform->predict(model)->at(block) == predicted));
+  BOOST_TEST(relative_error(predicted, DirectTransform(sky, 2).predict(model)->at(block)) < 1.5 * expected_error(o) + 1e-13);
+}
+
+BOOST_DATA_TEST_CASE(w_of_any_kind_is_as_exact, bdata::make({0, 1, 2, 3, 4}), kind) {
+  const WideTransformOptions o = options({field, 9, 1.6, 2, 2});
+  VisibilityBlock block = random_samples_with_w(kind == 4 ? 1 : 100, 2, field.cell_rad, most_w, 11);
+  for (std::size_t row = 0; row < block.rows(); ++row) {
+    double& w = block.uvw_m[3 * row + 2];
+    const double values[] = {0, 500, -500, row % 2 == 0 ? 1e5 : -3, w};
+    w = values[kind];
+  }
+  const AdjointResult gridded = adjoint_of(*make_wide_transform(o), block);
+  const AdjointResult direct = adjoint_of(DirectTransform(field, 2), block);
+  // One w, or a few, are no average over positions within a cell; rounding of phases of 10⁴ turns.
+  BOOST_TEST(relative_error(gridded.image.pixel, direct.image.pixel) < 1.5 * worst_error(o) + (kind == 3 ? 1e-10 : 1e-13));
+}
+
+BOOST_DATA_TEST_CASE(shapes_odd_thin_and_tiny_are_as_exact, bdata::make({331, 7, 1, 1, 64}) ^ bdata::make({17, 50, 1, 40, 1}),
+                     width, height) {
+  const Case c{{width, height, 0.003, {}, {0.3, 0.2}}, 9, 2.0};
+  const WideTransformOptions o = options(c);
+  const VisibilityBlock block = random_samples_with_w(60, 2, 0.003, 100, 4);
+  const AdjointResult gridded = adjoint_of(*make_wide_transform(o), block);
+  const AdjointResult direct = adjoint_of(DirectTransform(c.geometry, 1), block);
+  const double bound =
+      std::sqrt(o.kernel_u.misfit.worst) + std::sqrt(o.kernel_v.misfit.worst) + std::sqrt(o.kernel_w.misfit.worst);
+  const double data = std::sqrt(direct.sums.weight2_square * static_cast<double>(c.geometry.pixels()));
+  BOOST_TEST(distance(gridded.image.pixel, direct.image.pixel) < 3 * bound * data);
+}
+
+BOOST_DATA_TEST_CASE(result_does_not_depend_on_threads, bdata::make({true, false}), single) {
+  WideTransformOptions o = options({field, 6, 1.5, 2, 1});
+  o.precision = single ? Precision::single_precision : Precision::double_precision;
+  const VisibilityBlock block = random_samples_with_w(3000, 4, field.cell_rad, most_w, 7);
+  const Image model = random_image(field.width, field.height, 8);
+  o.threads = 1;
+  const AdjointResult one = adjoint_of(*make_wide_transform(o), block);
+  const auto predicted = make_wide_transform(o)->predict(model)->at(block);
+  for (const int threads : {2, 3, 7}) {
+    o.threads = threads;
+    const AdjointResult many = adjoint_of(*make_wide_transform(o), block);
+    BOOST_TEST((many.image.pixel == one.image.pixel));
+    BOOST_TEST((many.psf.pixel == one.psf.pixel));
+    BOOST_TEST((make_wide_transform(o)->predict(model)->at(block) == predicted));
+  }
+}
+
+BOOST_AUTO_TEST_CASE(little_memory_changes_nothing_but_rounding) {
+  WideTransformOptions o = options({field, 8, 1.5});
+  const VisibilityBlock a = random_samples_with_w(300, 4, field.cell_rad, most_w, 7);
+  const VisibilityBlock b = random_samples_with_w(200, 1, field.cell_rad, most_w, 8);
+  const auto image_of = [&] {
+    const auto transform = make_wide_transform(o);
+    const auto sum = transform->adjoint(true);
+    sum->add(a);
+    sum->add(b);
+    return sum->finish().image.pixel;
+  };
+  const std::vector<double> roomy = image_of();
+  o.stack_bytes = 1;
+  o.samples_at_once = 1;
+  BOOST_TEST(relative_error(image_of(), roomy) < 1e-13);
+}
+
+BOOST_AUTO_TEST_SUITE_END()
