@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <limits>
 
+#include "imager/horizon.h"
+
 namespace misfit::imager {
 namespace {
 
@@ -14,11 +16,6 @@ void for_lattice(const ImageGeometry& g, int step, const Visit& visit) {
   for (int row = 0; row < g.height; row = next(row, g.height - 1))
     for (int column = 0; column < g.width; column = next(column, g.width - 1))
       if (!std::isnan(n_minus_1({g.l(column), g.m(row)}))) visit(column, row);
-}
-
-bool crosses_horizon(const ImageGeometry& g) {
-  const auto beyond = [&](int column, int row) { return std::isnan(n_minus_1({g.l(column), g.m(row)})); };
-  return beyond(0, 0) || beyond(0, g.height - 1) || beyond(g.width - 1, 0) || beyond(g.width - 1, g.height - 1);
 }
 
 /// The plane of least squares over a coarse lattice.

@@ -1,7 +1,9 @@
 #include "imager/plane_stack.h"
 
 #include <algorithm>
+#include <cmath>
 
+#include "imager/column_loops.h"
 #include "imager/fft.h"
 #include "imager/parallel.h"
 #include "imager/phasors.h"
@@ -15,33 +17,36 @@ std::size_t index(int row, int columns) {
   return static_cast<std::size_t>(row) * static_cast<std::size_t>(columns);
 }
 
-/// Pixel i of `pixels` in the order of an FFT of length n.
-int place(int i, int pixels, int n) {
-  const int x = i - pixels / 2;
-  return x < 0 ? x + n : x;
+int groups_of(int columns) {
+  return (columns + columns_at_once - 1) / columns_at_once;
 }
 
-/// What lies between the two transforms: rows of the grid, columns of the image. [plane][grid][q][image column]
+/// What lies between the two transforms: rows of the grid, columns of the image: [group][plane][grid][q][column in group].
 template <typename Real>
 struct KeptRows {
+  int planes;
   int grids;
   int rows;
-  int width;
-  std::vector<std::complex<Real>> value;
+  std::complex<Real>* value;
 
-  KeptRows(int planes, int grid_count, int row_count, int image_width)
-      : grids(grid_count), rows(row_count), width(image_width), value(index(planes * grid_count * row_count, image_width)) {}
-  std::complex<Real>* row(int plane, int grid, int q) { return value.data() + index((plane * grids + grid) * rows + q, width); }
-  const std::complex<Real>* row(int plane, int grid, int q) const { return const_cast<KeptRows*>(this)->row(plane, grid, q); }
+  std::complex<Real>* at(int group, int plane, int grid, int q) const {
+    return value + index((group * planes + plane) * grids + grid, rows * columns_at_once) + index(q, columns_at_once);
+  }
 };
 
-/// Calls body(begin, end) for consecutive pieces of [0, count), shared among threads.
+template <typename Real>
+KeptRows<Real> kept_rows(PlaneStack<Real>& stack, int width) {
+  const int grids = stack.components / 2;
+  stack.between.reserve(index(groups_of(width) * stack.planes * grids, stack.shape.nv * columns_at_once));
+  return {stack.planes, grids, stack.shape.nv, stack.between.data()};
+}
+
+/// Calls body(group, begin, end) for groups of columns, or of rows, in [0, count), shared among threads.
 template <typename Body>
-void in_pieces(int count, int threads, const Body& body) {
-  const auto pieces = static_cast<std::size_t>((count + columns_at_once - 1) / columns_at_once);
-  parallel_for(pieces, threads, [&](std::size_t piece) {
-    const int begin = static_cast<int>(piece) * columns_at_once;
-    body(begin, std::min(begin + columns_at_once, count));
+void in_groups(int count, int threads, const Body& body) {
+  parallel_for(static_cast<std::size_t>(groups_of(count)), threads, [&](std::size_t i) {
+    const int group = static_cast<int>(i), begin = group * columns_at_once;
+    body(group, begin, std::min(begin + columns_at_once, count));
   });
 }
 
@@ -52,170 +57,268 @@ void for_rows(const StackShape& s, int q, const Visit& visit) {
     if (other >= -s.margin() && other <= s.nv + s.margin()) visit(other + s.margin());
 }
 
-/// Adds a stored row to the canonical one, folding the margins.
 template <typename Real>
-void fold_row(const StackShape& s, const Real* real, const Real* imaginary, std::complex<Real>* out) {
-  const auto add = [&](int from, int to, int count) {
-    for (int i = 0; i < count; ++i) out[to + i] += std::complex<Real>(real[from + i], imaginary[from + i]);
-  };
-  add(s.margin(), 0, s.nu);
-  add(0, s.nu - s.margin(), s.margin());
-  add(s.nu + s.margin(), 0, s.margin() + 1);
+bool row_is_used(const PlaneStack<Real>& stack, int q) {
+  bool used = false;
+  for_rows(stack.shape, q, [&](int r) { used |= stack.row_used[static_cast<std::size_t>(r)] != 0; });
+  return used;
+}
+
+/// Canonical row q of one grid, margins folded in, from line[margin] on. `line` has room for every column of storage.
+template <typename Real>
+void gather_row(const PlaneStack<Real>& stack, int plane, int grid, int q, std::complex<Real>* line) {
+  const StackShape& s = stack.shape;
+  std::fill_n(line, s.columns(), std::complex<Real>(0));
+  for_rows(s, q, [&](int r) {
+    for (int chunk = 0; chunk < s.chunks(); ++chunk) {
+      const Real* re = stack.chunk(r, chunk, plane, 2 * grid);
+      const Real* im = stack.chunk(r, chunk, plane, 2 * grid + 1);
+      std::complex<Real>* out = line + chunk * s.tile;
+      for (int i = 0; i < s.tile; ++i) out[i] += std::complex<Real>(re[i], im[i]);
+    }
+  });
+  for (int i = 0; i < s.margin(); ++i) line[s.nu + i] += line[i];
+  for (int i = 0; i <= s.margin(); ++i) line[s.margin() + i] += line[s.nu + s.margin() + i];
+}
+
+/// Stores row q of one grid, margins filled by periodicity.
+template <typename Real>
+void scatter_row(const std::complex<Real>* row, int plane, int q, PlaneStack<Real>& stack) {
+  const StackShape& s = stack.shape;
+  for_rows(s, q, [&](int r) {
+    int p = s.nu - s.margin();
+    for (int chunk = 0; chunk < s.chunks(); ++chunk) {
+      Real* re = stack.chunk(r, chunk, plane, 0);
+      Real* im = stack.chunk(r, chunk, plane, 1);
+      for (int i = 0; i < s.tile; ++i, ++p) {
+        if (p >= s.nu) p -= s.nu;
+        re[i] = row[p].real();
+        im[i] = row[p].imag();
+      }
+    }
+  });
+}
+
+/// Image column c of `width` in the order of an FFT of length n.
+int place(int c, int width, int n) {
+  const int x = c - width / 2;
+  return x < 0 ? x + n : x;
 }
 
 template <typename Real>
-KeptRows<Real> transform_rows(const PlaneStack<Real>& stack, int width, int threads) {
+KeptRows<Real> transform_rows(PlaneStack<Real>& stack, int width, int threads) {
   const StackShape& s = stack.shape;
-  const int grids = stack.components / 2;
-  KeptRows<Real> kept(stack.planes, grids, s.nv, width);
+  const KeptRows<Real> kept = kept_rows(stack, width);
   const Fft<Real> along_u(s.nu);
-  in_pieces(s.nv, threads, [&](int begin, int end) {
+  in_groups(s.nv, threads, [&](int, int begin, int end) {
     const auto buffer = along_u.complex_buffer();
+    std::vector<std::complex<Real>> line(static_cast<std::size_t>(s.columns()));
     for (int q = begin; q < end; ++q) {
-      bool used = false;
-      for_rows(s, q, [&](int r) { used |= stack.row_used[static_cast<std::size_t>(r)] != 0; });
-      if (!used) continue;
+      if (!row_is_used(stack, q)) continue;
       for (int plane = 0; plane < stack.planes; ++plane)
-        for (int grid = 0; grid < grids; ++grid) {
-          std::fill_n(buffer.get(), s.nu, std::complex<Real>(0));
-          for_rows(s, q,
-                   [&](int r) { fold_row(s, stack.row(plane, 2 * grid, r), stack.row(plane, 2 * grid + 1, r), buffer.get()); });
+        for (int grid = 0; grid < kept.grids; ++grid) {
+          gather_row(stack, plane, grid, q, line.data());
+          std::copy_n(line.data() + s.margin(), s.nu, buffer.get());
           along_u.complex_to_complex(buffer.get(), Fft<Real>::Sign::backward);
-          const int left = width / 2;
-          std::copy_n(buffer.get(), width - left, kept.row(plane, grid, q) + left);
-          std::copy_n(buffer.get() + s.nu - left, left, kept.row(plane, grid, q));
+          for (int group = 0; group < groups_of(width); ++group) {
+            std::complex<Real>* out = kept.at(group, plane, grid, q);
+            const int first = group * columns_at_once, last = std::min(first + columns_at_once, width);
+            for (int c = first; c < last; ++c) *out++ = buffer.get()[place(c, width, s.nu)];
+          }
         }
     }
   });
   return kept;
 }
 
-/// The phases of a column's pixels: exp(2πi w q) at the stack's lowest plane, and from each plane to the next.
-struct ColumnPhases {
-  std::vector<double> turns, cosine, sine, step_cosine, step_sine;
-
-  explicit ColumnPhases(int height) {
-    for (auto* values : {&turns, &cosine, &sine, &step_cosine, &step_sine}) values->resize(static_cast<std::size_t>(height));
-  }
-  void compute(const Facet& facet, const PlaneHeights& heights, int column) {
-    const int height = facet.geometry.height;
-    for (int r = 0; r < height; ++r) turns[static_cast<std::size_t>(r)] = heights.step * facet.curvature(column, r);
-    phasors(turns.data(), height, step_cosine.data(), step_sine.data());
-    for (double& t : turns) t *= heights.first;
-    phasors(turns.data(), height, cosine.data(), sine.data());
-  }
-};
-
-/// The transforms along v of the columns [begin, end) of one grid in every plane. [plane][column] of length nv
-template <typename Real>
-class ColumnBuffers {
+/// The pixels of a group of columns, each column [row]: their corrections, and the phasors that lead from plane to plane.
+class ColumnGroup {
  public:
-  ColumnBuffers(const Fft<Real>& fft, int planes, int columns) : columns_(columns) {
-    for (int i = 0; i < planes * columns; ++i) buffer_.push_back(fft.complex_buffer());
+  ColumnGroup(const StackedFacet& facet, int begin, int end) : begin_(begin), end_(end), height_(facet.facet.geometry.height) {
+    for (auto* values : {&h_, &step_re_, &step_im_, &sum_re_, &sum_im_, &q_}) values->resize(index(columns_at_once, height_));
+    for (int c = begin; c < end; ++c) {
+      double* q = q_.data() + at(c);
+      curvature_of_column(facet.facet, c, q);
+      for (int r = 0; r < height_; ++r) q[r] *= facet.plane_step;
+      correction_of_column(facet.h_w, 1, q, height_, h_.data() + at(c));
+      const double h_u = facet.h_u[static_cast<std::size_t>(c)];
+      for (int r = 0; r < height_; ++r) h_[at(c) + static_cast<std::size_t>(r)] *= h_u * facet.h_v[static_cast<std::size_t>(r)];
+      phasors(q, height_, step_re_.data() + at(c), step_im_.data() + at(c));
+    }
   }
-  std::complex<Real>* at(int plane, int column) { return buffer_[static_cast<std::size_t>(plane * columns_ + column)].get(); }
+
+  void clear() {
+    std::fill(sum_re_.begin(), sum_re_.end(), 0);
+    std::fill(sum_im_.begin(), sum_im_.end(), 0);
+  }
+  /// sum = h · image · exp(−2πi q w_first); 0 beyond the horizon.
+  void load(const Image& image, const Facet& facet, int first_plane) {
+    for (int c = begin_; c < end_; ++c) {
+      first_phasors(c, first_plane);
+      for (std::size_t i = at(c), r = 0; i < at(c + 1); ++i, ++r) {
+        const double pixel = image.at(facet.first_row + static_cast<int>(r), facet.first_column + c) * h_[i];
+        const bool seen = !std::isnan(h_[i]);
+        sum_re_[i] = seen ? pixel * first_re_[r] : 0;
+        sum_im_[i] = seen ? -pixel * first_im_[r] : 0;
+        if (!seen) step_re_[i] = step_im_[i] = 0;
+      }
+    }
+  }
+  /// image += h · Re(sum · exp(+2πi q w_first)).
+  void store(const Facet& facet, int first_plane, Image& image) {
+    for (int c = begin_; c < end_; ++c) {
+      first_phasors(c, first_plane);
+      for (std::size_t i = at(c), r = 0; i < at(c + 1); ++i, ++r)
+        image.at(facet.first_row + static_cast<int>(r), facet.first_column + c) +=
+            h_[i] * (sum_re_[i] * first_re_[r] - sum_im_[i] * first_im_[r]);
+    }
+  }
+  /// One plane of column c, in the order of an FFT of length n: Horner's rule, and its transpose.
+  template <typename Real>
+  void turn_and_add(int c, const std::complex<Real>* column, int n) {
+    in_fft_order(c, n, [&](std::size_t i, int place, int count) {
+      imager::turn_and_add(sum().from(i), step().from(i), column + place, count);
+    });
+  }
+  template <typename Real>
+  void store_and_turn(int c, std::complex<Real>* column, int n) {
+    in_fft_order(c, n, [&](std::size_t i, int place, int count) {
+      imager::store_and_turn(sum().from(i), step().from(i), column + place, count);
+    });
+  }
 
  private:
-  int columns_;
-  std::vector<typename Fft<Real>::ComplexBuffer> buffer_;
+  std::size_t at(int c) const { return index(c - begin_, height_); }
+  ColumnPhasors sum() { return {sum_re_.data(), sum_im_.data()}; }
+  ColumnPhasors step() { return {step_re_.data(), step_im_.data()}; }
+
+  template <typename Visit>
+  void in_fft_order(int c, int n, const Visit& visit) {
+    const int below = height_ / 2;
+    visit(at(c), n - below, below);
+    visit(at(c) + static_cast<std::size_t>(below), 0, height_ - below);
+  }
+  void first_phasors(int c, int first_plane) {
+    turns_.resize(static_cast<std::size_t>(height_));
+    first_re_.resize(turns_.size());
+    first_im_.resize(turns_.size());
+    for (std::size_t r = 0; r < turns_.size(); ++r) turns_[r] = first_plane * q_[at(c) + r];
+    phasors(turns_.data(), height_, first_re_.data(), first_im_.data());
+  }
+
+  int begin_, end_, height_;
+  std::vector<double> q_, h_, step_re_, step_im_, sum_re_, sum_im_;  ///< [column in group][row]; q in planes
+  std::vector<double> turns_, first_re_, first_im_;                  ///< [row]
 };
+
+/// A buffer of length nv for each column of a group.
+template <typename Real>
+std::vector<typename Fft<Real>::ComplexBuffer> column_buffers(const Fft<Real>& fft) {
+  std::vector<typename Fft<Real>::ComplexBuffer> buffers;
+  for (int i = 0; i < columns_at_once; ++i) buffers.push_back(fft.complex_buffer());
+  return buffers;
+}
 
 }  // namespace
 
 template <typename Real>
-void add_stack_to_images(const PlaneStack<Real>& stack, const Facet& facet, const PlaneHeights& heights, int threads,
+void PlaneStack<Real>::reserve(int plane_count) {
+  planes = plane_count;
+  cell_.reserve(shape.cells() * static_cast<std::size_t>(planes * components));
+  row_used.assign(static_cast<std::size_t>(shape.rows()), 0);
+}
+
+template <typename Real>
+void PlaneStack<Real>::clear(int threads) {
+  const std::size_t row_cells = index(shape.columns(), planes * components);
+  parallel_for(static_cast<std::size_t>(shape.rows()), threads,
+               [&](std::size_t r) { std::fill_n(cell_.data() + r * row_cells, row_cells, Real(0)); });
+}
+
+template <typename Real>
+double bytes_a_plane(const StackShape& s, int components, int width) {
+  return static_cast<double>(sizeof(Real)) * components *
+         (static_cast<double>(s.cells()) + static_cast<double>(s.nv) * groups_of(width) * columns_at_once);
+}
+
+template <typename Real>
+void add_stack_to_images(PlaneStack<Real>& stack, const StackedFacet& stacked, int first_plane, int threads,
                          const std::vector<Image*>& images) {
   const StackShape& s = stack.shape;
-  const int height = facet.geometry.height;
-  const KeptRows<Real> kept = transform_rows(stack, facet.geometry.width, threads);
+  const int width = stacked.facet.geometry.width;
+  const KeptRows<Real> kept = transform_rows(stack, width, threads);
+  std::vector<char> used;
+  for (int q = 0; q < s.nv; ++q) used.push_back(row_is_used(stack, q));
   const Fft<Real> along_v(s.nv);
-  in_pieces(facet.geometry.width, threads, [&](int begin, int end) {
-    ColumnBuffers<Real> columns(along_v, stack.planes, end - begin);
-    ColumnPhases phase(height);
-    std::vector<double> real(static_cast<std::size_t>(height)), imaginary(static_cast<std::size_t>(height));
+  in_groups(width, threads, [&](int group, int begin, int end) {
+    const auto column = column_buffers(along_v);
+    ColumnGroup pixels(stacked, begin, end);
     for (int grid = 0; grid < kept.grids; ++grid) {
-      for (int plane = 0; plane < stack.planes; ++plane)
-        for (int q = 0; q < s.nv; ++q)
-          for (int c = begin; c < end; ++c) columns.at(plane, c - begin)[q] = kept.row(plane, grid, q)[c];
-      for (int c = begin; c < end; ++c) {
-        for (int plane = 0; plane < stack.planes; ++plane)
-          along_v.complex_to_complex(columns.at(plane, c - begin), Fft<Real>::Sign::backward);
-        phase.compute(facet, heights, c);
-        for (int r = 0; r < height; ++r) {  // Horner's rule from the highest plane down
-          const int y = place(r, height, s.nv);
-          const auto i = static_cast<std::size_t>(r);
-          double re = 0, im = 0;
-          for (int plane = stack.planes - 1; plane >= 0; --plane) {
-            const std::complex<Real> value = columns.at(plane, c - begin)[y];
-            const double turned = re * phase.step_cosine[i] - im * phase.step_sine[i];
-            im = re * phase.step_sine[i] + im * phase.step_cosine[i] + double{value.imag()};
-            re = turned + double{value.real()};
-          }
-          const double sum = re * phase.cosine[i] - im * phase.sine[i];
-          if (!std::isnan(sum)) images[static_cast<std::size_t>(grid)]->at(facet.first_row + r, facet.first_column + c) += sum;
+      pixels.clear();
+      for (int plane = stack.planes - 1; plane >= 0; --plane) {
+        for (int q = 0; q < s.nv; ++q) {
+          const std::complex<Real>* row = kept.at(group, plane, grid, q);
+          for (int c = 0; c < end - begin; ++c)
+            column[static_cast<std::size_t>(c)].get()[q] = used[static_cast<std::size_t>(q)] != 0 ? row[c] : Real(0);
+        }
+        for (int c = begin; c < end; ++c) {
+          std::complex<Real>* values = column[static_cast<std::size_t>(c - begin)].get();
+          along_v.complex_to_complex(values, Fft<Real>::Sign::backward);
+          pixels.turn_and_add(c, values, s.nv);
         }
       }
+      pixels.store(stacked.facet, first_plane, *images[static_cast<std::size_t>(grid)]);
     }
   });
 }
 
 template <typename Real>
-void image_to_stack(const Image& image, const Facet& facet, const PlaneHeights& heights, int threads, PlaneStack<Real>& stack) {
+void image_to_stack(const Image& image, const StackedFacet& stacked, int first_plane, int threads, PlaneStack<Real>& stack) {
   const StackShape& s = stack.shape;
-  const int width = facet.geometry.width, height = facet.geometry.height;
-  KeptRows<Real> kept(stack.planes, 1, s.nv, width);
+  const int width = stacked.facet.geometry.width;
+  const KeptRows<Real> kept = kept_rows(stack, width);
   const Fft<Real> along_v(s.nv);
-  in_pieces(width, threads, [&](int begin, int end) {
-    ColumnBuffers<Real> columns(along_v, stack.planes, end - begin);
-    ColumnPhases phase(height);
-    for (int c = begin; c < end; ++c) {
-      phase.compute(facet, heights, c);
-      for (int plane = 0; plane < stack.planes; ++plane) std::fill_n(columns.at(plane, c - begin), s.nv, std::complex<Real>(0));
-      for (int r = 0; r < height; ++r) {
-        const auto i = static_cast<std::size_t>(r);
-        if (std::isnan(phase.cosine[i])) continue;
-        const double pixel = image.at(facet.first_row + r, facet.first_column + c);
-        double re = pixel * phase.cosine[i], im = -pixel * phase.sine[i];
-        const int y = place(r, height, s.nv);
-        for (int plane = 0; plane < stack.planes; ++plane) {
-          columns.at(plane, c - begin)[y] = {static_cast<Real>(re), static_cast<Real>(im)};
-          const double turned = re * phase.step_cosine[i] + im * phase.step_sine[i];
-          im = im * phase.step_cosine[i] - re * phase.step_sine[i];
-          re = turned;
-        }
+  in_groups(width, threads, [&](int group, int begin, int end) {
+    const auto column = column_buffers(along_v);
+    ColumnGroup pixels(stacked, begin, end);
+    pixels.load(image, stacked.facet, first_plane);
+    for (int plane = 0; plane < stack.planes; ++plane) {
+      for (int c = begin; c < end; ++c) {
+        std::complex<Real>* values = column[static_cast<std::size_t>(c - begin)].get();
+        std::fill_n(values, s.nv, std::complex<Real>(0));
+        pixels.store_and_turn(c, values, s.nv);
+        along_v.complex_to_complex(values, Fft<Real>::Sign::forward);
       }
-      for (int plane = 0; plane < stack.planes; ++plane)
-        along_v.complex_to_complex(columns.at(plane, c - begin), Fft<Real>::Sign::forward);
+      for (int q = 0; q < s.nv; ++q) {
+        std::complex<Real>* row = kept.at(group, plane, 0, q);
+        for (int c = 0; c < end - begin; ++c) row[c] = column[static_cast<std::size_t>(c)].get()[q];
+      }
     }
-    for (int plane = 0; plane < stack.planes; ++plane)
-      for (int q = 0; q < s.nv; ++q)
-        for (int c = begin; c < end; ++c) kept.row(plane, 0, q)[c] = columns.at(plane, c - begin)[q];
   });
   const Fft<Real> along_u(s.nu);
-  in_pieces(s.nv, threads, [&](int begin, int end) {
+  in_groups(s.nv, threads, [&](int, int begin, int end) {
     const auto buffer = along_u.complex_buffer();
     for (int q = begin; q < end; ++q)
       for (int plane = 0; plane < stack.planes; ++plane) {
         std::fill_n(buffer.get(), s.nu, std::complex<Real>(0));
-        const int left = width / 2;
-        std::copy_n(kept.row(plane, 0, q) + left, width - left, buffer.get());
-        std::copy_n(kept.row(plane, 0, q), left, buffer.get() + s.nu - left);
+        for (int group = 0; group < groups_of(width); ++group) {
+          const std::complex<Real>* in = kept.at(group, plane, 0, q);
+          const int first = group * columns_at_once, last = std::min(first + columns_at_once, width);
+          for (int c = first; c < last; ++c) buffer.get()[place(c, width, s.nu)] = *in++;
+        }
         along_u.complex_to_complex(buffer.get(), Fft<Real>::Sign::forward);
-        for_rows(s, q, [&](int r) {
-          for (int column = 0; column <= s.nu + 2 * s.margin(); ++column) {
-            const std::complex<Real> value = buffer.get()[(column - s.margin() + s.nu) % s.nu];
-            stack.row(plane, 0, r)[column] = value.real();
-            stack.row(plane, 1, r)[column] = value.imag();
-          }
-        });
+        scatter_row(buffer.get(), plane, q, stack);
       }
   });
 }
 
-template void add_stack_to_images(const PlaneStack<float>&, const Facet&, const PlaneHeights&, int, const std::vector<Image*>&);
-template void add_stack_to_images(const PlaneStack<double>&, const Facet&, const PlaneHeights&, int,
-                                  const std::vector<Image*>&);
-template void image_to_stack(const Image&, const Facet&, const PlaneHeights&, int, PlaneStack<float>&);
-template void image_to_stack(const Image&, const Facet&, const PlaneHeights&, int, PlaneStack<double>&);
+template class PlaneStack<float>;
+template class PlaneStack<double>;
+template double bytes_a_plane<float>(const StackShape&, int, int);
+template double bytes_a_plane<double>(const StackShape&, int, int);
+template void add_stack_to_images(PlaneStack<float>&, const StackedFacet&, int, int, const std::vector<Image*>&);
+template void add_stack_to_images(PlaneStack<double>&, const StackedFacet&, int, int, const std::vector<Image*>&);
+template void image_to_stack(const Image&, const StackedFacet&, int, int, PlaneStack<float>&);
+template void image_to_stack(const Image&, const StackedFacet&, int, int, PlaneStack<double>&);
 
 }  // namespace misfit::imager

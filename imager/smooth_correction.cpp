@@ -8,14 +8,13 @@ namespace misfit::imager {
 
 SmoothCorrection::SmoothCorrection(const kernels::Kernel& kernel) {
   const double end = std::min(0.4999, 1.01 * kernel.x0);
-  scale_ = 2 / (end * end);
+  scale = 2 / (end * end);
   constexpr int nodes = 64;
   Eigen::VectorXd x(nodes);
   for (int i = 0; i < nodes; ++i) x[i] = end * std::sqrt((1 + std::cos(pi * (i + 0.5) / nodes)) / 2);
   const Eigen::VectorXd h = kernels::optimal_correction(kernel.polynomial, x);
   const double size = h.cwiseAbs().maxCoeff();
   int terms = 1;
-  std::vector<double> coefficient;
   for (int k = 0; k < nodes; ++k) {
     double sum = 0;
     for (int i = 0; i < nodes; ++i) sum += h[i] * std::cos(pi * k * (i + 0.5) / nodes);
@@ -23,7 +22,6 @@ SmoothCorrection::SmoothCorrection(const kernels::Kernel& kernel) {
     if (std::abs(coefficient.back()) > 1e-16 * size) terms = k + 1;
   }
   coefficient.resize(static_cast<std::size_t>(terms));
-  coefficient_ = coefficient;
 }
 
 }  // namespace misfit::imager

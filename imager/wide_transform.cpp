@@ -6,10 +6,10 @@
 #include <stdexcept>
 #include <string>
 
+#include "imager/horizon.h"
 #include "imager/parallel.h"
 #include "imager/phasors.h"
 #include "imager/sampling.h"
-#include "imager/smooth_correction.h"
 #include "imager/stack_loops.h"
 #include "imager/stack_order.h"
 #include "imager/tile_order.h"
@@ -17,23 +17,14 @@
 namespace misfit::imager {
 namespace {
 
-/// One facet, ready for both directions.
-struct FacetSetup {
-  Facet facet;
-  double plane_step = 0;    ///< wavelengths
-  std::vector<double> h_u;  ///< [column]
-  std::vector<double> h_v;  ///< [row]
-};
-
 template <typename Real>
 struct Setup {
   WideTransformOptions options;
   StackShape shape;
   StackTaps<Real> taps;
-  SmoothCorrection h_w;
-  std::vector<FacetSetup> facets;
+  std::vector<StackedFacet> facets;  ///< those that reach above the horizon
 
-  StackOrderOptions ordering(const FacetSetup& f) const {
+  StackOrderOptions ordering(const StackedFacet& f) const {
     return {shape, taps.w.width, StackScale(shape, f.facet, f.plane_step), options.threads};
   }
 };
@@ -51,29 +42,16 @@ Setup<Real> set_up(const WideTransformOptions& o) {
       o,
       {o.nu, o.nv, o.kernel_u.width(), std::max(tile, o.kernel_u.width())},
       {TapTable<Real>(o.kernel_u.polynomial), TapTable<Real>(o.kernel_v.polynomial), TapTable<Real>(o.kernel_w.polynomial)},
-      SmoothCorrection(o.kernel_w),
       {}};
+  const SmoothCorrection h_w(o.kernel_w);
   for (const Facet& facet : split_into_facets(o.geometry, o.facets_l, o.facets_m)) {
+    if (facet.empty) continue;
     constexpr double flat = 1e-15;  // a facet of one pixel has no curvature
     s.facets.push_back({facet, o.kernel_w.x0 / std::max(facet.reach, flat),
                         axis_correction(o.kernel_u, facet.geometry.width, o.nu),
-                        axis_correction(o.kernel_v, facet.geometry.height, o.nv)});
+                        axis_correction(o.kernel_v, facet.geometry.height, o.nv), h_w});
   }
   return s;
-}
-
-/// h_u h_v h_w at every pixel of a facet: visit(row, column in the whole image, h), with NaN beyond the horizon.
-template <typename Real, typename Visit>
-void for_corrected_pixels(const Setup<Real>& setup, const FacetSetup& f, const Visit& visit) {
-  const ImageGeometry& g = f.facet.geometry;
-  parallel_for(static_cast<std::size_t>(g.height), setup.options.threads, [&](std::size_t r) {
-    const int row = static_cast<int>(r);
-    for (int column = 0; column < g.width; ++column) {
-      const double x = f.plane_step * f.facet.curvature(column, row);
-      const double h = setup.h_w(x) * f.h_u[static_cast<std::size_t>(column)] * f.h_v[r];
-      visit(f.facet.first_row + row, f.facet.first_column + column, h);
-    }
-  });
 }
 
 /// Neighbouring planes that are held at a time.
@@ -85,9 +63,7 @@ struct Slab {
 /// The planes that hold anything, as many at a time as memory allows.
 template <typename Real>
 std::vector<Slab> slabs_of(const StackOrder& order, const Setup<Real>& setup, int width, int components) {
-  const StackShape& s = setup.shape;
-  const double plane_bytes = sizeof(Real) * static_cast<double>(components) *
-                             (static_cast<double>(s.cells()) + static_cast<double>(s.nv) * static_cast<double>(width));
+  const double plane_bytes = bytes_a_plane<Real>(setup.shape, components, width);
   const int most = std::max(1, static_cast<int>(static_cast<double>(setup.options.stack_bytes) / plane_bytes));
   std::vector<Slab> slabs;
   for (std::size_t k = 0; k < order.plane_used.size(); ++k) {
@@ -100,12 +76,13 @@ std::vector<Slab> slabs_of(const StackOrder& order, const Setup<Real>& setup, in
   return slabs;
 }
 
-/// A tile's runs that reach into a slab.
+/// A tile's runs that reach into a slab, and the planes of it that they touch.
 struct StackTask {
   int tile_u;
   int tile_v;
   std::size_t begin;
   std::size_t end;
+  Slab planes;
 };
 
 /// In four colours of tiles whose buffers cannot touch, the fullest of a colour first.
@@ -121,8 +98,13 @@ std::vector<std::vector<StackTask>> tasks_of(const StackOrder& order, const Stac
       const auto begin = std::lower_bound(first, last, slab.first - width_w + 1, below);
       const auto end = std::lower_bound(begin, last, slab.first + slab.planes, below);
       if (begin == end) continue;
-      colours[static_cast<std::size_t>(v % 2 * 2 + u % 2)].push_back(
-          {u, v, static_cast<std::size_t>(begin - order.run.begin()), static_cast<std::size_t>(end - order.run.begin())});
+      const int lowest = std::max(begin->plane, slab.first);
+      const int highest = std::min((end - 1)->plane + width_w, slab.first + slab.planes);
+      colours[static_cast<std::size_t>(v % 2 * 2 + u % 2)].push_back({u,
+                                                                      v,
+                                                                      static_cast<std::size_t>(begin - order.run.begin()),
+                                                                      static_cast<std::size_t>(end - order.run.begin()),
+                                                                      {lowest, highest - lowest}});
     }
   for (std::vector<StackTask>& tasks : colours)
     std::stable_sort(tasks.begin(), tasks.end(),
@@ -144,7 +126,7 @@ struct BatchPhases {
 /// Walks through a task's samples in batches: done(batch, phases) for each, phases computed.
 template <typename Real, typename Done>
 void for_each_batch(const Setup<Real>& setup, const StackScale& scale, const std::vector<const SampleCoordinates*>& blocks,
-                    const StackOrder& order, const StackTask& task, const Slab& slab, const Done& done) {
+                    const StackOrder& order, const StackTask& task, const Done& done) {
   const StackShape& s = setup.shape;
   StackBatch<Real> batch;
   BatchPhases phases;
@@ -163,7 +145,7 @@ void for_each_batch(const Setup<Real>& setup, const StackScale& scale, const std
       const TapPosition v(reduced(row.v_per_hz * frequency, s.nv), s.width);
       const TapPosition w(row.w_per_hz * frequency, setup.taps.w.width);
       const int k = batch.count++;
-      batch.plane[k] = w.first - slab.first;
+      batch.plane[k] = w.first - task.planes.first;
       batch.column[k] = u.first + s.margin() - task.tile_u * s.tile;
       batch.row[k] = v.first + s.margin() - task.tile_v * s.tile;
       batch.tu[k] = static_cast<Real>(u.t);
@@ -177,6 +159,17 @@ void for_each_batch(const Setup<Real>& setup, const StackScale& scale, const std
     }
   }
   if (batch.count > 0) finish();
+}
+
+/// Calls visit(row, chunk, plane, component, cells) for what a tile's buffer and a stack share, in the stack's order.
+template <typename Visit>
+void for_each_chunk(const StackShape& s, const StackTask& task, int components, const Visit& visit) {
+  const int reach = s.tile + s.width - 1;
+  for (int row = 0; row < reach; ++row)
+    for (int chunk = 0; chunk < 2; ++chunk)
+      for (int plane = 0; plane < task.planes.planes; ++plane)
+        for (int component = 0; component < components; ++component)
+          visit(row, chunk, plane, component, std::min(s.tile, reach - chunk * s.tile));
 }
 
 template <typename Real>
@@ -199,11 +192,8 @@ class WideAdjoint : public AdjointSum {
   }
   AdjointResult finish() override {
     flush();
-    for (const FacetSetup& f : setup_.facets)
-      for_corrected_pixels(setup_, f, [&](int row, int column, double h) {
-        result_.image.at(row, column) *= h;
-        if (!result_.psf.pixel.empty()) result_.psf.at(row, column) *= h;
-      });
+    blank_beyond_horizon(setup_.options.geometry, result_.image);
+    if (!result_.psf.pixel.empty()) blank_beyond_horizon(setup_.options.geometry, result_.psf);
     return std::move(result_);
   }
 
@@ -239,16 +229,17 @@ class WideAdjoint : public AdjointSum {
     if (!result_.psf.pixel.empty()) images.push_back(&result_.psf);
     const int components = 2 * static_cast<int>(images.size());
     const auto wanted = [&](std::size_t block, std::size_t i) { return gathered_[block].block.weight[i] != 0; };
-    for (const FacetSetup& f : setup_.facets) {
-      if (f.facet.empty) continue;
+    PlaneStack<Real> stack(setup_.shape, components);
+    for (const StackedFacet& f : setup_.facets) {
       const StackOrderOptions ordering = setup_.ordering(f);
       const StackOrder order = order_for_stack(blocks, wanted, ordering);
       for (const Slab& slab : slabs_of(order, setup_, f.facet.geometry.width, components)) {
-        PlaneStack<Real> stack(setup_.shape, slab.planes, components);
+        stack.reserve(slab.planes);
+        stack.clear(setup_.options.threads);
         for (const std::vector<StackTask>& tasks : tasks_of(order, setup_.shape, slab, setup_.taps.w.width))
           parallel_for(tasks.size(), setup_.options.threads,
-                       [&](std::size_t i) { grid_tile(ordering.scale, blocks, order, tasks[i], slab, stack); });
-        add_stack_to_images(stack, f.facet, {slab.first, f.plane_step}, setup_.options.threads, images);
+                       [&](std::size_t i) { grid_tile(ordering.scale, blocks, order, tasks[i], slab.first, stack); });
+        add_stack_to_images(stack, f, slab.first, setup_.options.threads, images);
       }
     }
     gathered_.clear();
@@ -256,10 +247,10 @@ class WideAdjoint : public AdjointSum {
   }
 
   void grid_tile(const StackScale& scale, const std::vector<const SampleCoordinates*>& blocks, const StackOrder& order,
-                 const StackTask& task, const Slab& slab, PlaneStack<Real>& stack) const {
+                 const StackTask& task, int first_plane, PlaneStack<Real>& stack) const {
     const StackShape& s = setup_.shape;
-    StackBuffer<Real> buffer(s.tile, setup_.taps.u.padded, slab.planes, stack.components);
-    for_each_batch(setup_, scale, blocks, order, task, slab, [&](StackBatch<Real>& batch, const BatchPhases& phases) {
+    StackBuffer<Real> buffer(s.tile, setup_.taps.u.padded, task.planes.planes, stack.components);
+    for_each_batch(setup_, scale, blocks, order, task, [&](StackBatch<Real>& batch, const BatchPhases& phases) {
       // The grid holds conj(V), whose backward transform is the image; see stack_order.h for the axes.
       for (int k = 0; k < batch.count; ++k) {
         const Gathered& g = gathered_[phases.block[k]];
@@ -273,16 +264,13 @@ class WideAdjoint : public AdjointSum {
       }
       spread(setup_.taps, batch, buffer);
     });
-    const int reach = s.tile + s.width - 1;
-    for (int r = 0; r < reach; ++r) {
-      for (int plane = 0; plane < slab.planes; ++plane)
-        for (int component = 0; component < stack.components; ++component) {
-          const Real* from = buffer.row(plane, r, component);
-          Real* to = stack.row(plane, component, task.tile_v * s.tile + r) + task.tile_u * s.tile;
-          for (int c = 0; c < reach; ++c) to[c] += from[c];
-        }
-      stack.row_used[static_cast<std::size_t>(task.tile_v * s.tile + r)] = 1;
-    }
+    for_each_chunk(s, task, stack.components, [&](int row, int chunk, int plane, int component, int count) {
+      const Real* from = buffer.row(plane, row, component) + chunk * s.tile;
+      Real* to =
+          stack.chunk(task.tile_v * s.tile + row, task.tile_u + chunk, task.planes.first - first_plane + plane, component);
+      for (int c = 0; c < count; ++c) to[c] += from[c];
+    });
+    std::fill_n(stack.row_used.begin() + task.tile_v * s.tile, s.tile + s.width - 1, 1);
   }
 
   const Setup<Real>& setup_;
@@ -294,12 +282,7 @@ class WideAdjoint : public AdjointSum {
 template <typename Real>
 class WidePrediction : public Prediction {
  public:
-  WidePrediction(const Setup<Real>& setup, const Image& model) : setup_(setup), corrected_(model) {
-    for (const FacetSetup& f : setup.facets)
-      for_corrected_pixels(setup, f, [&](int row, int column, double h) {
-        corrected_.at(row, column) = std::isnan(h) ? 0 : corrected_.at(row, column) * h;
-      });
-  }
+  WidePrediction(const Setup<Real>& setup, const Image& model) : setup_(setup), model_(model) {}
 
   std::vector<std::complex<double>> at(const SampleCoordinates& coordinates) const override {
     return degrid(coordinates, [](std::size_t, std::size_t) { return true; });
@@ -313,33 +296,33 @@ class WidePrediction : public Prediction {
   std::vector<std::complex<double>> degrid(const SampleCoordinates& at, const Wanted& wanted) const {
     std::vector<std::complex<double>> visibility(at.samples());
     const std::vector<const SampleCoordinates*> blocks{&at};
-    for (const FacetSetup& f : setup_.facets) {
-      if (f.facet.empty) continue;
+    PlaneStack<Real> stack(setup_.shape, 2);
+    for (const StackedFacet& f : setup_.facets) {
       const StackOrderOptions ordering = setup_.ordering(f);
       const StackOrder order = order_for_stack(blocks, wanted, ordering);
       for (const Slab& slab : slabs_of(order, setup_, f.facet.geometry.width, 2)) {
-        PlaneStack<Real> stack(setup_.shape, slab.planes, 2);
-        image_to_stack(corrected_, f.facet, {slab.first, f.plane_step}, setup_.options.threads, stack);
+        stack.reserve(slab.planes);
+        image_to_stack(model_, f, slab.first, setup_.options.threads, stack);
         for (const std::vector<StackTask>& tasks : tasks_of(order, setup_.shape, slab, setup_.taps.w.width))
-          parallel_for(tasks.size(), setup_.options.threads,
-                       [&](std::size_t i) { degrid_tile(ordering.scale, blocks, order, tasks[i], slab, stack, visibility); });
+          parallel_for(tasks.size(), setup_.options.threads, [&](std::size_t i) {
+            degrid_tile(ordering.scale, blocks, order, tasks[i], slab.first, stack, visibility);
+          });
       }
     }
     return visibility;
   }
 
   void degrid_tile(const StackScale& scale, const std::vector<const SampleCoordinates*>& blocks, const StackOrder& order,
-                   const StackTask& task, const Slab& slab, const PlaneStack<Real>& stack,
+                   const StackTask& task, int first_plane, const PlaneStack<Real>& stack,
                    std::vector<std::complex<double>>& visibility) const {
     const StackShape& s = setup_.shape;
-    StackBuffer<Real> buffer(s.tile, setup_.taps.u.padded, slab.planes, 2);
-    const int reach = s.tile + s.width - 1;
-    for (int plane = 0; plane < slab.planes; ++plane)
-      for (int r = 0; r < reach; ++r)
-        for (int component = 0; component < 2; ++component)
-          std::copy_n(stack.row(plane, component, task.tile_v * s.tile + r) + task.tile_u * s.tile, reach,
-                      buffer.row(plane, r, component));
-    for_each_batch(setup_, scale, blocks, order, task, slab, [&](StackBatch<Real>& batch, const BatchPhases& phases) {
+    StackBuffer<Real> buffer(s.tile, setup_.taps.u.padded, task.planes.planes, 2);
+    for_each_chunk(s, task, 2, [&](int row, int chunk, int plane, int component, int count) {
+      std::copy_n(
+          stack.chunk(task.tile_v * s.tile + row, task.tile_u + chunk, task.planes.first - first_plane + plane, component),
+          count, buffer.row(plane, row, component) + chunk * s.tile);
+    });
+    for_each_batch(setup_, scale, blocks, order, task, [&](StackBatch<Real>& batch, const BatchPhases& phases) {
       interpolate(setup_.taps, buffer, batch);
       for (int k = 0; k < batch.count; ++k) {
         const double re = double{batch.value[0][k]}, im = double{batch.value[1][k]};
@@ -351,7 +334,7 @@ class WidePrediction : public Prediction {
   }
 
   const Setup<Real>& setup_;
-  Image corrected_;
+  Image model_;
 };
 
 template <typename Real>
