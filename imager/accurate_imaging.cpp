@@ -21,18 +21,20 @@ AccurateImages make_images(const VisibilitySource& source, const GriddingRequest
   {
     const StageTimer timer(times, "plan");
     made.plan = plan_gridding(request);
-    made.transform = make_plane_transform(made.plan.options);
+    made.transform = make_transform(made.plan.options);
   }
   made.images = make_dirty_images(source, *made.transform, true, progress, times);
   return made;
 }
 
 /// Error of the image relative to its RMS as the pixels show it, a few to many so that the direct sums take less than a second.
-double checked_error(const VisibilitySource& source, const ImageGeometry& geometry, const DirtyImages& images, int threads,
-                     StageTimes& times) {
+double checked_error(const VisibilitySource& source, const AccurateImages& made, StageTimes& times) {
   const StageTimer timer(times, "check pixels");
+  const DirtyImages& images = made.images;
+  const WideTransformOptions& o = made.plan.options;
   const double affordable = 4e7 / static_cast<double>(images.sums.used);
-  const DirectPixels at{geometry, random_pixels(geometry, static_cast<int>(std::clamp(affordable, 4.0, 64.0))), false, threads};
+  const int count = static_cast<int>(std::clamp(affordable, 4.0, 64.0));
+  const DirectPixels at{o.geometry, random_pixels(o.geometry, count), o.has_w_axis(), o.threads};
   std::vector<double> sum(at.pixel.size());
   const auto stream = source.open();
   while (const auto block = stream->next()) add_direct_pixels(*block, at, sum);
@@ -57,8 +59,9 @@ Weakness weakness_of(const DirtyImages& images, StageTimes& times) {
 
 TheoreticalError theoretical_error(const GriddingPlan& plan, const SampleSums& sums, double image_rms,
                                    const NeglectedPhase& w) {
-  const double phase_rms = std::min(w.rms_rad, std::sqrt(2.0));  // unit phasors at random are √2 apart
-  const double phase_max = std::min(w.max_rad, 2.0);
+  const bool neglected = !plan.options.has_w_axis();
+  const double phase_rms = neglected ? std::min(w.rms_rad, std::sqrt(2.0)) : 0;  // unit phasors at random are √2 apart
+  const double phase_max = neglected ? std::min(w.max_rad, 2.0) : 0;
   const auto over_image = [image_rms](double x) { return x == 0 ? 0 : x / image_rms; };
   const double flux = over_image(sums.weight_abs / sums.weight);
   TheoreticalError error;
@@ -76,8 +79,7 @@ AccurateImages make_accurate_images(const VisibilitySource& source, const Griddi
     const Weakness weak = weakness_of(made.images, times);
     const double expected = made.plan.expected_error * weak.random / request.accuracy;
     if (expected > 1 || made.plan.expected_error * weak.coherent <= request.accuracy) return expected;
-    return std::max(expected,
-                    2 * checked_error(source, request.geometry, made.images, request.threads, times) / request.accuracy);
+    return std::max(expected, 2 * checked_error(source, made, times) / request.accuracy);
   };
   if (request.accuracy == 0) return made;
   const double first = excess();

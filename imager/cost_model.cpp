@@ -17,11 +17,11 @@ double padded(int width) {
   return (width + 3) / 4 * 4;
 }
 
-/// Points times logarithms: half the rows, since the grid is Hermitian, and the kept columns.
+/// Points times logarithms of the rows and the kept columns; half of both where the grid is Hermitian, in the plane.
 double fft_points(const GriddingWork& work) {
   const double row = work.nu * std::log2(work.nu);
   const double column = work.nv * std::log2(work.nv);
-  return work.planes * (0.5 * work.nv * row + 0.5 * work.columns * column);
+  return (work.has_w_axis() ? 1 : 0.5) * work.planes * (work.nv * row + work.columns * column);
 }
 
 /// Samples at random over the grid, each a row.
@@ -51,8 +51,8 @@ Trial time_of(int samples, int pixels, int width, Precision precision) {
   options.precision = precision;
   const auto transform = make_plane_transform(options);
   const VisibilityBlock block = random_block(samples, options.geometry.cell_rad);
-  Trial trial{{double(samples), width, 1, options.kernel_u.polynomial.degree(), options.nu, options.nv, pixels, 1, precision},
-              HUGE_VAL};
+  const int degree = options.kernel_u.polynomial.degree();
+  Trial trial{{double(samples), width, degree, options.nu, options.nv, pixels, precision}, HUGE_VAL};
   for (int repeat = 0; repeat < 3; ++repeat) {
     const auto start = std::chrono::steady_clock::now();
     const auto sum = transform->adjoint(true);
@@ -66,21 +66,24 @@ Trial time_of(int samples, int pixels, int width, Precision precision) {
 
 /// Cells and taps of a sample, in units of the cost of a cell.
 double cells_of(const GriddingWork& work, double tap_over_cell) {
-  return work.width * padded(work.width) * work.width_w + tap_over_cell * 2 * padded(work.width) * (work.degree + 1);
+  constexpr double stack = 4.0 / 3;  // a complex PSF
+  const double planes = work.has_w_axis() ? stack * work.width_w : 1;
+  return work.width * padded(work.width) * planes + tap_over_cell * 2 * padded(work.width) * (work.degree + 1);
 }
 
 }  // namespace
 
 double CostModel::seconds(const GriddingWork& work) const {
-  const double per_sample = sample_ns + cell_ns * cells_of(work, tap_ns / cell_ns);
+  const double per_sample = (work.has_w_axis() ? wide_sample_ns : sample_ns) + cell_ns * cells_of(work, tap_ns / cell_ns);
   const double images = 2;  // dirty image and PSF
-  const double single_ns = work.samples * per_sample + images * fft_points(work) * fft_ns;
+  const double single_ns = work.samples * work.facets * per_sample + images * fft_points(work) * fft_ns;
   return 1e-9 * single_ns * (work.precision == Precision::single_precision ? 1 : double_cost);
 }
 
 double operation_count(const GriddingWork& work) {
   const double points = static_cast<double>(work.nu) * work.nv;
-  return work.samples * work.width * work.width * work.width_w + work.planes * points * std::log2(points);
+  const double cells = static_cast<double>(work.width) * work.width * std::max(1, work.width_w);
+  return work.samples * work.facets * cells + work.planes * points * std::log2(points);
 }
 
 CostModel measure_costs() {

@@ -8,23 +8,27 @@ namespace misfit::imager {
 struct GriddingWork {
   double samples = 0;  ///< visibilities
   int width = 1;       ///< cells a visibility touches along u and along v
-  int width_w = 1;     ///< planes it touches; 1 without a w axis
   int degree = 0;      ///< of the kernels' polynomials
-  int nu = 0;          ///< FFT lengths
+  int nu = 0;          ///< FFT lengths, of a facet where there are facets
   int nv = 0;
   int columns = 0;  ///< of the FFT's image that are kept
-  int planes = 1;   ///< FFTs of two dimensions: one for each w plane
   Precision precision = Precision::double_precision;
+  int width_w = 0;  ///< planes a visibility touches in each facet; 0 = no w axis
+  int facets = 1;
+  int planes = 1;  ///< FFTs of two dimensions: one for each w plane of each facet
+
+  bool has_w_axis() const { return width_w > 0; }
 };
 
 /// Time on one core for a dirty image and its PSF, from counts of operations. The default constants are of one machine, fixed:
 /// what is chosen with them depends on options and data alone. Those of the machine at hand (measure_costs) predict seconds.
 struct CostModel {
-  double sample_ns = 15;     ///< a sample's ordering and coordinates
-  double cell_ns = 0.15;     ///< a cell of width × padded width in three planes
-  double tap_ns = 0.012;     ///< a coefficient of the polynomials, for each padded tap of both axes
-  double fft_ns = 0.6;       ///< a point and binary logarithm of an FFT
-  double double_cost = 1.5;  ///< over single precision: twice the bytes, half the lanes
+  double sample_ns = 15;       ///< a sample's ordering and coordinates
+  double cell_ns = 0.15;       ///< a cell of width × padded width in three planes
+  double tap_ns = 0.012;       ///< a coefficient of the polynomials, for each padded tap of both axes
+  double fft_ns = 0.6;         ///< a point and binary logarithm of an FFT
+  double double_cost = 1.5;    ///< over single precision: twice the bytes, half the lanes
+  double wide_sample_ns = 60;  ///< a sample's ordering, coordinates and phase in each facet that has a w axis
 
   double seconds(const GriddingWork& work) const;
 };

@@ -42,7 +42,7 @@ void measure_reach(Facet& f, int step) {
   });
   f.empty = least > most;
   if (f.empty) return;
-  constexpr double between = 1.001;  // the lattice's points
+  constexpr double between = 1.002;  // the lattice's points
   f.middle = (least + most) / 2;
   f.reach = between * (most - least) / 2;
 }
@@ -61,7 +61,7 @@ std::vector<Facet> split_into_facets(const ImageGeometry& image, int along_l, in
       f.geometry.width = edge(image.width, along_l, i + 1) - f.first_column;
       f.geometry.height = edge(image.height, along_m, j + 1) - f.first_row;
       f.geometry.centre = {image.l(f.first_column + f.geometry.width / 2), image.m(f.first_row + f.geometry.height / 2)};
-      constexpr int lattice = 64;
+      constexpr int lattice = 32;
       const int step = std::max(1, std::max(f.geometry.width, f.geometry.height) / lattice);
       fit_plane(f, step);
       measure_reach(f, crosses_horizon(f.geometry) ? 1 : step);

@@ -31,9 +31,10 @@ class KernelShelf {
     return made({width, pixels, fft_size}, 0.5 * pixels / fft_size,
                 [&](const kernels::Kernel& kernel) { return axis_misfit(kernel, pixels, fft_size); });
   }
-  const AxisKernel& w_axis(int width, double padding) {
-    const int thousandths = static_cast<int>(std::lround(1000 * padding));
-    return made({width, 0, thousandths}, 0.5 / padding, [](const kernels::Kernel& kernel) { return kernel.misfit; });
+  /// Over many pixels of an FFT of about this padding; over planes.
+  const AxisKernel& axis(int width, double padding) {
+    const int thousandths = static_cast<int>(std::floor(1000 * padding));
+    return made({width, 0, thousandths}, 500.0 / thousandths, [](const kernels::Kernel& kernel) { return kernel.misfit; });
   }
 
  private:
@@ -53,8 +54,9 @@ class KernelShelf {
 
 class Search {
  public:
-  explicit Search(const GriddingRequest& request)
-      : request_(request), shelf_(request), target_(request.accuracy == 0 ? HUGE_VAL : request.accuracy) {}
+  /// With a w axis over one of the facetings, or without where there are none.
+  Search(const GriddingRequest& request, double target, std::vector<Faceting> ways)
+      : request_(request), shelf_(request), target_(target), ways_(std::move(ways)) {}
 
   GriddingChoice run() {
     for (const Precision precision : {Precision::single_precision, Precision::double_precision}) {
@@ -64,7 +66,7 @@ class Search {
     }
     GriddingChoice choice;
     choice.reached = best_.has_value();
-    choice.best = simplified(best_ ? *best_ : *most_exact_);
+    choice.best = simplified(made_exactly(best_ ? *best_ : *most_exact_));
     choice.rejected = neighbours(choice.best);
     return choice;
   }
@@ -99,22 +101,60 @@ class Search {
     const ImageGeometry& g = request_.geometry;
     c.work = {static_cast<double>(request_.samples),
               width,
-              1,
               width,  // close to the degree that will do
               fft_size(g.width, padding_u, width),
               fft_size(g.height, padding_v, width),
               g.width,
-              1,
               precision};
     c.cost_s = CostModel().seconds(c.work);
+    if (has_w_axis()) split(c, 1, request_.kernel.min_width);  // the least that a w axis costs
     return c;
   }
 
+  /// Takes the faceting that costs least with planes of this padding and width.
+  void split(GriddingCandidate& c, double padding_w, int width_w) const {
+    c.cost_s = HUGE_VAL;
+    for (const Faceting& way : ways_) {
+      GriddingWork work = c.work;
+      work.width_w = width_w;
+      work.facets = static_cast<int>(way.turns.size());
+      work.planes = way.planes(padding_w, width_w);
+      work.nu = fft_size(way.width, c.padding_u, work.width);
+      work.nv = fft_size(way.height, c.padding_v, work.width);
+      work.columns = way.width;
+      const double cost_s = CostModel().seconds(work);
+      if (cost_s >= c.cost_s) continue;
+      c.work = work;
+      c.cost_s = cost_s;
+      c.faceting = way;
+    }
+    c.padding_w = padding_w;
+  }
+
+  bool has_w_axis() const { return !ways_.empty(); }
+  bool small(int pixels) const { return pixels < continuum; }
+
   void judge_plane(GriddingCandidate& c) {
-    c.u = shelf_.axis(c.work.width, request_.geometry.width, c.work.nu);
-    c.v = shelf_.axis(c.work.width, request_.geometry.height, c.work.nv);
+    const auto axis = [&](int pixels, double padding) {
+      return small(pixels) ? shelf_.axis(c.work.width, pixels, fft_size(pixels, padding, c.work.width))
+                           : shelf_.axis(c.work.width, padding);
+    };
+    c.u = axis(request_.geometry.width, c.padding_u);
+    c.v = axis(request_.geometry.height, c.padding_v);
     judge(c);
+  }
+  void remember(const GriddingCandidate& c) {
     if (!most_exact_ || c.worst_error < most_exact_->worst_error) most_exact_ = c;
+  }
+
+  /// With kernels for the very FFT sizes, which are a little longer than the paddings ask for.
+  GriddingCandidate made_exactly(const GriddingCandidate& nominal) {
+    GriddingCandidate c = nominal;
+    const ImageGeometry& g = request_.geometry;
+    c.u = shelf_.axis(c.work.width, c.work.has_w_axis() ? c.faceting.width : g.width, c.work.nu);
+    c.v = shelf_.axis(c.work.width, c.work.has_w_axis() ? c.faceting.height : g.height, c.work.nv);
+    judge(c);
+    return c.worst_error <= std::max(target_, nominal.worst_error) ? c : nominal;
   }
 
   /// Whether a wider kernel would only gather rounding.
@@ -155,7 +195,8 @@ class Search {
       return Outcome::costs_too_much;
     }
     judge_plane(c);
-    if (c.worst_error <= target_ && request_.w_turns > 0) c = with_w(c);
+    if (has_w_axis()) c = with_w(c);
+    remember(c);
     const bool reaches = c.worst_error <= target_;
     considered_.push_back({c, reaches ? Rejection::costs_more : Rejection::not_exact_enough});
     if (!reaches) return Outcome::not_exact_enough;
@@ -182,6 +223,7 @@ class Search {
       GriddingCandidate c = sized(width + i, padding_u, padding_v, precision);
       judge_plane(c);
       log_error[i] = std::log(std::max(c.worst_error * c.worst_error - c.rounding * c.rounding, 1e-40)) / 2;
+      remember(has_w_axis() ? with_w(c) : c);
     }
     return Forecast{log_error[1], std::min(-0.1, log_error[1] - log_error[0]), width + 1};
   }
@@ -204,30 +246,26 @@ class Search {
     return {};
   }
 
-  /// With the cheapest w axis that keeps the accuracy: each plane is an FFT, and each sample touches W_w of them. Where none
-  /// does, with an infinite error.
+  /// With the cheapest w axis that keeps the accuracy, or where the plane alone misses it, with one that is as exact as it.
   GriddingCandidate with_w(const GriddingCandidate& plane) {
-    std::optional<GriddingCandidate> cheapest;
+    const double goal = plane.worst_error < target_ && target_ < HUGE_VAL ? target_ : 1.2 * plane.worst_error;
+    std::optional<GriddingCandidate> cheapest, most_exact;
     int least = request_.kernel.min_width;
-    for (const double padding : usual_w_paddings)
+    for (const double usual : usual_w_paddings)
       for (int width = least; width <= request_.kernel.max_width; ++width) {
+        const double padding = std::max(usual, least_padding());
         GriddingCandidate c = plane;
-        c.padding_w = padding;
-        c.work.width_w = width;
-        c.work.planes = static_cast<int>(std::ceil(padding * request_.w_turns)) + width;
-        c.cost_s = CostModel().seconds(c.work);
+        split(c, padding, width);
         if (cheapest && c.cost_s >= cheapest->cost_s) break;
-        c.w = shelf_.w_axis(width, padding);
+        c.w = shelf_.axis(width, padding);
         judge(c);
-        if (c.worst_error > target_ && !exhausted(c)) continue;
-        if (c.worst_error <= target_) cheapest = c;
+        if (!most_exact || c.worst_error < most_exact->worst_error) most_exact = c;
+        if (c.worst_error > goal && !exhausted(c)) continue;
+        if (c.worst_error <= goal) cheapest = c;
         least = width;
         break;
       }
-    if (cheapest) return *cheapest;
-    GriddingCandidate none = plane;
-    none.worst_error = HUGE_VAL;
-    return none;
+    return cheapest ? *cheapest : *most_exact;
   }
 
   /// With the polynomials of lowest degree that cost less than half a percent of the squared error.
@@ -245,9 +283,11 @@ class Search {
     };
     cut(simple.u);
     cut(simple.v);
-    simple.u.misfit = axis_misfit(simple.u.kernel, request_.geometry.width, exact.work.nu);
-    simple.v.misfit = axis_misfit(simple.v.kernel, request_.geometry.height, exact.work.nv);
-    if (exact.work.planes > 1) {
+    const bool wide = exact.work.has_w_axis();
+    const ImageGeometry& g = request_.geometry;
+    simple.u.misfit = axis_misfit(simple.u.kernel, wide ? exact.faceting.width : g.width, exact.work.nu);
+    simple.v.misfit = axis_misfit(simple.v.kernel, wide ? exact.faceting.height : g.height, exact.work.nv);
+    if (wide) {
       cut(simple.w);
       simple.w.misfit = simple.w.kernel.misfit;
     }
@@ -278,6 +318,7 @@ class Search {
   GriddingRequest request_;
   KernelShelf shelf_;
   double target_;
+  std::vector<Faceting> ways_;
   std::optional<GriddingCandidate> best_;
   std::optional<GriddingCandidate> most_exact_;
   std::vector<RejectedCandidate> considered_;
@@ -300,7 +341,21 @@ void judge(GriddingCandidate& c) {
 }
 
 GriddingChoice choose_gridding(const GriddingRequest& request) {
-  return Search(request).run();
+  const double phase = largest_w_phase_rad(request.geometry, request.max_abs_w);
+  const bool automatic = request.gridder == Gridder::automatic;
+  const double target = request.accuracy == 0 ? HUGE_VAL : request.accuracy;
+  const auto search = [&](bool wide) {
+    const double neglected = automatic && !wide && target < HUGE_VAL ? phase : 0;
+    std::vector<Faceting> ways;
+    if (wide) ways = facetings(request.geometry, request.max_abs_w, request.facets ? most_facets : 1);
+    GriddingChoice choice = Search(request, target - neglected, ways).run();
+    choice.w_phase_rad = phase;
+    return choice;
+  };
+  if (!automatic || request.accuracy != 0)
+    return search(request.gridder == Gridder::wide || (automatic && phase > neglected_part * request.accuracy));
+  GriddingChoice plane = search(false);
+  return phase > neglected_part * plane.best.worst_error ? search(true) : plane;
 }
 
 }  // namespace misfit::imager

@@ -4,9 +4,13 @@
 #include <vector>
 
 #include "imager/cost_model.h"
+#include "imager/faceting.h"
 #include "kernels/catalogue.h"
 
 namespace misfit::imager {
+
+/// Whether a transform has a w axis: where its phase matters, never, or always.
+enum class Gridder { automatic, standard, wide };
 
 /// What is asked of a transform.
 struct GriddingRequest {
@@ -18,9 +22,9 @@ struct GriddingRequest {
   bool best_effort = false;   ///< take the most exact kernel when the accuracy is out of reach
   std::uint64_t samples = 0;  ///< visibilities in a pass
   int threads = 1;
-  /// Turns of phase that w makes: range of w in wavelengths times range of n − 1 over the image. 0 = no w axis. The transform
-  /// in the plane has none; a choice can be made for one.
-  double w_turns = 0;
+  Gridder gridder = Gridder::automatic;
+  double max_abs_w = 0;  ///< largest |w| of the samples, in wavelengths
+  bool facets = true;    ///< a w axis may split the image
 };
 
 /// Rounding of single precision over that of double, in taps, sums and FFT.
@@ -46,6 +50,7 @@ struct GriddingCandidate {
   AxisKernel u;
   AxisKernel v;
   AxisKernel w;               ///< all zero errors without a w axis
+  Faceting faceting;          ///< with a w axis
   double cost_s = 0;          ///< by the fixed constants; see CostModel
   double rounding = 0;        ///< RMS of rounding, relative
   double expected_error = 0;  ///< RMS error of image and prediction relative to data with random phases, √(E_u + E_v + E_w)
@@ -67,11 +72,15 @@ struct RejectedCandidate {
 struct GriddingChoice {
   GriddingCandidate best;  ///< the cheapest that reaches the accuracy, or the most exact
   bool reached = true;
+  double w_phase_rad = 0;                   ///< the largest that w makes over the image; neglected unless `best` has a w axis
   std::vector<RejectedCandidate> rejected;  ///< the cheapest at each other padding, and the widths next to the best
 };
 
+/// Part of the accuracy that the neglected phase of w may take.
+inline constexpr double neglected_part = 0.3;
+
 /// The cheapest way that reaches the accuracy, by the fixed constants of CostModel: width along u and v and along w, padding
-/// for each axis, precision, and degree of the polynomials.
+/// for each axis, facets, precision, and degree of the polynomials.
 GriddingChoice choose_gridding(const GriddingRequest& request);
 
 }  // namespace misfit::imager

@@ -5,6 +5,8 @@
 #include <cstdio>
 #include <stdexcept>
 
+#include "imager/constants.h"
+
 namespace misfit::imager {
 namespace {
 
@@ -30,8 +32,33 @@ std::string text_of(const GriddingChoice& choice) {
   return all;
 }
 
+std::string times(int a, int b) {
+  return std::to_string(a) + " × " + std::to_string(b);
+}
+
+/// How w is dealt with.
+Plan w_decisions(const GriddingRequest& request, const GriddingChoice& choice) {
+  const std::string phase = "its phase reaches " + text("%.2g", choice.w_phase_rad) + " rad over this image";
+  const GriddingWork& work = choice.best.work;
+  if (!work.has_w_axis())
+    return {{"w planes", "left out",
+             request.gridder == Gridder::standard ? "asked for, although " + phase
+                                                  : phase + ", less than what the accuracy leaves to it"}};
+  const Faceting& way = choice.best.faceting;
+  const double turns = choice.w_phase_rad / (2 * pi);
+  const double left = *std::max_element(way.turns.begin(), way.turns.end());
+  const double whole = static_cast<double>(request.geometry.width) * request.geometry.height;
+  const double equal = work.planes * (static_cast<double>(way.width) * way.height) / whole;
+  return {{"w axis", "width " + std::to_string(work.width_w) + " at padding " + text("%.2f", choice.best.padding_w), phase},
+          {"facets", times(way.along_l, way.along_m),
+           "each on its own tangent plane: at most " + text("%.3g", left) + " of " + text("%.3g", turns) +
+               " turns are left to the w axis"},
+          {"w planes", std::to_string(work.planes) + " in all facets, w ≥ 0 alone",
+           "FFTs as of " + text("%.1f", equal) + " planes of the whole image; V(−u, −v, −w) = conj V(u, v, w)"}};
+}
+
 Plan decisions_of(const GriddingRequest& request, const GriddingPlan& plan) {
-  const PlaneTransformOptions& o = plan.options;
+  const WideTransformOptions& o = plan.options;
   const bool single = o.precision == Precision::single_precision;
   const std::string because_accuracy = request.accuracy == 0 ? "as asked"
                                                              : "worst position within a cell, or pixel at the corner, gives " +
@@ -39,21 +66,24 @@ Plan decisions_of(const GriddingRequest& request, const GriddingPlan& plan) {
                                                                    text("%.2g", request.accuracy);
   const std::string rejected = text_of(plan.choice);
   const std::string others = rejected.empty() ? "" : "; " + rejected;
-  return {
+  Plan decisions = {
       {"kernel", o.kernel_u.name, "expected error of random data " + text("%.2g", plan.expected_error)},
       {"kernel width", std::to_string(o.kernel_u.width()), because_accuracy},
-      {"FFT size", std::to_string(o.nu) + " × " + std::to_string(o.nv),
-       "padding " + text("%.3f", static_cast<double>(o.nu) / o.geometry.width) +
-           " along u is the cheapest that keeps the accuracy" + others},
+      {"FFT size", times(o.nu, o.nv),
+       "padding " + text("%.3f", plan.choice.best.padding_u) + " along u is the cheapest that keeps the accuracy" + others},
       {"kernel evaluation", "polynomials of degree " + std::to_string(o.kernel_u.polynomial.degree()),
        "adds less than 0.5% to the kernel's squared error"},
       {"precision of grid and FFT", single ? "single" : "double",
        single ? "rounding adds " + text("%.1g", plan.rounding)
               : "single precision would add " + text("%.1g", plan.rounding * single_over_double) +
                     " of rounding, and is not trusted below " + text("%.0e", single_from)},
-      {"half of the uv plane", "gridded alone",
-       "the image is real, so V(−u, −v) = conj V(u, v): half the memory, half the FFT"},
   };
+  const Plan of_w = w_decisions(request, plan.choice);
+  decisions.insert(decisions.end(), of_w.begin(), of_w.end());
+  if (!o.has_w_axis())
+    decisions.push_back({"half of the uv plane", "gridded alone",
+                         "the image is real, so V(−u, −v) = conj V(u, v): half the memory, half the FFT"});
+  return decisions;
 }
 
 }  // namespace
@@ -71,6 +101,8 @@ void check_request(const GriddingRequest& request) {
     throw std::invalid_argument("padding " + text("%g", request.padding) + " is less than " +
                                 text("%.4g", 0.5 / family.max_x0) + ", which kernel " + family.name +
                                 " needs, made for x0 up to " + text("%.4g", family.max_x0));
+  if (!(request.max_abs_w >= 0 && std::isfinite(request.max_abs_w)))
+    throw std::invalid_argument("largest |w| is " + text("%g", request.max_abs_w) + " wavelengths, expected 0 or more");
   if (!(request.accuracy >= 0 && request.accuracy < 1))
     throw std::invalid_argument("accuracy " + text("%g", request.accuracy) + " not in (0, 1)");
 }
@@ -83,9 +115,6 @@ double nameable_accuracy(double worst_error) {
 
 GriddingPlan plan_gridding(const GriddingRequest& request) {
   check_request(request);
-  if (request.w_turns != 0)
-    throw std::invalid_argument("w_turns is " + text("%g", request.w_turns) +
-                                ", expected 0: the plane transform has no w axis");
   GriddingPlan plan;
   plan.choice = choose_gridding(request);
   const GriddingCandidate& best = plan.choice.best;
@@ -96,16 +125,24 @@ GriddingPlan plan_gridding(const GriddingRequest& request) {
                                 (request.padding == 0 ? "" : " at padding " + text("%g", request.padding)) + "; it can reach " +
                                 text("%.2g", nameable_accuracy(best.worst_error)) + " for this image, with width " +
                                 std::to_string(best.work.width) + " at padding " + text("%g", best.padding_u));
-  plan.options = {request.geometry, best.work.nu,        best.work.nv,   best.u.kernel,
-                  best.v.kernel,    best.work.precision, request.threads};
+  static_cast<PlaneTransformOptions&>(plan.options) = {request.geometry, best.work.nu,        best.work.nv,   best.u.kernel,
+                                                       best.v.kernel,    best.work.precision, request.threads};
+  if (best.work.has_w_axis()) {
+    plan.options.kernel_w = best.w.kernel;
+    plan.options.facets_l = best.faceting.along_l;
+    plan.options.facets_m = best.faceting.along_m;
+  }
   plan.expected_error = best.expected_error;
   plan.rounding = best.rounding;
   plan.worst_error = best.worst_error;
   constexpr double several = 6;     // rounding is random; six times its RMS bounds it for practical purposes
   constexpr double between = 1.01;  // maxima were looked for at points, and lie between them
-  const auto both = [](double u, double v) { return (1 + between * std::sqrt(u)) * (1 + between * std::sqrt(v)) - 1; };
-  plan.bound_rms = both(best.u.misfit.worst_mean, best.v.misfit.worst_mean) + several * plan.rounding;
-  plan.bound_max = both(best.u.misfit.worst, best.v.misfit.worst) + several * plan.rounding;
+  const auto all = [](double u, double v, double w) {
+    return (1 + between * std::sqrt(u)) * (1 + between * std::sqrt(v)) * (1 + between * std::sqrt(w)) - 1;
+  };
+  const kernels::Misfit &u = best.u.misfit, &v = best.v.misfit, &w = best.w.misfit;
+  plan.bound_rms = all(u.worst_mean, v.worst_mean, w.worst_mean) + several * plan.rounding;
+  plan.bound_max = all(u.worst, v.worst, w.worst) + several * plan.rounding;
   plan.decisions = decisions_of(request, plan);
   return plan;
 }

@@ -2,18 +2,19 @@
 
 #include "imager/gridding_choice.h"
 #include "imager/plan.h"
+#include "imager/wide_transform.h"
 
 namespace misfit::imager {
 
 /// How it will be done: the cheapest that keeps the promise.
 struct GriddingPlan {
-  PlaneTransformOptions options;
-  double expected_error = 0;  ///< RMS error of image and prediction relative to data with random phases, √(E_u + E_v)
-  double worst_error = 0;     ///< the same for the worst position of samples in their cells, or the worst pixel of a model
-  double rounding = 0;        ///< the part of rounding in both
-  double bound_rms = 0;       ///< bound on the RMS error of the image over Σ w|V| / Σ w, whatever the data
-  double bound_max = 0;       ///< bound on any pixel's error over Σ w|V| / Σ w, whatever the data
-  GriddingChoice choice;      ///< with the neighbours that were rejected
+  WideTransformOptions options;  ///< with a w axis where the scene needs one
+  double expected_error = 0;     ///< RMS error of image and prediction relative to data with random phases, √(E_u + E_v)
+  double worst_error = 0;        ///< the same for the worst position of samples in their cells, or the worst pixel of a model
+  double rounding = 0;           ///< the part of rounding in both
+  double bound_rms = 0;          ///< bound on the RMS error of the image over Σ w|V| / Σ w, whatever the data
+  double bound_max = 0;          ///< bound on any pixel's error over Σ w|V| / Σ w, whatever the data
+  GriddingChoice choice;         ///< with the neighbours that were rejected
   Plan decisions;
 };
 

@@ -382,4 +382,8 @@ std::unique_ptr<Transform> make_wide_transform(const WideTransformOptions& o) {
   return std::make_unique<WideTransform<double>>(o);
 }
 
+std::unique_ptr<Transform> make_transform(const WideTransformOptions& options) {
+  return options.has_w_axis() ? make_wide_transform(options) : make_plane_transform(options);
+}
+
 }  // namespace misfit::imager

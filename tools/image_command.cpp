@@ -11,7 +11,6 @@
 #include "tools/image_options.h"
 #include "tools/image_products.h"
 #include "tools/interrupt.h"
-#include "tools/kernel_choice.h"
 #include "tools/load.h"
 #include "tools/numbers.h"
 #include "tools/pictures.h"
@@ -71,22 +70,13 @@ class ImageRun {
     progress_.end();
     report_.plan.insert(report_.plan.end(), loaded_.decisions.begin(), loaded_.decisions.end());
     phase_ = imager::neglected_w_phase(loaded_.extent, geometry_);
-    const std::string phase = significant(phase_.max_rad, 2) + " rad";
-    decide("w term", "left out", "the largest phase it turns at the image's corner is " + phase);
-    if (phase_.max_rad > (o_.accuracy == 0 ? 1e-6 : o_.accuracy))
-      warn("w is neglected although its phase reaches " + phase + " at the image's corner, above the accuracy of " +
-           significant(o_.accuracy, 2) + ": the image's error there is of that size");
   }
 
   void make_dirty() {
-    imager::GriddingRequest request;
+    imager::GriddingRequest request = gridding_request(o_, threads_);
     request.geometry = geometry_;
-    request.accuracy = o_.accuracy;
-    request.kernel = kernel_;
-    request.kernel_width = o_.kernel_width;
-    request.padding = o_.padding;
     request.samples = loaded_.counts.used;
-    request.threads = threads_;
+    request.max_abs_w = loaded_.extent.max_abs_w;
     progress_.begin("dirty image and PSF");
     made_ = imager::make_accurate_images(*loaded_.source, request, progress(), times_);
     progress_.end();
@@ -94,6 +84,7 @@ class ImageRun {
     report_.accuracy = o_.accuracy;
     report_.gridding = &made_.plan;
     account_for_edges();
+    warn_of_neglected_w();
     const imager::StageTimer timer(times_, "statistics");
     theory_ = imager::theoretical_error(made_.plan, made_.images.sums, imager::root_mean_square(made_.images.dirty), phase_);
     report_.theory = &theory_;
@@ -101,6 +92,13 @@ class ImageRun {
       warn("the accuracy of " + significant(o_.accuracy, 2) +
            " is out of reach: the image is weak against its data, and its expected error is " +
            significant(theory_.expected_rms, 2));
+  }
+
+  void warn_of_neglected_w() {
+    const bool harms = phase_.max_rad > (o_.accuracy == 0 ? made_.plan.worst_error : o_.accuracy);
+    if (!made_.plan.options.has_w_axis() && harms)
+      warn("w is neglected although its phase reaches " + significant(phase_.max_rad, 2) +
+           " rad at the image's corner: the image's error there is of that size");
   }
 
   /// Samples that the pixel size cannot represent, and the pixel size that could.
@@ -210,7 +208,6 @@ class ImageRun {
   }
 
   const ImageOptions& o_;
-  const kernels::KernelFamily kernel_ = choose_kernel(o_.kernel);
   int threads_;
   ProgressLine progress_;
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();

@@ -58,11 +58,7 @@ void check_gridding(const ImageOptions& o) {
   const bool accuracy_is_free = kernel_is_given(o);
   if (!(o.accuracy > 0 && o.accuracy < 1) && !(o.accuracy == 0 && accuracy_is_free))
     refuse("accuracy", text(o.accuracy), "a number above 0 and below 1");
-  imager::GriddingRequest request;
-  request.kernel = choose_kernel(o.kernel);
-  request.kernel_width = o.kernel_width;
-  request.padding = o.padding;
-  imager::check_request(request);
+  imager::check_request(gridding_request(o, 1));
 }
 
 }  // namespace
@@ -83,6 +79,8 @@ void declare(CLI::App& command, ImageOptions& o) {
                      "Largest error of the whole image relative to the direct transform, RMS over RMS");
   command.add_option("--kernel-width", o.kernel_width, "Cells a visibility touches per axis; chosen when 0");
   command.add_option("--padding", o.padding, "FFT size over image size; chosen when 0");
+  command.add_option("--gridder", o.gridder, "w planes: auto (where w matters), standard (none), wide (always)")
+      ->check(CLI::IsMember({"auto", "standard", "wide"}));
   command.add_option("--niter", o.niter, "CLEAN components to find at most; 0 makes the dirty image");
   command.add_option("--gain", o.gain, "Part of a peak that a component takes");
   command.add_option("--threshold", o.threshold, "Stop when the peak residual reaches this flux density");
@@ -110,6 +108,19 @@ void check(const ImageOptions& o) {
 
 imager::ImageGeometry geometry_of(const ImageOptions& o, const imager::SkyDirection& phase_centre) {
   return {o.imsize.front(), o.imsize.back(), parse_angle_rad(o.cell), phase_centre};
+}
+
+imager::GriddingRequest gridding_request(const ImageOptions& o, int threads) {
+  imager::GriddingRequest request;
+  request.accuracy = o.accuracy;
+  request.kernel = choose_kernel(o.kernel);
+  request.kernel_width = o.kernel_width;
+  request.padding = o.padding;
+  request.gridder = o.gridder == "standard" ? imager::Gridder::standard
+                    : o.gridder == "wide"   ? imager::Gridder::wide
+                                            : imager::Gridder::automatic;
+  request.threads = threads;
+  return request;
 }
 
 imager::CleanOptions clean_options(const ImageOptions& o, int threads) {

@@ -7,6 +7,7 @@
 
 #include "imager/clean.h"
 #include "imager/geometry.h"
+#include "imager/gridding_choice.h"
 #include "ms_io/measurement_set.h"
 
 namespace misfit::tools {
@@ -24,6 +25,7 @@ struct ImageOptions {
   double accuracy = 1e-6;
   int kernel_width = 0;
   double padding = 0;
+  std::string gridder = "auto";
   int niter = 0;
   double gain = 0.1;
   std::string threshold = "0Jy";
@@ -48,6 +50,7 @@ bool kernel_is_given(const ImageOptions& options);
 void check(const ImageOptions& options);
 
 imager::ImageGeometry geometry_of(const ImageOptions& options, const imager::SkyDirection& phase_centre);
+imager::GriddingRequest gridding_request(const ImageOptions& options, int threads);
 imager::CleanOptions clean_options(const ImageOptions& options, int threads);
 
 /// Every option of `command` with the value in force.

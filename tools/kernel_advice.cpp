@@ -1,6 +1,7 @@
 #include "tools/kernel_advice.h"
 
 #include <cmath>
+#include <numbers>
 #include <stdexcept>
 
 #include "imager/gridding_plan.h"
@@ -21,7 +22,7 @@ std::string padding_of(const imager::GriddingCandidate& c) {
 
 std::string candidate(const imager::GriddingCandidate& c) {
   std::string text = "width " + std::to_string(c.work.width) + ", padding " + padding_of(c);
-  if (c.work.planes > 1)
+  if (c.work.has_w_axis())
     text += "; along w width " + std::to_string(c.work.width_w) + ", padding " + significant(c.padding_w, 3) + ", " +
             std::to_string(c.work.planes) + " planes";
   return text;
@@ -39,11 +40,14 @@ imager::GriddingChoice choose_for(const KernelJob& job) {
          "the number of visibilities, 1 to 1e18, beside --accuracy");
   refuse(!(job.w_turns >= 0 && job.w_turns <= 1e6), "w-turns", job.w_turns, "0 (two axes) to 1e6");
   imager::GriddingRequest request;
-  request.geometry = {job.imsize.front(), job.imsize.back(), 1e-6, {}};
+  constexpr double any_cell = 1e-6;
+  request.geometry = {job.imsize.front(), job.imsize.back(), any_cell, {}};
   request.accuracy = job.accuracy;
   request.kernel = choose_kernel(job.kernel);
   request.samples = static_cast<std::uint64_t>(job.samples);
-  request.w_turns = job.w_turns;
+  request.max_abs_w = job.w_turns * 2 * std::numbers::pi / imager::largest_w_phase_rad(request.geometry, 1);
+  request.gridder = job.w_turns > 0 ? imager::Gridder::wide : imager::Gridder::standard;
+  request.facets = false;
   imager::GriddingChoice choice = imager::choose_gridding(request);
   if (!choice.reached)
     throw std::invalid_argument("accuracy " + significant(job.accuracy, 3) + " is out of reach of kernel " + job.kernel +

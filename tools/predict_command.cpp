@@ -51,18 +51,14 @@ struct Model {
   ms_io::Predict predict;
 };
 
-void warn_of_w(const ms_io::MeasurementSet& set, const imager::ImageGeometry& geometry, double accuracy,
-               ProgressLine& progress) {
+double largest_w(const ms_io::MeasurementSet& set) {
   imager::UvwExtent extent;
   const auto stream = set.open();
   while (const auto block = stream->next()) extent.add(*block);
-  const double phase = imager::neglected_w_phase(extent, geometry).max_rad;
-  if (phase > accuracy)
-    progress.say("warning: w is neglected; its largest phase error is " + significant(phase, 2) +
-                 " rad, above the accuracy of " + significant(accuracy, 2));
+  return extent.max_abs_w;
 }
 
-Model image_model(const PredictOptions& o, const ms_io::MeasurementSet& set, int threads, ProgressLine& progress) {
+Model image_model(const PredictOptions& o, const ms_io::MeasurementSet& set, int threads) {
   imager::GriddingRequest request;
   request.kernel = choose_kernel(o.kernel);
   const imager::SkyImage image = imager::read_fits(o.model);
@@ -71,13 +67,13 @@ Model image_model(const PredictOptions& o, const ms_io::MeasurementSet& set, int
   check_centre(image, set.observation().phase_centre, o.model);
   if (!std::all_of(image.image.pixel.begin(), image.image.pixel.end(), [](double x) { return std::isfinite(x); }))
     throw std::runtime_error(o.model + " has pixels that are not finite; a model needs a number in each");
-  warn_of_w(set, image.geometry, o.accuracy, progress);
   request.geometry = image.geometry;
   request.accuracy = is_kernel_file(o.kernel) && !o.accuracy_is_typed ? 0 : o.accuracy;
   request.samples = set.samples();
+  request.max_abs_w = largest_w(set);
   request.threads = threads;
   Model model;
-  model.transform = imager::make_plane_transform(imager::plan_gridding(request).options);
+  model.transform = imager::make_transform(imager::plan_gridding(request).options);
   model.prediction = model.transform->predict(image.image);
   model.predict = [prediction = model.prediction.get()](const imager::SampleCoordinates& at) { return prediction->at(at); };
   return model;
@@ -100,7 +96,7 @@ void predict(const PredictOptions& o) {
   Model model;
   {
     const ms_io::MeasurementSet set(o.vis, o.selection, "DATA");
-    model = o.model.empty() ? component_model(o, set, threads) : image_model(o, set, threads, progress);
+    model = o.model.empty() ? component_model(o, set, threads) : image_model(o, set, threads);
   }
   progress.begin("predict");
   const ms_io::ModelWriteReport report =

@@ -24,18 +24,22 @@ json plan_json(const imager::Plan& plan) {
   return list;
 }
 
-json axis_json(const std::string& axis, const kernels::Kernel& kernel, int pixels, int fft_size) {
-  return {{"axis", axis}, {"width", kernel.width()}, {"x0", kernel.x0}, {"padding", static_cast<double>(fft_size) / pixels}};
+json axis_json(const std::string& axis, const kernels::Kernel& kernel, double padding) {
+  return {{"axis", axis}, {"width", kernel.width()}, {"x0", kernel.x0}, {"padding", padding}};
 }
 
 json kernel_json(const imager::GriddingPlan* gridding) {
   if (gridding == nullptr) return nullptr;
-  const imager::PlaneTransformOptions& o = gridding->options;
-  json kernel = axis_json("u", o.kernel_u, o.geometry.width, o.nu);
+  const imager::WideTransformOptions& o = gridding->options;
+  const auto padding = [](int fft_size, int pixels, int facets) { return 1.0 * fft_size / std::ceil(1.0 * pixels / facets); };
+  const double padding_u = padding(o.nu, o.geometry.width, o.facets_l);
+  json kernel = axis_json("u", o.kernel_u, padding_u);
   kernel.erase("axis");
   kernel["name"] = o.kernel_u.name;
   kernel["evaluation"] = "polynomial of degree " + std::to_string(o.kernel_u.polynomial.degree());
-  kernel["axes"] = {axis_json("u", o.kernel_u, o.geometry.width, o.nu), axis_json("v", o.kernel_v, o.geometry.height, o.nv)};
+  kernel["axes"] = {axis_json("u", o.kernel_u, padding_u),
+                    axis_json("v", o.kernel_v, padding(o.nv, o.geometry.height, o.facets_m))};
+  if (o.has_w_axis()) kernel["axes"].push_back(axis_json("w", o.kernel_w, gridding->choice.best.padding_w));
   return kernel;
 }
 

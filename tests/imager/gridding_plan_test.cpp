@@ -168,7 +168,7 @@ BOOST_AUTO_TEST_CASE(what_cannot_be_meant_is_refused) {
   refused([](GriddingRequest& r) { r.kernel_width = -1; });
   refused([](GriddingRequest& r) { r.padding = 1.01; });
   refused([](GriddingRequest& r) { r.padding = 11; });
-  refused([](GriddingRequest& r) { r.w_turns = 10; });
+  refused([](GriddingRequest& r) { r.max_abs_w = -10; });
 }
 
 BOOST_AUTO_TEST_CASE(a_single_kernel_is_padded_for_its_own_x0_and_judged_over_what_is_left) {

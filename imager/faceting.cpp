@@ -1,0 +1,54 @@
+#include "imager/faceting.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "imager/constants.h"
+#include "imager/facet.h"
+
+namespace misfit::imager {
+namespace {
+
+constexpr int smallest_facet = 128;
+
+int largest_part(int pixels, int parts) {
+  return (pixels + parts - 1) / parts;
+}
+
+}  // namespace
+
+int Faceting::planes(double padding_w, int width_w) const {
+  int sum = 0;
+  for (const double t : turns) sum += static_cast<int>(std::ceil(padding_w * t)) + width_w;
+  return sum;
+}
+
+std::vector<Faceting> facetings(const ImageGeometry& image, double max_abs_w, int most) {
+  std::vector<Faceting> ways;
+  const int longest = std::max(image.width, image.height);
+  for (int parts = 1; parts <= most && (parts == 1 || longest / parts >= smallest_facet); ++parts) {
+    if (parts > 8 && parts % 4 != 0) continue;
+    const auto share = [&](int pixels) { return std::max(1, static_cast<int>(std::lround(1.0 * parts * pixels / longest))); };
+    Faceting way;
+    way.along_l = share(image.width);
+    way.along_m = share(image.height);
+    way.width = largest_part(image.width, way.along_l);
+    way.height = largest_part(image.height, way.along_m);
+    for (const Facet& facet : split_into_facets(image, way.along_l, way.along_m))
+      if (!facet.empty) way.turns.push_back(2 * facet.reach * max_abs_w);
+    ways.push_back(way);
+  }
+  return ways;
+}
+
+double largest_w_phase_rad(const ImageGeometry& image, double max_abs_w) {
+  double most = 0;
+  for (const int column : {0, image.width - 1})
+    for (const int row : {0, image.height - 1}) {
+      const double n_less_1 = n_minus_1({image.l(column), image.m(row)});
+      most = std::max(most, std::isnan(n_less_1) ? 1 : -n_less_1);
+    }
+  return 2 * pi * max_abs_w * most;
+}
+
+}  // namespace misfit::imager

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <vector>
+
+#include "imager/geometry.h"
+
+namespace misfit::imager {
+
+/// A way to split an image into facets, and the turns of phase that each leaves to its w axis.
+struct Faceting {
+  int along_l = 1;
+  int along_m = 1;
+  int width = 0;  ///< pixels of the largest facet
+  int height = 0;
+  std::vector<double> turns;  ///< of each facet that reaches above the horizon: 2 · reach · largest |w|
+
+  /// Planes of all facets together, each touched by `width_w` planes around, for planes 1/padding of a turn apart.
+  int planes(double padding_w, int width_w) const;
+};
+
+inline constexpr int most_facets = 32;
+
+/// The ways worth considering, from the whole image as one facet on to `most` along its longer side: about square facets, none
+/// smaller than 128 pixels.
+std::vector<Faceting> facetings(const ImageGeometry& image, double max_abs_w, int most = most_facets);
+
+/// The largest phase 2π |w (n − 1)|, in radians, over the image. Beyond the horizon n counts as 0.
+double largest_w_phase_rad(const ImageGeometry& image, double max_abs_w);
+
+}  // namespace misfit::imager
