@@ -66,7 +66,7 @@ class Search {
     }
     GriddingChoice choice;
     choice.reached = best_.has_value();
-    choice.best = simplified(made_exactly(best_ ? *best_ : *most_exact_));
+    choice.best = simplified(best_ ? made_exactly(*best_) : *most_exact_);
     choice.rejected = neighbours(choice.best);
     return choice;
   }

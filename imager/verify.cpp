@@ -17,17 +17,17 @@ std::vector<std::uint64_t> random_samples(std::uint64_t samples, int count, std:
   return chosen;
 }
 
-/// Adds the coordinates of the chosen samples that lie in `block`, whose first sample has index `first`, one row and channel
-/// each.
+/// Frequency at which the chosen samples are gathered: their UVW is scaled so that it is the same in wavelengths.
+constexpr double any_frequency_hz = 1e9;
+
+/// Adds the coordinates of the chosen samples that lie in `block`, whose first sample has index `first`, a row each.
 void collect(const VisibilityBlock& block, std::uint64_t first, const std::vector<std::uint64_t>& chosen,
-             std::vector<SampleCoordinates>& found) {
+             SampleCoordinates& found) {
   for (auto i = std::lower_bound(chosen.begin(), chosen.end(), first); i != chosen.end() && *i < first + block.samples(); ++i) {
-    const std::size_t row = (*i - first) / block.channels();
-    SampleCoordinates one;
-    one.uvw_m.assign(block.uvw_m.begin() + static_cast<std::ptrdiff_t>(3 * row),
-                     block.uvw_m.begin() + static_cast<std::ptrdiff_t>(3 * row + 3));
-    one.frequency_hz = {block.frequency_hz[(*i - first) % block.channels()]};
-    if (std::all_of(one.uvw_m.begin(), one.uvw_m.end(), [](double x) { return std::isfinite(x); })) found.push_back(one);
+    const double* uvw_m = &block.uvw_m[3 * ((*i - first) / block.channels())];
+    const double scale = block.frequency_hz[(*i - first) % block.channels()] / any_frequency_hz;
+    if (std::all_of(uvw_m, uvw_m + 3, [](double x) { return std::isfinite(x); }))
+      found.uvw_m.insert(found.uvw_m.end(), {uvw_m[0] * scale, uvw_m[1] * scale, uvw_m[2] * scale});
   }
 }
 
@@ -65,7 +65,7 @@ MeasuredError measure_error(const VisibilitySource& source, const Transform& tra
   const std::vector<std::uint64_t> chosen = random_samples(source.samples(), count, random);
 
   std::vector<double> sum(pixels.size());
-  std::vector<SampleCoordinates> samples;
+  SampleCoordinates samples{{}, {any_frequency_hz}};
   std::uint64_t done = 0;
   const auto stream = source.open();
   while (const auto block = stream->next()) {
@@ -81,14 +81,13 @@ MeasuredError measure_error(const VisibilitySource& source, const Transform& tra
 
   Image model(geometry.width, geometry.height);
   for (const Pixel& pixel : pixels) model.at(pixel.row, pixel.column) = random() % 2 == 0 ? 1 : -1;
-  const auto gridded = transform.predict(model);
-  const auto direct = DirectTransform(geometry, threads).predict(model);
+  const auto gridded = transform.predict(model)->at(samples);
+  const auto direct = DirectTransform(geometry, threads).predict(model)->at(samples);
   double difference = 0;
   double size = 0;
-  for (const SampleCoordinates& sample : samples) {
-    const std::complex<double> exact = direct->at(sample)[0];
-    difference += std::norm(gridded->at(sample)[0] - exact);
-    size += std::norm(exact);
+  for (std::size_t i = 0; i < direct.size(); ++i) {
+    difference += std::norm(gridded[i] - direct[i]);
+    size += std::norm(direct[i]);
   }
   error.predict_rms = size == 0 ? 0 : std::sqrt(difference / size);
   return error;
