@@ -98,8 +98,9 @@ void write_axes(const HeaderWriter& header, const SkyImage& sky) {
   const ImageGeometry& g = sky.geometry;
   const double bandwidth_hz = sky.observation.bandwidth_hz > 0 ? sky.observation.bandwidth_hz : 1;
   const std::array<Axis, 4> axes{{
-      {"RA---SIN", "deg", g.centre_column() + 1.0, g.phase_centre.ra_rad / degree, -g.cell_rad / degree},
-      {"DEC--SIN", "deg", g.centre_row() + 1.0, g.phase_centre.dec_rad / degree, g.cell_rad / degree},
+      {"RA---SIN", "deg", g.centre_column() + 1 + g.centre.l / g.cell_rad, g.phase_centre.ra_rad / degree,
+       -g.cell_rad / degree},
+      {"DEC--SIN", "deg", g.centre_row() + 1 - g.centre.m / g.cell_rad, g.phase_centre.dec_rad / degree, g.cell_rad / degree},
       {"FREQ", "Hz", 1, sky.observation.frequency_hz, bandwidth_hz},
       {"STOKES", "", 1, 1, 1},
   }};
@@ -230,10 +231,8 @@ ImageGeometry read_geometry(const FitsFile& file, const HeaderReader& header, co
     file.fail("its pixels are not square with east on the left: CDELT1 = " + std::to_string(-east) +
               ", CDELT2 = " + std::to_string(north));
   ImageGeometry geometry{image.width, image.height, north * degree, {}};
-  const double column = header.needed("CRPIX1"), row = header.needed("CRPIX2");
-  if (column != geometry.centre_column() + 1 || row != geometry.centre_row() + 1)
-    file.fail("its reference pixel is (" + std::to_string(column) + ", " + std::to_string(row) + "), expected (" +
-              std::to_string(geometry.centre_column() + 1) + ", " + std::to_string(geometry.centre_row() + 1) + ")");
+  geometry.centre = {(header.needed("CRPIX1") - (geometry.centre_column() + 1)) * geometry.cell_rad,
+                     (geometry.centre_row() + 1 - header.needed("CRPIX2")) * geometry.cell_rad};
   geometry.phase_centre = {header.number("CRVAL1").value_or(0) * degree, header.number("CRVAL2").value_or(0) * degree,
                            read_frame(header)};
   return geometry;

@@ -18,7 +18,9 @@ struct HeaderCard {
   std::string comment;
 };
 
-/// An image on the sky with what its header states. FITS axes: RA---SIN, DEC--SIN, FREQ, STOKES (I), in this order.
+/// An image on the sky with what its header states. FITS axes: RA---SIN, DEC--SIN, FREQ, STOKES (I), in this order. CRVAL is
+/// the phase centre and CRPIX the place where l = m = 0, be it between pixels or outside the image. NaN marks a pixel without
+/// value.
 struct SkyImage {
   Image image;
   ImageGeometry geometry;
@@ -38,7 +40,7 @@ void write_fits(const SkyImage& image, const std::string& path, PixelFormat form
 
 /// Reads the first plane of the primary image of a FITS file with a SIN (or no) projection, in any pixel type. Throws
 /// std::runtime_error that names the path when it cannot be read, is no two-dimensional image (axes beyond the second must have
-/// length 1), has pixels that are not square, or has its reference pixel elsewhere than misfit's phase centre pixel.
+/// length 1), or has pixels that are not square.
 SkyImage read_fits(const std::string& path);
 
 }  // namespace misfit::imager

@@ -96,7 +96,7 @@ BOOST_AUTO_TEST_CASE(pixels_of_32_bits_come_back_rounded_to_single_precision) {
     BOOST_TEST(read.image.pixel[i] == static_cast<double>(static_cast<float>(sky.image.pixel[i])));
 }
 
-BOOST_AUTO_TEST_CASE(blank_pixels_stay_blank) {
+BOOST_AUTO_TEST_CASE(pixels_without_value_are_ieee_nan_in_the_file_and_when_read) {
   const TemporaryFolder folder;
   for (const PixelFormat format : {PixelFormat::float32, PixelFormat::float64}) {
     SkyImage sky = example();
@@ -105,6 +105,11 @@ BOOST_AUTO_TEST_CASE(blank_pixels_stay_blank) {
     const SkyImage read = read_fits(folder.file("a.fits"));
     BOOST_TEST(std::isnan(read.image.at(2, 3)));
     BOOST_TEST(std::isfinite(read.image.at(2, 4)));
+    const std::string fits = contents(folder.file("a.fits"));
+    const std::size_t bytes = format == PixelFormat::float32 ? 4 : 8;
+    const std::size_t at = fits.size() - 2880 + (2 * 7 + 3) * bytes;
+    BOOST_TEST((fits[at] & 0x7f) == 0x7f);  // big-endian: the exponent of NaN is all ones
+    BOOST_TEST((fits[at + 1] & 0xc0) == 0xc0);
   }
 }
 
@@ -145,16 +150,21 @@ BOOST_AUTO_TEST_CASE(every_frame_comes_back) {
 
 BOOST_AUTO_TEST_CASE(the_header_places_pixels_where_the_geometry_has_them) {
   const TemporaryFolder folder;
-  const SkyImage sky = example();
-  write_fits(sky, folder.file("a.fits"), PixelFormat::float32);
-  const std::string fits = contents(folder.file("a.fits"));
-  for (int column = 0; column < 7; ++column) {
-    const double x_deg = (column + 1 - number(fits, "CRPIX1")) * number(fits, "CDELT1");
-    BOOST_TEST(std::abs(x_deg * degree - sky.geometry.l(column)) < 1e-14 * sky.geometry.cell_rad * 7);
-  }
-  for (int row = 0; row < 4; ++row) {
-    const double y_deg = (row + 1 - number(fits, "CRPIX2")) * number(fits, "CDELT2");
-    BOOST_TEST(std::abs(y_deg * degree - sky.geometry.m(row)) < 1e-14 * sky.geometry.cell_rad * 7);
+  SkyImage sky = example();
+  std::string fits;
+  for (const DirectionCosines& centre : {DirectionCosines{1e-4, -2.5e-6}, DirectionCosines{-0.2, 0.3}, DirectionCosines{}}) {
+    sky.geometry.centre = centre;
+    write_fits(sky, folder.file("a.fits"), PixelFormat::float32);
+    fits = contents(folder.file("a.fits"));
+    const double rounding = 2e-14 * (std::hypot(centre.l, centre.m) + 7 * sky.geometry.cell_rad);
+    for (int column = 0; column < 7; ++column) {
+      const double x_deg = (column + 1 - number(fits, "CRPIX1")) * number(fits, "CDELT1");
+      BOOST_TEST(std::abs(x_deg * degree - sky.geometry.l(column)) < rounding);
+    }
+    for (int row = 0; row < 4; ++row) {
+      const double y_deg = (row + 1 - number(fits, "CRPIX2")) * number(fits, "CDELT2");
+      BOOST_TEST(std::abs(y_deg * degree - sky.geometry.m(row)) < rounding);
+    }
   }
   BOOST_TEST(number(fits, "CRPIX1") == 4);
   BOOST_TEST(number(fits, "CRPIX2") == 3);
@@ -173,6 +183,30 @@ BOOST_AUTO_TEST_CASE(the_header_places_pixels_where_the_geometry_has_them) {
                                    {"ORIGIN", "'misfit"},
                                    {"TIMESYS", "'UTC"}})
     BOOST_TEST(card(fits, key).find(value) != std::string::npos);
+}
+
+BOOST_AUTO_TEST_CASE(an_image_off_the_phase_centre_comes_back_where_it_was) {
+  const TemporaryFolder folder;
+  SkyImage sky = example();
+  const double cell = sky.geometry.cell_rad;
+  for (const auto& [l, m] : {std::pair(2 * cell, -3 * cell), {0.4 * cell, 0.7 * cell}, {-0.31, 0.22}, {0.5, 0.0}}) {
+    sky.geometry.centre = {l, m};
+    write_fits(sky, folder.file("a.fits"), PixelFormat::float32);
+    const ImageGeometry read = read_fits(folder.file("a.fits")).geometry;
+    // 15 digits of CRPIX and CDELT are written: each is right to 5e-15.
+    BOOST_TEST(std::abs(read.centre.l - l) < 2e-14 * (std::abs(l) + 7 * cell));
+    BOOST_TEST(std::abs(read.centre.m - m) < 2e-14 * (std::abs(m) + 7 * cell));
+    BOOST_TEST(std::abs(read.phase_centre.ra_rad / sky.geometry.phase_centre.ra_rad - 1) < 1e-14);
+    BOOST_TEST(std::abs(read.phase_centre.dec_rad / sky.geometry.phase_centre.dec_rad - 1) < 1e-14);
+  }
+}
+
+BOOST_AUTO_TEST_CASE(an_image_on_the_phase_centre_comes_back_exactly_there) {
+  const TemporaryFolder folder;
+  write_fits(example(), folder.file("a.fits"), PixelFormat::float32);
+  const DirectionCosines centre = read_fits(folder.file("a.fits")).geometry.centre;
+  BOOST_TEST(centre.l == 0);
+  BOOST_TEST(centre.m == 0);
 }
 
 BOOST_AUTO_TEST_CASE(cards_and_long_history_are_written) {
@@ -261,7 +295,7 @@ BOOST_AUTO_TEST_CASE(geometry_that_is_not_known_is_an_error_that_says_why) {
   refused("CDELT1", "CDELT1  = -5.6E-05", "square");
   refused("CDELT1", "CDELT1  = 5.55555555555556E-05", "square");
   refused("CDELT2", "COMMENT", "CDELT2");
-  refused("CRPIX1", "CRPIX1  = 3.0", "reference pixel");
+  refused("CRPIX1", "COMMENT", "CRPIX1");
   refused("CTYPE1", "CTYPE1  = 'RA---TAN'", "RA---TAN");
   refused("BTYPE", "CROTA2  = 12.0", "CROTA2");
   refused("CDELT2", "CDELT2  = 'wide'", "read");
