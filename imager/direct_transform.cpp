@@ -111,8 +111,8 @@ std::unique_ptr<Prediction> DirectTransform::predict(const Image& model) const {
   std::vector<PointSource> sources;
   for (int row = 0; row < model.height; ++row)
     for (int column = 0; column < model.width; ++column)
-      if (model.at(row, column) != 0 && !std::isnan(n_minus_1({geometry_.l(column), geometry_.m(row)})))
-        sources.push_back({{geometry_.l(column), geometry_.m(row)}, model.at(row, column)});
+      if (model.at(row, column) != 0 && !beyond_horizon(geometry_.at(row, column)))
+        sources.push_back({geometry_.at(row, column), model.at(row, column)});
   return std::make_unique<DirectPrediction>(std::move(sources), threads_);
 }
 

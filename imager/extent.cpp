@@ -8,10 +8,9 @@
 namespace misfit::imager {
 namespace {
 
-/// 1 − n without cancellation.
-double one_minus_n(double l, double m) {
-  const double r2 = l * l + m * m;
-  return r2 >= 1 ? 1 : r2 / (1 + std::sqrt(1 - r2));
+/// 1 − n, with n = 0 beyond the horizon.
+double one_minus_n(DirectionCosines at) {
+  return beyond_horizon(at) ? 1 : -n_minus_1(at);
 }
 
 }  // namespace
@@ -39,7 +38,7 @@ void UvwExtent::add(const VisibilityBlock& block) {
 }
 
 NeglectedPhase neglected_w_phase(const UvwExtent& extent, const ImageGeometry& geometry) {
-  const double corner = one_minus_n(geometry.l(0), geometry.m(0));
+  const double corner = largest_drop(geometry);
   // n is so smooth that a grid of 256 × 256 pixels has its mean.
   const int row_step = std::max(1, geometry.height / 256);
   const int column_step = std::max(1, geometry.width / 256);
@@ -47,7 +46,7 @@ NeglectedPhase neglected_w_phase(const UvwExtent& extent, const ImageGeometry& g
   int pixels = 0;
   for (int row = 0; row < geometry.height; row += row_step)
     for (int column = 0; column < geometry.width; column += column_step, ++pixels) {
-      const double x = one_minus_n(geometry.l(column), geometry.m(row));
+      const double x = one_minus_n(geometry.at(row, column));
       square += x * x;
     }
   const double rms_w = extent.weight == 0 ? 0 : std::sqrt(extent.weighted_w_square / extent.weight);

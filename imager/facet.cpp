@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <limits>
 
-#include "imager/horizon.h"
 
 namespace misfit::imager {
 namespace {
@@ -15,7 +14,7 @@ void for_lattice(const ImageGeometry& g, int step, const Visit& visit) {
   const auto next = [step](int i, int last) { return i == last ? last + 1 : std::min(i + step, last); };
   for (int row = 0; row < g.height; row = next(row, g.height - 1))
     for (int column = 0; column < g.width; column = next(column, g.width - 1))
-      if (!std::isnan(n_minus_1({g.l(column), g.m(row)}))) visit(column, row);
+      if (!beyond_horizon(g.at(row, column))) visit(column, row);
 }
 
 /// The plane of least squares over a coarse lattice.
@@ -25,7 +24,7 @@ void fit_plane(Facet& f, int step) {
   for_lattice(f.geometry, step, [&](int column, int row) {
     const Eigen::Vector3d at(column - f.geometry.centre_column(), row - f.geometry.centre_row(), 1);
     normal += at * at.transpose();
-    right += at * n_minus_1({f.geometry.l(column), f.geometry.m(row)});
+    right += at * n_minus_1(f.geometry.at(row, column));
   });
   const Eigen::Vector3d plane = normal.completeOrthogonalDecomposition().solve(right);
   f.slope_l = -plane[0] / f.geometry.cell_rad;

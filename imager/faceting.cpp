@@ -42,13 +42,7 @@ std::vector<Faceting> facetings(const ImageGeometry& image, double max_abs_w, in
 }
 
 double largest_w_phase_rad(const ImageGeometry& image, double max_abs_w) {
-  double most = 0;
-  for (const int column : {0, image.width - 1})
-    for (const int row : {0, image.height - 1}) {
-      const double n_less_1 = n_minus_1({image.l(column), image.m(row)});
-      most = std::max(most, std::isnan(n_less_1) ? 1 : -n_less_1);
-    }
-  return 2 * pi * max_abs_w * most;
+  return 2 * pi * max_abs_w * largest_drop(image);
 }
 
 }  // namespace misfit::imager

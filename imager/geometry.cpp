@@ -1,5 +1,6 @@
 #include "imager/geometry.h"
 
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
@@ -15,6 +16,18 @@ DirectionCosines direction_cosines(const SkyDirection& direction, const SkyDirec
   return {std::cos(direction.dec_rad) * std::sin(east),
           std::sin(direction.dec_rad) * std::cos(centre.dec_rad) -
               std::cos(direction.dec_rad) * std::sin(centre.dec_rad) * std::cos(east)};
+}
+
+double largest_drop(const ImageGeometry& geometry) {
+  double largest = 0;
+  for (const DirectionCosines& at : geometry.corners())
+    largest = std::max(largest, beyond_horizon(at) ? 1 : -n_minus_1(at));
+  return largest;
+}
+
+bool crosses_horizon(const ImageGeometry& geometry) {
+  const auto corners = geometry.corners();
+  return std::any_of(corners.begin(), corners.end(), beyond_horizon);
 }
 
 }  // namespace misfit::imager

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <string>
@@ -29,6 +30,11 @@ inline double n_minus_1(DirectionCosines at) {
   return -r2 / (1 + std::sqrt(1 - r2));
 }
 
+/// Whether a direction lies beyond the horizon, l² + m² > 1.
+inline bool beyond_horizon(DirectionCosines at) {
+  return std::isnan(n_minus_1(at));
+}
+
 /// The pixels of an image. Column c lies at l = centre.l − (c − width/2)·cell, so that east is on the left; row r lies at
 /// m = centre.m + (r − height/2)·cell, so that north is up in a FITS viewer. The divisions are integer divisions.
 struct ImageGeometry {
@@ -42,7 +48,17 @@ struct ImageGeometry {
   int centre_row() const { return height / 2; }
   double l(int column) const { return centre.l - (column - centre_column()) * cell_rad; }
   double m(int row) const { return centre.m + (row - centre_row()) * cell_rad; }
+  DirectionCosines at(int row, int column) const { return {l(column), m(row)}; }
+  std::array<DirectionCosines, 4> corners() const {
+    return {at(0, 0), at(0, width - 1), at(height - 1, 0), at(height - 1, width - 1)};
+  }
   std::size_t pixels() const { return static_cast<std::size_t>(width) * static_cast<std::size_t>(height); }
 };
+
+/// The largest 1 − n of any pixel, where n counts as 0 beyond the horizon. Over a rectangle it is in a corner.
+double largest_drop(const ImageGeometry& geometry);
+
+/// Whether any pixel lies beyond the horizon: if one does, a corner does.
+bool crosses_horizon(const ImageGeometry& geometry);
 
 }  // namespace misfit::imager

@@ -57,9 +57,11 @@ BOOST_AUTO_TEST_CASE(reach_and_neglected_phase_are_those_of_every_usable_sample_
   const std::vector<VisibilityBlock> blocks{samples(1), samples(2)};
   UvwExtent extent;
   for (const VisibilityBlock& block : blocks) extent.add(block);
-  // 1600 cells of 1e-3 reach beyond the horizon; odd sizes put the corner elsewhere.
-  for (const auto& [width, height] : {std::pair{40, 31}, {9, 16}, {1, 7}, {1600, 3}}) {
-    const ImageGeometry geometry{width, height, cell_rad, {}};
+  // 2100 cells of 1e-3 reach beyond the horizon; odd sizes and an offset put the farthest corner elsewhere.
+  for (const ImageGeometry& geometry :
+       {ImageGeometry{40, 31, cell_rad, {}}, ImageGeometry{9, 16, cell_rad, {}}, ImageGeometry{1, 7, cell_rad, {}},
+        ImageGeometry{2100, 3, cell_rad, {}}, ImageGeometry{20, 31, cell_rad, {}, {-0.3, 0.2}},
+        ImageGeometry{20, 30, cell_rad, {}, {0.003, -0.004}}, ImageGeometry{20, 31, cell_rad, {}, {0.6, -0.8}}}) {
     const Expected e = brute_force(blocks, geometry);
     const NeglectedPhase phase = neglected_w_phase(extent, geometry);
     const auto close = boost::test_tools::tolerance(1e-8);  // 1 − n cancels in the plain formula
@@ -70,7 +72,7 @@ BOOST_AUTO_TEST_CASE(reach_and_neglected_phase_are_those_of_every_usable_sample_
     BOOST_TEST(phase.max_rad == e.max_rad, close);
     const double rms_rad = std::sqrt(e.weighted_square / e.extent.weight / static_cast<double>(geometry.pixels()));
     // Beyond 256 pixels the mean is taken over every few of them.
-    BOOST_TEST(phase.rms_rad == rms_rad, boost::test_tools::tolerance(width > 256 ? 0.01 : 1e-8));
+    BOOST_TEST(phase.rms_rad == rms_rad, boost::test_tools::tolerance(geometry.width > 256 ? 0.01 : 1e-8));
   }
 }
 

@@ -69,4 +69,19 @@ BOOST_AUTO_TEST_CASE(east_is_towards_lower_columns_and_north_towards_higher_rows
   }
 }
 
+BOOST_AUTO_TEST_CASE(an_image_crosses_the_horizon_if_any_of_its_pixels_does) {
+  std::mt19937_64 random(2);
+  std::uniform_real_distribution<double> uniform(-1, 1);
+  int crossing = 0;
+  for (int i = 0; i < 300; ++i) {
+    const ImageGeometry g{7, 4, 0.1, {}, {uniform(random), uniform(random)}};
+    bool any = false;
+    for (int row = 0; row < 4; ++row)
+      for (int column = 0; column < 7; ++column) any = any || std::hypot(g.l(column), g.m(row)) > 1;
+    BOOST_TEST(crosses_horizon(g) == any);
+    crossing += any ? 1 : 0;
+  }
+  BOOST_TEST((crossing > 50 && crossing < 250));
+}
+
 BOOST_AUTO_TEST_SUITE_END()
