@@ -21,11 +21,14 @@ class Search {
         residual_(residual.pixel.begin(), residual.pixel.end()),
         psf_(psf.pixel.begin(), psf.pixel.end()),
         row_peak_(static_cast<std::size_t>(height_)) {
+    for (float& value : psf_)
+      if (std::isnan(value)) value = 0;
     for (int r = 0; r < height_; ++r) row_peak_[static_cast<std::size_t>(r)] = peak_magnitude(&residual_[at(r, 0)], width_);
     find();
   }
 
   double value() const { return double{residual_[at(row_, column_)]}; }
+  double magnitude() const { return double{row_peak_[static_cast<std::size_t>(row_)]}; }
   int row() const { return row_; }
   int column() const { return column_; }
 
@@ -73,19 +76,18 @@ MinorCycleReport hogbom(const Image& residual, const Image& psf, const MinorCycl
                                 " pixels: PSF and model are expected to have the same size");
   constexpr double divergence = 3;  // as clean() judges major cycles
   Search search(residual, psf);
-  const double first_peak = std::abs(search.value());
+  const double first_peak = search.magnitude();
   MinorCycleReport report;
   bool done = false;
   float factor = 0;  // what all threads subtract; the peak itself changes while they do
   // Runs in one thread while the others wait: take the peak, or end.
   const auto take = [&]() noexcept {
-    const double value = search.value();
-    report.peak_jy = std::abs(value);
+    report.peak_jy = search.magnitude();
     const bool stopped = options.stop_requested && report.iterations % 64 == 0 && options.stop_requested();
     done = stopped || report.iterations >= options.max_iterations || !(report.peak_jy > options.threshold_jy) ||
            !(report.peak_jy <= divergence * first_peak);
     if (done) return;
-    const double component = options.gain * value;
+    const double component = options.gain * search.value();
     model.at(search.row(), search.column()) += component;
     report.flux_jy += component;
     ++report.iterations;

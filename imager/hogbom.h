@@ -22,9 +22,9 @@ struct MinorCycleReport {
 
 /// Högbom's CLEAN (Högbom 1974, A&AS 15, 417): again and again the brightest pixel, positive or negative, gives `gain` times
 /// its value to the model, and that times the PSF is subtracted from all pixels. `psf` has the size of the image and its peak,
-/// 1, at the centre pixel; what lies beyond it counts as 0. Works on a single-precision copy of `residual`; the components are
-/// added to `model`. Stops, too, when the peak exceeds three times that of the start: what lies outside the PSF's reach can
-/// make it grow without end.
+/// 1, at the centre pixel; what lies beyond it, or is NaN, counts as 0. Pixels of `residual` that are NaN are never cleaned.
+/// Works on a single-precision copy of `residual`; the components are added to `model`. Stops, too, when the peak exceeds three
+/// times that of the start: what lies outside the PSF's reach can make it grow without end.
 MinorCycleReport hogbom(const Image& residual, const Image& psf, const MinorCycleOptions& options, Image& model);
 
 }  // namespace misfit::imager

@@ -13,6 +13,13 @@ namespace misfit::imager::HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
+/// The larger of peak and |value|; peak where value is NaN: given one, hn::Max takes the second argument on x86 and the number
+/// on Arm.
+template <typename V>
+HWY_ATTR V larger(V peak, V value) {
+  return hn::Max(hn::Abs(value), peak);
+}
+
 HWY_ATTR float subtract_and_peak_row(float* residual, const float* psf, int count, float factor) {
   const hn::ScalableTag<float> d;
   const int lanes = static_cast<int>(hn::Lanes(d));
@@ -22,7 +29,7 @@ HWY_ATTR float subtract_and_peak_row(float* residual, const float* psf, int coun
   for (; i + lanes <= count; i += lanes) {
     const auto left = hn::NegMulAdd(f, hn::LoadU(d, psf + i), hn::LoadU(d, residual + i));
     hn::StoreU(left, d, residual + i);
-    peak = hn::Max(peak, hn::Abs(left));
+    peak = larger(peak, left);
   }
   float largest = hn::GetLane(hn::MaxOfLanes(d, peak));
   for (; i < count; ++i) {
@@ -37,7 +44,7 @@ HWY_ATTR float peak_of_row(const float* value, int count) {
   const int lanes = static_cast<int>(hn::Lanes(d));
   auto peak = hn::Zero(d);
   int i = 0;
-  for (; i + lanes <= count; i += lanes) peak = hn::Max(peak, hn::Abs(hn::LoadU(d, value + i)));
+  for (; i + lanes <= count; i += lanes) peak = larger(peak, hn::LoadU(d, value + i));
   float largest = hn::GetLane(hn::MaxOfLanes(d, peak));
   for (; i < count; ++i) largest = std::max(largest, std::abs(value[i]));
   return largest;

@@ -2,6 +2,7 @@
 
 #include <boost/test/data/test_case.hpp>
 #include <boost/test/unit_test.hpp>
+#include <limits>
 
 #include "imager/noise.h"
 #include "tests/imager/comparison.h"
@@ -82,6 +83,34 @@ BOOST_AUTO_TEST_CASE(the_result_is_the_same_bit_for_bit_for_any_number_of_thread
     BOOST_TEST(many.report.peak_jy == one.report.peak_jy);
     BOOST_TEST(many.report.flux_jy == one.report.flux_jy);
   }
+}
+
+BOOST_DATA_TEST_CASE(pixels_that_are_nan_are_never_cleaned_and_change_nothing,
+                     bdata::make({1, 7, 40, 40}) ^ bdata::make({5, 2, 33, 150}), width, height) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  Image residual = random_image(width, height, 1), psf = random_psf(width, height, 0.05), zeroed = psf;
+  for (std::size_t i = 0; i < residual.pixel.size(); i += 3) residual.pixel[i] = nan;
+  for (int c = 0; c < width; ++c) residual.at(0, c) = nan;
+  const std::size_t peak =
+      static_cast<std::size_t>(height / 2) * static_cast<std::size_t>(width) + static_cast<std::size_t>(width / 2);
+  for (std::size_t i = 0; i < psf.pixel.size(); i += 5)
+    if (i != peak) psf.pixel[i] = nan, zeroed.pixel[i] = 0;
+  const MinorCycleOptions options{.gain = 0.3, .max_iterations = 100, .threshold_jy = 0.3, .threads = 3, .stop_requested = {}};
+  const Cleaned is = cleaned(residual, psf, options), should = plain(residual, zeroed, options);
+  BOOST_TEST(is.report.iterations == should.report.iterations);
+  BOOST_TEST(distance(is.model.pixel, should.model.pixel) <= 1e-5 * norm(should.model.pixel));
+  BOOST_TEST(std::abs(is.report.peak_jy - should.report.peak_jy) < 1e-5);
+  for (std::size_t i = 0; i < residual.pixel.size(); ++i)
+    if (std::isnan(residual.pixel[i])) BOOST_REQUIRE(is.model.pixel[i] == 0);
+}
+
+BOOST_AUTO_TEST_CASE(an_image_of_nan_has_nothing_to_clean) {
+  Image residual(9, 7);
+  std::fill(residual.pixel.begin(), residual.pixel.end(), std::numeric_limits<double>::quiet_NaN());
+  const Cleaned is = cleaned(residual, random_psf(9, 7, 0.1), {.max_iterations = 10, .stop_requested = {}});
+  BOOST_TEST(is.report.iterations == 0);
+  BOOST_TEST(is.report.peak_jy == 0);
+  BOOST_TEST(norm(is.model.pixel) == 0);
 }
 
 BOOST_AUTO_TEST_CASE(an_image_of_zeros_has_nothing_to_clean) {
