@@ -26,9 +26,9 @@ enum class BeamRegion {
 /// fit fails.
 Beam fit_beam(const Image& psf, double cell_rad, BeamRegion region = BeamRegion::main_lobe);
 
-/// model ⊗ beam, where the beam has peak 1: Jy/pixel in, Jy/beam out. Summed over the components directly, out to where the
-/// beam falls below 1e-8 of its peak; the same bits for any number of threads. Throws std::invalid_argument when an axis of
-/// the beam or the cell is not positive.
+/// model ⊗ beam, where the beam has peak 1: Jy/pixel in, Jy/beam out; NaN in the model counts as 0. Summed over the components
+/// directly, out to where the beam falls below 1e-8 of its peak; the same bits for any number of threads. Throws
+/// std::invalid_argument when an axis of the beam or the cell is not positive.
 Image convolve_with_beam(const Image& model, const Beam& beam, double cell_rad, int threads);
 
 }  // namespace misfit::imager

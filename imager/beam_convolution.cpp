@@ -53,7 +53,7 @@ ComponentRows components_of(const Image& model) {
   ComponentRows rows(static_cast<std::size_t>(model.height));
   for (int r = 0; r < model.height; ++r)
     for (int c = 0; c < model.width; ++c)
-      if (model.at(r, c) != 0) rows[static_cast<std::size_t>(r)].push_back({c, model.at(r, c)});
+      if (model.at(r, c) != 0 && !std::isnan(model.at(r, c))) rows[static_cast<std::size_t>(r)].push_back({c, model.at(r, c)});
   return rows;
 }
 

@@ -62,7 +62,7 @@ struct CleanResult {
 /// Told after every major cycle.
 using CycleProgress = std::function<void(const MajorCycle&)>;
 
-/// Largest magnitude of the PSF once the Gaussian `beam` is taken off.
+/// Largest magnitude of the PSF once the Gaussian `beam` is taken off; NaN does not count.
 double largest_sidelobe(const Image& psf, const Image& beam);
 
 /// Cotton–Schwab CLEAN (Schwab 1984, AJ 89, 1076): minor cycles find components in the image; major cycles predict the model's

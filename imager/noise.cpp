@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 namespace misfit::imager {
 namespace {
@@ -15,7 +16,9 @@ double median(std::vector<double>& values) {
 }  // namespace
 
 double robust_noise(const Image& image) {
-  std::vector<double> values = image.pixel;
+  std::vector<double> values;
+  values.reserve(image.pixel.size());
+  std::copy_if(image.pixel.begin(), image.pixel.end(), std::back_inserter(values), [](double x) { return std::isfinite(x); });
   if (values.empty()) return 0;
   const double centre = median(values);
   for (double& value : values) value = std::abs(value - centre);
@@ -24,15 +27,25 @@ double robust_noise(const Image& image) {
 
 double root_mean_square(const Image& image) {
   double square = 0;
-  for (const double pixel : image.pixel) square += pixel * pixel;
-  return std::sqrt(square / static_cast<double>(std::max<std::size_t>(image.pixel.size(), 1)));
+  std::size_t pixels = 0;
+  for (const double pixel : image.pixel) {
+    if (std::isnan(pixel)) continue;
+    square += pixel * pixel;
+    ++pixels;
+  }
+  return std::sqrt(square / static_cast<double>(std::max<std::size_t>(pixels, 1)));
 }
 
 Peak find_peak(const Image& image) {
-  const auto largest =
-      std::max_element(image.pixel.begin(), image.pixel.end(), [](double a, double b) { return std::abs(a) < std::abs(b); });
-  const auto index = static_cast<int>(largest - image.pixel.begin());
-  return {index / image.width, index % image.width, *largest};
+  std::size_t at = 0;
+  double largest = -1;
+  for (std::size_t i = 0; i < image.pixel.size(); ++i) {
+    if (!(std::abs(image.pixel[i]) > largest)) continue;
+    largest = std::abs(image.pixel[i]);
+    at = i;
+  }
+  const auto width = static_cast<std::size_t>(image.width);
+  return {static_cast<int>(at / width), static_cast<int>(at % width), image.pixel[at]};
 }
 
 }  // namespace misfit::imager

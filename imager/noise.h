@@ -5,9 +5,10 @@
 namespace misfit::imager {
 
 /// 1.4826 × the median absolute deviation from the median: the standard deviation of the noise where few pixels hold sources.
+/// Pixels that are not finite do not count.
 double robust_noise(const Image& image);
 
-/// √(mean of squares); 0 of an image without pixels.
+/// √(mean of squares) of the pixels that are not NaN; 0 where there are none.
 double root_mean_square(const Image& image);
 
 /// The pixel of largest magnitude.
@@ -16,7 +17,8 @@ struct Peak {
   int column = 0;
   double value = 0;
 };
-/// The first of them in row-major order where several are equal. The image must have a pixel.
+/// The first of them in row-major order where several are equal. NaN is no peak, unless every pixel is NaN. The image must have
+/// a pixel.
 Peak find_peak(const Image& image);
 
 }  // namespace misfit::imager

@@ -37,9 +37,11 @@ std::vector<Pixel> random_pixels(const ImageGeometry& geometry, int count) {
   std::mt19937_64 random(20200112);
   const auto width = static_cast<std::uint64_t>(geometry.width);
   std::vector<Pixel> pixels;
-  for (int i = 0; i < count; ++i) {
+  constexpr int tries_each = 1000;
+  for (long long tries = 0; static_cast<int>(pixels.size()) < count && tries / tries_each < count; ++tries) {
     const std::uint64_t at = random() % geometry.pixels();
-    pixels.push_back({static_cast<int>(at / width), static_cast<int>(at % width)});
+    const Pixel pixel{static_cast<int>(at / width), static_cast<int>(at % width)};
+    if (!beyond_horizon(geometry.at(pixel.row, pixel.column))) pixels.push_back(pixel);
   }
   return pixels;
 }

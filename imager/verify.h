@@ -5,7 +5,7 @@
 
 namespace misfit::imager {
 
-/// `count` pixels at random, always the same.
+/// `count` pixels above the horizon at random, always the same; fewer where hardly any is.
 std::vector<Pixel> random_pixels(const ImageGeometry& geometry, int count);
 
 /// How far an image is from direct sums at some of its pixels, in Jy/beam.

@@ -115,6 +115,20 @@ BOOST_AUTO_TEST_CASE(the_beam_is_proportional_to_the_cell) {
   BOOST_TEST(std::abs(fit_beam(psf, 3 * cell_rad).major_rad / oblique.major_rad - 3) < 1e-6);
 }
 
+BOOST_AUTO_TEST_CASE(what_is_nan_outside_the_main_lobe_is_not_fitted) {
+  Image psf = sampled(oblique, 65, 65);
+  const Beam whole = fit_beam(psf, cell_rad);
+  for (int r = 0; r < 65; ++r)
+    for (int c = 0; c < 65; ++c)
+      if (std::abs(r - 32) + std::abs(c - 32) > 12) psf.at(r, c) = std::numeric_limits<double>::quiet_NaN();
+  const Beam holed = fit_beam(psf, cell_rad);
+  BOOST_TEST(holed.major_rad == whole.major_rad);
+  BOOST_TEST(holed.minor_rad == whole.minor_rad);
+  BOOST_TEST(holed.position_angle_rad == whole.position_angle_rad);
+  const Beam quadrant = fit_beam(psf, cell_rad, BeamRegion::quadrant);
+  BOOST_TEST(std::abs(quadrant.major_rad / oblique.major_rad - 1) < 1e-6);
+}
+
 BOOST_AUTO_TEST_CASE(a_main_lobe_of_too_few_pixels_is_an_error_that_names_them) {
   Image psf = sampled({1.2 * cell_rad, 1.2 * cell_rad, 0}, 32, 32);
   BOOST_CHECK_EXCEPTION(fit_beam(psf, cell_rad), std::runtime_error, [](const std::exception& error) {
@@ -161,6 +175,13 @@ BOOST_AUTO_TEST_CASE(convolution_equals_the_double_sum_over_pixels) {
         }
       BOOST_REQUIRE(std::abs(fast.at(r, c) - sum) < 1e-12);
     }
+}
+
+BOOST_AUTO_TEST_CASE(a_model_pixel_that_is_nan_adds_nothing) {
+  Image model = components();
+  const Image without = convolve_with_beam(model, oblique, cell_rad, 1);
+  model.at(5, 5) = std::numeric_limits<double>::quiet_NaN();
+  BOOST_TEST((convolve_with_beam(model, oblique, cell_rad, 1).pixel == without.pixel));
 }
 
 BOOST_AUTO_TEST_CASE(convolution_gives_the_same_bits_on_any_number_of_threads) {

@@ -1,6 +1,8 @@
 #include "imager/noise.h"
 
 #include <boost/test/unit_test.hpp>
+#include <cmath>
+#include <limits>
 
 #include "tests/imager/comparison.h"
 
@@ -41,6 +43,29 @@ BOOST_AUTO_TEST_CASE(the_peak_is_the_largest_magnitude_and_the_first_of_equals) 
   BOOST_TEST(peak.row == 2);
   BOOST_TEST(peak.column == 0);
   BOOST_TEST(peak.value == -3);
+}
+
+BOOST_AUTO_TEST_CASE(pixels_that_are_nan_do_not_count) {
+  const Image whole = random_image(31, 20, 1);
+  Image holed(62, 20);
+  for (int row = 0; row < 20; ++row)
+    for (int column = 0; column < 31; ++column) {
+      holed.at(row, 2 * column) = std::numeric_limits<double>::quiet_NaN();
+      holed.at(row, 2 * column + 1) = whole.at(row, column);
+    }
+  BOOST_TEST(robust_noise(holed) == robust_noise(whole));
+  BOOST_TEST(root_mean_square(holed) == root_mean_square(whole));
+  BOOST_TEST(find_peak(holed).value == find_peak(whole).value);
+  BOOST_TEST(find_peak(holed).row == find_peak(whole).row);
+  BOOST_TEST(find_peak(holed).column == 2 * find_peak(whole).column + 1);
+}
+
+BOOST_AUTO_TEST_CASE(an_image_of_nan_has_neither_noise_nor_peak) {
+  Image image(5, 4);
+  std::fill(image.pixel.begin(), image.pixel.end(), std::numeric_limits<double>::quiet_NaN());
+  BOOST_TEST(robust_noise(image) == 0);
+  BOOST_TEST(root_mean_square(image) == 0);
+  BOOST_TEST(std::isnan(find_peak(image).value));
 }
 
 BOOST_AUTO_TEST_SUITE_END()

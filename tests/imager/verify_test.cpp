@@ -91,4 +91,22 @@ BOOST_AUTO_TEST_CASE(a_neglected_w_counts_as_error) {
   BOOST_TEST(error.predict_rms > 0.1);
 }
 
+BOOST_AUTO_TEST_CASE(only_pixels_above_the_horizon_are_compared) {
+  const ImageGeometry sky{50, 40, 0.05, {}, {0.3, -0.2}};
+  const auto chosen = random_pixels(sky, count);
+  BOOST_TEST(chosen.size() == std::size_t{count});
+  for (const Pixel& pixel : chosen) BOOST_TEST(!beyond_horizon(sky.at(pixel.row, pixel.column)));
+  BOOST_TEST(random_pixels({50, 40, 1e-3, {}, {1, 1}}, count).empty());
+
+  const StoredVisibilities source = stored({random_samples_with_w(100, 2, sky.cell_rad, 20, 6)});
+  const DirectTransform exact(sky, 2);
+  StageTimes times;
+  const DirtyImages images = make_dirty_images(source, exact, true, ignore_progress, times);
+  const MeasuredError error = measure_error(source, exact, sky, images, count, 2, ignore_progress);
+  // Sums of 200 terms in two orders.
+  BOOST_TEST(error.rms < 1e-13);
+  BOOST_TEST(error.max < 1e-12);
+  BOOST_TEST(error.predict_rms < 1e-13);
+}
+
 BOOST_AUTO_TEST_SUITE_END()
