@@ -49,19 +49,19 @@ std::string subtitle(const imager::SkyImage& sky) {
   return text;
 }
 
-/// The offsets from the phase centre that an image covers, in `unit`.
+/// The offsets from the phase centre that an image covers, borders of its outermost pixels included, in `unit`.
 struct Frame {
   ScaledUnit unit;
   double east, west, south, north;
 };
 Frame frame_of(const imager::ImageGeometry& geometry) {
   const ScaledUnit unit = angle_unit(std::max(geometry.width, geometry.height) * geometry.cell_rad);
-  const double cell = geometry.cell_rad / unit.size;
+  const double half = geometry.cell_rad / 2;
   return {.unit = unit,
-          .east = (geometry.centre_column() + 0.5) * cell,
-          .west = (geometry.centre_column() + 0.5 - geometry.width) * cell,
-          .south = (-geometry.centre_row() - 0.5) * cell,
-          .north = (geometry.height - geometry.centre_row() - 0.5) * cell};
+          .east = (geometry.l(0) + half) / unit.size,
+          .west = (geometry.l(geometry.width - 1) - half) / unit.size,
+          .south = (geometry.m(0) - half) / unit.size,
+          .north = (geometry.m(geometry.height - 1) + half) / unit.size};
 }
 
 /// The beam to scale in the lower left corner, as the lines of a gnuplot data block.

@@ -8,7 +8,7 @@
 namespace misfit::tools {
 
 /// A picture to draw: east is left and north up, axes are offsets from the phase centre, the colour bar states unit and
-/// stretch.
+/// stretch. Pixels that are NaN have the colour of the background, white.
 struct Picture {
   const imager::SkyImage* image = nullptr;
   std::string title;

@@ -44,6 +44,13 @@ void check_centre(const imager::SkyImage& model, const imager::SkyDirection& cen
                              ")");
 }
 
+void check_finite(const imager::SkyImage& model, const std::string& path) {
+  for (int row = 0; row < model.image.height; ++row)
+    for (int column = 0; column < model.image.width; ++column)
+      if (!std::isfinite(model.image.at(row, column)) && !imager::beyond_horizon(model.geometry.at(row, column)))
+        throw std::runtime_error(path + " has pixels that are not finite; a model needs a number in each above the horizon");
+}
+
 /// The model as an operator from coordinates to visibilities.
 struct Model {
   std::unique_ptr<imager::Transform> transform;  // outlives the prediction
@@ -65,8 +72,7 @@ Model image_model(const PredictOptions& o, const ms_io::MeasurementSet& set, int
   if (image.unit != "Jy/pixel")
     throw std::runtime_error(o.model + " has the unit " + (image.unit.empty() ? "none" : image.unit) + ", expected Jy/pixel");
   check_centre(image, set.observation().phase_centre, o.model);
-  if (!std::all_of(image.image.pixel.begin(), image.image.pixel.end(), [](double x) { return std::isfinite(x); }))
-    throw std::runtime_error(o.model + " has pixels that are not finite; a model needs a number in each");
+  check_finite(image, o.model);
   request.geometry = image.geometry;
   request.accuracy = is_kernel_file(o.kernel) && !o.accuracy_is_typed ? 0 : o.accuracy;
   request.samples = set.samples();
@@ -118,7 +124,7 @@ void add_predict_command(CLI::App& program) {
   CLI::App* command = program.add_subcommand("predict", "Write the visibilities of a model into a column of a MeasurementSet");
   const auto o = std::make_shared<PredictOptions>();
   command->add_option("--vis", o->vis, "MeasurementSet; only the column is written")->required();
-  command->add_option("--model", o->model, "FITS image in Jy/pixel, centred on the phase centre");
+  command->add_option("--model", o->model, "FITS image in Jy/pixel whose reference position is the phase centre");
   command->add_option("--components", o->components,
                       "CSV file with ra_deg,dec_deg,flux_jy or l_arcsec,m_arcsec,flux_jy, summed directly with w");
   command->add_option("--column", o->column, "Column to write; made when it does not exist");

@@ -4,23 +4,11 @@
 #include <cmath>
 #include <limits>
 
+#include "imager/noise.h"
 #include "tools/numbers.h"
 
 namespace misfit::tools {
 namespace {
-
-/// Reorders `values`.
-double median(std::vector<double>& values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
-double robust_noise(std::vector<double> values) {
-  const double centre = median(values);
-  for (double& value : values) value = std::abs(value - centre);
-  return 1.4826 * median(values);
-}
 
 std::vector<double> linear_tick_values(const Stretch& stretch) {
   const double rough = (stretch.high - stretch.low) / 5;
@@ -62,7 +50,7 @@ Stretch choose_stretch(const imager::Image& image) {
   const double max = *largest;
   if (min == max) return {.low = std::min(0.0, min), .high = min < 0 ? 0 : min > 0 ? min : 1};
 
-  const double noise = robust_noise(std::move(finite));
+  const double noise = imager::robust_noise(image);
   Stretch stretch{.low = min, .high = max, .sparse = noise == 0};
   if (max <= 0) return stretch;
   if (max > 30 * noise) stretch.knee = stretch.sparse ? max / 300 : 3 * noise;

@@ -57,13 +57,14 @@ struct Mean {
   }
 };
 
-/// How far the screen pixels of colour #fcffa4 (the brightest) lie on average from those of #000004 (the darkest), to the
-/// right and up, as gnuplot itself reads the PNG file.
-struct Offset {
-  double right = 0;
-  double up = 0;
+/// Where the screen pixels lie, on average, whose colours are #fcffa4 (the brightest), #000004 (the darkest) and white, as
+/// gnuplot itself reads the PNG file.
+struct Colours {
+  Mean bright;
+  Mean dark;
+  Mean white;
 };
-Offset bright_from_dark(const Folder& folder, const std::string& name) {
+Colours colours_of(const Folder& folder, const std::string& name) {
   std::ofstream(folder.path / "measure") << "set table 'pixels'\n"
                                          << "plot '" << name << "' binary filetype=png using 1:2:3:4:5 with rgbimage\n";
   const fs::path before = fs::current_path();
@@ -72,17 +73,27 @@ Offset bright_from_dark(const Folder& folder, const std::string& name) {
   fs::current_path(before);
   BOOST_TEST_REQUIRE(status == 0);
 
-  Mean dark;
-  Mean bright;
+  Colours colours;
   std::ifstream pixels(folder.path / "pixels");
   for (std::string line; std::getline(pixels, line);) {
     std::istringstream words(line);
     double x = 0, y = 0;
     int red = 0, green = 0, blue = 0;
     if (!(words >> x >> y >> red >> green >> blue)) continue;
-    if (red == 0 && blue == 4) dark.add(x, y);
-    if (red == 252 && blue == 164) bright.add(x, y);
+    if (red == 0 && blue == 4) colours.dark.add(x, y);
+    if (red == 252 && blue == 164) colours.bright.add(x, y);
+    if (red == 255 && green == 255 && blue == 255) colours.white.add(x, y);
   }
+  return colours;
+}
+
+/// How far the brightest screen pixels lie on average from the darkest, to the right and up.
+struct Offset {
+  double right = 0;
+  double up = 0;
+};
+Offset bright_from_dark(const Folder& folder, const std::string& name) {
+  const auto [bright, dark, white] = colours_of(folder, name);
   BOOST_TEST_REQUIRE(dark.count > 0);
   BOOST_TEST_REQUIRE(bright.count > 0);
   return {bright.x / bright.count - dark.x / dark.count, bright.y / bright.count - dark.y / dark.count};
@@ -125,6 +136,21 @@ BOOST_AUTO_TEST_CASE(east_is_left_and_north_is_up) {
       BOOST_TEST(std::abs(offset.up - (row - 4.5) * 64) < 32);
     }
   }
+}
+
+BOOST_AUTO_TEST_CASE(pixels_without_value_have_the_colour_of_the_background) {
+  const Folder folder;
+  SkyImage sky = sky_image(10, 10);
+  sky.image.at(2, 2) = 1;
+  BOOST_TEST_REQUIRE(draw_pictures({{&sky, "whole", folder.file("whole.png")}}) == "");
+  for (int row = 0; row < 10; ++row)
+    for (int column = 5; column < 10; ++column) sky.image.at(row, column) = std::numeric_limits<double>::quiet_NaN();
+  BOOST_TEST_REQUIRE(draw_pictures({{&sky, "half", folder.file("half.png")}}) == "");
+  const Colours whole = colours_of(folder, "whole.png"), half = colours_of(folder, "half.png");
+  // Half of 640 × 640 screen pixels, but for those under tics and frame.
+  const double expected = 640 * 320;
+  BOOST_TEST(std::abs(whole.dark.count - half.dark.count - expected) < 0.02 * expected);
+  BOOST_TEST(std::abs(half.white.count - whole.white.count - expected) < 0.02 * expected);
 }
 
 BOOST_AUTO_TEST_CASE(without_gnuplot_the_reason_is_returned) {
