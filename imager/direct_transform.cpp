@@ -4,34 +4,24 @@
 
 #include "imager/constants.h"
 #include "imager/parallel.h"
+#include "imager/phase.h"
 #include "imager/sampling.h"
 
 namespace misfit::imager {
 namespace {
 
-/// A position as the phase sees it.
-struct Direction {
-  double l = 0;
-  double m = 0;
-  double n_minus_1 = 0;
-
-  explicit Direction(DirectionCosines at, bool with_w = true) : l(at.l), m(at.m) {
-    if (with_w) n_minus_1 = imager::n_minus_1(at);
-  }
-};
-
-/// 2π(ul + vm + w(n−1)) at unit frequency.
-double phase_per_hz(const double* uvw_m, const Direction& at) {
-  return 2 * pi / speed_of_light_m_s * (uvw_m[0] * at.l + uvw_m[1] * at.m + uvw_m[2] * at.n_minus_1);
+/// The same as `at` seen from `origin`: phases subtract.
+PhasePosition relative(const PhasePosition& at, const PhasePosition& origin) {
+  return {at.l - origin.l, at.m - origin.m, at.n_minus_1 - origin.n_minus_1};
 }
 
 /// Σ w Re[V exp(−i phase)] over one block, with `value(i)` = w V.
 template <typename Value>
-double direct_sum(const VisibilityBlock& block, const std::vector<char>& inside, const Direction& at, const Value& value) {
+double direct_sum(const VisibilityBlock& block, const std::vector<char>& inside, const PhasePosition& at, const Value& value) {
   double sum = 0;
   std::size_t i = 0;
   for (std::size_t row = 0; row < block.rows(); ++row) {
-    const double phase = phase_per_hz(&block.uvw_m[3 * row], at);
+    const double phase = 2 * pi * turns_per_hz(&block.uvw_m[3 * row], at);
     for (const double frequency : block.frequency_hz) {
       if (inside[i]) {
         const std::complex<double> v = value(i);
@@ -67,12 +57,12 @@ class DirectAdjoint : public AdjointSum {
     parallel_for(static_cast<std::size_t>(geometry_.height), threads_, [&](std::size_t r) {
       const int row = static_cast<int>(r);
       for (int column = 0; column < geometry_.width; ++column) {
-        const Direction at({geometry_.l(column), geometry_.m(row)});
+        const PhasePosition at = phase_position(geometry_.at(row, column));
         result_.image.at(row, column) +=
             direct_sum(block, inside, at, [&](std::size_t i) { return double{block.weight[i]} * visibility(i); });
         if (!result_.psf.pixel.empty())
-          result_.psf.at(row, column) +=
-              direct_sum(block, inside, at, [&](std::size_t i) { return std::complex<double>(block.weight[i]); });
+          result_.psf.at(row, column) += direct_sum(block, inside, relative(at, phase_position(geometry_.centre)),
+                                                    [&](std::size_t i) { return std::complex<double>(block.weight[i]); });
       }
     });
   }
@@ -121,7 +111,7 @@ std::vector<std::complex<double>> predict_sources(const std::vector<PointSource>
   std::vector<std::complex<double>> visibility(at.samples());
   parallel_for(at.rows(), threads, [&](std::size_t row) {
     for (const PointSource& source : sources) {
-      const double phase = phase_per_hz(&at.uvw_m[3 * row], Direction(source.position));
+      const double phase = 2 * pi * turns_per_hz(&at.uvw_m[3 * row], phase_position(source.position));
       for (std::size_t channel = 0; channel < at.channels(); ++channel)
         visibility[row * at.channels() + channel] += std::polar(source.flux_jy, phase * at.frequency_hz[channel]);
     }
@@ -133,8 +123,9 @@ void add_direct_pixels(const VisibilityBlock& block, const DirectPixels& at, std
   SampleSums unused;
   const std::vector<char> inside = samples_inside(block, at.geometry.cell_rad, unused);
   parallel_for(at.pixel.size(), at.threads, [&](std::size_t k) {
-    const Direction direction({at.geometry.l(at.pixel[k].column), at.geometry.m(at.pixel[k].row)}, at.with_w);
-    sum[k] += direct_sum(block, inside, direction,
+    PhasePosition position = phase_position(at.geometry.at(at.pixel[k].row, at.pixel[k].column));
+    if (!at.with_w) position.n_minus_1 = 0;
+    sum[k] += direct_sum(block, inside, position,
                          [&](std::size_t i) { return double{block.weight[i]} * std::complex<double>(block.visibility[i]); });
   });
 }

@@ -7,7 +7,7 @@
 namespace misfit::imager {
 
 /// The defining sums in double precision, w included: the oracle that everything else is measured against. Costs samples ×
-/// pixels. Pixels beyond the horizon are NaN in images and unused in prediction.
+/// pixels.
 class DirectTransform : public Transform {
  public:
   DirectTransform(const ImageGeometry& geometry, int threads) : geometry_(geometry), threads_(threads) {}

@@ -52,6 +52,7 @@ struct ImageGeometry {
   std::array<DirectionCosines, 4> corners() const {
     return {at(0, 0), at(0, width - 1), at(height - 1, 0), at(height - 1, width - 1)};
   }
+  bool off_phase_centre() const { return centre.l != 0 || centre.m != 0; }
   std::size_t pixels() const { return static_cast<std::size_t>(width) * static_cast<std::size_t>(height); }
 };
 

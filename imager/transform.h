@@ -24,8 +24,11 @@ struct SampleSums {
 
 /// Images made from all samples added, not yet divided by Σ w.
 struct AdjointResult {
-  Image image;  ///< Σ w Re[V exp(−2πi(ul+vm+w(n−1)))]
-  Image psf;    ///< the same with V = 1; empty unless it was asked for
+  /// Σ w Re[V exp(−2πi(ul+vm+w(n−1)))]; NaN beyond the horizon.
+  Image image;
+  /// The same with V = exp(+2πi(u l_0 + v m_0 + w(n_0−1))), the response to a source of 1 Jy in the image's middle pixel, where
+  /// it is Σ w; empty unless it was asked for. It is NaN where w counts and that pixel lies beyond the horizon.
+  Image psf;
   SampleSums sums;
 };
 
@@ -44,7 +47,8 @@ class AdjointSum {
 class Prediction {
  public:
   virtual ~Prediction() = default;
-  /// V [row][channel] at every coordinate, beyond 1/(2 cell) too: the model is periodic in u and v.
+  /// V [row][channel] at every coordinate, beyond 1/(2 cell) too: but for the phase of the image's middle pixel the model is
+  /// periodic in u and v.
   virtual std::vector<std::complex<double>> at(const SampleCoordinates& coordinates) const = 0;
   /// V [row][channel] where the block's weight is not 0, and 0 elsewhere.
   virtual std::vector<std::complex<double>> at_usable(const VisibilityBlock& block) const = 0;
@@ -52,7 +56,8 @@ class Prediction {
 
 /// The linear operator A of interferometric imaging and its adjoint,
 ///   V(u,v,w) = Σ_pixels I(l,m) exp(+2πi(ul+vm+w(n−1))),   u, v, w = UVW · frequency / c,
-/// in one of several implementations. With the same samples, ⟨A x, y⟩ = ⟨x, A* y⟩ (real parts) up to rounding.
+/// in one of several implementations. The sum leaves out pixels beyond the horizon, whatever they hold. With the same samples,
+/// ⟨A x, y⟩ = ⟨x, A* y⟩ (real parts) up to rounding.
 class Transform {
  public:
   virtual ~Transform() = default;

@@ -8,6 +8,7 @@
 
 #include "imager/horizon.h"
 #include "imager/parallel.h"
+#include "imager/phase.h"
 #include "imager/phasors.h"
 #include "imager/sampling.h"
 #include "imager/stack_loops.h"
@@ -251,6 +252,8 @@ class WideAdjoint : public AdjointSum {
     const StackShape& s = setup_.shape;
     StackBuffer<Real> buffer(s.tile, setup_.taps.u.padded, task.planes.planes, stack.components);
     for_each_batch(setup_, scale, blocks, order, task, [&](StackBatch<Real>& batch, const BatchPhases& phases) {
+      double psf_cosine[BatchPhases::capacity], psf_sine[BatchPhases::capacity];
+      if (stack.components > 2) psf_phasors(phases, batch.count, psf_cosine, psf_sine);
       // The grid holds conj(V), whose backward transform is the image; see stack_order.h for the axes.
       for (int k = 0; k < batch.count; ++k) {
         const Gathered& g = gathered_[phases.block[k]];
@@ -259,8 +262,9 @@ class WideAdjoint : public AdjointSum {
         const double re = weight * v.real(), im = phases.folded[k] ? weight * v.imag() : -weight * v.imag();
         batch.value[0][k] = static_cast<Real>(re * phases.cosine[k] - im * phases.sine[k]);
         batch.value[1][k] = static_cast<Real>(re * phases.sine[k] + im * phases.cosine[k]);
-        batch.value[2][k] = static_cast<Real>(weight * phases.cosine[k]);
-        batch.value[3][k] = static_cast<Real>(weight * phases.sine[k]);
+        if (stack.components == 2) continue;
+        batch.value[2][k] = static_cast<Real>(weight * psf_cosine[k]);
+        batch.value[3][k] = static_cast<Real>(weight * psf_sine[k]);
       }
       spread(setup_.taps, batch, buffer);
     });
@@ -271,6 +275,25 @@ class WideAdjoint : public AdjointSum {
       for (int c = 0; c < count; ++c) to[c] += from[c];
     });
     std::fill_n(stack.row_used.begin() + task.tile_v * s.tile, s.tile + s.width - 1, 1);
+  }
+
+  /// The facet's phasors seen from the image's middle pixel, where the PSF's source is.
+  void psf_phasors(const BatchPhases& phases, int count, double* cosine, double* sine) const {
+    const ImageGeometry& g = setup_.options.geometry;
+    if (!g.off_phase_centre()) {
+      std::copy_n(phases.cosine, count, cosine);
+      std::copy_n(phases.sine, count, sine);
+      return;
+    }
+    const PhasePosition middle = phase_position(g.centre);
+    double turns[BatchPhases::capacity];
+    for (int k = 0; k < count; ++k) {
+      const VisibilityBlock& block = gathered_[phases.block[k]].block;
+      const std::size_t row = phases.sample[k] / block.channels(), channel = phases.sample[k] % block.channels();
+      const double to_middle = turns_per_hz(&block.uvw_m[3 * row], middle) * block.frequency_hz[channel];
+      turns[k] = phases.turns[k] - (phases.folded[k] ? -to_middle : to_middle);
+    }
+    phasors(turns, count, cosine, sine);
   }
 
   const Setup<Real>& setup_;

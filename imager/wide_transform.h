@@ -18,8 +18,7 @@ struct WideTransformOptions : PlaneTransformOptions {
 
 /// The transform with its w axis, for any field of view: improved w-stacking (Ye, Gull, Tan & Nikolic 2022, MNRAS 510, 4110; as
 /// in Arras et al. 2021, A&A 646, A58), facet by facet. Forward and adjoint are exact transposes of each other, and the result
-/// does not depend on the number of threads. Pixels beyond the horizon are NaN in images and unused in prediction. Throws
-/// std::invalid_argument when the options contradict each other.
+/// does not depend on the number of threads. Throws std::invalid_argument when the options contradict each other.
 std::unique_ptr<Transform> make_wide_transform(const WideTransformOptions& options);
 
 /// The transform with its w axis where the options have one, else the one in the plane.

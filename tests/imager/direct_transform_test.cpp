@@ -32,8 +32,8 @@ Complex visibility_of(const PointSource& source, const double* uvw_m, double fre
   return source.flux_jy * std::exp(Complex(0, 2 * pi * turns));
 }
 
-AdjointResult adjoint_of(const VisibilityBlock& block) {
-  const auto sum = DirectTransform(geometry, 2).adjoint(true);
+AdjointResult adjoint_of(const VisibilityBlock& block, const ImageGeometry& of = geometry) {
+  const auto sum = DirectTransform(of, 2).adjoint(true);
   sum->add(block);
   return sum->finish();
 }
@@ -107,6 +107,17 @@ BOOST_AUTO_TEST_CASE(the_psf_peaks_at_the_centre_at_the_sum_of_weights) {
   BOOST_TEST(result.psf.at(8, 12) == weight, boost::test_tools::tolerance(1e-13));
   BOOST_TEST(find_peak(result.psf).value == result.psf.at(8, 12));
   BOOST_TEST(result.sums.weight == weight, boost::test_tools::tolerance(1e-13));
+}
+
+BOOST_AUTO_TEST_CASE(the_psf_is_the_image_of_a_source_in_the_middle_pixel_wherever_that_lies) {
+  ImageGeometry off = geometry;
+  off.centre = {0.3, -0.45};
+  VisibilityBlock block = samples(50);
+  const auto exact = predict_sources({{off.centre, 1}}, block, 1);
+  block.visibility.assign(exact.begin(), exact.end());
+  const AdjointResult result = adjoint_of(block, off);
+  BOOST_TEST(result.psf.at(8, 12) == result.sums.weight, boost::test_tools::tolerance(1e-13));
+  BOOST_TEST(relative_error(result.image.pixel, result.psf.pixel) < 1e-6);  // the rounding of float visibilities
 }
 
 BOOST_AUTO_TEST_CASE(adjoint_is_the_transpose_of_prediction) {

@@ -135,6 +135,20 @@ BOOST_DATA_TEST_CASE(the_whole_hemisphere_is_exact_and_nothing_lies_beyond_the_h
   BOOST_TEST(relative_error(predicted, DirectTransform(sky, 2).predict(model)->at(block)) < 1.5 * expected_error(o) + 1e-13);
 }
 
+BOOST_DATA_TEST_CASE(the_psf_is_that_of_the_middle_pixel_wherever_it_lies,
+                     bdata::make({1, 2, 3}) * bdata::make({0.01, 0.3, -0.75}), facets, offset) {
+  const ImageGeometry off{64, 48, 0.0055, {}, {offset, -0.8 * offset}};
+  const WideTransformOptions o = options({off, 8, 1.6, facets, 3 - facets / 2});
+  const VisibilityBlock block = random_samples_with_w(150, 3, off.cell_rad, most_w, 1);
+  const AdjointResult gridded = adjoint_of(*make_wide_transform(o), block);
+  const AdjointResult direct = adjoint_of(DirectTransform(off, 2), block);
+  BOOST_TEST(relative_error(seen(gridded.image), seen(direct.image)) < 1.5 * expected_error(o) + 1e-12);
+  BOOST_TEST(relative_error(seen(gridded.psf), seen(direct.psf)) < 1.5 * worst_error(o) + 1e-12);
+  const double worst =
+      std::sqrt(o.kernel_u.misfit.worst) + std::sqrt(o.kernel_v.misfit.worst) + std::sqrt(o.kernel_w.misfit.worst);
+  BOOST_TEST((std::abs(gridded.psf.at(24, 32) / gridded.sums.weight - 1) < worst + 1e-12));
+}
+
 BOOST_DATA_TEST_CASE(w_of_any_kind_is_as_exact, bdata::make({0, 1, 2, 3, 4}), kind) {
   const WideTransformOptions o = options({field, 9, 1.6, 2, 2});
   VisibilityBlock block = random_samples_with_w(kind == 4 ? 1 : 100, 2, field.cell_rad, most_w, 11);
