@@ -48,7 +48,7 @@ struct ImageCorrection {
   std::vector<double> row;     ///< [height]
 };
 
-/// image(x, y) = h(x) h(y) Re Σ_{p,q} G(p, q) exp(+2πi(px/nu + qy/nv)), with x, y counted from the phase centre pixel.
+/// image(x, y) = h(x) h(y) Re Σ_{p,q} G(p, q) exp(+2πi(px/nu + qy/nv)), with x, y counted from the middle pixel.
 /// `imaginary` may be null for a real grid. Only the rows of the grid that hold data and the columns that the image keeps are
 /// transformed.
 template <typename Real>

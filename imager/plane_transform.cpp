@@ -1,12 +1,14 @@
 #include "imager/plane_transform.h"
 
 #include <algorithm>
-#include <numeric>
+#include <limits>
 #include <stdexcept>
 #include <string>
 
 #include "imager/half_grid.h"
 #include "imager/parallel.h"
+#include "imager/phase.h"
+#include "imager/phasors.h"
 #include "imager/tile_loops.h"
 #include "imager/tile_order.h"
 
@@ -51,17 +53,48 @@ std::vector<std::vector<TileTask>> coloured_tasks(const TileOrder& order, const 
   return colours;
 }
 
-/// Walks through a tile's samples in batches: fill(batch index, sample index, conjugate) for each, then done(batch).
-template <typename Real, typename Fill, typename Done>
+/// What a batch needs to know of its samples besides their places.
+struct BatchSamples {
+  static constexpr int capacity = TileBatch<double>::capacity;
+  std::size_t index[capacity];  ///< row × channels + channel
+  bool conjugate[capacity];     ///< whether the place is that of −u, −v
+  bool off_phase_centre;        ///< otherwise there are no phasors
+  double turns[capacity];       ///< u l_0 + v m_0
+  double cosine[capacity];
+  double sine[capacity];
+
+  /// V exp(−2πi(u l_0 + v m_0)), of the sky seen from the image's middle pixel.
+  std::complex<double> from_middle(std::complex<double> v, int k) const {
+    if (!off_phase_centre) return v;
+    return {v.real() * cosine[k] + v.imag() * sine[k], v.imag() * cosine[k] - v.real() * sine[k]};
+  }
+  /// The inverse, V exp(+2πi(u l_0 + v m_0)).
+  std::complex<double> from_phase_centre(std::complex<double> v, int k) const {
+    return std::conj(from_middle(std::conj(v), k));
+  }
+};
+
+/// Walks through a tile's samples in batches: done(batch, samples) for each, phasors computed.
+template <typename Real, typename Done>
 void for_each_batch(const Setup<Real>& setup, const SampleCoordinates& at, const TileOrder& order, const TileTask& task,
-                    TileBatch<Real>& batch, const Fill& fill, const Done& done) {
+                    const Done& done) {
   const CellScale scale(setup.shape, setup.geometry.cell_rad);
+  const PhasePosition middle{setup.geometry.centre.l, setup.geometry.centre.m, 0};
   const int left = task.tile_u * setup.shape.tile;
   const int bottom = task.tile_v * setup.shape.tile;
-  batch.count = 0;
+  TileBatch<Real> batch;
+  BatchSamples samples;
+  samples.off_phase_centre = setup.geometry.off_phase_centre();
+  const auto finish = [&] {
+    if (samples.off_phase_centre) phasors(samples.turns, batch.count, samples.cosine, samples.sine);
+    done(batch, samples);
+    batch.count = 0;
+  };
   for (std::size_t r = order.begin[task.tile]; r < order.begin[task.tile + 1]; ++r) {
     const ChannelRun run = order.run[r];
-    const FoldedRow row(&at.uvw_m[std::size_t{3} * run.row], scale);
+    const double* uvw_m = &at.uvw_m[std::size_t{3} * run.row];
+    const FoldedRow row(uvw_m, scale);
+    const double to_middle = turns_per_hz(uvw_m, middle);
     for (std::size_t channel = run.first; channel < std::size_t{run.first} + run.count; ++channel) {
       const double frequency = at.frequency_hz[channel];
       const PeriodicPosition position(row.u_per_hz * frequency, row.v_per_hz * frequency, row.folded, setup.shape);
@@ -72,14 +105,21 @@ void for_each_batch(const Setup<Real>& setup, const SampleCoordinates& at, const
       batch.row[i] = setup.shape.first_row(v.first) - bottom;
       batch.tu[i] = static_cast<Real>(u.t);
       batch.tv[i] = static_cast<Real>(v.t);
-      fill(i, run.row * at.channels() + channel, position.conjugate);
-      if (batch.count == TileBatch<Real>::capacity) {
-        done(batch);
-        batch.count = 0;
-      }
+      samples.index[i] = run.row * at.channels() + channel;
+      samples.conjugate[i] = position.conjugate;
+      samples.turns[i] = to_middle * frequency;
+      if (batch.count == TileBatch<Real>::capacity) finish();
     }
   }
-  if (batch.count > 0) done(batch);
+  if (batch.count > 0) finish();
+}
+
+/// Gives `value` to the pixels beyond the horizon.
+void set_beyond_horizon(const ImageGeometry& geometry, double value, Image& image) {
+  if (!crosses_horizon(geometry)) return;
+  for (int row = 0; row < image.height; ++row)
+    for (int column = 0; column < image.width; ++column)
+      if (beyond_horizon(geometry.at(row, column))) image.at(row, column) = value;
 }
 
 template <typename Real>
@@ -97,13 +137,18 @@ class PlaneAdjoint : public AdjointSum {
   AdjointResult finish() override {
     AdjointResult result;
     result.sums = sums_;
-    result.image = grid_to_image(setup_.shape, grid_.real.data(), grid_.imaginary.data(), setup_.correction, setup_.threads);
-    if (!grid_.weight.empty())
-      result.psf = grid_to_image<Real>(setup_.shape, grid_.weight.data(), nullptr, setup_.correction, setup_.threads);
+    result.image = to_image(grid_.real.data(), grid_.imaginary.data());
+    if (!grid_.weight.empty()) result.psf = to_image(grid_.weight.data(), nullptr);
     return result;
   }
 
  private:
+  Image to_image(const Real* real, const Real* imaginary) const {
+    Image image = grid_to_image(setup_.shape, real, imaginary, setup_.correction, setup_.threads);
+    set_beyond_horizon(setup_.geometry, std::numeric_limits<double>::quiet_NaN(), image);
+    return image;
+  }
+
   template <typename Visibility>
   void accumulate(const VisibilityBlock& block, const std::vector<std::complex<double>>* other, const Visibility& visibility) {
     const TileOrder order =
@@ -112,17 +157,17 @@ class PlaneAdjoint : public AdjointSum {
     for (const std::vector<TileTask>& tasks : coloured_tasks(order, setup_.shape)) {
       parallel_for(tasks.size(), setup_.threads, [&](std::size_t i) {
         TileBuffer<Real> buffer(setup_.shape.tile, setup_.taps_u.padded, grid_.weight.empty() ? 2 : 3);
-        TileBatch<Real> batch;
-        // The grid holds conj(V), whose backward transform is the image; see tile_order.h for the axes.
-        const auto fill = [&](int at, std::size_t sample, bool conjugate) {
-          const double weight = block.weight[sample];
-          const std::complex<double> value = visibility(sample);
-          batch.real[at] = static_cast<Real>(weight * value.real());
-          batch.imaginary[at] = static_cast<Real>(conjugate ? weight * value.imag() : -weight * value.imag());
-          batch.weight[at] = static_cast<Real>(weight);
-        };
-        for_each_batch(setup_, block, order, tasks[i], batch, fill,
-                       [&](TileBatch<Real>& full) { spread(setup_.taps_u, setup_.taps_v, full, buffer); });
+        for_each_batch(setup_, block, order, tasks[i], [&](TileBatch<Real>& batch, const BatchSamples& samples) {
+          // The grid holds conj(V), whose backward transform is the image; see tile_order.h for the axes.
+          for (int k = 0; k < batch.count; ++k) {
+            const double weight = block.weight[samples.index[k]];
+            const std::complex<double> value = samples.from_middle(visibility(samples.index[k]), k);
+            batch.real[k] = static_cast<Real>(weight * value.real());
+            batch.imaginary[k] = static_cast<Real>(samples.conjugate[k] ? weight * value.imag() : -weight * value.imag());
+            batch.weight[k] = static_cast<Real>(weight);
+          }
+          spread(setup_.taps_u, setup_.taps_v, batch, buffer);
+        });
         flush(tasks[i], buffer);
       });
     }
@@ -152,7 +197,13 @@ template <typename Real>
 class PlanePrediction : public Prediction {
  public:
   PlanePrediction(const Setup<Real>& setup, const Image& model) : setup_(setup), grid_(setup.shape, false) {
-    image_to_grid(model, setup.correction, setup.threads, grid_);
+    if (!crosses_horizon(setup.geometry)) {
+      image_to_grid(model, setup.correction, setup.threads, grid_);
+    } else {
+      Image seen = model;
+      set_beyond_horizon(setup.geometry, 0, seen);
+      image_to_grid(seen, setup.correction, setup.threads, grid_);
+    }
   }
 
   std::vector<std::complex<double>> at(const SampleCoordinates& coordinates) const override {
@@ -173,18 +224,13 @@ class PlanePrediction : public Prediction {
       tasks.insert(tasks.end(), colour.begin(), colour.end());
     parallel_for(tasks.size(), setup_.threads, [&](std::size_t i) {
       const TileBuffer<Real> buffer = load(tasks[i]);
-      TileBatch<Real> batch;
-      std::size_t sample_of[TileBatch<Real>::capacity];
-      bool conjugate_of[TileBatch<Real>::capacity];
-      const auto fill = [&](int at, std::size_t sample, bool conjugate) {
-        sample_of[at] = sample;
-        conjugate_of[at] = conjugate;
-      };
-      for_each_batch(setup_, block, order, tasks[i], batch, fill, [&](TileBatch<Real>& full) {
-        interpolate(setup_.taps_u, setup_.taps_v, buffer, full);
-        for (int k = 0; k < full.count; ++k)
-          visibility[sample_of[k]] = {double{full.real[k]},
-                                      conjugate_of[k] ? double{full.imaginary[k]} : -double{full.imaginary[k]}};
+      for_each_batch(setup_, block, order, tasks[i], [&](TileBatch<Real>& batch, const BatchSamples& samples) {
+        interpolate(setup_.taps_u, setup_.taps_v, buffer, batch);
+        for (int k = 0; k < batch.count; ++k) {
+          const double imaginary = double{batch.imaginary[k]};
+          visibility[samples.index[k]] =
+              samples.from_phase_centre({double{batch.real[k]}, samples.conjugate[k] ? imaginary : -imaginary}, k);
+        }
       });
     });
     return visibility;

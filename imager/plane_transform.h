@@ -20,9 +20,9 @@ struct PlaneTransformOptions {
   int threads = 1;
 };
 
-/// The transform in two dimensions by gridding and FFT: w(n−1) is taken as 0. Forward and adjoint are exact transposes of each
-/// other, and the result does not depend on the number of threads. Throws std::invalid_argument when the options contradict
-/// each other.
+/// The transform in two dimensions by gridding and FFT, about any centre: w(n−1) is taken as 0. Forward and adjoint are exact
+/// transposes of each other, and the result does not depend on the number of threads. Throws std::invalid_argument when the
+/// options contradict each other.
 std::unique_ptr<Transform> make_plane_transform(const PlaneTransformOptions& options);
 
 }  // namespace misfit::imager

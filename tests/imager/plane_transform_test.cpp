@@ -141,8 +141,10 @@ BOOST_DATA_TEST_CASE(image_shapes_odd_thin_and_tiny_are_as_exact,
   BOOST_TEST(norm(difference) < 3 * bound * data);
 }
 
-BOOST_DATA_TEST_CASE(adjoint_is_the_transpose_of_prediction, bdata::make({1, 2, 5, 8, 11, 15, 20}), kernel_width) {
-  const PlaneTransformOptions o = options(50, 37, kernel_width, 1.3);
+BOOST_DATA_TEST_CASE(adjoint_is_the_transpose_of_prediction, bdata::make({1, 2, 5, 8, 11, 15, 20}) * bdata::make({0.0, 0.2}),
+                     kernel_width, offset) {
+  PlaneTransformOptions o = options(50, 37, kernel_width, 1.3);
+  o.geometry.centre = {offset, -offset / 3};
   const auto transform = make_plane_transform(o);
   VisibilityBlock y = random_samples(200, 3, cell_rad, 5);
   std::fill(y.weight.begin(), y.weight.end(), 1.0F);
@@ -210,6 +212,75 @@ BOOST_AUTO_TEST_CASE(prediction_beyond_the_grid_is_periodic_and_exact) {
   const auto gridded = parts(make_plane_transform(o)->predict(model)->at(block));
   const auto direct = parts(DirectTransform(o.geometry, 2).predict(model)->at(block));
   BOOST_TEST(relative_error(gridded, direct) < 1.5 * expected_error(o));
+}
+
+BOOST_DATA_TEST_CASE(images_off_the_phase_centre_are_as_exact, bdata::xrange(1, 12) * bdata::make({0.37 * cell_rad, 0.3, -0.5}),
+                     kernel_width, offset) {
+  PlaneTransformOptions o = options(64, 48, kernel_width, 1.6);
+  o.geometry.centre = {offset, -0.4 * offset};
+  const auto transform = make_plane_transform(o);
+  const DirectTransform exact(o.geometry, 2);
+  const VisibilityBlock block = random_samples(150, 3, cell_rad, 1);
+  const AdjointResult gridded = adjoint_of(*transform, block), direct = adjoint_of(exact, block);
+  constexpr double rounding = 1e-10;  // of phases of 10⁴ turns
+  BOOST_TEST(relative_error(gridded.image.pixel, direct.image.pixel) < 1.5 * expected_error(o) + rounding);
+  const double worst = std::sqrt(o.kernel_u.misfit.worst_mean + o.kernel_v.misfit.worst_mean);
+  BOOST_TEST(relative_error(gridded.psf.pixel, direct.psf.pixel) < 1.5 * worst + rounding);
+
+  const VisibilityBlock beyond = random_samples(300, 2, cell_rad, 2, 2.3);
+  const Image model = random_image(64, 48, 3);
+  BOOST_TEST(relative_error(parts(transform->predict(model)->at(beyond)), parts(exact.predict(model)->at(beyond))) <
+             1.5 * expected_error(o) + rounding);
+}
+
+BOOST_AUTO_TEST_CASE(single_precision_off_the_phase_centre_is_exact_to_its_rounding) {
+  PlaneTransformOptions o = options(128, 128, 8, 2.0);
+  o.precision = Precision::single_precision;
+  o.geometry.centre = {0.4, 0.3};
+  const VisibilityBlock block = random_samples(2000, 2, cell_rad, 9);
+  const Image model = random_image(128, 128, 10);
+  const auto transform = make_plane_transform(o);
+  const DirectTransform exact(o.geometry, 2);
+  // As at the phase centre: the phases of 10⁴ turns are not rounded to floats.
+  BOOST_TEST(relative_error(adjoint_of(*transform, block).image.pixel, adjoint_of(exact, block).image.pixel) < 1e-6);
+  BOOST_TEST(relative_error(parts(transform->predict(model)->at(block)), parts(exact.predict(model)->at(block))) < 1e-6);
+}
+
+BOOST_AUTO_TEST_CASE(the_psf_does_not_depend_on_the_offset_from_the_phase_centre) {
+  PlaneTransformOptions o = options(64, 48, 7, 1.6);
+  const VisibilityBlock block = random_samples(150, 3, cell_rad, 1);
+  const AdjointResult centred = adjoint_of(*make_plane_transform(o), block);
+  o.geometry.centre = {0.3, -0.1};
+  BOOST_TEST((adjoint_of(*make_plane_transform(o), block).psf.pixel == centred.psf.pixel));
+  // The worst relative error of a pixel at the worst position is √worst on each axis.
+  BOOST_TEST(std::abs(centred.psf.at(24, 32) / centred.sums.weight - 1) <
+             std::sqrt(o.kernel_u.misfit.worst) + std::sqrt(o.kernel_v.misfit.worst));
+}
+
+BOOST_AUTO_TEST_CASE(pixels_beyond_the_horizon_are_nan_and_predict_nothing) {
+  PlaneTransformOptions o = options(60, 50, 7, 1.6);
+  o.geometry.cell_rad = 0.02;
+  o.geometry.centre = {-0.501, 0.403};
+  const auto transform = make_plane_transform(o);
+  const VisibilityBlock block = random_samples(150, 1, o.geometry.cell_rad, 1);
+  const AdjointResult gridded = adjoint_of(*transform, block);
+  Image model = random_image(60, 50, 3), cut = model;
+  std::size_t beyond = 0;
+  for (int row = 0; row < 50; ++row)
+    for (int column = 0; column < 60; ++column) {
+      const bool nan = std::hypot(o.geometry.l(column), o.geometry.m(row)) > 1;
+      BOOST_REQUIRE(std::isnan(gridded.image.at(row, column)) == nan);
+      BOOST_REQUIRE(std::isnan(gridded.psf.at(row, column)) == nan);
+      if (!nan) continue;
+      ++beyond;
+      model.at(row, column) = beyond % 2 == 0 ? 1e6 : std::nan("");
+      cut.at(row, column) = 0;
+    }
+  BOOST_TEST(beyond > 500U);
+  const auto predicted = transform->predict(model)->at(block);
+  BOOST_TEST((predicted == transform->predict(cut)->at(block)));
+  BOOST_TEST(relative_error(parts(predicted), parts(DirectTransform(o.geometry, 2).predict(cut)->at(block))) <
+             2 * expected_error(o));
 }
 
 BOOST_AUTO_TEST_CASE(samples_of_weight_zero_neither_image_nor_predict) {
