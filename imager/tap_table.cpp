@@ -7,7 +7,7 @@ namespace misfit::imager {
 
 template <typename Real>
 TapTable<Real>::TapTable(const kernels::PiecewisePolynomial& kernel)
-    : width(kernel.width()), padded((kernel.width() + 3) / 4 * 4), degree(kernel.degree()) {
+    : width(kernel.width()), padded(padded_taps<Real>(kernel.width())), degree(kernel.degree()) {
   if (padded > most_taps) throw std::invalid_argument("kernel width " + std::to_string(width) + " not in [1, 20]");
   coefficient.resize((static_cast<std::size_t>(degree) + 1) * static_cast<std::size_t>(padded));
   for (int power = 0; power <= degree; ++power)

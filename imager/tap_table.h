@@ -6,7 +6,14 @@
 
 namespace misfit::imager {
 
-/// A kernel's polynomials as the inner loops want them: [power][tap], taps padded with zeros to a multiple of 4.
+/// W taps with the zeros that fill their vectors: a multiple of 4, and of 8 where 12 floats would leave vectors half as wide.
+template <typename Real>
+constexpr int padded_taps(int width) {
+  const int padded = (width + 3) / 4 * 4;
+  return sizeof(Real) == 4 && padded == 12 ? 16 : padded;
+}
+
+/// A kernel's polynomials as the inner loops want them: [power][tap], padded with zeros.
 template <typename Real>
 struct TapTable {
   int width = 0;

@@ -15,6 +15,17 @@ namespace misfit::imager::HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
+/// How W taps lie in memory and in vectors.
+template <typename Real, int Width>
+struct TapLanes {
+  static constexpr int padded = padded_taps<Real>(Width);
+  static constexpr int cap = padded % 16 == 0 ? 16 : padded % 8 == 0 ? 8 : 4;
+  using Tag = hn::CappedTag<Real, cap>;
+  using Vector = hn::Vec<Tag>;
+  static constexpr int lanes = static_cast<int>(hn::MaxLanes(Tag()));
+  static constexpr int vectors = (Width + lanes - 1) / lanes;
+};
+
 /// `Padded` taps as vectors of the widest kind that divides them.
 template <typename Real, int Padded>
 struct Taps {

@@ -1,5 +1,10 @@
 #include "imager/tile_loops.h"
 
+#include <algorithm>
+#include <utility>
+
+#include "imager/batch_taps.h"
+
 // Highway compiles what stands inside HWY_NAMESPACE once for every instruction set and chooses among them at run time.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "imager/tile_loops.cpp"
@@ -8,122 +13,159 @@
 
 #include "imager/tap_vectors_internal.h"
 
+// Arrays of vectors stay in registers only where every loop over them is unrolled.
+#undef MISFIT_UNROLL
+#define MISFIT_UNROLL _Pragma("GCC unroll 64")
+
 HWY_BEFORE_NAMESPACE();
 namespace misfit::imager::HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-template <typename Real, int Padded, int Planes>
-HWY_ATTR void spread_samples(const TapTable<Real>& u, const TapTable<Real>& v, const TileBatch<Real>& samples,
-                             TileBuffer<Real>& buffer) {
-  using T = Taps<Real, Padded>;
+/// Sums that a loop may keep in registers, leaving some for taps and factors.
+constexpr int most_sums = HWY_TARGET <= HWY_AVX3 || HWY_ARCH_ARM_A64 ? 26 : 13;
+
+template <typename Real>
+using Evaluated = BatchTaps<Real, TileBatch<Real>::capacity>;
+
+/// Samples [begin, end) of a batch that all have their first tap in one cell.
+struct SameCell {
+  int begin;
+  int end;
+};
+
+template <typename Real>
+SameCell next_cell(const TileBatch<Real>& samples, int begin) {
+  int end = begin + 1;
+  while (end < samples.count && samples.column[end] == samples.column[begin] && samples.row[end] == samples.row[begin]) ++end;
+  return {begin, end};
+}
+
+/// Adds `Rows` rows of the taps of samples in one cell: summed in registers, so that memory is touched once for all of them.
+template <typename Real, int Width, int Planes, int Rows>
+HWY_ATTR HWY_INLINE Real* add_rows(const TileBatch<Real>& samples, SameCell same, const Real* along_u, const Real* along_v,
+                                   std::ptrdiff_t columns, Real* cell) {
+  using T = TapLanes<Real, Width>;
   const typename T::Tag d;
-  for (int i = 0; i < samples.count; ++i) {
-    const T along_u(u, samples.tu[i]);
-    Real along_v[Padded];
-    T(v, samples.tv[i]).store(along_v);
-    const Real value[3] = {samples.real[i], samples.imaginary[i], samples.weight[i]};
-    Real* cell = buffer.row(samples.row[i], 0) + samples.column[i];
-    for (int j = 0; j < v.width; ++j) {
-      for (int plane = 0; plane < Planes; ++plane) {
-        const auto factor = hn::Set(d, along_v[j] * value[plane]);
-        for (int k = 0; k < T::vectors; ++k) {
-          Real* at = cell + k * T::lanes;
-          hn::StoreU(hn::MulAdd(factor, along_u.value[k], hn::LoadU(d, at)), d, at);
-        }
-        cell += buffer.columns;
+  const Real* const value[3] = {samples.real, samples.imaginary, samples.weight};
+  typename T::Vector sum[Rows][Planes][T::vectors];
+  MISFIT_UNROLL for (int j = 0; j < Rows; ++j) {
+    MISFIT_UNROLL for (int plane = 0; plane < Planes; ++plane) {
+      MISFIT_UNROLL for (int k = 0; k < T::vectors; ++k) sum[j][plane][k] = hn::Zero(d);
+    }
+  }
+  for (int i = same.begin; i < same.end; ++i) {
+    typename T::Vector term[Planes][T::vectors];
+    MISFIT_UNROLL for (int plane = 0; plane < Planes; ++plane) {
+      const auto factor = hn::Set(d, value[plane][i]);
+      MISFIT_UNROLL for (int k = 0; k < T::vectors; ++k) term[plane][k] =
+          hn::Mul(factor, hn::Load(d, along_u + i * T::padded + k * T::lanes));
+    }
+    MISFIT_UNROLL for (int j = 0; j < Rows; ++j) {
+      const auto factor = hn::Set(d, along_v[i * T::padded + j]);
+      MISFIT_UNROLL for (int plane = 0; plane < Planes; ++plane) {
+        MISFIT_UNROLL for (int k = 0; k < T::vectors; ++k) sum[j][plane][k] =
+            hn::MulAdd(factor, term[plane][k], sum[j][plane][k]);
       }
     }
   }
-}
-
-template <typename Real, int Padded>
-HWY_ATTR void interpolate_samples(const TapTable<Real>& u, const TapTable<Real>& v, const TileBuffer<Real>& buffer,
-                                  TileBatch<Real>& samples) {
-  using T = Taps<Real, Padded>;
-  const typename T::Tag d;
-  for (int i = 0; i < samples.count; ++i) {
-    const T along_u(u, samples.tu[i]);
-    Real along_v[Padded];
-    T(v, samples.tv[i]).store(along_v);
-    hn::Vec<typename T::Tag> real[T::vectors];
-    hn::Vec<typename T::Tag> imaginary[T::vectors];
-    for (int k = 0; k < T::vectors; ++k) real[k] = imaginary[k] = hn::Zero(d);
-    const Real* cell = buffer.cell.data() + samples.row[i] * 2 * buffer.columns + samples.column[i];
-    for (int j = 0; j < v.width; ++j, cell += 2 * buffer.columns) {
-      const auto factor = hn::Set(d, along_v[j]);
-      for (int k = 0; k < T::vectors; ++k) {
-        real[k] = hn::MulAdd(factor, hn::LoadU(d, cell + k * T::lanes), real[k]);
-        imaginary[k] = hn::MulAdd(factor, hn::LoadU(d, cell + buffer.columns + k * T::lanes), imaginary[k]);
+  MISFIT_UNROLL for (int j = 0; j < Rows; ++j) {
+    MISFIT_UNROLL for (int plane = 0; plane < Planes; ++plane, cell += columns) {
+      MISFIT_UNROLL for (int k = 0; k < T::vectors; ++k) {
+        Real* at = cell + k * T::lanes;
+        hn::StoreU(hn::Add(sum[j][plane][k], hn::LoadU(d, at)), d, at);
       }
     }
-    auto real_sum = hn::Mul(real[0], along_u.value[0]);
-    auto imaginary_sum = hn::Mul(imaginary[0], along_u.value[0]);
-    for (int k = 1; k < T::vectors; ++k) {
-      real_sum = hn::MulAdd(real[k], along_u.value[k], real_sum);
-      imaginary_sum = hn::MulAdd(imaginary[k], along_u.value[k], imaginary_sum);
+  }
+  return cell;
+}
+
+template <typename Real, int Width, int Planes>
+HWY_ATTR void spread_samples(const TileBatch<Real>& samples, const Evaluated<Real>& along_u, const Evaluated<Real>& along_v,
+                             TileBuffer<Real>& buffer) {
+  constexpr int passes = (Width * Planes * TapLanes<Real, Width>::vectors + most_sums - 1) / most_sums;
+  constexpr int rows = passes < Width ? (Width + passes - 1) / passes : 1;
+  constexpr int rest = Width % rows;
+  const std::ptrdiff_t columns = buffer.columns;
+  for (SameCell same = next_cell(samples, 0); same.begin < samples.count; same = next_cell(samples, same.end)) {
+    Real* cell = buffer.row(samples.row[same.begin], 0) + samples.column[same.begin];
+    for (int j = 0; j < Width - rest; j += rows)
+      cell = add_rows<Real, Width, Planes, rows>(samples, same, along_u.value, along_v.value + j, columns, cell);
+    if constexpr (rest > 0)
+      add_rows<Real, Width, Planes, rest>(samples, same, along_u.value, along_v.value + Width - rest, columns, cell);
+  }
+}
+
+template <typename Real, int Width>
+HWY_ATTR void interpolate_samples(const Evaluated<Real>& along_u, const Evaluated<Real>& along_v,
+                                  const TileBuffer<Real>& buffer, TileBatch<Real>& samples) {
+  using T = TapLanes<Real, Width>;
+  const typename T::Tag d;
+  const std::ptrdiff_t columns = buffer.columns;
+  for (int i = 0; i < samples.count; ++i) {
+    typename T::Vector real[T::vectors];
+    typename T::Vector imaginary[T::vectors];
+    MISFIT_UNROLL for (int k = 0; k < T::vectors; ++k) real[k] = imaginary[k] = hn::Zero(d);
+    const Real* cell = buffer.cell.data() + samples.row[i] * 2 * columns + samples.column[i];
+    MISFIT_UNROLL for (int j = 0; j < Width; ++j, cell += 2 * columns) {
+      const auto factor = hn::Set(d, along_v.value[i * T::padded + j]);
+      MISFIT_UNROLL for (int k = 0; k < T::vectors; ++k) {
+        real[k] = hn::MulAdd(factor, hn::LoadU(d, cell + k * T::lanes), real[k]);
+        imaginary[k] = hn::MulAdd(factor, hn::LoadU(d, cell + columns + k * T::lanes), imaginary[k]);
+      }
+    }
+    auto real_sum = hn::Zero(d);
+    auto imaginary_sum = hn::Zero(d);
+    MISFIT_UNROLL for (int k = 0; k < T::vectors; ++k) {
+      const auto taps = hn::Load(d, along_u.value + i * T::padded + k * T::lanes);
+      real_sum = hn::MulAdd(real[k], taps, real_sum);
+      imaginary_sum = hn::MulAdd(imaginary[k], taps, imaginary_sum);
     }
     samples.real[i] = hn::GetLane(hn::SumOfLanes(d, real_sum));
     samples.imaginary[i] = hn::GetLane(hn::SumOfLanes(d, imaginary_sum));
   }
 }
 
-template <typename Real, int Padded>
-HWY_ATTR void spread_planes(const TapTable<Real>& u, const TapTable<Real>& v, const TileBatch<Real>& samples,
-                            TileBuffer<Real>& buffer) {
-  if (buffer.planes == 3) return spread_samples<Real, Padded, 3>(u, v, samples, buffer);
-  spread_samples<Real, Padded, 2>(u, v, samples, buffer);
+template <typename Real, int... Before>
+HWY_ATTR void spread_any(std::integer_sequence<int, Before...>, const TapTable<Real>& u, const TapTable<Real>& v,
+                         const TileBatch<Real>& samples, TileBuffer<Real>& buffer) {
+  Evaluated<Real> along_u, along_v;
+  evaluate_taps(u, samples.tu, samples.count, along_u.value);
+  evaluate_taps(v, samples.tv, samples.count, along_v.value);
+  using Loop = void (*)(const TileBatch<Real>&, const Evaluated<Real>&, const Evaluated<Real>&, TileBuffer<Real>&);
+  constexpr Loop two_planes[] = {spread_samples<Real, Before + 1, 2>...};
+  constexpr Loop three_planes[] = {spread_samples<Real, Before + 1, 3>...};
+  (buffer.planes == 3 ? three_planes : two_planes)[u.width - 1](samples, along_u, along_v, buffer);
 }
 
-template <typename Real>
-HWY_ATTR void spread_padded(const TapTable<Real>& u, const TapTable<Real>& v, const TileBatch<Real>& samples,
-                            TileBuffer<Real>& buffer) {
-  switch (u.padded) {
-    case 4:
-      return spread_planes<Real, 4>(u, v, samples, buffer);
-    case 8:
-      return spread_planes<Real, 8>(u, v, samples, buffer);
-    case 12:
-      return spread_planes<Real, 12>(u, v, samples, buffer);
-    case 16:
-      return spread_planes<Real, 16>(u, v, samples, buffer);
-    default:
-      return spread_planes<Real, 20>(u, v, samples, buffer);
-  }
+template <typename Real, int... Before>
+HWY_ATTR void interpolate_any(std::integer_sequence<int, Before...>, const TapTable<Real>& u, const TapTable<Real>& v,
+                              const TileBuffer<Real>& buffer, TileBatch<Real>& samples) {
+  Evaluated<Real> along_u, along_v;
+  evaluate_taps(u, samples.tu, samples.count, along_u.value);
+  evaluate_taps(v, samples.tv, samples.count, along_v.value);
+  using Loop = void (*)(const Evaluated<Real>&, const Evaluated<Real>&, const TileBuffer<Real>&, TileBatch<Real>&);
+  constexpr Loop loops[] = {interpolate_samples<Real, Before + 1>...};
+  loops[u.width - 1](along_u, along_v, buffer, samples);
 }
 
-template <typename Real>
-HWY_ATTR void interpolate_padded(const TapTable<Real>& u, const TapTable<Real>& v, const TileBuffer<Real>& buffer,
-                                 TileBatch<Real>& samples) {
-  switch (u.padded) {
-    case 4:
-      return interpolate_samples<Real, 4>(u, v, buffer, samples);
-    case 8:
-      return interpolate_samples<Real, 8>(u, v, buffer, samples);
-    case 12:
-      return interpolate_samples<Real, 12>(u, v, buffer, samples);
-    case 16:
-      return interpolate_samples<Real, 16>(u, v, buffer, samples);
-    default:
-      return interpolate_samples<Real, 20>(u, v, buffer, samples);
-  }
-}
+using Widths = std::make_integer_sequence<int, most_taps>;
 
 HWY_ATTR void spread_float(const TapTable<float>& u, const TapTable<float>& v, const TileBatch<float>& s,
                            TileBuffer<float>& b) {
-  spread_padded<float>(u, v, s, b);
+  spread_any(Widths(), u, v, s, b);
 }
 HWY_ATTR void spread_double(const TapTable<double>& u, const TapTable<double>& v, const TileBatch<double>& s,
                             TileBuffer<double>& b) {
-  spread_padded<double>(u, v, s, b);
+  spread_any(Widths(), u, v, s, b);
 }
 HWY_ATTR void interpolate_float(const TapTable<float>& u, const TapTable<float>& v, const TileBuffer<float>& b,
                                 TileBatch<float>& s) {
-  interpolate_padded<float>(u, v, b, s);
+  interpolate_any(Widths(), u, v, b, s);
 }
 HWY_ATTR void interpolate_double(const TapTable<double>& u, const TapTable<double>& v, const TileBuffer<double>& b,
                                  TileBatch<double>& s) {
-  interpolate_padded<double>(u, v, b, s);
+  interpolate_any(Widths(), u, v, b, s);
 }
 
 }  // namespace misfit::imager::HWY_NAMESPACE

@@ -47,6 +47,7 @@ kernels::PiecewisePolynomial random_polynomial(int width, unsigned seed) {
   return polynomial;
 }
 
+/// Every third sample lies in the cell of the one before it.
 template <typename Real>
 TileBatch<Real> random_batch(int count) {
   std::mt19937_64 random(1);
@@ -59,6 +60,7 @@ TileBatch<Real> random_batch(int count) {
     for (Real* values : {batch.real, batch.imaginary, batch.weight}) values[i] = uniform(random);
     batch.tu[i] = uniform(random) / 2;
     batch.tv[i] = uniform(random) / 2;
+    if (i % 3 == 2) batch.column[i] = batch.column[i - 1], batch.row[i] = batch.row[i - 1];
   }
   if (count > 1) batch.column[0] = batch.row[0] = tile - 1, batch.column[1] = batch.row[1] = 0;
   return batch;
@@ -134,6 +136,25 @@ BOOST_AUTO_TEST_CASE_TEMPLATE(interpolation_is_the_plain_double_sum_for_every_wi
       largest = std::max({largest, std::abs(batch.real[i] - real), std::abs(batch.imaginary[i] - imaginary)});
     }
     BOOST_TEST(largest <= rounding<Real>(width * width));
+  });
+}
+
+BOOST_AUTO_TEST_CASE_TEMPLATE(spreading_is_the_transpose_of_interpolating_for_every_width_and_instruction_set, Real,
+                              Precisions) {
+  for_each_width_and_target([](int width) {
+    const TapTable<Real> u(random_polynomial(width, 8)), v(random_polynomial(width, 9));
+    const TileBuffer<Real> y = random_buffer<Real>(u.padded, 2);
+    const TileBatch<Real> x = random_batch<Real>(30);
+    TileBuffer<Real> spread_x(tile, u.padded, 2);
+    spread(u, v, x, spread_x);
+    TileBatch<Real> y_at_x = x;
+    interpolate(u, v, y, y_at_x);
+    double in_buffer = 0, in_samples = 0;
+    for (std::size_t i = 0; i < y.cell.size(); ++i) in_buffer += double{spread_x.cell[i]} * double{y.cell[i]};
+    for (int i = 0; i < x.count; ++i)
+      in_samples += double{x.real[i]} * double{y_at_x.real[i]} + double{x.imaginary[i]} * double{y_at_x.imaginary[i]};
+    // Both are sums of 2 · 30 · W² products of a value, two taps and a cell.
+    BOOST_TEST(std::abs(in_buffer - in_samples) <= 2 * 30 * rounding<Real>(width * width));
   });
 }
 

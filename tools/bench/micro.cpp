@@ -1,0 +1,179 @@
+// Times on one core of the pieces of gridding, in nanoseconds a visibility (of the FFT: a point), as a markdown table.
+// usage: misfit_micro [--runs N] [--json FILE]
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <fstream>
+#include <functional>
+#include <nlohmann/json.hpp>
+#include <random>
+#include <stdexcept>
+#include <string>
+
+#include "imager/batch_taps.h"
+#include "imager/fft.h"
+#include "imager/tile_loops.h"
+#include "imager/tile_order.h"
+#include "kernels/catalogue.h"
+#include "kernels/cheapest_polynomial.h"
+
+namespace {
+
+using namespace misfit;
+using namespace misfit::imager;
+
+constexpr int tile = 16;
+constexpr double x0 = 0.25;
+constexpr double cell_rad = 1e-5;
+
+/// One thing to time: `run` once takes `visibilities` through it.
+struct Piece {
+  std::string name;
+  double visibilities = 1;
+  std::function<void()> run;
+};
+
+/// How far the samples of a tile lie from one to the next: rows enter the tile anywhere, and their channels step through it.
+struct Walk {
+  const char* name;
+  double cells_a_channel;
+};
+constexpr std::array<Walk, 3> walks{{{"1/8 cell a channel", 0.125}, {"1 cell a channel", 1}, {"scattered", 100}}};
+
+template <typename Real>
+std::vector<TileBatch<Real>> batches_of(const Walk& walk) {
+  std::mt19937_64 random(1);
+  std::uniform_real_distribution<double> uniform(0, 1);
+  std::vector<TileBatch<Real>> batches(16 * 128 / TileBatch<Real>::capacity);
+  double u = -1, v = -1, angle = 0;
+  for (TileBatch<Real>& batch : batches)
+    while (batch.count < TileBatch<Real>::capacity) {
+      u += walk.cells_a_channel * std::cos(angle);
+      v += walk.cells_a_channel * std::sin(angle);
+      if (u < 0 || v < 0 || u >= tile || v >= tile) {
+        u = tile * uniform(random);
+        v = tile * uniform(random);
+        angle = 2 * pi * uniform(random);
+      }
+      const int i = batch.count++;
+      batch.column[i] = static_cast<int>(u);
+      batch.row[i] = static_cast<int>(v);
+      batch.tu[i] = static_cast<Real>(u - std::floor(u) - 0.5);
+      batch.tv[i] = static_cast<Real>(v - std::floor(v) - 0.5);
+      for (Real* value : {batch.real, batch.imaginary, batch.weight}) value[i] = static_cast<Real>(uniform(random) - 0.5);
+    }
+  return batches;
+}
+
+/// The loops over tiles for one width and precision.
+template <typename Real>
+void add_loops(int width, std::vector<Piece>& pieces) {
+  const std::string of = "W = " + std::to_string(width) + (sizeof(Real) == 4 ? " single, " : " double, ");
+  const TapTable<Real> taps(kernels::cheapest_polynomial(kernels::kernel_family("least-misfit").make(width, x0), 0.005));
+  const auto alone = std::make_shared<std::vector<TileBatch<Real>>>(batches_of<Real>(walks[0]));
+  const double visibilities = static_cast<double>(alone->size()) * TileBatch<Real>::capacity;
+  pieces.push_back({of + "taps of degree " + std::to_string(taps.degree), visibilities, [taps, alone] {
+                      BatchTaps<Real, TileBatch<Real>::capacity> out;
+                      for (const TileBatch<Real>& batch : *alone)
+                        for (const Real* t : {batch.tu, batch.tv}) evaluate_taps(taps, t, batch.count, out.value);
+                    }});
+  for (const Walk& walk : walks) {
+    const auto batches = std::make_shared<std::vector<TileBatch<Real>>>(batches_of<Real>(walk));
+    for (const int planes : {2, 3}) {
+      const auto buffer = std::make_shared<TileBuffer<Real>>(tile, taps.padded, planes);
+      pieces.push_back({of + "spread " + std::to_string(planes) + ", " + walk.name, visibilities, [=] {
+                          for (const TileBatch<Real>& batch : *batches) spread(taps, taps, batch, *buffer);
+                        }});
+    }
+    const auto buffer = std::make_shared<TileBuffer<Real>>(tile, taps.padded, 2);
+    const auto into = std::make_shared<std::vector<TileBatch<Real>>>(*batches);  // spreading must not see what this writes
+    pieces.push_back({of + "interpolate, " + walk.name, visibilities, [=] {
+                        for (TileBatch<Real>& batch : *into) interpolate(taps, taps, *buffer, batch);
+                      }});
+  }
+}
+
+/// Rows all over the grid with 64 channels over 5 % of the frequency.
+VisibilityBlock block_of(std::size_t rows) {
+  std::mt19937_64 random(1);
+  std::uniform_real_distribution<double> uniform(-1, 1);
+  VisibilityBlock block;
+  for (int channel = 0; channel < 64; ++channel) block.frequency_hz.push_back(1e9 * (1 + 0.05 * channel / 64));
+  const double edge_m = 0.45 / cell_rad * speed_of_light_m_s / block.frequency_hz.back();
+  for (std::size_t row = 0; row < rows; ++row)
+    for (const double x : {uniform(random), uniform(random), 0.0}) block.uvw_m.push_back(edge_m * x * std::abs(x));
+  for (std::size_t i = 0; i < block.samples(); ++i) {
+    block.visibility.emplace_back(static_cast<float>(uniform(random)), static_cast<float>(uniform(random)));
+    block.weight.push_back(1);
+  }
+  return block;
+}
+
+void add_ordering(std::vector<Piece>& pieces) {
+  const auto block = std::make_shared<VisibilityBlock>(block_of(4096));
+  for (const auto& [name, wanted] : {std::pair("imaging", Wanted::imaging), std::pair("prediction", Wanted::usable)})
+    pieces.push_back({std::string("order_by_tile for ") + name, static_cast<double>(block->samples()), [block, wanted] {
+                        order_by_tile(*block, nullptr, {2048, 2048, 7, tile}, cell_rad, wanted, 1);
+                      }});
+}
+
+template <typename Real>
+void add_fft(int length, std::vector<Piece>& pieces) {
+  const auto fft = std::make_shared<Fft<Real>>(length);
+  const std::shared_ptr<std::complex<Real>[]> row(fft->complex_buffer());
+  std::fill_n(row.get(), length, std::complex<Real>(0));
+  pieces.push_back({"FFT of a row of " + std::to_string(length) + (sizeof(Real) == 4 ? ", single" : ", double"),
+                    static_cast<double>(length), [=] { fft->complex_to_complex(row.get(), Fft<Real>::Sign::forward); }});
+}
+
+/// Of some calls in a row, after one that brings the piece's memory and branches back to mind.
+double time_ns(const Piece& piece) {
+  constexpr int calls = 5;
+  piece.run();
+  const auto start = std::chrono::steady_clock::now();
+  for (int call = 0; call < calls; ++call) piece.run();
+  const std::chrono::duration<double, std::nano> taken = std::chrono::steady_clock::now() - start;
+  return taken.count() / (calls * piece.visibilities);
+}
+
+double quantile(const std::vector<double>& sorted, double q) {
+  return sorted[static_cast<std::size_t>(q * static_cast<double>(sorted.size() - 1))];
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  int runs = 51;
+  std::string json_file, only;
+  for (int i = 1; i + 1 < argc; i += 2) {
+    if (std::string(argv[i]) == "--runs") runs = std::max(1, std::atoi(argv[i + 1]));
+    if (std::string(argv[i]) == "--json") json_file = argv[i + 1];
+    if (std::string(argv[i]) == "--only") only = argv[i + 1];
+  }
+  std::vector<Piece> pieces;
+  for (int width = 4; width <= 12; ++width) {
+    add_loops<float>(width, pieces);
+    add_loops<double>(width, pieces);
+  }
+  add_ordering(pieces);
+  add_fft<float>(4096, pieces);
+  add_fft<double>(4096, pieces);
+  std::erase_if(pieces, [&](const Piece& piece) { return piece.name.find(only) == std::string::npos; });
+
+  std::vector<std::vector<double>> times(pieces.size());
+  for (int run = 0; run < runs; ++run)  // in turn, so that all share what else the machine does
+    for (std::size_t i = 0; i < pieces.size(); ++i) times[i].push_back(time_ns(pieces[i]));
+
+  nlohmann::json report = nlohmann::json::array();
+  std::printf("| piece | median, ns | quartiles | least |\n|---|---|---|---|\n");
+  for (std::size_t i = 0; i < pieces.size(); ++i) {
+    std::sort(times[i].begin(), times[i].end());
+    const double median = quantile(times[i], 0.5), low = quantile(times[i], 0.25), high = quantile(times[i], 0.75);
+    std::printf("| %s | %.2f | %.2f–%.2f | %.2f |\n", pieces[i].name.c_str(), median, low, high, times[i].front());
+    report.push_back(
+        {{"piece", pieces[i].name}, {"median_ns", median}, {"quartiles_ns", {low, high}}, {"least_ns", times[i].front()}});
+  }
+  if (!json_file.empty()) std::ofstream(json_file) << report.dump(2) << '\n';
+}
