@@ -1,14 +1,12 @@
 #include "imager/horizon.h"
 
-#include <limits>
-
 namespace misfit::imager {
 
-void blank_beyond_horizon(const ImageGeometry& g, Image& image) {
+void set_beyond_horizon(const ImageGeometry& g, double value, Image& image) {
   if (!crosses_horizon(g)) return;
   for (int row = 0; row < g.height; ++row)
     for (int column = 0; column < g.width; ++column)
-      if (beyond_horizon(g.at(row, column))) image.at(row, column) = std::numeric_limits<double>::quiet_NaN();
+      if (beyond_horizon(g.at(row, column))) image.at(row, column) = value;
 }
 
 }  // namespace misfit::imager

@@ -1,11 +1,16 @@
 #pragma once
 
+#include <limits>
+
 #include "imager/geometry.h"
 #include "imager/image.h"
 
 namespace misfit::imager {
 
-/// Makes the pixels beyond the horizon NaN.
-void blank_beyond_horizon(const ImageGeometry& geometry, Image& image);
+/// Gives `value` to the pixels beyond the horizon.
+void set_beyond_horizon(const ImageGeometry& geometry, double value, Image& image);
+
+/// What pixels beyond the horizon hold in images.
+inline constexpr double no_value = std::numeric_limits<double>::quiet_NaN();
 
 }  // namespace misfit::imager

@@ -1,16 +1,17 @@
 #include "imager/plane_transform.h"
 
 #include <algorithm>
-#include <limits>
 #include <stdexcept>
 #include <string>
 
 #include "imager/half_grid.h"
+#include "imager/horizon.h"
 #include "imager/parallel.h"
 #include "imager/phase.h"
 #include "imager/phasors.h"
 #include "imager/tile_loops.h"
 #include "imager/tile_order.h"
+#include "imager/tile_positions.h"
 
 namespace misfit::imager {
 namespace {
@@ -80,8 +81,10 @@ void for_each_batch(const Setup<Real>& setup, const SampleCoordinates& at, const
                     const Done& done) {
   const CellScale scale(setup.shape, setup.geometry.cell_rad);
   const PhasePosition middle{setup.geometry.centre.l, setup.geometry.centre.m, 0};
-  const int left = task.tile_u * setup.shape.tile;
-  const int bottom = task.tile_v * setup.shape.tile;
+  const GridShape& shape = setup.shape;
+  const double to_first = 0.5 * shape.width - 1;
+  const double u_origin = task.tile_u * shape.tile - shape.first_column(0) + to_first;
+  const double v_origin = task.tile_v * shape.tile - shape.first_row(0) + to_first;
   TileBatch<Real> batch;
   BatchSamples samples;
   samples.off_phase_centre = setup.geometry.off_phase_centre();
@@ -90,36 +93,36 @@ void for_each_batch(const Setup<Real>& setup, const SampleCoordinates& at, const
     done(batch, samples);
     batch.count = 0;
   };
+  batch.count = 0;
   for (std::size_t r = order.begin[task.tile]; r < order.begin[task.tile + 1]; ++r) {
     const ChannelRun run = order.run[r];
     const double* uvw_m = &at.uvw_m[std::size_t{3} * run.row];
     const FoldedRow row(uvw_m, scale);
     const double to_middle = turns_per_hz(uvw_m, middle);
-    for (std::size_t channel = run.first; channel < std::size_t{run.first} + run.count; ++channel) {
-      const double frequency = at.frequency_hz[channel];
-      const PeriodicPosition position(row.u_per_hz * frequency, row.v_per_hz * frequency, row.folded, setup.shape);
-      const TapPosition u(position.u, setup.shape.width);
-      const TapPosition v(position.v, setup.shape.width);
-      const int i = batch.count++;
-      batch.column[i] = setup.shape.first_column(u.first) - left;
-      batch.row[i] = setup.shape.first_row(v.first) - bottom;
-      batch.tu[i] = static_cast<Real>(u.t);
-      batch.tv[i] = static_cast<Real>(v.t);
-      samples.index[i] = run.row * at.channels() + channel;
-      samples.conjugate[i] = position.conjugate;
-      samples.turns[i] = to_middle * frequency;
+    const bool within = row.within(shape, order.highest_frequency_hz);
+    const std::size_t end = std::size_t{run.first} + run.count;
+    for (std::size_t channel = run.first; channel < end;) {
+      const int i = batch.count;
+      bool conjugate = row.folded;
+      if (within) {
+        const std::size_t count = std::min<std::size_t>(end - channel, TileBatch<Real>::capacity - i);
+        append_positions({row.u_per_hz, u_origin, row.v_per_hz, v_origin, shape.tile}, &at.frequency_hz[channel],
+                         static_cast<int>(count), batch);
+      } else {
+        const double frequency = at.frequency_hz[channel], unit = 1;
+        const PeriodicPosition position(row.u_per_hz * frequency, row.v_per_hz * frequency, row.folded, shape);
+        append_positions({position.u, u_origin, position.v, v_origin, shape.tile}, &unit, 1, batch);
+        conjugate = position.conjugate;
+      }
+      for (int k = i; k < batch.count; ++k, ++channel) {
+        samples.index[k] = run.row * at.channels() + channel;
+        samples.conjugate[k] = conjugate;
+        samples.turns[k] = to_middle * at.frequency_hz[channel];
+      }
       if (batch.count == TileBatch<Real>::capacity) finish();
     }
   }
   if (batch.count > 0) finish();
-}
-
-/// Gives `value` to the pixels beyond the horizon.
-void set_beyond_horizon(const ImageGeometry& geometry, double value, Image& image) {
-  if (!crosses_horizon(geometry)) return;
-  for (int row = 0; row < image.height; ++row)
-    for (int column = 0; column < image.width; ++column)
-      if (beyond_horizon(geometry.at(row, column))) image.at(row, column) = value;
 }
 
 template <typename Real>
@@ -145,7 +148,7 @@ class PlaneAdjoint : public AdjointSum {
  private:
   Image to_image(const Real* real, const Real* imaginary) const {
     Image image = grid_to_image(setup_.shape, real, imaginary, setup_.correction, setup_.threads);
-    set_beyond_horizon(setup_.geometry, std::numeric_limits<double>::quiet_NaN(), image);
+    set_beyond_horizon(setup_.geometry, no_value, image);
     return image;
   }
 

@@ -5,17 +5,40 @@
 
 #include "imager/parallel.h"
 #include "imager/sampling.h"
+#include "imager/span_sums.h"
 
 namespace misfit::imager {
 namespace {
 
 constexpr std::size_t chunks = 32;  // fixed, so that the order of sums does not depend on the number of threads
-constexpr std::size_t longest_run = (1U << 12) - 1;
+constexpr std::uint32_t longest_run = (1U << 12) - 1;
 constexpr std::size_t most_channels = 1U << 20;
 
 struct TiledRun {
   std::uint32_t tile;
   ChannelRun run;
+};
+
+/// The samples of a row whose first tap falls into one tile, by their position in cells; none when they lie beyond the grid.
+struct TileBox {
+  std::uint32_t tile;
+  double u_low, u_end, v_low, v_end;
+
+  TileBox(double u, double v, bool folded, const GridShape& s) {
+    const PeriodicPosition at(u, v, folded, s);
+    const int column = s.first_column(TapPosition(at.u, s.width).first) / s.tile;
+    const int line = s.first_row(TapPosition(at.v, s.width).first) / s.tile;
+    tile = static_cast<std::uint32_t>(line * s.tiles_u() + column);
+    const double to_first = 0.5 * s.width - 1;  // the first tap is the whole part of position − to_first
+    u_low = std::max(column * s.tile - s.first_column(0) + to_first, -0.5 * s.nu);
+    v_low = line * s.tile - s.first_row(0) + to_first;
+    u_end = std::min(column * s.tile - s.first_column(0) + s.tile + to_first, beyond(0.5 * s.nu));
+    v_end = std::min(line * s.tile - s.first_row(0) + s.tile + to_first, beyond(0.5 * s.nv));
+  }
+  bool holds(double u, double v) const { return u >= u_low && u < u_end && v >= v_low && v < v_end; }
+
+ private:
+  static double beyond(double edge) { return std::nextafter(edge, 2 * edge); }
 };
 
 /// The runs of a range of rows, in order.
@@ -26,7 +49,9 @@ class RunFinder {
       : block_(block), visibility_(visibility), shape_(shape), scale_(shape, cell_rad), wanted_(wanted) {}
 
   void find(std::size_t begin_row, std::size_t end_row) {
+    span_begin_ = span_end_ = begin_row * block_.channels();
     for (std::size_t row = begin_row; row < end_row; ++row) find_in_row(row);
+    close_span();
   }
 
   std::vector<TiledRun> runs;
@@ -36,43 +61,50 @@ class RunFinder {
   void find_in_row(std::size_t row) {
     const FoldedRow folded(&block_.uvw_m[3 * row], scale_);
     const std::size_t channels = block_.channels();
-    bool open = false;
-    for (std::size_t channel = 0; channel < channels; ++channel) {
-      const double frequency = block_.frequency_hz[channel];
-      if (!wants(row * channels + channel, folded.u_per_hz * frequency, folded.v_per_hz * frequency)) {
-        open = false;
-        continue;
+    const double* const frequency = block_.frequency_hz.data();
+    for (std::size_t channel = 0; channel < channels;) {
+      const double u = folded.u_per_hz * frequency[channel], v = folded.v_per_hz * frequency[channel];
+      std::size_t end = channel + 1;
+      if (wants(row * channels + channel, u, v)) {
+        const TileBox box(u, v, folded.folded, shape_);
+        while (end < channels && end - channel < longest_run && usable(row * channels + end) &&
+               box.holds(folded.u_per_hz * frequency[end], folded.v_per_hz * frequency[end]))
+          ++end;
+        add_run(box.tile, row, channel, end);
       }
-      const std::uint32_t tile = tile_of(folded, frequency);
-      if (open && runs.back().tile == tile && runs.back().run.count < longest_run) {
-        ++runs.back().run.count;
-      } else {
-        runs.push_back({tile, {static_cast<std::uint32_t>(row), static_cast<std::uint32_t>(channel) & 0xFFFFF, 1}});
-      }
-      open = true;
+      channel = end;
     }
   }
+
+  bool usable(std::size_t sample) const { return wanted_ == Wanted::all || block_.weight[sample] != 0; }
 
   bool wants(std::size_t sample, double u, double v) {
-    if (wanted_ == Wanted::all) return true;
-    const float weight = block_.weight[sample];
-    if (weight == 0) return false;
-    if (wanted_ == Wanted::usable) return true;
-    if (!inside_grid(u / shape_.nu, v / shape_.nv)) {
-      ++sums.outside_grid;
-      return false;
-    }
-    ++sums.used;
-    add_to_sums(sums, weight,
-                visibility_ == nullptr ? std::complex<double>(block_.visibility[sample]) : (*visibility_)[sample]);
-    return true;
+    if (!usable(sample)) return false;
+    if (wanted_ != Wanted::imaging || inside_grid(u / shape_.nu, v / shape_.nv)) return true;
+    ++sums.outside_grid;
+    return false;
   }
 
-  std::uint32_t tile_of(const FoldedRow& row, double frequency) const {
-    const PeriodicPosition at(row.u_per_hz * frequency, row.v_per_hz * frequency, row.folded, shape_);
-    const int column = shape_.first_column(TapPosition(at.u, shape_.width).first) / shape_.tile;
-    const int line = shape_.first_row(TapPosition(at.v, shape_.width).first) / shape_.tile;
-    return static_cast<std::uint32_t>(line * shape_.tiles_u() + column);
+  void add_run(std::uint32_t tile, std::size_t row, std::size_t channel, std::size_t end) {
+    runs.push_back({tile,
+                    {static_cast<std::uint32_t>(row), static_cast<std::uint32_t>(channel) & 0xFFFFF,
+                     static_cast<std::uint32_t>(end - channel) & longest_run}});
+    if (wanted_ != Wanted::imaging) return;
+    sums.used += end - channel;
+    const std::size_t first = row * block_.channels() + channel;
+    if (std::any_of(block_.weight.data() + span_end_, block_.weight.data() + first, [](float w) { return w != 0; })) {
+      close_span();
+      span_begin_ = first;
+    }
+    span_end_ = row * block_.channels() + end;
+  }
+
+  /// Sums are taken of spans, since whole vectors are quicker: all samples of weight other than 0 from the first to the last.
+  void close_span() {
+    const float* const weight = block_.weight.data() + span_begin_;
+    const std::size_t count = span_end_ - span_begin_;
+    if (visibility_ != nullptr) add_span_to_sums(weight, visibility_->data() + span_begin_, count, sums);
+    if (visibility_ == nullptr) add_span_to_sums(weight, block_.visibility.data() + span_begin_, count, sums);
   }
 
   const VisibilityBlock& block_;
@@ -80,6 +112,8 @@ class RunFinder {
   const GridShape& shape_;
   CellScale scale_;
   Wanted wanted_;
+  std::size_t span_begin_ = 0;
+  std::size_t span_end_ = 0;
 };
 
 }  // namespace
@@ -94,7 +128,9 @@ TileOrder order_by_tile(const VisibilityBlock& block, const std::vector<std::com
                [&](std::size_t i) { part[i].find(block.rows() * i / chunks, block.rows() * (i + 1) / chunks); });
 
   const auto tiles = static_cast<std::size_t>(shape.tiles_u()) * static_cast<std::size_t>(shape.tiles_v());
-  TileOrder order{std::vector<std::size_t>(tiles + 1), std::vector<std::size_t>(tiles), {}, {}};
+  TileOrder order{std::vector<std::size_t>(tiles + 1), std::vector<std::size_t>(tiles), {}, 0, {}};
+  for (const double frequency : block.frequency_hz)
+    order.highest_frequency_hz = std::max(order.highest_frequency_hz, frequency);
   for (const RunFinder& p : part) {
     order.sums += p.sums;
     for (const TiledRun& r : p.runs) {

@@ -33,15 +33,24 @@ struct FoldedRow {
       v_per_hz = -v_per_hz;
     }
   }
+  /// Whether |u| and |v| reach no further than the grid at this frequency and below.
+  bool within(const GridShape& shape, double frequency_hz) const {
+    return std::abs(u_per_hz) * frequency_hz <= 0.5 * shape.nu && v_per_hz * frequency_hz <= 0.5 * shape.nv;
+  }
 };
+
+/// The largest integer that does not exceed x, of less than 2^31: std::floor is a call where the instruction may be missing.
+inline int floor_to_int(double x) {
+  const int towards_zero = static_cast<int>(x);
+  return towards_zero - (x < towards_zero ? 1 : 0);
+}
 
 /// Where the taps of a sample lie along one axis: the first cell they touch, and the position of the sample within its cell.
 struct TapPosition {
   int first = 0;
   double t = 0;
 
-  TapPosition(double cells, int width)
-      : first(static_cast<int>(std::floor(cells - 0.5 * width + 1))), t(cells - first - 0.5 * (width - 1)) {}
+  TapPosition(double cells, int width) : first(floor_to_int(cells - 0.5 * width + 1)), t(cells - first - 0.5 * (width - 1)) {}
 };
 
 /// Consecutive channels of one row that fall into one tile.
@@ -57,7 +66,8 @@ struct TileOrder {
   std::vector<std::size_t> begin;    ///< [tile + 1]
   std::vector<std::size_t> samples;  ///< [tile]
   std::vector<ChannelRun> run;
-  SampleSums sums;  ///< when imaging: of the samples in the order, and those outside the grid
+  double highest_frequency_hz = 0;  ///< of the block
+  SampleSums sums;                  ///< when imaging: of the samples in the order, and those outside the grid
 };
 
 /// Which samples are wanted: those that take part in imaging, with their sums; or for prediction those of weight not 0; or all.

@@ -193,8 +193,8 @@ class WideAdjoint : public AdjointSum {
   }
   AdjointResult finish() override {
     flush();
-    blank_beyond_horizon(setup_.options.geometry, result_.image);
-    if (!result_.psf.pixel.empty()) blank_beyond_horizon(setup_.options.geometry, result_.psf);
+    set_beyond_horizon(setup_.options.geometry, no_value, result_.image);
+    if (!result_.psf.pixel.empty()) set_beyond_horizon(setup_.options.geometry, no_value, result_.psf);
     return std::move(result_);
   }
 

@@ -2,6 +2,7 @@
 
 #include <boost/test/data/test_case.hpp>
 #include <boost/test/unit_test.hpp>
+#include <limits>
 #include <set>
 
 #include "tests/imager/random_samples.h"
@@ -142,6 +143,16 @@ BOOST_AUTO_TEST_CASE(sums_are_of_the_visibilities_given_in_place_of_the_blocks_o
   const std::vector<std::complex<double>> other(block.samples(), 2);
   const SampleSums sums = order_by_tile(block, &other, shape_of(6), cell_rad, Wanted::imaging, 2).sums;
   BOOST_TEST(sums.weight_abs == 2 * sums.weight, boost::test_tools::tolerance(1e-12));
+}
+
+BOOST_AUTO_TEST_CASE(sums_leave_out_what_has_no_weight_even_where_it_is_not_a_number) {
+  VisibilityBlock block = samples();
+  const SampleSums should = order_by_tile(block, nullptr, shape_of(6), cell_rad, Wanted::imaging, 2).sums;
+  for (std::size_t i = 0; i < block.samples(); ++i)
+    if (block.weight[i] == 0) block.visibility[i] = std::numeric_limits<float>::quiet_NaN();
+  const SampleSums sums = order_by_tile(block, nullptr, shape_of(6), cell_rad, Wanted::imaging, 2).sums;
+  BOOST_TEST(sums.weight_abs == should.weight_abs);
+  BOOST_TEST(sums.weight2_square == should.weight2_square);
 }
 
 BOOST_AUTO_TEST_CASE(order_and_sums_do_not_depend_on_the_number_of_threads) {

@@ -14,6 +14,7 @@
 
 #include "imager/batch_taps.h"
 #include "imager/fft.h"
+#include "imager/plane_transform.h"
 #include "imager/tile_loops.h"
 #include "imager/tile_order.h"
 #include "kernels/catalogue.h"
@@ -119,6 +120,30 @@ void add_ordering(std::vector<Piece>& pieces) {
                       }});
 }
 
+/// A transform's whole way through a block that is in memory, its FFT left out.
+void add_transform(Precision precision, std::vector<Piece>& pieces) {
+  PlaneTransformOptions options;
+  options.geometry = {1024, 1024, cell_rad, {}};
+  options.nu = options.nv = 2048;
+  options.kernel_u = kernels::kernel_family("least-misfit").make(7, x0);
+  options.kernel_u.polynomial = kernels::cheapest_polynomial(options.kernel_u, 0.005);
+  options.kernel_v = options.kernel_u;
+  options.precision = precision;
+  const std::shared_ptr<Transform> transform = make_plane_transform(options);
+  const auto block = std::make_shared<VisibilityBlock>(block_of(16384));
+  const auto samples = static_cast<double>(block->samples());
+  const std::string of = std::string("W = 7 ") + (precision == Precision::single_precision ? "single" : "double") + ", block ";
+  for (const bool with_psf : {false, true}) {
+    const std::shared_ptr<AdjointSum> sum = transform->adjoint(with_psf);
+    pieces.push_back({of + (with_psf ? "to grids of image and PSF" : "to the grid"), samples,
+                      [transform, block, sum] { sum->add(*block); }});
+  }
+  Image model(1024, 1024);
+  model.at(300, 400) = 1;
+  const std::shared_ptr<Prediction> prediction = transform->predict(model);
+  pieces.push_back({of + "from the grid", samples, [transform, block, prediction] { prediction->at_usable(*block); }});
+}
+
 template <typename Real>
 void add_fft(int length, std::vector<Piece>& pieces) {
   const auto fft = std::make_shared<Fft<Real>>(length);
@@ -158,6 +183,8 @@ int main(int argc, char** argv) {
     add_loops<double>(width, pieces);
   }
   add_ordering(pieces);
+  add_transform(Precision::single_precision, pieces);
+  add_transform(Precision::double_precision, pieces);
   add_fft<float>(4096, pieces);
   add_fft<double>(4096, pieces);
   std::erase_if(pieces, [&](const Piece& piece) { return piece.name.find(only) == std::string::npos; });

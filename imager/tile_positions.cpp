@@ -1,0 +1,63 @@
+#include "imager/tile_positions.h"
+
+// Highway compiles what stands inside HWY_NAMESPACE once for every instruction set and chooses among them at run time. The
+// compiler vectorises these loops by itself.
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "imager/tile_positions.cpp"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace misfit::imager::HWY_NAMESPACE {
+
+struct Line {
+  double per_hz;
+  double origin;
+};
+
+template <typename Real>
+HWY_ATTR HWY_INLINE void positions_along(Line line, int tile, const double* HWY_RESTRICT frequency_hz, int count,
+                                         int* HWY_RESTRICT cell, Real* HWY_RESTRICT t) {
+  for (int i = 0; i < count; ++i) {
+    const double position = line.per_hz * frequency_hz[i] - line.origin;
+    int whole = static_cast<int>(position);
+    whole = whole < 0 ? 0 : whole;
+    whole = whole < tile ? whole : tile - 1;
+    cell[i] = whole;
+    t[i] = static_cast<Real>(position - whole - 0.5);
+  }
+}
+
+template <typename Real>
+HWY_ATTR void append(const RowInTile& row, const double* frequency_hz, int count, TileBatch<Real>& batch) {
+  const int at = batch.count;
+  positions_along({row.u_per_hz, row.u_origin}, row.tile, frequency_hz, count, batch.column + at, batch.tu + at);
+  positions_along({row.v_per_hz, row.v_origin}, row.tile, frequency_hz, count, batch.row + at, batch.tv + at);
+  batch.count += count;
+}
+
+HWY_ATTR void append_float(const RowInTile& row, const double* frequency_hz, int count, TileBatch<float>& batch) {
+  append(row, frequency_hz, count, batch);
+}
+HWY_ATTR void append_double(const RowInTile& row, const double* frequency_hz, int count, TileBatch<double>& batch) {
+  append(row, frequency_hz, count, batch);
+}
+
+}  // namespace misfit::imager::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace misfit::imager {
+
+HWY_EXPORT(append_float);
+HWY_EXPORT(append_double);
+
+void append_positions(const RowInTile& row, const double* frequency_hz, int count, TileBatch<float>& batch) {
+  HWY_DYNAMIC_DISPATCH(append_float)(row, frequency_hz, count, batch);
+}
+void append_positions(const RowInTile& row, const double* frequency_hz, int count, TileBatch<double>& batch) {
+  HWY_DYNAMIC_DISPATCH(append_double)(row, frequency_hz, count, batch);
+}
+
+}  // namespace misfit::imager
+#endif  // HWY_ONCE
