@@ -15,30 +15,29 @@ double one_minus_n(DirectionCosines at) {
 
 }  // namespace
 
-void UvwExtent::add(const VisibilityBlock& block) {
-  std::size_t i = 0;
+void WSpread::add(const VisibilityBlock& block) {
+  std::vector<double> per_m_square;
+  for (const double frequency : block.frequency_hz) per_m_square.push_back(std::pow(frequency / speed_of_light_m_s, 2));
+  const float* sample = block.weight.data();
   for (std::size_t row = 0; row < block.rows(); ++row) {
-    double top_hz = 0;
-    double weighted_square_hz = 0;
-    for (const double frequency : block.frequency_hz) {
-      const double w = block.weight[i++];
-      if (w == 0) continue;
-      top_hz = std::max(top_hz, frequency);
-      weight += w;
-      weighted_square_hz += w * frequency * frequency;
+    double row_weight = 0;
+    double weighted_per_m_square = 0;
+    for (const double square : per_m_square) {
+      const double w = *sample++;
+      row_weight += w;
+      weighted_per_m_square += w * square;
     }
-    if (top_hz == 0) continue;
-    const double* uvw_m = &block.uvw_m[3 * row];
-    const double per_m = top_hz / speed_of_light_m_s;
-    max_abs_u = std::max(max_abs_u, std::abs(uvw_m[0]) * per_m);
-    max_abs_v = std::max(max_abs_v, std::abs(uvw_m[1]) * per_m);
-    max_abs_w = std::max(max_abs_w, std::abs(uvw_m[2]) * per_m);
-    weighted_w_square += weighted_square_hz * (uvw_m[2] / speed_of_light_m_s) * (uvw_m[2] / speed_of_light_m_s);
+    if (row_weight == 0) continue;  // UVW may not be finite
+    weight += row_weight;
+    weighted_w_square += weighted_per_m_square * std::pow(block.uvw_m[3 * row + 2], 2);
   }
 }
 
-NeglectedPhase neglected_w_phase(const UvwExtent& extent, const ImageGeometry& geometry) {
-  const double corner = largest_drop(geometry);
+double max_w_phase_rad(double max_abs_w, const ImageGeometry& geometry) {
+  return 2 * pi * max_abs_w * largest_drop(geometry);
+}
+
+NeglectedPhase neglected_w_phase(const UvwReach& reach, const WSpread& spread, const ImageGeometry& geometry) {
   // n is so smooth that a grid of 256 × 256 pixels has its mean.
   const int row_step = std::max(1, geometry.height / 256);
   const int column_step = std::max(1, geometry.width / 256);
@@ -49,8 +48,8 @@ NeglectedPhase neglected_w_phase(const UvwExtent& extent, const ImageGeometry& g
       const double x = one_minus_n(geometry.at(row, column));
       square += x * x;
     }
-  const double rms_w = extent.weight == 0 ? 0 : std::sqrt(extent.weighted_w_square / extent.weight);
-  return {2 * pi * extent.max_abs_w * corner, 2 * pi * rms_w * std::sqrt(square / pixels)};
+  const double rms_w = spread.weight == 0 ? 0 : std::sqrt(spread.weighted_w_square / spread.weight);
+  return {max_w_phase_rad(reach.max_abs_w, geometry), 2 * pi * rms_w * std::sqrt(square / pixels)};
 }
 
 }  // namespace misfit::imager

@@ -5,13 +5,17 @@
 
 namespace misfit::imager {
 
-/// How far usable samples reach, in wavelengths.
-struct UvwExtent {
+/// How far samples reach at most, in wavelengths. A bound, known before the data are read.
+struct UvwReach {
   double max_abs_u = 0;
   double max_abs_v = 0;
   double max_abs_w = 0;
+};
+
+/// How w is spread over usable samples; gathered while they stream by.
+struct WSpread {
   double weight = 0;             ///< Σ weight
-  double weighted_w_square = 0;  ///< Σ weight · w²
+  double weighted_w_square = 0;  ///< Σ weight · w², w in wavelengths
 
   void add(const VisibilityBlock& block);
 };
@@ -22,6 +26,8 @@ struct NeglectedPhase {
   double rms_rad = 0;  ///< over samples (by weight) and pixels
 };
 
-NeglectedPhase neglected_w_phase(const UvwExtent& extent, const ImageGeometry& geometry);
+/// Its largest value, known before the data are read; |w| in wavelengths.
+double max_w_phase_rad(double max_abs_w, const ImageGeometry& geometry);
+NeglectedPhase neglected_w_phase(const UvwReach& reach, const WSpread& spread, const ImageGeometry& geometry);
 
 }  // namespace misfit::imager

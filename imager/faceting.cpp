@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "imager/constants.h"
 #include "imager/facet.h"
 
 namespace misfit::imager {
@@ -39,10 +38,6 @@ std::vector<Faceting> facetings(const ImageGeometry& image, double max_abs_w, in
     ways.push_back(way);
   }
   return ways;
-}
-
-double largest_w_phase_rad(const ImageGeometry& image, double max_abs_w) {
-  return 2 * pi * max_abs_w * largest_drop(image);
 }
 
 }  // namespace misfit::imager

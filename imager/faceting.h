@@ -24,7 +24,4 @@ inline constexpr int most_facets = 32;
 /// smaller than 128 pixels.
 std::vector<Faceting> facetings(const ImageGeometry& image, double max_abs_w, int most = most_facets);
 
-/// The largest phase 2π |w (n − 1)|, in radians, over the image. Beyond the horizon n counts as 0.
-double largest_w_phase_rad(const ImageGeometry& image, double max_abs_w);
-
 }  // namespace misfit::imager

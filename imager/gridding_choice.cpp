@@ -6,6 +6,7 @@
 #include <map>
 #include <optional>
 
+#include "imager/extent.h"
 #include "imager/fft.h"
 #include "kernels/cheapest_polynomial.h"
 
@@ -341,7 +342,7 @@ void judge(GriddingCandidate& c) {
 }
 
 GriddingChoice choose_gridding(const GriddingRequest& request) {
-  const double phase = largest_w_phase_rad(request.geometry, request.max_abs_w);
+  const double phase = max_w_phase_rad(request.max_abs_w, request.geometry);
   const bool automatic = request.gridder == Gridder::automatic;
   const double target = request.accuracy == 0 ? HUGE_VAL : request.accuracy;
   const auto search = [&](bool wide) {

@@ -4,6 +4,7 @@
 
 #include "ms_io/metadata_internal.h"
 #include "ms_io/table_access_internal.h"
+#include "ms_io/uvw_scan_internal.h"
 #include "ms_io/visibility_reader_internal.h"
 
 namespace misfit::ms_io {
@@ -52,6 +53,9 @@ std::uint64_t MeasurementSet::rows() const {
 }
 std::uint64_t MeasurementSet::samples() const {
   return impl_->open_set->selected.samples;
+}
+imager::UvwReach MeasurementSet::reach() const {
+  return scan_uvw(*impl_->open_set);
 }
 std::unique_ptr<imager::BlockStream> MeasurementSet::open() const {
   return read_blocks(impl_->open_set);

@@ -4,6 +4,7 @@
 #include <memory>
 #include <string>
 
+#include "imager/extent.h"
 #include "imager/observation.h"
 #include "imager/visibilities.h"
 
@@ -31,6 +32,9 @@ class MeasurementSet : public imager::VisibilitySource {
   const imager::Observation& observation() const;
   std::uint64_t rows() const;
   std::uint64_t samples() const override;
+  /// Bounds that hold for every sample that can be used: of rows that are not flagged, at the highest channel selected. Reads
+  /// UVW, antennas and FLAG_ROW alone. Throws std::runtime_error when they cannot be read.
+  imager::UvwReach reach() const;
   std::unique_ptr<imager::BlockStream> open() const override;
 
  private:

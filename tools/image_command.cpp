@@ -61,6 +61,7 @@ class ImageRun {
     check_writable_folder(o_.imagename);
     set_ = std::make_unique<ms_io::MeasurementSet>(o_.vis, o_.selection, o_.datacolumn);
     geometry_ = geometry_of(o_, set_->observation().phase_centre);
+    reach_ = set_->reach();
   }
 
   void load() {
@@ -69,14 +70,14 @@ class ImageRun {
     report_.counts = loaded_.counts;
     progress_.end();
     report_.plan.insert(report_.plan.end(), loaded_.decisions.begin(), loaded_.decisions.end());
-    phase_ = imager::neglected_w_phase(loaded_.extent, geometry_);
+    phase_ = imager::neglected_w_phase(reach_, loaded_.w_spread, geometry_);
   }
 
   void make_dirty() {
     imager::GriddingRequest request = gridding_request(o_, threads_);
     request.geometry = geometry_;
     request.samples = loaded_.counts.used;
-    request.max_abs_w = loaded_.extent.max_abs_w;
+    request.max_abs_w = reach_.max_abs_w;
     progress_.begin("dirty image and PSF");
     made_ = imager::make_accurate_images(*loaded_.source, request, progress(), times_);
     progress_.end();
@@ -107,7 +108,7 @@ class ImageRun {
     report_.counts.outside_grid = sums.outside_grid;
     report_.counts.used = sums.used;
     if (sums.outside_grid == 0) return;
-    const double reach = std::max(loaded_.extent.max_abs_u, loaded_.extent.max_abs_v);
+    const double reach = std::max(reach_.max_abs_u, reach_.max_abs_v);
     const ScaledUnit unit = angle_unit(0.5 / reach);
     warn(grouped(static_cast<long long>(sums.outside_grid)) + " samples lie beyond 1/(2 cell) and were left out; a cell of " +
          significant(std::floor(0.5 / reach / unit.size * 1e4) / 1e4, 4) + unit.name + " would keep them");
@@ -216,6 +217,7 @@ class ImageRun {
 
   std::unique_ptr<ms_io::MeasurementSet> set_;
   imager::ImageGeometry geometry_;
+  imager::UvwReach reach_;
   LoadedVisibilities loaded_;
   imager::NeglectedPhase phase_;
   imager::AccurateImages made_;

@@ -4,6 +4,7 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "imager/extent.h"
 #include "imager/gridding_plan.h"
 #include "tools/kernel_choice.h"
 #include "tools/numbers.h"
@@ -45,7 +46,7 @@ imager::GriddingChoice choose_for(const KernelJob& job) {
   request.accuracy = job.accuracy;
   request.kernel = choose_kernel(job.kernel);
   request.samples = static_cast<std::uint64_t>(job.samples);
-  request.max_abs_w = job.w_turns * 2 * std::numbers::pi / imager::largest_w_phase_rad(request.geometry, 1);
+  request.max_abs_w = job.w_turns * 2 * std::numbers::pi / imager::max_w_phase_rad(1, request.geometry);
   request.gridder = job.w_turns > 0 ? imager::Gridder::wide : imager::Gridder::standard;
   request.facets = false;
   imager::GriddingChoice choice = imager::choose_gridding(request);

@@ -36,7 +36,7 @@ LoadedVisibilities load_visibilities(const ms_io::MeasurementSet& set, const ima
   const imager::StageTimer timer(times, "read");
   while (const auto block = stream->next()) {
     loaded.counts += block->counts;
-    loaded.extent.add(*block);
+    loaded.w_spread.add(*block);
     done += block->samples();
     if (keep && block->counts.used > 0) memory->append(block);
     progress(done, set.samples());

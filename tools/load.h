@@ -14,7 +14,7 @@ struct LoadedVisibilities {
   const imager::VisibilitySource* source = nullptr;  ///< in memory, or the MeasurementSet itself
   std::unique_ptr<imager::VisibilitySource> memory;
   imager::SampleCounts counts;
-  imager::UvwExtent extent;
+  imager::WSpread w_spread;
   imager::Plan decisions;
 };
 

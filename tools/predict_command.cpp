@@ -58,13 +58,6 @@ struct Model {
   ms_io::Predict predict;
 };
 
-double largest_w(const ms_io::MeasurementSet& set) {
-  imager::UvwExtent extent;
-  const auto stream = set.open();
-  while (const auto block = stream->next()) extent.add(*block);
-  return extent.max_abs_w;
-}
-
 Model image_model(const PredictOptions& o, const ms_io::MeasurementSet& set, int threads) {
   imager::GriddingRequest request;
   request.kernel = choose_kernel(o.kernel);
@@ -76,7 +69,7 @@ Model image_model(const PredictOptions& o, const ms_io::MeasurementSet& set, int
   request.geometry = image.geometry;
   request.accuracy = is_kernel_file(o.kernel) && !o.accuracy_is_typed ? 0 : o.accuracy;
   request.samples = set.samples();
-  request.max_abs_w = largest_w(set);
+  request.max_abs_w = set.reach().max_abs_w;
   request.threads = threads;
   Model model;
   model.transform = imager::make_transform(imager::plan_gridding(request).options);

@@ -165,15 +165,15 @@ BOOST_AUTO_TEST_CASE(the_bounds_count_a_neglected_w) {
   const ImageGeometry geometry{40, 30, 1e-3, {}};
   for (const double w : {1.0, 30.0, 1000.0}) {
     VisibilityBlock block = random_samples(50, 1, geometry.cell_rad, 7);
-    UvwExtent extent;
+    WSpread spread;
     for (std::size_t row = 0; row < 50; ++row) block.uvw_m[3 * row + 2] = w;
-    extent.add(block);
+    spread.add(block);
     GriddingRequest r = request(40, 30, 1e-6);
     r.geometry = geometry;
     const AccurateImages made = images_of(block, r);
     const Image direct = direct_image(block, geometry);
-    const TheoreticalError error =
-        theoretical_error(made.plan, made.images.sums, root_mean_square(direct), neglected_w_phase(extent, geometry));
+    const NeglectedPhase phase = neglected_w_phase({0, 0, w * block.frequency_hz[0] / speed_of_light_m_s}, spread, geometry);
+    const TheoreticalError error = theoretical_error(made.plan, made.images.sums, root_mean_square(direct), phase);
     BOOST_TEST(relative_error(made.images.dirty.pixel, direct.pixel) <= error.bound_rms);
     BOOST_TEST(error.expected_rms <= error.bound_rms);
   }

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <fstream>
 
+#include "imager/constants.h"
 #include "tests/ms_io/small_set.h"
 
 namespace misfit::ms_io {
@@ -19,6 +20,23 @@ AllSamples read_all(const SmallSet& set, const Selection& selection = {}, std::u
 
 std::string error_of(const SmallSet& set, const Selection& selection, const std::string& column = "DATA") {
   return testing::error_of([&] { MeasurementSet(set.path(), selection, column); });
+}
+
+/// By the definition, from every sample of weight not 0.
+imager::UvwReach reach_of_samples(const MeasurementSet& set) {
+  imager::UvwReach reach;
+  const auto stream = set.open();
+  while (const auto block = stream->next()) {
+    for (std::size_t i = 0; i < block->samples(); ++i) {
+      if (block->weight[i] == 0) continue;
+      const double per_m = block->frequency_hz[i % block->channels()] / imager::speed_of_light_m_s;
+      const double* const uvw_m = block->uvw_m.data() + 3 * (i / block->channels());
+      reach.max_abs_u = std::max(reach.max_abs_u, std::abs(uvw_m[0]) * per_m);
+      reach.max_abs_v = std::max(reach.max_abs_v, std::abs(uvw_m[1]) * per_m);
+      reach.max_abs_w = std::max(reach.max_abs_w, std::abs(uvw_m[2]) * per_m);
+    }
+  }
+  return reach;
 }
 
 }  // namespace
@@ -50,6 +68,34 @@ BOOST_AUTO_TEST_CASE(a_set_can_be_read_any_number_of_times) {
   const SmallSet set;
   const MeasurementSet opened(set.path(), {}, "DATA");
   BOOST_CHECK(testing::read_all(opened).visibility == testing::read_all(opened).visibility);
+}
+
+BOOST_AUTO_TEST_CASE(the_reach_is_that_of_the_samples_that_can_be_used) {
+  const SmallSet set;  // |u|, |v| and |w| grow towards the last rows
+  set.add_spectral_window();
+  set.put("FLAG_ROW", 29, true);
+  set.put("FLAG_ROW", 28, true);
+  set.put("ANTENNA1", 27, 1);
+  set.put("ANTENNA2", 27, 1);
+  set.put("UVW", 26, 0, 0, nan_value);
+  set.put("UVW", 25, 1, 0, double{infinite_float});
+  for (const std::string spw : {"", "0", "1", "0:2~3", "1:0"}) {
+    for (const std::uint64_t block_samples : {std::uint64_t{1}, std::uint64_t{1} << 20}) {
+      const MeasurementSet opened(set.path(), {"", spw}, "DATA", block_samples);
+      const imager::UvwReach is = opened.reach(), should = reach_of_samples(opened);
+      const auto rounding = boost::test_tools::tolerance(1e-15);
+      BOOST_TEST(is.max_abs_u == should.max_abs_u, rounding);
+      BOOST_TEST(is.max_abs_v == should.max_abs_v, rounding);
+      BOOST_TEST(is.max_abs_w == should.max_abs_w, rounding);
+    }
+  }
+}
+
+BOOST_AUTO_TEST_CASE(the_reach_is_a_bound_where_single_samples_are_flagged) {
+  const SmallSet set;
+  for (std::size_t c = 0; c < channels; ++c) set.put("FLAG", 29, 1, static_cast<ssize_t>(c), true);
+  const MeasurementSet opened(set.path(), {}, "DATA");
+  BOOST_TEST(opened.reach().max_abs_u > reach_of_samples(opened).max_abs_u);
 }
 
 BOOST_AUTO_TEST_CASE(a_stream_outlives_the_set_it_came_from) {

@@ -16,7 +16,7 @@ BOOST_AUTO_TEST_CASE(what_is_kept_in_memory_is_what_the_set_holds) {
       set, [&](std::uint64_t done, std::uint64_t) { told = done; }, times);
   BOOST_TEST(loaded.counts.used == 351U);
   BOOST_TEST(told == 351U);
-  BOOST_TEST(loaded.extent.max_abs_w == 0);
+  BOOST_TEST(loaded.w_spread.weighted_w_square == 0);
   const auto stream = set.open(), stored = loaded.source->open();
   while (const auto block = stream->next()) {
     const auto kept = stored->next();
