@@ -59,15 +59,27 @@ bool gather_row(const GridShape& s, const Real* real, const Real* imaginary, int
   return any;
 }
 
-/// The part of the uv plane that lies between the two transforms: rows of the grid, columns of the image. [q][image column]
+/// The part of the uv plane that lies between the two transforms: rows of the grid, columns of the image. [q][column]
+/// It is kept in the planes of the grid, each row where row q of the grid lay: nothing else is made from that.
 template <typename Real>
 struct KeptColumns {
-  int width;
-  std::vector<std::complex<Real>> value;
+  const GridShape& shape;
+  Real* real_plane;
+  Real* imaginary_plane;
 
-  KeptColumns(int half_rows, int image_width) : width(image_width), value(index(half_rows, image_width)) {}
-  std::complex<Real>* row(int q) { return value.data() + index(q, width); }
-  const std::complex<Real>* row(int q) const { return value.data() + index(q, width); }
+  Real* real(int q) const { return real_plane + index(shape.first_row(q), shape.columns()); }
+  Real* imaginary(int q) const { return imaginary_plane + index(shape.first_row(q), shape.columns()); }
+  void set(int q, int c, std::complex<Real> value) const {
+    real(q)[c] = value.real();
+    imaginary(q)[c] = value.imag();
+  }
+  std::complex<Real> get(int q, int c) const { return {real(q)[c], imaginary(q)[c]}; }
+};
+
+/// Columns of an image, counted from the middle one.
+struct ColumnRange {
+  int first;
+  int count;
 };
 
 /// Calls body(begin, end) for consecutive pieces of [0, count), shared among threads.
@@ -82,9 +94,9 @@ void in_pieces(int count, int threads, const Body& body) {
 
 /// The first step from grid to image: transforms along u the rows that hold anything.
 template <typename Real>
-KeptColumns<Real> transform_rows(const GridShape& s, const Real* real, const Real* imaginary, int width, int threads) {
+void transform_rows(const GridShape& s, const Real* real, const Real* imaginary, ColumnRange columns, int threads,
+                    const KeptColumns<Real>& kept) {
   const int half_rows = s.nv / 2 + 1;
-  KeptColumns<Real> kept(half_rows, width);
   const Fft<Real> along_u(s.nu);
   in_pieces(half_rows, threads, [&](int begin, int end) {
     const auto buffer = along_u.complex_buffer();
@@ -92,18 +104,19 @@ KeptColumns<Real> transform_rows(const GridShape& s, const Real* real, const Rea
       if (!gather_row(s, real, imaginary, q, buffer.get())) continue;
       along_u.complex_to_complex(buffer.get(), Fft<Real>::Sign::backward);
       const Real half = q == 0 || q == half_rows - 1 ? Real(1) : Real(0.5);  // complex_to_real doubles the others
-      for (int c = 0; c < width; ++c) kept.row(q)[c] = half * buffer.get()[wrap(c - width / 2, s.nu)];
+      for (int c = 0; c < columns.count; ++c) kept.set(q, c, half * buffer.get()[wrap(columns.first + c, s.nu)]);
     }
   });
-  return kept;
 }
 
-/// The second: transforms along v the image's columns, some at a time so that memory is read in lines.
+/// The second: transforms along v the image's columns, some at a time so that memory is read in lines. An even image has its
+/// other columns by symmetry.
 template <typename Real>
-Image transform_columns(const GridShape& s, const KeptColumns<Real>& kept, const ImageCorrection& h, int threads) {
-  Image image(kept.width, static_cast<int>(h.row.size()));
+Image transform_columns(const KeptColumns<Real>& kept, ColumnRange columns, bool even, const ImageCorrection& h, int threads) {
+  const GridShape& s = kept.shape;
+  Image image(static_cast<int>(h.column.size()), static_cast<int>(h.row.size()));
   const Fft<Real> along_v(s.nv);
-  in_pieces(image.width, threads, [&](int begin, int end) {
+  in_pieces(columns.count, threads, [&](int begin, int end) {
     std::vector<typename Fft<Real>::ComplexBuffer> spectrum;
     std::vector<typename Fft<Real>::RealBuffer> column;
     for (int c = begin; c < end; ++c) {
@@ -111,14 +124,20 @@ Image transform_columns(const GridShape& s, const KeptColumns<Real>& kept, const
       column.push_back(along_v.real_buffer());
     }
     for (int q = 0; q <= s.nv / 2; ++q)
-      for (int c = begin; c < end; ++c) spectrum[static_cast<std::size_t>(c - begin)].get()[q] = kept.row(q)[c];
+      for (int c = begin; c < end; ++c) spectrum[static_cast<std::size_t>(c - begin)].get()[q] = kept.get(q, c);
     for (std::size_t c = 0; c < column.size(); ++c) along_v.complex_to_real(spectrum[c].get(), column[c].get());
     for (int r = 0; r < image.height; ++r) {
       const double h_row = h.row[static_cast<std::size_t>(r)];
-      const int y = wrap(r - image.height / 2, s.nv);
-      for (int c = begin; c < end; ++c)
-        image.at(r, c) =
-            h_row * h.column[static_cast<std::size_t>(c)] * double{column[static_cast<std::size_t>(c - begin)].get()[y]};
+      const auto store = [&](int x, Real value) {
+        const int c = x + image.width / 2;
+        if (c >= 0 && c < image.width) image.at(r, c) = h_row * h.column[static_cast<std::size_t>(c)] * double{value};
+      };
+      const int y = r - image.height / 2;
+      for (int c = begin; c < end; ++c) {
+        const Real* const along = column[static_cast<std::size_t>(c - begin)].get();
+        store(columns.first + c, along[wrap(y, s.nv)]);
+        if (even) store(-(columns.first + c), along[wrap(-y, s.nv)]);
+      }
     }
   });
   return image;
@@ -126,8 +145,8 @@ Image transform_columns(const GridShape& s, const KeptColumns<Real>& kept, const
 
 /// The first step from image to grid: transforms along v the image's columns.
 template <typename Real>
-KeptColumns<Real> transform_image_columns(const GridShape& s, const Image& image, const ImageCorrection& h, int threads) {
-  KeptColumns<Real> kept(s.nv / 2 + 1, image.width);
+void transform_image_columns(const Image& image, const ImageCorrection& h, int threads, const KeptColumns<Real>& kept) {
+  const GridShape& s = kept.shape;
   const Fft<Real> along_v(s.nv);
   in_pieces(image.width, threads, [&](int begin, int end) {
     std::vector<typename Fft<Real>::RealBuffer> column;
@@ -145,10 +164,9 @@ KeptColumns<Real> transform_image_columns(const GridShape& s, const Image& image
     const auto spectrum = along_v.complex_buffer();
     for (int c = begin; c < end; ++c) {
       along_v.real_to_complex(column[static_cast<std::size_t>(c - begin)].get(), spectrum.get());
-      for (int q = 0; q <= s.nv / 2; ++q) kept.row(q)[c] = spectrum.get()[q];
+      for (int q = 0; q <= s.nv / 2; ++q) kept.set(q, c, spectrum.get()[q]);
     }
   });
-  return kept;
 }
 
 /// Stores canonical row `row` [nu] as row q, margins along u included; conjugated and reversed for rows in the margins along v.
@@ -168,20 +186,32 @@ void store_row(const std::complex<Real>* row, int q, bool reflect, HalfGrid<Real
 }  // namespace
 
 template <typename Real>
-Image grid_to_image(const GridShape& s, const Real* real, const Real* imaginary, const ImageCorrection& h, int threads) {
-  return transform_columns(s, transform_rows(s, real, imaginary, static_cast<int>(h.column.size()), threads), h, threads);
+Image grid_to_image(const GridShape& s, std::vector<Real> real, std::vector<Real> imaginary, const ImageCorrection& h,
+                    int threads) {
+  const int width = static_cast<int>(h.column.size());
+  if (!imaginary.empty()) {
+    const KeptColumns<Real> kept{s, real.data(), imaginary.data()};
+    transform_rows(s, real.data(), imaginary.data(), {-(width / 2), width}, threads, kept);
+    return transform_columns(kept, {-(width / 2), width}, false, h, threads);
+  }
+  // A real grid stands for one that is real and even. Half its columns, real and imaginary, take no more room than a row.
+  const ColumnRange half{0, width / 2 + 1};
+  const KeptColumns<Real> kept{s, real.data(), real.data() + half.count};
+  transform_rows<Real>(s, real.data(), nullptr, half, threads, kept);
+  return transform_columns(kept, half, true, h, threads);
 }
 
 template <typename Real>
 void image_to_grid(const Image& image, const ImageCorrection& h, int threads, HalfGrid<Real>& grid) {
   const GridShape& s = grid.shape;
-  const KeptColumns<Real> kept = transform_image_columns<Real>(s, image, h, threads);
+  const KeptColumns<Real> kept{s, grid.real.data(), grid.imaginary.data()};
+  transform_image_columns(image, h, threads, kept);
   const Fft<Real> along_u(s.nu);
   in_pieces(s.nv / 2 + 1, threads, [&](int begin, int end) {
     const auto buffer = along_u.complex_buffer();
     for (int q = begin; q < end; ++q) {
       std::fill_n(buffer.get(), s.nu, std::complex<Real>(0));
-      for (int c = 0; c < image.width; ++c) buffer.get()[wrap(c - image.width / 2, s.nu)] = kept.row(q)[c];
+      for (int c = 0; c < image.width; ++c) buffer.get()[wrap(c - image.width / 2, s.nu)] = kept.get(q, c);
       along_u.complex_to_complex(buffer.get(), Fft<Real>::Sign::forward);
       store_row(buffer.get(), q, false, grid);
       if (q > 0 && q <= s.margin()) store_row(buffer.get(), -q, true, grid);
@@ -191,8 +221,8 @@ void image_to_grid(const Image& image, const ImageCorrection& h, int threads, Ha
   });
 }
 
-template Image grid_to_image(const GridShape&, const float*, const float*, const ImageCorrection&, int);
-template Image grid_to_image(const GridShape&, const double*, const double*, const ImageCorrection&, int);
+template Image grid_to_image(const GridShape&, std::vector<float>, std::vector<float>, const ImageCorrection&, int);
+template Image grid_to_image(const GridShape&, std::vector<double>, std::vector<double>, const ImageCorrection&, int);
 template void image_to_grid(const Image&, const ImageCorrection&, int, HalfGrid<float>&);
 template void image_to_grid(const Image&, const ImageCorrection&, int, HalfGrid<double>&);
 

@@ -49,11 +49,11 @@ struct ImageCorrection {
 };
 
 /// image(x, y) = h(x) h(y) Re Σ_{p,q} G(p, q) exp(+2πi(px/nu + qy/nv)), with x, y counted from the middle pixel.
-/// `imaginary` may be null for a real grid. Only the rows of the grid that hold data and the columns that the image keeps are
-/// transformed.
+/// `imaginary` may be empty for a real grid. Only the rows of the grid that hold data and the columns that the image keeps are
+/// transformed, in the planes' own memory: std::move them where they are not needed again.
 template <typename Real>
-Image grid_to_image(const GridShape& shape, const Real* real, const Real* imaginary, const ImageCorrection& correction,
-                    int threads);
+Image grid_to_image(const GridShape& shape, std::vector<Real> real, std::vector<Real> imaginary,
+                    const ImageCorrection& correction, int threads);
 
 /// The adjoint: G(p, q) = Σ_{x,y} h(x) h(y) image(x, y) exp(−2πi(px/nu + qy/nv)), margins filled by periodicity and
 /// conjugation.

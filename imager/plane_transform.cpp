@@ -140,14 +140,14 @@ class PlaneAdjoint : public AdjointSum {
   AdjointResult finish() override {
     AdjointResult result;
     result.sums = sums_;
-    result.image = to_image(grid_.real.data(), grid_.imaginary.data());
-    if (!grid_.weight.empty()) result.psf = to_image(grid_.weight.data(), nullptr);
+    result.image = to_image(std::move(grid_.real), std::move(grid_.imaginary));
+    if (!grid_.weight.empty()) result.psf = to_image(std::move(grid_.weight), {});
     return result;
   }
 
  private:
-  Image to_image(const Real* real, const Real* imaginary) const {
-    Image image = grid_to_image(setup_.shape, real, imaginary, setup_.correction, setup_.threads);
+  Image to_image(std::vector<Real> real, std::vector<Real> imaginary) const {
+    Image image = grid_to_image(setup_.shape, std::move(real), std::move(imaginary), setup_.correction, setup_.threads);
     set_beyond_horizon(setup_.geometry, no_value, image);
     return image;
   }

@@ -80,18 +80,18 @@ BOOST_AUTO_TEST_SUITE(half_grid)
 BOOST_DATA_TEST_CASE(image_of_a_grid_equals_the_double_sum_over_its_cells_and_margins, shapes, width, height, kernel_width) {
   const HalfGrid<double> grid = random_grid<double>(shape_of(kernel_width));
   const ImageCorrection h = correction(width, height);
-  const Image image = grid_to_image(grid.shape, grid.real.data(), grid.imaginary.data(), h, 2);
+  const Image image = grid_to_image(grid.shape, grid.real, grid.imaginary, h, 2);
   // 1e-14: some ten rounded operations on each value.
   BOOST_TEST(relative_error(image.pixel, plain_image(grid, h).pixel) < 1e-14);
   const HalfGrid<float> coarse = random_grid<float>(shape_of(kernel_width));
-  const Image single = grid_to_image(coarse.shape, coarse.real.data(), coarse.imaginary.data(), h, 2);
+  const Image single = grid_to_image(coarse.shape, coarse.real, coarse.imaginary, h, 2);
   BOOST_TEST(relative_error(single.pixel, plain_image(coarse, h).pixel) < 1e-6);
 }
 
 BOOST_DATA_TEST_CASE(a_grid_without_imaginary_part_is_real, shapes, width, height, kernel_width) {
   HalfGrid<double> grid = random_grid<double>(shape_of(kernel_width));
   const ImageCorrection h = correction(width, height);
-  const Image image = grid_to_image<double>(grid.shape, grid.real.data(), nullptr, h, 1);
+  const Image image = grid_to_image<double>(grid.shape, grid.real, {}, h, 1);
   std::fill(grid.imaginary.begin(), grid.imaginary.end(), 0.0);
   BOOST_TEST(relative_error(image.pixel, plain_image(grid, h).pixel) < 1e-14);
 }
@@ -118,7 +118,7 @@ BOOST_DATA_TEST_CASE(the_two_directions_are_adjoint, shapes, width, height, kern
   const HalfGrid<double> x = random_grid<double>(shape_of(kernel_width));
   const Image y = random_image(width, height, 3);
   const ImageCorrection h = correction(width, height);
-  const Image ax = grid_to_image(x.shape, x.real.data(), x.imaginary.data(), h, 1);
+  const Image ax = grid_to_image(x.shape, x.real, x.imaginary, h, 1);
   HalfGrid<double> aty(x.shape, false);
   image_to_grid(y, h, 1, aty);
   double left = 0, right = 0;
@@ -130,7 +130,7 @@ BOOST_DATA_TEST_CASE(the_two_directions_are_adjoint, shapes, width, height, kern
 
 BOOST_AUTO_TEST_CASE(an_empty_grid_is_an_image_of_zeros) {
   const HalfGrid<double> grid(shape_of(5), false);
-  const Image image = grid_to_image(grid.shape, grid.real.data(), grid.imaginary.data(), correction(9, 8), 2);
+  const Image image = grid_to_image(grid.shape, grid.real, grid.imaginary, correction(9, 8), 2);
   BOOST_TEST(norm(image.pixel) == 0);
 }
 
@@ -139,9 +139,7 @@ BOOST_AUTO_TEST_CASE(neither_direction_depends_on_the_number_of_threads) {
   const HalfGrid<double> grid = random_grid<double>(shape);
   const ImageCorrection h = correction(70, 61);
   const Image input = random_image(70, 61, 4);
-  const auto image = [&](int threads) {
-    return grid_to_image(shape, grid.real.data(), grid.imaginary.data(), h, threads).pixel;
-  };
+  const auto image = [&](int threads) { return grid_to_image(shape, grid.real, grid.imaginary, h, threads).pixel; };
   const auto gridded = [&](int threads) {
     HalfGrid<double> out(shape, false);
     image_to_grid(input, h, threads, out);
