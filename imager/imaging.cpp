@@ -9,23 +9,34 @@ void divide(Image& image, double by) {
   for (double& pixel : image.pixel) pixel /= by;
 }
 
-/// Calls visit(block) for every block of one pass.
-template <typename Visit>
-void for_each_block(const VisibilitySource& source, const Progress& progress, StageTimes& times, const Visit& visit) {
-  const auto stream = source.open();
-  std::uint64_t done = 0;
-  while (true) {
-    std::shared_ptr<const VisibilityBlock> block;
-    {
-      const StageTimer timer(times, "read");
-      block = stream->next();
+/// One pass over visibilities; a source that reads ahead begins when this is made.
+class Pass {
+ public:
+  Pass(const VisibilitySource& source, const Progress& progress, StageTimes& times)
+      : total_(source.samples()), stream_(source.open()), progress_(progress), times_(times) {}
+
+  /// Calls visit(block) for every block.
+  template <typename Visit>
+  void for_each_block(const Visit& visit) {
+    std::uint64_t done = 0;
+    while (const auto block = next()) {
+      visit(*block);
+      done += block->samples();
+      progress_(done, total_);
     }
-    if (!block) return;
-    visit(*block);
-    done += block->samples();
-    progress(done, source.samples());
   }
-}
+
+ private:
+  std::shared_ptr<const VisibilityBlock> next() {
+    const StageTimer timer(times_, "read");
+    return stream_->next();
+  }
+
+  std::uint64_t total_;
+  std::unique_ptr<BlockStream> stream_;
+  const Progress& progress_;
+  StageTimes& times_;
+};
 
 std::unique_ptr<AdjointSum> begin(const Transform& transform, bool with_psf, StageTimes& times) {
   const StageTimer timer(times, "grid");
@@ -42,8 +53,9 @@ AdjointResult finish(std::unique_ptr<AdjointSum> sum, StageTimes& times) {
 
 DirtyImages make_dirty_images(const VisibilitySource& source, const Transform& transform, bool with_psf,
                               const Progress& progress, StageTimes& times) {
+  Pass pass(source, progress, times);
   auto sum = begin(transform, with_psf, times);
-  for_each_block(source, progress, times, [&](const VisibilityBlock& block) {
+  pass.for_each_block([&](const VisibilityBlock& block) {
     const StageTimer timer(times, "grid");
     sum->add(block);
   });
@@ -59,13 +71,14 @@ DirtyImages make_dirty_images(const VisibilitySource& source, const Transform& t
 
 Image make_residual_image(const VisibilitySource& source, const Transform& transform, const Image& model,
                           const Progress& progress, StageTimes& times) {
+  Pass pass(source, progress, times);
   std::unique_ptr<Prediction> prediction;
   {
     const StageTimer timer(times, "fft");
     prediction = transform.predict(model);
   }
   auto sum = begin(transform, false, times);
-  for_each_block(source, progress, times, [&](const VisibilityBlock& block) {
+  pass.for_each_block([&](const VisibilityBlock& block) {
     std::vector<std::complex<double>> residual;
     {
       const StageTimer timer(times, "degrid");

@@ -1,0 +1,78 @@
+#include "imager/streamed_visibilities.h"
+
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+#include "imager/prefetch.h"
+
+namespace misfit::imager {
+namespace {
+
+void require_usable(const SampleCounts& c) {
+  if (c.used > 0) return;
+  const auto count = [](std::uint64_t n) { return std::to_string(n); };
+  throw std::runtime_error("no visibility is left of " + count(c.samples_read) + ": " + count(c.autocorrelations) +
+                           " auto-correlations, " + count(c.flagged) + " flagged, " + count(c.nonfinite) + " not finite, " +
+                           count(c.zero_weight) + " of zero weight");
+}
+
+}  // namespace
+
+/// Hands on the blocks of a stream, and hands in what they told at its end.
+class StreamedVisibilities::Recorder : public BlockStream {
+ public:
+  Recorder(const StreamedVisibilities& source, std::unique_ptr<BlockStream> stream)
+      : source_(source), stream_(std::move(stream)) {}
+
+  std::shared_ptr<const VisibilityBlock> next() override {
+    auto block = stream_->next();
+    if (block) {
+      pass_->counts += block->counts;
+      pass_->w_spread.add(*block);
+      if (source_.options_.keep) pass_->blocks.append(block);
+    } else {
+      require_usable(pass_->counts);
+      source_.finish(pass_);
+    }
+    return block;
+  }
+
+ private:
+  const StreamedVisibilities& source_;
+  std::unique_ptr<BlockStream> stream_;
+  std::shared_ptr<Pass> pass_ = std::make_shared<Pass>();
+};
+
+StreamedVisibilities::StreamedVisibilities(const VisibilitySource& from, const StreamingOptions& options)
+    : from_(from), options_(options) {}
+
+std::unique_ptr<BlockStream> StreamedVisibilities::open() const {
+  const auto pass = first_pass();
+  if (pass && options_.keep) return pass->blocks.open();
+  auto stream = from_.open();
+  if (!pass) stream = std::make_unique<Recorder>(*this, std::move(stream));
+  return prefetched(std::move(stream), options_.ahead);
+}
+
+SampleCounts StreamedVisibilities::counts() const {
+  const auto pass = first_pass();
+  return pass ? pass->counts : SampleCounts{};
+}
+
+WSpread StreamedVisibilities::w_spread() const {
+  const auto pass = first_pass();
+  return pass ? pass->w_spread : WSpread{};
+}
+
+std::shared_ptr<const StreamedVisibilities::Pass> StreamedVisibilities::first_pass() const {
+  const std::lock_guard lock(mutex_);
+  return first_pass_;
+}
+
+void StreamedVisibilities::finish(std::shared_ptr<const Pass> pass) const {
+  const std::lock_guard lock(mutex_);
+  if (!first_pass_) first_pass_ = std::move(pass);
+}
+
+}  // namespace misfit::imager

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <mutex>
+
+#include "imager/extent.h"
+#include "imager/stored_visibilities.h"
+
+namespace misfit::imager {
+
+/// Whether the blocks of the first pass stay in memory, and how many blocks are read ahead of their user.
+struct StreamingOptions {
+  bool keep = true;
+  std::size_t ahead = 2;
+};
+
+/// Another source, read ahead of its user, in the same blocks. The first pass that is read to its end tells what was in it, and
+/// may serve all later passes from memory. A pass without a usable sample ends in a std::runtime_error that counts the reasons.
+class StreamedVisibilities : public VisibilitySource {
+ public:
+  /// `from` must outlive this.
+  StreamedVisibilities(const VisibilitySource& from, const StreamingOptions& options);
+
+  std::unique_ptr<BlockStream> open() const override;
+  std::uint64_t samples() const override { return from_.samples(); }
+  /// Of a full pass, and zero before there was one.
+  SampleCounts counts() const;
+  WSpread w_spread() const;
+
+ private:
+  /// What a pass told.
+  struct Pass {
+    SampleCounts counts;
+    WSpread w_spread;
+    StoredVisibilities blocks;
+  };
+  class Recorder;
+
+  std::shared_ptr<const Pass> first_pass() const;
+  void finish(std::shared_ptr<const Pass> pass) const;
+
+  const VisibilitySource& from_;
+  const StreamingOptions options_;
+  mutable std::mutex mutex_;
+  mutable std::shared_ptr<const Pass> first_pass_;  ///< null until one is complete
+};
+
+}  // namespace misfit::imager
