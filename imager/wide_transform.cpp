@@ -173,6 +173,9 @@ void for_each_chunk(const StackShape& s, const StackTask& task, int components, 
           visit(row, chunk, plane, component, std::min(s.tile, reach - chunk * s.tile));
 }
 
+/// Sums in single precision stay short: a buffer is added to the stack after so many samples.
+constexpr int most_in_buffer = 512;
+
 template <typename Real>
 class WideAdjoint : public AdjointSum {
  public:
@@ -251,6 +254,7 @@ class WideAdjoint : public AdjointSum {
                  const StackTask& task, int first_plane, PlaneStack<Real>& stack) const {
     const StackShape& s = setup_.shape;
     StackBuffer<Real> buffer(s.tile, setup_.taps.u.padded, task.planes.planes, stack.components);
+    int in_buffer = 0;
     for_each_batch(setup_, scale, blocks, order, task, [&](StackBatch<Real>& batch, const BatchPhases& phases) {
       double psf_cosine[BatchPhases::capacity], psf_sine[BatchPhases::capacity];
       if (stack.components > 2) psf_phasors(phases, batch.count, psf_cosine, psf_sine);
@@ -267,14 +271,24 @@ class WideAdjoint : public AdjointSum {
         batch.value[3][k] = static_cast<Real>(weight * psf_sine[k]);
       }
       spread(setup_.taps, batch, buffer);
+      in_buffer += batch.count;
+      if (in_buffer < most_in_buffer) return;
+      flush_buffer(task, first_plane, buffer, stack);
+      std::fill(buffer.cell.begin(), buffer.cell.end(), Real(0));
+      in_buffer = 0;
     });
+    flush_buffer(task, first_plane, buffer, stack);
+    std::fill_n(stack.row_used.begin() + task.tile_v * s.tile, s.tile + s.width - 1, 1);
+  }
+
+  void flush_buffer(const StackTask& task, int first_plane, const StackBuffer<Real>& buffer, PlaneStack<Real>& stack) const {
+    const StackShape& s = setup_.shape;
     for_each_chunk(s, task, stack.components, [&](int row, int chunk, int plane, int component, int count) {
       const Real* from = buffer.row(plane, row, component) + chunk * s.tile;
       Real* to =
           stack.chunk(task.tile_v * s.tile + row, task.tile_u + chunk, task.planes.first - first_plane + plane, component);
       for (int c = 0; c < count; ++c) to[c] += from[c];
     });
-    std::fill_n(stack.row_used.begin() + task.tile_v * s.tile, s.tile + s.width - 1, 1);
   }
 
   /// The facet's phasors seen from the image's middle pixel, where the PSF's source is.
