@@ -1,5 +1,7 @@
 #include "imager/plane_transform.h"
 
+#include <hwy/cache_control.h>
+
 #include <algorithm>
 #include <stdexcept>
 #include <string>
@@ -7,14 +9,12 @@
 #include "imager/half_grid.h"
 #include "imager/horizon.h"
 #include "imager/parallel.h"
-#include "imager/phase.h"
-#include "imager/phasors.h"
-#include "imager/tile_loops.h"
-#include "imager/tile_order.h"
-#include "imager/tile_positions.h"
+#include "imager/tile_walk.h"
 
 namespace misfit::imager {
 namespace {
+
+constexpr int tile_side = 32;  // with 16, half of the cells that a tile of W = 7 flushes lie beyond it
 
 /// Everything that both directions share.
 template <typename Real>
@@ -33,14 +33,8 @@ std::vector<double> axis_correction(const kernels::Kernel& kernel, int pixels, i
   return {h.begin(), h.end()};
 }
 
-/// Tiles that may be flushed at the same time: their buffers reach into the next tile, so every other one along both axes.
-struct TileTask {
-  int tile_u;
-  int tile_v;
-  std::size_t tile;
-};
-
-/// The four colours of tiles that hold samples, fullest first within a colour so that no thread starts the longest task last.
+/// The four colours of tiles that hold samples; those of one colour may be flushed at the same time, since their buffers reach
+/// into the next tile alone. The fullest first within a colour so that no thread starts the longest task last.
 std::vector<std::vector<TileTask>> coloured_tasks(const TileOrder& order, const GridShape& shape) {
   std::vector<std::vector<TileTask>> colours(4);
   for (int v = 0; v < shape.tiles_v(); ++v)
@@ -54,76 +48,24 @@ std::vector<std::vector<TileTask>> coloured_tasks(const TileOrder& order, const 
   return colours;
 }
 
-/// What a batch needs to know of its samples besides their places.
-struct BatchSamples {
-  static constexpr int capacity = TileBatch<double>::capacity;
-  std::size_t index[capacity];  ///< row × channels + channel
-  bool conjugate[capacity];     ///< whether the place is that of −u, −v
-  bool off_phase_centre;        ///< otherwise there are no phasors
-  double turns[capacity];       ///< u l_0 + v m_0
-  double cosine[capacity];
-  double sine[capacity];
-
-  /// V exp(−2πi(u l_0 + v m_0)), of the sky seen from the image's middle pixel.
-  std::complex<double> from_middle(std::complex<double> v, int k) const {
-    if (!off_phase_centre) return v;
-    return {v.real() * cosine[k] + v.imag() * sine[k], v.imag() * cosine[k] - v.real() * sine[k]};
-  }
-  /// The inverse, V exp(+2πi(u l_0 + v m_0)).
-  std::complex<double> from_phase_centre(std::complex<double> v, int k) const {
-    return std::conj(from_middle(std::conj(v), k));
-  }
-};
-
-/// Walks through a tile's samples in batches: done(batch, samples) for each, phasors computed.
-template <typename Real, typename Done>
-void for_each_batch(const Setup<Real>& setup, const SampleCoordinates& at, const TileOrder& order, const TileTask& task,
-                    const Done& done) {
-  const CellScale scale(setup.shape, setup.geometry.cell_rad);
-  const PhasePosition middle{setup.geometry.centre.l, setup.geometry.centre.m, 0};
-  const GridShape& shape = setup.shape;
-  const double to_first = 0.5 * shape.width - 1;
-  const double u_origin = task.tile_u * shape.tile - shape.first_column(0) + to_first;
-  const double v_origin = task.tile_v * shape.tile - shape.first_row(0) + to_first;
-  TileBatch<Real> batch;
-  BatchSamples samples;
-  samples.off_phase_centre = setup.geometry.off_phase_centre();
-  const auto finish = [&] {
-    if (samples.off_phase_centre) phasors(samples.turns, batch.count, samples.cosine, samples.sine);
-    done(batch, samples);
-    batch.count = 0;
-  };
-  batch.count = 0;
-  for (std::size_t r = order.begin[task.tile]; r < order.begin[task.tile + 1]; ++r) {
-    const ChannelRun run = order.run[r];
-    const double* uvw_m = &at.uvw_m[std::size_t{3} * run.row];
-    const FoldedRow row(uvw_m, scale);
-    const double to_middle = turns_per_hz(uvw_m, middle);
-    const bool within = row.within(shape, order.highest_frequency_hz);
-    const std::size_t end = std::size_t{run.first} + run.count;
-    for (std::size_t channel = run.first; channel < end;) {
-      const int i = batch.count;
-      bool conjugate = row.folded;
-      if (within) {
-        const std::size_t count = std::min<std::size_t>(end - channel, TileBatch<Real>::capacity - i);
-        append_positions({row.u_per_hz, u_origin, row.v_per_hz, v_origin, shape.tile}, &at.frequency_hz[channel],
-                         static_cast<int>(count), batch);
-      } else {
-        const double frequency = at.frequency_hz[channel], unit = 1;
-        const PeriodicPosition position(row.u_per_hz * frequency, row.v_per_hz * frequency, row.folded, shape);
-        append_positions({position.u, u_origin, position.v, v_origin, shape.tile}, &unit, 1, batch);
-        conjugate = position.conjugate;
-      }
-      for (int k = i; k < batch.count; ++k, ++channel) {
-        samples.index[k] = run.row * at.channels() + channel;
-        samples.conjugate[k] = conjugate;
-        samples.turns[k] = to_middle * at.frequency_hz[channel];
-      }
-      if (batch.count == TileBatch<Real>::capacity) finish();
-    }
-  }
-  if (batch.count > 0) finish();
+/// Where the grid's rows of a tile begin.
+std::size_t first_cell(const GridShape& shape, const TileTask& task, int row) {
+  return static_cast<std::size_t>(task.tile_v * shape.tile + row) * static_cast<std::size_t>(shape.columns()) +
+         static_cast<std::size_t>(task.tile_u * shape.tile);
 }
+
+/// Asks for a tile's part of a plane of the grid, so that it is at hand once its samples have been dealt with.
+template <typename Real>
+void prefetch_tile(const GridShape& shape, const TileTask& task, const std::vector<Real>& plane) {
+  constexpr int line = 64 / sizeof(Real);
+  const int reach = shape.tile + shape.width - 1;
+  for (int r = 0; r < reach; ++r)
+    for (int c = 0; c < reach + line - 1; c += line)
+      hwy::Prefetch(plane.data() + first_cell(shape, task, r) + std::min(c, reach - 1));
+}
+
+/// Sums in single precision stay short: a buffer is added to the grid after so many samples.
+constexpr int most_in_buffer = 2048;
 
 template <typename Real>
 class PlaneAdjoint : public AdjointSum {
@@ -160,7 +102,14 @@ class PlaneAdjoint : public AdjointSum {
     for (const std::vector<TileTask>& tasks : coloured_tasks(order, setup_.shape)) {
       parallel_for(tasks.size(), setup_.threads, [&](std::size_t i) {
         TileBuffer<Real> buffer(setup_.shape.tile, setup_.taps_u.padded, grid_.weight.empty() ? 2 : 3);
-        for_each_batch(setup_, block, order, tasks[i], [&](TileBatch<Real>& batch, const BatchSamples& samples) {
+        for (const std::vector<Real>* plane : {&grid_.real, &grid_.imaginary, &grid_.weight})
+          if (!plane->empty()) prefetch_tile(setup_.shape, tasks[i], *plane);
+        const auto ahead = [&](std::size_t sample) {
+          hwy::Prefetch(&block.weight[sample]);
+          other == nullptr ? hwy::Prefetch(&block.visibility[sample]) : hwy::Prefetch(&(*other)[sample]);
+        };
+        int in_buffer = 0;
+        const auto done = [&](TileBatch<Real>& batch, const BatchSamples& samples) {
           // The grid holds conj(V), whose backward transform is the image; see tile_order.h for the axes.
           for (int k = 0; k < batch.count; ++k) {
             const double weight = block.weight[samples.index[k]];
@@ -170,7 +119,13 @@ class PlaneAdjoint : public AdjointSum {
             batch.weight[k] = static_cast<Real>(weight);
           }
           spread(setup_.taps_u, setup_.taps_v, batch, buffer);
-        });
+          in_buffer += batch.count;
+          if (in_buffer < most_in_buffer) return;
+          flush(tasks[i], buffer);
+          std::fill(buffer.cell.begin(), buffer.cell.end(), Real(0));
+          in_buffer = 0;
+        };
+        for_each_batch<Real>(setup_.geometry, setup_.shape, block, order, tasks[i], ahead, done);
         flush(tasks[i], buffer);
       });
     }
@@ -180,9 +135,7 @@ class PlaneAdjoint : public AdjointSum {
     const int reach = setup_.shape.tile + setup_.shape.width - 1;
     std::vector<Real>* const planes[3] = {&grid_.real, &grid_.imaginary, &grid_.weight};
     for (int r = 0; r < reach; ++r) {
-      const std::size_t start =
-          static_cast<std::size_t>(task.tile_v * setup_.shape.tile + r) * static_cast<std::size_t>(setup_.shape.columns()) +
-          static_cast<std::size_t>(task.tile_u * setup_.shape.tile);
+      const std::size_t start = first_cell(setup_.shape, task, r);
       for (int plane = 0; plane < buffer.planes; ++plane) {
         const Real* from = buffer.row(r, plane);
         Real* to = planes[plane]->data() + start;
@@ -227,14 +180,19 @@ class PlanePrediction : public Prediction {
       tasks.insert(tasks.end(), colour.begin(), colour.end());
     parallel_for(tasks.size(), setup_.threads, [&](std::size_t i) {
       const TileBuffer<Real> buffer = load(tasks[i]);
-      for_each_batch(setup_, block, order, tasks[i], [&](TileBatch<Real>& batch, const BatchSamples& samples) {
+      if (i + 1 < tasks.size())
+        for (const std::vector<Real>* plane : {&grid_.real, &grid_.imaginary})
+          prefetch_tile(setup_.shape, tasks[i + 1], *plane);
+      const auto ahead = [&](std::size_t sample) { hwy::Prefetch(&visibility[sample]); };
+      const auto done = [&](TileBatch<Real>& batch, const BatchSamples& samples) {
         interpolate(setup_.taps_u, setup_.taps_v, buffer, batch);
         for (int k = 0; k < batch.count; ++k) {
           const double imaginary = double{batch.imaginary[k]};
           visibility[samples.index[k]] =
               samples.from_phase_centre({double{batch.real[k]}, samples.conjugate[k] ? imaginary : -imaginary}, k);
         }
-      });
+      };
+      for_each_batch<Real>(setup_.geometry, setup_.shape, block, order, tasks[i], ahead, done);
     });
     return visibility;
   }
@@ -243,9 +201,7 @@ class PlanePrediction : public Prediction {
     TileBuffer<Real> buffer(setup_.shape.tile, setup_.taps_u.padded, 2);
     const int reach = setup_.shape.tile + setup_.shape.width - 1;
     for (int r = 0; r < reach; ++r) {
-      const std::size_t start =
-          static_cast<std::size_t>(task.tile_v * setup_.shape.tile + r) * static_cast<std::size_t>(setup_.shape.columns()) +
-          static_cast<std::size_t>(task.tile_u * setup_.shape.tile);
+      const std::size_t start = first_cell(setup_.shape, task, r);
       std::copy_n(grid_.real.data() + start, reach, buffer.row(r, 0));
       std::copy_n(grid_.imaginary.data() + start, reach, buffer.row(r, 1));
     }
@@ -261,7 +217,7 @@ class PlaneTransform : public Transform {
  public:
   explicit PlaneTransform(const PlaneTransformOptions& o)
       : setup_{o.geometry,
-               {o.nu, o.nv, o.kernel_u.width(), 16},
+               {o.nu, o.nv, o.kernel_u.width(), tile_side},
                TapTable<Real>(o.kernel_u.polynomial),
                TapTable<Real>(o.kernel_v.polynomial),
                {axis_correction(o.kernel_u, o.geometry.width, o.nu), axis_correction(o.kernel_v, o.geometry.height, o.nv)},

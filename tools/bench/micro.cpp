@@ -25,7 +25,7 @@ namespace {
 using namespace misfit;
 using namespace misfit::imager;
 
-constexpr int tile = 16;
+constexpr int tile = 32;
 constexpr double x0 = 0.25;
 constexpr double cell_rad = 1e-5;
 
