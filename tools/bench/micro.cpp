@@ -1,5 +1,5 @@
 // Times on one core of the pieces of gridding, in nanoseconds a visibility (of the FFT: a point), as a markdown table.
-// usage: misfit_micro [--runs N] [--json FILE]
+// usage: misfit_micro [--runs N] [--only TEXT] [--json FILE]      pieces whose name contains TEXT
 #include <algorithm>
 #include <array>
 #include <chrono>
