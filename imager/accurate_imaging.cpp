@@ -15,12 +15,11 @@ double random_image_rms(const SampleSums& sums) {
   return std::sqrt(0.5 * sums.weight2_square) / sums.weight;
 }
 
-AccurateImages make_images(const VisibilitySource& source, const GriddingRequest& request, const Progress& progress,
-                           StageTimes& times) {
+AccurateImages make_images(const VisibilitySource& source, GriddingPlan plan, const Progress& progress, StageTimes& times) {
   AccurateImages made;
+  made.plan = std::move(plan);
   {
     const StageTimer timer(times, "plan");
-    made.plan = plan_gridding(request);
     made.transform = make_transform(made.plan.options);
   }
   made.images = make_dirty_images(source, *made.transform, true, progress, times);
@@ -71,9 +70,10 @@ TheoreticalError theoretical_error(const GriddingPlan& plan, const SampleSums& s
   return error;
 }
 
-AccurateImages make_accurate_images(const VisibilitySource& source, const GriddingRequest& request, const Progress& progress,
+AccurateImages make_accurate_images(const VisibilitySource& source, GriddingPlan plan, const Progress& progress,
                                     StageTimes& times) {
-  AccurateImages made = make_images(source, request, progress, times);
+  const GriddingRequest request = plan.request;
+  AccurateImages made = make_images(source, std::move(plan), progress, times);
   // The image's gridding error over the accuracy, once by theory and once by direct sums at pixels, which may miss half of it.
   const auto excess = [&] {
     const Weakness weak = weakness_of(made.images, times);
@@ -87,7 +87,12 @@ AccurateImages make_accurate_images(const VisibilitySource& source, const Griddi
   GriddingRequest stricter = request;
   stricter.accuracy = request.accuracy / first;
   stricter.best_effort = true;
-  made = make_images(source, stricter, progress, times);
+  made = {};  // the images come again, and there may be no room for both
+  {
+    const StageTimer timer(times, "plan");
+    plan = plan_gridding(stricter);
+  }
+  made = make_images(source, std::move(plan), progress, times);
   char because[160];
   std::snprintf(because, sizeof because, "the image is weak against its data: its error came to %.3g times the accuracy",
                 first);

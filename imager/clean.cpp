@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <numeric>
 #include <optional>
 
@@ -11,8 +12,8 @@
 namespace misfit::imager {
 namespace {
 
-MajorCycle state_of(const CleanResult& result) {
-  return {result.report.iterations, std::abs(find_peak(result.residual).value), robust_noise(result.residual),
+MajorCycle state_of(const CleanResult& result, const Image& residual) {
+  return {result.report.iterations, std::abs(find_peak(residual).value), robust_noise(residual),
           std::accumulate(result.model.pixel.begin(), result.model.pixel.end(), 0.0), 0};
 }
 
@@ -51,28 +52,30 @@ double largest_sidelobe(const Image& psf, const Image& beam) {
   return largest;
 }
 
-CleanResult clean(const VisibilitySource& source, const Transform& transform, const DirtyImages& images, const Image& beam,
+CleanResult clean(const VisibilitySource& source, const Transform& transform, const DirtyImages& images, double max_sidelobe,
                   const CleanOptions& options, const Progress& progress, const CycleProgress& cycle_progress,
                   StageTimes& times) {
   constexpr double divergence = 3;  // tclean's factor
-  CleanResult result{Image(images.dirty.width, images.dirty.height), images.dirty, {}};
+  CleanResult result{Image(images.dirty.width, images.dirty.height), {}, {}};
+  // Residuals are made anew, never changed; the first is the dirty image.
+  std::shared_ptr<const Image> residual(std::shared_ptr<void>(), &images.dirty);
   const auto take_state = [&](double depth) {
     const StageTimer timer(times, "statistics");
-    MajorCycle state = state_of(result);
+    MajorCycle state = state_of(result, *residual);
     state.cycle_threshold_jy = depth;
     result.report.cycles.push_back(state);
   };
-  result.report.max_sidelobe = largest_sidelobe(images.psf, beam);
+  result.report.max_sidelobe = max_sidelobe;
   take_state(0);
   Image best_model = result.model;
-  Image best_residual = result.residual;
+  auto best_residual = residual;
   std::optional<Ending> end;
   while (!(end = ending(options, result.report.cycles))) {
     const MajorCycle now = result.report.cycles.back();
-    const double depth = cycle_threshold(options, result.report.max_sidelobe, now);
+    const double depth = cycle_threshold(options, max_sidelobe, now);
     {
       const StageTimer timer(times, "minor cycles");
-      result.report.iterations += hogbom(result.residual, images.psf,
+      result.report.iterations += hogbom(*residual, images.psf,
                                          {.gain = options.gain,
                                           .max_iterations = options.max_iterations - now.iterations,
                                           .threshold_jy = depth,
@@ -81,21 +84,23 @@ CleanResult clean(const VisibilitySource& source, const Transform& transform, co
                                          result.model)
                                       .iterations;
     }
-    result.residual = make_residual_image(source, transform, result.model, progress, times);
+    residual.reset();
+    residual = std::make_shared<const Image>(make_residual_image(source, transform, result.model, progress, times));
     take_state(depth);
     cycle_progress(result.report.cycles.back());
     const std::vector<MajorCycle>& cycles = result.report.cycles;
     if (cycles.back().peak_residual_jy < cycles[result.report.kept].peak_residual_jy) {
       result.report.kept = cycles.size() - 1;
       best_model = result.model;
-      best_residual = result.residual;
+      best_residual = residual;
     } else if (!(cycles.back().peak_residual_jy <= divergence * cycles[result.report.kept].peak_residual_jy)) {
       end = Ending{CleanStop::diverging, "the residual grew to more than three times its smallest; the best model was kept"};
       result.model = std::move(best_model);
-      result.residual = std::move(best_residual);
+      residual = best_residual;
       break;
     }
   }
+  result.residual = *residual;
   if (end->stop != CleanStop::diverging) result.report.kept = result.report.cycles.size() - 1;
   result.report.stop = end->stop;
   result.report.stop_reason = end->reason;

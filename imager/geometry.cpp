@@ -20,8 +20,7 @@ DirectionCosines direction_cosines(const SkyDirection& direction, const SkyDirec
 
 double largest_drop(const ImageGeometry& geometry) {
   double largest = 0;
-  for (const DirectionCosines& at : geometry.corners())
-    largest = std::max(largest, beyond_horizon(at) ? 1 : -n_minus_1(at));
+  for (const DirectionCosines& at : geometry.corners()) largest = std::max(largest, beyond_horizon(at) ? 1 : -n_minus_1(at));
   return largest;
 }
 

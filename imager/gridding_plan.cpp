@@ -116,6 +116,7 @@ double nameable_accuracy(double worst_error) {
 GriddingPlan plan_gridding(const GriddingRequest& request) {
   check_request(request);
   GriddingPlan plan;
+  plan.request = request;
   plan.choice = choose_gridding(request);
   const GriddingCandidate& best = plan.choice.best;
   if (!plan.choice.reached && !request.best_effort)

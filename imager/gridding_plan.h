@@ -8,6 +8,7 @@ namespace misfit::imager {
 
 /// How it will be done: the cheapest that keeps the promise.
 struct GriddingPlan {
+  GriddingRequest request;       ///< what was asked
   WideTransformOptions options;  ///< with a w axis where the scene needs one
   double expected_error = 0;     ///< RMS error of image and prediction relative to data with random phases, √(E_u + E_v)
   double worst_error = 0;        ///< the same for the worst position of samples in their cells, or the worst pixel of a model

@@ -185,6 +185,11 @@ void store_row(const std::complex<Real>* row, int q, bool reflect, HalfGrid<Real
 
 }  // namespace
 
+double transform_buffer_bytes(const GridShape& s, int threads, double real_bytes) {
+  const double column = 3.0 * s.nv;  // a real column and its complex spectrum, each of nv
+  return threads * real_bytes * std::max(columns_at_once * column, 2.0 * s.nu);
+}
+
 template <typename Real>
 Image grid_to_image(const GridShape& s, std::vector<Real> real, std::vector<Real> imaginary, const ImageCorrection& h,
                     int threads) {

@@ -55,6 +55,9 @@ template <typename Real>
 Image grid_to_image(const GridShape& shape, std::vector<Real> real, std::vector<Real> imaginary,
                     const ImageCorrection& correction, int threads);
 
+/// Memory of either direction's buffers.
+double transform_buffer_bytes(const GridShape& shape, int threads, double real_bytes);
+
 /// The adjoint: G(p, q) = Σ_{x,y} h(x) h(y) image(x, y) exp(−2πi(px/nu + qy/nv)), margins filled by periodicity and
 /// conjugation.
 template <typename Real>

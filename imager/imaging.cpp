@@ -88,6 +88,7 @@ Image make_residual_image(const VisibilitySource& source, const Transform& trans
     const StageTimer timer(times, "grid");
     sum->add(block, residual);
   });
+  prediction.reset();
   AdjointResult result = finish(std::move(sum), times);
   divide(result.image, result.sums.weight);
   return std::move(result.image);

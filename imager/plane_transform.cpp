@@ -212,12 +212,16 @@ class PlanePrediction : public Prediction {
   HalfGrid<Real> grid_;
 };
 
+GridShape shape_of(const PlaneTransformOptions& o) {
+  return {o.nu, o.nv, o.kernel_u.width(), tile_side};
+}
+
 template <typename Real>
 class PlaneTransform : public Transform {
  public:
   explicit PlaneTransform(const PlaneTransformOptions& o)
       : setup_{o.geometry,
-               {o.nu, o.nv, o.kernel_u.width(), tile_side},
+               shape_of(o),
                TapTable<Real>(o.kernel_u.polynomial),
                TapTable<Real>(o.kernel_v.polynomial),
                {axis_correction(o.kernel_u, o.geometry.width, o.nu), axis_correction(o.kernel_v, o.geometry.height, o.nv)},
@@ -255,6 +259,12 @@ std::unique_ptr<Transform> make_plane_transform(const PlaneTransformOptions& opt
                                 std::to_string(options.kernel_v.width()) + " along v; one width is expected");
   if (options.precision == Precision::single_precision) return std::make_unique<PlaneTransform<float>>(options);
   return std::make_unique<PlaneTransform<double>>(options);
+}
+
+TransformMemory memory_of(const PlaneTransformOptions& o) {
+  const double real_bytes = o.precision == Precision::single_precision ? sizeof(float) : sizeof(double);
+  const double plane = static_cast<double>(shape_of(o).cells()) * real_bytes;
+  return {2 * plane, plane, transform_buffer_bytes(shape_of(o), o.threads, real_bytes)};
 }
 
 }  // namespace misfit::imager

@@ -25,4 +25,13 @@ struct PlaneTransformOptions {
 /// options contradict each other.
 std::unique_ptr<Transform> make_plane_transform(const PlaneTransformOptions& options);
 
+/// Memory that a transform takes, in bytes.
+struct TransformMemory {
+  double visibilities = 0;  ///< grid of an adjoint without PSF, or of a prediction
+  double psf = 0;           ///< grid that the PSF adds to an adjoint
+  double fft = 0;           ///< buffers
+};
+
+TransformMemory memory_of(const PlaneTransformOptions& options);
+
 }  // namespace misfit::imager

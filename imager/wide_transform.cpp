@@ -36,12 +36,16 @@ std::vector<double> axis_correction(const kernels::Kernel& kernel, int pixels, i
   return {h.begin(), h.end()};
 }
 
+StackShape shape_of(const WideTransformOptions& o) {
+  constexpr int tile = 16;
+  return {o.nu, o.nv, o.kernel_u.width(), std::max(tile, o.kernel_u.width())};
+}
+
 template <typename Real>
 Setup<Real> set_up(const WideTransformOptions& o) {
-  constexpr int tile = 16;
   Setup<Real> s{
       o,
-      {o.nu, o.nv, o.kernel_u.width(), std::max(tile, o.kernel_u.width())},
+      shape_of(o),
       {TapTable<Real>(o.kernel_u.polynomial), TapTable<Real>(o.kernel_v.polynomial), TapTable<Real>(o.kernel_w.polynomial)},
       {}};
   const SmoothCorrection h_w(o.kernel_w);
@@ -417,6 +421,21 @@ std::unique_ptr<Transform> make_wide_transform(const WideTransformOptions& o) {
                                 std::to_string(o.kernel_v.width()) + " along v; one width is expected");
   if (o.precision == Precision::single_precision) return std::make_unique<WideTransform<float>>(o);
   return std::make_unique<WideTransform<double>>(o);
+}
+
+TransformMemory memory_of(const WideTransformOptions& o, double samples) {
+  if (!o.has_w_axis()) return memory_of(static_cast<const PlaneTransformOptions&>(o));
+  constexpr double sample_bytes = sizeof(std::complex<float>) + sizeof(float);
+  constexpr double run_bytes = 2 * sizeof(StackRun) + 8;  // at worst a run each, twice while they are sorted
+  const double gathered = std::min(samples, static_cast<double>(o.samples_at_once)) * (sample_bytes + run_bytes);
+  const StackShape shape = shape_of(o);
+  const bool single = o.precision == Precision::single_precision;
+  const int width = largest_part(o.geometry.width, o.facets_l);
+  const double plane = single ? bytes_a_plane<float>(shape, 2, width) : bytes_a_plane<double>(shape, 2, width);
+  const double stack = std::max(plane, static_cast<double>(o.stack_bytes));
+  const double image = static_cast<double>(o.geometry.pixels()) * sizeof(double);
+  // The stack of an image and a PSF takes no more than that of one of them, in more slabs.
+  return {gathered + stack, image, 0};
 }
 
 std::unique_ptr<Transform> make_transform(const WideTransformOptions& options) {

@@ -11,7 +11,7 @@ struct WideTransformOptions : PlaneTransformOptions {
   int facets_l = 1;
   int facets_m = 1;
   std::size_t stack_bytes = std::size_t{1} << 30;      ///< memory for planes held at a time; at least one plane is
-  std::size_t samples_at_once = std::size_t{1} << 26;  ///< an adjoint is computed whenever so many have gathered
+  std::size_t samples_at_once = std::size_t{1} << 24;  ///< an adjoint is computed whenever so many have gathered
 
   bool has_w_axis() const { return kernel_w.width() > 0; }
 };
@@ -20,6 +20,9 @@ struct WideTransformOptions : PlaneTransformOptions {
 /// in Arras et al. 2021, A&A 646, A58), facet by facet. Forward and adjoint are exact transposes of each other, and the result
 /// does not depend on the number of threads. Throws std::invalid_argument when the options contradict each other.
 std::unique_ptr<Transform> make_wide_transform(const WideTransformOptions& options);
+
+/// The memory that make_transform's result takes for that many samples.
+TransformMemory memory_of(const WideTransformOptions& options, double samples);
 
 /// The transform with its w axis where the options have one, else the one in the plane.
 std::unique_ptr<Transform> make_transform(const WideTransformOptions& options);

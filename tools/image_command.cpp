@@ -11,7 +11,8 @@
 #include "tools/image_options.h"
 #include "tools/image_products.h"
 #include "tools/interrupt.h"
-#include "tools/load.h"
+#include "tools/memory.h"
+#include "tools/memory_plan.h"
 #include "tools/numbers.h"
 #include "tools/pictures.h"
 #include "tools/progress.h"
@@ -33,7 +34,8 @@ class ImageRun {
 
   void run() {
     open();
-    load();
+    plan();
+    if (o_.dry_run) return print_plan();
     make_dirty();
     if (o_.verify > 0) verify();
     fit_beams();
@@ -58,36 +60,66 @@ class ImageRun {
 
   void open() {
     const imager::StageTimer timer(times_, "open");
-    check_writable_folder(o_.imagename);
+    if (!o_.dry_run) check_writable_folder(o_.imagename);
     set_ = std::make_unique<ms_io::MeasurementSet>(o_.vis, o_.selection, o_.datacolumn);
     geometry_ = geometry_of(o_, set_->observation().phase_centre);
     reach_ = set_->reach();
   }
 
-  void load() {
-    progress_.begin("read");
-    loaded_ = load_visibilities(*set_, progress(), times_);
-    report_.counts = loaded_.counts;
-    progress_.end();
-    report_.plan.insert(report_.plan.end(), loaded_.decisions.begin(), loaded_.decisions.end());
-    phase_ = imager::neglected_w_phase(reach_, loaded_.w_spread, geometry_);
+  /// All that is decided before a visibility is read.
+  void plan() {
+    const imager::StageTimer timer(times_, "plan");
+    imager::GriddingRequest request = gridding_request(o_, threads_);
+    request.geometry = geometry_;
+    request.samples = set_->samples();
+    request.max_abs_w = reach_.max_abs_w;
+    made_.plan = imager::plan_gridding(request);
+    if (o_.memory_gib > 0) limit_memory(o_.memory_gib * gib, made_.plan.options);
+    const MemoryPlan memory =
+        plan_memory({.transform = imager::memory_of(made_.plan.options, static_cast<double>(set_->samples())),
+                     .pixels = static_cast<double>(geometry_.pixels()),
+                     .rows = static_cast<double>(set_->rows()),
+                     .samples = static_cast<double>(set_->samples()),
+                     .block_samples = static_cast<double>(ms_io::MeasurementSet::usual_block_samples),
+                     .verify = o_.verify > 0,
+                     .clean = o_.niter > 0},
+                    o_);
+    memory_ = memory.peak;
+    report_.estimated_memory_bytes = memory_.total();
+    source_ = std::make_unique<imager::StreamedVisibilities>(*set_, memory.streaming);
+    report_.plan.push_back(memory.decision);
+    decide("columns and correlations", "only what Stokes I needs",
+           "UVW, antennas, flags, weights and one data column, each read once");
+    warn_of_neglected_w();
+  }
+
+  void warn_of_neglected_w() {
+    const double phase_rad = imager::max_w_phase_rad(reach_.max_abs_w, geometry_);
+    const bool harms = phase_rad > (o_.accuracy == 0 ? made_.plan.worst_error : o_.accuracy);
+    if (!made_.plan.options.has_w_axis() && harms)
+      warn("w is neglected although its phase reaches " + significant(phase_rad, 2) +
+           " rad at the image's corner: the image's error there is of that size");
+  }
+
+  void print_plan() {
+    if (o_.quiet) return;
+    report_.plan.insert(report_.plan.end(), made_.plan.decisions.begin(), made_.plan.decisions.end());
+    for (const imager::Decision& d : report_.plan)
+      std::printf("%s: %s; %s\n", d.item.c_str(), d.decision.c_str(), d.because.c_str());
+    std::printf("%s", memory_table(memory_).c_str());
   }
 
   void make_dirty() {
-    imager::GriddingRequest request = gridding_request(o_, threads_);
-    request.geometry = geometry_;
-    request.samples = loaded_.counts.used;
-    request.max_abs_w = reach_.max_abs_w;
     progress_.begin("dirty image and PSF");
-    made_ = imager::make_accurate_images(*loaded_.source, request, progress(), times_);
+    made_ = imager::make_accurate_images(*source_, std::move(made_.plan), progress(), times_);
     progress_.end();
     report_.plan.insert(report_.plan.end(), made_.plan.decisions.begin(), made_.plan.decisions.end());
     report_.accuracy = o_.accuracy;
     report_.gridding = &made_.plan;
-    account_for_edges();
-    warn_of_neglected_w();
+    count_samples();
     const imager::StageTimer timer(times_, "statistics");
-    theory_ = imager::theoretical_error(made_.plan, made_.images.sums, imager::root_mean_square(made_.images.dirty), phase_);
+    const imager::NeglectedPhase phase = imager::neglected_w_phase(reach_, source_->w_spread(), geometry_);
+    theory_ = imager::theoretical_error(made_.plan, made_.images.sums, imager::root_mean_square(made_.images.dirty), phase);
     report_.theory = &theory_;
     if (!made_.promise_kept)
       warn("the accuracy of " + significant(o_.accuracy, 2) +
@@ -95,16 +127,10 @@ class ImageRun {
            significant(theory_.expected_rms, 2));
   }
 
-  void warn_of_neglected_w() {
-    const bool harms = phase_.max_rad > (o_.accuracy == 0 ? made_.plan.worst_error : o_.accuracy);
-    if (!made_.plan.options.has_w_axis() && harms)
-      warn("w is neglected although its phase reaches " + significant(phase_.max_rad, 2) +
-           " rad at the image's corner: the image's error there is of that size");
-  }
-
-  /// Samples that the pixel size cannot represent, and the pixel size that could.
-  void account_for_edges() {
+  /// What was read; samples that the pixel size cannot represent, and the pixel size that could.
+  void count_samples() {
     const imager::SampleSums& sums = made_.images.sums;
+    report_.counts = source_->counts();
     report_.counts.outside_grid = sums.outside_grid;
     report_.counts.used = sums.used;
     if (sums.outside_grid == 0) return;
@@ -117,8 +143,7 @@ class ImageRun {
   void verify() {
     const imager::StageTimer timer(times_, "verify");
     progress_.begin("verify");
-    measured_ =
-        imager::measure_error(*loaded_.source, *made_.transform, geometry_, made_.images, o_.verify, threads_, progress());
+    measured_ = imager::measure_error(*source_, *made_.transform, geometry_, made_.images, o_.verify, threads_, progress());
     progress_.end();
     report_.measured = &measured_;
   }
@@ -139,23 +164,29 @@ class ImageRun {
   void clean() {
     imager::CleanOptions options = clean_options(o_, threads_);
     options.stop_requested = interrupted;
-    imager::Image point(geometry_.width, geometry_.height);
-    point.at(geometry_.centre_row(), geometry_.centre_column()) = 1;
-    const imager::Image beam = imager::convolve_with_beam(point, beam_, geometry_.cell_rad, threads_);
     progress_.begin("CLEAN", true);
     cleaned_ = std::make_unique<imager::CleanResult>(imager::clean(
-        *loaded_.source, *made_.transform, made_.images, beam, options, progress(),
+        *source_, *made_.transform, made_.images, max_sidelobe(), options, progress(),
         [this](const imager::MajorCycle& cycle) {
           progress_.say("  " + grouped(cycle.iterations) + " components, peak residual " + flux(cycle.peak_residual_jy) +
                         ", noise " + flux(cycle.rms_jy));
         },
         times_));
     progress_.end();
+    made_.images.dirty = {};
     report_.clean = &cleaned_->report;
     if (cleaned_->report.stop == imager::CleanStop::diverging) warn("CLEAN diverged: " + cleaned_->report.stop_reason);
   }
 
+  double max_sidelobe() const {
+    imager::Image point(geometry_.width, geometry_.height);
+    point.at(geometry_.centre_row(), geometry_.centre_column()) = 1;
+    const imager::Image beam = imager::convolve_with_beam(point, beam_, geometry_.cell_rad, threads_);
+    return imager::largest_sidelobe(made_.images.psf, beam);
+  }
+
   void write_images() {
+    source_.reset();  // the visibilities make room for the pictures
     products_ = std::make_unique<ImageProducts>(o_.imagename, geometry_, set_->observation(), o_.accuracy);
     products_->set_history(report_.command_line);
     products_->set_cards(error_cards(report_));
@@ -218,8 +249,8 @@ class ImageRun {
   std::unique_ptr<ms_io::MeasurementSet> set_;
   imager::ImageGeometry geometry_;
   imager::UvwReach reach_;
-  LoadedVisibilities loaded_;
-  imager::NeglectedPhase phase_;
+  std::unique_ptr<imager::StreamedVisibilities> source_;
+  imager::MemoryUse memory_;
   imager::AccurateImages made_;
   imager::TheoreticalError theory_;
   imager::MeasuredError measured_;
@@ -244,7 +275,7 @@ void add_image_command(CLI::App& program, const std::string& command_line) {
     }
     check(*options);
     ImageRun(*options, command_line, option_values(*command)).run();
-    write_file(options->imagename + ".last.ini", config_text(*command));
+    if (!options->dry_run) write_file(options->imagename + ".last.ini", config_text(*command));
   });
 }
 

@@ -1,12 +1,12 @@
 #include "tools/image_options.h"
 
+#include <cmath>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
 #include "imager/gridding_plan.h"
 #include "tools/config_file.h"
 #include "tools/kernel_choice.h"
-#include "tools/memory.h"
 #include "tools/quantity.h"
 
 namespace misfit::tools {
@@ -28,14 +28,6 @@ void check_image(const ImageOptions& o) {
   constexpr int largest = 65536;
   for (const int size : o.imsize)
     if (size < 1 || size > largest) refuse("imsize", std::to_string(size), "1 to 65536 pixels");
-  // Dirty image, PSF, model and residual in double; three half planes of the grid and one of its transform at the least
-  // padding.
-  constexpr double bytes_a_pixel = 4 * 8 + 1.15 * 1.15 / 2 * 3 * 4 + 1.15 / 2 * 8;
-  const double needed = bytes_a_pixel * o.imsize.front() * o.imsize.back();
-  if (needed > physical_memory_bytes())
-    refuse("imsize", std::to_string(o.imsize.front()) + " " + std::to_string(o.imsize.back()),
-           "an image that fits this machine's " + text(physical_memory_bytes() / gib) + " GiB; this one needs " +
-               text(needed / gib) + " GiB");
   if (!(parse_angle_rad(o.cell) > 0)) refuse("cell", o.cell, "an angle above 0");
   if (parse_angle_rad(o.cell) > 0.5) refuse("cell", o.cell, "less than 0.5 rad");
 }
@@ -91,6 +83,8 @@ void declare(CLI::App& command, ImageOptions& o) {
   command.add_option("--nmajor", o.nmajor, "Major cycles at most; -1 = no limit");
   command.add_option("--verify", o.verify, "Compare this many random pixels and visibilities with the direct transform");
   command.add_option("--threads", o.threads, "Threads; 0 means all cores");
+  command.add_option("--memory", o.memory_gib, "GiB that the run may take; 0 means half of the machine's memory");
+  command.add_flag("--dry-run", o.dry_run, "Print the plan and the memory it takes; read no visibilities and write nothing");
   command.add_flag("--quiet", o.quiet, "Print nothing but errors");
 }
 
@@ -104,6 +98,8 @@ void check(const ImageOptions& o) {
   check_gridding(o);
   if (o.verify < 0) refuse("verify", std::to_string(o.verify), "0 or more");
   if (o.threads < 0) refuse("threads", std::to_string(o.threads), "0 (all cores) or more");
+  if (!(o.memory_gib >= 0 && std::isfinite(o.memory_gib)))
+    refuse("memory", text(o.memory_gib), "0 (half of the machine's memory) or more, in GiB");
 }
 
 imager::ImageGeometry geometry_of(const ImageOptions& o, const imager::SkyDirection& phase_centre) {

@@ -36,6 +36,8 @@ struct ImageOptions {
   int nmajor = -1;
   int verify = 0;
   int threads = 0;
+  double memory_gib = 0;
+  bool dry_run = false;
   bool quiet = false;
 };
 

@@ -116,12 +116,19 @@ json timings_json(const RunReport& r) {
 }  // namespace
 
 json report_json(const RunReport& r) {
-  return {{"version", version},           {"command_line", r.command_line},
-          {"options", r.options},         {"plan", plan_json(r.plan)},
-          {"warnings", r.warnings},       {"kernel", kernel_json(r.gridding)},
-          {"error", error_json(r)},       {"visibilities", counts_json(r.counts)},
-          {"timings_s", timings_json(r)}, {"memory_gib_peak", peak_memory_bytes() / gib},
-          {"beam", beam_json(r.beam)},    {"beam_by_quadrant", beam_json(r.quadrant_beam)},
+  return {{"version", version},
+          {"command_line", r.command_line},
+          {"options", r.options},
+          {"plan", plan_json(r.plan)},
+          {"warnings", r.warnings},
+          {"kernel", kernel_json(r.gridding)},
+          {"error", error_json(r)},
+          {"visibilities", counts_json(r.counts)},
+          {"timings_s", timings_json(r)},
+          {"memory_gib_peak", peak_memory_bytes() / gib},
+          {"memory_gib_estimated", r.estimated_memory_bytes / gib},
+          {"beam", beam_json(r.beam)},
+          {"beam_by_quadrant", beam_json(r.quadrant_beam)},
           {"clean", clean_json(r.clean)}};
 }
 

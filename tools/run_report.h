@@ -27,11 +27,12 @@ struct RunReport {
   const imager::Beam* quadrant_beam = nullptr;  ///< by WSClean's rule, for comparison; see imager::BeamRegion
   const imager::CleanReport* clean = nullptr;
   double wall_clock_s = 0;
+  double estimated_memory_bytes = 0;  ///< at the peak
   const imager::StageTimes* times = nullptr;
 };
 
-/// report.json, with the keys of the project's design; `beam_by_quadrant`, `warnings`, `command_line`, `timings_s.total` and
-/// `clean.major_cycles_log` are additions.
+/// report.json, with the keys of the project's design; `beam_by_quadrant`, `memory_gib_estimated`, `warnings`, `command_line`,
+/// `timings_s.total` and `clean.major_cycles_log` are additions.
 nlohmann::json report_json(const RunReport& report);
 
 }  // namespace misfit::tools

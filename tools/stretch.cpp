@@ -43,6 +43,7 @@ double Stretch::operator()(double value) const {
 
 Stretch choose_stretch(const imager::Image& image) {
   std::vector<double> finite;
+  finite.reserve(image.pixel.size());
   std::copy_if(image.pixel.begin(), image.pixel.end(), std::back_inserter(finite), [](double v) { return std::isfinite(v); });
   if (finite.empty()) return {};
   const auto [smallest, largest] = std::minmax_element(finite.begin(), finite.end());

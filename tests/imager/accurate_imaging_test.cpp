@@ -26,7 +26,7 @@ GriddingRequest request(int width, int height, double accuracy) {
 
 AccurateImages images_of(const VisibilityBlock& block, const GriddingRequest& r) {
   StageTimes times;
-  return make_accurate_images(stored({block}), r, ignore_progress, times);
+  return make_accurate_images(stored({block}), plan_gridding(r), ignore_progress, times);
 }
 
 Image direct_image(const VisibilityBlock& block, const ImageGeometry& geometry) {

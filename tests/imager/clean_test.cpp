@@ -30,7 +30,7 @@ struct Scene {
   StoredVisibilities source;
   std::unique_ptr<Transform> transform;
   DirtyImages images;
-  Image beam;
+  double max_sidelobe = 0;
 };
 
 Scene make_scene(const DirectionCosines& centre) {
@@ -51,7 +51,8 @@ Scene make_scene(const DirectionCosines& centre) {
   s.images = make_dirty_images(s.source, *s.transform, true, ignore_progress, times);
   Image middle(g.width, g.height);
   middle.at(g.centre_row(), g.centre_column()) = 1;
-  s.beam = convolve_with_beam(middle, fit_beam(s.images.psf, g.cell_rad), g.cell_rad, 1);
+  const Beam beam = fit_beam(s.images.psf, g.cell_rad);
+  s.max_sidelobe = largest_sidelobe(s.images.psf, convolve_with_beam(middle, beam, g.cell_rad, 1));
   return s;
 }
 
@@ -63,7 +64,7 @@ const Scene& scene() {
 CleanResult cleaned(const Scene& of, const CleanOptions& options, const DirtyImages& images) {
   StageTimes times;
   const auto ignore_cycle = [](const MajorCycle&) {};
-  return imager::clean(of.source, *of.transform, images, of.beam, options, ignore_progress, ignore_cycle, times);
+  return imager::clean(of.source, *of.transform, images, of.max_sidelobe, options, ignore_progress, ignore_cycle, times);
 }
 
 CleanResult cleaned(const CleanOptions& options, const DirtyImages& images = scene().images) {

@@ -32,7 +32,8 @@ Expected brute_force(const std::vector<VisibilityBlock>& blocks, const ImageGeom
     for (std::size_t i = 0; i < block.samples(); ++i) {
       const double weight = block.weight[i];
       if (weight == 0) continue;
-      const double w = block.uvw_m[i / block.channels() * 3 + 2] * block.frequency_hz[i % block.channels()] / speed_of_light_m_s;
+      const double w =
+          block.uvw_m[i / block.channels() * 3 + 2] * block.frequency_hz[i % block.channels()] / speed_of_light_m_s;
       e.reach.max_abs_w = std::max(e.reach.max_abs_w, std::abs(w));
       weights += weight;
       for (int row = 0; row < geometry.height; ++row)

@@ -3,6 +3,8 @@
 #include <boost/test/data/test_case.hpp>
 #include <boost/test/unit_test.hpp>
 
+#include "imager/gridding_plan.h"
+#include "imager/imaging.h"
 #include "tests/imager/comparison.h"
 #include "tests/imager/random_samples.h"
 
@@ -50,8 +52,7 @@ std::vector<float> weights_of_a_pass(const VisibilitySource& source) {
 
 BOOST_AUTO_TEST_SUITE(streamed_visibilities)
 
-BOOST_DATA_TEST_CASE(every_pass_hands_out_what_the_source_does, bdata::make({false, true}) * bdata::make({0, 2}), keep,
-                     ahead) {
+BOOST_DATA_TEST_CASE(every_pass_hands_out_what_the_source_does, bdata::make({false, true}) * bdata::make({0, 2}), keep, ahead) {
   const Counted source(blocks());
   const StreamedVisibilities streamed(source, {keep, static_cast<std::size_t>(ahead)});
   BOOST_TEST(streamed.samples() == source.samples());
@@ -80,6 +81,25 @@ BOOST_AUTO_TEST_CASE(a_full_pass_tells_what_was_in_it) {
     BOOST_TEST(streamed.w_spread().weighted_w_square == spread.weighted_w_square);
   }
   BOOST_TEST(source.opened == 2);
+}
+
+BOOST_AUTO_TEST_CASE(images_have_the_same_bits_however_the_visibilities_come) {
+  GriddingRequest request;
+  request.geometry = {40, 30, 1e-5, {}};
+  request.threads = 2;
+  const auto transform = make_plane_transform(plan_gridding(request).options);
+  const Counted source(blocks());
+  const Image model = random_image(40, 30, 1);
+  StageTimes times;
+  const DirtyImages plain = make_dirty_images(source, *transform, true, ignore_progress, times);
+  const Image residual = make_residual_image(source, *transform, model, ignore_progress, times);
+  for (const StreamingOptions& options : {StreamingOptions{true, 2}, {true, 0}, {false, 0}, {false, 1}, {false, 2}}) {
+    const StreamedVisibilities streamed(source, options);
+    const DirtyImages images = make_dirty_images(streamed, *transform, true, ignore_progress, times);
+    BOOST_CHECK(images.dirty.pixel == plain.dirty.pixel);
+    BOOST_CHECK(images.psf.pixel == plain.psf.pixel);
+    BOOST_CHECK(make_residual_image(streamed, *transform, model, ignore_progress, times).pixel == residual.pixel);
+  }
 }
 
 BOOST_AUTO_TEST_CASE(a_pass_without_usable_samples_is_an_error_that_counts_the_reasons) {

@@ -217,6 +217,14 @@ BOOST_AUTO_TEST_CASE(an_image_too_large_for_the_memory_is_refused_before_work_be
   check_refused(scene.image("--imsize", "65536"), 2, {"65536", "GiB"}, scene.out);
 }
 
+BOOST_AUTO_TEST_CASE(too_little_memory_is_refused_with_what_is_needed) {
+  const Scene scene;
+  scene.usage("--memory", "0.01", "expected at least 0.");
+  scene.usage("--memory", "-1", "or more, in GiB");
+  scene.usage("--memory", "nan", "or more, in GiB");
+  check_refused(scene.image("--memory", "0.01") + Arguments{"--dry-run"}, 2, {"--memory 0.01", "64 × 64"}, scene.out);
+}
+
 BOOST_AUTO_TEST_CASE(the_first_interrupt_ends_a_run_and_leaves_only_complete_files) {
   const Scene scene;
   Child child({"image", "--vis", track(), "--imagename", scene.out + "/a", "--imsize", "1024", "--cell", "0.05arcsec",

@@ -122,8 +122,8 @@ BOOST_AUTO_TEST_CASE(the_report_has_every_key_that_others_rely_on) {
   const TemporaryFolder folder;
   succeed(small_image(snapshot(), folder / "a") + Arguments{"--niter", "10", "--verify", "5"});
   const json report = report_of(folder / "a");
-  check_keys(report, {"version", "options", "plan", "kernel", "error", "visibilities", "timings_s", "memory_gib_peak", "beam",
-                      "clean"});
+  check_keys(report, {"version", "options", "plan", "kernel", "error", "visibilities", "timings_s", "memory_gib_peak",
+                      "memory_gib_estimated", "beam", "clean"});
   check_keys(report["kernel"], {"name", "width", "x0", "padding", "evaluation", "axes"});
   BOOST_TEST(report["kernel"]["axes"].size() == 2U);
   for (const json& axis : report["kernel"]["axes"]) check_keys(axis, {"axis", "width", "x0", "padding"});
@@ -239,6 +239,47 @@ BOOST_AUTO_TEST_CASE(imaging_changes_nothing_in_the_measurement_set) {
   const auto before = files_below(folder / "in");
   succeed(small_image(set, folder / "a") + Arguments{"--niter", "10", "--verify", "5"});
   BOOST_TEST((files_below(folder / "in") == before));
+}
+
+BOOST_AUTO_TEST_CASE(a_dry_run_prints_the_plan_of_the_run_and_its_memory_and_writes_nothing) {
+  const TemporaryFolder folder;
+  succeed(small_image(track(), folder / "a"));
+  const json report = report_of(folder / "a");
+  const auto before = files_below(folder / "");
+  for (const Arguments& arguments : {small_image(track(), folder / "b"), small_image(track(), folder / "none/b")}) {
+    const Outcome outcome = run(arguments + Arguments{"--dry-run"});
+    BOOST_TEST(outcome.code == 0);
+    BOOST_TEST(outcome.err == "");
+    for (const json& decision : report["plan"]) {
+      BOOST_TEST_INFO(decision["item"]);
+      const auto part = [&](const char* key) { return decision[key].get<std::string>(); };
+      const std::string line = part("item") + ": " + part("decision") + "; " + part("because") + "\n";
+      BOOST_TEST(outcome.out.find(line) != std::string::npos);
+    }
+    BOOST_TEST(outcome.out.find("memory: 0.") != std::string::npos);
+    BOOST_TEST((files_below(folder / "") == before));
+  }
+}
+
+BOOST_AUTO_TEST_CASE(a_dry_run_reads_neither_data_nor_flags) {
+  const TemporaryFolder folder;
+  const std::string set = folder / "flagged.ms";
+  std::filesystem::copy(snapshot(), set, std::filesystem::copy_options::recursive);
+  flag_all(set);
+  BOOST_TEST(run(small_image(set, folder / "a")).code == 1);
+  succeed(small_image(set, folder / "a") + Arguments{"--dry-run"});
+}
+
+BOOST_AUTO_TEST_CASE(the_memory_estimated_is_enough) {
+  const TemporaryFolder folder;
+  for (const Arguments& options :
+       {Arguments{}, {"--niter", "10"}, {"--verify", "5"}, {"--accuracy", "1e-3", "--niter", "10"}}) {
+    succeed(card_image(snapshot(), folder / "a") + options);
+    const json report = report_of(folder / "a");
+    BOOST_TEST(report["memory_gib_peak"].get<double>() <= report["memory_gib_estimated"].get<double>());
+    const std::string memory = std::to_string(report["memory_gib_estimated"].get<double>() + 1e-3);
+    succeed(card_image(snapshot(), folder / "a") + options + Arguments{"--memory", memory});
+  }
 }
 
 BOOST_AUTO_TEST_CASE(only_the_files_promised_appear) {

@@ -1,0 +1,88 @@
+#include "imager/memory_use.h"
+
+#include <boost/test/data/test_case.hpp>
+#include <boost/test/unit_test.hpp>
+
+#include "imager/gridding_plan.h"
+#include "imager/half_grid.h"
+
+namespace bdata = boost::unit_test::data;
+using namespace misfit::imager;
+
+namespace {
+
+MemoryDemand demand() {
+  return {.transform = {8e9, 4e9, 1e7}, .pixels = 1e8, .rows = 1e6, .samples = 1e8, .block_samples = 1e6};
+}
+
+double peak(const MemoryDemand& demand, const StreamingOptions& streaming) {
+  return peak_memory(demand, streaming).total();
+}
+
+}  // namespace
+
+BOOST_AUTO_TEST_SUITE(memory_use)
+
+BOOST_AUTO_TEST_CASE(the_total_is_the_sum_of_its_parts) {
+  const MemoryUse use{"", 1, 20, 300, 4000, 50000, 600000};
+  BOOST_TEST(use.total() == 654321);
+}
+
+BOOST_AUTO_TEST_CASE(visibilities_kept_count_for_as_much_as_they_are) {
+  MemoryDemand d = demand();
+  d.block_samples = 0;
+  BOOST_TEST(peak(d, {true, 2}) - peak(d, {false, 2}) == 1e8 * 12 + 1e6 * 24);
+  BOOST_TEST(peak_memory(d, {false, 2}).visibilities == 0);
+}
+
+BOOST_AUTO_TEST_CASE(less_read_ahead_takes_less) {
+  MemoryDemand d = demand();
+  d.block_samples = 1e8;  // so that the blocks decide
+  for (const std::size_t ahead : {0, 1, 2}) BOOST_TEST(peak(d, {false, ahead}) < peak(d, {false, ahead + 1}));
+}
+
+BOOST_AUTO_TEST_CASE(a_block_holds_no_more_samples_than_there_are) {
+  MemoryDemand d = demand();
+  d.block_samples = 2 * d.samples;
+  MemoryDemand whole = demand();
+  whole.block_samples = whole.samples;
+  BOOST_TEST(peak(d, {false, 2}) == peak(whole, {false, 2}));
+}
+
+BOOST_AUTO_TEST_CASE(large_grids_and_large_images_each_have_their_moment) {
+  MemoryDemand d = demand();
+  BOOST_TEST(peak_memory(d, {}).when == "the dirty image is made");
+  d.transform = {1e6, 5e5, 1e3};
+  d.samples = 1e6;
+  BOOST_TEST(peak_memory(d, {}).when == "the pictures are drawn");
+  d.clean = true;
+  BOOST_TEST(peak_memory(d, {}).when == "the residual image is made");
+}
+
+BOOST_AUTO_TEST_CASE(cleaning_and_verifying_never_take_less) {
+  for (const double grid : {1e5, 1e8, 1e10}) {
+    MemoryDemand d = demand();
+    d.transform.visibilities = grid;
+    const double plain = peak(d, {});
+    d.verify = true;
+    BOOST_TEST(peak(d, {}) >= plain);
+    d.clean = true;
+    BOOST_TEST(peak(d, {}) >= plain);
+  }
+}
+
+BOOST_DATA_TEST_CASE(the_plane_transform_counts_the_planes_of_its_grid, bdata::make({1e-3, 1e-6}), accuracy) {
+  GriddingRequest request;
+  request.geometry = {500, 300, 1e-6, {}};
+  request.accuracy = accuracy;
+  const PlaneTransformOptions options = plan_gridding(request).options;
+  const TransformMemory memory = memory_of(options);
+  const double real_bytes = options.precision == Precision::single_precision ? 4 : 8;
+  // Half of the plane, and margins.
+  const double plane = 0.5 * options.nu * options.nv * real_bytes;
+  BOOST_TEST(memory.psf > plane);
+  BOOST_TEST(memory.psf < 1.4 * plane);
+  BOOST_TEST(memory.visibilities == 2 * memory.psf);
+}
+
+BOOST_AUTO_TEST_SUITE_END()
