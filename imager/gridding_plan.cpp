@@ -148,4 +148,13 @@ GriddingPlan plan_gridding(const GriddingRequest& request) {
   return plan;
 }
 
+TransformMemory memory_of(const GriddingPlan& plan) {
+  if (!plan.options.has_w_axis()) return memory_of(static_cast<const PlaneTransformOptions&>(plan.options));
+  const GriddingCandidate& best = plan.choice.best;
+  const std::vector<double>& turns = best.faceting.turns;
+  const double most = *std::max_element(turns.begin(), turns.end());
+  const int planes = static_cast<int>(std::ceil(most * best.padding_w)) + best.work.width_w;
+  return memory_of(plan.options, static_cast<double>(plan.request.samples), planes);
+}
+
 }  // namespace misfit::imager

@@ -30,4 +30,7 @@ double nameable_accuracy(double worst_error);
 /// precision; the message says what can be reached.
 GriddingPlan plan_gridding(const GriddingRequest& request);
 
+/// The memory that the planned transform takes.
+TransformMemory memory_of(const GriddingPlan& plan);
+
 }  // namespace misfit::imager

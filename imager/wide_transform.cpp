@@ -423,8 +423,7 @@ std::unique_ptr<Transform> make_wide_transform(const WideTransformOptions& o) {
   return std::make_unique<WideTransform<double>>(o);
 }
 
-TransformMemory memory_of(const WideTransformOptions& o, double samples) {
-  if (!o.has_w_axis()) return memory_of(static_cast<const PlaneTransformOptions&>(o));
+TransformMemory memory_of(const WideTransformOptions& o, double samples, int planes) {
   constexpr double sample_bytes = sizeof(std::complex<float>) + sizeof(float);
   constexpr double run_bytes = 2 * sizeof(StackRun) + 8;  // at worst a run each, twice while they are sorted
   const double gathered = std::min(samples, static_cast<double>(o.samples_at_once)) * (sample_bytes + run_bytes);
@@ -432,10 +431,10 @@ TransformMemory memory_of(const WideTransformOptions& o, double samples) {
   const bool single = o.precision == Precision::single_precision;
   const int width = largest_part(o.geometry.width, o.facets_l);
   const double plane = single ? bytes_a_plane<float>(shape, 2, width) : bytes_a_plane<double>(shape, 2, width);
-  const double stack = std::max(plane, static_cast<double>(o.stack_bytes));
   const double image = static_cast<double>(o.geometry.pixels()) * sizeof(double);
-  // The stack of an image and a PSF takes no more than that of one of them, in more slabs.
-  return {gathered + stack, image, 0};
+  const double one = std::min(planes * plane, std::max(plane, static_cast<double>(o.stack_bytes)));
+  const double both = std::min(2 * planes * plane, std::max(2 * plane, static_cast<double>(o.stack_bytes)));
+  return {gathered + one, both - one + image, 0};
 }
 
 std::unique_ptr<Transform> make_transform(const WideTransformOptions& options) {

@@ -21,8 +21,8 @@ struct WideTransformOptions : PlaneTransformOptions {
 /// does not depend on the number of threads. Throws std::invalid_argument when the options contradict each other.
 std::unique_ptr<Transform> make_wide_transform(const WideTransformOptions& options);
 
-/// The memory that make_transform's result takes for that many samples.
-TransformMemory memory_of(const WideTransformOptions& options, double samples);
+/// The memory that a WideTransform takes for that many samples, when no facet has more than `planes` planes.
+TransformMemory memory_of(const WideTransformOptions& options, double samples, int planes);
 
 /// The transform with its w axis where the options have one, else the one in the plane.
 std::unique_ptr<Transform> make_transform(const WideTransformOptions& options);

@@ -75,15 +75,14 @@ class ImageRun {
     request.max_abs_w = reach_.max_abs_w;
     made_.plan = imager::plan_gridding(request);
     if (o_.memory_gib > 0) limit_memory(o_.memory_gib * gib, made_.plan.options);
-    const MemoryPlan memory =
-        plan_memory({.transform = imager::memory_of(made_.plan.options, static_cast<double>(set_->samples())),
-                     .pixels = static_cast<double>(geometry_.pixels()),
-                     .rows = static_cast<double>(set_->rows()),
-                     .samples = static_cast<double>(set_->samples()),
-                     .block_samples = static_cast<double>(ms_io::MeasurementSet::usual_block_samples),
-                     .verify = o_.verify > 0,
-                     .clean = o_.niter > 0},
-                    o_);
+    const MemoryPlan memory = plan_memory({.transform = imager::memory_of(made_.plan),
+                                           .pixels = static_cast<double>(geometry_.pixels()),
+                                           .rows = static_cast<double>(set_->rows()),
+                                           .samples = static_cast<double>(set_->samples()),
+                                           .block_samples = static_cast<double>(ms_io::MeasurementSet::usual_block_samples),
+                                           .verify = o_.verify > 0,
+                                           .clean = o_.niter > 0},
+                                          o_);
     memory_ = memory.peak;
     report_.estimated_memory_bytes = memory_.total();
     source_ = std::make_unique<imager::StreamedVisibilities>(*set_, memory.streaming);
