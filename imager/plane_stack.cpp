@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
+#include <mutex>
 
 #include "imager/column_loops.h"
 #include "imager/fft.h"
@@ -41,6 +43,28 @@ KeptRows<Real> kept_rows(PlaneStack<Real>& stack, int width) {
   return {stack.planes, grids, stack.shape.nv, stack.between.data()};
 }
 
+/// Things that threads use one after the other, made when none is free: memory fresh from the system is dear.
+template <typename T>
+class Spares {
+ public:
+  template <typename Make>
+  std::unique_ptr<T> take(const Make& make) {
+    const std::lock_guard lock(mutex_);
+    if (spare_.empty()) return make();
+    std::unique_ptr<T> one = std::move(spare_.back());
+    spare_.pop_back();
+    return one;
+  }
+  void give_back(std::unique_ptr<T> one) {
+    const std::lock_guard lock(mutex_);
+    spare_.push_back(std::move(one));
+  }
+
+ private:
+  std::mutex mutex_;
+  std::vector<std::unique_ptr<T>> spare_;
+};
+
 /// Calls body(group, begin, end) for groups of columns, or of rows, in [0, count), shared among threads.
 template <typename Body>
 void in_groups(int count, int threads, const Body& body) {
@@ -64,69 +88,90 @@ bool row_is_used(const PlaneStack<Real>& stack, int q) {
   return used;
 }
 
-/// Canonical row q of one grid, margins folded in, from line[margin] on. `line` has room for every column of storage.
+/// Storage rows of every grid of a stack, one after the other: [plane][grid][column].
 template <typename Real>
-void gather_row(const PlaneStack<Real>& stack, int plane, int grid, int q, std::complex<Real>* line) {
-  const StackShape& s = stack.shape;
-  std::fill_n(line, s.columns(), std::complex<Real>(0));
-  for_rows(s, q, [&](int r) {
-    for (int chunk = 0; chunk < s.chunks(); ++chunk) {
-      const Real* re = stack.chunk(r, chunk, plane, 2 * grid);
-      const Real* im = stack.chunk(r, chunk, plane, 2 * grid + 1);
-      std::complex<Real>* out = line + chunk * s.tile;
-      for (int i = 0; i < s.tile; ++i) out[i] += std::complex<Real>(re[i], im[i]);
-    }
-  });
-  for (int i = 0; i < s.margin(); ++i) line[s.nu + i] += line[i];
-  for (int i = 0; i <= s.margin(); ++i) line[s.margin() + i] += line[s.nu + s.margin() + i];
-}
+class Lines {
+ public:
+  explicit Lines(const PlaneStack<Real>& stack)
+      : shape_(stack.shape), grids_(stack.planes * stack.components / 2), value_(index(grids_, shape_.columns())) {}
 
-/// Stores row q of one grid, margins filled by periodicity.
+  std::complex<Real>* line(int grid) { return value_.data() + index(grid, shape_.columns()); }
+
+  /// Canonical row q of every grid, margins folded in, from line[margin] on.
+  void gather(const PlaneStack<Real>& stack, int q) {
+    std::fill(value_.begin(), value_.end(), std::complex<Real>(0));
+    for_rows(shape_, q, [&](int r) {
+      for (int chunk = 0; chunk < shape_.chunks(); ++chunk)
+        for (int grid = 0; grid < grids_; ++grid) {
+          const Real* part = stack.chunk(r, chunk, 0, 2 * grid);
+          add_interleaved(part, part + shape_.tile, line(grid) + chunk * shape_.tile, shape_.tile);
+        }
+    });
+    const int margin = shape_.margin();
+    for (int grid = 0; grid < grids_; ++grid) {
+      std::complex<Real>* values = line(grid);
+      for (int i = 0; i < margin; ++i) values[shape_.nu + i] += values[i];
+      for (int i = 0; i <= margin; ++i) values[margin + i] += values[shape_.nu + margin + i];
+    }
+  }
+  /// Its transpose: stores row q of every grid, margins filled by periodicity.
+  void scatter(int q, PlaneStack<Real>& stack) {
+    const int margin = shape_.margin();
+    for (int grid = 0; grid < grids_; ++grid) {
+      std::complex<Real>* values = line(grid);
+      for (int i = 0; i < margin; ++i) values[i] = values[shape_.nu + i];
+      for (int i = shape_.nu + margin; i < shape_.columns(); ++i) values[i] = values[i - shape_.nu];
+    }
+    for_rows(shape_, q, [&](int r) {
+      for (int chunk = 0; chunk < shape_.chunks(); ++chunk)
+        for (int grid = 0; grid < grids_; ++grid) {
+          Real* part = stack.chunk(r, chunk, 0, 2 * grid);
+          split(line(grid) + chunk * shape_.tile, part, part + shape_.tile, shape_.tile);
+        }
+    });
+  }
+
+ private:
+  StackShape shape_;
+  int grids_;
+  std::vector<std::complex<Real>> value_;
+};
+
+/// What a thread needs for transforms along u.
 template <typename Real>
-void scatter_row(const std::complex<Real>* row, int plane, int q, PlaneStack<Real>& stack) {
-  const StackShape& s = stack.shape;
-  for_rows(s, q, [&](int r) {
-    int p = s.nu - s.margin();
-    for (int chunk = 0; chunk < s.chunks(); ++chunk) {
-      Real* re = stack.chunk(r, chunk, plane, 0);
-      Real* im = stack.chunk(r, chunk, plane, 1);
-      for (int i = 0; i < s.tile; ++i, ++p) {
-        if (p >= s.nu) p -= s.nu;
-        re[i] = row[p].real();
-        im[i] = row[p].imag();
-      }
-    }
-  });
-}
+struct RowWork {
+  typename Fft<Real>::ComplexBuffer buffer;
+  Lines<Real> lines;
+  std::vector<std::complex<Real>> row;  ///< of the image, whole groups of columns
 
-/// Image column c of `width` in the order of an FFT of length n.
-int place(int c, int width, int n) {
-  const int x = c - width / 2;
-  return x < 0 ? x + n : x;
-}
+  RowWork(const Fft<Real>& fft, const PlaneStack<Real>& stack, int width)
+      : buffer(fft.complex_buffer()), lines(stack), row(index(groups_of(width), columns_at_once)) {}
+};
 
 template <typename Real>
 KeptRows<Real> transform_rows(PlaneStack<Real>& stack, int width, int threads) {
   const StackShape& s = stack.shape;
   const KeptRows<Real> kept = kept_rows(stack, width);
   const Fft<Real> along_u(s.nu);
+  const int left = width / 2;  // pixels of an image's row that lie at the end of an FFT's
+  Spares<RowWork<Real>> spares;
   in_groups(s.nv, threads, [&](int, int begin, int end) {
-    const auto buffer = along_u.complex_buffer();
-    std::vector<std::complex<Real>> line(static_cast<std::size_t>(s.columns()));
+    auto work = spares.take([&] { return std::make_unique<RowWork<Real>>(along_u, stack, width); });
+    auto& [buffer, lines, row] = *work;
     for (int q = begin; q < end; ++q) {
       if (!row_is_used(stack, q)) continue;
+      lines.gather(stack, q);
       for (int plane = 0; plane < stack.planes; ++plane)
         for (int grid = 0; grid < kept.grids; ++grid) {
-          gather_row(stack, plane, grid, q, line.data());
-          std::copy_n(line.data() + s.margin(), s.nu, buffer.get());
+          std::copy_n(lines.line(plane * kept.grids + grid) + s.margin(), s.nu, buffer.get());
           along_u.complex_to_complex(buffer.get(), Fft<Real>::Sign::backward);
-          for (int group = 0; group < groups_of(width); ++group) {
-            std::complex<Real>* out = kept.at(group, plane, grid, q);
-            const int first = group * columns_at_once, last = std::min(first + columns_at_once, width);
-            for (int c = first; c < last; ++c) *out++ = buffer.get()[place(c, width, s.nu)];
-          }
+          std::copy_n(buffer.get() + s.nu - left, left, row.begin());
+          std::copy_n(buffer.get(), width - left, row.begin() + left);
+          for (int group = 0; group < groups_of(width); ++group)
+            std::copy_n(row.begin() + group * columns_at_once, columns_at_once, kept.at(group, plane, grid, q));
         }
     }
+    spares.give_back(std::move(work));
   });
   return kept;
 }
@@ -134,8 +179,13 @@ KeptRows<Real> transform_rows(PlaneStack<Real>& stack, int width, int threads) {
 /// The pixels of a group of columns, each column [row]: their corrections, and the phasors that lead from plane to plane.
 class ColumnGroup {
  public:
-  ColumnGroup(const StackedFacet& facet, int begin, int end) : begin_(begin), end_(end), height_(facet.facet.geometry.height) {
+  explicit ColumnGroup(const StackedFacet& facet) : height_(facet.facet.geometry.height) {
     for (auto* values : {&h_, &step_re_, &step_im_, &sum_re_, &sum_im_, &q_}) values->resize(index(columns_at_once, height_));
+  }
+
+  void begin(const StackedFacet& facet, int begin, int end) {
+    begin_ = begin;
+    end_ = end;
     for (int c = begin; c < end; ++c) {
       double* q = q_.data() + at(c);
       curvature_of_column(facet.facet, c, q);
@@ -206,17 +256,50 @@ class ColumnGroup {
     phasors(turns_.data(), height_, first_re_.data(), first_im_.data());
   }
 
-  int begin_, end_, height_;
+  int begin_ = 0, end_ = 0, height_;
   std::vector<double> q_, h_, step_re_, step_im_, sum_re_, sum_im_;  ///< [column in group][row]; q in planes
   std::vector<double> turns_, first_re_, first_im_;                  ///< [row]
 };
 
-/// A buffer of length nv for each column of a group.
+/// What a thread needs for transforms along v.
 template <typename Real>
-std::vector<typename Fft<Real>::ComplexBuffer> column_buffers(const Fft<Real>& fft) {
-  std::vector<typename Fft<Real>::ComplexBuffer> buffers;
-  for (int i = 0; i < columns_at_once; ++i) buffers.push_back(fft.complex_buffer());
-  return buffers;
+struct ColumnWork {
+  std::vector<typename Fft<Real>::ComplexBuffer> column;  ///< [column in group]
+  ColumnGroup pixels;
+
+  ColumnWork(const Fft<Real>& fft, const StackedFacet& facet) : pixels(facet) {
+    for (int i = 0; i < columns_at_once; ++i) column.push_back(fft.complex_buffer());
+  }
+};
+
+template <typename Real>
+KeptRows<Real> transform_image_columns(const Image& image, const StackedFacet& stacked, int first_plane, int threads,
+                                       PlaneStack<Real>& stack) {
+  const StackShape& s = stack.shape;
+  const int width = stacked.facet.geometry.width;
+  const KeptRows<Real> kept = kept_rows(stack, width);
+  const Fft<Real> along_v(s.nv);
+  Spares<ColumnWork<Real>> spares;
+  in_groups(width, threads, [&](int group, int begin, int end) {
+    auto work = spares.take([&] { return std::make_unique<ColumnWork<Real>>(along_v, stacked); });
+    auto& [column, pixels] = *work;
+    pixels.begin(stacked, begin, end);
+    pixels.load(image, stacked.facet, first_plane);
+    for (int plane = 0; plane < stack.planes; ++plane) {
+      for (int c = begin; c < end; ++c) {
+        std::complex<Real>* values = column[static_cast<std::size_t>(c - begin)].get();
+        std::fill_n(values, s.nv, std::complex<Real>(0));
+        pixels.store_and_turn(c, values, s.nv);
+        along_v.complex_to_complex(values, Fft<Real>::Sign::forward);
+      }
+      for (int q = 0; q < s.nv; ++q) {
+        std::complex<Real>* row = kept.at(group, plane, 0, q);
+        for (int c = 0; c < end - begin; ++c) row[c] = column[static_cast<std::size_t>(c)].get()[q];
+      }
+    }
+    spares.give_back(std::move(work));
+  });
+  return kept;
 }
 
 }  // namespace
@@ -250,9 +333,11 @@ void add_stack_to_images(PlaneStack<Real>& stack, const StackedFacet& stacked, i
   std::vector<char> used;
   for (int q = 0; q < s.nv; ++q) used.push_back(row_is_used(stack, q));
   const Fft<Real> along_v(s.nv);
+  Spares<ColumnWork<Real>> spares;
   in_groups(width, threads, [&](int group, int begin, int end) {
-    const auto column = column_buffers(along_v);
-    ColumnGroup pixels(stacked, begin, end);
+    auto work = spares.take([&] { return std::make_unique<ColumnWork<Real>>(along_v, stacked); });
+    auto& [column, pixels] = *work;
+    pixels.begin(stacked, begin, end);
     for (int grid = 0; grid < kept.grids; ++grid) {
       pixels.clear();
       for (int plane = stack.planes - 1; plane >= 0; --plane) {
@@ -269,6 +354,7 @@ void add_stack_to_images(PlaneStack<Real>& stack, const StackedFacet& stacked, i
       }
       pixels.store(stacked.facet, first_plane, *images[static_cast<std::size_t>(grid)]);
     }
+    spares.give_back(std::move(work));
   });
 }
 
@@ -276,39 +362,26 @@ template <typename Real>
 void image_to_stack(const Image& image, const StackedFacet& stacked, int first_plane, int threads, PlaneStack<Real>& stack) {
   const StackShape& s = stack.shape;
   const int width = stacked.facet.geometry.width;
-  const KeptRows<Real> kept = kept_rows(stack, width);
-  const Fft<Real> along_v(s.nv);
-  in_groups(width, threads, [&](int group, int begin, int end) {
-    const auto column = column_buffers(along_v);
-    ColumnGroup pixels(stacked, begin, end);
-    pixels.load(image, stacked.facet, first_plane);
-    for (int plane = 0; plane < stack.planes; ++plane) {
-      for (int c = begin; c < end; ++c) {
-        std::complex<Real>* values = column[static_cast<std::size_t>(c - begin)].get();
-        std::fill_n(values, s.nv, std::complex<Real>(0));
-        pixels.store_and_turn(c, values, s.nv);
-        along_v.complex_to_complex(values, Fft<Real>::Sign::forward);
-      }
-      for (int q = 0; q < s.nv; ++q) {
-        std::complex<Real>* row = kept.at(group, plane, 0, q);
-        for (int c = 0; c < end - begin; ++c) row[c] = column[static_cast<std::size_t>(c)].get()[q];
-      }
-    }
-  });
+  const KeptRows<Real> kept = transform_image_columns(image, stacked, first_plane, threads, stack);
   const Fft<Real> along_u(s.nu);
+  const int left = width / 2;
+  Spares<RowWork<Real>> spares;
   in_groups(s.nv, threads, [&](int, int begin, int end) {
-    const auto buffer = along_u.complex_buffer();
-    for (int q = begin; q < end; ++q)
+    auto work = spares.take([&] { return std::make_unique<RowWork<Real>>(along_u, stack, width); });
+    auto& [buffer, lines, row] = *work;
+    for (int q = begin; q < end; ++q) {
       for (int plane = 0; plane < stack.planes; ++plane) {
+        for (int group = 0; group < groups_of(width); ++group)
+          std::copy_n(kept.at(group, plane, 0, q), columns_at_once, row.begin() + group * columns_at_once);
         std::fill_n(buffer.get(), s.nu, std::complex<Real>(0));
-        for (int group = 0; group < groups_of(width); ++group) {
-          const std::complex<Real>* in = kept.at(group, plane, 0, q);
-          const int first = group * columns_at_once, last = std::min(first + columns_at_once, width);
-          for (int c = first; c < last; ++c) buffer.get()[place(c, width, s.nu)] = *in++;
-        }
+        std::copy_n(row.begin(), left, buffer.get() + s.nu - left);
+        std::copy_n(row.begin() + left, width - left, buffer.get());
         along_u.complex_to_complex(buffer.get(), Fft<Real>::Sign::forward);
-        scatter_row(buffer.get(), plane, q, stack);
+        std::copy_n(buffer.get(), s.nu, lines.line(plane) + s.margin());
       }
+      lines.scatter(q, stack);
+    }
+    spares.give_back(std::move(work));
   });
 }
 

@@ -37,7 +37,7 @@ std::vector<double> axis_correction(const kernels::Kernel& kernel, int pixels, i
 }
 
 StackShape shape_of(const WideTransformOptions& o) {
-  constexpr int tile = 16;
+  constexpr int tile = 32;
   return {o.nu, o.nv, o.kernel_u.width(), std::max(tile, o.kernel_u.width())};
 }
 
