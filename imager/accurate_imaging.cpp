@@ -22,7 +22,13 @@ AccurateImages make_images(const VisibilitySource& source, GriddingPlan plan, co
     const StageTimer timer(times, "plan");
     made.transform = make_transform(made.plan.options);
   }
-  made.images = make_dirty_images(source, *made.transform, true, progress, times);
+  if (!made.plan.psf) {
+    made.images = make_dirty_images(source, *made.transform, made.plan.request.images > 1, progress, times);
+  } else {
+    const auto of_psf = make_transform(made.plan.psf->options);
+    const OwnPsf psf{*of_psf, made.plan.options.geometry.centre};
+    made.images = make_dirty_images(source, *made.transform, psf, progress, times);
+  }
   return made;
 }
 
@@ -87,12 +93,18 @@ AccurateImages make_accurate_images(const VisibilitySource& source, GriddingPlan
   GriddingRequest stricter = request;
   stricter.accuracy = request.accuracy / first;
   stricter.best_effort = true;
+  Image psf;
+  if (made.plan.psf) {  // it is exact enough
+    psf = std::move(made.images.psf);
+    stricter.images = 1;
+  }
   made = {};  // the images come again, and there may be no room for both
   {
     const StageTimer timer(times, "plan");
     plan = plan_gridding(stricter);
   }
   made = make_images(source, std::move(plan), progress, times);
+  if (!psf.pixel.empty()) made.images.psf = std::move(psf);
   char because[160];
   std::snprintf(because, sizeof because, "the image is weak against its data: its error came to %.3g times the accuracy",
                 first);

@@ -66,8 +66,8 @@ Trial time_of(int samples, int pixels, int width, Precision precision) {
 
 /// Cells and taps of a sample, in units of the cost of a cell.
 double cells_of(const GriddingWork& work, double tap_over_cell) {
-  constexpr double stack = 4.0 / 3;  // a complex PSF
-  const double planes = work.has_w_axis() ? stack * work.width_w : 1;
+  const double grids = work.has_w_axis() ? 2 * work.images : 1 + work.images;  // the PSF's is real but for a w axis
+  const double planes = grids / 3 * std::max(1, work.width_w);
   return work.width * padded(work.width) * planes + tap_over_cell * 2 * padded(work.width) * (work.degree + 1);
 }
 
@@ -75,8 +75,7 @@ double cells_of(const GriddingWork& work, double tap_over_cell) {
 
 double CostModel::seconds(const GriddingWork& work) const {
   const double per_sample = (work.has_w_axis() ? wide_sample_ns : sample_ns) + cell_ns * cells_of(work, tap_ns / cell_ns);
-  const double images = 2;  // dirty image and PSF
-  const double single_ns = work.samples * work.facets * per_sample + images * fft_points(work) * fft_ns;
+  const double single_ns = work.samples * work.facets * per_sample + work.images * fft_points(work) * fft_ns;
   return 1e-9 * single_ns * (work.precision == Precision::single_precision ? 1 : double_cost);
 }
 

@@ -16,11 +16,12 @@ struct GriddingWork {
   int width_w = 0;  ///< planes a visibility touches in each facet; 0 = no w axis
   int facets = 1;
   int planes = 1;  ///< FFTs of two dimensions: one for each w plane of each facet
+  int images = 2;  ///< made from the same samples: the dirty image and its PSF
 
   bool has_w_axis() const { return width_w > 0; }
 };
 
-/// Time on one core for a dirty image and its PSF, from counts of operations. The default constants are of one machine, fixed:
+/// Time on one core, from counts of operations. The default constants are of one machine, fixed:
 /// what is chosen with them depends on options and data alone. Those of the machine at hand (measure_costs) predict seconds.
 struct CostModel {
   double sample_ns = 15;       ///< a sample's ordering and coordinates

@@ -13,8 +13,6 @@
 namespace misfit::imager {
 namespace {
 
-/// Relative RMS of taps, sums and FFT in double, for a noise gain of 1: twice the unit of rounding, as measured.
-constexpr double double_rounding = 2.2e-16;
 constexpr int smallest_fft = 64;
 constexpr int continuum = 128;  ///< fewer pixels are no mean over the field, and need no wide kernels
 
@@ -107,6 +105,7 @@ class Search {
               fft_size(g.height, padding_v, width),
               g.width,
               precision};
+    c.work.images = request_.images;
     c.cost_s = CostModel().seconds(c.work);
     if (has_w_axis()) split(c, 1, request_.kernel.min_width);  // the least that a w axis costs
     return c;
@@ -331,9 +330,14 @@ kernels::Misfit axis_misfit(const kernels::Kernel& kernel, int pixels, int fft_s
   return pixels < continuum ? kernels::judge_pixels(kernel.polynomial, pixels, fft_size) : kernel.misfit;
 }
 
+double unit_rounding(Precision precision, double samples) {
+  if (precision == Precision::double_precision) return 2.2e-16;  // twice the unit of rounding
+  // Taps and FFT; and sums of buffers on their way to the grid, of which the fullest cells take most.
+  return std::hypot(2.8e-7, 2.4e-8 * std::sqrt(samples / 2e5));
+}
+
 void judge(GriddingCandidate& c) {
-  const bool single = c.work.precision == Precision::single_precision;
-  c.rounding = c.u.noise_gain * c.v.noise_gain * c.w.noise_gain * double_rounding * (single ? single_over_double : 1);
+  c.rounding = c.u.noise_gain * c.v.noise_gain * c.w.noise_gain * unit_rounding(c.work.precision, c.work.samples);
   const kernels::Misfit &u = c.u.misfit, &v = c.v.misfit, &w = c.w.misfit;
   // An image of a single visibility at the worst position of its cell, or the visibilities of a single pixel at the corner.
   const double worst = std::max(u.worst_mean + v.worst_mean + w.worst_mean, u.max + v.max + w.max);

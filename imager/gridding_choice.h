@@ -21,15 +21,18 @@ struct GriddingRequest {
   double padding = 0;         ///< FFT size over image size along u and v, at least 1.02; 0 = chosen
   bool best_effort = false;   ///< take the most exact kernel when the accuracy is out of reach
   std::uint64_t samples = 0;  ///< visibilities in a pass
+  int images = 2;             ///< made in a pass: the dirty image, and with 2 its PSF
+  double psf_accuracy = 0;    ///< of a PSF that may have a transform of its own; 0 = the accuracy
   int threads = 1;
   Gridder gridder = Gridder::automatic;
   double max_abs_w = 0;  ///< largest |w| of the samples, in wavelengths
   bool facets = true;    ///< a w axis may split the image
 };
 
-/// Rounding of single precision over that of double, in taps, sums and FFT.
-inline constexpr double single_over_double = 0x1p29;
-inline constexpr double single_from = 1e-4;  ///< below, sums of millions of samples lose what single precision has left
+/// Relative RMS of the rounding of taps, sums and FFT for a noise gain of 1, as measured: in single precision it grows with the
+/// number of samples, since sums do.
+double unit_rounding(Precision precision, double samples);
+inline constexpr double single_from = 1e-6;  ///< no less is asked of single precision
 
 /// One axis of the transform: a kernel over the pixels of an image.
 struct AxisKernel {

@@ -64,6 +64,9 @@ Plan decisions_of(const GriddingRequest& request, const GriddingPlan& plan) {
                                                              : "worst position within a cell, or pixel at the corner, gives " +
                                                                    text("%.2g", plan.worst_error) + ", accuracy asked " +
                                                                    text("%.2g", request.accuracy);
+  const GriddingWork& work = plan.choice.best.work;
+  const double single_rounding = plan.rounding * unit_rounding(Precision::single_precision, work.samples) /
+                                 unit_rounding(Precision::double_precision, work.samples);
   const std::string rejected = text_of(plan.choice);
   const std::string others = rejected.empty() ? "" : "; " + rejected;
   Plan decisions = {
@@ -75,8 +78,9 @@ Plan decisions_of(const GriddingRequest& request, const GriddingPlan& plan) {
        "adds less than 0.5% to the kernel's squared error"},
       {"precision of grid and FFT", single ? "single" : "double",
        single ? "rounding adds " + text("%.1g", plan.rounding)
-              : "single precision would add " + text("%.1g", plan.rounding * single_over_double) +
-                    " of rounding, and is not trusted below " + text("%.0e", single_from)},
+              : "single precision would add " + text("%.1g", single_rounding) + " of rounding" +
+                    (request.accuracy < single_from ? ", and is not trusted below " + text("%.0e", single_from)
+                                                    : ", or cost more")},
   };
   const Plan of_w = w_decisions(request, plan.choice);
   decisions.insert(decisions.end(), of_w.begin(), of_w.end());
@@ -113,8 +117,10 @@ double nameable_accuracy(double worst_error) {
   return (worst_error < stored ? 2 : two_digits) * worst_error;
 }
 
-GriddingPlan plan_gridding(const GriddingRequest& request) {
-  check_request(request);
+namespace {
+
+/// With one transform for all images.
+GriddingPlan plan_together(const GriddingRequest& request) {
   GriddingPlan plan;
   plan.request = request;
   plan.choice = choose_gridding(request);
@@ -148,7 +154,47 @@ GriddingPlan plan_gridding(const GriddingRequest& request) {
   return plan;
 }
 
+Decision psf_decision(const GriddingPlan& plan, double together_s) {
+  if (!plan.psf) return {"PSF", "shares the image's transform", "taps, order and coordinates serve both"};
+  const WideTransformOptions& o = plan.psf->options;
+  const double apart_s = plan.choice.best.cost_s + plan.psf->choice.best.cost_s;
+  return {"PSF",
+          "has its own transform, " + width_and_padding(plan.psf->choice.best) +
+              (o.has_w_axis() ? ", " + times(o.facets_l, o.facets_m) + " facets" : ""),
+          "to " + text("%.2g", plan.psf->request.accuracy) + " it costs less: " + text("%.2f", apart_s / together_s) +
+              " of one transform for both"};
+}
+
+}  // namespace
+
+GriddingPlan plan_gridding(const GriddingRequest& request) {
+  check_request(request);
+  GriddingPlan together = plan_together(request);
+  if (request.images < 2) return together;
+  const double together_s = together.choice.best.cost_s;
+  if (request.accuracy != 0 && request.psf_accuracy > request.accuracy) {
+    GriddingRequest alone = request;
+    alone.images = 1;
+    GriddingPlan apart = plan_together(alone);
+    alone.accuracy = request.psf_accuracy;
+    apart.psf = std::make_shared<GriddingPlan>(plan_together(alone));
+    if (apart.choice.best.cost_s + apart.psf->choice.best.cost_s < together_s) {
+      apart.decisions.push_back(psf_decision(apart, together_s));
+      apart.request = request;
+      return apart;
+    }
+  }
+  together.decisions.push_back(psf_decision(together, together_s));
+  return together;
+}
+
 TransformMemory memory_of(const GriddingPlan& plan) {
+  if (plan.psf) {
+    GriddingPlan image = plan;
+    image.psf.reset();
+    const TransformMemory of_image = memory_of(image), of_psf = memory_of(*plan.psf);
+    return {of_image.visibilities, of_psf.visibilities + of_psf.psf, std::max(of_image.fft, of_psf.fft)};
+  }
   if (!plan.options.has_w_axis()) return memory_of(static_cast<const PlaneTransformOptions&>(plan.options));
   const GriddingCandidate& best = plan.choice.best;
   const std::vector<double>& turns = best.faceting.turns;

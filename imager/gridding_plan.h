@@ -1,5 +1,7 @@
 #pragma once
 
+#include <memory>
+
 #include "imager/gridding_choice.h"
 #include "imager/plan.h"
 #include "imager/wide_transform.h"
@@ -16,6 +18,7 @@ struct GriddingPlan {
   double bound_rms = 0;          ///< bound on the RMS error of the image over Σ w|V| / Σ w, whatever the data
   double bound_max = 0;          ///< bound on any pixel's error over Σ w|V| / Σ w, whatever the data
   GriddingChoice choice;         ///< with the neighbours that were rejected
+  std::shared_ptr<const GriddingPlan> psf;  ///< of the PSF, where it has a transform of its own
   Plan decisions;
 };
 

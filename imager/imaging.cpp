@@ -2,6 +2,9 @@
 
 #include <stdexcept>
 
+#include "imager/phase.h"
+#include "imager/phasors.h"
+
 namespace misfit::imager {
 namespace {
 
@@ -49,6 +52,27 @@ AdjointResult finish(std::unique_ptr<AdjointSum> sum, StageTimes& times) {
   return sum->finish();
 }
 
+void require_any(const SampleSums& sums) {
+  if (sums.weight == 0)
+    throw std::runtime_error("no visibility can be imaged: " + std::to_string(sums.outside_grid) +
+                             " usable samples lie beyond 1/(2 cell), none within");
+}
+
+/// Those of a source of 1 Jy at `middle`.
+std::vector<std::complex<double>> visibilities_of_middle(const VisibilityBlock& block, DirectionCosines middle) {
+  std::vector<std::complex<double>> visibility(block.samples(), 1);
+  if (middle.l == 0 && middle.m == 0) return visibility;
+  const PhasePosition at = phase_position(middle);
+  std::vector<double> turns(block.channels()), cosine(block.channels()), sine(block.channels());
+  for (std::size_t row = 0; row < block.rows(); ++row) {
+    const double per_hz = turns_per_hz(&block.uvw_m[3 * row], at);
+    for (std::size_t c = 0; c < turns.size(); ++c) turns[c] = per_hz * block.frequency_hz[c];
+    phasors(turns.data(), static_cast<int>(turns.size()), cosine.data(), sine.data());
+    for (std::size_t c = 0; c < turns.size(); ++c) visibility[row * turns.size() + c] = {cosine[c], sine[c]};
+  }
+  return visibility;
+}
+
 }  // namespace
 
 DirtyImages make_dirty_images(const VisibilitySource& source, const Transform& transform, bool with_psf,
@@ -60,13 +84,30 @@ DirtyImages make_dirty_images(const VisibilitySource& source, const Transform& t
     sum->add(block);
   });
   AdjointResult result = finish(std::move(sum), times);
-  if (result.sums.weight == 0)
-    throw std::runtime_error("no visibility can be imaged: " + std::to_string(result.sums.outside_grid) +
-                             " usable samples lie beyond 1/(2 cell), none within");
+  require_any(result.sums);
   const StageTimer timer(times, "fft");
   divide(result.image, result.sums.weight);
   divide(result.psf, result.sums.weight);
   return {std::move(result.image), std::move(result.psf), result.sums};
+}
+
+DirtyImages make_dirty_images(const VisibilitySource& source, const Transform& transform, const OwnPsf& psf,
+                              const Progress& progress, StageTimes& times) {
+  Pass pass(source, progress, times);
+  auto sum = begin(transform, false, times);
+  auto psf_sum = begin(psf.transform, false, times);
+  pass.for_each_block([&](const VisibilityBlock& block) {
+    const StageTimer timer(times, "grid");
+    sum->add(block);
+    psf_sum->add(block, visibilities_of_middle(block, psf.middle));
+  });
+  AdjointResult of_psf = finish(std::move(psf_sum), times);
+  AdjointResult result = finish(std::move(sum), times);
+  require_any(result.sums);
+  const StageTimer timer(times, "fft");
+  divide(result.image, result.sums.weight);
+  divide(of_psf.image, result.sums.weight);
+  return {std::move(result.image), std::move(of_psf.image), result.sums};
 }
 
 Image make_residual_image(const VisibilitySource& source, const Transform& transform, const Image& model,

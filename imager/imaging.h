@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <functional>
 
+#include "imager/geometry.h"
 #include "imager/stage_times.h"
 #include "imager/transform.h"
 
@@ -19,6 +20,16 @@ struct DirtyImages {
 
 /// One pass over the visibilities. Stages timed: "read", "grid", "fft". Throws std::runtime_error when no sample can be used.
 DirtyImages make_dirty_images(const VisibilitySource& source, const Transform& transform, bool with_psf,
+                              const Progress& progress, StageTimes& times);
+
+/// A PSF made by a transform of its own, for an image whose middle pixel lies at `middle`.
+struct OwnPsf {
+  const Transform& transform;
+  DirectionCosines middle;
+};
+
+/// The same with the PSF by a transform of its own, in the same pass.
+DirtyImages make_dirty_images(const VisibilitySource& source, const Transform& transform, const OwnPsf& psf,
                               const Progress& progress, StageTimes& times);
 
 /// The dirty image of data − model: the model is predicted at every usable sample and subtracted. Stages timed: "read", "fft",
