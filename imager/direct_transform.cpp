@@ -5,6 +5,7 @@
 #include "imager/constants.h"
 #include "imager/parallel.h"
 #include "imager/phase.h"
+#include "imager/phasors.h"
 #include "imager/sampling.h"
 
 namespace misfit::imager {
@@ -18,16 +19,17 @@ PhasePosition relative(const PhasePosition& at, const PhasePosition& origin) {
 /// Σ w Re[V exp(−i phase)] over one block, with `value(i)` = w V.
 template <typename Value>
 double direct_sum(const VisibilityBlock& block, const std::vector<char>& inside, const PhasePosition& at, const Value& value) {
+  std::vector<double> turns(block.channels()), cosine(turns.size()), sine(turns.size());
   double sum = 0;
   std::size_t i = 0;
   for (std::size_t row = 0; row < block.rows(); ++row) {
-    const double phase = 2 * pi * turns_per_hz(&block.uvw_m[3 * row], at);
-    for (const double frequency : block.frequency_hz) {
-      if (inside[i]) {
-        const std::complex<double> v = value(i);
-        sum += v.real() * std::cos(phase * frequency) + v.imag() * std::sin(phase * frequency);
-      }
-      ++i;
+    const double per_hz = turns_per_hz(&block.uvw_m[3 * row], at);
+    for (std::size_t c = 0; c < turns.size(); ++c) turns[c] = per_hz * block.frequency_hz[c];
+    phasors(turns.data(), static_cast<int>(turns.size()), cosine.data(), sine.data());
+    for (std::size_t c = 0; c < turns.size(); ++c, ++i) {
+      if (!inside[i]) continue;
+      const std::complex<double> v = value(i);
+      sum += v.real() * cosine[c] + v.imag() * sine[c];
     }
   }
   return sum;

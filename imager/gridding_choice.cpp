@@ -73,6 +73,7 @@ class Search {
  private:
   std::vector<double> paddings() const {
     if (request_.padding != 0) return {request_.padding};
+    if (request_.accuracy == 0) return {least_padding()};  // what the given kernel is made for
     std::vector<double> found;
     for (const double usual : usual_paddings) {
       found.push_back(std::max(usual, least_padding()));

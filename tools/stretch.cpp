@@ -35,6 +35,15 @@ std::vector<double> asinh_tick_values(const Stretch& stretch) {
   return values;
 }
 
+/// Every few pixels of a large image, enough for its noise.
+imager::Image sample(const imager::Image& image) {
+  constexpr std::size_t enough = 1 << 18;
+  const std::size_t step = image.pixel.size() / enough | 1;  // odd, so that it meets every column
+  imager::Image some;
+  for (std::size_t i = 0; i < image.pixel.size(); i += step) some.pixel.push_back(image.pixel[i]);
+  return some;
+}
+
 }  // namespace
 
 double Stretch::operator()(double value) const {
@@ -42,16 +51,16 @@ double Stretch::operator()(double value) const {
 }
 
 Stretch choose_stretch(const imager::Image& image) {
-  std::vector<double> finite;
-  finite.reserve(image.pixel.size());
-  std::copy_if(image.pixel.begin(), image.pixel.end(), std::back_inserter(finite), [](double v) { return std::isfinite(v); });
-  if (finite.empty()) return {};
-  const auto [smallest, largest] = std::minmax_element(finite.begin(), finite.end());
-  const double min = *smallest;
-  const double max = *largest;
+  double min = HUGE_VAL, max = -HUGE_VAL;
+  for (const double value : image.pixel) {
+    if (!std::isfinite(value)) continue;
+    min = std::min(min, value);
+    max = std::max(max, value);
+  }
+  if (min > max) return {};
   if (min == max) return {.low = std::min(0.0, min), .high = min < 0 ? 0 : min > 0 ? min : 1};
 
-  const double noise = imager::robust_noise(image);
+  const double noise = imager::robust_noise(sample(image));
   Stretch stretch{.low = min, .high = max, .sparse = noise == 0};
   if (max <= 0) return stretch;
   if (max > 30 * noise) stretch.knee = stretch.sparse ? max / 300 : 3 * noise;

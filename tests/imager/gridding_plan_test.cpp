@@ -67,7 +67,9 @@ BOOST_DATA_TEST_CASE(the_worst_error_is_within_the_accuracy_and_less_accuracy_ne
       BOOST_TEST(plan.expected_error <= plan.worst_error);
       BOOST_TEST(plan.worst_error <= plan.bound_max);
       BOOST_TEST(plan.bound_rms <= plan.bound_max);
-      BOOST_TEST((plan.options.precision == Precision::single_precision) == (accuracy >= 1e-4));
+      const bool single = plan.options.precision == Precision::single_precision;
+      BOOST_TEST(single >= (accuracy >= 1e-4));  // cheaper wherever its rounding is far below
+      BOOST_TEST(single <= (accuracy >= 1e-6));
       BOOST_CHECK_NO_THROW(make_plane_transform(plan.options));
     }
     if (stricter) {

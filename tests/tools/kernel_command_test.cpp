@@ -168,7 +168,8 @@ BOOST_AUTO_TEST_CASE(an_image_made_with_a_file_is_that_made_with_its_kernel) {
   for (const auto& [width, padding] : {std::pair("7", "2"), {"6", "1.5"}, {"9", "1.2"}}) {
     succeed(scene.make({"--width", width, "--padding", padding}));
     // 160 times each padding is a size that FFTs are fast at: x0 is that of the file.
-    const Arguments image = Arguments{"image", "--vis", snapshot(), "--imsize", "160", "--cell", "0.05arcsec"};
+    const Arguments image =
+        Arguments{"image", "--vis", snapshot(), "--imsize", "160", "--cell", "0.05arcsec", "--gridder", "standard"};
     succeed(image + Arguments{"--imagename", scene.folder / "file", "--kernel", scene.file});
     succeed(image + Arguments{"--imagename", scene.folder / "name", "--kernel-width", width, "--padding", padding});
     const json report = report_of(scene.folder / "file");
