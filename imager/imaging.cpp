@@ -15,18 +15,35 @@ void divide(Image& image, double by) {
 /// One pass over visibilities; a source that reads ahead begins when this is made.
 class Pass {
  public:
+  using Blocks = std::vector<std::shared_ptr<const VisibilityBlock>>;
+
   Pass(const VisibilitySource& source, const Progress& progress, StageTimes& times)
       : total_(source.samples()), stream_(source.open()), progress_(progress), times_(times) {}
 
   /// Calls visit(block) for every block.
   template <typename Visit>
   void for_each_block(const Visit& visit) {
+    for_each_group(0, [&](const Blocks& group) { visit(*group.front()); });
+  }
+  /// Calls visit(blocks) for groups of blocks, of at least `samples` but for the last.
+  template <typename Visit>
+  void for_each_group(std::size_t samples, const Visit& visit) {
     std::uint64_t done = 0;
-    while (const auto block = next()) {
-      visit(*block);
-      done += block->samples();
+    Blocks group;
+    std::size_t gathered = 0;
+    const auto finish = [&] {
+      visit(group);
+      done += gathered;
       progress_(done, total_);
+      group.clear();
+      gathered = 0;
+    };
+    while (auto block = next()) {
+      gathered += block->samples();
+      group.push_back(std::move(block));
+      if (gathered >= samples) finish();
     }
+    if (!group.empty()) finish();
   }
 
  private:
@@ -50,6 +67,17 @@ std::unique_ptr<AdjointSum> begin(const Transform& transform, bool with_psf, Sta
 AdjointResult finish(std::unique_ptr<AdjointSum> sum, StageTimes& times) {
   const StageTimer timer(times, "fft");
   return sum->finish();
+}
+
+/// Data − model. [block][row][channel]
+std::vector<std::vector<std::complex<double>>> residuals(const Prediction& prediction, const Pass::Blocks& blocks) {
+  std::vector<const VisibilityBlock*> plain;
+  for (const auto& block : blocks) plain.push_back(block.get());
+  auto residual = prediction.at_usable_of(plain);
+  for (std::size_t b = 0; b < blocks.size(); ++b)
+    for (std::size_t i = 0; i < residual[b].size(); ++i)
+      residual[b][i] = std::complex<double>(blocks[b]->visibility[i]) - residual[b][i];
+  return residual;
 }
 
 void require_any(const SampleSums& sums) {
@@ -119,15 +147,14 @@ Image make_residual_image(const VisibilitySource& source, const Transform& trans
     prediction = transform.predict(model);
   }
   auto sum = begin(transform, false, times);
-  pass.for_each_block([&](const VisibilityBlock& block) {
-    std::vector<std::complex<double>> residual;
+  pass.for_each_group(prediction->samples_at_once(), [&](const Pass::Blocks& blocks) {
+    std::vector<std::vector<std::complex<double>>> residual;
     {
       const StageTimer timer(times, "degrid");
-      residual = prediction->at_usable(block);
-      for (std::size_t i = 0; i < residual.size(); ++i) residual[i] = std::complex<double>(block.visibility[i]) - residual[i];
+      residual = residuals(*prediction, blocks);
     }
     const StageTimer timer(times, "grid");
-    sum->add(block, residual);
+    for (std::size_t b = 0; b < blocks.size(); ++b) sum->add(*blocks[b], residual[b]);
   });
   prediction.reset();
   AdjointResult result = finish(std::move(sum), times);

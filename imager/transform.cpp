@@ -12,4 +12,11 @@ SampleSums& SampleSums::operator+=(const SampleSums& other) {
   return *this;
 }
 
+std::vector<std::vector<std::complex<double>>> Prediction::at_usable_of(
+    const std::vector<const VisibilityBlock*>& blocks) const {
+  std::vector<std::vector<std::complex<double>>> visibility;
+  for (const VisibilityBlock* block : blocks) visibility.push_back(at_usable(*block));
+  return visibility;
+}
+
 }  // namespace misfit::imager

@@ -52,6 +52,10 @@ class Prediction {
   virtual std::vector<std::complex<double>> at(const SampleCoordinates& coordinates) const = 0;
   /// V [row][channel] where the block's weight is not 0, and 0 elsewhere.
   virtual std::vector<std::complex<double>> at_usable(const VisibilityBlock& block) const = 0;
+  /// at_usable of each block. [block][row][channel]
+  virtual std::vector<std::vector<std::complex<double>>> at_usable_of(const std::vector<const VisibilityBlock*>& blocks) const;
+  /// Samples that are best asked for together, where every call takes FFTs; 0 = any number.
+  virtual std::size_t samples_at_once() const { return 0; }
 };
 
 /// The linear operator A of interferometric imaging and its adjoint,

@@ -326,17 +326,24 @@ class WidePrediction : public Prediction {
   WidePrediction(const Setup<Real>& setup, const Image& model) : setup_(setup), model_(model) {}
 
   std::vector<std::complex<double>> at(const SampleCoordinates& coordinates) const override {
-    return degrid(coordinates, [](std::size_t, std::size_t) { return true; });
+    return degrid({&coordinates}, [](std::size_t, std::size_t) { return true; }).front();
   }
   std::vector<std::complex<double>> at_usable(const VisibilityBlock& block) const override {
-    return degrid(block, [&](std::size_t, std::size_t i) { return block.weight[i] != 0; });
+    return at_usable_of({&block}).front();
   }
+  std::vector<std::vector<std::complex<double>>> at_usable_of(
+      const std::vector<const VisibilityBlock*>& blocks) const override {
+    return degrid({blocks.begin(), blocks.end()}, [&](std::size_t b, std::size_t i) { return blocks[b]->weight[i] != 0; });
+  }
+  std::size_t samples_at_once() const override { return setup_.options.samples_at_once; }
 
  private:
+  using Visibilities = std::vector<std::vector<std::complex<double>>>;  ///< [block][sample]
+
   template <typename Wanted>
-  std::vector<std::complex<double>> degrid(const SampleCoordinates& at, const Wanted& wanted) const {
-    std::vector<std::complex<double>> visibility(at.samples());
-    const std::vector<const SampleCoordinates*> blocks{&at};
+  Visibilities degrid(const std::vector<const SampleCoordinates*>& blocks, const Wanted& wanted) const {
+    Visibilities visibility;
+    for (const SampleCoordinates* at : blocks) visibility.emplace_back(at->samples());
     PlaneStack<Real> stack(setup_.shape, 2);
     for (const StackedFacet& f : setup_.facets) {
       const StackOrderOptions ordering = setup_.ordering(f);
@@ -354,8 +361,7 @@ class WidePrediction : public Prediction {
   }
 
   void degrid_tile(const StackScale& scale, const std::vector<const SampleCoordinates*>& blocks, const StackOrder& order,
-                   const StackTask& task, int first_plane, const PlaneStack<Real>& stack,
-                   std::vector<std::complex<double>>& visibility) const {
+                   const StackTask& task, int first_plane, const PlaneStack<Real>& stack, Visibilities& visibility) const {
     const StackShape& s = setup_.shape;
     StackBuffer<Real> buffer(s.tile, setup_.taps.u.padded, task.planes.planes, 2);
     for_each_chunk(s, task, 2, [&](int row, int chunk, int plane, int component, int count) {
@@ -369,7 +375,7 @@ class WidePrediction : public Prediction {
         const double re = double{batch.value[0][k]}, im = double{batch.value[1][k]};
         const std::complex<double> conjugate(re * phases.cosine[k] + im * phases.sine[k],
                                              im * phases.cosine[k] - re * phases.sine[k]);
-        visibility[phases.sample[k]] += phases.folded[k] ? conjugate : std::conj(conjugate);
+        visibility[phases.block[k]][phases.sample[k]] += phases.folded[k] ? conjugate : std::conj(conjugate);
       }
     });
   }

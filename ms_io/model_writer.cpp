@@ -13,8 +13,6 @@
 namespace misfit::ms_io {
 namespace {
 
-constexpr std::uint64_t block_samples = 1 << 20;
-
 void require_writable_column(const casacore::MeasurementSet& set, const std::string& path, const std::string& column) {
   if (column.empty() || column == "DATA") {
     throw std::runtime_error("a model cannot be written to column '" + column + "' of " + path +
@@ -107,7 +105,8 @@ std::vector<std::complex<double>> predicted(const Predict& predict, const imager
 }  // namespace
 
 ModelWriteReport write_model(const std::string& path, const Selection& selection, const std::string& column,
-                             const Predict& predict, const std::function<void(std::uint64_t, std::uint64_t)>& progress) {
+                             const Predict& predict, const std::function<void(std::uint64_t, std::uint64_t)>& progress,
+                             std::uint64_t block_samples) {
   const std::string name = column_name(column);
   casacore::MeasurementSet set = open_measurement_set(path, Access::update);
   require_writable_column(set, path, name);

@@ -56,6 +56,7 @@ struct Model {
   std::unique_ptr<imager::Transform> transform;  // outlives the prediction
   std::unique_ptr<imager::Prediction> prediction;
   ms_io::Predict predict;
+  std::uint64_t samples_at_once = ms_io::MeasurementSet::usual_block_samples;
 };
 
 Model image_model(const PredictOptions& o, const ms_io::MeasurementSet& set, int threads) {
@@ -74,6 +75,7 @@ Model image_model(const PredictOptions& o, const ms_io::MeasurementSet& set, int
   Model model;
   model.transform = imager::make_transform(imager::plan_gridding(request).options);
   model.prediction = model.transform->predict(image.image);
+  model.samples_at_once = std::max<std::uint64_t>(model.samples_at_once, model.prediction->samples_at_once());
   model.predict = [prediction = model.prediction.get()](const imager::SampleCoordinates& at) { return prediction->at(at); };
   return model;
 }
@@ -98,9 +100,9 @@ void predict(const PredictOptions& o) {
     model = o.model.empty() ? component_model(o, set, threads) : image_model(o, set, threads);
   }
   progress.begin("predict");
-  const ms_io::ModelWriteReport report =
-      ms_io::write_model(o.vis, o.selection, o.column, model.predict,
-                         [&](std::uint64_t done, std::uint64_t total) { progress.update(done, total); });
+  const ms_io::ModelWriteReport report = ms_io::write_model(
+      o.vis, o.selection, o.column, model.predict,
+      [&](std::uint64_t done, std::uint64_t total) { progress.update(done, total); }, model.samples_at_once);
   progress.end();
   if (o.quiet) return;
   std::printf("%s: %s visibilities in %s rows written to %s\n", o.vis.c_str(),
