@@ -2,8 +2,8 @@
 
 #include <complex>
 
+#include "imager/correction.h"
 #include "imager/facet.h"
-#include "imager/smooth_correction.h"
 
 namespace misfit::imager {
 

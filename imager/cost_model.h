@@ -24,12 +24,11 @@ struct GriddingWork {
 /// Time on one core, from counts of operations. The default constants are of one machine, fixed:
 /// what is chosen with them depends on options and data alone. Those of the machine at hand (measure_costs) predict seconds.
 struct CostModel {
-  double sample_ns = 15;       ///< a sample's ordering and coordinates
-  double cell_ns = 0.15;       ///< a cell of width × padded width in three planes
-  double tap_ns = 0.012;       ///< a coefficient of the polynomials, for each padded tap of both axes
-  double fft_ns = 0.6;         ///< a point and binary logarithm of an FFT
-  double double_cost = 1.5;    ///< over single precision: twice the bytes, half the lanes
-  double wide_sample_ns = 60;  ///< a sample's ordering, coordinates and phase in each facet that has a w axis
+  double sample_ns = 15;     ///< a sample's ordering and coordinates
+  double cell_ns = 0.15;     ///< a cell of width × padded width in three planes
+  double tap_ns = 0.012;     ///< a coefficient of the polynomials, for each padded tap of both axes
+  double fft_ns = 0.6;       ///< a point and binary logarithm of an FFT
+  double double_cost = 1.7;  ///< over single precision: twice the bytes, half the lanes
 
   double seconds(const GriddingWork& work) const;
 };

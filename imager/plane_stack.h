@@ -5,9 +5,9 @@
 #include <vector>
 
 #include "imager/big_array.h"
+#include "imager/correction.h"
 #include "imager/facet.h"
 #include "imager/image.h"
-#include "imager/smooth_correction.h"
 
 namespace misfit::imager {
 

@@ -6,6 +6,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "imager/correction.h"
 #include "imager/half_grid.h"
 #include "imager/horizon.h"
 #include "imager/parallel.h"
@@ -26,12 +27,6 @@ struct Setup {
   ImageCorrection correction;
   int threads;
 };
-
-std::vector<double> axis_correction(const kernels::Kernel& kernel, int pixels, int fft_size) {
-  const Eigen::VectorXd x = (Eigen::VectorXd::LinSpaced(pixels, 0, pixels - 1).array() - pixels / 2) / fft_size;
-  const Eigen::VectorXd h = kernels::optimal_correction(kernel.polynomial, x);
-  return {h.begin(), h.end()};
-}
 
 /// The four colours of tiles that hold samples; those of one colour may be flushed at the same time, since their buffers reach
 /// into the next tile alone. The fullest first within a colour so that no thread starts the longest task last.

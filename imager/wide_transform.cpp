@@ -30,12 +30,6 @@ struct Setup {
   }
 };
 
-std::vector<double> axis_correction(const kernels::Kernel& kernel, int pixels, int fft_size) {
-  const Eigen::VectorXd x = (Eigen::VectorXd::LinSpaced(pixels, 0, pixels - 1).array() - pixels / 2) / fft_size;
-  const Eigen::VectorXd h = kernels::optimal_correction(kernel.polynomial, x);
-  return {h.begin(), h.end()};
-}
-
 StackShape shape_of(const WideTransformOptions& o) {
   constexpr int tile = 32;
   return {o.nu, o.nv, o.kernel_u.width(), std::max(tile, o.kernel_u.width())};

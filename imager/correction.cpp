@@ -1,10 +1,16 @@
-#include "imager/smooth_correction.h"
+#include "imager/correction.h"
 
 #include <cmath>
 
 #include "imager/constants.h"
 
 namespace misfit::imager {
+
+std::vector<double> axis_correction(const kernels::Kernel& kernel, int pixels, int fft_size) {
+  const Eigen::VectorXd x = (Eigen::VectorXd::LinSpaced(pixels, 0, pixels - 1).array() - pixels / 2) / fft_size;
+  const Eigen::VectorXd h = kernels::optimal_correction(kernel.polynomial, x);
+  return {h.begin(), h.end()};
+}
 
 SmoothCorrection::SmoothCorrection(const kernels::Kernel& kernel) {
   const double end = std::min(0.4999, 1.01 * kernel.x0);

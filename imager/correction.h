@@ -6,6 +6,9 @@
 
 namespace misfit::imager {
 
+/// The optimal correction h of a kernel at each of an axis' pixels, the middle one lying at x = 0.
+std::vector<double> axis_correction(const kernels::Kernel& kernel, int pixels, int fft_size);
+
 /// The optimal correction h(x) of a kernel at any |x| ≤ x0, as a Chebyshev series in x²: quick where every pixel has an x of
 /// its own. True to the rounding of doubles, slightly beyond x0 too.
 struct SmoothCorrection {
