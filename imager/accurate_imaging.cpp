@@ -26,7 +26,7 @@ AccurateImages make_images(const VisibilitySource& source, GriddingPlan plan, co
     made.images = make_dirty_images(source, *made.transform, made.plan.request.images > 1, progress, times);
   } else {
     const auto of_psf = make_transform(made.plan.psf->options);
-    const OwnPsf psf{*of_psf, made.plan.options.geometry.centre};
+    const OwnPsf psf{*of_psf, made.plan.options.geometry.centre, made.plan.psf->options.has_w_axis()};
     made.images = make_dirty_images(source, *made.transform, psf, progress, times);
   }
   return made;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 
 #include "imager/facet.h"
 
@@ -35,6 +36,7 @@ std::vector<Faceting> facetings(const ImageGeometry& image, double max_abs_w, in
     way.height = largest_part(image.height, way.along_m);
     for (const Facet& facet : split_into_facets(image, way.along_l, way.along_m))
       if (!facet.empty) way.turns.push_back(2 * facet.reach * max_abs_w);
+    if (way.turns.empty()) throw std::invalid_argument("every pixel of the image lies beyond the horizon");
     ways.push_back(way);
   }
   return ways;

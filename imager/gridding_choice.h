@@ -5,6 +5,7 @@
 
 #include "imager/cost_model.h"
 #include "imager/faceting.h"
+#include "imager/wide_transform.h"
 #include "kernels/catalogue.h"
 
 namespace misfit::imager {
@@ -25,8 +26,10 @@ struct GriddingRequest {
   double psf_accuracy = 0;    ///< of a PSF that may have a transform of its own; 0 = the accuracy
   int threads = 1;
   Gridder gridder = Gridder::automatic;
-  double max_abs_w = 0;  ///< largest |w| of the samples, in wavelengths
-  bool facets = true;    ///< a w axis may split the image
+  double max_abs_w = 0;                                                  ///< largest |w| of the samples, in wavelengths
+  bool facets = true;                                                    ///< a w axis may split the image
+  std::size_t stack_bytes = WideTransformOptions().stack_bytes;          ///< memory for w planes
+  std::size_t samples_at_once = WideTransformOptions().samples_at_once;  ///< that a w axis gathers
 };
 
 /// Relative RMS of the rounding of taps, sums and FFT for a noise gain of 1, as measured: in single precision it grows with the

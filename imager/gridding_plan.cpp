@@ -138,6 +138,8 @@ GriddingPlan plan_together(const GriddingRequest& request) {
     plan.options.kernel_w = best.w.kernel;
     plan.options.facets_l = best.faceting.along_l;
     plan.options.facets_m = best.faceting.along_m;
+    plan.options.stack_bytes = request.stack_bytes;
+    plan.options.samples_at_once = request.samples_at_once;
   }
   plan.expected_error = best.expected_error;
   plan.rounding = best.rounding;
@@ -177,8 +179,9 @@ GriddingPlan plan_gridding(const GriddingRequest& request) {
     alone.images = 1;
     GriddingPlan apart = plan_together(alone);
     alone.accuracy = request.psf_accuracy;
+    alone.best_effort = true;
     apart.psf = std::make_shared<GriddingPlan>(plan_together(alone));
-    if (apart.choice.best.cost_s + apart.psf->choice.best.cost_s < together_s) {
+    if (apart.psf->choice.reached && apart.choice.best.cost_s + apart.psf->choice.best.cost_s < together_s) {
       apart.decisions.push_back(psf_decision(apart, together_s));
       apart.request = request;
       return apart;

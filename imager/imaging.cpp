@@ -86,11 +86,12 @@ void require_any(const SampleSums& sums) {
                              " usable samples lie beyond 1/(2 cell), none within");
 }
 
-/// Those of a source of 1 Jy at `middle`.
-std::vector<std::complex<double>> visibilities_of_middle(const VisibilityBlock& block, DirectionCosines middle) {
+/// Those of a source of 1 Jy at the image's middle pixel.
+std::vector<std::complex<double>> visibilities_of_middle(const VisibilityBlock& block, const OwnPsf& psf) {
   std::vector<std::complex<double>> visibility(block.samples(), 1);
-  if (middle.l == 0 && middle.m == 0) return visibility;
-  const PhasePosition at = phase_position(middle);
+  if (psf.middle.l == 0 && psf.middle.m == 0) return visibility;
+  PhasePosition at = phase_position(psf.middle);
+  if (!psf.with_w) at.n_minus_1 = 0;
   std::vector<double> turns(block.channels()), cosine(block.channels()), sine(block.channels());
   for (std::size_t row = 0; row < block.rows(); ++row) {
     const double per_hz = turns_per_hz(&block.uvw_m[3 * row], at);
@@ -127,7 +128,7 @@ DirtyImages make_dirty_images(const VisibilitySource& source, const Transform& t
   pass.for_each_block([&](const VisibilityBlock& block) {
     const StageTimer timer(times, "grid");
     sum->add(block);
-    psf_sum->add(block, visibilities_of_middle(block, psf.middle));
+    psf_sum->add(block, visibilities_of_middle(block, psf));
   });
   AdjointResult of_psf = finish(std::move(psf_sum), times);
   AdjointResult result = finish(std::move(sum), times);

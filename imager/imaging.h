@@ -26,6 +26,7 @@ DirtyImages make_dirty_images(const VisibilitySource& source, const Transform& t
 struct OwnPsf {
   const Transform& transform;
   DirectionCosines middle;
+  bool with_w = true;  ///< as the transform
 };
 
 /// The same with the PSF by a transform of its own, in the same pass.

@@ -189,6 +189,8 @@ class ColumnGroup {
     for (int c = begin; c < end; ++c) {
       double* q = q_.data() + at(c);
       curvature_of_column(facet.facet, c, q);
+      if (crosses_horizon(facet.facet.geometry))  // where a last bit decides, every part of the transform decides alike
+        for (int r = 0; r < height_; ++r) q[r] = facet.facet.curvature(c, r);
       for (int r = 0; r < height_; ++r) q[r] *= facet.plane_step;
       correction_of_column(facet.h_w, 1, q, height_, h_.data() + at(c));
       const double h_u = facet.h_u[static_cast<std::size_t>(c)];

@@ -96,6 +96,7 @@ StackRow::StackRow(const double* uvw_m, const StackScale& scale) : folded(uvw_m[
 
 StackOrder order_for_stack(const std::vector<const SampleCoordinates*>& blocks,
                            const std::function<bool(std::size_t, std::size_t)>& wanted, const StackOrderOptions& options) {
+  for (const SampleCoordinates* block : blocks) check_channels(block->channels());
   const std::vector<Piece> pieces = pieces_of(blocks);
   std::vector<std::vector<TiledRun>> part(pieces.size());
   parallel_for(pieces.size(), options.threads,

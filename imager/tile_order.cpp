@@ -12,7 +12,6 @@ namespace {
 
 constexpr std::size_t chunks = 32;  // fixed, so that the order of sums does not depend on the number of threads
 constexpr std::uint32_t longest_run = (1U << 12) - 1;
-constexpr std::size_t most_channels = 1U << 20;
 
 struct TiledRun {
   std::uint32_t tile;
@@ -118,11 +117,16 @@ class RunFinder {
 
 }  // namespace
 
+void check_channels(std::size_t channels) {
+  constexpr std::size_t most = 1U << 20;
+  if (channels > most)
+    throw std::invalid_argument(std::to_string(channels) + " channels in one spectral window; at most " + std::to_string(most) +
+                                " are supported");
+}
+
 TileOrder order_by_tile(const VisibilityBlock& block, const std::vector<std::complex<double>>* visibility,
                         const GridShape& shape, double cell_rad, Wanted wanted, int threads) {
-  if (block.channels() > most_channels)
-    throw std::invalid_argument(std::to_string(block.channels()) + " channels in one spectral window; at most " +
-                                std::to_string(most_channels) + " are supported");
+  check_channels(block.channels());
   std::vector<RunFinder> part(chunks, RunFinder(block, visibility, shape, cell_rad, wanted));
   parallel_for(chunks, threads,
                [&](std::size_t i) { part[i].find(block.rows() * i / chunks, block.rows() * (i + 1) / chunks); });

@@ -70,6 +70,9 @@ struct TileOrder {
   SampleSums sums;                  ///< when imaging: of the samples in the order, and those outside the grid
 };
 
+/// Throws std::invalid_argument when there are more than a run can count.
+void check_channels(std::size_t channels);
+
 /// Which samples are wanted: those that take part in imaging, with their sums; or for prediction those of weight not 0; or all.
 enum class Wanted { imaging, usable, all };
 

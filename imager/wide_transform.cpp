@@ -122,6 +122,19 @@ struct BatchPhases {
   double sine[capacity];
 };
 
+/// Where the taps of a sample lie in its tile along one axis. A sample on the edge of two cells stays within the tile that it
+/// was put in, however its position is rounded.
+struct TileTap {
+  int first = 0;
+  double t = 0;
+
+  TileTap(double cells, int tile, const StackShape& s) {
+    const int origin = tile * s.tile - s.margin();
+    first = std::clamp(TapPosition(cells, s.width).first - origin, 0, s.tile - 1);
+    t = cells - (first + origin) - 0.5 * (s.width - 1);
+  }
+};
+
 /// Walks through a task's samples in batches: done(batch, phases) for each, phases computed.
 template <typename Real, typename Done>
 void for_each_batch(const Setup<Real>& setup, const StackScale& scale, const std::vector<const SampleCoordinates*>& blocks,
@@ -140,16 +153,16 @@ void for_each_batch(const Setup<Real>& setup, const StackScale& scale, const std
     const StackRow row(&at.uvw_m[std::size_t{3} * run.row], scale);
     for (std::size_t channel = run.first; channel < std::size_t{run.first} + run.count; ++channel) {
       const double frequency = at.frequency_hz[channel];
-      const TapPosition u(reduced(row.u_per_hz * frequency, s.nu), s.width);
-      const TapPosition v(reduced(row.v_per_hz * frequency, s.nv), s.width);
-      const TapPosition w(row.w_per_hz * frequency, setup.taps.w.width);
+      const TileTap u(reduced(row.u_per_hz * frequency, s.nu), task.tile_u, s);
+      const TileTap v(reduced(row.v_per_hz * frequency, s.nv), task.tile_v, s);
+      const double w = row.w_per_hz * frequency;
       const int k = batch.count++;
-      batch.plane[k] = w.first - task.planes.first;
-      batch.column[k] = u.first + s.margin() - task.tile_u * s.tile;
-      batch.row[k] = v.first + s.margin() - task.tile_v * s.tile;
+      batch.plane[k] = run.plane - task.planes.first;
+      batch.column[k] = u.first;
+      batch.row[k] = v.first;
       batch.tu[k] = static_cast<Real>(u.t);
       batch.tv[k] = static_cast<Real>(v.t);
-      batch.tw[k] = static_cast<Real>(w.t);
+      batch.tw[k] = static_cast<Real>(w - run.plane - 0.5 * (setup.taps.w.width - 1));
       phases.block[k] = run.block;
       phases.sample[k] = run.row * at.channels() + channel;
       phases.folded[k] = row.folded;
@@ -238,9 +251,13 @@ class WideAdjoint : public AdjointSum {
       for (const Slab& slab : slabs_of(order, setup_, f.facet.geometry.width, components)) {
         stack.reserve(slab.planes);
         stack.clear(setup_.options.threads);
-        for (const std::vector<StackTask>& tasks : tasks_of(order, setup_.shape, slab, setup_.taps.w.width))
+        for (const std::vector<StackTask>& tasks : tasks_of(order, setup_.shape, slab, setup_.taps.w.width)) {
+          for (const StackTask& task : tasks)
+            std::fill_n(stack.row_used.begin() + task.tile_v * setup_.shape.tile, setup_.shape.tile + setup_.shape.width - 1,
+                        1);
           parallel_for(tasks.size(), setup_.options.threads,
                        [&](std::size_t i) { grid_tile(ordering.scale, blocks, order, tasks[i], slab.first, stack); });
+        }
         add_stack_to_images(stack, f, slab.first, setup_.options.threads, images);
       }
     }
@@ -276,7 +293,6 @@ class WideAdjoint : public AdjointSum {
       in_buffer = 0;
     });
     flush_buffer(task, first_plane, buffer, stack);
-    std::fill_n(stack.row_used.begin() + task.tile_v * s.tile, s.tile + s.width - 1, 1);
   }
 
   void flush_buffer(const StackTask& task, int first_plane, const StackBuffer<Real>& buffer, PlaneStack<Real>& stack) const {
@@ -424,7 +440,7 @@ std::unique_ptr<Transform> make_wide_transform(const WideTransformOptions& o) {
 }
 
 TransformMemory memory_of(const WideTransformOptions& o, double samples, int planes) {
-  constexpr double sample_bytes = sizeof(std::complex<float>) + sizeof(float);
+  constexpr double sample_bytes = sizeof(std::complex<double>) + sizeof(float);  // of a residual, or a PSF
   constexpr double run_bytes = 2 * sizeof(StackRun) + 8;  // at worst a run each, twice while they are sorted
   const double gathered = std::min(samples, static_cast<double>(o.samples_at_once)) * (sample_bytes + run_bytes);
   const StackShape shape = shape_of(o);
@@ -434,7 +450,9 @@ TransformMemory memory_of(const WideTransformOptions& o, double samples, int pla
   const double image = static_cast<double>(o.geometry.pixels()) * sizeof(double);
   const double one = std::min(planes * plane, std::max(plane, static_cast<double>(o.stack_bytes)));
   const double both = std::min(2 * planes * plane, std::max(2 * plane, static_cast<double>(o.stack_bytes)));
-  return {gathered + one, both - one + image, 0};
+  const double real_bytes = single ? sizeof(float) : sizeof(double);
+  const double column = 6.0 * largest_part(o.geometry.height, o.facets_m) * sizeof(double) + 2.0 * o.nv * real_bytes;
+  return {gathered + one + image, both - one + image, o.threads * 16 * column};
 }
 
 std::unique_ptr<Transform> make_transform(const WideTransformOptions& options) {

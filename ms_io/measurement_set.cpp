@@ -54,8 +54,8 @@ std::uint64_t MeasurementSet::rows() const {
 std::uint64_t MeasurementSet::samples() const {
   return impl_->open_set->selected.samples;
 }
-imager::UvwReach MeasurementSet::reach() const {
-  return scan_uvw(*impl_->open_set);
+imager::UvwReach MeasurementSet::reach(ReachOf rows) const {
+  return scan_uvw(*impl_->open_set, rows);
 }
 std::unique_ptr<imager::BlockStream> MeasurementSet::open() const {
   return read_blocks(impl_->open_set);

@@ -16,6 +16,9 @@ struct Selection {
   std::string spectral_window;  ///< e.g. "0", "0:4~60", "1~2:1.4~1.5GHz"
 };
 
+/// Rows that can be used, neither flagged nor of one antenna; or all.
+enum class ReachOf { usable, all };
+
 /// A selected part of a MeasurementSet as visibilities of Stokes I, opened read-only and streamed in blocks. Only the columns
 /// and channels that are needed are read. A block never mixes DATA_DESC_IDs. Reading never runs in two threads at once.
 class MeasurementSet : public imager::VisibilitySource {
@@ -35,9 +38,9 @@ class MeasurementSet : public imager::VisibilitySource {
   const imager::Observation& observation() const;
   std::uint64_t rows() const;
   std::uint64_t samples() const override;
-  /// Bounds that hold for every sample that can be used: of rows that are not flagged, at the highest channel selected. Reads
-  /// UVW, antennas and FLAG_ROW alone. Throws std::runtime_error when they cannot be read.
-  imager::UvwReach reach() const;
+  /// Bounds at the highest channel selected, of rows with finite UVW. Reads UVW, antennas and FLAG_ROW alone. Throws
+  /// std::runtime_error when they cannot be read.
+  imager::UvwReach reach(ReachOf rows = ReachOf::usable) const;
   std::unique_ptr<imager::BlockStream> open() const override;
 
  private:

@@ -22,14 +22,14 @@ class UvwScan {
         uvw_column_(table, "UVW") {}
 
   /// Raises the largest |u|, |v| and |w|, in metres, to those of `rows`.
-  void raise(std::array<double, 3>& reach_m, const Rows& rows) {
+  void raise(std::array<double, 3>& reach_m, const Rows& rows, ReachOf wanted) {
     read(antenna1_column_, rows, antenna1_);
     read(antenna2_column_, rows, antenna2_);
     read(flag_row_column_, rows, flag_row_);
     read(uvw_column_, rows, uvw_);
     const double* uvw = uvw_.data();
     for (std::size_t r = 0; r < rows.count(); ++r, uvw += 3) {
-      if (antenna1_(r) == antenna2_(r) || flag_row_(r)) continue;
+      if (wanted == ReachOf::usable && (antenna1_(r) == antenna2_(r) || flag_row_(r))) continue;
       if (!std::isfinite(uvw[0]) || !std::isfinite(uvw[1]) || !std::isfinite(uvw[2])) continue;
       for (std::size_t axis = 0; axis < 3; ++axis) reach_m[axis] = std::max(reach_m[axis], std::abs(uvw[axis]));
     }
@@ -46,13 +46,13 @@ class UvwScan {
 
 }  // namespace
 
-imager::UvwReach scan_uvw(const OpenSet& open_set) {
+imager::UvwReach scan_uvw(const OpenSet& open_set, ReachOf rows) {
   const SelectedRows& selected = open_set.selected;
   std::vector<std::array<double, 3>> reach_m(selected.setups.size(), {0, 0, 0});
   translated("cannot read UVW, antennas or FLAG_ROW of " + open_set.path, [&] {
     UvwScan scan(open_set.set);
     for (const BlockRows& block : selected.blocks)
-      for (const Rows& piece : pieces(block.runs, piece_rows)) scan.raise(reach_m[block.setup], piece);
+      for (const Rows& piece : pieces(block.runs, piece_rows)) scan.raise(reach_m[block.setup], piece, rows);
   });
   imager::UvwReach reach;
   for (std::size_t s = 0; s < reach_m.size(); ++s) {

@@ -73,8 +73,8 @@ class ImageRun {
     request.geometry = geometry_;
     request.samples = set_->samples();
     request.max_abs_w = reach_.max_abs_w;
+    if (o_.memory_gib > 0) limit_memory(o_.memory_gib * gib, request);
     made_.plan = imager::plan_gridding(request);
-    if (o_.memory_gib > 0) limit_memory(o_.memory_gib * gib, made_.plan.options);
     const MemoryPlan memory = plan_memory({.transform = imager::memory_of(made_.plan),
                                            .pixels = static_cast<double>(geometry_.pixels()),
                                            .rows = static_cast<double>(set_->rows()),

@@ -2,7 +2,6 @@
 
 #include "imager/memory_use.h"
 #include "imager/plan.h"
-#include "imager/wide_transform.h"
 #include "tools/image_options.h"
 
 namespace misfit::tools {
@@ -15,7 +14,7 @@ struct MemoryPlan {
 };
 
 /// Lets a w axis take no more than parts of `bytes` for its planes and for the samples that it gathers.
-void limit_memory(double bytes, imager::WideTransformOptions& options);
+void limit_memory(double bytes, imager::GriddingRequest& request);
 
 /// Keeps the visibilities where --memory, or half of the machine's memory, allows it; else reads them again in every pass, and
 /// less far ahead where that helps. Nothing of this changes a bit of the images. Throws std::invalid_argument that says how

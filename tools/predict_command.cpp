@@ -70,7 +70,8 @@ Model image_model(const PredictOptions& o, const ms_io::MeasurementSet& set, int
   request.geometry = image.geometry;
   request.accuracy = is_kernel_file(o.kernel) && !o.accuracy_is_typed ? 0 : o.accuracy;
   request.samples = set.samples();
-  request.max_abs_w = set.reach().max_abs_w;
+  request.images = 1;
+  request.max_abs_w = set.reach(ms_io::ReachOf::all).max_abs_w;
   request.threads = threads;
   Model model;
   model.transform = imager::make_transform(imager::plan_gridding(request).options);

@@ -61,7 +61,7 @@ misfit::kernels::KernelFamily least_misfit() {
   static const misfit::kernels::KernelFamily family = misfit::kernels::kernel_family("least-misfit");
   static std::map<std::pair<int, double>, misfit::kernels::Kernel> solved;
   misfit::kernels::KernelFamily once = family;
-  once.make = [](int width, double x0) {
+  once.solve = [](int width, double x0) {
     const auto found = solved.find({width, x0});
     return found != solved.end() ? found->second : solved.emplace(std::pair(width, x0), family.make(width, x0)).first->second;
   };
