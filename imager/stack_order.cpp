@@ -68,7 +68,8 @@ void mark_planes(StackOrder& order, int width_w) {
   const auto [low, high] = std::minmax_element(order.run.begin(), order.run.end(),
                                                [](const StackRun& a, const StackRun& b) { return a.plane < b.plane; });
   order.first_plane = low->plane;
-  order.plane_used.resize(static_cast<std::size_t>(high->plane - low->plane + width_w));
+  const int planes = high->plane - low->plane + width_w;
+  order.plane_used.resize(static_cast<std::size_t>(planes));
   for (const StackRun& run : order.run) order.plane_used[static_cast<std::size_t>(run.plane - order.first_plane)] = 1;
   for (std::size_t k = order.plane_used.size(); k-- > 0;)  // a first tap is followed by the others
     for (std::size_t tap = 1; tap < static_cast<std::size_t>(width_w) && order.plane_used[k] == 0 && tap <= k; ++tap)
