@@ -13,9 +13,9 @@ namespace misfit::imager {
 template <typename T>
 class BigArray {
  public:
-  /// Room for `count` values, their content lost where more room is needed. Returns whether memory is new.
-  bool reserve(std::size_t count) {
-    if (count <= capacity_) return false;
+  /// Room for `count` values, their content lost where more room is needed.
+  void reserve(std::size_t count) {
+    if (count <= capacity_) return;
     constexpr std::size_t huge_page = std::size_t{1} << 21;
     const std::size_t bytes = (count * sizeof(T) + huge_page - 1) / huge_page * huge_page;
     memory_.reset();
@@ -23,7 +23,6 @@ class BigArray {
     if (!memory_) throw std::bad_alloc();
     madvise(memory_.get(), bytes, MADV_HUGEPAGE);  // a hint: without it small pages serve
     capacity_ = count;
-    return true;
   }
   T* data() { return memory_.get(); }
   const T* data() const { return memory_.get(); }

@@ -16,16 +16,6 @@ struct SmoothCorrection {
   std::vector<double> coefficient;  ///< of Chebyshev polynomials
 
   explicit SmoothCorrection(const kernels::Kernel& kernel);
-  double operator()(double x) const {
-    const double z = scale * x * x - 1;
-    double last = 0, before = 0;
-    for (std::size_t k = coefficient.size(); k-- > 1;) {
-      const double now = 2 * z * last - before + coefficient[k];
-      before = last;
-      last = now;
-    }
-    return z * last - before + coefficient[0];
-  }
 };
 
 }  // namespace misfit::imager

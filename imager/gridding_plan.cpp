@@ -109,6 +109,8 @@ void check_request(const GriddingRequest& request) {
     throw std::invalid_argument("largest |w| is " + text("%g", request.max_abs_w) + " wavelengths, expected 0 or more");
   if (!(request.accuracy >= 0 && request.accuracy < 1))
     throw std::invalid_argument("accuracy " + text("%g", request.accuracy) + " not in (0, 1)");
+  if (!(request.psf_accuracy >= 0 && request.psf_accuracy < 1))
+    throw std::invalid_argument("accuracy of the PSF " + text("%g", request.psf_accuracy) + " not in (0, 1)");
 }
 
 double nameable_accuracy(double worst_error) {
@@ -171,14 +173,18 @@ Decision psf_decision(const GriddingPlan& plan, double together_s) {
 
 GriddingPlan plan_gridding(const GriddingRequest& request) {
   check_request(request);
-  GriddingPlan together = plan_together(request);
-  if (request.images < 2) return together;
+  if (request.images < 2) return plan_together(request);
+  const double psf_accuracy = request.psf_accuracy == 0 || request.accuracy == 0 ? request.accuracy : request.psf_accuracy;
+  GriddingRequest both = request;
+  both.accuracy = std::min(request.accuracy, psf_accuracy);
+  GriddingPlan together = plan_together(both);
+  together.request = request;
   const double together_s = together.choice.best.cost_s;
-  if (request.accuracy != 0 && request.psf_accuracy > request.accuracy) {
+  if (psf_accuracy != request.accuracy) {
     GriddingRequest alone = request;
     alone.images = 1;
     GriddingPlan apart = plan_together(alone);
-    alone.accuracy = request.psf_accuracy;
+    alone.accuracy = psf_accuracy;
     alone.best_effort = true;
     apart.psf = std::make_shared<GriddingPlan>(plan_together(alone));
     if (apart.psf->choice.reached && apart.choice.best.cost_s + apart.psf->choice.best.cost_s < together_s) {

@@ -51,7 +51,10 @@ void check_gridding(const ImageOptions& o) {
   const bool accuracy_is_free = kernel_is_given(o);
   if (!(o.accuracy > 0 && o.accuracy < 1) && !(o.accuracy == 0 && accuracy_is_free))
     refuse("accuracy", text(o.accuracy), "a number above 0 and below 1");
-  if (!(o.psf_accuracy > 0 && o.psf_accuracy < 1)) refuse("psf-accuracy", text(o.psf_accuracy), "a number above 0 and below 1");
+  if (!(o.psf_accuracy >= 0 && o.psf_accuracy < 1))
+    refuse("psf-accuracy", text(o.psf_accuracy), "a number above 0 and below 1, or 0 (chosen)");
+  if (o.psf_accuracy != 0 && o.accuracy == 0)
+    refuse("psf-accuracy", text(o.psf_accuracy), "--accuracy beside it, since the kernel given decides otherwise");
   imager::check_request(gridding_request(o, 1));
 }
 
@@ -71,7 +74,7 @@ void declare(CLI::App& command, ImageOptions& o) {
                      "Gridding function: a name such as least-misfit or spheroidal, or a kernel-table file");
   command.add_option("--accuracy", o.accuracy,
                      "Largest error of the whole image relative to the direct transform, RMS over RMS");
-  command.add_option("--psf-accuracy", o.psf_accuracy, "The same of the PSF, unless --accuracy asks for less");
+  command.add_option("--psf-accuracy", o.psf_accuracy, "The same of the PSF; 0 = the larger of --accuracy and 1e-4");
   command.add_option("--kernel-width", o.kernel_width, "Cells a visibility touches per axis; chosen when 0");
   command.add_option("--padding", o.padding, "FFT size over image size; chosen when 0");
   command.add_option("--gridder", o.gridder, "w planes: auto (where w matters), standard (none), wide (always)")
@@ -112,7 +115,8 @@ imager::ImageGeometry geometry_of(const ImageOptions& o, const imager::SkyDirect
 imager::GriddingRequest gridding_request(const ImageOptions& o, int threads) {
   imager::GriddingRequest request;
   request.accuracy = o.accuracy;
-  request.psf_accuracy = std::max(o.accuracy, o.psf_accuracy);
+  constexpr double enough = 1e-4;  // to steer minor cycles
+  request.psf_accuracy = o.psf_accuracy != 0 ? o.psf_accuracy : std::max(o.accuracy, enough);
   request.kernel = choose_kernel(o.kernel);
   request.kernel_width = o.kernel_width;
   request.padding = o.padding;

@@ -23,7 +23,7 @@ struct ImageOptions {
   std::string weighting = "natural";
   std::string kernel = "least-misfit";
   double accuracy = 1e-6;
-  double psf_accuracy = 1e-4;
+  double psf_accuracy = 0;  ///< 0 = the larger of accuracy and 1e-4
   int kernel_width = 0;
   double padding = 0;
   std::string gridder = "auto";

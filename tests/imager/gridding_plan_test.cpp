@@ -190,6 +190,18 @@ BOOST_AUTO_TEST_CASE(a_single_kernel_is_padded_for_its_own_x0_and_judged_over_wh
   }
 }
 
+BOOST_AUTO_TEST_CASE(a_psf_is_as_exact_as_asked_whether_its_transform_is_its_own_or_not) {
+  for (const double max_abs_w : {0.0, 1e8})
+    for (const double psf_accuracy : {1e-2, 1e-4, 1e-8}) {
+      GriddingRequest r = request({2000, 2000}, 1e-4);
+      r.psf_accuracy = psf_accuracy;
+      r.max_abs_w = max_abs_w;
+      const GriddingPlan plan = plan_gridding(r);
+      BOOST_TEST(plan.worst_error <= r.accuracy);
+      BOOST_TEST((plan.psf ? plan.psf->worst_error : plan.worst_error) <= psf_accuracy);
+    }
+}
+
 BOOST_AUTO_TEST_CASE(every_decision_says_why) {
   for (const Decision& decision : plan_gridding(request({640, 480}, 1e-5)).decisions) {
     BOOST_TEST(!decision.item.empty());
