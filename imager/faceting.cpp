@@ -19,7 +19,7 @@ int largest_part(int pixels, int parts) {
 
 int Faceting::planes(double padding_w, int width_w) const {
   int sum = 0;
-  for (const double t : turns) sum += static_cast<int>(std::ceil(padding_w * t)) + width_w;
+  for (const double t : turns) sum += static_cast<int>(padding_w * t + 0.5 * (width_w + 1));
   return sum;
 }
 

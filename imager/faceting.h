@@ -14,7 +14,7 @@ struct Faceting {
   int height = 0;
   std::vector<double> turns;  ///< of each facet that reaches above the horizon: 2 · reach · largest |w|
 
-  /// Planes of all facets together, each touched by `width_w` planes around, for planes 1/padding of a turn apart.
+  /// Planes of all facets together for planes 1/padding of a turn apart, of which a sample touches `width_w`: those of w > 0.
   int planes(double padding_w, int width_w) const;
 };
 

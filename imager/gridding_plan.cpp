@@ -208,7 +208,9 @@ TransformMemory memory_of(const GriddingPlan& plan) {
   const GriddingCandidate& best = plan.choice.best;
   const std::vector<double>& turns = best.faceting.turns;
   const double most = *std::max_element(turns.begin(), turns.end());
-  const int planes = static_cast<int>(std::ceil(most * best.padding_w)) + best.work.width_w;
+  Faceting largest = best.faceting;
+  largest.turns = {most};
+  const int planes = largest.planes(best.padding_w, best.work.width_w);
   return memory_of(plan.options, static_cast<double>(plan.request.samples), planes);
 }
 

@@ -254,7 +254,7 @@ class ColumnGroup {
     turns_.resize(static_cast<std::size_t>(height_));
     first_re_.resize(turns_.size());
     first_im_.resize(turns_.size());
-    for (std::size_t r = 0; r < turns_.size(); ++r) turns_[r] = first_plane * q_[at(c) + r];
+    for (std::size_t r = 0; r < turns_.size(); ++r) turns_[r] = (first_plane + 0.5) * q_[at(c) + r];
     phasors(turns_.data(), height_, first_re_.data(), first_im_.data());
   }
 

@@ -77,7 +77,7 @@ struct StackedFacet {
 };
 
 /// image_i(x, y) += h_u h_v h_w Re Σ_k Σ_{p,q} G_{k,i}(p, q) exp(+2πi(px/nu + qy/nv + w_k q_w(x, y))) for the i-th complex grid
-/// of every plane, w_k = (first_plane + k) plane_step; q_w is the facet's curvature. Pixels beyond the horizon become NaN.
+/// of every plane, w_k = (first_plane + k + ½) plane_step; q_w is the facet's curvature. Pixels beyond the horizon become NaN.
 template <typename Real>
 void add_stack_to_images(PlaneStack<Real>& stack, const StackedFacet& facet, int first_plane, int threads,
                          const std::vector<Image*>& images);

@@ -6,12 +6,11 @@
 
 #include "imager/constants.h"
 #include "imager/parallel.h"
-#include "imager/tile_order.h"
 
 namespace misfit::imager {
 namespace {
 
-constexpr std::uint32_t longest_run = (1U << 12) - 1;
+constexpr std::uint32_t longest_run = (1U << 11) - 1;
 constexpr std::size_t rows_a_piece = 4096;  // fixed, so that the order does not depend on the number of threads
 
 struct TiledRun {
@@ -39,41 +38,44 @@ std::vector<TiledRun> find_runs(const Piece& piece, const SampleCoordinates& at,
   std::vector<TiledRun> runs;
   const StackShape& s = o.shape;
   for (std::size_t r = piece.begin_row; r < piece.end_row; ++r) {
-    const StackRow row(&at.uvw_m[3 * r], o.scale);
-    bool open = false;
-    for (std::size_t channel = 0; channel < at.channels(); ++channel) {
-      if (!wanted(piece.block, r * at.channels() + channel)) {
-        open = false;
-        continue;
+    for (const bool mirrored : {false, true}) {
+      const StackRow row(&at.uvw_m[3 * r], mirrored, o.scale);
+      bool open = false;
+      for (std::size_t channel = 0; channel < at.channels(); ++channel) {
+        const double frequency = at.frequency_hz[channel];
+        const std::int32_t plane = row.along_w(frequency, o.width_w).first;
+        if (plane + o.width_w <= 0 || !wanted(piece.block, r * at.channels() + channel)) {
+          open = false;
+          continue;
+        }
+        const int column = TapPosition(reduced(row.u_per_hz * frequency, s.nu), s.width).first + s.margin();
+        const int line = TapPosition(reduced(row.v_per_hz * frequency, s.nv), s.width).first + s.margin();
+        const auto tile = static_cast<std::uint32_t>(line / s.tile * s.tiles_u() + column / s.tile);
+        if (open && runs.back().tile == tile && runs.back().run.plane == plane && runs.back().run.count < longest_run) {
+          ++runs.back().run.count;
+        } else {
+          runs.push_back({tile,
+                          {piece.block, static_cast<std::uint32_t>(r), plane, static_cast<std::uint32_t>(channel) & 0xFFFFF, 1,
+                           mirrored}});
+        }
+        open = true;
       }
-      const double frequency = at.frequency_hz[channel];
-      const int column = TapPosition(reduced(row.u_per_hz * frequency, s.nu), s.width).first + s.margin();
-      const int line = TapPosition(reduced(row.v_per_hz * frequency, s.nv), s.width).first + s.margin();
-      const auto tile = static_cast<std::uint32_t>(line / s.tile * s.tiles_u() + column / s.tile);
-      const std::int32_t plane = TapPosition(row.w_per_hz * frequency, o.width_w).first;
-      if (open && runs.back().tile == tile && runs.back().run.plane == plane && runs.back().run.count < longest_run) {
-        ++runs.back().run.count;
-      } else {
-        runs.push_back(
-            {tile, {piece.block, static_cast<std::uint32_t>(r), plane, static_cast<std::uint32_t>(channel) & 0xFFFFF, 1}});
-      }
-      open = true;
     }
   }
   return runs;
 }
 
 void mark_planes(StackOrder& order, int width_w) {
-  if (order.run.empty()) return;
-  const auto [low, high] = std::minmax_element(order.run.begin(), order.run.end(),
-                                               [](const StackRun& a, const StackRun& b) { return a.plane < b.plane; });
-  order.first_plane = low->plane;
-  const int planes = high->plane - low->plane + width_w;
+  int planes = 0;
+  for (const StackRun& run : order.run) planes = std::max(planes, run.plane + width_w);
+  std::vector<char> first_tap(static_cast<std::size_t>(planes + width_w));  // [plane + width_w]
+  for (const StackRun& run : order.run) first_tap[static_cast<std::size_t>(run.plane + width_w)] = 1;
   order.plane_used.resize(static_cast<std::size_t>(planes));
-  for (const StackRun& run : order.run) order.plane_used[static_cast<std::size_t>(run.plane - order.first_plane)] = 1;
-  for (std::size_t k = order.plane_used.size(); k-- > 0;)  // a first tap is followed by the others
-    for (std::size_t tap = 1; tap < static_cast<std::size_t>(width_w) && order.plane_used[k] == 0 && tap <= k; ++tap)
-      order.plane_used[k] = order.plane_used[k - tap] == 1 ? 2 : 0;
+  int since = width_w;  // planes since the last one that holds a first tap
+  for (int k = -width_w; k < planes; ++k) {
+    since = first_tap[static_cast<std::size_t>(k + width_w)] != 0 ? 0 : since + 1;
+    if (k >= 0) order.plane_used[static_cast<std::size_t>(k)] = since < width_w ? 1 : 0;
+  }
 }
 
 }  // namespace
@@ -85,8 +87,8 @@ StackScale::StackScale(const StackShape& shape, const Facet& at, double plane_st
       turns_per_m_hz(1 / speed_of_light_m_s),
       facet(at) {}
 
-StackRow::StackRow(const double* uvw_m, const StackScale& scale) : folded(uvw_m[2] < 0) {
-  const double sign = folded ? -1 : 1;
+StackRow::StackRow(const double* uvw_m, bool mirror, const StackScale& scale) : mirrored(mirror) {
+  const double sign = mirror ? -1 : 1;
   const double u = sign * uvw_m[0], v = sign * uvw_m[1], w = sign * uvw_m[2];
   const Facet& f = scale.facet;
   u_per_hz = (u + f.slope_l * w) * scale.u_cells_per_m_hz;

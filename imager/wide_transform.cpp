@@ -66,7 +66,7 @@ std::vector<Slab> slabs_of(const StackOrder& order, const Setup<Real>& setup, in
   std::vector<Slab> slabs;
   for (std::size_t k = 0; k < order.plane_used.size(); ++k) {
     if (order.plane_used[k] == 0) continue;
-    const int plane = order.first_plane + static_cast<int>(k);
+    const int plane = static_cast<int>(k);
     if (slabs.empty() || slabs.back().planes == most || slabs.back().first + slabs.back().planes != plane)
       slabs.push_back({plane, 0});
     ++slabs.back().planes;
@@ -115,7 +115,7 @@ struct BatchPhases {
   static constexpr int capacity = StackBatch<double>::capacity;
   std::size_t block[capacity];
   std::size_t sample[capacity];
-  bool folded[capacity];
+  bool mirrored[capacity];
   double turns[capacity];
   double cosine[capacity];
   double sine[capacity];
@@ -149,22 +149,21 @@ void for_each_batch(const Setup<Real>& setup, const StackScale& scale, const std
   for (std::size_t i = task.begin; i < task.end; ++i) {
     const StackRun run = order.run[i];
     const SampleCoordinates& at = *blocks[run.block];
-    const StackRow row(&at.uvw_m[std::size_t{3} * run.row], scale);
+    const StackRow row(&at.uvw_m[std::size_t{3} * run.row], run.mirrored != 0, scale);
     for (std::size_t channel = run.first; channel < std::size_t{run.first} + run.count; ++channel) {
       const double frequency = at.frequency_hz[channel];
       const TileTap u(reduced(row.u_per_hz * frequency, s.nu), task.tile_u, s);
       const TileTap v(reduced(row.v_per_hz * frequency, s.nv), task.tile_v, s);
-      const double w = row.w_per_hz * frequency;
       const int k = batch.count++;
       batch.plane[k] = run.plane - task.planes.first;
       batch.column[k] = u.first;
       batch.row[k] = v.first;
       batch.tu[k] = static_cast<Real>(u.t);
       batch.tv[k] = static_cast<Real>(v.t);
-      batch.tw[k] = static_cast<Real>(w - run.plane - 0.5 * (setup.taps.w.width - 1));
+      batch.tw[k] = static_cast<Real>(row.along_w(frequency, setup.taps.w.width).t);
       phases.block[k] = run.block;
       phases.sample[k] = run.row * at.channels() + channel;
-      phases.folded[k] = row.folded;
+      phases.mirrored[k] = run.mirrored != 0;
       phases.turns[k] = row.turns_per_hz * frequency;
       if (batch.count == StackBatch<Real>::capacity) finish();
     }
@@ -277,7 +276,7 @@ class WideAdjoint : public AdjointSum {
         const Gathered& g = gathered_[phases.block[k]];
         const double weight = g.block.weight[phases.sample[k]];
         const std::complex<double> v = g.visibility(phases.sample[k]);
-        const double re = weight * v.real(), im = phases.folded[k] ? weight * v.imag() : -weight * v.imag();
+        const double re = weight * v.real(), im = phases.mirrored[k] ? weight * v.imag() : -weight * v.imag();
         batch.value[0][k] = static_cast<Real>(re * phases.cosine[k] - im * phases.sine[k]);
         batch.value[1][k] = static_cast<Real>(re * phases.sine[k] + im * phases.cosine[k]);
         if (stack.components == 2) continue;
@@ -318,7 +317,7 @@ class WideAdjoint : public AdjointSum {
       const VisibilityBlock& block = gathered_[phases.block[k]].block;
       const std::size_t row = phases.sample[k] / block.channels(), channel = phases.sample[k] % block.channels();
       const double to_middle = turns_per_hz(&block.uvw_m[3 * row], middle) * block.frequency_hz[channel];
-      turns[k] = phases.turns[k] - (phases.folded[k] ? -to_middle : to_middle);
+      turns[k] = phases.turns[k] - (phases.mirrored[k] ? -to_middle : to_middle);
     }
     phasors(turns, count, cosine, sine);
   }
@@ -349,10 +348,17 @@ class WidePrediction : public Prediction {
  private:
   using Visibilities = std::vector<std::vector<std::complex<double>>>;  ///< [block][sample]
 
+  /// What samples and their mirror images gather in different tiles, by different threads.
+  struct Halves {
+    Visibilities direct;
+    Visibilities mirrored;
+  };
+
   template <typename Wanted>
   Visibilities degrid(const std::vector<const SampleCoordinates*>& blocks, const Wanted& wanted) const {
-    Visibilities visibility;
-    for (const SampleCoordinates* at : blocks) visibility.emplace_back(at->samples());
+    Halves halves;
+    for (const SampleCoordinates* at : blocks) halves.direct.emplace_back(at->samples());
+    halves.mirrored = halves.direct;
     PlaneStack<Real> stack(setup_.shape, 2);
     for (const StackedFacet& f : setup_.facets) {
       const StackOrderOptions ordering = setup_.ordering(f);
@@ -361,16 +367,17 @@ class WidePrediction : public Prediction {
         stack.reserve(slab.planes);
         image_to_stack(model_, f, slab.first, setup_.options.threads, stack);
         for (const std::vector<StackTask>& tasks : tasks_of(order, setup_.shape, slab, setup_.taps.w.width))
-          parallel_for(tasks.size(), setup_.options.threads, [&](std::size_t i) {
-            degrid_tile(ordering.scale, blocks, order, tasks[i], slab.first, stack, visibility);
-          });
+          parallel_for(tasks.size(), setup_.options.threads,
+                       [&](std::size_t i) { degrid_tile(ordering.scale, blocks, order, tasks[i], slab.first, stack, halves); });
       }
     }
-    return visibility;
+    for (std::size_t b = 0; b < blocks.size(); ++b)
+      for (std::size_t i = 0; i < halves.direct[b].size(); ++i) halves.direct[b][i] += std::conj(halves.mirrored[b][i]);
+    return std::move(halves.direct);
   }
 
   void degrid_tile(const StackScale& scale, const std::vector<const SampleCoordinates*>& blocks, const StackOrder& order,
-                   const StackTask& task, int first_plane, const PlaneStack<Real>& stack, Visibilities& visibility) const {
+                   const StackTask& task, int first_plane, const PlaneStack<Real>& stack, Halves& halves) const {
     const StackShape& s = setup_.shape;
     StackBuffer<Real> buffer(s.tile, setup_.taps.u.padded, task.planes.planes, 2);
     for_each_chunk(s, task, 2, [&](int row, int chunk, int plane, int component, int count) {
@@ -382,9 +389,9 @@ class WidePrediction : public Prediction {
       interpolate(setup_.taps, buffer, batch);
       for (int k = 0; k < batch.count; ++k) {
         const double re = double{batch.value[0][k]}, im = double{batch.value[1][k]};
-        const std::complex<double> conjugate(re * phases.cosine[k] + im * phases.sine[k],
-                                             im * phases.cosine[k] - re * phases.sine[k]);
-        visibility[phases.block[k]][phases.sample[k]] += phases.folded[k] ? conjugate : std::conj(conjugate);
+        Visibilities& visibility = phases.mirrored[k] ? halves.mirrored : halves.direct;
+        visibility[phases.block[k]][phases.sample[k]] +=
+            std::complex<double>(re * phases.cosine[k] + im * phases.sine[k], re * phases.sine[k] - im * phases.cosine[k]);
       }
     });
   }
