@@ -11,17 +11,13 @@ namespace misfit::imager::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
 /// Calls body(tag, i) for whole vectors, and for what is left one by one.
-template <typename Real, typename Body>
-HWY_ATTR void for_vectors_of(int count, const Body& body) {
-  const hn::ScalableTag<Real> wide;
+template <typename Body>
+HWY_ATTR void for_vectors(int count, const Body& body) {
+  const hn::ScalableTag<double> wide;
   const int lanes = static_cast<int>(hn::Lanes(wide));
   int i = 0;
   for (; i + lanes <= count; i += lanes) body(wide, i);
-  for (; i < count; ++i) body(hn::CappedTag<Real, 1>(), i);
-}
-template <typename Body>
-HWY_ATTR void for_vectors(int count, const Body& body) {
-  for_vectors_of<double>(count, body);
+  for (; i < count; ++i) body(hn::CappedTag<double, 1>(), i);
 }
 
 /// n − 1 less the facet's plane.
@@ -119,46 +115,6 @@ struct StoreLoop {
   }
 };
 
-template <typename Real>
-struct InterleaveLoop {
-  const Real *real, *imaginary;
-  std::complex<Real>* out;
-
-  template <typename D>
-  HWY_ATTR void operator()(D d, int i) const {
-    Real* at = reinterpret_cast<Real*>(out + i);
-    hn::Vec<D> re, im;
-    hn::LoadInterleaved2(d, at, re, im);
-    hn::StoreInterleaved2(hn::Add(re, hn::LoadU(d, real + i)), hn::Add(im, hn::LoadU(d, imaginary + i)), d, at);
-  }
-};
-
-template <typename Real>
-struct SplitLoop {
-  const std::complex<Real>* in;
-  Real *real, *imaginary;
-
-  template <typename D>
-  HWY_ATTR void operator()(D d, int i) const {
-    hn::Vec<D> re, im;
-    hn::LoadInterleaved2(d, reinterpret_cast<const Real*>(in + i), re, im);
-    hn::StoreU(re, d, real + i);
-    hn::StoreU(im, d, imaginary + i);
-  }
-};
-
-HWY_ATTR void interleave_float(const float* real, const float* imaginary, std::complex<float>* out, int count) {
-  for_vectors_of<float>(count, InterleaveLoop<float>{real, imaginary, out});
-}
-HWY_ATTR void interleave_double(const double* real, const double* imaginary, std::complex<double>* out, int count) {
-  for_vectors_of<double>(count, InterleaveLoop<double>{real, imaginary, out});
-}
-HWY_ATTR void split_float(const std::complex<float>* in, float* real, float* imaginary, int count) {
-  for_vectors_of<float>(count, SplitLoop<float>{in, real, imaginary});
-}
-HWY_ATTR void split_double(const std::complex<double>* in, double* real, double* imaginary, int count) {
-  for_vectors_of<double>(count, SplitLoop<double>{in, real, imaginary});
-}
 HWY_ATTR void curvature(const Facet& f, double l, double* q) {
   for_vectors(f.geometry.height, CurvatureLoop{f, l, q});
 }
@@ -190,10 +146,6 @@ HWY_EXPORT(add_float);
 HWY_EXPORT(add_double);
 HWY_EXPORT(store_float);
 HWY_EXPORT(store_double);
-HWY_EXPORT(interleave_float);
-HWY_EXPORT(interleave_double);
-HWY_EXPORT(split_float);
-HWY_EXPORT(split_double);
 
 void curvature_of_column(const Facet& facet, int column, double* q) {
   HWY_DYNAMIC_DISPATCH(curvature)(facet, facet.geometry.l(column), q);
@@ -212,19 +164,6 @@ void store_and_turn(const ColumnPhasors& sum, const ColumnPhasors& step, std::co
 }
 void store_and_turn(const ColumnPhasors& sum, const ColumnPhasors& step, std::complex<double>* value, int count) {
   HWY_DYNAMIC_DISPATCH(store_double)(sum, step, value, count);
-}
-
-void add_interleaved(const float* real, const float* imaginary, std::complex<float>* out, int count) {
-  HWY_DYNAMIC_DISPATCH(interleave_float)(real, imaginary, out, count);
-}
-void add_interleaved(const double* real, const double* imaginary, std::complex<double>* out, int count) {
-  HWY_DYNAMIC_DISPATCH(interleave_double)(real, imaginary, out, count);
-}
-void split(const std::complex<float>* in, float* real, float* imaginary, int count) {
-  HWY_DYNAMIC_DISPATCH(split_float)(in, real, imaginary, count);
-}
-void split(const std::complex<double>* in, double* real, double* imaginary, int count) {
-  HWY_DYNAMIC_DISPATCH(split_double)(in, real, imaginary, count);
 }
 
 }  // namespace misfit::imager

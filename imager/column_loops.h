@@ -29,12 +29,4 @@ void turn_and_add(const ColumnPhasors& sum, const ColumnPhasors& step, const std
 void store_and_turn(const ColumnPhasors& sum, const ColumnPhasors& step, std::complex<float>* value, int count);
 void store_and_turn(const ColumnPhasors& sum, const ColumnPhasors& step, std::complex<double>* value, int count);
 
-/// out[i] += real[i] + i imaginary[i].
-void add_interleaved(const float* real, const float* imaginary, std::complex<float>* out, int count);
-void add_interleaved(const double* real, const double* imaginary, std::complex<double>* out, int count);
-
-/// real[i] + i imaginary[i] = in[i].
-void split(const std::complex<float>* in, float* real, float* imaginary, int count);
-void split(const std::complex<double>* in, double* real, double* imaginary, int count);
-
 }  // namespace misfit::imager

@@ -29,43 +29,38 @@ struct StackShape {
   std::size_t cells() const { return static_cast<std::size_t>(columns()) * static_cast<std::size_t>(rows()); }
 };
 
-/// Some neighbouring planes of constant w, each with one or more complex grids whose real and imaginary parts are components in
-/// turn. What a tile holds of one row lies together: [row][chunk][plane][component][column in chunk], a chunk being as wide as
-/// a tile. Memory is used again from one facet to the next.
+/// Some neighbouring planes of constant w, each with one or more complex grids. What a tile holds of one row lies together:
+/// [row][chunk][plane][grid][column in chunk], a chunk being as wide as a tile. Memory is used again from one facet to the
+/// next.
 template <typename Real>
 class PlaneStack {
  public:
-  PlaneStack(const StackShape& stack_shape, int component_count) : shape(stack_shape), components(component_count) {}
+  PlaneStack(const StackShape& stack_shape, int grid_count) : shape(stack_shape), grids(grid_count) {}
 
-  /// Makes room for that many planes, whose content is undefined.
+  /// Makes room for that many planes, whose content is undefined, and marks every row unused.
   void reserve(int plane_count);
-  /// Makes all planes zero.
+  /// Makes the used rows of all planes zero.
   void clear(int threads);
 
-  Real* chunk(int row, int index, int plane, int component) { return cell_.data() + offset(row, index, plane, component); }
-  const Real* chunk(int row, int index, int plane, int component) const {
-    return cell_.data() + offset(row, index, plane, component);
+  std::complex<Real>* chunk(int row, int index, int plane, int grid) { return cell_.data() + offset(row, index, plane, grid); }
+  const std::complex<Real>* chunk(int row, int index, int plane, int grid) const {
+    return cell_.data() + offset(row, index, plane, grid);
   }
 
   StackShape shape;
   int planes = 0;
-  int components = 2;
-  std::vector<char> row_used;            ///< [row]: whether any plane may hold something there
-  BigArray<std::complex<Real>> between;  ///< what lies between the two transforms of an FFT
+  int grids = 1;
+  std::vector<char> row_used;  ///< [row]: whether any plane may hold something there; the content of others does not count
 
  private:
-  std::size_t offset(int row, int index, int plane, int component) const {
+  std::size_t offset(int row, int index, int plane, int grid) const {
     const auto at = [](int i, int n) { return static_cast<std::size_t>(i) * static_cast<std::size_t>(n); };
-    return (at(row, shape.chunks()) + static_cast<std::size_t>(index)) * at(planes * components, shape.tile) +
-           at(plane * components + component, shape.tile);
+    return (at(row, shape.chunks()) + static_cast<std::size_t>(index)) * at(planes * grids, shape.tile) +
+           at(plane * grids + grid, shape.tile);
   }
 
-  BigArray<Real> cell_;
+  BigArray<std::complex<Real>> cell_;
 };
-
-/// Bytes that a stack takes for each plane, whose FFTs keep `width` columns of an image.
-template <typename Real>
-double bytes_a_plane(const StackShape& shape, int components, int width);
 
 /// A facet with the distance of its planes in wavelengths, and the corrections of the kernels over its pixels.
 struct StackedFacet {
@@ -76,13 +71,14 @@ struct StackedFacet {
   SmoothCorrection h_w;     ///< of plane_step · q
 };
 
-/// image_i(x, y) += h_u h_v h_w Re Σ_k Σ_{p,q} G_{k,i}(p, q) exp(+2πi(px/nu + qy/nv + w_k q_w(x, y))) for the i-th complex grid
+/// image_i(x, y) += h_u h_v h_w Re Σ_k Σ_{p,q} G_{k,i}(p, q) exp(+2πi(px/nu + qy/nv + w_k q_w(x, y))) for the i-th grid
 /// of every plane, w_k = (first_plane + k + ½) plane_step; q_w is the facet's curvature. Pixels beyond the horizon become NaN.
+/// What the stack held is lost.
 template <typename Real>
 void add_stack_to_images(PlaneStack<Real>& stack, const StackedFacet& facet, int first_plane, int threads,
                          const std::vector<Image*>& images);
 
-/// The adjoint, for a stack of one complex grid a plane: G_k(p, q) = Σ_{x,y} h_u h_v h_w image(x, y) exp(−2πi(px/nu + qy/nv +
+/// The adjoint, for a stack of one grid a plane: G_k(p, q) = Σ_{x,y} h_u h_v h_w image(x, y) exp(−2πi(px/nu + qy/nv +
 /// w_k q_w)), margins filled by periodicity. Pixels beyond the horizon are not used.
 template <typename Real>
 void image_to_stack(const Image& image, const StackedFacet& facet, int first_plane, int threads, PlaneStack<Real>& stack);

@@ -1,6 +1,9 @@
 #include "imager/stack_loops.h"
 
 #include <algorithm>
+#include <utility>
+
+#include "imager/batch_taps.h"
 
 // Highway compiles what stands inside HWY_NAMESPACE once for every instruction set and chooses among them at run time.
 #undef HWY_TARGET_INCLUDE
@@ -8,141 +11,175 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
-#include "imager/tap_vectors_internal.h"
-
 HWY_BEFORE_NAMESPACE();
 namespace misfit::imager::HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// The taps along w.
+/// Real and imaginary parts lie in turn, so that a vector holds half as many cells as numbers.
 template <typename Real>
-HWY_ATTR void evaluate(const TapTable<Real>& table, Real t, Real* out) {
-  const hn::CappedTag<Real, 4> d;
-  constexpr int lanes = static_cast<int>(hn::MaxLanes(hn::CappedTag<Real, 4>()));
-  const auto x = hn::Set(d, t);
-  for (int k = 0; k < table.padded; k += lanes) {
-    const Real* c = table.coefficient.data() + table.degree * table.padded + k;
-    auto value = hn::LoadU(d, c);
-    for (int power = table.degree - 1; power >= 0; --power) value = hn::MulAdd(value, x, hn::LoadU(d, c -= table.padded));
-    hn::StoreU(value, d, out + k);
-  }
+using Tag = hn::CappedTag<Real, 32 / sizeof(Real)>;
+template <typename Real>
+constexpr int lanes_of = static_cast<int>(hn::MaxLanes(Tag<Real>()));
+
+/// Vectors that hold the taps of a row.
+template <typename Real>
+constexpr int vectors_of(int width) {
+  return (2 * width + lanes_of<Real> - 1) / lanes_of<Real>;
 }
 
-template <typename Real, int Padded, int Components>
-HWY_ATTR void spread_samples(const StackTaps<Real>& taps, const StackBatch<Real>& samples, StackBuffer<Real>& buffer) {
-  using T = Taps<Real, Padded>;
-  const typename T::Tag d;
-  for (int i = 0; i < samples.count; ++i) {
-    const T along_u(taps.u, samples.tu[i]);
-    Real along_v[Padded];
-    T(taps.v, samples.tv[i]).store(along_v);
-    Real along_w[most_taps];
-    evaluate(taps.w, samples.tw[i], along_w);
-    const int first = std::max(0, samples.plane[i]);
-    const int last = std::min(buffer.planes, samples.plane[i] + taps.w.width);
-    for (int plane = first; plane < last; ++plane) {
-      Real* cell = buffer.row(plane, samples.row[i], 0) + samples.column[i];
-      Real value[Components];
-      for (int c = 0; c < Components; ++c) value[c] = samples.value[c][i] * along_w[plane - samples.plane[i]];
-      for (int j = 0; j < taps.v.width; ++j)
-        for (int c = 0; c < Components; ++c, cell += buffer.columns) {
-          const auto factor = hn::Set(d, along_v[j] * value[c]);
-          for (int k = 0; k < T::vectors; ++k) {
-            Real* at = cell + k * T::lanes;
-            hn::StoreU(hn::MulAdd(factor, along_u.value[k], hn::LoadU(d, at)), d, at);
-          }
-        }
+template <typename Real>
+using Evaluated = BatchTaps<Real, TilePlaces<Real>::capacity>;
+
+/// A batch's taps: [sample][padded].
+template <typename Real>
+struct Along {
+  Evaluated<Real> u, v, w;
+
+  Along(const StackTaps<Real>& taps, const StackBatch<Real>& samples) {
+    evaluate_taps(taps.u, samples.tu, samples.count, u.value);
+    evaluate_taps(taps.v, samples.tv, samples.count, v.value);
+    evaluate_taps(taps.w, samples.tw, samples.count, w.value);
+  }
+};
+
+/// As many taps as a vector holds complex numbers.
+template <typename Real>
+using TapsTag = hn::CappedTag<Real, lanes_of<Real> == 1 ? 1 : lanes_of<Real> / 2>;
+template <typename Real>
+constexpr int taps_at_once = static_cast<int>(hn::MaxLanes(TapsTag<Real>()));
+
+/// Samples whose taps a plane holds, plane by plane: a plane of the buffer fits the nearest cache where all of them do not.
+/// visit(plane, sample, tap along w).
+template <typename Real, typename Visit>
+HWY_ATTR HWY_INLINE void for_each_plane(const StackTaps<Real>& taps, const StackBatch<Real>& samples, const Along<Real>& along,
+                                        int planes, const Visit& visit) {
+  for (int plane = 0; plane < planes; ++plane)
+    for (int i = 0; i < samples.count; ++i) {
+      const int tap = plane - samples.plane[i];
+      if (tap >= 0 && tap < taps.w.width) visit(plane, i, along.w.value[i * taps.w.padded + tap]);
     }
-  }
 }
 
-template <typename Real, int Padded>
-HWY_ATTR void interpolate_samples(const StackTaps<Real>& taps, const StackBuffer<Real>& buffer, StackBatch<Real>& samples) {
-  using T = Taps<Real, Padded>;
-  const typename T::Tag d;
-  for (int i = 0; i < samples.count; ++i) {
-    const T along_u(taps.u, samples.tu[i]);
-    Real along_v[Padded];
-    T(taps.v, samples.tv[i]).store(along_v);
-    Real along_w[most_taps];
-    evaluate(taps.w, samples.tw[i], along_w);
-    hn::Vec<typename T::Tag> real[T::vectors];
-    hn::Vec<typename T::Tag> imaginary[T::vectors];
-    for (int k = 0; k < T::vectors; ++k) real[k] = imaginary[k] = hn::Zero(d);
-    const int first = std::max(0, samples.plane[i]);
-    const int last = std::min(buffer.planes, samples.plane[i] + taps.w.width);
-    for (int plane = first; plane < last; ++plane) {
-      const Real* cell = buffer.row(plane, samples.row[i], 0) + samples.column[i];
-      const Real height = along_w[plane - samples.plane[i]];
-      for (int j = 0; j < taps.v.width; ++j, cell += 2 * buffer.columns) {
-        const auto factor = hn::Set(d, height * along_v[j]);
-        for (int k = 0; k < T::vectors; ++k) {
-          real[k] = hn::MulAdd(factor, hn::LoadU(d, cell + k * T::lanes), real[k]);
-          imaginary[k] = hn::MulAdd(factor, hn::LoadU(d, cell + buffer.columns + k * T::lanes), imaginary[k]);
-        }
+template <typename Real, int Vectors, int Grids>
+HWY_ATTR void spread_samples(const StackTaps<Real>& taps, const StackBatch<Real>& samples, StackBuffer<Real>& buffer) {
+  const Tag<Real> d;
+  constexpr int lanes = lanes_of<Real>;
+  const Along<Real> along(taps, samples);
+  alignas(64) Real row[TilePlaces<Real>::capacity][Grids][Vectors * lanes];  // value · C_u
+  const TapsTag<Real> dt;
+  for (int i = 0; i < samples.count; ++i)
+    for (int k = 0; k < Vectors * lanes / 2; k += taps_at_once<Real>) {
+      const auto u = hn::LoadU(dt, along.u.value + i * taps.u.padded + k);
+      for (int g = 0; g < Grids; ++g) {
+        const std::complex<Real> value = samples.value[g][i];
+        hn::StoreInterleaved2(hn::Mul(u, hn::Set(dt, value.real())), hn::Mul(u, hn::Set(dt, value.imag())), dt,
+                              row[i][g] + 2 * k);
       }
     }
-    auto real_sum = hn::Mul(real[0], along_u.value[0]);
-    auto imaginary_sum = hn::Mul(imaginary[0], along_u.value[0]);
-    for (int k = 1; k < T::vectors; ++k) {
-      real_sum = hn::MulAdd(real[k], along_u.value[k], real_sum);
-      imaginary_sum = hn::MulAdd(imaginary[k], along_u.value[k], imaginary_sum);
+  const int width = taps.v.width;
+  const std::ptrdiff_t line = 2 * buffer.columns;
+  for_each_plane(taps, samples, along, buffer.planes, [&](int plane, int i, Real along_w) HWY_ATTR {
+    const auto height = hn::Set(d, along_w);
+    hn::Vec<Tag<Real>> term[Grids][Vectors];
+    for (int g = 0; g < Grids; ++g)
+      for (int k = 0; k < Vectors; ++k) term[g][k] = hn::Mul(height, hn::Load(d, row[i][g] + k * lanes));
+    const Real* v = along.v.value + i * taps.v.padded;
+    Real* cell = reinterpret_cast<Real*>(buffer.row(plane, samples.row[i], 0) + samples.column[i]);
+    for (int j = 0; j < width; ++j) {
+      const auto factor = hn::Set(d, v[j]);
+      for (int g = 0; g < Grids; ++g, cell += line)
+        for (int k = 0; k < Vectors; ++k)
+          hn::StoreU(hn::MulAdd(factor, term[g][k], hn::LoadU(d, cell + k * lanes)), d, cell + k * lanes);
     }
-    samples.value[0][i] = hn::GetLane(hn::SumOfLanes(d, real_sum));
-    samples.value[1][i] = hn::GetLane(hn::SumOfLanes(d, imaginary_sum));
+  });
+}
+
+template <typename Real, int Vectors>
+HWY_ATTR void interpolate_samples(const StackTaps<Real>& taps, const StackBuffer<Real>& buffer, StackBatch<Real>& samples) {
+  const Tag<Real> d;
+  constexpr int lanes = lanes_of<Real>;
+  const Along<Real> along(taps, samples);
+  alignas(64) Real row[TilePlaces<Real>::capacity][Vectors * lanes];  // Σ C_v C_w · buffer
+  for (int i = 0; i < samples.count; ++i)
+    for (int k = 0; k < Vectors; ++k) hn::Store(hn::Zero(d), d, row[i] + k * lanes);
+  const int width = taps.v.width;
+  const std::ptrdiff_t line = 2 * buffer.columns;
+  for_each_plane(taps, samples, along, buffer.planes, [&](int plane, int i, Real along_w) HWY_ATTR {
+    hn::Vec<Tag<Real>> sum[Vectors];
+    for (int k = 0; k < Vectors; ++k) sum[k] = hn::Zero(d);
+    const Real* v = along.v.value + i * taps.v.padded;
+    const Real* cell = reinterpret_cast<const Real*>(buffer.row(plane, samples.row[i], 0) + samples.column[i]);
+    for (int j = 0; j < width; ++j, cell += line) {
+      const auto factor = hn::Set(d, v[j]);
+      for (int k = 0; k < Vectors; ++k) sum[k] = hn::MulAdd(factor, hn::LoadU(d, cell + k * lanes), sum[k]);
+    }
+    const auto height = hn::Set(d, along_w);
+    for (int k = 0; k < Vectors; ++k)
+      hn::Store(hn::MulAdd(height, sum[k], hn::Load(d, row[i] + k * lanes)), d, row[i] + k * lanes);
+  });
+  const TapsTag<Real> dt;
+  for (int i = 0; i < samples.count; ++i) {
+    auto real_sum = hn::Zero(dt), imaginary_sum = real_sum;
+    for (int k = 0; k < Vectors * lanes / 2; k += taps_at_once<Real>) {
+      const auto u = hn::LoadU(dt, along.u.value + i * taps.u.padded + k);
+      hn::Vec<TapsTag<Real>> real, imaginary;
+      hn::LoadInterleaved2(dt, row[i] + 2 * k, real, imaginary);
+      real_sum = hn::MulAdd(real, u, real_sum);
+      imaginary_sum = hn::MulAdd(imaginary, u, imaginary_sum);
+    }
+    samples.value[0][i] = {hn::GetLane(hn::SumOfLanes(dt, real_sum)), hn::GetLane(hn::SumOfLanes(dt, imaginary_sum))};
   }
 }
 
-template <typename Real, int Padded>
-HWY_ATTR void spread_components(const StackTaps<Real>& taps, const StackBatch<Real>& samples, StackBuffer<Real>& buffer) {
-  if (buffer.components == 4) return spread_samples<Real, Padded, 4>(taps, samples, buffer);
-  spread_samples<Real, Padded, 2>(taps, samples, buffer);
+template <typename Real, int... Before>
+HWY_ATTR void spread_any(std::integer_sequence<int, Before...>, const StackTaps<Real>& taps, const StackBatch<Real>& samples,
+                         StackBuffer<Real>& buffer) {
+  using Loop = void (*)(const StackTaps<Real>&, const StackBatch<Real>&, StackBuffer<Real>&);
+  constexpr Loop one_grid[] = {spread_samples<Real, Before + 1, 1>...};
+  constexpr Loop two_grids[] = {spread_samples<Real, Before + 1, 2>...};
+  (buffer.grids == 2 ? two_grids : one_grid)[vectors_of<Real>(taps.u.width) - 1](taps, samples, buffer);
+}
+
+template <typename Real, int... Before>
+HWY_ATTR void interpolate_any(std::integer_sequence<int, Before...>, const StackTaps<Real>& taps,
+                              const StackBuffer<Real>& buffer, StackBatch<Real>& samples) {
+  using Loop = void (*)(const StackTaps<Real>&, const StackBuffer<Real>&, StackBatch<Real>&);
+  constexpr Loop loops[] = {interpolate_samples<Real, Before + 1>...};
+  loops[vectors_of<Real>(taps.u.width) - 1](taps, buffer, samples);
 }
 
 template <typename Real>
-HWY_ATTR void spread_any(const StackTaps<Real>& taps, const StackBatch<Real>& samples, StackBuffer<Real>& buffer) {
-  switch (taps.u.padded) {
-    case 4:
-      return spread_components<Real, 4>(taps, samples, buffer);
-    case 8:
-      return spread_components<Real, 8>(taps, samples, buffer);
-    case 12:
-      return spread_components<Real, 12>(taps, samples, buffer);
-    case 16:
-      return spread_components<Real, 16>(taps, samples, buffer);
-    default:
-      return spread_components<Real, 20>(taps, samples, buffer);
-  }
-}
+using VectorCounts = std::make_integer_sequence<int, vectors_of<Real>(most_taps)>;
 
 template <typename Real>
-HWY_ATTR void interpolate_any(const StackTaps<Real>& taps, const StackBuffer<Real>& buffer, StackBatch<Real>& samples) {
-  switch (taps.u.padded) {
-    case 4:
-      return interpolate_samples<Real, 4>(taps, buffer, samples);
-    case 8:
-      return interpolate_samples<Real, 8>(taps, buffer, samples);
-    case 12:
-      return interpolate_samples<Real, 12>(taps, buffer, samples);
-    case 16:
-      return interpolate_samples<Real, 16>(taps, buffer, samples);
-    default:
-      return interpolate_samples<Real, 20>(taps, buffer, samples);
-  }
+HWY_ATTR void add_any(const std::complex<Real>* from, int count, std::complex<Real>* to) {
+  const hn::ScalableTag<Real> d;
+  const int lanes = static_cast<int>(hn::Lanes(d));
+  const Real* in = reinterpret_cast<const Real*>(from);
+  Real* out = reinterpret_cast<Real*>(to);
+  int i = 0;
+  for (; i + lanes <= 2 * count; i += lanes) hn::StoreU(hn::Add(hn::LoadU(d, in + i), hn::LoadU(d, out + i)), d, out + i);
+  for (; i < 2 * count; ++i) out[i] += in[i];
 }
 
 HWY_ATTR void stack_spread_float(const StackTaps<float>& t, const StackBatch<float>& s, StackBuffer<float>& b) {
-  spread_any(t, s, b);
+  spread_any(VectorCounts<float>(), t, s, b);
 }
 HWY_ATTR void stack_spread_double(const StackTaps<double>& t, const StackBatch<double>& s, StackBuffer<double>& b) {
-  spread_any(t, s, b);
+  spread_any(VectorCounts<double>(), t, s, b);
 }
 HWY_ATTR void stack_interpolate_float(const StackTaps<float>& t, const StackBuffer<float>& b, StackBatch<float>& s) {
-  interpolate_any(t, b, s);
+  interpolate_any(VectorCounts<float>(), t, b, s);
 }
 HWY_ATTR void stack_interpolate_double(const StackTaps<double>& t, const StackBuffer<double>& b, StackBatch<double>& s) {
-  interpolate_any(t, b, s);
+  interpolate_any(VectorCounts<double>(), t, b, s);
+}
+HWY_ATTR void stack_add_float(const std::complex<float>* from, int count, std::complex<float>* to) {
+  add_any(from, count, to);
+}
+HWY_ATTR void stack_add_double(const std::complex<double>* from, int count, std::complex<double>* to) {
+  add_any(from, count, to);
 }
 
 }  // namespace misfit::imager::HWY_NAMESPACE
@@ -155,6 +192,8 @@ HWY_EXPORT(stack_spread_float);
 HWY_EXPORT(stack_spread_double);
 HWY_EXPORT(stack_interpolate_float);
 HWY_EXPORT(stack_interpolate_double);
+HWY_EXPORT(stack_add_float);
+HWY_EXPORT(stack_add_double);
 
 void spread(const StackTaps<float>& taps, const StackBatch<float>& samples, StackBuffer<float>& buffer) {
   HWY_DYNAMIC_DISPATCH(stack_spread_float)(taps, samples, buffer);
@@ -167,6 +206,12 @@ void interpolate(const StackTaps<float>& taps, const StackBuffer<float>& buffer,
 }
 void interpolate(const StackTaps<double>& taps, const StackBuffer<double>& buffer, StackBatch<double>& samples) {
   HWY_DYNAMIC_DISPATCH(stack_interpolate_double)(taps, buffer, samples);
+}
+void add_cells(const std::complex<float>* from, int count, std::complex<float>* to) {
+  HWY_DYNAMIC_DISPATCH(stack_add_float)(from, count, to);
+}
+void add_cells(const std::complex<double>* from, int count, std::complex<double>* to) {
+  HWY_DYNAMIC_DISPATCH(stack_add_double)(from, count, to);
 }
 
 }  // namespace misfit::imager

@@ -1,47 +1,53 @@
 #pragma once
 
+#include <complex>
+#include <cstddef>
 #include <vector>
 
 #include "imager/tap_table.h"
+#include "imager/tile_positions.h"
 
 namespace misfit::imager {
 
-/// Samples on their way to or from one tile of a stack of planes. Plane, row and column are those of the first tap in the
-/// tile's buffer; the plane may lie below or above the stack, of which only the taps within count. t as in
-/// kernels::TapFunction.
+/// Samples on their way to or from one tile of a stack of planes. The plane is that of the first tap in the tile's buffer; it
+/// may lie below or above the planes there, of which only the taps within count.
 template <typename Real>
-struct StackBatch {
-  static constexpr int capacity = 128;
-  int count = 0;
-  int plane[capacity];
-  int row[capacity];
-  int column[capacity];
-  Real tu[capacity];
-  Real tv[capacity];
-  Real tw[capacity];
-  Real value[4][capacity];  ///< [component]
+struct StackBatch : TilePlaces<Real> {
+  int plane[TilePlaces<Real>::capacity];
+  Real tw[TilePlaces<Real>::capacity];
+  std::complex<Real> value[2][TilePlaces<Real>::capacity];  ///< [grid]
 };
 
-/// A tile's private piece of a stack, with room for the taps that leave the tile: [plane][row][component][column].
+/// A tile's private piece of a stack of one or two grids a plane, with room for the taps that leave the tile:
+/// [plane][row][grid][column].
 template <typename Real>
 struct StackBuffer {
   int planes = 0;
-  int components = 0;
+  int grids = 0;
   int rows = 0;
   int columns = 0;
-  std::vector<Real> cell;
+  std::vector<std::complex<Real>> cell;
 
-  StackBuffer(int tile, int padded_width, int plane_count, int component_count)
-      : planes(plane_count),
-        components(component_count),
-        rows(tile + padded_width),
-        columns(tile + padded_width),
-        cell(static_cast<std::size_t>(plane_count * rows) * static_cast<std::size_t>(component_count * columns)) {}
-  Real* row(int plane, int r, int component) {
-    return cell.data() +
-           static_cast<std::size_t>((plane * rows + r) * components + component) * static_cast<std::size_t>(columns);
+  StackBuffer(int tile, int width, int grid_count)
+      : grids(grid_count), rows(tile + width), columns(tile + most_columns(width)) {}
+
+  /// Makes room for that many planes, all zero.
+  void reset(int plane_count) {
+    planes = plane_count;
+    cell.assign(offset(planes, 0, 0), std::complex<Real>(0));
   }
-  const Real* row(int plane, int r, int component) const { return const_cast<StackBuffer*>(this)->row(plane, r, component); }
+  std::complex<Real>* row(int plane, int r, int grid) { return cell.data() + offset(plane, r, grid); }
+  const std::complex<Real>* row(int plane, int r, int grid) const { return cell.data() + offset(plane, r, grid); }
+
+ private:
+  /// What the taps of a row fill at most: whole vectors of 64 bytes.
+  static int most_columns(int width) {
+    constexpr int vector = 64 / sizeof(std::complex<Real>);
+    return (width + vector - 1) / vector * vector;
+  }
+  std::size_t offset(int plane, int r, int grid) const {
+    return static_cast<std::size_t>((plane * rows + r) * grids + grid) * static_cast<std::size_t>(columns);
+  }
 };
 
 /// Kernels along the three axes; those along u and v have one width.
@@ -52,12 +58,16 @@ struct StackTaps {
   TapTable<Real> w;
 };
 
-/// Adds value · C_u · C_v · C_w of every sample to the buffer, for 2 or 4 components.
+/// Adds value · C_u · C_v · C_w of every sample to every grid of the buffer.
 void spread(const StackTaps<float>& taps, const StackBatch<float>& samples, StackBuffer<float>& buffer);
 void spread(const StackTaps<double>& taps, const StackBatch<double>& samples, StackBuffer<double>& buffer);
 
-/// Sets the first two components of every sample to Σ C_u · C_v · C_w · buffer: the transpose of spread.
+/// Sets every sample's first value to Σ C_u · C_v · C_w · buffer: the transpose of spread for a buffer of one grid.
 void interpolate(const StackTaps<float>& taps, const StackBuffer<float>& buffer, StackBatch<float>& samples);
 void interpolate(const StackTaps<double>& taps, const StackBuffer<double>& buffer, StackBatch<double>& samples);
+
+/// to[i] += from[i].
+void add_cells(const std::complex<float>* from, int count, std::complex<float>* to);
+void add_cells(const std::complex<double>* from, int count, std::complex<double>* to);
 
 }  // namespace misfit::imager

@@ -1,11 +1,9 @@
 #include "imager/stack_order.h"
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
 
-#include "imager/constants.h"
 #include "imager/parallel.h"
+#include "imager/tile_order.h"
 
 namespace misfit::imager {
 namespace {
@@ -24,44 +22,43 @@ struct Piece {
   std::size_t end_row;
 };
 
-std::vector<Piece> pieces_of(const std::vector<const SampleCoordinates*>& blocks) {
+std::vector<Piece> pieces_of(const std::vector<WantedSamples>& blocks) {
   std::vector<Piece> pieces;
   for (std::size_t b = 0; b < blocks.size(); ++b)
-    for (std::size_t row = 0; row < blocks[b]->rows(); row += rows_a_piece)
-      pieces.push_back({static_cast<std::uint32_t>(b), row, std::min(row + rows_a_piece, blocks[b]->rows())});
+    for (std::size_t row = 0; row < blocks[b].at->rows(); row += rows_a_piece)
+      pieces.push_back({static_cast<std::uint32_t>(b), row, std::min(row + rows_a_piece, blocks[b].at->rows())});
   return pieces;
 }
 
-template <typename Wanted>
-std::vector<TiledRun> find_runs(const Piece& piece, const SampleCoordinates& at, const Wanted& wanted,
-                                const StackOrderOptions& o) {
+std::vector<TiledRun> find_runs(const Piece& piece, const WantedSamples& samples, const StackOrderOptions& o) {
   std::vector<TiledRun> runs;
-  const StackShape& s = o.shape;
-  for (std::size_t r = piece.begin_row; r < piece.end_row; ++r) {
+  const SampleCoordinates& at = *samples.at;
+  const std::size_t channels = at.channels();
+  std::vector<std::int32_t> tile(channels), plane(channels);
+  std::vector<double> period(channels);
+  for (std::size_t r = piece.begin_row; r < piece.end_row; ++r)
     for (const bool mirrored : {false, true}) {
       const StackRow row(&at.uvw_m[3 * r], mirrored, o.scale);
+      first_taps(row, o.shape, o.width_w, at.frequency_hz.data(), static_cast<int>(channels),
+                 {tile.data(), plane.data(), period.data()});
       bool open = false;
-      for (std::size_t channel = 0; channel < at.channels(); ++channel) {
-        const double frequency = at.frequency_hz[channel];
-        const std::int32_t plane = row.along_w(frequency, o.width_w).first;
-        if (plane + o.width_w <= 0 || !wanted(piece.block, r * at.channels() + channel)) {
+      for (std::size_t c = 0; c < channels; ++c) {
+        const bool wanted = samples.weight == nullptr || samples.weight[r * channels + c] != 0;
+        if (!wanted || plane[c] + o.width_w <= 0) {
           open = false;
           continue;
         }
-        const int column = TapPosition(reduced(row.u_per_hz * frequency, s.nu), s.width).first + s.margin();
-        const int line = TapPosition(reduced(row.v_per_hz * frequency, s.nv), s.width).first + s.margin();
-        const auto tile = static_cast<std::uint32_t>(line / s.tile * s.tiles_u() + column / s.tile);
-        if (open && runs.back().tile == tile && runs.back().run.plane == plane && runs.back().run.count < longest_run) {
+        if (open && tile[c] == tile[c - 1] && plane[c] == plane[c - 1] && period[c] == period[c - 1] &&
+            runs.back().run.count < longest_run) {
           ++runs.back().run.count;
         } else {
-          runs.push_back({tile,
-                          {piece.block, static_cast<std::uint32_t>(r), plane, static_cast<std::uint32_t>(channel) & 0xFFFFF, 1,
-                           mirrored}});
+          runs.push_back(
+              {static_cast<std::uint32_t>(tile[c]),
+               {piece.block, static_cast<std::uint32_t>(r), plane[c], static_cast<std::uint32_t>(c) & 0xFFFFF, 1, mirrored}});
         }
         open = true;
       }
     }
-  }
   return runs;
 }
 
@@ -80,30 +77,12 @@ void mark_planes(StackOrder& order, int width_w) {
 
 }  // namespace
 
-StackScale::StackScale(const StackShape& shape, const Facet& at, double plane_step)
-    : u_cells_per_m_hz(-at.geometry.cell_rad * shape.nu / speed_of_light_m_s),
-      v_cells_per_m_hz(at.geometry.cell_rad * shape.nv / speed_of_light_m_s),
-      planes_per_m_hz(1 / (plane_step * speed_of_light_m_s)),
-      turns_per_m_hz(1 / speed_of_light_m_s),
-      facet(at) {}
-
-StackRow::StackRow(const double* uvw_m, bool mirror, const StackScale& scale) : mirrored(mirror) {
-  const double sign = mirror ? -1 : 1;
-  const double u = sign * uvw_m[0], v = sign * uvw_m[1], w = sign * uvw_m[2];
-  const Facet& f = scale.facet;
-  u_per_hz = (u + f.slope_l * w) * scale.u_cells_per_m_hz;
-  v_per_hz = (v + f.slope_m * w) * scale.v_cells_per_m_hz;
-  w_per_hz = w * scale.planes_per_m_hz;
-  turns_per_hz = (u * f.geometry.centre.l + v * f.geometry.centre.m + w * f.middle) * scale.turns_per_m_hz;
-}
-
-StackOrder order_for_stack(const std::vector<const SampleCoordinates*>& blocks,
-                           const std::function<bool(std::size_t, std::size_t)>& wanted, const StackOrderOptions& options) {
-  for (const SampleCoordinates* block : blocks) check_channels(block->channels());
+StackOrder order_for_stack(const std::vector<WantedSamples>& blocks, const StackOrderOptions& options) {
+  for (const WantedSamples& block : blocks) check_channels(block.at->channels());
   const std::vector<Piece> pieces = pieces_of(blocks);
   std::vector<std::vector<TiledRun>> part(pieces.size());
   parallel_for(pieces.size(), options.threads,
-               [&](std::size_t i) { part[i] = find_runs(pieces[i], *blocks[pieces[i].block], wanted, options); });
+               [&](std::size_t i) { part[i] = find_runs(pieces[i], blocks[pieces[i].block], options); });
   const auto tiles = static_cast<std::size_t>(options.shape.tiles_u()) * static_cast<std::size_t>(options.shape.tiles_v());
   StackOrder order;
   order.begin.resize(tiles + 1);

@@ -3,22 +3,16 @@
 #include <vector>
 
 #include "imager/tap_table.h"
+#include "imager/tile_positions.h"
 
 namespace misfit::imager {
 
-/// Samples on their way to or from one tile. Column and row are those of the first tap in the tile's buffer; t as in
-/// kernels::TapFunction.
+/// Samples on their way to or from one tile.
 template <typename Real>
-struct TileBatch {
-  static constexpr int capacity = 128;
-  int count = 0;
-  int column[capacity];
-  int row[capacity];
-  Real tu[capacity];
-  Real tv[capacity];
-  Real real[capacity];
-  Real imaginary[capacity];
-  Real weight[capacity];
+struct TileBatch : TilePlaces<Real> {
+  Real real[TilePlaces<Real>::capacity];
+  Real imaginary[TilePlaces<Real>::capacity];
+  Real weight[TilePlaces<Real>::capacity];
 };
 
 /// A tile's private piece of the grid, with room for the taps that leave the tile: [row][plane][column], planes real, imaginary

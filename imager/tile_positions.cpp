@@ -29,18 +29,18 @@ HWY_ATTR HWY_INLINE void positions_along(Line line, int tile, const double* HWY_
 }
 
 template <typename Real>
-HWY_ATTR void append(const RowInTile& row, const double* frequency_hz, int count, TileBatch<Real>& batch) {
-  const int at = batch.count;
-  positions_along({row.u_per_hz, row.u_origin}, row.tile, frequency_hz, count, batch.column + at, batch.tu + at);
-  positions_along({row.v_per_hz, row.v_origin}, row.tile, frequency_hz, count, batch.row + at, batch.tv + at);
-  batch.count += count;
+HWY_ATTR void append(const RowInTile& row, const double* frequency_hz, int count, TilePlaces<Real>& places) {
+  const int at = places.count;
+  positions_along({row.u_per_hz, row.u_origin}, row.tile, frequency_hz, count, places.column + at, places.tu + at);
+  positions_along({row.v_per_hz, row.v_origin}, row.tile, frequency_hz, count, places.row + at, places.tv + at);
+  places.count += count;
 }
 
-HWY_ATTR void append_float(const RowInTile& row, const double* frequency_hz, int count, TileBatch<float>& batch) {
-  append(row, frequency_hz, count, batch);
+HWY_ATTR void append_float(const RowInTile& row, const double* frequency_hz, int count, TilePlaces<float>& places) {
+  append(row, frequency_hz, count, places);
 }
-HWY_ATTR void append_double(const RowInTile& row, const double* frequency_hz, int count, TileBatch<double>& batch) {
-  append(row, frequency_hz, count, batch);
+HWY_ATTR void append_double(const RowInTile& row, const double* frequency_hz, int count, TilePlaces<double>& places) {
+  append(row, frequency_hz, count, places);
 }
 
 }  // namespace misfit::imager::HWY_NAMESPACE
@@ -52,11 +52,11 @@ namespace misfit::imager {
 HWY_EXPORT(append_float);
 HWY_EXPORT(append_double);
 
-void append_positions(const RowInTile& row, const double* frequency_hz, int count, TileBatch<float>& batch) {
-  HWY_DYNAMIC_DISPATCH(append_float)(row, frequency_hz, count, batch);
+void append_positions(const RowInTile& row, const double* frequency_hz, int count, TilePlaces<float>& places) {
+  HWY_DYNAMIC_DISPATCH(append_float)(row, frequency_hz, count, places);
 }
-void append_positions(const RowInTile& row, const double* frequency_hz, int count, TileBatch<double>& batch) {
-  HWY_DYNAMIC_DISPATCH(append_double)(row, frequency_hz, count, batch);
+void append_positions(const RowInTile& row, const double* frequency_hz, int count, TilePlaces<double>& places) {
+  HWY_DYNAMIC_DISPATCH(append_double)(row, frequency_hz, count, places);
 }
 
 }  // namespace misfit::imager

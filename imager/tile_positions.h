@@ -1,8 +1,17 @@
 #pragma once
 
-#include "imager/tile_loops.h"
-
 namespace misfit::imager {
+
+/// Where samples lie in a tile's buffer: column and row of their first tap; t as in kernels::TapFunction.
+template <typename Real>
+struct TilePlaces {
+  static constexpr int capacity = 128;
+  int count = 0;
+  int column[capacity];
+  int row[capacity];
+  Real tu[capacity];
+  Real tv[capacity];
+};
 
 /// A row of samples as a tile sees it: at frequency f, u_per_hz · f − u_origin is the position along u of the sample's first
 /// tap in [0, tile), whose whole part is the column and whose fraction is t + ½; so along v, with the row.
@@ -14,9 +23,9 @@ struct RowInTile {
   int tile = 0;
 };
 
-/// Appends to the batch, which must have room, the columns, rows, tu and tv of the samples at `count` frequencies. Positions
+/// Appends to places, which must have room, the columns, rows, tu and tv of the samples at `count` frequencies. Positions
 /// that rounding takes out of the tile are taken to the nearest cell within.
-void append_positions(const RowInTile& row, const double* frequency_hz, int count, TileBatch<float>& batch);
-void append_positions(const RowInTile& row, const double* frequency_hz, int count, TileBatch<double>& batch);
+void append_positions(const RowInTile& row, const double* frequency_hz, int count, TilePlaces<float>& places);
+void append_positions(const RowInTile& row, const double* frequency_hz, int count, TilePlaces<double>& places);
 
 }  // namespace misfit::imager

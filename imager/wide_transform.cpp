@@ -10,9 +10,9 @@
 #include "imager/phase.h"
 #include "imager/phasors.h"
 #include "imager/sampling.h"
+#include "imager/spares.h"
 #include "imager/stack_loops.h"
-#include "imager/stack_order.h"
-#include "imager/tile_order.h"
+#include "imager/stack_walk.h"
 
 namespace misfit::imager {
 namespace {
@@ -52,134 +52,26 @@ Setup<Real> set_up(const WideTransformOptions& o) {
   return s;
 }
 
-/// Neighbouring planes that are held at a time.
-struct Slab {
-  int first = 0;
-  int planes = 0;
-};
-
-/// The planes that hold anything, as many at a time as memory allows.
+/// Planes of one facet that memory can hold.
 template <typename Real>
-std::vector<Slab> slabs_of(const StackOrder& order, const Setup<Real>& setup, int width, int components) {
-  const double plane_bytes = bytes_a_plane<Real>(setup.shape, components, width);
-  const int most = std::max(1, static_cast<int>(static_cast<double>(setup.options.stack_bytes) / plane_bytes));
-  std::vector<Slab> slabs;
-  for (std::size_t k = 0; k < order.plane_used.size(); ++k) {
-    if (order.plane_used[k] == 0) continue;
-    const int plane = static_cast<int>(k);
-    if (slabs.empty() || slabs.back().planes == most || slabs.back().first + slabs.back().planes != plane)
-      slabs.push_back({plane, 0});
-    ++slabs.back().planes;
-  }
-  return slabs;
+int most_planes(const Setup<Real>& setup, int grids) {
+  const double plane_bytes = grids * static_cast<double>(setup.shape.cells()) * sizeof(std::complex<Real>);
+  return std::max(1, static_cast<int>(static_cast<double>(setup.options.stack_bytes) / plane_bytes));
 }
 
-/// A tile's runs that reach into a slab, and the planes of it that they touch.
-struct StackTask {
-  int tile_u;
-  int tile_v;
-  std::size_t begin;
-  std::size_t end;
-  Slab planes;
-};
-
-/// In four colours of tiles whose buffers cannot touch, the fullest of a colour first.
-std::vector<std::vector<StackTask>> tasks_of(const StackOrder& order, const StackShape& shape, const Slab& slab, int width_w) {
-  std::vector<std::vector<StackTask>> colours(4);
-  const auto below = [](const StackRun& run, int plane) { return run.plane < plane; };
-  std::size_t tile = 0;
-  for (int v = 0; v < shape.tiles_v(); ++v)
-    for (int u = 0; u < shape.tiles_u(); ++u, ++tile) {
-      const auto first = order.run.begin() + static_cast<std::ptrdiff_t>(order.begin[tile]);
-      const auto last = order.run.begin() + static_cast<std::ptrdiff_t>(order.begin[tile + 1]);
-      if (first == last) continue;
-      const auto begin = std::lower_bound(first, last, slab.first - width_w + 1, below);
-      const auto end = std::lower_bound(begin, last, slab.first + slab.planes, below);
-      if (begin == end) continue;
-      const int lowest = std::max(begin->plane, slab.first);
-      const int highest = std::min((end - 1)->plane + width_w, slab.first + slab.planes);
-      colours[static_cast<std::size_t>(v % 2 * 2 + u % 2)].push_back({u,
-                                                                      v,
-                                                                      static_cast<std::size_t>(begin - order.run.begin()),
-                                                                      static_cast<std::size_t>(end - order.run.begin()),
-                                                                      {lowest, highest - lowest}});
-    }
-  for (std::vector<StackTask>& tasks : colours)
-    std::stable_sort(tasks.begin(), tasks.end(),
-                     [](const StackTask& a, const StackTask& b) { return a.end - a.begin > b.end - b.begin; });
-  return colours;
-}
-
-/// What a batch needs to know of its samples besides their places.
-struct BatchPhases {
-  static constexpr int capacity = StackBatch<double>::capacity;
-  std::size_t block[capacity];
-  std::size_t sample[capacity];
-  bool mirrored[capacity];
-  double turns[capacity];
-  double cosine[capacity];
-  double sine[capacity];
-};
-
-/// Where the taps of a sample lie in its tile along one axis. A sample on the edge of two cells stays within the tile that it
-/// was put in, however its position is rounded.
-struct TileTap {
-  int first = 0;
-  double t = 0;
-
-  TileTap(double cells, int tile, const StackShape& s) {
-    const int origin = tile * s.tile - s.margin();
-    first = std::clamp(TapPosition(cells, s.width).first - origin, 0, s.tile - 1);
-    t = cells - (first + origin) - 0.5 * (s.width - 1);
-  }
-};
-
-/// Walks through a task's samples in batches: done(batch, phases) for each, phases computed.
-template <typename Real, typename Done>
-void for_each_batch(const Setup<Real>& setup, const StackScale& scale, const std::vector<const SampleCoordinates*>& blocks,
-                    const StackOrder& order, const StackTask& task, const Done& done) {
-  const StackShape& s = setup.shape;
-  StackBatch<Real> batch;
-  BatchPhases phases;
-  const auto finish = [&] {
-    phasors(phases.turns, batch.count, phases.cosine, phases.sine);
-    done(batch, phases);
-    batch.count = 0;
-  };
-  for (std::size_t i = task.begin; i < task.end; ++i) {
-    const StackRun run = order.run[i];
-    const SampleCoordinates& at = *blocks[run.block];
-    const StackRow row(&at.uvw_m[std::size_t{3} * run.row], run.mirrored != 0, scale);
-    for (std::size_t channel = run.first; channel < std::size_t{run.first} + run.count; ++channel) {
-      const double frequency = at.frequency_hz[channel];
-      const TileTap u(reduced(row.u_per_hz * frequency, s.nu), task.tile_u, s);
-      const TileTap v(reduced(row.v_per_hz * frequency, s.nv), task.tile_v, s);
-      const int k = batch.count++;
-      batch.plane[k] = run.plane - task.planes.first;
-      batch.column[k] = u.first;
-      batch.row[k] = v.first;
-      batch.tu[k] = static_cast<Real>(u.t);
-      batch.tv[k] = static_cast<Real>(v.t);
-      batch.tw[k] = static_cast<Real>(row.along_w(frequency, setup.taps.w.width).t);
-      phases.block[k] = run.block;
-      phases.sample[k] = run.row * at.channels() + channel;
-      phases.mirrored[k] = run.mirrored != 0;
-      phases.turns[k] = row.turns_per_hz * frequency;
-      if (batch.count == StackBatch<Real>::capacity) finish();
-    }
-  }
-  if (batch.count > 0) finish();
-}
-
-/// Calls visit(row, chunk, plane, component, cells) for what a tile's buffer and a stack share, in the stack's order.
+/// Calls visit(row, chunk, plane, grid, cells) for what a tile's buffer and a stack share, in the stack's order.
 template <typename Visit>
-void for_each_chunk(const StackShape& s, const StackTask& task, int components, const Visit& visit) {
+void for_each_chunk(const StackShape& s, const StackTask& task, int grids, const Visit& visit) {
   const int reach = s.tile + s.width - 1;
   for (int row = 0; row < reach; ++row)
     for (int chunk = 0; chunk < 2; ++chunk)
       for (int plane = 0; plane < task.planes.planes; ++plane)
-        for (int component = 0; component < components; ++component)
-          visit(row, chunk, plane, component, std::min(s.tile, reach - chunk * s.tile));
+        for (int grid = 0; grid < grids; ++grid) visit(row, chunk, plane, grid, std::min(s.tile, reach - chunk * s.tile));
+}
+
+template <typename Real>
+StackBuffer<Real> buffer_of(const Setup<Real>& setup, int grids) {
+  return StackBuffer<Real>(setup.shape.tile, setup.shape.width, grids);
 }
 
 /// Sums in single precision stay short: a buffer is added to the stack after so many samples.
@@ -194,14 +86,9 @@ class WideAdjoint : public AdjointSum {
     if (with_psf) result_.psf = Image(g.width, g.height);
   }
 
-  void add(const VisibilityBlock& block) override {
-    std::vector<std::complex<double>> none;
-    gather({block, std::move(none)});
-  }
+  void add(const VisibilityBlock& block) override { gather(block, block.visibility); }
   void add(const VisibilityBlock& block, const std::vector<std::complex<double>>& visibility) override {
-    Gathered g{block, visibility};
-    g.block.visibility.clear();
-    gather(std::move(g));
+    gather(block, visibility);
   }
   AdjointResult finish() override {
     flush();
@@ -211,115 +98,118 @@ class WideAdjoint : public AdjointSum {
   }
 
  private:
-  /// A block whose samples beyond the grid have weight 0, and the visibilities given in place of its own.
+  /// A block's samples, those left out with weight 0.
   struct Gathered {
-    VisibilityBlock block;
-    std::vector<std::complex<double>> other;
-
-    std::complex<double> visibility(std::size_t i) const {
-      return other.empty() ? std::complex<double>(block.visibility[i]) : other[i];
-    }
+    SampleCoordinates at;
+    std::vector<float> weight;
+    std::vector<std::complex<Real>> weighted;  ///< weight · V
   };
 
-  void gather(Gathered g) {
-    const std::vector<char> inside = samples_inside(g.block, setup_.options.geometry.cell_rad, result_.sums);
+  template <typename Visibility>
+  void gather(const VisibilityBlock& block, const Visibility& visibility) {
+    const std::vector<char> inside = samples_inside(block, setup_.options.geometry.cell_rad, result_.sums);
+    Gathered g{block, std::vector<float>(inside.size()), std::vector<std::complex<Real>>(inside.size())};
     for (std::size_t i = 0; i < inside.size(); ++i) {
-      if (inside[i]) {
-        add_to_sums(result_.sums, g.block.weight[i], g.visibility(i));
-      } else {
-        g.block.weight[i] = 0;
-      }
+      if (!inside[i]) continue;
+      const std::complex<double> v(visibility[i]);
+      const double weight = block.weight[i];
+      add_to_sums(result_.sums, weight, v);
+      g.weight[i] = block.weight[i];
+      g.weighted[i] = std::complex<Real>(weight * v);
     }
-    samples_ += g.block.samples();
+    samples_ += block.samples();
     gathered_.push_back(std::move(g));
     if (samples_ >= setup_.options.samples_at_once) flush();
   }
 
   void flush() {
-    std::vector<const SampleCoordinates*> blocks;
-    for (const Gathered& g : gathered_) blocks.push_back(&g.block);
+    std::vector<WantedSamples> blocks;
+    for (const Gathered& g : gathered_) blocks.push_back({&g.at, g.weight.data()});
     std::vector<Image*> images{&result_.image};
     if (!result_.psf.pixel.empty()) images.push_back(&result_.psf);
-    const int components = 2 * static_cast<int>(images.size());
-    const auto wanted = [&](std::size_t block, std::size_t i) { return gathered_[block].block.weight[i] != 0; };
-    PlaneStack<Real> stack(setup_.shape, components);
+    const int grids = static_cast<int>(images.size()), threads = setup_.options.threads;
+    PlaneStack<Real> stack(setup_.shape, grids);
     for (const StackedFacet& f : setup_.facets) {
       const StackOrderOptions ordering = setup_.ordering(f);
-      const StackOrder order = order_for_stack(blocks, wanted, ordering);
-      for (const Slab& slab : slabs_of(order, setup_, f.facet.geometry.width, components)) {
+      const StackOrder order = order_for_stack(blocks, ordering);
+      for (const Slab& slab : slabs_of(order, most_planes(setup_, grids))) {
+        const auto colours = tasks_of(order, setup_.shape, slab, ordering.width_w);
         stack.reserve(slab.planes);
-        stack.clear(setup_.options.threads);
-        for (const std::vector<StackTask>& tasks : tasks_of(order, setup_.shape, slab, setup_.taps.w.width)) {
-          for (const StackTask& task : tasks)
-            std::fill_n(stack.row_used.begin() + task.tile_v * setup_.shape.tile, setup_.shape.tile + setup_.shape.width - 1,
-                        1);
-          parallel_for(tasks.size(), setup_.options.threads,
-                       [&](std::size_t i) { grid_tile(ordering.scale, blocks, order, tasks[i], slab.first, stack); });
-        }
-        add_stack_to_images(stack, f, slab.first, setup_.options.threads, images);
+        for (const std::vector<StackTask>& tasks : colours)
+          for (const StackTask& task : tasks) mark_rows(task, stack);
+        stack.clear(threads);
+        Spares<StackBuffer<Real>> spares;
+        for (const std::vector<StackTask>& tasks : colours)
+          parallel_for(tasks.size(), threads, [&](std::size_t i) {
+            auto buffer = spares.take([&] { return std::make_unique<StackBuffer<Real>>(buffer_of(setup_, grids)); });
+            grid_tile({blocks, order, ordering}, tasks[i], slab.first, *buffer, stack);
+            spares.give_back(std::move(buffer));
+          });
+        add_stack_to_images(stack, f, slab.first, threads, images);
       }
     }
     gathered_.clear();
     samples_ = 0;
   }
 
-  void grid_tile(const StackScale& scale, const std::vector<const SampleCoordinates*>& blocks, const StackOrder& order,
-                 const StackTask& task, int first_plane, PlaneStack<Real>& stack) const {
+  void mark_rows(const StackTask& task, PlaneStack<Real>& stack) const {
     const StackShape& s = setup_.shape;
-    StackBuffer<Real> buffer(s.tile, setup_.taps.u.padded, task.planes.planes, stack.components);
+    std::fill_n(stack.row_used.begin() + task.tile_v * s.tile, s.tile + s.width - 1, 1);
+  }
+
+  void grid_tile(const StackSamples& samples, const StackTask& task, int first_plane, StackBuffer<Real>& buffer,
+                 PlaneStack<Real>& stack) const {
+    buffer.reset(task.planes.planes);
     int in_buffer = 0;
-    for_each_batch(setup_, scale, blocks, order, task, [&](StackBatch<Real>& batch, const BatchPhases& phases) {
-      double psf_cosine[BatchPhases::capacity], psf_sine[BatchPhases::capacity];
-      if (stack.components > 2) psf_phasors(phases, batch.count, psf_cosine, psf_sine);
-      // The grid holds conj(V), whose backward transform is the image; see stack_order.h for the axes.
-      for (int k = 0; k < batch.count; ++k) {
-        const Gathered& g = gathered_[phases.block[k]];
-        const double weight = g.block.weight[phases.sample[k]];
-        const std::complex<double> v = g.visibility(phases.sample[k]);
-        const double re = weight * v.real(), im = phases.mirrored[k] ? weight * v.imag() : -weight * v.imag();
-        batch.value[0][k] = static_cast<Real>(re * phases.cosine[k] - im * phases.sine[k]);
-        batch.value[1][k] = static_cast<Real>(re * phases.sine[k] + im * phases.cosine[k]);
-        if (stack.components == 2) continue;
-        batch.value[2][k] = static_cast<Real>(weight * psf_cosine[k]);
-        batch.value[3][k] = static_cast<Real>(weight * psf_sine[k]);
+    const auto ahead = [&](std::uint32_t block, std::size_t sample) { hwy::Prefetch(&gathered_[block].weighted[sample]); };
+    for_each_batch<Real>(samples, task, ahead, [&](StackBatch<Real>& batch, const BatchPhases& phases) {
+      // The grid holds conj(V), whose backward transform is the image; see plane_stack.h for the axes.
+      for (const BatchRun& run : phases.run) {
+        const std::complex<Real>* weighted = &gathered_[run.block].weighted[run.sample];
+        const double sign = run.mirrored ? 1 : -1;
+        for (int k = run.begin; k < run.end; ++k, ++weighted) {
+          const double re = double{weighted->real()}, im = sign * double{weighted->imag()};
+          batch.value[0][k] = {static_cast<Real>(re * phases.cosine[k] - im * phases.sine[k]),
+                               static_cast<Real>(re * phases.sine[k] + im * phases.cosine[k])};
+        }
       }
+      if (buffer.grids == 2) set_psf_values(phases, batch);
       spread(setup_.taps, batch, buffer);
       in_buffer += batch.count;
       if (in_buffer < most_in_buffer) return;
       flush_buffer(task, first_plane, buffer, stack);
-      std::fill(buffer.cell.begin(), buffer.cell.end(), Real(0));
+      buffer.reset(task.planes.planes);
       in_buffer = 0;
     });
-    flush_buffer(task, first_plane, buffer, stack);
+    if (in_buffer > 0) flush_buffer(task, first_plane, buffer, stack);
   }
 
   void flush_buffer(const StackTask& task, int first_plane, const StackBuffer<Real>& buffer, PlaneStack<Real>& stack) const {
     const StackShape& s = setup_.shape;
-    for_each_chunk(s, task, stack.components, [&](int row, int chunk, int plane, int component, int count) {
-      const Real* from = buffer.row(plane, row, component) + chunk * s.tile;
-      Real* to =
-          stack.chunk(task.tile_v * s.tile + row, task.tile_u + chunk, task.planes.first - first_plane + plane, component);
-      for (int c = 0; c < count; ++c) to[c] += from[c];
+    for_each_chunk(s, task, stack.grids, [&](int row, int chunk, int plane, int grid, int count) {
+      add_cells(buffer.row(plane, row, grid) + chunk * s.tile, count,
+                stack.chunk(task.tile_v * s.tile + row, task.tile_u + chunk, task.planes.first - first_plane + plane, grid));
     });
   }
 
-  /// The facet's phasors seen from the image's middle pixel, where the PSF's source is.
-  void psf_phasors(const BatchPhases& phases, int count, double* cosine, double* sine) const {
+  /// Those of a source of 1 Jy in the image's middle pixel, seen from the facet's.
+  void set_psf_values(const BatchPhases& phases, StackBatch<Real>& batch) const {
     const ImageGeometry& g = setup_.options.geometry;
-    if (!g.off_phase_centre()) {
-      std::copy_n(phases.cosine, count, cosine);
-      std::copy_n(phases.sine, count, sine);
-      return;
-    }
     const PhasePosition middle = phase_position(g.centre);
-    double turns[BatchPhases::capacity];
-    for (int k = 0; k < count; ++k) {
-      const VisibilityBlock& block = gathered_[phases.block[k]].block;
-      const std::size_t row = phases.sample[k] / block.channels(), channel = phases.sample[k] % block.channels();
-      const double to_middle = turns_per_hz(&block.uvw_m[3 * row], middle) * block.frequency_hz[channel];
-      turns[k] = phases.turns[k] - (phases.mirrored[k] ? -to_middle : to_middle);
+    double turns[BatchPhases::capacity], cosine[BatchPhases::capacity], sine[BatchPhases::capacity];
+    for (const BatchRun& run : phases.run) {
+      const SampleCoordinates& at = gathered_[run.block].at;
+      const std::size_t row = run.sample / at.channels(), channel = run.sample % at.channels();
+      const double to_middle = turns_per_hz(&at.uvw_m[3 * row], middle) * (run.mirrored ? -1 : 1);
+      for (int k = run.begin; k < run.end; ++k)
+        turns[k] = phases.turns[k] - to_middle * at.frequency_hz[channel + static_cast<std::size_t>(k - run.begin)];
     }
-    phasors(turns, count, cosine, sine);
+    phasors(turns, batch.count, cosine, sine);
+    for (const BatchRun& run : phases.run)
+      for (int k = run.begin; k < run.end; ++k) {
+        const double weight = gathered_[run.block].weight[run.sample + static_cast<std::size_t>(k - run.begin)];
+        batch.value[1][k] = {static_cast<Real>(weight * cosine[k]), static_cast<Real>(weight * sine[k])};
+      }
   }
 
   const Setup<Real>& setup_;
@@ -334,14 +224,16 @@ class WidePrediction : public Prediction {
   WidePrediction(const Setup<Real>& setup, const Image& model) : setup_(setup), model_(model) {}
 
   std::vector<std::complex<double>> at(const SampleCoordinates& coordinates) const override {
-    return degrid({&coordinates}, [](std::size_t, std::size_t) { return true; }).front();
+    return degrid({{&coordinates}}).front();
   }
   std::vector<std::complex<double>> at_usable(const VisibilityBlock& block) const override {
     return at_usable_of({&block}).front();
   }
   std::vector<std::vector<std::complex<double>>> at_usable_of(
       const std::vector<const VisibilityBlock*>& blocks) const override {
-    return degrid({blocks.begin(), blocks.end()}, [&](std::size_t b, std::size_t i) { return blocks[b]->weight[i] != 0; });
+    std::vector<WantedSamples> usable;
+    for (const VisibilityBlock* block : blocks) usable.push_back({block, block->weight.data()});
+    return degrid(usable);
   }
   std::size_t samples_at_once() const override { return setup_.options.samples_at_once; }
 
@@ -354,21 +246,25 @@ class WidePrediction : public Prediction {
     Visibilities mirrored;
   };
 
-  template <typename Wanted>
-  Visibilities degrid(const std::vector<const SampleCoordinates*>& blocks, const Wanted& wanted) const {
+  Visibilities degrid(const std::vector<WantedSamples>& blocks) const {
     Halves halves;
-    for (const SampleCoordinates* at : blocks) halves.direct.emplace_back(at->samples());
+    for (const WantedSamples& block : blocks) halves.direct.emplace_back(block.at->samples());
     halves.mirrored = halves.direct;
-    PlaneStack<Real> stack(setup_.shape, 2);
+    const int threads = setup_.options.threads;
+    PlaneStack<Real> stack(setup_.shape, 1);
     for (const StackedFacet& f : setup_.facets) {
       const StackOrderOptions ordering = setup_.ordering(f);
-      const StackOrder order = order_for_stack(blocks, wanted, ordering);
-      for (const Slab& slab : slabs_of(order, setup_, f.facet.geometry.width, 2)) {
+      const StackOrder order = order_for_stack(blocks, ordering);
+      for (const Slab& slab : slabs_of(order, most_planes(setup_, 1))) {
         stack.reserve(slab.planes);
-        image_to_stack(model_, f, slab.first, setup_.options.threads, stack);
-        for (const std::vector<StackTask>& tasks : tasks_of(order, setup_.shape, slab, setup_.taps.w.width))
-          parallel_for(tasks.size(), setup_.options.threads,
-                       [&](std::size_t i) { degrid_tile(ordering.scale, blocks, order, tasks[i], slab.first, stack, halves); });
+        image_to_stack(model_, f, slab.first, threads, stack);
+        Spares<StackBuffer<Real>> spares;
+        for (const std::vector<StackTask>& tasks : tasks_of(order, setup_.shape, slab, ordering.width_w))
+          parallel_for(tasks.size(), threads, [&](std::size_t i) {
+            auto buffer = spares.take([&] { return std::make_unique<StackBuffer<Real>>(buffer_of(setup_, 1)); });
+            degrid_tile({blocks, order, ordering}, tasks[i], slab.first, stack, *buffer, halves);
+            spares.give_back(std::move(buffer));
+          });
       }
     }
     for (std::size_t b = 0; b < blocks.size(); ++b)
@@ -376,22 +272,24 @@ class WidePrediction : public Prediction {
     return std::move(halves.direct);
   }
 
-  void degrid_tile(const StackScale& scale, const std::vector<const SampleCoordinates*>& blocks, const StackOrder& order,
-                   const StackTask& task, int first_plane, const PlaneStack<Real>& stack, Halves& halves) const {
+  void degrid_tile(const StackSamples& samples, const StackTask& task, int first_plane, const PlaneStack<Real>& stack,
+                   StackBuffer<Real>& buffer, Halves& halves) const {
     const StackShape& s = setup_.shape;
-    StackBuffer<Real> buffer(s.tile, setup_.taps.u.padded, task.planes.planes, 2);
-    for_each_chunk(s, task, 2, [&](int row, int chunk, int plane, int component, int count) {
-      std::copy_n(
-          stack.chunk(task.tile_v * s.tile + row, task.tile_u + chunk, task.planes.first - first_plane + plane, component),
-          count, buffer.row(plane, row, component) + chunk * s.tile);
+    buffer.reset(task.planes.planes);
+    for_each_chunk(s, task, 1, [&](int row, int chunk, int plane, int grid, int count) {
+      std::copy_n(stack.chunk(task.tile_v * s.tile + row, task.tile_u + chunk, task.planes.first - first_plane + plane, grid),
+                  count, buffer.row(plane, row, grid) + chunk * s.tile);
     });
-    for_each_batch(setup_, scale, blocks, order, task, [&](StackBatch<Real>& batch, const BatchPhases& phases) {
+    const auto ahead = [](std::uint32_t, std::size_t) {};
+    for_each_batch<Real>(samples, task, ahead, [&](StackBatch<Real>& batch, const BatchPhases& phases) {
       interpolate(setup_.taps, buffer, batch);
-      for (int k = 0; k < batch.count; ++k) {
-        const double re = double{batch.value[0][k]}, im = double{batch.value[1][k]};
-        Visibilities& visibility = phases.mirrored[k] ? halves.mirrored : halves.direct;
-        visibility[phases.block[k]][phases.sample[k]] +=
-            std::complex<double>(re * phases.cosine[k] + im * phases.sine[k], re * phases.sine[k] - im * phases.cosine[k]);
+      for (const BatchRun& run : phases.run) {
+        std::complex<double>* visibility = &(run.mirrored ? halves.mirrored : halves.direct)[run.block][run.sample];
+        for (int k = run.begin; k < run.end; ++k, ++visibility) {
+          const double re = double{batch.value[0][k].real()}, im = double{batch.value[0][k].imag()};
+          *visibility +=
+              std::complex<double>(re * phases.cosine[k] + im * phases.sine[k], re * phases.sine[k] - im * phases.cosine[k]);
+        }
       }
     });
   }
@@ -446,18 +344,16 @@ std::unique_ptr<Transform> make_wide_transform(const WideTransformOptions& o) {
 }
 
 TransformMemory memory_of(const WideTransformOptions& o, double samples, int planes) {
-  constexpr double sample_bytes = sizeof(std::complex<double>) + sizeof(float);  // of a residual, or a PSF
-  constexpr double run_bytes = 2 * sizeof(StackRun) + 8;  // at worst a run each, twice while they are sorted
-  const double gathered = std::min(samples, static_cast<double>(o.samples_at_once)) * (sample_bytes + run_bytes);
-  const StackShape shape = shape_of(o);
   const bool single = o.precision == Precision::single_precision;
-  const int width = largest_part(o.geometry.width, o.facets_l);
-  const double plane = single ? bytes_a_plane<float>(shape, 2, width) : bytes_a_plane<double>(shape, 2, width);
+  const double complex_bytes = 2.0 * (single ? sizeof(float) : sizeof(double));
+  const double sample_bytes = sizeof(float) + complex_bytes;
+  constexpr double run_bytes = 2 * (2 * sizeof(StackRun) + 8);  // at worst two runs each, twice while they are sorted
+  const double gathered = std::min(samples, static_cast<double>(o.samples_at_once)) * (sample_bytes + run_bytes);
+  const double plane = static_cast<double>(shape_of(o).cells()) * complex_bytes;
   const double image = static_cast<double>(o.geometry.pixels()) * sizeof(double);
   const double one = std::min(planes * plane, std::max(plane, static_cast<double>(o.stack_bytes)));
   const double both = std::min(2 * planes * plane, std::max(2 * plane, static_cast<double>(o.stack_bytes)));
-  const double real_bytes = single ? sizeof(float) : sizeof(double);
-  const double column = 6.0 * largest_part(o.geometry.height, o.facets_m) * sizeof(double) + 2.0 * o.nv * real_bytes;
+  const double column = 6.0 * largest_part(o.geometry.height, o.facets_m) * sizeof(double) + o.nv * complex_bytes;
   return {gathered + one + image, both - one + image, o.threads * 16 * column};
 }
 

@@ -25,7 +25,7 @@ BOOST_AUTO_TEST_CASE_TEMPLATE(positions_are_whole_cells_and_what_is_left_with_ev
   for (int i = 0; i < count; ++i) frequency_hz[i] = 5.0003e11 + 1.4e8 * i;
   for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {
     hwy::SetSupportedTargetsForTest(target);
-    TileBatch<Real> batch;
+    TilePlaces<Real> batch;
     for (const int some : {5, 0, 32}) append_positions(row, frequency_hz + batch.count, some, batch);
     BOOST_TEST_REQUIRE(batch.count == count);
     double largest = 0;
@@ -44,7 +44,7 @@ BOOST_AUTO_TEST_CASE_TEMPLATE(positions_are_whole_cells_and_what_is_left_with_ev
 
 BOOST_AUTO_TEST_CASE(positions_that_rounding_takes_out_of_the_tile_stay_within) {
   const double frequency_hz[] = {1, 2};
-  TileBatch<double> batch;
+  TilePlaces<double> batch;
   append_positions({1, 1 + 1e-12, 8, 0, 16}, frequency_hz, 2, batch);
   BOOST_TEST(batch.column[0] == 0);
   BOOST_TEST(batch.row[1] == 15);
