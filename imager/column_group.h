@@ -5,12 +5,22 @@
 #include <vector>
 
 #include "imager/column_loops.h"
+#include "imager/correction.h"
+#include "imager/facet.h"
 #include "imager/image.h"
-#include "imager/plane_stack.h"
 
 namespace misfit::imager {
 
 inline constexpr int columns_at_once = 16;  ///< a cache line or two of each row while columns are brought to contiguous memory
+
+/// A facet with the distance of its planes in wavelengths, and the corrections of the kernels over its pixels.
+struct StackedFacet {
+  Facet facet;
+  double plane_step = 0;
+  std::vector<double> h_u;  ///< [column]
+  std::vector<double> h_v;  ///< [row]
+  SmoothCorrection h_w;     ///< of plane_step · q
+};
 
 /// The pixels of a group of neighbouring columns of a facet: a complex sum for each, their corrections, and the phasors that
 /// lead from plane to plane.

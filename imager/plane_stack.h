@@ -5,9 +5,6 @@
 #include <vector>
 
 #include "imager/big_array.h"
-#include "imager/correction.h"
-#include "imager/facet.h"
-#include "imager/image.h"
 
 namespace misfit::imager {
 
@@ -29,6 +26,12 @@ struct StackShape {
   std::size_t cells() const { return static_cast<std::size_t>(columns()) * static_cast<std::size_t>(rows()); }
 };
 
+/// Rows of storage, [begin, end).
+struct RowRange {
+  int begin = 0;
+  int end = 0;
+};
+
 /// Some neighbouring planes of constant w, each with one or more complex grids. What a tile holds of one row lies together:
 /// [row][chunk][plane][grid][column in chunk], a chunk being as wide as a tile. Memory is used again from one facet to the
 /// next.
@@ -37,10 +40,21 @@ class PlaneStack {
  public:
   PlaneStack(const StackShape& stack_shape, int grid_count) : shape(stack_shape), grids(grid_count) {}
 
-  /// Makes room for that many planes, whose content is undefined, and marks every row unused.
+  /// Makes room for that many planes, no row of which is used.
   void reserve(int plane_count);
-  /// Makes the used rows of all planes zero.
-  void clear(int threads);
+  /// Makes rows zero that were not used before.
+  void use_rows(const std::vector<RowRange>& ranges, int threads);
+
+  std::size_t bytes_a_row() const { return offset(1, 0, 0, 0) * sizeof(std::complex<Real>); }
+
+  /// Calls visit(r) for the rows of storage that stand for row q of the grid: its own first, and margins.
+  template <typename Visit>
+  void for_rows(int q, const Visit& visit) const {
+    for (const int other : {q, q - shape.nv, q + shape.nv})
+      if (other >= -shape.margin() && other <= shape.nv + shape.margin()) visit(other + shape.margin());
+  }
+  /// Whether row q of any grid may hold something.
+  bool holds(int q) const;
 
   std::complex<Real>* chunk(int row, int index, int plane, int grid) { return cell_.data() + offset(row, index, plane, grid); }
   const std::complex<Real>* chunk(int row, int index, int plane, int grid) const {
@@ -50,7 +64,7 @@ class PlaneStack {
   StackShape shape;
   int planes = 0;
   int grids = 1;
-  std::vector<char> row_used;  ///< [row]: whether any plane may hold something there; the content of others does not count
+  std::vector<char> row_used;  ///< [row]: whether any plane may hold something there; the content of others is undefined
 
  private:
   std::size_t offset(int row, int index, int plane, int grid) const {
@@ -61,26 +75,5 @@ class PlaneStack {
 
   BigArray<std::complex<Real>> cell_;
 };
-
-/// A facet with the distance of its planes in wavelengths, and the corrections of the kernels over its pixels.
-struct StackedFacet {
-  Facet facet;
-  double plane_step = 0;
-  std::vector<double> h_u;  ///< [column]
-  std::vector<double> h_v;  ///< [row]
-  SmoothCorrection h_w;     ///< of plane_step · q
-};
-
-/// image_i(x, y) += h_u h_v h_w Re Σ_k Σ_{p,q} G_{k,i}(p, q) exp(+2πi(px/nu + qy/nv + w_k q_w(x, y))) for the i-th grid
-/// of every plane, w_k = (first_plane + k + ½) plane_step; q_w is the facet's curvature. Pixels beyond the horizon become NaN.
-/// What the stack held is lost.
-template <typename Real>
-void add_stack_to_images(PlaneStack<Real>& stack, const StackedFacet& facet, int first_plane, int threads,
-                         const std::vector<Image*>& images);
-
-/// The adjoint, for a stack of one grid a plane: G_k(p, q) = Σ_{x,y} h_u h_v h_w image(x, y) exp(−2πi(px/nu + qy/nv +
-/// w_k q_w)), margins filled by periodicity. Pixels beyond the horizon are not used.
-template <typename Real>
-void image_to_stack(const Image& image, const StackedFacet& facet, int first_plane, int threads, PlaneStack<Real>& stack);
 
 }  // namespace misfit::imager

@@ -54,11 +54,13 @@ constexpr int taps_at_once = static_cast<int>(hn::MaxLanes(TapsTag<Real>()));
 template <typename Real, typename Visit>
 HWY_ATTR HWY_INLINE void for_each_plane(const StackTaps<Real>& taps, const StackBatch<Real>& samples, const Along<Real>& along,
                                         int planes, const Visit& visit) {
+  constexpr int stride = 37;
   for (int plane = 0; plane < planes; ++plane)
-    for (int i = 0; i < samples.count; ++i) {
-      const int tap = plane - samples.plane[i];
-      if (tap >= 0 && tap < taps.w.width) visit(plane, i, along.w.value[i * taps.w.padded + tap]);
-    }
+    for (int first = 0; first < stride; ++first)
+      for (int i = first; i < samples.count; i += stride) {
+        const int tap = plane - samples.plane[i];
+        if (tap >= 0 && tap < taps.w.width) visit(plane, i, along.w.value[i * taps.w.padded + tap]);
+      }
 }
 
 template <typename Real, int Vectors, int Grids>

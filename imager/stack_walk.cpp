@@ -14,11 +14,21 @@ std::vector<Slab> slabs_of(const StackOrder& order, int most_planes) {
   return slabs;
 }
 
-std::vector<std::vector<StackTask>> tasks_of(const StackOrder& order, const StackShape& shape, const Slab& slab, int width_w) {
+std::vector<Band> bands_of(const StackShape& shape, std::size_t bytes_a_row) {
+  constexpr std::size_t cache = std::size_t{12} << 20;
+  const std::size_t tile_bytes = bytes_a_row * static_cast<std::size_t>(shape.tile);
+  const int tiles = static_cast<int>(std::clamp<std::size_t>(cache / tile_bytes, 1, 16));
+  std::vector<Band> bands;
+  for (int v = 0; v < shape.tiles_v(); v += tiles) bands.push_back({v, std::min(v + tiles, shape.tiles_v())});
+  return bands;
+}
+
+std::vector<std::vector<StackTask>> tasks_of(const StackOrder& order, const StackShape& shape, const Slab& slab, int width_w,
+                                             const Band& band) {
   std::vector<std::vector<StackTask>> colours(4);
   const auto below = [](const StackRun& run, int plane) { return run.plane < plane; };
-  std::size_t tile = 0;
-  for (int v = 0; v < shape.tiles_v(); ++v)
+  std::size_t tile = static_cast<std::size_t>(band.begin) * static_cast<std::size_t>(shape.tiles_u());
+  for (int v = band.begin; v < band.end; ++v)
     for (int u = 0; u < shape.tiles_u(); ++u, ++tile) {
       const auto first = order.run.begin() + static_cast<std::ptrdiff_t>(order.begin[tile]);
       const auto last = order.run.begin() + static_cast<std::ptrdiff_t>(order.begin[tile + 1]);

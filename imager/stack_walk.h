@@ -29,8 +29,18 @@ struct StackTask {
 /// The planes that hold anything, at most so many at a time.
 std::vector<Slab> slabs_of(const StackOrder& order, int most_planes);
 
-/// In four colours of tiles whose buffers cannot touch, the fullest of a colour first.
-std::vector<std::vector<StackTask>> tasks_of(const StackOrder& order, const StackShape& shape, const Slab& slab, int width_w);
+/// Neighbouring rows of tiles, [begin, end).
+struct Band {
+  int begin = 0;
+  int end = 0;
+};
+
+/// All rows of tiles, in bands that a cache shared among processors can hold.
+std::vector<Band> bands_of(const StackShape& shape, std::size_t bytes_a_row);
+
+/// A band's tasks in four colours of tiles whose buffers cannot touch, the fullest of a colour first.
+std::vector<std::vector<StackTask>> tasks_of(const StackOrder& order, const StackShape& shape, const Slab& slab, int width_w,
+                                             const Band& band);
 
 /// Neighbouring channels of a row in a batch.
 struct BatchRun {

@@ -11,7 +11,9 @@
 #include "imager/phasors.h"
 #include "imager/sampling.h"
 #include "imager/spares.h"
+#include "imager/stack_columns.h"
 #include "imager/stack_loops.h"
+#include "imager/stack_rows.h"
 #include "imager/stack_walk.h"
 
 namespace misfit::imager {
@@ -75,7 +77,7 @@ StackBuffer<Real> buffer_of(const Setup<Real>& setup, int grids) {
 }
 
 /// Sums in single precision stay short: a buffer is added to the stack after so many samples.
-constexpr int most_in_buffer = 512;
+constexpr int most_in_buffer = 1024;
 
 template <typename Real>
 class WideAdjoint : public AdjointSum {
@@ -129,32 +131,38 @@ class WideAdjoint : public AdjointSum {
     if (!result_.psf.pixel.empty()) images.push_back(&result_.psf);
     const int grids = static_cast<int>(images.size()), threads = setup_.options.threads;
     PlaneStack<Real> stack(setup_.shape, grids);
+    Spares<StackBuffer<Real>> spares;
     for (const StackedFacet& f : setup_.facets) {
       const StackOrderOptions ordering = setup_.ordering(f);
       const StackOrder order = order_for_stack(blocks, ordering);
       for (const Slab& slab : slabs_of(order, most_planes(setup_, grids))) {
-        const auto colours = tasks_of(order, setup_.shape, slab, ordering.width_w);
         stack.reserve(slab.planes);
-        for (const std::vector<StackTask>& tasks : colours)
-          for (const StackTask& task : tasks) mark_rows(task, stack);
-        stack.clear(threads);
-        Spares<StackBuffer<Real>> spares;
-        for (const std::vector<StackTask>& tasks : colours)
-          parallel_for(tasks.size(), threads, [&](std::size_t i) {
-            auto buffer = spares.take([&] { return std::make_unique<StackBuffer<Real>>(buffer_of(setup_, grids)); });
-            grid_tile({blocks, order, ordering}, tasks[i], slab.first, *buffer, stack);
-            spares.give_back(std::move(buffer));
-          });
-        add_stack_to_images(stack, f, slab.first, threads, images);
+        StackRows<Real> rows(stack, f.facet.geometry.width, threads);
+        for (const Band& band : bands_of(setup_.shape, stack.bytes_a_row())) {
+          const auto colours = tasks_of(order, setup_.shape, slab, ordering.width_w, band);
+          stack.use_rows(rows_of(colours), threads);
+          for (const std::vector<StackTask>& tasks : colours)
+            parallel_for(tasks.size(), threads, [&](std::size_t i) {
+              auto buffer = spares.take([&] { return std::make_unique<StackBuffer<Real>>(buffer_of(setup_, grids)); });
+              grid_tile({blocks, order, ordering}, tasks[i], slab.first, *buffer, stack);
+              spares.give_back(std::move(buffer));
+            });
+          rows.to_image(band.end * setup_.shape.tile);
+        }
+        rows.to_image(setup_.shape.rows());
+        stack_to_images(stack, f, slab.first, threads, images);
       }
     }
     gathered_.clear();
     samples_ = 0;
   }
 
-  void mark_rows(const StackTask& task, PlaneStack<Real>& stack) const {
+  std::vector<RowRange> rows_of(const std::vector<std::vector<StackTask>>& colours) const {
     const StackShape& s = setup_.shape;
-    std::fill_n(stack.row_used.begin() + task.tile_v * s.tile, s.tile + s.width - 1, 1);
+    std::vector<RowRange> rows;
+    for (const std::vector<StackTask>& tasks : colours)
+      for (const StackTask& task : tasks) rows.push_back({task.tile_v * s.tile, (task.tile_v + 1) * s.tile + s.width - 1});
+    return rows;
   }
 
   void grid_tile(const StackSamples& samples, const StackTask& task, int first_plane, StackBuffer<Real>& buffer,
@@ -252,19 +260,23 @@ class WidePrediction : public Prediction {
     halves.mirrored = halves.direct;
     const int threads = setup_.options.threads;
     PlaneStack<Real> stack(setup_.shape, 1);
+    Spares<StackBuffer<Real>> spares;
     for (const StackedFacet& f : setup_.facets) {
       const StackOrderOptions ordering = setup_.ordering(f);
       const StackOrder order = order_for_stack(blocks, ordering);
       for (const Slab& slab : slabs_of(order, most_planes(setup_, 1))) {
         stack.reserve(slab.planes);
         image_to_stack(model_, f, slab.first, threads, stack);
-        Spares<StackBuffer<Real>> spares;
-        for (const std::vector<StackTask>& tasks : tasks_of(order, setup_.shape, slab, ordering.width_w))
-          parallel_for(tasks.size(), threads, [&](std::size_t i) {
-            auto buffer = spares.take([&] { return std::make_unique<StackBuffer<Real>>(buffer_of(setup_, 1)); });
-            degrid_tile({blocks, order, ordering}, tasks[i], slab.first, stack, *buffer, halves);
-            spares.give_back(std::move(buffer));
-          });
+        StackRows<Real> rows(stack, f.facet.geometry.width, threads);
+        for (const Band& band : bands_of(setup_.shape, stack.bytes_a_row())) {
+          rows.to_grid(band.end * setup_.shape.tile + setup_.shape.width);
+          for (const std::vector<StackTask>& tasks : tasks_of(order, setup_.shape, slab, ordering.width_w, band))
+            parallel_for(tasks.size(), threads, [&](std::size_t i) {
+              auto buffer = spares.take([&] { return std::make_unique<StackBuffer<Real>>(buffer_of(setup_, 1)); });
+              degrid_tile({blocks, order, ordering}, tasks[i], slab.first, stack, *buffer, halves);
+              spares.give_back(std::move(buffer));
+            });
+        }
       }
     }
     for (std::size_t b = 0; b < blocks.size(); ++b)
