@@ -1,38 +1,52 @@
 #pragma once
 
-#include <sys/mman.h>
-
 #include <cstddef>
-#include <cstdlib>
 #include <memory>
-#include <new>
 
 namespace misfit::imager {
 
-/// Memory for grids, not initialised, in huge pages where the system lends them: a tile's rows lie pages apart.
-template <typename T>
-class BigArray {
+/// Memory for grids, not initialised, in huge pages where the system lends them: a tile's rows lie pages apart. What one grid
+/// gives back the next one takes, since pages fresh from the system are as dear as gridding into them.
+class BigMemory {
  public:
-  /// Room for `count` values, their content lost where more room is needed.
-  void reserve(std::size_t count) {
-    if (count <= capacity_) return;
-    constexpr std::size_t huge_page = std::size_t{1} << 21;
-    const std::size_t bytes = (count * sizeof(T) + huge_page - 1) / huge_page * huge_page;
-    memory_.reset();
-    memory_.reset(static_cast<T*>(std::aligned_alloc(huge_page, bytes)));
-    if (!memory_) throw std::bad_alloc();
-    madvise(memory_.get(), bytes, MADV_HUGEPAGE);  // a hint: without it small pages serve
-    capacity_ = count;
-  }
-  T* data() { return memory_.get(); }
-  const T* data() const { return memory_.get(); }
+  BigMemory() = default;
+  BigMemory(const BigMemory&) = delete;
+  BigMemory& operator=(const BigMemory&) = delete;
+  ~BigMemory();
+
+  /// Room for that many bytes, their content lost where more room is needed.
+  void reserve(std::size_t bytes);
+  void* data() { return block_.memory.get(); }
+  const void* data() const { return block_.memory.get(); }
+
+  /// Gives what lies spare back to the system.
+  static void release();
 
  private:
   struct Free {
-    void operator()(T* memory) const { std::free(memory); }
+    void operator()(void* memory) const;
   };
-  std::unique_ptr<T, Free> memory_;
-  std::size_t capacity_ = 0;
+  struct Block {
+    std::unique_ptr<void, Free> memory;
+    std::size_t bytes = 0;
+  };
+  struct Spare;
+
+  static Spare& spare();
+
+  Block block_;
+};
+
+/// The same as an array of values.
+template <typename T>
+class BigArray {
+ public:
+  void reserve(std::size_t count) { memory_.reserve(count * sizeof(T)); }
+  T* data() { return static_cast<T*>(memory_.data()); }
+  const T* data() const { return static_cast<const T*>(memory_.data()); }
+
+ private:
+  BigMemory memory_;
 };
 
 }  // namespace misfit::imager

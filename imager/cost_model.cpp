@@ -12,17 +12,19 @@
 namespace misfit::imager {
 namespace {
 
-/// Inner loops take taps in vectors; see TapTable.
+/// Inner loops take taps in vectors; see TapTable and stack_loops.cpp.
 double padded(const GriddingWork& work) {
-  const bool one_vector = work.precision == Precision::single_precision && work.width > 8 && work.width <= 16;
+  const bool one_vector =
+      !work.has_w_axis() && work.precision == Precision::single_precision && work.width > 8 && work.width <= 16;
   return one_vector ? 16 : (work.width + 3) / 4 * 4;
 }
 
 /// What a w axis multiplies, as measured: a sample's coordinates have a phase and one more axis; a cell lies in a buffer that
 /// is no longer in the nearest cache; a point of an FFT is turned by its plane's phase.
-constexpr double wide_sample = 3;
-constexpr double wide_cell = 1.8;
+constexpr double wide_sample = 5;
+constexpr double wide_cell = 1.1;
 constexpr double wide_point = 1.15;
+constexpr double wide_double_cost = 1.45;  ///< over single precision
 
 /// Points times logarithms of the rows and the kept columns; half of both where the grid is Hermitian, in the plane.
 double fft_points(const GriddingWork& work) {
@@ -85,7 +87,8 @@ double CostModel::seconds(const GriddingWork& work) const {
   const double per_sample = sample_ns * (wide ? wide_sample : 1) + cell_ns * cells_of(work, tap_ns / cell_ns);
   const double per_point = fft_ns * (wide ? wide_point : 1);
   const double single_ns = work.samples * work.facets * per_sample + work.images * fft_points(work) * per_point;
-  return 1e-9 * single_ns * (work.precision == Precision::single_precision ? 1 : double_cost);
+  const bool single = work.precision == Precision::single_precision;
+  return 1e-9 * single_ns * (single ? 1 : wide ? wide_double_cost : double_cost);
 }
 
 double operation_count(const GriddingWork& work) {

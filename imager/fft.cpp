@@ -61,7 +61,7 @@ typename Fftw<Real>::Complex* fftw_cast(std::complex<Real>* z) {
 }  // namespace
 
 int fast_fft_size(int size) {
-  for (int candidate = size + size % 2;; candidate += 2) {
+  for (int candidate = (size + 3) / 4 * 4;; candidate += 4) {
     int rest = candidate;
     for (const int factor : {2, 3, 5, 7})
       while (rest % factor == 0) rest /= factor;

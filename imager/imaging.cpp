@@ -2,6 +2,7 @@
 
 #include <stdexcept>
 
+#include "imager/big_array.h"
 #include "imager/phase.h"
 #include "imager/phasors.h"
 
@@ -132,6 +133,7 @@ DirtyImages make_dirty_images(const VisibilitySource& source, const Transform& t
   });
   AdjointResult of_psf = finish(std::move(psf_sum), times);
   AdjointResult result = finish(std::move(sum), times);
+  BigMemory::release();
   require_any(result.sums);
   const StageTimer timer(times, "fft");
   divide(result.image, result.sums.weight);

@@ -119,10 +119,10 @@ BOOST_AUTO_TEST_CASE_TEMPLATE(complex_to_real_doubles_all_but_the_first_and_last
   }
 }
 
-BOOST_AUTO_TEST_CASE(fast_size_is_the_smallest_even_seven_smooth_one_that_suffices) {
+BOOST_AUTO_TEST_CASE(fast_size_is_the_smallest_multiple_of_four_that_is_seven_smooth_and_suffices) {
   for (int size = 1; size <= 5000; ++size) {
     int expected = size;
-    while (expected % 2 != 0 || !is_seven_smooth(expected)) ++expected;
+    while (expected % 4 != 0 || !is_seven_smooth(expected)) ++expected;
     BOOST_REQUIRE_EQUAL(fast_fft_size(size), expected);
   }
 }
