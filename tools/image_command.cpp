@@ -201,6 +201,7 @@ class ImageRun {
       products_->add("model", "Model", "Jy/pixel", std::move(cleaned_->model));
       products_->add("image", "Restored image", "Jy/beam", std::move(restored));
     }
+    drawing_ = std::make_unique<PictureDrawing>(products_->pictures());
     const imager::StageTimer timer(times_, "write images");
     products_->write();
   }
@@ -209,8 +210,10 @@ class ImageRun {
     std::vector<PagePicture> pictures;
     {
       const imager::StageTimer timer(times_, "draw pictures");
-      const std::string failure = products_->draw(pictures);
+      const std::string failure = drawing_->finish();
       if (!failure.empty()) warn(failure);
+      if (failure.empty())
+        for (const Picture& picture : products_->pictures()) pictures.push_back({picture.title, read_file(picture.path)});
     }
     report_.wall_clock_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
     const nlohmann::json json = report_json(report_);
@@ -257,6 +260,7 @@ class ImageRun {
   imager::Beam quadrant_beam_;
   std::unique_ptr<imager::CleanResult> cleaned_;
   std::unique_ptr<ImageProducts> products_;
+  std::unique_ptr<PictureDrawing> drawing_;  ///< of the products
 };
 
 }  // namespace

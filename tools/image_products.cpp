@@ -49,14 +49,11 @@ void ImageProducts::write() const {
   for (const Product& product : products_) imager::write_fits(product.image, path(product, "fits"), format_);
 }
 
-std::string ImageProducts::draw(std::vector<PagePicture>& pictures) const {
+std::vector<Picture> ImageProducts::pictures() const {
   std::vector<Picture> wanted;
   for (auto product = products_.rbegin(); product != products_.rend(); ++product)
     wanted.push_back({&product->image, product->title, path(*product, "png")});
-  std::string failure = draw_pictures(wanted);
-  if (failure.empty())
-    for (const Picture& picture : wanted) pictures.push_back({picture.title, read_file(picture.path)});
-  return failure;
+  return wanted;
 }
 
 }  // namespace misfit::tools

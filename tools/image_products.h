@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "imager/fits_image.h"
-#include "tools/report_page.h"
+#include "tools/pictures.h"
 #include "tools/run_report.h"
 
 namespace misfit::tools {
@@ -26,8 +26,8 @@ class ImageProducts {
 
   /// Writes <imagename>.<kind>.fits for each.
   void write() const;
-  /// Draws <imagename>.<kind>.png for each, the last added first in `pictures`. Returns why there are none, or an empty string.
-  std::string draw(std::vector<PagePicture>& pictures) const;
+  /// Pictures to draw as <imagename>.<kind>.png, the last added first; they last as long as these products.
+  std::vector<Picture> pictures() const;
 
  private:
   struct Product {

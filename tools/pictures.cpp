@@ -4,6 +4,7 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <future>
 #include <numbers>
 #include <sstream>
 #include <stdexcept>
@@ -94,14 +95,14 @@ void colour_bar(std::ostream& script, const Stretch& stretch, const std::string&
          << ", graph 0.5 rotate by 90 center\n";
 }
 
-/// Draws picture `number`, with its data in number.data and its result in number.png.
-void script_picture(std::ostream& script, const Picture& picture, std::size_t number, const fs::path& folder) {
+/// Draws a picture, with its data in "data" and its result in "png".
+void script_picture(std::ostream& script, const Picture& picture, const fs::path& folder) {
   const imager::SkyImage& sky = *picture.image;
   Stretch stretch = choose_stretch(sky.image);
   const ScaledUnit unit = scaled_unit(std::max(std::abs(stretch.low), std::abs(stretch.high)), sky.unit);
   for (double* limit : {&stretch.low, &stretch.high, &stretch.knee}) *limit /= unit.size;
   const ReducedImage reduced = reduce(sky.image, stretch.sparse ? plot_side / 3 : plot_side);
-  write_shades(folder / (std::to_string(number) + ".data"), reduced.image, stretch, unit.size);
+  write_shades(folder / "data", reduced.image, stretch, unit.size);
 
   const Frame frame = frame_of(sky.geometry);
   const double longer = std::max(sky.image.width, sky.image.height);
@@ -114,7 +115,7 @@ void script_picture(std::ostream& script, const Picture& picture, std::size_t nu
   script
       << "reset\nset encoding utf8\nset minussign\nset terminal pngcairo noenhanced background rgb 'white' font 'sans,13' size "
       << width << ',' << height << '\n'
-      << "set output '" << number << ".png'\n"
+      << "set output 'png'\n"
       << "set lmargin at screen " << double(margin_left) / width << "\nset rmargin at screen "
       << double(margin_left + plot_width) / width << "\nset bmargin at screen " << double(margin_bottom) / height
       << "\nset tmargin at screen " << double(margin_bottom + plot_height) / height << '\n'
@@ -131,9 +132,9 @@ void script_picture(std::ostream& script, const Picture& picture, std::size_t nu
       << "set xrange [" << frame.east << ':' << frame.west << "]\nset yrange [" << frame.south << ':' << frame.north << "]\n";
   colour_bar(script, stretch, unit.name, width);
   if (sky.has_beam) script << "$beam << EOD\n" << beam_outline(sky.beam, frame) << "EOD\n";
-  script << "plot '" << number << ".data' binary array=(" << reduced.image.width << ',' << reduced.image.height
-         << ") format='%float' origin=(" << frame.east - (reduced.image.width - 0.5) * step << ',' << frame.south + step / 2
-         << ") dx=" << step << " dy=" << step << " with image";
+  script << "plot 'data' binary array=(" << reduced.image.width << ',' << reduced.image.height << ") format='%float' origin=("
+         << frame.east - (reduced.image.width - 0.5) * step << ',' << frame.south + step / 2 << ") dx=" << step
+         << " dy=" << step << " with image";
   if (sky.has_beam) script << ", $beam with filledcurves fc rgb '#ffffff' fs solid border lc rgb '#999999'";
   script << "\nunset output\n";
 }
@@ -150,22 +151,46 @@ bool is_complete(const fs::path& path) {
 
 }  // namespace
 
-std::string draw_pictures(const std::vector<Picture>& pictures) {
-  if (pictures.empty()) return "";
-  const WorkFolder work(fs::absolute(pictures.front().path).parent_path());
-  std::ofstream script(work.path() / "script");
-  script.precision(12);
-  for (std::size_t number = 0; number < pictures.size(); ++number)
-    script_picture(script, pictures[number], number, work.path());
-  script.close();
+/// A picture being drawn.
+struct PictureDrawing::Sheet {
+  std::string path;
+  WorkFolder work;
+  std::future<std::string> failure;
 
-  const std::string failure = run_gnuplot(work);
-  if (!failure.empty()) return "Pictures are left out because " + failure + ".";
-  const auto drawn = [&](std::size_t number) { return work.path() / (std::to_string(number) + ".png"); };
-  for (std::size_t number = 0; number < pictures.size(); ++number)
-    if (!is_complete(drawn(number))) return "Pictures are left out because gnuplot could not finish them; is the disk full?";
-  for (std::size_t number = 0; number < pictures.size(); ++number) fs::rename(drawn(number), pictures[number].path);
+  explicit Sheet(const Picture& picture)
+      : path(picture.path),
+        work(fs::absolute(path).parent_path()),
+        failure(std::async(std::launch::async, [this, picture] { return draw(picture); })) {}
+
+  std::string draw(const Picture& picture) const {
+    std::ofstream script(work.path() / "script");
+    script.precision(12);
+    script_picture(script, picture, work.path());
+    script.close();
+    return run_gnuplot(work);
+  }
+  fs::path drawn() const { return work.path() / "png"; }
+};
+
+PictureDrawing::PictureDrawing(const std::vector<Picture>& pictures) {
+  for (const Picture& picture : pictures) sheets_.push_back(std::make_unique<Sheet>(picture));
+}
+
+PictureDrawing::~PictureDrawing() = default;
+
+std::string PictureDrawing::finish() {
+  for (const auto& sheet : sheets_) {
+    const std::string failure = sheet->failure.get();
+    if (!failure.empty()) return "Pictures are left out because " + failure + ".";
+  }
+  for (const auto& sheet : sheets_)
+    if (!is_complete(sheet->drawn())) return "Pictures are left out because gnuplot could not finish them; is the disk full?";
+  for (const auto& sheet : sheets_) fs::rename(sheet->drawn(), sheet->path);
   return "";
+}
+
+std::string draw_pictures(const std::vector<Picture>& pictures) {
+  return PictureDrawing(pictures).finish();
 }
 
 }  // namespace misfit::tools

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -15,9 +16,24 @@ struct Picture {
   std::string path;  ///< of the PNG file; replaced when it exists
 };
 
-/// Draws all pictures with one run of gnuplot, found on PATH. Returns an empty string, or in one sentence why there are no
-/// pictures (gnuplot is not installed, or failed). Files appear only when complete. Throws std::runtime_error that names the
-/// folder of a picture when it cannot be written.
+/// Draws pictures with gnuplot, found on PATH, each in a thread of its own while the caller does other things. Nothing appears
+/// before finish(), whose images must last until then.
+class PictureDrawing {
+ public:
+  /// Throws std::runtime_error that names the folder of a picture when it cannot be written.
+  explicit PictureDrawing(const std::vector<Picture>& pictures);
+  PictureDrawing(PictureDrawing&&) = default;
+  ~PictureDrawing();
+
+  /// Returns an empty string when all files are there and complete, or in one sentence why there are none (gnuplot is not
+  /// installed, or failed).
+  std::string finish();
+
+ private:
+  struct Sheet;
+  std::vector<std::unique_ptr<Sheet>> sheets_;
+};
+
 std::string draw_pictures(const std::vector<Picture>& pictures);
 
 }  // namespace misfit::tools
