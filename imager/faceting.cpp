@@ -38,6 +38,8 @@ std::vector<Faceting> facetings(const ImageGeometry& image, double max_abs_w, in
       if (!facet.empty) way.turns.push_back(2 * facet.reach * max_abs_w);
     if (way.turns.empty()) throw std::invalid_argument("every pixel of the image lies beyond the horizon");
     ways.push_back(way);
+    constexpr double few = 0.1;  // smaller facets would save no plane
+    if (*std::max_element(way.turns.begin(), way.turns.end()) < few) break;
   }
   return ways;
 }

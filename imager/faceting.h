@@ -21,7 +21,8 @@ struct Faceting {
 inline constexpr int most_facets = 32;
 
 /// The ways worth considering, from the whole image as one facet on to `most` along its longer side: about square facets, none
-/// smaller than 128 pixels. Throws std::invalid_argument when every pixel lies beyond the horizon.
+/// smaller than 128 pixels, nor smaller than those that leave the w axis next to nothing. Throws std::invalid_argument when
+/// every pixel lies beyond the horizon.
 std::vector<Faceting> facetings(const ImageGeometry& image, double max_abs_w, int most = most_facets);
 
 }  // namespace misfit::imager
