@@ -20,7 +20,7 @@ AccurateImages make_images(const VisibilitySource& source, GriddingPlan plan, co
   made.plan = std::move(plan);
   {
     const StageTimer timer(times, "plan");
-    made.transform = make_transform(made.plan.options);
+    made.transform = std::make_unique<PlannedTransform>(made.plan);
   }
   if (!made.plan.psf) {
     made.images = make_dirty_images(source, *made.transform, made.plan.request.images > 1, progress, times);

@@ -3,6 +3,7 @@
 #include "imager/extent.h"
 #include "imager/gridding_plan.h"
 #include "imager/imaging.h"
+#include "imager/planned_transform.h"
 
 namespace misfit::imager {
 
@@ -18,7 +19,7 @@ TheoreticalError theoretical_error(const GriddingPlan& plan, const SampleSums& s
 
 struct AccurateImages {
   GriddingPlan plan;
-  std::unique_ptr<Transform> transform;
+  std::unique_ptr<PlannedTransform> transform;
   DirtyImages images;
   bool promise_kept = true;  ///< whether the gridding error is within the accuracy, judged by the image that came out
 };

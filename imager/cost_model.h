@@ -29,6 +29,7 @@ struct CostModel {
   double tap_ns = 0.012;     ///< a coefficient of the polynomials, for each padded tap of both axes
   double fft_ns = 0.6;       ///< a point and binary logarithm of an FFT
   double double_cost = 1.7;  ///< over single precision: twice the bytes, half the lanes
+  double direct_ns = 4;      ///< a term of a direct sum, in double precision
 
   double seconds(const GriddingWork& work) const;
 };

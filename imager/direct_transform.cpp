@@ -1,8 +1,10 @@
 #include "imager/direct_transform.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "imager/constants.h"
+#include "imager/horizon.h"
 #include "imager/parallel.h"
 #include "imager/phase.h"
 #include "imager/phasors.h"
@@ -16,70 +18,140 @@ PhasePosition relative(const PhasePosition& at, const PhasePosition& origin) {
   return {at.l - origin.l, at.m - origin.m, at.n_minus_1 - origin.n_minus_1};
 }
 
-/// Σ w Re[V exp(−i phase)] over one block, with `value(i)` = w V.
-template <typename Value>
-double direct_sum(const VisibilityBlock& block, const std::vector<char>& inside, const PhasePosition& at, const Value& value) {
-  std::vector<double> turns(block.channels()), cosine(turns.size()), sine(turns.size());
-  double sum = 0;
-  std::size_t i = 0;
-  for (std::size_t row = 0; row < block.rows(); ++row) {
-    const double per_hz = turns_per_hz(&block.uvw_m[3 * row], at);
-    for (std::size_t c = 0; c < turns.size(); ++c) turns[c] = per_hz * block.frequency_hz[c];
-    phasors(turns.data(), static_cast<int>(turns.size()), cosine.data(), sine.data());
-    for (std::size_t c = 0; c < turns.size(); ++c, ++i) {
+PhasePosition position_of(DirectionCosines at, bool with_w) {
+  PhasePosition position = phase_position(at);
+  if (!with_w) position.n_minus_1 = 0;
+  return position;
+}
+
+/// Samples of a block in wavelengths.
+struct Wavelengths {
+  std::vector<double> u, v, w;
+
+  void push_back(const double* uvw_m, double frequency_hz) {
+    const double per_m = frequency_hz / speed_of_light_m_s;
+    u.push_back(uvw_m[0] * per_m);
+    v.push_back(uvw_m[1] * per_m);
+    w.push_back(uvw_m[2] * per_m);
+  }
+  std::size_t size() const { return u.size(); }
+};
+
+/// Calls visit(i, cosine, sine) for each sample, with exp(2πi(ul+vm+w(n−1))).
+template <typename Visit>
+void for_phasors(const Wavelengths& at, const PhasePosition& to, const Visit& visit) {
+  constexpr std::size_t at_once = 256;
+  double turns[at_once], cosine[at_once], sine[at_once];
+  for (std::size_t begin = 0; begin < at.size(); begin += at_once) {
+    const std::size_t some = std::min(at_once, at.size() - begin);
+    for (std::size_t i = 0; i < some; ++i)
+      turns[i] = at.u[begin + i] * to.l + at.v[begin + i] * to.m + at.w[begin + i] * to.n_minus_1;
+    phasors(turns, static_cast<int>(some), cosine, sine);
+    for (std::size_t i = 0; i < some; ++i) visit(begin + i, cosine[i], sine[i]);
+  }
+}
+
+/// The samples of a block that take part in imaging, with w V.
+struct WeightedSamples {
+  Wavelengths at;
+  std::vector<double> weight, real, imaginary;
+
+  template <typename Visibility>
+  WeightedSamples(const VisibilityBlock& block, const std::vector<char>& inside, const Visibility& visibility,
+                  std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
       if (!inside[i]) continue;
-      const std::complex<double> v = value(i);
-      sum += v.real() * cosine[c] + v.imag() * sine[c];
+      const std::complex<double> v(visibility[i]);
+      at.push_back(&block.uvw_m[3 * (i / block.channels())], block.frequency_hz[i % block.channels()]);
+      weight.push_back(block.weight[i]);
+      real.push_back(weight.back() * v.real());
+      imaginary.push_back(weight.back() * v.imag());
     }
   }
-  return sum;
-}
+
+  /// Σ w Re[V exp(−2πi(…))].
+  double image_at(const PhasePosition& to) const {
+    double sum = 0;
+    for_phasors(at, to, [&](std::size_t i, double cosine, double sine) { sum += real[i] * cosine + imaginary[i] * sine; });
+    return sum;
+  }
+  /// The same for V = 1.
+  double beam_at(const PhasePosition& to) const {
+    double sum = 0;
+    for_phasors(at, to, [&](std::size_t i, double cosine, double) { sum += weight[i] * cosine; });
+    return sum;
+  }
+};
 
 class DirectAdjoint : public AdjointSum {
  public:
-  DirectAdjoint(const ImageGeometry& geometry, int threads, bool with_psf) : geometry_(geometry), threads_(threads) {
-    result_.image = Image(geometry.width, geometry.height);
-    if (with_psf) result_.psf = Image(geometry.width, geometry.height);
+  DirectAdjoint(const DirectSums& o, bool with_psf) : o_(o) {
+    result_.image = Image(o.geometry.width, o.geometry.height);
+    if (with_psf) result_.psf = Image(o.geometry.width, o.geometry.height);
   }
 
-  void add(const VisibilityBlock& block) override {
-    accumulate(block, [&](std::size_t i) { return std::complex<double>(block.visibility[i]); });
-  }
+  void add(const VisibilityBlock& block) override { accumulate(block, block.visibility); }
   void add(const VisibilityBlock& block, const std::vector<std::complex<double>>& visibility) override {
-    accumulate(block, [&](std::size_t i) { return visibility[i]; });
+    accumulate(block, visibility);
   }
-  AdjointResult finish() override { return std::move(result_); }
+  AdjointResult finish() override {
+    set_beyond_horizon(o_.geometry, no_value, result_.image);
+    if (!result_.psf.pixel.empty()) set_beyond_horizon(o_.geometry, no_value, result_.psf);
+    return std::move(result_);
+  }
 
  private:
   template <typename Visibility>
   void accumulate(const VisibilityBlock& block, const Visibility& visibility) {
-    const std::vector<char> inside = samples_inside(block, geometry_.cell_rad, result_.sums);
+    const std::vector<char> inside = samples_inside(block, o_.geometry.cell_rad, result_.sums);
     for (std::size_t i = 0; i < inside.size(); ++i)
-      if (inside[i]) add_to_sums(result_.sums, block.weight[i], visibility(i));
-    parallel_for(static_cast<std::size_t>(geometry_.height), threads_, [&](std::size_t r) {
+      if (inside[i]) add_to_sums(result_.sums, block.weight[i], std::complex<double>(visibility[i]));
+    const WeightedSamples samples(block, inside, visibility, 0, inside.size());
+    const PhasePosition middle = position_of(o_.geometry.centre, o_.with_w);
+    parallel_for(static_cast<std::size_t>(o_.geometry.height), o_.threads, [&](std::size_t r) {
       const int row = static_cast<int>(r);
-      for (int column = 0; column < geometry_.width; ++column) {
-        const PhasePosition at = phase_position(geometry_.at(row, column));
-        result_.image.at(row, column) +=
-            direct_sum(block, inside, at, [&](std::size_t i) { return double{block.weight[i]} * visibility(i); });
-        if (!result_.psf.pixel.empty())
-          result_.psf.at(row, column) += direct_sum(block, inside, relative(at, phase_position(geometry_.centre)),
-                                                    [&](std::size_t i) { return std::complex<double>(block.weight[i]); });
+      for (int column = 0; column < o_.geometry.width; ++column) {
+        const PhasePosition at = position_of(o_.geometry.at(row, column), o_.with_w);
+        result_.image.at(row, column) += samples.image_at(at);
+        if (!result_.psf.pixel.empty()) result_.psf.at(row, column) += samples.beam_at(relative(at, middle));
       }
     });
   }
 
-  ImageGeometry geometry_;
-  int threads_;
+  DirectSums o_;
   AdjointResult result_;
 };
 
+/// V [row][channel] = Σ S exp(+2πi(ul+vm+w(n−1))).
+std::vector<std::complex<double>> sum_of(const std::vector<PointSource>& sources, const SampleCoordinates& at, bool with_w,
+                                         int threads) {
+  std::vector<std::complex<double>> visibility(at.samples());
+  constexpr std::size_t samples_a_piece = 4096;
+  const std::size_t channels = at.channels();
+  const auto piece_of = [&](std::size_t begin) {
+    Wavelengths piece;
+    for (std::size_t i = begin; i < std::min(begin + samples_a_piece, at.samples()); ++i)
+      piece.push_back(&at.uvw_m[3 * (i / channels)], at.frequency_hz[i % channels]);
+    return piece;
+  };
+  parallel_for((at.samples() + samples_a_piece - 1) / samples_a_piece, threads, [&](std::size_t p) {
+    const Wavelengths piece = piece_of(p * samples_a_piece);
+    std::complex<double>* out = visibility.data() + p * samples_a_piece;
+    for (const PointSource& source : sources)
+      for_phasors(piece, position_of(source.position, with_w), [&](std::size_t i, double cosine, double sine) {
+        out[i] += std::complex<double>(source.flux_jy * cosine, source.flux_jy * sine);
+      });
+  });
+  return visibility;
+}
+
 class DirectPrediction : public Prediction {
  public:
-  DirectPrediction(std::vector<PointSource> sources, int threads) : sources_(std::move(sources)), threads_(threads) {}
+  DirectPrediction(std::vector<PointSource> sources, bool with_w, int threads)
+      : sources_(std::move(sources)), with_w_(with_w), threads_(threads) {}
 
   std::vector<std::complex<double>> at(const SampleCoordinates& coordinates) const override {
-    return predict_sources(sources_, coordinates, threads_);
+    return sum_of(sources_, coordinates, with_w_, threads_);
   }
   std::vector<std::complex<double>> at_usable(const VisibilityBlock& block) const override {
     std::vector<std::complex<double>> visibility = at(block);
@@ -90,46 +162,44 @@ class DirectPrediction : public Prediction {
 
  private:
   std::vector<PointSource> sources_;
+  bool with_w_;
   int threads_;
 };
 
 }  // namespace
 
 std::unique_ptr<AdjointSum> DirectTransform::adjoint(bool with_psf) const {
-  return std::make_unique<DirectAdjoint>(geometry_, threads_, with_psf);
+  return std::make_unique<DirectAdjoint>(sums_, with_psf);
 }
 
 std::unique_ptr<Prediction> DirectTransform::predict(const Image& model) const {
   std::vector<PointSource> sources;
   for (int row = 0; row < model.height; ++row)
     for (int column = 0; column < model.width; ++column)
-      if (model.at(row, column) != 0 && !beyond_horizon(geometry_.at(row, column)))
-        sources.push_back({geometry_.at(row, column), model.at(row, column)});
-  return std::make_unique<DirectPrediction>(std::move(sources), threads_);
+      if (model.at(row, column) != 0 && !beyond_horizon(sums_.geometry.at(row, column)))
+        sources.push_back({sums_.geometry.at(row, column), model.at(row, column)});
+  return std::make_unique<DirectPrediction>(std::move(sources), sums_.with_w, sums_.threads);
 }
 
 std::vector<std::complex<double>> predict_sources(const std::vector<PointSource>& sources, const SampleCoordinates& at,
                                                   int threads) {
-  std::vector<std::complex<double>> visibility(at.samples());
-  parallel_for(at.rows(), threads, [&](std::size_t row) {
-    for (const PointSource& source : sources) {
-      const double phase = 2 * pi * turns_per_hz(&at.uvw_m[3 * row], phase_position(source.position));
-      for (std::size_t channel = 0; channel < at.channels(); ++channel)
-        visibility[row * at.channels() + channel] += std::polar(source.flux_jy, phase * at.frequency_hz[channel]);
-    }
-  });
-  return visibility;
+  return sum_of(sources, at, true, threads);
 }
 
 void add_direct_pixels(const VisibilityBlock& block, const DirectPixels& at, std::vector<double>& sum) {
   SampleSums unused;
   const std::vector<char> inside = samples_inside(block, at.geometry.cell_rad, unused);
-  parallel_for(at.pixel.size(), at.threads, [&](std::size_t k) {
-    PhasePosition position = phase_position(at.geometry.at(at.pixel[k].row, at.pixel[k].column));
-    if (!at.with_w) position.n_minus_1 = 0;
-    sum[k] += direct_sum(block, inside, position,
-                         [&](std::size_t i) { return double{block.weight[i]} * std::complex<double>(block.visibility[i]); });
+  constexpr std::size_t samples_a_piece = 1 << 14;
+  const std::size_t pieces = (inside.size() + samples_a_piece - 1) / samples_a_piece;
+  std::vector<double> part(pieces * at.pixel.size());  // [piece][pixel]
+  parallel_for(pieces, at.threads, [&](std::size_t p) {
+    const std::size_t begin = p * samples_a_piece;
+    const WeightedSamples samples(block, inside, block.visibility, begin, std::min(begin + samples_a_piece, inside.size()));
+    for (std::size_t k = 0; k < at.pixel.size(); ++k)
+      part[p * at.pixel.size() + k] =
+          samples.image_at(position_of(at.geometry.at(at.pixel[k].row, at.pixel[k].column), at.with_w));
   });
+  for (std::size_t i = 0; i < part.size(); ++i) sum[i % at.pixel.size()] += part[i];
 }
 
 }  // namespace misfit::imager

@@ -6,19 +6,25 @@
 
 namespace misfit::imager {
 
-/// The defining sums in double precision, w included: the oracle that everything else is measured against. Costs samples ×
-/// pixels.
+struct DirectSums {
+  ImageGeometry geometry;
+  bool with_w = true;  ///< otherwise w is taken as 0
+  int threads = 1;
+};
+
+/// The defining sums in double precision: the oracle that everything else is measured against, and the fastest way where
+/// samples or sources are few. Costs samples × pixels.
 class DirectTransform : public Transform {
  public:
-  DirectTransform(const ImageGeometry& geometry, int threads) : geometry_(geometry), threads_(threads) {}
+  explicit DirectTransform(const DirectSums& sums) : sums_(sums) {}
+  DirectTransform(const ImageGeometry& geometry, int threads) : sums_{geometry, true, threads} {}
 
   std::unique_ptr<AdjointSum> adjoint(bool with_psf) const override;
   /// Only the pixels that are not 0 cost time.
   std::unique_ptr<Prediction> predict(const Image& model) const override;
 
  private:
-  ImageGeometry geometry_;
-  int threads_;
+  DirectSums sums_;
 };
 
 /// V [row][channel] = Σ S exp(+2πi(ul+vm+w(n−1))) over point sources.
@@ -35,7 +41,7 @@ struct Pixel {
 struct DirectPixels {
   ImageGeometry geometry;
   std::vector<Pixel> pixel;
-  bool with_w = true;  ///< otherwise w is taken as 0
+  bool with_w = true;
   int threads = 1;
 };
 

@@ -158,6 +158,45 @@ GriddingPlan plan_together(const GriddingRequest& request) {
   return plan;
 }
 
+/// Nobody has asked for a certain kernel, nor for a certain way.
+bool free_to_choose(const GriddingRequest& r) {
+  return r.accuracy != 0 && r.kernel_width == 0 && r.padding == 0 && r.gridder == Gridder::automatic && r.samples > 0;
+}
+
+/// Seconds of the terms of direct sums, for each pixel.
+double direct_pixel_s(const GriddingRequest& request) {
+  return 1e-9 * CostModel().direct_ns * static_cast<double>(request.samples);
+}
+
+/// Has models of few pixels predicted by direct sums.
+void use_direct_predictions(GriddingPlan& plan) {
+  if (!free_to_choose(plan.request)) return;
+  GriddingWork one = plan.choice.best.work;
+  one.images = 1;
+  plan.direct_pixels = static_cast<std::uint64_t>(CostModel().seconds(one) / direct_pixel_s(plan.request));
+  if (plan.direct_pixels > 0)
+    plan.decisions.push_back({"prediction",
+                              "by direct sums for models of up to " + std::to_string(plan.direct_pixels) + " pixels",
+                              "FFTs and degridding cost less only for more"});
+}
+
+/// Has the images made by direct sums where that costs less.
+void use_direct_images(GriddingPlan& plan, double gridding_s) {
+  const GriddingRequest& r = plan.request;
+  if (!free_to_choose(r)) return;
+  const double pixels = static_cast<double>(r.geometry.pixels());
+  const double direct_s = r.images * pixels * direct_pixel_s(r);
+  if (direct_s >= gridding_s) return;
+  plan.direct = true;
+  plan.psf.reset();
+  plan.direct_pixels = r.geometry.pixels();
+  const double turns = 0.25 * (r.geometry.width + r.geometry.height) + plan.choice.w_phase_rad / (2 * pi);
+  plan.expected_error = plan.worst_error = plan.rounding = 1.1e-16 * (1 + 2 * pi * turns);
+  plan.bound_rms = plan.bound_max = 6 * plan.rounding;
+  plan.decisions = {{"images and predictions", "by direct sums",
+                     "for so few samples they cost " + text("%.2g", direct_s / gridding_s) + " of gridding and FFTs"}};
+}
+
 Decision psf_decision(const GriddingPlan& plan, double together_s) {
   if (!plan.psf) return {"PSF", "shares the image's transform", "taps, order and coordinates serve both"};
   const WideTransformOptions& o = plan.psf->options;
@@ -169,10 +208,8 @@ Decision psf_decision(const GriddingPlan& plan, double together_s) {
               " of one transform for both"};
 }
 
-}  // namespace
-
-GriddingPlan plan_gridding(const GriddingRequest& request) {
-  check_request(request);
+/// By gridding and FFTs, one transform for all images or two, whichever costs less.
+GriddingPlan plan_images(const GriddingRequest& request) {
   if (request.images < 2) return plan_together(request);
   const double psf_accuracy = request.psf_accuracy == 0 || request.accuracy == 0 ? request.accuracy : request.psf_accuracy;
   GriddingRequest both = request;
@@ -197,7 +234,22 @@ GriddingPlan plan_gridding(const GriddingRequest& request) {
   return together;
 }
 
+}  // namespace
+
+GriddingPlan plan_gridding(const GriddingRequest& request) {
+  check_request(request);
+  GriddingPlan plan = plan_images(request);
+  const double gridding_s = plan.choice.best.cost_s + (plan.psf ? plan.psf->choice.best.cost_s : 0);
+  use_direct_predictions(plan);
+  use_direct_images(plan, gridding_s);
+  return plan;
+}
+
 TransformMemory memory_of(const GriddingPlan& plan) {
+  if (plan.direct) {
+    const double image = static_cast<double>(plan.request.geometry.pixels()) * sizeof(double);
+    return {image + 64.0 * static_cast<double>(plan.request.samples), image, 0};
+  }
   if (plan.psf) {
     GriddingPlan image = plan;
     image.psf.reset();

@@ -154,22 +154,21 @@ bool is_complete(const fs::path& path) {
 /// A picture being drawn.
 struct PictureDrawing::Sheet {
   std::string path;
-  WorkFolder work;
+  std::unique_ptr<WorkFolder> work;
   std::future<std::string> failure;
 
   explicit Sheet(const Picture& picture)
-      : path(picture.path),
-        work(fs::absolute(path).parent_path()),
-        failure(std::async(std::launch::async, [this, picture] { return draw(picture); })) {}
+      : path(picture.path), failure(std::async(std::launch::async, [this, picture] { return draw(picture); })) {}
 
-  std::string draw(const Picture& picture) const {
-    std::ofstream script(work.path() / "script");
+  std::string draw(const Picture& picture) {
+    work = std::make_unique<WorkFolder>(fs::absolute(picture.path).parent_path());
+    std::ofstream script(work->path() / "script");
     script.precision(12);
-    script_picture(script, picture, work.path());
+    script_picture(script, picture, work->path());
     script.close();
-    return run_gnuplot(work);
+    return run_gnuplot(*work);
   }
-  fs::path drawn() const { return work.path() / "png"; }
+  fs::path drawn() const { return work->path() / "png"; }
 };
 
 PictureDrawing::PictureDrawing(const std::vector<Picture>& pictures) {

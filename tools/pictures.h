@@ -20,13 +20,12 @@ struct Picture {
 /// before finish(), whose images must last until then.
 class PictureDrawing {
  public:
-  /// Throws std::runtime_error that names the folder of a picture when it cannot be written.
   explicit PictureDrawing(const std::vector<Picture>& pictures);
   PictureDrawing(PictureDrawing&&) = default;
   ~PictureDrawing();
 
   /// Returns an empty string when all files are there and complete, or in one sentence why there are none (gnuplot is not
-  /// installed, or failed).
+  /// installed, or failed). Throws std::runtime_error that names the folder of a picture when it cannot be written.
   std::string finish();
 
  private:

@@ -6,8 +6,8 @@
 #include "imager/direct_transform.h"
 #include "imager/extent.h"
 #include "imager/fits_image.h"
-#include "imager/gridding_plan.h"
 #include "imager/parallel.h"
+#include "imager/planned_transform.h"
 #include "ms_io/measurement_set.h"
 #include "ms_io/model_writer.h"
 #include "tools/command.h"
@@ -74,7 +74,7 @@ Model image_model(const PredictOptions& o, const ms_io::MeasurementSet& set, int
   request.max_abs_w = set.reach(ms_io::ReachOf::all).max_abs_w;
   request.threads = threads;
   Model model;
-  model.transform = imager::make_transform(imager::plan_gridding(request).options);
+  model.transform = std::make_unique<imager::PlannedTransform>(imager::plan_gridding(request));
   model.prediction = model.transform->predict(image.image);
   model.samples_at_once = std::max<std::uint64_t>(model.samples_at_once, model.prediction->samples_at_once());
   model.predict = [prediction = model.prediction.get()](const imager::SampleCoordinates& at) { return prediction->at(at); };
