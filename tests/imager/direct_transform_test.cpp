@@ -53,6 +53,22 @@ BOOST_AUTO_TEST_CASE(a_point_source_gives_the_defining_phase_w_included) {
   }
 }
 
+BOOST_AUTO_TEST_CASE(w_is_left_out_where_it_is_not_wanted) {
+  const VisibilityBlock block = samples(300);
+  VisibilityBlock flat = block;
+  for (std::size_t row = 0; row < flat.rows(); ++row) flat.uvw_m[3 * row + 2] = 0;
+  const DirectTransform without({geometry, false, 2}), with({geometry, true, 2});
+  const auto image_of = [](const DirectTransform& transform, const VisibilityBlock& of) {
+    const auto sum = transform.adjoint(false);
+    sum->add(of);
+    return sum->finish().image;
+  };
+  const Image model = random_image(geometry.width, geometry.height, 3);
+  BOOST_TEST((image_of(without, block).pixel == image_of(with, flat).pixel));
+  BOOST_TEST((image_of(without, block).pixel != image_of(with, block).pixel));
+  BOOST_TEST((without.predict(model)->at(block) == with.predict(model)->at(flat)));
+}
+
 BOOST_AUTO_TEST_CASE(sources_add) {
   const VisibilityBlock block = samples(20);
   const PointSource a{{0.01, 0.02}, 1}, b{{-0.03, 0.005}, -0.5};
