@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "imager/big_array.h"
+#include "imager/stack_loops.h"
 
 namespace misfit::imager {
 
@@ -45,6 +46,14 @@ class PlaneStack {
   /// Makes rows zero that were not used before.
   void use_rows(const std::vector<RowRange>& ranges, int threads);
 
+  /// The cells of the tile at (tile_u, tile_v) from a plane on.
+  StackCells<std::complex<Real>> cells_of(int tile_u, int tile_v, int plane, int plane_count) {
+    return cells_at(chunk(tile_v * shape.tile, tile_u, plane, 0), plane_count);
+  }
+  StackCells<const std::complex<Real>> cells_of(int tile_u, int tile_v, int plane, int plane_count) const {
+    return cells_at(chunk(tile_v * shape.tile, tile_u, plane, 0), plane_count);
+  }
+
   std::size_t bytes_a_row() const { return offset(1, 0, 0, 0) * sizeof(std::complex<Real>); }
 
   /// Calls visit(r) for the rows of storage that stand for row q of the grid: its own first, and margins.
@@ -67,6 +76,11 @@ class PlaneStack {
   std::vector<char> row_used;  ///< [row]: whether any plane may hold something there; the content of others is undefined
 
  private:
+  template <typename Complex>
+  StackCells<Complex> cells_at(Complex* first, int plane_count) const {
+    const std::ptrdiff_t chunk_cells = shape.tile * planes * grids;
+    return {first, grids * shape.tile, shape.chunks() * chunk_cells, shape.tile, plane_count, grids, shape.tile, chunk_cells};
+  }
   std::size_t offset(int row, int index, int plane, int grid) const {
     const auto at = [](int i, int n) { return static_cast<std::size_t>(i) * static_cast<std::size_t>(n); };
     return (at(row, shape.chunks()) + static_cast<std::size_t>(index)) * at(planes * grids, shape.tile) +

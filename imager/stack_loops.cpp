@@ -63,70 +63,103 @@ HWY_ATTR HWY_INLINE void for_each_plane(const StackTaps<Real>& taps, const Stack
       }
 }
 
+/// A sample's taps along u in the two groups of columns that they may lie in.
+template <typename Real, int Numbers>
+struct Halves {
+  Real whole[Numbers];  ///< of the first group alone where they cross over
+  Real beyond[Numbers];
+};
+
+/// What of the taps from `column` on lies beyond `columns`, as a count of numbers that lie within; or all of them.
+HWY_INLINE int numbers_within(int column, int width, int columns) {
+  return 2 * std::min(width, columns - column);
+}
+
 template <typename Real, int Vectors, int Grids>
-HWY_ATTR void spread_samples(const StackTaps<Real>& taps, const StackBatch<Real>& samples, StackBuffer<Real>& buffer) {
+HWY_ATTR void spread_samples(const StackTaps<Real>& taps, const StackBatch<Real>& samples,
+                             const StackCells<std::complex<Real>>& cells) {
   const Tag<Real> d;
-  constexpr int lanes = lanes_of<Real>;
-  const Along<Real> along(taps, samples);
-  alignas(64) Real row[TilePlaces<Real>::capacity][Grids][Vectors * lanes];  // value · C_u
   const TapsTag<Real> dt;
-  for (int i = 0; i < samples.count; ++i)
-    for (int k = 0; k < Vectors * lanes / 2; k += taps_at_once<Real>) {
-      const auto u = hn::LoadU(dt, along.u.value + i * taps.u.padded + k);
-      for (int g = 0; g < Grids; ++g) {
-        const std::complex<Real> value = samples.value[g][i];
-        hn::StoreInterleaved2(hn::Mul(u, hn::Set(dt, value.real())), hn::Mul(u, hn::Set(dt, value.imag())), dt,
-                              row[i][g] + 2 * k);
-      }
-    }
+  constexpr int lanes = lanes_of<Real>, numbers = Vectors * lanes;
   const int width = taps.v.width;
-  const std::ptrdiff_t line = 2 * buffer.columns;
-  for_each_plane(taps, samples, along, buffer.planes, [&](int plane, int i, Real along_w) HWY_ATTR {
+  const Along<Real> along(taps, samples);
+  alignas(64) Halves<Real, numbers> row[TilePlaces<Real>::capacity][Grids];  // value · C_u
+  for (int i = 0; i < samples.count; ++i) {
+    const int within = numbers_within(samples.column[i], width, cells.columns);
+    for (int g = 0; g < Grids; ++g) {
+      Real* const whole = row[i][g].whole;
+      const std::complex<Real> value = samples.value[g][i];
+      for (int k = 0; k < numbers / 2; k += taps_at_once<Real>) {
+        const auto u = hn::LoadU(dt, along.u.value + i * taps.u.padded + k);
+        hn::StoreInterleaved2(hn::Mul(u, hn::Set(dt, value.real())), hn::Mul(u, hn::Set(dt, value.imag())), dt, whole + 2 * k);
+      }
+      if (within == 2 * width) continue;
+      std::fill(std::copy(whole + within, whole + numbers, row[i][g].beyond), row[i][g].beyond + numbers, Real(0));
+      std::fill(whole + within, whole + numbers, Real(0));
+    }
+  }
+  const std::ptrdiff_t line = 2 * cells.row;
+  const auto add = [&](const Real* taps_u, Real along_w, const Real* along_v, Real* cell) HWY_ATTR {
     const auto height = hn::Set(d, along_w);
-    hn::Vec<Tag<Real>> term[Grids][Vectors];
-    for (int g = 0; g < Grids; ++g)
-      for (int k = 0; k < Vectors; ++k) term[g][k] = hn::Mul(height, hn::Load(d, row[i][g] + k * lanes));
+    hn::Vec<Tag<Real>> term[Vectors];
+    for (int k = 0; k < Vectors; ++k) term[k] = hn::Mul(height, hn::LoadU(d, taps_u + k * lanes));
+    for (int j = 0; j < width; ++j, cell += line) {
+      const auto factor = hn::Set(d, along_v[j]);
+      for (int k = 0; k < Vectors; ++k)
+        hn::StoreU(hn::MulAdd(factor, term[k], hn::LoadU(d, cell + k * lanes)), d, cell + k * lanes);
+    }
+  };
+  for_each_plane(taps, samples, along, cells.planes, [&](int plane, int i, Real along_w) HWY_ATTR {
     const Real* v = along.v.value + i * taps.v.padded;
-    Real* cell = reinterpret_cast<Real*>(buffer.row(plane, samples.row[i], 0) + samples.column[i]);
-    for (int j = 0; j < width; ++j) {
-      const auto factor = hn::Set(d, v[j]);
-      for (int g = 0; g < Grids; ++g, cell += line)
-        for (int k = 0; k < Vectors; ++k)
-          hn::StoreU(hn::MulAdd(factor, term[g][k], hn::LoadU(d, cell + k * lanes)), d, cell + k * lanes);
+    const bool crosses = numbers_within(samples.column[i], width, cells.columns) < 2 * width;
+    for (int g = 0; g < Grids; ++g) {
+      std::complex<Real>* group = cells.first + plane * cells.plane + samples.row[i] * cells.row + g * cells.grid;
+      add(row[i][g].whole, along_w, v, reinterpret_cast<Real*>(group + samples.column[i]));
+      if (crosses) add(row[i][g].beyond, along_w, v, reinterpret_cast<Real*>(group + cells.next));
     }
   });
 }
 
 template <typename Real, int Vectors>
-HWY_ATTR void interpolate_samples(const StackTaps<Real>& taps, const StackBuffer<Real>& buffer, StackBatch<Real>& samples) {
+HWY_ATTR void interpolate_samples(const StackTaps<Real>& taps, const StackCells<const std::complex<Real>>& cells,
+                                  StackBatch<Real>& samples) {
   const Tag<Real> d;
-  constexpr int lanes = lanes_of<Real>;
-  const Along<Real> along(taps, samples);
-  alignas(64) Real row[TilePlaces<Real>::capacity][Vectors * lanes];  // Σ C_v C_w · buffer
-  for (int i = 0; i < samples.count; ++i)
-    for (int k = 0; k < Vectors; ++k) hn::Store(hn::Zero(d), d, row[i] + k * lanes);
+  constexpr int lanes = lanes_of<Real>, numbers = Vectors * lanes;
   const int width = taps.v.width;
-  const std::ptrdiff_t line = 2 * buffer.columns;
-  for_each_plane(taps, samples, along, buffer.planes, [&](int plane, int i, Real along_w) HWY_ATTR {
+  const Along<Real> along(taps, samples);
+  alignas(64) Halves<Real, numbers> row[TilePlaces<Real>::capacity];  // Σ C_v C_w · cell
+  for (int i = 0; i < samples.count; ++i) {
+    std::fill_n(row[i].whole, numbers, Real(0));
+    std::fill_n(row[i].beyond, numbers, Real(0));
+  }
+  const std::ptrdiff_t line = 2 * cells.row;
+  const auto add = [&](const Real* cell, Real along_w, const Real* along_v, Real* sums) HWY_ATTR {
     hn::Vec<Tag<Real>> sum[Vectors];
     for (int k = 0; k < Vectors; ++k) sum[k] = hn::Zero(d);
-    const Real* v = along.v.value + i * taps.v.padded;
-    const Real* cell = reinterpret_cast<const Real*>(buffer.row(plane, samples.row[i], 0) + samples.column[i]);
     for (int j = 0; j < width; ++j, cell += line) {
-      const auto factor = hn::Set(d, v[j]);
+      const auto factor = hn::Set(d, along_v[j]);
       for (int k = 0; k < Vectors; ++k) sum[k] = hn::MulAdd(factor, hn::LoadU(d, cell + k * lanes), sum[k]);
     }
     const auto height = hn::Set(d, along_w);
     for (int k = 0; k < Vectors; ++k)
-      hn::Store(hn::MulAdd(height, sum[k], hn::Load(d, row[i] + k * lanes)), d, row[i] + k * lanes);
+      hn::StoreU(hn::MulAdd(height, sum[k], hn::LoadU(d, sums + k * lanes)), d, sums + k * lanes);
+  };
+  for_each_plane(taps, samples, along, cells.planes, [&](int plane, int i, Real along_w) HWY_ATTR {
+    const Real* v = along.v.value + i * taps.v.padded;
+    const std::complex<Real>* group = cells.first + plane * cells.plane + samples.row[i] * cells.row;
+    add(reinterpret_cast<const Real*>(group + samples.column[i]), along_w, v, row[i].whole);
+    if (numbers_within(samples.column[i], width, cells.columns) < 2 * width)
+      add(reinterpret_cast<const Real*>(group + cells.next), along_w, v, row[i].beyond);
   });
   const TapsTag<Real> dt;
   for (int i = 0; i < samples.count; ++i) {
+    const int within = numbers_within(samples.column[i], width, cells.columns);
+    if (within < 2 * width) std::copy_n(row[i].beyond, numbers - within, row[i].whole + within);
     auto real_sum = hn::Zero(dt), imaginary_sum = real_sum;
-    for (int k = 0; k < Vectors * lanes / 2; k += taps_at_once<Real>) {
+    for (int k = 0; k < numbers / 2; k += taps_at_once<Real>) {
       const auto u = hn::LoadU(dt, along.u.value + i * taps.u.padded + k);
       hn::Vec<TapsTag<Real>> real, imaginary;
-      hn::LoadInterleaved2(dt, row[i] + 2 * k, real, imaginary);
+      hn::LoadInterleaved2(dt, row[i].whole + 2 * k, real, imaginary);
       real_sum = hn::MulAdd(real, u, real_sum);
       imaginary_sum = hn::MulAdd(imaginary, u, imaginary_sum);
     }
@@ -136,19 +169,19 @@ HWY_ATTR void interpolate_samples(const StackTaps<Real>& taps, const StackBuffer
 
 template <typename Real, int... Before>
 HWY_ATTR void spread_any(std::integer_sequence<int, Before...>, const StackTaps<Real>& taps, const StackBatch<Real>& samples,
-                         StackBuffer<Real>& buffer) {
-  using Loop = void (*)(const StackTaps<Real>&, const StackBatch<Real>&, StackBuffer<Real>&);
+                         const StackCells<std::complex<Real>>& cells) {
+  using Loop = void (*)(const StackTaps<Real>&, const StackBatch<Real>&, const StackCells<std::complex<Real>>&);
   constexpr Loop one_grid[] = {spread_samples<Real, Before + 1, 1>...};
   constexpr Loop two_grids[] = {spread_samples<Real, Before + 1, 2>...};
-  (buffer.grids == 2 ? two_grids : one_grid)[vectors_of<Real>(taps.u.width) - 1](taps, samples, buffer);
+  (cells.grids == 2 ? two_grids : one_grid)[vectors_of<Real>(taps.u.width) - 1](taps, samples, cells);
 }
 
 template <typename Real, int... Before>
 HWY_ATTR void interpolate_any(std::integer_sequence<int, Before...>, const StackTaps<Real>& taps,
-                              const StackBuffer<Real>& buffer, StackBatch<Real>& samples) {
-  using Loop = void (*)(const StackTaps<Real>&, const StackBuffer<Real>&, StackBatch<Real>&);
+                              const StackCells<const std::complex<Real>>& cells, StackBatch<Real>& samples) {
+  using Loop = void (*)(const StackTaps<Real>&, const StackCells<const std::complex<Real>>&, StackBatch<Real>&);
   constexpr Loop loops[] = {interpolate_samples<Real, Before + 1>...};
-  loops[vectors_of<Real>(taps.u.width) - 1](taps, buffer, samples);
+  loops[vectors_of<Real>(taps.u.width) - 1](taps, cells, samples);
 }
 
 template <typename Real>
@@ -165,16 +198,20 @@ HWY_ATTR void add_any(const std::complex<Real>* from, int count, std::complex<Re
   for (; i < 2 * count; ++i) out[i] += in[i];
 }
 
-HWY_ATTR void stack_spread_float(const StackTaps<float>& t, const StackBatch<float>& s, StackBuffer<float>& b) {
+HWY_ATTR void stack_spread_float(const StackTaps<float>& t, const StackBatch<float>& s,
+                                 const StackCells<std::complex<float>>& b) {
   spread_any(VectorCounts<float>(), t, s, b);
 }
-HWY_ATTR void stack_spread_double(const StackTaps<double>& t, const StackBatch<double>& s, StackBuffer<double>& b) {
+HWY_ATTR void stack_spread_double(const StackTaps<double>& t, const StackBatch<double>& s,
+                                  const StackCells<std::complex<double>>& b) {
   spread_any(VectorCounts<double>(), t, s, b);
 }
-HWY_ATTR void stack_interpolate_float(const StackTaps<float>& t, const StackBuffer<float>& b, StackBatch<float>& s) {
+HWY_ATTR void stack_interpolate_float(const StackTaps<float>& t, const StackCells<const std::complex<float>>& b,
+                                      StackBatch<float>& s) {
   interpolate_any(VectorCounts<float>(), t, b, s);
 }
-HWY_ATTR void stack_interpolate_double(const StackTaps<double>& t, const StackBuffer<double>& b, StackBatch<double>& s) {
+HWY_ATTR void stack_interpolate_double(const StackTaps<double>& t, const StackCells<const std::complex<double>>& b,
+                                       StackBatch<double>& s) {
   interpolate_any(VectorCounts<double>(), t, b, s);
 }
 HWY_ATTR void stack_add_float(const std::complex<float>* from, int count, std::complex<float>* to) {
@@ -197,17 +234,18 @@ HWY_EXPORT(stack_interpolate_double);
 HWY_EXPORT(stack_add_float);
 HWY_EXPORT(stack_add_double);
 
-void spread(const StackTaps<float>& taps, const StackBatch<float>& samples, StackBuffer<float>& buffer) {
-  HWY_DYNAMIC_DISPATCH(stack_spread_float)(taps, samples, buffer);
+void spread(const StackTaps<float>& taps, const StackBatch<float>& samples, const StackCells<std::complex<float>>& cells) {
+  HWY_DYNAMIC_DISPATCH(stack_spread_float)(taps, samples, cells);
 }
-void spread(const StackTaps<double>& taps, const StackBatch<double>& samples, StackBuffer<double>& buffer) {
-  HWY_DYNAMIC_DISPATCH(stack_spread_double)(taps, samples, buffer);
+void spread(const StackTaps<double>& taps, const StackBatch<double>& samples, const StackCells<std::complex<double>>& cells) {
+  HWY_DYNAMIC_DISPATCH(stack_spread_double)(taps, samples, cells);
 }
-void interpolate(const StackTaps<float>& taps, const StackBuffer<float>& buffer, StackBatch<float>& samples) {
-  HWY_DYNAMIC_DISPATCH(stack_interpolate_float)(taps, buffer, samples);
+void interpolate(const StackTaps<float>& taps, const StackCells<const std::complex<float>>& cells, StackBatch<float>& samples) {
+  HWY_DYNAMIC_DISPATCH(stack_interpolate_float)(taps, cells, samples);
 }
-void interpolate(const StackTaps<double>& taps, const StackBuffer<double>& buffer, StackBatch<double>& samples) {
-  HWY_DYNAMIC_DISPATCH(stack_interpolate_double)(taps, buffer, samples);
+void interpolate(const StackTaps<double>& taps, const StackCells<const std::complex<double>>& cells,
+                 StackBatch<double>& samples) {
+  HWY_DYNAMIC_DISPATCH(stack_interpolate_double)(taps, cells, samples);
 }
 void add_cells(const std::complex<float>* from, int count, std::complex<float>* to) {
   HWY_DYNAMIC_DISPATCH(stack_add_float)(from, count, to);

@@ -18,6 +18,21 @@ struct StackBatch : TilePlaces<Real> {
   std::complex<Real> value[2][TilePlaces<Real>::capacity];  ///< [grid]
 };
 
+/// Where the cells of a tile lie. Distances are in cells.
+template <typename Complex>
+struct StackCells {
+  Complex* first = nullptr;  ///< plane 0, row 0, grid 0, column 0
+  std::ptrdiff_t plane = 0;  ///< from one plane to the next
+  std::ptrdiff_t row = 0;
+  std::ptrdiff_t grid = 0;
+  int planes = 0;
+  int grids = 0;
+  int columns = 0;          ///< that lie together; taps may reach into the next as many
+  std::ptrdiff_t next = 0;  ///< from one group of columns to the next
+
+  operator StackCells<const Complex>() const { return {first, plane, row, grid, planes, grids, columns, next}; }
+};
+
 /// A tile's private piece of a stack of one or two grids a plane, with room for the taps that leave the tile:
 /// [plane][row][grid][column].
 template <typename Real>
@@ -35,6 +50,9 @@ struct StackBuffer {
   void reset(int plane_count) {
     planes = plane_count;
     cell.assign(offset(planes, 0, 0), std::complex<Real>(0));
+  }
+  StackCells<std::complex<Real>> cells() {
+    return {cell.data(), rows * grids * columns, grids * columns, columns, planes, grids, columns, 0};
   }
   std::complex<Real>* row(int plane, int r, int grid) { return cell.data() + offset(plane, r, grid); }
   const std::complex<Real>* row(int plane, int r, int grid) const { return cell.data() + offset(plane, r, grid); }
@@ -58,13 +76,14 @@ struct StackTaps {
   TapTable<Real> w;
 };
 
-/// Adds value · C_u · C_v · C_w of every sample to every grid of the buffer.
-void spread(const StackTaps<float>& taps, const StackBatch<float>& samples, StackBuffer<float>& buffer);
-void spread(const StackTaps<double>& taps, const StackBatch<double>& samples, StackBuffer<double>& buffer);
+/// Adds value · C_u · C_v · C_w of every sample to every grid. Vectors reach beyond the last tap, where they add 0.
+void spread(const StackTaps<float>& taps, const StackBatch<float>& samples, const StackCells<std::complex<float>>& cells);
+void spread(const StackTaps<double>& taps, const StackBatch<double>& samples, const StackCells<std::complex<double>>& cells);
 
-/// Sets every sample's first value to Σ C_u · C_v · C_w · buffer: the transpose of spread for a buffer of one grid.
-void interpolate(const StackTaps<float>& taps, const StackBuffer<float>& buffer, StackBatch<float>& samples);
-void interpolate(const StackTaps<double>& taps, const StackBuffer<double>& buffer, StackBatch<double>& samples);
+/// Sets every sample's first value to Σ C_u · C_v · C_w · cell: the transpose of spread for one grid.
+void interpolate(const StackTaps<float>& taps, const StackCells<const std::complex<float>>& cells, StackBatch<float>& samples);
+void interpolate(const StackTaps<double>& taps, const StackCells<const std::complex<double>>& cells,
+                 StackBatch<double>& samples);
 
 /// to[i] += from[i].
 void add_cells(const std::complex<float>* from, int count, std::complex<float>* to);

@@ -79,6 +79,13 @@ StackBuffer<Real> buffer_of(const Setup<Real>& setup, int grids) {
 /// Sums in single precision stay short: a buffer is added to the stack after so many samples.
 constexpr int most_in_buffer = 1024;
 
+/// A tile of no more runs is gridded and degridded where it lies in the stack: a buffer costs more to bring and to add.
+/// Measured: from some 100 runs of 8 channels on, the buffer's nearness to the processor wins.
+constexpr std::size_t sparse_runs = 64;
+bool sparse(const StackTask& task) {
+  return task.end - task.begin <= sparse_runs;
+}
+
 template <typename Real>
 class WideAdjoint : public AdjointSum {
  public:
@@ -167,7 +174,11 @@ class WideAdjoint : public AdjointSum {
 
   void grid_tile(const StackSamples& samples, const StackTask& task, int first_plane, StackBuffer<Real>& buffer,
                  PlaneStack<Real>& stack) const {
-    buffer.reset(task.planes.planes);
+    const bool in_place = sparse(task);
+    if (!in_place) buffer.reset(task.planes.planes);
+    const StackCells<std::complex<Real>> cells =
+        in_place ? stack.cells_of(task.tile_u, task.tile_v, task.planes.first - first_plane, task.planes.planes)
+                 : buffer.cells();
     int in_buffer = 0;
     const auto ahead = [&](std::uint32_t block, std::size_t sample) { hwy::Prefetch(&gathered_[block].weighted[sample]); };
     for_each_batch<Real>(samples, task, ahead, [&](StackBatch<Real>& batch, const BatchPhases& phases) {
@@ -182,7 +193,8 @@ class WideAdjoint : public AdjointSum {
         }
       }
       if (buffer.grids == 2) set_psf_values(phases, batch);
-      spread(setup_.taps, batch, buffer);
+      spread(setup_.taps, batch, cells);
+      if (in_place) return;
       in_buffer += batch.count;
       if (in_buffer < most_in_buffer) return;
       flush_buffer(task, first_plane, buffer, stack);
@@ -287,14 +299,19 @@ class WidePrediction : public Prediction {
   void degrid_tile(const StackSamples& samples, const StackTask& task, int first_plane, const PlaneStack<Real>& stack,
                    StackBuffer<Real>& buffer, Halves& halves) const {
     const StackShape& s = setup_.shape;
-    buffer.reset(task.planes.planes);
-    for_each_chunk(s, task, 1, [&](int row, int chunk, int plane, int grid, int count) {
-      std::copy_n(stack.chunk(task.tile_v * s.tile + row, task.tile_u + chunk, task.planes.first - first_plane + plane, grid),
-                  count, buffer.row(plane, row, grid) + chunk * s.tile);
-    });
+    StackCells<const std::complex<Real>> cells =
+        stack.cells_of(task.tile_u, task.tile_v, task.planes.first - first_plane, task.planes.planes);
+    if (!sparse(task)) {
+      buffer.reset(task.planes.planes);
+      for_each_chunk(s, task, 1, [&](int row, int chunk, int plane, int grid, int count) {
+        std::copy_n(stack.chunk(task.tile_v * s.tile + row, task.tile_u + chunk, task.planes.first - first_plane + plane, grid),
+                    count, buffer.row(plane, row, grid) + chunk * s.tile);
+      });
+      cells = buffer.cells();
+    }
     const auto ahead = [](std::uint32_t, std::size_t) {};
     for_each_batch<Real>(samples, task, ahead, [&](StackBatch<Real>& batch, const BatchPhases& phases) {
-      interpolate(setup_.taps, buffer, batch);
+      interpolate(setup_.taps, cells, batch);
       for (const BatchRun& run : phases.run) {
         std::complex<double>* visibility = &(run.mirrored ? halves.mirrored : halves.direct)[run.block][run.sample];
         for (int k = run.begin; k < run.end; ++k, ++visibility) {
