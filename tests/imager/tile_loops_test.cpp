@@ -1,51 +1,14 @@
 #include "imager/tile_loops.h"
 
-#include <hwy/targets.h>
-
-#include <boost/mpl/list.hpp>
-#include <boost/test/unit_test.hpp>
-#include <limits>
-#include <random>
+#include "tests/imager/loop_checks.h"
 
 using namespace misfit;
 using namespace misfit::imager;
+using namespace misfit::imager::testing;
 
 namespace {
 
-using Precisions = boost::mpl::list<float, double>;
-
 constexpr int tile = 16;
-constexpr int degree = 5;
-
-/// Makes the loops run with one instruction set while it lives.
-class OnlyTarget {
- public:
-  explicit OnlyTarget(std::int64_t target) { hwy::SetSupportedTargetsForTest(target); }
-  ~OnlyTarget() { hwy::SetSupportedTargetsForTest(0); }
-  OnlyTarget(const OnlyTarget&) = delete;
-  OnlyTarget& operator=(const OnlyTarget&) = delete;
-};
-
-/// Calls test(width) for every width with every instruction set of this machine.
-template <typename Test>
-void for_each_width_and_target(const Test& test) {
-  for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {
-    const OnlyTarget only(target);
-    for (int width = 1; width <= 20; ++width) {
-      BOOST_TEST_CONTEXT("target " << hwy::TargetName(target) << " width " << width) {
-        test(width);
-      }
-    }
-  }
-}
-
-kernels::PiecewisePolynomial random_polynomial(int width, unsigned seed) {
-  std::mt19937_64 random(seed);
-  std::uniform_real_distribution<double> uniform(-1, 1);
-  kernels::PiecewisePolynomial polynomial{Eigen::MatrixXd(degree + 1, width)};
-  for (double& coefficient : polynomial.coefficient.reshaped()) coefficient = uniform(random);
-  return polynomial;
-}
 
 /// Every third sample lies in the cell of the one before it.
 template <typename Real>
@@ -79,13 +42,6 @@ template <typename Real>
 std::size_t index(const TileBuffer<Real>& buffer, int row, int plane, int column) {
   const int i = (row * buffer.planes + plane) * buffer.columns + column;
   return static_cast<std::size_t>(i);
-}
-
-/// No tap exceeds Σ_d 2^−d < 2, so no term exceeds 4; it is rounded once for each of some 2 · degree + 4 operations, and every
-/// one of `terms` additions rounds a sum of no more than that.
-template <typename Real>
-double rounding(int terms) {
-  return 4.0 * terms * (2 * degree + 4 + terms) * double{std::numeric_limits<Real>::epsilon()};
 }
 
 }  // namespace

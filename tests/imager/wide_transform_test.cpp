@@ -101,6 +101,19 @@ BOOST_DATA_TEST_CASE(predicted_visibilities_equal_the_direct_transform_within_th
   BOOST_TEST(relative_error(gridded, direct) < 1.5 * expected_error(o) + 3e-13);
 }
 
+BOOST_DATA_TEST_CASE(full_tiles_are_as_exact_as_sparse_ones, bdata::make({1, 2}) * bdata::make({7, 8}), facets, width) {
+  const WideTransformOptions o = options({field, width, 1.6, facets, facets});
+  const VisibilityBlock block = random_samples_with_w(3000, 2, field.cell_rad, most_w, 3, 0.5);  // hundreds of runs in a tile
+  const auto transform = make_wide_transform(o);
+  const AdjointResult gridded = adjoint_of(*transform, block);
+  const AdjointResult direct = adjoint_of(DirectTransform(field, 2), block);
+  BOOST_TEST(relative_error(gridded.image.pixel, direct.image.pixel) < 1.5 * expected_error(o) + 3e-13);
+  BOOST_TEST(relative_error(gridded.psf.pixel, direct.psf.pixel) < 1.5 * worst_error(o) + 3e-13);
+  const Image model = random_image(field.width, field.height, 3);
+  BOOST_TEST(relative_error(transform->predict(model)->at(block), DirectTransform(field, 2).predict(model)->at(block)) <
+             1.5 * expected_error(o) + 3e-13);
+}
+
 BOOST_DATA_TEST_CASE(adjoint_is_the_transpose_of_prediction, bdata::make({1, 2, 5, 8, 14, 20}) * bdata::make({1, 2}), width,
                      facets) {
   const WideTransformOptions o = options({{51, 37, 0.008, {}, {0.1, -0.05}}, width, 1.3, facets, facets});
