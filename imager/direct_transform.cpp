@@ -9,6 +9,7 @@
 #include "imager/phase.h"
 #include "imager/phasors.h"
 #include "imager/sampling.h"
+#include "imager/span_sums.h"
 
 namespace misfit::imager {
 namespace {
@@ -57,13 +58,13 @@ struct WeightedSamples {
   std::vector<double> weight, real, imaginary;
 
   template <typename Visibility>
-  WeightedSamples(const VisibilityBlock& block, const std::vector<char>& inside, const Visibility& visibility,
+  WeightedSamples(const VisibilityBlock& block, const std::vector<float>& weights, const Visibility& visibility,
                   std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      if (!inside[i]) continue;
+      if (weights[i] == 0) continue;
       const std::complex<double> v(visibility[i]);
       at.push_back(&block.uvw_m[3 * (i / block.channels())], block.frequency_hz[i % block.channels()]);
-      weight.push_back(block.weight[i]);
+      weight.push_back(weights[i]);
       real.push_back(weight.back() * v.real());
       imaginary.push_back(weight.back() * v.imag());
     }
@@ -103,10 +104,9 @@ class DirectAdjoint : public AdjointSum {
  private:
   template <typename Visibility>
   void accumulate(const VisibilityBlock& block, const Visibility& visibility) {
-    const std::vector<char> inside = samples_inside(block, o_.geometry.cell_rad, result_.sums);
-    for (std::size_t i = 0; i < inside.size(); ++i)
-      if (inside[i]) add_to_sums(result_.sums, block.weight[i], std::complex<double>(visibility[i]));
-    const WeightedSamples samples(block, inside, visibility, 0, inside.size());
+    const std::vector<float> weight = imaging_weights(block, o_.geometry.cell_rad, o_.threads, result_.sums);
+    add_span_to_sums(weight.data(), visibility.data(), weight.size(), result_.sums);
+    const WeightedSamples samples(block, weight, visibility, 0, weight.size());
     const PhasePosition middle = position_of(o_.geometry.centre, o_.with_w);
     parallel_for(static_cast<std::size_t>(o_.geometry.height), o_.threads, [&](std::size_t r) {
       const int row = static_cast<int>(r);
@@ -188,13 +188,13 @@ std::vector<std::complex<double>> predict_sources(const std::vector<PointSource>
 
 void add_direct_pixels(const VisibilityBlock& block, const DirectPixels& at, std::vector<double>& sum) {
   SampleSums unused;
-  const std::vector<char> inside = samples_inside(block, at.geometry.cell_rad, unused);
+  const std::vector<float> weight = imaging_weights(block, at.geometry.cell_rad, at.threads, unused);
   constexpr std::size_t samples_a_piece = 1 << 14;
-  const std::size_t pieces = (inside.size() + samples_a_piece - 1) / samples_a_piece;
+  const std::size_t pieces = (weight.size() + samples_a_piece - 1) / samples_a_piece;
   std::vector<double> part(pieces * at.pixel.size());  // [piece][pixel]
   parallel_for(pieces, at.threads, [&](std::size_t p) {
     const std::size_t begin = p * samples_a_piece;
-    const WeightedSamples samples(block, inside, block.visibility, begin, std::min(begin + samples_a_piece, inside.size()));
+    const WeightedSamples samples(block, weight, block.visibility, begin, std::min(begin + samples_a_piece, weight.size()));
     for (std::size_t k = 0; k < at.pixel.size(); ++k)
       part[p * at.pixel.size() + k] =
           samples.image_at(position_of(at.geometry.at(at.pixel[k].row, at.pixel[k].column), at.with_w));

@@ -23,7 +23,8 @@ inline void add_to_sums(SampleSums& sums, double weight, std::complex<double> vi
   sums.weight2_square += weight * weight * square;
 }
 
-/// Which samples [row][channel] take part in imaging: weight not 0 and inside the grid. Counts them, and those outside.
-std::vector<char> samples_inside(const VisibilityBlock& block, double cell_rad, SampleSums& sums);
+/// The block's weights [row][channel], 0 for samples outside the grid, which take no part in imaging. Counts samples inside and
+/// outside.
+std::vector<float> imaging_weights(const VisibilityBlock& block, double cell_rad, int threads, SampleSums& sums);
 
 }  // namespace misfit::imager

@@ -10,6 +10,7 @@
 #include "imager/phase.h"
 #include "imager/phasors.h"
 #include "imager/sampling.h"
+#include "imager/span_sums.h"
 #include "imager/spares.h"
 #include "imager/stack_columns.h"
 #include "imager/stack_loops.h"
@@ -116,16 +117,17 @@ class WideAdjoint : public AdjointSum {
 
   template <typename Visibility>
   void gather(const VisibilityBlock& block, const Visibility& visibility) {
-    const std::vector<char> inside = samples_inside(block, setup_.options.geometry.cell_rad, result_.sums);
-    Gathered g{block, std::vector<float>(inside.size()), std::vector<std::complex<Real>>(inside.size())};
-    for (std::size_t i = 0; i < inside.size(); ++i) {
-      if (!inside[i]) continue;
-      const std::complex<double> v(visibility[i]);
-      const double weight = block.weight[i];
-      add_to_sums(result_.sums, weight, v);
-      g.weight[i] = block.weight[i];
-      g.weighted[i] = std::complex<Real>(weight * v);
-    }
+    Gathered g{block, imaging_weights(block, setup_.options.geometry.cell_rad, setup_.options.threads, result_.sums), {}};
+    g.weighted.resize(g.weight.size());
+    constexpr std::size_t samples_a_piece = 1 << 16;
+    std::vector<SampleSums> part((g.weight.size() + samples_a_piece - 1) / samples_a_piece);
+    parallel_for(part.size(), setup_.options.threads, [&](std::size_t p) {
+      const std::size_t begin = p * samples_a_piece, end = std::min(begin + samples_a_piece, g.weight.size());
+      for (std::size_t i = begin; i < end; ++i)
+        if (g.weight[i] != 0) g.weighted[i] = std::complex<Real>(double{g.weight[i]} * std::complex<double>(visibility[i]));
+      add_span_to_sums(g.weight.data() + begin, visibility.data() + begin, end - begin, part[p]);
+    });
+    for (const SampleSums& sums : part) result_.sums += sums;
     samples_ += block.samples();
     gathered_.push_back(std::move(g));
     if (samples_ >= setup_.options.samples_at_once) flush();

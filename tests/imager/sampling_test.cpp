@@ -38,7 +38,7 @@ BOOST_AUTO_TEST_CASE(a_turn_per_two_cells_is_the_last_that_an_image_can_represen
 BOOST_AUTO_TEST_CASE(samples_of_a_row_lie_inside_up_to_the_frequency_that_takes_them_out) {
   SampleSums sums;
   for (const VisibilityBlock& block : {row_at(0.3, 0), row_at(0, -0.3), row_at(-0.3, 0.1)})
-    BOOST_TEST((samples_inside(block, cell_rad, sums) == std::vector<char>{1, 0}));
+    BOOST_TEST((imaging_weights(block, cell_rad, 2, sums) == std::vector<float>{1, 0}));
   BOOST_TEST(sums.used == 3U);
   BOOST_TEST(sums.outside_grid == 3U);
 }
@@ -47,7 +47,7 @@ BOOST_AUTO_TEST_CASE(samples_of_weight_zero_are_neither_inside_nor_counted) {
   VisibilityBlock block = row_at(0.3, 0);
   block.weight = {0, 0};
   SampleSums sums;
-  BOOST_TEST((samples_inside(block, cell_rad, sums) == std::vector<char>{0, 0}));
+  BOOST_TEST((imaging_weights(block, cell_rad, 2, sums) == std::vector<float>{0, 0}));
   BOOST_TEST(sums.used + sums.outside_grid == 0U);
 }
 
