@@ -63,14 +63,15 @@ std::vector<TiledRun> find_runs(const Piece& piece, const WantedSamples& samples
 }
 
 void mark_planes(StackOrder& order, int width_w) {
-  int planes = 0;
-  for (const StackRun& run : order.run) planes = std::max(planes, run.plane + width_w);
-  std::vector<char> first_tap(static_cast<std::size_t>(planes + width_w));  // [plane + width_w]
-  for (const StackRun& run : order.run) first_tap[static_cast<std::size_t>(run.plane + width_w)] = 1;
+  std::ptrdiff_t planes = 0;
+  for (const StackRun& run : order.run) planes = std::max<std::ptrdiff_t>(planes, run.plane + width_w);
+  std::vector<char> first_tap(static_cast<std::size_t>(planes + width_w));
+  const auto plane_0 = first_tap.begin() + width_w;
+  for (const StackRun& run : order.run) plane_0[run.plane] = 1;
   order.plane_used.resize(static_cast<std::size_t>(planes));
   int since = width_w;  // planes since the last one that holds a first tap
-  for (int k = -width_w; k < planes; ++k) {
-    since = first_tap[static_cast<std::size_t>(k + width_w)] != 0 ? 0 : since + 1;
+  for (std::ptrdiff_t k = -width_w; k < planes; ++k) {
+    since = plane_0[k] != 0 ? 0 : since + 1;
     if (k >= 0) order.plane_used[static_cast<std::size_t>(k)] = since < width_w ? 1 : 0;
   }
 }

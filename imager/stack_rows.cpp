@@ -122,12 +122,11 @@ void StackRows<Real>::to_image(int filled) {
     if (stack_.holds(q)) rows.push_back(q);
   }
   for_each(rows, [&](int q, int plane, int grid, Work& work) {
-    auto& [line, image_row] = work;
-    gather_row(stack_, q, plane, grid, line.get());
-    along_u_.complex_to_complex(line.get(), Fft<Real>::Sign::backward);
-    fft_to_image(line.get(), stack_.shape.nu, width_, image_row.data());
+    gather_row(stack_, q, plane, grid, work.line.get());
+    along_u_.complex_to_complex(work.line.get(), Fft<Real>::Sign::backward);
+    fft_to_image(work.line.get(), stack_.shape.nu, width_, work.image_row.data());
     for_kept_row(stack_, q, plane, grid, width_, [&](std::complex<Real>* values, int first, int count) {
-      std::copy_n(image_row.begin() + first, count, values);
+      std::copy_n(work.image_row.begin() + first, count, values);
     });
   });
 }
@@ -143,13 +142,12 @@ void StackRows<Real>::to_grid(int needed) {
     done |= shown ? 1 : 0;
   }
   for_each(rows, [&](int q, int plane, int grid, Work& work) {
-    auto& [line, image_row] = work;
     for_kept_row(stack_, q, plane, grid, width_, [&](const std::complex<Real>* values, int first, int count) {
-      std::copy_n(values, count, image_row.begin() + first);
+      std::copy_n(values, count, work.image_row.begin() + first);
     });
-    image_to_fft(image_row.data(), width_, stack_.shape.nu, line.get());
-    along_u_.complex_to_complex(line.get(), Fft<Real>::Sign::forward);
-    scatter_row(line.get(), q, plane, stack_);
+    image_to_fft(work.image_row.data(), width_, stack_.shape.nu, work.line.get());
+    along_u_.complex_to_complex(work.line.get(), Fft<Real>::Sign::forward);
+    scatter_row(work.line.get(), q, plane, stack_);
   });
 }
 

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <future>
+#include <memory>
 #include <stdexcept>
 
 #include "ms_io/metadata_internal.h"
@@ -102,6 +104,22 @@ std::vector<std::complex<double>> predicted(const Predict& predict, const imager
   return stokes_i;
 }
 
+/// A block on its way from its coordinates to the column.
+struct PredictedBlock {
+  const Setup* setup;
+  Rows rows;
+  imager::SampleCoordinates where;
+  std::vector<bool> unknown;
+  std::future<std::vector<std::complex<double>>> stokes_i;
+
+  PredictedBlock(const BlockRows& block, const std::vector<Setup>& setups) : setup(&setups[block.setup]), rows(block.runs) {}
+
+  /// Another thread predicts; casacore is for one thread alone.
+  void begin(const Predict& predict) {
+    stokes_i = std::async(std::launch::async, [this, &predict] { return predicted(predict, where, unknown); });
+  }
+};
+
 }  // namespace
 
 ModelWriteReport write_model(const std::string& path, const Selection& selection, const std::string& column,
@@ -116,19 +134,25 @@ ModelWriteReport write_model(const std::string& path, const Selection& selection
   const std::string doing = "cannot write " + name + " of " + path;
   Writer writer = translated(doing, [&] { return Writer(set, name); });
   ModelWriteReport report;
-  for (const BlockRows& block : selected.blocks) {
-    const Setup& setup = selected.setups[block.setup];
-    const Rows rows(block.runs);
-    std::vector<bool> unknown;
-    const imager::SampleCoordinates where =
-        translated("cannot read UVW of " + path, [&] { return writer.coordinates(rows, setup, unknown); });
-    const std::vector<std::complex<double>> stokes_i = predicted(predict, where, unknown);
-    translated(doing, [&] { writer.write(rows, setup, stokes_i); });
-    report.rows += rows.count();
-    report.samples += where.samples();
-    for (const bool row_is_unknown : unknown) report.nonfinite_uvw_rows += row_is_unknown;
+  std::unique_ptr<PredictedBlock> before;  // is written while the next one is predicted
+  const auto write = [&](PredictedBlock& block) {
+    const std::vector<std::complex<double>> stokes_i = block.stokes_i.get();
+    translated(doing, [&] { writer.write(block.rows, *block.setup, stokes_i); });
+    report.rows += block.rows.count();
+    report.samples += block.where.samples();
+    for (const bool row_is_unknown : block.unknown) report.nonfinite_uvw_rows += row_is_unknown;
     if (progress) progress(report.samples, selected.samples);
+  };
+  for (const BlockRows& rows : selected.blocks) {
+    auto block = std::make_unique<PredictedBlock>(rows, selected.setups);
+    block->where = translated("cannot read UVW of " + path,
+                              [&] { return writer.coordinates(block->rows, *block->setup, block->unknown); });
+    if (before) before->stokes_i.wait();  // predictions have all threads, one after the other
+    block->begin(predict);
+    if (before) write(*before);
+    before = std::move(block);
   }
+  if (before) write(*before);
   translated(doing, [&] { set.flush(); });
   return report;
 }

@@ -142,7 +142,8 @@ class ImageRun {
   void verify() {
     const imager::StageTimer timer(times_, "verify");
     progress_.begin("verify");
-    measured_ = imager::measure_error(*source_, made_.transform->images(), geometry_, made_.images, o_.verify, threads_, progress());
+    measured_ =
+        imager::measure_error(*source_, made_.transform->images(), geometry_, made_.images, o_.verify, threads_, progress());
     progress_.end();
     report_.measured = &measured_;
   }
