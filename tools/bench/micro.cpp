@@ -114,8 +114,9 @@ VisibilityBlock block_of(std::size_t rows) {
 
 void add_ordering(std::vector<Piece>& pieces) {
   const auto block = std::make_shared<VisibilityBlock>(block_of(4096));
-  for (const auto& [name, wanted] : {std::pair("imaging", Wanted::imaging), std::pair("prediction", Wanted::usable)})
-    pieces.push_back({std::string("order_by_tile for ") + name, static_cast<double>(block->samples()), [block, wanted] {
+  for (const Wanted wanted : {Wanted::imaging, Wanted::usable})
+    pieces.push_back({std::string("order_by_tile for ") + (wanted == Wanted::imaging ? "imaging" : "prediction"),
+                      static_cast<double>(block->samples()), [block, wanted] {
                         order_by_tile(*block, nullptr, {2048, 2048, 7, tile}, cell_rad, wanted, 1);
                       }});
 }
