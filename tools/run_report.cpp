@@ -29,7 +29,7 @@ json axis_json(const std::string& axis, const kernels::Kernel& kernel, double pa
 }
 
 json kernel_json(const imager::GriddingPlan* gridding) {
-  if (gridding == nullptr) return nullptr;
+  if (gridding == nullptr || gridding->direct) return nullptr;
   const imager::WideTransformOptions& o = gridding->options;
   const auto padding = [](int fft_size, int pixels, int facets) { return 1.0 * fft_size / std::ceil(1.0 * pixels / facets); };
   const double padding_u = padding(o.nu, o.geometry.width, o.facets_l);

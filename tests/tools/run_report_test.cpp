@@ -21,6 +21,14 @@ BOOST_AUTO_TEST_CASE(what_does_not_exist_is_null) {
   }
 }
 
+BOOST_AUTO_TEST_CASE(direct_sums_have_no_kernel) {
+  imager::GriddingPlan plan;
+  plan.direct = true;
+  tools::RunReport run;
+  run.gridding = &plan;
+  BOOST_TEST(tools::report_json(run).at("kernel").is_null());
+}
+
 BOOST_AUTO_TEST_CASE(what_is_not_finite_is_null) {
   tools::RunReport run;
   imager::TheoreticalError theory;
