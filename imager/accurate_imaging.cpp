@@ -39,7 +39,7 @@ double checked_error(const VisibilitySource& source, const AccurateImages& made,
   const WideTransformOptions& o = made.plan.options;
   const double affordable = 4e7 / static_cast<double>(images.sums.used);
   const int count = static_cast<int>(std::clamp(affordable, 4.0, 64.0));
-  const DirectPixels at{o.geometry, random_pixels(o.geometry, count), o.has_w_axis(), o.threads};
+  const DirectPixels at{o.geometry, random_pixels(o.geometry, count), made.plan.direct || o.has_w_axis(), o.threads};
   std::vector<double> sum(at.pixel.size());
   const auto stream = source.open();
   while (const auto block = stream->next()) add_direct_pixels(*block, at, sum);
@@ -64,7 +64,7 @@ Weakness weakness_of(const DirtyImages& images, StageTimes& times) {
 
 TheoreticalError theoretical_error(const GriddingPlan& plan, const SampleSums& sums, double image_rms,
                                    const NeglectedPhase& w) {
-  const bool neglected = !plan.options.has_w_axis();
+  const bool neglected = !plan.direct && !plan.options.has_w_axis();
   const double phase_rms = neglected ? std::min(w.rms_rad, std::sqrt(2.0)) : 0;  // unit phasors at random are √2 apart
   const double phase_max = neglected ? std::min(w.max_rad, 2.0) : 0;
   const auto over_image = [image_rms](double x) { return x == 0 ? 0 : x / image_rms; };
@@ -108,7 +108,7 @@ AccurateImages make_accurate_images(const VisibilitySource& source, GriddingPlan
   char because[160];
   std::snprintf(because, sizeof because, "the image is weak against its data: its error came to %.3g times the accuracy",
                 first);
-  made.plan.decisions.push_back({"second pass", "with a more exact kernel", because});
+  made.plan.decisions.push_back({"second pass", made.plan.direct ? "by direct sums" : "with a more exact kernel", because});
   made.promise_kept = excess() <= 1;
   return made;
 }

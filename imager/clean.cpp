@@ -6,6 +6,7 @@
 #include <numeric>
 #include <optional>
 
+#include "imager/big_array.h"
 #include "imager/hogbom.h"
 #include "imager/noise.h"
 
@@ -100,6 +101,7 @@ CleanResult clean(const VisibilitySource& source, const Transform& transform, co
       break;
     }
   }
+  BigMemory::release();
   result.residual = *residual;
   if (end->stop != CleanStop::diverging) result.report.kept = result.report.cycles.size() - 1;
   result.report.stop = end->stop;

@@ -28,7 +28,7 @@ struct CostModel {
   double cell_ns = 0.15;     ///< a cell of width × padded width in three planes
   double tap_ns = 0.012;     ///< a coefficient of the polynomials, for each padded tap of both axes
   double fft_ns = 0.6;       ///< a point and binary logarithm of an FFT
-  double double_cost = 1.7;  ///< over single precision: twice the bytes, half the lanes
+  double double_cost = 1.7;  ///< over single precision, without a w axis: twice the bytes, half the lanes
   double direct_ns = 4;      ///< a term of a direct sum, in double precision
 
   double seconds(const GriddingWork& work) const;

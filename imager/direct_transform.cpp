@@ -1,7 +1,6 @@
 #include "imager/direct_transform.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "imager/constants.h"
 #include "imager/horizon.h"

@@ -160,7 +160,8 @@ GriddingPlan plan_together(const GriddingRequest& request) {
 
 /// Nobody has asked for a certain kernel, nor for a certain way.
 bool free_to_choose(const GriddingRequest& r) {
-  return r.accuracy != 0 && r.kernel_width == 0 && r.padding == 0 && r.gridder == Gridder::automatic && r.samples > 0;
+  return r.kernel.name == GriddingRequest().kernel.name && r.accuracy != 0 && r.kernel_width == 0 && r.padding == 0 &&
+         r.gridder == Gridder::automatic && r.samples > 0;
 }
 
 /// Seconds of the terms of direct sums, for each pixel.
@@ -186,15 +187,17 @@ void use_direct_images(GriddingPlan& plan, double gridding_s) {
   if (!free_to_choose(r)) return;
   const double pixels = static_cast<double>(r.geometry.pixels());
   const double direct_s = r.images * pixels * direct_pixel_s(r);
-  if (direct_s >= gridding_s) return;
+  const double turns = 0.25 * (r.geometry.width + r.geometry.height) + plan.choice.w_phase_rad / (2 * pi);
+  const double rounding = 1.1e-16 * (1 + 2 * pi * turns);
+  if (direct_s >= gridding_s || rounding > r.accuracy) return;
   plan.direct = true;
   plan.psf.reset();
   plan.direct_pixels = r.geometry.pixels();
-  const double turns = 0.25 * (r.geometry.width + r.geometry.height) + plan.choice.w_phase_rad / (2 * pi);
-  plan.expected_error = plan.worst_error = plan.rounding = 1.1e-16 * (1 + 2 * pi * turns);
+  plan.expected_error = plan.worst_error = plan.rounding = rounding;
   plan.bound_rms = plan.bound_max = 6 * plan.rounding;
-  plan.decisions = {{"images and predictions", "by direct sums",
-                     "for so few samples they cost " + text("%.2g", direct_s / gridding_s) + " of gridding and FFTs"}};
+  plan.decisions = {
+      {"images and predictions", "by direct sums",
+       "for so few samples they cost " + text("%.2g", direct_s / gridding_s) + " of gridding and FFTs; w counts in full"}};
 }
 
 Decision psf_decision(const GriddingPlan& plan, double together_s) {

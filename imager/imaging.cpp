@@ -114,6 +114,7 @@ DirtyImages make_dirty_images(const VisibilitySource& source, const Transform& t
     sum->add(block);
   });
   AdjointResult result = finish(std::move(sum), times);
+  BigMemory::release();
   require_any(result.sums);
   const StageTimer timer(times, "fft");
   divide(result.image, result.sums.weight);

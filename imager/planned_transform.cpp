@@ -13,7 +13,7 @@ std::unique_ptr<Transform> transform_of(const GriddingPlan& plan, const DirectSu
 }  // namespace
 
 PlannedTransform::PlannedTransform(const GriddingPlan& plan)
-    : direct_{plan.options.geometry, plan.options.has_w_axis(), plan.options.threads}, direct_pixels_(plan.direct_pixels) {
+    : direct_{plan.options.geometry, true, plan.options.threads}, direct_pixels_(plan.direct_pixels) {
   images_ = transform_of(plan, direct_);
 }
 

@@ -14,7 +14,7 @@ class PlannedTransform : public Transform {
   explicit PlannedTransform(const GriddingPlan& plan);
 
   std::unique_ptr<AdjointSum> adjoint(bool with_psf) const override { return images_->adjoint(with_psf); }
-  /// By direct sums over a model of few pixels.
+  /// By direct sums over a model of few pixels, with w even where gridding may leave it out.
   std::unique_ptr<Prediction> predict(const Image& model) const override;
   /// What makes images, and predicts larger models.
   const Transform& images() const { return *images_; }

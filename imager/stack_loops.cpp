@@ -54,8 +54,11 @@ constexpr int taps_at_once = static_cast<int>(hn::MaxLanes(TapsTag<Real>()));
 template <typename Real, typename Visit>
 HWY_ATTR HWY_INLINE void for_each_plane(const StackTaps<Real>& taps, const StackBatch<Real>& samples, const Along<Real>& along,
                                         int planes, const Visit& visit) {
-  constexpr int stride = 37;
-  for (int plane = 0; plane < planes; ++plane)
+  constexpr int stride = 16;  // neighbouring channels fall on each other's cells, and would wait for each other
+  if (samples.count == 0) return;
+  const auto [lowest, highest] = std::minmax_element(samples.plane, samples.plane + samples.count);
+  const int begin = std::max(0, *lowest), end = std::min(planes, *highest + taps.w.width);
+  for (int plane = begin; plane < end; ++plane)
     for (int first = 0; first < stride; ++first)
       for (int i = first; i < samples.count; i += stride) {
         const int tap = plane - samples.plane[i];
@@ -70,7 +73,7 @@ struct Halves {
   Real beyond[Numbers];
 };
 
-/// What of the taps from `column` on lies beyond `columns`, as a count of numbers that lie within; or all of them.
+/// How many of the taps' numbers lie within `columns`, from `column` on.
 HWY_INLINE int numbers_within(int column, int width, int columns) {
   return 2 * std::min(width, columns - column);
 }

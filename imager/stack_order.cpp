@@ -36,14 +36,16 @@ std::vector<TiledRun> find_runs(const Piece& piece, const WantedSamples& samples
   const std::size_t channels = at.channels();
   std::vector<std::int32_t> tile(channels), plane(channels);
   std::vector<double> period(channels);
-  for (std::size_t r = piece.begin_row; r < piece.end_row; ++r)
+  for (std::size_t r = piece.begin_row; r < piece.end_row; ++r) {
+    const float* weight = samples.weight == nullptr ? nullptr : samples.weight + r * channels;
+    if (weight != nullptr && std::all_of(weight, weight + channels, [](float w) { return w == 0; })) continue;
     for (const bool mirrored : {false, true}) {
       const StackRow row(&at.uvw_m[3 * r], mirrored, o.scale);
       first_taps(row, o.shape, o.width_w, at.frequency_hz.data(), static_cast<int>(channels),
                  {tile.data(), plane.data(), period.data()});
       bool open = false;
       for (std::size_t c = 0; c < channels; ++c) {
-        const bool wanted = samples.weight == nullptr || samples.weight[r * channels + c] != 0;
+        const bool wanted = weight == nullptr || weight[c] != 0;
         if (!wanted || plane[c] + o.width_w <= 0) {
           open = false;
           continue;
@@ -59,6 +61,7 @@ std::vector<TiledRun> find_runs(const Piece& piece, const WantedSamples& samples
         open = true;
       }
     }
+  }
   return runs;
 }
 

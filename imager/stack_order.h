@@ -8,7 +8,8 @@
 
 namespace misfit::imager {
 
-/// Consecutive channels of one row, or of its mirror image, that fall into one tile and have one lowest plane.
+/// Consecutive channels of one row, or of its mirror image, that fall into one tile and one
+/// period of the grid, and have one first plane.
 struct StackRun {
   std::uint32_t block;
   std::uint32_t row;

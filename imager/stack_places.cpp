@@ -1,5 +1,6 @@
 #include "imager/stack_places.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "imager/constants.h"

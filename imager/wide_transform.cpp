@@ -55,6 +55,10 @@ Setup<Real> set_up(const WideTransformOptions& o) {
   return s;
 }
 
+// Of a prediction: both halves of its visibilities; and at worst a run each for a sample and its mirror image, twice while they
+// are sorted. An adjoint takes less.
+static_assert(wide_bytes_a_sample == 2 * sizeof(std::complex<double>) + 2 * (2 * sizeof(StackRun) + 8));
+
 /// Planes of one facet that memory can hold.
 template <typename Real>
 int most_planes(const Setup<Real>& setup, int grids) {
@@ -80,17 +84,21 @@ StackBuffer<Real> buffer_of(const Setup<Real>& setup, int grids) {
 /// Sums in single precision stay short: a buffer is added to the stack after so many samples.
 constexpr int most_in_buffer = 1024;
 
-/// A tile of no more runs is gridded and degridded where it lies in the stack: a buffer costs more to bring and to add.
-/// Measured: from some 100 runs of 8 channels on, the buffer's nearness to the processor wins.
-constexpr std::size_t sparse_runs = 64;
-bool sparse(const StackTask& task) {
-  return task.end - task.begin <= sparse_runs;
+/// A tile of no more samples is gridded and degridded where it lies in the stack: a buffer costs more to bring and to add.
+/// Measured: from some 800 samples on, the buffer's nearness to the processor wins.
+constexpr std::size_t most_in_place = 512;
+bool sparse(const StackOrder& order, const StackTask& task) {
+  if (task.end - task.begin > most_in_place) return false;
+  std::size_t samples = 0;
+  for (std::size_t r = task.begin; r < task.end; ++r) samples += order.run[r].count;
+  return samples <= most_in_place;
 }
 
 template <typename Real>
 class WideAdjoint : public AdjointSum {
  public:
-  WideAdjoint(const Setup<Real>& setup, bool with_psf) : setup_(setup) {
+  WideAdjoint(const Setup<Real>& setup, bool with_psf)
+      : setup_(setup), with_psf_(with_psf && !beyond_horizon(setup.options.geometry.centre)) {
     const ImageGeometry& g = setup.options.geometry;
     result_.image = Image(g.width, g.height);
     if (with_psf) result_.psf = Image(g.width, g.height);
@@ -103,7 +111,11 @@ class WideAdjoint : public AdjointSum {
   AdjointResult finish() override {
     flush();
     set_beyond_horizon(setup_.options.geometry, no_value, result_.image);
-    if (!result_.psf.pixel.empty()) set_beyond_horizon(setup_.options.geometry, no_value, result_.psf);
+    if (with_psf_) {
+      set_beyond_horizon(setup_.options.geometry, no_value, result_.psf);
+    } else {
+      std::fill(result_.psf.pixel.begin(), result_.psf.pixel.end(), no_value);
+    }
     return std::move(result_);
   }
 
@@ -137,7 +149,7 @@ class WideAdjoint : public AdjointSum {
     std::vector<WantedSamples> blocks;
     for (const Gathered& g : gathered_) blocks.push_back({&g.at, g.weight.data()});
     std::vector<Image*> images{&result_.image};
-    if (!result_.psf.pixel.empty()) images.push_back(&result_.psf);
+    if (with_psf_) images.push_back(&result_.psf);
     const int grids = static_cast<int>(images.size()), threads = setup_.options.threads;
     PlaneStack<Real> stack(setup_.shape, grids);
     Spares<StackBuffer<Real>> spares;
@@ -176,7 +188,7 @@ class WideAdjoint : public AdjointSum {
 
   void grid_tile(const StackSamples& samples, const StackTask& task, int first_plane, StackBuffer<Real>& buffer,
                  PlaneStack<Real>& stack) const {
-    const bool in_place = sparse(task);
+    const bool in_place = sparse(samples.order, task);
     if (!in_place) buffer.reset(task.planes.planes);
     const StackCells<std::complex<Real>> cells =
         in_place ? stack.cells_of(task.tile_u, task.tile_v, task.planes.first - first_plane, task.planes.planes)
@@ -184,7 +196,8 @@ class WideAdjoint : public AdjointSum {
     int in_buffer = 0;
     const auto ahead = [&](std::uint32_t block, std::size_t sample) { hwy::Prefetch(&gathered_[block].weighted[sample]); };
     for_each_batch<Real>(samples, task, ahead, [&](StackBatch<Real>& batch, const BatchPhases& phases) {
-      // The grid holds conj(V), whose backward transform is the image; see plane_stack.h for the axes.
+      // The grid holds conj(V), whose backward transform is the image; see plane_stack.h for the axes. The V of a mirror image
+      // is the conjugate already.
       for (const BatchRun& run : phases.run) {
         const std::complex<Real>* weighted = &gathered_[run.block].weighted[run.sample];
         const double sign = run.mirrored ? 1 : -1;
@@ -214,9 +227,18 @@ class WideAdjoint : public AdjointSum {
     });
   }
 
+  void weigh_psf(const BatchPhases& phases, const double* cosine, const double* sine, StackBatch<Real>& batch) const {
+    for (const BatchRun& run : phases.run)
+      for (int k = run.begin; k < run.end; ++k) {
+        const double weight = gathered_[run.block].weight[run.sample + static_cast<std::size_t>(k - run.begin)];
+        batch.value[1][k] = {static_cast<Real>(weight * cosine[k]), static_cast<Real>(weight * sine[k])};
+      }
+  }
+
   /// Those of a source of 1 Jy in the image's middle pixel, seen from the facet's.
   void set_psf_values(const BatchPhases& phases, StackBatch<Real>& batch) const {
     const ImageGeometry& g = setup_.options.geometry;
+    if (!g.off_phase_centre()) return weigh_psf(phases, phases.cosine, phases.sine, batch);
     const PhasePosition middle = phase_position(g.centre);
     double turns[BatchPhases::capacity], cosine[BatchPhases::capacity], sine[BatchPhases::capacity];
     for (const BatchRun& run : phases.run) {
@@ -227,14 +249,11 @@ class WideAdjoint : public AdjointSum {
         turns[k] = phases.turns[k] - to_middle * at.frequency_hz[channel + static_cast<std::size_t>(k - run.begin)];
     }
     phasors(turns, batch.count, cosine, sine);
-    for (const BatchRun& run : phases.run)
-      for (int k = run.begin; k < run.end; ++k) {
-        const double weight = gathered_[run.block].weight[run.sample + static_cast<std::size_t>(k - run.begin)];
-        batch.value[1][k] = {static_cast<Real>(weight * cosine[k]), static_cast<Real>(weight * sine[k])};
-      }
+    weigh_psf(phases, cosine, sine, batch);
   }
 
   const Setup<Real>& setup_;
+  bool with_psf_;  ///< whose source is above the horizon
   std::vector<Gathered> gathered_;
   std::size_t samples_ = 0;
   AdjointResult result_;
@@ -303,7 +322,7 @@ class WidePrediction : public Prediction {
     const StackShape& s = setup_.shape;
     StackCells<const std::complex<Real>> cells =
         stack.cells_of(task.tile_u, task.tile_v, task.planes.first - first_plane, task.planes.planes);
-    if (!sparse(task)) {
+    if (!sparse(samples.order, task)) {
       buffer.reset(task.planes.planes);
       for_each_chunk(s, task, 1, [&](int row, int chunk, int plane, int grid, int count) {
         std::copy_n(stack.chunk(task.tile_v * s.tile + row, task.tile_u + chunk, task.planes.first - first_plane + plane, grid),
@@ -376,10 +395,8 @@ std::unique_ptr<Transform> make_wide_transform(const WideTransformOptions& o) {
 
 TransformMemory memory_of(const WideTransformOptions& o, double samples, int planes) {
   const bool single = o.precision == Precision::single_precision;
-  const double complex_bytes = 2.0 * (single ? sizeof(float) : sizeof(double));
-  const double sample_bytes = sizeof(float) + complex_bytes;
-  constexpr double run_bytes = 2 * (2 * sizeof(StackRun) + 8);  // at worst two runs each, twice while they are sorted
-  const double gathered = std::min(samples, static_cast<double>(o.samples_at_once)) * (sample_bytes + run_bytes);
+  const double complex_bytes = single ? sizeof(std::complex<float>) : sizeof(std::complex<double>);
+  const double gathered = std::min(samples, static_cast<double>(o.samples_at_once)) * wide_bytes_a_sample;
   const double plane = static_cast<double>(shape_of(o).cells()) * complex_bytes;
   const double image = static_cast<double>(o.geometry.pixels()) * sizeof(double);
   const double one = std::min(planes * plane, std::max(plane, static_cast<double>(o.stack_bytes)));

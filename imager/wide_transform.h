@@ -21,6 +21,9 @@ struct WideTransformOptions : PlaneTransformOptions {
 /// does not depend on the number of threads. Throws std::invalid_argument when the options contradict each other.
 std::unique_ptr<Transform> make_wide_transform(const WideTransformOptions& options);
 
+/// Bytes that a WideTransform takes at most for each of the samples that it orders at once.
+inline constexpr int wide_bytes_a_sample = 112;
+
 /// The memory that a WideTransform takes for that many samples, when no facet has more than `planes` planes.
 TransformMemory memory_of(const WideTransformOptions& options, double samples, int planes);
 

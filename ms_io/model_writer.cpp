@@ -135,8 +135,7 @@ ModelWriteReport write_model(const std::string& path, const Selection& selection
   Writer writer = translated(doing, [&] { return Writer(set, name); });
   ModelWriteReport report;
   std::unique_ptr<PredictedBlock> before;  // is written while the next one is predicted
-  const auto write = [&](PredictedBlock& block) {
-    const std::vector<std::complex<double>> stokes_i = block.stokes_i.get();
+  const auto write = [&](const PredictedBlock& block, const std::vector<std::complex<double>>& stokes_i) {
     translated(doing, [&] { writer.write(block.rows, *block.setup, stokes_i); });
     report.rows += block.rows.count();
     report.samples += block.where.samples();
@@ -147,12 +146,13 @@ ModelWriteReport write_model(const std::string& path, const Selection& selection
     auto block = std::make_unique<PredictedBlock>(rows, selected.setups);
     block->where = translated("cannot read UVW of " + path,
                               [&] { return writer.coordinates(block->rows, *block->setup, block->unknown); });
-    if (before) before->stokes_i.wait();  // predictions have all threads, one after the other
+    std::vector<std::complex<double>> stokes_i;
+    if (before) stokes_i = before->stokes_i.get();  // predictions have all threads, one after the other
     block->begin(predict);
-    if (before) write(*before);
+    if (before) write(*before, stokes_i);
     before = std::move(block);
   }
-  if (before) write(*before);
+  if (before) write(*before, before->stokes_i.get());
   translated(doing, [&] { set.flush(); });
   return report;
 }

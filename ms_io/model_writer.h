@@ -25,7 +25,8 @@ struct ModelWriteReport {
 /// exist is created with the shape and storage of DATA, and rows outside the selection are left alone (0 in a new column).
 /// `column` may not be DATA. `progress(done, total)` is called after every block, in samples. Throws std::runtime_error as
 /// MeasurementSet does (but correlations from which I cannot be formed are written all the same), and std::invalid_argument
-/// when `predict` returns the wrong number of values. It is asked for about `block_samples` samples at a time.
+/// when `predict` returns the wrong number of values. It is asked for about `block_samples` samples at a time, in a thread of
+/// its own while the block before is written.
 ModelWriteReport write_model(const std::string& path, const Selection& selection, const std::string& column,
                              const Predict& predict, const std::function<void(std::uint64_t, std::uint64_t)>& progress,
                              std::uint64_t block_samples = MeasurementSet::usual_block_samples);

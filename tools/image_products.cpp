@@ -2,9 +2,6 @@
 
 #include <cmath>
 
-#include "tools/files.h"
-#include "tools/pictures.h"
-
 namespace misfit::tools {
 
 std::vector<imager::HeaderCard> error_cards(const RunReport& report) {

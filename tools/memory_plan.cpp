@@ -32,9 +32,8 @@ std::string enough_text(double bytes) {
 }  // namespace
 
 void limit_memory(double bytes, imager::GriddingRequest& o) {
-  constexpr double bytes_a_sample = 64;
   o.stack_bytes = std::min(o.stack_bytes, static_cast<std::size_t>(bytes / 4));
-  o.samples_at_once = std::min(o.samples_at_once, static_cast<std::size_t>(bytes / 8 / bytes_a_sample));
+  o.samples_at_once = std::min(o.samples_at_once, static_cast<std::size_t>(bytes / 8 / imager::wide_bytes_a_sample));
 }
 
 MemoryPlan plan_memory(const imager::MemoryDemand& demand, const ImageOptions& o) {

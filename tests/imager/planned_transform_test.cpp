@@ -82,6 +82,7 @@ BOOST_AUTO_TEST_CASE(a_kernel_or_a_way_that_was_asked_for_is_used) {
   BOOST_TEST(is_direct([](GriddingRequest&) {}));
   BOOST_TEST(!is_direct([](GriddingRequest& r) { r.kernel_width = 9; }));
   BOOST_TEST(!is_direct([](GriddingRequest& r) { r.padding = 2; }));
+  BOOST_TEST(!is_direct([](GriddingRequest& r) { r.kernel = misfit::kernels::kernel_family("kaiser-bessel"); }));
   BOOST_TEST(!is_direct([](GriddingRequest& r) { r.gridder = Gridder::wide; }));
   BOOST_TEST(!is_direct([](GriddingRequest& r) { r.gridder = Gridder::standard; }));
   BOOST_TEST(!is_direct([](GriddingRequest& r) { r.accuracy = 0; }));

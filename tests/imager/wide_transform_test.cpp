@@ -162,6 +162,44 @@ BOOST_DATA_TEST_CASE(the_psf_is_that_of_the_middle_pixel_wherever_it_lies,
   BOOST_TEST((std::abs(gridded.psf.at(24, 32) / gridded.sums.weight - 1) < worst + 1e-12));
 }
 
+BOOST_AUTO_TEST_CASE(a_psf_whose_source_is_beyond_the_horizon_is_nan_and_leaves_the_image_alone) {
+  const ImageGeometry off{128, 128, 0.0055, {}, {0.9, 0.5}};
+  const WideTransformOptions o = options({off, 7, 1.6, 2, 2});
+  const VisibilityBlock block = random_samples_with_w(150, 3, off.cell_rad, 50, 1);
+  const AdjointResult gridded = adjoint_of(*make_wide_transform(o), block);
+  const AdjointResult direct = adjoint_of(DirectTransform(off, 2), block);
+  BOOST_TEST_REQUIRE(!seen(direct.image).empty());
+  BOOST_TEST(relative_error(seen(gridded.image), seen(direct.image)) < 1.5 * expected_error(o) + 1e-12);
+  BOOST_TEST(seen(gridded.psf).empty());
+}
+
+BOOST_DATA_TEST_CASE(runs_of_thousands_of_channels_over_many_periods_are_as_exact, bdata::make({1.0, 40.0}), reach) {
+  const WideTransformOptions o = options({{40, 30, 0.0055, {}}, 7, 1.6, 1, 1});
+  VisibilityBlock block = random_samples_with_w(4, 5000, o.geometry.cell_rad, 5, 3, reach);
+  for (std::size_t c = 0; c < block.channels(); ++c) block.frequency_hz[c] = 1e9 * (1 + 1e-5 * static_cast<double>(c));
+  const auto transform = make_wide_transform(o);
+  const Image model = random_image(40, 30, 3);
+  const auto direct = DirectTransform(o.geometry, 2).predict(model)->at(block);
+  BOOST_TEST(relative_error(transform->predict(model)->at(block), direct) < 1.5 * worst_error(o) + 1e-12);
+  if (reach > 1) return;
+  const AdjointResult gridded = adjoint_of(*transform, block);
+  BOOST_TEST(relative_error(gridded.image.pixel, adjoint_of(DirectTransform(o.geometry, 2), block).image.pixel) <
+             1.5 * worst_error(o) + 1e-12);
+}
+
+BOOST_AUTO_TEST_CASE(rows_of_weight_zero_do_not_count_wherever_they_lie) {
+  const WideTransformOptions o = options({field, 7, 1.6, 2, 2});
+  const VisibilityBlock block = random_samples_with_w(100, 2, field.cell_rad, most_w, 3);
+  VisibilityBlock more = block;
+  for (const double x : {std::nan(""), 1e300, -1e300}) {
+    more.uvw_m.insert(more.uvw_m.end(), {x, x, x});
+    more.visibility.insert(more.visibility.end(), 2, {std::nanf(""), 0});
+    more.weight.insert(more.weight.end(), 2, 0);
+  }
+  const auto transform = make_wide_transform(o);
+  BOOST_TEST((adjoint_of(*transform, more).image.pixel == adjoint_of(*transform, block).image.pixel));
+}
+
 BOOST_DATA_TEST_CASE(w_of_any_kind_is_as_exact, bdata::make({0, 1, 2, 3, 4}), kind) {
   const WideTransformOptions o = options({field, 9, 1.6, 2, 2});
   VisibilityBlock block = random_samples_with_w(kind == 4 ? 1 : 100, 2, field.cell_rad, most_w, 11);

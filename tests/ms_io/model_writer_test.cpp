@@ -117,14 +117,29 @@ BOOST_AUTO_TEST_CASE(cells_without_a_shape_are_given_one) {
 BOOST_AUTO_TEST_CASE(rows_with_a_nonfinite_uvw_get_zero_and_are_counted) {
   const SmallSet set;
   set.put("UVW", 5, 1, 0, nan_value);
-  const auto check_finite = [](const imager::SampleCoordinates& where) {
-    for (const double x : where.uvw_m) BOOST_TEST(std::isfinite(x));
+  bool finite = true;
+  const auto check_finite = [&](const imager::SampleCoordinates& where) {
+    for (const double x : where.uvw_m) finite = finite && std::isfinite(x);
     return std::vector<std::complex<double>>(where.samples(), 1.0);
   };
   const ModelWriteReport report = write_model(set.path(), {}, "MODEL_DATA", check_finite, {});
+  BOOST_TEST(finite);
   BOOST_TEST(report.nonfinite_uvw_rows == 1U);
   BOOST_TEST(set.cell("MODEL_DATA", 5)(0, 0) == casacore::Complex(0));
   BOOST_TEST(set.cell("MODEL_DATA", 6)(0, 0) == casacore::Complex(1));
+}
+
+BOOST_AUTO_TEST_CASE(a_prediction_that_fails_ends_the_writing_at_once) {
+  for (const int failing : {1, 2, 3}) {
+    const SmallSet set;
+    int calls = 0;
+    const auto predict = [&](const imager::SampleCoordinates& where) {
+      if (++calls == failing) throw std::runtime_error("no more");
+      return std::vector<std::complex<double>>(where.samples(), 1.0);
+    };
+    BOOST_CHECK_THROW(write_model(set.path(), {}, "MODEL_DATA", predict, {}, channels), std::runtime_error);
+    BOOST_TEST(calls == failing);
+  }
 }
 
 BOOST_AUTO_TEST_CASE(progress_grows_to_the_total) {

@@ -103,6 +103,13 @@ Offset bright_from_dark(const Folder& folder, const std::string& name) {
 
 BOOST_AUTO_TEST_SUITE(pictures)
 
+BOOST_AUTO_TEST_CASE(a_drawing_that_is_not_finished_leaves_nothing) {
+  const Folder folder;
+  const SkyImage sky = sky_image(10, 10);
+  { const misfit::tools::PictureDrawing drawing({{&sky, "one", folder.file("one.png")}}); }
+  BOOST_TEST(fs::is_empty(folder.path));
+}
+
 BOOST_AUTO_TEST_CASE(every_image_is_drawn_and_nothing_else_is_left) {
   SkyImage zero = sky_image(30, 20);
   SkyImage blank = sky_image(20, 64);
