@@ -17,7 +17,7 @@ constexpr int smallest_fft = 64;
 constexpr int continuum = 128;  ///< fewer pixels are no mean over the field, and need no wide kernels
 
 /// From the one that needs the narrowest kernel down: what the wider padding cannot reach, no other can.
-constexpr std::array<double, 7> usual_paddings{2.0, 1.75, 1.6, 1.5, 1.4, 1.25, 1.15};
+constexpr std::array<double, 5> usual_paddings{2.0, 1.6, 1.4, 1.25, 1.15};
 constexpr std::array<double, 7> usual_w_paddings{40, 10, 4, 2.5, 2.0, 1.6, 1.3};
 
 /// Makes each kernel once.
