@@ -18,6 +18,7 @@ constexpr int continuum = 128;  ///< fewer pixels are no mean over the field, an
 
 /// From the one that needs the narrowest kernel down: what the wider padding cannot reach, no other can.
 constexpr std::array<double, 5> usual_paddings{2.0, 1.6, 1.4, 1.25, 1.15};
+constexpr std::array<double, 6> usual_paddings_with_w{2.0, 1.75, 1.6, 1.4, 1.25, 1.15};  // taps cost more there, FFTs less
 constexpr std::array<double, 7> usual_w_paddings{40, 10, 4, 2.5, 2.0, 1.6, 1.3};
 
 /// Makes each kernel once.
@@ -55,7 +56,13 @@ class Search {
  public:
   /// With a w axis over one of the facetings, or without where there are none.
   Search(const GriddingRequest& request, double target, std::vector<Faceting> ways)
-      : request_(request), shelf_(request), target_(target), ways_(std::move(ways)) {}
+      : request_(request), shelf_(request), target_(target), ways_(std::move(ways)) {
+    if (has_w_axis()) {
+      usual_.assign(usual_paddings_with_w.begin(), usual_paddings_with_w.end());
+    } else {
+      usual_.assign(usual_paddings.begin(), usual_paddings.end());
+    }
+  }
 
   GriddingChoice run() {
     for (const Precision precision : {Precision::single_precision, Precision::double_precision}) {
@@ -75,7 +82,7 @@ class Search {
     if (request_.padding != 0) return {request_.padding};
     if (request_.accuracy == 0) return {least_padding()};  // what the given kernel is made for
     std::vector<double> found;
-    for (const double usual : usual_paddings) {
+    for (const double usual : usual_) {
       found.push_back(std::max(usual, least_padding()));
       if (usual <= least_padding()) break;
     }
@@ -181,9 +188,8 @@ class Search {
     }
     if (!best_ || request_.padding != 0 || best_->work.precision != precision) return;
     const GriddingCandidate square = *best_;
-    const auto smaller =
-        std::find_if(usual_paddings.begin(), usual_paddings.end(), [&](double usual) { return usual < square.padding_u; });
-    if (smaller == usual_paddings.end() || *smaller < least_padding()) return;
+    const auto smaller = std::find_if(usual_.begin(), usual_.end(), [&](double usual) { return usual < square.padding_u; });
+    if (smaller == usual_.end() || *smaller < least_padding()) return;
     for (const auto& [u, v] : {std::pair(*smaller, square.padding_v), std::pair(square.padding_u, *smaller)})
       consider(sized(square.work.width, u, v, precision));
   }
@@ -320,6 +326,7 @@ class Search {
   KernelShelf shelf_;
   double target_;
   std::vector<Faceting> ways_;
+  std::vector<double> usual_;  ///< paddings, the widest first
   std::optional<GriddingCandidate> best_;
   std::optional<GriddingCandidate> most_exact_;
   std::vector<RejectedCandidate> considered_;
