@@ -35,7 +35,7 @@ struct RowRange {
 
 /// Some neighbouring planes of constant w, each with one or more complex grids. What a tile holds of one row lies together:
 /// [row][chunk][plane][grid][column in chunk], a chunk being as wide as a tile. Memory is used again from one facet to the
-/// next.
+/// next, and by the FFTs: between the transforms along u and v, row q + margin holds row q of the grid by columns of the image.
 template <typename Real>
 class PlaneStack {
  public:

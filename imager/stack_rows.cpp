@@ -8,7 +8,7 @@
 namespace misfit::imager {
 namespace {
 
-/// Column r of storage stands for canonical column r − margin, modulo the grid.
+/// The column of the grid that a column of storage stands for.
 int canonical(const StackShape& s, int column) {
   const int p = (column - s.margin()) % s.nu;
   return p < 0 ? p + s.nu : p;
