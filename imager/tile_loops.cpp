@@ -41,10 +41,11 @@ SameCell next_cell(const TileBatch<Real>& samples, int begin) {
   return {begin, end};
 }
 
-/// Adds `Rows` rows of the taps of samples in one cell: summed in registers, so that memory is touched once for all of them.
+/// Adds `Rows` rows of the taps of samples in one cell, from its row `first` on: summed in registers, so that memory is touched
+/// once for all of them.
 template <typename Real, int Width, int Planes, int Rows>
-HWY_ATTR HWY_INLINE Real* add_rows(const TileBatch<Real>& samples, SameCell same, const Real* along_u, const Real* along_v,
-                                   std::ptrdiff_t columns, Real* cell) {
+HWY_ATTR HWY_INLINE void add_rows(const TileBatch<Real>& samples, SameCell same, const Evaluated<Real>& u,
+                                  const Evaluated<Real>& v, int first, const TileCells<Real>& cells) {
   using T = TapLanes<Real, Width>;
   const typename T::Tag d;
   const Real* const value[3] = {samples.real, samples.imaginary, samples.weight};
@@ -59,59 +60,56 @@ HWY_ATTR HWY_INLINE Real* add_rows(const TileBatch<Real>& samples, SameCell same
     MISFIT_UNROLL for (int plane = 0; plane < Planes; ++plane) {
       const auto factor = hn::Set(d, value[plane][i]);
       MISFIT_UNROLL for (int k = 0; k < T::vectors; ++k) term[plane][k] =
-          hn::Mul(factor, hn::Load(d, along_u + i * T::padded + k * T::lanes));
+          hn::Mul(factor, hn::Load(d, u.value + i * T::padded + k * T::lanes));
     }
     MISFIT_UNROLL for (int j = 0; j < Rows; ++j) {
-      const auto factor = hn::Set(d, along_v[i * T::padded + j]);
+      const auto factor = hn::Set(d, v.value[i * T::padded + first + j]);
       MISFIT_UNROLL for (int plane = 0; plane < Planes; ++plane) {
         MISFIT_UNROLL for (int k = 0; k < T::vectors; ++k) sum[j][plane][k] =
             hn::MulAdd(factor, term[plane][k], sum[j][plane][k]);
       }
     }
   }
+  const std::ptrdiff_t start = (samples.row[same.begin] + first) * cells.row + samples.column[same.begin];
   MISFIT_UNROLL for (int j = 0; j < Rows; ++j) {
-    MISFIT_UNROLL for (int plane = 0; plane < Planes; ++plane, cell += columns) {
+    MISFIT_UNROLL for (int plane = 0; plane < Planes; ++plane) {
+      Real* const cell = cells.plane[plane] + start + j * cells.row;
       MISFIT_UNROLL for (int k = 0; k < T::vectors; ++k) {
         Real* at = cell + k * T::lanes;
         hn::StoreU(hn::Add(sum[j][plane][k], hn::LoadU(d, at)), d, at);
       }
     }
   }
-  return cell;
 }
 
 template <typename Real, int Width, int Planes>
 HWY_ATTR void spread_samples(const TileBatch<Real>& samples, const Evaluated<Real>& along_u, const Evaluated<Real>& along_v,
-                             TileBuffer<Real>& buffer) {
+                             const TileCells<Real>& cells) {
   constexpr int passes = (Width * Planes * TapLanes<Real, Width>::vectors + most_sums - 1) / most_sums;
   constexpr int rows = passes < Width ? (Width + passes - 1) / passes : 1;
   constexpr int rest = Width % rows;
-  const std::ptrdiff_t columns = buffer.columns;
   for (SameCell same = next_cell(samples, 0); same.begin < samples.count; same = next_cell(samples, same.end)) {
-    Real* cell = buffer.row(samples.row[same.begin], 0) + samples.column[same.begin];
-    for (int j = 0; j < Width - rest; j += rows)
-      cell = add_rows<Real, Width, Planes, rows>(samples, same, along_u.value, along_v.value + j, columns, cell);
-    if constexpr (rest > 0)
-      add_rows<Real, Width, Planes, rest>(samples, same, along_u.value, along_v.value + Width - rest, columns, cell);
+    for (int j = 0; j < Width - rest; j += rows) add_rows<Real, Width, Planes, rows>(samples, same, along_u, along_v, j, cells);
+    if constexpr (rest > 0) add_rows<Real, Width, Planes, rest>(samples, same, along_u, along_v, Width - rest, cells);
   }
 }
 
 template <typename Real, int Width>
 HWY_ATTR void interpolate_samples(const Evaluated<Real>& along_u, const Evaluated<Real>& along_v,
-                                  const TileBuffer<Real>& buffer, TileBatch<Real>& samples) {
+                                  const TileCells<const Real>& cells, TileBatch<Real>& samples) {
   using T = TapLanes<Real, Width>;
   const typename T::Tag d;
-  const std::ptrdiff_t columns = buffer.columns;
   for (int i = 0; i < samples.count; ++i) {
     typename T::Vector real[T::vectors];
     typename T::Vector imaginary[T::vectors];
     MISFIT_UNROLL for (int k = 0; k < T::vectors; ++k) real[k] = imaginary[k] = hn::Zero(d);
-    const Real* cell = buffer.cell.data() + samples.row[i] * 2 * columns + samples.column[i];
-    MISFIT_UNROLL for (int j = 0; j < Width; ++j, cell += 2 * columns) {
+    const std::ptrdiff_t start = samples.row[i] * cells.row + samples.column[i];
+    const Real *real_cell = cells.plane[0] + start, *imaginary_cell = cells.plane[1] + start;
+    MISFIT_UNROLL for (int j = 0; j < Width; ++j, real_cell += cells.row, imaginary_cell += cells.row) {
       const auto factor = hn::Set(d, along_v.value[i * T::padded + j]);
       MISFIT_UNROLL for (int k = 0; k < T::vectors; ++k) {
-        real[k] = hn::MulAdd(factor, hn::LoadU(d, cell + k * T::lanes), real[k]);
-        imaginary[k] = hn::MulAdd(factor, hn::LoadU(d, cell + columns + k * T::lanes), imaginary[k]);
+        real[k] = hn::MulAdd(factor, hn::LoadU(d, real_cell + k * T::lanes), real[k]);
+        imaginary[k] = hn::MulAdd(factor, hn::LoadU(d, imaginary_cell + k * T::lanes), imaginary[k]);
       }
     }
     auto real_sum = hn::Zero(d);
@@ -128,44 +126,44 @@ HWY_ATTR void interpolate_samples(const Evaluated<Real>& along_u, const Evaluate
 
 template <typename Real, int... Before>
 HWY_ATTR void spread_any(std::integer_sequence<int, Before...>, const TapTable<Real>& u, const TapTable<Real>& v,
-                         const TileBatch<Real>& samples, TileBuffer<Real>& buffer) {
+                         const TileBatch<Real>& samples, const TileCells<Real>& cells) {
   Evaluated<Real> along_u, along_v;
   evaluate_taps(u, samples.tu, samples.count, along_u.value);
   evaluate_taps(v, samples.tv, samples.count, along_v.value);
-  using Loop = void (*)(const TileBatch<Real>&, const Evaluated<Real>&, const Evaluated<Real>&, TileBuffer<Real>&);
+  using Loop = void (*)(const TileBatch<Real>&, const Evaluated<Real>&, const Evaluated<Real>&, const TileCells<Real>&);
   constexpr Loop two_planes[] = {spread_samples<Real, Before + 1, 2>...};
   constexpr Loop three_planes[] = {spread_samples<Real, Before + 1, 3>...};
-  (buffer.planes == 3 ? three_planes : two_planes)[u.width - 1](samples, along_u, along_v, buffer);
+  (cells.planes == 3 ? three_planes : two_planes)[u.width - 1](samples, along_u, along_v, cells);
 }
 
 template <typename Real, int... Before>
 HWY_ATTR void interpolate_any(std::integer_sequence<int, Before...>, const TapTable<Real>& u, const TapTable<Real>& v,
-                              const TileBuffer<Real>& buffer, TileBatch<Real>& samples) {
+                              const TileCells<const Real>& cells, TileBatch<Real>& samples) {
   Evaluated<Real> along_u, along_v;
   evaluate_taps(u, samples.tu, samples.count, along_u.value);
   evaluate_taps(v, samples.tv, samples.count, along_v.value);
-  using Loop = void (*)(const Evaluated<Real>&, const Evaluated<Real>&, const TileBuffer<Real>&, TileBatch<Real>&);
+  using Loop = void (*)(const Evaluated<Real>&, const Evaluated<Real>&, const TileCells<const Real>&, TileBatch<Real>&);
   constexpr Loop loops[] = {interpolate_samples<Real, Before + 1>...};
-  loops[u.width - 1](along_u, along_v, buffer, samples);
+  loops[u.width - 1](along_u, along_v, cells, samples);
 }
 
 using Widths = std::make_integer_sequence<int, most_taps>;
 
 HWY_ATTR void spread_float(const TapTable<float>& u, const TapTable<float>& v, const TileBatch<float>& s,
-                           TileBuffer<float>& b) {
-  spread_any(Widths(), u, v, s, b);
+                           const TileCells<float>& c) {
+  spread_any(Widths(), u, v, s, c);
 }
 HWY_ATTR void spread_double(const TapTable<double>& u, const TapTable<double>& v, const TileBatch<double>& s,
-                            TileBuffer<double>& b) {
-  spread_any(Widths(), u, v, s, b);
+                            const TileCells<double>& c) {
+  spread_any(Widths(), u, v, s, c);
 }
-HWY_ATTR void interpolate_float(const TapTable<float>& u, const TapTable<float>& v, const TileBuffer<float>& b,
+HWY_ATTR void interpolate_float(const TapTable<float>& u, const TapTable<float>& v, const TileCells<const float>& c,
                                 TileBatch<float>& s) {
-  interpolate_any(Widths(), u, v, b, s);
+  interpolate_any(Widths(), u, v, c, s);
 }
-HWY_ATTR void interpolate_double(const TapTable<double>& u, const TapTable<double>& v, const TileBuffer<double>& b,
+HWY_ATTR void interpolate_double(const TapTable<double>& u, const TapTable<double>& v, const TileCells<const double>& c,
                                  TileBatch<double>& s) {
-  interpolate_any(Widths(), u, v, b, s);
+  interpolate_any(Widths(), u, v, c, s);
 }
 
 }  // namespace misfit::imager::HWY_NAMESPACE
@@ -179,20 +177,21 @@ HWY_EXPORT(spread_double);
 HWY_EXPORT(interpolate_float);
 HWY_EXPORT(interpolate_double);
 
-void spread(const TapTable<float>& u, const TapTable<float>& v, const TileBatch<float>& samples, TileBuffer<float>& buffer) {
-  HWY_DYNAMIC_DISPATCH(spread_float)(u, v, samples, buffer);
+void spread(const TapTable<float>& u, const TapTable<float>& v, const TileBatch<float>& samples,
+            const TileCells<float>& cells) {
+  HWY_DYNAMIC_DISPATCH(spread_float)(u, v, samples, cells);
 }
 void spread(const TapTable<double>& u, const TapTable<double>& v, const TileBatch<double>& samples,
-            TileBuffer<double>& buffer) {
-  HWY_DYNAMIC_DISPATCH(spread_double)(u, v, samples, buffer);
+            const TileCells<double>& cells) {
+  HWY_DYNAMIC_DISPATCH(spread_double)(u, v, samples, cells);
 }
-void interpolate(const TapTable<float>& u, const TapTable<float>& v, const TileBuffer<float>& buffer,
+void interpolate(const TapTable<float>& u, const TapTable<float>& v, const TileCells<const float>& cells,
                  TileBatch<float>& samples) {
-  HWY_DYNAMIC_DISPATCH(interpolate_float)(u, v, buffer, samples);
+  HWY_DYNAMIC_DISPATCH(interpolate_float)(u, v, cells, samples);
 }
-void interpolate(const TapTable<double>& u, const TapTable<double>& v, const TileBuffer<double>& buffer,
+void interpolate(const TapTable<double>& u, const TapTable<double>& v, const TileCells<const double>& cells,
                  TileBatch<double>& samples) {
-  HWY_DYNAMIC_DISPATCH(interpolate_double)(u, v, buffer, samples);
+  HWY_DYNAMIC_DISPATCH(interpolate_double)(u, v, cells, samples);
 }
 
 }  // namespace misfit::imager

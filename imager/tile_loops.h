@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <vector>
 
 #include "imager/tap_table.h"
@@ -15,8 +16,17 @@ struct TileBatch : TilePlaces<Real> {
   Real weight[TilePlaces<Real>::capacity];
 };
 
-/// A tile's private piece of the grid, with room for the taps that leave the tile: [row][plane][column], planes real, imaginary
-/// and (while gridding a PSF) weight.
+/// Where the cells of a tile lie, in planes of real and imaginary parts and (while gridding a PSF) weights.
+template <typename Real>
+struct TileCells {
+  int planes = 0;
+  Real* plane[3] = {};     ///< row 0, column 0
+  std::ptrdiff_t row = 0;  ///< from one row to the next
+
+  operator TileCells<const Real>() const { return {planes, {plane[0], plane[1], plane[2]}, row}; }
+};
+
+/// A tile's private piece of the grid, with room for the taps that leave the tile: [row][plane][column].
 template <typename Real>
 struct TileBuffer {
   int planes = 0;
@@ -32,16 +42,23 @@ struct TileBuffer {
   Real* row(int r, int plane) {
     return cell.data() + static_cast<std::size_t>(r * planes + plane) * static_cast<std::size_t>(columns);
   }
+  TileCells<Real> cells() {
+    TileCells<Real> cells{planes, {}, planes * columns};
+    for (int plane = 0; plane < planes; ++plane) cells.plane[plane] = row(0, plane);
+    return cells;
+  }
 };
 
-/// Adds value · C_u · C_v of every sample to the buffer's planes. The kernels must have one width.
-void spread(const TapTable<float>& u, const TapTable<float>& v, const TileBatch<float>& samples, TileBuffer<float>& buffer);
-void spread(const TapTable<double>& u, const TapTable<double>& v, const TileBatch<double>& samples, TileBuffer<double>& buffer);
+/// Adds value · C_u · C_v of every sample to the planes. The kernels must have one width. Vectors reach beyond the last tap,
+/// where they add 0.
+void spread(const TapTable<float>& u, const TapTable<float>& v, const TileBatch<float>& samples, const TileCells<float>& cells);
+void spread(const TapTable<double>& u, const TapTable<double>& v, const TileBatch<double>& samples,
+            const TileCells<double>& cells);
 
-/// Sets every sample's value to Σ C_u · C_v · buffer: the transpose of spread.
-void interpolate(const TapTable<float>& u, const TapTable<float>& v, const TileBuffer<float>& buffer,
+/// Sets every sample's value to Σ C_u · C_v · cell: the transpose of spread.
+void interpolate(const TapTable<float>& u, const TapTable<float>& v, const TileCells<const float>& cells,
                  TileBatch<float>& samples);
-void interpolate(const TapTable<double>& u, const TapTable<double>& v, const TileBuffer<double>& buffer,
+void interpolate(const TapTable<double>& u, const TapTable<double>& v, const TileCells<const double>& cells,
                  TileBatch<double>& samples);
 
 }  // namespace misfit::imager

@@ -127,6 +127,21 @@ BOOST_DATA_TEST_CASE(predicted_visibilities_equal_the_direct_transform_within_th
   BOOST_TEST(relative_error(gridded, direct) < 1.5 * expected_error(o) + 1e-14);
 }
 
+/// Tiles of many samples have a buffer of their own, others are gridded where they lie.
+BOOST_DATA_TEST_CASE(tiles_of_few_and_of_many_samples_are_as_exact, bdata::make({1, 10, 100, 1000, 5000}), rows) {
+  const PlaneTransformOptions o = options(64, 48, 10, 1.5);
+  const VisibilityBlock block = random_samples(static_cast<std::size_t>(rows), 3, cell_rad, 4);
+  const Image model = random_image(64, 48, 5);
+  const auto transform = make_plane_transform(o);
+  const DirectTransform direct(o.geometry, 2);
+  const double worst = std::sqrt(o.kernel_u.misfit.worst_mean + o.kernel_v.misfit.worst_mean);
+  const AdjointResult gridded = adjoint_of(*transform, block), should = adjoint_of(direct, block);
+  BOOST_TEST(relative_error(gridded.image.pixel, should.image.pixel) < 1.5 * worst);
+  BOOST_TEST(relative_error(gridded.psf.pixel, should.psf.pixel) < 1.5 * worst);
+  BOOST_TEST(relative_error(parts(transform->predict(model)->at(block)), parts(direct.predict(model)->at(block))) <
+             1.5 * worst);
+}
+
 BOOST_DATA_TEST_CASE(image_shapes_odd_thin_and_tiny_are_as_exact,
                      bdata::make({331, 7, 1, 1, 64, 2}) ^ bdata::make({17, 50, 1, 40, 1, 3}), width, height) {
   const PlaneTransformOptions o = options(width, height, 7, 2.0);

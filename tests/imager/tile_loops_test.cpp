@@ -65,7 +65,7 @@ BOOST_AUTO_TEST_CASE_TEMPLATE(spread_adds_the_plain_double_loop_for_every_width_
               for (int c = 0; c < width; ++c)
                 should[index(buffer, batch.row[i] + r, plane, batch.column[i] + c)] += along_u[c] * along_v[r] * value[plane];
         }
-        spread(table_u, table_v, batch, buffer);
+        spread(table_u, table_v, batch, buffer.cells());
         double largest = 0;
         for (std::size_t i = 0; i < should.size(); ++i) largest = std::max(largest, std::abs(buffer.cell[i] - should[i]));
         BOOST_TEST(largest <= rounding<Real>(count));
@@ -77,9 +77,9 @@ BOOST_AUTO_TEST_CASE_TEMPLATE(interpolation_is_the_plain_double_sum_for_every_wi
   for_each_width_and_target([](int width) {
     const auto u = random_polynomial(width, 5), v = random_polynomial(width, 6);
     const TapTable<Real> table_u(u), table_v(v);
-    const TileBuffer<Real> buffer = random_buffer<Real>(table_u.padded, 2);
+    TileBuffer<Real> buffer = random_buffer<Real>(table_u.padded, 2);
     TileBatch<Real> batch = random_batch<Real>(TileBatch<Real>::capacity);
-    interpolate(table_u, table_v, buffer, batch);
+    interpolate(table_u, table_v, buffer.cells(), batch);
     double largest = 0;
     for (int i = 0; i < batch.count; ++i) {
       const Eigen::VectorXd along_u = u(double{batch.tu[i]}), along_v = v(double{batch.tv[i]});
@@ -99,12 +99,12 @@ BOOST_AUTO_TEST_CASE_TEMPLATE(spreading_is_the_transpose_of_interpolating_for_ev
                               Precisions) {
   for_each_width_and_target([](int width) {
     const TapTable<Real> u(random_polynomial(width, 8)), v(random_polynomial(width, 9));
-    const TileBuffer<Real> y = random_buffer<Real>(u.padded, 2);
+    TileBuffer<Real> y = random_buffer<Real>(u.padded, 2);
     const TileBatch<Real> x = random_batch<Real>(30);
     TileBuffer<Real> spread_x(tile, u.padded, 2);
-    spread(u, v, x, spread_x);
+    spread(u, v, x, spread_x.cells());
     TileBatch<Real> y_at_x = x;
-    interpolate(u, v, y, y_at_x);
+    interpolate(u, v, y.cells(), y_at_x);
     double in_buffer = 0, in_samples = 0;
     for (std::size_t i = 0; i < y.cell.size(); ++i) in_buffer += double{spread_x.cell[i]} * double{y.cell[i]};
     for (int i = 0; i < x.count; ++i)

@@ -85,13 +85,13 @@ void add_loops(int width, std::vector<Piece>& pieces) {
     for (const int planes : {2, 3}) {
       const auto buffer = std::make_shared<TileBuffer<Real>>(tile, taps.padded, planes);
       pieces.push_back({of + "spread " + std::to_string(planes) + ", " + walk.name, visibilities, [=] {
-                          for (const TileBatch<Real>& batch : *batches) spread(taps, taps, batch, *buffer);
+                          for (const TileBatch<Real>& batch : *batches) spread(taps, taps, batch, buffer->cells());
                         }});
     }
     const auto buffer = std::make_shared<TileBuffer<Real>>(tile, taps.padded, 2);
     const auto into = std::make_shared<std::vector<TileBatch<Real>>>(*batches);  // spreading must not see what this writes
     pieces.push_back({of + "interpolate, " + walk.name, visibilities, [=] {
-                        for (TileBatch<Real>& batch : *into) interpolate(taps, taps, *buffer, batch);
+                        for (TileBatch<Real>& batch : *into) interpolate(taps, taps, buffer->cells(), batch);
                       }});
   }
 }
