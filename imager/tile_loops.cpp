@@ -42,10 +42,10 @@ SameCell next_cell(const TileBatch<Real>& samples, int begin) {
 }
 
 /// Adds `Rows` rows of the taps of samples in one cell, from its row `first` on: summed in registers, so that memory is touched
-/// once for all of them.
+/// once for all of them. `cells` is a copy since the compiler must take stores of vectors to reach anything else.
 template <typename Real, int Width, int Planes, int Rows>
 HWY_ATTR HWY_INLINE void add_rows(const TileBatch<Real>& samples, SameCell same, const Evaluated<Real>& u,
-                                  const Evaluated<Real>& v, int first, const TileCells<Real>& cells) {
+                                  const Evaluated<Real>& v, int first, TileCells<Real> cells) {
   using T = TapLanes<Real, Width>;
   const typename T::Tag d;
   const Real* const value[3] = {samples.real, samples.imaginary, samples.weight};
@@ -70,10 +70,10 @@ HWY_ATTR HWY_INLINE void add_rows(const TileBatch<Real>& samples, SameCell same,
       }
     }
   }
-  const std::ptrdiff_t start = (samples.row[same.begin] + first) * cells.row + samples.column[same.begin];
-  MISFIT_UNROLL for (int j = 0; j < Rows; ++j) {
+  std::ptrdiff_t start = (samples.row[same.begin] + first) * cells.row + samples.column[same.begin];
+  MISFIT_UNROLL for (int j = 0; j < Rows; ++j, start += cells.row) {
     MISFIT_UNROLL for (int plane = 0; plane < Planes; ++plane) {
-      Real* const cell = cells.plane[plane] + start + j * cells.row;
+      Real* const cell = cells.plane[plane] + start;
       MISFIT_UNROLL for (int k = 0; k < T::vectors; ++k) {
         Real* at = cell + k * T::lanes;
         hn::StoreU(hn::Add(sum[j][plane][k], hn::LoadU(d, at)), d, at);
