@@ -35,6 +35,9 @@ MemoryUse peak_memory(const MemoryDemand& d, const StreamingOptions& streaming) 
   if (d.verify) stages.push_back({"prediction is verified", process_bytes, kept, 0, t.visibilities, t.fft, 3 * image});
   if (d.clean) {
     // Dirty image, PSF, model, and the best model with its residual; the newest residual comes last.
+    // Single-precision residual and PSF besides; for a convolution, its image and the components', and two grids of 3/2 the
+    // size.
+    stages.push_back({"the minor cycles run", process_bytes, kept, 0, 2.25 * image, 0, 8 * image});
     const double residual_blocks = blocks + block_samples * residual_bytes;
     stages.push_back({"the residual is gridded", process_bytes, kept, residual_blocks, 2 * t.visibilities, 0, 5 * image});
     stages.push_back({"the residual image is made", process_bytes, kept, 0, t.visibilities, t.fft, 6 * image});

@@ -72,9 +72,39 @@ BOOST_DATA_TEST_CASE(components_are_those_of_the_plain_double_loop,
   }
 }
 
+/// Images of many tiles, few of which are looked at for most components.
+BOOST_DATA_TEST_CASE(components_of_large_images_are_those_of_the_plain_double_loop, bdata::make({0.02, 0.003, 0.0}),
+                     sidelobes) {
+  const Image residual = random_image(250, 210, 4), psf = random_psf(250, 210, sidelobes);
+  const MinorCycleOptions options{.gain = 0.2, .max_iterations = 1500, .threshold_jy = 0.1, .threads = 2, .stop_requested = {}};
+  const Cleaned is = cleaned(residual, psf, options), should = plain(residual, psf, options);
+  BOOST_TEST(is.report.iterations == should.report.iterations);
+  BOOST_TEST(distance(is.model.pixel, should.model.pixel) <= 1e-5 * norm(should.model.pixel));
+  BOOST_TEST(std::abs(is.report.peak_jy - should.report.peak_jy) < 1e-5);
+}
+
+/// A faint background that has to be looked at only when the sidelobes of many components could have raised it, by a
+/// convolution.
+Image bright_sources_on_faint_noise(int width, int height) {
+  Image image = random_image(width, height, 6);
+  for (double& pixel : image.pixel) pixel *= 0.05;
+  for (int i = 0; i < 8; ++i) image.at((37 * i + 5) % height, (61 * i + 9) % width) += 10 - 0.1 * i;
+  return image;
+}
+
+BOOST_AUTO_TEST_CASE(components_of_bright_sources_are_those_of_the_plain_double_loop) {
+  const Image residual = bright_sources_on_faint_noise(250, 210), psf = random_psf(250, 210, 0.003);
+  const MinorCycleOptions options{
+      .gain = 0.02, .max_iterations = 3000, .threshold_jy = 0.1, .threads = 2, .stop_requested = {}};
+  const Cleaned is = cleaned(residual, psf, options), should = plain(residual, psf, options);
+  BOOST_TEST(is.report.iterations == should.report.iterations);
+  BOOST_TEST(distance(is.model.pixel, should.model.pixel) <= 1e-5 * norm(should.model.pixel));
+  BOOST_TEST(std::abs(is.report.peak_jy - should.report.peak_jy) < 1e-5);
+}
+
 BOOST_AUTO_TEST_CASE(the_result_is_the_same_bit_for_bit_for_any_number_of_threads) {
-  const Image residual = random_image(50, 400, 2), psf = random_psf(50, 400, 0.03);
-  MinorCycleOptions options{.gain = 0.2, .max_iterations = 300, .threshold_jy = 0, .threads = 1, .stop_requested = {}};
+  const Image residual = bright_sources_on_faint_noise(250, 210), psf = random_psf(250, 210, 0.003);
+  MinorCycleOptions options{.gain = 0.02, .max_iterations = 3000, .threshold_jy = 0, .threads = 1, .stop_requested = {}};
   const Cleaned one = cleaned(residual, psf, options);
   for (const int threads : {2, 3, 6, 50}) {
     options.threads = threads;

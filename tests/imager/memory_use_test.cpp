@@ -56,6 +56,10 @@ BOOST_AUTO_TEST_CASE(large_grids_and_large_images_each_have_their_moment) {
   d.samples = 1e6;
   BOOST_TEST(peak_memory(d, {}).when == "the pictures are drawn");
   d.clean = true;
+  BOOST_TEST(peak_memory(d, {}).when == "the minor cycles run");
+  d.transform.visibilities = 3 * 8 * d.pixels;
+  BOOST_TEST(peak_memory(d, {}).when == "the residual is gridded");
+  d.transform.fft = d.transform.visibilities;
   BOOST_TEST(peak_memory(d, {}).when == "the residual image is made");
 }
 
