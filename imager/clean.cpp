@@ -8,14 +8,20 @@
 
 #include "imager/big_array.h"
 #include "imager/hogbom.h"
+#include "imager/mask.h"
 #include "imager/noise.h"
 
 namespace misfit::imager {
 namespace {
 
-MajorCycle state_of(const CleanResult& result, const Image& residual) {
-  return {result.report.iterations, std::abs(find_peak(residual).value), robust_noise(residual),
-          std::accumulate(result.model.pixel.begin(), result.model.pixel.end(), 0.0), 0};
+/// What components may be taken from: the residual itself where there is no mask.
+std::shared_ptr<const Image> cleanable(const std::shared_ptr<const Image>& residual, const Image* mask) {
+  return mask == nullptr ? residual : std::make_shared<const Image>(masked(*residual, *mask));
+}
+
+double peak_magnitude(const Image& image) {
+  const double peak = std::abs(find_peak(image).value);
+  return std::isnan(peak) ? 0 : peak;
 }
 
 struct Ending {
@@ -26,6 +32,7 @@ struct Ending {
 /// What ends CLEAN before another minor cycle, if anything.
 std::optional<Ending> ending(const CleanOptions& o, const std::vector<MajorCycle>& cycles) {
   const MajorCycle& now = cycles.back();
+  if (o.mask != nullptr && mask_is_empty(*o.mask)) return Ending{CleanStop::empty_mask, "the mask allows no pixel"};
   if (o.stop_requested && o.stop_requested()) return Ending{CleanStop::user, "stopped by the user"};
   if (now.peak_residual_jy <= o.threshold_jy) return Ending{CleanStop::threshold, "the peak residual reached the threshold"};
   if (o.nsigma > 0 && now.peak_residual_jy <= o.nsigma * now.rms_jy)
@@ -60,11 +67,12 @@ CleanResult clean(const VisibilitySource& source, const Transform& transform, co
   CleanResult result{Image(images.dirty.width, images.dirty.height), {}, {}};
   // Residuals are made anew, never changed; the first is the dirty image.
   std::shared_ptr<const Image> residual(std::shared_ptr<void>(), &images.dirty);
+  std::shared_ptr<const Image> to_clean;
   const auto take_state = [&](double depth) {
     const StageTimer timer(times, "statistics");
-    MajorCycle state = state_of(result, *residual);
-    state.cycle_threshold_jy = depth;
-    result.report.cycles.push_back(state);
+    to_clean = cleanable(residual, options.mask);
+    const double flux = std::accumulate(result.model.pixel.begin(), result.model.pixel.end(), 0.0);
+    result.report.cycles.push_back({result.report.iterations, peak_magnitude(*to_clean), robust_noise(*residual), flux, depth});
   };
   result.report.max_sidelobe = max_sidelobe;
   take_state(0);
@@ -76,7 +84,7 @@ CleanResult clean(const VisibilitySource& source, const Transform& transform, co
     const double depth = cycle_threshold(options, max_sidelobe, now);
     {
       const StageTimer timer(times, "minor cycles");
-      result.report.iterations += hogbom(*residual, images.psf,
+      result.report.iterations += hogbom(*to_clean, images.psf,
                                          {.gain = options.gain,
                                           .max_iterations = options.max_iterations - now.iterations,
                                           .threshold_jy = depth,
@@ -85,6 +93,7 @@ CleanResult clean(const VisibilitySource& source, const Transform& transform, co
                                          result.model)
                                       .iterations;
     }
+    to_clean.reset();
     residual.reset();
     residual = std::make_shared<const Image>(make_residual_image(source, transform, result.model, progress, times));
     take_state(depth);
@@ -102,6 +111,7 @@ CleanResult clean(const VisibilitySource& source, const Transform& transform, co
     }
   }
   BigMemory::release();
+  to_clean.reset();
   result.residual = *residual;
   if (end->stop != CleanStop::diverging) result.report.kept = result.report.cycles.size() - 1;
   result.report.stop = end->stop;

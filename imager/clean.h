@@ -17,7 +17,8 @@ struct CleanOptions {
   double cycle_factor = 1;         ///< a minor cycle goes down to the peak × largest sidelobe × cycle factor …
   double min_psf_fraction = 0.05;  ///< … that fraction of the peak clamped to [min, max]
   double max_psf_fraction = 0.8;
-  int max_major_cycles = -1;  ///< nmajor; −1 = no limit
+  int max_major_cycles = -1;    ///< nmajor; −1 = no limit
+  const Image* mask = nullptr;  ///< where components may lie, see mask.h; null = everywhere
   int threads = 1;
   std::function<bool()> stop_requested;  ///< the user's wish to end; may be empty
 };
@@ -29,15 +30,16 @@ enum class CleanStop {
   user = 3,
   no_change = 4,
   diverging = 5,
+  empty_mask = 7,
   nsigma = 8,
   major_cycle_limit = 9,
 };
 
 /// The state after one major cycle.
 struct MajorCycle {
-  int iterations = 0;  ///< components found so far
-  double peak_residual_jy = 0;
-  double rms_jy = 0;  ///< robust noise of the residual
+  int iterations = 0;           ///< components found so far
+  double peak_residual_jy = 0;  ///< within the mask
+  double rms_jy = 0;            ///< robust noise of the residual, within the mask and without
   double model_flux_jy = 0;
   double cycle_threshold_jy = 0;  ///< how deep its minor cycle was to go
 };

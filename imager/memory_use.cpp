@@ -25,7 +25,7 @@ MemoryUse peak_memory(const MemoryDemand& d, const StreamingOptions& streaming) 
   const double blocks = read_ahead * (block_samples * sample_bytes + block_rows * row_bytes) + block_samples * order_bytes;
   const double kept = streaming.keep ? d.samples * sample_bytes + d.rows * row_bytes : 0;
 
-  const double drawn_images = 1 + (d.clean ? 4 : 2);  // one more to find the median of each
+  const double drawn_images = 1 + (d.clean ? 4 : 2) + (d.mask ? 1 : 0);  // one more to find the median of each
 
   std::vector<MemoryUse> stages;
   stages.push_back({"the samples are gridded", process_bytes, kept, blocks, t.visibilities + t.psf, 0, 0});
@@ -34,13 +34,15 @@ MemoryUse peak_memory(const MemoryDemand& d, const StreamingOptions& streaming) 
   // Of a model image.
   if (d.verify) stages.push_back({"prediction is verified", process_bytes, kept, 0, t.visibilities, t.fft, 3 * image});
   if (d.clean) {
+    const double masks = d.mask ? 2 : 0;  // it, and the residual within
     // Dirty image, PSF, model, and the best model with its residual; the newest residual comes last.
     // Single-precision residual and PSF besides; for a convolution, its image and the components', and two grids of 3/2 the
     // size.
-    stages.push_back({"the minor cycles run", process_bytes, kept, 0, 2.25 * image, 0, 8 * image});
+    stages.push_back({"the minor cycles run", process_bytes, kept, 0, 2.25 * image, 0, (8 + masks) * image});
     const double residual_blocks = blocks + block_samples * residual_bytes;
-    stages.push_back({"the residual is gridded", process_bytes, kept, residual_blocks, 2 * t.visibilities, 0, 5 * image});
-    stages.push_back({"the residual image is made", process_bytes, kept, 0, t.visibilities, t.fft, 6 * image});
+    stages.push_back(
+        {"the residual is gridded", process_bytes, kept, residual_blocks, 2 * t.visibilities, 0, (5 + masks) * image});
+    stages.push_back({"the residual image is made", process_bytes, kept, 0, t.visibilities, t.fft, (6 + masks) * image});
   }
   stages.push_back({"the pictures are drawn", process_bytes, 0, 0, 0, 0, drawn_images * image});
   return *std::max_element(stages.begin(), stages.end(),

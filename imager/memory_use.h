@@ -17,6 +17,7 @@ struct MemoryDemand {
   double block_samples = 0;  ///< in a block at most
   bool verify = false;
   bool clean = false;
+  bool mask = false;  ///< where components may lie
 };
 
 /// The memory held at one time, in bytes, by what it is for.

@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <memory>
 
+#include "imager/mask.h"
 #include "imager/noise.h"
 #include "imager/parallel.h"
 #include "tools/command.h"
@@ -11,6 +12,7 @@
 #include "tools/image_options.h"
 #include "tools/image_products.h"
 #include "tools/interrupt.h"
+#include "tools/mask_file.h"
 #include "tools/memory.h"
 #include "tools/memory_plan.h"
 #include "tools/numbers.h"
@@ -64,6 +66,9 @@ class ImageRun {
     set_ = std::make_unique<ms_io::MeasurementSet>(o_.vis, o_.selection, o_.datacolumn);
     geometry_ = geometry_of(o_, set_->observation().phase_centre);
     reach_ = set_->reach();
+    if (o_.mask.empty()) return;
+    mask_ = std::make_unique<imager::Image>(read_mask(o_.mask, geometry_));
+    if (imager::mask_is_empty(*mask_)) warn("the mask " + o_.mask + " allows no pixel of the image: nothing is cleaned");
   }
 
   /// All that is decided before a visibility is read.
@@ -81,7 +86,8 @@ class ImageRun {
                                            .samples = static_cast<double>(set_->samples()),
                                            .block_samples = static_cast<double>(ms_io::MeasurementSet::usual_block_samples),
                                            .verify = o_.verify > 0,
-                                           .clean = o_.niter > 0},
+                                           .clean = o_.niter > 0,
+                                           .mask = mask_ != nullptr},
                                           o_);
     memory_ = memory.peak;
     report_.estimated_memory_bytes = memory_.total();
@@ -164,6 +170,7 @@ class ImageRun {
   void clean() {
     imager::CleanOptions options = clean_options(o_, threads_);
     options.stop_requested = interrupted;
+    options.mask = mask_.get();
     progress_.begin("CLEAN", true);
     cleaned_ = std::make_unique<imager::CleanResult>(imager::clean(
         *source_, *made_.transform, made_.images, max_sidelobe(), options, progress(),
@@ -200,6 +207,7 @@ class ImageRun {
       for (std::size_t i = 0; i < restored.pixel.size(); ++i) restored.pixel[i] += cleaned_->residual.pixel[i];
       products_->add("residual", "Residual", "Jy/beam", std::move(cleaned_->residual));
       products_->add("model", "Model", "Jy/pixel", std::move(cleaned_->model));
+      if (mask_) products_->add("mask", "", "", std::move(*mask_));
       products_->add("image", "Restored image", "Jy/beam", std::move(restored));
     }
     drawing_ = std::make_unique<PictureDrawing>(products_->pictures());
@@ -252,6 +260,7 @@ class ImageRun {
   std::unique_ptr<ms_io::MeasurementSet> set_;
   imager::ImageGeometry geometry_;
   imager::UvwReach reach_;
+  std::unique_ptr<imager::Image> mask_;  ///< null where CLEAN may go everywhere
   std::unique_ptr<imager::StreamedVisibilities> source_;
   imager::MemoryUse memory_;
   imager::AccurateImages made_;

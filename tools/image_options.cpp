@@ -44,6 +44,7 @@ void check_clean(const ImageOptions& o) {
   if (!(o.maxpsffraction >= o.minpsffraction && o.maxpsffraction <= 1))
     refuse("maxpsffraction", text(o.maxpsffraction), "minpsffraction to 1");
   if (o.nmajor < -1) refuse("nmajor", std::to_string(o.nmajor), "-1 (no limit) or more");
+  if (!o.mask.empty() && o.niter == 0) refuse("mask", o.mask, "--niter above 0 beside it");
 }
 
 /// What needs neither the data nor the kernel's solution.
@@ -87,6 +88,7 @@ void declare(CLI::App& command, ImageOptions& o) {
   command.add_option("--minpsffraction", o.minpsffraction, "… at most this deep, as a part of the peak");
   command.add_option("--maxpsffraction", o.maxpsffraction, "… and at least this deep");
   command.add_option("--nmajor", o.nmajor, "Major cycles at most; -1 = no limit");
+  command.add_option("--mask", o.mask, "Where CLEAN finds components: a FITS image, not 0 there, or CASA region text (CRTF)");
   command.add_option("--verify", o.verify, "Compare this many random pixels and visibilities with the direct transform");
   command.add_option("--threads", o.threads, "Threads; 0 means all cores");
   command.add_option("--memory", o.memory_gib, "GiB that the run may take; 0 means half of the machine's memory");

@@ -35,6 +35,7 @@ struct ImageOptions {
   double minpsffraction = 0.05;
   double maxpsffraction = 0.8;
   int nmajor = -1;
+  std::string mask;  ///< a file, see mask_file.h; empty = everywhere
   int verify = 0;
   int threads = 0;
   double memory_gib = 0;

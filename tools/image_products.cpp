@@ -49,7 +49,7 @@ void ImageProducts::write() const {
 std::vector<Picture> ImageProducts::pictures() const {
   std::vector<Picture> wanted;
   for (auto product = products_.rbegin(); product != products_.rend(); ++product)
-    wanted.push_back({&product->image, product->title, path(*product, "png")});
+    if (!product->title.empty()) wanted.push_back({&product->image, product->title, path(*product, "png")});
   return wanted;
 }
 

@@ -22,6 +22,7 @@ class ImageProducts {
   void set_history(const std::string& line) { common_.history = {line}; }
   void set_cards(std::vector<imager::HeaderCard> cards) { common_.cards = std::move(cards); }
   void set_beam(const imager::Beam& beam);
+  /// Without a title it is not drawn.
   void add(const std::string& kind, const std::string& title, const std::string& unit, imager::Image image);
 
   /// Writes <imagename>.<kind>.fits for each.

@@ -2,11 +2,12 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <fstream>
 #include <stdexcept>
 #include <string_view>
+
+#include "tools/text.h"
 
 namespace misfit::tools {
 namespace {
@@ -18,12 +19,6 @@ constexpr double arcsec = degree / 3600;
 
 using Fields = std::vector<std::string_view>;
 
-std::string_view trimmed(std::string_view text) {
-  const std::size_t first = text.find_first_not_of(" \t\r");
-  if (first == std::string_view::npos) return {};
-  return text.substr(first, text.find_last_not_of(" \t\r") - first + 1);
-}
-
 Fields split(std::string_view line) {
   Fields fields;
   for (std::size_t comma; (comma = line.find(',')) != std::string_view::npos; line.remove_prefix(comma + 1))
@@ -33,12 +28,9 @@ Fields split(std::string_view line) {
 }
 
 double number(std::string_view text) {
-  const std::string_view digits = text.substr(text.starts_with('+') ? 1 : 0);
-  double value = 0;
-  const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
-  if (error != std::errc() || end != digits.data() + digits.size() || !std::isfinite(value))
-    throw std::runtime_error("'" + std::string(text) + "', expected a finite number");
-  return value;
+  const std::optional<double> value = finite_number(text);
+  if (!value) throw std::runtime_error("'" + std::string(text) + "', expected a finite number");
+  return *value;
 }
 
 /// Where each quantity stands in a line.

@@ -178,6 +178,45 @@ BOOST_AUTO_TEST_CASE(the_user_stops_it_with_a_valid_result) {
   check_consistent(result);
 }
 
+BOOST_AUTO_TEST_CASE(components_lie_within_the_mask_and_sources_outside_stay) {
+  Image mask(geometry.width, geometry.height);
+  for (int r = 40; r < 56; ++r)
+    for (int c = 56; c < 72; ++c) mask.at(r, c) = 1;  // around the brightest source
+  CleanOptions options = deep();
+  options.mask = &mask;
+  const CleanResult result = cleaned(options);
+  BOOST_TEST((result.report.stop == CleanStop::threshold));
+  double within = 0;
+  for (int r = 0; r < mask.height; ++r)
+    for (int c = 0; c < mask.width; ++c)
+      if (mask.at(r, c) == 0)
+        BOOST_REQUIRE(result.model.at(r, c) == 0);
+      else
+        within = std::max(within, std::abs(result.residual.at(r, c)));
+  BOOST_TEST(result.report.final_state().peak_residual_jy == within);
+  BOOST_TEST(within <= options.threshold_jy);
+  BOOST_TEST(std::abs(result.residual.at(sky[1].row, sky[1].column)) > 0.3);  // of 0.5 Jy, and sidelobes
+  BOOST_TEST(result.report.final_state().rms_jy == robust_noise(result.residual));
+}
+
+BOOST_AUTO_TEST_CASE(a_mask_that_allows_every_pixel_changes_nothing) {
+  Image mask(geometry.width, geometry.height);
+  std::fill(mask.pixel.begin(), mask.pixel.end(), 1.0);
+  CleanOptions options = deep();
+  options.mask = &mask;
+  BOOST_TEST((cleaned(options).model.pixel == cleaned(deep()).model.pixel));
+}
+
+BOOST_AUTO_TEST_CASE(a_mask_that_allows_no_pixel_ends_it_at_once) {
+  const Image mask(geometry.width, geometry.height);
+  CleanOptions options = deep();
+  options.mask = &mask;
+  const CleanResult result = cleaned(options);
+  BOOST_TEST((result.report.stop == CleanStop::empty_mask));
+  BOOST_TEST(result.report.iterations == 0);
+  BOOST_TEST((result.residual.pixel == scene().images.dirty.pixel));
+}
+
 BOOST_AUTO_TEST_CASE(a_minor_cycle_that_finds_nothing_ends_it) {
   CleanOptions options = deep();
   options.cycle_factor = 1000;

@@ -303,6 +303,28 @@ BOOST_AUTO_TEST_CASE(only_the_files_promised_appear) {
     BOOST_TEST(entry.path().extension() == ".png");  // pictures, where gnuplot is installed
 }
 
+BOOST_AUTO_TEST_CASE(the_mask_given_is_written_and_holds_all_components) {
+  const TemporaryFolder folder;
+  std::ofstream(folder / "mask.crtf") << "circle [[32pix, 32pix], 6pix]\n";
+  const Arguments cleaned{"--niter", "50", "--mask"};
+  succeed(small_image(snapshot(), folder / "a") + cleaned + Arguments{folder / "mask.crtf"});
+  const Image mask = pixels_of(folder / "a", "mask"), model = pixels_of(folder / "a", "model");
+  BOOST_TEST(std::count(mask.pixel.begin(), mask.pixel.end(), 1.0) == 113);  // pixels within 6 of a pixel
+  for (std::size_t i = 0; i < mask.pixel.size(); ++i) BOOST_REQUIRE((mask.pixel[i] != 0 || model.pixel[i] == 0));
+  succeed(small_image(snapshot(), folder / "b") + cleaned + Arguments{folder / "a.mask.fits"});
+  BOOST_TEST((pixels_of(folder / "b", "model").pixel == model.pixel));
+}
+
+BOOST_AUTO_TEST_CASE(a_mask_outside_the_image_cleans_nothing_and_says_so) {
+  const TemporaryFolder folder;
+  std::ofstream(folder / "mask.crtf") << "box [[100pix, 100pix], [120pix, 120pix]]\n";
+  const Outcome outcome =
+      run(small_image(snapshot(), folder / "a") + Arguments{"--niter", "50", "--mask", folder / "mask.crtf"});
+  BOOST_TEST(outcome.code == 0);
+  BOOST_TEST(outcome.err.find("allows no pixel") != std::string::npos);
+  BOOST_TEST(report_of(folder / "a")["clean"]["stop_code"] == 7);
+}
+
 BOOST_AUTO_TEST_CASE(a_name_with_blanks_quotes_and_umlauts_is_a_name) {
   const TemporaryFolder folder;
   const std::string odd = folder / "a 'b' \"c\" ü;$(d)";

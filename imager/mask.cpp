@@ -1,0 +1,28 @@
+#include "imager/mask.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+#include <string>
+
+namespace misfit::imager {
+
+bool mask_allows(double value) {
+  return value != 0 && !std::isnan(value);
+}
+
+bool mask_is_empty(const Image& mask) {
+  return std::none_of(mask.pixel.begin(), mask.pixel.end(), mask_allows);
+}
+
+Image masked(Image image, const Image& mask) {
+  if (mask.width != image.width || mask.height != image.height)
+    throw std::invalid_argument("a mask of " + std::to_string(mask.width) + " × " + std::to_string(mask.height) +
+                                " pixels on an image of " + std::to_string(image.width) + " × " + std::to_string(image.height));
+  for (std::size_t i = 0; i < mask.pixel.size(); ++i)
+    if (!mask_allows(mask.pixel[i])) image.pixel[i] = std::numeric_limits<double>::quiet_NaN();
+  return image;
+}
+
+}  // namespace misfit::imager

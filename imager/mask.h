@@ -1,0 +1,16 @@
+#pragma once
+
+#include "imager/image.h"
+
+namespace misfit::imager {
+
+/// Whether a mask lets CLEAN take components from a pixel of this value: neither 0 nor NaN.
+bool mask_allows(double value);
+
+/// Whether a mask allows no pixel at all.
+bool mask_is_empty(const Image& mask);
+
+/// `image` with NaN wherever a mask of the same size allows nothing.
+Image masked(Image image, const Image& mask);
+
+}  // namespace misfit::imager

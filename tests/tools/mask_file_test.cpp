@@ -1,0 +1,145 @@
+#include "tools/mask_file.h"
+
+#include <boost/test/unit_test.hpp>
+#include <cmath>
+#include <fstream>
+#include <functional>
+
+#include "imager/fits_image.h"
+#include "tests/temporary_folder.h"
+
+using namespace misfit;
+using namespace misfit::tools;
+using misfit::testing::TemporaryFolder;
+
+namespace {
+
+constexpr double degree = M_PI / 180, arcsec = degree / 3600;
+const imager::ImageGeometry geometry{60, 40, 2 * arcsec, {187.7 * degree, 12.39 * degree, "FK5"}};
+
+imager::Image mask_of(const std::string& text, const imager::ImageGeometry& g = geometry) {
+  const TemporaryFolder folder;
+  const std::string path = folder / "regions.crtf";
+  std::ofstream(path) << text;
+  return read_mask(path, g);
+}
+
+/// The mask must be 1 where allowed(column, row) and 0 elsewhere.
+void check_mask(const imager::Image& mask, const std::function<bool(int, int)>& allowed) {
+  BOOST_REQUIRE(mask.width == geometry.width);
+  BOOST_REQUIRE(mask.height == geometry.height);
+  int wrong = 0;
+  for (int r = 0; r < mask.height; ++r)
+    for (int c = 0; c < mask.width; ++c) wrong += mask.at(r, c) != (allowed(c, r) ? 1 : 0);
+  BOOST_TEST(wrong == 0);
+}
+
+bool refused(const std::string& text, const std::string& part) {
+  try {
+    mask_of(text);
+  } catch (const std::runtime_error& error) {
+    BOOST_TEST_INFO(error.what());
+    return std::string(error.what()).find(part) != std::string::npos;
+  }
+  return false;
+}
+
+/// A direction `east` and `north` pixels from the phase centre, as CASA writes it.
+std::string direction(double east, double north) {
+  // The inverse of direction_cosines().
+  const double l = east * geometry.cell_rad, m = north * geometry.cell_rad, n = std::sqrt(1 - l * l - m * m);
+  const double ra0 = geometry.phase_centre.ra_rad, dec0 = geometry.phase_centre.dec_rad;
+  const double dec = std::asin(m * std::cos(dec0) + n * std::sin(dec0));
+  const double ra = ra0 + std::atan2(l, n * std::cos(dec0) - m * std::sin(dec0));
+  char text[80];
+  std::snprintf(text, sizeof text, "[%.9fdeg, %.9fdeg]", ra / degree, dec / degree);
+  return text;
+}
+
+}  // namespace
+
+BOOST_AUTO_TEST_SUITE(mask_file)
+
+BOOST_AUTO_TEST_CASE(boxes_in_pixels_hold_the_pixels_whose_centres_lie_within) {
+  const auto box = [](int c, int r) { return c >= 10 && c <= 20 && r >= 5 && r <= 8; };
+  check_mask(mask_of("#CRTFv0\nbox [[10pix, 5pix], [20pix, 8pix]]\n"), box);
+  check_mask(mask_of("box[[20.4pix,4.6pix],[9.6pix,8.9pix]]"), box);
+  check_mask(mask_of("centerbox [[15pix, 6.5pix], [10pix, 3pix]]"), box);
+}
+
+BOOST_AUTO_TEST_CASE(circles_in_pixels_hold_the_pixels_whose_centres_lie_within) {
+  check_mask(mask_of("circle [[30pix, 20pix], 7pix]"), [](int c, int r) { return std::hypot(c - 30, r - 20) <= 7; });
+}
+
+BOOST_AUTO_TEST_CASE(directions_fall_where_the_image_has_them) {
+  const auto circle = [](int c, int r) { return std::hypot(c - 20, r - 25) <= 4.5; };  // 10 to the east, 5 to the north
+  check_mask(mask_of("circle [" + direction(10, 5) + ", 9arcsec]"), circle);
+  check_mask(mask_of("circle [" + direction(10, 5) + ", 4.5pix]"), circle);
+  const auto box = [](int c, int r) { return c >= 18 && c <= 32 && r >= 17 && r <= 30; };
+  check_mask(mask_of("box [" + direction(12.4, -3.4) + ", " + direction(-2.4, 10.4) + "]"), box);
+}
+
+BOOST_AUTO_TEST_CASE(directions_may_be_written_in_every_way_that_casa_knows) {
+  const auto circle = [](int c, int r) { return std::hypot(c - 30, r - 20) <= 3; };
+  for (const char* ra : {"12h30m48s", "12:30:48.0", "187.7deg", "3.27598300rad"})
+    for (const char* dec : {"12d23m24s", "+12d23m24.0s", "12.23.24.0", "+12.23.24", "12.39deg"})
+      check_mask(mask_of(std::string("circle [[") + ra + ", " + dec + "], 6.2arcsec]"), circle);
+}
+
+BOOST_AUTO_TEST_CASE(southern_declinations_count_southwards) {
+  imager::ImageGeometry south = geometry;
+  south.phase_centre.dec_rad = -(0 + 30.0 / 60) * degree;
+  const imager::Image mask = mask_of("circle [[187.7deg, -0d30m00s], 3pix]", south);
+  BOOST_TEST(mask.at(20, 30) == 1);
+  BOOST_TEST(mask_of("circle [[187.7deg, -0.30.00.0], 3pix]", south).at(20, 30) == 1);
+}
+
+BOOST_AUTO_TEST_CASE(regions_add_up_and_those_with_a_minus_sign_are_taken_away) {
+  const auto within = [](int c, int r) {
+    const bool first = std::hypot(c - 30, r - 20) <= 7 && !(c >= 29 && c <= 31 && r >= 19 && r <= 21);
+    return first || (c <= 3 && r <= 3);
+  };
+  check_mask(mask_of("#CRTFv0\n# a comment\n\nglobal coord=J2000, color=red\ncircle [[30pix, 20pix], 7pix], linewidth=2\n"
+                     "-box [[29pix, 19pix], [31pix, 21pix]]\n+box [[0pix, 0pix], [3pix, 3pix]], coord=J2000, corr=[I]\n"
+                     "ann text [[3pix, 4pix], 'a source']\n"),
+             within);
+}
+
+BOOST_AUTO_TEST_CASE(regions_are_cut_at_the_edges_of_the_image) {
+  check_mask(mask_of("box [[-1e9pix, 30pix], [1e9pix, 1e9pix]]"), [](int, int r) { return r >= 30; });
+  check_mask(mask_of("circle [[500pix, 20pix], 7pix]"), [](int, int) { return false; });
+  check_mask(mask_of(""), [](int, int) { return false; });
+}
+
+BOOST_AUTO_TEST_CASE(what_cannot_be_read_is_refused_by_its_line) {
+  BOOST_TEST(refused("#CRTF\npoly [[1pix, 2pix], [3pix, 4pix]]", "line 2: 'poly"));
+  BOOST_TEST(refused("circle [[1pix, 2pix]]", "line 1: 'circle"));
+  BOOST_TEST(refused("circle [[1pix, 2pix], 3]", "'3', expected a length"));
+  BOOST_TEST(refused("circle [[1pix, 2pix], 0pix]", "expected a length above 0"));
+  BOOST_TEST(refused("circle [[1pix, 2deg], 3pix]", "both in pixels or both on the sky"));
+  BOOST_TEST(refused("circle [[1pix, nanpix], 3pix]", "'nanpix'"));
+  BOOST_TEST(refused("circle [[12h60m0s, 2deg], 3pix]", "'12h60m0s'"));
+  BOOST_TEST(refused("circle [[12h30m0s, 12d-3m0s], 3pix]", "'12d-3m0s'"));
+  BOOST_TEST(refused("circle [[1deg, 91deg], 3pix]", "-90 to 90 degrees"));
+  BOOST_TEST(refused("circle [[1deg, 2deg], 3pix], coord=GALACTIC", "expected the image's frame, J2000"));
+  BOOST_TEST(refused("global coord=B1950\n", "expected the image's frame, J2000"));
+  BOOST_CHECK_THROW(read_mask("/no/such/mask", geometry), std::runtime_error);
+  BOOST_CHECK_THROW(read_mask("/", geometry), std::runtime_error);
+}
+
+BOOST_AUTO_TEST_CASE(a_fits_image_allows_what_is_neither_0_nor_nan) {
+  const TemporaryFolder folder;
+  imager::SkyImage sky;
+  sky.geometry = geometry;
+  sky.image = imager::Image(geometry.width, geometry.height);
+  sky.image.at(3, 4) = 1;
+  sky.image.at(5, 6) = -0.25;
+  sky.image.at(7, 8) = std::nan("");
+  imager::write_fits(sky, folder / "mask.fits", imager::PixelFormat::float32);
+  check_mask(read_mask(folder / "mask.fits", geometry), [](int c, int r) { return (r == 3 && c == 4) || (r == 5 && c == 6); });
+  imager::ImageGeometry other = geometry;
+  other.width = 61;
+  BOOST_CHECK_THROW(read_mask(folder / "mask.fits", other), std::runtime_error);
+}
+
+BOOST_AUTO_TEST_SUITE_END()

@@ -1,0 +1,24 @@
+#include "tools/text.h"
+
+#include <charconv>
+#include <cmath>
+
+namespace misfit::tools {
+
+std::string_view trimmed(std::string_view text) {
+  constexpr std::string_view space = " \t\r\n\v\f";
+  const std::size_t first = text.find_first_not_of(space);
+  if (first == std::string_view::npos) return {};
+  return text.substr(first, text.find_last_not_of(space) - first + 1);
+}
+
+std::optional<double> finite_number(std::string_view text) {
+  const std::string_view digits = text.substr(text.starts_with('+') ? 1 : 0);
+  double value = 0;
+  const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
+  const bool whole = error == std::errc() && end == digits.data() + digits.size();
+  if (!whole || text.starts_with("+-") || !std::isfinite(value)) return std::nullopt;
+  return value;
+}
+
+}  // namespace misfit::tools
