@@ -82,16 +82,18 @@ CleanResult clean(const VisibilitySource& source, const Transform& transform, co
   while (!(end = ending(options, result.report.cycles))) {
     const MajorCycle now = result.report.cycles.back();
     const double depth = cycle_threshold(options, max_sidelobe, now);
+    const int left = options.max_iterations - now.iterations;
     {
       const StageTimer timer(times, "minor cycles");
-      result.report.iterations += hogbom(*to_clean, images.psf,
-                                         {.gain = options.gain,
-                                          .max_iterations = options.max_iterations - now.iterations,
-                                          .threshold_jy = depth,
-                                          .threads = options.threads,
-                                          .stop_requested = options.stop_requested},
-                                         result.model)
-                                      .iterations;
+      result.report.iterations +=
+          hogbom(*to_clean, images.psf,
+                 {.gain = options.gain,
+                  .max_iterations = options.cycle_iterations < 0 ? left : std::min(left, options.cycle_iterations),
+                  .threshold_jy = depth,
+                  .threads = options.threads,
+                  .stop_requested = options.stop_requested},
+                 result.model)
+              .iterations;
     }
     to_clean.reset();
     residual.reset();

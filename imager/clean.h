@@ -17,6 +17,7 @@ struct CleanOptions {
   double cycle_factor = 1;         ///< a minor cycle goes down to the peak × largest sidelobe × cycle factor …
   double min_psf_fraction = 0.05;  ///< … that fraction of the peak clamped to [min, max]
   double max_psf_fraction = 0.8;
+  int cycle_iterations = -1;    ///< cycleniter: components that a minor cycle finds at most; −1 = no limit
   int max_major_cycles = -1;    ///< nmajor; −1 = no limit
   const Image* mask = nullptr;  ///< where components may lie, see mask.h; null = everywhere
   int threads = 1;

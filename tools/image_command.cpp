@@ -2,6 +2,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <memory>
+#include <optional>
 
 #include "imager/mask.h"
 #include "imager/noise.h"
@@ -156,13 +157,19 @@ class ImageRun {
 
   void fit_beams() {
     const imager::StageTimer timer(times_, "fit beam");
+    const std::optional<imager::Beam> given = restoring_beam(o_);
+    if (given) {
+      beam_ = main_lobe_ = *given;
+      report_.beam = &beam_;
+    }
     try {
-      beam_ = imager::fit_beam(made_.images.psf, geometry_.cell_rad);
+      main_lobe_ = imager::fit_beam(made_.images.psf, geometry_.cell_rad);
+      if (!given) beam_ = main_lobe_;
       report_.beam = &beam_;
       quadrant_beam_ = imager::fit_beam(made_.images.psf, geometry_.cell_rad, imager::BeamRegion::quadrant);
       report_.quadrant_beam = &quadrant_beam_;
     } catch (const std::runtime_error& error) {
-      if (o_.niter > 0) throw;
+      if (o_.niter > 0 && !given) throw;
       warn(error.what());
     }
   }
@@ -188,7 +195,7 @@ class ImageRun {
   double max_sidelobe() const {
     imager::Image point(geometry_.width, geometry_.height);
     point.at(geometry_.centre_row(), geometry_.centre_column()) = 1;
-    const imager::Image beam = imager::convolve_with_beam(point, beam_, geometry_.cell_rad, threads_);
+    const imager::Image beam = imager::convolve_with_beam(point, main_lobe_, geometry_.cell_rad, threads_);
     return imager::largest_sidelobe(made_.images.psf, beam);
   }
 
@@ -266,7 +273,8 @@ class ImageRun {
   imager::AccurateImages made_;
   imager::TheoreticalError theory_;
   imager::MeasuredError measured_;
-  imager::Beam beam_;
+  imager::Beam main_lobe_;  ///< of the PSF; where no beam fits it, that given
+  imager::Beam beam_;       ///< that images are restored with
   imager::Beam quadrant_beam_;
   std::unique_ptr<imager::CleanResult> cleaned_;
   std::unique_ptr<ImageProducts> products_;

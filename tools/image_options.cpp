@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <sstream>
 #include <stdexcept>
 
 #include "imager/gridding_plan.h"
@@ -43,7 +44,9 @@ void check_clean(const ImageOptions& o) {
     refuse("minpsffraction", text(o.minpsffraction), "more than 0 and at most 1");
   if (!(o.maxpsffraction >= o.minpsffraction && o.maxpsffraction <= 1))
     refuse("maxpsffraction", text(o.maxpsffraction), "minpsffraction to 1");
+  if (o.cycleniter == 0 || o.cycleniter < -1) refuse("cycleniter", std::to_string(o.cycleniter), "-1 (no limit), 1 or more");
   if (o.nmajor < -1) refuse("nmajor", std::to_string(o.nmajor), "-1 (no limit) or more");
+  if (restoring_beam(o) && o.niter == 0) refuse("restoringbeam", o.restoringbeam, "--niter above 0 beside it");
   if (!o.mask.empty() && o.niter == 0) refuse("mask", o.mask, "--niter above 0 beside it");
 }
 
@@ -87,7 +90,10 @@ void declare(CLI::App& command, ImageOptions& o) {
   command.add_option("--cyclefactor", o.cyclefactor, "Minor cycles go down to the peak times the largest sidelobe times this");
   command.add_option("--minpsffraction", o.minpsffraction, "… at most this deep, as a part of the peak");
   command.add_option("--maxpsffraction", o.maxpsffraction, "… and at least this deep");
+  command.add_option("--cycleniter", o.cycleniter, "Components that a minor cycle finds at most; -1 = no limit");
   command.add_option("--nmajor", o.nmajor, "Major cycles at most; -1 = no limit");
+  command.add_option("--restoringbeam", o.restoringbeam,
+                     "Restore with this beam: MAJ, or MAJ,MIN,PA such as 0.5arcsec,0.4arcsec,30deg; the fitted one when empty");
   command.add_option("--mask", o.mask, "Where CLEAN finds components: a FITS image, not 0 there, or CASA region text (CRTF)");
   command.add_option("--verify", o.verify, "Compare this many random pixels and visibilities with the direct transform");
   command.add_option("--threads", o.threads, "Threads; 0 means all cores");
@@ -129,6 +135,24 @@ imager::GriddingRequest gridding_request(const ImageOptions& o, int threads) {
   return request;
 }
 
+std::optional<imager::Beam> restoring_beam(const ImageOptions& o) {
+  if (o.restoringbeam.empty() || o.restoringbeam == "common") return std::nullopt;
+  const auto expect = [&](bool holds) {
+    if (!holds) refuse("restoringbeam", o.restoringbeam, "common, MAJ, or MAJ,MIN,PA with MAJ at least MIN, and MIN above 0");
+  };
+  std::vector<std::string> parts;
+  std::istringstream text(o.restoringbeam);
+  for (std::string part; std::getline(text, part, ',');) parts.push_back(part);
+  expect(parts.size() == 1 || parts.size() == 3);
+  imager::Beam beam;
+  beam.major_rad = parse_angle_rad(parts[0]);
+  beam.minor_rad = parts.size() == 1 ? beam.major_rad : parse_angle_rad(parts[1]);
+  // Half a turn leaves the ellipse as it is.
+  beam.position_angle_rad = parts.size() == 1 ? 0 : std::remainder(parse_angle_rad(parts[2]), M_PI);
+  expect(beam.minor_rad > 0 && beam.major_rad >= beam.minor_rad);
+  return beam;
+}
+
 imager::CleanOptions clean_options(const ImageOptions& o, int threads) {
   imager::CleanOptions clean;
   clean.max_iterations = o.niter;
@@ -138,6 +162,7 @@ imager::CleanOptions clean_options(const ImageOptions& o, int threads) {
   clean.cycle_factor = o.cyclefactor;
   clean.min_psf_fraction = o.minpsffraction;
   clean.max_psf_fraction = o.maxpsffraction;
+  clean.cycle_iterations = o.cycleniter;
   clean.max_major_cycles = o.nmajor;
   clean.threads = threads;
   return clean;

@@ -2,9 +2,11 @@
 
 #include <CLI/CLI.hpp>
 #include <nlohmann/json_fwd.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "imager/beam.h"
 #include "imager/clean.h"
 #include "imager/geometry.h"
 #include "imager/gridding_choice.h"
@@ -34,8 +36,10 @@ struct ImageOptions {
   double cyclefactor = 1;
   double minpsffraction = 0.05;
   double maxpsffraction = 0.8;
+  int cycleniter = -1;
   int nmajor = -1;
-  std::string mask;  ///< a file, see mask_file.h; empty = everywhere
+  std::string restoringbeam;  ///< empty = the fitted one
+  std::string mask;           ///< a file, see mask_file.h; empty = everywhere
   int verify = 0;
   int threads = 0;
   double memory_gib = 0;
@@ -55,6 +59,8 @@ void check(const ImageOptions& options);
 
 imager::ImageGeometry geometry_of(const ImageOptions& options, const imager::SkyDirection& phase_centre);
 imager::GriddingRequest gridding_request(const ImageOptions& options, int threads);
+/// The beam that --restoringbeam names: "0.5arcsec" or "0.5arcsec,0.4arcsec,30deg"; nothing where it is the fitted one.
+std::optional<imager::Beam> restoring_beam(const ImageOptions& options);
 imager::CleanOptions clean_options(const ImageOptions& options, int threads);
 
 /// Every option of `command` with the value in force.

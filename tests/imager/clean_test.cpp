@@ -150,6 +150,17 @@ BOOST_AUTO_TEST_CASE(the_iteration_limit_is_not_passed) {
   check_consistent(result);
 }
 
+BOOST_AUTO_TEST_CASE(no_minor_cycle_finds_more_components_than_it_may) {
+  CleanOptions options = deep();
+  options.max_iterations = 50;
+  options.cycle_iterations = 7;
+  const CleanResult result = cleaned(options);
+  const std::vector<MajorCycle>& cycles = result.report.cycles;
+  BOOST_TEST(result.report.iterations == 50);
+  BOOST_TEST(cycles.size() >= 9U);  // 50 components in sevens, and the state before the first
+  for (std::size_t i = 1; i < cycles.size(); ++i) BOOST_TEST(cycles[i].iterations - cycles[i - 1].iterations <= 7);
+}
+
 BOOST_AUTO_TEST_CASE(the_limit_of_major_cycles_is_not_passed) {
   CleanOptions options = deep();
   for (const int limit : {0, 1, 2}) {

@@ -102,6 +102,11 @@ BOOST_AUTO_TEST_CASE(options_with_impossible_values_are_wrong_usage) {
   scene.usage("--nsigma", "-1", "expected 0 or more");
   scene.usage("--cyclefactor", "0", "more than 0");
   scene.usage("--nmajor", "-2", "-1");
+  scene.usage("--cycleniter", "0", "-1 (no limit), 1 or more");
+  scene.usage("--restoringbeam", "1arcsec", "expected --niter above 0");
+  scene.usage("--restoringbeam", "1arcsec,2arcsec,0deg", "MAJ at least MIN");
+  scene.usage("--restoringbeam", "2arcsec,1arcsec", "MAJ,MIN,PA");
+  scene.usage("--restoringbeam", "0", "above 0");
   scene.usage("--mask", "mask.crtf", "expected --niter above 0");
   scene.usage("--threads", "-1", "expected 0 (all cores) or more");
   scene.usage("--verify", "-1", "expected 0 or more");

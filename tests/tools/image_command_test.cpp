@@ -303,6 +303,22 @@ BOOST_AUTO_TEST_CASE(only_the_files_promised_appear) {
     BOOST_TEST(entry.path().extension() == ".png");  // pictures, where gnuplot is installed
 }
 
+BOOST_AUTO_TEST_CASE(the_restoring_beam_given_is_used_and_stated) {
+  const TemporaryFolder folder;
+  const Arguments cleaned{"--niter", "20", "--restoringbeam", "6arcsec,4arcsec,120deg"};
+  succeed(small_image(snapshot(), folder / "a") + cleaned);
+  const imager::SkyImage restored = imager::read_fits(folder / "a.image.fits");
+  BOOST_TEST(restored.beam.major_rad == 6 * arcsec, boost::test_tools::tolerance(1e-6));
+  BOOST_TEST(restored.beam.minor_rad == 4 * arcsec, boost::test_tools::tolerance(1e-6));
+  BOOST_TEST(restored.beam.position_angle_rad == -M_PI / 3, boost::test_tools::tolerance(1e-6));
+  Image should = imager::convolve_with_beam(pixels_of(folder / "a", "model"), restored.beam, restored.geometry.cell_rad, 2);
+  const Image residual = pixels_of(folder / "a", "residual");
+  for (std::size_t i = 0; i < should.pixel.size(); ++i)  // 32-bit files
+    BOOST_REQUIRE(std::abs(should.pixel[i] + residual.pixel[i] - restored.image.pixel[i]) < 1e-5);
+  succeed(small_image(snapshot(), folder / "b") + Arguments{"--niter", "20"});
+  BOOST_TEST((pixels_of(folder / "b", "residual").pixel == residual.pixel));  // the beam steers no cycle
+}
+
 BOOST_AUTO_TEST_CASE(the_mask_given_is_written_and_holds_all_components) {
   const TemporaryFolder folder;
   std::ofstream(folder / "mask.crtf") << "circle [[32pix, 32pix], 6pix]\n";
