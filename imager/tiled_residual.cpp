@@ -168,7 +168,7 @@ bool TiledResidual::refresh_tiles_at_peak() {
 /// Whether one convolution costs less than to take components, one by one, off the tiles that must be looked at soon.
 bool TiledResidual::convolution_is_cheaper(float highest) const {
   constexpr float soon = 0.6F;
-  constexpr double pixels_a_patch = 8;  // of a convolution, that take as long as a component's part in a tile; measured
+  constexpr double pixels_a_patch = 5;  // of a convolution, that take as long as a component's part in a tile; measured
   double patches = 0;
   for (std::size_t i = 0; i < bound_.size(); ++i)
     if (rest_bound_[i] >= soon * highest) patches += static_cast<double>(component_.size() - taken_[i]);
