@@ -67,6 +67,10 @@ CleanResult clean(const VisibilitySource& source, const Transform& transform, co
   CleanResult result{Image(images.dirty.width, images.dirty.height), {}, {}};
   // Residuals are made anew, never changed; the first is the dirty image.
   std::shared_ptr<const Image> residual(std::shared_ptr<void>(), &images.dirty);
+  if (options.start_model != nullptr) {
+    result.model = *options.start_model;
+    residual = std::make_shared<const Image>(make_residual_image(source, transform, result.model, progress, times));
+  }
   std::shared_ptr<const Image> to_clean;
   const auto take_state = [&](double depth) {
     const StageTimer timer(times, "statistics");

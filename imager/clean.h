@@ -17,9 +17,10 @@ struct CleanOptions {
   double cycle_factor = 1;         ///< a minor cycle goes down to the peak × largest sidelobe × cycle factor …
   double min_psf_fraction = 0.05;  ///< … that fraction of the peak clamped to [min, max]
   double max_psf_fraction = 0.8;
-  int cycle_iterations = -1;    ///< cycleniter: components that a minor cycle finds at most; −1 = no limit
-  int max_major_cycles = -1;    ///< nmajor; −1 = no limit
-  const Image* mask = nullptr;  ///< where components may lie, see mask.h; null = everywhere
+  int cycle_iterations = -1;           ///< cycleniter: components that a minor cycle finds at most; −1 = no limit
+  int max_major_cycles = -1;           ///< nmajor; −1 = no limit
+  const Image* mask = nullptr;         ///< where components may lie, see mask.h; null = everywhere
+  const Image* start_model = nullptr;  ///< Jy/pixel, what components are added to; null = nothing
   int threads = 1;
   std::function<bool()> stop_requested;  ///< the user's wish to end; may be empty
 };

@@ -16,6 +16,7 @@
 #include "tools/mask_file.h"
 #include "tools/memory.h"
 #include "tools/memory_plan.h"
+#include "tools/model_image.h"
 #include "tools/numbers.h"
 #include "tools/pictures.h"
 #include "tools/progress.h"
@@ -43,8 +44,10 @@ class ImageRun {
     if (o_.verify > 0) verify();
     fit_beams();
     if (o_.niter > 0) clean();
+    release_visibilities();
     write_images();
     write_report();
+    if (o_.savemodel == "modelcolumn") save_model();
     summarise();
     if (cleaned_ && cleaned_->report.stop == imager::CleanStop::user) throw Interrupted();
   }
@@ -67,9 +70,21 @@ class ImageRun {
     set_ = std::make_unique<ms_io::MeasurementSet>(o_.vis, o_.selection, o_.datacolumn);
     geometry_ = geometry_of(o_, set_->observation().phase_centre);
     reach_ = set_->reach();
+    read_start_model();
     if (o_.mask.empty()) return;
     mask_ = std::make_unique<imager::Image>(read_mask(o_.mask, geometry_));
     if (imager::mask_is_empty(*mask_)) warn("the mask " + o_.mask + " allows no pixel of the image: nothing is cleaned");
+  }
+
+  void read_start_model() {
+    if (o_.startmodel.empty()) return;
+    imager::SkyImage model = read_model(o_.startmodel, geometry_.phase_centre);
+    const imager::ImageGeometry& g = model.geometry;
+    const double cell_off = std::abs(g.cell_rad / geometry_.cell_rad - 1) * std::max(g.width, g.height);
+    if (g.width != geometry_.width || g.height != geometry_.height || !(cell_off < 1e-3) || g.off_phase_centre())
+      throw std::runtime_error("start model " + o_.startmodel + ": expected the image's " + std::to_string(geometry_.width) +
+                               " × " + std::to_string(geometry_.height) + " pixels of " + o_.cell);
+    start_model_ = std::make_unique<imager::Image>(std::move(model.image));
   }
 
   /// All that is decided before a visibility is read.
@@ -178,6 +193,7 @@ class ImageRun {
     imager::CleanOptions options = clean_options(o_, threads_);
     options.stop_requested = interrupted;
     options.mask = mask_.get();
+    options.start_model = start_model_.get();
     progress_.begin("CLEAN", true);
     cleaned_ = std::make_unique<imager::CleanResult>(imager::clean(
         *source_, *made_.transform, made_.images, max_sidelobe(), options, progress(),
@@ -188,6 +204,7 @@ class ImageRun {
         times_));
     progress_.end();
     made_.images.dirty = {};
+    start_model_.reset();
     report_.clean = &cleaned_->report;
     if (cleaned_->report.stop == imager::CleanStop::diverging) warn("CLEAN diverged: " + cleaned_->report.stop_reason);
   }
@@ -199,9 +216,27 @@ class ImageRun {
     return imager::largest_sidelobe(made_.images.psf, beam);
   }
 
+  /// They make room for the pictures, and are closed before a column is written.
+  void release_visibilities() {
+    source_.reset();
+    observation_ = set_->observation();
+    set_.reset();
+    made_.transform.reset();
+  }
+
+  void save_model() {
+    progress_.begin("save model");
+    ModelVisibilities model;
+    {
+      const ms_io::MeasurementSet set(o_.vis, o_.selection, o_.datacolumn);
+      model = image_visibilities(cleaned_->model, geometry_, gridding_request(o_, threads_), set);
+    }
+    ms_io::write_model(o_.vis, o_.selection, "MODEL_DATA", model.predict, progress(), model.samples_at_once);
+    progress_.end();
+  }
+
   void write_images() {
-    source_.reset();  // the visibilities make room for the pictures
-    products_ = std::make_unique<ImageProducts>(o_.imagename, geometry_, set_->observation(), o_.accuracy);
+    products_ = std::make_unique<ImageProducts>(o_.imagename, geometry_, observation_, o_.accuracy);
     products_->set_history(report_.command_line);
     products_->set_cards(error_cards(report_));
     if (report_.beam != nullptr) products_->set_beam(beam_);
@@ -213,7 +248,8 @@ class ImageRun {
       imager::Image restored = imager::convolve_with_beam(cleaned_->model, beam_, geometry_.cell_rad, threads_);
       for (std::size_t i = 0; i < restored.pixel.size(); ++i) restored.pixel[i] += cleaned_->residual.pixel[i];
       products_->add("residual", "Residual", "Jy/beam", std::move(cleaned_->residual));
-      products_->add("model", "Model", "Jy/pixel", std::move(cleaned_->model));
+      imager::Image model = o_.savemodel == "none" ? std::move(cleaned_->model) : cleaned_->model;
+      products_->add("model", "Model", "Jy/pixel", std::move(model));
       if (mask_) products_->add("mask", "", "", std::move(*mask_));
       products_->add("image", "Restored image", "Jy/beam", std::move(restored));
     }
@@ -265,8 +301,10 @@ class ImageRun {
   RunReport report_;
 
   std::unique_ptr<ms_io::MeasurementSet> set_;
+  imager::Observation observation_;
   imager::ImageGeometry geometry_;
   imager::UvwReach reach_;
+  std::unique_ptr<imager::Image> start_model_;
   std::unique_ptr<imager::Image> mask_;  ///< null where CLEAN may go everywhere
   std::unique_ptr<imager::StreamedVisibilities> source_;
   imager::MemoryUse memory_;

@@ -47,6 +47,8 @@ void check_clean(const ImageOptions& o) {
   if (o.cycleniter == 0 || o.cycleniter < -1) refuse("cycleniter", std::to_string(o.cycleniter), "-1 (no limit), 1 or more");
   if (o.nmajor < -1) refuse("nmajor", std::to_string(o.nmajor), "-1 (no limit) or more");
   if (restoring_beam(o) && o.niter == 0) refuse("restoringbeam", o.restoringbeam, "--niter above 0 beside it");
+  if (!o.startmodel.empty() && o.niter == 0) refuse("startmodel", o.startmodel, "--niter above 0 beside it");
+  if (o.savemodel != "none" && o.niter == 0) refuse("savemodel", o.savemodel, "--niter above 0 beside it");
   if (!o.mask.empty() && o.niter == 0) refuse("mask", o.mask, "--niter above 0 beside it");
 }
 
@@ -65,7 +67,7 @@ void check_gridding(const ImageOptions& o) {
 }  // namespace
 
 void declare(CLI::App& command, ImageOptions& o) {
-  command.add_option("--vis", o.vis, "MeasurementSet; opened read-only")->required();
+  command.add_option("--vis", o.vis, "MeasurementSet; opened read-only, but for --savemodel")->required();
   command.add_option("--imagename", o.imagename, "Names of the output files begin with this")->required();
   command.add_option("--imsize", o.imsize, "Width, or width and height, in pixels")->required()->expected(1, 2);
   command.add_option("--cell", o.cell, "Size of a pixel: 0.2arcsec, 3mas, …")->required();
@@ -95,6 +97,9 @@ void declare(CLI::App& command, ImageOptions& o) {
   command.add_option("--restoringbeam", o.restoringbeam,
                      "Restore with this beam: MAJ, or MAJ,MIN,PA such as 0.5arcsec,0.4arcsec,30deg; the fitted one when empty");
   command.add_option("--mask", o.mask, "Where CLEAN finds components: a FITS image, not 0 there, or CASA region text (CRTF)");
+  command.add_option("--startmodel", o.startmodel, "Begin with this model, a FITS image in Jy/pixel of the same pixels");
+  command.add_option("--savemodel", o.savemodel, "modelcolumn: write the model's visibilities into MODEL_DATA; none")
+      ->check(CLI::IsMember({"none", "modelcolumn"}));
   command.add_option("--verify", o.verify, "Compare this many random pixels and visibilities with the direct transform");
   command.add_option("--threads", o.threads, "Threads; 0 means all cores");
   command.add_option("--memory", o.memory_gib, "GiB that the run may take; 0 means half of the machine's memory");

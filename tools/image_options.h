@@ -40,6 +40,8 @@ struct ImageOptions {
   int nmajor = -1;
   std::string restoringbeam;  ///< empty = the fitted one
   std::string mask;           ///< a file, see mask_file.h; empty = everywhere
+  std::string startmodel;     ///< a FITS image in Jy/pixel; empty = none
+  std::string savemodel = "none";
   int verify = 0;
   int threads = 0;
   double memory_gib = 0;

@@ -1,17 +1,13 @@
-#include <algorithm>
-#include <cmath>
 #include <cstdio>
 #include <memory>
 
 #include "imager/direct_transform.h"
-#include "imager/extent.h"
-#include "imager/fits_image.h"
 #include "imager/parallel.h"
-#include "imager/planned_transform.h"
 #include "ms_io/measurement_set.h"
 #include "ms_io/model_writer.h"
 #include "tools/command.h"
 #include "tools/kernel_choice.h"
+#include "tools/model_image.h"
 #include "tools/numbers.h"
 #include "tools/progress.h"
 #include "tools/sky.h"
@@ -32,57 +28,17 @@ struct PredictOptions {
   bool quiet = false;
 };
 
-/// How far apart two centres may lie, as a part of a pixel: less than what a transform to 1e-7 notices.
-constexpr double same_centre_pixels = 1e-3;
-
-void check_centre(const imager::SkyImage& model, const imager::SkyDirection& centre, const std::string& path) {
-  const imager::SkyDirection& has = model.geometry.phase_centre;
-  const imager::DirectionCosines offset = imager::direction_cosines(has, centre);
-  if (has.frame != centre.frame || std::hypot(offset.l, offset.m) > same_centre_pixels * model.geometry.cell_rad)
-    throw std::runtime_error(path + " is centred on " + sexagesimal(has) + " (" + has.frame +
-                             "), expected the phase centre of the visibilities, " + sexagesimal(centre) + " (" + centre.frame +
-                             ")");
-}
-
-void check_finite(const imager::SkyImage& model, const std::string& path) {
-  for (int row = 0; row < model.image.height; ++row)
-    for (int column = 0; column < model.image.width; ++column)
-      if (!std::isfinite(model.image.at(row, column)) && !imager::beyond_horizon(model.geometry.at(row, column)))
-        throw std::runtime_error(path + " has pixels that are not finite; a model needs a number in each above the horizon");
-}
-
-/// The model as an operator from coordinates to visibilities.
-struct Model {
-  std::unique_ptr<imager::Transform> transform;  // outlives the prediction
-  std::unique_ptr<imager::Prediction> prediction;
-  ms_io::Predict predict;
-  std::uint64_t samples_at_once = ms_io::MeasurementSet::usual_block_samples;
-};
-
-Model image_model(const PredictOptions& o, const ms_io::MeasurementSet& set, int threads) {
+ModelVisibilities image_model(const PredictOptions& o, const ms_io::MeasurementSet& set, int threads) {
   imager::GriddingRequest request;
   request.kernel = choose_kernel(o.kernel);
-  const imager::SkyImage image = imager::read_fits(o.model);
-  if (image.unit != "Jy/pixel")
-    throw std::runtime_error(o.model + " has the unit " + (image.unit.empty() ? "none" : image.unit) + ", expected Jy/pixel");
-  check_centre(image, set.observation().phase_centre, o.model);
-  check_finite(image, o.model);
-  request.geometry = image.geometry;
   request.accuracy = is_kernel_file(o.kernel) && !o.accuracy_is_typed ? 0 : o.accuracy;
-  request.samples = set.samples();
-  request.images = 1;
-  request.max_abs_w = set.reach(ms_io::ReachOf::all).max_abs_w;
   request.threads = threads;
-  Model model;
-  model.transform = std::make_unique<imager::PlannedTransform>(imager::plan_gridding(request));
-  model.prediction = model.transform->predict(image.image);
-  model.samples_at_once = std::max<std::uint64_t>(model.samples_at_once, model.prediction->samples_at_once());
-  model.predict = [prediction = model.prediction.get()](const imager::SampleCoordinates& at) { return prediction->at(at); };
-  return model;
+  const imager::SkyImage model = read_model(o.model, set.observation().phase_centre);
+  return image_visibilities(model.image, model.geometry, request, set);
 }
 
-Model component_model(const PredictOptions& o, const ms_io::MeasurementSet& set, int threads) {
-  Model model;
+ModelVisibilities component_model(const PredictOptions& o, const ms_io::MeasurementSet& set, int threads) {
+  ModelVisibilities model;
   model.predict = [sources = read_component_list(o.components, set.observation().phase_centre),
                    threads](const imager::SampleCoordinates& at) { return imager::predict_sources(sources, at, threads); };
   return model;
@@ -95,7 +51,7 @@ void predict(const PredictOptions& o) {
   if (o.model.empty() == o.components.empty()) throw std::invalid_argument("expected either --model or --components");
   ProgressLine progress(o.quiet);
   const int threads = o.threads == 0 ? imager::available_threads() : o.threads;
-  Model model;
+  ModelVisibilities model;
   {
     const ms_io::MeasurementSet set(o.vis, o.selection, "DATA");
     model = o.model.empty() ? component_model(o, set, threads) : image_model(o, set, threads);

@@ -107,6 +107,9 @@ BOOST_AUTO_TEST_CASE(options_with_impossible_values_are_wrong_usage) {
   scene.usage("--restoringbeam", "1arcsec,2arcsec,0deg", "MAJ at least MIN");
   scene.usage("--restoringbeam", "2arcsec,1arcsec", "MAJ,MIN,PA");
   scene.usage("--restoringbeam", "0", "above 0");
+  scene.usage("--startmodel", "model.fits", "expected --niter above 0");
+  scene.usage("--savemodel", "modelcolumn", "expected --niter above 0");
+  scene.usage("--savemodel", "virtual", "modelcolumn");
   scene.usage("--mask", "mask.crtf", "expected --niter above 0");
   scene.usage("--threads", "-1", "expected 0 (all cores) or more");
   scene.usage("--verify", "-1", "expected 0 or more");

@@ -319,6 +319,52 @@ BOOST_AUTO_TEST_CASE(the_restoring_beam_given_is_used_and_stated) {
   BOOST_TEST((pixels_of(folder / "b", "residual").pixel == residual.pixel));  // the beam steers no cycle
 }
 
+BOOST_AUTO_TEST_CASE(a_start_model_is_where_an_earlier_run_ended) {
+  const TemporaryFolder folder;
+  succeed(small_image(snapshot(), folder / "a") + Arguments{"--niter", "50", "--nmajor", "1"});
+  succeed(small_image(snapshot(), folder / "b") + Arguments{"--niter", "50", "--startmodel", folder / "a.model.fits"});
+  const json before = report_of(folder / "a")["clean"], after = report_of(folder / "b")["clean"]["major_cycles_log"][0];
+  // The model passed through a file of 32-bit numbers.
+  for (const char* key : {"peak_residual_jy", "model_flux_jy"})
+    BOOST_TEST(std::abs(after[key].get<double>() / before[key].get<double>() - 1) < 1e-5);
+  BOOST_TEST(report_of(folder / "b")["clean"]["peak_residual_jy"] < before["peak_residual_jy"]);
+}
+
+BOOST_AUTO_TEST_CASE(a_start_model_of_other_pixels_or_units_is_refused) {
+  const TemporaryFolder folder;
+  succeed(small_image(snapshot(), folder / "a") + Arguments{"--niter", "5"});
+  const auto refused = [&](const Arguments& arguments) {
+    const Outcome outcome = run(small_image(snapshot(), folder / "b") + Arguments{"--niter", "5"} + arguments);
+    BOOST_TEST(outcome.code == 1);
+    BOOST_TEST(!std::filesystem::exists(folder / "b.report.json"));
+    return outcome.err;
+  };
+  BOOST_TEST(refused({"--startmodel", folder / "a.image.fits"}).find("expected Jy/pixel") != std::string::npos);
+  BOOST_TEST(refused({"--startmodel", folder / "none.fits"}).find("none.fits") != std::string::npos);
+  Arguments larger = small_image(snapshot(), folder / "b") + Arguments{"--niter", "5", "--startmodel", folder / "a.model.fits"};
+  *std::find(larger.begin(), larger.end(), "64") = "66";
+  BOOST_TEST(run(larger).err.find("expected the image's 66") != std::string::npos);
+}
+
+BOOST_AUTO_TEST_CASE(the_model_column_holds_what_the_model_image_predicts) {
+  const TemporaryFolder folder;
+  const std::string set = folder / "copy.ms";
+  std::filesystem::copy(snapshot(), set, std::filesystem::copy_options::recursive);
+  succeed(small_image(set, folder / "a") + Arguments{"--niter", "50", "--savemodel", "modelcolumn"});
+  succeed({"predict", "--vis", set, "--model", folder / "a.model.fits", "--column", "PREDICTED"});
+  const auto saved = visibilities(set, "MODEL_DATA"), should = visibilities(set, "PREDICTED");
+  BOOST_REQUIRE(saved.size() == should.size());
+  double error = 0, norm = 0;
+  for (std::size_t i = 0; i < saved.size(); ++i) {
+    error += std::norm(saved[i] - should[i]);
+    norm += std::norm(should[i]);
+  }
+  BOOST_TEST(norm > 0);
+  BOOST_TEST(error <= 1e-14 * norm);  // 32-bit numbers
+  succeed(small_image(set, folder / "a") +
+          Arguments{"--niter", "5", "--savemodel", "modelcolumn", "--kernel-width", "7", "--padding", "1.5"});
+}
+
 BOOST_AUTO_TEST_CASE(the_mask_given_is_written_and_holds_all_components) {
   const TemporaryFolder folder;
   std::ofstream(folder / "mask.crtf") << "circle [[32pix, 32pix], 6pix]\n";

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "imager/fits_image.h"
+#include "imager/gridding_choice.h"
+#include "imager/transform.h"
+#include "ms_io/measurement_set.h"
+#include "ms_io/model_writer.h"
+
+namespace misfit::tools {
+
+/// A model image in Jy/pixel whose reference position is `centre`, with a finite number in every pixel above the horizon.
+/// Throws std::runtime_error that names the file and what was expected.
+imager::SkyImage read_model(const std::string& path, const imager::SkyDirection& centre);
+
+/// A model as an operator from coordinates to visibilities.
+struct ModelVisibilities {
+  std::unique_ptr<imager::Transform> transform;  // outlives the prediction
+  std::unique_ptr<imager::Prediction> prediction;
+  ms_io::Predict predict;
+  std::uint64_t samples_at_once = ms_io::MeasurementSet::usual_block_samples;
+};
+
+/// The visibilities of a model image at all selected samples of `set`, flagged or not, as `request` would have them gridded.
+ModelVisibilities image_visibilities(const imager::Image& model, const imager::ImageGeometry& geometry,
+                                     imager::GriddingRequest request, const ms_io::MeasurementSet& set);
+
+}  // namespace misfit::tools
