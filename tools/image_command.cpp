@@ -255,7 +255,7 @@ class ImageRun {
     }
     drawing_ = std::make_unique<PictureDrawing>(products_->pictures());
     const imager::StageTimer timer(times_, "write images");
-    products_->write();
+    products_->write(threads_);
   }
 
   void write_report() {
