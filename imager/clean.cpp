@@ -5,6 +5,8 @@
 #include <memory>
 #include <numeric>
 #include <optional>
+#include <stdexcept>
+#include <string>
 
 #include "imager/big_array.h"
 #include "imager/hogbom.h"
@@ -19,9 +21,17 @@ std::shared_ptr<const Image> cleanable(const std::shared_ptr<const Image>& resid
   return mask == nullptr ? residual : std::make_shared<const Image>(masked(*residual, *mask));
 }
 
+/// 0 where a mask allows nothing.
 double peak_magnitude(const Image& image) {
   const double peak = std::abs(find_peak(image).value);
   return std::isnan(peak) ? 0 : peak;
+}
+
+void require_finite(const Image& residual) {
+  const double peak = find_peak(residual).value;
+  if (!std::isfinite(peak))
+    throw std::runtime_error("the residual image is " + std::to_string(peak) +
+                             " at its peak: the data or the model are too large");
 }
 
 struct Ending {
@@ -74,6 +84,7 @@ CleanResult clean(const VisibilitySource& source, const Transform& transform, co
   std::shared_ptr<const Image> to_clean;
   const auto take_state = [&](double depth) {
     const StageTimer timer(times, "statistics");
+    require_finite(*residual);
     to_clean = cleanable(residual, options.mask);
     const double flux = std::accumulate(result.model.pixel.begin(), result.model.pixel.end(), 0.0);
     result.report.cycles.push_back({result.report.iterations, peak_magnitude(*to_clean), robust_noise(*residual), flux, depth});

@@ -72,7 +72,7 @@ double largest_sidelobe(const Image& psf, const Image& beam);
 /// Cotton–Schwab CLEAN (Schwab 1984, AJ 89, 1076): minor cycles find components in the image; major cycles predict the model's
 /// visibilities, subtract them from the data, and image what is left. `max_sidelobe` is the largest of the PSF. When the
 /// residual grows to more than three times the smallest seen, the best model is kept and CLEAN stops as diverging. Stages
-/// timed: "minor cycles", and those of make_residual_image.
+/// timed: "minor cycles", and those of make_residual_image. Throws std::runtime_error when a residual's peak is not finite.
 CleanResult clean(const VisibilitySource& source, const Transform& transform, const DirtyImages& images, double max_sidelobe,
                   const CleanOptions& options, const Progress& progress, const CycleProgress& cycle_progress,
                   StageTimes& times);

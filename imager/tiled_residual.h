@@ -15,7 +15,7 @@ namespace misfit::imager {
 /// largest value with which the PSF reaches it. Of such a tile the brightest pixels are brought up to date first, and the
 /// others only when the same bound says that they could have become the brightest. Where many have to be, for many components,
 /// all are by one convolution. So the cost of a component does not grow with the PSF's area; the peaks are those of the plain
-/// loop.
+/// loop in single precision, but for the rounding of convolutions.
 class TiledResidual {
  public:
   /// `psf` has the size of `residual` and its peak in the middle pixel. What lies beyond it, or is NaN, counts as 0. Both must

@@ -21,7 +21,7 @@ struct PsfPatch {
 /// that is left; −∞ where all pixels are NaN.
 float subtract_and_peak(float* tile, const PsfPatch* patches, std::size_t count, std::ptrdiff_t psf_columns);
 
-/// value[i] −= factor · psf[offset[i]] for i in [0, count), rounded as subtract_and_peak does.
+/// value[i] −= factor · psf[offset[i]] for i in [0, count).
 void subtract_at(const float* psf, float factor, const int* offset, std::size_t count, float* value);
 
 /// bound[i] += amount · reach[i] for i in [0, count), rounded upwards; returns the largest bound. None of them is NaN.

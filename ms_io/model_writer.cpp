@@ -122,6 +122,10 @@ struct PredictedBlock {
 
 }  // namespace
 
+void require_writable(const std::string& path) {
+  open_measurement_set(path, Access::update);
+}
+
 ModelWriteReport write_model(const std::string& path, const Selection& selection, const std::string& column,
                              const Predict& predict, const std::function<void(std::uint64_t, std::uint64_t)>& progress,
                              std::uint64_t block_samples) {

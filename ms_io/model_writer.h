@@ -20,6 +20,9 @@ struct ModelWriteReport {
   std::uint64_t nonfinite_uvw_rows = 0;  ///< rows that got 0
 };
 
+/// Throws what write_model would where the MeasurementSet at `path` cannot be written.
+void require_writable(const std::string& path);
+
 /// Writes predicted visibilities into `column` of the MeasurementSet at `path`, for every sample selected whatever its flags
 /// and weights, auto-correlations included. XX, YY, RR and LL get I; cross-hand correlations get 0. A column that does not
 /// exist is created with the shape and storage of DATA, and rows outside the selection are left alone (0 in a new column).

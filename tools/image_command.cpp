@@ -67,6 +67,7 @@ class ImageRun {
   void open() {
     const imager::StageTimer timer(times_, "open");
     if (!o_.dry_run) check_writable_folder(o_.imagename);
+    if (o_.savemodel == "modelcolumn") ms_io::require_writable(o_.vis);
     set_ = std::make_unique<ms_io::MeasurementSet>(o_.vis, o_.selection, o_.datacolumn);
     geometry_ = geometry_of(o_, set_->observation().phase_centre);
     reach_ = set_->reach();
@@ -81,9 +82,14 @@ class ImageRun {
     imager::SkyImage model = read_model(o_.startmodel, geometry_.phase_centre);
     const imager::ImageGeometry& g = model.geometry;
     const double cell_off = std::abs(g.cell_rad / geometry_.cell_rad - 1) * std::max(g.width, g.height);
-    if (g.width != geometry_.width || g.height != geometry_.height || !(cell_off < 1e-3) || g.off_phase_centre())
-      throw std::runtime_error("start model " + o_.startmodel + ": expected the image's " + std::to_string(geometry_.width) +
-                               " × " + std::to_string(geometry_.height) + " pixels of " + o_.cell);
+    const auto size = [](int width, int height) { return std::to_string(width) + " × " + std::to_string(height) + " pixels"; };
+    const auto refuse = [this](const std::string& has, const std::string& expected) {
+      throw std::runtime_error("start model " + o_.startmodel + " " + has + ", expected " + expected);
+    };
+    if (g.width != geometry_.width || g.height != geometry_.height)
+      refuse("has " + size(g.width, g.height), size(geometry_.width, geometry_.height));
+    if (!(cell_off < 1e-3)) refuse("has pixels of " + significant(g.cell_rad * 180 / M_PI * 3600, 6) + "arcsec", o_.cell);
+    if (g.off_phase_centre()) refuse("has its phase centre off the middle pixel", "it there");
     start_model_ = std::make_unique<imager::Image>(std::move(model.image));
   }
 
@@ -225,7 +231,7 @@ class ImageRun {
   }
 
   void save_model() {
-    progress_.begin("save model");
+    progress_.begin("save model", true);  // a column half written helps no one
     ModelVisibilities model;
     {
       const ms_io::MeasurementSet set(o_.vis, o_.selection, o_.datacolumn);

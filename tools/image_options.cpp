@@ -1,15 +1,16 @@
 #include "tools/image_options.h"
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <nlohmann/json.hpp>
-#include <sstream>
 #include <stdexcept>
 
 #include "imager/gridding_plan.h"
 #include "tools/config_file.h"
 #include "tools/kernel_choice.h"
 #include "tools/quantity.h"
+#include "tools/text.h"
 
 namespace misfit::tools {
 namespace {
@@ -94,8 +95,9 @@ void declare(CLI::App& command, ImageOptions& o) {
   command.add_option("--maxpsffraction", o.maxpsffraction, "… and at least this deep");
   command.add_option("--cycleniter", o.cycleniter, "Components that a minor cycle finds at most; -1 = no limit");
   command.add_option("--nmajor", o.nmajor, "Major cycles at most; -1 = no limit");
-  command.add_option("--restoringbeam", o.restoringbeam,
-                     "Restore with this beam: MAJ, or MAJ,MIN,PA such as 0.5arcsec,0.4arcsec,30deg; the fitted one when empty");
+  command.add_option(
+      "--restoringbeam", o.restoringbeam,
+      "Restore with this beam: MAJ, or MAJ,MIN,PA such as 0.5arcsec,0.4arcsec,30deg; the fitted one when empty or common");
   command.add_option("--mask", o.mask, "Where CLEAN finds components: a FITS image, not 0 there, or CASA region text (CRTF)");
   command.add_option("--startmodel", o.startmodel, "Begin with this model, a FITS image in Jy/pixel of the same pixels");
   command.add_option("--savemodel", o.savemodel, "modelcolumn: write the model's visibilities into MODEL_DATA; none")
@@ -143,18 +145,28 @@ imager::GriddingRequest gridding_request(const ImageOptions& o, int threads) {
 std::optional<imager::Beam> restoring_beam(const ImageOptions& o) {
   if (o.restoringbeam.empty() || o.restoringbeam == "common") return std::nullopt;
   const auto expect = [&](bool holds) {
-    if (!holds) refuse("restoringbeam", o.restoringbeam, "common, MAJ, or MAJ,MIN,PA with MAJ at least MIN, and MIN above 0");
+    if (!holds)
+      refuse("restoringbeam", o.restoringbeam,
+             "common, MAJ, or MAJ,MIN,PA such as 0.5arcsec,0.4arcsec,30deg with MAJ at least MIN, and MIN above 0");
   };
-  std::vector<std::string> parts;
-  std::istringstream text(o.restoringbeam);
-  for (std::string part; std::getline(text, part, ',');) parts.push_back(part);
+  const auto angle = [&](std::string_view text) {
+    expect(!text.empty() && std::isalpha(static_cast<unsigned char>(text.back())) != 0);
+    return parse_angle_rad(std::string(text));
+  };
+  std::vector<std::string_view> parts;
+  for (std::string_view rest = o.restoringbeam;;) {
+    const std::size_t comma = rest.find(',');
+    parts.push_back(trimmed(rest.substr(0, comma)));
+    if (comma == std::string_view::npos) break;
+    rest.remove_prefix(comma + 1);
+  }
   expect(parts.size() == 1 || parts.size() == 3);
   imager::Beam beam;
-  beam.major_rad = parse_angle_rad(parts[0]);
-  beam.minor_rad = parts.size() == 1 ? beam.major_rad : parse_angle_rad(parts[1]);
+  beam.major_rad = angle(parts[0]);
+  beam.minor_rad = parts.size() == 1 ? beam.major_rad : angle(parts[1]);
   // Half a turn leaves the ellipse as it is.
-  beam.position_angle_rad = parts.size() == 1 ? 0 : std::remainder(parse_angle_rad(parts[2]), M_PI);
-  expect(beam.minor_rad > 0 && beam.major_rad >= beam.minor_rad);
+  beam.position_angle_rad = parts.size() == 1 ? 0 : std::remainder(angle(parts[2]), M_PI);
+  expect(beam.minor_rad > 0 && beam.major_rad >= beam.minor_rad && beam.major_rad < 1);
   return beam;
 }
 

@@ -3,13 +3,13 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
-#include <fstream>
 #include <stdexcept>
 #include <string_view>
 #include <vector>
 
 #include "imager/fits_image.h"
 #include "imager/mask.h"
+#include "tools/files.h"
 #include "tools/quantity.h"
 #include "tools/text.h"
 
@@ -17,6 +17,8 @@ namespace misfit::tools {
 namespace {
 
 constexpr double degree = M_PI / 180;
+const std::string regions_known =
+    "expected box [[x, y], [x, y]], centerbox [[x, y], [width, height]] or circle [[x, y], radius]";
 
 [[noreturn]] void expected(std::string_view text, const std::string& what) {
   throw std::runtime_error("'" + std::string(text) + "', expected " + what);
@@ -28,21 +30,27 @@ double number(std::string_view text, std::string_view whole, const std::string& 
   return *value;
 }
 
-/// "12h30m49.4s", "12:30:49.4", "12d23m28s" or "12.23.28.0" in units of its first part.
-double sexagesimal(std::string_view text, const std::string& what) {
+/// "12h30m49.4s", "12:30:49.4", "12d23m28s" or "12.23.28.0" in units of its first part, which ends with `first`, the second
+/// with `second`.
+double sexagesimal(std::string_view text, char first, char second, const std::string& what) {
   const bool negative = text.starts_with('-');
   std::string_view rest = text.substr(negative || text.starts_with('+') ? 1 : 0);
-  if (rest.ends_with('s')) rest.remove_suffix(1);
-  double value = 0;
-  for (const double part : {1.0, 60.0, 3600.0}) {
-    const std::size_t end = part == 3600 ? std::string_view::npos : rest.find_first_of("hdm:.");
-    const double x = number(rest.substr(0, end), text, what);
-    if (x < 0 || (part > 1 && x >= 60)) expected(text, what);
-    value += x / part;
-    if (end == std::string_view::npos) break;
-    rest.remove_prefix(end + 1);
-    if (rest.empty()) break;
+  const auto whole_part = [&](char end) {
+    const std::size_t digits = rest.find_first_not_of("0123456789");
+    if (digits == 0 || digits == std::string_view::npos || rest[digits] != end) expected(text, what);
+    const double value = number(rest.substr(0, digits), text, what);
+    rest.remove_prefix(digits + 1);
+    return value;
+  };
+  const double units = whole_part(first), minutes = whole_part(second);
+  if (second == 'm') {
+    if (!rest.ends_with('s')) expected(text, what);
+    rest.remove_suffix(1);
   }
+  if (rest.empty() || std::isdigit(static_cast<unsigned char>(rest.front())) == 0) expected(text, what);
+  const double seconds = number(rest, text, what);
+  if (minutes >= 60 || seconds >= 60) expected(text, what);
+  const double value = units + minutes / 60 + seconds / 3600;
   return negative ? -value : value;
 }
 
@@ -61,15 +69,16 @@ Quantity plain_quantity(std::string_view text, const std::string& what) {
 
 Quantity right_ascension(std::string_view text) {
   const std::string what = "a right ascension such as 12h30m49.4s, 12:30:49.4 or 187.7deg, or a column such as 100pix";
-  const bool hours = text.find_first_of("h:") != std::string_view::npos;
-  return hours ? Quantity{false, 15 * degree * sexagesimal(text, what)} : plain_quantity(text, what);
+  if (text.find('h') != std::string_view::npos) return {false, 15 * degree * sexagesimal(text, 'h', 'm', what)};
+  if (text.find(':') != std::string_view::npos) return {false, 15 * degree * sexagesimal(text, ':', ':', what)};
+  return plain_quantity(text, what);
 }
 
 Quantity declination(std::string_view text) {
   const std::string what = "a declination such as +12d23m28s, +12.23.28.0 or 12.39deg, or a row such as 100pix";
-  const bool dots = std::count(text.begin(), text.end(), '.') >= 2;
-  const bool parts = text.ends_with('s') && text.find('d') != std::string_view::npos;
-  return dots || parts ? Quantity{false, degree * sexagesimal(text, what)} : plain_quantity(text, what);
+  if (text.ends_with('s')) return {false, degree * sexagesimal(text, 'd', 'm', what)};
+  if (std::count(text.begin(), text.end(), '.') >= 2) return {false, degree * sexagesimal(text, '.', '.', what)};
+  return plain_quantity(text, what);
 }
 
 /// A place in an image, in pixels.
@@ -140,6 +149,7 @@ void check_frame(std::string_view keywords, const std::string& frame) {
 
 void add_region(std::string_view line, const imager::ImageGeometry& g, imager::Image& mask) {
   const auto [region, keywords] = split_keywords(line);
+  if (!trimmed(keywords).empty() && !trimmed(keywords).starts_with(',')) expected(trimmed(keywords), "a comma and keywords");
   check_frame(keywords, g.phase_centre.frame);
   const double value = region.starts_with('-') ? 0 : 1;
   std::string_view shape = region.substr(region.starts_with('-') || region.starts_with('+') ? 1 : 0);
@@ -160,42 +170,40 @@ void add_region(std::string_view line, const imager::ImageGeometry& g, imager::I
     const auto within = [&](int c, int r) { return std::hypot(c - centre.column, r - centre.row) <= radius; };
     fill({centre.column - radius, centre.row - radius}, {centre.column + radius, centre.row + radius}, value, within, mask);
   } else {
-    expected(region, "box [[x, y], [x, y]], centerbox [[x, y], [width, height]] or circle [[x, y], radius]");
+    throw std::runtime_error("'" + std::string(region) + "', " + regions_known);
   }
 }
 
-imager::Image read_regions(const std::string& path, const imager::ImageGeometry& g) {
-  std::ifstream file(path);
+imager::Image regions_mask(const std::string& path, std::string_view text, const imager::ImageGeometry& g) {
+  if (text.find('\0') != std::string_view::npos) throw std::runtime_error(path + " is neither a FITS image nor region text");
   imager::Image mask(g.width, g.height);
-  int line_number = 0;
+  int line_number = 0, regions = 0;
+  const auto read_line = [&](std::string_view line) {
+    if (line.empty() || line.starts_with('#') || line.starts_with("ann ") || line.starts_with("ann\t")) return;
+    if (line.starts_with("global")) return check_frame(line, g.phase_centre.frame);
+    add_region(line, g, mask);
+    ++regions;
+  };
   try {
-    for (std::string line; std::getline(file, line);) {
+    while (!text.empty()) {
       ++line_number;
-      const std::string_view text = trimmed(line);
-      if (text.empty() || text.starts_with('#') || text.starts_with("ann ")) continue;
-      if (text.starts_with("global"))
-        check_frame(text, g.phase_centre.frame);
-      else
-        add_region(text, g, mask);
+      const std::size_t end = text.find_first_of("\r\n");
+      read_line(trimmed(text.substr(0, end)));
+      if (end == std::string_view::npos) break;
+      text.remove_prefix(end + (text.substr(end).starts_with("\r\n") ? 2 : 1));
     }
   } catch (const std::exception& error) {
     throw std::runtime_error(path + ", line " + std::to_string(line_number) + ": " + error.what());
   }
+  if (regions == 0) throw std::runtime_error(path + " holds no region; " + regions_known);
   return mask;
-}
-
-bool is_fits(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  std::string start(6, ' ');
-  file.read(start.data(), 6);
-  if (!file.is_open() || file.bad()) throw std::runtime_error("cannot read the mask " + path);
-  return start == "SIMPLE";
 }
 
 }  // namespace
 
 imager::Image read_mask(const std::string& path, const imager::ImageGeometry& geometry) {
-  if (!is_fits(path)) return read_regions(path, geometry);
+  const std::string content = read_file(path);
+  if (!content.starts_with("SIMPLE")) return regions_mask(path, content, geometry);
   imager::Image mask = imager::read_fits(path).image;
   if (mask.width != geometry.width || mask.height != geometry.height)
     throw std::runtime_error("mask " + path + " of " + std::to_string(mask.width) + " × " + std::to_string(mask.height) +

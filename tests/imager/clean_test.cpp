@@ -228,6 +228,14 @@ BOOST_AUTO_TEST_CASE(a_mask_that_allows_no_pixel_ends_it_at_once) {
   BOOST_TEST((result.residual.pixel == scene().images.dirty.pixel));
 }
 
+BOOST_AUTO_TEST_CASE(a_residual_that_is_not_finite_is_an_error) {
+  for (const double value : {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
+    DirtyImages images = scene().images;
+    std::fill(images.dirty.pixel.begin(), images.dirty.pixel.end(), value);
+    BOOST_CHECK_THROW(cleaned(deep(), images), std::runtime_error);
+  }
+}
+
 BOOST_AUTO_TEST_CASE(a_minor_cycle_that_finds_nothing_ends_it) {
   CleanOptions options = deep();
   options.cycle_factor = 1000;

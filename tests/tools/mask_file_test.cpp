@@ -105,10 +105,16 @@ BOOST_AUTO_TEST_CASE(regions_add_up_and_those_with_a_minus_sign_are_taken_away) 
              within);
 }
 
+BOOST_AUTO_TEST_CASE(lines_may_end_as_on_any_system) {
+  const auto within = [](int c, int r) { return (c == 3 && r == 4) || (c == 5 && r == 6); };
+  for (const std::string end : {"\n", "\r\n", "\r"})
+    check_mask(mask_of("#CRTF" + end + "box [[3pix, 4pix], [3pix, 4pix]]" + end + "box [[5pix, 6pix], [5pix, 6pix]]" + end),
+               within);
+}
+
 BOOST_AUTO_TEST_CASE(regions_are_cut_at_the_edges_of_the_image) {
   check_mask(mask_of("box [[-1e9pix, 30pix], [1e9pix, 1e9pix]]"), [](int, int r) { return r >= 30; });
   check_mask(mask_of("circle [[500pix, 20pix], 7pix]"), [](int, int) { return false; });
-  check_mask(mask_of(""), [](int, int) { return false; });
 }
 
 BOOST_AUTO_TEST_CASE(what_cannot_be_read_is_refused_by_its_line) {
@@ -119,6 +125,15 @@ BOOST_AUTO_TEST_CASE(what_cannot_be_read_is_refused_by_its_line) {
   BOOST_TEST(refused("circle [[1pix, 2deg], 3pix]", "both in pixels or both on the sky"));
   BOOST_TEST(refused("circle [[1pix, nanpix], 3pix]", "'nanpix'"));
   BOOST_TEST(refused("circle [[12h60m0s, 2deg], 3pix]", "'12h60m0s'"));
+  for (const char* ra :
+       {"4:0.001", "4.5h", "12:30.5", "4h", "12h30m49.4", "12m30h49s", "12:30:", "12:-30:1", "h", ":", "1.5.2"})
+    BOOST_TEST(refused(std::string("circle [[") + ra + ", 2deg], 3pix]", std::string("'") + ra + "'"));
+  for (const char* dec : {"40d0.01s", "40d", "40d10m", "40.0s", "1.2.", "..", "40:10:11", "-d1m1s"})
+    BOOST_TEST(refused(std::string("circle [[2deg, ") + dec + "], 3pix]", std::string("'") + dec + "'"));
+  BOOST_TEST(refused("circle [[1pix, 2pix], 3pix] garbage", "'garbage', expected a comma"));
+  for (const char* nothing : {"", "\n", "#CRTF\n", "ann\ttext [[1pix, 2pix], 'x']"})
+    BOOST_TEST(refused(nothing, "holds no region"));
+  BOOST_TEST(refused(std::string("circle\0", 7), "neither a FITS image nor region text"));
   BOOST_TEST(refused("circle [[12h30m0s, 12d-3m0s], 3pix]", "'12d-3m0s'"));
   BOOST_TEST(refused("circle [[1deg, 91deg], 3pix]", "-90 to 90 degrees"));
   BOOST_TEST(refused("circle [[1deg, 2deg], 3pix], coord=GALACTIC", "expected the image's frame, J2000"));
