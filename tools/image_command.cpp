@@ -261,7 +261,7 @@ class ImageRun {
     }
     drawing_ = std::make_unique<PictureDrawing>(products_->pictures());
     const imager::StageTimer timer(times_, "write images");
-    products_->write(threads_);
+    products_->write();
   }
 
   void write_report() {

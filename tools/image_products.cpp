@@ -2,8 +2,6 @@
 
 #include <cmath>
 
-#include "imager/parallel.h"
-
 namespace misfit::tools {
 
 std::vector<imager::HeaderCard> error_cards(const RunReport& report) {
@@ -44,9 +42,8 @@ void ImageProducts::add(const std::string& kind, const std::string& title, const
   products_.push_back(std::move(product));
 }
 
-void ImageProducts::write(int threads) const {
-  imager::parallel_for(products_.size(), threads,
-                       [&](std::size_t i) { imager::write_fits(products_[i].image, path(products_[i], "fits"), format_); });
+void ImageProducts::write() const {
+  for (const Product& product : products_) imager::write_fits(product.image, path(product, "fits"), format_);
 }
 
 std::vector<Picture> ImageProducts::pictures() const {

@@ -25,8 +25,8 @@ class ImageProducts {
   /// Without a title it is not drawn.
   void add(const std::string& kind, const std::string& title, const std::string& unit, imager::Image image);
 
-  /// Writes <imagename>.<kind>.fits for each, several at a time.
-  void write(int threads) const;
+  /// Writes <imagename>.<kind>.fits for each.
+  void write() const;
   /// Pictures to draw as <imagename>.<kind>.png, the last added first; they last as long as these products.
   std::vector<Picture> pictures() const;
 
