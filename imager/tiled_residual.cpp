@@ -23,6 +23,13 @@ std::size_t at(int row, int column, int columns) {
   return static_cast<std::size_t>(row) * static_cast<std::size_t>(columns) + static_cast<std::size_t>(column);
 }
 
+/// Room for so many pixels in an odd number of cache lines: rows that lie a power of two apart push each other out of the
+/// cache.
+int row_length(int pixels) {
+  constexpr int line = 16;
+  return (pixels / line / 2 * 2 + (pixels / line % 2 == 0 ? 1 : 3)) * line;
+}
+
 /// A span of the PSF's rows or columns as a tile's pixels see them.
 struct Overlap {
   int first;  ///< pixel of the tile
@@ -44,15 +51,17 @@ TiledResidual::TiledResidual(const Image& residual, const Image& psf, int thread
       threads_(threads),
       tiles_u_(tiles(residual.width)),
       tiles_v_(tiles(residual.height)),
-      psf_(psf.pixel.begin(), psf.pixel.end()),
+      psf_columns_(row_length(psf.width)),
+      psf_(at(psf.height, 0, psf_columns_)),
       pixel_(at(tiles_v_, 0, tiles_u_) * tile_pixels, std::numeric_limits<float>::quiet_NaN()),
       taken_(at(tiles_v_, 0, tiles_u_)),
       bright_(taken_.size()),
       rest_bound_(taken_.size()),
       bound_(taken_.size()),
       row_bound_(static_cast<std::size_t>(tiles_v_)) {
-  for (float& value : psf_)
-    if (std::isnan(value)) value = 0;
+  for (int r = 0; r < psf.height; ++r)
+    std::transform(psf.row(r), psf.row(r) + psf.width, &psf_[at(r, 0, psf_columns_)],
+                   [](double value) { return std::isnan(value) ? 0 : static_cast<float>(value); });
   bound_reach();
   load(residual);
 }
@@ -71,7 +80,7 @@ void TiledResidual::bound_reach() {
   for (int r = 0; r < height; ++r)
     for (int c = 0; c < width; ++c) {
       float& value = largest[at(span(r, height, tiles_v_), span(c, width, tiles_u_), spans_u)];
-      value = std::max(value, std::abs(psf_[at(r, c, width)]));
+      value = std::max(value, std::abs(psf_[at(r, c, psf_columns_)]));
     }
   reach_.resize(at(spans_v - 1, 0, spans_u - 1));
   for (int v = 0; v + 1 < spans_v; ++v)
@@ -192,11 +201,11 @@ void TiledResidual::refresh(std::size_t index) {
     const Overlap rows = overlap(tile_v, component.row, residual_.height);
     const Overlap columns = overlap(tile_u, component.column, residual_.width);
     if (rows.first >= rows.end || columns.first >= columns.end) continue;
-    patches.push_back({&psf_[at(rows.first + rows.shift, columns.first + columns.shift, residual_.width)], component.factor,
+    patches.push_back({&psf_[at(rows.first + rows.shift, columns.first + columns.shift, psf_columns_)], component.factor,
                        rows.first, rows.end, columns.first, columns.end});
   }
   taken_[index] = component_.size();
-  bound_[index] = subtract_and_peak(tile(index), patches.data(), patches.size(), residual_.width);
+  bound_[index] = subtract_and_peak(tile(index), patches.data(), patches.size(), psf_columns_);
   choose_bright(index);
 }
 
@@ -232,7 +241,7 @@ void TiledResidual::choose_bright(std::size_t index) {
     bright.value.clear();
   }
   bright.offset.clear();
-  for (const int place : bright.place) bright.offset.push_back(place / side * residual_.width + place % side);
+  for (const int place : bright.place) bright.offset.push_back(place / side * psf_columns_ + place % side);
 }
 
 void TiledResidual::refresh_bright(std::size_t index) {
@@ -244,7 +253,7 @@ void TiledResidual::refresh_bright(std::size_t index) {
     const Overlap columns = overlap(tile_u, component.column, residual_.width);
     if (rows.first >= rows.end || columns.first >= columns.end) continue;
     if (rows.whole() && columns.whole()) {
-      subtract_at(&psf_[at(rows.shift, columns.shift, residual_.width)], component.factor, bright.offset.data(),
+      subtract_at(&psf_[at(rows.shift, columns.shift, psf_columns_)], component.factor, bright.offset.data(),
                   bright.offset.size(), bright.value.data());
       continue;
     }
@@ -252,7 +261,7 @@ void TiledResidual::refresh_bright(std::size_t index) {
       const int r = bright.place[i] / side, c = bright.place[i] % side;
       if (r >= rows.first && r < rows.end && c >= columns.first && c < columns.end)
         bright.value[i] =
-            std::fma(-component.factor, psf_[at(r + rows.shift, c + columns.shift, residual_.width)], bright.value[i]);
+            std::fma(-component.factor, psf_[at(r + rows.shift, c + columns.shift, psf_columns_)], bright.value[i]);
     }
   }
   bright.peak = nothing;

@@ -60,7 +60,8 @@ class TiledResidual {
   int threads_;
   int tiles_u_;
   int tiles_v_;
-  std::vector<float> psf_;  ///< [row][column]
+  int psf_columns_;
+  std::vector<float> psf_;  ///< [row][column of psf_columns_]
   /// The largest |PSF| between any pixel of a tile and any of one that lies (rows, columns) of tiles beyond it, where
   /// [rows + tiles_v − 1][columns + tiles_u − 1].
   std::vector<float> reach_;
