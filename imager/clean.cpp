@@ -21,17 +21,18 @@ std::shared_ptr<const Image> cleanable(const std::shared_ptr<const Image>& resid
   return mask == nullptr ? residual : std::make_shared<const Image>(masked(*residual, *mask));
 }
 
-/// 0 where a mask allows nothing.
-double peak_magnitude(const Image& image) {
-  const double peak = std::abs(find_peak(image).value);
-  return std::isnan(peak) ? 0 : peak;
-}
-
-void require_finite(const Image& residual) {
+double finite_peak(const Image& residual) {
   const double peak = find_peak(residual).value;
   if (!std::isfinite(peak))
-    throw std::runtime_error("the residual image is " + std::to_string(peak) +
-                             " at its peak: the data or the model are too large");
+    throw std::runtime_error("the residual image's peak is " + std::to_string(peak) +
+                             " Jy/beam, expected a finite number: the data or the model are too large");
+  return std::abs(peak);
+}
+
+/// 0 where the mask allows nothing.
+double masked_peak(const Image& image) {
+  const double peak = std::abs(find_peak(image).value);
+  return std::isnan(peak) ? 0 : peak;
 }
 
 struct Ending {
@@ -84,10 +85,11 @@ CleanResult clean(const VisibilitySource& source, const Transform& transform, co
   std::shared_ptr<const Image> to_clean;
   const auto take_state = [&](double depth) {
     const StageTimer timer(times, "statistics");
-    require_finite(*residual);
+    const double peak = finite_peak(*residual);
     to_clean = cleanable(residual, options.mask);
     const double flux = std::accumulate(result.model.pixel.begin(), result.model.pixel.end(), 0.0);
-    result.report.cycles.push_back({result.report.iterations, peak_magnitude(*to_clean), robust_noise(*residual), flux, depth});
+    result.report.cycles.push_back({result.report.iterations, options.mask == nullptr ? peak : masked_peak(*to_clean),
+                                    robust_noise(*residual), flux, depth});
   };
   result.report.max_sidelobe = max_sidelobe;
   take_state(0);

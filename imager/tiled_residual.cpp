@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 
 #include "imager/parallel.h"
 #include "imager/tiled_residual_loops.h"

@@ -32,7 +32,7 @@ double number(std::string_view text, std::string_view whole, const std::string& 
 
 /// "12h30m49.4s", "12:30:49.4", "12d23m28s" or "12.23.28.0" in units of its first part, which ends with `first`, the second
 /// with `second`.
-double sexagesimal(std::string_view text, char first, char second, const std::string& what) {
+double parse_sexagesimal(std::string_view text, char first, char second, const std::string& what) {
   const bool negative = text.starts_with('-');
   std::string_view rest = text.substr(negative || text.starts_with('+') ? 1 : 0);
   const auto whole_part = [&](char end) {
@@ -69,15 +69,15 @@ Quantity plain_quantity(std::string_view text, const std::string& what) {
 
 Quantity right_ascension(std::string_view text) {
   const std::string what = "a right ascension such as 12h30m49.4s, 12:30:49.4 or 187.7deg, or a column such as 100pix";
-  if (text.find('h') != std::string_view::npos) return {false, 15 * degree * sexagesimal(text, 'h', 'm', what)};
-  if (text.find(':') != std::string_view::npos) return {false, 15 * degree * sexagesimal(text, ':', ':', what)};
+  if (text.find('h') != std::string_view::npos) return {false, 15 * degree * parse_sexagesimal(text, 'h', 'm', what)};
+  if (text.find(':') != std::string_view::npos) return {false, 15 * degree * parse_sexagesimal(text, ':', ':', what)};
   return plain_quantity(text, what);
 }
 
 Quantity declination(std::string_view text) {
   const std::string what = "a declination such as +12d23m28s, +12.23.28.0 or 12.39deg, or a row such as 100pix";
-  if (text.ends_with('s')) return {false, degree * sexagesimal(text, 'd', 'm', what)};
-  if (std::count(text.begin(), text.end(), '.') >= 2) return {false, degree * sexagesimal(text, '.', '.', what)};
+  if (text.ends_with('s')) return {false, degree * parse_sexagesimal(text, 'd', 'm', what)};
+  if (std::count(text.begin(), text.end(), '.') >= 2) return {false, degree * parse_sexagesimal(text, '.', '.', what)};
   return plain_quantity(text, what);
 }
 
