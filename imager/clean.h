@@ -43,7 +43,8 @@ struct MajorCycle {
   double peak_residual_jy = 0;  ///< within the mask
   double rms_jy = 0;            ///< robust noise of the residual, within the mask and without
   double model_flux_jy = 0;
-  double cycle_threshold_jy = 0;  ///< how deep its minor cycle was to go
+  double cycle_threshold_jy = 0;  ///< how deep its minor cycle was to go, in Jy/beam
+  std::string ended;              ///< why its minor cycle ended; empty before the first
 };
 
 struct CleanReport {

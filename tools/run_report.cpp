@@ -76,7 +76,8 @@ json cycle_json(const imager::MajorCycle& cycle) {
           {"peak_residual_jy", number(cycle.peak_residual_jy)},
           {"rms_jy", number(cycle.rms_jy)},
           {"model_flux_jy", number(cycle.model_flux_jy)},
-          {"cycle_threshold_jy", number(cycle.cycle_threshold_jy)}};
+          {"cycle_threshold_jy", number(cycle.cycle_threshold_jy)},
+          {"ended", cycle.ended}};
 }
 
 json clean_json(const imager::CleanReport* clean) {
@@ -84,7 +85,7 @@ json clean_json(const imager::CleanReport* clean) {
   json log = json::array();
   for (const imager::MajorCycle& cycle : clean->cycles) log.push_back(cycle_json(cycle));
   json report = cycle_json(clean->final_state());
-  report.erase("cycle_threshold_jy");
+  for (const char* of_a_cycle : {"cycle_threshold_jy", "ended"}) report.erase(of_a_cycle);
   report["iterations"] = clean->iterations;
   report["major_cycles"] = clean->cycles.size() - 1;
   report["stop_code"] = static_cast<int>(clean->stop);
