@@ -4,6 +4,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "imager/tiled_psf.h"
 #include "imager/tiled_residual.h"
 
 namespace misfit::imager {
@@ -14,7 +15,8 @@ MinorCycleReport hogbom(const Image& residual, const Image& psf, const MinorCycl
     throw std::invalid_argument("residual of " + std::to_string(residual.width) + " × " + std::to_string(residual.height) +
                                 " pixels: PSF and model are expected to have the same size");
   constexpr double divergence = 3;  // as clean() judges major cycles
-  TiledResidual left(residual, psf, options.threads);
+  const TiledPsf tiled_psf(psf, options.threads);
+  TiledResidual left(residual, tiled_psf, options.threads);
   Peak peak = left.peak();
   const double first_peak = std::abs(peak.value);
   MinorCycleReport report;

@@ -14,19 +14,8 @@ constexpr int side = residual_tile_side;
 constexpr std::size_t tile_pixels = std::size_t{side} * side;
 constexpr float nothing = -std::numeric_limits<float>::infinity();
 
-int tiles(int pixels) {
-  return (pixels + side - 1) / side;
-}
-
 std::size_t at(int row, int column, int columns) {
   return static_cast<std::size_t>(row) * static_cast<std::size_t>(columns) + static_cast<std::size_t>(column);
-}
-
-/// Room for so many pixels in an odd number of cache lines: rows that lie a power of two apart push each other out of the
-/// cache.
-int row_length(int pixels) {
-  constexpr int line = 16;
-  return (pixels / line / 2 * 2 + (pixels / line % 2 == 0 ? 1 : 3)) * line;
 }
 
 /// A span of the PSF's rows or columns as a tile's pixels see them.
@@ -44,48 +33,23 @@ Overlap overlap(int tile, int component, int pixels) {
 
 }  // namespace
 
-TiledResidual::TiledResidual(const Image& residual, const Image& psf, int threads)
+TiledResidual::TiledResidual(const Image& residual, const TiledPsf& psf, int threads)
     : residual_(residual),
-      original_psf_(psf),
+      psf_(psf),
       threads_(threads),
-      tiles_u_(tiles(residual.width)),
-      tiles_v_(tiles(residual.height)),
-      psf_columns_(row_length(psf.width)),
-      psf_(at(psf.height, 0, psf_columns_)),
+      tiles_u_(psf.tiles_u()),
+      tiles_v_(psf.tiles_v()),
       pixel_(at(tiles_v_, 0, tiles_u_) * tile_pixels, std::numeric_limits<float>::quiet_NaN()),
       taken_(at(tiles_v_, 0, tiles_u_)),
       bright_(taken_.size()),
       rest_bound_(taken_.size()),
       bound_(taken_.size()),
       row_bound_(static_cast<std::size_t>(tiles_v_)) {
-  for (int r = 0; r < psf.height; ++r)
-    std::transform(psf.row(r), psf.row(r) + psf.width, &psf_[at(r, 0, psf_columns_)],
-                   [](double value) { return std::isnan(value) ? 0 : static_cast<float>(value); });
-  bound_reach();
   load(residual);
 }
 
 float* TiledResidual::tile(std::size_t index) {
   return pixel_.data() + index * tile_pixels;
-}
-
-/// Pixels of tiles that lie d tiles apart are d · side − (side − 1) … d · side + (side − 1) pixels apart: within the spans of
-/// `side` pixels that begin at (d − 1) · side and at d · side.
-void TiledResidual::bound_reach() {
-  const int width = residual_.width, height = residual_.height;
-  const int spans_u = 2 * tiles_u_, spans_v = 2 * tiles_v_;
-  std::vector<float> largest(at(spans_v, 0, spans_u));  // [span + tiles]
-  const auto span = [](int pixel, int pixels, int tiles_along) { return (pixel - pixels / 2 + tiles_along * side) / side; };
-  for (int r = 0; r < height; ++r)
-    for (int c = 0; c < width; ++c) {
-      float& value = largest[at(span(r, height, tiles_v_), span(c, width, tiles_u_), spans_u)];
-      value = std::max(value, std::abs(psf_[at(r, c, psf_columns_)]));
-    }
-  reach_.resize(at(spans_v - 1, 0, spans_u - 1));
-  for (int v = 0; v + 1 < spans_v; ++v)
-    for (int u = 0; u + 1 < spans_u; ++u)
-      reach_[at(v, u, spans_u - 1)] = std::max({largest[at(v, u, spans_u)], largest[at(v, u + 1, spans_u)],
-                                                largest[at(v + 1, u, spans_u)], largest[at(v + 1, u + 1, spans_u)]});
 }
 
 /// Takes over an image from which all components have been taken.
@@ -115,7 +79,7 @@ void TiledResidual::subtract(int row, int column, float factor) {
   component_.push_back({row, column, factor});
   const int tile_v = row / side, tile_u = column / side;
   for (int v = 0; v < tiles_v_; ++v) {
-    const float* const reach = &reach_[at(v - tile_v + tiles_v_ - 1, tiles_u_ - 1 - tile_u, 2 * tiles_u_ - 1)];
+    const float* const reach = psf_.reach(v - tile_v, -tile_u);
     const std::size_t first = at(v, 0, tiles_u_);
     raise_bounds(&rest_bound_[first], reach, tiles_u_, std::abs(factor));
     row_bound_[static_cast<std::size_t>(v)] = raise_bounds(&bound_[first], reach, tiles_u_, std::abs(factor));
@@ -186,8 +150,7 @@ bool TiledResidual::convolution_is_cheaper(float highest) const {
 void TiledResidual::refresh_all() {
   Image taken(residual_.width, residual_.height);
   for (const Component& c : component_) taken.at(c.row, c.column) += double{c.factor};
-  if (convolution_ == nullptr) convolution_ = std::make_unique<Convolution<float>>(original_psf_, threads_);
-  Image left = (*convolution_)(taken);
+  Image left = psf_.convolution()(taken);
   for (std::size_t i = 0; i < left.pixel.size(); ++i) left.pixel[i] = residual_.pixel[i] - left.pixel[i];
   load(left);
 }
@@ -200,11 +163,11 @@ void TiledResidual::refresh(std::size_t index) {
     const Overlap rows = overlap(tile_v, component.row, residual_.height);
     const Overlap columns = overlap(tile_u, component.column, residual_.width);
     if (rows.first >= rows.end || columns.first >= columns.end) continue;
-    patches.push_back({&psf_[at(rows.first + rows.shift, columns.first + columns.shift, psf_columns_)], component.factor,
-                       rows.first, rows.end, columns.first, columns.end});
+    patches.push_back({psf_.at(rows.first + rows.shift, columns.first + columns.shift), component.factor, rows.first, rows.end,
+                       columns.first, columns.end});
   }
   taken_[index] = component_.size();
-  bound_[index] = subtract_and_peak(tile(index), patches.data(), patches.size(), psf_columns_);
+  bound_[index] = subtract_and_peak(tile(index), patches.data(), patches.size(), psf_.columns());
   choose_bright(index);
 }
 
@@ -240,7 +203,7 @@ void TiledResidual::choose_bright(std::size_t index) {
     bright.value.clear();
   }
   bright.offset.clear();
-  for (const int place : bright.place) bright.offset.push_back(place / side * psf_columns_ + place % side);
+  for (const int place : bright.place) bright.offset.push_back(place / side * psf_.columns() + place % side);
 }
 
 void TiledResidual::refresh_bright(std::size_t index) {
@@ -252,15 +215,14 @@ void TiledResidual::refresh_bright(std::size_t index) {
     const Overlap columns = overlap(tile_u, component.column, residual_.width);
     if (rows.first >= rows.end || columns.first >= columns.end) continue;
     if (rows.whole() && columns.whole()) {
-      subtract_at(&psf_[at(rows.shift, columns.shift, psf_columns_)], component.factor, bright.offset.data(),
-                  bright.offset.size(), bright.value.data());
+      subtract_at(psf_.at(rows.shift, columns.shift), component.factor, bright.offset.data(), bright.offset.size(),
+                  bright.value.data());
       continue;
     }
     for (std::size_t i = 0; i < bright.place.size(); ++i) {
       const int r = bright.place[i] / side, c = bright.place[i] % side;
       if (r >= rows.first && r < rows.end && c >= columns.first && c < columns.end)
-        bright.value[i] =
-            std::fma(-component.factor, psf_[at(r + rows.shift, c + columns.shift, psf_columns_)], bright.value[i]);
+        bright.value[i] = std::fma(-component.factor, *psf_.at(r + rows.shift, c + columns.shift), bright.value[i]);
     }
   }
   bright.peak = nothing;

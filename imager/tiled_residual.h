@@ -1,12 +1,11 @@
 #pragma once
 
 #include <cstddef>
-#include <memory>
 #include <vector>
 
-#include "imager/convolution.h"
 #include "imager/image.h"
 #include "imager/noise.h"
+#include "imager/tiled_psf.h"
 
 namespace misfit::imager {
 
@@ -18,9 +17,8 @@ namespace misfit::imager {
 /// loop in single precision, but for the rounding of convolutions.
 class TiledResidual {
  public:
-  /// `psf` has the size of `residual` and its peak in the middle pixel. What lies beyond it, or is NaN, counts as 0. Both must
-  /// outlive this.
-  TiledResidual(const Image& residual, const Image& psf, int threads);
+  /// `psf` has the size of `residual`. What lies beyond it counts as 0. Both must outlive this.
+  TiledResidual(const Image& residual, const TiledPsf& psf, int threads);
 
   /// The brightest pixel, the first in row-major order among equals; of value 0 where all pixels are NaN.
   Peak peak();
@@ -42,7 +40,6 @@ class TiledResidual {
     float peak = 0;         ///< the largest magnitude
   };
 
-  void bound_reach();
   void load(const Image& image);
   float* tile(std::size_t index);
   float row_bound(std::size_t tile_row) const;
@@ -56,15 +53,10 @@ class TiledResidual {
   void choose_bright(std::size_t index);
 
   const Image& residual_;
-  const Image& original_psf_;
+  const TiledPsf& psf_;
   int threads_;
   int tiles_u_;
   int tiles_v_;
-  int psf_columns_;
-  std::vector<float> psf_;  ///< [row][column of psf_columns_]
-  /// The largest |PSF| between any pixel of a tile and any of one that lies (rows, columns) of tiles beyond it, where
-  /// [rows + tiles_v − 1][columns + tiles_u − 1].
-  std::vector<float> reach_;
   std::vector<Component> component_;
   std::vector<float> pixel_;        ///< [tile][row][column], NaN beyond the image
   std::vector<std::size_t> taken_;  ///< [tile]: components that have been taken off its pixels
@@ -72,7 +64,6 @@ class TiledResidual {
   std::vector<float> rest_bound_;   ///< [tile]: none of its other pixels is brighter; −∞ where there is none
   std::vector<float> bound_;        ///< [tile]: none of its pixels is brighter
   std::vector<float> row_bound_;    ///< [row of tiles]: the largest bound
-  std::unique_ptr<Convolution<float>> convolution_;  ///< with the PSF; made when it is first needed
 };
 
 }  // namespace misfit::imager

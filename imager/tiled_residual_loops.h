@@ -2,10 +2,9 @@
 
 #include <cstddef>
 
-namespace misfit::imager {
+#include "imager/tiled_psf.h"
 
-/// Side of a tile of a residual, in pixels.
-constexpr int residual_tile_side = 32;
+namespace misfit::imager {
 
 /// The part of factor × PSF that falls on rows [first_row, end_row) and columns [first_column, end_column) of a tile.
 struct PsfPatch {
