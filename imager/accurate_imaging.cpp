@@ -98,7 +98,8 @@ AccurateImages make_accurate_images(const VisibilitySource& source, GriddingPlan
     psf = std::move(made.images.psf);
     stricter.images = 1;
   }
-  made = {};  // the images come again, and there may be no room for both
+  made.transform.reset();  // all comes again, and there may be no room for both
+  made.images = {};
   {
     const StageTimer timer(times, "plan");
     plan = plan_gridding(stricter);

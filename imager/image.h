@@ -23,4 +23,9 @@ struct Image {
   double at(int r, int column) const { return row(r)[column]; }
 };
 
+/// Takes an image off another of the same size.
+inline void subtract(const Image& image, Image& from) {
+  for (std::size_t i = 0; i < from.pixel.size(); ++i) from.pixel[i] -= image.pixel[i];
+}
+
 }  // namespace misfit::imager

@@ -48,4 +48,9 @@ Peak find_peak(const Image& image) {
   return {static_cast<int>(at / width), static_cast<int>(at % width), image.pixel[at]};
 }
 
+double largest_magnitude(const Image& image) {
+  const double peak = std::abs(find_peak(image).value);
+  return std::isnan(peak) ? 0 : peak;
+}
+
 }  // namespace misfit::imager

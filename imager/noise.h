@@ -21,4 +21,7 @@ struct Peak {
 /// a pixel.
 Peak find_peak(const Image& image);
 
+/// That magnitude; 0 where every pixel is NaN.
+double largest_magnitude(const Image& image);
+
 }  // namespace misfit::imager

@@ -1,0 +1,84 @@
+#include "imager/clean/components.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <string>
+#include <tuple>
+#include <utility>
+
+#include "imager/clean/gaussian_blur.h"
+
+namespace misfit::imager {
+namespace {
+
+bool before(const Component& a, const Component& b) {
+  return std::tie(a.scale, a.row, a.column) < std::tie(b.scale, b.row, b.column);
+}
+
+/// Adds up neighbours at one place, in their order.
+std::vector<Component> with_one_at_a_place(const std::vector<Component>& sorted) {
+  std::vector<Component> result;
+  for (const Component& c : sorted) {
+    const bool same = !result.empty() && !before(result.back(), c);
+    if (same)
+      result.back().flux_jy += c.flux_jy;
+    else
+      result.push_back(c);
+  }
+  std::erase_if(result, [](const Component& c) { return c.flux_jy == 0; });
+  return result;
+}
+
+}  // namespace
+
+ComponentModel::ComponentModel(int width, int height, std::vector<double> scale_pixels)
+    : width_(width), height_(height), scale_pixels_(std::move(scale_pixels)) {}
+
+void ComponentModel::add(const std::vector<Component>& found) {
+  for (const Component& c : found)
+    if (c.row < 0 || c.row >= height_ || c.column < 0 || c.column >= width_ || c.scale < 0 ||
+        c.scale >= static_cast<int>(scale_pixels_.size()))
+      throw std::invalid_argument("component of scale " + std::to_string(c.scale) + " at row " + std::to_string(c.row) +
+                                  ", column " + std::to_string(c.column) + ": expected one of " +
+                                  std::to_string(scale_pixels_.size()) + " scales in an image of " + std::to_string(width_) +
+                                  " × " + std::to_string(height_) + " pixels");
+  const auto old = static_cast<std::ptrdiff_t>(components_.size());
+  components_.insert(components_.end(), found.begin(), found.end());
+  std::stable_sort(components_.begin() + old, components_.end(), before);
+  std::inplace_merge(components_.begin(), components_.begin() + old, components_.end(), before);  // stable
+  components_ = with_one_at_a_place(components_);
+}
+
+double ComponentModel::flux_jy() const {
+  double sum = 0;
+  for (const Component& c : components_) sum += c.flux_jy;
+  return sum;
+}
+
+Image ComponentModel::image(int threads) const {
+  Image result(width_, height_);
+  for (auto c = components_.begin(); c != components_.end();) {
+    const int scale = c->scale;
+    const double fwhm = scale_pixels_[static_cast<std::size_t>(scale)];
+    if (fwhm == 0) {
+      for (; c != components_.end() && c->scale == scale; ++c) result.at(c->row, c->column) += c->flux_jy;
+      continue;
+    }
+    Image points(width_, height_);
+    for (; c != components_.end() && c->scale == scale; ++c) points.at(c->row, c->column) += c->flux_jy;
+    const Image extended = gaussian_blur(points, fwhm, threads);
+    for (std::size_t i = 0; i < result.pixel.size(); ++i) result.pixel[i] += extended.pixel[i];
+  }
+  return result;
+}
+
+std::vector<Component> components_of(const Image& image) {
+  std::vector<Component> result;
+  for (int r = 0; r < image.height; ++r)
+    for (int c = 0; c < image.width; ++c)
+      if (const double flux = image.at(r, c); flux != 0 && !std::isnan(flux)) result.push_back({0, r, c, flux});
+  return result;
+}
+
+}  // namespace misfit::imager

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "imager/image.h"
+
+namespace misfit::imager {
+
+/// Flux that CLEAN found at a pixel: a point, or a round Gaussian centred on it.
+struct Component {
+  int scale = 0;  ///< which of the model's scales
+  int row = 0;
+  int column = 0;
+  double flux_jy = 0;
+};
+
+/// A model made of components. Those at one place and scale are one. Equal components added in the same order give equal bits,
+/// whatever they are divided into; a model made anew from its components() has the same bits.
+class ComponentModel {
+ public:
+  ComponentModel() = default;
+  /// `scale_pixels`: the full width at half maximum of each scale's Gaussian; 0 for points.
+  ComponentModel(int width, int height, std::vector<double> scale_pixels);
+
+  int width() const { return width_; }
+  int height() const { return height_; }
+  const std::vector<double>& scale_pixels() const { return scale_pixels_; }
+  /// One at a place, in the order of scale, row, column; none without flux.
+  const std::vector<Component>& components() const { return components_; }
+
+  /// Throws std::invalid_argument when one of them lies outside the image or has no scale of the model.
+  void add(const std::vector<Component>& found);
+  double flux_jy() const;
+  /// Jy/pixel. What of Gaussians lies beyond the image is lost.
+  Image image(int threads) const;
+
+ private:
+  int width_ = 0;
+  int height_ = 0;
+  std::vector<double> scale_pixels_;
+  std::vector<Component> components_;
+};
+
+/// The pixels of an image that are neither 0 nor NaN as point components of scale 0.
+std::vector<Component> components_of(const Image& image);
+
+}  // namespace misfit::imager
