@@ -1,4 +1,4 @@
-#include "imager/hogbom.h"
+#include "imager/clean/hogbom.h"
 
 #include <boost/test/data/test_case.hpp>
 #include <boost/test/unit_test.hpp>
@@ -23,27 +23,28 @@ Image random_psf(int width, int height, double sidelobes) {
 }
 
 struct Cleaned {
-  MinorCycleReport report;
+  int iterations = 0;
+  double peak_jy = 0;
   Image model;
 };
 
-Cleaned cleaned(const Image& residual, const Image& psf, const MinorCycleOptions& options) {
-  Cleaned result{{}, Image(residual.width, residual.height)};
-  result.report = hogbom(residual, psf, options, result.model);
+Cleaned cleaned(const Image& residual, const Image& psf, const MinorCycleOptions& options, int threads = 3) {
+  const MinorCycleReport report = Hogbom(psf, threads).clean(residual, options);
+  Cleaned result{report.iterations(), report.peak_jy, Image(residual.width, residual.height)};
+  for (const Component& c : report.components) result.model.at(c.row, c.column) += c.flux_jy;
   return result;
 }
 
 /// The definition, in double precision.
 Cleaned plain(Image residual, const Image& psf, const MinorCycleOptions& options) {
-  Cleaned result{{}, Image(residual.width, residual.height)};
+  Cleaned result{0, 0, Image(residual.width, residual.height)};
   while (true) {
     const Peak peak = find_peak(residual);
-    result.report.peak_jy = std::abs(peak.value);
-    if (result.report.iterations == options.max_iterations || result.report.peak_jy <= options.threshold_jy) return result;
+    result.peak_jy = std::abs(peak.value);
+    if (result.iterations == options.max_iterations || result.peak_jy <= options.threshold_jy) return result;
     const double component = options.gain * peak.value;
     result.model.at(peak.row, peak.column) += component;
-    result.report.flux_jy += component;
-    ++result.report.iterations;
+    ++result.iterations;
     for (int r = 0; r < residual.height; ++r)
       for (int c = 0; c < residual.width; ++c) {
         const int psf_row = r - peak.row + psf.height / 2, psf_column = c - peak.column + psf.width / 2;
@@ -62,13 +63,12 @@ BOOST_DATA_TEST_CASE(components_are_those_of_the_plain_double_loop,
   const Image residual = random_image(width, height, 1), psf = random_psf(width, height, 0.05);
   for (const double gain : {0.1, 0.5, 1.0}) {
     const MinorCycleOptions options{
-        .gain = gain, .max_iterations = 100, .threshold_jy = 0.3, .threads = 3, .stop_requested = {}};
+        .gain = gain, .max_iterations = 100, .threshold_jy = 0.3, .stop_requested = {}};
     const Cleaned is = cleaned(residual, psf, options), should = plain(residual, psf, options);
-    BOOST_TEST(is.report.iterations == should.report.iterations);
+    BOOST_TEST(is.iterations == should.iterations);
     // Single precision: each of 100 subtractions rounds by 6e-8 of a value near 1.
     BOOST_TEST(distance(is.model.pixel, should.model.pixel) <= 1e-5 * norm(should.model.pixel));
-    BOOST_TEST(std::abs(is.report.flux_jy - should.report.flux_jy) < 1e-4);
-    BOOST_TEST(std::abs(is.report.peak_jy - should.report.peak_jy) < 1e-5);
+    BOOST_TEST(std::abs(is.peak_jy - should.peak_jy) < 1e-5);
   }
 }
 
@@ -76,11 +76,11 @@ BOOST_DATA_TEST_CASE(components_are_those_of_the_plain_double_loop,
 BOOST_DATA_TEST_CASE(components_of_large_images_are_those_of_the_plain_double_loop, bdata::make({0.02, 0.003, 0.0}),
                      sidelobes) {
   const Image residual = random_image(250, 210, 4), psf = random_psf(250, 210, sidelobes);
-  const MinorCycleOptions options{.gain = 0.2, .max_iterations = 1500, .threshold_jy = 0.1, .threads = 2, .stop_requested = {}};
+  const MinorCycleOptions options{.gain = 0.2, .max_iterations = 1500, .threshold_jy = 0.1, .stop_requested = {}};
   const Cleaned is = cleaned(residual, psf, options), should = plain(residual, psf, options);
-  BOOST_TEST(is.report.iterations == should.report.iterations);
+  BOOST_TEST(is.iterations == should.iterations);
   BOOST_TEST(distance(is.model.pixel, should.model.pixel) <= 1e-5 * norm(should.model.pixel));
-  BOOST_TEST(std::abs(is.report.peak_jy - should.report.peak_jy) < 1e-5);
+  BOOST_TEST(std::abs(is.peak_jy - should.peak_jy) < 1e-5);
 }
 
 /// A faint background that has to be looked at only when the sidelobes of many components could have raised it, by a
@@ -95,23 +95,21 @@ Image bright_sources_on_faint_noise(int width, int height) {
 BOOST_AUTO_TEST_CASE(components_of_bright_sources_are_those_of_the_plain_double_loop) {
   const Image residual = bright_sources_on_faint_noise(250, 210), psf = random_psf(250, 210, 0.003);
   const MinorCycleOptions options{
-      .gain = 0.02, .max_iterations = 3000, .threshold_jy = 0.1, .threads = 2, .stop_requested = {}};
+      .gain = 0.02, .max_iterations = 3000, .threshold_jy = 0.1, .stop_requested = {}};
   const Cleaned is = cleaned(residual, psf, options), should = plain(residual, psf, options);
-  BOOST_TEST(is.report.iterations == should.report.iterations);
+  BOOST_TEST(is.iterations == should.iterations);
   BOOST_TEST(distance(is.model.pixel, should.model.pixel) <= 1e-5 * norm(should.model.pixel));
-  BOOST_TEST(std::abs(is.report.peak_jy - should.report.peak_jy) < 1e-5);
+  BOOST_TEST(std::abs(is.peak_jy - should.peak_jy) < 1e-5);
 }
 
 BOOST_AUTO_TEST_CASE(the_result_is_the_same_bit_for_bit_for_any_number_of_threads) {
   const Image residual = bright_sources_on_faint_noise(250, 210), psf = random_psf(250, 210, 0.003);
-  MinorCycleOptions options{.gain = 0.02, .max_iterations = 3000, .threshold_jy = 0, .threads = 1, .stop_requested = {}};
-  const Cleaned one = cleaned(residual, psf, options);
+  const MinorCycleOptions options{.gain = 0.02, .max_iterations = 3000, .threshold_jy = 0, .stop_requested = {}};
+  const Cleaned one = cleaned(residual, psf, options, 1);
   for (const int threads : {2, 3, 6, 50}) {
-    options.threads = threads;
-    const Cleaned many = cleaned(residual, psf, options);
+    const Cleaned many = cleaned(residual, psf, options, threads);
     BOOST_TEST((many.model.pixel == one.model.pixel));
-    BOOST_TEST(many.report.peak_jy == one.report.peak_jy);
-    BOOST_TEST(many.report.flux_jy == one.report.flux_jy);
+    BOOST_TEST(many.peak_jy == one.peak_jy);
   }
 }
 
@@ -125,11 +123,11 @@ BOOST_DATA_TEST_CASE(pixels_that_are_nan_are_never_cleaned_and_change_nothing,
       static_cast<std::size_t>(height / 2) * static_cast<std::size_t>(width) + static_cast<std::size_t>(width / 2);
   for (std::size_t i = 0; i < psf.pixel.size(); i += 5)
     if (i != peak) psf.pixel[i] = nan, zeroed.pixel[i] = 0;
-  const MinorCycleOptions options{.gain = 0.3, .max_iterations = 100, .threshold_jy = 0.3, .threads = 3, .stop_requested = {}};
+  const MinorCycleOptions options{.gain = 0.3, .max_iterations = 100, .threshold_jy = 0.3, .stop_requested = {}};
   const Cleaned is = cleaned(residual, psf, options), should = plain(residual, zeroed, options);
-  BOOST_TEST(is.report.iterations == should.report.iterations);
+  BOOST_TEST(is.iterations == should.iterations);
   BOOST_TEST(distance(is.model.pixel, should.model.pixel) <= 1e-5 * norm(should.model.pixel));
-  BOOST_TEST(std::abs(is.report.peak_jy - should.report.peak_jy) < 1e-5);
+  BOOST_TEST(std::abs(is.peak_jy - should.peak_jy) < 1e-5);
   for (std::size_t i = 0; i < residual.pixel.size(); ++i)
     if (std::isnan(residual.pixel[i])) BOOST_REQUIRE(is.model.pixel[i] == 0);
 }
@@ -138,15 +136,15 @@ BOOST_AUTO_TEST_CASE(an_image_of_nan_has_nothing_to_clean) {
   Image residual(9, 7);
   std::fill(residual.pixel.begin(), residual.pixel.end(), std::numeric_limits<double>::quiet_NaN());
   const Cleaned is = cleaned(residual, random_psf(9, 7, 0.1), {.max_iterations = 10, .stop_requested = {}});
-  BOOST_TEST(is.report.iterations == 0);
-  BOOST_TEST(is.report.peak_jy == 0);
+  BOOST_TEST(is.iterations == 0);
+  BOOST_TEST(is.peak_jy == 0);
   BOOST_TEST(norm(is.model.pixel) == 0);
 }
 
 BOOST_AUTO_TEST_CASE(an_image_of_zeros_has_nothing_to_clean) {
   const Cleaned is = cleaned(Image(9, 7), random_psf(9, 7, 0.1), {.max_iterations = 10, .stop_requested = {}});
-  BOOST_TEST(is.report.iterations == 0);
-  BOOST_TEST(is.report.peak_jy == 0);
+  BOOST_TEST(is.iterations == 0);
+  BOOST_TEST(is.peak_jy == 0);
   BOOST_TEST(norm(is.model.pixel) == 0);
 }
 
@@ -155,8 +153,8 @@ BOOST_AUTO_TEST_CASE(a_single_pixel_loses_gain_times_its_value_each_time) {
   residual.at(0, 0) = 2;
   psf.at(0, 0) = 1;
   const Cleaned is = cleaned(residual, psf, {.gain = 0.25, .max_iterations = 3, .stop_requested = {}});
-  BOOST_TEST(is.report.peak_jy == 2 * 0.75 * 0.75 * 0.75);
-  BOOST_TEST(is.model.at(0, 0) == 2 - is.report.peak_jy);
+  BOOST_TEST(is.peak_jy == 2 * 0.75 * 0.75 * 0.75);
+  BOOST_TEST(is.model.at(0, 0) == 2 - is.peak_jy);
 }
 
 BOOST_AUTO_TEST_CASE(a_negative_peak_becomes_a_negative_component) {
@@ -165,8 +163,7 @@ BOOST_AUTO_TEST_CASE(a_negative_peak_becomes_a_negative_component) {
   residual.at(6, 1) = 3;
   const Cleaned is = cleaned(residual, random_psf(8, 8, 0), {.gain = 0.5, .max_iterations = 1, .stop_requested = {}});
   BOOST_TEST(is.model.at(2, 5) == -2);
-  BOOST_TEST(is.report.flux_jy == -2);
-  BOOST_TEST(is.report.peak_jy == 3);
+  BOOST_TEST(is.peak_jy == 3);
 }
 
 BOOST_AUTO_TEST_CASE(gain_one_takes_isolated_sources_at_once) {
@@ -175,7 +172,7 @@ BOOST_AUTO_TEST_CASE(gain_one_takes_isolated_sources_at_once) {
   sky.at(19, 29) = -2;
   sky.at(7, 13) = 3;
   const Cleaned is = cleaned(sky, random_psf(30, 20, 0), {.gain = 1, .max_iterations = 10, .stop_requested = {}});
-  BOOST_TEST(is.report.iterations == 3);
+  BOOST_TEST(is.iterations == 3);
   BOOST_TEST((is.model.pixel == sky.pixel));
 }
 
@@ -185,29 +182,15 @@ BOOST_AUTO_TEST_CASE(a_threshold_at_or_above_the_peak_leaves_everything) {
   for (const double threshold : {0.5, 0.6}) {
     const MinorCycleOptions options{.max_iterations = 10, .threshold_jy = threshold, .stop_requested = {}};
     const Cleaned is = cleaned(residual, random_psf(5, 5, 0), options);
-    BOOST_TEST(is.report.iterations == 0);
-    BOOST_TEST(is.report.peak_jy == 0.5);
+    BOOST_TEST(is.iterations == 0);
+    BOOST_TEST(is.peak_jy == 0.5);
   }
-}
-
-BOOST_AUTO_TEST_CASE(components_add_to_the_model_that_is_there) {
-  Image residual(5, 5), model(5, 5);
-  residual.at(1, 1) = model.at(1, 1) = model.at(0, 0) = 1;
-  imager::hogbom(residual, random_psf(5, 5, 0), {.gain = 0.5, .max_iterations = 1, .stop_requested = {}}, model);
-  BOOST_TEST(model.at(1, 1) == 1.5);
-  BOOST_TEST(model.at(0, 0) == 1);
 }
 
 BOOST_AUTO_TEST_CASE(the_user_can_stop_it) {
   const MinorCycleOptions options{.max_iterations = 1000000, .stop_requested = [] { return true; }};
   const Cleaned is = cleaned(random_image(8, 8, 3), random_psf(8, 8, 0), options);
-  BOOST_TEST(is.report.iterations == 0);
-}
-
-BOOST_AUTO_TEST_CASE(images_of_different_sizes_are_refused) {
-  Image model(5, 5);
-  BOOST_CHECK_THROW(imager::hogbom(Image(5, 5), Image(5, 6), {}, model), std::invalid_argument);
-  BOOST_CHECK_THROW(imager::hogbom(Image(6, 5), Image(6, 5), {}, model), std::invalid_argument);
+  BOOST_TEST(is.iterations == 0);
 }
 
 BOOST_AUTO_TEST_SUITE_END()

@@ -1,0 +1,89 @@
+#include "imager/clean/active_pixels.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace misfit::imager {
+namespace {
+
+/// The lowest level, not below `lowest`, above which no more than `most` pixels lie: a 4096th of the peak higher at most.
+double level_for(const Image& residual, double lowest, std::size_t most) {
+  constexpr int steps = 4096;
+  double peak = 0;
+  for (const double value : residual.pixel) peak = std::fmax(peak, std::abs(value));  // not NaN
+  if (!(peak > lowest)) return lowest;
+  std::vector<std::size_t> count(steps);
+  for (const double value : residual.pixel)
+    if (const double magnitude = std::abs(value); magnitude >= lowest)
+      ++count[static_cast<std::size_t>(std::min(steps - 1.0, (magnitude - lowest) / (peak - lowest) * steps))];
+  std::size_t step = steps, above = 0;
+  while (step > 0 && above + count[step - 1] <= most) above += count[--step];
+  // A top step that holds too many by itself is taken whole.
+  step = std::min<std::size_t>(step, steps - 1);
+  return lowest + (peak - lowest) * static_cast<double>(step) / steps;
+}
+
+}  // namespace
+
+ActivePixels::ActivePixels(const Image& residual, double lowest_jy, const PsfCore& core) : core_(core) {
+  constexpr std::size_t most = 65536;
+  level_jy_ = level_for(residual, lowest_jy, most);
+  row_.resize(static_cast<std::size_t>(residual.height) + 1);
+  for (int r = 0; r < residual.height; ++r) {
+    row_[static_cast<std::size_t>(r)].first = value_.size();
+    for (int c = 0; c < residual.width; ++c)
+      if (std::abs(residual.at(r, c)) >= level_jy_) {
+        column_.push_back(c);
+        value_.push_back(static_cast<float>(residual.at(r, c)));
+      }
+  }
+  row_.back().first = value_.size();
+  for (std::size_t r = 0; r + 1 < row_.size(); ++r) find_peak_of(r);
+}
+
+void ActivePixels::find_peak_of(std::size_t row) {
+  float peak = -1;
+  for (std::size_t i = row_[row].first; i < row_[row + 1].first; ++i) peak = std::max(peak, std::abs(value_[i]));
+  row_[row].peak = peak;
+}
+
+Peak ActivePixels::peak() const {
+  const auto brightest =
+      std::max_element(row_.begin(), row_.end(), [](const Row& a, const Row& b) { return a.peak < b.peak; });
+  if (brightest->peak < 0) return {};
+  std::size_t i = brightest->first;
+  while (std::abs(value_[i]) != brightest->peak) ++i;
+  return {static_cast<int>(brightest - row_.begin()), column_[i], double{value_[i]}};
+}
+
+void ActivePixels::subtract(int row, int column, float factor) {
+  const int reach = core_.reach(), rows = static_cast<int>(row_.size()) - 1;
+  for (int r = std::max(0, row - reach); r <= std::min(rows - 1, row + reach); ++r) {
+    const auto at = static_cast<std::size_t>(r);
+    const auto begin = column_.begin() + static_cast<std::ptrdiff_t>(row_[at].first);
+    const auto end = column_.begin() + static_cast<std::ptrdiff_t>(row_[at + 1].first);
+    const auto first = std::lower_bound(begin, end, column - reach);
+    if (first == end || *first > column + reach) continue;
+    const float* const psf = core_.row(r - row);
+    for (auto c = first; c != end && *c <= column + reach; ++c)
+      value_[static_cast<std::size_t>(c - column_.begin())] -= factor * psf[*c - column];
+    find_peak_of(at);
+  }
+}
+
+void find_among(ActivePixels& active, const ActiveSearch& search, const MinorCycleWatch& watch, MinorCycleReport& report) {
+  constexpr double divergence = 3;
+  double taken = 0;  // Σ|component|, in Jy/beam
+  Peak peak = active.peak();
+  const double first = std::abs(peak.value);
+  do {
+    const double component = search.gain * peak.value;
+    report.components.push_back({search.scale, peak.row, peak.column, component * search.flux_per_jy});
+    active.subtract(peak.row, peak.column, static_cast<float>(component));
+    taken += std::abs(component);
+    peak = active.peak();
+  } while (std::abs(peak.value) > std::max(search.stop_jy, active.level_jy() + active.core().largest_outside() * taken) &&
+           std::abs(peak.value) <= divergence * first && !watch.is_at_limit(report));
+}
+
+}  // namespace misfit::imager

@@ -1,0 +1,56 @@
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "imager/clean/minor_cycle.h"
+#include "imager/clean/psf_core.h"
+#include "imager/image.h"
+#include "imager/noise.h"
+
+namespace misfit::imager {
+
+/// The brightest pixels of a residual, from which alone components are taken, and only as far as the core of the PSF reaches
+/// (Clark 1980, A&A 89, 377). What they miss of a component is at most its flux × PsfCore::largest_outside().
+class ActivePixels {
+ public:
+  /// The pixels of `residual` that are at least as bright as `lowest_jy`, but no more of them than some number that fits a
+  /// cache: then those above a higher level. NaN is left out. `core` must outlive this.
+  ActivePixels(const Image& residual, double lowest_jy, const PsfCore& core);
+
+  const PsfCore& core() const { return core_; }
+  /// No pixel left out is brighter.
+  double level_jy() const { return level_jy_; }
+  /// The brightest, the first in row-major order among equals; of value 0 where there are none.
+  Peak peak() const;
+  /// Takes factor × the PSF's core at a pixel off them.
+  void subtract(int row, int column, float factor);
+
+ private:
+  /// Those of one row: from first to the next row's.
+  struct Row {
+    std::size_t first = 0;
+    float peak = -1;  ///< largest magnitude; −1 where there are none
+  };
+  void find_peak_of(std::size_t row);
+
+  const PsfCore& core_;
+  double level_jy_ = 0;
+  std::vector<Row> row_;  ///< one more than rows
+  std::vector<int> column_;
+  std::vector<float> value_;
+};
+
+struct ActiveSearch {
+  double gain = 0.1;
+  double stop_jy = 0;      ///< ends when no pixel exceeds it
+  int scale = 0;           ///< of the components
+  double flux_per_jy = 1;  ///< of a component, by what it takes off its pixel in Jy/beam
+};
+
+/// Finds components, one at least, until no active pixel exceeds stop_jy, or what the others may have become by now: level_jy()
+/// and the largest sidelobe outside the core times all that was taken. Also ends when the peak has grown to three times the
+/// first, and at the limits that `watch` knows.
+void find_among(ActivePixels& active, const ActiveSearch& search, const MinorCycleWatch& watch, MinorCycleReport& report);
+
+}  // namespace misfit::imager

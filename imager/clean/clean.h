@@ -1,0 +1,119 @@
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "imager/clean/auto_mask.h"
+#include "imager/clean/components.h"
+#include "imager/clean/minor_cycle.h"
+#include "imager/imaging.h"
+
+namespace misfit::imager {
+
+/// Parameters of CLEAN with the names and meaning of CASA's tclean.
+struct CleanOptions {
+  int max_iterations = 0;          ///< niter
+  double gain = 0.1;               ///< part of a peak that a component takes
+  double threshold_jy = 0;         ///< stop when the peak residual is not above it
+  double nsigma = 0;               ///< or not above this many times the robust noise
+  double cycle_factor = 1;         ///< a minor cycle goes down to the peak × largest sidelobe × cycle factor …
+  double min_psf_fraction = 0.05;  ///< … that fraction of the peak clamped to [min, max]
+  double max_psf_fraction = 0.8;
+  int cycle_iterations = -1;              ///< cycleniter: components that a minor cycle finds at most; −1 = no limit
+  int max_major_cycles = -1;              ///< nmajor; −1 = no limit
+  const Image* mask = nullptr;            ///< where components may lie, see mask.h; null = everywhere
+  std::optional<AutoMaskOptions> automask;  ///< the mask is made from the residuals; `mask` must be null
+  int threads = 1;
+  std::function<bool()> stop_requested;  ///< the user's wish to end; may be empty
+};
+
+/// Why CLEAN ended, with tclean's codes.
+enum class CleanStop {
+  iteration_limit = 1,
+  threshold = 2,
+  user = 3,
+  no_change = 4,
+  diverging = 5,            ///< the residual grew to more than three times that before
+  diverging_from_best = 6,  ///< it grew by less, but did so again and again
+  empty_mask = 7,
+  nsigma = 8,
+  major_cycle_limit = 9,
+};
+
+/// The state after one major cycle.
+struct MajorCycle {
+  int iterations = 0;             ///< components of its model, each time that one was found counting
+  double peak_residual_jy = 0;    ///< within the mask
+  double rms_jy = 0;              ///< robust noise of the residual, within the mask and without
+  double model_flux_jy = 0;
+  double cycle_threshold_jy = 0;  ///< how deep its minor cycle was to go, in Jy/beam
+  std::string ended;              ///< why its minor cycle ended; empty before the first
+  double mean_square_jy2 = 0;     ///< of the residual, within the mask
+};
+
+/// All that CLEAN carries from one major cycle to the next: with the same data and options it goes on from here with the same
+/// bits.
+struct CleanState {
+  ComponentModel model;
+  ComponentModel best_model;       ///< that which left the smallest peak
+  Image mask;                      ///< made from the residuals so far; empty unless CleanOptions::automask
+  std::vector<MajorCycle> cycles;  ///< [0] is the state before the first; empty before that
+  std::size_t now = 0;             ///< the cycle whose model is `model`: the last unless it was taken back
+  std::size_t best = 0;            ///< the cycle whose model is `best_model`
+  int tightened = 0;               ///< how often the depth was made less since the residual grew
+};
+
+struct CleanReport {
+  int iterations = 0;
+  CleanStop stop = CleanStop::iteration_limit;
+  std::string stop_reason;
+  double max_sidelobe = 0;         ///< of the PSF, outside the fitted beam
+  std::vector<MajorCycle> cycles;  ///< [0] is the state before the first
+  std::size_t kept = 0;            ///< the cycle whose model was kept; the last unless CLEAN diverged
+
+  const MajorCycle& final_state() const { return cycles[kept]; }
+};
+
+struct CleanResult {
+  ComponentModel components;
+  Image model;     ///< Jy/pixel, of the components
+  Image residual;  ///< Jy/beam, of this model
+  Image mask;      ///< made by CleanOptions::automask; empty without
+  CleanReport report;
+};
+
+/// What is to be cleaned.
+struct CleanInput {
+  const VisibilitySource& source;
+  const Transform& transform;
+  const DirtyImages& images;
+  double max_sidelobe = 0;      ///< the largest of the PSF
+  double beam_fwhm_pixels = 1;  ///< of a round beam of its main lobe's area; automask alone needs it
+};
+
+/// Told before the first and after every major cycle.
+using CycleProgress = std::function<void(const CleanState&)>;
+
+/// Largest magnitude of the PSF once the Gaussian `beam` is taken off; NaN does not count.
+double largest_sidelobe(const Image& psf, const Image& beam);
+
+/// The state with which CLEAN begins: a model of the minor cycle's scales, of these points.
+CleanState first_state(const ComponentModel& model);
+
+/// Cotton–Schwab CLEAN (Schwab 1984, AJ 89, 1076): minor cycles find components in the image; major cycles predict the model's
+/// visibilities, subtract them from the data, and image what is left. It begins with `state`, whose model has the scales of
+/// `minor`.
+///
+/// A major cycle whose residual has a peak 1.5 times the smallest so far is taken back: the best model is gone on from, with
+/// half the way from the peak to the cycle depth left. After the third time CLEAN stops as diverging. Where neither the peak nor
+/// the mean square of the residual becomes less in five cycles it stops as without change.
+///
+/// Stages timed: "minor cycles", "statistics", and those of make_residual_image. Throws std::runtime_error when the PSF or a
+/// residual is not finite.
+CleanResult clean(const CleanInput& input, const MinorCycle& minor, const CleanOptions& options, CleanState state,
+                  const Progress& progress, const CycleProgress& cycle_progress, StageTimes& times);
+
+}  // namespace misfit::imager

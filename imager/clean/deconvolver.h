@@ -1,0 +1,24 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "imager/clean/minor_cycle.h"
+
+namespace misfit::imager {
+
+/// A minor cycle by name.
+struct DeconvolverChoice {
+  std::string name = "hogbom";           ///< one of deconvolver_names()
+  std::vector<double> scale_pixels{0};   ///< of multiscale, see MultiscaleOptions
+  double small_scale_bias = 0;           ///< of multiscale
+  int threads = 1;
+};
+
+std::vector<std::string> deconvolver_names();
+
+/// Throws std::invalid_argument when there is none of that name, or it refuses the scales.
+std::unique_ptr<MinorCycle> make_deconvolver(const DeconvolverChoice& choice, const Image& psf);
+
+}  // namespace misfit::imager

@@ -1,0 +1,41 @@
+#include "imager/clean/minor_cycle.h"
+
+#include <stdexcept>
+#include <string>
+
+namespace misfit::imager {
+
+void MinorCycle::require_size(const Image& residual, const MinorCycleOptions& options) const {
+  const auto require = [this](const std::string& name, const Image& image) {
+    if (image.width != width_ || image.height != height_)
+      throw std::invalid_argument(name + " of " + std::to_string(image.width) + " × " + std::to_string(image.height) +
+                                  " pixels: expected the size of the PSF, " + std::to_string(width_) + " × " +
+                                  std::to_string(height_));
+  };
+  require("residual", residual);
+  if (options.mask != nullptr) require("mask", *options.mask);
+}
+
+bool MinorCycleWatch::ends(double peak_jy, MinorCycleReport& report) const {
+  constexpr double divergence = 3;  // as clean() judges major cycles
+  report.peak_jy = peak_jy;
+  if (!(peak_jy > options_.threshold_jy))
+    report.end = MinorCycleEnd::threshold;
+  else if (!(peak_jy <= divergence * first_peak_jy_))
+    report.end = MinorCycleEnd::diverging;
+  else
+    return is_at_limit(report);
+  return true;
+}
+
+bool MinorCycleWatch::is_at_limit(MinorCycleReport& report) const {
+  if (report.iterations() >= options_.max_iterations)
+    report.end = MinorCycleEnd::iterations;
+  else if (report.iterations() % 64 == 0 && options_.stop_requested && options_.stop_requested())
+    report.end = MinorCycleEnd::stopped;
+  else
+    return false;
+  return true;
+}
+
+}  // namespace misfit::imager

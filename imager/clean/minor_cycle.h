@@ -1,0 +1,74 @@
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include "imager/clean/components.h"
+#include "imager/image.h"
+
+namespace misfit::imager {
+
+struct MinorCycleOptions {
+  double gain = 0.1;  ///< part of a peak that a component takes
+  int max_iterations = 0;
+  double threshold_jy = 0;               ///< in Jy/beam; ends when no pixel that may be cleaned exceeds it in magnitude
+  const Image* mask = nullptr;           ///< where components may lie, see mask.h; null = everywhere
+  std::function<bool()> stop_requested;  ///< asked now and then; may be empty
+};
+
+enum class MinorCycleEnd {
+  threshold,   ///< no pixel exceeds it
+  iterations,  ///< as many components as allowed
+  diverging,   ///< the peak exceeds three times that of the start
+  stopped,     ///< as requested
+};
+
+struct MinorCycleReport {
+  std::vector<Component> components;  ///< in the order in which they were found; places repeat
+  double peak_jy = 0;                 ///< magnitude of the brightest pixel left that may be cleaned
+  MinorCycleEnd end = MinorCycleEnd::threshold;
+
+  int iterations() const { return static_cast<int>(components.size()); }
+};
+
+/// A way to find components in an image whose PSF is known: CLEAN without visibilities. Made once for a PSF, whose size is that
+/// of the images, and whose peak, 1, is the middle pixel (row height/2, column width/2). What lies beyond the PSF, or is NaN,
+/// counts as 0. Pixels of a residual that are NaN are never cleaned. The same components for any number of threads.
+class MinorCycle {
+ public:
+  MinorCycle(const MinorCycle&) = delete;
+  MinorCycle& operator=(const MinorCycle&) = delete;
+  virtual ~MinorCycle() = default;
+
+  /// The scales of its components, see ComponentModel.
+  virtual const std::vector<double>& scale_pixels() const = 0;
+  /// Components whose images, convolved with the PSF and taken off `residual` (Jy/beam), leave less. Throws
+  /// std::invalid_argument when an image differs from the PSF in size.
+  virtual MinorCycleReport clean(const Image& residual, const MinorCycleOptions& options) const = 0;
+
+ protected:
+  explicit MinorCycle(const Image& psf) : width_(psf.width), height_(psf.height) {}
+  /// Throws std::invalid_argument unless the images given have the size of the PSF.
+  void require_size(const Image& residual, const MinorCycleOptions& options) const;
+
+ private:
+  int width_;
+  int height_;
+};
+
+/// Says when a minor cycle ends, one way for all of them.
+class MinorCycleWatch {
+ public:
+  MinorCycleWatch(const MinorCycleOptions& options, double first_peak_jy) : options_(options), first_peak_jy_(first_peak_jy) {}
+
+  /// Whether no further component is to be taken now that the brightest pixel has this magnitude; if so, `report` says why.
+  bool ends(double peak_jy, MinorCycleReport& report) const;
+  /// Whether there are as many components as allowed, or the user wishes to end; if so, `report` says which.
+  bool is_at_limit(MinorCycleReport& report) const;
+
+ private:
+  const MinorCycleOptions& options_;
+  double first_peak_jy_;
+};
+
+}  // namespace misfit::imager

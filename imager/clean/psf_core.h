@@ -1,0 +1,31 @@
+#pragma once
+
+#include <vector>
+
+#include "imager/image.h"
+
+namespace misfit::imager {
+
+/// The middle of a PSF in single precision, as much of it as pays: all |row|, |column| ≤ reach from its peak.
+class PsfCore {
+ public:
+  /// The smallest reach beyond which the PSF is hardly weaker outside (by a tenth) than beyond `largest_reach`. NaN counts as
+  /// 0, as does what lies beyond the PSF.
+  PsfCore(const Image& psf, int largest_reach);
+
+  int reach() const { return reach_; }
+  /// The largest magnitude of the PSF outside.
+  double largest_outside() const { return largest_outside_; }
+  /// At columns −reach … reach of a row in [−reach, reach]; points to column 0.
+  const float* row(int r) const {
+    const std::size_t side = 2 * static_cast<std::size_t>(reach_) + 1;
+    return value_.data() + static_cast<std::size_t>(r + reach_) * side + reach_;
+  }
+
+ private:
+  int reach_ = 0;
+  double largest_outside_ = 0;
+  std::vector<float> value_;  ///< [row + reach][column + reach]
+};
+
+}  // namespace misfit::imager
