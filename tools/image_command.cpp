@@ -4,16 +4,15 @@
 #include <memory>
 #include <optional>
 
-#include "imager/mask.h"
 #include "imager/noise.h"
 #include "imager/parallel.h"
+#include "tools/clean_stage.h"
 #include "tools/command.h"
 #include "tools/config_file.h"
 #include "tools/files.h"
 #include "tools/image_options.h"
 #include "tools/image_products.h"
 #include "tools/interrupt.h"
-#include "tools/mask_file.h"
 #include "tools/memory.h"
 #include "tools/memory_plan.h"
 #include "tools/model_image.h"
@@ -71,26 +70,9 @@ class ImageRun {
     set_ = std::make_unique<ms_io::MeasurementSet>(o_.vis, o_.selection, o_.datacolumn);
     geometry_ = geometry_of(o_, set_->observation().phase_centre);
     reach_ = set_->reach();
-    read_start_model();
-    if (o_.mask.empty()) return;
-    mask_ = std::make_unique<imager::Image>(read_mask(o_.mask, geometry_));
-    if (imager::mask_is_empty(*mask_)) warn("the mask " + o_.mask + " allows no pixel of the image: nothing is cleaned");
-  }
-
-  void read_start_model() {
-    if (o_.startmodel.empty()) return;
-    imager::SkyImage model = read_model(o_.startmodel, geometry_.phase_centre);
-    const imager::ImageGeometry& g = model.geometry;
-    const double cell_off = std::abs(g.cell_rad / geometry_.cell_rad - 1) * std::max(g.width, g.height);
-    const auto size = [](int width, int height) { return std::to_string(width) + " × " + std::to_string(height) + " pixels"; };
-    const auto refuse = [this](const std::string& has, const std::string& expected) {
-      throw std::runtime_error("start model " + o_.startmodel + " " + has + ", expected " + expected);
-    };
-    if (g.width != geometry_.width || g.height != geometry_.height)
-      refuse("has " + size(g.width, g.height), size(geometry_.width, geometry_.height));
-    if (!(cell_off < 1e-3)) refuse("has pixels of " + significant(g.cell_rad * 180 / M_PI * 3600, 6) + "arcsec", o_.cell);
-    if (g.off_phase_centre()) refuse("has its phase centre off the middle pixel", "it there");
-    start_model_ = std::make_unique<imager::Image>(std::move(model.image));
+    if (o_.niter == 0) return;
+    clean_ = std::make_unique<CleanStage>(o_, geometry_, threads_);
+    if (const std::string warning = clean_->warning(); !warning.empty()) warn(warning);
   }
 
   /// All that is decided before a visibility is read.
@@ -109,7 +91,7 @@ class ImageRun {
                                            .block_samples = static_cast<double>(ms_io::MeasurementSet::usual_block_samples),
                                            .verify = o_.verify > 0,
                                            .clean = o_.niter > 0,
-                                           .mask = mask_ != nullptr},
+                                           .mask = clean_ && (clean_->mask() != nullptr || o_.usemask == "auto")},
                                           o_);
     memory_ = memory.peak;
     report_.estimated_memory_bytes = memory_.total();
@@ -196,30 +178,24 @@ class ImageRun {
   }
 
   void clean() {
-    imager::CleanOptions options = clean_options(o_, threads_);
-    options.stop_requested = interrupted;
-    options.mask = mask_.get();
-    options.start_model = start_model_.get();
     progress_.begin("CLEAN", true);
-    cleaned_ = std::make_unique<imager::CleanResult>(imager::clean(
-        *source_, *made_.transform, made_.images, max_sidelobe(), options, progress(),
-        [this](const imager::MajorCycle& cycle) {
-          progress_.say("  " + grouped(cycle.iterations) + " components, peak residual " + flux(cycle.peak_residual_jy) +
-                        ", noise " + flux(cycle.rms_jy));
+    cleaned_ = std::make_unique<imager::CleanResult>(clean_->run(
+        {*source_, *made_.transform, made_.images, main_lobe_}, report_.options, progress(),
+        [this](const imager::CleanState& state) {
+          const imager::MajorCycle& cycle = state.cycles.back();
+          if (state.cycles.size() > 1)
+            progress_.say("  " + grouped(cycle.iterations) + " components, peak residual " + flux(cycle.peak_residual_jy) +
+                          ", noise " + flux(cycle.rms_jy) + (state.now + 1 == state.cycles.size() ? "" : ": taken back"));
         },
         times_));
     progress_.end();
     made_.images.dirty = {};
-    start_model_.reset();
+    if (clean_->mask() != nullptr) cleaned_->mask = *clean_->mask();
+    clean_.reset();
     report_.clean = &cleaned_->report;
-    if (cleaned_->report.stop == imager::CleanStop::diverging) warn("CLEAN diverged: " + cleaned_->report.stop_reason);
-  }
-
-  double max_sidelobe() const {
-    imager::Image point(geometry_.width, geometry_.height);
-    point.at(geometry_.centre_row(), geometry_.centre_column()) = 1;
-    const imager::Image beam = imager::convolve_with_beam(point, main_lobe_, geometry_.cell_rad, threads_);
-    return imager::largest_sidelobe(made_.images.psf, beam);
+    const imager::CleanStop stop = cleaned_->report.stop;
+    if (stop == imager::CleanStop::diverging || stop == imager::CleanStop::diverging_from_best)
+      warn("CLEAN diverged: " + cleaned_->report.stop_reason);
   }
 
   /// They make room for the pictures, and are closed before a column is written.
@@ -256,7 +232,7 @@ class ImageRun {
       products_->add("residual", "Residual", "Jy/beam", std::move(cleaned_->residual));
       imager::Image model = o_.savemodel == "none" ? std::move(cleaned_->model) : cleaned_->model;
       products_->add("model", "Model", "Jy/pixel", std::move(model));
-      if (mask_) products_->add("mask", "", "", std::move(*mask_));
+      if (!cleaned_->mask.pixel.empty()) products_->add("mask", "", "", std::move(cleaned_->mask));
       products_->add("image", "Restored image", "Jy/beam", std::move(restored));
     }
     drawing_ = std::make_unique<PictureDrawing>(products_->pictures());
@@ -310,8 +286,7 @@ class ImageRun {
   imager::Observation observation_;
   imager::ImageGeometry geometry_;
   imager::UvwReach reach_;
-  std::unique_ptr<imager::Image> start_model_;
-  std::unique_ptr<imager::Image> mask_;  ///< null where CLEAN may go everywhere
+  std::unique_ptr<CleanStage> clean_;  ///< null without CLEAN, and after it
   std::unique_ptr<imager::StreamedVisibilities> source_;
   imager::MemoryUse memory_;
   imager::AccurateImages made_;

@@ -35,6 +35,32 @@ void check_image(const ImageOptions& o) {
   if (parse_angle_rad(o.cell) > 0.5) refuse("cell", o.cell, "less than 0.5 rad");
 }
 
+void check_deconvolver(const ImageOptions& o) {
+  const bool multiscale = o.deconvolver == "multiscale";
+  const std::string scales = o.scales.empty() ? "" : text(o.scales.front()) + " …";
+  if (!multiscale && !o.scales.empty()) refuse("scales", scales, "--deconvolver multiscale beside it");
+  if (!multiscale && o.smallscalebias != 0)
+    refuse("smallscalebias", text(o.smallscalebias), "--deconvolver multiscale beside it");
+  if (multiscale && o.scales.empty()) refuse("deconvolver", o.deconvolver, "--scales beside it, such as 0,5,15");
+  for (std::size_t i = 0; i < o.scales.size(); ++i)
+    if (!(o.scales[i] >= 0 && o.scales[i] <= *std::min_element(o.imsize.begin(), o.imsize.end())) ||
+        (i > 0 && !(o.scales[i] > o.scales[i - 1])))
+      refuse("scales", text(o.scales[i]), "pixels in ascending order, from 0 to the image's size");
+  if (!(o.smallscalebias >= 0 && o.smallscalebias < 1))
+    refuse("smallscalebias", text(o.smallscalebias), "0 or more, and below 1");
+}
+
+void check_auto_mask(const ImageOptions& o) {
+  if (o.usemask == "auto" && o.niter == 0) refuse("usemask", o.usemask, "--niter above 0 beside it");
+  if (o.usemask == "auto" && !o.mask.empty()) refuse("mask", o.mask, "--usemask user, or no mask");
+  if (!(o.sidelobethreshold >= 0)) refuse("sidelobethreshold", text(o.sidelobethreshold), "0 or more");
+  if (!(o.noisethreshold > 0)) refuse("noisethreshold", text(o.noisethreshold), "more than 0");
+  if (!(o.lownoisethreshold > 0 && o.lownoisethreshold <= o.noisethreshold))
+    refuse("lownoisethreshold", text(o.lownoisethreshold), "more than 0 and at most noisethreshold");
+  if (!(o.minbeamfrac >= 0)) refuse("minbeamfrac", text(o.minbeamfrac), "0 or more");
+  if (o.growiterations < 0) refuse("growiterations", std::to_string(o.growiterations), "0 or more");
+}
+
 void check_clean(const ImageOptions& o) {
   if (o.niter < 0) refuse("niter", std::to_string(o.niter), "0 or more");
   if (!(o.gain > 0 && o.gain <= 1)) refuse("gain", text(o.gain), "more than 0 and at most 1");
@@ -51,6 +77,9 @@ void check_clean(const ImageOptions& o) {
   if (!o.startmodel.empty() && o.niter == 0) refuse("startmodel", o.startmodel, "--niter above 0 beside it");
   if (o.savemodel != "none" && o.niter == 0) refuse("savemodel", o.savemodel, "--niter above 0 beside it");
   if (!o.mask.empty() && o.niter == 0) refuse("mask", o.mask, "--niter above 0 beside it");
+  if (o.restart && o.niter == 0) refuse("restart", "", "--niter above 0 beside it");
+  check_deconvolver(o);
+  check_auto_mask(o);
 }
 
 /// What needs neither the data nor the kernel's solution.
@@ -86,6 +115,13 @@ void declare(CLI::App& command, ImageOptions& o) {
   command.add_option("--padding", o.padding, "FFT size over image size; chosen when 0");
   command.add_option("--gridder", o.gridder, "w planes: auto (where w matters), standard (none), wide (always)")
       ->check(CLI::IsMember({"auto", "standard", "wide"}));
+  command.add_option("--deconvolver", o.deconvolver, "How components are found: hogbom, clark or multiscale")
+      ->check(CLI::IsMember(imager::deconvolver_names()));
+  command
+      .add_option("--scales", o.scales,
+                  "Of multiscale, in pixels: 0,5,15. As wide at half maximum as tclean's, 0.74 of the number; 0 = points")
+      ->delimiter(',');
+  command.add_option("--smallscalebias", o.smallscalebias, "The largest scale counts this part less than points");
   command.add_option("--niter", o.niter, "CLEAN components to find at most; 0 makes the dirty image");
   command.add_option("--gain", o.gain, "Part of a peak that a component takes");
   command.add_option("--threshold", o.threshold, "Stop when the peak residual reaches this flux density");
@@ -99,9 +135,18 @@ void declare(CLI::App& command, ImageOptions& o) {
       "--restoringbeam", o.restoringbeam,
       "Restore with this beam: MAJ, or MAJ,MIN,PA such as 0.5arcsec,0.4arcsec,30deg; the fitted one when empty or common");
   command.add_option("--mask", o.mask, "Where CLEAN finds components: a FITS image, not 0 there, or CASA region text (CRTF)");
+  command
+      .add_option("--usemask", o.usemask, "user: --mask, or everywhere; auto: from the residuals, as tclean's auto-multithresh")
+      ->check(CLI::IsMember({"user", "auto"}));
+  command.add_option("--sidelobethreshold", o.sidelobethreshold, "auto: above this times the largest sidelobe times the peak …");
+  command.add_option("--noisethreshold", o.noisethreshold, "… and above this times the noise");
+  command.add_option("--lownoisethreshold", o.lownoisethreshold, "… grown down to this times the noise");
+  command.add_option("--minbeamfrac", o.minbeamfrac, "… without regions below this part of the beam's area");
+  command.add_option("--growiterations", o.growiterations, "… by this many pixels a major cycle at most");
   command.add_option("--startmodel", o.startmodel, "Begin with this model, a FITS image in Jy/pixel of the same pixels");
   command.add_option("--savemodel", o.savemodel, "modelcolumn: write the model's visibilities into MODEL_DATA; none")
       ->check(CLI::IsMember({"none", "modelcolumn"}));
+  command.add_flag("--restart", o.restart, "Go on from the last major cycle of a run that was cut, or ended, with these options");
   command.add_option("--verify", o.verify, "Compare this many random pixels and visibilities with the direct transform");
   command.add_option("--threads", o.threads, "Threads; 0 means all cores");
   command.add_option("--memory", o.memory_gib, "GiB that the run may take; 0 means half of the machine's memory");
@@ -182,7 +227,25 @@ imager::CleanOptions clean_options(const ImageOptions& o, int threads) {
   clean.cycle_iterations = o.cycleniter;
   clean.max_major_cycles = o.nmajor;
   clean.threads = threads;
+  if (o.usemask == "auto")
+    clean.automask = imager::AutoMaskOptions{.sidelobe_threshold = o.sidelobethreshold,
+                                             .noise_threshold = o.noisethreshold,
+                                             .low_noise_threshold = o.lownoisethreshold,
+                                             .min_beam_fraction = o.minbeamfrac,
+                                             .grow_iterations = o.growiterations};
   return clean;
+}
+
+imager::DeconvolverChoice deconvolver_choice(const ImageOptions& o, int threads) {
+  // Full width at half maximum over radius of tclean's (1 − r²) × spheroidal function (Schwab's, m = 6, α = 1).
+  constexpr double width = 0.7412;
+  imager::DeconvolverChoice choice;
+  choice.name = o.deconvolver;
+  choice.scale_pixels.clear();
+  for (const double scale : o.scales) choice.scale_pixels.push_back(width * scale);
+  choice.small_scale_bias = o.smallscalebias;
+  choice.threads = threads;
+  return choice;
 }
 
 nlohmann::json option_values(const CLI::App& command) {

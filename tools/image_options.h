@@ -7,7 +7,8 @@
 #include <vector>
 
 #include "imager/beam.h"
-#include "imager/clean.h"
+#include "imager/clean/clean.h"
+#include "imager/clean/deconvolver.h"
 #include "imager/geometry.h"
 #include "imager/gridding_choice.h"
 #include "ms_io/measurement_set.h"
@@ -29,6 +30,9 @@ struct ImageOptions {
   int kernel_width = 0;
   double padding = 0;
   std::string gridder = "auto";
+  std::string deconvolver = "hogbom";
+  std::vector<double> scales;  ///< of multiscale, in pixels as tclean means them; empty = 0
+  double smallscalebias = 0;
   int niter = 0;
   double gain = 0.1;
   std::string threshold = "0Jy";
@@ -40,8 +44,15 @@ struct ImageOptions {
   int nmajor = -1;
   std::string restoringbeam;  ///< empty = the fitted one
   std::string mask;           ///< a file, see mask_file.h; empty = everywhere
+  std::string usemask = "user";
+  double sidelobethreshold = 3;
+  double noisethreshold = 5;
+  double lownoisethreshold = 1.5;
+  double minbeamfrac = 0.3;
+  int growiterations = 75;
   std::string startmodel;     ///< a FITS image in Jy/pixel; empty = none
   std::string savemodel = "none";
+  bool restart = false;
   int verify = 0;
   int threads = 0;
   double memory_gib = 0;
@@ -64,6 +75,7 @@ imager::GriddingRequest gridding_request(const ImageOptions& options, int thread
 /// The beam that --restoringbeam names: "0.5arcsec" or "0.5arcsec,0.4arcsec,30deg"; nothing where it is the fitted one.
 std::optional<imager::Beam> restoring_beam(const ImageOptions& options);
 imager::CleanOptions clean_options(const ImageOptions& options, int threads);
+imager::DeconvolverChoice deconvolver_choice(const ImageOptions& options, int threads);
 
 /// Every option of `command` with the value in force.
 nlohmann::json option_values(const CLI::App& command);

@@ -6,7 +6,7 @@
 
 #include "imager/accurate_imaging.h"
 #include "imager/beam.h"
-#include "imager/clean.h"
+#include "imager/clean/clean.h"
 #include "imager/plan.h"
 #include "imager/verify.h"
 

@@ -319,6 +319,29 @@ BOOST_AUTO_TEST_CASE(the_restoring_beam_given_is_used_and_stated) {
   BOOST_TEST((pixels_of(folder / "b", "residual").pixel == residual.pixel));  // the beam steers no cycle
 }
 
+BOOST_AUTO_TEST_CASE(a_run_that_was_cut_goes_on_to_the_same_images) {
+  const TemporaryFolder folder;
+  const Arguments options{"--niter", "300", "--cycleniter", "40", "--deconvolver", "multiscale", "--scales", "0,4"};
+  succeed(small_image(snapshot(), folder / "whole") + options);
+  succeed(small_image(snapshot(), folder / "cut") + options + Arguments{"--nmajor", "2"});
+  succeed(small_image(snapshot(), folder / "cut") + options + Arguments{"--restart"});
+  for (const char* kind : {"model", "residual", "image"})
+    BOOST_TEST((pixels_of(folder / "cut", kind).pixel == pixels_of(folder / "whole", kind).pixel));
+  json cut = report_of(folder / "cut")["clean"], whole = report_of(folder / "whole")["clean"];
+  BOOST_TEST(cut.dump() == whole.dump());
+
+  const auto refused = [&](const Arguments& arguments) {
+    const Outcome outcome = run(small_image(snapshot(), folder / "cut") + options + Arguments{"--restart"} + arguments);
+    BOOST_TEST(outcome.code == 1);
+    return outcome.err;
+  };
+  BOOST_TEST(refused({"--gain", "0.2"}).find("--gain") != std::string::npos);
+  BOOST_TEST(refused({"--accuracy", "1e-5"}).find("--accuracy") != std::string::npos);
+  const Outcome anew = run(small_image(snapshot(), folder / "new") + options + Arguments{"--restart"});
+  BOOST_TEST(anew.code == 0);
+  BOOST_TEST(anew.err.find("new.clean.state") != std::string::npos);
+}
+
 BOOST_AUTO_TEST_CASE(a_start_model_is_where_an_earlier_run_ended) {
   const TemporaryFolder folder;
   succeed(small_image(snapshot(), folder / "a") + Arguments{"--niter", "50", "--nmajor", "1"});

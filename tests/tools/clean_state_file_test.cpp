@@ -1,0 +1,124 @@
+#include "tools/clean_state_file.h"
+
+#include <boost/test/unit_test.hpp>
+#include <cmath>
+#include <filesystem>
+#include <functional>
+#include <limits>
+#include <stdexcept>
+
+#include "tests/temporary_folder.h"
+#include "tools/files.h"
+
+using namespace misfit;
+using namespace misfit::tools;
+
+namespace {
+
+imager::CleanState some_state() {
+  imager::ComponentModel model(7, 5, {0, 3.7});
+  model.add({{0, 1, 2, 0.1}, {1, 4, 6, -1.0 / 3}, {0, 0, 0, 1e-300}});
+  imager::CleanState state = imager::first_state(model);
+  state.model.add({{0, 3, 3, 2}});
+  state.mask = imager::Image(7, 5);
+  for (const std::size_t i : {0U, 1U, 8U, 33U, 34U}) state.mask.pixel[i] = 1;
+  state.cycles = {{0, 3, 0.3, 0, 0, "", 9}, {10, 1.0 / 3, 0.1, 5, 0.5, "reached its depth", 1}};
+  state.cycles[0].rms_jy = std::numeric_limits<double>::quiet_NaN();
+  state.now = 1;
+  state.best = 1;
+  state.tightened = 2;
+  return state;
+}
+
+CleanStateOwner owner() {
+  return {"1.0", {{"gain", "0.1"}, {"niter", "100"}, {"mask", ""}}, 42};
+}
+
+bool same(const imager::ComponentModel& a, const imager::ComponentModel& b) {
+  return a.scale_pixels() == b.scale_pixels() && a.image(1).pixel == b.image(1).pixel &&
+         a.components().size() == b.components().size();
+}
+
+std::string refusal(const std::function<void()>& act) {
+  try {
+    act();
+  } catch (const std::runtime_error& error) {
+    return error.what();
+  }
+  return "";
+}
+
+}  // namespace
+
+BOOST_AUTO_TEST_SUITE(clean_state_file)
+
+BOOST_AUTO_TEST_CASE(a_state_comes_back_bit_for_bit) {
+  const testing::TemporaryFolder folder;
+  const imager::CleanState was = some_state();
+  write_clean_state(folder / "a.state", was, owner());
+  const imager::CleanState is = read_clean_state(folder / "a.state", owner());
+  BOOST_TEST(same(is.model, was.model));
+  BOOST_TEST(same(is.best_model, was.best_model));
+  BOOST_TEST((is.mask.width == 7 && is.mask.pixel == was.mask.pixel));
+  BOOST_REQUIRE(is.cycles.size() == 2U);
+  BOOST_TEST(std::isnan(is.cycles[0].rms_jy));
+  BOOST_TEST(is.cycles[1].peak_residual_jy == was.cycles[1].peak_residual_jy);
+  BOOST_TEST(is.cycles[1].ended == was.cycles[1].ended);
+  BOOST_TEST(is.cycles[1].mean_square_jy2 == was.cycles[1].mean_square_jy2);
+  BOOST_TEST((is.now == 1 && is.best == 1 && is.tightened == 2));
+}
+
+BOOST_AUTO_TEST_CASE(a_state_of_other_options_is_refused_by_the_name_of_the_option) {
+  const testing::TemporaryFolder folder;
+  write_clean_state(folder / "a.state", some_state(), owner());
+  CleanStateOwner other = owner();
+  other.options["gain"] = "0.2";
+  const std::string message = refusal([&] { read_clean_state(folder / "a.state", other); });
+  BOOST_TEST(message.find("--gain '0.1'") != std::string::npos);
+  BOOST_TEST(message.find("'0.2'") != std::string::npos);
+  other = owner();
+  other.options["mask"] = "m.fits";
+  BOOST_TEST(refusal([&] { read_clean_state(folder / "a.state", other); }).find("--mask") != std::string::npos);
+  other = owner();
+  other.options["niter"] = "200";  // how far it goes
+  BOOST_TEST(refusal([&] { read_clean_state(folder / "a.state", other); }) == "");
+}
+
+BOOST_AUTO_TEST_CASE(a_state_of_other_data_or_another_version_is_refused) {
+  const testing::TemporaryFolder folder;
+  write_clean_state(folder / "a.state", some_state(), owner());
+  CleanStateOwner other = owner();
+  other.checksum = 43;
+  BOOST_TEST(refusal([&] { read_clean_state(folder / "a.state", other); }).find("other data") != std::string::npos);
+  other = owner();
+  other.version = "1.1";
+  BOOST_TEST(refusal([&] { read_clean_state(folder / "a.state", other); }).find("version") != std::string::npos);
+}
+
+BOOST_AUTO_TEST_CASE(what_is_cut_or_no_state_is_refused_by_name) {
+  const testing::TemporaryFolder folder;
+  write_clean_state(folder / "a.state", some_state(), owner());
+  const std::string whole = read_file(folder / "a.state");
+  for (std::size_t length = 0; length < whole.size(); length += 7) {
+    write_file(folder / "b.state", whole.substr(0, length));
+    const std::string message = refusal([&] { read_clean_state(folder / "b.state", owner()); });
+    BOOST_REQUIRE(message.find("b.state") != std::string::npos);
+    BOOST_REQUIRE(message.find("damaged") != std::string::npos);
+  }
+}
+
+BOOST_AUTO_TEST_CASE(the_checksum_notices_every_pixel) {
+  imager::DirtyImages images{imager::Image(4, 3), imager::Image(4, 3), {}};
+  const imager::Image mask(4, 3);
+  const std::uint64_t before = checksum(images, nullptr);
+  BOOST_TEST(checksum(images, nullptr) == before);
+  BOOST_TEST(checksum(images, &mask) != before);
+  for (imager::Image* image : {&images.dirty, &images.psf})
+    for (double& pixel : image->pixel) {
+      pixel = 1e-300;
+      BOOST_TEST(checksum(images, nullptr) != before);
+      pixel = 0;
+    }
+}
+
+BOOST_AUTO_TEST_SUITE_END()
