@@ -121,36 +121,13 @@ class DirectAdjoint : public AdjointSum {
   AdjointResult result_;
 };
 
-/// V [row][channel] = Σ S exp(+2πi(ul+vm+w(n−1))).
-std::vector<std::complex<double>> sum_of(const std::vector<PointSource>& sources, const SampleCoordinates& at, bool with_w,
-                                         int threads) {
-  std::vector<std::complex<double>> visibility(at.samples());
-  constexpr std::size_t samples_a_piece = 4096;
-  const std::size_t channels = at.channels();
-  const auto piece_of = [&](std::size_t begin) {
-    Wavelengths piece;
-    for (std::size_t i = begin; i < std::min(begin + samples_a_piece, at.samples()); ++i)
-      piece.push_back(&at.uvw_m[3 * (i / channels)], at.frequency_hz[i % channels]);
-    return piece;
-  };
-  parallel_for((at.samples() + samples_a_piece - 1) / samples_a_piece, threads, [&](std::size_t p) {
-    const Wavelengths piece = piece_of(p * samples_a_piece);
-    std::complex<double>* out = visibility.data() + p * samples_a_piece;
-    for (const PointSource& source : sources)
-      for_phasors(piece, position_of(source.position, with_w), [&](std::size_t i, double cosine, double sine) {
-        out[i] += std::complex<double>(source.flux_jy * cosine, source.flux_jy * sine);
-      });
-  });
-  return visibility;
-}
-
 class DirectPrediction : public Prediction {
  public:
-  DirectPrediction(std::vector<PointSource> sources, bool with_w, int threads)
+  DirectPrediction(std::vector<Source> sources, bool with_w, int threads)
       : sources_(std::move(sources)), with_w_(with_w), threads_(threads) {}
 
   std::vector<std::complex<double>> at(const SampleCoordinates& coordinates) const override {
-    return sum_of(sources_, coordinates, with_w_, threads_);
+    return predict_sources(sources_, coordinates, threads_, with_w_);
   }
   std::vector<std::complex<double>> at_usable(const VisibilityBlock& block) const override {
     std::vector<std::complex<double>> visibility = at(block);
@@ -160,7 +137,7 @@ class DirectPrediction : public Prediction {
   }
 
  private:
-  std::vector<PointSource> sources_;
+  std::vector<Source> sources_;
   bool with_w_;
   int threads_;
 };
@@ -172,17 +149,12 @@ std::unique_ptr<AdjointSum> DirectTransform::adjoint(bool with_psf) const {
 }
 
 std::unique_ptr<Prediction> DirectTransform::predict(const Image& model) const {
-  std::vector<PointSource> sources;
+  std::vector<Source> sources;
   for (int row = 0; row < model.height; ++row)
     for (int column = 0; column < model.width; ++column)
       if (model.at(row, column) != 0 && !beyond_horizon(sums_.geometry.at(row, column)))
         sources.push_back({sums_.geometry.at(row, column), model.at(row, column)});
   return std::make_unique<DirectPrediction>(std::move(sources), sums_.with_w, sums_.threads);
-}
-
-std::vector<std::complex<double>> predict_sources(const std::vector<PointSource>& sources, const SampleCoordinates& at,
-                                                  int threads) {
-  return sum_of(sources, at, true, threads);
 }
 
 void add_direct_pixels(const VisibilityBlock& block, const DirectPixels& at, std::vector<double>& sum) {

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "imager/geometry.h"
-#include "imager/point_source.h"
+#include "imager/source_sums.h"
 #include "imager/transform.h"
 
 namespace misfit::imager {
@@ -26,10 +26,6 @@ class DirectTransform : public Transform {
  private:
   DirectSums sums_;
 };
-
-/// V [row][channel] = Σ S exp(+2πi(ul+vm+w(n−1))) over point sources.
-std::vector<std::complex<double>> predict_sources(const std::vector<PointSource>& sources, const SampleCoordinates& at,
-                                                  int threads);
 
 /// A pixel of an image.
 struct Pixel {

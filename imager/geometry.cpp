@@ -4,6 +4,8 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "imager/constants.h"
+
 namespace misfit::imager {
 
 DirectionCosines direction_cosines(const SkyDirection& direction, const SkyDirection& centre) {
@@ -16,6 +18,18 @@ DirectionCosines direction_cosines(const SkyDirection& direction, const SkyDirec
   return {std::cos(direction.dec_rad) * std::sin(east),
           std::sin(direction.dec_rad) * std::cos(centre.dec_rad) -
               std::cos(direction.dec_rad) * std::sin(centre.dec_rad) * std::cos(east)};
+}
+
+SkyDirection sky_direction(DirectionCosines at, const SkyDirection& centre) {
+  if (beyond_horizon(at))
+    throw std::invalid_argument("direction cosines " + std::to_string(at.l) + ", " + std::to_string(at.m) +
+                                " lie beyond the horizon; expected l² + m² of at most 1");
+  const double n = 1 + n_minus_1(at);
+  const double sine = std::sin(centre.dec_rad), cosine = std::cos(centre.dec_rad);
+  // Cartesian: towards the centre's hour circle on the equator, east, and north. Arc tangents keep their precision everywhere.
+  const double x = n * cosine - at.m * sine, y = at.l, z = n * sine + at.m * cosine;
+  const double ra_rad = std::fmod(centre.ra_rad + std::atan2(y, x), 2 * pi);
+  return {ra_rad < 0 ? ra_rad + 2 * pi : ra_rad, std::atan2(z, std::hypot(x, y)), centre.frame};
 }
 
 double largest_drop(const ImageGeometry& geometry) {

@@ -24,6 +24,10 @@ struct DirectionCosines {
 /// and Synthesis in Radio Astronomy). Throws std::invalid_argument when it lies more than 90° away.
 DirectionCosines direction_cosines(const SkyDirection& direction, const SkyDirection& centre);
 
+/// The direction whose cosines, as seen from `centre`, are `at`, exactly and near the poles too; 0 ≤ ra_rad ≤ 2π, in the frame
+/// of `centre`. Throws std::invalid_argument beyond the horizon.
+SkyDirection sky_direction(DirectionCosines at, const SkyDirection& centre);
+
 /// n − 1 for a direction, without cancellation near the centre; NaN beyond the horizon.
 inline double n_minus_1(DirectionCosines at) {
   const double r2 = at.l * at.l + at.m * at.m;

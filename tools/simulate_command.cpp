@@ -87,7 +87,7 @@ void simulate(const SimulateOptions& o) {
   const ms_io::SimulatedObservation observation = observation_of(o, array);
   const bool test_card_sky = o.sky == "testcard";
   const bool coplanar = o.coplanar || (test_card_sky && !o.noncoplanar);
-  const std::vector<imager::PointSource> sources =
+  const std::vector<imager::Source> sources =
       test_card_sky ? test_card(parse_angle_rad(o.cell)) : read_component_list(o.sky, observation.phase_centre);
   const int threads = o.threads == 0 ? imager::available_threads() : o.threads;
 

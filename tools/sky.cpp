@@ -12,7 +12,7 @@
 namespace misfit::tools {
 namespace {
 
-using imager::PointSource;
+using imager::Source;
 
 constexpr double degree = M_PI / 180;
 constexpr double arcsec = degree / 3600;
@@ -58,7 +58,7 @@ Columns columns_of(const Fields& names) {
   return columns;
 }
 
-PointSource source_of(const Fields& fields, const Columns& columns, const imager::SkyDirection& phase_centre) {
+Source source_of(const Fields& fields, const Columns& columns, const imager::SkyDirection& phase_centre) {
   if (fields.size() != columns.count)
     throw std::runtime_error(std::to_string(fields.size()) + " values, expected " + std::to_string(columns.count));
   const double x = number(fields[columns.x]), y = number(fields[columns.y]), flux_jy = number(fields[columns.flux]);
@@ -66,7 +66,7 @@ PointSource source_of(const Fields& fields, const Columns& columns, const imager
     if (std::abs(y) > 90) throw std::runtime_error("declination " + std::to_string(y) + ", expected -90 to 90 degrees");
     return {imager::direction_cosines({x * degree, y * degree, phase_centre.frame}, phase_centre), flux_jy};
   }
-  const PointSource source{{x * arcsec, y * arcsec}, flux_jy};
+  const Source source{{x * arcsec, y * arcsec}, flux_jy};
   if (std::hypot(source.position.l, source.position.m) >= 1) throw std::runtime_error("l² + m² is not below 1: not on the sky");
   return source;
 }
@@ -86,10 +86,10 @@ constexpr std::array<CardEntry, 34> card{{
 
 }  // namespace
 
-std::vector<PointSource> read_component_list(const std::string& path, const imager::SkyDirection& phase_centre) {
+std::vector<Source> read_component_list(const std::string& path, const imager::SkyDirection& phase_centre) {
   std::ifstream file(path);
   if (!file) throw std::runtime_error("cannot read the component list " + path);
-  std::vector<PointSource> sources;
+  std::vector<Source> sources;
   Columns columns;
   int line_number = 0;
   try {
@@ -110,8 +110,8 @@ std::vector<PointSource> read_component_list(const std::string& path, const imag
   return sources;
 }
 
-std::vector<PointSource> test_card(double cell_rad) {
-  std::vector<PointSource> sources;
+std::vector<Source> test_card(double cell_rad) {
+  std::vector<Source> sources;
   for (const auto& [x, y, flux_jy] : card) sources.push_back({{x * cell_rad, y * cell_rad}, double(flux_jy)});
   return sources;
 }

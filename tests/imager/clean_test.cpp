@@ -39,7 +39,7 @@ struct Scene {
 Scene make_scene(const DirectionCosines& centre) {
   ImageGeometry g = geometry;
   g.centre = centre;
-  std::vector<PointSource> sources;
+  std::vector<Source> sources;
   for (const Sky& s : sky) sources.push_back({g.at(s.row, s.column), s.flux_jy});
   VisibilityBlock block = vla_samples(13);
   observe(sources, block);

@@ -24,7 +24,7 @@ VisibilityBlock samples(std::size_t rows) {
 }
 
 /// S exp(+2πi(ul + vm + w(n−1))).
-Complex visibility_of(const PointSource& source, const double* uvw_m, double frequency_hz) {
+Complex visibility_of(const Source& source, const double* uvw_m, double frequency_hz) {
   const double lambda_m = speed_of_light_m_s / frequency_hz;
   const auto [l, m] = source.position;
   const double n = std::cos(std::asin(std::hypot(l, m)));
@@ -44,7 +44,7 @@ BOOST_AUTO_TEST_SUITE(direct_transform)
 
 BOOST_AUTO_TEST_CASE(a_point_source_gives_the_defining_phase_w_included) {
   const VisibilityBlock block = samples(40);
-  const PointSource source{{0.31, -0.22}, 2.5};
+  const Source source{{0.31, -0.22}, 2.5};
   const auto predicted = predict_sources({source}, block, 2);
   for (std::size_t i = 0; i < predicted.size(); ++i) {
     const Complex expected = visibility_of(source, &block.uvw_m[i / 3 * 3], block.frequency_hz[i % 3]);
@@ -71,7 +71,7 @@ BOOST_AUTO_TEST_CASE(w_is_left_out_where_it_is_not_wanted) {
 
 BOOST_AUTO_TEST_CASE(sources_add) {
   const VisibilityBlock block = samples(20);
-  const PointSource a{{0.01, 0.02}, 1}, b{{-0.03, 0.005}, -0.5};
+  const Source a{{0.01, 0.02}, 1}, b{{-0.03, 0.005}, -0.5};
   auto sum = predict_sources({a}, block, 1);
   const auto of_b = predict_sources({b}, block, 1);
   for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += of_b[i];
@@ -82,7 +82,7 @@ BOOST_AUTO_TEST_CASE(a_model_pixel_is_a_source_at_its_direction) {
   const VisibilityBlock block = samples(20);
   Image model(geometry.width, geometry.height);
   model.at(3, 20) = 1.5;
-  const PointSource source{{-(20 - 12) * geometry.cell_rad, (3 - 8) * geometry.cell_rad}, 1.5};
+  const Source source{{-(20 - 12) * geometry.cell_rad, (3 - 8) * geometry.cell_rad}, 1.5};
   BOOST_TEST(relative_error(DirectTransform(geometry, 2).predict(model)->at(block), predict_sources({source}, block, 1)) <
              1e-12);
 }
@@ -106,7 +106,7 @@ BOOST_AUTO_TEST_CASE(the_dirty_image_of_one_visibility_is_a_cosine_that_its_phas
 
 BOOST_AUTO_TEST_CASE(a_source_to_the_east_is_left_of_the_centre_and_one_to_the_north_in_a_higher_row) {
   VisibilityBlock block = samples(300);
-  const PointSource source{{5 * geometry.cell_rad, 3 * geometry.cell_rad}, 1};
+  const Source source{{5 * geometry.cell_rad, 3 * geometry.cell_rad}, 1};
   const auto exact = predict_sources({source}, block, 1);
   block.visibility.assign(exact.begin(), exact.end());
   const AdjointResult result = adjoint_of(block);

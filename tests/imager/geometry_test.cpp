@@ -60,6 +60,25 @@ BOOST_AUTO_TEST_CASE(what_lies_below_the_horizon_is_refused) {
   BOOST_CHECK_THROW(direction_cosines({pi, 0, {}}, {0, 0, {}}), std::invalid_argument);
 }
 
+BOOST_AUTO_TEST_CASE(a_direction_comes_back_from_its_cosines_near_poles_and_the_origin_of_right_ascension_too) {
+  std::mt19937_64 random(3);
+  std::uniform_real_distribution<double> uniform(-1, 1);
+  for (const double dec : {-pi / 2, -pi / 2 + 1e-5, -0.7, 0.0, 1.2, pi / 2 - 1e-9, pi / 2})
+    for (const double ra : {0.0, 1e-9, 2.5, 2 * pi - 1e-9, -0.4})
+      for (const double radius : {1e-9, 1e-4, 0.1, 0.95})
+        for (int i = 0; i < 20; ++i) {
+          const double angle = pi * uniform(random);
+          const DirectionCosines at{radius * std::cos(angle), radius * std::sin(angle)};
+          const SkyDirection direction = sky_direction(at, {ra, dec, "ICRS"});
+          BOOST_TEST((direction.ra_rad >= 0 && direction.ra_rad <= 2 * pi && std::abs(direction.dec_rad) <= pi / 2));
+          BOOST_TEST(direction.frame == "ICRS");
+          const DirectionCosines back = direction_cosines(direction, {ra, dec, "ICRS"});
+          // Angles of up to 2π, each rounded a few times by 4e-16.
+          BOOST_TEST(std::hypot(back.l - at.l, back.m - at.m) < 1e-14);
+        }
+  BOOST_CHECK_THROW(sky_direction({0.8, 0.7}, {1, 1, {}}), std::invalid_argument);
+}
+
 BOOST_AUTO_TEST_CASE(east_is_towards_lower_columns_and_north_towards_higher_rows) {
   for (const ImageGeometry& g : {ImageGeometry{6, 5, 0.1, {}}, ImageGeometry{7, 4, 0.1, {}}}) {
     BOOST_TEST(g.l(3) == 0);

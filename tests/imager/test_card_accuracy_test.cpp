@@ -25,8 +25,8 @@ constexpr CardSource card[] = {{390, 390, 3},  {390, -390, 3}, {-390, -390, 3}, 
                                {-345, 0, 2},   {0, -345, 2},   {0, 345, 2},     {-120, 180, 2}, {300, 90, 2},
                                {150, -150, 2}, {-90, 300, 2},  {270, -270, 1},  {0, 0, 2}};
 
-std::vector<PointSource> sources() {
-  std::vector<PointSource> list;
+std::vector<Source> sources() {
+  std::vector<Source> list;
   for (const CardSource& s : card) list.push_back({{s.x * geometry.cell_rad, s.y * geometry.cell_rad}, s.flux_jy});
   return list;
 }

@@ -40,7 +40,7 @@ inline VisibilityBlock vla_samples(int hour_angles, double arm_m = 21000) {
 }
 
 /// Gives the block the visibilities of point sources.
-inline void observe(const std::vector<PointSource>& sources, VisibilityBlock& block) {
+inline void observe(const std::vector<Source>& sources, VisibilityBlock& block) {
   const auto exact = predict_sources(sources, block, 2);
   block.visibility.assign(exact.begin(), exact.end());
 }

@@ -8,7 +8,7 @@ namespace {
 using namespace misfit;
 using namespace misfit::tools::testing;
 using imager::Image;
-using imager::PointSource;
+using imager::Source;
 using nlohmann::json;
 
 constexpr double arcsec = M_PI / 180 / 3600;
@@ -19,7 +19,7 @@ struct Pixel {
   int column = 0;
 };
 
-Pixel pixel_of(const PointSource& source, const imager::ImageGeometry& g) {
+Pixel pixel_of(const Source& source, const imager::ImageGeometry& g) {
   return {g.centre_row() + static_cast<int>(std::lround(source.position.m / g.cell_rad)),
           g.centre_column() - static_cast<int>(std::lround(source.position.l / g.cell_rad))};
 }
@@ -30,12 +30,11 @@ double summit(double before, double middle, double after) {
 }
 
 /// Sources with no other within `radius_rad`.
-std::vector<PointSource> isolated(const std::vector<PointSource>& sources, double radius_rad) {
-  std::vector<PointSource> lonely;
-  for (const PointSource& a : sources) {
+std::vector<Source> isolated(const std::vector<Source>& sources, double radius_rad) {
+  std::vector<Source> lonely;
+  for (const Source& a : sources) {
     int near = 0;
-    for (const PointSource& b : sources)
-      near += std::hypot(a.position.l - b.position.l, a.position.m - b.position.m) < radius_rad;
+    for (const Source& b : sources) near += std::hypot(a.position.l - b.position.l, a.position.m - b.position.m) < radius_rad;
     if (near == 1) lonely.push_back(a);
   }
   return lonely;
@@ -64,7 +63,7 @@ BOOST_AUTO_TEST_CASE(cleaned_sources_have_their_positions_and_fluxes_in_all_four
   // Beyond three beams a Gaussian is below 1e-10: only isolated sources have peaks of their own.
   const auto sources = isolated(tools::test_card(card_cell_rad), 3 * sky.beam.major_rad);
   std::map<std::pair<bool, bool>, int> quadrant;
-  for (const PointSource& source : sources) {
+  for (const Source& source : sources) {
     const auto [r, c] = pixel_of(source, sky.geometry);
     ++quadrant[{source.position.l > 0, source.position.m > 0}];
     BOOST_TEST_CONTEXT("row " << r << ", column " << c) {

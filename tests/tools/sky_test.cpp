@@ -11,7 +11,7 @@
 namespace {
 
 using namespace misfit;
-using misfit::imager::PointSource;
+using misfit::imager::Source;
 
 constexpr double degree = M_PI / 180;
 const imager::SkyDirection phase_centre{60 * degree, 40 * degree, "FK5"};
@@ -22,7 +22,7 @@ struct TemporaryFile {
   ~TemporaryFile() { std::filesystem::remove(path); }
 };
 
-std::vector<PointSource> read(const std::string& text) {
+std::vector<Source> read(const std::string& text) {
   return tools::read_component_list(TemporaryFile(text).path, phase_centre);
 }
 
@@ -95,7 +95,7 @@ BOOST_AUTO_TEST_CASE(the_test_card_has_34_sources_within_390_cells) {
   const auto card = tools::test_card(cell_rad);
   BOOST_TEST(card.size() == 34u);
   double total_jy = 0, farthest = 0;
-  for (const PointSource& source : card) {
+  for (const Source& source : card) {
     total_jy += source.flux_jy;
     farthest = std::max({farthest, std::abs(source.position.l), std::abs(source.position.m)});
   }

@@ -15,6 +15,7 @@
 #include "imager/batch_taps.h"
 #include "imager/fft.h"
 #include "imager/plane_transform.h"
+#include "imager/source_sums.h"
 #include "imager/tile_loops.h"
 #include "imager/tile_order.h"
 #include "kernels/catalogue.h"
@@ -154,6 +155,23 @@ void add_fft(int length, std::vector<Piece>& pieces) {
                     static_cast<double>(length), [=] { fft->complex_to_complex(row.get(), Fft<Real>::Sign::forward); }});
 }
 
+/// Direct sums over sources, all points or all Gaussians that baselines hardly resolve.
+void add_source_sums(std::vector<Piece>& pieces) {
+  std::mt19937_64 random(1);
+  std::uniform_real_distribution<double> uniform(-1, 1);
+  for (const double fwhm_rad : {0.0, cell_rad})
+    for (const std::size_t channels : {1, 4, 64}) {
+      SampleCoordinates at = block_of(1024);
+      at.frequency_hz.resize(channels);
+      std::vector<Source> sources;
+      for (int i = 0; i < 256; ++i)
+        sources.push_back({{500 * cell_rad * uniform(random), 500 * cell_rad * uniform(random)}, uniform(random), fwhm_rad});
+      pieces.push_back({std::string("direct sum over ") + (fwhm_rad > 0 ? "Gaussians" : "points") + ", " +
+                            std::to_string(channels) + " channels, a source",
+                        static_cast<double>(at.samples() * sources.size()), [=] { predict_sources(sources, at, 1); }});
+    }
+}
+
 /// Of some calls in a row, after one that brings the piece's memory and branches back to mind.
 double time_ns(const Piece& piece) {
   constexpr int calls = 5;
@@ -188,6 +206,7 @@ int main(int argc, char** argv) {
   add_transform(Precision::double_precision, pieces);
   add_fft<float>(4096, pieces);
   add_fft<double>(4096, pieces);
+  add_source_sums(pieces);
   std::erase_if(pieces, [&](const Piece& piece) { return piece.name.find(only) == std::string::npos; });
 
   std::vector<std::vector<double>> times(pieces.size());
