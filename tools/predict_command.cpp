@@ -1,16 +1,16 @@
 #include <cstdio>
 #include <memory>
 
-#include "imager/direct_transform.h"
 #include "imager/parallel.h"
+#include "imager/source_sums.h"
 #include "ms_io/measurement_set.h"
 #include "ms_io/model_writer.h"
 #include "tools/command.h"
+#include "tools/component_list.h"
 #include "tools/kernel_choice.h"
 #include "tools/model_image.h"
 #include "tools/numbers.h"
 #include "tools/progress.h"
-#include "tools/sky.h"
 
 namespace misfit::tools {
 namespace {
@@ -77,8 +77,10 @@ void add_predict_command(CLI::App& program) {
   const auto o = std::make_shared<PredictOptions>();
   command->add_option("--vis", o->vis, "MeasurementSet; only the column is written")->required();
   command->add_option("--model", o->model, "FITS image in Jy/pixel whose reference position is the phase centre");
-  command->add_option("--components", o->components,
-                      "CSV file with ra_deg,dec_deg,flux_jy or l_arcsec,m_arcsec,flux_jy, summed directly with w");
+  command->add_option(
+      "--components", o->components,
+      "CSV file with ra_deg,dec_deg,flux_jy or l_arcsec,m_arcsec,flux_jy, and scale_arcsec for the full width at "
+      "half maximum of a circular Gaussian (0: a point), summed directly with w");
   command->add_option("--column", o->column, "Column to write; made when it does not exist");
   command->add_option("--field", o->selection.field, "Fields, in CASA's selection syntax");
   command->add_option("--spw", o->selection.spectral_window, "Spectral windows and channels, in CASA's selection syntax");

@@ -3,11 +3,12 @@
 #include <memory>
 #include <numbers>
 
-#include "imager/direct_transform.h"
 #include "imager/parallel.h"
+#include "imager/source_sums.h"
 #include "ms_io/simulated_set.h"
 #include "tools/array.h"
 #include "tools/command.h"
+#include "tools/component_list.h"
 #include "tools/numbers.h"
 #include "tools/progress.h"
 #include "tools/quantity.h"
@@ -115,12 +116,12 @@ void simulate(const SimulateOptions& o) {
 }  // namespace
 
 void add_simulate_command(CLI::App& program) {
-  CLI::App* command = program.add_subcommand("simulate", "Write a MeasurementSet with exact visibilities of point sources");
+  CLI::App* command =
+      program.add_subcommand("simulate", "Write a MeasurementSet with exact visibilities of points and Gaussians");
   const auto o = std::make_shared<SimulateOptions>();
   command->add_option("--output", o->output, "MeasurementSet to make")->required();
-  command->add_option(
-      "--sky", o->sky,
-      "testcard: the 34 sources of Ye et al. 2020; or a CSV file with ra_deg,dec_deg,flux_jy or l_arcsec,m_arcsec,flux_jy");
+  command->add_option("--sky", o->sky,
+                      "testcard: the 34 sources of Ye et al. 2020; or a CSV file as `misfit predict --components` takes");
   command->add_option("--array", o->array, "vla-a, vla-b, vla-c or vla-d");
   CLI::Option* coplanar = command->add_flag("--coplanar", o->coplanar, "Set w to 0 (the default with the test card)");
   command->add_flag("--noncoplanar", o->noncoplanar, "Keep w (the default otherwise)")->excludes(coplanar);

@@ -1,0 +1,24 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "imager/source.h"
+
+namespace misfit::tools {
+
+/// The sources of a CSV file. Its first line names the columns, in any order: `flux_jy`; either `ra_deg` and `dec_deg`, in the
+/// frame of `phase_centre`, or `l_arcsec` and `m_arcsec`, direction cosines in units of an arcsecond; and, if there are
+/// extended sources, `scale_arcsec`, the full width at half maximum of a circular Gaussian, 0 for a point. Blank lines and
+/// lines that begin with # are skipped. Throws std::runtime_error that names the file, the line, the value and what was
+/// expected.
+std::vector<imager::Source> read_component_list(const std::string& path, const imager::SkyDirection& phase_centre);
+
+/// Writes a list that `read_component_list` takes, with the columns ra_deg,dec_deg,flux_jy,scale_arcsec and as many digits as
+/// give each number back exactly; 0 ≤ ra_deg < 360, in the frame of `phase_centre`. The file appears under its name only when
+/// complete. Throws std::runtime_error that names the path, and the line of a source that has no place on the sky, or whose
+/// numbers are not finite.
+void write_component_list(const std::string& path, const std::vector<imager::Source>& sources,
+                          const imager::SkyDirection& phase_centre);
+
+}  // namespace misfit::tools
