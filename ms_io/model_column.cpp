@@ -63,37 +63,78 @@ void add_column(casacore::MeasurementSet& set, const std::string& column, const 
   }
 }
 
-void fill_with_zeros(casacore::MeasurementSet& set, const std::string& path, const std::string& column,
-                     const std::vector<casacore::IPosition>& shapes) {
+/// Consecutive rows of one setup.
+struct RowSpan {
+  std::size_t begin = 0;
+  std::size_t end = 0;
+};
+
+/// The column and what it begins with: zeros, or the cells of another column.
+class Filler {
+ public:
+  Filler(casacore::MeasurementSet& set, const ModelColumn& column) : cells_(set, column.name) {
+    if (!column.subtracted_from.empty()) data_.attach(set, column.subtracted_from);
+  }
+
+  void fill(const RowSpan& rows, const casacore::IPosition& shape) {
+    const auto count = static_cast<ssize_t>(rows.end - rows.begin);
+    const casacore::Slicer range(casacore::IPosition(1, static_cast<ssize_t>(rows.begin)), casacore::IPosition(1, count));
+    const casacore::IPosition all_shape = shape.concatenate(casacore::IPosition(1, count));
+    if (data_.isNull() || holds(rows, shape)) {
+      if (!cells_.columnDesc().isFixedShape()) {
+        for (std::size_t row = rows.begin; row < rows.end; ++row) cells_.setShape(row, shape);
+      }
+      cells_.putColumnRange(range, data_.isNull() ? Cells(all_shape, casacore::Complex(0)) : data_.getColumnRange(range));
+      return;
+    }
+    for (std::size_t row = rows.begin; row < rows.end; ++row) {
+      cells_.put(row, data_.isDefined(row) ? data_(row) : Cells(shape, casacore::Complex(0)));
+    }
+  }
+
+ private:
+  using Cells = casacore::Array<casacore::Complex>;
+
+  /// Whether all of these rows have data of that shape.
+  bool holds(const RowSpan& rows, const casacore::IPosition& shape) const {
+    for (std::size_t row = rows.begin; row < rows.end; ++row) {
+      if (!data_.isDefined(row) || !data_.shape(row).isEqual(shape)) return false;
+    }
+    return true;
+  }
+
+  casacore::ArrayColumn<casacore::Complex> cells_, data_;
+};
+
+void fill(casacore::MeasurementSet& set, const std::string& path, const ModelColumn& column,
+          const std::vector<casacore::IPosition>& shapes) {
   const std::vector<int> setup = casacore::ScalarColumn<int>(set, "DATA_DESC_ID").getColumn().tovector();
   const SetupTable table(set, path);
-  casacore::ArrayColumn<casacore::Complex> cells(set, column);
-  for (std::size_t row = 0; row < setup.size();) {
-    table.spectral_window(setup[row]);  // throws when there is no such DATA_DESC_ID
-    const casacore::IPosition& shape = shapes[static_cast<std::size_t>(setup[row])];
+  Filler filler(set, column);
+  for (RowSpan rows; rows.begin < setup.size(); rows.begin = rows.end) {
+    table.spectral_window(setup[rows.begin]);  // throws when there is no such DATA_DESC_ID
+    const casacore::IPosition& shape = shapes[static_cast<std::size_t>(setup[rows.begin])];
     const auto most = static_cast<std::size_t>(std::max<ssize_t>(1, (1 << 20) / std::max<ssize_t>(1, shape.product())));
-    std::size_t end = row;
-    while (end < setup.size() && end - row < most && setup[end] == setup[row]) ++end;
-    const auto count = static_cast<ssize_t>(end - row);
-    if (!cells.columnDesc().isFixedShape()) {
-      for (std::size_t r = row; r < end; ++r) cells.setShape(r, shape);
-    }
-    const casacore::Slicer rows(casacore::IPosition(1, static_cast<ssize_t>(row)), casacore::IPosition(1, count));
-    cells.putColumnRange(
-        rows, casacore::Array<casacore::Complex>(shape.concatenate(casacore::IPosition(1, count)), casacore::Complex(0)));
-    row = end;
+    while (rows.end < setup.size() && rows.end - rows.begin < most && setup[rows.end] == setup[rows.begin]) ++rows.end;
+    filler.fill(rows, shape);
   }
 }
 
 }  // namespace
 
-void create_model_column(casacore::MeasurementSet& set, const std::string& path, const std::string& column) {
-  translated("cannot create " + column + " in " + path, [&] {
+void create_model_column(casacore::MeasurementSet& set, const std::string& path, const ModelColumn& column) {
+  translated("cannot create " + column.name + " in " + path, [&] {
     const std::vector<casacore::IPosition> shapes = cell_shapes(set, path);
     const casacore::TableDesc& description = set.tableDesc();
     const bool fixed = description.isColumn("DATA") && description["DATA"].isFixedShape() && shapes.size() == 1;
-    add_column(set, column, shapes.front(), fixed);
-    fill_with_zeros(set, path, column, shapes);
+    add_column(set, column.name, shapes.front(), fixed);
+    try {
+      fill(set, path, column, shapes);
+      set.flush();
+    } catch (...) {
+      set.removeColumn(column.name);
+      throw;
+    }
   });
 }
 

@@ -4,10 +4,13 @@
 
 #include <string>
 
+#include "ms_io/model_writer.h"
+
 namespace misfit::ms_io {
 
-/// Adds `column`, complex and full of zeros, shaped and tiled as DATA is (one tile shape for each shape of cell, when these
-/// vary). Throws std::runtime_error that names path and column.
-void create_model_column(casacore::MeasurementSet& set, const std::string& path, const std::string& column);
+/// Adds `column`, complex, shaped and tiled as DATA is (one tile shape for each shape of cell, when these vary), full of zeros
+/// or of the data that something will be subtracted from. From here on the set on disk has the column, or, when this fails, has
+/// not. Throws std::runtime_error that names path and column.
+void create_model_column(casacore::MeasurementSet& set, const std::string& path, const ModelColumn& column);
 
 }  // namespace misfit::ms_io

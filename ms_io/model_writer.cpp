@@ -15,18 +15,74 @@
 namespace misfit::ms_io {
 namespace {
 
-void require_writable_column(const casacore::MeasurementSet& set, const std::string& path, const std::string& column) {
-  if (column.empty() || column == "DATA") {
-    throw std::runtime_error("a model cannot be written to column '" + column + "' of " + path +
-                             "; expected a column other than DATA, such as MODEL_DATA");
-  }
-  if (set.tableDesc().isColumn(column)) require_visibility_column(set, path, column);
+using Cells = casacore::Array<casacore::Complex>;
+
+/// `column` with its names spelt out.
+ModelColumn spelt_out(const ModelColumn& column) {
+  return {column_name(column.name), column_name(column.subtracted_from), column.may_exist};
 }
+
+void require_writable_column(const casacore::MeasurementSet& set, const std::string& path, const ModelColumn& column) {
+  const std::string& data = column.subtracted_from;
+  if (column.name.empty() || column.name == "DATA") {
+    throw std::runtime_error("a model cannot be written to column '" + column.name + "' of " + path +
+                             "; expected a column other than DATA, such as " +
+                             (data.empty() ? "MODEL_DATA" : "CORRECTED_DATA"));
+  }
+  if (column.name == data) {
+    throw std::runtime_error("data − model cannot be written to column '" + column.name + "' of " + path +
+                             ", from which the data are read: a run cut short could not be mended; expected another column");
+  }
+  if (!data.empty()) require_visibility_column(set, path, data);
+  if (!set.tableDesc().isColumn(column.name)) return;
+  if (!column.may_exist) {
+    throw std::runtime_error(path + " has a column " + column.name +
+                             " already, which may hold calibrated data; expected another --column, or this one by name");
+  }
+  require_visibility_column(set, path, column.name);
+}
+
+/// A column of cells, correlations × channels.
+class CellColumn {
+ public:
+  CellColumn() = default;
+  CellColumn(const casacore::MeasurementSet& set, const std::string& name)
+      : column_(set, name), fixed_shape_(column_.columnDesc().isFixedShape()) {}
+
+  bool exists() const { return !column_.isNull(); }
+  void read(const Rows& rows, const casacore::Slicer& slice, Cells& cells) const { ms_io::read(column_, rows, slice, cells); }
+  void write(const Rows& rows, const casacore::Slicer& slice, const Cells& cells) {
+    if (rows.contiguous()) {
+      column_.putColumnRange(rows.range(), slice, cells);
+    } else {
+      column_.putColumnCells(rows.listed(), slice, cells);
+    }
+  }
+
+  /// Gives cells that have no shape yet what `blank(row)` returns. Throws AipsError when one has another shape than `shape`.
+  template <typename Blank>
+  void require_shape(const Rows& rows, const casacore::IPosition& shape, const Blank& blank) {
+    if (fixed_shape_ && column_.shapeColumn().isEqual(shape)) return;
+    for (const casacore::rownr_t row : rows.numbers()) {
+      if (!column_.isDefined(row)) column_.put(row, blank(row));
+      if (!column_.shape(row).isEqual(shape)) {
+        throw casacore::AipsError("the cell of row " + std::to_string(row) + " has shape " + column_.shape(row).toString() +
+                                  "; expected " + shape.toString());
+      }
+    }
+  }
+  Cells operator()(casacore::rownr_t row) const { return column_(row); }
+
+ private:
+  casacore::ArrayColumn<casacore::Complex> column_;
+  bool fixed_shape_ = false;
+};
 
 class Writer {
  public:
-  Writer(casacore::MeasurementSet& set, const std::string& column)
-      : uvw_column_(set, "UVW"), model_column_(set, column), fixed_shape_(model_column_.columnDesc().isFixedShape()) {}
+  Writer(casacore::MeasurementSet& set, const ModelColumn& column) : uvw_column_(set, "UVW"), model_column_(set, column.name) {
+    if (!column.subtracted_from.empty()) data_column_ = CellColumn(set, column.subtracted_from);
+  }
 
   /// Where the block lies; rows with a non-finite UVW are put at 0 and marked.
   imager::SampleCoordinates coordinates(const Rows& rows, const Setup& setup, std::vector<bool>& unknown) const {
@@ -43,50 +99,61 @@ class Writer {
     return where;
   }
 
-  /// Stores `stokes_i` [row][selected channel]; channels that are not selected keep what they hold.
-  void write(const Rows& rows, const Setup& setup, const std::vector<std::complex<double>>& stokes_i) {
+  /// The data of a block from its first selected channel to the last one, where they are needed.
+  Cells data(const Rows& rows, const Setup& setup) {
+    Cells cells;
+    if (!data_column_.exists()) return cells;
+    data_column_.require_shape(rows, stored_shape(setup), [](casacore::rownr_t row) -> Cells {
+      throw casacore::AipsError("row " + std::to_string(row) + " has no data");
+    });
+    data_column_.read(rows, channel_slice(setup, setup.correlation_types.size()), cells);
+    return cells;
+  }
+
+  /// Stores `stokes_i` [row][selected channel], or `data` without it; channels that are not selected keep what they hold.
+  void write(const Rows& rows, const Setup& setup, const std::vector<std::complex<double>>& stokes_i, const Cells& data) {
     const std::size_t correlations = setup.correlation_types.size(), span = setup.channel_span();
-    require_shape(rows,
-                  casacore::IPosition(2, static_cast<ssize_t>(correlations), static_cast<ssize_t>(setup.stored_channels)));
+    const casacore::IPosition shape = stored_shape(setup);
+    model_column_.require_shape(rows, shape, [&](casacore::rownr_t row) {
+      return data_column_.exists() ? data_column_(row) : Cells(shape, casacore::Complex(0));
+    });
     const casacore::Slicer slice = channel_slice(setup, correlations);
-    casacore::Array<casacore::Complex> cells(casacore::IPosition(
-        3, static_cast<ssize_t>(correlations), static_cast<ssize_t>(span), static_cast<ssize_t>(rows.count())));
-    if (setup.channels.size() > 1) read(model_column_, rows, slice, cells);
+    Cells cells(casacore::IPosition(3, shape(0), static_cast<ssize_t>(span), static_cast<ssize_t>(rows.count())));
+    if (setup.channels.size() > 1) model_column_.read(rows, slice, cells);
     const std::complex<double>* in = stokes_i.data();
     for (std::size_t r = 0; r < rows.count(); ++r) {
       for (const Run& run : setup.channels) {
-        casacore::Complex* out = cells.data() + (r * span + run.first - setup.first_channel()) * correlations;
-        for (std::uint64_t c = 0; c < run.count; ++c, ++in) {
-          for (const int type : setup.correlation_types) {
-            *out++ = receives_stokes_i(type) ? casacore::Complex(*in) : casacore::Complex(0);
-          }
+        std::size_t at = (r * span + run.first - setup.first_channel()) * correlations;
+        for (std::uint64_t c = 0; c < run.count; ++c, ++in, at += correlations) {
+          form_sample(setup, *in, data.empty() ? nullptr : data.data() + at, cells.data() + at);
         }
       }
     }
-    if (rows.contiguous()) {
-      model_column_.putColumnRange(rows.range(), slice, cells);
-    } else {
-      model_column_.putColumnCells(rows.listed(), slice, cells);
-    }
+    model_column_.write(rows, slice, cells);
   }
 
  private:
-  /// Gives cells that have no shape yet `shape` and zeros. Throws AipsError when one has another shape.
-  void require_shape(const Rows& rows, const casacore::IPosition& shape) {
-    if (fixed_shape_ && model_column_.shapeColumn().isEqual(shape)) return;
-    for (const casacore::rownr_t row : rows.numbers()) {
-      if (!model_column_.isDefined(row)) {
-        model_column_.put(row, casacore::Array<casacore::Complex>(shape, casacore::Complex(0)));
-      } else if (!model_column_.shape(row).isEqual(shape)) {
-        throw casacore::AipsError("the cell of row " + std::to_string(row) + " has shape " +
-                                  model_column_.shape(row).toString() + "; expected " + shape.toString());
+  static casacore::IPosition stored_shape(const Setup& setup) {
+    return casacore::IPosition(2, static_cast<ssize_t>(setup.correlation_types.size()),
+                               static_cast<ssize_t>(setup.stored_channels));
+  }
+
+  /// All correlations of one sample: of the model, or of the data without it where there are `data`.
+  static void form_sample(const Setup& setup, std::complex<double> stokes_i, const casacore::Complex* data,
+                          casacore::Complex* out) {
+    for (const int type : setup.correlation_types) {
+      const bool receives = receives_stokes_i(type);
+      if (data == nullptr) {
+        *out++ = receives ? casacore::Complex(stokes_i) : casacore::Complex(0);
+      } else {
+        *out++ = receives ? casacore::Complex(std::complex<double>(*data) - stokes_i) : *data;
+        ++data;
       }
     }
   }
 
   casacore::ArrayColumn<double> uvw_column_;
-  casacore::ArrayColumn<casacore::Complex> model_column_;
-  bool fixed_shape_;
+  CellColumn model_column_, data_column_;
 };
 
 std::vector<std::complex<double>> predicted(const Predict& predict, const imager::SampleCoordinates& where,
@@ -122,25 +189,27 @@ struct PredictedBlock {
 
 }  // namespace
 
-void require_writable(const std::string& path) {
-  open_measurement_set(path, Access::update);
+void require_writable(const std::string& path, const ModelColumn& column) {
+  require_writable_column(open_measurement_set(path, Access::update), path, spelt_out(column));
 }
 
-ModelWriteReport write_model(const std::string& path, const Selection& selection, const std::string& column,
+ModelWriteReport write_model(const std::string& path, const Selection& selection, const ModelColumn& column,
                              const Predict& predict, const std::function<void(std::uint64_t, std::uint64_t)>& progress,
                              std::uint64_t block_samples) {
-  const std::string name = column_name(column);
+  const ModelColumn written = spelt_out(column);
   casacore::MeasurementSet set = open_measurement_set(path, Access::update);
-  require_writable_column(set, path, name);
+  require_writable_column(set, path, written);
   const SelectedRows selected = select_rows(set, path, selection, block_samples);
   describe(set, path, selected);  // throws unless there is one phase centre
-  if (!set.tableDesc().isColumn(name)) create_model_column(set, path, name);
-  const std::string doing = "cannot write " + name + " of " + path;
-  Writer writer = translated(doing, [&] { return Writer(set, name); });
+  if (!set.tableDesc().isColumn(written.name)) create_model_column(set, path, written);
+  const std::string doing = "cannot write " + written.name + " of " + path;
+  Writer writer = translated(doing, [&] { return Writer(set, written); });
   ModelWriteReport report;
   std::unique_ptr<PredictedBlock> before;  // is written while the next one is predicted
   const auto write = [&](const PredictedBlock& block, const std::vector<std::complex<double>>& stokes_i) {
-    translated(doing, [&] { writer.write(block.rows, *block.setup, stokes_i); });
+    const Cells data = translated("cannot read " + written.subtracted_from + " of " + path,
+                                  [&] { return writer.data(block.rows, *block.setup); });
+    translated(doing, [&] { writer.write(block.rows, *block.setup, stokes_i, data); });
     report.rows += block.rows.count();
     report.samples += block.where.samples();
     for (const bool row_is_unknown : block.unknown) report.nonfinite_uvw_rows += row_is_unknown;

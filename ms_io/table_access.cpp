@@ -81,7 +81,8 @@ void require_visibility_column(const casacore::Table& table, const std::string& 
   const casacore::TableDesc& description = table.tableDesc();
   if (description.isColumn(column) && is_visibility_column(description[column])) return;
   throw std::runtime_error(path + " has no visibilities in a column '" + column +
-                           "'; columns with visibilities: " + visibility_columns(description));
+                           "'; columns with visibilities: " + visibility_columns(description) +
+                           (description.isColumn("FLOAT_DATA") ? " (FLOAT_DATA holds real numbers)" : ""));
 }
 
 }  // namespace misfit::ms_io

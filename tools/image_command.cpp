@@ -213,7 +213,7 @@ class ImageRun {
       const ms_io::MeasurementSet set(o_.vis, o_.selection, o_.datacolumn);
       model = image_visibilities(cleaned_->model, geometry_, gridding_request(o_, threads_), set);
     }
-    ms_io::write_model(o_.vis, o_.selection, "MODEL_DATA", model.predict, progress(), model.samples_at_once);
+    ms_io::write_model(o_.vis, o_.selection, {"MODEL_DATA"}, model.predict, progress(), model.samples_at_once);
     progress_.end();
   }
 

@@ -19,7 +19,9 @@ struct PredictOptions {
   std::string vis;
   std::string model;
   std::string components;
-  std::string column = "MODEL_DATA";
+  bool subtract = false;
+  std::string datacolumn = "data";
+  std::string column;  ///< empty: what column_of() says
   ms_io::Selection selection;
   double accuracy = 1e-6;
   bool accuracy_is_typed = false;
@@ -44,36 +46,52 @@ ModelVisibilities component_model(const PredictOptions& o, const ms_io::Measurem
   return model;
 }
 
-void predict(const PredictOptions& o) {
+/// Where the model goes. Calibrated data are overwritten only for those who name their column.
+ms_io::ModelColumn column_of(const PredictOptions& o) {
+  const std::string usual = o.subtract ? "CORRECTED_DATA" : "MODEL_DATA";
+  return {o.column.empty() ? usual : o.column, o.subtract ? o.datacolumn : "", !o.subtract || !o.column.empty()};
+}
+
+void check(const PredictOptions& o) {
   if (!(o.accuracy > 0 && o.accuracy < 1))
     throw std::invalid_argument("--accuracy " + significant(o.accuracy, 3) + ": expected a number above 0 and below 1");
   if (o.threads < 0) throw std::invalid_argument("--threads " + std::to_string(o.threads) + ": expected 0 (all cores) or more");
   if (o.model.empty() == o.components.empty()) throw std::invalid_argument("expected either --model or --components");
+}
+
+void print(const PredictOptions& o, const ms_io::ModelWriteReport& report) {
+  const auto count = [](std::uint64_t number) { return grouped(static_cast<long long>(number)); };
+  std::printf("%s: %s%s visibilities in %s rows written to %s\n", o.vis.c_str(), o.subtract ? "data − model of " : "",
+              count(report.samples).c_str(), count(report.rows).c_str(), column_of(o).name.c_str());
+  if (report.nonfinite_uvw_rows > 0)
+    std::printf("%s rows have UVW that are not finite and %s\n", count(report.nonfinite_uvw_rows).c_str(),
+                o.subtract ? "keep their data" : "got 0");
+}
+
+void predict(const PredictOptions& o) {
+  check(o);
+  const ms_io::ModelColumn column = column_of(o);
+  ms_io::require_writable(o.vis, column);
   ProgressLine progress(o.quiet);
   const int threads = o.threads == 0 ? imager::available_threads() : o.threads;
   ModelVisibilities model;
   {
-    const ms_io::MeasurementSet set(o.vis, o.selection, "DATA");
+    const ms_io::MeasurementSet set(o.vis, o.selection, o.subtract ? o.datacolumn : "DATA");
     model = o.model.empty() ? component_model(o, set, threads) : image_model(o, set, threads);
   }
-  progress.begin("predict");
-  const ms_io::ModelWriteReport report = ms_io::write_model(
-      o.vis, o.selection, o.column, model.predict,
-      [&](std::uint64_t done, std::uint64_t total) { progress.update(done, total); }, model.samples_at_once);
+  progress.begin(o.subtract ? "subtract" : "predict");
+  const auto show = [&](std::uint64_t done, std::uint64_t total) { progress.update(done, total); };
+  const ms_io::ModelWriteReport report =
+      ms_io::write_model(o.vis, o.selection, column, model.predict, show, model.samples_at_once);
   progress.end();
-  if (o.quiet) return;
-  std::printf("%s: %s visibilities in %s rows written to %s\n", o.vis.c_str(),
-              grouped(static_cast<long long>(report.samples)).c_str(), grouped(static_cast<long long>(report.rows)).c_str(),
-              o.column.c_str());
-  if (report.nonfinite_uvw_rows > 0)
-    std::printf("%s rows have UVW that are not finite and got 0\n",
-                grouped(static_cast<long long>(report.nonfinite_uvw_rows)).c_str());
+  if (!o.quiet) print(o, report);
 }
 
 }  // namespace
 
 void add_predict_command(CLI::App& program) {
-  CLI::App* command = program.add_subcommand("predict", "Write the visibilities of a model into a column of a MeasurementSet");
+  CLI::App* command =
+      program.add_subcommand("predict", "Write a model's visibilities, or data without them, into a MeasurementSet");
   const auto o = std::make_shared<PredictOptions>();
   command->add_option("--vis", o->vis, "MeasurementSet; only the column is written")->required();
   command->add_option("--model", o->model, "FITS image in Jy/pixel whose reference position is the phase centre");
@@ -81,7 +99,14 @@ void add_predict_command(CLI::App& program) {
       "--components", o->components,
       "CSV file with ra_deg,dec_deg,flux_jy or l_arcsec,m_arcsec,flux_jy, and scale_arcsec for the full width at "
       "half maximum of a circular Gaussian (0: a point), summed directly with w");
-  command->add_option("--column", o->column, "Column to write; made when it does not exist");
+  CLI::Option* subtract = command->add_flag(
+      "--subtract", o->subtract, "Write data − model instead: XX, YY, RR and LL lose the model, other correlations are copied");
+  command->add_option("--datacolumn", o->datacolumn, "What is subtracted from: data, corrected, model, or a column's name")
+      ->needs(subtract);
+  command->add_option(
+      "--column", o->column,
+      "Column to write: MODEL_DATA, or CORRECTED_DATA with --subtract, where that must not exist yet unless it is "
+      "named. A new column holds 0, or the data, outside the selection");
   command->add_option("--field", o->selection.field, "Fields, in CASA's selection syntax");
   command->add_option("--spw", o->selection.spectral_window, "Spectral windows and channels, in CASA's selection syntax");
   command->add_option("--accuracy", o->accuracy, "Relative accuracy of the visibilities");

@@ -17,7 +17,7 @@ casacore::Complex expected_at(std::size_t row, std::size_t channel) {
 }
 
 ModelWriteReport write(const SmallSet& set, const Selection& selection, const std::string& column) {
-  return write_model(set.path(), selection, column, small_visibilities, {});
+  return write_model(set.path(), selection, {column}, small_visibilities, {});
 }
 
 }  // namespace
@@ -63,7 +63,7 @@ BOOST_AUTO_TEST_CASE(an_existing_column_is_left_alone_outside_the_selection) {
   const auto minus = [](const imager::SampleCoordinates& where) {
     return std::vector<std::complex<double>>(where.samples(), -1.0);
   };
-  write_model(set.path(), {"", "1:0~4^2"}, "MODEL_DATA", minus, {});
+  write_model(set.path(), {"", "1:0~4^2"}, {"MODEL_DATA"}, minus, {});
   for (std::size_t r = 0; r < rows; ++r) {
     const auto cell = set.cell("MODEL_DATA", r);
     for (std::size_t c = 0; c < channels; ++c) {
@@ -122,7 +122,7 @@ BOOST_AUTO_TEST_CASE(rows_with_a_nonfinite_uvw_get_zero_and_are_counted) {
     for (const double x : where.uvw_m) finite = finite && std::isfinite(x);
     return std::vector<std::complex<double>>(where.samples(), 1.0);
   };
-  const ModelWriteReport report = write_model(set.path(), {}, "MODEL_DATA", check_finite, {});
+  const ModelWriteReport report = write_model(set.path(), {}, {"MODEL_DATA"}, check_finite, {});
   BOOST_TEST(finite);
   BOOST_TEST(report.nonfinite_uvw_rows == 1U);
   BOOST_TEST(set.cell("MODEL_DATA", 5)(0, 0) == casacore::Complex(0));
@@ -137,7 +137,7 @@ BOOST_AUTO_TEST_CASE(a_prediction_that_fails_ends_the_writing_at_once) {
       if (++calls == failing) throw std::runtime_error("no more");
       return std::vector<std::complex<double>>(where.samples(), 1.0);
     };
-    BOOST_CHECK_THROW(write_model(set.path(), {}, "MODEL_DATA", predict, {}, channels), std::runtime_error);
+    BOOST_CHECK_THROW(write_model(set.path(), {}, {"MODEL_DATA"}, predict, {}, channels), std::runtime_error);
     BOOST_TEST(calls == failing);
   }
 }
@@ -146,7 +146,7 @@ BOOST_AUTO_TEST_CASE(progress_grows_to_the_total) {
   const SmallSet set;
   set.add_spectral_window();
   std::uint64_t last = 0, end = 0;
-  write_model(set.path(), {}, "MODEL_DATA", small_visibilities, [&](std::uint64_t done, std::uint64_t total) {
+  write_model(set.path(), {}, {"MODEL_DATA"}, small_visibilities, [&](std::uint64_t done, std::uint64_t total) {
     BOOST_TEST(done > last);
     last = done;
     end = total;
@@ -174,7 +174,7 @@ BOOST_AUTO_TEST_CASE(a_refused_write_creates_no_column) {
 BOOST_AUTO_TEST_CASE(a_prediction_of_the_wrong_size_is_refused) {
   const SmallSet set;
   const auto none = [](const imager::SampleCoordinates&) { return std::vector<std::complex<double>>(); };
-  BOOST_CHECK_THROW(write_model(set.path(), {}, "MODEL_DATA", none, {}), std::invalid_argument);
+  BOOST_CHECK_THROW(write_model(set.path(), {}, {"MODEL_DATA"}, none, {}), std::invalid_argument);
 }
 
 BOOST_AUTO_TEST_CASE(a_read_only_set_is_named) {

@@ -220,6 +220,23 @@ BOOST_AUTO_TEST_CASE(a_model_must_be_an_image_on_the_phase_centre) {
   check_refused(predict(folder / "a.model.fits") + Arguments{"--column", "DATA"}, 1, {"DATA"}, set);
 }
 
+BOOST_AUTO_TEST_CASE(what_is_subtracted_from_is_not_overwritten) {
+  const Scene scene;
+  const TemporaryFolder folder;
+  const std::string set = copy_of_snapshot(folder), list = scene.folder / "one.csv";
+  std::ofstream(list) << "l_arcsec,m_arcsec,flux_jy,scale_arcsec\n1,2,3,-4\n";
+  const Arguments predict{"predict", "--vis", set, "--components", list};
+  check_refused(predict, 1, {list + ", line 2", "scale_arcsec is '-4'"}, set);
+  check_refused(predict + Arguments{"--datacolumn", "data"}, 2, {"--datacolumn", "--subtract"}, set);
+  const Arguments subtract = predict + Arguments{"--subtract"};
+  check_refused(subtract + Arguments{"--column", "data"}, 1, {"DATA", "such as CORRECTED_DATA"}, set);
+  check_refused(subtract + Arguments{"--datacolumn", "corrected"}, 1, {"CORRECTED_DATA", "expected another column"}, set);
+  check_refused(subtract + Arguments{"--datacolumn", "model"}, 1, {"MODEL_DATA", "columns with visibilities: DATA"}, set);
+  std::ofstream(list) << "l_arcsec,m_arcsec,flux_jy\n1,2,3\n";
+  succeed(predict + Arguments{"--column", "CORRECTED_DATA"});
+  check_refused(subtract, 1, {"has a column CORRECTED_DATA already"}, set);
+}
+
 BOOST_AUTO_TEST_CASE(an_image_too_large_for_the_memory_is_refused_before_work_begins) {
   const Scene scene;
   const long double memory = static_cast<long double>(sysconf(_SC_PHYS_PAGES)) * sysconf(_SC_PAGE_SIZE);
