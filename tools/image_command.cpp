@@ -178,6 +178,7 @@ class ImageRun {
   }
 
   void clean() {
+    dirty_ = sketch(made_.images.dirty, Shades::brightness, picture_side);
     progress_.begin("CLEAN", true);
     cleaned_ = std::make_unique<imager::CleanResult>(clean_->run(
         {*source_, *made_.transform, made_.images, main_lobe_}, report_.options, progress(),
@@ -222,18 +223,19 @@ class ImageRun {
     products_->set_history(report_.command_line);
     products_->set_cards(error_cards(report_));
     if (report_.beam != nullptr) products_->set_beam(beam_);
-    products_->add("psf", "PSF", "Jy/beam", std::move(made_.images.psf));
+    products_->add({"psf", "PSF", "Jy/beam"}, std::move(made_.images.psf));
     if (!cleaned_) {
-      products_->add("residual", "Dirty image", "Jy/beam", std::move(made_.images.dirty));
+      products_->add({"residual", "Dirty image", "Jy/beam"}, std::move(made_.images.dirty));
     } else {
       const imager::StageTimer timer(times_, "restore");
       imager::Image restored = imager::convolve_with_beam(cleaned_->model, beam_, geometry_.cell_rad, threads_);
       for (std::size_t i = 0; i < restored.pixel.size(); ++i) restored.pixel[i] += cleaned_->residual.pixel[i];
-      products_->add("residual", "Residual", "Jy/beam", std::move(cleaned_->residual));
       imager::Image model = o_.savemodel == "none" ? std::move(cleaned_->model) : cleaned_->model;
-      products_->add("model", "Model", "Jy/pixel", std::move(model));
-      if (!cleaned_->mask.pixel.empty()) products_->add("mask", "", "", std::move(cleaned_->mask));
-      products_->add("image", "Restored image", "Jy/beam", std::move(restored));
+      products_->add({"model", "Model", "Jy/pixel", Shades::about_zero}, std::move(model));
+      products_->add_picture({"dirty", "Dirty image", "Jy/beam"}, std::move(dirty_));
+      products_->add({"residual", "Residual", "Jy/beam", Shades::about_zero}, std::move(cleaned_->residual));
+      if (!cleaned_->mask.pixel.empty()) products_->add({"mask", "", ""}, std::move(cleaned_->mask));
+      products_->add({"image", "Restored image", "Jy/beam"}, std::move(restored));
     }
     drawing_ = std::make_unique<PictureDrawing>(products_->pictures());
     const imager::StageTimer timer(times_, "write images");
@@ -295,6 +297,7 @@ class ImageRun {
   imager::Beam main_lobe_;  ///< of the PSF; where no beam fits it, that given
   imager::Beam beam_;       ///< that images are restored with
   imager::Beam quadrant_beam_;
+  Sketch dirty_;  ///< what is left of the dirty image when CLEAN is over
   std::unique_ptr<imager::CleanResult> cleaned_;
   std::unique_ptr<ImageProducts> products_;
   std::unique_ptr<PictureDrawing> drawing_;  ///< of the products

@@ -35,21 +35,32 @@ void ImageProducts::set_beam(const imager::Beam& beam) {
   common_.beam = beam;
 }
 
-void ImageProducts::add(const std::string& kind, const std::string& title, const std::string& unit, imager::Image image) {
-  Product product{kind, title, common_};
-  product.image.unit = unit;
-  product.image.image = std::move(image);
-  products_.push_back(std::move(product));
+void ImageProducts::add(const ProductKind& kind, imager::Image image) {
+  products_.push_back({kind, common_, {}});
+  products_.back().image.unit = kind.unit;
+  products_.back().image.image = std::move(image);
+}
+
+void ImageProducts::add_picture(const ProductKind& kind, Sketch sketch) {
+  add(kind, {});
+  products_.back().sketch = std::move(sketch);
 }
 
 void ImageProducts::write() const {
-  for (const Product& product : products_) imager::write_fits(product.image, path(product, "fits"), format_);
+  for (const Product& product : products_)
+    if (!product.sketch) imager::write_fits(product.image, path(product, "fits"), format_);
 }
 
 std::vector<Picture> ImageProducts::pictures() const {
   std::vector<Picture> wanted;
-  for (auto product = products_.rbegin(); product != products_.rend(); ++product)
-    if (!product->title.empty()) wanted.push_back({&product->image, product->title, path(*product, "png")});
+  for (auto product = products_.rbegin(); product != products_.rend(); ++product) {
+    if (product->kind.title.empty()) continue;
+    wanted.push_back({.image = &product->image,
+                      .title = product->kind.title,
+                      .path = path(*product, "png"),
+                      .shades = product->kind.shades,
+                      .sketch = product->sketch ? &*product->sketch : nullptr});
+  }
   return wanted;
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -12,6 +13,14 @@ namespace misfit::tools {
 /// Header cards for the errors that are known.
 std::vector<imager::HeaderCard> error_cards(const RunReport& report);
 
+/// What one image of a run is.
+struct ProductKind {
+  std::string name;   ///< the middle of its files' names
+  std::string title;  ///< of its picture; without one it is not drawn
+  std::string unit;
+  Shades shades = Shades::brightness;
+};
+
 /// The images of a run, as files and as pictures. What is set applies to images added afterwards.
 class ImageProducts {
  public:
@@ -22,22 +31,23 @@ class ImageProducts {
   void set_history(const std::string& line) { common_.history = {line}; }
   void set_cards(std::vector<imager::HeaderCard> cards) { common_.cards = std::move(cards); }
   void set_beam(const imager::Beam& beam);
-  /// Without a title it is not drawn.
-  void add(const std::string& kind, const std::string& title, const std::string& unit, imager::Image image);
+  void add(const ProductKind& kind, imager::Image image);
+  /// A picture of an image that is gone, and has no file.
+  void add_picture(const ProductKind& kind, Sketch sketch);
 
-  /// Writes <imagename>.<kind>.fits for each.
+  /// Writes <imagename>.<kind>.fits for each image.
   void write() const;
   /// Pictures to draw as <imagename>.<kind>.png, the last added first; they last as long as these products.
   std::vector<Picture> pictures() const;
 
  private:
   struct Product {
-    std::string kind;
-    std::string title;
+    ProductKind kind;
     imager::SkyImage image;
+    std::optional<Sketch> sketch;  ///< where there is no image
   };
   std::string path(const Product& product, const std::string& extension) const {
-    return imagename_ + "." + product.kind + "." + extension;
+    return imagename_ + "." + product.kind.name + "." + extension;
   }
 
   std::string imagename_;

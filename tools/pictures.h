@@ -5,19 +5,26 @@
 #include <vector>
 
 #include "imager/fits_image.h"
+#include "tools/sketch.h"
 
 namespace misfit::tools {
 
-/// A picture to draw: east is left and north up, axes are offsets from the phase centre, the colour bar states unit and
-/// stretch. Pixels that are NaN have the colour of the background, white.
+/// The longer side of what a picture shows of the sky, screen pixels.
+inline constexpr int picture_side = 640;
+
+/// A picture to draw: east is left and north up, axes are offsets from the phase centre, which the title names; the colour bar
+/// states unit and stretch; the beam lies to scale in the lower left corner, a scale bar in the lower right one. Pixels that
+/// are NaN have the colour of the background, white.
 struct Picture {
   const imager::SkyImage* image = nullptr;
   std::string title;
   std::string path;  ///< of the PNG file; replaced when it exists
+  Shades shades = Shades::brightness;
+  const Sketch* sketch = nullptr;  ///< of the image, of side picture_side, when its pixels are gone
 };
 
 /// Draws pictures with gnuplot, found on PATH, each in a thread of its own while the caller does other things. Nothing appears
-/// before finish(), whose images must last until then.
+/// before finish(), whose images and sketches must last until then.
 class PictureDrawing {
  public:
   explicit PictureDrawing(const std::vector<Picture>& pictures);

@@ -2,36 +2,37 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "imager/noise.h"
 #include "tools/numbers.h"
+#include "tools/ticks.h"
 
 namespace misfit::tools {
 namespace {
 
-std::vector<double> linear_tick_values(const Stretch& stretch) {
-  const double rough = (stretch.high - stretch.low) / 5;
-  const double decade = std::pow(10.0, std::floor(std::log10(rough)));
-  const double step = rough < 1.5 * decade   ? decade
-                      : rough < 3.5 * decade ? 2 * decade
-                      : rough < 7.5 * decade ? 5 * decade
-                                             : 10 * decade;
-  std::vector<double> values;
-  for (double n = std::ceil(stretch.low / step - 1e-9); n * step <= stretch.high * (1 + 1e-9); ++n) values.push_back(n * step);
+constexpr double rounding = 1e-3;  // a PSF whose peak is not quite 1 has a mark there all the same
+
+/// 0 and ±`factors` × 10^k beyond the knee, from the lowest to the highest.
+std::vector<double> asinh_tick_values(const Stretch& stretch, const std::vector<double>& factors, int every) {
+  std::vector<double> values{0};
+  const int first = static_cast<int>(std::floor(std::log10(stretch.knee)));
+  for (int power = first; std::pow(10.0, power) <= std::max(stretch.high, -stretch.low) * (1 + rounding); power += every) {
+    for (const double factor : factors) {
+      const double value = factor * std::pow(10.0, power);
+      if (value < stretch.knee * 0.9) continue;
+      if (value <= stretch.high * (1 + rounding)) values.push_back(value);
+      if (-value >= stretch.low * (1 + rounding)) values.insert(values.begin(), -value);
+    }
+  }
+  if (stretch.low > 0) values.erase(std::find(values.begin(), values.end(), 0.0));
   return values;
 }
 
-std::vector<double> asinh_tick_values(const Stretch& stretch) {
-  std::vector<double> values{0};
-  const double first = std::pow(10.0, std::floor(std::log10(stretch.knee)));
-  for (double decade = first; decade <= stretch.high; decade *= 10) {
-    for (const double value : {decade, 3 * decade}) {
-      if (value < stretch.knee * 0.9) continue;
-      if (value <= stretch.high) values.push_back(value);
-      if (-value >= stretch.low) values.insert(values.begin(), -value);
-    }
-  }
+std::vector<double> tick_values(const Stretch& stretch) {
+  if (stretch.knee == 0) return linear_ticks(stretch.low, stretch.high, 5);
+  constexpr std::size_t most = 12;
+  std::vector<double> values = asinh_tick_values(stretch, {1, 3}, 1);
+  for (int every = 1; values.size() > most; ++every) values = asinh_tick_values(stretch, {1}, every);
   return values;
 }
 
@@ -44,13 +45,29 @@ imager::Image sample(const imager::Image& image) {
   return some;
 }
 
+/// Where the faint of the pixels that are not zero begin, of which one, of magnitude `largest`, is known to be there.
+double faint(const imager::Image& image, double largest) {
+  constexpr std::size_t enough = 1 << 18;
+  std::vector<double> magnitudes;
+  for (const double value : image.pixel)
+    if (value != 0 && std::isfinite(value) && magnitudes.size() < enough) magnitudes.push_back(std::abs(value));
+  const auto tenth = magnitudes.begin() + static_cast<std::ptrdiff_t>(magnitudes.size() / 10);
+  std::nth_element(magnitudes.begin(), tenth, magnitudes.end());
+  return std::max(*tenth, 1e-4 * largest);
+}
+
+Stretch stretch_about_zero(const Stretch& range, double noise, double knee) {
+  const double largest = std::max(range.high, -range.low);
+  return {.low = range.low < 0 ? -largest : 0, .high = largest, .knee = largest > 8 * noise ? knee : 0, .sparse = range.sparse};
+}
+
 }  // namespace
 
 double Stretch::operator()(double value) const {
   return knee > 0 ? std::asinh(value / knee) : value;
 }
 
-Stretch choose_stretch(const imager::Image& image) {
+Stretch choose_stretch(const imager::Image& image, Shades shades) {
   double min = HUGE_VAL, max = -HUGE_VAL;
   for (const double value : image.pixel) {
     if (!std::isfinite(value)) continue;
@@ -62,33 +79,19 @@ Stretch choose_stretch(const imager::Image& image) {
 
   const double noise = imager::robust_noise(sample(image));
   Stretch stretch{.low = min, .high = max, .sparse = noise == 0};
+  const double knee = stretch.sparse ? faint(image, std::max(max, -min)) : 3 * noise;
+  if (shades == Shades::about_zero) return stretch_about_zero(stretch, noise, knee);
   if (max <= 0) return stretch;
-  if (max > 30 * noise) stretch.knee = stretch.sparse ? max / 300 : 3 * noise;
-  stretch.low = std::max(min, stretch.sparse ? -stretch.knee : -3 * noise);
+  if (max > 30 * noise) stretch.knee = knee;
+  stretch.low = std::max(min, -knee);
   return stretch;
 }
 
 std::vector<Tick> stretch_ticks(const Stretch& stretch) {
-  const std::vector<double> values = stretch.knee > 0 ? asinh_tick_values(stretch) : linear_tick_values(stretch);
   std::vector<Tick> ticks;
-  ticks.reserve(values.size());
-  for (const double value : values) ticks.push_back({value, significant(value, 2)});
+  for (const double value : tick_values(stretch))
+    ticks.push_back({std::clamp(value, stretch.low, stretch.high), significant(value, 2)});
   return ticks;
-}
-
-ReducedImage reduce(const imager::Image& image, int most) {
-  const int block = std::max(1, (std::max(image.width, image.height) + most - 1) / most);
-  if (block == 1) return {image, 1};
-  imager::Image blocks((image.width + block - 1) / block, (image.height + block - 1) / block);
-  std::fill(blocks.pixel.begin(), blocks.pixel.end(), std::numeric_limits<double>::quiet_NaN());
-  for (int row = 0; row < image.height; ++row) {
-    for (int column = 0; column < image.width; ++column) {
-      const double value = image.at(row, column);
-      double& kept = blocks.at(row / block, column / block);
-      if (std::isfinite(value) && !(std::abs(kept) >= std::abs(value))) kept = value;
-    }
-  }
-  return {std::move(blocks), block};
 }
 
 }  // namespace misfit::tools

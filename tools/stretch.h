@@ -7,6 +7,12 @@
 
 namespace misfit::tools {
 
+/// What the shades of a picture are to show.
+enum class Shades {
+  brightness,  ///< sources on noise: from a little below the noise up to the brightest pixel
+  about_zero,  ///< what may be of either sign, such as a residual: as far down as up, 0 in the middle
+};
+
 /// How pixel values become shades: linear from `low` to `high`, or asinh(value / knee), which is linear below the knee and
 /// logarithmic above it. Never empty: low < high.
 struct Stretch {
@@ -18,10 +24,12 @@ struct Stretch {
   double operator()(double value) const;
 };
 
-/// Limits from the noise, estimated as 1.4826 × the median absolute deviation: low is −3 noise (not below the smallest pixel),
-/// high the largest pixel. Linear up to a peak of 30 noise, else asinh with the knee at 3 noise. A sparse image has no
-/// noise: its knee is high / 300, and low −knee, so that 0 stays dark. Pixels that are not finite do not count.
-Stretch choose_stretch(const imager::Image& image);
+/// Limits from the noise, estimated as 1.4826 × the median absolute deviation, and from the pixels that are finite.
+/// Of brightness: low is −3 noise (not below the smallest pixel), high the largest pixel; linear up to a peak of 30 noise, else
+/// asinh with the knee at 3 noise. About zero: ± the largest magnitude, linear up to 8 noise; low is 0 where no pixel is
+/// negative. A sparse image has no noise: its knee is the magnitude that nine tenths of its pixels that are not zero
+/// exceed, but at least 1e-4 of the largest; of brightness its low is −knee, so that 0 stays dark.
+Stretch choose_stretch(const imager::Image& image, Shades shades = Shades::brightness);
 
 /// A mark of the colour bar.
 struct Tick {
@@ -29,15 +37,8 @@ struct Tick {
   std::string label;
 };
 
-/// Round values between `low` and `high`, six or so: evenly spaced for the linear stretch, else 0 and ±{1, 3} × 10^k.
+/// Round values between `low` and `high`, up to a dozen: evenly spaced for the linear stretch, else 0 and ±{1, 3} × 10^k or
+/// ±10^k.
 std::vector<Tick> stretch_ticks(const Stretch& stretch);
-
-/// `image` divided into square blocks, so that no side has more than `most` of them; each block keeps its finite pixel of
-/// largest magnitude, so that point sources stay, or NaN where it has none. Block b begins at pixel b × block.
-struct ReducedImage {
-  imager::Image image;
-  int block = 1;  ///< pixels a side
-};
-ReducedImage reduce(const imager::Image& image, int most);
 
 }  // namespace misfit::tools

@@ -13,6 +13,8 @@
 using misfit::imager::Image;
 using misfit::imager::SkyImage;
 using misfit::tools::draw_pictures;
+using misfit::tools::Shades;
+using misfit::tools::Sketch;
 
 namespace {
 
@@ -57,12 +59,13 @@ struct Mean {
   }
 };
 
-/// Where the screen pixels lie, on average, whose colours are #fcffa4 (the brightest), #000004 (the darkest) and white, as
-/// gnuplot itself reads the PNG file.
+/// Where the screen pixels lie, on average, whose colours are #fcffa4 (the brightest), #000004 (the darkest), white, and that
+/// of beams, #222222, as gnuplot itself reads the PNG file.
 struct Colours {
   Mean bright;
   Mean dark;
   Mean white;
+  Mean ink;
 };
 Colours colours_of(const Folder& folder, const std::string& name) {
   std::ofstream(folder.path / "measure") << "set table 'pixels'\n"
@@ -82,6 +85,7 @@ Colours colours_of(const Folder& folder, const std::string& name) {
     if (!(words >> x >> y >> red >> green >> blue)) continue;
     if (red == 0 && blue == 4) colours.dark.add(x, y);
     if (red == 252 && blue == 164) colours.bright.add(x, y);
+    if (red == 34 && green == 34 && blue == 34) colours.ink.add(x, y);
     if (red == 255 && green == 255 && blue == 255) colours.white.add(x, y);
   }
   return colours;
@@ -93,7 +97,7 @@ struct Offset {
   double up = 0;
 };
 Offset bright_from_dark(const Folder& folder, const std::string& name) {
-  const auto [bright, dark, white] = colours_of(folder, name);
+  const auto [bright, dark, white, ink] = colours_of(folder, name);
   BOOST_TEST_REQUIRE(dark.count > 0);
   BOOST_TEST_REQUIRE(bright.count > 0);
   return {bright.x / bright.count - dark.x / dark.count, bright.y / bright.count - dark.y / dark.count};
@@ -148,16 +152,48 @@ BOOST_AUTO_TEST_CASE(east_is_left_and_north_is_up) {
 BOOST_AUTO_TEST_CASE(pixels_without_value_have_the_colour_of_the_background) {
   const Folder folder;
   SkyImage sky = sky_image(10, 10);
-  sky.image.at(2, 2) = 1;
+  sky.image.at(2, 7) = 1;
   BOOST_TEST_REQUIRE(draw_pictures({{&sky, "whole", folder.file("whole.png")}}) == "");
   for (int row = 0; row < 10; ++row)
-    for (int column = 5; column < 10; ++column) sky.image.at(row, column) = std::numeric_limits<double>::quiet_NaN();
+    for (int column = 0; column < 5; ++column) sky.image.at(row, column) = std::numeric_limits<double>::quiet_NaN();
   BOOST_TEST_REQUIRE(draw_pictures({{&sky, "half", folder.file("half.png")}}) == "");
   const Colours whole = colours_of(folder, "whole.png"), half = colours_of(folder, "half.png");
   // Half of 640 × 640 screen pixels, but for those under tics and frame.
   const double expected = 640 * 320;
   BOOST_TEST(std::abs(whole.dark.count - half.dark.count - expected) < 0.02 * expected);
   BOOST_TEST(std::abs(half.white.count - whole.white.count - expected) < 0.02 * expected);
+}
+
+BOOST_AUTO_TEST_CASE(a_sketch_draws_what_its_image_would) {
+  SkyImage sky = sky_image(900, 700);
+  for (std::size_t k = 0; k < sky.image.pixel.size(); ++k) sky.image.pixel[k] = std::sin(static_cast<double>(k * k));
+  sky.image.at(300, 500) = 40;
+  SkyImage gone = sky;
+  gone.image = {};
+  const Folder folder;
+  for (const Shades shades : {Shades::brightness, Shades::about_zero}) {
+    const Sketch kept = sketch(sky.image, shades, misfit::tools::picture_side);
+    BOOST_TEST(draw_pictures(
+                   {{&sky, "one", folder.file("a.png"), shades}, {&gone, "one", folder.file("b.png"), shades, &kept}}) == "");
+    BOOST_TEST(bytes_of(folder.file("a.png")) == bytes_of(folder.file("b.png")));
+  }
+}
+
+BOOST_AUTO_TEST_CASE(a_beam_is_drawn_to_scale_unless_it_takes_half_of_a_side) {
+  SkyImage sky = sky_image(64, 64);
+  const Folder folder;
+  const auto ink = [&](double beam_pixels) {
+    sky.has_beam = true;
+    sky.beam = {2 * beam_pixels * sky.geometry.cell_rad, beam_pixels * sky.geometry.cell_rad, 0.5};
+    BOOST_TEST_REQUIRE(draw_pictures({{&sky, "one", folder.file("one.png")}}) == "");
+    return colours_of(folder, "one.png").ink.count;
+  };
+  // An image pixel is 10 screen pixels wide; letters and tics, in the same colour, change little, and outlines cover a pixel
+  // more.
+  const double none = ink(60), small = ink(4), large = ink(8);
+  const auto area = [](double beam_pixels) { return M_PI / 2 * 100 * beam_pixels * beam_pixels; };
+  BOOST_TEST(std::abs(small - none - area(4)) < 0.1 * area(4));
+  BOOST_TEST(std::abs(large - none - area(8)) < 0.1 * area(8));
 }
 
 BOOST_AUTO_TEST_CASE(without_gnuplot_the_reason_is_returned) {

@@ -5,9 +5,11 @@
 #include <limits>
 #include <random>
 
+#include "imager/noise.h"
+
 using misfit::imager::Image;
 using misfit::tools::choose_stretch;
-using misfit::tools::reduce;
+using misfit::tools::Shades;
 using misfit::tools::Stretch;
 using misfit::tools::stretch_ticks;
 
@@ -66,19 +68,45 @@ BOOST_AUTO_TEST_CASE(ticks_lie_within_the_limits_in_rising_order) {
   }
 }
 
-BOOST_AUTO_TEST_CASE(a_block_keeps_its_largest_magnitude) {
-  Image image(5, 3);
-  image.at(0, 1) = -4;
-  image.at(1, 1) = 3;
-  image.at(2, 4) = std::numeric_limits<double>::quiet_NaN();
-  const auto reduced = reduce(image, 3);
-  BOOST_TEST(reduced.block == 2);
-  BOOST_TEST(reduced.image.width == 3);
-  BOOST_TEST(reduced.image.height == 2);
-  BOOST_TEST(reduced.image.at(0, 0) == -4);
-  BOOST_TEST(reduced.image.at(0, 1) == 0);
-  BOOST_TEST(std::isnan(reduced.image.at(1, 2)));
-  BOOST_TEST(reduce(image, 5).image.pixel.size() == image.pixel.size());
+BOOST_AUTO_TEST_CASE(what_is_about_zero_reaches_as_far_down_as_up) {
+  Image image = noise_image();
+  const Stretch faint = choose_stretch(image, Shades::about_zero);
+  BOOST_TEST(faint.low == -faint.high);
+  BOOST_TEST(faint.high == std::abs(misfit::imager::find_peak(image).value));
+  BOOST_TEST(faint.knee == 0);
+  image.at(10, 10) = -1;
+  const Stretch deep = choose_stretch(image, Shades::about_zero);
+  BOOST_TEST(deep.low == -1);
+  BOOST_TEST(deep.high == 1);
+  BOOST_TEST(std::abs(deep.knee / 6e-3 - 1) < 0.03);
+}
+
+BOOST_AUTO_TEST_CASE(components_of_one_sign_have_no_shades_of_the_other) {
+  Image model(200, 100);
+  for (int k = 0; k < 20; ++k) model.at(5, 5 * k) = 0.1 * (k + 1);
+  const Stretch stretch = choose_stretch(model, Shades::about_zero);
+  BOOST_TEST(stretch.low == 0);
+  BOOST_TEST(stretch.high == 2);
+  BOOST_TEST(stretch.knee == 0.1 * 3);  // two of the twenty are fainter
+  model.at(50, 50) = -1e-9;
+  BOOST_TEST(choose_stretch(model, Shades::about_zero).low == -2);
+  for (double& pixel : model.pixel) pixel *= -1;
+  BOOST_TEST(choose_stretch(model, Shades::about_zero).high == 2);
+}
+
+BOOST_AUTO_TEST_CASE(many_decades_have_no_more_than_a_dozen_marks) {
+  for (const double knee : {1e-2, 1e-4, 1e-6, 1e-9}) {
+    const auto ticks = stretch_ticks({-1, 1, knee});
+    BOOST_TEST(ticks.size() >= 5);
+    BOOST_TEST(ticks.size() <= 13);
+    for (std::size_t k = 0; k < ticks.size(); ++k) BOOST_TEST(ticks[k].value == -ticks[ticks.size() - 1 - k].value);
+  }
+}
+
+BOOST_AUTO_TEST_CASE(a_peak_that_is_round_but_for_rounding_is_marked) {
+  const auto ticks = stretch_ticks({-0.1, 0.9999, 0.1});
+  BOOST_TEST(ticks.back().label == "1");
+  BOOST_TEST(ticks.back().value == 0.9999);
 }
 
 BOOST_AUTO_TEST_SUITE_END()
