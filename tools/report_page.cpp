@@ -6,10 +6,11 @@
 #include <sstream>
 #include <utility>
 
-#include "tools/clean_curve.h"
+#include "tools/clean_section.h"
 #include "tools/html.h"
 #include "tools/html_elements.h"
 #include "tools/numbers.h"
+#include "tools/report_values.h"
 
 namespace misfit::tools {
 namespace {
@@ -20,40 +21,8 @@ using html::table;
 using html::tag;
 using nlohmann::json;
 
-const std::string not_measured = "<span class=\"none\">not measured</span>";
-
-/// The member `key` of an object, or null.
-const json& member(const json& object, const std::string& key) {
-  static const json none;
-  if (!object.is_object()) return none;
-  const auto found = object.find(key);
-  return found == object.end() ? none : *found;
-}
-
-/// Any JSON value as text: strings as they are, lists separated by commas.
-std::string plain(const json& value) {
-  if (value.is_string()) return html_escaped(value.get<std::string>());
-  if (value.is_boolean()) return value.get<bool>() ? "yes" : "no";
-  if (value.is_number_float()) return significant(value.get<double>(), 6);
-  if (!value.is_array()) return value.is_null() ? not_measured : html_escaped(value.dump());
-  std::string text;
-  for (const json& element : value) text += (text.empty() ? "" : ", ") + plain(element);
-  return text;
-}
-
 std::string relative(const json& value) {
   return value.is_number() ? html_power(value.get<double>()) : not_measured;
-}
-
-std::string whole(const json& value) {
-  return value.is_number() ? grouped(std::llround(value.get<double>())) : not_measured;
-}
-
-std::string with_unit(const json& value, const std::string& unit) {
-  if (!value.is_number()) return not_measured;
-  const double number = value.get<double>();
-  const ScaledUnit scaled = scaled_unit(number, unit);
-  return significant(number / scaled.size, 3) + " " + scaled.name;
 }
 
 /// "0.52 × 0.51″" and the position angle in small, or nothing.
@@ -113,7 +82,7 @@ std::string headline(const json& report) {
                                               tag("small", "of " + whole(member(visibilities, "samples_read")) + " read"));
   if (clean.is_object()) {
     facts.emplace_back("Residual", with_unit(member(clean, "rms_jy"), "Jy/beam") +
-                                       tag("small", "RMS; peak " + with_unit(member(clean, "peak_residual_jy"), "Jy/beam")));
+                                       tag("small", "noise; peak " + with_unit(member(clean, "peak_residual_jy"), "Jy/beam")));
   }
   const json& total = member(member(report, "timings_s"), "total");
   const json& memory = member(report, "memory_gib_peak");
@@ -133,12 +102,13 @@ std::string warnings(const json& list) {
   return content.empty() ? "" : tag("aside", content);
 }
 
-std::string figures(const std::vector<PagePicture>& pictures) {
+std::string figures(const std::vector<PagePicture>& pictures, const std::string& curve) {
   std::string content;
   for (const PagePicture& picture : pictures) {
     content += "<figure><img alt=\"" + html_escaped(picture.title) + "\" src=\"data:image/png;base64," + base64(picture.png) +
                "\"></figure>\n";
   }
+  if (!curve.empty()) content += tag("figure", curve) + "\n";
   return content.empty() ? "" : tag("div", content, "pictures") + "\n";
 }
 
@@ -214,35 +184,6 @@ std::string timings(const json& stages) {
   return tag("table", tag("tbody", content.str()), "bars") + "\n";
 }
 
-std::vector<CurvePoint> curve_points(const json& log) {
-  std::vector<CurvePoint> points;
-  for (const json& cycle : log) {
-    const json& peak = member(cycle, "peak_residual_jy");
-    const json& iterations = member(cycle, "iterations");
-    if (peak.is_number() && iterations.is_number()) points.push_back({iterations.get<double>(), std::abs(peak.get<double>())});
-  }
-  return points;
-}
-
-std::string clean_section(const json& clean) {
-  if (!clean.is_object()) return "";
-  const json& log = member(clean, "major_cycles_log");
-  std::vector<Row> rows;
-  for (const json& cycle : log.is_array() ? log : json::array()) {
-    const bool start = rows.empty();
-    rows.push_back({start ? "start" : std::to_string(rows.size()), whole(member(cycle, "iterations")),
-                    with_unit(member(cycle, "peak_residual_jy"), "Jy/beam"), with_unit(member(cycle, "rms_jy"), "Jy/beam"),
-                    with_unit(member(cycle, "model_flux_jy"), "Jy"),
-                    start ? "" : with_unit(member(cycle, "cycle_threshold_jy"), "Jy/beam")});
-  }
-  return tag("p", whole(member(clean, "iterations")) + " iterations in " + whole(member(clean, "major_cycles")) +
-                      " major cycles; stopped: " + plain(member(clean, "stop_reason")) + " (code " +
-                      plain(member(clean, "stop_code")) + "). Model flux " + with_unit(member(clean, "model_flux_jy"), "Jy") +
-                      ".") +
-         "\n" + (log.is_array() ? clean_curve(curve_points(log)) : "") +
-         table({"#Cycle", "#Iterations", "#Peak residual", "#RMS", "#Model flux", "#Cleaned down to"}, rows);
-}
-
 std::string options(const json& used) {
   std::vector<Row> rows;
   if (used.is_object()) {
@@ -262,11 +203,11 @@ std::string report_page(const json& report, const std::vector<PagePicture>& pict
   std::string content = html::header(title, "misfit " + plain(member(report, "version")));
   content += warnings(member(report, "warnings"));
   content += headline(report);
-  content += figures(pictures);
+  content += figures(pictures, clean_progress(member(report, "clean")));
+  content += section("CLEAN", clean_section(member(report, "clean")));
   content += section("Plan", plan(member(report, "plan")));
   content += section("Error", errors(member(report, "error"), member(report, "kernel")));
   content += section("What was used and what was left out", left_out(member(report, "visibilities")));
-  content += section("CLEAN", clean_section(member(report, "clean")));
   content += section("Time", timings(member(report, "timings_s")));
   content += section("Options", options(member(report, "options")));
   content += section("Command line", command.is_string() ? tag("pre", plain(command)) : "");

@@ -5,9 +5,9 @@ namespace misfit::tools {
 /// The page's looks: one column of text, pictures side by side where there is room, dark where the reader's system is.
 inline constexpr const char* report_style = R"css(
 :root { color-scheme: light dark; --text: #1d1d1f; --soft: #62646a; --line: #dcdde1; --page: #ffffff; --tint: #f5f5f7;
-  --accent: #88226a; --bad: #b3261e; --good: #2b6e3f; --warn: #fff4d6; --warn-line: #e0a100; }
+  --accent: #88226a; --second: #1f6fa8; --bad: #b3261e; --good: #2b6e3f; --warn: #fff4d6; --warn-line: #e0a100; }
 @media (prefers-color-scheme: dark) { :root { --text: #e4e4e7; --soft: #a0a1a8; --line: #34353b; --page: #141417; --tint: #1d1e22;
-  --accent: #e35933; --bad: #ff8a80; --good: #81c995; --warn: #33290f; --warn-line: #c98f00; } img, .drawing svg { filter: brightness(.82); } }
+  --accent: #f0764f; --second: #6db3e8; --bad: #ff8a80; --good: #81c995; --warn: #33290f; --warn-line: #c98f00; } img, .drawing svg { filter: brightness(.82); } }
 * { box-sizing: border-box; }
 body { margin: 0; background: var(--page); color: var(--text); font: 16px/1.5 system-ui, -apple-system, "Segoe UI", "DejaVu Sans", sans-serif; }
 main { max-width: 1060px; margin: 0 auto; padding: 2rem 1.25rem 4rem; }
@@ -37,7 +37,8 @@ table { border-collapse: collapse; width: 100%; font-size: .92rem; font-variant-
 th { text-align: left; font-weight: 500; font-size: .8rem; }
 th, td { padding: .35rem 1rem .35rem 0; border-bottom: 1px solid var(--line); vertical-align: top; }
 td:last-child, th:last-child { padding-right: 0; }
-.wide td { white-space: nowrap; }
+.wide td { white-space: nowrap; } .wide td:last-child:not(.number) { white-space: normal; min-width: 11rem; }
+.wide th:not(.number), .wide td:not(.number):not(:first-child) { padding-left: .5rem; } th { vertical-align: bottom; }
 .narrow { max-width: 34rem; }
 .number { text-align: right; white-space: nowrap; }
 .bars td { padding-top: .25rem; padding-bottom: .25rem; }
@@ -46,9 +47,13 @@ td:last-child, th:last-child { padding-right: 0; }
 .bar i { display: block; height: .7rem; min-width: 1px; background: var(--accent); border-radius: 2px; -webkit-print-color-adjust: exact;
   print-color-adjust: exact; }
 .sum td { border-bottom: 0; font-weight: 600; }
-.curve { display: block; width: 100%; max-width: 34rem; margin: .5rem 0 1rem; }
-.curve path { fill: none; stroke: var(--line); } .curve polyline { fill: none; stroke: var(--accent); stroke-width: 2; }
-.curve circle { fill: var(--accent); } .curve text { fill: var(--soft); font-size: 12px; }
+.curve { display: block; width: 100%; max-width: 34rem; height: auto; border: 1px solid var(--line); border-radius: 8px; }
+.curve .grid { stroke: var(--line); } .curve polyline { fill: none; stroke-width: 2; stroke-linejoin: round; }
+.curve .peak { stroke: var(--accent); } .curve .noise { stroke: var(--soft); stroke-width: 1.5; }
+.curve .depth { stroke: var(--second); stroke-width: 1.5; stroke-dasharray: 5 3; } .curve .flux { stroke: var(--second); }
+.curve circle { fill: var(--accent); } .curve circle.flux { fill: var(--second); stroke: none; }
+.curve text { fill: var(--soft); font-size: 12.5px; } .curve .middle { text-anchor: middle; } .curve .end { text-anchor: end; }
+.curve .title { fill: var(--text); font-size: 16px; font-weight: 700; }
 code, pre { font: .88rem/1.5 ui-monospace, "SF Mono", "DejaVu Sans Mono", monospace; }
 pre { background: var(--tint); padding: .8rem 1rem; border-radius: 6px; white-space: pre-wrap; overflow-wrap: anywhere; margin: 0; }
 td { overflow-wrap: break-word; }

@@ -88,6 +88,7 @@ json clean_json(const imager::CleanReport* clean) {
   for (const char* of_a_cycle : {"cycle_threshold_jy", "ended"}) report.erase(of_a_cycle);
   report["iterations"] = clean->iterations;
   report["major_cycles"] = clean->cycles.size() - 1;
+  report["kept_cycle"] = clean->kept;
   report["stop_code"] = static_cast<int>(clean->stop);
   report["stop_reason"] = clean->stop_reason;
   report["max_sidelobe"] = number(clean->max_sidelobe);

@@ -32,7 +32,7 @@ struct RunReport {
 };
 
 /// report.json, with the keys of the project's design; `beam_by_quadrant`, `memory_gib_estimated`, `warnings`, `command_line`,
-/// `timings_s.total` and `clean.major_cycles_log` are additions.
+/// `timings_s.total`, `clean.major_cycles_log` and `clean.kept_cycle` (whose model was kept) are additions.
 nlohmann::json report_json(const RunReport& report);
 
 }  // namespace misfit::tools

@@ -302,6 +302,18 @@ BOOST_AUTO_TEST_CASE(only_the_files_promised_appear) {
     BOOST_TEST(entry.path().extension() == ".png");  // pictures, where gnuplot is installed
 }
 
+BOOST_AUTO_TEST_CASE(the_page_of_a_clean_shows_five_images_and_their_course) {
+  const TemporaryFolder folder;
+  succeed(small_image(snapshot(), folder / "a") + Arguments{"--niter", "10"});
+  const std::string page = content(folder / "a.report.html");
+  for (const char* title : {"Restored image", "Residual", "Dirty image", "Model", "PSF"})
+    BOOST_TEST(page.find("<img alt=\"" + std::string(title) + "\"") != std::string::npos, title);
+  BOOST_TEST(page.find("Progress of CLEAN") != std::string::npos);
+  BOOST_TEST(std::filesystem::exists(folder / "a.dirty.png"));
+  succeed(small_image(snapshot(), folder / "b"));
+  BOOST_TEST(content(folder / "b.report.html").find("Progress of CLEAN") == std::string::npos);
+}
+
 BOOST_AUTO_TEST_CASE(the_restoring_beam_given_is_used_and_stated) {
   const TemporaryFolder folder;
   const Arguments cleaned{"--niter", "20", "--restoringbeam", "6arcsec,4arcsec,120deg"};

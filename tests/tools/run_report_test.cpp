@@ -59,7 +59,7 @@ BOOST_AUTO_TEST_CASE(clean_states_the_cycle_that_was_kept) {
   clean.iterations = 30;
   clean.stop = imager::CleanStop::diverging;
   clean.stop_reason = "it grew";
-  clean.cycles = {{0, 3, 0.3, 0, 0, "", 9}, {10, 1, 0.1, 5, 0.5, "", 1}, {30, 9, 0.9, 7, 0.2, "", 81}};
+  clean.cycles = {{0, 3, 0.3, 0, 0, "", 9}, {10, 1, 0.1, 5, 0.5, "deep enough", 1}, {30, 9, 0.9, 7, 0.2, "", 81}};
   clean.kept = 1;
   run.clean = &clean;
   const json report = tools::report_json(run).at("clean");
@@ -69,7 +69,9 @@ BOOST_AUTO_TEST_CASE(clean_states_the_cycle_that_was_kept) {
   BOOST_TEST(report.at("stop_reason") == "it grew");
   BOOST_TEST(report.at("peak_residual_jy") == 1);
   BOOST_TEST(report.at("model_flux_jy") == 5);
+  BOOST_TEST(report.at("kept_cycle") == 1);
   BOOST_TEST(report.at("major_cycles_log").size() == 3U);
+  BOOST_TEST(report.at("major_cycles_log")[1].at("ended") == "deep enough");
 }
 
 BOOST_AUTO_TEST_CASE(timings_are_the_stages_and_the_total) {
