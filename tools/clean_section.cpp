@@ -127,8 +127,8 @@ std::string clean_progress(const json& clean) {
 std::string clean_section(const json& clean) {
   if (!clean.is_object()) return "";
   return tag("p", whole(member(clean, "iterations")) + " iterations in " + whole(member(clean, "major_cycles")) +
-                      " major cycles; stopped: " + plain(member(clean, "stop_reason")) + " (code " +
-                      plain(member(clean, "stop_code")) + "). Model flux " +
+                      " major cycles. CLEAN ended with code " + plain(member(clean, "stop_code")) + ": " +
+                      plain(member(clean, "stop_reason")) + ". Model flux " +
                       with_unit(member(clean, "model_flux_jy"), "Jy", 5) + ".") +
          "\n" + cycle_table(clean);
 }

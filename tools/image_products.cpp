@@ -1,5 +1,6 @@
 #include "tools/image_products.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace misfit::tools {
@@ -52,6 +53,7 @@ void ImageProducts::write() const {
 }
 
 std::vector<Picture> ImageProducts::pictures() const {
+  const auto mask = std::find_if(products_.begin(), products_.end(), [](const Product& p) { return p.kind.name == "mask"; });
   std::vector<Picture> wanted;
   for (auto product = products_.rbegin(); product != products_.rend(); ++product) {
     if (product->kind.title.empty()) continue;
@@ -59,7 +61,8 @@ std::vector<Picture> ImageProducts::pictures() const {
                       .title = product->kind.title,
                       .path = path(*product, "png"),
                       .shades = product->kind.shades,
-                      .sketch = product->sketch ? &*product->sketch : nullptr});
+                      .sketch = product->sketch ? &*product->sketch : nullptr,
+                      .mask = mask != products_.end() && product->kind.name != "psf" ? &mask->image.image : nullptr});
   }
   return wanted;
 }

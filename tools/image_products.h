@@ -38,6 +38,7 @@ class ImageProducts {
   /// Writes <imagename>.<kind>.fits for each image.
   void write() const;
   /// Pictures to draw as <imagename>.<kind>.png, the last added first; they last as long as these products.
+  /// An image of kind "mask" is outlined in all of them but the PSF.
   std::vector<Picture> pictures() const;
 
  private:

@@ -74,6 +74,17 @@ void write_shades(const fs::path& path, const Scene& scene) {
   if (!file.flush()) throw std::runtime_error("cannot write pictures in " + path.parent_path().string());
 }
 
+/// The outline of the mask in offsets, a line for each end of a side and an empty one between sides.
+void write_mask(const fs::path& path, const Scene& scene) {
+  const ReducedImage mask = reduce(*scene.picture.mask, picture_side);
+  const double step = mask.block * scene.picture.image->geometry.cell_rad / scene.frame.unit.size;
+  std::ofstream file(path);
+  file.precision(12);
+  for (const PixelSide& side : outline(mask.image))
+    file << scene.frame.east - side.from_column * step << ' ' << scene.frame.south + side.from_row * step << '\n'
+         << scene.frame.east - side.to_column * step << ' ' << scene.frame.south + side.to_row * step << "\n\n";
+}
+
 std::string beam_text(const imager::Beam& beam) {
   const ScaledUnit unit = angle_unit(beam.major_rad);
   return "beam " + significant(beam.major_rad / unit.size, 3) + " × " + significant(beam.minor_rad / unit.size, 3) + " " +
@@ -86,6 +97,7 @@ void write_titles(std::ostream& script, const Scene& scene) {
   std::string about = sky.has_beam ? beam_text(sky.beam) : "";
   if (sky.observation.frequency_hz > 0)
     about = significant(sky.observation.frequency_hz / 1e9, 5) + " GHz" + (about.empty() ? "" : ",  ") + about;
+  if (scene.picture.mask != nullptr) about += about.empty() ? "mask in green" : ",  mask in green";
   const auto line = [&](int tag, const std::string& text, int from_top, const char* look) {
     script << "set label " << tag << ' ' << gnuplot_quoted(text) << " at screen " << scene.layout.x(margin_left) << ", screen "
            << scene.layout.y(from_top) << ' ' << look << '\n';
@@ -224,7 +236,12 @@ void write_picture_script(const Picture& picture, const fs::path& folder) {
   const double step = made.reduced.block * picture.image->geometry.cell_rad / scene.frame.unit.size;
   script << "plot 'data' binary array=(" << image.width << ',' << image.height << ") format='%float' origin=("
          << scene.frame.east - (image.width - 0.5) * step << ',' << scene.frame.south + step / 2 << ") dx=" << step
-         << " dy=" << step << " with image\nunset output\n";
+         << " dy=" << step << " with image";
+  if (picture.mask != nullptr) {
+    write_mask(folder / "mask", scene);
+    script << ", 'mask' with lines lw 1.5 lc rgb '#18b877'";
+  }
+  script << "\nunset output\n";
 }
 
 }  // namespace misfit::tools

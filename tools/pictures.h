@@ -20,11 +20,12 @@ struct Picture {
   std::string title;
   std::string path;  ///< of the PNG file; replaced when it exists
   Shades shades = Shades::brightness;
-  const Sketch* sketch = nullptr;  ///< of the image, of side picture_side, when its pixels are gone
+  const Sketch* sketch = nullptr;       ///< of the image, of side picture_side, when its pixels are gone
+  const imager::Image* mask = nullptr;  ///< of the same pixels; what it allows is outlined in green
 };
 
 /// Draws pictures with gnuplot, found on PATH, each in a thread of its own while the caller does other things. Nothing appears
-/// before finish(), whose images and sketches must last until then.
+/// before finish(), whose images, sketches and masks must last until then.
 class PictureDrawing {
  public:
   explicit PictureDrawing(const std::vector<Picture>& pictures);

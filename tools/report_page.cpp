@@ -46,13 +46,14 @@ std::string beam_text(const json& report) {
 
 std::string image_text(const json& options) {
   const json& size = member(options, "imsize");
-  std::string text;
+  std::vector<std::string> sides;
   if (size.is_array()) {
-    for (const json& side : size) text += (text.empty() ? "" : " × ") + plain(side);
-    if (size.size() == 1) text += " × " + text;
+    for (const json& side : size) sides.push_back(plain(side));
   } else if (!size.is_null()) {
-    text = plain(size) + " × " + plain(size);
+    std::istringstream words(plain(size));
+    for (std::string side; words >> side;) sides.push_back(side);
   }
+  const std::string text = sides.empty() ? "" : sides.front() + " × " + sides.back();
   const json& cell = member(options, "cell");
   return text.empty() ? not_measured : text + " pixels" + (cell.is_null() ? "" : tag("small", "of " + plain(cell)));
 }

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "imager/mask.h"
+
 namespace misfit::tools {
 namespace {
 
@@ -48,6 +50,19 @@ Sketch sketch(const imager::Image& image, Shades shades, int screen_pixels) {
   const int reach = static_cast<int>(std::ceil((point / scale - 1) / 2));
   if (made.stretch.sparse && reach > 0) made.reduced.image = spread_points(made.reduced.image, reach);
   return made;
+}
+
+std::vector<PixelSide> outline(const imager::Image& mask) {
+  std::vector<PixelSide> sides;
+  for (int row = 0; row < mask.height; ++row) {
+    for (int column = 0; column < mask.width; ++column) {
+      const bool inside = imager::mask_allows(mask.at(row, column));
+      if (row > 0 && inside != imager::mask_allows(mask.at(row - 1, column))) sides.push_back({row, column, row, column + 1});
+      if (column > 0 && inside != imager::mask_allows(mask.at(row, column - 1)))
+        sides.push_back({row, column, row + 1, column});
+    }
+  }
+  return sides;
 }
 
 }  // namespace misfit::tools

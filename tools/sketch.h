@@ -1,5 +1,7 @@
 #pragma once
 
+#include <vector>
+
 #include "imager/image.h"
 #include "tools/stretch.h"
 
@@ -26,5 +28,17 @@ struct Sketch {
 
 /// For a picture whose longer side has so many screen pixels; points of a sparse image cover five of them or more.
 Sketch sketch(const imager::Image& image, Shades shades, int screen_pixels);
+
+/// A side of a pixel, from one of its corners to the next. Corner (row, column) is where that pixel begins, from the south and
+/// east.
+struct PixelSide {
+  int from_row = 0;
+  int from_column = 0;
+  int to_row = 0;
+  int to_column = 0;
+};
+
+/// The sides that part pixels that `mask` allows from others, see imager/mask.h.
+std::vector<PixelSide> outline(const imager::Image& mask);
 
 }  // namespace misfit::tools

@@ -59,13 +59,14 @@ struct Mean {
   }
 };
 
-/// Where the screen pixels lie, on average, whose colours are #fcffa4 (the brightest), #000004 (the darkest), white, and that
-/// of beams, #222222, as gnuplot itself reads the PNG file.
+/// Where the screen pixels lie, on average, whose colours are #fcffa4 (the brightest), #000004 (the darkest), white, that of
+/// beams, #222222, and greenish, as gnuplot itself reads the PNG file.
 struct Colours {
   Mean bright;
   Mean dark;
   Mean white;
   Mean ink;
+  Mean green;
 };
 Colours colours_of(const Folder& folder, const std::string& name) {
   std::ofstream(folder.path / "measure") << "set table 'pixels'\n"
@@ -85,6 +86,7 @@ Colours colours_of(const Folder& folder, const std::string& name) {
     if (!(words >> x >> y >> red >> green >> blue)) continue;
     if (red == 0 && blue == 4) colours.dark.add(x, y);
     if (red == 252 && blue == 164) colours.bright.add(x, y);
+    if (green > red + 40 && green > blue + 20) colours.green.add(x, y);
     if (red == 34 && green == 34 && blue == 34) colours.ink.add(x, y);
     if (red == 255 && green == 255 && blue == 255) colours.white.add(x, y);
   }
@@ -97,7 +99,7 @@ struct Offset {
   double up = 0;
 };
 Offset bright_from_dark(const Folder& folder, const std::string& name) {
-  const auto [bright, dark, white, ink] = colours_of(folder, name);
+  const auto [bright, dark, white, ink, green] = colours_of(folder, name);
   BOOST_TEST_REQUIRE(dark.count > 0);
   BOOST_TEST_REQUIRE(bright.count > 0);
   return {bright.x / bright.count - dark.x / dark.count, bright.y / bright.count - dark.y / dark.count};
@@ -177,6 +179,25 @@ BOOST_AUTO_TEST_CASE(a_sketch_draws_what_its_image_would) {
                    {{&sky, "one", folder.file("a.png"), shades}, {&gone, "one", folder.file("b.png"), shades, &kept}}) == "");
     BOOST_TEST(bytes_of(folder.file("a.png")) == bytes_of(folder.file("b.png")));
   }
+}
+
+BOOST_AUTO_TEST_CASE(a_mask_is_outlined_where_it_lies) {
+  SkyImage sky = sky_image(10, 10);
+  sky.image.at(5, 5) = 1;
+  Image mask(10, 10);
+  for (const int row : {6, 7})
+    for (const int column : {1, 2, 3, 4}) mask.at(row, column) = 1;
+  const Folder folder;
+  BOOST_TEST_REQUIRE(draw_pictures({{&sky, "one", folder.file("none.png")}}) == "");
+  BOOST_TEST(colours_of(folder, "none.png").green.count == 0);
+  BOOST_TEST_REQUIRE(draw_pictures({{.image = &sky, .title = "one", .path = folder.file("one.png"), .mask = &mask}}) == "");
+  const Colours colours = colours_of(folder, "one.png");
+  const auto [source, outline] = std::pair{colours.bright, colours.green};
+  // An image pixel is 64 screen pixels wide; the colour bar is as bright as the source at its end, and lines are two wide.
+  BOOST_TEST(outline.count > 12 * 64);
+  BOOST_TEST(outline.count < 3 * 12 * 64);
+  BOOST_TEST(std::abs(outline.x / outline.count - source.x / source.count + 2.5 * 64) < 32);
+  BOOST_TEST(std::abs(outline.y / outline.count - source.y / source.count - 1.5 * 64) < 32);
 }
 
 BOOST_AUTO_TEST_CASE(a_beam_is_drawn_to_scale_unless_it_takes_half_of_a_side) {

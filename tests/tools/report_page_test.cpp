@@ -62,6 +62,17 @@ BOOST_AUTO_TEST_CASE(text_is_escaped) {
   BOOST_TEST(contains(page, "misfit image --vis &#39;a b.ms&#39;"));
 }
 
+BOOST_AUTO_TEST_CASE(the_size_of_the_image_is_told_however_it_was_given) {
+  json report = full_report();
+  for (const auto& [given, told] : {std::pair{json({1024, 768}), "1024 × 768"},
+                                    {json("1024 768"), "1024 × 768"},
+                                    {json("512"), "512 × 512"},
+                                    {json(512), "512 × 512"}}) {
+    report["options"]["imsize"] = given;
+    BOOST_TEST(contains(misfit::tools::report_page(report, {}), told + std::string(" pixels")), given.dump());
+  }
+}
+
 BOOST_AUTO_TEST_CASE(the_page_needs_nothing_from_elsewhere) {
   const std::string page = misfit::tools::report_page(full_report(), {{"Image", "foo"}});
   BOOST_TEST(contains(page, "src=\"data:image/png;base64,Zm9v\""));

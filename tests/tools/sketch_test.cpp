@@ -3,6 +3,7 @@
 #include <boost/test/unit_test.hpp>
 #include <cmath>
 #include <limits>
+#include <map>
 
 using misfit::imager::Image;
 using namespace misfit::tools;
@@ -57,6 +58,30 @@ BOOST_AUTO_TEST_CASE(noise_is_not_spread) {
   Image image(100, 100);
   for (std::size_t k = 0; k < image.pixel.size(); ++k) image.pixel[k] = std::sin(static_cast<double>(k * k));
   BOOST_TEST(misfit::tools::sketch(image, Shades::brightness, 100).reduced.image.pixel == image.pixel);
+}
+
+BOOST_AUTO_TEST_CASE(an_outline_leaves_every_corner_as_often_as_it_comes) {
+  Image mask(8, 6);
+  for (const auto& [row, column] : {std::pair{1, 1}, {1, 2}, {2, 2}, {3, 5}, {4, 6}}) mask.at(row, column) = 1;
+  const std::vector<PixelSide> sides = outline(mask);
+  BOOST_TEST(sides.size() == 8U + 4 + 4);  // an L of three pixels, and two that touch in a corner
+  std::map<std::pair<int, int>, int> ends;
+  for (const PixelSide& side : sides) {
+    BOOST_TEST(std::abs(side.to_row - side.from_row) + std::abs(side.to_column - side.from_column) == 1);
+    ++ends[{side.from_row, side.from_column}];
+    ++ends[{side.to_row, side.to_column}];
+  }
+  for (const auto& [corner, count] : ends) BOOST_TEST(count % 2 == 0);
+}
+
+BOOST_AUTO_TEST_CASE(the_edge_of_the_image_is_no_outline) {
+  Image mask(8, 6);
+  BOOST_TEST(outline(mask).empty());
+  for (double& pixel : mask.pixel) pixel = 1;
+  BOOST_TEST(outline(mask).empty());
+  for (int row = 0; row < 6; ++row) mask.at(row, 0) = 0;
+  BOOST_TEST(outline(mask).size() == 6U);
+  for (const PixelSide& side : outline(mask)) BOOST_TEST((side.from_column == 1 && side.to_column == 1));
 }
 
 BOOST_AUTO_TEST_SUITE_END()
