@@ -178,7 +178,7 @@ class ImageRun {
   }
 
   void clean() {
-    dirty_ = sketch(made_.images.dirty, Shades::brightness, picture_side);
+    sketch_dirty();
     progress_.begin("CLEAN", true);
     cleaned_ = std::make_unique<imager::CleanResult>(clean_->run(
         {*source_, *made_.transform, made_.images, main_lobe_}, report_.options, progress(),
@@ -197,6 +197,12 @@ class ImageRun {
     const imager::CleanStop stop = cleaned_->report.stop;
     if (stop == imager::CleanStop::diverging || stop == imager::CleanStop::diverging_from_best)
       warn("CLEAN diverged: " + cleaned_->report.stop_reason);
+  }
+
+  /// So that CLEAN need not keep the whole image for its picture.
+  void sketch_dirty() {
+    const imager::StageTimer timer(times_, "draw pictures");
+    dirty_ = sketch(made_.images.dirty, Shades::brightness, picture_side);
   }
 
   /// They make room for the pictures, and are closed before a column is written.

@@ -200,6 +200,18 @@ BOOST_AUTO_TEST_CASE(a_mask_is_outlined_where_it_lies) {
   BOOST_TEST(std::abs(outline.y / outline.count - source.y / source.count - 1.5 * 64) < 32);
 }
 
+BOOST_AUTO_TEST_CASE(a_mask_of_nothing_or_of_everything_has_no_outline) {
+  SkyImage sky = sky_image(10, 10);
+  sky.image.at(5, 5) = 1;
+  const Folder folder;
+  for (const double value : {0.0, 1.0}) {
+    Image mask(10, 10);
+    for (double& pixel : mask.pixel) pixel = value;
+    BOOST_TEST(draw_pictures({{.image = &sky, .title = "one", .path = folder.file("one.png"), .mask = &mask}}) == "");
+    BOOST_TEST(colours_of(folder, "one.png").green.count == 0);
+  }
+}
+
 BOOST_AUTO_TEST_CASE(a_beam_is_drawn_to_scale_unless_it_takes_half_of_a_side) {
   SkyImage sky = sky_image(64, 64);
   const Folder folder;
