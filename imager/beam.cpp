@@ -117,26 +117,71 @@ Beam beam_of(const Eigen::Matrix2d& precision, double unit_rad) {
   return {width[0], width[1], angle};
 }
 
+/// Pixels come in equal pairs about the centre, and each pair is one equation.
+constexpr std::size_t fewest_samples = 7;
+
+[[noreturn]] void refuse(std::size_t samples, std::size_t needed) {
+  throw std::runtime_error("no beam can be fitted to the " + std::to_string(samples) +
+                           " pixels of the PSF's main lobe; expected " +
+                           (samples < needed ? "at least " + std::to_string(needed) + ": use a smaller cell"
+                                             : "a lobe that falls off in every direction within the image: "
+                                               "use a larger image, or data that cover more of the uv plane"));
+}
+
+/// The p for which exp(−½ p r²) fits best, from a circle: Gauss–Newton in log p, which keeps it positive.
+double fit_circular_precision(const std::vector<Sample>& samples) {
+  double p = -2 * std::log(lobe_cutoff);
+  for (int iteration = 0; iteration < 200; ++iteration) {
+    double matrix = 0, gradient = 0;
+    for (const auto& [east, north, value] : samples) {
+      const double r2 = east * east + north * north, model = std::exp(-0.5 * p * r2);
+      const double derivative = -0.5 * p * r2 * model;
+      matrix += derivative * derivative;
+      gradient += derivative * (model - value);
+    }
+    const double step = matrix > 0 ? std::clamp(-gradient / matrix, -1.0, 1.0) : 0;
+    p *= std::exp(step);
+    if (std::abs(step) < 1e-14) break;
+  }
+  return p;
+}
+
 }  // namespace
 
 Beam fit_beam(const Image& psf, double cell_rad, BeamRegion region) {
   const Lobe lobe = main_lobe(psf);
-  // Pixels come in equal pairs about the centre, and each pair is one equation; beyond the lobe lie further ones.
-  const std::size_t needed = region == BeamRegion::main_lobe ? 7 : 5;
+  const std::size_t needed = region == BeamRegion::main_lobe ? fewest_samples : 5;  // beyond the lobe lie further ones
   std::optional<Eigen::Matrix2d> precision;
   if (lobe.samples.size() >= needed) {
     if (region == BeamRegion::quadrant) precision = fit_precision(quadrant(psf, lobe));
     if (!precision) precision = fit_precision(lobe.samples);
   }
-  if (!precision) {
-    const bool too_few = lobe.samples.size() < needed;
-    throw std::runtime_error("no beam can be fitted to the " + std::to_string(lobe.samples.size()) +
-                             " pixels of the PSF's main lobe; expected " +
-                             (too_few ? "at least " + std::to_string(needed) + ": use a smaller cell"
-                                      : "a lobe that falls off in every direction within the image: "
-                                        "use a larger image, or data that cover more of the uv plane"));
-  }
+  if (!precision) refuse(lobe.samples.size(), needed);
   return beam_of(*precision, lobe.scale * cell_rad);
+}
+
+Beam fit_circular_beam(const Image& psf, double cell_rad) {
+  const Lobe lobe = main_lobe(psf);
+  if (lobe.samples.size() < 5) refuse(lobe.samples.size(), 5);
+  const double p = fit_circular_precision(lobe.samples);
+  const double width = fwhm_per_sigma / std::sqrt(p);  // in units of the lobe's scale
+  constexpr double widest = 10;
+  if (!(width < widest)) refuse(lobe.samples.size(), 5);
+  return {width * lobe.scale * cell_rad, width * lobe.scale * cell_rad, 0};
+}
+
+double beam_misfit(const Image& psf, const Beam& beam, double cell_rad) {
+  const Lobe lobe = main_lobe(psf);
+  if (lobe.samples.empty()) return 0;
+  const double east = std::sin(beam.position_angle_rad), north = std::cos(beam.position_angle_rad);
+  const double unit = fwhm_per_sigma * lobe.scale * cell_rad;
+  double sum = 0;
+  for (const Sample& s : lobe.samples) {
+    const double along = (s.east * east + s.north * north) * unit / beam.major_rad;
+    const double across = (s.east * north - s.north * east) * unit / beam.minor_rad;
+    sum += std::pow(std::exp(-0.5 * (along * along + across * across)) - s.value, 2);
+  }
+  return std::sqrt(sum / static_cast<double>(lobe.samples.size()));
 }
 
 }  // namespace misfit::imager

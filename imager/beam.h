@@ -26,6 +26,13 @@ enum class BeamRegion {
 /// fit fails.
 Beam fit_beam(const Image& psf, double cell_rad, BeamRegion region = BeamRegion::main_lobe);
 
+/// The round Gaussian that fits the main lobe best, where no elliptical one does: a lobe that does not fall off along one of
+/// its axes. Throws std::runtime_error as fit_beam does.
+Beam fit_circular_beam(const Image& psf, double cell_rad);
+
+/// √(mean of (PSF − beam)²) over the pixels of the main lobe; 0 where it has none.
+double beam_misfit(const Image& psf, const Beam& beam, double cell_rad);
+
 /// model ⊗ beam, where the beam has peak 1: Jy/pixel in, Jy/beam out; NaN in the model counts as 0. Summed over the components
 /// directly, out to where the beam falls below 1e-8 of its peak; the same bits for any number of threads. Throws
 /// std::invalid_argument when an axis of the beam or the cell is not positive.

@@ -17,8 +17,8 @@ namespace {
 using nlohmann::json;
 
 constexpr const char* format = "misfit CLEAN state 1";
-constexpr std::array free_options = {"niter",  "threshold", "nsigma", "nmajor", "savemodel", "restoringbeam",
-                                     "verify", "threads",   "memory", "quiet",  "restart",   "dry-run", "imagename"};
+constexpr std::array free_options = {"niter",   "threshold", "nsigma", "nmajor",  "savemodel", "restoringbeam", "verify",
+                                     "threads", "memory",    "quiet",  "restart", "dry-run",   "imagename"};
 
 /// Its bytes as they lie in memory, little-endian where this runs.
 template <typename T>
@@ -90,9 +90,8 @@ imager::Image unpacked_mask(const json& value) {
 }
 
 json packed_cycle(const imager::MajorCycle& c) {
-  return {{"iterations", c.iterations},       {"peak_residual_jy", c.peak_residual_jy},
-          {"rms_jy", c.rms_jy},               {"model_flux_jy", c.model_flux_jy},
-          {"depth_jy", c.cycle_threshold_jy}, {"ended", c.ended},
+  return {{"iterations", c.iterations},          {"peak_residual_jy", c.peak_residual_jy}, {"rms_jy", c.rms_jy},
+          {"model_flux_jy", c.model_flux_jy},    {"depth_jy", c.cycle_threshold_jy},       {"ended", c.ended},
           {"mean_square_jy2", c.mean_square_jy2}};
 }
 

@@ -10,9 +10,9 @@ namespace misfit::tools {
 
 /// What a state of CLEAN belongs to.
 struct CleanStateOwner {
-  std::string version;        ///< of the program
-  nlohmann::json options;     ///< {name: value}, as typed or by default
-  std::uint64_t checksum = 0; ///< of the images that were made of the data, see checksum()
+  std::string version;         ///< of the program
+  nlohmann::json options;      ///< {name: value}, as typed or by default
+  std::uint64_t checksum = 0;  ///< of the images that were made of the data, see checksum()
 };
 
 /// A number that differs when a bit of the dirty image or the PSF does, and with them of the data selected and of how they are
@@ -24,8 +24,8 @@ std::uint64_t checksum(const imager::DirtyImages& images, const imager::Image* m
 void write_clean_state(const std::string& path, const imager::CleanState& state, const CleanStateOwner& owner);
 
 /// Reads a state for a run of these options and data. Options that only end CLEAN or do not reach it (niter, threshold, nsigma,
-/// nmajor, savemodel, restoringbeam, verify, threads, memory, quiet, restart), and the name of the images, may differ. Throws std::runtime_error that names
-/// the file, and the option or what else is different, or that the file is damaged.
+/// nmajor, savemodel, restoringbeam, verify, threads, memory, quiet, restart), and the name of the images, may differ. Throws
+/// std::runtime_error that names the file, and the option or what else is different, or that the file is damaged.
 imager::CleanState read_clean_state(const std::string& path, const CleanStateOwner& owner);
 
 }  // namespace misfit::tools

@@ -6,8 +6,10 @@
 
 #include "imager/noise.h"
 #include "imager/parallel.h"
+#include "tools/beam_choice.h"
 #include "tools/clean_stage.h"
 #include "tools/command.h"
+#include "tools/component_list.h"
 #include "tools/config_file.h"
 #include "tools/files.h"
 #include "tools/image_options.h"
@@ -41,7 +43,7 @@ class ImageRun {
     if (o_.dry_run) return print_plan();
     make_dirty();
     if (o_.verify > 0) verify();
-    fit_beams();
+    choose_beams();
     if (o_.niter > 0) clean();
     release_visibilities();
     write_images();
@@ -158,30 +160,18 @@ class ImageRun {
     report_.measured = &measured_;
   }
 
-  void fit_beams() {
+  void choose_beams() {
     const imager::StageTimer timer(times_, "fit beam");
-    const std::optional<imager::Beam> given = restoring_beam(o_);
-    if (given) {
-      beam_ = main_lobe_ = *given;
-      report_.beam = &beam_;
-    }
-    try {
-      main_lobe_ = imager::fit_beam(made_.images.psf, geometry_.cell_rad);
-      if (!given) beam_ = main_lobe_;
-      report_.beam = &beam_;
-      quadrant_beam_ = imager::fit_beam(made_.images.psf, geometry_.cell_rad, imager::BeamRegion::quadrant);
-      report_.quadrant_beam = &quadrant_beam_;
-    } catch (const std::runtime_error& error) {
-      if (o_.niter > 0 && !given) throw;
-      warn(error.what());
-    }
+    beams_ = choose_beam(made_.images.psf, geometry_.cell_rad, restoring_beam(o_), o_.niter > 0);
+    report_.beams = &beams_;
+    for (const std::string& warning : beams_.warnings) warn(warning);
   }
 
   void clean() {
     sketch_dirty();
     progress_.begin("CLEAN", true);
     cleaned_ = std::make_unique<imager::CleanResult>(clean_->run(
-        {*source_, *made_.transform, made_.images, main_lobe_}, report_.options, progress(),
+        {*source_, *made_.transform, made_.images, *beams_.main_lobe}, report_.options, progress(),
         [this](const imager::CleanState& state) {
           const imager::MajorCycle& cycle = state.cycles.back();
           if (state.cycles.size() > 1)
@@ -228,13 +218,13 @@ class ImageRun {
     products_ = std::make_unique<ImageProducts>(o_.imagename, geometry_, observation_, o_.accuracy);
     products_->set_history(report_.command_line);
     products_->set_cards(error_cards(report_));
-    if (report_.beam != nullptr) products_->set_beam(beam_);
+    if (beams_.restoring) products_->set_beam(*beams_.restoring);
     products_->add({"psf", "PSF", "Jy/beam"}, std::move(made_.images.psf));
     if (!cleaned_) {
       products_->add({"residual", "Dirty image", "Jy/beam"}, std::move(made_.images.dirty));
     } else {
       const imager::StageTimer timer(times_, "restore");
-      imager::Image restored = imager::convolve_with_beam(cleaned_->model, beam_, geometry_.cell_rad, threads_);
+      imager::Image restored = imager::convolve_with_beam(cleaned_->model, *beams_.restoring, geometry_.cell_rad, threads_);
       for (std::size_t i = 0; i < restored.pixel.size(); ++i) restored.pixel[i] += cleaned_->residual.pixel[i];
       imager::Image model = o_.savemodel == "none" ? std::move(cleaned_->model) : cleaned_->model;
       products_->add({"model", "Model", "Jy/pixel", Shades::about_zero}, std::move(model));
@@ -246,6 +236,17 @@ class ImageRun {
     drawing_ = std::make_unique<PictureDrawing>(products_->pictures());
     const imager::StageTimer timer(times_, "write images");
     products_->write();
+    if (cleaned_) write_component_list(o_.imagename + ".components.csv", sources(), geometry_.phase_centre);
+  }
+
+  /// What CLEAN found, on the sky.
+  std::vector<imager::Source> sources() const {
+    const imager::ComponentModel& model = cleaned_->components;
+    std::vector<imager::Source> sources;
+    for (const imager::Component& c : model.components())
+      sources.push_back({geometry_.at(c.row, c.column), c.flux_jy,
+                         model.scale_pixels()[static_cast<std::size_t>(c.scale)] * geometry_.cell_rad});
+    return sources;
   }
 
   void write_report() {
@@ -300,9 +301,7 @@ class ImageRun {
   imager::AccurateImages made_;
   imager::TheoreticalError theory_;
   imager::MeasuredError measured_;
-  imager::Beam main_lobe_;  ///< of the PSF; where no beam fits it, that given
-  imager::Beam beam_;       ///< that images are restored with
-  imager::Beam quadrant_beam_;
+  BeamChoice beams_;
   Sketch dirty_;  ///< what is left of the dirty image when CLEAN is over
   std::unique_ptr<imager::CleanResult> cleaned_;
   std::unique_ptr<ImageProducts> products_;

@@ -138,7 +138,8 @@ void declare(CLI::App& command, ImageOptions& o) {
   command
       .add_option("--usemask", o.usemask, "user: --mask, or everywhere; auto: from the residuals, as tclean's auto-multithresh")
       ->check(CLI::IsMember({"user", "auto"}));
-  command.add_option("--sidelobethreshold", o.sidelobethreshold, "auto: above this times the largest sidelobe times the peak …");
+  command.add_option("--sidelobethreshold", o.sidelobethreshold,
+                     "auto: above this times the largest sidelobe times the peak …");
   command.add_option("--noisethreshold", o.noisethreshold, "… and above this times the noise");
   command.add_option("--lownoisethreshold", o.lownoisethreshold, "… grown down to this times the noise");
   command.add_option("--minbeamfrac", o.minbeamfrac, "… without regions below this part of the beam's area");
@@ -146,7 +147,8 @@ void declare(CLI::App& command, ImageOptions& o) {
   command.add_option("--startmodel", o.startmodel, "Begin with this model, a FITS image in Jy/pixel of the same pixels");
   command.add_option("--savemodel", o.savemodel, "modelcolumn: write the model's visibilities into MODEL_DATA; none")
       ->check(CLI::IsMember({"none", "modelcolumn"}));
-  command.add_flag("--restart", o.restart, "Go on from the last major cycle of a run that was cut, or ended, with these options");
+  command.add_flag("--restart", o.restart,
+                   "Go on from the last major cycle of a run that was cut, or ended, with these options");
   command.add_option("--verify", o.verify, "Compare this many random pixels and visibilities with the direct transform");
   command.add_option("--threads", o.threads, "Threads; 0 means all cores");
   command.add_option("--memory", o.memory_gib, "GiB that the run may take; 0 means half of the machine's memory");

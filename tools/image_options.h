@@ -50,7 +50,7 @@ struct ImageOptions {
   double lownoisethreshold = 1.5;
   double minbeamfrac = 0.3;
   int growiterations = 75;
-  std::string startmodel;     ///< a FITS image in Jy/pixel; empty = none
+  std::string startmodel;  ///< a FITS image in Jy/pixel; empty = none
   std::string savemodel = "none";
   bool restart = false;
   int verify = 0;

@@ -40,8 +40,14 @@ std::string beam_size(const json& beam, const std::string& before) {
 }
 
 std::string beam_text(const json& report) {
-  const std::string fitted = beam_size(member(report, "beam"), "");
-  return fitted.empty() ? not_measured : fitted + beam_size(member(report, "beam_by_quadrant"), "WSClean’s rule gives");
+  const json& beam = member(report, "beam");
+  const std::string size = beam_size(beam, "");
+  if (size.empty()) return not_measured;
+  const json& misfit = member(beam, "misfit");
+  const std::string how =
+      misfit.is_number() ? plain(member(beam, "how")) + "; the main lobe differs by " + significant(misfit.get<double>(), 2)
+                         : "";
+  return size + (how.empty() ? "" : tag("small", how)) + beam_size(member(report, "beam_by_quadrant"), "WSClean’s rule gives");
 }
 
 std::string image_text(const json& options) {

@@ -64,11 +64,19 @@ json error_json(const RunReport& r) {
   return error;
 }
 
-json beam_json(const imager::Beam* beam) {
-  if (beam == nullptr) return nullptr;
+json beam_json(const std::optional<imager::Beam>& beam) {
+  if (!beam) return nullptr;
   return {{"major_arcsec", beam->major_rad / arcsec},
           {"minor_arcsec", beam->minor_rad / arcsec},
           {"pa_deg", beam->position_angle_rad * 180 / std::numbers::pi}};
+}
+
+json restoring_json(const BeamChoice* beams) {
+  if (beams == nullptr || !beams->restoring) return nullptr;
+  json beam = beam_json(beams->restoring);
+  beam["how"] = beams->how;
+  beam["misfit"] = number(beams->misfit);
+  return beam;
 }
 
 json cycle_json(const imager::MajorCycle& cycle) {
@@ -129,8 +137,8 @@ json report_json(const RunReport& r) {
           {"timings_s", timings_json(r)},
           {"memory_gib_peak", peak_memory_bytes() / gib},
           {"memory_gib_estimated", r.estimated_memory_bytes / gib},
-          {"beam", beam_json(r.beam)},
-          {"beam_by_quadrant", beam_json(r.quadrant_beam)},
+          {"beam", restoring_json(r.beams)},
+          {"beam_by_quadrant", r.beams == nullptr ? json() : beam_json(r.beams->quadrant)},
           {"clean", clean_json(r.clean)}};
 }
 

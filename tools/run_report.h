@@ -5,10 +5,10 @@
 #include <vector>
 
 #include "imager/accurate_imaging.h"
-#include "imager/beam.h"
 #include "imager/clean/clean.h"
 #include "imager/plan.h"
 #include "imager/verify.h"
+#include "tools/beam_choice.h"
 
 namespace misfit::tools {
 
@@ -23,16 +23,16 @@ struct RunReport {
   const imager::TheoreticalError* theory = nullptr;
   const imager::MeasuredError* measured = nullptr;
   imager::SampleCounts counts;
-  const imager::Beam* beam = nullptr;
-  const imager::Beam* quadrant_beam = nullptr;  ///< by WSClean's rule, for comparison; see imager::BeamRegion
+  const BeamChoice* beams = nullptr;
   const imager::CleanReport* clean = nullptr;
   double wall_clock_s = 0;
   double estimated_memory_bytes = 0;  ///< at the peak
   const imager::StageTimes* times = nullptr;
 };
 
-/// report.json, with the keys of the project's design; `beam_by_quadrant`, `memory_gib_estimated`, `warnings`, `command_line`,
-/// `timings_s.total`, `clean.major_cycles_log` and `clean.kept_cycle` (whose model was kept) are additions.
+/// report.json, with the keys of the project's design; `beam.how`, `beam.misfit`, `beam_by_quadrant`, `memory_gib_estimated`,
+/// `warnings`, `command_line`, `timings_s.total`, `clean.major_cycles_log` and `clean.kept_cycle` (whose model was kept) are
+/// additions.
 nlohmann::json report_json(const RunReport& report);
 
 }  // namespace misfit::tools

@@ -48,8 +48,7 @@ void ActivePixels::find_peak_of(std::size_t row) {
 }
 
 Peak ActivePixels::peak() const {
-  const auto brightest =
-      std::max_element(row_.begin(), row_.end(), [](const Row& a, const Row& b) { return a.peak < b.peak; });
+  const auto brightest = std::max_element(row_.begin(), row_.end(), [](const Row& a, const Row& b) { return a.peak < b.peak; });
   if (brightest->peak < 0) return {};
   std::size_t i = brightest->first;
   while (std::abs(value_[i]) != brightest->peak) ++i;

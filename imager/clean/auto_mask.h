@@ -15,9 +15,9 @@ struct AutoMaskOptions {
 
 /// What the thresholds are relative to.
 struct AutoMaskScene {
-  double max_sidelobe = 0;        ///< of the PSF
-  double noise_jy = 0;            ///< of the residual
-  double beam_fwhm_pixels = 0;    ///< of a round beam of the same area
+  double max_sidelobe = 0;      ///< of the PSF
+  double noise_jy = 0;          ///< of the residual
+  double beam_fwhm_pixels = 0;  ///< of a round beam of the same area
   int threads = 1;
 };
 

@@ -14,8 +14,8 @@
 namespace misfit::imager {
 namespace {
 
-constexpr double grown = 1.5;       // a residual this many times the best is taken back
-constexpr double diverged = 3;      // tclean's factor between its codes
+constexpr double grown = 1.5;   // a residual this many times the best is taken back
+constexpr double diverged = 3;  // tclean's factor between its codes
 constexpr int most_tightenings = 3;
 constexpr std::size_t patience = 5;  // cycles without any progress
 
@@ -49,8 +49,8 @@ struct Ending {
 /// One run of CLEAN.
 class Run {
  public:
-  Run(const CleanInput& input, const MinorCycle& minor, const CleanOptions& options, CleanState state,
-      const Progress& progress, StageTimes& times)
+  Run(const CleanInput& input, const MinorCycle& minor, const CleanOptions& options, CleanState state, const Progress& progress,
+      StageTimes& times)
       : input_(input), minor_(minor), o_(options), progress_(progress), times_(times), state_(std::move(state)) {
     if (state_.model.scale_pixels() != minor.scale_pixels())
       throw std::invalid_argument("a model of other scales than those of the minor cycle");
@@ -81,8 +81,8 @@ class Run {
     residual_.reset();
     residual_ = state_.model.components().empty()
                     ? std::shared_ptr<const Image>(std::shared_ptr<void>(), &input_.images.dirty)
-                    : std::make_shared<const Image>(make_residual_image(
-                          input_.source, input_.transform, state_.model.image(o_.threads), progress_, times_));
+                    : std::make_shared<const Image>(make_residual_image(input_.source, input_.transform,
+                                                                        state_.model.image(o_.threads), progress_, times_));
     require_finite(*residual_, input_.images.dirty);
   }
 
@@ -110,8 +110,8 @@ class Run {
   /// What ends CLEAN before another minor cycle, if anything.
   std::optional<Ending> ending() const {
     if (mask() != nullptr && mask_is_empty(*mask()))
-      return Ending{CleanStop::empty_mask, o_.automask ? "nothing in the residual exceeds the mask's thresholds"
-                                                       : "the mask allows no pixel"};
+      return Ending{CleanStop::empty_mask,
+                    o_.automask ? "nothing in the residual exceeds the mask's thresholds" : "the mask allows no pixel"};
     if (o_.stop_requested && o_.stop_requested()) return Ending{CleanStop::user, "stopped by the user"};
     if (now().peak_residual_jy <= o_.threshold_jy)
       return Ending{CleanStop::threshold, "the peak residual reached the threshold"};
@@ -123,8 +123,8 @@ class Run {
     if (found_nothing_) return Ending{CleanStop::no_change, "a minor cycle found nothing to clean"};
     if (state_.tightened > most_tightenings) return divergence();
     if (!progresses())
-      return Ending{CleanStop::no_change, "neither peak nor mean square of the residual fell in " + std::to_string(patience) +
-                                              " major cycles"};
+      return Ending{CleanStop::no_change,
+                    "neither peak nor mean square of the residual fell in " + std::to_string(patience) + " major cycles"};
     return std::nullopt;
   }
 
@@ -133,7 +133,8 @@ class Run {
     return {at_once ? CleanStop::diverging : CleanStop::diverging_from_best,
             "the residual grew from " + std::to_string(best().peak_residual_jy) + " to " +
                 std::to_string(state_.cycles.back().peak_residual_jy) + " Jy/beam although minor cycles were made " +
-                std::to_string(most_tightenings) + " times less deep; the best model was kept. A lower --gain, a --mask around " +
+                std::to_string(most_tightenings) +
+                " times less deep; the best model was kept. A lower --gain, a --mask around " +
                 "the sources, or more scales may help; the PSF's largest sidelobe is " + percent(input_.max_sidelobe) +
                 " of its peak"};
   }
@@ -153,8 +154,7 @@ class Run {
   /// The depth of the next minor cycle: where the sidelobes of the brightest source could pass for sources. Five percent below
   /// the nsigma limit, since the noise falls as sources go, and cycles that chase it by less are wasted.
   double cycle_threshold() const {
-    const double fraction =
-        std::clamp(o_.cycle_factor * input_.max_sidelobe, o_.min_psf_fraction, o_.max_psf_fraction);
+    const double fraction = std::clamp(o_.cycle_factor * input_.max_sidelobe, o_.min_psf_fraction, o_.max_psf_fraction);
     const double tightened = 1 - std::ldexp(1 - fraction, -state_.tightened);
     return std::max({tightened * now().peak_residual_jy, o_.threshold_jy, 0.95 * o_.nsigma * now().rms_jy});
   }

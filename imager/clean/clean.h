@@ -22,9 +22,9 @@ struct CleanOptions {
   double cycle_factor = 1;         ///< a minor cycle goes down to the peak × largest sidelobe × cycle factor …
   double min_psf_fraction = 0.05;  ///< … that fraction of the peak clamped to [min, max]
   double max_psf_fraction = 0.8;
-  int cycle_iterations = -1;              ///< cycleniter: components that a minor cycle finds at most; −1 = no limit
-  int max_major_cycles = -1;              ///< nmajor; −1 = no limit
-  const Image* mask = nullptr;            ///< where components may lie, see mask.h; null = everywhere
+  int cycle_iterations = -1;                ///< cycleniter: components that a minor cycle finds at most; −1 = no limit
+  int max_major_cycles = -1;                ///< nmajor; −1 = no limit
+  const Image* mask = nullptr;              ///< where components may lie, see mask.h; null = everywhere
   std::optional<AutoMaskOptions> automask;  ///< the mask is made from the residuals; `mask` must be null
   int threads = 1;
   std::function<bool()> stop_requested;  ///< the user's wish to end; may be empty
@@ -45,9 +45,9 @@ enum class CleanStop {
 
 /// The state after one major cycle.
 struct MajorCycle {
-  int iterations = 0;             ///< components of its model, each time that one was found counting
-  double peak_residual_jy = 0;    ///< within the mask
-  double rms_jy = 0;              ///< robust noise of the residual, within the mask and without
+  int iterations = 0;           ///< components of its model, each time that one was found counting
+  double peak_residual_jy = 0;  ///< within the mask
+  double rms_jy = 0;            ///< robust noise of the residual, within the mask and without
   double model_flux_jy = 0;
   double cycle_threshold_jy = 0;  ///< how deep its minor cycle was to go, in Jy/beam
   std::string ended;              ///< why its minor cycle ended; empty before the first
@@ -108,8 +108,8 @@ CleanState first_state(const ComponentModel& model);
 /// `minor`.
 ///
 /// A major cycle whose residual has a peak 1.5 times the smallest so far is taken back: the best model is gone on from, with
-/// half the way from the peak to the cycle depth left. After the third time CLEAN stops as diverging. Where neither the peak nor
-/// the mean square of the residual becomes less in five cycles it stops as without change.
+/// half the way from the peak to the cycle depth left. After the third time CLEAN stops as diverging. Where neither the peak
+/// nor the mean square of the residual becomes less in five cycles it stops as without change.
 ///
 /// Stages timed: "minor cycles", "statistics", and those of make_residual_image. Throws std::runtime_error when the PSF or a
 /// residual is not finite.

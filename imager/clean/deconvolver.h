@@ -10,9 +10,9 @@ namespace misfit::imager {
 
 /// A minor cycle by name.
 struct DeconvolverChoice {
-  std::string name = "hogbom";           ///< one of deconvolver_names()
-  std::vector<double> scale_pixels{0};   ///< of multiscale, see MultiscaleOptions
-  double small_scale_bias = 0;           ///< of multiscale
+  std::string name = "hogbom";          ///< one of deconvolver_names()
+  std::vector<double> scale_pixels{0};  ///< of multiscale, see MultiscaleOptions
+  double small_scale_bias = 0;          ///< of multiscale
   int threads = 1;
 };
 

@@ -42,8 +42,8 @@ Multiscale::Multiscale(const Image& psf, const MultiscaleOptions& options)
     const Image twice = scale == 0 ? psf : gaussian_blur(psf, std::sqrt(2.0) * scale, options.threads);
     const double peak = twice.at(psf.height / 2, psf.width / 2);
     const int reach = 512;
-    scale_.push_back({largest == 0 ? 1 : 1 - options.small_scale_bias * scale / largest, peak,
-                      PsfCore(divided(twice, peak), reach)});
+    scale_.push_back(
+        {largest == 0 ? 1 : 1 - options.small_scale_bias * scale / largest, peak, PsfCore(divided(twice, peak), reach)});
   }
 }
 
@@ -103,15 +103,14 @@ MinorCycleReport Multiscale::clean(const Image& residual, const MinorCycleOption
     const double merit = std::min(merit_left * choice.merit, choice.next_merit);
     const double stop = std::max(std::sqrt(merit * scale.psf_peak / scale.bias),
                                  options_.scale_pixels[choice.scale] == 0 ? options.threshold_jy : 0);
-    ActivePixels active(choice.residual, std::max(lowest_part * stop, scale.core.largest_outside() * choice.peak_jy), scale.core);
+    ActivePixels active(choice.residual, std::max(lowest_part * stop, scale.core.largest_outside() * choice.peak_jy),
+                        scale.core);
     choice.residual = {};
     const auto before = static_cast<std::ptrdiff_t>(report.components.size());
-    find_among(active,
-               {.gain = options.gain,
-                .stop_jy = stop,
-                .scale = static_cast<int>(choice.scale),
-                .flux_per_jy = 1 / scale.psf_peak},
-               watch, report);
+    find_among(
+        active,
+        {.gain = options.gain, .stop_jy = stop, .scale = static_cast<int>(choice.scale), .flux_per_jy = 1 / scale.psf_peak},
+        watch, report);
     ComponentModel found(residual.width, residual.height, options_.scale_pixels);
     found.add({report.components.begin() + before, report.components.end()});
     subtract(convolution_(found.image(options_.threads)), left);

@@ -8,7 +8,8 @@
 namespace misfit::imager {
 namespace {
 
-/// [ring]: the largest magnitude at that distance from the middle or beyond it, a distance being the larger of rows and columns.
+/// [ring]: the largest magnitude at that distance from the middle or beyond it, a distance being the larger of rows and
+/// columns.
 std::vector<double> largest_beyond(const Image& psf) {
   const int rows = psf.height / 2, columns = psf.width / 2;
   std::vector<double> largest(static_cast<std::size_t>(std::max(rows, columns)) + 2);

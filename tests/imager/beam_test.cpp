@@ -144,6 +144,32 @@ BOOST_AUTO_TEST_CASE(a_psf_without_slopes_is_an_error) {
   Image psf(16, 16);
   for (double& value : psf.pixel) value = 1;
   BOOST_CHECK_THROW(fit_beam(psf, cell_rad), std::runtime_error);
+  BOOST_CHECK_THROW(fit_circular_beam(psf, cell_rad), std::runtime_error);
+}
+
+BOOST_AUTO_TEST_CASE(a_round_beam_is_fitted_exactly_and_an_elongated_one_between_its_axes) {
+  const Beam round{4.3 * cell_rad, 4.3 * cell_rad, 0};
+  BOOST_TEST(std::abs(fit_circular_beam(sampled(round, 32, 32), cell_rad).major_rad / round.major_rad - 1) < 1e-12);
+  const Beam between = fit_circular_beam(sampled(oblique, 65, 65), cell_rad);
+  BOOST_TEST(between.major_rad == between.minor_rad);
+  BOOST_TEST((between.major_rad > oblique.minor_rad && between.major_rad < oblique.major_rad));
+}
+
+BOOST_AUTO_TEST_CASE(a_lobe_that_is_open_along_one_axis_has_a_round_beam_alone) {
+  Image psf(64, 64);
+  for (int r = 0; r < 64; ++r)
+    for (int c = 0; c < 64; ++c) psf.at(r, c) = std::exp(-(c - 32) * (c - 32) / 8.0);
+  BOOST_CHECK_THROW(fit_beam(psf, cell_rad), std::runtime_error);
+  const Beam beam = fit_circular_beam(psf, cell_rad);
+  BOOST_TEST(beam.major_rad > 2 * std::sqrt(2 * std::log(2.0)) * 2 * cell_rad);
+  BOOST_TEST(beam_misfit(psf, beam, cell_rad) > 0.1);
+}
+
+BOOST_AUTO_TEST_CASE(the_misfit_of_a_beam_is_0_for_its_own_psf_and_what_the_psf_differs_by) {
+  Image psf = sampled(oblique, 65, 65);
+  BOOST_TEST(beam_misfit(psf, oblique, cell_rad) < 1e-15);
+  for (double& pixel : psf.pixel) pixel += 0.05;  // hardly adds pixels to the lobe
+  BOOST_TEST(std::abs(beam_misfit(psf, oblique, cell_rad) - 0.05) < 1e-12);
 }
 
 BOOST_AUTO_TEST_CASE(an_isolated_component_keeps_its_flux_as_its_peak) {

@@ -62,8 +62,7 @@ BOOST_DATA_TEST_CASE(components_are_those_of_the_plain_double_loop,
                      bdata::make({1, 2, 7, 16, 33, 40}) ^ bdata::make({1, 5, 1, 16, 21, 150}), width, height) {
   const Image residual = random_image(width, height, 1), psf = random_psf(width, height, 0.05);
   for (const double gain : {0.1, 0.5, 1.0}) {
-    const MinorCycleOptions options{
-        .gain = gain, .max_iterations = 100, .threshold_jy = 0.3, .stop_requested = {}};
+    const MinorCycleOptions options{.gain = gain, .max_iterations = 100, .threshold_jy = 0.3, .stop_requested = {}};
     const Cleaned is = cleaned(residual, psf, options), should = plain(residual, psf, options);
     BOOST_TEST(is.iterations == should.iterations);
     // Single precision: each of 100 subtractions rounds by 6e-8 of a value near 1.
@@ -94,8 +93,7 @@ Image bright_sources_on_faint_noise(int width, int height) {
 
 BOOST_AUTO_TEST_CASE(components_of_bright_sources_are_those_of_the_plain_double_loop) {
   const Image residual = bright_sources_on_faint_noise(250, 210), psf = random_psf(250, 210, 0.003);
-  const MinorCycleOptions options{
-      .gain = 0.02, .max_iterations = 3000, .threshold_jy = 0.1, .stop_requested = {}};
+  const MinorCycleOptions options{.gain = 0.02, .max_iterations = 3000, .threshold_jy = 0.1, .stop_requested = {}};
   const Cleaned is = cleaned(residual, psf, options), should = plain(residual, psf, options);
   BOOST_TEST(is.iterations == should.iterations);
   BOOST_TEST(distance(is.model.pixel, should.model.pixel) <= 1e-5 * norm(should.model.pixel));

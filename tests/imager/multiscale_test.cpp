@@ -111,8 +111,8 @@ BOOST_AUTO_TEST_CASE(wide_components_keep_off_edges_and_masks) {
   sky = gaussian_blur(sky, 60, 2);
   const Image beam = psf(), dirty = observed(sky, beam, 1e-3);
   const Multiscale minor(beam, {.scale_pixels = {0, 15}, .small_scale_bias = 0, .threads = 2});
-  const MinorCycleReport report = minor.clean(
-      dirty, {.gain = 0.1, .max_iterations = 500, .threshold_jy = 0.01, .mask = &mask, .stop_requested = {}});
+  const MinorCycleReport report =
+      minor.clean(dirty, {.gain = 0.1, .max_iterations = 500, .threshold_jy = 0.01, .mask = &mask, .stop_requested = {}});
   // σ = 15/2.355 pixels: a straight edge 1.28 σ away leaves nine tenths.
   for (const Component& c : report.components) {
     const int from_edge = std::min({c.row - 99, 160 - c.row, c.column - 99, 160 - c.column});

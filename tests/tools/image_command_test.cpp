@@ -178,13 +178,13 @@ BOOST_AUTO_TEST_CASE(data_of_zeros_make_an_image_of_zeros) {
     for (const double pixel : pixels_of(folder / "a", kind).pixel) BOOST_REQUIRE_EQUAL(pixel, 0);
 }
 
-BOOST_AUTO_TEST_CASE(a_clean_that_diverges_says_so_and_keeps_a_model_no_worse_than_none) {
+BOOST_AUTO_TEST_CASE(a_clean_that_gets_nowhere_says_so_and_keeps_a_model_no_worse_than_none) {
   const TemporaryFolder folder;
   // Sources outside so small an image cannot be cleaned away.
   succeed({"image", "--vis", snapshot(), "--imagename", folder / "a", "--imsize", "64", "--cell", "0.2arcsec", "--niter",
            "1000000"});
   const json clean = report_of(folder / "a")["clean"];
-  BOOST_TEST(clean["stop_code"] == 5);
+  BOOST_TEST((clean["stop_code"] == 4 || clean["stop_code"] == 5 || clean["stop_code"] == 6));  // not the limit
   BOOST_TEST(clean["peak_residual_jy"].get<double>() <= clean["major_cycles_log"][0]["peak_residual_jy"].get<double>());
   for (const char* kind : {"residual", "model", "image"})
     for (const double pixel : pixels_of(folder / "a", kind).pixel) BOOST_REQUIRE(std::isfinite(pixel));
@@ -294,7 +294,8 @@ BOOST_AUTO_TEST_CASE(only_the_files_promised_appear) {
   const TemporaryFolder folder;
   std::filesystem::create_directory(folder / "out");
   succeed(small_image(snapshot(), folder / "out/a") + Arguments{"--niter", "10"});
-  for (const char* name : {"psf.fits", "residual.fits", "model.fits", "image.fits", "report.json", "report.html", "last.ini"}) {
+  for (const char* name : {"psf.fits", "residual.fits", "model.fits", "image.fits", "components.csv", "clean.state",
+                           "report.json", "report.html", "last.ini"}) {
     BOOST_TEST_INFO(name);
     BOOST_TEST(std::filesystem::remove(folder / "out/a." + name));
   }

@@ -45,12 +45,18 @@ BOOST_AUTO_TEST_CASE(what_is_not_finite_is_null) {
 BOOST_AUTO_TEST_CASE(beams_are_in_arcseconds_and_degrees) {
   tools::RunReport run;
   const imager::Beam beam{std::numbers::pi / 180 / 3600, std::numbers::pi / 180 / 7200, -std::numbers::pi / 6};
-  run.beam = &beam;
+  tools::BeamChoice beams;
+  beams.restoring = beam;
+  beams.how = "given";
+  beams.misfit = 0.25;
+  run.beams = &beams;
   const json json_beam = tools::report_json(run).at("beam");
   // Each is two or three products away.
   BOOST_TEST(std::abs(json_beam.at("major_arcsec").get<double>() - 1) < 1e-15);
   BOOST_TEST(std::abs(json_beam.at("minor_arcsec").get<double>() - 0.5) < 1e-15);
   BOOST_TEST(std::abs(json_beam.at("pa_deg").get<double>() + 30) < 1e-13);
+  BOOST_TEST(json_beam.at("how") == "given");
+  BOOST_TEST(json_beam.at("misfit") == 0.25);
 }
 
 BOOST_AUTO_TEST_CASE(clean_states_the_cycle_that_was_kept) {
