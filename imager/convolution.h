@@ -1,6 +1,10 @@
 #pragma once
 
-#include "imager/half_grid.h"
+#include <complex>
+#include <functional>
+
+#include "imager/big_array.h"
+#include "imager/fft.h"
 #include "imager/image.h"
 
 namespace misfit::imager {
@@ -13,13 +17,29 @@ class Convolution {
   Convolution(const Image& psf, int threads);
   Image operator()(const Image& image) const;
 
- private:
-  HalfGrid<Real> transformed(const Image& image) const;
+  /// The same of an image that is read and written by rows: by several threads, each row once. Pixels to be read are 0 before;
+  /// none may be NaN. All are read before any is written, and what is written may be changed.
+  using Read = std::function<void(int row, Real* pixels)>;
+  using Write = std::function<void(int row, Real* pixels)>;
+  void operator()(const Read& read, const Write& write) const;
 
-  GridShape shape_;
-  ImageCorrection ones_;
+ private:
+  using Complex = std::complex<Real>;
+
+  void transform_rows(const Read& read, Complex* plane) const;
+  void transform_psf_columns(const Complex* plane);
+  void convolve_columns(Complex* plane) const;
+  void transform_back_rows(const Complex* plane, const Write& write) const;
+
+  int width_;
+  int height_;
   int threads_;
-  HalfGrid<Real> psf_;
+  int nu_;  ///< lengths of the FFTs
+  int nv_;
+  std::ptrdiff_t columns_;  ///< from a row of a plane [height][nu/2 + 1] to the next
+  Fft<Real> along_u_;
+  Fft<Real> along_v_;
+  BigArray<Complex> psf_;  ///< its transform / (nu · nv), [nu/2 + 1][nv]
 };
 
 }  // namespace misfit::imager

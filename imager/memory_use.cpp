@@ -36,9 +36,9 @@ MemoryUse peak_memory(const MemoryDemand& d, const StreamingOptions& streaming) 
   if (d.clean) {
     const double masks = d.mask ? 2 : 0;  // it, and the residual within
     // Dirty image, PSF, model, and the best model with its residual; the newest residual comes last.
-    // Single-precision residual and PSF besides; for a convolution, its image and the components', and two grids of 3/2 the
-    // size.
-    stages.push_back({"the minor cycles run", process_bytes, kept, 0, 2.25 * image, 0, (8 + masks) * image});
+    // Single-precision residual and PSF besides; for a convolution, the PSF once more, its transform of 3/2 the size either
+    // way, and a transform of rows.
+    stages.push_back({"the minor cycles run", process_bytes, kept, 0, 1.875 * image, 0, (7 + masks) * image});
     const double residual_blocks = blocks + block_samples * residual_bytes;
     stages.push_back(
         {"the residual is gridded", process_bytes, kept, residual_blocks, 2 * t.visibilities, 0, (5 + masks) * image});
