@@ -5,13 +5,36 @@
 #include <mutex>
 #include <vector>
 
+#include "imager/big_array.h"
 #include "imager/convolution.h"
 #include "imager/image.h"
 
 namespace misfit::imager {
 
-/// Side of a tile of a residual, in pixels.
+/// Sides of the squares in which a residual lies, in pixels: of a tile, and of the blocks that it is made of.
 constexpr int residual_tile_side = 32;
+constexpr int residual_block_side = 8;
+constexpr int blocks_along_tile = residual_tile_side / residual_block_side;
+
+/// How strongly a PSF reaches from one square of pixels to another, on a lattice of them.
+class Reach {
+ public:
+  /// From the largest |PSF| in spans of `side` pixels, of which that from the middle pixel on is [rows][columns] in
+  /// [2 rows][2 columns].
+  Reach(int rows, int columns, const std::vector<float>& largest);
+
+  /// No |PSF| between any pixel of a square and any of one that lies so many squares beyond it is larger; those of more columns
+  /// follow. |rows| and |columns| are smaller than the lattice's.
+  const float* operator()(int rows, int columns) const {
+    return &value_[static_cast<std::size_t>(rows + rows_ - 1) * stride() + static_cast<std::size_t>(columns + columns_ - 1)];
+  }
+  std::size_t stride() const { return static_cast<std::size_t>(2 * columns_ - 1); }  ///< from a row to the next
+
+ private:
+  int rows_;
+  int columns_;
+  std::vector<float> value_;
+};
 
 /// A PSF as it is taken off residuals that lie in tiles: in single precision, with bounds of how strongly it reaches from tile
 /// to tile. Made once, and used by any number of residuals and threads.
@@ -25,22 +48,21 @@ class TiledPsf {
   int tiles_u() const { return tiles_u_; }  ///< of an image of this size
   int tiles_v() const { return tiles_v_; }
 
-  const float* at(int row, int column) const { return &pixel_[index(row, column, columns_)]; }
+  /// Row and column may lie a block's side beyond the PSF, where it is 0.
+  const float* at(int row, int column) const {
+    return pixel_.data() + static_cast<std::ptrdiff_t>(row + margin) * columns_ + column + margin;
+  }
   int columns() const { return columns_; }  ///< from a row of `at` to the next
 
-  /// The largest |PSF| between any pixel of a tile and any of one that lies (rows, columns) of tiles beyond it; those of more
-  /// columns follow. |rows| < tiles_v, |columns| < tiles_u.
-  const float* reach(int rows, int columns) const {
-    return &reach_[index(rows + tiles_v_ - 1, columns + tiles_u_ - 1, 2 * tiles_u_ - 1)];
-  }
+  const Reach& between_tiles() const { return *between_tiles_; }
+  const Reach& between_blocks() const { return *between_blocks_; }
   /// With the PSF; made when it is first asked for.
   const Convolution<float>& convolution() const;
 
  private:
-  static std::size_t index(int row, int column, int columns) {
-    return static_cast<std::size_t>(row) * static_cast<std::size_t>(columns) + static_cast<std::size_t>(column);
-  }
-  void bound_reach();
+  static constexpr int margin = residual_block_side;
+
+  std::vector<float> largest_in_blocks() const;
 
   int width_;
   int height_;
@@ -48,8 +70,9 @@ class TiledPsf {
   int tiles_u_;
   int tiles_v_;
   int columns_;
-  std::vector<float> pixel_;  ///< [row][column of columns_]
-  std::vector<float> reach_;  ///< [rows + tiles_v − 1][columns + tiles_u − 1]
+  BigArray<float> pixel_;  ///< [row + margin][column + margin of columns_]
+  std::unique_ptr<Reach> between_tiles_;
+  std::unique_ptr<Reach> between_blocks_;
   mutable std::once_flag convolution_made_;
   mutable std::unique_ptr<Convolution<float>> convolution_;
 };

@@ -1,6 +1,7 @@
 #include "imager/tiled_residual.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <limits>
 
@@ -10,26 +11,17 @@
 namespace misfit::imager {
 namespace {
 
-constexpr int side = residual_tile_side;
-constexpr std::size_t tile_pixels = std::size_t{side} * side;
+constexpr int side = residual_tile_side, block_side = residual_block_side;
+constexpr std::size_t block_pixels = std::size_t{block_side} * block_side;
+constexpr std::size_t blocks_in_tile = std::size_t{blocks_along_tile} * blocks_along_tile;
 constexpr float nothing = -std::numeric_limits<float>::infinity();
 
-std::size_t at(int row, int column, int columns) {
-  return static_cast<std::size_t>(row) * static_cast<std::size_t>(columns) + static_cast<std::size_t>(column);
-}
-
-/// A span of the PSF's rows or columns as a tile's pixels see them.
-struct Overlap {
-  int first;  ///< pixel of the tile
-  int end;
-  int shift;  ///< of the PSF's pixel against the tile's
-
-  bool whole() const { return first == 0 && end == side; }
-};
-Overlap overlap(int tile, int component, int pixels) {
-  const int shift = tile * side - component + pixels / 2;
-  return {std::max(0, -shift), std::min(side, pixels - shift), shift};
-}
+/// Components after which a block that must be looked at is brought up to date together with others, which takes threads.
+constexpr std::size_t many = 128;
+/// Of the peak: the bound above which blocks are brought up to date together.
+constexpr float soon = 0.85F;
+/// Of a convolution, that take as long as a component's part in a block; measured.
+constexpr std::size_t pixels_a_patch = 3;
 
 }  // namespace
 
@@ -39,195 +31,204 @@ TiledResidual::TiledResidual(const Image& residual, const TiledPsf& psf, int thr
       threads_(threads),
       tiles_u_(psf.tiles_u()),
       tiles_v_(psf.tiles_v()),
-      pixel_(at(tiles_v_, 0, tiles_u_) * tile_pixels, std::numeric_limits<float>::quiet_NaN()),
-      taken_(at(tiles_v_, 0, tiles_u_)),
-      bright_(taken_.size()),
-      rest_bound_(taken_.size()),
-      bound_(taken_.size()),
+      bounded_(static_cast<std::size_t>(tiles_v_) * static_cast<std::size_t>(tiles_u_)),
+      tile_bound_(bounded_.size()),
       row_bound_(static_cast<std::size_t>(tiles_v_)) {
-  load(residual);
-}
-
-float* TiledResidual::tile(std::size_t index) {
-  return pixel_.data() + index * tile_pixels;
-}
-
-/// Takes over an image from which all components have been taken.
-void TiledResidual::load(const Image& image) {
-  parallel_for(static_cast<std::size_t>(tiles_v_), threads_, [&](std::size_t v) {
-    const int first = static_cast<int>(v) * side;
-    for (int r = first; r < std::min(image.height, first + side); ++r)
-      for (int u = 0; u < tiles_u_; ++u)
-        std::copy(image.row(r) + u * side, image.row(r) + std::min(image.width, (u + 1) * side),
-                  tile(at(static_cast<int>(v), u, tiles_u_)) + (r - first) * side);
-    for (int u = 0; u < tiles_u_; ++u) {
-      const std::size_t index = at(static_cast<int>(v), u, tiles_u_);
-      taken_[index] = component_.size();
-      bound_[index] = subtract_and_peak(tile(index), nullptr, 0, 0);
-      choose_bright(index);
+  const std::size_t blocks = bounded_.size() * blocks_in_tile;
+  pixel_.assign(blocks * block_pixels, std::numeric_limits<float>::quiet_NaN());
+  taken_.resize(blocks);
+  block_bound_.resize(blocks);
+  parallel_for(row_bound_.size(), threads_, [&](std::size_t v) {
+    std::vector<float> row(static_cast<std::size_t>(residual.width));
+    for (int r = static_cast<int>(v) * side; r < std::min(residual.height, (static_cast<int>(v) + 1) * side); ++r) {
+      std::copy_n(residual.row(r), residual.width, row.data());
+      load_row(r, row.data());
     }
-    row_bound_[v] = row_bound(v);
+  });
+  settle_all();
+}
+
+TiledResidual::Corner TiledResidual::tile_corner(std::size_t tile) const {
+  const int index = static_cast<int>(tile);
+  return {index / tiles_u_ * side, index % tiles_u_ * side};
+}
+
+TiledResidual::Corner TiledResidual::block_corner(std::size_t block) const {
+  const Corner tile = tile_corner(block / blocks_in_tile);
+  const int index = static_cast<int>(block % blocks_in_tile);
+  return {tile.row + index / blocks_along_tile * block_side, tile.column + index % blocks_along_tile * block_side};
+}
+
+std::size_t TiledResidual::block_at(int row, int column) const {
+  const int tile = row / side * tiles_u_ + column / side;
+  const int block = row % side / block_side * blocks_along_tile + column % side / block_side;
+  return static_cast<std::size_t>(tile) * blocks_in_tile + static_cast<std::size_t>(block);
+}
+
+float* TiledResidual::pixels(std::size_t block) {
+  return pixel_.data() + block * block_pixels;
+}
+
+/// Takes over a row of pixels off which all components have been taken.
+void TiledResidual::load_row(int row, const float* from) {
+  for (int c = 0; c < residual_.width; c += block_side)
+    std::copy(from + c, from + std::min(residual_.width, c + block_side),
+              pixels(block_at(row, c)) + row % block_side * block_side);
+}
+
+/// Off all blocks all components have been taken.
+void TiledResidual::settle_all() {
+  spent_ = 0;
+  const auto tiles_u = static_cast<std::size_t>(tiles_u_);
+  parallel_for(row_bound_.size(), threads_, [&](std::size_t v) {
+    for (std::size_t tile = v * tiles_u; tile < (v + 1) * tiles_u; ++tile) {
+      for (std::size_t block = tile * blocks_in_tile; block < (tile + 1) * blocks_in_tile; ++block) {
+        taken_[block] = component_.size();
+        block_bound_[block] = largest_magnitude(pixels(block));
+      }
+      bounded_[tile] = component_.size();
+      settle(tile);
+    }
+    settle_row(v);
   });
 }
 
-float TiledResidual::row_bound(std::size_t tile_row) const {
-  const auto begin = bound_.begin() + static_cast<std::ptrdiff_t>(tile_row) * tiles_u_;
-  return *std::max_element(begin, begin + tiles_u_);
+void TiledResidual::settle(std::size_t tile) {
+  const float* const begin = &block_bound_[tile * blocks_in_tile];
+  tile_bound_[tile] = *std::max_element(begin, begin + blocks_in_tile);
+}
+
+void TiledResidual::settle_row(std::size_t tile_row) {
+  const float* const begin = &tile_bound_[tile_row * static_cast<std::size_t>(tiles_u_)];
+  row_bound_[tile_row] = *std::max_element(begin, begin + tiles_u_);
 }
 
 void TiledResidual::subtract(int row, int column, float factor) {
-  component_.push_back({row, column, factor});
+  component_.add({row, column, factor});
   const int tile_v = row / side, tile_u = column / side;
-  for (int v = 0; v < tiles_v_; ++v) {
-    const float* const reach = psf_.reach(v - tile_v, -tile_u);
-    const std::size_t first = at(v, 0, tiles_u_);
-    raise_bounds(&rest_bound_[first], reach, tiles_u_, std::abs(factor));
-    row_bound_[static_cast<std::size_t>(v)] = raise_bounds(&bound_[first], reach, tiles_u_, std::abs(factor));
-  }
+  float* bound = tile_bound_.data();
+  for (int v = 0; v < tiles_v_; ++v, bound += tiles_u_)
+    row_bound_[static_cast<std::size_t>(v)] =
+        raise_bounds(bound, psf_.between_tiles()(v - tile_v, -tile_u), tiles_u_, std::abs(factor));
 }
 
 Peak TiledResidual::peak() {
-  while (refresh_tiles_at_peak()) {
-  }
-  const float value = *std::max_element(row_bound_.begin(), row_bound_.end());
-  if (value == nothing) return {};
+  float highest = nothing;
+  do highest = *std::max_element(row_bound_.begin(), row_bound_.end());
+  while (highest != nothing && refresh_tiles_at(highest));
+  return highest == nothing ? Peak{} : first_peak(tiles_above(highest), highest);
+}
+
+Peak TiledResidual::first_peak(const std::vector<std::size_t>& tiles, float magnitude) {
   Peak first{residual_.height, 0, 0};
-  for (int v = 0; v < tiles_v_; ++v) {
-    if (row_bound_[static_cast<std::size_t>(v)] != value) continue;
-    for (int u = 0; u < tiles_u_; ++u) {
-      const std::size_t index = at(v, u, tiles_u_);
-      if (bound_[index] != value) continue;
-      const Bright& bright = bright_[index];
-      const auto is_peak = [value](float x) { return std::abs(x) == value; };
-      const auto found = std::find_if(bright.value.begin(), bright.value.end(), is_peak) - bright.value.begin();
-      const int place = bright.place[static_cast<std::size_t>(found)];
-      const int row = v * side + place / side;
-      if (row < first.row) first = {row, u * side + place % side, double{bright.value[static_cast<std::size_t>(found)]}};
+  for (const std::size_t tile : tiles)
+    for (std::size_t block = tile * blocks_in_tile; block < (tile + 1) * blocks_in_tile; ++block) {
+      if (block_bound_[block] != magnitude) continue;
+      const Corner corner = block_corner(block);
+      for (int i = 0; i < static_cast<int>(block_pixels); ++i) {
+        const float value = pixels(block)[i];
+        const int row = corner.row + i / block_side, column = corner.column + i % block_side;
+        const bool earlier = row < first.row || (row == first.row && column < first.column);
+        if (std::abs(value) == magnitude && earlier) first = {row, column, double{value}};
+      }
     }
-    return first;  // other rows of tiles lie below
-  }
   return first;
 }
 
-bool TiledResidual::certain(std::size_t index) const {
-  return bound_[index] == nothing || (bright_[index].taken == component_.size() && bound_[index] == bright_[index].peak);
+/// Those of at least that bound.
+std::vector<std::size_t> TiledResidual::tiles_above(float bound) const {
+  std::vector<std::size_t> tiles;
+  const auto tiles_u = static_cast<std::size_t>(tiles_u_);
+  for (std::size_t v = 0; v < row_bound_.size(); ++v) {
+    if (row_bound_[v] < bound) continue;
+    for (std::size_t tile = v * tiles_u; tile < (v + 1) * tiles_u; ++tile)
+      if (tile_bound_[tile] >= bound) tiles.push_back(tile);
+  }
+  return tiles;
 }
 
-/// Looks at the tiles that might hold the peak. Returns whether there were any that had to be looked at.
-bool TiledResidual::refresh_tiles_at_peak() {
-  const float highest = *std::max_element(row_bound_.begin(), row_bound_.end());
+/// Looks at the tiles of the highest bound. Returns whether there were any that had to be looked at.
+bool TiledResidual::refresh_tiles_at(float highest) {
   bool any = false;
-  for (std::size_t v = 0; v < row_bound_.size(); ++v) {
-    if (row_bound_[v] != highest) continue;
-    for (std::size_t i = v * static_cast<std::size_t>(tiles_u_); i < (v + 1) * static_cast<std::size_t>(tiles_u_); ++i) {
-      if (bound_[i] != highest || certain(i)) continue;
+  for (const std::size_t tile : tiles_above(highest)) {
+    if (bounded_[tile] < component_.size()) {
       any = true;
-      if (bright_[i].taken < component_.size()) {
-        refresh_bright(i);
-        continue;
-      }
-      if (convolution_is_cheaper(highest)) {
-        refresh_all();
+      bound_blocks(tile);
+    }
+    for (std::size_t block = tile * blocks_in_tile; block < (tile + 1) * blocks_in_tile; ++block) {
+      if (block_bound_[block] < highest || taken_[block] == component_.size()) continue;
+      any = true;
+      if (component_.size() - taken_[block] > many) {
+        refresh_together(soon * highest);
         return true;
       }
-      refresh(i);
+      spent_ += outstanding(block);
+      refresh(block);
     }
-    row_bound_[v] = row_bound(v);
+    settle(tile);
+    settle_row(tile / static_cast<std::size_t>(tiles_u_));
   }
   return any;
 }
 
-/// Whether one convolution costs less than to take components, one by one, off the tiles that must be looked at soon.
-bool TiledResidual::convolution_is_cheaper(float highest) const {
-  constexpr float soon = 0.6F;
-  constexpr double pixels_a_patch = 5;  // of a convolution, that take as long as a component's part in a tile; measured
-  double patches = 0;
-  for (std::size_t i = 0; i < bound_.size(); ++i)
-    if (rest_bound_[i] >= soon * highest) patches += static_cast<double>(component_.size() - taken_[i]);
-  return patches * pixels_a_patch > static_cast<double>(residual_.pixel.size());
+void TiledResidual::bound_blocks(std::size_t tile) {
+  const Corner corner = tile_corner(tile);
+  for (const auto& piece : component_.since(bounded_[tile]))
+    raise_block_bounds(psf_.between_blocks(), piece, corner.row, corner.column, &block_bound_[tile * blocks_in_tile]);
+  bounded_[tile] = component_.size();
+}
+
+std::size_t TiledResidual::outstanding(std::size_t block) const {
+  std::size_t components = 0;
+  for (const auto& piece : component_.since(taken_[block])) components += piece.size();
+  return components;
+}
+
+void TiledResidual::refresh(std::size_t block) {
+  const Corner corner = block_corner(block);
+  for (const auto& piece : component_.since(taken_[block]))
+    imager::subtract(psf_, piece, corner.row, corner.column, pixels(block));
+  taken_[block] = component_.size();
+  block_bound_[block] = largest_magnitude(pixels(block));
+}
+
+/// Brings blocks that could be as bright as that up to date, or all where that is cheaper in the long run: convolutions and
+/// what is done between them then cost the same, and together no more than twice the least.
+void TiledResidual::refresh_together(float level) {
+  const std::vector<std::size_t> tiles = tiles_above(level);
+  const auto for_blocks = [&](const auto& prepare, const auto& body) {
+    constexpr std::size_t together = 8;  // tiles, which takes longer than to share them among threads
+    parallel_for((tiles.size() + together - 1) / together, threads_, [&](std::size_t i) {
+      for (std::size_t k = i * together; k < std::min(tiles.size(), (i + 1) * together); ++k) {
+        prepare(tiles[k]);
+        for (std::size_t block = tiles[k] * blocks_in_tile; block < (tiles[k] + 1) * blocks_in_tile; ++block)
+          if (block_bound_[block] >= level && taken_[block] < component_.size()) body(block);
+        settle(tiles[k]);
+      }
+    });
+  };
+  std::atomic<std::size_t> patches{0};
+  for_blocks([&](std::size_t tile) { bound_blocks(tile); }, [&](std::size_t block) { patches += outstanding(block); });
+  spent_ += patches;
+  if (spent_ * pixels_a_patch > residual_.pixel.size()) return refresh_all();
+  for_blocks([](std::size_t) {}, [&](std::size_t block) { refresh(block); });
+  for (std::size_t v = 0; v < row_bound_.size(); ++v) settle_row(v);
 }
 
 void TiledResidual::refresh_all() {
-  Image taken(residual_.width, residual_.height);
-  for (const Component& c : component_) taken.at(c.row, c.column) += double{c.factor};
-  Image left = psf_.convolution()(taken);
-  for (std::size_t i = 0; i < left.pixel.size(); ++i) left.pixel[i] = residual_.pixel[i] - left.pixel[i];
-  load(left);
-}
-
-void TiledResidual::refresh(std::size_t index) {
-  const int tile_v = static_cast<int>(index) / tiles_u_, tile_u = static_cast<int>(index) % tiles_u_;
-  std::vector<PsfPatch> patches;
-  for (std::size_t k = taken_[index]; k < component_.size(); ++k) {
-    const Component& component = component_[k];
-    const Overlap rows = overlap(tile_v, component.row, residual_.height);
-    const Overlap columns = overlap(tile_u, component.column, residual_.width);
-    if (rows.first >= rows.end || columns.first >= columns.end) continue;
-    patches.push_back({psf_.at(rows.first + rows.shift, columns.first + columns.shift), component.factor, rows.first, rows.end,
-                       columns.first, columns.end});
-  }
-  taken_[index] = component_.size();
-  bound_[index] = subtract_and_peak(tile(index), patches.data(), patches.size(), psf_.columns());
-  choose_bright(index);
-}
-
-/// The pixels of a tile above some part of its peak, where these are so few that to look at them alone takes less time.
-void TiledResidual::choose_bright(std::size_t index) {
-  constexpr float part = 0.8F;
-  constexpr std::size_t most = 64;
-  const float* const pixel = tile(index);
-  const float peak = bound_[index];
-  Bright& bright = bright_[index];
-  bright.place.clear();
-  bright.value.clear();
-  bright.taken = component_.size();
-  bright.peak = peak;
-  rest_bound_[index] = nothing;
-  if (peak == nothing) return;
-  float level = part * peak;
-  for (;;) {
-    float rest = nothing;
-    for (std::size_t i = 0; i < tile_pixels; ++i) {
-      const float magnitude = std::abs(pixel[i]);
-      if (magnitude >= level && bright.place.size() < most + 1) {
-        bright.place.push_back(static_cast<int>(i));
-        bright.value.push_back(pixel[i]);
-      } else if (magnitude > rest) {
-        rest = magnitude;
-      }
-    }
-    rest_bound_[index] = rest;
-    if (bright.place.size() <= most || level == peak) break;
-    level = peak;  // too many: the brightest alone
-    bright.place.clear();
-    bright.value.clear();
-  }
-  bright.offset.clear();
-  for (const int place : bright.place) bright.offset.push_back(place / side * psf_.columns() + place % side);
-}
-
-void TiledResidual::refresh_bright(std::size_t index) {
-  Bright& bright = bright_[index];
-  const int tile_v = static_cast<int>(index) / tiles_u_, tile_u = static_cast<int>(index) % tiles_u_;
-  for (; bright.taken < component_.size(); ++bright.taken) {
-    const Component& component = component_[bright.taken];
-    const Overlap rows = overlap(tile_v, component.row, residual_.height);
-    const Overlap columns = overlap(tile_u, component.column, residual_.width);
-    if (rows.first >= rows.end || columns.first >= columns.end) continue;
-    if (rows.whole() && columns.whole()) {
-      subtract_at(psf_.at(rows.shift, columns.shift), component.factor, bright.offset.data(), bright.offset.size(),
-                  bright.value.data());
-      continue;
-    }
-    for (std::size_t i = 0; i < bright.place.size(); ++i) {
-      const int r = bright.place[i] / side, c = bright.place[i] % side;
-      if (r >= rows.first && r < rows.end && c >= columns.first && c < columns.end)
-        bright.value[i] = std::fma(-component.factor, *psf_.at(r + rows.shift, c + columns.shift), bright.value[i]);
-    }
-  }
-  bright.peak = nothing;
-  for (const float value : bright.value) bright.peak = std::max(bright.peak, std::abs(value));
-  bound_[index] = std::max(bright.peak, rest_bound_[index]);
+  std::vector<std::vector<Component>> in_row(static_cast<std::size_t>(residual_.height));
+  for (const auto& piece : component_.since(0))
+    for (const Component& component : piece) in_row[static_cast<std::size_t>(component.row)].push_back(component);
+  const auto read = [&](int row, float* pixels) {
+    for (const Component& component : in_row[static_cast<std::size_t>(row)]) pixels[component.column] += component.factor;
+  };
+  const auto write = [&](int row, float* pixels) {
+    std::transform(residual_.row(row), residual_.row(row) + residual_.width, pixels, pixels,
+                   [](double all, float taken) { return static_cast<float>(all - double{taken}); });
+    load_row(row, pixels);
+  };
+  psf_.convolution()(read, write);
+  settle_all();
 }
 
 }  // namespace misfit::imager

@@ -15,47 +15,48 @@ namespace misfit::imager::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
 using Tag = hn::CappedTag<float, 16>;
-constexpr int side = residual_tile_side;
+constexpr int side = residual_block_side;
 
-/// The larger of peak and |value|; peak where value is NaN: given one, hn::Max takes the second argument on x86 and the number
-/// on Arm.
-template <typename V>
-HWY_ATTR V larger(V peak, V value) {
-  return hn::Max(hn::Abs(value), peak);
-}
-
-HWY_ATTR void subtract_part(float* tile, const PsfPatch& patch, std::ptrdiff_t psf_columns) {
-  const float* psf = patch.psf;
-  for (int r = patch.first_row; r < patch.end_row; ++r, psf += psf_columns)
-    for (int c = patch.first_column; c < patch.end_column; ++c) {
-      float& residual = tile[r * side + c];
-      residual = __builtin_fmaf(-patch.factor, psf[c - patch.first_column], residual);
+/// Eight rows, or the half of them that vectors of four hold, stay in registers while all components are taken off.
+HWY_ATTR void subtract_from_block(const TiledPsf& psf, std::span<const Component> components, int row, int column,
+                                  float* block) {
+  static_assert(side == 8);
+  const hn::CappedTag<float, side> d;
+  const std::ptrdiff_t next = psf.columns();
+  const int middle_row = row + psf.height() / 2, middle_column = column + psf.width() / 2;
+  const auto rows = static_cast<unsigned>(psf.height() + side - 1), columns = static_cast<unsigned>(psf.width() + side - 1);
+  for (int c = 0; c < side; c += static_cast<int>(hn::Lanes(d))) {
+    float* const b = block + c;
+    auto r0 = hn::LoadU(d, b), r1 = hn::LoadU(d, b + side), r2 = hn::LoadU(d, b + 2 * side), r3 = hn::LoadU(d, b + 3 * side);
+    auto r4 = hn::LoadU(d, b + 4 * side), r5 = hn::LoadU(d, b + 5 * side), r6 = hn::LoadU(d, b + 6 * side),
+         r7 = hn::LoadU(d, b + 7 * side);
+    for (const Component& component : components) {
+      const int psf_row = middle_row - component.row, psf_column = middle_column - component.column;
+      if (static_cast<unsigned>(psf_row + side - 1) >= rows || static_cast<unsigned>(psf_column + side - 1) >= columns)
+        continue;  // the PSF does not reach that far
+      const float* const p = psf.at(psf_row, psf_column) + c;
+      const auto factor = hn::Set(d, component.factor);
+      r0 = hn::NegMulAdd(factor, hn::LoadU(d, p), r0);
+      r1 = hn::NegMulAdd(factor, hn::LoadU(d, p + next), r1);
+      r2 = hn::NegMulAdd(factor, hn::LoadU(d, p + 2 * next), r2);
+      r3 = hn::NegMulAdd(factor, hn::LoadU(d, p + 3 * next), r3);
+      r4 = hn::NegMulAdd(factor, hn::LoadU(d, p + 4 * next), r4);
+      r5 = hn::NegMulAdd(factor, hn::LoadU(d, p + 5 * next), r5);
+      r6 = hn::NegMulAdd(factor, hn::LoadU(d, p + 6 * next), r6);
+      r7 = hn::NegMulAdd(factor, hn::LoadU(d, p + 7 * next), r7);
     }
-}
-
-HWY_ATTR void subtract_whole(float* tile, const PsfPatch& patch, std::ptrdiff_t psf_columns) {
-  const Tag d;
-  constexpr int lanes = static_cast<int>(hn::MaxLanes(d));
-  const auto factor = hn::Set(d, patch.factor);
-  const float* psf = patch.psf;
-  for (int r = 0; r < side; ++r, tile += side, psf += psf_columns)
-    for (int c = 0; c < side; c += lanes)
-      hn::StoreU(hn::NegMulAdd(factor, hn::LoadU(d, psf + c), hn::LoadU(d, tile + c)), d, tile + c);
-}
-
-HWY_ATTR float subtract_and_peak_of_tile(float* tile, const PsfPatch* patches, std::size_t count, std::ptrdiff_t psf_columns) {
-  for (const PsfPatch* patch = patches; patch < patches + count; ++patch) {
-    const bool whole = patch->end_row - patch->first_row == side && patch->end_column - patch->first_column == side;
-    (whole ? subtract_whole : subtract_part)(tile, *patch, psf_columns);
+    hn::StoreU(r0, d, b), hn::StoreU(r1, d, b + side), hn::StoreU(r2, d, b + 2 * side), hn::StoreU(r3, d, b + 3 * side);
+    hn::StoreU(r4, d, b + 4 * side), hn::StoreU(r5, d, b + 5 * side), hn::StoreU(r6, d, b + 6 * side),
+        hn::StoreU(r7, d, b + 7 * side);
   }
+}
+
+/// hn::Max of a number and NaN is its second argument on x86 and the number on Arm.
+HWY_ATTR float largest_magnitude_of_block(const float* block) {
   const Tag d;
   auto peak = hn::Set(d, -std::numeric_limits<float>::infinity());
-  for (int i = 0; i < side * side; i += static_cast<int>(hn::Lanes(d))) peak = larger(peak, hn::LoadU(d, tile + i));
+  for (int i = 0; i < side * side; i += static_cast<int>(hn::Lanes(d))) peak = hn::Max(hn::Abs(hn::LoadU(d, block + i)), peak);
   return hn::GetLane(hn::MaxOfLanes(d, peak));
-}
-
-HWY_ATTR void subtract_at_places(const float* psf, float factor, const int* offset, std::size_t count, float* value) {
-  for (std::size_t i = 0; i < count; ++i) value[i] = __builtin_fmaf(-factor, psf[offset[i]], value[i]);
 }
 
 HWY_ATTR float raise_bounds_of_row(float* bound, const float* reach, int count, float amount) {
@@ -78,26 +79,54 @@ HWY_ATTR float raise_bounds_of_row(float* bound, const float* reach, int count, 
   return largest;
 }
 
+HWY_ATTR void raise_bounds_of_blocks(const Reach& reach, std::span<const Component> components, int row, int column,
+                                     float* bound) {
+  static_assert(blocks_along_tile == 4);
+  const hn::CappedTag<float, blocks_along_tile> d;
+  const std::size_t next = reach.stride();
+  for (std::size_t c = 0; c < blocks_along_tile; c += hn::Lanes(d)) {
+    float* const b = bound + c;
+    auto r0 = hn::LoadU(d, b), r1 = hn::LoadU(d, b + 4), r2 = hn::LoadU(d, b + 8), r3 = hn::LoadU(d, b + 12);
+    for (const Component& component : components) {
+      const float* const from = reach(row / side - component.row / side, column / side - component.column / side) + c;
+      const auto amount = hn::Set(d, std::abs(component.factor));
+      r0 = hn::MulAdd(amount, hn::LoadU(d, from), r0);
+      r1 = hn::MulAdd(amount, hn::LoadU(d, from + next), r1);
+      r2 = hn::MulAdd(amount, hn::LoadU(d, from + 2 * next), r2);
+      r3 = hn::MulAdd(amount, hn::LoadU(d, from + 3 * next), r3);
+    }
+    // Each sum rounds by half an epsilon.
+    const auto up = hn::Set(d, 1 + static_cast<float>(components.size()) * std::numeric_limits<float>::epsilon());
+    hn::StoreU(hn::Mul(r0, up), d, b), hn::StoreU(hn::Mul(r1, up), d, b + 4);
+    hn::StoreU(hn::Mul(r2, up), d, b + 8), hn::StoreU(hn::Mul(r3, up), d, b + 12);
+  }
+}
+
 }  // namespace misfit::imager::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
 namespace misfit::imager {
 
-HWY_EXPORT(subtract_and_peak_of_tile);
-HWY_EXPORT(subtract_at_places);
+HWY_EXPORT(subtract_from_block);
+HWY_EXPORT(largest_magnitude_of_block);
 HWY_EXPORT(raise_bounds_of_row);
+HWY_EXPORT(raise_bounds_of_blocks);
 
-float subtract_and_peak(float* tile, const PsfPatch* patches, std::size_t count, std::ptrdiff_t psf_columns) {
-  return HWY_DYNAMIC_DISPATCH(subtract_and_peak_of_tile)(tile, patches, count, psf_columns);
+void subtract(const TiledPsf& psf, std::span<const Component> components, int row, int column, float* block) {
+  HWY_DYNAMIC_DISPATCH(subtract_from_block)(psf, components, row, column, block);
 }
 
-void subtract_at(const float* psf, float factor, const int* offset, std::size_t count, float* value) {
-  HWY_DYNAMIC_DISPATCH(subtract_at_places)(psf, factor, offset, count, value);
+float largest_magnitude(const float* block) {
+  return HWY_DYNAMIC_DISPATCH(largest_magnitude_of_block)(block);
 }
 
 float raise_bounds(float* bound, const float* reach, int count, float amount) {
   return HWY_DYNAMIC_DISPATCH(raise_bounds_of_row)(bound, reach, count, amount);
+}
+
+void raise_block_bounds(const Reach& reach, std::span<const Component> components, int row, int column, float* bound) {
+  HWY_DYNAMIC_DISPATCH(raise_bounds_of_blocks)(reach, components, row, column, bound);
 }
 
 }  // namespace misfit::imager

@@ -1,29 +1,23 @@
 #pragma once
 
 #include <cstddef>
+#include <span>
 
+#include "imager/component_log.h"
 #include "imager/tiled_psf.h"
 
 namespace misfit::imager {
 
-/// The part of factor × PSF that falls on rows [first_row, end_row) and columns [first_column, end_column) of a tile.
-struct PsfPatch {
-  const float* psf;  ///< at the first row and column
-  float factor;
-  int first_row;
-  int end_row;
-  int first_column;
-  int end_column;
-};
+/// Takes components off a block of pixels [row][column] whose first lies at (row, column) of the image.
+void subtract(const TiledPsf& psf, std::span<const Component> components, int row, int column, float* block);
 
-/// Takes patches of a PSF, whose rows lie `psf_columns` apart, off a tile one after the other. Returns the largest magnitude
-/// that is left; −∞ where all pixels are NaN.
-float subtract_and_peak(float* tile, const PsfPatch* patches, std::size_t count, std::ptrdiff_t psf_columns);
-
-/// value[i] −= factor · psf[offset[i]] for i in [0, count).
-void subtract_at(const float* psf, float factor, const int* offset, std::size_t count, float* value);
+/// The largest magnitude of a block's pixels; −∞ where all are NaN.
+float largest_magnitude(const float* block);
 
 /// bound[i] += amount · reach[i] for i in [0, count), rounded upwards; returns the largest bound. None of them is NaN.
 float raise_bounds(float* bound, const float* reach, int count, float amount);
+
+/// The same for the blocks [row][column] of the tile whose first pixel lies at (row, column) of the image, and components.
+void raise_block_bounds(const Reach& reach, std::span<const Component> components, int row, int column, float* bound);
 
 }  // namespace misfit::imager

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+namespace misfit::imager {
+
+/// What is taken off a residual: factor × PSF centred on a pixel.
+struct Component {
+  int row;
+  int column;
+  float factor;
+};
+
+/// Components in the order in which they were found. CLEAN finds those of a bright pixel again and again; from here they are
+/// had merged: pieces of the log hold every pixel once, and pieces of twice the length are merged from two, so that merging
+/// costs a component no more than the logarithm of their number.
+class ComponentLog {
+ public:
+  void add(const Component& component);
+  std::size_t size() const { return component_.size(); }
+
+  /// All components from the `first` on, in few pieces. Each holds a pixel once, and its pixels tile by tile. Valid until the
+  /// next is added.
+  using Pieces = std::vector<std::span<const Component>>;
+  Pieces since(std::size_t first) const;
+
+ private:
+  std::vector<Component> component_;
+  std::vector<std::vector<std::vector<Component>>> merged_;  ///< [level][piece] of shortest · 2^level components
+};
+
+}  // namespace misfit::imager
