@@ -42,12 +42,12 @@ Stamp make_stamp(const Beam& beam, double cell_rad, const Image& model) {
   return stamp;
 }
 
-struct Component {
+struct RowComponent {
   int column = 0;
   double flux_jy = 0;
 };
 
-using ComponentRows = std::vector<std::vector<Component>>;
+using ComponentRows = std::vector<std::vector<RowComponent>>;
 
 ComponentRows components_of(const Image& model) {
   ComponentRows rows(static_cast<std::size_t>(model.height));

@@ -7,7 +7,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "imager/mask.h"
+#include "imager/clean/mask.h"
 #include "tools/clean_state_file.h"
 #include "tools/interrupt.h"
 #include "tools/mask_file.h"

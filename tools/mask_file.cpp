@@ -7,8 +7,8 @@
 #include <string_view>
 #include <vector>
 
+#include "imager/clean/mask.h"
 #include "imager/fits_image.h"
-#include "imager/mask.h"
 #include "tools/files.h"
 #include "tools/quantity.h"
 #include "tools/text.h"

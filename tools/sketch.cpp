@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "imager/mask.h"
+#include "imager/clean/mask.h"
 
 namespace misfit::tools {
 namespace {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "imager/clean/gaussian_blur.h"
-#include "imager/mask.h"
+#include "imager/clean/mask.h"
 #include "imager/noise.h"
 
 namespace misfit::imager {

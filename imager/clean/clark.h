@@ -2,9 +2,9 @@
 
 #include <vector>
 
+#include "imager/clean/convolution.h"
 #include "imager/clean/minor_cycle.h"
 #include "imager/clean/psf_core.h"
-#include "imager/convolution.h"
 
 namespace misfit::imager {
 

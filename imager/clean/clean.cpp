@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "imager/big_array.h"
-#include "imager/mask.h"
+#include "imager/clean/mask.h"
 #include "imager/noise.h"
 
 namespace misfit::imager {

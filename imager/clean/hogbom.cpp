@@ -2,8 +2,8 @@
 
 #include <cmath>
 
-#include "imager/mask.h"
-#include "imager/tiled_residual.h"
+#include "imager/clean/mask.h"
+#include "imager/clean/tiled_residual.h"
 
 namespace misfit::imager {
 

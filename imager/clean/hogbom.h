@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "imager/clean/minor_cycle.h"
-#include "imager/tiled_psf.h"
+#include "imager/clean/tiled_psf.h"
 
 namespace misfit::imager {
 

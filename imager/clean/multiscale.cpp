@@ -10,7 +10,7 @@
 #include "imager/clean/active_pixels.h"
 #include "imager/clean/components.h"
 #include "imager/clean/gaussian_blur.h"
-#include "imager/mask.h"
+#include "imager/clean/mask.h"
 #include "imager/noise.h"
 
 namespace misfit::imager {

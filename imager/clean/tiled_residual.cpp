@@ -1,12 +1,12 @@
-#include "imager/tiled_residual.h"
+#include "imager/clean/tiled_residual.h"
 
 #include <algorithm>
 #include <atomic>
 #include <cmath>
 #include <limits>
 
+#include "imager/clean/tiled_residual_loops.h"
 #include "imager/parallel.h"
-#include "imager/tiled_residual_loops.h"
 
 namespace misfit::imager {
 namespace {
@@ -216,11 +216,11 @@ void TiledResidual::refresh_together(float level) {
 }
 
 void TiledResidual::refresh_all() {
-  std::vector<std::vector<Component>> in_row(static_cast<std::size_t>(residual_.height));
+  std::vector<std::vector<PointComponent>> in_row(static_cast<std::size_t>(residual_.height));
   for (const auto& piece : component_.since(0))
-    for (const Component& component : piece) in_row[static_cast<std::size_t>(component.row)].push_back(component);
+    for (const PointComponent& component : piece) in_row[static_cast<std::size_t>(component.row)].push_back(component);
   const auto read = [&](int row, float* pixels) {
-    for (const Component& component : in_row[static_cast<std::size_t>(row)]) pixels[component.column] += component.factor;
+    for (const PointComponent& component : in_row[static_cast<std::size_t>(row)]) pixels[component.column] += component.factor;
   };
   const auto write = [&](int row, float* pixels) {
     std::transform(residual_.row(row), residual_.row(row) + residual_.width, pixels, pixels,

@@ -3,13 +3,13 @@
 #include <cstddef>
 #include <span>
 
-#include "imager/component_log.h"
-#include "imager/tiled_psf.h"
+#include "imager/clean/component_log.h"
+#include "imager/clean/tiled_psf.h"
 
 namespace misfit::imager {
 
 /// Takes components off a block of pixels [row][column] whose first lies at (row, column) of the image.
-void subtract(const TiledPsf& psf, std::span<const Component> components, int row, int column, float* block);
+void subtract(const TiledPsf& psf, std::span<const PointComponent> components, int row, int column, float* block);
 
 /// The largest magnitude of a block's pixels; −∞ where all are NaN.
 float largest_magnitude(const float* block);
@@ -18,6 +18,6 @@ float largest_magnitude(const float* block);
 float raise_bounds(float* bound, const float* reach, int count, float amount);
 
 /// The same for the blocks [row][column] of the tile whose first pixel lies at (row, column) of the image, and components.
-void raise_block_bounds(const Reach& reach, std::span<const Component> components, int row, int column, float* bound);
+void raise_block_bounds(const Reach& reach, std::span<const PointComponent> components, int row, int column, float* bound);
 
 }  // namespace misfit::imager

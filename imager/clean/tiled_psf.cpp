@@ -1,4 +1,4 @@
-#include "imager/tiled_psf.h"
+#include "imager/clean/tiled_psf.h"
 
 #include <algorithm>
 #include <cmath>

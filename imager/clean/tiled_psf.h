@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "imager/big_array.h"
-#include "imager/convolution.h"
+#include "imager/clean/convolution.h"
 #include "imager/image.h"
 
 namespace misfit::imager {

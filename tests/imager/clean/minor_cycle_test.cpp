@@ -4,8 +4,8 @@
 #include <boost/test/unit_test.hpp>
 #include <limits>
 
+#include "imager/clean/convolution.h"
 #include "imager/clean/deconvolver.h"
-#include "imager/convolution.h"
 #include "imager/noise.h"
 #include "tests/imager/comparison.h"
 

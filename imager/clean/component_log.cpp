@@ -1,9 +1,9 @@
-#include "imager/component_log.h"
+#include "imager/clean/component_log.h"
 
 #include <algorithm>
 #include <tuple>
 
-#include "imager/tiled_psf.h"
+#include "imager/clean/tiled_psf.h"
 
 namespace misfit::imager {
 namespace {
@@ -11,13 +11,13 @@ namespace {
 constexpr std::size_t shortest = 16;  ///< components of the shortest piece that is merged
 
 /// In the order of tiles: what lies close together finds its part of the PSF in a cache.
-auto place(const Component& c) {
+auto place(const PointComponent& c) {
   constexpr int side = residual_tile_side;
   return std::tuple(c.row / side, c.column / side, c.row, c.column);
 }
 
 /// Replaces components of one pixel, which are neighbours, by their sum.
-void sum_neighbours(std::vector<Component>& sorted) {
+void sum_neighbours(std::vector<PointComponent>& sorted) {
   std::size_t kept = 0;
   for (std::size_t i = 1; i < sorted.size(); ++i) {
     if (place(sorted[i]) == place(sorted[kept]))
@@ -30,11 +30,11 @@ void sum_neighbours(std::vector<Component>& sorted) {
 
 }  // namespace
 
-void ComponentLog::add(const Component& component) {
+void ComponentLog::add(const PointComponent& component) {
   component_.push_back(component);
   if (size() % shortest != 0) return;
-  const auto before = [](const Component& a, const Component& b) { return place(a) < place(b); };
-  std::vector<Component> piece(component_.end() - shortest, component_.end());
+  const auto before = [](const PointComponent& a, const PointComponent& b) { return place(a) < place(b); };
+  std::vector<PointComponent> piece(component_.end() - shortest, component_.end());
   std::stable_sort(piece.begin(), piece.end(), before);
   sum_neighbours(piece);
   for (std::size_t level = 0;; ++level) {

@@ -1,7 +1,7 @@
-#include "imager/tiled_residual_loops.h"
+#include "imager/clean/tiled_residual_loops.h"
 
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "imager/tiled_residual_loops.cpp"
+#define HWY_TARGET_INCLUDE "imager/clean/tiled_residual_loops.cpp"
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
@@ -18,7 +18,7 @@ using Tag = hn::CappedTag<float, 16>;
 constexpr int side = residual_block_side;
 
 /// Eight rows, or the half of them that vectors of four hold, stay in registers while all components are taken off.
-HWY_ATTR void subtract_from_block(const TiledPsf& psf, std::span<const Component> components, int row, int column,
+HWY_ATTR void subtract_from_block(const TiledPsf& psf, std::span<const PointComponent> components, int row, int column,
                                   float* block) {
   static_assert(side == 8);
   const hn::CappedTag<float, side> d;
@@ -30,7 +30,7 @@ HWY_ATTR void subtract_from_block(const TiledPsf& psf, std::span<const Component
     auto r0 = hn::LoadU(d, b), r1 = hn::LoadU(d, b + side), r2 = hn::LoadU(d, b + 2 * side), r3 = hn::LoadU(d, b + 3 * side);
     auto r4 = hn::LoadU(d, b + 4 * side), r5 = hn::LoadU(d, b + 5 * side), r6 = hn::LoadU(d, b + 6 * side),
          r7 = hn::LoadU(d, b + 7 * side);
-    for (const Component& component : components) {
+    for (const PointComponent& component : components) {
       const int psf_row = middle_row - component.row, psf_column = middle_column - component.column;
       if (static_cast<unsigned>(psf_row + side - 1) >= rows || static_cast<unsigned>(psf_column + side - 1) >= columns)
         continue;  // the PSF does not reach that far
@@ -79,7 +79,7 @@ HWY_ATTR float raise_bounds_of_row(float* bound, const float* reach, int count, 
   return largest;
 }
 
-HWY_ATTR void raise_bounds_of_blocks(const Reach& reach, std::span<const Component> components, int row, int column,
+HWY_ATTR void raise_bounds_of_blocks(const Reach& reach, std::span<const PointComponent> components, int row, int column,
                                      float* bound) {
   static_assert(blocks_along_tile == 4);
   const hn::CappedTag<float, blocks_along_tile> d;
@@ -87,7 +87,7 @@ HWY_ATTR void raise_bounds_of_blocks(const Reach& reach, std::span<const Compone
   for (std::size_t c = 0; c < blocks_along_tile; c += hn::Lanes(d)) {
     float* const b = bound + c;
     auto r0 = hn::LoadU(d, b), r1 = hn::LoadU(d, b + 4), r2 = hn::LoadU(d, b + 8), r3 = hn::LoadU(d, b + 12);
-    for (const Component& component : components) {
+    for (const PointComponent& component : components) {
       const float* const from = reach(row / side - component.row / side, column / side - component.column / side) + c;
       const auto amount = hn::Set(d, std::abs(component.factor));
       r0 = hn::MulAdd(amount, hn::LoadU(d, from), r0);
@@ -113,7 +113,7 @@ HWY_EXPORT(largest_magnitude_of_block);
 HWY_EXPORT(raise_bounds_of_row);
 HWY_EXPORT(raise_bounds_of_blocks);
 
-void subtract(const TiledPsf& psf, std::span<const Component> components, int row, int column, float* block) {
+void subtract(const TiledPsf& psf, std::span<const PointComponent> components, int row, int column, float* block) {
   HWY_DYNAMIC_DISPATCH(subtract_from_block)(psf, components, row, column, block);
 }
 
@@ -125,7 +125,7 @@ float raise_bounds(float* bound, const float* reach, int count, float amount) {
   return HWY_DYNAMIC_DISPATCH(raise_bounds_of_row)(bound, reach, count, amount);
 }
 
-void raise_block_bounds(const Reach& reach, std::span<const Component> components, int row, int column, float* bound) {
+void raise_block_bounds(const Reach& reach, std::span<const PointComponent> components, int row, int column, float* bound) {
   HWY_DYNAMIC_DISPATCH(raise_bounds_of_blocks)(reach, components, row, column, bound);
 }
 

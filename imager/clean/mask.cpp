@@ -1,4 +1,4 @@
-#include "imager/mask.h"
+#include "imager/clean/mask.h"
 
 #include <algorithm>
 #include <cmath>

@@ -7,7 +7,7 @@
 namespace misfit::imager {
 
 /// What is taken off a residual: factor × PSF centred on a pixel.
-struct Component {
+struct PointComponent {
   int row;
   int column;
   float factor;
@@ -18,17 +18,17 @@ struct Component {
 /// costs a component no more than the logarithm of their number.
 class ComponentLog {
  public:
-  void add(const Component& component);
+  void add(const PointComponent& component);
   std::size_t size() const { return component_.size(); }
 
   /// All components from the `first` on, in few pieces. Each holds a pixel once, and its pixels tile by tile. Valid until the
   /// next is added.
-  using Pieces = std::vector<std::span<const Component>>;
+  using Pieces = std::vector<std::span<const PointComponent>>;
   Pieces since(std::size_t first) const;
 
  private:
-  std::vector<Component> component_;
-  std::vector<std::vector<std::vector<Component>>> merged_;  ///< [level][piece] of shortest · 2^level components
+  std::vector<PointComponent> component_;
+  std::vector<std::vector<std::vector<PointComponent>>> merged_;  ///< [level][piece] of shortest · 2^level components
 };
 
 }  // namespace misfit::imager

@@ -1,4 +1,4 @@
-#include "imager/convolution.h"
+#include "imager/clean/convolution.h"
 
 #include <algorithm>
 #include <cmath>

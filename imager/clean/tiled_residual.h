@@ -3,10 +3,10 @@
 #include <cstddef>
 #include <vector>
 
-#include "imager/component_log.h"
+#include "imager/clean/component_log.h"
+#include "imager/clean/tiled_psf.h"
 #include "imager/image.h"
 #include "imager/noise.h"
-#include "imager/tiled_psf.h"
 
 namespace misfit::imager {
 
