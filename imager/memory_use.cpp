@@ -35,14 +35,17 @@ MemoryUse peak_memory(const MemoryDemand& d, const StreamingOptions& streaming) 
   if (d.verify) stages.push_back({"prediction is verified", process_bytes, kept, 0, t.visibilities, t.fft, 3 * image});
   if (d.clean) {
     const double masks = d.mask ? 2 : 0;  // it, and the residual within
-    // Dirty image, PSF, model, and the best model with its residual; the newest residual comes last.
-    // Single-precision residual and PSF besides; for a convolution, the PSF once more, its transform of 3/2 the size either
-    // way, and a transform of rows.
-    stages.push_back({"the minor cycles run", process_bytes, kept, 0, 1.875 * image, 0, (7 + masks) * image});
+    // Where every pixel is a component of the model, those of two models and of what they are sorted in.
+    const double components = d.start_model ? 3 * 24 / pixel_bytes : 0;
+    const double lasting = masks + components + 2;  // dirty image and PSF
+    // The residual; for a convolution, what is convolved and what comes of it. In single precision the residual and the PSF,
+    // and two transforms, of 3/2 the size either way.
+    stages.push_back({"the minor cycles run", process_bytes, kept, 0, 3.25 * image, 0, (lasting + 3) * image});
+    // Of a model image.
     const double residual_blocks = blocks + block_samples * residual_bytes;
     stages.push_back(
-        {"the residual is gridded", process_bytes, kept, residual_blocks, 2 * t.visibilities, 0, (5 + masks) * image});
-    stages.push_back({"the residual image is made", process_bytes, kept, 0, t.visibilities, t.fft, (6 + masks) * image});
+        {"the residual is gridded", process_bytes, kept, residual_blocks, 2 * t.visibilities, 0, (lasting + 1) * image});
+    stages.push_back({"the residual image is made", process_bytes, kept, 0, t.visibilities, t.fft, (lasting + 2) * image});
   }
   stages.push_back({"the pictures are drawn", process_bytes, 0, 0, 0, 0, drawn_images * image});
   return *std::max_element(stages.begin(), stages.end(),

@@ -17,7 +17,8 @@ struct MemoryDemand {
   double block_samples = 0;  ///< in a block at most
   bool verify = false;
   bool clean = false;
-  bool mask = false;  ///< where components may lie
+  bool mask = false;         ///< where components may lie
+  bool start_model = false;  ///< that CLEAN begins with
 };
 
 /// The memory held at one time, in bytes, by what it is for.

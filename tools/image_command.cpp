@@ -93,7 +93,8 @@ class ImageRun {
                                            .block_samples = static_cast<double>(ms_io::MeasurementSet::usual_block_samples),
                                            .verify = o_.verify > 0,
                                            .clean = o_.niter > 0,
-                                           .mask = clean_ && (clean_->mask() != nullptr || o_.usemask == "auto")},
+                                           .mask = clean_ && (clean_->mask() != nullptr || o_.usemask == "auto"),
+                                           .start_model = !o_.startmodel.empty()},
                                           o_);
     memory_ = memory.peak;
     report_.estimated_memory_bytes = memory_.total();

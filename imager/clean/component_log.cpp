@@ -57,12 +57,13 @@ ComponentLog::Pieces ComponentLog::since(std::size_t first) const {
     std::size_t level = 0, length = shortest;
     if (first % length != 0 || first + length > end) {
       const std::size_t next = std::min(end, (first / length + 1) * length);
-      pieces.push_back(std::span(component_).subspan(first, next - first));
+      pieces.push_back({&component_[first], next - first});
       first = next;
       continue;
     }
     for (; first % (2 * length) == 0 && first + 2 * length <= end; length *= 2) ++level;
-    pieces.push_back(merged_[level][first / length]);
+    const std::vector<PointComponent>& merged = merged_[level][first / length];
+    pieces.push_back({merged.data(), merged.size()});
     first += length;
   }
   return pieces;

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstddef>
-#include <span>
 #include <vector>
 
 namespace misfit::imager {
@@ -11,6 +10,16 @@ struct PointComponent {
   int row;
   int column;
   float factor;
+};
+
+/// Some that lie side by side.
+struct PointComponents {
+  const PointComponent* first = nullptr;
+  std::size_t count = 0;
+
+  const PointComponent* begin() const { return first; }
+  const PointComponent* end() const { return first + count; }
+  std::size_t size() const { return count; }
 };
 
 /// Components in the order in which they were found. CLEAN finds those of a bright pixel again and again; from here they are
@@ -23,7 +32,7 @@ class ComponentLog {
 
   /// All components from the `first` on, in few pieces. Each holds a pixel once, and its pixels tile by tile. Valid until the
   /// next is added.
-  using Pieces = std::vector<std::span<const PointComponent>>;
+  using Pieces = std::vector<PointComponents>;
   Pieces since(std::size_t first) const;
 
  private:

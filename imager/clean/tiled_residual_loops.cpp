@@ -18,8 +18,7 @@ using Tag = hn::CappedTag<float, 16>;
 constexpr int side = residual_block_side;
 
 /// Eight rows, or the half of them that vectors of four hold, stay in registers while all components are taken off.
-HWY_ATTR void subtract_from_block(const TiledPsf& psf, std::span<const PointComponent> components, int row, int column,
-                                  float* block) {
+HWY_ATTR void subtract_from_block(const TiledPsf& psf, PointComponents components, int row, int column, float* block) {
   static_assert(side == 8);
   const hn::CappedTag<float, side> d;
   const std::ptrdiff_t next = psf.columns();
@@ -79,8 +78,7 @@ HWY_ATTR float raise_bounds_of_row(float* bound, const float* reach, int count, 
   return largest;
 }
 
-HWY_ATTR void raise_bounds_of_blocks(const Reach& reach, std::span<const PointComponent> components, int row, int column,
-                                     float* bound) {
+HWY_ATTR void raise_bounds_of_blocks(const Reach& reach, PointComponents components, int row, int column, float* bound) {
   static_assert(blocks_along_tile == 4);
   const hn::CappedTag<float, blocks_along_tile> d;
   const std::size_t next = reach.stride();
@@ -113,7 +111,7 @@ HWY_EXPORT(largest_magnitude_of_block);
 HWY_EXPORT(raise_bounds_of_row);
 HWY_EXPORT(raise_bounds_of_blocks);
 
-void subtract(const TiledPsf& psf, std::span<const PointComponent> components, int row, int column, float* block) {
+void subtract(const TiledPsf& psf, PointComponents components, int row, int column, float* block) {
   HWY_DYNAMIC_DISPATCH(subtract_from_block)(psf, components, row, column, block);
 }
 
@@ -125,7 +123,7 @@ float raise_bounds(float* bound, const float* reach, int count, float amount) {
   return HWY_DYNAMIC_DISPATCH(raise_bounds_of_row)(bound, reach, count, amount);
 }
 
-void raise_block_bounds(const Reach& reach, std::span<const PointComponent> components, int row, int column, float* bound) {
+void raise_block_bounds(const Reach& reach, PointComponents components, int row, int column, float* bound) {
   HWY_DYNAMIC_DISPATCH(raise_bounds_of_blocks)(reach, components, row, column, bound);
 }
 

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstddef>
-#include <span>
 
 #include "imager/clean/component_log.h"
 #include "imager/clean/tiled_psf.h"
@@ -9,7 +8,7 @@
 namespace misfit::imager {
 
 /// Takes components off a block of pixels [row][column] whose first lies at (row, column) of the image.
-void subtract(const TiledPsf& psf, std::span<const PointComponent> components, int row, int column, float* block);
+void subtract(const TiledPsf& psf, PointComponents components, int row, int column, float* block);
 
 /// The largest magnitude of a block's pixels; −∞ where all are NaN.
 float largest_magnitude(const float* block);
@@ -18,6 +17,6 @@ float largest_magnitude(const float* block);
 float raise_bounds(float* bound, const float* reach, int count, float amount);
 
 /// The same for the blocks [row][column] of the tile whose first pixel lies at (row, column) of the image, and components.
-void raise_block_bounds(const Reach& reach, std::span<const PointComponent> components, int row, int column, float* bound);
+void raise_block_bounds(const Reach& reach, PointComponents components, int row, int column, float* bound);
 
 }  // namespace misfit::imager

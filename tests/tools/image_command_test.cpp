@@ -281,7 +281,12 @@ boost::test_tools::assertion_result memory_is_its_own(boost::unit_test::test_uni
 BOOST_AUTO_TEST_CASE(the_memory_estimated_is_enough, *boost::unit_test::precondition(memory_is_its_own)) {
   const TemporaryFolder folder;
   for (const Arguments& options :
-       {Arguments{}, {"--niter", "10"}, {"--verify", "5"}, {"--accuracy", "1e-3", "--niter", "10"}}) {
+       {Arguments{},
+        {"--niter", "10"},
+        {"--verify", "5"},
+        {"--accuracy", "1e-3", "--niter", "10"},
+        {"--niter", "10", "--deconvolver", "clark"},
+        {"--niter", "10", "--deconvolver", "multiscale", "--scales", "0,5,20", "--usemask", "auto"}}) {
     succeed(card_image(snapshot(), folder / "a") + options);
     const json report = report_of(folder / "a");
     BOOST_TEST(report["memory_gib_peak"].get<double>() <= report["memory_gib_estimated"].get<double>());
