@@ -2,12 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <stdexcept>
 #include <string>
 #include <tuple>
 #include <utility>
 
 #include "imager/clean/gaussian_blur.h"
+#include "imager/parallel.h"
 
 namespace misfit::imager {
 namespace {
@@ -28,6 +30,26 @@ std::vector<Component> with_one_at_a_place(const std::vector<Component>& sorted)
   }
   std::erase_if(result, [](const Component& c) { return c.flux_jy == 0; });
   return result;
+}
+
+/// Adds the Gaussians of components, which are in the order of rows, to an image.
+template <typename Iterator>
+void add_gaussians(Iterator begin, Iterator end, const std::vector<double>& taps, int threads, Image& image) {
+  const int reach = static_cast<int>(taps.size()) - 1;
+  const auto tap = [&taps](int k) { return taps[static_cast<std::size_t>(std::abs(k))]; };
+  std::vector<double> along_row;  // columns −reach … reach
+  for (int k = -reach; k <= reach; ++k) along_row.push_back(tap(k));
+  parallel_for(static_cast<std::size_t>(image.height), threads, [&](std::size_t at) {
+    const int r = static_cast<int>(at);
+    const auto above = [](const Component& c, int row) { return c.row < row; };
+    for (auto c = std::lower_bound(begin, end, r - reach, above); c != end && c->row <= r + reach; ++c) {
+      const double flux = c->flux_jy * tap(r - c->row);
+      const int first = std::max(0, c->column - reach), last = std::min(image.width - 1, c->column + reach);
+      const double* const from = &along_row[static_cast<std::size_t>(first - c->column + reach)];
+      double* const to = image.row(r) + first;
+      for (int k = 0; k <= last - first; ++k) to[k] += flux * from[k];
+    }
+  });
 }
 
 }  // namespace
@@ -65,10 +87,9 @@ Image ComponentModel::image(int threads) const {
       for (; c != components_.end() && c->scale == scale; ++c) result.at(c->row, c->column) += c->flux_jy;
       continue;
     }
-    Image points(width_, height_);
-    for (; c != components_.end() && c->scale == scale; ++c) points.at(c->row, c->column) += c->flux_jy;
-    const Image extended = gaussian_blur(points, fwhm, threads);
-    for (std::size_t i = 0; i < result.pixel.size(); ++i) result.pixel[i] += extended.pixel[i];
+    const auto first = c;
+    while (c != components_.end() && c->scale == scale) ++c;
+    add_gaussians(first, c, gaussian_taps(fwhm), threads, result);
   }
   return result;
 }

@@ -32,7 +32,7 @@ class ComponentModel {
   /// Throws std::invalid_argument when one of them lies outside the image or has no scale of the model.
   void add(const std::vector<Component>& found);
   double flux_jy() const;
-  /// Jy/pixel. What of Gaussians lies beyond the image is lost.
+  /// Jy/pixel. Gaussians are those of gaussian_taps; what of them lies beyond the image is lost.
   Image image(int threads) const;
 
  private:

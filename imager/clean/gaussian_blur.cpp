@@ -2,74 +2,111 @@
 
 #include <algorithm>
 #include <cmath>
+#include <complex>
+#include <cstddef>
 #include <stdexcept>
 #include <string>
-#include <vector>
 
+#include "imager/fft.h"
 #include "imager/parallel.h"
 
 namespace misfit::imager {
 namespace {
 
-/// [0] in the middle, the others on either side of it; their sum over both sides is 1.
-std::vector<double> half_taps(double fwhm_pixels) {
-  constexpr double cut = 1e-9;
-  const double rate = 4 * std::log(2.0) / (fwhm_pixels * fwhm_pixels);
-  const auto reach = static_cast<std::size_t>(std::ceil(std::sqrt(-std::log(cut) / rate)));
-  std::vector<double> tap(reach + 1);
-  double sum = -1;
-  for (std::size_t k = 0; k < tap.size(); ++k) {
-    tap[k] = std::exp(-rate * static_cast<double>(k * k));
-    sum += 2 * tap[k];
+/// Convolves lines of so many pixels with taps.
+class LineBlur {
+ public:
+  LineBlur(int pixels, const std::vector<double>& taps)
+      : pixels_(pixels), length_(fast_fft_size(pixels + static_cast<int>(taps.size()) - 1)), fft_(length_) {
+    const auto line = fft_.real_buffer();
+    const auto spectrum = fft_.complex_buffer();
+    std::fill_n(line.get(), length_, 0.0);
+    const auto longest = std::min<std::size_t>(taps.size(), static_cast<std::size_t>(pixels));
+    for (std::size_t k = 0; k < longest; ++k) {  // the others reach from no pixel to another
+      line[k] = taps[k];
+      if (k > 0) line[static_cast<std::size_t>(length_) - k] = taps[k];
+    }
+    fft_.real_to_complex(line.get(), spectrum.get());
+    for (int k = 0; k <= length_ / 2; ++k) transfer_.push_back(spectrum[static_cast<std::size_t>(k)].real() / length_);
   }
-  for (double& t : tap) t /= sum;
-  return tap;
-}
 
-/// out[c] = Σ_k tap[|k|] in[c + k · stride] for c in [0, count).
-void correlate(const double* in, std::ptrdiff_t stride, const std::vector<double>& tap, std::size_t count, double* out) {
-  for (std::size_t c = 0; c < count; ++c) out[c] = tap[0] * in[c];
-  for (std::size_t k = 1; k < tap.size(); ++k) {
-    const double* const before = in - static_cast<std::ptrdiff_t>(k) * stride;
-    const double* const after = in + static_cast<std::ptrdiff_t>(k) * stride;
-    for (std::size_t c = 0; c < count; ++c) out[c] += tap[k] * (before[c] + after[c]);
+  /// What one thread needs.
+  struct Line {
+    Fft<double>::RealBuffer pixel;
+    Fft<double>::ComplexBuffer spectrum;
+  };
+  Line line() const { return {fft_.real_buffer(), fft_.complex_buffer()}; }
+
+  void operator()(const Line& line) const {
+    std::fill(line.pixel.get() + pixels_, line.pixel.get() + length_, 0.0);
+    fft_.real_to_complex(line.pixel.get(), line.spectrum.get());
+    for (std::size_t k = 0; k < transfer_.size(); ++k) line.spectrum[k] *= transfer_[k];
+    fft_.complex_to_real(line.spectrum.get(), line.pixel.get());
   }
-}
 
-void blur_rows(Image& image, const std::vector<double>& tap, int threads) {
-  const std::size_t reach = tap.size() - 1, width = static_cast<std::size_t>(image.width);
-  parallel_for(static_cast<std::size_t>(image.height), threads, [&](std::size_t r) {
-    std::vector<double> padded(width + 2 * reach);
-    double* const row = image.row(static_cast<int>(r));
-    std::transform(row, row + width, padded.begin() + static_cast<std::ptrdiff_t>(reach),
-                   [](double x) { return std::isnan(x) ? 0 : x; });
-    correlate(&padded[reach], 1, tap, width, row);
+ private:
+  int pixels_;
+  int length_;
+  Fft<double> fft_;
+  std::vector<double> transfer_;  ///< real, since the taps are even
+};
+
+void blur_rows(Image& image, const std::vector<double>& taps, int threads) {
+  constexpr int together = 16;
+  const LineBlur blur(image.width, taps);
+  parallel_for(static_cast<std::size_t>((image.height + together - 1) / together), threads, [&](std::size_t piece) {
+    const LineBlur::Line line = blur.line();
+    const int first = static_cast<int>(piece) * together;
+    for (int r = first; r < std::min(image.height, first + together); ++r) {
+      std::transform(image.row(r), image.row(r) + image.width, line.pixel.get(),
+                     [](double x) { return std::isnan(x) ? 0 : x; });
+      blur(line);
+      std::copy_n(line.pixel.get(), image.width, image.row(r));
+    }
   });
 }
 
-/// In strips of columns that fit the cache.
-void blur_columns(Image& image, const std::vector<double>& tap, int threads) {
-  constexpr std::size_t strip = 64;
-  const std::size_t reach = tap.size() - 1, width = static_cast<std::size_t>(image.width);
-  parallel_for((width + strip - 1) / strip, threads, [&](std::size_t s) {
-    const std::size_t first = s * strip, count = std::min(strip, width - first);
-    std::vector<double> padded((static_cast<std::size_t>(image.height) + 2 * reach) * strip);
+/// As many columns at a time as share a cache line.
+void blur_columns(Image& image, const std::vector<double>& taps, int threads) {
+  constexpr int together = 8;
+  const LineBlur blur(image.height, taps);
+  parallel_for(static_cast<std::size_t>((image.width + together - 1) / together), threads, [&](std::size_t piece) {
+    const int first = static_cast<int>(piece) * together, count = std::min(together, image.width - first);
+    std::vector<LineBlur::Line> lines;
+    for (int c = 0; c < count; ++c) lines.push_back(blur.line());
     for (int r = 0; r < image.height; ++r)
-      std::copy_n(image.row(r) + first, count, &padded[(static_cast<std::size_t>(r) + reach) * strip]);
+      for (int c = 0; c < count; ++c)
+        lines[static_cast<std::size_t>(c)].pixel[static_cast<std::size_t>(r)] = image.at(r, first + c);
+    for (const LineBlur::Line& line : lines) blur(line);
     for (int r = 0; r < image.height; ++r)
-      correlate(&padded[(static_cast<std::size_t>(r) + reach) * strip], strip, tap, count, image.row(r) + first);
+      for (int c = 0; c < count; ++c)
+        image.at(r, first + c) = lines[static_cast<std::size_t>(c)].pixel[static_cast<std::size_t>(r)];
   });
 }
 
 }  // namespace
 
-Image gaussian_blur(const Image& image, double fwhm_pixels, int threads) {
+std::vector<double> gaussian_taps(double fwhm_pixels) {
   if (!(fwhm_pixels > 0))
     throw std::invalid_argument("a Gaussian of " + std::to_string(fwhm_pixels) + " pixels: expected a width above 0");
-  const std::vector<double> tap = half_taps(fwhm_pixels);
+  constexpr double cut = 1e-9;
+  const double rate = 4 * std::log(2.0) / (fwhm_pixels * fwhm_pixels);
+  const auto reach = static_cast<std::size_t>(std::ceil(std::sqrt(-std::log(cut) / rate)));
+  std::vector<double> taps(reach + 1);
+  double sum = -1;
+  for (std::size_t k = 0; k < taps.size(); ++k) {
+    taps[k] = std::exp(-rate * static_cast<double>(k * k));
+    sum += 2 * taps[k];
+  }
+  for (double& tap : taps) tap /= sum;
+  return taps;
+}
+
+Image gaussian_blur(const Image& image, double fwhm_pixels, int threads) {
+  const std::vector<double> taps = gaussian_taps(fwhm_pixels);
   Image result = image;
-  blur_rows(result, tap, threads);
-  blur_columns(result, tap, threads);
+  blur_rows(result, taps, threads);
+  blur_columns(result, taps, threads);
   return result;
 }
 

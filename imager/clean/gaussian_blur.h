@@ -1,12 +1,18 @@
 #pragma once
 
+#include <vector>
+
 #include "imager/image.h"
 
 namespace misfit::imager {
 
-/// image ⊗ exp(−4 ln 2 r²/fwhm²) / its sum over all pixels: a unit of flux stays one, but for what leaves the image. What lies
-/// beyond the image, or is NaN, counts as 0. The Gaussian is cut where it falls below 1e-9 of its peak. The same bits for any
-/// number of threads. Throws std::invalid_argument unless fwhm_pixels > 0.
+/// exp(−4 ln 2 k²/fwhm²) over its sum at pixels k = 0, 1, …, as far as it exceeds 1e-9 of its peak; the other half is the same.
+/// Throws std::invalid_argument unless fwhm_pixels > 0.
+std::vector<double> gaussian_taps(double fwhm_pixels);
+
+/// image ⊗ taps along rows ⊗ taps along columns: a unit of flux stays one, but for what leaves the image. What lies beyond the
+/// image, or is NaN, counts as 0. By FFTs in double precision; the same bits for any number of threads. Throws
+/// std::invalid_argument unless fwhm_pixels > 0.
 Image gaussian_blur(const Image& image, double fwhm_pixels, int threads);
 
 }  // namespace misfit::imager
