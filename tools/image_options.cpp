@@ -74,6 +74,9 @@ void check_clean(const ImageOptions& o) {
   if (o.cycleniter == 0 || o.cycleniter < -1) refuse("cycleniter", std::to_string(o.cycleniter), "-1 (no limit), 1 or more");
   if (o.nmajor < -1) refuse("nmajor", std::to_string(o.nmajor), "-1 (no limit) or more");
   if (restoring_beam(o) && o.niter == 0) refuse("restoringbeam", o.restoringbeam, "--niter above 0 beside it");
+  const int smallest = *std::min_element(o.imsize.begin(), o.imsize.end());
+  if (o.niter > 0 && smallest < 3 && !restoring_beam(o))
+    refuse("imsize", std::to_string(smallest), "3 pixels or more to fit a beam to, or --restoringbeam");
   if (!o.startmodel.empty() && o.niter == 0) refuse("startmodel", o.startmodel, "--niter above 0 beside it");
   if (o.savemodel != "none" && o.niter == 0) refuse("savemodel", o.savemodel, "--niter above 0 beside it");
   if (!o.mask.empty() && o.niter == 0) refuse("mask", o.mask, "--niter above 0 beside it");

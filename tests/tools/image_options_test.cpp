@@ -1,6 +1,7 @@
 #include "tools/image_options.h"
 
 #include <boost/test/unit_test.hpp>
+#include <cmath>
 #include <functional>
 #include <nlohmann/json.hpp>
 
@@ -44,6 +45,41 @@ BOOST_AUTO_TEST_CASE(limits_belong_to_what_is_allowed) {
   BOOST_TEST(is_refused([](ImageOptions& o) { o.nmajor = -2; }));
   BOOST_TEST(is_refused([](ImageOptions& o) { o.maxpsffraction = 0.01; }));
   BOOST_TEST(is_refused([](ImageOptions& o) { o.minpsffraction = 0; }));
+}
+
+BOOST_AUTO_TEST_CASE(options_of_clean_need_what_gives_them_meaning) {
+  const auto cleaning = [](const std::function<void(ImageOptions&)>& change) {
+    return is_refused([&](ImageOptions& o) { o.niter = 10, change(o); });
+  };
+  BOOST_TEST(!cleaning([](ImageOptions& o) { o.deconvolver = "multiscale", o.scales = {0, 5, 15}; }));
+  BOOST_TEST(cleaning([](ImageOptions& o) { o.deconvolver = "multiscale"; }));
+  BOOST_TEST(cleaning([](ImageOptions& o) { o.scales = {0, 5}; }));
+  BOOST_TEST(cleaning([](ImageOptions& o) { o.deconvolver = "multiscale", o.scales = {5, 0}; }));
+  BOOST_TEST(cleaning([](ImageOptions& o) { o.deconvolver = "multiscale", o.scales = {0, 65}; }));
+  BOOST_TEST(cleaning([](ImageOptions& o) { o.deconvolver = "multiscale", o.scales = {0}, o.smallscalebias = 1; }));
+  BOOST_TEST(!cleaning([](ImageOptions& o) { o.usemask = "auto"; }));
+  BOOST_TEST(is_refused([](ImageOptions& o) { o.usemask = "auto"; }));
+  BOOST_TEST(cleaning([](ImageOptions& o) { o.usemask = "auto", o.mask = "m.fits"; }));
+  BOOST_TEST(cleaning([](ImageOptions& o) { o.usemask = "auto", o.lownoisethreshold = 6; }));
+  BOOST_TEST(is_refused([](ImageOptions& o) { o.restart = true; }));
+  BOOST_TEST(cleaning([](ImageOptions& o) { o.imsize = {64, 2}; }));
+  BOOST_TEST(!cleaning([](ImageOptions& o) { o.imsize = {1}, o.restoringbeam = "1arcsec"; }));
+}
+
+BOOST_AUTO_TEST_CASE(scales_are_as_wide_at_half_maximum_as_tcleans) {
+  ImageOptions options = good();
+  options.deconvolver = "multiscale";
+  options.scales = {0, 10};
+  const std::vector<double> scales = deconvolver_choice(options, 1).scale_pixels;
+  // tclean's kernel is (1 − r²) ψ(r), r = distance / scale, with ψ of Schwab (1984, in Indirect Imaging), m = 6, α = 1: on
+  // r ≤ 0.75 his ψ(r) = Σ P_k (r² − 0.75²)^k / Σ Q_k (r² − 0.75²)^k.
+  const auto kernel = [](double r) {
+    const double d = r * r - 0.75 * 0.75;
+    const double p = 8.203343e-2 + d * (-3.644705e-1 + d * (6.278660e-1 + d * (-5.335581e-1 + d * 2.312756e-1)));
+    return (1 - r * r) * p / (1 + d * (8.212018e-1 + d * 2.078043e-1));
+  };
+  BOOST_TEST(scales.front() == 0);
+  BOOST_TEST(std::abs(kernel(scales.back() / 10 / 2) - kernel(0) / 2) < 1e-4);  // the factor has four digits
 }
 
 BOOST_AUTO_TEST_CASE(no_accuracy_is_asked_only_where_width_and_padding_are) {
