@@ -63,7 +63,10 @@ std::string in_unit(double value, const ScaledUnit& unit, int digits) {
 Row cycle_row(const json& log, std::size_t k, const ScaledUnit& residual, const ScaledUnit& flux) {
   const json& cycle = log[k];
   const bool start = k == 0;
-  const auto gained = [&](const char* key) { return start ? 0 : number(cycle, key) - number(log[k - 1], key); };
+  const json& from = member(cycle, "from");
+  const json& before =
+      from.is_number_unsigned() && from.get<std::size_t>() < k ? log[from.get<std::size_t>()] : log[k - !start];
+  const auto gained = [&](const char* key) { return start ? 0 : number(cycle, key) - number(before, key); };
   const double found = gained("iterations");
   return {start ? "start" : std::to_string(k),
           whole(member(cycle, "iterations")),

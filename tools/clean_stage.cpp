@@ -72,7 +72,8 @@ imager::CleanResult CleanStage::run(const CleanScene& scene, const nlohmann::jso
     const imager::StageTimer timer(times, "minor cycles");
     minor = imager::make_deconvolver(deconvolver_choice(o_, threads_), scene.images.psf);
   }
-  const CleanStateOwner owner{version, option_values, checksum(scene.images, mask_.get())};
+  const CleanStateOwner owner{version, option_values,
+                              checksum({&scene.images.dirty, &scene.images.psf, mask_.get(), start_model_.get()})};
   imager::CleanState state;
   if (o_.restart && std::filesystem::exists(state_path())) {
     state = read_clean_state(state_path(), owner);
@@ -83,7 +84,11 @@ imager::CleanResult CleanStage::run(const CleanScene& scene, const nlohmann::jso
     state = imager::first_state(model);
   }
   start_model_.reset();
-  const imager::CleanInput input{scene.source, scene.transform, scene.images, max_sidelobe(scene),
+  const imager::CleanInput input{scene.source,
+                                 scene.transform,
+                                 scene.images,
+                                 max_sidelobe(scene),
+                                 std::max(o_.accuracy, scene.expected_error),
                                  mean_width_rad(scene.main_lobe) / geometry_.cell_rad};
   return imager::clean(
       input, *minor, options, std::move(state), progress,

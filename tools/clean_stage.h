@@ -18,7 +18,8 @@ struct CleanScene {
   const imager::VisibilitySource& source;
   const imager::Transform& transform;
   const imager::DirtyImages& images;
-  imager::Beam main_lobe;  ///< of the PSF
+  imager::Beam main_lobe;     ///< of the PSF
+  double expected_error = 0;  ///< of the dirty image
 };
 
 /// CLEAN as `misfit image` runs it, with the files that go into it: mask, start model, and the state that it leaves after every

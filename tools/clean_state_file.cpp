@@ -5,11 +5,13 @@
 #include <bit>
 #include <cstring>
 #include <stdexcept>
+#include <string_view>
 #include <type_traits>
 #include <utility>
 #include <vector>
 
 #include "tools/files.h"
+#include "tools/text.h"
 
 namespace misfit::tools {
 namespace {
@@ -90,9 +92,14 @@ imager::Image unpacked_mask(const json& value) {
 }
 
 json packed_cycle(const imager::MajorCycle& c) {
-  return {{"iterations", c.iterations},          {"peak_residual_jy", c.peak_residual_jy}, {"rms_jy", c.rms_jy},
-          {"model_flux_jy", c.model_flux_jy},    {"depth_jy", c.cycle_threshold_jy},       {"ended", c.ended},
-          {"mean_square_jy2", c.mean_square_jy2}};
+  return {{"iterations", c.iterations},
+          {"peak_residual_jy", c.peak_residual_jy},
+          {"rms_jy", c.rms_jy},
+          {"model_flux_jy", c.model_flux_jy},
+          {"depth_jy", c.cycle_threshold_jy},
+          {"ended", c.ended},
+          {"mean_square_jy2", c.mean_square_jy2},
+          {"from", c.from}};
 }
 
 imager::MajorCycle unpacked_cycle(const json& c) {
@@ -104,6 +111,7 @@ imager::MajorCycle unpacked_cycle(const json& c) {
   cycle.cycle_threshold_jy = c.at("depth_jy");
   cycle.ended = c.at("ended");
   cycle.mean_square_jy2 = c.at("mean_square_jy2");
+  cycle.from = c.at("from");
   return cycle;
 }
 
@@ -116,19 +124,44 @@ imager::CleanState unpacked_state(const json& file) {
   state.now = file.at("now");
   state.best = file.at("best");
   state.tightened = file.at("tightened");
+  state.found_nothing = file.at("found_nothing");
   if (state.now >= state.cycles.size() || state.best >= state.cycles.size())
     throw std::runtime_error("it names major cycles that are not in it");
   return state;
+}
+
+std::uint64_t fnv1a(std::string_view bytes) {
+  std::uint64_t sum = 0xcbf29ce484222325;
+  for (const char byte : bytes) sum = (sum ^ static_cast<unsigned char>(byte)) * 0x100000001b3;
+  return sum;
+}
+
+/// Nothing unless the sum at its end is that of the rest.
+json intact_content(std::string_view file) {
+  std::uint64_t sum = 0;
+  if (file.size() <= sizeof sum) return nullptr;
+  const std::string_view content = file.substr(0, file.size() - sizeof sum);
+  std::memcpy(&sum, file.data() + content.size(), sizeof sum);
+  if (sum != fnv1a(content)) return nullptr;
+  return json::from_cbor(content.begin(), content.end(), true, false);
 }
 
 std::string shown(const json& value) {
   return value.is_null() ? "nothing" : value.is_string() ? "'" + value.get<std::string>() + "'" : value.dump();
 }
 
+/// Equal, or the same numbers differently written.
+bool means_the_same(const json& a, const json& b) {
+  if (a == b) return true;
+  if (!a.is_string() || !b.is_string()) return false;
+  const auto one = finite_number(a.get<std::string>()), other = finite_number(b.get<std::string>());
+  return one && other && *one == *other;
+}
+
 void require_same(const std::string& path, const json& file, const CleanStateOwner& owner) {
   const auto refuse = [&path](const std::string& what, const json& has, const json& expected) {
     throw std::runtime_error(path + " was saved with " + what + " " + shown(has) + ", expected that of this run, " +
-                             shown(expected));
+                             shown(expected) + "; without --restart CLEAN begins anew");
   };
   if (file.at("version") != owner.version) refuse("version", file.at("version"), owner.version);
   const json& has = file.at("options");
@@ -137,27 +170,26 @@ void require_same(const std::string& path, const json& file, const CleanStateOwn
   for (const auto& [name, value] : names.items()) {
     const bool may_differ = std::find(free_options.begin(), free_options.end(), name) != free_options.end();
     const json then = has.value(name, json()), now = owner.options.value(name, json());
-    if (!may_differ && then != now) refuse("--" + name, then, now);
+    if (!may_differ && !means_the_same(then, now)) refuse("--" + name, then, now);
   }
   if (file.at("checksum") != owner.checksum)
-    throw std::runtime_error(path + " was saved with other data: the dirty image, the PSF or the mask differ; expected the " +
-                             "same visibilities, flags and weights, and the same mask");
+    throw std::runtime_error(path +
+                             " was saved with other data: the dirty image, the PSF, the mask or the start model differ; " +
+                             "expected the same visibilities, flags and weights, and the same files");
 }
 
 }  // namespace
 
-std::uint64_t checksum(const imager::DirtyImages& images, const imager::Image* mask) {
+std::uint64_t checksum(const std::vector<const imager::Image*>& images) {
   std::uint64_t sum = 0xcbf29ce484222325;  // FNV-1a, eight bytes at a time
-  const auto take = [&sum](const imager::Image& image) {
-    for (const double pixel : image.pixel) {
+  for (const imager::Image* image : images) {
+    if (image == nullptr) continue;
+    for (const double pixel : image->pixel) {
       sum ^= std::bit_cast<std::uint64_t>(pixel);
       sum *= 0x100000001b3;
       sum ^= sum >> 32;
     }
-  };
-  take(images.dirty);
-  take(images.psf);
-  if (mask != nullptr) take(*mask);
+  }
   return sum;
 }
 
@@ -172,15 +204,18 @@ void write_clean_state(const std::string& path, const imager::CleanState& state,
                {"cycles", json::array()},
                {"now", state.now},
                {"best", state.best},
-               {"tightened", state.tightened}};
+               {"tightened", state.tightened},
+               {"found_nothing", state.found_nothing}};
   for (const imager::MajorCycle& cycle : state.cycles) file["cycles"].push_back(packed_cycle(cycle));
   const std::vector<std::uint8_t> bytes = json::to_cbor(file);
-  write_file(path, {bytes.begin(), bytes.end()});
+  std::string content(bytes.begin(), bytes.end());
+  const std::uint64_t sum = fnv1a(content);
+  content.append(reinterpret_cast<const char*>(&sum), sizeof sum);
+  write_file(path, content);
 }
 
 imager::CleanState read_clean_state(const std::string& path, const CleanStateOwner& owner) {
-  const std::string content = read_file(path);
-  const json file = json::from_cbor(content.begin(), content.end(), true, false);
+  const json file = intact_content(read_file(path));
   if (!file.is_object() || file.value("format", json()) != format)
     throw std::runtime_error(path + " is damaged or no state of CLEAN; expected what an earlier run of misfit image saved");
   const auto damaged = [&path](const std::exception& error) {

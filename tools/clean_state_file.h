@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <vector>
 
 #include "imager/clean/clean.h"
 
@@ -12,12 +13,12 @@ namespace misfit::tools {
 struct CleanStateOwner {
   std::string version;         ///< of the program
   nlohmann::json options;      ///< {name: value}, as typed or by default
-  std::uint64_t checksum = 0;  ///< of the images that were made of the data, see checksum()
+  std::uint64_t checksum = 0;  ///< of the dirty image, the PSF, and what CLEAN is given besides
 };
 
-/// A number that differs when a bit of the dirty image or the PSF does, and with them of the data selected and of how they are
-/// gridded; or of the mask, where one is given.
-std::uint64_t checksum(const imager::DirtyImages& images, const imager::Image* mask);
+/// A number that differs when a bit of any image does; null stands for none. Over the dirty image and the PSF it is that of the
+/// data selected, and of how they are gridded.
+std::uint64_t checksum(const std::vector<const imager::Image*>& images);
 
 /// Writes a state; the file, in CBOR (RFC 8949), appears under its name only when complete. Throws std::runtime_error that
 /// names the path.

@@ -83,7 +83,7 @@ std::vector<std::pair<std::string, std::string>> options_in_force(const CLI::App
 std::string config_text(const CLI::App& command) {
   std::string text;
   for (const auto& [name, value] : options_in_force(command))
-    if (!value.empty()) text += name + "=\"" + value + "\"\n";
+    if (!value.empty() && name != "restart") text += name + "=\"" + value + "\"\n";
   return text;
 }
 

@@ -11,7 +11,8 @@ namespace misfit::tools {
 /// file cannot be read.
 void add_config_option(CLI::App& command);
 
-/// The options in force, as a file for --config; only those that are empty are left out.
+/// The options in force, as a file for --config; left out are those that are empty, and `restart`: who
+/// repeats a run begins it anew.
 std::string config_text(const CLI::App& command);
 
 /// Every option of `command` that a file may hold, with the value in force: several values are separated by blanks, a flag is

@@ -37,10 +37,11 @@ class ImageRun {
     report_.times = &times_;
   }
 
-  void run() {
+  /// Whether all was done, and the user did not stop it.
+  bool run() {
     open();
     plan();
-    if (o_.dry_run) return print_plan();
+    if (o_.dry_run) return print_plan(), true;
     make_dirty();
     if (o_.verify > 0) verify();
     choose_beams();
@@ -50,7 +51,7 @@ class ImageRun {
     write_report();
     if (o_.savemodel == "modelcolumn") save_model();
     summarise();
-    if (cleaned_ && cleaned_->report.stop == imager::CleanStop::user) throw Interrupted();
+    return !cleaned_ || cleaned_->report.stop != imager::CleanStop::user;
   }
 
  private:
@@ -172,7 +173,7 @@ class ImageRun {
     sketch_dirty();
     progress_.begin("CLEAN", true);
     cleaned_ = std::make_unique<imager::CleanResult>(clean_->run(
-        {*source_, *made_.transform, made_.images, *beams_.main_lobe}, report_.options, progress(),
+        {*source_, *made_.transform, made_.images, *beams_.main_lobe, theory_.expected_rms}, report_.options, progress(),
         [this](const imager::CleanState& state) {
           const imager::MajorCycle& cycle = state.cycles.back();
           if (state.cycles.size() > 1)
@@ -187,7 +188,10 @@ class ImageRun {
     report_.clean = &cleaned_->report;
     const imager::CleanStop stop = cleaned_->report.stop;
     if (stop == imager::CleanStop::diverging || stop == imager::CleanStop::diverging_from_best)
-      warn("CLEAN diverged: " + cleaned_->report.stop_reason);
+      warn(
+          "CLEAN diverged: a lower --gain, a --mask around the sources, or more scales may help; the PSF's largest sidelobe "
+          "is " +
+          significant(100 * cleaned_->report.max_sidelobe, 2) + " % of its peak");
   }
 
   /// So that CLEAN need not keep the whole image for its picture.
@@ -236,8 +240,17 @@ class ImageRun {
     }
     drawing_ = std::make_unique<PictureDrawing>(products_->pictures());
     const imager::StageTimer timer(times_, "write images");
+    remove_old_products();
     products_->write();
     if (cleaned_) write_component_list(o_.imagename + ".components.csv", sources(), geometry_.phase_centre);
+  }
+
+  /// What an earlier run of this name left and this one does not make.
+  void remove_old_products() const {
+    std::vector<std::string> kinds;
+    if (!cleaned_) kinds = {"model.fits", "model.png", "image.fits", "image.png", "dirty.png", "components.csv", "clean.state"};
+    if (!cleaned_ || cleaned_->mask.pixel.empty()) kinds.emplace_back("mask.fits");
+    for (const std::string& kind : kinds) std::filesystem::remove(o_.imagename + "." + kind);
   }
 
   /// What CLEAN found, on the sky.
@@ -323,8 +336,9 @@ void add_image_command(CLI::App& program, const std::string& command_line) {
       accuracy->default_str("0");
     }
     check(*options);
-    ImageRun(*options, command_line, option_values(*command)).run();
+    const bool done = ImageRun(*options, command_line, option_values(*command)).run();
     if (!options->dry_run) write_file(options->imagename + ".last.ini", config_text(*command));
+    if (!done) throw Interrupted();
   });
 }
 

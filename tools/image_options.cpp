@@ -44,8 +44,8 @@ void check_deconvolver(const ImageOptions& o) {
   if (multiscale && o.scales.empty()) refuse("deconvolver", o.deconvolver, "--scales beside it, such as 0,5,15");
   for (std::size_t i = 0; i < o.scales.size(); ++i)
     if (!(o.scales[i] >= 0 && o.scales[i] <= *std::min_element(o.imsize.begin(), o.imsize.end())) ||
-        (i > 0 && !(o.scales[i] > o.scales[i - 1])))
-      refuse("scales", text(o.scales[i]), "pixels in ascending order, from 0 to the image's size");
+        (i > 0 && !(o.scales[i] > o.scales[i - 1])) || (o.scales[i] > 0 && o.scales[i] < 3))
+      refuse("scales", text(o.scales[i]), "pixels in ascending order, each 0 or from 3 to the image's size");
   if (!(o.smallscalebias >= 0 && o.smallscalebias < 1))
     refuse("smallscalebias", text(o.smallscalebias), "0 or more, and below 1");
 }
@@ -80,7 +80,7 @@ void check_clean(const ImageOptions& o) {
   if (!o.startmodel.empty() && o.niter == 0) refuse("startmodel", o.startmodel, "--niter above 0 beside it");
   if (o.savemodel != "none" && o.niter == 0) refuse("savemodel", o.savemodel, "--niter above 0 beside it");
   if (!o.mask.empty() && o.niter == 0) refuse("mask", o.mask, "--niter above 0 beside it");
-  if (o.restart && o.niter == 0) refuse("restart", "", "--niter above 0 beside it");
+  if (o.restart && o.niter == 0) refuse("restart", "true", "--niter above 0 beside it");
   check_deconvolver(o);
   check_auto_mask(o);
 }

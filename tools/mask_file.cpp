@@ -5,11 +5,13 @@
 #include <cmath>
 #include <stdexcept>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "imager/clean/mask.h"
 #include "imager/fits_image.h"
 #include "tools/files.h"
+#include "tools/numbers.h"
 #include "tools/quantity.h"
 #include "tools/text.h"
 
@@ -204,11 +206,20 @@ imager::Image regions_mask(const std::string& path, std::string_view text, const
 imager::Image read_mask(const std::string& path, const imager::ImageGeometry& geometry) {
   const std::string content = read_file(path);
   if (!content.starts_with("SIMPLE")) return regions_mask(path, content, geometry);
-  imager::Image mask = imager::read_fits(path).image;
+  imager::SkyImage file = imager::read_fits(path);
+  imager::Image mask = std::move(file.image);
   if (mask.width != geometry.width || mask.height != geometry.height)
     throw std::runtime_error("mask " + path + " of " + std::to_string(mask.width) + " × " + std::to_string(mask.height) +
                              " pixels: expected the image's " + std::to_string(geometry.width) + " × " +
                              std::to_string(geometry.height));
+  const imager::ImageGeometry& g = file.geometry;
+  const imager::DirectionCosines offset = imager::direction_cosines(g.phase_centre, geometry.phase_centre);
+  const double off = std::abs(g.cell_rad / geometry.cell_rad - 1) * std::max(g.width, g.height) +
+                     std::hypot(offset.l, offset.m) / geometry.cell_rad;
+  if (!(off < 0.5) || g.phase_centre.frame != geometry.phase_centre.frame)
+    throw std::runtime_error("mask " + path + " lies elsewhere on the sky: expected the image's pixels, of " +
+                             significant(geometry.cell_rad * 180 / M_PI * 3600, 6) + "arcsec about " +
+                             sexagesimal(geometry.phase_centre));
   for (double& pixel : mask.pixel) pixel = imager::mask_allows(pixel) ? 1 : 0;
   return mask;
 }

@@ -85,7 +85,8 @@ json cycle_json(const imager::MajorCycle& cycle) {
           {"rms_jy", number(cycle.rms_jy)},
           {"model_flux_jy", number(cycle.model_flux_jy)},
           {"cycle_threshold_jy", number(cycle.cycle_threshold_jy)},
-          {"ended", cycle.ended}};
+          {"ended", cycle.ended},
+          {"from", cycle.from}};
 }
 
 json clean_json(const imager::CleanReport* clean) {
@@ -93,7 +94,7 @@ json clean_json(const imager::CleanReport* clean) {
   json log = json::array();
   for (const imager::MajorCycle& cycle : clean->cycles) log.push_back(cycle_json(cycle));
   json report = cycle_json(clean->final_state());
-  for (const char* of_a_cycle : {"cycle_threshold_jy", "ended"}) report.erase(of_a_cycle);
+  for (const char* of_a_cycle : {"cycle_threshold_jy", "ended", "from"}) report.erase(of_a_cycle);
   report["iterations"] = clean->iterations;
   report["major_cycles"] = clean->cycles.size() - 1;
   report["kept_cycle"] = clean->kept;

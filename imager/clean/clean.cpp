@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
+#include <limits>
 #include <memory>
 #include <stdexcept>
 #include <string>
@@ -37,8 +39,10 @@ void require_finite(const Image& residual, const Image& dirty) {
     if (std::isnan(residual.pixel[i]) && !std::isnan(dirty.pixel[i])) refuse("a pixel of the residual image", NAN);
 }
 
-std::string percent(double part) {
-  return std::to_string(std::lround(100 * part)) + " %";
+std::string in_jy(double value) {
+  char text[40];
+  std::snprintf(text, sizeof text, "%.3g Jy/beam", value);
+  return text;
 }
 
 struct Ending {
@@ -86,6 +90,8 @@ class Run {
     require_finite(*residual_, input_.images.dirty);
   }
 
+  double peak_within_mask() const { return largest_magnitude(mask() == nullptr ? *residual_ : masked(*residual_, *mask())); }
+
   /// Adds what the residual is now to the cycles.
   void take_stock(MajorCycle cycle) {
     const StageTimer timer(times_, "statistics");
@@ -97,11 +103,8 @@ class Run {
                    .beam_fwhm_pixels = input_.beam_fwhm_pixels,
                    .threads = o_.threads},
                   state_.mask);
-    const auto measure = [&cycle](const Image& image) {
-      cycle.peak_residual_jy = largest_magnitude(image);
-      cycle.mean_square_jy2 = std::pow(root_mean_square(image), 2);
-    };
-    measure(mask() == nullptr ? *residual_ : masked(*residual_, *mask()));
+    cycle.peak_residual_jy = peak_within_mask();
+    cycle.mean_square_jy2 = std::pow(root_mean_square(*residual_), 2);
     cycle.model_flux_jy = state_.model.flux_jy();
     state_.cycles.push_back(std::move(cycle));
     state_.now = state_.cycles.size() - 1;
@@ -120,7 +123,7 @@ class Run {
     if (now().iterations >= o_.max_iterations) return Ending{CleanStop::iteration_limit, "the iteration limit was reached"};
     if (o_.max_major_cycles >= 0 && static_cast<int>(state_.cycles.size()) > o_.max_major_cycles)
       return Ending{CleanStop::major_cycle_limit, "the limit of major cycles was reached"};
-    if (found_nothing_) return Ending{CleanStop::no_change, "a minor cycle found nothing to clean"};
+    if (state_.found_nothing) return Ending{CleanStop::no_change, "a minor cycle found nothing to clean"};
     if (state_.tightened > most_tightenings) return divergence();
     if (!progresses())
       return Ending{CleanStop::no_change,
@@ -129,14 +132,14 @@ class Run {
   }
 
   Ending divergence() const {
-    const bool at_once = !(state_.cycles.back().peak_residual_jy <= diverged * best().peak_residual_jy);
-    return {at_once ? CleanStop::diverging : CleanStop::diverging_from_best,
-            "the residual grew from " + std::to_string(best().peak_residual_jy) + " to " +
-                std::to_string(state_.cycles.back().peak_residual_jy) + " Jy/beam although minor cycles were made " +
-                std::to_string(most_tightenings) +
-                " times less deep; the best model was kept. A lower --gain, a --mask around " +
-                "the sources, or more scales may help; the PSF's largest sidelobe is " + percent(input_.max_sidelobe) +
-                " of its peak"};
+    constexpr double near = 10;
+    const double grew_to = state_.cycles.back().peak_residual_jy;
+    if (grew_to <= near * input_.accuracy * largest_magnitude(input_.images.dirty))
+      return {CleanStop::no_change,
+              "what is left, " + in_jy(grew_to) + ", is the error of the transforms; a smaller --accuracy goes deeper"};
+    return {grew_to <= diverged * best().peak_residual_jy ? CleanStop::diverging_from_best : CleanStop::diverging,
+            "the residual grew from " + in_jy(best().peak_residual_jy) + " to " + in_jy(grew_to) +
+                " although minor cycles had been made less deep; the best model was kept"};
   }
 
   /// Whether one of the last cycles left a smaller peak, or less power, than all before them.
@@ -171,18 +174,26 @@ class Run {
                                     .threshold_jy = cycle.cycle_threshold_jy,
                                     .mask = mask(),
                                     .stop_requested = o_.stop_requested});
-      found_nothing_ = found.components.empty();
+      state_.found_nothing = found.components.empty();
       cycle.iterations = now().iterations + found.iterations();
       cycle.ended = description(found.end);
       state_.model.add(found.components);
     }
+    cycle.from = state_.now;
     make_residual();
+    judge(std::move(cycle));
+  }
+
+  /// Keeps the cycle whose residual was made, or takes it back. Masks that grow let brighter pixels in: peaks are compared
+  /// within the mask that the cycle had, and the mask grows only when it is kept.
+  void judge(MajorCycle cycle) {
+    const double before = o_.automask ? now().peak_residual_jy : best().peak_residual_jy;
+    const double peak = peak_within_mask();
+    if (!(peak <= grown * before)) return take_back(std::move(cycle), peak);
     take_stock(std::move(cycle));
-    if (now().peak_residual_jy < best().peak_residual_jy) {
+    if (o_.automask || peak < before) {
       state_.best = state_.now;
       state_.best_model = state_.model;
-    } else if (!(now().peak_residual_jy <= grown * best().peak_residual_jy)) {
-      take_back();
     }
   }
 
@@ -200,8 +211,13 @@ class Run {
     return "";
   }
 
-  void take_back() {
-    state_.cycles.back().ended += "; the residual grew, taken back";
+  void take_back(MajorCycle cycle, double peak) {
+    cycle.ended += "; the residual grew, taken back";
+    cycle.peak_residual_jy = peak;
+    cycle.rms_jy = robust_noise(*residual_);
+    cycle.mean_square_jy2 = std::numeric_limits<double>::infinity();  // no progress
+    cycle.model_flux_jy = state_.model.flux_jy();
+    state_.cycles.push_back(std::move(cycle));
     ++state_.tightened;
     state_.model = state_.best_model;
     state_.now = state_.best;
@@ -231,7 +247,6 @@ class Run {
   StageTimes& times_;
   CleanState state_;
   std::shared_ptr<const Image> residual_;  ///< of state_.model
-  bool found_nothing_ = false;
   std::optional<Ending> end_;
 };
 

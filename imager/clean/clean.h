@@ -51,7 +51,8 @@ struct MajorCycle {
   double model_flux_jy = 0;
   double cycle_threshold_jy = 0;  ///< how deep its minor cycle was to go, in Jy/beam
   std::string ended;              ///< why its minor cycle ended; empty before the first
-  double mean_square_jy2 = 0;     ///< of the residual, within the mask
+  double mean_square_jy2 = 0;     ///< of the residual; infinite where the cycle was taken back
+  std::size_t from = 0;           ///< the cycle whose model it began with
 };
 
 /// All that CLEAN carries from one major cycle to the next: with the same data and options it goes on from here with the same
@@ -63,6 +64,7 @@ struct CleanState {
   std::vector<MajorCycle> cycles;  ///< [0] is the state before the first; empty before that
   std::size_t now = 0;             ///< the cycle whose model is `model`: the last unless it was taken back
   std::size_t best = 0;            ///< the cycle whose model is `best_model`
+  bool found_nothing = false;      ///< the last minor cycle did
   int tightened = 0;               ///< how often the depth was made less since the residual grew
 };
 
@@ -91,6 +93,7 @@ struct CleanInput {
   const Transform& transform;
   const DirtyImages& images;
   double max_sidelobe = 0;      ///< the largest of the PSF
+  double accuracy = 1e-7;       ///< of images and prediction, relative; single-precision data have no better
   double beam_fwhm_pixels = 1;  ///< of a round beam of its main lobe's area; automask alone needs it
 };
 
@@ -107,9 +110,11 @@ CleanState first_state(const ComponentModel& model);
 /// visibilities, subtract them from the data, and image what is left. It begins with `state`, whose model has the scales of
 /// `minor`.
 ///
-/// A major cycle whose residual has a peak 1.5 times the smallest so far is taken back: the best model is gone on from, with
-/// half the way from the peak to the cycle depth left. After the third time CLEAN stops as diverging. Where neither the peak
-/// nor the mean square of the residual becomes less in five cycles it stops as without change.
+/// A major cycle whose residual has a peak 1.5 times the smallest so far (with automask, whose masks grow: 1.5 times that
+/// before, within the same mask) is taken back: the best model is gone on from, and minor cycles go half as far down from the
+/// peak. After three times that CLEAN stops as diverging; or as without change, where the peak is ten times `accuracy` of the
+/// dirty image's or less, since then what is left is the error of the transforms. So it does where neither the peak nor the
+/// mean square of the residual becomes less in five cycles.
 ///
 /// Stages timed: "minor cycles", "statistics", and those of make_residual_image. Throws std::runtime_error when the PSF or a
 /// residual is not finite.

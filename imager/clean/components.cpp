@@ -45,7 +45,7 @@ void add_gaussians(Iterator begin, Iterator end, const std::vector<double>& taps
     for (auto c = std::lower_bound(begin, end, r - reach, above); c != end && c->row <= r + reach; ++c) {
       const double flux = c->flux_jy * tap(r - c->row);
       const int first = std::max(0, c->column - reach), last = std::min(image.width - 1, c->column + reach);
-      const double* const from = &along_row[static_cast<std::size_t>(first - c->column + reach)];
+      const double* const from = along_row.data() + (first - c->column + reach);
       double* const to = image.row(r) + first;
       for (int k = 0; k <= last - first; ++k) to[k] += flux * from[k];
     }

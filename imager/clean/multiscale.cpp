@@ -62,7 +62,13 @@ std::vector<std::vector<bool>> Multiscale::places(const Image& residual, const I
   for (std::size_t s = 0; s < scale_.size(); ++s) {
     const Image within = convolved(allowed, s);
     std::vector<bool>& places = result.emplace_back(within.pixel.size());
-    for (std::size_t i = 0; i < places.size(); ++i) places[i] = allowed.pixel[i] != 0 && within.pixel[i] >= enough;
+    const int border = static_cast<int>(std::ceil(2 * options_.scale_pixels[s]));  // beyond lies a millionth
+    for (int r = border; r < within.height - border; ++r)
+      for (int c = border; c < within.width - border; ++c) {
+        const std::size_t i =
+            static_cast<std::size_t>(r) * static_cast<std::size_t>(within.width) + static_cast<std::size_t>(c);
+        places[i] = allowed.pixel[i] != 0 && within.pixel[i] >= enough;
+      }
   }
   return result;
 }

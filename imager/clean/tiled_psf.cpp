@@ -75,7 +75,7 @@ std::vector<float> TiledPsf::largest_in_blocks() const {
   constexpr int side = residual_block_side;
   const int blocks_u = tiles_u_ * blocks_along_tile, blocks_v = tiles_v_ * blocks_along_tile;
   std::vector<float> largest(index(2 * blocks_v, 0, 2 * blocks_u));
-  parallel_for(static_cast<std::size_t>(2 * blocks_v), threads_, [&](std::size_t v) {
+  parallel_for(2 * static_cast<std::size_t>(blocks_v), threads_, [&](std::size_t v) {
     const int first = (static_cast<int>(v) - blocks_v) * side + height_ / 2;
     for (int r = std::max(0, first); r < std::min(height_, first + side); ++r)
       for (int c = 0; c < width_; ++c) {

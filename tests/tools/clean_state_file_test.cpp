@@ -22,11 +22,12 @@ imager::CleanState some_state() {
   state.model.add({{0, 3, 3, 2}});
   state.mask = imager::Image(7, 5);
   for (const std::size_t i : {0U, 1U, 8U, 33U, 34U}) state.mask.pixel[i] = 1;
-  state.cycles = {{0, 3, 0.3, 0, 0, "", 9}, {10, 1.0 / 3, 0.1, 5, 0.5, "reached its depth", 1}};
+  state.cycles = {{0, 3, 0.3, 0, 0, "", 9, 0}, {10, 1.0 / 3, 0.1, 5, 0.5, "reached its depth", 1, 0}};
   state.cycles[0].rms_jy = std::numeric_limits<double>::quiet_NaN();
   state.now = 1;
   state.best = 1;
   state.tightened = 2;
+  state.found_nothing = true;
   return state;
 }
 
@@ -65,7 +66,7 @@ BOOST_AUTO_TEST_CASE(a_state_comes_back_bit_for_bit) {
   BOOST_TEST(is.cycles[1].peak_residual_jy == was.cycles[1].peak_residual_jy);
   BOOST_TEST(is.cycles[1].ended == was.cycles[1].ended);
   BOOST_TEST(is.cycles[1].mean_square_jy2 == was.cycles[1].mean_square_jy2);
-  BOOST_TEST((is.now == 1 && is.best == 1 && is.tightened == 2));
+  BOOST_TEST((is.now == 1 && is.best == 1 && is.tightened == 2 && is.found_nothing));
 }
 
 BOOST_AUTO_TEST_CASE(a_state_of_other_options_is_refused_by_the_name_of_the_option) {
@@ -107,16 +108,37 @@ BOOST_AUTO_TEST_CASE(what_is_cut_or_no_state_is_refused_by_name) {
   }
 }
 
+BOOST_AUTO_TEST_CASE(no_byte_of_a_state_can_change_unnoticed) {
+  const testing::TemporaryFolder folder;
+  write_clean_state(folder / "a.state", some_state(), owner());
+  const std::string whole = read_file(folder / "a.state");
+  for (std::size_t i = 0; i < whole.size(); i += 3) {
+    std::string other = whole;
+    other[i] = static_cast<char>(other[i] ^ 0x55);
+    write_file(folder / "b.state", other);
+    BOOST_REQUIRE(refusal([&] { read_clean_state(folder / "b.state", owner()); }).find("b.state is damaged") !=
+                  std::string::npos);
+  }
+}
+
+BOOST_AUTO_TEST_CASE(numbers_may_be_written_differently) {
+  const testing::TemporaryFolder folder;
+  write_clean_state(folder / "a.state", some_state(), owner());
+  CleanStateOwner other = owner();
+  other.options["gain"] = "1e-1";
+  BOOST_TEST(refusal([&] { read_clean_state(folder / "a.state", other); }) == "");
+}
+
 BOOST_AUTO_TEST_CASE(the_checksum_notices_every_pixel) {
-  imager::DirtyImages images{imager::Image(4, 3), imager::Image(4, 3), {}};
+  imager::Image dirty(4, 3), psf(4, 3);
   const imager::Image mask(4, 3);
-  const std::uint64_t before = checksum(images, nullptr);
-  BOOST_TEST(checksum(images, nullptr) == before);
-  BOOST_TEST(checksum(images, &mask) != before);
-  for (imager::Image* image : {&images.dirty, &images.psf})
+  const std::uint64_t before = checksum({&dirty, &psf, nullptr});
+  BOOST_TEST(checksum({&dirty, &psf}) == before);
+  BOOST_TEST(checksum({&dirty, &psf, &mask}) != before);
+  for (imager::Image* image : {&dirty, &psf})
     for (double& pixel : image->pixel) {
       pixel = 1e-300;
-      BOOST_TEST(checksum(images, nullptr) != before);
+      BOOST_TEST(checksum({&dirty, &psf}) != before);
       pixel = 0;
     }
 }
