@@ -49,7 +49,7 @@ struct RowComponent {
 
 using ComponentRows = std::vector<std::vector<RowComponent>>;
 
-ComponentRows components_of(const Image& model) {
+ComponentRows component_rows(const Image& model) {
   ComponentRows rows(static_cast<std::size_t>(model.height));
   for (int r = 0; r < model.height; ++r)
     for (int c = 0; c < model.width; ++c)
@@ -77,7 +77,7 @@ Image convolve_with_beam(const Image& model, const Beam& beam, double cell_rad, 
     throw std::invalid_argument("beam of " + std::to_string(beam.major_rad) + " by " + std::to_string(beam.minor_rad) +
                                 " rad on a cell of " + std::to_string(cell_rad) + " rad; expected all to be positive");
   const Stamp stamp = make_stamp(beam, cell_rad, model);
-  const ComponentRows components = components_of(model);
+  const ComponentRows components = component_rows(model);
   Image out(model.width, model.height);
   const int stride = std::max(1, threads);
   const auto work = [&](int first) {

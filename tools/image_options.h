@@ -31,7 +31,7 @@ struct ImageOptions {
   double padding = 0;
   std::string gridder = "auto";
   std::string deconvolver = "hogbom";
-  std::vector<double> scales;  ///< of multiscale, in pixels as tclean means them; empty = 0
+  std::vector<double> scales;  ///< of multiscale, in pixels as tclean means them
   double smallscalebias = 0;
   int niter = 0;
   double gain = 0.1;

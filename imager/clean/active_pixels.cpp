@@ -6,11 +6,11 @@
 namespace misfit::imager {
 namespace {
 
-/// The lowest level, not below `lowest`, above which no more than `most` pixels lie: a 4096th of the peak higher at most.
-double level_for(const Image& residual, double lowest, std::size_t most) {
+/// The lowest level, not below `lowest`, above which so few pixels lie that a cache holds them: a 4096th of the peak higher at
+/// most.
+double level_for(const Image& residual, double lowest, double peak) {
+  constexpr std::size_t most = 65536;
   constexpr int steps = 4096;
-  double peak = 0;
-  for (const double value : residual.pixel) peak = std::fmax(peak, std::abs(value));  // not NaN
   if (!(peak > lowest)) return lowest;
   std::vector<std::size_t> count(steps);
   for (const double value : residual.pixel)
@@ -25,9 +25,9 @@ double level_for(const Image& residual, double lowest, std::size_t most) {
 
 }  // namespace
 
-ActivePixels::ActivePixels(const Image& residual, double lowest_jy, const PsfCore& core) : core_(core) {
-  constexpr std::size_t most = 65536;
-  level_jy_ = level_for(residual, lowest_jy, most);
+ActivePixels::ActivePixels(const Image& residual, double stop_jy, const PsfCore& core) : core_(core) {
+  const double peak = largest_magnitude(residual);
+  level_jy_ = level_for(residual, std::max(stop_jy / 2, core.largest_outside() * peak), peak);
   row_.resize(static_cast<std::size_t>(residual.height) + 1);
   for (int r = 0; r < residual.height; ++r) {
     row_[static_cast<std::size_t>(r)].first = value_.size();
@@ -71,7 +71,6 @@ void ActivePixels::subtract(int row, int column, float factor) {
 }
 
 void find_among(ActivePixels& active, const ActiveSearch& search, const MinorCycleWatch& watch, MinorCycleReport& report) {
-  constexpr double divergence = 3;
   double taken = 0;  // Σ|component|, in Jy/beam
   Peak peak = active.peak();
   const double first = std::abs(peak.value);
@@ -82,7 +81,7 @@ void find_among(ActivePixels& active, const ActiveSearch& search, const MinorCyc
     taken += std::abs(component);
     peak = active.peak();
   } while (std::abs(peak.value) > std::max(search.stop_jy, active.level_jy() + active.core().largest_outside() * taken) &&
-           std::abs(peak.value) <= divergence * first && !watch.is_at_limit(report));
+           std::abs(peak.value) <= minor_cycle_divergence * first && !watch.is_at_limit(report));
 }
 
 }  // namespace misfit::imager

@@ -14,9 +14,10 @@ namespace misfit::imager {
 /// (Clark 1980, A&A 89, 377). What they miss of a component is at most its flux × PsfCore::largest_outside().
 class ActivePixels {
  public:
-  /// The pixels of `residual` that are at least as bright as `lowest_jy`, but no more of them than some number that fits a
-  /// cache: then those above a higher level. NaN is left out. `core` must outlive this.
-  ActivePixels(const Image& residual, double lowest_jy, const PsfCore& core);
+  /// The pixels of `residual` for a search down to `stop_jy`: those above half of that (fainter ones hardly rise above it
+  /// before all are chosen anew) and above what the sidelobes outside the core make of the peak. No more of them than some
+  /// number that fits a cache: then those above a higher level. NaN is left out. `core` must outlive this.
+  ActivePixels(const Image& residual, double stop_jy, const PsfCore& core);
 
   const PsfCore& core() const { return core_; }
   /// No pixel left out is brighter.
@@ -49,8 +50,8 @@ struct ActiveSearch {
 };
 
 /// Finds components, one at least, until no active pixel exceeds stop_jy, or what the others may have become by now: level_jy()
-/// and the largest sidelobe outside the core times all that was taken. Also ends when the peak has grown to three times the
-/// first, and at the limits that `watch` knows.
+/// and the largest sidelobe outside the core times all that was taken. Also ends when the peak has grown to
+/// minor_cycle_divergence times the first, and at the limits that `watch` knows.
 void find_among(ActivePixels& active, const ActiveSearch& search, const MinorCycleWatch& watch, MinorCycleReport& report);
 
 }  // namespace misfit::imager

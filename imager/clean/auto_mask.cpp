@@ -84,7 +84,6 @@ void spread(double beam_fwhm_pixels, int threads, Region& region) {
 }  // namespace
 
 void extend_mask(const Image& residual, const AutoMaskOptions& options, const AutoMaskScene& scene, Image& mask) {
-  if (mask.pixel.empty()) mask = Image(residual.width, residual.height);
   const double sidelobes = options.sidelobe_threshold * scene.max_sidelobe * largest_magnitude(residual);
   Region found = above(residual, std::max(sidelobes, options.noise_threshold * scene.noise_jy));
   const double beam_area = M_PI / (4 * std::log(2.0)) * scene.beam_fwhm_pixels * scene.beam_fwhm_pixels;

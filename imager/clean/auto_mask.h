@@ -21,9 +21,9 @@ struct AutoMaskScene {
   int threads = 1;
 };
 
-/// Adds to `mask` (1 = CLEAN may take components, 0 = not) what a residual shows (Kepley et al. 2020, PASP 132, 024505): pixels
-/// above the upper threshold, less the regions that are too small, spread by a beam; and what was there before, grown into
-/// neighbours above the lower threshold. Positive pixels only, NaN never. An empty mask counts as one without a pixel.
+/// Adds to `mask`, of the residual's size (1 = CLEAN may take components, 0 = not), what a residual shows (Kepley et al. 2020,
+/// PASP 132, 024505): pixels above the upper threshold, less the regions that are too small, spread by a beam; and what was
+/// there before, grown into neighbours above the lower threshold. Positive pixels only, NaN never.
 void extend_mask(const Image& residual, const AutoMaskOptions& options, const AutoMaskScene& scene, Image& mask);
 
 }  // namespace misfit::imager

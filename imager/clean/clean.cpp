@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <limits>
 #include <memory>
 #include <stdexcept>
 #include <string>
@@ -64,8 +63,10 @@ class Run {
   CleanResult run(const CycleProgress& cycle_progress) {
     make_residual();
     if (state_.cycles.empty()) {
-      take_stock({});
-      state_.best_model = state_.model;
+      if (o_.automask) state_.mask = Image(residual_->width, residual_->height);
+      MajorCycle start;
+      measure(start);
+      keep(std::move(start));
     }
     cycle_progress(state_);
     while (!(end_ = ending())) {
@@ -92,20 +93,26 @@ class Run {
 
   double peak_within_mask() const { return largest_magnitude(mask() == nullptr ? *residual_ : masked(*residual_, *mask())); }
 
-  /// Adds what the residual is now to the cycles.
-  void take_stock(MajorCycle cycle) {
+  /// What the residual is now.
+  void measure(MajorCycle& cycle) {
     const StageTimer timer(times_, "statistics");
     cycle.rms_jy = robust_noise(*residual_);
-    if (o_.automask)
+    cycle.peak_residual_jy = peak_within_mask();
+    cycle.mean_square_jy2 = std::pow(root_mean_square(*residual_), 2);
+    cycle.model_flux_jy = state_.model.flux_jy();
+  }
+
+  /// Goes on from a cycle that was measured, within a mask that its residual has grown.
+  void keep(MajorCycle cycle) {
+    if (o_.automask) {
       extend_mask(*residual_, *o_.automask,
                   {.max_sidelobe = input_.max_sidelobe,
                    .noise_jy = cycle.rms_jy,
                    .beam_fwhm_pixels = input_.beam_fwhm_pixels,
                    .threads = o_.threads},
                   state_.mask);
-    cycle.peak_residual_jy = peak_within_mask();
-    cycle.mean_square_jy2 = std::pow(root_mean_square(*residual_), 2);
-    cycle.model_flux_jy = state_.model.flux_jy();
+      cycle.peak_residual_jy = peak_within_mask();
+    }
     state_.cycles.push_back(std::move(cycle));
     state_.now = state_.cycles.size() - 1;
   }
@@ -188,9 +195,10 @@ class Run {
   /// within the mask that the cycle had, and the mask grows only when it is kept.
   void judge(MajorCycle cycle) {
     const double before = o_.automask ? now().peak_residual_jy : best().peak_residual_jy;
-    const double peak = peak_within_mask();
-    if (!(peak <= grown * before)) return take_back(std::move(cycle), peak);
-    take_stock(std::move(cycle));
+    measure(cycle);
+    const double peak = cycle.peak_residual_jy;
+    if (!(peak <= grown * before)) return take_back(std::move(cycle));
+    keep(std::move(cycle));
     if (o_.automask || peak < before) {
       state_.best = state_.now;
       state_.best_model = state_.model;
@@ -207,16 +215,14 @@ class Run {
         return "its peak grew threefold";
       case MinorCycleEnd::stopped:
         return "stopped by the user";
+      case MinorCycleEnd::no_place:
+        return "no scale fits what is left";
     }
     return "";
   }
 
-  void take_back(MajorCycle cycle, double peak) {
+  void take_back(MajorCycle cycle) {
     cycle.ended += "; the residual grew, taken back";
-    cycle.peak_residual_jy = peak;
-    cycle.rms_jy = robust_noise(*residual_);
-    cycle.mean_square_jy2 = std::numeric_limits<double>::infinity();  // no progress
-    cycle.model_flux_jy = state_.model.flux_jy();
     state_.cycles.push_back(std::move(cycle));
     ++state_.tightened;
     state_.model = state_.best_model;

@@ -51,7 +51,7 @@ struct MajorCycle {
   double model_flux_jy = 0;
   double cycle_threshold_jy = 0;  ///< how deep its minor cycle was to go, in Jy/beam
   std::string ended;              ///< why its minor cycle ended; empty before the first
-  double mean_square_jy2 = 0;     ///< of the residual; infinite where the cycle was taken back
+  double mean_square_jy2 = 0;     ///< of the residual
   std::size_t from = 0;           ///< the cycle whose model it began with
 };
 
@@ -59,7 +59,7 @@ struct MajorCycle {
 /// bits.
 struct CleanState {
   ComponentModel model;
-  ComponentModel best_model;       ///< that which left the smallest peak
+  ComponentModel best_model;       ///< that which a cycle is taken back to
   Image mask;                      ///< made from the residuals so far; empty unless CleanOptions::automask
   std::vector<MajorCycle> cycles;  ///< [0] is the state before the first; empty before that
   std::size_t now = 0;             ///< the cycle whose model is `model`: the last unless it was taken back

@@ -17,11 +17,10 @@ void MinorCycle::require_size(const Image& residual, const MinorCycleOptions& op
 }
 
 bool MinorCycleWatch::ends(double peak_jy, MinorCycleReport& report) const {
-  constexpr double divergence = 3;  // as clean() judges major cycles
   report.peak_jy = peak_jy;
   if (!(peak_jy > options_.threshold_jy))
     report.end = MinorCycleEnd::threshold;
-  else if (!(peak_jy <= divergence * first_peak_jy_))
+  else if (!(peak_jy <= minor_cycle_divergence * first_peak_jy_))
     report.end = MinorCycleEnd::diverging;
   else
     return is_at_limit(report);
@@ -31,7 +30,7 @@ bool MinorCycleWatch::ends(double peak_jy, MinorCycleReport& report) const {
 bool MinorCycleWatch::is_at_limit(MinorCycleReport& report) const {
   if (report.iterations() >= options_.max_iterations)
     report.end = MinorCycleEnd::iterations;
-  else if (report.iterations() % 64 == 0 && options_.stop_requested && options_.stop_requested())
+  else if (options_.stop_requested && options_.stop_requested())
     report.end = MinorCycleEnd::stopped;
   else
     return false;

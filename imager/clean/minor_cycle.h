@@ -19,9 +19,13 @@ struct MinorCycleOptions {
 enum class MinorCycleEnd {
   threshold,   ///< no pixel exceeds it
   iterations,  ///< as many components as allowed
-  diverging,   ///< the peak exceeds three times that of the start
+  diverging,   ///< the peak exceeds minor_cycle_divergence times that of the start
   stopped,     ///< as requested
+  no_place,    ///< what is left lies where none of its scales may be put
 };
+
+/// A peak that has grown by this factor shows that components do harm: sources beyond the PSF's reach, or a wrong PSF.
+constexpr double minor_cycle_divergence = 3;
 
 struct MinorCycleReport {
   std::vector<Component> components;  ///< in the order in which they were found; places repeat

@@ -41,9 +41,7 @@ Multiscale::Multiscale(const Image& psf, const MultiscaleOptions& options)
   for (const double scale : options.scale_pixels) {
     const Image twice = scale == 0 ? psf : gaussian_blur(psf, std::sqrt(2.0) * scale, options.threads);
     const double peak = twice.at(psf.height / 2, psf.width / 2);
-    const int reach = 512;
-    scale_.push_back(
-        {largest == 0 ? 1 : 1 - options.small_scale_bias * scale / largest, peak, PsfCore(divided(twice, peak), reach)});
+    scale_.push_back({largest == 0 ? 1 : 1 - options.small_scale_bias * scale / largest, peak, PsfCore(divided(twice, peak))});
   }
 }
 
@@ -85,14 +83,14 @@ Multiscale::Choice Multiscale::choose(const Image& left, const std::vector<std::
       best.next_merit = std::max(best.next_merit, merit);
       continue;
     }
-    best = {s, peak, merit, best.merit, std::move(residual)};
+    best = {s, merit, best.merit, std::move(residual)};
   }
   return best;
 }
 
 MinorCycleReport Multiscale::clean(const Image& residual, const MinorCycleOptions& options) const {
   constexpr double merit_left = 2.0 / 3;
-  constexpr double lowest_part = 0.5;  // as Clark's
+  constexpr double least_merit = 0.01;  // of a point's at the threshold: no scale sees what is left
   require_size(residual, options);
   const std::vector<std::vector<bool>> allowed = places(residual, options.mask);
   const auto peak_of = [&](const Image& image) {
@@ -104,13 +102,15 @@ MinorCycleReport Multiscale::clean(const Image& residual, const MinorCycleOption
   const MinorCycleWatch watch(options, peak);
   while (!watch.ends(peak, report)) {
     Choice choice = choose(left, allowed);
-    if (choice.merit == 0) break;  // nowhere to put a component
+    if (!(choice.merit > least_merit * options.threshold_jy * options.threshold_jy)) {
+      report.end = MinorCycleEnd::no_place;
+      break;
+    }
     const Scale& scale = scale_[choice.scale];
     const double merit = std::min(merit_left * choice.merit, choice.next_merit);
     const double stop = std::max(std::sqrt(merit * scale.psf_peak / scale.bias),
                                  options_.scale_pixels[choice.scale] == 0 ? options.threshold_jy : 0);
-    ActivePixels active(choice.residual, std::max(lowest_part * stop, scale.core.largest_outside() * choice.peak_jy),
-                        scale.core);
+    ActivePixels active(choice.residual, stop, scale.core);
     choice.residual = {};
     const auto before = static_cast<std::ptrdiff_t>(report.components.size());
     find_among(

@@ -41,7 +41,6 @@ class Multiscale : public MinorCycle {
   /// The scale of largest merit.
   struct Choice {
     std::size_t scale = 0;
-    double peak_jy = 0;  ///< of its residual
     double merit = 0;
     double next_merit = 0;  ///< of the best of the others
     Image residual;         ///< convolved with it, NaN where it may not be put

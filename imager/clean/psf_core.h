@@ -9,9 +9,9 @@ namespace misfit::imager {
 /// The middle of a PSF in single precision, as much of it as pays: all |row|, |column| ≤ reach from its peak.
 class PsfCore {
  public:
-  /// The smallest reach beyond which the PSF is hardly weaker outside (by a tenth) than beyond `largest_reach`. NaN counts as
-  /// 0, as does what lies beyond the PSF.
-  PsfCore(const Image& psf, int largest_reach);
+  /// The smallest reach beyond which the PSF is hardly weaker (by a tenth) than beyond 512 pixels, which fit a cache. NaN
+  /// counts as 0, as does what lies beyond the PSF.
+  explicit PsfCore(const Image& psf);
 
   int reach() const { return reach_; }
   /// The largest magnitude of the PSF outside.

@@ -29,7 +29,7 @@ Image operator+(Image a, const Image& b) {
 }
 
 Image mask_of(const Image& residual, const AutoMaskOptions& options = {}, const AutoMaskScene& of = scene) {
-  Image mask;
+  Image mask(side, side);
   extend_mask(residual, options, of, mask);
   return mask;
 }

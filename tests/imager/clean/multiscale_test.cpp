@@ -120,6 +120,18 @@ BOOST_AUTO_TEST_CASE(wide_components_keep_off_edges_and_masks) {
   }
 }
 
+/// Without points in the list, nothing can be done about a source at the border; nor is it tried for ever.
+BOOST_AUTO_TEST_CASE(what_no_scale_can_reach_ends_it) {
+  Image sky(side, side);
+  sky.at(2, 100) = 1;
+  const Image beam = psf(), dirty = observed(sky, beam, 1e-6);
+  const Multiscale minor(beam, {.scale_pixels = {15}, .small_scale_bias = 0, .threads = 2});
+  const MinorCycleReport report =
+      minor.clean(dirty, {.gain = 0.1, .max_iterations = 1000000, .threshold_jy = 0.1, .stop_requested = {}});
+  BOOST_TEST((report.end == MinorCycleEnd::no_place));
+  BOOST_TEST(report.iterations() < 10000);
+}
+
 BOOST_AUTO_TEST_CASE(scales_that_make_no_sense_are_refused) {
   const Image beam = psf();
   for (const std::vector<double>& scales :
