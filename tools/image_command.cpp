@@ -41,7 +41,10 @@ class ImageRun {
   bool run() {
     open();
     plan();
-    if (o_.dry_run) return print_plan(), true;
+    if (o_.dry_run) {
+      print_plan();
+      return true;
+    }
     make_dirty();
     if (o_.verify > 0) verify();
     choose_beams();
@@ -188,10 +191,8 @@ class ImageRun {
     report_.clean = &cleaned_->report;
     const imager::CleanStop stop = cleaned_->report.stop;
     if (stop == imager::CleanStop::diverging || stop == imager::CleanStop::diverging_from_best)
-      warn(
-          "CLEAN diverged: a lower --gain, a --mask around the sources, or more scales may help; the PSF's largest sidelobe "
-          "is " +
-          significant(100 * cleaned_->report.max_sidelobe, 2) + " % of its peak");
+      warn("CLEAN diverged: a lower --gain, a --mask around the sources, or more scales may help; the largest sidelobe is " +
+           significant(100 * cleaned_->report.max_sidelobe, 2) + " % of the PSF's peak");
   }
 
   /// So that CLEAN need not keep the whole image for its picture.
@@ -246,11 +247,17 @@ class ImageRun {
   }
 
   /// What an earlier run of this name left and this one does not make.
-  void remove_old_products() const {
+  void remove_old_products() {
     std::vector<std::string> kinds;
     if (!cleaned_) kinds = {"model.fits", "model.png", "image.fits", "image.png", "dirty.png", "components.csv", "clean.state"};
     if (!cleaned_ || cleaned_->mask.pixel.empty()) kinds.emplace_back("mask.fits");
-    for (const std::string& kind : kinds) std::filesystem::remove(o_.imagename + "." + kind);
+    std::string removed;
+    for (const std::string& kind : kinds) {
+      const std::string path = o_.imagename + "." + kind;
+      std::error_code failed;  // a folder of that name stays
+      if (std::filesystem::remove(path, failed)) removed += (removed.empty() ? "" : ", ") + path;
+    }
+    if (!removed.empty()) progress_.say("removed what an earlier run left: " + removed);
   }
 
   /// What CLEAN found, on the sky.
