@@ -6,7 +6,7 @@ namespace misfit::imager {
 
 /// 1.4826 × the median absolute deviation from the median: the standard deviation of the noise where few pixels hold sources.
 /// Pixels that are not finite do not count.
-double robust_noise(const Image& image);
+double robust_noise(const Image& image, int threads = 1);
 
 /// √(mean of squares) of the pixels that are not NaN; 0 where there are none.
 double root_mean_square(const Image& image);

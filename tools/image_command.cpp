@@ -48,6 +48,7 @@ class ImageRun {
     make_dirty();
     if (o_.verify > 0) verify();
     choose_beams();
+    begin_products();
     if (o_.niter > 0) clean();
     release_visibilities();
     write_images();
@@ -172,8 +173,26 @@ class ImageRun {
     for (const std::string& warning : beams_.warnings) warn(warning);
   }
 
+  /// Pictures of what is there before CLEAN are drawn meanwhile; where the mask will lie may not be known yet.
+  void begin_products() {
+    const imager::StageTimer timer(times_, "draw pictures");
+    products_ = std::make_unique<ImageProducts>(o_.imagename, geometry_, set_->observation(), o_.accuracy);
+    products_->set_history(report_.command_line);
+    products_->set_cards(error_cards(report_));
+    if (beams_.restoring) products_->set_beam(*beams_.restoring);
+    products_->draw({{.name = "psf", .title = "PSF", .image = &made_.images.psf}});
+    if (!clean_) return;
+    if (o_.usemask == "auto")
+      dirty_ = sketch(made_.images.dirty, Shades::brightness, picture_side);
+    else
+      products_->draw({dirty_picture(nullptr, clean_->mask())});
+  }
+
+  ProductPicture dirty_picture(const Sketch* sketch, const imager::Image* mask) const {
+    return {.name = "dirty", .title = "Dirty image", .image = &made_.images.dirty, .sketch = sketch, .mask = mask};
+  }
+
   void clean() {
-    sketch_dirty();
     progress_.begin("CLEAN", true);
     cleaned_ = std::make_unique<imager::CleanResult>(clean_->run(
         {*source_, *made_.transform, made_.images, *beams_.main_lobe, theory_.expected_rms}, report_.options, progress(),
@@ -195,16 +214,9 @@ class ImageRun {
            significant(100 * cleaned_->report.max_sidelobe, 2) + " % of the PSF's peak");
   }
 
-  /// So that CLEAN need not keep the whole image for its picture.
-  void sketch_dirty() {
-    const imager::StageTimer timer(times_, "draw pictures");
-    dirty_ = sketch(made_.images.dirty, Shades::brightness, picture_side);
-  }
-
   /// They make room for the pictures, and are closed before a column is written.
   void release_visibilities() {
     source_.reset();
-    observation_ = set_->observation();
     set_.reset();
     made_.transform.reset();
   }
@@ -221,29 +233,42 @@ class ImageRun {
   }
 
   void write_images() {
-    products_ = std::make_unique<ImageProducts>(o_.imagename, geometry_, observation_, o_.accuracy);
-    products_->set_history(report_.command_line);
-    products_->set_cards(error_cards(report_));
-    if (beams_.restoring) products_->set_beam(*beams_.restoring);
-    products_->add({"psf", "PSF", "Jy/beam"}, std::move(made_.images.psf));
+    products_->add("psf", "Jy/beam", std::move(made_.images.psf));
     if (!cleaned_) {
-      products_->add({"residual", "Dirty image", "Jy/beam"}, std::move(made_.images.dirty));
+      products_->draw({{.name = "residual", .title = "Dirty image", .image = &made_.images.dirty}});
+      products_->add("residual", "Jy/beam", std::move(made_.images.dirty));
     } else {
-      const imager::StageTimer timer(times_, "restore");
-      imager::Image restored = imager::convolve_with_beam(cleaned_->model, *beams_.restoring, geometry_.cell_rad, threads_);
-      for (std::size_t i = 0; i < restored.pixel.size(); ++i) restored.pixel[i] += cleaned_->residual.pixel[i];
-      imager::Image model = o_.savemodel == "none" ? std::move(cleaned_->model) : cleaned_->model;
-      products_->add({"model", "Model", "Jy/pixel", Shades::about_zero}, std::move(model));
-      products_->add_picture({"dirty", "Dirty image", "Jy/beam"}, std::move(dirty_));
-      products_->add({"residual", "Residual", "Jy/beam", Shades::about_zero}, std::move(cleaned_->residual));
-      if (!cleaned_->mask.pixel.empty()) products_->add({"mask", "", ""}, std::move(cleaned_->mask));
-      products_->add({"image", "Restored image", "Jy/beam"}, std::move(restored));
+      add_cleaned(restored());
     }
-    drawing_ = std::make_unique<PictureDrawing>(products_->pictures());
     const imager::StageTimer timer(times_, "write images");
     remove_old_products();
     products_->write();
     if (cleaned_) write_component_list(o_.imagename + ".components.csv", sources(), geometry_.phase_centre);
+  }
+
+  imager::Image restored() {
+    const imager::StageTimer timer(times_, "restore");
+    imager::Image sum = imager::convolve_with_beam(cleaned_->model, *beams_.restoring, geometry_.cell_rad, threads_);
+    for (std::size_t i = 0; i < sum.pixel.size(); ++i) sum.pixel[i] += cleaned_->residual.pixel[i];
+    return sum;
+  }
+
+  void add_cleaned(imager::Image restored) {
+    imager::CleanResult& made = *cleaned_;
+    {
+      const imager::StageTimer timer(times_, "draw pictures");
+      const imager::Image* const mask = made.mask.pixel.empty() ? nullptr : &made.mask;
+      std::vector<ProductPicture> pictures;
+      if (o_.usemask == "auto") pictures.push_back(dirty_picture(&dirty_, mask));
+      pictures.push_back({"model", "Model", "Jy/pixel", Shades::about_zero, &made.model, nullptr, mask});
+      pictures.push_back({"residual", "Residual", "Jy/beam", Shades::about_zero, &made.residual, nullptr, mask});
+      pictures.push_back({"image", "Restored image", "Jy/beam", Shades::brightness, &restored, nullptr, mask});
+      products_->draw(pictures);
+    }
+    products_->add("model", "Jy/pixel", o_.savemodel == "none" ? std::move(made.model) : made.model);
+    products_->add("residual", "Jy/beam", std::move(made.residual));
+    if (!made.mask.pixel.empty()) products_->add("mask", "", std::move(made.mask));
+    products_->add("image", "Jy/beam", std::move(restored));
   }
 
   /// What an earlier run of this name left and this one does not make.
@@ -274,10 +299,10 @@ class ImageRun {
     std::vector<PagePicture> pictures;
     {
       const imager::StageTimer timer(times_, "draw pictures");
-      const std::string failure = drawing_->finish();
+      const std::string failure = products_->finish_pictures();
       if (!failure.empty()) warn(failure);
       if (failure.empty())
-        for (const Picture& picture : products_->pictures()) pictures.push_back({picture.title, read_file(picture.path)});
+        for (const auto& [title, path] : products_->pictures()) pictures.push_back({title, read_file(path)});
     }
     report_.wall_clock_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
     const nlohmann::json json = report_json(report_);
@@ -313,7 +338,6 @@ class ImageRun {
   RunReport report_;
 
   std::unique_ptr<ms_io::MeasurementSet> set_;
-  imager::Observation observation_;
   imager::ImageGeometry geometry_;
   imager::UvwReach reach_;
   std::unique_ptr<CleanStage> clean_;  ///< null without CLEAN, and after it
@@ -323,10 +347,9 @@ class ImageRun {
   imager::TheoreticalError theory_;
   imager::MeasuredError measured_;
   BeamChoice beams_;
-  Sketch dirty_;  ///< what is left of the dirty image when CLEAN is over
+  Sketch dirty_;  ///< what is left of the dirty image when CLEAN is over, where its mask was not known before
   std::unique_ptr<imager::CleanResult> cleaned_;
   std::unique_ptr<ImageProducts> products_;
-  std::unique_ptr<PictureDrawing> drawing_;  ///< of the products
 };
 
 }  // namespace

@@ -1,6 +1,5 @@
 #include "tools/image_products.h"
 
-#include <algorithm>
 #include <cmath>
 
 namespace misfit::tools {
@@ -36,35 +35,31 @@ void ImageProducts::set_beam(const imager::Beam& beam) {
   common_.beam = beam;
 }
 
-void ImageProducts::add(const ProductKind& kind, imager::Image image) {
-  products_.push_back({kind, common_, {}});
-  products_.back().image.unit = kind.unit;
-  products_.back().image.image = std::move(image);
-}
-
-void ImageProducts::add_picture(const ProductKind& kind, Sketch sketch) {
-  add(kind, {});
-  products_.back().sketch = std::move(sketch);
+void ImageProducts::add(const std::string& name, const std::string& unit, imager::Image image) {
+  files_.push_back({imagename_ + "." + name + ".fits", common_});
+  files_.back().image.unit = unit;
+  files_.back().image.image = std::move(image);
 }
 
 void ImageProducts::write() const {
-  for (const Product& product : products_)
-    if (!product.sketch) imager::write_fits(product.image, path(product, "fits"), format_);
+  for (const File& file : files_) imager::write_fits(file.image, file.path, format_);
 }
 
-std::vector<Picture> ImageProducts::pictures() const {
-  const auto mask = std::find_if(products_.begin(), products_.end(), [](const Product& p) { return p.kind.name == "mask"; });
+void ImageProducts::draw(const std::vector<ProductPicture>& pictures) {
+  std::vector<imager::SkyImage> about(pictures.size(), common_);
   std::vector<Picture> wanted;
-  for (auto product = products_.rbegin(); product != products_.rend(); ++product) {
-    if (product->kind.title.empty()) continue;
-    wanted.push_back({.image = &product->image,
-                      .title = product->kind.title,
-                      .path = path(*product, "png"),
-                      .shades = product->kind.shades,
-                      .sketch = product->sketch ? &*product->sketch : nullptr,
-                      .mask = mask != products_.end() && product->kind.name != "psf" ? &mask->image.image : nullptr});
+  for (std::size_t i = 0; i < pictures.size(); ++i) {
+    const ProductPicture& picture = pictures[i];
+    const std::string path = imagename_ + "." + picture.name + ".png";
+    about[i].unit = picture.unit;
+    titles_and_paths_.emplace_back(picture.title, path);
+    wanted.push_back({&about[i], picture.title, path, picture.shades, picture.image, picture.sketch, picture.mask});
   }
-  return wanted;
+  drawing_.add(wanted);
+}
+
+std::vector<std::pair<std::string, std::string>> ImageProducts::pictures() const {
+  return {titles_and_paths_.rbegin(), titles_and_paths_.rend()};
 }
 
 }  // namespace misfit::tools

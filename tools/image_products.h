@@ -1,7 +1,7 @@
 #pragma once
 
-#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "imager/fits_image.h"
@@ -13,15 +13,18 @@ namespace misfit::tools {
 /// Header cards for the errors that are known.
 std::vector<imager::HeaderCard> error_cards(const RunReport& report);
 
-/// What one image of a run is.
-struct ProductKind {
-  std::string name;   ///< the middle of its files' names
-  std::string title;  ///< of its picture; without one it is not drawn
-  std::string unit;
+/// What one picture of a run shows.
+struct ProductPicture {
+  std::string name;  ///< the middle of its file's name
+  std::string title;
+  std::string unit = "Jy/beam";
   Shades shades = Shades::brightness;
+  const imager::Image* image = nullptr;
+  const Sketch* sketch = nullptr;       ///< in place of an image that is gone
+  const imager::Image* mask = nullptr;  ///< outlined
 };
 
-/// The images of a run, as files and as pictures. What is set applies to images added afterwards.
+/// The images of a run, as files and as pictures. What is set applies to those that come afterwards.
 class ImageProducts {
  public:
   /// Files are 64-bit when the accuracy asked is below 1e-7, 32-bit otherwise.
@@ -31,30 +34,30 @@ class ImageProducts {
   void set_history(const std::string& line) { common_.history = {line}; }
   void set_cards(std::vector<imager::HeaderCard> cards) { common_.cards = std::move(cards); }
   void set_beam(const imager::Beam& beam);
-  void add(const ProductKind& kind, imager::Image image);
-  /// A picture of an image that is gone, and has no file.
-  void add_picture(const ProductKind& kind, Sketch sketch);
 
-  /// Writes <imagename>.<kind>.fits for each image.
+  /// An image for write(), as <imagename>.<name>.fits.
+  void add(const std::string& name, const std::string& unit, imager::Image image);
   void write() const;
-  /// Pictures to draw as <imagename>.<kind>.png, the last added first; they last as long as these products.
-  /// An image of kind "mask" is outlined in all of them but the PSF.
-  std::vector<Picture> pictures() const;
+
+  /// Begins to draw <imagename>.<name>.png while the caller does other things; images are looked at until it returns.
+  void draw(const std::vector<ProductPicture>& pictures);
+  /// Returns what PictureDrawing::finish() does.
+  std::string finish_pictures() { return drawing_.finish(); }
+  /// Title and path of each picture, the last first.
+  std::vector<std::pair<std::string, std::string>> pictures() const;
 
  private:
-  struct Product {
-    ProductKind kind;
+  struct File {
+    std::string path;
     imager::SkyImage image;
-    std::optional<Sketch> sketch;  ///< where there is no image
   };
-  std::string path(const Product& product, const std::string& extension) const {
-    return imagename_ + "." + product.kind.name + "." + extension;
-  }
 
   std::string imagename_;
   imager::PixelFormat format_;
   imager::SkyImage common_;
-  std::vector<Product> products_;
+  std::vector<File> files_;
+  PictureDrawing drawing_;
+  std::vector<std::pair<std::string, std::string>> titles_and_paths_;
 };
 
 }  // namespace misfit::tools

@@ -1,3 +1,5 @@
+#include <malloc.h>
+
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
@@ -12,6 +14,13 @@ namespace {
 
 enum ExitCode { done = 0, unusable_data = 1, wrong_usage = 2, stopped_by_user = 130 };
 
+/// Pages fresh from the system are as dear as what is done with them: images of every major cycle lie where those before lay.
+/// The largest blocks that glibc takes from its heap are of 32 MiB.
+void keep_memory() {
+  mallopt(M_MMAP_THRESHOLD, 32 << 20);
+  mallopt(M_TRIM_THRESHOLD, 256 << 20);
+}
+
 int fail(const char* message, ExitCode code) {
   std::fprintf(stderr, "misfit: %s\n", message);
   return code;
@@ -21,6 +30,7 @@ int fail(const char* message, ExitCode code) {
 
 int main(int argc, char** argv) {
   using namespace misfit::tools;
+  keep_memory();
   setenv("HOME", "/", 0);  // casacore looks for its settings there, and ends where there is none
   CLI::App program("misfit images radio-interferometry MeasurementSets with least-misfit gridding functions", "misfit");
   program.set_version_flag("--version", "misfit " + std::string(version));

@@ -218,7 +218,8 @@ void write_scale_bar(std::ostream& script, const Scene& scene) {
 }  // namespace
 
 void write_picture_script(const Picture& picture, const fs::path& folder) {
-  const Sketch made = picture.sketch != nullptr ? *picture.sketch : sketch(picture.image->image, picture.shades, picture_side);
+  const imager::Image& pixels = picture.pixels != nullptr ? *picture.pixels : picture.image->image;
+  const Sketch made = picture.sketch != nullptr ? *picture.sketch : sketch(pixels, picture.shades, picture_side);
   const Scene scene = scene_of(picture, made);
   write_shades(folder / "data", scene);
 

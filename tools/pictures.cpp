@@ -1,9 +1,10 @@
 #include "tools/pictures.h"
 
 #include <filesystem>
-#include <fstream>
 #include <future>
 
+#include "imager/parallel.h"
+#include "tools/files.h"
 #include "tools/gnuplot.h"
 #include "tools/picture_script.h"
 
@@ -12,14 +13,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Whether a PNG file is there to its last chunk, IEND; gnuplot says nothing when the disk is full.
-bool is_complete(const fs::path& path) {
-  const std::string end("IEND\xae\x42\x60\x82", 8);
-  std::ifstream file(path, std::ios::binary);
-  file.seekg(-static_cast<std::streamoff>(end.size()), std::ios::end);
-  std::string last(end.size(), '\0');
-  file.read(last.data(), static_cast<std::streamsize>(last.size()));
-  return file && last == end;
+/// Whether a PNG file ends with its last chunk, IEND; gnuplot says nothing when the disk is full.
+bool is_complete(const std::string& png) {
+  return png.ends_with(std::string("IEND\xae\x42\x60\x82", 8));
 }
 
 }  // namespace
@@ -28,38 +24,59 @@ bool is_complete(const fs::path& path) {
 struct PictureDrawing::Sheet {
   std::string path;
   std::unique_ptr<WorkFolder> work;
+  std::string png;  ///< the file's bytes
   std::future<std::string> failure;
 
-  explicit Sheet(const Picture& picture)
-      : path(picture.path), failure(std::async(std::launch::async, [this, picture] { return draw(picture); })) {}
-
-  std::string draw(const Picture& picture) {
-    work = std::make_unique<WorkFolder>(fs::absolute(picture.path).parent_path());
-    write_picture_script(picture, work->path());
-    return run_gnuplot(*work);
+  explicit Sheet(const Picture& picture) : path(picture.path) {
+    try {
+      work = std::make_unique<WorkFolder>(fs::absolute(path).parent_path());
+      write_picture_script(picture, work->path());
+      failure = std::async(std::launch::async, [this] { return draw(); });
+    } catch (const std::exception& error) {  // a picture less is no reason to lose a run
+      std::promise<std::string> reason;
+      reason.set_value(error.what());
+      failure = reason.get_future();
+    }
   }
-  fs::path drawn() const { return work->path() / "png"; }
+  ~Sheet() {
+    if (failure.valid()) failure.wait();
+  }
+
+  /// Leaves nothing on the disk, where a run that is killed could leave it for good.
+  std::string draw() {
+    std::string reason = run_gnuplot(*work);
+    const fs::path drawn = work->path() / "png";
+    if (reason.empty() && fs::exists(drawn)) png = read_file(drawn);
+    work.reset();
+    return reason;
+  }
 };
 
-PictureDrawing::PictureDrawing(const std::vector<Picture>& pictures) {
-  for (const Picture& picture : pictures) sheets_.push_back(std::make_unique<Sheet>(picture));
-}
-
+PictureDrawing::PictureDrawing() = default;
 PictureDrawing::~PictureDrawing() = default;
+
+void PictureDrawing::add(const std::vector<Picture>& pictures) {
+  const std::size_t before = sheets_.size();
+  sheets_.resize(before + pictures.size());
+  imager::parallel_for(pictures.size(), static_cast<int>(pictures.size()),
+                       [&](std::size_t i) { sheets_[before + i] = std::make_unique<Sheet>(pictures[i]); });
+}
 
 std::string PictureDrawing::finish() {
   for (const auto& sheet : sheets_) {
     const std::string failure = sheet->failure.get();
-    if (!failure.empty()) return "Pictures are left out because " + failure + ".";
+    if (!failure.empty()) return "Pictures are left out: " + failure + ".";
   }
   for (const auto& sheet : sheets_)
-    if (!is_complete(sheet->drawn())) return "Pictures are left out because gnuplot could not finish them; is the disk full?";
-  for (const auto& sheet : sheets_) fs::rename(sheet->drawn(), sheet->path);
+    if (!is_complete(sheet->png)) return "Pictures are left out: gnuplot could not finish them; is the disk full?";
+  for (const auto& sheet : sheets_) write_file(sheet->path, sheet->png);
   return "";
 }
 
 std::string draw_pictures(const std::vector<Picture>& pictures) {
-  return PictureDrawing(pictures).finish();
+  PictureDrawing drawing;
+  drawing.add(pictures);
+  return drawing.finish();
 }
 
 }  // namespace misfit::tools

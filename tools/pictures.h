@@ -20,20 +20,25 @@ struct Picture {
   std::string title;
   std::string path;  ///< of the PNG file; replaced when it exists
   Shades shades = Shades::brightness;
-  const Sketch* sketch = nullptr;       ///< of the image, of side picture_side, when its pixels are gone
-  const imager::Image* mask = nullptr;  ///< of the same pixels; what it allows is outlined in green
+  const imager::Image* pixels = nullptr;  ///< shown in place of the image's own
+  const Sketch* sketch = nullptr;         ///< of the image, of side picture_side, when its pixels are gone
+  const imager::Image* mask = nullptr;    ///< of the same pixels; what it allows is outlined in green
 };
 
-/// Draws pictures with gnuplot, found on PATH, each in a thread of its own while the caller does other things. Nothing appears
-/// before finish(), whose images, sketches and masks must last until then.
+/// Draws pictures with gnuplot, found on PATH, each in a thread of its own while the caller does other things. No file appears
+/// before finish().
 class PictureDrawing {
  public:
-  explicit PictureDrawing(const std::vector<Picture>& pictures);
+  PictureDrawing();
   PictureDrawing(PictureDrawing&&) = default;
   ~PictureDrawing();
 
+  /// Images, sketches and masks are looked at until it returns.
+  void add(const std::vector<Picture>& pictures);
+
   /// Returns an empty string when all files are there and complete, or in one sentence why there are none (gnuplot is not
-  /// installed, or failed). Throws std::runtime_error that names the folder of a picture when it cannot be written.
+  /// installed, or failed; a folder cannot be written). Throws std::runtime_error that names the picture when it cannot be
+  /// written.
   std::string finish();
 
  private:

@@ -96,7 +96,7 @@ class Run {
   /// What the residual is now.
   void measure(MajorCycle& cycle) {
     const StageTimer timer(times_, "statistics");
-    cycle.rms_jy = robust_noise(*residual_);
+    cycle.rms_jy = robust_noise(*residual_, o_.threads);
     cycle.peak_residual_jy = peak_within_mask();
     cycle.mean_square_jy2 = std::pow(root_mean_square(*residual_), 2);
     cycle.model_flux_jy = state_.model.flux_jy();

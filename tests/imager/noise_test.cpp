@@ -1,8 +1,10 @@
 #include "imager/noise.h"
 
+#include <algorithm>
 #include <boost/test/unit_test.hpp>
 #include <cmath>
 #include <limits>
+#include <vector>
 
 #include "tests/imager/comparison.h"
 
@@ -32,6 +34,31 @@ BOOST_AUTO_TEST_CASE(an_image_of_one_value_has_none) {
   std::fill(image.pixel.begin(), image.pixel.end(), -2.0);
   BOOST_TEST(robust_noise(image) == 0);
   BOOST_TEST(robust_noise(Image()) == 0);
+}
+
+BOOST_AUTO_TEST_CASE(the_middle_value_is_found_where_samples_of_the_image_mislead) {
+  // In an image of this size every 16th pixel is looked at first.
+  const int width = 256;
+  Image image(width, width);
+  for (std::size_t i = 0; i < image.pixel.size(); ++i) image.pixel[i] = i % 16 == 0 ? 100 : static_cast<double>(i % 3);
+  // Of the others a third each is 0, 1 and 2, so that the median is 1, and two thirds of deviations are 1.
+  for (const int threads : {1, 2}) BOOST_TEST(robust_noise(image, threads) == 1.4826);
+}
+
+BOOST_AUTO_TEST_CASE(threads_do_not_change_it) {
+  Image image = random_image(700, 500, 3);
+  image.at(3, 5) = std::numeric_limits<double>::infinity();
+  std::vector<double> value;
+  for (const double pixel : image.pixel)
+    if (std::isfinite(pixel)) value.push_back(pixel);
+  const auto middle = [&] {
+    std::sort(value.begin(), value.end());
+    return value[value.size() / 2];
+  };
+  const double centre = middle();
+  for (double& x : value) x = std::abs(x - centre);
+  const double expected = 1.4826 * middle();
+  for (const int threads : {1, 2, 3}) BOOST_TEST(robust_noise(image, threads) == expected);
 }
 
 BOOST_AUTO_TEST_CASE(the_peak_is_the_largest_magnitude_and_the_first_of_equals) {
