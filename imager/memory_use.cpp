@@ -6,7 +6,7 @@
 namespace misfit::imager {
 namespace {
 
-constexpr double process_bytes = 72e6;  // 40 MB with the smallest images, and up to 27 MB that the allocator does not give back
+constexpr double process_bytes = 80e6;  // 40 MB with the smallest images, and up to 34 MB that the allocator does not give back
 constexpr double pixel_bytes = sizeof(double);
 constexpr double sample_bytes = sizeof(std::complex<float>) + sizeof(float);
 constexpr double row_bytes = 3 * sizeof(double);

@@ -127,7 +127,7 @@ void declare(CLI::App& command, ImageOptions& o) {
   command.add_option("--smallscalebias", o.smallscalebias, "The largest scale counts this part less than points");
   command.add_option("--niter", o.niter, "CLEAN components to find at most; 0 makes the dirty image");
   command.add_option("--gain", o.gain, "Part of a peak that a component takes");
-  command.add_option("--threshold", o.threshold, "Stop when the peak residual reaches this flux density");
+  command.add_option("--threshold", o.threshold, "Stop when the peak residual reaches this flux density, to 1%");
   command.add_option("--nsigma", o.nsigma, "Stop when it reaches this many times the noise; 0 = never");
   command.add_option("--cyclefactor", o.cyclefactor, "Minor cycles go down to the peak times the largest sidelobe times this");
   command.add_option("--minpsffraction", o.minpsffraction, "… at most this deep, as a part of the peak");

@@ -18,7 +18,7 @@ enum ExitCode { done = 0, unusable_data = 1, wrong_usage = 2, stopped_by_user = 
 /// The largest blocks that glibc takes from its heap are of 32 MiB.
 void keep_memory() {
   mallopt(M_MMAP_THRESHOLD, 32 << 20);
-  mallopt(M_TRIM_THRESHOLD, 256 << 20);
+  mallopt(M_TRIM_THRESHOLD, 32 << 20);
 }
 
 int fail(const char* message, ExitCode code) {

@@ -6,10 +6,8 @@
 namespace misfit::imager {
 namespace {
 
-/// The lowest level, not below `lowest`, above which so few pixels lie that a cache holds them: a 4096th of the peak higher at
-/// most.
-double level_for(const Image& residual, double lowest, double peak) {
-  constexpr std::size_t most = 65536;
+/// The lowest level, not below `lowest`, above which no more than `most` pixels lie: a 4096th of the peak higher at most.
+double level_for(const Image& residual, double lowest, double peak, std::size_t most) {
   constexpr int steps = 4096;
   if (!(peak > lowest)) return lowest;
   std::vector<std::size_t> count(steps);
@@ -25,9 +23,9 @@ double level_for(const Image& residual, double lowest, double peak) {
 
 }  // namespace
 
-ActivePixels::ActivePixels(const Image& residual, double stop_jy, const PsfCore& core) : core_(core) {
+ActivePixels::ActivePixels(const Image& residual, double stop_jy, const PsfCore& core, std::size_t most) : core_(core) {
   const double peak = largest_magnitude(residual);
-  level_jy_ = level_for(residual, std::max(stop_jy / 2, core.largest_outside() * peak), peak);
+  level_jy_ = level_for(residual, std::max(stop_jy / 2, core.largest_outside() * peak), peak, most);
   row_.resize(static_cast<std::size_t>(residual.height) + 1);
   for (int r = 0; r < residual.height; ++r) {
     row_[static_cast<std::size_t>(r)].first = value_.size();

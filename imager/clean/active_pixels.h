@@ -15,9 +15,11 @@ namespace misfit::imager {
 class ActivePixels {
  public:
   /// The pixels of `residual` for a search down to `stop_jy`: those above half of that (fainter ones hardly rise above it
-  /// before all are chosen anew) and above what the sidelobes outside the core make of the peak. No more of them than some
-  /// number that fits a cache: then those above a higher level. NaN is left out. `core` must outlive this.
-  ActivePixels(const Image& residual, double stop_jy, const PsfCore& core);
+  /// before all are chosen anew) and above what the sidelobes outside the core make of the peak. No more of them than
+  /// `most`: then those above a higher level. NaN is left out. `core` must outlive this.
+  ActivePixels(const Image& residual, double stop_jy, const PsfCore& core, std::size_t most = fit_a_cache);
+
+  static constexpr std::size_t fit_a_cache = 65536;
 
   const PsfCore& core() const { return core_; }
   /// No pixel left out is brighter.

@@ -123,7 +123,7 @@ class Run {
       return Ending{CleanStop::empty_mask,
                     o_.automask ? "nothing in the residual exceeds the mask's thresholds" : "the mask allows no pixel"};
     if (o_.stop_requested && o_.stop_requested()) return Ending{CleanStop::user, "stopped by the user"};
-    if (now().peak_residual_jy <= o_.threshold_jy)
+    if (now().peak_residual_jy <= (1 + threshold_tolerance) * o_.threshold_jy)
       return Ending{CleanStop::threshold, "the peak residual reached the threshold"};
     if (o_.nsigma > 0 && now().peak_residual_jy <= o_.nsigma * now().rms_jy)
       return Ending{CleanStop::nsigma, "the peak residual reached nsigma times the noise"};

@@ -13,11 +13,15 @@
 
 namespace misfit::imager {
 
+/// By how much of the threshold a residual may exceed it in the end, as in tclean: a major cycle takes as long for the last
+/// hundredth as for the first half.
+constexpr double threshold_tolerance = 0.01;
+
 /// Parameters of CLEAN with the names and meaning of CASA's tclean.
 struct CleanOptions {
   int max_iterations = 0;          ///< niter
   double gain = 0.1;               ///< part of a peak that a component takes
-  double threshold_jy = 0;         ///< stop when the peak residual is not above it
+  double threshold_jy = 0;         ///< stop when the peak residual exceeds it by threshold_tolerance at most
   double nsigma = 0;               ///< or not above this many times the robust noise
   double cycle_factor = 1;         ///< a minor cycle goes down to the peak × largest sidelobe × cycle factor …
   double min_psf_fraction = 0.05;  ///< … that fraction of the peak clamped to [min, max]

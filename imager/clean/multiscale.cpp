@@ -107,10 +107,11 @@ MinorCycleReport Multiscale::clean(const Image& residual, const MinorCycleOption
       break;
     }
     const Scale& scale = scale_[choice.scale];
+    const bool point = options_.scale_pixels[choice.scale] == 0;
     const double merit = std::min(merit_left * choice.merit, choice.next_merit);
-    const double stop = std::max(std::sqrt(merit * scale.psf_peak / scale.bias),
-                                 options_.scale_pixels[choice.scale] == 0 ? options.threshold_jy : 0);
-    ActivePixels active(choice.residual, stop, scale.core);
+    const double stop = std::max(std::sqrt(merit * scale.psf_peak / scale.bias), point ? options.threshold_jy : 0);
+    // A smooth residual has more bright pixels than fit a cache; yet to choose them anew, all being blurred again, costs more.
+    ActivePixels active(choice.residual, stop, scale.core, point ? ActivePixels::fit_a_cache : choice.residual.pixel.size());
     choice.residual = {};
     const auto before = static_cast<std::ptrdiff_t>(report.components.size());
     find_among(
