@@ -89,7 +89,7 @@ Multiscale::Choice Multiscale::choose(const Image& left, const std::vector<std::
 }
 
 MinorCycleReport Multiscale::clean(const Image& residual, const MinorCycleOptions& options) const {
-  constexpr double merit_left = 2.0 / 3;
+  constexpr double merit_left = 0.5;
   constexpr double least_merit = 0.01;  // of a point's at the threshold: no scale sees what is left
   require_size(residual, options);
   const std::vector<std::vector<bool>> allowed = places(residual, options.mask);
