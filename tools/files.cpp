@@ -30,8 +30,8 @@ void write_file(const std::string& path, const std::string& content) {
 }
 
 std::string read_file(const std::string& path) {
+  if (fs::is_directory(path)) throw std::runtime_error("cannot read " + path + ": it is a folder; expected a file");
   std::ifstream file(path, std::ios::binary);
-  file.peek();  // a folder opens, and fails here
   std::ostringstream content;
   content << file.rdbuf();
   if (!file.is_open() || file.bad()) throw std::runtime_error("cannot read " + path);

@@ -5,6 +5,7 @@
 #include <exception>
 #include <new>
 #include <stdexcept>
+#include <string>
 
 #include "tools/command.h"
 #include "tools/interrupt.h"
@@ -24,6 +25,20 @@ void keep_memory() {
 int fail(const char* message, ExitCode code) {
   std::fprintf(stderr, "misfit: %s\n", message);
   return code;
+}
+
+/// What the parser says of a value that is no number, "Could not convert: --option = value", with what was expected.
+std::string conversion_message(const std::string& said, const CLI::App& program) {
+  const std::string before = "Could not convert: ";
+  const std::size_t equals = said.find(" = ");
+  if (said.rfind(before, 0) != 0 || equals == std::string::npos) return said;
+  const std::string name = said.substr(before.size(), equals - before.size());
+  const CLI::App* command = &program;
+  while (!command->get_subcommands().empty()) command = command->get_subcommands().front();
+  const CLI::Option* option = command->get_option_no_throw(name);
+  if (option == nullptr) return said;
+  const bool fraction = option->get_type_name().find("FLOAT") != std::string::npos;
+  return name + ' ' + said.substr(equals + 3) + ": expected a " + (fraction ? "number" : "whole number");
 }
 
 }  // namespace
@@ -46,6 +61,8 @@ int main(int argc, char** argv) {
   try {
     program.parse(argc, argv);
     return done;
+  } catch (const CLI::ConversionError& error) {
+    return fail(conversion_message(error.what(), program).c_str(), wrong_usage);
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) return program.exit(error);
     return fail(error.what(), wrong_usage);

@@ -93,6 +93,8 @@ BOOST_AUTO_TEST_CASE(options_with_impossible_values_are_wrong_usage) {
   scene.usage("--kernel-width", "99", "not in [1, 20]");
   scene.usage("--padding", "0.5", "not in [1.02, 10]");
   scene.usage("--niter", "-1", "expected 0 or more");
+  scene.usage("--niter", "1e5", "--niter 1e5: expected a whole number");
+  scene.usage("--gain", "much", "--gain much: expected a number");
   scene.usage("--niter", "many", "");
   scene.usage("--gain", "0", "expected more than 0");
   scene.usage("--gain", "1.5", "at most 1");
@@ -132,6 +134,8 @@ BOOST_AUTO_TEST_CASE(data_that_cannot_be_used_are_named) {
   scene.unusable("--vis", scene.out, "expected the directory of a MeasurementSet");
   scene.unusable("--vis", MISFIT_PROGRAM, "expected the directory of a MeasurementSet");
   scene.unusable("--vis", snapshot() + "/ANTENNA", "not a MeasurementSet");
+  check_refused(scene.image("--mask", scene.out) + Arguments{"--niter", "10"}, 1,
+                {"cannot read " + scene.out + ": it is a folder; expected a file"}, scene.out);
   scene.unusable("--datacolumn", "CORRECTED_DATA", "columns with visibilities: DATA");
   scene.unusable("--datacolumn", "FLAG", "columns with visibilities: DATA");
   scene.unusable("--field", "nosuch", "No match");

@@ -51,10 +51,13 @@ BOOST_AUTO_TEST_CASE(links_are_followed_and_devices_are_not_replaced) {
 
 BOOST_AUTO_TEST_CASE(a_file_that_cannot_be_read_is_named) {
   const TemporaryFolder folder;
-  for (const std::string& path : {folder / "none", folder / ""}) {
-    BOOST_CHECK_EXCEPTION(read_file(path), std::runtime_error,
-                          [&](const std::exception& error) { return error.what() == "cannot read " + path; });
-  }
+  const auto says = [](const std::string& expected) {
+    return [expected](const std::exception& error) { return error.what() == expected; };
+  };
+  const std::string none = folder / "none", itself = folder / "";
+  BOOST_CHECK_EXCEPTION(read_file(none), std::runtime_error, says("cannot read " + none));
+  BOOST_CHECK_EXCEPTION(read_file(itself), std::runtime_error,
+                        says("cannot read " + itself + ": it is a folder; expected a file"));
 }
 
 BOOST_AUTO_TEST_CASE(the_folder_of_an_output_must_exist_and_be_no_table) {
