@@ -1,6 +1,7 @@
 #include "tools/model_image.h"
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <stdexcept>
 
@@ -30,11 +31,17 @@ void check_finite(const imager::SkyImage& model, const std::string& path) {
         throw std::runtime_error(path + " has pixels that are not finite; a model needs a number in each above the horizon");
 }
 
+/// Programs write it in upper and lower case.
+bool is_jy_per_pixel(std::string unit) {
+  for (char& letter : unit) letter = static_cast<char>(std::tolower(static_cast<unsigned char>(letter)));
+  return unit == "jy/pixel";
+}
+
 }  // namespace
 
 imager::SkyImage read_model(const std::string& path, const imager::SkyDirection& centre) {
   imager::SkyImage model = imager::read_fits(path);
-  if (model.unit != "Jy/pixel")
+  if (!is_jy_per_pixel(model.unit))
     throw std::runtime_error(path + " has the unit " + (model.unit.empty() ? "none" : model.unit) + ", expected Jy/pixel");
   check_centre(model, centre, path);
   check_finite(model, path);

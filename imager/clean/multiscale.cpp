@@ -12,6 +12,7 @@
 #include "imager/clean/gaussian_blur.h"
 #include "imager/clean/mask.h"
 #include "imager/noise.h"
+#include "imager/parallel.h"
 
 namespace misfit::imager {
 namespace {
@@ -30,6 +31,36 @@ void check(const MultiscaleOptions& o) {
 Image divided(Image image, double by) {
   for (double& pixel : image.pixel) pixel /= by;
   return image;
+}
+
+constexpr double none = std::numeric_limits<double>::quiet_NaN();
+
+/// The largest magnitude at `places`; other pixels become NaN.
+double peak_at(const std::vector<bool>& places, Image& image, int threads) {
+  const auto width = static_cast<std::size_t>(image.width);
+  std::vector<double> peak(static_cast<std::size_t>(image.height));
+  parallel_for(peak.size(), threads, [&](std::size_t row) {
+    for (std::size_t i = row * width; i < (row + 1) * width; ++i) {
+      if (places[i])
+        peak[row] = std::max(peak[row], std::abs(image.pixel[i]));
+      else
+        image.pixel[i] = none;
+    }
+  });
+  return *std::max_element(peak.begin(), peak.end());
+}
+
+/// A residual is smooth over the scale that it was convolved with, and as well fitted from every third pixel of fifteen: others
+/// than those become NaN, counted from the peak.
+void thin(Image& residual, double scale_pixels, int threads) {
+  const int step = static_cast<int>(scale_pixels / 5);
+  if (step < 2) return;
+  const Peak peak = find_peak(residual);
+  parallel_for(static_cast<std::size_t>(residual.height), threads, [&](std::size_t row) {
+    const int r = static_cast<int>(row);
+    for (int c = 0; c < residual.width; ++c)
+      if ((r - peak.row) % step != 0 || (c - peak.column) % step != 0) residual.at(r, c) = none;
+  });
 }
 
 }  // namespace
@@ -75,9 +106,7 @@ Multiscale::Choice Multiscale::choose(const Image& left, const std::vector<std::
   Choice best;
   for (std::size_t s = 0; s < scale_.size(); ++s) {
     Image residual = convolved(left, s);
-    for (std::size_t i = 0; i < residual.pixel.size(); ++i)
-      if (!places[s][i]) residual.pixel[i] = std::numeric_limits<double>::quiet_NaN();
-    const double peak = largest_magnitude(residual);
+    const double peak = peak_at(places[s], residual, options_.threads);
     const double merit = scale_[s].bias * peak * peak / scale_[s].psf_peak;
     if (merit <= best.merit) {
       best.next_merit = std::max(best.next_merit, merit);
@@ -110,6 +139,7 @@ MinorCycleReport Multiscale::clean(const Image& residual, const MinorCycleOption
     const bool point = options_.scale_pixels[choice.scale] == 0;
     const double merit = std::min(merit_left * choice.merit, choice.next_merit);
     const double stop = std::max(std::sqrt(merit * scale.psf_peak / scale.bias), point ? options.threshold_jy : 0);
+    thin(choice.residual, options_.scale_pixels[choice.scale], options_.threads);
     // A smooth residual has more bright pixels than fit a cache; yet to choose them anew, all being blurred again, costs more.
     ActivePixels active(choice.residual, stop, scale.core, point ? ActivePixels::fit_a_cache : choice.residual.pixel.size());
     choice.residual = {};

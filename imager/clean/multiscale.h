@@ -19,10 +19,10 @@ struct MultiscaleOptions {
 /// Multiscale CLEAN (Cornwell 2008, IEEE J. Sel. Top. Signal Process. 2, 793): components are Gaussians of several widths. With
 /// R_s the residual and P_ss the PSF's peak when they are convolved with the scale's unit Gaussian once and twice, a component
 /// at x of flux R_s(x)/P_ss takes R_s(x)²/P_ss off what the residual could lose; the scale for which that, times the bias, is
-/// largest comes next. Components of that scale are found as Clark's are, until its merit has fallen by a third and below that
-/// of the next best scale; then all scales are compared anew. A Gaussian is put only where nine tenths of it lie
-/// within the mask, and two of its widths within the image. Ends when `residual` itself, not its convolutions, reaches the
-/// threshold.
+/// largest comes next. Components of that scale are found as Clark's are, on every fifth part of the scale's width, until its
+/// merit has halved and fallen below that of the next best scale; then all scales are compared anew. A Gaussian is put only
+/// where nine tenths of it lie within the mask, and two of its widths within the image. Ends when `residual` itself, not its
+/// convolutions, reaches the threshold.
 class Multiscale : public MinorCycle {
  public:
   /// Throws std::invalid_argument when there is no scale, one is not finite or negative, they do not ascend, or the bias is not

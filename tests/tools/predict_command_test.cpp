@@ -70,6 +70,7 @@ BOOST_AUTO_TEST_CASE(a_model_image_predicts_what_its_components_do) {
   model.image.pixel.assign(model.image.pixel.size(), 0);
   model.image.at(32 - 7, 32 - 12) = 2;
   model.image.at(32 + 14, 32 + 21) = 1;
+  model.unit = "JY/PIXEL";  // as WSClean writes it
   imager::write_fits(model, copy.folder / "two.fits", imager::PixelFormat::float32);
   succeed({"predict", "--vis", copy.set, "--components", copy.folder / "two.csv", "--column", "CORRECTED_DATA"});
   for (const char* accuracy : {"1e-2", "1e-4", "1e-6"}) {
