@@ -2,6 +2,8 @@
 
 #include <filesystem>
 #include <future>
+#include <stdexcept>
+#include <system_error>
 
 #include "imager/parallel.h"
 #include "tools/files.h"
@@ -18,6 +20,13 @@ bool is_complete(const std::string& png) {
   return png.ends_with(std::string("IEND\xae\x42\x60\x82", 8));
 }
 
+fs::path temporary_folder() {
+  std::error_code absent;
+  fs::path folder = fs::temp_directory_path(absent);
+  if (absent) throw std::runtime_error("there is no folder for temporary files; expected one in TMPDIR");
+  return folder;
+}
+
 }  // namespace
 
 /// A picture being drawn.
@@ -29,7 +38,7 @@ struct PictureDrawing::Sheet {
 
   explicit Sheet(const Picture& picture) : path(picture.path) {
     try {
-      work = std::make_unique<WorkFolder>(fs::absolute(path).parent_path());
+      work = std::make_unique<WorkFolder>(temporary_folder());
       write_picture_script(picture, work->path());
       failure = std::async(std::launch::async, [this] { return draw(); });
     } catch (const std::exception& error) {  // a picture less is no reason to lose a run
@@ -42,7 +51,7 @@ struct PictureDrawing::Sheet {
     if (failure.valid()) failure.wait();
   }
 
-  /// Leaves nothing on the disk, where a run that is killed could leave it for good.
+  /// Leaves nothing on the disk while the run goes on, which may be killed.
   std::string draw() {
     std::string reason = run_gnuplot(*work);
     const fs::path drawn = work->path() / "png";

@@ -37,8 +37,8 @@ class PictureDrawing {
   void add(const std::vector<Picture>& pictures);
 
   /// Returns an empty string when all files are there and complete, or in one sentence why there are none (gnuplot is not
-  /// installed, or failed; a folder cannot be written). Throws std::runtime_error that names the picture when it cannot be
-  /// written.
+  /// installed, or failed; there is no folder for temporary files). Throws std::runtime_error that names the picture when it
+  /// cannot be written.
   std::string finish();
 
  private:

@@ -244,10 +244,26 @@ BOOST_AUTO_TEST_CASE(without_gnuplot_the_reason_is_returned) {
   BOOST_TEST(fs::is_empty(folder.path));
 }
 
-BOOST_AUTO_TEST_CASE(a_folder_that_is_not_there_is_named) {
+BOOST_AUTO_TEST_CASE(a_picture_that_cannot_be_written_is_named) {
   const SkyImage sky = sky_image(10, 10);
-  BOOST_TEST(draw_pictures({{&sky, "one", "/no such folder/one.png"}}) ==
-             "Pictures are left out: cannot write pictures in /no such folder.");
+  BOOST_CHECK_EXCEPTION(
+      draw_pictures({{&sky, "one", "/no such folder/one.png"}}), std::runtime_error,
+      [](const std::runtime_error& e) { return std::string(e.what()).find("/no such folder/one.png") != std::string::npos; });
+}
+
+BOOST_AUTO_TEST_CASE(without_a_place_to_work_the_reason_is_returned) {
+  const SkyImage sky = sky_image(10, 10);
+  const Folder folder;
+  const char* const before = std::getenv("TMPDIR");
+  const std::string kept = before == nullptr ? "" : before;
+  setenv("TMPDIR", "/no such folder", 1);
+  const std::string said = draw_pictures({{&sky, "one", folder.file("one.png")}});
+  if (before == nullptr)
+    unsetenv("TMPDIR");
+  else
+    setenv("TMPDIR", kept.c_str(), 1);
+  BOOST_TEST(said == "Pictures are left out: there is no folder for temporary files; expected one in TMPDIR.");
+  BOOST_TEST(fs::is_empty(folder.path));
 }
 
 BOOST_AUTO_TEST_SUITE_END()
