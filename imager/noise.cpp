@@ -99,7 +99,7 @@ double root_mean_square(const Image& image) {
   return std::sqrt(square / static_cast<double>(std::max<std::size_t>(pixels, 1)));
 }
 
-/// Several lanes, which the compiler makes one vector.
+/// In lanes, so that no comparison waits for the one before.
 Peak find_peak(const Image& image) {
   constexpr std::size_t lanes = 8;
   double largest[lanes];

@@ -39,7 +39,7 @@ ActivePixels::ActivePixels(const Image& residual, double stop_jy, const PsfCore&
   for (std::size_t r = 0; r + 1 < row_.size(); ++r) find_peak_of(r);
 }
 
-/// Several lanes, which the compiler makes one vector.
+/// In lanes, so that no comparison waits for the one before.
 void ActivePixels::find_peak_of(std::size_t row) {
   constexpr std::size_t lanes = 16;
   float peak[lanes];
