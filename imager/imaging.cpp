@@ -66,8 +66,14 @@ std::unique_ptr<AdjointSum> begin(const Transform& transform, bool with_psf, Sta
 
 /// Also frees the grid.
 AdjointResult finish(std::unique_ptr<AdjointSum> sum, StageTimes& times) {
-  const StageTimer timer(times, "fft");
-  return sum->finish();
+  AdjointResult result;
+  {
+    const StageTimer timer(times, "grid");
+    result = sum->finish();
+    sum.reset();
+  }
+  times.move("grid", "fft", result.fft_s);
+  return result;
 }
 
 /// Data − model. [block][row][channel]
@@ -147,7 +153,7 @@ Image make_residual_image(const VisibilitySource& source, const Transform& trans
   Pass pass(source, progress, times);
   std::unique_ptr<Prediction> prediction;
   {
-    const StageTimer timer(times, "fft");
+    const StageTimer timer(times, "degrid");
     prediction = transform.predict(model);
   }
   auto sum = begin(transform, false, times);
@@ -160,6 +166,7 @@ Image make_residual_image(const VisibilitySource& source, const Transform& trans
     const StageTimer timer(times, "grid");
     for (std::size_t b = 0; b < blocks.size(); ++b) sum->add(*blocks[b], residual[b]);
   });
+  times.move("degrid", "fft", prediction->fft_s());
   prediction.reset();
   AdjointResult result = finish(std::move(sum), times);
   divide(result.image, result.sums.weight);

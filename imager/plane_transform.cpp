@@ -10,6 +10,7 @@
 #include "imager/half_grid.h"
 #include "imager/horizon.h"
 #include "imager/parallel.h"
+#include "imager/stage_times.h"
 #include "imager/tile_walk.h"
 
 namespace misfit::imager {
@@ -90,10 +91,12 @@ class PlaneAdjoint : public AdjointSum {
   }
 
   AdjointResult finish() override {
+    const Stopwatch watch;
     AdjointResult result;
     result.sums = sums_;
     result.image = to_image(std::move(grid_.real), std::move(grid_.imaginary));
     if (!grid_.weight.empty()) result.psf = to_image(std::move(grid_.weight), {});
+    result.fft_s = watch.seconds();
     return result;
   }
 
@@ -167,6 +170,7 @@ template <typename Real>
 class PlanePrediction : public Prediction {
  public:
   PlanePrediction(const Setup<Real>& setup, const Image& model) : setup_(setup), grid_(setup.shape, false) {
+    const Stopwatch watch;
     if (!crosses_horizon(setup.geometry)) {
       image_to_grid(model, setup.correction, setup.threads, grid_);
     } else {
@@ -174,6 +178,7 @@ class PlanePrediction : public Prediction {
       set_beyond_horizon(setup.geometry, 0, seen);
       image_to_grid(seen, setup.correction, setup.threads, grid_);
     }
+    fft_s_ = watch.seconds();
   }
 
   std::vector<std::complex<double>> at(const SampleCoordinates& coordinates) const override {
@@ -184,6 +189,7 @@ class PlanePrediction : public Prediction {
   std::vector<std::complex<double>> at_usable(const VisibilityBlock& block) const override {
     return degrid(block, Wanted::usable);
   }
+  double fft_s() const override { return fft_s_; }
 
  private:
   std::vector<std::complex<double>> degrid(const VisibilityBlock& block, Wanted wanted) const {
@@ -226,6 +232,7 @@ class PlanePrediction : public Prediction {
 
   const Setup<Real>& setup_;
   HalfGrid<Real> grid_;
+  double fft_s_ = 0;
 };
 
 GridShape shape_of(const PlaneTransformOptions& o) {

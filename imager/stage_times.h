@@ -19,24 +19,39 @@ class StageTimes {
       }
     stages_.emplace_back(stage, seconds);
   }
+  /// Counts a part of one stage as another.
+  void move(const std::string& from, const std::string& to, double seconds) {
+    if (seconds == 0) return;
+    add(from, -seconds);
+    add(to, seconds);
+  }
   const std::vector<std::pair<std::string, double>>& stages() const { return stages_; }
 
  private:
   std::vector<std::pair<std::string, double>> stages_;
 };
 
+/// Seconds of wall clock since it was made.
+class Stopwatch {
+ public:
+  double seconds() const { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count(); }
+
+ private:
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
 /// Adds the time from its construction to its destruction.
 class StageTimer {
  public:
   StageTimer(StageTimes& times, std::string stage) : times_(times), stage_(std::move(stage)) {}
-  ~StageTimer() { times_.add(stage_, std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count()); }
+  ~StageTimer() { times_.add(stage_, watch_.seconds()); }
   StageTimer(const StageTimer&) = delete;
   StageTimer& operator=(const StageTimer&) = delete;
 
  private:
   StageTimes& times_;
   std::string stage_;
-  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+  Stopwatch watch_;
 };
 
 }  // namespace misfit::imager

@@ -30,6 +30,7 @@ struct AdjointResult {
   /// it is Σ w; empty unless it was asked for. It is NaN where w counts and that pixel lies beyond the horizon.
   Image psf;
   SampleSums sums;
+  double fft_s = 0;  ///< seconds of wall clock that FFTs and corrections took, as samples were added and at the end
 };
 
 /// The adjoint transform, accumulated block by block. Adding the same blocks in the same order gives the same bits.
@@ -56,6 +57,8 @@ class Prediction {
   virtual std::vector<std::vector<std::complex<double>>> at_usable_of(const std::vector<const VisibilityBlock*>& blocks) const;
   /// Samples that are best asked for together, where every call takes FFTs; 0 = any number.
   virtual std::size_t samples_at_once() const { return 0; }
+  /// Seconds of wall clock that FFTs and corrections have taken, from its making on.
+  virtual double fft_s() const { return 0; }
 };
 
 /// The linear operator A of interferometric imaging and its adjoint,

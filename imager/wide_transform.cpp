@@ -16,6 +16,7 @@
 #include "imager/stack_loops.h"
 #include "imager/stack_rows.h"
 #include "imager/stack_walk.h"
+#include "imager/stage_times.h"
 
 namespace misfit::imager {
 namespace {
@@ -168,14 +169,23 @@ class WideAdjoint : public AdjointSum {
               grid_tile({blocks, order, ordering}, tasks[i], slab.first, *buffer, stack);
               spares.give_back(std::move(buffer));
             });
-          rows.to_image(band.end * setup_.shape.tile);
+          transform([&] { rows.to_image(band.end * setup_.shape.tile); });
         }
-        rows.to_image(setup_.shape.rows());
-        stack_to_images(stack, f, slab.first, threads, images);
+        transform([&] {
+          rows.to_image(setup_.shape.rows());
+          stack_to_images(stack, f, slab.first, threads, images);
+        });
       }
     }
     gathered_.clear();
     samples_ = 0;
+  }
+
+  template <typename Step>
+  void transform(const Step& step) {
+    const Stopwatch watch;
+    step();
+    result_.fft_s += watch.seconds();
   }
 
   std::vector<RowRange> rows_of(const std::vector<std::vector<StackTask>>& colours) const {
@@ -277,6 +287,7 @@ class WidePrediction : public Prediction {
     return degrid(usable);
   }
   std::size_t samples_at_once() const override { return setup_.options.samples_at_once; }
+  double fft_s() const override { return fft_s_; }
 
  private:
   using Visibilities = std::vector<std::vector<std::complex<double>>>;  ///< [block][sample]
@@ -299,10 +310,10 @@ class WidePrediction : public Prediction {
       const StackOrder order = order_for_stack(blocks, ordering);
       for (const Slab& slab : slabs_of(order, most_planes(setup_, 1))) {
         stack.reserve(slab.planes);
-        image_to_stack(model_, f, slab.first, threads, stack);
+        transform([&] { image_to_stack(model_, f, slab.first, threads, stack); });
         StackRows<Real> rows(stack, f.facet.geometry.width, threads);
         for (const Band& band : bands_of(setup_.shape, stack.bytes_a_row())) {
-          rows.to_grid(band.end * setup_.shape.tile + setup_.shape.width);
+          transform([&] { rows.to_grid(band.end * setup_.shape.tile + setup_.shape.width); });
           for (const std::vector<StackTask>& tasks : tasks_of(order, setup_.shape, slab, ordering.width_w, band))
             parallel_for(tasks.size(), threads, [&](std::size_t i) {
               auto buffer = spares.take([&] { return std::make_unique<StackBuffer<Real>>(buffer_of(setup_, 1)); });
@@ -315,6 +326,13 @@ class WidePrediction : public Prediction {
     for (std::size_t b = 0; b < blocks.size(); ++b)
       for (std::size_t i = 0; i < halves.direct[b].size(); ++i) halves.direct[b][i] += std::conj(halves.mirrored[b][i]);
     return std::move(halves.direct);
+  }
+
+  template <typename Step>
+  void transform(const Step& step) const {
+    const Stopwatch watch;
+    step();
+    fft_s_ += watch.seconds();
   }
 
   void degrid_tile(const StackSamples& samples, const StackTask& task, int first_plane, const PlaneStack<Real>& stack,
@@ -346,6 +364,7 @@ class WidePrediction : public Prediction {
 
   const Setup<Real>& setup_;
   Image model_;
+  mutable double fft_s_ = 0;
 };
 
 template <typename Real>
