@@ -33,8 +33,41 @@ HWY_ATTR HWY_INLINE void evaluate_in_step(const TapTable<Real>& table, const Rea
     for (int k = 0; k < T::vectors; ++k) hn::Store(value[s][k], d, out + s * Padded + k * T::lanes);
 }
 
+template <typename Real, int Padded, int Degree>
+HWY_ATTR void look_up(const TapTable<Real>& table, const Real* t, int count, Real* out) {
+  using T = Taps<Real, Padded>;
+  const typename T::Tag d;
+  const Real* const mirrored = table.entry.data() + table.entry.size() / 2;
+  for (int i = 0; i < count; ++i, out += Padded) {
+    const auto [k, p] = kernels::LookupTable<Real>::place_in(*table.lookup, table.last, t[i]);
+    const Real* entry = (t[i] < 0 ? mirrored : table.entry.data()) + static_cast<std::ptrdiff_t>(k) * Padded;
+    const auto weight = kernels::newton_weights<Real, Degree>(p);
+    for (int v = 0; v < T::vectors; ++v, entry += T::lanes) {
+      auto sum = hn::Mul(hn::Set(d, weight[0]), hn::LoadU(d, entry));
+      for (int j = 1; j <= Degree; ++j)
+        sum = hn::MulAdd(hn::Set(d, weight[static_cast<std::size_t>(j)]), hn::LoadU(d, entry + j * Padded), sum);
+      hn::Store(sum, d, out + v * T::lanes);
+    }
+  }
+}
+
+template <typename Real, int Padded>
+HWY_ATTR void look_up_padded(const TapTable<Real>& table, const Real* t, int count, Real* out) {
+  switch (table.lookup->interpolation) {
+    case kernels::Interpolation::nearest:
+      return look_up<Real, Padded, 0>(table, t, count, out);
+    case kernels::Interpolation::linear:
+      return look_up<Real, Padded, 1>(table, t, count, out);
+    case kernels::Interpolation::quadratic:
+      return look_up<Real, Padded, 2>(table, t, count, out);
+    case kernels::Interpolation::cubic:
+      return look_up<Real, Padded, 3>(table, t, count, out);
+  }
+}
+
 template <typename Real, int Padded>
 HWY_ATTR void evaluate_padded(const TapTable<Real>& table, const Real* t, int count, Real* out) {
+  if (table.lookup) return look_up_padded<Real, Padded>(table, t, count, out);
   constexpr int samples = Taps<Real, Padded>::vectors == 1 ? 8 : Taps<Real, Padded>::vectors <= 4 ? 4 : 1;
   int i = 0;
   for (; i + samples <= count; i += samples) evaluate_in_step<Real, Padded, samples>(table, t + i, out + i * Padded);

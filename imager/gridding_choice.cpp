@@ -9,6 +9,7 @@
 #include "imager/extent.h"
 #include "imager/fft.h"
 #include "kernels/cheapest_polynomial.h"
+#include "kernels/evaluation.h"
 
 namespace misfit::imager {
 namespace {
@@ -24,7 +25,7 @@ constexpr std::array<double, 7> usual_w_paddings{40, 10, 4, 2.5, 2.0, 1.6, 1.3};
 /// Makes each kernel once.
 class KernelShelf {
  public:
-  explicit KernelShelf(const GriddingRequest& request) : family_(request.kernel) {}
+  explicit KernelShelf(const GriddingRequest& request) : family_(request.kernel), lookup_(request.lookup) {}
 
   /// Over `pixels` of an FFT of a given size.
   const AxisKernel& axis(int width, int pixels, int fft_size) {
@@ -44,11 +45,13 @@ class KernelShelf {
     if (found != shelf_.end()) return found->second;
     AxisKernel axis{family_.make(key[0], std::clamp(x0, family_.min_x0, family_.max_x0)), {}, 1};
     axis.misfit = misfit_of(axis.kernel);
+    if (lookup_) axis.misfit = kernels::judge_table(axis.kernel.polynomial, axis.misfit, *lookup_, x0);
     axis.noise_gain = kernels::noise_gain(axis.kernel.polynomial, axis.kernel.x0);
     return shelf_.emplace(key, axis).first->second;
   }
 
   kernels::KernelFamily family_;
+  std::optional<kernels::TableOptions> lookup_;
   std::map<std::array<int, 3>, AxisKernel> shelf_;
 };
 
@@ -66,7 +69,10 @@ class Search {
 
   GriddingChoice run() {
     for (const Precision precision : {Precision::single_precision, Precision::double_precision}) {
-      if (precision == Precision::single_precision && request_.accuracy != 0 && request_.accuracy < single_from) continue;
+      if (request_.precision
+              ? precision != *request_.precision
+              : precision == Precision::single_precision && request_.accuracy != 0 && request_.accuracy < single_from)
+        continue;
       search(precision);
       if (best_ && request_.accuracy == 0) break;
     }
@@ -170,7 +176,7 @@ class Search {
   bool costs_less(const GriddingCandidate& c) const { return !best_ || c.cost_s < best_->cost_s; }
   /// Where no accuracy is asked, single precision must not be what limits it.
   bool trusted(const GriddingCandidate& c) const {
-    if (c.work.precision == Precision::double_precision || request_.accuracy != 0) return true;
+    if (c.work.precision == Precision::double_precision || request_.accuracy != 0 || request_.precision) return true;
     return c.worst_error >= single_from && c.rounding < 0.1 * c.worst_error;
   }
   void offer(const GriddingCandidate& c) {
@@ -275,16 +281,18 @@ class Search {
     return cheapest ? *cheapest : *most_exact;
   }
 
-  /// With the polynomials of lowest degree that cost less than half a percent of the squared error.
+  /// With the polynomials of lowest degree that cost less than half a percent of the squared error, rounding counted in.
   GriddingCandidate simplified(const GriddingCandidate& exact) const {
-    if (request_.kernel.min_width == request_.kernel.max_width) {  // somebody's own: used as it is
+    const bool somebodys_own = request_.kernel.min_width == request_.kernel.max_width;
+    if (somebodys_own || request_.lookup || !request_.shortest_polynomials) {
       GriddingCandidate same = exact;
       same.work.degree = exact.u.kernel.polynomial.degree();
       return same;
     }
     GriddingCandidate simple = exact;
-    const auto cut = [](AxisKernel& axis) {
-      constexpr double excess = 0.005;
+    const double rounding2 = exact.rounding * exact.rounding / 2;  // of one axis, which hides what is smaller
+    const auto cut = [&](AxisKernel& axis) {
+      const double excess = 0.005 * (1 + rounding2 / std::max(axis.kernel.misfit.mean, 1e-40));
       axis.kernel.polynomial = kernels::cheapest_polynomial(axis.kernel, excess);
       axis.kernel.misfit = kernels::judge(axis.kernel.polynomial, axis.kernel.x0);
     };

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "imager/cost_model.h"
@@ -26,8 +27,11 @@ struct GriddingRequest {
   double psf_accuracy = 0;    ///< of a PSF that may have a transform of its own; 0 = the accuracy
   int threads = 1;
   Gridder gridder = Gridder::automatic;
-  double max_abs_w = 0;                                                  ///< largest |w| of the samples, in wavelengths
-  bool facets = true;                                                    ///< a w axis may split the image
+  double max_abs_w = 0;                         ///< largest |w| of the samples, in wavelengths
+  std::optional<Precision> precision;           ///< of taps, grid and FFT; chosen where there is none
+  bool shortest_polynomials = true;             ///< of the lowest degree that costs less than half a percent of E
+  std::optional<kernels::TableOptions> lookup;  ///< tables of the full polynomials in their place
+  bool facets = true;                           ///< a w axis may split the image
   std::size_t stack_bytes = WideTransformOptions().stack_bytes;          ///< memory for w planes
   std::size_t samples_at_once = WideTransformOptions().samples_at_once;  ///< that a w axis gathers
 };

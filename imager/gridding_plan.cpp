@@ -64,6 +64,8 @@ Plan decisions_of(const GriddingRequest& request, const GriddingPlan& plan) {
                                                              : "worst position within a cell, or pixel at the corner, gives " +
                                                                    text("%.2g", plan.worst_error) + ", accuracy asked " +
                                                                    text("%.2g", request.accuracy);
+  const std::string because_evaluation =
+      request.lookup || !request.shortest_polynomials ? "as asked" : "adds less than 0.5% to the kernel's squared error";
   const GriddingWork& work = plan.choice.best.work;
   const double single_rounding = plan.rounding * unit_rounding(Precision::single_precision, work.samples) /
                                  unit_rounding(Precision::double_precision, work.samples);
@@ -74,13 +76,13 @@ Plan decisions_of(const GriddingRequest& request, const GriddingPlan& plan) {
       {"kernel width", std::to_string(o.kernel_u.width()), because_accuracy},
       {"FFT size", times(o.nu, o.nv),
        "padding " + text("%.3f", plan.choice.best.padding_u) + " along u is the cheapest that keeps the accuracy" + others},
-      {"kernel evaluation", "polynomials of degree " + std::to_string(o.kernel_u.polynomial.degree()),
-       "adds less than 0.5% to the kernel's squared error"},
+      {"kernel evaluation", evaluation_of(o), because_evaluation},
       {"precision of grid and FFT", single ? "single" : "double",
-       single ? "rounding adds " + text("%.1g", plan.rounding)
-              : "single precision would add " + text("%.1g", single_rounding) + " of rounding" +
-                    (request.accuracy < single_from ? ", and is not trusted below " + text("%.0e", single_from)
-                                                    : ", or cost more")},
+       request.precision ? "as asked; rounding adds " + text("%.1g", plan.rounding)
+       : single          ? "rounding adds " + text("%.1g", plan.rounding)
+                         : "single precision would add " + text("%.1g", single_rounding) + " of rounding" +
+                      (request.accuracy < single_from ? ", and is not trusted below " + text("%.0e", single_from)
+                                                      : ", or cost more")},
   };
   const Plan of_w = w_decisions(request, plan.choice);
   decisions.insert(decisions.end(), of_w.begin(), of_w.end());
@@ -113,6 +115,13 @@ void check_request(const GriddingRequest& request) {
     throw std::invalid_argument("accuracy of the PSF " + text("%g", request.psf_accuracy) + " not in (0, 1)");
 }
 
+std::string evaluation_of(const PlaneTransformOptions& options) {
+  if (!options.lookup) return "polynomials of degree " + std::to_string(options.kernel_u.polynomial.degree());
+  const char* const names[] = {"nearest", "linear", "quadratic", "cubic"};
+  return std::string(names[static_cast<std::size_t>(options.lookup->interpolation)]) + " tables of " +
+         std::to_string(options.lookup->samples_per_cell) + " entries a cell";
+}
+
 double nameable_accuracy(double worst_error) {
   constexpr double two_digits = 1.06;  // may round down by 5%
   constexpr double stored = 1e-13;     // below, the rounding of stored kernels differs from width to width
@@ -134,8 +143,8 @@ GriddingPlan plan_together(const GriddingRequest& request) {
                                 (request.padding == 0 ? "" : " at padding " + text("%g", request.padding)) + "; it can reach " +
                                 text("%.2g", nameable_accuracy(best.worst_error)) + " for this image, with width " +
                                 std::to_string(best.work.width) + " at padding " + text("%g", best.padding_u));
-  static_cast<PlaneTransformOptions&>(plan.options) = {request.geometry, best.work.nu,        best.work.nv,   best.u.kernel,
-                                                       best.v.kernel,    best.work.precision, request.threads};
+  static_cast<PlaneTransformOptions&>(plan.options) = {request.geometry, best.work.nu,        best.work.nv,    best.u.kernel,
+                                                       best.v.kernel,    best.work.precision, request.threads, request.lookup};
   if (best.work.has_w_axis()) {
     plan.options.kernel_w = best.w.kernel;
     plan.options.facets_l = best.faceting.along_l;
@@ -161,7 +170,7 @@ GriddingPlan plan_together(const GriddingRequest& request) {
 /// Nobody has asked for a certain kernel, nor for a certain way.
 bool free_to_choose(const GriddingRequest& r) {
   return r.kernel.name == GriddingRequest().kernel.name && r.accuracy != 0 && r.kernel_width == 0 && r.padding == 0 &&
-         r.gridder == Gridder::automatic && r.samples > 0;
+         r.gridder == Gridder::automatic && !r.precision && !r.lookup && r.shortest_polynomials && r.samples > 0;
 }
 
 /// Seconds of the terms of direct sums, for each pixel.

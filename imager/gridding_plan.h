@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <string>
 
 #include "imager/gridding_choice.h"
 #include "imager/plan.h"
@@ -34,6 +35,9 @@ double nameable_accuracy(double worst_error);
 /// Throws std::invalid_argument as check_request does, and when the accuracy is out of reach of the kernel or of double
 /// precision; the message says what can be reached.
 GriddingPlan plan_gridding(const GriddingRequest& request);
+
+/// How its taps are had: "polynomials of degree 9", or "cubic tables of 64 entries a cell".
+std::string evaluation_of(const PlaneTransformOptions& options);
 
 /// The memory that the planned transform takes.
 TransformMemory memory_of(const GriddingPlan& plan);

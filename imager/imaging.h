@@ -18,8 +18,8 @@ struct DirtyImages {
   SampleSums sums;
 };
 
-/// One pass over the visibilities. Stages timed: "read", "grid", "fft", which counts corrections in. Throws std::runtime_error when
-/// no sample can be used.
+/// One pass over the visibilities. Stages timed: "read", "grid", "fft", which counts corrections in. Throws std::runtime_error
+/// when no sample can be used.
 DirtyImages make_dirty_images(const VisibilitySource& source, const Transform& transform, bool with_psf,
                               const Progress& progress, StageTimes& times);
 

@@ -245,8 +245,8 @@ class PlaneTransform : public Transform {
   explicit PlaneTransform(const PlaneTransformOptions& o)
       : setup_{o.geometry,
                shape_of(o),
-               TapTable<Real>(o.kernel_u.polynomial),
-               TapTable<Real>(o.kernel_v.polynomial),
+               TapTable<Real>(o.kernel_u.polynomial, o.lookup),
+               TapTable<Real>(o.kernel_v.polynomial, o.lookup),
                {axis_correction(o.kernel_u, o.geometry.width, o.nu), axis_correction(o.kernel_v, o.geometry.height, o.nv)},
                o.threads} {}
 

@@ -1,8 +1,11 @@
 #pragma once
 
+#include <optional>
+
 #include "imager/geometry.h"
 #include "imager/transform.h"
 #include "kernels/kernel.h"
+#include "kernels/lookup_table.h"
 #include "kernels/precision.h"
 
 namespace misfit::imager {
@@ -18,6 +21,7 @@ struct PlaneTransformOptions {
   kernels::Kernel kernel_v;
   Precision precision = Precision::double_precision;  ///< of taps, grid and FFT; coordinates are always double
   int threads = 1;
+  std::optional<kernels::TableOptions> lookup{};  ///< taps come from tables of the kernels' polynomials
 };
 
 /// The transform in two dimensions by gridding and FFT, about any centre: w(n−1) is taken as 0. Forward and adjoint are exact

@@ -1,8 +1,9 @@
 #pragma once
 
+#include <optional>
 #include <vector>
 
-#include "kernels/piecewise_polynomial.h"
+#include "kernels/lookup_table.h"
 
 namespace misfit::imager {
 
@@ -13,15 +14,18 @@ constexpr int padded_taps(int width) {
   return sizeof(Real) == 4 && padded == 12 ? 16 : padded;
 }
 
-/// A kernel's polynomials as the inner loops want them: [power][tap], padded with zeros.
+/// A kernel as the inner loops want it, its taps padded with zeros: polynomials, or a lookup table of them.
 template <typename Real>
 struct TapTable {
   int width = 0;
   int padded = 0;
   int degree = 0;
-  std::vector<Real> coefficient;
+  std::vector<Real> coefficient;                ///< [power][tap]
+  std::optional<kernels::TableOptions> lookup;  ///< looked up where there is one
+  int last = 0;                                 ///< the last entry from which a stencil starts
+  std::vector<Real> entry;                      ///< [t ≥ 0, t < 0][entry][tap]
 
-  explicit TapTable(const kernels::PiecewisePolynomial& kernel);
+  explicit TapTable(const kernels::PiecewisePolynomial& kernel, const std::optional<kernels::TableOptions>& lookup = {});
 };
 
 /// The widest kernel that the loops take, in cells.

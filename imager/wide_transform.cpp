@@ -40,11 +40,11 @@ StackShape shape_of(const WideTransformOptions& o) {
 
 template <typename Real>
 Setup<Real> set_up(const WideTransformOptions& o) {
-  Setup<Real> s{
-      o,
-      shape_of(o),
-      {TapTable<Real>(o.kernel_u.polynomial), TapTable<Real>(o.kernel_v.polynomial), TapTable<Real>(o.kernel_w.polynomial)},
-      {}};
+  Setup<Real> s{o,
+                shape_of(o),
+                {TapTable<Real>(o.kernel_u.polynomial, o.lookup), TapTable<Real>(o.kernel_v.polynomial, o.lookup),
+                 TapTable<Real>(o.kernel_w.polynomial, o.lookup)},
+                {}};
   const SmoothCorrection h_w(o.kernel_w);
   for (const Facet& facet : split_into_facets(o.geometry, o.facets_l, o.facets_m)) {
     if (facet.empty) continue;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <memory>
 #include <vector>
 
@@ -97,6 +98,32 @@ Evaluation evaluate_by_halves(const PiecewisePolynomial& kernel, Precision preci
   Evaluation way = evaluation_in<EvenOddPolynomial>(precision, kernel);
   way.name = "even and odd halves of degree " + std::to_string(kernel.degree()) + in_precision(precision);
   return way;
+}
+
+namespace {
+
+Misfit misfit_of_fine_table(const Misfit& function, const TableOptions& options, double x0) {
+  // The largest binomial(p, d+1), and the largest sum of the weights' magnitudes, where the table is read.
+  constexpr std::array<double, 4> largest{0.5, 1.0 / 8, 0.0641500299, 1.0 / 24};
+  constexpr std::array<double, 4> lebesgue{1, 1, 1.25, 1.6311302};
+  const auto degree = static_cast<std::size_t>(options.interpolation);
+  const int order = static_cast<int>(degree) + 1;
+  const double at_edge = std::pow(2 * std::acos(-1.0) * x0 / options.samples_per_cell, order);
+  const double over_image = at_edge / std::sqrt(2.0 * order + 1);
+  const double rms = interpolation_error_factor(options.interpolation);
+  const auto square = [](double x) { return x * x; };
+  return {function.mean + square(rms * over_image), function.max + square(rms * at_edge),
+          square(lebesgue[degree] * std::sqrt(function.worst_mean) + largest[degree] * over_image),
+          square(lebesgue[degree] * std::sqrt(function.worst) + largest[degree] * at_edge)};
+}
+
+}  // namespace
+
+Misfit judge_table(const PiecewisePolynomial& kernel, const Misfit& function, const TableOptions& options, double x0) {
+  constexpr int fine = 512;
+  if (options.samples_per_cell > fine) return misfit_of_fine_table(function, options, x0);
+  const Evaluation table = evaluate_by_table(kernel, options, Precision::double_precision);
+  return judge(table.taps, x0, {table.steps_per_cell, [&](const Eigen::VectorXd& x) { return optimal_correction(kernel, x); }});
 }
 
 }  // namespace misfit::kernels

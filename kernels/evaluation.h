@@ -31,6 +31,12 @@ Evaluation evaluate_directly(const LeastMisfit& solution, Precision precision);
 /// Looks the taps up; see LookupTable.
 Evaluation evaluate_by_table(const PiecewisePolynomial& kernel, const TableOptions& options, Precision precision);
 
+/// What a table of a function errs by, with the function's correction; `function` is the function's own misfit over |x| ≤ x0.
+/// Tables of up to 512 entries a cell are judged as they are. Of finer ones `mean` and `max` follow table_misfit, and `worst`
+/// and `worst_mean` are bounds: a table of degree d holds exp(2πitx) up to max |binomial(p, d+1)| (2πx/Ms)^(d+1), and repeats
+/// the function's errors at the entries by no more than the sum of the weights' magnitudes.
+Misfit judge_table(const PiecewisePolynomial& kernel, const Misfit& function, const TableOptions& options, double x0);
+
 /// By Horner's rule. Lower degrees are truncations: fit_polynomial(kernel, degree).
 Evaluation evaluate_by_polynomial(const PiecewisePolynomial& kernel, Precision precision);
 

@@ -15,17 +15,6 @@ int degree_of(Interpolation interpolation) {
   return static_cast<int>(interpolation);
 }
 
-/// The weights of d + 1 neighbouring entries in Newton's forward formula, p entries after the first.
-template <typename Real, int Degree>
-std::array<Real, Degree + 1> newton_weights(Real p) {
-  if constexpr (Degree == 0) return {1};
-  const Real b2 = p * (p - 1) / 2;
-  if constexpr (Degree == 1) return {1 - p, p};
-  if constexpr (Degree == 2) return {1 - p + b2, p - 2 * b2, b2};
-  const Real b3 = b2 * (p - 2) / 3;
-  if constexpr (Degree == 3) return {1 - p + b2 - b3, p - 2 * b2 + 3 * b3, b2 - 3 * b3, b3};
-}
-
 template <typename Real, int Degree>
 void combine(const Real* entry, Real p, int width, Real* out) {
   const std::array<Real, Degree + 1> weight = newton_weights<Real, Degree>(p);
@@ -55,11 +44,8 @@ LookupTable<Real>::LookupTable(const PiecewisePolynomial& kernel, const TableOpt
 
 template <typename Real>
 void LookupTable<Real>::taps(Real t, Real* out) const {
-  const bool nearest = options_.interpolation == Interpolation::nearest;
-  const Real place = std::abs(t) * static_cast<Real>(options_.samples_per_cell);
-  const int k = std::min(static_cast<int>(nearest ? place + Real(0.5) : place), last_);
+  const auto [k, p] = place(t);
   const Real* entry = entry_.data() + static_cast<std::ptrdiff_t>(k) * width_;
-  const Real p = place - static_cast<Real>(k);
   switch (options_.interpolation) {
     case Interpolation::nearest:
       combine<Real, 0>(entry, p, width_, out);

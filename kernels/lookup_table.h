@@ -1,5 +1,8 @@
 #pragma once
 
+#include <algorithm>
+#include <array>
+#include <cmath>
 #include <cstddef>
 #include <vector>
 
@@ -17,6 +20,24 @@ struct TableOptions {
   Interpolation interpolation = Interpolation::cubic;
 };
 
+/// The weights of Degree + 1 neighbouring entries in Newton's forward formula, p entries after the first.
+template <typename Real, int Degree>
+std::array<Real, Degree + 1> newton_weights(Real p) {
+  if constexpr (Degree == 0) return {1};
+  const Real b2 = p * (p - 1) / 2;
+  if constexpr (Degree == 1) return {1 - p, p};
+  if constexpr (Degree == 2) return {1 - p + b2, p - 2 * b2, b2};
+  const Real b3 = b2 * (p - 2) / 3;
+  if constexpr (Degree == 3) return {1 - p + b2 - b3, p - 2 * b2 + 3 * b3, b2 - 3 * b3, b3};
+}
+
+/// Where a table is read for one position.
+template <typename Real>
+struct TablePlace {
+  int entry = 0;   ///< the first
+  Real after = 0;  ///< how many entries after it the position lies
+};
+
 /// A gridding function sampled at t = k/Ms, read by Newton's forward differences: p in [0, 1] cells of the table from entry k,
 /// C ≈ Σ_j binomial(p, j) Δ^j C_k (Abramowitz & Stegun 1964, eq. 25.2.28; Ye, Gull, Tan & Nikolic 2020, MNRAS 491, 1146,
 /// tabulate so). Every cell of C has a table of its own, continued beyond the cell's end by the cell's polynomial, so that
@@ -31,6 +52,18 @@ class LookupTable {
   /// Writes the W taps at t to `out`.
   void taps(Real t, Real* out) const;
 
+  TablePlace<Real> place(Real t) const { return place_in(options_, last_, t); }
+  static TablePlace<Real> place_in(const TableOptions& options, int last, Real t) {
+    const Real place = std::abs(t) * static_cast<Real>(options.samples_per_cell);
+    const bool nearest = options.interpolation == Interpolation::nearest;
+    const int entry = std::min(static_cast<int>(nearest ? place + Real(0.5) : place), last);
+    return {entry, place - static_cast<Real>(entry)};
+  }
+  /// [entry][tap] for t ≥ 0.
+  const std::vector<Real>& entries() const { return entry_; }
+  /// The last entry from which a stencil starts.
+  int last() const { return last_; }
+
   int width() const { return width_; }
   const TableOptions& options() const { return options_; }
   std::size_t bytes() const { return entry_.size() * sizeof(Real); }
@@ -38,8 +71,8 @@ class LookupTable {
  private:
   int width_;
   TableOptions options_;
-  int last_;                 ///< the last entry from which a stencil starts
-  std::vector<Real> entry_;  ///< [k][tap]
+  int last_;
+  std::vector<Real> entry_;
 };
 
 extern template class LookupTable<float>;

@@ -1,6 +1,7 @@
 #include "tools/image_options.h"
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <cmath>
 #include <nlohmann/json.hpp>
@@ -85,8 +86,26 @@ void check_clean(const ImageOptions& o) {
   check_auto_mask(o);
 }
 
+/// The tables that --evaluation names, if it does.
+std::optional<kernels::TableOptions> lookup_of(const ImageOptions& o) {
+  const std::array<const char*, 4> names{"nearest", "linear", "quadratic", "cubic"};
+  const auto found = std::find(names.begin(), names.end(), o.evaluation);
+  if (found == names.end()) return {};
+  return kernels::TableOptions{o.sampling, static_cast<kernels::Interpolation>(found - names.begin())};
+}
+
+void check_tables(const ImageOptions& o) {
+  const std::optional<kernels::TableOptions> lookup = lookup_of(o);
+  constexpr int most = 1 << 20;
+  if (lookup && !(o.sampling >= 1 && o.sampling <= most))
+    refuse("sampling", std::to_string(o.sampling), "1 to 1048576 entries a cell beside --evaluation " + o.evaluation);
+  if (!lookup && o.sampling != 0)
+    refuse("sampling", std::to_string(o.sampling), "--evaluation nearest, linear, quadratic or cubic beside it");
+}
+
 /// What needs neither the data nor the kernel's solution.
 void check_gridding(const ImageOptions& o) {
+  check_tables(o);
   const bool accuracy_is_free = kernel_is_given(o);
   if (!(o.accuracy > 0 && o.accuracy < 1) && !(o.accuracy == 0 && accuracy_is_free))
     refuse("accuracy", text(o.accuracy), "a number above 0 and below 1");
@@ -99,9 +118,8 @@ void check_gridding(const ImageOptions& o) {
 
 }  // namespace
 
-void declare(CLI::App& command, ImageOptions& o) {
-  command.add_option("--vis", o.vis, "MeasurementSet; opened read-only, but for --savemodel")->required();
-  command.add_option("--imagename", o.imagename, "Names of the output files begin with this")->required();
+void declare_scene(CLI::App& command, ImageOptions& o) {
+  command.add_option("--vis", o.vis, "MeasurementSet; opened read-only, but to save a model")->required();
   command.add_option("--imsize", o.imsize, "Width, or width and height, in pixels")->required()->expected(1, 2);
   command.add_option("--cell", o.cell, "Size of a pixel: 0.2arcsec, 3mas, …")->required();
   command.add_option("--field", o.selection.field, "Fields, in CASA's selection syntax; all when empty");
@@ -109,6 +127,15 @@ void declare(CLI::App& command, ImageOptions& o) {
                      "Spectral windows and channels, in CASA's selection syntax; all when empty");
   command.add_option("--datacolumn", o.datacolumn, "data, corrected, model, or a column's name");
   command.add_option("--weighting", o.weighting, "Weighting")->check(CLI::IsMember({"natural"}));
+  command.add_option("--gridder", o.gridder, "w planes: auto (where w matters), standard (none), wide (always)")
+      ->check(CLI::IsMember({"auto", "standard", "wide"}));
+  command.add_option("--threads", o.threads, "Threads; 0 means all cores");
+  command.add_flag("--quiet", o.quiet, "Print nothing but errors");
+}
+
+void declare(CLI::App& command, ImageOptions& o) {
+  declare_scene(command, o);
+  command.add_option("--imagename", o.imagename, "Names of the output files begin with this")->required();
   command.add_option("--kernel", o.kernel,
                      "Gridding function: a name such as least-misfit or spheroidal, or a kernel-table file");
   command.add_option("--accuracy", o.accuracy,
@@ -116,8 +143,14 @@ void declare(CLI::App& command, ImageOptions& o) {
   command.add_option("--psf-accuracy", o.psf_accuracy, "The same of the PSF; 0 = the larger of --accuracy and 1e-4");
   command.add_option("--kernel-width", o.kernel_width, "Cells a visibility touches per axis; chosen when 0");
   command.add_option("--padding", o.padding, "FFT size over image size; chosen when 0");
-  command.add_option("--gridder", o.gridder, "w planes: auto (where w matters), standard (none), wide (always)")
-      ->check(CLI::IsMember({"auto", "standard", "wide"}));
+  command
+      .add_option("--evaluation", o.evaluation,
+                  "Kernel values from: polynomial, as short as the kernel's error allows; full polynomial; or a table, read "
+                  "by interpolation (with --sampling)")
+      ->check(CLI::IsMember({"polynomial", "full", "nearest", "linear", "quadratic", "cubic"}));
+  command.add_option("--sampling", o.sampling, "Entries a cell of a table of kernel values");
+  command.add_option("--precision", o.precision, "Of kernel values, grid and FFT: auto, single, double")
+      ->check(CLI::IsMember({"auto", "single", "double"}));
   command.add_option("--deconvolver", o.deconvolver, "How components are found: hogbom, clark or multiscale")
       ->check(CLI::IsMember(imager::deconvolver_names()));
   command
@@ -153,10 +186,8 @@ void declare(CLI::App& command, ImageOptions& o) {
   command.add_flag("--restart", o.restart,
                    "Go on from the last major cycle of a run that was cut, or ended, with these options");
   command.add_option("--verify", o.verify, "Compare this many random pixels and visibilities with the direct transform");
-  command.add_option("--threads", o.threads, "Threads; 0 means all cores");
   command.add_option("--memory", o.memory_gib, "GiB that the run may take; 0 means half of the machine's memory");
   command.add_flag("--dry-run", o.dry_run, "Print the plan and the memory it takes; read no visibilities and write nothing");
-  command.add_flag("--quiet", o.quiet, "Print nothing but errors");
 }
 
 bool kernel_is_given(const ImageOptions& o) {
@@ -188,6 +219,10 @@ imager::GriddingRequest gridding_request(const ImageOptions& o, int threads) {
   request.gridder = o.gridder == "standard" ? imager::Gridder::standard
                     : o.gridder == "wide"   ? imager::Gridder::wide
                                             : imager::Gridder::automatic;
+  request.lookup = lookup_of(o);
+  request.shortest_polynomials = o.evaluation != "full";
+  if (o.precision != "auto")
+    request.precision = o.precision == "single" ? imager::Precision::single_precision : imager::Precision::double_precision;
   request.threads = threads;
   return request;
 }

@@ -29,6 +29,9 @@ struct ImageOptions {
   double psf_accuracy = 0;  ///< 0 = the larger of accuracy and 1e-4
   int kernel_width = 0;
   double padding = 0;
+  std::string evaluation = "polynomial";
+  int sampling = 0;  ///< entries a cell of a table; 0 = none
+  std::string precision = "auto";
   std::string gridder = "auto";
   std::string deconvolver = "hogbom";
   std::vector<double> scales;  ///< of multiscale, in pixels as tclean means them
@@ -60,7 +63,10 @@ struct ImageOptions {
   bool quiet = false;
 };
 
-/// Declares the options on `command`.
+/// Declares the options that say which samples make which image, and --threads and --quiet.
+void declare_scene(CLI::App& command, ImageOptions& options);
+
+/// Declares all options on `command`.
 void declare(CLI::App& command, ImageOptions& options);
 
 /// Whether the options leave nothing of the kernel to choose: a file, or width and padding. Then no accuracy need be asked.

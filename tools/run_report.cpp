@@ -36,7 +36,7 @@ json kernel_json(const imager::GriddingPlan* gridding) {
   json kernel = axis_json("u", o.kernel_u, padding_u);
   kernel.erase("axis");
   kernel["name"] = o.kernel_u.name;
-  kernel["evaluation"] = "polynomial of degree " + std::to_string(o.kernel_u.polynomial.degree());
+  kernel["evaluation"] = imager::evaluation_of(o);
   kernel["axes"] = {axis_json("u", o.kernel_u, padding_u),
                     axis_json("v", o.kernel_v, padding(o.nv, o.geometry.height, o.facets_m))};
   if (o.has_w_axis()) kernel["axes"].push_back(axis_json("w", o.kernel_w, gridding->choice.best.padding_w));

@@ -44,4 +44,34 @@ BOOST_AUTO_TEST_CASE_TEMPLATE(taps_are_the_polynomials_for_every_width_count_and
   hwy::SetSupportedTargetsForTest(0);
 }
 
+BOOST_AUTO_TEST_CASE_TEMPLATE(looked_up_taps_are_those_of_the_table_for_every_instruction_set, Real, Precisions) {
+  constexpr int most = 9;
+  std::mt19937_64 random(2);
+  std::uniform_real_distribution<double> uniform(-1, 1);
+  for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {
+    hwy::SetSupportedTargetsForTest(target);
+    for (const int width : {1, 4, 7, 12, 20})
+      for (int degree = 0; degree <= 3; ++degree) {
+        const kernels::PiecewisePolynomial polynomial{Eigen::MatrixXd::NullaryExpr(8, width, [&] { return uniform(random); })};
+        const kernels::TableOptions options{37, static_cast<kernels::Interpolation>(degree)};
+        const kernels::LookupTable<Real> looked_up(polynomial, options);
+        const TapTable<Real> table(polynomial, options);
+        Real t[most] = {Real(-0.5), Real(0.5), 0};
+        for (int i = 3; i < most; ++i) t[i] = static_cast<Real>(uniform(random) / 2);
+        BatchTaps<Real, most> out;
+        evaluate_taps(table, t, most, out.value);
+        double largest = 0;
+        for (int i = 0; i < most; ++i) {
+          Real should[most_taps] = {};
+          looked_up.taps(t[i], should);
+          for (int r = 0; r < table.padded; ++r)
+            largest = std::max(largest, std::abs(double{out.value[i * table.padded + r]} - double{should[r]}));
+        }
+        // Entries are below 2, the weights' magnitudes add up to less than 2, and sums of four may be fused or not.
+        BOOST_TEST(largest <= 16 * double{std::numeric_limits<Real>::epsilon()});
+      }
+  }
+  hwy::SetSupportedTargetsForTest(0);
+}
+
 BOOST_AUTO_TEST_SUITE_END()

@@ -2,6 +2,7 @@
 
 #include <boost/test/data/test_case.hpp>
 #include <boost/test/unit_test.hpp>
+#include <complex>
 #include <cmath>
 #include <string>
 
@@ -115,6 +116,32 @@ BOOST_AUTO_TEST_CASE(sizes_outside_the_range_are_refused) {
   const PiecewisePolynomial polynomial = kernel_of(2).polynomial;
   for (const int samples : {0, -3, (1 << 24) + 1})
     BOOST_CHECK_THROW(LookupTable<double>(polynomial, {samples, Interpolation::linear}), std::invalid_argument);
+}
+
+BOOST_AUTO_TEST_CASE(tables_are_judged_by_all_positions_and_fine_ones_by_a_law_that_bounds_them) {
+  for (const Interpolation interpolation :
+       {Interpolation::nearest, Interpolation::linear, Interpolation::quadratic, Interpolation::cubic})
+    for (const int samples : {8, 50, 512, 513, 2000}) {
+      const Kernel kernel = kernel_family("spheroidal").make(5, x0);
+      const TableOptions options{samples, interpolation};
+      const Evaluation table = in_double(kernel, options);
+      const Misfit said = judge_table(kernel.polynomial, kernel.misfit, options, x0);
+      const auto h = [&](const Eigen::VectorXd& x) { return optimal_correction(kernel.polynomial, x); };
+      const Misfit is = judge(table.taps, x0, {table.steps_per_cell, h});
+      BOOST_TEST(said.mean == is.mean, boost::test_tools::tolerance(1e-3));  // what the law leaves out
+      const Eigen::VectorXd edge = Eigen::VectorXd::Constant(1, x0);
+      const double at_edge = h(edge)[0];
+      double worst = 0;
+      for (int i = 0; i <= 40000; ++i) {
+        const double t = i / 80000.0;
+        const Eigen::VectorXd taps = table.taps(t);
+        std::complex<double> sum = 0;
+        for (int r = 0; r < 5; ++r) sum += taps[r] * std::polar(1.0, 2 * M_PI * (r - 2 - t) * x0);
+        worst = std::max(worst, std::norm(1.0 - at_edge * sum));
+      }
+      BOOST_TEST(worst <= 1.02 * said.worst);  // which is looked for at points, see gridding_plan.cpp
+      BOOST_TEST(is.worst_mean <= 1.02 * said.worst_mean);
+    }
 }
 
 BOOST_AUTO_TEST_SUITE_END()
