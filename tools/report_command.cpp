@@ -6,6 +6,7 @@
 #include "tools/kernel_report.h"
 #include "tools/progress.h"
 #include "tools/report_folder.h"
+#include "tools/scene/scene_command.h"
 #include "tools/stability_report.h"
 
 namespace misfit::tools {
@@ -44,6 +45,7 @@ void add_report_command(CLI::App& program) {
   reports->require_subcommand(1);
   add_report(*reports, "kernels", "Gridding functions: the figures of Ye et al. 2020 from our own numbers, and rivals",
              kernel_report);
+  add_scene_report(*reports);
   add_report(*reports, "stability", "What rounding does to kernels, gridding and sums", stability_report);
 }
 

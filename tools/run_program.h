@@ -1,0 +1,14 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace misfit::tools {
+
+/// Runs a program found on PATH, or at a path, in `folder`, without input; what it says on both streams is left in the file
+/// "said" there. Returns its exit status, not 0 where a signal ended it, or nothing where there is no such program.
+std::optional<int> run_program(std::vector<std::string> words, const std::filesystem::path& folder);
+
+}  // namespace misfit::tools

@@ -1,0 +1,119 @@
+#include "tools/scene/measure.h"
+
+#include <memory>
+#include <stdexcept>
+
+#include "imager/noise.h"
+#include "imager/parallel.h"
+#include "imager/stage_times.h"
+#include "ms_io/measurement_set.h"
+
+namespace misfit::tools {
+namespace {
+
+std::string work_of(const imager::GriddingPlan& plan) {
+  const imager::WideTransformOptions& o = plan.options;
+  std::string work = std::to_string(o.nu) + " x " + std::to_string(o.nv);
+  for (const kernels::Kernel* kernel : {&o.kernel_u, &o.kernel_v, &o.kernel_w})
+    if (kernel->width() > 0)
+      work += ", W " + std::to_string(kernel->width()) + " degree " + std::to_string(kernel->polynomial.degree());
+  if (o.has_w_axis())
+    work += ", " + std::to_string(plan.choice.best.work.planes) + " planes in " + std::to_string(o.facets_l) + " x " +
+            std::to_string(o.facets_m) + " facets";
+  if (o.lookup) work += ", " + imager::evaluation_of(o);
+  return work + (o.precision == imager::Precision::single_precision ? ", single" : ", double");
+}
+
+}  // namespace
+
+Scene::Scene(const ImageOptions& options, int pixels, const imager::Progress& progress)
+    : options_(options), threads_(options.threads == 0 ? imager::available_threads() : options.threads) {
+  const ms_io::MeasurementSet set(options.vis, options.selection, options.datacolumn);
+  geometry_ = geometry_of(options, set.observation().phase_centre);
+  reach_ = set.reach();
+  const imager::Stopwatch watch;
+  const auto stream = set.open();
+  while (auto block = stream->next()) {
+    w_spread_.add(*block);
+    visibilities_.append(std::move(block));
+  }
+  read_s_ = watch.seconds();
+  truth_ = std::make_unique<SceneTruth>(visibilities_, geometry_, pixels, threads_, progress);
+}
+
+imager::GriddingPlan Scene::plan_of(const ScenePoint& point) const {
+  imager::GriddingRequest request = gridding_request(options_of(options_, point), threads_);
+  request.geometry = geometry_;
+  request.samples = visibilities_.samples();
+  request.max_abs_w = reach_.max_abs_w;
+  request.images = 1;
+  return imager::plan_gridding(request);
+}
+
+imager::DirtyImages Scene::image(const imager::Transform& transform, SceneSeconds& seconds) const {
+  imager::StageTimes times;
+  imager::DirtyImages made = imager::make_dirty_images(
+      visibilities_, transform, false, [](auto, auto) {}, times);
+  for (const auto& [stage, spent] : times.stages()) (stage == "fft" ? seconds.fft : seconds.grid) += spent;
+  return made;
+}
+
+void Scene::predict(const imager::Transform& transform, SceneSeconds& seconds, SceneErrors* errors) const {
+  const imager::Stopwatch watch;
+  const auto prediction = transform.predict(truth_->model());
+  std::vector<std::shared_ptr<const imager::VisibilityBlock>> blocks;
+  const auto stream = visibilities_.open();
+  while (auto block = stream->next()) blocks.push_back(std::move(block));
+  std::vector<const imager::VisibilityBlock*> plain;
+  for (const auto& block : blocks) plain.push_back(block.get());
+  const auto predicted = prediction->at_usable_of(plain);
+  seconds.predict_fft = prediction->fft_s();
+  seconds.degrid = watch.seconds() - seconds.predict_fft;
+  if (errors == nullptr) return;
+  for (std::size_t b = 0; b < predicted.size(); ++b) truth_->compare(b, predicted[b], *errors);
+  truth_->finish(*errors);
+}
+
+void Scene::describe(const imager::GriddingPlan& plan, const imager::DirtyImages& made, PointResult& result) const {
+  const imager::WideTransformOptions& o = plan.options;
+  const imager::NeglectedPhase phase = imager::neglected_w_phase(reach_, w_spread_, geometry_);
+  const imager::TheoreticalError theory =
+      imager::theoretical_error(plan, made.sums, imager::root_mean_square(made.dirty), phase);
+  const imager::TransformMemory memory = imager::memory_of(plan);
+  result.width = o.kernel_u.width();
+  result.width_w = o.has_w_axis() ? o.kernel_w.width() : 0;
+  result.x0 = o.kernel_u.x0;
+  result.padding = plan.choice.best.padding_u;
+  result.evaluation = imager::evaluation_of(o);
+  result.precision = o.precision == imager::Precision::single_precision ? "single" : "double";
+  result.work = work_of(plan);
+  result.memory_bytes = memory.visibilities + memory.fft;
+  result.expected_rms = theory.expected_rms;
+  result.bound_rms = theory.bound_rms;
+  result.bound_max = theory.bound_max;
+}
+
+void Scene::run(PointResult& result) {
+  const std::string name = options_text(result.point);
+  auto plan = plan_.find(name);
+  if (plan == plan_.end()) {
+    try {
+      plan = plan_.emplace(name, plan_of(result.point)).first;
+    } catch (const std::invalid_argument& error) {
+      result.refused = error.what();
+      return;
+    }
+  }
+  const auto transform = imager::make_transform(plan->second.options);
+  SceneSeconds seconds;
+  const imager::DirtyImages made = image(*transform, seconds);
+  const bool first = result.runs.empty();
+  if (first) {
+    describe(plan->second, made, result);
+    result.errors = truth_->errors_of(made.dirty);
+  }
+  predict(*transform, seconds, first ? &result.errors : nullptr);
+  result.runs.push_back(seconds);
+}
+
+}  // namespace misfit::tools

@@ -1,0 +1,80 @@
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "imager/accurate_imaging.h"
+#include "imager/extent.h"
+#include "imager/stored_visibilities.h"
+#include "tools/scene/points.h"
+#include "tools/scene/truth.h"
+
+namespace misfit::tools {
+
+/// Seconds of one dirty image from visibilities in memory, and of one prediction of them all.
+struct SceneSeconds {
+  double grid = 0;
+  double fft = 0;
+  double degrid = 0;
+  double predict_fft = 0;
+
+  double image() const { return grid + fft; }
+  double predict() const { return degrid + predict_fft; }
+};
+
+/// What a point is, and what came out.
+struct PointResult {
+  ScenePoint point;
+  std::string refused;  ///< why it cannot be made; nothing else then holds
+  int width = 0;        ///< cells along u
+  int width_w = 0;      ///< planes; 0 = w is left out
+  double x0 = 0;        ///< along u
+  double padding = 0;   ///< along u
+  std::string evaluation;
+  std::string precision;
+  std::string work;         ///< what its operations are: points of one work differ in numbers alone, and take one time
+  double memory_bytes = 0;  ///< of grids and buffers
+  double expected_rms = 0;  ///< by theory, for random phases
+  double bound_rms = 0;     ///< by theory, whatever the data
+  double bound_max = 0;
+  SceneErrors errors;
+  std::vector<SceneSeconds> runs;
+};
+
+/// The visibilities of a scene, in memory, and what the images of them should be.
+class Scene {
+ public:
+  /// Reads the MeasurementSet and takes direct sums at three times `pixels` pixels. Throws as MeasurementSet does.
+  Scene(const ImageOptions& options, int pixels, const imager::Progress& progress);
+
+  /// Runs a point once more; the first time it is planned and its errors are taken.
+  void run(PointResult& result);
+
+  std::uint64_t samples() const { return visibilities_.samples(); }
+  const imager::ImageGeometry& geometry() const { return geometry_; }
+  double read_s() const { return read_s_; }
+  /// Seconds that direct sums would take for the image.
+  double direct_s() const { return truth_->seconds_a_pixel() * static_cast<double>(geometry_.pixels()); }
+  double w_phase_rad() const { return imager::max_w_phase_rad(reach_.max_abs_w, geometry_); }
+  int threads() const { return threads_; }
+  const SceneTruth& truth() const { return *truth_; }
+
+ private:
+  imager::GriddingPlan plan_of(const ScenePoint& point) const;
+  imager::DirtyImages image(const imager::Transform& transform, SceneSeconds& seconds) const;
+  void predict(const imager::Transform& transform, SceneSeconds& seconds, SceneErrors* errors) const;
+  void describe(const imager::GriddingPlan& plan, const imager::DirtyImages& made, PointResult& result) const;
+
+  ImageOptions options_;
+  int threads_;
+  imager::ImageGeometry geometry_;
+  imager::UvwReach reach_;
+  imager::WSpread w_spread_;
+  imager::StoredVisibilities visibilities_;
+  double read_s_ = 0;
+  std::unique_ptr<SceneTruth> truth_;
+  std::map<std::string, imager::GriddingPlan> plan_;  ///< by options_text
+};
+
+}  // namespace misfit::tools

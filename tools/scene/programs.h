@@ -1,0 +1,28 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "tools/image_options.h"
+#include "tools/progress.h"
+#include "tools/scene/truth.h"
+
+namespace misfit::tools {
+
+/// A whole program that makes the dirty image from the MeasurementSet, as a person calls it.
+struct ProgramResult {
+  std::string name;                ///< "wsclean, w-gridder to 1e-4"
+  std::vector<std::string> words;  ///< as called, but for the folder of its images
+  std::vector<double> seconds;     ///< wall clock of each run, by turns with the others
+  SceneErrors errors;
+
+  std::string command() const;
+};
+
+/// `misfit image` to two accuracies, and WSClean's gridders where it is installed and can be given the same samples: no
+/// selection, and a data column that it takes. Each is run `rounds` times, by turns. Throws std::runtime_error that names a
+/// program that fails.
+std::vector<ProgramResult> run_programs(const ImageOptions& scene, const SceneTruth& truth, int threads, int rounds,
+                                        ProgressLine& progress);
+
+}  // namespace misfit::tools

@@ -1,0 +1,10 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+namespace misfit::tools {
+
+/// Adds `misfit report scene`; see command.h.
+void add_scene_report(CLI::App& reports);
+
+}  // namespace misfit::tools
