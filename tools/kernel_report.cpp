@@ -2,6 +2,8 @@
 
 #include <array>
 
+#include "tools/paper_experiments.h"
+
 namespace misfit::tools {
 namespace {
 
@@ -20,7 +22,7 @@ constexpr std::array<Part, 7> parts{{{"the paper's statements", paper_section},
 
 }  // namespace
 
-Report kernel_report(ProgressLine& progress) {
+Report kernel_report(ProgressLine& progress, bool with_experiments) {
   Report report{.title = "Gridding functions",
                 .introduction =
                     "Least-misfit gridding functions (Ye, Gull, Tan & Nikolic 2020, MNRAS 491, 1146) and others, judged by the "
@@ -34,6 +36,8 @@ Report kernel_report(ProgressLine& progress) {
     report.sections.push_back(part.make(solved));
     progress.end();
   }
+  if (with_experiments)
+    for (const ReportSection& section : paper_experiments(solved, progress)) report.sections.push_back(section);
   return report;
 }
 

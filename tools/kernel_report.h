@@ -7,8 +7,8 @@
 namespace misfit::tools {
 
 /// The figures and tables of Ye, Gull, Tan & Nikolic 2020 (MNRAS 491, 1146) from our own numbers, and what they did not show,
-/// all computed when called. Throws Interrupted.
-Report kernel_report(ProgressLine& progress);
+/// all computed when called; `with_experiments` adds those of paper_experiments.h. Throws Interrupted.
+Report kernel_report(ProgressLine& progress, bool with_experiments);
 
 /// Its sections, each in a file of its own or with its like.
 ReportSection paper_section(SolvedKernels& solved);         ///< statements of the paper beside our numbers

@@ -12,30 +12,32 @@
 namespace misfit::tools {
 namespace {
 
-using MakeReport = Report (*)(ProgressLine&);
-
 struct ReportOptions {
   std::string output;
+  bool paper = false;
   bool quiet = false;
 };
+
+using MakeReport = Report (*)(ProgressLine&, const ReportOptions&);
 
 void write(const ReportOptions& o, MakeReport make) {
   prepare_report_folder(o.output);
   ProgressLine progress(o.quiet);
-  const Report report = make(progress);
+  const Report report = make(progress, o);
   progress.begin("draw");
   write_report(report, o.output);
   progress.end();
   if (!o.quiet) std::printf("%s/index.html\n", o.output.c_str());
 }
 
-void add_report(CLI::App& reports, const std::string& name, const std::string& description, MakeReport make) {
+CLI::App* add_report(CLI::App& reports, const std::string& name, const std::string& description,
+                     const std::shared_ptr<ReportOptions>& o, MakeReport make) {
   CLI::App* command = reports.add_subcommand(name, description);
-  const auto o = std::make_shared<ReportOptions>();
   command->add_option("--output", o->output, "Folder for index.html, SVG, CSV and report.json; made where there is none")
       ->required();
   command->add_flag("--quiet", o->quiet, "Print nothing");
   command->callback([o, make] { write(*o, make); });
+  return command;
 }
 
 }  // namespace
@@ -43,10 +45,14 @@ void add_report(CLI::App& reports, const std::string& name, const std::string& d
 void add_report_command(CLI::App& program) {
   CLI::App* reports = program.add_subcommand("report", "Write pages of figures and tables, with the numbers behind them");
   reports->require_subcommand(1);
-  add_report(*reports, "kernels", "Gridding functions: the figures of Ye et al. 2020 from our own numbers, and rivals",
-             kernel_report);
+  const auto kernels = std::make_shared<ReportOptions>();
+  add_report(*reports, "kernels", "Gridding functions: the figures of Ye et al. 2020 from our own numbers, and rivals", kernels,
+             [](ProgressLine& progress, const ReportOptions& o) { return kernel_report(progress, o.paper); })
+      ->add_flag("--paper", kernels->paper,
+                 "Add the paper's experiments made again: images and visibilities by gridding against direct sums");
   add_scene_report(*reports);
-  add_report(*reports, "stability", "What rounding does to kernels, gridding and sums", stability_report);
+  add_report(*reports, "stability", "What rounding does to kernels, gridding and sums", std::make_shared<ReportOptions>(),
+             [](ProgressLine& progress, const ReportOptions& /*o*/) { return stability_report(progress); });
 }
 
 }  // namespace misfit::tools
