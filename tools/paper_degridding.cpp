@@ -118,7 +118,8 @@ PaperExperiment degridding_experiment(const CardScene& scene, SolvedKernels& sol
       .heading = "The paper's experiments: degridding",
       .paragraphs =
           {"The visibilities of the 34 sources, which are pixels here, predicted by FFT and degridding, against their "
-           "sums. Single precision is that of taps, grid and FFT; coordinates are always double."},
+           "sums. Single precision is that of taps, grid and FFT; coordinates are always double. In single precision "
+           "wider functions err more again, since h amplifies what is rounded."},
       .figures = {{.name = "paper-degridding",
                    .title = "Misfit of predicted visibilities by width, x₀ = 0.25",
                    .caption =

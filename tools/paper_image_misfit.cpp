@@ -120,13 +120,14 @@ PaperExperiment image_misfit_experiment(const CardScene& scene, SolvedKernels& s
   PaperExperiment result;
   result.section = {
       .heading = "The paper's experiments: image misfit",
-      .paragraphs = {"The 34 sources of the paper's test card seen by the VLA in configuration A at 4 GHz, " +
-                         grouped(static_cast<long long>(scene.block.samples())) + " visibilities without w and noise, " +
-                         pixels + "² pixels of 0.05″ out of an FFT of " + std::to_string(fft_size_for(scene, x0)) +
-                         "², x₀ = 0.25, in doubles. The positions and fluxes are those that `misfit simulate` holds.",
-                     "The RMS of this image is " + significant(coherence(scene), 3) +
-                         " times what random phases would make it. The misfit does not know of phases, so that it is shown "
-                         "relative to the latter."},
+      .paragraphs =
+          {"The 34 sources of the paper's test card, as `misfit simulate` has them, seen by the VLA in configuration A "
+           "at 4 GHz in snapshots over six hours: " +
+               grouped(static_cast<long long>(scene.block.samples())) + " visibilities without w and noise, " + pixels +
+               "² pixels of 0.05″ out of an FFT of " + std::to_string(fft_size_for(scene, x0)) + "², x₀ = 0.25, in doubles.",
+           "Each visibility errs by its own position in a cell, so that errors add up at random, whatever the phases "
+           "are. They are shown relative to what the RMS of the image would be with random phases; it is " +
+               significant(coherence(scene), 3) + " times that."},
       .figures = {misfit_figure("paper-misfit-least", "Image misfit of least-misfit functions", least),
                   misfit_figure("paper-misfit-spheroidal", "Image misfit of spheroidal functions", spheroidal)},
       .tables = {whole_images(least, spheroidal)}};
