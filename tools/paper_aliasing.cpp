@@ -134,8 +134,8 @@ Figure levels_figure(const ComparedKernels& pair) {
           "Marks: the largest difference between the gridded and the direct image of a source of 1 Jy at x, from 4000 "
           "visibilities at random places; the source's own sidelobes are in both. Broken: the alias h(x − n) c(x), where it "
           "falls into the image. Elsewhere it is cut off with the margins of the FFT, and its sidelobes are left.",
-      .x = {.label = "position x of the source / size of the FFT; the image ends at 0.25", .from = 0, .to = farthest},
-      .y = {.label = "largest error / Jy", .logarithmic = true, .from = 1e-11, .to = 1e-2},
+      .x = {.label = "position x of the source / size of the FFT", .from = 0, .to = farthest},
+      .y = {.label = "largest error / Jy", .logarithmic = true, .from = 1e-9, .to = 1e-3},
       .series = std::move(series)};
 }
 

@@ -14,7 +14,7 @@ namespace misfit::tools {
 namespace {
 
 constexpr double x0 = 0.25;
-constexpr std::array<int, 8> widths{2, 4, 5, 6, 7, 8, 10, 12};
+constexpr std::array<int, 7> widths{2, 4, 6, 7, 8, 10, 12};
 
 /// A kernel's misfit, measured and expected.
 struct Compared {

@@ -100,7 +100,7 @@ Figure by_x_figure(const std::string& name, const std::string& title, const std:
                 .title = title,
                 .caption =
                     "As measured in the image of the test card. Broken: theory, for which interpolation of degree d adds "
-                    "κ² (2πx/Ms)^(2d+2) to ℓ(x). Linear and cubic interpolation err to one side, so that a part of their error "
+                    "κ² (2πx/Ms)²ᵈ⁺² to ℓ(x). Linear and cubic interpolation err to one side, so that a part of their error "
                     "is the image itself, scaled.",
                 .x = {.label = "x, offset from the phase centre / size of the FFT", .from = 0, .to = x0},
                 .y = {.label = "RMS misfit", .logarithmic = true},
