@@ -1,6 +1,5 @@
 #include "tools/card_scene.h"
 
-#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <numeric>
