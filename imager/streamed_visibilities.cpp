@@ -23,13 +23,16 @@ void require_usable(const SampleCounts& c) {
 class StreamedVisibilities::Recorder : public BlockStream {
  public:
   Recorder(const StreamedVisibilities& source, std::unique_ptr<BlockStream> stream)
-      : source_(source), stream_(std::move(stream)) {}
+      : source_(source), stream_(std::move(stream)) {
+    pass_->uv_coverage = UvCoverage(source.options_.uv_reach_lambda);
+  }
 
   std::shared_ptr<const VisibilityBlock> next() override {
     auto block = stream_->next();
     if (block) {
       pass_->counts += block->counts;
       pass_->w_spread.add(*block);
+      pass_->uv_coverage.add(*block);
       if (source_.options_.keep) pass_->blocks.append(block);
     } else {
       require_usable(pass_->counts);
@@ -63,6 +66,11 @@ SampleCounts StreamedVisibilities::counts() const {
 WSpread StreamedVisibilities::w_spread() const {
   const auto pass = first_pass();
   return pass ? pass->w_spread : WSpread{};
+}
+
+UvCoverage StreamedVisibilities::uv_coverage() const {
+  const auto pass = first_pass();
+  return pass ? pass->uv_coverage : UvCoverage(options_.uv_reach_lambda);
 }
 
 std::shared_ptr<const StreamedVisibilities::Pass> StreamedVisibilities::first_pass() const {

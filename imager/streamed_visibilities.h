@@ -4,13 +4,14 @@
 
 #include "imager/extent.h"
 #include "imager/stored_visibilities.h"
+#include "imager/uv_coverage.h"
 
 namespace misfit::imager {
 
-/// Whether the blocks of the first pass stay in memory, and how many blocks are read ahead of their user.
 struct StreamingOptions {
-  bool keep = true;
-  std::size_t ahead = 2;
+  bool keep = true;            ///< whether the blocks of the first pass stay in memory
+  std::size_t ahead = 2;       ///< blocks read ahead of their user
+  double uv_reach_lambda = 0;  ///< up to where the uv coverage is gathered; 0: nowhere
 };
 
 /// Another source, read ahead of its user, in the same blocks. The first pass that is read to its end tells what was in it, and
@@ -25,12 +26,14 @@ class StreamedVisibilities : public VisibilitySource {
   /// Of a full pass, and zero before there was one.
   SampleCounts counts() const;
   WSpread w_spread() const;
+  UvCoverage uv_coverage() const;
 
  private:
   /// What a pass told.
   struct Pass {
     SampleCounts counts;
     WSpread w_spread;
+    UvCoverage uv_coverage;
     StoredVisibilities blocks;
   };
   class Recorder;

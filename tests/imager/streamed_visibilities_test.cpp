@@ -66,11 +66,13 @@ BOOST_AUTO_TEST_CASE(a_full_pass_tells_what_was_in_it) {
   const Counted source(blocks());
   SampleCounts counts;
   WSpread spread;
+  UvCoverage coverage(1e5);
   for (const VisibilityBlock& block : blocks()) {
     counts += block.counts;
     spread.add(block);
+    coverage.add(block);
   }
-  const StreamedVisibilities streamed(source, {});
+  const StreamedVisibilities streamed(source, {.uv_reach_lambda = coverage.reach_lambda()});
   streamed.open()->next();  // a pass that is broken off tells nothing
   BOOST_TEST(streamed.counts().used == 0U);
   for (int pass = 0; pass < 2; ++pass) {
@@ -79,6 +81,7 @@ BOOST_AUTO_TEST_CASE(a_full_pass_tells_what_was_in_it) {
     BOOST_TEST(streamed.counts().flagged == counts.flagged);
     BOOST_TEST(streamed.w_spread().weight == spread.weight);
     BOOST_TEST(streamed.w_spread().weighted_w_square == spread.weighted_w_square);
+    BOOST_CHECK(streamed.uv_coverage().counts() == coverage.counts());
   }
   BOOST_TEST(source.opened == 2);
 }
