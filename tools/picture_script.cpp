@@ -8,37 +8,13 @@
 
 #include "tools/gnuplot.h"
 #include "tools/numbers.h"
+#include "tools/picture_layout.h"
 #include "tools/sky_marks.h"
-#include "tools/ticks.h"
 
 namespace misfit::tools {
 namespace {
 
 namespace fs = std::filesystem;
-
-/// The room around the plot, screen pixels. Pages show pictures at about half their size, hence the large type.
-constexpr int margin_left = 116;
-constexpr int margin_right = 172;
-constexpr int margin_top = 130;
-constexpr int margin_bottom = 94;
-constexpr int least_height = 260;  ///< of the colour bar
-
-/// A picture's measures, screen pixels. All are equally wide, so that type is equally large wherever they are shown.
-struct Layout {
-  int plot_width;
-  int plot_height;
-  int width = picture_side + margin_left + margin_right;
-  int height;
-
-  explicit Layout(const imager::ImageGeometry& geometry) {
-    const double scale = 1.0 * picture_side / std::max(geometry.width, geometry.height);
-    plot_width = std::max(1, static_cast<int>(std::lround(scale * geometry.width)));
-    plot_height = std::max(1, static_cast<int>(std::lround(scale * geometry.height)));
-    height = std::max(plot_height, least_height) + margin_top + margin_bottom;
-  }
-  double x(double from_left) const { return from_left / width; }
-  double y(double from_top) const { return 1 - from_top / height; }
-};
 
 /// All that the script is made from. Values of the stretch are in `unit`, offsets in that of `frame`.
 struct Scene {
@@ -47,7 +23,7 @@ struct Scene {
   Stretch stretch;
   ScaledUnit unit;
   SkyFrame frame;
-  Layout layout;
+  PictureLayout layout;
 
   double offsets_a_pixel() const { return frame.width() / layout.plot_width; }
 };
@@ -57,7 +33,7 @@ Scene scene_of(const Picture& picture, const Sketch& sketch) {
   const ScaledUnit unit = scaled_unit(std::max(std::abs(stretch.low), std::abs(stretch.high)), picture.image->unit);
   for (double* limit : {&stretch.low, &stretch.high, &stretch.knee}) *limit /= unit.size;
   const imager::ImageGeometry& geometry = picture.image->geometry;
-  return {picture, sketch, stretch, unit, sky_frame(geometry), Layout(geometry)};
+  return {picture, sketch, stretch, unit, sky_frame(geometry), {geometry.width, geometry.height}};
 }
 
 /// The shades as 32-bit floats, rows from south to north and columns from west to east, as gnuplot counts.
@@ -91,46 +67,23 @@ std::string beam_text(const imager::Beam& beam) {
          unit.name + " at " + significant(beam.position_angle_rad * 180 / M_PI, 3) + "°";
 }
 
-void write_titles(std::ostream& script, const Scene& scene) {
+std::vector<std::string> titles(const Scene& scene) {
   const imager::SkyImage& sky = *scene.picture.image;
   const imager::SkyDirection& centre = sky.geometry.phase_centre;
   std::string about = sky.has_beam ? beam_text(sky.beam) : "";
   if (sky.observation.frequency_hz > 0)
     about = significant(sky.observation.frequency_hz / 1e9, 5) + " GHz" + (about.empty() ? "" : ",  ") + about;
   if (scene.picture.mask != nullptr) about += about.empty() ? "mask in green" : ",  mask in green";
-  const auto line = [&](int tag, const std::string& text, int from_top, const char* look) {
-    script << "set label " << tag << ' ' << gnuplot_quoted(text) << " at screen " << scene.layout.x(margin_left) << ", screen "
-           << scene.layout.y(from_top) << ' ' << look << '\n';
-  };
-  line(1, scene.picture.title, 34, "font 'sans:Bold,22'");
-  line(2, "offsets from " + sexagesimal(centre) + " (" + centre.frame + ")", 74, "font 'sans,15' tc rgb '#444444'");
-  line(3, about, 106, "font 'sans,15' tc rgb '#444444'");
+  return {scene.picture.title, "offsets from " + sexagesimal(centre) + " (" + centre.frame + ")", about};
 }
 
-struct OffsetAxis {
-  char name;
-  std::string direction;
-  std::string unit;
-  double from, to;
-};
-
-/// As many marks, and as long a label, as so many screen pixels have room for.
-void write_axis(std::ostream& script, const OffsetAxis& axis, int pixels) {
-  const int marks = std::clamp(pixels / 100, 3, 6);
-  script << "set " << axis.name << "label "
-         << gnuplot_quoted((pixels < 250 ? "" : "offset ") + axis.direction + ", " + axis.unit) << "\nset " << axis.name
-         << "tics " << round_step(std::abs(axis.to - axis.from) / marks) << "\nset " << axis.name << "range [" << axis.from
-         << ':' << axis.to << "]\n";
-}
-
-void write_axes(std::ostream& script, const Scene& scene) {
-  const Layout& at = scene.layout;
+void write_offset_axes(std::ostream& script, const Scene& scene) {
   const SkyFrame& frame = scene.frame;
-  script << "set lmargin at screen " << at.x(margin_left) << "\nset rmargin at screen " << at.x(margin_left + at.plot_width)
-         << "\nset tmargin at screen " << at.y(margin_top) << "\nset bmargin at screen " << at.y(margin_top + at.plot_height)
-         << "\nset border lw 1 lc rgb '#444444'\nset tics out nomirror textcolor rgb '#222222'\nunset key\n";
-  write_axis(script, {'x', "east", frame.unit.name, frame.east, frame.west}, at.plot_width);
-  write_axis(script, {'y', "north", frame.unit.name, frame.south, frame.north}, at.plot_height);
+  const auto label = [&](const char* direction, int pixels) {
+    return (pixels < 250 ? "" : "offset ") + std::string(direction) + ", " + frame.unit.name;
+  };
+  write_axes(script, scene.layout, {'x', label("east", scene.layout.plot_width), frame.east, frame.west},
+             {'y', label("north", scene.layout.plot_height), frame.south, frame.north});
 }
 
 /// Colours from the lowest shade to the highest; each palette's lightness tells values apart without hue too. Of what has no
@@ -149,25 +102,15 @@ const char* palette(const Scene& scene) {
                     "'#d6604d', 4 '#a3122a'";
 }
 
-void write_colour_bar(std::ostream& script, const Scene& scene) {
-  const Layout& at = scene.layout;
+ColourBar colour_bar(const Scene& scene) {
   const Stretch& stretch = scene.stretch;
-  const int left = margin_left + at.plot_width + 20, height = std::max(at.plot_height, least_height);
-  script << "set palette maxcolors 1024 defined (" << palette(scene) << ")\nset cbrange [" << stretch(stretch.low) << ':'
-         << stretch(stretch.high) << "]\nset colorbox user origin " << at.x(left) << ',' << at.y(margin_top + height)
-         << " size " << at.x(28) << ',' << 1 - at.y(height) << "\nset cbtics (";
-  const char* comma = "";
-  for (const Tick& tick : stretch_ticks(stretch)) {
-    script << comma << gnuplot_quoted(tick.label) << ' ' << stretch(tick.value);
-    comma = ", ";
-  }
-  const auto label = [&](int tag, const std::string& text, int from_top) {
-    script << "set label " << tag << ' ' << gnuplot_quoted(text) << " at screen " << at.x(left) << ", screen " << at.y(from_top)
-           << " font 'sans,15' tc rgb '#444444'\n";
-  };
-  script << ")\n";
-  label(4, scene.unit.name, margin_top + height + 24);
-  label(5, stretch.knee > 0 ? "asinh scale" : "linear scale", margin_top + height + 50);
+  ColourBar bar{.palette = palette(scene),
+                .low = stretch(stretch.low),
+                .high = stretch(stretch.high),
+                .ticks = stretch_ticks(stretch),
+                .notes = {scene.unit.name, stretch.knee > 0 ? "asinh scale" : "linear scale"}};
+  for (Tick& tick : bar.ticks) tick.value = stretch(tick.value);
+  return bar;
 }
 
 /// Marks lie on light paper, so that they can be read on whatever the image holds there.
@@ -224,13 +167,10 @@ void write_picture_script(const Picture& picture, const fs::path& folder) {
   write_shades(folder / "data", scene);
 
   std::ofstream script(folder / "script");
-  script.precision(12);
-  script
-      << "reset\nset encoding utf8\nset minussign\nset terminal pngcairo noenhanced background rgb 'white' font 'sans,16' size "
-      << scene.layout.width << ',' << scene.layout.height << "\nset output 'png'\n";
-  write_titles(script, scene);
-  write_axes(script, scene);
-  write_colour_bar(script, scene);
+  write_beginning(script, scene.layout);
+  write_titles(script, scene.layout, titles(scene));
+  write_offset_axes(script, scene);
+  write_colour_bar(script, scene.layout, colour_bar(scene));
   write_beam(script, scene);
   write_scale_bar(script, scene);
   const imager::Image& image = made.reduced.image;

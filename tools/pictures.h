@@ -5,12 +5,10 @@
 #include <vector>
 
 #include "imager/fits_image.h"
+#include "tools/picture_layout.h"
 #include "tools/sketch.h"
 
 namespace misfit::tools {
-
-/// The longer side of what a picture shows of the sky, screen pixels.
-inline constexpr int picture_side = 640;
 
 /// A picture to draw: east is left and north up, axes are offsets from the phase centre, which the title names; the colour bar
 /// states unit and stretch; the beam lies to scale in the lower left corner, a scale bar in the lower right one. Pixels that
