@@ -58,6 +58,12 @@ void ImageProducts::draw(const std::vector<ProductPicture>& pictures) {
   drawing_.add(wanted);
 }
 
+void ImageProducts::draw(const imager::UvCoverage& coverage) {
+  const std::string path = imagename_ + ".uv.png";
+  titles_and_paths_.emplace_back("uv coverage", path);
+  drawing_.add(coverage, path);
+}
+
 std::vector<std::pair<std::string, std::string>> ImageProducts::pictures() const {
   return {titles_and_paths_.rbegin(), titles_and_paths_.rend()};
 }

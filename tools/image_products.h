@@ -41,6 +41,8 @@ class ImageProducts {
 
   /// Begins to draw <imagename>.<name>.png while the caller does other things; images are looked at until it returns.
   void draw(const std::vector<ProductPicture>& pictures);
+  /// The same of where samples lie, as <imagename>.uv.png.
+  void draw(const imager::UvCoverage& coverage);
   /// Returns what PictureDrawing::finish() does.
   std::string finish_pictures() { return drawing_.finish(); }
   /// Title and path of each picture, the last first.

@@ -85,16 +85,17 @@ class ImageRun {
     request.max_abs_w = reach_.max_abs_w;
     if (o_.memory_gib > 0) limit_memory(o_.memory_gib * gib, request);
     made_.plan = imager::plan_gridding(request);
-    const MemoryPlan memory = plan_memory({.transform = imager::memory_of(made_.plan),
-                                           .pixels = static_cast<double>(geometry_.pixels()),
-                                           .rows = static_cast<double>(set_->rows()),
-                                           .samples = static_cast<double>(set_->samples()),
-                                           .block_samples = static_cast<double>(ms_io::MeasurementSet::usual_block_samples),
-                                           .verify = o_.verify > 0,
-                                           .clean = o_.niter > 0,
-                                           .mask = clean_ && (clean_->mask() != nullptr || o_.usemask == "auto"),
-                                           .start_model = !o_.startmodel.empty()},
-                                          o_);
+    MemoryPlan memory = plan_memory({.transform = imager::memory_of(made_.plan),
+                                     .pixels = static_cast<double>(geometry_.pixels()),
+                                     .rows = static_cast<double>(set_->rows()),
+                                     .samples = static_cast<double>(set_->samples()),
+                                     .block_samples = static_cast<double>(ms_io::MeasurementSet::usual_block_samples),
+                                     .verify = o_.verify > 0,
+                                     .clean = o_.niter > 0,
+                                     .mask = clean_ && (clean_->mask() != nullptr || o_.usemask == "auto"),
+                                     .start_model = !o_.startmodel.empty()},
+                                    o_);
+    memory.streaming.uv_reach_lambda = std::min(std::max(reach_.max_abs_u, reach_.max_abs_v), 0.5 / geometry_.cell_rad);
     memory_ = memory.peak;
     report_.estimated_memory_bytes = memory_.total();
     source_ = std::make_unique<imager::StreamedVisibilities>(*set_, memory.streaming);
@@ -172,7 +173,7 @@ class ImageRun {
         o_,
         ProductScene{geometry_, set_->observation(), report_.command_line, error_cards(report_), beams_.restoring, threads_},
         times_);
-    products_->draw_dirty(made_.images, clean_ ? clean_->mask() : nullptr);
+    products_->draw_dirty(source_->uv_coverage(), made_.images, clean_ ? clean_->mask() : nullptr);
   }
 
   void clean() {

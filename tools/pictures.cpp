@@ -1,6 +1,7 @@
 #include "tools/pictures.h"
 
 #include <filesystem>
+#include <functional>
 #include <future>
 #include <stdexcept>
 #include <system_error>
@@ -9,6 +10,7 @@
 #include "tools/files.h"
 #include "tools/gnuplot.h"
 #include "tools/picture_script.h"
+#include "tools/uv_picture.h"
 
 namespace misfit::tools {
 namespace {
@@ -36,10 +38,11 @@ struct PictureDrawing::Sheet {
   std::string png;  ///< the file's bytes
   std::future<std::string> failure;
 
-  explicit Sheet(const Picture& picture) : path(picture.path) {
+  /// `write_script` writes what gnuplot needs into a folder.
+  Sheet(const std::string& to, const std::function<void(const fs::path& folder)>& write_script) : path(to) {
     try {
       work = std::make_unique<WorkFolder>(temporary_folder());
-      write_picture_script(picture, work->path());
+      write_script(work->path());
       failure = std::async(std::launch::async, [this] { return draw(); });
     } catch (const std::exception& error) {  // a picture less is no reason to lose a run
       std::promise<std::string> reason;
@@ -67,8 +70,15 @@ PictureDrawing::~PictureDrawing() = default;
 void PictureDrawing::add(const std::vector<Picture>& pictures) {
   const std::size_t before = sheets_.size();
   sheets_.resize(before + pictures.size());
-  imager::parallel_for(pictures.size(), static_cast<int>(pictures.size()),
-                       [&](std::size_t i) { sheets_[before + i] = std::make_unique<Sheet>(pictures[i]); });
+  imager::parallel_for(pictures.size(), static_cast<int>(pictures.size()), [&](std::size_t i) {
+    const auto write_script = [&](const fs::path& folder) { write_picture_script(pictures[i], folder); };
+    sheets_[before + i] = std::make_unique<Sheet>(pictures[i].path, write_script);
+  });
+}
+
+void PictureDrawing::add(const imager::UvCoverage& coverage, const std::string& path) {
+  const auto write_script = [&](const fs::path& folder) { write_uv_script(coverage, folder); };
+  sheets_.push_back(std::make_unique<Sheet>(path, write_script));
 }
 
 std::string PictureDrawing::finish() {

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "imager/fits_image.h"
+#include "imager/uv_coverage.h"
 #include "tools/picture_layout.h"
 #include "tools/sketch.h"
 
@@ -33,6 +34,8 @@ class PictureDrawing {
 
   /// Images, sketches and masks are looked at until it returns.
   void add(const std::vector<Picture>& pictures);
+  /// Where samples lie, see write_uv_script(), as a PNG file at `path`.
+  void add(const imager::UvCoverage& coverage, const std::string& path);
 
   /// Returns an empty string when all files are there and complete, or in one sentence why there are none (gnuplot is not
   /// installed, or failed; there is no folder for temporary files). Throws std::runtime_error that names the picture when it

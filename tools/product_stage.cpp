@@ -21,8 +21,10 @@ ProductPicture ProductStage::dirty_picture(const imager::Image* dirty, const ima
       .name = "dirty", .title = "Dirty image", .image = dirty, .sketch = dirty == nullptr ? &dirty_ : nullptr, .mask = mask};
 }
 
-void ProductStage::draw_dirty(const imager::DirtyImages& images, const imager::Image* mask) {
+void ProductStage::draw_dirty(const imager::UvCoverage& coverage, const imager::DirtyImages& images,
+                              const imager::Image* mask) {
   const imager::StageTimer timer(times_, "draw pictures");
+  products_.draw(coverage);
   products_.draw({{.name = "psf", .title = "PSF", .image = &images.psf}});
   if (o_.niter == 0)
     products_.draw({{.name = "residual", .title = "Dirty image", .image = &images.dirty}});

@@ -308,11 +308,11 @@ BOOST_AUTO_TEST_CASE(only_the_files_promised_appear) {
     BOOST_TEST(entry.path().extension() == ".png");  // pictures, where gnuplot is installed
 }
 
-BOOST_AUTO_TEST_CASE(the_page_of_a_clean_shows_five_images_and_their_course) {
+BOOST_AUTO_TEST_CASE(the_page_of_a_clean_shows_five_images_and_their_course_and_where_samples_lie) {
   const TemporaryFolder folder;
   succeed(small_image(snapshot(), folder / "a") + Arguments{"--niter", "10"});
   const std::string page = content(folder / "a.report.html");
-  for (const char* title : {"Restored image", "Residual", "Dirty image", "Model", "PSF"})
+  for (const char* title : {"Restored image", "Residual", "Dirty image", "Model", "PSF", "uv coverage"})
     BOOST_TEST(page.find("<img alt=\"" + std::string(title) + "\"") != std::string::npos, title);
   BOOST_TEST(page.find("Progress of CLEAN") != std::string::npos);
   BOOST_TEST(std::filesystem::exists(folder / "a.dirty.png"));
