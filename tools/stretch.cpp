@@ -36,15 +36,6 @@ std::vector<double> tick_values(const Stretch& stretch) {
   return values;
 }
 
-/// Every few pixels of a large image, enough for its noise.
-imager::Image sample(const imager::Image& image) {
-  constexpr std::size_t enough = 1 << 18;
-  const std::size_t step = image.pixel.size() / enough | 1;  // odd, so that it meets every column
-  imager::Image some;
-  for (std::size_t i = 0; i < image.pixel.size(); i += step) some.pixel.push_back(image.pixel[i]);
-  return some;
-}
-
 /// Where the faint of the pixels that are not zero begin, of which one, of magnitude `largest`, is known to be there.
 double faint(const imager::Image& image, double largest) {
   constexpr std::size_t enough = 1 << 18;
@@ -77,7 +68,7 @@ Stretch choose_stretch(const imager::Image& image, Shades shades) {
   if (min > max) return {};
   if (min == max) return {.low = std::min(0.0, min), .high = min < 0 ? 0 : min > 0 ? min : 1};
 
-  const double noise = imager::robust_noise(sample(image));
+  const double noise = imager::sampled_noise(image);
   Stretch stretch{.low = min, .high = max, .sparse = noise == 0};
   const double knee = stretch.sparse ? faint(image, std::max(max, -min)) : 3 * noise;
   if (shades == Shades::about_zero) return stretch_about_zero(stretch, noise, knee);

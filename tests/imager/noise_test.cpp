@@ -20,6 +20,16 @@ BOOST_AUTO_TEST_CASE(normal_pixels_have_their_standard_deviation) {
   BOOST_TEST(robust_noise(image) == 0.2, boost::test_tools::tolerance(0.015));
 }
 
+BOOST_AUTO_TEST_CASE(a_sample_of_a_large_image_has_its_noise) {
+  const Image image = random_image(1000, 900, 2);
+  // 1.17/√N of 300 000 pixels is 2.1e-3; four times that.
+  BOOST_TEST(sampled_noise(image) == robust_noise(image), boost::test_tools::tolerance(0.0085));
+  BOOST_TEST(sampled_noise(image) != robust_noise(image));
+  const Image small = random_image(300, 200, 3);
+  BOOST_TEST(sampled_noise(small) == robust_noise(small));
+  BOOST_TEST(sampled_noise(Image()) == 0);
+}
+
 BOOST_AUTO_TEST_CASE(a_few_bright_sources_hardly_change_it) {
   Image image = random_image(300, 300, 1);
   const double before = robust_noise(image);
