@@ -20,9 +20,6 @@
 namespace misfit::tools {
 namespace {
 
-/// The drawing's size in units of which 15 are a line of text: 10 points where 760 are the 18 cm of a printed page.
-constexpr int drawing_width = 760;
-constexpr int drawing_height = 430;  // two to a printed page
 constexpr int font_size = 15;
 /// Labels up to this many letters go to the right of the axes, longer ones below.
 constexpr std::size_t narrow_label = 24;
@@ -92,6 +89,7 @@ std::string line_style(const Series& series, std::size_t number) {
   constexpr std::array<int, 7> mark{7, 5, 9, 13, 4, 6, 8};
   std::ostringstream style;
   if (series.law) return "with lines lw 1.2 dt (6,4) lc rgb '#000000'";
+  if (series.columns) return "with boxes fill solid noborder lc rgb '#56b4e9'";
   style << "with " << (!series.points ? "lines" : series.line ? "linespoints" : "points");
   style << " lw " << (series.points ? 1.2 : 1.8) << " lc rgb '" << colour[number % colour.size()] << "'";
   if (series.points) style << " pt " << mark[number % mark.size()] << " ps 0.6";
@@ -116,7 +114,7 @@ void script_legend(std::ostream& script, const Figure& figure) {
   const bool below = longest > narrow_label;
   const auto rows = below ? static_cast<int>(figure.series.size()) : 0;
   script << "set terminal svg enhanced dynamic rounded name " << gnuplot_quoted(id_of(figure)) << " font 'DejaVu Sans,"
-         << font_size << "' background rgb 'white' size " << drawing_width << ',' << drawing_height + rows * rows_below << '\n';
+         << font_size << "' background rgb 'white' size " << figure.width << ',' << figure.height + rows * rows_below << '\n';
   if (figure.series.size() == 1) {
     script << "unset key\n";
   } else {
@@ -139,6 +137,8 @@ std::string script_of(const Figure& figure) {
   std::size_t points = 0;
   for (std::size_t number = 0; number < figure.series.size(); ++number) points += write_data(script, figure, number);
   if (points == 0) throw std::logic_error("figure " + figure.name + " has no point to draw");
+  for (const Series& series : figure.series)
+    if (series.columns && series.x.size() > 1) script << "set boxwidth " << series.x[1] - series.x[0] << '\n';
   script << "plot ";
   for (std::size_t number = 0; number < figure.series.size(); ++number) {
     const Series& series = figure.series[number];

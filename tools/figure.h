@@ -12,9 +12,10 @@ struct Series {
   std::string label;  ///< for the legend, unlike all others of the figure
   std::vector<double> x;
   std::vector<double> y;
-  bool points = false;  ///< marks at its points
-  bool line = true;     ///< a line through them
-  bool law = false;     ///< thin, dashed and black: what theory says of the series around it
+  bool points = false;   ///< marks at its points
+  bool line = true;      ///< a line through them
+  bool law = false;      ///< thin, dashed and black: what theory says of the series around it
+  bool columns = false;  ///< in place of both: filled, from the axis up, side by side about evenly spaced x
 };
 
 struct Axis {
@@ -32,10 +33,14 @@ struct Figure {
   Axis x;
   Axis y;
   std::vector<Series> series;
+  /// Of the drawing, in units of which 15 are a line of text: 10 points where 760 are the 18 cm of a printed page, which holds
+  /// two of this height.
+  int width = 760;
+  int height = 430;
 };
 
 /// The figure as an SVG element, drawn by gnuplot: curves differ in colour and in dashes or marks, the legend lies outside the
-/// axes, text is about 10 points where the figure fills a printed page. Ids in it begin with the figure's name. Throws
+/// axes. Ids in it begin with the figure's name. Throws
 /// std::logic_error for a figure without a point to draw, with labels that repeat or series of unequal lengths;
 /// std::runtime_error where gnuplot is not installed or fails.
 std::string draw_svg(const Figure& figure);

@@ -217,11 +217,18 @@ class ImageRun {
   }
 
   void write_images() {
+    count_pixels();
     std::string removed;
     for (const std::string& path :
          cleaned_ ? products_->write(std::move(made_.images.psf), *cleaned_) : products_->write(std::move(made_.images)))
       removed += (removed.empty() ? "" : ", ") + path;
     if (!removed.empty()) progress_.say("removed what an earlier run left: " + removed);
+  }
+
+  void count_pixels() {
+    const imager::StageTimer timer(times_, "statistics");
+    report_.histogram = cleaned_ ? pixel_histogram(cleaned_->residual, cleaned_->report.final_state().rms_jy, threads_)
+                                 : pixel_histogram(made_.images.dirty, imager::sampled_noise(made_.images.dirty), threads_);
   }
 
   void write_report() {

@@ -140,7 +140,8 @@ json report_json(const RunReport& r) {
           {"memory_gib_estimated", r.estimated_memory_bytes / gib},
           {"beam", restoring_json(r.beams)},
           {"beam_by_quadrant", r.beams == nullptr ? json() : beam_json(r.beams->quadrant)},
-          {"clean", clean_json(r.clean)}};
+          {"clean", clean_json(r.clean)},
+          {"residual_histogram", histogram_json(r.histogram)}};
 }
 
 }  // namespace misfit::tools
