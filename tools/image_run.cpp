@@ -231,13 +231,24 @@ class ImageRun {
                                  : pixel_histogram(made_.images.dirty, imager::sampled_noise(made_.images.dirty), threads_);
   }
 
+  /// Nothing where gnuplot cannot draw it.
+  std::string histogram_drawing() {
+    const imager::StageTimer timer(times_, "draw pictures");
+    try {
+      return report_.histogram.pixels == 0 ? "" : draw_svg(histogram_figure(report_.histogram));
+    } catch (const std::runtime_error&) {  // the pictures say why
+      return "";
+    }
+  }
+
   void write_report() {
+    const std::string histogram = histogram_drawing();
     std::vector<PagePicture> pictures;
     if (const std::string failure = products_->finish_pictures(pictures); !failure.empty()) warn(failure);
     report_.wall_clock_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
     const nlohmann::json json = report_json(report_);
     write_file(o_.imagename + ".report.json", json.dump(2) + "\n");
-    write_file(o_.imagename + ".report.html", report_page(json, pictures));
+    write_file(o_.imagename + ".report.html", report_page(json, pictures, histogram));
   }
 
   static std::string flux(double jy) {

@@ -11,6 +11,7 @@
 #include "tools/html_elements.h"
 #include "tools/numbers.h"
 #include "tools/report_values.h"
+#include "tools/time_section.h"
 
 namespace misfit::tools {
 namespace {
@@ -90,6 +91,9 @@ std::string headline(const json& report) {
   if (clean.is_object()) {
     facts.emplace_back("Residual", with_unit(member(clean, "rms_jy"), "Jy/beam") +
                                        tag("small", "noise; peak " + with_unit(member(clean, "peak_residual_jy"), "Jy/beam")));
+  } else if (const json& histogram = member(report, "residual_histogram"); histogram.is_object()) {
+    facts.emplace_back("Dirty image", with_unit(member(histogram, "noise_jy"), "Jy/beam") +
+                                          tag("small", "noise; largest " + with_unit(member(histogram, "max_jy"), "Jy/beam")));
   }
   const json& total = member(member(report, "timings_s"), "total");
   const json& memory = member(report, "memory_gib_peak");
@@ -109,13 +113,30 @@ std::string warnings(const json& list) {
   return content.empty() ? "" : tag("aside", content);
 }
 
-std::string figures(const std::vector<PagePicture>& pictures, const std::string& curve) {
+/// What the histogram shows, in numbers.
+std::string histogram_caption(const json& histogram, bool cleaned) {
+  const json& noise = member(histogram, "noise_jy");
+  const json& pixels = member(histogram, "pixels");
+  if (!noise.is_number() || !pixels.is_number()) return "";
+  const auto in_sigma = [&](const char* key) {
+    const json& value = member(histogram, key);
+    return value.is_number() ? significant(value.get<double>() / noise.get<double>(), 3) + "\u00a0σ" : not_measured;
+  };
+  constexpr double beyond_5_sigma = 5.733e-7;  // of a Gaussian
+  return tag("b", cleaned ? "Residual." : "Dirty image.") + " Noise σ = " + with_unit(noise, "Jy/beam") + "; pixels from " +
+         in_sigma("min_jy") + " to " + in_sigma("max_jy") + ". " + whole(member(histogram, "beyond_5_sigma")) + " of " +
+         whole(pixels) + " lie beyond 5\u00a0σ, where noise alone would leave " +
+         significant(beyond_5_sigma * pixels.get<double>(), 1) + ".";
+}
+
+std::string figures(const std::vector<PagePicture>& pictures, const std::vector<std::string>& drawings) {
   std::string content;
   for (const PagePicture& picture : pictures) {
     content += "<figure><img alt=\"" + html_escaped(picture.title) + "\" src=\"data:image/png;base64," + base64(picture.png) +
                "\"></figure>\n";
   }
-  if (!curve.empty()) content += tag("figure", curve) + "\n";
+  for (const std::string& drawing : drawings)
+    if (!drawing.empty()) content += tag("figure", drawing) + "\n";
   return content.empty() ? "" : tag("div", content, "pictures") + "\n";
 }
 
@@ -162,40 +183,16 @@ std::string left_out(const json& visibilities) {
                 row("outside the grid", "outside_grid"), row("used", "used")});
 }
 
-std::string timings(const json& stages) {
-  std::vector<std::pair<double, std::string>> bars;
-  double sum = 0;
-  if (stages.is_object()) {
-    for (const auto& [name, seconds] : stages.items()) {
-      if (!seconds.is_number() || name == "total") continue;
-      bars.emplace_back(seconds.get<double>(), name);
-      sum += seconds.get<double>();
-    }
-  }
-  const json& total = member(stages, "total");
-  const double wall = total.is_number() ? std::max(total.get<double>(), sum) : sum;
-  if (!(wall > 0)) return "";
-  std::sort(bars.rbegin(), bars.rend());
-  if (wall > sum) bars.emplace_back(wall - sum, "everything else");
-  std::ostringstream content;
-  content.precision(3);
-  for (const auto& [seconds, name] : bars) {
-    std::string label = name;
-    std::replace(label.begin(), label.end(), '_', ' ');
-    const double percent = 100 * seconds / wall;
-    content << "<tr><td>" << html_escaped(label) << "</td><td class=\"number\">" << duration(seconds)
-            << "</td><td class=\"number\">" << significant(percent, percent < 10 ? 1 : 2)
-            << " %</td><td class=\"bar\"><i style=\"width:" << percent << "%\"></i></td></tr>\n";
-  }
-  content << "<tr class=\"sum\"><td>wall clock</td><td class=\"number\">" << duration(wall) << "</td><td></td><td></td></tr>\n";
-  return tag("table", tag("tbody", content.str()), "bars") + "\n";
+/// Whether nothing was given for an option.
+bool is_empty(const json& value) {
+  return value.empty() || plain(value).empty() || value == "[]";
 }
 
 std::string options(const json& used) {
   std::vector<Row> rows;
   if (used.is_object()) {
     for (const auto& [name, value] : used.items()) {
-      if (!value.is_null()) rows.push_back({tag("code", "--" + html_escaped(name)), plain(value)});
+      if (!is_empty(value)) rows.push_back({tag("code", "--" + html_escaped(name)), plain(value)});
     }
   }
   return table({"Option", "Value"}, rows);
@@ -203,19 +200,21 @@ std::string options(const json& used) {
 
 }  // namespace
 
-std::string report_page(const json& report, const std::vector<PagePicture>& pictures) {
+std::string report_page(const json& report, const std::vector<PagePicture>& pictures, const std::string& histogram) {
   const json& name = member(member(report, "options"), "imagename");
   const std::string title = name.is_string() ? plain(name) : "misfit";
   const json& command = member(report, "command_line");
   std::string content = html::header(title, "misfit " + plain(member(report, "version")));
   content += warnings(member(report, "warnings"));
   content += headline(report);
-  content += figures(pictures, clean_progress(member(report, "clean")));
-  content += section("CLEAN", clean_section(member(report, "clean")));
+  const json& clean = member(report, "clean");
+  const std::string caption = histogram_caption(member(report, "residual_histogram"), clean.is_object());
+  content += figures(pictures, {clean_progress(clean), histogram.empty() ? "" : histogram + tag("figcaption", caption)});
+  content += section("CLEAN", clean_section(clean));
   content += section("Plan", plan(member(report, "plan")));
   content += section("Error", errors(member(report, "error"), member(report, "kernel")));
   content += section("What was used and what was left out", left_out(member(report, "visibilities")));
-  content += section("Time", timings(member(report, "timings_s")));
+  content += section("Time", time_section(member(report, "timings_s"), member(report, "timings_expected_s")));
   content += section("Options", options(member(report, "options")));
   content += section("Command line", command.is_string() ? tag("pre", plain(command)) : "");
   return html::page(title + " — misfit", content);

@@ -6,8 +6,8 @@ namespace misfit::tools {
 inline constexpr const char* report_style = R"css(
 :root { color-scheme: light dark; --text: #1d1d1f; --soft: #62646a; --line: #dcdde1; --page: #ffffff; --tint: #f5f5f7;
   --accent: #88226a; --second: #1f6fa8; --bad: #b3261e; --good: #2b6e3f; --warn: #fff4d6; --warn-line: #e0a100; }
-@media (prefers-color-scheme: dark) { :root { --text: #e4e4e7; --soft: #a0a1a8; --line: #34353b; --page: #141417; --tint: #1d1e22;
-  --accent: #f0764f; --second: #6db3e8; --bad: #ff8a80; --good: #81c995; --warn: #33290f; --warn-line: #c98f00; } img, .drawing svg { filter: brightness(.82); } }
+@media screen and (prefers-color-scheme: dark) { :root { --text: #e4e4e7; --soft: #a0a1a8; --line: #34353b; --page: #141417; --tint: #1d1e22;
+  --accent: #f0764f; --second: #6db3e8; --bad: #ff8a80; --good: #81c995; --warn: #33290f; --warn-line: #c98f00; } img, .drawing svg, .pictures svg:not(.curve) { filter: brightness(.82); } }
 * { box-sizing: border-box; }
 body { margin: 0; background: var(--page); color: var(--text); font: 16px/1.5 system-ui, -apple-system, "Segoe UI", "DejaVu Sans", sans-serif; }
 main { max-width: 1060px; margin: 0 auto; padding: 2rem 1.25rem 4rem; }
@@ -30,7 +30,7 @@ sup { line-height: 0; font-size: .75em; }
 figure { margin: 0; }
 img { display: block; width: 100%; height: auto; border: 1px solid var(--line); border-radius: 8px; background: #fff; }
 .drawing, .data { margin: 1.25rem 0 2rem; max-width: 48rem; } .data { max-width: none; }
-.drawing svg { display: block; width: 100%; height: auto; border: 1px solid var(--line); border-radius: 8px; background: #fff; }
+.drawing svg, .pictures svg { display: block; width: 100%; height: auto; border: 1px solid var(--line); border-radius: 8px; background: #fff; }
 figcaption { font-size: .92rem; margin: .5rem 0; max-width: 48rem; }
 .scroll { overflow-x: auto; }
 table { border-collapse: collapse; width: 100%; font-size: .92rem; font-variant-numeric: tabular-nums; }
@@ -41,12 +41,11 @@ td:last-child, th:last-child { padding-right: 0; }
 .wide th:not(.number), .wide td:not(.number):not(:first-child) { padding-left: .5rem; } th { vertical-align: bottom; }
 .narrow { max-width: 34rem; }
 .number { text-align: right; white-space: nowrap; }
-.bars td { padding-top: .25rem; padding-bottom: .25rem; }
-.bars td:first-child { white-space: nowrap; }
-.bars .bar { width: 55%; vertical-align: middle; }
-.bar i { display: block; height: .7rem; min-width: 1px; background: var(--accent); border-radius: 2px; -webkit-print-color-adjust: exact;
-  print-color-adjust: exact; }
-.sum td { border-bottom: 0; font-weight: 600; }
+.s0 { --shade: #88226a; } .s1 { --shade: #1f6fa8; } .s2 { --shade: #e07b2c; } .s3 { --shade: #2b8a6e; } .s4 { --shade: #c94f7c; }
+.s5 { --shade: #6db3e8; } .s6 { --shade: #d9b13b; } .s7 { --shade: #a6a8ae; }
+.bar { display: block; width: 100%; height: 1.6rem; margin: .9rem 0; border-radius: 4px; } .bar rect { fill: var(--shade); }
+.swatch { display: inline-block; width: .75rem; height: .75rem; margin-right: .55rem; border-radius: 2px; background: var(--shade);
+  -webkit-print-color-adjust: exact; print-color-adjust: exact; }
 .curve { display: block; width: 100%; max-width: 34rem; height: auto; border: 1px solid var(--line); border-radius: 8px; }
 .curve .grid { stroke: var(--line); } .curve polyline { fill: none; stroke-width: 2; stroke-linejoin: round; }
 .curve .peak { stroke: var(--accent); } .curve .noise { stroke: var(--soft); stroke-width: 1.5; }
@@ -56,12 +55,15 @@ td:last-child, th:last-child { padding-right: 0; }
 .curve .title { fill: var(--text); font-size: 16px; font-weight: 700; }
 code, pre { font: .88rem/1.5 ui-monospace, "SF Mono", "DejaVu Sans Mono", monospace; }
 pre { background: var(--tint); padding: .8rem 1rem; border-radius: 6px; white-space: pre-wrap; overflow-wrap: anywhere; margin: 0; }
-td { overflow-wrap: break-word; }
+td { overflow-wrap: break-word; } p, dd, figcaption { overflow-wrap: anywhere; }
 @media (max-width: 36rem) { main { padding: 1.25rem 1rem 3rem; } .facts { grid-template-columns: 1fr 1fr; } .facts dd { font-size: 1.05rem; }
-  table { font-size: .85rem; } th, td { padding-right: .7rem; } .bars .bar { width: 30%; } }
-@media print { main { max-width: none; padding: 0; } section, figure, .facts { break-inside: avoid; } .pictures { grid-template-columns: 1fr 1fr; }
-  .drawing { max-width: none; margin: .5rem 0; } section:has(.drawing) { break-inside: auto; }
-  .wide table { font-size: .68rem; } .wide th { font-size: .62rem; } .wide th, .wide td { padding-right: .4rem; } h2 { break-after: avoid; } }
+  table { font-size: .85rem; } th, td { padding-right: .7rem; }
+  .drawing { overflow-x: auto; } .drawing svg { min-width: 30rem; } }
+@media print { :root { color-scheme: light; font-size: 13px; } body { font-size: 1rem; } main { max-width: none; padding: 0; }
+  figure, .facts, .bar, tr, aside, pre { break-inside: avoid; } h2, .bar { break-after: avoid; } h2 { margin-top: 2rem; }
+  th, td { padding-top: .2rem; padding-bottom: .2rem; } .scroll { overflow: visible; }
+  .pictures { grid-template-columns: 1fr 1fr; } .drawing { max-width: none; margin: .5rem 0; }
+  .wide table { font-size: .87rem; } .wide th { font-size: .8rem; } .wide th, .wide td { padding-right: .4rem; } }
 )css";
 
 }  // namespace misfit::tools

@@ -23,6 +23,7 @@ json full_report() {
     "visibilities": {"rows_read": 351, "samples_read": 1404, "used": 1300, "flagged": 100, "nonfinite": 4, "zero_weight": 0,
                      "autocorrelations": 0, "outside_grid": 0},
     "timings_s": {"read": 0.5, "grid": 1.0, "total": 2.0}, "memory_gib_peak": 0.2,
+    "residual_histogram": {"noise_jy": 0.002, "min_jy": -0.008, "max_jy": 0.025, "pixels": 1000000, "beyond_5_sigma": 3},
     "beam": {"major_arcsec": 0.4, "minor_arcsec": 0.3, "pa_deg": -12.5},
     "clean": {"iterations": 100, "major_cycles": 2, "stop_code": 1, "stop_reason": "iteration limit", "peak_residual_jy": 0.01,
               "rms_jy": 0.001, "model_flux_jy": 2.5,
@@ -79,6 +80,15 @@ BOOST_AUTO_TEST_CASE(the_page_needs_nothing_from_elsewhere) {
   for (const char* outside : {"http", "<script", "<link", "@import", "url("}) BOOST_TEST(!contains(page, outside), outside);
 }
 
+BOOST_AUTO_TEST_CASE(options_that_were_not_given_are_left_out) {
+  json report = full_report();
+  report["options"]["spw"] = "";
+  report["options"]["scales"] = "[]";
+  const std::string page = misfit::tools::report_page(report, {});
+  BOOST_TEST(contains(page, "<code>--niter</code>"));
+  for (const char* option : {"--mask", "--spw", "--scales"}) BOOST_TEST(!contains(page, option), option);
+}
+
 BOOST_AUTO_TEST_CASE(what_was_not_measured_is_said_so) {
   json report = full_report();
   report["error"]["measured_rms"] = std::numeric_limits<double>::quiet_NaN();
@@ -96,10 +106,20 @@ BOOST_AUTO_TEST_CASE(an_error_beyond_what_was_asked_stands_out) {
   BOOST_TEST(contains(misfit::tools::report_page(report, {}), "✓ within 10<sup>−6</sup> asked for"));
 }
 
-BOOST_AUTO_TEST_CASE(times_are_shares_of_the_wall_clock) {
-  const std::string page = misfit::tools::report_page(full_report(), {});
-  BOOST_TEST(contains(page, "<td>grid</td><td class=\"number\">1 s</td><td class=\"number\">50 %</td>"));
-  BOOST_TEST(contains(page, "<td>everything else</td><td class=\"number\">500 ms</td><td class=\"number\">25 %</td>"));
+BOOST_AUTO_TEST_CASE(a_histogram_is_shown_with_its_numbers) {
+  const std::string drawing = "<svg class=\"here\"></svg>";
+  const std::string page = misfit::tools::report_page(full_report(), {}, drawing);
+  for (const char* text : {drawing.c_str(), "Noise σ = 2 mJy/beam", "from −4\u00a0σ to 12.5\u00a0σ",
+                           "3 of 1\u2009000\u2009000 lie beyond 5\u00a0σ", "noise alone would leave 0.6"})
+    BOOST_TEST(contains(page, text), text);
+  BOOST_TEST(!contains(misfit::tools::report_page(full_report(), {}), "lie beyond"));
+}
+
+BOOST_AUTO_TEST_CASE(expected_times_are_shown_where_they_are_known) {
+  json report = full_report();
+  BOOST_TEST(!contains(misfit::tools::report_page(report, {}), "Expected"));
+  report["timings_expected_s"] = {{"grid", 0.9}, {"total", 1.8}};
+  BOOST_TEST(contains(misfit::tools::report_page(report, {}), "900 ms"));
 }
 
 BOOST_AUTO_TEST_SUITE_END()
