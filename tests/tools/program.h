@@ -50,11 +50,11 @@ inline const std::string& kernel_cache() {
   return path;
 }
 
-/// The program as a child process; its output goes to files in a folder of its own.
+/// The program as a child process, or another one found on PATH; its output goes to files in a folder of its own.
 class Child {
  public:
-  explicit Child(const Arguments& arguments) {
-    std::vector<char*> argv{const_cast<char*>(MISFIT_PROGRAM)};
+  explicit Child(const Arguments& arguments, const std::string& program = MISFIT_PROGRAM) {
+    std::vector<char*> argv{const_cast<char*>(program.c_str())};
     for (const std::string& argument : arguments) argv.push_back(const_cast<char*>(argument.c_str()));
     argv.push_back(nullptr);
     const std::string out = folder_ / "out", err = folder_ / "err";
@@ -65,7 +65,7 @@ class Child {
     setenv("MISFIT_CACHE", cache.c_str(), 0);
     dup2(open(out.c_str(), O_WRONLY | O_CREAT, 0600), STDOUT_FILENO);
     dup2(open(err.c_str(), O_WRONLY | O_CREAT, 0600), STDERR_FILENO);
-    execv(argv[0], argv.data());
+    execvp(argv[0], argv.data());
     _exit(127);
   }
 
