@@ -20,6 +20,7 @@ struct Axis {
   int length;
   int width;
   int tile;
+  double tie;
 };
 
 /// The tile of the first tap, and the period.
@@ -27,7 +28,7 @@ HWY_ATTR HWY_INLINE void tiles_along(Axis axis, const double* HWY_RESTRICT frequ
                                      std::int32_t* HWY_RESTRICT tile, double* HWY_RESTRICT period) {
   const double n = axis.length, to_storage = 1 - 0.5 * axis.width + axis.width / 2;
   for (int i = 0; i < count; ++i) {
-    const double cells = axis.cells_per_hz * frequency_hz[i];
+    const double cells = axis.cells_per_hz * frequency_hz[i] + axis.tie;
     period[i] = std::floor(cells / n);
     tile[i] = static_cast<std::int32_t>(cells - n * period[i] + to_storage) / axis.tile;
   }
@@ -46,8 +47,8 @@ HWY_ATTR void places(const StackRow& row, const StackShape& s, int width_w, cons
     std::int32_t* HWY_RESTRICT tile = out.tile + begin;
     std::int32_t* HWY_RESTRICT plane = out.plane + begin;
     double* HWY_RESTRICT period = out.period + begin;
-    tiles_along({row.u_per_hz, s.nu, s.width, s.tile}, frequency, some, tile, period);
-    tiles_along({row.v_per_hz, s.nv, s.width, s.tile}, frequency, some, tile_v, period_v);
+    tiles_along({row.u_per_hz, s.nu, s.width, s.tile, row.tie()}, frequency, some, tile, period);
+    tiles_along({row.v_per_hz, s.nv, s.width, s.tile, row.tie()}, frequency, some, tile_v, period_v);
     for (int i = 0; i < some; ++i) {
       tile[i] += tile_v[i] * s.tiles_u();
       period[i] += 1e6 * period_v[i];
@@ -89,9 +90,10 @@ void first_taps(const StackRow& row, const StackShape& shape, int width_w, const
 
 RowInTile row_in_tile(const StackRow& row, const StackShape& s, int tile_u, int tile_v, double frequency_hz) {
   const auto origin = [&](double per_hz, int tile, int length) {
-    return tile * s.tile - s.margin() + 0.5 * s.width - 1 + length * std::floor(per_hz * frequency_hz / length);
+    return tile * s.tile - s.margin() + 0.5 * s.width - 1 + length * std::floor((per_hz * frequency_hz + row.tie()) / length);
   };
-  return {row.u_per_hz, origin(row.u_per_hz, tile_u, s.nu), row.v_per_hz, origin(row.v_per_hz, tile_v, s.nv), s.tile};
+  return {row.u_per_hz, origin(row.u_per_hz, tile_u, s.nu), row.v_per_hz, origin(row.v_per_hz, tile_v, s.nv), s.tile,
+          row.tie()};
 }
 
 }  // namespace misfit::imager

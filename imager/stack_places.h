@@ -30,6 +30,10 @@ struct StackRow {
 
   /// Of the mirror image (u, v, w) are negated, and the visibility is the conjugate.
   StackRow(const double* uvw_m, bool mirrored, const StackScale& scale);
+
+  /// Of a sample where two cells meet, the mirror image must lie in the mirrored cell, or the planes on both sides of w = 0
+  /// make one sum of the taps of two cells, which no kernel's error bounds. See RowInTile.
+  double tie() const { return mirrored ? -1e-9 : 1e-9; }
 };
 
 /// Where the samples of a row have their first taps.

@@ -13,6 +13,7 @@ namespace misfit::imager::HWY_NAMESPACE {
 struct Line {
   double per_hz;
   double origin;
+  double tie;
 };
 
 template <typename Real>
@@ -20,7 +21,7 @@ HWY_ATTR HWY_INLINE void positions_along(Line line, int tile, const double* HWY_
                                          int* HWY_RESTRICT cell, Real* HWY_RESTRICT t) {
   for (int i = 0; i < count; ++i) {
     const double position = line.per_hz * frequency_hz[i] - line.origin;
-    int whole = static_cast<int>(position);
+    int whole = static_cast<int>(position + line.tie);
     whole = whole < 0 ? 0 : whole;
     whole = whole < tile ? whole : tile - 1;
     cell[i] = whole;
@@ -31,8 +32,8 @@ HWY_ATTR HWY_INLINE void positions_along(Line line, int tile, const double* HWY_
 template <typename Real>
 HWY_ATTR void append(const RowInTile& row, const double* frequency_hz, int count, TilePlaces<Real>& places) {
   const int at = places.count;
-  positions_along({row.u_per_hz, row.u_origin}, row.tile, frequency_hz, count, places.column + at, places.tu + at);
-  positions_along({row.v_per_hz, row.v_origin}, row.tile, frequency_hz, count, places.row + at, places.tv + at);
+  positions_along({row.u_per_hz, row.u_origin, row.tie}, row.tile, frequency_hz, count, places.column + at, places.tu + at);
+  positions_along({row.v_per_hz, row.v_origin, row.tie}, row.tile, frequency_hz, count, places.row + at, places.tv + at);
   places.count += count;
 }
 
