@@ -15,7 +15,8 @@ namespace misfit::imager {
 namespace {
 
 constexpr int smallest_fft = 64;
-constexpr int continuum = 128;  ///< fewer pixels are no mean over the field, and need no wide kernels
+constexpr int continuum = 128;   ///< fewer pixels are no mean over the field, and need no wide kernels
+constexpr int countable = 1024;  ///< over more pixels, that the first lies at −x0 and the last one pixel short of x0 is lost
 
 /// From the one that needs the narrowest kernel down: what the wider padding cannot reach, no other can.
 constexpr std::array<double, 5> usual_paddings{2.0, 1.6, 1.4, 1.25, 1.15};
@@ -343,7 +344,7 @@ class Search {
 }  // namespace
 
 kernels::Misfit axis_misfit(const kernels::Kernel& kernel, int pixels, int fft_size) {
-  return pixels < continuum ? kernels::judge_pixels(kernel.polynomial, pixels, fft_size) : kernel.misfit;
+  return pixels < countable ? kernels::judge_pixels(kernel.polynomial, pixels, fft_size) : kernel.misfit;
 }
 
 double unit_rounding(Precision precision, double samples) {
