@@ -130,6 +130,32 @@ double nameable_accuracy(double worst_error) {
 
 namespace {
 
+/// Rounding where all samples lie in one cell, which makes it largest, for a noise gain of 1: sums that grow evenly are half
+/// their last value on average, and each addition errs by a unit of what the sum is; taps, products and the FFT by some more.
+double adverse_rounding(const WideTransformOptions& options, double samples) {
+  const double unit = options.precision == Precision::single_precision ? 0x1p-24 : 0x1p-53;
+  constexpr double taps_and_fft = 8;
+  return unit * (taps_and_fft + longest_sum(options, samples) / 2);
+}
+
+/// |1 − R_u R_v R_w| ≤ (1 + |1 − R_u|)(1 + |1 − R_v|)(1 + |1 − R_w|) − 1 for the responses R of the axes. Over the pixels the
+/// RMS of products of u and v is that of the factors; q is spread over them in its own way, so that along w the largest counts.
+void set_bounds(GriddingPlan& plan) {
+  const GriddingCandidate& best = plan.choice.best;
+  constexpr double between = 1.02;  // maxima were looked for at points, and means taken as integrals
+  const auto all = [](double u, double v, double w) {
+    return (1 + between * std::sqrt(u)) * (1 + between * std::sqrt(v)) * (1 + between * std::sqrt(w)) - 1;
+  };
+  const kernels::Misfit &u = best.u.misfit, &v = best.v.misfit, &w = best.w.misfit;
+  const double rounding = adverse_rounding(plan.options, best.work.samples);
+  double largest_gain = 1;
+  for (const AxisKernel* axis : {&best.u, &best.v, &best.w})
+    if (axis->kernel.width() > 0) largest_gain *= kernels::largest_noise_gain(axis->kernel.polynomial, axis->kernel.x0);
+  const double gain = best.u.noise_gain * best.v.noise_gain * best.w.noise_gain;
+  plan.bound_rms = all(u.worst_mean, v.worst_mean, w.worst) + gain * rounding;
+  plan.bound_max = all(u.worst, v.worst, w.worst) + largest_gain * rounding;
+}
+
 /// With one transform for all images.
 GriddingPlan plan_together(const GriddingRequest& request) {
   GriddingPlan plan;
@@ -155,14 +181,7 @@ GriddingPlan plan_together(const GriddingRequest& request) {
   plan.expected_error = best.expected_error;
   plan.rounding = best.rounding;
   plan.worst_error = best.worst_error;
-  constexpr double several = 6;     // rounding is random; six times its RMS bounds it for practical purposes
-  constexpr double between = 1.01;  // maxima were looked for at points, and lie between them
-  const auto all = [](double u, double v, double w) {
-    return (1 + between * std::sqrt(u)) * (1 + between * std::sqrt(v)) * (1 + between * std::sqrt(w)) - 1;
-  };
-  const kernels::Misfit &u = best.u.misfit, &v = best.v.misfit, &w = best.w.misfit;
-  plan.bound_rms = all(u.worst_mean, v.worst_mean, w.worst_mean) + several * plan.rounding;
-  plan.bound_max = all(u.worst, v.worst, w.worst) + several * plan.rounding;
+  set_bounds(plan);
   plan.decisions = decisions_of(request, plan);
   return plan;
 }

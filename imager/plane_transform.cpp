@@ -284,6 +284,11 @@ std::unique_ptr<Transform> make_plane_transform(const PlaneTransformOptions& opt
   return std::make_unique<PlaneTransform<double>>(options);
 }
 
+double longest_plane_sum(double samples) {
+  const double in_registers = TilePlaces<float>::capacity;
+  return std::min(samples, in_registers + most_in_buffer / in_registers + samples / most_in_buffer);
+}
+
 TransformMemory memory_of(const PlaneTransformOptions& o) {
   const double real_bytes = o.precision == Precision::single_precision ? sizeof(float) : sizeof(double);
   const double plane = static_cast<double>(shape_of(o).cells()) * real_bytes;

@@ -38,4 +38,8 @@ struct TransformMemory {
 
 TransformMemory memory_of(const PlaneTransformOptions& options);
 
+/// Additions, one after another, that go into a cell of the grid where all samples lie in one: by so much can their rounding
+/// add up.
+double longest_plane_sum(double samples);
+
 }  // namespace misfit::imager

@@ -424,6 +424,11 @@ TransformMemory memory_of(const WideTransformOptions& o, double samples, int pla
   return {gathered + one + image, both - one + image, o.threads * 16 * column};
 }
 
+double longest_sum(const WideTransformOptions& options, double samples) {
+  if (!options.has_w_axis()) return longest_plane_sum(samples);
+  return std::min(samples, most_in_buffer + samples / most_in_buffer);
+}
+
 std::unique_ptr<Transform> make_transform(const WideTransformOptions& options) {
   return options.has_w_axis() ? make_wide_transform(options) : make_plane_transform(options);
 }

@@ -27,6 +27,9 @@ inline constexpr int wide_bytes_a_sample = 112;
 /// The memory that a WideTransform takes for that many samples, when no facet has more than `planes` planes.
 TransformMemory memory_of(const WideTransformOptions& options, double samples, int planes);
 
+/// See longest_plane_sum; of the transform that make_transform makes.
+double longest_sum(const WideTransformOptions& options, double samples);
+
 /// The transform with its w axis where the options have one, else the one in the plane.
 std::unique_ptr<Transform> make_transform(const WideTransformOptions& options);
 

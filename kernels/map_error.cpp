@@ -64,6 +64,14 @@ Misfit judge_at(const TapFunction& taps, const Quadrature& x, const JudgeOptions
           at_position.maxCoeff()};
 }
 
+/// ∫ C² du.
+double mean_square(const TapFunction& taps) {
+  const Quadrature t = smooth_positions().mean;
+  double sum = 0;
+  for (Eigen::Index i = 0; i < t.node.size(); ++i) sum += t.weight[i] * taps(t.node[i]).squaredNorm();
+  return sum;
+}
+
 }  // namespace
 
 Eigen::VectorXd optimal_correction(const TapFunction& taps, const Eigen::VectorXd& x, int steps_per_cell) {
@@ -98,10 +106,12 @@ Misfit judge_pixels(const TapFunction& taps, int pixels, int fft_size) {
 double noise_gain(const TapFunction& taps, double x0) {
   const Quadrature x = gauss_legendre(48, 0, x0);
   const double h_square = x.weight.dot(optimal_correction(taps, x.node).cwiseAbs2()) / x0;
-  const Quadrature t = smooth_positions().mean;
-  double c_square = 0;
-  for (Eigen::Index i = 0; i < t.node.size(); ++i) c_square += t.weight[i] * taps(t.node[i]).squaredNorm();
-  return std::sqrt(h_square * c_square);
+  return std::sqrt(h_square * mean_square(taps));
+}
+
+double largest_noise_gain(const TapFunction& taps, double x0) {
+  const Eigen::VectorXd x = Eigen::VectorXd::LinSpaced(65, 0, x0);
+  return optimal_correction(taps, x).cwiseAbs().maxCoeff() * std::sqrt(mean_square(taps));
 }
 
 }  // namespace misfit::kernels

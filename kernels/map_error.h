@@ -50,4 +50,7 @@ Misfit judge_pixels(const TapFunction& taps, int pixels, int fft_size);
 /// 0.
 double noise_gain(const TapFunction& taps, double x0);
 
+/// The same at the x where it is largest: max of |h| over |x| ≤ x0 · √(∫ C² du).
+double largest_noise_gain(const TapFunction& taps, double x0);
+
 }  // namespace misfit::kernels

@@ -94,6 +94,17 @@ BOOST_AUTO_TEST_CASE(noise_gain_is_that_of_white_noise_on_the_grid) {
   BOOST_TEST(noise_gain(family.make(9, 0.45).polynomial, 0.45) > 10 * noise_gain(family.make(9, 0.25).polynomial, 0.25));
 }
 
+BOOST_AUTO_TEST_CASE(the_largest_noise_gain_is_that_where_the_correction_is_largest) {
+  const Kernel kernel = kernel_family("least-misfit").make(5, 0.3);
+  // For even functions that fall off h is largest at x0: the two gains differ as h(x0) and its RMS do.
+  double h_square = 0;
+  for (int i = 0; i < 1000; ++i)
+    h_square += std::pow(optimal_correction(kernel.polynomial, single((i + 0.5) * 0.3 / 1000))[0], 2) / 1000;
+  const double ratio = optimal_correction(kernel.polynomial, single(0.3))[0] / std::sqrt(h_square);
+  BOOST_TEST(misfit::kernels::largest_noise_gain(kernel.polynomial, 0.3) == ratio * noise_gain(kernel.polynomial, 0.3),
+             boost::test_tools::tolerance(1e-5));  // the midpoint rule
+}
+
 BOOST_DATA_TEST_CASE(judging_many_pixels_tends_to_the_integral, bdata::make({2, 6}), width) {
   const Kernel kernel = kernel_family("least-misfit").make(width, 0.3);
   const Misfit pixels = judge_pixels(kernel.polynomial, 6000, 10000);
