@@ -186,6 +186,8 @@ void declare(CLI::App& command, ImageOptions& o) {
   command.add_flag("--restart", o.restart,
                    "Go on from the last major cycle of a run that was cut, or ended, with these options");
   command.add_option("--verify", o.verify, "Compare this many random pixels and visibilities with the direct transform");
+  command.add_flag("--check-outside", o.check_outside,
+                   "Look for sources outside the image, in four times its field, whose aliases may exceed its noise");
   command.add_option("--memory", o.memory_gib, "GiB that the run may take; 0 means half of the machine's memory");
   command.add_flag("--dry-run", o.dry_run, "Print the plan and the memory it takes; read no visibilities and write nothing");
 }

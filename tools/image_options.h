@@ -57,6 +57,7 @@ struct ImageOptions {
   std::string savemodel = "none";
   bool restart = false;
   int verify = 0;
+  bool check_outside = false;
   int threads = 0;
   double memory_gib = 0;
   bool dry_run = false;

@@ -44,6 +44,7 @@ class ImageRun {
     choose_beams();
     begin_products();
     if (o_.niter > 0) clean();
+    if (o_.check_outside) look_outside();
     release_visibilities();
     write_images();
     write_report();
@@ -198,6 +199,19 @@ class ImageRun {
            significant(100 * cleaned_->report.max_sidelobe, 2) + " % of the PSF's peak");
   }
 
+  void look_outside() {
+    progress_.begin("sources outside", true);
+    const double noise_jy =
+        cleaned_ ? cleaned_->report.final_state().rms_jy : imager::robust_noise(made_.images.dirty, threads_);
+    outside_ = check_outside(*source_, made_.plan, noise_jy, progress(), times_);
+    progress_.end();
+    report_.outside = &outside_;
+    const imager::Decision told = outside_decision(outside_);
+    decide(told.item, told.decision, told.because);
+    progress_.say(told.item + ": " + told.decision + "; " + told.because);
+    for (const std::string& warning : outside_warnings(outside_)) warn(warning);
+  }
+
   /// They make room for the pictures, and are closed before a column is written.
   void release_visibilities() {
     source_.reset();
@@ -288,6 +302,7 @@ class ImageRun {
   imager::TheoreticalError theory_;
   imager::MeasuredError measured_;
   BeamChoice beams_;
+  OutsideReport outside_;
   std::unique_ptr<imager::CleanResult> cleaned_;
   std::unique_ptr<ProductStage> products_;
 };

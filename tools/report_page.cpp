@@ -10,6 +10,7 @@
 #include "tools/html.h"
 #include "tools/html_elements.h"
 #include "tools/numbers.h"
+#include "tools/outside_section.h"
 #include "tools/report_values.h"
 #include "tools/time_section.h"
 
@@ -211,6 +212,7 @@ std::string report_page(const json& report, const std::vector<PagePicture>& pict
   const std::string caption = histogram_caption(member(report, "residual_histogram"), clean.is_object());
   content += figures(pictures, {clean_progress(clean), histogram.empty() ? "" : histogram + tag("figcaption", caption)});
   content += section("CLEAN", clean_section(clean));
+  content += section("Sources outside the image", outside_section(report));
   content += section("Plan", plan(member(report, "plan")));
   content += section("Error", errors(member(report, "error"), member(report, "kernel")));
   content += section("What was used and what was left out", left_out(member(report, "visibilities")));

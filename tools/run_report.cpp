@@ -141,7 +141,9 @@ json report_json(const RunReport& r) {
           {"beam", restoring_json(r.beams)},
           {"beam_by_quadrant", r.beams == nullptr ? json() : beam_json(r.beams->quadrant)},
           {"clean", clean_json(r.clean)},
-          {"residual_histogram", histogram_json(r.histogram)}};
+          {"residual_histogram", histogram_json(r.histogram)},
+          {"outside", outside_json(r.outside)},
+          {"outside_search", outside_search_json(r.outside)}};
 }
 
 }  // namespace misfit::tools

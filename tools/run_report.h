@@ -9,6 +9,7 @@
 #include "imager/plan.h"
 #include "imager/verify.h"
 #include "tools/beam_choice.h"
+#include "tools/outside_stage.h"
 #include "tools/pixel_histogram.h"
 
 namespace misfit::tools {
@@ -27,14 +28,15 @@ struct RunReport {
   const BeamChoice* beams = nullptr;
   const imager::CleanReport* clean = nullptr;
   PixelHistogram histogram;  ///< of the residual, or of the dirty image where nothing was cleaned
+  const OutsideReport* outside = nullptr;
   double wall_clock_s = 0;
   double estimated_memory_bytes = 0;  ///< at the peak
   const imager::StageTimes* times = nullptr;
 };
 
 /// report.json, with the keys of the project's design; `beam.how`, `beam.misfit`, `beam_by_quadrant`, `memory_gib_estimated`,
-/// `warnings`, `command_line`, `timings_s.total`, `clean.major_cycles_log`, `clean.kept_cycle` (whose model was kept) and
-/// `residual_histogram` (see histogram_json()) are additions.
+/// `warnings`, `command_line`, `outside`, `outside_search`, `timings_s.total`, `clean.major_cycles_log`, `clean.kept_cycle`
+/// (whose model was kept) and `residual_histogram` (see histogram_json()) are additions.
 nlohmann::json report_json(const RunReport& report);
 
 }  // namespace misfit::tools

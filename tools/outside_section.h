@@ -1,0 +1,11 @@
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+
+namespace misfit::tools {
+
+/// What --check-outside found, in HTML: `outside` and `outside_search` of a run's report.json. Nothing where they are null.
+std::string outside_section(const nlohmann::json& report);
+
+}  // namespace misfit::tools
