@@ -1,0 +1,107 @@
+#include "tools/outside_stage.h"
+
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "tests/tools/markup.h"
+#include "tests/tools/program.h"
+#include "tools/outside_section.h"
+
+using namespace misfit;
+using namespace misfit::tools::testing;
+using nlohmann::json;
+using tools::OutsideReport;
+
+namespace {
+
+constexpr double arcsec = M_PI / 180 / 3600;
+
+OutsideReport report_with(std::size_t sources) {
+  OutsideReport report{{100, 100, arcsec, {1, 0.5}}, {}, sources + 2, 0.5, 1e-3};
+  for (std::size_t i = 0; i < sources; ++i)
+    report.sources.push_back({{{40 * arcsec, -30 * arcsec}, 2}, 0.1 / static_cast<double>(i + 1)});
+  return report;
+}
+
+json json_of(const OutsideReport* report) {
+  return {{"outside", outside_json(report)}, {"outside_search", outside_search_json(report)}};
+}
+
+}  // namespace
+
+BOOST_AUTO_TEST_SUITE(outside_stage)
+
+BOOST_AUTO_TEST_CASE(a_source_is_told_with_its_position_flux_and_alias) {
+  const OutsideReport report = report_with(1);
+  const json told = outside_json(&report).at(0);
+  BOOST_TEST(told.at("l_arcsec").get<double>() == 40, boost::test_tools::tolerance(1e-12));
+  BOOST_TEST(told.at("m_arcsec").get<double>() == -30, boost::test_tools::tolerance(1e-12));
+  BOOST_TEST(told.at("flux_jy") == 2);
+  BOOST_TEST(told.at("alias_jy") == 0.1);
+  // East is 40″ / cos δ more in right ascension, to the curvature of the sky over an arc minute.
+  BOOST_TEST(told.at("ra_deg").get<double>() == (1 + 40 * arcsec / std::cos(0.5)) * 180 / M_PI,
+             boost::test_tools::tolerance(1e-7));
+  BOOST_TEST(told.at("dec_deg").get<double>() == (0.5 - 30 * arcsec) * 180 / M_PI, boost::test_tools::tolerance(1e-7));
+  BOOST_TEST(contains(outside_warnings(report).at(0), "40 arcsec east and 30 arcsec south"));
+}
+
+BOOST_AUTO_TEST_CASE(three_sources_are_warned_of_and_the_others_counted) {
+  BOOST_TEST(outside_warnings(report_with(0)).empty());
+  BOOST_TEST(outside_warnings(report_with(3)).size() == 3U);
+  const auto warnings = outside_warnings(report_with(9));
+  BOOST_TEST(warnings.size() == 3U);
+  BOOST_TEST(contains(warnings.back(), "and 6 more"));
+}
+
+BOOST_AUTO_TEST_CASE(the_decision_says_whether_anything_matters) {
+  BOOST_TEST(outside_decision(report_with(0)).decision == "none matters");
+  BOOST_TEST(contains(outside_decision(report_with(2)).decision, "2 may show"));
+}
+
+BOOST_AUTO_TEST_CASE(the_section_has_a_row_for_each_source_and_is_empty_without_a_search) {
+  const OutsideReport none = report_with(0), some = report_with(4);
+  BOOST_TEST(tools::outside_section(json_of(nullptr)).empty());
+  const std::string quiet = tools::outside_section(json_of(&none)), loud = tools::outside_section(json_of(&some));
+  BOOST_TEST(!contains(quiet, "<table"));
+  BOOST_TEST(contains(quiet, "No alias exceeds"));
+  std::size_t rows = 0;
+  for (std::size_t at = loud.find("<tr>"); at != loud.npos; at = loud.find("<tr>", at + 1)) ++rows;
+  BOOST_TEST(rows == 5U);  // with the headings
+  for (const std::string& section : {quiet, loud}) {
+    BOOST_TEST(balanced(section));
+    BOOST_TEST(contains(section, "sidelobes"));
+  }
+}
+
+BOOST_AUTO_TEST_CASE(a_run_reports_the_alias_that_shows_in_its_image_and_none_with_a_good_kernel) {
+  const TemporaryFolder folder;
+  const std::string sky = folder / "sky.csv", set = folder / "sky.ms";
+  // The image is 25.6″ wide: the source lies 1.5 fields east of its middle, its alias 0.4 of one west of it.
+  std::ofstream(sky) << "l_arcsec,m_arcsec,flux_jy\n38.4,3,1000\n2,-4,5\n";
+  succeed({"simulate", "--output", set, "--sky", sky, "--hours", "1", "--interval", "60", "--noise", "1Jy"});
+  const Arguments image{"image", "--vis", set, "--imsize", "256", "--cell", "0.1arcsec", "--check-outside"};
+  const Outcome narrow = run(
+      image + Arguments{"--imagename", folder / "narrow", "--kernel", "nearest", "--kernel-width", "1", "--padding", "1.9"});
+  BOOST_REQUIRE_EQUAL(narrow.code, 0);
+  const json told = report_of(folder / "narrow");
+  BOOST_REQUIRE(told.at("outside").size() >= 1U);
+  const json& source = told.at("outside").at(0);
+  BOOST_TEST(std::abs(source.at("l_arcsec").get<double>() - 38.4) < 0.4);
+  BOOST_TEST(std::abs(source.at("m_arcsec").get<double>() - 3) < 0.4);
+  BOOST_TEST(contains(narrow.err + narrow.out, "outside the image, at"));
+  BOOST_TEST(contains(content(folder / "narrow.report.html"), "Sources outside the image"));
+  succeed(image + Arguments{"--imagename", folder / "good", "--accuracy", "1e-8"});
+  const json good = report_of(folder / "good");
+  BOOST_TEST(good.at("outside").empty());
+  BOOST_TEST(good.at("outside_search").at("found").get<int>() >= 1);
+  // The exact image shows what the alias really is.
+  const imager::Image bad_image = pixels_of(folder / "narrow", "residual"), good_image = pixels_of(folder / "good", "residual");
+  double highest = 0;
+  for (std::size_t i = 0; i < bad_image.pixel.size(); ++i)
+    highest = std::max(highest, std::abs(bad_image.pixel[i] - good_image.pixel[i]));
+  const double alias = source.at("alias_jy").get<double>();
+  BOOST_TEST(alias < 2 * highest);
+  BOOST_TEST(alias > highest / 2);
+}
+
+BOOST_AUTO_TEST_SUITE_END()
