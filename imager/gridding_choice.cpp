@@ -344,7 +344,9 @@ class Search {
 }  // namespace
 
 kernels::Misfit axis_misfit(const kernels::Kernel& kernel, int pixels, int fft_size) {
-  return pixels < countable ? kernels::judge_pixels(kernel.polynomial, pixels, fft_size) : kernel.misfit;
+  const bool made_for_them = kernel.x0 == 0.5 * pixels / fft_size;
+  const bool counted = pixels < continuum || (made_for_them && pixels < countable);
+  return counted ? kernels::judge_pixels(kernel.polynomial, pixels, fft_size) : kernel.misfit;
 }
 
 double unit_rounding(Precision precision, double samples) {

@@ -48,7 +48,8 @@ struct AxisKernel {
   double noise_gain = 1;
 };
 
-/// Over the pixels of an image. Over many the kernel's own means over |x| ≤ x0 serve.
+/// Over the pixels of an image. Over many the kernel's own means over |x| ≤ x0 serve, as they do where it was made for another
+/// x0.
 kernels::Misfit axis_misfit(const kernels::Kernel& kernel, int pixels, int fft_size);
 
 /// One way to do it, with what it costs and how exact it is.

@@ -117,7 +117,7 @@ BOOST_AUTO_TEST_CASE(a_strong_source_outside_is_found_with_its_alias) {
   const GriddingPlan plan = plan_with(geometry, "nearest", 1, 2);
   const VisibilityBlock block = observed({bright, weak}, 1);
   const Found found = search(block, plan);
-  BOOST_REQUIRE(found.sources.size() >= 1U);
+  BOOST_REQUIRE(!found.sources.empty());
   const OutsideSource& first = found.sources.front();
   BOOST_TEST(std::abs(first.source.position.l - bright.position.l) < found.field.geometry.cell_rad);
   BOOST_TEST(std::abs(first.source.position.m - bright.position.m) < found.field.geometry.cell_rad);
