@@ -120,11 +120,10 @@ BOOST_DATA_TEST_CASE(aligned_errors_of_every_family_reach_the_bound_but_do_not_e
                                   "exp-semicircle", "prolate", "sinc", "gaussian", "gaussian-sinc"}),
                      name) {
   const KernelFamily family = family_called(name);
-  for (const int kernel_width : {1, 2, 5, 6})
+  for (const int kernel_width : {1, 2, 5})
     for (const double padding : {1.15, 2.0})
       for (const Scene& scene : flat) {
         if (kernel_width < family.min_width || kernel_width > family.max_width || padding < 0.5 / family.max_x0) continue;
-        if (family.name == "minimax" && kernel_width > 5 && scene.width < 3) continue;  // its solver asks for a wider field
         BOOST_TEST_CONTEXT("width " << kernel_width << " padding " << padding << " image " << scene.width << " × "
                                     << scene.height)
         check_aligned_errors(plan_gridding(request(scene, name, kernel_width, padding, 81)));
@@ -177,8 +176,8 @@ BOOST_DATA_TEST_CASE(a_single_visibility_at_the_worst_place_of_its_cell_reaches_
 }
 
 BOOST_DATA_TEST_CASE(rounding_adds_up_within_the_bound_where_all_samples_lie_in_one_cell,
-                     bdata::make({1e-6, 1e-11}) * bdata::make({0.0, 300.0}) * bdata::make({100, 2000}), accuracy, max_abs_w,
-                     samples) {
+                     bdata::make({1e-6, 1e-11}) * bdata::make({0.0, 300.0}), accuracy, max_abs_w) {
+  constexpr int samples = 2000;
   const Scene scene{24, 24, max_abs_w > 0 ? 0.5 / 24 : 1e-5, max_abs_w};
   GriddingRequest r = request(scene, "least-misfit", 0, 0, samples);
   r.accuracy = accuracy;
