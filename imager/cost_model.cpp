@@ -80,15 +80,22 @@ double cells_of(const GriddingWork& work, double tap_over_cell) {
   return work.width * padded(work) * planes + tap_over_cell * 2 * padded(work) * (work.degree + 1);
 }
 
+/// Over single precision.
+double precision_cost(const GriddingWork& work, const CostModel& model) {
+  if (work.precision == Precision::single_precision) return 1;
+  return work.has_w_axis() ? wide_double_cost : model.double_cost;
+}
+
 }  // namespace
 
-double CostModel::seconds(const GriddingWork& work) const {
-  const bool wide = work.has_w_axis();
-  const double per_sample = sample_ns * (wide ? wide_sample : 1) + cell_ns * cells_of(work, tap_ns / cell_ns);
-  const double per_point = fft_ns * (wide ? wide_point : 1);
-  const double single_ns = work.samples * work.facets * per_sample + work.images * fft_points(work) * per_point;
-  const bool single = work.precision == Precision::single_precision;
-  return 1e-9 * single_ns * (single ? 1 : wide ? wide_double_cost : double_cost);
+double CostModel::gridding_seconds(const GriddingWork& work) const {
+  const double per_sample = sample_ns * (work.has_w_axis() ? wide_sample : 1) + cell_ns * cells_of(work, tap_ns / cell_ns);
+  return 1e-9 * work.samples * work.facets * per_sample * precision_cost(work, *this);
+}
+
+double CostModel::fft_seconds(const GriddingWork& work) const {
+  const double per_point = fft_ns * (work.has_w_axis() ? wide_point : 1);
+  return 1e-9 * work.images * fft_points(work) * per_point * precision_cost(work, *this);
 }
 
 double operation_count(const GriddingWork& work) {

@@ -31,7 +31,10 @@ struct CostModel {
   double double_cost = 1.7;  ///< over single precision, without a w axis: twice the bytes, half the lanes
   double direct_ns = 4;      ///< a term of a direct sum, in double precision
 
-  double seconds(const GriddingWork& work) const;
+  double seconds(const GriddingWork& work) const { return gridding_seconds(work) + fft_seconds(work); }
+  /// Its parts: ordering, taps and cells; and FFTs.
+  double gridding_seconds(const GriddingWork& work) const;
+  double fft_seconds(const GriddingWork& work) const;
 };
 
 /// The operation count of the literature (after Ye, Gull, Tan & Nikolic 2020): W² multiply-adds a visibility (W² W_w with a w

@@ -76,6 +76,8 @@ Plan decisions_of(const GriddingRequest& request, const GriddingPlan& plan) {
       {"kernel width", std::to_string(o.kernel_u.width()), because_accuracy},
       {"FFT size", times(o.nu, o.nv),
        "padding " + text("%.3f", plan.choice.best.padding_u) + " along u is the cheapest that keeps the accuracy" + others},
+      {"FFT pruning", std::to_string(work.columns) + " of " + std::to_string(o.nu) + " columns",
+       "only those that the image keeps are transformed along v"},
       {"kernel evaluation", evaluation_of(o), because_evaluation},
       {"precision of grid and FFT", single ? "single" : "double",
        request.precision ? "as asked; rounding adds " + text("%.1g", plan.rounding)

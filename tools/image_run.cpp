@@ -9,6 +9,7 @@
 #include "tools/beam_choice.h"
 #include "tools/clean_stage.h"
 #include "tools/files.h"
+#include "tools/kernel_choice.h"
 #include "tools/memory.h"
 #include "tools/memory_plan.h"
 #include "tools/model_image.h"
@@ -17,6 +18,7 @@
 #include "tools/progress.h"
 #include "tools/report_page.h"
 #include "tools/run_report.h"
+#include "tools/time_forecast.h"
 
 namespace misfit::tools {
 namespace {
@@ -103,7 +105,33 @@ class ImageRun {
     report_.plan.push_back(memory.decision);
     decide("columns and correlations", "only what Stokes I needs",
            "UVW, antennas, flags, weights and one data column, each read once");
+    if (o_.niter > 0)
+      decide("PSF patch", "none, the whole PSF", "components are subtracted to the image's edges in every minor cycle");
     warn_of_neglected_w();
+    forecast();
+  }
+
+  /// How long it will take; of CLEAN, whose cycles nobody knows beforehand, what each of them takes.
+  void forecast() {
+    work_ = {.plan = &made_.plan,
+             .rows = static_cast<double>(set_->rows()),
+             .samples = static_cast<double>(set_->samples()),
+             .pixels = static_cast<double>(geometry_.pixels()),
+             .images = o_.niter > 0 ? 4 : 2,
+             .pictures = o_.niter > 0 ? 6 : 3,
+             .threads = threads_,
+             .verified = static_cast<double>(o_.verify),
+             .deconvolver = o_.deconvolver};
+    const double all_s = total_seconds(forecast_.expected(work_));
+    decide("expected time", duration(all_s) + (o_.niter > 0 ? " without CLEAN" : ""),
+           forecast_.knows(work_) ? "from counts of operations, and what earlier runs took on this machine"
+                                  : "from counts of operations; not all of them were timed on this machine before");
+    if (o_.niter == 0) return;
+    RunWork one = work_;
+    one.components = std::min(o_.niter, 1000);
+    one.major_cycles = 1;
+    decide("expected time of a major cycle", duration(total_seconds(forecast_.expected(one)) - all_s),
+           "with " + grouped(static_cast<long long>(one.components)) + " components");
   }
 
   void warn_of_neglected_w() {
@@ -119,6 +147,8 @@ class ImageRun {
     report_.plan.insert(report_.plan.end(), made_.plan.decisions.begin(), made_.plan.decisions.end());
     for (const imager::Decision& d : report_.plan)
       std::printf("%s: %s; %s\n", d.item.c_str(), d.decision.c_str(), d.because.c_str());
+    for (const StageSeconds& s : forecast_.expected(work_))
+      std::printf("expected: %-16s %s\n", s.stage.c_str(), duration(s.seconds).c_str());
     std::printf("%s", memory_table(memory_).c_str());
   }
 
@@ -146,11 +176,28 @@ class ImageRun {
     report_.counts = source_->counts();
     report_.counts.outside_grid = sums.outside_grid;
     report_.counts.used = sums.used;
+    decide_left_out();
     if (sums.outside_grid == 0) return;
     const double reach = std::max(reach_.max_abs_u, reach_.max_abs_v);
     const ScaledUnit unit = angle_unit(0.5 / reach);
     warn(grouped(static_cast<long long>(sums.outside_grid)) + " samples lie beyond 1/(2 cell) and were left out; a cell of " +
          significant(std::floor(0.5 / reach / unit.size * 1e4) / 1e4, 4) + unit.name + " would keep them");
+  }
+
+  void decide_left_out() {
+    const imager::SampleCounts& c = report_.counts;
+    std::string reasons;
+    const auto add = [&](std::uint64_t count, const char* reason) {
+      if (count > 0) reasons += (reasons.empty() ? "" : ", ") + grouped(static_cast<long long>(count)) + " " + reason;
+    };
+    add(c.autocorrelations, "auto-correlations");
+    add(c.flagged, "flagged");
+    add(c.nonfinite, "not finite");
+    add(c.zero_weight, "of zero or negative weight");
+    add(c.outside_grid, "outside the grid");
+    decide("samples left out",
+           grouped(static_cast<long long>(c.samples_read - c.used)) + " of " + grouped(static_cast<long long>(c.samples_read)),
+           reasons.empty() ? "all can be imaged" : reasons);
   }
 
   void verify() {
@@ -259,6 +306,12 @@ class ImageRun {
     const std::string histogram = histogram_drawing();
     std::vector<PagePicture> pictures;
     if (const std::string failure = products_->finish_pictures(pictures); !failure.empty()) warn(failure);
+    if (cleaned_) {
+      work_.components = cleaned_->report.iterations;
+      work_.major_cycles = static_cast<double>(cleaned_->report.cycles.size()) - 1;
+    }
+    report_.expected = forecast_.expected(work_);
+    forecast_.learn(work_, times_);
     report_.wall_clock_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
     const nlohmann::json json = report_json(report_);
     write_file(o_.imagename + ".report.json", json.dump(2) + "\n");
@@ -291,6 +344,8 @@ class ImageRun {
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
   imager::StageTimes times_;
   RunReport report_;
+  TimeForecast forecast_{default_cache_folder()};
+  RunWork work_;
 
   std::unique_ptr<ms_io::MeasurementSet> set_;
   imager::ImageGeometry geometry_;

@@ -15,15 +15,6 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-/// What the constants hold for: processor and version of misfit.
-std::string machine() {
-  std::ifstream info("/proc/cpuinfo");
-  std::string line;
-  while (std::getline(info, line))
-    if (line.rfind("model name", 0) == 0) return line.substr(line.find(':') + 1) + ", misfit " + version;
-  return std::string("processor unknown, misfit ") + version;
-}
-
 struct Constant {
   const char* name;
   double imager::CostModel::*value;
@@ -37,7 +28,7 @@ constexpr Constant constants[] = {{"sample_ns", &imager::CostModel::sample_ns},
 /// What a file says, if it says it of this machine.
 std::optional<imager::CostModel> costs_in(const std::string& content) {
   const json kept = json::parse(content, nullptr, false);
-  if (!kept.is_object() || kept.value("machine", json()) != json(machine())) return {};
+  if (!kept.is_object() || kept.value("machine", json()) != json(machine_name())) return {};
   imager::CostModel model;
   for (const Constant& constant : constants) {
     const json value = kept.value(constant.name, json());
@@ -48,12 +39,20 @@ std::optional<imager::CostModel> costs_in(const std::string& content) {
 }
 
 std::string text_of(const imager::CostModel& model) {
-  json kept{{"machine", machine()}};
+  json kept{{"machine", machine_name()}};
   for (const Constant& constant : constants) kept[constant.name] = model.*constant.value;
   return kept.dump(2) + "\n";
 }
 
 }  // namespace
+
+std::string machine_name() {
+  std::ifstream info("/proc/cpuinfo");
+  std::string line;
+  while (std::getline(info, line))
+    if (line.rfind("model name", 0) == 0) return line.substr(line.find(':') + 1) + ", misfit " + version;
+  return std::string("processor unknown, misfit ") + version;
+}
 
 imager::CostModel machine_costs(const fs::path& folder) {
   if (folder.empty()) return imager::measure_costs();

@@ -1,10 +1,14 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 
 #include "imager/cost_model.h"
 
 namespace misfit::tools {
+
+/// What timings hold for: processor and version of misfit.
+std::string machine_name();
 
 /// The cost constants of this machine: measured once for a processor and version of misfit, and kept as costs.json in `folder`.
 /// A file that is damaged, of another machine or of another version is measured anew; where nothing can be kept, they are

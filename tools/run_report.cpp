@@ -124,6 +124,14 @@ json timings_json(const RunReport& r) {
   return timings;
 }
 
+json expected_json(const std::vector<StageSeconds>& stages) {
+  if (stages.empty()) return nullptr;
+  json expected = json::object();
+  for (const StageSeconds& s : stages) expected[s.stage] = s.seconds;
+  expected["total"] = total_seconds(stages);
+  return expected;
+}
+
 }  // namespace
 
 json report_json(const RunReport& r) {
@@ -136,6 +144,7 @@ json report_json(const RunReport& r) {
           {"error", error_json(r)},
           {"visibilities", counts_json(r.counts)},
           {"timings_s", timings_json(r)},
+          {"timings_expected_s", expected_json(r.expected)},
           {"memory_gib_peak", peak_memory_bytes() / gib},
           {"memory_gib_estimated", r.estimated_memory_bytes / gib},
           {"beam", restoring_json(r.beams)},

@@ -11,6 +11,7 @@
 #include "tools/beam_choice.h"
 #include "tools/outside_stage.h"
 #include "tools/pixel_histogram.h"
+#include "tools/time_forecast.h"
 
 namespace misfit::tools {
 
@@ -32,10 +33,12 @@ struct RunReport {
   double wall_clock_s = 0;
   double estimated_memory_bytes = 0;  ///< at the peak
   const imager::StageTimes* times = nullptr;
+  std::vector<StageSeconds> expected;  ///< the same as they were expected, for the cycles and components that there were
 };
 
 /// report.json, with the keys of the project's design; `beam.how`, `beam.misfit`, `beam_by_quadrant`, `memory_gib_estimated`,
-/// `warnings`, `command_line`, `outside`, `outside_search`, `timings_s.total`, `clean.major_cycles_log`, `clean.kept_cycle`
+/// `warnings`, `command_line`, `outside`, `outside_search`, `timings_s.total`, `timings_expected_s` (by
+/// stage, with `total`; null where nothing was expected), `clean.major_cycles_log`, `clean.kept_cycle`
 /// (whose model was kept) and `residual_histogram` (see histogram_json()) are additions.
 nlohmann::json report_json(const RunReport& report);
 

@@ -1,0 +1,150 @@
+// misfit report scene: measured, and said of what was measured.
+#include "tools/scene/scene_report.h"
+
+#include <sstream>
+
+#include "tests/tools/program.h"
+#include "tools/scene/results_file.h"
+#include "tools/scene/sections.h"
+
+namespace {
+
+using namespace misfit;
+using namespace misfit::tools;
+using namespace misfit::tools::testing;
+
+Arguments report_of_scene(const std::string& output) {
+  return {"report", "scene", "--vis", snapshot(), "--imsize", "64", "48", "--cell", "0.1arcsec", "--quick", "--output", output};
+}
+
+/// Cells of a CSV file without quoted commas, by column.
+std::vector<std::map<std::string, std::string>> rows_of(const std::string& path) {
+  std::istringstream lines(content(path));
+  const auto cells = [](const std::string& line) {
+    std::vector<std::string> found;
+    std::istringstream rest(line);
+    for (std::string cell; std::getline(rest, cell, ',');) found.push_back(cell);
+    return found;
+  };
+  std::string line;
+  std::getline(lines, line);
+  const std::vector<std::string> columns = cells(line);
+  std::vector<std::map<std::string, std::string>> rows;
+  while (std::getline(lines, line)) {
+    const std::vector<std::string> row = cells(line);
+    for (std::size_t i = 0; i < row.size(); ++i) (i == 0 ? rows.emplace_back() : rows.back())[columns[i]] = row[i];
+  }
+  return rows;
+}
+
+PointResult point(const std::string& kernel, double seconds, double error) {
+  PointResult result;
+  result.point.kernel = kernel;
+  result.work = kernel + std::to_string(seconds);
+  result.errors.rms = error;
+  result.runs = {{.grid = seconds}};
+  return result;
+}
+
+}  // namespace
+
+BOOST_AUTO_TEST_SUITE(scene_report)
+
+BOOST_AUTO_TEST_CASE(every_point_is_measured_within_its_bounds_and_its_command_makes_it) {
+  const TemporaryFolder folder;
+  succeed(report_of_scene(folder / "report"));
+  BOOST_TEST(!std::filesystem::exists(folder / "report/measured.json"));
+  const auto rows = rows_of(folder / "report/scene.csv");
+  BOOST_REQUIRE(rows.size() > 50);
+  std::size_t on_front = 0;
+  const std::map<std::string, std::string>* exact = nullptr;
+  for (const auto& row : rows) {
+    BOOST_TEST_CONTEXT(row.at("command")) {
+      for (const char* column : {"kernel", "width", "x0", "evaluation", "precision", "time_s", "measured_rms", "measured_max",
+                                 "bound_rms", "bound_max", "expected_rms", "predict_rms", "pareto"})
+        BOOST_TEST(!row.at(column).empty());
+      BOOST_TEST(std::stod(row.at("measured_rms")) <= std::stod(row.at("bound_rms")));
+      BOOST_TEST(std::stod(row.at("measured_max")) <= std::stod(row.at("bound_max")));
+      BOOST_TEST(std::stod(row.at("time_s")) > 0);
+    }
+    on_front += row.at("pareto") == "yes" ? 1 : 0;
+    if (row.at("evaluation").find("linear") != std::string::npos) exact = &row;
+  }
+  BOOST_TEST(on_front >= 2);
+  BOOST_REQUIRE(exact != nullptr);
+  std::istringstream words(exact->at("command"));
+  Arguments command;
+  for (std::string word; words >> word;) command.push_back(word);
+  BOOST_REQUIRE(command.front() == "misfit");
+  command.erase(command.begin());
+  std::replace(command.begin(), command.end(), std::string("image"), folder / "again");
+  command.front() = "image";
+  succeed(command + Arguments{"--verify", "3000"});
+  const nlohmann::json report = report_of(folder / "again");
+  BOOST_TEST(report["kernel"]["evaluation"] == exact->at("evaluation"));
+  BOOST_TEST(std::to_string(report["kernel"]["width"].get<int>()) == exact->at("width"));
+  // Other pixels of the same image: 384 and 3000 of 3072.
+  BOOST_TEST(report["error"]["measured_rms"].get<double>() == std::stod(exact->at("measured_rms")),
+             boost::test_tools::tolerance(0.25));
+}
+
+BOOST_AUTO_TEST_CASE(a_report_that_was_stopped_goes_on_from_what_it_had) {
+  const TemporaryFolder folder;
+  Child child(report_of_scene(folder / "report"));
+  const std::string kept = folder / "report/measured.json";
+  while (!child.ended() && !std::filesystem::exists(kept)) std::this_thread::sleep_for(std::chrono::milliseconds(2));
+  child.signal(SIGINT);
+  BOOST_REQUIRE_EQUAL(child.wait().code, 130);
+  BOOST_REQUIRE(std::filesystem::exists(kept));
+  BOOST_TEST(!std::filesystem::exists(folder / "report/index.html"));
+  const Outcome again = run(report_of_scene(folder / "report"));
+  BOOST_TEST(again.code == 0);
+  BOOST_TEST(again.err.find("going on from") != std::string::npos);
+  BOOST_TEST(std::filesystem::exists(folder / "report/index.html"));
+}
+
+BOOST_AUTO_TEST_CASE(results_are_read_as_they_were_written_by_their_owner_alone) {
+  const TemporaryFolder folder;
+  const std::string path = folder / "measured.json";
+  PointResult measured = point("minimax", 0.125, 3e-7);
+  measured.width = 7;
+  measured.errors.predict_rms = NAN;
+  measured.runs.push_back({.grid = 1, .fft = 2, .degrid = 3, .predict_fft = 4});
+  PointResult refused;
+  refused.point = {.kernel = "nearest", .accuracy = 1e-8};
+  refused.refused = "out of reach";
+  write_results(path, {{"vis", "a"}}, {measured, refused});
+  std::vector<PointResult> found(3);
+  found[0].point = refused.point;
+  found[1].point = measured.point;
+  BOOST_TEST(read_results(path, {{"vis", "b"}}, found) == 0);
+  BOOST_TEST(found[1].runs.empty());
+  BOOST_TEST(read_results(path, {{"vis", "a"}}, found) == 2);
+  BOOST_TEST(found[0].refused == "out of reach");
+  BOOST_TEST(found[1].errors.rms == 3e-7);
+  BOOST_TEST(std::isnan(found[1].errors.predict_rms));
+  BOOST_TEST(found[1].runs.at(1).predict_fft == 4);
+  BOOST_TEST(found[2].runs.empty());
+}
+
+BOOST_AUTO_TEST_CASE(points_of_one_work_share_their_times) {
+  std::vector<PointResult> results{point("least-misfit", 1, 1e-5), point("spheroidal", 3, 1e-3), point("minimax", 2, 1e-6)};
+  results[1].work = results[0].work;
+  results[2].runs.clear();
+  const std::vector<PointResult> pooled = pooled_by_work(results);
+  BOOST_REQUIRE(pooled.size() == 2);
+  for (const PointResult& r : pooled) BOOST_TEST(image_seconds(r) == 2);
+}
+
+BOOST_AUTO_TEST_CASE(the_verdict_names_what_beats_least_misfit_kernels) {
+  const std::vector<PointResult> ours{point("least-misfit", 1, 1e-4), point("minimax", 2, 1e-6), point("spheroidal", 3, 1e-5),
+                                      point("spheroidal", 0.1, 1e-1)};
+  BOOST_TEST(verdict_on(ours).find("2 least-misfit and minimax points alone") != std::string::npos);
+  std::vector<PointResult> beaten = ours;
+  beaten.push_back(point("kaiser-bessel", 1.25, 1e-5));
+  const std::string verdict = verdict_on(beaten);
+  BOOST_TEST(verdict.find("kaiser-bessel") != std::string::npos);
+  BOOST_TEST(verdict.find("takes 1.6 times as long") != std::string::npos);
+}
+
+BOOST_AUTO_TEST_SUITE_END()

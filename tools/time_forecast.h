@@ -1,0 +1,64 @@
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "imager/gridding_plan.h"
+#include "imager/stage_times.h"
+
+namespace misfit::tools {
+
+/// What the time of a run depends on. What CLEAN will need is known only afterwards: before it, all of its own is 0.
+struct RunWork {
+  const imager::GriddingPlan* plan = nullptr;
+  double rows = 0;  ///< of the visibilities
+  double samples = 0;
+  double pixels = 0;
+  int images = 2;    ///< files
+  int pictures = 2;  ///< drawn
+  int threads = 1;
+  double verified = 0;  ///< pixels and samples of --verify
+  std::string deconvolver;
+  double components = 0;
+  double major_cycles = 0;  ///< that predicted and subtracted
+};
+
+/// Seconds of a stage.
+struct StageSeconds {
+  std::string stage;
+  std::string kind;  ///< of work: stages of one kind share what was learned of it
+  double seconds = 0;
+};
+
+/// What each stage takes by counts of operations and constants of one machine, fixed. Of pictures what they add to the run that
+/// goes on meanwhile.
+std::vector<StageSeconds> counted_seconds(const RunWork& work);
+
+double total_seconds(const std::vector<StageSeconds>& stages);
+
+/// Expects the seconds of runs from their counts of operations and from how long earlier runs on this machine really took: for
+/// each kind of work a factor, kept in a file, that every run makes a little better. It decides nothing but what is printed.
+class TimeForecast {
+ public:
+  /// Reads times.json in `folder`, if it is there and of this machine; an empty path keeps nothing.
+  explicit TimeForecast(const std::filesystem::path& folder);
+
+  std::vector<StageSeconds> expected(const RunWork& work) const;
+  /// Whether runs like this have been timed here.
+  bool knows(const RunWork& work) const;
+  /// Takes in what a run took, and keeps it. Stages of less than 5 ms say nothing.
+  void learn(const RunWork& work, const imager::StageTimes& took);
+
+ private:
+  struct Factor {
+    double log = 0;  ///< of seconds taken over seconds counted
+    int runs = 0;
+  };
+
+  std::filesystem::path file_;
+  std::map<std::string, Factor> factor_;  ///< by kind
+};
+
+}  // namespace misfit::tools
