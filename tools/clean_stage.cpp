@@ -61,6 +61,15 @@ double CleanStage::max_sidelobe(const CleanScene& scene) const {
   return imager::largest_sidelobe(scene.images.psf, beam);
 }
 
+imager::CleanState CleanStage::begin(const imager::MinorCycle& minor, const CleanStateOwner& owner) {
+  const std::unique_ptr<imager::Image> start = std::move(start_model_);
+  if (o_.restart && std::filesystem::exists(state_path())) return read_clean_state(state_path(), owner);
+  std::filesystem::remove(state_path());
+  imager::ComponentModel model(geometry_.width, geometry_.height, minor.scale_pixels());
+  if (start) model.add(imager::components_of(*start));
+  return imager::first_state(model);
+}
+
 imager::CleanResult CleanStage::run(const CleanScene& scene, const nlohmann::json& option_values,
                                     const imager::Progress& progress, const imager::CycleProgress& cycle_progress,
                                     imager::StageTimes& times) {
@@ -72,27 +81,25 @@ imager::CleanResult CleanStage::run(const CleanScene& scene, const nlohmann::jso
     const imager::StageTimer timer(times, "minor cycles");
     minor = imager::make_deconvolver(deconvolver_choice(o_, threads_), scene.images.psf);
   }
-  const CleanStateOwner owner{version, option_values,
-                              checksum({&scene.images.dirty, &scene.images.psf, mask_.get(), start_model_.get()})};
+  CleanStateOwner owner{version, option_values, 0};
   imager::CleanState state;
-  if (o_.restart && std::filesystem::exists(state_path())) {
-    state = read_clean_state(state_path(), owner);
-  } else {
-    std::filesystem::remove(state_path());
-    imager::ComponentModel model(geometry_.width, geometry_.height, minor->scale_pixels());
-    if (start_model_) model.add(imager::components_of(*start_model_));
-    state = imager::first_state(model);
+  double sidelobe = 0;
+  {
+    const imager::StageTimer timer(times, "CLEAN state");
+    owner.checksum = checksum({&scene.images.dirty, &scene.images.psf, mask_.get(), start_model_.get()});
+    state = begin(*minor, owner);
+    sidelobe = max_sidelobe(scene);
   }
-  start_model_.reset();
   const imager::CleanInput input{scene.source,
                                  scene.transform,
                                  scene.images,
-                                 max_sidelobe(scene),
+                                 sidelobe,
                                  std::max(o_.accuracy, scene.expected_error),
                                  mean_width_rad(scene.main_lobe) / geometry_.cell_rad};
   return imager::clean(
       input, *minor, options, std::move(state), progress,
       [&](const imager::CleanState& now) {
+        const imager::StageTimer timer(times, "CLEAN state");
         write_clean_state(state_path(), now, owner);
         cycle_progress(now);
       },

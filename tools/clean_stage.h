@@ -9,6 +9,7 @@
 #include "imager/clean/clean.h"
 #include "imager/clean/deconvolver.h"
 #include "imager/fits_image.h"
+#include "tools/clean_state_file.h"
 #include "tools/image_options.h"
 
 namespace misfit::tools {
@@ -41,6 +42,8 @@ class CleanStage {
  private:
   std::string state_path() const { return o_.imagename + ".clean.state"; }
   void read_start_model();
+  /// That of a run before, or that of the start model, which it frees.
+  imager::CleanState begin(const imager::MinorCycle& minor, const CleanStateOwner& owner);
   double max_sidelobe(const CleanScene& scene) const;
 
   const ImageOptions& o_;

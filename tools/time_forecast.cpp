@@ -37,6 +37,12 @@ TransformSeconds transform_seconds(const imager::GriddingPlan& plan, int images,
   return {shared(model.gridding_seconds(work), threads), shared(model.fft_seconds(work), threads)};
 }
 
+/// A part of the names of factors.
+std::string size_of(const RunWork& w) {
+  const auto power = [](double count) { return std::to_string(std::lround(std::log2(std::max(count, 1.0)))); };
+  return ", 2^" + power(w.samples) + " samples, 2^" + power(w.pixels) + " pixels";
+}
+
 constexpr double direct_term_s = 0.5e-9;  ///< measured, in vectors; CostModel's decides what is summed directly, and is wary
 
 /// A pass that images: the first makes a PSF besides.
@@ -80,14 +86,15 @@ std::vector<StageSeconds> counted_seconds(const RunWork& w) {
                                    {"plan", "planning", 0.03},
                                    {"read", "reading", 1e-8 * w.samples + 1e-7 * w.rows}};
   add_pass(w, true, 1, stages);
-  stages.push_back({"statistics", "statistics", 2e-9 * w.pixels * (1 + 4 * w.major_cycles)});
+  stages.push_back({"statistics", "statistics", 8e-9 * w.pixels * (1 + w.major_cycles)});
   if (w.verified > 0) stages.push_back({"verify", "verifying", shared(direct_term_s * w.samples * w.verified, w.threads)});
   stages.push_back({"fit beam", "fitting the beam", 5e-3});
   if (w.major_cycles > 0) {
     stages.push_back({"minor cycles", "minor cycles of " + w.deconvolver, minor_seconds(w)});
     add_predictions(w, stages);
     add_pass(w, false, w.major_cycles, stages);
-    stages.push_back({"restore", "restoring", 5e-8 * w.pixels});
+    stages.push_back({"CLEAN state", "writing CLEAN's state", 1e-8 * w.pixels + 5e-3 * w.major_cycles});
+    stages.push_back({"restore", "restoring", 1e-8 * w.pixels});
   }
   stages.push_back({"write images", "writing images", 1e-8 * w.pixels * w.images});
   stages.push_back({"draw pictures", "drawing pictures", 0.1 * w.pictures + 1e-8 * w.pixels * w.pictures});
@@ -117,16 +124,21 @@ TimeForecast::TimeForecast(const fs::path& folder) {
   }
 }
 
+double TimeForecast::log_factor(const std::string& kind, const std::string& size) const {
+  for (const std::string& name : {kind + size, kind})
+    if (const auto found = factor_.find(name); found != factor_.end()) return found->second.log;
+  return 0;
+}
+
 std::vector<StageSeconds> TimeForecast::expected(const RunWork& work) const {
   std::vector<StageSeconds> sums;
-  for (const StageSeconds& counted : counted_seconds(work)) {
-    const auto factor = factor_.find(counted.kind);
-    const double seconds = counted.seconds * (factor == factor_.end() ? 1 : std::exp(factor->second.log));
+  for (StageSeconds counted : counted_seconds(work)) {
+    counted.seconds *= std::exp(log_factor(counted.kind, size_of(work)));
     const auto same = std::find_if(sums.begin(), sums.end(), [&](const StageSeconds& s) { return s.stage == counted.stage; });
     if (same == sums.end()) {
-      sums.push_back({counted.stage, counted.kind, seconds});
+      sums.push_back(counted);
     } else {
-      same->seconds += seconds;
+      same->seconds += counted.seconds;
     }
   }
   return sums;
@@ -139,21 +151,20 @@ bool TimeForecast::knows(const RunWork& work) const {
 
 void TimeForecast::learn(const RunWork& work, const imager::StageTimes& took) {
   constexpr double least_s = 5e-3;
-  constexpr int memory = 8;  // runs that count
-  const std::vector<StageSeconds> expectation = expected(work);
-  std::map<std::string, std::string> kinds;  // of each stage, all that have a part in it
-  for (const StageSeconds& counted : counted_seconds(work)) {
-    const auto expects =
-        std::find_if(expectation.begin(), expectation.end(), [&](const StageSeconds& s) { return s.stage == counted.stage; });
-    const auto& stages = took.stages();
-    const auto took_it =
-        std::find_if(stages.begin(), stages.end(), [&](const auto& stage) { return stage.first == counted.stage; });
-    if (took_it == stages.end() || took_it->second < least_s || !(expects->seconds > 0)) continue;
-    if (!kinds.emplace(counted.stage + counted.kind, counted.kind).second) continue;
-    Factor& factor = factor_[counted.kind];
-    factor.runs = std::min(factor.runs + 1, memory);
-    factor.log += std::log(took_it->second / expects->seconds) / factor.runs;
-  }
+  constexpr int memory = 8;           // runs that count
+  std::map<std::string, double> off;  // log of seconds taken over seconds expected, by stage
+  for (const StageSeconds& e : expected(work))
+    for (const auto& [stage, seconds] : took.stages())
+      if (stage == e.stage && seconds >= least_s && e.seconds > 0) off[stage] = std::log(seconds / e.seconds);
+  std::map<std::string, double> should;  // log factors, by kind
+  for (const StageSeconds& counted : counted_seconds(work))
+    if (off.count(counted.stage) > 0) should[counted.kind] = log_factor(counted.kind, size_of(work)) + off.at(counted.stage);
+  for (const auto& [kind, log] : should)
+    for (const std::string& name : {kind, kind + size_of(work)}) {
+      Factor& factor = factor_[name];
+      factor.runs = std::min(factor.runs + 1, memory);
+      factor.log += (log - factor.log) / factor.runs;
+    }
   if (file_.empty()) return;
   json kept{{"machine", machine_name()}, {"kinds", json::object()}};
   for (const auto& [kind, factor] : factor_) kept["kinds"][kind] = {{"log", factor.log}, {"runs", factor.runs}};
