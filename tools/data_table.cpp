@@ -69,7 +69,11 @@ std::string table_html(const DataTable& table) {
   std::vector<html::Row> rows;
   for (const auto& row : table.rows) {
     rows.emplace_back();
-    for (const DataTable::Cell& cell : row) rows.back().push_back(cell_html(cell, table.digits));
+    for (std::size_t k = 0; k < row.size(); ++k) {
+      const bool code = std::find(table.code.begin(), table.code.end(), table.columns[k]) != table.code.end();
+      const std::string text = cell_html(row[k], table.digits);
+      rows.back().push_back(code ? html::tag("code", text) : text);
+    }
   }
   return html::table(headings, rows);
 }

@@ -17,6 +17,7 @@ struct DataTable {
   std::vector<std::string> columns;
   std::vector<std::vector<Cell>> rows;  ///< as long as `columns` (std::logic_error where they are written)
   int digits = 3;                       ///< significant ones, in HTML
+  std::vector<std::string> code{};      ///< columns of text to copy: as typed, each in one line
 };
 
 /// As an HTML table; columns without text are aligned as numbers.

@@ -16,6 +16,7 @@
 #include "tools/files.h"
 #include "tools/gnuplot.h"
 #include "tools/html.h"
+#include "tools/ticks.h"
 
 namespace misfit::tools {
 namespace {
@@ -74,6 +75,12 @@ bool labels_each_decade(const Axis& axis, const Figure& figure, std::vector<doub
 void script_axis(std::ostream& script, const std::string& name, const Axis& axis) {
   script << "set " << name << "label " << gnuplot_quoted(axis.label) << " noenhanced\n";
   if (axis.logarithmic) script << "set logscale " << name << "\nset format " << name << " '10^{%L}'\n";
+  constexpr double few_decades = 100;
+  if (axis.logarithmic && axis.from && axis.to && *axis.to / *axis.from < few_decades) {
+    std::string ticks;
+    for (const double tick : logarithmic_ticks(*axis.from, *axis.to)) ticks += (ticks.empty() ? "" : ", ") + csv_number(tick);
+    script << "set format " << name << " '%g'\nset " << name << "tics (" << ticks << ")\n";
+  }
   script << "set " << name << "range [";
   if (axis.from) script << *axis.from;
   script << ':';

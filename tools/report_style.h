@@ -53,6 +53,7 @@ td:last-child, th:last-child { padding-right: 0; }
 .curve circle { fill: var(--accent); } .curve circle.flux { fill: var(--second); stroke: none; }
 .curve text { fill: var(--soft); font-size: 12.5px; } .curve .middle { text-anchor: middle; } .curve .end { text-anchor: end; }
 .curve .title { fill: var(--text); font-size: 16px; font-weight: 700; }
+td code { white-space: nowrap; }
 code, pre { font: .88rem/1.5 ui-monospace, "SF Mono", "DejaVu Sans Mono", monospace; }
 pre { background: var(--tint); padding: .8rem 1rem; border-radius: 6px; white-space: pre-wrap; overflow-wrap: anywhere; margin: 0; }
 td { overflow-wrap: break-word; } p, dd, figcaption { overflow-wrap: anywhere; }

@@ -7,7 +7,7 @@
 
 namespace misfit::tools {
 
-std::vector<bool> pareto_front(const std::vector<CostAndError>& of) {
+std::vector<bool> pareto_front(const std::vector<CostAndError>& of, double noise) {
   std::vector<std::size_t> by_cost(of.size());
   std::iota(by_cost.begin(), by_cost.end(), std::size_t{0});
   std::stable_sort(by_cost.begin(), by_cost.end(), [&](std::size_t a, std::size_t b) {
@@ -15,10 +15,16 @@ std::vector<bool> pareto_front(const std::vector<CostAndError>& of) {
   });
   std::vector<bool> front(of.size());
   double least = std::numeric_limits<double>::infinity();
-  for (const std::size_t i : by_cost) {
-    if (!std::isfinite(of[i].cost) || !(of[i].error < least)) continue;
-    front[i] = true;
-    least = of[i].error;
+  for (auto first = by_cost.begin(); first != by_cost.end();) {
+    const auto adds = [&](std::size_t i) { return std::isfinite(of[i].cost) && of[i].error < least; };
+    first = std::find_if(first, by_cost.end(), adds);
+    if (first == by_cost.end()) break;
+    auto best = first;
+    for (auto i = first; i != by_cost.end() && of[*i].cost <= (1 + noise) * of[*first].cost; ++i)
+      if (of[*i].error < of[*best].error) best = i;
+    front[*best] = true;
+    least = of[*best].error;
+    first = std::next(best);
   }
   return front;
 }

@@ -68,7 +68,7 @@ std::vector<Series> scatter(const std::vector<PointResult>& results, Quantity x,
 Series front_line(const std::vector<PointResult>& results, Quantity seconds, Quantity error) {
   std::vector<CostAndError> of;
   for (const PointResult& r : results) of.push_back({seconds(r), error(r)});
-  const std::vector<bool> front = pareto_front(of);
+  const std::vector<bool> front = pareto_front(of, time_noise(results));
   std::vector<CostAndError> on;
   for (std::size_t i = 0; i < of.size(); ++i)
     if (front[i]) on.push_back(of[i]);
@@ -90,6 +90,13 @@ Figure error_figure(const std::string& name, const std::string& title, const std
                 .y = {.label = "RMS error", .logarithmic = true, .from = {}, .to = {}},
                 .series = scatter(results, seconds, error)};
   figure.series.push_back(front_line(results, seconds, error));
+  std::vector<double> all;
+  for (const PointResult& r : results) all.push_back(seconds(r));
+  if (!all.empty()) {
+    const auto [least, largest] = std::minmax_element(all.begin(), all.end());
+    figure.x.from = *least / 1.2;
+    figure.x.to = *largest * 1.2;
+  }
   return figure;
 }
 
@@ -141,10 +148,16 @@ std::vector<PointResult> pooled_by_work(const std::vector<PointResult>& results)
   return found;
 }
 
+double time_noise(const std::vector<PointResult>& results) {
+  std::vector<double> noise;
+  for (const PointResult& r : results) noise.push_back(spread(r) / (2 * std::sqrt(static_cast<double>(r.runs.size()))));
+  return noise.empty() ? 0 : median(noise);
+}
+
 std::vector<bool> front_of(const std::vector<PointResult>& results) {
   std::vector<CostAndError> of;
   for (const PointResult& r : results) of.push_back({image_seconds(r), r.errors.rms});
-  return pareto_front(of);
+  return pareto_front(of, time_noise(results));
 }
 
 std::string verdict_on(const std::vector<PointResult>& results) {
@@ -171,14 +184,17 @@ std::string verdict_on(const std::vector<PointResult>& results) {
 ReportSection front_section(const ImageOptions& scene, const Scene& measured, const std::vector<PointResult>& all) {
   const std::vector<PointResult> results = pooled_by_work(all);
   const std::vector<bool> front = front_of(results);
-  DataTable table{.name = "front",
-                  .title = "The Pareto front",
-                  .caption =
-                      "No other point is both as exact and as quick. Seconds are of gridding, FFT and correction; the "
-                      "spread is from the quickest to the slowest run, over the median.",
-                  .columns = {"kernel", "width", "padding", "evaluation", "precision", "seconds", "spread", "RMS error",
-                              "largest error", "expected", "command"},
-                  .rows = {}};
+  DataTable table{
+      .name = "front",
+      .title = "The Pareto front",
+      .caption =
+          "No other point is both as exact and as quick, where times that differ by less than their noise count as one. "
+          "Seconds are of gridding, FFT and correction; the "
+          "spread is from the quickest to the slowest run of all points whose operations are the same, over the median.",
+      .columns = {"kernel", "width", "padding", "evaluation", "precision", "seconds", "spread", "RMS error", "largest error",
+                  "expected", "command"},
+      .rows = {},
+      .code = {"command"}};
   std::vector<std::size_t> order;
   for (std::size_t i = 0; i < results.size(); ++i)
     if (front[i]) order.push_back(i);
@@ -193,7 +209,8 @@ ReportSection front_section(const ImageOptions& scene, const Scene& measured, co
       .heading = "What is worth its time", .paragraphs = {verdict_on(results)}, .figures = {}, .tables = {table}};
   section.paragraphs.push_back("Reading the visibilities took " + duration(measured.read_s()) + ", direct sums would take " +
                                duration(measured.direct_s()) + " for this image. The phase of w reaches " +
-                               significant(measured.w_phase_rad(), 2) + " rad at its corners.");
+                               significant(measured.w_phase_rad(), 2) + " rad at its corners. Times are known to " +
+                               significant(100 * time_noise(results), 2) + " %.");
   section.figures = {
       error_figure(
           "image-error", "Error of the dirty image against the time it takes",
@@ -276,7 +293,8 @@ ReportSection points_section(const ImageOptions& scene, const std::vector<PointR
                               "expected_rms", "bound_max",    "centre_rms", "centre_max", "border_rms", "border_max",
                               "predict_rms",  "predict_max",  "grid_s",     "fft_s",      "degrid_s",   "predict_fft_s",
                               "spread",       "memory_gib",   "command"},
-                  .rows = {}};
+                  .rows = {},
+                  .code = {"command"}};
   const std::vector<PointResult> results = pooled_by_work(all);
   const std::vector<bool> front = front_of(results);
   for (std::size_t i = 0; i < results.size(); ++i) {

@@ -21,7 +21,11 @@ std::vector<PointResult> pooled_by_work(const std::vector<PointResult>& results)
 /// Seconds of the image, median over a point's runs.
 double image_seconds(const PointResult& result);
 
-/// Which of the results are on the front of error against seconds.
+/// What the medians of seconds are uncertain by, as a part of them: half the spread of a point's runs over the root of their
+/// number, in the middle of all points.
+double time_noise(const std::vector<PointResult>& results);
+
+/// Which of the results are on the front of error against seconds, within the noise of these.
 std::vector<bool> front_of(const std::vector<PointResult>& results);
 
 /// What the front says of least-misfit and minimax kernels where errors lie within [1e-7, 1e-3]: that it consists of them, or
