@@ -5,12 +5,15 @@
 #include <algorithm>
 #include <stdexcept>
 #include <string>
+#include <type_traits>
 
 #include "imager/correction.h"
+#include "imager/crowded_tiles.h"
 #include "imager/half_grid.h"
 #include "imager/horizon.h"
 #include "imager/parallel.h"
 #include "imager/stage_times.h"
+#include "imager/sum_unit.h"
 #include "imager/tile_walk.h"
 
 namespace misfit::imager {
@@ -70,13 +73,14 @@ TileCells<Real> cells_of(const GridShape& shape, const TileTask& task, const std
 
 /// A tile of no more samples is gridded and degridded where it lies in the grid: a buffer costs more to bring and to add.
 /// Measured for W = 4, 7 and 12: below 120 samples that holds in both directions, above 240 in none.
+constexpr std::size_t most_in_place = 192;
 bool sparse(const TileOrder& order, const TileTask& task) {
-  constexpr std::size_t most_in_place = 192;
   return order.samples[task.tile] <= most_in_place;
 }
 
-/// Sums in single precision stay short: a buffer is added to the grid after so many samples.
+/// Sums in single precision stay short: a buffer is added to the grid after so many samples, sooner where the tile is crowded.
 constexpr int most_in_buffer = 2048;
+constexpr int most_in_crowded_buffer = 1024;
 
 template <typename Real>
 class PlaneAdjoint : public AdjointSum {
@@ -92,19 +96,41 @@ class PlaneAdjoint : public AdjointSum {
 
   AdjointResult finish() override {
     const Stopwatch watch;
+    flush_crowded();
     AdjointResult result;
     result.sums = sums_;
-    result.image = to_image(std::move(grid_.real), std::move(grid_.imaginary));
-    if (!grid_.weight.empty()) result.psf = to_image(std::move(grid_.weight), {});
+    result.image = to_image(std::move(grid_.real), std::move(grid_.imaginary), value_unit_.unit());
+    if (!grid_.weight.empty()) result.psf = to_image(std::move(grid_.weight), {}, weight_unit_.unit());
     result.fft_s = watch.seconds();
     return result;
   }
 
  private:
-  Image to_image(std::vector<Real> real, std::vector<Real> imaginary) const {
+  Image to_image(std::vector<Real> real, std::vector<Real> imaginary, double unit) const {
     Image image = grid_to_image(setup_.shape, std::move(real), std::move(imaginary), setup_.correction, setup_.threads);
+    if (unit != 1)
+      for (double& pixel : image.pixel) pixel *= unit;
     set_beyond_horizon(setup_.geometry, no_value, image);
     return image;
+  }
+
+  /// Brings the grid to the units that hold the samples to come too.
+  void make_room(const SampleSums& coming) {
+    const double values = value_unit_.make_room(coming.weight_abs), weights = weight_unit_.make_room(coming.weight);
+    if (values == 1 && weights == 1) return;
+    const auto multiply = [](auto& cells, double by) {
+      for (auto& cell : cells) cell = static_cast<std::decay_t<decltype(cell)>>(cell * by);
+    };
+    multiply(grid_.real, values);
+    multiply(grid_.imaginary, values);
+    multiply(grid_.weight, weights);
+    for (std::size_t tile = 0; tile < crowded_.tiles(); ++tile) {
+      TileBuffer<double>* const sum = crowded_.of(tile);
+      if (sum == nullptr) continue;
+      for (int r = 0; r < sum->rows; ++r)
+        for (int plane = 0; plane < sum->planes; ++plane)
+          for (int c = 0; c < sum->columns; ++c) sum->row(r, plane)[c] *= plane == 2 ? weights : values;
+    }
   }
 
   template <typename Visibility>
@@ -112,12 +138,17 @@ class PlaneAdjoint : public AdjointSum {
     const TileOrder order =
         order_by_tile(block, other, setup_.shape, setup_.geometry.cell_rad, Wanted::imaging, setup_.threads);
     sums_ += order.sums;
+    make_room(order.sums);
+    const double value_per_unit = value_unit_.per_unit(), weight_per_unit = weight_unit_.per_unit();
     std::vector<std::vector<Real>*> planes{&grid_.real, &grid_.imaginary};
     if (!grid_.weight.empty()) planes.push_back(&grid_.weight);
+    const auto plane_count = static_cast<int>(planes.size());
+    crowded_.count(order.samples, most_in_place, TileBuffer<double>(setup_.shape.tile, setup_.taps_u.padded, plane_count));
     for (const std::vector<TileTask>& tasks : coloured_tasks(order, setup_.shape)) {
       parallel_for(tasks.size(), setup_.threads, [&](std::size_t i) {
-        const bool in_place = sparse(order, tasks[i]);
-        TileBuffer<Real> buffer(setup_.shape.tile, setup_.taps_u.padded, in_place ? 0 : static_cast<int>(planes.size()));
+        TileBuffer<double>* const crowded = crowded_.of(tasks[i].tile);
+        const bool in_place = crowded == nullptr && sparse(order, tasks[i]);
+        TileBuffer<Real> buffer(setup_.shape.tile, setup_.taps_u.padded, in_place ? 0 : plane_count);
         const TileCells<Real> cells = in_place ? cells_of<Real>(setup_.shape, tasks[i], planes) : buffer.cells();
         if (!in_place)
           for (const std::vector<Real>* plane : planes) prefetch_tile(setup_.shape, tasks[i], *plane);
@@ -125,44 +156,60 @@ class PlaneAdjoint : public AdjointSum {
           hwy::Prefetch(&block.weight[sample]);
           other == nullptr ? hwy::Prefetch(&block.visibility[sample]) : hwy::Prefetch(&(*other)[sample]);
         };
+        const auto empty_buffer = [&] { crowded == nullptr ? flush(tasks[i], buffer) : add_up(buffer, *crowded); };
         int in_buffer = 0;
         const auto done = [&](TileBatch<Real>& batch, const BatchSamples& samples) {
           // The grid holds conj(V), whose backward transform is the image; see tile_order.h for the axes.
           for (int k = 0; k < batch.count; ++k) {
-            const double weight = block.weight[samples.index[k]];
+            const double weight = block.weight[samples.index[k]], scaled = weight * value_per_unit;
             const std::complex<double> value = samples.from_middle(visibility(samples.index[k]), k);
-            batch.real[k] = static_cast<Real>(weight * value.real());
-            batch.imaginary[k] = static_cast<Real>(samples.conjugate[k] ? weight * value.imag() : -weight * value.imag());
-            batch.weight[k] = static_cast<Real>(weight);
+            batch.real[k] = static_cast<Real>(scaled * value.real());
+            batch.imaginary[k] = static_cast<Real>(samples.conjugate[k] ? scaled * value.imag() : -scaled * value.imag());
+            batch.weight[k] = static_cast<Real>(weight * weight_per_unit);
           }
           spread(setup_.taps_u, setup_.taps_v, batch, cells);
           in_buffer += batch.count;
-          if (in_place || in_buffer < most_in_buffer) return;
-          flush(tasks[i], buffer);
+          if (in_place || in_buffer < (crowded == nullptr ? most_in_buffer : most_in_crowded_buffer)) return;
+          empty_buffer();
           std::fill(buffer.cell.begin(), buffer.cell.end(), Real(0));
           in_buffer = 0;
         };
         for_each_batch<Real>(setup_.geometry, setup_.shape, block, order, tasks[i], ahead, done);
-        if (!in_place) flush(tasks[i], buffer);
+        if (!in_place) empty_buffer();
       });
     }
   }
 
-  void flush(const TileTask& task, TileBuffer<Real>& buffer) {
+  static void add_up(const TileBuffer<Real>& buffer, TileBuffer<double>& to) {
+    for (std::size_t i = 0; i < buffer.cell.size(); ++i) to.cell[i] += double{buffer.cell[i]};
+  }
+
+  void flush_crowded() {
+    const auto tiles_u = static_cast<std::size_t>(setup_.shape.tiles_u());
+    for (std::size_t tile = 0; tile < crowded_.tiles(); ++tile)
+      if (TileBuffer<double>* const sum = crowded_.of(tile); sum != nullptr)
+        flush({static_cast<int>(tile % tiles_u), static_cast<int>(tile / tiles_u), tile}, *sum);
+  }
+
+  template <typename Sum>
+  void flush(const TileTask& task, TileBuffer<Sum>& buffer) {
     const int reach = setup_.shape.tile + setup_.shape.width - 1;
     std::vector<Real>* const planes[3] = {&grid_.real, &grid_.imaginary, &grid_.weight};
     for (int r = 0; r < reach; ++r) {
       const std::size_t start = first_cell(setup_.shape, task, r);
       for (int plane = 0; plane < buffer.planes; ++plane) {
-        const Real* from = buffer.row(r, plane);
+        const Sum* from = buffer.row(r, plane);
         Real* to = planes[plane]->data() + start;
-        for (int c = 0; c < reach; ++c) to[c] += from[c];
+        for (int c = 0; c < reach; ++c) to[c] = static_cast<Real>(to[c] + from[c]);
       }
     }
   }
 
   const Setup<Real>& setup_;
   HalfGrid<Real> grid_;
+  CrowdedTiles<Real> crowded_;
+  SumUnit<Real> value_unit_;   ///< of the grid's real and imaginary parts
+  SumUnit<Real> weight_unit_;  ///< of its weights
   SampleSums sums_;
 };
 
@@ -284,9 +331,10 @@ std::unique_ptr<Transform> make_plane_transform(const PlaneTransformOptions& opt
   return std::make_unique<PlaneTransform<double>>(options);
 }
 
-double longest_plane_sum(double samples) {
-  const double in_registers = TilePlaces<float>::capacity;
-  return std::min(samples, in_registers + most_in_buffer / in_registers + samples / most_in_buffer);
+double longest_plane_sum(Precision precision, double samples) {
+  const bool single = precision == Precision::single_precision;
+  const double in_grid = single ? std::min<double>(samples, most_in_single) : samples;
+  return std::min<double>(samples, most_in_registers + most_in_buffer / most_in_registers + in_grid / most_in_buffer);
 }
 
 TransformMemory memory_of(const PlaneTransformOptions& o) {

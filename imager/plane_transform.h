@@ -39,7 +39,7 @@ struct TransformMemory {
 TransformMemory memory_of(const PlaneTransformOptions& options);
 
 /// Additions, one after another, that go into a cell of the grid where all samples lie in one: by so much can their rounding
-/// add up.
-double longest_plane_sum(double samples);
+/// add up. Those in double precision do not count where the rest is in single.
+double longest_plane_sum(Precision precision, double samples);
 
 }  // namespace misfit::imager

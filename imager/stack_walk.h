@@ -54,6 +54,7 @@ struct BatchRun {
 /// What a batch needs to know of its samples besides their places.
 struct BatchPhases {
   static constexpr int capacity = TilePlaces<double>::capacity;
+  int most;  ///< samples of the batches to come
   std::vector<BatchRun> run;
   double turns[capacity];  ///< of the facet's middle pixel
   double cosine[capacity];
@@ -68,14 +69,16 @@ struct StackSamples {
 };
 
 /// Walks through a task's samples in batches: ahead(block, sample) for the first of a run some time before done(batch, phases),
-/// phases computed, for the batches that hold it.
+/// phases computed, for the batches that hold it. Batches have up to `most` samples, which done may change.
 template <typename Real, typename Ahead, typename Done>
-void for_each_batch(const StackSamples& samples, const StackTask& task, const Ahead& ahead, const Done& done) {
+void for_each_batch(const StackSamples& samples, const StackTask& task, const Ahead& ahead, const Done& done,
+                    int most = BatchPhases::capacity) {
   constexpr std::size_t runs_ahead = 8;  // memory answers within the time that some runs take
   const StackShape& shape = samples.ordering.shape;
   const double half_width_w = 0.5 * samples.ordering.width_w;
   StackBatch<Real> batch;
   BatchPhases phases;
+  phases.most = most;
   const auto finish = [&] {
     phasors(phases.turns, batch.count, phases.cosine, phases.sine);
     done(batch, phases);
@@ -97,7 +100,7 @@ void for_each_batch(const StackSamples& samples, const StackTask& task, const Ah
     const double first_w = run.plane + half_width_w;
     const int count = run.count;
     for (int c = 0; c < count;) {
-      const int begin = batch.count, some = std::min(count - c, StackBatch<Real>::capacity - begin);
+      const int begin = batch.count, some = std::min(count - c, phases.most - begin);
       append_positions(in_tile, frequency_hz + c, some, batch);
       for (int i = 0; i < some; ++i) {
         batch.plane[begin + i] = run.plane - task.planes.first;
@@ -107,7 +110,7 @@ void for_each_batch(const StackSamples& samples, const StackTask& task, const Ah
       const std::size_t sample = run.row * at.channels() + run.first + static_cast<std::size_t>(c);
       phases.run.push_back({run.block, sample, begin, begin + some, run.mirrored != 0});
       c += some;
-      if (batch.count == StackBatch<Real>::capacity) finish();
+      if (batch.count == phases.most) finish();
     }
   }
   if (batch.count > 0) finish();

@@ -36,8 +36,9 @@ struct SameCell {
 
 template <typename Real>
 SameCell next_cell(const TileBatch<Real>& samples, int begin) {
+  const int limit = std::min(samples.count, begin + most_in_registers);
   int end = begin + 1;
-  while (end < samples.count && samples.column[end] == samples.column[begin] && samples.row[end] == samples.row[begin]) ++end;
+  while (end < limit && samples.column[end] == samples.column[begin] && samples.row[end] == samples.row[begin]) ++end;
   return {begin, end};
 }
 

@@ -8,6 +8,10 @@
 
 namespace misfit::imager {
 
+/// Samples of one cell that `spread` sums in registers: more in single precision would lose too much, since equal terms err to
+/// one side.
+inline constexpr int most_in_registers = 32;
+
 /// Samples on their way to or from one tile.
 template <typename Real>
 struct TileBatch : TilePlaces<Real> {

@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <stdexcept>
 #include <string>
+#include <type_traits>
 
 #include "imager/horizon.h"
 #include "imager/parallel.h"
@@ -17,6 +19,8 @@
 #include "imager/stack_rows.h"
 #include "imager/stack_walk.h"
 #include "imager/stage_times.h"
+#include "imager/sum_unit.h"
+#include "imager/touched_cells.h"
 
 namespace misfit::imager {
 namespace {
@@ -84,6 +88,8 @@ StackBuffer<Real> buffer_of(const Setup<Real>& setup, int grids) {
 
 /// Sums in single precision stay short: a buffer is added to the stack after so many samples.
 constexpr int most_in_buffer = 1024;
+/// Equal terms err to one side, by up to 2⁻²⁵ of the sum each: fewer of them in single precision where a cell takes them all.
+constexpr int most_in_single_cell = 32;
 
 /// A tile of no more samples is gridded and degridded where it lies in the stack: a buffer costs more to bring and to add.
 /// Measured: from some 800 samples on, the buffer's nearness to the processor wins.
@@ -111,6 +117,8 @@ class WideAdjoint : public AdjointSum {
   }
   AdjointResult finish() override {
     flush();
+    multiply(result_.image, value_unit_.unit());
+    multiply(result_.psf, weight_unit_.unit());
     set_beyond_horizon(setup_.options.geometry, no_value, result_.image);
     if (with_psf_) {
       set_beyond_horizon(setup_.options.geometry, no_value, result_.psf);
@@ -125,28 +133,68 @@ class WideAdjoint : public AdjointSum {
   struct Gathered {
     SampleCoordinates at;
     std::vector<float> weight;
-    std::vector<std::complex<Real>> weighted;  ///< weight · V
+    std::vector<std::complex<Real>> weighted;  ///< weight · V, in the values' unit
   };
+
+  static void multiply(Image& image, double by) {
+    if (by != 1)
+      for (double& pixel : image.pixel) pixel *= by;
+  }
+
+  /// Calls visit(piece, begin, end) for the pieces of [0, samples), shared among threads.
+  template <typename Visit>
+  void for_pieces(std::size_t samples, const Visit& visit) const {
+    parallel_for(pieces(samples), setup_.options.threads,
+                 [&](std::size_t p) { visit(p, p * samples_a_piece, std::min((p + 1) * samples_a_piece, samples)); });
+  }
+  static std::size_t pieces(std::size_t samples) { return (samples + samples_a_piece - 1) / samples_a_piece; }
+  static constexpr std::size_t samples_a_piece = 1 << 16;
+
+  template <typename Visibility>
+  SampleSums sums_of(const std::vector<float>& weight, const Visibility& visibility) const {
+    std::vector<SampleSums> part(pieces(weight.size()));
+    for_pieces(weight.size(), [&](std::size_t p, std::size_t begin, std::size_t end) {
+      add_span_to_sums(weight.data() + begin, visibility.data() + begin, end - begin, part[p]);
+    });
+    SampleSums sums;
+    for (const SampleSums& of_piece : part) sums += of_piece;
+    return sums;
+  }
+
+  /// Brings the images to the units that hold the samples to come too. What was gathered in others is gridded first.
+  void make_room(const SampleSums& coming) {
+    SumUnit<Real> value_unit = value_unit_, weight_unit = weight_unit_;
+    const double values = value_unit.make_room(coming.weight_abs), weights = weight_unit.make_room(coming.weight);
+    if (values != 1 || weights != 1) {
+      flush();
+      multiply(result_.image, values);
+      multiply(result_.psf, weights);
+    }
+    value_unit_ = value_unit;
+    weight_unit_ = weight_unit;
+  }
 
   template <typename Visibility>
   void gather(const VisibilityBlock& block, const Visibility& visibility) {
-    Gathered g{block, imaging_weights(block, setup_.options.geometry.cell_rad, setup_.options.threads, result_.sums), {}};
+    const double cell_rad = setup_.options.geometry.cell_rad;
+    Gathered g{block, imaging_weights(block, cell_rad, setup_.options.threads, result_.sums), {}};
+    const SampleSums sums = sums_of(g.weight, visibility);
+    result_.sums += sums;
+    make_room(sums);
     g.weighted.resize(g.weight.size());
-    constexpr std::size_t samples_a_piece = 1 << 16;
-    std::vector<SampleSums> part((g.weight.size() + samples_a_piece - 1) / samples_a_piece);
-    parallel_for(part.size(), setup_.options.threads, [&](std::size_t p) {
-      const std::size_t begin = p * samples_a_piece, end = std::min(begin + samples_a_piece, g.weight.size());
+    const double per_unit = value_unit_.per_unit();
+    for_pieces(g.weight.size(), [&](std::size_t, std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i)
-        if (g.weight[i] != 0) g.weighted[i] = std::complex<Real>(double{g.weight[i]} * std::complex<double>(visibility[i]));
-      add_span_to_sums(g.weight.data() + begin, visibility.data() + begin, end - begin, part[p]);
+        if (g.weight[i] != 0)
+          g.weighted[i] = std::complex<Real>(double{g.weight[i]} * per_unit * std::complex<double>(visibility[i]));
     });
-    for (const SampleSums& sums : part) result_.sums += sums;
     samples_ += block.samples();
     gathered_.push_back(std::move(g));
     if (samples_ >= setup_.options.samples_at_once) flush();
   }
 
   void flush() {
+    if (gathered_.empty()) return;
     std::vector<WantedSamples> blocks;
     for (const Gathered& g : gathered_) blocks.push_back({&g.at, g.weight.data()});
     std::vector<Image*> images{&result_.image};
@@ -198,14 +246,12 @@ class WideAdjoint : public AdjointSum {
 
   void grid_tile(const StackSamples& samples, const StackTask& task, int first_plane, StackBuffer<Real>& buffer,
                  PlaneStack<Real>& stack) const {
-    const bool in_place = sparse(samples.order, task);
+    bool in_place = sparse(samples.order, task);
     if (!in_place) buffer.reset(task.planes.planes);
-    const StackCells<std::complex<Real>> cells =
-        in_place ? stack.cells_of(task.tile_u, task.tile_v, task.planes.first - first_plane, task.planes.planes)
-                 : buffer.cells();
-    int in_buffer = 0;
+    TileSum sum{buffer, TouchedCells<Real>(setup_.taps, buffer, task.planes.planes), {}};
+    const auto of_stack = stack.cells_of(task.tile_u, task.tile_v, task.planes.first - first_plane, task.planes.planes);
     const auto ahead = [&](std::uint32_t block, std::size_t sample) { hwy::Prefetch(&gathered_[block].weighted[sample]); };
-    for_each_batch<Real>(samples, task, ahead, [&](StackBatch<Real>& batch, const BatchPhases& phases) {
+    const auto done = [&](StackBatch<Real>& batch, BatchPhases& phases) {
       // The grid holds conj(V), whose backward transform is the image; see plane_stack.h for the axes. The V of a mirror image
       // is the conjugate already.
       for (const BatchRun& run : phases.run) {
@@ -218,29 +264,76 @@ class WideAdjoint : public AdjointSum {
         }
       }
       if (buffer.grids == 2) set_psf_values(phases, batch);
-      spread(setup_.taps, batch, cells);
-      if (in_place) return;
-      in_buffer += batch.count;
-      if (in_buffer < most_in_buffer) return;
-      flush_buffer(task, first_plane, buffer, stack);
-      buffer.reset(task.planes.planes);
-      in_buffer = 0;
-    });
-    if (in_buffer > 0) flush_buffer(task, first_plane, buffer, stack);
+      sum.touched.add(batch);
+      if (in_place && sum.is_dense()) {
+        in_place = false;
+        buffer.reset(task.planes.planes);
+      }
+      spread(setup_.taps, batch, in_place ? of_stack : buffer.cells());
+      if (!in_place && (sum.touched.samples() >= most_in_buffer || sum.is_dense())) empty_buffer(task, first_plane, sum, stack);
+      phases.most = sum.exact ? most_in_single_cell : BatchPhases::capacity;
+    };
+    for_each_batch<Real>(samples, task, ahead, done, most_in_single_cell);  // the first batch shows whether samples crowd
+    if (!in_place && sum.touched.samples() > 0) empty_buffer(task, first_plane, sum, stack);
+    if (sum.exact) flush_buffer(task, first_plane, *sum.exact, stack);
   }
 
-  void flush_buffer(const StackTask& task, int first_plane, const StackBuffer<Real>& buffer, PlaneStack<Real>& stack) const {
+  /// The sum of a tile: a buffer, and what was added up in double precision before.
+  struct TileSum {
+    StackBuffer<Real>& buffer;
+    TouchedCells<Real> touched;                ///< since the buffer was emptied
+    std::optional<StackBuffer<double>> exact;  ///< where samples crowd
+
+    bool is_dense() const { return std::is_same_v<Real, float> && touched.samples_a_cell() >= most_in_single_cell; }
+  };
+
+  /// Where samples crowd, sums go on in double precision.
+  void empty_buffer(const StackTask& task, int first_plane, TileSum& sum, PlaneStack<Real>& stack) const {
+    if (sum.is_dense() && !sum.exact) {
+      sum.exact.emplace(setup_.shape.tile, setup_.shape.width, sum.buffer.grids);
+      sum.exact->reset(task.planes.planes);
+    }
+    if (sum.exact) {
+      move(sum.touched, sum.buffer, *sum.exact);
+    } else {
+      flush_buffer(task, first_plane, sum.buffer, stack);
+      sum.buffer.reset(task.planes.planes);
+    }
+    sum.touched.clear();
+  }
+
+  static void move(const TouchedCells<Real>& touched, StackBuffer<Real>& buffer, StackBuffer<double>& to) {
+    for (int plane = touched.plane.begin; plane < touched.plane.end; ++plane)
+      for (int row = touched.row.begin; row < touched.row.end; ++row)
+        for (int grid = 0; grid < buffer.grids; ++grid) {
+          std::complex<Real>* const from = buffer.row(plane, row, grid);
+          std::complex<double>* const sum = to.row(plane, row, grid);
+          for (int c = touched.column.begin; c < touched.column.end; ++c) {
+            sum[c] += std::complex<double>(from[c]);
+            from[c] = 0;
+          }
+        }
+  }
+
+  template <typename Sum>
+  void flush_buffer(const StackTask& task, int first_plane, const StackBuffer<Sum>& buffer, PlaneStack<Real>& stack) const {
     const StackShape& s = setup_.shape;
     for_each_chunk(s, task, stack.grids, [&](int row, int chunk, int plane, int grid, int count) {
-      add_cells(buffer.row(plane, row, grid) + chunk * s.tile, count,
-                stack.chunk(task.tile_v * s.tile + row, task.tile_u + chunk, task.planes.first - first_plane + plane, grid));
+      const std::complex<Sum>* const from = buffer.row(plane, row, grid) + chunk * s.tile;
+      std::complex<Real>* const to =
+          stack.chunk(task.tile_v * s.tile + row, task.tile_u + chunk, task.planes.first - first_plane + plane, grid);
+      if constexpr (std::is_same_v<Sum, Real>)
+        add_cells(from, count, to);
+      else
+        for (int c = 0; c < count; ++c) to[c] = std::complex<Real>(std::complex<double>(to[c]) + from[c]);
     });
   }
 
   void weigh_psf(const BatchPhases& phases, const double* cosine, const double* sine, StackBatch<Real>& batch) const {
+    const double per_unit = weight_unit_.per_unit();
     for (const BatchRun& run : phases.run)
       for (int k = run.begin; k < run.end; ++k) {
-        const double weight = gathered_[run.block].weight[run.sample + static_cast<std::size_t>(k - run.begin)];
+        const double weight = per_unit * gathered_[run.block].weight[run.sample + static_cast<std::size_t>(k - run.begin)];
         batch.value[1][k] = {static_cast<Real>(weight * cosine[k]), static_cast<Real>(weight * sine[k])};
       }
   }
@@ -266,6 +359,8 @@ class WideAdjoint : public AdjointSum {
   bool with_psf_;  ///< whose source is above the horizon
   std::vector<Gathered> gathered_;
   std::size_t samples_ = 0;
+  SumUnit<Real> value_unit_;   ///< of the image
+  SumUnit<Real> weight_unit_;  ///< of the PSF
   AdjointResult result_;
 };
 
@@ -425,7 +520,7 @@ TransformMemory memory_of(const WideTransformOptions& o, double samples, int pla
 }
 
 double longest_sum(const WideTransformOptions& options, double samples) {
-  if (!options.has_w_axis()) return longest_plane_sum(samples);
+  if (!options.has_w_axis()) return longest_plane_sum(options.precision, samples);
   return std::min(samples, most_in_buffer + samples / most_in_buffer);
 }
 
