@@ -18,9 +18,9 @@ int largest_part(int pixels, int parts) {
 }  // namespace
 
 int Faceting::planes(double padding_w, int width_w) const {
-  int sum = 0;
-  for (const double t : turns) sum += static_cast<int>(padding_w * t + 0.5 * (width_w + 1));
-  return sum;
+  double sum = 0;
+  for (const double t : turns) sum += std::floor(padding_w * t + 0.5 * (width_w + 1));
+  return static_cast<int>(std::min(sum, 1e9));
 }
 
 std::vector<Faceting> facetings(const ImageGeometry& image, double max_abs_w, int most) {

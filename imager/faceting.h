@@ -15,6 +15,7 @@ struct Faceting {
   std::vector<double> turns;  ///< of each facet that reaches above the horizon: 2 · reach · largest |w|
 
   /// Planes of all facets together for planes 1/padding of a turn apart, of which a sample touches `width_w`: those of w > 0.
+  /// At most 10⁹: no more could be computed.
   int planes(double padding_w, int width_w) const;
 };
 

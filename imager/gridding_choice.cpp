@@ -6,6 +6,7 @@
 #include <map>
 #include <optional>
 
+#include "imager/constants.h"
 #include "imager/extent.h"
 #include "imager/fft.h"
 #include "kernels/cheapest_polynomial.h"
@@ -121,6 +122,8 @@ class Search {
               g.width,
               precision};
     c.work.images = request_.images;
+    c.turns = (std::abs(g.centre.l) + std::abs(g.centre.m)) / (2 * g.cell_rad);
+    if (has_w_axis()) c.turns += request_.max_abs_w * largest_drop(g);
     c.cost_s = CostModel().seconds(c.work);
     if (has_w_axis()) split(c, 1, request_.kernel.min_width);  // the least that a w axis costs
     return c;
@@ -355,8 +358,13 @@ double unit_rounding(Precision precision, double samples) {
   return std::hypot(2.8e-7, 2.4e-8 * std::sqrt(samples / 2e5));
 }
 
+double phase_rounding(double turns) {
+  return 1.1e-16 * (1 + 2 * pi * turns);
+}
+
 void judge(GriddingCandidate& c) {
-  c.rounding = c.u.noise_gain * c.v.noise_gain * c.w.noise_gain * unit_rounding(c.work.precision, c.work.samples);
+  const double sums = c.u.noise_gain * c.v.noise_gain * c.w.noise_gain * unit_rounding(c.work.precision, c.work.samples);
+  c.rounding = std::hypot(sums, phase_rounding(c.turns));
   const kernels::Misfit &u = c.u.misfit, &v = c.v.misfit, &w = c.w.misfit;
   // An image of a single visibility at the worst position of its cell, or the visibilities of a single pixel at the corner.
   const double worst = std::max(u.worst_mean + v.worst_mean + w.worst_mean, u.max + v.max + w.max);

@@ -41,6 +41,9 @@ struct GriddingRequest {
 double unit_rounding(Precision precision, double samples);
 inline constexpr double single_from = 1e-6;  ///< no less is asked of single precision
 
+/// Relative RMS of the rounding of exp(2πi turns) in double precision, where `turns` is the largest there is.
+double phase_rounding(double turns);
+
 /// One axis of the transform: a kernel over the pixels of an image.
 struct AxisKernel {
   kernels::Kernel kernel;
@@ -60,10 +63,11 @@ struct GriddingCandidate {
   double padding_w = 1;
   AxisKernel u;
   AxisKernel v;
-  AxisKernel w;               ///< all zero errors without a w axis
-  Faceting faceting;          ///< with a w axis
-  double cost_s = 0;          ///< by the fixed constants; see CostModel
-  double rounding = 0;        ///< RMS of rounding, relative
+  AxisKernel w;         ///< all zero errors without a w axis
+  Faceting faceting;    ///< with a w axis
+  double turns = 0;     ///< the most that phases reach beside those of the FFT: of w, and of an image off the phase centre
+  double cost_s = 0;    ///< by the fixed constants; see CostModel
+  double rounding = 0;  ///< RMS of rounding, relative
   double expected_error = 0;  ///< RMS error of image and prediction relative to data with random phases, √(E_u + E_v + E_w)
   double worst_error = 0;     ///< the same for the worst position of samples in their cells, or the worst pixel of a model
 };

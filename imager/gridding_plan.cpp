@@ -66,9 +66,9 @@ Plan decisions_of(const GriddingRequest& request, const GriddingPlan& plan) {
                                                                    text("%.2g", request.accuracy);
   const std::string because_evaluation =
       request.lookup || !request.shortest_polynomials ? "as asked" : "adds less than 0.5% to the kernel's squared error";
-  const GriddingWork& work = plan.choice.best.work;
-  const double single_rounding = plan.rounding * unit_rounding(Precision::single_precision, work.samples) /
-                                 unit_rounding(Precision::double_precision, work.samples);
+  GriddingCandidate in_single = plan.choice.best;
+  in_single.work.precision = Precision::single_precision;
+  judge(in_single);
   const std::string rejected = text_of(plan.choice);
   const std::string others = rejected.empty() ? "" : "; " + rejected;
   Plan decisions = {
@@ -76,13 +76,13 @@ Plan decisions_of(const GriddingRequest& request, const GriddingPlan& plan) {
       {"kernel width", std::to_string(o.kernel_u.width()), because_accuracy},
       {"FFT size", times(o.nu, o.nv),
        "padding " + text("%.3f", plan.choice.best.padding_u) + " along u is the cheapest that keeps the accuracy" + others},
-      {"FFT pruning", std::to_string(work.columns) + " of " + std::to_string(o.nu) + " columns",
+      {"FFT pruning", std::to_string(plan.choice.best.work.columns) + " of " + std::to_string(o.nu) + " columns",
        "only those that the image keeps are transformed along v"},
       {"kernel evaluation", evaluation_of(o), because_evaluation},
       {"precision of grid and FFT", single ? "single" : "double",
        request.precision ? "as asked; rounding adds " + text("%.1g", plan.rounding)
        : single          ? "rounding adds " + text("%.1g", plan.rounding)
-                         : "single precision would add " + text("%.1g", single_rounding) + " of rounding" +
+                         : "single precision would add " + text("%.1g", in_single.rounding) + " of rounding" +
                       (request.accuracy < single_from ? ", and is not trusted below " + text("%.0e", single_from)
                                                       : ", or cost more")},
   };
@@ -154,8 +154,10 @@ void set_bounds(GriddingPlan& plan) {
   for (const AxisKernel* axis : {&best.u, &best.v, &best.w})
     if (axis->kernel.width() > 0) largest_gain *= kernels::largest_noise_gain(axis->kernel.polynomial, axis->kernel.x0);
   const double gain = best.u.noise_gain * best.v.noise_gain * best.w.noise_gain;
-  plan.bound_rms = all(u.worst_mean, v.worst_mean, w.worst) + gain * rounding;
-  plan.bound_max = all(u.worst, v.worst, w.worst) + largest_gain * rounding;
+  constexpr double several = 6;  // steps that lead to a phase, each rounded by less than the law's RMS
+  const double phases = several * phase_rounding(best.turns);
+  plan.bound_rms = all(u.worst_mean, v.worst_mean, w.worst) + gain * rounding + phases;
+  plan.bound_max = all(u.worst, v.worst, w.worst) + largest_gain * rounding + phases;
 }
 
 /// With one transform for all images.
@@ -218,7 +220,7 @@ void use_direct_images(GriddingPlan& plan, double gridding_s) {
   const double pixels = static_cast<double>(r.geometry.pixels());
   const double direct_s = r.images * pixels * direct_pixel_s(r);
   const double turns = 0.25 * (r.geometry.width + r.geometry.height) + plan.choice.w_phase_rad / (2 * pi);
-  const double rounding = 1.1e-16 * (1 + 2 * pi * turns);
+  const double rounding = phase_rounding(turns);
   if (direct_s >= gridding_s || rounding > r.accuracy) return;
   plan.direct = true;
   plan.psf.reset();
