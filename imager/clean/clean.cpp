@@ -73,6 +73,7 @@ class Run {
       one_cycle();
       cycle_progress(state_);
     }
+    if (is_worse_than_best()) return_to_best();
     return result();
   }
 
@@ -225,9 +226,19 @@ class Run {
     cycle.ended += "; the residual grew, taken back";
     state_.cycles.push_back(std::move(cycle));
     ++state_.tightened;
+    return_to_best();
+  }
+
+  void return_to_best() {
     state_.model = state_.best_model;
     state_.now = state_.best;
     make_residual();
+  }
+
+  /// Cycles may leave somewhat more than the best, on the way to less. CLEAN shall not end there. Masks that grow compare
+  /// nothing.
+  bool is_worse_than_best() const {
+    return !o_.automask && now().peak_residual_jy > best().peak_residual_jy && now().mean_square_jy2 > best().mean_square_jy2;
   }
 
   CleanResult result() {

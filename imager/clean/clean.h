@@ -78,7 +78,7 @@ struct CleanReport {
   std::string stop_reason;
   double max_sidelobe = 0;         ///< of the PSF, outside the fitted beam
   std::vector<MajorCycle> cycles;  ///< [0] is the state before the first
-  std::size_t kept = 0;            ///< the cycle whose model was kept; the last unless CLEAN diverged
+  std::size_t kept = 0;            ///< the cycle whose model was kept; the last unless it left more than the best
 
   const MajorCycle& final_state() const { return cycles[kept]; }
 };
@@ -118,7 +118,8 @@ CleanState first_state(const ComponentModel& model);
 /// before, within the same mask) is taken back: the best model is gone on from, and minor cycles go half as far down from the
 /// peak. After three times that CLEAN stops as diverging; or as without change, where the peak is ten times `accuracy` of the
 /// dirty image's or less, since then what is left is the error of the transforms. So it does where neither the peak nor the
-/// mean square of the residual becomes less in five cycles.
+/// mean square of the residual becomes less in five cycles. Where the last cycle left more than the best, in peak and mean
+/// square, the result is that of the best.
 ///
 /// Stages timed: "minor cycles", "statistics", and those of make_residual_image. Throws std::runtime_error when the PSF or a
 /// residual is not finite.
