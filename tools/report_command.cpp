@@ -1,4 +1,5 @@
 #include <cstdio>
+#include <functional>
 #include <memory>
 #include <string>
 
@@ -12,27 +13,26 @@
 namespace misfit::tools {
 namespace {
 
+using MakeReport = std::function<Report(ProgressLine&)>;
+
 struct ReportOptions {
   std::string output;
-  bool paper = false;
   bool quiet = false;
 };
 
-using MakeReport = Report (*)(ProgressLine&, const ReportOptions&);
-
-void write(const ReportOptions& o, MakeReport make) {
+void write(const ReportOptions& o, const MakeReport& make) {
   prepare_report_folder(o.output);
   ProgressLine progress(o.quiet);
-  const Report report = make(progress, o);
+  const Report report = make(progress);
   progress.begin("draw");
   write_report(report, o.output);
   progress.end();
   if (!o.quiet) std::printf("%s/index.html\n", o.output.c_str());
 }
 
-CLI::App* add_report(CLI::App& reports, const std::string& name, const std::string& description,
-                     const std::shared_ptr<ReportOptions>& o, MakeReport make) {
+CLI::App* add_report(CLI::App& reports, const std::string& name, const std::string& description, const MakeReport& make) {
   CLI::App* command = reports.add_subcommand(name, description);
+  const auto o = std::make_shared<ReportOptions>();
   command->add_option("--output", o->output, "Folder for index.html, SVG, CSV and report.json; made where there is none")
       ->required();
   command->add_flag("--quiet", o->quiet, "Print nothing");
@@ -40,19 +40,31 @@ CLI::App* add_report(CLI::App& reports, const std::string& name, const std::stri
   return command;
 }
 
+void add_kernel_report(CLI::App& reports) {
+  const auto paper = std::make_shared<bool>(false);
+  CLI::App* command =
+      add_report(reports, "kernels", "Gridding functions: the figures of Ye et al. 2020 from our own numbers, and rivals",
+                 [paper](ProgressLine& progress) { return kernel_report(progress, *paper); });
+  command->add_flag("--paper", *paper,
+                    "Add the paper's experiments made again: images and visibilities by gridding against direct sums");
+}
+
+void add_stability_report(CLI::App& reports) {
+  const auto o = std::make_shared<StabilityOptions>();
+  CLI::App* command = add_report(reports, "stability", "What rounding does to kernels, gridding, sums and whole runs",
+                                 [o](ProgressLine& progress) { return stability_report(*o, progress); });
+  command->add_option("--vis", o->vis, "MeasurementSet whose uv coverage and weights the runs begin with; else one is made");
+  command->add_flag("--quick", o->quick, "Fewer samples: done within a minute or so");
+}
+
 }  // namespace
 
 void add_report_command(CLI::App& program) {
   CLI::App* reports = program.add_subcommand("report", "Write pages of figures and tables, with the numbers behind them");
   reports->require_subcommand(1);
-  const auto kernels = std::make_shared<ReportOptions>();
-  add_report(*reports, "kernels", "Gridding functions: the figures of Ye et al. 2020 from our own numbers, and rivals", kernels,
-             [](ProgressLine& progress, const ReportOptions& o) { return kernel_report(progress, o.paper); })
-      ->add_flag("--paper", kernels->paper,
-                 "Add the paper's experiments made again: images and visibilities by gridding against direct sums");
+  add_kernel_report(*reports);
   add_scene_report(*reports);
-  add_report(*reports, "stability", "What rounding does to kernels, gridding and sums", std::make_shared<ReportOptions>(),
-             [](ProgressLine& progress, const ReportOptions& /*o*/) { return stability_report(progress); });
+  add_stability_report(*reports);
 }
 
 }  // namespace misfit::tools

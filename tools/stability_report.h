@@ -5,11 +5,13 @@
 #include "kernels/least_misfit.h"
 #include "tools/progress.h"
 #include "tools/report_folder.h"
+#include "tools/stability_runs.h"
 
 namespace misfit::tools {
 
-/// What rounding does to gridding functions, to gridding and to sums, all computed when called. Throws Interrupted.
-Report stability_report(ProgressLine& progress);
+/// What rounding does to gridding functions, to gridding, to sums and to whole runs, all computed when called. Throws
+/// Interrupted, and std::runtime_error when the MeasurementSet cannot be used.
+Report stability_report(const StabilityOptions& options, ProgressLine& progress);
 
 /// What rounding does to one gridding function, as E over |x| ≤ x0.
 struct RoundingLoss {
@@ -27,8 +29,8 @@ struct RoundingLoss {
   double floor() const;
 };
 
-/// Over widths 1 … 20 and x0 from 0.01 to 0.49, widths innermost.
-std::vector<RoundingLoss> rounding_losses(ProgressLine& progress);
+/// Over widths 1 … 20 and x0 from 0.01 to 0.49, widths innermost; quickly, three x0 alone.
+std::vector<RoundingLoss> rounding_losses(bool quick, ProgressLine& progress);
 
 /// Sections of the report, each in a file of its own or with its like.
 ReportSection conditioning_section(const std::vector<RoundingLoss>& losses);  ///< condition, and what each arithmetic loses

@@ -19,6 +19,15 @@ constexpr int steps_of_rounding = 64;  // see kernels::JudgeOptions
 
 const std::vector<int> widths{1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 18, 20};
 const std::vector<double> fractions{0.01, 0.03, 0.1, 0.2, 0.25, 0.3, 0.4, 0.45, 0.47, 0.49};
+const std::vector<double> quick_fractions{0.01, 0.25, 0.49};
+
+/// The x0 that there are, in their order.
+std::vector<double> fractions_of(const std::vector<RoundingLoss>& losses) {
+  std::vector<double> found;
+  for (const RoundingLoss& l : losses)
+    if (found.empty() || found.back() != l.x0) found.push_back(l.x0);
+  return found;
+}
 
 using Measure = std::function<double(const RoundingLoss&)>;
 
@@ -41,7 +50,7 @@ RoundingLoss rounding_loss(int width, double x0) {
 Figure over_widths(const std::vector<RoundingLoss>& losses, Figure figure, const Measure& measure) {
   figure.x = {.label = "W, cells", .from = 1, .to = widths.back()};
   figure.y.logarithmic = true;
-  for (const double x0 : fractions) {
+  for (const double x0 : fractions_of(losses)) {
     Series series{.label = x0_label(x0), .x = {}, .y = {}, .points = true};
     for (const RoundingLoss& loss : losses) {
       if (loss.x0 != x0) continue;
@@ -79,7 +88,7 @@ DataTable onsets(const std::vector<RoundingLoss>& losses) {
   const auto first = [&](double x0, double RoundingLoss::*error) {
     return first_width(losses, x0, [error](const RoundingLoss& l) { return l.*error > lost * l.optimum.mean_error; });
   };
-  for (const double x0 : fractions) {
+  for (const double x0 : fractions_of(losses)) {
     const double rule = first_width(
         losses, x0, [](const RoundingLoss& l) { return 4 * unit * unit * l.optimum.condition >= l.optimum.mean_error; });
     std::vector<DataTable::Cell>& row = table.rows.emplace_back();  // one by one: g++ 12 takes a list for uninitialised
@@ -122,7 +131,8 @@ double RoundingLoss::floor() const {
   return unit * unit * noise_gain * noise_gain;
 }
 
-std::vector<RoundingLoss> rounding_losses(ProgressLine& progress) {
+std::vector<RoundingLoss> rounding_losses(bool quick, ProgressLine& progress) {
+  const std::vector<double>& of = quick ? quick_fractions : fractions;
   std::vector<RoundingLoss> losses;
   progress.begin("solve and judge");
   // The time of a solution grows steeply with the width: count in such units.
@@ -130,9 +140,9 @@ std::vector<RoundingLoss> rounding_losses(ProgressLine& progress) {
   std::uint64_t row = 0;
   for (const int width : widths) row += work(static_cast<std::uint64_t>(width));
   std::uint64_t done = 0;
-  for (const double x0 : fractions) {
+  for (const double x0 : of) {
     for (const int width : widths) {
-      progress.update(done, row * fractions.size());
+      progress.update(done, row * of.size());
       losses.push_back(rounding_loss(width, x0));
       done += work(static_cast<std::uint64_t>(width));
     }

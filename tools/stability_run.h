@@ -1,0 +1,60 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "imager/accurate_imaging.h"
+#include "imager/clean/clean.h"
+#include "imager/geometry.h"
+#include "imager/visibilities.h"
+
+namespace misfit::tools {
+
+/// An observation to be imaged and cleaned as `misfit image` would.
+struct StabilityCase {
+  std::string name;
+  std::shared_ptr<const imager::VisibilityBlock> block;
+  std::uint64_t repeats = 1;  ///< how often the block comes
+  imager::ImageGeometry geometry;
+  double threshold_jy = 0.01;  ///< of CLEAN
+  int max_iterations = 300;
+  int max_major_cycles = -1;
+};
+
+/// Measured against direct sums in extended precision, relative to the RMS of the dirty image or of predicted visibilities.
+struct ExtendedError {
+  double rms = 0;          ///< of the dirty image, over random pixels
+  double max = 0;          ///< the largest among them
+  double predict_rms = 0;  ///< of prediction, over random samples
+};
+
+/// What became of a case.
+struct StabilityOutcome {
+  std::string name;
+  double accuracy = 0;  ///< asked, ε
+  std::string refusal;  ///< why the plan refused it; what follows is then of the most exact way there is
+  bool single = false;  ///< the grid's precision
+  bool promise_kept = true;
+  imager::TheoreticalError theory;
+  ExtendedError measured;
+  bool finite = true;  ///< every pixel of the dirty image and the PSF
+  imager::CleanReport clean;
+
+  /// Whether image and prediction are as exact as asked, or the run says that they may not be.
+  bool honest() const;
+  /// Whether the strict bounds are not below the measured errors.
+  bool bound_held() const { return measured.rms <= theory.bound_rms && measured.max <= theory.bound_max; }
+  double peak_before_jy() const { return clean.cycles.front().peak_residual_jy; }
+  double peak_after_jy() const { return clean.final_state().peak_residual_jy; }
+};
+
+/// Images and cleans a case by gridding, with a w axis where the phase of w matters.
+StabilityOutcome run_case(const StabilityCase& asked, double accuracy);
+
+/// Every case at 1e-4, which leads to single precision, and at 1e-9, which takes double.
+std::vector<StabilityOutcome> run_cases(const std::vector<StabilityCase>& cases);
+
+}  // namespace misfit::tools
