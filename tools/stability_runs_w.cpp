@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <random>
 #include <string>
@@ -22,13 +23,19 @@ std::vector<double> decades(double most_w) {
   return all;
 }
 
-double turns(double w, const imager::ImageGeometry& geometry) {
-  return imager::max_w_phase_rad(w, geometry) / (2 * imager::pi);
+/// Of u and v at most, in a field off the phase centre.
+double offset_turns(const imager::ImageGeometry& geometry) {
+  return (std::abs(geometry.centre.l) + std::abs(geometry.centre.m)) / (2 * geometry.cell_rad);
 }
 
-/// The |w| whose phases are rounded by the accuracy.
+double turns(double w, const imager::ImageGeometry& geometry) {
+  return w * imager::largest_drop(geometry) + offset_turns(geometry);
+}
+
+/// The |w| whose phases are rounded by the accuracy; 0 where those of u and v are.
 double last_w(double accuracy, const imager::ImageGeometry& geometry) {
-  return accuracy / (imager::phase_rounding(1e9) * 1e-9 * turns(1, geometry));
+  const double rounding_a_turn = imager::phase_rounding(1) - imager::phase_rounding(0);
+  return std::max(0.0, accuracy / rounding_a_turn - offset_turns(geometry)) / imager::largest_drop(geometry);
 }
 
 Figure w_figure(const std::vector<StabilityOutcome>& outcomes, const std::vector<double>& reach,
@@ -37,7 +44,7 @@ Figure w_figure(const std::vector<StabilityOutcome>& outcomes, const std::vector
                 .title = "Error against |w|",
                 .caption =
                     "Of images gridded with a w axis, compared with direct sums in extended precision. The law is the "
-                    "rounding of phases of double precision, 2π |w| (1 − n) × 1.1 × 10⁻¹⁶.",
+                    "rounding of phases of double precision, 2π turns × 1.1 × 10⁻¹⁶.",
                 .x = {.label = "largest |w|, wavelengths", .logarithmic = true},
                 .y = {.label = "measured error", .logarithmic = true},
                 .series = {}};
@@ -82,8 +89,9 @@ ReportSection w_section(const StabilityData& data, const StabilityOptions& optio
       "Phases of double precision are rounded by 2π |w| (1 − n) × 1.1 × 10⁻¹⁶, which no kernel mends. At 1 − n = " +
       significant(imager::largest_drop(geometry), 2) +
       ", that of this field, an accuracy of 10⁻⁹ ends at |w| = " + power_of_ten(last_w(1e-9, geometry), 2) +
-      " wavelengths, one of 10⁻⁴ at " + power_of_ten(last_w(1e-4, geometry), 2) +
-      ". Beyond that the plan refuses, and says what can be reached.";
+      " wavelengths, one of 10⁻⁴ at " + power_of_ten(last_w(1e-4, geometry), 2) + "; u and v have phases of " +
+      power_of_ten(offset_turns(geometry), 2) +
+      " turns themselves, so far from the phase centre. Beyond that the plan refuses, and says what can be reached.";
   return {.heading = "Whole runs: w until phases lose their digits",
           .paragraphs = {ends},
           .figures = {w_figure(outcomes, reach, geometry)},
