@@ -6,9 +6,32 @@ namespace {
 
 std::string statement(const StabilityOutcome& o) {
   if (!o.finite) return "broken: not finite";
-  if (!o.refusal.empty()) return "refused; measured with the most exact";
-  if (!o.promise_kept) return "said to be missed";
+  if (!o.refusal.empty()) return "refused";
+  if (!o.promise_kept) return "missed, said";
   return o.honest() ? "kept" : "broken";
+}
+
+std::string ending(imager::CleanStop stop) {
+  switch (stop) {
+    case imager::CleanStop::iteration_limit:
+      return "iterations";
+    case imager::CleanStop::threshold:
+      return "threshold";
+    case imager::CleanStop::user:
+      return "user";
+    case imager::CleanStop::no_change:
+      return "no change";
+    case imager::CleanStop::diverging:
+    case imager::CleanStop::diverging_from_best:
+      return "diverging";
+    case imager::CleanStop::empty_mask:
+      return "empty mask";
+    case imager::CleanStop::nsigma:
+      return "noise";
+    case imager::CleanStop::major_cycle_limit:
+      return "major cycles";
+  }
+  return "";
 }
 
 std::vector<DataTable::Cell> row_of(const StabilityOutcome& o) {
@@ -18,21 +41,22 @@ std::vector<DataTable::Cell> row_of(const StabilityOutcome& o) {
   const double e = o.accuracy;
   row.insert(row.end(), {o.measured.rms / e, o.measured.predict_rms / e, o.theory.expected_rms / e, o.theory.bound_rms / e,
                          o.measured.max / o.theory.bound_max});
-  row.insert(row.end(), {o.clean.stop_reason, static_cast<double>(o.clean.iterations), o.peak_before_jy(), o.peak_after_jy()});
+  row.insert(row.end(), {ending(o.clean.stop), static_cast<double>(o.clean.iterations), o.peak_before_jy(), o.peak_after_jy()});
   return row;
 }
 
 }  // namespace
 
 DataTable outcome_table(const std::string& name, const std::string& title, const std::vector<StabilityOutcome>& outcomes) {
-  DataTable table{.name = name,
-                  .title = title,
-                  .caption =
-                      "Errors are RMS over the accuracy asked; the worst pixel is that over the strict bound, which holds "
-                      "up to 1.",
-                  .columns = {"case", "accuracy", "grid", "promise", "measured", "of prediction", "expected", "bound",
-                              "worst pixel / bound", "CLEAN ended", "components", "peak before, Jy/beam", "after"},
-                  .rows = {}};
+  DataTable table{
+      .name = name,
+      .title = title,
+      .caption =
+          "RMS errors over the accuracy asked; the worst pixel over its strict bound, which holds up to 1. What the plan "
+          "refuses is measured with the most exact way there is. Peaks before and after CLEAN in Jy/beam.",
+      .columns = {"case", "accuracy", "grid", "promise", "measured", "predicted", "expected", "bound", "worst pixel",
+                  "CLEAN ended", "components", "before", "after"},
+      .rows = {}};
   for (const StabilityOutcome& outcome : outcomes) table.rows.push_back(row_of(outcome));
   return table;
 }

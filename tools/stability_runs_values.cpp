@@ -65,8 +65,8 @@ std::string depth_text(const StabilityData& data, const std::vector<StabilityOut
   const double step_jy = range * 0x1p-24, averaged_jy = step_jy / std::sqrt(3.0 * static_cast<double>(data.block.samples()));
   return "Visibilities in single precision hold " + power_of_ten(range, 1) + " Jy to about " + significant(step_jy, 2) +
          " Jy, which so many of them average to " + significant(averaged_jy, 2) +
-         " Jy/beam: no imager finds fainter sources beside it. At an accuracy of " + power_of_ten(o.accuracy, 1) +
-         " CLEAN leaves " + significant(o.peak_after_jy(), 2) + " Jy/beam at the brightest pixel: " + o.clean.stop_reason + ".";
+         " Jy/beam: fainter sources drown in that. At an accuracy of " + power_of_ten(o.accuracy, 1) + " CLEAN leaves " +
+         significant(o.peak_after_jy(), 2) + " Jy/beam at the brightest pixel: " + o.clean.stop_reason + ".";
 }
 
 std::vector<double> cell_counts(std::uint64_t most) {

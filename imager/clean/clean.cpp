@@ -73,7 +73,10 @@ class Run {
       one_cycle();
       cycle_progress(state_);
     }
-    if (is_worse_than_best()) return_to_best();
+    if (is_worse_than_best()) {
+      return_to_best();
+      end_->reason += "; the best model was kept";
+    }
     return result();
   }
 
