@@ -88,11 +88,16 @@ class Run {
   /// Residuals are made anew, never changed; that of no model is the dirty image.
   void make_residual() {
     residual_.reset();
-    residual_ = state_.model.components().empty()
-                    ? std::shared_ptr<const Image>(std::shared_ptr<void>(), &input_.images.dirty)
-                    : std::make_shared<const Image>(make_residual_image(input_.source, input_.transform,
-                                                                        state_.model.image(o_.threads), progress_, times_));
+    residual_ = state_.model.components().empty() ? std::shared_ptr<const Image>(std::shared_ptr<void>(), &input_.images.dirty)
+                                                  : std::make_shared<const Image>(make_residual_image(
+                                                        input_.source, input_.transform, model_image(), progress_, times_));
+    const StageTimer timer(times_, "statistics");
     require_finite(*residual_, input_.images.dirty);
+  }
+
+  Image model_image() const {
+    const StageTimer timer(times_, "minor cycles");
+    return state_.model.image(o_.threads);
   }
 
   double peak_within_mask() const { return largest_magnitude(mask() == nullptr ? *residual_ : masked(*residual_, *mask())); }

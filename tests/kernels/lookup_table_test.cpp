@@ -2,8 +2,8 @@
 
 #include <boost/test/data/test_case.hpp>
 #include <boost/test/unit_test.hpp>
-#include <complex>
 #include <cmath>
+#include <complex>
 #include <string>
 
 #include "kernels/catalogue.h"

@@ -275,7 +275,8 @@ ReportSection programs_section(const std::vector<ProgramResult>& programs) {
           "weighs Stokes I by the smaller weight of both hands, so that errors are the gridders' own only where "
           "both weigh the same.",
       .columns = {"program", "seconds", "RMS error", "largest error", "RMS in the centre", "RMS at the border", "command"},
-      .rows = {}};
+      .rows = {},
+      .code = {"command"}};
   for (const ProgramResult& p : programs)
     table.rows.push_back(
         {p.name, median(p.seconds), p.errors.rms, p.errors.max, p.errors.centre_rms, p.errors.border_rms, p.command()});
