@@ -37,6 +37,7 @@ class ImageRun {
   bool run() {
     open();
     plan();
+    forecast();
     if (o_.dry_run) {
       print_plan();
       return true;
@@ -108,7 +109,13 @@ class ImageRun {
     if (o_.niter > 0)
       decide("PSF patch", "none, the whole PSF", "components are subtracted to the image's edges in every minor cycle");
     warn_of_neglected_w();
-    forecast();
+  }
+
+  /// Of all stages, what was spent before the forecast among them.
+  std::vector<StageSeconds> expected(const RunWork& work) const {
+    std::vector<StageSeconds> stages = spent_;
+    for (const StageSeconds& s : forecast_.expected(work)) stages.push_back(s);
+    return stages;
   }
 
   /// How long it will take; of CLEAN, whose cycles nobody knows beforehand, what each of them takes.
@@ -122,7 +129,8 @@ class ImageRun {
              .threads = threads_,
              .verified = static_cast<double>(o_.verify),
              .deconvolver = o_.deconvolver};
-    const double all_s = total_seconds(forecast_.expected(work_));
+    for (const auto& [stage, seconds] : times_.stages()) spent_.push_back({stage, "", seconds});
+    const double all_s = total_seconds(expected(work_));
     decide("expected time", duration(all_s) + (o_.niter > 0 ? " without CLEAN" : ""),
            forecast_.knows(work_) ? "from counts of operations, and what earlier runs took on this machine"
                                   : "from counts of operations; not all of them were timed on this machine before");
@@ -130,7 +138,7 @@ class ImageRun {
     RunWork one = work_;
     one.components = std::min(o_.niter, 1000);
     one.major_cycles = 1;
-    decide("expected time of a major cycle", duration(total_seconds(forecast_.expected(one)) - all_s),
+    decide("expected time of a major cycle", duration(total_seconds(expected(one)) - all_s),
            "with " + grouped(static_cast<long long>(one.components)) + " components");
   }
 
@@ -147,7 +155,7 @@ class ImageRun {
     report_.plan.insert(report_.plan.end(), made_.plan.decisions.begin(), made_.plan.decisions.end());
     for (const imager::Decision& d : report_.plan)
       std::printf("%s: %s; %s\n", d.item.c_str(), d.decision.c_str(), d.because.c_str());
-    for (const StageSeconds& s : forecast_.expected(work_))
+    for (const StageSeconds& s : expected(work_))
       std::printf("expected: %-16s %s\n", s.stage.c_str(), duration(s.seconds).c_str());
     std::printf("%s", memory_table(memory_).c_str());
   }
@@ -310,7 +318,7 @@ class ImageRun {
       work_.components = cleaned_->report.iterations;
       work_.major_cycles = static_cast<double>(cleaned_->report.cycles.size()) - 1;
     }
-    report_.expected = forecast_.expected(work_);
+    report_.expected = expected(work_);
     forecast_.learn(work_, times_);
     report_.wall_clock_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
     const nlohmann::json json = report_json(report_);
@@ -346,6 +354,7 @@ class ImageRun {
   RunReport report_;
   TimeForecast forecast_{default_cache_folder()};
   RunWork work_;
+  std::vector<StageSeconds> spent_;  ///< on stages before the forecast
 
   std::unique_ptr<ms_io::MeasurementSet> set_;
   imager::ImageGeometry geometry_;

@@ -82,9 +82,7 @@ double minor_seconds(const RunWork& w) {
 }  // namespace
 
 std::vector<StageSeconds> counted_seconds(const RunWork& w) {
-  std::vector<StageSeconds> stages{{"open", "opening", 0.015 + 1e-7 * w.rows},
-                                   {"plan", "planning", 0.03},
-                                   {"read", "reading", 1e-8 * w.samples + 1e-7 * w.rows}};
+  std::vector<StageSeconds> stages{{"read", "reading", 4e-9 * w.samples + 1e-7 * w.rows}};
   add_pass(w, true, 1, stages);
   stages.push_back({"statistics", "statistics", 8e-9 * w.pixels * (1 + w.major_cycles)});
   if (w.verified > 0) stages.push_back({"verify", "verifying", shared(direct_term_s * w.samples * w.verified, w.threads)});
@@ -97,7 +95,7 @@ std::vector<StageSeconds> counted_seconds(const RunWork& w) {
     stages.push_back({"restore", "restoring", 1e-8 * w.pixels});
   }
   stages.push_back({"write images", "writing images", 1e-8 * w.pixels * w.images});
-  stages.push_back({"draw pictures", "drawing pictures", 0.1 * w.pictures + 1e-8 * w.pixels * w.pictures});
+  stages.push_back({"draw pictures", "drawing pictures", 0.07 * w.pictures + 1e-9 * w.pixels * w.pictures});
   return stages;
 }
 

@@ -32,8 +32,8 @@ struct StageSeconds {
   double seconds = 0;
 };
 
-/// What each stage takes by counts of operations and constants of one machine, fixed. Of pictures what they add to the run that
-/// goes on meanwhile.
+/// What each stage after the plan takes by counts of operations and constants of one machine, fixed. Of pictures what they add
+/// to the run that goes on meanwhile.
 std::vector<StageSeconds> counted_seconds(const RunWork& work);
 
 double total_seconds(const std::vector<StageSeconds>& stages);
