@@ -8,6 +8,7 @@
 
 #include "imager/fits_image.h"
 #include "imager/stage_times.h"
+#include "ms_io/measurement_set.h"
 #include "tools/gnuplot.h"
 #include "tools/quantity.h"
 #include "tools/run_program.h"
@@ -17,9 +18,15 @@ namespace {
 
 namespace fs = std::filesystem;
 
+/// Names in the folder where predictions are made.
+constexpr const char* copied_set = "copy.ms";
+constexpr const char* model_name = "sky";
+constexpr const char* model_file = "sky-model.fits";
+
 struct Program {
   ProgramResult result;
-  std::string image;  ///< the file with the dirty image
+  std::string image;                 ///< the file with the dirty image
+  std::vector<std::string> predict;  ///< what writes the model's visibilities into the copy of the set
 };
 
 std::string number(double value) {
@@ -42,7 +49,10 @@ Program misfit(const ImageOptions& scene, const std::string& accuracy, int threa
   add("--accuracy", accuracy);
   add("--threads", std::to_string(threads));
   words.emplace_back("--quiet");
-  return {{"misfit image, to " + accuracy, words, {}, {}}, "misfit-" + accuracy + ".residual.fits"};
+  const std::vector<std::string> predict{"misfit",   "predict",    "--vis",  copied_set,  "--model",
+                                         model_file, "--accuracy", accuracy, "--threads", std::to_string(threads),
+                                         "--quiet"};
+  return {{"misfit image, to " + accuracy, words, {}, {}}, "misfit-" + accuracy + ".residual.fits", predict};
 }
 
 Program wsclean(const ImageOptions& scene, const std::string& name, const std::vector<std::string>& gridder, int threads) {
@@ -68,7 +78,10 @@ Program wsclean(const ImageOptions& scene, const std::string& name, const std::v
   words.insert(words.end(), {"-data-column", scene.datacolumn == "corrected" ? "CORRECTED_DATA" : "DATA"});
   words.insert(words.end(), gridder.begin(), gridder.end());
   words.push_back(scene.vis);
-  return {{"wsclean, " + name, words, {}, {}}, "wsclean-dirty.fits"};
+  std::vector<std::string> predict{"wsclean", "-quiet", "-predict", "-name", model_name, "-j", std::to_string(threads)};
+  predict.insert(predict.end(), gridder.begin(), gridder.end());
+  predict.emplace_back(copied_set);
+  return {{"wsclean, " + name, words, {}, {}}, "wsclean-dirty.fits", predict};
 }
 
 bool same_for_wsclean(const ImageOptions& scene) {
@@ -89,27 +102,69 @@ std::string first_line(const fs::path& file) {
   return line;
 }
 
+std::string in_a_line(const std::vector<std::string>& words) {
+  std::string line;
+  for (const std::string& word : words) line += (line.empty() ? "" : " ") + word;
+  return line;
+}
+
+void run_in(const WorkFolder& folder, std::vector<std::string> words) {
+  const std::string line = in_a_line(words);
+  if (words.front() == "misfit") words.front() = fs::read_symlink("/proc/self/exe").string();
+  const std::optional<int> status = run_program(words, folder.path());
+  if (!status || *status != 0) throw std::runtime_error(line + " failed: " + first_line(folder.path() / "said"));
+}
+
 void run_once(Program& program, const std::string& vis, const SceneTruth& truth) {
   const WorkFolder folder(fs::temp_directory_path());
   std::vector<std::string> words = program.result.words;
-  if (words.front() == "misfit") words.front() = fs::read_symlink("/proc/self/exe").string();
   for (std::string& word : words)
     if (word == vis) word = fs::absolute(vis).string();
   const imager::Stopwatch watch;
-  const std::optional<int> status = run_program(words, folder.path());
-  if (!status || *status != 0)
-    throw std::runtime_error(program.result.command() + " failed: " + first_line(folder.path() / "said"));
+  run_in(folder, words);
   program.result.seconds.push_back(watch.seconds());
   if (program.result.seconds.size() == 1)
     program.result.errors = truth.errors_of(imager::read_fits(folder.path() / program.image).image);
 }
 
+std::uintmax_t bytes_of(const fs::path& folder) {
+  std::uintmax_t bytes = 0;
+  for (const auto& entry : fs::recursive_directory_iterator(folder)) bytes += entry.is_regular_file() ? entry.file_size() : 0;
+  return bytes;
+}
+
+/// Of all programs in turn, into one copy of the set.
+void compare_predictions(const ImageOptions& scene, const SceneTruth& truth, std::vector<Program>& programs) {
+  const WorkFolder folder(fs::temp_directory_path());
+  const fs::path set = folder.path() / copied_set;
+  fs::copy(scene.vis, set, fs::copy_options::recursive);
+  fs::permissions(set, fs::perms::owner_all, fs::perm_options::add);
+  for (const auto& entry : fs::recursive_directory_iterator(set))
+    fs::permissions(entry.path(), fs::perms::owner_all, fs::perm_options::add);
+  {
+    const ms_io::MeasurementSet opened(set, scene.selection, scene.datacolumn);
+    imager::SkyImage sky;
+    sky.image = truth.model();
+    sky.observation = opened.observation();
+    sky.geometry = geometry_of(scene, sky.observation.phase_centre);
+    sky.unit = "Jy/pixel";
+    imager::write_fits(sky, folder.path() / model_file, imager::PixelFormat::float32);
+  }
+  for (Program& program : programs) {
+    run_in(folder, program.predict);
+    const ms_io::MeasurementSet written(set, scene.selection, "MODEL_DATA");
+    const auto stream = written.open();
+    std::size_t index = 0;
+    while (const auto block = stream->next())
+      truth.compare(index++, {block->visibility.begin(), block->visibility.end()}, program.result.errors);
+    truth.finish(program.result.errors);
+  }
+}
+
 }  // namespace
 
 std::string ProgramResult::command() const {
-  std::string line;
-  for (const std::string& word : words) line += (line.empty() ? "" : " ") + word;
-  return line;
+  return in_a_line(words);
 }
 
 std::vector<ProgramResult> run_programs(const ImageOptions& scene, const SceneTruth& truth, int threads, int rounds,
@@ -128,6 +183,8 @@ std::vector<ProgramResult> run_programs(const ImageOptions& scene, const SceneTr
       run_once(program, scene.vis, truth);
       progress.update(++done, programs.size() * static_cast<std::uint64_t>(rounds));
     }
+  constexpr std::uintmax_t largest_copy = std::uintmax_t{2} << 30;
+  if (bytes_of(scene.vis) <= largest_copy) compare_predictions(scene, truth, programs);
   std::vector<ProgramResult> results;
   for (Program& program : programs) results.push_back(std::move(program.result));
   return results;

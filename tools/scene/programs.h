@@ -20,8 +20,8 @@ struct ProgramResult {
 };
 
 /// `misfit image` to two accuracies, and WSClean's gridders where it is installed and can be given the same samples: no
-/// selection, and a data column that it takes. Each is run `rounds` times, by turns. Throws std::runtime_error that names a
-/// program that fails.
+/// selection, and a data column that it takes. Each is run `rounds` times, by turns; and once to predict the truth's model into
+/// a copy of the set, unless that takes more than 2 GiB. Throws std::runtime_error that names a program that fails.
 std::vector<ProgramResult> run_programs(const ImageOptions& scene, const SceneTruth& truth, int threads, int rounds,
                                         ProgressLine& progress);
 

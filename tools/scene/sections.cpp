@@ -267,19 +267,19 @@ ReportSection theory_section(const std::vector<PointResult>& all) {
 }
 
 ReportSection programs_section(const std::vector<ProgramResult>& programs) {
-  DataTable table{
-      .name = "programs",
-      .title = "Whole programs, from MeasurementSet to FITS image",
-      .caption =
-          "Wall clock, median of runs by turns; misfit image makes a PSF, pictures and a report besides. WSClean "
-          "weighs Stokes I by the smaller weight of both hands, so that errors are the gridders' own only where "
-          "both weigh the same.",
-      .columns = {"program", "seconds", "RMS error", "largest error", "RMS in the centre", "RMS at the border", "command"},
-      .rows = {},
-      .code = {"command"}};
+  DataTable table{.name = "programs",
+                  .title = "Whole programs, from MeasurementSet to FITS image",
+                  .caption =
+                      "Wall clock, median of runs by turns; misfit image makes a PSF, pictures and a report besides. WSClean "
+                      "weighs Stokes I by the smaller weight of both hands, so that errors are the gridders' own only where "
+                      "both weigh the same.",
+                  .columns = {"program", "seconds", "RMS error", "largest error", "RMS in the centre", "RMS at the border",
+                              "RMS of prediction", "command"},
+                  .rows = {},
+                  .code = {"command"}};
   for (const ProgramResult& p : programs)
-    table.rows.push_back(
-        {p.name, median(p.seconds), p.errors.rms, p.errors.max, p.errors.centre_rms, p.errors.border_rms, p.command()});
+    table.rows.push_back({p.name, median(p.seconds), p.errors.rms, p.errors.max, p.errors.centre_rms, p.errors.border_rms,
+                          p.errors.predict_rms, p.command()});
   return {.heading = "Whole programs", .paragraphs = {}, .figures = {}, .tables = {table}};
 }
 
