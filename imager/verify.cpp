@@ -62,6 +62,7 @@ PixelError pixel_error(const Image& dirty, const std::vector<Pixel>& pixels, con
 MeasuredError measure_error(const VisibilitySource& source, const Transform& transform, const ImageGeometry& geometry,
                             const DirtyImages& images, int count, int threads, const Progress& progress) {
   std::mt19937_64 random(20200112);
+  count = static_cast<int>(std::min({std::uint64_t(count), std::uint64_t{geometry.pixels()}, source.samples()}));
   const std::vector<Pixel> pixels = random_pixels(geometry, count);
   const DirectPixels direct_pixels{geometry, pixels, true, threads};
   const std::vector<std::uint64_t> chosen = random_samples(source.samples(), count, random);

@@ -157,6 +157,7 @@ class ImageRun {
       std::printf("%s: %s; %s\n", d.item.c_str(), d.decision.c_str(), d.because.c_str());
     for (const StageSeconds& s : expected(work_))
       std::printf("expected: %-16s %s\n", s.stage.c_str(), duration(s.seconds).c_str());
+    std::printf("expected: %-16s %s\n", "total", duration(total_seconds(expected(work_))).c_str());
     std::printf("%s", memory_table(memory_).c_str());
   }
 
@@ -255,10 +256,12 @@ class ImageRun {
   }
 
   void look_outside() {
+    const imager::StageTimer timer(times_, "sources outside");
+    imager::StageTimes own;  // its gridding is not this image's
     progress_.begin("sources outside", true);
     const double noise_jy =
         cleaned_ ? cleaned_->report.final_state().rms_jy : imager::robust_noise(made_.images.dirty, threads_);
-    outside_ = check_outside(*source_, made_.plan, noise_jy, progress(), times_);
+    outside_ = check_outside(*source_, made_.plan, noise_jy, progress(), own);
     progress_.end();
     report_.outside = &outside_;
     const imager::Decision told = outside_decision(outside_);

@@ -1,7 +1,10 @@
 #include "tools/text.h"
 
+#include <algorithm>
+#include <cctype>
 #include <charconv>
 #include <cmath>
+#include <cstring>
 
 namespace misfit::tools {
 
@@ -19,6 +22,16 @@ std::optional<double> finite_number(std::string_view text) {
   const bool whole = error == std::errc() && end == digits.data() + digits.size();
   if (!whole || text.starts_with("+-") || !std::isfinite(value)) return std::nullopt;
   return value;
+}
+
+std::string shell_quoted(const std::string& word) {
+  const auto plain = [](char c) {
+    return std::isalnum(static_cast<unsigned char>(c)) != 0 || std::strchr("./:,=+-_~%@", c) != nullptr;
+  };
+  if (!word.empty() && std::all_of(word.begin(), word.end(), plain)) return word;
+  std::string quoted = "'";
+  for (const char c : word) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return quoted + "'";
 }
 
 }  // namespace misfit::tools

@@ -4,6 +4,7 @@
 
 #include "tests/temporary_folder.h"
 #include "tools/files.h"
+#include "tools/text.h"
 
 using namespace misfit;
 using namespace misfit::tools;
@@ -21,6 +22,15 @@ BOOST_AUTO_TEST_CASE(a_failure_is_told_from_a_program_that_is_not_there) {
   const testing::TemporaryFolder folder;
   BOOST_TEST(misfit::tools::run_program({"false"}, folder / "").value() != 0);
   BOOST_TEST(!misfit::tools::run_program({"no-such-program-here"}, folder / "").has_value());
+}
+
+BOOST_AUTO_TEST_CASE(a_shell_takes_quoted_words_as_they_are) {
+  const testing::TemporaryFolder folder;
+  for (const std::string word : {"plain.ms", "my set.ms", "it's", "$HOME `id` \\ \"x\" *", ""}) {
+    BOOST_TEST(misfit::tools::run_program({"sh", "-c", "printf %s " + shell_quoted(word)}, folder / "").value() == 0);
+    BOOST_TEST(read_file(folder / "said") == word);
+  }
+  BOOST_TEST(shell_quoted("0.05arcsec") == "0.05arcsec");
 }
 
 BOOST_AUTO_TEST_SUITE_END()

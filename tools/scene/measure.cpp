@@ -35,6 +35,11 @@ Scene::Scene(const ImageOptions& options, int pixels, const imager::Progress& pr
   const auto stream = set.open();
   while (auto block = stream->next()) {
     w_spread_.add(*block);
+    for (std::size_t i = 0; i < block->samples(); ++i) {
+      if (block->weight[i] == 0) continue;
+      weight_ += double{block->weight[i]};
+      weight_abs_ += double{block->weight[i]} * double{std::abs(block->visibility[i])};
+    }
     visibilities_.append(std::move(block));
   }
   read_s_ = watch.seconds();

@@ -52,6 +52,9 @@ class Scene {
   void run(PointResult& result);
 
   std::uint64_t samples() const { return visibilities_.samples(); }
+  /// Σ w and Σ w|V|, which other data hardly share.
+  double weight() const { return weight_; }
+  double weight_abs() const { return weight_abs_; }
   const imager::ImageGeometry& geometry() const { return geometry_; }
   double read_s() const { return read_s_; }
   /// Seconds that direct sums would take for the image.
@@ -72,6 +75,8 @@ class Scene {
   imager::UvwReach reach_;
   imager::WSpread w_spread_;
   imager::StoredVisibilities visibilities_;
+  double weight_ = 0;
+  double weight_abs_ = 0;
   double read_s_ = 0;
   std::unique_ptr<SceneTruth> truth_;
   std::map<std::string, imager::GriddingPlan> plan_;  ///< by options_text

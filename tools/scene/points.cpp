@@ -1,6 +1,9 @@
 #include "tools/scene/points.h"
 
+#include <algorithm>
 #include <cstdio>
+
+#include "tools/text.h"
 
 namespace misfit::tools {
 namespace {
@@ -48,7 +51,8 @@ void add_evaluations(int width, double padding, const std::vector<Table>& tables
 
 std::vector<ScenePoint> scene_points(bool quick, const std::vector<std::string>& more) {
   std::vector<std::string> kernels = compared_kernels;
-  kernels.insert(kernels.end(), more.begin(), more.end());
+  for (const std::string& kernel : more)
+    if (std::find(kernels.begin(), kernels.end(), kernel) == kernels.end()) kernels.push_back(kernel);
   std::vector<ScenePoint> points;
   for (const std::string& kernel : kernels) add_plans(kernel, points);
   points.push_back({.kernel = "nearest", .width = 1, .padding = 2, .precision = "single"});
@@ -82,7 +86,7 @@ ImageOptions options_of(const ImageOptions& scene, const ScenePoint& point) {
 }
 
 std::string options_text(const ScenePoint& point) {
-  std::string line = "--kernel " + point.kernel;
+  std::string line = "--kernel " + shell_quoted(point.kernel);
   if (point.accuracy != 0) line += " --accuracy " + text(point.accuracy);
   if (point.width != 0) line += " --kernel-width " + std::to_string(point.width);
   if (point.padding != 0) line += " --padding " + text(point.padding);

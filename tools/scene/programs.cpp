@@ -1,17 +1,21 @@
 #include "tools/scene/programs.h"
 
+#include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
-#include <stdexcept>
+#include <limits>
 
 #include "imager/fits_image.h"
 #include "imager/stage_times.h"
 #include "ms_io/measurement_set.h"
 #include "tools/gnuplot.h"
+#include "tools/interrupt.h"
 #include "tools/quantity.h"
 #include "tools/run_program.h"
+#include "tools/text.h"
 
 namespace misfit::tools {
 namespace {
@@ -52,7 +56,7 @@ Program misfit(const ImageOptions& scene, const std::string& accuracy, int threa
   const std::vector<std::string> predict{"misfit",   "predict",    "--vis",  copied_set,  "--model",
                                          model_file, "--accuracy", accuracy, "--threads", std::to_string(threads),
                                          "--quiet"};
-  return {{"misfit image, to " + accuracy, words, {}, {}}, "misfit-" + accuracy + ".residual.fits", predict};
+  return {{"misfit image, to " + accuracy, words, {}, {}, ""}, "misfit-" + accuracy + ".residual.fits", predict};
 }
 
 Program wsclean(const ImageOptions& scene, const std::string& name, const std::vector<std::string>& gridder, int threads) {
@@ -73,15 +77,17 @@ Program wsclean(const ImageOptions& scene, const std::string& name, const std::v
                                  "-pol",
                                  "I",
                                  "-no-update-model-required",
+                                 "-reorder",
                                  "-j",
                                  std::to_string(threads)};
   words.insert(words.end(), {"-data-column", scene.datacolumn == "corrected" ? "CORRECTED_DATA" : "DATA"});
   words.insert(words.end(), gridder.begin(), gridder.end());
   words.push_back(scene.vis);
-  std::vector<std::string> predict{"wsclean", "-quiet", "-predict", "-name", model_name, "-j", std::to_string(threads)};
+  std::vector<std::string> predict{"wsclean", "-quiet",   "-predict", "-reorder",
+                                   "-name",   model_name, "-j",       std::to_string(threads)};
   predict.insert(predict.end(), gridder.begin(), gridder.end());
   predict.emplace_back(copied_set);
-  return {{"wsclean, " + name, words, {}, {}}, "wsclean-dirty.fits", predict};
+  return {{"wsclean, " + name, words, {}, {}, ""}, "wsclean-dirty.fits", predict};
 }
 
 bool same_for_wsclean(const ImageOptions& scene) {
@@ -94,34 +100,41 @@ bool is_installed(const std::string& program) {
   return run_program({program, "--version"}, folder.path()).has_value();
 }
 
-std::string first_line(const fs::path& file) {
+/// The last line that holds words.
+std::string last_words(const fs::path& file) {
   std::ifstream said(file);
-  std::string line;
-  while (line.find_first_not_of(" \t") == std::string::npos && std::getline(said, line)) {
-  }
-  return line;
+  std::string line, last = "without a word";
+  while (std::getline(said, line))
+    if (std::any_of(line.begin(), line.end(), [](unsigned char c) { return std::isalpha(c) != 0; })) last = line;
+  return last;
 }
 
 std::string in_a_line(const std::vector<std::string>& words) {
   std::string line;
-  for (const std::string& word : words) line += (line.empty() ? "" : " ") + word;
+  for (const std::string& word : words) line += (line.empty() ? "" : " ") + shell_quoted(word);
   return line;
 }
 
-void run_in(const WorkFolder& folder, std::vector<std::string> words) {
-  const std::string line = in_a_line(words);
+/// Whether the program did what it was called for; if not, its result says why.
+bool run_in(const WorkFolder& folder, std::vector<std::string> words, ProgramResult& result) {
   if (words.front() == "misfit") words.front() = fs::read_symlink("/proc/self/exe").string();
   const std::optional<int> status = run_program(words, folder.path());
-  if (!status || *status != 0) throw std::runtime_error(line + " failed: " + first_line(folder.path() / "said"));
+  if (interrupted()) throw Interrupted();
+  if (status && *status == 0) return true;
+  result.failure = last_words(folder.path() / "said");
+  constexpr double none = std::numeric_limits<double>::quiet_NaN();
+  result.errors = {none, none, none, none, none, none, none, none};
+  return false;
 }
 
 void run_once(Program& program, const std::string& vis, const SceneTruth& truth) {
+  if (!program.result.failure.empty()) return;
   const WorkFolder folder(fs::temp_directory_path());
   std::vector<std::string> words = program.result.words;
   for (std::string& word : words)
     if (word == vis) word = fs::absolute(vis).string();
   const imager::Stopwatch watch;
-  run_in(folder, words);
+  if (!run_in(folder, words, program.result)) return;
   program.result.seconds.push_back(watch.seconds());
   if (program.result.seconds.size() == 1)
     program.result.errors = truth.errors_of(imager::read_fits(folder.path() / program.image).image);
@@ -151,7 +164,7 @@ void compare_predictions(const ImageOptions& scene, const SceneTruth& truth, std
     imager::write_fits(sky, folder.path() / model_file, imager::PixelFormat::float32);
   }
   for (Program& program : programs) {
-    run_in(folder, program.predict);
+    if (!program.result.failure.empty() || !run_in(folder, program.predict, program.result)) continue;
     const ms_io::MeasurementSet written(set, scene.selection, "MODEL_DATA");
     const auto stream = written.open();
     std::size_t index = 0;

@@ -14,14 +14,15 @@ struct ProgramResult {
   std::string name;                ///< "wsclean, w-gridder to 1e-4"
   std::vector<std::string> words;  ///< as called, but for the folder of its images
   std::vector<double> seconds;     ///< wall clock of each run, by turns with the others
-  SceneErrors errors;
+  SceneErrors errors;              ///< NaN where it failed
+  std::string failure;             ///< the last that it said, if it failed
 
   std::string command() const;
 };
 
 /// `misfit image` to two accuracies, and WSClean's gridders where it is installed and can be given the same samples: no
 /// selection, and a data column that it takes. Each is run `rounds` times, by turns; and once to predict the truth's model into
-/// a copy of the set, unless that takes more than 2 GiB. Throws std::runtime_error that names a program that fails.
+/// a copy of the set, unless that takes more than 2 GiB. One that fails is not run again. Throws Interrupted.
 std::vector<ProgramResult> run_programs(const ImageOptions& scene, const SceneTruth& truth, int threads, int rounds,
                                         ProgressLine& progress);
 

@@ -23,6 +23,8 @@ json owner_of(const SceneReportOptions& o, const Scene& scene) {
   return {{"version", version},
           {"vis", std::filesystem::absolute(s.vis).string()},
           {"samples", scene.samples()},
+          {"weight", scene.weight()},
+          {"weight_abs", scene.weight_abs()},
           {"selection", {s.selection.field, s.selection.spectral_window}},
           {"datacolumn", s.datacolumn},
           {"imsize", s.imsize},

@@ -8,6 +8,7 @@
 #include "tools/memory.h"
 #include "tools/numbers.h"
 #include "tools/scene/pareto.h"
+#include "tools/text.h"
 
 namespace misfit::tools {
 namespace {
@@ -101,10 +102,10 @@ Figure error_figure(const std::string& name, const std::string& title, const std
 }
 
 std::string command_of(const ImageOptions& scene, const ScenePoint& point) {
-  std::string line = "misfit image --vis " + scene.vis + " --imagename image --imsize";
+  std::string line = "misfit image --vis " + shell_quoted(scene.vis) + " --imagename image --imsize";
   for (const int side : scene.imsize) line += " " + std::to_string(side);
   const auto add = [&](const std::string& option, const std::string& value, const std::string& usual) {
-    if (value != usual) line += " " + option + " '" + value + "'";
+    if (value != usual) line += " " + option + " " + shell_quoted(value);
   };
   line += " --cell " + scene.cell;
   add("--field", scene.selection.field, "");
@@ -151,7 +152,8 @@ std::vector<PointResult> pooled_by_work(const std::vector<PointResult>& results)
 double time_noise(const std::vector<PointResult>& results) {
   std::vector<double> noise;
   for (const PointResult& r : results) noise.push_back(spread(r) / (2 * std::sqrt(static_cast<double>(r.runs.size()))));
-  return noise.empty() ? 0 : median(noise);
+  constexpr double most = 0.1;  // times that are known worse than that are no reason to call all equal
+  return noise.empty() ? 0 : std::min(median(noise), most);
 }
 
 std::vector<bool> front_of(const std::vector<PointResult>& results) {
@@ -176,7 +178,8 @@ std::string verdict_on(const std::vector<PointResult>& results) {
               power_of_ten(r.errors.rms, 2) + ", where the next least-misfit or minimax point as exact " +
               (std::isfinite(longer) ? "takes " + significant(longer, 3) + " times as long" : "was not among the points");
   }
-  const std::string count = std::to_string(ours) + " least-misfit and minimax points";
+  if (ours == 0 && others.empty()) return "No point of the front lies between 10⁻³ and 10⁻⁷.";
+  const std::string count = std::to_string(ours) + " least-misfit and minimax point" + (ours == 1 ? "" : "s");
   if (others.empty()) return "From 10⁻³ to 10⁻⁷ the front consists of " + count + " alone.";
   return "From 10⁻³ to 10⁻⁷ the front has " + count + ", and others: " + others + ".";
 }
@@ -209,8 +212,8 @@ ReportSection front_section(const ImageOptions& scene, const Scene& measured, co
       .heading = "What is worth its time", .paragraphs = {verdict_on(results)}, .figures = {}, .tables = {table}};
   section.paragraphs.push_back("Reading the visibilities took " + duration(measured.read_s()) + ", direct sums would take " +
                                duration(measured.direct_s()) + " for this image. The phase of w reaches " +
-                               significant(measured.w_phase_rad(), 2) + " rad at its corners. Times are known to " +
-                               significant(100 * time_noise(results), 2) + " %.");
+                               significant(measured.w_phase_rad(), 2) + " rad at its corners. Times that differ by less than " +
+                               significant(100 * time_noise(results), 2) + " % count as equal here.");
   section.figures = {
       error_figure(
           "image-error", "Error of the dirty image against the time it takes",
@@ -278,8 +281,8 @@ ReportSection programs_section(const std::vector<ProgramResult>& programs) {
                   .rows = {},
                   .code = {"command"}};
   for (const ProgramResult& p : programs)
-    table.rows.push_back({p.name, median(p.seconds), p.errors.rms, p.errors.max, p.errors.centre_rms, p.errors.border_rms,
-                          p.errors.predict_rms, p.command()});
+    table.rows.push_back({p.failure.empty() ? p.name : p.name + ": failed, " + p.failure, median(p.seconds), p.errors.rms,
+                          p.errors.max, p.errors.centre_rms, p.errors.border_rms, p.errors.predict_rms, p.command()});
   return {.heading = "Whole programs", .paragraphs = {}, .figures = {}, .tables = {table}};
 }
 

@@ -22,7 +22,7 @@ std::vector<PointResult> pooled_by_work(const std::vector<PointResult>& results)
 double image_seconds(const PointResult& result);
 
 /// What the medians of seconds are uncertain by, as a part of them: half the spread of a point's runs over the root of their
-/// number, in the middle of all points.
+/// number, in the middle of all points; at most a tenth.
 double time_noise(const std::vector<PointResult>& results);
 
 /// Which of the results are on the front of error against seconds, within the noise of these.
