@@ -64,8 +64,9 @@ Plan decisions_of(const GriddingRequest& request, const GriddingPlan& plan) {
                                                              : "worst position within a cell, or pixel at the corner, gives " +
                                                                    text("%.2g", plan.worst_error) + ", accuracy asked " +
                                                                    text("%.2g", request.accuracy);
-  const std::string because_evaluation =
-      request.lookup || !request.shortest_polynomials ? "as asked" : "adds less than 0.5% to the kernel's squared error";
+  const std::string because_evaluation = request.lookup || !request.shortest_polynomials
+                                             ? "as asked"
+                                             : "adds less than 0.5% to the squared error, rounding counted in";
   GriddingCandidate in_single = plan.choice.best;
   in_single.work.precision = Precision::single_precision;
   judge(in_single);
@@ -119,8 +120,7 @@ void check_request(const GriddingRequest& request) {
 
 std::string evaluation_of(const PlaneTransformOptions& options) {
   if (!options.lookup) return "polynomials of degree " + std::to_string(options.kernel_u.polynomial.degree());
-  const char* const names[] = {"nearest", "linear", "quadratic", "cubic"};
-  return std::string(names[static_cast<std::size_t>(options.lookup->interpolation)]) + " tables of " +
+  return std::string(kernels::interpolation_names[static_cast<std::size_t>(options.lookup->interpolation)]) + " tables of " +
          std::to_string(options.lookup->samples_per_cell) + " entries a cell";
 }
 

@@ -53,8 +53,7 @@ Evaluation evaluation_in(Precision precision, const Arguments&... arguments) {
 }
 
 std::string name_of(const TableOptions& options) {
-  constexpr std::array<const char*, 4> names{"nearest", "linear", "quadratic", "cubic"};
-  return std::string(names[static_cast<std::size_t>(options.interpolation)]) +
+  return std::string(interpolation_names[static_cast<std::size_t>(options.interpolation)]) +
          " table, Ms = " + std::to_string(options.samples_per_cell);
 }
 

@@ -13,6 +13,7 @@ namespace misfit::kernels {
 /// How a lookup table is read between its entries: the nearest entry, or the polynomial of degree 1, 2, 3 through as many
 /// entries more. The value is the degree.
 enum class Interpolation { nearest, linear, quadratic, cubic };
+inline constexpr std::array<const char*, 4> interpolation_names{"nearest", "linear", "quadratic", "cubic"};  ///< by degree
 
 /// A table's shape.
 struct TableOptions {

@@ -88,7 +88,7 @@ void check_clean(const ImageOptions& o) {
 
 /// The tables that --evaluation names, if it does.
 std::optional<kernels::TableOptions> lookup_of(const ImageOptions& o) {
-  const std::array<const char*, 4> names{"nearest", "linear", "quadratic", "cubic"};
+  const auto& names = kernels::interpolation_names;
   const auto found = std::find(names.begin(), names.end(), o.evaluation);
   if (found == names.end()) return {};
   return kernels::TableOptions{o.sampling, static_cast<kernels::Interpolation>(found - names.begin())};
