@@ -101,6 +101,14 @@ bool sparse(const StackOrder& order, const StackTask& task) {
   return samples <= most_in_place;
 }
 
+/// Adds what a step takes to a total.
+template <typename Step>
+void add_seconds_of(double& total, const Step& step) {
+  const Stopwatch watch;
+  step();
+  total += watch.seconds();
+}
+
 template <typename Real>
 class WideAdjoint : public AdjointSum {
  public:
@@ -217,9 +225,9 @@ class WideAdjoint : public AdjointSum {
               grid_tile({blocks, order, ordering}, tasks[i], slab.first, *buffer, stack);
               spares.give_back(std::move(buffer));
             });
-          transform([&] { rows.to_image(band.end * setup_.shape.tile); });
+          add_seconds_of(result_.fft_s, [&] { rows.to_image(band.end * setup_.shape.tile); });
         }
-        transform([&] {
+        add_seconds_of(result_.fft_s, [&] {
           rows.to_image(setup_.shape.rows());
           stack_to_images(stack, f, slab.first, threads, images);
         });
@@ -227,13 +235,6 @@ class WideAdjoint : public AdjointSum {
     }
     gathered_.clear();
     samples_ = 0;
-  }
-
-  template <typename Step>
-  void transform(const Step& step) {
-    const Stopwatch watch;
-    step();
-    result_.fft_s += watch.seconds();
   }
 
   std::vector<RowRange> rows_of(const std::vector<std::vector<StackTask>>& colours) const {
@@ -405,10 +406,10 @@ class WidePrediction : public Prediction {
       const StackOrder order = order_for_stack(blocks, ordering);
       for (const Slab& slab : slabs_of(order, most_planes(setup_, 1))) {
         stack.reserve(slab.planes);
-        transform([&] { image_to_stack(model_, f, slab.first, threads, stack); });
+        add_seconds_of(fft_s_, [&] { image_to_stack(model_, f, slab.first, threads, stack); });
         StackRows<Real> rows(stack, f.facet.geometry.width, threads);
         for (const Band& band : bands_of(setup_.shape, stack.bytes_a_row())) {
-          transform([&] { rows.to_grid(band.end * setup_.shape.tile + setup_.shape.width); });
+          add_seconds_of(fft_s_, [&] { rows.to_grid(band.end * setup_.shape.tile + setup_.shape.width); });
           for (const std::vector<StackTask>& tasks : tasks_of(order, setup_.shape, slab, ordering.width_w, band))
             parallel_for(tasks.size(), threads, [&](std::size_t i) {
               auto buffer = spares.take([&] { return std::make_unique<StackBuffer<Real>>(buffer_of(setup_, 1)); });
@@ -421,13 +422,6 @@ class WidePrediction : public Prediction {
     for (std::size_t b = 0; b < blocks.size(); ++b)
       for (std::size_t i = 0; i < halves.direct[b].size(); ++i) halves.direct[b][i] += std::conj(halves.mirrored[b][i]);
     return std::move(halves.direct);
-  }
-
-  template <typename Step>
-  void transform(const Step& step) const {
-    const Stopwatch watch;
-    step();
-    fft_s_ += watch.seconds();
   }
 
   void degrid_tile(const StackSamples& samples, const StackTask& task, int first_plane, const PlaneStack<Real>& stack,
