@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstdio>
 #include <memory>
+#include <optional>
 
 #include "imager/noise.h"
 #include "imager/parallel.h"
@@ -239,6 +240,7 @@ class ImageRun {
         {*source_, *made_.transform, made_.images, *beams_.main_lobe, theory_.expected_rms}, report_.options, progress(),
         [this](const imager::CleanState& state) {
           const imager::MajorCycle& cycle = state.cycles.back();
+          count_cycle(cycle);
           if (state.cycles.size() > 1)
             progress_.say("  " + grouped(cycle.iterations) + " components, peak residual " + flux(cycle.peak_residual_jy) +
                           ", noise " + flux(cycle.rms_jy) + (state.now + 1 == state.cycles.size() ? "" : ": taken back"));
@@ -253,6 +255,16 @@ class ImageRun {
     if (stop == imager::CleanStop::diverging || stop == imager::CleanStop::diverging_from_best)
       warn("CLEAN diverged: a lower --gain, a --mask around the sources, or more scales may help; the largest sidelobe is " +
            significant(100 * cleaned_->report.max_sidelobe, 2) + " % of the PSF's peak");
+  }
+
+  /// Told of the state with which CLEAN begins, which may be that of a run before, and after every major cycle.
+  void count_cycle(const imager::MajorCycle& cycle) {
+    if (!iterations_before_) {
+      iterations_before_ = cycle.iterations;
+      return;
+    }
+    ++work_.major_cycles;
+    work_.components = cycle.iterations - *iterations_before_;
   }
 
   void look_outside() {
@@ -317,12 +329,9 @@ class ImageRun {
     const std::string histogram = histogram_drawing();
     std::vector<PagePicture> pictures;
     if (const std::string failure = products_->finish_pictures(pictures); !failure.empty()) warn(failure);
-    if (cleaned_) {
-      work_.components = cleaned_->report.iterations;
-      work_.major_cycles = static_cast<double>(cleaned_->report.cycles.size()) - 1;
-    }
     report_.expected = expected(work_);
-    forecast_.learn(work_, times_);
+    const bool one_pass = made_.plan.request.accuracy == o_.accuracy;  // a second asks for more
+    if (one_pass) forecast_.learn(work_, times_);
     report_.wall_clock_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
     const nlohmann::json json = report_json(report_);
     write_file(o_.imagename + ".report.json", json.dump(2) + "\n");
@@ -357,7 +366,8 @@ class ImageRun {
   RunReport report_;
   TimeForecast forecast_{default_cache_folder()};
   RunWork work_;
-  std::vector<StageSeconds> spent_;  ///< on stages before the forecast
+  std::optional<int> iterations_before_;  ///< this run's CLEAN
+  std::vector<StageSeconds> spent_;       ///< on stages before the forecast
 
   std::unique_ptr<ms_io::MeasurementSet> set_;
   imager::ImageGeometry geometry_;
