@@ -1,12 +1,12 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "tools/base/files.h"
+#include "tools/base/interrupt.h"
 #include "tools/command.h"
-#include "tools/config_file.h"
-#include "tools/files.h"
-#include "tools/image_options.h"
-#include "tools/image_run.h"
-#include "tools/interrupt.h"
+#include "tools/formats/config_file.h"
+#include "tools/run/image_options.h"
+#include "tools/run/image_run.h"
 
 namespace misfit::tools {
 

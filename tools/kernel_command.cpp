@@ -8,12 +8,12 @@
 #include "kernels/kernel_table.h"
 #include "kernels/lookup_table.h"
 #include "kernels/map_error.h"
+#include "tools/base/files.h"
+#include "tools/base/numbers.h"
 #include "tools/command.h"
-#include "tools/files.h"
-#include "tools/kernel_advice.h"
-#include "tools/kernel_choice.h"
-#include "tools/machine_costs.h"
-#include "tools/numbers.h"
+#include "tools/kernel_choice/kernel_advice.h"
+#include "tools/kernel_choice/kernel_choice.h"
+#include "tools/kernel_choice/machine_costs.h"
 
 namespace misfit::tools {
 namespace {

@@ -7,8 +7,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "tools/base/interrupt.h"
 #include "tools/command.h"
-#include "tools/interrupt.h"
 #include "tools/version.h"
 
 namespace {

@@ -5,12 +5,12 @@
 #include "imager/source_sums.h"
 #include "ms_io/measurement_set.h"
 #include "ms_io/model_writer.h"
+#include "tools/base/numbers.h"
+#include "tools/base/progress.h"
 #include "tools/command.h"
-#include "tools/component_list.h"
-#include "tools/kernel_choice.h"
-#include "tools/model_image.h"
-#include "tools/numbers.h"
-#include "tools/progress.h"
+#include "tools/formats/component_list.h"
+#include "tools/formats/model_image.h"
+#include "tools/kernel_choice/kernel_choice.h"
 
 namespace misfit::tools {
 namespace {

@@ -3,12 +3,12 @@
 #include <memory>
 #include <string>
 
+#include "tools/base/progress.h"
 #include "tools/command.h"
-#include "tools/kernel_report.h"
-#include "tools/progress.h"
-#include "tools/report_folder.h"
+#include "tools/kernel_report/kernel_report.h"
+#include "tools/report/report_folder.h"
 #include "tools/scene/scene_command.h"
-#include "tools/stability_report.h"
+#include "tools/stability/stability_report.h"
 
 namespace misfit::tools {
 namespace {

@@ -6,13 +6,13 @@
 #include "imager/parallel.h"
 #include "imager/source_sums.h"
 #include "ms_io/simulated_set.h"
-#include "tools/array.h"
+#include "tools/base/array.h"
+#include "tools/base/numbers.h"
+#include "tools/base/progress.h"
+#include "tools/base/quantity.h"
 #include "tools/command.h"
-#include "tools/component_list.h"
-#include "tools/numbers.h"
-#include "tools/progress.h"
-#include "tools/quantity.h"
-#include "tools/sky.h"
+#include "tools/formats/component_list.h"
+#include "tools/formats/sky.h"
 
 namespace misfit::tools {
 namespace {

@@ -1,4 +1,4 @@
-#include "tools/array.h"
+#include "tools/base/array.h"
 
 #include <boost/test/unit_test.hpp>
 #include <cmath>

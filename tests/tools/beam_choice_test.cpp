@@ -1,4 +1,4 @@
-#include "tools/beam_choice.h"
+#include "tools/run/beam_choice.h"
 
 #include <boost/test/unit_test.hpp>
 #include <cmath>

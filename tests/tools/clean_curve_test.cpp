@@ -1,4 +1,4 @@
-#include "tools/clean_curve.h"
+#include "tools/run_page/clean_curve.h"
 
 #include <boost/test/unit_test.hpp>
 #include <cmath>

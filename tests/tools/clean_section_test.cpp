@@ -1,4 +1,4 @@
-#include "tools/clean_section.h"
+#include "tools/run_page/clean_section.h"
 
 #include <boost/test/unit_test.hpp>
 #include <nlohmann/json.hpp>

@@ -1,4 +1,4 @@
-#include "tools/clean_state_file.h"
+#include "tools/formats/clean_state_file.h"
 
 #include <boost/test/unit_test.hpp>
 #include <cmath>
@@ -8,7 +8,7 @@
 #include <stdexcept>
 
 #include "tests/temporary_folder.h"
-#include "tools/files.h"
+#include "tools/base/files.h"
 
 using namespace misfit;
 using namespace misfit::tools;

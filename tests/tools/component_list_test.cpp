@@ -1,4 +1,4 @@
-#include "tools/component_list.h"
+#include "tools/formats/component_list.h"
 
 #include <boost/test/unit_test.hpp>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "tools/config_file.h"
+#include "tools/formats/config_file.h"
 
 #include <boost/test/unit_test.hpp>
 #include <functional>

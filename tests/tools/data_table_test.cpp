@@ -1,4 +1,4 @@
-#include "tools/data_table.h"
+#include "tools/report/data_table.h"
 
 #include <boost/test/unit_test.hpp>
 #include <cmath>

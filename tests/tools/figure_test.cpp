@@ -1,4 +1,4 @@
-#include "tools/figure.h"
+#include "tools/report/figure.h"
 
 #include <boost/test/unit_test.hpp>
 #include <cmath>

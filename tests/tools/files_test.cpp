@@ -1,4 +1,4 @@
-#include "tools/files.h"
+#include "tools/base/files.h"
 
 #include <sys/stat.h>
 

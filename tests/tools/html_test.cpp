@@ -1,4 +1,4 @@
-#include "tools/html.h"
+#include "tools/report/html.h"
 
 #include <boost/test/unit_test.hpp>
 

@@ -1,7 +1,7 @@
 // From a MeasurementSet to the files of an image.
 #include "tests/tools/program.h"
 #include "tests/tools/set_changes.h"
-#include "tools/sky.h"
+#include "tools/formats/sky.h"
 
 namespace {
 

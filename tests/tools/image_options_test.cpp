@@ -1,4 +1,4 @@
-#include "tools/image_options.h"
+#include "tools/run/image_options.h"
 
 #include <boost/test/unit_test.hpp>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "tools/kernel_advice.h"
+#include "tools/kernel_choice/kernel_advice.h"
 
 #include <boost/test/unit_test.hpp>
 #include <cmath>
@@ -6,7 +6,7 @@
 #include <fstream>
 
 #include "tests/temporary_folder.h"
-#include "tools/machine_costs.h"
+#include "tools/kernel_choice/machine_costs.h"
 
 using namespace misfit;
 using namespace misfit::tools;

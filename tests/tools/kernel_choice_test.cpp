@@ -1,4 +1,4 @@
-#include "tools/kernel_choice.h"
+#include "tools/kernel_choice/kernel_choice.h"
 
 #include "kernels/kernel_table.h"
 #include "tests/kernels/kernels.h"

@@ -1,4 +1,4 @@
-#include "tools/kernel_report.h"
+#include "tools/kernel_report/kernel_report.h"
 
 #include <algorithm>
 #include <boost/test/unit_test.hpp>

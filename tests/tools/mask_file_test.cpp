@@ -1,4 +1,4 @@
-#include "tools/mask_file.h"
+#include "tools/formats/mask_file.h"
 
 #include <boost/test/unit_test.hpp>
 #include <cmath>

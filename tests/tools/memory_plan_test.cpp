@@ -1,8 +1,8 @@
-#include "tools/memory_plan.h"
+#include "tools/run/memory_plan.h"
 
 #include <boost/test/unit_test.hpp>
 
-#include "tools/memory.h"
+#include "tools/base/memory.h"
 
 using namespace misfit;
 using namespace misfit::tools;

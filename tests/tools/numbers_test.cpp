@@ -1,4 +1,4 @@
-#include "tools/numbers.h"
+#include "tools/base/numbers.h"
 
 #include <boost/test/unit_test.hpp>
 #include <limits>

@@ -1,11 +1,11 @@
-#include "tools/outside_stage.h"
+#include "tools/run/outside_stage.h"
 
 #include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "tests/tools/markup.h"
 #include "tests/tools/program.h"
-#include "tools/outside_section.h"
+#include "tools/run_page/outside_section.h"
 
 using namespace misfit;
 using namespace misfit::tools::testing;

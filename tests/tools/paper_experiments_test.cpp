@@ -1,4 +1,4 @@
-#include "tools/paper_experiments.h"
+#include "tools/paper/paper_experiments.h"
 
 #include <algorithm>
 #include <boost/test/unit_test.hpp>
@@ -6,7 +6,7 @@
 #include <set>
 
 #include "imager/source_sums.h"
-#include "tools/sky.h"
+#include "tools/formats/sky.h"
 
 using namespace misfit;
 using namespace misfit::tools;

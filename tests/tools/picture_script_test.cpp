@@ -1,4 +1,4 @@
-#include "tools/picture_script.h"
+#include "tools/drawing/picture_script.h"
 
 #include <boost/test/unit_test.hpp>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "tools/pictures.h"
+#include "tools/drawing/pictures.h"
 
 #include <unistd.h>
 

@@ -1,4 +1,4 @@
-#include "tools/pixel_histogram.h"
+#include "tools/run_page/pixel_histogram.h"
 
 #include <boost/test/unit_test.hpp>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "tools/plain_gridder.h"
+#include "tools/paper/plain_gridder.h"
 
 #include <algorithm>
 #include <boost/test/data/test_case.hpp>
@@ -8,7 +8,7 @@
 #include "imager/direct_transform.h"
 #include "imager/plane_transform.h"
 #include "kernels/catalogue.h"
-#include "tools/card_scene.h"
+#include "tools/paper/card_scene.h"
 
 namespace bdata = boost::unit_test::data;
 using namespace misfit;

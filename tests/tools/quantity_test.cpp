@@ -1,4 +1,4 @@
-#include "tools/quantity.h"
+#include "tools/base/quantity.h"
 
 #include <boost/test/unit_test.hpp>
 #include <cmath>

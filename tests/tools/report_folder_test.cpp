@@ -1,4 +1,4 @@
-#include "tools/report_folder.h"
+#include "tools/report/report_folder.h"
 
 #include <boost/test/unit_test.hpp>
 #include <set>

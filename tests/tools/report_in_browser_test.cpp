@@ -4,9 +4,9 @@
 #include "tests/tools/browser.h"
 #include "tests/tools/markup.h"
 #include "tests/tools/program.h"
-#include "tools/html_elements.h"
-#include "tools/report_page.h"
-#include "tools/stability_report.h"
+#include "tools/report/html_elements.h"
+#include "tools/run_page/report_page.h"
+#include "tools/stability/stability_report.h"
 
 using namespace misfit::tools;
 using namespace misfit::tools::testing;

@@ -1,4 +1,4 @@
-#include "tools/report_page.h"
+#include "tools/run_page/report_page.h"
 
 #include <boost/test/unit_test.hpp>
 #include <limits>

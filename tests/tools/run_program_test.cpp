@@ -1,10 +1,10 @@
-#include "tools/run_program.h"
+#include "tools/base/run_program.h"
 
 #include <boost/test/unit_test.hpp>
 
 #include "tests/temporary_folder.h"
-#include "tools/files.h"
-#include "tools/text.h"
+#include "tools/base/files.h"
+#include "tools/base/text.h"
 
 using namespace misfit;
 using namespace misfit::tools;

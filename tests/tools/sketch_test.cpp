@@ -1,4 +1,4 @@
-#include "tools/sketch.h"
+#include "tools/drawing/sketch.h"
 
 #include <boost/test/unit_test.hpp>
 #include <cmath>

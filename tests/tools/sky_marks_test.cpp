@@ -1,4 +1,4 @@
-#include "tools/sky_marks.h"
+#include "tools/drawing/sky_marks.h"
 
 #include <boost/test/unit_test.hpp>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "tools/sky.h"
+#include "tools/formats/sky.h"
 
 #include <algorithm>
 #include <boost/test/unit_test.hpp>

@@ -1,9 +1,9 @@
-#include "tools/stability_report.h"
+#include "tools/stability/stability_report.h"
 
 #include <boost/test/unit_test.hpp>
 #include <cmath>
 
-#include "tools/numbers.h"
+#include "tools/base/numbers.h"
 
 using namespace misfit::tools;
 

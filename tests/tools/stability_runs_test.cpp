@@ -1,4 +1,4 @@
-#include "tools/stability_runs.h"
+#include "tools/stability/stability_runs.h"
 
 #include <boost/test/unit_test.hpp>
 #include <cmath>

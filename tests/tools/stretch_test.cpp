@@ -1,4 +1,4 @@
-#include "tools/stretch.h"
+#include "tools/drawing/stretch.h"
 
 #include <boost/test/unit_test.hpp>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "tools/ticks.h"
+#include "tools/drawing/ticks.h"
 
 #include <boost/test/unit_test.hpp>
 #include <cmath>

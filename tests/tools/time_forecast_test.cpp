@@ -1,10 +1,10 @@
-#include "tools/time_forecast.h"
+#include "tools/run/time_forecast.h"
 
 #include <boost/test/unit_test.hpp>
 #include <filesystem>
 
 #include "tests/temporary_folder.h"
-#include "tools/files.h"
+#include "tools/base/files.h"
 
 using namespace misfit;
 using namespace misfit::tools;

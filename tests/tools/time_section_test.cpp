@@ -1,4 +1,4 @@
-#include "tools/time_section.h"
+#include "tools/run_page/time_section.h"
 
 #include <boost/test/unit_test.hpp>
 #include <nlohmann/json.hpp>

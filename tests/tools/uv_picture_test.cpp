@@ -1,4 +1,4 @@
-#include "tools/uv_picture.h"
+#include "tools/drawing/uv_picture.h"
 
 #include <boost/test/unit_test.hpp>
 #include <cmath>
@@ -7,7 +7,7 @@
 #include "imager/constants.h"
 #include "tests/tools/markup.h"
 #include "tests/tools/program.h"
-#include "tools/pictures.h"
+#include "tools/drawing/pictures.h"
 
 using namespace misfit;
 using namespace misfit::tools::testing;

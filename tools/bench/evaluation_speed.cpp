@@ -1,6 +1,6 @@
 // Ways to evaluate a least-misfit function, as a markdown table: E over its optimum, bytes, nanoseconds a visibility.
 // usage: evaluation_speed [WIDTH] [X0]
-#include "tools/evaluation_speed.h"
+#include "tools/kernel_report/evaluation_speed.h"
 
 #include <array>
 #include <cstdio>

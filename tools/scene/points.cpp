@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cstdio>
 
-#include "tools/text.h"
+#include "tools/base/text.h"
 
 namespace misfit::tools {
 namespace {

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "tools/image_options.h"
+#include "tools/run/image_options.h"
 
 namespace misfit::tools {
 

@@ -11,11 +11,11 @@
 #include "imager/fits_image.h"
 #include "imager/stage_times.h"
 #include "ms_io/measurement_set.h"
-#include "tools/gnuplot.h"
-#include "tools/interrupt.h"
-#include "tools/quantity.h"
-#include "tools/run_program.h"
-#include "tools/text.h"
+#include "tools/base/interrupt.h"
+#include "tools/base/quantity.h"
+#include "tools/base/run_program.h"
+#include "tools/base/text.h"
+#include "tools/drawing/gnuplot.h"
 
 namespace misfit::tools {
 namespace {

@@ -3,8 +3,8 @@
 #include <string>
 #include <vector>
 
-#include "tools/image_options.h"
-#include "tools/progress.h"
+#include "tools/base/progress.h"
+#include "tools/run/image_options.h"
 #include "tools/scene/truth.h"
 
 namespace misfit::tools {

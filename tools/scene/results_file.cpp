@@ -5,7 +5,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
-#include "tools/files.h"
+#include "tools/base/files.h"
 
 namespace misfit::tools {
 namespace {

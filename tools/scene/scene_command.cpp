@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <memory>
 
-#include "tools/kernel_choice.h"
+#include "tools/kernel_choice/kernel_choice.h"
 #include "tools/scene/scene_report.h"
 
 namespace misfit::tools {

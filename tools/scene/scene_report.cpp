@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "tools/numbers.h"
+#include "tools/base/numbers.h"
 #include "tools/scene/measure.h"
 #include "tools/scene/programs.h"
 #include "tools/scene/results_file.h"

@@ -3,9 +3,9 @@
 #include <string>
 #include <vector>
 
-#include "tools/image_options.h"
-#include "tools/progress.h"
-#include "tools/report_folder.h"
+#include "tools/base/progress.h"
+#include "tools/report/report_folder.h"
+#include "tools/run/image_options.h"
 
 namespace misfit::tools {
 

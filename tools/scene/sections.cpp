@@ -5,10 +5,10 @@
 #include <limits>
 #include <map>
 
-#include "tools/memory.h"
-#include "tools/numbers.h"
+#include "tools/base/memory.h"
+#include "tools/base/numbers.h"
+#include "tools/base/text.h"
 #include "tools/scene/pareto.h"
-#include "tools/text.h"
 
 namespace misfit::tools {
 namespace {

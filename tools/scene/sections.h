@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "tools/report_folder.h"
+#include "tools/report/report_folder.h"
 #include "tools/scene/measure.h"
 #include "tools/scene/programs.h"
 

@@ -1,0 +1,59 @@
+#include "tools/base/progress.h"
+
+#include <unistd.h>
+
+#include <cstdio>
+
+#include "tools/base/interrupt.h"
+#include "tools/base/numbers.h"
+
+namespace misfit::tools {
+
+ProgressLine::ProgressLine(bool quiet) : quiet_(quiet), live_(!quiet && isatty(STDERR_FILENO) != 0) {
+  catch_interrupts();
+}
+
+ProgressLine::~ProgressLine() {
+  clear();
+}
+
+void ProgressLine::begin(const std::string& stage, bool stops_itself) {
+  stage_ = stage;
+  stops_itself_ = stops_itself;
+  open_ = true;
+  start_ = drawn_ = std::chrono::steady_clock::now();
+  if (live_) std::fprintf(stderr, "\r\033[K%s", stage.c_str());
+}
+
+void ProgressLine::update(std::uint64_t done, std::uint64_t total) {
+  if (interrupted() && !stops_itself_) throw Interrupted();
+  const auto now = std::chrono::steady_clock::now();
+  if (!live_ || done == 0 || total == 0 || now - drawn_ < std::chrono::milliseconds(100)) return;
+  drawn_ = now;
+  const double fraction = static_cast<double>(done) / static_cast<double>(total);
+  std::fprintf(stderr, "\r\033[K%s  %3.0f%%  %s left", stage_.c_str(), 100 * fraction,
+               duration(elapsed_s() * (1 / fraction - 1)).c_str());
+}
+
+void ProgressLine::end() {
+  if (!open_) return;
+  open_ = false;
+  if (live_) std::fprintf(stderr, "\r\033[K");
+  if (!quiet_) std::fprintf(stderr, "%-24s %s\n", stage_.c_str(), duration(elapsed_s()).c_str());
+}
+
+void ProgressLine::say(const std::string& line) {
+  if (quiet_) return;
+  if (live_) std::fprintf(stderr, "\r\033[K");
+  std::fprintf(stderr, "%s\n", line.c_str());
+}
+
+double ProgressLine::elapsed_s() const {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+}
+
+void ProgressLine::clear() {
+  if (open_ && live_) std::fprintf(stderr, "\r\033[K");
+}
+
+}  // namespace misfit::tools

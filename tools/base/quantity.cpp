@@ -1,0 +1,56 @@
+#include "tools/base/quantity.h"
+
+#include <charconv>
+#include <cmath>
+#include <numbers>
+#include <stdexcept>
+#include <utility>
+#include <vector>
+
+namespace misfit::tools {
+namespace {
+
+using Units = std::vector<std::pair<std::string, double>>;
+
+double parse(const std::string& text, const std::string& what, const Units& units) {
+  const auto fail = [&] {
+    std::string names;
+    for (const auto& [name, size] : units)
+      if (!name.empty()) names += (names.empty() ? "" : ", ") + name;
+    throw std::invalid_argument("'" + text + "' is no " + what + "; expected a number with a unit of " + names);
+  };
+  const char* begin = text.data() + (text.starts_with('+') ? 1 : 0);
+  const char* end = text.data() + text.size();
+  double number = 0;
+  const auto [rest, error] = std::from_chars(begin, end, number);
+  if (text.starts_with("+-") || error != std::errc() || !std::isfinite(number)) fail();
+  std::string unit(rest, end);
+  unit.erase(0, unit.find_first_not_of(' '));
+  for (const auto& [name, size] : units)
+    if (name == unit) return number * size;
+  fail();
+  return 0;
+}
+
+}  // namespace
+
+double parse_angle_rad(const std::string& text) {
+  constexpr double degree = std::numbers::pi / 180;
+  return parse(text, "angle",
+               {{"", degree / 3600},
+                {"deg", degree},
+                {"arcmin", degree / 60},
+                {"arcsec", degree / 3600},
+                {"mas", degree / 3.6e6},
+                {"rad", 1}});
+}
+
+double parse_flux_jy(const std::string& text) {
+  return parse(text, "flux density", {{"", 1}, {"Jy", 1}, {"mJy", 1e-3}, {"uJy", 1e-6}});
+}
+
+double parse_frequency_hz(const std::string& text) {
+  return parse(text, "frequency", {{"", 1}, {"Hz", 1}, {"kHz", 1e3}, {"MHz", 1e6}, {"GHz", 1e9}});
+}
+
+}  // namespace misfit::tools

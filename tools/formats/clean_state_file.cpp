@@ -1,0 +1,235 @@
+#include "tools/formats/clean_state_file.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cstring>
+#include <stdexcept>
+#include <string_view>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include "tools/base/files.h"
+#include "tools/base/text.h"
+
+namespace misfit::tools {
+namespace {
+
+using nlohmann::json;
+
+constexpr const char* format = "misfit CLEAN state 1";
+constexpr std::array free_options = {"niter",   "threshold", "nsigma", "nmajor",  "savemodel", "restoringbeam", "verify",
+                                     "threads", "memory",    "quiet",  "restart", "dry-run",   "imagename"};
+
+/// Its bytes as they lie in memory, little-endian where this runs.
+template <typename T>
+json packed(const std::vector<T>& values) {
+  static_assert(std::is_trivially_copyable_v<T> && std::endian::native == std::endian::little);
+  std::vector<std::uint8_t> bytes(values.size() * sizeof(T));
+  if (!values.empty()) std::memcpy(bytes.data(), values.data(), bytes.size());
+  return json::binary(std::move(bytes));
+}
+
+template <typename T>
+std::vector<T> unpacked(const json& value) {
+  const auto& bytes = value.get_binary();
+  if (bytes.size() % sizeof(T) != 0) throw std::runtime_error("an array is cut");
+  std::vector<T> values(bytes.size() / sizeof(T));
+  if (!values.empty()) std::memcpy(values.data(), bytes.data(), bytes.size());
+  return values;
+}
+
+json packed_model(const imager::ComponentModel& model) {
+  std::vector<std::int32_t> place;
+  std::vector<double> flux_jy;
+  for (const imager::Component& c : model.components()) {
+    place.insert(place.end(), {c.scale, c.row, c.column});
+    flux_jy.push_back(c.flux_jy);
+  }
+  return {{"width", model.width()},
+          {"height", model.height()},
+          {"scale_pixels", model.scale_pixels()},
+          {"place", packed(place)},
+          {"flux_jy", packed(flux_jy)}};
+}
+
+imager::ComponentModel unpacked_model(const json& value) {
+  const auto place = unpacked<std::int32_t>(value.at("place"));
+  const auto flux_jy = unpacked<double>(value.at("flux_jy"));
+  if (place.size() != 3 * flux_jy.size()) throw std::runtime_error("its components are incomplete");
+  std::vector<imager::Component> components;
+  for (std::size_t i = 0; i < flux_jy.size(); ++i)
+    components.push_back({place[3 * i], place[3 * i + 1], place[3 * i + 2], flux_jy[i]});
+  imager::ComponentModel model(value.at("width"), value.at("height"), value.at("scale_pixels"));
+  model.add(components);
+  return model;
+}
+
+/// The lengths of runs of 0 and 1 in turn, beginning with 0.
+json packed_mask(const imager::Image& mask) {
+  std::vector<std::uint64_t> runs;
+  for (std::size_t i = 0; i < mask.pixel.size();) {
+    const bool in = runs.size() % 2 == 1;
+    const std::size_t first = i;
+    while (i < mask.pixel.size() && (mask.pixel[i] != 0) == in) ++i;
+    runs.push_back(i - first);
+  }
+  return {{"width", mask.width}, {"height", mask.height}, {"runs", packed(runs)}};
+}
+
+imager::Image unpacked_mask(const json& value) {
+  imager::Image mask(value.at("width"), value.at("height"));
+  std::size_t first = 0;
+  double in = 0;
+  for (const std::uint64_t run : unpacked<std::uint64_t>(value.at("runs"))) {
+    if (run > mask.pixel.size() - first) throw std::runtime_error("its mask is larger than the image");
+    std::fill_n(mask.pixel.begin() + static_cast<std::ptrdiff_t>(first), run, in);
+    first += run;
+    in = 1 - in;
+  }
+  return mask;
+}
+
+json packed_cycle(const imager::MajorCycle& c) {
+  return {{"iterations", c.iterations},
+          {"peak_residual_jy", c.peak_residual_jy},
+          {"rms_jy", c.rms_jy},
+          {"model_flux_jy", c.model_flux_jy},
+          {"depth_jy", c.cycle_threshold_jy},
+          {"ended", c.ended},
+          {"mean_square_jy2", c.mean_square_jy2},
+          {"from", c.from}};
+}
+
+imager::MajorCycle unpacked_cycle(const json& c) {
+  imager::MajorCycle cycle;
+  cycle.iterations = c.at("iterations");
+  cycle.peak_residual_jy = c.at("peak_residual_jy");
+  cycle.rms_jy = c.at("rms_jy");
+  cycle.model_flux_jy = c.at("model_flux_jy");
+  cycle.cycle_threshold_jy = c.at("depth_jy");
+  cycle.ended = c.at("ended");
+  cycle.mean_square_jy2 = c.at("mean_square_jy2");
+  cycle.from = c.at("from");
+  return cycle;
+}
+
+imager::CleanState unpacked_state(const json& file) {
+  imager::CleanState state;
+  state.model = unpacked_model(file.at("model"));
+  state.best_model = unpacked_model(file.at("best_model"));
+  state.mask = unpacked_mask(file.at("mask"));
+  for (const json& cycle : file.at("cycles")) state.cycles.push_back(unpacked_cycle(cycle));
+  state.now = file.at("now");
+  state.best = file.at("best");
+  state.tightened = file.at("tightened");
+  state.found_nothing = file.at("found_nothing");
+  if (state.now >= state.cycles.size() || state.best >= state.cycles.size())
+    throw std::runtime_error("it names major cycles that are not in it");
+  return state;
+}
+
+std::uint64_t fnv1a(std::string_view bytes) {
+  std::uint64_t sum = 0xcbf29ce484222325;
+  for (const char byte : bytes) sum = (sum ^ static_cast<unsigned char>(byte)) * 0x100000001b3;
+  return sum;
+}
+
+/// Nothing unless the sum at its end is that of the rest.
+json intact_content(std::string_view file) {
+  std::uint64_t sum = 0;
+  if (file.size() <= sizeof sum) return nullptr;
+  const std::string_view content = file.substr(0, file.size() - sizeof sum);
+  std::memcpy(&sum, file.data() + content.size(), sizeof sum);
+  if (sum != fnv1a(content)) return nullptr;
+  return json::from_cbor(content.begin(), content.end(), true, false);
+}
+
+std::string shown(const json& value) {
+  return value.is_null() ? "nothing" : value.is_string() ? "'" + value.get<std::string>() + "'" : value.dump();
+}
+
+/// Equal, or the same numbers differently written.
+bool means_the_same(const json& a, const json& b) {
+  if (a == b) return true;
+  if (!a.is_string() || !b.is_string()) return false;
+  const auto one = finite_number(a.get<std::string>()), other = finite_number(b.get<std::string>());
+  return one && other && *one == *other;
+}
+
+void require_same(const std::string& path, const json& file, const CleanStateOwner& owner) {
+  const auto refuse = [&path](const std::string& what, const json& has, const json& expected) {
+    throw std::runtime_error(path + " was saved with " + what + " " + shown(has) + ", expected that of this run, " +
+                             shown(expected) + "; without --restart CLEAN begins anew");
+  };
+  if (file.at("version") != owner.version) refuse("version", file.at("version"), owner.version);
+  const json& has = file.at("options");
+  json names = owner.options;
+  names.update(has);
+  for (const auto& [name, value] : names.items()) {
+    const bool may_differ = std::find(free_options.begin(), free_options.end(), name) != free_options.end();
+    const json then = has.value(name, json()), now = owner.options.value(name, json());
+    if (!may_differ && !means_the_same(then, now)) refuse("--" + name, then, now);
+  }
+  if (file.at("checksum") != owner.checksum)
+    throw std::runtime_error(path +
+                             " was saved with other data: the dirty image, the PSF, the mask or the start model differ; " +
+                             "expected the same visibilities, flags and weights, and the same files");
+}
+
+}  // namespace
+
+std::uint64_t checksum(const std::vector<const imager::Image*>& images) {
+  std::uint64_t sum = 0xcbf29ce484222325;  // FNV-1a, eight bytes at a time
+  for (const imager::Image* image : images) {
+    if (image == nullptr) continue;
+    for (const double pixel : image->pixel) {
+      sum ^= std::bit_cast<std::uint64_t>(pixel);
+      sum *= 0x100000001b3;
+      sum ^= sum >> 32;
+    }
+  }
+  return sum;
+}
+
+void write_clean_state(const std::string& path, const imager::CleanState& state, const CleanStateOwner& owner) {
+  json file = {{"format", format},
+               {"version", owner.version},
+               {"options", owner.options},
+               {"checksum", owner.checksum},
+               {"model", packed_model(state.model)},
+               {"best_model", packed_model(state.best_model)},
+               {"mask", packed_mask(state.mask)},
+               {"cycles", json::array()},
+               {"now", state.now},
+               {"best", state.best},
+               {"tightened", state.tightened},
+               {"found_nothing", state.found_nothing}};
+  for (const imager::MajorCycle& cycle : state.cycles) file["cycles"].push_back(packed_cycle(cycle));
+  const std::vector<std::uint8_t> bytes = json::to_cbor(file);
+  std::string content(bytes.begin(), bytes.end());
+  const std::uint64_t sum = fnv1a(content);
+  content.append(reinterpret_cast<const char*>(&sum), sizeof sum);
+  write_file(path, content);
+}
+
+imager::CleanState read_clean_state(const std::string& path, const CleanStateOwner& owner) {
+  const json file = intact_content(read_file(path));
+  if (!file.is_object() || file.value("format", json()) != format)
+    throw std::runtime_error(path + " is damaged or no state of CLEAN; expected what an earlier run of misfit image saved");
+  const auto damaged = [&path](const std::exception& error) {
+    throw std::runtime_error(path + " is damaged: " + error.what() + "; without it, run without --restart");
+  };
+  try {
+    require_same(path, file, owner);
+    return unpacked_state(file);
+  } catch (const json::exception& error) {
+    damaged(error);
+  } catch (const std::invalid_argument& error) {
+    damaged(error);
+  }
+  return {};
+}
+
+}  // namespace misfit::tools

@@ -1,0 +1,90 @@
+#include "tools/formats/config_file.h"
+
+#include <set>
+#include <sstream>
+#include <stdexcept>
+
+#include "tools/base/files.h"
+
+namespace misfit::tools {
+namespace {
+
+std::string trimmed(const std::string& text) {
+  const std::size_t first = text.find_first_not_of(" \t\r");
+  if (first == std::string::npos) return "";
+  return text.substr(first, text.find_last_not_of(" \t\r") - first + 1);
+}
+
+std::string unquoted(const std::string& text) {
+  const bool quoted = text.size() >= 2 && text.front() == '"' && text.back() == '"';
+  return quoted ? text.substr(1, text.size() - 2) : text;
+}
+
+/// Sets the option that `line` names, unless it was typed. `taken` are the names met before.
+void take(CLI::App& command, const std::string& line, std::set<std::string>& taken) {
+  const std::size_t equals = line.find('=');
+  if (equals == std::string::npos) throw std::invalid_argument("'" + line + "', expected name = value");
+  const std::string name = trimmed(line.substr(0, equals)), value = unquoted(trimmed(line.substr(equals + 1)));
+  CLI::Option* option = command.get_option_no_throw("--" + name);
+  if (name.empty() || option == nullptr || !option->get_configurable())
+    throw std::invalid_argument("'" + name + "' is no option of misfit " + command.get_name());
+  if (!taken.insert(name).second) throw std::invalid_argument("'" + name + "' stands in the file twice");
+  if (option->count() > 0) return;
+  if (option->get_items_expected_max() == 1) {
+    option->add_result(value);
+    return;
+  }
+  std::istringstream parts(value);
+  for (std::string part; parts >> part;) option->add_result(part);
+}
+
+void take_all(CLI::App& command, const std::string& path) {
+  std::istringstream lines(read_file(path));
+  std::set<std::string> taken;
+  int number = 0;
+  for (std::string line; std::getline(lines, line);) {
+    ++number;
+    line = trimmed(line);
+    if (line.empty() || line.front() == '#' || line.front() == ';') continue;
+    try {
+      take(command, line, taken);
+    } catch (const std::invalid_argument& error) {
+      throw std::invalid_argument(path + ", line " + std::to_string(number) + ": " + error.what());
+    }
+  }
+}
+
+}  // namespace
+
+void add_config_option(CLI::App& command) {
+  // Callbacks run in the order in which options were added, so those of the options found here are still to come.
+  command
+      .add_option_function<std::string>(
+          "--config", [&command](const std::string& path) { take_all(command, path); },
+          "Read options from a file with lines name = value; those given here win")
+      ->configurable(false);
+}
+
+std::vector<std::pair<std::string, std::string>> options_in_force(const CLI::App& command) {
+  std::vector<std::pair<std::string, std::string>> values;
+  for (const CLI::Option* option : command.get_options()) {
+    if (option->get_lnames().empty() || !option->get_configurable()) continue;
+    std::string value = option->get_default_str();
+    if (option->count() > 0) {
+      value.clear();
+      for (const std::string& part : option->results()) value += (value.empty() ? "" : " ") + part;
+    }
+    if (value.empty() && option->get_items_expected_max() == 0) value = "false";
+    values.emplace_back(option->get_lnames().front(), value);
+  }
+  return values;
+}
+
+std::string config_text(const CLI::App& command) {
+  std::string text;
+  for (const auto& [name, value] : options_in_force(command))
+    if (!value.empty() && name != "restart") text += name + "=\"" + value + "\"\n";
+  return text;
+}
+
+}  // namespace misfit::tools

@@ -1,0 +1,65 @@
+#include "tools/formats/model_image.h"
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <stdexcept>
+
+#include "imager/extent.h"
+#include "imager/planned_transform.h"
+#include "tools/base/numbers.h"
+
+namespace misfit::tools {
+namespace {
+
+/// How far apart two centres may lie, as a part of a pixel: less than what a transform to 1e-7 notices.
+constexpr double same_centre_pixels = 1e-3;
+
+void check_centre(const imager::SkyImage& model, const imager::SkyDirection& centre, const std::string& path) {
+  const imager::SkyDirection& has = model.geometry.phase_centre;
+  const imager::DirectionCosines offset = imager::direction_cosines(has, centre);
+  if (has.frame != centre.frame || std::hypot(offset.l, offset.m) > same_centre_pixels * model.geometry.cell_rad)
+    throw std::runtime_error(path + " is centred on " + sexagesimal(has) + " (" + has.frame +
+                             "), expected the phase centre of the visibilities, " + sexagesimal(centre) + " (" + centre.frame +
+                             ")");
+}
+
+void check_finite(const imager::SkyImage& model, const std::string& path) {
+  for (int row = 0; row < model.image.height; ++row)
+    for (int column = 0; column < model.image.width; ++column)
+      if (!std::isfinite(model.image.at(row, column)) && !imager::beyond_horizon(model.geometry.at(row, column)))
+        throw std::runtime_error(path + " has pixels that are not finite; a model needs a number in each above the horizon");
+}
+
+/// Programs write it in upper and lower case.
+bool is_jy_per_pixel(std::string unit) {
+  for (char& letter : unit) letter = static_cast<char>(std::tolower(static_cast<unsigned char>(letter)));
+  return unit == "jy/pixel";
+}
+
+}  // namespace
+
+imager::SkyImage read_model(const std::string& path, const imager::SkyDirection& centre) {
+  imager::SkyImage model = imager::read_fits(path);
+  if (!is_jy_per_pixel(model.unit))
+    throw std::runtime_error(path + " has the unit " + (model.unit.empty() ? "none" : model.unit) + ", expected Jy/pixel");
+  check_centre(model, centre, path);
+  check_finite(model, path);
+  return model;
+}
+
+ModelVisibilities image_visibilities(const imager::Image& image, const imager::ImageGeometry& geometry,
+                                     imager::GriddingRequest request, const ms_io::MeasurementSet& set) {
+  request.geometry = geometry;
+  request.samples = set.samples();
+  request.images = 1;
+  request.max_abs_w = set.reach(ms_io::ReachOf::all).max_abs_w;
+  ModelVisibilities model;
+  model.transform = std::make_unique<imager::PlannedTransform>(imager::plan_gridding(request));
+  model.prediction = model.transform->predict(image);
+  model.samples_at_once = std::max<std::uint64_t>(model.samples_at_once, model.prediction->samples_at_once());
+  model.predict = [prediction = model.prediction.get()](const imager::SampleCoordinates& at) { return prediction->at(at); };
+  return model;
+}
+
+}  // namespace misfit::tools

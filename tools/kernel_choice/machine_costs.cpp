@@ -1,0 +1,72 @@
+#include "tools/kernel_choice/machine_costs.h"
+
+#include <cmath>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <stdexcept>
+
+#include "tools/base/files.h"
+#include "tools/version.h"
+
+namespace misfit::tools {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+struct Constant {
+  const char* name;
+  double imager::CostModel::*value;
+};
+constexpr Constant constants[] = {{"sample_ns", &imager::CostModel::sample_ns},
+                                  {"cell_ns", &imager::CostModel::cell_ns},
+                                  {"tap_ns", &imager::CostModel::tap_ns},
+                                  {"fft_ns", &imager::CostModel::fft_ns},
+                                  {"double_cost", &imager::CostModel::double_cost}};
+
+/// What a file says, if it says it of this machine.
+std::optional<imager::CostModel> costs_in(const std::string& content) {
+  const json kept = json::parse(content, nullptr, false);
+  if (!kept.is_object() || kept.value("machine", json()) != json(machine_name())) return {};
+  imager::CostModel model;
+  for (const Constant& constant : constants) {
+    const json value = kept.value(constant.name, json());
+    if (!value.is_number() || !(value.get<double>() > 0) || !std::isfinite(value.get<double>())) return {};
+    model.*constant.value = value.get<double>();
+  }
+  return model;
+}
+
+std::string text_of(const imager::CostModel& model) {
+  json kept{{"machine", machine_name()}};
+  for (const Constant& constant : constants) kept[constant.name] = model.*constant.value;
+  return kept.dump(2) + "\n";
+}
+
+}  // namespace
+
+std::string machine_name() {
+  std::ifstream info("/proc/cpuinfo");
+  std::string line;
+  while (std::getline(info, line))
+    if (line.rfind("model name", 0) == 0) return line.substr(line.find(':') + 1) + ", misfit " + version;
+  return std::string("processor unknown, misfit ") + version;
+}
+
+imager::CostModel machine_costs(const fs::path& folder) {
+  if (folder.empty()) return imager::measure_costs();
+  const std::string file = folder / "costs.json";
+  std::error_code none;
+  if (fs::is_regular_file(file, none))
+    if (const auto kept = costs_in(read_file(file))) return *kept;
+  const imager::CostModel measured = imager::measure_costs();
+  fs::create_directories(folder, none);
+  try {
+    write_file(file, text_of(measured));
+  } catch (const std::runtime_error&) {  // a folder that cannot be written is no cache, and no error
+  }
+  return measured;
+}
+
+}  // namespace misfit::tools

@@ -1,0 +1,56 @@
+#pragma once
+
+#include <memory>
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <vector>
+
+#include "imager/beam.h"
+#include "imager/clean/clean.h"
+#include "imager/clean/deconvolver.h"
+#include "imager/fits_image.h"
+#include "tools/formats/clean_state_file.h"
+#include "tools/run/image_options.h"
+
+namespace misfit::tools {
+
+/// What CLEAN is given by the stages before it.
+struct CleanScene {
+  const imager::VisibilitySource& source;
+  const imager::Transform& transform;
+  const imager::DirtyImages& images;
+  imager::Beam main_lobe;     ///< of the PSF
+  double expected_error = 0;  ///< of the dirty image
+};
+
+/// CLEAN as `misfit image` runs it, with the files that go into it: mask, start model, and the state that it leaves after every
+/// major cycle and may begin with.
+class CleanStage {
+ public:
+  /// Reads the mask and the start model. Throws std::runtime_error that names the file and what was expected.
+  CleanStage(const ImageOptions& options, const imager::ImageGeometry& geometry, int threads);
+
+  /// Null where CLEAN may go everywhere, or makes its own.
+  const imager::Image* mask() const { return mask_.get(); }
+  /// What the user should know before CLEAN begins; empty if nothing.
+  std::string warning() const;
+
+  /// `option_values`: those that a saved state belongs to. Throws what imager::clean and read_clean_state do.
+  imager::CleanResult run(const CleanScene& scene, const nlohmann::json& option_values, const imager::Progress& progress,
+                          const imager::CycleProgress& cycle_progress, imager::StageTimes& times);
+
+ private:
+  std::string state_path() const { return o_.imagename + ".clean.state"; }
+  void read_start_model();
+  /// That of a run before, or that of the start model, which it frees.
+  imager::CleanState begin(const imager::MinorCycle& minor, const CleanStateOwner& owner);
+  double max_sidelobe(const CleanScene& scene) const;
+
+  const ImageOptions& o_;
+  imager::ImageGeometry geometry_;
+  int threads_;
+  std::unique_ptr<imager::Image> mask_;
+  std::unique_ptr<imager::Image> start_model_;
+};
+
+}  // namespace misfit::tools

@@ -1,0 +1,299 @@
+#include "tools/run/image_options.h"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+
+#include "imager/gridding_plan.h"
+#include "tools/base/quantity.h"
+#include "tools/base/text.h"
+#include "tools/formats/config_file.h"
+#include "tools/kernel_choice/kernel_choice.h"
+
+namespace misfit::tools {
+namespace {
+
+[[noreturn]] void refuse(const std::string& option, const std::string& value, const std::string& expected) {
+  throw std::invalid_argument("--" + option + " " + value + ": expected " + expected);
+}
+
+std::string text(double value) {
+  char buffer[32];
+  std::snprintf(buffer, sizeof buffer, "%g", value);
+  return buffer;
+}
+
+void check_image(const ImageOptions& o) {
+  if (o.imagename.empty() || o.imagename.back() == '/')
+    refuse("imagename", "'" + o.imagename + "'", "a name for files to begin with, not a folder");
+  constexpr int largest = 65536;
+  for (const int size : o.imsize)
+    if (size < 1 || size > largest) refuse("imsize", std::to_string(size), "1 to 65536 pixels");
+  if (!(parse_angle_rad(o.cell) > 0)) refuse("cell", o.cell, "an angle above 0");
+  if (parse_angle_rad(o.cell) > 0.5) refuse("cell", o.cell, "less than 0.5 rad");
+}
+
+void check_deconvolver(const ImageOptions& o) {
+  const bool multiscale = o.deconvolver == "multiscale";
+  const std::string scales = o.scales.empty() ? "" : text(o.scales.front()) + " …";
+  if (!multiscale && !o.scales.empty()) refuse("scales", scales, "--deconvolver multiscale beside it");
+  if (!multiscale && o.smallscalebias != 0)
+    refuse("smallscalebias", text(o.smallscalebias), "--deconvolver multiscale beside it");
+  if (multiscale && o.scales.empty()) refuse("deconvolver", o.deconvolver, "--scales beside it, such as 0,5,15");
+  for (std::size_t i = 0; i < o.scales.size(); ++i)
+    if (!(o.scales[i] >= 0 && o.scales[i] <= *std::min_element(o.imsize.begin(), o.imsize.end())) ||
+        (i > 0 && !(o.scales[i] > o.scales[i - 1])) || (o.scales[i] > 0 && o.scales[i] < 3))
+      refuse("scales", text(o.scales[i]), "pixels in ascending order, each 0 or from 3 to the image's size");
+  if (!(o.smallscalebias >= 0 && o.smallscalebias < 1))
+    refuse("smallscalebias", text(o.smallscalebias), "0 or more, and below 1");
+}
+
+void check_auto_mask(const ImageOptions& o) {
+  if (o.usemask == "auto" && o.niter == 0) refuse("usemask", o.usemask, "--niter above 0 beside it");
+  if (o.usemask == "auto" && !o.mask.empty()) refuse("mask", o.mask, "--usemask user, or no mask");
+  if (!(o.sidelobethreshold >= 0)) refuse("sidelobethreshold", text(o.sidelobethreshold), "0 or more");
+  if (!(o.noisethreshold > 0)) refuse("noisethreshold", text(o.noisethreshold), "more than 0");
+  if (!(o.lownoisethreshold > 0 && o.lownoisethreshold <= o.noisethreshold))
+    refuse("lownoisethreshold", text(o.lownoisethreshold), "more than 0 and at most noisethreshold");
+  if (!(o.minbeamfrac >= 0)) refuse("minbeamfrac", text(o.minbeamfrac), "0 or more");
+  if (o.growiterations < 0) refuse("growiterations", std::to_string(o.growiterations), "0 or more");
+}
+
+void check_clean(const ImageOptions& o) {
+  if (o.niter < 0) refuse("niter", std::to_string(o.niter), "0 or more");
+  if (!(o.gain > 0 && o.gain <= 1)) refuse("gain", text(o.gain), "more than 0 and at most 1");
+  if (!(parse_flux_jy(o.threshold) >= 0)) refuse("threshold", o.threshold, "0 or more");
+  if (!(o.nsigma >= 0)) refuse("nsigma", text(o.nsigma), "0 or more");
+  if (!(o.cyclefactor > 0)) refuse("cyclefactor", text(o.cyclefactor), "more than 0");
+  if (!(o.minpsffraction > 0 && o.minpsffraction <= 1))
+    refuse("minpsffraction", text(o.minpsffraction), "more than 0 and at most 1");
+  if (!(o.maxpsffraction >= o.minpsffraction && o.maxpsffraction <= 1))
+    refuse("maxpsffraction", text(o.maxpsffraction), "minpsffraction to 1");
+  if (o.cycleniter == 0 || o.cycleniter < -1) refuse("cycleniter", std::to_string(o.cycleniter), "-1 (no limit), 1 or more");
+  if (o.nmajor < -1) refuse("nmajor", std::to_string(o.nmajor), "-1 (no limit) or more");
+  if (restoring_beam(o) && o.niter == 0) refuse("restoringbeam", o.restoringbeam, "--niter above 0 beside it");
+  const int smallest = *std::min_element(o.imsize.begin(), o.imsize.end());
+  if (o.niter > 0 && smallest < 3 && !restoring_beam(o))
+    refuse("imsize", std::to_string(smallest), "3 pixels or more to fit a beam to, or --restoringbeam");
+  if (!o.startmodel.empty() && o.niter == 0) refuse("startmodel", o.startmodel, "--niter above 0 beside it");
+  if (o.savemodel != "none" && o.niter == 0) refuse("savemodel", o.savemodel, "--niter above 0 beside it");
+  if (!o.mask.empty() && o.niter == 0) refuse("mask", o.mask, "--niter above 0 beside it");
+  if (o.restart && o.niter == 0) refuse("restart", "true", "--niter above 0 beside it");
+  check_deconvolver(o);
+  check_auto_mask(o);
+}
+
+/// The tables that --evaluation names, if it does.
+std::optional<kernels::TableOptions> lookup_of(const ImageOptions& o) {
+  const auto& names = kernels::interpolation_names;
+  const auto found = std::find(names.begin(), names.end(), o.evaluation);
+  if (found == names.end()) return {};
+  return kernels::TableOptions{o.sampling, static_cast<kernels::Interpolation>(found - names.begin())};
+}
+
+void check_tables(const ImageOptions& o) {
+  const std::optional<kernels::TableOptions> lookup = lookup_of(o);
+  constexpr int most = 1 << 20;
+  if (lookup && !(o.sampling >= 1 && o.sampling <= most))
+    refuse("sampling", std::to_string(o.sampling), "1 to 1048576 entries a cell beside --evaluation " + o.evaluation);
+  if (!lookup && o.sampling != 0)
+    refuse("sampling", std::to_string(o.sampling), "--evaluation nearest, linear, quadratic or cubic beside it");
+}
+
+/// What needs neither the data nor the kernel's solution.
+void check_gridding(const ImageOptions& o) {
+  check_tables(o);
+  const bool accuracy_is_free = kernel_is_given(o);
+  if (!(o.accuracy > 0 && o.accuracy < 1) && !(o.accuracy == 0 && accuracy_is_free))
+    refuse("accuracy", text(o.accuracy), "a number above 0 and below 1");
+  if (!(o.psf_accuracy >= 0 && o.psf_accuracy < 1))
+    refuse("psf-accuracy", text(o.psf_accuracy), "a number above 0 and below 1, or 0 (chosen)");
+  if (o.psf_accuracy != 0 && o.accuracy == 0)
+    refuse("psf-accuracy", text(o.psf_accuracy), "--accuracy beside it, since the kernel given decides otherwise");
+  imager::check_request(gridding_request(o, 1));
+}
+
+}  // namespace
+
+void declare_scene(CLI::App& command, ImageOptions& o) {
+  command.add_option("--vis", o.vis, "MeasurementSet; opened read-only, but to save a model")->required();
+  command.add_option("--imsize", o.imsize, "Width, or width and height, in pixels")->required()->expected(1, 2);
+  command.add_option("--cell", o.cell, "Size of a pixel: 0.2arcsec, 3mas, …")->required();
+  command.add_option("--field", o.selection.field, "Fields, in CASA's selection syntax; all when empty");
+  command.add_option("--spw", o.selection.spectral_window,
+                     "Spectral windows and channels, in CASA's selection syntax; all when empty");
+  command.add_option("--datacolumn", o.datacolumn, "data, corrected, model, or a column's name");
+  command.add_option("--weighting", o.weighting, "Weighting")->check(CLI::IsMember({"natural"}));
+  command.add_option("--gridder", o.gridder, "w planes: auto (where w matters), standard (none), wide (always)")
+      ->check(CLI::IsMember({"auto", "standard", "wide"}));
+  command.add_option("--threads", o.threads, "Threads; 0 means all cores");
+  command.add_flag("--quiet", o.quiet, "Print nothing but errors");
+}
+
+void declare(CLI::App& command, ImageOptions& o) {
+  declare_scene(command, o);
+  command.add_option("--imagename", o.imagename, "Names of the output files begin with this")->required();
+  command.add_option("--kernel", o.kernel,
+                     "Gridding function: a name such as least-misfit or spheroidal, or a kernel-table file");
+  command.add_option("--accuracy", o.accuracy,
+                     "Largest error of the whole image relative to the direct transform, RMS over RMS");
+  command.add_option("--psf-accuracy", o.psf_accuracy, "The same of the PSF; 0 = the larger of --accuracy and 1e-4");
+  command.add_option("--kernel-width", o.kernel_width, "Cells a visibility touches per axis; chosen when 0");
+  command.add_option("--padding", o.padding, "FFT size over image size; chosen when 0");
+  command
+      .add_option("--evaluation", o.evaluation,
+                  "Kernel values from: polynomial, as short as the kernel's error allows; full polynomial; or a table, read "
+                  "by interpolation (with --sampling)")
+      ->check(CLI::IsMember({"polynomial", "full", "nearest", "linear", "quadratic", "cubic"}));
+  command.add_option("--sampling", o.sampling, "Entries a cell of a table of kernel values");
+  command.add_option("--precision", o.precision, "Of kernel values, grid and FFT: auto, single, double")
+      ->check(CLI::IsMember({"auto", "single", "double"}));
+  command.add_option("--deconvolver", o.deconvolver, "How components are found: hogbom, clark or multiscale")
+      ->check(CLI::IsMember(imager::deconvolver_names()));
+  command
+      .add_option("--scales", o.scales,
+                  "Of multiscale, in pixels: 0,5,15. As wide at half maximum as tclean's, 0.74 of the number; 0 = points")
+      ->delimiter(',');
+  command.add_option("--smallscalebias", o.smallscalebias, "The largest scale counts this part less than points");
+  command.add_option("--niter", o.niter, "CLEAN components to find at most; 0 makes the dirty image");
+  command.add_option("--gain", o.gain, "Part of a peak that a component takes");
+  command.add_option("--threshold", o.threshold, "Stop when the peak residual reaches this flux density, to 1%");
+  command.add_option("--nsigma", o.nsigma, "Stop when it reaches this many times the noise; 0 = never");
+  command.add_option("--cyclefactor", o.cyclefactor, "Minor cycles go down to the peak times the largest sidelobe times this");
+  command.add_option("--minpsffraction", o.minpsffraction, "… at most this deep, as a part of the peak");
+  command.add_option("--maxpsffraction", o.maxpsffraction, "… and at least this deep");
+  command.add_option("--cycleniter", o.cycleniter, "Components that a minor cycle finds at most; -1 = no limit");
+  command.add_option("--nmajor", o.nmajor, "Major cycles at most; -1 = no limit");
+  command.add_option(
+      "--restoringbeam", o.restoringbeam,
+      "Restore with this beam: MAJ, or MAJ,MIN,PA such as 0.5arcsec,0.4arcsec,30deg; the fitted one when empty or common");
+  command.add_option("--mask", o.mask, "Where CLEAN finds components: a FITS image, not 0 there, or CASA region text (CRTF)");
+  command
+      .add_option("--usemask", o.usemask, "user: --mask, or everywhere; auto: from the residuals, as tclean's auto-multithresh")
+      ->check(CLI::IsMember({"user", "auto"}));
+  command.add_option("--sidelobethreshold", o.sidelobethreshold,
+                     "auto: above this times the largest sidelobe times the peak …");
+  command.add_option("--noisethreshold", o.noisethreshold, "… and above this times the noise");
+  command.add_option("--lownoisethreshold", o.lownoisethreshold, "… grown down to this times the noise");
+  command.add_option("--minbeamfrac", o.minbeamfrac, "… without regions below this part of the beam's area");
+  command.add_option("--growiterations", o.growiterations, "… by this many pixels a major cycle at most");
+  command.add_option("--startmodel", o.startmodel, "Begin with this model, a FITS image in Jy/pixel of the same pixels");
+  command.add_option("--savemodel", o.savemodel, "modelcolumn: write the model's visibilities into MODEL_DATA; none")
+      ->check(CLI::IsMember({"none", "modelcolumn"}));
+  command.add_flag("--restart", o.restart,
+                   "Go on from the last major cycle of a run that was cut, or ended, with these options");
+  command.add_option("--verify", o.verify, "Compare this many random pixels and visibilities with the direct transform");
+  command.add_flag("--check-outside", o.check_outside,
+                   "Look for sources outside the image, in four times its field, whose aliases may exceed its noise");
+  command.add_option("--memory", o.memory_gib, "GiB that the run may take; 0 means half of the machine's memory");
+  command.add_flag("--dry-run", o.dry_run, "Print the plan and the memory it takes; read no visibilities and write nothing");
+}
+
+bool kernel_is_given(const ImageOptions& o) {
+  return is_kernel_file(o.kernel) || (o.kernel_width != 0 && o.padding != 0);
+}
+
+void check(const ImageOptions& o) {
+  check_image(o);
+  check_clean(o);
+  check_gridding(o);
+  if (o.verify < 0) refuse("verify", std::to_string(o.verify), "0 or more");
+  if (o.threads < 0) refuse("threads", std::to_string(o.threads), "0 (all cores) or more");
+  if (!(o.memory_gib >= 0 && std::isfinite(o.memory_gib)))
+    refuse("memory", text(o.memory_gib), "0 (half of the machine's memory) or more, in GiB");
+}
+
+imager::ImageGeometry geometry_of(const ImageOptions& o, const imager::SkyDirection& phase_centre) {
+  return {o.imsize.front(), o.imsize.back(), parse_angle_rad(o.cell), phase_centre};
+}
+
+imager::GriddingRequest gridding_request(const ImageOptions& o, int threads) {
+  imager::GriddingRequest request;
+  request.accuracy = o.accuracy;
+  constexpr double enough = 1e-4;  // to steer minor cycles
+  request.psf_accuracy = o.psf_accuracy != 0 ? o.psf_accuracy : std::max(o.accuracy, enough);
+  request.kernel = choose_kernel(o.kernel);
+  request.kernel_width = o.kernel_width;
+  request.padding = o.padding;
+  request.gridder = o.gridder == "standard" ? imager::Gridder::standard
+                    : o.gridder == "wide"   ? imager::Gridder::wide
+                                            : imager::Gridder::automatic;
+  request.lookup = lookup_of(o);
+  request.shortest_polynomials = o.evaluation != "full";
+  if (o.precision != "auto")
+    request.precision = o.precision == "single" ? imager::Precision::single_precision : imager::Precision::double_precision;
+  request.threads = threads;
+  return request;
+}
+
+std::optional<imager::Beam> restoring_beam(const ImageOptions& o) {
+  if (o.restoringbeam.empty() || o.restoringbeam == "common") return std::nullopt;
+  const auto expect = [&](bool holds) {
+    if (!holds)
+      refuse("restoringbeam", o.restoringbeam,
+             "common, MAJ, or MAJ,MIN,PA such as 0.5arcsec,0.4arcsec,30deg with MAJ at least MIN, and MIN above 0");
+  };
+  const auto angle = [&](std::string_view text) {
+    expect(!text.empty() && std::isalpha(static_cast<unsigned char>(text.back())) != 0);
+    return parse_angle_rad(std::string(text));
+  };
+  std::vector<std::string_view> parts;
+  for (std::string_view rest = o.restoringbeam;;) {
+    const std::size_t comma = rest.find(',');
+    parts.push_back(trimmed(rest.substr(0, comma)));
+    if (comma == std::string_view::npos) break;
+    rest.remove_prefix(comma + 1);
+  }
+  expect(parts.size() == 1 || parts.size() == 3);
+  imager::Beam beam;
+  beam.major_rad = angle(parts[0]);
+  beam.minor_rad = parts.size() == 1 ? beam.major_rad : angle(parts[1]);
+  // Half a turn leaves the ellipse as it is.
+  beam.position_angle_rad = parts.size() == 1 ? 0 : std::remainder(angle(parts[2]), M_PI);
+  expect(beam.minor_rad > 0 && beam.major_rad >= beam.minor_rad && beam.major_rad < 1);
+  return beam;
+}
+
+imager::CleanOptions clean_options(const ImageOptions& o, int threads) {
+  imager::CleanOptions clean;
+  clean.max_iterations = o.niter;
+  clean.gain = o.gain;
+  clean.threshold_jy = parse_flux_jy(o.threshold);
+  clean.nsigma = o.nsigma;
+  clean.cycle_factor = o.cyclefactor;
+  clean.min_psf_fraction = o.minpsffraction;
+  clean.max_psf_fraction = o.maxpsffraction;
+  clean.cycle_iterations = o.cycleniter;
+  clean.max_major_cycles = o.nmajor;
+  clean.threads = threads;
+  if (o.usemask == "auto")
+    clean.automask = imager::AutoMaskOptions{.sidelobe_threshold = o.sidelobethreshold,
+                                             .noise_threshold = o.noisethreshold,
+                                             .low_noise_threshold = o.lownoisethreshold,
+                                             .min_beam_fraction = o.minbeamfrac,
+                                             .grow_iterations = o.growiterations};
+  return clean;
+}
+
+imager::DeconvolverChoice deconvolver_choice(const ImageOptions& o, int threads) {
+  // Full width at half maximum over radius of tclean's (1 − r²) × spheroidal function (Schwab's, m = 6, α = 1).
+  constexpr double width = 0.7412;
+  imager::DeconvolverChoice choice;
+  choice.name = o.deconvolver;
+  choice.scale_pixels.clear();
+  for (const double scale : o.scales) choice.scale_pixels.push_back(width * scale);
+  choice.small_scale_bias = o.smallscalebias;
+  choice.threads = threads;
+  return choice;
+}
+
+nlohmann::json option_values(const CLI::App& command) {
+  nlohmann::json values = nlohmann::json::object();
+  for (const auto& [name, value] : options_in_force(command)) values[name] = value;
+  return values;
+}
+
+}  // namespace misfit::tools

@@ -1,0 +1,65 @@
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "imager/fits_image.h"
+#include "tools/drawing/pictures.h"
+#include "tools/run/run_report.h"
+
+namespace misfit::tools {
+
+/// Header cards for the errors that are known.
+std::vector<imager::HeaderCard> error_cards(const RunReport& report);
+
+/// What one picture of a run shows.
+struct ProductPicture {
+  std::string name;  ///< the middle of its file's name
+  std::string title;
+  std::string unit = "Jy/beam";
+  Shades shades = Shades::brightness;
+  const imager::Image* image = nullptr;
+  const Sketch* sketch = nullptr;       ///< in place of an image that is gone
+  const imager::Image* mask = nullptr;  ///< outlined
+};
+
+/// The images of a run, as files and as pictures. What is set applies to those that come afterwards.
+class ImageProducts {
+ public:
+  /// Files are 64-bit when the accuracy asked is below 1e-7, 32-bit otherwise.
+  ImageProducts(std::string imagename, const imager::ImageGeometry& geometry, const imager::Observation& observation,
+                double accuracy);
+
+  void set_history(const std::string& line) { common_.history = {line}; }
+  void set_cards(std::vector<imager::HeaderCard> cards) { common_.cards = std::move(cards); }
+  void set_beam(const imager::Beam& beam);
+
+  /// An image for write(), as <imagename>.<name>.fits.
+  void add(const std::string& name, const std::string& unit, imager::Image image);
+  void write() const;
+
+  /// Begins to draw <imagename>.<name>.png while the caller does other things; images are looked at until it returns.
+  void draw(const std::vector<ProductPicture>& pictures);
+  /// The same of where samples lie, as <imagename>.uv.png.
+  void draw(const imager::UvCoverage& coverage);
+  /// Returns what PictureDrawing::finish() does.
+  std::string finish_pictures() { return drawing_.finish(); }
+  /// Title and path of each picture, the last first.
+  std::vector<std::pair<std::string, std::string>> pictures() const;
+
+ private:
+  struct File {
+    std::string path;
+    imager::SkyImage image;
+  };
+
+  std::string imagename_;
+  imager::PixelFormat format_;
+  imager::SkyImage common_;
+  std::vector<File> files_;
+  PictureDrawing drawing_;
+  std::vector<std::pair<std::string, std::string>> titles_and_paths_;
+};
+
+}  // namespace misfit::tools

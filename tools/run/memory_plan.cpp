@@ -1,0 +1,69 @@
+#include "tools/run/memory_plan.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "tools/base/memory.h"
+#include "tools/base/numbers.h"
+
+namespace misfit::tools {
+namespace {
+
+std::string gib_text(double bytes) {
+  return significant(bytes / gib, 3) + " GiB";
+}
+
+/// Rounded up, so that so much is enough.
+std::string enough_text(double bytes) {
+  return significant(std::ceil(bytes / gib * 100) / 100, 6) + " GiB";
+}
+
+[[noreturn]] void refuse(const ImageOptions& o, double needed_bytes) {
+  const std::string size = std::to_string(o.imsize.front()) + " × " + std::to_string(o.imsize.back());
+  if (o.memory_gib > 0)
+    throw std::invalid_argument("--memory " + significant(o.memory_gib, 6) + ": expected at least " +
+                                enough_text(needed_bytes) + ", which grids and images of " + size + " pixels need");
+  throw std::invalid_argument("--imsize " + std::to_string(o.imsize.front()) + " " + std::to_string(o.imsize.back()) +
+                              ": expected an image that fits this machine's " + gib_text(physical_memory_bytes()) +
+                              "; this one needs " + gib_text(needed_bytes));
+}
+
+}  // namespace
+
+void limit_memory(double bytes, imager::GriddingRequest& o) {
+  o.stack_bytes = std::min(o.stack_bytes, static_cast<std::size_t>(bytes / 4));
+  o.samples_at_once = std::min(o.samples_at_once, static_cast<std::size_t>(bytes / 8 / imager::wide_bytes_a_sample));
+}
+
+MemoryPlan plan_memory(const imager::MemoryDemand& demand, const ImageOptions& o) {
+  const double wanted = o.memory_gib > 0 ? o.memory_gib * gib : physical_memory_bytes() / 2;
+  const double limit = o.memory_gib > 0 ? wanted : physical_memory_bytes();
+  const std::string within =
+      o.memory_gib > 0 ? gib_text(wanted) + " asked" : "half of the machine's " + gib_text(physical_memory_bytes());
+  MemoryPlan plan;
+  for (const imager::StreamingOptions streaming : {imager::StreamingOptions{true, 2}, {false, 2}, {false, 1}, {false, 0}}) {
+    plan.streaming = streaming;
+    plan.peak = imager::peak_memory(demand, streaming);
+    if (plan.peak.total() <= wanted) break;
+  }
+  if (plan.peak.total() > limit) refuse(o, plan.peak.total());
+  const double if_kept = imager::peak_memory(demand, {true, 2}).total();
+  plan.decision = {"visibilities", plan.streaming.keep ? "kept in memory" : "read again in every pass",
+                   "kept, they bring the run's memory to " + gib_text(if_kept) + ", against " + within};
+  return plan;
+}
+
+std::string memory_table(const imager::MemoryUse& use) {
+  std::string table = "memory: " + gib_text(use.total()) + " at most, while " + use.when + "\n";
+  for (const auto& [name, bytes] : {std::pair{"program", use.process},
+                                    {"visibilities kept", use.visibilities},
+                                    {"blocks in flight", use.blocks},
+                                    {"grids", use.grids},
+                                    {"FFT buffers", use.fft},
+                                    {"images", use.images}})
+    table += std::string("  ") + name + ": " + gib_text(bytes) + "\n";
+  return table;
+}
+
+}  // namespace misfit::tools

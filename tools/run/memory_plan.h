@@ -1,0 +1,27 @@
+#pragma once
+
+#include "imager/memory_use.h"
+#include "imager/plan.h"
+#include "tools/run/image_options.h"
+
+namespace misfit::tools {
+
+/// How a run keeps within its memory.
+struct MemoryPlan {
+  imager::StreamingOptions streaming;
+  imager::MemoryUse peak;
+  imager::Decision decision;
+};
+
+/// Lets a w axis take no more than parts of `bytes` for its planes and for the samples that it gathers.
+void limit_memory(double bytes, imager::GriddingRequest& request);
+
+/// Keeps the visibilities where --memory, or half of the machine's memory, allows it; else reads them again in every pass, and
+/// less far ahead where that helps. Nothing of this changes a bit of the images. Throws std::invalid_argument that says how
+/// much memory is needed when --memory, or the machine's memory, is less.
+MemoryPlan plan_memory(const imager::MemoryDemand& demand, const ImageOptions& options);
+
+/// The peak and what it consists of, a line each.
+std::string memory_table(const imager::MemoryUse& use);
+
+}  // namespace misfit::tools

@@ -1,0 +1,57 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "imager/clean/clean.h"
+#include "imager/imaging.h"
+#include "imager/stage_times.h"
+#include "tools/run/image_options.h"
+#include "tools/run/image_products.h"
+#include "tools/run_page/report_page.h"
+
+namespace misfit::tools {
+
+/// What goes into every image of a run.
+struct ProductScene {
+  const imager::ImageGeometry& geometry;
+  imager::Observation observation;
+  std::string history;
+  std::vector<imager::HeaderCard> cards;
+  std::optional<imager::Beam> restoring_beam;
+  int threads = 1;
+};
+
+/// The images, pictures and lists that `misfit image` leaves. Stages timed: "draw pictures", "restore", "write images".
+class ProductStage {
+ public:
+  ProductStage(const ImageOptions& options, ProductScene scene, imager::StageTimes& times);
+
+  /// Begins to draw what is there before CLEAN, while the caller does other things; an automatic mask is not known yet, and
+  /// the dirty image then drawn with the others. Images are looked at until it returns.
+  void draw_dirty(const imager::UvCoverage& coverage, const imager::DirtyImages& images, const imager::Image* mask);
+
+  /// Writes the images of a run without CLEAN. Returns the names of files that an earlier run left and this one removed.
+  std::vector<std::string> write(imager::DirtyImages images);
+  /// Those of CLEAN, restored, and the list of components. Takes the images out of `cleaned`, but for a model that
+  /// --savemodel still needs.
+  std::vector<std::string> write(imager::Image psf, imager::CleanResult& cleaned);
+
+  /// Adds the pictures to `drawn`, or returns in a sentence why there are none.
+  std::string finish_pictures(std::vector<PagePicture>& drawn);
+
+ private:
+  ProductPicture dirty_picture(const imager::Image* dirty, const imager::Image* mask) const;
+  imager::Image restored(const imager::CleanResult& cleaned) const;
+  std::vector<imager::Source> sources(const imager::ComponentModel& model) const;
+  std::vector<std::string> remove_old(const std::vector<std::string>& kinds) const;
+
+  const ImageOptions& o_;
+  ProductScene scene_;
+  imager::StageTimes& times_;
+  ImageProducts products_;
+  Sketch dirty_;  ///< what is left of the dirty image when CLEAN is over, where its mask was not known before
+};
+
+}  // namespace misfit::tools

@@ -1,0 +1,177 @@
+#include "tools/run/time_forecast.h"
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+
+#include "tools/base/files.h"
+#include "tools/kernel_choice/machine_costs.h"
+
+namespace misfit::tools {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+/// Seconds of one core to those of all: two cores do 1.8 times as much as one, as measured.
+double shared(double seconds, int threads) {
+  return seconds / std::pow(static_cast<double>(threads), 0.85);
+}
+
+std::string way_of(const imager::GriddingWork& work) {
+  const bool single = work.precision == imager::Precision::single_precision;
+  return std::string(work.has_w_axis() ? " with w" : " in the plane") + (single ? ", single" : ", double");
+}
+
+/// Gridding and FFTs of some images of one plan.
+struct TransformSeconds {
+  double grid = 0;
+  double fft = 0;
+};
+
+TransformSeconds transform_seconds(const imager::GriddingPlan& plan, int images, int threads) {
+  imager::GriddingWork work = plan.choice.best.work;
+  work.images = images;
+  const imager::CostModel model;
+  return {shared(model.gridding_seconds(work), threads), shared(model.fft_seconds(work), threads)};
+}
+
+/// A part of the names of factors.
+std::string size_of(const RunWork& w) {
+  const auto power = [](double count) { return std::to_string(std::lround(std::log2(std::max(count, 1.0)))); };
+  return ", 2^" + power(w.samples) + " samples, 2^" + power(w.pixels) + " pixels";
+}
+
+constexpr double direct_term_s = 0.5e-9;  ///< measured, in vectors; CostModel's decides what is summed directly, and is wary
+
+/// A pass that images: the first makes a PSF besides.
+void add_pass(const RunWork& w, bool with_psf, double times, std::vector<StageSeconds>& stages) {
+  const imager::GriddingPlan& plan = *w.plan;
+  if (plan.direct) {
+    const double terms = w.samples * w.pixels * (with_psf ? 2 : 1);
+    stages.push_back({"grid", "direct sums of images", times * shared(direct_term_s * terms, w.threads)});
+    return;
+  }
+  const TransformSeconds own = transform_seconds(plan, with_psf && !plan.psf ? 2 : 1, w.threads);
+  const TransformSeconds psf = with_psf && plan.psf ? transform_seconds(*plan.psf, 1, w.threads) : TransformSeconds();
+  const std::string way = way_of(plan.choice.best.work);
+  stages.push_back({"grid", "gridding" + way, times * (own.grid + psf.grid)});
+  stages.push_back({"fft", "FFTs" + way, times * (own.fft + psf.fft)});
+}
+
+void add_predictions(const RunWork& w, std::vector<StageSeconds>& stages) {
+  const imager::GriddingPlan& plan = *w.plan;
+  const double model_pixels = std::min(w.components, w.pixels) / 2;  // on average over the cycles
+  if (plan.direct || model_pixels <= static_cast<double>(plan.direct_pixels)) {
+    stages.push_back({"degrid", "direct sums of visibilities",
+                      w.major_cycles * shared(direct_term_s * w.samples * model_pixels, w.threads)});
+    return;
+  }
+  const TransformSeconds one = transform_seconds(plan, 1, w.threads);
+  const std::string way = way_of(plan.choice.best.work);
+  stages.push_back({"degrid", "degridding" + way, w.major_cycles * one.grid});
+  stages.push_back({"fft", "FFTs" + way, w.major_cycles * one.fft});
+}
+
+double minor_seconds(const RunWork& w) {
+  const double component_s = w.deconvolver == "multiscale" ? 1e-4 : 2e-5;
+  return component_s * w.components + 3e-8 * w.pixels * w.major_cycles;
+}
+
+}  // namespace
+
+std::vector<StageSeconds> counted_seconds(const RunWork& w) {
+  std::vector<StageSeconds> stages{{"read", "reading", 4e-9 * w.samples + 1e-7 * w.rows}};
+  add_pass(w, true, 1, stages);
+  stages.push_back({"statistics", "statistics", 8e-9 * w.pixels * (1 + w.major_cycles)});
+  if (w.verified > 0) stages.push_back({"verify", "verifying", shared(direct_term_s * w.samples * w.verified, w.threads)});
+  stages.push_back({"fit beam", "fitting the beam", 5e-3});
+  if (w.major_cycles > 0) {
+    stages.push_back({"minor cycles", "minor cycles of " + w.deconvolver, minor_seconds(w)});
+    add_predictions(w, stages);
+    add_pass(w, false, w.major_cycles, stages);
+    stages.push_back({"CLEAN state", "writing CLEAN's state", 1e-8 * w.pixels + 5e-3 * w.major_cycles});
+    stages.push_back({"restore", "restoring", 1e-8 * w.pixels});
+  }
+  stages.push_back({"write images", "writing images", 1e-8 * w.pixels * w.images});
+  stages.push_back({"draw pictures", "drawing pictures", 0.07 * w.pictures + 1e-9 * w.pixels * w.pictures});
+  return stages;
+}
+
+double total_seconds(const std::vector<StageSeconds>& stages) {
+  double sum = 0;
+  for (const StageSeconds& s : stages) sum += s.seconds;
+  return sum;
+}
+
+TimeForecast::TimeForecast(const fs::path& folder) {
+  if (folder.empty()) return;
+  file_ = folder / "times.json";
+  std::error_code none;
+  if (!fs::is_regular_file(file_, none)) return;
+  const json kept = json::parse(read_file(file_), nullptr, false);
+  if (!kept.is_object() || kept.value("machine", json()) != json(machine_name())) return;
+  const json kinds = kept.value("kinds", json::object());
+  if (!kinds.is_object()) return;
+  for (const auto& [kind, value] : kinds.items()) {
+    if (!value.is_object()) continue;
+    const json log = value.value("log", json()), runs = value.value("runs", json());
+    if (log.is_number() && std::isfinite(log.get<double>()) && runs.is_number_integer() && runs.get<int>() > 0)
+      factor_[kind] = {log, runs};
+  }
+}
+
+double TimeForecast::log_factor(const std::string& kind, const std::string& size) const {
+  for (const std::string& name : {kind + size, kind})
+    if (const auto found = factor_.find(name); found != factor_.end()) return found->second.log;
+  return 0;
+}
+
+std::vector<StageSeconds> TimeForecast::expected(const RunWork& work) const {
+  std::vector<StageSeconds> sums;
+  for (StageSeconds counted : counted_seconds(work)) {
+    counted.seconds *= std::exp(log_factor(counted.kind, size_of(work)));
+    const auto same = std::find_if(sums.begin(), sums.end(), [&](const StageSeconds& s) { return s.stage == counted.stage; });
+    if (same == sums.end()) {
+      sums.push_back(counted);
+    } else {
+      same->seconds += counted.seconds;
+    }
+  }
+  return sums;
+}
+
+bool TimeForecast::knows(const RunWork& work) const {
+  const auto stages = counted_seconds(work);
+  return std::all_of(stages.begin(), stages.end(), [&](const StageSeconds& s) { return factor_.count(s.kind) > 0; });
+}
+
+void TimeForecast::learn(const RunWork& work, const imager::StageTimes& took) {
+  constexpr double least_s = 5e-3;
+  constexpr int memory = 8;           // runs that count
+  std::map<std::string, double> off;  // log of seconds taken over seconds expected, by stage
+  for (const StageSeconds& e : expected(work))
+    for (const auto& [stage, seconds] : took.stages())
+      if (stage == e.stage && seconds >= least_s && e.seconds > 0) off[stage] = std::log(seconds / e.seconds);
+  std::map<std::string, double> should;  // log factors, by kind
+  for (const StageSeconds& counted : counted_seconds(work))
+    if (off.count(counted.stage) > 0) should[counted.kind] = log_factor(counted.kind, size_of(work)) + off.at(counted.stage);
+  for (const auto& [kind, log] : should)
+    for (const std::string& name : {kind, kind + size_of(work)}) {
+      Factor& factor = factor_[name];
+      factor.runs = std::min(factor.runs + 1, memory);
+      factor.log += (log - factor.log) / factor.runs;
+    }
+  if (file_.empty()) return;
+  json kept{{"machine", machine_name()}, {"kinds", json::object()}};
+  for (const auto& [kind, factor] : factor_) kept["kinds"][kind] = {{"log", factor.log}, {"runs", factor.runs}};
+  std::error_code none;
+  fs::create_directories(file_.parent_path(), none);
+  try {
+    write_file(file_.string(), kept.dump(2) + "\n");
+  } catch (const std::runtime_error&) {  // a folder that cannot be written is no cache, and no error
+  }
+}
+
+}  // namespace misfit::tools
