@@ -27,9 +27,12 @@ BOOST_AUTO_TEST_CASE(nothing_beats_the_front_and_all_else_is_beaten) {
 }
 
 BOOST_AUTO_TEST_CASE(of_costs_that_noise_hides_the_most_exact_is_taken) {
-  const std::vector<CostAndError> of{{1, 5}, {1.05, 3}, {1.15, 4}, {1.16, 2}, {1.3, 1}, {1.31, 0.5}, {3, 0.6}};
-  BOOST_TEST((pareto_front(of, 0.1) == std::vector<bool>{false, true, false, true, false, true, false}));
+  std::vector<CostAndError> of{{1, 5}, {1.05, 3}, {1.15, 4}, {1.16, 2}, {1.3, 1}, {1.31, 0.5}, {3, 0.6}};
   BOOST_TEST((pareto_front(of) == std::vector<bool>{true, true, false, true, true, true, false}));
+  for (CostAndError& c : of) c.noise = 0.1 / std::sqrt(8.0);  // two standard errors of a ratio are 0.1
+  BOOST_TEST((pareto_front(of) == std::vector<bool>{false, true, false, true, false, true, false}));
+  for (CostAndError& c : of) c.noise = 10;  // counts as a tenth: 0.28
+  BOOST_TEST((pareto_front(of) == std::vector<bool>{false, false, false, true, false, true, false}));
 }
 
 BOOST_AUTO_TEST_CASE(what_was_not_measured_is_not_on_it) {

@@ -5,7 +5,8 @@
 
 #include "tests/tools/program.h"
 #include "tools/scene/results_file.h"
-#include "tools/scene/sections.h"
+#include "tools/scene/timing.h"
+#include "tools/scene/verdict.h"
 
 namespace {
 
@@ -144,7 +145,28 @@ BOOST_AUTO_TEST_CASE(the_verdict_names_what_beats_least_misfit_kernels) {
   beaten.push_back(point("kaiser-bessel", 1.25, 1e-5));
   const std::string verdict = verdict_on(beaten);
   BOOST_TEST(verdict.find("kaiser-bessel") != std::string::npos);
-  BOOST_TEST(verdict.find("takes 1.6 times as long") != std::string::npos);
+  BOOST_TEST(verdict.find("takes 1.6 ± 0 times as long") != std::string::npos);
+}
+
+BOOST_AUTO_TEST_CASE(times_are_as_uncertain_as_their_runs_differ) {
+  std::vector<PointResult> results{point("minimax", 1, 1e-6), point("spheroidal", 2, 1e-3), point("least-misfit", 4, 1e-8)};
+  results[0].runs = {{.grid = 0.9}, {.grid = 1}, {.grid = 1.1}, {.grid = 1.2}, {.grid = 0.8}};
+  results[1].runs = {{.grid = 1.9}, {.grid = 2.1}};
+  results[2].runs = {{.grid = 4}, {.grid = 4}};  // by chance
+  const std::vector<double> noise = time_noise(results, &SceneSeconds::image);
+  BOOST_TEST(noise[0] == 1.25 * 1.4826 * 0.1 / std::sqrt(5.0), boost::test_tools::tolerance(1e-12));
+  BOOST_TEST(noise[1] == 1.25 * 1.4826 * 0.05 / std::sqrt(2.0), boost::test_tools::tolerance(1e-12));
+  BOOST_TEST(noise[2] == noise[1]);
+}
+
+BOOST_AUTO_TEST_CASE(noisy_times_lead_to_no_verdict) {
+  std::vector<PointResult> results{point("spheroidal", 1, 1e-5), point("minimax", 2, 1e-6)};
+  for (PointResult& r : results) {
+    const double seconds = r.runs.front().grid;
+    r.runs = {{.grid = seconds}, {.grid = 1.4 * seconds}};
+  }
+  BOOST_TEST(verdict_on(results).find("too uncertain") != std::string::npos);
+  BOOST_TEST(verdict_on(results).find("spheroidal") == std::string::npos);
 }
 
 BOOST_AUTO_TEST_SUITE_END()

@@ -26,10 +26,13 @@ BOOST_AUTO_TEST_CASE(linear_ticks_are_the_multiples_between_the_limits) {
 BOOST_AUTO_TEST_CASE(logarithmic_ticks_are_neither_crowded_nor_lonely) {
   BOOST_TEST((logarithmic_ticks(1e-3, 10) == std::vector<double>{1e-3, 1e-2, 1e-1, 1, 10}));
   BOOST_TEST((logarithmic_ticks(1.5, 30) == std::vector<double>{2, 5, 10, 20}));
-  for (double decades = 1; decades < 40; decades += 0.7) {
-    const std::vector<double> ticks = logarithmic_ticks(3e-9, 3e-9 * std::pow(10, decades));
-    BOOST_TEST(ticks.size() >= 3U);
-    BOOST_TEST(ticks.size() <= 8U);
+  BOOST_TEST((logarithmic_ticks(0.021, 0.049) == linear_ticks(0.021, 0.049, 5)));
+  for (double decades = 0.02; decades < 40; decades *= 1.2) {
+    for (const double low : {3e-9, 2.1e-2, 8.7}) {
+      const std::vector<double> ticks = logarithmic_ticks(low, low * std::pow(10, decades));
+      BOOST_TEST(ticks.size() >= 3U);
+      BOOST_TEST(ticks.size() <= 8U);
+    }
   }
 }
 

@@ -39,7 +39,8 @@ std::vector<double> linear_ticks(double low, double high, int about) {
 
 std::vector<double> logarithmic_ticks(double low, double high) {
   std::vector<double> values = powers_of_ten(low, high, {1}, 1);
-  if (values.size() < 3) return powers_of_ten(low, high, {1, 2, 5}, 1);
+  if (values.size() < 3) values = powers_of_ten(low, high, {1, 2, 5}, 1);
+  if (values.size() < 3) return linear_ticks(low, high, 5);  // 3 to 8 of them
   for (int every = 2; values.size() > 8; ++every) values = powers_of_ten(low, high, {1}, every);
   return values;
 }

@@ -98,8 +98,9 @@ std::string line_style(const Series& series, std::size_t number) {
   if (series.law) return "with lines lw 1.2 dt (6,4) lc rgb '#000000'";
   if (series.columns) return "with boxes fill solid noborder lc rgb '#56b4e9'";
   style << "with " << (!series.points ? "lines" : series.line ? "linespoints" : "points");
-  style << " lw " << (series.points ? 1.2 : 1.8) << " lc rgb '" << colour[number % colour.size()] << "'";
-  if (series.points) style << " pt " << mark[number % mark.size()] << " ps 0.6";
+  const bool marks_alone = series.points && !series.line;  // which have nothing but themselves to be seen by
+  style << " lw " << (series.points && !marks_alone ? 1.2 : 1.8) << " lc rgb '" << colour[number % colour.size()] << "'";
+  if (series.points) style << " pt " << mark[number % mark.size()] << " ps " << (marks_alone ? 0.8 : 0.6);
   const char* dashes = dash[number % dash.size()];
   if (series.line) style << " dt " << dashes;
   return style.str();

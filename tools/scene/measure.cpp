@@ -12,6 +12,7 @@ namespace misfit::tools {
 namespace {
 
 std::string work_of(const imager::GriddingPlan& plan) {
+  if (plan.direct) return "direct sums";
   const imager::WideTransformOptions& o = plan.options;
   std::string work = std::to_string(o.nu) + " x " + std::to_string(o.nv);
   for (const kernels::Kernel* kernel : {&o.kernel_u, &o.kernel_v, &o.kernel_w})
@@ -46,13 +47,18 @@ Scene::Scene(const ImageOptions& options, int pixels, const imager::Progress& pr
   truth_ = std::make_unique<SceneTruth>(visibilities_, geometry_, pixels, threads_, progress);
 }
 
-imager::GriddingPlan Scene::plan_of(const ScenePoint& point) const {
+Scene::Plans Scene::plans_of(const ScenePoint& point) const {
   imager::GriddingRequest request = gridding_request(options_of(options_, point), threads_);
   request.geometry = geometry_;
   request.samples = visibilities_.samples();
   request.max_abs_w = reach_.max_abs_w;
-  request.images = 1;
-  return imager::plan_gridding(request);
+  Plans plans{imager::plan_gridding(request)};
+  if (point.accuracy == 0) return plans;
+  imager::StageTimes none;
+  imager::AccurateImages made = imager::make_accurate_images(
+      visibilities_, plans.front(), [](auto, auto) {}, none);
+  if (made.plan.request.accuracy != request.accuracy) plans.push_back(std::move(made.plan));
+  return plans;
 }
 
 imager::DirtyImages Scene::image(const imager::Transform& transform, SceneSeconds& seconds) const {
@@ -79,19 +85,22 @@ void Scene::predict(const imager::Transform& transform, SceneSeconds& seconds, S
   truth_->finish(*errors);
 }
 
-void Scene::describe(const imager::GriddingPlan& plan, const imager::DirtyImages& made, PointResult& result) const {
+void Scene::describe(const Plans& plans, const imager::DirtyImages& made, PointResult& result) const {
+  const imager::GriddingPlan& plan = plans.back();
   const imager::WideTransformOptions& o = plan.options;
   const imager::NeglectedPhase phase = imager::neglected_w_phase(reach_, w_spread_, geometry_);
   const imager::TheoreticalError theory =
       imager::theoretical_error(plan, made.sums, imager::root_mean_square(made.dirty), phase);
   const imager::TransformMemory memory = imager::memory_of(plan);
+  result.passes = static_cast<int>(plans.size());
   result.width = o.kernel_u.width();
   result.width_w = o.has_w_axis() ? o.kernel_w.width() : 0;
   result.x0 = o.kernel_u.x0;
   result.padding = plan.choice.best.padding_u;
-  result.evaluation = imager::evaluation_of(o);
-  result.precision = o.precision == imager::Precision::single_precision ? "single" : "double";
-  result.work = work_of(plan);
+  result.evaluation = plan.direct ? "direct sums" : imager::evaluation_of(o);
+  result.precision = o.precision == imager::Precision::single_precision && !plan.direct ? "single" : "double";
+  result.work.clear();
+  for (const imager::GriddingPlan& pass : plans) result.work += (result.work.empty() ? "" : " and ") + work_of(pass);
   result.memory_bytes = memory.visibilities + memory.fft;
   result.expected_rms = theory.expected_rms;
   result.bound_rms = theory.bound_rms;
@@ -100,24 +109,29 @@ void Scene::describe(const imager::GriddingPlan& plan, const imager::DirtyImages
 
 void Scene::run(PointResult& result) {
   const std::string name = options_text(result.point);
-  auto plan = plan_.find(name);
-  if (plan == plan_.end()) {
+  auto plans = plans_.find(name);
+  if (plans == plans_.end()) {
     try {
-      plan = plan_.emplace(name, plan_of(result.point)).first;
+      plans = plans_.emplace(name, plans_of(result.point)).first;
     } catch (const std::invalid_argument& error) {
       result.refused = error.what();
       return;
     }
   }
-  const auto transform = imager::make_transform(plan->second.options);
   SceneSeconds seconds;
-  const imager::DirtyImages made = image(*transform, seconds);
+  std::unique_ptr<imager::PlannedTransform> transform;
+  imager::DirtyImages made;
+  for (const imager::GriddingPlan& pass : plans->second) {
+    transform.reset();  // there may be no room for both
+    transform = std::make_unique<imager::PlannedTransform>(pass);
+    made = image(transform->images(), seconds);
+  }
   const bool first = result.runs.empty();
   if (first) {
-    describe(plan->second, made, result);
+    describe(plans->second, made, result);
     result.errors = truth_->errors_of(made.dirty);
   }
-  predict(*transform, seconds, first ? &result.errors : nullptr);
+  predict(transform->images(), seconds, first ? &result.errors : nullptr);
   result.runs.push_back(seconds);
 }
 

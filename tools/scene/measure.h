@@ -23,10 +23,11 @@ struct SceneSeconds {
   double predict() const { return degrid + predict_fft; }
 };
 
-/// What a point is, and what came out.
+/// What a point is, and what came out; of the last pass where a plan needed two, but for seconds and work.
 struct PointResult {
   ScenePoint point;
   std::string refused;  ///< why it cannot be made; nothing else then holds
+  int passes = 1;       ///< 2 where the image turned out weak against its data
   int width = 0;        ///< cells along u
   int width_w = 0;      ///< planes; 0 = w is left out
   double x0 = 0;        ///< along u
@@ -48,7 +49,7 @@ class Scene {
   /// Reads the MeasurementSet and takes direct sums at three times `pixels` pixels. Throws as MeasurementSet does.
   Scene(const ImageOptions& options, int pixels, const imager::Progress& progress);
 
-  /// Runs a point once more; the first time it is planned and its errors are taken.
+  /// Runs a point once more, all passes of it; the first time its errors are taken.
   void run(PointResult& result);
 
   std::uint64_t samples() const { return visibilities_.samples(); }
@@ -64,10 +65,13 @@ class Scene {
   const SceneTruth& truth() const { return *truth_; }
 
  private:
-  imager::GriddingPlan plan_of(const ScenePoint& point) const;
+  /// One for each pass that `misfit image` would make.
+  using Plans = std::vector<imager::GriddingPlan>;
+
+  Plans plans_of(const ScenePoint& point) const;
   imager::DirtyImages image(const imager::Transform& transform, SceneSeconds& seconds) const;
   void predict(const imager::Transform& transform, SceneSeconds& seconds, SceneErrors* errors) const;
-  void describe(const imager::GriddingPlan& plan, const imager::DirtyImages& made, PointResult& result) const;
+  void describe(const Plans& plans, const imager::DirtyImages& made, PointResult& result) const;
 
   ImageOptions options_;
   int threads_;
@@ -79,7 +83,7 @@ class Scene {
   double weight_abs_ = 0;
   double read_s_ = 0;
   std::unique_ptr<SceneTruth> truth_;
-  std::map<std::string, imager::GriddingPlan> plan_;  ///< by options_text
+  std::map<std::string, Plans> plans_;  ///< by options_text
 };
 
 }  // namespace misfit::tools

@@ -7,7 +7,12 @@
 
 namespace misfit::tools {
 
-std::vector<bool> pareto_front(const std::vector<CostAndError>& of, double noise) {
+double distinct_ratio(const CostAndError& a, const CostAndError& b) {
+  constexpr double most = 0.1;
+  return 1 + 2 * std::hypot(std::min(a.noise, most), std::min(b.noise, most));
+}
+
+std::vector<bool> pareto_front(const std::vector<CostAndError>& of) {
   std::vector<std::size_t> by_cost(of.size());
   std::iota(by_cost.begin(), by_cost.end(), std::size_t{0});
   std::stable_sort(by_cost.begin(), by_cost.end(), [&](std::size_t a, std::size_t b) {
@@ -20,7 +25,8 @@ std::vector<bool> pareto_front(const std::vector<CostAndError>& of, double noise
     first = std::find_if(first, by_cost.end(), adds);
     if (first == by_cost.end()) break;
     auto best = first;
-    for (auto i = first; i != by_cost.end() && of[*i].cost <= (1 + noise) * of[*first].cost; ++i)
+    const auto as_cheap = [&](std::size_t i) { return of[i].cost <= distinct_ratio(of[i], of[*first]) * of[*first].cost; };
+    for (auto i = first; i != by_cost.end() && as_cheap(*i); ++i)
       if (of[*i].error < of[*best].error) best = i;
     front[*best] = true;
     least = of[*best].error;

@@ -90,11 +90,6 @@ Program wsclean(const ImageOptions& scene, const std::string& name, const std::v
   return {{"wsclean, " + name, words, {}, {}, ""}, "wsclean-dirty.fits", predict};
 }
 
-bool same_for_wsclean(const ImageOptions& scene) {
-  return scene.selection.field.empty() && scene.selection.spectral_window.empty() &&
-         (scene.datacolumn == "data" || scene.datacolumn == "corrected");
-}
-
 bool is_installed(const std::string& program) {
   const WorkFolder folder(fs::temp_directory_path());
   return run_program({program, "--version"}, folder.path()).has_value();
@@ -140,14 +135,38 @@ void run_once(Program& program, const std::string& vis, const SceneTruth& truth)
     program.result.errors = truth.errors_of(imager::read_fits(folder.path() / program.image).image);
 }
 
+/// Empty where it can be given the same samples.
+std::string why_not_wsclean(const ImageOptions& scene) {
+  if (!scene.selection.field.empty() || !scene.selection.spectral_window.empty())
+    return "it numbers fields and spectral windows in a way of its own, and the selection might mean others";
+  if (scene.datacolumn != "data" && scene.datacolumn != "corrected") return "it is not given --datacolumn " + scene.datacolumn;
+  return is_installed("wsclean") ? "" : "it is not installed";
+}
+
+void add_wsclean(const ImageOptions& scene, int threads, std::vector<Program>& programs) {
+  for (const std::string accuracy : {"1e-4", "1e-6"})
+    programs.push_back(wsclean(scene, "w-gridder to " + accuracy,
+                               {"-use-wgridder", "-wgridder-accuracy", accuracy, "-no-small-inversion"}, threads));
+  programs.push_back(wsclean(scene, "w-stacking with a Kaiser–Bessel kernel (its default)", {}, threads));
+  programs.push_back(wsclean(scene, "w-stacking, nearest cell", {"-grid-mode", "nn"}, threads));
+}
+
 std::uintmax_t bytes_of(const fs::path& folder) {
   std::uintmax_t bytes = 0;
   for (const auto& entry : fs::recursive_directory_iterator(folder)) bytes += entry.is_regular_file() ? entry.file_size() : 0;
   return bytes;
 }
 
+/// When to begin no more.
+struct Limit {
+  double seconds = HUGE_VAL;
+  imager::Stopwatch watch{};
+  bool reached() const { return watch.seconds() > seconds; }
+};
+
 /// Of all programs in turn, into one copy of the set.
-void compare_predictions(const ImageOptions& scene, const SceneTruth& truth, std::vector<Program>& programs) {
+void compare_predictions(const ImageOptions& scene, const SceneTruth& truth, const Limit& limit,
+                         std::vector<Program>& programs) {
   const WorkFolder folder(fs::temp_directory_path());
   const fs::path set = folder.path() / copied_set;
   fs::copy(scene.vis, set, fs::copy_options::recursive);
@@ -164,7 +183,8 @@ void compare_predictions(const ImageOptions& scene, const SceneTruth& truth, std
     imager::write_fits(sky, folder.path() / model_file, imager::PixelFormat::float32);
   }
   for (Program& program : programs) {
-    if (!program.result.failure.empty() || !run_in(folder, program.predict, program.result)) continue;
+    const bool called_for = program.result.failure.empty() && !program.result.seconds.empty() && !limit.reached();
+    if (!called_for || !run_in(folder, program.predict, program.result)) continue;
     const ms_io::MeasurementSet written(set, scene.selection, "MODEL_DATA");
     const auto stream = written.open();
     std::size_t index = 0;
@@ -180,27 +200,31 @@ std::string ProgramResult::command() const {
   return in_a_line(words);
 }
 
-std::vector<ProgramResult> run_programs(const ImageOptions& scene, const SceneTruth& truth, int threads, int rounds,
-                                        ProgressLine& progress) {
+ProgramComparison run_programs(const ImageOptions& scene, const SceneTruth& truth, int threads, bool quick,
+                               ProgressLine& progress) {
   std::vector<Program> programs{misfit(scene, "1e-4", threads), misfit(scene, "1e-6", threads)};
-  if (same_for_wsclean(scene) && is_installed("wsclean")) {
-    programs.push_back(wsclean(scene, "w-stacking with a Kaiser–Bessel kernel (its default)", {}, threads));
-    programs.push_back(wsclean(scene, "w-stacking, nearest cell", {"-grid-mode", "nn"}, threads));
-    for (const std::string accuracy : {"1e-4", "1e-6"})
-      programs.push_back(wsclean(scene, "w-gridder to " + accuracy,
-                                 {"-use-wgridder", "-wgridder-accuracy", accuracy, "-no-small-inversion"}, threads));
-  }
+  ProgramComparison comparison{.results = {}, .rounds = quick ? 1 : 3, .left_out = {}};
+  const std::string against_wsclean = why_not_wsclean(scene);
+  if (against_wsclean.empty())
+    add_wsclean(scene, threads, programs);
+  else
+    comparison.left_out.push_back("WSClean was left out: " + against_wsclean + ".");
+  const Limit limit{.seconds = quick ? 40 : HUGE_VAL};
   std::uint64_t done = 0;
-  for (int round = 0; round < rounds; ++round)
+  for (int round = 0; round < comparison.rounds; ++round)
     for (Program& program : programs) {
-      run_once(program, scene.vis, truth);
-      progress.update(++done, programs.size() * static_cast<std::uint64_t>(rounds));
+      if (!limit.reached()) run_once(program, scene.vis, truth);
+      progress.update(++done, programs.size() * static_cast<std::uint64_t>(comparison.rounds));
     }
   constexpr std::uintmax_t largest_copy = std::uintmax_t{2} << 30;
-  if (bytes_of(scene.vis) <= largest_copy) compare_predictions(scene, truth, programs);
-  std::vector<ProgramResult> results;
-  for (Program& program : programs) results.push_back(std::move(program.result));
-  return results;
+  if (bytes_of(scene.vis) > largest_copy)
+    comparison.left_out.emplace_back("Predictions were left out: the set takes more than 2 GiB, and they are made in a copy.");
+  else
+    compare_predictions(scene, truth, limit, programs);
+  if (limit.reached())
+    comparison.left_out.emplace_back("With --quick no program is begun after 40 s; what is missing was left out.");
+  for (Program& program : programs) comparison.results.push_back(std::move(program.result));
+  return comparison;
 }
 
 }  // namespace misfit::tools

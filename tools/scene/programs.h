@@ -20,10 +20,17 @@ struct ProgramResult {
   std::string command() const;
 };
 
+struct ProgramComparison {
+  std::vector<ProgramResult> results;
+  int rounds = 0;
+  std::vector<std::string> left_out;  ///< a sentence for each thing that was, with the reason
+};
+
 /// `misfit image` to two accuracies, and WSClean's gridders where it is installed and can be given the same samples: no
-/// selection, and a data column that it takes. Each is run `rounds` times, by turns; and once to predict the truth's model into
-/// a copy of the set, unless that takes more than 2 GiB. One that fails is not run again. Throws Interrupted.
-std::vector<ProgramResult> run_programs(const ImageOptions& scene, const SceneTruth& truth, int threads, int rounds,
-                                        ProgressLine& progress);
+/// selection, and a data column that it takes. Each is run three times, by turns; and once to predict the truth's model into
+/// a copy of the set, unless that takes more than 2 GiB. One that fails is not run again. Where it is to be quick each is run
+/// once, and none is begun after 40 s. Throws Interrupted.
+ProgramComparison run_programs(const ImageOptions& scene, const SceneTruth& truth, int threads, bool quick,
+                               ProgressLine& progress);
 
 }  // namespace misfit::tools

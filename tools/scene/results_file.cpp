@@ -56,8 +56,14 @@ void take(const json& from, const Number<T> (&numbers)[N], T& to) {
 }
 
 json json_of(const PointResult& r) {
-  json value{{"options", options_text(r.point)}, {"refused", r.refused},     {"width", r.width}, {"width_w", r.width_w},
-             {"evaluation", r.evaluation},       {"precision", r.precision}, {"work", r.work}};
+  json value{{"options", options_text(r.point)},
+             {"refused", r.refused},
+             {"width", r.width},
+             {"width_w", r.width_w},
+             {"passes", r.passes},
+             {"evaluation", r.evaluation},
+             {"precision", r.precision},
+             {"work", r.work}};
   put(r, result_numbers, value);
   put(r.errors, error_numbers, value["errors"]);
   value["runs"] = json::array();
@@ -69,6 +75,7 @@ void take_result(const json& value, PointResult& r) {
   r.refused = value.at("refused");
   r.width = value.at("width");
   r.width_w = value.at("width_w");
+  r.passes = value.at("passes");
   r.evaluation = value.at("evaluation");
   r.precision = value.at("precision");
   r.work = value.at("work");

@@ -40,7 +40,8 @@ void add_scene_report(CLI::App& reports) {
   o->report.scene.imagename = "image";
   declare_scene(*command, o->report.scene);
   command->add_option("--kernel", o->report.kernels, "Kernels to compare besides the usual ones: names or kernel-table files");
-  command->add_flag("--quick", o->report.quick, "Fewer points, each run twice rather than five times");
+  command->add_flag("--quick", o->report.quick,
+                    "Fewer points and runs: an answer within two minutes for a million visibilities");
   command
       ->add_option("--output", o->output,
                    "Folder for index.html, SVG, CSV and report.json; a run that was stopped goes on there")

@@ -34,20 +34,49 @@ json owner_of(const SceneReportOptions& o, const Scene& scene) {
           {"quick", o.quick}};
 }
 
+/// How much is run of all points by turns.
+struct Effort {
+  std::size_t least_rounds;
+  std::size_t most_rounds;
+  double seconds;        ///< more than the least while they take no more
+  double first_round_s;  ///< after which the first round leaves the rest of the points out
+};
+constexpr Effort quick_effort{2, 9, 40, 25};
+constexpr Effort full_effort{5, 15, 600, HUGE_VAL};
+
+/// Of the first run of each point.
+double first_round_seconds(const std::vector<PointResult>& results) {
+  double seconds = 0;
+  for (const PointResult& r : results)
+    if (!r.runs.empty()) seconds += r.runs.front().image() + r.runs.front().predict();
+  return seconds;
+}
+
+std::size_t rounds_within(const Effort& effort, const std::vector<PointResult>& results) {
+  const double possible = effort.seconds / std::max(first_round_seconds(results), 1e-3);
+  return static_cast<std::size_t>(
+      std::clamp(possible, static_cast<double>(effort.least_rounds), static_cast<double>(effort.most_rounds)));
+}
+
 void measure(const SceneReportOptions& o, Scene& scene, std::vector<PointResult>& results, ProgressLine& progress) {
+  const Effort& effort = o.quick ? quick_effort : full_effort;
   const json owner = owner_of(o, scene);
-  const std::size_t rounds = o.quick ? 2 : 5;
   std::size_t done = read_results(o.results_file, owner, results);
   if (done > 0) progress.say("going on from " + grouped(static_cast<long long>(done)) + " runs in " + o.results_file);
+  const imager::Stopwatch watch;
+  const double before_s = first_round_seconds(results);
+  std::size_t rounds = effort.least_rounds;
   for (std::size_t round = 0; round < rounds; ++round) {
     for (PointResult& result : results) {
-      if (!result.refused.empty() || result.runs.size() > round) continue;
+      const bool late = round == 0 && before_s + watch.seconds() > effort.first_round_s;
+      if (!result.refused.empty() || result.runs.size() != round || late) continue;
       scene.run(result);
       if (result.refused.empty()) ++done;
       const auto possible = std::count_if(results.begin(), results.end(), [](const auto& r) { return r.refused.empty(); });
       write_results(o.results_file, owner, results);
       progress.update(done, rounds * static_cast<std::uint64_t>(possible));
     }
+    rounds = rounds_within(effort, results);
   }
 }
 
@@ -64,7 +93,7 @@ Report scene_report(const SceneReportOptions& o, ProgressLine& progress) {
   measure(o, scene, results, progress);
   progress.end();
   progress.begin("whole programs");
-  const std::vector<ProgramResult> programs = run_programs(o.scene, scene.truth(), scene.threads(), o.quick ? 1 : 3, progress);
+  const ProgramComparison programs = run_programs(o.scene, scene.truth(), scene.threads(), o.quick, progress);
   progress.end();
   const imager::ImageGeometry& g = scene.geometry();
   Report report{.title = "Error against run time",

@@ -1,0 +1,22 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "tools/scene/measure.h"
+#include "tools/scene/pareto.h"
+
+namespace misfit::tools {
+
+/// Cost and error of each result.
+std::vector<CostAndError> image_costs(const std::vector<PointResult>& results);
+std::vector<CostAndError> predict_costs(const std::vector<PointResult>& results);
+
+/// How well times are known, in a sentence.
+std::string words_on_noise(const std::vector<PointResult>& results);
+
+/// What the front of error against seconds says of least-misfit and minimax kernels where errors lie within [1e-7, 1e-3]: that
+/// it consists of them, or which others are on it and by how much they are faster; or that times are too noisy to say.
+std::string verdict_on(const std::vector<PointResult>& results);
+
+}  // namespace misfit::tools
