@@ -16,9 +16,10 @@ std::string text(double value) {
 
 const std::vector<std::string> compared_kernels{"least-misfit", "minimax", "spheroidal", "kaiser-bessel", "exp-semicircle"};
 
-void add_plans(const std::string& kernel, std::vector<ScenePoint>& points) {
-  for (const double accuracy : {1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8})
-    points.push_back({.kernel = kernel, .accuracy = accuracy});
+/// The accuracies that most people ask for come first: a quick comparison may end before the rest.
+void add_plans(const std::vector<std::string>& kernels, std::vector<ScenePoint>& points) {
+  for (const double accuracy : {1e-4, 1e-6, 1e-2, 1e-8, 1e-3, 1e-5, 1e-7})
+    for (const std::string& kernel : kernels) points.push_back({.kernel = kernel, .accuracy = accuracy});
 }
 
 /// Precisions that say something: single where a kernel of this width may still be what limits, double where it need not be.
@@ -54,7 +55,7 @@ std::vector<ScenePoint> scene_points(bool quick, const std::vector<std::string>&
   for (const std::string& kernel : more)
     if (std::find(kernels.begin(), kernels.end(), kernel) == kernels.end()) kernels.push_back(kernel);
   std::vector<ScenePoint> points;
-  for (const std::string& kernel : kernels) add_plans(kernel, points);
+  add_plans(kernels, points);
   points.push_back({.kernel = "nearest", .width = 1, .padding = 2, .precision = "single"});
   if (quick) {
     for (const double padding : {1.4, 2.0, 1.6, 1.25})

@@ -41,7 +41,7 @@ struct Effort {
   double seconds;        ///< more than the least while they take no more
   double first_round_s;  ///< after which the first round leaves the rest of the points out
 };
-constexpr Effort quick_effort{2, 9, 40, 25};
+constexpr Effort quick_effort{2, 9, 45, 30};
 constexpr Effort full_effort{5, 15, 600, HUGE_VAL};
 
 /// Of the first run of each point.
