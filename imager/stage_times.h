@@ -40,6 +40,14 @@ class Stopwatch {
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
+/// Adds what a step takes to a total.
+template <typename Step>
+void add_seconds_of(double& total, const Step& step) {
+  const Stopwatch watch;
+  step();
+  total += watch.seconds();
+}
+
 /// Adds the time from its construction to its destruction.
 class StageTimer {
  public:
