@@ -15,7 +15,8 @@ using namespace misfit::tools;
 using namespace misfit::tools::testing;
 
 Arguments report_of_scene(const std::string& output) {
-  return {"report", "scene", "--vis", snapshot(), "--imsize", "64", "48", "--cell", "0.1arcsec", "--quick", "--output", output};
+  return {"report",    "scene",   "--vis",     snapshot(), "--imsize", "64",  "48", "--cell",
+          "0.1arcsec", "--quick", "--seconds", "10000",    "--output", output};  // no point is left out on a slow machine
 }
 
 /// Cells of a CSV file without quoted commas, by column.

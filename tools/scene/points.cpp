@@ -58,10 +58,10 @@ std::vector<ScenePoint> scene_points(bool quick, const std::vector<std::string>&
   add_plans(kernels, points);
   points.push_back({.kernel = "nearest", .width = 1, .padding = 2, .precision = "single"});
   if (quick) {
+    add_evaluations(7, 2, {{"nearest", 10000}, {"linear", 1000}, {"cubic", 64}}, points);
     for (const double padding : {1.4, 2.0, 1.6, 1.25})
       for (const int width : {3, 4, 5, 6, 7, 8, 10, 12})
         for (const char* kernel : {"least-misfit", "minimax"}) add_grid(kernel, width, padding, points);
-    add_evaluations(7, 2, {{"nearest", 10000}, {"linear", 1000}, {"cubic", 64}}, points);
     return points;
   }
   for (const double padding : {1.2, 1.5, 2.0})

@@ -43,6 +43,11 @@ void add_scene_report(CLI::App& reports) {
   command->add_flag("--quick", o->report.quick,
                     "Fewer points and runs: an answer within two minutes for a million visibilities");
   command
+      ->add_option("--seconds", o->report.seconds,
+                   "Time for the runs of all points, of which there are more than two rounds (five without --quick) while they "
+                   "fit; 0 means 75 with --quick and 600 without")
+      ->check(CLI::NonNegativeNumber);
+  command
       ->add_option("--output", o->output,
                    "Folder for index.html, SVG, CSV and report.json; a run that was stopped goes on there")
       ->required();

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include "tools/base/interrupt.h"
 #include "tools/base/numbers.h"
 #include "tools/scene/measure.h"
 #include "tools/scene/programs.h"
@@ -38,11 +39,17 @@ json owner_of(const SceneReportOptions& o, const Scene& scene) {
 struct Effort {
   std::size_t least_rounds;
   std::size_t most_rounds;
-  double seconds;        ///< more than the least while they take no more
+  double seconds;        ///< more rounds than the least while they take no more
   double first_round_s;  ///< after which the first round leaves the rest of the points out
+
+  explicit Effort(const SceneReportOptions& o)
+      : least_rounds(o.quick ? 2 : 5),
+        most_rounds(o.quick ? 9 : 15),
+        seconds(o.seconds > 0 ? o.seconds
+                : o.quick     ? 75
+                              : 600),
+        first_round_s(o.quick ? 0.4 * seconds : HUGE_VAL) {}
 };
-constexpr Effort quick_effort{2, 9, 45, 30};
-constexpr Effort full_effort{5, 15, 600, HUGE_VAL};
 
 /// Of the first run of each point.
 double first_round_seconds(const std::vector<PointResult>& results) {
@@ -59,12 +66,18 @@ std::size_t rounds_within(const Effort& effort, const std::vector<PointResult>& 
 }
 
 void measure(const SceneReportOptions& o, Scene& scene, std::vector<PointResult>& results, ProgressLine& progress) {
-  const Effort& effort = o.quick ? quick_effort : full_effort;
+  const Effort effort(o);
   const json owner = owner_of(o, scene);
   std::size_t done = read_results(o.results_file, owner, results);
   if (done > 0) progress.say("going on from " + grouped(static_cast<long long>(done)) + " runs in " + o.results_file);
   const imager::Stopwatch watch;
   const double before_s = first_round_seconds(results);
+  double written_s = -HUGE_VAL;
+  const auto keep = [&](double every_s) {
+    if (watch.seconds() - written_s < every_s) return;
+    write_results(o.results_file, owner, results);
+    written_s = watch.seconds();
+  };
   std::size_t rounds = effort.least_rounds;
   for (std::size_t round = 0; round < rounds; ++round) {
     for (PointResult& result : results) {
@@ -73,9 +86,10 @@ void measure(const SceneReportOptions& o, Scene& scene, std::vector<PointResult>
       scene.run(result);
       if (result.refused.empty()) ++done;
       const auto possible = std::count_if(results.begin(), results.end(), [](const auto& r) { return r.refused.empty(); });
-      write_results(o.results_file, owner, results);
+      keep(interrupted() ? 0 : 1);
       progress.update(done, rounds * static_cast<std::uint64_t>(possible));
     }
+    keep(0);
     rounds = rounds_within(effort, results);
   }
 }

@@ -12,7 +12,8 @@ namespace misfit::tools {
 struct SceneReportOptions {
   ImageOptions scene;
   std::vector<std::string> kernels;  ///< besides those of the catalogue: names or files
-  bool quick = false;                ///< fewer points, each run fewer times
+  bool quick = false;                ///< fewer points, each run fewer times, and those left out that do not fit in
+  double seconds = 0;                ///< for the runs of all points; 0 = 75 where it is to be quick, else 600
   std::string results_file;          ///< kept while it is made, so that a run that was stopped goes on from it
 };
 

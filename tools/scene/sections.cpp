@@ -251,7 +251,8 @@ ReportSection points_section(const ImageOptions& scene, const std::vector<PointR
   }
   ReportSection section{.heading = "Every point", .paragraphs = {}, .figures = {}, .tables = {table}};
   if (const auto late = all.size() - results.size() - refused_table(all).rows.size(); late > 0)
-    section.paragraphs.push_back("Left out, since --quick keeps to two minutes: " + std::to_string(late) + " more points.");
+    section.paragraphs.push_back(
+        "Left out, since --quick gives the first round two fifths of --seconds: " + std::to_string(late) + " more points.");
   if (const DataTable refused = refused_table(all); !refused.rows.empty()) section.tables.push_back(refused);
   return section;
 }
