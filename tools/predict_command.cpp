@@ -1,8 +1,8 @@
 #include <cstdio>
 #include <memory>
 
+#include "imager/direct/source_sums.h"
 #include "imager/parallel.h"
-#include "imager/source_sums.h"
 #include "ms_io/measurement_set.h"
 #include "ms_io/model_writer.h"
 #include "tools/base/numbers.h"

@@ -3,8 +3,8 @@
 #include <memory>
 #include <numbers>
 
+#include "imager/direct/source_sums.h"
 #include "imager/parallel.h"
-#include "imager/source_sums.h"
 #include "ms_io/simulated_set.h"
 #include "tools/base/array.h"
 #include "tools/base/numbers.h"

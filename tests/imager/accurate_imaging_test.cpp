@@ -1,9 +1,9 @@
-#include "imager/accurate_imaging.h"
+#include "imager/plan/accurate_imaging.h"
 
 #include <boost/test/data/test_case.hpp>
 #include <boost/test/unit_test.hpp>
 
-#include "imager/direct_transform.h"
+#include "imager/direct/direct_transform.h"
 #include "imager/noise.h"
 #include "tests/imager/comparison.h"
 #include "tests/imager/random_samples.h"

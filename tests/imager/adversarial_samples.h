@@ -6,10 +6,10 @@
 #include <vector>
 
 #include "imager/constants.h"
-#include "imager/direct_transform.h"
-#include "imager/facet.h"
-#include "imager/gridding_plan.h"
+#include "imager/direct/direct_transform.h"
+#include "imager/plan/gridding_plan.h"
 #include "imager/visibilities.h"
+#include "imager/wide/facet.h"
 
 namespace misfit::imager::testing {
 

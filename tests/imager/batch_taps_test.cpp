@@ -1,4 +1,4 @@
-#include "imager/batch_taps.h"
+#include "imager/plane/batch_taps.h"
 
 #include <hwy/targets.h>
 

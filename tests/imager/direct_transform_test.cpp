@@ -1,4 +1,4 @@
-#include "imager/direct_transform.h"
+#include "imager/direct/direct_transform.h"
 
 #include <boost/test/unit_test.hpp>
 #include <numeric>

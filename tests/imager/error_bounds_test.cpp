@@ -3,9 +3,9 @@
 #include <boost/test/unit_test.hpp>
 #include <map>
 
-#include "imager/accurate_imaging.h"
-#include "imager/direct_transform.h"
+#include "imager/direct/direct_transform.h"
 #include "imager/noise.h"
+#include "imager/plan/accurate_imaging.h"
 #include "tests/imager/adversarial_samples.h"
 #include "tests/imager/comparison.h"
 #include "tests/imager/random_samples.h"

@@ -1,8 +1,8 @@
 #include <boost/test/data/test_case.hpp>
 #include <boost/test/unit_test.hpp>
 
-#include "imager/accurate_imaging.h"
 #include "imager/constants.h"
+#include "imager/plan/accurate_imaging.h"
 #include "tests/imager/comparison.h"
 #include "tests/imager/random_samples.h"
 

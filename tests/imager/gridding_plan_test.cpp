@@ -1,4 +1,4 @@
-#include "imager/gridding_plan.h"
+#include "imager/plan/gridding_plan.h"
 
 #include <boost/test/data/test_case.hpp>
 #include <boost/test/unit_test.hpp>

@@ -1,4 +1,4 @@
-#include "imager/half_grid.h"
+#include "imager/plane/half_grid.h"
 
 #include <boost/test/data/test_case.hpp>
 #include <boost/test/unit_test.hpp>

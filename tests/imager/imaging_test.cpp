@@ -2,8 +2,8 @@
 
 #include <boost/test/unit_test.hpp>
 
-#include "imager/direct_transform.h"
-#include "imager/gridding_plan.h"
+#include "imager/direct/direct_transform.h"
+#include "imager/plan/gridding_plan.h"
 #include "tests/imager/comparison.h"
 #include "tests/imager/random_samples.h"
 

@@ -1,10 +1,10 @@
-#include "imager/memory_use.h"
+#include "imager/plan/memory_use.h"
 
 #include <boost/test/data/test_case.hpp>
 #include <boost/test/unit_test.hpp>
 
-#include "imager/gridding_plan.h"
-#include "imager/half_grid.h"
+#include "imager/plan/gridding_plan.h"
+#include "imager/plane/half_grid.h"
 
 namespace bdata = boost::unit_test::data;
 using namespace misfit::imager;

@@ -1,14 +1,14 @@
-#include "imager/outside.h"
+#include "imager/outside/outside.h"
 
 #include <boost/test/data/test_case.hpp>
 #include <boost/test/unit_test.hpp>
 
-#include "imager/alias.h"
-#include "imager/direct_transform.h"
-#include "imager/gridding_plan.h"
+#include "imager/direct/direct_transform.h"
+#include "imager/direct/source_sums.h"
 #include "imager/noise.h"
-#include "imager/source_sums.h"
-#include "imager/wide_search.h"
+#include "imager/outside/alias.h"
+#include "imager/outside/wide_search.h"
+#include "imager/plan/gridding_plan.h"
 #include "tests/imager/comparison.h"
 #include "tests/imager/random_samples.h"
 

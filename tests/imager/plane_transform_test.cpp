@@ -1,9 +1,9 @@
-#include "imager/plane_transform.h"
+#include "imager/plane/plane_transform.h"
 
 #include <boost/test/data/test_case.hpp>
 #include <boost/test/unit_test.hpp>
 
-#include "imager/direct_transform.h"
+#include "imager/direct/direct_transform.h"
 #include "imager/fft.h"
 #include "kernels/catalogue.h"
 #include "kernels/evaluation.h"

@@ -1,4 +1,4 @@
-#include "imager/planned_transform.h"
+#include "imager/plan/planned_transform.h"
 
 #include <boost/test/unit_test.hpp>
 

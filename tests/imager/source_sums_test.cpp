@@ -1,4 +1,4 @@
-#include "imager/source_sums.h"
+#include "imager/direct/source_sums.h"
 
 #include <boost/test/data/test_case.hpp>
 #include <boost/test/unit_test.hpp>
@@ -6,7 +6,7 @@
 #include <random>
 
 #include "imager/constants.h"
-#include "imager/direct_transform.h"
+#include "imager/direct/direct_transform.h"
 #include "tests/imager/comparison.h"
 
 namespace bdata = boost::unit_test::data;

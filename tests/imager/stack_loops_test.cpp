@@ -1,6 +1,6 @@
-#include "imager/stack_loops.h"
+#include "imager/wide/stack_loops.h"
 
-#include "imager/plane_stack.h"
+#include "imager/wide/plane_stack.h"
 #include "tests/imager/loop_checks.h"
 
 using namespace misfit;

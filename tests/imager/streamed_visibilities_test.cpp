@@ -3,8 +3,8 @@
 #include <boost/test/data/test_case.hpp>
 #include <boost/test/unit_test.hpp>
 
-#include "imager/gridding_plan.h"
 #include "imager/imaging.h"
+#include "imager/plan/gridding_plan.h"
 #include "tests/imager/comparison.h"
 #include "tests/imager/random_samples.h"
 

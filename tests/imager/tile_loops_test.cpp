@@ -1,4 +1,4 @@
-#include "imager/tile_loops.h"
+#include "imager/plane/tile_loops.h"
 
 #include "tests/imager/loop_checks.h"
 

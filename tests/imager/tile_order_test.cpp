@@ -1,4 +1,4 @@
-#include "imager/tile_order.h"
+#include "imager/plane/tile_order.h"
 
 #include <boost/test/data/test_case.hpp>
 #include <boost/test/unit_test.hpp>

@@ -1,4 +1,4 @@
-#include "imager/tile_positions.h"
+#include "imager/plane/tile_positions.h"
 
 #include <hwy/targets.h>
 

@@ -1,8 +1,8 @@
-#include "imager/verify.h"
+#include "imager/direct/verify.h"
 
 #include <boost/test/unit_test.hpp>
 
-#include "imager/gridding_plan.h"
+#include "imager/plan/gridding_plan.h"
 #include "tests/imager/comparison.h"
 #include "tests/imager/random_samples.h"
 

@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "imager/constants.h"
-#include "imager/direct_transform.h"
+#include "imager/direct/direct_transform.h"
 #include "imager/visibilities.h"
 
 namespace misfit::imager::testing {

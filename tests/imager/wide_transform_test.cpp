@@ -1,12 +1,12 @@
-#include "imager/wide_transform.h"
+#include "imager/wide/wide_transform.h"
 
 #include <boost/test/data/test_case.hpp>
 #include <boost/test/unit_test.hpp>
 
-#include "imager/direct_transform.h"
-#include "imager/facet.h"
+#include "imager/direct/direct_transform.h"
 #include "imager/fft.h"
-#include "imager/gridding_choice.h"
+#include "imager/plan/gridding_choice.h"
+#include "imager/wide/facet.h"
 #include "kernels/catalogue.h"
 #include "tests/imager/comparison.h"
 #include "tests/imager/random_samples.h"

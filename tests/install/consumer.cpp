@@ -2,7 +2,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "imager/gridding_plan.h"
+#include "imager/plan/gridding_plan.h"
 #include "kernels/catalogue.h"
 #include "ms_io/measurement_set.h"
 

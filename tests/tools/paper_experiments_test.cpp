@@ -5,7 +5,7 @@
 #include <cmath>
 #include <set>
 
-#include "imager/source_sums.h"
+#include "imager/direct/source_sums.h"
 #include "tools/formats/sky.h"
 
 using namespace misfit;

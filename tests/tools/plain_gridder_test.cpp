@@ -5,8 +5,8 @@
 #include <boost/test/unit_test.hpp>
 #include <cmath>
 
-#include "imager/direct_transform.h"
-#include "imager/plane_transform.h"
+#include "imager/direct/direct_transform.h"
+#include "imager/plane/plane_transform.h"
 #include "kernels/catalogue.h"
 #include "tools/paper/card_scene.h"
 

@@ -12,12 +12,12 @@
 #include <stdexcept>
 #include <string>
 
-#include "imager/batch_taps.h"
+#include "imager/direct/source_sums.h"
 #include "imager/fft.h"
-#include "imager/plane_transform.h"
-#include "imager/source_sums.h"
-#include "imager/tile_loops.h"
-#include "imager/tile_order.h"
+#include "imager/plane/batch_taps.h"
+#include "imager/plane/plane_transform.h"
+#include "imager/plane/tile_loops.h"
+#include "imager/plane/tile_order.h"
 #include "kernels/catalogue.h"
 #include "kernels/cheapest_polynomial.h"
 

@@ -6,7 +6,7 @@
 #include <stdexcept>
 
 #include "imager/extent.h"
-#include "imager/planned_transform.h"
+#include "imager/plan/planned_transform.h"
 #include "tools/base/numbers.h"
 
 namespace misfit::tools {

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "imager/fits_image.h"
-#include "imager/gridding_choice.h"
+#include "imager/plan/gridding_choice.h"
 #include "imager/transform.h"
 #include "ms_io/measurement_set.h"
 #include "ms_io/model_writer.h"

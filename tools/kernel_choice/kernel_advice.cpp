@@ -5,7 +5,7 @@
 #include <stdexcept>
 
 #include "imager/extent.h"
-#include "imager/gridding_plan.h"
+#include "imager/plan/gridding_plan.h"
 #include "tools/base/numbers.h"
 #include "tools/kernel_choice/kernel_choice.h"
 

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "imager/gridding_choice.h"
+#include "imager/plan/gridding_choice.h"
 
 namespace misfit::tools {
 

@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <string>
 
-#include "imager/cost_model.h"
+#include "imager/plan/cost_model.h"
 
 namespace misfit::tools {
 

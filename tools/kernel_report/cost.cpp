@@ -2,7 +2,7 @@
 #include <array>
 #include <cmath>
 
-#include "imager/cost_model.h"
+#include "imager/plan/cost_model.h"
 #include "tools/base/numbers.h"
 #include "tools/kernel_report/kernel_report.h"
 

@@ -7,10 +7,10 @@
 #include <tuple>
 
 #include "imager/constants.h"
-#include "imager/direct_transform.h"
+#include "imager/direct/direct_transform.h"
+#include "imager/direct/source_sums.h"
 #include "imager/parallel.h"
-#include "imager/plane_transform.h"
-#include "imager/source_sums.h"
+#include "imager/plane/plane_transform.h"
 #include "kernels/map_error.h"
 #include "tools/paper/paper_experiments.h"
 

@@ -5,8 +5,8 @@
 #include <numeric>
 
 #include "imager/constants.h"
-#include "imager/direct_transform.h"
-#include "imager/source_sums.h"
+#include "imager/direct/direct_transform.h"
+#include "imager/direct/source_sums.h"
 #include "tools/base/array.h"
 #include "tools/formats/sky.h"
 

@@ -3,9 +3,9 @@
 #include <cmath>
 #include <limits>
 
+#include "imager/direct/source_sums.h"
 #include "imager/parallel.h"
-#include "imager/plane_transform.h"
-#include "imager/source_sums.h"
+#include "imager/plane/plane_transform.h"
 #include "kernels/map_error.h"
 #include "tools/base/numbers.h"
 #include "tools/paper/paper_experiments.h"

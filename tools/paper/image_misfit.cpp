@@ -6,7 +6,7 @@
 #include <numeric>
 
 #include "imager/parallel.h"
-#include "imager/plane_transform.h"
+#include "imager/plane/plane_transform.h"
 #include "kernels/map_error.h"
 #include "tools/base/numbers.h"
 #include "tools/paper/paper_experiments.h"

@@ -10,7 +10,7 @@
 #include "imager/clean/clean.h"
 #include "imager/clean/deconvolver.h"
 #include "imager/geometry.h"
-#include "imager/gridding_choice.h"
+#include "imager/plan/gridding_choice.h"
 #include "ms_io/measurement_set.h"
 
 namespace misfit::tools {

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "imager/memory_use.h"
-#include "imager/plan.h"
+#include "imager/plan/memory_use.h"
+#include "imager/plan/plan.h"
 #include "tools/run/image_options.h"
 
 namespace misfit::tools {

@@ -4,10 +4,10 @@
 #include <string>
 #include <vector>
 
-#include "imager/gridding_plan.h"
-#include "imager/outside.h"
-#include "imager/plan.h"
-#include "imager/wide_search.h"
+#include "imager/outside/outside.h"
+#include "imager/outside/wide_search.h"
+#include "imager/plan/gridding_plan.h"
+#include "imager/plan/plan.h"
 
 namespace misfit::tools {
 

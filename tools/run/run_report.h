@@ -4,10 +4,10 @@
 #include <string>
 #include <vector>
 
-#include "imager/accurate_imaging.h"
 #include "imager/clean/clean.h"
-#include "imager/plan.h"
-#include "imager/verify.h"
+#include "imager/direct/verify.h"
+#include "imager/plan/accurate_imaging.h"
+#include "imager/plan/plan.h"
 #include "tools/run/beam_choice.h"
 #include "tools/run/outside_stage.h"
 #include "tools/run/time_forecast.h"

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "imager/gridding_plan.h"
+#include "imager/plan/gridding_plan.h"
 #include "imager/stage_times.h"
 
 namespace misfit::tools {

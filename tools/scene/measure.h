@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "imager/accurate_imaging.h"
 #include "imager/extent.h"
+#include "imager/plan/accurate_imaging.h"
 #include "imager/stored_visibilities.h"
 #include "tools/scene/points.h"
 #include "tools/scene/truth.h"

@@ -3,7 +3,7 @@
 #include <complex>
 #include <vector>
 
-#include "imager/direct_transform.h"
+#include "imager/direct/direct_transform.h"
 #include "imager/imaging.h"
 
 namespace misfit::tools {

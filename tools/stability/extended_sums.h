@@ -3,7 +3,7 @@
 #include <complex>
 #include <vector>
 
-#include "imager/direct_transform.h"
+#include "imager/direct/direct_transform.h"
 #include "imager/visibilities.h"
 
 namespace misfit::tools {

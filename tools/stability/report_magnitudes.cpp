@@ -6,8 +6,8 @@
 #include <string>
 
 #include "imager/constants.h"
-#include "imager/direct_transform.h"
-#include "imager/plane_transform.h"
+#include "imager/direct/direct_transform.h"
+#include "imager/plane/plane_transform.h"
 #include "kernels/catalogue.h"
 #include "tools/base/numbers.h"
 #include "tools/stability/stability_report.h"

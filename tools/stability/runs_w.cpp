@@ -5,7 +5,7 @@
 
 #include "imager/constants.h"
 #include "imager/extent.h"
-#include "imager/gridding_choice.h"
+#include "imager/plan/gridding_choice.h"
 #include "tools/base/numbers.h"
 #include "tools/stability/stability_runs.h"
 

@@ -6,8 +6,8 @@
 #include <utility>
 
 #include "imager/constants.h"
+#include "imager/direct/source_sums.h"
 #include "imager/parallel.h"
-#include "imager/source_sums.h"
 #include "ms_io/measurement_set.h"
 #include "tools/base/array.h"
 #include "tools/base/numbers.h"

@@ -8,11 +8,11 @@
 
 #include "imager/clean/deconvolver.h"
 #include "imager/constants.h"
+#include "imager/direct/verify.h"
 #include "imager/extent.h"
 #include "imager/noise.h"
 #include "imager/parallel.h"
 #include "imager/stored_visibilities.h"
-#include "imager/verify.h"
 #include "tools/run/beam_choice.h"
 #include "tools/stability/extended_sums.h"
 

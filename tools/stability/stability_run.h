@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "imager/accurate_imaging.h"
 #include "imager/clean/clean.h"
 #include "imager/geometry.h"
+#include "imager/plan/accurate_imaging.h"
 #include "imager/visibilities.h"
 
 namespace misfit::tools {

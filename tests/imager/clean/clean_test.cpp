@@ -7,8 +7,8 @@
 
 #include "imager/beam.h"
 #include "imager/clean/hogbom.h"
-#include "imager/gridding_plan.h"
 #include "imager/noise.h"
+#include "imager/plan/gridding_plan.h"
 #include "tests/imager/comparison.h"
 #include "tests/imager/vla_samples.h"
 

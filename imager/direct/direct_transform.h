@@ -1,0 +1,48 @@
+#pragma once
+
+#include "imager/direct/source_sums.h"
+#include "imager/geometry.h"
+#include "imager/transform.h"
+
+namespace misfit::imager {
+
+struct DirectSums {
+  ImageGeometry geometry;
+  bool with_w = true;  ///< otherwise w is taken as 0
+  int threads = 1;
+};
+
+/// The defining sums in double precision: the oracle that everything else is measured against, and the fastest way where
+/// samples or sources are few. Costs samples × pixels.
+class DirectTransform : public Transform {
+ public:
+  explicit DirectTransform(const DirectSums& sums) : sums_(sums) {}
+  DirectTransform(const ImageGeometry& geometry, int threads) : sums_{geometry, true, threads} {}
+
+  std::unique_ptr<AdjointSum> adjoint(bool with_psf) const override;
+  /// Only the pixels that are not 0 cost time.
+  std::unique_ptr<Prediction> predict(const Image& model) const override;
+
+ private:
+  DirectSums sums_;
+};
+
+/// A pixel of an image.
+struct Pixel {
+  int row = 0;
+  int column = 0;
+};
+
+/// Pixels at which direct sums are taken.
+struct DirectPixels {
+  ImageGeometry geometry;
+  std::vector<Pixel> pixel;
+  bool with_w = true;
+  int threads = 1;
+};
+
+/// Adds the direct sums of `block`: sum[k] += Σ w Re[V exp(−2πi(ul+vm+w(n−1)))]. Samples beyond 1/(2 cell) are left out, as in
+/// imaging.
+void add_direct_pixels(const VisibilityBlock& block, const DirectPixels& at, std::vector<double>& sum);
+
+}  // namespace misfit::imager

@@ -1,0 +1,99 @@
+#include "imager/direct/verify.h"
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+#include "imager/noise.h"
+
+namespace misfit::imager {
+namespace {
+
+/// Indices of samples in ascending order, so that one pass finds them.
+std::vector<std::uint64_t> random_samples(std::uint64_t samples, int count, std::mt19937_64& random) {
+  std::vector<std::uint64_t> chosen;
+  for (int i = 0; i < count; ++i) chosen.push_back(random() % samples);
+  std::sort(chosen.begin(), chosen.end());
+  return chosen;
+}
+
+/// Frequency at which the chosen samples are gathered: their UVW is scaled so that it is the same in wavelengths.
+constexpr double any_frequency_hz = 1e9;
+
+/// Adds the coordinates of the chosen samples that lie in `block`, whose first sample has index `first`, a row each.
+void collect(const VisibilityBlock& block, std::uint64_t first, const std::vector<std::uint64_t>& chosen,
+             SampleCoordinates& found) {
+  for (auto i = std::lower_bound(chosen.begin(), chosen.end(), first); i != chosen.end() && *i < first + block.samples(); ++i) {
+    const double* uvw_m = &block.uvw_m[3 * ((*i - first) / block.channels())];
+    const double scale = block.frequency_hz[(*i - first) % block.channels()] / any_frequency_hz;
+    if (std::all_of(uvw_m, uvw_m + 3, [](double x) { return std::isfinite(x); }))
+      found.uvw_m.insert(found.uvw_m.end(), {uvw_m[0] * scale, uvw_m[1] * scale, uvw_m[2] * scale});
+  }
+}
+
+}  // namespace
+
+std::vector<Pixel> random_pixels(const ImageGeometry& geometry, int count) {
+  std::mt19937_64 random(20200112);
+  const auto width = static_cast<std::uint64_t>(geometry.width);
+  std::vector<Pixel> pixels;
+  constexpr int tries_each = 1000;
+  for (long long tries = 0; static_cast<int>(pixels.size()) < count && tries / tries_each < count; ++tries) {
+    const std::uint64_t at = random() % geometry.pixels();
+    const Pixel pixel{static_cast<int>(at / width), static_cast<int>(at % width)};
+    if (!beyond_horizon(geometry.at(pixel.row, pixel.column))) pixels.push_back(pixel);
+  }
+  return pixels;
+}
+
+PixelError pixel_error(const Image& dirty, const std::vector<Pixel>& pixels, const std::vector<double>& direct_sums,
+                       double weight) {
+  PixelError error;
+  double square = 0;
+  for (std::size_t k = 0; k < pixels.size(); ++k) {
+    const double difference = dirty.at(pixels[k].row, pixels[k].column) - direct_sums[k] / weight;
+    square += difference * difference;
+    error.max = std::max(error.max, std::abs(difference));
+  }
+  error.rms = std::sqrt(square / static_cast<double>(std::max<std::size_t>(pixels.size(), 1)));
+  return error;
+}
+
+MeasuredError measure_error(const VisibilitySource& source, const Transform& transform, const ImageGeometry& geometry,
+                            const DirtyImages& images, int count, int threads, const Progress& progress) {
+  std::mt19937_64 random(20200112);
+  count = static_cast<int>(std::min({std::uint64_t(count), std::uint64_t{geometry.pixels()}, source.samples()}));
+  const std::vector<Pixel> pixels = random_pixels(geometry, count);
+  const DirectPixels direct_pixels{geometry, pixels, true, threads};
+  const std::vector<std::uint64_t> chosen = random_samples(source.samples(), count, random);
+
+  std::vector<double> sum(pixels.size());
+  SampleCoordinates samples{{}, {any_frequency_hz}};
+  std::uint64_t done = 0;
+  const auto stream = source.open();
+  while (const auto block = stream->next()) {
+    add_direct_pixels(*block, direct_pixels, sum);
+    collect(*block, done, chosen, samples);
+    done += block->samples();
+    progress(done, source.samples());
+  }
+
+  const double image_rms = root_mean_square(images.dirty);
+  const PixelError of_pixels = pixel_error(images.dirty, pixels, sum, images.sums.weight);
+  MeasuredError error{of_pixels.rms / image_rms, of_pixels.max / image_rms, 0};
+
+  Image model(geometry.width, geometry.height);
+  for (const Pixel& pixel : pixels) model.at(pixel.row, pixel.column) = random() % 2 == 0 ? 1 : -1;
+  const auto gridded = transform.predict(model)->at(samples);
+  const auto direct = DirectTransform(geometry, threads).predict(model)->at(samples);
+  double difference = 0;
+  double size = 0;
+  for (std::size_t i = 0; i < direct.size(); ++i) {
+    difference += std::norm(gridded[i] - direct[i]);
+    size += std::norm(direct[i]);
+  }
+  error.predict_rms = size == 0 ? 0 : std::sqrt(difference / size);
+  return error;
+}
+
+}  // namespace misfit::imager

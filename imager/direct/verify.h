@@ -1,0 +1,35 @@
+#pragma once
+
+#include "imager/direct/direct_transform.h"
+#include "imager/imaging.h"
+
+namespace misfit::imager {
+
+/// `count` pixels above the horizon at random, always the same; fewer where hardly any is.
+std::vector<Pixel> random_pixels(const ImageGeometry& geometry, int count);
+
+/// How far an image is from direct sums at some of its pixels, in Jy/beam.
+struct PixelError {
+  double rms = 0;
+  double max = 0;
+};
+
+/// Of a dirty image whose samples weigh `weight` in all, given Σ w Re[…] at the pixels.
+PixelError pixel_error(const Image& dirty, const std::vector<Pixel>& pixels, const std::vector<double>& direct_sums,
+                       double weight);
+
+/// Measured differences from the direct transform, w included. Relative to the RMS of the whole dirty image (the first two) or
+/// of the predicted visibilities.
+struct MeasuredError {
+  double rms = 0;          ///< of the dirty image, over random pixels
+  double max = 0;          ///< the largest among them
+  double predict_rms = 0;  ///< of prediction, over random samples
+};
+
+/// Compares the dirty image with direct sums at `count` random pixels, and predicted visibilities with direct sums at `count`
+/// random samples, for a model of `count` random pixels; fewer where there are fewer pixels or samples. The choice depends on
+/// `count` alone.
+MeasuredError measure_error(const VisibilitySource& source, const Transform& transform, const ImageGeometry& geometry,
+                            const DirtyImages& images, int count, int threads, const Progress& progress);
+
+}  // namespace misfit::imager

@@ -1,0 +1,117 @@
+#include "imager/plan/accurate_imaging.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "imager/direct/verify.h"
+#include "imager/noise.h"
+
+namespace misfit::imager {
+namespace {
+
+/// RMS of the dirty image of data with random phases: √(½ Σ w²|V|²) / Σ w.
+double random_image_rms(const SampleSums& sums) {
+  return std::sqrt(0.5 * sums.weight2_square) / sums.weight;
+}
+
+AccurateImages make_images(const VisibilitySource& source, GriddingPlan plan, const Progress& progress, StageTimes& times) {
+  AccurateImages made;
+  made.plan = std::move(plan);
+  {
+    const StageTimer timer(times, "plan");
+    made.transform = std::make_unique<PlannedTransform>(made.plan);
+  }
+  if (!made.plan.psf) {
+    made.images = make_dirty_images(source, *made.transform, made.plan.request.images > 1, progress, times);
+  } else {
+    const auto of_psf = make_transform(made.plan.psf->options);
+    const OwnPsf psf{*of_psf, made.plan.options.geometry.centre, made.plan.psf->options.has_w_axis()};
+    made.images = make_dirty_images(source, *made.transform, psf, progress, times);
+  }
+  return made;
+}
+
+/// Error of the image relative to its RMS as the pixels show it, a few to many so that the direct sums take less than a second.
+double checked_error(const VisibilitySource& source, const AccurateImages& made, StageTimes& times) {
+  const StageTimer timer(times, "check pixels");
+  const DirtyImages& images = made.images;
+  const WideTransformOptions& o = made.plan.options;
+  const double affordable = 4e7 / static_cast<double>(images.sums.used);
+  const int count = static_cast<int>(std::clamp(affordable, 4.0, 64.0));
+  const DirectPixels at{o.geometry, random_pixels(o.geometry, count), made.plan.direct || o.has_w_axis(), o.threads};
+  std::vector<double> sum(at.pixel.size());
+  const auto stream = source.open();
+  while (const auto block = stream->next()) add_direct_pixels(*block, at, sum);
+  return pixel_error(images.dirty, at.pixel, sum, images.sums.weight).rms / root_mean_square(images.dirty);
+}
+
+/// How much weaker an image is than its data would let expect.
+struct Weakness {
+  double random = 1;    ///< than random data of this size give
+  double coherent = 1;  ///< than data give that belong to one source
+};
+
+Weakness weakness_of(const DirtyImages& images, StageTimes& times) {
+  const StageTimer timer(times, "statistics");
+  const double image_rms = root_mean_square(images.dirty);
+  if (image_rms == 0) return {};
+  const double visibility_rms = std::sqrt(images.sums.weight_square / images.sums.weight);
+  return {std::max(1.0, random_image_rms(images.sums) / image_rms), root_mean_square(images.psf) * visibility_rms / image_rms};
+}
+
+}  // namespace
+
+TheoreticalError theoretical_error(const GriddingPlan& plan, const SampleSums& sums, double image_rms,
+                                   const NeglectedPhase& w) {
+  const bool neglected = !plan.direct && !plan.options.has_w_axis();
+  const double phase_rms = neglected ? std::min(w.rms_rad, std::sqrt(2.0)) : 0;  // unit phasors at random are √2 apart
+  const double phase_max = neglected ? std::min(w.max_rad, 2.0) : 0;
+  const auto over_image = [image_rms](double x) { return x == 0 ? 0 : x / image_rms; };
+  const double flux = over_image(sums.weight_abs / sums.weight);
+  TheoreticalError error;
+  error.expected_rms = std::hypot(plan.expected_error, phase_rms) * std::max(1.0, over_image(random_image_rms(sums)));
+  error.bound_rms = ((1 + plan.bound_rms) * (1 + phase_max) - 1) * flux;
+  error.bound_max = ((1 + plan.bound_max) * (1 + phase_max) - 1) * flux;
+  return error;
+}
+
+AccurateImages make_accurate_images(const VisibilitySource& source, GriddingPlan plan, const Progress& progress,
+                                    StageTimes& times) {
+  const GriddingRequest request = plan.request;
+  AccurateImages made = make_images(source, std::move(plan), progress, times);
+  // The image's gridding error over the accuracy, once by theory and once by direct sums at pixels, which may miss half of it.
+  const auto excess = [&] {
+    const Weakness weak = weakness_of(made.images, times);
+    const double expected = made.plan.expected_error * weak.random / request.accuracy;
+    if (expected > 1 || made.plan.expected_error * weak.coherent <= request.accuracy) return expected;
+    return std::max(expected, 2 * checked_error(source, made, times) / request.accuracy);
+  };
+  if (request.accuracy == 0) return made;
+  const double first = excess();
+  if (first <= 1) return made;
+  GriddingRequest stricter = request;
+  stricter.accuracy = request.accuracy / first;
+  stricter.best_effort = true;
+  Image psf;
+  if (made.plan.psf) {  // it is exact enough
+    psf = std::move(made.images.psf);
+    stricter.images = 1;
+  }
+  made.transform.reset();  // all comes again, and there may be no room for both
+  made.images = {};
+  {
+    const StageTimer timer(times, "plan");
+    plan = plan_gridding(stricter);
+  }
+  made = make_images(source, std::move(plan), progress, times);
+  if (!psf.pixel.empty()) made.images.psf = std::move(psf);
+  char because[160];
+  std::snprintf(because, sizeof because, "the image is weak against its data: its error came to %.3g times the accuracy",
+                first);
+  made.plan.decisions.push_back({"second pass", made.plan.direct ? "by direct sums" : "with a more exact kernel", because});
+  made.promise_kept = excess() <= 1;
+  return made;
+}
+
+}  // namespace misfit::imager

@@ -1,0 +1,393 @@
+#include "imager/plan/gridding_choice.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <optional>
+
+#include "imager/constants.h"
+#include "imager/extent.h"
+#include "imager/fft.h"
+#include "kernels/cheapest_polynomial.h"
+#include "kernels/evaluation.h"
+
+namespace misfit::imager {
+namespace {
+
+constexpr int smallest_fft = 64;
+constexpr int continuum = 128;   ///< fewer pixels are no mean over the field, and need no wide kernels
+constexpr int countable = 1024;  ///< over more pixels, that the first lies at −x0 and the last one pixel short of x0 is lost
+
+/// From the one that needs the narrowest kernel down: what the wider padding cannot reach, no other can.
+constexpr std::array<double, 5> usual_paddings{2.0, 1.6, 1.4, 1.25, 1.15};
+constexpr std::array<double, 6> usual_paddings_with_w{2.0, 1.75, 1.6, 1.4, 1.25, 1.15};  // taps cost more there, FFTs less
+constexpr std::array<double, 7> usual_w_paddings{40, 10, 4, 2.5, 2.0, 1.6, 1.3};
+
+/// Makes each kernel once.
+class KernelShelf {
+ public:
+  explicit KernelShelf(const GriddingRequest& request) : family_(request.kernel), lookup_(request.lookup) {}
+
+  /// Over `pixels` of an FFT of a given size.
+  const AxisKernel& axis(int width, int pixels, int fft_size) {
+    return made({width, pixels, fft_size}, 0.5 * pixels / fft_size,
+                [&](const kernels::Kernel& kernel) { return axis_misfit(kernel, pixels, fft_size); });
+  }
+  /// Over many pixels of an FFT of about this padding; over planes.
+  const AxisKernel& axis(int width, double padding) {
+    const int thousandths = static_cast<int>(std::floor(1000 * padding));
+    return made({width, 0, thousandths}, 500.0 / thousandths, [](const kernels::Kernel& kernel) { return kernel.misfit; });
+  }
+
+ private:
+  template <typename Judge>
+  const AxisKernel& made(const std::array<int, 3>& key, double x0, const Judge& misfit_of) {
+    const auto found = shelf_.find(key);
+    if (found != shelf_.end()) return found->second;
+    AxisKernel axis{family_.make(key[0], std::clamp(x0, family_.min_x0, family_.max_x0)), {}, 1};
+    axis.misfit = misfit_of(axis.kernel);
+    if (lookup_) axis.misfit = kernels::judge_table(axis.kernel.polynomial, axis.misfit, *lookup_, x0);
+    axis.noise_gain = kernels::noise_gain(axis.kernel.polynomial, axis.kernel.x0);
+    return shelf_.emplace(key, axis).first->second;
+  }
+
+  kernels::KernelFamily family_;
+  std::optional<kernels::TableOptions> lookup_;
+  std::map<std::array<int, 3>, AxisKernel> shelf_;
+};
+
+class Search {
+ public:
+  /// With a w axis over one of the facetings, or without where there are none.
+  Search(const GriddingRequest& request, double target, std::vector<Faceting> ways)
+      : request_(request), shelf_(request), target_(target), ways_(std::move(ways)) {
+    if (has_w_axis()) {
+      usual_.assign(usual_paddings_with_w.begin(), usual_paddings_with_w.end());
+    } else {
+      usual_.assign(usual_paddings.begin(), usual_paddings.end());
+    }
+  }
+
+  GriddingChoice run() {
+    for (const Precision precision : {Precision::single_precision, Precision::double_precision}) {
+      if (request_.precision
+              ? precision != *request_.precision
+              : precision == Precision::single_precision && request_.accuracy != 0 && request_.accuracy < single_from)
+        continue;
+      search(precision);
+      if (best_ && request_.accuracy == 0) break;
+    }
+    GriddingChoice choice;
+    choice.reached = best_.has_value();
+    choice.best = simplified(best_ ? made_exactly(*best_) : *most_exact_);
+    choice.rejected = neighbours(choice.best);
+    return choice;
+  }
+
+ private:
+  std::vector<double> paddings() const {
+    if (request_.padding != 0) return {request_.padding};
+    if (request_.accuracy == 0) return {least_padding()};  // what the given kernel is made for
+    std::vector<double> found;
+    for (const double usual : usual_) {
+      found.push_back(std::max(usual, least_padding()));
+      if (usual <= least_padding()) break;
+    }
+    return found;
+  }
+  int narrowest() const { return request_.kernel_width != 0 ? request_.kernel_width : request_.kernel.min_width; }
+  int widest() const { return request_.kernel_width != 0 ? request_.kernel_width : request_.kernel.max_width; }
+
+  /// For which the family's widest x0 serves; x0 came from a padding, and is rounded.
+  double least_padding() const { return 0.5 / request_.kernel.max_x0 * (1 - 1e-12); }
+
+  /// At least four widths, so that a kernel never meets its own periodic copy.
+  int fft_size(int pixels, double padding, int width) const {
+    const double needed = std::max(padding, least_padding()) * pixels;
+    return fast_fft_size(std::max({smallest_fft, 4 * width, static_cast<int>(std::ceil(needed))}));
+  }
+
+  /// Sizes and cost, for which no kernel is needed.
+  GriddingCandidate sized(int width, double padding_u, double padding_v, Precision precision) const {
+    GriddingCandidate c;
+    c.padding_u = padding_u;
+    c.padding_v = padding_v;
+    const ImageGeometry& g = request_.geometry;
+    c.work = {static_cast<double>(request_.samples),
+              width,
+              width,  // close to the degree that will do
+              fft_size(g.width, padding_u, width),
+              fft_size(g.height, padding_v, width),
+              g.width,
+              precision};
+    c.work.images = request_.images;
+    c.turns = (std::abs(g.centre.l) + std::abs(g.centre.m)) / (2 * g.cell_rad);
+    if (has_w_axis()) c.turns += request_.max_abs_w * largest_drop(g);
+    c.cost_s = CostModel().seconds(c.work);
+    if (has_w_axis()) split(c, 1, request_.kernel.min_width);  // the least that a w axis costs
+    return c;
+  }
+
+  /// Takes the faceting that costs least with planes of this padding and width.
+  void split(GriddingCandidate& c, double padding_w, int width_w) const {
+    c.cost_s = HUGE_VAL;
+    for (const Faceting& way : ways_) {
+      GriddingWork work = c.work;
+      work.width_w = width_w;
+      work.facets = static_cast<int>(way.turns.size());
+      work.planes = way.planes(padding_w, width_w);
+      work.nu = fft_size(way.width, c.padding_u, work.width);
+      work.nv = fft_size(way.height, c.padding_v, work.width);
+      work.columns = way.width;
+      const double cost_s = CostModel().seconds(work);
+      if (cost_s >= c.cost_s) continue;
+      c.work = work;
+      c.cost_s = cost_s;
+      c.faceting = way;
+    }
+    c.padding_w = padding_w;
+  }
+
+  bool has_w_axis() const { return !ways_.empty(); }
+  bool small(int pixels) const { return pixels < continuum; }
+
+  void judge_plane(GriddingCandidate& c) {
+    const auto axis = [&](int pixels, double padding) {
+      return small(pixels) ? shelf_.axis(c.work.width, pixels, fft_size(pixels, padding, c.work.width))
+                           : shelf_.axis(c.work.width, padding);
+    };
+    c.u = axis(request_.geometry.width, c.padding_u);
+    c.v = axis(request_.geometry.height, c.padding_v);
+    judge(c);
+  }
+  void remember(const GriddingCandidate& c) {
+    if (!most_exact_ || c.worst_error < most_exact_->worst_error) most_exact_ = c;
+  }
+
+  /// With kernels for the very FFT sizes, which are a little longer than the paddings ask for.
+  GriddingCandidate made_exactly(const GriddingCandidate& nominal) {
+    GriddingCandidate c = nominal;
+    const ImageGeometry& g = request_.geometry;
+    c.u = shelf_.axis(c.work.width, c.work.has_w_axis() ? c.faceting.width : g.width, c.work.nu);
+    c.v = shelf_.axis(c.work.width, c.work.has_w_axis() ? c.faceting.height : g.height, c.work.nv);
+    judge(c);
+    return c.worst_error <= std::max(target_, nominal.worst_error) ? c : nominal;
+  }
+
+  /// Whether a wider kernel would only gather rounding.
+  static bool exhausted(const GriddingCandidate& c) { return c.worst_error < 2 * c.rounding; }
+  bool costs_less(const GriddingCandidate& c) const { return !best_ || c.cost_s < best_->cost_s; }
+  /// Where no accuracy is asked, single precision must not be what limits it.
+  bool trusted(const GriddingCandidate& c) const {
+    if (c.work.precision == Precision::double_precision || request_.accuracy != 0 || request_.precision) return true;
+    return c.worst_error >= single_from && c.rounding < 0.1 * c.worst_error;
+  }
+  void offer(const GriddingCandidate& c) {
+    if (trusted(c) && costs_less(c)) best_ = c;
+  }
+
+  /// Padding falls, so that the width needed only grows, and what one padding cannot reach, no smaller one can. One axis alone
+  /// may do with the next smaller padding at the same width.
+  void search(Precision precision) {
+    int width = narrowest();
+    for (const double padding : paddings()) {
+      const std::optional<int> needed = narrowest_reaching(width, padding, padding, precision);
+      if (!needed) break;
+      width = *needed;
+    }
+    if (!best_ || request_.padding != 0 || best_->work.precision != precision) return;
+    const GriddingCandidate square = *best_;
+    const auto smaller = std::find_if(usual_.begin(), usual_.end(), [&](double usual) { return usual < square.padding_u; });
+    if (smaller == usual_.end() || *smaller < least_padding()) return;
+    for (const auto& [u, v] : {std::pair(*smaller, square.padding_v), std::pair(square.padding_u, *smaller)})
+      consider(sized(square.work.width, u, v, precision));
+  }
+
+  enum class Outcome { reaches, costs_too_much, not_exact_enough };
+
+  Outcome consider(GriddingCandidate c) {
+    if (!costs_less(c)) {
+      considered_.push_back({c, Rejection::costs_more});
+      return Outcome::costs_too_much;
+    }
+    judge_plane(c);
+    if (has_w_axis()) c = with_w(c);
+    remember(c);
+    const bool reaches = c.worst_error <= target_;
+    considered_.push_back({c, reaches ? Rejection::costs_more : Rejection::not_exact_enough});
+    if (!reaches) return Outcome::not_exact_enough;
+    offer(c);
+    return Outcome::reaches;
+  }
+
+  /// How the kernel's error falls with width at these paddings.
+  struct Forecast {
+    double log_error = 0;  ///< at `width`
+    double log_rate = 0;   ///< change for one more cell, negative
+    int width = 0;
+
+    double at(int other) const { return std::exp(log_error + log_rate * (other - width)); }
+  };
+  /// From two narrow kernels, which are solved in no time; wide ones take extended arithmetic. None where all are
+  /// quickly made.
+  std::optional<Forecast> forecast(double padding_u, double padding_v, Precision precision) {
+    const int width = std::max(narrowest(), 5);
+    const bool small = std::min(request_.geometry.width, request_.geometry.height) < continuum;
+    if (!request_.kernel.costly || small || width + 2 > widest()) return {};
+    double log_error[2];
+    for (int i = 0; i < 2; ++i) {
+      GriddingCandidate c = sized(width + i, padding_u, padding_v, precision);
+      judge_plane(c);
+      log_error[i] = std::log(std::max(c.worst_error * c.worst_error - c.rounding * c.rounding, 1e-40)) / 2;
+      remember(has_w_axis() ? with_w(c) : c);
+    }
+    return Forecast{log_error[1], std::min(-0.1, log_error[1] - log_error[0]), width + 1};
+  }
+
+  /// The narrowest width from `least` on that reaches the accuracy, offered; or one that costs too much, not judged; or none.
+  std::optional<int> narrowest_reaching(int least, double padding_u, double padding_v, Precision precision) {
+    const std::optional<Forecast> expected = forecast(padding_u, padding_v, precision);
+    const auto hopeful = [&](int width) { return !expected || expected->at(width) < 10 * target_; };
+    int width = least;
+    while (width < widest() && !hopeful(width)) ++width;
+    double narrower = HUGE_VAL;
+    for (; width <= widest() && hopeful(width); ++width) {
+      const Outcome outcome = consider(sized(width, padding_u, padding_v, precision));
+      if (outcome != Outcome::not_exact_enough) return width;
+      const GriddingCandidate& c = considered_.back().candidate;
+      constexpr double stored = 1e-13;  // below, the rounding of the stored kernel may hold the error up
+      if (exhausted(c) || (c.worst_error < stored && c.worst_error > narrower / 2)) return {};
+      narrower = c.worst_error;
+    }
+    return {};
+  }
+
+  /// With the cheapest w axis that keeps the accuracy, or where the plane alone misses it, with one that is as exact as it.
+  GriddingCandidate with_w(const GriddingCandidate& plane) {
+    const double goal = plane.worst_error < target_ && target_ < HUGE_VAL ? target_ : 1.2 * plane.worst_error;
+    std::optional<GriddingCandidate> cheapest, most_exact;
+    int least = request_.kernel.min_width;
+    for (const double usual : usual_w_paddings)
+      for (int width = least; width <= request_.kernel.max_width; ++width) {
+        const double padding = std::max(usual, least_padding());
+        GriddingCandidate c = plane;
+        split(c, padding, width);
+        if (cheapest && c.cost_s >= cheapest->cost_s) break;
+        c.w = shelf_.axis(width, padding);
+        judge(c);
+        if (!most_exact || c.worst_error < most_exact->worst_error) most_exact = c;
+        if (c.worst_error > goal && !exhausted(c)) continue;
+        if (c.worst_error <= goal) cheapest = c;
+        least = width;
+        break;
+      }
+    return cheapest ? *cheapest : *most_exact;
+  }
+
+  /// With the polynomials of lowest degree that cost less than half a percent of the squared error, rounding counted in.
+  GriddingCandidate simplified(const GriddingCandidate& exact) const {
+    const bool somebodys_own = request_.kernel.min_width == request_.kernel.max_width;
+    if (somebodys_own || request_.lookup || !request_.shortest_polynomials) {
+      GriddingCandidate same = exact;
+      same.work.degree = exact.u.kernel.polynomial.degree();
+      return same;
+    }
+    GriddingCandidate simple = exact;
+    const double rounding2 = exact.rounding * exact.rounding / 2;  // of one axis, which hides what is smaller
+    const auto cut = [&](AxisKernel& axis) {
+      const double excess = 0.005 * (1 + rounding2 / std::max(axis.kernel.misfit.mean, 1e-40));
+      axis.kernel.polynomial = kernels::cheapest_polynomial(axis.kernel, excess);
+      axis.kernel.misfit = kernels::judge(axis.kernel.polynomial, axis.kernel.x0);
+    };
+    cut(simple.u);
+    cut(simple.v);
+    const bool wide = exact.work.has_w_axis();
+    const ImageGeometry& g = request_.geometry;
+    simple.u.misfit = axis_misfit(simple.u.kernel, wide ? exact.faceting.width : g.width, exact.work.nu);
+    simple.v.misfit = axis_misfit(simple.v.kernel, wide ? exact.faceting.height : g.height, exact.work.nv);
+    if (wide) {
+      cut(simple.w);
+      simple.w.misfit = simple.w.kernel.misfit;
+    }
+    judge(simple);
+    const bool lost = simple.worst_error > std::max(target_, exact.worst_error);
+    GriddingCandidate result = lost ? exact : simple;
+    result.work.degree = result.u.kernel.polynomial.degree();  // costs stay comparable: all by the degree assumed
+    return result;
+  }
+
+  /// The cheapest at each other padding, and the next narrower width at the best one.
+  std::vector<RejectedCandidate> neighbours(const GriddingCandidate& best) const {
+    std::map<double, RejectedCandidate> cheapest;
+    std::vector<RejectedCandidate> found;
+    for (const RejectedCandidate& r : considered_) {
+      const GriddingCandidate& c = r.candidate;
+      if (c.work.precision != best.work.precision) continue;
+      const bool same = c.padding_u == best.padding_u && c.padding_v == best.padding_v;
+      if (same && r.reason == Rejection::not_exact_enough && c.work.width == best.work.width - 1) found.push_back(r);
+      if (same || c.padding_u != c.padding_v || r.reason == Rejection::not_exact_enough) continue;
+      const auto [at, first] = cheapest.emplace(c.padding_u, r);
+      if (!first && c.cost_s < at->second.candidate.cost_s) at->second = r;
+    }
+    for (const auto& [padding, rejected] : cheapest) found.push_back(rejected);
+    return found;
+  }
+
+  GriddingRequest request_;
+  KernelShelf shelf_;
+  double target_;
+  std::vector<Faceting> ways_;
+  std::vector<double> usual_;  ///< paddings, the widest first
+  std::optional<GriddingCandidate> best_;
+  std::optional<GriddingCandidate> most_exact_;
+  std::vector<RejectedCandidate> considered_;
+};
+
+}  // namespace
+
+kernels::Misfit axis_misfit(const kernels::Kernel& kernel, int pixels, int fft_size) {
+  const bool made_for_them = kernel.x0 == 0.5 * pixels / fft_size;
+  const bool counted = pixels < continuum || (made_for_them && pixels < countable);
+  return counted ? kernels::judge_pixels(kernel.polynomial, pixels, fft_size) : kernel.misfit;
+}
+
+double unit_rounding(Precision precision, double samples) {
+  if (precision == Precision::double_precision) return 2.2e-16;  // twice the unit of rounding
+  // Taps and FFT; and sums of buffers on their way to the grid, of which the fullest cells take most.
+  return std::hypot(2.8e-7, 2.4e-8 * std::sqrt(samples / 2e5));
+}
+
+double phase_rounding(double turns) {
+  return 1.1e-16 * (1 + 2 * pi * turns);
+}
+
+void judge(GriddingCandidate& c) {
+  const double sums = c.u.noise_gain * c.v.noise_gain * c.w.noise_gain * unit_rounding(c.work.precision, c.work.samples);
+  c.rounding = std::hypot(sums, phase_rounding(c.turns));
+  const kernels::Misfit &u = c.u.misfit, &v = c.v.misfit, &w = c.w.misfit;
+  // An image of a single visibility at the worst position of its cell, or the visibilities of a single pixel at the corner.
+  const double worst = std::max(u.worst_mean + v.worst_mean + w.worst_mean, u.max + v.max + w.max);
+  c.expected_error = std::hypot(std::sqrt(u.mean + v.mean + w.mean), c.rounding);
+  c.worst_error = std::hypot(std::sqrt(worst), c.rounding);
+}
+
+GriddingChoice choose_gridding(const GriddingRequest& request) {
+  const double phase = max_w_phase_rad(request.max_abs_w, request.geometry);
+  const bool automatic = request.gridder == Gridder::automatic;
+  const double target = request.accuracy == 0 ? HUGE_VAL : request.accuracy;
+  const auto search = [&](bool wide) {
+    const double neglected = automatic && !wide && target < HUGE_VAL ? phase : 0;
+    std::vector<Faceting> ways;
+    if (wide) ways = facetings(request.geometry, request.max_abs_w, request.facets ? most_facets : 1);
+    GriddingChoice choice = Search(request, target - neglected, ways).run();
+    choice.w_phase_rad = phase;
+    return choice;
+  };
+  if (!automatic || request.accuracy != 0)
+    return search(request.gridder == Gridder::wide || (automatic && phase > neglected_part * request.accuracy));
+  GriddingChoice plane = search(false);
+  return phase > neglected_part * plane.best.worst_error ? search(true) : plane;
+}
+
+}  // namespace misfit::imager

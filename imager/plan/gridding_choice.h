@@ -1,0 +1,101 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "imager/plan/cost_model.h"
+#include "imager/plan/faceting.h"
+#include "imager/wide/wide_transform.h"
+#include "kernels/catalogue.h"
+
+namespace misfit::imager {
+
+/// Whether a transform has a w axis: where its phase matters, never, or always.
+enum class Gridder { automatic, standard, wide };
+
+/// What is asked of a transform.
+struct GriddingRequest {
+  ImageGeometry geometry;
+  double accuracy = 1e-6;  ///< ε: ‖I − I_DFT‖₂ ≤ ε ‖I_DFT‖₂; 0 = whatever the given width and padding reach
+  kernels::KernelFamily kernel = kernels::kernel_family("least-misfit");
+  int kernel_width = 0;       ///< cells along u and v; 0 = chosen
+  double padding = 0;         ///< FFT size over image size along u and v, at least 1.02; 0 = chosen
+  bool best_effort = false;   ///< take the most exact kernel when the accuracy is out of reach
+  std::uint64_t samples = 0;  ///< visibilities in a pass
+  int images = 2;             ///< made in a pass: the dirty image, and with 2 its PSF
+  double psf_accuracy = 0;    ///< of a PSF that may have a transform of its own; 0 = the accuracy
+  int threads = 1;
+  Gridder gridder = Gridder::automatic;
+  double max_abs_w = 0;                         ///< largest |w| of the samples, in wavelengths
+  std::optional<Precision> precision;           ///< of taps, grid and FFT; chosen where there is none
+  bool shortest_polynomials = true;             ///< of the lowest degree that costs less than half a percent of E
+  std::optional<kernels::TableOptions> lookup;  ///< tables of the full polynomials in their place
+  bool facets = true;                           ///< a w axis may split the image
+  std::size_t stack_bytes = WideTransformOptions().stack_bytes;          ///< memory for w planes
+  std::size_t samples_at_once = WideTransformOptions().samples_at_once;  ///< that a w axis gathers
+};
+
+/// Relative RMS of the rounding of taps, sums and FFT for a noise gain of 1, as measured: in single precision it grows with the
+/// number of samples, since sums do.
+double unit_rounding(Precision precision, double samples);
+inline constexpr double single_from = 1e-6;  ///< no less is asked of single precision
+
+/// Relative RMS of the rounding of exp(2πi turns) in double precision, where `turns` is the largest there is.
+double phase_rounding(double turns);
+
+/// One axis of the transform: a kernel over the pixels of an image.
+struct AxisKernel {
+  kernels::Kernel kernel;
+  kernels::Misfit misfit;  ///< over this image's pixels
+  double noise_gain = 1;
+};
+
+/// Over the pixels of an image. Over many the kernel's own means over |x| ≤ x0 serve, as they do where it was made for another
+/// x0.
+kernels::Misfit axis_misfit(const kernels::Kernel& kernel, int pixels, int fft_size);
+
+/// One way to do it, with what it costs and how exact it is.
+struct GriddingCandidate {
+  GriddingWork work;
+  double padding_u = 1;
+  double padding_v = 1;
+  double padding_w = 1;
+  AxisKernel u;
+  AxisKernel v;
+  AxisKernel w;         ///< all zero errors without a w axis
+  Faceting faceting;    ///< with a w axis
+  double turns = 0;     ///< the most that phases reach beside those of the FFT: of w, and of an image off the phase centre
+  double cost_s = 0;    ///< by the fixed constants; see CostModel
+  double rounding = 0;  ///< RMS of rounding, relative
+  double expected_error = 0;  ///< RMS error of image and prediction relative to data with random phases, √(E_u + E_v + E_w)
+  double worst_error = 0;     ///< the same for the worst position of samples in their cells, or the worst pixel of a model
+};
+
+/// Fills in the errors from the axes and the precision.
+void judge(GriddingCandidate& candidate);
+
+enum class Rejection { costs_more, not_exact_enough };
+
+/// A neighbour of the choice that was not taken. One that costs more may not have been judged: its width is then the least that
+/// can do.
+struct RejectedCandidate {
+  GriddingCandidate candidate;
+  Rejection reason = Rejection::costs_more;
+};
+
+struct GriddingChoice {
+  GriddingCandidate best;  ///< the cheapest that reaches the accuracy, or the most exact
+  bool reached = true;
+  double w_phase_rad = 0;                   ///< the largest that w makes over the image; neglected unless `best` has a w axis
+  std::vector<RejectedCandidate> rejected;  ///< the cheapest at each other padding, and the widths next to the best
+};
+
+/// Part of the accuracy that the neglected phase of w may take.
+inline constexpr double neglected_part = 0.3;
+
+/// The cheapest way that reaches the accuracy, by the fixed constants of CostModel: width along u and v and along w, padding
+/// for each axis, facets, precision, and degree of the polynomials.
+GriddingChoice choose_gridding(const GriddingRequest& request);
+
+}  // namespace misfit::imager

@@ -1,0 +1,304 @@
+#include "imager/plan/gridding_plan.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <stdexcept>
+
+#include "imager/constants.h"
+
+namespace misfit::imager {
+namespace {
+
+std::string text(const char* format, double value) {
+  char buffer[64];
+  std::snprintf(buffer, sizeof buffer, format, value);
+  return buffer;
+}
+
+std::string width_and_padding(const GriddingCandidate& c) {
+  return "width " + std::to_string(c.work.width) + " at padding " + text("%.2f", c.padding_u);
+}
+
+/// "width 9 at padding 1.40 costs 1.21×, width 7 at padding 1.60 reaches 2e-6"
+std::string text_of(const GriddingChoice& choice) {
+  std::string all;
+  for (const RejectedCandidate& r : choice.rejected) {
+    const bool dear = r.reason == Rejection::costs_more;
+    all += (all.empty() ? "" : ", ") + width_and_padding(r.candidate) +
+           (dear ? " costs " + text("%.2f×", r.candidate.cost_s / choice.best.cost_s)
+                 : " reaches " + text("%.2g", r.candidate.worst_error));
+  }
+  return all;
+}
+
+std::string times(int a, int b) {
+  return std::to_string(a) + " × " + std::to_string(b);
+}
+
+/// How w is dealt with.
+Plan w_decisions(const GriddingRequest& request, const GriddingChoice& choice) {
+  const std::string phase = "its phase reaches " + text("%.2g", choice.w_phase_rad) + " rad over this image";
+  const GriddingWork& work = choice.best.work;
+  if (!work.has_w_axis())
+    return {{"w planes", "left out",
+             request.gridder == Gridder::standard ? "asked for, although " + phase
+                                                  : phase + ", less than what the accuracy leaves to it"}};
+  const Faceting& way = choice.best.faceting;
+  const double turns = choice.w_phase_rad / (2 * pi);
+  const double left = *std::max_element(way.turns.begin(), way.turns.end());
+  const double whole = static_cast<double>(request.geometry.width) * request.geometry.height;
+  const double equal = work.planes * (static_cast<double>(way.width) * way.height) / whole;
+  return {{"w axis", "width " + std::to_string(work.width_w) + " at padding " + text("%.2f", choice.best.padding_w), phase},
+          {"facets", times(way.along_l, way.along_m),
+           "each on its own tangent plane: at most " + text("%.3g", left) + " of " + text("%.3g", turns) +
+               " turns are left to the w axis"},
+          {"w planes", std::to_string(work.planes) + " in all facets, w ≥ 0 alone",
+           "FFTs as of " + text("%.1f", equal) + " planes of the whole image; V(−u, −v, −w) = conj V(u, v, w)"}};
+}
+
+Plan decisions_of(const GriddingRequest& request, const GriddingPlan& plan) {
+  const WideTransformOptions& o = plan.options;
+  const bool single = o.precision == Precision::single_precision;
+  const std::string because_accuracy = request.accuracy == 0 ? "as asked"
+                                                             : "worst position within a cell, or pixel at the corner, gives " +
+                                                                   text("%.2g", plan.worst_error) + ", accuracy asked " +
+                                                                   text("%.2g", request.accuracy);
+  const std::string because_evaluation = request.lookup || !request.shortest_polynomials
+                                             ? "as asked"
+                                             : "adds less than 0.5% to the squared error, rounding counted in";
+  GriddingCandidate in_single = plan.choice.best;
+  in_single.work.precision = Precision::single_precision;
+  judge(in_single);
+  const std::string rejected = text_of(plan.choice);
+  const std::string others = rejected.empty() ? "" : "; " + rejected;
+  Plan decisions = {
+      {"kernel", o.kernel_u.name, "expected error of random data " + text("%.2g", plan.expected_error)},
+      {"kernel width", std::to_string(o.kernel_u.width()), because_accuracy},
+      {"FFT size", times(o.nu, o.nv),
+       "padding " + text("%.3f", plan.choice.best.padding_u) + " along u is the cheapest that keeps the accuracy" + others},
+      {"FFT pruning", std::to_string(plan.choice.best.work.columns) + " of " + std::to_string(o.nu) + " columns",
+       "only those that the image keeps are transformed along v"},
+      {"kernel evaluation", evaluation_of(o), because_evaluation},
+      {"precision of grid and FFT", single ? "single" : "double",
+       request.precision ? "as asked; rounding adds " + text("%.1g", plan.rounding)
+       : single          ? "rounding adds " + text("%.1g", plan.rounding)
+                         : "single precision would add " + text("%.1g", in_single.rounding) + " of rounding" +
+                      (request.accuracy < single_from ? ", and is not trusted below " + text("%.0e", single_from)
+                                                      : ", or cost more")},
+  };
+  const Plan of_w = w_decisions(request, plan.choice);
+  decisions.insert(decisions.end(), of_w.begin(), of_w.end());
+  if (!o.has_w_axis())
+    decisions.push_back({"half of the uv plane", "gridded alone",
+                         "the image is real, so V(−u, −v) = conj V(u, v): half the memory, half the FFT"});
+  return decisions;
+}
+
+}  // namespace
+
+void check_request(const GriddingRequest& request) {
+  const kernels::KernelFamily& family = request.kernel;
+  if (request.kernel_width != 0 && (request.kernel_width < family.min_width || request.kernel_width > family.max_width))
+    throw std::invalid_argument("kernel width " + std::to_string(request.kernel_width) + " not in [" +
+                                std::to_string(family.min_width) + ", " + std::to_string(family.max_width) +
+                                "], which kernel " + family.name + " offers");
+  if (request.padding != 0 && !(request.padding >= 1.02 && request.padding <= 10))
+    throw std::invalid_argument("padding " + text("%g", request.padding) + " not in [1.02, 10]");
+  constexpr double typed = 1e-3;  // what a padding of four digits may be off by
+  if (request.padding != 0 && request.padding < (1 - typed) * 0.5 / family.max_x0)
+    throw std::invalid_argument("padding " + text("%g", request.padding) + " is less than " +
+                                text("%.4g", 0.5 / family.max_x0) + ", which kernel " + family.name +
+                                " needs, made for x0 up to " + text("%.4g", family.max_x0));
+  if (!(request.max_abs_w >= 0 && std::isfinite(request.max_abs_w)))
+    throw std::invalid_argument("largest |w| is " + text("%g", request.max_abs_w) + " wavelengths, expected 0 or more");
+  if (!(request.accuracy >= 0 && request.accuracy < 1))
+    throw std::invalid_argument("accuracy " + text("%g", request.accuracy) + " not in (0, 1)");
+  if (!(request.psf_accuracy >= 0 && request.psf_accuracy < 1))
+    throw std::invalid_argument("accuracy of the PSF " + text("%g", request.psf_accuracy) + " not in (0, 1)");
+}
+
+std::string evaluation_of(const PlaneTransformOptions& options) {
+  if (!options.lookup) return "polynomials of degree " + std::to_string(options.kernel_u.polynomial.degree());
+  return std::string(kernels::interpolation_names[static_cast<std::size_t>(options.lookup->interpolation)]) + " tables of " +
+         std::to_string(options.lookup->samples_per_cell) + " entries a cell";
+}
+
+double nameable_accuracy(double worst_error) {
+  constexpr double two_digits = 1.06;  // may round down by 5%
+  constexpr double stored = 1e-13;     // below, the rounding of stored kernels differs from width to width
+  return (worst_error < stored ? 2 : two_digits) * worst_error;
+}
+
+namespace {
+
+/// Rounding where all samples lie in one cell, which makes it largest, for a noise gain of 1: sums that grow evenly are half
+/// their last value on average, and each addition errs by a unit of what the sum is; taps, products and the FFT by some more.
+double adverse_rounding(const WideTransformOptions& options, double samples) {
+  const double unit = options.precision == Precision::single_precision ? 0x1p-24 : 0x1p-53;
+  constexpr double taps_and_fft = 8;
+  return unit * (taps_and_fft + longest_sum(options, samples) / 2);
+}
+
+/// |1 − R_u R_v R_w| ≤ (1 + |1 − R_u|)(1 + |1 − R_v|)(1 + |1 − R_w|) − 1 for the responses R of the axes. Over the pixels the
+/// RMS of products of u and v is that of the factors; q is spread over them in its own way, so that along w the largest counts.
+void set_bounds(GriddingPlan& plan) {
+  const GriddingCandidate& best = plan.choice.best;
+  constexpr double between = 1.02;  // maxima were looked for at points, and means taken as integrals
+  const auto all = [](double u, double v, double w) {
+    return (1 + between * std::sqrt(u)) * (1 + between * std::sqrt(v)) * (1 + between * std::sqrt(w)) - 1;
+  };
+  const kernels::Misfit &u = best.u.misfit, &v = best.v.misfit, &w = best.w.misfit;
+  const double rounding = adverse_rounding(plan.options, best.work.samples);
+  double largest_gain = 1;
+  for (const AxisKernel* axis : {&best.u, &best.v, &best.w})
+    if (axis->kernel.width() > 0) largest_gain *= kernels::largest_noise_gain(axis->kernel.polynomial, axis->kernel.x0);
+  const double gain = best.u.noise_gain * best.v.noise_gain * best.w.noise_gain;
+  constexpr double several = 6;  // steps that lead to a phase, each rounded by less than the law's RMS
+  const double phases = several * phase_rounding(best.turns);
+  plan.bound_rms = all(u.worst_mean, v.worst_mean, w.worst) + gain * rounding + phases;
+  plan.bound_max = all(u.worst, v.worst, w.worst) + largest_gain * rounding + phases;
+}
+
+/// With one transform for all images.
+GriddingPlan plan_together(const GriddingRequest& request) {
+  GriddingPlan plan;
+  plan.request = request;
+  plan.choice = choose_gridding(request);
+  const GriddingCandidate& best = plan.choice.best;
+  if (!plan.choice.reached && !request.best_effort)
+    throw std::invalid_argument("accuracy " + text("%g", request.accuracy) + " is out of reach of kernel " +
+                                request.kernel.name +
+                                (request.kernel_width == 0 ? "" : " of width " + std::to_string(request.kernel_width)) +
+                                (request.padding == 0 ? "" : " at padding " + text("%g", request.padding)) + "; it can reach " +
+                                text("%.2g", nameable_accuracy(best.worst_error)) + " for this image, with width " +
+                                std::to_string(best.work.width) + " at padding " + text("%g", best.padding_u));
+  static_cast<PlaneTransformOptions&>(plan.options) = {request.geometry, best.work.nu,        best.work.nv,    best.u.kernel,
+                                                       best.v.kernel,    best.work.precision, request.threads, request.lookup};
+  if (best.work.has_w_axis()) {
+    plan.options.kernel_w = best.w.kernel;
+    plan.options.facets_l = best.faceting.along_l;
+    plan.options.facets_m = best.faceting.along_m;
+    plan.options.stack_bytes = request.stack_bytes;
+    plan.options.samples_at_once = request.samples_at_once;
+  }
+  plan.expected_error = best.expected_error;
+  plan.rounding = best.rounding;
+  plan.worst_error = best.worst_error;
+  set_bounds(plan);
+  plan.decisions = decisions_of(request, plan);
+  return plan;
+}
+
+/// Nobody has asked for a certain kernel, nor for a certain way.
+bool free_to_choose(const GriddingRequest& r) {
+  return r.kernel.name == GriddingRequest().kernel.name && r.accuracy != 0 && r.kernel_width == 0 && r.padding == 0 &&
+         r.gridder == Gridder::automatic && !r.precision && !r.lookup && r.shortest_polynomials && r.samples > 0;
+}
+
+/// Seconds of the terms of direct sums, for each pixel.
+double direct_pixel_s(const GriddingRequest& request) {
+  return 1e-9 * CostModel().direct_ns * static_cast<double>(request.samples);
+}
+
+/// Has models of few pixels predicted by direct sums.
+void use_direct_predictions(GriddingPlan& plan) {
+  if (!free_to_choose(plan.request)) return;
+  GriddingWork one = plan.choice.best.work;
+  one.images = 1;
+  plan.direct_pixels = static_cast<std::uint64_t>(CostModel().seconds(one) / direct_pixel_s(plan.request));
+  if (plan.direct_pixels > 0)
+    plan.decisions.push_back({"prediction",
+                              "by direct sums for models of up to " + std::to_string(plan.direct_pixels) + " pixels",
+                              "FFTs and degridding cost less only for more"});
+}
+
+/// Has the images made by direct sums where that costs less.
+void use_direct_images(GriddingPlan& plan, double gridding_s) {
+  const GriddingRequest& r = plan.request;
+  if (!free_to_choose(r)) return;
+  const double pixels = static_cast<double>(r.geometry.pixels());
+  const double direct_s = r.images * pixels * direct_pixel_s(r);
+  const double turns = 0.25 * (r.geometry.width + r.geometry.height) + plan.choice.w_phase_rad / (2 * pi);
+  const double rounding = phase_rounding(turns);
+  if (direct_s >= gridding_s || rounding > r.accuracy) return;
+  plan.direct = true;
+  plan.psf.reset();
+  plan.direct_pixels = r.geometry.pixels();
+  plan.expected_error = plan.worst_error = plan.rounding = rounding;
+  plan.bound_rms = plan.bound_max = 6 * plan.rounding;
+  plan.decisions = {
+      {"images and predictions", "by direct sums",
+       "for so few samples they cost " + text("%.2g", direct_s / gridding_s) + " of gridding and FFTs; w counts in full"}};
+}
+
+Decision psf_decision(const GriddingPlan& plan, double together_s) {
+  if (!plan.psf) return {"PSF", "shares the image's transform", "taps, order and coordinates serve both"};
+  const WideTransformOptions& o = plan.psf->options;
+  const double apart_s = plan.choice.best.cost_s + plan.psf->choice.best.cost_s;
+  return {"PSF",
+          "has its own transform, " + width_and_padding(plan.psf->choice.best) +
+              (o.has_w_axis() ? ", " + times(o.facets_l, o.facets_m) + " facets" : ""),
+          "to " + text("%.2g", plan.psf->request.accuracy) + " it costs less: " + text("%.2f", apart_s / together_s) +
+              " of one transform for both"};
+}
+
+/// By gridding and FFTs, one transform for all images or two, whichever costs less.
+GriddingPlan plan_images(const GriddingRequest& request) {
+  if (request.images < 2) return plan_together(request);
+  const double psf_accuracy = request.psf_accuracy == 0 || request.accuracy == 0 ? request.accuracy : request.psf_accuracy;
+  GriddingRequest both = request;
+  both.accuracy = std::min(request.accuracy, psf_accuracy);
+  GriddingPlan together = plan_together(both);
+  together.request = request;
+  const double together_s = together.choice.best.cost_s;
+  if (psf_accuracy != request.accuracy) {
+    GriddingRequest alone = request;
+    alone.images = 1;
+    GriddingPlan apart = plan_together(alone);
+    alone.accuracy = psf_accuracy;
+    alone.best_effort = true;
+    apart.psf = std::make_shared<GriddingPlan>(plan_together(alone));
+    if (apart.psf->choice.reached && apart.choice.best.cost_s + apart.psf->choice.best.cost_s < together_s) {
+      apart.decisions.push_back(psf_decision(apart, together_s));
+      apart.request = request;
+      return apart;
+    }
+  }
+  together.decisions.push_back(psf_decision(together, together_s));
+  return together;
+}
+
+}  // namespace
+
+GriddingPlan plan_gridding(const GriddingRequest& request) {
+  check_request(request);
+  GriddingPlan plan = plan_images(request);
+  const double gridding_s = plan.choice.best.cost_s + (plan.psf ? plan.psf->choice.best.cost_s : 0);
+  use_direct_predictions(plan);
+  use_direct_images(plan, gridding_s);
+  return plan;
+}
+
+TransformMemory memory_of(const GriddingPlan& plan) {
+  if (plan.direct) {
+    const double image = static_cast<double>(plan.request.geometry.pixels()) * sizeof(double);
+    return {image + 64.0 * static_cast<double>(plan.request.samples), image, 0};
+  }
+  if (plan.psf) {
+    GriddingPlan image = plan;
+    image.psf.reset();
+    const TransformMemory of_image = memory_of(image), of_psf = memory_of(*plan.psf);
+    return {of_image.visibilities, of_psf.visibilities + of_psf.psf, std::max(of_image.fft, of_psf.fft)};
+  }
+  if (!plan.options.has_w_axis()) return memory_of(static_cast<const PlaneTransformOptions&>(plan.options));
+  const GriddingCandidate& best = plan.choice.best;
+  const std::vector<double>& turns = best.faceting.turns;
+  const double most = *std::max_element(turns.begin(), turns.end());
+  Faceting largest = best.faceting;
+  largest.turns = {most};
+  const int planes = largest.planes(best.padding_w, best.work.width_w);
+  return memory_of(plan.options, static_cast<double>(plan.request.samples), planes);
+}
+
+}  // namespace misfit::imager

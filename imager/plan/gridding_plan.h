@@ -1,0 +1,45 @@
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "imager/plan/gridding_choice.h"
+#include "imager/plan/plan.h"
+#include "imager/wide/wide_transform.h"
+
+namespace misfit::imager {
+
+/// How it will be done: the cheapest that keeps the promise.
+struct GriddingPlan {
+  GriddingRequest request;       ///< what was asked
+  WideTransformOptions options;  ///< with a w axis where the scene needs one
+  double expected_error = 0;     ///< RMS error of image and prediction relative to data with random phases, √(E_u + E_v)
+  double worst_error = 0;        ///< the same for the worst position of samples in their cells, or the worst pixel of a model
+  double rounding = 0;           ///< the part of rounding in both
+  double bound_rms = 0;          ///< bound on the RMS error of the image over Σ w|V| / Σ w, whatever the data
+  double bound_max = 0;          ///< bound on any pixel's error over Σ w|V| / Σ w, whatever the data
+  GriddingChoice choice;         ///< with the neighbours that were rejected
+  bool direct = false;           ///< images are made by direct sums, which cost less for so few samples
+  std::uint64_t direct_pixels = 0;          ///< a model of no more pixels is predicted by direct sums
+  std::shared_ptr<const GriddingPlan> psf;  ///< of the PSF, where it has a transform of its own
+  Plan decisions;
+};
+
+/// Throws std::invalid_argument when the kernel's width, the padding or the accuracy lie outside what can be asked; whether the
+/// accuracy can be reached takes plan_gridding to tell.
+void check_request(const GriddingRequest& request);
+
+/// The accuracy to name, in two digits, where `worst_error` is the best that can be had: asked for, it will be granted.
+double nameable_accuracy(double worst_error);
+
+/// Throws std::invalid_argument as check_request does, and when the accuracy is out of reach of the kernel or of double
+/// precision; the message says what can be reached.
+GriddingPlan plan_gridding(const GriddingRequest& request);
+
+/// How its taps are had: "polynomials of degree 9", or "cubic tables of 64 entries a cell".
+std::string evaluation_of(const PlaneTransformOptions& options);
+
+/// The memory that the planned transform takes.
+TransformMemory memory_of(const GriddingPlan& plan);
+
+}  // namespace misfit::imager

@@ -1,0 +1,55 @@
+#include "imager/plan/memory_use.h"
+
+#include <algorithm>
+#include <vector>
+
+namespace misfit::imager {
+namespace {
+
+constexpr double process_bytes = 80e6;  // 40 MB with the smallest images, and up to 34 MB that the allocator does not give back
+constexpr double pixel_bytes = sizeof(double);
+constexpr double sample_bytes = sizeof(std::complex<float>) + sizeof(float);
+constexpr double row_bytes = 3 * sizeof(double);
+/// For each sample of the block at hand: its run twice while runs are sorted, at worst one a sample, and room to grow.
+constexpr double order_bytes = 2 * 12 + 8;
+constexpr double residual_bytes = 2 * sizeof(double);
+
+}  // namespace
+
+MemoryUse peak_memory(const MemoryDemand& d, const StreamingOptions& streaming) {
+  const TransformMemory& t = d.transform;
+  const double image = d.pixels * pixel_bytes;
+  const double block_samples = std::min(d.block_samples, d.samples);
+  const double read_ahead = streaming.keep ? 0 : static_cast<double>(streaming.ahead + 1);  // and the one at hand
+  const double block_rows = d.samples == 0 ? 0 : d.rows * block_samples / d.samples;
+  const double blocks = read_ahead * (block_samples * sample_bytes + block_rows * row_bytes) + block_samples * order_bytes;
+  const double kept = streaming.keep ? d.samples * sample_bytes + d.rows * row_bytes : 0;
+
+  const double drawn_images = 1 + (d.clean ? 4 : 2) + (d.mask ? 1 : 0);  // one more to find the median of each
+
+  std::vector<MemoryUse> stages;
+  stages.push_back({"the samples are gridded", process_bytes, kept, blocks, t.visibilities + t.psf, 0, 0});
+  stages.push_back({"the dirty image is made", process_bytes, kept, 0, t.visibilities + t.psf, t.fft, image});
+  stages.push_back({"the PSF is made", process_bytes, kept, 0, t.psf, t.fft, 2 * image});
+  // Of a model image.
+  if (d.verify) stages.push_back({"prediction is verified", process_bytes, kept, 0, t.visibilities, t.fft, 3 * image});
+  if (d.clean) {
+    const double masks = d.mask ? 2 : 0;  // it, and the residual within
+    // Where every pixel is a component of the model, those of two models and of what they are sorted in.
+    const double components = d.start_model ? 3 * 24 / pixel_bytes : 0;
+    const double lasting = masks + components + 2;  // dirty image and PSF
+    // The residual; for a convolution, what is convolved and what comes of it. In single precision the residual and the PSF,
+    // and two transforms, of 3/2 the size either way.
+    stages.push_back({"the minor cycles run", process_bytes, kept, 0, 3.25 * image, 0, (lasting + 3) * image});
+    // Of a model image.
+    const double residual_blocks = blocks + block_samples * residual_bytes;
+    stages.push_back(
+        {"the residual is gridded", process_bytes, kept, residual_blocks, 2 * t.visibilities, 0, (lasting + 1) * image});
+    stages.push_back({"the residual image is made", process_bytes, kept, 0, t.visibilities, t.fft, (lasting + 2) * image});
+  }
+  stages.push_back({"the pictures are drawn", process_bytes, 0, 0, 0, 0, drawn_images * image});
+  return *std::max_element(stages.begin(), stages.end(),
+                           [](const MemoryUse& a, const MemoryUse& b) { return a.total() < b.total(); });
+}
+
+}  // namespace misfit::imager

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "imager/plane/plane_transform.h"
+#include "imager/streamed_visibilities.h"
+
+namespace misfit::imager {
+
+/// What decides how much memory a run of imaging takes.
+struct MemoryDemand {
+  TransformMemory transform;
+  double pixels = 0;
+  double rows = 0;           ///< of the visibilities
+  double samples = 0;        ///< a row's channels, over all rows
+  double block_samples = 0;  ///< in a block at most
+  bool verify = false;
+  bool clean = false;
+  bool mask = false;         ///< where components may lie
+  bool start_model = false;  ///< that CLEAN begins with
+};
+
+/// The memory held at one time, in bytes, by what it is for.
+struct MemoryUse {
+  std::string when;         ///< what goes on then: "the PSF is made"
+  double process = 0;       ///< the program, its libraries, and what is too small to count
+  double visibilities = 0;  ///< kept for later passes
+  double blocks = 0;        ///< read ahead, and put in order
+  double grids = 0;
+  double fft = 0;  ///< buffers of the threads
+  double images = 0;
+
+  double total() const { return process + visibilities + blocks + grids + fft + images; }
+};
+
+/// The memory held at the time at which it is most. A second pass that make_accurate_images finds necessary may take larger
+/// grids.
+MemoryUse peak_memory(const MemoryDemand& demand, const StreamingOptions& streaming);
+
+}  // namespace misfit::imager

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <memory>
+
+#include "imager/direct/direct_transform.h"
+#include "imager/plan/gridding_plan.h"
+#include "imager/transform.h"
+
+namespace misfit::imager {
+
+/// The transform of a plan: gridding and FFTs, or direct sums where the plan found them cheaper.
+class PlannedTransform : public Transform {
+ public:
+  explicit PlannedTransform(const GriddingPlan& plan);
+
+  std::unique_ptr<AdjointSum> adjoint(bool with_psf) const override { return images_->adjoint(with_psf); }
+  /// By direct sums over a model of few pixels, with w even where gridding may leave it out.
+  std::unique_ptr<Prediction> predict(const Image& model) const override;
+  /// What makes images, and predicts larger models.
+  const Transform& images() const { return *images_; }
+
+ private:
+  std::unique_ptr<Transform> images_;
+  DirectSums direct_;
+  std::uint64_t direct_pixels_;
+};
+
+}  // namespace misfit::imager

@@ -1,0 +1,153 @@
+#include "imager/plane/tile_order.h"
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "imager/parallel.h"
+#include "imager/sampling.h"
+#include "imager/span_sums.h"
+
+namespace misfit::imager {
+namespace {
+
+constexpr std::size_t chunks = 32;  // fixed, so that the order of sums does not depend on the number of threads
+constexpr std::uint32_t longest_run = (1U << 12) - 1;
+
+struct TiledRun {
+  std::uint32_t tile;
+  ChannelRun run;
+};
+
+/// The samples of a row whose first tap falls into one tile, by their position in cells; none when they lie beyond the grid.
+struct TileBox {
+  std::uint32_t tile;
+  double u_low, u_end, v_low, v_end;
+
+  TileBox(double u, double v, bool folded, const GridShape& s) {
+    const PeriodicPosition at(u, v, folded, s);
+    const int column = s.first_column(TapPosition(at.u, s.width).first) / s.tile;
+    const int line = s.first_row(TapPosition(at.v, s.width).first) / s.tile;
+    tile = static_cast<std::uint32_t>(line * s.tiles_u() + column);
+    const double to_first = 0.5 * s.width - 1;  // the first tap is the whole part of position − to_first
+    u_low = std::max(column * s.tile - s.first_column(0) + to_first, -0.5 * s.nu);
+    v_low = line * s.tile - s.first_row(0) + to_first;
+    u_end = std::min(column * s.tile - s.first_column(0) + s.tile + to_first, beyond(0.5 * s.nu));
+    v_end = std::min(line * s.tile - s.first_row(0) + s.tile + to_first, beyond(0.5 * s.nv));
+  }
+  bool holds(double u, double v) const { return u >= u_low && u < u_end && v >= v_low && v < v_end; }
+
+ private:
+  static double beyond(double edge) { return std::nextafter(edge, 2 * edge); }
+};
+
+/// The runs of a range of rows, in order.
+class RunFinder {
+ public:
+  RunFinder(const VisibilityBlock& block, const std::vector<std::complex<double>>* visibility, const GridShape& shape,
+            double cell_rad, Wanted wanted)
+      : block_(block), visibility_(visibility), shape_(shape), scale_(shape, cell_rad), wanted_(wanted) {}
+
+  void find(std::size_t begin_row, std::size_t end_row) {
+    span_begin_ = span_end_ = begin_row * block_.channels();
+    for (std::size_t row = begin_row; row < end_row; ++row) find_in_row(row);
+    close_span();
+  }
+
+  std::vector<TiledRun> runs;
+  SampleSums sums;
+
+ private:
+  void find_in_row(std::size_t row) {
+    const FoldedRow folded(&block_.uvw_m[3 * row], scale_);
+    const std::size_t channels = block_.channels();
+    const double* const frequency = block_.frequency_hz.data();
+    for (std::size_t channel = 0; channel < channels;) {
+      const double u = folded.u_per_hz * frequency[channel], v = folded.v_per_hz * frequency[channel];
+      std::size_t end = channel + 1;
+      if (wants(row * channels + channel, u, v)) {
+        const TileBox box(u, v, folded.folded, shape_);
+        while (end < channels && end - channel < longest_run && usable(row * channels + end) &&
+               box.holds(folded.u_per_hz * frequency[end], folded.v_per_hz * frequency[end]))
+          ++end;
+        add_run(box.tile, row, channel, end);
+      }
+      channel = end;
+    }
+  }
+
+  bool usable(std::size_t sample) const { return wanted_ == Wanted::all || block_.weight[sample] != 0; }
+
+  bool wants(std::size_t sample, double u, double v) {
+    if (!usable(sample)) return false;
+    if (wanted_ != Wanted::imaging || inside_grid(u / shape_.nu, v / shape_.nv)) return true;
+    ++sums.outside_grid;
+    return false;
+  }
+
+  void add_run(std::uint32_t tile, std::size_t row, std::size_t channel, std::size_t end) {
+    runs.push_back({tile,
+                    {static_cast<std::uint32_t>(row), static_cast<std::uint32_t>(channel) & 0xFFFFF,
+                     static_cast<std::uint32_t>(end - channel) & longest_run}});
+    if (wanted_ != Wanted::imaging) return;
+    sums.used += end - channel;
+    const std::size_t first = row * block_.channels() + channel;
+    if (std::any_of(block_.weight.data() + span_end_, block_.weight.data() + first, [](float w) { return w != 0; })) {
+      close_span();
+      span_begin_ = first;
+    }
+    span_end_ = row * block_.channels() + end;
+  }
+
+  /// Sums are taken of spans, since whole vectors are quicker: all samples of weight other than 0 from the first to the last.
+  void close_span() {
+    const float* const weight = block_.weight.data() + span_begin_;
+    const std::size_t count = span_end_ - span_begin_;
+    if (visibility_ != nullptr) add_span_to_sums(weight, visibility_->data() + span_begin_, count, sums);
+    if (visibility_ == nullptr) add_span_to_sums(weight, block_.visibility.data() + span_begin_, count, sums);
+  }
+
+  const VisibilityBlock& block_;
+  const std::vector<std::complex<double>>* visibility_;
+  const GridShape& shape_;
+  CellScale scale_;
+  Wanted wanted_;
+  std::size_t span_begin_ = 0;
+  std::size_t span_end_ = 0;
+};
+
+}  // namespace
+
+void check_channels(std::size_t channels) {
+  constexpr std::size_t most = 1U << 20;
+  if (channels > most)
+    throw std::invalid_argument(std::to_string(channels) + " channels in one spectral window; at most " + std::to_string(most) +
+                                " are supported");
+}
+
+TileOrder order_by_tile(const VisibilityBlock& block, const std::vector<std::complex<double>>* visibility,
+                        const GridShape& shape, double cell_rad, Wanted wanted, int threads) {
+  check_channels(block.channels());
+  std::vector<RunFinder> part(chunks, RunFinder(block, visibility, shape, cell_rad, wanted));
+  parallel_for(chunks, threads,
+               [&](std::size_t i) { part[i].find(block.rows() * i / chunks, block.rows() * (i + 1) / chunks); });
+
+  const auto tiles = static_cast<std::size_t>(shape.tiles_u()) * static_cast<std::size_t>(shape.tiles_v());
+  TileOrder order{std::vector<std::size_t>(tiles + 1), std::vector<std::size_t>(tiles), {}, 0, {}};
+  for (const double frequency : block.frequency_hz)
+    order.highest_frequency_hz = std::max(order.highest_frequency_hz, frequency);
+  for (const RunFinder& p : part) {
+    order.sums += p.sums;
+    for (const TiledRun& r : p.runs) {
+      ++order.begin[r.tile + 1];
+      order.samples[r.tile] += r.run.count;
+    }
+  }
+  for (std::size_t tile = 0; tile < tiles; ++tile) order.begin[tile + 1] += order.begin[tile];
+  order.run.resize(order.begin.back());
+  std::vector<std::size_t> next(order.begin.begin(), order.begin.end() - 1);
+  for (const RunFinder& p : part)
+    for (const TiledRun& r : p.runs) order.run[next[r.tile]++] = r.run;
+  return order;
+}
+
+}  // namespace misfit::imager

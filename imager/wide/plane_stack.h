@@ -1,0 +1,93 @@
+#pragma once
+
+#include <complex>
+#include <cstddef>
+#include <vector>
+
+#include "imager/big_array.h"
+#include "imager/wide/stack_loops.h"
+
+namespace misfit::imager {
+
+/// The shape of a grid over the whole uv plane. Cell (p, q) stands for u = −p/(nu · cell), v = q/(nv · cell), both taken modulo
+/// the grid; a margin keeps the taps that leave it, and is folded in before the FFT.
+struct StackShape {
+  int nu = 0;     ///< length of the FFT along u
+  int nv = 0;     ///< along v
+  int width = 0;  ///< of the kernel, in cells
+  int tile = 0;   ///< side of a tile, in cells; at least `width`
+
+  int margin() const { return width / 2; }
+  int tiles_u() const { return (nu + 2 * margin() + 1) / tile + 1; }
+  int tiles_v() const { return (nv + 2 * margin() + 1) / tile + 1; }
+  /// Storage, margins included: room for a whole tile with the taps that leave it.
+  int chunks() const { return tiles_u() + 1; }
+  int columns() const { return chunks() * tile; }
+  int rows() const { return (tiles_v() + 1) * tile; }
+  std::size_t cells() const { return static_cast<std::size_t>(columns()) * static_cast<std::size_t>(rows()); }
+};
+
+/// Rows of storage, [begin, end).
+struct RowRange {
+  int begin = 0;
+  int end = 0;
+};
+
+/// Some neighbouring planes of constant w, each with one or more complex grids. What a tile holds of one row lies together:
+/// [row][chunk][plane][grid][column in chunk], a chunk being as wide as a tile. Memory is used again from one facet to the
+/// next, and by the FFTs: between the transforms along u and v, row q + margin holds row q of the grid by columns of the image.
+template <typename Real>
+class PlaneStack {
+ public:
+  PlaneStack(const StackShape& stack_shape, int grid_count) : shape(stack_shape), grids(grid_count) {}
+
+  /// Makes room for that many planes, no row of which is used.
+  void reserve(int plane_count);
+  /// Makes rows zero that were not used before.
+  void use_rows(const std::vector<RowRange>& ranges, int threads);
+
+  /// The cells of the tile at (tile_u, tile_v) from a plane on.
+  StackCells<std::complex<Real>> cells_of(int tile_u, int tile_v, int plane, int plane_count) {
+    return cells_at(chunk(tile_v * shape.tile, tile_u, plane, 0), plane_count);
+  }
+  StackCells<const std::complex<Real>> cells_of(int tile_u, int tile_v, int plane, int plane_count) const {
+    return cells_at(chunk(tile_v * shape.tile, tile_u, plane, 0), plane_count);
+  }
+
+  std::size_t bytes_a_row() const { return offset(1, 0, 0, 0) * sizeof(std::complex<Real>); }
+
+  /// Calls visit(r) for the rows of storage that stand for row q of the grid: its own first, and margins.
+  template <typename Visit>
+  void for_rows(int q, const Visit& visit) const {
+    for (const int other : {q, q - shape.nv, q + shape.nv})
+      if (other >= -shape.margin() && other <= shape.nv + shape.margin()) visit(other + shape.margin());
+  }
+  /// Whether row q of any grid may hold something.
+  bool holds(int q) const;
+
+  std::complex<Real>* chunk(int row, int index, int plane, int grid) { return cell_.data() + offset(row, index, plane, grid); }
+  const std::complex<Real>* chunk(int row, int index, int plane, int grid) const {
+    return cell_.data() + offset(row, index, plane, grid);
+  }
+
+  StackShape shape;
+  int planes = 0;
+  int grids = 1;
+  std::vector<char> row_used;  ///< [row]: whether any plane may hold something there; the content of others is undefined
+
+ private:
+  template <typename Complex>
+  StackCells<Complex> cells_at(Complex* first, int plane_count) const {
+    const std::ptrdiff_t chunk_cells = shape.tile * planes * grids;
+    return {first, grids * shape.tile, shape.chunks() * chunk_cells, shape.tile, plane_count, grids, shape.tile, chunk_cells};
+  }
+  std::size_t offset(int row, int index, int plane, int grid) const {
+    const auto at = [](int i, int n) { return static_cast<std::size_t>(i) * static_cast<std::size_t>(n); };
+    return (at(row, shape.chunks()) + static_cast<std::size_t>(index)) * at(planes * grids, shape.tile) +
+           at(plane * grids + grid, shape.tile);
+  }
+
+  BigArray<std::complex<Real>> cell_;
+};
+
+}  // namespace misfit::imager

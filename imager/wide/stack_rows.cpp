@@ -1,0 +1,157 @@
+#include "imager/wide/stack_rows.h"
+
+#include <algorithm>
+
+#include "imager/parallel.h"
+#include "imager/wide/stack_loops.h"
+
+namespace misfit::imager {
+namespace {
+
+/// The column of the grid that a column of storage stands for.
+int canonical(const StackShape& s, int column) {
+  const int p = (column - s.margin()) % s.nu;
+  return p < 0 ? p + s.nu : p;
+}
+
+/// Calls visit(chunk, p) for the chunks that stand for canonical columns p … p + tile − 1, and edge(chunk, column in chunk, p)
+/// for the columns of the others, which wrap.
+template <typename Chunk, typename Column>
+void for_chunks(const StackShape& s, const Chunk& visit, const Column& edge) {
+  for (int chunk = 0; chunk < s.chunks(); ++chunk) {
+    const int p = chunk * s.tile - s.margin();
+    if (p >= 0 && p + s.tile <= s.nu) {
+      visit(chunk, p);
+    } else {
+      for (int c = 0; c < s.tile; ++c) edge(chunk, c, canonical(s, chunk * s.tile + c));
+    }
+  }
+}
+
+/// line = canonical row q of a grid, margins folded in.
+template <typename Real>
+void gather_row(const PlaneStack<Real>& stack, int q, int plane, int grid, std::complex<Real>* line) {
+  const StackShape& s = stack.shape;
+  std::fill_n(line, s.nu, std::complex<Real>(0));
+  stack.for_rows(q, [&](int r) {
+    if (stack.row_used[static_cast<std::size_t>(r)] == 0) return;
+    for_chunks(
+        s, [&](int chunk, int p) { add_cells(stack.chunk(r, chunk, plane, grid), s.tile, line + p); },
+        [&](int chunk, int c, int p) { line[p] += stack.chunk(r, chunk, plane, grid)[c]; });
+  });
+}
+
+/// Its transpose: row q of a grid, margins filled by periodicity.
+template <typename Real>
+void scatter_row(const std::complex<Real>* line, int q, int plane, PlaneStack<Real>& stack) {
+  const StackShape& s = stack.shape;
+  stack.for_rows(q, [&](int r) {
+    for_chunks(
+        s, [&](int chunk, int p) { std::copy_n(line + p, s.tile, stack.chunk(r, chunk, plane, 0)); },
+        [&](int chunk, int c, int p) { stack.chunk(r, chunk, plane, 0)[c] = line[p]; });
+  });
+}
+
+/// Calls visit(values, begin, count) for the pieces of a row of the grid between the two transforms of its FFT.
+template <typename Stack, typename Visit>
+void for_kept_row(Stack& stack, int q, int plane, int grid, int width, const Visit& visit) {
+  const StackShape& s = stack.shape;
+  for (int begin = 0; begin < width; begin += s.tile)
+    visit(stack.chunk(q + s.margin(), begin / s.tile, plane, grid), begin, std::min(s.tile, width - begin));
+}
+
+/// Pixels of an image's row lie at the end of an FFT's, and then at its beginning.
+template <typename Real>
+void fft_to_image(const std::complex<Real>* in, int length, int width, std::complex<Real>* out) {
+  const int left = width / 2;
+  std::copy_n(in + length - left, left, out);
+  std::copy_n(in, width - left, out + left);
+}
+template <typename Real>
+void image_to_fft(const std::complex<Real>* in, int width, int length, std::complex<Real>* out) {
+  const int left = width / 2;
+  std::copy_n(in + left, width - left, out);
+  std::fill(out + width - left, out + length - left, std::complex<Real>(0));
+  std::copy_n(in, left, out + length - left);
+}
+
+}  // namespace
+
+/// What a thread needs.
+template <typename Real>
+struct StackRows<Real>::Work {
+  typename Fft<Real>::ComplexBuffer line;
+  std::vector<std::complex<Real>> image_row;
+
+  Work(const Fft<Real>& fft, int width) : line(fft.complex_buffer()), image_row(static_cast<std::size_t>(width)) {}
+};
+
+template <typename Real>
+StackRows<Real>::StackRows(PlaneStack<Real>& stack, int width, int threads)
+    : stack_(stack),
+      width_(width),
+      threads_(threads),
+      along_u_(stack.shape.nu),
+      done_(static_cast<std::size_t>(stack.shape.nv)) {}
+
+template <typename Real>
+StackRows<Real>::~StackRows() = default;
+
+template <typename Real>
+template <typename Transform>
+void StackRows<Real>::for_each(const std::vector<int>& rows, const Transform& transform) {
+  constexpr std::size_t at_once = 4;
+  parallel_for((rows.size() + at_once - 1) / at_once, threads_, [&](std::size_t piece) {
+    auto work = spares_.take([&] { return std::make_unique<Work>(along_u_, width_); });
+    for (std::size_t i = piece * at_once; i < std::min(rows.size(), (piece + 1) * at_once); ++i)
+      for (int plane = 0; plane < stack_.planes; ++plane)
+        for (int grid = 0; grid < stack_.grids; ++grid) transform(rows[i], plane, grid, *work);
+    spares_.give_back(std::move(work));
+  });
+}
+
+template <typename Real>
+void StackRows<Real>::to_image(int filled) {
+  std::vector<int> rows;
+  for (int q = 0; q < stack_.shape.nv; ++q) {
+    char& done = done_[static_cast<std::size_t>(q)];
+    bool complete = done == 0;
+    stack_.for_rows(q, [&](int r) { complete &= r < filled; });
+    if (!complete) continue;
+    done = 1;
+    if (stack_.holds(q)) rows.push_back(q);
+  }
+  for_each(rows, [&](int q, int plane, int grid, Work& work) {
+    gather_row(stack_, q, plane, grid, work.line.get());
+    along_u_.complex_to_complex(work.line.get(), Fft<Real>::Sign::backward);
+    fft_to_image(work.line.get(), stack_.shape.nu, width_, work.image_row.data());
+    for_kept_row(stack_, q, plane, grid, width_, [&](std::complex<Real>* values, int first, int count) {
+      std::copy_n(work.image_row.begin() + first, count, values);
+    });
+  });
+}
+
+template <typename Real>
+void StackRows<Real>::to_grid(int needed) {
+  std::vector<int> rows;
+  for (int q = 0; q < stack_.shape.nv; ++q) {
+    bool shown = false;
+    stack_.for_rows(q, [&](int r) { shown |= r < needed; });
+    char& done = done_[static_cast<std::size_t>(q)];
+    if (done == 0 && shown) rows.push_back(q);
+    done |= shown ? 1 : 0;
+  }
+  for_each(rows, [&](int q, int plane, int grid, Work& work) {
+    for_kept_row(stack_, q, plane, grid, width_, [&](const std::complex<Real>* values, int first, int count) {
+      std::copy_n(values, count, work.image_row.begin() + first);
+    });
+    image_to_fft(work.image_row.data(), width_, stack_.shape.nu, work.line.get());
+    along_u_.complex_to_complex(work.line.get(), Fft<Real>::Sign::forward);
+    scatter_row(work.line.get(), q, plane, stack_);
+  });
+}
+
+template class StackRows<float>;
+template class StackRows<double>;
+
+}  // namespace misfit::imager

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <vector>
+
+#include "imager/fft.h"
+#include "imager/spares.h"
+#include "imager/wide/plane_stack.h"
+
+namespace misfit::imager {
+
+/// The FFTs along u of a stack, of which an image keeps `width` columns; a few rows at a time, while the nearer caches still
+/// hold what was gridded there, or will be degridded.
+template <typename Real>
+class StackRows {
+ public:
+  StackRows(PlaneStack<Real>& stack, int width, int threads);
+  ~StackRows();
+
+  /// Σ_p G(p, q) exp(+2πi px/nu) for the used rows q that have not been transformed yet and to which rows of storage from
+  /// `filled` on add nothing.
+  void to_image(int filled);
+  /// The adjoint, for a stack of one grid a plane: G(p, q) for the rows q not transformed yet that rows of storage up to
+  /// `needed` show, margins filled by periodicity.
+  void to_grid(int needed);
+
+ private:
+  struct Work;
+  template <typename Transform>
+  void for_each(const std::vector<int>& rows, const Transform& transform);
+
+  PlaneStack<Real>& stack_;
+  int width_;
+  int threads_;
+  Fft<Real> along_u_;
+  std::vector<char> done_;  ///< [q]
+  Spares<Work> spares_;
+};
+
+}  // namespace misfit::imager

@@ -1,0 +1,53 @@
+#include "imager/wide/stack_walk.h"
+
+namespace misfit::imager {
+
+std::vector<Slab> slabs_of(const StackOrder& order, int most_planes) {
+  std::vector<Slab> slabs;
+  for (std::size_t k = 0; k < order.plane_used.size(); ++k) {
+    if (order.plane_used[k] == 0) continue;
+    const int plane = static_cast<int>(k);
+    if (slabs.empty() || slabs.back().planes == most_planes || slabs.back().first + slabs.back().planes != plane)
+      slabs.push_back({plane, 0});
+    ++slabs.back().planes;
+  }
+  return slabs;
+}
+
+std::vector<Band> bands_of(const StackShape& shape, std::size_t bytes_a_row) {
+  constexpr std::size_t cache = std::size_t{12} << 20;
+  const std::size_t tile_bytes = bytes_a_row * static_cast<std::size_t>(shape.tile);
+  const int tiles = static_cast<int>(std::clamp<std::size_t>(cache / tile_bytes, 1, 16));
+  std::vector<Band> bands;
+  for (int v = 0; v < shape.tiles_v(); v += tiles) bands.push_back({v, std::min(v + tiles, shape.tiles_v())});
+  return bands;
+}
+
+std::vector<std::vector<StackTask>> tasks_of(const StackOrder& order, const StackShape& shape, const Slab& slab, int width_w,
+                                             const Band& band) {
+  std::vector<std::vector<StackTask>> colours(4);
+  const auto below = [](const StackRun& run, int plane) { return run.plane < plane; };
+  std::size_t tile = static_cast<std::size_t>(band.begin) * static_cast<std::size_t>(shape.tiles_u());
+  for (int v = band.begin; v < band.end; ++v)
+    for (int u = 0; u < shape.tiles_u(); ++u, ++tile) {
+      const auto first = order.run.begin() + static_cast<std::ptrdiff_t>(order.begin[tile]);
+      const auto last = order.run.begin() + static_cast<std::ptrdiff_t>(order.begin[tile + 1]);
+      if (first == last) continue;
+      const auto begin = std::lower_bound(first, last, slab.first - width_w + 1, below);
+      const auto end = std::lower_bound(begin, last, slab.first + slab.planes, below);
+      if (begin == end) continue;
+      const int lowest = std::max(begin->plane, slab.first);
+      const int highest = std::min((end - 1)->plane + width_w, slab.first + slab.planes);
+      colours[static_cast<std::size_t>(v % 2 * 2 + u % 2)].push_back({u,
+                                                                      v,
+                                                                      static_cast<std::size_t>(begin - order.run.begin()),
+                                                                      static_cast<std::size_t>(end - order.run.begin()),
+                                                                      {lowest, highest - lowest}});
+    }
+  for (std::vector<StackTask>& tasks : colours)
+    std::stable_sort(tasks.begin(), tasks.end(),
+                     [](const StackTask& a, const StackTask& b) { return a.end - a.begin > b.end - b.begin; });
+  return colours;
+}
+
+}  // namespace misfit::imager

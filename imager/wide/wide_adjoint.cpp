@@ -1,0 +1,228 @@
+#include "imager/wide/wide_adjoint.h"
+
+#include <algorithm>
+
+#include "imager/horizon.h"
+#include "imager/parallel.h"
+#include "imager/phase.h"
+#include "imager/phasors.h"
+#include "imager/sampling.h"
+#include "imager/span_sums.h"
+#include "imager/spares.h"
+#include "imager/stage_times.h"
+#include "imager/sum_unit.h"
+#include "imager/wide/stack_rows.h"
+#include "imager/wide/tile_sum.h"
+
+namespace misfit::imager {
+namespace {
+
+template <typename Real>
+class WideAdjoint : public AdjointSum {
+ public:
+  WideAdjoint(const WideSetup<Real>& setup, bool with_psf)
+      : setup_(setup), with_psf_(with_psf && !beyond_horizon(setup.options.geometry.centre)) {
+    const ImageGeometry& g = setup.options.geometry;
+    result_.image = Image(g.width, g.height);
+    if (with_psf) result_.psf = Image(g.width, g.height);
+  }
+
+  void add(const VisibilityBlock& block) override { gather(block, block.visibility); }
+  void add(const VisibilityBlock& block, const std::vector<std::complex<double>>& visibility) override {
+    gather(block, visibility);
+  }
+  AdjointResult finish() override {
+    flush();
+    multiply(result_.image, value_unit_.unit());
+    multiply(result_.psf, weight_unit_.unit());
+    set_beyond_horizon(setup_.options.geometry, no_value, result_.image);
+    if (with_psf_) {
+      set_beyond_horizon(setup_.options.geometry, no_value, result_.psf);
+    } else {
+      std::fill(result_.psf.pixel.begin(), result_.psf.pixel.end(), no_value);
+    }
+    return std::move(result_);
+  }
+
+ private:
+  /// A block's samples, those left out with weight 0.
+  struct Gathered {
+    SampleCoordinates at;
+    std::vector<float> weight;
+    std::vector<std::complex<Real>> weighted;  ///< weight · V, in the values' unit
+  };
+
+  static void multiply(Image& image, double by) {
+    if (by != 1)
+      for (double& pixel : image.pixel) pixel *= by;
+  }
+
+  /// Calls visit(piece, begin, end) for the pieces of [0, samples), shared among threads.
+  template <typename Visit>
+  void for_pieces(std::size_t samples, const Visit& visit) const {
+    parallel_for(pieces(samples), setup_.options.threads,
+                 [&](std::size_t p) { visit(p, p * samples_a_piece, std::min((p + 1) * samples_a_piece, samples)); });
+  }
+  static std::size_t pieces(std::size_t samples) { return (samples + samples_a_piece - 1) / samples_a_piece; }
+  static constexpr std::size_t samples_a_piece = 1 << 16;
+
+  template <typename Visibility>
+  SampleSums sums_of(const std::vector<float>& weight, const Visibility& visibility) const {
+    std::vector<SampleSums> part(pieces(weight.size()));
+    for_pieces(weight.size(), [&](std::size_t p, std::size_t begin, std::size_t end) {
+      add_span_to_sums(weight.data() + begin, visibility.data() + begin, end - begin, part[p]);
+    });
+    SampleSums sums;
+    for (const SampleSums& of_piece : part) sums += of_piece;
+    return sums;
+  }
+
+  /// Brings the images to the units that hold the samples to come too. What was gathered in others is gridded first.
+  void make_room(const SampleSums& coming) {
+    SumUnit<Real> value_unit = value_unit_, weight_unit = weight_unit_;
+    const double values = value_unit.make_room(coming.weight_abs), weights = weight_unit.make_room(coming.weight);
+    if (values != 1 || weights != 1) {
+      flush();
+      multiply(result_.image, values);
+      multiply(result_.psf, weights);
+    }
+    value_unit_ = value_unit;
+    weight_unit_ = weight_unit;
+  }
+
+  template <typename Visibility>
+  void gather(const VisibilityBlock& block, const Visibility& visibility) {
+    const double cell_rad = setup_.options.geometry.cell_rad;
+    Gathered g{block, imaging_weights(block, cell_rad, setup_.options.threads, result_.sums), {}};
+    const SampleSums sums = sums_of(g.weight, visibility);
+    result_.sums += sums;
+    make_room(sums);
+    g.weighted.resize(g.weight.size());
+    const double per_unit = value_unit_.per_unit();
+    for_pieces(g.weight.size(), [&](std::size_t, std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i)
+        if (g.weight[i] != 0)
+          g.weighted[i] = std::complex<Real>(double{g.weight[i]} * per_unit * std::complex<double>(visibility[i]));
+    });
+    samples_ += block.samples();
+    gathered_.push_back(std::move(g));
+    if (samples_ >= setup_.options.samples_at_once) flush();
+  }
+
+  void flush() {
+    if (gathered_.empty()) return;
+    std::vector<WantedSamples> blocks;
+    for (const Gathered& g : gathered_) blocks.push_back({&g.at, g.weight.data()});
+    std::vector<Image*> images{&result_.image};
+    if (with_psf_) images.push_back(&result_.psf);
+    const int grids = static_cast<int>(images.size()), threads = setup_.options.threads;
+    PlaneStack<Real> stack(setup_.shape, grids);
+    Spares<StackBuffer<Real>> spares;
+    for (const StackedFacet& f : setup_.facets) {
+      const StackOrderOptions ordering = setup_.ordering(f);
+      const StackOrder order = order_for_stack(blocks, ordering);
+      for (const Slab& slab : slabs_of(order, most_planes(setup_, grids))) {
+        stack.reserve(slab.planes);
+        StackRows<Real> rows(stack, f.facet.geometry.width, threads);
+        for (const Band& band : bands_of(setup_.shape, stack.bytes_a_row())) {
+          const auto colours = tasks_of(order, setup_.shape, slab, ordering.width_w, band);
+          stack.use_rows(rows_of(colours), threads);
+          for (const std::vector<StackTask>& tasks : colours)
+            parallel_for(tasks.size(), threads, [&](std::size_t i) {
+              auto buffer = spares.take([&] { return std::make_unique<StackBuffer<Real>>(buffer_of(setup_, grids)); });
+              grid_tile({blocks, order, ordering}, tasks[i], slab.first, *buffer, stack);
+              spares.give_back(std::move(buffer));
+            });
+          add_seconds_of(result_.fft_s, [&] { rows.to_image(band.end * setup_.shape.tile); });
+        }
+        add_seconds_of(result_.fft_s, [&] {
+          rows.to_image(setup_.shape.rows());
+          stack_to_images(stack, f, slab.first, threads, images);
+        });
+      }
+    }
+    gathered_.clear();
+    samples_ = 0;
+  }
+
+  std::vector<RowRange> rows_of(const std::vector<std::vector<StackTask>>& colours) const {
+    const StackShape& s = setup_.shape;
+    std::vector<RowRange> rows;
+    for (const std::vector<StackTask>& tasks : colours)
+      for (const StackTask& task : tasks) rows.push_back({task.tile_v * s.tile, (task.tile_v + 1) * s.tile + s.width - 1});
+    return rows;
+  }
+
+  void grid_tile(const StackSamples& samples, const StackTask& task, int first_plane, StackBuffer<Real>& buffer,
+                 PlaneStack<Real>& stack) const {
+    TileSum<Real> sum(setup_, task, first_plane, is_sparse(samples.order, task), buffer, stack);
+    const auto ahead = [&](std::uint32_t block, std::size_t sample) { hwy::Prefetch(&gathered_[block].weighted[sample]); };
+    const auto done = [&](StackBatch<Real>& batch, BatchPhases& phases) {
+      set_values(phases, batch);
+      if (buffer.grids == 2) set_psf_values(phases, batch);
+      sum.add(batch);
+      phases.most = sum.most_in_batch();
+    };
+    for_each_batch<Real>(samples, task, ahead, done, most_in_single_cell);  // the first batch shows whether samples crowd
+    sum.finish();
+  }
+
+  /// The grid holds conj(V), whose backward transform is the image; see plane_stack.h for the axes. The V of a mirror image is
+  /// the conjugate already.
+  void set_values(const BatchPhases& phases, StackBatch<Real>& batch) const {
+    for (const BatchRun& run : phases.run) {
+      const std::complex<Real>* weighted = &gathered_[run.block].weighted[run.sample];
+      const double sign = run.mirrored ? 1 : -1;
+      for (int k = run.begin; k < run.end; ++k, ++weighted) {
+        const double re = double{weighted->real()}, im = sign * double{weighted->imag()};
+        batch.value[0][k] = {static_cast<Real>(re * phases.cosine[k] - im * phases.sine[k]),
+                             static_cast<Real>(re * phases.sine[k] + im * phases.cosine[k])};
+      }
+    }
+  }
+
+  void weigh_psf(const BatchPhases& phases, const double* cosine, const double* sine, StackBatch<Real>& batch) const {
+    const double per_unit = weight_unit_.per_unit();
+    for (const BatchRun& run : phases.run)
+      for (int k = run.begin; k < run.end; ++k) {
+        const double weight = per_unit * gathered_[run.block].weight[run.sample + static_cast<std::size_t>(k - run.begin)];
+        batch.value[1][k] = {static_cast<Real>(weight * cosine[k]), static_cast<Real>(weight * sine[k])};
+      }
+  }
+
+  /// Those of a source of 1 Jy in the image's middle pixel, seen from the facet's.
+  void set_psf_values(const BatchPhases& phases, StackBatch<Real>& batch) const {
+    const ImageGeometry& g = setup_.options.geometry;
+    if (!g.off_phase_centre()) return weigh_psf(phases, phases.cosine, phases.sine, batch);
+    const PhasePosition middle = phase_position(g.centre);
+    double turns[BatchPhases::capacity], cosine[BatchPhases::capacity], sine[BatchPhases::capacity];
+    for (const BatchRun& run : phases.run) {
+      const SampleCoordinates& at = gathered_[run.block].at;
+      const std::size_t row = run.sample / at.channels(), channel = run.sample % at.channels();
+      const double to_middle = turns_per_hz(&at.uvw_m[3 * row], middle) * (run.mirrored ? -1 : 1);
+      for (int k = run.begin; k < run.end; ++k)
+        turns[k] = phases.turns[k] - to_middle * at.frequency_hz[channel + static_cast<std::size_t>(k - run.begin)];
+    }
+    phasors(turns, batch.count, cosine, sine);
+    weigh_psf(phases, cosine, sine, batch);
+  }
+
+  const WideSetup<Real>& setup_;
+  bool with_psf_;  ///< whose source is above the horizon
+  std::vector<Gathered> gathered_;
+  std::size_t samples_ = 0;
+  SumUnit<Real> value_unit_;   ///< of the image
+  SumUnit<Real> weight_unit_;  ///< of the PSF
+  AdjointResult result_;
+};
+
+}  // namespace
+
+template <typename Real>
+std::unique_ptr<AdjointSum> make_wide_adjoint(const WideSetup<Real>& setup, bool with_psf) {
+  return std::make_unique<WideAdjoint<Real>>(setup, with_psf);
+}
+template std::unique_ptr<AdjointSum> make_wide_adjoint<float>(const WideSetup<float>&, bool);
+template std::unique_ptr<AdjointSum> make_wide_adjoint<double>(const WideSetup<double>&, bool);
+
+}  // namespace misfit::imager

@@ -1,0 +1,113 @@
+#include "imager/wide/wide_prediction.h"
+
+#include <algorithm>
+
+#include "imager/parallel.h"
+#include "imager/spares.h"
+#include "imager/stage_times.h"
+#include "imager/wide/stack_rows.h"
+
+namespace misfit::imager {
+namespace {
+
+template <typename Real>
+class WidePrediction : public Prediction {
+ public:
+  WidePrediction(const WideSetup<Real>& setup, const Image& model) : setup_(setup), model_(model) {}
+
+  std::vector<std::complex<double>> at(const SampleCoordinates& coordinates) const override {
+    return degrid({{&coordinates}}).front();
+  }
+  std::vector<std::complex<double>> at_usable(const VisibilityBlock& block) const override {
+    return at_usable_of({&block}).front();
+  }
+  std::vector<std::vector<std::complex<double>>> at_usable_of(
+      const std::vector<const VisibilityBlock*>& blocks) const override {
+    std::vector<WantedSamples> usable;
+    for (const VisibilityBlock* block : blocks) usable.push_back({block, block->weight.data()});
+    return degrid(usable);
+  }
+  std::size_t samples_at_once() const override { return setup_.options.samples_at_once; }
+  double fft_s() const override { return fft_s_; }
+
+ private:
+  using Visibilities = std::vector<std::vector<std::complex<double>>>;  ///< [block][sample]
+
+  /// What samples and their mirror images gather in different tiles, by different threads.
+  struct Halves {
+    Visibilities direct;
+    Visibilities mirrored;
+  };
+
+  Visibilities degrid(const std::vector<WantedSamples>& blocks) const {
+    Halves halves;
+    for (const WantedSamples& block : blocks) halves.direct.emplace_back(block.at->samples());
+    halves.mirrored = halves.direct;
+    const int threads = setup_.options.threads;
+    PlaneStack<Real> stack(setup_.shape, 1);
+    Spares<StackBuffer<Real>> spares;
+    for (const StackedFacet& f : setup_.facets) {
+      const StackOrderOptions ordering = setup_.ordering(f);
+      const StackOrder order = order_for_stack(blocks, ordering);
+      for (const Slab& slab : slabs_of(order, most_planes(setup_, 1))) {
+        stack.reserve(slab.planes);
+        add_seconds_of(fft_s_, [&] { image_to_stack(model_, f, slab.first, threads, stack); });
+        StackRows<Real> rows(stack, f.facet.geometry.width, threads);
+        for (const Band& band : bands_of(setup_.shape, stack.bytes_a_row())) {
+          add_seconds_of(fft_s_, [&] { rows.to_grid(band.end * setup_.shape.tile + setup_.shape.width); });
+          for (const std::vector<StackTask>& tasks : tasks_of(order, setup_.shape, slab, ordering.width_w, band))
+            parallel_for(tasks.size(), threads, [&](std::size_t i) {
+              auto buffer = spares.take([&] { return std::make_unique<StackBuffer<Real>>(buffer_of(setup_, 1)); });
+              degrid_tile({blocks, order, ordering}, tasks[i], slab.first, stack, *buffer, halves);
+              spares.give_back(std::move(buffer));
+            });
+        }
+      }
+    }
+    for (std::size_t b = 0; b < blocks.size(); ++b)
+      for (std::size_t i = 0; i < halves.direct[b].size(); ++i) halves.direct[b][i] += std::conj(halves.mirrored[b][i]);
+    return std::move(halves.direct);
+  }
+
+  void degrid_tile(const StackSamples& samples, const StackTask& task, int first_plane, const PlaneStack<Real>& stack,
+                   StackBuffer<Real>& buffer, Halves& halves) const {
+    const StackShape& s = setup_.shape;
+    StackCells<const std::complex<Real>> cells =
+        stack.cells_of(task.tile_u, task.tile_v, task.planes.first - first_plane, task.planes.planes);
+    if (!is_sparse(samples.order, task)) {
+      buffer.reset(task.planes.planes);
+      for_each_chunk(s, task, 1, [&](int row, int chunk, int plane, int grid, int count) {
+        std::copy_n(stack.chunk(task.tile_v * s.tile + row, task.tile_u + chunk, task.planes.first - first_plane + plane, grid),
+                    count, buffer.row(plane, row, grid) + chunk * s.tile);
+      });
+      cells = buffer.cells();
+    }
+    const auto ahead = [](std::uint32_t, std::size_t) {};
+    for_each_batch<Real>(samples, task, ahead, [&](StackBatch<Real>& batch, const BatchPhases& phases) {
+      interpolate(setup_.taps, cells, batch);
+      for (const BatchRun& run : phases.run) {
+        std::complex<double>* visibility = &(run.mirrored ? halves.mirrored : halves.direct)[run.block][run.sample];
+        for (int k = run.begin; k < run.end; ++k, ++visibility) {
+          const double re = double{batch.value[0][k].real()}, im = double{batch.value[0][k].imag()};
+          *visibility +=
+              std::complex<double>(re * phases.cosine[k] + im * phases.sine[k], re * phases.sine[k] - im * phases.cosine[k]);
+        }
+      }
+    });
+  }
+
+  const WideSetup<Real>& setup_;
+  Image model_;
+  mutable double fft_s_ = 0;
+};
+
+}  // namespace
+
+template <typename Real>
+std::unique_ptr<Prediction> make_wide_prediction(const WideSetup<Real>& setup, const Image& model) {
+  return std::make_unique<WidePrediction<Real>>(setup, model);
+}
+template std::unique_ptr<Prediction> make_wide_prediction<float>(const WideSetup<float>&, const Image&);
+template std::unique_ptr<Prediction> make_wide_prediction<double>(const WideSetup<double>&, const Image&);
+
+}  // namespace misfit::imager

@@ -1,0 +1,13 @@
+#pragma once
+
+#include <memory>
+
+#include "imager/wide/wide_setup.h"
+
+namespace misfit::imager {
+
+/// The prediction of a wide transform from a copy of the model; `setup` must outlive it.
+template <typename Real>
+std::unique_ptr<Prediction> make_wide_prediction(const WideSetup<Real>& setup, const Image& model);
+
+}  // namespace misfit::imager

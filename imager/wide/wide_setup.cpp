@@ -1,0 +1,43 @@
+#include "imager/wide/wide_setup.h"
+
+namespace misfit::imager {
+
+// Of a prediction: both halves of its visibilities; and at worst a run each for a sample and its mirror image, twice while they
+// are sorted. An adjoint takes less.
+static_assert(wide_bytes_a_sample == 2 * sizeof(std::complex<double>) + 2 * (2 * sizeof(StackRun) + 8));
+
+StackShape stack_shape_of(const WideTransformOptions& o) {
+  constexpr int tile = 32;
+  return {o.nu, o.nv, o.kernel_u.width(), std::max(tile, o.kernel_u.width())};
+}
+
+template <typename Real>
+WideSetup<Real> wide_setup(const WideTransformOptions& o) {
+  WideSetup<Real> s{o,
+                    stack_shape_of(o),
+                    {TapTable<Real>(o.kernel_u.polynomial, o.lookup), TapTable<Real>(o.kernel_v.polynomial, o.lookup),
+                     TapTable<Real>(o.kernel_w.polynomial, o.lookup)},
+                    {}};
+  const SmoothCorrection h_w(o.kernel_w);
+  for (const Facet& facet : split_into_facets(o.geometry, o.facets_l, o.facets_m)) {
+    if (facet.empty) continue;
+    constexpr double flat = 1e-15;  // a facet of one pixel has no curvature
+    s.facets.push_back({facet, o.kernel_w.x0 / std::max(facet.reach, flat),
+                        axis_correction(o.kernel_u, facet.geometry.width, o.nu),
+                        axis_correction(o.kernel_v, facet.geometry.height, o.nv), h_w});
+  }
+  return s;
+}
+
+template WideSetup<float> wide_setup<float>(const WideTransformOptions&);
+template WideSetup<double> wide_setup<double>(const WideTransformOptions&);
+
+bool is_sparse(const StackOrder& order, const StackTask& task) {
+  constexpr std::size_t most_in_place = 512;  // measured: from some 800 on, a buffer's nearness to the processor wins
+  if (task.end - task.begin > most_in_place) return false;
+  std::size_t samples = 0;
+  for (std::size_t r = task.begin; r < task.end; ++r) samples += order.run[r].count;
+  return samples <= most_in_place;
+}
+
+}  // namespace misfit::imager

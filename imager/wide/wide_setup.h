@@ -1,0 +1,57 @@
+#pragma once
+
+#include <algorithm>
+#include <vector>
+
+#include "imager/wide/stack_columns.h"
+#include "imager/wide/stack_walk.h"
+#include "imager/wide/wide_transform.h"
+
+namespace misfit::imager {
+
+/// What adjoint and prediction of a wide transform share: the kernels' taps, and the stack that every facet has.
+template <typename Real>
+struct WideSetup {
+  WideTransformOptions options;
+  StackShape shape;
+  StackTaps<Real> taps;
+  std::vector<StackedFacet> facets;  ///< those that reach above the horizon
+
+  StackOrderOptions ordering(const StackedFacet& f) const {
+    return {shape, taps.w.width, StackScale(shape, f.facet, f.plane_step), options.threads};
+  }
+};
+
+/// The stack of a facet.
+StackShape stack_shape_of(const WideTransformOptions& options);
+
+template <typename Real>
+WideSetup<Real> wide_setup(const WideTransformOptions& options);
+
+/// Planes of one facet that memory can hold.
+template <typename Real>
+int most_planes(const WideSetup<Real>& setup, int grids) {
+  const double plane_bytes = grids * static_cast<double>(setup.shape.cells()) * sizeof(std::complex<Real>);
+  return std::max(1, static_cast<int>(static_cast<double>(setup.options.stack_bytes) / plane_bytes));
+}
+
+/// Calls visit(row, chunk, plane, grid, cells) for what a tile's buffer and a stack share, in the stack's order.
+template <typename Visit>
+void for_each_chunk(const StackShape& s, const StackTask& task, int grids, const Visit& visit) {
+  const int reach = s.tile + s.width - 1;
+  for (int row = 0; row < reach; ++row)
+    for (int chunk = 0; chunk < 2; ++chunk)
+      for (int plane = 0; plane < task.planes.planes; ++plane)
+        for (int grid = 0; grid < grids; ++grid) visit(row, chunk, plane, grid, std::min(s.tile, reach - chunk * s.tile));
+}
+
+template <typename Real>
+StackBuffer<Real> buffer_of(const WideSetup<Real>& setup, int grids) {
+  return StackBuffer<Real>(setup.shape.tile, setup.shape.width, grids);
+}
+
+/// Whether a tile holds so few samples that it is gridded and degridded where it lies in the stack: a buffer costs more to
+/// bring and to add.
+bool is_sparse(const StackOrder& order, const StackTask& task);
+
+}  // namespace misfit::imager
