@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "imager/constants.h"
+#include "imager/plan/out_of_reach.h"
 
 namespace misfit::imager {
 namespace {
@@ -47,12 +48,14 @@ Plan w_decisions(const GriddingRequest& request, const GriddingChoice& choice) {
   const Faceting& way = choice.best.faceting;
   const double turns = choice.w_phase_rad / (2 * pi);
   const double left = *std::max_element(way.turns.begin(), way.turns.end());
+  const bool whole_image = way.along_l * way.along_m == 1;
   const double whole = static_cast<double>(request.geometry.width) * request.geometry.height;
   const double equal = work.planes * (static_cast<double>(way.width) * way.height) / whole;
   return {{"w axis", "width " + std::to_string(work.width_w) + " at padding " + text("%.2f", choice.best.padding_w), phase},
           {"facets", times(way.along_l, way.along_m),
-           "each on its own tangent plane: at most " + text("%.3g", left) + " of " + text("%.3g", turns) +
-               " turns are left to the w axis"},
+           whole_image ? "the whole image on one plane leaves " + text("%.3g", left) + " turns to the w axis"
+                       : "each on its own tangent plane: at most " + text("%.3g", left) + " of " + text("%.3g", turns) +
+                             " turns are left to the w axis"},
           {"w planes", std::to_string(work.planes) + " in all facets, w ≥ 0 alone",
            "FFTs as of " + text("%.1f", equal) + " planes of the whole image; V(−u, −v, −w) = conj V(u, v, w)"}};
 }
@@ -124,12 +127,6 @@ std::string evaluation_of(const PlaneTransformOptions& options) {
          std::to_string(options.lookup->samples_per_cell) + " entries a cell";
 }
 
-double nameable_accuracy(double worst_error) {
-  constexpr double two_digits = 1.06;  // may round down by 5%
-  constexpr double stored = 1e-13;     // below, the rounding of stored kernels differs from width to width
-  return (worst_error < stored ? 2 : two_digits) * worst_error;
-}
-
 namespace {
 
 /// Rounding where all samples lie in one cell, which makes it largest, for a noise gain of 1: sums that grow evenly are half
@@ -166,13 +163,7 @@ GriddingPlan plan_together(const GriddingRequest& request) {
   plan.request = request;
   plan.choice = choose_gridding(request);
   const GriddingCandidate& best = plan.choice.best;
-  if (!plan.choice.reached && !request.best_effort)
-    throw std::invalid_argument("accuracy " + text("%g", request.accuracy) + " is out of reach of kernel " +
-                                request.kernel.name +
-                                (request.kernel_width == 0 ? "" : " of width " + std::to_string(request.kernel_width)) +
-                                (request.padding == 0 ? "" : " at padding " + text("%g", request.padding)) + "; it can reach " +
-                                text("%.2g", nameable_accuracy(best.worst_error)) + " for this image, with width " +
-                                std::to_string(best.work.width) + " at padding " + text("%g", best.padding_u));
+  if (!plan.choice.reached && !request.best_effort) throw std::invalid_argument(out_of_reach(request, best));
   static_cast<PlaneTransformOptions&>(plan.options) = {request.geometry, best.work.nu,        best.work.nv,    best.u.kernel,
                                                        best.v.kernel,    best.work.precision, request.threads, request.lookup};
   if (best.work.has_w_axis()) {

@@ -29,11 +29,8 @@ struct GriddingPlan {
 /// accuracy can be reached takes plan_gridding to tell.
 void check_request(const GriddingRequest& request);
 
-/// The accuracy to name, in two digits, where `worst_error` is the best that can be had: asked for, it will be granted.
-double nameable_accuracy(double worst_error);
-
-/// Throws std::invalid_argument as check_request does, and when the accuracy is out of reach of the kernel or of double
-/// precision; the message says what can be reached.
+/// Throws std::invalid_argument as check_request does, and when the accuracy is out of reach: the message is that of
+/// out_of_reach.
 GriddingPlan plan_gridding(const GriddingRequest& request);
 
 /// How its taps are had: "polynomials of degree 9", or "cubic tables of 64 entries a cell".

@@ -2,7 +2,9 @@
 
 #include <boost/test/data/test_case.hpp>
 #include <boost/test/unit_test.hpp>
+#include <cstdio>
 #include <optional>
+#include <stdexcept>
 #include <string>
 
 namespace bdata = boost::unit_test::data;
@@ -22,6 +24,12 @@ GriddingRequest request(Size size, double accuracy, const std::string& kernel = 
   r.kernel = misfit::kernels::kernel_family(kernel);
   r.samples = 1000000;
   return r;
+}
+
+const Decision& decision_of(const GriddingPlan& plan, const std::string& item) {
+  for (const Decision& decision : plan.decisions)
+    if (decision.item == item) return decision;
+  throw std::out_of_range(item);
 }
 
 /// What the message of a refusal says can be reached.
@@ -200,6 +208,23 @@ BOOST_AUTO_TEST_CASE(a_psf_is_as_exact_as_asked_whether_its_transform_is_its_own
       BOOST_TEST(plan.worst_error <= r.accuracy);
       BOOST_TEST((plan.psf ? plan.psf->worst_error : plan.worst_error) <= psf_accuracy);
     }
+}
+
+BOOST_AUTO_TEST_CASE(facets_leave_fewer_turns_than_the_whole_image_and_one_plane_is_compared_with_none) {
+  for (const auto& [pixels, max_abs_w] : {std::pair(300, 3e3), {4001, 3e3}, {300, 1e9}}) {
+    GriddingRequest r = request({pixels, pixels}, 1e-6);
+    r.max_abs_w = max_abs_w;
+    r.gridder = Gridder::wide;
+    const GriddingPlan plan = plan_gridding(r);
+    const std::string because = decision_of(plan, "facets").because;
+    if (plan.options.facets_l * plan.options.facets_m == 1) {
+      BOOST_TEST(because.find(" of ") == std::string::npos, because);
+      continue;
+    }
+    double left = 0, turns = 0;
+    BOOST_TEST_REQUIRE(std::sscanf(because.c_str(), "each on its own tangent plane: at most %lf of %lf", &left, &turns) == 2);
+    BOOST_TEST(left < turns);
+  }
 }
 
 BOOST_AUTO_TEST_CASE(every_decision_says_why) {

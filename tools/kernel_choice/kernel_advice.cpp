@@ -5,7 +5,7 @@
 #include <stdexcept>
 
 #include "imager/extent.h"
-#include "imager/plan/gridding_plan.h"
+#include "imager/plan/out_of_reach.h"
 #include "tools/base/numbers.h"
 #include "tools/kernel_choice/kernel_choice.h"
 
@@ -50,9 +50,7 @@ imager::GriddingChoice choose_for(const KernelJob& job) {
   request.gridder = job.w_turns > 0 ? imager::Gridder::wide : imager::Gridder::standard;
   request.facets = false;
   imager::GriddingChoice choice = imager::choose_gridding(request);
-  if (!choice.reached)
-    throw std::invalid_argument("accuracy " + significant(job.accuracy, 3) + " is out of reach of kernel " + job.kernel +
-                                "; it can reach " + significant(imager::nameable_accuracy(choice.best.worst_error), 2));
+  if (!choice.reached) throw std::invalid_argument(imager::out_of_reach(request, choice.best));
   return choice;
 }
 

@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "imager/plan/gridding_plan.h"
+#include "kernels/kernel_table.h"
 #include "tools/base/quantity.h"
 #include "tools/base/text.h"
 #include "tools/formats/config_file.h"
@@ -96,9 +97,10 @@ std::optional<kernels::TableOptions> lookup_of(const ImageOptions& o) {
 
 void check_tables(const ImageOptions& o) {
   const std::optional<kernels::TableOptions> lookup = lookup_of(o);
-  constexpr int most = 1 << 20;
+  constexpr int most = kernels::kernel_table_max_per_cell;
   if (lookup && !(o.sampling >= 1 && o.sampling <= most))
-    refuse("sampling", std::to_string(o.sampling), "1 to 1048576 entries a cell beside --evaluation " + o.evaluation);
+    refuse("sampling", std::to_string(o.sampling),
+           "1 to " + std::to_string(most) + " entries a cell beside --evaluation " + o.evaluation);
   if (!lookup && o.sampling != 0)
     refuse("sampling", std::to_string(o.sampling), "--evaluation nearest, linear, quadratic or cubic beside it");
 }

@@ -1,0 +1,13 @@
+#pragma once
+
+#include <string>
+
+#include "imager/plan/gridding_choice.h"
+
+namespace misfit::imager {
+
+/// Why the accuracy asked cannot be had, in one line, where `best` is the most exact candidate: what limits it (tables, the
+/// precision, or the kernel), an accuracy that will be granted, and what to change.
+std::string out_of_reach(const GriddingRequest& request, const GriddingCandidate& best);
+
+}  // namespace misfit::imager
