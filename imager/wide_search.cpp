@@ -42,16 +42,6 @@ void count(const VisibilityBlock& block, double cell_rad, Doublings& found) {
   }
 }
 
-/// The largest magnitude beyond four pixels of the peak, where the main lobe is over.
-double far_sidelobe(const Image& psf) {
-  double largest = 0;
-  for (int row = 0; row < psf.height; ++row)
-    for (int column = 0; column < psf.width; ++column)
-      if (std::max(std::abs(row - psf.height / 2), std::abs(column - psf.width / 2)) > 4 && !std::isnan(psf.at(row, column)))
-        largest = std::max(largest, std::abs(psf.at(row, column)));
-  return largest;
-}
-
 GriddingPlan plan_of(const VisibilitySource& source, const WideField& field, int threads) {
   GriddingRequest request;
   request.geometry = field.geometry;
@@ -97,11 +87,12 @@ WideSearch search_wide_field(const VisibilitySource& source, const WideField& fi
   options.threads = threads;
   const auto minor = make_deconvolver({.name = "clark", .threads = threads}, images.psf);
   const ImageGeometry& g = field.geometry;
-  const double sidelobe = far_sidelobe(images.psf);
+  const Sidelobes sidelobes(images.psf);
+  constexpr double lobe_pixels = 5;  // where the main lobe is over
   CleanResult cleaned = clean(
-      {tapered, transform, images, sidelobe, 1e-4}, *minor, options,
+      {tapered, transform, images, sidelobes.from(lobe_pixels), 1e-4}, *minor, options,
       first_state(ComponentModel(g.width, g.height, minor->scale_pixels())), progress, [](const CleanState&) {}, times);
-  return {cleaned.components.components(), sidelobe,
+  return {cleaned.components.components(), sidelobes,
           std::max(5 * robust_noise(cleaned.residual, threads), options.threshold_jy)};
 }
 

@@ -2,6 +2,7 @@
 
 #include "imager/imaging.h"
 #include "imager/outside.h"
+#include "imager/sidelobes.h"
 
 namespace misfit::imager {
 
@@ -18,7 +19,7 @@ WideField wide_field(const VisibilitySource& source, const ImageGeometry& image)
 /// What was found in it.
 struct WideSearch {
   std::vector<Component> components;
-  double max_sidelobe = 0;  ///< of its PSF
+  Sidelobes sidelobes;  ///< of its PSF, by its pixels
   double least_jy = 0;  ///< flux from which on they are told from noise, and from what a shallow CLEAN leaves of bright ones
 };
 

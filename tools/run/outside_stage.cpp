@@ -31,16 +31,24 @@ std::string offset(imager::DirectionCosines at) {
          " of the phase centre";
 }
 
+/// Of the image's PSF, and beyond it of the wider field's, which knows what short baselines repeat.
+imager::Sidelobes sidelobes_of(const imager::Image& psf, const imager::WideSearch& search, const imager::ImageGeometry& image,
+                               const imager::ImageGeometry& field) {
+  imager::Sidelobes sidelobes(psf);
+  sidelobes.raise_to(search.sidelobes.from(std::min(image.width, image.height) / 2 * image.cell_rad / field.cell_rad));
+  return sidelobes;
+}
+
 }  // namespace
 
-OutsideReport check_outside(const imager::VisibilitySource& source, const imager::GriddingPlan& plan, double noise_jy,
-                            const imager::Progress& progress, imager::StageTimes& times) {
+OutsideReport check_outside(const imager::VisibilitySource& source, const imager::GriddingPlan& plan, const imager::Image& psf,
+                            double noise_jy, const imager::Progress& progress, imager::StageTimes& times) {
   const imager::WideField field = imager::wide_field(source, plan.request.geometry);
   const imager::WideSearch search = imager::search_wide_field(source, field, plan.request.threads, progress, times);
   OutsideReport report{field.geometry, {}, 0, search.least_jy, noise_jy};
   if (plan.direct) return report;  // direct sums have no aliases
-  report.sources =
-      imager::sources_outside(search.components, field.geometry, plan.options, {search.least_jy, search.max_sidelobe});
+  const imager::AliasLevels aliases(plan, field.geometry, sidelobes_of(psf, search, plan.request.geometry, field.geometry));
+  report.sources = imager::sources_outside(search.components, field.geometry, plan.request.geometry, aliases, search.least_jy);
   report.found = report.sources.size();
   const auto matters = [noise_jy](const imager::OutsideSource& s) { return s.alias_jy > noise_jy; };
   report.sources.erase(std::find_if_not(report.sources.begin(), report.sources.end(), matters), report.sources.end());

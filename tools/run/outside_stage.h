@@ -20,9 +20,9 @@ struct OutsideReport {
   double noise_jy = 0;                         ///< of the image, Jy/beam
 };
 
-/// Looks for sources outside the image of `plan`, whose noise is `noise_jy`. Stages timed: those of imaging and CLEAN.
-OutsideReport check_outside(const imager::VisibilitySource& source, const imager::GriddingPlan& plan, double noise_jy,
-                            const imager::Progress& progress, imager::StageTimes& times);
+/// Looks for sources outside the image of `plan`, which has this PSF and noise. Stages timed: those of imaging and CLEAN.
+OutsideReport check_outside(const imager::VisibilitySource& source, const imager::GriddingPlan& plan, const imager::Image& psf,
+                            double noise_jy, const imager::Progress& progress, imager::StageTimes& times);
 
 /// That nothing outside matters, or how much does.
 imager::Decision outside_decision(const OutsideReport& report);
