@@ -65,8 +65,10 @@ std::vector<OutsideSource> sources_outside(const std::vector<Component>& compone
   std::vector<OutsideSource> sources;
   for (const Group& group : groups_of(components)) {
     const DirectionCosines at = group.position(found_in);
-    if (std::abs(group.flux_jy) < least_jy || !lies_outside(at, image, 2 * found_in.cell_rad)) continue;
-    sources.push_back({{at, group.flux_jy}, std::abs(group.flux_jy) * aliases.of(at)});
+    if (group.flux_jy < least_jy || !lies_outside(at, image, 2 * found_in.cell_rad)) continue;
+    constexpr double lobe_pixels = 4;  // a main lobe upon the border may have its peak beyond
+    sources.push_back(
+        {{at, group.flux_jy}, group.flux_jy * aliases.of(at), lies_outside(at, found_in, -lobe_pixels * found_in.cell_rad)});
   }
   std::stable_sort(sources.begin(), sources.end(),
                    [](const OutsideSource& a, const OutsideSource& b) { return a.alias_jy > b.alias_jy; });

@@ -11,12 +11,13 @@ namespace misfit::imager {
 /// A source outside an image, and what may show of it there through the kernel.
 struct OutsideSource {
   Source source;
-  double alias_jy = 0;  ///< the largest pixel of what gridding makes of it, Jy/beam; see AliasLevels
+  double alias_jy = 0;     ///< the largest pixel of what gridding makes of it, Jy/beam; see AliasLevels
+  bool at_border = false;  ///< of the field that it was found in: it may lie beyond, and be brighter
 };
 
 /// The components that CLEAN found in an image of a wider field, `found_in`, those within three pixels of a brighter one taken
-/// together, which lie more than two of its pixels outside `image` and have `least_jy` or more, since fainter ones are not told
-/// from noise and sidelobes; the one with the highest alias first.
+/// together, which lie more than two of its pixels outside `image` and have `least_jy` or more: sources of Stokes I are
+/// positive. The one with the highest alias comes first.
 std::vector<OutsideSource> sources_outside(const std::vector<Component>& components, const ImageGeometry& found_in,
                                            const ImageGeometry& image, const AliasLevels& aliases, double least_jy);
 

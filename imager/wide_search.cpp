@@ -92,8 +92,10 @@ WideSearch search_wide_field(const VisibilitySource& source, const WideField& fi
   CleanResult cleaned = clean(
       {tapered, transform, images, sidelobes.from(lobe_pixels), 1e-4}, *minor, options,
       first_state(ComponentModel(g.width, g.height, minor->scale_pixels())), progress, [](const CleanState&) {}, times);
+  const Unexplained unexplained = unexplained_by(cleaned.model, source, transform, g, progress, times);
   return {cleaned.components.components(), sidelobes,
-          std::max(5 * robust_noise(cleaned.residual, threads), options.threshold_jy)};
+          std::max(5 * robust_noise(cleaned.residual, threads), options.threshold_jy), unexplained,
+          unexplained.sources_most_jy * sidelobes.from(lobe_pixels)};
 }
 
 }  // namespace misfit::imager

@@ -3,6 +3,7 @@
 #include "imager/imaging.h"
 #include "imager/outside.h"
 #include "imager/sidelobes.h"
+#include "imager/unexplained.h"
 
 namespace misfit::imager {
 
@@ -21,10 +22,15 @@ struct WideSearch {
   std::vector<Component> components;
   Sidelobes sidelobes;  ///< of its PSF, by its pixels
   double least_jy = 0;  ///< flux from which on they are told from noise, and from what a shallow CLEAN leaves of bright ones
+  Unexplained unexplained;  ///< by the components, of the samples that its pixels can represent
+  /// How high the sidelobes of sources may be that were not found, such as of those beyond the field: what is fainter may be
+  /// one of them. Noise alone does not count, so far as samples share cells of the uv plane.
+  double sidelobe_jy = 0;
 };
 
 /// Images the wider field with weights that fall off towards the edge of its grid, and finds its sources by Clark's CLEAN with
-/// major cycles, down to five times the noise or a two-hundredth of the peak. Throws what make_dirty_images and clean throw.
+/// major cycles, down to five times the noise or a two-hundredth of the peak. Stages timed: "statistics", and those of
+/// make_dirty_images and clean. Throws what they throw.
 WideSearch search_wide_field(const VisibilitySource& source, const WideField& field, int threads, const Progress& progress,
                              StageTimes& times);
 

@@ -189,6 +189,15 @@ BOOST_AUTO_TEST_CASE(a_strong_source_outside_is_found_with_its_alias) {
   for (std::size_t i = 1; i < found.sources.size(); ++i) BOOST_TEST(found.sources[i].source.flux_jy < 10);
 }
 
+BOOST_AUTO_TEST_CASE(a_source_at_the_border_of_the_field_is_marked_and_negative_ones_are_none) {
+  const std::vector<Component> components{{0, 3, 30, 5}, {0, 30, 50, 4}, {0, 10, 10, -6}, {0, 32, 33, 7}};
+  const ImageGeometry wide{64, 64, 4 * geometry.cell_rad, {}};
+  const AliasLevels aliases(plan_with(geometry, "nearest", 1, 2), wide, Sidelobes(Image(8, 8)));
+  const auto sources = sources_outside(components, wide, geometry, aliases, 1);
+  BOOST_REQUIRE(sources.size() == 2U);
+  for (const OutsideSource& s : sources) BOOST_TEST(s.at_border == (s.source.flux_jy == 5));
+}
+
 BOOST_AUTO_TEST_CASE(a_good_kernel_keeps_its_alias_below_the_noise) {
   const GriddingPlan plan = plan_with(geometry, "least-misfit", 9, 2);
   const VisibilityBlock block = observed({{fields_away(1.5, 0.2), 1000}}, 1);

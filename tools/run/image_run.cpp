@@ -273,7 +273,7 @@ class ImageRun {
     progress_.begin("sources outside", true);
     const double noise_jy =
         cleaned_ ? cleaned_->report.final_state().rms_jy : imager::robust_noise(made_.images.dirty, threads_);
-    outside_ = check_outside(*source_, made_.plan, made_.images.psf, noise_jy, progress(), own);
+    outside_ = check_outside(*source_, made_.plan, made_.images, noise_jy, progress(), own);
     progress_.end();
     report_.outside = &outside_;
     const imager::Decision told = outside_decision(outside_);

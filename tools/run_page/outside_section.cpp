@@ -22,6 +22,11 @@ double number(const json& object, const char* key) {
   return value.is_number() ? value.get<double>() : NAN;
 }
 
+std::string text(const json& object, const char* key) {
+  const json& value = member(object, key);
+  return value.is_string() ? value.get<std::string>() : "";
+}
+
 /// Of the largest number under `key`, so that all rows compare at a glance.
 ScaledUnit unit_of(const json& sources, const char* key, const std::string& base) {
   double largest = 0;
@@ -38,7 +43,8 @@ std::string table_of(const json& sources) {
     at.dec_rad = number(source, "dec_deg") * M_PI / 180;
     rows.push_back({html_escaped(sexagesimal(at)), significant(number(source, "l_arcsec"), 5),
                     significant(number(source, "m_arcsec"), 5), significant(number(source, "flux_jy") / flux.size, 3),
-                    significant(number(source, "alias_jy") / alias.size, 2)});
+                    significant(number(source, "alias_jy") / alias.size, 2) +
+                        (member(source, "at_border") == true ? tag("small", "at the border searched, or beyond") : "")});
   }
   return html::table({"Position", "#East" + tag("small", "arcsec"), "#North" + tag("small", "arcsec"),
                       "#Flux" + tag("small", flux.name), "#Alias" + tag("small", alias.name)},
@@ -50,16 +56,20 @@ std::string table_of(const json& sources) {
 std::string outside_section(const json& report) {
   const json &sources = member(report, "outside"), &search = member(report, "outside_search");
   if (!sources.is_array() || !search.is_object()) return "";
-  const std::string found = "Sources above " + with_unit(member(search, "least_jy"), "Jy", 2) +
-                            " outside the image, in a field four times as wide and high: " + whole(member(search, "found")) +
-                            ". ";
-  const std::string noise = "the image's noise of " + with_unit(member(search, "noise_jy"), "Jy/beam", 2);
+  const std::string noise = html_escaped(text(search, "noise"));
+  std::string told = "Sources above " + with_unit(member(search, "least_jy"), "Jy", 2) +
+                     " outside the image, in a field four times as wide and high: " + whole(member(search, "found")) + ". ";
+  if (number(search, "found") > 0)
+    told += "The highest alias is " + with_unit(member(search, "highest_alias_jy"), "Jy/beam", 2) + " at most. ";
+  const std::string elsewhere = html_escaped(text(search, "elsewhere"));
+  const std::string unknown = elsewhere.empty() ? "" : "\n" + tag("p", tag("strong", "Not known:") + " " + elsewhere + ".");
   const std::string sidelobes =
-      " Their sidelobes are those of the PSF, which no kernel removes: only a wider image does, or a model taken off the data.";
-  if (sources.empty()) return tag("p", found + "No alias exceeds " + noise + "." + sidelobes);
-  return tag("p", found + "The aliases of these may exceed " + noise +
+      " An alias is what gridding adds to the exact image. The sources' sidelobes belong to that image, and no kernel removes"
+      " them: only a wider image does, or a model taken off the data.";
+  if (sources.empty()) return tag("p", told + "No alias exceeds the image's noise, " + noise + "." + sidelobes) + unknown;
+  return tag("p", told + "The aliases of these may exceed the image's noise, " + noise +
                       "; a smaller --accuracy, a wider kernel or more padding keeps them out." + sidelobes) +
-         "\n" + table_of(sources);
+         unknown + "\n" + table_of(sources);
 }
 
 }  // namespace misfit::tools
