@@ -64,6 +64,12 @@ double largest_error(const GriddingPlan& plan, const VisibilityBlock& block) {
   return largest_magnitude(made.image) / made.sums.weight;
 }
 
+WideField wide_field(const SampleCoordinates& samples) {
+  WideFieldFinder finder(geometry);
+  finder.add(samples);
+  return finder.field();
+}
+
 struct Found {
   std::vector<OutsideSource> sources;
   WideField field;
@@ -71,9 +77,11 @@ struct Found {
 
 Found search(const VisibilityBlock& block, const GriddingPlan& plan) {
   const StoredVisibilities source = stored({block});
-  Found found{{}, wide_field(source, plan.options.geometry)};
+  Found found{{}, wide_field(block)};
   StageTimes times;
-  const WideSearch wide = search_wide_field(source, found.field, 2, ignore_progress, times);
+  GriddingRequest request = plan.request;
+  request.samples = block.samples();
+  const WideSearch wide = search_wide_field(source, plan_wide_field(found.field, request), ignore_progress, times);
   const AliasLevels aliases(plan, found.field.geometry, wide.sidelobes);
   found.sources = sources_outside(wide.components, found.field.geometry, plan.options.geometry, aliases, wide.least_jy);
   return found;
@@ -218,12 +226,23 @@ BOOST_AUTO_TEST_CASE(noise_alone_has_no_sources) {
 
 BOOST_AUTO_TEST_CASE(a_field_without_short_baselines_is_imaged_as_finely_as_they_need) {
   VisibilityBlock block = random_samples(500, 1, geometry.cell_rad, 5);
-  BOOST_TEST(wide_field(stored({block}), geometry).geometry.cell_rad == geometry.cell_rad);
+  BOOST_TEST(wide_field(block).geometry.cell_rad == geometry.cell_rad);
   for (double& coordinate : block.uvw_m) coordinate /= 16;
-  const WideField field = wide_field(stored({block}), geometry);
+  const WideField field = wide_field(block);
   BOOST_TEST(field.geometry.cell_rad == 4 * geometry.cell_rad);
   BOOST_TEST(field.geometry.width == geometry.width);
   BOOST_TEST(field.geometry.height == geometry.height);
+}
+
+BOOST_AUTO_TEST_CASE(a_field_can_be_imaged_where_a_usable_sample_is_short_enough) {
+  VisibilityBlock block = random_samples(500, 1, geometry.cell_rad, 5);
+  const ImageGeometry coarse{64, 48, 4 * geometry.cell_rad, {}};
+  BOOST_TEST(can_be_imaged(coarse, stored({block})));
+  for (std::size_t row = 0; row < 500; ++row) {
+    const double turns = speed_of_light_m_s / block.frequency_hz.front() / coarse.cell_rad;
+    if (std::max(std::abs(block.uvw_m[3 * row]), std::abs(block.uvw_m[3 * row + 1])) < 0.5 * turns) block.weight[row] = 0;
+  }
+  BOOST_TEST(!can_be_imaged(coarse, stored({block})));
 }
 
 BOOST_AUTO_TEST_SUITE_END()

@@ -80,6 +80,22 @@ BOOST_AUTO_TEST_CASE(the_decision_says_how_high_an_alias_is_beside_the_noise_and
   BOOST_TEST(outside_decision(report_of_less_than_all(0)).decision == "no alias known above 1 mJy/beam");
 }
 
+BOOST_AUTO_TEST_CASE(the_plan_says_how_large_and_coarse_the_image_is_that_is_searched_and_why) {
+  const imager::Decision told = tools::search_decision({{640, 512, 2 * arcsec, {}}, 0, 0.43}, 1.5);
+  BOOST_TEST(told.decision == "640 × 512 pixels of 2 arcsec");
+  BOOST_TEST(contains(told.because, "four times the image's field"));
+  BOOST_TEST(contains(told.because, "43 % of the samples"));
+  BOOST_TEST(contains(told.because, "takes 1.5 s"));
+}
+
+BOOST_AUTO_TEST_CASE(where_no_sample_is_short_enough_nothing_is_searched_and_that_is_told) {
+  OutsideReport report = report_with(0);
+  report.searched = false;
+  BOOST_TEST(outside_decision(report).decision == "not looked for");
+  BOOST_TEST(outside_json(&report).is_null());
+  BOOST_TEST(tools::outside_section(json_of(&report)).empty());
+}
+
 BOOST_AUTO_TEST_CASE(flux_that_is_in_no_source_found_is_warned_of_with_what_may_be_its_sidelobes) {
   const auto warnings = outside_warnings(report_of_less_than_all(1));
   BOOST_REQUIRE(warnings.size() == 2U);

@@ -78,14 +78,23 @@ bool something_elsewhere(const imager::WideSearch& search) {
 
 }  // namespace
 
+imager::Decision search_decision(const imager::WideField& field, double seconds) {
+  const imager::ImageGeometry& g = field.geometry;
+  return {"search outside the image",
+          std::to_string(g.width) + " × " + std::to_string(g.height) + " pixels of " + angle(g.cell_rad),
+          "four times the image's field; " + significant(100 * field.reaching, 2) +
+              " % of the samples lie within half as far in u and v as these can represent; takes " + duration(seconds)};
+}
+
 OutsideReport check_outside(const imager::VisibilitySource& source, const imager::GriddingPlan& plan,
-                            const imager::DirtyImages& images, double pixel_noise_jy, const imager::Progress& progress,
-                            imager::StageTimes& times) {
-  const imager::ImageGeometry& image = plan.request.geometry;
-  const imager::WideField field = imager::wide_field(source, image);
-  const imager::WideSearch search = imager::search_wide_field(source, field, plan.request.threads, progress, times);
+                            const imager::GriddingPlan& wider, const imager::DirtyImages& images, double pixel_noise_jy,
+                            const imager::Progress& progress, imager::StageTimes& times) {
+  const imager::ImageGeometry &image = plan.request.geometry, &field = wider.request.geometry;
   OutsideReport report;
-  report.field = field.geometry;
+  report.field = field;
+  report.searched = imager::can_be_imaged(field, source);
+  if (!report.searched) return report;
+  const imager::WideSearch search = imager::search_wide_field(source, wider, progress, times);
   report.least_jy = std::max(search.least_jy, search.sidelobe_jy);
   const double scatter_jy = search.unexplained.image_noise_jy(images.sums.weight);
   report.noise_of_pixels = pixel_noise_jy <= scatter_jy;
@@ -93,12 +102,15 @@ OutsideReport check_outside(const imager::VisibilitySource& source, const imager
   report.elsewhere = something_elsewhere(search);
   report.elsewhere_jy = report.elsewhere ? search.unexplained.sources_least_jy : search.unexplained.sources_most_jy;
   if (plan.direct) return report;  // direct sums have no aliases
-  const imager::AliasLevels aliases(plan, field.geometry, sidelobes_of(images.psf, search, image, field.geometry));
-  sort_out(imager::sources_outside(search.components, field.geometry, image, aliases, search.least_jy), report);
+  const imager::AliasLevels aliases(plan, field, sidelobes_of(images.psf, search, image, field));
+  sort_out(imager::sources_outside(search.components, field, image, aliases, search.least_jy), report);
   return report;
 }
 
 imager::Decision outside_decision(const OutsideReport& r) {
+  if (!r.searched)
+    return {"sources outside the image", "not looked for",
+            "no usable sample lies within the |u| and |v| that pixels of " + angle(r.field.cell_rad) + " can represent"};
   std::string because = std::to_string(r.found) + " above " + with_prefix(r.least_jy, "Jy", 2) + " in " +
                         angle(r.field.width * r.field.cell_rad) + " × " + angle(r.field.height * r.field.cell_rad);
   if (r.found > 0) because += "; the highest alias is " + with_prefix(r.highest_alias_jy, "Jy/beam", 2) + " at most";
@@ -126,7 +138,7 @@ std::vector<std::string> outside_warnings(const OutsideReport& r) {
 }
 
 nlohmann::json outside_json(const OutsideReport* report) {
-  if (report == nullptr) return nullptr;
+  if (report == nullptr || !report->searched) return nullptr;
   nlohmann::json list = nlohmann::json::array();
   for (const imager::OutsideSource& s : report->sources) {
     const imager::SkyDirection at = direction_of(s, *report);
@@ -142,7 +154,7 @@ nlohmann::json outside_json(const OutsideReport* report) {
 }
 
 nlohmann::json outside_search_json(const OutsideReport* report) {
-  if (report == nullptr) return nullptr;
+  if (report == nullptr || !report->searched) return nullptr;
   const std::string sentence = elsewhere_sentence(*report);
   return {{"found", report->found},
           {"doubtful", report->doubtful},

@@ -14,6 +14,7 @@ namespace misfit::tools {
 /// What `misfit image --check-outside` found.
 struct OutsideReport {
   imager::ImageGeometry field;                 ///< searched, with the image in its middle
+  bool searched = true;                        ///< or no sample was left that its pixels can represent
   std::vector<imager::OutsideSource> sources;  ///< whose aliases may exceed the image's noise, the highest first
   std::size_t found = 0;                       ///< sources outside, with those whose aliases do not
   std::size_t doubtful = 0;                    ///< others, which may be sidelobes of what the search did not find
@@ -32,10 +33,14 @@ struct OutsideReport {
 /// none. Where data have no noise both are small, and still above 0: an alias above is real, and one below is told with its
 /// level.
 ///
-/// `pixel_noise_jy` is the first of the two; `plan` and `images` are the image's. Stages timed: those of imaging and CLEAN.
+/// `pixel_noise_jy` is the first of the two; `plan` and `images` are the image's, `wider` is the plan of the field to search.
+/// Stages timed: those of imaging and CLEAN.
 OutsideReport check_outside(const imager::VisibilitySource& source, const imager::GriddingPlan& plan,
-                            const imager::DirtyImages& images, double pixel_noise_jy, const imager::Progress& progress,
-                            imager::StageTimes& times);
+                            const imager::GriddingPlan& wider, const imager::DirtyImages& images, double pixel_noise_jy,
+                            const imager::Progress& progress, imager::StageTimes& times);
+
+/// How a field is searched, why, and how long that is expected to take.
+imager::Decision search_decision(const imager::WideField& field, double seconds);
 
 /// That nothing outside matters, or how much does.
 imager::Decision outside_decision(const OutsideReport& report);
