@@ -24,7 +24,7 @@ std::vector<Copy> copies_of(const AliasLevels::Axis& axis, double offset, double
   std::vector<Copy> copies;
   for (const int n : std::set<int>{nearest - 1, nearest, nearest + 1, -1, 0, 1}) {
     if (std::abs(n) > axis.most) continue;
-    copies.push_back({n == 0, &axis.height[static_cast<std::size_t>(axis.most + n)]});
+    copies.push_back({n == 0, &*(axis.height.begin() + axis.most + n)});
     const double at = offset - n * axis.fft_size;
     for (const auto& [first, last] : axis.cell)
       copies.back().distance.push_back(std::max(0.0, std::abs(at - std::clamp(at, first, last)) - place));

@@ -117,8 +117,8 @@ BOOST_AUTO_TEST_SUITE(outside)
 /// Sources whose copies fall upon the image, beside it along one axis or both, and sources within the padding.
 BOOST_DATA_TEST_CASE(the_level_said_of_a_source_holds_against_direct_sums,
                      bdata::make({"nearest 1", "spheroidal-exact 6", "least-misfit 3", "least-misfit 7"}) *
-                         bdata::make({1.2, 1.5, 2.0}) * bdata::make({-1.56, -0.52, -0.7, 0.94, 1.28, 1.7}) *
-                         bdata::make({0.0, 0.3, -0.94, 1.55}),
+                         bdata::make({1.2, 1.5, 2.0}) * bdata::make({-1.56, -0.52, -0.7, 0.94, 1.28}) *
+                         bdata::make({0.0, -0.94, 1.55}),
                      kernel, padding, east, north) {
   const DirectionCosines at = fields_away(east, north);
   const Levels levels = levels_of(plan_of_way(kernel, padding), observed({{at, 1000}}, 0), at);

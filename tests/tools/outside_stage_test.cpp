@@ -130,10 +130,10 @@ BOOST_AUTO_TEST_CASE(the_section_has_a_row_for_each_source_and_is_empty_without_
   for (const std::string& section : {quiet, loud}) {
     BOOST_TEST(balanced(section));
     BOOST_TEST(contains(section, "sidelobes"));
-    BOOST_TEST(!contains(section, "Not known"));
+    BOOST_TEST(!contains(section, "Elsewhere"));
   }
   const OutsideReport less = report_of_less_than_all(4);
-  BOOST_TEST(contains(tools::outside_section(json_of(&less)), "Not known:</strong> about 30 Jy"));
+  BOOST_TEST(contains(tools::outside_section(json_of(&less)), "Elsewhere:</strong> about 30 Jy"));
 }
 
 BOOST_AUTO_TEST_CASE(a_run_reports_the_alias_that_shows_in_its_image_and_none_with_a_good_kernel) {

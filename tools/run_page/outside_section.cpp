@@ -41,10 +41,10 @@ std::string table_of(const json& sources) {
     imager::SkyDirection at;
     at.ra_rad = number(source, "ra_deg") * M_PI / 180;
     at.dec_rad = number(source, "dec_deg") * M_PI / 180;
-    rows.push_back({html_escaped(sexagesimal(at)), significant(number(source, "l_arcsec"), 5),
+    const std::string border = member(source, "at_border") == true ? tag("small", " at the border searched, or beyond") : "";
+    rows.push_back({html_escaped(sexagesimal(at)) + border, significant(number(source, "l_arcsec"), 5),
                     significant(number(source, "m_arcsec"), 5), significant(number(source, "flux_jy") / flux.size, 3),
-                    significant(number(source, "alias_jy") / alias.size, 2) +
-                        (member(source, "at_border") == true ? tag("small", "at the border searched, or beyond") : "")});
+                    significant(number(source, "alias_jy") / alias.size, 2)});
   }
   return html::table({"Position", "#East" + tag("small", "arcsec"), "#North" + tag("small", "arcsec"),
                       "#Flux" + tag("small", flux.name), "#Alias" + tag("small", alias.name)},
@@ -62,7 +62,7 @@ std::string outside_section(const json& report) {
   if (number(search, "found") > 0)
     told += "The highest alias is " + with_unit(member(search, "highest_alias_jy"), "Jy/beam", 2) + " at most. ";
   const std::string elsewhere = html_escaped(text(search, "elsewhere"));
-  const std::string unknown = elsewhere.empty() ? "" : "\n" + tag("p", tag("strong", "Not known:") + " " + elsewhere + ".");
+  const std::string unknown = elsewhere.empty() ? "" : "\n" + tag("p", tag("strong", "Elsewhere:") + " " + elsewhere + ".");
   const std::string sidelobes =
       " An alias is what gridding adds to the exact image. The sources' sidelobes belong to that image, and no kernel removes"
       " them: only a wider image does, or a model taken off the data.";
