@@ -57,7 +57,7 @@ imager::Sidelobes sidelobes_of(const imager::Image& psf, const imager::WideSearc
 }
 
 /// Tells sources from what may be sidelobes, and those that matter from others.
-void sort_out(std::vector<imager::OutsideSource> all, OutsideReport& r) {
+void sort_out(const std::vector<imager::OutsideSource>& all, OutsideReport& r) {
   for (const imager::OutsideSource& s : all) {
     if (s.source.flux_jy < r.least_jy) {
       ++r.doubtful;

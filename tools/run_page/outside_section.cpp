@@ -62,14 +62,16 @@ std::string outside_section(const json& report) {
   if (number(search, "found") > 0)
     told += "The highest alias is " + with_unit(member(search, "highest_alias_jy"), "Jy/beam", 2) + " at most. ";
   const std::string elsewhere = html_escaped(text(search, "elsewhere"));
-  const std::string unknown = elsewhere.empty() ? "" : "\n" + tag("p", tag("strong", "Elsewhere:") + " " + elsewhere + ".");
+  std::string unknown;
+  if (!elsewhere.empty()) unknown = tag("p", tag("strong", "Elsewhere:").append(" ").append(elsewhere).append("."));
   const std::string sidelobes =
       " An alias is what gridding adds to the exact image. The sources' sidelobes belong to that image, and no kernel removes"
       " them: only a wider image does, or a model taken off the data.";
-  if (sources.empty()) return tag("p", told + "No alias exceeds the image's noise, " + noise + "." + sidelobes) + unknown;
+  if (sources.empty())
+    return tag("p", told + "No alias exceeds the image's noise, " + noise + "." + sidelobes) + "\n" + unknown;
   return tag("p", told + "The aliases of these may exceed the image's noise, " + noise +
                       "; a smaller --accuracy, a wider kernel or more padding keeps them out." + sidelobes) +
-         unknown + "\n" + table_of(sources);
+         "\n" + unknown + "\n" + table_of(sources);
 }
 
 }  // namespace misfit::tools
