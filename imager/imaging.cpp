@@ -148,26 +148,33 @@ DirtyImages make_dirty_images(const VisibilitySource& source, const Transform& t
   return {std::move(result.image), std::move(of_psf.image), result.sums};
 }
 
-Image make_residual_image(const VisibilitySource& source, const Transform& transform, const Image& model,
-                          const Progress& progress, StageTimes& times) {
+void for_each_residual(const VisibilitySource& source, const Transform& transform, const Image& model, const Progress& progress,
+                       StageTimes& times, const VisitResidual& visit) {
   Pass pass(source, progress, times);
   std::unique_ptr<Prediction> prediction;
   {
     const StageTimer timer(times, "degrid");
     prediction = transform.predict(model);
   }
-  auto sum = begin(transform, false, times);
   pass.for_each_group(prediction->samples_at_once(), [&](const Pass::Blocks& blocks) {
     std::vector<std::vector<std::complex<double>>> residual;
     {
       const StageTimer timer(times, "degrid");
       residual = residuals(*prediction, blocks);
     }
-    const StageTimer timer(times, "grid");
-    for (std::size_t b = 0; b < blocks.size(); ++b) sum->add(*blocks[b], residual[b]);
+    for (std::size_t b = 0; b < blocks.size(); ++b) visit(*blocks[b], residual[b]);
   });
   times.move("degrid", "fft", prediction->fft_s());
-  prediction.reset();
+}
+
+Image make_residual_image(const VisibilitySource& source, const Transform& transform, const Image& model,
+                          const Progress& progress, StageTimes& times) {
+  auto sum = begin(transform, false, times);
+  for_each_residual(source, transform, model, progress, times,
+                    [&](const VisibilityBlock& block, const std::vector<std::complex<double>>& residual) {
+                      const StageTimer timer(times, "grid");
+                      sum->add(block, residual);
+                    });
   AdjointResult result = finish(std::move(sum), times);
   divide(result.image, result.sums.weight);
   return std::move(result.image);

@@ -34,6 +34,13 @@ struct OwnPsf {
 DirtyImages make_dirty_images(const VisibilitySource& source, const Transform& transform, const OwnPsf& psf,
                               const Progress& progress, StageTimes& times);
 
+/// Given a block and its data − model [row][channel], which is that at usable samples alone.
+using VisitResidual = std::function<void(const VisibilityBlock& block, const std::vector<std::complex<double>>& residual)>;
+
+/// One pass over the visibilities less those of a model. Stages timed: "read", "fft", "degrid".
+void for_each_residual(const VisibilitySource& source, const Transform& transform, const Image& model, const Progress& progress,
+                       StageTimes& times, const VisitResidual& visit);
+
 /// The dirty image of data − model: the model is predicted at every usable sample and subtracted. Stages timed: "read", "fft",
 /// "degrid", "grid".
 Image make_residual_image(const VisibilitySource& source, const Transform& transform, const Image& model,

@@ -57,6 +57,9 @@ std::uint64_t MeasurementSet::samples() const {
 imager::UvwReach MeasurementSet::reach(ReachOf rows) const {
   return scan_uvw(*impl_->open_set, rows);
 }
+void MeasurementSet::visit_coordinates(const std::function<void(const imager::SampleCoordinates&)>& visit) const {
+  visit_uvw(*impl_->open_set, visit);
+}
 std::unique_ptr<imager::BlockStream> MeasurementSet::open() const {
   return read_blocks(impl_->open_set);
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <string>
 
@@ -41,6 +42,9 @@ class MeasurementSet : public imager::VisibilitySource {
   /// Bounds at the highest channel selected, of rows with finite UVW. Reads UVW, antennas and FLAG_ROW alone. Throws
   /// std::runtime_error when they cannot be read.
   imager::UvwReach reach(ReachOf rows = ReachOf::usable) const;
+  /// Calls visit(coordinates) for some rows after others, all selected that have finite UVW and are neither flagged as a whole
+  /// nor of one antenna. Reads and throws what reach() does.
+  void visit_coordinates(const std::function<void(const imager::SampleCoordinates&)>& visit) const;
   std::unique_ptr<imager::BlockStream> open() const override;
 
  private:

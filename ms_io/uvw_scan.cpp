@@ -21,8 +21,9 @@ class UvwScan {
         flag_row_column_(table, "FLAG_ROW"),
         uvw_column_(table, "UVW") {}
 
-  /// Raises the largest |u|, |v| and |w|, in metres, to those of `rows`.
-  void raise(std::array<double, 3>& reach_m, const Rows& rows, ReachOf wanted) {
+  /// Calls visit(uvw_m) for each of `rows` that is wanted.
+  template <typename Visit>
+  void for_each(const Rows& rows, ReachOf wanted, const Visit& visit) {
     read(antenna1_column_, rows, antenna1_);
     read(antenna2_column_, rows, antenna2_);
     read(flag_row_column_, rows, flag_row_);
@@ -30,8 +31,7 @@ class UvwScan {
     const double* uvw = uvw_.data();
     for (std::size_t r = 0; r < rows.count(); ++r, uvw += 3) {
       if (wanted == ReachOf::usable && (antenna1_(r) == antenna2_(r) || flag_row_(r))) continue;
-      if (!std::isfinite(uvw[0]) || !std::isfinite(uvw[1]) || !std::isfinite(uvw[2])) continue;
-      for (std::size_t axis = 0; axis < 3; ++axis) reach_m[axis] = std::max(reach_m[axis], std::abs(uvw[axis]));
+      if (std::isfinite(uvw[0]) && std::isfinite(uvw[1]) && std::isfinite(uvw[2])) visit(uvw);
     }
   }
 
@@ -44,16 +44,43 @@ class UvwScan {
   casacore::Array<double> uvw_;                ///< [row][3]
 };
 
+/// Calls visit(setup, uvw_m) for each row that is wanted, and done(setup) after some of them.
+template <typename Visit, typename Done>
+void scan(const OpenSet& open_set, ReachOf rows, const Visit& visit, const Done& done) {
+  translated("cannot read UVW, antennas or FLAG_ROW of " + open_set.path, [&] {
+    UvwScan scan(open_set.set);
+    for (const BlockRows& block : open_set.selected.blocks)
+      for (const Rows& piece : pieces(block.runs, piece_rows)) {
+        scan.for_each(piece, rows, [&](const double* uvw_m) { visit(block.setup, uvw_m); });
+        done(block.setup);
+      }
+  });
+}
+
 }  // namespace
+
+void visit_uvw(const OpenSet& open_set, const std::function<void(const imager::SampleCoordinates&)>& visit) {
+  imager::SampleCoordinates some;
+  scan(
+      open_set, ReachOf::usable,
+      [&](std::size_t, const double* uvw_m) { some.uvw_m.insert(some.uvw_m.end(), uvw_m, uvw_m + 3); },
+      [&](std::size_t setup) {
+        some.frequency_hz = open_set.selected.setups[setup].frequency_hz;
+        visit(some);
+        some.uvw_m.clear();
+      });
+}
 
 imager::UvwReach scan_uvw(const OpenSet& open_set, ReachOf rows) {
   const SelectedRows& selected = open_set.selected;
   std::vector<std::array<double, 3>> reach_m(selected.setups.size(), {0, 0, 0});
-  translated("cannot read UVW, antennas or FLAG_ROW of " + open_set.path, [&] {
-    UvwScan scan(open_set.set);
-    for (const BlockRows& block : selected.blocks)
-      for (const Rows& piece : pieces(block.runs, piece_rows)) scan.raise(reach_m[block.setup], piece, rows);
-  });
+  scan(
+      open_set, rows,
+      [&](std::size_t setup, const double* uvw_m) {
+        for (std::size_t axis = 0; axis < 3; ++axis)
+          reach_m[setup][axis] = std::max(reach_m[setup][axis], std::abs(uvw_m[axis]));
+      },
+      [](std::size_t) {});
   imager::UvwReach reach;
   for (std::size_t s = 0; s < reach_m.size(); ++s) {
     const std::vector<double>& frequency_hz = selected.setups[s].frequency_hz;

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <functional>
+
 #include "imager/extent.h"
 #include "ms_io/measurement_set.h"
 #include "ms_io/visibility_reader_internal.h"
@@ -8,5 +10,7 @@ namespace misfit::ms_io {
 
 /// See MeasurementSet::reach().
 imager::UvwReach scan_uvw(const OpenSet& open_set, ReachOf rows);
+/// See MeasurementSet::visit_coordinates().
+void visit_uvw(const OpenSet& open_set, const std::function<void(const imager::SampleCoordinates&)>& visit);
 
 }  // namespace misfit::ms_io

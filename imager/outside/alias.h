@@ -1,16 +1,59 @@
 #pragma once
 
-#include "imager/wide/wide_transform.h"
+#include <utility>
+#include <vector>
+
+#include "imager/outside/sidelobes.h"
+#include "imager/plan/gridding_plan.h"
+#include "imager/wide/facet.h"
 
 namespace misfit::imager {
 
-/// The largest pixel that the alias of a source of 1 Jy at `source`, outside the image, may have in Jy/beam. A kernel with the
-/// taper c and correction h turns a source at X (the offset from the middle of the facet over the size of the FFT) into copies
-/// at X − n along each axis, n whole: by Poisson's sum, h(x) Σ_r C(r−ν) exp(2πi(r−ν)x) = Σ_n h(x) c(x+n) exp(2πinν). The copy
-/// that falls upon the facet has the height h(X−n) c(X), along u times along v; one that falls into the padding leaves its
-/// sidelobes alone, at most `max_sidelobe` of what it would have at the facet's nearest pixel. Where all n are 0 there is no
-/// alias. A w axis blurs the copy, since n − 1 is another where the source is: what it would be without that is an upper bound.
-/// Of several facets the worst counts.
-double alias_level(const WideTransformOptions& options, DirectionCosines source, double max_sidelobe);
+/// What gridding makes of sources outside an image: the image less the exact one of the same data.
+///
+/// A kernel with the taper c and correction h turns the exact image D along each axis, x being the offset from the middle of a
+/// facet over the size of the FFT, into
+///   h(x) Σ_r C(r−ν) exp(2πi(r−ν)x) = Σ_n H_n(x) exp(2πinν),  H_n(x) = h(x) c(x+n),  n whole (Poisson),
+/// so that the error of a source of 1 Jy at X is Σ_{n,m} [H_n(x) H_m(y) − δ_{n0} δ_{m0}] · PSF(x+n − X, y+m − Y): copies of the
+/// source with all their sidelobes, and its own sidelobes by as much as the correction misses them. Its own sidelobes as they
+/// are belong to the exact image too, and are no error.
+///
+/// A copy that falls upon the image shows there as a point; one that falls beside it, into the padding, by its sidelobes, and
+/// so do all others. Their levels are added in squares, as their phases are unrelated: the level of a pixel is
+///   √(Σ_{n,m} [H_n(x) H_m(y) − δ]² · P²(distance)),
+/// P being the highest sidelobe from that distance on. Terms far off are many and add up by Parseval's sum, since with the
+/// map error ℓ (kernels/map_error.h) Σ_n H_n² = H_0 = 1 − ℓ: all of them together are 1 − (1−ℓ_u)(1−ℓ_v). Of N equal terms the
+/// sum can exceed this √N times; that takes four of them, each with its highest sidelobe upon one pixel with one sign, to be
+/// twice as high. A w axis blurs copies, since n − 1 is another where the source is: what they would be without that is an
+/// upper bound; and it brings an ℓ of its own, as tables and rounding do.
+class AliasLevels {
+ public:
+  /// Of sources within `field`, whose places are known to half a pixel of it.
+  AliasLevels(const GriddingPlan& plan, const ImageGeometry& field, Sidelobes sidelobes);
+
+  /// The largest pixel of the error, in Jy/beam, that a source of 1 Jy there leaves in any facet.
+  double of(DirectionCosines source) const;
+
+  /// One axis of a facet, cut into cells in which heights hardly change.
+  struct Axis {
+    Axis(const kernels::Kernel& kernel, int pixels, int fft_size, double farthest_pixels);
+
+    double fft_size = 0;
+    std::vector<std::pair<double, double>> cell;  ///< first and last pixel, from the middle one
+    std::vector<double> missed;                   ///< [cell] ℓ
+    int most = 0;                                 ///< |n| of heights
+    std::vector<std::vector<double>> height;      ///< [most + n][cell] |H_n|
+  };
+
+ private:
+  double of_facet(double offset_u, double offset_v) const;
+
+  std::vector<Facet> facets_;
+  Sidelobes sidelobes_;
+  double place_pixels_;  ///< of the image, to which places are known
+  Axis u_;
+  Axis v_;
+  double missed_besides_;  ///< ℓ of all that is not a matter of place: w, tables, rounding
+};
 
 }  // namespace misfit::imager

@@ -4,8 +4,6 @@
 #include <cmath>
 #include <cstdlib>
 
-#include "imager/outside/alias.h"
-
 namespace misfit::imager {
 namespace {
 
@@ -60,25 +58,17 @@ bool lies_outside(DirectionCosines at, const ImageGeometry& image, double margin
   return l < -margin || m < -margin || l > image.width - 1 + margin || m > image.height - 1 + margin;
 }
 
-double highest_alias(const WideTransformOptions& transform, DirectionCosines about, double cell_rad, double max_sidelobe) {
-  double highest = 0;
-  for (const double along_l : {-0.5, 0.0, 0.5})
-    for (const double along_m : {-0.5, 0.0, 0.5})
-      highest =
-          std::max(highest, alias_level(transform, {about.l + along_l * cell_rad, about.m + along_m * cell_rad}, max_sidelobe));
-  return highest;
-}
-
 }  // namespace
 
 std::vector<OutsideSource> sources_outside(const std::vector<Component>& components, const ImageGeometry& found_in,
-                                           const WideTransformOptions& transform, const OutsideOptions& options) {
+                                           const ImageGeometry& image, const AliasLevels& aliases, double least_jy) {
   std::vector<OutsideSource> sources;
   for (const Group& group : groups_of(components)) {
     const DirectionCosines at = group.position(found_in);
-    if (std::abs(group.flux_jy) < options.least_jy || !lies_outside(at, transform.geometry, 2 * found_in.cell_rad)) continue;
-    const double alias = highest_alias(transform, at, found_in.cell_rad, options.max_sidelobe);
-    sources.push_back({{at, group.flux_jy}, std::abs(group.flux_jy) * alias});
+    if (group.flux_jy < least_jy || !lies_outside(at, image, 2 * found_in.cell_rad)) continue;
+    constexpr double lobe_pixels = 4;  // a main lobe upon the border may have its peak beyond
+    sources.push_back(
+        {{at, group.flux_jy}, group.flux_jy * aliases.of(at), lies_outside(at, found_in, -lobe_pixels * found_in.cell_rad)});
   }
   std::stable_sort(sources.begin(), sources.end(),
                    [](const OutsideSource& a, const OutsideSource& b) { return a.alias_jy > b.alias_jy; });

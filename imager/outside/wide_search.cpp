@@ -1,7 +1,6 @@
 #include "imager/outside/wide_search.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "imager/clean/clean.h"
@@ -10,83 +9,76 @@
 #include "imager/noise.h"
 #include "imager/outside/tapered_visibilities.h"
 #include "imager/plan/planned_transform.h"
+#include "imager/sampling.h"
 
 namespace misfit::imager {
 namespace {
 
 constexpr int times_wider = 4;
-constexpr int most_doublings = 12;
 
-/// What cells of the image's, doubled so many times, can do with, in all blocks so far.
-struct Doublings {
-  std::uint64_t usable = 0;
-  std::array<std::uint64_t, most_doublings + 1> inner{};  ///< samples with |u|, |v| below 1/(4 cell)
-  std::array<double, most_doublings + 1> max_abs_w{};     ///< of those below 1/(2 cell)
-};
+}  // namespace
 
-void count(const VisibilityBlock& block, double cell_rad, Doublings& found) {
-  const float* weight = block.weight.data();
-  for (std::size_t row = 0; row < block.rows(); ++row) {
-    const double* uvw_m = &block.uvw_m[3 * row];
+void WideFieldFinder::add(const SampleCoordinates& samples) {
+  samples_ += samples.samples();
+  for (std::size_t row = 0; row < samples.rows(); ++row) {
+    const double* uvw_m = &samples.uvw_m[3 * row];
     const double reach_m = std::max(std::abs(uvw_m[0]), std::abs(uvw_m[1]));
-    for (const double frequency_hz : block.frequency_hz) {
-      if (*weight++ == 0) continue;
-      ++found.usable;
+    for (const double frequency_hz : samples.frequency_hz) {
       const double per_m = frequency_hz / speed_of_light_m_s;
-      double turns = reach_m * per_m * cell_rad;
+      double turns = reach_m * per_m * image_.cell_rad;
       for (std::size_t k = 0; k <= most_doublings && turns <= 0.5; ++k, turns *= 2) {
-        found.inner[k] += turns <= 0.25;
-        found.max_abs_w[k] = std::max(found.max_abs_w[k], std::abs(uvw_m[2]) * per_m);
+        inner_[k] += turns <= 0.25;
+        max_abs_w_[k] = std::max(max_abs_w_[k], std::abs(uvw_m[2]) * per_m);
       }
     }
   }
 }
 
-/// The largest magnitude beyond four pixels of the peak, where the main lobe is over.
-double far_sidelobe(const Image& psf) {
-  double largest = 0;
-  for (int row = 0; row < psf.height; ++row)
-    for (int column = 0; column < psf.width; ++column)
-      if (std::max(std::abs(row - psf.height / 2), std::abs(column - psf.width / 2)) > 4 && !std::isnan(psf.at(row, column)))
-        largest = std::max(largest, std::abs(psf.at(row, column)));
-  return largest;
+WideField WideFieldFinder::field() const {
+  const double pixels = times_wider * std::max(image_.width, image_.height);
+  std::size_t doublings = 2;
+  while (doublings < most_doublings && std::ldexp(pixels, -static_cast<int>(doublings)) > 1024) ++doublings;
+  while (doublings > 0 && inner_[doublings] * 10 < samples_) --doublings;
+  const auto coarse = [&](int side) {
+    return std::max(2, static_cast<int>(std::ceil(std::ldexp(times_wider * side, -static_cast<int>(doublings)))));
+  };
+  WideField field{image_, max_abs_w_[doublings], 0};
+  field.geometry.width = coarse(image_.width);
+  field.geometry.height = coarse(image_.height);
+  field.geometry.cell_rad = std::ldexp(image_.cell_rad, static_cast<int>(doublings));
+  if (samples_ > 0) field.reaching = static_cast<double>(inner_[doublings]) / static_cast<double>(samples_);
+  return field;
 }
 
-GriddingPlan plan_of(const VisibilitySource& source, const WideField& field, int threads) {
+GriddingPlan plan_wide_field(const WideField& field, const GriddingRequest& image) {
   GriddingRequest request;
   request.geometry = field.geometry;
   request.accuracy = request.psf_accuracy = 1e-4;
   request.best_effort = true;
-  request.samples = source.samples();
+  request.samples = image.samples;
   request.max_abs_w = field.max_abs_w;
-  request.threads = threads;
+  request.threads = image.threads;
+  request.stack_bytes = image.stack_bytes;
+  request.samples_at_once = image.samples_at_once;
   return plan_gridding(request);
 }
 
-}  // namespace
-
-WideField wide_field(const VisibilitySource& source, const ImageGeometry& image) {
-  Doublings found;
+bool can_be_imaged(const ImageGeometry& field, const VisibilitySource& source) {
   const auto stream = source.open();
-  while (const auto block = stream->next()) count(*block, image.cell_rad, found);
-  const double pixels = times_wider * std::max(image.width, image.height);
-  std::size_t doublings = 2;
-  while (doublings < most_doublings && std::ldexp(pixels, -static_cast<int>(doublings)) > 1024) ++doublings;
-  while (doublings > 0 && found.inner[doublings] * 10 < found.usable) --doublings;
-  WideField field{image, found.max_abs_w[doublings]};
-  const auto coarse = [&](int side) {
-    return std::max(2, static_cast<int>(std::ceil(std::ldexp(times_wider * side, -static_cast<int>(doublings)))));
-  };
-  field.geometry.width = coarse(image.width);
-  field.geometry.height = coarse(image.height);
-  field.geometry.cell_rad = std::ldexp(image.cell_rad, static_cast<int>(doublings));
-  return field;
+  while (const auto block = stream->next()) {
+    SampleSums sums;
+    const std::vector<float> weight = imaging_weights(*block, field.cell_rad, 1, sums);
+    if (sums.used > 0) return true;
+  }
+  return false;
 }
 
-WideSearch search_wide_field(const VisibilitySource& source, const WideField& field, int threads, const Progress& progress,
+WideSearch search_wide_field(const VisibilitySource& source, const GriddingPlan& plan, const Progress& progress,
                              StageTimes& times) {
-  const TaperedVisibilities tapered(source, field.geometry.cell_rad);
-  const PlannedTransform transform(plan_of(tapered, field, threads));
+  const ImageGeometry& g = plan.request.geometry;
+  const int threads = plan.request.threads;
+  const TaperedVisibilities tapered(source, g.cell_rad);
+  const PlannedTransform transform(plan);
   const DirtyImages images = make_dirty_images(tapered, transform, true, progress, times);
   constexpr double deep = 5e-3;  // a source between pixels leaves less of itself
   CleanOptions options;
@@ -96,13 +88,15 @@ WideSearch search_wide_field(const VisibilitySource& source, const WideField& fi
   options.threshold_jy = deep * largest_magnitude(images.dirty);
   options.threads = threads;
   const auto minor = make_deconvolver({.name = "clark", .threads = threads}, images.psf);
-  const ImageGeometry& g = field.geometry;
-  const double sidelobe = far_sidelobe(images.psf);
+  const Sidelobes sidelobes(images.psf);
+  constexpr double lobe_pixels = 5;  // where the main lobe is over
   CleanResult cleaned = clean(
-      {tapered, transform, images, sidelobe, 1e-4}, *minor, options,
+      {tapered, transform, images, sidelobes.from(lobe_pixels), 1e-4}, *minor, options,
       first_state(ComponentModel(g.width, g.height, minor->scale_pixels())), progress, [](const CleanState&) {}, times);
-  return {cleaned.components.components(), sidelobe,
-          std::max(5 * robust_noise(cleaned.residual, threads), options.threshold_jy)};
+  const Unexplained unexplained = unexplained_by(cleaned.model, source, transform, g, progress, times);
+  return {cleaned.components.components(), sidelobes,
+          std::max(5 * robust_noise(cleaned.residual, threads), options.threshold_jy), unexplained,
+          unexplained.sources_most_jy * sidelobes.from(lobe_pixels)};
 }
 
 }  // namespace misfit::imager

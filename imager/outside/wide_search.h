@@ -1,7 +1,13 @@
 #pragma once
 
+#include <array>
+#include <cstdint>
+
 #include "imager/imaging.h"
 #include "imager/outside/outside.h"
+#include "imager/outside/sidelobes.h"
+#include "imager/outside/unexplained.h"
+#include "imager/plan/gridding_plan.h"
 
 namespace misfit::imager {
 
@@ -9,22 +15,49 @@ namespace misfit::imager {
 struct WideField {
   ImageGeometry geometry;  ///< four times the image's sides
   double max_abs_w = 0;    ///< of the samples that this cell can represent, in wavelengths
+  double reaching = 0;     ///< part of all samples that reaches from half as far as it can represent inwards
 };
 
 /// Its cell is the image's times a power of two: 4 or, where it then has more than 1024 pixels a side, more; less where fewer
-/// than a tenth of the usable samples would reach half as far in u and v as it can represent. One pass over the visibilities.
-WideField wide_field(const VisibilitySource& source, const ImageGeometry& image);
+/// than a tenth of the samples lie within half as far in u and v as it can represent.
+class WideFieldFinder {
+ public:
+  explicit WideFieldFinder(const ImageGeometry& image) : image_(image) {}
+
+  void add(const SampleCoordinates& samples);
+  WideField field() const;
+
+ private:
+  static constexpr int most_doublings = 12;
+
+  /// What cells of the image's, doubled so many times, can do with.
+  ImageGeometry image_;
+  std::uint64_t samples_ = 0;
+  std::array<std::uint64_t, most_doublings + 1> inner_{};  ///< with |u|, |v| below 1/(4 cell)
+  std::array<double, most_doublings + 1> max_abs_w_{};     ///< of those below 1/(2 cell)
+};
+
+/// How the wider field is imaged: to 1e-4, within the memory that `image` allows.
+GriddingPlan plan_wide_field(const WideField& field, const GriddingRequest& image);
+
+/// Whether there is a sample to image it from: those that there should be may be flagged.
+bool can_be_imaged(const ImageGeometry& field, const VisibilitySource& source);
 
 /// What was found in it.
 struct WideSearch {
   std::vector<Component> components;
-  double max_sidelobe = 0;  ///< of its PSF
+  Sidelobes sidelobes;  ///< of its PSF, by its pixels
   double least_jy = 0;  ///< flux from which on they are told from noise, and from what a shallow CLEAN leaves of bright ones
+  Unexplained unexplained;  ///< by the components, of the samples that its pixels can represent
+  /// How high the sidelobes of sources may be that were not found, such as of those beyond the field: what is fainter may be
+  /// one of them. Noise alone does not count, so far as samples share cells of the uv plane.
+  double sidelobe_jy = 0;
 };
 
-/// Images the wider field with weights that fall off towards the edge of its grid, and finds its sources by Clark's CLEAN with
-/// major cycles, down to five times the noise or a two-hundredth of the peak. Throws what make_dirty_images and clean throw.
-WideSearch search_wide_field(const VisibilitySource& source, const WideField& field, int threads, const Progress& progress,
+/// Images the wider field of `plan` with weights that fall off towards the edge of its grid, and finds its sources by Clark's
+/// CLEAN with major cycles, down to five times the noise or a two-hundredth of the peak. Stages timed: "statistics", and those
+/// of make_dirty_images and clean. Throws what they throw.
+WideSearch search_wide_field(const VisibilitySource& source, const GriddingPlan& plan, const Progress& progress,
                              StageTimes& times);
 
 }  // namespace misfit::imager

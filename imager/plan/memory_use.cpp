@@ -13,6 +13,27 @@ constexpr double row_bytes = 3 * sizeof(double);
 /// For each sample of the block at hand: its run twice while runs are sorted, at worst one a sample, and room to grow.
 constexpr double order_bytes = 2 * 12 + 8;
 constexpr double residual_bytes = 2 * sizeof(double);
+/// Minor cycles take: the residual; for a convolution, what is convolved and what comes of it. In single precision the residual
+/// and the PSF, and two transforms, of 3/2 the size either way.
+constexpr double minor_images = 3, minor_single_images = 3.25;
+
+/// While a wider field is searched: `kept` visibilities, `blocks` in flight and `lasting` bytes of the run's own images stay.
+void add_wider_stages(const WiderDemand& d, double kept, double blocks, double block_samples, double lasting,
+                      std::vector<MemoryUse>& stages) {
+  const TransformMemory& t = d.transform;
+  const double image = d.pixels * pixel_bytes;
+  const double tapered = blocks + block_samples * sample_bytes;  // a copy with other weights
+  constexpr double placed_bytes = 32, growing = 2;               // of each sample, by cells of the uv plane
+  const double residual = tapered + block_samples * (residual_bytes + growing * placed_bytes);
+  stages.push_back({"the wider field is gridded", process_bytes, kept, tapered, t.visibilities + t.psf, 0, lasting});
+  stages.push_back(
+      {"the wider field's images are made", process_bytes, kept, 0, t.visibilities + t.psf, t.fft, lasting + 2 * image});
+  stages.push_back({"the wider field is cleaned", process_bytes, kept, 0, minor_single_images * image, 0,
+                    lasting + (2 + minor_images) * image});
+  // Dirty image, PSF, model and residual.
+  stages.push_back(
+      {"the wider field's residual is made", process_bytes, kept, residual, 2 * t.visibilities, t.fft, lasting + 4 * image});
+}
 
 }  // namespace
 
@@ -38,14 +59,19 @@ MemoryUse peak_memory(const MemoryDemand& d, const StreamingOptions& streaming) 
     // Where every pixel is a component of the model, those of two models and of what they are sorted in.
     const double components = d.start_model ? 3 * 24 / pixel_bytes : 0;
     const double lasting = masks + components + 2;  // dirty image and PSF
-    // The residual; for a convolution, what is convolved and what comes of it. In single precision the residual and the PSF,
-    // and two transforms, of 3/2 the size either way.
-    stages.push_back({"the minor cycles run", process_bytes, kept, 0, 3.25 * image, 0, (lasting + 3) * image});
+    stages.push_back(
+        {"the minor cycles run", process_bytes, kept, 0, minor_single_images * image, 0, (lasting + minor_images) * image});
     // Of a model image.
     const double residual_blocks = blocks + block_samples * residual_bytes;
     stages.push_back(
         {"the residual is gridded", process_bytes, kept, residual_blocks, 2 * t.visibilities, 0, (lasting + 1) * image});
     stages.push_back({"the residual image is made", process_bytes, kept, 0, t.visibilities, t.fft, (lasting + 2) * image});
+  }
+  if (d.wider) {
+    // After CLEAN the PSF, the model with its components, the residual and the mask; else the dirty image and the PSF.
+    const double components = d.start_model ? 3 * 24 / pixel_bytes : 0;
+    const double lasting = d.clean ? 3 + components + (d.mask ? 1 : 0) : 2;
+    add_wider_stages(*d.wider, kept, blocks, block_samples, lasting * image, stages);
   }
   stages.push_back({"the pictures are drawn", process_bytes, 0, 0, 0, 0, drawn_images * image});
   return *std::max_element(stages.begin(), stages.end(),

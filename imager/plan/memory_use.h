@@ -1,12 +1,19 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 
 #include "imager/plane/plane_transform.h"
 #include "imager/streamed_visibilities.h"
 
 namespace misfit::imager {
+
+/// An image of a wider field that is made besides, see search_wide_field.
+struct WiderDemand {
+  TransformMemory transform;
+  double pixels = 0;
+};
 
 /// What decides how much memory a run of imaging takes.
 struct MemoryDemand {
@@ -19,6 +26,7 @@ struct MemoryDemand {
   bool clean = false;
   bool mask = false;         ///< where components may lie
   bool start_model = false;  ///< that CLEAN begins with
+  std::optional<WiderDemand> wider{};
 };
 
 /// The memory held at one time, in bytes, by what it is for.

@@ -75,6 +75,18 @@ BOOST_AUTO_TEST_CASE(cleaning_and_verifying_never_take_less) {
   }
 }
 
+BOOST_AUTO_TEST_CASE(a_wider_field_counts_beside_the_images_that_stay_while_it_is_searched) {
+  MemoryDemand d = demand();
+  const double without = peak(d, {});
+  d.wider = WiderDemand{{1e6, 5e5, 1e3}, 1e4};
+  BOOST_TEST(peak(d, {}) == without);  // small beside the image
+  d.wider = WiderDemand{{1e6, 5e5, 1e3}, 1e9};
+  BOOST_TEST(peak_memory(d, {}).when == "the wider field is cleaned");
+  d.wider = WiderDemand{{2e11, 1e11, 1e7}, 1e9};
+  BOOST_TEST(peak_memory(d, {}).when == "the wider field's residual is made");
+  BOOST_TEST(peak(d, {}) > 4e11 + 2 * 8 * d.pixels);
+}
+
 BOOST_DATA_TEST_CASE(the_plane_transform_counts_the_planes_of_its_grid, bdata::make({1e-3, 1e-6}), accuracy) {
   GriddingRequest request;
   request.geometry = {500, 300, 1e-6, {}};

@@ -91,6 +91,26 @@ BOOST_AUTO_TEST_CASE(the_reach_is_that_of_the_samples_that_can_be_used) {
   }
 }
 
+BOOST_AUTO_TEST_CASE(coordinates_are_those_of_the_rows_that_can_be_used) {
+  const SmallSet set;
+  set.add_spectral_window();
+  set.put("FLAG_ROW", 28, true);
+  set.put("ANTENNA1", 27, 1);
+  set.put("ANTENNA2", 27, 1);
+  set.put("UVW", 26, 0, 0, nan_value);
+  const MeasurementSet opened(set.path(), {}, "DATA");
+  std::vector<std::pair<double, double>> seen, should;  // u and the last frequency
+  opened.visit_coordinates([&](const imager::SampleCoordinates& some) {
+    for (std::size_t row = 0; row < some.rows(); ++row) seen.emplace_back(some.uvw_m[3 * row], some.frequency_hz.back());
+  });
+  const auto stream = opened.open();
+  while (const auto block = stream->next())
+    for (std::size_t row = 0; row < block->rows(); ++row)
+      if (block->weight[row * block->channels()] != 0) should.emplace_back(block->uvw_m[3 * row], block->frequency_hz.back());
+  BOOST_TEST(!seen.empty());
+  BOOST_CHECK(seen == should);
+}
+
 BOOST_AUTO_TEST_CASE(the_reach_is_a_bound_where_single_samples_are_flagged) {
   const SmallSet set;
   for (std::size_t c = 0; c < channels; ++c) set.put("FLAG", 29, 1, static_cast<ssize_t>(c), true);

@@ -242,18 +242,21 @@ BOOST_AUTO_TEST_CASE(imaging_changes_nothing_in_the_measurement_set) {
 
 BOOST_AUTO_TEST_CASE(a_dry_run_prints_the_plan_of_the_run_and_its_memory_and_writes_nothing) {
   const TemporaryFolder folder;
-  succeed(small_image(track(), folder / "a"));
+  BOOST_REQUIRE_EQUAL(run(small_image(track(), folder / "a") + Arguments{"--check-outside"}).code, 0);
   const json report = report_of(folder / "a");
   const auto before = files_below(folder / "");
+  BOOST_TEST(report["timings_expected_s"].contains("sources outside"));
   for (const Arguments& arguments : {small_image(track(), folder / "b"), small_image(track(), folder / "none/b")}) {
-    const Outcome outcome = run(arguments + Arguments{"--dry-run"});
+    const Outcome outcome = run(arguments + Arguments{"--check-outside", "--dry-run"});
+    BOOST_TEST(outcome.out.find("search outside the image: 64 × 64 pixels of 0.4 arcsec; four times") != std::string::npos);
     BOOST_TEST(outcome.code == 0);
     BOOST_TEST(outcome.err == "");
     for (const json& decision : report["plan"]) {
       BOOST_TEST_INFO(decision["item"]);
       const auto part = [&](const char* key) { return decision[key].get<std::string>(); };
-      if (part("item") == "samples left out") continue;      // known once they were read
-      const bool learned = part("item") == "expected time";  // from the run before
+      if (part("item") == "samples left out" || part("item") == "sources outside the image") continue;  // known once read
+      const bool learned =
+          part("item") == "expected time" || part("item") == "search outside the image";  // from the run before
       const std::string line = part("item") + ": " + (learned ? "" : part("decision") + "; " + part("because") + "\n");
       BOOST_TEST(outcome.out.find(line) != std::string::npos);
     }
@@ -288,14 +291,16 @@ BOOST_AUTO_TEST_CASE(the_memory_estimated_is_enough, *boost::unit_test::precondi
        {Arguments{},
         {"--niter", "10"},
         {"--verify", "5"},
+        {"--check-outside"},
+        {"--niter", "10", "--check-outside"},
         {"--accuracy", "1e-3", "--niter", "10"},
         {"--niter", "10", "--deconvolver", "clark"},
         {"--niter", "10", "--deconvolver", "multiscale", "--scales", "0,5,20", "--usemask", "auto"}}) {
-    succeed(card_image(snapshot(), folder / "a") + options);
+    BOOST_REQUIRE_EQUAL(run(card_image(snapshot(), folder / "a") + options).code, 0);
     const json report = report_of(folder / "a");
     BOOST_TEST(report["memory_gib_peak"].get<double>() <= report["memory_gib_estimated"].get<double>());
     const std::string memory = std::to_string(report["memory_gib_estimated"].get<double>() + 1e-3);
-    succeed(card_image(snapshot(), folder / "a") + options + Arguments{"--memory", memory});
+    BOOST_TEST(run(card_image(snapshot(), folder / "a") + options + Arguments{"--memory", memory}).code == 0);
   }
 }
 

@@ -1,8 +1,10 @@
 #include "tools/run/outside_stage.h"
 
+#include <boost/test/data/test_case.hpp>
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "imager/noise.h"
 #include "tests/tools/markup.h"
 #include "tests/tools/program.h"
 #include "tools/run_page/outside_section.h"
@@ -17,9 +19,23 @@ namespace {
 constexpr double arcsec = M_PI / 180 / 3600;
 
 OutsideReport report_with(std::size_t sources) {
-  OutsideReport report{{100, 100, arcsec, {1, 0.5}}, {}, sources + 2, 0.5, 1e-3};
+  OutsideReport report;
+  report.field = {100, 100, arcsec, {1, 0.5}};
+  report.found = sources + 2;
+  report.least_jy = 0.5;
+  report.highest_alias_jy = sources > 0 ? 0.1 : 5e-4;
+  report.noise_jy = 1e-3;
   for (std::size_t i = 0; i < sources; ++i)
     report.sources.push_back({{{40 * arcsec, -30 * arcsec}, 2}, 0.1 / static_cast<double>(i + 1)});
+  return report;
+}
+
+/// With 30 Jy beyond the field, of which three detections may be sidelobes.
+OutsideReport report_of_less_than_all(std::size_t sources) {
+  OutsideReport report = report_with(sources);
+  report.elsewhere = true;
+  report.elsewhere_jy = 30;
+  report.doubtful = 3;
   return report;
 }
 
@@ -53,9 +69,53 @@ BOOST_AUTO_TEST_CASE(three_sources_are_warned_of_and_the_others_counted) {
   BOOST_TEST(contains(warnings.back(), "and 6 more"));
 }
 
-BOOST_AUTO_TEST_CASE(the_decision_says_whether_anything_matters) {
-  BOOST_TEST(outside_decision(report_with(0)).decision == "none matters");
+BOOST_AUTO_TEST_CASE(the_decision_says_how_high_an_alias_is_beside_the_noise_and_whence_that_is_known) {
+  OutsideReport report = report_with(0);
+  BOOST_TEST(outside_decision(report).decision == "no alias above 1 mJy/beam");
+  BOOST_TEST(contains(outside_decision(report).because, "the highest alias is 500 µJy/beam at most"));
+  BOOST_TEST(contains(outside_decision(report).because, "noise is 1 mJy/beam at most, as its pixels scatter"));
+  report.noise_of_pixels = false;
+  BOOST_TEST(contains(outside_decision(report).because, "noise is 1 mJy/beam at most, as visibilities scatter"));
   BOOST_TEST(contains(outside_decision(report_with(2)).decision, "2 may show"));
+  BOOST_TEST(outside_decision(report_of_less_than_all(0)).decision == "no alias known above 1 mJy/beam");
+}
+
+BOOST_AUTO_TEST_CASE(the_plan_says_how_large_and_coarse_the_image_is_that_is_searched_and_why) {
+  const imager::Decision told = tools::search_decision({{640, 512, 2 * arcsec, {}}, 0, 0.43}, 1.5);
+  BOOST_TEST(told.decision == "640 × 512 pixels of 2 arcsec");
+  BOOST_TEST(contains(told.because, "four times the image's field"));
+  BOOST_TEST(contains(told.because, "43 % of the samples"));
+  BOOST_TEST(contains(told.because, "takes 1.5 s"));
+}
+
+BOOST_AUTO_TEST_CASE(where_no_sample_is_short_enough_nothing_is_searched_and_that_is_told) {
+  OutsideReport report = report_with(0);
+  report.searched = false;
+  BOOST_TEST(outside_decision(report).decision == "not looked for");
+  BOOST_TEST(outside_json(&report).is_null());
+  BOOST_TEST(tools::outside_section(json_of(&report)).empty());
+}
+
+BOOST_AUTO_TEST_CASE(flux_that_is_in_no_source_found_is_warned_of_with_what_may_be_its_sidelobes) {
+  const auto warnings = outside_warnings(report_of_less_than_all(1));
+  BOOST_REQUIRE(warnings.size() == 2U);
+  BOOST_TEST(contains(warnings.back(), "about 30 Jy of flux is in no source that was found"));
+  BOOST_TEST(contains(warnings.back(), "3 that were found outside the image with less than 500 mJy may be sidelobes of it"));
+  OutsideReport report = report_of_less_than_all(0);
+  report.elsewhere = false;
+  report.doubtful = 1;
+  BOOST_TEST(contains(outside_warnings(report).at(0), "up to 30 Jy"));
+  BOOST_TEST(contains(outside_warnings(report).at(0), "1 that was found"));
+  report.doubtful = 0;
+  BOOST_TEST(outside_warnings(report).empty());
+}
+
+BOOST_AUTO_TEST_CASE(a_source_at_the_border_of_the_field_is_told_to_be_there) {
+  OutsideReport report = report_with(1);
+  BOOST_TEST(!contains(outside_warnings(report).at(0), "border"));
+  report.sources.front().at_border = true;
+  BOOST_TEST(contains(outside_warnings(report).at(0), "at the border of the field searched or beyond it"));
+  BOOST_TEST(contains(tools::outside_section(json_of(&report)), "at the border searched, or beyond"));
 }
 
 BOOST_AUTO_TEST_CASE(the_section_has_a_row_for_each_source_and_is_empty_without_a_search) {
@@ -70,7 +130,10 @@ BOOST_AUTO_TEST_CASE(the_section_has_a_row_for_each_source_and_is_empty_without_
   for (const std::string& section : {quiet, loud}) {
     BOOST_TEST(balanced(section));
     BOOST_TEST(contains(section, "sidelobes"));
+    BOOST_TEST(!contains(section, "Elsewhere"));
   }
+  const OutsideReport less = report_of_less_than_all(4);
+  BOOST_TEST(contains(tools::outside_section(json_of(&less)), "Elsewhere:</strong> about 30 Jy"));
 }
 
 BOOST_AUTO_TEST_CASE(a_run_reports_the_alias_that_shows_in_its_image_and_none_with_a_good_kernel) {
@@ -102,6 +165,42 @@ BOOST_AUTO_TEST_CASE(a_run_reports_the_alias_that_shows_in_its_image_and_none_wi
   const double alias = source.at("alias_jy").get<double>();
   BOOST_TEST(alias < 2 * highest);
   BOOST_TEST(alias > highest / 2);
+}
+
+BOOST_AUTO_TEST_CASE(without_noise_any_alias_counts_that_is_above_what_shallow_cleaning_leaves) {
+  const TemporaryFolder folder;
+  const std::string sky = folder / "sky.csv", set = folder / "sky.ms";
+  std::ofstream(sky) << "l_arcsec,m_arcsec,flux_jy\n38.4,3,1000\n";
+  succeed({"simulate", "--output", set, "--sky", sky, "--hours", "1", "--interval", "60"});
+  const Arguments image{"image",           "--vis",    set,          "--imsize",       "256", "--cell",    "0.1arcsec",
+                        "--check-outside", "--kernel", "spheroidal", "--kernel-width", "4",   "--padding", "1.5",
+                        "--quiet"};
+  BOOST_REQUIRE_EQUAL(run(image + Arguments{"--imagename", folder / "weak"}).code, 0);
+  const json told = report_of(folder / "weak"), search = told.at("outside_search");
+  // The scatter of the pixels is the sidelobes of a thousand Jy, well above the alias. That of visibilities is what CLEAN left
+  // of it, a hundredth, as far as it differs within cells: a third of the other leaves room for how CLEAN goes.
+  const imager::Image pixels = pixels_of(folder / "weak", "residual");
+  BOOST_TEST(search.at("noise_jy").get<double>() < imager::robust_noise(pixels) / 3);
+  BOOST_TEST(contains(search.at("noise").get<std::string>(), "visibilities"));
+  BOOST_TEST(told.at("outside").size() == 1U);
+  BOOST_TEST(search.at("highest_alias_jy").get<double>() < imager::robust_noise(pixels));
+}
+
+BOOST_DATA_TEST_CASE(a_source_beyond_the_field_searched_is_not_told_as_one_within,
+                     boost::unit_test::data::make({0, 1}) * boost::unit_test::data::make({-140, -200}), hours, l_arcsec) {
+  const TemporaryFolder folder;
+  const std::string sky = folder / "sky.csv", set = folder / "sky.ms";
+  // The image is 64″ wide, the field 256″.
+  std::ofstream(sky) << "l_arcsec,m_arcsec,flux_jy\n" << l_arcsec << ",20,100\n3,4,1\n";
+  succeed({"simulate", "--output", set, "--sky", sky, "--hours", std::to_string(hours), "--interval", "60", "--array", "vla-c",
+           "--noise", "0.01Jy"});
+  const Outcome outcome = run({"image", "--vis", set, "--imsize", "128", "--cell", "0.5arcsec", "--check-outside", "--kernel",
+                               "nearest", "--kernel-width", "1", "--padding", "1.5", "--imagename", folder / "far"});
+  BOOST_REQUIRE_EQUAL(outcome.code, 0);
+  const json told = report_of(folder / "far");
+  BOOST_TEST(told.at("outside").empty());
+  BOOST_TEST(contains(outcome.out + outcome.err, "may come from beyond the field searched"));
+  BOOST_TEST(told.at("outside_search").at("elsewhere").is_string());
 }
 
 BOOST_AUTO_TEST_SUITE_END()

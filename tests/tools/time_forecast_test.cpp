@@ -66,6 +66,23 @@ BOOST_AUTO_TEST_CASE(a_machine_of_another_speed_is_known_after_one_run_and_scene
   }
 }
 
+BOOST_AUTO_TEST_CASE(a_search_outside_is_expected_and_its_speed_learned_apart) {
+  const imager::GriddingPlan plan = plan_of(1e7, 1024), wider = plan_of(1e7, 1000);
+  RunWork work = work_of(plan);
+  const double without = total_seconds(counted_seconds(work));
+  work.wider = &wider;
+  TimeForecast forecast{std::filesystem::path()};
+  const double counted = expected_of(forecast, work, "sources outside");
+  BOOST_TEST(counted > 0);
+  BOOST_TEST(total_seconds(counted_seconds(work)) == without + counted, boost::test_tools::tolerance(1e-12));
+  imager::StageTimes times;
+  times.add("sources outside", 7 * counted);
+  forecast.learn(work, times);
+  BOOST_TEST(expected_of(forecast, work, "sources outside") == 7 * counted, boost::test_tools::tolerance(1e-12));
+  work.wider = nullptr;
+  BOOST_TEST(total_seconds(forecast.expected(work)) == without);
+}
+
 BOOST_AUTO_TEST_CASE(one_slow_run_among_many_is_forgotten) {
   const imager::GriddingPlan plan = plan_of(1e7, 1024);
   const RunWork work = work_of(plan);

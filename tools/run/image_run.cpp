@@ -90,6 +90,7 @@ class ImageRun {
     request.max_abs_w = reach_.max_abs_w;
     if (o_.memory_gib > 0) limit_memory(o_.memory_gib * gib, request);
     made_.plan = imager::plan_gridding(request);
+    if (o_.check_outside) plan_search(request);
     MemoryPlan memory = plan_memory({.transform = imager::memory_of(made_.plan),
                                      .pixels = static_cast<double>(geometry_.pixels()),
                                      .rows = static_cast<double>(set_->rows()),
@@ -98,7 +99,8 @@ class ImageRun {
                                      .verify = o_.verify > 0,
                                      .clean = o_.niter > 0,
                                      .mask = clean_ && (clean_->mask() != nullptr || o_.usemask == "auto"),
-                                     .start_model = !o_.startmodel.empty()},
+                                     .start_model = !o_.startmodel.empty(),
+                                     .wider = wider_demand()},
                                     o_);
     memory.streaming.uv_reach_lambda = std::min(std::max(reach_.max_abs_u, reach_.max_abs_v), 0.5 / geometry_.cell_rad);
     memory_ = memory.peak;
@@ -110,6 +112,25 @@ class ImageRun {
     if (o_.niter > 0)
       decide("PSF patch", "none, the whole PSF", "components are subtracted to the image's edges in every minor cycle");
     warn_of_neglected_w();
+  }
+
+  /// Of sources outside, by what is known before a visibility is read.
+  void plan_search(const imager::GriddingRequest& request) {
+    imager::WideFieldFinder finder(geometry_);
+    set_->visit_coordinates([&](const imager::SampleCoordinates& some) { finder.add(some); });
+    wide_field_ = finder.field();
+    wider_ = std::make_unique<imager::GriddingPlan>(imager::plan_wide_field(wide_field_, request));
+  }
+
+  std::optional<imager::WiderDemand> wider_demand() const {
+    if (!wider_) return {};
+    return imager::WiderDemand{imager::memory_of(*wider_), static_cast<double>(wide_field_.geometry.pixels())};
+  }
+
+  double expected_search_s() const {
+    for (const StageSeconds& s : forecast_.expected(work_))
+      if (s.stage == "sources outside") return s.seconds;
+    return 0;
   }
 
   /// Of all stages, what was spent before the forecast among them.
@@ -129,8 +150,10 @@ class ImageRun {
              .pictures = o_.niter > 0 ? 6 : 3,
              .threads = threads_,
              .verified = static_cast<double>(o_.verify),
-             .deconvolver = o_.deconvolver};
+             .deconvolver = o_.deconvolver,
+             .wider = wider_.get()};
     for (const auto& [stage, seconds] : times_.stages()) spent_.push_back({stage, "", seconds});
+    if (wider_) report_.plan.push_back(search_decision(wide_field_, expected_search_s()));
     const double all_s = total_seconds(expected(work_));
     decide("expected time", duration(all_s) + (o_.niter > 0 ? " without CLEAN" : ""),
            forecast_.knows(work_) ? "from counts of operations, and what earlier runs took on this machine"
@@ -273,7 +296,7 @@ class ImageRun {
     progress_.begin("sources outside", true);
     const double noise_jy =
         cleaned_ ? cleaned_->report.final_state().rms_jy : imager::robust_noise(made_.images.dirty, threads_);
-    outside_ = check_outside(*source_, made_.plan, noise_jy, progress(), own);
+    outside_ = check_outside(*source_, made_.plan, *wider_, made_.images, noise_jy, progress(), own);
     progress_.end();
     report_.outside = &outside_;
     const imager::Decision told = outside_decision(outside_);
@@ -375,6 +398,8 @@ class ImageRun {
   std::unique_ptr<CleanStage> clean_;  ///< null without CLEAN, and after it
   std::unique_ptr<imager::StreamedVisibilities> source_;
   imager::MemoryUse memory_;
+  imager::WideField wide_field_;
+  std::unique_ptr<imager::GriddingPlan> wider_;  ///< of the field to search for sources outside; null without
   imager::AccurateImages made_;
   imager::TheoreticalError theory_;
   imager::MeasuredError measured_;

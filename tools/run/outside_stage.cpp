@@ -31,29 +31,94 @@ std::string offset(imager::DirectionCosines at) {
          " of the phase centre";
 }
 
+/// "20 µJy/beam at most, as its pixels scatter"
+std::string noise_text(const OutsideReport& r) {
+  return with_prefix(r.noise_jy, "Jy/beam", 2) + " at most, as " + (r.noise_of_pixels ? "its pixels" : "visibilities") +
+         " scatter";
+}
+
+/// Of flux that is in no source found; nothing where that is no matter.
+std::string elsewhere_sentence(const OutsideReport& r) {
+  if (!r.elsewhere && r.doubtful == 0) return "";
+  const std::string sidelobes = std::to_string(r.doubtful) + (r.doubtful == 1 ? " that was" : " that were") +
+                                " found outside the image with less than " + with_prefix(r.least_jy, "Jy", 2) +
+                                " may be sidelobes of it, and " + (r.doubtful == 1 ? "is" : "are") + " not listed";
+  return (r.elsewhere ? "about " : "up to ") + with_prefix(r.elsewhere_jy, "Jy", 2) +
+         " of flux is in no source that was found, and may come from beyond the field searched: its alias is not known" +
+         (r.doubtful > 0 ? "; " + sidelobes : "");
+}
+
+/// Of the image's PSF, and beyond it of the wider field's, which knows what short baselines repeat.
+imager::Sidelobes sidelobes_of(const imager::Image& psf, const imager::WideSearch& search, const imager::ImageGeometry& image,
+                               const imager::ImageGeometry& field) {
+  imager::Sidelobes sidelobes(psf);
+  sidelobes.raise_to(search.sidelobes.from(std::min(image.width, image.height) / 2 * image.cell_rad / field.cell_rad));
+  return sidelobes;
+}
+
+/// Tells sources from what may be sidelobes, and those that matter from others.
+void sort_out(const std::vector<imager::OutsideSource>& all, OutsideReport& r) {
+  for (const imager::OutsideSource& s : all) {
+    if (s.source.flux_jy < r.least_jy) {
+      ++r.doubtful;
+      continue;
+    }
+    ++r.found;
+    r.highest_alias_jy = std::max(r.highest_alias_jy, s.alias_jy);
+    if (s.alias_jy > r.noise_jy) r.sources.push_back(s);
+  }
+}
+
+/// CLEAN leaves a hundredth or so of what it finds between pixels; a tenth is something else.
+bool something_elsewhere(const imager::WideSearch& search) {
+  double found_jy = 0;
+  for (const imager::Component& c : search.components) found_jy += std::abs(c.flux_jy);
+  return search.unexplained.sources_least_jy > 0.1 * found_jy;
+}
+
 }  // namespace
 
-OutsideReport check_outside(const imager::VisibilitySource& source, const imager::GriddingPlan& plan, double noise_jy,
+imager::Decision search_decision(const imager::WideField& field, double seconds) {
+  const imager::ImageGeometry& g = field.geometry;
+  return {"search outside the image",
+          std::to_string(g.width) + " × " + std::to_string(g.height) + " pixels of " + angle(g.cell_rad),
+          "four times the image's field; " + significant(100 * field.reaching, 2) +
+              " % of the samples lie within half as far in u and v as these can represent; takes " + duration(seconds)};
+}
+
+OutsideReport check_outside(const imager::VisibilitySource& source, const imager::GriddingPlan& plan,
+                            const imager::GriddingPlan& wider, const imager::DirtyImages& images, double pixel_noise_jy,
                             const imager::Progress& progress, imager::StageTimes& times) {
-  const imager::WideField field = imager::wide_field(source, plan.request.geometry);
-  const imager::WideSearch search = imager::search_wide_field(source, field, plan.request.threads, progress, times);
-  OutsideReport report{field.geometry, {}, 0, search.least_jy, noise_jy};
+  const imager::ImageGeometry &image = plan.request.geometry, &field = wider.request.geometry;
+  OutsideReport report;
+  report.field = field;
+  report.searched = imager::can_be_imaged(field, source);
+  if (!report.searched) return report;
+  const imager::WideSearch search = imager::search_wide_field(source, wider, progress, times);
+  report.least_jy = std::max(search.least_jy, search.sidelobe_jy);
+  const double scatter_jy = search.unexplained.image_noise_jy(images.sums.weight);
+  report.noise_of_pixels = pixel_noise_jy <= scatter_jy;
+  report.noise_jy = std::min(pixel_noise_jy, scatter_jy);
+  report.elsewhere = something_elsewhere(search);
+  report.elsewhere_jy = report.elsewhere ? search.unexplained.sources_least_jy : search.unexplained.sources_most_jy;
   if (plan.direct) return report;  // direct sums have no aliases
-  report.sources =
-      imager::sources_outside(search.components, field.geometry, plan.options, {search.least_jy, search.max_sidelobe});
-  report.found = report.sources.size();
-  const auto matters = [noise_jy](const imager::OutsideSource& s) { return s.alias_jy > noise_jy; };
-  report.sources.erase(std::find_if_not(report.sources.begin(), report.sources.end(), matters), report.sources.end());
+  const imager::AliasLevels aliases(plan, field, sidelobes_of(images.psf, search, image, field));
+  sort_out(imager::sources_outside(search.components, field, image, aliases, search.least_jy), report);
   return report;
 }
 
 imager::Decision outside_decision(const OutsideReport& r) {
-  const std::string found = std::to_string(r.found) + " above " + with_prefix(r.least_jy, "Jy", 2) + " in " +
-                            angle(r.field.width * r.field.cell_rad) + " × " + angle(r.field.height * r.field.cell_rad);
-  const std::string noise = "the image's noise of " + with_prefix(r.noise_jy, "Jy/beam", 2);
-  if (r.sources.empty()) return {"sources outside the image", "none matters", found + ", no alias exceeds " + noise};
-  return {"sources outside the image", std::to_string(r.sources.size()) + " may show through the kernel",
-          found + "; the highest alias is " + with_prefix(r.sources.front().alias_jy, "Jy/beam", 2) + ", " + noise};
+  if (!r.searched)
+    return {"sources outside the image", "not looked for",
+            "no usable sample lies within the |u| and |v| that pixels of " + angle(r.field.cell_rad) + " can represent"};
+  std::string because = std::to_string(r.found) + " above " + with_prefix(r.least_jy, "Jy", 2) + " in " +
+                        angle(r.field.width * r.field.cell_rad) + " × " + angle(r.field.height * r.field.cell_rad);
+  if (r.found > 0) because += "; the highest alias is " + with_prefix(r.highest_alias_jy, "Jy/beam", 2) + " at most";
+  because += "; the image's noise is " + noise_text(r);
+  const std::string above = " above " + with_prefix(r.noise_jy, "Jy/beam", 2);
+  const bool blind = r.elsewhere || r.doubtful > 0;
+  if (r.sources.empty()) return {"sources outside the image", (blind ? "no alias known" : "no alias") + above, because};
+  return {"sources outside the image", std::to_string(r.sources.size()) + " may show through the kernel", because};
 }
 
 std::vector<std::string> outside_warnings(const OutsideReport& r) {
@@ -62,16 +127,18 @@ std::vector<std::string> outside_warnings(const OutsideReport& r) {
   for (const imager::OutsideSource& s : r.sources) {
     if (warnings.size() == told) break;
     warnings.push_back("a source of " + with_prefix(s.source.flux_jy, "Jy", 3) + " outside the image, at " +
-                       sexagesimal(direction_of(s, r)) + ", " + offset(s.source.position) + ", may leave an alias of " +
+                       sexagesimal(direction_of(s, r)) + ", " + offset(s.source.position) +
+                       (s.at_border ? ", at the border of the field searched or beyond it" : "") + ", may leave an alias of " +
                        with_prefix(s.alias_jy, "Jy/beam", 2));
   }
   if (r.sources.size() > told)
     warnings.back() += "; and " + std::to_string(r.sources.size() - told) + " more, which the report lists";
+  if (const std::string sentence = elsewhere_sentence(r); !sentence.empty()) warnings.push_back(sentence);
   return warnings;
 }
 
 nlohmann::json outside_json(const OutsideReport* report) {
-  if (report == nullptr) return nullptr;
+  if (report == nullptr || !report->searched) return nullptr;
   nlohmann::json list = nlohmann::json::array();
   for (const imager::OutsideSource& s : report->sources) {
     const imager::SkyDirection at = direction_of(s, *report);
@@ -80,15 +147,25 @@ nlohmann::json outside_json(const OutsideReport* report) {
                     {"l_arcsec", s.source.position.l / arcsec},
                     {"m_arcsec", s.source.position.m / arcsec},
                     {"flux_jy", s.source.flux_jy},
-                    {"alias_jy", s.alias_jy}});
+                    {"alias_jy", s.alias_jy},
+                    {"at_border", s.at_border}});
   }
   return list;
 }
 
 nlohmann::json outside_search_json(const OutsideReport* report) {
-  if (report == nullptr) return nullptr;
-  return {{"found", report->found},       {"least_jy", report->least_jy},   {"noise_jy", report->noise_jy},
-          {"width", report->field.width}, {"height", report->field.height}, {"cell_arcsec", report->field.cell_rad / arcsec}};
+  if (report == nullptr || !report->searched) return nullptr;
+  const std::string sentence = elsewhere_sentence(*report);
+  return {{"found", report->found},
+          {"doubtful", report->doubtful},
+          {"least_jy", report->least_jy},
+          {"highest_alias_jy", report->highest_alias_jy},
+          {"noise_jy", report->noise_jy},
+          {"noise", noise_text(*report)},
+          {"elsewhere", sentence.empty() ? nlohmann::json() : nlohmann::json(sentence)},
+          {"width", report->field.width},
+          {"height", report->field.height},
+          {"cell_arcsec", report->field.cell_rad / arcsec}};
 }
 
 }  // namespace misfit::tools

@@ -14,20 +14,39 @@ namespace misfit::tools {
 /// What `misfit image --check-outside` found.
 struct OutsideReport {
   imager::ImageGeometry field;                 ///< searched, with the image in its middle
+  bool searched = true;                        ///< or no sample was left that its pixels can represent
   std::vector<imager::OutsideSource> sources;  ///< whose aliases may exceed the image's noise, the highest first
   std::size_t found = 0;                       ///< sources outside, with those whose aliases do not
-  double least_jy = 0;                         ///< fainter sources were not looked for
+  std::size_t doubtful = 0;                    ///< others, which may be sidelobes of what the search did not find
+  double least_jy = 0;                         ///< what is fainter is not told from noise, or doubtful
+  double highest_alias_jy = 0;                 ///< of all found, Jy/beam
   double noise_jy = 0;                         ///< of the image, Jy/beam
+  bool noise_of_pixels = true;                 ///< as they scatter; or as visibilities do
+  double elsewhere_jy = 0;                     ///< flux that is in no source found: at most, or where `elsewhere` about
+  bool elsewhere = false;                      ///< there certainly is some
 };
 
-/// Looks for sources outside the image of `plan`, whose noise is `noise_jy`. Stages timed: those of imaging and CLEAN.
-OutsideReport check_outside(const imager::VisibilitySource& source, const imager::GriddingPlan& plan, double noise_jy,
+/// The noise to compare aliases with is what the image would have without a source, or the most that it can be. Two figures are
+/// such bounds, and the lower one counts: the robust noise of the image's pixels, in which sidelobes count until CLEAN takes
+/// them off; and the scatter of the visibilities about the sources found in the wider field, as far as neighbours in u and v do
+/// not scatter alike (imager::Unexplained), which takes no CLEAN of the image. Weights tell nothing, since often their unit is
+/// none. Where data have no noise both are small, and still above 0: an alias above is real, and one below is told with its
+/// level.
+///
+/// `pixel_noise_jy` is the first of the two; `plan` and `images` are the image's, `wider` is the plan of the field to search.
+/// Stages timed: those of imaging and CLEAN.
+OutsideReport check_outside(const imager::VisibilitySource& source, const imager::GriddingPlan& plan,
+                            const imager::GriddingPlan& wider, const imager::DirtyImages& images, double pixel_noise_jy,
                             const imager::Progress& progress, imager::StageTimes& times);
+
+/// How a field is searched, why, and how long that is expected to take.
+imager::Decision search_decision(const imager::WideField& field, double seconds);
 
 /// That nothing outside matters, or how much does.
 imager::Decision outside_decision(const OutsideReport& report);
 
-/// One for each of the three with the highest aliases; the last says how many more there are.
+/// One for each of the three with the highest aliases, whose last says how many more there are; and one of flux that is in no
+/// source found, where there is some for certain or makes a detection doubtful.
 std::vector<std::string> outside_warnings(const OutsideReport& report);
 
 /// `outside` and `outside_search` of report.json: the list of sources, and how they were looked for; null without a search.

@@ -79,6 +79,22 @@ double minor_seconds(const RunWork& w) {
   return component_s * w.components + 3e-8 * w.pixels * w.major_cycles;
 }
 
+/// A search of a wider field: images, some major cycles of CLEAN, and a last prediction.
+double wider_seconds(const RunWork& w) {
+  RunWork wider = w;
+  wider.plan = w.wider;
+  wider.pixels = static_cast<double>(w.wider->request.geometry.pixels());
+  wider.deconvolver = "clark";
+  wider.components = 500;
+  wider.major_cycles = 5;
+  constexpr double taper_s = 2e-8;  // of a sample's weight, and of the copy of its block
+  std::vector<StageSeconds> stages;
+  add_pass(wider, true, 1, stages);
+  add_predictions(wider, stages);
+  add_pass(wider, false, wider.major_cycles - 1, stages);
+  return total_seconds(stages) + minor_seconds(wider) + taper_s * w.samples * (2 * wider.major_cycles);
+}
+
 }  // namespace
 
 std::vector<StageSeconds> counted_seconds(const RunWork& w) {
@@ -94,6 +110,7 @@ std::vector<StageSeconds> counted_seconds(const RunWork& w) {
     stages.push_back({"CLEAN state", "writing CLEAN's state", 1e-8 * w.pixels + 5e-3 * w.major_cycles});
     stages.push_back({"restore", "restoring", 1e-8 * w.pixels});
   }
+  if (w.wider != nullptr) stages.push_back({"sources outside", "search outside", wider_seconds(w)});
   stages.push_back({"write images", "writing images", 1e-8 * w.pixels * w.images});
   stages.push_back({"draw pictures", "drawing pictures", 0.07 * w.pictures + 1e-9 * w.pixels * w.pictures});
   return stages;

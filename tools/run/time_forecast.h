@@ -22,7 +22,8 @@ struct RunWork {
   double verified = 0;  ///< pixels and samples of --verify
   std::string deconvolver;
   double components = 0;
-  double major_cycles = 0;  ///< that predicted and subtracted
+  double major_cycles = 0;                      ///< that predicted and subtracted
+  const imager::GriddingPlan* wider = nullptr;  ///< of the field that is searched for sources outside; null without
 };
 
 /// Seconds of a stage.

@@ -22,6 +22,11 @@ double number(const json& object, const char* key) {
   return value.is_number() ? value.get<double>() : NAN;
 }
 
+std::string text(const json& object, const char* key) {
+  const json& value = member(object, key);
+  return value.is_string() ? value.get<std::string>() : "";
+}
+
 /// Of the largest number under `key`, so that all rows compare at a glance.
 ScaledUnit unit_of(const json& sources, const char* key, const std::string& base) {
   double largest = 0;
@@ -36,7 +41,8 @@ std::string table_of(const json& sources) {
     imager::SkyDirection at;
     at.ra_rad = number(source, "ra_deg") * M_PI / 180;
     at.dec_rad = number(source, "dec_deg") * M_PI / 180;
-    rows.push_back({html_escaped(sexagesimal(at)), significant(number(source, "l_arcsec"), 5),
+    const std::string border = member(source, "at_border") == true ? tag("small", " at the border searched, or beyond") : "";
+    rows.push_back({html_escaped(sexagesimal(at)) + border, significant(number(source, "l_arcsec"), 5),
                     significant(number(source, "m_arcsec"), 5), significant(number(source, "flux_jy") / flux.size, 3),
                     significant(number(source, "alias_jy") / alias.size, 2)});
   }
@@ -50,16 +56,22 @@ std::string table_of(const json& sources) {
 std::string outside_section(const json& report) {
   const json &sources = member(report, "outside"), &search = member(report, "outside_search");
   if (!sources.is_array() || !search.is_object()) return "";
-  const std::string found = "Sources above " + with_unit(member(search, "least_jy"), "Jy", 2) +
-                            " outside the image, in a field four times as wide and high: " + whole(member(search, "found")) +
-                            ". ";
-  const std::string noise = "the image's noise of " + with_unit(member(search, "noise_jy"), "Jy/beam", 2);
+  const std::string noise = html_escaped(text(search, "noise"));
+  std::string told = "Sources above " + with_unit(member(search, "least_jy"), "Jy", 2) +
+                     " outside the image, in a field four times as wide and high: " + whole(member(search, "found")) + ". ";
+  if (number(search, "found") > 0)
+    told += "The highest alias is " + with_unit(member(search, "highest_alias_jy"), "Jy/beam", 2) + " at most. ";
+  const std::string elsewhere = html_escaped(text(search, "elsewhere"));
+  std::string unknown;
+  if (!elsewhere.empty()) unknown = tag("p", tag("strong", "Elsewhere:").append(" ").append(elsewhere).append("."));
   const std::string sidelobes =
-      " Their sidelobes are those of the PSF, which no kernel removes: only a wider image does, or a model taken off the data.";
-  if (sources.empty()) return tag("p", found + "No alias exceeds " + noise + "." + sidelobes);
-  return tag("p", found + "The aliases of these may exceed " + noise +
+      " An alias is what gridding adds to the exact image. The sources' sidelobes belong to that image, and no kernel removes"
+      " them: only a wider image does, or a model taken off the data.";
+  if (sources.empty())
+    return tag("p", told + "No alias exceeds the image's noise, " + noise + "." + sidelobes) + "\n" + unknown;
+  return tag("p", told + "The aliases of these may exceed the image's noise, " + noise +
                       "; a smaller --accuracy, a wider kernel or more padding keeps them out." + sidelobes) +
-         "\n" + table_of(sources);
+         "\n" + unknown + "\n" + table_of(sources);
 }
 
 }  // namespace misfit::tools
