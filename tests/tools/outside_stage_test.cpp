@@ -176,7 +176,8 @@ BOOST_AUTO_TEST_CASE(without_noise_any_alias_counts_that_is_above_what_shallow_c
                         "--check-outside", "--kernel", "spheroidal", "--kernel-width", "4",   "--padding", "1.5",
                         "--quiet"};
   BOOST_REQUIRE_EQUAL(run(image + Arguments{"--imagename", folder / "weak"}).code, 0);
-  const json told = report_of(folder / "weak"), search = told.at("outside_search");
+  const json told = report_of(folder / "weak");
+  const json& search = told.at("outside_search");
   // The scatter of the pixels is the sidelobes of a thousand Jy, well above the alias. That of visibilities is what CLEAN left
   // of it, a hundredth, as far as it differs within cells: a third of the other leaves room for how CLEAN goes.
   const imager::Image pixels = pixels_of(folder / "weak", "residual");
