@@ -171,6 +171,34 @@ BOOST_AUTO_TEST_CASE(nothing_left_after_flags_says_what_became_of_the_samples) {
   check_refused(scene.image("--vis", set), 1, {"no visibility is left of 351", "351 flagged"}, scene.out);
 }
 
+BOOST_AUTO_TEST_CASE(a_word_that_is_no_subcommand_is_answered_with_those_there_are_the_nearest_first) {
+  const Scene scene;
+  check_refused({"imag", "--vis", "a"}, 2, {"misfit imag: expected image, "}, scene.out);
+  check_refused({"report", "scen"}, 2, {"misfit report scen: expected scene, kernels or stability"}, scene.out);
+  check_refused({"report", "stabilty", "--output", "x"}, 2, {"misfit report stabilty: expected stability, "}, scene.out);
+  check_refused({"report"}, 2, {"misfit report: expected kernels, scene or stability"}, scene.out);
+}
+
+BOOST_AUTO_TEST_CASE(a_quantity_that_is_none_is_named_with_its_option) {
+  const Scene scene;
+  scene.usage("--threshold", "foo",
+              "--threshold: 'foo' is no flux density; expected a number with a unit of Jy, mJy, uJy, such as");
+  scene.usage("--cell", "foo", "--cell: 'foo' is no angle");
+  scene.usage("--restoringbeam", "foo", "--restoringbeam foo: expected common, MAJ");
+  for (const char* option : {"--cell", "--ra", "--dec", "--frequency", "--channel-width", "--noise"})
+    check_refused({"simulate", "--output", scene.out + "/a.ms", option, "foo"}, 2, {option, "'foo' is no", "such as"},
+                  scene.out);
+}
+
+BOOST_AUTO_TEST_CASE(an_output_without_a_name_is_refused) {
+  const Scene scene;
+  const Arguments none{"--output", ""};
+  for (const Arguments& command : {Arguments{"report", "scene", "--vis", snapshot(), "--imsize", "64", "--cell", "1arcsec"},
+                                   Arguments{"report", "stability"}, Arguments{"report", "kernels"}, Arguments{"simulate"},
+                                   Arguments{"kernel", "--width", "4", "--padding", "2"}})
+    check_refused(command + none, 2, {"--output: '': expected a name"}, scene.out);
+}
+
 BOOST_AUTO_TEST_CASE(a_cell_too_large_for_every_sample_is_named) {
   const Scene scene;
   check_refused(scene.image("--cell", "20deg"), 1, {"351 usable samples lie beyond 1/(2 cell)"}, scene.out);

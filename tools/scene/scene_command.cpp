@@ -4,6 +4,8 @@
 #include <filesystem>
 #include <memory>
 
+#include "tools/base/option_checks.h"
+#include "tools/base/quantity.h"
 #include "tools/kernel_choice/kernel_choice.h"
 #include "tools/scene/scene_report.h"
 
@@ -20,6 +22,7 @@ void write(const Options& o) {
   for (const std::string& kernel : o.report.kernels) choose_kernel(kernel);
   prepare_report_folder(o.output);
   SceneReportOptions options = o.report;
+  if (!has_unit(options.scene.cell)) options.scene.cell += "arcsec";
   options.results_file = (std::filesystem::path(o.output) / "measured.json").string();
   ProgressLine progress(options.scene.quiet);
   const Report report = scene_report(options, progress);
@@ -44,7 +47,8 @@ void add_scene_report(CLI::App& reports) {
   command
       ->add_option("--output", o->output,
                    "Folder for index.html, SVG, CSV and report.json; a run that was stopped goes on there")
-      ->required();
+      ->required()
+      ->check(not_empty());
   command->callback([o] { write(*o); });
 }
 
