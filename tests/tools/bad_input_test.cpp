@@ -167,8 +167,17 @@ BOOST_AUTO_TEST_CASE(nothing_left_after_flags_says_what_became_of_the_samples) {
   const Scene scene;
   const TemporaryFolder folder;
   const std::string set = copy_of_snapshot(folder);
+  const Arguments of_scene{"report", "scene", "--vis", set, "--imsize", "64", "--cell", "0.1arcsec", "--quick", "--output"};
+  const Arguments of_stability{"report", "stability", "--vis", set, "--quick", "--output", scene.out};
+  const auto check = [&](const std::string& reason) {
+    const std::vector<std::string> parts{set + ": no visibility is left of 351: 351 " + reason + "; expected one"};
+    for (const Arguments& arguments : {scene.image("--vis", set), of_scene + Arguments{scene.out}, of_stability})
+      check_refused(arguments, 1, parts, scene.out);
+  };
+  put_weights(set, 0);
+  check("of zero weight");
   flag_all(set);
-  check_refused(scene.image("--vis", set), 1, {"no visibility is left of 351", "351 flagged"}, scene.out);
+  check("flagged");
 }
 
 BOOST_AUTO_TEST_CASE(a_word_that_is_no_subcommand_is_answered_with_those_there_are_the_nearest_first) {

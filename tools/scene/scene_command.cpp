@@ -7,6 +7,7 @@
 #include "tools/base/option_checks.h"
 #include "tools/base/quantity.h"
 #include "tools/kernel_choice/kernel_choice.h"
+#include "tools/run/named_data.h"
 #include "tools/scene/scene_report.h"
 
 namespace misfit::tools {
@@ -25,7 +26,7 @@ void write(const Options& o) {
   if (!has_unit(options.scene.cell)) options.scene.cell += "arcsec";
   options.results_file = (std::filesystem::path(o.output) / "measured.json").string();
   ProgressLine progress(options.scene.quiet);
-  const Report report = scene_report(options, progress);
+  const Report report = naming(options.scene.vis, [&] { return scene_report(options, progress); });
   progress.begin("draw");
   write_report(report, o.output);
   progress.end();
