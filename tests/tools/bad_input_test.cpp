@@ -283,6 +283,9 @@ BOOST_AUTO_TEST_CASE(an_image_too_large_for_the_memory_is_refused_before_work_be
   const long double memory = static_cast<long double>(sysconf(_SC_PHYS_PAGES)) * sysconf(_SC_PAGE_SIZE);
   if (memory > 16.0L * 65536 * 65536) return;  // dirty image and PSF would fit
   check_refused(scene.image("--imsize", "65536"), 2, {"65536", "GiB"}, scene.out);
+  check_refused(
+      {"report", "scene", "--vis", snapshot(), "--imsize", "65536", "--cell", "1mas", "--output", scene.out + "/report"}, 2,
+      {"--imsize 65536 65536: expected an image that fits this machine's", "this one needs"}, scene.out);
 }
 
 BOOST_AUTO_TEST_CASE(too_little_memory_is_refused_with_what_is_needed) {
