@@ -44,8 +44,8 @@ std::string usage_message(const CLI::ParseError& error, const CLI::App& program)
   if (names.empty() || error.get_name() != "RequiredError") return error.what();
   const std::vector<std::string> rest = command.remaining();
   const std::string word = rest.empty() || rest.front().front() == '-' ? "" : rest.front();
-  std::string said = (&command == &program ? "" : program.get_name() + " ") + command.get_name() + (word.empty() ? "" : " ") +
-                     word + ": expected ";
+  std::string said = &command == &program ? word : command.get_name() + (word.empty() ? "" : " ") + word;
+  said += said.empty() ? "expected " : ": expected ";
   if (!word.empty()) names = misfit::tools::nearest_first(word, names);
   for (std::size_t i = 0; i < names.size(); ++i) said += (i == 0 ? "" : i + 1 == names.size() ? " or " : ", ") + names[i];
   return said;

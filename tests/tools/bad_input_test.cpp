@@ -182,10 +182,11 @@ BOOST_AUTO_TEST_CASE(nothing_left_after_flags_says_what_became_of_the_samples) {
 
 BOOST_AUTO_TEST_CASE(a_word_that_is_no_subcommand_is_answered_with_those_there_are_the_nearest_first) {
   const Scene scene;
-  check_refused({"imag", "--vis", "a"}, 2, {"misfit imag: expected image, "}, scene.out);
-  check_refused({"report", "scen"}, 2, {"misfit report scen: expected scene, kernels or stability"}, scene.out);
-  check_refused({"report", "stabilty", "--output", "x"}, 2, {"misfit report stabilty: expected stability, "}, scene.out);
-  check_refused({"report"}, 2, {"misfit report: expected kernels, scene or stability"}, scene.out);
+  check_refused({"imag", "--vis", "a"}, 2, {"misfit: imag: expected image, "}, scene.out);
+  check_refused({"report", "scen"}, 2, {"misfit: report scen: expected scene, kernels or stability"}, scene.out);
+  check_refused({"report", "stabilty", "--output", "x"}, 2, {"misfit: report stabilty: expected stability, "}, scene.out);
+  check_refused({}, 2, {"misfit: expected image, "}, scene.out);
+  check_refused({"report"}, 2, {"misfit: report: expected kernels, scene or stability"}, scene.out);
 }
 
 BOOST_AUTO_TEST_CASE(a_quantity_that_is_none_is_named_with_its_option) {
