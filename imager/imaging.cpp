@@ -88,9 +88,10 @@ std::vector<std::vector<std::complex<double>>> residuals(const Prediction& predi
 }
 
 void require_any(const SampleSums& sums) {
-  if (sums.weight == 0)
-    throw std::runtime_error("no visibility can be imaged: " + std::to_string(sums.outside_grid) +
-                             " usable samples lie beyond 1/(2 cell), none within");
+  if (sums.weight != 0) return;
+  if (sums.outside_grid == 0) throw std::runtime_error("no visibility can be imaged: none has a weight above 0");
+  throw std::runtime_error("no visibility can be imaged: " + std::to_string(sums.outside_grid) +
+                           " usable samples lie beyond 1/(2 cell), none within; expected smaller pixels");
 }
 
 /// Those of a source of 1 Jy at the image's middle pixel.

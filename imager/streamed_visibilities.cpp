@@ -1,23 +1,10 @@
 #include "imager/streamed_visibilities.h"
 
-#include <stdexcept>
-#include <string>
 #include <utility>
 
 #include "imager/prefetch.h"
 
 namespace misfit::imager {
-namespace {
-
-void require_usable(const SampleCounts& c) {
-  if (c.used > 0) return;
-  const auto count = [](std::uint64_t n) { return std::to_string(n); };
-  throw std::runtime_error("no visibility is left of " + count(c.samples_read) + ": " + count(c.autocorrelations) +
-                           " auto-correlations, " + count(c.flagged) + " flagged, " + count(c.nonfinite) + " not finite, " +
-                           count(c.zero_weight) + " of zero weight");
-}
-
-}  // namespace
 
 /// Hands on the blocks of a stream, and hands in what they told at its end.
 class StreamedVisibilities::Recorder : public BlockStream {
@@ -35,7 +22,7 @@ class StreamedVisibilities::Recorder : public BlockStream {
       pass_->uv_coverage.add(*block);
       if (source_.options_.keep) pass_->blocks.append(block);
     } else {
-      require_usable(pass_->counts);
+      if (pass_->counts.used == 0) throw NothingUsable(pass_->counts);
       source_.finish(pass_);
     }
     return block;

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <stdexcept>
 #include <vector>
 
 namespace misfit::imager {
@@ -21,6 +22,11 @@ struct SampleCounts {
   std::uint64_t used = 0;
 
   SampleCounts& operator+=(const SampleCounts& other);
+};
+
+/// Thrown where none of the samples read can be used: its message counts why not.
+struct NothingUsable : std::runtime_error {
+  explicit NothingUsable(const SampleCounts& counts);
 };
 
 /// Where samples lie: rows of UVW, each seen at every channel.

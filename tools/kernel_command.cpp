@@ -10,6 +10,7 @@
 #include "kernels/map_error.h"
 #include "tools/base/files.h"
 #include "tools/base/numbers.h"
+#include "tools/base/option_checks.h"
 #include "tools/command.h"
 #include "tools/kernel_choice/kernel_advice.h"
 #include "tools/kernel_choice/kernel_choice.h"
@@ -183,7 +184,7 @@ void add_kernel_command(CLI::App& program) {
   command->add_option("--sampling", o->sampling.per_cell, "Rows of the lookup table a cell");
   command->add_option("--interpolation", o->sampling.interpolation, "Degree to which a host is to interpolate it, 0 to 3");
   command->add_option("--degree", o->degree, "Cut the polynomials to this degree; -1 = as many terms as the kernel has");
-  CLI::Option* output = command->add_option("--output", o->output, "FITS file to write");
+  CLI::Option* output = command->add_option("--output", o->output, "FITS file to write")->check(not_empty());
   command->add_flag("--quiet", o->quiet, "Print nothing but errors");
   CLI::Option* inspected = command->add_option("--inspect", o->inspect, "Kernel-table file to show");
   inspected->excludes(output)->excludes(accuracy);

@@ -6,8 +6,10 @@
 #include <new>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 #include "tools/base/interrupt.h"
+#include "tools/base/text.h"
 #include "tools/command.h"
 #include "tools/version.h"
 
@@ -27,15 +29,35 @@ int fail(const char* message, ExitCode code) {
   return code;
 }
 
+/// The command that was called, or the last that was before the word that is none.
+const CLI::App& called(const CLI::App& program) {
+  const CLI::App* command = &program;
+  while (!command->get_subcommands().empty()) command = command->get_subcommands().front();
+  return *command;
+}
+
+/// What the parser says, or where a subcommand is missing, or is none, those that there are.
+std::string usage_message(const CLI::ParseError& error, const CLI::App& program) {
+  const CLI::App& command = called(program);
+  std::vector<std::string> names;
+  for (const CLI::App* each : command.get_subcommands({})) names.push_back(each->get_name());
+  if (names.empty() || error.get_name() != "RequiredError") return error.what();
+  const std::vector<std::string> rest = command.remaining();
+  const std::string word = rest.empty() || rest.front().front() == '-' ? "" : rest.front();
+  std::string said = &command == &program ? word : command.get_name() + (word.empty() ? "" : " ") + word;
+  said += said.empty() ? "expected " : ": expected ";
+  if (!word.empty()) names = misfit::tools::nearest_first(word, names);
+  for (std::size_t i = 0; i < names.size(); ++i) said += (i == 0 ? "" : i + 1 == names.size() ? " or " : ", ") + names[i];
+  return said;
+}
+
 /// What the parser says of a value that is no number, "Could not convert: --option = value", with what was expected.
 std::string conversion_message(const std::string& said, const CLI::App& program) {
   const std::string before = "Could not convert: ";
   const std::size_t equals = said.find(" = ");
   if (said.rfind(before, 0) != 0 || equals == std::string::npos) return said;
   const std::string name = said.substr(before.size(), equals - before.size());
-  const CLI::App* command = &program;
-  while (!command->get_subcommands().empty()) command = command->get_subcommands().front();
-  const CLI::Option* option = command->get_option_no_throw(name);
+  const CLI::Option* option = called(program).get_option_no_throw(name);
   if (option == nullptr) return said;
   const bool fraction = option->get_type_name().find("FLOAT") != std::string::npos;
   return name + ' ' + said.substr(equals + 3) + ": expected a " + (fraction ? "number" : "whole number");
@@ -65,7 +87,7 @@ int main(int argc, char** argv) {
     return fail(conversion_message(error.what(), program).c_str(), wrong_usage);
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) return program.exit(error);
-    return fail(error.what(), wrong_usage);
+    return fail(usage_message(error, program).c_str(), wrong_usage);
   } catch (const Interrupted& error) {
     return fail(error.what(), stopped_by_user);
   } catch (const std::invalid_argument& error) {

@@ -3,6 +3,7 @@
 #include <memory>
 #include <string>
 
+#include "tools/base/option_checks.h"
 #include "tools/base/progress.h"
 #include "tools/command.h"
 #include "tools/kernel_report/kernel_report.h"
@@ -34,7 +35,8 @@ CLI::App* add_report(CLI::App& reports, const std::string& name, const std::stri
   CLI::App* command = reports.add_subcommand(name, description);
   const auto o = std::make_shared<ReportOptions>();
   command->add_option("--output", o->output, "Folder for index.html, SVG, CSV and report.json; made where there is none")
-      ->required();
+      ->required()
+      ->check(not_empty());
   command->add_flag("--quiet", o->quiet, "Print nothing");
   command->callback([o, make] { write(*o, make); });
   return command;

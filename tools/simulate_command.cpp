@@ -8,6 +8,7 @@
 #include "ms_io/simulated_set.h"
 #include "tools/base/array.h"
 #include "tools/base/numbers.h"
+#include "tools/base/option_checks.h"
 #include "tools/base/progress.h"
 #include "tools/base/quantity.h"
 #include "tools/command.h"
@@ -119,21 +120,22 @@ void add_simulate_command(CLI::App& program) {
   CLI::App* command =
       program.add_subcommand("simulate", "Write a MeasurementSet with exact visibilities of points and Gaussians");
   const auto o = std::make_shared<SimulateOptions>();
-  command->add_option("--output", o->output, "MeasurementSet to make")->required();
+  command->add_option("--output", o->output, "MeasurementSet to make")->required()->check(not_empty());
   command->add_option("--sky", o->sky,
                       "testcard: the 34 sources of Ye et al. 2020; or a CSV file as `misfit predict --components` takes");
   command->add_option("--array", o->array, "vla-a, vla-b, vla-c or vla-d");
   CLI::Option* coplanar = command->add_flag("--coplanar", o->coplanar, "Set w to 0 (the default with the test card)");
   command->add_flag("--noncoplanar", o->noncoplanar, "Keep w (the default otherwise)")->excludes(coplanar);
-  command->add_option("--cell", o->cell, "The test card's cell");
-  command->add_option("--ra", o->ra, "Right ascension of the phase centre, J2000");
-  command->add_option("--dec", o->dec, "Its declination");
+  command->add_option("--cell", o->cell, "The test card's cell")->check(quantity(parse_angle_rad));
+  command->add_option("--ra", o->ra, "Right ascension of the phase centre, J2000")->check(quantity(parse_angle_rad));
+  command->add_option("--dec", o->dec, "Its declination")->check(quantity(parse_angle_rad));
   command->add_option("--hours", o->hours, "Length of the track around transit; 0 is a snapshot");
   command->add_option("--interval", o->interval, "Integration time in seconds");
-  command->add_option("--frequency", o->frequency, "Frequency of the first channel");
+  command->add_option("--frequency", o->frequency, "Frequency of the first channel")->check(quantity(parse_frequency_hz));
   command->add_option("--channels", o->channels, "Number of channels");
-  command->add_option("--channel-width", o->channel_width, "Channel spacing");
-  command->add_option("--noise", o->noise, "Noise of each correlation's real and imaginary part");
+  command->add_option("--channel-width", o->channel_width, "Channel spacing")->check(quantity(parse_frequency_hz));
+  command->add_option("--noise", o->noise, "Noise of each correlation's real and imaginary part")
+      ->check(quantity(parse_flux_jy));
   command->add_option("--seed", o->seed, "Seed of the noise");
   command->add_option("--threads", o->threads, "Threads; 0 means all cores");
   command->add_flag("--quiet", o->quiet, "Print nothing");

@@ -100,7 +100,12 @@ class Run {
     return state_.model.image(o_.threads);
   }
 
-  double peak_within_mask() const { return largest_magnitude(mask() == nullptr ? *residual_ : masked(*residual_, *mask())); }
+  bool mask_is_empty() const { return mask() != nullptr && imager::mask_is_empty(*mask()); }
+  /// Of the whole image where the mask is empty.
+  double peak_within_mask() const {
+    const bool everywhere = mask() == nullptr || mask_is_empty();
+    return largest_magnitude(everywhere ? *residual_ : masked(*residual_, *mask()));
+  }
 
   /// What the residual is now.
   void measure(MajorCycle& cycle) {
@@ -128,9 +133,10 @@ class Run {
 
   /// What ends CLEAN before another minor cycle, if anything.
   std::optional<Ending> ending() const {
-    if (mask() != nullptr && mask_is_empty(*mask()))
-      return Ending{CleanStop::empty_mask,
-                    o_.automask ? "nothing in the residual exceeds the mask's thresholds" : "the mask allows no pixel"};
+    if (mask_is_empty())
+      return Ending{CleanStop::empty_mask, std::string(o_.automask ? "nothing in the residual exceeds the mask's thresholds"
+                                                                   : "the mask allows no pixel") +
+                                               "; the peak residual is that of the whole image"};
     if (o_.stop_requested && o_.stop_requested()) return Ending{CleanStop::user, "stopped by the user"};
     if (now().peak_residual_jy <= (1 + threshold_tolerance) * o_.threshold_jy)
       return Ending{CleanStop::threshold, "the peak residual reached the threshold"};

@@ -50,7 +50,7 @@ enum class CleanStop {
 /// The state after one major cycle.
 struct MajorCycle {
   int iterations = 0;           ///< components of its model, each time that one was found counting
-  double peak_residual_jy = 0;  ///< within the mask
+  double peak_residual_jy = 0;  ///< within the mask; of the whole image where that is empty
   double rms_jy = 0;            ///< robust noise of the residual, within the mask and without
   double model_flux_jy = 0;
   double cycle_threshold_jy = 0;  ///< how deep its minor cycle was to go, in Jy/beam

@@ -114,9 +114,10 @@ BOOST_AUTO_TEST_CASE(a_pass_without_usable_samples_is_an_error_that_counts_the_r
   block.counts.zero_weight = 4;
   const Counted source({block});
   const StreamedVisibilities streamed(source, {});
-  BOOST_CHECK_EXCEPTION(weights_of_a_pass(streamed), std::runtime_error, [](const std::exception& error) {
+  BOOST_CHECK_EXCEPTION(weights_of_a_pass(streamed), NothingUsable, [](const std::exception& error) {
     return std::string(error.what()) ==
-           "no visibility is left of 10: 1 auto-correlations, 2 flagged, 3 not finite, 4 of zero weight";
+           "no visibility is left of 10: 1 auto-correlations, 2 flagged, 3 not finite, 4 of zero weight; "
+           "expected one at least that is none of this";
   });
 }
 

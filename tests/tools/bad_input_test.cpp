@@ -167,8 +167,46 @@ BOOST_AUTO_TEST_CASE(nothing_left_after_flags_says_what_became_of_the_samples) {
   const Scene scene;
   const TemporaryFolder folder;
   const std::string set = copy_of_snapshot(folder);
+  const Arguments of_scene{"report", "scene", "--vis", set, "--imsize", "64", "--cell", "0.1arcsec", "--quick", "--output"};
+  const Arguments of_stability{"report", "stability", "--vis", set, "--quick", "--output", scene.out};
+  const auto check = [&](const std::string& reason) {
+    const std::vector<std::string> parts{set + ": no visibility is left of 351: 351 " + reason + "; expected one"};
+    for (const Arguments& arguments : {scene.image("--vis", set), of_scene + Arguments{scene.out}, of_stability})
+      check_refused(arguments, 1, parts, scene.out);
+  };
+  put_weights(set, 0);
+  check("of zero weight");
   flag_all(set);
-  check_refused(scene.image("--vis", set), 1, {"no visibility is left of 351", "351 flagged"}, scene.out);
+  check("flagged");
+}
+
+BOOST_AUTO_TEST_CASE(a_word_that_is_no_subcommand_is_answered_with_those_there_are_the_nearest_first) {
+  const Scene scene;
+  check_refused({"imag", "--vis", "a"}, 2, {"misfit: imag: expected image, "}, scene.out);
+  check_refused({"report", "scen"}, 2, {"misfit: report scen: expected scene, kernels or stability"}, scene.out);
+  check_refused({"report", "stabilty", "--output", "x"}, 2, {"misfit: report stabilty: expected stability, "}, scene.out);
+  check_refused({}, 2, {"misfit: expected image, "}, scene.out);
+  check_refused({"report"}, 2, {"misfit: report: expected kernels, scene or stability"}, scene.out);
+}
+
+BOOST_AUTO_TEST_CASE(a_quantity_that_is_none_is_named_with_its_option) {
+  const Scene scene;
+  scene.usage("--threshold", "foo",
+              "--threshold: 'foo' is no flux density; expected a number with a unit of Jy, mJy, uJy, such as");
+  scene.usage("--cell", "foo", "--cell: 'foo' is no angle");
+  scene.usage("--restoringbeam", "foo", "--restoringbeam foo: expected common, MAJ");
+  for (const char* option : {"--cell", "--ra", "--dec", "--frequency", "--channel-width", "--noise"})
+    check_refused({"simulate", "--output", scene.out + "/a.ms", option, "foo"}, 2, {option, "'foo' is no", "such as"},
+                  scene.out);
+}
+
+BOOST_AUTO_TEST_CASE(an_output_without_a_name_is_refused) {
+  const Scene scene;
+  const Arguments none{"--output", ""};
+  for (const Arguments& command : {Arguments{"report", "scene", "--vis", snapshot(), "--imsize", "64", "--cell", "1arcsec"},
+                                   Arguments{"report", "stability"}, Arguments{"report", "kernels"}, Arguments{"simulate"},
+                                   Arguments{"kernel", "--width", "4", "--padding", "2"}})
+    check_refused(command + none, 2, {"--output: '': expected a name"}, scene.out);
 }
 
 BOOST_AUTO_TEST_CASE(a_cell_too_large_for_every_sample_is_named) {
@@ -246,6 +284,9 @@ BOOST_AUTO_TEST_CASE(an_image_too_large_for_the_memory_is_refused_before_work_be
   const long double memory = static_cast<long double>(sysconf(_SC_PHYS_PAGES)) * sysconf(_SC_PAGE_SIZE);
   if (memory > 16.0L * 65536 * 65536) return;  // dirty image and PSF would fit
   check_refused(scene.image("--imsize", "65536"), 2, {"65536", "GiB"}, scene.out);
+  check_refused(
+      {"report", "scene", "--vis", snapshot(), "--imsize", "65536", "--cell", "1mas", "--output", scene.out + "/report"}, 2,
+      {"--imsize 65536 65536: expected an image that fits this machine's", "this one needs"}, scene.out);
 }
 
 BOOST_AUTO_TEST_CASE(too_little_memory_is_refused_with_what_is_needed) {

@@ -267,6 +267,18 @@ BOOST_AUTO_TEST_CASE(a_dry_run_prints_the_plan_of_the_run_and_its_memory_and_wri
   }
 }
 
+BOOST_AUTO_TEST_CASE(a_cell_without_a_unit_is_said_to_be_in_arcsec) {
+  const TemporaryFolder folder;
+  const Arguments bare{"image",    "--vis", snapshot(), "--imagename", folder / "a",
+                       "--imsize", "64",    "--cell",   "0.1",         "--dry-run"};
+  const Outcome outcome = run(bare);
+  BOOST_TEST(outcome.out.find("pixels: 64 × 64 of 100 mas; --cell 0.1 has no unit, and is in arcsec") != std::string::npos);
+  BOOST_TEST(outcome.err.find("--cell 0.1 has no unit, and is in arcsec as in tclean\n") != std::string::npos);
+  const Outcome told = run(small_image(snapshot(), folder / "b") + Arguments{"--dry-run"});
+  BOOST_TEST(told.out.find("pixels: 64 × 64 of 100 mas; --cell 0.1arcsec\n") != std::string::npos);
+  BOOST_TEST(told.err == "");
+}
+
 BOOST_AUTO_TEST_CASE(a_dry_run_reads_neither_data_nor_flags) {
   const TemporaryFolder folder;
   const std::string set = folder / "flagged.ms";

@@ -7,10 +7,12 @@
 #include <boost/test/unit_test.hpp>
 #include <chrono>
 #include <csignal>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <sstream>
 #include <string>
 #include <thread>
@@ -112,6 +114,22 @@ inline nlohmann::json report_of(const std::string& imagename) {
 inline imager::Image pixels_of(const std::string& imagename, const std::string& kind) {
   return imager::read_fits(imagename + "." + kind + ".fits").image;
 }
+
+/// Of the environment, for the programs started while it lives.
+class EnvironmentVariable {
+ public:
+  EnvironmentVariable(std::string name, const std::string& value) : name_(std::move(name)) {
+    if (const char* const before = std::getenv(name_.c_str())) before_ = before;
+    setenv(name_.c_str(), value.c_str(), 1);
+  }
+  EnvironmentVariable(const EnvironmentVariable&) = delete;
+  EnvironmentVariable& operator=(const EnvironmentVariable&) = delete;
+  ~EnvironmentVariable() { before_ ? setenv(name_.c_str(), before_->c_str(), 1) : unsetenv(name_.c_str()); }
+
+ private:
+  std::string name_;
+  std::optional<std::string> before_;
+};
 
 /// Names of everything in the folder of `path`, and below.
 inline std::map<std::string, std::string> files_below(const std::string& folder) {

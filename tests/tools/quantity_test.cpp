@@ -50,7 +50,8 @@ BOOST_AUTO_TEST_CASE(what_is_no_quantity_is_shown_with_what_was_expected) {
                            "+-1", "++1", "0x10", "1arcsec2", "1mJy", "1 deg "}) {
     BOOST_CHECK_EXCEPTION(parse_angle_rad(text), std::invalid_argument, [&](const std::exception& error) {
       return std::string(error.what()) ==
-             "'" + std::string(text) + "' is no angle; expected a number with a unit of deg, arcmin, arcsec, mas, rad";
+             "'" + std::string(text) +
+                 "' is no angle; expected a number with a unit of deg, arcmin, arcsec, mas, rad, such as 0.2arcsec";
     });
   }
   BOOST_CHECK_THROW(parse_flux_jy("1Hz"), std::invalid_argument);

@@ -1,9 +1,13 @@
 // misfit report scene: measured, and said of what was measured.
 #include "tools/scene/scene_report.h"
 
+#include <cerrno>
+#include <functional>
+#include <iterator>
 #include <sstream>
 
 #include "tests/tools/program.h"
+#include "tests/tools/set_changes.h"
 #include "tools/scene/results_file.h"
 #include "tools/scene/timing.h"
 #include "tools/scene/verdict.h"
@@ -46,6 +50,36 @@ PointResult point(const std::string& kernel, double seconds, double error) {
   result.errors.rms = error;
   result.runs = {{.grid = seconds}};
   return result;
+}
+
+/// A program of that name before all others on PATH, while this lives: a shell script.
+class Impostor {
+ public:
+  Impostor(const std::string& name, const std::string& script) {
+    std::ofstream(folder_ / name) << "#!/bin/sh\n" << script;
+    std::filesystem::permissions(folder_ / name, std::filesystem::perms::owner_all);
+  }
+
+ private:
+  TemporaryFolder folder_;
+  EnvironmentVariable path_{"PATH", folder_ / "" + ":" + std::getenv("PATH")};
+};
+
+/// The results that a report which was stopped has kept.
+std::string kept_in(const std::string& output) {
+  return output + "/measured.json";
+}
+
+/// Runs a report until it keeps other results than `before`, and stops it; what it said.
+std::string stopped_report_of(const std::string& vis, const std::string& output, const std::string& before) {
+  Arguments arguments = report_of_scene(output);
+  arguments[3] = vis;
+  Child child(arguments);
+  while (!child.ended() && content(kept_in(output)) == before) std::this_thread::sleep_for(std::chrono::milliseconds(2));
+  child.signal(SIGINT);
+  const Outcome outcome = child.wait();
+  BOOST_TEST(outcome.code == 130, outcome.err);
+  return outcome.err;
 }
 
 }  // namespace
@@ -103,6 +137,74 @@ BOOST_AUTO_TEST_CASE(a_report_that_was_stopped_goes_on_from_what_it_had) {
   BOOST_TEST(again.code == 0);
   BOOST_TEST(again.err.find("going on from") != std::string::npos);
   BOOST_TEST(std::filesystem::exists(folder / "report/index.html"));
+}
+
+BOOST_AUTO_TEST_CASE(a_program_that_fails_is_said_and_the_rest_of_the_report_stays) {
+  const TemporaryFolder folder;
+  const Impostor wsclean("wsclean", "echo 'no such set today'\nexit 1\n");
+  succeed(report_of_scene(folder / "report"));
+  BOOST_TEST(rows_of(folder / "report/scene.csv").size() > 50);
+  std::istringstream programs(content(folder / "report/programs.csv"));
+  int failed = 0, made = 0;
+  for (std::string line; std::getline(programs, line);) {
+    failed +=
+        line.find("wsclean") != std::string::npos && line.find(": failed, no such set today") != std::string::npos ? 1 : 0;
+    made += line.find("misfit image, to") != std::string::npos && line.find("failed") == std::string::npos ? 1 : 0;
+  }
+  BOOST_TEST(failed == 4);
+  BOOST_TEST(made == 2);
+  BOOST_TEST(content(folder / "report/index.html").find("failed, no such set today") != std::string::npos);
+}
+
+BOOST_AUTO_TEST_CASE(an_interrupt_during_whole_programs_stops_them_and_keeps_what_was_measured) {
+  const TemporaryFolder folder;
+  const std::string started = folder / "started", work = folder / "work";
+  std::filesystem::create_directory(work);
+  const Impostor wsclean("wsclean", "[ \"$1\" = --version ] && exit\necho $$ > " + started + ".part\nmv " + started + ".part " +
+                                        started + "\nexec sleep 1000\n");
+  const Arguments arguments = report_of_scene(folder / "report");  // makes folders that outlive this test
+  const EnvironmentVariable temporary("TMPDIR", work);
+  Child child(arguments);
+  while (!child.ended() && !std::filesystem::exists(started)) std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  child.signal(SIGINT);
+  const Outcome outcome = child.wait();
+  BOOST_TEST(outcome.code == 130);
+  BOOST_TEST(outcome.err.ends_with("misfit: stopped by the user\n"), outcome.err);
+  BOOST_TEST(std::filesystem::exists(kept_in(folder / "report")));
+  BOOST_TEST(!std::filesystem::exists(folder / "report/index.html"));
+  const std::filesystem::directory_iterator left(work);
+  BOOST_TEST(std::distance(begin(left), end(left)) == 1);  // what the child said
+  const int program = std::stoi(content(started));
+  BOOST_TEST((kill(program, 0) == -1 && errno == ESRCH));
+}
+
+BOOST_AUTO_TEST_CASE(results_of_other_data_of_the_same_shape_are_not_used) {
+  const TemporaryFolder folder;
+  const std::string set = folder / "a.ms", output = folder / "report";
+  const auto renew = [&] {
+    std::filesystem::remove_all(set);
+    std::filesystem::copy(snapshot(), set, std::filesystem::copy_options::recursive);
+  };
+  const std::string going_on = "going on from";
+  renew();
+  BOOST_TEST(stopped_report_of(set, output, "").find(going_on) == std::string::npos);
+  const std::string kept = content(kept_in(output));
+  renew();
+  BOOST_TEST(stopped_report_of(set, output, kept).find(going_on) != std::string::npos);  // the same data
+  const std::pair<const char*, std::function<void()>> changes[] = {{"all weights", [&] { put_weights(set, 0.25F); }},
+                                                                   {"a weight", [&] { put_weight(set, 7, 3); }},
+                                                                   {"a flag", [&] { flag_row(set, 7); }},
+                                                                   {"a value",
+                                                                    [&] {
+                                                                      put_data(set, 7, {3, 4});
+                                                                    }},
+                                                                   {"all values", [&] { scale_data(set, 2); }}};
+  for (const auto& [what, change] : changes) BOOST_TEST_CONTEXT(what) {
+      std::ofstream(kept_in(output)) << kept;
+      renew();
+      change();
+      BOOST_TEST(stopped_report_of(set, output, kept).find(going_on) == std::string::npos);
+    }
 }
 
 BOOST_AUTO_TEST_CASE(results_are_read_as_they_were_written_by_their_owner_alone) {

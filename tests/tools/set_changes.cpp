@@ -31,6 +31,14 @@ void put_weight(const std::string& set, std::size_t row, float value) {
   put_first(set, "WEIGHT", row, value);
 }
 
+void put_weights(const std::string& set, float value) {
+  const casacore::MeasurementSet open = opened(set);
+  casacore::ArrayColumn<float> weights(open, "WEIGHT");
+  casacore::Array<float> all = weights.getColumn();
+  all = value;
+  weights.putColumn(all);
+}
+
 void put_u(const std::string& set, std::size_t row, double u_m) {
   put_first(set, "UVW", row, u_m);
 }

@@ -10,6 +10,7 @@ namespace misfit::tools::testing {
 /// What tests do to simulated MeasurementSets: one channel, XX and YY. Apart because casacore needs C++17.
 void put_data(const std::string& set, std::size_t row, std::complex<float> value);  ///< in XX
 void put_weight(const std::string& set, std::size_t row, float value);              ///< in XX
+void put_weights(const std::string& set, float value);                              ///< in all of WEIGHT
 void put_u(const std::string& set, std::size_t row, double u_m);
 void flag_sample(const std::string& set, std::size_t row);  ///< in XX
 void flag_row(const std::string& set, std::size_t row);

@@ -1,5 +1,6 @@
 #include "tools/stability/stability_runs.h"
 
+#include <algorithm>
 #include <boost/test/unit_test.hpp>
 #include <cmath>
 
@@ -59,6 +60,23 @@ BOOST_AUTO_TEST_CASE(a_million_equal_samples_in_one_cell_keep_the_promise) {
 
 BOOST_AUTO_TEST_CASE(places_on_a_line_or_in_few_cells_keep_the_promise) {
   check(run_cases(few_places_cases(few_samples())));
+}
+
+BOOST_AUTO_TEST_CASE(a_clean_that_was_cut_says_of_how_many_components_and_which_model_was_kept) {
+  StabilityOutcome cut;
+  cut.max_iterations = 300;
+  cut.clean.stop = imager::CleanStop::iteration_limit;
+  cut.clean.cycles.resize(4);
+  cut.clean.iterations = 163;
+  const auto ended = [&] {
+    const DataTable table = outcome_table("name", "title", {cut});
+    const auto at = std::find(table.columns.begin(), table.columns.end(), "CLEAN ended") - table.columns.begin();
+    return std::get<std::string>(table.rows.at(0).at(static_cast<std::size_t>(at)));
+  };
+  cut.clean.kept = 3;
+  BOOST_TEST(ended() == "at the limit given, of 300 components");
+  cut.clean.kept = 2;
+  BOOST_TEST(ended() == "at the limit given, of 300 components; the best model, of 163, kept");
 }
 
 BOOST_AUTO_TEST_CASE(samples_where_cells_meet_and_where_the_grid_ends_keep_the_promise) {

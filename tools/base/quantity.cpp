@@ -1,5 +1,6 @@
 #include "tools/base/quantity.h"
 
+#include <cctype>
 #include <charconv>
 #include <cmath>
 #include <numbers>
@@ -12,12 +13,13 @@ namespace {
 
 using Units = std::vector<std::pair<std::string, double>>;
 
-double parse(const std::string& text, const std::string& what, const Units& units) {
+double parse(const std::string& text, const std::string& what, const std::string& such_as, const Units& units) {
   const auto fail = [&] {
     std::string names;
     for (const auto& [name, size] : units)
       if (!name.empty()) names += (names.empty() ? "" : ", ") + name;
-    throw std::invalid_argument("'" + text + "' is no " + what + "; expected a number with a unit of " + names);
+    throw std::invalid_argument("'" + text + "' is no " + what + "; expected a number with a unit of " + names + ", such as " +
+                                such_as);
   };
   const char* begin = text.data() + (text.starts_with('+') ? 1 : 0);
   const char* end = text.data() + text.size();
@@ -36,7 +38,7 @@ double parse(const std::string& text, const std::string& what, const Units& unit
 
 double parse_angle_rad(const std::string& text) {
   constexpr double degree = std::numbers::pi / 180;
-  return parse(text, "angle",
+  return parse(text, "angle", "0.2arcsec",
                {{"", degree / 3600},
                 {"deg", degree},
                 {"arcmin", degree / 60},
@@ -46,11 +48,15 @@ double parse_angle_rad(const std::string& text) {
 }
 
 double parse_flux_jy(const std::string& text) {
-  return parse(text, "flux density", {{"", 1}, {"Jy", 1}, {"mJy", 1e-3}, {"uJy", 1e-6}});
+  return parse(text, "flux density", "1mJy", {{"", 1}, {"Jy", 1}, {"mJy", 1e-3}, {"uJy", 1e-6}});
 }
 
 double parse_frequency_hz(const std::string& text) {
-  return parse(text, "frequency", {{"", 1}, {"Hz", 1}, {"kHz", 1e3}, {"MHz", 1e6}, {"GHz", 1e9}});
+  return parse(text, "frequency", "1.4GHz", {{"", 1}, {"Hz", 1}, {"kHz", 1e3}, {"MHz", 1e6}, {"GHz", 1e9}});
+}
+
+bool has_unit(const std::string& text) {
+  return !text.empty() && std::isalpha(static_cast<unsigned char>(text.back())) != 0;
 }
 
 }  // namespace misfit::tools

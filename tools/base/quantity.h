@@ -10,4 +10,7 @@ double parse_angle_rad(const std::string& text);     ///< deg, arcmin, arcsec, m
 double parse_flux_jy(const std::string& text);       ///< Jy, mJy, uJy; alone: Jy
 double parse_frequency_hz(const std::string& text);  ///< Hz, kHz, MHz, GHz; alone: Hz
 
+/// Whether such a quantity ends in a unit.
+bool has_unit(const std::string& text);
+
 }  // namespace misfit::tools

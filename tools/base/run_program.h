@@ -7,8 +7,12 @@
 
 namespace misfit::tools {
 
+/// What becomes of a program when the user asks this one to stop: it goes on to its end, or is asked to end too.
+enum class OnInterrupt { finish, stop };
+
 /// Runs a program found on PATH, or at a path, in `folder`, without input; what it says on both streams is left in the file
 /// "said" there. Returns its exit status, not 0 where a signal ended it, or nothing where there is no such program.
-std::optional<int> run_program(std::vector<std::string> words, const std::filesystem::path& folder);
+std::optional<int> run_program(std::vector<std::string> words, const std::filesystem::path& folder,
+                               OnInterrupt on_interrupt = OnInterrupt::finish);
 
 }  // namespace misfit::tools

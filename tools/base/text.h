@@ -3,6 +3,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace misfit::tools {
 
@@ -11,6 +12,9 @@ std::string_view trimmed(std::string_view text);
 
 /// The finite number that `text` is as a whole, with a sign or without; nothing where it is none.
 std::optional<double> finite_number(std::string_view text);
+
+/// `names` with those first that take the fewest letters changed, added or removed to become `word`.
+std::vector<std::string> nearest_first(const std::string& word, std::vector<std::string> names);
 
 /// `word` as a shell takes it for one: as it is, or in quotes where it holds anything but letters, digits and ./:,=+-_~%@.
 std::string shell_quoted(const std::string& word);

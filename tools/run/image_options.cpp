@@ -2,13 +2,13 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
 #include "imager/plan/gridding_plan.h"
 #include "kernels/kernel_table.h"
+#include "tools/base/option_checks.h"
 #include "tools/base/quantity.h"
 #include "tools/base/text.h"
 #include "tools/formats/config_file.h"
@@ -123,7 +123,9 @@ void check_gridding(const ImageOptions& o) {
 void declare_scene(CLI::App& command, ImageOptions& o) {
   command.add_option("--vis", o.vis, "MeasurementSet; opened read-only, but to save a model")->required();
   command.add_option("--imsize", o.imsize, "Width, or width and height, in pixels")->required()->expected(1, 2);
-  command.add_option("--cell", o.cell, "Size of a pixel: 0.2arcsec, 3mas, …")->required();
+  command.add_option("--cell", o.cell, "Size of a pixel: 0.2arcsec, 3mas, …; in arcsec without a unit")
+      ->required()
+      ->check(quantity(parse_angle_rad));
   command.add_option("--field", o.selection.field, "Fields, in CASA's selection syntax; all when empty");
   command.add_option("--spw", o.selection.spectral_window,
                      "Spectral windows and channels, in CASA's selection syntax; all when empty");
@@ -162,7 +164,10 @@ void declare(CLI::App& command, ImageOptions& o) {
   command.add_option("--smallscalebias", o.smallscalebias, "The largest scale counts this part less than points");
   command.add_option("--niter", o.niter, "CLEAN components to find at most; 0 makes the dirty image");
   command.add_option("--gain", o.gain, "Part of a peak that a component takes");
-  command.add_option("--threshold", o.threshold, "Stop when the peak residual reaches this flux density, to 1%");
+  command
+      .add_option("--threshold", o.threshold,
+                  "Stop when the peak residual reaches this flux density, to 1%; in Jy without a unit")
+      ->check(quantity(parse_flux_jy));
   command.add_option("--nsigma", o.nsigma, "Stop when it reaches this many times the noise; 0 = never");
   command.add_option("--cyclefactor", o.cyclefactor, "Minor cycles go down to the peak times the largest sidelobe times this");
   command.add_option("--minpsffraction", o.minpsffraction, "… at most this deep, as a part of the peak");
@@ -238,9 +243,10 @@ std::optional<imager::Beam> restoring_beam(const ImageOptions& o) {
       refuse("restoringbeam", o.restoringbeam,
              "common, MAJ, or MAJ,MIN,PA such as 0.5arcsec,0.4arcsec,30deg with MAJ at least MIN, and MIN above 0");
   };
-  const auto angle = [&](std::string_view text) {
-    expect(!text.empty() && std::isalpha(static_cast<unsigned char>(text.back())) != 0);
-    return parse_angle_rad(std::string(text));
+  const auto angle = [&](std::string_view part) {
+    const std::string text(part);
+    expect(has_unit(text) && quantity(parse_angle_rad)(text).empty());
+    return parse_angle_rad(text);
   };
   std::vector<std::string_view> parts;
   for (std::string_view rest = o.restoringbeam;;) {

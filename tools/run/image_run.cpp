@@ -11,6 +11,7 @@
 #include "tools/base/memory.h"
 #include "tools/base/numbers.h"
 #include "tools/base/progress.h"
+#include "tools/base/quantity.h"
 #include "tools/formats/model_image.h"
 #include "tools/kernel_choice/kernel_choice.h"
 #include "tools/run/beam_choice.h"
@@ -90,6 +91,7 @@ class ImageRun {
     request.max_abs_w = reach_.max_abs_w;
     if (o_.memory_gib > 0) limit_memory(o_.memory_gib * gib, request);
     made_.plan = imager::plan_gridding(request);
+    decide_pixels();
     if (o_.check_outside) plan_search(request);
     MemoryPlan memory = plan_memory({.transform = imager::memory_of(made_.plan),
                                      .pixels = static_cast<double>(geometry_.pixels()),
@@ -131,6 +133,15 @@ class ImageRun {
     for (const StageSeconds& s : forecast_.expected(work_))
       if (s.stage == "sources outside") return s.seconds;
     return 0;
+  }
+
+  void decide_pixels() {
+    const ScaledUnit unit = angle_unit(geometry_.cell_rad);
+    const std::string cell = significant(geometry_.cell_rad / unit.size, 6) + " " + unit.name;
+    const bool told = has_unit(o_.cell);
+    const std::string because = "--cell " + o_.cell + (told ? "" : " has no unit, and is in arcsec as in tclean");
+    decide("pixels", std::to_string(geometry_.width) + " × " + std::to_string(geometry_.height) + " of " + cell, because);
+    if (!told) progress_.say(because);
   }
 
   /// Of all stages, what was spent before the forecast among them.

@@ -23,7 +23,8 @@ std::string enough_text(double bytes) {
   const std::string size = std::to_string(o.imsize.front()) + " × " + std::to_string(o.imsize.back());
   if (o.memory_gib > 0)
     throw std::invalid_argument("--memory " + significant(o.memory_gib, 6) + ": expected at least " +
-                                enough_text(needed_bytes) + ", which grids and images of " + size + " pixels need");
+                                enough_text(needed_bytes) + ", which grids and images of " + size +
+                                " pixels need, or fewer pixels");
   throw std::invalid_argument("--imsize " + std::to_string(o.imsize.front()) + " " + std::to_string(o.imsize.back()) +
                               ": expected an image that fits this machine's " + gib_text(physical_memory_bytes()) +
                               "; this one needs " + gib_text(needed_bytes));

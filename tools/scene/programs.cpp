@@ -113,7 +113,7 @@ std::string in_a_line(const std::vector<std::string>& words) {
 /// Whether the program did what it was called for; if not, its result says why.
 bool run_in(const WorkFolder& folder, std::vector<std::string> words, ProgramResult& result) {
   if (words.front() == "misfit") words.front() = fs::read_symlink("/proc/self/exe").string();
-  const std::optional<int> status = run_program(words, folder.path());
+  const std::optional<int> status = run_program(words, folder.path(), OnInterrupt::stop);
   if (interrupted()) throw Interrupted();
   if (status && *status == 0) return true;
   result.failure = last_words(folder.path() / "said");

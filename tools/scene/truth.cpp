@@ -44,6 +44,7 @@ SceneTruth::SceneTruth(const imager::VisibilitySource& source, const imager::Ima
   const auto predict = imager::DirectTransform(geometry, threads).predict(model_);
   direct_.resize(pixel_.size());
   double weight = 0, seconds = 0;
+  imager::SampleCounts counts;
   std::uint64_t done = 0;
   std::size_t index = 0;
   const auto stream = source.open();
@@ -63,9 +64,11 @@ SceneTruth::SceneTruth(const imager::VisibilitySource& source, const imager::Ima
       samples_.push_back({index, sample, predict->at(one).front()});
       visibility_square_ += std::norm(samples_.back().visibility);
     }
+    counts += block->counts;
     done += block->samples();
     progress(done, source.samples());
   }
+  if (counts.used == 0) throw imager::NothingUsable(counts);
   for (double& pixel : direct_) pixel /= weight;
   seconds_a_pixel_ = seconds / static_cast<double>(std::max<std::size_t>(pixel_.size(), 1));
 }

@@ -25,7 +25,7 @@ struct SceneErrors {
 /// some samples; the choice is the same for the same scene.
 class SceneTruth {
  public:
-  /// One pass over the samples. `pixels` of the centre, as many of the border, as many anywhere.
+  /// One pass over the samples. `pixels` of the centre, as many of the border, as many anywhere. Throws imager::NothingUsable.
   SceneTruth(const imager::VisibilitySource& source, const imager::ImageGeometry& geometry, int pixels, int threads,
              const imager::Progress& progress);
 

@@ -11,10 +11,18 @@ std::string statement(const StabilityOutcome& o) {
   return o.honest() ? "kept" : "broken";
 }
 
-std::string ending(imager::CleanStop stop) {
-  switch (stop) {
+/// Where it was cut, of how many it was given; and which model was kept, if an earlier one left less.
+std::string cut(const StabilityOutcome& o) {
+  const imager::CleanReport& clean = o.clean;
+  const bool earlier = clean.kept + 1 != clean.cycles.size();
+  return "at the limit given, of " + grouped(o.max_iterations) + " components" +
+         (earlier ? "; the best model, of " + grouped(clean.iterations) + ", kept" : "");
+}
+
+std::string ending(const StabilityOutcome& o) {
+  switch (o.clean.stop) {
     case imager::CleanStop::iteration_limit:
-      return "iterations";
+      return cut(o);
     case imager::CleanStop::threshold:
       return "threshold";
     case imager::CleanStop::user:
@@ -41,7 +49,7 @@ std::vector<DataTable::Cell> row_of(const StabilityOutcome& o) {
   const double e = o.accuracy;
   row.insert(row.end(), {o.measured.rms / e, o.measured.predict_rms / e, o.theory.expected_rms / e, o.theory.bound_rms / e,
                          o.measured.max / o.theory.bound_max});
-  row.insert(row.end(), {ending(o.clean.stop), static_cast<double>(o.clean.iterations), o.peak_before_jy(), o.peak_after_jy()});
+  row.insert(row.end(), {ending(o), static_cast<double>(o.clean.iterations), o.peak_before_jy(), o.peak_after_jy()});
   return row;
 }
 

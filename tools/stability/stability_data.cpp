@@ -11,6 +11,7 @@
 #include "ms_io/measurement_set.h"
 #include "tools/base/array.h"
 #include "tools/base/numbers.h"
+#include "tools/run/named_data.h"
 
 namespace misfit::tools {
 namespace {
@@ -52,24 +53,37 @@ StabilityData made_data(std::size_t samples) {
   return data;
 }
 
-StabilityData sampled_data(const std::string& vis, std::size_t samples) {
+namespace {
+
+StabilityData every_so_many(const std::string& vis, std::size_t samples) {
   const ms_io::MeasurementSet set(vis, {}, "data");
   const std::uint64_t step = (set.samples() + samples - 1) / samples;
   StabilityData data{empty_block(), ""};
   std::uint64_t at = 0;
+  imager::SampleCounts counts;
   const auto stream = set.open();
-  while (const auto block = stream->next())
+  while (const auto block = stream->next()) {
+    counts += block->counts;
     for (std::size_t i = 0; i < block->samples(); ++i) {
       if (at++ % step != 0 || block->weight[i] == 0) continue;
       const double* const uvw_m = &block->uvw_m[3 * (i / block->channels())];
       const double per_m = block->frequency_hz[i % block->channels()] / imager::speed_of_light_m_s;
       append(uvw_m[0] * per_m, uvw_m[1] * per_m, block->weight[i], data.block);
     }
+  }
+  if (counts.used == 0) throw imager::NothingUsable(counts);
   if (data.block.rows() == 0)
-    throw std::runtime_error(vis + " has no usable samples among every " + std::to_string(step) + "th");
+    throw std::runtime_error(vis + ": every " + std::to_string(step) + "th sample was looked at, and none can be used; " +
+                             std::to_string(counts.used) + " others could be; expected data that are not flagged so evenly");
   data.description = "one of " + std::to_string(step) + " samples of " + vis + ", " +
                      grouped(static_cast<long long>(data.block.samples())) + " usable ones";
   return data;
+}
+
+}  // namespace
+
+StabilityData sampled_data(const std::string& vis, std::size_t samples) {
+  return naming(vis, [&] { return every_so_many(vis, samples); });
 }
 
 std::vector<imager::Source> stability_sky(const imager::ImageGeometry& g, double peak_jy) {

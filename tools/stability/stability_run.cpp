@@ -166,6 +166,7 @@ StabilityOutcome run_with(PlanShelf& shelf, const StabilityCase& asked, double a
   StabilityOutcome outcome;
   outcome.name = asked.name;
   outcome.accuracy = accuracy;
+  outcome.max_iterations = asked.max_iterations;
   imager::StoredVisibilities source;
   for (std::uint64_t i = 0; i < asked.repeats; ++i) source.append(asked.block);
   imager::StageTimes times;

@@ -40,7 +40,8 @@ struct StabilityOutcome {
   bool promise_kept = true;
   imager::TheoreticalError theory;
   ExtendedError measured;
-  bool finite = true;  ///< every pixel of the dirty image and the PSF
+  bool finite = true;      ///< every pixel of the dirty image and the PSF
+  int max_iterations = 0;  ///< of CLEAN
   imager::CleanReport clean;
 
   /// Whether image and prediction are as exact as asked, or the run says that they may not be.

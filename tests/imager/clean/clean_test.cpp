@@ -250,6 +250,19 @@ BOOST_AUTO_TEST_CASE(a_mask_that_allows_no_pixel_ends_it_at_once) {
   BOOST_TEST((result.residual.pixel == scene().images.dirty.pixel));
 }
 
+BOOST_AUTO_TEST_CASE(where_the_mask_is_empty_the_peak_is_that_of_the_whole_image_and_it_says_so) {
+  const Image mask(geometry.width, geometry.height);
+  CleanOptions given = deep(), made = deep();
+  given.mask = &mask;
+  made.automask = AutoMaskOptions{.noise_threshold = 1e9};
+  for (const CleanOptions& options : {given, made}) {
+    const CleanResult result = cleaned(options);
+    BOOST_TEST((result.report.stop == CleanStop::empty_mask));
+    BOOST_TEST(result.report.final_state().peak_residual_jy == peak_magnitude(scene().images.dirty));
+    BOOST_TEST(result.report.stop_reason.find("of the whole image") != std::string::npos);
+  }
+}
+
 BOOST_AUTO_TEST_CASE(a_residual_that_is_not_finite_is_an_error) {
   for (const double value : {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
     DirtyImages images = scene().images;
