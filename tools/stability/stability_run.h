@@ -40,7 +40,7 @@ struct StabilityOutcome {
   bool promise_kept = true;
   imager::TheoreticalError theory;
   ExtendedError measured;
-  bool finite = true;  ///< every pixel of the dirty image and the PSF
+  bool finite = true;      ///< every pixel of the dirty image and the PSF
   int max_iterations = 0;  ///< of CLEAN
   imager::CleanReport clean;
 
