@@ -257,7 +257,9 @@ class Search {
       if (outcome != Outcome::not_exact_enough) return width;
       const GriddingCandidate& c = considered_.back().candidate;
       constexpr double stored = 1e-13;  // below, the rounding of the stored kernel may hold the error up
+      constexpr double falling = 0.99;  // where tables limit it, no wider kernel helps
       if (exhausted(c) || (c.worst_error < stored && c.worst_error > narrower / 2)) return {};
+      if (request_.lookup && c.worst_error > falling * narrower) return {};
       narrower = c.worst_error;
     }
     return {};
