@@ -180,6 +180,13 @@ BOOST_AUTO_TEST_CASE(nothing_left_after_flags_says_what_became_of_the_samples) {
   check("flagged");
 }
 
+BOOST_AUTO_TEST_CASE(a_report_takes_no_negative_time) {
+  const Scene scene;
+  check_refused({"report", "scene", "--vis", snapshot(), "--imsize", "64", "--cell", "0.1arcsec", "--seconds", "-3", "--output",
+                 scene.out},
+                2, {"--seconds −3: expected 0 or more"}, scene.out);
+}
+
 BOOST_AUTO_TEST_CASE(a_word_that_is_no_subcommand_is_answered_with_those_there_are_the_nearest_first) {
   const Scene scene;
   check_refused({"imag", "--vis", "a"}, 2, {"misfit: imag: expected image, "}, scene.out);

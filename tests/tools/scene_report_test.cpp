@@ -198,7 +198,9 @@ BOOST_AUTO_TEST_CASE(results_of_other_data_of_the_same_shape_are_not_used) {
                                                                     [&] {
                                                                       put_data(set, 7, {3, 4});
                                                                     }},
-                                                                   {"all values", [&] { scale_data(set, 2); }}};
+                                                                   {"all values", [&] { scale_data(set, 2); }},
+                                                                   {"all phases", [&] { scale_data(set, -1); }},
+                                                                   {"a place", [&] { put_u(set, 7, 1234); }}};
   for (const auto& [what, change] : changes) BOOST_TEST_CONTEXT(what) {
       std::ofstream(kept_in(output)) << kept;
       renew();

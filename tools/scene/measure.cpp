@@ -25,6 +25,20 @@ std::string work_of(const imager::GriddingPlan& plan) {
   return work + (o.precision == imager::Precision::single_precision ? ", single" : ", double");
 }
 
+void add_to(Fingerprint& print, const imager::VisibilityBlock& block) {
+  for (std::size_t i = 0; i < block.samples(); ++i) {
+    if (block.weight[i] == 0) continue;
+    const double weight{block.weight[i]};
+    const std::complex<double> visibility(block.visibility[i]);
+    print[0] += weight;
+    print[1] += weight * std::abs(visibility);
+    print[2] += weight * visibility.real();
+    print[3] += weight * visibility.imag();
+  }
+  constexpr double apart[3]{1, 1.7, 2.9};  // so that exchanged coordinates differ
+  for (std::size_t k = 0; k < block.uvw_m.size(); ++k) print[4] += apart[k % 3] * block.uvw_m[k];
+}
+
 }  // namespace
 
 Scene::Scene(const ImageOptions& options, int pixels, const imager::Progress& progress)
@@ -36,11 +50,7 @@ Scene::Scene(const ImageOptions& options, int pixels, const imager::Progress& pr
   const auto stream = set.open();
   while (auto block = stream->next()) {
     w_spread_.add(*block);
-    for (std::size_t i = 0; i < block->samples(); ++i) {
-      if (block->weight[i] == 0) continue;
-      weight_ += double{block->weight[i]};
-      weight_abs_ += double{block->weight[i]} * double{std::abs(block->visibility[i])};
-    }
+    add_to(fingerprint_, *block);
     visibilities_.append(std::move(block));
   }
   read_s_ = watch.seconds();

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <map>
 #include <string>
 #include <vector>
@@ -43,6 +44,9 @@ struct PointResult {
   std::vector<SceneSeconds> runs;
 };
 
+/// Σ w, Σ w|V|, Σ w Re V, Σ w Im V and a sum of UVW, which other data hardly share.
+using Fingerprint = std::array<double, 5>;
+
 /// The visibilities of a scene, in memory, and what the images of them should be.
 class Scene {
  public:
@@ -53,9 +57,7 @@ class Scene {
   void run(PointResult& result);
 
   std::uint64_t samples() const { return visibilities_.samples(); }
-  /// Σ w and Σ w|V|, which other data hardly share.
-  double weight() const { return weight_; }
-  double weight_abs() const { return weight_abs_; }
+  const Fingerprint& fingerprint() const { return fingerprint_; }
   const imager::ImageGeometry& geometry() const { return geometry_; }
   double read_s() const { return read_s_; }
   /// Seconds that direct sums would take for the image.
@@ -79,8 +81,7 @@ class Scene {
   imager::UvwReach reach_;
   imager::WSpread w_spread_;
   imager::StoredVisibilities visibilities_;
-  double weight_ = 0;
-  double weight_abs_ = 0;
+  Fingerprint fingerprint_{};
   double read_s_ = 0;
   std::unique_ptr<SceneTruth> truth_;
   std::map<std::string, Plans> plans_;  ///< by options_text

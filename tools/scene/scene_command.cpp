@@ -1,11 +1,13 @@
 #include "tools/scene/scene_command.h"
 
+#include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
 
 #include "imager/plan/gridding_plan.h"
 #include "ms_io/measurement_set.h"
+#include "tools/base/numbers.h"
 #include "tools/base/option_checks.h"
 #include "tools/base/quantity.h"
 #include "tools/kernel_choice/kernel_choice.h"
@@ -44,6 +46,8 @@ void check_memory(const ImageOptions& scene) {
 void write(const Options& o) {
   check(o.report.scene);
   for (const std::string& kernel : o.report.kernels) choose_kernel(kernel);
+  if (!(o.report.seconds >= 0 && std::isfinite(o.report.seconds)))
+    throw std::invalid_argument("--seconds " + significant(o.report.seconds, 6) + ": expected 0 or more");
   check_memory(o.report.scene);
   prepare_report_folder(o.output);
   SceneReportOptions options = o.report;
@@ -70,11 +74,10 @@ void add_scene_report(CLI::App& reports) {
   command->add_option("--kernel", o->report.kernels, "Kernels to compare besides the usual ones: names or kernel-table files");
   command->add_flag("--quick", o->report.quick,
                     "Fewer points and runs: an answer within two minutes for a million visibilities");
-  command
-      ->add_option("--seconds", o->report.seconds,
-                   "Time for the runs of all points, of which there are more than two rounds (five without --quick) while they "
-                   "fit; 0 means 75 with --quick and 600 without")
-      ->check(CLI::NonNegativeNumber);
+  command->add_option(
+      "--seconds", o->report.seconds,
+      "Time for the runs of all points, of which there are more than two rounds (five without --quick) while they "
+      "fit; 0 means 75 with --quick and 600 without");
   command
       ->add_option("--output", o->output,
                    "Folder for index.html, SVG, CSV and report.json; a run that was stopped goes on there")
