@@ -102,6 +102,8 @@ BOOST_AUTO_TEST_CASE(every_point_is_measured_within_its_bounds_and_its_command_m
       BOOST_TEST(std::stod(row.at("measured_rms")) <= std::stod(row.at("bound_rms")));
       BOOST_TEST(std::stod(row.at("measured_max")) <= std::stod(row.at("bound_max")));
       BOOST_TEST(std::stod(row.at("time_s")) > 0);
+      BOOST_TEST(std::stod(row.at("x0")) >=
+                 0.5 / std::stod(row.at("padding")) - 1e-6);  // even image: the kernel reaches its edge
     }
     on_front += row.at("pareto") == "yes" ? 1 : 0;
     if (row.at("evaluation").find("linear") != std::string::npos) exact = &row;
@@ -251,6 +253,8 @@ BOOST_AUTO_TEST_CASE(the_verdict_names_what_beats_least_misfit_kernels) {
   const std::string verdict = verdict_on(beaten);
   BOOST_TEST(verdict.find("kaiser-bessel") != std::string::npos);
   BOOST_TEST(verdict.find("takes 1.6 ± 0 times as long") != std::string::npos);
+  const std::vector<PointResult> alone{point("least-misfit", 1, 1e-4), point("minimax", 2, 1e-6)};
+  BOOST_TEST(verdict_on(alone).find("nothing is compared") != std::string::npos);
 }
 
 BOOST_AUTO_TEST_CASE(times_are_as_uncertain_as_their_runs_differ) {

@@ -68,7 +68,9 @@ std::string outside_section(const json& report) {
       " An alias is what gridding adds to the exact image. The sources' sidelobes belong to that image, and no kernel removes"
       " them: only a wider image does, or a model taken off the data.";
   if (sources.empty())
-    return tag("p", told + "No alias exceeds the image's noise, " + noise + "." + sidelobes) + "\n" + unknown;
+    return tag("p", told + (unknown.empty() ? "No alias" : "No alias that is known") + " exceeds the image's noise, " + noise +
+                        "." + sidelobes) +
+           "\n" + unknown;
   return tag("p", told + "The aliases of these may exceed the image's noise, " + noise +
                       "; a smaller --accuracy, a wider kernel or more padding keeps them out." + sidelobes) +
          "\n" + unknown + "\n" + table_of(sources);

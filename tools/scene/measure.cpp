@@ -1,5 +1,6 @@
 #include "tools/scene/measure.h"
 
+#include <cmath>
 #include <memory>
 #include <stdexcept>
 
@@ -106,7 +107,7 @@ void Scene::describe(const Plans& plans, const imager::DirtyImages& made, PointR
   result.width = o.kernel_u.width();
   result.width_w = o.has_w_axis() ? o.kernel_w.width() : 0;
   result.x0 = o.kernel_u.x0;
-  result.padding = plan.choice.best.padding_u;
+  result.padding = o.nu / std::ceil(1.0 * o.geometry.width / o.facets_l);
   result.evaluation = plan.direct ? "direct sums" : imager::evaluation_of(o);
   result.precision = o.precision == imager::Precision::single_precision && !plan.direct ? "single" : "double";
   result.work.clear();

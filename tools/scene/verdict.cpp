@@ -75,7 +75,10 @@ std::string verdict_on(const std::vector<PointResult>& results) {
       others += (others.empty() ? "" : "; ") + words_on(i, results, costs);
   }
   if (ours == 0 && others.empty()) return "No point of the front lies between 10⁻³ and 10⁻⁷.";
-  const std::string count = std::to_string(ours) + " least-misfit and minimax point" + (ours == 1 ? "" : "s");
+  if (std::all_of(results.begin(), results.end(), is_ours))
+    return "No kernels but least-misfit and minimax were measured: nothing is compared.";
+  const std::string count =
+      std::to_string(ours) + (ours == 1 ? " least-misfit or minimax point" : " least-misfit and minimax points");
   if (others.empty()) return "From 10⁻³ to 10⁻⁷ the front consists of " + count + " alone.";
   return "From 10⁻³ to 10⁻⁷ the front has " + count + ", and others: " + others + ".";
 }
