@@ -6,15 +6,6 @@
 #include "imager/constants.h"
 
 namespace misfit::imager {
-namespace {
-
-/// 1 − n, with n = 0 beyond the horizon.
-double one_minus_n(DirectionCosines at) {
-  return beyond_horizon(at) ? 1 : -n_minus_1(at);
-}
-
-}  // namespace
-
 void WSpread::add(const VisibilityBlock& block) {
   std::vector<double> per_m_square;
   for (const double frequency : block.frequency_hz) per_m_square.push_back(std::pow(frequency / speed_of_light_m_s, 2));
@@ -45,7 +36,7 @@ NeglectedPhase neglected_w_phase(const UvwReach& reach, const WSpread& spread, c
   int pixels = 0;
   for (int row = 0; row < geometry.height; row += row_step)
     for (int column = 0; column < geometry.width; column += column_step, ++pixels) {
-      const double x = one_minus_n(geometry.at(row, column));
+      const double x = drop(geometry.at(row, column));
       square += x * x;
     }
   const double rms_w = spread.weight == 0 ? 0 : std::sqrt(spread.weighted_w_square / spread.weight);

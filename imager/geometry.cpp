@@ -34,7 +34,7 @@ SkyDirection sky_direction(DirectionCosines at, const SkyDirection& centre) {
 
 double largest_drop(const ImageGeometry& geometry) {
   double largest = 0;
-  for (const DirectionCosines& at : geometry.corners()) largest = std::max(largest, beyond_horizon(at) ? 1 : -n_minus_1(at));
+  for (const DirectionCosines& at : geometry.corners()) largest = std::max(largest, drop(at));
   return largest;
 }
 

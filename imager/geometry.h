@@ -60,7 +60,12 @@ struct ImageGeometry {
   std::size_t pixels() const { return static_cast<std::size_t>(width) * static_cast<std::size_t>(height); }
 };
 
-/// The largest 1 − n of any pixel, where n counts as 0 beyond the horizon. Over a rectangle it is in a corner.
+/// 1 − n, where n counts as 0 beyond the horizon.
+inline double drop(DirectionCosines at) {
+  return beyond_horizon(at) ? 1 : -n_minus_1(at);
+}
+
+/// The largest drop of any pixel. Over a rectangle it is in a corner.
 double largest_drop(const ImageGeometry& geometry);
 
 /// Whether any pixel lies beyond the horizon: if one does, a corner does.

@@ -25,13 +25,13 @@ std::vector<double> largest_beyond(const Image& psf) {
 }  // namespace
 
 PsfCore::PsfCore(const Image& psf) {
-  constexpr int largest_reach = 512;
   constexpr double hardly = 1.1;
   const std::vector<double> beyond = largest_beyond(psf);
   const auto outside = [&](int reach) { return beyond[static_cast<std::size_t>(reach) + 1]; };
   const int end = std::min(largest_reach, static_cast<int>(beyond.size()) - 2);
   while (reach_ < end && outside(reach_) > hardly * outside(end)) ++reach_;
   largest_outside_ = outside(reach_);
+  value_.reserve(static_cast<std::size_t>(2 * reach_ + 1) * static_cast<std::size_t>(2 * reach_ + 1));
   for (int r = -reach_; r <= reach_; ++r)
     for (int c = -reach_; c <= reach_; ++c) {
       const int row = psf.height / 2 + r, column = psf.width / 2 + c;

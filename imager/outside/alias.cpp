@@ -4,6 +4,8 @@
 #include <cmath>
 #include <set>
 
+#include "imager/constants.h"
+#include "imager/extent.h"
 #include "kernels/evaluation.h"
 
 namespace misfit::imager {
@@ -48,6 +50,12 @@ double missed_besides(const GriddingPlan& plan) {
   double missed = plan.rounding * plan.rounding;
   for (const kernels::Kernel* kernel : {&o.kernel_u, &o.kernel_v}) missed = either(missed, missed_by_tables(*kernel, o));
   return o.has_w_axis() ? either(missed, either(o.kernel_w.misfit.max, missed_by_tables(o.kernel_w, o))) : missed;
+}
+
+/// |1 − exp(iφ)| of the largest phase of w that the transform leaves out.
+double out_of_phase(const GriddingPlan& plan) {
+  if (plan.options.has_w_axis()) return 0;
+  return 2 * std::sin(std::min(max_w_phase_rad(plan.request.max_abs_w, plan.options.geometry), pi) / 2);
 }
 
 /// No place of `field` lies farther from the middle of a facet along one axis.
@@ -95,21 +103,25 @@ AliasLevels::AliasLevels(const GriddingPlan& plan, const ImageGeometry& field, S
       place_pixels_(0.5 * field.cell_rad / plan.options.geometry.cell_rad),
       u_(plan.options.kernel_u, largest_width(facets_), plan.options.nu, farthest_pixels(plan.options.geometry, field)),
       v_(plan.options.kernel_v, largest_height(facets_), plan.options.nv, farthest_pixels(plan.options.geometry, field)),
+      out_of_phase_(out_of_phase(plan)),
+      rounding_(plan.rounding),
       missed_besides_(missed_besides(plan)) {}
 
 double AliasLevels::of_facet(double offset_u, double offset_v) const {
   const std::vector<Copy> along_u = copies_of(u_, offset_u, place_pixels_), along_v = copies_of(v_, offset_v, place_pixels_);
   const double far_square = sidelobes_.far() * sidelobes_.far();
+  const double not_cancelled = out_of_phase_ * out_of_phase_;
   double worst = 0;
   for (std::size_t i = 0; i < cells; ++i)
     for (std::size_t j = 0; j < cells; ++j) {
       const double missed = either(u_.missed[i], v_.missed[j]);
-      double square = either(missed, missed_besides_) * far_square;
+      double square = (either(missed, missed_besides_) + not_cancelled) * far_square;
       for (const Copy& u : along_u)
         for (const Copy& v : along_v) {
           const double product = (*u.height)[i] * (*v.height)[j];
           const bool own = u.own && v.own;  // (1 − H_0)², and besides (1−ℓ)(1+ℓ) of what is missed there
-          const double part = own ? missed * missed + missed_besides_ * (1 - missed * missed) : product * product;
+          const double part = own ? missed * missed + missed_besides_ * (1 - missed * missed) + not_cancelled
+                                  : product * product + rounding_ * rounding_;
           const double level = sidelobes_.from(std::max(u.distance[i], v.distance[j]));
           square += part * (level * level - far_square);
         }

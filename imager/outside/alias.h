@@ -25,7 +25,8 @@ namespace misfit::imager {
 /// map error ℓ (kernels/map_error.h) Σ_n H_n² = H_0 = 1 − ℓ: all of them together are 1 − (1−ℓ_u)(1−ℓ_v). Of N equal terms the
 /// sum can exceed this √N times; that takes four of them, each with its highest sidelobe upon one pixel with one sign, to be
 /// twice as high. A w axis blurs copies, since n − 1 is another where the source is: what they would be without that is an
-/// upper bound; and it brings an ℓ of its own, as tables and rounding do.
+/// upper bound; and it brings an ℓ of its own, as tables and rounding do. Without a w axis the source's own sidelobes differ
+/// from the exact ones by the phase 2πw(n−1) of the pixel, φ at most: they count 2 sin(φ/2) times.
 class AliasLevels {
  public:
   /// Of sources within `field`, whose places are known to half a pixel of it.
@@ -53,6 +54,8 @@ class AliasLevels {
   double place_pixels_;  ///< of the image, to which places are known
   Axis u_;
   Axis v_;
+  double out_of_phase_;    ///< how far own sidelobes are wrong at most, as a part, where w is left out
+  double rounding_;        ///< taps are rounded alike wherever they are alike, which makes copies
   double missed_besides_;  ///< ℓ of all that is not a matter of place: w, tables, rounding
 };
 

@@ -7,28 +7,30 @@
 namespace misfit::imager {
 namespace {
 
+constexpr double place_pixels = 0.5;  ///< to which places are known
+
 /// Components about a bright one.
 struct Group {
-  int row = 0;
-  int column = 0;
+  Component brightest;
   double flux_jy = 0;
-  double positive_jy = 0;  ///< of these the rows and columns are the mean
+  double like_jy = 0;  ///< of components of the brightest one's sign; of these the rows and columns are the mean
   double rows_jy = 0;
   double columns_jy = 0;
 
+  bool is_near(const Component& c) const {
+    constexpr int together = 3;
+    return std::abs(brightest.row - c.row) <= together && std::abs(brightest.column - c.column) <= together;
+  }
   void add(const Component& c) {
     flux_jy += c.flux_jy;
-    const double positive = std::max(c.flux_jy, 0.0);
-    positive_jy += positive;
-    rows_jy += positive * (c.row - row);
-    columns_jy += positive * (c.column - column);
+    if ((c.flux_jy < 0) != (brightest.flux_jy < 0)) return;
+    like_jy += c.flux_jy;
+    rows_jy += c.flux_jy * (c.row - brightest.row);
+    columns_jy += c.flux_jy * (c.column - brightest.column);
   }
   DirectionCosines position(const ImageGeometry& g) const {
-    DirectionCosines at = g.at(row, column);
-    if (positive_jy == 0) return at;
-    at.l -= columns_jy / positive_jy * g.cell_rad;
-    at.m += rows_jy / positive_jy * g.cell_rad;
-    return at;
+    const DirectionCosines at = g.at(brightest.row, brightest.column);
+    return {at.l - columns_jy / like_jy * g.cell_rad, at.m + rows_jy / like_jy * g.cell_rad};
   }
 };
 
@@ -37,16 +39,9 @@ std::vector<Group> groups_of(std::vector<Component> components) {
                    [](const Component& a, const Component& b) { return std::abs(a.flux_jy) > std::abs(b.flux_jy); });
   std::vector<Group> groups;
   for (const Component& c : components) {
-    constexpr int together = 3;
-    const auto near = std::find_if(groups.begin(), groups.end(), [&](const Group& g) {
-      return std::abs(g.row - c.row) <= together && std::abs(g.column - c.column) <= together;
-    });
-    if (near != groups.end()) {
-      near->add(c);
-      continue;
-    }
-    groups.push_back({c.row, c.column});
-    groups.back().add(c);
+    auto group = std::find_if(groups.begin(), groups.end(), [&](const Group& g) { return g.is_near(c); });
+    if (group == groups.end()) group = groups.insert(group, Group{c});
+    group->add(c);
   }
   return groups;
 }
@@ -65,10 +60,11 @@ std::vector<OutsideSource> sources_outside(const std::vector<Component>& compone
   std::vector<OutsideSource> sources;
   for (const Group& group : groups_of(components)) {
     const DirectionCosines at = group.position(found_in);
-    if (group.flux_jy < least_jy || !lies_outside(at, image, 2 * found_in.cell_rad)) continue;
+    if (std::abs(group.flux_jy) < least_jy || !lies_outside(at, image, place_pixels * found_in.cell_rad)) continue;
     constexpr double lobe_pixels = 4;  // a main lobe upon the border may have its peak beyond
-    sources.push_back(
-        {{at, group.flux_jy}, group.flux_jy * aliases.of(at), lies_outside(at, found_in, -lobe_pixels * found_in.cell_rad)});
+    sources.push_back({{at, group.flux_jy},
+                       std::abs(group.flux_jy) * aliases.of(at),
+                       lies_outside(at, found_in, -lobe_pixels * found_in.cell_rad)});
   }
   std::stable_sort(sources.begin(), sources.end(),
                    [](const OutsideSource& a, const OutsideSource& b) { return a.alias_jy > b.alias_jy; });

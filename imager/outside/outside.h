@@ -16,8 +16,8 @@ struct OutsideSource {
 };
 
 /// The components that CLEAN found in an image of a wider field, `found_in`, those within three pixels of a brighter one taken
-/// together, which lie more than two of its pixels outside `image` and have `least_jy` or more: sources of Stokes I are
-/// positive. The one with the highest alias comes first.
+/// together, which lie more than half of its pixels outside `image` and have `least_jy` or more of either sign. The one with
+/// the highest alias comes first.
 std::vector<OutsideSource> sources_outside(const std::vector<Component>& components, const ImageGeometry& found_in,
                                            const ImageGeometry& image, const AliasLevels& aliases, double least_jy);
 

@@ -9,6 +9,10 @@
 namespace misfit::imager {
 namespace {
 
+bool lies_inside(double u_turns, double v_turns) {
+  return inside_grid(2 * u_turns, 2 * v_turns);
+}
+
 /// A sample's residual and the cell that it lies in.
 struct Placed {
   std::int64_t cell = 0;
@@ -56,7 +60,7 @@ std::vector<Placed> placed(const VisibilityBlock& block, const std::vector<std::
       const double per_m = frequency_hz / speed_of_light_m_s * field.cell_rad;
       const double u = block.uvw_m[3 * row] * per_m, v = block.uvw_m[3 * row + 1] * per_m;
       constexpr int parts = 4;
-      if (block.weight[i] != 0 && inside_grid(u, v)) {
+      if (block.weight[i] != 0 && lies_inside(u, v)) {
         const auto column = static_cast<std::int64_t>(std::floor(parts * field.width * u));
         const auto line = static_cast<std::int64_t>(std::floor(parts * field.height * v));
         all.push_back({line * parts * 2 * field.width + column, block.weight[i], residual[i]});

@@ -6,9 +6,10 @@
 
 namespace misfit::imager {
 
-/// What a model leaves of visibilities within |u|, |v| ≤ 1/(2 cell): noise, and sources that it lacks. Samples in one cell of
-/// the uv plane see those sources alike, and noise each its own: the mean of Re r_j r_k* over pairs within a cell, r being data
-/// − model, is the square of the sources' flux. It is known to three standard deviations, and to nothing without pairs.
+/// What a model leaves of visibilities within |u|, |v| ≤ 1/(4 cell): noise, and sources that it lacks. Those farther out tell
+/// of sources between pixels, too. Samples in one cell of the uv plane see missing sources alike, and noise each its own: the
+/// mean of Re r_j r_k* over pairs within a cell, r being data − model, is the square of the sources' flux. It is known to three
+/// standard deviations, and to nothing without pairs.
 struct Unexplained {
   double rms_jy = 0;            ///< √(Σ w |r|² / Σ w)
   double sources_least_jy = 0;  ///< flux of sources that the model lacks, as of one of them

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "imager/clean/clean.h"
 #include "imager/clean/deconvolver.h"
@@ -15,6 +16,35 @@ namespace misfit::imager {
 namespace {
 
 constexpr int times_wider = 4;
+constexpr double lobe_pixels = 5;  ///< where the main lobe is over
+
+/// A wider field as CLEAN leaves it; what CLEAN itself held is given back.
+struct CleanedField {
+  ComponentModel components;
+  Image model;
+  Sidelobes sidelobes;
+  double least_jy = 0;
+};
+
+CleanedField clean_wide_field(const VisibilitySource& source, const Transform& transform, const ImageGeometry& g, int threads,
+                              const Progress& progress, StageTimes& times) {
+  const TaperedVisibilities tapered(source, g.cell_rad);
+  const DirtyImages images = make_dirty_images(tapered, transform, true, progress, times);
+  constexpr double deep = 2e-3;  // a source between pixels leaves less of itself
+  CleanOptions options;
+  options.max_iterations = 5000;
+  options.max_major_cycles = 10;
+  options.nsigma = 5;
+  options.threshold_jy = deep * largest_magnitude(images.dirty);
+  options.threads = threads;
+  const auto minor = make_deconvolver({.name = "clark", .threads = threads}, images.psf);
+  const Sidelobes sidelobes(images.psf);
+  CleanResult cleaned = clean(
+      {tapered, transform, images, sidelobes.from(lobe_pixels), 1e-4}, *minor, options,
+      first_state(ComponentModel(g.width, g.height, minor->scale_pixels())), progress, [](const CleanState&) {}, times);
+  return {std::move(cleaned.components), std::move(cleaned.model), sidelobes,
+          std::max(5 * robust_noise(cleaned.residual, threads), options.threshold_jy)};
+}
 
 }  // namespace
 
@@ -76,27 +106,11 @@ bool can_be_imaged(const ImageGeometry& field, const VisibilitySource& source) {
 WideSearch search_wide_field(const VisibilitySource& source, const GriddingPlan& plan, const Progress& progress,
                              StageTimes& times) {
   const ImageGeometry& g = plan.request.geometry;
-  const int threads = plan.request.threads;
-  const TaperedVisibilities tapered(source, g.cell_rad);
   const PlannedTransform transform(plan);
-  const DirtyImages images = make_dirty_images(tapered, transform, true, progress, times);
-  constexpr double deep = 5e-3;  // a source between pixels leaves less of itself
-  CleanOptions options;
-  options.max_iterations = 5000;
-  options.max_major_cycles = 10;
-  options.nsigma = 5;
-  options.threshold_jy = deep * largest_magnitude(images.dirty);
-  options.threads = threads;
-  const auto minor = make_deconvolver({.name = "clark", .threads = threads}, images.psf);
-  const Sidelobes sidelobes(images.psf);
-  constexpr double lobe_pixels = 5;  // where the main lobe is over
-  CleanResult cleaned = clean(
-      {tapered, transform, images, sidelobes.from(lobe_pixels), 1e-4}, *minor, options,
-      first_state(ComponentModel(g.width, g.height, minor->scale_pixels())), progress, [](const CleanState&) {}, times);
+  const CleanedField cleaned = clean_wide_field(source, transform, g, plan.request.threads, progress, times);
   const Unexplained unexplained = unexplained_by(cleaned.model, source, transform, g, progress, times);
-  return {cleaned.components.components(), sidelobes,
-          std::max(5 * robust_noise(cleaned.residual, threads), options.threshold_jy), unexplained,
-          unexplained.sources_most_jy * sidelobes.from(lobe_pixels)};
+  return {cleaned.components.components(), cleaned.sidelobes, cleaned.least_jy, unexplained,
+          unexplained.sources_most_jy * cleaned.sidelobes.from(lobe_pixels)};
 }
 
 }  // namespace misfit::imager

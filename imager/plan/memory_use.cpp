@@ -16,6 +16,7 @@ constexpr double residual_bytes = 2 * sizeof(double);
 /// Minor cycles take: the residual; for a convolution, what is convolved and what comes of it. In single precision the residual
 /// and the PSF, and two transforms, of 3/2 the size either way.
 constexpr double minor_images = 3, minor_single_images = 3.25;
+constexpr double minor_kept_images = 1.25;  ///< of minor_single_images, what they keep during major cycles: the PSF's transform
 
 /// While a wider field is searched: `kept` visibilities, `blocks` in flight and `lasting` bytes of the run's own images stay.
 void add_wider_stages(const WiderDemand& d, double kept, double blocks, double block_samples, double lasting,
@@ -24,15 +25,17 @@ void add_wider_stages(const WiderDemand& d, double kept, double blocks, double b
   const double image = d.pixels * pixel_bytes;
   const double tapered = blocks + block_samples * sample_bytes;  // a copy with other weights
   constexpr double placed_bytes = 32, growing = 2;               // of each sample, by cells of the uv plane
-  const double residual = tapered + block_samples * (residual_bytes + growing * placed_bytes);
+  const double placed = blocks + block_samples * (residual_bytes + growing * placed_bytes);
   stages.push_back({"the wider field is gridded", process_bytes, kept, tapered, t.visibilities + t.psf, 0, lasting});
   stages.push_back(
       {"the wider field's images are made", process_bytes, kept, 0, t.visibilities + t.psf, t.fft, lasting + 2 * image});
   stages.push_back({"the wider field is cleaned", process_bytes, kept, 0, minor_single_images * image, 0,
                     lasting + (2 + minor_images) * image});
   // Dirty image, PSF, model and residual.
+  stages.push_back({"the wider field's residual is made", process_bytes, kept, tapered + block_samples * residual_bytes,
+                    2 * t.visibilities, t.fft, lasting + (4 + minor_kept_images) * image});
   stages.push_back(
-      {"the wider field's residual is made", process_bytes, kept, residual, 2 * t.visibilities, t.fft, lasting + 4 * image});
+      {"the wider field's noise is measured", process_bytes, kept, placed, t.visibilities, t.fft, lasting + 2 * image});
 }
 
 }  // namespace
@@ -63,9 +66,10 @@ MemoryUse peak_memory(const MemoryDemand& d, const StreamingOptions& streaming) 
         {"the minor cycles run", process_bytes, kept, 0, minor_single_images * image, 0, (lasting + minor_images) * image});
     // Of a model image.
     const double residual_blocks = blocks + block_samples * residual_bytes;
-    stages.push_back(
-        {"the residual is gridded", process_bytes, kept, residual_blocks, 2 * t.visibilities, 0, (lasting + 1) * image});
-    stages.push_back({"the residual image is made", process_bytes, kept, 0, t.visibilities, t.fft, (lasting + 2) * image});
+    stages.push_back({"the residual is gridded", process_bytes, kept, residual_blocks, 2 * t.visibilities, 0,
+                      (lasting + 1 + minor_kept_images) * image});
+    stages.push_back({"the residual image is made", process_bytes, kept, 0, t.visibilities, t.fft,
+                      (lasting + 2 + minor_kept_images) * image});
   }
   if (d.wider) {
     // After CLEAN the PSF, the model with its components, the residual and the mask; else the dirty image and the PSF.

@@ -73,17 +73,19 @@ WideField wide_field(const SampleCoordinates& samples) {
 struct Found {
   std::vector<OutsideSource> sources;
   WideField field;
+  Unexplained unexplained;
 };
 
 Found search(const VisibilityBlock& block, const GriddingPlan& plan) {
   const StoredVisibilities source = stored({block});
-  Found found{{}, wide_field(block)};
+  Found found{{}, wide_field(block), {}};
   StageTimes times;
   GriddingRequest request = plan.request;
   request.samples = block.samples();
   const WideSearch wide = search_wide_field(source, plan_wide_field(found.field, request), ignore_progress, times);
   const AliasLevels aliases(plan, found.field.geometry, wide.sidelobes);
   found.sources = sources_outside(wide.components, found.field.geometry, plan.options.geometry, aliases, wide.least_jy);
+  found.unexplained = wide.unexplained;
   return found;
 }
 
@@ -157,6 +159,29 @@ BOOST_DATA_TEST_CASE(with_a_w_axis_the_alias_is_no_higher_than_said,
   BOOST_TEST(levels.said > levels.measured / 2);
 }
 
+/// They reach 0.008 rad in the image's corners, and 0.8; at the source eight times that.
+BOOST_DATA_TEST_CASE(phases_of_w_that_are_left_out_count_in_the_level,
+                     bdata::make({0.6, 1.28, -1.75}) * bdata::make({10.0, 100.0}), east, max_w) {
+  const ImageGeometry wide{64, 48, 4e-4, {}};
+  const DirectionCosines at{east * 64 * 4e-4, 0.01};
+  GriddingRequest request = plan_of_way("least-misfit 7", 2, wide, max_w).request;
+  request.gridder = Gridder::standard;
+  VisibilityBlock block = random_samples_with_w(3000, 1, wide.cell_rad, max_w, 6);
+  const auto exact = predict_sources({{at, 1000}}, block, 2);
+  block.visibility.assign(exact.begin(), exact.end());
+  const Levels levels = levels_of(plan_gridding(request), block, at);
+  BOOST_TEST(levels.said > levels.measured / 2);
+  BOOST_TEST(levels.said < 20 * levels.measured);
+}
+
+BOOST_DATA_TEST_CASE(rounding_counts_in_the_level, bdata::make({0.53, 1.28}) * bdata::make({0.0, 1.7}), east, north) {
+  GriddingRequest request = plan_of_way("least-misfit 10", 2).request;
+  request.precision = Precision::single_precision;
+  const DirectionCosines at = fields_away(east, north);
+  const Levels levels = levels_of(plan_gridding(request), observed({{at, 1000}}, 0), at);
+  BOOST_TEST(levels.said > levels.measured / 2);
+}
+
 BOOST_AUTO_TEST_CASE(tables_count_in_the_level) {
   GriddingRequest request = plan_of_way("least-misfit 7", 2).request;
   request.lookup = misfit::kernels::TableOptions{100, misfit::kernels::Interpolation::nearest};
@@ -197,13 +222,45 @@ BOOST_AUTO_TEST_CASE(a_strong_source_outside_is_found_with_its_alias) {
   for (std::size_t i = 1; i < found.sources.size(); ++i) BOOST_TEST(found.sources[i].source.flux_jy < 10);
 }
 
-BOOST_AUTO_TEST_CASE(a_source_at_the_border_of_the_field_is_marked_and_negative_ones_are_none) {
-  const std::vector<Component> components{{0, 3, 30, 5}, {0, 30, 50, 4}, {0, 10, 10, -6}, {0, 32, 33, 7}};
+BOOST_AUTO_TEST_CASE(a_source_at_the_border_of_the_field_is_marked) {
+  const std::vector<Component> components{{0, 3, 30, 5}, {0, 30, 50, 4}, {0, 10, 10, 0.6}, {0, 32, 33, 7}};
   const ImageGeometry wide{64, 64, 4 * geometry.cell_rad, {}};
   const AliasLevels aliases(plan_with(geometry, "nearest", 1, 2), wide, Sidelobes(Image(8, 8)));
   const auto sources = sources_outside(components, wide, geometry, aliases, 1);
   BOOST_REQUIRE(sources.size() == 2U);
   for (const OutsideSource& s : sources) BOOST_TEST(s.at_border == (s.source.flux_jy == 5));
+}
+
+BOOST_AUTO_TEST_CASE(components_of_either_sign_about_the_brightest_are_one_source_of_its_sign) {
+  const std::vector<Component> components{{0, 10, 10, -6}, {0, 11, 10, -2}, {0, 12, 11, 1}, {0, 30, 50, 0.5}};
+  const ImageGeometry wide{64, 64, 4 * geometry.cell_rad, {}};
+  Image psf(8, 8);
+  psf.at(0, 0) = 0.1;
+  const AliasLevels aliases(plan_with(geometry, "nearest", 1, 2), wide, Sidelobes(psf));
+  const auto sources = sources_outside(components, wide, geometry, aliases, 1);
+  BOOST_REQUIRE(sources.size() == 1U);
+  BOOST_TEST(sources.front().source.flux_jy == -7);
+  BOOST_TEST(sources.front().alias_jy > 0);
+  BOOST_TEST(sources.front().source.position.l == wide.l(10));
+  BOOST_TEST(sources.front().source.position.m == 0.75 * wide.m(10) + 0.25 * wide.m(11), boost::test_tools::tolerance(1e-12));
+}
+
+/// Pixels of the wider field are four of the image's.
+BOOST_DATA_TEST_CASE(a_source_is_found_however_close_to_the_image_and_of_either_sign,
+                     bdata::make({0.6, 1.0, 1.5, 2.3}) * bdata::make({1000.0, -1000.0}), pixels, flux_jy) {
+  const DirectionCosines at{(32 + 4 * pixels) * geometry.cell_rad, 5 * geometry.cell_rad};
+  const Found found = search(observed({{at, flux_jy}}, 1), plan_with(geometry, "nearest", 1, 2));
+  BOOST_REQUIRE(!found.sources.empty());
+  BOOST_TEST(found.sources.front().source.flux_jy == flux_jy, boost::test_tools::tolerance(0.05));
+}
+
+BOOST_DATA_TEST_CASE(a_source_between_pixels_is_explained, bdata::make({0.0, 0.25, 0.5}) * bdata::make({0.0, 0.3, 0.5}), east,
+                     north) {
+  const double cell_rad = 4 * geometry.cell_rad;
+  const DirectionCosines at{(25 + east) * cell_rad, (7 + north) * cell_rad};
+  const Found found = search(observed({{at, 1000}}, 1), plan_with(geometry, "nearest", 1, 2));
+  BOOST_REQUIRE(found.field.geometry.cell_rad == cell_rad);
+  BOOST_TEST(found.unexplained.rms_jy < 20);
 }
 
 BOOST_AUTO_TEST_CASE(a_good_kernel_keeps_its_alias_below_the_noise) {

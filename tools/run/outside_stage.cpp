@@ -83,7 +83,8 @@ imager::Decision search_decision(const imager::WideField& field, double seconds)
   return {"search outside the image",
           std::to_string(g.width) + " × " + std::to_string(g.height) + " pixels of " + angle(g.cell_rad),
           "four times the image's field; " + significant(100 * field.reaching, 2) +
-              " % of the samples lie within half as far in u and v as these can represent; takes " + duration(seconds)};
+              " % of the samples lie within half as far in u and v as these can represent; sources within " +
+              angle(g.cell_rad / 2) + " of its border are taken as inside; takes " + duration(seconds)};
 }
 
 OutsideReport check_outside(const imager::VisibilitySource& source, const imager::GriddingPlan& plan,
