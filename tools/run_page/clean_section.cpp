@@ -25,11 +25,6 @@ const json& log_of(const json& clean) {
   return log.is_array() ? log : none;
 }
 
-double number(const json& cycle, const char* key) {
-  const json& value = member(cycle, key);
-  return value.is_number() ? value.get<double>() : std::numeric_limits<double>::quiet_NaN();
-}
-
 std::vector<double> magnitudes(const json& log, const std::vector<const char*>& keys) {
   std::vector<double> values;
   for (const json& cycle : log) {
