@@ -94,6 +94,16 @@ void require_any(const SampleSums& sums) {
                            " usable samples lie beyond 1/(2 cell), none within; expected smaller pixels");
 }
 
+/// Divides both by Σ w.
+DirtyImages dirty_images(AdjointResult sum, Image psf, StageTimes& times) {
+  BigMemory::release();
+  require_any(sum.sums);
+  const StageTimer timer(times, "fft");
+  divide(sum.image, sum.sums.weight);
+  divide(psf, sum.sums.weight);
+  return {std::move(sum.image), std::move(psf), sum.sums};
+}
+
 /// Those of a source of 1 Jy at the image's middle pixel.
 std::vector<std::complex<double>> visibilities_of_middle(const VisibilityBlock& block, const OwnPsf& psf) {
   std::vector<std::complex<double>> visibility(block.samples(), 1);
@@ -121,12 +131,8 @@ DirtyImages make_dirty_images(const VisibilitySource& source, const Transform& t
     sum->add(block);
   });
   AdjointResult result = finish(std::move(sum), times);
-  BigMemory::release();
-  require_any(result.sums);
-  const StageTimer timer(times, "fft");
-  divide(result.image, result.sums.weight);
-  divide(result.psf, result.sums.weight);
-  return {std::move(result.image), std::move(result.psf), result.sums};
+  Image psf = std::move(result.psf);
+  return dirty_images(std::move(result), std::move(psf), times);
 }
 
 DirtyImages make_dirty_images(const VisibilitySource& source, const Transform& transform, const OwnPsf& psf,
@@ -141,12 +147,7 @@ DirtyImages make_dirty_images(const VisibilitySource& source, const Transform& t
   });
   AdjointResult of_psf = finish(std::move(psf_sum), times);
   AdjointResult result = finish(std::move(sum), times);
-  BigMemory::release();
-  require_any(result.sums);
-  const StageTimer timer(times, "fft");
-  divide(result.image, result.sums.weight);
-  divide(of_psf.image, result.sums.weight);
-  return {std::move(result.image), std::move(of_psf.image), result.sums};
+  return dirty_images(std::move(result), std::move(of_psf.image), times);
 }
 
 void for_each_residual(const VisibilitySource& source, const Transform& transform, const Image& model, const Progress& progress,

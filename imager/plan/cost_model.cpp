@@ -1,11 +1,11 @@
 #include "imager/plan/cost_model.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <random>
 
 #include "imager/fft.h"
+#include "imager/stage_times.h"
 #include "imager/transform.h"
 #include "kernels/catalogue.h"
 
@@ -63,12 +63,11 @@ Trial time_of(int samples, int pixels, int width, Precision precision) {
   const int degree = options.kernel_u.polynomial.degree();
   Trial trial{{double(samples), width, degree, options.nu, options.nv, pixels, precision}, HUGE_VAL};
   for (int repeat = 0; repeat < 3; ++repeat) {
-    const auto start = std::chrono::steady_clock::now();
+    const Stopwatch watch;
     const auto sum = transform->adjoint(true);
     sum->add(block);
     sum->finish();
-    const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
-    trial.seconds = std::min(trial.seconds, took.count());
+    trial.seconds = std::min(trial.seconds, watch.seconds());
   }
   return trial;
 }

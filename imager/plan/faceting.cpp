@@ -11,10 +11,6 @@ namespace {
 
 constexpr int smallest_facet = 128;
 
-int largest_part(int pixels, int parts) {
-  return (pixels + parts - 1) / parts;
-}
-
 }  // namespace
 
 int Faceting::planes(double padding_w, int width_w) const {
@@ -32,8 +28,8 @@ std::vector<Faceting> facetings(const ImageGeometry& image, double max_abs_w, in
     Faceting way;
     way.along_l = share(image.width);
     way.along_m = share(image.height);
-    way.width = largest_part(image.width, way.along_l);
-    way.height = largest_part(image.height, way.along_m);
+    way.width = largest_facet(image.width, way.along_l);
+    way.height = largest_facet(image.height, way.along_m);
     for (const Facet& facet : split_into_facets(image, way.along_l, way.along_m))
       if (!facet.empty) way.turns.push_back(2 * facet.reach * max_abs_w);
     if (way.turns.empty()) throw std::invalid_argument("every pixel of the image lies beyond the horizon");

@@ -6,62 +6,25 @@
 #include <map>
 #include <optional>
 
-#include "imager/constants.h"
 #include "imager/extent.h"
 #include "imager/fft.h"
-#include "kernels/cheapest_polynomial.h"
-#include "kernels/evaluation.h"
 
 namespace misfit::imager {
 namespace {
 
 constexpr int smallest_fft = 64;
-constexpr int continuum = 128;   ///< fewer pixels are no mean over the field, and need no wide kernels
-constexpr int countable = 1024;  ///< over more pixels, that the first lies at −x0 and the last one pixel short of x0 is lost
 
 /// From the one that needs the narrowest kernel down: what the wider padding cannot reach, no other can.
 constexpr std::array<double, 5> usual_paddings{2.0, 1.6, 1.4, 1.25, 1.15};
 constexpr std::array<double, 6> usual_paddings_with_w{2.0, 1.75, 1.6, 1.4, 1.25, 1.15};  // taps cost more there, FFTs less
 constexpr std::array<double, 7> usual_w_paddings{40, 10, 4, 2.5, 2.0, 1.6, 1.3};
 
-/// Makes each kernel once.
-class KernelShelf {
- public:
-  explicit KernelShelf(const GriddingRequest& request) : family_(request.kernel), lookup_(request.lookup) {}
-
-  /// Over `pixels` of an FFT of a given size.
-  const AxisKernel& axis(int width, int pixels, int fft_size) {
-    return made({width, pixels, fft_size}, 0.5 * pixels / fft_size,
-                [&](const kernels::Kernel& kernel) { return axis_misfit(kernel, pixels, fft_size); });
-  }
-  /// Over many pixels of an FFT of about this padding; over planes.
-  const AxisKernel& axis(int width, double padding) {
-    const int thousandths = static_cast<int>(std::floor(1000 * padding));
-    return made({width, 0, thousandths}, 500.0 / thousandths, [](const kernels::Kernel& kernel) { return kernel.misfit; });
-  }
-
- private:
-  template <typename Judge>
-  const AxisKernel& made(const std::array<int, 3>& key, double x0, const Judge& misfit_of) {
-    const auto found = shelf_.find(key);
-    if (found != shelf_.end()) return found->second;
-    AxisKernel axis{family_.make(key[0], std::clamp(x0, family_.min_x0, family_.max_x0)), {}, 1};
-    axis.misfit = misfit_of(axis.kernel);
-    if (lookup_) axis.misfit = kernels::judge_table(axis.kernel.polynomial, axis.misfit, *lookup_, x0);
-    axis.noise_gain = kernels::noise_gain(axis.kernel.polynomial, axis.kernel.x0);
-    return shelf_.emplace(key, axis).first->second;
-  }
-
-  kernels::KernelFamily family_;
-  std::optional<kernels::TableOptions> lookup_;
-  std::map<std::array<int, 3>, AxisKernel> shelf_;
-};
-
+/// The search for the cheapest candidate, precision by precision and padding by padding.
 class Search {
  public:
   /// With a w axis over one of the facetings, or without where there are none.
   Search(const GriddingRequest& request, double target, std::vector<Faceting> ways)
-      : request_(request), shelf_(request), target_(target), ways_(std::move(ways)) {
+      : request_(request), shelf_(request.kernel, request.lookup), target_(target), ways_(std::move(ways)) {
     if (has_w_axis()) {
       usual_.assign(usual_paddings_with_w.begin(), usual_paddings_with_w.end());
     } else {
@@ -122,6 +85,8 @@ class Search {
               g.width,
               precision};
     c.work.images = request_.images;
+    c.faceting.width = g.width;
+    c.faceting.height = g.height;
     c.turns = (std::abs(g.centre.l) + std::abs(g.centre.m)) / (2 * g.cell_rad);
     if (has_w_axis()) c.turns += request_.max_abs_w * largest_drop(g);
     c.cost_s = CostModel().seconds(c.work);
@@ -150,7 +115,7 @@ class Search {
   }
 
   bool has_w_axis() const { return !ways_.empty(); }
-  bool small(int pixels) const { return pixels < continuum; }
+  static bool small(int pixels) { return pixels < continuum; }
 
   void judge_plane(GriddingCandidate& c) {
     const auto axis = [&](int pixels, double padding) {
@@ -168,9 +133,8 @@ class Search {
   /// With kernels for the very FFT sizes, which are a little longer than the paddings ask for.
   GriddingCandidate made_exactly(const GriddingCandidate& nominal) {
     GriddingCandidate c = nominal;
-    const ImageGeometry& g = request_.geometry;
-    c.u = shelf_.axis(c.work.width, c.work.has_w_axis() ? c.faceting.width : g.width, c.work.nu);
-    c.v = shelf_.axis(c.work.width, c.work.has_w_axis() ? c.faceting.height : g.height, c.work.nv);
+    c.u = shelf_.axis(c.work.width, c.faceting.width, c.work.nu);
+    c.v = shelf_.axis(c.work.width, c.faceting.height, c.work.nv);
     judge(c);
     return c.worst_error <= std::max(target_, nominal.worst_error) ? c : nominal;
   }
@@ -233,8 +197,8 @@ class Search {
   /// quickly made.
   std::optional<Forecast> forecast(double padding_u, double padding_v, Precision precision) {
     const int width = std::max(narrowest(), 5);
-    const bool small = std::min(request_.geometry.width, request_.geometry.height) < continuum;
-    if (!request_.kernel.costly || small || width + 2 > widest()) return {};
+    const int pixels = std::min(request_.geometry.width, request_.geometry.height);
+    if (!request_.kernel.costly || small(pixels) || width + 2 > widest()) return {};
     double log_error[2];
     for (int i = 0; i < 2; ++i) {
       GriddingCandidate c = sized(width + i, padding_u, padding_v, precision);
@@ -287,34 +251,15 @@ class Search {
     return cheapest ? *cheapest : *most_exact;
   }
 
-  /// With the polynomials of lowest degree that cost less than half a percent of the squared error, rounding counted in.
+  /// With the shortest polynomials, unless they are somebody's own, or the accuracy would be lost.
   GriddingCandidate simplified(const GriddingCandidate& exact) const {
     const bool somebodys_own = request_.kernel.min_width == request_.kernel.max_width;
-    if (somebodys_own || request_.lookup || !request_.shortest_polynomials) {
-      GriddingCandidate same = exact;
-      same.work.degree = exact.u.kernel.polynomial.degree();
-      return same;
+    GriddingCandidate result = exact;
+    if (!somebodys_own && !request_.lookup && request_.shortest_polynomials) {
+      const GriddingCandidate simple = with_shortest_polynomials(exact);
+      const bool lost = simple.worst_error > std::max(target_, exact.worst_error);
+      if (!lost) result = simple;
     }
-    GriddingCandidate simple = exact;
-    const double rounding2 = exact.rounding * exact.rounding / 2;  // of one axis, which hides what is smaller
-    const auto cut = [&](AxisKernel& axis) {
-      const double excess = 0.005 * (1 + rounding2 / std::max(axis.kernel.misfit.mean, 1e-40));
-      axis.kernel.polynomial = kernels::cheapest_polynomial(axis.kernel, excess);
-      axis.kernel.misfit = kernels::judge(axis.kernel.polynomial, axis.kernel.x0);
-    };
-    cut(simple.u);
-    cut(simple.v);
-    const bool wide = exact.work.has_w_axis();
-    const ImageGeometry& g = request_.geometry;
-    simple.u.misfit = axis_misfit(simple.u.kernel, wide ? exact.faceting.width : g.width, exact.work.nu);
-    simple.v.misfit = axis_misfit(simple.v.kernel, wide ? exact.faceting.height : g.height, exact.work.nv);
-    if (wide) {
-      cut(simple.w);
-      simple.w.misfit = simple.w.kernel.misfit;
-    }
-    judge(simple);
-    const bool lost = simple.worst_error > std::max(target_, exact.worst_error);
-    GriddingCandidate result = lost ? exact : simple;
     result.work.degree = result.u.kernel.polynomial.degree();  // costs stay comparable: all by the degree assumed
     return result;
   }
@@ -347,32 +292,6 @@ class Search {
 };
 
 }  // namespace
-
-kernels::Misfit axis_misfit(const kernels::Kernel& kernel, int pixels, int fft_size) {
-  const bool made_for_them = kernel.x0 == 0.5 * pixels / fft_size;
-  const bool counted = pixels < continuum || (made_for_them && pixels < countable);
-  return counted ? kernels::judge_pixels(kernel.polynomial, pixels, fft_size) : kernel.misfit;
-}
-
-double unit_rounding(Precision precision, double samples) {
-  if (precision == Precision::double_precision) return 2.2e-16;  // twice the unit of rounding
-  // Taps and FFT; and sums of buffers on their way to the grid, of which the fullest cells take most.
-  return std::hypot(2.8e-7, 2.4e-8 * std::sqrt(samples / 2e5));
-}
-
-double phase_rounding(double turns) {
-  return 1.1e-16 * (1 + 2 * pi * turns);
-}
-
-void judge(GriddingCandidate& c) {
-  const double sums = c.u.noise_gain * c.v.noise_gain * c.w.noise_gain * unit_rounding(c.work.precision, c.work.samples);
-  c.rounding = std::hypot(sums, phase_rounding(c.turns));
-  const kernels::Misfit &u = c.u.misfit, &v = c.v.misfit, &w = c.w.misfit;
-  // An image of a single visibility at the worst position of its cell, or the visibilities of a single pixel at the corner.
-  const double worst = std::max(u.worst_mean + v.worst_mean + w.worst_mean, u.max + v.max + w.max);
-  c.expected_error = std::hypot(std::sqrt(u.mean + v.mean + w.mean), c.rounding);
-  c.worst_error = std::hypot(std::sqrt(worst), c.rounding);
-}
 
 GriddingChoice choose_gridding(const GriddingRequest& request) {
   const double phase = max_w_phase_rad(request.max_abs_w, request.geometry);

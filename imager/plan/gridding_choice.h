@@ -4,8 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "imager/plan/cost_model.h"
-#include "imager/plan/faceting.h"
+#include "imager/plan/gridding_candidate.h"
 #include "imager/wide/wide_transform.h"
 #include "kernels/catalogue.h"
 
@@ -36,44 +35,7 @@ struct GriddingRequest {
   std::size_t samples_at_once = WideTransformOptions().samples_at_once;  ///< that a w axis gathers
 };
 
-/// Relative RMS of the rounding of taps, sums and FFT for a noise gain of 1, as measured: in single precision it grows with the
-/// number of samples, since sums do.
-double unit_rounding(Precision precision, double samples);
 inline constexpr double single_from = 1e-6;  ///< no less is asked of single precision
-
-/// Relative RMS of the rounding of exp(2πi turns) in double precision, where `turns` is the largest there is.
-double phase_rounding(double turns);
-
-/// One axis of the transform: a kernel over the pixels of an image.
-struct AxisKernel {
-  kernels::Kernel kernel;
-  kernels::Misfit misfit;  ///< over this image's pixels
-  double noise_gain = 1;
-};
-
-/// Over the pixels of an image. Over many the kernel's own means over |x| ≤ x0 serve, as they do where it was made for another
-/// x0.
-kernels::Misfit axis_misfit(const kernels::Kernel& kernel, int pixels, int fft_size);
-
-/// One way to do it, with what it costs and how exact it is.
-struct GriddingCandidate {
-  GriddingWork work;
-  double padding_u = 1;
-  double padding_v = 1;
-  double padding_w = 1;
-  AxisKernel u;
-  AxisKernel v;
-  AxisKernel w;         ///< all zero errors without a w axis
-  Faceting faceting;    ///< with a w axis
-  double turns = 0;     ///< the most that phases reach beside those of the FFT: of w, and of an image off the phase centre
-  double cost_s = 0;    ///< by the fixed constants; see CostModel
-  double rounding = 0;  ///< RMS of rounding, relative
-  double expected_error = 0;  ///< RMS error of image and prediction relative to data with random phases, √(E_u + E_v + E_w)
-  double worst_error = 0;     ///< the same for the worst position of samples in their cells, or the worst pixel of a model
-};
-
-/// Fills in the errors from the axes and the precision.
-void judge(GriddingCandidate& candidate);
 
 enum class Rejection { costs_more, not_exact_enough };
 

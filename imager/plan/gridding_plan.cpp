@@ -2,20 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <stdexcept>
 
 #include "imager/constants.h"
 #include "imager/plan/out_of_reach.h"
+#include "imager/plan/plan_text_internal.h"
 
 namespace misfit::imager {
 namespace {
-
-std::string text(const char* format, double value) {
-  char buffer[64];
-  std::snprintf(buffer, sizeof buffer, format, value);
-  return buffer;
-}
 
 std::string width_and_padding(const GriddingCandidate& c) {
   return "width " + std::to_string(c.work.width) + " at padding " + text("%.2f", c.padding_u);
@@ -123,8 +117,7 @@ void check_request(const GriddingRequest& request) {
 
 std::string evaluation_of(const PlaneTransformOptions& options) {
   if (!options.lookup) return "polynomials of degree " + std::to_string(options.kernel_u.polynomial.degree());
-  return std::string(kernels::interpolation_names[static_cast<std::size_t>(options.lookup->interpolation)]) + " tables of " +
-         std::to_string(options.lookup->samples_per_cell) + " entries a cell";
+  return text(*options.lookup);
 }
 
 namespace {

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
+#include "imager/plan/plan_text_internal.h"
 #include "kernels/evaluation.h"
 #include "kernels/kernel_table.h"
 
@@ -11,12 +11,6 @@ namespace misfit::imager {
 namespace {
 
 constexpr double stored = 1e-13;  // below, the rounding of stored kernels differs from width to width
-
-std::string text(const char* format, double value) {
-  char buffer[64];
-  std::snprintf(buffer, sizeof buffer, format, value);
-  return buffer;
-}
 
 /// What limits an accuracy, and what would not.
 struct Limit {
@@ -50,11 +44,9 @@ double entries_needed(const GriddingRequest& request, const GriddingCandidate& b
 }
 
 Limit tables(const GriddingRequest& request, const GriddingCandidate& best) {
-  const kernels::TableOptions& lookup = *request.lookup;
   const double entries = entries_needed(request, best);
   const bool possible = entries <= kernels::kernel_table_max_per_cell;
-  return {std::string(kernels::interpolation_names[static_cast<std::size_t>(lookup.interpolation)]) + " tables of " +
-              std::to_string(lookup.samples_per_cell) + " entries a cell",
+  return {text(*request.lookup),
           (possible ? "--sampling " + text("%.0f", entries) + " or more, or " : "") + "--evaluation polynomial"};
 }
 

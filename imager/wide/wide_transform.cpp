@@ -4,6 +4,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "imager/wide/facet.h"
 #include "imager/wide/tile_sum.h"
 #include "imager/wide/wide_adjoint.h"
 #include "imager/wide/wide_prediction.h"
@@ -33,18 +34,14 @@ void check_axis(const char* axis, int pixels, int fft_size, const kernels::Kerne
                                 ", but the facets reach " + std::to_string(x0));
 }
 
-int largest_part(int pixels, int parts) {
-  return (pixels + parts - 1) / parts;
-}
-
 }  // namespace
 
 std::unique_ptr<Transform> make_wide_transform(const WideTransformOptions& o) {
   if (o.facets_l < 1 || o.facets_m < 1 || o.facets_l > o.geometry.width || o.facets_m > o.geometry.height)
     throw std::invalid_argument(std::to_string(o.facets_l) + " × " + std::to_string(o.facets_m) + " facets of an image of " +
                                 std::to_string(o.geometry.width) + " × " + std::to_string(o.geometry.height) + " pixels");
-  check_axis("u", largest_part(o.geometry.width, o.facets_l), o.nu, o.kernel_u);
-  check_axis("v", largest_part(o.geometry.height, o.facets_m), o.nv, o.kernel_v);
+  check_axis("u", largest_facet(o.geometry.width, o.facets_l), o.nu, o.kernel_u);
+  check_axis("v", largest_facet(o.geometry.height, o.facets_m), o.nv, o.kernel_v);
   if (o.kernel_u.width() != o.kernel_v.width())
     throw std::invalid_argument("kernels of widths " + std::to_string(o.kernel_u.width()) + " along u and " +
                                 std::to_string(o.kernel_v.width()) + " along v; one width is expected");
@@ -60,7 +57,7 @@ TransformMemory memory_of(const WideTransformOptions& o, double samples, int pla
   const double image = static_cast<double>(o.geometry.pixels()) * sizeof(double);
   const double one = std::min(planes * plane, std::max(plane, static_cast<double>(o.stack_bytes)));
   const double both = std::min(2 * planes * plane, std::max(2 * plane, static_cast<double>(o.stack_bytes)));
-  const double column = 6.0 * largest_part(o.geometry.height, o.facets_m) * sizeof(double) + o.nv * complex_bytes;
+  const double column = 6.0 * largest_facet(o.geometry.height, o.facets_m) * sizeof(double) + o.nv * complex_bytes;
   return {gathered + one + image, both - one + image, o.threads * 16 * column};
 }
 

@@ -103,6 +103,16 @@ ScaledUnit angle_unit(double angle_rad) {
   return {degree / 3.6e6, "mas"};
 }
 
+std::string with_prefix(double value, const std::string& base, int digits) {
+  const ScaledUnit unit = scaled_unit(value, base);
+  return significant(value / unit.size, digits) + " " + unit.name;
+}
+
+std::string angle_text(double angle_rad, int digits) {
+  const ScaledUnit unit = angle_unit(std::abs(angle_rad));
+  return significant(angle_rad / unit.size, digits) + " " + unit.name;
+}
+
 std::string sexagesimal(const imager::SkyDirection& direction) {
   constexpr double degree = std::numbers::pi / 180;
   const double turn = std::fmod(direction.ra_rad / degree / 15, 24.0);

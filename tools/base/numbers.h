@@ -36,6 +36,12 @@ ScaledUnit scaled_unit(double value, const std::string& base);
 /// An angle's unit for something of size `angle_rad`: mas, arcsec, arcmin or deg; `size` is in radians.
 ScaledUnit angle_unit(double angle_rad);
 
+/// `value` in that unit, as "1.2 mJy/beam".
+std::string with_prefix(double value, const std::string& base, int digits);
+
+/// The angle in that unit, as "1.2 arcsec".
+std::string angle_text(double angle_rad, int digits);
+
 /// A direction as "12h 30m 49.42s  +12° 23′ 28.0″".
 std::string sexagesimal(const imager::SkyDirection& direction);
 

@@ -72,8 +72,6 @@ MisfitProfile profile_of(const CardScene& scene, int fft_size, const SquareError
   return sums.profile();
 }
 
-}  // namespace
-
 imager::ImageGeometry card_geometry(const CardSceneOptions& options) {
   return {options.pixels, options.pixels, options.cells_a_pixel * card_cell_rad, {}};
 }
@@ -93,6 +91,8 @@ imager::VisibilityBlock card_samples(const CardSceneOptions& options) {
   block.weight.assign(block.samples(), 1);
   return block;
 }
+
+}  // namespace
 
 CardScene card_scene(const CardSceneOptions& options) {
   CardScene scene;

@@ -36,10 +36,6 @@ struct CardScene {
 
 CardScene card_scene(const CardSceneOptions& options);
 
-/// The pixels and the samples of such a scene alone.
-imager::ImageGeometry card_geometry(const CardSceneOptions& options);
-imager::VisibilityBlock card_samples(const CardSceneOptions& options);
-
 /// RMS error of an image, in strips |x| = const (all y) and |y| = const (all x) taken together, and of the whole.
 struct MisfitProfile {
   std::vector<double> x;    ///< of the strip's middle: offset from the phase centre / size of the FFT

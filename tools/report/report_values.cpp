@@ -1,6 +1,7 @@
 #include "tools/report/report_values.h"
 
 #include <cmath>
+#include <limits>
 #include <nlohmann/json.hpp>
 
 #include "tools/base/numbers.h"
@@ -19,6 +20,11 @@ const json& member(const json& object, const std::string& key) {
   return found == object.end() ? none : *found;
 }
 
+double number(const json& object, const std::string& key) {
+  const json& value = member(object, key);
+  return value.is_number() ? value.get<double>() : std::numeric_limits<double>::quiet_NaN();
+}
+
 std::string plain(const json& value) {
   if (value.is_string()) return html_escaped(value.get<std::string>());
   if (value.is_boolean()) return value.get<bool>() ? "yes" : "no";
@@ -34,10 +40,7 @@ std::string whole(const json& value) {
 }
 
 std::string with_unit(const json& value, const std::string& unit, int digits) {
-  if (!value.is_number()) return not_measured;
-  const double number = value.get<double>();
-  const ScaledUnit scaled = scaled_unit(number, unit);
-  return significant(number / scaled.size, digits) + " " + scaled.name;
+  return value.is_number() ? with_prefix(value.get<double>(), unit, digits) : not_measured;
 }
 
 }  // namespace misfit::tools

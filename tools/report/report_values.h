@@ -8,6 +8,9 @@ namespace misfit::tools {
 /// The member `key` of an object, or null.
 const nlohmann::json& member(const nlohmann::json& object, const std::string& key);
 
+/// The same where it is a number, or else NaN.
+double number(const nlohmann::json& object, const std::string& key);
+
 /// A value of report.json as HTML: strings as they are, lists separated by commas, null as "not measured".
 std::string plain(const nlohmann::json& value);
 

@@ -1,6 +1,5 @@
 #include "tools/run/image_run.h"
 
-#include <cmath>
 #include <cstdio>
 #include <memory>
 #include <optional>
@@ -8,18 +7,16 @@
 #include "imager/noise.h"
 #include "imager/parallel.h"
 #include "tools/base/files.h"
-#include "tools/base/memory.h"
-#include "tools/base/numbers.h"
 #include "tools/base/progress.h"
-#include "tools/base/quantity.h"
 #include "tools/formats/model_image.h"
 #include "tools/kernel_choice/kernel_choice.h"
 #include "tools/run/beam_choice.h"
 #include "tools/run/clean_stage.h"
-#include "tools/run/memory_plan.h"
+#include "tools/run/outside_stage.h"
 #include "tools/run/product_stage.h"
+#include "tools/run/run_messages.h"
+#include "tools/run/run_plan.h"
 #include "tools/run/run_report.h"
-#include "tools/run/time_forecast.h"
 #include "tools/run_page/report_page.h"
 
 namespace misfit::tools {
@@ -39,9 +36,8 @@ class ImageRun {
   bool run() {
     open();
     plan();
-    forecast();
     if (o_.dry_run) {
-      print_plan();
+      if (!o_.quiet) print_plan(plan_, expected());
       return true;
     }
     make_dirty();
@@ -62,9 +58,6 @@ class ImageRun {
   imager::Progress progress() {
     return [this](std::uint64_t done, std::uint64_t total) { progress_.update(done, total); };
   }
-  void decide(const std::string& item, const std::string& decision, const std::string& because) {
-    report_.plan.push_back({item, decision, because});
-  }
   void warn(const std::string& sentence) {
     report_.warnings.push_back(sentence);
     progress_.say("warning: " + sentence);
@@ -82,124 +75,24 @@ class ImageRun {
     if (const std::string warning = clean_->warning(); !warning.empty()) warn(warning);
   }
 
-  /// All that is decided before a visibility is read.
   void plan() {
-    const imager::StageTimer timer(times_, "plan");
-    imager::GriddingRequest request = gridding_request(o_, threads_);
-    request.geometry = geometry_;
-    request.samples = set_->samples();
-    request.max_abs_w = reach_.max_abs_w;
-    if (o_.memory_gib > 0) limit_memory(o_.memory_gib * gib, request);
-    made_.plan = imager::plan_gridding(request);
-    decide_pixels();
-    if (o_.check_outside) plan_search(request);
-    MemoryPlan memory = plan_memory({.transform = imager::memory_of(made_.plan),
-                                     .pixels = static_cast<double>(geometry_.pixels()),
-                                     .rows = static_cast<double>(set_->rows()),
-                                     .samples = static_cast<double>(set_->samples()),
-                                     .block_samples = static_cast<double>(ms_io::MeasurementSet::usual_block_samples),
-                                     .verify = o_.verify > 0,
-                                     .clean = o_.niter > 0,
-                                     .mask = clean_ && (clean_->mask() != nullptr || o_.usemask == "auto"),
-                                     .start_model = !o_.startmodel.empty(),
-                                     .wider = wider_demand()},
-                                    o_);
-    memory.streaming.uv_reach_lambda = std::min(std::max(reach_.max_abs_u, reach_.max_abs_v), 0.5 / geometry_.cell_rad);
-    memory_ = memory.peak;
-    report_.estimated_memory_bytes = memory_.total();
-    source_ = std::make_unique<imager::StreamedVisibilities>(*set_, memory.streaming);
-    report_.plan.push_back(memory.decision);
-    decide("columns and correlations", "only what Stokes I needs",
-           "UVW, antennas, flags, weights and one data column, each read once");
-    if (o_.niter > 0)
-      decide("PSF patch", "none, the whole PSF", "components are subtracted to the image's edges in every minor cycle");
-    warn_of_neglected_w();
+    const bool mask = clean_ && (clean_->mask() != nullptr || o_.usemask == "auto");
+    const RunScene scene{o_, *set_, geometry_, reach_, threads_, mask};
+    plan_ = plan_run(scene, forecast_, times_, progress_);
+    for (const std::string& warning : plan_.warnings) warn(warning);
+    report_.plan = plan_.decisions;
+    report_.estimated_memory_bytes = plan_.memory.total();
+    work_ = work_of(scene, plan_);
+    source_ = std::make_unique<imager::StreamedVisibilities>(*set_, plan_.streaming);
   }
 
-  /// Of sources outside, by what is known before a visibility is read.
-  void plan_search(const imager::GriddingRequest& request) {
-    imager::WideFieldFinder finder(geometry_);
-    set_->visit_coordinates([&](const imager::SampleCoordinates& some) { finder.add(some); });
-    wide_field_ = finder.field();
-    wider_ = std::make_unique<imager::GriddingPlan>(imager::plan_wide_field(wide_field_, request));
-  }
-
-  std::optional<imager::WiderDemand> wider_demand() const {
-    if (!wider_) return {};
-    return imager::WiderDemand{imager::memory_of(*wider_), static_cast<double>(wide_field_.geometry.pixels())};
-  }
-
-  double expected_search_s() const {
-    for (const StageSeconds& s : forecast_.expected(work_))
-      if (s.stage == "sources outside") return s.seconds;
-    return 0;
-  }
-
-  void decide_pixels() {
-    const ScaledUnit unit = angle_unit(geometry_.cell_rad);
-    const std::string cell = significant(geometry_.cell_rad / unit.size, 6) + " " + unit.name;
-    const bool told = has_unit(o_.cell);
-    const std::string because = "--cell " + o_.cell + (told ? "" : " has no unit, and is in arcsec as in tclean");
-    decide("pixels", std::to_string(geometry_.width) + " × " + std::to_string(geometry_.height) + " of " + cell, because);
-    if (!told) progress_.say(because);
-  }
-
-  /// Of all stages, what was spent before the forecast among them.
-  std::vector<StageSeconds> expected(const RunWork& work) const {
-    std::vector<StageSeconds> stages = spent_;
-    for (const StageSeconds& s : forecast_.expected(work)) stages.push_back(s);
-    return stages;
-  }
-
-  /// How long it will take; of CLEAN, whose cycles nobody knows beforehand, what each of them takes.
-  void forecast() {
-    work_ = {.plan = &made_.plan,
-             .rows = static_cast<double>(set_->rows()),
-             .samples = static_cast<double>(set_->samples()),
-             .pixels = static_cast<double>(geometry_.pixels()),
-             .images = o_.niter > 0 ? 4 : 2,
-             .pictures = o_.niter > 0 ? 6 : 3,
-             .threads = threads_,
-             .verified = static_cast<double>(o_.verify),
-             .deconvolver = o_.deconvolver,
-             .wider = wider_.get()};
-    for (const auto& [stage, seconds] : times_.stages()) spent_.push_back({stage, "", seconds});
-    if (wider_) report_.plan.push_back(search_decision(wide_field_, expected_search_s()));
-    const double all_s = total_seconds(expected(work_));
-    decide("expected time", duration(all_s) + (o_.niter > 0 ? " without CLEAN" : ""),
-           forecast_.knows(work_) ? "from counts of operations, and what earlier runs took on this machine"
-                                  : "from counts of operations; not all of them were timed on this machine before");
-    if (o_.niter == 0) return;
-    RunWork one = work_;
-    one.components = std::min(o_.niter, 1000);
-    one.major_cycles = 1;
-    decide("expected time of a major cycle", duration(total_seconds(expected(one)) - all_s),
-           "with " + grouped(static_cast<long long>(one.components)) + " components");
-  }
-
-  void warn_of_neglected_w() {
-    const double phase_rad = imager::max_w_phase_rad(reach_.max_abs_w, geometry_);
-    const bool harms = phase_rad > (o_.accuracy == 0 ? made_.plan.worst_error : o_.accuracy);
-    if (!made_.plan.options.has_w_axis() && harms)
-      warn("w is neglected although its phase reaches " + significant(phase_rad, 2) +
-           " rad at the image's corner: the image's error there is of that size");
-  }
-
-  void print_plan() {
-    if (o_.quiet) return;
-    report_.plan.insert(report_.plan.end(), made_.plan.decisions.begin(), made_.plan.decisions.end());
-    for (const imager::Decision& d : report_.plan)
-      std::printf("%s: %s; %s\n", d.item.c_str(), d.decision.c_str(), d.because.c_str());
-    for (const StageSeconds& s : expected(work_))
-      std::printf("expected: %-16s %s\n", s.stage.c_str(), duration(s.seconds).c_str());
-    std::printf("expected: %-16s %s\n", "total", duration(total_seconds(expected(work_))).c_str());
-    std::printf("%s", memory_table(memory_).c_str());
-  }
+  std::vector<StageSeconds> expected() const { return expected_seconds(plan_, forecast_, work_); }
 
   void make_dirty() {
     progress_.begin("dirty image and PSF");
-    made_ = imager::make_accurate_images(*source_, std::move(made_.plan), progress(), times_);
+    made_ = imager::make_accurate_images(*source_, plan_.gridding, progress(), times_);
     progress_.end();
+    work_.plan = &made_.plan;
     report_.plan.insert(report_.plan.end(), made_.plan.decisions.begin(), made_.plan.decisions.end());
     report_.accuracy = o_.accuracy;
     report_.gridding = &made_.plan;
@@ -208,10 +101,7 @@ class ImageRun {
     const imager::NeglectedPhase phase = imager::neglected_w_phase(reach_, source_->w_spread(), geometry_);
     theory_ = imager::theoretical_error(made_.plan, made_.images.sums, imager::root_mean_square(made_.images.dirty), phase);
     report_.theory = &theory_;
-    if (!made_.promise_kept)
-      warn("the accuracy of " + significant(o_.accuracy, 2) +
-           " is out of reach: the image is weak against its data, and its expected error is " +
-           significant(theory_.expected_rms, 2));
+    if (!made_.promise_kept) warn(accuracy_warning(o_.accuracy, theory_));
   }
 
   /// What was read; samples that the pixel size cannot represent, and the pixel size that could.
@@ -220,28 +110,8 @@ class ImageRun {
     report_.counts = source_->counts();
     report_.counts.outside_grid = sums.outside_grid;
     report_.counts.used = sums.used;
-    decide_left_out();
-    if (sums.outside_grid == 0) return;
-    const double reach = std::max(reach_.max_abs_u, reach_.max_abs_v);
-    const ScaledUnit unit = angle_unit(0.5 / reach);
-    warn(grouped(static_cast<long long>(sums.outside_grid)) + " samples lie beyond 1/(2 cell) and were left out; a cell of " +
-         significant(std::floor(0.5 / reach / unit.size * 1e4) / 1e4, 4) + unit.name + " would keep them");
-  }
-
-  void decide_left_out() {
-    const imager::SampleCounts& c = report_.counts;
-    std::string reasons;
-    const auto add = [&](std::uint64_t count, const char* reason) {
-      if (count > 0) reasons += (reasons.empty() ? "" : ", ") + grouped(static_cast<long long>(count)) + " " + reason;
-    };
-    add(c.autocorrelations, "auto-correlations");
-    add(c.flagged, "flagged");
-    add(c.nonfinite, "not finite");
-    add(c.zero_weight, "of zero or negative weight");
-    add(c.outside_grid, "outside the grid");
-    decide("samples left out",
-           grouped(static_cast<long long>(c.samples_read - c.used)) + " of " + grouped(static_cast<long long>(c.samples_read)),
-           reasons.empty() ? "all can be imaged" : reasons);
+    report_.plan.push_back(left_out_decision(report_.counts));
+    if (sums.outside_grid > 0) warn(outside_grid_warning(sums.outside_grid, reach_));
   }
 
   void verify() {
@@ -273,11 +143,8 @@ class ImageRun {
     cleaned_ = std::make_unique<imager::CleanResult>(clean_->run(
         {*source_, *made_.transform, made_.images, *beams_.main_lobe, theory_.expected_rms}, report_.options, progress(),
         [this](const imager::CleanState& state) {
-          const imager::MajorCycle& cycle = state.cycles.back();
-          count_cycle(cycle);
-          if (state.cycles.size() > 1)
-            progress_.say("  " + grouped(cycle.iterations) + " components, peak residual " + flux(cycle.peak_residual_jy) +
-                          ", noise " + flux(cycle.rms_jy) + (state.now + 1 == state.cycles.size() ? "" : ": taken back"));
+          count_cycle(state.cycles.back());
+          if (state.cycles.size() > 1) progress_.say("  " + cycle_message(state));
         },
         times_));
     progress_.end();
@@ -287,8 +154,7 @@ class ImageRun {
     report_.clean = &cleaned_->report;
     const imager::CleanStop stop = cleaned_->report.stop;
     if (stop == imager::CleanStop::diverging || stop == imager::CleanStop::diverging_from_best)
-      warn("CLEAN diverged: a lower --gain, a --mask around the sources, or more scales may help; the largest sidelobe is " +
-           significant(100 * cleaned_->report.max_sidelobe, 2) + " % of the PSF's peak");
+      warn(divergence_warning(cleaned_->report));
   }
 
   /// Told of the state with which CLEAN begins, which may be that of a run before, and after every major cycle.
@@ -307,11 +173,11 @@ class ImageRun {
     progress_.begin("sources outside", true);
     const double noise_jy =
         cleaned_ ? cleaned_->report.final_state().rms_jy : imager::robust_noise(made_.images.dirty, threads_);
-    outside_ = check_outside(*source_, made_.plan, *wider_, made_.images, noise_jy, progress(), own);
+    outside_ = check_outside(*source_, made_.plan, *plan_.wider, made_.images, noise_jy, progress(), own);
     progress_.end();
     report_.outside = &outside_;
     const imager::Decision told = outside_decision(outside_);
-    decide(told.item, told.decision, told.because);
+    report_.plan.push_back(told);
     progress_.say(told.item + ": " + told.decision + "; " + told.because);
     for (const std::string& warning : outside_warnings(outside_)) warn(warning);
   }
@@ -363,54 +229,35 @@ class ImageRun {
     const std::string histogram = histogram_drawing();
     std::vector<PagePicture> pictures;
     if (const std::string failure = products_->finish_pictures(pictures); !failure.empty()) warn(failure);
-    report_.expected = expected(work_);
+    report_.expected = expected();
     const bool one_pass = made_.plan.request.accuracy == o_.accuracy;  // a second asks for more
     if (one_pass) forecast_.learn(work_, times_);
-    report_.wall_clock_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+    report_.wall_clock_s = watch_.seconds();
     const nlohmann::json json = report_json(report_);
     write_file(o_.imagename + ".report.json", json.dump(2) + "\n");
     write_file(o_.imagename + ".report.html", report_page(json, pictures, histogram));
   }
 
-  static std::string flux(double jy) {
-    const ScaledUnit unit = scaled_unit(jy, "Jy/beam");
-    return significant(jy / unit.size, 3) + " " + unit.name;
-  }
-
   void summarise() const {
-    if (o_.quiet) return;
-    std::printf("%s of %s samples imaged; expected error %s", grouped(static_cast<long long>(report_.counts.used)).c_str(),
-                grouped(static_cast<long long>(report_.counts.samples_read)).c_str(),
-                significant(theory_.expected_rms, 2).c_str());
-    if (report_.measured != nullptr)
-      std::printf(", measured %s (prediction %s)", significant(measured_.rms, 2).c_str(),
-                  significant(measured_.predict_rms, 2).c_str());
-    std::printf("\n");
-    if (cleaned_)
-      std::printf("%s components, model flux %s; %s\n", grouped(cleaned_->report.iterations).c_str(),
-                  significant(cleaned_->report.final_state().model_flux_jy, 4).c_str(), cleaned_->report.stop_reason.c_str());
-    std::printf("%s.report.html\n", o_.imagename.c_str());
+    if (!o_.quiet) std::printf("%s%s.report.html\n", summary(report_).c_str(), o_.imagename.c_str());
   }
 
   const ImageOptions& o_;
   int threads_;
   ProgressLine progress_;
-  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+  imager::Stopwatch watch_;
   imager::StageTimes times_;
   RunReport report_;
   TimeForecast forecast_{default_cache_folder()};
   RunWork work_;
   std::optional<int> iterations_before_;  ///< this run's CLEAN
-  std::vector<StageSeconds> spent_;       ///< on stages before the forecast
 
   std::unique_ptr<ms_io::MeasurementSet> set_;
   imager::ImageGeometry geometry_;
   imager::UvwReach reach_;
   std::unique_ptr<CleanStage> clean_;  ///< null without CLEAN, and after it
+  RunPlan plan_;
   std::unique_ptr<imager::StreamedVisibilities> source_;
-  imager::MemoryUse memory_;
-  imager::WideField wide_field_;
-  std::unique_ptr<imager::GriddingPlan> wider_;  ///< of the field to search for sources outside; null without
   imager::AccurateImages made_;
   imager::TheoreticalError theory_;
   imager::MeasuredError measured_;

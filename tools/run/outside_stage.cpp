@@ -11,14 +11,8 @@ namespace {
 
 constexpr double arcsec = M_PI / 180 / 3600;
 
-std::string with_prefix(double value, const std::string& base, int digits) {
-  const ScaledUnit unit = scaled_unit(value, base);
-  return significant(value / unit.size, digits) + " " + unit.name;
-}
-
 std::string angle(double rad) {
-  const ScaledUnit unit = angle_unit(std::abs(rad));
-  return significant(std::abs(rad) / unit.size, 3) + " " + unit.name;
+  return angle_text(std::abs(rad), 3);
 }
 
 imager::SkyDirection direction_of(const imager::OutsideSource& s, const OutsideReport& report) {

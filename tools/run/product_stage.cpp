@@ -6,6 +6,7 @@
 #include "tools/formats/component_list.h"
 
 namespace misfit::tools {
+
 ProductStage::ProductStage(const ImageOptions& options, ProductScene scene, imager::StageTimes& times)
     : o_(options),
       scene_(std::move(scene)),

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "imager/wide/facet.h"
 #include "tools/base/memory.h"
 #include "tools/version.h"
 
@@ -31,7 +32,9 @@ json axis_json(const std::string& axis, const kernels::Kernel& kernel, double pa
 json kernel_json(const imager::GriddingPlan* gridding) {
   if (gridding == nullptr || gridding->direct) return nullptr;
   const imager::WideTransformOptions& o = gridding->options;
-  const auto padding = [](int fft_size, int pixels, int facets) { return 1.0 * fft_size / std::ceil(1.0 * pixels / facets); };
+  const auto padding = [](int fft_size, int pixels, int facets) {
+    return 1.0 * fft_size / imager::largest_facet(pixels, facets);
+  };
   const double padding_u = padding(o.nu, o.geometry.width, o.facets_l);
   json kernel = axis_json("u", o.kernel_u, padding_u);
   kernel.erase("axis");

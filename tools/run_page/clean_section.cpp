@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <nlohmann/json.hpp>
 #include <vector>
 
@@ -23,11 +22,6 @@ const json& log_of(const json& clean) {
   static const json none = json::array();
   const json& log = member(clean, "major_cycles_log");
   return log.is_array() ? log : none;
-}
-
-double number(const json& cycle, const char* key) {
-  const json& value = member(cycle, key);
-  return value.is_number() ? value.get<double>() : std::numeric_limits<double>::quiet_NaN();
 }
 
 std::vector<double> magnitudes(const json& log, const std::vector<const char*>& keys) {

@@ -17,11 +17,6 @@ using html::Row;
 using html::tag;
 using nlohmann::json;
 
-double number(const json& object, const char* key) {
-  const json& value = member(object, key);
-  return value.is_number() ? value.get<double>() : NAN;
-}
-
 std::string text(const json& object, const char* key) {
   const json& value = member(object, key);
   return value.is_string() ? value.get<std::string>() : "";

@@ -80,20 +80,20 @@ StabilityData every_so_many(const std::string& vis, std::size_t samples) {
   return data;
 }
 
+std::vector<imager::Source> sky_of(const imager::ImageGeometry& g, double peak_jy) {
+  const int row = g.centre_row(), column = g.centre_column();
+  return {{g.at(row + 4, column + 5), peak_jy}, {g.at(row + 12, column - 15), 0.5}, {g.at(row - 7, column + 10), 0.3}};
+}
+
 }  // namespace
 
 StabilityData sampled_data(const std::string& vis, std::size_t samples) {
   return naming(vis, [&] { return every_so_many(vis, samples); });
 }
 
-std::vector<imager::Source> stability_sky(const imager::ImageGeometry& g, double peak_jy) {
-  const int row = g.centre_row(), column = g.centre_column();
-  return {{g.at(row + 4, column + 5), peak_jy}, {g.at(row + 12, column - 15), 0.5}, {g.at(row - 7, column + 10), 0.3}};
-}
-
 StabilityCase case_of(const std::string& name, imager::VisibilityBlock block, const imager::ImageGeometry& geometry,
                       double peak_jy) {
-  const auto exact = imager::predict_sources(stability_sky(geometry, peak_jy), block, imager::available_threads());
+  const auto exact = imager::predict_sources(sky_of(geometry, peak_jy), block, imager::available_threads());
   block.visibility.assign(exact.begin(), exact.end());
   StabilityCase made;
   made.name = name;

@@ -27,10 +27,8 @@ StabilityData sampled_data(const std::string& vis, std::size_t samples);
 
 inline constexpr int stability_pixels = 64;  ///< a side of the images
 
-/// Three sources on pixels: one of `peak_jy`, off the middle so that its visibilities vary, and two of 0.5 and 0.3 Jy.
-std::vector<imager::Source> stability_sky(const imager::ImageGeometry& geometry, double peak_jy = 1);
-
-/// An image over these places, of a sky that they have observed.
+/// An image over these places, of a sky that they have observed: three sources on pixels, one of `peak_jy`, off the middle so
+/// that its visibilities vary, and two of 0.5 and 0.3 Jy.
 StabilityCase case_of(const std::string& name, imager::VisibilityBlock block, const imager::ImageGeometry& geometry,
                       double peak_jy = 1);
 

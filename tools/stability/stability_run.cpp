@@ -153,15 +153,6 @@ imager::CleanReport clean(const StabilityCase& asked, const imager::VisibilitySo
       .report;
 }
 
-}  // namespace
-
-bool StabilityOutcome::honest() const {
-  const bool exact = measured.rms <= accuracy && measured.predict_rms <= accuracy;
-  return exact || !refusal.empty() || !promise_kept;
-}
-
-namespace {
-
 StabilityOutcome run_with(PlanShelf& shelf, const StabilityCase& asked, double accuracy) {
   StabilityOutcome outcome;
   outcome.name = asked.name;
@@ -189,9 +180,9 @@ StabilityOutcome run_with(PlanShelf& shelf, const StabilityCase& asked, double a
 
 }  // namespace
 
-StabilityOutcome run_case(const StabilityCase& asked, double accuracy) {
-  PlanShelf shelf;
-  return run_with(shelf, asked, accuracy);
+bool StabilityOutcome::honest() const {
+  const bool exact = measured.rms <= accuracy && measured.predict_rms <= accuracy;
+  return exact || !refusal.empty() || !promise_kept;
 }
 
 std::vector<StabilityOutcome> run_cases(const std::vector<StabilityCase>& cases) {

@@ -46,16 +46,12 @@ struct StabilityOutcome {
 
   /// Whether image and prediction are as exact as asked, or the run says that they may not be.
   bool honest() const;
-  /// Whether the strict bounds are not below the measured errors.
-  bool bound_held() const { return measured.rms <= theory.bound_rms && measured.max <= theory.bound_max; }
   double peak_before_jy() const { return clean.cycles.front().peak_residual_jy; }
   double peak_after_jy() const { return clean.final_state().peak_residual_jy; }
 };
 
-/// Images and cleans a case by gridding, with a w axis where the phase of w matters.
-StabilityOutcome run_case(const StabilityCase& asked, double accuracy);
-
-/// Every case at 1e-4, which leads to single precision, and at 1e-9, which takes double.
+/// Images and cleans every case by gridding, with a w axis where the phase of w matters: at 1e-4, which leads to single
+/// precision, and at 1e-9, which takes double.
 std::vector<StabilityOutcome> run_cases(const std::vector<StabilityCase>& cases);
 
 }  // namespace misfit::tools

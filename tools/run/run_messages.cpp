@@ -1,0 +1,67 @@
+#include "tools/run/run_messages.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "tools/base/numbers.h"
+
+namespace misfit::tools {
+namespace {
+
+std::string counted(std::uint64_t count) {
+  return grouped(static_cast<long long>(count));
+}
+
+}  // namespace
+
+imager::Decision left_out_decision(const imager::SampleCounts& c) {
+  std::string reasons;
+  const auto add = [&](std::uint64_t count, const char* reason) {
+    if (count > 0) reasons += (reasons.empty() ? "" : ", ") + counted(count) + " " + reason;
+  };
+  add(c.autocorrelations, "auto-correlations");
+  add(c.flagged, "flagged");
+  add(c.nonfinite, "not finite");
+  add(c.zero_weight, "of zero or negative weight");
+  add(c.outside_grid, "outside the grid");
+  return {"samples left out", counted(c.samples_read - c.used) + " of " + counted(c.samples_read),
+          reasons.empty() ? "all can be imaged" : reasons};
+}
+
+std::string outside_grid_warning(std::uint64_t samples, const imager::UvwReach& reach) {
+  const double largest_cell_rad = 0.5 / std::max(reach.max_abs_u, reach.max_abs_v);
+  const ScaledUnit unit = angle_unit(largest_cell_rad);
+  return counted(samples) + " samples lie beyond 1/(2 cell) and were left out; a cell of " +
+         significant(std::floor(largest_cell_rad / unit.size * 1e4) / 1e4, 4) + unit.name + " would keep them";
+}
+
+std::string accuracy_warning(double asked, const imager::TheoreticalError& theory) {
+  return "the accuracy of " + significant(asked, 2) +
+         " is out of reach: the image is weak against its data, and its expected error is " +
+         significant(theory.expected_rms, 2);
+}
+
+std::string cycle_message(const imager::CleanState& state) {
+  const imager::MajorCycle& cycle = state.cycles.back();
+  return grouped(cycle.iterations) + " components, peak residual " + with_prefix(cycle.peak_residual_jy, "Jy/beam", 3) +
+         ", noise " + with_prefix(cycle.rms_jy, "Jy/beam", 3) + (state.now + 1 == state.cycles.size() ? "" : ": taken back");
+}
+
+std::string divergence_warning(const imager::CleanReport& report) {
+  return "CLEAN diverged: a lower --gain, a --mask around the sources, or more scales may help; the largest sidelobe is " +
+         significant(100 * report.max_sidelobe, 2) + " % of the PSF's peak";
+}
+
+std::string summary(const RunReport& r) {
+  std::string text = counted(r.counts.used) + " of " + counted(r.counts.samples_read) + " samples imaged; expected error " +
+                     significant(r.theory->expected_rms, 2);
+  if (r.measured != nullptr)
+    text += ", measured " + significant(r.measured->rms, 2) + " (prediction " + significant(r.measured->predict_rms, 2) + ")";
+  text += "\n";
+  if (r.clean != nullptr)
+    text += grouped(r.clean->iterations) + " components, model flux " + significant(r.clean->final_state().model_flux_jy, 4) +
+            "; " + r.clean->stop_reason + "\n";
+  return text;
+}
+
+}  // namespace misfit::tools

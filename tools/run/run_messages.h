@@ -1,0 +1,32 @@
+#pragma once
+
+#include <string>
+
+#include "imager/clean/clean.h"
+#include "imager/extent.h"
+#include "imager/plan/plan.h"
+#include "tools/run/run_report.h"
+
+namespace misfit::tools {
+
+/// What `misfit image` says while it goes on and at its end, in words.
+
+/// How many samples were left out, and why.
+imager::Decision left_out_decision(const imager::SampleCounts& counts);
+
+/// That the pixel size cannot represent so many samples, and the one that could.
+std::string outside_grid_warning(std::uint64_t samples, const imager::UvwReach& reach);
+
+/// That the image could not be made to the accuracy asked.
+std::string accuracy_warning(double asked, const imager::TheoreticalError& theory);
+
+/// Of the last major cycle: components, residual, noise, and whether it was taken back.
+std::string cycle_message(const imager::CleanState& state);
+
+/// That CLEAN diverged, and what may help.
+std::string divergence_warning(const imager::CleanReport& report);
+
+/// Of a run that is over, a line or two: samples, errors, and what CLEAN found.
+std::string summary(const RunReport& report);
+
+}  // namespace misfit::tools

@@ -1,0 +1,165 @@
+#include "tools/run/run_plan.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <optional>
+
+#include "imager/outside/wide_search.h"
+#include "tools/base/memory.h"
+#include "tools/base/numbers.h"
+#include "tools/base/quantity.h"
+#include "tools/run/memory_plan.h"
+#include "tools/run/outside_stage.h"
+
+namespace misfit::tools {
+namespace {
+
+/// The decisions of a run, in the order in which they are made.
+class RunPlanner {
+ public:
+  RunPlanner(const RunScene& scene, ProgressLine& progress) : scene_(scene), o_(scene.options), progress_(progress) {}
+
+  void decide_all() {
+    imager::GriddingRequest request = gridding_request(o_, scene_.threads);
+    request.geometry = scene_.geometry;
+    request.samples = scene_.set.samples();
+    request.max_abs_w = scene_.reach.max_abs_w;
+    if (o_.memory_gib > 0) limit_memory(o_.memory_gib * gib, request);
+    plan_.gridding = imager::plan_gridding(request);
+    decide_pixels();
+    if (o_.check_outside) plan_search(request);
+    decide_memory();
+    decide("columns and correlations", "only what Stokes I needs",
+           "UVW, antennas, flags, weights and one data column, each read once");
+    if (o_.niter > 0)
+      decide("PSF patch", "none, the whole PSF", "components are subtracted to the image's edges in every minor cycle");
+    warn_of_neglected_w();
+  }
+
+  /// How long it will take; of CLEAN, whose cycles nobody knows beforehand, what each of them takes.
+  void foretell(const TimeForecast& forecast, const imager::StageTimes& times) {
+    for (const auto& [stage, seconds] : times.stages()) plan_.spent.push_back({stage, "", seconds});
+    const RunWork work = work_of(scene_, plan_);
+    if (plan_.wider) plan_.decisions.push_back(search_decision(wide_field_, search_seconds(forecast.expected(work))));
+    const double all_s = total_seconds(expected_seconds(plan_, forecast, work));
+    decide("expected time", duration(all_s) + (o_.niter > 0 ? " without CLEAN" : ""),
+           forecast.knows(work) ? "from counts of operations, and what earlier runs took on this machine"
+                                : "from counts of operations; not all of them were timed on this machine before");
+    if (o_.niter == 0) return;
+    RunWork one = work;
+    one.components = std::min(o_.niter, 1000);
+    one.major_cycles = 1;
+    decide("expected time of a major cycle", duration(total_seconds(expected_seconds(plan_, forecast, one)) - all_s),
+           "with " + grouped(static_cast<long long>(one.components)) + " components");
+  }
+
+  RunPlan take() { return std::move(plan_); }
+
+ private:
+  void decide(const std::string& item, const std::string& decision, const std::string& because) {
+    plan_.decisions.push_back({item, decision, because});
+  }
+
+  void decide_pixels() {
+    const imager::ImageGeometry& g = scene_.geometry;
+    const bool told = has_unit(o_.cell);
+    const std::string because = "--cell " + o_.cell + (told ? "" : " has no unit, and is in arcsec as in tclean");
+    decide("pixels", std::to_string(g.width) + " × " + std::to_string(g.height) + " of " + angle_text(g.cell_rad, 6), because);
+    if (!told) progress_.say(because);
+  }
+
+  /// Of sources outside, by what is known before a visibility is read.
+  void plan_search(const imager::GriddingRequest& request) {
+    imager::WideFieldFinder finder(scene_.geometry);
+    scene_.set.visit_coordinates([&](const imager::SampleCoordinates& some) { finder.add(some); });
+    wide_field_ = finder.field();
+    plan_.wider = std::make_unique<imager::GriddingPlan>(imager::plan_wide_field(wide_field_, request));
+  }
+
+  static double search_seconds(const std::vector<StageSeconds>& stages) {
+    for (const StageSeconds& s : stages)
+      if (s.stage == "sources outside") return s.seconds;
+    return 0;
+  }
+
+  std::optional<imager::WiderDemand> wider_demand() const {
+    if (!plan_.wider) return {};
+    return imager::WiderDemand{imager::memory_of(*plan_.wider), static_cast<double>(wide_field_.geometry.pixels())};
+  }
+
+  void decide_memory() {
+    const MemoryPlan memory = plan_memory({.transform = imager::memory_of(plan_.gridding),
+                                           .pixels = static_cast<double>(scene_.geometry.pixels()),
+                                           .rows = static_cast<double>(scene_.set.rows()),
+                                           .samples = static_cast<double>(scene_.set.samples()),
+                                           .block_samples = static_cast<double>(ms_io::MeasurementSet::usual_block_samples),
+                                           .verify = o_.verify > 0,
+                                           .clean = o_.niter > 0,
+                                           .mask = scene_.mask,
+                                           .start_model = !o_.startmodel.empty(),
+                                           .wider = wider_demand()},
+                                          o_);
+    plan_.streaming = memory.streaming;
+    plan_.streaming.uv_reach_lambda =
+        std::min(std::max(scene_.reach.max_abs_u, scene_.reach.max_abs_v), 0.5 / scene_.geometry.cell_rad);
+    plan_.memory = memory.peak;
+    plan_.decisions.push_back(memory.decision);
+  }
+
+  void warn_of_neglected_w() {
+    const double phase_rad = imager::max_w_phase_rad(scene_.reach.max_abs_w, scene_.geometry);
+    const bool harms = phase_rad > (o_.accuracy == 0 ? plan_.gridding.worst_error : o_.accuracy);
+    if (!plan_.gridding.options.has_w_axis() && harms)
+      plan_.warnings.push_back("w is neglected although its phase reaches " + significant(phase_rad, 2) +
+                               " rad at the image's corner: the image's error there is of that size");
+  }
+
+  const RunScene& scene_;
+  const ImageOptions& o_;
+  ProgressLine& progress_;
+  imager::WideField wide_field_;
+  RunPlan plan_;
+};
+
+}  // namespace
+
+RunPlan plan_run(const RunScene& scene, const TimeForecast& forecast, imager::StageTimes& times, ProgressLine& progress) {
+  RunPlanner planner(scene, progress);
+  {
+    const imager::StageTimer timer(times, "plan");
+    planner.decide_all();
+  }
+  planner.foretell(forecast, times);
+  return planner.take();
+}
+
+RunWork work_of(const RunScene& scene, const RunPlan& plan) {
+  const ImageOptions& o = scene.options;
+  return {.plan = &plan.gridding,
+          .rows = static_cast<double>(scene.set.rows()),
+          .samples = static_cast<double>(scene.set.samples()),
+          .pixels = static_cast<double>(scene.geometry.pixels()),
+          .images = o.niter > 0 ? 4 : 2,
+          .pictures = o.niter > 0 ? 6 : 3,
+          .threads = scene.threads,
+          .verified = static_cast<double>(o.verify),
+          .deconvolver = o.deconvolver,
+          .wider = plan.wider.get()};
+}
+
+std::vector<StageSeconds> expected_seconds(const RunPlan& plan, const TimeForecast& forecast, const RunWork& work) {
+  std::vector<StageSeconds> stages = plan.spent;
+  for (const StageSeconds& s : forecast.expected(work)) stages.push_back(s);
+  return stages;
+}
+
+void print_plan(const RunPlan& plan, const std::vector<StageSeconds>& expected) {
+  for (const imager::Plan* decisions : {&plan.decisions, &plan.gridding.decisions})
+    for (const imager::Decision& d : *decisions)
+      std::printf("%s: %s; %s\n", d.item.c_str(), d.decision.c_str(), d.because.c_str());
+  for (const StageSeconds& s : expected) std::printf("expected: %-16s %s\n", s.stage.c_str(), duration(s.seconds).c_str());
+  std::printf("expected: %-16s %s\n", "total", duration(total_seconds(expected)).c_str());
+  std::printf("%s", memory_table(plan.memory).c_str());
+}
+
+}  // namespace misfit::tools

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "imager/plan/gridding_plan.h"
+#include "imager/plan/memory_use.h"
+#include "imager/plan/plan.h"
+#include "ms_io/measurement_set.h"
+#include "tools/base/progress.h"
+#include "tools/run/image_options.h"
+#include "tools/run/time_forecast.h"
+
+namespace misfit::tools {
+
+/// What a run is planned from.
+struct RunScene {
+  const ImageOptions& options;
+  const ms_io::MeasurementSet& set;
+  imager::ImageGeometry geometry;
+  imager::UvwReach reach;
+  int threads = 1;
+  bool mask = false;  ///< there is or will be one, where components may lie
+};
+
+/// What `misfit image` decides before it reads a visibility. The stages that follow do as it says and leave it as it is.
+struct RunPlan {
+  imager::GriddingPlan gridding;
+  std::unique_ptr<imager::GriddingPlan> wider;  ///< of the field to search for sources outside; null without
+  imager::StreamingOptions streaming;
+  imager::MemoryUse memory;             ///< at its peak
+  std::vector<StageSeconds> spent;      ///< on the stages up to here
+  imager::Plan decisions;               ///< but for those of `gridding`
+  std::vector<std::string> warnings{};  ///< what the user should know before the run goes on
+};
+
+/// Plans the gridding, the search for sources outside, the memory, and foretells the time. How an option is understood is said
+/// on `progress`. Stages timed: "plan". Throws what plan_gridding and plan_memory do.
+RunPlan plan_run(const RunScene& scene, const TimeForecast& forecast, imager::StageTimes& times, ProgressLine& progress);
+
+/// What the time of the planned run depends on, without CLEAN. Points to what `plan` holds.
+RunWork work_of(const RunScene& scene, const RunPlan& plan);
+
+/// The seconds of all stages: those of `plan.spent`, and those expected of `work`.
+std::vector<StageSeconds> expected_seconds(const RunPlan& plan, const TimeForecast& forecast, const RunWork& work);
+
+/// Prints every decision, the seconds expected and the memory, a line each.
+void print_plan(const RunPlan& plan, const std::vector<StageSeconds>& expected);
+
+}  // namespace misfit::tools
