@@ -3,10 +3,13 @@
 #include <algorithm>
 #include <vector>
 
+#include "imager/clean/psf_core.h"
+
 namespace misfit::imager {
 namespace {
 
-constexpr double process_bytes = 80e6;  // 40 MB with the smallest images, and up to 34 MB that the allocator does not give back
+/// 40 MB with the smallest images, 32 MiB that the allocator keeps, and some twenty of holes between images of a few MB.
+constexpr double process_bytes = 96e6;
 constexpr double pixel_bytes = sizeof(double);
 constexpr double sample_bytes = sizeof(std::complex<float>) + sizeof(float);
 constexpr double row_bytes = 3 * sizeof(double);
@@ -14,9 +17,13 @@ constexpr double row_bytes = 3 * sizeof(double);
 constexpr double order_bytes = 2 * 12 + 8;
 constexpr double residual_bytes = 2 * sizeof(double);
 /// Minor cycles take: the residual; for a convolution, what is convolved and what comes of it. In single precision the residual
-/// and the PSF, and two transforms, of 3/2 the size either way.
-constexpr double minor_images = 3, minor_single_images = 3.25;
-constexpr double minor_kept_images = 1.25;  ///< of minor_single_images, what they keep during major cycles: the PSF's transform
+/// and a transform of 3/2 the size either way pass; the PSF's transform, or the PSF, is kept through major cycles.
+constexpr double minor_images = 3, minor_passing_images = 2, minor_kept_images = 1.25;
+
+/// Each scale has a core of its own.
+double minor_kept_bytes(double image, int scales) {
+  return minor_kept_images * image + scales * PsfCore::most_bytes;
+}
 
 /// While a wider field is searched: `kept` visibilities, `blocks` in flight and `lasting` bytes of the run's own images stay.
 void add_wider_stages(const WiderDemand& d, double kept, double blocks, double block_samples, double lasting,
@@ -29,11 +36,12 @@ void add_wider_stages(const WiderDemand& d, double kept, double blocks, double b
   stages.push_back({"the wider field is gridded", process_bytes, kept, tapered, t.visibilities + t.psf, 0, lasting});
   stages.push_back(
       {"the wider field's images are made", process_bytes, kept, 0, t.visibilities + t.psf, t.fft, lasting + 2 * image});
-  stages.push_back({"the wider field is cleaned", process_bytes, kept, 0, minor_single_images * image, 0,
+  const double minor = minor_kept_bytes(image, 1);
+  stages.push_back({"the wider field is cleaned", process_bytes, kept, 0, minor + minor_passing_images * image, 0,
                     lasting + (2 + minor_images) * image});
   // Dirty image, PSF, model and residual.
   stages.push_back({"the wider field's residual is made", process_bytes, kept, tapered + block_samples * residual_bytes,
-                    2 * t.visibilities, t.fft, lasting + (4 + minor_kept_images) * image});
+                    2 * t.visibilities + minor, t.fft, lasting + 4 * image});
   stages.push_back(
       {"the wider field's noise is measured", process_bytes, kept, placed, t.visibilities, t.fft, lasting + 2 * image});
 }
@@ -49,7 +57,7 @@ MemoryUse peak_memory(const MemoryDemand& d, const StreamingOptions& streaming) 
   const double blocks = read_ahead * (block_samples * sample_bytes + block_rows * row_bytes) + block_samples * order_bytes;
   const double kept = streaming.keep ? d.samples * sample_bytes + d.rows * row_bytes : 0;
 
-  const double drawn_images = 1 + (d.clean ? 4 : 2) + (d.mask ? 1 : 0);  // one more to find the median of each
+  const double drawn_images = 1 + (d.clean_scales > 0 ? 4 : 2) + (d.mask ? 1 : 0);  // one more to find the median of each
 
   std::vector<MemoryUse> stages;
   stages.push_back({"the samples are gridded", process_bytes, kept, blocks, t.visibilities + t.psf, 0, 0});
@@ -57,24 +65,25 @@ MemoryUse peak_memory(const MemoryDemand& d, const StreamingOptions& streaming) 
   stages.push_back({"the PSF is made", process_bytes, kept, 0, t.psf, t.fft, 2 * image});
   // Of a model image.
   if (d.verify) stages.push_back({"prediction is verified", process_bytes, kept, 0, t.visibilities, t.fft, 3 * image});
-  if (d.clean) {
+  if (d.clean_scales > 0) {
     const double masks = d.mask ? 2 : 0;  // it, and the residual within
     // Where every pixel is a component of the model, those of two models and of what they are sorted in.
     const double components = d.start_model ? 3 * 24 / pixel_bytes : 0;
     const double lasting = masks + components + 2;  // dirty image and PSF
-    stages.push_back(
-        {"the minor cycles run", process_bytes, kept, 0, minor_single_images * image, 0, (lasting + minor_images) * image});
+    const double minor = minor_kept_bytes(image, d.clean_scales);
+    stages.push_back({"the minor cycles run", process_bytes, kept, 0, minor + minor_passing_images * image, 0,
+                      (lasting + minor_images) * image});
     // Of a model image.
     const double residual_blocks = blocks + block_samples * residual_bytes;
-    stages.push_back({"the residual is gridded", process_bytes, kept, residual_blocks, 2 * t.visibilities, 0,
-                      (lasting + 1 + minor_kept_images) * image});
-    stages.push_back({"the residual image is made", process_bytes, kept, 0, t.visibilities, t.fft,
-                      (lasting + 2 + minor_kept_images) * image});
+    stages.push_back({"the residual is gridded", process_bytes, kept, residual_blocks, 2 * t.visibilities + minor, 0,
+                      (lasting + 1) * image});
+    stages.push_back(
+        {"the residual image is made", process_bytes, kept, 0, t.visibilities + minor, t.fft, (lasting + 2) * image});
   }
   if (d.wider) {
     // After CLEAN the PSF, the model with its components, the residual and the mask; else the dirty image and the PSF.
     const double components = d.start_model ? 3 * 24 / pixel_bytes : 0;
-    const double lasting = d.clean ? 3 + components + (d.mask ? 1 : 0) : 2;
+    const double lasting = d.clean_scales > 0 ? 3 + components + (d.mask ? 1 : 0) : 2;
     add_wider_stages(*d.wider, kept, blocks, block_samples, lasting * image, stages);
   }
   stages.push_back({"the pictures are drawn", process_bytes, 0, 0, 0, 0, drawn_images * image});

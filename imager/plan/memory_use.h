@@ -23,7 +23,7 @@ struct MemoryDemand {
   double samples = 0;        ///< a row's channels, over all rows
   double block_samples = 0;  ///< in a block at most
   bool verify = false;
-  bool clean = false;
+  int clean_scales = 0;      ///< of its components; 0 = no CLEAN
   bool mask = false;         ///< where components may lie
   bool start_model = false;  ///< that CLEAN begins with
   std::optional<WiderDemand> wider{};

@@ -55,7 +55,7 @@ BOOST_AUTO_TEST_CASE(large_grids_and_large_images_each_have_their_moment) {
   d.transform = {1e6, 5e5, 1e3};
   d.samples = 1e6;
   BOOST_TEST(peak_memory(d, {}).when == "the pictures are drawn");
-  d.clean = true;
+  d.clean_scales = 1;
   BOOST_TEST(peak_memory(d, {}).when == "the minor cycles run");
   d.transform.visibilities = 3 * 8 * d.pixels;
   BOOST_TEST(peak_memory(d, {}).when == "the residual is gridded");
@@ -70,7 +70,7 @@ BOOST_AUTO_TEST_CASE(cleaning_and_verifying_never_take_less) {
     const double plain = peak(d, {});
     d.verify = true;
     BOOST_TEST(peak(d, {}) >= plain);
-    d.clean = true;
+    d.clean_scales = 1;
     BOOST_TEST(peak(d, {}) >= plain);
   }
 }

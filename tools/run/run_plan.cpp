@@ -94,7 +94,7 @@ class RunPlanner {
                                            .samples = static_cast<double>(scene_.set.samples()),
                                            .block_samples = static_cast<double>(ms_io::MeasurementSet::usual_block_samples),
                                            .verify = o_.verify > 0,
-                                           .clean = o_.niter > 0,
+                                           .clean_scales = o_.niter > 0 ? std::max(1, static_cast<int>(o_.scales.size())) : 0,
                                            .mask = scene_.mask,
                                            .start_model = !o_.startmodel.empty(),
                                            .wider = wider_demand()},
