@@ -25,6 +25,7 @@ std::vector<double> largest_beyond(const Image& psf) {
 }  // namespace
 
 PsfCore::PsfCore(const Image& psf) {
+  constexpr int largest_reach = 512;
   constexpr double hardly = 1.1;
   const std::vector<double> beyond = largest_beyond(psf);
   const auto outside = [&](int reach) { return beyond[static_cast<std::size_t>(reach) + 1]; };

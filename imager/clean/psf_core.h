@@ -9,11 +9,8 @@ namespace misfit::imager {
 /// The middle of a PSF in single precision, as much of it as pays: all |row|, |column| ≤ reach from its peak.
 class PsfCore {
  public:
-  static constexpr int largest_reach = 512;  ///< more do not fit a cache
-  static constexpr double most_bytes = sizeof(float) * (2. * largest_reach + 1) * (2. * largest_reach + 1);
-
-  /// The smallest reach beyond which the PSF is hardly weaker (by a tenth) than beyond the largest. NaN counts as 0, as does
-  /// what lies beyond the PSF.
+  /// The smallest reach beyond which the PSF is hardly weaker (by a tenth) than beyond 512 pixels, which fit a cache. NaN
+  /// counts as 0, as does what lies beyond the PSF.
   explicit PsfCore(const Image& psf);
 
   int reach() const { return reach_; }

@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <vector>
 
-#include "imager/clean/psf_core.h"
-
 namespace misfit::imager {
 namespace {
 
@@ -19,10 +17,11 @@ constexpr double residual_bytes = 2 * sizeof(double);
 /// Minor cycles take: the residual; for a convolution, what is convolved and what comes of it. In single precision the residual
 /// and a transform of 3/2 the size either way pass; the PSF's transform, or the PSF, is kept through major cycles.
 constexpr double minor_images = 3, minor_passing_images = 2, minor_kept_images = 1.25;
+constexpr double core_bytes = sizeof(float) * 1025. * 1025;  // of a PSF, see PsfCore
 
 /// Each scale has a core of its own.
 double minor_kept_bytes(double image, int scales) {
-  return minor_kept_images * image + scales * PsfCore::most_bytes;
+  return minor_kept_images * image + scales * core_bytes;
 }
 
 /// While a wider field is searched: `kept` visibilities, `blocks` in flight and `lasting` bytes of the run's own images stay.
