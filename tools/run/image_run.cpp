@@ -8,6 +8,7 @@
 #include "imager/noise.h"
 #include "imager/parallel.h"
 #include "tools/base/files.h"
+#include "tools/base/left_out.h"
 #include "tools/base/memory.h"
 #include "tools/base/numbers.h"
 #include "tools/base/progress.h"
@@ -220,28 +221,12 @@ class ImageRun {
     report_.counts = source_->counts();
     report_.counts.outside_grid = sums.outside_grid;
     report_.counts.used = sums.used;
-    decide_left_out();
+    decide("samples left out", left_out_of_all(report_.counts), left_out_reasons(report_.counts));
     if (sums.outside_grid == 0) return;
     const double reach = std::max(reach_.max_abs_u, reach_.max_abs_v);
     const ScaledUnit unit = angle_unit(0.5 / reach);
     warn(grouped(static_cast<long long>(sums.outside_grid)) + " samples lie beyond 1/(2 cell) and were left out; a cell of " +
          significant(std::floor(0.5 / reach / unit.size * 1e4) / 1e4, 4) + unit.name + " would keep them");
-  }
-
-  void decide_left_out() {
-    const imager::SampleCounts& c = report_.counts;
-    std::string reasons;
-    const auto add = [&](std::uint64_t count, const char* reason) {
-      if (count > 0) reasons += (reasons.empty() ? "" : ", ") + grouped(static_cast<long long>(count)) + " " + reason;
-    };
-    add(c.autocorrelations, "auto-correlations");
-    add(c.flagged, "flagged");
-    add(c.nonfinite, "not finite");
-    add(c.zero_weight, "of zero or negative weight");
-    add(c.outside_grid, "outside the grid");
-    decide("samples left out",
-           grouped(static_cast<long long>(c.samples_read - c.used)) + " of " + grouped(static_cast<long long>(c.samples_read)),
-           reasons.empty() ? "all can be imaged" : reasons);
   }
 
   void verify() {
