@@ -117,6 +117,7 @@ bool run_in(const WorkFolder& folder, std::vector<std::string> words, ProgramRes
   if (interrupted()) throw Interrupted();
   if (status && *status == 0) return true;
   result.failure = last_words(folder.path() / "said");
+  result.seconds.clear();
   constexpr double none = std::numeric_limits<double>::quiet_NaN();
   result.errors = {none, none, none, none, none, none, none, none};
   return false;
