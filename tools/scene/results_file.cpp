@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <stdexcept>
 
 #include "tools/base/files.h"
 
@@ -21,12 +22,14 @@ struct Number {
 
 constexpr Number<SceneErrors> error_numbers[] = {
     {"rms", &SceneErrors::rms},
+    {"rms_noise", &SceneErrors::rms_noise},
     {"max", &SceneErrors::max},
     {"centre_rms", &SceneErrors::centre_rms},
     {"centre_max", &SceneErrors::centre_max},
     {"border_rms", &SceneErrors::border_rms},
     {"border_max", &SceneErrors::border_max},
     {"predict_rms", &SceneErrors::predict_rms},
+    {"predict_noise", &SceneErrors::predict_noise},
     {"predict_max", &SceneErrors::predict_max},
 };
 constexpr Number<SceneSeconds> second_numbers[] = {
@@ -67,7 +70,11 @@ json json_of(const PointResult& r) {
   put(r, result_numbers, value);
   put(r.errors, error_numbers, value["errors"]);
   value["runs"] = json::array();
-  for (const SceneSeconds& run : r.runs) put(run, second_numbers, value["runs"].emplace_back());
+  for (const SceneSeconds& run : r.runs) {
+    json& written = value["runs"].emplace_back();
+    put(run, second_numbers, written);
+    written["stretch"] = run.stretch;
+  }
   return value;
 }
 
@@ -81,7 +88,22 @@ void take_result(const json& value, PointResult& r) {
   r.work = value.at("work");
   take(value, result_numbers, r);
   take(value.at("errors"), error_numbers, r.errors);
-  for (const json& run : value.at("runs")) take(run, second_numbers, r.runs.emplace_back());
+  for (const json& run : value.at("runs")) {
+    SceneSeconds& taken = r.runs.emplace_back();
+    take(run, second_numbers, taken);
+    taken.stretch = run.at("stretch");
+    if (!(taken.image() > 0)) throw std::runtime_error("a run took no time");
+  }
+}
+
+/// Names of what the two do not have in common: "version, threads".
+std::string differences(const json& has, const json& expected) {
+  std::string names;
+  json all = expected;
+  all.update(has);
+  for (const auto& [name, value] : all.items())
+    if (has.value(name, json()) != expected.value(name, json())) names += (names.empty() ? "" : ", ") + name;
+  return names;
 }
 
 }  // namespace
@@ -93,25 +115,26 @@ void write_results(const std::string& path, const json& owner, const std::vector
   write_file(path, content.dump() + "\n");
 }
 
-std::size_t read_results(const std::string& path, const json& owner, std::vector<PointResult>& results) {
+FoundResults read_results(const std::string& path, const json& owner, std::vector<PointResult>& results) {
   std::error_code none;
-  if (!std::filesystem::is_regular_file(path, none)) return 0;
-  const json content = json::parse(read_file(path), nullptr, false);
-  if (!content.is_object() || content.value("owner", json()) != owner) return 0;
+  if (!std::filesystem::is_regular_file(path, none)) return {};
   std::vector<PointResult> found = results;
-  std::size_t runs = 0;
+  FoundResults taken;
   try {
+    const json content = json::parse(read_file(path));
+    const json& has = content.at("owner");
+    if (has != owner) return {0, "it was measured with other " + differences(has, owner)};
     for (const json& value : content.at("results"))
       for (PointResult& r : found)
         if (value.at("options") == options_text(r.point)) {
           take_result(value, r);
-          runs += r.runs.size();
+          taken.runs += r.runs.size();
         }
-  } catch (const json::exception&) {
-    return 0;
+  } catch (const std::exception&) {
+    return {0, "it is damaged"};
   }
   results = std::move(found);
-  return runs;
+  return taken;
 }
 
 }  // namespace misfit::tools
