@@ -13,14 +13,14 @@ namespace {
 
 using nlohmann::json;
 
-/// The members of a struct that are numbers, by name.
-template <typename T>
-struct Number {
+/// A member of a struct, by name.
+template <typename T, typename V>
+struct Member {
   const char* name;
-  double T::*value;
+  V T::*value;
 };
 
-constexpr Number<SceneErrors> error_numbers[] = {
+constexpr Member<SceneErrors, double> error_numbers[] = {
     {"rms", &SceneErrors::rms},
     {"rms_noise", &SceneErrors::rms_noise},
     {"max", &SceneErrors::max},
@@ -32,13 +32,13 @@ constexpr Number<SceneErrors> error_numbers[] = {
     {"predict_noise", &SceneErrors::predict_noise},
     {"predict_max", &SceneErrors::predict_max},
 };
-constexpr Number<SceneSeconds> second_numbers[] = {
+constexpr Member<SceneSeconds, double> second_numbers[] = {
     {"grid", &SceneSeconds::grid},
     {"fft", &SceneSeconds::fft},
     {"degrid", &SceneSeconds::degrid},
     {"predict_fft", &SceneSeconds::predict_fft},
 };
-constexpr Number<PointResult> result_numbers[] = {
+constexpr Member<PointResult, double> result_numbers[] = {
     {"x0", &PointResult::x0},
     {"padding", &PointResult::padding},
     {"memory_bytes", &PointResult::memory_bytes},
@@ -47,52 +47,69 @@ constexpr Number<PointResult> result_numbers[] = {
     {"bound_max", &PointResult::bound_max},
 };
 
+constexpr Member<SceneSeconds, int> second_counts[] = {{"stretch", &SceneSeconds::stretch}};
+constexpr Member<PointResult, int> result_counts[] = {
+    {"width", &PointResult::width},
+    {"width_w", &PointResult::width_w},
+    {"passes", &PointResult::passes},
+};
+constexpr Member<PointResult, std::string> result_words[] = {
+    {"refused", &PointResult::refused},
+    {"evaluation", &PointResult::evaluation},
+    {"precision", &PointResult::precision},
+    {"work", &PointResult::work},
+};
+
 /// JSON has no number for what is not finite.
-template <typename T, std::size_t N>
-void put(const T& of, const Number<T> (&numbers)[N], json& to) {
-  for (const auto& [name, value] : numbers) to[name] = std::isfinite(of.*value) ? json(of.*value) : json();
+json json_of(double value) {
+  return std::isfinite(value) ? json(value) : json();
 }
-template <typename T, std::size_t N>
-void take(const json& from, const Number<T> (&numbers)[N], T& to) {
-  for (const auto& [name, value] : numbers)
-    to.*value = from.at(name).is_null() ? std::numeric_limits<double>::quiet_NaN() : from.at(name).template get<double>();
+template <typename V>
+json json_of(const V& value) {
+  return value;
+}
+void take(const json& from, double& to) {
+  to = from.is_null() ? std::numeric_limits<double>::quiet_NaN() : from.get<double>();
+}
+template <typename V>
+void take(const json& from, V& to) {
+  from.get_to(to);
 }
 
-json json_of(const PointResult& r) {
-  json value{{"options", options_text(r.point)},
-             {"refused", r.refused},
-             {"width", r.width},
-             {"width_w", r.width_w},
-             {"passes", r.passes},
-             {"evaluation", r.evaluation},
-             {"precision", r.precision},
-             {"work", r.work}};
+template <typename T, typename V, std::size_t N>
+void put(const T& of, const Member<T, V> (&members)[N], json& to) {
+  for (const auto& [name, value] : members) to[name] = json_of(of.*value);
+}
+template <typename T, typename V, std::size_t N>
+void take(const json& from, const Member<T, V> (&members)[N], T& to) {
+  for (const auto& [name, value] : members) take(from.at(name), to.*value);
+}
+
+json written(const PointResult& r) {
+  json value{{"options", options_text(r.point)}};
+  put(r, result_words, value);
+  put(r, result_counts, value);
   put(r, result_numbers, value);
   put(r.errors, error_numbers, value["errors"]);
   value["runs"] = json::array();
-  for (const SceneSeconds& run : r.runs) {
-    json& written = value["runs"].emplace_back();
-    put(run, second_numbers, written);
-    written["stretch"] = run.stretch;
+  for (const SceneSeconds& seconds : r.runs) {
+    json& run = value["runs"].emplace_back();
+    put(seconds, second_numbers, run);
+    put(seconds, second_counts, run);
   }
   return value;
 }
 
 void take_result(const json& value, PointResult& r) {
-  r.refused = value.at("refused");
-  r.width = value.at("width");
-  r.width_w = value.at("width_w");
-  r.passes = value.at("passes");
-  r.evaluation = value.at("evaluation");
-  r.precision = value.at("precision");
-  r.work = value.at("work");
+  take(value, result_words, r);
+  take(value, result_counts, r);
   take(value, result_numbers, r);
   take(value.at("errors"), error_numbers, r.errors);
   for (const json& run : value.at("runs")) {
-    SceneSeconds& taken = r.runs.emplace_back();
-    take(run, second_numbers, taken);
-    taken.stretch = run.at("stretch");
-    if (!(taken.image() > 0)) throw std::runtime_error("a run took no time");
+    SceneSeconds& seconds = r.runs.emplace_back();
+    take(run, second_numbers, seconds);
+    take(run, second_counts, seconds);
+    if (!(seconds.image() > 0)) throw std::runtime_error("a run took no time");
   }
 }
 
@@ -111,7 +128,7 @@ std::string differences(const json& has, const json& expected) {
 void write_results(const std::string& path, const json& owner, const std::vector<PointResult>& results) {
   json content{{"owner", owner}, {"results", json::array()}};
   for (const PointResult& r : results)
-    if (!r.runs.empty() || !r.refused.empty()) content["results"].push_back(json_of(r));
+    if (!r.runs.empty() || !r.refused.empty()) content["results"].push_back(written(r));
   write_file(path, content.dump() + "\n");
 }
 
