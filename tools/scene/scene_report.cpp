@@ -108,13 +108,16 @@ void measure(const SceneReportOptions& o, Scene& scene, std::vector<PointResult>
     write_results(o.results_file, owner, results);
     written_s = watch.seconds();
   };
+  const auto late = [&](std::size_t round) {
+    constexpr std::size_t at_least = 10;  // two accuracies of each kernel: fewer points compare nothing
+    if (round == 0) return done >= at_least && before_s + watch.seconds() > effort.first_round_s;
+    return round >= effort.least_rounds && watch.seconds() > effort.seconds;
+  };
   std::size_t rounds = effort.least_rounds;
   for (std::size_t round = 0; round < rounds; ++round) {
     for (PointResult* const at : in_order_of(round, results)) {
       PointResult& result = *at;
-      constexpr std::size_t at_least = 10;  // two accuracies of each kernel: fewer points compare nothing
-      const bool late = round == 0 && done >= at_least && before_s + watch.seconds() > effort.first_round_s;
-      if (!result.refused.empty() || result.runs.size() != round || late) continue;
+      if (!result.refused.empty() || result.runs.size() != round || late(round)) continue;
       scene.run(result, ran / runs_a_stretch);
       if (result.refused.empty()) ++done, ++ran;
       const auto possible = std::count_if(results.begin(), results.end(), [](const auto& r) { return r.refused.empty(); });
