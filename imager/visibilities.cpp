@@ -11,7 +11,8 @@ std::string nothing_usable(const SampleCounts& c) {
   for (const auto& [count, reason] : {std::pair(c.autocorrelations, "auto-correlations"),
                                       {c.flagged, "flagged"},
                                       {c.nonfinite, "not finite"},
-                                      {c.zero_weight, "of zero weight"}})
+                                      {c.zero_weight, "of zero weight"},
+                                      {c.outside_grid, "beyond 1/(2 cell)"}})
     if (count > 0) reasons += (reasons.empty() ? "" : ", ") + std::to_string(count) + " " + reason;
   return "no visibility is left of " + std::to_string(c.samples_read) + ": " + reasons +
          "; expected one at least that is none of this";

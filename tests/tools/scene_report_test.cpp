@@ -4,11 +4,13 @@
 #include <cerrno>
 #include <functional>
 #include <iterator>
+#include <random>
 #include <sstream>
 
 #include "tests/tools/program.h"
 #include "tests/tools/set_changes.h"
 #include "tools/scene/results_file.h"
+#include "tools/scene/scene_memory.h"
 #include "tools/scene/timing.h"
 #include "tools/scene/verdict.h"
 
@@ -109,6 +111,9 @@ BOOST_AUTO_TEST_CASE(every_point_is_measured_within_its_bounds_and_its_command_m
     if (row.at("evaluation").find("linear") != std::string::npos) exact = &row;
   }
   BOOST_TEST(on_front >= 2);
+  const std::string page = content(folder / "report/index.html");
+  BOOST_TEST(page.find("Samples left out: 0 of 351 (all can be imaged).") != std::string::npos);
+  BOOST_TEST(page.find("for the choice of pixels (one standard error") != std::string::npos);
   BOOST_REQUIRE(exact != nullptr);
   std::istringstream words(exact->at("command"));
   Arguments command;
@@ -121,7 +126,7 @@ BOOST_AUTO_TEST_CASE(every_point_is_measured_within_its_bounds_and_its_command_m
   const nlohmann::json report = report_of(folder / "again");
   BOOST_TEST(report["kernel"]["evaluation"] == exact->at("evaluation"));
   BOOST_TEST(std::to_string(report["kernel"]["width"].get<int>()) == exact->at("width"));
-  // Other pixels of the same image: 384 and 3000 of 3072.
+  // Other pixels of the same image.
   BOOST_TEST(report["error"]["measured_rms"].get<double>() == std::stod(exact->at("measured_rms")),
              boost::test_tools::tolerance(0.25));
 }
@@ -143,14 +148,17 @@ BOOST_AUTO_TEST_CASE(a_report_that_was_stopped_goes_on_from_what_it_had) {
 
 BOOST_AUTO_TEST_CASE(a_program_that_fails_is_said_and_the_rest_of_the_report_stays) {
   const TemporaryFolder folder;
-  const Impostor wsclean("wsclean", "echo 'no such set today'\nexit 1\n");
+  succeed({"image", "--vis", snapshot(), "--imagename", folder / "made", "--imsize", "64", "48", "--cell", "0.1arcsec"});
+  const Impostor wsclean("wsclean", "case \"$*\" in\n*-predict*) ;;\n*'-grid-mode nn'*) exec cp " +
+                                        folder / "made.residual.fits" +
+                                        " wsclean-dirty.fits ;;\nesac\necho 'no such set today'\nexit 1\n");
   succeed(report_of_scene(folder / "report"));
   BOOST_TEST(rows_of(folder / "report/scene.csv").size() > 50);
   std::istringstream programs(content(folder / "report/programs.csv"));
-  int failed = 0, made = 0;
+  int failed = 0, made = 0;  // one fails as it predicts
   for (std::string line; std::getline(programs, line);) {
-    failed +=
-        line.find("wsclean") != std::string::npos && line.find(": failed, no such set today") != std::string::npos ? 1 : 0;
+    const bool without_numbers = line.find(": failed, no such set today\",,,,,,,") != std::string::npos;
+    failed += line.find("wsclean") != std::string::npos && without_numbers ? 1 : 0;
     made += line.find("misfit image, to") != std::string::npos && line.find("failed") == std::string::npos ? 1 : 0;
   }
   BOOST_TEST(failed == 4);
@@ -217,7 +225,7 @@ BOOST_AUTO_TEST_CASE(results_are_read_as_they_were_written_by_their_owner_alone)
   PointResult measured = point("minimax", 0.125, 3e-7);
   measured.width = 7;
   measured.errors.predict_rms = NAN;
-  measured.runs.push_back({.grid = 1, .fft = 2, .degrid = 3, .predict_fft = 4});
+  measured.runs.push_back({.grid = 1, .fft = 2, .degrid = 3, .predict_fft = 4, .stretch = 7});
   PointResult refused;
   refused.point = {.kernel = "nearest", .accuracy = 1e-8};
   refused.refused = "out of reach";
@@ -225,14 +233,56 @@ BOOST_AUTO_TEST_CASE(results_are_read_as_they_were_written_by_their_owner_alone)
   std::vector<PointResult> found(3);
   found[0].point = refused.point;
   found[1].point = measured.point;
-  BOOST_TEST(read_results(path, {{"vis", "b"}}, found) == 0);
+  const FoundResults of_others = read_results(path, {{"vis", "b"}, {"threads", 2}}, found);
+  BOOST_TEST(of_others.runs == 0);
+  BOOST_TEST(of_others.not_used == "it was measured with other threads, vis");
   BOOST_TEST(found[1].runs.empty());
-  BOOST_TEST(read_results(path, {{"vis", "a"}}, found) == 2);
+  BOOST_TEST(read_results(path, {{"vis", "a"}}, found).runs == 2);
   BOOST_TEST(found[0].refused == "out of reach");
   BOOST_TEST(found[1].errors.rms == 3e-7);
   BOOST_TEST(std::isnan(found[1].errors.predict_rms));
   BOOST_TEST(found[1].runs.at(1).predict_fft == 4);
+  BOOST_TEST(found[1].runs.at(1).stretch == 7);
   BOOST_TEST(found[2].runs.empty());
+}
+
+BOOST_AUTO_TEST_CASE(damaged_results_are_not_used) {
+  const TemporaryFolder folder;
+  const std::string path = folder / "measured.json";
+  std::vector<PointResult> results{point("minimax", 0.125, 3e-7)};
+  BOOST_TEST(read_results(path, {{"vis", "a"}}, results).not_used == "");  // there are none
+  write_results(path, {{"vis", "a"}}, results);
+  const std::string whole = content(path);
+  results.front().runs.clear();
+  std::string without_stretch = whole, without_time = whole;
+  without_stretch.replace(whole.find("stretch"), 7, "stretcher");
+  without_time.replace(whole.find("0.125"), 5, "null ");
+  for (const std::string& damaged : {whole.substr(0, whole.size() / 2), std::string(), std::string("[1]"), std::string("{}"),
+                                     std::string(R"({"owner":7})"), without_stretch, without_time}) {
+    std::ofstream(path) << damaged;
+    const FoundResults found = read_results(path, {{"vis", "a"}}, results);
+    BOOST_TEST(found.runs == 0);
+    BOOST_TEST(found.not_used == "it is damaged", damaged);
+    BOOST_TEST(results.front().runs.empty());
+  }
+}
+
+BOOST_AUTO_TEST_CASE(what_is_not_used_is_said_and_kept) {
+  const TemporaryFolder folder;
+  const std::string output = folder / "report";
+  std::filesystem::create_directory(output);
+  std::ofstream(kept_in(output)) << "cut of";
+  const std::string said = stopped_report_of(snapshot(), output, "cut of");
+  BOOST_TEST(said.find("measured.json is not used: it is damaged; it is kept as ") != std::string::npos, said);
+  BOOST_TEST(content(kept_in(output) + ".old") == "cut of");
+  const std::string kept = content(kept_in(output));
+  Arguments other = report_of_scene(output);
+  other[5] = "48";
+  const Outcome outcome = run(other);
+  BOOST_TEST(outcome.code == 0);
+  BOOST_TEST(outcome.err.find("is not used: it was measured with other --imsize; it is kept") != std::string::npos,
+             outcome.err);
+  BOOST_TEST(content(kept_in(output) + ".old") == kept);
 }
 
 BOOST_AUTO_TEST_CASE(points_of_one_work_share_their_times) {
@@ -252,9 +302,90 @@ BOOST_AUTO_TEST_CASE(the_verdict_names_what_beats_least_misfit_kernels) {
   beaten.push_back(point("kaiser-bessel", 1.25, 1e-5));
   const std::string verdict = verdict_on(beaten);
   BOOST_TEST(verdict.find("kaiser-bessel") != std::string::npos);
+  BOOST_TEST(verdict.find("2 least-misfit and minimax points, and one other: kaiser-bessel") != std::string::npos, verdict);
   BOOST_TEST(verdict.find("takes 1.6 ± 0 times as long") != std::string::npos);
+  beaten.push_back(point("spheroidal", 0.5, 5e-4));
+  BOOST_TEST(verdict_on(beaten).find(", and others: kaiser-bessel") != std::string::npos);
   const std::vector<PointResult> alone{point("least-misfit", 1, 1e-4), point("minimax", 2, 1e-6)};
   BOOST_TEST(verdict_on(alone).find("nothing is compared") != std::string::npos);
+}
+
+BOOST_AUTO_TEST_CASE(the_verdict_says_so_where_none_on_the_front_is_ours) {
+  const std::vector<PointResult> results{point("least-misfit", 3, 1e-4), point("kaiser-bessel", 2, 1e-6)};
+  BOOST_TEST(verdict_on(results).find("the front has none of least-misfit or minimax; it consists of: kaiser-bessel of") !=
+             std::string::npos);
+}
+
+BOOST_AUTO_TEST_CASE(what_is_as_exact_but_for_the_choice_of_pixels_is_compared) {
+  std::vector<PointResult> results{point("least-misfit", 1.5, 1.2e-4), point("minimax", 3, 1e-5),
+                                   point("kaiser-bessel", 1, 1e-4)};
+  BOOST_TEST(verdict_on(results).find("takes 3 ± 0 times") != std::string::npos);
+  for (PointResult& r : results) r.errors.rms_noise = 0.1;
+  BOOST_TEST(verdict_on(results).find("takes 1.5 ± 0 times") != std::string::npos);
+  results[0] = point("least-misfit", 1, 1.2e-4);
+  results[0].errors.rms_noise = 0.1;
+  BOOST_TEST(verdict_on(results).find("takes as long but for noise, 1 ± 0 times") != std::string::npos);
+}
+
+BOOST_AUTO_TEST_CASE(slow_stretches_change_neither_times_nor_their_noise) {
+  // Of 20 points each of the first ten ran in all stretches, the others not in the first.
+  std::mt19937_64 random(1);
+  std::normal_distribution<double> noise(0, 0.01);
+  const double slow[]{1.3, 1, 1.3, 1, 1.3, 1, 1};
+  std::vector<PointResult> results;
+  for (int k = 0; k < 20; ++k) {
+    results.push_back(point("minimax", 1 + 0.1 * k, 1e-6));
+    results.back().runs.clear();
+    for (int at = k < 10 ? 0 : 1; at < 7; ++at)
+      results.back().runs.push_back({.grid = (1 + 0.1 * k) * slow[at] * (1 + noise(random)), .stretch = at});
+  }
+  const std::map<int, double> found = slowness(results);
+  for (int at = 0; at < 7; ++at)
+    BOOST_TEST(found.at(at) / found.at(1) == slow[at], boost::test_tools::tolerance(0.02));  // 4 σ of a median of ten
+  const std::vector<PointResult> pooled = pooled_by_work(results);
+  for (int k = 0; k < 20; ++k)
+    BOOST_TEST(image_seconds(pooled[k]) / image_seconds(pooled[0]) == 1 + 0.1 * k, boost::test_tools::tolerance(0.03));
+  for (const double part : time_noise(pooled, &SceneSeconds::image)) BOOST_TEST(part < 0.02);
+  BOOST_TEST(words_on_speed(results).find("1.3 times as fast") != std::string::npos);
+}
+
+BOOST_AUTO_TEST_CASE(stretches_that_share_no_point_are_compared_through_a_third) {
+  // A report that was stopped early, and went on on a slower machine.
+  std::vector<PointResult> results;
+  for (int k = 0; k < 20; ++k) {
+    results.push_back(point("minimax", 1 + 0.1 * k, 1e-6));
+    const double seconds = 1 + 0.1 * k;
+    results.back().runs = {{.grid = (k < 8 ? 1 : 1.5) * seconds, .stretch = k < 8 ? 0 : 1},
+                           {.grid = 1.5 * seconds, .stretch = 2}};
+  }
+  const std::vector<PointResult> pooled = pooled_by_work(results);
+  for (int k = 0; k < 20; ++k) BOOST_TEST(image_seconds(pooled[k]) == 1.5 * (1 + 0.1 * k), boost::test_tools::tolerance(1e-4));
+}
+
+BOOST_AUTO_TEST_CASE(a_stretch_of_few_runs_tells_nothing_of_the_machine) {
+  std::vector<PointResult> results;
+  for (int k = 0; k < 5; ++k) {
+    results.push_back(point("minimax", 1 + k, 1e-6));
+    results.back().runs = {{.grid = 1.0 + k, .stretch = 0}, {.grid = 1.0 + k, .stretch = 1}};
+  }
+  results.front().runs.push_back({.grid = 1.4, .stretch = 2});
+  BOOST_TEST(slowness(results).at(2) == 1);
+}
+
+BOOST_AUTO_TEST_CASE(memory_for_the_visibilities_counts) {
+  const TemporaryFolder folder;
+  const std::string set = folder / "many.ms";
+  succeed({"simulate", "--output", set, "--channels", "4000"});  // 1.4 million, of 28 bytes as data and prediction
+  ImageOptions scene;
+  scene.imsize = {64};
+  scene.cell = "0.05arcsec";
+  scene.memory_gib = 0.125;
+  scene.vis = snapshot();
+  BOOST_CHECK_NO_THROW(check_scene_memory(scene));
+  scene.vis = set;
+  BOOST_CHECK_EXCEPTION(check_scene_memory(scene), std::invalid_argument, [](const std::exception& error) {
+    return std::string(error.what()).find("of which visibilities take 0.04 GiB") != std::string::npos;
+  });
 }
 
 BOOST_AUTO_TEST_CASE(times_are_as_uncertain_as_their_runs_differ) {

@@ -28,8 +28,7 @@ void check(const std::vector<StabilityOutcome>& outcomes) {
                               << o.measured.predict_rms << ", worst pixel " << o.measured.max) {
       BOOST_TEST_REQUIRE(o.finite);
       BOOST_TEST(o.honest());
-      BOOST_TEST(o.measured.rms <= o.theory.bound_rms);
-      BOOST_TEST(o.measured.max <= o.theory.bound_max);
+      BOOST_TEST(o.within_bounds());
       BOOST_TEST(ended_by_itself(o.clean.stop));
       BOOST_TEST(o.peak_after_jy() <= o.peak_before_jy());
       BOOST_TEST(std::isfinite(o.peak_after_jy()));

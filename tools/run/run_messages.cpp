@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "tools/base/left_out.h"
 #include "tools/base/numbers.h"
 
 namespace misfit::tools {
@@ -14,18 +15,8 @@ std::string counted(std::uint64_t count) {
 
 }  // namespace
 
-imager::Decision left_out_decision(const imager::SampleCounts& c) {
-  std::string reasons;
-  const auto add = [&](std::uint64_t count, const char* reason) {
-    if (count > 0) reasons += (reasons.empty() ? "" : ", ") + counted(count) + " " + reason;
-  };
-  add(c.autocorrelations, "auto-correlations");
-  add(c.flagged, "flagged");
-  add(c.nonfinite, "not finite");
-  add(c.zero_weight, "of zero or negative weight");
-  add(c.outside_grid, "outside the grid");
-  return {"samples left out", counted(c.samples_read - c.used) + " of " + counted(c.samples_read),
-          reasons.empty() ? "all can be imaged" : reasons};
+imager::Decision left_out_decision(const imager::SampleCounts& counts) {
+  return {"samples left out", left_out_of_all(counts), left_out_reasons(counts)};
 }
 
 std::string outside_grid_warning(std::uint64_t samples, const imager::UvwReach& reach) {

@@ -1,5 +1,6 @@
 #include "tools/scene/measure.h"
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <stdexcept>
@@ -40,9 +41,15 @@ void add_to(Fingerprint& print, const imager::VisibilityBlock& block) {
   for (std::size_t k = 0; k < block.uvw_m.size(); ++k) print[4] += apart[k % 3] * block.uvw_m[k];
 }
 
+/// Of each place: as many as some seconds of direct sums allow, or a minute of them. The same for the same scene.
+int pixels_for(std::uint64_t samples, bool quick) {
+  const double terms = quick ? 1e9 : 4e9, least = quick ? 128 : 512;
+  return static_cast<int>(std::clamp(terms / std::max(1.0, static_cast<double>(samples)), least, 8 * least));
+}
+
 }  // namespace
 
-Scene::Scene(const ImageOptions& options, int pixels, const imager::Progress& progress)
+Scene::Scene(const ImageOptions& options, bool quick, const imager::Progress& progress)
     : options_(options), threads_(options.threads == 0 ? imager::available_threads() : options.threads) {
   const ms_io::MeasurementSet set(options.vis, options.selection, options.datacolumn);
   geometry_ = geometry_of(options, set.observation().phase_centre);
@@ -55,7 +62,8 @@ Scene::Scene(const ImageOptions& options, int pixels, const imager::Progress& pr
     visibilities_.append(std::move(block));
   }
   read_s_ = watch.seconds();
-  truth_ = std::make_unique<SceneTruth>(visibilities_, geometry_, pixels, threads_, progress);
+  truth_ =
+      std::make_unique<SceneTruth>(visibilities_, geometry_, pixels_for(visibilities_.samples(), quick), threads_, progress);
 }
 
 Scene::Plans Scene::plans_of(const ScenePoint& point) const {
@@ -118,7 +126,7 @@ void Scene::describe(const Plans& plans, const imager::DirtyImages& made, PointR
   result.bound_max = theory.bound_max;
 }
 
-void Scene::run(PointResult& result) {
+void Scene::run(PointResult& result, int stretch) {
   const std::string name = options_text(result.point);
   auto plans = plans_.find(name);
   if (plans == plans_.end()) {
@@ -129,7 +137,7 @@ void Scene::run(PointResult& result) {
       return;
     }
   }
-  SceneSeconds seconds;
+  SceneSeconds seconds{.stretch = stretch};
   std::unique_ptr<imager::PlannedTransform> transform;
   imager::DirtyImages made;
   for (const imager::GriddingPlan& pass : plans->second) {

@@ -19,6 +19,7 @@ struct SceneSeconds {
   double fft = 0;
   double degrid = 0;
   double predict_fft = 0;
+  int stretch = 0;  ///< of runs one after another, for all of which the machine was as fast, as far as can be known
 
   double image() const { return grid + fft; }
   double predict() const { return degrid + predict_fft; }
@@ -50,11 +51,11 @@ using Fingerprint = std::array<double, 5>;
 /// The visibilities of a scene, in memory, and what the images of them should be.
 class Scene {
  public:
-  /// Reads the MeasurementSet and takes direct sums at three times `pixels` pixels. Throws as MeasurementSet does.
-  Scene(const ImageOptions& options, int pixels, const imager::Progress& progress);
+  /// Reads the MeasurementSet and takes direct sums, at fewer pixels where it is to be quick. Throws as MeasurementSet does.
+  Scene(const ImageOptions& options, bool quick, const imager::Progress& progress);
 
   /// Runs a point once more, all passes of it; the first time its errors are taken.
-  void run(PointResult& result);
+  void run(PointResult& result, int stretch);
 
   std::uint64_t samples() const { return visibilities_.samples(); }
   const Fingerprint& fingerprint() const { return fingerprint_; }

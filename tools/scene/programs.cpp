@@ -6,7 +6,6 @@
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
-#include <limits>
 
 #include "imager/fits_image.h"
 #include "imager/stage_times.h"
@@ -117,8 +116,8 @@ bool run_in(const WorkFolder& folder, std::vector<std::string> words, ProgramRes
   if (interrupted()) throw Interrupted();
   if (status && *status == 0) return true;
   result.failure = last_words(folder.path() / "said");
-  constexpr double none = std::numeric_limits<double>::quiet_NaN();
-  result.errors = {none, none, none, none, none, none, none, none};
+  result.seconds.clear();
+  result.errors = SceneErrors::none();
   return false;
 }
 

@@ -13,7 +13,7 @@ namespace misfit::tools {
 struct ProgramResult {
   std::string name;                ///< "wsclean, w-gridder to 1e-4"
   std::vector<std::string> words;  ///< as called, but for the folder of its images
-  std::vector<double> seconds;     ///< wall clock of each run, by turns with the others
+  std::vector<double> seconds;     ///< wall clock of each run, by turns with the others; none where it failed
   SceneErrors errors;              ///< NaN where it failed
   std::string failure;             ///< the last that it said, if it failed
 

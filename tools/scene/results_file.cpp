@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <stdexcept>
 
 #include "tools/base/files.h"
 
@@ -12,30 +13,32 @@ namespace {
 
 using nlohmann::json;
 
-/// The members of a struct that are numbers, by name.
-template <typename T>
-struct Number {
+/// A member of a struct, by name.
+template <typename T, typename V>
+struct Member {
   const char* name;
-  double T::*value;
+  V T::*value;
 };
 
-constexpr Number<SceneErrors> error_numbers[] = {
+constexpr Member<SceneErrors, double> error_numbers[] = {
     {"rms", &SceneErrors::rms},
+    {"rms_noise", &SceneErrors::rms_noise},
     {"max", &SceneErrors::max},
     {"centre_rms", &SceneErrors::centre_rms},
     {"centre_max", &SceneErrors::centre_max},
     {"border_rms", &SceneErrors::border_rms},
     {"border_max", &SceneErrors::border_max},
     {"predict_rms", &SceneErrors::predict_rms},
+    {"predict_noise", &SceneErrors::predict_noise},
     {"predict_max", &SceneErrors::predict_max},
 };
-constexpr Number<SceneSeconds> second_numbers[] = {
+constexpr Member<SceneSeconds, double> second_numbers[] = {
     {"grid", &SceneSeconds::grid},
     {"fft", &SceneSeconds::fft},
     {"degrid", &SceneSeconds::degrid},
     {"predict_fft", &SceneSeconds::predict_fft},
 };
-constexpr Number<PointResult> result_numbers[] = {
+constexpr Member<PointResult, double> result_numbers[] = {
     {"x0", &PointResult::x0},
     {"padding", &PointResult::padding},
     {"memory_bytes", &PointResult::memory_bytes},
@@ -44,44 +47,80 @@ constexpr Number<PointResult> result_numbers[] = {
     {"bound_max", &PointResult::bound_max},
 };
 
+constexpr Member<SceneSeconds, int> second_counts[] = {{"stretch", &SceneSeconds::stretch}};
+constexpr Member<PointResult, int> result_counts[] = {
+    {"width", &PointResult::width},
+    {"width_w", &PointResult::width_w},
+    {"passes", &PointResult::passes},
+};
+constexpr Member<PointResult, std::string> result_words[] = {
+    {"refused", &PointResult::refused},
+    {"evaluation", &PointResult::evaluation},
+    {"precision", &PointResult::precision},
+    {"work", &PointResult::work},
+};
+
 /// JSON has no number for what is not finite.
-template <typename T, std::size_t N>
-void put(const T& of, const Number<T> (&numbers)[N], json& to) {
-  for (const auto& [name, value] : numbers) to[name] = std::isfinite(of.*value) ? json(of.*value) : json();
+json json_of(double value) {
+  return std::isfinite(value) ? json(value) : json();
 }
-template <typename T, std::size_t N>
-void take(const json& from, const Number<T> (&numbers)[N], T& to) {
-  for (const auto& [name, value] : numbers)
-    to.*value = from.at(name).is_null() ? std::numeric_limits<double>::quiet_NaN() : from.at(name).template get<double>();
+template <typename V>
+json json_of(const V& value) {
+  return value;
+}
+void take(const json& from, double& to) {
+  to = from.is_null() ? std::numeric_limits<double>::quiet_NaN() : from.get<double>();
+}
+template <typename V>
+void take(const json& from, V& to) {
+  from.get_to(to);
 }
 
-json json_of(const PointResult& r) {
-  json value{{"options", options_text(r.point)},
-             {"refused", r.refused},
-             {"width", r.width},
-             {"width_w", r.width_w},
-             {"passes", r.passes},
-             {"evaluation", r.evaluation},
-             {"precision", r.precision},
-             {"work", r.work}};
+template <typename T, typename V, std::size_t N>
+void put(const T& of, const Member<T, V> (&members)[N], json& to) {
+  for (const auto& [name, value] : members) to[name] = json_of(of.*value);
+}
+template <typename T, typename V, std::size_t N>
+void take(const json& from, const Member<T, V> (&members)[N], T& to) {
+  for (const auto& [name, value] : members) take(from.at(name), to.*value);
+}
+
+json written(const PointResult& r) {
+  json value{{"options", options_text(r.point)}};
+  put(r, result_words, value);
+  put(r, result_counts, value);
   put(r, result_numbers, value);
   put(r.errors, error_numbers, value["errors"]);
   value["runs"] = json::array();
-  for (const SceneSeconds& run : r.runs) put(run, second_numbers, value["runs"].emplace_back());
+  for (const SceneSeconds& seconds : r.runs) {
+    json& run = value["runs"].emplace_back();
+    put(seconds, second_numbers, run);
+    put(seconds, second_counts, run);
+  }
   return value;
 }
 
 void take_result(const json& value, PointResult& r) {
-  r.refused = value.at("refused");
-  r.width = value.at("width");
-  r.width_w = value.at("width_w");
-  r.passes = value.at("passes");
-  r.evaluation = value.at("evaluation");
-  r.precision = value.at("precision");
-  r.work = value.at("work");
+  take(value, result_words, r);
+  take(value, result_counts, r);
   take(value, result_numbers, r);
   take(value.at("errors"), error_numbers, r.errors);
-  for (const json& run : value.at("runs")) take(run, second_numbers, r.runs.emplace_back());
+  for (const json& run : value.at("runs")) {
+    SceneSeconds& seconds = r.runs.emplace_back();
+    take(run, second_numbers, seconds);
+    take(run, second_counts, seconds);
+    if (!(seconds.image() > 0)) throw std::runtime_error("a run took no time");
+  }
+}
+
+/// Names of what the two do not have in common: "version, threads".
+std::string differences(const json& has, const json& expected) {
+  std::string names;
+  json all = expected;
+  all.update(has);
+  for (const auto& [name, value] : all.items())
+    if (has.value(name, json()) != expected.value(name, json())) names += (names.empty() ? "" : ", ") + name;
+  return names;
 }
 
 }  // namespace
@@ -89,29 +128,30 @@ void take_result(const json& value, PointResult& r) {
 void write_results(const std::string& path, const json& owner, const std::vector<PointResult>& results) {
   json content{{"owner", owner}, {"results", json::array()}};
   for (const PointResult& r : results)
-    if (!r.runs.empty() || !r.refused.empty()) content["results"].push_back(json_of(r));
+    if (!r.runs.empty() || !r.refused.empty()) content["results"].push_back(written(r));
   write_file(path, content.dump() + "\n");
 }
 
-std::size_t read_results(const std::string& path, const json& owner, std::vector<PointResult>& results) {
+FoundResults read_results(const std::string& path, const json& owner, std::vector<PointResult>& results) {
   std::error_code none;
-  if (!std::filesystem::is_regular_file(path, none)) return 0;
-  const json content = json::parse(read_file(path), nullptr, false);
-  if (!content.is_object() || content.value("owner", json()) != owner) return 0;
+  if (!std::filesystem::is_regular_file(path, none)) return {};
   std::vector<PointResult> found = results;
-  std::size_t runs = 0;
+  FoundResults taken;
   try {
+    const json content = json::parse(read_file(path));
+    const json& has = content.at("owner");
+    if (has != owner) return {0, "it was measured with other " + differences(has, owner)};
     for (const json& value : content.at("results"))
       for (PointResult& r : found)
         if (value.at("options") == options_text(r.point)) {
           take_result(value, r);
-          runs += r.runs.size();
+          taken.runs += r.runs.size();
         }
-  } catch (const json::exception&) {
-    return 0;
+  } catch (const std::exception&) {
+    return {0, "it is damaged"};
   }
   results = std::move(found);
-  return runs;
+  return taken;
 }
 
 }  // namespace misfit::tools

@@ -5,14 +5,12 @@
 #include <filesystem>
 #include <memory>
 
-#include "imager/plan/gridding_plan.h"
-#include "ms_io/measurement_set.h"
 #include "tools/base/numbers.h"
 #include "tools/base/option_checks.h"
 #include "tools/base/quantity.h"
 #include "tools/kernel_choice/kernel_choice.h"
-#include "tools/run/memory_plan.h"
 #include "tools/run/named_data.h"
+#include "tools/scene/scene_memory.h"
 #include "tools/scene/scene_report.h"
 
 namespace misfit::tools {
@@ -23,32 +21,12 @@ struct Options {
   std::string output;
 };
 
-/// Throws std::invalid_argument where the memory does not hold the image's largest transform, of double precision at padding 2.
-void check_memory(const ImageOptions& scene) {
-  const ms_io::MeasurementSet set(scene.vis, scene.selection, scene.datacolumn);
-  imager::GriddingRequest request = gridding_request(scene, 1);
-  request.geometry = geometry_of(scene, set.observation().phase_centre);
-  request.samples = set.samples();
-  request.max_abs_w = set.reach().max_abs_w;
-  request.images = 1;
-  request.accuracy = 0;
-  request.kernel_width = 8;
-  request.padding = 2;
-  request.precision = imager::Precision::double_precision;
-  plan_memory({.transform = imager::memory_of(imager::plan_gridding(request)),
-               .pixels = static_cast<double>(request.geometry.pixels()),
-               .rows = static_cast<double>(set.rows()),
-               .samples = static_cast<double>(set.samples()),
-               .block_samples = static_cast<double>(ms_io::MeasurementSet::usual_block_samples)},
-              scene);
-}
-
 void write(const Options& o) {
   check(o.report.scene);
   for (const std::string& kernel : o.report.kernels) choose_kernel(kernel);
   if (!(o.report.seconds >= 0 && std::isfinite(o.report.seconds)))
     throw std::invalid_argument("--seconds " + significant(o.report.seconds, 6) + ": expected 0 or more");
-  check_memory(o.report.scene);
+  check_scene_memory(o.report.scene);
   prepare_report_folder(o.output);
   SceneReportOptions options = o.report;
   if (!has_unit(options.scene.cell)) options.scene.cell += "arcsec";

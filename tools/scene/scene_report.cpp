@@ -4,6 +4,7 @@
 #include <cmath>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <random>
 
 #include "tools/base/interrupt.h"
 #include "tools/base/numbers.h"
@@ -18,20 +19,21 @@ namespace {
 
 using nlohmann::json;
 
-/// What measurements belong to: the samples, the image, and who measured.
+/// What measurements belong to, named as people know it: the samples, the image, and who measured.
 json owner_of(const SceneReportOptions& o, const Scene& scene) {
   const ImageOptions& s = o.scene;
   return {{"version", version},
-          {"vis", std::filesystem::absolute(s.vis).string()},
-          {"samples", scene.samples()},
-          {"fingerprint", scene.fingerprint()},
-          {"selection", {s.selection.field, s.selection.spectral_window}},
-          {"datacolumn", s.datacolumn},
-          {"imsize", s.imsize},
-          {"cell", s.cell},
-          {"gridder", s.gridder},
-          {"threads", scene.threads()},
-          {"quick", o.quick}};
+          {"--vis", std::filesystem::absolute(s.vis).string()},
+          {"number of samples", scene.samples()},
+          {"visibilities", scene.fingerprint()},
+          {"--field", s.selection.field},
+          {"--spw", s.selection.spectral_window},
+          {"--datacolumn", s.datacolumn},
+          {"--imsize", s.imsize},
+          {"--cell", s.cell},
+          {"--gridder", s.gridder},
+          {"--threads", scene.threads()},
+          {"--quick", o.quick}};
 }
 
 /// How much is run of all points by turns.
@@ -64,11 +66,40 @@ std::size_t rounds_within(const Effort& effort, const std::vector<PointResult>& 
       std::clamp(possible, static_cast<double>(effort.least_rounds), static_cast<double>(effort.most_rounds)));
 }
 
+/// What an earlier run kept of the same measurements, in `results`; the number of its runs. What is of no use is put aside.
+std::size_t resume(const std::string& path, const json& owner, std::vector<PointResult>& results, ProgressLine& progress) {
+  const FoundResults found = read_results(path, owner, results);
+  if (found.runs > 0) progress.say("going on from " + grouped(static_cast<long long>(found.runs)) + " runs in " + path);
+  if (found.not_used.empty()) return found.runs;
+  const std::string aside = path + ".old";
+  std::filesystem::rename(path, aside);
+  progress.say("warning: " + path + " is not used: " + found.not_used + "; it is kept as " + aside);
+  return 0;
+}
+
+/// One that no run is of.
+int unused_stretch(const std::vector<PointResult>& results) {
+  int unused = 0;
+  for (const PointResult& r : results)
+    for (const SceneSeconds& run : r.runs) unused = std::max(unused, run.stretch + 1);
+  return unused;
+}
+
+/// At first as they are, and then at random, so that no two points always meet the machine as it is at one time.
+std::vector<PointResult*> in_order_of(std::size_t round, std::vector<PointResult>& results) {
+  std::vector<PointResult*> order;
+  for (PointResult& result : results) order.push_back(&result);
+  std::mt19937_64 random(round);
+  if (round > 0) std::shuffle(order.begin(), order.end(), random);
+  return order;
+}
+
 void measure(const SceneReportOptions& o, Scene& scene, std::vector<PointResult>& results, ProgressLine& progress) {
   const Effort effort(o);
   const json owner = owner_of(o, scene);
-  std::size_t done = read_results(o.results_file, owner, results);
-  if (done > 0) progress.say("going on from " + grouped(static_cast<long long>(done)) + " runs in " + o.results_file);
+  std::size_t done = resume(o.results_file, owner, results, progress);
+  constexpr int runs_a_stretch = 12;  // less than a second, mostly
+  int ran = runs_a_stretch * unused_stretch(results);
   const imager::Stopwatch watch;
   const double before_s = first_round_seconds(results);
   double written_s = -HUGE_VAL;
@@ -77,14 +108,18 @@ void measure(const SceneReportOptions& o, Scene& scene, std::vector<PointResult>
     write_results(o.results_file, owner, results);
     written_s = watch.seconds();
   };
+  const auto late = [&](std::size_t round) {
+    constexpr std::size_t at_least = 10;  // two accuracies of each kernel: fewer points compare nothing
+    if (round == 0) return done >= at_least && before_s + watch.seconds() > effort.first_round_s;
+    return round >= effort.least_rounds && watch.seconds() > effort.seconds;
+  };
   std::size_t rounds = effort.least_rounds;
   for (std::size_t round = 0; round < rounds; ++round) {
-    for (PointResult& result : results) {
-      constexpr std::size_t at_least = 10;  // two accuracies of each kernel: fewer points compare nothing
-      const bool late = round == 0 && done >= at_least && before_s + watch.seconds() > effort.first_round_s;
-      if (!result.refused.empty() || result.runs.size() != round || late) continue;
-      scene.run(result);
-      if (result.refused.empty()) ++done;
+    for (PointResult* const at : in_order_of(round, results)) {
+      PointResult& result = *at;
+      if (!result.refused.empty() || result.runs.size() != round || late(round)) continue;
+      scene.run(result, ran / runs_a_stretch);
+      if (result.refused.empty()) ++done, ++ran;
       const auto possible = std::count_if(results.begin(), results.end(), [](const auto& r) { return r.refused.empty(); });
       keep(interrupted() ? 0 : 1);
       progress.update(done, rounds * static_cast<std::uint64_t>(possible));
@@ -98,8 +133,7 @@ void measure(const SceneReportOptions& o, Scene& scene, std::vector<PointResult>
 
 Report scene_report(const SceneReportOptions& o, ProgressLine& progress) {
   progress.begin("read, direct sums");
-  const int pixels = o.quick ? 128 : 512;
-  Scene scene(o.scene, pixels, [&](std::uint64_t done, std::uint64_t total) { progress.update(done, total); });
+  Scene scene(o.scene, o.quick, [&](std::uint64_t done, std::uint64_t total) { progress.update(done, total); });
   progress.end();
   std::vector<PointResult> results;
   for (const ScenePoint& point : scene_points(o.quick, o.kernels)) results.emplace_back().point = point;

@@ -5,6 +5,7 @@
 #include <limits>
 #include <map>
 
+#include "tools/base/left_out.h"
 #include "tools/base/memory.h"
 #include "tools/base/numbers.h"
 #include "tools/base/text.h"
@@ -105,9 +106,9 @@ ReportSection front_section(const ImageOptions& scene, const Scene& measured, co
       .name = "front",
       .title = "The Pareto front",
       .caption =
-          "No other point is both as exact and as quick, where times that differ by less than their noise count as one. "
-          "Seconds are of gridding, FFT and correction, in both passes where the plan needs two; the "
-          "spread is from the quickest to the slowest run of all points whose operations are the same, over the median.",
+          "No other point is both as exact and as quick, where times and errors that differ by less than their noise count as "
+          "one. Seconds are of gridding, FFT and correction, in both passes where the plan needs two; the spread is from the "
+          "quickest to the slowest run of all points whose operations are the same, over the median.",
       .columns = {"kernel", "width", "padding", "evaluation", "precision", "seconds", "spread", "RMS error", "largest error",
                   "expected", "command"},
       .rows = {},
@@ -121,7 +122,10 @@ ReportSection front_section(const ImageOptions& scene, const Scene& measured, co
           .paragraphs = {verdict_on(results),
                          "Reading the visibilities took " + duration(measured.read_s()) + ", direct sums would take " +
                              duration(measured.direct_s()) + " for this image. The phase of w reaches " +
-                             significant(measured.w_phase_rad(), 2) + " rad at its corners. " + words_on_noise(results)},
+                             significant(measured.w_phase_rad(), 2) +
+                             " rad at its corners. Samples left out: " + left_out_of_all(measured.truth().counts()) + " (" +
+                             left_out_reasons(measured.truth().counts()) + ").",
+                         words_on_noise(results) + " " + words_on_speed(all)},
           .figures = {error_figure("image-error", "Error of the dirty image against the time it takes",
                                    "RMS of the difference from the direct transform over the RMS of the image, at random "
                                    "pixels of the whole image.",
@@ -198,18 +202,20 @@ ReportSection programs_section(const ProgramComparison& programs) {
 }
 
 ReportSection points_section(const ImageOptions& scene, const std::vector<PointResult>& all) {
-  DataTable table{.name = "scene",
-                  .title = "Every point",
-                  .caption =
-                      "Errors are relative to the RMS of the image, or of the visibilities; centre: its inner half, border: "
-                      "within a sixteenth of its sides from its edge. Seconds are medians.",
-                  .columns = {"kernel",       "width",        "x0",         "evaluation", "precision",  "time_s",
-                              "measured_rms", "measured_max", "bound_rms",  "pareto",     "padding",    "width_w",
-                              "expected_rms", "bound_max",    "centre_rms", "centre_max", "border_rms", "border_max",
-                              "predict_rms",  "predict_max",  "grid_s",     "fft_s",      "degrid_s",   "predict_fft_s",
-                              "spread",       "memory_gib",   "passes",     "command"},
-                  .rows = {},
-                  .code = {"command"}};
+  DataTable table{
+      .name = "scene",
+      .title = "Every point",
+      .caption =
+          "Errors are relative to the RMS of the image, or of the visibilities; centre: its inner half, border: "
+          "within a sixteenth of its sides from its edge; noise: a standard error of an RMS, as a part of it. Seconds are "
+          "medians, at the machine's usual speed.",
+      .columns = {"kernel",       "width",         "x0",         "evaluation",    "precision",  "time_s",
+                  "measured_rms", "measured_max",  "bound_rms",  "pareto",        "padding",    "width_w",
+                  "expected_rms", "bound_max",     "centre_rms", "centre_max",    "border_rms", "border_max",
+                  "predict_rms",  "predict_max",   "rms_noise",  "predict_noise", "grid_s",     "fft_s",
+                  "degrid_s",     "predict_fft_s", "spread",     "memory_gib",    "passes",     "command"},
+      .rows = {},
+      .code = {"command"}};
   const std::vector<PointResult> results = pooled_by_work(all);
   const std::vector<bool> front = pareto_front(image_costs(results));
   for (std::size_t i = 0; i < results.size(); ++i) {
@@ -240,6 +246,8 @@ ReportSection points_section(const ImageOptions& scene, const std::vector<PointR
                           e.border_max,
                           e.predict_rms,
                           e.predict_max,
+                          e.rms_noise,
+                          e.predict_noise,
                           stage(&SceneSeconds::grid),
                           stage(&SceneSeconds::fft),
                           stage(&SceneSeconds::degrid),

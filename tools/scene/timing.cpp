@@ -8,10 +8,17 @@
 namespace misfit::tools {
 namespace {
 
+constexpr std::size_t fewest_runs = 3;  ///< that say how slow a stretch was
+constexpr int turns = 40;               ///< each halves about what stretches without a point in common still lack
+
 std::vector<double> seconds_of(const PointResult& result, double (SceneSeconds::*of)() const) {
   std::vector<double> values;
   for (const SceneSeconds& run : result.runs) values.push_back((run.*of)());
   return values;
+}
+
+double whole(const SceneSeconds& run) {
+  return run.image() + run.predict();
 }
 
 /// Of a result alone.
@@ -32,9 +39,42 @@ double median(std::vector<double> values) {
   return values.size() % 2 == 1 ? values[middle] : (values[middle - 1] + values[middle]) / 2;
 }
 
+std::map<int, double> slowness(const std::vector<PointResult>& results) {
+  std::map<int, double> slow;
+  for (const PointResult& r : results)
+    for (const SceneSeconds& run : r.runs) slow[run.stretch] = 1;
+  for (int turn = 0; turn < turns; ++turn) {
+    std::map<std::string, std::vector<double>> works;
+    std::map<int, std::vector<double>> stretches;
+    std::vector<double> known;
+    for (const PointResult& r : results)
+      for (const SceneSeconds& run : r.runs) works[r.work].push_back(whole(run) / slow[run.stretch]);
+    for (const PointResult& r : results) {
+      if (r.runs.empty()) continue;
+      const double usual = median(works[r.work]);
+      for (const SceneSeconds& run : r.runs) stretches[run.stretch].push_back(whole(run) / usual);
+    }
+    std::erase_if(stretches, [](const auto& stretch) { return stretch.second.size() < fewest_runs; });
+    for (const auto& [stretch, ratios] : stretches) {
+      slow[stretch] = median(ratios);
+      known.insert(known.end(), ratios.size(), slow[stretch]);
+    }
+    const double middle = median(known);
+    for (const auto& [stretch, ratios] : stretches) slow[stretch] /= middle;
+  }
+  return slow;
+}
+
 std::vector<PointResult> pooled_by_work(const std::vector<PointResult>& results) {
+  const std::map<int, double> slow = slowness(results);
   std::map<std::string, std::vector<SceneSeconds>> runs;
-  for (const PointResult& r : results) runs[r.work].insert(runs[r.work].end(), r.runs.begin(), r.runs.end());
+  for (const PointResult& r : results)
+    for (SceneSeconds run : r.runs) {
+      for (double SceneSeconds::*stage :
+           {&SceneSeconds::grid, &SceneSeconds::fft, &SceneSeconds::degrid, &SceneSeconds::predict_fft})
+        run.*stage /= slow.at(run.stretch);
+      runs[r.work].push_back(run);
+    }
   std::vector<PointResult> found;
   for (const PointResult& r : results) {
     if (r.runs.empty()) continue;

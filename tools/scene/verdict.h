@@ -12,8 +12,11 @@ namespace misfit::tools {
 std::vector<CostAndError> image_costs(const std::vector<PointResult>& results);
 std::vector<CostAndError> predict_costs(const std::vector<PointResult>& results);
 
-/// How well times are known, in a sentence.
+/// How well times and errors are known, in a sentence.
 std::string words_on_noise(const std::vector<PointResult>& results);
+
+/// How much the machine's speed changed, in a sentence. Of results as they were measured, not pooled.
+std::string words_on_speed(const std::vector<PointResult>& results);
 
 /// What the front of error against seconds says of least-misfit and minimax kernels where errors lie within [1e-7, 1e-3]: that
 /// it consists of them, or which others are on it and by how much they are faster; or that times are too noisy to say.

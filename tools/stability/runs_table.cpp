@@ -7,6 +7,7 @@ namespace {
 std::string statement(const StabilityOutcome& o) {
   if (!o.finite) return "broken: not finite";
   if (!o.refusal.empty()) return "refused";
+  if (!o.within_bounds()) return "broken: above its strict bound";
   if (!o.promise_kept) return "missed, said";
   return o.honest() ? "kept" : "broken";
 }
