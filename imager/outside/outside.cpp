@@ -13,13 +13,16 @@ constexpr double place_pixels = 0.5;  ///< to which places are known
 struct Group {
   Component brightest;
   double flux_jy = 0;
-  double like_jy = 0;  ///< of components of the brightest one's sign; of these the rows and columns are the mean
+  double like_jy = 0;  ///< of those of the brightest one's sign; of these the rows and columns are the mean
   double rows_jy = 0;
   double columns_jy = 0;
 
-  bool is_near(const Component& c) const {
-    constexpr int together = 3;
-    return std::abs(brightest.row - c.row) <= together && std::abs(brightest.column - c.column) <= together;
+  /// Whether a fainter component is part of it: a neighbour, or one that a source between pixels may be made of; those are the
+  /// fainter the farther off they are.
+  bool has(const Component& c) const {
+    const int apart = std::max(std::abs(brightest.row - c.row), std::abs(brightest.column - c.column));
+    const double part = std::abs(c.flux_jy / like_jy);
+    return apart <= 1 || (apart <= 3 && part < 0.3) || (apart <= 8 && part < 0.02);
   }
   void add(const Component& c) {
     flux_jy += c.flux_jy;
@@ -39,7 +42,7 @@ std::vector<Group> groups_of(std::vector<Component> components) {
                    [](const Component& a, const Component& b) { return std::abs(a.flux_jy) > std::abs(b.flux_jy); });
   std::vector<Group> groups;
   for (const Component& c : components) {
-    auto group = std::find_if(groups.begin(), groups.end(), [&](const Group& g) { return g.is_near(c); });
+    auto group = std::find_if(groups.begin(), groups.end(), [&](const Group& g) { return g.has(c); });
     if (group == groups.end()) group = groups.insert(group, Group{c});
     group->add(c);
   }

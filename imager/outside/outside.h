@@ -15,9 +15,9 @@ struct OutsideSource {
   bool at_border = false;  ///< of the field that it was found in: it may lie beyond, and be brighter
 };
 
-/// The components that CLEAN found in an image of a wider field, `found_in`, those within three pixels of a brighter one taken
-/// together, which lie more than half of its pixels outside `image` and have `least_jy` or more of either sign. The one with
-/// the highest alias comes first.
+/// The components that CLEAN found in an image of a wider field, `found_in`, those close to a much brighter one taken together
+/// with it, which lie more than half of its pixels outside `image` and have `least_jy` or more of either sign.
+/// The one with the highest alias comes first.
 std::vector<OutsideSource> sources_outside(const std::vector<Component>& components, const ImageGeometry& found_in,
                                            const ImageGeometry& image, const AliasLevels& aliases, double least_jy);
 

@@ -13,41 +13,55 @@ bool lies_inside(double u_turns, double v_turns) {
   return inside_grid(2 * u_turns, 2 * v_turns);
 }
 
-/// A sample's residual and the cell that it lies in.
+/// The residuals of a row's neighbouring channels within one cell: their noise may be one.
 struct Placed {
   std::int64_t cell = 0;
-  double weight = 0;
-  std::complex<double> residual;
+  double weight = 0;              ///< Σ w
+  std::complex<double> residual;  ///< Σ w r
 };
 
-/// Sums over samples, and over ordered pairs of them that share a cell.
+/// Sums over means of rows within cells, and over ordered pairs of them that share a cell.
 struct Sums {
-  double samples = 0;
+  double means = 0;
   double weight = 0;        ///< Σ w
-  double power = 0;         ///< Σ w |r|²; a sample's |r|² has two parts, of which an image takes one
+  double power = 0;         ///< Σ w |r|²; a mean's |r|² has two parts, of which an image takes one
+  double shared = 0;        ///< means less cells
+  double scatter = 0;       ///< Σ w |r − mean of its cell|², of which each of `shared` adds twice the noise of weight 1
   double pair_weight = 0;   ///< Σ w_j w_k
   double pair_weight2 = 0;  ///< Σ (w_j w_k)²
   double pair_power = 0;    ///< Σ w_j w_k Re r_j r_k*
 
-  /// All samples of a cell: sums over pairs are squares of sums less sums of squares.
+  /// All means of a cell: sums over pairs are squares of sums less sums of squares.
   void add_cell(const Placed* begin, const Placed* end) {
-    double w = 0, w2 = 0, w4 = 0, power2 = 0;
+    double w = 0, w2 = 0, w4 = 0, in_power = 0, power2 = 0;
     std::complex<double> sum;
     for (const Placed* p = begin; p != end; ++p) {
       const double square = p->weight * p->weight;
       w += p->weight;
       w2 += square;
       w4 += square * square;
-      power += p->weight * std::norm(p->residual);
-      power2 += square * std::norm(p->residual);
-      sum += p->weight * p->residual;
+      in_power += std::norm(p->residual) / p->weight;
+      power2 += std::norm(p->residual);
+      sum += p->residual;
     }
-    samples += static_cast<double>(end - begin);
+    const auto count = static_cast<double>(end - begin);
+    means += count;
     weight += w;
+    power += in_power;
     if (end - begin < 2) return;
+    shared += count - 1;
+    scatter += std::max(0.0, in_power - std::norm(sum) / w);
     pair_weight += w * w - w2;
     pair_weight2 += w2 * w2 - w4;
     pair_power += std::norm(sum) - power2;
+  }
+
+  /// The most that the noise of weight 1 can be in one part: as means of one cell scatter, to three standard deviations; or as
+  /// all do.
+  double most_unit_noise() const {
+    const double of_all = power / means / 2;
+    if (shared == 0) return std::sqrt(of_all);
+    return std::sqrt(std::min(of_all, scatter / shared / 2 * (1 + 3 / std::sqrt(shared))));
   }
 };
 
@@ -55,7 +69,8 @@ std::vector<Placed> placed(const VisibilityBlock& block, const std::vector<std::
                            const ImageGeometry& field) {
   std::vector<Placed> all;
   std::size_t i = 0;
-  for (std::size_t row = 0; row < block.rows(); ++row)
+  for (std::size_t row = 0; row < block.rows(); ++row) {
+    const std::size_t first = all.size();
     for (const double frequency_hz : block.frequency_hz) {
       const double per_m = frequency_hz / speed_of_light_m_s * field.cell_rad;
       const double u = block.uvw_m[3 * row] * per_m, v = block.uvw_m[3 * row + 1] * per_m;
@@ -63,10 +78,15 @@ std::vector<Placed> placed(const VisibilityBlock& block, const std::vector<std::
       if (block.weight[i] != 0 && lies_inside(u, v)) {
         const auto column = static_cast<std::int64_t>(std::floor(parts * field.width * u));
         const auto line = static_cast<std::int64_t>(std::floor(parts * field.height * v));
-        all.push_back({line * parts * 2 * field.width + column, block.weight[i], residual[i]});
+        const std::int64_t cell = line * parts * 2 * field.width + column;
+        if (all.size() == first || all.back().cell != cell) all.push_back({cell, 0, 0});
+        const double weight = block.weight[i];
+        all.back().weight += weight;
+        all.back().residual += weight * residual[i];
       }
       ++i;
     }
+  }
   std::sort(all.begin(), all.end(), [](const Placed& a, const Placed& b) { return a.cell < b.cell; });
   return all;
 }
@@ -90,8 +110,7 @@ Unexplained unexplained_by(const Image& model, const VisibilitySource& source, c
   const double alike = sums.pair_weight == 0 ? 0 : sums.pair_power / sums.pair_weight;
   const double unsure = sums.pair_weight == 0 ? square : 3 * square * std::sqrt(sums.pair_weight2) / sums.pair_weight;
   const double least = std::clamp(alike - unsure, 0.0, square), most = std::clamp(alike + unsure, 0.0, square);
-  const double noise_part = square == 0 ? 0 : 1 - least / square;
-  return {std::sqrt(square), std::sqrt(least), std::sqrt(most), std::sqrt(noise_part * sums.power / sums.samples / 2)};
+  return {std::sqrt(square), std::sqrt(least), std::sqrt(most), sums.most_unit_noise()};
 }
 
 }  // namespace misfit::imager

@@ -30,7 +30,8 @@ CleanedField clean_wide_field(const VisibilitySource& source, const Transform& t
                               const Progress& progress, StageTimes& times) {
   const TaperedVisibilities tapered(source, g.cell_rad);
   const DirtyImages images = make_dirty_images(tapered, transform, true, progress, times);
-  constexpr double deep = 2e-3;  // a source between pixels leaves less of itself
+  constexpr double deep = 2e-3;           // a source between pixels leaves hardly more of itself
+  constexpr double least_of_peak = 5e-3;  // what is fainter may be made of what such sources leave
   CleanOptions options;
   options.max_iterations = 5000;
   options.max_major_cycles = 10;
@@ -43,7 +44,7 @@ CleanedField clean_wide_field(const VisibilitySource& source, const Transform& t
       {tapered, transform, images, sidelobes.from(lobe_pixels), 1e-4}, *minor, options,
       first_state(ComponentModel(g.width, g.height, minor->scale_pixels())), progress, [](const CleanState&) {}, times);
   return {std::move(cleaned.components), std::move(cleaned.model), sidelobes,
-          std::max(5 * robust_noise(cleaned.residual, threads), options.threshold_jy)};
+          std::max(5 * robust_noise(cleaned.residual, threads), least_of_peak * largest_magnitude(images.dirty))};
 }
 
 }  // namespace
@@ -68,7 +69,10 @@ WideField WideFieldFinder::field() const {
   const double pixels = times_wider * std::max(image_.width, image_.height);
   std::size_t doublings = 2;
   while (doublings < most_doublings && std::ldexp(pixels, -static_cast<int>(doublings)) > 1024) ++doublings;
-  while (doublings > 0 && inner_[doublings] * 10 < samples_) --doublings;
+  constexpr double fewest_pixels = 64;  // a main lobe, its neighbours, and room for noise
+  while (doublings > 0 &&
+         (inner_[doublings] * 10 < samples_ || std::ldexp(pixels, -static_cast<int>(doublings)) < fewest_pixels))
+    --doublings;
   const auto coarse = [&](int side) {
     return std::max(2, static_cast<int>(std::ceil(std::ldexp(times_wider * side, -static_cast<int>(doublings)))));
   };

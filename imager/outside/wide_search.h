@@ -19,7 +19,7 @@ struct WideField {
 };
 
 /// Its cell is the image's times a power of two: 4 or, where it then has more than 1024 pixels a side, more; less where fewer
-/// than a tenth of the samples lie within half as far in u and v as it can represent.
+/// than a tenth of the samples lie within half as far in u and v as it can represent, or it has fewer than 64 pixels.
 class WideFieldFinder {
  public:
   explicit WideFieldFinder(const ImageGeometry& image) : image_(image) {}
@@ -46,8 +46,8 @@ bool can_be_imaged(const ImageGeometry& field, const VisibilitySource& source);
 /// What was found in it.
 struct WideSearch {
   std::vector<Component> components;
-  Sidelobes sidelobes;  ///< of its PSF, by its pixels
-  double least_jy = 0;  ///< flux from which on they are told from noise, and from what a shallow CLEAN leaves of bright ones
+  Sidelobes sidelobes;      ///< of its PSF, by its pixels
+  double least_jy = 0;      ///< flux from which on they are told from noise, and from what CLEAN leaves of bright ones: 1/200
   Unexplained unexplained;  ///< by the components, of the samples that its pixels can represent
   /// How high the sidelobes of sources may be that were not found, such as of those beyond the field: what is fainter may be
   /// one of them. Noise alone does not count, so far as samples share cells of the uv plane.

@@ -68,6 +68,40 @@ BOOST_AUTO_TEST_CASE(a_source_beside_the_field_is_told_from_noise_where_samples_
   BOOST_TEST(of.unexplained.image_noise_jy(of.weight) < 1.3 * noise);
 }
 
+/// As of channels smoothed by ¼ ½ ¼, which ALMA and the VLA deliver.
+BOOST_AUTO_TEST_CASE(noise_that_neighbouring_channels_share_is_no_source_and_is_that_of_the_image) {
+  constexpr std::size_t channels = 8;
+  VisibilityBlock block = random_samples(rows, channels, field.cell_rad, 9);
+  for (std::size_t c = 0; c < channels; ++c)
+    block.frequency_hz[c] = block.frequency_hz.front() * (1 + 1e-5 * static_cast<double>(c));
+  for (std::size_t row = 1; row < rows; row += 2)
+    for (std::size_t i = 0; i < 2; ++i) block.uvw_m[3 * row + i] = block.uvw_m[3 * (row - 1) + i];
+  std::fill(block.weight.begin(), block.weight.end(), 1.f);
+  const std::vector<std::complex<float>> noise = block.visibility;
+  for (std::size_t row = 0; row < rows; ++row)
+    for (std::size_t c = 1; c + 1 < channels; ++c) {
+      const std::complex<float>* at = &noise[row * channels + c];
+      block.visibility[row * channels + c] = 0.25F * at[-1] + 0.5F * at[0] + 0.25F * at[1];
+    }
+  const Seen of = seen(block);
+  BOOST_TEST(of.unexplained.sources_least_jy == 0);
+  BOOST_TEST(of.unexplained.image_noise_jy(of.weight) > 0.94 * of.image_rms_jy);
+  BOOST_TEST(of.unexplained.image_noise_jy(of.weight) < 1.06 * of.image_rms_jy);
+}
+
+/// Where all short baselines see an extended source, and long ones none, noise is not nought.
+BOOST_AUTO_TEST_CASE(sources_in_crowded_cells_alone_leave_the_noise_as_it_is) {
+  VisibilityBlock block = observed(0, true);
+  const double noise = seen(block).image_rms_jy;
+  for (std::size_t row = 0; row < rows; ++row)
+    if (std::abs(block.uvw_m[3 * row]) + std::abs(block.uvw_m[3 * row + 1]) <
+        0.02 * speed_of_light_m_s / block.frequency_hz[0] / field.cell_rad)
+      block.visibility[row] += 100;
+  const Seen of = seen(block);
+  BOOST_TEST(of.unexplained.image_noise_jy(of.weight) > 0.95 * noise);
+  BOOST_TEST(of.unexplained.image_noise_jy(of.weight) < 1.2 * noise);
+}
+
 BOOST_AUTO_TEST_CASE(without_pairs_all_may_be_a_source_and_all_may_be_noise) {
   VisibilityBlock block = observed(2, false);
   for (std::size_t row = 0; row < rows; ++row) {  // each in a cell of its own, of those 1/(4 · 64 · cell) wide

@@ -38,7 +38,7 @@ std::string elsewhere_sentence(const OutsideReport& r) {
                                 " found outside the image with less than " + with_prefix(r.least_jy, "Jy", 2) +
                                 " may be sidelobes of it, and " + (r.doubtful == 1 ? "is" : "are") + " not listed";
   return (r.elsewhere ? "about " : "up to ") + with_prefix(r.elsewhere_jy, "Jy", 2) +
-         " of flux is in no source that was found, and may come from beyond the field searched: its alias is not known" +
+         " of flux is in no source that was found: calibration errors, or sources beyond the field searched, of unknown alias" +
          (r.doubtful > 0 ? "; " + sidelobes : "");
 }
 
@@ -53,7 +53,7 @@ imager::Sidelobes sidelobes_of(const imager::Image& psf, const imager::WideSearc
 /// Tells sources from what may be sidelobes, and those that matter from others.
 void sort_out(const std::vector<imager::OutsideSource>& all, OutsideReport& r) {
   for (const imager::OutsideSource& s : all) {
-    if (s.source.flux_jy < r.least_jy) {
+    if (std::abs(s.source.flux_jy) < r.least_jy) {
       ++r.doubtful;
       continue;
     }
@@ -63,11 +63,11 @@ void sort_out(const std::vector<imager::OutsideSource>& all, OutsideReport& r) {
   }
 }
 
-/// CLEAN leaves a hundredth or so of what it finds between pixels; a tenth is something else.
+/// CLEAN leaves a hundredth or so of what it finds between pixels; three are something else.
 bool something_elsewhere(const imager::WideSearch& search) {
   double found_jy = 0;
   for (const imager::Component& c : search.components) found_jy += std::abs(c.flux_jy);
-  return search.unexplained.sources_least_jy > 0.1 * found_jy;
+  return search.unexplained.sources_least_jy > 0.03 * found_jy;
 }
 
 }  // namespace
