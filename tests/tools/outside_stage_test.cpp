@@ -24,6 +24,7 @@ OutsideReport report_with(std::size_t sources) {
   report.found = sources + 2;
   report.least_jy = 0.5;
   report.highest_alias_jy = sources > 0 ? 0.1 : 5e-4;
+  report.all_aliases_jy = 1.5 * report.highest_alias_jy;
   report.noise_jy = 1e-3;
   for (std::size_t i = 0; i < sources; ++i)
     report.sources.push_back({{{40 * arcsec, -30 * arcsec}, 2}, 0.1 / static_cast<double>(i + 1)});
@@ -72,6 +73,9 @@ BOOST_AUTO_TEST_CASE(three_sources_are_warned_of_and_the_others_counted) {
 BOOST_AUTO_TEST_CASE(the_decision_says_how_high_an_alias_is_beside_the_noise_and_whence_that_is_known) {
   OutsideReport report = report_with(0);
   BOOST_TEST(outside_decision(report).decision == "no alias above 1 mJy/beam");
+  BOOST_TEST(contains(outside_decision(report).because, "all together 750 µJy/beam"));
+  report.all_aliases_jy = 2e-3;
+  BOOST_TEST(outside_decision(report).decision == "no single alias above 1 mJy/beam");
   BOOST_TEST(contains(outside_decision(report).because, "the highest alias is 500 µJy/beam at most"));
   BOOST_TEST(contains(outside_decision(report).because, "noise is 1 mJy/beam at most, as its pixels scatter"));
   report.noise_of_pixels = false;

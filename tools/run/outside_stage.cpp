@@ -59,6 +59,7 @@ void sort_out(const std::vector<imager::OutsideSource>& all, OutsideReport& r) {
     }
     ++r.found;
     r.highest_alias_jy = std::max(r.highest_alias_jy, s.alias_jy);
+    r.all_aliases_jy += s.alias_jy;
     if (s.alias_jy > r.noise_jy) r.sources.push_back(s);
   }
 }
@@ -109,10 +110,12 @@ imager::Decision outside_decision(const OutsideReport& r) {
   std::string because = std::to_string(r.found) + " above " + with_prefix(r.least_jy, "Jy", 2) + " in " +
                         angle(r.field.width * r.field.cell_rad) + " × " + angle(r.field.height * r.field.cell_rad);
   if (r.found > 0) because += "; the highest alias is " + with_prefix(r.highest_alias_jy, "Jy/beam", 2) + " at most";
+  if (r.found > 1) because += ", all together " + with_prefix(r.all_aliases_jy, "Jy/beam", 2);
   because += "; the image's noise is " + noise_text(r);
   const std::string above = " above " + with_prefix(r.noise_jy, "Jy/beam", 2);
   const bool blind = r.elsewhere || r.doubtful > 0;
-  if (r.sources.empty()) return {"sources outside the image", (blind ? "no alias known" : "no alias") + above, because};
+  const std::string none = blind ? "no alias known" : r.all_aliases_jy > r.noise_jy ? "no single alias" : "no alias";
+  if (r.sources.empty()) return {"sources outside the image", none + above, because};
   return {"sources outside the image", std::to_string(r.sources.size()) + " may show through the kernel", because};
 }
 
@@ -155,6 +158,7 @@ nlohmann::json outside_search_json(const OutsideReport* report) {
           {"doubtful", report->doubtful},
           {"least_jy", report->least_jy},
           {"highest_alias_jy", report->highest_alias_jy},
+          {"all_aliases_jy", report->all_aliases_jy},
           {"noise_jy", report->noise_jy},
           {"noise", noise_text(*report)},
           {"elsewhere", sentence.empty() ? nlohmann::json() : nlohmann::json(sentence)},

@@ -19,7 +19,8 @@ struct OutsideReport {
   std::size_t found = 0;                       ///< sources outside, with those whose aliases do not
   std::size_t doubtful = 0;                    ///< others, which may be sidelobes of what the search did not find
   double least_jy = 0;                         ///< what is fainter is not told from noise, or doubtful
-  double highest_alias_jy = 0;                 ///< of all found, Jy/beam
+  double highest_alias_jy = 0;                 ///< of one of all found, Jy/beam
+  double all_aliases_jy = 0;                   ///< the sum of theirs: those of an extended source's parts may add up
   double noise_jy = 0;                         ///< of the image, Jy/beam
   bool noise_of_pixels = true;                 ///< as they scatter; or as visibilities do
   double elsewhere_jy = 0;                     ///< flux that is in no source found: at most, or where `elsewhere` about

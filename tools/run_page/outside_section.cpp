@@ -55,7 +55,8 @@ std::string outside_section(const json& report) {
   std::string told = "Sources above " + with_unit(member(search, "least_jy"), "Jy", 2) +
                      " outside the image, in a field four times as wide and high: " + whole(member(search, "found")) + ". ";
   if (number(search, "found") > 0)
-    told += "The highest alias is " + with_unit(member(search, "highest_alias_jy"), "Jy/beam", 2) + " at most. ";
+    told += "The highest alias is " + with_unit(member(search, "highest_alias_jy"), "Jy/beam", 2) + " at most, all together " +
+            with_unit(member(search, "all_aliases_jy"), "Jy/beam", 2) + ". ";
   const std::string elsewhere = html_escaped(text(search, "elsewhere"));
   std::string unknown;
   if (!elsewhere.empty()) unknown = tag("p", tag("strong", "Elsewhere:").append(" ").append(elsewhere).append("."));
