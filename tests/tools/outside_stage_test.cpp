@@ -95,6 +95,7 @@ BOOST_AUTO_TEST_CASE(the_plan_says_how_large_and_coarse_the_image_is_that_is_sea
 BOOST_AUTO_TEST_CASE(where_no_sample_is_short_enough_nothing_is_searched_and_that_is_told) {
   OutsideReport report = report_with(0);
   report.searched = false;
+  BOOST_TEST(contains(outside_warnings(report).at(0), "not looked for: no usable sample"));
   BOOST_TEST(outside_decision(report).decision == "not looked for");
   BOOST_TEST(outside_json(&report).is_null());
   BOOST_TEST(tools::outside_section(json_of(&report)).empty());

@@ -20,6 +20,15 @@ std::string unquoted(const std::string& text) {
   return quoted ? text.substr(1, text.size() - 2) : text;
 }
 
+/// Throws std::invalid_argument unless a flag can have this value.
+void check_flag(const std::string& name, const std::string& value) {
+  try {
+    CLI::detail::to_flag_value(value);
+  } catch (const std::invalid_argument&) {
+    throw std::invalid_argument("'" + name + "' is '" + value + "', expected true or false");
+  }
+}
+
 /// Sets the option that `line` names, unless it was typed. `taken` are the names met before.
 void take(CLI::App& command, const std::string& line, std::set<std::string>& taken) {
   const std::size_t equals = line.find('=');
@@ -30,6 +39,7 @@ void take(CLI::App& command, const std::string& line, std::set<std::string>& tak
     throw std::invalid_argument("'" + name + "' is no option of misfit " + command.get_name());
   if (!taken.insert(name).second) throw std::invalid_argument("'" + name + "' stands in the file twice");
   if (option->count() > 0) return;
+  if (option->get_items_expected_max() == 0) check_flag(name, value);
   if (option->get_items_expected_max() == 1) {
     option->add_result(value);
     return;

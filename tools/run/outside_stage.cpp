@@ -42,6 +42,10 @@ std::string elsewhere_sentence(const OutsideReport& r) {
          (r.doubtful > 0 ? "; " + sidelobes : "");
 }
 
+std::string why_not_searched(const OutsideReport& r) {
+  return "no usable sample lies within the |u| and |v| that pixels of " + angle(r.field.cell_rad) + " can represent";
+}
+
 /// Of the image's PSF, and beyond it of the wider field's, which knows what short baselines repeat.
 imager::Sidelobes sidelobes_of(const imager::Image& psf, const imager::WideSearch& search, const imager::ImageGeometry& image,
                                const imager::ImageGeometry& field) {
@@ -104,9 +108,7 @@ OutsideReport check_outside(const imager::VisibilitySource& source, const imager
 }
 
 imager::Decision outside_decision(const OutsideReport& r) {
-  if (!r.searched)
-    return {"sources outside the image", "not looked for",
-            "no usable sample lies within the |u| and |v| that pixels of " + angle(r.field.cell_rad) + " can represent"};
+  if (!r.searched) return {"sources outside the image", "not looked for", why_not_searched(r)};
   std::string because = std::to_string(r.found) + " above " + with_prefix(r.least_jy, "Jy", 2) + " in " +
                         angle(r.field.width * r.field.cell_rad) + " × " + angle(r.field.height * r.field.cell_rad);
   if (r.found > 0) because += "; the highest alias is " + with_prefix(r.highest_alias_jy, "Jy/beam", 2) + " at most";
@@ -121,6 +123,7 @@ imager::Decision outside_decision(const OutsideReport& r) {
 
 std::vector<std::string> outside_warnings(const OutsideReport& r) {
   constexpr std::size_t told = 3;
+  if (!r.searched) return {"sources outside the image were not looked for: " + why_not_searched(r)};
   std::vector<std::string> warnings;
   for (const imager::OutsideSource& s : r.sources) {
     if (warnings.size() == told) break;

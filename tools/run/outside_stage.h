@@ -47,7 +47,7 @@ imager::Decision search_decision(const imager::WideField& field, double seconds)
 imager::Decision outside_decision(const OutsideReport& report);
 
 /// One for each of the three with the highest aliases, whose last says how many more there are; and one of flux that is in no
-/// source found, where there is some for certain or makes a detection doubtful.
+/// source found, where there is some for certain or makes a detection doubtful. Or that nothing was looked for.
 std::vector<std::string> outside_warnings(const OutsideReport& report);
 
 /// `outside` and `outside_search` of report.json: the list of sources, and how they were looked for; null without a search.
