@@ -237,6 +237,7 @@ BOOST_AUTO_TEST_CASE(a_name_that_ends_in_a_slash_is_no_name) {
   const Scene scene;
   check_refused(scene.image("--imagename", scene.out + "/"), 2, {"--imagename", "expected a name"}, scene.out);
   check_refused(scene.image("--imagename", ""), 2, {"--imagename", "expected a name"}, scene.out);
+  check_refused(scene.image("--imagename", scene.out + "/.."), 2, {"--imagename", "expected a name"}, scene.out);
 }
 
 BOOST_AUTO_TEST_CASE(images_are_not_put_inside_a_measurement_set) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
@@ -28,7 +29,8 @@ std::string text(double value) {
 }
 
 void check_image(const ImageOptions& o) {
-  if (o.imagename.empty() || o.imagename.back() == '/')
+  const std::string name = std::filesystem::path(o.imagename).filename();
+  if (name.empty() || name == "." || name == "..")
     refuse("imagename", "'" + o.imagename + "'", "a name for files to begin with, not a folder");
   constexpr int largest = 65536;
   for (const int size : o.imsize)
