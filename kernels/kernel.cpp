@@ -25,4 +25,12 @@ Kernel make_kernel(const std::string& name, double x0, const TapFunction& functi
   return kernel;
 }
 
+Kernel truncated(const Kernel& kernel, int degree) {
+  if (degree >= kernel.polynomial.degree()) return kernel;
+  Kernel cut = kernel;
+  cut.polynomial = fit_polynomial(kernel.polynomial, degree);
+  cut.misfit = judge(cut.polynomial, cut.x0);
+  return cut;
+}
+
 }  // namespace misfit::kernels

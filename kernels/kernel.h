@@ -36,4 +36,7 @@ struct Kernel {
 /// 1e-7 of itself, as far as doubles and highest_degree hold it. Without an `origin` the function is judged as it is.
 Kernel make_kernel(const std::string& name, double x0, const TapFunction& function, const std::optional<Origin>& origin = {});
 
+/// The kernel with its polynomials cut to `degree`, judged anew, where they are of a higher one.
+Kernel truncated(const Kernel& kernel, int degree);
+
 }  // namespace misfit::kernels

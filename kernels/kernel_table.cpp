@@ -135,14 +135,14 @@ void add_checksum(const FitsMemory& file) {
 void write_host_table(const FitsMemory& file, const HostTable& table) {
   std::vector<char*> names, formats;
   for (const HostTable::Column& column : table.columns) {
-    names.push_back(const_cast<char*>(column.name));
+    names.push_back(const_cast<char*>(column.name.c_str()));
     formats.push_back(const_cast<char*>("1D"));
   }
   const Eigen::Index rows = table.columns.front().value.size();
   int status = 0, number = 0;
   file.check(fits_create_tbl(file.get(), BINARY_TBL, rows, static_cast<int>(names.size()), names.data(), formats.data(),
-                             nullptr, table.name, &status));
-  for (const char* line : table.comments) HeaderWriter(file).comment(line);
+                             nullptr, table.name.c_str(), &status));
+  for (const std::string& line : table.comments) HeaderWriter(file).comment(line.c_str());
   for (const HostTable::Column& column : table.columns)
     file.check(fits_write_col(file.get(), TDOUBLE, ++number, 1, 1, rows, const_cast<double*>(column.value.data()), &status));
   add_checksum(file);
@@ -276,7 +276,8 @@ bool is_intact(const FitsMemory& file, std::size_t size) {
 
 }  // namespace
 
-void write_kernel_table(const Kernel& kernel, const std::optional<TableSampling>& sampling, const fs::path& path) {
+void write_kernel_table(const Kernel& kernel, const std::optional<TableSampling>& sampling, const fs::path& path,
+                        const std::vector<HostTable>& more) {
   check_storable(kernel, sampling);
   const std::lock_guard<std::mutex> lock(cfitsio_mutex());
   FitsMemory file("write kernel table " + path.string());
@@ -287,6 +288,7 @@ void write_kernel_table(const Kernel& kernel, const std::optional<TableSampling>
   write_polynomial(file, kernel, sampling);
   if (sampling)
     for (const HostTable& table : host_tables(kernel, sampling->per_cell)) write_host_table(file, table);
+  for (const HostTable& table : more) write_host_table(file, table);
   const std::size_t size = file.end();
   file.close();
   write_whole_file(path, file.data(), size);

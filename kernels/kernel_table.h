@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "kernels/kernel.h"
 
@@ -25,7 +26,8 @@ struct TableSampling {
 /// - primary: no data; KERNEL, W, X0, PADDING, E, MAXELL, EOPT, COND, PRECISN and more: all of `Kernel` that is no table;
 /// - POLY: a row for each cell r = 0 … W−1, COEFF = ascending powers of t, as in `PiecewisePolynomial`; the same header;
 /// - CONVFUNC: U, C as in sampled_function(); CORRECT: X, H, ONE_OVER_C, the optimal correction and 1/c over 0 ≤ x ≤ x0;
-///   MAPERROR: X, ELL, the map error over 0 ≤ x ≤ ½. For hosts; they follow from POLY, and may be lacking.
+///   MAPERROR: X, ELL, the map error over 0 ≤ x ≤ ½. For hosts; they follow from POLY, and may be lacking, and others may
+///   follow.
 struct KernelTable {
   Kernel kernel;
   std::optional<TableSampling> sampling;  ///< where there is a CONVFUNC
@@ -34,10 +36,22 @@ struct KernelTable {
   bool checksum_ok = false;               ///< every HDU has a CHECKSUM and a DATASUM, and they match
 };
 
-/// Writes `kernel` to `path`, with tables for hosts where a `sampling` is given. The file appears under its name only when
-/// complete. Throws std::invalid_argument for a kernel or a sampling that a table cannot hold, std::runtime_error that names
-/// the path when it cannot be written.
-void write_kernel_table(const Kernel& kernel, const std::optional<TableSampling>& sampling, const std::filesystem::path& path);
+/// A further table of a file: what a host is given beside the kernel's own.
+struct HostTable {
+  struct Column {
+    std::string name;
+    Eigen::VectorXd value;
+  };
+  std::string name;
+  std::vector<Column> columns;        ///< of equal lengths
+  std::vector<std::string> comments;  ///< lines of at most 70 characters of ASCII
+};
+
+/// Writes `kernel` to `path`, with tables for hosts where a `sampling` is given, and `more`. The file appears under its name
+/// only when complete. Throws std::invalid_argument for a kernel or a sampling that a table cannot hold, std::runtime_error
+/// that names the path when it cannot be written.
+void write_kernel_table(const Kernel& kernel, const std::optional<TableSampling>& sampling, const std::filesystem::path& path,
+                        const std::vector<HostTable>& more = {});
 
 /// Reads POLY and the header: the same kernel bit for bit. Throws std::runtime_error that names the path, the thing and what
 /// was expected when this is no such file. A checksum that does not match is for the caller to judge.

@@ -18,17 +18,6 @@ struct Fact {
 /// Every number of `kernel` but the polynomial's.
 std::array<Fact, 10> facts_of(Kernel& kernel);
 
-/// A table that follows from the kernel.
-struct HostTable {
-  struct Column {
-    const char* name;
-    Eigen::VectorXd value;
-  };
-  const char* name;
-  std::vector<Column> columns;
-  std::vector<const char*> comments;
-};
-
 /// CONVFUNC, CORRECT and MAPERROR.
 std::vector<HostTable> host_tables(const Kernel& kernel, int per_cell);
 

@@ -79,8 +79,8 @@ Eigen::VectorXd optimal_correction(const TapFunction& taps, const Eigen::VectorX
   return correction(response(taps, x, t.node), t.weight);
 }
 
-Eigen::VectorXd image_taper(const TapFunction& taps, const Eigen::VectorXd& x) {
-  const Quadrature t = positions(0).mean;
+Eigen::VectorXd image_taper(const TapFunction& taps, const Eigen::VectorXd& x, int steps_per_cell) {
+  const Quadrature t = positions(steps_per_cell).mean;
   return response(taps, x, t.node).real.matrix() * t.weight;
 }
 

@@ -29,7 +29,7 @@ Eigen::VectorXd optimal_correction(const TapFunction& taps, const Eigen::VectorX
 /// square of the rounding of doubles.
 Eigen::VectorXd map_error(const TapFunction& taps, const Eigen::VectorXd& x, const JudgeOptions& options = {});
 /// The taper c(x) = ∫ C(u) exp(2πiux) du that gridding leaves on an image; the correction in common use is 1/c.
-Eigen::VectorXd image_taper(const TapFunction& taps, const Eigen::VectorXd& x);
+Eigen::VectorXd image_taper(const TapFunction& taps, const Eigen::VectorXd& x, int steps_per_cell = 0);
 
 /// How far a kernel is from the exact transform over |x| ≤ x0; squares of relative errors of a one-dimensional transform.
 struct Misfit {

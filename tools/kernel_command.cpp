@@ -12,6 +12,7 @@
 #include "tools/base/numbers.h"
 #include "tools/base/option_checks.h"
 #include "tools/command.h"
+#include "tools/emit/emission_plan.h"
 #include "tools/kernel_choice/kernel_advice.h"
 #include "tools/kernel_choice/kernel_choice.h"
 #include "tools/kernel_choice/machine_costs.h"
@@ -30,6 +31,7 @@ struct KernelOptions {
   std::string inspect;
   bool json = false;
   bool quiet = false;
+  EmitOptions emit;
   KernelJob job;  ///< for which width and padding are chosen when it has an accuracy
 };
 
@@ -37,25 +39,23 @@ void refuse(bool wrong, const std::string& option, const std::string& value, con
   if (wrong) throw std::invalid_argument("--" + option + " " + value + ": expected " + expected);
 }
 
-void check(const KernelOptions& o) {
-  const auto range = [](int value, int least, int most, const std::string& option) {
-    refuse(value < least || value > most, option, std::to_string(value), std::to_string(least) + " to " + std::to_string(most));
-  };
-  if (o.width == 0) throw std::invalid_argument("expected --width, the number of cells a visibility touches per axis");
-  if ((o.x0 == 0) == (o.padding == 0)) throw std::invalid_argument("expected either --x0 or --padding");
-  refuse(o.padding != 0 && !(o.padding > 1 && o.padding <= 500), "padding", significant(o.padding, 6),
-         "more than 1, at most 500");
-  range(o.sampling.per_cell, 1, kernels::kernel_table_max_per_cell, "sampling");
-  range(o.sampling.interpolation, 0, 3, "interpolation");
-  if (o.degree != -1) range(o.degree, 0, kernels::highest_degree, "degree");
+void refuse_outside(int value, int least, int most, const std::string& option) {
+  refuse(value < least || value > most, option, std::to_string(value), std::to_string(least) + " to " + std::to_string(most));
 }
 
-/// The kernel with its polynomials cut to `degree`, where they are of a higher one.
-kernels::Kernel truncated(kernels::Kernel kernel, int degree) {
-  if (degree >= kernel.polynomial.degree()) return kernel;
-  kernel.polynomial = kernels::fit_polynomial(kernel.polynomial, degree);
-  kernel.misfit = kernels::judge(kernel.polynomial, kernel.x0);
-  return kernel;
+/// What holds for every way to make a kernel.
+void check_common(const KernelOptions& o) {
+  refuse(o.padding != 0 && !(o.padding > 1 && o.padding <= 500), "padding", significant(o.padding, 6),
+         "more than 1, at most 500");
+  refuse_outside(o.sampling.per_cell, 1, kernels::kernel_table_max_per_cell, "sampling");
+  refuse_outside(o.sampling.interpolation, 0, 3, "interpolation");
+  if (o.degree != -1) refuse_outside(o.degree, 0, kernels::highest_degree, "degree");
+}
+
+void check(const KernelOptions& o) {
+  if (o.width == 0) throw std::invalid_argument("expected --width, the number of cells a visibility touches per axis");
+  if ((o.x0 == 0) == (o.padding == 0)) throw std::invalid_argument("expected either --x0 or --padding");
+  check_common(o);
 }
 
 /// What looking the table up adds to E.
@@ -139,7 +139,7 @@ void make(const KernelOptions& o) {
   const kernels::KernelFamily family = choose_kernel(o.kernel);
   check_writable_folder(o.output);
   const kernels::Kernel made = family.make(o.width, o.x0 != 0 ? o.x0 : 0.5 / o.padding);
-  const kernels::Kernel kernel = o.degree == -1 ? made : truncated(made, o.degree);
+  const kernels::Kernel kernel = o.degree == -1 ? made : kernels::truncated(made, o.degree);
   kernels::write_kernel_table(kernel, o.sampling, o.output);
   if (o.quiet) return;
   print({kernel, o.sampling, "", kernels::solver_version, true}, o.output);
@@ -149,6 +149,73 @@ void make(const KernelOptions& o) {
                 kernel.polynomial.degree() < made.polynomial.degree()
                     ? "polynomials of this degree hold no more"
                     : "doubles hold no more, since each rounds by 1.1e-16 of itself");
+}
+
+nlohmann::json json_of(const RealisedError& error) {
+  return {{"rms", error.rms}, {"largest", error.largest}};
+}
+
+nlohmann::json json_of(const Emission& e) {
+  const HostKernel& k = e.table;
+  nlohmann::json json = {{"host", e.host->name},
+                         {"kernel", k.kernel.name},
+                         {"width", k.kernel.width()},
+                         {"x0", k.kernel.x0},
+                         {"padding", k.padding},
+                         {"sampling", nullptr},
+                         {"interpolation", nullptr},
+                         {"degree", k.kernel.polynomial.degree()},
+                         {"error", json_of(e.realised)},
+                         {"error_of_function", json_of(e.function)},
+                         {"error_with_own_correction", nullptr},
+                         {"error_of_host_without_this", nullptr}};
+  if (k.per_cell > 0) {
+    json["sampling"] = k.per_cell;
+    json["interpolation"] = k.interpolation;
+  }
+  if (e.own) json["error_with_own_correction"] = json_of(*e.own);
+  if (e.stock) json["error_of_host_without_this"] = json_of(*e.stock);
+  return json;
+}
+
+void check_emission(const KernelOptions& o) {
+  const bool targeted = o.emit.target_error != 0;
+  if (o.output.empty()) throw std::invalid_argument("--emit " + o.emit.host + ": expected --output, the file to write");
+  refuse(targeted && !(o.emit.target_error > 0 && o.emit.target_error < 1), "target-error", significant(o.emit.target_error, 6),
+         "a number above 0 and below 1");
+  refuse(o.emit.host_padding != 0 && !(o.emit.host_padding > 1 && o.emit.host_padding <= 500), "host-padding",
+         significant(o.emit.host_padding, 6), "more than 1, at most 500");
+  if (targeted && (o.width != 0 || o.degree != -1 || o.emit.per_cell != 0))
+    throw std::invalid_argument(
+        "--target-error chooses width, sampling and degree; expected it without --width, --sampling and --degree");
+  for (const int size : o.job.imsize) refuse_outside(size, 1, 65536, "imsize");
+}
+
+/// Writes the kernel as a host wants it.
+void emit(KernelOptions& o) {
+  check_common(o);
+  check_emission(o);
+  if (o.x0 != 0 && o.padding != 0) throw std::invalid_argument("expected either --x0 or --padding");
+  const kernels::KernelFamily family = choose_kernel(o.kernel);
+  o.emit.width = o.width;
+  o.emit.degree = o.degree;
+  o.emit.x0 = o.padding != 0 ? 0.5 / o.padding : o.x0;
+  if (o.emit.x0 == 0 && is_kernel_file(o.kernel)) o.emit.x0 = family.max_x0;
+  if (!o.job.imsize.empty()) o.emit.image_size = *std::max_element(o.job.imsize.begin(), o.job.imsize.end());
+  check_writable_folder(o.output);
+  const Emission emission = plan_emission(o.emit, family);
+  emission.host->write(emission, o.output);
+  if (o.quiet) return;
+  if (o.json) {
+    std::printf("%s\n", json_of(emission).dump(2).c_str());
+    return;
+  }
+  const char* before = "";
+  std::printf("%s: ", o.output.c_str());
+  for (const std::string& line : statement(emission)) {
+    std::printf("%s%s\n", before, line.c_str());
+    before = "  ";
+  }
 }
 
 /// Fills in width, x0 and degree.
@@ -166,6 +233,16 @@ void choose(KernelOptions& o) {
 
 }  // namespace
 
+namespace {
+
+std::string host_names() {
+  std::string names;
+  for (const Host& host : host_catalogue()) names += (names.empty() ? "" : ", ") + host.name;
+  return names;
+}
+
+}  // namespace
+
 void add_kernel_command(CLI::App& program) {
   CLI::App* command = program.add_subcommand("kernel", "Make a kernel-table file, or show what is in one");
   const auto o = std::make_shared<KernelOptions>();
@@ -175,15 +252,21 @@ void add_kernel_command(CLI::App& program) {
   command->add_option("--padding", o->padding, "FFT size over image size, 1 / (2 x0)");
   CLI::Option* accuracy =
       command->add_option("--accuracy", o->job.accuracy, "Choose width and padding that reach it at the least cost");
-  command->add_option("--imsize", o->job.imsize, "Of the image: width, or width and height, in pixels")
-      ->expected(1, 2)
-      ->needs(accuracy);
+  command->add_option("--imsize", o->job.imsize, "Of the image: width, or width and height, in pixels")->expected(1, 2);
   command->add_option("--samples", o->job.samples, "Visibilities to be gridded")->needs(accuracy);
   command->add_option("--w-turns", o->job.w_turns, "Range of w in wavelengths times the image's range of n - 1; 0 = no w axis")
       ->needs(accuracy);
   command->add_option("--sampling", o->sampling.per_cell, "Rows of the lookup table a cell");
   command->add_option("--interpolation", o->sampling.interpolation, "Degree to which a host is to interpolate it, 0 to 3");
   command->add_option("--degree", o->degree, "Cut the polynomials to this degree; -1 = as many terms as the kernel has");
+  CLI::Option* host = command->add_option("--emit", o->emit.host, "Write --output as a host wants it: " + host_names());
+  command->add_option("--host-padding", o->emit.host_padding, "Padding that the host will use, where it is not its own")
+      ->needs(host);
+  command
+      ->add_option("--target-error", o->emit.target_error, "Choose width, sampling and degree with which the host reaches it")
+      ->needs(host)
+      ->excludes(accuracy);
+  command->add_flag("--force", o->emit.force, "Emit a kernel that is made for another padding than the host's")->needs(host);
   CLI::Option* output = command->add_option("--output", o->output, "FITS file to write")->check(not_empty());
   command->add_flag("--quiet", o->quiet, "Print nothing but errors");
   CLI::Option* inspected = command->add_option("--inspect", o->inspect, "Kernel-table file to show");
@@ -191,10 +274,18 @@ void add_kernel_command(CLI::App& program) {
   for (const char* making :
        {"--kernel", "--width", "--x0", "--padding", "--sampling", "--interpolation", "--degree", "--quiet"})
     inspected->excludes(command->get_option(making));
-  command->add_flag("--json", o->json, "Show it for machines")->needs(inspected);
-  command->callback([o] {
+  command->add_flag("--json", o->json, "Print for machines what --inspect or --emit say");
+  const CLI::Option* sampling = command->get_option("--sampling");
+  const CLI::Option* interpolation = command->get_option("--interpolation");
+  command->callback([o, sampling, interpolation] {
     const bool choosing = o->job.accuracy != 0;
     if (!o->inspect.empty()) return inspect(*o);
+    if (!o->emit.host.empty()) {
+      if (sampling->count() > 0) o->emit.per_cell = o->sampling.per_cell;
+      if (interpolation->count() > 0) o->emit.interpolation = o->sampling.interpolation;
+      return emit(*o);
+    }
+    if (!choosing && !o->job.imsize.empty()) throw std::invalid_argument("--imsize: expected --accuracy or --emit beside it");
     if (choosing) choose(*o);
     if (o->output.empty() && !choosing) throw std::invalid_argument("expected one of --output, --inspect and --accuracy");
     if (!o->output.empty()) make(*o);

@@ -1,0 +1,65 @@
+#include "kernels/catalogue.h"
+#include "kernels/kernel_table.h"
+#include "tools/emit/emission.h"
+#include "tools/emit/hosts.h"
+#include "tools/hosts/casacore_table.h"
+
+namespace misfit::tools {
+namespace {
+
+/// Schwab's function with the image divided by its own transform, as ConvolveGridder("SF") has it.
+HostRule stock(const HostKernel& k) {
+  constexpr int per_cell = 100, width = 6;
+  const kernels::Kernel own = kernels::kernel_family("spheroidal").make(width, k.x0());
+  const double whole = kernels::image_taper(own.polynomial, Eigen::VectorXd::Zero(1))[0];
+  return {hosts::casacore_taps(hosts::casacore_table(own.polynomial, per_cell), per_cell), per_cell,
+          [own, whole](const Eigen::VectorXd& x) -> Eigen::VectorXd {
+            return whole * kernels::image_taper(own.polynomial, x).cwiseInverse();
+          }};
+}
+
+kernels::HostTable table_of(const Emission& e) {
+  const Eigen::VectorXd table = hosts::casacore_table(e.table.kernel.polynomial, e.table.per_cell);
+  std::vector<std::string> comments = statement(e);
+  comments.emplace_back("CONVFUNC is casacore's cFunction(): entry i at |u| = i / cSampling().");
+  comments.emplace_back("misfit::hosts::ConvolveGridderTable in tools/hosts/casacore_gridder.h");
+  comments.emplace_back("takes this file; misfit::hosts::CasacoreGridder takes its POLY.");
+  return {"CASACORE", {{"CONVFUNC", table}}, comments};
+}
+
+kernels::HostTable divisor_of(const Emission& e) {
+  constexpr int rows = 1025;
+  const Eigen::VectorXd x = Eigen::VectorXd::LinSpaced(rows, 0, e.divisor.x0);
+  return {"CASACORR",
+          {{"X", x}, {"DIVISOR", x.unaryExpr([&](double at) { return e.divisor(at); })}},
+          {"What correctionFactor1D(loc, len) is to return at",
+           "X = |loc - len / 2| / len: 1/h for the taps divided by their sum."}};
+}
+
+void write(const Emission& e, const std::string& path) {
+  kernels::write_kernel_table(e.table.kernel, kernels::TableSampling{e.table.per_cell, 0}, path, {table_of(e), divisor_of(e)});
+}
+
+}  // namespace
+
+Host casacore_host() {
+  Host host;
+  host.name = "casacore";
+  host.title = "casacore's ConvolveGridder";
+  host.habit =
+      "the nearest entry of the table, each visibility's taps divided by their sum, the image divided by what it is given";
+  host.padding = 1.2;
+  host.max_width = 7;
+  host.table = {100000, kernels::kernel_table_max_per_cell, false, false};
+  host.sums_in_single_precision = true;
+  host.taps_of = [](int) { return 7; };
+  host.taps = [](const HostKernel& k) {
+    return hosts::casacore_taps(hosts::casacore_table(k.kernel.polynomial, k.per_cell), k.per_cell);
+  };
+  host.stock = stock;
+  host.stock_name = "its spheroidal function, 100 entries a cell";
+  host.write = write;
+  return host;
+}
+
+}  // namespace misfit::tools

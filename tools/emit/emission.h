@@ -1,0 +1,34 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "tools/emit/divisor_series.h"
+#include "tools/emit/realised_error.h"
+
+namespace misfit::tools {
+
+/// All that is said of a gridding function in a host, and written for it.
+struct Emission {
+  const Host* host = nullptr;
+  HostKernel table;
+  DivisorSeries divisor;               ///< the optimal one for the taps that the host makes
+  RealisedError realised;              ///< with this divisor
+  double rounding = 0;                 ///< what sums in single precision add to it at least; 0 for hosts with doubles
+  std::optional<RealisedError> own;    ///< with the correction that the host works out by itself
+  std::optional<RealisedError> stock;  ///< what the host errs by without us
+  RealisedError function;              ///< the function's own, without the host
+};
+
+/// Throws std::invalid_argument where the host cannot hold the kernel: its width, degree, table or padding.
+Emission emission(const Host& host, const HostKernel& table);
+
+/// Refuses, by std::invalid_argument, a kernel that was made for another part of the FFT image than the host keeps:
+/// |2·x0·padding − 1| > 1e-3.
+void check_padding(const Host& host, const HostKernel& table);
+
+/// What is printed, and stands at the head of every file: a line each.
+std::vector<std::string> statement(const Emission& emission);
+
+}  // namespace misfit::tools
