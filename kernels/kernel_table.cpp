@@ -317,4 +317,12 @@ KernelTable read_kernel_table(const fs::path& path) {
   return table;
 }
 
+KernelTable read_intact_kernel_table(const fs::path& path) {
+  KernelTable table = read_kernel_table(path);
+  if (!table.checksum_ok)
+    throw std::runtime_error("kernel table " + path.string() +
+                             " does not match its checksum: it has changed since it was written");
+  return table;
+}
+
 }  // namespace misfit::kernels

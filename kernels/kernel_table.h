@@ -56,5 +56,7 @@ void write_kernel_table(const Kernel& kernel, const std::optional<TableSampling>
 /// Reads POLY and the header: the same kernel bit for bit. Throws std::runtime_error that names the path, the thing and what
 /// was expected when this is no such file. A checksum that does not match is for the caller to judge.
 KernelTable read_kernel_table(const std::filesystem::path& path);
+/// The same for callers that want nothing of a file whose checksum does not match: std::runtime_error that names the path.
+KernelTable read_intact_kernel_table(const std::filesystem::path& path);
 
 }  // namespace misfit::kernels

@@ -83,6 +83,11 @@ BOOST_AUTO_TEST_CASE(a_file_cut_short_is_refused_unless_the_kernel_is_whole) {
   BOOST_TEST(between <= 3);
   put(files.path, good + std::string(2880, '\0'));
   BOOST_TEST(!read_kernel_table(files.path).checksum_ok);
+  BOOST_CHECK_EXCEPTION(read_intact_kernel_table(files.path), std::runtime_error, [&](const std::runtime_error& error) {
+    return std::string(error.what()).find(files.path + " does not match its checksum") != std::string::npos;
+  });
+  put(files.path, good);
+  BOOST_TEST(same(read_intact_kernel_table(files.path).kernel, example()));
 }
 
 BOOST_AUTO_TEST_CASE(what_is_no_kernel_table_is_refused_by_name) {

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cstdlib>
-#include <stdexcept>
 
 #include "kernels/kernel_cache.h"
 #include "kernels/kernel_table.h"
@@ -23,10 +22,7 @@ bool is_in_catalogue(const std::string& name) {
 }
 
 kernels::KernelFamily family_of_file(const std::string& path) {
-  const kernels::KernelTable table = kernels::read_kernel_table(path);
-  if (!table.checksum_ok)
-    throw std::runtime_error("kernel table " + path + " does not match its checksum: it has changed since it was written");
-  kernels::KernelFamily family = kernels::family_of(table.kernel);
+  kernels::KernelFamily family = kernels::family_of(kernels::read_intact_kernel_table(path).kernel);
   family.name = path;
   return family;
 }

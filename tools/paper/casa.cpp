@@ -1,11 +1,10 @@
 #include <array>
 #include <cmath>
-#include <cstdlib>
 
 #include "kernels/catalogue.h"
 #include "kernels/evaluation.h"
-#include "kernels/sampled_function.h"
 #include "tools/base/numbers.h"
+#include "tools/hosts/casacore_table.h"
 #include "tools/paper/paper_experiments.h"
 #include "tools/paper/plain_gridder.h"
 
@@ -15,24 +14,9 @@ namespace {
 using kernels::Interpolation;
 
 constexpr int entries_a_cell = 100;
-constexpr int casa_taps = 7;
 constexpr double casa_x0 = 5.0 / 12;  // padding 1.2
 constexpr double short_x0 = 0.25;
 constexpr int short_width = 3;
-
-/// The seven cells around the nearest one, each with the nearest of the entries |u| = i/Ms, divided by their sum, as casacore's
-/// ConvolveGridder has it. Beyond |u| = 3 the table holds zeros.
-kernels::TapFunction taps_of_casa(const kernels::PiecewisePolynomial& function) {
-  return [table = kernels::sampled_function(function, entries_a_cell)](double t) {
-    Eigen::VectorXd taps = Eigen::VectorXd::Zero(casa_taps);
-    const long off = std::lround(t * entries_a_cell);
-    for (int r = 0; r < casa_taps; ++r) {
-      const long entry = std::labs((r - casa_taps / 2) * entries_a_cell - off);
-      if (entry < table.size()) taps[r] = table[entry];
-    }
-    return Eigen::VectorXd(taps / taps.sum());
-  };
-}
 
 /// One way of gridding: what it is, and how wrong its image is.
 struct Case {
@@ -61,15 +45,16 @@ double expected_with(const kernels::Kernel& kernel, double x0, const kernels::Co
 std::vector<Case> casa_cases(const CardScene& scene) {
   const kernels::Kernel kernel = kernels::kernel_family("spheroidal").make(6, casa_x0);
   const double whole = kernels::image_taper(kernel.polynomial, Eigen::VectorXd::Zero(1))[0];
+  const kernels::TapFunction taps =
+      hosts::casacore_taps(hosts::casacore_table(kernel.polynomial, entries_a_cell), entries_a_cell);
   const auto reciprocal = [&](double centre) -> kernels::Correction {
     return [&kernel, centre](const Eigen::VectorXd& x) -> Eigen::VectorXd {
       return centre * kernels::image_taper(kernel.polynomial, x).cwiseInverse();
     };
   };
   return {
-      {"CASA: spheroidal, table", casa_taps, casa_x0, 6.0 * entries_a_cell,
-       misfit_with(scene, casa_x0, taps_of_casa(kernel.polynomial), reciprocal(whole)),
-       expected_with(kernel, casa_x0, reciprocal(1), true)},
+      {"CASA: spheroidal, table", hosts::casacore_cells, casa_x0, 6.0 * entries_a_cell,
+       misfit_with(scene, casa_x0, taps, reciprocal(whole)), expected_with(kernel, casa_x0, reciprocal(1), true)},
       {"the same function without a table", 6, casa_x0, std::nan(""),
        misfit_with(scene, casa_x0, kernel.polynomial, reciprocal(1)), expected_with(kernel, casa_x0, reciprocal(1), false)}};
 }
