@@ -22,8 +22,8 @@ kernels::HostTable table_of(const Emission& e) {
   const Eigen::VectorXd table = hosts::casacore_table(e.table.kernel.polynomial, e.table.per_cell);
   std::vector<std::string> comments = statement(e);
   comments.emplace_back("CONVFUNC is casacore's cFunction(): entry i at |u| = i / cSampling().");
-  comments.emplace_back("misfit::hosts::ConvolveGridderTable in tools/hosts/casacore_gridder.h");
-  comments.emplace_back("takes this file; misfit::hosts::CasacoreGridder takes its POLY.");
+  comments.emplace_back("misfit::hosts::ConvolveGridderTable takes this file, and");
+  comments.emplace_back("misfit::hosts::CasacoreGridder its POLY, without the table's error.");
   return {"CASACORE", {{"CONVFUNC", table}}, comments};
 }
 
