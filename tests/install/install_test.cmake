@@ -10,5 +10,5 @@ run(${CMAKE_COMMAND} --install ${BUILD} --prefix ${work}/prefix)
 run(${CMAKE_COMMAND} -S ${CONSUMER} -B ${work}/consumer -D CMAKE_PREFIX_PATH=${work}/prefix -D CMAKE_CXX_FLAGS=${FLAGS}
     -D CMAKE_CXX_COMPILER=${COMPILER})
 run(${CMAKE_COMMAND} --build ${work}/consumer)
-run(${work}/consumer/consumer)
+run(${work}/consumer/consumer WORKING_DIRECTORY ${work})
 file(REMOVE_RECURSE ${work})
