@@ -73,7 +73,7 @@ BOOST_DATA_TEST_CASE(every_width_errs_as_theory_says_in_both_directions, bdata::
 }
 
 BOOST_AUTO_TEST_CASE(seven_cells_and_padding_2_leave_3e_7) {
-  // √(2E) is 1.6e-7, to which single precision adds 0.5e-7.
+  // √(2E) is 1.7e-7, to which single precision adds 0.5e-7.
   const LeastMisfitFile file(7, padded_twice.x0());
   for (GriddedSky sky : {GriddedSky::random_phases(64, 128, visibilities), GriddedSky::points(64, 128, visibilities)}) {
     CasacoreGridder gridder = gridder_for(file, sky);

@@ -92,7 +92,7 @@ BOOST_AUTO_TEST_CASE(a_fine_table_beats_the_stock_gridder_by_a_thousand) {
     const Errors before = errors(sky, stock), after = errors(sky, gridder);
     BOOST_TEST_MESSAGE("stock " << before.degridding << ' ' << before.gridding << ", table " << after.degridding << ' '
                                 << after.gridding);
-    // √2 e of 100 entries a cell is 3.7e-3; of 100000, 3.7e-6, which the misfit of 1.5e-7 does not add to.
+    // √2 e of 100 entries a cell is 3.7e-3; of 100000, 3.7e-6, to which √(2E) = 1.7e-7 adds nothing.
     for (const double error : {before.degridding, before.gridding}) BOOST_TEST((error > 1e-3 && error < 1e-2));
     for (const double error : {after.degridding, after.gridding}) BOOST_TEST(error < 6e-6);
   }
