@@ -264,13 +264,13 @@ void add_kernel_command(CLI::App& program) {
       ->needs(host);
   command
       ->add_option("--target-error", o->emit.target_error, "Choose width, sampling and degree with which the host reaches it")
-      ->needs(host)
-      ->excludes(accuracy);
+      ->needs(host);
+  host->excludes(accuracy);
   command->add_flag("--force", o->emit.force, "Emit a kernel that is made for another padding than the host's")->needs(host);
   CLI::Option* output = command->add_option("--output", o->output, "FITS file to write")->check(not_empty());
   command->add_flag("--quiet", o->quiet, "Print nothing but errors");
   CLI::Option* inspected = command->add_option("--inspect", o->inspect, "Kernel-table file to show");
-  inspected->excludes(output)->excludes(accuracy);
+  inspected->excludes(output)->excludes(accuracy)->excludes(host);
   for (const char* making :
        {"--kernel", "--width", "--x0", "--padding", "--sampling", "--interpolation", "--degree", "--quiet"})
     inspected->excludes(command->get_option(making));
@@ -285,6 +285,7 @@ void add_kernel_command(CLI::App& program) {
       if (interpolation->count() > 0) o->emit.interpolation = o->sampling.interpolation;
       return emit(*o);
     }
+    if (o->json) throw std::invalid_argument("--json: expected --inspect or --emit beside it");
     if (!choosing && !o->job.imsize.empty()) throw std::invalid_argument("--imsize: expected --accuracy or --emit beside it");
     if (choosing) choose(*o);
     if (o->output.empty() && !choosing) throw std::invalid_argument("expected one of --output, --inspect and --accuracy");
