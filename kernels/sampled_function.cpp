@@ -1,5 +1,8 @@
 #include "kernels/sampled_function.h"
 
+#include <cmath>
+#include <cstdlib>
+
 namespace misfit::kernels {
 namespace {
 
@@ -27,6 +30,25 @@ Eigen::VectorXd sampled_function(const PiecewisePolynomial& polynomial, int per_
       value[i] = r == 0 ? tap(polynomial, r, 0.5) : (tap(polynomial, r - 1, -0.5) + tap(polynomial, r, 0.5)) / 2;
   }
   return value;
+}
+
+Eigen::VectorXd sampled_to_both_ends(const PiecewisePolynomial& polynomial, int per_cell) {
+  Eigen::VectorXd table = sampled_function(polynomial, per_cell);
+  const bool ends_on_an_entry = polynomial.width() * per_cell % 2 == 0;
+  if (ends_on_an_entry) table[table.size() - 1] /= 2;
+  return table;
+}
+
+TapFunction nearest_entries(const Eigen::VectorXd& table, int per_cell, int support) {
+  return [=](double t) {
+    Eigen::VectorXd taps = Eigen::VectorXd::Zero(2 * support + 1);
+    const long off = std::lround(t * per_cell);
+    for (int r = 0; r <= 2 * support; ++r) {
+      const long entry = std::labs((r - support) * long{per_cell} - off);
+      if (entry < table.size()) taps[r] = table[entry];
+    }
+    return taps;
+  };
 }
 
 }  // namespace misfit::kernels

@@ -15,6 +15,7 @@ endforeach()
 if(TARGET misfit)
   install(TARGETS misfit)
 endif()
+install(TARGETS misfit_wsclean LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/misfit)
 install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})
 
 configure_package_config_file(tools/misfitConfig.cmake.in ${PROJECT_BINARY_DIR}/misfitConfig.cmake INSTALL_DESTINATION ${package})

@@ -36,8 +36,8 @@ void check_agrees(double measured, double said) {
 
 BOOST_AUTO_TEST_SUITE(casacore_emission)
 
-BOOST_DATA_TEST_CASE(casacore_errs_by_what_is_said, bdata::make({4, 6, 7}) * bdata::make({100, 10000}) * bdata::make({1.2, 2.0}),
-                     width, per_cell, padding) {
+BOOST_DATA_TEST_CASE(casacore_errs_by_what_is_said,
+                     bdata::make({4, 6, 7}) * bdata::make({100, 10000}) * bdata::make({1.2, 2.0}), width, per_cell, padding) {
   const TemporaryFolder folder;
   const std::string file = folder / "k.fits";
   const tools::Emission emission = emission_for(width, per_cell, padding);

@@ -57,6 +57,12 @@ std::string power_of_ten(double value, int digits, const std::function<std::stri
   return (value < 0 ? "−" : "") + (factor == "1" ? raised : factor + " × " + raised);
 }
 
+std::string all_digits(double value) {
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), "%.17g", value);
+  return text.data();
+}
+
 std::string power_of_ten(double value, int digits) {
   std::string text = power_of_ten(value, digits, [](int exponent) {
     constexpr std::array<const char*, 10> raised{"⁰", "¹", "²", "³", "⁴", "⁵", "⁶", "⁷", "⁸", "⁹"};

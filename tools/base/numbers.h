@@ -11,6 +11,9 @@ namespace misfit::tools {
 /// minus sign and no trailing zeros.
 std::string significant(double value, int digits);
 
+/// `value` with as many digits as bring the same double back.
+std::string all_digits(double value);
+
 /// `value` as "3.2 × 10⁻⁷" in plain text with spaces that do not break, to so many significant digits; plain notation from 0.01
 /// to 1000.
 std::string power_of_ten(double value, int digits);

@@ -1,20 +1,13 @@
 #include "tools/emit/c_source.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstdio>
 
 #include "kernels/quadrature.h"
+#include "tools/base/numbers.h"
 
 namespace misfit::tools {
 namespace {
-
-std::string digits(double value) {
-  std::array<char, 32> text{};
-  std::snprintf(text.data(), text.size(), "%.17g", value);
-  return text.data();
-}
 
 std::string upper(std::string name) {
   for (char& c : name) c = c == '-' ? '_' : static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
@@ -34,7 +27,7 @@ std::string c_array(const std::string& comment, const std::string& name, const E
   std::string text =
       "/* " + comment + " */\nstatic const double misfit_" + name + "[" + std::to_string(values.size()) + "] = {";
   for (Eigen::Index i = 0; i < values.size(); ++i)
-    text += (i % a_line == 0 ? "\n  " : " ") + digits(values[i]) + (i + 1 < values.size() ? "," : "");
+    text += (i % a_line == 0 ? "\n  " : " ") + all_digits(values[i]) + (i + 1 < values.size() ? "," : "");
   return text + "};\n\n";
 }
 
@@ -48,7 +41,7 @@ std::string c_divisor(const DivisorSeries& divisor) {
          "   is thrown away, its value at x0. */\n"
          "static inline double misfit_divisor(double x) {\n"
          "  const double x0 = " +
-         digits(divisor.x0) +
+         all_digits(divisor.x0) +
          ";\n"
          "  const double part = (x < 0 ? -x : x) < x0 ? x / x0 : 1;\n"
          "  const double y = 2 * part * part - 1;\n"

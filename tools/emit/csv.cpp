@@ -1,10 +1,9 @@
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstdio>
 
 #include "kernels/lookup_table.h"
 #include "tools/base/files.h"
+#include "tools/base/numbers.h"
 #include "tools/emit/emission.h"
 #include "tools/emit/hosts.h"
 
@@ -49,15 +48,9 @@ kernels::TapFunction taps(const HostKernel& k) {
   }
 }
 
-std::string digits(double value) {
-  std::array<char, 32> text{};
-  std::snprintf(text.data(), text.size(), "%.17g", value);
-  return text.data();
-}
-
 std::string line(const std::string& what, double position, const Eigen::VectorXd& values, int columns) {
-  std::string text = what + "," + digits(position);
-  for (int c = 0; c < columns; ++c) text += c < values.size() ? "," + digits(values[c]) : ",";
+  std::string text = what + "," + all_digits(position);
+  for (int c = 0; c < columns; ++c) text += c < values.size() ? "," + all_digits(values[c]) : ",";
   return text + "\n";
 }
 
@@ -67,7 +60,8 @@ void write(const Emission& e, const std::string& path) {
   for (const std::string& s : statement(e)) text += "# " + s + "\n";
   text +=
       "# taps: position t in [-1/2, 1/2] of a visibility from the middle of its W cells, the values those of cells 0 to W-1;\n"
-      "# divisor: what the image is divided by along an axis at x = (pixel - centre) / FFT size, to be interpolated to third degree.\nwhat,position";
+      "# divisor: what the image is divided by along an axis at x = (pixel - centre) / FFT size, to be interpolated to third "
+      "degree.\nwhat,position";
   for (int c = 0; c < width; ++c) text += ",value_" + std::to_string(c);
   text += "\n";
   const Eigen::MatrixXd rows = rows_of(e.table);

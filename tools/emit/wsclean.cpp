@@ -1,11 +1,11 @@
 #include <cmath>
 #include <numbers>
 
+#include "kernels/sampled_function.h"
 #include "tools/base/files.h"
 #include "tools/base/numbers.h"
 #include "tools/emit/c_source.h"
 #include "tools/emit/hosts.h"
-#include "tools/emit/nearest_entries.h"
 
 namespace misfit::tools {
 namespace {
@@ -39,12 +39,12 @@ HostRule stock(const HostKernel& asked) {
     table[i] = std::cyl_bessel_i(0.0, alpha * std::sqrt(1 - part * part)) / std::cyl_bessel_i(0.0, alpha) *
                (i == 0 ? 1 : std::sin(turn) / turn);
   }
-  return {nearest_entries(table, k.per_cell, 3), k.per_cell, dct_correction(table, k)};
+  return {kernels::nearest_entries(table, k.per_cell, 3), k.per_cell, dct_correction(table, k)};
 }
 
 void write(const Emission& e, const std::string& path) {
   const HostKernel& k = e.table;
-  const Eigen::VectorXd half = half_table(k.kernel.polynomial, k.per_cell);
+  const Eigen::VectorXd half = kernels::sampled_to_both_ends(k.kernel.polynomial, k.per_cell);
   const int taps = taps_of(k.kernel.width());
   const Eigen::Index middle = (static_cast<Eigen::Index>(taps) * k.per_cell - 1) / 2;
   Eigen::VectorXd table = Eigen::VectorXd::Zero(2 * middle + 1);
@@ -79,9 +79,12 @@ Host wsclean_host() {
   host.sums_in_single_precision = true;
   host.taps_of = taps_of;
   host.taps = [](const HostKernel& k) {
-    return nearest_entries(half_table(k.kernel.polynomial, k.per_cell), k.per_cell, taps_of(k.kernel.width()) / 2);
+    return kernels::nearest_entries(kernels::sampled_to_both_ends(k.kernel.polynomial, k.per_cell), k.per_cell,
+                                    taps_of(k.kernel.width()) / 2);
   };
-  host.own_correction = [](const HostKernel& k) { return dct_correction(half_table(k.kernel.polynomial, k.per_cell), k); };
+  host.own_correction = [](const HostKernel& k) {
+    return dct_correction(kernels::sampled_to_both_ends(k.kernel.polynomial, k.per_cell), k);
+  };
   host.stock = stock;
   host.stock_name = "its Kaiser-Bessel function of 7 cells, 1023 entries a cell";
   host.write = write;

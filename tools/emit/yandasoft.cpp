@@ -3,10 +3,10 @@
 #include <cstdlib>
 
 #include "kernels/catalogue.h"
+#include "kernels/sampled_function.h"
 #include "tools/base/files.h"
 #include "tools/emit/c_source.h"
 #include "tools/emit/hosts.h"
-#include "tools/emit/nearest_entries.h"
 
 namespace misfit::tools {
 namespace {
@@ -48,14 +48,14 @@ HostRule stock(const HostKernel& k) {
   constexpr int per_cell = 128, support = 3;
   const kernels::Kernel own = kernels::kernel_family("spheroidal-exact-1").make(2 * support, k.x0());
   const double whole = kernels::image_taper(own.polynomial, Eigen::VectorXd::Zero(1))[0];
-  return {taps_of_rows(rows(half_table(own.polynomial, per_cell), per_cell, support)), per_cell,
+  return {taps_of_rows(rows(kernels::sampled_to_both_ends(own.polynomial, per_cell), per_cell, support)), per_cell,
           [own, whole](const Eigen::VectorXd& x) -> Eigen::VectorXd {
             return whole * kernels::image_taper(own.polynomial, x).cwiseInverse();
           }};
 }
 
 Eigen::MatrixXd rows_of(const HostKernel& k) {
-  return rows(half_table(k.kernel.polynomial, k.per_cell), k.per_cell, support_for(k.kernel.width()));
+  return rows(kernels::sampled_to_both_ends(k.kernel.polynomial, k.per_cell), k.per_cell, support_for(k.kernel.width()));
 }
 
 void write(const Emission& e, const std::string& path) {

@@ -1,7 +1,5 @@
 #include "tools/hosts/casacore_table.h"
 
-#include <cmath>
-#include <cstdlib>
 #include <stdexcept>
 #include <string>
 
@@ -18,20 +16,17 @@ Eigen::VectorXd casacore_table(const kernels::PiecewisePolynomial& function, int
   if (per_cell < 1 || per_cell > kernels::kernel_table_max_per_cell)
     throw std::invalid_argument(std::to_string(per_cell) + " entries a cell; expected 1 to " +
                                 std::to_string(kernels::kernel_table_max_per_cell));
-  const Eigen::VectorXd inside = kernels::sampled_function(function, per_cell);
+  const Eigen::VectorXd inside = width < casacore_cells ? kernels::sampled_to_both_ends(function, per_cell)
+                                                        : kernels::sampled_function(function, per_cell);
   Eigen::VectorXd table = Eigen::VectorXd::Zero((casacore_support + 1) * Eigen::Index{per_cell});
   table.head(inside.size()) = inside;
-  const bool ends_on_an_entry = width * per_cell % 2 == 0;
-  if (ends_on_an_entry && width < casacore_cells) table[inside.size() - 1] /= 2;
   return table;
 }
 
 kernels::TapFunction casacore_taps(const Eigen::VectorXd& table, int per_cell) {
-  return [table, per_cell](double t) {
-    const long shift = std::lround(-t * per_cell);
-    Eigen::VectorXd taps(casacore_cells);
-    for (int r = 0; r < casacore_cells; ++r) taps[r] = table[std::labs((r - casacore_support) * long{per_cell} + shift)];
-    return Eigen::VectorXd(taps / taps.sum());
+  return [nearest = kernels::nearest_entries(table, per_cell, casacore_support)](double t) -> Eigen::VectorXd {
+    const Eigen::VectorXd taps = nearest(t);
+    return taps / taps.sum();
   };
 }
 

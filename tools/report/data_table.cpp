@@ -1,9 +1,7 @@
 #include "tools/report/data_table.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstdio>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
@@ -53,10 +51,7 @@ std::string csv_field(const std::string& text) {
 }
 
 std::string csv_number(double value) {
-  if (!std::isfinite(value)) return "";
-  std::array<char, 32> text{};
-  std::snprintf(text.data(), text.size(), "%.17g", value);
-  return text.data();
+  return std::isfinite(value) ? all_digits(value) : "";
 }
 
 std::string table_html(const DataTable& table) {

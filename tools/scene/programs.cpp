@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
-#include <cstdio>
 #include <filesystem>
 #include <fstream>
 
@@ -11,6 +10,7 @@
 #include "imager/stage_times.h"
 #include "ms_io/measurement_set.h"
 #include "tools/base/interrupt.h"
+#include "tools/base/numbers.h"
 #include "tools/base/quantity.h"
 #include "tools/base/run_program.h"
 #include "tools/base/text.h"
@@ -31,12 +31,6 @@ struct Program {
   std::string image;                 ///< the file with the dirty image
   std::vector<std::string> predict;  ///< what writes the model's visibilities into the copy of the set
 };
-
-std::string number(double value) {
-  char text[40];
-  std::snprintf(text, sizeof text, "%.17g", value);
-  return text;
-}
 
 Program misfit(const ImageOptions& scene, const std::string& accuracy, int threads) {
   std::vector<std::string> words{"misfit", "image", "--vis", scene.vis, "--imagename", "misfit-" + accuracy, "--imsize"};
@@ -68,7 +62,7 @@ Program wsclean(const ImageOptions& scene, const std::string& name, const std::v
                                  std::to_string(scene.imsize.front()),
                                  std::to_string(scene.imsize.back()),
                                  "-scale",
-                                 number(scale_asec) + "asec",
+                                 all_digits(scale_asec) + "asec",
                                  "-niter",
                                  "0",
                                  "-weight",
