@@ -20,7 +20,7 @@ namespace misfit::tools {
 namespace {
 
 struct KernelOptions {
-  std::string kernel = "least-misfit";
+  KernelSource kernel;
   int width = 0;
   double x0 = 0;
   double padding = 0;
@@ -188,7 +188,8 @@ void choose(KernelOptions& o) {
 void add_kernel_command(CLI::App& program) {
   CLI::App* command = program.add_subcommand("kernel", "Make a kernel-table file, or show what is in one");
   const auto o = std::make_shared<KernelOptions>();
-  command->add_option("--kernel", o->kernel, "Gridding function: a name, or a kernel-table file to tabulate anew");
+  command->add_option("--kernel", o->kernel.name, "Gridding function: a name, or a kernel-table file to tabulate anew");
+  declare_kernel_folder(*command, o->kernel.folder);
   command->add_option("--width", o->width, "Cells a visibility touches per axis");
   command->add_option("--x0", o->x0, "Half the part of the FFT image that is kept; or give --padding");
   command->add_option("--padding", o->padding, "FFT size over image size, 1 / (2 x0)");
@@ -208,7 +209,7 @@ void add_kernel_command(CLI::App& program) {
   CLI::Option* inspected = command->add_option("--inspect", o->inspect, "Kernel-table file to show");
   inspected->excludes(output)->excludes(accuracy);
   for (const char* making :
-       {"--kernel", "--width", "--x0", "--padding", "--sampling", "--interpolation", "--degree", "--quiet"})
+       {"--kernel", "--kernel-folder", "--width", "--x0", "--padding", "--sampling", "--interpolation", "--degree", "--quiet"})
     inspected->excludes(command->get_option(making));
   command->add_flag("--json", o->json, "Show it for machines")->needs(inspected);
   command->callback([o] {
