@@ -1,6 +1,7 @@
 #include "kernels/piecewise_polynomial.h"
 
 #include <algorithm>
+#include <cmath>
 #include <stdexcept>
 #include <string>
 
@@ -72,6 +73,14 @@ PiecewisePolynomial fit_polynomial_within(const TapFunction& taps, double mean_s
     if (left > mean_square) break;
   }
   return in_powers(series.topRows(degree + 1));
+}
+
+double part_in_last_terms(const PiecewisePolynomial& polynomial) {
+  constexpr int last = 4;
+  if (polynomial.degree() <= highest_degree - last) return 0;
+  Eigen::VectorXd square = legendre_series(polynomial, highest_degree).rowwise().squaredNorm();
+  for (int degree = 0; degree <= highest_degree; ++degree) square[degree] /= 2 * degree + 1;
+  return std::sqrt(square.tail(last).sum() / square.sum());
 }
 
 }  // namespace misfit::kernels

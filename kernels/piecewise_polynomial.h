@@ -31,4 +31,9 @@ PiecewisePolynomial fit_polynomial(const TapFunction& taps, int degree);
 /// highest_degree.
 PiecewisePolynomial fit_polynomial_within(const TapFunction& taps, double mean_square);
 
+/// The part of the polynomials, RMS over RMS, that their Legendre terms of degree 21 to 24 = highest_degree hold. More than
+/// rounding says that the series was cut before it converged, by as much or somewhat more: what it stands for bends or jumps
+/// inside a cell.
+double part_in_last_terms(const PiecewisePolynomial& polynomial);
+
 }  // namespace misfit::kernels

@@ -21,7 +21,7 @@ namespace misfit::tools {
 namespace {
 
 struct KernelOptions {
-  std::string kernel = "least-misfit";
+  KernelSource kernel;
   int width = 0;
   double x0 = 0;
   double padding = 0;
@@ -90,6 +90,30 @@ void print(const kernels::KernelTable& table, const std::string& path) {
   if (!table.version.empty()) print_line("written by", "misfit " + table.version);
 }
 
+/// Whether the polynomials differ from the function by more than rounding, and by more than a part of the error.
+bool is_rough(const kernels::Kernel& kernel) {
+  constexpr double rounding = 1e-12, part_of_error = 5e-3;
+  const double part = kernels::part_in_last_terms(kernel.polynomial);
+  const double error = part * kernels::noise_gain(kernel.polynomial, kernel.x0);
+  return part > rounding && error > part_of_error * std::sqrt(kernel.misfit.mean);
+}
+
+/// What the polynomials do not hold of the function, and why.
+void print_shortfall(const kernels::Kernel& kernel, bool is_cut) {
+  const double excess = kernel.misfit.mean / kernel.origin.mean_error;
+  if (!is_cut && is_rough(kernel)) {
+    std::printf(
+        "  The function bends or jumps inside a cell: the polynomials miss %s of it or more, and the errors above are theirs.\n"
+        "  Expected a function that does so only where cells meet, which here is at %s\n",
+        significant(kernels::part_in_last_terms(kernel.polynomial), 2).c_str(),
+        kernel.width() % 2 == 0 ? "u = 0, 1, 2 …" : "u = 0.5, 1.5, 2.5 …");
+  } else if (excess > 1.01) {
+    std::printf(
+        "  E is %s times that of the function as solved: %s\n", significant(excess, 3).c_str(),
+        is_cut ? "polynomials of this degree hold no more" : "doubles hold no more, since each rounds by 1.1e-16 of itself");
+  }
+}
+
 /// JSON has no number for what is not known.
 nlohmann::json number(double value) {
   return std::isfinite(value) ? nlohmann::json(value) : nlohmann::json();
@@ -143,12 +167,7 @@ void make(const KernelOptions& o) {
   kernels::write_kernel_table(kernel, o.sampling, o.output);
   if (o.quiet) return;
   print({kernel, o.sampling, "", kernels::solver_version, true}, o.output);
-  const double excess = kernel.misfit.mean / kernel.origin.mean_error;
-  if (excess > 1.01)
-    std::printf("  E is %s times that of the function as solved: %s\n", significant(excess, 3).c_str(),
-                kernel.polynomial.degree() < made.polynomial.degree()
-                    ? "polynomials of this degree hold no more"
-                    : "doubles hold no more, since each rounds by 1.1e-16 of itself");
+  print_shortfall(kernel, kernel.polynomial.degree() < made.polynomial.degree());
 }
 
 nlohmann::json json_of(const RealisedError& error) {
@@ -246,7 +265,8 @@ std::string host_names() {
 void add_kernel_command(CLI::App& program) {
   CLI::App* command = program.add_subcommand("kernel", "Make a kernel-table file, or show what is in one");
   const auto o = std::make_shared<KernelOptions>();
-  command->add_option("--kernel", o->kernel, "Gridding function: a name, or a kernel-table file to tabulate anew");
+  command->add_option("--kernel", o->kernel.name, "Gridding function: a name, or a kernel-table file to tabulate anew");
+  declare_kernel_folder(*command, o->kernel.folder);
   command->add_option("--width", o->width, "Cells a visibility touches per axis");
   command->add_option("--x0", o->x0, "Half the part of the FFT image that is kept; or give --padding");
   command->add_option("--padding", o->padding, "FFT size over image size, 1 / (2 x0)");
@@ -272,7 +292,7 @@ void add_kernel_command(CLI::App& program) {
   CLI::Option* inspected = command->add_option("--inspect", o->inspect, "Kernel-table file to show");
   inspected->excludes(output)->excludes(accuracy)->excludes(host);
   for (const char* making :
-       {"--kernel", "--width", "--x0", "--padding", "--sampling", "--interpolation", "--degree", "--quiet"})
+       {"--kernel", "--kernel-folder", "--width", "--x0", "--padding", "--sampling", "--interpolation", "--degree", "--quiet"})
     inspected->excludes(command->get_option(making));
   command->add_flag("--json", o->json, "Print for machines what --inspect or --emit say");
   const CLI::Option* sampling = command->get_option("--sampling");

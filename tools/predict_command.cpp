@@ -25,7 +25,7 @@ struct PredictOptions {
   ms_io::Selection selection;
   double accuracy = 1e-6;
   bool accuracy_is_typed = false;
-  std::string kernel = "least-misfit";
+  KernelSource kernel;
   int threads = 0;
   bool quiet = false;
 };
@@ -110,7 +110,8 @@ void add_predict_command(CLI::App& program) {
   command->add_option("--field", o->selection.field, "Fields, in CASA's selection syntax");
   command->add_option("--spw", o->selection.spectral_window, "Spectral windows and channels, in CASA's selection syntax");
   command->add_option("--accuracy", o->accuracy, "Relative accuracy of the visibilities");
-  command->add_option("--kernel", o->kernel, "Gridding function: a name or a kernel-table file");
+  command->add_option("--kernel", o->kernel.name, "Gridding function: a name or a kernel-table file");
+  declare_kernel_folder(*command, o->kernel.folder);
   command->add_option("--threads", o->threads, "Threads; 0 means all cores");
   command->add_flag("--quiet", o->quiet, "Print nothing");
   command->callback([command, o] {

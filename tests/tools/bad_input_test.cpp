@@ -89,7 +89,7 @@ BOOST_AUTO_TEST_CASE(options_with_impossible_values_are_wrong_usage) {
   scene.usage("--accuracy", "1e-16", "it can reach");
   scene.usage("--kernel", "nosuch", "least-misfit, minimax");
   scene.usage("--kernel", "spheroidal-exact-wide", "is not a number in [0, 10]");
-  scene.usage("--kernel", "nosuch", "or a kernel-table file");
+  scene.usage("--kernel", "nosuch", "a kernel-table file, or with --kernel-folder a library");
   scene.usage("--kernel-width", "99", "not in [1, 20]");
   scene.usage("--padding", "0.5", "not in [1.02, 10]");
   scene.usage("--niter", "-1", "expected 0 or more");

@@ -14,7 +14,7 @@ using namespace misfit::tools;
 namespace {
 
 KernelJob job(double accuracy, double w_turns = 0) {
-  return {"least-misfit", accuracy, {1024, 700}, 1e7, w_turns};
+  return {{}, accuracy, {1024, 700}, 1e7, w_turns};
 }
 
 }  // namespace
@@ -89,7 +89,7 @@ BOOST_AUTO_TEST_CASE(jobs_that_cannot_be_meant_are_refused) {
   refused([](KernelJob& j) { j.imsize = {0}; });
   refused([](KernelJob& j) { j.samples = 0; });
   refused([](KernelJob& j) { j.w_turns = -1; });
-  refused([](KernelJob& j) { j.kernel = "nosuch"; });
+  refused([](KernelJob& j) { j.kernel.name = "nosuch"; });
 }
 
 BOOST_AUTO_TEST_SUITE_END()

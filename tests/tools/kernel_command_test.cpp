@@ -83,6 +83,19 @@ BOOST_AUTO_TEST_CASE(what_doubles_cannot_hold_is_said) {
   BOOST_TEST(contains(outcome.out, "doubles hold no more"));
 }
 
+BOOST_AUTO_TEST_CASE(a_function_that_bends_inside_a_cell_is_said_to) {
+  const Scene scene;
+  const auto says_so = [&](const Arguments& kernel) {
+    const Outcome outcome = run(scene.make(kernel + Arguments{"--x0", "0.25"}));
+    BOOST_TEST(outcome.code == 0, outcome.err);
+    return contains(outcome.out, "bends or jumps inside a cell");
+  };
+  BOOST_TEST(says_so({"--kernel", "bent", "--kernel-folder", MISFIT_PLUGINS, "--width", "4"}));
+  BOOST_TEST(!says_so({"--kernel", "gauss", "--kernel-folder", MISFIT_PLUGINS, "--width", "4"}));
+  for (const char* smooth : {"least-misfit", "spheroidal", "kaiser-bessel", "exp-semicircle", "prolate"})
+    for (const char* width : {"4", "5", "8"}) BOOST_TEST(!says_so({"--kernel", smooth, "--width", width}));
+}
+
 BOOST_AUTO_TEST_CASE(inspection_shows_what_the_file_holds) {
   const Scene scene;
   succeed(scene.make({"--width", "7", "--x0", "0.25"}));
@@ -153,6 +166,21 @@ BOOST_AUTO_TEST_CASE(what_cannot_be_meant_is_wrong_usage) {
   BOOST_TEST(!std::filesystem::exists(scene.file));
 }
 
+BOOST_AUTO_TEST_CASE(libraries_that_cannot_be_used_are_named) {
+  const Scene scene;
+  const auto refused = [&](const std::string& kernel, int code, const std::string& part) {
+    check_refused(scene.make({"--width", "4", "--x0", "0.25", "--kernel", kernel, "--kernel-folder", MISFIT_PLUGINS}), code,
+                  part);
+  };
+  refused("nosuch", 2, "libmisfit_kernel_nosuch.so does not exist");
+  refused("refusing", 1, "register_refusing failed: no licence for this kernel");
+  refused("box", 1, "cannot be corrected for");
+  refused("nan", 1, "expected a finite number");
+  check_refused(scene.make({"--kernel", "gauss-wide", "--kernel-folder", MISFIT_PLUGINS, "--width", "4", "--x0", "0.4"}), 2,
+                "0.4 not in [0.1, 0.3], which kernel gauss-wide offers");
+  BOOST_TEST(!std::filesystem::exists(scene.file));
+}
+
 BOOST_AUTO_TEST_CASE(files_that_cannot_be_used_are_named) {
   const Scene scene;
   check_refused(scene.inspect(), 1, scene.file + ": it does not exist");
@@ -187,6 +215,51 @@ BOOST_AUTO_TEST_CASE(an_image_made_with_a_file_is_that_made_with_its_kernel) {
     succeed({"image", "--config", scene.folder / "file.last.ini", "--imagename", scene.folder / "again"});
     BOOST_TEST((pixels_of(scene.folder / "again", "psf").pixel == pixels_of(scene.folder / "file", "psf").pixel));
   }
+}
+
+BOOST_AUTO_TEST_CASE(an_image_made_with_a_library_is_that_made_with_the_same_function_by_name) {
+  const TemporaryFolder folder;
+  const Arguments library = {"--kernel", "gauss", "--kernel-folder", MISFIT_PLUGINS};
+  const Arguments given = {"--kernel-width", "8", "--padding", "2", "--evaluation", "full"};
+  succeed(small_image(snapshot(), folder / "library") + given + library);
+  succeed(small_image(snapshot(), folder / "name") + given + Arguments{"--kernel", "gaussian"});
+  BOOST_TEST(report_of(folder / "library")["kernel"]["name"] == "gauss");
+  // Images in single precision.
+  BOOST_TEST(relative_difference(pixels_of(folder / "library", "residual").pixel,
+                                 pixels_of(folder / "name", "residual").pixel) < 1e-7);
+}
+
+BOOST_AUTO_TEST_CASE(width_and_padding_are_chosen_for_a_library_and_the_run_can_be_repeated) {
+  const TemporaryFolder folder;
+  const Arguments accuracy = {"--accuracy", "0.02", "--verify", "100", "--kernel", "gauss"};
+  succeed(small_image(snapshot(), folder / "a") + accuracy + Arguments{"--kernel-folder", MISFIT_PLUGINS});
+  BOOST_TEST(report_of(folder / "a")["error"]["measured_rms"].get<double>() < 0.02);
+  succeed({"image", "--config", folder / "a.last.ini", "--imagename", folder / "b"});
+  const EnvironmentVariable environment("MISFIT_KERNEL_FOLDER", MISFIT_PLUGINS);
+  succeed(small_image(snapshot(), folder / "c") + accuracy);
+  {
+    const EnvironmentVariable elsewhere("MISFIT_KERNEL_FOLDER", folder / "none");
+    succeed({"image", "--config", folder / "c.last.ini", "--imagename", folder / "d"});
+  }
+  for (const char* other : {"b", "c", "d"})
+    BOOST_TEST((pixels_of(folder / other, "residual").pixel == pixels_of(folder / "a", "residual").pixel), other);
+}
+
+BOOST_AUTO_TEST_CASE(a_prediction_made_with_a_library_is_that_made_with_the_same_function_by_name) {
+  const TemporaryFolder folder;
+  const std::string set = folder / "copy.ms";
+  std::filesystem::copy(snapshot(), set, std::filesystem::copy_options::recursive);
+  succeed(small_image(set, folder / "a") + Arguments{"--niter", "20"});
+  const Arguments predict = {"predict", "--vis", set, "--model", folder / "a.model.fits", "--accuracy", "0.02"};
+  succeed(predict + Arguments{"--kernel", "gauss", "--kernel-folder", MISFIT_PLUGINS});
+  succeed(predict + Arguments{"--column", "CORRECTED_DATA"});
+  succeed(small_image(set, folder / "library") + Arguments{"--datacolumn", "model"});
+  succeed(small_image(set, folder / "name") + Arguments{"--datacolumn", "corrected"});
+  // Each prediction keeps to 0.02, and so does the image of their difference, relative to that of the visibilities' peak.
+  const auto library = pixels_of(folder / "library", "residual").pixel, name = pixels_of(folder / "name", "residual").pixel;
+  const double difference = relative_difference(library, name);
+  BOOST_TEST(difference > 0);
+  BOOST_TEST(difference < 0.04);
 }
 
 BOOST_AUTO_TEST_CASE(a_prediction_made_with_a_file_is_that_made_by_name) {

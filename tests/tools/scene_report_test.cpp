@@ -137,6 +137,17 @@ BOOST_AUTO_TEST_CASE(every_point_is_measured_within_its_bounds_and_its_command_m
              boost::test_tools::tolerance(0.25));
 }
 
+BOOST_AUTO_TEST_CASE(kernels_of_libraries_are_compared_and_commands_name_their_folder) {
+  const TemporaryFolder folder;
+  succeed(short_report_of_scene(folder / "report") +
+          Arguments{"--kernel", "gauss", "gauss-wide", "--kernel-folder", MISFIT_PLUGINS});
+  for (const auto& row : rows_of(folder / "report/scene.csv"))
+    BOOST_TEST(row.at("command").find(" --kernel-folder " MISFIT_PLUGINS) != std::string::npos);
+  const std::string page = content(folder / "report/index.html");
+  for (const char* kernel : {"gauss", "gauss-wide"})
+    BOOST_TEST(page.find("--kernel " + std::string(kernel) + " ") != std::string::npos);
+}
+
 BOOST_AUTO_TEST_CASE(a_report_that_was_stopped_goes_on_from_what_it_had) {
   const TemporaryFolder folder;
   Child child(report_of_scene(folder / "report"));

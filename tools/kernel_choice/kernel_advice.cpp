@@ -7,7 +7,6 @@
 #include "imager/extent.h"
 #include "imager/plan/out_of_reach.h"
 #include "tools/base/numbers.h"
-#include "tools/kernel_choice/kernel_choice.h"
 
 namespace misfit::tools {
 namespace {

@@ -4,12 +4,13 @@
 #include <vector>
 
 #include "imager/plan/gridding_choice.h"
+#include "tools/kernel_choice/kernel_choice.h"
 
 namespace misfit::tools {
 
 /// A job for which width, padding, precision and degree are to be chosen.
 struct KernelJob {
-  std::string kernel = "least-misfit";
+  KernelSource kernel;
   double accuracy = 0;
   std::vector<int> imsize;  ///< width, or width and height, in pixels
   double samples = 0;       ///< visibilities

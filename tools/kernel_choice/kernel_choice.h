@@ -1,5 +1,6 @@
 #pragma once
 
+#include <CLI/CLI.hpp>
 #include <filesystem>
 #include <string>
 
@@ -7,14 +8,27 @@
 
 namespace misfit::tools {
 
-/// Whether `kernel`, as given to --kernel, is a kernel-table file: no name of the catalogue, but something with a slash, with
-/// the ending .fits, or that exists.
-bool is_kernel_file(const std::string& kernel);
+/// What --kernel and --kernel-folder say.
+struct KernelSource {
+  std::string name = "least-misfit";  ///< of the catalogue, of a library in `folder`, or a kernel-table file
+  std::string folder;                 ///< the only place where libmisfit_kernel_<name>.so is looked for; empty = nowhere
+};
 
-/// The family that `kernel` names: of the catalogue, with the user's cache, or the only kernel of a file. Throws
-/// std::invalid_argument that lists the names for a kernel that is not known, std::runtime_error that names the file when it
-/// cannot be read or has changed since it was written.
-kernels::KernelFamily choose_kernel(const std::string& kernel);
+/// Declares --kernel-folder; what is not given there is $MISFIT_KERNEL_FOLDER.
+void declare_kernel_folder(CLI::App& command, std::string& folder);
+
+/// Whether the name is a kernel-table file: none of the catalogue, but something with a slash, with the ending .fits, or that
+/// exists and is not a library's name too.
+bool is_kernel_file(const KernelSource& kernel);
+
+/// The table or library that the kernel comes from; an empty path for one of the catalogue, or none.
+std::filesystem::path file_of(const KernelSource& kernel);
+
+/// The family that is meant: of the catalogue, with the user's cache; of a library, see plugin_family.h; or the only kernel of
+/// a file. Throws std::invalid_argument that lists the names for a kernel that is not known, or says what else bears its name:
+/// no library takes the place of a kernel of the catalogue or of a file. Throws std::runtime_error that names the file when it
+/// cannot be used or, a table, has changed since it was written.
+kernels::KernelFamily choose_kernel(const KernelSource& kernel);
 
 /// Where solved kernels are kept: $MISFIT_CACHE, else misfit in $XDG_CACHE_HOME, else .cache/misfit in $HOME, else nowhere (an
 /// empty path).

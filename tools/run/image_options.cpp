@@ -13,7 +13,6 @@
 #include "tools/base/quantity.h"
 #include "tools/base/text.h"
 #include "tools/formats/config_file.h"
-#include "tools/kernel_choice/kernel_choice.h"
 
 namespace misfit::tools {
 namespace {
@@ -142,8 +141,9 @@ void declare_scene(CLI::App& command, ImageOptions& o) {
 void declare(CLI::App& command, ImageOptions& o) {
   declare_scene(command, o);
   command.add_option("--imagename", o.imagename, "Names of the output files begin with this")->required();
-  command.add_option("--kernel", o.kernel,
+  command.add_option("--kernel", o.kernel.name,
                      "Gridding function: a name such as least-misfit or spheroidal, or a kernel-table file");
+  declare_kernel_folder(command, o.kernel.folder);
   command.add_option("--accuracy", o.accuracy,
                      "Largest error of the whole image relative to the direct transform, RMS over RMS");
   command.add_option("--psf-accuracy", o.psf_accuracy, "The same of the PSF; 0 = the larger of --accuracy and 1e-4");

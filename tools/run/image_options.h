@@ -12,6 +12,7 @@
 #include "imager/geometry.h"
 #include "imager/plan/gridding_choice.h"
 #include "ms_io/measurement_set.h"
+#include "tools/kernel_choice/kernel_choice.h"
 
 namespace misfit::tools {
 
@@ -24,7 +25,7 @@ struct ImageOptions {
   ms_io::Selection selection;
   std::string datacolumn = "data";
   std::string weighting = "natural";
-  std::string kernel = "least-misfit";
+  KernelSource kernel;
   double accuracy = 1e-6;
   double psf_accuracy = 0;  ///< 0 = the larger of accuracy and 1e-4
   int kernel_width = 0;

@@ -76,7 +76,7 @@ std::vector<ScenePoint> scene_points(bool quick, const std::vector<std::string>&
 
 ImageOptions options_of(const ImageOptions& scene, const ScenePoint& point) {
   ImageOptions options = scene;
-  options.kernel = point.kernel;
+  options.kernel.name = point.kernel;
   options.accuracy = point.accuracy;
   options.kernel_width = point.width;
   options.padding = point.padding;

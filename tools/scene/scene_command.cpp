@@ -23,7 +23,7 @@ struct Options {
 
 void write(const Options& o) {
   check(o.report.scene);
-  for (const std::string& kernel : o.report.kernels) choose_kernel(kernel);
+  for (const std::string& kernel : o.report.kernels) choose_kernel({kernel, o.report.scene.kernel.folder});
   if (!(o.report.seconds >= 0 && std::isfinite(o.report.seconds)))
     throw std::invalid_argument("--seconds " + significant(o.report.seconds, 6) + ": expected 0 or more");
   check_scene_memory(o.report.scene);
@@ -50,6 +50,7 @@ void add_scene_report(CLI::App& reports) {
   o->report.scene.imagename = "image";
   declare_scene(*command, o->report.scene);
   command->add_option("--kernel", o->report.kernels, "Kernels to compare besides the usual ones: names or kernel-table files");
+  declare_kernel_folder(*command, o->report.scene.kernel.folder);
   command->add_flag("--quick", o->report.quick,
                     "Fewer points and runs: an answer within two minutes for a million visibilities");
   command->add_option(

@@ -19,6 +19,15 @@ namespace {
 
 using nlohmann::json;
 
+/// Files that kernels come from, each with its time of last change.
+json kernel_files(const SceneReportOptions& o) {
+  json files = json::object();
+  for (const std::string& kernel : o.kernels)
+    if (const std::filesystem::path file = file_of({kernel, o.scene.kernel.folder}); !file.empty())
+      files[std::filesystem::absolute(file).string()] = std::filesystem::last_write_time(file).time_since_epoch().count();
+  return files;
+}
+
 /// What measurements belong to, named as people know it: the samples, the image, and who measured.
 json owner_of(const SceneReportOptions& o, const Scene& scene) {
   const ImageOptions& s = o.scene;
@@ -33,7 +42,8 @@ json owner_of(const SceneReportOptions& o, const Scene& scene) {
           {"--cell", s.cell},
           {"--gridder", s.gridder},
           {"--threads", scene.threads()},
-          {"--quick", o.quick}};
+          {"--quick", o.quick},
+          {"files of kernels", kernel_files(o)}};
 }
 
 /// How much is run of all points by turns.

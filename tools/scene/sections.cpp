@@ -78,6 +78,7 @@ std::string command_of(const ImageOptions& scene, const ScenePoint& point) {
   add("--spw", scene.selection.spectral_window, "");
   add("--datacolumn", scene.datacolumn, "data");
   add("--gridder", scene.gridder, "auto");
+  add("--kernel-folder", scene.kernel.folder, "");
   return line + " " + options_text(point);
 }
 
