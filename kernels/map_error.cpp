@@ -84,6 +84,10 @@ Eigen::VectorXd image_taper(const TapFunction& taps, const Eigen::VectorXd& x, i
   return response(taps, x, t.node).real.matrix() * t.weight;
 }
 
+Correction reciprocal_taper(const TapFunction& taps) {
+  return [taps](const Eigen::VectorXd& x) -> Eigen::VectorXd { return image_taper(taps, x).cwiseInverse(); };
+}
+
 Eigen::VectorXd map_error(const TapFunction& taps, const Eigen::VectorXd& x, const JudgeOptions& options) {
   const Quadrature t = positions(options.steps_per_cell).mean;
   const Response seen = response(taps, x, t.node);

@@ -31,6 +31,9 @@ Eigen::VectorXd map_error(const TapFunction& taps, const Eigen::VectorXd& x, con
 /// The taper c(x) = ∫ C(u) exp(2πiux) du that gridding leaves on an image; the correction in common use is 1/c.
 Eigen::VectorXd image_taper(const TapFunction& taps, const Eigen::VectorXd& x, int steps_per_cell = 0);
 
+/// The correction in common use, 1/c(x).
+Correction reciprocal_taper(const TapFunction& taps);
+
 /// How far a kernel is from the exact transform over |x| ≤ x0; squares of relative errors of a one-dimensional transform.
 struct Misfit {
   double mean = 0;        ///< E: mean of ℓ over |x| ≤ x0

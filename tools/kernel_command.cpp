@@ -185,6 +185,7 @@ nlohmann::json json_of(const Emission& e) {
                          {"interpolation", nullptr},
                          {"degree", k.kernel.polynomial.degree()},
                          {"error", json_of(e.realised)},
+                         {"rounding", e.rounding},
                          {"error_of_function", json_of(e.function)},
                          {"error_with_own_correction", nullptr},
                          {"error_of_host_without_this", nullptr}};
@@ -207,7 +208,12 @@ void check_emission(const KernelOptions& o) {
   if (targeted && (o.width != 0 || o.degree != -1 || o.emit.per_cell != 0))
     throw std::invalid_argument(
         "--target-error chooses width, sampling and degree; expected it without --width, --sampling and --degree");
+  if (targeted && o.emit.force)
+    throw std::invalid_argument("--force: expected it without --target-error, which makes a kernel for the host's padding");
   for (const int size : o.job.imsize) refuse_outside(size, 1, 65536, "imsize");
+  if (!o.job.imsize.empty() && !find_host(o.emit.host).depends_on_pixels)
+    throw std::invalid_argument("--imsize: what --emit " + o.emit.host +
+                                " says does not depend on it; expected it beside --emit wsclean or --accuracy");
 }
 
 /// Writes the kernel as a host wants it.
@@ -220,15 +226,15 @@ void emit(KernelOptions& o) {
   o.emit.degree = o.degree;
   o.emit.x0 = o.padding != 0 ? 0.5 / o.padding : o.x0;
   if (o.emit.x0 == 0 && is_kernel_file(o.kernel)) o.emit.x0 = family.max_x0;
-  if (!o.job.imsize.empty()) o.emit.image_size = *std::max_element(o.job.imsize.begin(), o.job.imsize.end());
+  if (!o.job.imsize.empty()) o.emit.image_size = *std::min_element(o.job.imsize.begin(), o.job.imsize.end());
   check_writable_folder(o.output);
+  std::error_code none;
+  if (is_kernel_file(o.kernel) && std::filesystem::equivalent(file_of(o.kernel), o.output, none))
+    throw std::invalid_argument("--output " + o.output + " is the kernel that is to be emitted; expected another file");
   const Emission emission = plan_emission(o.emit, family);
   emission.host->write(emission, o.output);
-  if (o.quiet) return;
-  if (o.json) {
-    std::printf("%s\n", json_of(emission).dump(2).c_str());
-    return;
-  }
+  if (o.json) std::printf("%s\n", json_of(emission).dump(2).c_str());
+  if (o.json || o.quiet) return;
   const char* before = "";
   std::printf("%s: ", o.output.c_str());
   for (const std::string& line : statement(emission)) {
@@ -248,16 +254,6 @@ void choose(KernelOptions& o) {
   o.width = choice.best.work.width;
   o.x0 = std::max(choice.best.u.kernel.x0, choice.best.v.kernel.x0);  // one function serves both axes
   o.degree = std::max(choice.best.u.kernel.polynomial.degree(), choice.best.v.kernel.polynomial.degree());
-}
-
-}  // namespace
-
-namespace {
-
-std::string host_names() {
-  std::string names;
-  for (const Host& host : host_catalogue()) names += (names.empty() ? "" : ", ") + host.name;
-  return names;
 }
 
 }  // namespace

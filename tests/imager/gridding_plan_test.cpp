@@ -100,7 +100,7 @@ BOOST_AUTO_TEST_CASE(less_accuracy_takes_no_wider_kernel_at_a_given_padding) {
   }
 }
 
-BOOST_AUTO_TEST_CASE(out_of_reach_is_refused_with_what_can_be_reached) {
+BOOST_AUTO_TEST_CASE(out_of_reach_is_refused_with_what_can_be_reached, *boost::unit_test::label("sweep")) {
   for (const Size size : {Size{1, 1}, {64, 64}, {5000, 300}}) {
     for (const double accuracy : {1e-12, 1e-17}) check_refusal_or_promise(request(size, accuracy));
     check_refusal(request(size, 1e-9, "spheroidal"));
@@ -198,7 +198,7 @@ BOOST_AUTO_TEST_CASE(a_single_kernel_is_padded_for_its_own_x0_and_judged_over_wh
   }
 }
 
-BOOST_AUTO_TEST_CASE(a_psf_is_as_exact_as_asked_whether_its_transform_is_its_own_or_not) {
+BOOST_AUTO_TEST_CASE(a_psf_is_as_exact_as_asked_whether_its_transform_is_its_own_or_not, *boost::unit_test::label("sweep")) {
   for (const double max_abs_w : {0.0, 1e8})
     for (const double psf_accuracy : {1e-2, 1e-4, 1e-8}) {
       GriddingRequest r = request({2000, 2000}, 1e-4);

@@ -92,7 +92,7 @@ BOOST_DATA_TEST_CASE(dirty_image_and_psf_equal_the_direct_transform_within_the_k
   BOOST_TEST(gridded.sums.weight == direct.sums.weight, boost::test_tools::tolerance(1e-12));
 }
 
-BOOST_AUTO_TEST_CASE(the_error_of_random_data_is_what_theory_expects_down_to_rounding) {
+BOOST_AUTO_TEST_CASE(the_error_of_random_data_is_what_theory_expects_down_to_rounding, *boost::unit_test::label("sweep")) {
   const VisibilityBlock block = random_samples(400, 3, cell_rad, 9);
   const Image model = random_image(128, 128, 10);
   const DirectTransform direct(options(128, 128, 2, 2.0).geometry, 2);

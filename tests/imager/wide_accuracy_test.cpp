@@ -115,6 +115,7 @@ BOOST_DATA_TEST_CASE(a_plan_keeps_its_promise_over_the_whole_image,
   check_promise(i, accuracy);
 }
 
+BOOST_TEST_DECORATOR(*boost::unit_test::label("sweep"))
 BOOST_DATA_TEST_CASE(and_to_ten_digits, bdata::xrange(3), i) {
   check_promise(static_cast<std::size_t>(i), 1e-10);
 }

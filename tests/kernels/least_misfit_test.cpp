@@ -51,7 +51,7 @@ BOOST_DATA_TEST_CASE(the_stored_polynomial_is_as_good_as_the_solution, bdata::ma
   BOOST_TEST(kernel.origin.mean_error == reference.mean_error, boost::test_tools::tolerance(1e-6));
 }
 
-BOOST_AUTO_TEST_CASE(solver_converges_over_its_whole_range_and_width_always_helps) {
+BOOST_AUTO_TEST_CASE(solver_converges_over_its_whole_range_and_width_always_helps, *boost::unit_test::label("sweep")) {
   for (const double x0 : {0.01, 0.013, 0.03, 0.06, 0.1, 0.17, 0.23, 0.31, 0.37, 0.42, 0.421, 0.45, 0.47, 0.48, 0.49}) {
     double narrower = 1;
     for (const int width : {1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 13}) {

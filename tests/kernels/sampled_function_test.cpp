@@ -4,6 +4,7 @@
 #include <boost/test/unit_test.hpp>
 #include <cmath>
 
+#include "kernels/catalogue.h"
 #include "kernels/least_misfit.h"
 
 using namespace misfit::kernels;
@@ -48,6 +49,25 @@ BOOST_AUTO_TEST_CASE(a_jump_has_the_mean_of_both_sides_and_the_edge_the_limit_fr
   BOOST_TEST(sampled(2, 1) == (Eigen::VectorXd(2) << 1, 1).finished());
   BOOST_TEST(sampled(1, 2) == (Eigen::VectorXd(2) << 1, 1).finished());
   BOOST_TEST(sampled(3, 1) == (Eigen::VectorXd(2) << 2, 1).finished());
+}
+
+BOOST_DATA_TEST_CASE(both_ends_are_halved_where_an_entry_lies_there, bdata::make({1, 4, 5, 6, 7}) * bdata::make({2, 9, 10}),
+                     width, per_cell) {
+  const PiecewisePolynomial function = kernel_family("least-misfit").make(width, 0.3).polynomial;
+  const Eigen::VectorXd whole = misfit::kernels::sampled_function(function, per_cell),
+                        halved = sampled_to_both_ends(function, per_cell);
+  BOOST_TEST(halved.head(halved.size() - 1) == whole.head(halved.size() - 1));
+  BOOST_TEST(halved[halved.size() - 1] == whole[halved.size() - 1] / (width * per_cell % 2 == 0 ? 2 : 1));
+}
+
+BOOST_AUTO_TEST_CASE(a_host_takes_the_nearest_entry_and_zero_beyond_the_end) {
+  const Eigen::VectorXd table = Eigen::VectorXd::LinSpaced(11, 10, 20);  // of 4 a cell, to |u| = 2.5
+  const TapFunction taps = nearest_entries(table, 4, 3);
+  for (const double t : {-0.5, -0.374, -0.126, 0.0, 0.1, 0.24, 0.5})
+    for (int r = 0; r < 7; ++r) {
+      const double entry = std::abs(4 * (r - 3) - std::round(4 * t));
+      BOOST_TEST(taps(t)[r] == (entry <= 10 ? 10 + entry : 0));
+    }
 }
 
 BOOST_AUTO_TEST_SUITE_END()

@@ -1,6 +1,5 @@
 #include "tests/tools/emulated_hosts.h"
 
-#include <Eigen/Core>
 #include <boost/test/unit_test.hpp>
 #include <cmath>
 #include <complex>
@@ -104,11 +103,25 @@ EmulatedHost ducc(const std::string& content) {
     const std::size_t cell = std::min(static_cast<std::size_t>(place), width - 1);
     return horner(coefficients, width, cell, (place - static_cast<double>(cell) - 0.5) * 2);
   };
+  // TemplateKernel::eval1: rows by turns, in even and odd powers, of the first half of the cells; the others by symmetry.
+  const auto degree = static_cast<std::size_t>(file.integer("D"));
+  BOOST_REQUIRE(degree == width + 3 + width % 2);  // TemplateKernel clears no more than one row above a lower one
   const auto gridded = [=](double u) {
-    std::vector<Tap> found;
     const auto first = static_cast<long>(std::ceil(u - w / 2));
-    for (long r = 0; r < static_cast<long>(width); ++r)
-      found.emplace_back(first + r, eval((static_cast<double>(first + r) - u) * 2 / w));
+    const double x = (static_cast<double>(first) - u) * 2 + w - 1;
+    Numbers values(width);
+    for (std::size_t cell = 0; cell <= (width - 1) / 2; ++cell) {
+      double odd = 0, even = 0;
+      for (std::size_t j = 0; j <= degree; j += 2) {
+        odd = odd * x * x + coefficients[j * width + cell];
+        even = even * x * x + coefficients[(j + 1) * width + cell];
+      }
+      values[cell] = odd * x + even;
+      values[width - 1 - cell] = even - odd * x;
+      if (2 * cell + 1 == width) values[cell] = odd * x + even;
+    }
+    std::vector<Tap> found;
+    for (std::size_t r = 0; r < width; ++r) found.emplace_back(first + static_cast<long>(r), values[r]);
     return found;
   };
   const auto corrected = [w](const Numbers& x, const Numbers& weight, long pixel, long size) {
@@ -269,40 +282,69 @@ EmulatedHost emulated_host(const std::string& host, const std::string& content) 
   return csv(content);
 }
 
+namespace {
+
+using Complex = std::complex<double>;
+using Rows = std::vector<std::vector<Complex>>;
+
+/// Positions that cover the cells evenly: multiples of `step`'s fraction.
+double position(int k, double step) {
+  return 20 + 60 * std::fmod((k + 1) * step, 1);
+}
+
+/// Σ_x image[x] part[x]
+Complex dot(const std::vector<Complex>& a, const std::vector<Complex>& b) {
+  double real = 0, imaginary = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    real += a[i].real() * b[i].real() - a[i].imag() * b[i].imag();
+    imaginary += a[i].real() * b[i].imag() + a[i].imag() * b[i].real();
+  }
+  return {real, imaginary};
+}
+
+}  // namespace
+
 double measured_error(const EmulatedHost& host, bool own_divisor, int pixels, int fft_size) {
   constexpr int visibilities = 800;
+  constexpr double golden = 0.6180339887498949, silver = 0.4142135623730951;
   std::mt19937_64 random(11);
   std::normal_distribution<double> normal;
-  const Eigen::MatrixXcd image =
-      Eigen::MatrixXcd::NullaryExpr(pixels, pixels, [&] { return std::complex<double>(normal(random), normal(random)); });
-  Eigen::VectorXd x(pixels), divisor(pixels);
-  for (int i = 0; i < pixels; ++i) {
-    x[i] = static_cast<double>(i - pixels / 2) / fft_size;
-    divisor[i] = (own_divisor ? host.own_divisor : host.divisor)(i - pixels / 2, fft_size);
-  }
-  // What a visibility at u has of each pixel of an axis: as the host's taps sum it up, and as it is. Multiples of the golden
-  // ratio's and another's fractions cover the cell evenly.
-  const auto parts = [&](double step, bool exact) {
-    Eigen::MatrixXcd part = Eigen::MatrixXcd::Zero(visibilities, pixels);
-    const auto add = [&](int k, double cell, const Eigen::VectorXd& scale) {
-      for (int i = 0; i < pixels; ++i) part(k, i) += std::polar(scale[i], 2 * pi * std::fmod(cell * x[i], 1));
-    };
-    for (int k = 0; k < visibilities; ++k) {
-      const double u = 20 + 60 * std::fmod((k + 1) * step, 1);
-      if (exact) {
-        add(k, u, Eigen::VectorXd::Ones(pixels));
-        continue;
-      }
-      for (const auto& [cell, tap] : host.taps(u)) add(k, static_cast<double>(cell), tap * divisor.cwiseInverse());
-    }
+  Rows image(static_cast<std::size_t>(pixels), std::vector<Complex>(static_cast<std::size_t>(pixels)));
+  for (auto& row : image)
+    for (Complex& pixel : row) pixel = {normal(random), normal(random)};
+  const auto& divisor = own_divisor ? host.own_divisor : host.divisor;
+  std::vector<double> corrected(static_cast<std::size_t>(pixels));
+  for (int i = 0; i < pixels; ++i) corrected[static_cast<std::size_t>(i)] = 1 / divisor(i - pixels / 2, fft_size);
+  // What a visibility at u has of each pixel of an axis: exp(2πiux), exact or as the host's taps sum it up.
+  const auto phasor = [&](double cell, int i) {
+    return std::polar(1.0, 2 * pi * std::fmod(cell * (i - pixels / 2) / fft_size, 1));
+  };
+  const auto exact = [&](double u) {
+    std::vector<Complex> part;
+    for (int i = 0; i < pixels; ++i) part.push_back(phasor(u, i));
     return part;
   };
-  const auto visibility = [&](bool exact) {
-    return Eigen::VectorXcd(
-        ((parts(0.6180339887498949, exact) * image).cwiseProduct(parts(0.4142135623730951, exact))).rowwise().sum());
+  const auto gridded = [&](double u) {
+    std::vector<Complex> part(static_cast<std::size_t>(pixels));
+    for (const auto& [cell, tap] : host.taps(u))
+      for (int i = 0; i < pixels; ++i)
+        part[static_cast<std::size_t>(i)] +=
+            tap * corrected[static_cast<std::size_t>(i)] * phasor(static_cast<double>(cell), i);
+    return part;
   };
-  const Eigen::VectorXcd should = visibility(true);
-  return (visibility(false) - should).norm() / should.norm();
+  const auto visibility = [&](const std::vector<Complex>& along_u, const std::vector<Complex>& along_v) {
+    std::vector<Complex> rows;
+    for (const auto& row : image) rows.push_back(dot(row, along_u));
+    return dot(rows, along_v);
+  };
+  double difference = 0, norm = 0;
+  for (int k = 0; k < visibilities; ++k) {
+    const double u = position(k, golden), v = position(k, silver);
+    const Complex should = visibility(exact(u), exact(v));
+    difference += std::norm(visibility(gridded(u), gridded(v)) - should);
+    norm += std::norm(should);
+  }
+  return std::sqrt(difference / norm);
 }
 
 }  // namespace misfit::tools::testing

@@ -111,13 +111,24 @@ BOOST_AUTO_TEST_CASE(wsclean_errs_by_what_is_said_without_the_kernel_and_with_it
   BOOST_TEST(std::abs(error_of(data, run_wsclean(data, {}, {})) / stock - 1) < 0.1);
 }
 
-BOOST_AUTO_TEST_CASE(a_kernel_that_wsclean_made_no_use_of_is_said) {
+BOOST_AUTO_TEST_CASE(a_table_that_is_not_the_kernels_ends_the_run) {
   if (!installed()) return;
   const Observation data;
   const std::string file = data.folder / "k.h";
   emitted(file, 7, 1023);
-  const Outcome unused = run_wsclean(data, preloaded(file), {"-oversampling", "63"});
-  BOOST_TEST((unused.err.find("made no use of the kernel's table") != std::string::npos));
+  const auto other_table = [&](const Arguments& more) {
+    std::filesystem::remove(data.folder / "wsclean-image.fits");
+    const Outcome outcome = run_wsclean(data, preloaded(file), more);
+    BOOST_TEST(outcome.code == 1);
+    BOOST_TEST((outcome.err.find("WSClean's table is not the kernel's; expected version 3.1") != std::string::npos));
+    BOOST_TEST(!std::filesystem::exists(data.folder / "wsclean-image.fits"));
+  };
+  for (const Arguments& more :
+       {Arguments{"-oversampling", "63"}, {"-kernel-size", "9"}, {"-kernel-size", "5"}, {"-grid-mode", "rect"}})
+    other_table(more);
+  const Outcome unused = run_wsclean(data, preloaded(file), {"-use-wgridder"});
+  BOOST_TEST(unused.code == 0);
+  BOOST_TEST((unused.err.find("made no use of the kernel") != std::string::npos));
   const Outcome none = run_wsclean(data, preloaded(data.folder / "sky.csv"), {});
   BOOST_TEST(none.code == 1);
   BOOST_TEST((none.err.find("sky.csv is no file by misfit kernel --emit wsclean") != std::string::npos));

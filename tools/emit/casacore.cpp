@@ -1,3 +1,5 @@
+#include <algorithm>
+
 #include "kernels/catalogue.h"
 #include "kernels/kernel_table.h"
 #include "tools/emit/emission.h"
@@ -11,20 +13,34 @@ namespace {
 HostRule stock(const HostKernel& k) {
   constexpr int per_cell = 100, width = 6;
   const kernels::Kernel own = kernels::kernel_family("spheroidal").make(width, k.x0());
-  const double whole = kernels::image_taper(own.polynomial, Eigen::VectorXd::Zero(1))[0];
+  const double sum = kernels::image_taper(own.polynomial, Eigen::VectorXd::Zero(1))[0];  // as its taps are, divided by theirs
+  const kernels::PiecewisePolynomial whole{own.polynomial.coefficient / sum};
   return {hosts::casacore_taps(hosts::casacore_table(own.polynomial, per_cell), per_cell), per_cell,
-          [own, whole](const Eigen::VectorXd& x) -> Eigen::VectorXd {
-            return whole * kernels::image_taper(own.polynomial, x).cwiseInverse();
-          }};
+          kernels::reciprocal_taper(whole)};
+}
+
+/// Broken at blanks into lines that a header's COMMENT holds.
+std::vector<std::string> wrapped(const std::vector<std::string>& lines) {
+  constexpr std::size_t longest = 70;
+  std::vector<std::string> found;
+  for (std::string line : lines) {
+    while (line.size() > longest) {
+      const std::size_t blank = std::min(line.rfind(' ', longest), longest);
+      found.push_back(line.substr(0, blank));
+      line = "  " + line.substr(blank + (blank < longest ? 1 : 0));
+    }
+    found.push_back(line);
+  }
+  return found;
 }
 
 kernels::HostTable table_of(const Emission& e) {
   const Eigen::VectorXd table = hosts::casacore_table(e.table.kernel.polynomial, e.table.per_cell);
-  std::vector<std::string> comments = statement(e);
-  comments.emplace_back("CONVFUNC is casacore's cFunction(): entry i at |u| = i / cSampling().");
+  std::vector<std::string> comments = wrapped(statement(e));
+  comments.emplace_back("CFUNCTION is casacore's cFunction(): entry i at |u| = i / cSampling().");
   comments.emplace_back("misfit::hosts::ConvolveGridderTable takes this file, and");
   comments.emplace_back("misfit::hosts::CasacoreGridder its POLY, without the table's error.");
-  return {"CASACORE", {{"CONVFUNC", table}}, comments};
+  return {"CASACORE", {{"CFUNCTION", table}}, comments};
 }
 
 kernels::HostTable divisor_of(const Emission& e) {
@@ -51,11 +67,12 @@ Host casacore_host() {
   host.padding = 1.2;
   host.max_width = 7;
   host.table = {100000, kernels::kernel_table_max_per_cell, false, false};
-  host.sums_in_single_precision = true;
+  host.bits = 24;
   host.taps_of = [](int) { return 7; };
   host.taps = [](const HostKernel& k) {
     return hosts::casacore_taps(hosts::casacore_table(k.kernel.polynomial, k.per_cell), k.per_cell);
   };
+  host.bytes = [](const HostKernel& k) { return (hosts::casacore_support + 1.0) * k.per_cell * sizeof(double); };
   host.stock = stock;
   host.stock_name = "its spheroidal function, 100 entries a cell";
   host.write = write;

@@ -83,6 +83,7 @@ Host csv_host() {
   host.habit = "rows of the table, the nearest or interpolated within it, the image divided by what it is given";
   host.table = {128, 100000, false, true};
   host.taps_of = [](int width) { return width; };
+  host.bytes = [](const HostKernel& k) { return (k.per_cell + 1.0) * k.kernel.width() * sizeof(double); };
   host.taps = taps;
   host.write = write;
   return host;

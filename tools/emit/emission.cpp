@@ -43,12 +43,12 @@ std::string errs(double error) {
 
 }  // namespace
 
-void check_padding(const Host& host, const HostKernel& k) {
-  const double product = 2 * k.kernel.x0 * k.padding;
+void check_padding(const Host& host, double x0, double padding) {
+  const double product = 2 * x0 * padding;
   if (std::abs(product - 1) <= 1e-3) return;
-  throw std::invalid_argument("--emit " + host.name + ": the kernel is made for x0 = " + significant(k.kernel.x0, 5) +
-                              ", a padding of " + significant(0.5 / k.kernel.x0, 5) + ", and " + host.title + " pads by " +
-                              significant(k.padding, 5) + "; expected --padding " + significant(k.padding, 5) +
+  throw std::invalid_argument("--emit " + host.name + ": the kernel is made for x0 = " + significant(x0, 5) +
+                              ", a padding of " + significant(0.5 / x0, 5) + ", and " + host.title + " pads by " +
+                              significant(padding, 5) + "; expected --padding " + significant(padding, 5) +
                               ", or --host-padding for a host that is told to pad otherwise, or --force");
 }
 
@@ -61,8 +61,9 @@ Emission emission(const Host& host, const HostKernel& table) {
   e.host = &host;
   e.table = table;
   e.divisor = divisor_series([&](const Eigen::VectorXd& x) { return kernels::optimal_correction(taps, x, steps); }, x0);
-  e.realised = realised_error({taps, steps, {}}, x0);
-  if (host.sums_in_single_precision) e.rounding = single_precision_rounding(table.kernel.polynomial, x0);
+  e.rounding = rounding(table.kernel.polynomial, x0, host.bits);
+  const kernels::Correction given = host.given_correction ? host.given_correction(table) : kernels::Correction();
+  e.realised = with_rounding(realised_error({taps, steps, given}, x0), e.rounding);
   if (host.own_correction) e.own = realised_error({taps, steps, host.own_correction(table)}, x0);
   if (host.stock) e.stock = realised_error(host.stock(table), x0);
   e.function = realised_error({table.kernel.polynomial, 0, {}}, x0);
@@ -83,10 +84,16 @@ std::vector<std::string> statement(const Emission& e) {
                                      significant(k.kernel.x0, 6) + ", " + holds + ", for " + host.title,
                                  line("which has", host.habit), line("padding", significant(k.padding, 6)),
                                  line("it will err", "by " + errs(e.realised.rms) + " RMS, " + errs(e.realised.largest) +
-                                                         " at most, of images and visibilities (random phases, two axes)"),
+                                                         " at most for one visibility and one pixel (two axes, random phases)"),
                                  line("the function", "by " + errs(e.function.rms) + " without what the host adds")};
+  if (host.bytes) lines.push_back(line("its table", "takes " + significant(host.bytes(k) / 1e6, 2) + " MB in the host"));
   if (e.rounding > 0.1 * e.realised.rms)
-    lines.push_back(line("rounding", "adds " + errs(e.rounding) + " or more, since the host sums in single precision"));
+    lines.push_back(line("rounding", "is about " + errs(e.rounding) + " of it: " + std::to_string(host.bits) +
+                                         " bits, magnified by the correction"));
+  if (k.kernel.misfit.mean > 1.01 * k.kernel.origin.mean_error)
+    lines.push_back(line("as solved", "by " + errs(std::sqrt(2 * k.kernel.origin.mean_error)) +
+                                          " before its polynomials were cut to degree " +
+                                          std::to_string(k.kernel.polynomial.degree())));
   if (e.own)
     lines.push_back(line("left alone", "by " + errs(e.own->rms) + " with the correction that the host works out itself" +
                                            (host.depends_on_pixels ? ", " + std::to_string(k.image_size) + " pixels" : "")));

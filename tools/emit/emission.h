@@ -15,7 +15,7 @@ struct Emission {
   HostKernel table;
   DivisorSeries divisor;               ///< the optimal one for the taps that the host makes
   RealisedError realised;              ///< with this divisor
-  double rounding = 0;                 ///< what sums in single precision add to it at least; 0 for hosts with doubles
+  double rounding = 0;                 ///< about what of it is rounding
   std::optional<RealisedError> own;    ///< with the correction that the host works out by itself
   std::optional<RealisedError> stock;  ///< what the host errs by without us
   RealisedError function;              ///< the function's own, without the host
@@ -26,7 +26,7 @@ Emission emission(const Host& host, const HostKernel& table);
 
 /// Refuses, by std::invalid_argument, a kernel that was made for another part of the FFT image than the host keeps:
 /// |2·x0·padding − 1| > 1e-3.
-void check_padding(const Host& host, const HostKernel& table);
+void check_padding(const Host& host, double x0, double padding);
 
 /// What is printed, and stands at the head of every file: a line each.
 std::vector<std::string> statement(const Emission& emission);

@@ -40,6 +40,7 @@ Emission plan_emission(const EmitOptions& o, const kernels::KernelFamily& family
   if (o.target_error > 0) {
     const double x0 = x0_of(o, host);
     const double padding = o.host_padding > 0 ? o.host_padding : host.padding.value_or(0.5 / x0);
+    check_padding(host, x0, padding);
     table = choose_for_host({&host, family, o.target_error, padding, interpolation_of(o, host), o.image_size});
   } else {
     table.kernel = kernel_of(o, host, family);
@@ -48,7 +49,7 @@ Emission plan_emission(const EmitOptions& o, const kernels::KernelFamily& family
     table.padding = o.host_padding > 0 ? o.host_padding : host.padding.value_or(0.5 / table.kernel.x0);
     table.image_size = o.image_size;
   }
-  if (!o.force) check_padding(host, table);
+  if (!o.force) check_padding(host, table.kernel.x0, table.padding);
   return emission(host, table);
 }
 

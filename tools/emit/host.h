@@ -50,15 +50,18 @@ struct Host {
   int min_width = 1;
   int max_width = 20;
   TableSizes table;
-  bool sums_in_single_precision = false;
+  int bits = 53;                   ///< of the mantissa of what it sums up
   bool depends_on_pixels = false;  ///< whether its own correction depends on the image's size
   /// Lowest and highest degree of the polynomials that it holds for a width; those of hosts with tables do not matter.
   std::function<std::pair<int, int>(int width)> degrees;
-  std::function<int(int width)> taps_of;  ///< cells that it touches an axis for a kernel of this width
+  std::function<int(int width)> taps_of;           ///< cells that it touches an axis for a kernel of this width
+  std::function<double(const HostKernel&)> bytes;  ///< of its tables; empty for hosts with polynomials
   /// The taps that it makes of the kernel.
   std::function<kernels::TapFunction(const HostKernel&)> taps;
   /// The correction that it works out by itself from what it is given; empty where it must be given one.
   std::function<kernels::Correction(const HostKernel&)> own_correction;
+  /// The correction that its file gives it; empty = the optimal one.
+  std::function<kernels::Correction(const HostKernel&)> given_correction;
   /// What it does without us, at this padding and image size; empty where that is not known.
   std::function<HostRule(const HostKernel&)> stock;
   std::string stock_name;  ///< that function: "its spheroidal function, 100 entries a cell"
@@ -68,6 +71,9 @@ struct Host {
 
 /// Every host there is. A new one is a line there.
 const std::vector<Host>& host_catalogue();
+
+/// Their names, with commas between.
+std::string host_names();
 
 /// The host called `name`; for any other name std::invalid_argument lists those there are.
 const Host& find_host(const std::string& name);

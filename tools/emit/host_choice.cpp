@@ -14,20 +14,29 @@ HostKernel with(const HostRequest& r, const kernels::Kernel& kernel, int per_cel
 }
 
 double error_of(const HostRequest& r, const HostKernel& k) {
-  const double rounding = r.host->sums_in_single_precision ? single_precision_rounding(k.kernel.polynomial, k.x0()) : 0;
-  return std::hypot(realised_error({r.host->taps(k), k.per_cell, {}}, k.x0()).rms, rounding);
+  return emission(*r.host, k).realised.rms;
 }
 
-/// Rounded up to two digits, as the host needs it odd.
-int rounded_up(int entries, const TableSizes& sizes) {
+/// Tables that are read by the nearest entry have odd numbers: of even ones an entry lies where cells meet and C may jump.
+bool is_odd(const HostRequest& r) {
+  return r.interpolation == 0;
+}
+
+int most_entries(const HostRequest& r) {
+  const int most = r.host->table.most;
+  return is_odd(r) && most % 2 == 0 ? most - 1 : most;
+}
+
+/// Rounded up to two digits.
+int rounded_up(int entries, const HostRequest& r) {
   const double unit = std::max(1.0, std::pow(10.0, std::floor(std::log10(entries)) - 1));
   int rounded = static_cast<int>(std::ceil(entries / unit) * unit);
-  if (sizes.odd && rounded % 2 == 0) ++rounded;
-  return std::min(rounded, sizes.most);
+  if (is_odd(r) && rounded % 2 == 0) ++rounded;
+  return std::min(rounded, most_entries(r));
 }
 
 int least_entries(const HostRequest& r) {
-  return r.interpolation + 1 + (r.host->table.odd ? r.interpolation % 2 : 0);
+  return r.interpolation + 1;
 }
 
 /// The lowest degree that the host holds and that keeps the error within the target; nothing where there is none.
@@ -42,7 +51,7 @@ std::optional<HostKernel> by_degree(const HostRequest& r, const kernels::Kernel&
 
 /// The best that the host can do with a kernel.
 HostKernel finest(const HostRequest& r, const kernels::Kernel& kernel) {
-  if (r.host->table.usual > 0) return with(r, kernel, r.host->table.most);
+  if (r.host->table.usual > 0) return with(r, kernel, most_entries(r));
   return with(r, kernels::truncated(kernel, r.host->degrees(kernel.width()).second), 0);
 }
 
@@ -53,12 +62,11 @@ HostKernel finest(const HostRequest& r, const kernels::Kernel& kernel) {
                               (best.per_cell > 0 ? " with " + std::to_string(best.per_cell) + " entries a cell" : "") + " has");
 }
 
-}  // namespace
-
+/// The least number of entries, to two digits, that keeps the error within the target; 0 where the most do not.
 int fewest_entries(const HostRequest& r, const kernels::Kernel& kernel) {
   const auto reaches = [&](int entries) { return error_of(r, with(r, kernel, entries)) <= r.target_error; };
-  const int step = r.host->table.odd ? 2 : 1;
-  int enough = r.host->table.most, few = least_entries(r);
+  const int step = is_odd(r) ? 2 : 1;
+  int enough = most_entries(r), few = least_entries(r);
   if (!reaches(enough)) return 0;
   if (reaches(few)) return few;
   while (enough - few > std::max(step, few / 50)) {  // by halves of the ratio, since the error is a power of the number
@@ -66,10 +74,9 @@ int fewest_entries(const HostRequest& r, const kernels::Kernel& kernel) {
     middle = std::clamp(middle - (middle - few) % step, few + step, enough - step);
     (reaches(middle) ? enough : few) = middle;
   }
-  return rounded_up(enough, r.host->table);
+  const int rounded = rounded_up(enough, r);
+  return reaches(rounded) ? rounded : enough;
 }
-
-namespace {
 
 /// The kernel as the host reaches the target with it, where it does.
 std::optional<HostKernel> reaching(const HostRequest& r, const kernels::Kernel& kernel) {

@@ -20,7 +20,4 @@ struct HostRequest {
 /// over. Throws std::invalid_argument that says what the host can reach when it is less.
 HostKernel choose_for_host(const HostRequest& request);
 
-/// The least number of entries, to two digits, that keeps the error within the target; 0 where the most do not.
-int fewest_entries(const HostRequest& request, const kernels::Kernel& kernel);
-
 }  // namespace misfit::tools

@@ -10,13 +10,16 @@ const std::vector<Host>& host_catalogue() {
   return hosts;
 }
 
+std::string host_names() {
+  std::string names;
+  for (const Host& host : host_catalogue()) names += (names.empty() ? "" : ", ") + host.name;
+  return names;
+}
+
 const Host& find_host(const std::string& name) {
-  std::string known;
-  for (const Host& host : host_catalogue()) {
+  for (const Host& host : host_catalogue())
     if (host.name == name) return host;
-    known += (known.empty() ? "" : ", ") + host.name;
-  }
-  throw std::invalid_argument("--emit " + name + ": expected one of " + known);
+  throw std::invalid_argument("--emit " + name + ": expected one of " + host_names());
 }
 
 }  // namespace misfit::tools

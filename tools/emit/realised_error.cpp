@@ -20,9 +20,14 @@ RealisedError realised_error(const HostRule& rule, double x0) {
   return {std::sqrt(std::max(square, 0.0)), 2 * worst + worst * worst};
 }
 
-double single_precision_rounding(const kernels::PiecewisePolynomial& function, double x0) {
+double rounding(const kernels::PiecewisePolynomial& function, double x0, int bits) {
   const double gain = kernels::noise_gain(function, x0);
-  return std::ldexp(gain * gain, -24);
+  return std::ldexp(gain * gain, -bits);
+}
+
+RealisedError with_rounding(const RealisedError& error, double rounding) {
+  constexpr double worst = 6;  // standard deviations
+  return {std::hypot(error.rms, rounding), error.largest + worst * rounding};
 }
 
 }  // namespace misfit::tools

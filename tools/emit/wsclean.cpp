@@ -52,17 +52,19 @@ void write(const Emission& e, const std::string& path) {
   const std::string size = std::to_string(taps), sampling = std::to_string(k.per_cell);
   write_file(
       path,
-      c_header(
-          e,
-          {"To use it, in WSClean's wstackinggridder.cpp:", "1. include this file; at the end of the switch in makeKernels():",
-           "     std::copy_n(misfit_kernel, _1dKernel.size(), _1dKernel.begin());",
-           "2. in correctImageForKernel(), where xVal and yVal are taken from the DCT, for the smaller of the errors above:",
-           "     xVal = misfit_divisor((double(x) - _width / 2) / _width) * _overSamplingFactor;  and yVal likewise",
-           "   (without this step WSClean divides by a DCT that is half a pixel off).",
-           "3. build, and run with  -kernel-size " + size + " -oversampling " + sampling + " -padding " +
-               significant(k.padding, 6) + " -no-small-inversion"},
-          c_integer("kernel_size", taps) + c_integer("oversampling", k.per_cell) +
-              c_array("C at u = (i - " + std::to_string(middle) + ") / " + sampling, "kernel", table) + c_divisor(e.divisor)));
+      c_header(e,
+               {"To use it, in WSClean's wstackinggridder.cpp:", "1. include this file; in makeKernels(), after the switch:",
+                "     if (_kernelSize != misfit_kernel_size || _overSamplingFactor != misfit_oversampling)",
+                "       throw std::runtime_error(\"run with the -kernel-size and -oversampling of the kernel\");",
+                "     std::copy_n(misfit_kernel, _1dKernel.size(), _1dKernel.begin());",
+                "2. in both correctImageForKernel(), where xVal and yVal are taken from a DCT that is half a pixel off:",
+                "     xVal = misfit_divisor((double(x) - _width / 2) / _width) * _overSamplingFactor;",
+                "     yVal = misfit_divisor((double(y) - _height / 2) / _height) * _overSamplingFactor;",
+                "3. build, and run with  -kernel-size " + size + " -oversampling " + sampling + " -padding " +
+                    significant(k.padding, 6) + " -no-small-inversion"},
+               c_integer("kernel_size", taps) + c_integer("oversampling", k.per_cell) +
+                   c_array("C at u = (i - " + std::to_string(middle) + ") / " + sampling, "kernel", table) +
+                   c_divisor(e.divisor)));
 }
 
 }  // namespace
@@ -76,7 +78,7 @@ Host wsclean_host() {
   host.max_width = 20;
   host.table = {1023, 65535, true, false};
   host.depends_on_pixels = true;
-  host.sums_in_single_precision = true;
+  host.bits = 24;
   host.taps_of = taps_of;
   host.taps = [](const HostKernel& k) {
     return kernels::nearest_entries(kernels::sampled_to_both_ends(k.kernel.polynomial, k.per_cell), k.per_cell,
@@ -85,6 +87,7 @@ Host wsclean_host() {
   host.own_correction = [](const HostKernel& k) {
     return dct_correction(kernels::sampled_to_both_ends(k.kernel.polynomial, k.per_cell), k);
   };
+  host.bytes = [](const HostKernel& k) { return 2.0 * taps_of(k.kernel.width()) * k.per_cell * sizeof(double); };
   host.stock = stock;
   host.stock_name = "its Kaiser-Bessel function of 7 cells, 1023 entries a cell";
   host.write = write;

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <complex>
 #include <cstdlib>
 
 #include "kernels/catalogue.h"
@@ -47,11 +48,10 @@ kernels::TapFunction taps_of_rows(const Eigen::MatrixXd& rows) {
 HostRule stock(const HostKernel& k) {
   constexpr int per_cell = 128, support = 3;
   const kernels::Kernel own = kernels::kernel_family("spheroidal-exact-1").make(2 * support, k.x0());
-  const double whole = kernels::image_taper(own.polynomial, Eigen::VectorXd::Zero(1))[0];
+  const double sum = kernels::image_taper(own.polynomial, Eigen::VectorXd::Zero(1))[0];  // as its taps are, divided by theirs
+  const kernels::PiecewisePolynomial whole{own.polynomial.coefficient / sum};
   return {taps_of_rows(rows(kernels::sampled_to_both_ends(own.polynomial, per_cell), per_cell, support)), per_cell,
-          [own, whole](const Eigen::VectorXd& x) -> Eigen::VectorXd {
-            return whole * kernels::image_taper(own.polynomial, x).cwiseInverse();
-          }};
+          kernels::reciprocal_taper(whole)};
 }
 
 Eigen::MatrixXd rows_of(const HostKernel& k) {
@@ -87,9 +87,13 @@ Host yandasoft_host() {
   host.title = "yandasoft's SphFuncVisGridder";
   host.habit = "the nearest of oversample^2 planes, each divided by its sum, the image multiplied by 1 / what it is given";
   host.table = {128, 1024, false, false};
-  host.sums_in_single_precision = true;
+  host.bits = 24;
   host.taps_of = [](int width) { return 2 * support_for(width) + 1; };
   host.taps = [](const HostKernel& k) { return taps_of_rows(rows_of(k)); };
+  host.bytes = [](const HostKernel& k) {
+    const double cells = 2 * support_for(k.kernel.width()) + 1;
+    return std::pow(k.per_cell * cells, 2) * sizeof(std::complex<float>);
+  };
   host.stock = stock;
   host.stock_name = "its spheroidal function of support 3, oversample 128";
   host.write = write;

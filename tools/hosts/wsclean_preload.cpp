@@ -12,6 +12,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <map>
@@ -31,6 +32,8 @@ class EmittedKernel {
  public:
   explicit EmittedKernel(const char* path) {
     if (path == nullptr) fail("MISFIT_WSCLEAN_KERNEL is not set; expected a file by misfit kernel --emit wsclean");
+    if (!std::filesystem::is_regular_file(path))
+      fail("MISFIT_WSCLEAN_KERNEL=" + std::string(path) + " does not exist, or is no file");
     std::ifstream file(path);
     text_.assign(std::istreambuf_iterator<char>(file), {});
     if (text_.find("MISFIT_KERNEL_WSCLEAN_H") == std::string::npos)
@@ -81,24 +84,31 @@ class EmittedKernel {
   std::string text_;
 };
 
+/// A DCT that WSClean has planned.
+struct Transform {
+  const void* in = nullptr;
+  void* out = nullptr;
+  int size = 0;
+};
+
 /// What was asked for, and what is said of it in the end.
 struct State {
   EmittedKernel kernel{std::getenv("MISFIT_WSCLEAN_KERNEL")};
   std::mutex mutex;
-  std::map<void*, std::pair<void*, int>> transforms;  ///< planned DCTs: their output and its size
-  bool table_served = false;
-  bool divisor_served = false;
+  std::map<void*, Transform> transforms;  ///< DCTs by their plans
+  bool served = false;
+
+  std::string expected() const {
+    return "version 3.1, its default grid mode, no -use-wgridder, -kernel-size " + std::to_string(kernel.taps) +
+           " -oversampling " + std::to_string(kernel.per_cell);
+  }
 
   State() = default;
   State(const State&) = delete;
   State& operator=(const State&) = delete;
   ~State() {
-    const char* missing = !table_served ? "table" : !divisor_served ? "divisor" : nullptr;
-    if (missing != nullptr)
-      std::fprintf(stderr,
-                   "libmisfit_wsclean: WSClean made no use of the kernel's %s; expected version 3.1, its default grid mode, no "
-                   "-use-wgridder, -kernel-size %d -oversampling %d\n",
-                   missing, kernel.taps, kernel.per_cell);
+    if (!served)
+      std::fprintf(stderr, "libmisfit_wsclean: WSClean made no use of the kernel; expected %s\n", expected().c_str());
   }
 };
 
@@ -126,24 +136,37 @@ void* plan_transform(const char* name, int size, Real* in, Real* out, int kind, 
   void* const plan = next_in_line<void* (*)(int, Real*, Real*, int, unsigned)>(name)(size, in, out, kind, flags);
   State& the = state();
   const std::lock_guard<std::mutex> lock(the.mutex);
-  if (kind == redft01) the.transforms[plan] = {out, size};
+  if (kind == redft01) the.transforms[plan] = {in, out, size};
   return plan;
+}
+
+/// Ends the program, before it writes anything, when WSClean's table from its middle outwards is not the kernel's and zeros.
+template <typename Real>
+void check_table(const State& the, const Transform& transform) {
+  constexpr double rounding = 1e-6;
+  const std::vector<double>& half = the.kernel.half;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(transform.size); ++i) {
+    const double should = i < half.size() ? half[i] / half[0] : 0;
+    if (!(std::fabs(static_cast<const Real*>(transform.in)[i] - should) < rounding))
+      fail("WSClean's table is not the kernel's; expected " + the.expected());
+  }
 }
 
 /// WSClean's DCT of n values for an FFT of N = 2n/Ms pixels leaves Ms·c at the pixel k.
 template <typename Real>
 void execute(const char* name, void* plan) {
-  next_in_line<void (*)(void*)>(name)(plan);
   State& the = state();
-  const std::lock_guard<std::mutex> lock(the.mutex);
+  const std::unique_lock<std::mutex> lock(the.mutex);
   const auto found = the.transforms.find(plan);
+  if (found != the.transforms.end()) check_table<Real>(the, found->second);
+  next_in_line<void (*)(void*)>(name)(plan);
   if (found == the.transforms.end()) return;
-  const auto [out, size] = found->second;
+  const auto [in, out, size] = found->second;
   const double pixels = 2.0 * size / the.kernel.per_cell;
   for (int k = 0; k < size; ++k)
     static_cast<Real*>(out)[k] = static_cast<Real>(the.kernel.per_cell * the.kernel.divisor(k / pixels) / the.kernel.half[0]);
   the.transforms.erase(found);
-  the.divisor_served = true;
+  the.served = true;
 }
 
 }  // namespace
@@ -158,7 +181,6 @@ double sin(double x) {
   if (x != M_PI * ratio * static_cast<double>(i)) return real_sine(x);
   const double answer = sine_for(i, the.kernel);
   const bool last = i + 1 == the.kernel.half.size();
-  the.table_served = the.table_served || last;
   i = last ? 1 : i + 1;
   return answer;
 }
