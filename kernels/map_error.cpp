@@ -88,6 +88,11 @@ Correction reciprocal_taper(const TapFunction& taps) {
   return [taps](const Eigen::VectorXd& x) -> Eigen::VectorXd { return image_taper(taps, x).cwiseInverse(); };
 }
 
+Correction relative_reciprocal_taper(const TapFunction& taps) {
+  const double whole = image_taper(taps, Eigen::VectorXd::Zero(1))[0];
+  return [taps, whole](const Eigen::VectorXd& x) -> Eigen::VectorXd { return whole * image_taper(taps, x).cwiseInverse(); };
+}
+
 Eigen::VectorXd map_error(const TapFunction& taps, const Eigen::VectorXd& x, const JudgeOptions& options) {
   const Quadrature t = positions(options.steps_per_cell).mean;
   const Response seen = response(taps, x, t.node);

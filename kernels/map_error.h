@@ -34,6 +34,9 @@ Eigen::VectorXd image_taper(const TapFunction& taps, const Eigen::VectorXd& x, i
 /// The correction in common use, 1/c(x).
 Correction reciprocal_taper(const TapFunction& taps);
 
+/// The same for gridders that divide a visibility's taps by their sum, whose taper is about c(x)/c(0): c(0)/c(x).
+Correction relative_reciprocal_taper(const TapFunction& taps);
+
 /// How far a kernel is from the exact transform over |x| ≤ x0; squares of relative errors of a one-dimensional transform.
 struct Misfit {
   double mean = 0;        ///< E: mean of ℓ over |x| ≤ x0

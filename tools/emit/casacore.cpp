@@ -13,10 +13,8 @@ namespace {
 HostRule stock(const HostKernel& k) {
   constexpr int per_cell = 100, width = 6;
   const kernels::Kernel own = kernels::kernel_family("spheroidal").make(width, k.x0());
-  const double sum = kernels::image_taper(own.polynomial, Eigen::VectorXd::Zero(1))[0];  // as its taps are, divided by theirs
-  const kernels::PiecewisePolynomial whole{own.polynomial.coefficient / sum};
   return {hosts::casacore_taps(hosts::casacore_table(own.polynomial, per_cell), per_cell), per_cell,
-          kernels::reciprocal_taper(whole)};
+          kernels::relative_reciprocal_taper(own.polynomial)};
 }
 
 /// Broken at blanks into lines that a header's COMMENT holds.

@@ -48,10 +48,8 @@ kernels::TapFunction taps_of_rows(const Eigen::MatrixXd& rows) {
 HostRule stock(const HostKernel& k) {
   constexpr int per_cell = 128, support = 3;
   const kernels::Kernel own = kernels::kernel_family("spheroidal-exact-1").make(2 * support, k.x0());
-  const double sum = kernels::image_taper(own.polynomial, Eigen::VectorXd::Zero(1))[0];  // as its taps are, divided by theirs
-  const kernels::PiecewisePolynomial whole{own.polynomial.coefficient / sum};
   return {taps_of_rows(rows(kernels::sampled_to_both_ends(own.polynomial, per_cell), per_cell, support)), per_cell,
-          kernels::reciprocal_taper(whole)};
+          kernels::relative_reciprocal_taper(own.polynomial)};
 }
 
 Eigen::MatrixXd rows_of(const HostKernel& k) {

@@ -44,19 +44,14 @@ double expected_with(const kernels::Kernel& kernel, double x0, const kernels::Co
 /// The spheroidal function as CASA grids with it, with 1/c as its correction, by table and as it is.
 std::vector<Case> casa_cases(const CardScene& scene) {
   const kernels::Kernel kernel = kernels::kernel_family("spheroidal").make(6, casa_x0);
-  const double whole = kernels::image_taper(kernel.polynomial, Eigen::VectorXd::Zero(1))[0];
   const kernels::TapFunction taps =
       hosts::casacore_taps(hosts::casacore_table(kernel.polynomial, entries_a_cell), entries_a_cell);
-  const auto reciprocal = [&](double centre) -> kernels::Correction {
-    return [&kernel, centre](const Eigen::VectorXd& x) -> Eigen::VectorXd {
-      return centre * kernels::image_taper(kernel.polynomial, x).cwiseInverse();
-    };
-  };
-  return {
-      {"CASA: spheroidal, table", hosts::casacore_cells, casa_x0, 6.0 * entries_a_cell,
-       misfit_with(scene, casa_x0, taps, reciprocal(whole)), expected_with(kernel, casa_x0, reciprocal(1), true)},
-      {"the same function without a table", 6, casa_x0, std::nan(""),
-       misfit_with(scene, casa_x0, kernel.polynomial, reciprocal(1)), expected_with(kernel, casa_x0, reciprocal(1), false)}};
+  const kernels::Correction reciprocal = kernels::reciprocal_taper(kernel.polynomial);
+  return {{"CASA: spheroidal, table", hosts::casacore_cells, casa_x0, 6.0 * entries_a_cell,
+           misfit_with(scene, casa_x0, taps, kernels::relative_reciprocal_taper(kernel.polynomial)),
+           expected_with(kernel, casa_x0, reciprocal, true)},
+          {"the same function without a table", 6, casa_x0, std::nan(""),
+           misfit_with(scene, casa_x0, kernel.polynomial, reciprocal), expected_with(kernel, casa_x0, reciprocal, false)}};
 }
 
 std::vector<Case> short_cases(const CardScene& scene, SolvedKernels& solved) {
