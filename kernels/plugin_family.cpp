@@ -6,6 +6,7 @@
 #include <array>
 #include <cfenv>
 #include <cmath>
+#include <iterator>
 #include <stdexcept>
 #include <string_view>
 
@@ -92,6 +93,8 @@ void check(const MisfitKernelPlugin& p, const std::string& whose, const std::str
   if (p.name != kernel)
     fail(whose, "sets the name \"" + std::string(p.name) + "\"; expected \"" + kernel + "\", as in the file's");
   if (p.value == nullptr) fail(whose, "sets no value; expected the function that computes C(u)");
+  if (p.reserved_number != 0 || std::any_of(std::begin(p.reserved), std::end(p.reserved), [](void* r) { return r != nullptr; }))
+    fail(whose, "sets what is reserved; expected 0 there, as in the struct that it gets");
   if (!(p.min_width >= 1 && p.min_width <= p.max_width && p.max_width <= widest))
     fail(whose, "offers widths " + std::to_string(p.min_width) + " to " + std::to_string(p.max_width) +
                     "; expected min_width of 1 or more, and max_width from there to " + std::to_string(widest));

@@ -80,6 +80,7 @@ extern "C" void REGISTER(MisfitKernelPlugin* p) {
   if (name == "beyond-x0") p->max_x0 = 0.5;
   if (name == "crossed-x0") p->min_x0 = 0.3, p->max_x0 = 0.2;
   p->value = gauss;
+  if (name == "reserving") p->reserved[3] = &wider;
   if (name == "valueless") p->value = nullptr;
   if (name == "gauss-wide") p->value = of_context, p->context = &wider, p->min_x0 = 0.1, p->max_x0 = 0.3;
   if (name == "steep") p->value = strict;

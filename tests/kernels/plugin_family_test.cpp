@@ -136,6 +136,7 @@ BOOST_AUTO_TEST_CASE(what_a_library_fills_in_wrongly_is_named_with_what_was_expe
             "installed misfit"},
            {"nameless", ": register_nameless sets no name; expected \"nameless\""},
            {"misnamed", ": register_misnamed sets the name \"someone-else\"; expected \"misnamed\""},
+           {"reserving", ": register_reserving sets what is reserved; expected 0 there"},
            {"valueless", ": register_valueless sets no value; expected the function"},
            {"narrow", ": register_narrow offers widths 0 to 20; expected min_width of 1 or more"},
            {"wide", ": register_wide offers widths 1 to 21; expected"},
