@@ -37,6 +37,10 @@ void check(const Host& host, const HostKernel& k) {
          "0, since " + host.title + " takes the nearest entry");
 }
 
+double rounding_in(const Host& host, const HostKernel& k) {
+  return rounding(k.kernel.polynomial, k.x0(), host.bits);
+}
+
 std::string errs(double error) {
   return significant(error, 3);
 }
@@ -52,18 +56,22 @@ void check_padding(const Host& host, double x0, double padding) {
                               ", or --host-padding for a host that is told to pad otherwise, or --force");
 }
 
-Emission emission(const Host& host, const HostKernel& table) {
+RealisedError realised_in(const Host& host, const HostKernel& table) {
   check(host, table);
+  const kernels::Correction given = host.given_correction ? host.given_correction(table) : kernels::Correction();
+  return with_rounding(realised_error({host.taps(table), table.per_cell, given}, table.x0()), rounding_in(host, table));
+}
+
+Emission emission(const Host& host, const HostKernel& table) {
+  Emission e;
+  e.realised = realised_in(host, table);
   const kernels::TapFunction taps = host.taps(table);
   const int steps = table.per_cell;
   const double x0 = table.x0();
-  Emission e;
   e.host = &host;
   e.table = table;
   e.divisor = divisor_series([&](const Eigen::VectorXd& x) { return kernels::optimal_correction(taps, x, steps); }, x0);
-  e.rounding = rounding(table.kernel.polynomial, x0, host.bits);
-  const kernels::Correction given = host.given_correction ? host.given_correction(table) : kernels::Correction();
-  e.realised = with_rounding(realised_error({taps, steps, given}, x0), e.rounding);
+  e.rounding = rounding_in(host, table);
   if (host.own_correction) e.own = realised_error({taps, steps, host.own_correction(table)}, x0);
   if (host.stock) e.stock = realised_error(host.stock(table), x0);
   e.function = realised_error({table.kernel.polynomial, 0, {}}, x0);

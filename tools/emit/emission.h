@@ -13,15 +13,19 @@ namespace misfit::tools {
 struct Emission {
   const Host* host = nullptr;
   HostKernel table;
-  DivisorSeries divisor;               ///< the optimal one for the taps that the host makes
-  RealisedError realised;              ///< with this divisor
+  DivisorSeries divisor;               ///< 1/h, optimal for the taps that the host makes
+  RealisedError realised;              ///< with the correction of the file, and rounding
   double rounding = 0;                 ///< about what of it is rounding
   std::optional<RealisedError> own;    ///< with the correction that the host works out by itself
   std::optional<RealisedError> stock;  ///< what the host errs by without us
   RealisedError function;              ///< the function's own, without the host
 };
 
-/// Throws std::invalid_argument where the host cannot hold the kernel: its width, degree, table or padding.
+/// Emission::realised alone. Throws std::invalid_argument where the host cannot hold the kernel: its width, degree, table or
+/// padding.
+RealisedError realised_in(const Host& host, const HostKernel& table);
+
+/// Throws as realised_in() does.
 Emission emission(const Host& host, const HostKernel& table);
 
 /// Refuses, by std::invalid_argument, a kernel that was made for another part of the FFT image than the host keeps:

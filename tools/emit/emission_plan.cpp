@@ -1,6 +1,5 @@
 #include "tools/emit/emission_plan.h"
 
-#include <algorithm>
 #include <stdexcept>
 
 #include "tools/emit/host_choice.h"

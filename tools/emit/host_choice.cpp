@@ -14,7 +14,7 @@ HostKernel with(const HostRequest& r, const kernels::Kernel& kernel, int per_cel
 }
 
 double error_of(const HostRequest& r, const HostKernel& k) {
-  return emission(*r.host, k).realised.rms;
+  return realised_in(*r.host, k).rms;
 }
 
 /// Tables that are read by the nearest entry have odd numbers: of even ones an entry lies where cells meet and C may jump.

@@ -15,7 +15,7 @@ struct RealisedError {
 /// of |e|² and m that of e, two axes give 1 − (1−e)(1−e'), whose mean square is 2E + 2m² + E² − 4Em.
 RealisedError realised_error(const HostRule& rule, double x0);
 
-/// What rounding to `bits` adds at least, relative to the image: that of one visibility's taps, 2^-bits, magnified by the
+/// About what rounding to `bits` adds, relative to the image: that of one visibility's taps, 2^-bits, magnified by the
 /// correction along both axes. It grows with the number of visibilities that share a cell.
 double rounding(const kernels::PiecewisePolynomial& function, double x0, int bits);
 
