@@ -35,7 +35,7 @@ struct Scene {
 
 constexpr int pixels = 180;
 
-/// With four digits of a random sky's 800 visibilities known to 4 %, and 180 pixels standing for a continuum to 3 %.
+/// 800 visibilities of a random sky know the RMS to 4 %, and 180 pixels stand for a continuum to 3 %.
 void check_agrees(double measured, double predicted) {
   BOOST_TEST(measured < 1.1 * predicted);
   BOOST_TEST(measured > 0.9 * predicted);
