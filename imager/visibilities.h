@@ -42,8 +42,12 @@ struct SampleCoordinates {
 /// A run of visibilities of one Stokes parameter that share their channels.
 struct VisibilityBlock : SampleCoordinates {
   std::vector<std::complex<float>> visibility;  ///< [row][channel], Jy; finite wherever the weight is not 0
-  std::vector<float> weight;                    ///< [row][channel], 1/Jy² up to a common factor; 0 = unusable, never negative
-  SampleCounts counts;                          ///< of this block alone
+  /// [row][channel]; 0 = unusable, never negative. As read it is 1/(4 σ²), σ the standard deviation of real and imaginary part
+  /// in Jy where the data's own weights are 1/σ²; weighting for an image multiplies it.
+  std::vector<float> weight;
+  SampleCounts counts;  ///< of this block alone
+  /// The other Stokes parameters that are imaged in the same run, of the same samples with the same weights.
+  std::vector<std::shared_ptr<const VisibilityBlock>> other_stokes;
 };
 
 /// Hands out blocks in a fixed order.
