@@ -11,7 +11,8 @@ namespace misfit::ms_io {
 namespace {
 
 std::shared_ptr<const OpenSet> open_selected(const std::string& path, const Selection& selection,
-                                             const std::string& data_column, std::uint64_t block_samples) {
+                                             const std::string& data_column, const std::vector<imager::Stokes>& stokes,
+                                             std::uint64_t block_samples) {
   const auto opened = std::make_shared<OpenSet>();
   opened->path = path;
   opened->data_column = column_name(data_column);
@@ -20,7 +21,7 @@ std::shared_ptr<const OpenSet> open_selected(const std::string& path, const Sele
   opened->selected = select_rows(opened->set, path, selection, block_samples);
   for (const Setup& setup : opened->selected.setups) {
     try {
-      opened->stokes.push_back(stokes_i(setup.correlation_types));
+      opened->recipes.push_back(stokes_recipe(setup.correlation_types, stokes));
     } catch (const std::runtime_error& error) {
       throw std::runtime_error(path + ", DATA_DESC_ID " + std::to_string(setup.data_description) + ": " + error.what());
     }
@@ -36,9 +37,9 @@ struct MeasurementSet::Impl {
 };
 
 MeasurementSet::MeasurementSet(const std::string& path, const Selection& selection, const std::string& data_column,
-                               std::uint64_t block_samples) {
+                               const std::vector<imager::Stokes>& stokes, std::uint64_t block_samples) {
   const auto impl = std::make_shared<Impl>();
-  impl->open_set = open_selected(path, selection, data_column, block_samples);
+  impl->open_set = open_selected(path, selection, data_column, stokes, block_samples);
   impl->observation = describe(impl->open_set->set, path, impl->open_set->selected);
   impl_ = impl;
 }

@@ -4,9 +4,11 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "imager/extent.h"
 #include "imager/observation.h"
+#include "imager/stokes.h"
 #include "imager/visibilities.h"
 
 namespace misfit::ms_io {
@@ -20,19 +22,20 @@ struct Selection {
 /// Rows that can be used, neither flagged nor of one antenna; or all.
 enum class ReachOf { usable, all };
 
-/// A selected part of a MeasurementSet as visibilities of Stokes I, opened read-only and streamed in blocks. Only the columns
-/// and channels that are needed are read. A block never mixes DATA_DESC_IDs. Reading never runs in two threads at once.
+/// A selected part of a MeasurementSet as visibilities of Stokes parameters, opened read-only and streamed in blocks. Only the
+/// columns and channels that are needed are read. A block never mixes DATA_DESC_IDs. Reading never runs in two threads at once.
 class MeasurementSet : public imager::VisibilitySource {
  public:
   /// Enough that the samples of a block share what a pass over the tiles of a grid costs.
   static constexpr std::uint64_t usual_block_samples = std::uint64_t{1} << 20;
 
   /// Opens `path`. `data_column` names the column with the visibilities ("DATA", "CORRECTED_DATA", …). Throws
-  /// std::runtime_error when the path is no MeasurementSet, the column is missing, the selection is empty or wrong, Stokes I
-  /// cannot be formed (the message lists the correlations there are), or the rows selected have several phase centres. The
-  /// short names data, corrected and model stand for DATA, CORRECTED_DATA and MODEL_DATA. A block holds whole rows, about
+  /// std::runtime_error when the path is no MeasurementSet, the column is missing, the selection is empty or wrong, one of
+  /// `stokes` cannot be formed (the message lists the correlations there are), or the rows selected have several phase centres.
+  /// The short names data, corrected and model stand for DATA, CORRECTED_DATA and MODEL_DATA. A block holds whole rows, about
   /// `block_samples` samples of them; what is read does not depend on that number.
   MeasurementSet(const std::string& path, const Selection& selection, const std::string& data_column,
+                 const std::vector<imager::Stokes>& stokes = {imager::Stokes::I},
                  std::uint64_t block_samples = usual_block_samples);
   ~MeasurementSet() override;
 

@@ -1,25 +1,35 @@
 #pragma once
 
+#include <array>
 #include <complex>
 #include <cstddef>
 #include <string>
 #include <vector>
 
+#include "imager/stokes.h"
 #include "imager/visibilities.h"
 
 namespace misfit::ms_io {
 
-/// How Stokes I is formed from the correlations of one polarisation setup: I = (V_first + V_second)/2 with weight
-/// 1/(1/w_first + 1/w_second), from the parallel hands; or the stored I itself, then first = second.
-struct StokesI {
-  std::size_t correlations = 0;  ///< stored in the setup
-  std::size_t first = 0;         ///< index of XX, RR or I
-  std::size_t second = 0;        ///< index of YY, LL or I
+/// One Stokes parameter, or one correlation, as a sum of the correlations that are stored: Σ factor[k] · V[used[k]], where
+/// `used` belongs to StokesRecipe.
+using StokesTerms = std::vector<std::complex<float>>;
+
+/// How Stokes parameters are formed from the correlations of one polarisation setup, with
+///   XX = I + Q, XY = U + iV, YX = U − iV, YY = I − Q;  RR = I + V, RL = Q + iU, LR = Q − iU, LL = I − V
+/// (Hamaker & Bregman 1996, for feeds along and across the meridian: correlations are taken as they are, parallactic angles are
+/// calibration's). A sample takes part when all correlations in use do. All parameters share its weight, 1/(4 σ²) with σ² the
+/// mean of their variances: 1 / Σ share[k] / w[used[k]], that is 1/(1/w_XX + 1/w_YY) for I.
+struct StokesRecipe {
+  std::size_t correlations = 0;    ///< stored in the setup
+  std::vector<std::size_t> used;   ///< their indices, ascending
+  std::vector<float> share;        ///< [used] 4 × the mean of |factor|²
+  std::vector<StokesTerms> terms;  ///< [Stokes parameter][used]
 };
 
-/// The recipe for correlations given by casacore's Stokes codes (CORR_TYPE). Throws std::runtime_error, which lists the
-/// correlations there are, when there is neither XX with YY, nor RR with LL, nor I. I is preferred where it is stored.
-StokesI stokes_i(const std::vector<int>& correlation_types);
+/// The recipe for correlations given by casacore's Stokes codes (CORR_TYPE). A Stokes parameter is taken as it is where it is
+/// stored. Throws std::runtime_error, which lists the correlations there are, when one of `wanted` cannot be formed.
+StokesRecipe stokes_recipe(const std::vector<int>& correlation_types, const std::vector<imager::Stokes>& wanted);
 
 /// "XX" for 9, and so on; "code 99" for a code that is no linear, circular or Stokes product.
 std::string correlation_name(int correlation_type);
@@ -37,15 +47,15 @@ struct StoredSamples {
   std::size_t channels = 0;
 };
 
-/// Where Stokes I goes.
+/// Where Stokes parameters go.
 struct StokesSamples {
-  std::complex<float>* visibility = nullptr;  ///< [channel]
-  float* weight = nullptr;                    ///< [channel]
+  std::array<std::complex<float>*, 12> visibility{};  ///< [Stokes parameter][channel]
+  float* weight = nullptr;                            ///< [channel]
 };
 
-/// Forms Stokes I. Unusable samples become visibility 0 with weight 0, counted in `counts` under the first reason that
+/// Forms all of the recipe. Unusable samples become visibility 0 with weight 0, counted in `counts` under the first reason that
 /// applies of flagged, non-finite, zero weight; the others are counted as used. Channels are not added to `samples_read`.
-void form_stokes_i(const StokesI& recipe, const StoredSamples& stored, const StokesSamples& formed,
-                   imager::SampleCounts& counts);
+void form_stokes(const StokesRecipe& recipe, const StoredSamples& stored, const StokesSamples& formed,
+                 imager::SampleCounts& counts);
 
 }  // namespace misfit::ms_io

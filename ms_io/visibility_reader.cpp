@@ -9,7 +9,7 @@
 namespace misfit::ms_io {
 namespace {
 
-/// Samples read from the table at once: few enough that they are still in the cache when Stokes I is formed.
+/// Samples read from the table at once: few enough that they are still in the cache when Stokes parameters are formed.
 constexpr std::uint64_t piece_samples = 1 << 16;
 
 /// The columns of the main table as they are read, a piece of rows at a time, into buffers that are used again.
@@ -34,22 +34,42 @@ class Reader : public imager::BlockStream {
     if (next_ == source_->selected.blocks.size()) return nullptr;
     const BlockRows& rows = source_->selected.blocks[next_++];
     const Setup& setup = source_->selected.setups[rows.setup];
-    const auto block = std::make_shared<imager::VisibilityBlock>();
-    const std::size_t channels = setup.frequency_hz.size();
-    block->frequency_hz = setup.frequency_hz;
-    block->uvw_m.reserve(rows.rows * 3);
-    block->visibility.reserve(rows.rows * channels);
-    block->weight.reserve(rows.rows * channels);
-    for (const Rows& piece : pieces(rows.runs, std::max<std::uint64_t>(1, piece_samples / setup.channel_span()))) {
-      read_piece(piece, setup, source_->stokes[rows.setup].correlations);
-      form_piece(piece, setup, source_->stokes[rows.setup], *block);
+    const StokesRecipe& recipe = source_->recipes[rows.setup];
+    const std::size_t samples = rows.rows * setup.frequency_hz.size();
+    Blocks blocks;
+    for (std::size_t i = 0; i < recipe.terms.size(); ++i) {
+      blocks.push_back(std::make_shared<imager::VisibilityBlock>());
+      blocks.back()->visibility.reserve(samples);
     }
-    block->counts.rows_read = rows.rows;
-    block->counts.samples_read = block->samples();
-    return block;
+    imager::VisibilityBlock& block = *blocks.front();
+    block.frequency_hz = setup.frequency_hz;
+    block.uvw_m.reserve(rows.rows * 3);
+    block.weight.reserve(samples);
+    for (const Rows& piece : pieces(rows.runs, std::max<std::uint64_t>(1, piece_samples / setup.channel_span()))) {
+      read_piece(piece, setup, recipe.correlations);
+      form_piece(piece, setup, recipe, blocks);
+    }
+    block.counts.rows_read = rows.rows;
+    block.counts.samples_read = block.samples();
+    share(blocks);
+    return blocks.front();
   }
 
  private:
+  /// One for each Stokes parameter.
+  using Blocks = std::vector<std::shared_ptr<imager::VisibilityBlock>>;
+
+  /// Gives the other blocks what they have in common with the first, and them to the first.
+  static void share(const Blocks& blocks) {
+    imager::VisibilityBlock& first = *blocks.front();
+    for (std::size_t i = 1; i < blocks.size(); ++i) {
+      static_cast<imager::SampleCoordinates&>(*blocks[i]) = first;
+      blocks[i]->weight = first.weight;
+      blocks[i]->counts = first.counts;
+      first.other_stokes.push_back(blocks[i]);
+    }
+  }
+
   template <typename Action>
   void reading(const std::string& column, const Action& action) const {
     try {
@@ -141,13 +161,14 @@ class Reader : public imager::BlockStream {
     weight_.reference(mixed);
   }
 
-  /// Appends the Stokes I of the piece read last to `block`.
-  void form_piece(const Rows& rows, const Setup& setup, const StokesI& stokes, imager::VisibilityBlock& block) const {
+  /// Appends the Stokes parameters of the piece read last to a block and those that go with it.
+  void form_piece(const Rows& rows, const Setup& setup, const StokesRecipe& recipe, const Blocks& blocks) const {
     const std::size_t count = rows.count(), channels = setup.frequency_hz.size();
-    const std::size_t cell = stokes.correlations * setup.channel_span();
-    const std::size_t weight_cell = weight_per_channel_ ? cell : stokes.correlations;
-    const std::size_t before = block.visibility.size();
-    block.visibility.resize(before + count * channels);
+    const std::size_t cell = recipe.correlations * setup.channel_span();
+    const std::size_t weight_cell = weight_per_channel_ ? cell : recipe.correlations;
+    imager::VisibilityBlock& block = *blocks.front();
+    const std::size_t before = block.weight.size();
+    for (const auto& stokes : blocks) stokes->visibility.resize(before + count * channels);
     block.weight.resize(before + count * channels);
     block.uvw_m.insert(block.uvw_m.end(), uvw_.data(), uvw_.data() + 3 * count);
     const int* const antenna1 = antenna1_.data();
@@ -166,24 +187,27 @@ class Reader : public imager::BlockStream {
                                 weight_per_channel_,
                                 std::isfinite(uvw[0]) && std::isfinite(uvw[1]) && std::isfinite(uvw[2]),
                                 channels};
-        const std::size_t out = before + r * channels;
-        form_row(setup, stokes, row, {block.visibility.data() + out, block.weight.data() + out}, block.counts);
+        StokesSamples out;
+        for (std::size_t i = 0; i < blocks.size(); ++i)
+          out.visibility[i] = blocks[i]->visibility.data() + before + r * channels;
+        out.weight = block.weight.data() + before + r * channels;
+        form_row(setup, recipe, row, out, block.counts);
       }
     }
   }
 
   /// One row, a run of selected channels at a time.
-  static void form_row(const Setup& setup, const StokesI& stokes, const StoredSamples& row, StokesSamples out,
+  static void form_row(const Setup& setup, const StokesRecipe& recipe, const StoredSamples& row, StokesSamples out,
                        imager::SampleCounts& counts) {
     for (const Run& run : setup.channels) {
-      const std::size_t offset = (run.first - setup.first_channel()) * stokes.correlations;
+      const std::size_t offset = (run.first - setup.first_channel()) * recipe.correlations;
       StoredSamples part = row;
       part.data += offset;
       part.flag += offset;
       if (row.weight_per_channel) part.weight += offset;
       part.channels = run.count;
-      form_stokes_i(stokes, part, out, counts);
-      out.visibility += run.count;
+      form_stokes(recipe, part, out, counts);
+      for (std::size_t i = 0; i < recipe.terms.size(); ++i) out.visibility[i] += run.count;
       out.weight += run.count;
     }
   }

@@ -14,7 +14,7 @@ struct OpenSet {
   std::string data_column;
   casacore::MeasurementSet set;
   SelectedRows selected;
-  std::vector<StokesI> stokes;  ///< [setup]
+  std::vector<StokesRecipe> recipes;  ///< [setup]
 };
 
 /// Streams the blocks of `open_set`.

@@ -15,7 +15,7 @@ using namespace testing;
 namespace {
 
 AllSamples read_all(const SmallSet& set, const Selection& selection = {}, std::uint64_t block_samples = 1 << 22) {
-  return testing::read_all(MeasurementSet(set.path(), selection, "DATA", block_samples));
+  return testing::read_all(MeasurementSet(set.path(), selection, "DATA", {imager::Stokes::I}, block_samples));
 }
 
 std::string error_of(const SmallSet& set, const Selection& selection, const std::string& column = "DATA") {
@@ -81,7 +81,7 @@ BOOST_AUTO_TEST_CASE(the_reach_is_that_of_the_samples_that_can_be_used) {
   set.put("UVW", 25, 1, 0, double{infinite_float});
   for (const std::string spw : {"", "0", "1", "0:2~3", "1:0"}) {
     for (const std::uint64_t block_samples : {std::uint64_t{1}, std::uint64_t{1} << 20}) {
-      const MeasurementSet opened(set.path(), {"", spw}, "DATA", block_samples);
+      const MeasurementSet opened(set.path(), {"", spw}, "DATA", {imager::Stokes::I}, block_samples);
       const imager::UvwReach is = opened.reach(), should = reach_of_samples(opened);
       const auto rounding = boost::test_tools::tolerance(1e-15);
       BOOST_TEST(is.max_abs_u == should.max_abs_u, rounding);
@@ -209,7 +209,7 @@ BOOST_AUTO_TEST_CASE(weight_spectrum_wins_over_weight_where_its_cell_is_defined)
 BOOST_AUTO_TEST_CASE(a_block_never_mixes_data_description_ids_and_keeps_their_order) {
   const SmallSet set;
   set.add_spectral_window();
-  const MeasurementSet opened(set.path(), {}, "DATA", 3 * channels);
+  const MeasurementSet opened(set.path(), {}, "DATA", {imager::Stokes::I}, 3 * channels);
   const auto stream = opened.open();
   std::vector<double> last_u = {0, 0};
   std::vector<std::size_t> count = {0, 0};
@@ -253,7 +253,31 @@ BOOST_AUTO_TEST_CASE(a_stored_stokes_i_is_read_as_it_is) {
   set.store_correlations({2, 1});
   const AllSamples all = read_all(set);
   for (const auto& v : all.visibility) BOOST_TEST(v == std::complex<float>(2.0F));
-  for (const float w : all.weight) BOOST_TEST(w == 2.0F);
+  for (const float w : all.weight) BOOST_TEST(w == 0.5F);  // 1/(4 σ²), where the data's own is 1/σ²
+}
+
+BOOST_AUTO_TEST_CASE(several_stokes_parameters_come_in_blocks_that_share_samples_and_weights) {
+  const SmallSet set;
+  set.store_correlations({9, 10, 11, 12});  // V = 1, 2, 3, 4 with weights 1, 2, 3, 4
+  set.put("FLAG", 3, 1, 2, true);
+  const MeasurementSet opened(set.path(), {}, "DATA", imager::parse_stokes("IQUV"), 7 * channels);
+  const std::vector<std::complex<float>> expected = {2.5F, -1.5F, 2.5F, {0, 0.5F}};
+  std::size_t used = 0;
+  const auto stream = opened.open();
+  while (const auto block = stream->next()) {
+    BOOST_TEST_REQUIRE(block->other_stokes.size() == 3U);
+    for (std::size_t s = 0; s < 4; ++s) {
+      const imager::VisibilityBlock& plane = s == 0 ? *block : *block->other_stokes[s - 1];
+      BOOST_CHECK(plane.uvw_m == block->uvw_m);
+      BOOST_CHECK(plane.frequency_hz == block->frequency_hz);
+      BOOST_CHECK(plane.weight == block->weight);
+      BOOST_TEST(plane.counts.used == block->counts.used);
+      for (std::size_t i = 0; i < plane.visibility.size(); ++i)
+        BOOST_TEST(plane.visibility[i] == (plane.weight[i] > 0 ? expected[s] : 0.0F));
+    }
+    used += block->counts.used;
+  }
+  BOOST_TEST(used == rows * channels - 1);
 }
 
 BOOST_AUTO_TEST_CASE(only_the_hands_needed_decide_whether_a_sample_is_used) {
