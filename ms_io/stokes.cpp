@@ -178,7 +178,8 @@ void weigh(const Joined& joined, std::size_t channels, float* weight, imager::Sa
   unusable.add_to(counts, channels);
 }
 
-/// Σ factor · V where the weight is not 0, a correlation at a time. Halves are summed, not the sum halved: this cannot overflow.
+/// Σ factor · V where the weight is not 0, a correlation at a time. Halves are summed, not the sum halved: this cannot
+/// overflow.
 template <std::size_t stride>
 void combine(const StokesRecipe& recipe, const StokesTerms& terms, const float* __restrict data, const float* __restrict weight,
              std::size_t channels, float* __restrict visibility) {
@@ -206,7 +207,8 @@ void form(const StokesRecipe& recipe, const StoredSamples& stored, const StokesS
     const bool first_and_last = recipe.used[0] == 0 && recipe.used[1] == stride - 1;  // the usual order of correlations
     const auto form = first_and_last ? form_pair<stride, weight_stride, true> : form_pair<stride, weight_stride, false>;
     return form(recipe, reinterpret_cast<const float*>(stored.data), reinterpret_cast<const unsigned char*>(stored.flag),
-                stored.weight, uvw_probe, stored.channels, reinterpret_cast<float*>(formed.visibility[0]), formed.weight, counts);
+                stored.weight, uvw_probe, stored.channels, reinterpret_cast<float*>(formed.visibility[0]), formed.weight,
+                counts);
   }
   Joined joined;
   for (std::size_t begin = 0; begin < stored.channels; begin += at_once) {
