@@ -94,7 +94,7 @@ struct Axis {
   double increment = 1;
 };
 
-void write_axes(const HeaderWriter& header, const SkyImage& sky) {
+void write_axes(const HeaderWriter& header, const SkyImage& sky, const Axis& stokes) {
   const ImageGeometry& g = sky.geometry;
   const double bandwidth_hz = sky.observation.bandwidth_hz > 0 ? sky.observation.bandwidth_hz : 1;
   const std::array<Axis, 4> axes{{
@@ -102,7 +102,7 @@ void write_axes(const HeaderWriter& header, const SkyImage& sky) {
        -g.cell_rad / degree},
       {"DEC--SIN", "deg", g.centre_row() + 1 - g.centre.m / g.cell_rad, g.phase_centre.dec_rad / degree, g.cell_rad / degree},
       {"FREQ", "Hz", 1, sky.observation.frequency_hz, bandwidth_hz},
-      {"STOKES", "", 1, 1, 1},
+      stokes,
   }};
   for (std::size_t i = 0; i < axes.size(); ++i) {
     const std::string n = std::to_string(i + 1);
@@ -118,10 +118,30 @@ void write_axes(const HeaderWriter& header, const SkyImage& sky) {
   header.number("EQUINOX", g.phase_centre.frame == "FK4" ? 1950 : 2000);
 }
 
-void write_header(const HeaderWriter& header, const SkyImage& sky) {
+using Planes = std::vector<const SkyImage*>;
+
+/// Throws std::invalid_argument when the planes do not fit in one file.
+Axis stokes_axis(const Planes& planes) {
+  if (planes.empty()) throw std::invalid_argument("a FITS image of no planes; expected one at least");
+  const auto code = [&](std::size_t i) { return fits_stokes_code(planes[i]->stokes); };
+  const int step = planes.size() == 1 ? 1 : code(1) - code(0);
+  for (std::size_t i = 1; i < planes.size(); ++i) {
+    const Image &first = planes.front()->image, &other = planes[i]->image;
+    if (other.width != first.width || other.height != first.height)
+      throw std::invalid_argument("planes of " + std::to_string(first.width) + " × " + std::to_string(first.height) + " and " +
+                                  std::to_string(other.width) + " × " + std::to_string(other.height) +
+                                  " pixels in one FITS image; expected one size");
+    if (step == 0 || code(i) - code(i - 1) != step)
+      throw std::invalid_argument("STOKES codes " + std::to_string(code(i - 1)) + " and " + std::to_string(code(i)) +
+                                  " in one FITS image; expected evenly spaced ones");
+  }
+  return {"STOKES", "", 1, static_cast<double>(code(0)), static_cast<double>(step)};
+}
+
+void write_header(const HeaderWriter& header, const SkyImage& sky, const Axis& stokes) {
   header.text("BUNIT", sky.unit);
   header.text("BTYPE", "Intensity");
-  write_axes(header, sky);
+  write_axes(header, sky, stokes);
   const Observation& observation = sky.observation;
   header.text("SPECSYS", observation.spectral_frame);
   header.number("RESTFRQ", observation.frequency_hz, "Hz");
@@ -140,19 +160,36 @@ void write_header(const HeaderWriter& header, const SkyImage& sky) {
   for (const std::string& line : sky.history) header.history(line);
 }
 
-void write_file(const SkyImage& sky, const std::string& path, const std::string& temporary, PixelFormat format) {
-  FitsFile file("write", path);
-  file.create(temporary);
-  std::array<long, 4> size{sky.image.width, sky.image.height, 1, 1}, first{1, 1, 1, 1};
+void write_file(const Planes& planes, const Axis& stokes, const FitsFile& file, PixelFormat format) {
+  const SkyImage& sky = *planes.front();
+  std::array<long, 4> size{sky.image.width, sky.image.height, 1, static_cast<long>(planes.size())}, first{1, 1, 1, 1};
   int status = 0;
   file.check(fits_create_img(file.get(), format == PixelFormat::float32 ? FLOAT_IMG : DOUBLE_IMG, 4, size.data(), &status));
-  write_header(HeaderWriter(file), sky);
-  file.check(fits_write_pix(file.get(), TDOUBLE, first.data(), static_cast<LONGLONG>(sky.image.pixel.size()),
-                            const_cast<double*>(sky.image.pixel.data()), &status));
-  file.close();
+  write_header(HeaderWriter(file), sky, stokes);
+  for (const SkyImage* plane : planes) {
+    file.check(fits_write_pix(file.get(), TDOUBLE, first.data(), static_cast<LONGLONG>(plane->image.pixel.size()),
+                              const_cast<double*>(plane->image.pixel.data()), &status));
+    ++first[3];
+  }
+}
+
+/// Under its name when complete.
+void write_planes(const Planes& planes, const std::string& path, PixelFormat format) {
+  const Axis stokes = stokes_axis(planes);
+  const std::filesystem::path target = kernels::writable_target(path), temporary = target.string() + ".part";
   std::error_code error;
-  std::filesystem::rename(temporary, kernels::writable_target(path), error);
-  if (error) file.fail(error.message());
+  std::filesystem::remove(temporary, error);
+  try {
+    FitsFile file("write", path);
+    file.create(temporary);
+    write_file(planes, stokes, file, format);
+    file.close();
+    std::filesystem::rename(temporary, target, error);
+    if (error) file.fail(error.message());
+  } catch (...) {
+    std::filesystem::remove(temporary, error);
+    throw;
+  }
 }
 
 class HeaderReader {
@@ -257,15 +294,13 @@ Observation read_observation(const HeaderReader& header) {
 }  // namespace
 
 void write_fits(const SkyImage& image, const std::string& path, PixelFormat format) {
-  const std::string temporary = kernels::writable_target(path).string() + ".part";
-  std::error_code ignored;
-  std::filesystem::remove(temporary, ignored);
-  try {
-    write_file(image, path, temporary, format);
-  } catch (...) {
-    std::filesystem::remove(temporary, ignored);
-    throw;
-  }
+  write_planes({&image}, path, format);
+}
+
+void write_fits(const std::vector<SkyImage>& images, const std::string& path, PixelFormat format) {
+  Planes planes;
+  for (const SkyImage& image : images) planes.push_back(&image);
+  write_planes(planes, path, format);
 }
 
 SkyImage read_fits(const std::string& path) {

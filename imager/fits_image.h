@@ -8,6 +8,7 @@
 #include "imager/geometry.h"
 #include "imager/image.h"
 #include "imager/observation.h"
+#include "imager/stokes.h"
 
 namespace misfit::imager {
 
@@ -18,13 +19,14 @@ struct HeaderCard {
   std::string comment;
 };
 
-/// An image on the sky with what its header states. FITS axes: RA---SIN, DEC--SIN, FREQ, STOKES (I), in this order. CRVAL is
+/// An image on the sky with what its header states. FITS axes: RA---SIN, DEC--SIN, FREQ, STOKES, in this order. CRVAL is
 /// the phase centre and CRPIX the place where l = m = 0, be it between pixels or outside the image. NaN marks a pixel without
 /// value.
 struct SkyImage {
   Image image;
   ImageGeometry geometry;
   Observation observation;
+  Stokes stokes = Stokes::I;
   std::string unit = "Jy/beam";
   bool has_beam = false;
   Beam beam;
@@ -37,6 +39,10 @@ enum class PixelFormat { float32, float64 };
 /// Writes `image` to `path`, replacing what is there. The file appears under its name only when complete (it is written
 /// beside it and renamed). Throws std::runtime_error that names the path and CFITSIO's reason.
 void write_fits(const SkyImage& image, const std::string& path, PixelFormat format);
+
+/// The same of images that differ in their pixels and Stokes parameters alone, as planes along the STOKES axis. Throws
+/// std::invalid_argument when there are none, they differ in size, or their codes are not evenly spaced.
+void write_fits(const std::vector<SkyImage>& planes, const std::string& path, PixelFormat format);
 
 /// Reads the first plane of the primary image of a FITS file with a SIN (or no) projection, in any pixel type. Throws
 /// std::runtime_error that names the path when it cannot be read, is no two-dimensional image (axes beyond the second must have

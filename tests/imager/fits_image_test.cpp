@@ -2,8 +2,10 @@
 
 #include <unistd.h>
 
+#include <bit>
 #include <boost/test/unit_test.hpp>
 #include <cmath>
+#include <cstdint>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -51,6 +53,21 @@ std::string card(const std::string& fits, const std::string& keyword) {
 
 double number(const std::string& fits, const std::string& keyword) {
   return std::stod(card(fits, keyword).substr(9));
+}
+
+/// Of a file of 64-bit pixels, big-endian, after a header of one or more blocks of 2880 bytes.
+std::vector<double> all_pixels(const std::string& fits) {
+  const std::size_t end = fits.find(("END" + std::string(77, ' ')));
+  const std::size_t begin = (end / 2880 + 1) * 2880;
+  const auto count = static_cast<std::size_t>(number(fits, "NAXIS1") * number(fits, "NAXIS2") * number(fits, "NAXIS4"));
+  std::vector<double> values;
+  for (std::size_t i = 0; i < count; ++i) {
+    std::uint64_t bits = 0;
+    for (std::size_t byte = 0; byte < 8; ++byte)
+      bits = bits << 8 | static_cast<unsigned char>(fits.at(begin + 8 * i + byte));
+    values.push_back(std::bit_cast<double>(bits));
+  }
+  return values;
 }
 
 /// Writes the example with one header card exchanged.
@@ -325,6 +342,43 @@ BOOST_AUTO_TEST_CASE(integers_with_a_scale_and_blanks_are_read) {
   BOOST_TEST(read.image.at(0, 0) == 4);
   BOOST_TEST(std::isnan(read.image.at(0, 1)));
   BOOST_TEST(read.geometry.phase_centre.frame == "ICRS");
+}
+
+BOOST_AUTO_TEST_CASE(planes_lie_along_the_stokes_axis_with_codes_that_say_which_they_are) {
+  const TemporaryFolder folder;
+  for (const std::string list : {"I", "IQUV", "IV", "RRLL", "YX"}) {
+    std::vector<SkyImage> planes;
+    for (const Stokes stokes : parse_stokes(list)) {
+      planes.push_back(example());
+      planes.back().stokes = stokes;
+      for (double& pixel : planes.back().image.pixel) pixel += 10.0 * static_cast<double>(planes.size());
+    }
+    write_fits(planes, folder.file("a.fits"), PixelFormat::float64);
+    const std::string fits = contents(folder.file("a.fits"));
+    const std::vector<double> values = all_pixels(fits);
+    const std::size_t each = planes.front().image.pixel.size();
+    BOOST_TEST_REQUIRE(values.size() == each * planes.size());
+    const double first = number(fits, "CRVAL4"), step = number(fits, "CDELT4");
+    for (std::size_t p = 0; p < planes.size(); ++p) {
+      BOOST_TEST(first + static_cast<double>(p) * step == fits_stokes_code(planes[p].stokes));
+      for (std::size_t i = 0; i < each; ++i)
+        BOOST_TEST(values[p * each + i] == planes[p].image.pixel[i]);
+    }
+  }
+}
+
+BOOST_AUTO_TEST_CASE(planes_that_do_not_fit_together_are_not_written) {
+  const TemporaryFolder folder;
+  std::vector<SkyImage> planes(3, example());
+  BOOST_CHECK_THROW(write_fits(std::vector<SkyImage>(), folder.file("a.fits"), PixelFormat::float32), std::invalid_argument);
+  BOOST_CHECK_THROW(write_fits(planes, folder.file("a.fits"), PixelFormat::float32), std::invalid_argument);  // I three times
+  planes[1].stokes = Stokes::Q;
+  planes[2].stokes = Stokes::V;
+  BOOST_CHECK_THROW(write_fits(planes, folder.file("a.fits"), PixelFormat::float32), std::invalid_argument);
+  planes[2] = example(3, 3);
+  planes[2].stokes = Stokes::U;
+  BOOST_CHECK_THROW(write_fits(planes, folder.file("a.fits"), PixelFormat::float32), std::invalid_argument);
+  BOOST_TEST(fs::is_empty(folder.path));
 }
 
 BOOST_AUTO_TEST_SUITE_END()
