@@ -5,13 +5,15 @@
 
 namespace misfit::imager {
 
-/// What an image shows: a Stokes parameter, or one correlation of the feeds. The values are casacore's codes (Stokes::StokesTypes).
+/// What an image shows: a Stokes parameter, or one correlation of the feeds. The values are casacore's codes
+/// (Stokes::StokesTypes).
 enum class Stokes { I = 1, Q, U, V, RR, RL, LR, LL, XX, XY, YX, YY };
 
 /// "I", "XX", …
 std::string stokes_name(Stokes stokes);
 
-/// Its value on a FITS STOKES axis: 1 to 4 for I to V, −1 to −8 for RR LL RL LR XX YY XY YX (Greisen & Calabretta 2002, table 29).
+/// Its value on a FITS STOKES axis: 1 to 4 for I to V, −1 to −8 for RR LL RL LR XX YY XY YX (Greisen & Calabretta 2002, table
+/// 29).
 int fits_stokes_code(Stokes stokes);
 
 /// Whether a code stands for one, as CORR_TYPE of a MeasurementSet and a FITS STOKES axis give it.

@@ -63,8 +63,7 @@ std::vector<double> all_pixels(const std::string& fits) {
   std::vector<double> values;
   for (std::size_t i = 0; i < count; ++i) {
     std::uint64_t bits = 0;
-    for (std::size_t byte = 0; byte < 8; ++byte)
-      bits = bits << 8 | static_cast<unsigned char>(fits.at(begin + 8 * i + byte));
+    for (std::size_t byte = 0; byte < 8; ++byte) bits = bits << 8 | static_cast<unsigned char>(fits.at(begin + 8 * i + byte));
     values.push_back(std::bit_cast<double>(bits));
   }
   return values;
@@ -361,8 +360,7 @@ BOOST_AUTO_TEST_CASE(planes_lie_along_the_stokes_axis_with_codes_that_say_which_
     const double first = number(fits, "CRVAL4"), step = number(fits, "CDELT4");
     for (std::size_t p = 0; p < planes.size(); ++p) {
       BOOST_TEST(first + static_cast<double>(p) * step == fits_stokes_code(planes[p].stokes));
-      for (std::size_t i = 0; i < each; ++i)
-        BOOST_TEST(values[p * each + i] == planes[p].image.pixel[i]);
+      for (std::size_t i = 0; i < each; ++i) BOOST_TEST(values[p * each + i] == planes[p].image.pixel[i]);
     }
   }
 }
