@@ -115,6 +115,7 @@ constexpr Scene flat[] = {{1, 1}, {2, 3}, {33, 20}, {128, 40}};
 
 BOOST_AUTO_TEST_SUITE(error_bounds)
 
+BOOST_TEST_DECORATOR(*boost::unit_test::label("sweep"))
 BOOST_DATA_TEST_CASE(aligned_errors_of_every_family_reach_the_bound_but_do_not_exceed_it,
                      bdata::make({"nearest", "linear", "least-misfit", "minimax", "spheroidal", "kaiser-bessel",
                                   "exp-semicircle", "prolate", "sinc", "gaussian", "gaussian-sinc"}),
@@ -175,6 +176,7 @@ BOOST_DATA_TEST_CASE(a_single_visibility_at_the_worst_place_of_its_cell_reaches_
   }
 }
 
+BOOST_TEST_DECORATOR(*boost::unit_test::label("sweep"))
 BOOST_DATA_TEST_CASE(rounding_adds_up_within_the_bound_where_all_samples_lie_in_one_cell,
                      bdata::make({1e-6, 1e-11}) * bdata::make({0.0, 300.0}), accuracy, max_abs_w) {
   constexpr int samples = 2000;

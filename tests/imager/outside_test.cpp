@@ -117,6 +117,7 @@ GriddingPlan plan_of_way(const std::string& kernel, double padding, const ImageG
 BOOST_AUTO_TEST_SUITE(outside)
 
 /// Sources whose copies fall upon the image, beside it along one axis or both, and sources within the padding.
+BOOST_TEST_DECORATOR(*boost::unit_test::label("sweep"))
 BOOST_DATA_TEST_CASE(the_level_said_of_a_source_holds_against_direct_sums,
                      bdata::make({"nearest 1", "spheroidal-exact 6", "least-misfit 3", "least-misfit 7"}) *
                          bdata::make({1.2, 1.5, 2.0}) * bdata::make({-1.56, -0.52, -0.7, 0.94, 1.28}) *
@@ -246,6 +247,7 @@ BOOST_AUTO_TEST_CASE(components_of_either_sign_about_the_brightest_are_one_sourc
 }
 
 /// Pixels of the wider field are four of the image's.
+BOOST_TEST_DECORATOR(*boost::unit_test::label("sweep"))
 BOOST_DATA_TEST_CASE(a_source_is_found_however_close_to_the_image_and_of_either_sign,
                      bdata::make({0.6, 1.0, 1.5, 2.3}) * bdata::make({1000.0, -1000.0}), pixels, flux_jy) {
   const DirectionCosines at{(32 + 4 * pixels) * geometry.cell_rad, 5 * geometry.cell_rad};
@@ -254,6 +256,7 @@ BOOST_DATA_TEST_CASE(a_source_is_found_however_close_to_the_image_and_of_either_
   BOOST_TEST(found.sources.front().source.flux_jy == flux_jy, boost::test_tools::tolerance(0.05));
 }
 
+BOOST_TEST_DECORATOR(*boost::unit_test::label("sweep"))
 BOOST_DATA_TEST_CASE(a_source_between_pixels_is_explained, bdata::make({0.0, 0.25, 0.5}) * bdata::make({0.0, 0.3, 0.5}), east,
                      north) {
   const double cell_rad = 4 * geometry.cell_rad;

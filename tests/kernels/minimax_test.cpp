@@ -17,6 +17,7 @@ double largest_error(const Kernel& kernel) {
 
 BOOST_AUTO_TEST_SUITE(minimax)
 
+BOOST_TEST_DECORATOR(*boost::unit_test::label("sweep"))
 BOOST_DATA_TEST_CASE(the_largest_error_is_within_five_percent_of_what_any_kernel_can_reach,
                      bdata::make({1, 2, 3, 5, 8}) * bdata::make({0.1, 0.25, 0.4, 0.47}), width, x0) {
   const Kernel kernel = store("minimax", solve_minimax(width, x0));
