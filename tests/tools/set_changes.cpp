@@ -1,7 +1,9 @@
 #include "tests/tools/set_changes.h"
 
 #include <casacore/casa/Arrays/ArrayMath.h>
+#include <casacore/ms/MeasurementSets/MSPolColumns.h>
 #include <casacore/ms/MeasurementSets/MeasurementSet.h>
+#include <casacore/tables/Tables/ArrColDesc.h>
 #include <casacore/tables/Tables/ArrayColumn.h>
 #include <casacore/tables/Tables/ScalarColumn.h>
 
@@ -19,6 +21,15 @@ void put_first(const std::string& set, const std::string& column, std::size_t ro
   casacore::Array<T> cell = cells(row);
   *cell.data() = value;
   cells.put(row, cell);
+}
+
+/// Puts a column of one cell for all rows in place of what is there.
+template <typename T>
+void replace(casacore::MeasurementSet& set, const std::string& column, const casacore::Array<T>& cell) {
+  set.removeColumn(column);
+  set.addColumn(casacore::ArrayColumnDesc<T>(column, static_cast<int>(cell.ndim())));
+  casacore::ArrayColumn<T> cells(set, column);
+  for (casacore::rownr_t row = 0; row < set.nrow(); ++row) cells.put(row, cell);
 }
 
 }  // namespace
@@ -64,6 +75,18 @@ void scale_data(const std::string& set, float factor) {
   const casacore::MeasurementSet open = opened(set);
   casacore::ArrayColumn<casacore::Complex> data(open, "DATA");
   data.putColumn(data.getColumn() * casacore::Complex(factor));
+}
+
+void store_correlations(const std::string& path, const std::vector<int>& types) {
+  casacore::MeasurementSet set = opened(path);
+  const auto channels = static_cast<std::size_t>(casacore::ArrayColumn<casacore::Complex>(set, "DATA").shape(0)(1));
+  casacore::MSPolarizationColumns polarization(set.polarization());
+  polarization.numCorr().put(0, static_cast<int>(types.size()));
+  polarization.corrType().put(0, casacore::Vector<int>(types));
+  polarization.corrProduct().put(0, casacore::Matrix<int>(2, types.size(), 0));
+  replace<casacore::Complex>(set, "DATA", casacore::Matrix<casacore::Complex>(types.size(), channels, casacore::Complex(0)));
+  replace<bool>(set, "FLAG", casacore::Matrix<bool>(types.size(), channels, false));
+  replace<float>(set, "WEIGHT", casacore::Vector<float>(types.size(), 1));
 }
 
 std::vector<std::complex<float>> visibilities(const std::string& set, const std::string& column) {

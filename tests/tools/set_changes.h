@@ -18,6 +18,9 @@ void flag_all(const std::string& set);
 void make_autocorrelation(const std::string& set, std::size_t row);
 void scale_data(const std::string& set, float factor);
 
+/// Makes a set of other correlations, given by casacore's codes, with data of 0 and weights of 1.
+void store_correlations(const std::string& set, const std::vector<int>& types);
+
 /// All of a column, [row][correlation].
 std::vector<std::complex<float>> visibilities(const std::string& set, const std::string& column);
 

@@ -1,0 +1,114 @@
+// Images of Stokes parameters, from a model through correlations and back.
+#include <cmath>
+
+#include "imager/stokes.h"
+#include "tests/tools/program.h"
+#include "tests/tools/set_changes.h"
+
+namespace {
+
+using namespace misfit;
+using namespace misfit::tools::testing;
+
+/// A copy of the snapshot with other correlations.
+struct Copy {
+  TemporaryFolder folder;
+  std::string set = folder / "copy.ms";
+
+  explicit Copy(const std::vector<int>& types) {
+    std::filesystem::copy(snapshot(), set, std::filesystem::copy_options::recursive);
+    store_correlations(set, types);
+  }
+  void predict(const std::string& columns, const std::string& lines) const {
+    std::ofstream(folder / "sky.csv") << "l_arcsec,m_arcsec," << columns << "\n" << lines;
+    succeed({"predict", "--vis", set, "--components", folder / "sky.csv"});
+  }
+  std::vector<imager::SkyImage> images(const Arguments& options, const std::string& kind = "residual") const {
+    succeed(small_image(set, folder / "a") + Arguments{"--datacolumn", "model"} + options);
+    return imager::read_stokes_images(folder / ("a." + kind + ".fits"));
+  }
+};
+
+const std::vector<int> linear = {9, 10, 11, 12}, circular = {5, 8, 6, 7};
+
+/// Two polarised points.
+const char* const stokes_columns = "flux_jy,flux_q_jy,flux_u_jy,flux_v_jy";
+const char* const two_points = "-2,1,5,2,-1,0.5\n1.2,-0.5,3,-0.25,0.75,-1\n";
+
+/// Their brightness as an image shows it, which is real: U of XY = U + iV.
+std::string brightness(const std::string& stokes) {
+  const std::map<std::string, std::array<double, 2>> of = {
+      {"I", {5, 3}},     {"Q", {2, -0.25}},    {"U", {-1, 0.75}},   {"V", {0.5, -1}}, {"XX", {7, 2.75}}, {"YY", {3, 3.25}},
+      {"XY", {-1, 0.75}}, {"YX", {-1, 0.75}}, {"RR", {5.5, 2}}, {"LL", {4.5, 4}},  {"RL", {2, -0.25}},  {"LR", {2, -0.25}}};
+  std::ostringstream lines;
+  lines << "-2,1," << of.at(stokes)[0] << "\n1.2,-0.5," << of.at(stokes)[1] << "\n";
+  return lines.str();
+}
+
+double relative_difference(const imager::Image& image, const imager::Image& from) {
+  double difference = 0, norm = 0;
+  for (std::size_t i = 0; i < image.pixel.size(); ++i) {
+    difference += std::pow(image.pixel[i] - from.pixel[i], 2);
+    norm += std::pow(from.pixel[i], 2);
+  }
+  return std::sqrt(difference / norm);
+}
+
+/// Each image to 1e-6, and visibilities that are rounded to single precision twice.
+constexpr double of_two_images = 3e-6;
+
+}  // namespace
+
+BOOST_AUTO_TEST_SUITE(stokes_images)
+
+BOOST_AUTO_TEST_CASE(every_stokes_parameter_looks_like_an_unpolarised_sky_of_its_brightness) {
+  for (const auto& [types, lists] : {std::pair(linear, Arguments{"IQUV", "V", "XXYY", "XY"}), {circular, {"IQUV", "QU", "RRLL", "LR"}}})
+    for (const std::string& list : lists) {
+      const Copy polarised(types), plain(linear);
+      polarised.predict(stokes_columns, two_points);
+      const std::vector<imager::SkyImage> planes = polarised.images({"--stokes", list});
+      const std::vector<imager::Stokes> wanted = imager::parse_stokes(list);
+      BOOST_TEST_REQUIRE(planes.size() == wanted.size());
+      for (std::size_t s = 0; s < planes.size(); ++s) {
+        const std::string name = imager::stokes_name(wanted[s]);
+        BOOST_TEST_INFO(name);
+        BOOST_TEST((planes[s].stokes == wanted[s]));
+        plain.predict("flux_jy", brightness(name));
+        BOOST_TEST(relative_difference(planes[s].image, plain.images({}).front().image) < of_two_images);
+      }
+      BOOST_TEST(polarised.images({"--stokes", list}, "psf").size() == 1U);
+    }
+}
+
+BOOST_AUTO_TEST_CASE(clean_finds_the_points_in_each_stokes_parameter) {
+  const Copy copy(circular);
+  copy.predict(stokes_columns, two_points);
+  const auto planes = copy.images({"--stokes", "IQUV", "--niter", "500", "--threshold", "5mJy"}, "image");
+  const nlohmann::json report = report_of(copy.folder / "a");
+  BOOST_TEST_REQUIRE(planes.size() == 4U);
+  BOOST_TEST_REQUIRE(report["stokes"].size() == 4U);
+  const double fluxes[4][2] = {{5, 3}, {2, -0.25}, {-1, 0.75}, {0.5, -1}};
+  for (std::size_t s = 0; s < 4; ++s) {
+    // Both lie on pixels of 0.1 arcsec; what CLEAN leaves is below the threshold, whose sidelobes may add up to twice that.
+    BOOST_TEST(std::abs(planes[s].image.at(32 + 10, 32 + 20) - fluxes[s][0]) < 0.01);
+    BOOST_TEST(std::abs(planes[s].image.at(32 - 5, 32 - 12) - fluxes[s][1]) < 0.01);
+    BOOST_TEST(report["stokes"][s]["stokes"] == imager::stokes_name(planes[s].stokes));
+    BOOST_TEST(std::abs(report["stokes"][s]["clean"]["model_flux_jy"].get<double>() - fluxes[s][0] - fluxes[s][1]) < 0.02);
+  }
+  BOOST_TEST(report["clean"] == report["stokes"][0]["clean"]);
+}
+
+BOOST_AUTO_TEST_CASE(what_cannot_be_formed_is_refused_with_the_correlations_there_are) {
+  const Copy copy(std::vector<int>{9, 12});
+  for (const auto& [stokes, expected] : {std::pair("V", "Stokes V cannot be formed from correlations XX, YY; it needs"),
+                                         {"RR", "correlation RR is not among XX, YY"}}) {
+    const Outcome outcome = run(small_image(copy.set, copy.folder / "a") + Arguments{"--stokes", stokes});
+    BOOST_TEST(outcome.code == 1);
+    BOOST_TEST(outcome.err.find(expected) != std::string::npos);
+  }
+  const Outcome outcome = run(small_image(copy.set, copy.folder / "a") + Arguments{"--stokes", "IXX"});
+  BOOST_TEST(outcome.code == 0);
+  BOOST_TEST(run(small_image(copy.set, copy.folder / "a") + Arguments{"--stokes", "IQV"}).code == 2);
+}
+
+BOOST_AUTO_TEST_SUITE_END()
