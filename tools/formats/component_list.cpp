@@ -20,7 +20,6 @@ using imager::Source;
 
 constexpr double degree = M_PI / 180;
 constexpr double arcsec = degree / 3600;
-constexpr std::string_view header = "ra_deg,dec_deg,flux_jy,scale_arcsec";
 
 [[noreturn]] void fail(const std::string& message) {
   throw std::runtime_error(message);
@@ -165,7 +164,24 @@ void append_number(double value, std::string& text) {
   text.append(digits.data(), end);
 }
 
-void append_line(const Source& source, const imager::SkyDirection& phase_centre, std::string& text) {
+std::string flux_column(imager::Stokes stokes) {
+  if (stokes == imager::Stokes::I) return "flux_jy";
+  std::string name = "flux_" + stokes_name(stokes) + "_jy";
+  std::transform(name.begin(), name.end(), name.begin(), [](unsigned char letter) { return std::tolower(letter); });
+  return name;
+}
+
+/// Those of the lists, after that of I.
+std::vector<imager::Stokes> flux_columns(const std::vector<SourcesOf>& lists) {
+  std::vector<imager::Stokes> columns{imager::Stokes::I};
+  for (const SourcesOf& list : lists)
+    if (list.stokes != imager::Stokes::I) columns.push_back(list.stokes);
+  return columns;
+}
+
+/// With `fluxes`, one of which is the source's own, and 0 in the other columns.
+void append_line(const Source& source, const std::vector<double>& fluxes, const imager::SkyDirection& phase_centre,
+                 std::string& text) {
   const auto& [l, m] = source.position;
   if (!(std::hypot(l, m) < 1))
     fail("l " + significant(l, 9) + ", m " + significant(m, 9) + ": beyond the horizon, expected l² + m² below 1");
@@ -174,7 +190,10 @@ void append_line(const Source& source, const imager::SkyDirection& phase_centre,
          " rad, expected finite numbers, and a width of 0 or more");
   const imager::SkyDirection direction = imager::sky_direction(source.position, phase_centre);
   const double ra_deg = direction.ra_rad / degree;
-  for (const double value : {ra_deg < 360 ? ra_deg : 0, direction.dec_rad / degree, source.flux_jy, source.fwhm_rad / arcsec}) {
+  std::vector<double> values{ra_deg < 360 ? ra_deg : 0, direction.dec_rad / degree};
+  values.insert(values.end(), fluxes.begin(), fluxes.end());
+  values.push_back(source.fwhm_rad / arcsec);
+  for (const double value : values) {
     append_number(value, text);
     text += ',';
   }
@@ -195,12 +214,25 @@ std::vector<Source> read_component_list(const std::string& path, const imager::S
 
 void write_component_list(const std::string& path, const std::vector<Source>& sources,
                           const imager::SkyDirection& phase_centre) {
-  std::string text = std::string(header) + "\n";
-  for (std::size_t s = 0; s < sources.size(); ++s) try {
-      append_line(sources[s], phase_centre, text);
-    } catch (const std::runtime_error& error) {
-      fail(path + ", line " + std::to_string(s + 2) + ": " + error.what());
-    }
+  write_component_list(path, std::vector<SourcesOf>{{imager::Stokes::I, sources}}, phase_centre);
+}
+
+void write_component_list(const std::string& path, const std::vector<SourcesOf>& lists,
+                          const imager::SkyDirection& phase_centre) {
+  const std::vector<imager::Stokes> columns = flux_columns(lists);
+  std::string text = "ra_deg,dec_deg";
+  for (const imager::Stokes column : columns) text += "," + flux_column(column);
+  text += ",scale_arcsec\n";
+  int line = 1;
+  for (const SourcesOf& list : lists)
+    for (const Source& source : list.sources) try {
+        ++line;
+        std::vector<double> fluxes;
+        for (const imager::Stokes column : columns) fluxes.push_back(column == list.stokes ? source.flux_jy : 0);
+        append_line(source, fluxes, phase_centre, text);
+      } catch (const std::runtime_error& error) {
+        fail(path + ", line " + std::to_string(line) + ": " + error.what());
+      }
   write_file(path, text);
 }
 

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "imager/source.h"
+#include "imager/stokes.h"
 
 namespace misfit::tools {
 
@@ -19,6 +20,16 @@ std::vector<imager::Source> read_component_list(const std::string& path, const i
 /// complete. Throws std::runtime_error that names the path, and the line of a source that has no place on the sky, or whose
 /// numbers are not finite.
 void write_component_list(const std::string& path, const std::vector<imager::Source>& sources,
+                          const imager::SkyDirection& phase_centre);
+
+/// What shines in one Stokes parameter or correlation.
+struct SourcesOf {
+  imager::Stokes stokes = imager::Stokes::I;
+  std::vector<imager::Source> sources;
+};
+/// The same of several, one after the other, with a column for each besides `flux_jy`: flux_q_jy, flux_xx_jy and so on. A line
+/// has 0 in all but its own.
+void write_component_list(const std::string& path, const std::vector<SourcesOf>& lists,
                           const imager::SkyDirection& phase_centre);
 
 }  // namespace misfit::tools

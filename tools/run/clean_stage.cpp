@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "imager/clean/mask.h"
+#include "imager/stokes.h"
 #include "tools/base/interrupt.h"
 #include "tools/base/numbers.h"
 #include "tools/formats/clean_state_file.h"
@@ -26,7 +27,7 @@ double mean_width_rad(const imager::Beam& beam) {
 }  // namespace
 
 CleanStage::CleanStage(const ImageOptions& options, const imager::ImageGeometry& geometry, int threads)
-    : o_(options), geometry_(geometry), threads_(threads) {
+    : o_(options), geometry_(geometry), threads_(threads), stokes_(imager::parse_stokes(options.stokes)) {
   if (!o_.startmodel.empty()) read_start_model();
   if (!o_.mask.empty()) mask_ = std::make_unique<imager::Image>(read_mask(o_.mask, geometry_));
 }
@@ -34,14 +35,18 @@ CleanStage::CleanStage(const ImageOptions& options, const imager::ImageGeometry&
 std::string CleanStage::warning() const {
   if (mask_ != nullptr && imager::mask_is_empty(*mask_))
     return "the mask " + o_.mask + " allows no pixel of the image: nothing is cleaned";
-  if (o_.restart && !std::filesystem::exists(state_path()))
-    return "there is no " + state_path() + " to go on from: CLEAN begins anew";
+  for (std::size_t s = 0; o_.restart && s < stokes_.size(); ++s)
+    if (!std::filesystem::exists(state_path(s))) return "there is no " + state_path(s) + " to go on from: CLEAN begins anew";
   return "";
 }
 
+std::string CleanStage::state_path(std::size_t stokes) const {
+  return o_.imagename + ".clean" + (stokes_.size() > 1 ? "." + stokes_name(stokes_[stokes]) : "") + ".state";
+}
+
 void CleanStage::read_start_model() {
-  imager::SkyImage model = read_model(o_.startmodel, geometry_.phase_centre);
-  const imager::ImageGeometry& g = model.geometry;
+  std::vector<imager::SkyImage> planes = read_stokes_model(o_.startmodel, geometry_.phase_centre);
+  const imager::ImageGeometry& g = planes.front().geometry;
   const double cell_off = std::abs(g.cell_rad / geometry_.cell_rad - 1) * std::max(g.width, g.height);
   const auto size = [](int width, int height) { return std::to_string(width) + " × " + std::to_string(height) + " pixels"; };
   const auto refuse = [this](const std::string& has, const std::string& expected) {
@@ -51,22 +56,27 @@ void CleanStage::read_start_model() {
     refuse("has " + size(g.width, g.height), size(geometry_.width, geometry_.height));
   if (!(cell_off < 1e-3)) refuse("has pixels of " + significant(g.cell_rad * 180 / M_PI * 3600, 6) + "arcsec", o_.cell);
   if (g.off_phase_centre()) refuse("has its phase centre off the middle pixel", "it there");
-  start_model_ = std::make_unique<imager::Image>(std::move(model.image));
+  for (const imager::Stokes wanted : stokes_) {
+    const auto found = std::find_if(planes.begin(), planes.end(), [&](const auto& plane) { return plane.stokes == wanted; });
+    if (found == planes.end()) refuse("has no plane of " + stokes_name(wanted), "one of each in --stokes " + o_.stokes);
+    start_model_.push_back(std::move(found->image));
+  }
 }
 
 double CleanStage::max_sidelobe(const CleanScene& scene) const {
   imager::Image point(geometry_.width, geometry_.height);
   point.at(geometry_.centre_row(), geometry_.centre_column()) = 1;
   const imager::Image beam = imager::convolve_with_beam(point, scene.main_lobe, geometry_.cell_rad, threads_);
-  return imager::largest_sidelobe(scene.images.psf, beam);
+  return imager::largest_sidelobe(scene.psf, beam);
 }
 
-imager::CleanState CleanStage::begin(const imager::MinorCycle& minor, const CleanStateOwner& owner) {
-  const std::unique_ptr<imager::Image> start = std::move(start_model_);
-  if (o_.restart && std::filesystem::exists(state_path())) return read_clean_state(state_path(), owner);
-  std::filesystem::remove(state_path());
+imager::CleanState CleanStage::begin(std::size_t stokes, const imager::MinorCycle& minor, const CleanStateOwner& owner) {
+  imager::Image start;
+  if (!start_model_.empty()) start = std::move(start_model_[stokes]);
+  if (o_.restart && std::filesystem::exists(state_path(stokes))) return read_clean_state(state_path(stokes), owner);
+  std::filesystem::remove(state_path(stokes));
   imager::ComponentModel model(geometry_.width, geometry_.height, minor.scale_pixels());
-  if (start) model.add(imager::components_of(*start));
+  if (!start.pixel.empty()) model.add(imager::components_of(start));
   return imager::first_state(model);
 }
 
@@ -79,20 +89,22 @@ imager::CleanResult CleanStage::run(const CleanScene& scene, const nlohmann::jso
   std::unique_ptr<imager::MinorCycle> minor;
   {
     const imager::StageTimer timer(times, "minor cycles");
-    minor = imager::make_deconvolver(deconvolver_choice(o_, threads_), scene.images.psf);
+    minor = imager::make_deconvolver(deconvolver_choice(o_, threads_), scene.psf);
   }
   CleanStateOwner owner{version, option_values, 0};
   imager::CleanState state;
   double sidelobe = 0;
   {
     const imager::StageTimer timer(times, "CLEAN state");
-    owner.checksum = checksum({&scene.images.dirty, &scene.images.psf, mask_.get(), start_model_.get()});
-    state = begin(*minor, owner);
+    const imager::Image* const start = start_model_.empty() ? nullptr : &start_model_[scene.stokes];
+    owner.checksum = checksum({&scene.dirty, &scene.psf, mask_.get(), start});
+    state = begin(scene.stokes, *minor, owner);
     sidelobe = max_sidelobe(scene);
   }
   const imager::CleanInput input{scene.source,
                                  scene.transform,
-                                 scene.images,
+                                 scene.dirty,
+                                 scene.psf,
                                  sidelobe,
                                  std::max(o_.accuracy, scene.expected_error),
                                  mean_width_rad(scene.main_lobe) / geometry_.cell_rad};
@@ -100,7 +112,7 @@ imager::CleanResult CleanStage::run(const CleanScene& scene, const nlohmann::jso
       input, *minor, options, std::move(state), progress,
       [&](const imager::CleanState& now) {
         const imager::StageTimer timer(times, "CLEAN state");
-        write_clean_state(state_path(), now, owner);
+        write_clean_state(state_path(scene.stokes), now, owner);
         cycle_progress(now);
       },
       times);

@@ -14,17 +14,19 @@
 
 namespace misfit::tools {
 
-/// What CLEAN is given by the stages before it.
+/// What CLEAN is given by the stages before it, of one Stokes parameter.
 struct CleanScene {
+  std::size_t stokes = 0;  ///< its place in the run's list
   const imager::VisibilitySource& source;
   const imager::Transform& transform;
-  const imager::DirtyImages& images;
+  const imager::Image& dirty;
+  const imager::Image& psf;
   imager::Beam main_lobe;     ///< of the PSF
   double expected_error = 0;  ///< of the dirty image
 };
 
-/// CLEAN as `misfit image` runs it, with the files that go into it: mask, start model, and the state that it leaves after every
-/// major cycle and may begin with.
+/// CLEAN as `misfit image` runs it, one Stokes parameter after the other, with the files that go into it: mask, start model, and
+/// the states that it leaves after every major cycle and may begin with.
 class CleanStage {
  public:
   /// Reads the mask and the start model. Throws std::runtime_error that names the file and what was expected.
@@ -40,17 +42,18 @@ class CleanStage {
                           const imager::CycleProgress& cycle_progress, imager::StageTimes& times);
 
  private:
-  std::string state_path() const { return o_.imagename + ".clean.state"; }
+  std::string state_path(std::size_t stokes) const;
   void read_start_model();
   /// That of a run before, or that of the start model, which it frees.
-  imager::CleanState begin(const imager::MinorCycle& minor, const CleanStateOwner& owner);
+  imager::CleanState begin(std::size_t stokes, const imager::MinorCycle& minor, const CleanStateOwner& owner);
   double max_sidelobe(const CleanScene& scene) const;
 
   const ImageOptions& o_;
   imager::ImageGeometry geometry_;
   int threads_;
   std::unique_ptr<imager::Image> mask_;
-  std::unique_ptr<imager::Image> start_model_;
+  std::vector<imager::Stokes> stokes_;
+  std::vector<imager::Image> start_model_;  ///< [Stokes], or none
 };
 
 }  // namespace misfit::tools

@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "imager/plan/gridding_plan.h"
+#include "imager/stokes.h"
 #include "kernels/kernel_table.h"
 #include "tools/base/option_checks.h"
 #include "tools/base/quantity.h"
@@ -81,6 +82,9 @@ void check_clean(const ImageOptions& o) {
   if (o.niter > 0 && smallest < 3 && !restoring_beam(o))
     refuse("imsize", std::to_string(smallest), "3 pixels or more to fit a beam to, or --restoringbeam");
   if (!o.startmodel.empty() && o.niter == 0) refuse("startmodel", o.startmodel, "--niter above 0 beside it");
+  for (const imager::Stokes stokes : imager::parse_stokes(o.stokes))
+    if (o.savemodel != "none" && stokes > imager::Stokes::V)
+      refuse("savemodel", o.savemodel, "--stokes of I, Q, U and V, of which a column's correlations are made");
   if (o.savemodel != "none" && o.niter == 0) refuse("savemodel", o.savemodel, "--niter above 0 beside it");
   if (!o.mask.empty() && o.niter == 0) refuse("mask", o.mask, "--niter above 0 beside it");
   if (o.restart && o.niter == 0) refuse("restart", "true", "--niter above 0 beside it");
@@ -130,6 +134,9 @@ void declare_scene(CLI::App& command, ImageOptions& o) {
   command.add_option("--field", o.selection.field, "Fields, in CASA's selection syntax; all when empty");
   command.add_option("--spw", o.selection.spectral_window,
                      "Spectral windows and channels, in CASA's selection syntax; all when empty");
+  command.add_option("--stokes", o.stokes,
+                     "Stokes parameters or correlations, which share one PSF: I, IQUV, IV, XXYY, RR, …; of correlations that "
+                     "are no parallel hands the real part of the image");
   command.add_option("--datacolumn", o.datacolumn, "data, corrected, model, or a column's name");
   command.add_option("--weighting", o.weighting, "Weighting")->check(CLI::IsMember({"natural"}));
   command.add_option("--gridder", o.gridder, "w planes: auto (where w matters), standard (none), wide (always)")

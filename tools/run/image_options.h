@@ -24,6 +24,7 @@ struct ImageOptions {
   std::string cell;
   ms_io::Selection selection;
   std::string datacolumn = "data";
+  std::string stokes = "I";
   std::string weighting = "natural";
   KernelSource kernel;
   double accuracy = 1e-6;

@@ -1,5 +1,6 @@
 #include "tools/run/image_products.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace misfit::tools {
@@ -7,16 +8,22 @@ namespace misfit::tools {
 std::vector<imager::HeaderCard> error_cards(const RunReport& report) {
   std::vector<imager::HeaderCard> cards;
   if (report.accuracy != 0) cards.push_back({"ERRASKED", report.accuracy, "accuracy asked: RMS error over image RMS"});
-  if (report.theory != nullptr) {
-    cards.push_back({"ERREXPEC", report.theory->expected_rms, "expected RMS error over image RMS"});
-    cards.push_back({"ERRBOUND", report.theory->bound_rms, "bound on it, whatever the data"});
-    cards.push_back({"ERRBMAX", report.theory->bound_max, "bound on any pixel's error over image RMS"});
+  const auto add_largest = [&](const char* keyword, const auto& of, const char* comment) {
+    double largest = 0;
+    for (const StokesReport& stokes : report.stokes) largest = std::max(largest, of(stokes));
+    cards.push_back({keyword, largest, comment});
+  };
+  if (report.stokes.front().theory) {
+    add_largest("ERREXPEC", [](const auto& s) { return s.theory->expected_rms; }, "expected RMS error over image RMS");
+    add_largest("ERRBOUND", [](const auto& s) { return s.theory->bound_rms; }, "bound on it, whatever the data");
+    add_largest("ERRBMAX", [](const auto& s) { return s.theory->bound_max; }, "bound on any pixel's error over image RMS");
   }
-  if (report.measured != nullptr) {
-    cards.push_back({"ERRMEAS", report.measured->rms, "measured RMS error over image RMS"});
-    cards.push_back({"ERRMMAX", report.measured->max, "largest measured error over image RMS"});
-    cards.push_back({"ERRPRED", report.measured->predict_rms, "measured RMS error of prediction"});
+  if (report.stokes.front().measured) {
+    add_largest("ERRMEAS", [](const auto& s) { return s.measured->rms; }, "measured RMS error over image RMS");
+    add_largest("ERRMMAX", [](const auto& s) { return s.measured->max; }, "largest measured error over image RMS");
   }
+  if (report.measured_predict_rms)
+    cards.push_back({"ERRPRED", *report.measured_predict_rms, "measured RMS error of prediction"});
   // An image of zeros has no relative error, and a FITS header no number for that.
   std::erase_if(cards, [](const imager::HeaderCard& card) { return !std::isfinite(card.value); });
   return cards;
@@ -35,14 +42,18 @@ void ImageProducts::set_beam(const imager::Beam& beam) {
   common_.beam = beam;
 }
 
-void ImageProducts::add(const std::string& name, const std::string& unit, imager::Image image) {
-  files_.push_back({imagename_ + "." + name + ".fits", common_});
-  files_.back().image.unit = unit;
-  files_.back().image.image = std::move(image);
+void ImageProducts::add(const std::string& name, const std::string& unit, std::vector<imager::Image> images) {
+  files_.push_back({imagename_ + "." + name + ".fits", {}});
+  for (std::size_t i = 0; i < images.size(); ++i) {
+    imager::SkyImage& plane = files_.back().planes.emplace_back(common_);
+    plane.stokes = stokes_[i];
+    plane.unit = unit;
+    plane.image = std::move(images[i]);
+  }
 }
 
 void ImageProducts::write() const {
-  for (const File& file : files_) imager::write_fits(file.image, file.path, format_);
+  for (const File& file : files_) imager::write_fits(file.planes, file.path, format_);
 }
 
 void ImageProducts::draw(const std::vector<ProductPicture>& pictures) {

@@ -10,7 +10,7 @@
 
 namespace misfit::tools {
 
-/// Header cards for the errors that are known.
+/// Header cards for the errors that are known, the largest of all Stokes parameters.
 std::vector<imager::HeaderCard> error_cards(const RunReport& report);
 
 /// What one picture of a run shows.
@@ -31,12 +31,14 @@ class ImageProducts {
   ImageProducts(std::string imagename, const imager::ImageGeometry& geometry, const imager::Observation& observation,
                 double accuracy);
 
+  void set_stokes(const std::vector<imager::Stokes>& stokes) { stokes_ = stokes; }
+
   void set_history(const std::string& line) { common_.history = {line}; }
   void set_cards(std::vector<imager::HeaderCard> cards) { common_.cards = std::move(cards); }
   void set_beam(const imager::Beam& beam);
 
-  /// An image for write(), as <imagename>.<name>.fits.
-  void add(const std::string& name, const std::string& unit, imager::Image image);
+  /// Images for write(), as <imagename>.<name>.fits: of the Stokes parameters in their order, or one that serves all.
+  void add(const std::string& name, const std::string& unit, std::vector<imager::Image> images);
   void write() const;
 
   /// Begins to draw <imagename>.<name>.png while the caller does other things; images are looked at until it returns.
@@ -51,12 +53,13 @@ class ImageProducts {
  private:
   struct File {
     std::string path;
-    imager::SkyImage image;
+    std::vector<imager::SkyImage> planes;
   };
 
   std::string imagename_;
   imager::PixelFormat format_;
   imager::SkyImage common_;
+  std::vector<imager::Stokes> stokes_{imager::Stokes::I};
   std::vector<File> files_;
   PictureDrawing drawing_;
   std::vector<std::pair<std::string, std::string>> titles_and_paths_;

@@ -1,11 +1,14 @@
 #include "tools/run/image_run.h"
 
+#include <algorithm>
 #include <cstdio>
 #include <memory>
 #include <optional>
 
 #include "imager/noise.h"
 #include "imager/parallel.h"
+#include "imager/stokes.h"
+#include "imager/stokes_view.h"
 #include "tools/base/files.h"
 #include "tools/base/progress.h"
 #include "tools/formats/model_image.h"
@@ -26,10 +29,14 @@ namespace {
 class ImageRun {
  public:
   ImageRun(const ImageOptions& options, std::string command_line, nlohmann::json option_values)
-      : o_(options), threads_(options.threads == 0 ? imager::available_threads() : options.threads), progress_(options.quiet) {
+      : o_(options),
+        stokes_(imager::parse_stokes(options.stokes)),
+        threads_(options.threads == 0 ? imager::available_threads() : options.threads), progress_(options.quiet) {
     report_.command_line = std::move(command_line);
     report_.options = std::move(option_values);
     report_.times = &times_;
+    report_.stokes.clear();
+    for (const imager::Stokes stokes : stokes_) report_.stokes.push_back({.stokes = stokes});
   }
 
   /// Whether all was done, and the user did not stop it.
@@ -51,7 +58,8 @@ class ImageRun {
     write_report();
     if (o_.savemodel == "modelcolumn") save_model();
     summarise();
-    return !cleaned_ || cleaned_->report.stop != imager::CleanStop::user;
+    return std::none_of(cleaned_.begin(), cleaned_.end(),
+                        [](const auto& result) { return result.report.stop == imager::CleanStop::user; });
   }
 
  private:
@@ -67,7 +75,7 @@ class ImageRun {
     const imager::StageTimer timer(times_, "open");
     if (!o_.dry_run) check_writable_folder(o_.imagename);
     if (o_.savemodel == "modelcolumn") ms_io::require_writable(o_.vis);
-    set_ = std::make_unique<ms_io::MeasurementSet>(o_.vis, o_.selection, o_.datacolumn);
+    set_ = std::make_unique<ms_io::MeasurementSet>(o_.vis, o_.selection, o_.datacolumn, stokes_);
     geometry_ = geometry_of(o_, set_->observation().phase_centre);
     reach_ = set_->reach();
     if (o_.niter == 0) return;
@@ -99,14 +107,15 @@ class ImageRun {
     count_samples();
     const imager::StageTimer timer(times_, "statistics");
     const imager::NeglectedPhase phase = imager::neglected_w_phase(reach_, source_->w_spread(), geometry_);
-    theory_ = imager::theoretical_error(made_.plan, made_.images.sums, imager::root_mean_square(made_.images.dirty), phase);
-    report_.theory = &theory_;
-    if (!made_.promise_kept) warn(accuracy_warning(o_.accuracy, theory_));
+    for (std::size_t s = 0; s < stokes_.size(); ++s)
+      report_.stokes[s].theory = imager::theoretical_error(made_.plan, made_.images.sums[s],
+                                                           imager::root_mean_square(made_.images.dirty[s]), phase);
+    if (!made_.promise_kept) warn(accuracy_warning(o_.accuracy, largest_expected_error(report_)));
   }
 
   /// What was read; samples that the pixel size cannot represent, and the pixel size that could.
   void count_samples() {
-    const imager::SampleSums& sums = made_.images.sums;
+    const imager::SampleSums& sums = made_.images.sums.front();
     report_.counts = source_->counts();
     report_.counts.outside_grid = sums.outside_grid;
     report_.counts.used = sums.used;
@@ -117,10 +126,11 @@ class ImageRun {
   void verify() {
     const imager::StageTimer timer(times_, "verify");
     progress_.begin("verify");
-    measured_ =
+    const imager::MeasuredError measured =
         imager::measure_error(*source_, made_.transform->images(), geometry_, made_.images, o_.verify, threads_, progress());
     progress_.end();
-    report_.measured = &measured_;
+    for (std::size_t s = 0; s < stokes_.size(); ++s) report_.stokes[s].measured = measured.image[s];
+    report_.measured_predict_rms = measured.predict_rms;
   }
 
   void choose_beams() {
@@ -133,28 +143,40 @@ class ImageRun {
   void begin_products() {
     products_ = std::make_unique<ProductStage>(
         o_,
-        ProductScene{geometry_, set_->observation(), report_.command_line, error_cards(report_), beams_.restoring, threads_},
+        ProductScene{
+            geometry_, stokes_, set_->observation(), report_.command_line, error_cards(report_), beams_.restoring, threads_},
         times_);
     products_->draw_dirty(source_->uv_coverage(), made_.images, clean_ ? clean_->mask() : nullptr);
   }
 
   void clean() {
-    progress_.begin("CLEAN", true);
-    cleaned_ = std::make_unique<imager::CleanResult>(clean_->run(
-        {*source_, *made_.transform, made_.images, *beams_.main_lobe, theory_.expected_rms}, report_.options, progress(),
+    cleaned_.reserve(stokes_.size());  // the report points to what they hold
+    for (std::size_t s = 0; s < stokes_.size(); ++s) clean(s);
+    clean_.reset();
+  }
+
+  void clean(std::size_t s) {
+    const std::string of = stokes_.size() > 1 ? " of " + stokes_name(stokes_[s]) : "";
+    progress_.begin("CLEAN" + of, true);
+    iterations_before_.reset();
+    const imager::StokesView view(*source_, static_cast<int>(s));
+    cleaned_.push_back(clean_->run(
+        {s, view, *made_.transform, made_.images.dirty[s], made_.images.psf, *beams_.main_lobe,
+         report_.stokes[s].theory->expected_rms},
+        report_.options, progress(),
         [this](const imager::CleanState& state) {
           count_cycle(state.cycles.back());
           if (state.cycles.size() > 1) progress_.say("  " + cycle_message(state));
         },
         times_));
     progress_.end();
-    made_.images.dirty = {};
-    if (clean_->mask() != nullptr) cleaned_->mask = *clean_->mask();
-    clean_.reset();
-    report_.clean = &cleaned_->report;
-    const imager::CleanStop stop = cleaned_->report.stop;
+    made_.images.dirty[s] = {};
+    imager::CleanResult& result = cleaned_.back();
+    if (clean_->mask() != nullptr) result.mask = *clean_->mask();
+    report_.stokes[s].clean = &result.report;
+    const imager::CleanStop stop = result.report.stop;
     if (stop == imager::CleanStop::diverging || stop == imager::CleanStop::diverging_from_best)
-      warn(divergence_warning(cleaned_->report));
+      warn(divergence_warning(result.report) + of);
   }
 
   /// Told of the state with which CLEAN begins, which may be that of a run before, and after every major cycle.
@@ -164,7 +186,8 @@ class ImageRun {
       return;
     }
     ++work_.major_cycles;
-    work_.components = cycle.iterations - *iterations_before_;
+    work_.components += cycle.iterations - *iterations_before_;
+    iterations_before_ = cycle.iterations;
   }
 
   void look_outside() {
@@ -172,7 +195,8 @@ class ImageRun {
     imager::StageTimes own;  // its gridding is not this image's
     progress_.begin("sources outside", true);
     const double noise_jy =
-        cleaned_ ? cleaned_->report.final_state().rms_jy : imager::robust_noise(made_.images.dirty, threads_);
+        cleaned_.empty() ? imager::robust_noise(made_.images.dirty.front(), threads_)
+                         : cleaned_.front().report.final_state().rms_jy;
     outside_ = check_outside(*source_, made_.plan, *plan_.wider, made_.images, noise_jy, progress(), own);
     progress_.end();
     report_.outside = &outside_;
@@ -194,32 +218,44 @@ class ImageRun {
     ModelVisibilities model;
     {
       const ms_io::MeasurementSet set(o_.vis, o_.selection, o_.datacolumn);
-      model = image_visibilities(cleaned_->model, geometry_, gridding_request(o_, threads_), set);
+      model = image_visibilities(model_planes(), geometry_, gridding_request(o_, threads_), set);
     }
     ms_io::write_model(o_.vis, o_.selection, {"MODEL_DATA"}, model.predict, progress(), model.samples_at_once);
     progress_.end();
+  }
+
+  /// Those of I, Q, U and V.
+  StokesPlanes model_planes() const {
+    StokesPlanes planes{};
+    for (std::size_t s = 0; s < stokes_.size(); ++s) planes.at(static_cast<std::size_t>(stokes_[s]) - 1) = &cleaned_[s].model;
+    return planes;
   }
 
   void write_images() {
     count_pixels();
     std::string removed;
     for (const std::string& path :
-         cleaned_ ? products_->write(std::move(made_.images.psf), *cleaned_) : products_->write(std::move(made_.images)))
+         cleaned_.empty() ? products_->write(std::move(made_.images))
+                          : products_->write(std::move(made_.images.psf), cleaned_))
       removed += (removed.empty() ? "" : ", ") + path;
     if (!removed.empty()) progress_.say("removed what an earlier run left: " + removed);
   }
 
   void count_pixels() {
     const imager::StageTimer timer(times_, "statistics");
-    report_.histogram = cleaned_ ? pixel_histogram(cleaned_->residual, cleaned_->report.final_state().rms_jy, threads_)
-                                 : pixel_histogram(made_.images.dirty, imager::sampled_noise(made_.images.dirty), threads_);
+    for (std::size_t s = 0; s < stokes_.size(); ++s) {
+      const imager::Image& image = cleaned_.empty() ? made_.images.dirty[s] : cleaned_[s].residual;
+      const double noise_jy = cleaned_.empty() ? imager::sampled_noise(image) : cleaned_[s].report.final_state().rms_jy;
+      report_.stokes[s].histogram = pixel_histogram(image, noise_jy, threads_);
+    }
   }
 
   /// Nothing where gnuplot cannot draw it.
   std::string histogram_drawing() {
     const imager::StageTimer timer(times_, "draw pictures");
     try {
-      return report_.histogram.pixels == 0 ? "" : draw_svg(histogram_figure(report_.histogram));
+      const PixelHistogram& histogram = report_.stokes.front().histogram;
+      return histogram.pixels == 0 ? "" : draw_svg(histogram_figure(histogram));
     } catch (const std::runtime_error&) {  // the pictures say why
       return "";
     }
@@ -243,6 +279,7 @@ class ImageRun {
   }
 
   const ImageOptions& o_;
+  std::vector<imager::Stokes> stokes_;
   int threads_;
   ProgressLine progress_;
   imager::Stopwatch watch_;
@@ -259,11 +296,9 @@ class ImageRun {
   RunPlan plan_;
   std::unique_ptr<imager::StreamedVisibilities> source_;
   imager::AccurateImages made_;
-  imager::TheoreticalError theory_;
-  imager::MeasuredError measured_;
   BeamChoice beams_;
   OutsideReport outside_;
-  std::unique_ptr<imager::CleanResult> cleaned_;
+  std::vector<imager::CleanResult> cleaned_;  ///< [Stokes], or none
   std::unique_ptr<ProductStage> products_;
 };
 

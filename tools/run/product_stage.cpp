@@ -1,25 +1,41 @@
 #include "tools/run/product_stage.h"
 
+#include <algorithm>
 #include <filesystem>
+#include <string_view>
 
 #include "tools/base/files.h"
 #include "tools/formats/component_list.h"
 
 namespace misfit::tools {
+namespace {
+
+/// A list of one, which an initializer cannot be moved into.
+std::vector<imager::Image> alone(imager::Image image) {
+  std::vector<imager::Image> list;
+  list.push_back(std::move(image));
+  return list;
+}
+
+}  // namespace
 
 ProductStage::ProductStage(const ImageOptions& options, ProductScene scene, imager::StageTimes& times)
     : o_(options),
       scene_(std::move(scene)),
       times_(times),
       products_(o_.imagename, scene_.geometry, scene_.observation, o_.accuracy) {
+  products_.set_stokes(scene_.stokes);
   products_.set_history(scene_.history);
   products_.set_cards(scene_.cards);
   if (scene_.restoring_beam) products_.set_beam(*scene_.restoring_beam);
 }
 
-ProductPicture ProductStage::dirty_picture(const imager::Image* dirty, const imager::Image* mask) const {
-  return {
-      .name = "dirty", .title = "Dirty image", .image = dirty, .sketch = dirty == nullptr ? &dirty_ : nullptr, .mask = mask};
+ProductPicture ProductStage::picture_of(std::size_t stokes, ProductPicture picture) const {
+  if (scene_.stokes.size() == 1) return picture;
+  const std::string name = imager::stokes_name(scene_.stokes[stokes]);
+  picture.name += "." + name;
+  picture.title += ", " + name;
+  return picture;
 }
 
 void ProductStage::draw_dirty(const imager::UvCoverage& coverage, const imager::DirtyImages& images,
@@ -27,47 +43,72 @@ void ProductStage::draw_dirty(const imager::UvCoverage& coverage, const imager::
   const imager::StageTimer timer(times_, "draw pictures");
   products_.draw(coverage);
   products_.draw({{.name = "psf", .title = "PSF", .image = &images.psf}});
-  if (o_.niter == 0)
-    products_.draw({{.name = "residual", .title = "Dirty image", .image = &images.dirty}});
-  else if (o_.usemask == "auto")
-    dirty_ = sketch(images.dirty, Shades::brightness, picture_side);
-  else
-    products_.draw({dirty_picture(&images.dirty, mask)});
+  std::vector<ProductPicture> pictures;
+  for (std::size_t s = 0; s < images.dirty.size(); ++s) {
+    const imager::Image& dirty = images.dirty[s];
+    if (o_.usemask == "auto")
+      dirty_.push_back(sketch(dirty, Shades::brightness, picture_side));
+    else
+      pictures.push_back(
+          picture_of(s, {.name = o_.niter == 0 ? "residual" : "dirty", .title = "Dirty image", .image = &dirty, .mask = mask}));
+  }
+  products_.draw(pictures);
 }
 
 std::vector<std::string> ProductStage::write(imager::DirtyImages images) {
   const imager::StageTimer timer(times_, "write images");
-  products_.add("psf", "Jy/beam", std::move(images.psf));
+  products_.add("psf", "Jy/beam", alone(std::move(images.psf)));
   products_.add("residual", "Jy/beam", std::move(images.dirty));
   auto removed = remove_old(
       {"model.fits", "model.png", "image.fits", "image.png", "dirty.png", "mask.fits", "components.csv", "clean.state"});
+  remove_other_stokes(removed);
   products_.write();
   return removed;
 }
 
-std::vector<std::string> ProductStage::write(imager::Image psf, imager::CleanResult& cleaned) {
-  imager::Image image = restored(cleaned);
-  const bool masked = !cleaned.mask.pixel.empty();
-  {
-    const imager::StageTimer timer(times_, "draw pictures");
-    const imager::Image* const mask = masked ? &cleaned.mask : nullptr;
-    std::vector<ProductPicture> pictures;
-    if (o_.usemask == "auto") pictures.push_back(dirty_picture(nullptr, mask));
-    pictures.push_back({"model", "Model", "Jy/pixel", Shades::about_zero, &cleaned.model, nullptr, mask});
-    pictures.push_back({"residual", "Residual", "Jy/beam", Shades::about_zero, &cleaned.residual, nullptr, mask});
-    pictures.push_back({"image", "Restored image", "Jy/beam", Shades::brightness, &image, nullptr, mask});
-    products_.draw(pictures);
+void ProductStage::draw(std::vector<imager::CleanResult>& cleaned, const std::vector<imager::Image>& restored_images) {
+  const imager::StageTimer timer(times_, "draw pictures");
+  std::vector<ProductPicture> pictures;
+  for (std::size_t s = 0; s < cleaned.size(); ++s) {
+    const imager::CleanResult& result = cleaned[s];
+    const imager::Image* const mask = result.mask.pixel.empty() ? nullptr : &result.mask;
+    if (o_.usemask == "auto")
+      pictures.push_back(picture_of(s, {.name = "dirty", .title = "Dirty image", .sketch = &dirty_[s], .mask = mask}));
+    pictures.push_back(picture_of(s, {"model", "Model", "Jy/pixel", Shades::about_zero, &result.model, nullptr, mask}));
+    pictures.push_back(picture_of(s, {"residual", "Residual", "Jy/beam", Shades::about_zero, &result.residual, nullptr, mask}));
+    pictures.push_back(
+        picture_of(s, {"image", "Restored image", "Jy/beam", Shades::brightness, &restored_images[s], nullptr, mask}));
   }
+  products_.draw(pictures);
+}
+
+std::vector<std::string> ProductStage::write(imager::Image psf, std::vector<imager::CleanResult>& cleaned) {
+  std::vector<imager::Image> images, models, residuals, masks;
+  for (const imager::CleanResult& result : cleaned) images.push_back(restored(result));
+  draw(cleaned, images);
   const imager::StageTimer timer(times_, "write images");
-  products_.add("psf", "Jy/beam", std::move(psf));
-  products_.add("model", "Jy/pixel", o_.savemodel == "none" ? std::move(cleaned.model) : cleaned.model);
-  products_.add("residual", "Jy/beam", std::move(cleaned.residual));
-  if (masked) products_.add("mask", "", std::move(cleaned.mask));
-  products_.add("image", "Jy/beam", std::move(image));
+  write_components(cleaned);
+  for (imager::CleanResult& result : cleaned) {
+    models.push_back(o_.savemodel == "none" ? std::move(result.model) : result.model);
+    residuals.push_back(std::move(result.residual));
+    if (!result.mask.pixel.empty()) masks.push_back(std::move(result.mask));
+  }
+  const bool masked = !masks.empty();
+  products_.add("psf", "Jy/beam", alone(std::move(psf)));
+  products_.add("model", "Jy/pixel", std::move(models));
+  products_.add("residual", "Jy/beam", std::move(residuals));
+  if (masked) products_.add("mask", "", std::move(masks));
+  products_.add("image", "Jy/beam", std::move(images));
   auto removed = masked ? std::vector<std::string>() : remove_old({"mask.fits"});
+  remove_other_stokes(removed);
   products_.write();
-  write_component_list(o_.imagename + ".components.csv", sources(cleaned.components), scene_.geometry.phase_centre);
   return removed;
+}
+
+void ProductStage::write_components(const std::vector<imager::CleanResult>& cleaned) const {
+  std::vector<SourcesOf> found;
+  for (std::size_t s = 0; s < cleaned.size(); ++s) found.push_back({scene_.stokes[s], sources(cleaned[s].components)});
+  write_component_list(o_.imagename + ".components.csv", found, scene_.geometry.phase_centre);
 }
 
 std::string ProductStage::finish_pictures(std::vector<PagePicture>& drawn) {
@@ -93,6 +134,21 @@ std::vector<imager::Source> ProductStage::sources(const imager::ComponentModel& 
     sources.push_back({scene_.geometry.at(c.row, c.column), c.flux_jy,
                        model.scale_pixels()[static_cast<std::size_t>(c.scale)] * scene_.geometry.cell_rad});
   return sources;
+}
+
+/// Pictures and states of CLEAN that an earlier run of other Stokes parameters left.
+void ProductStage::remove_other_stokes(std::vector<std::string>& removed) const {
+  std::vector<std::string> kinds;
+  for (int code = 1; imager::is_stokes_code(code); ++code) {
+    const auto stokes = static_cast<imager::Stokes>(code);
+    const bool made = scene_.stokes.size() > 1 && std::count(scene_.stokes.begin(), scene_.stokes.end(), stokes) > 0;
+    for (const char* kind : {"dirty.S.png", "model.S.png", "residual.S.png", "image.S.png", "clean.S.state"})
+      if (!made) kinds.push_back(std::string(kind).replace(std::string_view(kind).find('S'), 1, stokes_name(stokes)));
+  }
+  if (scene_.stokes.size() > 1)
+    for (const char* kind : {"dirty.png", "model.png", "residual.png", "image.png", "clean.state"}) kinds.emplace_back(kind);
+  const std::vector<std::string> others = remove_old(kinds);
+  removed.insert(removed.end(), others.begin(), others.end());
 }
 
 /// What an earlier run of this name left and this one does not make.

@@ -16,6 +16,7 @@ namespace misfit::tools {
 /// What goes into every image of a run.
 struct ProductScene {
   const imager::ImageGeometry& geometry;
+  std::vector<imager::Stokes> stokes;
   imager::Observation observation;
   std::string history;
   std::vector<imager::HeaderCard> cards;
@@ -34,24 +35,28 @@ class ProductStage {
 
   /// Writes the images of a run without CLEAN. Returns the names of files that an earlier run left and this one removed.
   std::vector<std::string> write(imager::DirtyImages images);
-  /// Those of CLEAN, restored, and the list of components. Takes the images out of `cleaned`, but for a model that
+  /// Those of CLEAN [Stokes], restored, and the list of components. Takes the images out of `cleaned`, but for models that
   /// --savemodel still needs.
-  std::vector<std::string> write(imager::Image psf, imager::CleanResult& cleaned);
+  std::vector<std::string> write(imager::Image psf, std::vector<imager::CleanResult>& cleaned);
 
   /// Adds the pictures to `drawn`, or returns in a sentence why there are none.
   std::string finish_pictures(std::vector<PagePicture>& drawn);
 
  private:
-  ProductPicture dirty_picture(const imager::Image* dirty, const imager::Image* mask) const;
+  /// The picture of one Stokes parameter, whose name and title say which where there are several.
+  ProductPicture picture_of(std::size_t stokes, ProductPicture picture) const;
+  void draw(std::vector<imager::CleanResult>& cleaned, const std::vector<imager::Image>& restored_images);
+  void write_components(const std::vector<imager::CleanResult>& cleaned) const;
   imager::Image restored(const imager::CleanResult& cleaned) const;
   std::vector<imager::Source> sources(const imager::ComponentModel& model) const;
+  void remove_other_stokes(std::vector<std::string>& removed) const;
   std::vector<std::string> remove_old(const std::vector<std::string>& kinds) const;
 
   const ImageOptions& o_;
   ProductScene scene_;
   imager::StageTimes& times_;
   ImageProducts products_;
-  Sketch dirty_;  ///< what is left of the dirty image when CLEAN is over, where its mask was not known before
+  std::vector<Sketch> dirty_;  ///< what is left of the dirty images when CLEAN is over, where masks were not known before
 };
 
 }  // namespace misfit::tools

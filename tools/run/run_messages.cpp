@@ -26,10 +26,10 @@ std::string outside_grid_warning(std::uint64_t samples, const imager::UvwReach& 
          significant(std::floor(largest_cell_rad / unit.size * 1e4) / 1e4, 4) + unit.name + " would keep them";
 }
 
-std::string accuracy_warning(double asked, const imager::TheoreticalError& theory) {
+std::string accuracy_warning(double asked, double expected) {
   return "the accuracy of " + significant(asked, 2) +
          " is out of reach: the image is weak against its data, and its expected error is " +
-         significant(theory.expected_rms, 2);
+         significant(expected, 2);
 }
 
 std::string cycle_message(const imager::CleanState& state) {
@@ -45,13 +45,18 @@ std::string divergence_warning(const imager::CleanReport& report) {
 
 std::string summary(const RunReport& r) {
   std::string text = counted(r.counts.used) + " of " + counted(r.counts.samples_read) + " samples imaged; expected error " +
-                     significant(r.theory->expected_rms, 2);
-  if (r.measured != nullptr)
-    text += ", measured " + significant(r.measured->rms, 2) + " (prediction " + significant(r.measured->predict_rms, 2) + ")";
+                     significant(largest_expected_error(r), 2);
+  if (r.measured_predict_rms) {
+    double measured = 0;
+    for (const StokesReport& of : r.stokes) measured = std::max(measured, of.measured->rms);
+    text += ", measured " + significant(measured, 2) + " (prediction " + significant(*r.measured_predict_rms, 2) + ")";
+  }
   text += "\n";
-  if (r.clean != nullptr)
-    text += grouped(r.clean->iterations) + " components, model flux " + significant(r.clean->final_state().model_flux_jy, 4) +
-            "; " + r.clean->stop_reason + "\n";
+  for (const StokesReport& of : r.stokes)
+    if (of.clean != nullptr)
+      text += (r.stokes.size() > 1 ? stokes_name(of.stokes) + ": " : "") + grouped(of.clean->iterations) +
+              " components, model flux " + significant(of.clean->final_state().model_flux_jy, 4) + "; " +
+              of.clean->stop_reason + "\n";
   return text;
 }
 

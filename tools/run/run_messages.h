@@ -18,7 +18,7 @@ imager::Decision left_out_decision(const imager::SampleCounts& counts);
 std::string outside_grid_warning(std::uint64_t samples, const imager::UvwReach& reach);
 
 /// That the image could not be made to the accuracy asked.
-std::string accuracy_warning(double asked, const imager::TheoreticalError& theory);
+std::string accuracy_warning(double asked, double expected);
 
 /// Of the last major cycle: components, residual, noise, and whether it was taken back.
 std::string cycle_message(const imager::CleanState& state);

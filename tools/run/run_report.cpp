@@ -1,5 +1,6 @@
 #include "tools/run/run_report.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -46,7 +47,7 @@ json kernel_json(const imager::GriddingPlan* gridding) {
   return kernel;
 }
 
-json error_json(const RunReport& r) {
+json error_json(const RunReport& r, const StokesReport& of) {
   json error = {{"requested", r.accuracy == 0 ? json() : json(r.accuracy)},
                 {"expected_rms", nullptr},
                 {"bound_rms", nullptr},
@@ -54,16 +55,16 @@ json error_json(const RunReport& r) {
                 {"measured_rms", nullptr},
                 {"measured_max", nullptr},
                 {"measured_predict_rms", nullptr}};
-  if (r.theory != nullptr) {
-    error["expected_rms"] = number(r.theory->expected_rms);
-    error["bound_rms"] = number(r.theory->bound_rms);
-    error["bound_max"] = number(r.theory->bound_max);
+  if (of.theory) {
+    error["expected_rms"] = number(of.theory->expected_rms);
+    error["bound_rms"] = number(of.theory->bound_rms);
+    error["bound_max"] = number(of.theory->bound_max);
   }
-  if (r.measured != nullptr) {
-    error["measured_rms"] = number(r.measured->rms);
-    error["measured_max"] = number(r.measured->max);
-    error["measured_predict_rms"] = number(r.measured->predict_rms);
+  if (of.measured) {
+    error["measured_rms"] = number(of.measured->rms);
+    error["measured_max"] = number(of.measured->max);
   }
+  if (r.measured_predict_rms) error["measured_predict_rms"] = number(*r.measured_predict_rms);
   return error;
 }
 
@@ -108,6 +109,16 @@ json clean_json(const imager::CleanReport* clean) {
   return report;
 }
 
+json stokes_json(const RunReport& r) {
+  json list = json::array();
+  for (const StokesReport& of : r.stokes)
+    list.push_back({{"stokes", imager::stokes_name(of.stokes)},
+                    {"error", error_json(r, of)},
+                    {"clean", clean_json(of.clean)},
+                    {"residual_histogram", histogram_json(of.histogram)}});
+  return list;
+}
+
 json counts_json(const imager::SampleCounts& c) {
   return {{"rows_read", c.rows_read},
           {"samples_read", c.samples_read},
@@ -137,14 +148,21 @@ json expected_json(const std::vector<StageSeconds>& stages) {
 
 }  // namespace
 
+double largest_expected_error(const RunReport& r) {
+  double largest = 0;
+  for (const StokesReport& of : r.stokes) largest = std::max(largest, of.theory ? of.theory->expected_rms : 0);
+  return largest;
+}
+
 json report_json(const RunReport& r) {
+  const StokesReport& first = r.stokes.front();
   return {{"version", version},
           {"command_line", r.command_line},
           {"options", r.options},
           {"plan", plan_json(r.plan)},
           {"warnings", r.warnings},
           {"kernel", kernel_json(r.gridding)},
-          {"error", error_json(r)},
+          {"error", error_json(r, first)},
           {"visibilities", counts_json(r.counts)},
           {"timings_s", timings_json(r)},
           {"timings_expected_s", expected_json(r.expected)},
@@ -152,8 +170,9 @@ json report_json(const RunReport& r) {
           {"memory_gib_estimated", r.estimated_memory_bytes / gib},
           {"beam", restoring_json(r.beams)},
           {"beam_by_quadrant", r.beams == nullptr ? json() : beam_json(r.beams->quadrant)},
-          {"clean", clean_json(r.clean)},
-          {"residual_histogram", histogram_json(r.histogram)},
+          {"clean", clean_json(first.clean)},
+          {"residual_histogram", histogram_json(first.histogram)},
+          {"stokes", stokes_json(r)},
           {"outside", outside_json(r.outside)},
           {"outside_search", outside_search_json(r.outside)}};
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -8,12 +9,22 @@
 #include "imager/direct/verify.h"
 #include "imager/plan/accurate_imaging.h"
 #include "imager/plan/plan.h"
+#include "imager/stokes.h"
 #include "tools/run/beam_choice.h"
 #include "tools/run/outside_stage.h"
 #include "tools/run/time_forecast.h"
 #include "tools/run_page/pixel_histogram.h"
 
 namespace misfit::tools {
+
+/// What it has to tell of one Stokes parameter.
+struct StokesReport {
+  imager::Stokes stokes = imager::Stokes::I;
+  std::optional<imager::TheoreticalError> theory{};
+  std::optional<imager::PixelError> measured{};  ///< over the image's RMS
+  const imager::CleanReport* clean = nullptr;
+  PixelHistogram histogram{};  ///< of the residual, or of the dirty image where nothing was cleaned
+};
 
 /// What a run of `misfit image` has to tell; a part that does not exist is null in report.json.
 struct RunReport {
@@ -23,12 +34,10 @@ struct RunReport {
   std::vector<std::string> warnings;
   double accuracy = 0;  ///< 0 = none was asked
   const imager::GriddingPlan* gridding = nullptr;
-  const imager::TheoreticalError* theory = nullptr;
-  const imager::MeasuredError* measured = nullptr;
+  std::vector<StokesReport> stokes = {{}};  ///< at least one
+  std::optional<double> measured_predict_rms;
   imager::SampleCounts counts;
   const BeamChoice* beams = nullptr;
-  const imager::CleanReport* clean = nullptr;
-  PixelHistogram histogram;  ///< of the residual, or of the dirty image where nothing was cleaned
   const OutsideReport* outside = nullptr;
   double wall_clock_s = 0;
   double estimated_memory_bytes = 0;  ///< at the peak
@@ -36,10 +45,14 @@ struct RunReport {
   std::vector<StageSeconds> expected;  ///< the same as they were expected, for the cycles and components that there were
 };
 
+/// Of all Stokes parameters, over each image's RMS.
+double largest_expected_error(const RunReport& report);
+
 /// report.json, with the keys of the project's design; `beam.how`, `beam.misfit`, `beam_by_quadrant`, `memory_gib_estimated`,
 /// `warnings`, `command_line`, `outside`, `outside_search`, `timings_s.total`, `timings_expected_s` (by
 /// stage, with `total`; null where nothing was expected), `clean.major_cycles_log`, `clean.kept_cycle`
-/// (whose model was kept) and `residual_histogram` (see histogram_json()) are additions.
+/// (whose model was kept), `residual_histogram` (see histogram_json()) and `stokes` (a list of {stokes, error, clean,
+/// residual_histogram}, of which the first is what the report's own keys hold) are additions.
 nlohmann::json report_json(const RunReport& report);
 
 }  // namespace misfit::tools

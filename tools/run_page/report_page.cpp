@@ -184,6 +184,25 @@ std::string left_out(const json& visibilities) {
                 row("outside the grid", "outside_grid"), row("used", "used")});
 }
 
+/// A row for each where there are several.
+std::string stokes_section(const json& list) {
+  if (!list.is_array() || list.size() < 2) return "";
+  std::vector<Row> rows;
+  for (const json& of : list) {
+    const json& clean = member(of, "clean");
+    const json& histogram = member(of, "residual_histogram");
+    const json& error = member(of, "error");
+    rows.push_back({plain(member(of, "stokes")), with_unit(member(histogram, "noise_jy"), "Jy/beam"),
+                    with_unit(member(histogram, "max_jy"), "Jy/beam"), with_unit(member(histogram, "min_jy"), "Jy/beam"),
+                    clean.is_object() ? with_unit(member(clean, "model_flux_jy"), "Jy") : "",
+                    clean.is_object() ? whole(member(clean, "iterations")) : "",
+                    clean.is_object() ? plain(member(clean, "stop_reason")) : "", relative(member(error, "expected_rms"))});
+  }
+  return table({"Stokes", "#Noise", "#Largest pixel", "#Smallest pixel", "#Model flux", "#Components", "CLEAN ended",
+                "#Expected error"},
+               rows);
+}
+
 /// Whether nothing was given for an option.
 bool is_empty(const json& value) {
   return value.empty() || plain(value).empty() || value == "[]";
@@ -211,6 +230,7 @@ std::string report_page(const json& report, const std::vector<PagePicture>& pict
   const json& clean = member(report, "clean");
   const std::string caption = histogram_caption(member(report, "residual_histogram"), clean.is_object());
   content += figures(pictures, {clean_progress(clean), histogram.empty() ? "" : histogram + tag("figcaption", caption)});
+  content += section("Stokes parameters", stokes_section(member(report, "stokes")));
   content += section("CLEAN", clean_section(clean));
   content += section("Sources outside the image", outside_section(report));
   content += section("Plan", plan(member(report, "plan")));
