@@ -10,14 +10,9 @@
 #include "imager/observation.h"
 #include "imager/stokes.h"
 #include "imager/visibilities.h"
+#include "ms_io/selection.h"
 
 namespace misfit::ms_io {
-
-/// Which samples of a MeasurementSet are meant, in casacore's MSSelection syntax; empty means all.
-struct Selection {
-  std::string field;            ///< e.g. "0", "3C295", "3C*"
-  std::string spectral_window;  ///< e.g. "0", "0:4~60", "1~2:1.4~1.5GHz"
-};
 
 /// Rows that can be used, neither flagged nor of one antenna; or all.
 enum class ReachOf { usable, all };

@@ -20,7 +20,7 @@ class BlockBuilder {
       : table_(table), parsed_(parsed), block_samples_(block_samples) {}
 
   void add(std::uint64_t row, int data_description, int field) {
-    if (!parsed_.has_field(field)) return;
+    if (!parsed_.has_field(field) || !parsed_.has_row(row)) return;
     const std::size_t setup = setup_of(data_description);
     if (setup == not_selected) return;
     if (result_.rows++ == 0) result_.first_row = row;
@@ -100,12 +100,15 @@ SelectedRows select_rows(const casacore::MeasurementSet& set, const std::string&
                         [&] { return casacore::ScalarColumn<int>(set, column).getColumnRange(rows).tovector(); });
     };
     const std::vector<int> description = ids("DATA_DESC_ID"), field = ids("FIELD_ID");
-    for (std::uint64_t r = 0; r < count; ++r) builder.add(first + r, description[r], field[r]);
+    translated("cannot select rows of " + path, [&] {
+      for (std::uint64_t r = 0; r < count; ++r) builder.add(first + r, description[r], field[r]);
+    });
   }
   SelectedRows selected = builder.finish();
   if (selected.rows > 0) return selected;
-  throw std::runtime_error(path + ": the selection field='" + selection.field + "', spw='" + selection.spectral_window +
-                           "' contains none of its " + std::to_string(set.nrow()) + " rows");
+  const std::string given = to_text(selection);
+  throw std::runtime_error(path + ": " + (given.empty() ? "there is" : given + " selects") + " none of its " +
+                           std::to_string(set.nrow()) + " rows");
 }
 
 }  // namespace misfit::ms_io

@@ -1,4 +1,3 @@
-#include <casacore/ms/MSSel/MSSelection.h>
 #include <casacore/ms/MeasurementSets/MSDataDescription.h>
 #include <casacore/ms/MeasurementSets/MSPolarization.h>
 #include <casacore/ms/MeasurementSets/MSSpectralWindow.h>
@@ -34,31 +33,6 @@ std::string to_text(double value) {
 }
 
 }  // namespace
-
-ParsedSelection parse_selection(const casacore::MeasurementSet& set, const std::string& path, const Selection& selection) {
-  ParsedSelection parsed;
-  if (!one_line(selection.field).empty()) {
-    parsed.all_fields = false;
-    translated("field selection '" + selection.field + "' of " + path, [&] {
-      casacore::MSSelection expression;
-      expression.setFieldExpr(selection.field);
-      for (const int field : expression.getFieldList(&set)) parsed.fields.insert(field);
-    });
-  }
-  if (!one_line(selection.spectral_window).empty()) {
-    parsed.all_windows = false;
-    translated("spectral window selection '" + selection.spectral_window + "' of " + path, [&] {
-      casacore::MSSelection expression;
-      expression.setSpwExpr(selection.spectral_window);
-      const casacore::Matrix<int> ranges = expression.getChanList(&set);  // rows of window, start, stop, step
-      for (ssize_t r = 0; r < ranges.shape()(0); ++r) {
-        const int step = std::max(1, ranges(r, 3));
-        for (int c = ranges(r, 1); c <= ranges(r, 2); c += step) parsed.channels[ranges(r, 0)].insert(c);
-      }
-    });
-  }
-  return parsed;
-}
 
 SetupTable::SetupTable(const casacore::MeasurementSet& set, const std::string& path) : set_(set), path_(path) {
   translated("cannot read DATA_DESCRIPTION of " + path, [&] {

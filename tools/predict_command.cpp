@@ -11,6 +11,7 @@
 #include "tools/formats/component_list.h"
 #include "tools/formats/model_image.h"
 #include "tools/kernel_choice/kernel_choice.h"
+#include "tools/run/selection_options.h"
 
 namespace misfit::tools {
 namespace {
@@ -107,8 +108,7 @@ void add_predict_command(CLI::App& program) {
       "--column", o->column,
       "Column to write: MODEL_DATA, or CORRECTED_DATA with --subtract, where that must not exist yet unless it is "
       "named. A new column holds 0, or the data, outside the selection");
-  command->add_option("--field", o->selection.field, "Fields, in CASA's selection syntax");
-  command->add_option("--spw", o->selection.spectral_window, "Spectral windows and channels, in CASA's selection syntax");
+  declare_selection(*command, o->selection);
   command->add_option("--accuracy", o->accuracy, "Relative accuracy of the visibilities");
   command->add_option("--kernel", o->kernel.name, "Gridding function: a name or a kernel-table file");
   declare_kernel_folder(*command, o->kernel.folder);

@@ -14,6 +14,7 @@
 #include "tools/base/quantity.h"
 #include "tools/base/text.h"
 #include "tools/formats/config_file.h"
+#include "tools/run/selection_options.h"
 
 namespace misfit::tools {
 namespace {
@@ -131,9 +132,7 @@ void declare_scene(CLI::App& command, ImageOptions& o) {
   command.add_option("--cell", o.cell, "Size of a pixel: 0.2arcsec, 3mas, …; in arcsec without a unit")
       ->required()
       ->check(quantity(parse_angle_rad));
-  command.add_option("--field", o.selection.field, "Fields, in CASA's selection syntax; all when empty");
-  command.add_option("--spw", o.selection.spectral_window,
-                     "Spectral windows and channels, in CASA's selection syntax; all when empty");
+  declare_selection(command, o.selection);
   command.add_option("--stokes", o.stokes,
                      "Stokes parameters or correlations, which share one PSF: I, IQUV, IV, XXYY, RR, …; of correlations that "
                      "are no parallel hands the real part of the image");

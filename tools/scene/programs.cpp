@@ -15,6 +15,7 @@
 #include "tools/base/run_program.h"
 #include "tools/base/text.h"
 #include "tools/drawing/gnuplot.h"
+#include "tools/run/selection_options.h"
 
 namespace misfit::tools {
 namespace {
@@ -39,16 +40,17 @@ Program misfit(const ImageOptions& scene, const std::string& accuracy, int threa
     if (!value.empty()) words.insert(words.end(), {option, value});
   };
   add("--cell", scene.cell);
-  add("--field", scene.selection.field);
-  add("--spw", scene.selection.spectral_window);
+  const std::vector<std::string> selection = words_of(scene.selection);
+  words.insert(words.end(), selection.begin(), selection.end());
   add("--datacolumn", scene.datacolumn);
   add("--gridder", scene.gridder);
   add("--accuracy", accuracy);
   add("--threads", std::to_string(threads));
   words.emplace_back("--quiet");
-  const std::vector<std::string> predict{"misfit",   "predict",    "--vis",  copied_set,  "--model",
-                                         model_file, "--accuracy", accuracy, "--threads", std::to_string(threads),
-                                         "--quiet"};
+  std::vector<std::string> predict{"misfit",   "predict",    "--vis",  copied_set,  "--model",
+                                   model_file, "--accuracy", accuracy, "--threads", std::to_string(threads),
+                                   "--quiet"};
+  predict.insert(predict.end(), selection.begin(), selection.end());
   return {{"misfit image, to " + accuracy, words, {}, {}, ""}, "misfit-" + accuracy + ".residual.fits", predict};
 }
 
@@ -130,8 +132,7 @@ void run_once(Program& program, const std::string& vis, const SceneTruth& truth)
 
 /// Empty where it can be given the same samples.
 std::string why_not_wsclean(const ImageOptions& scene) {
-  if (!scene.selection.field.empty() || !scene.selection.spectral_window.empty())
-    return "it numbers fields and spectral windows in a way of its own, and the selection might mean others";
+  if (!words_of(scene.selection).empty()) return "it selects in a way of its own, and might take other samples";
   if (scene.datacolumn != "data" && scene.datacolumn != "corrected") return "it is not given --datacolumn " + scene.datacolumn;
   return is_installed("wsclean") ? "" : "it is not installed";
 }

@@ -8,6 +8,7 @@
 
 #include "tools/base/interrupt.h"
 #include "tools/base/numbers.h"
+#include "tools/run/selection_options.h"
 #include "tools/scene/measure.h"
 #include "tools/scene/programs.h"
 #include "tools/scene/results_file.h"
@@ -35,8 +36,7 @@ json owner_of(const SceneReportOptions& o, const Scene& scene) {
           {"--vis", std::filesystem::absolute(s.vis).string()},
           {"number of samples", scene.samples()},
           {"visibilities", scene.fingerprint()},
-          {"--field", s.selection.field},
-          {"--spw", s.selection.spectral_window},
+          {"selection", words_of(s.selection)},
           {"--datacolumn", s.datacolumn},
           {"--imsize", s.imsize},
           {"--cell", s.cell},

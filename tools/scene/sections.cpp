@@ -9,6 +9,7 @@
 #include "tools/base/memory.h"
 #include "tools/base/numbers.h"
 #include "tools/base/text.h"
+#include "tools/run/selection_options.h"
 #include "tools/scene/pareto.h"
 #include "tools/scene/timing.h"
 #include "tools/scene/verdict.h"
@@ -74,8 +75,7 @@ std::string command_of(const ImageOptions& scene, const ScenePoint& point) {
     if (value != usual) line += " " + option + " " + shell_quoted(value);
   };
   line += " --cell " + scene.cell;
-  add("--field", scene.selection.field, "");
-  add("--spw", scene.selection.spectral_window, "");
+  for (const std::string& word : words_of(scene.selection)) line += " " + shell_quoted(word);
   add("--datacolumn", scene.datacolumn, "data");
   add("--gridder", scene.gridder, "auto");
   add("--kernel-folder", scene.kernel.folder, "");

@@ -1,0 +1,134 @@
+#include <casacore/ms/MSSel/MSSelection.h>
+#include <casacore/ms/MeasurementSets/MSSpectralWindow.h>
+#include <casacore/tables/Tables/ScalarColumn.h>
+
+#include <cctype>
+#include <cstdlib>
+
+#include "ms_io/parsed_selection_internal.h"
+#include "ms_io/table_access_internal.h"
+
+namespace misfit::ms_io {
+namespace {
+
+/// Hands the expression of `kind` to MSSelection.
+void give(casacore::MSSelection& to, const SelectionKind& kind, const Selection& selection) {
+  const std::string& expression = selection.*kind.expression;
+  if (one_line(expression).empty()) return;
+  const std::string option = kind.option;
+  if (option == "field") to.setFieldExpr(expression);
+  if (option == "spw") to.setSpwExpr(expression);
+  if (option == "timerange") to.setTimeExpr(expression);
+  if (option == "uvrange") to.setUvDistExpr(expression);
+  if (option == "antenna") to.setAntennaExpr(expression);
+  if (option == "scan") to.setScanExpr(expression);
+  if (option == "intent") to.setStateExpr(expression);
+  if (option == "observation") to.setObservationExpr(expression);
+}
+
+std::vector<std::string> split(const std::string& text, char separator) {
+  std::vector<std::string> parts(1);
+  for (const char c : text) {
+    if (c == separator) {
+      parts.emplace_back();
+    } else {
+      parts.back() += c;
+    }
+  }
+  return parts;
+}
+
+/// MSSelection leaves the other end of a lone distance undefined.
+void require_uv_ranges(const std::string& expression) {
+  for (const std::string& part : split(expression, ',')) {
+    if (part.find_first_of("~<>") == std::string::npos) {
+      throw casacore::AipsError("'" + one_line(part) + "' is a distance and no range");
+    }
+  }
+}
+
+/// MSSelection moves channels beyond the last one onto it. A range whose first channel exists ends with the window instead.
+void require_channels(const casacore::MeasurementSet& set, const std::string& expression) {
+  const casacore::ScalarColumn<int> channels(set.spectralWindow(), "NUM_CHAN");
+  for (const std::string& part : split(expression, ',')) {
+    const std::size_t colon = part.find(':');
+    if (colon == std::string::npos) continue;
+    casacore::MSSelection windows;
+    windows.setSpwExpr(part.substr(0, colon));
+    for (const int window : windows.getSpwList(&set)) {
+      const int count = channels(static_cast<casacore::rownr_t>(window));
+      for (const std::string& range : split(one_line(part.substr(colon + 1)), ';')) {
+        const bool by_index = range.find_first_not_of("0123456789~^ ") == std::string::npos;
+        if (!by_index || range.empty() || std::isdigit(static_cast<unsigned char>(range[0])) == 0) continue;
+        if (std::strtol(range.c_str(), nullptr, 10) >= count) {
+          throw casacore::AipsError("'" + range + "' begins beyond the " + std::to_string(count) +
+                                    " channels of spectral window " + std::to_string(window));
+        }
+      }
+    }
+  }
+}
+
+void parse_fields(const casacore::MeasurementSet& set, const Selection& selection, ParsedSelection& parsed) {
+  casacore::MSSelection expression;
+  expression.setFieldExpr(selection.field);
+  for (const int field : expression.getFieldList(&set)) parsed.fields.insert(field);
+  parsed.all_fields = false;
+}
+
+void parse_windows(const casacore::MeasurementSet& set, const Selection& selection, ParsedSelection& parsed) {
+  casacore::MSSelection expression;
+  expression.setSpwExpr(selection.spectral_window);
+  const casacore::Matrix<int> ranges = expression.getChanList(&set);  // rows of window, start, stop, step
+  require_channels(set, selection.spectral_window);
+  for (ssize_t r = 0; r < ranges.shape()(0); ++r) {
+    const int step = std::max(1, ranges(r, 3));
+    for (int c = ranges(r, 1); c <= ranges(r, 2); c += step) parsed.channels[ranges(r, 0)].insert(c);
+  }
+  parsed.all_windows = false;
+}
+
+/// Whether `kind` is for MSSelection to look for among the rows.
+bool needs_rows(const SelectionKind& kind) {
+  return kind.expression != &Selection::field && kind.expression != &Selection::spectral_window;
+}
+
+void parse_alone(const casacore::MeasurementSet& set, const Selection& selection, const SelectionKind& kind,
+                 ParsedSelection& parsed) {
+  if (kind.expression == &Selection::field) return parse_fields(set, selection, parsed);
+  if (kind.expression == &Selection::spectral_window) return parse_windows(set, selection, parsed);
+  if (kind.expression == &Selection::uv_range) require_uv_ranges(selection.uv_range);
+  casacore::MSSelection expression;
+  give(expression, kind, selection);
+  expression.toTableExprNode(&set);
+}
+
+}  // namespace
+
+bool ParsedSelection::has_row(std::uint64_t row) const {
+  return rows.isNull() || rows.getBool(casacore::TableExprId(row));
+}
+
+ParsedSelection parse_selection(const casacore::MeasurementSet& set, const std::string& path, const Selection& selection) {
+  ParsedSelection parsed;
+  bool among_rows = false;
+  casacore::MSSelection all;  // a time without a date has that of the first row that the others select
+  for (const SelectionKind& kind : selection_kinds) {
+    const std::string& expression = selection.*kind.expression;
+    if (one_line(expression).empty()) continue;
+    try {
+      parse_alone(set, selection, kind, parsed);
+    } catch (const casacore::AipsError& error) {
+      throw std::runtime_error(path + ": --" + kind.option + " '" + expression +
+                               "' selects nothing: " + one_line(error.getMesg()) + "; expected " + kind.expected);
+    }
+    give(all, kind, selection);
+    among_rows = among_rows || needs_rows(kind);
+  }
+  if (among_rows) {
+    parsed.rows = translated(path + ": " + to_text(selection), [&] { return all.toTableExprNode(&set); });
+  }
+  return parsed;
+}
+
+}  // namespace misfit::ms_io

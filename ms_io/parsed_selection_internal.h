@@ -1,0 +1,33 @@
+#pragma once
+
+#include <casacore/ms/MeasurementSets/MeasurementSet.h>
+#include <casacore/tables/TaQL/ExprNode.h>
+
+#include <cstdint>
+#include <map>
+#include <set>
+#include <string>
+
+#include "ms_io/selection.h"
+
+namespace misfit::ms_io {
+
+/// What a selection says about rows and channels.
+struct ParsedSelection {
+  bool all_fields = true;
+  std::set<int> fields;
+  bool all_windows = true;
+  std::map<int, std::set<int>> channels;  ///< of each spectral window selected
+  casacore::TableExprNode rows;           ///< true where the rest of the selection holds; null: everywhere
+
+  bool has_field(int field) const { return all_fields || fields.count(field) > 0; }
+  bool has_window(int window) const { return all_windows || channels.count(window) > 0; }
+  /// Of the table as it was opened, whatever table its rows are stored in. Throws AipsError where they cannot be read.
+  bool has_row(std::uint64_t row) const;
+};
+
+/// Parses `selection` with casacore's MSSelection. Throws std::runtime_error that names the expression at fault and what it may
+/// be. A channel beyond the end of its window is one; a range of channels that goes beyond it ends there.
+ParsedSelection parse_selection(const casacore::MeasurementSet& set, const std::string& path, const Selection& selection);
+
+}  // namespace misfit::ms_io

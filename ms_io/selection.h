@@ -1,0 +1,37 @@
+#pragma once
+
+#include <array>
+#include <string>
+
+namespace misfit::ms_io {
+
+/// Which samples of a MeasurementSet are meant, in casacore's MSSelection syntax, as CASA's tasks take it; empty means all. A
+/// sample must be in each that is given. MSSelection (casacore 3.5) takes uv distances as √(u² + v²), and those in wavelengths
+/// at the REF_FREQUENCY of the spectral window, whatever the channel. The ends of ranges of time and uv distance belong to
+/// them, and are rounded to milliseconds (downwards) and, in wavelengths, to single precision. A time without a date has that
+/// of the first row that the rest selects.
+struct Selection {
+  std::string field;
+  std::string spectral_window;
+  std::string time_range = "";
+  std::string uv_range = "";
+  std::string antenna = "";
+  std::string scan = "";
+  std::string intent = "";  ///< of STATE's OBS_MODE
+  std::string observation = "";
+};
+
+/// One of the ways to select.
+struct SelectionKind {
+  const char* option;                  ///< its name in CASA's tasks
+  std::string Selection::*expression;  ///< where it stands
+  const char* expected;                ///< what it may be, for people
+};
+
+/// All of them.
+extern const std::array<SelectionKind, 8> selection_kinds;
+
+/// What is given, for messages: "--field '3C*' --scan '3~5'"; empty without any.
+std::string to_text(const Selection& selection);
+
+}  // namespace misfit::ms_io

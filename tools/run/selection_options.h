@@ -1,0 +1,17 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <string>
+#include <vector>
+
+#include "ms_io/selection.h"
+
+namespace misfit::tools {
+
+/// Declares the options that select samples, those of ms_io::selection_kinds.
+void declare_selection(CLI::App& command, ms_io::Selection& selection);
+
+/// The words that give `selection` to a command: "--field", "3C295", …
+std::vector<std::string> words_of(const ms_io::Selection& selection);
+
+}  // namespace misfit::tools
