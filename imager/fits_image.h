@@ -18,13 +18,14 @@ struct HeaderCard {
   std::string comment;
 };
 
-/// An image on the sky with what its header states. FITS axes: RA---SIN, DEC--SIN, FREQ, STOKES (I), in this order. CRVAL is
+/// An image on the sky with what its header states. FITS axes: RA---SIN, DEC--SIN, FREQ, STOKES, in this order. CRVAL is
 /// the phase centre and CRPIX the place where l = m = 0, be it between pixels or outside the image. NaN marks a pixel without
 /// value.
 struct SkyImage {
   Image image;
   ImageGeometry geometry;
   Observation observation;
+  std::string stokes = "I";  ///< I, Q, U or V
   std::string unit = "Jy/beam";
   bool has_beam = false;
   Beam beam;
@@ -42,5 +43,9 @@ void write_fits(const SkyImage& image, const std::string& path, PixelFormat form
 /// std::runtime_error that names the path when it cannot be read, is no two-dimensional image (axes beyond the second must have
 /// length 1), or has pixels that are not square.
 SkyImage read_fits(const std::string& path);
+
+/// The same for each plane of an image whose STOKES axis may be longer than 1, in the order of the file. Throws where a plane is
+/// none of I, Q, U and V, or two are of the same.
+std::vector<SkyImage> read_stokes_images(const std::string& path);
 
 }  // namespace misfit::imager
