@@ -224,16 +224,36 @@ class HeaderReader {
   const FitsFile& file_;
 };
 
-Image read_plane(const FitsFile& file) {
+/// The axis of the primary image whose length may be more than 1, counted from 0, and that length.
+struct PlaneAxis {
+  int axis = 2;
+  long planes = 1;
+};
+
+/// The STOKES axis, if there is one.
+PlaneAxis plane_axis(const FitsFile& file, const HeaderReader& header) {
+  std::array<long, 9> size{};
+  int status = 0, axes = 0;
+  file.check(fits_get_img_dim(file.get(), &axes, &status));
+  file.check(fits_get_img_size(file.get(), size.size(), size.data(), &status));
+  for (int i = 2; i < std::min<int>(axes, size.size()); ++i)
+    if (header.text("CTYPE" + std::to_string(i + 1)) == "STOKES") return {i, size[i]};
+  return {};
+}
+
+/// Plane `plane`, counted from 1, of an image that has `expected.planes` of them along `expected.axis`.
+Image read_plane(const FitsFile& file, const PlaneAxis& expected = {}, long plane = 1) {
   int status = 0, type = 0, axes = 0, any_blank = 0;
   std::array<long, 9> size{};
   file.check(fits_get_img_param(file.get(), size.size(), &type, &axes, size.data(), &status));
   bool is_plane = axes >= 2 && axes <= int(size.size());
   for (int i = 0; is_plane && i < axes; ++i)
-    is_plane = i < 2 ? size[i] >= 1 && size[i] <= std::numeric_limits<int>::max() : size[i] == 1;
+    is_plane = i < 2 ? size[i] >= 1 && size[i] <= std::numeric_limits<int>::max()
+                     : size[i] == (i == expected.axis ? expected.planes : 1);
   if (!is_plane) file.fail("its primary image is not two-dimensional (beyond the second, axes must have length 1)");
   std::array<long, 9> first, last = size;
   first.fill(1);
+  first[expected.axis] = plane;
   // A file that is cut short, or whose header promises too much, fails here before memory is asked for.
   double pixel = 0;
   file.check(fits_read_pix(file.get(), TDOUBLE, last.data(), 1, nullptr, &pixel, nullptr, &status));
@@ -243,6 +263,19 @@ Image read_plane(const FitsFile& file) {
   file.check(fits_read_pix(file.get(), TDOUBLE, first.data(), static_cast<LONGLONG>(image.pixel.size()),
                            type > 0 ? &blank : nullptr, image.pixel.data(), &any_blank, &status));
   return image;
+}
+
+/// Of a plane of the STOKES axis; I where there is no such axis.
+Stokes stokes_of(const FitsFile& file, const HeaderReader& header, const PlaneAxis& stokes, long plane) {
+  const std::string n = std::to_string(stokes.axis + 1);
+  if (header.text("CTYPE" + n) != "STOKES") return Stokes::I;
+  const double code = header.needed("CRVAL" + n) + (static_cast<double>(plane) - header.number("CRPIX" + n).value_or(1)) *
+                                                       header.number("CDELT" + n).value_or(1);
+  const double whole = std::round(code);
+  if (std::abs(whole) > 8 || !is_fits_stokes_code(static_cast<int>(whole)) || std::abs(code - whole) > 0.01)
+    file.fail("plane " + std::to_string(plane) + " of its STOKES axis has the code " + std::to_string(code) +
+              "; expected 1 to 4, for I, Q, U and V, or -1 to -8, for correlations");
+  return stokes_of_fits_code(static_cast<int>(whole));
 }
 
 std::string read_frame(const HeaderReader& header) {
@@ -291,6 +324,21 @@ Observation read_observation(const HeaderReader& header) {
   return observation;
 }
 
+/// `plane` with what the header says.
+SkyImage sky_image(const FitsFile& file, Image plane) {
+  const HeaderReader header(file);
+  SkyImage sky;
+  sky.image = std::move(plane);
+  sky.geometry = read_geometry(file, header, sky.image);
+  sky.observation = read_observation(header);
+  sky.observation.phase_centre = sky.geometry.phase_centre;
+  sky.unit = header.text("BUNIT");
+  const double major_deg = header.number("BMAJ").value_or(0);
+  sky.has_beam = major_deg > 0;
+  if (sky.has_beam) sky.beam = {major_deg * degree, header.needed("BMIN") * degree, header.number("BPA").value_or(0) * degree};
+  return sky;
+}
+
 }  // namespace
 
 void write_fits(const SkyImage& image, const std::string& path, PixelFormat format) {
@@ -306,17 +354,23 @@ void write_fits(const std::vector<SkyImage>& images, const std::string& path, Pi
 SkyImage read_fits(const std::string& path) {
   FitsFile file("read", path);
   file.open(path);
+  return sky_image(file, read_plane(file));
+}
+
+std::vector<SkyImage> read_stokes_images(const std::string& path) {
+  FitsFile file("read", path);
+  file.open(path);
   const HeaderReader header(file);
-  SkyImage sky;
-  sky.image = read_plane(file);
-  sky.geometry = read_geometry(file, header, sky.image);
-  sky.observation = read_observation(header);
-  sky.observation.phase_centre = sky.geometry.phase_centre;
-  sky.unit = header.text("BUNIT");
-  const double major_deg = header.number("BMAJ").value_or(0);
-  sky.has_beam = major_deg > 0;
-  if (sky.has_beam) sky.beam = {major_deg * degree, header.needed("BMIN") * degree, header.number("BPA").value_or(0) * degree};
-  return sky;
+  const PlaneAxis axis = plane_axis(file, header);
+  std::vector<SkyImage> images;
+  for (long plane = 1; plane <= axis.planes; ++plane) {
+    const Stokes stokes = stokes_of(file, header, axis, plane);
+    for (const SkyImage& other : images)
+      if (other.stokes == stokes) file.fail("it has two planes of " + stokes_name(stokes));
+    images.push_back(sky_image(file, read_plane(file, axis, plane)));
+    images.back().stokes = stokes;
+  }
+  return images;
 }
 
 }  // namespace misfit::imager

@@ -17,8 +17,9 @@ std::shared_ptr<const OpenSet> open_selected(const std::string& path, const Sele
   opened->path = path;
   opened->data_column = column_name(data_column);
   opened->set = open_measurement_set(path, Access::read);
-  require_visibility_column(opened->set, path, opened->data_column);
+  if (!data_column.empty()) require_visibility_column(opened->set, path, opened->data_column);
   opened->selected = select_rows(opened->set, path, selection, block_samples);
+  if (data_column.empty()) return opened;
   for (const Setup& setup : opened->selected.setups) {
     try {
       opened->recipes.push_back(stokes_recipe(setup.correlation_types, stokes));

@@ -28,7 +28,8 @@ class MeasurementSet : public imager::VisibilitySource {
   /// std::runtime_error when the path is no MeasurementSet, the column is missing, the selection is empty or wrong, one of
   /// `stokes` cannot be formed (the message lists the correlations there are), or the rows selected have several phase centres.
   /// The short names data, corrected and model stand for DATA, CORRECTED_DATA and MODEL_DATA. A block holds whole rows, about
-  /// `block_samples` samples of them; what is read does not depend on that number.
+  /// `block_samples` samples of them; what is read does not depend on that number. Where `data_column` is empty, all but open()
+  /// can be called, whatever columns and correlations there are.
   MeasurementSet(const std::string& path, const Selection& selection, const std::string& data_column,
                  const std::vector<imager::Stokes>& stokes = {imager::Stokes::I},
                  std::uint64_t block_samples = usual_block_samples);

@@ -5,9 +5,11 @@
 #include <casacore/tables/Tables/ScalarColumn.h>
 
 #include <algorithm>
+#include <sstream>
 #include <vector>
 
 #include "ms_io/model_column_internal.h"
+#include "ms_io/model_journal_internal.h"
 #include "ms_io/setup_internal.h"
 #include "ms_io/table_access_internal.h"
 
@@ -120,7 +122,60 @@ void fill(casacore::MeasurementSet& set, const std::string& path, const ModelCol
   }
 }
 
+/// "A.ms, B.ms", for tables that only refer to the rows of others; nothing for one that has rows of its own.
+std::string tables_referred_to(const casacore::Table& set) {
+  const casacore::Block<casacore::String> tables = set.getPartNames();
+  if (tables.nelements() == 1 && tables[0] == set.tableName()) return "";
+  std::string list;
+  for (std::size_t t = 0; t < tables.nelements(); ++t) list += (t == 0 ? "" : ", ") + tables[t];
+  return list;
+}
+
+/// Throws unless an existing column gives back what is put into it, cell by cell.
+void require_exact_storage(const casacore::MeasurementSet& set, const std::string& path, const std::string& column) {
+  const casacore::ColumnDesc& description = set.tableDesc()[column];
+  const std::string name = "column " + column + " of " + path;
+  if (!description.isArray() || description.dataType() != casacore::TpComplex) {
+    std::ostringstream type;
+    type << description.dataType();
+    throw std::runtime_error(name + " holds " + (description.isArray() ? "arrays" : "single values") + " of type " + type.str() +
+                             "; a model needs arrays of type " + "Complex, or a --column that does not exist yet");
+  }
+  if (!set.isColumnWritable(column)) throw std::runtime_error(name + " cannot be written; expected another --column");
+  const std::string storage = casacore::TableColumn(set, column).columnDesc().dataManagerType();
+  if (storage == "DyscoStMan" || storage.rfind("CompressComplex", 0) == 0) {
+    throw std::runtime_error(name + " is stored by " + storage +
+                             ", which rounds what it is given, other rows with it; expected another --column");
+  }
+}
+
 }  // namespace
+
+void throw_exists(const std::string& path, const std::string& column) {
+  throw std::runtime_error(path + " has a column " + column +
+                           " already, which may hold calibrated data; expected another --column, or this one by name");
+}
+
+void require_writable_column(const casacore::MeasurementSet& set, const std::string& path, const ModelColumn& column) {
+  const std::string& data = column.subtracted_from;
+  if (column.name.empty() || column.name == "DATA") {
+    throw std::runtime_error("a model cannot be written to column '" + column.name + "' of " + path +
+                             "; expected a column other than DATA, such as " +
+                             (data.empty() ? "MODEL_DATA" : "CORRECTED_DATA"));
+  }
+  if (column.name == data) {
+    throw std::runtime_error("data − model cannot be written to column '" + column.name + "' of " + path +
+                             ", from which the data are read: a run cut short could not be mended; expected another column");
+  }
+  if (!data.empty()) require_visibility_column(set, path, data);
+  if (set.tableDesc().isColumn(column.name)) {
+    if (!column.may_exist && !read_journal(set, column.name)) throw_exists(path, column.name);
+    require_exact_storage(set, path, column.name);
+  } else if (const std::string others = tables_referred_to(set); !others.empty()) {
+    throw std::runtime_error(path + " has no column " + column.name + " and refers to the rows of " + others +
+                             "; expected a column that is there, or prediction into " + others);
+  }
+}
 
 void create_model_column(casacore::MeasurementSet& set, const std::string& path, const ModelColumn& column) {
   translated("cannot create " + column.name + " in " + path, [&] {

@@ -1,174 +1,118 @@
 #include "ms_io/model_writer.h"
 
+#include <casacore/tables/DataMan/TiledStManAccessor.h>
+
 #include <algorithm>
 #include <cmath>
 #include <future>
 #include <memory>
+#include <sstream>
 #include <stdexcept>
 
+#include "ms_io/fingerprint.h"
 #include "ms_io/metadata_internal.h"
+#include "ms_io/model_cells_internal.h"
 #include "ms_io/model_column_internal.h"
-#include "ms_io/row_columns_internal.h"
-#include "ms_io/stokes.h"
+#include "ms_io/model_journal_internal.h"
 #include "ms_io/table_access_internal.h"
 
 namespace misfit::ms_io {
 namespace {
 
-using Cells = casacore::Array<casacore::Complex>;
-
 /// `column` with its names spelt out.
 ModelColumn spelt_out(const ModelColumn& column) {
-  return {column_name(column.name), column_name(column.subtracted_from), column.may_exist};
+  ModelColumn result = column;
+  result.name = column_name(column.name);
+  result.subtracted_from = column_name(column.subtracted_from);
+  return result;
 }
 
-void require_writable_column(const casacore::MeasurementSet& set, const std::string& path, const ModelColumn& column) {
-  const std::string& data = column.subtracted_from;
-  if (column.name.empty() || column.name == "DATA") {
-    throw std::runtime_error("a model cannot be written to column '" + column.name + "' of " + path +
-                             "; expected a column other than DATA, such as " +
-                             (data.empty() ? "MODEL_DATA" : "CORRECTED_DATA"));
+/// The rows of a block from `first` up to `end`.
+BlockRows rows_between(const BlockRows& block, std::uint64_t first, std::uint64_t end) {
+  BlockRows part{block.setup, {}, 0};
+  for (const Run& run : block.runs) {
+    const std::uint64_t from = std::max(run.first, first), to = std::min(run.first + run.count, end);
+    if (from >= to) continue;
+    part.runs.push_back({from, to - from});
+    part.rows += to - from;
   }
-  if (column.name == data) {
-    throw std::runtime_error("data − model cannot be written to column '" + column.name + "' of " + path +
-                             ", from which the data are read: a run cut short could not be mended; expected another column");
-  }
-  if (!data.empty()) require_visibility_column(set, path, data);
-  if (!set.tableDesc().isColumn(column.name)) return;
-  if (!column.may_exist) {
-    throw std::runtime_error(path + " has a column " + column.name +
-                             " already, which may hold calibrated data; expected another --column, or this one by name");
-  }
-  require_visibility_column(set, path, column.name);
+  return part;
 }
 
-/// A column of cells, correlations × channels.
-class CellColumn {
+/// Equal for runs that write the same values into the same cells, in whatever blocks; empty where that cannot be told.
+std::string identity_of(const ModelColumn& column, const SelectedRows& selected) {
+  if (column.origin.fingerprint == 0) return "";
+  std::vector<Fingerprint> setups(selected.setups.size());
+  for (const BlockRows& block : selected.blocks) {
+    for (const Run& run : block.runs) {
+      for (std::uint64_t row = run.first; row < run.first + run.count; ++row) setups[block.setup].add(row);
+    }
+  }
+  Fingerprint all;
+  all.add(column.origin.fingerprint).add(column.name).add(column.subtracted_from);
+  for (std::size_t s = 0; s < setups.size(); ++s) {
+    all.add(setups[s].value()).add(static_cast<std::uint64_t>(selected.setups[s].data_description));
+    for (const Run& run : selected.setups[s].channels) all.add(run.first).add(run.count);
+  }
+  std::ostringstream text;
+  text << std::hex << all.value();
+  return text.str();
+}
+
+/// Hands the values written to the system, so that they outlive this process.
+class ValueFlush {
  public:
-  CellColumn() = default;
-  CellColumn(const casacore::MeasurementSet& set, const std::string& name)
-      : column_(set, name), fixed_shape_(column_.columnDesc().isFixedShape()) {}
-
-  bool exists() const { return !column_.isNull(); }
-  void read(const Rows& rows, const casacore::Slicer& slice, Cells& cells) const { ms_io::read(column_, rows, slice, cells); }
-  void write(const Rows& rows, const casacore::Slicer& slice, const Cells& cells) {
-    if (rows.contiguous()) {
-      column_.putColumnRange(rows.range(), slice, cells);
+  ValueFlush(casacore::MeasurementSet& set, const std::string& column) : set_(set) {
+    try {
+      tiles_ = casacore::ROTiledStManAccessor(set, column, true);
+      tiled_ = true;
+    } catch (const casacore::AipsError&) {  // other storage, or rows of several tables
+    }
+  }
+  /// Of tiles alone where there are: flushing the whole table truncates and rewrites their header, each time at a risk.
+  void operator()() {
+    if (tiled_) {
+      tiles_.clearCaches();
     } else {
-      column_.putColumnCells(rows.listed(), slice, cells);
+      set_.flush();
     }
-  }
-
-  /// Gives cells that have no shape yet what `blank(row)` returns. Throws AipsError when one has another shape than `shape`.
-  template <typename Blank>
-  void require_shape(const Rows& rows, const casacore::IPosition& shape, const Blank& blank) {
-    if (fixed_shape_ && column_.shapeColumn().isEqual(shape)) return;
-    for (const casacore::rownr_t row : rows.numbers()) {
-      if (!column_.isDefined(row)) column_.put(row, blank(row));
-      if (!column_.shape(row).isEqual(shape)) {
-        throw casacore::AipsError("the cell of row " + std::to_string(row) + " has shape " + column_.shape(row).toString() +
-                                  "; expected " + shape.toString());
-      }
-    }
-  }
-  Cells operator()(casacore::rownr_t row) const { return column_(row); }
-
- private:
-  casacore::ArrayColumn<casacore::Complex> column_;
-  bool fixed_shape_ = false;
-};
-
-class Writer {
- public:
-  Writer(casacore::MeasurementSet& set, const ModelColumn& column) : uvw_column_(set, "UVW"), model_column_(set, column.name) {
-    if (!column.subtracted_from.empty()) data_column_ = CellColumn(set, column.subtracted_from);
-  }
-
-  /// Where the block lies; rows with a non-finite UVW are put at 0 and marked.
-  imager::SampleCoordinates coordinates(const Rows& rows, const Setup& setup, std::vector<bool>& unknown) const {
-    casacore::Array<double> uvw;
-    read(uvw_column_, rows, uvw);
-    imager::SampleCoordinates where{uvw.tovector(), setup.frequency_hz};
-    unknown.assign(rows.count(), false);
-    for (std::size_t r = 0; r < rows.count(); ++r) {
-      double* const row = where.uvw_m.data() + 3 * r;
-      if (std::isfinite(row[0]) && std::isfinite(row[1]) && std::isfinite(row[2])) continue;
-      unknown[r] = true;
-      row[0] = row[1] = row[2] = 0;
-    }
-    return where;
-  }
-
-  /// The data of a block from its first selected channel to the last one, where they are needed.
-  Cells data(const Rows& rows, const Setup& setup) {
-    Cells cells;
-    if (!data_column_.exists()) return cells;
-    data_column_.require_shape(rows, stored_shape(setup), [](casacore::rownr_t row) -> Cells {
-      throw casacore::AipsError("row " + std::to_string(row) + " has no data");
-    });
-    data_column_.read(rows, channel_slice(setup, setup.correlation_types.size()), cells);
-    return cells;
-  }
-
-  /// Stores `stokes_i` [row][selected channel], or `data` without it; channels that are not selected keep what they hold.
-  void write(const Rows& rows, const Setup& setup, const std::vector<std::complex<double>>& stokes_i, const Cells& data) {
-    const std::size_t correlations = setup.correlation_types.size(), span = setup.channel_span();
-    const casacore::IPosition shape = stored_shape(setup);
-    model_column_.require_shape(rows, shape, [&](casacore::rownr_t row) {
-      return data_column_.exists() ? data_column_(row) : Cells(shape, casacore::Complex(0));
-    });
-    const casacore::Slicer slice = channel_slice(setup, correlations);
-    Cells cells(casacore::IPosition(3, shape(0), static_cast<ssize_t>(span), static_cast<ssize_t>(rows.count())));
-    if (setup.channels.size() > 1) model_column_.read(rows, slice, cells);
-    const std::complex<double>* in = stokes_i.data();
-    for (std::size_t r = 0; r < rows.count(); ++r) {
-      for (const Run& run : setup.channels) {
-        std::size_t at = (r * span + run.first - setup.first_channel()) * correlations;
-        for (std::uint64_t c = 0; c < run.count; ++c, ++in, at += correlations) {
-          form_sample(setup, *in, data.empty() ? nullptr : data.data() + at, cells.data() + at);
-        }
-      }
-    }
-    model_column_.write(rows, slice, cells);
   }
 
  private:
-  static casacore::IPosition stored_shape(const Setup& setup) {
-    return casacore::IPosition(2, static_cast<ssize_t>(setup.correlation_types.size()),
-                               static_cast<ssize_t>(setup.stored_channels));
-  }
-
-  /// All correlations of one sample: of the model, or of the data without it where there are `data`.
-  static void form_sample(const Setup& setup, std::complex<double> stokes_i, const casacore::Complex* data,
-                          casacore::Complex* out) {
-    for (const int type : setup.correlation_types) {
-      const bool receives = receives_stokes_i(type);
-      if (data == nullptr) {
-        *out++ = receives ? casacore::Complex(stokes_i) : casacore::Complex(0);
-      } else {
-        *out++ = receives ? casacore::Complex(std::complex<double>(*data) - stokes_i) : *data;
-        ++data;
-      }
-    }
-  }
-
-  casacore::ArrayColumn<double> uvw_column_;
-  CellColumn model_column_, data_column_;
+  casacore::MeasurementSet& set_;
+  casacore::ROTiledStManAccessor tiles_;
+  bool tiled_ = false;
 };
 
-std::vector<std::complex<double>> predicted(const Predict& predict, const imager::SampleCoordinates& where,
-                                            const std::vector<bool>& unknown) {
-  std::vector<std::complex<double>> stokes_i = predict(where);
-  if (stokes_i.size() != where.samples()) {
-    throw std::invalid_argument("prediction returned " + std::to_string(stokes_i.size()) + " visibilities; expected " +
-                                std::to_string(where.samples()));
+/// Where the block lies; rows with a non-finite UVW are put at 0 and marked.
+imager::SampleCoordinates coordinates(const casacore::ArrayColumn<double>& uvw_column, const Rows& rows, const Setup& setup,
+                                      std::vector<bool>& unknown) {
+  casacore::Array<double> uvw;
+  read(uvw_column, rows, uvw);
+  imager::SampleCoordinates where{uvw.tovector(), setup.frequency_hz};
+  unknown.assign(rows.count(), false);
+  for (std::size_t r = 0; r < rows.count(); ++r) {
+    double* const row = where.uvw_m.data() + 3 * r;
+    if (std::isfinite(row[0]) && std::isfinite(row[1]) && std::isfinite(row[2])) continue;
+    unknown[r] = true;
+    row[0] = row[1] = row[2] = 0;
   }
-  for (std::size_t r = 0; r < unknown.size(); ++r) {
-    if (!unknown[r]) continue;
-    const auto row = stokes_i.begin() + static_cast<std::ptrdiff_t>(r * where.channels());
-    std::fill_n(row, where.channels(), 0.0);
+  return where;
+}
+
+StokesVisibilities predicted(const Predict& predict, const imager::SampleCoordinates& where, const std::vector<bool>& unknown) {
+  StokesVisibilities model = predict(where);
+  for (std::vector<std::complex<double>>& plane : model.plane) {
+    if (plane.empty() && &plane != &model.plane.front()) continue;
+    if (plane.size() != where.samples()) {
+      throw std::invalid_argument("prediction returned " + std::to_string(plane.size()) + " visibilities; expected " +
+                                  std::to_string(where.samples()));
+    }
+    for (std::size_t r = 0; r < unknown.size(); ++r) {
+      if (unknown[r]) std::fill_n(plane.begin() + static_cast<std::ptrdiff_t>(r * where.channels()), where.channels(), 0.0);
+    }
   }
-  return stokes_i;
+  return model;
 }
 
 /// A block on its way from its coordinates to the column.
@@ -177,17 +121,148 @@ struct PredictedBlock {
   Rows rows;
   imager::SampleCoordinates where;
   std::vector<bool> unknown;
-  std::future<std::vector<std::complex<double>>> stokes_i;
+  std::future<StokesVisibilities> model;
 
   PredictedBlock(const BlockRows& block, const std::vector<Setup>& setups) : setup(&setups[block.setup]), rows(block.runs) {}
 
   /// Another thread predicts; casacore is for one thread alone.
   void begin(const Predict& predict) {
-    stokes_i = std::async(std::launch::async, [this, &predict] { return predicted(predict, where, unknown); });
+    model = std::async(std::launch::async, [this, &predict] { return predicted(predict, where, unknown); });
   }
 };
 
+/// A column while it is written.
+class ModelWriter {
+ public:
+  using Progress = std::function<void(std::uint64_t, std::uint64_t)>;
+
+  ModelWriter(const std::string& path, const Selection& selection, const ModelColumn& column, std::uint64_t block_samples)
+      : path_(path), column_(spelt_out(column)), set_(open_measurement_set(path, Access::update)) {
+    require_writable_column(set_, path_, column_);
+    selected_ = select_rows(set_, path_, selection, block_samples);
+    describe(set_, path_, selected_);  // throws unless there is one phase centre
+    journal_.column = column_.name;
+    journal_.command = one_line(column_.origin.command);
+    journal_.identity = identity_of(column_, selected_);
+    journal_.rows = selected_.rows;
+    if (set_.tableDesc().isColumn(column_.name)) {
+      go_on();
+    } else {
+      create_model_column(set_, path_, column_);
+    }
+    write_journal(set_, journal_);
+  }
+
+  ModelWriteReport write(const Predict& predict, const Progress& progress) {
+    cells_ = std::make_unique<ModelCells>(translated(doing_(), [&] { return ModelCells(set_, column_); }));
+    flush_ = std::make_unique<ValueFlush>(set_, column_.name);
+    const casacore::ArrayColumn<double> uvw(set_, "UVW");
+    ModelWriteReport report;
+    report.rows_before = journal_.written;
+    std::unique_ptr<PredictedBlock> before;  // is written while the next one is predicted
+    const auto finish = [&](const StokesVisibilities& model) {
+      write(*before, model);
+      samples_ += before->where.samples();
+      if (progress) progress(samples_, selected_.samples);
+    };
+    for (const BlockRows& rows : selected_.blocks) {
+      const BlockRows rest = rows_between(rows, done_below(rows), set_.nrow());
+      samples_ += (rows.rows - rest.rows) * selected_.setups[rows.setup].frequency_hz.size();
+      if (rest.rows == 0) continue;
+      auto block = std::make_unique<PredictedBlock>(rest, selected_.setups);
+      block->where = translated("cannot read UVW of " + path_,
+                                [&] { return coordinates(uvw, block->rows, *block->setup, block->unknown); });
+      StokesVisibilities model;
+      if (before) model = before->model.get();  // predictions have all threads, one after the other
+      block->begin(predict);
+      if (before) finish(model);
+      before = std::move(block);
+    }
+    if (before) finish(before->model.get());
+    translated(doing_(), [&] { set_.flush(); });
+    remove_journal(set_, column_.name);
+    report.rows = journal_.written;
+    report.samples = samples_;
+    report.nonfinite_uvw_rows = journal_.nonfinite_uvw_rows;
+    return report;
+  }
+
+ private:
+  std::string doing_() const { return "cannot write " + column_.name + " of " + path_; }
+
+  /// All rows of the block's setup below this one are written.
+  std::uint64_t done_below(const BlockRows& block) const {
+    const auto found = journal_.done_below.find(selected_.setups[block.setup].data_description);
+    return found == journal_.done_below.end() ? 0 : found->second;
+  }
+
+  /// Takes up what an earlier run left, where that is the beginning of this one.
+  void go_on() {
+    const std::optional<ModelJournal> before = read_journal(set_, column_.name);
+    if (!before) return;
+    std::string fate = "; this run has another model, selection or option, and begins anew";
+    if (!journal_.identity.empty() && before->identity == journal_.identity) {
+      const ModelJournal anew = journal_;
+      journal_ = *before;
+      fate = ", going on";
+      if (!as_it_was_left()) {
+        journal_ = anew;
+        fate = ", and have changed since; this run begins anew";
+      }
+    } else if (!column_.may_exist) {
+      throw_exists(path_, column_.name);
+    }
+    if (column_.origin.tell) column_.origin.tell(incompleteness(path_, *before) + fate);
+  }
+
+  /// Whether the rows that the journal says are written still hold what was.
+  bool as_it_was_left() {
+    std::uint64_t rows = 0, checksum = 0;
+    try {
+      ModelCells cells(set_, column_);
+      for (const BlockRows& block : selected_.blocks) {
+        const BlockRows done = rows_between(block, 0, done_below(block));
+        if (done.rows > 0) checksum += cells.checksum(Rows(done.runs), selected_.setups[block.setup]);
+        rows += done.rows;
+      }
+    } catch (const casacore::AipsError&) {  // the column is another one
+      return false;
+    }
+    return rows == journal_.written && checksum == journal_.checksum;
+  }
+
+  void write(const PredictedBlock& block, const StokesVisibilities& model) {
+    const CellColumn::Cells data = translated("cannot read " + column_.subtracted_from + " of " + path_,
+                                              [&] { return cells_->data(block.rows, *block.setup); });
+    translated(doing_(), [&] {
+      journal_.checksum += cells_->write(block.rows, *block.setup, model, data);
+      (*flush_)();
+    });
+    journal_.written += block.rows.count();
+    for (const bool row_is_unknown : block.unknown) journal_.nonfinite_uvw_rows += row_is_unknown;
+    const casacore::Vector<casacore::rownr_t>& numbers = block.rows.numbers();
+    journal_.done_below[block.setup->data_description] = numbers[numbers.nelements() - 1] + 1;
+    write_journal(set_, journal_);
+  }
+
+  std::string path_;
+  ModelColumn column_;
+  casacore::MeasurementSet set_;
+  SelectedRows selected_;
+  ModelJournal journal_;
+  std::uint64_t samples_ = 0;  ///< that hold the model
+  std::unique_ptr<ModelCells> cells_;
+  std::unique_ptr<ValueFlush> flush_;
+};
+
 }  // namespace
+
+std::string incomplete_column(const std::string& path, const std::string& column) {
+  const std::string name = column_name(column);
+  const casacore::MeasurementSet set = open_measurement_set(path, Access::read);
+  const std::optional<ModelJournal> journal = set.tableDesc().isColumn(name) ? read_journal(set, name) : std::nullopt;
+  return journal ? incompleteness(path, *journal) : "";
+}
 
 void require_writable(const std::string& path, const ModelColumn& column) {
   require_writable_column(open_measurement_set(path, Access::update), path, spelt_out(column));
@@ -196,38 +271,7 @@ void require_writable(const std::string& path, const ModelColumn& column) {
 ModelWriteReport write_model(const std::string& path, const Selection& selection, const ModelColumn& column,
                              const Predict& predict, const std::function<void(std::uint64_t, std::uint64_t)>& progress,
                              std::uint64_t block_samples) {
-  const ModelColumn written = spelt_out(column);
-  casacore::MeasurementSet set = open_measurement_set(path, Access::update);
-  require_writable_column(set, path, written);
-  const SelectedRows selected = select_rows(set, path, selection, block_samples);
-  describe(set, path, selected);  // throws unless there is one phase centre
-  if (!set.tableDesc().isColumn(written.name)) create_model_column(set, path, written);
-  const std::string doing = "cannot write " + written.name + " of " + path;
-  Writer writer = translated(doing, [&] { return Writer(set, written); });
-  ModelWriteReport report;
-  std::unique_ptr<PredictedBlock> before;  // is written while the next one is predicted
-  const auto write = [&](const PredictedBlock& block, const std::vector<std::complex<double>>& stokes_i) {
-    const Cells data = translated("cannot read " + written.subtracted_from + " of " + path,
-                                  [&] { return writer.data(block.rows, *block.setup); });
-    translated(doing, [&] { writer.write(block.rows, *block.setup, stokes_i, data); });
-    report.rows += block.rows.count();
-    report.samples += block.where.samples();
-    for (const bool row_is_unknown : block.unknown) report.nonfinite_uvw_rows += row_is_unknown;
-    if (progress) progress(report.samples, selected.samples);
-  };
-  for (const BlockRows& rows : selected.blocks) {
-    auto block = std::make_unique<PredictedBlock>(rows, selected.setups);
-    block->where = translated("cannot read UVW of " + path,
-                              [&] { return writer.coordinates(block->rows, *block->setup, block->unknown); });
-    std::vector<std::complex<double>> stokes_i;
-    if (before) stokes_i = before->stokes_i.get();  // predictions have all threads, one after the other
-    block->begin(predict);
-    if (before) write(*before, stokes_i);
-    before = std::move(block);
-  }
-  if (before) write(*before, before->stokes_i.get());
-  translated(doing, [&] { set.flush(); });
-  return report;
+  return ModelWriter(path, selection, column, block_samples).write(predict, progress);
 }
 
 }  // namespace misfit::ms_io

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <complex>
 #include <cstdint>
 #include <functional>
@@ -11,8 +12,24 @@
 
 namespace misfit::ms_io {
 
-/// Computes the Stokes I visibilities [row][channel], in Jy, at the coordinates given.
-using Predict = std::function<std::vector<std::complex<double>>(const imager::SampleCoordinates&)>;
+/// Visibilities of a model.
+struct StokesVisibilities {
+  std::array<std::vector<std::complex<double>>, 4> plane;  ///< I, Q, U, V, each [row][channel] in Jy, or empty where it is 0
+
+  StokesVisibilities() = default;
+  /// An unpolarised model.
+  StokesVisibilities(std::vector<std::complex<double>> stokes_i) { plane[0] = std::move(stokes_i); }
+};
+
+/// Computes them at the coordinates given.
+using Predict = std::function<StokesVisibilities(const imager::SampleCoordinates&)>;
+
+/// What a column that was not written to its end is told by.
+struct ModelOrigin {
+  std::string command;            ///< which writes it, as people are told: "misfit predict --model a.fits"
+  std::uint64_t fingerprint = 0;  ///< of the model and of what changes its visibilities; 0: not known
+  std::function<void(const std::string&)> tell;  ///< is told in a sentence what an earlier run left, and what becomes of it
+};
 
 /// A column that predicted visibilities go into. The short names data, corrected and model stand for DATA, CORRECTED_DATA and
 /// MODEL_DATA.
@@ -20,25 +37,37 @@ struct ModelColumn {
   std::string name = "MODEL_DATA";
   std::string subtracted_from = "";  ///< column of the data: data − model is written. Empty: the model itself
   bool may_exist = true;             ///< and is then overwritten where the selection lies
+  ModelOrigin origin = {};
 };
 
 struct ModelWriteReport {
-  std::uint64_t rows = 0;
+  std::uint64_t rows = 0;                ///< that hold the model now
+  std::uint64_t rows_before = 0;         ///< of these, written by an earlier run that this one went on with
   std::uint64_t samples = 0;             ///< Stokes samples: rows × channels
   std::uint64_t nonfinite_uvw_rows = 0;  ///< rows for which the model counts as 0
 };
+
+/// "MODEL_DATA of `path` is incomplete: 12 of 30 rows were written before by …", or nothing where no run was cut short while it
+/// wrote that column. Throws std::runtime_error where `path` is no MeasurementSet.
+std::string incomplete_column(const std::string& path, const std::string& column);
 
 /// Throws what write_model would where the MeasurementSet at `path`, or `column` of it, cannot be written.
 void require_writable(const std::string& path, const ModelColumn& column = {});
 
 /// Writes predicted visibilities into `column` of the MeasurementSet at `path`, for every sample selected whatever its flags
-/// and weights, auto-correlations included. XX, YY, RR and LL get I, or lose it; cross-hand correlations get 0, or the data
-/// as they are. A column that does not exist is created with the shape and storage of DATA; rows and channels outside the
-/// selection are left alone, and hold 0, or the data, in a new column. `column` may be neither DATA nor what the data are read
-/// from, since nobody could tell afterwards where a run was cut short. `progress(done, total)` is called after every block, in
-/// samples. Throws std::runtime_error as MeasurementSet does (but correlations from which I cannot be formed are written all
-/// the same), and std::invalid_argument when `predict` returns the wrong number of values. It is asked for about
-/// `block_samples` samples at a time, in a thread of its own while the block before is written.
+/// and weights, auto-correlations included. Each correlation gets what the model's Stokes parameters are to it, XX = I + Q and
+/// so on, or loses that. A column that does not exist is created, uncompressed, with the shape and tiling of DATA; rows and
+/// channels outside the selection are left alone, and hold 0, or the data, in a new column. `column` may be neither DATA nor
+/// what the data are read from, since nobody could tell afterwards where a run was cut short.
+///
+/// A run that ends early, even killed, leaves a set that opens, and a record of the rows that are written. The next one with the
+/// same model, options and selection goes on there, unless these rows have changed since; any other begins anew.
+///
+/// `progress(done, total)` is called after every block, in samples. Throws std::runtime_error as MeasurementSet does (but
+/// correlations from which I cannot be formed are written all the same), where another process has locked the set for more than
+/// a few seconds, and where the column is missing in a table that refers to the rows of others; std::invalid_argument when
+/// `predict` returns the wrong number of values. It is asked for about `block_samples` samples at a time, in a thread of its
+/// own while the block before is written.
 ModelWriteReport write_model(const std::string& path, const Selection& selection, const ModelColumn& column,
                              const Predict& predict, const std::function<void(std::uint64_t, std::uint64_t)>& progress,
                              std::uint64_t block_samples = MeasurementSet::usual_block_samples);

@@ -236,11 +236,6 @@ std::string correlation_name(int correlation_type) {
                                                   : "code " + std::to_string(correlation_type);
 }
 
-bool receives_stokes_i(int correlation_type) {
-  const std::array<Stokes, 5> receivers = {Stokes::I, Stokes::RR, Stokes::LL, Stokes::XX, Stokes::YY};
-  return std::find(receivers.begin(), receivers.end(), static_cast<Stokes>(correlation_type)) != receivers.end();
-}
-
 StokesRecipe stokes_recipe(const std::vector<int>& correlation_types, const std::vector<Stokes>& wanted) {
   StokesRecipe recipe;
   recipe.correlations = correlation_types.size();

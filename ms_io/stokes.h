@@ -34,9 +34,6 @@ StokesRecipe stokes_recipe(const std::vector<int>& correlation_types, const std:
 /// "XX" for 9, and so on; "code 99" for a code that is no linear, circular or Stokes product.
 std::string correlation_name(int correlation_type);
 
-/// Whether an unpolarised source of flux I shows up as I in this correlation: XX, YY, RR, LL and I. It is 0 in the others.
-bool receives_stokes_i(int correlation_type);
-
 /// A run of channels of one row as stored, correlations fastest.
 struct StoredSamples {
   const std::complex<float>* data = nullptr;  ///< [channel][correlation]

@@ -13,6 +13,8 @@
 namespace misfit::ms_io {
 namespace {
 
+constexpr casacore::uInt lock_attempts = 3;  ///< a second apart
+
 void silence_casacore() {
   static std::once_flag once;
   std::call_once(once, [] {
@@ -65,8 +67,14 @@ casacore::MeasurementSet open_measurement_set(const std::string& path, Access ac
       throw std::runtime_error(path + " is read-only; writing a column needs write permission");
     }
     const auto option = access == Access::update ? casacore::Table::Update : casacore::Table::Old;
-    const auto lock = access == Access::update ? casacore::TableLock::AutoLocking : casacore::TableLock::AutoNoReadLocking;
-    return casacore::MeasurementSet(path, casacore::TableLock(lock), option);
+    const auto lock =
+        access == Access::update ? casacore::TableLock::UserNoReadLocking : casacore::TableLock::AutoNoReadLocking;
+    casacore::MeasurementSet set(path, casacore::TableLock(lock), option);
+    if (access == Access::update && !set.lock(casacore::FileLocker::Write, lock_attempts)) {
+      throw std::runtime_error(path + " is locked by another process; expected one that is not being written, or read by a program "
+                               "that keeps it locked");
+    }
+    return set;
   });
 }
 

@@ -3,15 +3,18 @@
 
 #include "imager/direct/source_sums.h"
 #include "imager/parallel.h"
+#include "ms_io/fingerprint.h"
 #include "ms_io/measurement_set.h"
 #include "ms_io/model_writer.h"
 #include "tools/base/numbers.h"
 #include "tools/base/progress.h"
+#include "tools/base/text.h"
 #include "tools/command.h"
 #include "tools/formats/component_list.h"
 #include "tools/formats/model_image.h"
 #include "tools/kernel_choice/kernel_choice.h"
 #include "tools/run/selection_options.h"
+#include "tools/version.h"
 
 namespace misfit::tools {
 namespace {
@@ -31,26 +34,53 @@ struct PredictOptions {
   bool quiet = false;
 };
 
-ModelVisibilities image_model(const PredictOptions& o, const ms_io::MeasurementSet& set, int threads) {
+/// A model as visibilities, with what its column is known by while it is written.
+struct NamedModel {
+  ModelVisibilities visibilities;
+  ms_io::Fingerprint fingerprint;
+};
+
+NamedModel image_model(const PredictOptions& o, const ms_io::MeasurementSet& set, int threads) {
   imager::GriddingRequest request;
   request.kernel = choose_kernel(o.kernel);
   request.accuracy = is_kernel_file(o.kernel) && !o.accuracy_is_typed ? 0 : o.accuracy;
   request.threads = threads;
-  const imager::SkyImage model = read_model(o.model, set.observation().phase_centre);
-  return image_visibilities(model.image, model.geometry, request, set);
+  const std::vector<imager::SkyImage> planes = read_stokes_model(o.model, set.observation().phase_centre);
+  const imager::Image zero(planes.front().image.width, planes.front().image.height);
+  StokesPlanes model{&zero};
+  NamedModel named;
+  named.fingerprint.add(o.kernel.name).add(std::vector<double>{request.accuracy});
+  for (const imager::SkyImage& plane : planes) {
+    if (plane.stokes > imager::Stokes::V)
+      throw std::runtime_error(o.model + " has a plane of " + stokes_name(plane.stokes) + "; expected I, Q, U and V alone");
+    model[static_cast<std::size_t>(plane.stokes) - 1] = &plane.image;
+    named.fingerprint.add(stokes_name(plane.stokes)).add(plane.image.pixel).add(
+        std::vector<double>{plane.geometry.cell_rad, plane.geometry.centre.l, plane.geometry.centre.m});
+  }
+  named.visibilities = image_visibilities(model, planes.front().geometry, request, set);
+  return named;
 }
 
-ModelVisibilities component_model(const PredictOptions& o, const ms_io::MeasurementSet& set, int threads) {
-  ModelVisibilities model;
-  model.predict = [sources = read_component_list(o.components, set.observation().phase_centre),
-                   threads](const imager::SampleCoordinates& at) { return imager::predict_sources(sources, at, threads); };
-  return model;
+NamedModel component_model(const PredictOptions& o, const ms_io::MeasurementSet& set, int threads) {
+  NamedModel named;
+  auto sources = read_stokes_components(o.components, set.observation().phase_centre);
+  for (const std::vector<imager::Source>& plane : sources) {
+    named.fingerprint.add(plane.size());
+    for (const imager::Source& s : plane) named.fingerprint.add(std::vector<double>{s.position.l, s.position.m, s.flux_jy, s.fwhm_rad});
+  }
+  named.visibilities.predict = [sources = std::move(sources), threads](const imager::SampleCoordinates& at) {
+    ms_io::StokesVisibilities visibilities(imager::predict_sources(sources[0], at, threads));
+    for (std::size_t k = 1; k < sources.size(); ++k)
+      if (!sources[k].empty()) visibilities.plane[k] = imager::predict_sources(sources[k], at, threads);
+    return visibilities;
+  };
+  return named;
 }
 
 /// Where the model goes. Calibrated data are overwritten only for those who name their column.
 ms_io::ModelColumn column_of(const PredictOptions& o) {
   const std::string usual = o.subtract ? "CORRECTED_DATA" : "MODEL_DATA";
-  return {o.column.empty() ? usual : o.column, o.subtract ? o.datacolumn : "", !o.subtract || !o.column.empty()};
+  return {o.column.empty() ? usual : o.column, o.subtract ? o.datacolumn : "", !o.subtract || !o.column.empty(), {}};
 }
 
 void check(const PredictOptions& o) {
@@ -64,26 +94,40 @@ void print(const PredictOptions& o, const ms_io::ModelWriteReport& report) {
   const auto count = [](std::uint64_t number) { return grouped(static_cast<long long>(number)); };
   std::printf("%s: %s%s visibilities in %s rows written to %s\n", o.vis.c_str(), o.subtract ? "data − model of " : "",
               count(report.samples).c_str(), count(report.rows).c_str(), column_of(o).name.c_str());
+  if (report.rows_before > 0)
+    std::printf("%s of these rows had been written before\n", count(report.rows_before).c_str());
   if (report.nonfinite_uvw_rows > 0)
     std::printf("%s rows have UVW that are not finite and %s\n", count(report.nonfinite_uvw_rows).c_str(),
                 o.subtract ? "keep their data" : "got 0");
 }
 
+/// As whoever finds its column incomplete is told.
+std::string command_of(const PredictOptions& o) {
+  return "misfit predict " + std::string(o.subtract ? "--subtract " : "") +
+         (o.model.empty() ? "--components " + shell_quoted(o.components) : "--model " + shell_quoted(o.model));
+}
+
 void predict(const PredictOptions& o) {
   check(o);
-  const ms_io::ModelColumn column = column_of(o);
+  ms_io::ModelColumn column = column_of(o);
   ms_io::require_writable(o.vis, column);
   ProgressLine progress(o.quiet);
+  if (o.subtract) {
+    if (const std::string sentence = ms_io::incomplete_column(o.vis, o.datacolumn); !sentence.empty())
+      progress.say("warning: " + sentence);
+  }
   const int threads = o.threads == 0 ? imager::available_threads() : o.threads;
-  ModelVisibilities model;
+  NamedModel model;
   {
-    const ms_io::MeasurementSet set(o.vis, o.selection, o.subtract ? o.datacolumn : "DATA");
+    const ms_io::MeasurementSet set(o.vis, o.selection, "");
     model = o.model.empty() ? component_model(o, set, threads) : image_model(o, set, threads);
   }
+  column.origin = {command_of(o), model.fingerprint.add(version).value(),
+                   [&](const std::string& sentence) { progress.say(sentence); }};
   progress.begin(o.subtract ? "subtract" : "predict");
   const auto show = [&](std::uint64_t done, std::uint64_t total) { progress.update(done, total); };
-  const ms_io::ModelWriteReport report =
-      ms_io::write_model(o.vis, o.selection, column, model.predict, show, model.samples_at_once);
+  const ms_io::ModelWriteReport report = ms_io::write_model(o.vis, o.selection, column, model.visibilities.predict, show,
+                                                            model.visibilities.samples_at_once);
   progress.end();
   if (!o.quiet) print(o, report);
 }
@@ -95,13 +139,14 @@ void add_predict_command(CLI::App& program) {
       program.add_subcommand("predict", "Write a model's visibilities, or data without them, into a MeasurementSet");
   const auto o = std::make_shared<PredictOptions>();
   command->add_option("--vis", o->vis, "MeasurementSet; only the column is written")->required();
-  command->add_option("--model", o->model, "FITS image in Jy/pixel whose reference position is the phase centre");
+  command->add_option("--model", o->model, "FITS image in Jy/pixel whose reference position is the phase centre; its STOKES axis may hold I, Q, U and V");
   command->add_option(
       "--components", o->components,
       "CSV file with ra_deg,dec_deg,flux_jy or l_arcsec,m_arcsec,flux_jy, and scale_arcsec for the full width at "
-      "half maximum of a circular Gaussian (0: a point), summed directly with w");
+      "half maximum of a circular Gaussian (0: a point), summed directly with w; polarised ones have flux_q_jy, flux_u_jy, "
+      "flux_v_jy too");
   CLI::Option* subtract = command->add_flag(
-      "--subtract", o->subtract, "Write data − model instead: XX, YY, RR and LL lose the model, other correlations are copied");
+      "--subtract", o->subtract, "Write data − model instead: each correlation loses what the model is to it, XX = I + Q and so on");
   command->add_option("--datacolumn", o->datacolumn, "What is subtracted from: data, corrected, model, or a column's name")
       ->needs(subtract);
   command->add_option(

@@ -20,6 +20,10 @@ using imager::Source;
 
 constexpr double degree = M_PI / 180;
 constexpr double arcsec = degree / 3600;
+constexpr std::array<std::string_view, 4> flux_names{"flux_jy", "flux_q_jy", "flux_u_jy", "flux_v_jy"};
+
+/// Which fluxes a list may have.
+enum class Polarised { no, yes };
 
 [[noreturn]] void fail(const std::string& message) {
   throw std::runtime_error(message);
@@ -46,10 +50,11 @@ Fields split(std::string_view line) {
 /// Where each quantity stands in a line.
 class Columns {
  public:
-  explicit Columns(std::string_view line) : names_(split(line)) {
+  Columns(std::string_view line, Polarised polarised) : names_(split(line)) {
     if (names_.size() == 1 && line.find(';') != line.npos) fail("columns are separated by ';', " + expected());
     for (std::size_t i = 0; i < names_.size(); ++i) {
-      if (std::find(known.begin(), known.end(), names_[i]) == known.end())
+      const bool is_flux = polarised == Polarised::yes && std::count(flux_names.begin(), flux_names.end(), names_[i]) > 0;
+      if (!is_flux && std::find(known.begin(), known.end(), names_[i]) == known.end())
         fail("unknown column " + quoted(names_[i]) + ", " + expected());
       if (place(names_[i]) != i) fail("column " + quoted(names_[i]) + " appears twice, " + expected());
     }
@@ -100,11 +105,11 @@ class Line {
     return std::string(x) + " " + quoted(field(x)) + ", " + std::string(y) + " " + quoted(field(y));
   }
 
-  Source source(const imager::SkyDirection& phase_centre) const {
+  Source source(const imager::SkyDirection& phase_centre, std::string_view flux = flux_names[0]) const {
     const double scale_arcsec = columns_.has("scale_arcsec") ? number("scale_arcsec", 0, std::numeric_limits<double>::max(),
                                                                       "a full width at half maximum, 0 (a point) or more")
                                                              : 0;
-    return {columns_.equatorial ? equatorial_position(phase_centre) : tangent_position(), number("flux_jy"),
+    return {columns_.equatorial ? equatorial_position(phase_centre) : tangent_position(), number(flux),
             scale_arcsec * arcsec};
   }
 
@@ -139,8 +144,11 @@ std::string_view readable(std::string_view text) {
   return text;
 }
 
-std::vector<Source> sources_of(std::string_view text, const imager::SkyDirection& phase_centre, int& line_number) {
-  std::vector<Source> sources;
+using StokesSources = std::array<std::vector<Source>, 4>;
+
+StokesSources sources_of(std::string_view text, const imager::SkyDirection& phase_centre, Polarised polarised,
+                         int& line_number) {
+  StokesSources sources;
   std::optional<Columns> columns;
   for (text = readable(text); !text.empty();) {
     const std::size_t end = std::min(text.find('\n'), text.size());
@@ -148,13 +156,26 @@ std::vector<Source> sources_of(std::string_view text, const imager::SkyDirection
     text.remove_prefix(std::min(end + 1, text.size()));
     ++line_number;
     if (line.empty() || line.starts_with('#')) continue;
-    if (columns)
-      sources.push_back(Line(line, *columns).source(phase_centre));
-    else
-      columns.emplace(line);
+    if (!columns) {
+      columns.emplace(line, polarised);
+      continue;
+    }
+    const Line values(line, *columns);
+    for (std::size_t k = 0; k < flux_names.size(); ++k)
+      if (columns->has(flux_names[k])) sources[k].push_back(values.source(phase_centre, flux_names[k]));
   }
   if (!columns) fail("the list ends before a line that names its columns, " + Columns::expected());
   return sources;
+}
+
+StokesSources read_list(const std::string& path, const imager::SkyDirection& phase_centre, Polarised polarised) {
+  const std::string text = read_file(path);
+  int line_number = 0;
+  try {
+    return sources_of(text, phase_centre, polarised, line_number);
+  } catch (const std::runtime_error& error) {
+    fail(path + ", line " + std::to_string(std::max(line_number, 1)) + ": " + error.what());
+  }
 }
 
 /// The shortest text that reads as `value`.
@@ -203,13 +224,11 @@ void append_line(const Source& source, const std::vector<double>& fluxes, const 
 }  // namespace
 
 std::vector<Source> read_component_list(const std::string& path, const imager::SkyDirection& phase_centre) {
-  const std::string text = read_file(path);
-  int line_number = 0;
-  try {
-    return sources_of(text, phase_centre, line_number);
-  } catch (const std::runtime_error& error) {
-    fail(path + ", line " + std::to_string(std::max(line_number, 1)) + ": " + error.what());
-  }
+  return read_list(path, phase_centre, Polarised::no)[0];
+}
+
+std::array<std::vector<Source>, 4> read_stokes_components(const std::string& path, const imager::SkyDirection& phase_centre) {
+  return read_list(path, phase_centre, Polarised::yes);
 }
 
 void write_component_list(const std::string& path, const std::vector<Source>& sources,

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <string>
 #include <vector>
 
@@ -14,6 +15,11 @@ namespace misfit::tools {
 /// lines that begin with # are skipped. Throws std::runtime_error that names the file, the line, the value and what was
 /// expected.
 std::vector<imager::Source> read_component_list(const std::string& path, const imager::SkyDirection& phase_centre);
+
+/// The same of a list that may also have the columns `flux_q_jy`, `flux_u_jy` and `flux_v_jy`: its sources with their fluxes in
+/// I, Q, U and V; none where a Stokes parameter has no column.
+std::array<std::vector<imager::Source>, 4> read_stokes_components(const std::string& path,
+                                                                  const imager::SkyDirection& phase_centre);
 
 /// Writes a list that `read_component_list` takes, with the columns ra_deg,dec_deg,flux_jy,scale_arcsec and as many digits as
 /// give each number back exactly; 0 ≤ ra_deg < 360, in the frame of `phase_centre`. The file appears under its name only when

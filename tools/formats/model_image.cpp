@@ -37,28 +37,48 @@ bool is_jy_per_pixel(std::string unit) {
   return unit == "jy/pixel";
 }
 
-}  // namespace
-
-imager::SkyImage read_model(const std::string& path, const imager::SkyDirection& centre) {
-  imager::SkyImage model = imager::read_fits(path);
+void check_model(const imager::SkyImage& model, const imager::SkyDirection& centre, const std::string& path) {
   if (!is_jy_per_pixel(model.unit))
     throw std::runtime_error(path + " has the unit " + (model.unit.empty() ? "none" : model.unit) + ", expected Jy/pixel");
   check_centre(model, centre, path);
   check_finite(model, path);
+}
+
+}  // namespace
+
+imager::SkyImage read_model(const std::string& path, const imager::SkyDirection& centre) {
+  imager::SkyImage model = imager::read_fits(path);
+  check_model(model, centre, path);
   return model;
 }
 
-ModelVisibilities image_visibilities(const imager::Image& image, const imager::ImageGeometry& geometry,
+std::vector<imager::SkyImage> read_stokes_model(const std::string& path, const imager::SkyDirection& centre) {
+  std::vector<imager::SkyImage> planes = imager::read_stokes_images(path);
+  for (const imager::SkyImage& plane : planes) check_model(plane, centre, path);
+  return planes;
+}
+
+ModelVisibilities image_visibilities(const StokesPlanes& planes, const imager::ImageGeometry& geometry,
                                      imager::GriddingRequest request, const ms_io::MeasurementSet& set) {
   request.geometry = geometry;
   request.samples = set.samples();
-  request.images = 1;
+  request.images = 1;  // so that a plane has the same bits whatever the others are
   request.max_abs_w = set.reach(ms_io::ReachOf::all).max_abs_w;
   ModelVisibilities model;
   model.transform = std::make_unique<imager::PlannedTransform>(imager::plan_gridding(request));
-  model.prediction = model.transform->predict(image);
-  model.samples_at_once = std::max<std::uint64_t>(model.samples_at_once, model.prediction->samples_at_once());
-  model.predict = [prediction = model.prediction.get()](const imager::SampleCoordinates& at) { return prediction->at(at); };
+  std::array<const imager::Prediction*, 4> of{};
+  for (std::size_t k = 0; k < planes.size(); ++k) {
+    if (planes[k] == nullptr) continue;
+    model.predictions[k] = model.transform->predict(*planes[k]);
+    of[k] = model.predictions[k].get();
+    model.samples_at_once = std::max<std::uint64_t>(model.samples_at_once, of[k]->samples_at_once());
+  }
+  model.predict = [of](const imager::SampleCoordinates& at) {
+    ms_io::StokesVisibilities visibilities;
+    for (std::size_t k = 0; k < of.size(); ++k)
+      if (of[k] != nullptr) visibilities.plane[k] = of[k]->at(at);
+    return visibilities;
+  };
   return model;
 }
 

@@ -1,7 +1,9 @@
 #pragma once
 
+#include <array>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "imager/fits_image.h"
 #include "imager/plan/gridding_choice.h"
@@ -14,17 +16,22 @@ namespace misfit::tools {
 /// A model image in Jy/pixel whose reference position is `centre`, with a finite number in every pixel above the horizon.
 /// Throws std::runtime_error that names the file and what was expected.
 imager::SkyImage read_model(const std::string& path, const imager::SkyDirection& centre);
+/// The same with a plane for each Stokes parameter that the file holds.
+std::vector<imager::SkyImage> read_stokes_model(const std::string& path, const imager::SkyDirection& centre);
 
 /// A model as an operator from coordinates to visibilities.
 struct ModelVisibilities {
   std::unique_ptr<imager::Transform> transform;  // outlives the prediction
-  std::unique_ptr<imager::Prediction> prediction;
+  std::array<std::unique_ptr<imager::Prediction>, 4> predictions;  ///< of I, Q, U, V; null where that is 0
   ms_io::Predict predict;
   std::uint64_t samples_at_once = ms_io::MeasurementSet::usual_block_samples;
 };
 
-/// The visibilities of a model image at all selected samples of `set`, flagged or not, as `request` would have them gridded.
-ModelVisibilities image_visibilities(const imager::Image& model, const imager::ImageGeometry& geometry,
+/// The planes of a model, I, Q, U and V; null where one is 0, but for I.
+using StokesPlanes = std::array<const imager::Image*, 4>;
+
+/// The visibilities of a model at all selected samples of `set`, flagged or not, as `request` would have them gridded.
+ModelVisibilities image_visibilities(const StokesPlanes& model, const imager::ImageGeometry& geometry,
                                      imager::GriddingRequest request, const ms_io::MeasurementSet& set);
 
 }  // namespace misfit::tools

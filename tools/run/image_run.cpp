@@ -9,8 +9,10 @@
 #include "imager/parallel.h"
 #include "imager/stokes.h"
 #include "imager/stokes_view.h"
+#include "ms_io/fingerprint.h"
 #include "tools/base/files.h"
 #include "tools/base/progress.h"
+#include "tools/base/text.h"
 #include "tools/formats/model_image.h"
 #include "tools/kernel_choice/kernel_choice.h"
 #include "tools/run/beam_choice.h"
@@ -21,6 +23,7 @@
 #include "tools/run/run_plan.h"
 #include "tools/run/run_report.h"
 #include "tools/run_page/report_page.h"
+#include "tools/version.h"
 
 namespace misfit::tools {
 namespace {
@@ -75,6 +78,7 @@ class ImageRun {
     const imager::StageTimer timer(times_, "open");
     if (!o_.dry_run) check_writable_folder(o_.imagename);
     if (o_.savemodel == "modelcolumn") ms_io::require_writable(o_.vis);
+    if (const std::string sentence = ms_io::incomplete_column(o_.vis, o_.datacolumn); !sentence.empty()) warn(sentence);
     set_ = std::make_unique<ms_io::MeasurementSet>(o_.vis, o_.selection, o_.datacolumn, stokes_);
     geometry_ = geometry_of(o_, set_->observation().phase_centre);
     reach_ = set_->reach();
@@ -220,7 +224,13 @@ class ImageRun {
       const ms_io::MeasurementSet set(o_.vis, o_.selection, o_.datacolumn);
       model = image_visibilities(model_planes(), geometry_, gridding_request(o_, threads_), set);
     }
-    ms_io::write_model(o_.vis, o_.selection, {"MODEL_DATA"}, model.predict, progress(), model.samples_at_once);
+    ms_io::Fingerprint fingerprint;
+    fingerprint.add(std::string(version)).add(report_.options.dump());
+    for (const imager::CleanResult& result : cleaned_) fingerprint.add(result.model.pixel);
+    ms_io::ModelColumn column{"MODEL_DATA"};
+    column.origin = {"misfit image --savemodel modelcolumn --imagename " + shell_quoted(o_.imagename), fingerprint.value(),
+                     [this](const std::string& sentence) { progress_.say(sentence); }};
+    ms_io::write_model(o_.vis, o_.selection, column, model.predict, progress(), model.samples_at_once);
     progress_.end();
   }
 

@@ -1,0 +1,93 @@
+#include "ms_io/fingerprint.h"
+#include "ms_io/model_cells_internal.h"
+#include "ms_io/stokes_response_internal.h"
+
+namespace misfit::ms_io {
+namespace {
+
+using Cells = CellColumn::Cells;
+
+casacore::IPosition stored_shape(const Setup& setup) {
+  return casacore::IPosition(2, static_cast<ssize_t>(setup.correlation_types.size()),
+                             static_cast<ssize_t>(setup.stored_channels));
+}
+
+std::uint64_t checksum_of(const Rows& rows, const Cells& cells) {
+  const std::size_t row_values = rows.count() == 0 ? 0 : cells.nelements() / rows.count();
+  std::uint64_t sum = 0;
+  const casacore::Complex* row = cells.data();
+  for (const casacore::rownr_t number : rows.numbers()) {
+    sum += Fingerprint().add(number).add(row, row_values * sizeof(casacore::Complex)).value();
+    row += row_values;
+  }
+  return sum;
+}
+
+}  // namespace
+
+CellColumn::CellColumn(const casacore::MeasurementSet& set, const std::string& name)
+    : column_(set, name), fixed_shape_(column_.columnDesc().isFixedShape()) {}
+
+void CellColumn::write(const Rows& rows, const casacore::Slicer& slice, const Cells& cells) {
+  if (rows.contiguous()) {
+    column_.putColumnRange(rows.range(), slice, cells);
+  } else {
+    column_.putColumnCells(rows.listed(), slice, cells);
+  }
+}
+
+void CellColumn::require_cell_shape(casacore::rownr_t row, const casacore::IPosition& shape) const {
+  if (column_.shape(row).isEqual(shape)) return;
+  throw casacore::AipsError("the cell of row " + std::to_string(row) + " has shape " + column_.shape(row).toString() +
+                            "; expected " + shape.toString());
+}
+
+ModelCells::ModelCells(const casacore::MeasurementSet& set, const ModelColumn& column) : model_(set, column.name) {
+  if (!column.subtracted_from.empty()) data_ = CellColumn(set, column.subtracted_from);
+}
+
+Cells ModelCells::data(const Rows& rows, const Setup& setup) {
+  Cells cells;
+  if (!data_.exists()) return cells;
+  data_.require_shape(rows, stored_shape(setup), [](casacore::rownr_t row) -> Cells {
+    throw casacore::AipsError("row " + std::to_string(row) + " has no data");
+  });
+  data_.read(rows, channel_slice(setup, setup.correlation_types.size()), cells);
+  return cells;
+}
+
+std::uint64_t ModelCells::write(const Rows& rows, const Setup& setup, const StokesVisibilities& model, const Cells& data) {
+  const std::size_t correlations = setup.correlation_types.size(), span = setup.channel_span();
+  const casacore::IPosition shape = stored_shape(setup);
+  model_.require_shape(rows, shape, [&](casacore::rownr_t row) {
+    return data_.exists() ? data_(row) : Cells(shape, casacore::Complex(0));
+  });
+  const casacore::Slicer slice = channel_slice(setup, correlations);
+  Cells cells(casacore::IPosition(3, shape(0), static_cast<ssize_t>(span), static_cast<ssize_t>(rows.count())));
+  if (setup.channels.size() > 1) model_.read(rows, slice, cells);
+  for (std::size_t k = 0; k < correlations; ++k) {
+    const StokesResponse response = stokes_response(setup.correlation_types[k]);
+    std::size_t from = 0;
+    for (std::size_t r = 0; r < rows.count(); ++r) {
+      for (const Run& run : setup.channels) {
+        const std::size_t at = (r * span + run.first - setup.first_channel()) * correlations + k;
+        form_correlation(response, model, from,
+                         {data.empty() ? nullptr : data.data() + at, cells.data() + at, correlations, run.count});
+        from += run.count;
+      }
+    }
+  }
+  model_.write(rows, slice, cells);
+  return checksum_of(rows, cells);
+}
+
+std::uint64_t ModelCells::checksum(const Rows& rows, const Setup& setup) {
+  model_.require_shape(rows, stored_shape(setup), [](casacore::rownr_t row) -> Cells {
+    throw casacore::AipsError("row " + std::to_string(row) + " has no values");
+  });
+  Cells cells;
+  model_.read(rows, channel_slice(setup, setup.correlation_types.size()), cells);
+  return checksum_of(rows, cells);
+}
+
+}  // namespace misfit::ms_io

@@ -1,0 +1,63 @@
+#pragma once
+
+#include <casacore/ms/MeasurementSets/MeasurementSet.h>
+#include <casacore/tables/Tables/ArrayColumn.h>
+
+#include <cstdint>
+#include <vector>
+
+#include "ms_io/model_writer.h"
+#include "ms_io/row_columns_internal.h"
+
+namespace misfit::ms_io {
+
+/// A column of cells, correlations × channels.
+class CellColumn {
+ public:
+  using Cells = casacore::Array<casacore::Complex>;
+
+  CellColumn() = default;
+  CellColumn(const casacore::MeasurementSet& set, const std::string& name);
+
+  bool exists() const { return !column_.isNull(); }
+  Cells operator()(casacore::rownr_t row) const { return column_(row); }
+  void read(const Rows& rows, const casacore::Slicer& slice, Cells& cells) const { ms_io::read(column_, rows, slice, cells); }
+  void write(const Rows& rows, const casacore::Slicer& slice, const Cells& cells);
+
+  /// Gives cells that have no shape yet what `blank(row)` returns. Throws AipsError when one has another shape than `shape`.
+  template <typename Blank>
+  void require_shape(const Rows& rows, const casacore::IPosition& shape, const Blank& blank) {
+    if (fixed_shape_ && column_.shapeColumn().isEqual(shape)) return;
+    for (const casacore::rownr_t row : rows.numbers()) {
+      if (!column_.isDefined(row)) column_.put(row, blank(row));
+      require_cell_shape(row, shape);
+    }
+  }
+
+ private:
+  void require_cell_shape(casacore::rownr_t row, const casacore::IPosition& shape) const;
+
+  casacore::ArrayColumn<casacore::Complex> column_;
+  bool fixed_shape_ = false;
+};
+
+/// The cells that a model goes into, and those it is subtracted from. Everything throws AipsError.
+class ModelCells {
+ public:
+  ModelCells(const casacore::MeasurementSet& set, const ModelColumn& column);
+
+  /// The data of a block from its first selected channel to the last one, where they are needed.
+  CellColumn::Cells data(const Rows& rows, const Setup& setup);
+
+  /// Stores `model` [row][selected channel], or `data` without it; channels that are not selected keep what they hold. Returns
+  /// the checksum() of the rows.
+  std::uint64_t write(const Rows& rows, const Setup& setup, const StokesVisibilities& model, const CellColumn::Cells& data);
+
+  /// The sum of the fingerprints of each row's number and values, from the first selected channel to the last one.
+  std::uint64_t checksum(const Rows& rows, const Setup& setup);
+
+ private:
+  CellColumn model_, data_;
+};
+
+}  // namespace misfit::ms_io

@@ -1,0 +1,91 @@
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <sstream>
+#include <stdexcept>
+#include <vector>
+
+#include "ms_io/model_journal_internal.h"
+
+namespace misfit::ms_io {
+namespace {
+
+constexpr const char* part = ".part";  ///< while it is written
+
+/// In every table that holds rows of `set`: itself, or what it refers to.
+std::vector<std::string> journal_files(const casacore::Table& set, std::string column) {
+  std::replace(column.begin(), column.end(), '/', '_');
+  std::vector<std::string> files;
+  const casacore::Block<casacore::String> tables = set.getPartNames(true);
+  for (std::size_t t = 0; t < tables.nelements(); ++t) files.push_back(std::string(tables[t]) + "/misfit_unfinished_" + column);
+  return files;
+}
+
+std::string text_of(const ModelJournal& journal) {
+  std::ostringstream text;
+  text << "misfit is writing a column, or was stopped while it did\n"
+       << "command " << journal.command << "\nidentity " << journal.identity << "\nrows " << journal.rows << "\nwritten "
+       << journal.written << "\nnonfinite_uvw_rows " << journal.nonfinite_uvw_rows << "\nchecksum " << journal.checksum << '\n';
+  for (const auto& [data_description, row] : journal.done_below) text << "done " << data_description << ' ' << row << '\n';
+  text << "end\n";
+  return text.str();
+}
+
+ModelJournal journal_of(std::istream& text, const std::string& column) {
+  ModelJournal journal;
+  std::string line, key;
+  bool ended = false;
+  std::getline(text, line);
+  while (!ended && std::getline(text, line)) {
+    std::istringstream words(line);
+    words >> key >> std::ws;
+    if (key == "command") std::getline(words, journal.command);
+    if (key == "identity") words >> journal.identity;
+    if (key == "rows") words >> journal.rows;
+    if (key == "written") words >> journal.written;
+    if (key == "nonfinite_uvw_rows") words >> journal.nonfinite_uvw_rows;
+    if (key == "checksum") words >> journal.checksum;
+    if (int data_description = 0; key == "done" && words >> data_description) words >> journal.done_below[data_description];
+    ended = key == "end";
+  }
+  if (!ended) journal = {};
+  journal.column = column;
+  return journal;
+}
+
+}  // namespace
+
+std::optional<ModelJournal> read_journal(const casacore::Table& set, const std::string& column) {
+  for (const std::string& path : journal_files(set, column)) {
+    if (std::ifstream file(path); file) return journal_of(file, column);
+  }
+  return std::nullopt;
+}
+
+void write_journal(const casacore::Table& set, const ModelJournal& journal) {
+  for (const std::string& path : journal_files(set, journal.column)) {
+    const std::string beside = path + part;
+    std::ofstream file(beside, std::ios::binary);
+    file << text_of(journal) << std::flush;
+    std::error_code error;
+    if (file) std::filesystem::rename(beside, path, error);
+    if (!file || error) throw std::runtime_error("cannot write " + path + ", which tells how far the column is");
+  }
+}
+
+void remove_journal(const casacore::Table& set, const std::string& column) {
+  std::error_code ignored;
+  for (const std::string& path : journal_files(set, column)) {
+    std::filesystem::remove(path, ignored);
+    std::filesystem::remove(path + part, ignored);
+  }
+}
+
+std::string incompleteness(const std::string& path, const ModelJournal& journal) {
+  return journal.column + " of " + path + " is incomplete: " + std::to_string(journal.written) + " of " +
+         std::to_string(journal.rows) + " rows were written before by " +
+         (journal.command.empty() ? "a run that left no trace" : journal.command);
+}
+
+}  // namespace misfit::ms_io

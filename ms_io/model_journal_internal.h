@@ -1,0 +1,36 @@
+#pragma once
+
+#include <casacore/tables/Tables/Table.h>
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+
+namespace misfit::ms_io {
+
+/// How far a column has been written. While that lasts, a file `misfit_unfinished_<COLUMN>` in the folder of each table that
+/// holds the rows says so; casacore knows nothing of it. What it says is written is on disk: the rows are handed to the system
+/// first, and the file is replaced as a whole afterwards, so that it holds wherever the run is killed.
+struct ModelJournal {
+  std::string column;
+  std::string command;                      ///< that writes it, as people are told
+  std::string identity;                     ///< of model, options, selection and columns; empty: of nothing that can be told
+  std::uint64_t rows = 0;                   ///< to be written
+  std::uint64_t written = 0;                ///< rows
+  std::uint64_t nonfinite_uvw_rows = 0;     ///< of those written
+  std::uint64_t checksum = 0;               ///< sum over the rows written of the fingerprints of their number and values
+  std::map<int, std::uint64_t> done_below;  ///< by DATA_DESC_ID: its rows that are selected are written below this one
+};
+
+/// The journal of `column`; none where no run is under way, or was cut short. A file that cannot be understood is a journal
+/// of which nothing is known.
+std::optional<ModelJournal> read_journal(const casacore::Table& set, const std::string& column);
+/// Throws std::runtime_error that names the file.
+void write_journal(const casacore::Table& set, const ModelJournal& journal);
+void remove_journal(const casacore::Table& set, const std::string& column);
+
+/// "MODEL_DATA of `path` is incomplete: 12 of 30 rows were written before by …".
+std::string incompleteness(const std::string& path, const ModelJournal& journal);
+
+}  // namespace misfit::ms_io
