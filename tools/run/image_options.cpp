@@ -13,6 +13,7 @@
 #include "tools/base/quantity.h"
 #include "tools/base/text.h"
 #include "tools/formats/config_file.h"
+#include "tools/run/weighting_options.h"
 
 namespace misfit::tools {
 namespace {
@@ -131,7 +132,7 @@ void declare_scene(CLI::App& command, ImageOptions& o) {
   command.add_option("--spw", o.selection.spectral_window,
                      "Spectral windows and channels, in CASA's selection syntax; all when empty");
   command.add_option("--datacolumn", o.datacolumn, "data, corrected, model, or a column's name");
-  command.add_option("--weighting", o.weighting, "Weighting")->check(CLI::IsMember({"natural"}));
+  declare_weighting(command, o);
   command.add_option("--gridder", o.gridder, "w planes: auto (where w matters), standard (none), wide (always)")
       ->check(CLI::IsMember({"auto", "standard", "wide"}));
   command.add_option("--threads", o.threads, "Threads; 0 means all cores");
@@ -207,6 +208,7 @@ bool kernel_is_given(const ImageOptions& o) {
 
 void check(const ImageOptions& o) {
   check_image(o);
+  check_weighting(o);
   check_clean(o);
   check_gridding(o);
   if (o.verify < 0) refuse("verify", std::to_string(o.verify), "0 or more");

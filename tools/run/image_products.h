@@ -10,7 +10,7 @@
 
 namespace misfit::tools {
 
-/// Header cards for the errors that are known.
+/// Header cards for the errors and the noise that are known.
 std::vector<imager::HeaderCard> error_cards(const RunReport& report);
 
 /// What one picture of a run shows.

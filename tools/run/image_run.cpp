@@ -17,6 +17,7 @@
 #include "tools/run/run_messages.h"
 #include "tools/run/run_plan.h"
 #include "tools/run/run_report.h"
+#include "tools/run/weighting_options.h"
 #include "tools/run_page/report_page.h"
 
 namespace misfit::tools {
@@ -40,6 +41,7 @@ class ImageRun {
       if (!o_.quiet) print_plan(plan_, expected());
       return true;
     }
+    weigh();
     make_dirty();
     if (o_.verify > 0) verify();
     choose_beams();
@@ -88,6 +90,17 @@ class ImageRun {
 
   std::vector<StageSeconds> expected() const { return expected_seconds(plan_, forecast_, work_); }
 
+  /// A pass over the samples where their weights follow from their density.
+  void weigh() {
+    const imager::WeightingOptions options = weighting_options(o_);
+    if (options.none()) return;
+    progress_.begin("weights");
+    weights_ = imager::make_imaging_weights(*source_, options, geometry_, threads_, progress(), times_);
+    const imager::StageTimer timer(times_, "weights");
+    source_->apply(weights_, threads_);
+    progress_.end();
+  }
+
   void make_dirty() {
     progress_.begin("dirty image and PSF");
     made_ = imager::make_accurate_images(*source_, plan_.gridding, progress(), times_);
@@ -97,6 +110,7 @@ class ImageRun {
     report_.accuracy = o_.accuracy;
     report_.gridding = &made_.plan;
     count_samples();
+    predict_noise();
     const imager::StageTimer timer(times_, "statistics");
     const imager::NeglectedPhase phase = imager::neglected_w_phase(reach_, source_->w_spread(), geometry_);
     theory_ = imager::theoretical_error(made_.plan, made_.images.sums, imager::root_mean_square(made_.images.dirty), phase);
@@ -112,6 +126,14 @@ class ImageRun {
     report_.counts.used = sums.used;
     report_.plan.push_back(left_out_decision(report_.counts));
     if (sums.outside_grid > 0) warn(outside_grid_warning(sums.outside_grid, reach_));
+  }
+
+  void predict_noise() {
+    const imager::WeightSums sums =
+        weights_ ? source_->weight_sums() : imager::WeightSums::of_natural(made_.images.sums.weight);
+    report_.predicted_noise_jy = sums.noise_jy();
+    if (weights_) report_.plan.push_back(weights_decision(*weights_, sums));
+    weights_.reset();
   }
 
   void verify() {
@@ -211,8 +233,9 @@ class ImageRun {
 
   void count_pixels() {
     const imager::StageTimer timer(times_, "statistics");
-    report_.histogram = cleaned_ ? pixel_histogram(cleaned_->residual, cleaned_->report.final_state().rms_jy, threads_)
-                                 : pixel_histogram(made_.images.dirty, imager::sampled_noise(made_.images.dirty), threads_);
+    report_.measured_noise_jy = cleaned_ ? cleaned_->report.final_state().rms_jy : imager::sampled_noise(made_.images.dirty);
+    report_.histogram =
+        pixel_histogram(cleaned_ ? cleaned_->residual : made_.images.dirty, report_.measured_noise_jy, threads_);
   }
 
   /// Nothing where gnuplot cannot draw it.
@@ -258,6 +281,7 @@ class ImageRun {
   std::unique_ptr<CleanStage> clean_;  ///< null without CLEAN, and after it
   RunPlan plan_;
   std::unique_ptr<imager::StreamedVisibilities> source_;
+  std::shared_ptr<const imager::ImagingWeights> weights_;  ///< until the noise is predicted; null where they are the data's
   imager::AccurateImages made_;
   imager::TheoreticalError theory_;
   imager::MeasuredError measured_;

@@ -48,7 +48,8 @@ std::string summary(const RunReport& r) {
                      significant(r.theory->expected_rms, 2);
   if (r.measured != nullptr)
     text += ", measured " + significant(r.measured->rms, 2) + " (prediction " + significant(r.measured->predict_rms, 2) + ")";
-  text += "\n";
+  text += "; noise " + with_prefix(r.measured_noise_jy, "Jy/beam", 3) + ", predicted " +
+          with_prefix(r.predicted_noise_jy, "Jy/beam", 3) + "\n";
   if (r.clean != nullptr)
     text += grouped(r.clean->iterations) + " components, model flux " + significant(r.clean->final_state().model_flux_jy, 4) +
             "; " + r.clean->stop_reason + "\n";

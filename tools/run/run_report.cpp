@@ -67,6 +67,12 @@ json error_json(const RunReport& r) {
   return error;
 }
 
+/// What is not known is null.
+json noise_json(const RunReport& r) {
+  const auto known = [](double noise_jy) { return noise_jy > 0 ? number(noise_jy) : json(); };
+  return {{"predicted_jy", known(r.predicted_noise_jy)}, {"measured_jy", known(r.measured_noise_jy)}};
+}
+
 json beam_json(const std::optional<imager::Beam>& beam) {
   if (!beam) return nullptr;
   return {{"major_arcsec", beam->major_rad / arcsec},
@@ -145,6 +151,7 @@ json report_json(const RunReport& r) {
           {"warnings", r.warnings},
           {"kernel", kernel_json(r.gridding)},
           {"error", error_json(r)},
+          {"noise", noise_json(r)},
           {"visibilities", counts_json(r.counts)},
           {"timings_s", timings_json(r)},
           {"timings_expected_s", expected_json(r.expected)},

@@ -26,6 +26,8 @@ struct RunReport {
   const imager::TheoreticalError* theory = nullptr;
   const imager::MeasuredError* measured = nullptr;
   imager::SampleCounts counts;
+  double predicted_noise_jy = 0;  ///< a beam, from the weights; 0 = not known, and so below
+  double measured_noise_jy = 0;   ///< of the residual, or of the dirty image where nothing was cleaned
   const BeamChoice* beams = nullptr;
   const imager::CleanReport* clean = nullptr;
   PixelHistogram histogram;  ///< of the residual, or of the dirty image where nothing was cleaned
@@ -36,9 +38,9 @@ struct RunReport {
   std::vector<StageSeconds> expected;  ///< the same as they were expected, for the cycles and components that there were
 };
 
-/// report.json, with the keys of the project's design; `beam.how`, `beam.misfit`, `beam_by_quadrant`, `memory_gib_estimated`,
-/// `warnings`, `command_line`, `outside`, `outside_search`, `timings_s.total`, `timings_expected_s` (by
-/// stage, with `total`; null where nothing was expected), `clean.major_cycles_log`, `clean.kept_cycle`
+/// report.json, with the keys of the project's design; `noise` {predicted_jy, measured_jy}, `beam.how`, `beam.misfit`,
+/// `beam_by_quadrant`, `memory_gib_estimated`, `warnings`, `command_line`, `outside`, `outside_search`, `timings_s.total`,
+/// `timings_expected_s` (by stage, with `total`; null where nothing was expected), `clean.major_cycles_log`, `clean.kept_cycle`
 /// (whose model was kept) and `residual_histogram` (see histogram_json()) are additions.
 nlohmann::json report_json(const RunReport& report);
 

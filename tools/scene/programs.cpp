@@ -15,6 +15,7 @@
 #include "tools/base/run_program.h"
 #include "tools/base/text.h"
 #include "tools/drawing/gnuplot.h"
+#include "tools/run/weighting_options.h"
 
 namespace misfit::tools {
 namespace {
@@ -42,6 +43,8 @@ Program misfit(const ImageOptions& scene, const std::string& accuracy, int threa
   add("--field", scene.selection.field);
   add("--spw", scene.selection.spectral_window);
   add("--datacolumn", scene.datacolumn);
+  const std::vector<std::string> weighting = weighting_arguments(scene);
+  words.insert(words.end(), weighting.begin(), weighting.end());
   add("--gridder", scene.gridder);
   add("--accuracy", accuracy);
   add("--threads", std::to_string(threads));
@@ -133,6 +136,7 @@ std::string why_not_wsclean(const ImageOptions& scene) {
   if (!scene.selection.field.empty() || !scene.selection.spectral_window.empty())
     return "it numbers fields and spectral windows in a way of its own, and the selection might mean others";
   if (scene.datacolumn != "data" && scene.datacolumn != "corrected") return "it is not given --datacolumn " + scene.datacolumn;
+  if (!weighting_options(scene).none()) return "it is given natural weights alone";
   return is_installed("wsclean") ? "" : "it is not installed";
 }
 
