@@ -24,6 +24,12 @@ void WSpread::add(const VisibilityBlock& block) {
   }
 }
 
+WSpread& WSpread::operator+=(const WSpread& other) {
+  weight += other.weight;
+  weighted_w_square += other.weighted_w_square;
+  return *this;
+}
+
 double max_w_phase_rad(double max_abs_w, const ImageGeometry& geometry) {
   return 2 * pi * max_abs_w * largest_drop(geometry);
 }

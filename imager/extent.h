@@ -18,6 +18,7 @@ struct WSpread {
   double weighted_w_square = 0;  ///< Σ weight · w², w in wavelengths
 
   void add(const VisibilityBlock& block);
+  WSpread& operator+=(const WSpread& other);
 };
 
 /// The phase 2πw(n−1) that a transform in two dimensions neglects.

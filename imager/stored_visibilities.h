@@ -13,6 +13,8 @@ class StoredVisibilities : public VisibilitySource {
     samples_ += block->samples();
     blocks_.push_back(std::move(block));
   }
+  /// To be changed while nobody reads.
+  std::vector<std::shared_ptr<const VisibilityBlock>>& blocks() { return blocks_; }
   std::unique_ptr<BlockStream> open() const override { return std::make_unique<Stream>(blocks_); }
   std::uint64_t samples() const override { return samples_; }
 

@@ -6,7 +6,7 @@
 
 namespace misfit::imager {
 
-/// Hands on the blocks of a stream, and hands in what they told at its end.
+/// Hands on the blocks of a stream, weighted, and hands in what they told at its end.
 class StreamedVisibilities::Recorder : public BlockStream {
  public:
   Recorder(const StreamedVisibilities& source, std::unique_ptr<BlockStream> stream)
@@ -17,8 +17,8 @@ class StreamedVisibilities::Recorder : public BlockStream {
   std::shared_ptr<const VisibilityBlock> next() override {
     auto block = stream_->next();
     if (block) {
+      block = weighted(std::move(block));
       pass_->counts += block->counts;
-      pass_->w_spread.add(*block);
       pass_->uv_coverage.add(*block);
       if (source_.options_.keep) pass_->blocks.append(block);
     } else {
@@ -29,9 +29,35 @@ class StreamedVisibilities::Recorder : public BlockStream {
   }
 
  private:
+  std::shared_ptr<const VisibilityBlock> weighted(std::shared_ptr<const VisibilityBlock> block) {
+    if (source_.weights_) {
+      WeightedBlock made = source_.weights_->of(*block);
+      pass_->weights += made.totals;
+      return std::move(made.block);
+    }
+    pass_->weights.w_spread.add(*block);
+    return block;
+  }
+
   const StreamedVisibilities& source_;
   std::unique_ptr<BlockStream> stream_;
   std::shared_ptr<Pass> pass_ = std::make_shared<Pass>();
+};
+
+/// Hands on the blocks of a stream, weighted.
+class StreamedVisibilities::Weighted : public BlockStream {
+ public:
+  Weighted(const ImagingWeights& weights, std::unique_ptr<BlockStream> stream)
+      : weights_(weights), stream_(std::move(stream)) {}
+
+  std::shared_ptr<const VisibilityBlock> next() override {
+    const auto block = stream_->next();
+    return block ? weights_.of(*block).block : nullptr;
+  }
+
+ private:
+  const ImagingWeights& weights_;
+  std::unique_ptr<BlockStream> stream_;
 };
 
 StreamedVisibilities::StreamedVisibilities(const VisibilitySource& from, const StreamingOptions& options)
@@ -41,8 +67,21 @@ std::unique_ptr<BlockStream> StreamedVisibilities::open() const {
   const auto pass = first_pass();
   if (pass && options_.keep) return pass->blocks.open();
   auto stream = from_.open();
-  if (!pass) stream = std::make_unique<Recorder>(*this, std::move(stream));
+  if (!pass)
+    stream = std::make_unique<Recorder>(*this, std::move(stream));
+  else if (weights_)
+    stream = std::make_unique<Weighted>(*weights_, std::move(stream));
   return prefetched(std::move(stream), options_.ahead);
+}
+
+void StreamedVisibilities::apply(std::shared_ptr<const ImagingWeights> weights, int threads) {
+  const std::lock_guard lock(mutex_);
+  if (first_pass_ && options_.keep) {
+    first_pass_->weights = weights->put_on(first_pass_->blocks, threads);
+    return;
+  }
+  weights_ = std::move(weights);
+  first_pass_.reset();
 }
 
 SampleCounts StreamedVisibilities::counts() const {
@@ -52,7 +91,7 @@ SampleCounts StreamedVisibilities::counts() const {
 
 WSpread StreamedVisibilities::w_spread() const {
   const auto pass = first_pass();
-  return pass ? pass->w_spread : WSpread{};
+  return pass ? pass->weights.w_spread : WSpread{};
 }
 
 UvCoverage StreamedVisibilities::uv_coverage() const {
@@ -60,12 +99,17 @@ UvCoverage StreamedVisibilities::uv_coverage() const {
   return pass ? pass->uv_coverage : UvCoverage(options_.uv_reach_lambda);
 }
 
+WeightSums StreamedVisibilities::weight_sums() const {
+  const auto pass = first_pass();
+  return pass ? pass->weights.sums : WeightSums{};
+}
+
 std::shared_ptr<const StreamedVisibilities::Pass> StreamedVisibilities::first_pass() const {
   const std::lock_guard lock(mutex_);
   return first_pass_;
 }
 
-void StreamedVisibilities::finish(std::shared_ptr<const Pass> pass) const {
+void StreamedVisibilities::finish(std::shared_ptr<Pass> pass) const {
   const std::lock_guard lock(mutex_);
   if (!first_pass_) first_pass_ = std::move(pass);
 }

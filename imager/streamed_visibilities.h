@@ -5,6 +5,7 @@
 #include "imager/extent.h"
 #include "imager/stored_visibilities.h"
 #include "imager/uv_coverage.h"
+#include "imager/weighting/imaging_weights.h"
 
 namespace misfit::imager {
 
@@ -23,28 +24,35 @@ class StreamedVisibilities : public VisibilitySource {
 
   std::unique_ptr<BlockStream> open() const override;
   std::uint64_t samples() const override { return from_.samples(); }
+  /// Gives all passes from now on these weights, in place of those that `from` has: at once where blocks are kept, else as they
+  /// are read. To be called once at most, while nobody reads.
+  void apply(std::shared_ptr<const ImagingWeights> weights, int threads);
   /// Of a full pass, and zero before there was one.
   SampleCounts counts() const;
   WSpread w_spread() const;
   UvCoverage uv_coverage() const;
+  /// Zero where no weights were applied.
+  WeightSums weight_sums() const;
 
  private:
   /// What a pass told.
   struct Pass {
     SampleCounts counts;
-    WSpread w_spread;
+    WeightTotals weights;  ///< only their spread where none were applied
     UvCoverage uv_coverage;
     StoredVisibilities blocks;
   };
   class Recorder;
+  class Weighted;
 
   std::shared_ptr<const Pass> first_pass() const;
-  void finish(std::shared_ptr<const Pass> pass) const;
+  void finish(std::shared_ptr<Pass> pass) const;
 
   const VisibilitySource& from_;
   const StreamingOptions options_;
   mutable std::mutex mutex_;
-  mutable std::shared_ptr<const Pass> first_pass_;  ///< null until one is complete
+  mutable std::shared_ptr<Pass> first_pass_;       ///< null until one is complete
+  std::shared_ptr<const ImagingWeights> weights_;  ///< of blocks as they are read; null: as `from` has them
 };
 
 }  // namespace misfit::imager

@@ -85,6 +85,14 @@ MemoryUse peak_memory(const MemoryDemand& d, const StreamingOptions& streaming) 
     const double lasting = d.clean_scales > 0 ? 3 + components + (d.mask ? 1 : 0) : 2;
     add_wider_stages(*d.wider, kept, blocks, block_samples, lasting * image, stages);
   }
+  if (d.density) {
+    // Factors that blocks are weighed by as they are read, in single precision for half the plane.
+    if (!streaming.keep)
+      for (MemoryUse& stage : stages) stage.grids += image / 4;
+    // The density, its sums along an axis, and the factors; a block's runs, sorted too, and its copy with other weights.
+    const double weight_blocks = block_samples * (2 * 16 + sample_bytes);
+    stages.push_back({"the weights are made", process_bytes, kept, blocks + weight_blocks, 2.5 * image / 2, 0, 0});
+  }
   stages.push_back({"the pictures are drawn", process_bytes, 0, 0, 0, 0, drawn_images * image});
   return *std::max_element(stages.begin(), stages.end(),
                            [](const MemoryUse& a, const MemoryUse& b) { return a.total() < b.total(); });

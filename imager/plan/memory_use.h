@@ -26,6 +26,7 @@ struct MemoryDemand {
   int clean_scales = 0;      ///< of its components; 0 = no CLEAN
   bool mask = false;         ///< where components may lie
   bool start_model = false;  ///< that CLEAN begins with
+  bool density = false;      ///< from which weights follow
   std::optional<WiderDemand> wider{};
 };
 

@@ -75,6 +75,17 @@ BOOST_AUTO_TEST_CASE(cleaning_and_verifying_never_take_less) {
   }
 }
 
+BOOST_AUTO_TEST_CASE(a_density_of_samples_counts_while_it_is_made_and_its_factors_while_samples_are_read_again) {
+  MemoryDemand d = demand();
+  const double kept = peak(d, {true, 2}), read_again = peak(d, {false, 2});
+  d.density = true;
+  BOOST_TEST(peak(d, {true, 2}) == kept);
+  BOOST_TEST(peak(d, {false, 2}) == read_again + 4 * d.pixels / 2);  // in single precision for half the plane
+  d.transform = {1e6, 5e5, 1e3};
+  d.samples = d.block_samples = 1e9;  // so that its runs decide
+  BOOST_TEST(peak_memory(d, {}).when == "the weights are made");
+}
+
 BOOST_AUTO_TEST_CASE(a_wider_field_counts_beside_the_images_that_stay_while_it_is_searched) {
   MemoryDemand d = demand();
   const double without = peak(d, {});

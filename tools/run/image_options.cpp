@@ -15,6 +15,7 @@
 #include "tools/base/text.h"
 #include "tools/formats/config_file.h"
 #include "tools/run/selection_options.h"
+#include "tools/run/weighting_options.h"
 
 namespace misfit::tools {
 namespace {
@@ -137,7 +138,7 @@ void declare_scene(CLI::App& command, ImageOptions& o) {
                      "Stokes parameters or correlations, which share one PSF: I, IQUV, IV, XXYY, RR, …; of correlations that "
                      "are no parallel hands the real part of the image");
   command.add_option("--datacolumn", o.datacolumn, "data, corrected, model, or a column's name");
-  command.add_option("--weighting", o.weighting, "Weighting")->check(CLI::IsMember({"natural"}));
+  declare_weighting(command, o);
   command.add_option("--gridder", o.gridder, "w planes: auto (where w matters), standard (none), wide (always)")
       ->check(CLI::IsMember({"auto", "standard", "wide"}));
   command.add_option("--threads", o.threads, "Threads; 0 means all cores");
@@ -213,6 +214,7 @@ bool kernel_is_given(const ImageOptions& o) {
 
 void check(const ImageOptions& o) {
   check_image(o);
+  check_weighting(o);
   check_clean(o);
   check_gridding(o);
   if (o.verify < 0) refuse("verify", std::to_string(o.verify), "0 or more");

@@ -26,6 +26,9 @@ struct ImageOptions {
   std::string datacolumn = "data";
   std::string stokes = "I";
   std::string weighting = "natural";
+  double robust = 0.5;  ///< of briggs
+  int npixels = 0;      ///< of superuniform, see weighting_options.h; 0 = 6
+  std::string uvtaper;  ///< empty = none
   KernelSource kernel;
   double accuracy = 1e-6;
   double psf_accuracy = 0;  ///< 0 = the larger of accuracy and 1e-4

@@ -24,6 +24,8 @@ std::vector<imager::HeaderCard> error_cards(const RunReport& report) {
   }
   if (report.measured_predict_rms)
     cards.push_back({"ERRPRED", *report.measured_predict_rms, "measured RMS error of prediction"});
+  if (report.predicted_noise_jy != 0)
+    cards.push_back({"NOISPRED", report.predicted_noise_jy, "Jy/beam, noise predicted from the weights"});
   // An image of zeros has no relative error, and a FITS header no number for that.
   std::erase_if(cards, [](const imager::HeaderCard& card) { return !std::isfinite(card.value); });
   return cards;

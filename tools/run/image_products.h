@@ -10,7 +10,7 @@
 
 namespace misfit::tools {
 
-/// Header cards for the errors that are known, the largest of all Stokes parameters.
+/// Header cards for the errors and the noise that are known; of errors the largest of all Stokes parameters.
 std::vector<imager::HeaderCard> error_cards(const RunReport& report);
 
 /// What one picture of a run shows.

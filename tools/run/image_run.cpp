@@ -22,6 +22,7 @@
 #include "tools/run/run_messages.h"
 #include "tools/run/run_plan.h"
 #include "tools/run/run_report.h"
+#include "tools/run/weighting_options.h"
 #include "tools/run_page/report_page.h"
 #include "tools/version.h"
 
@@ -50,6 +51,7 @@ class ImageRun {
       if (!o_.quiet) print_plan(plan_, expected());
       return true;
     }
+    weigh();
     make_dirty();
     if (o_.verify > 0) verify();
     choose_beams();
@@ -100,6 +102,17 @@ class ImageRun {
 
   std::vector<StageSeconds> expected() const { return expected_seconds(plan_, forecast_, work_); }
 
+  /// A pass over the samples where their weights follow from their density.
+  void weigh() {
+    const imager::WeightingOptions options = weighting_options(o_);
+    if (options.none()) return;
+    progress_.begin("weights");
+    weights_ = imager::make_imaging_weights(*source_, options, geometry_, threads_, progress(), times_);
+    const imager::StageTimer timer(times_, "weights");
+    source_->apply(weights_, threads_);
+    progress_.end();
+  }
+
   void make_dirty() {
     progress_.begin("dirty image and PSF");
     made_ = imager::make_accurate_images(*source_, plan_.gridding, progress(), times_);
@@ -109,6 +122,7 @@ class ImageRun {
     report_.accuracy = o_.accuracy;
     report_.gridding = &made_.plan;
     count_samples();
+    predict_noise();
     const imager::StageTimer timer(times_, "statistics");
     const imager::NeglectedPhase phase = imager::neglected_w_phase(reach_, source_->w_spread(), geometry_);
     for (std::size_t s = 0; s < stokes_.size(); ++s)
@@ -125,6 +139,14 @@ class ImageRun {
     report_.counts.used = sums.used;
     report_.plan.push_back(left_out_decision(report_.counts));
     if (sums.outside_grid > 0) warn(outside_grid_warning(sums.outside_grid, reach_));
+  }
+
+  void predict_noise() {
+    const imager::WeightSums sums =
+        weights_ ? source_->weight_sums() : imager::WeightSums::of_natural(made_.images.sums.front().weight);
+    report_.predicted_noise_jy = sums.noise_jy();
+    if (weights_) report_.plan.push_back(weights_decision(*weights_, sums));
+    weights_.reset();
   }
 
   void verify() {
@@ -305,6 +327,7 @@ class ImageRun {
   std::unique_ptr<CleanStage> clean_;  ///< null without CLEAN, and after it
   RunPlan plan_;
   std::unique_ptr<imager::StreamedVisibilities> source_;
+  std::shared_ptr<const imager::ImagingWeights> weights_;  ///< until the noise is predicted; null where they are the data's
   imager::AccurateImages made_;
   BeamChoice beams_;
   OutsideReport outside_;

@@ -51,7 +51,11 @@ std::string summary(const RunReport& r) {
     for (const StokesReport& of : r.stokes) measured = std::max(measured, of.measured->rms);
     text += ", measured " + significant(measured, 2) + " (prediction " + significant(*r.measured_predict_rms, 2) + ")";
   }
-  text += "\n";
+  text += "; noise";
+  for (const StokesReport& of : r.stokes)
+    text += (r.stokes.size() > 1 ? " of " + stokes_name(of.stokes) + " " : " ") +
+            with_prefix(of.histogram.noise_jy, "Jy/beam", 3) + ",";
+  text += " predicted " + with_prefix(r.predicted_noise_jy, "Jy/beam", 3) + "\n";
   for (const StokesReport& of : r.stokes)
     if (of.clean != nullptr)
       text += (r.stokes.size() > 1 ? stokes_name(of.stokes) + ": " : "") + grouped(of.clean->iterations) +

@@ -10,6 +10,7 @@
 #include "tools/base/quantity.h"
 #include "tools/run/memory_plan.h"
 #include "tools/run/outside_stage.h"
+#include "tools/run/weighting_options.h"
 
 namespace misfit::tools {
 namespace {
@@ -27,6 +28,7 @@ class RunPlanner {
     if (o_.memory_gib > 0) limit_memory(o_.memory_gib * gib, request);
     plan_.gridding = imager::plan_gridding(request);
     decide_pixels();
+    plan_.decisions.push_back(weighting_decision(o_, scene_.geometry));
     if (o_.check_outside) plan_search(request);
     decide_memory();
     decide("columns and correlations", "only what Stokes I needs",
@@ -97,6 +99,7 @@ class RunPlanner {
                                            .clean_scales = o_.niter > 0 ? std::max(1, static_cast<int>(o_.scales.size())) : 0,
                                            .mask = scene_.mask,
                                            .start_model = !o_.startmodel.empty(),
+                                           .density = weighting_options(o_).needs_density(),
                                            .wider = wider_demand()},
                                           o_);
     plan_.streaming = memory.streaming;
@@ -144,6 +147,8 @@ RunWork work_of(const RunScene& scene, const RunPlan& plan) {
           .threads = scene.threads,
           .verified = static_cast<double>(o.verify),
           .deconvolver = o.deconvolver,
+          .density = weighting_options(o).needs_density(),
+          .tapered = !o.uvtaper.empty(),
           .wider = plan.wider.get()};
 }
 

@@ -68,6 +68,12 @@ json error_json(const RunReport& r, const StokesReport& of) {
   return error;
 }
 
+/// What is not known is null.
+json noise_json(const RunReport& r, const StokesReport& of) {
+  const auto known = [](double noise_jy) { return noise_jy > 0 ? number(noise_jy) : json(); };
+  return {{"predicted_jy", known(r.predicted_noise_jy)}, {"measured_jy", known(of.histogram.noise_jy)}};
+}
+
 json beam_json(const std::optional<imager::Beam>& beam) {
   if (!beam) return nullptr;
   return {{"major_arcsec", beam->major_rad / arcsec},
@@ -114,6 +120,7 @@ json stokes_json(const RunReport& r) {
   for (const StokesReport& of : r.stokes)
     list.push_back({{"stokes", imager::stokes_name(of.stokes)},
                     {"error", error_json(r, of)},
+                    {"noise", noise_json(r, of)},
                     {"clean", clean_json(of.clean)},
                     {"residual_histogram", histogram_json(of.histogram)}});
   return list;
@@ -163,6 +170,7 @@ json report_json(const RunReport& r) {
           {"warnings", r.warnings},
           {"kernel", kernel_json(r.gridding)},
           {"error", error_json(r, first)},
+          {"noise", noise_json(r, first)},
           {"visibilities", counts_json(r.counts)},
           {"timings_s", timings_json(r)},
           {"timings_expected_s", expected_json(r.expected)},

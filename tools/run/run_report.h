@@ -37,6 +37,7 @@ struct RunReport {
   std::vector<StokesReport> stokes = {{}};  ///< at least one
   std::optional<double> measured_predict_rms;
   imager::SampleCounts counts;
+  double predicted_noise_jy = 0;  ///< a beam, from the weights; 0 = not known
   const BeamChoice* beams = nullptr;
   const OutsideReport* outside = nullptr;
   double wall_clock_s = 0;
@@ -48,10 +49,10 @@ struct RunReport {
 /// Of all Stokes parameters, over each image's RMS.
 double largest_expected_error(const RunReport& report);
 
-/// report.json, with the keys of the project's design; `beam.how`, `beam.misfit`, `beam_by_quadrant`, `memory_gib_estimated`,
-/// `warnings`, `command_line`, `outside`, `outside_search`, `timings_s.total`, `timings_expected_s` (by
-/// stage, with `total`; null where nothing was expected), `clean.major_cycles_log`, `clean.kept_cycle`
-/// (whose model was kept), `residual_histogram` (see histogram_json()) and `stokes` (a list of {stokes, error, clean,
+/// report.json, with the keys of the project's design; `noise` {predicted_jy, measured_jy}, `beam.how`, `beam.misfit`,
+/// `beam_by_quadrant`, `memory_gib_estimated`, `warnings`, `command_line`, `outside`, `outside_search`, `timings_s.total`,
+/// `timings_expected_s` (by stage, with `total`; null where nothing was expected), `clean.major_cycles_log`, `clean.kept_cycle`
+/// (whose model was kept), `residual_histogram` (see histogram_json()) and `stokes` (a list of {stokes, error, noise, clean,
 /// residual_histogram}, of which the first is what the report's own keys hold) are additions.
 nlohmann::json report_json(const RunReport& report);
 

@@ -79,6 +79,12 @@ double minor_seconds(const RunWork& w) {
   return component_s * w.components + 3e-8 * w.pixels * w.major_cycles;
 }
 
+/// The density of samples, the factors of its cells, and the samples' weights from them.
+double weight_seconds(const RunWork& w) {
+  constexpr double sample_s = 1.5e-8, taper_s = 1e-8, cell_s = 3e-9;
+  return shared((sample_s + (w.tapered ? taper_s : 0)) * w.samples, w.threads) + cell_s * w.pixels / 2;
+}
+
 /// A search of a wider field: images, some major cycles of CLEAN, and a last prediction.
 double wider_seconds(const RunWork& w) {
   RunWork wider = w;
@@ -99,6 +105,7 @@ double wider_seconds(const RunWork& w) {
 
 std::vector<StageSeconds> counted_seconds(const RunWork& w) {
   std::vector<StageSeconds> stages{{"read", "reading", 4e-9 * w.samples + 1e-7 * w.rows}};
+  if (w.density) stages.push_back({"weights", "weighting by density", weight_seconds(w)});
   add_pass(w, true, 1, stages);
   stages.push_back({"statistics", "statistics", 8e-9 * w.pixels * (1 + w.major_cycles)});
   if (w.verified > 0) stages.push_back({"verify", "verifying", shared(direct_term_s * w.samples * w.verified, w.threads)});

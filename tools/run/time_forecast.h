@@ -21,6 +21,8 @@ struct RunWork {
   int threads = 1;
   double verified = 0;  ///< pixels and samples of --verify
   std::string deconvolver;
+  bool density = false;  ///< whether weights follow from it
+  bool tapered = false;
   double components = 0;
   double major_cycles = 0;                      ///< that predicted and subtracted
   const imager::GriddingPlan* wider = nullptr;  ///< of the field that is searched for sources outside; null without

@@ -96,6 +96,8 @@ std::string headline(const json& report) {
     facts.emplace_back("Dirty image", with_unit(member(histogram, "noise_jy"), "Jy/beam") +
                                           tag("small", "noise; largest " + with_unit(member(histogram, "max_jy"), "Jy/beam")));
   }
+  if (const json& predicted = member(member(report, "noise"), "predicted_jy"); predicted.is_number())
+    facts.back().second += tag("small", with_unit(predicted, "Jy/beam") + " predicted from the weights");
   const json& total = member(member(report, "timings_s"), "total");
   const json& memory = member(report, "memory_gib_peak");
   facts.emplace_back("Run",

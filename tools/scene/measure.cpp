@@ -9,6 +9,7 @@
 #include "imager/parallel.h"
 #include "imager/stage_times.h"
 #include "ms_io/measurement_set.h"
+#include "tools/run/weighting_options.h"
 
 namespace misfit::tools {
 namespace {
@@ -56,14 +57,23 @@ Scene::Scene(const ImageOptions& options, bool quick, const imager::Progress& pr
   reach_ = set.reach();
   const imager::Stopwatch watch;
   const auto stream = set.open();
-  while (auto block = stream->next()) {
-    w_spread_.add(*block);
-    add_to(fingerprint_, *block);
-    visibilities_.append(std::move(block));
-  }
+  while (auto block = stream->next()) visibilities_.append(std::move(block));
   read_s_ = watch.seconds();
+  weigh();
   truth_ =
       std::make_unique<SceneTruth>(visibilities_, geometry_, pixels_for(visibilities_.samples(), quick), threads_, progress);
+}
+
+void Scene::weigh() {
+  imager::StageTimes none;
+  const auto weights = imager::make_imaging_weights(
+      visibilities_, weighting_options(options_), geometry_, threads_, [](auto, auto) {}, none);
+  if (weights) weights->put_on(visibilities_, threads_);
+  const auto stream = visibilities_.open();
+  while (const auto block = stream->next()) {
+    w_spread_.add(*block);
+    add_to(fingerprint_, *block);
+  }
 }
 
 Scene::Plans Scene::plans_of(const ScenePoint& point) const {

@@ -48,7 +48,7 @@ struct PointResult {
 /// Σ w, Σ w|V|, Σ w Re V, Σ w Im V and a sum of UVW, which other data hardly share.
 using Fingerprint = std::array<double, 5>;
 
-/// The visibilities of a scene, in memory, and what the images of them should be.
+/// The visibilities of a scene, in memory with the weights of its image, and what the images of them should be.
 class Scene {
  public:
   /// Reads the MeasurementSet and takes direct sums, at fewer pixels where it is to be quick. Throws as MeasurementSet does.
@@ -71,6 +71,8 @@ class Scene {
   /// One for each pass that `misfit image` would make.
   using Plans = std::vector<imager::GriddingPlan>;
 
+  /// Weighs the visibilities for the image.
+  void weigh();
   Plans plans_of(const ScenePoint& point) const;
   imager::DirtyImages image(const imager::Transform& transform, SceneSeconds& seconds) const;
   void predict(const imager::Transform& transform, SceneSeconds& seconds, SceneErrors* errors) const;

@@ -16,6 +16,7 @@
 #include "tools/base/text.h"
 #include "tools/drawing/gnuplot.h"
 #include "tools/run/selection_options.h"
+#include "tools/run/weighting_options.h"
 
 namespace misfit::tools {
 namespace {
@@ -43,6 +44,8 @@ Program misfit(const ImageOptions& scene, const std::string& accuracy, int threa
   const std::vector<std::string> selection = words_of(scene.selection);
   words.insert(words.end(), selection.begin(), selection.end());
   add("--datacolumn", scene.datacolumn);
+  const std::vector<std::string> weighting = weighting_arguments(scene);
+  words.insert(words.end(), weighting.begin(), weighting.end());
   add("--gridder", scene.gridder);
   add("--accuracy", accuracy);
   add("--threads", std::to_string(threads));
@@ -134,6 +137,7 @@ void run_once(Program& program, const std::string& vis, const SceneTruth& truth)
 std::string why_not_wsclean(const ImageOptions& scene) {
   if (!words_of(scene.selection).empty()) return "it selects in a way of its own, and might take other samples";
   if (scene.datacolumn != "data" && scene.datacolumn != "corrected") return "it is not given --datacolumn " + scene.datacolumn;
+  if (!weighting_options(scene).none()) return "it is given natural weights alone";
   return is_installed("wsclean") ? "" : "it is not installed";
 }
 

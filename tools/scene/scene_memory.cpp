@@ -9,6 +9,7 @@
 #include "ms_io/measurement_set.h"
 #include "tools/base/memory.h"
 #include "tools/base/numbers.h"
+#include "tools/run/weighting_options.h"
 
 namespace misfit::tools {
 namespace {
@@ -44,7 +45,8 @@ void check_scene_memory(const ImageOptions& scene) {
                            .rows = static_cast<double>(set.rows()),
                            .samples = samples,
                            .block_samples = static_cast<double>(ms_io::MeasurementSet::usual_block_samples),
-                           .verify = true},
+                           .verify = true,
+                           .density = weighting_options(scene).needs_density()},
                           {.keep = true});
   const double predicted = samples * sizeof(std::complex<double>);
   const double needed = use.total() + predicted;

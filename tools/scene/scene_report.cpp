@@ -9,6 +9,7 @@
 #include "tools/base/interrupt.h"
 #include "tools/base/numbers.h"
 #include "tools/run/selection_options.h"
+#include "tools/run/weighting_options.h"
 #include "tools/scene/measure.h"
 #include "tools/scene/programs.h"
 #include "tools/scene/results_file.h"
@@ -40,6 +41,7 @@ json owner_of(const SceneReportOptions& o, const Scene& scene) {
           {"--datacolumn", s.datacolumn},
           {"--imsize", s.imsize},
           {"--cell", s.cell},
+          {"--weighting", weighting_text(s)},
           {"--gridder", s.gridder},
           {"--threads", scene.threads()},
           {"--quick", o.quick},
@@ -157,7 +159,7 @@ Report scene_report(const SceneReportOptions& o, ProgressLine& progress) {
   Report report{.title = "Error against run time",
                 .introduction = o.scene.vis + ": " + grouped(static_cast<long long>(scene.samples())) + " samples, " +
                                 std::to_string(g.width) + " × " + std::to_string(g.height) + " pixels of " + o.scene.cell +
-                                ", natural weighting, " + std::to_string(scene.threads()) +
+                                ", weighting: " + weighting_text(o.scene) + ", " + std::to_string(scene.threads()) +
                                 (scene.threads() == 1 ? " thread" : " threads") +
                                 ". Every point is one way to make the dirty image, run by turns with the others.",
                 .sections = {}};

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <vector>
+
+#include "imager/weighting/uv_density.h"
+
+namespace misfit::imager {
+
+/// What the cells of a density multiply the weights of their samples by, in its order; 0 in cells without samples.
+
+/// 1/W_k, or 1/(Σ W over the cells within `reach` columns and rows of k): uniform, and superuniform weights. The whole plane
+/// counts, across v = 0 too.
+std::vector<float> uniform_factors(const UvDensity& density, int reach = 0);
+
+/// Briggs's f² = (5 · 10^−R)² / (Σ_k W_k² / Σ_i w_i). Both sums run over samples and conjugates, as CASA's do; over half the
+/// plane both halve, and f² is the same. Briggs 1995, High fidelity deconvolution of moderately resolved sources (thesis, New
+/// Mexico Tech), section 3.
+double briggs_f2(const UvDensity& density, double robust);
+
+/// 1/(1 + W_k f²).
+std::vector<float> briggs_factors(const UvDensity& density, double f2);
+
+}  // namespace misfit::imager

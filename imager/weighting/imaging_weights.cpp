@@ -1,0 +1,146 @@
+#include "imager/weighting/imaging_weights.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "imager/constants.h"
+#include "imager/parallel.h"
+#include "imager/weighting/cell_factors.h"
+
+namespace misfit::imager {
+namespace {
+
+std::vector<float> factors_of(const UvDensity& density, const WeightingOptions& options, double f2) {
+  if (options.weighting == Weighting::briggs) return briggs_factors(density, f2);
+  return uniform_factors(density, options.weighting == Weighting::superuniform ? options.box_reach : 0);
+}
+
+/// −ln of the taper's factor for a row's channels. [channel]
+class RowTaper {
+ public:
+  RowTaper(const std::optional<UvTaper>& taper, const std::vector<double>& frequency_hz) : taper_(taper) {
+    for (const double frequency : frequency_hz) per_m2_.push_back(std::pow(frequency / speed_of_light_m_s, 2));
+  }
+  void set_row(const double* uvw_m) {
+    if (taper_) exponent_m2_ = taper_exponent_m2(*taper_, uvw_m[0], uvw_m[1]);
+  }
+  double at(std::size_t channel) const { return taper_ ? std::exp(-exponent_m2_ * per_m2_[channel]) : 1; }
+
+ private:
+  const std::optional<UvTaper>& taper_;
+  std::vector<double> per_m2_;
+  double exponent_m2_ = 0;
+};
+
+std::shared_ptr<VisibilityBlock> with_weights(const VisibilityBlock& block, std::vector<float> weight) {
+  auto copy = std::make_shared<VisibilityBlock>();
+  static_cast<SampleCoordinates&>(*copy) = block;
+  copy->visibility = block.visibility;
+  copy->weight = std::move(weight);
+  copy->counts = block.counts;
+  return copy;
+}
+
+}  // namespace
+
+WeightSums& WeightSums::operator+=(const WeightSums& other) {
+  natural += other.natural;
+  image += other.image;
+  square_over_natural += other.square_over_natural;
+  return *this;
+}
+
+WeightTotals& WeightTotals::operator+=(const WeightTotals& other) {
+  sums += other.sums;
+  w_spread += other.w_spread;
+  return *this;
+}
+
+double WeightSums::noise_jy() const {
+  return std::sqrt(square_over_natural) / (2 * image);
+}
+
+double WeightSums::natural_noise_jy() const {
+  return 1 / (2 * std::sqrt(natural));
+}
+
+ImagingWeights::ImagingWeights(const ImageGeometry& geometry, const UvTaper& taper) : cells_(geometry), taper_(taper) {}
+
+ImagingWeights::ImagingWeights(const UvDensity& density, const WeightingOptions& options)
+    : cells_(density.cells()),
+      taper_(options.taper),
+      f2_(options.weighting == Weighting::briggs ? briggs_f2(density, options.robust) : 0),
+      factor_(factors_of(density, options, f2_)) {
+  filled_ = static_cast<std::uint64_t>(std::count_if(factor_.begin(), factor_.end(), [](float x) { return x > 0; }));
+}
+
+WeightedBlock ImagingWeights::of(const VisibilityBlock& block) const {
+  WeightedBlock made;
+  const auto first = with_weights(block, weights_of(block, made.totals.sums));
+  for (const auto& other : block.other_stokes) first->other_stokes.push_back(with_weights(*other, first->weight));
+  made.totals.w_spread.add(*first);
+  made.block = first;
+  return made;
+}
+
+WeightTotals ImagingWeights::put_on(StoredVisibilities& visibilities, int threads) const {
+  std::vector<std::shared_ptr<const VisibilityBlock>>& blocks = visibilities.blocks();
+  std::vector<WeightTotals> part(blocks.size());
+  parallel_for(blocks.size(), threads, [&](std::size_t b) {
+    WeightedBlock made = of(*blocks[b]);
+    blocks[b] = std::move(made.block);
+    part[b] = made.totals;
+  });
+  WeightTotals totals;
+  for (const WeightTotals& of_block : part) totals += of_block;
+  return totals;
+}
+
+std::vector<float> ImagingWeights::weights_of(const VisibilityBlock& block, WeightSums& sums) const {
+  constexpr float least = std::numeric_limits<float>::min();
+  const std::size_t channels = block.channels();
+  const std::vector<double> turns = cells_.turns_per_m(block.frequency_hz);
+  RowTaper taper(taper_, block.frequency_hz);
+  std::vector<float> weight(block.samples());
+  std::vector<std::uint32_t> cell(channels);
+  for (std::size_t row = 0; row < block.rows(); ++row) {
+    cells_.of_row(&block.uvw_m[3 * row], turns, cell.data());
+    taper.set_row(&block.uvw_m[3 * row]);
+    for (std::size_t c = 0; c < channels; ++c) {
+      const double natural{block.weight[row * channels + c]};
+      if (natural == 0) continue;
+      float& made = weight[row * channels + c];
+      made = least;
+      if (cell[c] == UvCells::outside) continue;
+      const double factor = (factor_.empty() ? 1 : double{factor_[cell[c]]}) * taper.at(c);
+      made = std::max(least, static_cast<float>(natural * factor));
+      sums += {natural, natural * factor, natural * factor * factor};
+    }
+  }
+  return weight;
+}
+
+std::shared_ptr<const ImagingWeights> make_imaging_weights(const VisibilitySource& source, const WeightingOptions& options,
+                                                           const ImageGeometry& geometry, int threads, const Progress& progress,
+                                                           StageTimes& times) {
+  if (options.none()) return nullptr;
+  if (!options.needs_density()) return std::make_shared<ImagingWeights>(geometry, *options.taper);
+  UvDensity density(geometry, threads);
+  std::uint64_t done = 0;
+  const auto stream = source.open();
+  const auto next = [&] {
+    const StageTimer timer(times, "read");
+    return stream->next();
+  };
+  while (const auto block = next()) {
+    const StageTimer timer(times, "weights");
+    density.add(*block);
+    done += block->samples();
+    progress(done, source.samples());
+  }
+  const StageTimer timer(times, "weights");
+  return std::make_shared<ImagingWeights>(density, options);
+}
+
+}  // namespace misfit::imager

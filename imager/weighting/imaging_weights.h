@@ -1,0 +1,98 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "imager/extent.h"
+#include "imager/imaging.h"
+#include "imager/stored_visibilities.h"
+#include "imager/weighting/uv_density.h"
+#include "imager/weighting/uv_taper.h"
+
+namespace misfit::imager {
+
+enum class Weighting { natural, uniform, superuniform, briggs };
+
+/// How the weights of an image follow from those of the data, w. With W_k, the density of the sample's cell (see UvDensity):
+///   natural       w
+///   uniform       w / W_k
+///   superuniform  w / Σ W, over the cells within `box_reach` of it
+///   briggs        w / (1 + W_k f²), see briggs_f2
+/// each times the taper. The taper does not enter the density, in CASA neither.
+struct WeightingOptions {
+  Weighting weighting = Weighting::natural;
+  double robust = 0.5;  ///< briggs: −2, nearly uniform, to 2, nearly natural
+  int box_reach = 3;    ///< superuniform: columns and rows on either side
+  std::optional<UvTaper> taper{};
+
+  bool needs_density() const { return weighting != Weighting::natural; }
+  /// Whether the data's weights stay as they are.
+  bool none() const { return !needs_density() && !taper; }
+};
+
+/// Sums over samples within 1/(2 cell): w those of the data, w' those of the image.
+struct WeightSums {
+  double natural = 0;              ///< Σ w
+  double image = 0;                ///< Σ w'
+  double square_over_natural = 0;  ///< Σ w'²/w
+
+  /// Of data that are imaged with their own weights.
+  static WeightSums of_natural(double weight) { return {weight, weight, weight}; }
+  WeightSums& operator+=(const WeightSums& other);
+
+  /// The standard deviation of an image's noise in Jy/beam, where w is 1/(4 σ²) of the data's noise in Jy (see
+  /// VisibilityBlock::weight): √(Σ w'²/(4w)) / Σ w'. It is as right as the weights that the data came with.
+  double noise_jy() const;
+  /// The least that any weights give: 1/(2 √Σ w).
+  double natural_noise_jy() const;
+};
+
+/// What the weights of an image sum up to.
+struct WeightTotals {
+  WeightSums sums;
+  WSpread w_spread;
+
+  WeightTotals& operator+=(const WeightTotals& other);
+};
+
+/// A block with its weights for the image.
+struct WeightedBlock {
+  std::shared_ptr<const VisibilityBlock> block;
+  WeightTotals totals;
+};
+
+/// The weights of an image.
+class ImagingWeights {
+ public:
+  /// Natural ones, tapered.
+  ImagingWeights(const ImageGeometry& geometry, const UvTaper& taper);
+  /// By density; `options.weighting` is not natural.
+  ImagingWeights(const UvDensity& density, const WeightingOptions& options);
+
+  /// A copy of `block`, with its other Stokes parameters, that has the weights of the image. What is usable stays so: samples
+  /// beyond 1/(2 cell), and what a taper leaves nothing of, keep the smallest weight that there is.
+  WeightedBlock of(const VisibilityBlock& block) const;
+  /// Puts such copies in the place of all blocks.
+  WeightTotals put_on(StoredVisibilities& visibilities, int threads) const;
+
+  double f2() const { return f2_; }                       ///< of Briggs weights, else 0
+  std::uint64_t cells_filled() const { return filled_; }  ///< of the half plane's; 0 without a density
+  const UvCells& cells() const { return cells_; }
+
+ private:
+  std::vector<float> weights_of(const VisibilityBlock& block, WeightSums& sums) const;
+
+  UvCells cells_;
+  std::optional<UvTaper> taper_;
+  double f2_ = 0;
+  std::uint64_t filled_ = 0;
+  std::vector<float> factor_;  ///< [v][u]; empty: 1
+};
+
+/// The weights that `options` ask for, after a pass over `source` where they follow from its density; null where they are the
+/// data's. Stages timed: "read", "weights".
+std::shared_ptr<const ImagingWeights> make_imaging_weights(const VisibilitySource& source, const WeightingOptions& options,
+                                                           const ImageGeometry& geometry, int threads, const Progress& progress,
+                                                           StageTimes& times);
+
+}  // namespace misfit::imager

@@ -1,0 +1,41 @@
+#include "imager/weighting/uv_cells.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "imager/constants.h"
+
+namespace misfit::imager {
+
+UvCells::UvCells(const ImageGeometry& geometry)
+    : width_(geometry.width), height_(geometry.height), cell_rad_(geometry.cell_rad), origin_((geometry.width + 1) / 2) {}
+
+std::vector<double> UvCells::turns_per_m(const std::vector<double>& frequency_hz) const {
+  std::vector<double> turns;
+  turns.reserve(frequency_hz.size());
+  for (const double frequency : frequency_hz) turns.push_back(frequency / speed_of_light_m_s * cell_rad_);
+  return turns;
+}
+
+/// Written so that the compiler makes vectors of it: what is outside is placed at 0 and marked afterwards.
+void UvCells::of_row(const double* uvw_m, const std::vector<double>& turns_per_m, std::uint32_t* cell) const {
+  if (!std::isfinite(uvw_m[0]) || !std::isfinite(uvw_m[1])) {
+    std::fill_n(cell, turns_per_m.size(), outside);
+    return;
+  }
+  const bool other_half = uvw_m[1] < 0 || (uvw_m[1] == 0 && uvw_m[0] < 0);
+  const double u_m = other_half ? -uvw_m[0] : uvw_m[0], v_m = std::abs(uvw_m[1]);
+  const double width = width_, height = height_;
+  const std::uint32_t columns = static_cast<std::uint32_t>(this->columns());
+  for (std::size_t c = 0; c < turns_per_m.size(); ++c) {
+    const double u_turns = u_m * turns_per_m[c], v_turns = v_m * turns_per_m[c];
+    const bool inside = std::abs(u_turns) <= 0.5 && v_turns <= 0.5;
+    const double u = inside ? u_turns * width : 0, v = inside ? v_turns * height : 0;
+    const int towards_zero = static_cast<int>(u);
+    const int column = towards_zero - (u < towards_zero ? 1 : 0) + origin_;
+    const std::uint32_t at = static_cast<std::uint32_t>(static_cast<int>(v)) * columns + static_cast<std::uint32_t>(column);
+    cell[c] = inside ? at : outside;
+  }
+}
+
+}  // namespace misfit::imager

@@ -1,0 +1,196 @@
+#include "imager/weighting/imaging_weights.h"
+
+#include <boost/test/data/test_case.hpp>
+#include <boost/test/unit_test.hpp>
+#include <cmath>
+
+#include "imager/beam.h"
+#include "imager/direct/direct_transform.h"
+#include "imager/noise.h"
+#include "imager/plan/gridding_plan.h"
+#include "imager/streamed_visibilities.h"
+#include "tests/imager/comparison.h"
+#include "tests/imager/random_samples.h"
+#include "tests/imager/weighting/plain_density.h"
+
+namespace bdata = boost::unit_test::data;
+using namespace misfit::imager;
+using namespace misfit::imager::testing;
+
+namespace {
+
+constexpr double cell_rad = 1e-5;
+const ImageGeometry geometry{64, 48, cell_rad, {}};
+const UvTaper taper = taper_of_radii({20e3, 15e3, 0.4});
+
+const std::vector<WeightingOptions> every_way{{.weighting = Weighting::uniform},
+                                              {.weighting = Weighting::superuniform, .box_reach = 2},
+                                              {.weighting = Weighting::briggs, .robust = 0},
+                                              {.weighting = Weighting::briggs, .robust = -0.5, .taper = taper},
+                                              {.weighting = Weighting::natural, .taper = taper}};
+
+std::vector<VisibilityBlock> some_blocks() {
+  std::vector<VisibilityBlock> blocks;
+  for (unsigned seed = 1; seed < 5; ++seed) {
+    blocks.push_back(random_samples_with_w(100 * seed, 3, cell_rad, 50, seed, 1.1));
+    blocks.back().weight[seed] = 0;
+    blocks.back().counts.used = blocks.back().counts.samples_read = blocks.back().samples();
+  }
+  return blocks;
+}
+
+std::shared_ptr<const ImagingWeights> weights_of(const VisibilitySource& source, const WeightingOptions& options, int threads) {
+  StageTimes times;
+  return make_imaging_weights(source, options, geometry, threads, ignore_progress, times);
+}
+
+std::vector<float> weights_of_a_pass(const VisibilitySource& source) {
+  std::vector<float> weights;
+  const auto stream = source.open();
+  while (const auto block = stream->next()) weights.insert(weights.end(), block->weight.begin(), block->weight.end());
+  return weights;
+}
+
+/// What the taper of `every_way` is by its definition.
+double plain_taper(double u, double v) {
+  const double along = u * std::sin(0.4) + v * std::cos(0.4), across = -u * std::cos(0.4) + v * std::sin(0.4);
+  return std::exp(-std::log(2) * (std::pow(along / 20e3, 2) + std::pow(across / 15e3, 2)));
+}
+
+/// Samples on a lattice that fills the uv plane evenly.
+VisibilityBlock even_samples() {
+  constexpr int side = 96;
+  VisibilityBlock block;
+  block.frequency_hz = {speed_of_light_m_s};
+  for (int row = -side / 2; row < side / 2; ++row)
+    for (int column = -side / 2; column < side / 2; ++column)
+      for (const double x : {(column + 0.5) / (side * cell_rad), (row + 0.5) / (side * cell_rad), 0.0})
+        block.uvw_m.push_back(x);
+  block.visibility.assign(block.rows(), 1);
+  block.weight.assign(block.rows(), 1);
+  return block;
+}
+
+}  // namespace
+
+BOOST_AUTO_TEST_SUITE(imaging_weights)
+
+BOOST_AUTO_TEST_CASE(natural_weights_without_a_taper_are_those_of_the_data) {
+  BOOST_TEST(weights_of(stored(some_blocks()), {}, 1) == nullptr);
+}
+
+BOOST_AUTO_TEST_CASE(weights_are_their_formulas_times_the_taper) {
+  const std::vector<VisibilityBlock> blocks = some_blocks();
+  const PlainDensity plain(geometry, blocks);
+  const auto uniform = weights_of(stored(blocks), every_way[0], 1), briggs = weights_of(stored(blocks), every_way[3], 1),
+             natural = weights_of(stored(blocks), every_way[4], 1);
+  for (const VisibilityBlock& block : blocks) {
+    const auto by_uniform = uniform->of(block).block, by_briggs = briggs->of(block).block, by_taper = natural->of(block).block;
+    plain.for_each(block, [&](std::size_t row, std::size_t channel, const PlainDensity::Cell& cell, std::uint32_t) {
+      const std::size_t i = row * block.channels() + channel;
+      const double w{block.weight[i]}, per_m = block.frequency_hz[channel] / speed_of_light_m_s;
+      const double tapered = plain_taper(block.uvw_m[3 * row] * per_m, block.uvw_m[3 * row + 1] * per_m);
+      // Two roundings to single precision.
+      BOOST_TEST(std::abs(by_uniform->weight[i] / (w / plain.at(cell)) - 1) < 2e-7);
+      BOOST_TEST(std::abs(by_briggs->weight[i] / (w / (1 + plain.at(cell) * briggs->f2()) * tapered) - 1) < 2e-7);
+      BOOST_TEST(std::abs(by_taper->weight[i] / (w * tapered) - 1) < 2e-7);
+    });
+  }
+}
+
+BOOST_DATA_TEST_CASE(what_is_usable_stays_usable, bdata::xrange(every_way.size()), way) {
+  const std::vector<VisibilityBlock> blocks = some_blocks();
+  WeightingOptions options = every_way[way];
+  if (options.taper) options.taper = taper_of_radii({10, 10, 0});  // of which hardly anything is left
+  const auto weights = weights_of(stored(blocks), options, 1);
+  for (const VisibilityBlock& block : blocks) {
+    const auto weighted = weights->of(block).block;
+    for (std::size_t i = 0; i < block.samples(); ++i) BOOST_TEST((weighted->weight[i] > 0) == (block.weight[i] > 0));
+  }
+}
+
+BOOST_DATA_TEST_CASE(threads_and_whether_blocks_are_kept_leave_every_bit, bdata::xrange(every_way.size()), way) {
+  const StoredVisibilities source = stored(some_blocks());
+  std::vector<float> expected;
+  WeightSums sums;
+  WSpread spread;
+  for (const auto& [keep, threads] : {std::pair{true, 1}, {true, 3}, {false, 2}}) {
+    StreamedVisibilities streamed(source, {.keep = keep});
+    streamed.apply(weights_of(streamed, every_way[way], threads), threads);
+    const std::vector<float> first = weights_of_a_pass(streamed);
+    BOOST_CHECK(weights_of_a_pass(streamed) == first);
+    BOOST_TEST(streamed.counts().used == 3000U);
+    if (expected.empty()) {
+      expected = first;
+      sums = streamed.weight_sums();
+      spread = streamed.w_spread();
+    }
+    BOOST_CHECK(first == expected);
+    BOOST_TEST(streamed.weight_sums().noise_jy() == sums.noise_jy());
+    BOOST_TEST(streamed.w_spread().weighted_w_square == spread.weighted_w_square);
+  }
+  double weight = 0;
+  for (const float w : expected) weight += double{w};
+  BOOST_TEST(std::abs(spread.weight / weight - 1) < 1e-13);
+  BOOST_TEST(std::abs(sums.image / weight - 1) < 1e-6);  // single precision
+}
+
+BOOST_AUTO_TEST_CASE(other_stokes_parameters_have_the_same_weights_and_their_own_visibilities) {
+  VisibilityBlock block = some_blocks().front();
+  const auto other = std::make_shared<VisibilityBlock>(block);
+  for (auto& visibility : other->visibility) visibility *= 2;
+  block.other_stokes.push_back(other);
+  const auto weighted = weights_of(stored({block}), every_way[3], 1)->of(block).block;
+  BOOST_REQUIRE(weighted->other_stokes.size() == 1);
+  BOOST_CHECK(weighted->other_stokes[0]->weight == weighted->weight);
+  BOOST_CHECK(weighted->other_stokes[0]->visibility == other->visibility);
+  BOOST_CHECK(weighted->visibility == block.visibility);
+}
+
+BOOST_AUTO_TEST_CASE(evenly_spread_samples_tapered_by_a_beam_have_it_as_their_psf) {
+  const Beam asked{6e-5, 4e-5, 0.5};
+  const ImageGeometry image{48, 48, cell_rad, {}};
+  const ImagingWeights weights(image, taper_of_beam(asked));
+  const StoredVisibilities source = stored({*weights.of(even_samples()).block});
+  StageTimes times;
+  const DirtyImages made = make_dirty_images(source, DirectTransform(image, 2), true, ignore_progress, times);
+  double largest = 0;
+  const double sine = std::sin(asked.position_angle_rad), cosine = std::cos(asked.position_angle_rad);
+  for (int row = 0; row < image.height; ++row)
+    for (int column = 0; column < image.width; ++column) {
+      const double l = image.l(column), m = image.m(row);
+      const double along = (l * sine + m * cosine) / asked.major_rad, across = (m * sine - l * cosine) / asked.minor_rad;
+      const double gaussian = std::exp(-4 * std::log(2) * (along * along + across * across));
+      largest = std::max(largest, std::abs(made.psf.at(row, column) - gaussian));
+    }
+  // What is left of the taper at the plane's edge: exp(−(π 4)²/(16 ln 2)) = 7e-7.
+  BOOST_TEST(largest < 2e-6);
+}
+
+BOOST_DATA_TEST_CASE(the_noise_of_an_image_is_the_one_predicted, bdata::make({0, 2, 4, 5}), way) {
+  // Visibilities of noise whose σ² is 1/(4 w), w from 0.5 to 1.5, over a plane that is crowded in the middle.
+  const ImageGeometry image{256, 256, cell_rad, {}};
+  std::vector<VisibilityBlock> blocks{random_samples(3000, 2, cell_rad, 1), random_samples(6000, 2, cell_rad, 2, 0.3)};
+  for (VisibilityBlock& block : blocks)
+    for (std::size_t i = 0; i < block.samples(); ++i) block.visibility[i] /= 2 * std::sqrt(block.weight[i]);
+  StoredVisibilities source = stored(blocks);
+  WeightSums sums;
+  StageTimes times;
+  if (way < 5) {
+    WeightingOptions options = every_way[static_cast<std::size_t>(way)];
+    sums = make_imaging_weights(source, options, image, 1, ignore_progress, times)->put_on(source, 1).sums;
+  }
+  GriddingRequest request;
+  request.geometry = image;
+  request.accuracy = 1e-4;
+  const auto transform = make_plane_transform(plan_gridding(request).options);
+  const DirtyImages made = make_dirty_images(source, *transform, false, ignore_progress, times);
+  if (way == 5) sums = WeightSums::of_natural(made.sums.weight);
+  BOOST_TEST(std::abs(sums.image / made.sums.weight - 1) < 1e-6);
+  // The image has at least as many independent values as the beam of the sparsest of these, 12 pixels wide, leaves: 450; their
+  // RMS is right to 1/√900, three of which are 10 %.
+  BOOST_TEST(std::abs(root_mean_square(made.dirty) / sums.noise_jy() - 1) < 0.1);
+  BOOST_TEST(sums.noise_jy() >= sums.natural_noise_jy() * (1 - 1e-12));
+}
+
+BOOST_AUTO_TEST_SUITE_END()

@@ -1,0 +1,146 @@
+#include "tools/run/weighting_options.h"
+
+#include <cmath>
+#include <numbers>
+#include <stdexcept>
+
+#include "tools/base/numbers.h"
+#include "tools/base/quantity.h"
+#include "tools/base/text.h"
+
+namespace misfit::tools {
+namespace {
+
+using imager::Weighting;
+
+constexpr double default_robust = 0.5;
+constexpr int default_npixels = 6;
+
+[[noreturn]] void refuse(const std::string& option, const std::string& value, const std::string& expected) {
+  throw std::invalid_argument("--" + option + " " + value + ": expected " + expected);
+}
+
+Weighting weighting_of(const std::string& name) {
+  if (name == "uniform") return Weighting::uniform;
+  if (name == "superuniform") return Weighting::superuniform;
+  return name == "briggs" ? Weighting::briggs : Weighting::natural;
+}
+
+int box_reach(const ImageOptions& o) {
+  return (o.npixels == 0 ? default_npixels : o.npixels) / 2;
+}
+
+bool is_uv_distance(const std::string& text) {
+  return text.ends_with("lambda");
+}
+
+/// The taper that `text` names, one to three values; throws std::invalid_argument that shows the one that is wrong.
+imager::UvTaper parse_taper(const std::string& text) {
+  std::vector<std::string> parts;
+  for (std::string_view rest = text;;) {
+    const std::size_t comma = rest.find(',');
+    parts.emplace_back(trimmed(rest.substr(0, comma)));
+    if (comma == std::string_view::npos) break;
+    rest.remove_prefix(comma + 1);
+  }
+  if (parts.size() > 3) throw std::invalid_argument(std::to_string(parts.size()) + " values");
+  const bool uv = is_uv_distance(parts[0]);
+  if (parts.size() > 1 && is_uv_distance(parts[1]) != uv) throw std::invalid_argument("an angle beside wavelengths");
+  const auto size = [&](std::size_t i) {
+    const double value = uv ? parse_uv_distance_lambda(parts[i]) : parse_angle_rad(parts[i]);
+    if (!(value > 0)) throw std::invalid_argument("'" + parts[i] + "' is not above 0");
+    return value;
+  };
+  const double first = size(0), second = parts.size() > 1 ? size(1) : first;
+  if (parts.size() > 2 && !has_unit(parts[2])) throw std::invalid_argument("position angle '" + parts[2] + "' has no unit");
+  const double angle = parts.size() > 2 ? parse_angle_rad(parts[2]) : 0;
+  return uv ? imager::taper_of_radii({first, second, angle}) : imager::taper_of_beam({first, second, angle});
+}
+
+std::string cells_text(const imager::ImageGeometry& geometry) {
+  const imager::UvCells cells(geometry);
+  return std::to_string(geometry.width) + " × " + std::to_string(geometry.height) + " cells of " +
+         significant(cells.width_lambda(), 3) + " × " + significant(cells.height_lambda(), 3) + " λ";
+}
+
+/// By what the weight of a sample is divided.
+std::string divisor_text(const ImageOptions& o) {
+  if (o.weighting == "uniform") return "divided by the weight of all samples and conjugates in the cell";
+  if (o.weighting == "briggs") return "divided by 1 + f² times the weight of all samples and conjugates in the cell";
+  const std::string side = std::to_string(2 * box_reach(o) + 1);
+  return "divided by the weight of all samples and conjugates in the " + side + " × " + side + " cells about it";
+}
+
+}  // namespace
+
+void declare_weighting(CLI::App& command, ImageOptions& o) {
+  command.add_option("--weighting", o.weighting, "natural, uniform, superuniform or briggs")
+      ->check(CLI::IsMember({"natural", "uniform", "superuniform", "briggs"}));
+  command.add_option("--robust", o.robust, "Of briggs: from -2, nearly uniform, to 2, nearly natural");
+  command.add_option("--npixels", o.npixels,
+                     "Of superuniform: density is summed from -npixels/2 to npixels/2 cells about a sample's; 0 means 6");
+  command.add_option("--uvtaper", o.uvtaper,
+                     "Taper by a Gaussian, MAJ[,MIN[,PA]]: its full width at half maximum on the sky, such as 5arcsec, or its "
+                     "half width in the uv plane, such as 3klambda; none when empty");
+}
+
+void check_weighting(const ImageOptions& o) {
+  const bool briggs = o.weighting == "briggs", superuniform = o.weighting == "superuniform";
+  if (!(o.robust >= -2 && o.robust <= 2)) refuse("robust", significant(o.robust, 6), "-2 to 2");
+  if (!briggs && o.robust != default_robust) refuse("robust", significant(o.robust, 6), "--weighting briggs beside it");
+  constexpr int most = 200;
+  if (o.npixels < 0 || o.npixels == 1 || o.npixels > most)
+    refuse("npixels", std::to_string(o.npixels), "2 to " + std::to_string(most) + " cells, or 0 (6)");
+  if (!superuniform && o.npixels != 0) refuse("npixels", std::to_string(o.npixels), "--weighting superuniform beside it");
+  if (o.uvtaper.empty()) return;
+  try {
+    parse_taper(o.uvtaper);
+  } catch (const std::invalid_argument& wrong) {
+    refuse("uvtaper", o.uvtaper,
+           std::string("MAJ, MAJ,MIN or MAJ,MIN,PA such as 5arcsec,4arcsec,30deg or 3klambda; ") + wrong.what());
+  }
+}
+
+imager::WeightingOptions weighting_options(const ImageOptions& o) {
+  imager::WeightingOptions options;
+  options.weighting = weighting_of(o.weighting);
+  options.robust = o.robust;
+  options.box_reach = box_reach(o);
+  if (!o.uvtaper.empty()) options.taper = parse_taper(o.uvtaper);
+  return options;
+}
+
+std::string weighting_text(const ImageOptions& o) {
+  std::string text = o.weighting == "briggs" ? "Briggs, robust " + significant(o.robust, 3) : o.weighting;
+  if (!o.uvtaper.empty()) text += ", tapered by " + o.uvtaper;
+  return text;
+}
+
+std::vector<std::string> weighting_arguments(const ImageOptions& o) {
+  std::vector<std::string> words{"--weighting", o.weighting};
+  if (o.weighting == "briggs") words.insert(words.end(), {"--robust", significant(o.robust, 6)});
+  if (o.npixels != 0) words.insert(words.end(), {"--npixels", std::to_string(o.npixels)});
+  if (!o.uvtaper.empty()) words.insert(words.end(), {"--uvtaper", o.uvtaper});
+  return words;
+}
+
+imager::Decision weighting_decision(const ImageOptions& o, const imager::ImageGeometry& geometry) {
+  if (weighting_options(o).needs_density())
+    return {"weighting", weighting_text(o),
+            "weights of the data " + divisor_text(o) + "; the image's uv grid has " + cells_text(geometry)};
+  return {"weighting", weighting_text(o),
+          o.uvtaper.empty() ? "weights of the data as they are, which give the least noise"
+                            : "weights of the data times a Gaussian"};
+}
+
+imager::Decision weights_decision(const imager::ImagingWeights& weights, const imager::WeightSums& sums) {
+  std::string because = "noise of " + with_prefix(sums.noise_jy(), "Jy/beam", 3) + " against " +
+                        with_prefix(sums.natural_noise_jy(), "Jy/beam", 3) + " predicted from the weights";
+  if (weights.cells_filled() > 0)
+    because += "; " + grouped(static_cast<long long>(weights.cells_filled())) + " cells of half the uv plane hold samples";
+  if (weights.f2() > 0) because += ", f² = " + significant(weights.f2(), 4);
+  return {"weights", significant(sums.noise_jy() / sums.natural_noise_jy(), 4) + " times the noise of natural weights",
+          because};
+}
+
+}  // namespace misfit::tools
