@@ -86,13 +86,14 @@ imager::CleanResult CleanStage::run(const CleanScene& scene, const nlohmann::jso
   double sidelobe = 0;
   {
     const imager::StageTimer timer(times, "CLEAN state");
-    owner.checksum = checksum({&scene.images.dirty, &scene.images.psf, mask_.get(), start_model_.get()});
+    owner.checksum = checksum({&scene.images.dirty.front(), &scene.images.psf, mask_.get(), start_model_.get()});
     state = begin(*minor, owner);
     sidelobe = max_sidelobe(scene);
   }
   const imager::CleanInput input{scene.source,
                                  scene.transform,
-                                 scene.images,
+                                 scene.images.dirty.front(),
+                                 scene.images.psf,
                                  sidelobe,
                                  std::max(o_.accuracy, scene.expected_error),
                                  mean_width_rad(scene.main_lobe) / geometry_.cell_rad};

@@ -13,8 +13,8 @@ std::vector<imager::HeaderCard> error_cards(const RunReport& report) {
     cards.push_back({"ERRBMAX", report.theory->bound_max, "bound on any pixel's error over image RMS"});
   }
   if (report.measured != nullptr) {
-    cards.push_back({"ERRMEAS", report.measured->rms, "measured RMS error over image RMS"});
-    cards.push_back({"ERRMMAX", report.measured->max, "largest measured error over image RMS"});
+    cards.push_back({"ERRMEAS", report.measured->image.front().rms, "measured RMS error over image RMS"});
+    cards.push_back({"ERRMMAX", report.measured->image.front().max, "largest measured error over image RMS"});
     cards.push_back({"ERRPRED", report.measured->predict_rms, "measured RMS error of prediction"});
   }
   // An image of zeros has no relative error, and a FITS header no number for that.

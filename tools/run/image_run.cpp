@@ -99,14 +99,15 @@ class ImageRun {
     count_samples();
     const imager::StageTimer timer(times_, "statistics");
     const imager::NeglectedPhase phase = imager::neglected_w_phase(reach_, source_->w_spread(), geometry_);
-    theory_ = imager::theoretical_error(made_.plan, made_.images.sums, imager::root_mean_square(made_.images.dirty), phase);
+    theory_ = imager::theoretical_error(made_.plan, made_.images.sums.front(),
+                                        imager::root_mean_square(made_.images.dirty.front()), phase);
     report_.theory = &theory_;
     if (!made_.promise_kept) warn(accuracy_warning(o_.accuracy, theory_));
   }
 
   /// What was read; samples that the pixel size cannot represent, and the pixel size that could.
   void count_samples() {
-    const imager::SampleSums& sums = made_.images.sums;
+    const imager::SampleSums& sums = made_.images.sums.front();
     report_.counts = source_->counts();
     report_.counts.outside_grid = sums.outside_grid;
     report_.counts.used = sums.used;
@@ -172,7 +173,7 @@ class ImageRun {
     imager::StageTimes own;  // its gridding is not this image's
     progress_.begin("sources outside", true);
     const double noise_jy =
-        cleaned_ ? cleaned_->report.final_state().rms_jy : imager::robust_noise(made_.images.dirty, threads_);
+        cleaned_ ? cleaned_->report.final_state().rms_jy : imager::robust_noise(made_.images.dirty.front(), threads_);
     outside_ = check_outside(*source_, made_.plan, *plan_.wider, made_.images, noise_jy, progress(), own);
     progress_.end();
     report_.outside = &outside_;
@@ -211,8 +212,9 @@ class ImageRun {
 
   void count_pixels() {
     const imager::StageTimer timer(times_, "statistics");
-    report_.histogram = cleaned_ ? pixel_histogram(cleaned_->residual, cleaned_->report.final_state().rms_jy, threads_)
-                                 : pixel_histogram(made_.images.dirty, imager::sampled_noise(made_.images.dirty), threads_);
+    report_.histogram =
+        cleaned_ ? pixel_histogram(cleaned_->residual, cleaned_->report.final_state().rms_jy, threads_)
+                 : pixel_histogram(made_.images.dirty.front(), imager::sampled_noise(made_.images.dirty.front()), threads_);
   }
 
   /// Nothing where gnuplot cannot draw it.

@@ -28,17 +28,17 @@ void ProductStage::draw_dirty(const imager::UvCoverage& coverage, const imager::
   products_.draw(coverage);
   products_.draw({{.name = "psf", .title = "PSF", .image = &images.psf}});
   if (o_.niter == 0)
-    products_.draw({{.name = "residual", .title = "Dirty image", .image = &images.dirty}});
+    products_.draw({{.name = "residual", .title = "Dirty image", .image = &images.dirty.front()}});
   else if (o_.usemask == "auto")
-    dirty_ = sketch(images.dirty, Shades::brightness, picture_side);
+    dirty_ = sketch(images.dirty.front(), Shades::brightness, picture_side);
   else
-    products_.draw({dirty_picture(&images.dirty, mask)});
+    products_.draw({dirty_picture(&images.dirty.front(), mask)});
 }
 
 std::vector<std::string> ProductStage::write(imager::DirtyImages images) {
   const imager::StageTimer timer(times_, "write images");
   products_.add("psf", "Jy/beam", std::move(images.psf));
-  products_.add("residual", "Jy/beam", std::move(images.dirty));
+  products_.add("residual", "Jy/beam", std::move(images.dirty.front()));
   auto removed = remove_old(
       {"model.fits", "model.png", "image.fits", "image.png", "dirty.png", "mask.fits", "components.csv", "clean.state"});
   products_.write();

@@ -47,7 +47,8 @@ std::string summary(const RunReport& r) {
   std::string text = counted(r.counts.used) + " of " + counted(r.counts.samples_read) + " samples imaged; expected error " +
                      significant(r.theory->expected_rms, 2);
   if (r.measured != nullptr)
-    text += ", measured " + significant(r.measured->rms, 2) + " (prediction " + significant(r.measured->predict_rms, 2) + ")";
+    text += ", measured " + significant(r.measured->image.front().rms, 2) + " (prediction " +
+            significant(r.measured->predict_rms, 2) + ")";
   text += "\n";
   if (r.clean != nullptr)
     text += grouped(r.clean->iterations) + " components, model flux " + significant(r.clean->final_state().model_flux_jy, 4) +

@@ -60,8 +60,8 @@ json error_json(const RunReport& r) {
     error["bound_max"] = number(r.theory->bound_max);
   }
   if (r.measured != nullptr) {
-    error["measured_rms"] = number(r.measured->rms);
-    error["measured_max"] = number(r.measured->max);
+    error["measured_rms"] = number(r.measured->image.front().rms);
+    error["measured_max"] = number(r.measured->image.front().max);
     error["measured_predict_rms"] = number(r.measured->predict_rms);
   }
   return error;
