@@ -59,9 +59,9 @@ class Pass {
   StageTimes& times_;
 };
 
-std::unique_ptr<AdjointSum> begin(const Transform& transform, bool with_psf, StageTimes& times) {
+std::unique_ptr<AdjointSum> begin(const Transform& transform, const AdjointOptions& options, StageTimes& times) {
   const StageTimer timer(times, "grid");
-  return transform.adjoint(with_psf);
+  return transform.adjoint(options);
 }
 
 /// Also frees the grid.
@@ -94,14 +94,14 @@ void require_any(const SampleSums& sums) {
                            " usable samples lie beyond 1/(2 cell), none within; expected smaller pixels");
 }
 
-/// Divides both by Σ w.
+/// Divides all by Σ w.
 DirtyImages dirty_images(AdjointResult sum, Image psf, StageTimes& times) {
   BigMemory::release();
-  require_any(sum.sums);
+  require_any(sum.sums.front());
   const StageTimer timer(times, "fft");
-  divide(sum.image, sum.sums.weight);
-  divide(psf, sum.sums.weight);
-  return {std::move(sum.image), std::move(psf), sum.sums};
+  for (Image& image : sum.images) divide(image, sum.sums.front().weight);
+  divide(psf, sum.sums.front().weight);
+  return {std::move(sum.images), std::move(psf), std::move(sum.sums)};
 }
 
 /// Those of a source of 1 Jy at the image's middle pixel.
@@ -122,10 +122,10 @@ std::vector<std::complex<double>> visibilities_of_middle(const VisibilityBlock& 
 
 }  // namespace
 
-DirtyImages make_dirty_images(const VisibilitySource& source, const Transform& transform, bool with_psf,
+DirtyImages make_dirty_images(const VisibilitySource& source, const Transform& transform, const AdjointOptions& options,
                               const Progress& progress, StageTimes& times) {
   Pass pass(source, progress, times);
-  auto sum = begin(transform, with_psf, times);
+  auto sum = begin(transform, options, times);
   pass.for_each_block([&](const VisibilityBlock& block) {
     const StageTimer timer(times, "grid");
     sum->add(block);
@@ -138,8 +138,8 @@ DirtyImages make_dirty_images(const VisibilitySource& source, const Transform& t
 DirtyImages make_dirty_images(const VisibilitySource& source, const Transform& transform, const OwnPsf& psf,
                               const Progress& progress, StageTimes& times) {
   Pass pass(source, progress, times);
-  auto sum = begin(transform, false, times);
-  auto psf_sum = begin(psf.transform, false, times);
+  auto sum = begin(transform, {.images = psf.images}, times);
+  auto psf_sum = begin(psf.transform, {}, times);
   pass.for_each_block([&](const VisibilityBlock& block) {
     const StageTimer timer(times, "grid");
     sum->add(block);
@@ -147,7 +147,7 @@ DirtyImages make_dirty_images(const VisibilitySource& source, const Transform& t
   });
   AdjointResult of_psf = finish(std::move(psf_sum), times);
   AdjointResult result = finish(std::move(sum), times);
-  return dirty_images(std::move(result), std::move(of_psf.image), times);
+  return dirty_images(std::move(result), std::move(of_psf.images.front()), times);
 }
 
 void for_each_residual(const VisibilitySource& source, const Transform& transform, const Image& model, const Progress& progress,
@@ -171,15 +171,15 @@ void for_each_residual(const VisibilitySource& source, const Transform& transfor
 
 Image make_residual_image(const VisibilitySource& source, const Transform& transform, const Image& model,
                           const Progress& progress, StageTimes& times) {
-  auto sum = begin(transform, false, times);
+  auto sum = begin(transform, {}, times);
   for_each_residual(source, transform, model, progress, times,
                     [&](const VisibilityBlock& block, const std::vector<std::complex<double>>& residual) {
                       const StageTimer timer(times, "grid");
                       sum->add(block, residual);
                     });
   AdjointResult result = finish(std::move(sum), times);
-  divide(result.image, result.sums.weight);
-  return std::move(result.image);
+  divide(result.images.front(), result.sums.front().weight);
+  return std::move(result.images.front());
 }
 
 }  // namespace misfit::imager

@@ -13,14 +13,14 @@ namespace misfit::imager {
 using Progress = std::function<void(std::uint64_t done, std::uint64_t total)>;
 
 struct DirtyImages {
-  Image dirty;  ///< Jy/beam: the adjoint over Σ w
-  Image psf;    ///< 1 at the centre up to the accuracy; empty unless asked for
-  SampleSums sums;
+  std::vector<Image> dirty;      ///< [Stokes], Jy/beam: the adjoint over Σ w
+  Image psf;                     ///< 1 at the centre up to the accuracy; empty unless asked for
+  std::vector<SampleSums> sums;  ///< [Stokes]
 };
 
 /// One pass over the visibilities. Stages timed: "read", "grid", "fft", which counts corrections in. Throws std::runtime_error
 /// when no sample can be used.
-DirtyImages make_dirty_images(const VisibilitySource& source, const Transform& transform, bool with_psf,
+DirtyImages make_dirty_images(const VisibilitySource& source, const Transform& transform, const AdjointOptions& options,
                               const Progress& progress, StageTimes& times);
 
 /// A PSF made by a transform of its own, for an image whose middle pixel lies at `middle`.
@@ -28,6 +28,7 @@ struct OwnPsf {
   const Transform& transform;
   DirectionCosines middle;
   bool with_w = true;  ///< as the transform
+  int images = 1;      ///< made by the other transform, see AdjointOptions
 };
 
 /// The same with the PSF by a transform of its own, in the same pass.
@@ -41,8 +42,8 @@ using VisitResidual = std::function<void(const VisibilityBlock& block, const std
 void for_each_residual(const VisibilitySource& source, const Transform& transform, const Image& model, const Progress& progress,
                        StageTimes& times, const VisitResidual& visit);
 
-/// The dirty image of data − model: the model is predicted at every usable sample and subtracted. Stages timed: "read", "fft",
-/// "degrid", "grid".
+/// The dirty image of data − model, of the blocks' own Stokes parameter: the model is predicted at every usable sample and
+/// subtracted. Stages timed: "read", "fft", "degrid", "grid".
 Image make_residual_image(const VisibilitySource& source, const Transform& transform, const Image& model,
                           const Progress& progress, StageTimes& times);
 

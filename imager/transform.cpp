@@ -1,5 +1,7 @@
 #include "imager/transform.h"
 
+#include <string>
+
 namespace misfit::imager {
 
 SampleSums& SampleSums::operator+=(const SampleSums& other) {
@@ -10,6 +12,19 @@ SampleSums& SampleSums::operator+=(const SampleSums& other) {
   weight_square += other.weight_square;
   weight2_square += other.weight2_square;
   return *this;
+}
+
+AdjointSum::AdjointSum(const AdjointOptions& options) : options_(options) {
+  if (options.images < 1 || options.images > most_stokes)
+    throw std::invalid_argument(std::to_string(options.images) + " images of one adjoint not in [1, " +
+                                std::to_string(most_stokes) + "]");
+}
+
+void AdjointSum::add(const VisibilityBlock& block, const std::vector<std::complex<double>>& visibility) {
+  if (options_.images != 1)
+    throw std::invalid_argument("one set of visibilities for " + std::to_string(options_.images) +
+                                " images; expected one for each");
+  add_sets(block, {visibility.data()});
 }
 
 std::vector<std::vector<std::complex<double>>> Prediction::at_usable_of(

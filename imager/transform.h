@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "imager/image.h"
-#include "imager/visibilities.h"
+#include "imager/visibility_sets.h"
 
 namespace misfit::imager {
 
@@ -22,26 +22,42 @@ struct SampleSums {
   SampleSums& operator+=(const SampleSums& other);
 };
 
+/// What an adjoint makes of the samples.
+struct AdjointOptions {
+  int images = 1;  ///< [1, most_stokes]: of a block's own Stokes parameter, or of all that it carries
+  bool with_psf = false;
+};
+
 /// Images made from all samples added, not yet divided by Σ w.
 struct AdjointResult {
-  /// Σ w Re[V exp(−2πi(ul+vm+w(n−1)))]; NaN beyond the horizon.
-  Image image;
+  /// [Stokes]: Σ w Re[V exp(−2πi(ul+vm+w(n−1)))]; NaN beyond the horizon.
+  std::vector<Image> images;
   /// The same with V = exp(+2πi(u l_0 + v m_0 + w(n_0−1))), the response to a source of 1 Jy in the image's middle pixel, where
   /// it is Σ w; empty unless it was asked for. It is NaN where w counts and that pixel lies beyond the horizon.
   Image psf;
-  SampleSums sums;
-  double fft_s = 0;  ///< seconds of wall clock that FFTs and corrections took, as samples were added and at the end
+  std::vector<SampleSums> sums;  ///< [Stokes]: they differ in those of |V| alone
+  double fft_s = 0;              ///< seconds of wall clock that FFTs and corrections took, as samples were added and at the end
 };
 
 /// The adjoint transform, accumulated block by block. Adding the same blocks in the same order gives the same bits.
 class AdjointSum {
  public:
   virtual ~AdjointSum() = default;
-  virtual void add(const VisibilityBlock& block) = 0;
-  /// Adds the samples of `block` with `visibility` [row][channel] in place of its own.
-  virtual void add(const VisibilityBlock& block, const std::vector<std::complex<double>>& visibility) = 0;
+  /// Throws std::invalid_argument when several images are made and the block does not carry as many Stokes parameters.
+  void add(const VisibilityBlock& block) { add_sets(block, sets_of(block, options_.images)); }
+  /// Adds the samples of `block` with `visibility` [row][channel] in place of its own. Throws std::invalid_argument when more
+  /// than one image is made.
+  void add(const VisibilityBlock& block, const std::vector<std::complex<double>>& visibility);
   /// To be called once, after the last block.
   virtual AdjointResult finish() = 0;
+
+ protected:
+  /// Throws std::invalid_argument when there are to be no images, or too many.
+  explicit AdjointSum(const AdjointOptions& options);
+  /// Adds a block's samples with a set of visibilities for each image.
+  virtual void add_sets(const VisibilityBlock& block, const std::vector<VisibilitySet>& sets) = 0;
+
+  const AdjointOptions options_;
 };
 
 /// The forward transform of one model image.
@@ -68,7 +84,7 @@ class Prediction {
 class Transform {
  public:
   virtual ~Transform() = default;
-  virtual std::unique_ptr<AdjointSum> adjoint(bool with_psf) const = 0;
+  virtual std::unique_ptr<AdjointSum> adjoint(const AdjointOptions& options) const = 0;
   virtual std::unique_ptr<Prediction> predict(const Image& model) const = 0;
 };
 

@@ -57,7 +57,7 @@ class Run {
       : input_(input), minor_(minor), o_(options), progress_(progress), times_(times), state_(std::move(state)) {
     if (state_.model.scale_pixels() != minor.scale_pixels())
       throw std::invalid_argument("a model of other scales than those of the minor cycle");
-    require_finite(input.images.psf);
+    require_finite(input.psf);
   }
 
   CleanResult run(const CycleProgress& cycle_progress) {
@@ -88,11 +88,11 @@ class Run {
   /// Residuals are made anew, never changed; that of no model is the dirty image.
   void make_residual() {
     residual_.reset();
-    residual_ = state_.model.components().empty() ? std::shared_ptr<const Image>(std::shared_ptr<void>(), &input_.images.dirty)
+    residual_ = state_.model.components().empty() ? std::shared_ptr<const Image>(std::shared_ptr<void>(), &input_.dirty)
                                                   : std::make_shared<const Image>(make_residual_image(
                                                         input_.source, input_.transform, model_image(), progress_, times_));
     const StageTimer timer(times_, "statistics");
-    require_finite(*residual_, input_.images.dirty);
+    require_finite(*residual_, input_.dirty);
   }
 
   Image model_image() const {
@@ -156,7 +156,7 @@ class Run {
   Ending divergence() const {
     constexpr double near = 10;
     const double grew_to = state_.cycles.back().peak_residual_jy;
-    if (grew_to <= near * input_.accuracy * largest_magnitude(input_.images.dirty))
+    if (grew_to <= near * input_.accuracy * largest_magnitude(input_.dirty))
       return {CleanStop::no_change,
               "what is left, " + in_jy(grew_to) + ", is the error of the transforms; a smaller --accuracy goes deeper"};
     return {grew_to <= diverged * best().peak_residual_jy ? CleanStop::diverging_from_best : CleanStop::diverging,

@@ -95,7 +95,8 @@ struct CleanResult {
 struct CleanInput {
   const VisibilitySource& source;
   const Transform& transform;
-  const DirtyImages& images;
+  const Image& dirty;  ///< of the source's own Stokes parameter
+  const Image& psf;
   double max_sidelobe = 0;      ///< the largest of the PSF
   double accuracy = 1e-7;       ///< of images and prediction, relative; single-precision data have no better
   double beam_fwhm_pixels = 1;  ///< of a round beam of its main lobe's area; automask alone needs it

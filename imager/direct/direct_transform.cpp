@@ -1,6 +1,7 @@
 #include "imager/direct/direct_transform.h"
 
 #include <algorithm>
+#include <array>
 
 #include "imager/constants.h"
 #include "imager/horizon.h"
@@ -37,86 +38,116 @@ struct Wavelengths {
   std::size_t size() const { return u.size(); }
 };
 
-/// Calls visit(i, cosine, sine) for each sample, with exp(2πi(ul+vm+w(n−1))).
+constexpr std::size_t at_once = 256;
+
+/// exp(2πi(ul+vm+w(n−1))) of consecutive samples [begin, begin + count).
+struct Phasors {
+  std::size_t begin;
+  std::size_t count;
+  double cosine[at_once], sine[at_once];
+};
+
+/// Calls visit(phasors) for the samples, some at a time.
 template <typename Visit>
 void for_phasors(const Wavelengths& at, const PhasePosition& to, const Visit& visit) {
-  constexpr std::size_t at_once = 256;
-  double turns[at_once], cosine[at_once], sine[at_once];
-  for (std::size_t begin = 0; begin < at.size(); begin += at_once) {
-    const std::size_t some = std::min(at_once, at.size() - begin);
-    for (std::size_t i = 0; i < some; ++i)
-      turns[i] = at.u[begin + i] * to.l + at.v[begin + i] * to.m + at.w[begin + i] * to.n_minus_1;
-    phasors(turns, static_cast<int>(some), cosine, sine);
-    for (std::size_t i = 0; i < some; ++i) visit(begin + i, cosine[i], sine[i]);
+  double turns[at_once];
+  Phasors p;
+  for (p.begin = 0; p.begin < at.size(); p.begin += at_once) {
+    p.count = std::min(at_once, at.size() - p.begin);
+    for (std::size_t i = 0; i < p.count; ++i)
+      turns[i] = at.u[p.begin + i] * to.l + at.v[p.begin + i] * to.m + at.w[p.begin + i] * to.n_minus_1;
+    phasors(turns, static_cast<int>(p.count), p.cosine, p.sine);
+    visit(p);
   }
 }
 
-/// The samples of a block that take part in imaging, with w V.
+/// The samples of a block that take part in imaging, with w V of each set.
 struct WeightedSamples {
-  Wavelengths at;
-  std::vector<double> weight, real, imaginary;
+  struct Values {
+    std::vector<double> real, imaginary;
+  };
+  using Sums = std::array<double, most_stokes>;  ///< [set]
 
-  template <typename Visibility>
-  WeightedSamples(const VisibilityBlock& block, const std::vector<float>& weights, const Visibility& visibility,
-                  std::size_t begin, std::size_t end) {
+  Wavelengths at;
+  std::vector<double> weight;
+  std::vector<Values> values;  ///< [set]
+
+  WeightedSamples(const VisibilityBlock& block, const std::vector<float>& weights, const std::vector<VisibilitySet>& sets,
+                  std::size_t begin, std::size_t end)
+      : values(sets.size()) {
     for (std::size_t i = begin; i < end; ++i) {
       if (weights[i] == 0) continue;
-      const std::complex<double> v(visibility[i]);
       at.push_back(&block.uvw_m[3 * (i / block.channels())], block.frequency_hz[i % block.channels()]);
       weight.push_back(weights[i]);
-      real.push_back(weight.back() * v.real());
-      imaginary.push_back(weight.back() * v.imag());
+      for (std::size_t s = 0; s < sets.size(); ++s) {
+        const auto v = std::visit([i](const auto* visibility) { return std::complex<double>(visibility[i]); }, sets[s]);
+        values[s].real.push_back(weight.back() * v.real());
+        values[s].imaginary.push_back(weight.back() * v.imag());
+      }
     }
   }
 
   /// Σ w Re[V exp(−2πi(…))].
-  double image_at(const PhasePosition& to) const {
-    double sum = 0;
-    for_phasors(at, to, [&](std::size_t i, double cosine, double sine) { sum += real[i] * cosine + imaginary[i] * sine; });
-    return sum;
+  Sums images_at(const PhasePosition& to) const {
+    Sums sums{};
+    for_phasors(at, to, [&](const Phasors& p) {
+      for (std::size_t s = 0; s < values.size(); ++s) {
+        const double* real = &values[s].real[p.begin];
+        const double* imaginary = &values[s].imaginary[p.begin];
+        double sum = sums[s];
+        for (std::size_t i = 0; i < p.count; ++i) sum += real[i] * p.cosine[i] + imaginary[i] * p.sine[i];
+        sums[s] = sum;
+      }
+    });
+    return sums;
   }
   /// The same for V = 1.
   double beam_at(const PhasePosition& to) const {
     double sum = 0;
-    for_phasors(at, to, [&](std::size_t i, double cosine, double) { sum += weight[i] * cosine; });
+    for_phasors(at, to, [&](const Phasors& p) {
+      for (std::size_t i = 0; i < p.count; ++i) sum += weight[p.begin + i] * p.cosine[i];
+    });
     return sum;
   }
 };
 
 class DirectAdjoint : public AdjointSum {
  public:
-  DirectAdjoint(const DirectSums& o, bool with_psf) : o_(o) {
-    result_.image = Image(o.geometry.width, o.geometry.height);
-    if (with_psf) result_.psf = Image(o.geometry.width, o.geometry.height);
+  DirectAdjoint(const DirectSums& o, const AdjointOptions& options) : AdjointSum(options), o_(o) {
+    const auto images = static_cast<std::size_t>(options.images);
+    result_.images.assign(images, Image(o.geometry.width, o.geometry.height));
+    result_.sums.resize(images);
+    if (options.with_psf) result_.psf = Image(o.geometry.width, o.geometry.height);
   }
 
-  void add(const VisibilityBlock& block) override { accumulate(block, block.visibility); }
-  void add(const VisibilityBlock& block, const std::vector<std::complex<double>>& visibility) override {
-    accumulate(block, visibility);
-  }
   AdjointResult finish() override {
-    set_beyond_horizon(o_.geometry, no_value, result_.image);
-    if (!result_.psf.pixel.empty()) set_beyond_horizon(o_.geometry, no_value, result_.psf);
+    for (Image& image : result_.images) set_beyond_horizon(o_.geometry, no_value, image);
+    if (options_.with_psf) set_beyond_horizon(o_.geometry, no_value, result_.psf);
     return std::move(result_);
   }
 
- private:
-  template <typename Visibility>
-  void accumulate(const VisibilityBlock& block, const Visibility& visibility) {
-    const std::vector<float> weight = imaging_weights(block, o_.geometry.cell_rad, o_.threads, result_.sums);
-    add_span_to_sums(weight.data(), visibility.data(), weight.size(), result_.sums);
-    const WeightedSamples samples(block, weight, visibility, 0, weight.size());
+ protected:
+  void add_sets(const VisibilityBlock& block, const std::vector<VisibilitySet>& sets) override {
+    SampleSums counted;
+    const std::vector<float> weight = imaging_weights(block, o_.geometry.cell_rad, o_.threads, counted);
+    for (std::size_t s = 0; s < sets.size(); ++s) {
+      result_.sums[s] += counted;
+      std::visit([&](const auto* v) { add_span_to_sums(weight.data(), v, weight.size(), result_.sums[s]); }, sets[s]);
+    }
+    const WeightedSamples samples(block, weight, sets, 0, weight.size());
     const PhasePosition middle = position_of(o_.geometry.centre, o_.with_w);
     parallel_for(static_cast<std::size_t>(o_.geometry.height), o_.threads, [&](std::size_t r) {
       const int row = static_cast<int>(r);
       for (int column = 0; column < o_.geometry.width; ++column) {
         const PhasePosition at = position_of(o_.geometry.at(row, column), o_.with_w);
-        result_.image.at(row, column) += samples.image_at(at);
-        if (!result_.psf.pixel.empty()) result_.psf.at(row, column) += samples.beam_at(relative(at, middle));
+        const WeightedSamples::Sums sums = samples.images_at(at);
+        for (std::size_t s = 0; s < sets.size(); ++s) result_.images[s].at(row, column) += sums[s];
+        if (options_.with_psf) result_.psf.at(row, column) += samples.beam_at(relative(at, middle));
       }
     });
   }
 
+ private:
   DirectSums o_;
   AdjointResult result_;
 };
@@ -144,8 +175,8 @@ class DirectPrediction : public Prediction {
 
 }  // namespace
 
-std::unique_ptr<AdjointSum> DirectTransform::adjoint(bool with_psf) const {
-  return std::make_unique<DirectAdjoint>(sums_, with_psf);
+std::unique_ptr<AdjointSum> DirectTransform::adjoint(const AdjointOptions& options) const {
+  return std::make_unique<DirectAdjoint>(sums_, options);
 }
 
 std::unique_ptr<Prediction> DirectTransform::predict(const Image& model) const {
@@ -157,20 +188,22 @@ std::unique_ptr<Prediction> DirectTransform::predict(const Image& model) const {
   return std::make_unique<DirectPrediction>(std::move(sources), sums_.with_w, sums_.threads);
 }
 
-void add_direct_pixels(const VisibilityBlock& block, const DirectPixels& at, std::vector<double>& sum) {
+void add_direct_pixels(const VisibilityBlock& block, const DirectPixels& at, std::vector<std::vector<double>>& sum) {
   SampleSums unused;
   const std::vector<float> weight = imaging_weights(block, at.geometry.cell_rad, at.threads, unused);
+  const std::vector<VisibilitySet> sets = sets_of(block, static_cast<int>(sum.size()));
   constexpr std::size_t samples_a_piece = 1 << 14;
   const std::size_t pieces = (weight.size() + samples_a_piece - 1) / samples_a_piece;
-  std::vector<double> part(pieces * at.pixel.size());  // [piece][pixel]
+  std::vector<WeightedSamples::Sums> part(pieces * at.pixel.size());  // [piece][pixel]
   parallel_for(pieces, at.threads, [&](std::size_t p) {
     const std::size_t begin = p * samples_a_piece;
-    const WeightedSamples samples(block, weight, block.visibility, begin, std::min(begin + samples_a_piece, weight.size()));
+    const WeightedSamples samples(block, weight, sets, begin, std::min(begin + samples_a_piece, weight.size()));
     for (std::size_t k = 0; k < at.pixel.size(); ++k)
       part[p * at.pixel.size() + k] =
-          samples.image_at(position_of(at.geometry.at(at.pixel[k].row, at.pixel[k].column), at.with_w));
+          samples.images_at(position_of(at.geometry.at(at.pixel[k].row, at.pixel[k].column), at.with_w));
   });
-  for (std::size_t i = 0; i < part.size(); ++i) sum[i % at.pixel.size()] += part[i];
+  for (std::size_t i = 0; i < part.size(); ++i)
+    for (std::size_t image = 0; image < sum.size(); ++image) sum[image][i % at.pixel.size()] += part[i][image];
 }
 
 }  // namespace misfit::imager

@@ -19,7 +19,7 @@ class DirectTransform : public Transform {
   explicit DirectTransform(const DirectSums& sums) : sums_(sums) {}
   DirectTransform(const ImageGeometry& geometry, int threads) : sums_{geometry, true, threads} {}
 
-  std::unique_ptr<AdjointSum> adjoint(bool with_psf) const override;
+  std::unique_ptr<AdjointSum> adjoint(const AdjointOptions& options) const override;
   /// Only the pixels that are not 0 cost time.
   std::unique_ptr<Prediction> predict(const Image& model) const override;
 
@@ -41,8 +41,8 @@ struct DirectPixels {
   int threads = 1;
 };
 
-/// Adds the direct sums of `block`: sum[k] += Σ w Re[V exp(−2πi(ul+vm+w(n−1)))]. Samples beyond 1/(2 cell) are left out, as in
-/// imaging.
-void add_direct_pixels(const VisibilityBlock& block, const DirectPixels& at, std::vector<double>& sum);
+/// Adds the direct sums of `block`, for one image or of all its Stokes parameters: sum[image][k] += Σ w Re[V
+/// exp(−2πi(ul+vm+w(n−1)))]. Samples beyond 1/(2 cell) are left out, as in imaging.
+void add_direct_pixels(const VisibilityBlock& block, const DirectPixels& at, std::vector<std::vector<double>>& sum);
 
 }  // namespace misfit::imager

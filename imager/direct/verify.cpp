@@ -59,6 +59,12 @@ PixelError pixel_error(const Image& dirty, const std::vector<Pixel>& pixels, con
   return error;
 }
 
+PixelError relative_pixel_error(const PixelError& error, const Image& dirty) {
+  const double image_rms = root_mean_square(dirty);
+  const auto relative = [image_rms](double x) { return x == 0 ? 0 : x / image_rms; };
+  return {relative(error.rms), relative(error.max)};
+}
+
 MeasuredError measure_error(const VisibilitySource& source, const Transform& transform, const ImageGeometry& geometry,
                             const DirtyImages& images, int count, int threads, const Progress& progress) {
   std::mt19937_64 random(20200112);
@@ -67,7 +73,7 @@ MeasuredError measure_error(const VisibilitySource& source, const Transform& tra
   const DirectPixels direct_pixels{geometry, pixels, true, threads};
   const std::vector<std::uint64_t> chosen = random_samples(source.samples(), count, random);
 
-  std::vector<double> sum(pixels.size());
+  std::vector<std::vector<double>> sum(images.dirty.size(), std::vector<double>(pixels.size()));
   SampleCoordinates samples{{}, {any_frequency_hz}};
   std::uint64_t done = 0;
   const auto stream = source.open();
@@ -78,9 +84,10 @@ MeasuredError measure_error(const VisibilitySource& source, const Transform& tra
     progress(done, source.samples());
   }
 
-  const double image_rms = root_mean_square(images.dirty);
-  const PixelError of_pixels = pixel_error(images.dirty, pixels, sum, images.sums.weight);
-  MeasuredError error{of_pixels.rms / image_rms, of_pixels.max / image_rms, 0};
+  MeasuredError error;
+  for (std::size_t i = 0; i < sum.size(); ++i)
+    error.image.push_back(
+        relative_pixel_error(pixel_error(images.dirty[i], pixels, sum[i], images.sums[i].weight), images.dirty[i]));
 
   Image model(geometry.width, geometry.height);
   for (const Pixel& pixel : pixels) model.at(pixel.row, pixel.column) = random() % 2 == 0 ? 1 : -1;

@@ -18,15 +18,16 @@ struct PixelError {
 PixelError pixel_error(const Image& dirty, const std::vector<Pixel>& pixels, const std::vector<double>& direct_sums,
                        double weight);
 
-/// Measured differences from the direct transform, w included. Relative to the RMS of the whole dirty image (the first two) or
-/// of the predicted visibilities.
+/// The same over the RMS of the whole dirty image; 0 of an image of zeros that is exact.
+PixelError relative_pixel_error(const PixelError& error, const Image& dirty);
+
+/// Measured differences from the direct transform, w included.
 struct MeasuredError {
-  double rms = 0;          ///< of the dirty image, over random pixels
-  double max = 0;          ///< the largest among them
-  double predict_rms = 0;  ///< of prediction, over random samples
+  std::vector<PixelError> image;  ///< [Stokes]: of the dirty image at random pixels, over its RMS
+  double predict_rms = 0;         ///< of prediction at random samples, over the RMS of the predicted visibilities
 };
 
-/// Compares the dirty image with direct sums at `count` random pixels, and predicted visibilities with direct sums at `count`
+/// Compares the dirty images with direct sums at `count` random pixels, and predicted visibilities with direct sums at `count`
 /// random samples, for a model of `count` random pixels; fewer where there are fewer pixels or samples. The choice depends on
 /// `count` alone.
 MeasuredError measure_error(const VisibilitySource& source, const Transform& transform, const ImageGeometry& geometry,

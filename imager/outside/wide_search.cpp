@@ -29,22 +29,23 @@ struct CleanedField {
 CleanedField clean_wide_field(const VisibilitySource& source, const Transform& transform, const ImageGeometry& g, int threads,
                               const Progress& progress, StageTimes& times) {
   const TaperedVisibilities tapered(source, g.cell_rad);
-  const DirtyImages images = make_dirty_images(tapered, transform, true, progress, times);
+  const DirtyImages images = make_dirty_images(tapered, transform, {.with_psf = true}, progress, times);
+  const Image& dirty = images.dirty.front();
   constexpr double deep = 2e-3;           // a source between pixels leaves hardly more of itself
   constexpr double least_of_peak = 5e-3;  // what is fainter may be made of what such sources leave
   CleanOptions options;
   options.max_iterations = 5000;
   options.max_major_cycles = 10;
   options.nsigma = 5;
-  options.threshold_jy = deep * largest_magnitude(images.dirty);
+  options.threshold_jy = deep * largest_magnitude(dirty);
   options.threads = threads;
   const auto minor = make_deconvolver({.name = "clark", .threads = threads}, images.psf);
   const Sidelobes sidelobes(images.psf);
   CleanResult cleaned = clean(
-      {tapered, transform, images, sidelobes.from(lobe_pixels), 1e-4}, *minor, options,
+      {tapered, transform, dirty, images.psf, sidelobes.from(lobe_pixels), 1e-4}, *minor, options,
       first_state(ComponentModel(g.width, g.height, minor->scale_pixels())), progress, [](const CleanState&) {}, times);
   return {std::move(cleaned.components), std::move(cleaned.model), sidelobes,
-          std::max(5 * robust_noise(cleaned.residual, threads), least_of_peak * largest_magnitude(images.dirty))};
+          std::max(5 * robust_noise(cleaned.residual, threads), least_of_peak * largest_magnitude(dirty))};
 }
 
 }  // namespace

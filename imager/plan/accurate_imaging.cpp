@@ -23,27 +23,34 @@ AccurateImages make_images(const VisibilitySource& source, GriddingPlan plan, co
     made.transform = std::make_unique<PlannedTransform>(made.plan);
   }
   if (!made.plan.psf) {
-    made.images = make_dirty_images(source, *made.transform, made.plan.request.images > 1, progress, times);
+    const AdjointOptions options{made.plan.request.stokes, made.plan.request.psf};
+    made.images = make_dirty_images(source, *made.transform, options, progress, times);
   } else {
     const auto of_psf = make_transform(made.plan.psf->options);
-    const OwnPsf psf{*of_psf, made.plan.options.geometry.centre, made.plan.psf->options.has_w_axis()};
+    const OwnPsf psf{*of_psf, made.plan.options.geometry.centre, made.plan.psf->options.has_w_axis(), made.plan.request.stokes};
     made.images = make_dirty_images(source, *made.transform, psf, progress, times);
   }
   return made;
 }
 
-/// Error of the image relative to its RMS as the pixels show it, a few to many so that the direct sums take less than a second.
-double checked_error(const VisibilitySource& source, const AccurateImages& made, StageTimes& times) {
+/// Errors of the images relative to their RMS as the pixels show it, a few to many so that the direct sums take less than a
+/// second.
+double largest_checked_error(const VisibilitySource& source, const AccurateImages& made, StageTimes& times) {
   const StageTimer timer(times, "check pixels");
   const DirtyImages& images = made.images;
   const WideTransformOptions& o = made.plan.options;
-  const double affordable = 4e7 / static_cast<double>(images.sums.used);
+  const double affordable = 4e7 / static_cast<double>(images.sums.front().used);
   const int count = static_cast<int>(std::clamp(affordable, 4.0, 64.0));
   const DirectPixels at{o.geometry, random_pixels(o.geometry, count), made.plan.direct || o.has_w_axis(), o.threads};
-  std::vector<double> sum(at.pixel.size());
+  std::vector<std::vector<double>> sum(images.dirty.size(), std::vector<double>(at.pixel.size()));
   const auto stream = source.open();
   while (const auto block = stream->next()) add_direct_pixels(*block, at, sum);
-  return pixel_error(images.dirty, at.pixel, sum, images.sums.weight).rms / root_mean_square(images.dirty);
+  double largest = 0;
+  for (std::size_t i = 0; i < sum.size(); ++i) {
+    const PixelError error = pixel_error(images.dirty[i], at.pixel, sum[i], images.sums[i].weight);
+    largest = std::max(largest, relative_pixel_error(error, images.dirty[i]).rms);
+  }
+  return largest;
 }
 
 /// How much weaker an image is than its data would let expect.
@@ -52,12 +59,19 @@ struct Weakness {
   double coherent = 1;  ///< than data give that belong to one source
 };
 
+/// The largest of all images; one of zeros has no relative error.
 Weakness weakness_of(const DirtyImages& images, StageTimes& times) {
   const StageTimer timer(times, "statistics");
-  const double image_rms = root_mean_square(images.dirty);
-  if (image_rms == 0) return {};
-  const double visibility_rms = std::sqrt(images.sums.weight_square / images.sums.weight);
-  return {std::max(1.0, random_image_rms(images.sums) / image_rms), root_mean_square(images.psf) * visibility_rms / image_rms};
+  const double psf_rms = root_mean_square(images.psf);
+  Weakness largest;
+  for (std::size_t i = 0; i < images.dirty.size(); ++i) {
+    const double image_rms = root_mean_square(images.dirty[i]);
+    if (image_rms == 0) continue;
+    const SampleSums& sums = images.sums[i];
+    largest.random = std::max(largest.random, random_image_rms(sums) / image_rms);
+    largest.coherent = std::max(largest.coherent, psf_rms * std::sqrt(sums.weight_square / sums.weight) / image_rms);
+  }
+  return largest;
 }
 
 }  // namespace
@@ -80,12 +94,13 @@ AccurateImages make_accurate_images(const VisibilitySource& source, GriddingPlan
                                     StageTimes& times) {
   const GriddingRequest request = plan.request;
   AccurateImages made = make_images(source, std::move(plan), progress, times);
-  // The image's gridding error over the accuracy, once by theory and once by direct sums at pixels, which may miss half of it.
+  // The images' largest gridding error over the accuracy, once by theory and once by direct sums at pixels, which may miss half
+  // of it.
   const auto excess = [&] {
     const Weakness weak = weakness_of(made.images, times);
     const double expected = made.plan.expected_error * weak.random / request.accuracy;
     if (expected > 1 || made.plan.expected_error * weak.coherent <= request.accuracy) return expected;
-    return std::max(expected, 2 * checked_error(source, made, times) / request.accuracy);
+    return std::max(expected, 2 * largest_checked_error(source, made, times) / request.accuracy);
   };
   if (request.accuracy == 0) return made;
   const double first = excess();
@@ -96,7 +111,7 @@ AccurateImages make_accurate_images(const VisibilitySource& source, GriddingPlan
   Image psf;
   if (made.plan.psf) {  // it is exact enough
     psf = std::move(made.images.psf);
-    stricter.images = 1;
+    stricter.psf = false;
   }
   made.transform.reset();  // all comes again, and there may be no room for both
   made.images = {};

@@ -14,22 +14,23 @@ struct TheoreticalError {
   double bound_max = 0;     ///< of the worst pixel, whatever the data
 };
 
-/// The errors of images made from samples with these sums. The phase of w counts where the plan neglects it.
+/// The errors of an image made from samples with these sums. The phase of w counts where the plan neglects it.
 TheoreticalError theoretical_error(const GriddingPlan& plan, const SampleSums& sums, double image_rms, const NeglectedPhase& w);
 
 struct AccurateImages {
   GriddingPlan plan;
   std::unique_ptr<PlannedTransform> transform;
   DirtyImages images;
-  bool promise_kept = true;  ///< whether the gridding error is within the accuracy, judged by the image that came out
+  bool promise_kept = true;  ///< whether the gridding error is within the accuracy, judged by the images that came out
 };
 
-/// Dirty image and PSF to the accuracy that `plan` was asked for. Where the image turns out weak against its data the kernel's
-/// error weighs more than it does on random data. Two things tell: the image may be weaker than random data would give; or
-/// weaker than the PSF's RMS times that of the visibilities, as when they belong to a source outside, whose alias adds up in
-/// phase. The second may as well be noise, so that a few pixels are then compared with direct sums (without w where the
-/// transform has no w axis). Where the error is too large the images are made once more with a kernel that is right by as much,
-/// or, where there is none, by the best. Stages timed: "plan", "statistics", "check pixels", and those of make_dirty_images.
+/// Dirty images of the Stokes parameters that `plan` was asked for, and PSF, to its accuracy. Where an image turns out weak
+/// against its data the kernel's error weighs more than it does on random data. Two things tell: the image may be weaker than
+/// random data would give; or weaker than the PSF's RMS times that of the visibilities, as when they belong to a source
+/// outside, whose alias adds up in phase. The second may as well be noise, so that a few pixels are then compared with direct
+/// sums (without w where the transform has no w axis). Where the error is too large the images are made once more with a kernel
+/// that is right by as much, or, where there is none, by the best. Stages timed: "plan", "statistics", "check pixels", and
+/// those of make_dirty_images.
 AccurateImages make_accurate_images(const VisibilitySource& source, GriddingPlan plan, const Progress& progress,
                                     StageTimes& times);
 

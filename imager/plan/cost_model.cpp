@@ -64,7 +64,7 @@ Trial time_of(int samples, int pixels, int width, Precision precision) {
   Trial trial{{double(samples), width, degree, options.nu, options.nv, pixels, precision}, HUGE_VAL};
   for (int repeat = 0; repeat < 3; ++repeat) {
     const Stopwatch watch;
-    const auto sum = transform->adjoint(true);
+    const auto sum = transform->adjoint({.with_psf = true});
     sum->add(block);
     sum->finish();
     trial.seconds = std::min(trial.seconds, watch.seconds());
@@ -74,7 +74,7 @@ Trial time_of(int samples, int pixels, int width, Precision precision) {
 
 /// Cells and taps of a sample, in units of the cost of a cell.
 double cells_of(const GriddingWork& work, double tap_over_cell) {
-  const double grids = work.has_w_axis() ? 2 * work.images : 1 + work.images;  // the PSF's is real but for a w axis
+  const double grids = 2 * work.stokes + (!work.psf ? 0 : work.has_w_axis() ? 2 : 1);  // the PSF's is real but for a w axis
   const double planes = grids / 3 * (work.has_w_axis() ? wide_cell * work.width_w : 1);
   return work.width * padded(work) * planes + tap_over_cell * 2 * padded(work) * (work.degree + 1);
 }
@@ -94,7 +94,7 @@ double CostModel::gridding_seconds(const GriddingWork& work) const {
 
 double CostModel::fft_seconds(const GriddingWork& work) const {
   const double per_point = fft_ns * (work.has_w_axis() ? wide_point : 1);
-  return 1e-9 * work.images * fft_points(work) * per_point * precision_cost(work, *this);
+  return 1e-9 * work.images() * fft_points(work) * per_point * precision_cost(work, *this);
 }
 
 double operation_count(const GriddingWork& work) {

@@ -15,9 +15,11 @@ struct GriddingWork {
   Precision precision = Precision::double_precision;
   int width_w = 0;  ///< planes a visibility touches in each facet; 0 = no w axis
   int facets = 1;
-  int planes = 1;  ///< FFTs of two dimensions: one for each w plane of each facet
-  int images = 2;  ///< made from the same samples: the dirty image and its PSF
+  int planes = 1;   ///< FFTs of two dimensions: one for each w plane of each facet
+  int stokes = 1;   ///< images made from the same samples
+  bool psf = true;  ///< made besides
 
+  int images() const { return stokes + (psf ? 1 : 0); }
   bool has_w_axis() const { return width_w > 0; }
 };
 

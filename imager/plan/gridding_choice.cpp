@@ -84,7 +84,8 @@ class Search {
               fft_size(g.height, padding_v, width),
               g.width,
               precision};
-    c.work.images = request_.images;
+    c.work.stokes = request_.stokes;
+    c.work.psf = request_.psf;
     c.faceting.width = g.width;
     c.faceting.height = g.height;
     c.turns = (std::abs(g.centre.l) + std::abs(g.centre.m)) / (2 * g.cell_rad);

@@ -84,6 +84,9 @@ Plan decisions_of(const GriddingRequest& request, const GriddingPlan& plan) {
                       (request.accuracy < single_from ? ", and is not trusted below " + text("%.0e", single_from)
                                                       : ", or cost more")},
   };
+  if (request.stokes > 1)
+    decisions.push_back(
+        {"Stokes parameters", std::to_string(request.stokes) + " gridded at once", "order, coordinates and taps serve all"});
   const Plan of_w = w_decisions(request, plan.choice);
   decisions.insert(decisions.end(), of_w.begin(), of_w.end());
   if (!o.has_w_axis())
@@ -185,11 +188,18 @@ double direct_pixel_s(const GriddingRequest& request) {
   return 1e-9 * CostModel().direct_ns * static_cast<double>(request.samples);
 }
 
+/// Images that direct sums make, in units of the cost of one: Stokes parameters share the phasors, which cost most.
+double direct_images(const GriddingRequest& request) {
+  constexpr double sum_alone = 0.25;
+  return 1 + sum_alone * (request.stokes - 1) + (request.psf ? 1 : 0);
+}
+
 /// Has models of few pixels predicted by direct sums.
 void use_direct_predictions(GriddingPlan& plan) {
   if (!free_to_choose(plan.request)) return;
   GriddingWork one = plan.choice.best.work;
-  one.images = 1;
+  one.stokes = 1;
+  one.psf = false;
   plan.direct_pixels = static_cast<std::uint64_t>(CostModel().seconds(one) / direct_pixel_s(plan.request));
   if (plan.direct_pixels > 0)
     plan.decisions.push_back({"prediction",
@@ -202,7 +212,7 @@ void use_direct_images(GriddingPlan& plan, double gridding_s) {
   const GriddingRequest& r = plan.request;
   if (!free_to_choose(r)) return;
   const double pixels = static_cast<double>(r.geometry.pixels());
-  const double direct_s = r.images * pixels * direct_pixel_s(r);
+  const double direct_s = direct_images(r) * pixels * direct_pixel_s(r);
   const double turns = 0.25 * (r.geometry.width + r.geometry.height) + plan.choice.w_phase_rad / (2 * pi);
   const double rounding = phase_rounding(turns);
   if (direct_s >= gridding_s || rounding > r.accuracy) return;
@@ -229,7 +239,7 @@ Decision psf_decision(const GriddingPlan& plan, double together_s) {
 
 /// By gridding and FFTs, one transform for all images or two, whichever costs less.
 GriddingPlan plan_images(const GriddingRequest& request) {
-  if (request.images < 2) return plan_together(request);
+  if (!request.psf) return plan_together(request);
   const double psf_accuracy = request.psf_accuracy == 0 || request.accuracy == 0 ? request.accuracy : request.psf_accuracy;
   GriddingRequest both = request;
   both.accuracy = std::min(request.accuracy, psf_accuracy);
@@ -238,8 +248,9 @@ GriddingPlan plan_images(const GriddingRequest& request) {
   const double together_s = together.choice.best.cost_s;
   if (psf_accuracy != request.accuracy) {
     GriddingRequest alone = request;
-    alone.images = 1;
+    alone.psf = false;
     GriddingPlan apart = plan_together(alone);
+    alone.stokes = 1;
     alone.accuracy = psf_accuracy;
     alone.best_effort = true;
     apart.psf = std::make_shared<GriddingPlan>(plan_together(alone));
@@ -267,22 +278,24 @@ GriddingPlan plan_gridding(const GriddingRequest& request) {
 TransformMemory memory_of(const GriddingPlan& plan) {
   if (plan.direct) {
     const double image = static_cast<double>(plan.request.geometry.pixels()) * sizeof(double);
-    return {image + 64.0 * static_cast<double>(plan.request.samples), image, 0};
+    const double samples = static_cast<double>(plan.request.samples), others = plan.request.stokes - 1;
+    return {image + 64 * samples, image, 0, others * (image + 16 * samples)};
   }
   if (plan.psf) {
     GriddingPlan image = plan;
     image.psf.reset();
     const TransformMemory of_image = memory_of(image), of_psf = memory_of(*plan.psf);
-    return {of_image.visibilities, of_psf.visibilities + of_psf.psf, std::max(of_image.fft, of_psf.fft)};
+    return {of_image.visibilities, of_psf.visibilities + of_psf.psf, std::max(of_image.fft, of_psf.fft), of_image.other_stokes};
   }
-  if (!plan.options.has_w_axis()) return memory_of(static_cast<const PlaneTransformOptions&>(plan.options));
+  const int stokes = plan.request.stokes;
+  if (!plan.options.has_w_axis()) return memory_of(static_cast<const PlaneTransformOptions&>(plan.options), stokes);
   const GriddingCandidate& best = plan.choice.best;
   const std::vector<double>& turns = best.faceting.turns;
   const double most = *std::max_element(turns.begin(), turns.end());
   Faceting largest = best.faceting;
   largest.turns = {most};
   const int planes = largest.planes(best.padding_w, best.work.width_w);
-  return memory_of(plan.options, static_cast<double>(plan.request.samples), planes);
+  return memory_of(plan.options, {static_cast<double>(plan.request.samples), planes, stokes});
 }
 
 }  // namespace misfit::imager

@@ -53,17 +53,21 @@ MemoryUse peak_memory(const MemoryDemand& d, const StreamingOptions& streaming) 
   const double block_samples = std::min(d.block_samples, d.samples);
   const double read_ahead = streaming.keep ? 0 : static_cast<double>(streaming.ahead + 1);  // and the one at hand
   const double block_rows = d.samples == 0 ? 0 : d.rows * block_samples / d.samples;
-  const double blocks = read_ahead * (block_samples * sample_bytes + block_rows * row_bytes) + block_samples * order_bytes;
-  const double kept = streaming.keep ? d.samples * sample_bytes + d.rows * row_bytes : 0;
+  const double blocks =
+      read_ahead * d.stokes * (block_samples * sample_bytes + block_rows * row_bytes) + block_samples * order_bytes;
+  const double kept = streaming.keep ? d.stokes * (d.samples * sample_bytes + d.rows * row_bytes) : 0;
+  const double others = (d.stokes - 1) * image;  // dirty images of the other Stokes parameters
 
   const double drawn_images = 1 + (d.clean_scales > 0 ? 4 : 2) + (d.mask ? 1 : 0);  // one more to find the median of each
 
   std::vector<MemoryUse> stages;
-  stages.push_back({"the samples are gridded", process_bytes, kept, blocks, t.visibilities + t.psf, 0, 0});
-  stages.push_back({"the dirty image is made", process_bytes, kept, 0, t.visibilities + t.psf, t.fft, image});
-  stages.push_back({"the PSF is made", process_bytes, kept, 0, t.psf, t.fft, 2 * image});
+  stages.push_back({"the samples are gridded", process_bytes, kept, blocks, t.visibilities + t.other_stokes + t.psf, 0, 0});
+  stages.push_back({"the dirty image is made", process_bytes, kept, 0, t.visibilities + t.other_stokes + t.psf, t.fft, image});
+  if (d.stokes > 1)
+    stages.push_back({"the last dirty image is made", process_bytes, kept, 0, t.visibilities + t.psf, t.fft, others + image});
+  stages.push_back({"the PSF is made", process_bytes, kept, 0, t.psf, t.fft, others + 2 * image});
   // Of a model image.
-  if (d.verify) stages.push_back({"prediction is verified", process_bytes, kept, 0, t.visibilities, t.fft, 3 * image});
+  if (d.verify) stages.push_back({"prediction is verified", process_bytes, kept, 0, t.visibilities, t.fft, others + 3 * image});
   if (d.clean_scales > 0) {
     const double masks = d.mask ? 2 : 0;  // it, and the residual within
     // Where every pixel is a component of the model, those of two models and of what they are sorted in.
@@ -71,19 +75,19 @@ MemoryUse peak_memory(const MemoryDemand& d, const StreamingOptions& streaming) 
     const double lasting = masks + components + 2;  // dirty image and PSF
     const double minor = minor_kept_bytes(image, d.clean_scales);
     stages.push_back({"the minor cycles run", process_bytes, kept, 0, minor + minor_passing_images * image, 0,
-                      (lasting + minor_images) * image});
+                      others + (lasting + minor_images) * image});
     // Of a model image.
     const double residual_blocks = blocks + block_samples * residual_bytes;
     stages.push_back({"the residual is gridded", process_bytes, kept, residual_blocks, 2 * t.visibilities + minor, 0,
-                      (lasting + 1) * image});
+                      others + (lasting + 1) * image});
     stages.push_back(
-        {"the residual image is made", process_bytes, kept, 0, t.visibilities + minor, t.fft, (lasting + 2) * image});
+        {"the residual image is made", process_bytes, kept, 0, t.visibilities + minor, t.fft, others + (lasting + 2) * image});
   }
   if (d.wider) {
     // After CLEAN the PSF, the model with its components, the residual and the mask; else the dirty image and the PSF.
     const double components = d.start_model ? 3 * 24 / pixel_bytes : 0;
     const double lasting = d.clean_scales > 0 ? 3 + components + (d.mask ? 1 : 0) : 2;
-    add_wider_stages(*d.wider, kept, blocks, block_samples, lasting * image, stages);
+    add_wider_stages(*d.wider, kept, blocks, block_samples, others + lasting * image, stages);
   }
   if (d.density) {
     // Factors that blocks are weighed by as they are read, in single precision for half the plane.

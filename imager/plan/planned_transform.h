@@ -13,7 +13,7 @@ class PlannedTransform : public Transform {
  public:
   explicit PlannedTransform(const GriddingPlan& plan);
 
-  std::unique_ptr<AdjointSum> adjoint(bool with_psf) const override { return images_->adjoint(with_psf); }
+  std::unique_ptr<AdjointSum> adjoint(const AdjointOptions& options) const override { return images_->adjoint(options); }
   /// By direct sums over a model of few pixels, with w even where gridding may leave it out.
   std::unique_ptr<Prediction> predict(const Image& model) const override;
   /// What makes images, and predicts larger models.

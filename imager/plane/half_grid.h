@@ -33,13 +33,8 @@ struct HalfGrid {
   GridShape shape;
   std::vector<Real> real;
   std::vector<Real> imaginary;
-  std::vector<Real> weight;  ///< the gridded weights, whose transform is the PSF; empty when there is none
 
-  HalfGrid(const GridShape& grid_shape, bool with_weight)
-      : shape(grid_shape),
-        real(grid_shape.cells()),
-        imaginary(grid_shape.cells()),
-        weight(with_weight ? grid_shape.cells() : 0) {}
+  explicit HalfGrid(const GridShape& grid_shape) : shape(grid_shape), real(grid_shape.cells()), imaginary(grid_shape.cells()) {}
 };
 
 /// Corrections h for the columns and rows of an image; see kernels::optimal_correction.

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <stdexcept>
 #include <string>
-#include <type_traits>
 
 #include "imager/horizon.h"
 #include "imager/parallel.h"
@@ -55,19 +54,18 @@ std::size_t first_cell(const GridShape& shape, const TileTask& task, int row) {
 
 /// Asks for a tile's part of a plane of the grid, so that it is at hand once its samples have been dealt with.
 template <typename Real>
-void prefetch_tile(const GridShape& shape, const TileTask& task, const std::vector<Real>& plane) {
+void prefetch_tile(const GridShape& shape, const TileTask& task, const Real* plane) {
   constexpr int line = 64 / sizeof(Real);
   const int reach = shape.tile + shape.width - 1;
   for (int r = 0; r < reach; ++r)
-    for (int c = 0; c < reach + line - 1; c += line)
-      hwy::Prefetch(plane.data() + first_cell(shape, task, r) + std::min(c, reach - 1));
+    for (int c = 0; c < reach + line - 1; c += line) hwy::Prefetch(plane + first_cell(shape, task, r) + std::min(c, reach - 1));
 }
 
-/// Where a tile lies in the planes of the grid, those that are there.
-template <typename Real, typename Plane>
-TileCells<Real> cells_of(const GridShape& shape, const TileTask& task, const std::vector<Plane*>& planes) {
+/// Where a tile lies in the planes of the grid.
+template <typename Real>
+TileCells<Real> cells_of(const GridShape& shape, const TileTask& task, const std::vector<Real*>& planes) {
   TileCells<Real> cells{static_cast<int>(planes.size()), {}, shape.columns()};
-  for (std::size_t i = 0; i < planes.size(); ++i) cells.plane[i] = planes[i]->data() + first_cell(shape, task, 0);
+  for (std::size_t i = 0; i < planes.size(); ++i) cells.plane[i] = planes[i] + first_cell(shape, task, 0);
   return cells;
 }
 
@@ -85,13 +83,13 @@ constexpr int most_in_crowded_buffer = 1024;
 template <typename Real>
 class PlaneAdjoint : public AdjointSum {
  public:
-  PlaneAdjoint(const Setup<Real>& setup, bool with_psf) : setup_(setup), grid_(setup.shape, with_psf) {}
-
-  void add(const VisibilityBlock& block) override {
-    accumulate(block, nullptr, [&](std::size_t i) { return std::complex<double>(block.visibility[i]); });
-  }
-  void add(const VisibilityBlock& block, const std::vector<std::complex<double>>& visibility) override {
-    accumulate(block, &visibility, [&](std::size_t i) { return visibility[i]; });
+  PlaneAdjoint(const Setup<Real>& setup, const AdjointOptions& options)
+      : AdjointSum(options), setup_(setup), value_unit_(images()), sums_(images()) {
+    grid_.resize(2 * images() + (options.with_psf ? 1 : 0));
+    for (auto& plane : grid_) {
+      plane.resize(setup.shape.cells());
+      planes_.push_back(plane.data());
+    }
   }
 
   AdjointResult finish() override {
@@ -99,13 +97,27 @@ class PlaneAdjoint : public AdjointSum {
     flush_crowded();
     AdjointResult result;
     result.sums = sums_;
-    result.image = to_image(std::move(grid_.real), std::move(grid_.imaginary), value_unit_.unit());
-    if (!grid_.weight.empty()) result.psf = to_image(std::move(grid_.weight), {}, weight_unit_.unit());
+    for (std::size_t i = 0; i < images(); ++i)
+      result.images.push_back(to_image(std::move(grid_[2 * i]), std::move(grid_[2 * i + 1]), value_unit_[i].unit()));
+    if (options_.with_psf) result.psf = to_image(std::move(grid_.back()), {}, weight_unit_.unit());
     result.fft_s = watch.seconds();
     return result;
   }
 
+ protected:
+  void add_sets(const VisibilityBlock& block, const std::vector<VisibilitySet>& sets) override {
+    const TileOrder order = order_by_tile(block, sets, setup_.shape, setup_.geometry.cell_rad, Wanted::imaging, setup_.threads);
+    for (std::size_t i = 0; i < images(); ++i) sums_[i] += order.sums[i];
+    make_room(order.sums);
+    crowded_.count(order.samples, most_in_place, TileBuffer<double>(setup_.shape.tile, setup_.taps_u.padded, plane_count()));
+    for (const std::vector<TileTask>& tasks : coloured_tasks(order, setup_.shape))
+      parallel_for(tasks.size(), setup_.threads, [&](std::size_t i) { grid_tile(block, sets, order, tasks[i]); });
+  }
+
  private:
+  std::size_t images() const { return static_cast<std::size_t>(options_.images); }
+  int plane_count() const { return static_cast<int>(planes_.size()); }
+
   Image to_image(std::vector<Real> real, std::vector<Real> imaginary, double unit) const {
     Image image = grid_to_image(setup_.shape, std::move(real), std::move(imaginary), setup_.correction, setup_.threads);
     if (unit != 1)
@@ -115,69 +127,71 @@ class PlaneAdjoint : public AdjointSum {
   }
 
   /// Brings the grid to the units that hold the samples to come too.
-  void make_room(const SampleSums& coming) {
-    const double values = value_unit_.make_room(coming.weight_abs), weights = weight_unit_.make_room(coming.weight);
-    if (values == 1 && weights == 1) return;
-    const auto multiply = [](auto& cells, double by) {
-      for (auto& cell : cells) cell = static_cast<std::decay_t<decltype(cell)>>(cell * by);
-    };
-    multiply(grid_.real, values);
-    multiply(grid_.imaginary, values);
-    multiply(grid_.weight, weights);
+  void make_room(const std::vector<SampleSums>& coming) {
+    std::vector<double> by;  // [plane]
+    for (std::size_t i = 0; i < images(); ++i) by.insert(by.end(), 2, value_unit_[i].make_room(coming[i].weight_abs));
+    if (options_.with_psf) by.push_back(weight_unit_.make_room(coming.front().weight));
+    if (std::all_of(by.begin(), by.end(), [](double factor) { return factor == 1; })) return;
+    for (std::size_t plane = 0; plane < by.size(); ++plane)
+      for (Real& cell : grid_[plane]) cell = static_cast<Real>(cell * by[plane]);
     for (std::size_t tile = 0; tile < crowded_.tiles(); ++tile) {
       TileBuffer<double>* const sum = crowded_.of(tile);
       if (sum == nullptr) continue;
       for (int r = 0; r < sum->rows; ++r)
         for (int plane = 0; plane < sum->planes; ++plane)
-          for (int c = 0; c < sum->columns; ++c) sum->row(r, plane)[c] *= plane == 2 ? weights : values;
+          for (int c = 0; c < sum->columns; ++c) sum->row(r, plane)[c] *= by[static_cast<std::size_t>(plane)];
     }
   }
 
-  template <typename Visibility>
-  void accumulate(const VisibilityBlock& block, const std::vector<std::complex<double>>* other, const Visibility& visibility) {
-    const TileOrder order =
-        order_by_tile(block, other, setup_.shape, setup_.geometry.cell_rad, Wanted::imaging, setup_.threads);
-    sums_ += order.sums;
-    make_room(order.sums);
-    const double value_per_unit = value_unit_.per_unit(), weight_per_unit = weight_unit_.per_unit();
-    std::vector<std::vector<Real>*> planes{&grid_.real, &grid_.imaginary};
-    if (!grid_.weight.empty()) planes.push_back(&grid_.weight);
-    const auto plane_count = static_cast<int>(planes.size());
-    crowded_.count(order.samples, most_in_place, TileBuffer<double>(setup_.shape.tile, setup_.taps_u.padded, plane_count));
-    for (const std::vector<TileTask>& tasks : coloured_tasks(order, setup_.shape)) {
-      parallel_for(tasks.size(), setup_.threads, [&](std::size_t i) {
-        TileBuffer<double>* const crowded = crowded_.of(tasks[i].tile);
-        const bool in_place = crowded == nullptr && sparse(order, tasks[i]);
-        TileBuffer<Real> buffer(setup_.shape.tile, setup_.taps_u.padded, in_place ? 0 : plane_count);
-        const TileCells<Real> cells = in_place ? cells_of<Real>(setup_.shape, tasks[i], planes) : buffer.cells();
-        if (!in_place)
-          for (const std::vector<Real>* plane : planes) prefetch_tile(setup_.shape, tasks[i], *plane);
-        const auto ahead = [&](std::size_t sample) {
-          hwy::Prefetch(&block.weight[sample]);
-          other == nullptr ? hwy::Prefetch(&block.visibility[sample]) : hwy::Prefetch(&(*other)[sample]);
-        };
-        const auto empty_buffer = [&] { crowded == nullptr ? flush(tasks[i], buffer) : add_up(buffer, *crowded); };
-        int in_buffer = 0;
-        const auto done = [&](TileBatch<Real>& batch, const BatchSamples& samples) {
-          // The grid holds conj(V), whose backward transform is the image; see tile_order.h for the axes.
-          for (int k = 0; k < batch.count; ++k) {
-            const double weight = block.weight[samples.index[k]], scaled = weight * value_per_unit;
-            const std::complex<double> value = samples.from_middle(visibility(samples.index[k]), k);
-            batch.real[k] = static_cast<Real>(scaled * value.real());
-            batch.imaginary[k] = static_cast<Real>(samples.conjugate[k] ? scaled * value.imag() : -scaled * value.imag());
-            batch.weight[k] = static_cast<Real>(weight * weight_per_unit);
-          }
-          spread(setup_.taps_u, setup_.taps_v, batch, cells);
-          in_buffer += batch.count;
-          if (in_place || in_buffer < (crowded == nullptr ? most_in_buffer : most_in_crowded_buffer)) return;
-          empty_buffer();
-          std::fill(buffer.cell.begin(), buffer.cell.end(), Real(0));
-          in_buffer = 0;
-        };
-        for_each_batch<Real>(setup_.geometry, setup_.shape, block, order, tasks[i], ahead, done);
-        if (!in_place) empty_buffer();
-      });
+  void grid_tile(const VisibilityBlock& block, const std::vector<VisibilitySet>& sets, const TileOrder& order,
+                 const TileTask& task) {
+    TileBuffer<double>* const crowded = crowded_.of(task.tile);
+    const bool in_place = crowded == nullptr && sparse(order, task);
+    TileBuffer<Real> buffer(setup_.shape.tile, setup_.taps_u.padded, in_place ? 0 : plane_count());
+    const TileCells<Real> cells = in_place ? cells_of(setup_.shape, task, planes_) : buffer.cells();
+    if (!in_place)
+      for (const Real* plane : planes_) prefetch_tile(setup_.shape, task, plane);
+    const auto ahead = [&](std::size_t sample) {
+      hwy::Prefetch(&block.weight[sample]);
+      for (const VisibilitySet& set : sets)
+        std::visit([&](const auto* visibility) { hwy::Prefetch(visibility + sample); }, set);
+    };
+    const auto empty_buffer = [&] { crowded == nullptr ? flush(task, buffer) : add_up(buffer, *crowded); };
+    int in_buffer = 0;
+    const auto done = [&](TileBatch<Real>& batch, const BatchSamples& samples) {
+      set_values(block, sets, samples, batch);
+      spread(setup_.taps_u, setup_.taps_v, batch, cells);
+      in_buffer += batch.count;
+      if (in_place || in_buffer < (crowded == nullptr ? most_in_buffer : most_in_crowded_buffer)) return;
+      empty_buffer();
+      std::fill(buffer.cell.begin(), buffer.cell.end(), Real(0));
+      in_buffer = 0;
+    };
+    for_each_batch<Real>(setup_.geometry, setup_.shape, block, order, task, ahead, done);
+    if (!in_place) empty_buffer();
+  }
+
+  /// The grid holds conj(V), whose backward transform is the image; see tile_order.h for the axes.
+  void set_values(const VisibilityBlock& block, const std::vector<VisibilitySet>& sets, const BatchSamples& samples,
+                  TileBatch<Real>& batch) const {
+    double weight[BatchSamples::capacity];
+    for (int k = 0; k < batch.count; ++k) weight[k] = block.weight[samples.index[k]];
+    for (std::size_t i = 0; i < sets.size(); ++i) {
+      const double per_unit = value_unit_[i].per_unit();
+      Real *const real = batch.value[2 * i], *const imaginary = batch.value[2 * i + 1];
+      const auto set_both = [&](const auto* visibility) {
+        for (int k = 0; k < batch.count; ++k) {
+          const double scaled = weight[k] * per_unit;
+          const std::complex<double> value = samples.from_middle(std::complex<double>(visibility[samples.index[k]]), k);
+          real[k] = static_cast<Real>(scaled * value.real());
+          imaginary[k] = static_cast<Real>(samples.conjugate[k] ? scaled * value.imag() : -scaled * value.imag());
+        }
+      };
+      std::visit(set_both, sets[i]);
     }
+    if (!options_.with_psf) return;
+    const double per_unit = weight_unit_.per_unit();
+    for (int k = 0; k < batch.count; ++k) batch.value[2 * sets.size()][k] = static_cast<Real>(weight[k] * per_unit);
   }
 
   static void add_up(const TileBuffer<Real>& buffer, TileBuffer<double>& to) {
@@ -194,29 +208,29 @@ class PlaneAdjoint : public AdjointSum {
   template <typename Sum>
   void flush(const TileTask& task, TileBuffer<Sum>& buffer) {
     const int reach = setup_.shape.tile + setup_.shape.width - 1;
-    std::vector<Real>* const planes[3] = {&grid_.real, &grid_.imaginary, &grid_.weight};
     for (int r = 0; r < reach; ++r) {
       const std::size_t start = first_cell(setup_.shape, task, r);
       for (int plane = 0; plane < buffer.planes; ++plane) {
         const Sum* from = buffer.row(r, plane);
-        Real* to = planes[plane]->data() + start;
+        Real* to = planes_[static_cast<std::size_t>(plane)] + start;
         for (int c = 0; c < reach; ++c) to[c] = static_cast<Real>(to[c] + from[c]);
       }
     }
   }
 
   const Setup<Real>& setup_;
-  HalfGrid<Real> grid_;
+  std::vector<std::vector<Real>> grid_;  ///< [plane]: real and imaginary parts of each image; last, with a PSF, weights
+  std::vector<Real*> planes_;
   CrowdedTiles<Real> crowded_;
-  SumUnit<Real> value_unit_;   ///< of the grid's real and imaginary parts
-  SumUnit<Real> weight_unit_;  ///< of its weights
-  SampleSums sums_;
+  std::vector<SumUnit<Real>> value_unit_;  ///< [image], of real and imaginary parts
+  SumUnit<Real> weight_unit_;              ///< of the weights
+  std::vector<SampleSums> sums_;           ///< [image]
 };
 
 template <typename Real>
 class PlanePrediction : public Prediction {
  public:
-  PlanePrediction(const Setup<Real>& setup, const Image& model) : setup_(setup), grid_(setup.shape, false) {
+  PlanePrediction(const Setup<Real>& setup, const Image& model) : setup_(setup), grid_(setup.shape) {
     const Stopwatch watch;
     if (!crosses_horizon(setup.geometry)) {
       image_to_grid(model, setup.correction, setup.threads, grid_);
@@ -240,9 +254,9 @@ class PlanePrediction : public Prediction {
 
  private:
   std::vector<std::complex<double>> degrid(const VisibilityBlock& block, Wanted wanted) const {
-    const TileOrder order = order_by_tile(block, nullptr, setup_.shape, setup_.geometry.cell_rad, wanted, setup_.threads);
+    const TileOrder order = order_by_tile(block, {}, setup_.shape, setup_.geometry.cell_rad, wanted, setup_.threads);
     std::vector<std::complex<double>> visibility(block.samples());
-    const std::vector<const std::vector<Real>*> planes{&grid_.real, &grid_.imaginary};
+    const std::vector<const Real*> planes{grid_.real.data(), grid_.imaginary.data()};
     std::vector<TileTask> tasks;
     for (const std::vector<TileTask>& colour : coloured_tasks(order, setup_.shape))
       tasks.insert(tasks.end(), colour.begin(), colour.end());
@@ -251,16 +265,16 @@ class PlanePrediction : public Prediction {
       TileBuffer<Real> buffer(setup_.shape.tile, setup_.taps_u.padded, in_place ? 0 : 2);
       if (!in_place) load(tasks[i], buffer);
       const TileCells<const Real> cells =
-          in_place ? cells_of<const Real>(setup_.shape, tasks[i], planes) : TileCells<const Real>(buffer.cells());
+          in_place ? cells_of(setup_.shape, tasks[i], planes) : TileCells<const Real>(buffer.cells());
       if (i + 1 < tasks.size() && !sparse(order, tasks[i + 1]))
-        for (const std::vector<Real>* plane : planes) prefetch_tile(setup_.shape, tasks[i + 1], *plane);
+        for (const Real* plane : planes) prefetch_tile(setup_.shape, tasks[i + 1], plane);
       const auto ahead = [&](std::size_t sample) { hwy::Prefetch(&visibility[sample]); };
       const auto done = [&](TileBatch<Real>& batch, const BatchSamples& samples) {
         interpolate(setup_.taps_u, setup_.taps_v, cells, batch);
         for (int k = 0; k < batch.count; ++k) {
-          const double imaginary = double{batch.imaginary[k]};
+          const double imaginary = double{batch.value[1][k]};
           visibility[samples.index[k]] =
-              samples.from_phase_centre({double{batch.real[k]}, samples.conjugate[k] ? imaginary : -imaginary}, k);
+              samples.from_phase_centre({double{batch.value[0][k]}, samples.conjugate[k] ? imaginary : -imaginary}, k);
         }
       };
       for_each_batch<Real>(setup_.geometry, setup_.shape, block, order, tasks[i], ahead, done);
@@ -297,8 +311,8 @@ class PlaneTransform : public Transform {
                {axis_correction(o.kernel_u, o.geometry.width, o.nu), axis_correction(o.kernel_v, o.geometry.height, o.nv)},
                o.threads} {}
 
-  std::unique_ptr<AdjointSum> adjoint(bool with_psf) const override {
-    return std::make_unique<PlaneAdjoint<Real>>(setup_, with_psf);
+  std::unique_ptr<AdjointSum> adjoint(const AdjointOptions& options) const override {
+    return std::make_unique<PlaneAdjoint<Real>>(setup_, options);
   }
   std::unique_ptr<Prediction> predict(const Image& model) const override {
     return std::make_unique<PlanePrediction<Real>>(setup_, model);
@@ -337,10 +351,10 @@ double longest_plane_sum(Precision precision, double samples) {
   return std::min<double>(samples, most_in_registers + most_in_buffer / most_in_registers + in_grid / most_in_buffer);
 }
 
-TransformMemory memory_of(const PlaneTransformOptions& o) {
+TransformMemory memory_of(const PlaneTransformOptions& o, int stokes) {
   const double real_bytes = o.precision == Precision::single_precision ? sizeof(float) : sizeof(double);
   const double plane = static_cast<double>(shape_of(o).cells()) * real_bytes;
-  return {2 * plane, plane, transform_buffer_bytes(shape_of(o), o.threads, real_bytes)};
+  return {2 * plane, plane, transform_buffer_bytes(shape_of(o), o.threads, real_bytes), 2 * plane * (stokes - 1)};
 }
 
 }  // namespace misfit::imager

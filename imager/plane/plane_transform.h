@@ -34,9 +34,11 @@ struct TransformMemory {
   double visibilities = 0;  ///< grid of an adjoint without PSF, or of a prediction
   double psf = 0;           ///< grid that the PSF adds to an adjoint
   double fft = 0;           ///< buffers
+  double other_stokes = 0;  ///< grids that further Stokes parameters add to an adjoint
 };
 
-TransformMemory memory_of(const PlaneTransformOptions& options);
+/// Of an adjoint of `stokes` images.
+TransformMemory memory_of(const PlaneTransformOptions& options, int stokes = 1);
 
 /// Additions, one after another, that go into a cell of the grid where all samples lie in one: by so much can their rounding
 /// add up. Those in double precision do not count where the rest is in single.

@@ -42,14 +42,28 @@ SameCell next_cell(const TileBatch<Real>& samples, int begin) {
   return {begin, end};
 }
 
+/// Some planes of a tile, and what the samples of a batch have for them.
+template <typename Real, int Planes>
+struct SomePlanes {
+  const Real* value[Planes];  ///< [sample]
+  Real* cell[Planes];         ///< row 0, column 0
+  std::ptrdiff_t row;
+
+  SomePlanes(const TileBatch<Real>& samples, const TileCells<Real>& cells, int first) : row(cells.row) {
+    for (int plane = 0; plane < Planes; ++plane) {
+      value[plane] = samples.value[first + plane];
+      cell[plane] = cells.plane[first + plane];
+    }
+  }
+};
+
 /// Adds `Rows` rows of the taps of samples in one cell, from its row `first` on: summed in registers, so that memory is touched
-/// once for all of them. `cells` is a copy since the compiler must take stores of vectors to reach anything else.
+/// once for all of them. `planes` is a copy since the compiler must take stores of vectors to reach anything else.
 template <typename Real, int Width, int Planes, int Rows>
 HWY_ATTR HWY_INLINE void add_rows(const TileBatch<Real>& samples, SameCell same, const Evaluated<Real>& u,
-                                  const Evaluated<Real>& v, int first, TileCells<Real> cells) {
+                                  const Evaluated<Real>& v, int first, SomePlanes<Real, Planes> planes) {
   using T = TapLanes<Real, Width>;
   const typename T::Tag d;
-  const Real* const value[3] = {samples.real, samples.imaginary, samples.weight};
   typename T::Vector sum[Rows][Planes][T::vectors];
   MISFIT_UNROLL for (int j = 0; j < Rows; ++j) {
     MISFIT_UNROLL for (int plane = 0; plane < Planes; ++plane) {
@@ -59,7 +73,7 @@ HWY_ATTR HWY_INLINE void add_rows(const TileBatch<Real>& samples, SameCell same,
   for (int i = same.begin; i < same.end; ++i) {
     typename T::Vector term[Planes][T::vectors];
     MISFIT_UNROLL for (int plane = 0; plane < Planes; ++plane) {
-      const auto factor = hn::Set(d, value[plane][i]);
+      const auto factor = hn::Set(d, planes.value[plane][i]);
       MISFIT_UNROLL for (int k = 0; k < T::vectors; ++k) term[plane][k] =
           hn::Mul(factor, hn::Load(d, u.value + i * T::padded + k * T::lanes));
     }
@@ -71,10 +85,10 @@ HWY_ATTR HWY_INLINE void add_rows(const TileBatch<Real>& samples, SameCell same,
       }
     }
   }
-  std::ptrdiff_t start = (samples.row[same.begin] + first) * cells.row + samples.column[same.begin];
-  MISFIT_UNROLL for (int j = 0; j < Rows; ++j, start += cells.row) {
+  std::ptrdiff_t start = (samples.row[same.begin] + first) * planes.row + samples.column[same.begin];
+  MISFIT_UNROLL for (int j = 0; j < Rows; ++j, start += planes.row) {
     MISFIT_UNROLL for (int plane = 0; plane < Planes; ++plane) {
-      Real* const cell = cells.plane[plane] + start;
+      Real* const cell = planes.cell[plane] + start;
       MISFIT_UNROLL for (int k = 0; k < T::vectors; ++k) {
         Real* at = cell + k * T::lanes;
         hn::StoreU(hn::Add(sum[j][plane][k], hn::LoadU(d, at)), d, at);
@@ -85,13 +99,15 @@ HWY_ATTR HWY_INLINE void add_rows(const TileBatch<Real>& samples, SameCell same,
 
 template <typename Real, int Width, int Planes>
 HWY_ATTR void spread_samples(const TileBatch<Real>& samples, const Evaluated<Real>& along_u, const Evaluated<Real>& along_v,
-                             const TileCells<Real>& cells) {
+                             const TileCells<Real>& cells, int first_plane) {
+  const SomePlanes<Real, Planes> planes(samples, cells, first_plane);
   constexpr int passes = (Width * Planes * TapLanes<Real, Width>::vectors + most_sums - 1) / most_sums;
   constexpr int rows = passes < Width ? (Width + passes - 1) / passes : 1;
   constexpr int rest = Width % rows;
   for (SameCell same = next_cell(samples, 0); same.begin < samples.count; same = next_cell(samples, same.end)) {
-    for (int j = 0; j < Width - rest; j += rows) add_rows<Real, Width, Planes, rows>(samples, same, along_u, along_v, j, cells);
-    if constexpr (rest > 0) add_rows<Real, Width, Planes, rest>(samples, same, along_u, along_v, Width - rest, cells);
+    for (int j = 0; j < Width - rest; j += rows)
+      add_rows<Real, Width, Planes, rows>(samples, same, along_u, along_v, j, planes);
+    if constexpr (rest > 0) add_rows<Real, Width, Planes, rest>(samples, same, along_u, along_v, Width - rest, planes);
   }
 }
 
@@ -120,8 +136,8 @@ HWY_ATTR void interpolate_samples(const Evaluated<Real>& along_u, const Evaluate
       real_sum = hn::MulAdd(real[k], taps, real_sum);
       imaginary_sum = hn::MulAdd(imaginary[k], taps, imaginary_sum);
     }
-    samples.real[i] = hn::GetLane(hn::SumOfLanes(d, real_sum));
-    samples.imaginary[i] = hn::GetLane(hn::SumOfLanes(d, imaginary_sum));
+    samples.value[0][i] = hn::GetLane(hn::SumOfLanes(d, real_sum));
+    samples.value[1][i] = hn::GetLane(hn::SumOfLanes(d, imaginary_sum));
   }
 }
 
@@ -131,10 +147,14 @@ HWY_ATTR void spread_any(std::integer_sequence<int, Before...>, const TapTable<R
   Evaluated<Real> along_u, along_v;
   evaluate_taps(u, samples.tu, samples.count, along_u.value);
   evaluate_taps(v, samples.tv, samples.count, along_v.value);
-  using Loop = void (*)(const TileBatch<Real>&, const Evaluated<Real>&, const Evaluated<Real>&, const TileCells<Real>&);
+  using Loop = void (*)(const TileBatch<Real>&, const Evaluated<Real>&, const Evaluated<Real>&, const TileCells<Real>&, int);
   constexpr Loop two_planes[] = {spread_samples<Real, Before + 1, 2>...};
   constexpr Loop three_planes[] = {spread_samples<Real, Before + 1, 3>...};
-  (cells.planes == 3 ? three_planes : two_planes)[u.width - 1](samples, along_u, along_v, cells);
+  for (int plane = 0; plane < cells.planes;) {
+    const int left = cells.planes - plane, some = left == 2 || left == 4 ? 2 : 3;
+    (some == 3 ? three_planes : two_planes)[u.width - 1](samples, along_u, along_v, cells, plane);
+    plane += some;
+  }
 }
 
 template <typename Real, int... Before>

@@ -5,6 +5,7 @@
 
 #include "imager/plane/tap_table.h"
 #include "imager/plane/tile_positions.h"
+#include "imager/visibility_sets.h"
 
 namespace misfit::imager {
 
@@ -12,22 +13,27 @@ namespace misfit::imager {
 /// one side.
 inline constexpr int most_in_registers = 32;
 
+/// Planes of a grid: real and imaginary parts of each image, and last (while gridding a PSF) weights.
+inline constexpr int most_grid_planes = 2 * most_stokes + 1;
+
 /// Samples on their way to or from one tile.
 template <typename Real>
 struct TileBatch : TilePlaces<Real> {
-  Real real[TilePlaces<Real>::capacity];
-  Real imaginary[TilePlaces<Real>::capacity];
-  Real weight[TilePlaces<Real>::capacity];
+  Real value[most_grid_planes][TilePlaces<Real>::capacity];  ///< [plane]
 };
 
-/// Where the cells of a tile lie, in planes of real and imaginary parts and (while gridding a PSF) weights.
+/// Where the cells of a tile lie.
 template <typename Real>
 struct TileCells {
   int planes = 0;
-  Real* plane[3] = {};     ///< row 0, column 0
-  std::ptrdiff_t row = 0;  ///< from one row to the next
+  Real* plane[most_grid_planes] = {};  ///< row 0, column 0
+  std::ptrdiff_t row = 0;              ///< from one row to the next
 
-  operator TileCells<const Real>() const { return {planes, {plane[0], plane[1], plane[2]}, row}; }
+  operator TileCells<const Real>() const {
+    TileCells<const Real> cells{planes, {}, row};
+    for (int i = 0; i < planes; ++i) cells.plane[i] = plane[i];
+    return cells;
+  }
 };
 
 /// A tile's private piece of the grid, with room for the taps that leave the tile: [row][plane][column].
@@ -59,7 +65,7 @@ void spread(const TapTable<float>& u, const TapTable<float>& v, const TileBatch<
 void spread(const TapTable<double>& u, const TapTable<double>& v, const TileBatch<double>& samples,
             const TileCells<double>& cells);
 
-/// Sets every sample's value to Σ C_u · C_v · cell: the transpose of spread.
+/// Sets every sample's values of the first two planes to Σ C_u · C_v · cell: the transpose of spread.
 void interpolate(const TapTable<float>& u, const TapTable<float>& v, const TileCells<const float>& cells,
                  TileBatch<float>& samples);
 void interpolate(const TapTable<double>& u, const TapTable<double>& v, const TileCells<const double>& cells,

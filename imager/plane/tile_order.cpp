@@ -43,9 +43,9 @@ struct TileBox {
 /// The runs of a range of rows, in order.
 class RunFinder {
  public:
-  RunFinder(const VisibilityBlock& block, const std::vector<std::complex<double>>* visibility, const GridShape& shape,
-            double cell_rad, Wanted wanted)
-      : block_(block), visibility_(visibility), shape_(shape), scale_(shape, cell_rad), wanted_(wanted) {}
+  RunFinder(const VisibilityBlock& block, const std::vector<VisibilitySet>& sets, const GridShape& shape, double cell_rad,
+            Wanted wanted)
+      : sums(sets.size()), block_(block), sets_(sets), shape_(shape), scale_(shape, cell_rad), wanted_(wanted) {}
 
   void find(std::size_t begin_row, std::size_t end_row) {
     span_begin_ = span_end_ = begin_row * block_.channels();
@@ -54,7 +54,7 @@ class RunFinder {
   }
 
   std::vector<TiledRun> runs;
-  SampleSums sums;
+  std::vector<SampleSums> sums;  ///< [set]
 
  private:
   void find_in_row(std::size_t row) {
@@ -80,7 +80,7 @@ class RunFinder {
   bool wants(std::size_t sample, double u, double v) {
     if (!usable(sample)) return false;
     if (wanted_ != Wanted::imaging || inside_grid(u / shape_.nu, v / shape_.nv)) return true;
-    ++sums.outside_grid;
+    for (SampleSums& of_set : sums) ++of_set.outside_grid;
     return false;
   }
 
@@ -89,7 +89,7 @@ class RunFinder {
                     {static_cast<std::uint32_t>(row), static_cast<std::uint32_t>(channel) & 0xFFFFF,
                      static_cast<std::uint32_t>(end - channel) & longest_run}});
     if (wanted_ != Wanted::imaging) return;
-    sums.used += end - channel;
+    for (SampleSums& of_set : sums) of_set.used += end - channel;
     const std::size_t first = row * block_.channels() + channel;
     if (std::any_of(block_.weight.data() + span_end_, block_.weight.data() + first, [](float w) { return w != 0; })) {
       close_span();
@@ -102,12 +102,12 @@ class RunFinder {
   void close_span() {
     const float* const weight = block_.weight.data() + span_begin_;
     const std::size_t count = span_end_ - span_begin_;
-    if (visibility_ != nullptr) add_span_to_sums(weight, visibility_->data() + span_begin_, count, sums);
-    if (visibility_ == nullptr) add_span_to_sums(weight, block_.visibility.data() + span_begin_, count, sums);
+    for (std::size_t i = 0; i < sets_.size(); ++i)
+      std::visit([&](const auto* visibility) { add_span_to_sums(weight, visibility + span_begin_, count, sums[i]); }, sets_[i]);
   }
 
   const VisibilityBlock& block_;
-  const std::vector<std::complex<double>>* visibility_;
+  const std::vector<VisibilitySet>& sets_;
   const GridShape& shape_;
   CellScale scale_;
   Wanted wanted_;
@@ -124,19 +124,20 @@ void check_channels(std::size_t channels) {
                                 " are supported");
 }
 
-TileOrder order_by_tile(const VisibilityBlock& block, const std::vector<std::complex<double>>* visibility,
-                        const GridShape& shape, double cell_rad, Wanted wanted, int threads) {
+TileOrder order_by_tile(const VisibilityBlock& block, const std::vector<VisibilitySet>& sets, const GridShape& shape,
+                        double cell_rad, Wanted wanted, int threads) {
   check_channels(block.channels());
-  std::vector<RunFinder> part(chunks, RunFinder(block, visibility, shape, cell_rad, wanted));
+  std::vector<RunFinder> part(chunks, RunFinder(block, sets, shape, cell_rad, wanted));
   parallel_for(chunks, threads,
                [&](std::size_t i) { part[i].find(block.rows() * i / chunks, block.rows() * (i + 1) / chunks); });
 
   const auto tiles = static_cast<std::size_t>(shape.tiles_u()) * static_cast<std::size_t>(shape.tiles_v());
-  TileOrder order{std::vector<std::size_t>(tiles + 1), std::vector<std::size_t>(tiles), {}, 0, {}};
+  TileOrder order{
+      std::vector<std::size_t>(tiles + 1), std::vector<std::size_t>(tiles), {}, 0, std::vector<SampleSums>(sets.size())};
   for (const double frequency : block.frequency_hz)
     order.highest_frequency_hz = std::max(order.highest_frequency_hz, frequency);
   for (const RunFinder& p : part) {
-    order.sums += p.sums;
+    for (std::size_t i = 0; i < sets.size(); ++i) order.sums[i] += p.sums[i];
     for (const TiledRun& r : p.runs) {
       ++order.begin[r.tile + 1];
       order.samples[r.tile] += r.run.count;

@@ -67,7 +67,7 @@ struct TileOrder {
   std::vector<std::size_t> samples;  ///< [tile]
   std::vector<ChannelRun> run;
   double highest_frequency_hz = 0;  ///< of the block
-  SampleSums sums;                  ///< when imaging: of the samples in the order, and those outside the grid
+  std::vector<SampleSums> sums;     ///< [set]: when imaging, of the samples in the order, and those outside the grid
 };
 
 /// Throws std::invalid_argument when there are more than a run can count.
@@ -77,9 +77,9 @@ void check_channels(std::size_t channels);
 enum class Wanted { imaging, usable, all };
 
 /// Orders the wanted samples by the tile of their first tap. `block` needs weights unless all are wanted; sums are taken of
-/// `visibility` where given, of the block's own otherwise.
-TileOrder order_by_tile(const VisibilityBlock& block, const std::vector<std::complex<double>>* visibility,
-                        const GridShape& shape, double cell_rad, Wanted wanted, int threads);
+/// each of the sets.
+TileOrder order_by_tile(const VisibilityBlock& block, const std::vector<VisibilitySet>& sets, const GridShape& shape,
+                        double cell_rad, Wanted wanted, int threads);
 
 /// Cells reduced by the period of the grid to [−n/2, n/2] along u and [0, n/2] along v, as prediction beyond the grid needs.
 /// Inside the grid nothing changes.

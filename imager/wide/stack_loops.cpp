@@ -78,20 +78,20 @@ HWY_INLINE int numbers_within(int column, int width, int columns) {
   return 2 * std::min(width, columns - column);
 }
 
+/// To `Grids` grids from `first_grid` on.
 template <typename Real, int Vectors, int Grids>
-HWY_ATTR void spread_samples(const StackTaps<Real>& taps, const StackBatch<Real>& samples,
-                             const StackCells<std::complex<Real>>& cells) {
+HWY_ATTR void spread_samples(const StackTaps<Real>& taps, const StackBatch<Real>& samples, const Along<Real>& along,
+                             const StackCells<std::complex<Real>>& cells, int first_grid) {
   const Tag<Real> d;
   const TapsTag<Real> dt;
   constexpr int lanes = lanes_of<Real>, numbers = Vectors * lanes;
   const int width = taps.v.width;
-  const Along<Real> along(taps, samples);
   alignas(64) Halves<Real, numbers> row[TilePlaces<Real>::capacity][Grids];  // value · C_u
   for (int i = 0; i < samples.count; ++i) {
     const int within = numbers_within(samples.column[i], width, cells.columns);
     for (int g = 0; g < Grids; ++g) {
       Real* const whole = row[i][g].whole;
-      const std::complex<Real> value = samples.value[g][i];
+      const std::complex<Real> value = samples.value[first_grid + g][i];
       for (int k = 0; k < numbers / 2; k += taps_at_once<Real>) {
         const auto u = hn::LoadU(dt, along.u.value + i * taps.u.padded + k);
         hn::StoreInterleaved2(hn::Mul(u, hn::Set(dt, value.real())), hn::Mul(u, hn::Set(dt, value.imag())), dt, whole + 2 * k);
@@ -116,7 +116,8 @@ HWY_ATTR void spread_samples(const StackTaps<Real>& taps, const StackBatch<Real>
     const Real* v = along.v.value + i * taps.v.padded;
     const bool crosses = numbers_within(samples.column[i], width, cells.columns) < 2 * width;
     for (int g = 0; g < Grids; ++g) {
-      std::complex<Real>* group = cells.first + plane * cells.plane + samples.row[i] * cells.row + g * cells.grid;
+      std::complex<Real>* group =
+          cells.first + plane * cells.plane + samples.row[i] * cells.row + (first_grid + g) * cells.grid;
       add(row[i][g].whole, along_w, v, reinterpret_cast<Real*>(group + samples.column[i]));
       if (crosses) add(row[i][g].beyond, along_w, v, reinterpret_cast<Real*>(group + cells.next));
     }
@@ -173,10 +174,13 @@ HWY_ATTR void interpolate_samples(const StackTaps<Real>& taps, const StackCells<
 template <typename Real, int... Before>
 HWY_ATTR void spread_any(std::integer_sequence<int, Before...>, const StackTaps<Real>& taps, const StackBatch<Real>& samples,
                          const StackCells<std::complex<Real>>& cells) {
-  using Loop = void (*)(const StackTaps<Real>&, const StackBatch<Real>&, const StackCells<std::complex<Real>>&);
+  using Loop =
+      void (*)(const StackTaps<Real>&, const StackBatch<Real>&, const Along<Real>&, const StackCells<std::complex<Real>>&, int);
   constexpr Loop one_grid[] = {spread_samples<Real, Before + 1, 1>...};
   constexpr Loop two_grids[] = {spread_samples<Real, Before + 1, 2>...};
-  (cells.grids == 2 ? two_grids : one_grid)[vectors_of<Real>(taps.u.width) - 1](taps, samples, cells);
+  const Along<Real> along(taps, samples);
+  for (int grid = 0; grid < cells.grids; grid += 2)
+    (cells.grids - grid > 1 ? two_grids : one_grid)[vectors_of<Real>(taps.u.width) - 1](taps, samples, along, cells, grid);
 }
 
 template <typename Real, int... Before>

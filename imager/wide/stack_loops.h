@@ -6,8 +6,12 @@
 
 #include "imager/plane/tap_table.h"
 #include "imager/plane/tile_positions.h"
+#include "imager/visibility_sets.h"
 
 namespace misfit::imager {
+
+/// Grids of a plane: those of images, and last (while gridding one) that of the PSF.
+inline constexpr int most_grids = most_stokes + 1;
 
 /// Samples on their way to or from one tile of a stack of planes. The plane is that of the first tap in the tile's buffer; it
 /// may lie below or above the planes there, of which only the taps within count.
@@ -15,7 +19,7 @@ template <typename Real>
 struct StackBatch : TilePlaces<Real> {
   int plane[TilePlaces<Real>::capacity];
   Real tw[TilePlaces<Real>::capacity];
-  std::complex<Real> value[2][TilePlaces<Real>::capacity];  ///< [grid]
+  std::complex<Real> value[most_grids][TilePlaces<Real>::capacity];  ///< [grid]
 };
 
 /// Where the cells of a tile lie. Distances are in cells.
@@ -33,7 +37,7 @@ struct StackCells {
   operator StackCells<const Complex>() const { return {first, plane, row, grid, planes, grids, columns, next}; }
 };
 
-/// A tile's private piece of a stack of one or two grids a plane, with room for the taps that leave the tile:
+/// A tile's private piece of a stack of one or more grids a plane, with room for the taps that leave the tile:
 /// [plane][row][grid][column].
 template <typename Real>
 struct StackBuffer {

@@ -20,22 +20,24 @@ namespace {
 template <typename Real>
 class WideAdjoint : public AdjointSum {
  public:
-  WideAdjoint(const WideSetup<Real>& setup, bool with_psf)
-      : setup_(setup), with_psf_(with_psf && !beyond_horizon(setup.options.geometry.centre)) {
+  WideAdjoint(const WideSetup<Real>& setup, const AdjointOptions& options)
+      : AdjointSum(options),
+        setup_(setup),
+        with_psf_(options.with_psf && !beyond_horizon(setup.options.geometry.centre)),
+        value_unit_(images()) {
     const ImageGeometry& g = setup.options.geometry;
-    result_.image = Image(g.width, g.height);
-    if (with_psf) result_.psf = Image(g.width, g.height);
+    result_.images.assign(images(), Image(g.width, g.height));
+    result_.sums.resize(images());
+    if (options.with_psf) result_.psf = Image(g.width, g.height);
   }
 
-  void add(const VisibilityBlock& block) override { gather(block, block.visibility); }
-  void add(const VisibilityBlock& block, const std::vector<std::complex<double>>& visibility) override {
-    gather(block, visibility);
-  }
   AdjointResult finish() override {
     flush();
-    multiply(result_.image, value_unit_.unit());
+    for (std::size_t i = 0; i < images(); ++i) {
+      multiply(result_.images[i], value_unit_[i].unit());
+      set_beyond_horizon(setup_.options.geometry, no_value, result_.images[i]);
+    }
     multiply(result_.psf, weight_unit_.unit());
-    set_beyond_horizon(setup_.options.geometry, no_value, result_.image);
     if (with_psf_) {
       set_beyond_horizon(setup_.options.geometry, no_value, result_.psf);
     } else {
@@ -44,13 +46,34 @@ class WideAdjoint : public AdjointSum {
     return std::move(result_);
   }
 
+ protected:
+  void add_sets(const VisibilityBlock& block, const std::vector<VisibilitySet>& sets) override {
+    SampleSums counted;
+    Gathered g{block, imaging_weights(block, setup_.options.geometry.cell_rad, setup_.options.threads, counted), {}};
+    std::vector<SampleSums> sums;
+    for (const VisibilitySet& set : sets) {
+      sums.push_back(std::visit([&](const auto* visibility) { return sums_of(g.weight, visibility); }, set));
+      sums.back() += counted;
+    }
+    for (std::size_t i = 0; i < images(); ++i) result_.sums[i] += sums[i];
+    make_room(sums);
+    for (std::size_t i = 0; i < images(); ++i)
+      g.weighted.push_back(std::visit(
+          [&](const auto* visibility) { return weighted(g.weight, visibility, value_unit_[i].per_unit()); }, sets[i]));
+    samples_ += block.samples();
+    gathered_.push_back(std::move(g));
+    if (samples_ >= setup_.options.samples_at_once) flush();
+  }
+
  private:
   /// A block's samples, those left out with weight 0.
   struct Gathered {
     SampleCoordinates at;
     std::vector<float> weight;
-    std::vector<std::complex<Real>> weighted;  ///< weight · V, in the values' unit
+    std::vector<std::vector<std::complex<Real>>> weighted;  ///< [image]: weight · V, in the values' unit
   };
+
+  std::size_t images() const { return static_cast<std::size_t>(options_.images); }
 
   static void multiply(Image& image, double by) {
     if (by != 1)
@@ -66,56 +89,52 @@ class WideAdjoint : public AdjointSum {
   static std::size_t pieces(std::size_t samples) { return (samples + samples_a_piece - 1) / samples_a_piece; }
   static constexpr std::size_t samples_a_piece = 1 << 16;
 
-  template <typename Visibility>
-  SampleSums sums_of(const std::vector<float>& weight, const Visibility& visibility) const {
+  template <typename Number>
+  SampleSums sums_of(const std::vector<float>& weight, const std::complex<Number>* visibility) const {
     std::vector<SampleSums> part(pieces(weight.size()));
     for_pieces(weight.size(), [&](std::size_t p, std::size_t begin, std::size_t end) {
-      add_span_to_sums(weight.data() + begin, visibility.data() + begin, end - begin, part[p]);
+      add_span_to_sums(weight.data() + begin, visibility + begin, end - begin, part[p]);
     });
     SampleSums sums;
     for (const SampleSums& of_piece : part) sums += of_piece;
     return sums;
   }
 
+  template <typename Number>
+  std::vector<std::complex<Real>> weighted(const std::vector<float>& weight, const std::complex<Number>* visibility,
+                                           double per_unit) const {
+    std::vector<std::complex<Real>> values(weight.size());
+    for_pieces(weight.size(), [&](std::size_t, std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i)
+        if (weight[i] != 0) values[i] = std::complex<Real>(double{weight[i]} * per_unit * std::complex<double>(visibility[i]));
+    });
+    return values;
+  }
+
   /// Brings the images to the units that hold the samples to come too. What was gathered in others is gridded first.
-  void make_room(const SampleSums& coming) {
-    SumUnit<Real> value_unit = value_unit_, weight_unit = weight_unit_;
-    const double values = value_unit.make_room(coming.weight_abs), weights = weight_unit.make_room(coming.weight);
-    if (values != 1 || weights != 1) {
+  void make_room(const std::vector<SampleSums>& coming) {
+    std::vector<SumUnit<Real>> value_unit = value_unit_;
+    SumUnit<Real> weight_unit = weight_unit_;
+    std::vector<double> values;
+    for (std::size_t i = 0; i < images(); ++i) values.push_back(value_unit[i].make_room(coming[i].weight_abs));
+    const double weights = weight_unit.make_room(coming.front().weight);
+    if (weights != 1 || std::any_of(values.begin(), values.end(), [](double by) { return by != 1; })) {
       flush();
-      multiply(result_.image, values);
+      for (std::size_t i = 0; i < images(); ++i) multiply(result_.images[i], values[i]);
       multiply(result_.psf, weights);
     }
     value_unit_ = value_unit;
     weight_unit_ = weight_unit;
   }
 
-  template <typename Visibility>
-  void gather(const VisibilityBlock& block, const Visibility& visibility) {
-    const double cell_rad = setup_.options.geometry.cell_rad;
-    Gathered g{block, imaging_weights(block, cell_rad, setup_.options.threads, result_.sums), {}};
-    const SampleSums sums = sums_of(g.weight, visibility);
-    result_.sums += sums;
-    make_room(sums);
-    g.weighted.resize(g.weight.size());
-    const double per_unit = value_unit_.per_unit();
-    for_pieces(g.weight.size(), [&](std::size_t, std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i)
-        if (g.weight[i] != 0)
-          g.weighted[i] = std::complex<Real>(double{g.weight[i]} * per_unit * std::complex<double>(visibility[i]));
-    });
-    samples_ += block.samples();
-    gathered_.push_back(std::move(g));
-    if (samples_ >= setup_.options.samples_at_once) flush();
-  }
-
   void flush() {
     if (gathered_.empty()) return;
     std::vector<WantedSamples> blocks;
     for (const Gathered& g : gathered_) blocks.push_back({&g.at, g.weight.data()});
-    std::vector<Image*> images{&result_.image};
-    if (with_psf_) images.push_back(&result_.psf);
-    const int grids = static_cast<int>(images.size()), threads = setup_.options.threads;
+    std::vector<Image*> of_grid;
+    for (Image& image : result_.images) of_grid.push_back(&image);
+    if (with_psf_) of_grid.push_back(&result_.psf);
+    const int grids = static_cast<int>(of_grid.size()), threads = setup_.options.threads;
     PlaneStack<Real> stack(setup_.shape, grids);
     Spares<StackBuffer<Real>> spares;
     for (const StackedFacet& f : setup_.facets) {
@@ -137,7 +156,7 @@ class WideAdjoint : public AdjointSum {
         }
         add_seconds_of(result_.fft_s, [&] {
           rows.to_image(setup_.shape.rows());
-          stack_to_images(stack, f, slab.first, threads, images);
+          stack_to_images(stack, f, slab.first, threads, of_grid);
         });
       }
     }
@@ -156,10 +175,12 @@ class WideAdjoint : public AdjointSum {
   void grid_tile(const StackSamples& samples, const StackTask& task, int first_plane, StackBuffer<Real>& buffer,
                  PlaneStack<Real>& stack) const {
     TileSum<Real> sum(setup_, task, first_plane, is_sparse(samples.order, task), buffer, stack);
-    const auto ahead = [&](std::uint32_t block, std::size_t sample) { hwy::Prefetch(&gathered_[block].weighted[sample]); };
+    const auto ahead = [&](std::uint32_t block, std::size_t sample) {
+      for (const auto& weighted : gathered_[block].weighted) hwy::Prefetch(&weighted[sample]);
+    };
     const auto done = [&](StackBatch<Real>& batch, BatchPhases& phases) {
-      set_values(phases, batch);
-      if (buffer.grids == 2) set_psf_values(phases, batch);
+      for (std::size_t i = 0; i < images(); ++i) set_values(phases, i, batch.value[i]);
+      if (with_psf_) set_psf_values(phases, batch);
       sum.add(batch);
       phases.most = sum.most_in_batch();
     };
@@ -169,14 +190,14 @@ class WideAdjoint : public AdjointSum {
 
   /// The grid holds conj(V), whose backward transform is the image; see plane_stack.h for the axes. The V of a mirror image is
   /// the conjugate already.
-  void set_values(const BatchPhases& phases, StackBatch<Real>& batch) const {
+  void set_values(const BatchPhases& phases, std::size_t image, std::complex<Real>* value) const {
     for (const BatchRun& run : phases.run) {
-      const std::complex<Real>* weighted = &gathered_[run.block].weighted[run.sample];
+      const std::complex<Real>* weighted = &gathered_[run.block].weighted[image][run.sample];
       const double sign = run.mirrored ? 1 : -1;
       for (int k = run.begin; k < run.end; ++k, ++weighted) {
         const double re = double{weighted->real()}, im = sign * double{weighted->imag()};
-        batch.value[0][k] = {static_cast<Real>(re * phases.cosine[k] - im * phases.sine[k]),
-                             static_cast<Real>(re * phases.sine[k] + im * phases.cosine[k])};
+        value[k] = {static_cast<Real>(re * phases.cosine[k] - im * phases.sine[k]),
+                    static_cast<Real>(re * phases.sine[k] + im * phases.cosine[k])};
       }
     }
   }
@@ -186,7 +207,7 @@ class WideAdjoint : public AdjointSum {
     for (const BatchRun& run : phases.run)
       for (int k = run.begin; k < run.end; ++k) {
         const double weight = per_unit * gathered_[run.block].weight[run.sample + static_cast<std::size_t>(k - run.begin)];
-        batch.value[1][k] = {static_cast<Real>(weight * cosine[k]), static_cast<Real>(weight * sine[k])};
+        batch.value[images()][k] = {static_cast<Real>(weight * cosine[k]), static_cast<Real>(weight * sine[k])};
       }
   }
 
@@ -211,18 +232,18 @@ class WideAdjoint : public AdjointSum {
   bool with_psf_;  ///< whose source is above the horizon
   std::vector<Gathered> gathered_;
   std::size_t samples_ = 0;
-  SumUnit<Real> value_unit_;   ///< of the image
-  SumUnit<Real> weight_unit_;  ///< of the PSF
+  std::vector<SumUnit<Real>> value_unit_;  ///< [image]
+  SumUnit<Real> weight_unit_;              ///< of the PSF
   AdjointResult result_;
 };
 
 }  // namespace
 
 template <typename Real>
-std::unique_ptr<AdjointSum> make_wide_adjoint(const WideSetup<Real>& setup, bool with_psf) {
-  return std::make_unique<WideAdjoint<Real>>(setup, with_psf);
+std::unique_ptr<AdjointSum> make_wide_adjoint(const WideSetup<Real>& setup, const AdjointOptions& options) {
+  return std::make_unique<WideAdjoint<Real>>(setup, options);
 }
-template std::unique_ptr<AdjointSum> make_wide_adjoint<float>(const WideSetup<float>&, bool);
-template std::unique_ptr<AdjointSum> make_wide_adjoint<double>(const WideSetup<double>&, bool);
+template std::unique_ptr<AdjointSum> make_wide_adjoint<float>(const WideSetup<float>&, const AdjointOptions&);
+template std::unique_ptr<AdjointSum> make_wide_adjoint<double>(const WideSetup<double>&, const AdjointOptions&);
 
 }  // namespace misfit::imager

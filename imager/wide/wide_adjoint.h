@@ -8,6 +8,6 @@ namespace misfit::imager {
 
 /// The adjoint of a wide transform; `setup` must outlive it.
 template <typename Real>
-std::unique_ptr<AdjointSum> make_wide_adjoint(const WideSetup<Real>& setup, bool with_psf);
+std::unique_ptr<AdjointSum> make_wide_adjoint(const WideSetup<Real>& setup, const AdjointOptions& options);
 
 }  // namespace misfit::imager

@@ -17,7 +17,9 @@ class WideTransform : public Transform {
  public:
   explicit WideTransform(const WideTransformOptions& options) : setup_(wide_setup<Real>(options)) {}
 
-  std::unique_ptr<AdjointSum> adjoint(bool with_psf) const override { return make_wide_adjoint<Real>(setup_, with_psf); }
+  std::unique_ptr<AdjointSum> adjoint(const AdjointOptions& options) const override {
+    return make_wide_adjoint<Real>(setup_, options);
+  }
   std::unique_ptr<Prediction> predict(const Image& model) const override { return make_wide_prediction<Real>(setup_, model); }
 
  private:
@@ -49,16 +51,19 @@ std::unique_ptr<Transform> make_wide_transform(const WideTransformOptions& o) {
   return std::make_unique<WideTransform<double>>(o);
 }
 
-TransformMemory memory_of(const WideTransformOptions& o, double samples, int planes) {
+TransformMemory memory_of(const WideTransformOptions& o, const WideDemand& demand) {
   const bool single = o.precision == Precision::single_precision;
   const double complex_bytes = single ? sizeof(std::complex<float>) : sizeof(std::complex<double>);
-  const double gathered = std::min(samples, static_cast<double>(o.samples_at_once)) * wide_bytes_a_sample;
+  const double at_once = std::min(demand.samples, static_cast<double>(o.samples_at_once));
   const double plane = static_cast<double>(stack_shape_of(o).cells()) * complex_bytes;
   const double image = static_cast<double>(o.geometry.pixels()) * sizeof(double);
-  const double one = std::min(planes * plane, std::max(plane, static_cast<double>(o.stack_bytes)));
-  const double both = std::min(2 * planes * plane, std::max(2 * plane, static_cast<double>(o.stack_bytes)));
+  const auto stack = [&](int grids) {
+    return std::min(grids * demand.planes * plane, std::max(grids * plane, static_cast<double>(o.stack_bytes)));
+  };
+  const int others = demand.stokes - 1;
   const double column = 6.0 * largest_facet(o.geometry.height, o.facets_m) * sizeof(double) + o.nv * complex_bytes;
-  return {gathered + one + image, both - one + image, o.threads * 16 * column};
+  return {at_once * wide_bytes_a_sample + stack(1) + image, stack(demand.stokes + 1) - stack(demand.stokes) + image,
+          o.threads * 16 * column, stack(demand.stokes) - stack(1) + others * (image + at_once * wide_bytes_a_value)};
 }
 
 double longest_sum(const WideTransformOptions& options, double samples) {

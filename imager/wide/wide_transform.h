@@ -21,11 +21,18 @@ struct WideTransformOptions : PlaneTransformOptions {
 /// does not depend on the number of threads. Throws std::invalid_argument when the options contradict each other.
 std::unique_ptr<Transform> make_wide_transform(const WideTransformOptions& options);
 
-/// Bytes that a WideTransform takes at most for each of the samples that it orders at once.
-inline constexpr int wide_bytes_a_sample = 112;
+/// Bytes that a WideTransform takes at most for each of the samples that it orders at once, and for each Stokes parameter but
+/// the first besides.
+inline constexpr int wide_bytes_a_sample = 112, wide_bytes_a_value = 16;
 
-/// The memory that a WideTransform takes for that many samples, when no facet has more than `planes` planes.
-TransformMemory memory_of(const WideTransformOptions& options, double samples, int planes);
+/// What a WideTransform has to do, as far as its memory depends on it.
+struct WideDemand {
+  double samples = 0;
+  int planes = 1;  ///< of a facet at most
+  int stokes = 1;  ///< images of an adjoint
+};
+
+TransformMemory memory_of(const WideTransformOptions& options, const WideDemand& demand);
 
 /// See longest_plane_sum; of the transform that make_transform makes.
 double longest_sum(const WideTransformOptions& options, double samples);

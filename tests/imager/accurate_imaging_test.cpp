@@ -6,7 +6,7 @@
 #include "imager/direct/direct_transform.h"
 #include "imager/noise.h"
 #include "tests/imager/comparison.h"
-#include "tests/imager/random_samples.h"
+#include "tests/imager/several_stokes.h"
 
 namespace bdata = boost::unit_test::data;
 using namespace misfit::imager;
@@ -30,11 +30,11 @@ AccurateImages images_of(const VisibilityBlock& block, const GriddingRequest& r)
 }
 
 Image direct_image(const VisibilityBlock& block, const ImageGeometry& geometry) {
-  const auto sum = DirectTransform(geometry, 2).adjoint(false);
+  const auto sum = DirectTransform(geometry, 2).adjoint({});
   sum->add(block);
   AdjointResult result = sum->finish();
-  for (double& pixel : result.image.pixel) pixel /= result.sums.weight;
-  return result.image;
+  for (double& pixel : result.images[0].pixel) pixel /= result.sums[0].weight;
+  return result.images[0];
 }
 
 /// Samples that see one source of 1 Jy this many cells to the west and north, and nothing else.
@@ -42,6 +42,17 @@ VisibilityBlock samples_of_a_source(std::size_t rows, double west, double north,
   VisibilityBlock block = random_samples(rows, 1, cell_rad, seed);
   const auto exact = predict_sources({{{-west * cell_rad, north * cell_rad}, 1}}, block, 2);
   block.visibility.assign(exact.begin(), exact.end());
+  return block;
+}
+
+/// Every sample twice, the second time with −0.9999 of its visibility: the image is 1e4 times weaker than the data.
+VisibilityBlock nearly_cancelling(unsigned seed) {
+  VisibilityBlock block = random_samples(200, 1, cell_rad, seed);
+  for (std::size_t row = 0; row < 200; ++row) {
+    for (std::size_t axis = 0; axis < 3; ++axis) block.uvw_m.push_back(block.uvw_m[3 * row + axis]);
+    block.visibility.push_back(block.visibility[row] * -0.9999F);
+    block.weight.push_back(block.weight[row]);
+  }
   return block;
 }
 
@@ -60,7 +71,7 @@ BOOST_DATA_TEST_CASE(random_data_are_imaged_to_the_accuracy_in_one_pass, bdata::
   const AccurateImages made = images_of(block, request(48, 40, accuracy));
   const Image exact = direct_image(block, made.plan.options.geometry);
   BOOST_TEST(made.promise_kept);
-  BOOST_TEST(relative_error(made.images.dirty.pixel, exact.pixel) <= accuracy);
+  BOOST_TEST(relative_error(made.images.dirty[0].pixel, exact.pixel) <= accuracy);
 }
 
 BOOST_DATA_TEST_CASE(a_single_visibility_anywhere_in_its_cell_keeps_the_promise, bdata::make({2, 3, 8, 15, 40}), size) {
@@ -75,7 +86,7 @@ BOOST_DATA_TEST_CASE(a_single_visibility_anywhere_in_its_cell_keeps_the_promise,
       for (std::size_t axis = 0; axis < 2; ++axis)
         block.uvw_m[axis] = (5 + offset) * lambda_m / ((axis == 0 ? plan.options.nu : plan.options.nv) * cell_rad);
       StageTimes times;
-      const Image image = make_dirty_images(stored({block}), *transform, false, ignore_progress, times).dirty;
+      const Image image = make_dirty_images(stored({block}), *transform, {}, ignore_progress, times).dirty[0];
       worst = std::max(worst, relative_error(image.pixel, direct_image(block, r.geometry).pixel));
     }
     BOOST_TEST(worst <= accuracy);
@@ -89,24 +100,38 @@ BOOST_DATA_TEST_CASE(a_strong_source_outside_an_empty_field_breaks_no_promise_si
   const VisibilityBlock block = samples_of_a_source(rows, west, 7, 2);
   const AccurateImages made = images_of(block, request(32, 32, accuracy));
   const Image exact = direct_image(block, made.plan.options.geometry);
-  const double error = relative_error(made.images.dirty.pixel, exact.pixel);
+  const double error = relative_error(made.images.dirty[0].pixel, exact.pixel);
   BOOST_TEST((error <= accuracy || !made.promise_kept), "error " << error << " promise " << made.promise_kept);
 }
 
 BOOST_AUTO_TEST_CASE(visibilities_that_cancel_are_imaged_again_with_a_better_kernel) {
-  // Every visibility twice, almost with opposite signs: the image is 1e4 times weaker than the data.
-  VisibilityBlock block = random_samples(200, 1, cell_rad, 3), other = block;
-  for (auto& visibility : other.visibility) visibility *= -0.9999F;
-  for (std::size_t row = 0; row < 200; ++row) {
-    block.uvw_m.insert(block.uvw_m.end(), &other.uvw_m[3 * row], &other.uvw_m[3 * row] + 3);
-    block.visibility.push_back(other.visibility[row]);
-    block.weight.push_back(other.weight[row]);
-  }
+  const VisibilityBlock block = nearly_cancelling(3);
   const AccurateImages made = images_of(block, request(40, 40, 1e-5));
   const Image exact = direct_image(block, made.plan.options.geometry);
   BOOST_TEST(has_second_pass(made.plan));
   BOOST_TEST(made.promise_kept);
-  BOOST_TEST(relative_error(made.images.dirty.pixel, exact.pixel) <= 1e-5);
+  BOOST_TEST(relative_error(made.images.dirty[0].pixel, exact.pixel) <= 1e-5);
+}
+
+BOOST_DATA_TEST_CASE(the_promise_holds_for_every_stokes_parameter_one_of_zeros_too, bdata::make({false, true}), own_psf) {
+  const auto weak = std::make_shared<VisibilityBlock>(nearly_cancelling(3)), zeros = std::make_shared<VisibilityBlock>(*weak);
+  std::fill(zeros->visibility.begin(), zeros->visibility.end(), 0.0F);
+  VisibilityBlock block = alone(with_others(*weak, 1, 9), 1);
+  block.other_stokes = {weak, zeros};
+  GriddingRequest r = request(40, 40, 1e-5);
+  r.stokes = 3;
+  r.samples = block.samples();
+  r.psf_accuracy = own_psf ? 1e-2 : 0;
+  r.padding = 2;  // nothing is summed directly
+  const AccurateImages made = images_of(block, r);
+  BOOST_TEST(made.promise_kept);
+  BOOST_TEST(has_second_pass(made.plan));
+  for (const std::size_t i : {0U, 1U})
+    BOOST_TEST(relative_error(made.images.dirty[i].pixel, direct_image(alone(block, i), r.geometry).pixel) <= 1e-5);
+  BOOST_TEST(norm(made.images.dirty[2].pixel) == 0);
+  BOOST_TEST(made.images.psf.at(20, 20) == 1, boost::test_tools::tolerance(1e-2));
+  const TheoreticalError none = theoretical_error(made.plan, made.images.sums[2], root_mean_square(made.images.dirty[2]), {});
+  BOOST_TEST(none.bound_max == 0);
 }
 
 BOOST_AUTO_TEST_CASE(an_image_too_weak_for_any_kernel_is_said_to_be) {
@@ -150,12 +175,12 @@ BOOST_DATA_TEST_CASE(no_data_exceed_the_bounds_even_where_all_errors_align,
       const AccurateImages made = images_of(block, r);
       const Image direct = direct_image(block, r.geometry);
       const double rms = root_mean_square(direct);
-      const TheoreticalError error = theoretical_error(plan, made.images.sums, rms, {});
+      const TheoreticalError error = theoretical_error(plan, made.images.sums[0], rms, {});
       double largest = 0;
       for (std::size_t i = 0; i < direct.pixel.size(); ++i)
-        largest = std::max(largest, std::abs(made.images.dirty.pixel[i] - direct.pixel[i]) / rms);
+        largest = std::max(largest, std::abs(made.images.dirty[0].pixel[i] - direct.pixel[i]) / rms);
       BOOST_TEST_CONTEXT("padding " << padding << " size " << size) {
-        BOOST_TEST(relative_error(made.images.dirty.pixel, direct.pixel) <= error.bound_rms + 1e-14);
+        BOOST_TEST(relative_error(made.images.dirty[0].pixel, direct.pixel) <= error.bound_rms + 1e-14);
         BOOST_TEST(largest <= error.bound_max + 1e-14);
       }
     }
@@ -173,8 +198,8 @@ BOOST_AUTO_TEST_CASE(the_bounds_count_a_neglected_w) {
     const AccurateImages made = images_of(block, r);
     const Image direct = direct_image(block, geometry);
     const NeglectedPhase phase = neglected_w_phase({0, 0, w * block.frequency_hz[0] / speed_of_light_m_s}, spread, geometry);
-    const TheoreticalError error = theoretical_error(made.plan, made.images.sums, root_mean_square(direct), phase);
-    BOOST_TEST(relative_error(made.images.dirty.pixel, direct.pixel) <= error.bound_rms);
+    const TheoreticalError error = theoretical_error(made.plan, made.images.sums[0], root_mean_square(direct), phase);
+    BOOST_TEST(relative_error(made.images.dirty[0].pixel, direct.pixel) <= error.bound_rms);
     BOOST_TEST(error.expected_rms <= error.bound_rms);
   }
 }

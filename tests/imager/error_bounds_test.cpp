@@ -61,19 +61,19 @@ struct Errors {
 /// Of the image that a plan makes, against direct sums with w; Jy/beam.
 Errors measure(const GriddingPlan& plan, const VisibilityBlock& block) {
   const auto image_by = [&](const Transform& transform) {
-    const auto sum = transform.adjoint(false);
+    const auto sum = transform.adjoint({});
     sum->add(block);
     return sum->finish();
   };
   const AdjointResult made = image_by(*make_transform(plan.options));
   const AdjointResult exact = image_by(DirectTransform(plan.options.geometry, 2));
   Errors errors;
-  errors.sums = made.sums;
-  Image difference = made.image;
-  subtract(exact.image, difference);
-  errors.rms = root_mean_square(difference) / made.sums.weight;
-  errors.max = largest_magnitude(difference) / made.sums.weight;
-  errors.image_rms = root_mean_square(exact.image) / made.sums.weight;
+  errors.sums = made.sums[0];
+  Image difference = made.images[0];
+  subtract(exact.images[0], difference);
+  errors.rms = root_mean_square(difference) / made.sums[0].weight;
+  errors.max = largest_magnitude(difference) / made.sums[0].weight;
+  errors.image_rms = root_mean_square(exact.images[0]) / made.sums[0].weight;
   return errors;
 }
 

@@ -32,18 +32,19 @@ GriddingRequest request(bool wide) {
 DirtyImages images_of(const std::vector<VisibilityBlock>& blocks, const GriddingPlan& plan) {
   BOOST_TEST_REQUIRE((plan.options.precision == Precision::single_precision));
   StageTimes times;
-  return make_dirty_images(stored(blocks), *make_transform(plan.options), true, ignore_progress, times);
+  return make_dirty_images(stored(blocks), *make_transform(plan.options), {.with_psf = true}, ignore_progress, times);
 }
 
 DirtyImages direct_images_of(const std::vector<VisibilityBlock>& blocks, const GriddingPlan& plan) {
   StageTimes times;
-  return make_dirty_images(stored(blocks), DirectTransform(plan.options.geometry, 2), true, ignore_progress, times);
+  return make_dirty_images(stored(blocks), DirectTransform(plan.options.geometry, 2), {.with_psf = true}, ignore_progress,
+                           times);
 }
 
 void check(const std::vector<VisibilityBlock>& blocks, const std::vector<VisibilityBlock>& reference, bool wide) {
   const GriddingPlan plan = plan_gridding(request(wide));
   const DirtyImages gridded = images_of(blocks, plan), exact = direct_images_of(reference, plan);
-  BOOST_TEST(relative_error(gridded.dirty.pixel, exact.dirty.pixel) <= alike * accuracy);
+  BOOST_TEST(relative_error(gridded.dirty[0].pixel, exact.dirty[0].pixel) <= alike * accuracy);
   BOOST_TEST(relative_error(gridded.psf.pixel, exact.psf.pixel) <= alike * accuracy);
 }
 

@@ -235,4 +235,22 @@ BOOST_AUTO_TEST_CASE(every_decision_says_why) {
   }
 }
 
+BOOST_DATA_TEST_CASE(stokes_parameters_at_once_cost_more_than_one_and_less_than_alone,
+                     bdata::make({0.0, 1e6}) * bdata::make({10, 100000000}), max_abs_w, samples) {
+  GriddingRequest r = request({1000, 1000}, 1e-4);
+  r.samples = static_cast<std::uint64_t>(samples);
+  r.max_abs_w = max_abs_w;
+  GriddingWork work = plan_gridding(r).choice.best.work;
+  const double with_psf = CostModel().seconds(work);
+  work.psf = false;
+  const double one = CostModel().seconds(work);
+  work.psf = true;
+  work.stokes = 4;
+  const double four = CostModel().seconds(work);
+  BOOST_TEST(four > with_psf);
+  BOOST_TEST(four < with_psf + 3 * one);
+  r.stokes = 4;
+  BOOST_TEST(plan_gridding(r).choice.best.work.stokes == 4);
+}
+
 BOOST_AUTO_TEST_SUITE_END()

@@ -46,7 +46,7 @@ template <typename Real>
 HalfGrid<Real> random_grid(const GridShape& shape) {
   std::mt19937_64 random(1);
   std::normal_distribution<Real> normal;
-  HalfGrid<Real> grid(shape, false);
+  HalfGrid<Real> grid(shape);
   for_each_cell(shape, [&](int, int, std::size_t i) {
     grid.real[i] = normal(random);
     grid.imaginary[i] = normal(random);
@@ -97,7 +97,7 @@ BOOST_DATA_TEST_CASE(a_grid_without_imaginary_part_is_real, shapes, width, heigh
 }
 
 BOOST_DATA_TEST_CASE(grid_of_an_image_equals_the_double_sum_over_its_pixels, shapes, width, height, kernel_width) {
-  HalfGrid<double> grid(shape_of(kernel_width), false);
+  HalfGrid<double> grid(shape_of(kernel_width));
   const ImageCorrection h = correction(width, height);
   const Image image = random_image(width, height, 2);
   image_to_grid(image, h, 2, grid);
@@ -119,7 +119,7 @@ BOOST_DATA_TEST_CASE(the_two_directions_are_adjoint, shapes, width, height, kern
   const Image y = random_image(width, height, 3);
   const ImageCorrection h = correction(width, height);
   const Image ax = grid_to_image(x.shape, x.real, x.imaginary, h, 1);
-  HalfGrid<double> aty(x.shape, false);
+  HalfGrid<double> aty(x.shape);
   image_to_grid(y, h, 1, aty);
   double left = 0, right = 0;
   for (std::size_t i = 0; i < y.pixel.size(); ++i) left += ax.pixel[i] * y.pixel[i];
@@ -129,7 +129,7 @@ BOOST_DATA_TEST_CASE(the_two_directions_are_adjoint, shapes, width, height, kern
 }
 
 BOOST_AUTO_TEST_CASE(an_empty_grid_is_an_image_of_zeros) {
-  const HalfGrid<double> grid(shape_of(5), false);
+  const HalfGrid<double> grid(shape_of(5));
   const Image image = grid_to_image(grid.shape, grid.real, grid.imaginary, correction(9, 8), 2);
   BOOST_TEST(norm(image.pixel) == 0);
 }
@@ -141,7 +141,7 @@ BOOST_AUTO_TEST_CASE(neither_direction_depends_on_the_number_of_threads) {
   const Image input = random_image(70, 61, 4);
   const auto image = [&](int threads) { return grid_to_image(shape, grid.real, grid.imaginary, h, threads).pixel; };
   const auto gridded = [&](int threads) {
-    HalfGrid<double> out(shape, false);
+    HalfGrid<double> out(shape);
     image_to_grid(input, h, threads, out);
     return out.real;
   };

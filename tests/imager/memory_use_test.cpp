@@ -109,6 +109,37 @@ BOOST_DATA_TEST_CASE(the_plane_transform_counts_the_planes_of_its_grid, bdata::m
   constexpr double tile = 32;  // whole tiles, with one more for the taps that leave the last
   BOOST_TEST(memory.psf < (options.nu + 3 * tile) * (0.5 * options.nv + 3 * tile) * real_bytes);
   BOOST_TEST(memory.visibilities == 2 * memory.psf);
+  BOOST_TEST(memory.other_stokes == 0);
+  BOOST_TEST(memory_of(options, 4).other_stokes == 3 * memory.visibilities);
+}
+
+BOOST_DATA_TEST_CASE(further_stokes_parameters_add_their_grids_blocks_and_images, bdata::make({0.0, 1e5}), max_abs_w) {
+  GriddingRequest request;
+  request.geometry = {2000, 2000, 1e-5, {}};
+  request.samples = 10000000;
+  request.max_abs_w = max_abs_w;
+  const TransformMemory one = memory_of(plan_gridding(request));
+  request.stokes = 3;
+  const TransformMemory three = memory_of(plan_gridding(request));
+  BOOST_TEST(one.other_stokes == 0);
+  BOOST_TEST(three.visibilities == one.visibilities);
+  BOOST_TEST(three.other_stokes > 0);
+  BOOST_TEST(three.other_stokes <= 2 * one.visibilities);
+  MemoryDemand d = demand();
+  d.transform = {8e9, 4e9, 1e7};
+  const double alone = peak(d, {false, 0});
+  d.transform.other_stokes = 1e10;
+  BOOST_TEST(peak(d, {false, 0}) == alone + 1e10);
+  d.stokes = 3;
+  BOOST_TEST(peak(d, {true, 0}) - peak(d, {false, 0}) == 3 * (1e8 * 12 + 1e6 * 24) - 3 * (1e6 * 12 + 1e4 * 24));
+}
+
+BOOST_AUTO_TEST_CASE(many_stokes_parameters_have_the_moment_of_their_last_image) {
+  MemoryDemand d = demand();
+  d.transform = {1e6, 5e5, 1e3};
+  d.stokes = 4;
+  const double drawn = peak(d, {});
+  BOOST_TEST(drawn >= 5 * 8 * d.pixels);
 }
 
 BOOST_AUTO_TEST_SUITE_END()

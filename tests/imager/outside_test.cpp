@@ -55,13 +55,13 @@ VisibilityBlock observed(const std::vector<Source>& sources, double noise_jy, do
 /// The largest pixel of the error of a plan's image.
 double largest_error(const GriddingPlan& plan, const VisibilityBlock& block) {
   const auto image_by = [&](const Transform& transform) {
-    const auto sum = transform.adjoint(false);
+    const auto sum = transform.adjoint({});
     sum->add(block);
     return sum->finish();
   };
   AdjointResult made = image_by(*make_transform(plan.options));
-  subtract(image_by(DirectTransform(plan.options.geometry, 2)).image, made.image);
-  return largest_magnitude(made.image) / made.sums.weight;
+  subtract(image_by(DirectTransform(plan.options.geometry, 2)).images[0], made.images[0]);
+  return largest_magnitude(made.images[0]) / made.sums[0].weight;
 }
 
 WideField wide_field(const SampleCoordinates& samples) {
@@ -97,10 +97,10 @@ struct Levels {
 
 Levels levels_of(const GriddingPlan& plan, const VisibilityBlock& block, DirectionCosines at) {
   const auto transform = make_transform(plan.options);
-  const auto sum = transform->adjoint(true);
+  const auto sum = transform->adjoint({.with_psf = true});
   sum->add(block);
   AdjointResult made = sum->finish();
-  for (double& pixel : made.psf.pixel) pixel /= made.sums.weight;
+  for (double& pixel : made.psf.pixel) pixel /= made.sums[0].weight;
   const ImageGeometry& g = plan.options.geometry;
   const ImageGeometry exactly{4000 * g.width, 4000 * g.height, 1e-3 * g.cell_rad, {}};  // the place is known
   return {1000 * AliasLevels(plan, exactly, Sidelobes(made.psf)).of(at), largest_error(plan, block)};

@@ -23,7 +23,7 @@ GriddingRequest request_for(const VisibilityBlock& block, double max_abs_w) {
 }
 
 AdjointResult adjoint_of(const Transform& transform, const VisibilityBlock& block) {
-  const auto sum = transform.adjoint(true);
+  const auto sum = transform.adjoint({.with_psf = true});
   sum->add(block);
   return sum->finish();
 }
@@ -50,7 +50,7 @@ BOOST_AUTO_TEST_CASE(images_of_a_few_samples_are_direct_sums) {
   BOOST_TEST(plan.expected_error < 1e-12);
   const AdjointResult planned = adjoint_of(PlannedTransform(plan), block);
   const AdjointResult direct = adjoint_of(DirectTransform(field, 1), block);
-  BOOST_TEST((planned.image.pixel == direct.image.pixel));
+  BOOST_TEST((planned.images[0].pixel == direct.images[0].pixel));
   BOOST_TEST((planned.psf.pixel == direct.psf.pixel));
 }
 

@@ -96,7 +96,7 @@ BOOST_AUTO_TEST_CASE_TEMPLATE(spread_adds_the_plain_double_loop_in_a_buffer_and_
   for_each_width_and_target([](int width) {
     const int width_w = 1 + width % 7;
     const Kernels<Real> k(width, width_w);
-    for (const int grids : {1, 2}) {
+    for (const int grids : {1, 2, most_grids}) {
       Places<Real> places(width, grids);
       places.randomize(width);
       Places<double> should(width, grids);

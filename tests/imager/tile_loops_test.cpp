@@ -20,7 +20,7 @@ TileBatch<Real> random_batch(int count) {
   for (int i = 0; i < count; ++i) {
     batch.column[i] = static_cast<int>(random() % tile);
     batch.row[i] = static_cast<int>(random() % tile);
-    for (Real* values : {batch.real, batch.imaginary, batch.weight}) values[i] = uniform(random);
+    for (auto& value : batch.value) value[i] = uniform(random);
     batch.tu[i] = uniform(random) / 2;
     batch.tv[i] = uniform(random) / 2;
     if (i % 3 == 2) batch.column[i] = batch.column[i - 1], batch.row[i] = batch.row[i - 1];
@@ -52,18 +52,18 @@ BOOST_AUTO_TEST_CASE_TEMPLATE(spread_adds_the_plain_double_loop_for_every_width_
   for_each_width_and_target([](int width) {
     const auto u = random_polynomial(width, 3), v = random_polynomial(width, 4);
     const TapTable<Real> table_u(u), table_v(v);
-    for (const int planes : {2, 3})
+    for (const int planes : {2, 3, 4, most_grid_planes})
       for (const int count : {0, 1, 20}) {
         const TileBatch<Real> batch = random_batch<Real>(count);
         TileBuffer<Real> buffer = random_buffer<Real>(table_u.padded, planes);
         std::vector<double> should(buffer.cell.begin(), buffer.cell.end());
         for (int i = 0; i < count; ++i) {
           const Eigen::VectorXd along_u = u(double{batch.tu[i]}), along_v = v(double{batch.tv[i]});
-          const double value[] = {double{batch.real[i]}, double{batch.imaginary[i]}, double{batch.weight[i]}};
           for (int r = 0; r < width; ++r)
             for (int plane = 0; plane < planes; ++plane)
               for (int c = 0; c < width; ++c)
-                should[index(buffer, batch.row[i] + r, plane, batch.column[i] + c)] += along_u[c] * along_v[r] * value[plane];
+                should[index(buffer, batch.row[i] + r, plane, batch.column[i] + c)] +=
+                    along_u[c] * along_v[r] * double{batch.value[plane][i]};
         }
         spread(table_u, table_v, batch, buffer.cells());
         double largest = 0;
@@ -89,7 +89,7 @@ BOOST_AUTO_TEST_CASE_TEMPLATE(interpolation_is_the_plain_double_sum_for_every_wi
           real += along_u[c] * along_v[r] * double{buffer.cell[index(buffer, batch.row[i] + r, 0, batch.column[i] + c)]};
           imaginary += along_u[c] * along_v[r] * double{buffer.cell[index(buffer, batch.row[i] + r, 1, batch.column[i] + c)]};
         }
-      largest = std::max({largest, std::abs(batch.real[i] - real), std::abs(batch.imaginary[i] - imaginary)});
+      largest = std::max({largest, std::abs(batch.value[0][i] - real), std::abs(batch.value[1][i] - imaginary)});
     }
     BOOST_TEST(largest <= rounding<Real>(width * width));
   });
@@ -108,7 +108,7 @@ BOOST_AUTO_TEST_CASE_TEMPLATE(spreading_is_the_transpose_of_interpolating_for_ev
     double in_buffer = 0, in_samples = 0;
     for (std::size_t i = 0; i < y.cell.size(); ++i) in_buffer += double{spread_x.cell[i]} * double{y.cell[i]};
     for (int i = 0; i < x.count; ++i)
-      in_samples += double{x.real[i]} * double{y_at_x.real[i]} + double{x.imaginary[i]} * double{y_at_x.imaginary[i]};
+      in_samples += double{x.value[0][i]} * double{y_at_x.value[0][i]} + double{x.value[1][i]} * double{y_at_x.value[1][i]};
     // Both are sums of 2 · 30 · W² products of a value, two taps and a cell.
     BOOST_TEST(std::abs(in_buffer - in_samples) <= 2 * 30 * rounding<Real>(width * width));
   });

@@ -72,7 +72,7 @@ BOOST_DATA_TEST_CASE(every_wanted_sample_occurs_once_in_the_tile_of_its_first_ta
   const auto wanted = static_cast<Wanted>(kind);
   const GridShape shape = shape_of(kernel_width);
   const VisibilityBlock block = samples();
-  const TileOrder order = order_by_tile(block, nullptr, shape, cell_rad, wanted, 2);
+  const TileOrder order = order_by_tile(block, sets_of(block, 1), shape, cell_rad, wanted, 2);
   std::vector<int> seen(block.samples());
   std::vector<std::size_t> in_tile(order.samples.size());
   std::size_t wrong_tile = 0;
@@ -91,7 +91,7 @@ BOOST_DATA_TEST_CASE(every_wanted_sample_occurs_once_in_the_tile_of_its_first_ta
 
 BOOST_AUTO_TEST_CASE(runs_are_as_long_as_they_can_be_and_follow_the_rows) {
   const VisibilityBlock block = samples();
-  const TileOrder order = order_by_tile(block, nullptr, shape_of(6), cell_rad, Wanted::imaging, 2);
+  const TileOrder order = order_by_tile(block, sets_of(block, 1), shape_of(6), cell_rad, Wanted::imaging, 2);
   for (std::size_t tile = 0; tile + 1 < order.begin.size(); ++tile)
     for (std::size_t r = order.begin[tile]; r + 1 < order.begin[tile + 1]; ++r) {
       const ChannelRun a = order.run[r], b = order.run[r + 1];
@@ -102,7 +102,7 @@ BOOST_AUTO_TEST_CASE(runs_are_as_long_as_they_can_be_and_follow_the_rows) {
 BOOST_AUTO_TEST_CASE(a_run_of_more_channels_than_its_counter_holds_is_split) {
   VisibilityBlock block = random_samples(1, 10000, cell_rad, 2, 0);
   std::fill(block.frequency_hz.begin(), block.frequency_hz.end(), 1e9);
-  const TileOrder order = order_by_tile(block, nullptr, shape_of(6), cell_rad, Wanted::imaging, 1);
+  const TileOrder order = order_by_tile(block, sets_of(block, 1), shape_of(6), cell_rad, Wanted::imaging, 1);
   std::set<std::size_t> seen;
   for_each_sample(order, block.channels(), [&](std::size_t, std::size_t sample) { seen.insert(sample); });
   BOOST_TEST(seen.size() == 10000U);
@@ -111,7 +111,7 @@ BOOST_AUTO_TEST_CASE(a_run_of_more_channels_than_its_counter_holds_is_split) {
 
 BOOST_AUTO_TEST_CASE(sums_are_of_the_samples_in_the_order_and_those_outside_are_counted) {
   const VisibilityBlock block = samples();
-  const TileOrder order = order_by_tile(block, nullptr, shape_of(6), cell_rad, Wanted::imaging, 2);
+  const TileOrder order = order_by_tile(block, sets_of(block, 1), shape_of(6), cell_rad, Wanted::imaging, 2);
   std::uint64_t used = 0, outside = 0;
   double weight = 0, weight_abs = 0, weight_square = 0, weight2_square = 0;
   for (std::size_t i = 0; i < block.samples(); ++i) {
@@ -127,30 +127,30 @@ BOOST_AUTO_TEST_CASE(sums_are_of_the_samples_in_the_order_and_those_outside_are_
     weight_square += w * size * size;
     weight2_square += w * w * size * size;
   }
-  BOOST_TEST(order.sums.used == used);
-  BOOST_TEST(order.sums.outside_grid == outside);
+  BOOST_TEST(order.sums[0].used == used);
+  BOOST_TEST(order.sums[0].outside_grid == outside);
   BOOST_TEST(outside > 0U);
   // Some thousand additions of positive terms: 1e-12 is their rounding.
   const auto close = boost::test_tools::tolerance(1e-12);
-  BOOST_TEST(order.sums.weight == weight, close);
-  BOOST_TEST(order.sums.weight_abs == weight_abs, close);
-  BOOST_TEST(order.sums.weight_square == weight_square, close);
-  BOOST_TEST(order.sums.weight2_square == weight2_square, close);
+  BOOST_TEST(order.sums[0].weight == weight, close);
+  BOOST_TEST(order.sums[0].weight_abs == weight_abs, close);
+  BOOST_TEST(order.sums[0].weight_square == weight_square, close);
+  BOOST_TEST(order.sums[0].weight2_square == weight2_square, close);
 }
 
 BOOST_AUTO_TEST_CASE(sums_are_of_the_visibilities_given_in_place_of_the_blocks_own) {
   const VisibilityBlock block = samples();
   const std::vector<std::complex<double>> other(block.samples(), 2);
-  const SampleSums sums = order_by_tile(block, &other, shape_of(6), cell_rad, Wanted::imaging, 2).sums;
+  const SampleSums sums = order_by_tile(block, {other.data()}, shape_of(6), cell_rad, Wanted::imaging, 2).sums[0];
   BOOST_TEST(sums.weight_abs == 2 * sums.weight, boost::test_tools::tolerance(1e-12));
 }
 
 BOOST_AUTO_TEST_CASE(sums_leave_out_what_has_no_weight_even_where_it_is_not_a_number) {
   VisibilityBlock block = samples();
-  const SampleSums should = order_by_tile(block, nullptr, shape_of(6), cell_rad, Wanted::imaging, 2).sums;
+  const SampleSums should = order_by_tile(block, sets_of(block, 1), shape_of(6), cell_rad, Wanted::imaging, 2).sums[0];
   for (std::size_t i = 0; i < block.samples(); ++i)
     if (block.weight[i] == 0) block.visibility[i] = std::numeric_limits<float>::quiet_NaN();
-  const SampleSums sums = order_by_tile(block, nullptr, shape_of(6), cell_rad, Wanted::imaging, 2).sums;
+  const SampleSums sums = order_by_tile(block, sets_of(block, 1), shape_of(6), cell_rad, Wanted::imaging, 2).sums[0];
   BOOST_TEST(sums.weight_abs == should.weight_abs);
   BOOST_TEST(sums.weight2_square == should.weight2_square);
 }
@@ -158,7 +158,7 @@ BOOST_AUTO_TEST_CASE(sums_leave_out_what_has_no_weight_even_where_it_is_not_a_nu
 BOOST_AUTO_TEST_CASE(order_and_sums_do_not_depend_on_the_number_of_threads) {
   const VisibilityBlock block = samples();
   const auto order = [&](int threads) {
-    return order_by_tile(block, nullptr, shape_of(6), cell_rad, Wanted::imaging, threads);
+    return order_by_tile(block, sets_of(block, 1), shape_of(6), cell_rad, Wanted::imaging, threads);
   };
   const TileOrder one = order(1);
   for (const int threads : {2, 3, 40}) {
@@ -168,14 +168,14 @@ BOOST_AUTO_TEST_CASE(order_and_sums_do_not_depend_on_the_number_of_threads) {
     for_each_sample(one, block.channels(), [&](std::size_t, std::size_t sample) { first.push_back(sample); });
     for_each_sample(many, block.channels(), [&](std::size_t, std::size_t sample) { second.push_back(sample); });
     BOOST_TEST((first == second));
-    BOOST_TEST(many.sums.weight_abs == one.sums.weight_abs);
+    BOOST_TEST(many.sums[0].weight_abs == one.sums[0].weight_abs);
   }
 }
 
 BOOST_AUTO_TEST_CASE(more_channels_than_a_run_can_name_are_refused) {
   VisibilityBlock block;
   block.frequency_hz.resize((1U << 20) + 1);
-  BOOST_CHECK_THROW(order_by_tile(block, nullptr, shape_of(6), cell_rad, Wanted::all, 1), std::invalid_argument);
+  BOOST_CHECK_THROW(order_by_tile(block, {}, shape_of(6), cell_rad, Wanted::all, 1), std::invalid_argument);
 }
 
 BOOST_AUTO_TEST_SUITE_END()

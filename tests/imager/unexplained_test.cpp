@@ -38,9 +38,9 @@ Seen seen(const VisibilityBlock& block) {
   const StoredVisibilities source = stored({block});
   const DirectTransform transform(field, 2);
   StageTimes times;
-  const DirtyImages images = make_dirty_images(source, transform, false, ignore_progress, times);
+  const DirtyImages images = make_dirty_images(source, transform, {}, ignore_progress, times);
   return {unexplained_by(Image(field.width, field.height), source, transform, field, ignore_progress, times),
-          root_mean_square(images.dirty), images.sums.weight};
+          root_mean_square(images.dirty[0]), images.sums[0].weight};
 }
 
 }  // namespace

@@ -75,9 +75,9 @@ const Truth& truth_of(std::size_t i) {
     const Scene& s = scenes[i];
     Truth t{samples_of(s), {}, Image(s.geometry.width, s.geometry.height), {}};
     const DirectTransform direct(s.geometry, 2);
-    const auto sum = direct.adjoint(false);
+    const auto sum = direct.adjoint({});
     sum->add(t.block);
-    t.image = seen(sum->finish().image);
+    t.image = seen(sum->finish().images[0]);
     std::mt19937_64 random(3);
     for (int k = 0; k < 200; ++k) t.model.pixel[random() % t.model.pixel.size()] = 1 + static_cast<double>(k % 7);
     t.visibility = direct.predict(t.model)->at(t.block);
@@ -98,10 +98,10 @@ void check_promise(std::size_t i, double accuracy) {
   request.threads = 2;
   const GriddingPlan plan = plan_gridding(request);
   const auto transform = make_transform(plan.options);
-  const auto sum = transform->adjoint(false);
+  const auto sum = transform->adjoint({});
   sum->add(truth.block);
   BOOST_TEST_CONTEXT(s.name) {
-    BOOST_TEST(relative_error(seen(sum->finish().image), truth.image) < accuracy);
+    BOOST_TEST(relative_error(seen(sum->finish().images[0]), truth.image) < accuracy);
     BOOST_TEST(relative_error(transform->predict(truth.model)->at(truth.block), truth.visibility) < accuracy);
   }
 }

@@ -28,9 +28,9 @@ double relative_error(const imager::Image& is, const imager::Image& should) {
 }
 
 imager::Image image_by(const imager::Transform& transform, const CardScene& scene) {
-  const auto sum = transform.adjoint(false);
+  const auto sum = transform.adjoint({});
   sum->add(scene.block, scene.visibility);
-  return sum->finish().image;
+  return sum->finish().images[0];
 }
 
 /// 56 × 40 pixels, 112 and 80 of which x0 = ¼ would make; both axes take an FFT of 112.
@@ -76,9 +76,9 @@ BOOST_AUTO_TEST_CASE(samples_that_the_pixels_cannot_represent_are_left_out) {
   const CardScene s = scene("vla-a");  // ten times as far as 1/(2 cell)
   const imager::DirectTransform direct({s.geometry, false, 1});
   const kernels::Kernel kernel = kernels::kernel_family("least-misfit").make(8, 0.25);
-  const auto sum = direct.adjoint(false);
+  const auto sum = direct.adjoint({});
   sum->add(s.block, s.visibility);
-  BOOST_REQUIRE(sum->finish().sums.outside_grid > 0);
+  BOOST_REQUIRE(sum->finish().sums[0].outside_grid > 0);
   BOOST_TEST(relative_error(gridded(s, kernel), image_by(direct, s)) < 1.5 * std::sqrt(2 * kernel.misfit.mean));
 }
 

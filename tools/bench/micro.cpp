@@ -18,6 +18,7 @@
 #include "imager/plane/plane_transform.h"
 #include "imager/plane/tile_loops.h"
 #include "imager/plane/tile_order.h"
+#include "imager/wide/wide_transform.h"
 #include "kernels/catalogue.h"
 #include "kernels/cheapest_polynomial.h"
 
@@ -64,7 +65,7 @@ std::vector<TileBatch<Real>> batches_of(const Walk& walk) {
       batch.row[i] = static_cast<int>(v);
       batch.tu[i] = static_cast<Real>(u - std::floor(u) - 0.5);
       batch.tv[i] = static_cast<Real>(v - std::floor(v) - 0.5);
-      for (Real* value : {batch.real, batch.imaginary, batch.weight}) value[i] = static_cast<Real>(uniform(random) - 0.5);
+      for (auto& value : batch.value) value[i] = static_cast<Real>(uniform(random) - 0.5);
     }
   return batches;
 }
@@ -118,7 +119,7 @@ void add_ordering(std::vector<Piece>& pieces) {
   for (const Wanted wanted : {Wanted::imaging, Wanted::usable})
     pieces.push_back({std::string("order_by_tile for ") + (wanted == Wanted::imaging ? "imaging" : "prediction"),
                       static_cast<double>(block->samples()), [block, wanted] {
-                        order_by_tile(*block, nullptr, {2048, 2048, 7, tile}, cell_rad, wanted, 1);
+                        order_by_tile(*block, imager::sets_of(*block, 1), {2048, 2048, 7, tile}, cell_rad, wanted, 1);
                       }});
 }
 
@@ -136,7 +137,7 @@ void add_transform(Precision precision, std::vector<Piece>& pieces) {
   const auto samples = static_cast<double>(block->samples());
   const std::string of = std::string("W = 7 ") + (precision == Precision::single_precision ? "single" : "double") + ", block ";
   for (const bool with_psf : {false, true}) {
-    const std::shared_ptr<AdjointSum> sum = transform->adjoint(with_psf);
+    const std::shared_ptr<AdjointSum> sum = transform->adjoint({.with_psf = with_psf});
     pieces.push_back({of + (with_psf ? "to grids of image and PSF" : "to the grid"), samples,
                       [transform, block, sum] { sum->add(*block); }});
   }
@@ -144,6 +145,39 @@ void add_transform(Precision precision, std::vector<Piece>& pieces) {
   model.at(300, 400) = 1;
   const std::shared_ptr<Prediction> prediction = transform->predict(model);
   pieces.push_back({of + "from the grid", samples, [transform, block, prediction] { prediction->at_usable(*block); }});
+}
+
+/// Ten million samples of four Stokes parameters, with w up to 45 % of 1/cell; made when they are first asked for.
+const VisibilityBlock& large_block() {
+  static const VisibilityBlock block = [] {
+    VisibilityBlock first = block_of(156250);
+    for (std::size_t row = 0; row < first.rows(); ++row) first.uvw_m[3 * row + 2] = first.uvw_m[3 * ((row + 7) % first.rows())];
+    const auto other = std::make_shared<VisibilityBlock>(first);
+    first.other_stokes.assign(most_stokes - 1, other);
+    return first;
+  }();
+  return block;
+}
+
+/// Dirty images of 1024 × 1024 pixels in single precision, FFTs counted in.
+void add_stokes(bool wide, std::vector<Piece>& pieces) {
+  WideTransformOptions options;
+  options.geometry = {1024, 1024, cell_rad, {}};
+  options.nu = options.nv = 2048;
+  options.kernel_u = kernels::kernel_family("least-misfit").make(7, x0);
+  options.kernel_u.polynomial = kernels::cheapest_polynomial(options.kernel_u, 0.005);
+  options.kernel_v = options.kernel_u;
+  if (wide) options.kernel_w = options.kernel_u;
+  options.precision = Precision::single_precision;
+  const std::shared_ptr<Transform> transform = make_transform(options);
+  for (const AdjointOptions made : {AdjointOptions{1, false}, {1, true}, {4, true}})
+    pieces.push_back({std::string(wide ? "wide" : "plane") + " W = 7 single, 10^7 samples to " + std::to_string(made.images) +
+                          " Stokes" + (made.with_psf ? " and PSF" : ""),
+                      1e7, [transform, made] {
+                        const auto sum = transform->adjoint(made);
+                        sum->add(large_block());
+                        sum->finish();
+                      }});
 }
 
 template <typename Real>
@@ -204,6 +238,8 @@ int main(int argc, char** argv) {
   add_ordering(pieces);
   add_transform(Precision::single_precision, pieces);
   add_transform(Precision::double_precision, pieces);
+  add_stokes(false, pieces);
+  add_stokes(true, pieces);
   add_fft<float>(4096, pieces);
   add_fft<double>(4096, pieces);
   add_source_sums(pieces);

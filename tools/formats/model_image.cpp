@@ -62,7 +62,7 @@ ModelVisibilities image_visibilities(const StokesPlanes& planes, const imager::I
                                      imager::GriddingRequest request, const ms_io::MeasurementSet& set) {
   request.geometry = geometry;
   request.samples = set.samples();
-  request.images = 1;  // so that a plane has the same bits whatever the others are
+  request.psf = false;
   request.max_abs_w = set.reach(ms_io::ReachOf::all).max_abs_w;
   ModelVisibilities model;
   model.transform = std::make_unique<imager::PlannedTransform>(imager::plan_gridding(request));

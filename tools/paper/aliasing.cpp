@@ -84,9 +84,9 @@ class LargestErrors {
         {field.geometry, fft_size, fft_size, kernel, kernel, kernels::Precision::double_precision, 1});
   }
   std::vector<double> image_by(const imager::Transform& transform, const std::vector<std::complex<double>>& visibility) const {
-    const auto sum = transform.adjoint(false);
+    const auto sum = transform.adjoint({});
     sum->add(field_.block, visibility);
-    return sum->finish().image.pixel;
+    return sum->finish().images.front().pixel;
   }
   double largest(const std::vector<double>& gridded, const std::vector<double>& exact) const {
     double difference = 0;

@@ -101,11 +101,11 @@ CardScene card_scene(const CardSceneOptions& options) {
   scene.block = card_samples(options);
   scene.visibility = imager::predict_sources(scene.sources, scene.block, options.threads, false);
   const imager::DirectTransform direct({scene.geometry, false, options.threads});
-  const auto sum = direct.adjoint(false);
+  const auto sum = direct.adjoint({});
   sum->add(scene.block, scene.visibility);
   const imager::AdjointResult result = sum->finish();
-  scene.direct = result.image;
-  scene.random_rms = std::sqrt(result.sums.weight2_square / 2);
+  scene.direct = result.images.front();
+  scene.random_rms = std::sqrt(result.sums.front().weight2_square / 2);
   return scene;
 }
 

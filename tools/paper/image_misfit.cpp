@@ -36,9 +36,9 @@ imager::Image gridded_image(const CardScene& scene, const kernels::Kernel& kerne
   const int size = fft_size_for(scene, x0);
   const auto transform = imager::make_plane_transform(
       {scene.geometry, size, size, kernel, kernel, kernels::Precision::double_precision, imager::available_threads()});
-  const auto sum = transform->adjoint(false);
+  const auto sum = transform->adjoint({});
   sum->add(scene.block, scene.visibility);
-  return sum->finish().image;
+  return sum->finish().images.front();
 }
 
 Compared compare(const CardScene& scene, const kernels::Kernel& kernel) {

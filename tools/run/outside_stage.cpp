@@ -96,7 +96,7 @@ OutsideReport check_outside(const imager::VisibilitySource& source, const imager
   if (!report.searched) return report;
   const imager::WideSearch search = imager::search_wide_field(source, wider, progress, times);
   report.least_jy = std::max(search.least_jy, search.sidelobe_jy);
-  const double scatter_jy = search.unexplained.image_noise_jy(images.sums.weight);
+  const double scatter_jy = search.unexplained.image_noise_jy(images.sums.front().weight);
   report.noise_of_pixels = pixel_noise_jy <= scatter_jy;
   report.noise_jy = std::min(pixel_noise_jy, scatter_jy);
   report.elsewhere = something_elsewhere(search);

@@ -24,6 +24,7 @@ class RunPlanner {
     imager::GriddingRequest request = gridding_request(o_, scene_.threads);
     request.geometry = scene_.geometry;
     request.samples = scene_.set.samples();
+    request.stokes = static_cast<int>(imager::parse_stokes(o_.stokes).size());
     request.max_abs_w = scene_.reach.max_abs_w;
     if (o_.memory_gib > 0) limit_memory(o_.memory_gib * gib, request);
     plan_.gridding = imager::plan_gridding(request);
@@ -31,7 +32,7 @@ class RunPlanner {
     plan_.decisions.push_back(weighting_decision(o_, scene_.geometry));
     if (o_.check_outside) plan_search(request);
     decide_memory();
-    decide("columns and correlations", "only what Stokes I needs",
+    decide("columns and correlations", "only what Stokes " + o_.stokes + " needs",
            "UVW, antennas, flags, weights and one data column, each read once");
     if (o_.niter > 0)
       decide("PSF patch", "none, the whole PSF", "components are subtracted to the image's edges in every minor cycle");

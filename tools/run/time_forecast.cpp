@@ -30,9 +30,16 @@ struct TransformSeconds {
   double fft = 0;
 };
 
-TransformSeconds transform_seconds(const imager::GriddingPlan& plan, int images, int threads) {
+/// What is made in a pass.
+struct Images {
+  int stokes = 1;
+  bool psf = false;
+};
+
+TransformSeconds transform_seconds(const imager::GriddingPlan& plan, const Images& images, int threads) {
   imager::GriddingWork work = plan.choice.best.work;
-  work.images = images;
+  work.stokes = images.stokes;
+  work.psf = images.psf;
   const imager::CostModel model;
   return {shared(model.gridding_seconds(work), threads), shared(model.fft_seconds(work), threads)};
 }
@@ -45,16 +52,17 @@ std::string size_of(const RunWork& w) {
 
 constexpr double direct_term_s = 0.5e-9;  ///< measured, in vectors; CostModel's decides what is summed directly, and is wary
 
-/// A pass that images: the first makes a PSF besides.
+/// A pass that images: the first makes the PSF and all Stokes parameters.
 void add_pass(const RunWork& w, bool with_psf, double times, std::vector<StageSeconds>& stages) {
   const imager::GriddingPlan& plan = *w.plan;
+  const int stokes = with_psf ? plan.request.stokes : 1;
   if (plan.direct) {
-    const double terms = w.samples * w.pixels * (with_psf ? 2 : 1);
+    const double terms = w.samples * w.pixels * (with_psf ? 1 + stokes : 1);
     stages.push_back({"grid", "direct sums of images", times * shared(direct_term_s * terms, w.threads)});
     return;
   }
-  const TransformSeconds own = transform_seconds(plan, with_psf && !plan.psf ? 2 : 1, w.threads);
-  const TransformSeconds psf = with_psf && plan.psf ? transform_seconds(*plan.psf, 1, w.threads) : TransformSeconds();
+  const TransformSeconds own = transform_seconds(plan, {stokes, with_psf && !plan.psf}, w.threads);
+  const TransformSeconds psf = with_psf && plan.psf ? transform_seconds(*plan.psf, {}, w.threads) : TransformSeconds();
   const std::string way = way_of(plan.choice.best.work);
   stages.push_back({"grid", "gridding" + way, times * (own.grid + psf.grid)});
   stages.push_back({"fft", "FFTs" + way, times * (own.fft + psf.fft)});
@@ -68,7 +76,7 @@ void add_predictions(const RunWork& w, std::vector<StageSeconds>& stages) {
                       w.major_cycles * shared(direct_term_s * w.samples * model_pixels, w.threads)});
     return;
   }
-  const TransformSeconds one = transform_seconds(plan, 1, w.threads);
+  const TransformSeconds one = transform_seconds(plan, {}, w.threads);
   const std::string way = way_of(plan.choice.best.work);
   stages.push_back({"degrid", "degridding" + way, w.major_cycles * one.grid});
   stages.push_back({"fft", "FFTs" + way, w.major_cycles * one.fft});

@@ -93,7 +93,7 @@ Scene::Plans Scene::plans_of(const ScenePoint& point) const {
 imager::DirtyImages Scene::image(const imager::Transform& transform, SceneSeconds& seconds) const {
   imager::StageTimes times;
   imager::DirtyImages made = imager::make_dirty_images(
-      visibilities_, transform, false, [](auto, auto) {}, times);
+      visibilities_, transform, {}, [](auto, auto) {}, times);
   for (const auto& [stage, spent] : times.stages()) (stage == "fft" ? seconds.fft : seconds.grid) += spent;
   return made;
 }
@@ -119,7 +119,7 @@ void Scene::describe(const Plans& plans, const imager::DirtyImages& made, PointR
   const imager::WideTransformOptions& o = plan.options;
   const imager::NeglectedPhase phase = imager::neglected_w_phase(reach_, w_spread_, geometry_);
   const imager::TheoreticalError theory =
-      imager::theoretical_error(plan, made.sums, imager::root_mean_square(made.dirty), phase);
+      imager::theoretical_error(plan, made.sums.front(), imager::root_mean_square(made.dirty.front()), phase);
   const imager::TransformMemory memory = imager::memory_of(plan);
   result.passes = static_cast<int>(plans.size());
   result.width = o.kernel_u.width();
@@ -158,7 +158,7 @@ void Scene::run(PointResult& result, int stretch) {
   const bool first = result.runs.empty();
   if (first) {
     describe(plans->second, made, result);
-    result.errors = truth_->errors_of(made.dirty);
+    result.errors = truth_->errors_of(made.dirty.front());
   }
   predict(transform->images(), seconds, first ? &result.errors : nullptr);
   result.runs.push_back(seconds);

@@ -25,7 +25,7 @@ imager::TransformMemory largest_transform(const ImageOptions& scene, const ms_io
   request.geometry = geometry;
   request.samples = set.samples();
   request.max_abs_w = set.reach().max_abs_w;
-  request.images = 1;
+  request.psf = false;
   request.accuracy = 0;
   request.kernel_width = 8;
   request.padding = 2;

@@ -66,7 +66,7 @@ SceneTruth::SceneTruth(const imager::VisibilitySource& source, const imager::Ima
   imager::DirectPixels at{geometry, {}, true, threads};
   for (const ChosenPixel& chosen : pixel_) at.pixel.push_back(chosen.at);
   const auto predict = imager::DirectTransform(geometry, threads).predict(model_);
-  direct_.resize(pixel_.size());
+  std::vector<std::vector<double>> direct(1, std::vector<double>(pixel_.size()));
   double weight = 0, seconds = 0;
   imager::SampleSums sums;
   std::uint64_t done = 0;
@@ -74,7 +74,7 @@ SceneTruth::SceneTruth(const imager::VisibilitySource& source, const imager::Ima
   const auto stream = source.open();
   for (auto block = stream->next(); block; block = stream->next(), ++index) {
     const imager::Stopwatch watch;
-    imager::add_direct_pixels(*block, at, direct_);
+    imager::add_direct_pixels(*block, at, direct);
     seconds += watch.seconds();
     for (const float w : imager::imaging_weights(*block, geometry.cell_rad, threads, sums)) weight += double{w};
     imager::SampleCoordinates one{{}, {0}};
@@ -91,6 +91,7 @@ SceneTruth::SceneTruth(const imager::VisibilitySource& source, const imager::Ima
     done += block->samples();
     progress(done, source.samples());
   }
+  direct_ = std::move(direct.front());
   counts_.outside_grid = sums.outside_grid;
   counts_.used = sums.used;
   if (counts_.used == 0) throw imager::NothingUsable(counts_);

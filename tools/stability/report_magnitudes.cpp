@@ -63,9 +63,9 @@ double relative_error(const std::vector<T>& is, const std::vector<T>& should) {
 std::vector<double> image_of(const imager::Transform& transform, const imager::VisibilityBlock& block, double scale) {
   std::vector<std::complex<double>> visibility(block.visibility.begin(), block.visibility.end());
   for (std::complex<double>& v : visibility) v *= scale;
-  const auto sum = transform.adjoint(false);
+  const auto sum = transform.adjoint({});
   sum->add(block, visibility);
-  return sum->finish().image.pixel;
+  return sum->finish().images.front().pixel;
 }
 
 double prediction_error(const imager::Transform& gridded, const imager::Transform& direct, double cells) {

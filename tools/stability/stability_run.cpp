@@ -117,8 +117,8 @@ ExtendedError measure(const StabilityCase& asked, const imager::AccurateImages& 
   const std::vector<imager::Pixel> pixels =
       imager::random_pixels(asked.geometry, static_cast<int>(std::clamp(affordable, 16.0, 200.0)));
   const imager::PixelError of_pixels =
-      imager::pixel_error(made.images.dirty, pixels, extended_pixels(*asked.block, asked.geometry, pixels), 1);
-  const double image_rms = imager::root_mean_square(made.images.dirty);
+      imager::pixel_error(made.images.dirty.front(), pixels, extended_pixels(*asked.block, asked.geometry, pixels), 1);
+  const double image_rms = imager::root_mean_square(made.images.dirty.front());
   return {of_pixels.rms / image_rms, of_pixels.max / image_rms,
           predict_error(*asked.block, made.transform->images(), asked.geometry, pixels)};
 }
@@ -148,8 +148,9 @@ imager::CleanReport clean(const StabilityCase& asked, const imager::VisibilitySo
   const imager::ComponentModel empty(asked.geometry.width, asked.geometry.height, minor->scale_pixels());
   imager::StageTimes times;
   return imager::clean(
-             {source, *made.transform, made.images, max_sidelobe(made.images.psf, asked.geometry.cell_rad), accuracy}, *minor,
-             options, imager::first_state(empty), ignore_progress, [](const imager::CleanState&) {}, times)
+             {source, *made.transform, made.images.dirty.front(), made.images.psf,
+              max_sidelobe(made.images.psf, asked.geometry.cell_rad), accuracy},
+             *minor, options, imager::first_state(empty), ignore_progress, [](const imager::CleanState&) {}, times)
       .report;
 }
 
@@ -169,9 +170,10 @@ StabilityOutcome run_with(PlanShelf& shelf, const StabilityCase& asked, double a
   outcome.promise_kept = made.promise_kept;
   imager::WSpread spread;
   spread.add(*asked.block);
-  outcome.theory = imager::theoretical_error(made.plan, made.images.sums, imager::root_mean_square(made.images.dirty),
-                                             imager::neglected_w_phase(reach_of(*asked.block), spread, asked.geometry));
-  outcome.finite = is_finite(made.images.dirty) && is_finite(made.images.psf);
+  outcome.theory =
+      imager::theoretical_error(made.plan, made.images.sums.front(), imager::root_mean_square(made.images.dirty.front()),
+                                imager::neglected_w_phase(reach_of(*asked.block), spread, asked.geometry));
+  outcome.finite = is_finite(made.images.dirty.front()) && is_finite(made.images.psf);
   if (!outcome.finite) return outcome;
   outcome.measured = measure(asked, made);
   outcome.clean = clean(asked, source, made, std::max(accuracy, outcome.theory.expected_rms));

@@ -51,7 +51,7 @@ Scene make_scene(const DirectionCosines& centre) {
   s.source = stored({block});
   s.transform = make_plane_transform(plan_gridding(request).options);
   StageTimes times;
-  s.images = make_dirty_images(s.source, *s.transform, true, ignore_progress, times);
+  s.images = make_dirty_images(s.source, *s.transform, {.with_psf = true}, ignore_progress, times);
   Image middle(g.width, g.height);
   middle.at(g.centre_row(), g.centre_column()) = 1;
   const Beam beam = fit_beam(s.images.psf, g.cell_rad);
@@ -69,7 +69,7 @@ CleanResult cleaned(const Scene& of, const CleanOptions& options, const DirtyIma
                     const CycleProgress& cycle_progress) {
   StageTimes times;
   const Hogbom minor(images.psf, options.threads);
-  const CleanInput input{of.source, *of.transform, images, of.max_sidelobe, 1e-5, of.beam_fwhm_pixels};
+  const CleanInput input{of.source, *of.transform, images.dirty[0], images.psf, of.max_sidelobe, 1e-5, of.beam_fwhm_pixels};
   return imager::clean(input, minor, options, begin, ignore_progress, cycle_progress, times);
 }
 
@@ -128,7 +128,7 @@ BOOST_AUTO_TEST_CASE(the_peak_residual_falls_to_the_threshold_and_the_flux_is_re
 
 BOOST_AUTO_TEST_CASE(a_residual_within_a_hundredth_of_the_threshold_has_reached_it) {
   CleanOptions options = deep();
-  const double peak = peak_magnitude(scene().images.dirty);
+  const double peak = peak_magnitude(scene().images.dirty[0]);
   options.threshold_jy = peak / (1 + 0.9 * threshold_tolerance);
   const CleanReport reached = cleaned(options).report;
   BOOST_TEST((reached.stop == CleanStop::threshold));
@@ -142,7 +142,7 @@ BOOST_AUTO_TEST_CASE(an_image_off_the_phase_centre_is_cleaned_like_one_on_it) {
   const CleanResult here = cleaned(deep()), there = cleaned(off, deep(), off.images);
   BOOST_TEST((there.report.stop == CleanStop::threshold));
   // The same sky on the same pixels; images differ by the accuracy, 1e-5 of their RMS, and rounding of float visibilities.
-  BOOST_TEST(relative_error(off.images.dirty.pixel, scene().images.dirty.pixel) < 1e-4);
+  BOOST_TEST(relative_error(off.images.dirty[0].pixel, scene().images.dirty[0].pixel) < 1e-4);
   BOOST_TEST(std::abs(there.report.final_state().model_flux_jy - here.report.final_state().model_flux_jy) < 2 * 0.01);
 }
 
@@ -158,7 +158,7 @@ BOOST_AUTO_TEST_CASE(no_iterations_leave_the_dirty_image) {
   options.max_iterations = 0;
   const CleanResult result = cleaned(options);
   BOOST_TEST((result.report.stop == CleanStop::iteration_limit));
-  BOOST_TEST((result.residual.pixel == scene().images.dirty.pixel));
+  BOOST_TEST((result.residual.pixel == scene().images.dirty[0].pixel));
   BOOST_TEST(norm(result.model.pixel) == 0);
   BOOST_TEST(result.report.cycles.size() == 1U);
 }
@@ -247,7 +247,7 @@ BOOST_AUTO_TEST_CASE(a_mask_that_allows_no_pixel_ends_it_at_once) {
   const CleanResult result = cleaned(options);
   BOOST_TEST((result.report.stop == CleanStop::empty_mask));
   BOOST_TEST(result.report.iterations == 0);
-  BOOST_TEST((result.residual.pixel == scene().images.dirty.pixel));
+  BOOST_TEST((result.residual.pixel == scene().images.dirty[0].pixel));
 }
 
 BOOST_AUTO_TEST_CASE(where_the_mask_is_empty_the_peak_is_that_of_the_whole_image_and_it_says_so) {
@@ -258,7 +258,7 @@ BOOST_AUTO_TEST_CASE(where_the_mask_is_empty_the_peak_is_that_of_the_whole_image
   for (const CleanOptions& options : {given, made}) {
     const CleanResult result = cleaned(options);
     BOOST_TEST((result.report.stop == CleanStop::empty_mask));
-    BOOST_TEST(result.report.final_state().peak_residual_jy == peak_magnitude(scene().images.dirty));
+    BOOST_TEST(result.report.final_state().peak_residual_jy == peak_magnitude(scene().images.dirty[0]));
     BOOST_TEST(result.report.stop_reason.find("of the whole image") != std::string::npos);
   }
 }
@@ -266,7 +266,7 @@ BOOST_AUTO_TEST_CASE(where_the_mask_is_empty_the_peak_is_that_of_the_whole_image
 BOOST_AUTO_TEST_CASE(a_residual_that_is_not_finite_is_an_error) {
   for (const double value : {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
     DirtyImages images = scene().images;
-    std::fill(images.dirty.pixel.begin(), images.dirty.pixel.end(), value);
+    std::fill(images.dirty[0].pixel.begin(), images.dirty[0].pixel.end(), value);
     BOOST_CHECK_THROW(cleaned(deep(), images), std::runtime_error);
   }
 }
