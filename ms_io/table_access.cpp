@@ -62,7 +62,9 @@ casacore::MeasurementSet open_measurement_set(const std::string& path, Access ac
     if (!casacore::Table::isReadable(path)) {
       throw std::runtime_error(path + " is not a casacore table; expected the directory of a MeasurementSet");
     }
-    require_main_columns(casacore::Table(path), path);
+    // Unlike the default, this waits for nobody who has locked the table.
+    const casacore::TableLock no_wait(casacore::TableLock::AutoNoReadLocking);
+    require_main_columns(casacore::Table(path, no_wait), path);
     if (access == Access::update && !casacore::Table::isWritable(path)) {
       throw std::runtime_error(path + " is read-only; writing a column needs write permission");
     }
