@@ -141,8 +141,8 @@ void require_exact_storage(const casacore::MeasurementSet& set, const std::strin
   if (!description.isArray() || description.dataType() != casacore::TpComplex) {
     std::ostringstream type;
     type << description.dataType();
-    throw std::runtime_error(name + " holds " + (description.isArray() ? "arrays" : "single values") + " of type " + type.str() +
-                             "; a model needs arrays of type " + "Complex, or a --column that does not exist yet");
+    throw std::runtime_error(name + " holds " + (description.isArray() ? "arrays" : "single values") + " of type " +
+                             type.str() + "; a model needs arrays of type " + "Complex, or a --column that does not exist yet");
   }
   if (!set.isColumnWritable(column)) throw std::runtime_error(name + " cannot be written; expected another --column");
   const casacore::Record manager = storage_of(set, column);

@@ -73,7 +73,8 @@ casacore::MeasurementSet open_measurement_set(const std::string& path, Access ac
         access == Access::update ? casacore::TableLock::UserNoReadLocking : casacore::TableLock::AutoNoReadLocking;
     casacore::MeasurementSet set(path, casacore::TableLock(lock), option);
     if (access == Access::update && !set.lock(casacore::FileLocker::Write, lock_attempts)) {
-      throw std::runtime_error(path + " is locked by another process; expected one that is not being written, or read by a program "
+      throw std::runtime_error(path +
+                               " is locked by another process; expected one that is not being written, or read by a program "
                                "that keeps it locked");
     }
     return set;

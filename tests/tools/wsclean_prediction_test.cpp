@@ -63,8 +63,8 @@ void compare(const Model& model) {
   BOOST_TEST_MESSAGE("ours against direct sums: " << rms << ", largest " << largest);
   BOOST_TEST(rms < 1e-6 + 1e-7);  // the accuracy asked, and the rounding of two columns in single precision
   if (!installed()) return;
-  const Outcome outcome = Child({"wsclean", "-use-wgridder", "-wgridder-accuracy", "1e-6", "-no-small-inversion", "-padding", "2",
-                                 "-predict", "-name", model.folder / "m", model.vis},
+  const Outcome outcome = Child({"wsclean", "-use-wgridder", "-wgridder-accuracy", "1e-6", "-no-small-inversion", "-padding",
+                                 "2", "-predict", "-name", model.folder / "m", model.vis},
                                 "wsclean")
                               .wait();
   BOOST_REQUIRE_MESSAGE(outcome.code == 0, outcome.err);
