@@ -59,9 +59,8 @@ Cells ModelCells::data(const Rows& rows, const Setup& setup) {
 std::uint64_t ModelCells::write(const Rows& rows, const Setup& setup, const StokesVisibilities& model, const Cells& data) {
   const std::size_t correlations = setup.correlation_types.size(), span = setup.channel_span();
   const casacore::IPosition shape = stored_shape(setup);
-  model_.require_shape(rows, shape, [&](casacore::rownr_t row) {
-    return data_.exists() ? data_(row) : Cells(shape, casacore::Complex(0));
-  });
+  model_.require_shape(rows, shape,
+                       [&](casacore::rownr_t row) { return data_.exists() ? data_(row) : Cells(shape, casacore::Complex(0)); });
   const casacore::Slicer slice = channel_slice(setup, correlations);
   Cells cells(casacore::IPosition(3, shape(0), static_cast<ssize_t>(span), static_cast<ssize_t>(rows.count())));
   if (setup.channels.size() > 1) model_.read(rows, slice, cells);

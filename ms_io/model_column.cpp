@@ -18,16 +18,22 @@ namespace {
 
 constexpr ssize_t tile_samples = 1 << 16;  ///< half a megabyte of complex<float>
 
-/// The tile shape of DATA, or one that holds whole cells of `cell`.
-casacore::IPosition tile_shape(const casacore::MeasurementSet& set, const casacore::IPosition& cell) {
+/// TYPE, NAME, COLUMNS and SPEC of what stores `column`.
+casacore::Record storage_of(const casacore::Table& set, const casacore::String& column) {
   const casacore::Record managers = set.dataManagerInfo();
   for (casacore::uInt i = 0; i < managers.nfields(); ++i) {
     const casacore::Record manager = managers.asRecord(i);
     const casacore::Vector<casacore::String> columns = manager.asArrayString("COLUMNS");
-    if (std::find(columns.begin(), columns.end(), "DATA") == columns.end()) continue;
-    const casacore::Record& specification = manager.asRecord("SPEC");
-    if (!specification.isDefined("DEFAULTTILESHAPE")) break;
-    casacore::IPosition shape(specification.toArrayInt("DEFAULTTILESHAPE"));
+    if (std::find(columns.begin(), columns.end(), column) != columns.end()) return manager;
+  }
+  return {};
+}
+
+/// The tile shape of DATA, or one that holds whole cells of `cell`.
+casacore::IPosition tile_shape(const casacore::MeasurementSet& set, const casacore::IPosition& cell) {
+  const casacore::Record storage = storage_of(set, "DATA");
+  if (storage.isDefined("SPEC") && storage.asRecord("SPEC").isDefined("DEFAULTTILESHAPE")) {
+    const casacore::IPosition shape(storage.asRecord("SPEC").toArrayInt("DEFAULTTILESHAPE"));
     if (shape.nelements() == 3 && shape.product() > 0) return shape;
   }
   return casacore::IPosition(3, cell(0), cell(1), std::max<ssize_t>(1, tile_samples / std::max<ssize_t>(1, cell.product())));
@@ -50,17 +56,14 @@ std::vector<casacore::IPosition> cell_shapes(const casacore::MeasurementSet& set
 }
 
 void add_column(casacore::MeasurementSet& set, const std::string& column, const casacore::IPosition& cell, bool fixed) {
+  using Description = casacore::ArrayColumnDesc<casacore::Complex>;
+  const std::string group = "Tiled" + column;  // no hypercolumn, whose definition would outlive the column
   casacore::TableDesc description;
   if (fixed) {
-    description.addColumn(casacore::ArrayColumnDesc<casacore::Complex>(column, cell, casacore::ColumnDesc::FixedShape));
-  } else {
-    description.addColumn(casacore::ArrayColumnDesc<casacore::Complex>(column, 2));
-  }
-  const std::string group = "Tiled" + column;
-  description.defineHypercolumn(group, 3, casacore::Vector<casacore::String>(1, column));
-  if (fixed) {
+    description.addColumn(Description(column, "", "TiledColumnStMan", group, cell, casacore::ColumnDesc::FixedShape));
     set.addColumn(description, casacore::TiledColumnStMan(group, tile_shape(set, cell)));
   } else {
+    description.addColumn(Description(column, "", "TiledShapeStMan", group, 2));
     set.addColumn(description, casacore::TiledShapeStMan(group, tile_shape(set, cell)));
   }
 }
@@ -138,11 +141,12 @@ void require_exact_storage(const casacore::MeasurementSet& set, const std::strin
   if (!description.isArray() || description.dataType() != casacore::TpComplex) {
     std::ostringstream type;
     type << description.dataType();
-    throw std::runtime_error(name + " holds " + (description.isArray() ? "arrays" : "single values") + " of type " + type.str() +
-                             "; a model needs arrays of type " + "Complex, or a --column that does not exist yet");
+    throw std::runtime_error(name + " holds " + (description.isArray() ? "arrays" : "single values") + " of type " +
+                             type.str() + "; a model needs arrays of type " + "Complex, or a --column that does not exist yet");
   }
   if (!set.isColumnWritable(column)) throw std::runtime_error(name + " cannot be written; expected another --column");
-  const std::string storage = casacore::TableColumn(set, column).columnDesc().dataManagerType();
+  const casacore::Record manager = storage_of(set, column);
+  const std::string storage = manager.isDefined("TYPE") ? std::string(manager.asString("TYPE")) : "";
   if (storage == "DyscoStMan" || storage.rfind("CompressComplex", 0) == 0) {
     throw std::runtime_error(name + " is stored by " + storage +
                              ", which rounds what it is given, other rows with it; expected another --column");

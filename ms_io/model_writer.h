@@ -26,8 +26,8 @@ using Predict = std::function<StokesVisibilities(const imager::SampleCoordinates
 
 /// What a column that was not written to its end is told by.
 struct ModelOrigin {
-  std::string command;            ///< which writes it, as people are told: "misfit predict --model a.fits"
-  std::uint64_t fingerprint = 0;  ///< of the model and of what changes its visibilities; 0: not known
+  std::string command;                           ///< which writes it, as people are told: "misfit predict --model a.fits"
+  std::uint64_t fingerprint = 0;                 ///< of the model and of what changes its visibilities; 0: not known
   std::function<void(const std::string&)> tell;  ///< is told in a sentence what an earlier run left, and what becomes of it
 };
 
@@ -60,8 +60,8 @@ void require_writable(const std::string& path, const ModelColumn& column = {});
 /// channels outside the selection are left alone, and hold 0, or the data, in a new column. `column` may be neither DATA nor
 /// what the data are read from, since nobody could tell afterwards where a run was cut short.
 ///
-/// A run that ends early, even killed, leaves a set that opens, and a record of the rows that are written. The next one with the
-/// same model, options and selection goes on there, unless these rows have changed since; any other begins anew.
+/// A run that ends early, even killed, leaves a set that opens, and a record of the rows that are written. The next one with
+/// the same model, options and selection goes on there, unless these rows have changed since; any other begins anew.
 ///
 /// `progress(done, total)` is called after every block, in samples. Throws std::runtime_error as MeasurementSet does (but
 /// correlations from which I cannot be formed are written all the same), where another process has locked the set for more than

@@ -62,7 +62,9 @@ casacore::MeasurementSet open_measurement_set(const std::string& path, Access ac
     if (!casacore::Table::isReadable(path)) {
       throw std::runtime_error(path + " is not a casacore table; expected the directory of a MeasurementSet");
     }
-    require_main_columns(casacore::Table(path), path);
+    // Unlike the default, this waits for nobody who has locked the table.
+    const casacore::TableLock no_wait(casacore::TableLock::AutoNoReadLocking);
+    require_main_columns(casacore::Table(path, no_wait), path);
     if (access == Access::update && !casacore::Table::isWritable(path)) {
       throw std::runtime_error(path + " is read-only; writing a column needs write permission");
     }
@@ -71,7 +73,8 @@ casacore::MeasurementSet open_measurement_set(const std::string& path, Access ac
         access == Access::update ? casacore::TableLock::UserNoReadLocking : casacore::TableLock::AutoNoReadLocking;
     casacore::MeasurementSet set(path, casacore::TableLock(lock), option);
     if (access == Access::update && !set.lock(casacore::FileLocker::Write, lock_attempts)) {
-      throw std::runtime_error(path + " is locked by another process; expected one that is not being written, or read by a program "
+      throw std::runtime_error(path +
+                               " is locked by another process; expected one that is not being written, or read by a program "
                                "that keeps it locked");
     }
     return set;

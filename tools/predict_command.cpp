@@ -66,7 +66,8 @@ NamedModel component_model(const PredictOptions& o, const ms_io::MeasurementSet&
   auto sources = read_stokes_components(o.components, set.observation().phase_centre);
   for (const std::vector<imager::Source>& plane : sources) {
     named.fingerprint.add(plane.size());
-    for (const imager::Source& s : plane) named.fingerprint.add(std::vector<double>{s.position.l, s.position.m, s.flux_jy, s.fwhm_rad});
+    for (const imager::Source& s : plane)
+      named.fingerprint.add(std::vector<double>{s.position.l, s.position.m, s.flux_jy, s.fwhm_rad});
   }
   named.visibilities.predict = [sources = std::move(sources), threads](const imager::SampleCoordinates& at) {
     ms_io::StokesVisibilities visibilities(imager::predict_sources(sources[0], at, threads));
@@ -94,8 +95,7 @@ void print(const PredictOptions& o, const ms_io::ModelWriteReport& report) {
   const auto count = [](std::uint64_t number) { return grouped(static_cast<long long>(number)); };
   std::printf("%s: %s%s visibilities in %s rows written to %s\n", o.vis.c_str(), o.subtract ? "data − model of " : "",
               count(report.samples).c_str(), count(report.rows).c_str(), column_of(o).name.c_str());
-  if (report.rows_before > 0)
-    std::printf("%s of these rows had been written before\n", count(report.rows_before).c_str());
+  if (report.rows_before > 0) std::printf("%s of these rows had been written before\n", count(report.rows_before).c_str());
   if (report.nonfinite_uvw_rows > 0)
     std::printf("%s rows have UVW that are not finite and %s\n", count(report.nonfinite_uvw_rows).c_str(),
                 o.subtract ? "keep their data" : "got 0");
@@ -126,8 +126,8 @@ void predict(const PredictOptions& o) {
                    [&](const std::string& sentence) { progress.say(sentence); }};
   progress.begin(o.subtract ? "subtract" : "predict");
   const auto show = [&](std::uint64_t done, std::uint64_t total) { progress.update(done, total); };
-  const ms_io::ModelWriteReport report = ms_io::write_model(o.vis, o.selection, column, model.visibilities.predict, show,
-                                                            model.visibilities.samples_at_once);
+  const ms_io::ModelWriteReport report =
+      ms_io::write_model(o.vis, o.selection, column, model.visibilities.predict, show, model.visibilities.samples_at_once);
   progress.end();
   if (!o.quiet) print(o, report);
 }
@@ -139,14 +139,17 @@ void add_predict_command(CLI::App& program) {
       program.add_subcommand("predict", "Write a model's visibilities, or data without them, into a MeasurementSet");
   const auto o = std::make_shared<PredictOptions>();
   command->add_option("--vis", o->vis, "MeasurementSet; only the column is written")->required();
-  command->add_option("--model", o->model, "FITS image in Jy/pixel whose reference position is the phase centre; its STOKES axis may hold I, Q, U and V");
+  command->add_option(
+      "--model", o->model,
+      "FITS image in Jy/pixel whose reference position is the phase centre; its STOKES axis may hold I, Q, U and V");
   command->add_option(
       "--components", o->components,
       "CSV file with ra_deg,dec_deg,flux_jy or l_arcsec,m_arcsec,flux_jy, and scale_arcsec for the full width at "
       "half maximum of a circular Gaussian (0: a point), summed directly with w; polarised ones have flux_q_jy, flux_u_jy, "
       "flux_v_jy too");
-  CLI::Option* subtract = command->add_flag(
-      "--subtract", o->subtract, "Write data − model instead: each correlation loses what the model is to it, XX = I + Q and so on");
+  CLI::Option* subtract =
+      command->add_flag("--subtract", o->subtract,
+                        "Write data − model instead: each correlation loses what the model is to it, XX = I + Q and so on");
   command->add_option("--datacolumn", o->datacolumn, "What is subtracted from: data, corrected, model, or a column's name")
       ->needs(subtract);
   command->add_option(

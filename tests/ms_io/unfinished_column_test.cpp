@@ -67,10 +67,15 @@ std::vector<Complex> all_of(const SmallSet& set, const std::string& column) {
 }
 
 /// What a run that is not interrupted makes of an equal set.
-std::vector<Complex> whole(const ModelColumn& column, const Selection& which = selection) {
-  const MixedSet set;
-  write(set, column, which);
-  return all_of(set, column.name);
+const std::vector<Complex>& whole(const ModelColumn& column) {
+  static std::map<std::string, std::vector<Complex>> known;
+  std::vector<Complex>& values = known[column.name];
+  if (values.empty()) {
+    const MixedSet set;
+    write(set, column);
+    values = all_of(set, column.name);
+  }
+  return values;
 }
 
 const ModelColumn plain{"MODEL_DATA"}, difference{"CORRECTED_DATA", "DATA", false};
@@ -82,7 +87,7 @@ BOOST_AUTO_TEST_SUITE(unfinished_column)
 BOOST_AUTO_TEST_CASE(a_run_that_was_stopped_goes_on_to_the_same_bits) {
   for (const ModelColumn& column : {plain, difference}) {
     const std::vector<Complex> expected = whole(column);
-    for (const int stop_after : {1, 2, 3}) {
+    for (const int stop_after : {1, 3}) {
       const MixedSet set;
       write(set, column, selection, stop_after);
       const std::string incomplete = incomplete_column(set.path(), column.name);
@@ -116,7 +121,7 @@ BOOST_AUTO_TEST_CASE(another_model_or_selection_begins_anew) {
     BOOST_REQUIRE(told.sentences.size() == 1U);
     BOOST_TEST(contains(told.sentences.front(), "begins anew"));
     BOOST_TEST(told.report.rows_before == 0U);
-    BOOST_TEST((all_of(set, "MODEL_DATA") == whole(plain, selection)) == (which.spectral_window == selection.spectral_window));
+    BOOST_TEST((all_of(set, "MODEL_DATA") == whole(plain)) == (which.spectral_window == selection.spectral_window));
     BOOST_TEST(incomplete_column(set.path(), "MODEL_DATA") == "");
   }
 }
@@ -160,8 +165,8 @@ BOOST_AUTO_TEST_CASE(a_record_that_cannot_be_read_counts_as_nothing_written) {
 
 BOOST_AUTO_TEST_CASE(a_run_that_was_killed_leaves_a_set_that_opens_and_its_record_claims_no_more_than_is_written) {
   const std::vector<Complex> expected = whole(plain), subtracted = whole(difference);
-  for (int wait_us = 0; wait_us < 60'000; wait_us += 4'000) {
-    const ModelColumn& column = wait_us % 8'000 == 0 ? plain : difference;
+  for (int wait_us = 0; wait_us < 60'000; wait_us += 6'000) {
+    const ModelColumn& column = wait_us % 12'000 == 0 ? plain : difference;
     const MixedSet set;
     const pid_t child = fork();
     if (child == 0) {

@@ -1,4 +1,7 @@
 // From a model to visibilities, and back to an image.
+#include <array>
+#include <cstring>
+
 #include "tests/tools/program.h"
 #include "tests/tools/set_changes.h"
 
@@ -135,6 +138,89 @@ BOOST_AUTO_TEST_CASE(only_the_column_asked_for_changes) {
   succeed({"predict", "--vis", copy.set, "--components", copy.folder / "one.csv", "--column", "PREDICTED"});
   BOOST_TEST((visibilities(copy.set, "DATA") == data));
   BOOST_TEST(visibilities(copy.set, "PREDICTED").size() == data.size());
+}
+
+BOOST_AUTO_TEST_CASE(polarised_components_and_the_planes_of_a_model_image_are_the_same) {
+  const Copy copy;
+  std::ofstream(copy.folder / "two.csv")
+      << "l_arcsec,m_arcsec,flux_jy,flux_q_jy,flux_v_jy\n1.2,-0.7,2,1.5,-0.5\n-2.1,1.4,1,-0.5,0\n";
+  succeed(small_image(copy.set, copy.folder / "a") + Arguments{"--niter", "1"});
+  imager::SkyImage plane = imager::read_fits(copy.folder / "a.model.fits");
+  const std::string header = content(copy.folder / "a.model.fits");
+  // The header of one plane, with four along the axis of STOKES.
+  std::string cube = header.substr(0, header.find("END" + std::string(77, ' ')) + 80);
+  cube.resize((cube.size() + 2879) / 2880 * 2880, ' ');
+  const std::size_t stokes_axis = cube.find("NAXIS4  =");
+  cube.replace(stokes_axis, 80, (std::string("NAXIS4  =                    4") + std::string(80, ' ')).substr(0, 80));
+  const std::vector<std::array<float, 2>> fluxes = {{2, 1}, {1.5, -0.5}, {0, 0}, {-0.5, 0}};
+  for (const auto& [first, second] : fluxes) {
+    plane.image.pixel.assign(plane.image.pixel.size(), 0);
+    plane.image.at(32 - 7, 32 - 12) = first;
+    plane.image.at(32 + 14, 32 + 21) = second;
+    for (const double value : plane.image.pixel) {
+      std::uint32_t bits = 0;
+      const auto single = static_cast<float>(value);
+      std::memcpy(&bits, &single, sizeof bits);
+      for (int shift = 24; shift >= 0; shift -= 8) cube += static_cast<char>(bits >> shift & 255U);  // FITS is big-endian
+    }
+  }
+  cube.resize((cube.size() + 2879) / 2880 * 2880, '\0');
+  std::ofstream(copy.folder / "cube.fits", std::ios::binary) << cube;
+  succeed({"predict", "--vis", copy.set, "--model", copy.folder / "cube.fits"});
+  succeed({"predict", "--vis", copy.set, "--components", copy.folder / "two.csv", "--column", "EXACT"});
+  const Visibilities exact = visibilities(copy.set, "EXACT"), gridded = visibilities(copy.set, "MODEL_DATA");
+  Visibilities difference, stokes_q;
+  for (std::size_t i = 0; i < exact.size(); ++i) difference.push_back(gridded[i] - exact[i]);
+  for (std::size_t i = 0; i < exact.size(); i += 2) stokes_q.push_back((exact[i] - exact[i + 1]) / 2.0F);
+  BOOST_TEST(rms(difference) < (1e-6 + 1e-7) * rms(exact));  // the accuracy, and rounding to single precision
+  BOOST_TEST(rms(stokes_q) > 1.0);                           // XX − YY = 2Q, of 1.5 and −0.5 Jy
+  BOOST_TEST(rms(stokes_q) < 2.0);
+  BOOST_TEST(run({"image", "--vis", copy.set, "--imagename", copy.folder / "b", "--startmodel", copy.folder / "cube.fits",
+                  "--imsize", "64", "--cell", "0.1arcsec", "--niter", "9"})
+                 .code == 1);  // which takes one plane
+  BOOST_TEST(run({"simulate", "--output", copy.folder / "no.ms", "--sky", copy.folder / "two.csv"}).err.find("'flux_q_jy'") !=
+             std::string::npos);
+}
+
+BOOST_AUTO_TEST_CASE(a_prediction_that_was_stopped_says_so_and_goes_on) {
+  const TemporaryFolder folder;
+  const std::string set = folder / "many.ms", list = folder / "many.csv";
+  succeed({"simulate", "--output", set, "--channels", "64", "--hours", "3", "--interval", "60"});
+  std::ofstream text(list);
+  text << "l_arcsec,m_arcsec,flux_jy\n";
+  for (int i = 0; i < 100; ++i) text << 0.01 * i << ',' << -0.02 * i << ",1\n";
+  text.close();
+  const Arguments predict{"predict", "--vis", set, "--components", list, "--threads", "1"};
+  succeed(predict + Arguments{"--column", "WHOLE"});
+  const std::string journal = set + "/misfit_unfinished_MODEL_DATA";
+  for (const int signal : {SIGINT, SIGKILL}) {
+    Child child(predict);
+    while (!child.ended() && content(journal).find("\ndone 0 ") == std::string::npos)
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    child.signal(signal);
+    const int code = child.wait().code;
+    BOOST_TEST_INFO(code);
+    BOOST_TEST((code == (signal == SIGINT ? 130 : -SIGKILL) || code == 0));
+    if (code == 0) continue;  // it was done before the signal came
+    const Outcome image = run(small_image(set, folder / "a") + Arguments{"--datacolumn", "model", "--accuracy", "1e-3"});
+    BOOST_TEST((image.err.find("warning: MODEL_DATA of " + set + " is incomplete: ") != std::string::npos));
+    const Outcome rest = run(predict);
+    BOOST_TEST(rest.code == 0);
+    BOOST_TEST(
+        (rest.err.find("rows were written before by misfit predict --components " + list + ", going on") != std::string::npos));
+    BOOST_TEST((rest.out.find("of these rows had been written before") != std::string::npos));
+    BOOST_TEST((visibilities(set, "MODEL_DATA") == visibilities(set, "WHOLE")));
+    BOOST_TEST(!std::filesystem::exists(journal));
+  }
+}
+
+BOOST_AUTO_TEST_CASE(correlations_without_stokes_i_are_predicted_all_the_same) {
+  const misfit::testing::Unpacked data("bad_inputs");
+  if (!data.present()) return;
+  const std::string set = data / "bad_inputs/paper_xy_only.ms";
+  std::ofstream(data / "one.csv") << "l_arcsec,m_arcsec,flux_jy,flux_u_jy\n0,0,3,2\n";
+  succeed({"predict", "--vis", set, "--components", data / "one.csv"});
+  for (const auto& value : visibilities(set, "MODEL_DATA")) BOOST_TEST(value == std::complex<float>(2));  // XY = U + iV
 }
 
 BOOST_AUTO_TEST_SUITE_END()

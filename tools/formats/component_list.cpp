@@ -109,8 +109,7 @@ class Line {
     const double scale_arcsec = columns_.has("scale_arcsec") ? number("scale_arcsec", 0, std::numeric_limits<double>::max(),
                                                                       "a full width at half maximum, 0 (a point) or more")
                                                              : 0;
-    return {columns_.equatorial ? equatorial_position(phase_centre) : tangent_position(), number(flux),
-            scale_arcsec * arcsec};
+    return {columns_.equatorial ? equatorial_position(phase_centre) : tangent_position(), number(flux), scale_arcsec * arcsec};
   }
 
  private:

@@ -21,7 +21,7 @@ std::vector<imager::SkyImage> read_stokes_model(const std::string& path, const i
 
 /// A model as an operator from coordinates to visibilities.
 struct ModelVisibilities {
-  std::unique_ptr<imager::Transform> transform;  // outlives the prediction
+  std::unique_ptr<imager::Transform> transform;                    // outlives the prediction
   std::array<std::unique_ptr<imager::Prediction>, 4> predictions;  ///< of I, Q, U, V; null where that is 0
   ms_io::Predict predict;
   std::uint64_t samples_at_once = ms_io::MeasurementSet::usual_block_samples;
