@@ -30,13 +30,6 @@ struct Observation {
   }
 };
 
-/// What the plan of a run says of `item`.
-std::string decision(const json& report, const std::string& item) {
-  for (const json& step : report["plan"])
-    if (step["item"] == item) return step["decision"];
-  return "";
-}
-
 bool installed() {
   static const bool found = [] {
     const bool answers = Child({"--version"}, "wsclean").wait().code == 0;
@@ -102,21 +95,6 @@ BOOST_AUTO_TEST_CASE(the_noise_of_simulated_noise_is_the_one_predicted) {
     // The image holds at least 2000 beams, and a median deviates 1.6 times as much as an RMS: three times 1.6/√4000 = 8 %.
     BOOST_TEST(std::abs(measured / predicted - 1) < 0.08);
     BOOST_TEST(predicted >= natural["predicted_jy"].get<double>() * (1 - 1e-12));
-  }
-}
-
-BOOST_AUTO_TEST_CASE(images_have_the_same_bits_whether_visibilities_are_kept_or_read_again) {
-  const Observation data;
-  for (const Arguments& weighting : {Arguments{"--weighting", "briggs", "--uvtaper", "1arcsec"}, {"--uvtaper", "1arcsec"}}) {
-    const json kept = data.image(weighting);
-    const imager::Image psf = pixels_of(data.folder / "a", "psf"), dirty = pixels_of(data.folder / "a", "residual");
-    const double least_gib = 0.11;
-    const json again = data.image(weighting + Arguments{"--memory", std::to_string(least_gib), "--threads", "1"});
-    BOOST_CHECK(pixels_of(data.folder / "a", "psf").pixel == psf.pixel);
-    BOOST_CHECK(pixels_of(data.folder / "a", "residual").pixel == dirty.pixel);
-    BOOST_TEST(again["noise"] == kept["noise"]);
-    BOOST_TEST(decision(kept, "visibilities") == "kept in memory");
-    BOOST_TEST(decision(again, "visibilities") == "read again in every pass");
   }
 }
 
