@@ -156,13 +156,17 @@ class Writer {
   CellColumn model_column_, data_column_;
 };
 
-std::vector<std::complex<double>> predicted(const Predict& predict, const imager::SampleCoordinates& where,
-                                            const std::vector<bool>& unknown) {
-  std::vector<std::complex<double>> stokes_i = predict(where);
+/// At `where` of the set itself, of a model about the phase centre that `shift` leads to.
+std::vector<std::complex<double>> predicted(const Predict& predict, const imager::PhaseShift& shift,
+                                            const imager::SampleCoordinates& where, const std::vector<bool>& unknown) {
+  imager::SampleCoordinates shifted = where;
+  shift.rotate(shifted.uvw_m);
+  std::vector<std::complex<double>> stokes_i = predict(shifted);
   if (stokes_i.size() != where.samples()) {
     throw std::invalid_argument("prediction returned " + std::to_string(stokes_i.size()) + " visibilities; expected " +
                                 std::to_string(where.samples()));
   }
+  shift.undo(where, stokes_i);
   for (std::size_t r = 0; r < unknown.size(); ++r) {
     if (!unknown[r]) continue;
     const auto row = stokes_i.begin() + static_cast<std::ptrdiff_t>(r * where.channels());
@@ -183,7 +187,7 @@ struct PredictedBlock {
 
   /// Another thread predicts; casacore is for one thread alone.
   void begin(const Predict& predict) {
-    stokes_i = std::async(std::launch::async, [this, &predict] { return predicted(predict, where, unknown); });
+    stokes_i = std::async(std::launch::async, [this, &predict] { return predicted(predict, setup->shift, where, unknown); });
   }
 };
 

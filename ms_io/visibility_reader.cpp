@@ -46,6 +46,7 @@ class Reader : public imager::BlockStream {
     }
     block->counts.rows_read = rows.rows;
     block->counts.samples_read = block->samples();
+    setup.shift.apply(*block);
     return block;
   }
 

@@ -66,8 +66,10 @@ class ImageRun {
   void open() {
     const imager::StageTimer timer(times_, "open");
     if (!o_.dry_run) check_writable_folder(o_.imagename);
-    if (o_.savemodel == "modelcolumn") ms_io::require_writable(o_.vis);
-    set_ = std::make_unique<ms_io::MeasurementSet>(o_.vis, o_.selection, o_.datacolumn);
+    if (o_.savemodel == "modelcolumn")
+      for (const std::string& set : o_.vis) ms_io::require_writable(set);
+    selection_ = selection_of(o_);
+    set_ = std::make_unique<ms_io::MeasurementSet>(o_.vis, selection_, o_.datacolumn);
     geometry_ = geometry_of(o_, set_->observation().phase_centre);
     reach_ = set_->reach();
     if (o_.niter == 0) return;
@@ -193,10 +195,11 @@ class ImageRun {
     progress_.begin("save model", true);  // a column half written helps no one
     ModelVisibilities model;
     {
-      const ms_io::MeasurementSet set(o_.vis, o_.selection, o_.datacolumn);
+      const ms_io::MeasurementSet set(o_.vis, selection_, o_.datacolumn);
       model = image_visibilities(cleaned_->model, geometry_, gridding_request(o_, threads_), set);
     }
-    ms_io::write_model(o_.vis, o_.selection, {"MODEL_DATA"}, model.predict, progress(), model.samples_at_once);
+    for (const std::string& set : o_.vis)
+      ms_io::write_model(set, selection_, {"MODEL_DATA"}, model.predict, progress(), model.samples_at_once);
     progress_.end();
   }
 
@@ -252,6 +255,7 @@ class ImageRun {
   RunWork work_;
   std::optional<int> iterations_before_;  ///< this run's CLEAN
 
+  ms_io::Selection selection_;
   std::unique_ptr<ms_io::MeasurementSet> set_;
   imager::ImageGeometry geometry_;
   imager::UvwReach reach_;
