@@ -34,13 +34,11 @@ std::string visibility_columns(const casacore::TableDesc& description) {
 }
 
 void require_main_columns(const casacore::Table& table, const std::string& path) {
-  const char* const needed[] = {"ANTENNA1", "ANTENNA2", "DATA_DESC_ID", "FIELD_ID", "FLAG",
-                                "FLAG_ROW", "INTERVAL", "TIME",         "UVW",      "WEIGHT"};
-  for (const char* column : needed) {
-    if (!table.tableDesc().isColumn(column)) {
-      throw std::runtime_error(path + " is a table but not a MeasurementSet: it has no column " + column);
-    }
+  std::string missing;
+  for (const casacore::String& column : casacore::MS::requiredTableDesc().columnNames()) {
+    if (!table.tableDesc().isColumn(column)) missing += (missing.empty() ? "" : ", ") + column;
   }
+  if (!missing.empty()) throw std::runtime_error(path + " is a table but not a MeasurementSet: it has no column " + missing);
 }
 
 }  // namespace
@@ -60,13 +58,15 @@ casacore::MeasurementSet open_measurement_set(const std::string& path, Access ac
     if (!casacore::Table::isReadable(path)) {
       throw std::runtime_error(path + " is not a casacore table; expected the directory of a MeasurementSet");
     }
-    require_main_columns(casacore::Table(path), path);
+    // Locking creates lock files where there are none, which reading must not.
+    const casacore::TableLock lock(access == Access::update ? casacore::TableLock::AutoLocking
+                                                            : casacore::TableLock::NoLocking);
+    require_main_columns(casacore::Table(path, lock), path);
     if (access == Access::update && !casacore::Table::isWritable(path)) {
       throw std::runtime_error(path + " is read-only; writing a column needs write permission");
     }
     const auto option = access == Access::update ? casacore::Table::Update : casacore::Table::Old;
-    const auto lock = access == Access::update ? casacore::TableLock::AutoLocking : casacore::TableLock::AutoNoReadLocking;
-    return casacore::MeasurementSet(path, casacore::TableLock(lock), option);
+    return casacore::MeasurementSet(path, lock, option);
   });
 }
 
