@@ -1,8 +1,11 @@
 #include "ms_io/measurement_set.h"
 
+#include <algorithm>
+#include <stdexcept>
 #include <utility>
 
 #include "ms_io/metadata_internal.h"
+#include "ms_io/model_writer.h"
 #include "ms_io/table_access_internal.h"
 #include "ms_io/uvw_scan_internal.h"
 #include "ms_io/visibility_reader_internal.h"
@@ -30,18 +33,64 @@ std::shared_ptr<const OpenSet> open_selected(const std::string& path, const Sele
   return opened;
 }
 
+/// The columns that `names` has between commas, one for each of `sets`.
+std::vector<std::string> columns_of(const std::string& names, std::size_t sets) {
+  std::vector<std::string> columns(1);
+  for (const char c : names) {
+    if (c == ',') {
+      columns.emplace_back();
+    } else {
+      columns.back() += c;
+    }
+  }
+  if (columns.size() == 1) columns.assign(sets, names);
+  if (columns.size() == sets) return columns;
+  throw std::runtime_error("data columns '" + names + "' are " + std::to_string(columns.size()) +
+                           "; expected one, or one for each of " + std::to_string(sets) + " sets");
+}
+
+/// The blocks of one set after the other.
+class JoinedStream : public imager::BlockStream {
+ public:
+  explicit JoinedStream(std::vector<std::shared_ptr<const OpenSet>> sets) : sets_(std::move(sets)) {}
+
+  std::shared_ptr<const imager::VisibilityBlock> next() override {
+    for (; next_ < sets_.size(); ++next_, stream_.reset()) {
+      if (!stream_) stream_ = read_blocks(sets_[next_]);
+      if (auto block = stream_->next()) return block;
+    }
+    return nullptr;
+  }
+
+ private:
+  std::vector<std::shared_ptr<const OpenSet>> sets_;
+  std::size_t next_ = 0;  ///< set
+  std::unique_ptr<imager::BlockStream> stream_;
+};
+
 }  // namespace
 
 struct MeasurementSet::Impl {
-  std::shared_ptr<const OpenSet> open_set;
+  std::vector<std::shared_ptr<const OpenSet>> sets;
   imager::Observation observation;
 };
 
 MeasurementSet::MeasurementSet(const std::string& path, const Selection& selection, const std::string& data_column,
-                               const std::vector<imager::Stokes>& stokes, std::uint64_t block_samples) {
+                               const std::vector<imager::Stokes>& stokes, std::uint64_t block_samples)
+    : MeasurementSet(std::vector<std::string>{path}, selection, data_column, stokes, block_samples) {}
+
+MeasurementSet::MeasurementSet(const std::vector<std::string>& paths, const Selection& selection,
+                               const std::string& data_column, const std::vector<imager::Stokes>& stokes,
+                               std::uint64_t block_samples) {
+  if (paths.empty()) throw std::invalid_argument("no MeasurementSet; expected one or more");
   const auto impl = std::make_shared<Impl>();
-  impl->open_set = open_selected(path, selection, data_column, stokes, block_samples);
-  impl->observation = describe(impl->open_set->set, path, impl->open_set->selected);
+  const std::vector<std::string> columns = columns_of(data_column, paths.size());
+  std::vector<imager::Observation> observations;
+  for (std::size_t i = 0; i < paths.size(); ++i) {
+    impl->sets.push_back(open_selected(paths[i], selection, columns[i], stokes, block_samples));
+    observations.push_back(describe(impl->sets.back()->set, paths[i], impl->sets.back()->selected));
+  }
+  impl->observation = joined(observations, paths);
   impl_ = impl;
 }
 
@@ -50,20 +99,38 @@ MeasurementSet::~MeasurementSet() = default;
 const imager::Observation& MeasurementSet::observation() const {
   return impl_->observation;
 }
+std::vector<std::string> MeasurementSet::incomplete_columns() const {
+  std::vector<std::string> sentences;
+  for (const auto& set : impl_->sets)
+    if (std::string sentence = incomplete_column(set->path, set->data_column); !sentence.empty())
+      sentences.push_back(std::move(sentence));
+  return sentences;
+}
 std::uint64_t MeasurementSet::rows() const {
-  return impl_->open_set->selected.rows;
+  std::uint64_t rows = 0;
+  for (const auto& set : impl_->sets) rows += set->selected.rows;
+  return rows;
 }
 std::uint64_t MeasurementSet::samples() const {
-  return impl_->open_set->selected.samples;
+  std::uint64_t samples = 0;
+  for (const auto& set : impl_->sets) samples += set->selected.samples;
+  return samples;
 }
 imager::UvwReach MeasurementSet::reach(ReachOf rows) const {
-  return scan_uvw(*impl_->open_set, rows);
+  imager::UvwReach all;
+  for (const auto& set : impl_->sets) {
+    const imager::UvwReach one = scan_uvw(*set, rows);
+    all.max_abs_u = std::max(all.max_abs_u, one.max_abs_u);
+    all.max_abs_v = std::max(all.max_abs_v, one.max_abs_v);
+    all.max_abs_w = std::max(all.max_abs_w, one.max_abs_w);
+  }
+  return all;
 }
 void MeasurementSet::visit_coordinates(const std::function<void(const imager::SampleCoordinates&)>& visit) const {
-  visit_uvw(*impl_->open_set, visit);
+  for (const auto& set : impl_->sets) visit_uvw(*set, visit);
 }
 std::unique_ptr<imager::BlockStream> MeasurementSet::open() const {
-  return read_blocks(impl_->open_set);
+  return std::make_unique<JoinedStream>(impl_->sets);
 }
 
 }  // namespace misfit::ms_io

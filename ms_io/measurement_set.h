@@ -17,8 +17,9 @@ namespace misfit::ms_io {
 /// Rows that can be used, neither flagged nor of one antenna; or all.
 enum class ReachOf { usable, all };
 
-/// A selected part of a MeasurementSet as visibilities of Stokes parameters, opened read-only and streamed in blocks. Only the
-/// columns and channels that are needed are read. A block never mixes DATA_DESC_IDs. Reading never runs in two threads at once.
+/// A selected part of a MeasurementSet, or of several that make one image, as visibilities of Stokes parameters, opened read-only
+/// and streamed in blocks, one set after the other. Only the columns and channels that are needed are read. A block never mixes
+/// sets, DATA_DESC_IDs or, where the phase centre is shifted, fields. Reading never runs in two threads at once.
 class MeasurementSet : public imager::VisibilitySource {
  public:
   /// Enough that the samples of a block share what a pass over the tiles of a grid costs.
@@ -26,15 +27,23 @@ class MeasurementSet : public imager::VisibilitySource {
 
   /// Opens `path`. `data_column` names the column with the visibilities ("DATA", "CORRECTED_DATA", …). Throws
   /// std::runtime_error when the path is no MeasurementSet, the column is missing, the selection is empty or wrong, one of
-  /// `stokes` cannot be formed (the message lists the correlations there are), or the rows selected have several phase centres.
-  /// The short names data, corrected and model stand for DATA, CORRECTED_DATA and MODEL_DATA. A block holds whole rows, about
-  /// `block_samples` samples of them; what is read does not depend on that number. Where `data_column` is empty, all but open()
-  /// can be called, whatever columns and correlations there are.
+  /// `stokes` cannot be formed (the message lists the correlations there are), or the rows selected have several phase centres
+  /// and `selection` does not say where to shift them. The short names data, corrected and model stand for DATA, CORRECTED_DATA
+  /// and MODEL_DATA. A block holds whole rows, about `block_samples` samples of them; what is read does not depend on that
+  /// number. Where `data_column` is empty, all but open() can be called, whatever columns and correlations there are.
   MeasurementSet(const std::string& path, const Selection& selection, const std::string& data_column,
+                 const std::vector<imager::Stokes>& stokes = {imager::Stokes::I},
+                 std::uint64_t block_samples = usual_block_samples);
+  /// The same of several sets, at least one, of which `selection` is made in each. They may differ in everything but their
+  /// phase centres. `data_column` names one column for all, or one for each, separated by commas.
+  MeasurementSet(const std::vector<std::string>& paths, const Selection& selection, const std::string& data_column,
                  const std::vector<imager::Stokes>& stokes = {imager::Stokes::I},
                  std::uint64_t block_samples = usual_block_samples);
   ~MeasurementSet() override;
 
+  /// A sentence for each set whose column was not written to its end, see incomplete_column().
+  std::vector<std::string> incomplete_columns() const;
+  /// Of the first set, with the band of all.
   const imager::Observation& observation() const;
   std::uint64_t rows() const;
   std::uint64_t samples() const override;

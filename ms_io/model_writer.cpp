@@ -100,14 +100,19 @@ imager::SampleCoordinates coordinates(const casacore::ArrayColumn<double>& uvw_c
   return where;
 }
 
-StokesVisibilities predicted(const Predict& predict, const imager::SampleCoordinates& where, const std::vector<bool>& unknown) {
-  StokesVisibilities model = predict(where);
+/// At `where` of the set itself, of a model about the phase centre that `shift` leads to.
+StokesVisibilities predicted(const Predict& predict, const imager::PhaseShift& shift, const imager::SampleCoordinates& where,
+                             const std::vector<bool>& unknown) {
+  imager::SampleCoordinates shifted = where;
+  shift.rotate(shifted.uvw_m);
+  StokesVisibilities model = predict(shifted);
   for (std::vector<std::complex<double>>& plane : model.plane) {
     if (plane.empty() && &plane != &model.plane.front()) continue;
     if (plane.size() != where.samples()) {
       throw std::invalid_argument("prediction returned " + std::to_string(plane.size()) + " visibilities; expected " +
                                   std::to_string(where.samples()));
     }
+    shift.undo(where, plane);
     for (std::size_t r = 0; r < unknown.size(); ++r) {
       if (unknown[r]) std::fill_n(plane.begin() + static_cast<std::ptrdiff_t>(r * where.channels()), where.channels(), 0.0);
     }
@@ -127,7 +132,7 @@ struct PredictedBlock {
 
   /// Another thread predicts; casacore is for one thread alone.
   void begin(const Predict& predict) {
-    model = std::async(std::launch::async, [this, &predict] { return predicted(predict, where, unknown); });
+    model = std::async(std::launch::async, [this, &predict] { return predicted(predict, setup->shift, where, unknown); });
   }
 };
 

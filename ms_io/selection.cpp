@@ -4,6 +4,7 @@
 #include <limits>
 #include <stdexcept>
 
+#include "ms_io/phase_centre_internal.h"
 #include "ms_io/selection_internal.h"
 #include "ms_io/setup_internal.h"
 #include "ms_io/table_access_internal.h"
@@ -16,12 +17,14 @@ constexpr std::size_t not_selected = std::numeric_limits<std::size_t>::max();
 /// Sorts rows, met in the order of the table, into blocks of one setup each.
 class BlockBuilder {
  public:
-  BlockBuilder(const SetupTable& table, const ParsedSelection& parsed, std::uint64_t block_samples)
-      : table_(table), parsed_(parsed), block_samples_(block_samples) {}
+  BlockBuilder(const SetupTable& table, const ParsedSelection& parsed, const Selection& selection, std::uint64_t block_samples)
+      : table_(table), parsed_(parsed), block_samples_(block_samples) {
+    result_.phase_centre = selection.phase_centre;
+  }
 
   void add(std::uint64_t row, int data_description, int field) {
     if (!parsed_.has_field(field) || !parsed_.has_row(row)) return;
-    const std::size_t setup = setup_of(data_description);
+    const std::size_t setup = setup_of({data_description, result_.phase_centre ? field : 0});
     if (setup == not_selected) return;
     if (result_.rows++ == 0) result_.first_row = row;
     result_.first_row_of_field.emplace(field, row);
@@ -36,20 +39,23 @@ class BlockBuilder {
   }
 
  private:
-  std::size_t setup_of(int data_description) {
-    if (last_ && data_description == last_description_) return last_setup_;
-    last_ = true;
-    last_description_ = data_description;
-    const auto known = setup_.find(data_description);
-    last_setup_ = known == setup_.end() ? make_setup(data_description) : known->second;
+  /// DATA_DESC_ID, and the field where each is shifted in a way of its own.
+  using Key = std::pair<int, int>;
+
+  std::size_t setup_of(const Key& key) {
+    if (last_ && key == *last_) return last_setup_;
+    last_ = key;
+    const auto known = setup_.find(key);
+    last_setup_ = known == setup_.end() ? make_setup(key) : known->second;
     return last_setup_;
   }
 
-  std::size_t make_setup(int data_description) {
-    std::size_t& index = setup_[data_description] = not_selected;
-    if (!parsed_.has_window(table_.spectral_window(data_description))) return index;
+  std::size_t make_setup(const Key& key) {
+    std::size_t& index = setup_[key] = not_selected;
+    if (!parsed_.has_window(table_.spectral_window(key.first))) return index;
     index = result_.setups.size();
-    result_.setups.push_back(table_.setup(data_description, parsed_));
+    result_.setups.push_back(table_.setup(key.first, parsed_));
+    result_.setups.back().field = key.second;
     rows_per_block_.push_back(std::max<std::uint64_t>(1, block_samples_ / result_.setups.back().frequency_hz.size()));
     pending_.push_back({index, {}, 0});
     return index;
@@ -67,11 +73,10 @@ class BlockBuilder {
   const ParsedSelection& parsed_;
   std::uint64_t block_samples_;
   SelectedRows result_;
-  std::map<int, std::size_t> setup_;  ///< by DATA_DESC_ID
-  std::vector<BlockRows> pending_;    ///< [setup]
+  std::map<Key, std::size_t> setup_;
+  std::vector<BlockRows> pending_;  ///< [setup]
   std::vector<std::uint64_t> rows_per_block_;
-  bool last_ = false;
-  int last_description_ = 0;
+  std::optional<Key> last_;
   std::size_t last_setup_ = 0;
 };
 
@@ -89,7 +94,7 @@ SelectedRows select_rows(const casacore::MeasurementSet& set, const std::string&
                          std::uint64_t block_samples) {
   const SetupTable table(set, path);
   const ParsedSelection parsed = parse_selection(set, path, selection);
-  BlockBuilder builder(table, parsed, block_samples);
+  BlockBuilder builder(table, parsed, selection, block_samples);
   constexpr std::uint64_t rows_at_once = 1 << 20;
   for (std::uint64_t first = 0; first < set.nrow(); first += rows_at_once) {
     const std::uint64_t count = std::min<std::uint64_t>(rows_at_once, set.nrow() - first);
@@ -105,6 +110,12 @@ SelectedRows select_rows(const casacore::MeasurementSet& set, const std::string&
     });
   }
   SelectedRows selected = builder.finish();
+  if (selected.phase_centre) {
+    for (Setup& setup : selected.setups) {
+      const FieldCentre from = field_centre(set, path, setup.field, selected.first_row_of_field.at(setup.field));
+      setup.shift = phase_shift(from.direction, *selected.phase_centre);
+    }
+  }
   if (selected.rows > 0) return selected;
   const std::string given = to_text(selection);
   throw std::runtime_error(path + ": " + (given.empty() ? "there is" : given + " selects") + " none of its " +

@@ -1,7 +1,10 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <string>
+
+#include "imager/geometry.h"
 
 namespace misfit::ms_io {
 
@@ -19,6 +22,8 @@ struct Selection {
   std::string scan = "";
   std::string intent = "";  ///< of STATE's OBS_MODE
   std::string observation = "";
+  /// Where the visibilities are phased to; none: where they are, which must be one direction.
+  std::optional<imager::SkyDirection> phase_centre = {};
 };
 
 /// One of the ways to select.

@@ -5,9 +5,11 @@
 #include <cstddef>
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "imager/phase_shift.h"
 #include "ms_io/measurement_set.h"
 
 namespace misfit::ms_io {
@@ -18,9 +20,11 @@ struct Run {
   std::uint64_t count = 0;
 };
 
-/// One DATA_DESC_ID of the selection: what its rows have in common.
+/// One DATA_DESC_ID of the selection: what its rows have in common. Of one field where each has a phase shift of its own.
 struct Setup {
   int data_description = 0;
+  int field = 0;             ///< where visibilities are shifted; else 0
+  imager::PhaseShift shift;  ///< from where its rows are phased to
   int spectral_window = 0;
   std::string spectral_frame;            ///< FITS SPECSYS
   std::vector<int> correlation_types;    ///< casacore's Stokes codes
@@ -47,9 +51,10 @@ struct SelectedRows {
   std::vector<Setup> setups;
   std::vector<BlockRows> blocks;  ///< in the order of the table, as far as several setups allow
   std::uint64_t rows = 0;
-  std::uint64_t samples = 0;                        ///< rows × selected channels
-  std::uint64_t first_row = 0;                      ///< the first row selected
-  std::map<int, std::uint64_t> first_row_of_field;  ///< for the fields that have selected rows
+  std::uint64_t samples = 0;                         ///< rows × selected channels
+  std::uint64_t first_row = 0;                       ///< the first row selected
+  std::map<int, std::uint64_t> first_row_of_field;   ///< for the fields that have selected rows
+  std::optional<imager::SkyDirection> phase_centre;  ///< where the visibilities are shifted to
 };
 
 /// Finds the rows and channels that `selection` means, in blocks of about `block_samples` samples. Throws

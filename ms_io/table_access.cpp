@@ -36,13 +36,11 @@ std::string visibility_columns(const casacore::TableDesc& description) {
 }
 
 void require_main_columns(const casacore::Table& table, const std::string& path) {
-  const char* const needed[] = {"ANTENNA1", "ANTENNA2", "DATA_DESC_ID", "FIELD_ID", "FLAG",
-                                "FLAG_ROW", "INTERVAL", "TIME",         "UVW",      "WEIGHT"};
-  for (const char* column : needed) {
-    if (!table.tableDesc().isColumn(column)) {
-      throw std::runtime_error(path + " is a table but not a MeasurementSet: it has no column " + column);
-    }
+  std::string missing;
+  for (const casacore::String& column : casacore::MS::requiredTableDesc().columnNames()) {
+    if (!table.tableDesc().isColumn(column)) missing += (missing.empty() ? "" : ", ") + column;
   }
+  if (!missing.empty()) throw std::runtime_error(path + " is a table but not a MeasurementSet: it has no column " + missing);
 }
 
 }  // namespace
@@ -62,17 +60,17 @@ casacore::MeasurementSet open_measurement_set(const std::string& path, Access ac
     if (!casacore::Table::isReadable(path)) {
       throw std::runtime_error(path + " is not a casacore table; expected the directory of a MeasurementSet");
     }
-    // Unlike the default, this waits for nobody who has locked the table.
-    const casacore::TableLock no_wait(casacore::TableLock::AutoNoReadLocking);
-    require_main_columns(casacore::Table(path, no_wait), path);
+    // Locking creates lock files where there are none, which reading must not. Unlike the default, neither waits for others.
+    const bool update = access == Access::update;
+    const casacore::TableLock look(update ? casacore::TableLock::AutoNoReadLocking : casacore::TableLock::NoLocking);
+    require_main_columns(casacore::Table(path, look), path);
     if (access == Access::update && !casacore::Table::isWritable(path)) {
       throw std::runtime_error(path + " is read-only; writing a column needs write permission");
     }
     const auto option = access == Access::update ? casacore::Table::Update : casacore::Table::Old;
-    const auto lock =
-        access == Access::update ? casacore::TableLock::UserNoReadLocking : casacore::TableLock::AutoNoReadLocking;
-    casacore::MeasurementSet set(path, casacore::TableLock(lock), option);
-    if (access == Access::update && !set.lock(casacore::FileLocker::Write, lock_attempts)) {
+    const casacore::TableLock lock(update ? casacore::TableLock::UserNoReadLocking : casacore::TableLock::NoLocking);
+    casacore::MeasurementSet set(path, lock, option);
+    if (update && !set.lock(casacore::FileLocker::Write, lock_attempts)) {
       throw std::runtime_error(path +
                                " is locked by another process; expected one that is not being written, or read by a program "
                                "that keeps it locked");

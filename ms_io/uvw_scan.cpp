@@ -44,51 +44,42 @@ class UvwScan {
   casacore::Array<double> uvw_;                ///< [row][3]
 };
 
-/// Calls visit(setup, uvw_m) for each row that is wanted, and done(setup) after some of them.
-template <typename Visit, typename Done>
-void scan(const OpenSet& open_set, ReachOf rows, const Visit& visit, const Done& done) {
-  translated("cannot read UVW, antennas or FLAG_ROW of " + open_set.path, [&] {
-    UvwScan scan(open_set.set);
-    for (const BlockRows& block : open_set.selected.blocks)
-      for (const Rows& piece : pieces(block.runs, piece_rows)) {
-        scan.for_each(piece, rows, [&](const double* uvw_m) { visit(block.setup, uvw_m); });
-        done(block.setup);
-      }
-  });
+/// Calls visit(setup, coordinates) for some of the rows that are wanted after others, as the image's phase centre sees them.
+template <typename Visit>
+void scan(const OpenSet& open_set, ReachOf wanted, const Visit& visit) {
+  imager::SampleCoordinates some;
+  UvwScan scan = translated("cannot read UVW, antennas or FLAG_ROW of " + open_set.path, [&] { return UvwScan(open_set.set); });
+  for (const BlockRows& block : open_set.selected.blocks) {
+    const Setup& setup = open_set.selected.setups[block.setup];
+    some.frequency_hz = setup.frequency_hz;
+    for (const Rows& piece : pieces(block.runs, piece_rows)) {
+      some.uvw_m.clear();
+      translated("cannot read UVW, antennas or FLAG_ROW of " + open_set.path, [&] {
+        scan.for_each(piece, wanted, [&](const double* uvw_m) { some.uvw_m.insert(some.uvw_m.end(), uvw_m, uvw_m + 3); });
+      });
+      setup.shift.rotate(some.uvw_m);
+      visit(some);
+    }
+  }
 }
 
 }  // namespace
 
 void visit_uvw(const OpenSet& open_set, const std::function<void(const imager::SampleCoordinates&)>& visit) {
-  imager::SampleCoordinates some;
-  scan(
-      open_set, ReachOf::usable,
-      [&](std::size_t, const double* uvw_m) { some.uvw_m.insert(some.uvw_m.end(), uvw_m, uvw_m + 3); },
-      [&](std::size_t setup) {
-        some.frequency_hz = open_set.selected.setups[setup].frequency_hz;
-        visit(some);
-        some.uvw_m.clear();
-      });
+  scan(open_set, ReachOf::usable, visit);
 }
 
 imager::UvwReach scan_uvw(const OpenSet& open_set, ReachOf rows) {
-  const SelectedRows& selected = open_set.selected;
-  std::vector<std::array<double, 3>> reach_m(selected.setups.size(), {0, 0, 0});
-  scan(
-      open_set, rows,
-      [&](std::size_t setup, const double* uvw_m) {
-        for (std::size_t axis = 0; axis < 3; ++axis)
-          reach_m[setup][axis] = std::max(reach_m[setup][axis], std::abs(uvw_m[axis]));
-      },
-      [](std::size_t) {});
   imager::UvwReach reach;
-  for (std::size_t s = 0; s < reach_m.size(); ++s) {
-    const std::vector<double>& frequency_hz = selected.setups[s].frequency_hz;
-    const double per_m = *std::max_element(frequency_hz.begin(), frequency_hz.end()) / imager::speed_of_light_m_s;
-    reach.max_abs_u = std::max(reach.max_abs_u, reach_m[s][0] * per_m);
-    reach.max_abs_v = std::max(reach.max_abs_v, reach_m[s][1] * per_m);
-    reach.max_abs_w = std::max(reach.max_abs_w, reach_m[s][2] * per_m);
-  }
+  scan(open_set, rows, [&](const imager::SampleCoordinates& some) {
+    std::array<double, 3> reach_m{0, 0, 0};
+    for (std::size_t i = 0; i < some.uvw_m.size(); ++i) reach_m[i % 3] = std::max(reach_m[i % 3], std::abs(some.uvw_m[i]));
+    const double highest_hz = *std::max_element(some.frequency_hz.begin(), some.frequency_hz.end());
+    const double per_m = highest_hz / imager::speed_of_light_m_s;
+    reach.max_abs_u = std::max(reach.max_abs_u, reach_m[0] * per_m);
+    reach.max_abs_v = std::max(reach.max_abs_v, reach_m[1] * per_m);
+    reach.max_abs_w = std::max(reach.max_abs_w, reach_m[2] * per_m);
+  });
   return reach;
 }
 

@@ -52,6 +52,7 @@ class Reader : public imager::BlockStream {
     block.counts.rows_read = rows.rows;
     block.counts.samples_read = block.samples();
     share(blocks);
+    for (const auto& stokes : blocks) setup.shift.apply(*stokes);
     return blocks.front();
   }
 

@@ -23,7 +23,8 @@ void add_image_command(CLI::App& program, const std::string& command_line) {
       accuracy->default_str("0");
     }
     check(*options);
-    const bool done = naming(options->vis, [&] { return run_image(*options, command_line, option_values(*command)); });
+    const bool done =
+        naming(names_of(options->vis), [&] { return run_image(*options, command_line, option_values(*command)); });
     if (!options->dry_run) write_file(options->imagename + ".last.ini", config_text(*command));
     if (!done) throw Interrupted();
   });

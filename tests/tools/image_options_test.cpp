@@ -11,7 +11,7 @@ using namespace misfit::tools;
 
 ImageOptions good() {
   ImageOptions options;
-  options.vis = "a.ms";
+  options.vis = {"a.ms"};
   options.imagename = "a";
   options.imsize = {64};
   options.cell = "1arcsec";

@@ -397,9 +397,9 @@ BOOST_AUTO_TEST_CASE(memory_for_the_visibilities_counts) {
   scene.imsize = {64};
   scene.cell = "0.05arcsec";
   scene.memory_gib = 0.125;
-  scene.vis = snapshot();
+  scene.vis = {snapshot()};
   BOOST_CHECK_NO_THROW(check_scene_memory(scene));
-  scene.vis = set;
+  scene.vis = {set};
   BOOST_CHECK_EXCEPTION(check_scene_memory(scene), std::invalid_argument, [](const std::exception& error) {
     return std::string(error.what()).find("of which visibilities take 0.04 GiB") != std::string::npos;
   });

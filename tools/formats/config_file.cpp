@@ -1,5 +1,6 @@
 #include "tools/formats/config_file.h"
 
+#include <iomanip>
 #include <set>
 #include <sstream>
 #include <stdexcept>
@@ -29,6 +30,14 @@ void check_flag(const std::string& name, const std::string& value) {
   }
 }
 
+/// In quotes where a list would take it for several.
+std::string as_one(const std::string& part) {
+  if (part.find_first_of(" \t'") == std::string::npos) return part;
+  std::ostringstream quoted;
+  quoted << std::quoted(part, '\'');
+  return quoted.str();
+}
+
 /// Sets the option that `line` names, unless it was typed. `taken` are the names met before.
 void take(CLI::App& command, const std::string& line, std::set<std::string>& taken) {
   const std::size_t equals = line.find('=');
@@ -45,7 +54,7 @@ void take(CLI::App& command, const std::string& line, std::set<std::string>& tak
     return;
   }
   std::istringstream parts(value);
-  for (std::string part; parts >> part;) option->add_result(part);
+  for (std::string part; parts >> std::quoted(part, '\'');) option->add_result(part);
 }
 
 void take_all(CLI::App& command, const std::string& path) {
@@ -82,7 +91,8 @@ std::vector<std::pair<std::string, std::string>> options_in_force(const CLI::App
     std::string value = option->get_default_str();
     if (option->count() > 0) {
       value.clear();
-      for (const std::string& part : option->results()) value += (value.empty() ? "" : " ") + part;
+      const bool several = option->get_items_expected_max() > 1;
+      for (const std::string& part : option->results()) value += (value.empty() ? "" : " ") + (several ? as_one(part) : part);
     }
     if (value.empty() && option->get_items_expected_max() == 0) value = "false";
     values.emplace_back(option->get_lnames().front(), value);

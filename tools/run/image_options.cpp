@@ -5,11 +5,13 @@
 #include <cmath>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <stdexcept>
 
 #include "imager/plan/gridding_plan.h"
 #include "imager/stokes.h"
 #include "kernels/kernel_table.h"
+#include "ms_io/phase_centre.h"
 #include "tools/base/option_checks.h"
 #include "tools/base/quantity.h"
 #include "tools/base/text.h"
@@ -30,7 +32,15 @@ std::string text(double value) {
   return buffer;
 }
 
+/// The same set twice would count twice.
+void check_sets(const ImageOptions& o) {
+  std::set<std::filesystem::path> met;
+  for (const std::string& name : o.vis)
+    if (!met.insert(std::filesystem::weakly_canonical(name + "/").parent_path()).second) refuse("vis", name, "each set once");
+}
+
 void check_image(const ImageOptions& o) {
+  check_sets(o);
   const std::string name = std::filesystem::path(o.imagename).filename();
   if (name.empty() || name == "." || name == "..")
     refuse("imagename", "'" + o.imagename + "'", "a name for files to begin with, not a folder");
@@ -128,7 +138,12 @@ void check_gridding(const ImageOptions& o) {
 }  // namespace
 
 void declare_scene(CLI::App& command, ImageOptions& o) {
-  command.add_option("--vis", o.vis, "MeasurementSet; opened read-only, but to save a model")->required();
+  command.add_option("--vis", o.vis, "MeasurementSet, or several for one image; opened read-only, but to save a model")
+      ->required();
+  command.add_option(
+      "--phasecenter", o.phasecenter,
+      "Shift the visibilities to a direction, such as 'J2000 12h30m49.4s +12d23m28s', or to the phase centre of a "
+      "field by id or name; what is selected may then have several");
   command.add_option("--imsize", o.imsize, "Width, or width and height, in pixels")->required()->expected(1, 2);
   command.add_option("--cell", o.cell, "Size of a pixel: 0.2arcsec, 3mas, …; in arcsec without a unit")
       ->required()
@@ -137,12 +152,25 @@ void declare_scene(CLI::App& command, ImageOptions& o) {
   command.add_option("--stokes", o.stokes,
                      "Stokes parameters or correlations, which share one PSF: I, IQUV, IV, XXYY, RR, …; of correlations that "
                      "are no parallel hands the real part of the image");
-  command.add_option("--datacolumn", o.datacolumn, "data, corrected, model, or a column's name");
+  command.add_option("--datacolumn", o.datacolumn,
+                     "data, corrected, model, or a column's name; or one for each set: corrected,data");
   declare_weighting(command, o);
   command.add_option("--gridder", o.gridder, "w planes: auto (where w matters), standard (none), wide (always)")
       ->check(CLI::IsMember({"auto", "standard", "wide"}));
   command.add_option("--threads", o.threads, "Threads; 0 means all cores");
   command.add_flag("--quiet", o.quiet, "Print nothing but errors");
+}
+
+std::string names_of(const std::vector<std::string>& vis) {
+  std::string names;
+  for (const std::string& name : vis) names += (names.empty() ? "" : ", ") + name;
+  return names;
+}
+
+ms_io::Selection selection_of(const ImageOptions& o) {
+  ms_io::Selection selection = o.selection;
+  if (!o.phasecenter.empty()) selection.phase_centre = ms_io::parse_phase_centre(o.phasecenter, o.vis.front());
+  return selection;
 }
 
 void declare(CLI::App& command, ImageOptions& o) {

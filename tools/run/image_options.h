@@ -18,7 +18,8 @@ namespace misfit::tools {
 
 /// Options of `misfit image` as typed; names and meaning are tclean's where the meaning is the same.
 struct ImageOptions {
-  std::string vis;
+  std::vector<std::string> vis;
+  std::string phasecenter;  ///< as ms_io::parse_phase_centre() takes it; empty = where the data are phased to
   std::string imagename;
   std::vector<int> imsize;  ///< width, or width and height
   std::string cell;
@@ -74,6 +75,12 @@ void declare_scene(CLI::App& command, ImageOptions& options);
 
 /// Declares all options on `command`.
 void declare(CLI::App& command, ImageOptions& options);
+
+/// The sets, for messages: "A.ms, B.ms".
+std::string names_of(const std::vector<std::string>& vis);
+
+/// What of the sets is imaged, and where it is phased to. Throws std::runtime_error where --phasecenter cannot be understood.
+ms_io::Selection selection_of(const ImageOptions& options);
 
 /// Whether the options leave nothing of the kernel to choose: a file, or width and padding. Then no accuracy need be asked.
 bool kernel_is_given(const ImageOptions& options);

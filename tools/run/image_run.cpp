@@ -79,9 +79,11 @@ class ImageRun {
   void open() {
     const imager::StageTimer timer(times_, "open");
     if (!o_.dry_run) check_writable_folder(o_.imagename);
-    if (o_.savemodel == "modelcolumn") ms_io::require_writable(o_.vis);
-    if (const std::string sentence = ms_io::incomplete_column(o_.vis, o_.datacolumn); !sentence.empty()) warn(sentence);
-    set_ = std::make_unique<ms_io::MeasurementSet>(o_.vis, o_.selection, o_.datacolumn, stokes_);
+    if (o_.savemodel == "modelcolumn")
+      for (const std::string& set : o_.vis) ms_io::require_writable(set);
+    selection_ = selection_of(o_);
+    set_ = std::make_unique<ms_io::MeasurementSet>(o_.vis, selection_, o_.datacolumn, stokes_);
+    for (const std::string& sentence : set_->incomplete_columns()) warn(sentence);
     geometry_ = geometry_of(o_, set_->observation().phase_centre);
     reach_ = set_->reach();
     if (o_.niter == 0) return;
@@ -243,7 +245,7 @@ class ImageRun {
     progress_.begin("save model", true);  // a column half written helps no one
     ModelVisibilities model;
     {
-      const ms_io::MeasurementSet set(o_.vis, o_.selection, o_.datacolumn);
+      const ms_io::MeasurementSet set(o_.vis, selection_, o_.datacolumn, stokes_);
       model = image_visibilities(model_planes(), geometry_, gridding_request(o_, threads_), set);
     }
     ms_io::Fingerprint fingerprint;
@@ -252,7 +254,8 @@ class ImageRun {
     ms_io::ModelColumn column{"MODEL_DATA"};
     column.origin = {"misfit image --savemodel modelcolumn --imagename " + shell_quoted(o_.imagename), fingerprint.value(),
                      [this](const std::string& sentence) { progress_.say(sentence); }};
-    ms_io::write_model(o_.vis, o_.selection, column, model.predict, progress(), model.samples_at_once);
+    for (const std::string& set : o_.vis)
+      ms_io::write_model(set, selection_, column, model.predict, progress(), model.samples_at_once);
     progress_.end();
   }
 
@@ -321,6 +324,7 @@ class ImageRun {
   RunWork work_;
   std::optional<int> iterations_before_;  ///< this run's CLEAN
 
+  ms_io::Selection selection_;
   std::unique_ptr<ms_io::MeasurementSet> set_;
   imager::ImageGeometry geometry_;
   imager::UvwReach reach_;

@@ -52,7 +52,7 @@ int pixels_for(std::uint64_t samples, bool quick) {
 
 Scene::Scene(const ImageOptions& options, bool quick, const imager::Progress& progress)
     : options_(options), threads_(options.threads == 0 ? imager::available_threads() : options.threads) {
-  const ms_io::MeasurementSet set(options.vis, options.selection, options.datacolumn);
+  const ms_io::MeasurementSet set(options.vis, selection_of(options), options.datacolumn);
   geometry_ = geometry_of(options, set.observation().phase_centre);
   reach_ = set.reach();
   const imager::Stopwatch watch;

@@ -35,7 +35,9 @@ struct Program {
 };
 
 Program misfit(const ImageOptions& scene, const std::string& accuracy, int threads) {
-  std::vector<std::string> words{"misfit", "image", "--vis", scene.vis, "--imagename", "misfit-" + accuracy, "--imsize"};
+  std::vector<std::string> words{"misfit", "image", "--vis"};
+  words.insert(words.end(), scene.vis.begin(), scene.vis.end());
+  words.insert(words.end(), {"--imagename", "misfit-" + accuracy, "--imsize"});
   for (const int side : scene.imsize) words.push_back(std::to_string(side));
   const auto add = [&](const std::string& option, const std::string& value) {
     if (!value.empty()) words.insert(words.end(), {option, value});
@@ -43,6 +45,7 @@ Program misfit(const ImageOptions& scene, const std::string& accuracy, int threa
   add("--cell", scene.cell);
   const std::vector<std::string> selection = words_of(scene.selection);
   words.insert(words.end(), selection.begin(), selection.end());
+  add("--phasecenter", scene.phasecenter);
   add("--datacolumn", scene.datacolumn);
   const std::vector<std::string> weighting = weighting_arguments(scene);
   words.insert(words.end(), weighting.begin(), weighting.end());
@@ -80,7 +83,7 @@ Program wsclean(const ImageOptions& scene, const std::string& name, const std::v
                                  std::to_string(threads)};
   words.insert(words.end(), {"-data-column", scene.datacolumn == "corrected" ? "CORRECTED_DATA" : "DATA"});
   words.insert(words.end(), gridder.begin(), gridder.end());
-  words.push_back(scene.vis);
+  words.insert(words.end(), scene.vis.begin(), scene.vis.end());
   std::vector<std::string> predict{"wsclean", "-quiet",   "-predict", "-reorder",
                                    "-name",   model_name, "-j",       std::to_string(threads)};
   predict.insert(predict.end(), gridder.begin(), gridder.end());
@@ -120,12 +123,12 @@ bool run_in(const WorkFolder& folder, std::vector<std::string> words, ProgramRes
   return false;
 }
 
-void run_once(Program& program, const std::string& vis, const SceneTruth& truth) {
+void run_once(Program& program, const std::vector<std::string>& vis, const SceneTruth& truth) {
   if (!program.result.failure.empty()) return;
   const WorkFolder folder(fs::temp_directory_path());
   std::vector<std::string> words = program.result.words;
   for (std::string& word : words)
-    if (word == vis) word = fs::absolute(vis).string();
+    if (std::find(vis.begin(), vis.end(), word) != vis.end()) word = fs::absolute(word).string();
   const imager::Stopwatch watch;
   if (!run_in(folder, words, program.result)) return;
   program.result.seconds.push_back(watch.seconds());
@@ -136,6 +139,7 @@ void run_once(Program& program, const std::string& vis, const SceneTruth& truth)
 /// Empty where it can be given the same samples.
 std::string why_not_wsclean(const ImageOptions& scene) {
   if (!words_of(scene.selection).empty()) return "it selects in a way of its own, and might take other samples";
+  if (!scene.phasecenter.empty()) return "it is not given --phasecenter";
   if (scene.datacolumn != "data" && scene.datacolumn != "corrected") return "it is not given --datacolumn " + scene.datacolumn;
   if (!weighting_options(scene).none()) return "it is given natural weights alone";
   return is_installed("wsclean") ? "" : "it is not installed";
@@ -167,7 +171,7 @@ void compare_predictions(const ImageOptions& scene, const SceneTruth& truth, con
                          std::vector<Program>& programs) {
   const WorkFolder folder(fs::temp_directory_path());
   const fs::path set = folder.path() / copied_set;
-  fs::copy(scene.vis, set, fs::copy_options::recursive);
+  fs::copy(scene.vis.front(), set, fs::copy_options::recursive);
   fs::permissions(set, fs::perms::owner_all, fs::perm_options::add);
   for (const auto& entry : fs::recursive_directory_iterator(set))
     fs::permissions(entry.path(), fs::perms::owner_all, fs::perm_options::add);
@@ -215,7 +219,10 @@ ProgramComparison run_programs(const ImageOptions& scene, const SceneTruth& trut
       progress.update(++done, programs.size() * static_cast<std::uint64_t>(comparison.rounds));
     }
   constexpr std::uintmax_t largest_copy = std::uintmax_t{2} << 30;
-  if (bytes_of(scene.vis) > largest_copy)
+  if (scene.vis.size() > 1 || !scene.phasecenter.empty())
+    comparison.left_out.emplace_back(
+        "Predictions were left out: they are made in a copy of one set, about its own phase centre.");
+  else if (bytes_of(scene.vis.front()) > largest_copy)
     comparison.left_out.emplace_back("Predictions were left out: the set takes more than 2 GiB, and they are made in a copy.");
   else
     compare_predictions(scene, truth, limit, programs);

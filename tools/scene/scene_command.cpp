@@ -32,7 +32,7 @@ void write(const Options& o) {
   if (!has_unit(options.scene.cell)) options.scene.cell += "arcsec";
   options.results_file = (std::filesystem::path(o.output) / "measured.json").string();
   ProgressLine progress(options.scene.quiet);
-  const Report report = naming(options.scene.vis, [&] { return scene_report(options, progress); });
+  const Report report = naming(names_of(options.scene.vis), [&] { return scene_report(options, progress); });
   progress.begin("draw");
   write_report(report, o.output);
   progress.end();

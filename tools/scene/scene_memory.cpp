@@ -36,7 +36,7 @@ imager::TransformMemory largest_transform(const ImageOptions& scene, const ms_io
 }  // namespace
 
 void check_scene_memory(const ImageOptions& scene) {
-  const ms_io::MeasurementSet set(scene.vis, scene.selection, scene.datacolumn);
+  const ms_io::MeasurementSet set(scene.vis, selection_of(scene), scene.datacolumn);
   const imager::ImageGeometry geometry = geometry_of(scene, set.observation().phase_centre);
   const auto samples = static_cast<double>(set.samples());
   const imager::MemoryUse use =

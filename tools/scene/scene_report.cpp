@@ -30,11 +30,17 @@ json kernel_files(const SceneReportOptions& o) {
   return files;
 }
 
+std::vector<std::string> absolute(std::vector<std::string> paths) {
+  for (std::string& path : paths) path = std::filesystem::absolute(path).string();
+  return paths;
+}
+
 /// What measurements belong to, named as people know it: the samples, the image, and who measured.
 json owner_of(const SceneReportOptions& o, const Scene& scene) {
   const ImageOptions& s = o.scene;
   return {{"version", version},
-          {"--vis", std::filesystem::absolute(s.vis).string()},
+          {"--vis", absolute(s.vis)},
+          {"--phasecenter", s.phasecenter},
           {"number of samples", scene.samples()},
           {"visibilities", scene.fingerprint()},
           {"selection", words_of(s.selection)},
@@ -157,7 +163,7 @@ Report scene_report(const SceneReportOptions& o, ProgressLine& progress) {
   progress.end();
   const imager::ImageGeometry& g = scene.geometry();
   Report report{.title = "Error against run time",
-                .introduction = o.scene.vis + ": " + grouped(static_cast<long long>(scene.samples())) + " samples, " +
+                .introduction = names_of(o.scene.vis) + ": " + grouped(static_cast<long long>(scene.samples())) + " samples, " +
                                 std::to_string(g.width) + " × " + std::to_string(g.height) + " pixels of " + o.scene.cell +
                                 ", weighting: " + weighting_text(o.scene) + ", " + std::to_string(scene.threads()) +
                                 (scene.threads() == 1 ? " thread" : " threads") +

@@ -69,13 +69,16 @@ Figure error_figure(const std::string& name, const std::string& title, const std
 }
 
 std::string command_of(const ImageOptions& scene, const ScenePoint& point) {
-  std::string line = "misfit image --vis " + shell_quoted(scene.vis) + " --imagename image --imsize";
+  std::string line = "misfit image --vis";
+  for (const std::string& set : scene.vis) line += " " + shell_quoted(set);
+  line += " --imagename image --imsize";
   for (const int side : scene.imsize) line += " " + std::to_string(side);
   const auto add = [&](const std::string& option, const std::string& value, const std::string& usual) {
     if (value != usual) line += " " + option + " " + shell_quoted(value);
   };
   line += " --cell " + scene.cell;
   for (const std::string& word : words_of(scene.selection)) line += " " + shell_quoted(word);
+  add("--phasecenter", scene.phasecenter, "");
   add("--datacolumn", scene.datacolumn, "data");
   add("--gridder", scene.gridder, "auto");
   add("--kernel-folder", scene.kernel.folder, "");

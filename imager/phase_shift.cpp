@@ -1,0 +1,65 @@
+#include "imager/phase_shift.h"
+
+#include <cmath>
+
+#include "imager/phasors.h"
+
+namespace misfit::imager {
+namespace {
+
+double dot(const UvwAxes::Vector& a, const UvwAxes::Vector& b) {
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+}  // namespace
+
+UvwAxes uvw_axes(const SkyDirection& phase_centre) {
+  const double sin_ra = std::sin(phase_centre.ra_rad), cos_ra = std::cos(phase_centre.ra_rad);
+  const double sin_dec = std::sin(phase_centre.dec_rad), cos_dec = std::cos(phase_centre.dec_rad);
+  return {{-sin_ra, cos_ra, 0}, {-sin_dec * cos_ra, -sin_dec * sin_ra, cos_dec}, {cos_dec * cos_ra, cos_dec * sin_ra, sin_dec}};
+}
+
+PhaseShift::PhaseShift(const UvwAxes& from, const UvwAxes& to) : none_(from.u == to.u && from.v == to.v && from.w == to.w) {
+  const auto seen = [&](const UvwAxes::Vector& axis) {
+    return UvwAxes::Vector{dot(axis, from.u), dot(axis, from.v), dot(axis, from.w)};
+  };
+  rotation_ = {seen(to.u), seen(to.v), seen(to.w)};
+  // From the difference of the two, which small shifts do not cancel in: |a − b|² = 2 − 2ab.
+  const UvwAxes::Vector moved{to.w[0] - from.w[0], to.w[1] - from.w[1], to.w[2] - from.w[2]};
+  to_ = {dot(moved, from.u), dot(moved, from.v), -dot(moved, moved) / 2};
+}
+
+void PhaseShift::rotate(std::vector<double>& uvw_m) const {
+  if (none_) return;
+  for (std::size_t i = 0; i < uvw_m.size(); i += 3) {
+    const UvwAxes::Vector old{uvw_m[i], uvw_m[i + 1], uvw_m[i + 2]};
+    for (std::size_t axis = 0; axis < 3; ++axis) uvw_m[i + axis] = dot(rotation_[axis], old);
+  }
+}
+
+template <typename T>
+void PhaseShift::turn(const SampleCoordinates& old, double sign, std::vector<std::complex<T>>& visibilities) const {
+  const std::size_t channels = old.channels();
+  std::vector<double> turns(channels), cosine(channels), sine(channels);
+  for (std::size_t row = 0; row < old.rows(); ++row) {
+    const double per_hz = sign * turns_per_hz(old.uvw_m.data() + 3 * row, to_);
+    for (std::size_t c = 0; c < channels; ++c) turns[c] = per_hz * old.frequency_hz[c];
+    phasors(turns.data(), static_cast<int>(channels), cosine.data(), sine.data());
+    for (std::size_t c = 0; c < channels; ++c) {
+      std::complex<T>& visibility = visibilities[row * channels + c];
+      visibility = std::complex<T>(std::complex<double>(visibility) * std::complex<double>(cosine[c], sine[c]));
+    }
+  }
+}
+
+void PhaseShift::apply(VisibilityBlock& block) const {
+  if (none_) return;
+  turn(block, -1, block.visibility);
+  rotate(block.uvw_m);
+}
+
+void PhaseShift::undo(const SampleCoordinates& old, std::vector<std::complex<double>>& visibilities) const {
+  if (!none_) turn(old, 1, visibilities);
+}
+
+}  // namespace misfit::imager

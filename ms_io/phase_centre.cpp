@@ -1,0 +1,104 @@
+#include <casacore/measures/Measures/MCDirection.h>
+#include <casacore/measures/Measures/MCEpoch.h>
+#include <casacore/measures/Measures/MeasConvert.h>
+#include <casacore/measures/Measures/MeasFrame.h>
+#include <casacore/measures/Measures/MeasTable.h>
+#include <casacore/measures/TableMeasures/ScalarMeasColumn.h>
+#include <casacore/ms/MeasurementSets/MSAntennaColumns.h>
+#include <casacore/ms/MeasurementSets/MSFieldColumns.h>
+#include <casacore/tables/Tables/ScalarColumn.h>
+
+#include <cmath>
+
+#include "ms_io/metadata_internal.h"
+#include "ms_io/phase_centre_internal.h"
+#include "ms_io/table_access_internal.h"
+
+namespace misfit::ms_io {
+namespace {
+
+/// When and where the row was observed.
+casacore::MeasFrame frame_of(const casacore::MeasurementSet& set, std::uint64_t row) {
+  casacore::MeasFrame frame(casacore::ScalarMeasColumn<casacore::MEpoch>(set, "TIME")(row));
+  casacore::MPosition position;
+  if (!casacore::MeasTable::Observatory(position, telescope_name(set, row)) && set.antenna().nrow() > 0) {
+    position = casacore::MSAntennaColumns(set.antenna()).positionMeas()(0);
+  }
+  frame.set(position);
+  return frame;
+}
+
+casacore::MDirection::Types frame_code(const std::string& frame) {
+  return frame == "ICRS"  ? casacore::MDirection::ICRS
+         : frame == "FK4" ? casacore::MDirection::B1950
+                          : casacore::MDirection::J2000;
+}
+
+imager::SkyDirection sky_direction(const casacore::MDirection& direction) {
+  constexpr double turn = 2 * 3.14159265358979323846;
+  const auto& angles = direction.getValue();
+  imager::SkyDirection sky;
+  sky.ra_rad = angles.getLong() < 0 ? angles.getLong() + turn : angles.getLong();
+  sky.dec_rad = angles.getLat();
+  const auto frame = casacore::MDirection::castType(direction.getRef().getType());
+  sky.frame = frame == casacore::MDirection::ICRS ? "ICRS" : frame == casacore::MDirection::B1950 ? "FK4" : "FK5";
+  return sky;
+}
+
+using Vector = imager::UvwAxes::Vector;
+
+/// A unit vector in one frame as another has it.
+Vector converted(const Vector& direction, const std::string& from, const std::string& to) {
+  if (from == to) return direction;
+  const casacore::MDirection there(casacore::MVDirection(direction[0], direction[1], direction[2]), frame_code(from));
+  const casacore::MVDirection here = casacore::MDirection::Convert(there, frame_code(to))().getValue();
+  return {here(0), here(1), here(2)};
+}
+
+Vector cross(const Vector& a, const Vector& b) {
+  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+}
+
+Vector unit(const Vector& a) {
+  const double length = std::hypot(a[0], a[1], a[2]);
+  return {a[0] / length, a[1] / length, a[2] / length};
+}
+
+}  // namespace
+
+FieldCentre field_centre(const casacore::MeasurementSet& set, const std::string& path, int field, std::uint64_t row) {
+  if (field < 0 || static_cast<casacore::rownr_t>(field) >= set.field().nrow()) {
+    throw std::runtime_error(path + " has rows with FIELD_ID " + std::to_string(field) + ", but FIELD has " +
+                             std::to_string(set.field().nrow()) + " rows");
+  }
+  return translated("cannot find the phase centre of field " + std::to_string(field) + " of " + path, [&] {
+    const casacore::MSFieldColumns columns(set.field());
+    const auto index = static_cast<casacore::rownr_t>(field);
+    const double time = casacore::ScalarColumn<double>(set, "TIME")(row);
+    casacore::MDirection direction = columns.phaseDirMeas(index, time);
+    const auto frame = casacore::MDirection::castType(direction.getRef().getType());
+    if (frame != casacore::MDirection::J2000 && frame != casacore::MDirection::ICRS && frame != casacore::MDirection::B1950) {
+      direction = casacore::MDirection::Convert(direction,
+                                                casacore::MDirection::Ref(casacore::MDirection::J2000, frame_of(set, row)))();
+    }
+    return FieldCentre{field, columns.name()(index), sky_direction(direction)};
+  });
+}
+
+double separation_rad(const imager::SkyDirection& a, const imager::SkyDirection& b) {
+  const Vector one = imager::uvw_axes(a).w, other = converted(imager::uvw_axes(b).w, b.frame, a.frame);
+  const double chord = std::hypot(one[0] - other[0], one[1] - other[1], one[2] - other[2]);
+  return 2 * std::asin(std::min(1.0, chord / 2));
+}
+
+imager::PhaseShift phase_shift(const imager::SkyDirection& from, const imager::SkyDirection& to) {
+  imager::UvwAxes axes = imager::uvw_axes(to);
+  if (from.frame != to.frame) {
+    axes.w = converted(axes.w, to.frame, from.frame);
+    axes.u = unit(cross(converted(axes.v, to.frame, from.frame), axes.w));
+    axes.v = cross(axes.w, axes.u);
+  }
+  return {imager::uvw_axes(from), axes};
+}
+
+}  // namespace misfit::ms_io

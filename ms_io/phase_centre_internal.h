@@ -1,0 +1,34 @@
+#pragma once
+
+#include <casacore/measures/Measures/MDirection.h>
+#include <casacore/ms/MeasurementSets/MeasurementSet.h>
+
+#include <string>
+
+#include "imager/phase_shift.h"
+#include "ms_io/phase_centre.h"
+#include "ms_io/selection_internal.h"
+
+namespace misfit::ms_io {
+
+/// Nearer than this, phase centres count as the same.
+constexpr double same_centre_rad = 1e-9;
+
+/// Where a field is phased to.
+struct FieldCentre {
+  int field = 0;
+  std::string name;
+  imager::SkyDirection direction;
+};
+
+/// The phase centre of `field` at the time of `row`, in J2000 where its own frame is neither that nor ICRS or B1950. Throws
+/// std::runtime_error when there is no such field.
+FieldCentre field_centre(const casacore::MeasurementSet& set, const std::string& path, int field, std::uint64_t row);
+
+/// The angle between two directions, whatever their frames.
+double separation_rad(const imager::SkyDirection& a, const imager::SkyDirection& b);
+
+/// The way of visibilities from `from` to `to`, along whose north v then runs, in the frame of `to`.
+imager::PhaseShift phase_shift(const imager::SkyDirection& from, const imager::SkyDirection& to);
+
+}  // namespace misfit::ms_io

@@ -1,0 +1,83 @@
+#include <casacore/casa/Quanta/MVAngle.h>
+#include <casacore/casa/Quanta/Quantum.h>
+#include <casacore/ms/MeasurementSets/MSFieldColumns.h>
+#include <casacore/tables/Tables/ScalarColumn.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <optional>
+#include <sstream>
+
+#include "ms_io/phase_centre_internal.h"
+#include "ms_io/table_access_internal.h"
+
+namespace misfit::ms_io {
+namespace {
+
+/// FITS RADESYS of a frame's name in CASA; empty for others.
+std::string frame_named(std::string name) {
+  for (char& letter : name) letter = static_cast<char>(std::toupper(static_cast<unsigned char>(letter)));
+  return name == "J2000" ? "FK5" : name == "ICRS" ? "ICRS" : name == "B1950" ? "FK4" : "";
+}
+
+/// The angle, which must have a unit or be sexagesimal.
+std::optional<double> angle_rad(const std::string& text) {
+  casacore::Quantity angle;
+  const bool bare =
+      text.find_first_not_of("+-0123456789.") == std::string::npos && std::count(text.begin(), text.end(), '.') < 2;
+  if (bare || !casacore::MVAngle::read(angle, text)) return {};
+  return angle.getValue("rad");
+}
+
+std::optional<imager::SkyDirection> direction_in(const std::string& text) {
+  std::istringstream stream(text);
+  std::vector<std::string> words;
+  for (std::string word; stream >> word;) words.push_back(word);
+  imager::SkyDirection direction;
+  if (words.size() == 3) {
+    direction.frame = frame_named(words.front());
+    words.erase(words.begin());
+  }
+  if (words.size() != 2 || direction.frame.empty()) return {};
+  const std::optional<double> ra = angle_rad(words[0]), dec = angle_rad(words[1]);
+  // casacore reads colons as hours, also in a declination.
+  constexpr double pole = 1.5707963267948968;
+  if (!ra || !dec || words[1].find(':') != std::string::npos || !(std::abs(*dec) <= pole) || !std::isfinite(*ra)) return {};
+  direction.ra_rad = std::fmod(std::fmod(*ra, 4 * pole) + 4 * pole, 4 * pole);
+  direction.dec_rad = *dec;
+  return direction;
+}
+
+/// The field with that id or name.
+std::optional<int> field_in(const casacore::MeasurementSet& set, const std::string& text) {
+  const auto names = casacore::ScalarColumn<casacore::String>(set.field(), "NAME").getColumn().tovector();
+  const auto named = std::find(names.begin(), names.end(), casacore::String(text));
+  if (named != names.end()) return static_cast<int>(named - names.begin());
+  const bool number = !text.empty() && text.size() < 9 && text.find_first_not_of("0123456789") == std::string::npos;
+  if (number && std::stoul(text) < names.size()) return std::stoi(text);
+  return {};
+}
+
+/// The first row of the field; 0 where it has none.
+std::uint64_t first_row_of(const casacore::MeasurementSet& set, int field) {
+  const casacore::ScalarColumn<int> fields(set, "FIELD_ID");
+  for (std::uint64_t row = 0; row < set.nrow(); ++row) {
+    if (fields(row) == field) return row;
+  }
+  return 0;
+}
+
+}  // namespace
+
+imager::SkyDirection parse_phase_centre(const std::string& text, const std::string& path) {
+  if (const auto direction = direction_in(text)) return *direction;
+  const casacore::MeasurementSet set = open_measurement_set(path, Access::read);
+  const auto field = translated("cannot read FIELD of " + path, [&] { return field_in(set, one_line(text)); });
+  if (field && set.nrow() > 0) return field_centre(set, path, *field, first_row_of(set, *field)).direction;
+  throw std::runtime_error("--phasecenter '" + text + "' is neither a direction nor a field of " + path +
+                           "; expected such as 'J2000 12h30m49.4s +12d23m28s', or one of its " +
+                           std::to_string(set.field().nrow()) + " fields by id or name");
+}
+
+}  // namespace misfit::ms_io

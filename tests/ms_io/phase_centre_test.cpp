@@ -1,0 +1,169 @@
+#include "ms_io/phase_centre.h"
+
+#include <algorithm>
+#include <boost/test/unit_test.hpp>
+#include <cmath>
+
+#include "imager/direct/source_sums.h"
+#include "imager/phase_shift.h"
+#include "ms_io/model_writer.h"
+#include "tests/ms_io/small_set.h"
+
+namespace misfit::ms_io {
+
+using namespace testing;
+
+namespace {
+
+constexpr double pi = 3.14159265358979323846, degree = pi / 180;
+
+Selection shifted_to(const imager::SkyDirection& direction) {
+  Selection selection;
+  selection.phase_centre = direction;
+  return selection;
+}
+
+/// Two fields, 3 degrees apart, of one sky: a source of 2 Jy, wherever they are phased to.
+class Mosaic : public SmallSet {
+ public:
+  Mosaic() {
+    add_field(second.ra_rad, second.dec_rad);
+    put_sky(0, first);
+    put_sky(1, second);
+  }
+  const imager::SkyDirection first{1.25, -0.5, "FK5"}, second{1.25 + 2 * degree, -0.5 - 2 * degree, "FK5"};
+  const imager::SkyDirection source{1.26, -0.51, "FK5"};
+
+ private:
+  void put_sky(std::size_t field, const imager::SkyDirection& centre) const {
+    modify([&](casacore::MeasurementSet& set) {
+      casacore::ArrayColumn<casacore::Complex> data(set, "DATA");
+      for (std::size_t row = field; row < rows; row += 2) {
+        const imager::SampleCoordinates where{casacore::ArrayColumn<double>(set, "UVW")(row).tovector(),
+                                              small_observation().frequency_hz};
+        const auto visibilities =
+            imager::predict_sources({imager::Source{imager::direction_cosines(source, centre), 2.0}}, where, 1);
+        casacore::Matrix<casacore::Complex> cell(2, channels);
+        for (std::size_t c = 0; c < channels; ++c) cell(0, c) = cell(1, c) = casacore::Complex(visibilities[c]);
+        data.put(row, cell);
+      }
+    });
+  }
+};
+
+}  // namespace
+
+BOOST_AUTO_TEST_SUITE(phase_centre)
+
+BOOST_AUTO_TEST_CASE(directions_are_understood_as_casa_writes_them) {
+  const SmallSet set;
+  const double ra = 187.70583333333333 * degree, dec = 12.391111111111111 * degree;
+  const std::vector<std::pair<std::string, std::string>> laws = {{"J2000 12h30m49.4s +12d23m28s", "FK5"},
+                                                                 {"12h30m49.4s 12d23m28s", "FK5"},
+                                                                 {"ICRS 12:30:49.4 +12.23.28", "ICRS"},
+                                                                 {"b1950  12h30m49.4 12d23m28", "FK4"},
+                                                                 {"icrs 187.70583333333333deg 12.391111111111111deg", "ICRS"}};
+  for (const auto& [text, frame] : laws) {
+    BOOST_TEST_CONTEXT(text) {
+      const imager::SkyDirection direction = ms_io::parse_phase_centre(text, set.path());
+      BOOST_TEST(std::abs(direction.ra_rad - ra) < 1e-14);
+      BOOST_TEST(std::abs(direction.dec_rad - dec) < 1e-14);
+      BOOST_TEST(direction.frame == frame);
+    }
+  }
+  BOOST_TEST(std::abs(ms_io::parse_phase_centre("J2000 -10deg -0d30m0s", set.path()).ra_rad - 350 * degree) < 1e-14);
+  BOOST_TEST(std::abs(ms_io::parse_phase_centre("J2000 -10deg -0d30m0s", set.path()).dec_rad + 0.5 * degree) < 1e-14);
+}
+
+BOOST_AUTO_TEST_CASE(fields_are_found_by_name_and_id) {
+  const SmallSet set;
+  set.add_field(1.5, -0.25);
+  for (const char* const field : {"1", "OTHER", " OTHER "}) {
+    BOOST_TEST(ms_io::parse_phase_centre(field, set.path()).ra_rad == 1.5);
+    BOOST_TEST(ms_io::parse_phase_centre(field, set.path()).dec_rad == -0.25);
+  }
+}
+
+BOOST_AUTO_TEST_CASE(what_is_no_direction_is_refused_with_what_was_expected) {
+  const SmallSet set;
+  for (const std::string wrong :
+       {"", "2", "NOBODY", "J2000 12h30m49.4s", "J2000 1.2 0.3", "GALACTIC 1deg 2deg", "J2000 12h 91deg",
+        "J2000 12h30m +12:23:28", "J2000 nan inf", "J2000 1deg 2Jy", "J2000 12h30m49.4s +12d23m28s now"}) {
+    const std::string error = error_of([&] { ms_io::parse_phase_centre(wrong, set.path()); });
+    BOOST_TEST(contains(error, "--phasecenter '" + wrong + "'"));
+    BOOST_TEST(contains(error, "expected such as 'J2000 12h30m49.4s +12d23m28s'"));
+  }
+}
+
+BOOST_AUTO_TEST_CASE(fields_apart_are_one_image_where_they_are_shifted_to_one_phase_centre) {
+  const Mosaic set;
+  for (const imager::SkyDirection& to : {set.first, set.second, imager::SkyDirection{1.2, -0.45, "FK5"}}) {
+    for (const std::uint64_t block_samples : {std::uint64_t{1}, std::uint64_t{1} << 20}) {
+      const MeasurementSet opened(set.path(), shifted_to(to), "DATA", block_samples);
+      BOOST_TEST(opened.observation().phase_centre.ra_rad == to.ra_rad);
+      const imager::Source source{imager::direction_cosines(set.source, to), 2.0};
+      std::size_t seen = 0;
+      const auto stream = opened.open();
+      while (const auto block = stream->next()) {
+        const auto expected = imager::predict_sources({source}, *block, 1);
+        // The data were rounded to single precision once and again after the shift, each by 6e-8 of 2 Jy.
+        for (std::size_t i = 0; i < expected.size(); ++i)
+          BOOST_TEST(std::abs(expected[i] - std::complex<double>(block->visibility[i])) < 4e-7);
+        seen += block->rows();
+      }
+      BOOST_TEST(seen == rows);
+    }
+  }
+}
+
+BOOST_AUTO_TEST_CASE(reach_and_coordinates_are_those_that_are_read) {
+  const Mosaic set;
+  const MeasurementSet opened(set.path(), shifted_to({1.2, -0.45, "FK5"}), "DATA");
+  const AllSamples all = read_all(opened);
+  double largest_w = 0;
+  for (std::size_t i = 2; i < all.uvw_m.size(); i += 3) largest_w = std::max(largest_w, std::abs(all.uvw_m[i]));
+  BOOST_TEST(std::abs(opened.reach().max_abs_w - largest_w * 1.005e9 / 299792458) < 1e-12 * opened.reach().max_abs_w);
+  std::vector<double> seen;
+  opened.visit_coordinates([&](const auto& some) { seen.insert(seen.end(), some.uvw_m.begin(), some.uvw_m.end()); });
+  BOOST_TEST((seen == all.uvw_m));
+}
+
+BOOST_AUTO_TEST_CASE(axes_turn_with_the_frame_of_the_phase_centre) {
+  const SmallSet set;  // J2000
+  const imager::SkyDirection icrs = {1.25, -0.5, "ICRS"};
+  const AllSamples all = read_all(MeasurementSet(set.path(), shifted_to(icrs), "DATA"));
+  const AllSamples own = read_all(MeasurementSet(set.path(), {}, "DATA"));
+  // The frames are 2e-2 arcsec, 1e-7 rad, apart.
+  double most = 0;
+  for (std::size_t i = 0; i < all.uvw_m.size(); ++i) most = std::max(most, std::abs(all.uvw_m[i] - own.uvw_m[i]));
+  BOOST_TEST(most > 0);
+  BOOST_TEST(most < 3e-7 * 50);  // of baselines of 50 m
+  const AllSamples there = read_all(MeasurementSet(set.path(), shifted_to({1.25, -0.5, "FK5"}), "DATA"));
+  BOOST_TEST((there.visibility == own.visibility));
+  BOOST_TEST((there.uvw_m == own.uvw_m));
+}
+
+BOOST_AUTO_TEST_CASE(a_model_about_the_shifted_centre_is_written_as_each_field_sees_it) {
+  const Mosaic set;
+  const imager::SkyDirection to{1.2, -0.45, "FK5"};
+  const imager::Source source{imager::direction_cosines(set.source, to), 2.0};
+  write_model(set.path(), shifted_to(to), {"MODEL_DATA"},
+              [&](const imager::SampleCoordinates& at) { return imager::predict_sources({source}, at, 1); }, {});
+  for (std::size_t row = 0; row < rows; ++row) {
+    const auto model = set.cell("MODEL_DATA", row), data = set.cell("DATA", row);
+    for (std::size_t c = 0; c < channels; ++c) BOOST_TEST(std::abs(model(1, c) - data(1, c)) < 4e-7F);  // roundings to single
+  }
+}
+
+BOOST_AUTO_TEST_CASE(sets_apart_are_one_image_where_they_are_shifted) {
+  SimulatedObservation elsewhere = small_observation();
+  elsewhere.phase_centre.dec_rad += 0.01;
+  const SmallSet first, second(elsewhere);
+  const std::vector<std::string> paths{first.path(), second.path()};
+  BOOST_TEST(!error_of([&] { MeasurementSet(paths, {}, "DATA"); }).empty());
+  BOOST_TEST(MeasurementSet(paths, shifted_to({1.25, -0.5, "FK5"}), "DATA").rows() == 2 * rows);
+}
+
+BOOST_AUTO_TEST_SUITE_END()
+
+}  // namespace misfit::ms_io
