@@ -1,7 +1,6 @@
 #include "tools/run/weighting_options.h"
 
-#include <cmath>
-#include <numbers>
+#include <cstdio>
 #include <stdexcept>
 
 #include "tools/base/numbers.h"
@@ -20,6 +19,13 @@ constexpr int default_npixels = 6;
   throw std::invalid_argument("--" + option + " " + value + ": expected " + expected);
 }
 
+/// As it is typed.
+std::string text(double value) {
+  char buffer[32];
+  std::snprintf(buffer, sizeof buffer, "%g", value);
+  return buffer;
+}
+
 Weighting weighting_of(const std::string& name) {
   if (name == "uniform") return Weighting::uniform;
   if (name == "superuniform") return Weighting::superuniform;
@@ -30,14 +36,14 @@ int box_reach(const ImageOptions& o) {
   return (o.npixels == 0 ? default_npixels : o.npixels) / 2;
 }
 
-bool is_uv_distance(const std::string& text) {
-  return text.ends_with("lambda");
+bool is_uv_distance(const std::string& quantity) {
+  return quantity.ends_with("lambda");
 }
 
-/// The taper that `text` names, one to three values; throws std::invalid_argument that shows the one that is wrong.
-imager::UvTaper parse_taper(const std::string& text) {
+/// The taper that `values` name, one to three values; throws std::invalid_argument that shows the one that is wrong.
+imager::UvTaper parse_taper(const std::string& values) {
   std::vector<std::string> parts;
-  for (std::string_view rest = text;;) {
+  for (std::string_view rest = values;;) {
     const std::size_t comma = rest.find(',');
     parts.emplace_back(trimmed(rest.substr(0, comma)));
     if (comma == std::string_view::npos) break;
@@ -86,8 +92,8 @@ void declare_weighting(CLI::App& command, ImageOptions& o) {
 
 void check_weighting(const ImageOptions& o) {
   const bool briggs = o.weighting == "briggs", superuniform = o.weighting == "superuniform";
-  if (!(o.robust >= -2 && o.robust <= 2)) refuse("robust", significant(o.robust, 6), "-2 to 2");
-  if (!briggs && o.robust != default_robust) refuse("robust", significant(o.robust, 6), "--weighting briggs beside it");
+  if (!(o.robust >= -2 && o.robust <= 2)) refuse("robust", text(o.robust), "-2 to 2");
+  if (!briggs && o.robust != default_robust) refuse("robust", text(o.robust), "--weighting briggs beside it");
   constexpr int most = 200;
   if (o.npixels < 0 || o.npixels == 1 || o.npixels > most)
     refuse("npixels", std::to_string(o.npixels), "2 to " + std::to_string(most) + " cells, or 0 (6)");
@@ -111,14 +117,14 @@ imager::WeightingOptions weighting_options(const ImageOptions& o) {
 }
 
 std::string weighting_text(const ImageOptions& o) {
-  std::string text = o.weighting == "briggs" ? "Briggs, robust " + significant(o.robust, 3) : o.weighting;
-  if (!o.uvtaper.empty()) text += ", tapered by " + o.uvtaper;
-  return text;
+  std::string said = o.weighting == "briggs" ? "Briggs, robust " + text(o.robust) : o.weighting;
+  if (!o.uvtaper.empty()) said += ", tapered by " + o.uvtaper;
+  return said;
 }
 
 std::vector<std::string> weighting_arguments(const ImageOptions& o) {
   std::vector<std::string> words{"--weighting", o.weighting};
-  if (o.weighting == "briggs") words.insert(words.end(), {"--robust", significant(o.robust, 6)});
+  if (o.weighting == "briggs") words.insert(words.end(), {"--robust", text(o.robust)});
   if (o.npixels != 0) words.insert(words.end(), {"--npixels", std::to_string(o.npixels)});
   if (!o.uvtaper.empty()) words.insert(words.end(), {"--uvtaper", o.uvtaper});
   return words;
