@@ -48,6 +48,18 @@ double expected_of(const TimeForecast& forecast, const RunWork& work, const std:
 
 BOOST_AUTO_TEST_SUITE(time_forecast)
 
+BOOST_AUTO_TEST_CASE(weights_take_time_where_they_follow_from_a_density) {
+  const imager::GriddingPlan plan = plan_of(1e7, 1024);
+  RunWork work = work_of(plan);
+  const TimeForecast forecast("");
+  BOOST_TEST(expected_of(forecast, work, "weights") == 0);
+  work.density = true;
+  const double plain = expected_of(forecast, work, "weights");
+  BOOST_TEST(plain > 0);
+  work.tapered = true;
+  BOOST_TEST(expected_of(forecast, work, "weights") > plain);
+}
+
 BOOST_AUTO_TEST_CASE(a_machine_of_another_speed_is_known_after_one_run_and_scenes_of_another_size_too) {
   const testing::TemporaryFolder folder;
   const imager::GriddingPlan plan = plan_of(1e7, 1024), larger = plan_of(4e7, 2048);
