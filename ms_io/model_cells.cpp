@@ -56,28 +56,38 @@ Cells ModelCells::data(const Rows& rows, const Setup& setup) {
   return cells;
 }
 
-std::uint64_t ModelCells::write(const Rows& rows, const Setup& setup, const StokesVisibilities& model, const Cells& data) {
-  const std::size_t correlations = setup.correlation_types.size(), span = setup.channel_span();
+Cells ModelCells::values(const Rows& rows, const Setup& setup) {
   const casacore::IPosition shape = stored_shape(setup);
   model_.require_shape(rows, shape,
                        [&](casacore::rownr_t row) { return data_.exists() ? data_(row) : Cells(shape, casacore::Complex(0)); });
-  const casacore::Slicer slice = channel_slice(setup, correlations);
-  Cells cells(casacore::IPosition(3, shape(0), static_cast<ssize_t>(span), static_cast<ssize_t>(rows.count())));
-  if (setup.channels.size() > 1) model_.read(rows, slice, cells);
-  for (std::size_t k = 0; k < correlations; ++k) {
-    const StokesResponse response = stokes_response(setup.correlation_types[k]);
-    std::size_t from = 0;
-    for (std::size_t r = 0; r < rows.count(); ++r) {
-      for (const Run& run : setup.channels) {
-        const std::size_t at = (r * span + run.first - setup.first_channel()) * correlations + k;
-        form_correlation(response, model, from,
-                         {data.empty() ? nullptr : data.data() + at, cells.data() + at, correlations, run.count});
-        from += run.count;
+  Cells cells;
+  if (setup.channels.size() > 1) {
+    model_.read(rows, channel_slice(setup, setup.correlation_types.size()), cells);
+  } else {
+    cells.resize(
+        casacore::IPosition(3, shape(0), static_cast<ssize_t>(setup.channel_span()), static_cast<ssize_t>(rows.count())));
+  }
+  return cells;
+}
+
+void ModelCells::write(const Rows& rows, const Setup& setup, const Cells& values) {
+  model_.write(rows, channel_slice(setup, setup.correlation_types.size()), values);
+}
+
+void BlockCells::form(const Rows& rows, const Setup& setup, const StokesVisibilities& model) {
+  const std::size_t correlations = setup.correlation_types.size(), span = setup.channel_span();
+  std::size_t from = 0;
+  for (std::size_t r = 0; r < rows.count(); ++r) {
+    for (const Run& run : setup.channels) {
+      const std::size_t at = (r * span + run.first - setup.first_channel()) * correlations;
+      for (std::size_t k = 0; k < correlations; ++k) {
+        form_correlation(stokes_response(setup.correlation_types[k]), model, from,
+                         {data.empty() ? nullptr : data.data() + at + k, values.data() + at + k, correlations, run.count});
       }
+      from += run.count;
     }
   }
-  model_.write(rows, slice, cells);
-  return checksum_of(rows, cells);
+  checksum = checksum_of(rows, values);
 }
 
 std::uint64_t ModelCells::checksum(const Rows& rows, const Setup& setup) {

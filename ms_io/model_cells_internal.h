@@ -41,17 +41,26 @@ class CellColumn {
   bool fixed_shape_ = false;
 };
 
+/// What goes into the cells of a block, from the first selected channel to the last one.
+struct BlockCells {
+  CellColumn::Cells values;    ///< as they are stored, where channels between are not selected; then what is to be
+  CellColumn::Cells data;      ///< that the model is subtracted from; empty where it is not
+  std::uint64_t checksum = 0;  ///< as ModelCells::checksum() has it
+
+  /// Puts `model` [row][selected channel] into the values, or the data without it. Needs no casacore table.
+  void form(const Rows& rows, const Setup& setup, const StokesVisibilities& model);
+};
+
 /// The cells that a model goes into, and those it is subtracted from. Everything throws AipsError.
 class ModelCells {
  public:
   ModelCells(const casacore::MeasurementSet& set, const ModelColumn& column);
 
-  /// The data of a block from its first selected channel to the last one, where they are needed.
+  /// The data of a block, where they are needed. Apart, since errors in them are told as such.
   CellColumn::Cells data(const Rows& rows, const Setup& setup);
-
-  /// Stores `model` [row][selected channel], or `data` without it; channels that are not selected keep what they hold. Returns
-  /// the checksum() of the rows.
-  std::uint64_t write(const Rows& rows, const Setup& setup, const StokesVisibilities& model, const CellColumn::Cells& data);
+  /// Its cells before a model is formed; the column has them from here on.
+  CellColumn::Cells values(const Rows& rows, const Setup& setup);
+  void write(const Rows& rows, const Setup& setup, const CellColumn::Cells& values);
 
   /// The sum of the fingerprints of each row's number and values, from the first selected channel to the last one.
   std::uint64_t checksum(const Rows& rows, const Setup& setup);

@@ -33,7 +33,7 @@ casacore::Record storage_of(const casacore::Table& set, const casacore::String& 
 casacore::IPosition tile_shape(const casacore::MeasurementSet& set, const casacore::IPosition& cell) {
   const casacore::Record storage = storage_of(set, "DATA");
   if (storage.isDefined("SPEC") && storage.asRecord("SPEC").isDefined("DEFAULTTILESHAPE")) {
-    const casacore::IPosition shape(storage.asRecord("SPEC").toArrayInt("DEFAULTTILESHAPE"));
+    casacore::IPosition shape(storage.asRecord("SPEC").toArrayInt("DEFAULTTILESHAPE"));
     if (shape.nelements() == 3 && shape.product() > 0) return shape;
   }
   return casacore::IPosition(3, cell(0), cell(1), std::max<ssize_t>(1, tile_samples / std::max<ssize_t>(1, cell.product())));

@@ -126,13 +126,16 @@ struct PredictedBlock {
   Rows rows;
   imager::SampleCoordinates where;
   std::vector<bool> unknown;
-  std::future<StokesVisibilities> model;
+  BlockCells cells;
+  std::future<void> formed;
 
   PredictedBlock(const BlockRows& block, const std::vector<Setup>& setups) : setup(&setups[block.setup]), rows(block.runs) {}
 
-  /// Another thread predicts; casacore is for one thread alone.
+  /// Another thread predicts, and forms what is to be stored; casacore is for one thread alone.
   void begin(const Predict& predict) {
-    model = std::async(std::launch::async, [this, &predict] { return predicted(predict, setup->shift, where, unknown); });
+    formed = std::async(std::launch::async, [this, &predict] {
+      cells.form(rows, *setup, predicted(predict, setup->shift, where, unknown));
+    });
   }
 };
 
@@ -165,8 +168,8 @@ class ModelWriter {
     ModelWriteReport report;
     report.rows_before = journal_.written;
     std::unique_ptr<PredictedBlock> before;  // is written while the next one is predicted
-    const auto finish = [&](const StokesVisibilities& model) {
-      write(*before, model);
+    const auto finish = [&] {
+      write(*before);
       samples_ += before->where.samples();
       if (progress) progress(samples_, selected_.samples);
     };
@@ -175,15 +178,16 @@ class ModelWriter {
       samples_ += (rows.rows - rest.rows) * selected_.setups[rows.setup].frequency_hz.size();
       if (rest.rows == 0) continue;
       auto block = std::make_unique<PredictedBlock>(rest, selected_.setups);
-      block->where = translated("cannot read UVW of " + path_,
-                                [&] { return coordinates(uvw, block->rows, *block->setup, block->unknown); });
-      StokesVisibilities model;
-      if (before) model = before->model.get();  // predictions have all threads, one after the other
+      prepare(uvw, *block);
+      if (before) before->formed.get();  // predictions have all threads, one after the other
       block->begin(predict);
-      if (before) finish(model);
+      if (before) finish();
       before = std::move(block);
     }
-    if (before) finish(before->model.get());
+    if (before) {
+      before->formed.get();
+      finish();
+    }
     translated(doing_(), [&] { set_.flush(); });
     remove_journal(set_, column_.name);
     report.rows = journal_.written;
@@ -236,13 +240,20 @@ class ModelWriter {
     return rows == journal_.written && checksum == journal_.checksum;
   }
 
-  void write(const PredictedBlock& block, const StokesVisibilities& model) {
-    const CellColumn::Cells data = translated("cannot read " + column_.subtracted_from + " of " + path_,
-                                              [&] { return cells_->data(block.rows, *block.setup); });
+  void prepare(const casacore::ArrayColumn<double>& uvw, PredictedBlock& block) {
+    block.where =
+        translated("cannot read UVW of " + path_, [&] { return coordinates(uvw, block.rows, *block.setup, block.unknown); });
+    translated("cannot read " + column_.subtracted_from + " of " + path_,
+               [&] { block.cells.data.reference(cells_->data(block.rows, *block.setup)); });
+    translated(doing_(), [&] { block.cells.values.reference(cells_->values(block.rows, *block.setup)); });
+  }
+
+  void write(const PredictedBlock& block) {
     translated(doing_(), [&] {
-      journal_.checksum += cells_->write(block.rows, *block.setup, model, data);
+      cells_->write(block.rows, *block.setup, block.cells.values);
       (*flush_)();
     });
+    journal_.checksum += block.cells.checksum;
     journal_.written += block.rows.count();
     for (const bool row_is_unknown : block.unknown) journal_.nonfinite_uvw_rows += row_is_unknown;
     const casacore::Vector<casacore::rownr_t>& numbers = block.rows.numbers();
