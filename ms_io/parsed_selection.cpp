@@ -2,9 +2,11 @@
 #include <casacore/ms/MeasurementSets/MSSpectralWindow.h>
 #include <casacore/tables/Tables/ScalarColumn.h>
 
+#include <algorithm>
 #include <cctype>
 #include <cstdlib>
 
+#include "imager/constants.h"
 #include "ms_io/parsed_selection_internal.h"
 #include "ms_io/table_access_internal.h"
 
@@ -19,7 +21,6 @@ void give(casacore::MSSelection& to, const SelectionKind& kind, const Selection&
   if (option == "field") to.setFieldExpr(expression);
   if (option == "spw") to.setSpwExpr(expression);
   if (option == "timerange") to.setTimeExpr(expression);
-  if (option == "uvrange") to.setUvDistExpr(expression);
   if (option == "antenna") to.setAntennaExpr(expression);
   if (option == "scan") to.setScanExpr(expression);
   if (option == "intent") to.setStateExpr(expression);
@@ -38,13 +39,17 @@ std::vector<std::string> split(const std::string& text, char separator) {
   return parts;
 }
 
-/// MSSelection leaves the other end of a lone distance undefined.
-void require_uv_ranges(const std::string& expression) {
-  for (const std::string& part : split(expression, ',')) {
+void parse_uv_ranges(const casacore::MeasurementSet& set, const Selection& selection, ParsedSelection& parsed) {
+  for (const std::string& part : split(selection.uv_range, ',')) {  // MSSelection leaves the end of a lone distance undefined
     if (part.find_first_of("~<>") == std::string::npos) {
       throw casacore::AipsError("'" + one_line(part) + "' is a distance and no range");
     }
   }
+  casacore::MSSelection expression;
+  expression.setUvDistExpr(selection.uv_range);
+  const casacore::Matrix<double> ends = expression.getUVList(&set);  // columns of least and most
+  const casacore::Vector<bool> in_metres = expression.getUVUnitsList(&set);
+  for (std::size_t r = 0; r < in_metres.nelements(); ++r) parsed.uv.push_back({ends(0, r), ends(1, r), in_metres(r)});
 }
 
 /// MSSelection moves channels beyond the last one onto it. A range whose first channel exists ends with the window instead.
@@ -90,20 +95,30 @@ void parse_windows(const casacore::MeasurementSet& set, const Selection& selecti
 
 /// Whether `kind` is for MSSelection to look for among the rows.
 bool needs_rows(const SelectionKind& kind) {
-  return kind.expression != &Selection::field && kind.expression != &Selection::spectral_window;
+  return kind.expression != &Selection::field && kind.expression != &Selection::spectral_window &&
+         kind.expression != &Selection::uv_range;
 }
 
 void parse_alone(const casacore::MeasurementSet& set, const Selection& selection, const SelectionKind& kind,
                  ParsedSelection& parsed) {
   if (kind.expression == &Selection::field) return parse_fields(set, selection, parsed);
   if (kind.expression == &Selection::spectral_window) return parse_windows(set, selection, parsed);
-  if (kind.expression == &Selection::uv_range) require_uv_ranges(selection.uv_range);
+  if (kind.expression == &Selection::uv_range) return parse_uv_ranges(set, selection, parsed);
   casacore::MSSelection expression;
   give(expression, kind, selection);
   expression.toTableExprNode(&set);
 }
 
 }  // namespace
+
+bool ParsedSelection::has_uv(const double* uvw_m, double reference_frequency_hz) const {
+  const double square_m2 = uvw_m[0] * uvw_m[0] + uvw_m[1] * uvw_m[1];
+  return uv.empty() || std::any_of(uv.begin(), uv.end(), [&](const UvRange& range) {
+           const double unit_m = range.in_metres ? 1 : imager::speed_of_light_m_s / reference_frequency_hz;
+           const double least = range.least * unit_m, most = range.most * unit_m;
+           return square_m2 >= least * least && square_m2 <= most * most;
+         });
+}
 
 bool ParsedSelection::has_row(std::uint64_t row) const {
   return rows.isNull() || rows.getBool(casacore::TableExprId(row));

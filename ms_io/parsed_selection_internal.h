@@ -7,10 +7,18 @@
 #include <map>
 #include <set>
 #include <string>
+#include <vector>
 
 #include "ms_io/selection.h"
 
 namespace misfit::ms_io {
+
+/// A range of √(u² + v²), its ends within.
+struct UvRange {
+  double least = 0;
+  double most = 0;
+  bool in_metres = true;  ///< else in wavelengths
+};
 
 /// What a selection says about rows and channels.
 struct ParsedSelection {
@@ -18,10 +26,14 @@ struct ParsedSelection {
   std::set<int> fields;
   bool all_windows = true;
   std::map<int, std::set<int>> channels;  ///< of each spectral window selected
+  std::vector<UvRange> uv;                ///< one of them must hold, unless there are none
   casacore::TableExprNode rows;           ///< true where the rest of the selection holds; null: everywhere
 
   bool has_field(int field) const { return all_fields || fields.count(field) > 0; }
   bool has_window(int window) const { return all_windows || channels.count(window) > 0; }
+  /// Whether one of `uv` holds; in wavelengths, of the reference frequency. TaQL takes 6 µs for a row, which is why this is
+  /// apart.
+  bool has_uv(const double* uvw_m, double reference_frequency_hz) const;
   /// Of the table as it was opened, whatever table its rows are stored in. Throws AipsError where they cannot be read.
   bool has_row(std::uint64_t row) const;
 };

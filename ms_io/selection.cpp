@@ -1,3 +1,4 @@
+#include <casacore/tables/Tables/ArrayColumn.h>
 #include <casacore/tables/Tables/ScalarColumn.h>
 
 #include <algorithm>
@@ -22,8 +23,11 @@ class BlockBuilder {
     result_.phase_centre = selection.phase_centre;
   }
 
-  void add(std::uint64_t row, int data_description, int field) {
-    if (!parsed_.has_field(field) || !parsed_.has_row(row)) return;
+  /// `uvw_m` is looked at only where the selection asks for it.
+  void add(std::uint64_t row, int data_description, int field, const double* uvw_m) {
+    if (!parsed_.has_field(field)) return;
+    if (!parsed_.uv.empty() && !parsed_.has_uv(uvw_m, reference_frequency_hz(data_description))) return;
+    if (!parsed_.has_row(row)) return;
     const std::size_t setup = setup_of({data_description, result_.phase_centre ? field : 0});
     if (setup == not_selected) return;
     if (result_.rows++ == 0) result_.first_row = row;
@@ -39,6 +43,12 @@ class BlockBuilder {
   }
 
  private:
+  double reference_frequency_hz(int data_description) {
+    const auto known = reference_frequency_hz_.find(data_description);
+    if (known != reference_frequency_hz_.end()) return known->second;
+    return reference_frequency_hz_[data_description] = table_.reference_frequency_hz(data_description);
+  }
+
   /// DATA_DESC_ID, and the field where each is shifted in a way of its own.
   using Key = std::pair<int, int>;
 
@@ -74,7 +84,8 @@ class BlockBuilder {
   std::uint64_t block_samples_;
   SelectedRows result_;
   std::map<Key, std::size_t> setup_;
-  std::vector<BlockRows> pending_;  ///< [setup]
+  std::map<int, double> reference_frequency_hz_;  ///< by DATA_DESC_ID
+  std::vector<BlockRows> pending_;                ///< [setup]
   std::vector<std::uint64_t> rows_per_block_;
   std::optional<Key> last_;
   std::size_t last_setup_ = 0;
@@ -105,8 +116,14 @@ SelectedRows select_rows(const casacore::MeasurementSet& set, const std::string&
                         [&] { return casacore::ScalarColumn<int>(set, column).getColumnRange(rows).tovector(); });
     };
     const std::vector<int> description = ids("DATA_DESC_ID"), field = ids("FIELD_ID");
+    casacore::Array<double> uvw;
+    if (!parsed.uv.empty()) {
+      uvw = translated("cannot read UVW of " + path,
+                       [&] { return casacore::ArrayColumn<double>(set, "UVW").getColumnRange(rows); });
+    }
     translated("cannot select rows of " + path, [&] {
-      for (std::uint64_t r = 0; r < count; ++r) builder.add(first + r, description[r], field[r]);
+      for (std::uint64_t r = 0; r < count; ++r)
+        builder.add(first + r, description[r], field[r], uvw.empty() ? nullptr : uvw.data() + 3 * r);
     });
   }
   SelectedRows selected = builder.finish();

@@ -9,10 +9,9 @@
 namespace misfit::ms_io {
 
 /// Which samples of a MeasurementSet are meant, in casacore's MSSelection syntax, as CASA's tasks take it; empty means all. A
-/// sample must be in each that is given. MSSelection (casacore 3.5) takes uv distances as √(u² + v²), and those in wavelengths
-/// at the REF_FREQUENCY of the spectral window, whatever the channel. The ends of ranges of time and uv distance belong to
-/// them, and are rounded to milliseconds (downwards) and, in wavelengths, to single precision. A time without a date has that
-/// of the first row that the rest selects.
+/// sample must be in each that is given. As in MSSelection, uv distances are √(u² + v²), those in wavelengths at the
+/// REF_FREQUENCY of the spectral window, whatever the channel. The ends of ranges of time and uv distance belong to them; times
+/// are rounded down to milliseconds. A time without a date has that of the first row that the rest, but for uv_range, selects.
 struct Selection {
   std::string field;
   std::string spectral_window;

@@ -58,6 +58,12 @@ int SetupTable::spectral_window(int data_description) const {
   return window_[index];
 }
 
+double SetupTable::reference_frequency_hz(int data_description) const {
+  const auto window = static_cast<casacore::rownr_t>(spectral_window(data_description));
+  return translated("cannot read REF_FREQUENCY of " + path_,
+                    [&] { return casacore::ScalarColumn<double>(set_.spectralWindow(), "REF_FREQUENCY")(window); });
+}
+
 Setup SetupTable::setup(int data_description, const ParsedSelection& parsed) const {
   Setup setup;
   setup.data_description = data_description;

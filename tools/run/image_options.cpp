@@ -35,8 +35,10 @@ std::string text(double value) {
 /// The same set twice would count twice.
 void check_sets(const ImageOptions& o) {
   std::set<std::filesystem::path> met;
-  for (const std::string& name : o.vis)
-    if (!met.insert(std::filesystem::weakly_canonical(name + "/").parent_path()).second) refuse("vis", name, "each set once");
+  for (const std::string& name : o.vis) {
+    const std::filesystem::path path = std::filesystem::weakly_canonical(name);
+    if (!met.insert(path.has_filename() ? path : path.parent_path()).second) refuse("vis", name, "each set once");
+  }
 }
 
 void check_image(const ImageOptions& o) {
