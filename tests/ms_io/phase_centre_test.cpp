@@ -99,7 +99,7 @@ BOOST_AUTO_TEST_CASE(fields_apart_are_one_image_where_they_are_shifted_to_one_ph
   const Mosaic set;
   for (const imager::SkyDirection& to : {set.first, set.second, imager::SkyDirection{1.2, -0.45, "FK5"}}) {
     for (const std::uint64_t block_samples : {std::uint64_t{1}, std::uint64_t{1} << 20}) {
-      const MeasurementSet opened(set.path(), shifted_to(to), "DATA", block_samples);
+      const MeasurementSet opened(set.path(), shifted_to(to), "DATA", {imager::Stokes::I}, block_samples);
       BOOST_TEST(opened.observation().phase_centre.ra_rad == to.ra_rad);
       const imager::Source source{imager::direction_cosines(set.source, to), 2.0};
       std::size_t seen = 0;

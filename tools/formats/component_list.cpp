@@ -232,11 +232,11 @@ std::array<std::vector<Source>, 4> read_stokes_components(const std::string& pat
 
 void write_component_list(const std::string& path, const std::vector<Source>& sources,
                           const imager::SkyDirection& phase_centre) {
-  write_component_list(path, std::vector<SourcesOf>{{imager::Stokes::I, sources}}, phase_centre);
+  write_stokes_components(path, {{imager::Stokes::I, sources}}, phase_centre);
 }
 
-void write_component_list(const std::string& path, const std::vector<SourcesOf>& lists,
-                          const imager::SkyDirection& phase_centre) {
+void write_stokes_components(const std::string& path, const std::vector<SourcesOf>& lists,
+                             const imager::SkyDirection& phase_centre) {
   const std::vector<imager::Stokes> columns = flux_columns(lists);
   std::string text = "ra_deg,dec_deg";
   for (const imager::Stokes column : columns) text += "," + flux_column(column);

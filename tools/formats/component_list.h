@@ -35,7 +35,7 @@ struct SourcesOf {
 };
 /// The same of several, one after the other, with a column for each besides `flux_jy`: flux_q_jy, flux_xx_jy and so on. A line
 /// has 0 in all but its own.
-void write_component_list(const std::string& path, const std::vector<SourcesOf>& lists,
-                          const imager::SkyDirection& phase_centre);
+void write_stokes_components(const std::string& path, const std::vector<SourcesOf>& lists,
+                             const imager::SkyDirection& phase_centre);
 
 }  // namespace misfit::tools

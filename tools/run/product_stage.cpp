@@ -108,7 +108,7 @@ std::vector<std::string> ProductStage::write(imager::Image psf, std::vector<imag
 void ProductStage::write_components(const std::vector<imager::CleanResult>& cleaned) const {
   std::vector<SourcesOf> found;
   for (std::size_t s = 0; s < cleaned.size(); ++s) found.push_back({scene_.stokes[s], sources(cleaned[s].components)});
-  write_component_list(o_.imagename + ".components.csv", found, scene_.geometry.phase_centre);
+  write_stokes_components(o_.imagename + ".components.csv", found, scene_.geometry.phase_centre);
 }
 
 std::string ProductStage::finish_pictures(std::vector<PagePicture>& drawn) {
