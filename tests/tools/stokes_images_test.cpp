@@ -35,11 +35,11 @@ const std::vector<int> linear = {9, 10, 11, 12}, circular = {5, 8, 6, 7};
 const char* const stokes_columns = "flux_jy,flux_q_jy,flux_u_jy,flux_v_jy";
 const char* const two_points = "-2,1,5,2,-1,0.5\n1.2,-0.5,3,-0.25,0.75,-1\n";
 
-/// Their brightness as an image shows it, which is real: U of XY = U + iV.
+/// Their brightness as an image shows it.
 std::string brightness(const std::string& stokes) {
   const std::map<std::string, std::array<double, 2>> of = {
-      {"I", {5, 3}},     {"Q", {2, -0.25}},    {"U", {-1, 0.75}},   {"V", {0.5, -1}}, {"XX", {7, 2.75}}, {"YY", {3, 3.25}},
-      {"XY", {-1, 0.75}}, {"YX", {-1, 0.75}}, {"RR", {5.5, 2}}, {"LL", {4.5, 4}},  {"RL", {2, -0.25}},  {"LR", {2, -0.25}}};
+      {"I", {5, 3}},     {"Q", {2, -0.25}},    {"U", {-1, 0.75}},   {"V", {0.5, -1}}, {"XX", {7, 2.75}},
+      {"YY", {3, 3.25}}, {"RR", {5.5, 2}},  {"LL", {4.5, 4}}};
   std::ostringstream lines;
   lines << "-2,1," << of.at(stokes)[0] << "\n1.2,-0.5," << of.at(stokes)[1] << "\n";
   return lines.str();
@@ -62,7 +62,7 @@ constexpr double of_two_images = 3e-6;
 BOOST_AUTO_TEST_SUITE(stokes_images)
 
 BOOST_AUTO_TEST_CASE(every_stokes_parameter_looks_like_an_unpolarised_sky_of_its_brightness) {
-  for (const auto& [types, lists] : {std::pair(linear, Arguments{"IQUV", "V", "XXYY", "XY"}), {circular, {"IQUV", "QU", "RRLL", "LR"}}})
+  for (const auto& [types, lists] : {std::pair(linear, Arguments{"IQUV", "V", "XXYY"}), {circular, {"IQUV", "QU", "LL"}}})
     for (const std::string& list : lists) {
       const Copy polarised(types), plain(linear);
       polarised.predict(stokes_columns, two_points);
@@ -83,15 +83,16 @@ BOOST_AUTO_TEST_CASE(every_stokes_parameter_looks_like_an_unpolarised_sky_of_its
 BOOST_AUTO_TEST_CASE(clean_finds_the_points_in_each_stokes_parameter) {
   const Copy copy(circular);
   copy.predict(stokes_columns, two_points);
-  const auto planes = copy.images({"--stokes", "IQUV", "--niter", "500", "--threshold", "5mJy"}, "image");
+  const auto planes = copy.images({"--stokes", "IQUV", "--niter", "3000", "--threshold", "1mJy"}, "image");
   const nlohmann::json report = report_of(copy.folder / "a");
   BOOST_TEST_REQUIRE(planes.size() == 4U);
   BOOST_TEST_REQUIRE(report["stokes"].size() == 4U);
   const double fluxes[4][2] = {{5, 3}, {2, -0.25}, {-1, 0.75}, {0.5, -1}};
   for (std::size_t s = 0; s < 4; ++s) {
-    // Both lie on pixels of 0.1 arcsec; what CLEAN leaves is below the threshold, whose sidelobes may add up to twice that.
-    BOOST_TEST(std::abs(planes[s].image.at(32 + 10, 32 + 20) - fluxes[s][0]) < 0.01);
-    BOOST_TEST(std::abs(planes[s].image.at(32 - 5, 32 - 12) - fluxes[s][1]) < 0.01);
+    // Both lie on pixels of 0.1 arcsec. Components of a point may spread over neighbours, where the beam is some percent lower:
+    // half a percent of 5 Jy, and the threshold in some pixels.
+    BOOST_TEST(std::abs(planes[s].image.at(32 + 10, 32 + 20) - fluxes[s][0]) < 0.03);
+    BOOST_TEST(std::abs(planes[s].image.at(32 - 5, 32 - 12) - fluxes[s][1]) < 0.03);
     BOOST_TEST(report["stokes"][s]["stokes"] == imager::stokes_name(planes[s].stokes));
     BOOST_TEST(std::abs(report["stokes"][s]["clean"]["model_flux_jy"].get<double>() - fluxes[s][0] - fluxes[s][1]) < 0.02);
   }
@@ -108,7 +109,11 @@ BOOST_AUTO_TEST_CASE(what_cannot_be_formed_is_refused_with_the_correlations_ther
   }
   const Outcome outcome = run(small_image(copy.set, copy.folder / "a") + Arguments{"--stokes", "IXX"});
   BOOST_TEST(outcome.code == 0);
-  BOOST_TEST(run(small_image(copy.set, copy.folder / "a") + Arguments{"--stokes", "IQV"}).code == 2);
+  for (const char* refused : {"IQV", "XY", "IX", "QQ"}) {
+    const Outcome wrong = run(small_image(copy.set, copy.folder / "a") + Arguments{"--stokes", refused});
+    BOOST_TEST(wrong.code == 2);
+    BOOST_TEST(wrong.err.find(std::string("--stokes ") + refused + ": expected ") != std::string::npos);
+  }
 }
 
 BOOST_AUTO_TEST_SUITE_END()

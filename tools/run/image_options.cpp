@@ -49,6 +49,9 @@ void check_image(const ImageOptions& o) {
   constexpr int largest = 65536;
   for (const int size : o.imsize)
     if (size < 1 || size > largest) refuse("imsize", std::to_string(size), "1 to 65536 pixels");
+  for (const imager::Stokes stokes : imager::parse_stokes(o.stokes))
+    if (stokes == imager::Stokes::XY || stokes == imager::Stokes::YX || stokes == imager::Stokes::RL || stokes == imager::Stokes::LR)
+      refuse("stokes", o.stokes, "no crossed hands, which are complex on the sky: Q, U and V show their parts");
   if (!(parse_angle_rad(o.cell) > 0)) refuse("cell", o.cell, "an angle above 0");
   if (parse_angle_rad(o.cell) > 0.5) refuse("cell", o.cell, "less than 0.5 rad");
 }
@@ -152,8 +155,7 @@ void declare_scene(CLI::App& command, ImageOptions& o) {
       ->check(quantity(parse_angle_rad));
   declare_selection(command, o.selection);
   command.add_option("--stokes", o.stokes,
-                     "Stokes parameters or correlations, which share one PSF: I, IQUV, IV, XXYY, RR, …; of correlations that "
-                     "are no parallel hands the real part of the image");
+                     "Stokes parameters, or correlations of parallel hands, which share one PSF: I, IQUV, IV, XXYY, RR, …");
   command.add_option("--datacolumn", o.datacolumn,
                      "data, corrected, model, or a column's name; or one for each set: corrected,data");
   declare_weighting(command, o);
