@@ -37,9 +37,9 @@ const char* const two_points = "-2,1,5,2,-1,0.5\n1.2,-0.5,3,-0.25,0.75,-1\n";
 
 /// Their brightness as an image shows it.
 std::string brightness(const std::string& stokes) {
-  const std::map<std::string, std::array<double, 2>> of = {
-      {"I", {5, 3}},     {"Q", {2, -0.25}},    {"U", {-1, 0.75}},   {"V", {0.5, -1}}, {"XX", {7, 2.75}},
-      {"YY", {3, 3.25}}, {"RR", {5.5, 2}},  {"LL", {4.5, 4}}};
+  const std::map<std::string, std::array<double, 2>> of = {{"I", {5, 3}},    {"Q", {2, -0.25}}, {"U", {-1, 0.75}},
+                                                           {"V", {0.5, -1}}, {"XX", {7, 2.75}}, {"YY", {3, 3.25}},
+                                                           {"RR", {5.5, 2}}, {"LL", {4.5, 4}}};
   std::ostringstream lines;
   lines << "-2,1," << of.at(stokes)[0] << "\n1.2,-0.5," << of.at(stokes)[1] << "\n";
   return lines.str();

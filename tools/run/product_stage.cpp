@@ -44,10 +44,11 @@ void ProductStage::draw_dirty(const imager::UvCoverage& coverage, const imager::
   products_.draw(coverage);
   products_.draw({{.name = "psf", .title = "PSF", .image = &images.psf}});
   std::vector<ProductPicture> pictures;
-  for (std::size_t s = 0; s < images.dirty.size(); ++s) {
+  dirty_.resize(images.dirty.size());
+  for (std::size_t s = images.dirty.size(); s-- > 0;) {
     const imager::Image& dirty = images.dirty[s];
     if (o_.usemask == "auto")
-      dirty_.push_back(sketch(dirty, Shades::brightness, picture_side));
+      dirty_[s] = sketch(dirty, Shades::brightness, picture_side);
     else
       pictures.push_back(
           picture_of(s, {.name = o_.niter == 0 ? "residual" : "dirty", .title = "Dirty image", .image = &dirty, .mask = mask}));
@@ -69,7 +70,7 @@ std::vector<std::string> ProductStage::write(imager::DirtyImages images) {
 void ProductStage::draw(std::vector<imager::CleanResult>& cleaned, const std::vector<imager::Image>& restored_images) {
   const imager::StageTimer timer(times_, "draw pictures");
   std::vector<ProductPicture> pictures;
-  for (std::size_t s = 0; s < cleaned.size(); ++s) {
+  for (std::size_t s = cleaned.size(); s-- > 0;) {  // what comes last is shown first
     const imager::CleanResult& result = cleaned[s];
     const imager::Image* const mask = result.mask.pixel.empty() ? nullptr : &result.mask;
     if (o_.usemask == "auto")
