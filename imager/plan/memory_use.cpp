@@ -58,7 +58,10 @@ MemoryUse peak_memory(const MemoryDemand& d, const StreamingOptions& streaming) 
   const double kept = streaming.keep ? d.stokes * (d.samples * sample_bytes + d.rows * row_bytes) : 0;
   const double others = (d.stokes - 1) * image;  // dirty images of the other Stokes parameters
 
-  const double drawn_images = 1 + (d.clean_scales > 0 ? 4 : 2) + (d.mask ? 1 : 0);  // one more to find the median of each
+  // The PSF, one more to find the median of each, one that the allocator keeps of several CLEANs, and those of every Stokes parameter.
+  const double drawn_images = 2 + (d.stokes > 1 && d.clean_scales > 0 ? 1 : 0) + d.stokes * ((d.clean_scales > 0 ? 3 : 1) + (d.mask ? 1 : 0));
+  // Those that CLEAN is over with hold a model, a residual and perhaps a mask each.
+  const double finished = (d.stokes - 1) * (2 + (d.mask ? 1 : 0)) * image;
 
   std::vector<MemoryUse> stages;
   stages.push_back({"the samples are gridded", process_bytes, kept, blocks, t.visibilities + t.other_stokes + t.psf, 0, 0});
@@ -75,19 +78,19 @@ MemoryUse peak_memory(const MemoryDemand& d, const StreamingOptions& streaming) 
     const double lasting = masks + components + 2;  // dirty image and PSF
     const double minor = minor_kept_bytes(image, d.clean_scales);
     stages.push_back({"the minor cycles run", process_bytes, kept, 0, minor + minor_passing_images * image, 0,
-                      others + (lasting + minor_images) * image});
+                      finished + (lasting + minor_images) * image});
     // Of a model image.
     const double residual_blocks = blocks + block_samples * residual_bytes;
     stages.push_back({"the residual is gridded", process_bytes, kept, residual_blocks, 2 * t.visibilities + minor, 0,
-                      others + (lasting + 1) * image});
+                      finished + (lasting + 1) * image});
     stages.push_back(
-        {"the residual image is made", process_bytes, kept, 0, t.visibilities + minor, t.fft, others + (lasting + 2) * image});
+        {"the residual image is made", process_bytes, kept, 0, t.visibilities + minor, t.fft, finished + (lasting + 2) * image});
   }
   if (d.wider) {
     // After CLEAN the PSF, the model with its components, the residual and the mask; else the dirty image and the PSF.
     const double components = d.start_model ? 3 * 24 / pixel_bytes : 0;
     const double lasting = d.clean_scales > 0 ? 3 + components + (d.mask ? 1 : 0) : 2;
-    add_wider_stages(*d.wider, kept, blocks, block_samples, others + lasting * image, stages);
+    add_wider_stages(*d.wider, kept, blocks, block_samples, (d.clean_scales > 0 ? finished : others) + lasting * image, stages);
   }
   if (d.density) {
     // Factors that blocks are weighed by as they are read, in single precision for half the plane.

@@ -122,16 +122,18 @@ BOOST_DATA_TEST_CASE(further_stokes_parameters_add_their_grids_blocks_and_images
   request.stokes = 3;
   const TransformMemory three = memory_of(plan_gridding(request));
   BOOST_TEST(one.other_stokes == 0);
-  BOOST_TEST(three.visibilities == one.visibilities);
+  BOOST_TEST(three.visibilities <= one.visibilities);  // of w planes fewer stand in memory at a time
   BOOST_TEST(three.other_stokes > 0);
-  BOOST_TEST(three.other_stokes <= 2 * one.visibilities);
+  BOOST_TEST(three.other_stokes <= 2 * three.visibilities);
+  BOOST_TEST(three.visibilities + three.other_stokes >= one.visibilities);
   MemoryDemand d = demand();
   d.transform = {8e9, 4e9, 1e7};
   const double alone = peak(d, {false, 0});
   d.transform.other_stokes = 1e10;
   BOOST_TEST(peak(d, {false, 0}) == alone + 1e10);
   d.stokes = 3;
-  BOOST_TEST(peak(d, {true, 0}) - peak(d, {false, 0}) == 3 * (1e8 * 12 + 1e6 * 24) - 3 * (1e6 * 12 + 1e4 * 24));
+  d.block_samples = 0;
+  BOOST_TEST(peak(d, {true, 0}) - peak(d, {false, 0}) == 3 * (1e8 * 12 + 1e6 * 24));
 }
 
 BOOST_AUTO_TEST_CASE(many_stokes_parameters_have_the_moment_of_their_last_image) {
@@ -140,6 +142,8 @@ BOOST_AUTO_TEST_CASE(many_stokes_parameters_have_the_moment_of_their_last_image)
   d.stokes = 4;
   const double drawn = peak(d, {});
   BOOST_TEST(drawn >= 5 * 8 * d.pixels);
+  d.clean_scales = 1;
+  BOOST_TEST(peak(d, {}) >= 13 * 8 * d.pixels);  // three of each, and the PSF
 }
 
 BOOST_AUTO_TEST_SUITE_END()

@@ -96,6 +96,7 @@ class RunPlanner {
                                            .rows = static_cast<double>(scene_.set.rows()),
                                            .samples = static_cast<double>(scene_.set.samples()),
                                            .block_samples = static_cast<double>(ms_io::MeasurementSet::usual_block_samples),
+                                           .stokes = plan_.gridding.request.stokes,
                                            .verify = o_.verify > 0,
                                            .clean_scales = o_.niter > 0 ? std::max(1, static_cast<int>(o_.scales.size())) : 0,
                                            .mask = scene_.mask,
@@ -139,12 +140,13 @@ RunPlan plan_run(const RunScene& scene, const TimeForecast& forecast, imager::St
 
 RunWork work_of(const RunScene& scene, const RunPlan& plan) {
   const ImageOptions& o = scene.options;
+  const int stokes = plan.gridding.request.stokes;
   return {.plan = &plan.gridding,
           .rows = static_cast<double>(scene.set.rows()),
           .samples = static_cast<double>(scene.set.samples()),
           .pixels = static_cast<double>(scene.geometry.pixels()),
-          .images = o.niter > 0 ? 4 : 2,
-          .pictures = o.niter > 0 ? 6 : 3,
+          .images = 1 + stokes * (o.niter > 0 ? 3 : 1),
+          .pictures = 2 + stokes * (o.niter > 0 ? 4 : 1),
           .threads = scene.threads,
           .verified = static_cast<double>(o.verify),
           .deconvolver = o.deconvolver,
