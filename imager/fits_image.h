@@ -49,8 +49,8 @@ void write_fits(const std::vector<SkyImage>& planes, const std::string& path, Pi
 /// length 1), or has pixels that are not square.
 SkyImage read_fits(const std::string& path);
 
-/// The same for each plane of an image whose STOKES axis may be longer than 1, in the order of the file. Throws where a plane is
-/// none that Stokes names, or two are of the same.
+/// The same for each plane of an image whose STOKES axis may be longer than 1, in the order of the file. Throws where a plane
+/// is none that Stokes names, or two are of the same.
 std::vector<SkyImage> read_stokes_images(const std::string& path);
 
 }  // namespace misfit::imager

@@ -17,9 +17,9 @@ namespace misfit::ms_io {
 /// Rows that can be used, neither flagged nor of one antenna; or all.
 enum class ReachOf { usable, all };
 
-/// A selected part of a MeasurementSet, or of several that make one image, as visibilities of Stokes parameters, opened read-only
-/// and streamed in blocks, one set after the other. Only the columns and channels that are needed are read. A block never mixes
-/// sets, DATA_DESC_IDs or, where the phase centre is shifted, fields. Reading never runs in two threads at once.
+/// A selected part of a MeasurementSet, or of several that make one image, as visibilities of Stokes parameters, opened
+/// read-only and streamed in blocks, one set after the other. Only the columns and channels that are needed are read. A block
+/// never mixes sets, DATA_DESC_IDs or, where the phase centre is shifted, fields. Reading never runs in two threads at once.
 class MeasurementSet : public imager::VisibilitySource {
  public:
   /// Enough that the samples of a block share what a pass over the tiles of a grid costs.

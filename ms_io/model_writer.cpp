@@ -133,9 +133,8 @@ struct PredictedBlock {
 
   /// Another thread predicts, and forms what is to be stored; casacore is for one thread alone.
   void begin(const Predict& predict) {
-    formed = std::async(std::launch::async, [this, &predict] {
-      cells.form(rows, *setup, predicted(predict, setup->shift, where, unknown));
-    });
+    formed = std::async(std::launch::async,
+                        [this, &predict] { cells.form(rows, *setup, predicted(predict, setup->shift, where, unknown)); });
   }
 };
 

@@ -54,8 +54,9 @@ NamedModel image_model(const PredictOptions& o, const ms_io::MeasurementSet& set
     if (plane.stokes > imager::Stokes::V)
       throw std::runtime_error(o.model + " has a plane of " + stokes_name(plane.stokes) + "; expected I, Q, U and V alone");
     model[static_cast<std::size_t>(plane.stokes) - 1] = &plane.image;
-    named.fingerprint.add(stokes_name(plane.stokes)).add(plane.image.pixel).add(
-        std::vector<double>{plane.geometry.cell_rad, plane.geometry.centre.l, plane.geometry.centre.m});
+    named.fingerprint.add(stokes_name(plane.stokes))
+        .add(plane.image.pixel)
+        .add(std::vector<double>{plane.geometry.cell_rad, plane.geometry.centre.l, plane.geometry.centre.m});
   }
   named.visibilities = image_visibilities(model, planes.front().geometry, request, set);
   return named;

@@ -58,8 +58,10 @@ MemoryUse peak_memory(const MemoryDemand& d, const StreamingOptions& streaming) 
   const double kept = streaming.keep ? d.stokes * (d.samples * sample_bytes + d.rows * row_bytes) : 0;
   const double others = (d.stokes - 1) * image;  // dirty images of the other Stokes parameters
 
-  // The PSF, one more to find the median of each, one that the allocator keeps of several CLEANs, and those of every Stokes parameter.
-  const double drawn_images = 2 + (d.stokes > 1 && d.clean_scales > 0 ? 1 : 0) + d.stokes * ((d.clean_scales > 0 ? 3 : 1) + (d.mask ? 1 : 0));
+  // The PSF, one more to find the median of each, one that the allocator keeps of several CLEANs, and those of every Stokes
+  // parameter.
+  const double drawn_images =
+      2 + (d.stokes > 1 && d.clean_scales > 0 ? 1 : 0) + d.stokes * ((d.clean_scales > 0 ? 3 : 1) + (d.mask ? 1 : 0));
   // Those that CLEAN is over with hold a model, a residual and perhaps a mask each.
   const double finished = (d.stokes - 1) * (2 + (d.mask ? 1 : 0)) * image;
 
@@ -83,8 +85,8 @@ MemoryUse peak_memory(const MemoryDemand& d, const StreamingOptions& streaming) 
     const double residual_blocks = blocks + block_samples * residual_bytes;
     stages.push_back({"the residual is gridded", process_bytes, kept, residual_blocks, 2 * t.visibilities + minor, 0,
                       finished + (lasting + 1) * image});
-    stages.push_back(
-        {"the residual image is made", process_bytes, kept, 0, t.visibilities + minor, t.fft, finished + (lasting + 2) * image});
+    stages.push_back({"the residual image is made", process_bytes, kept, 0, t.visibilities + minor, t.fft,
+                      finished + (lasting + 2) * image});
   }
   if (d.wider) {
     // After CLEAN the PSF, the model with its components, the residual and the mask; else the dirty image and the PSF.

@@ -25,8 +25,8 @@ struct CleanScene {
   double expected_error = 0;  ///< of the dirty image
 };
 
-/// CLEAN as `misfit image` runs it, one Stokes parameter after the other, with the files that go into it: mask, start model, and
-/// the states that it leaves after every major cycle and may begin with.
+/// CLEAN as `misfit image` runs it, one Stokes parameter after the other, with the files that go into it: mask, start model,
+/// and the states that it leaves after every major cycle and may begin with.
 class CleanStage {
  public:
   /// Reads the mask and the start model. Throws std::runtime_error that names the file and what was expected.

@@ -50,7 +50,8 @@ void check_image(const ImageOptions& o) {
   for (const int size : o.imsize)
     if (size < 1 || size > largest) refuse("imsize", std::to_string(size), "1 to 65536 pixels");
   for (const imager::Stokes stokes : imager::parse_stokes(o.stokes))
-    if (stokes == imager::Stokes::XY || stokes == imager::Stokes::YX || stokes == imager::Stokes::RL || stokes == imager::Stokes::LR)
+    if (stokes == imager::Stokes::XY || stokes == imager::Stokes::YX || stokes == imager::Stokes::RL ||
+        stokes == imager::Stokes::LR)
       refuse("stokes", o.stokes, "no crossed hands, which are complex on the sky: Q, U and V show their parts");
   if (!(parse_angle_rad(o.cell) > 0)) refuse("cell", o.cell, "an angle above 0");
   if (parse_angle_rad(o.cell) > 0.5) refuse("cell", o.cell, "less than 0.5 rad");

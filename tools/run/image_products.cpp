@@ -14,13 +14,18 @@ std::vector<imager::HeaderCard> error_cards(const RunReport& report) {
     cards.push_back({keyword, largest, comment});
   };
   if (report.stokes.front().theory) {
-    add_largest("ERREXPEC", [](const auto& s) { return s.theory->expected_rms; }, "expected RMS error over image RMS");
-    add_largest("ERRBOUND", [](const auto& s) { return s.theory->bound_rms; }, "bound on it, whatever the data");
-    add_largest("ERRBMAX", [](const auto& s) { return s.theory->bound_max; }, "bound on any pixel's error over image RMS");
+    add_largest(
+        "ERREXPEC", [](const auto& s) { return s.theory->expected_rms; }, "expected RMS error over image RMS");
+    add_largest(
+        "ERRBOUND", [](const auto& s) { return s.theory->bound_rms; }, "bound on it, whatever the data");
+    add_largest(
+        "ERRBMAX", [](const auto& s) { return s.theory->bound_max; }, "bound on any pixel's error over image RMS");
   }
   if (report.stokes.front().measured) {
-    add_largest("ERRMEAS", [](const auto& s) { return s.measured->rms; }, "measured RMS error over image RMS");
-    add_largest("ERRMMAX", [](const auto& s) { return s.measured->max; }, "largest measured error over image RMS");
+    add_largest(
+        "ERRMEAS", [](const auto& s) { return s.measured->rms; }, "measured RMS error over image RMS");
+    add_largest(
+        "ERRMMAX", [](const auto& s) { return s.measured->max; }, "largest measured error over image RMS");
   }
   if (report.measured_predict_rms)
     cards.push_back({"ERRPRED", *report.measured_predict_rms, "measured RMS error of prediction"});

@@ -35,7 +35,8 @@ class ImageRun {
   ImageRun(const ImageOptions& options, std::string command_line, nlohmann::json option_values)
       : o_(options),
         stokes_(imager::parse_stokes(options.stokes)),
-        threads_(options.threads == 0 ? imager::available_threads() : options.threads), progress_(options.quiet) {
+        threads_(options.threads == 0 ? imager::available_threads() : options.threads),
+        progress_(options.quiet) {
     report_.command_line = std::move(command_line);
     report_.options = std::move(option_values);
     report_.times = &times_;
@@ -128,8 +129,8 @@ class ImageRun {
     const imager::StageTimer timer(times_, "statistics");
     const imager::NeglectedPhase phase = imager::neglected_w_phase(reach_, source_->w_spread(), geometry_);
     for (std::size_t s = 0; s < stokes_.size(); ++s)
-      report_.stokes[s].theory = imager::theoretical_error(made_.plan, made_.images.sums[s],
-                                                           imager::root_mean_square(made_.images.dirty[s]), phase);
+      report_.stokes[s].theory =
+          imager::theoretical_error(made_.plan, made_.images.sums[s], imager::root_mean_square(made_.images.dirty[s]), phase);
     if (!made_.promise_kept) warn(accuracy_warning(o_.accuracy, largest_expected_error(report_)));
   }
 
@@ -169,11 +170,10 @@ class ImageRun {
   }
 
   void begin_products() {
-    products_ = std::make_unique<ProductStage>(
-        o_,
-        ProductScene{
-            geometry_, stokes_, set_->observation(), report_.command_line, error_cards(report_), beams_.restoring, threads_},
-        times_);
+    products_ = std::make_unique<ProductStage>(o_,
+                                               ProductScene{geometry_, stokes_, set_->observation(), report_.command_line,
+                                                            error_cards(report_), beams_.restoring, threads_},
+                                               times_);
     products_->draw_dirty(source_->uv_coverage(), made_.images, clean_ ? clean_->mask() : nullptr);
   }
 
@@ -222,9 +222,8 @@ class ImageRun {
     const imager::StageTimer timer(times_, "sources outside");
     imager::StageTimes own;  // its gridding is not this image's
     progress_.begin("sources outside", true);
-    const double noise_jy =
-        cleaned_.empty() ? imager::robust_noise(made_.images.dirty.front(), threads_)
-                         : cleaned_.front().report.final_state().rms_jy;
+    const double noise_jy = cleaned_.empty() ? imager::robust_noise(made_.images.dirty.front(), threads_)
+                                             : cleaned_.front().report.final_state().rms_jy;
     outside_ = check_outside(*source_, made_.plan, *plan_.wider, made_.images, noise_jy, progress(), own);
     progress_.end();
     report_.outside = &outside_;
@@ -270,8 +269,7 @@ class ImageRun {
     count_pixels();
     std::string removed;
     for (const std::string& path :
-         cleaned_.empty() ? products_->write(std::move(made_.images))
-                          : products_->write(std::move(made_.images.psf), cleaned_))
+         cleaned_.empty() ? products_->write(std::move(made_.images)) : products_->write(std::move(made_.images.psf), cleaned_))
       removed += (removed.empty() ? "" : ", ") + path;
     if (!removed.empty()) progress_.say("removed what an earlier run left: " + removed);
   }

@@ -200,9 +200,9 @@ std::string stokes_section(const json& list) {
                     clean.is_object() ? whole(member(clean, "iterations")) : "",
                     clean.is_object() ? plain(member(clean, "stop_reason")) : "", relative(member(error, "expected_rms"))});
   }
-  return table({"Stokes", "#Noise", "#Largest pixel", "#Smallest pixel", "#Model flux", "#Components", "CLEAN ended",
-                "#Expected error"},
-               rows);
+  return table(
+      {"Stokes", "#Noise", "#Largest pixel", "#Smallest pixel", "#Model flux", "#Components", "CLEAN ended", "#Expected error"},
+      rows);
 }
 
 /// Whether nothing was given for an option.
