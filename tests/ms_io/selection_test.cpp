@@ -1,6 +1,7 @@
 // What is selected, against queries of the same meaning in casacore's table query language.
 #include <casacore/tables/TaQL/TableParse.h>
 
+#include <algorithm>
 #include <boost/test/unit_test.hpp>
 
 #include "tests/ms_io/small_set.h"
@@ -160,6 +161,20 @@ BOOST_AUTO_TEST_CASE(a_range_of_channels_ends_with_its_window_and_may_not_begin_
     const std::string error = error_of_selection(set, {"", beyond});
     BOOST_TEST(contains(error, "beyond the 6 channels of spectral window"), beyond);
     BOOST_TEST(contains(error, "--spw '" + std::string(beyond) + "'"));
+  }
+}
+
+BOOST_AUTO_TEST_CASE(ranges_of_frequency_are_the_same_where_channels_descend) {
+  SimulatedObservation descending = small_observation();
+  std::reverse(descending.frequency_hz.begin(), descending.frequency_hz.end());
+  descending.channel_width_hz = -1e6;
+  const SmallSet up, down(descending);
+  for (const char* const range : {"0:1001.5~1003.5MHz", "0:0.9~1.0015GHz", "*:1003.5~2000MHz"}) {
+    std::vector<double> of_up = read_all(MeasurementSet(up.path(), {"", range}, "DATA")).frequency_hz;
+    const std::vector<double> of_down = read_all(MeasurementSet(down.path(), {"", range}, "DATA")).frequency_hz;
+    std::reverse(of_up.begin(), of_up.end());
+    BOOST_TEST(of_up.size() == 2U);
+    BOOST_TEST(of_up == of_down, boost::test_tools::per_element());
   }
 }
 

@@ -11,7 +11,6 @@
 #include <map>
 #include <memory>
 
-#include "ms_io/model_writer.h"
 #include "tests/ms_io/small_set.h"
 
 namespace misfit::ms_io {
