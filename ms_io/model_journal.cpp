@@ -27,7 +27,7 @@ std::string text_of(const ModelJournal& journal) {
   text << "misfit is writing a column, or was stopped while it did\n"
        << "command " << journal.command << "\nidentity " << journal.identity << "\nrows " << journal.rows << "\nwritten "
        << journal.written << "\nnonfinite_uvw_rows " << journal.nonfinite_uvw_rows << "\nchecksum " << journal.checksum << '\n';
-  for (const auto& [data_description, row] : journal.done_below) text << "done " << data_description << ' ' << row << '\n';
+  for (const auto& [setup, row] : journal.done_below) text << "done " << setup << ' ' << row << '\n';
   text << "end\n";
   return text.str();
 }
@@ -46,7 +46,7 @@ ModelJournal journal_of(std::istream& text, const std::string& column) {
     if (key == "written") words >> journal.written;
     if (key == "nonfinite_uvw_rows") words >> journal.nonfinite_uvw_rows;
     if (key == "checksum") words >> journal.checksum;
-    if (int data_description = 0; key == "done" && words >> data_description) words >> journal.done_below[data_description];
+    if (std::size_t setup = 0; key == "done" && words >> setup) words >> journal.done_below[setup];
     ended = key == "end";
   }
   if (!ended) journal = {};

@@ -14,13 +14,13 @@ namespace misfit::ms_io {
 /// first, and the file is replaced as a whole afterwards, so that it holds wherever the run is killed.
 struct ModelJournal {
   std::string column;
-  std::string command;                      ///< that writes it, as people are told
-  std::string identity;                     ///< of model, options, selection and columns; empty: of nothing that can be told
-  std::uint64_t rows = 0;                   ///< to be written
-  std::uint64_t written = 0;                ///< rows
-  std::uint64_t nonfinite_uvw_rows = 0;     ///< of those written
-  std::uint64_t checksum = 0;               ///< sum over the rows written of the fingerprints of their number and values
-  std::map<int, std::uint64_t> done_below;  ///< by DATA_DESC_ID: its rows that are selected are written below this one
+  std::string command;                   ///< that writes it, as people are told
+  std::string identity;                  ///< of model, options, selection and columns; empty: of nothing that can be told
+  std::uint64_t rows = 0;                ///< to be written
+  std::uint64_t written = 0;             ///< rows
+  std::uint64_t nonfinite_uvw_rows = 0;  ///< of those written
+  std::uint64_t checksum = 0;            ///< sum over the rows written of the fingerprints of their number and values
+  std::map<std::size_t, std::uint64_t> done_below;  ///< by setup: its rows that are selected are written below this one
 };
 
 /// The journal of `column`; none where no run is under way, or was cut short. A file that cannot be understood is a journal

@@ -51,7 +51,9 @@ std::string identity_of(const ModelColumn& column, const SelectedRows& selected)
   Fingerprint all;
   all.add(column.origin.fingerprint).add(column.name).add(column.subtracted_from);
   for (std::size_t s = 0; s < setups.size(); ++s) {
-    all.add(setups[s].value()).add(static_cast<std::uint64_t>(selected.setups[s].data_description));
+    all.add(setups[s].value())
+        .add(static_cast<std::uint64_t>(selected.setups[s].data_description))
+        .add(static_cast<std::uint64_t>(selected.setups[s].field));
     for (const Run& run : selected.setups[s].channels) all.add(run.first).add(run.count);
   }
   std::ostringstream text;
@@ -152,12 +154,10 @@ class ModelWriter {
     journal_.command = one_line(column_.origin.command);
     journal_.identity = identity_of(column_, selected_);
     journal_.rows = selected_.rows;
-    if (set_.tableDesc().isColumn(column_.name)) {
-      go_on();
-    } else {
-      create_model_column(set_, path_, column_);
-    }
-    write_journal(set_, journal_);
+    const bool exists = set_.tableDesc().isColumn(column_.name);
+    if (exists) go_on();
+    write_journal(set_, journal_);  // before there is a column, so that none is ever without
+    if (!exists) create_model_column(set_, path_, column_);
   }
 
   ModelWriteReport write(const Predict& predict, const Progress& progress) {
@@ -200,7 +200,7 @@ class ModelWriter {
 
   /// All rows of the block's setup below this one are written.
   std::uint64_t done_below(const BlockRows& block) const {
-    const auto found = journal_.done_below.find(selected_.setups[block.setup].data_description);
+    const auto found = journal_.done_below.find(block.setup);
     return found == journal_.done_below.end() ? 0 : found->second;
   }
 
@@ -256,7 +256,7 @@ class ModelWriter {
     journal_.written += block.rows.count();
     for (const bool row_is_unknown : block.unknown) journal_.nonfinite_uvw_rows += row_is_unknown;
     const casacore::Vector<casacore::rownr_t>& numbers = block.rows.numbers();
-    journal_.done_below[block.setup->data_description] = numbers[numbers.nelements() - 1] + 1;
+    journal_.done_below[static_cast<std::size_t>(block.setup - selected_.setups.data())] = numbers[numbers.nelements() - 1] + 1;
     write_journal(set_, journal_);
   }
 
