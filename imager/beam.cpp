@@ -8,59 +8,19 @@
 #include <string>
 #include <vector>
 
+#include "imager/main_lobe.h"
+
 namespace misfit::imager {
 namespace {
 
-constexpr double lobe_cutoff = 0.35;
 const double fwhm_per_sigma = std::sqrt(8 * std::log(2.0));
 
-/// A pixel, its place relative to the PSF's centre in units of `Lobe::scale` pixels.
-struct Sample {
-  double east = 0;
-  double north = 0;
-  double value = 0;
-};
-
-struct Lobe {
-  std::vector<Sample> samples;
-  double scale = 1;  ///< radius in pixels of the circle of the same area
-  int reach = 0;     ///< pixels from the centre to the farthest row or column
-};
-
-Lobe main_lobe(const Image& psf) {
-  struct Place {
-    int row, column;
-  };
-  const Place centre{psf.height / 2, psf.width / 2};
-  std::vector<char> seen(psf.pixel.size());
-  std::vector<Place> queue;
-  const auto visit = [&](int row, int column) {
-    if (row < 0 || row >= psf.height || column < 0 || column >= psf.width || !(psf.at(row, column) > lobe_cutoff)) return;
-    char& mark = seen[static_cast<std::size_t>(row) * static_cast<std::size_t>(psf.width) + static_cast<std::size_t>(column)];
-    if (!mark) queue.push_back({row, column});
-    mark = 1;
-  };
-  Lobe lobe;
-  visit(centre.row, centre.column);
-  for (std::size_t i = 0; i < queue.size(); ++i) {
-    const auto [row, column] = queue[i];
-    const int east = centre.column - column, north = row - centre.row;
-    lobe.samples.push_back({double(east), double(north), psf.at(row, column)});
-    lobe.reach = std::max({lobe.reach, std::abs(east), std::abs(north)});
-    visit(row - 1, column);
-    visit(row + 1, column);
-    visit(row, column - 1);
-    visit(row, column + 1);
-  }
-  lobe.scale = std::sqrt(static_cast<double>(queue.size()) / M_PI);
-  for (Sample& sample : lobe.samples) sample = {sample.east / lobe.scale, sample.north / lobe.scale, sample.value};
-  return lobe;
-}
-
-std::vector<Sample> quadrant(const Image& psf, const Lobe& lobe) {
+/// The quadrant's pixels, in units of the lobe's scale.
+std::vector<LobeSample> quadrant(const Image& psf, const MainLobe& lobe) {
   const int row0 = psf.height / 2, column0 = psf.width / 2;
-  const int rows = std::min(8 * lobe.reach, psf.height - row0), columns = std::min(8 * lobe.reach, psf.width - column0);
-  std::vector<Sample> samples;
+  const int extent = 8 * std::max(lobe.reach, 1);
+  const int rows = std::min(extent, psf.height - row0), columns = std::min(extent, psf.width - column0);
+  std::vector<LobeSample> samples;
   for (int r = 0; r < rows; ++r)
     for (int c = 0; c < columns; ++c)
       if (const double value = psf.at(row0 + r, column0 + c); std::isfinite(value))
@@ -74,7 +34,7 @@ struct Normal {
   Eigen::Vector3d gradient = Eigen::Vector3d::Zero();
   double cost = 0;
 
-  Normal(const std::vector<Sample>& samples, const Eigen::Vector3d& p) {
+  Normal(const std::vector<LobeSample>& samples, const Eigen::Vector3d& p) {
     for (const auto& [east, north, value] : samples) {
       const Eigen::Vector3d x(east * east, 2 * east * north, north * north);
       const double model = std::exp(-0.5 * p.dot(x)), residual = model - value;
@@ -87,9 +47,9 @@ struct Normal {
 };
 
 /// Levenberg–Marquardt from a circle; empty when it ends at a Gaussian that is not bounded.
-std::optional<Eigen::Matrix2d> fit_precision(const std::vector<Sample>& samples) {
+std::optional<Eigen::Matrix2d> fit_precision(const std::vector<LobeSample>& samples) {
   // The circle of radius 1 is where a round beam falls to the cutoff.
-  Eigen::Vector3d p = -2 * std::log(lobe_cutoff) * Eigen::Vector3d(1, 0, 1);
+  Eigen::Vector3d p = -2 * std::log(MainLobe::cutoff) * Eigen::Vector3d(1, 0, 1);
   Normal here(samples, p);
   double damping = 1e-3;
   for (int iteration = 0; iteration < 200 && damping < 1e12; ++iteration) {
@@ -129,8 +89,8 @@ constexpr std::size_t fewest_samples = 7;
 }
 
 /// The p for which exp(−½ p r²) fits best, from a circle: Gauss–Newton in log p, which keeps it positive.
-double fit_circular_precision(const std::vector<Sample>& samples) {
-  double p = -2 * std::log(lobe_cutoff);
+double fit_circular_precision(const std::vector<LobeSample>& samples) {
+  double p = -2 * std::log(MainLobe::cutoff);
   for (int iteration = 0; iteration < 200; ++iteration) {
     double matrix = 0, gradient = 0;
     for (const auto& [east, north, value] : samples) {
@@ -149,7 +109,7 @@ double fit_circular_precision(const std::vector<Sample>& samples) {
 }  // namespace
 
 Beam fit_beam(const Image& psf, double cell_rad, BeamRegion region) {
-  const Lobe lobe = main_lobe(psf);
+  const MainLobe lobe = main_lobe(psf);
   const std::size_t needed = region == BeamRegion::main_lobe ? fewest_samples : 5;  // beyond the lobe lie further ones
   std::optional<Eigen::Matrix2d> precision;
   if (lobe.samples.size() >= needed) {
@@ -161,7 +121,7 @@ Beam fit_beam(const Image& psf, double cell_rad, BeamRegion region) {
 }
 
 Beam fit_circular_beam(const Image& psf, double cell_rad) {
-  const Lobe lobe = main_lobe(psf);
+  const MainLobe lobe = main_lobe(psf);
   if (lobe.samples.size() < 5) refuse(lobe.samples.size(), 5);
   const double p = fit_circular_precision(lobe.samples);
   const double width = fwhm_per_sigma / std::sqrt(p);  // in units of the lobe's scale
@@ -171,12 +131,12 @@ Beam fit_circular_beam(const Image& psf, double cell_rad) {
 }
 
 double beam_misfit(const Image& psf, const Beam& beam, double cell_rad) {
-  const Lobe lobe = main_lobe(psf);
+  const MainLobe lobe = main_lobe(psf);
   if (lobe.samples.empty()) return 0;
   const double east = std::sin(beam.position_angle_rad), north = std::cos(beam.position_angle_rad);
   const double unit = fwhm_per_sigma * lobe.scale * cell_rad;
   double sum = 0;
-  for (const Sample& s : lobe.samples) {
+  for (const LobeSample& s : lobe.samples) {
     const double along = (s.east * east + s.north * north) * unit / beam.major_rad;
     const double across = (s.east * north - s.north * east) * unit / beam.minor_rad;
     sum += std::pow(std::exp(-0.5 * (along * along + across * across)) - s.value, 2);

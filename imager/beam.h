@@ -13,7 +13,8 @@ struct Beam {
 
 /// The pixels of a PSF that a beam is fitted to.
 enum class BeamRegion {
-  /// The pixels connected to the centre above 0.35 of its height, CASA tclean's choice: the fit turns with the PSF.
+  /// What is connected to the centre above 0.35 of its height, CASA tclean's choice: the fit turns with the PSF. Where that is
+  /// fewer than 30 pixels, the points between them too, so that the cell may be coarse; see main_lobe.h.
   main_lobe,
   /// The pixels to the north and west alone, eight times as far as the main lobe reaches. WSClean 3.1 fits these, since its
   /// unsigned offsets put the other three quadrants at infinity, and no lobe or box about the centre gives its beams; the fit
@@ -22,15 +23,15 @@ enum class BeamRegion {
 };
 
 /// The Gaussian exp(−½ xᵀ P x) that fits `psf` best in the least-squares sense, with its peak of height 1 at the centre pixel
-/// (row height/2, column width/2). Throws std::runtime_error when the main lobe holds too few pixels for three unknowns, or the
-/// fit fails.
+/// (row height/2, column width/2). Throws std::runtime_error where the main lobe has too few samples for three
+/// unknowns, or the fit fails.
 Beam fit_beam(const Image& psf, double cell_rad, BeamRegion region = BeamRegion::main_lobe);
 
 /// The round Gaussian that fits the main lobe best, where no elliptical one does: a lobe that does not fall off along one of
 /// its axes. Throws std::runtime_error as fit_beam does.
 Beam fit_circular_beam(const Image& psf, double cell_rad);
 
-/// √(mean of (PSF − beam)²) over the pixels of the main lobe; 0 where it has none.
+/// √(mean of (PSF − beam)²) over the main lobe's samples; 0 where it has none.
 double beam_misfit(const Image& psf, const Beam& beam, double cell_rad);
 
 /// model ⊗ beam, where the beam has peak 1: Jy/pixel in, Jy/beam out; NaN in the model counts as 0. Summed over the components
