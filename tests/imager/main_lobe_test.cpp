@@ -91,8 +91,7 @@ BOOST_AUTO_TEST_CASE(an_open_lobe_is_its_pixels) {
 }
 
 BOOST_AUTO_TEST_CASE(a_blank_pixel_counts_as_0) {
-  std::vector<Point> points = square_of_points(0.3);
-  Image psf = psf_of(points, 64);
+  Image psf = psf_of(square_of_points(0.3), 64);
   psf.at(3, 5) = 0;
   const MainLobe zero = main_lobe(psf);
   psf.at(3, 5) = std::numeric_limits<double>::quiet_NaN();
