@@ -1,4 +1,8 @@
+#include <casacore/tables/DataMan/DataManager.h>
+#include <casacore/tables/DataMan/TiledStManAccessor.h>
+
 #include <algorithm>
+#include <numeric>
 
 #include "ms_io/row_columns_internal.h"
 
@@ -6,11 +10,15 @@ namespace misfit::ms_io {
 namespace {
 
 casacore::Vector<casacore::rownr_t> numbered(const std::vector<Run>& runs) {
-  std::vector<casacore::rownr_t> numbers;
+  std::uint64_t count = 0;
+  for (const Run& run : runs) count += run.count;
+  casacore::Vector<casacore::rownr_t> numbers(count);
+  casacore::rownr_t* out = numbers.data();
   for (const Run& run : runs) {
-    for (std::uint64_t i = 0; i < run.count; ++i) numbers.push_back(run.first + i);
+    std::iota(out, out + run.count, run.first);
+    out += run.count;
   }
-  return casacore::Vector<casacore::rownr_t>(numbers);
+  return numbers;
 }
 
 }  // namespace
@@ -18,15 +26,22 @@ casacore::Vector<casacore::rownr_t> numbered(const std::vector<Run>& runs) {
 Rows::Rows(const std::vector<Run>& runs)
     : contiguous_(runs.size() == 1),
       first_(runs.front().first),
-      count_(0),
       numbers_(numbered(runs)),
-      listed_(numbers_, false, true) {
-  for (const Run& run : runs) count_ += run.count;
-}
+      listed_(contiguous_ ? casacore::RefRows(first_, runs.front().first + runs.front().count - 1)
+                          : casacore::RefRows(numbers_, false, true)) {}
 
 casacore::Slicer Rows::range() const {
   return casacore::Slicer(casacore::IPosition(1, static_cast<ssize_t>(first_)),
-                          casacore::IPosition(1, static_cast<ssize_t>(count_)));
+                          casacore::IPosition(1, static_cast<ssize_t>(count())));
+}
+
+bool has_one_shape(const casacore::Table& table, const std::string& column) {
+  if ((table.tableDesc()[column].options() & casacore::ColumnDesc::FixedShape) != 0) return true;
+  if (table.getPartNames(true).size() != 1) return false;
+  const casacore::String manager = table.findDataManager(column, true)->dataManagerType();
+  if (manager != "TiledShapeStMan" && manager != "TiledDataStMan") return false;
+  const casacore::uInt undefined = manager == "TiledShapeStMan" ? 1 : 0;  // a hypercube of cells without shape
+  return casacore::ROTiledStManAccessor(table, column, true).nhypercubes() == undefined + 1;
 }
 
 std::vector<Rows> pieces(const std::vector<Run>& runs, std::uint64_t rows) {

@@ -17,7 +17,7 @@ class Rows {
  public:
   explicit Rows(const std::vector<Run>& runs);
 
-  std::uint64_t count() const { return count_; }
+  std::uint64_t count() const { return numbers_.size(); }
   bool contiguous() const { return contiguous_; }
   casacore::Slicer range() const;                              ///< only when contiguous
   const casacore::RefRows& listed() const { return listed_; }  ///< always
@@ -26,10 +26,12 @@ class Rows {
  private:
   bool contiguous_;
   casacore::rownr_t first_;
-  std::uint64_t count_;
   casacore::Vector<casacore::rownr_t> numbers_;
   casacore::RefRows listed_;
 };
+
+/// Whether all cells of an array column that are defined have one shape, as far as that is known without a look at each.
+bool has_one_shape(const casacore::Table& table, const std::string& column);
 
 /// `runs` cut into pieces of at most `rows` rows.
 std::vector<Rows> pieces(const std::vector<Run>& runs, std::uint64_t rows);

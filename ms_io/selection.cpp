@@ -93,11 +93,11 @@ class BlockBuilder {
 
 }  // namespace
 
-void append(std::vector<Run>& runs, std::uint64_t index) {
-  if (runs.empty() || runs.back().first + runs.back().count != index) {
-    runs.push_back({index, 1});
+void append(std::vector<Run>& runs, std::uint64_t first, std::uint64_t count) {
+  if (runs.empty() || runs.back().first + runs.back().count != first) {
+    runs.push_back({first, count});
   } else {
-    ++runs.back().count;
+    runs.back().count += count;
   }
 }
 

@@ -62,7 +62,7 @@ struct SelectedRows {
 SelectedRows select_rows(const casacore::MeasurementSet& set, const std::string& path, const Selection& selection,
                          std::uint64_t block_samples);
 
-/// Appends the row or channel `index` to ascending runs.
-void append(std::vector<Run>& runs, std::uint64_t index);
+/// Appends `count` rows or channels, of which `first` is the first, to ascending runs.
+void append(std::vector<Run>& runs, std::uint64_t first, std::uint64_t count = 1);
 
 }  // namespace misfit::ms_io

@@ -21,6 +21,7 @@ struct AccurateImages {
   GriddingPlan plan;
   std::unique_ptr<PlannedTransform> transform;
   DirtyImages images;
+  double judged_error = 0;   ///< over the images' RMS, where they were made twice: by theory, or twice that of pixels checked
   bool promise_kept = true;  ///< whether the gridding error is within the accuracy, judged by the images that came out
 };
 

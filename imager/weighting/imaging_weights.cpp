@@ -11,6 +11,9 @@
 namespace misfit::imager {
 namespace {
 
+/// Of a sample that is usable.
+constexpr float least = std::numeric_limits<float>::min();
+
 std::vector<float> factors_of(const UvDensity& density, const WeightingOptions& options, double f2) {
   if (options.weighting == Weighting::briggs) return briggs_factors(density, f2);
   return uniform_factors(density, options.weighting == Weighting::superuniform ? options.box_reach : 0);
@@ -57,6 +60,10 @@ WeightTotals& WeightTotals::operator+=(const WeightTotals& other) {
   return *this;
 }
 
+bool WeightSums::outweigh_least(std::uint64_t samples) const {
+  return image >= 1e6 * double{least} * static_cast<double>(samples);
+}
+
 double WeightSums::noise_jy() const {
   return std::sqrt(square_over_natural) / (2 * image);
 }
@@ -98,7 +105,6 @@ WeightTotals ImagingWeights::put_on(StoredVisibilities& visibilities, int thread
 }
 
 std::vector<float> ImagingWeights::weights_of(const VisibilityBlock& block, WeightSums& sums) const {
-  constexpr float least = std::numeric_limits<float>::min();
   const std::size_t channels = block.channels();
   const std::vector<double> turns = cells_.turns_per_m(block.frequency_hz);
   RowTaper taper(taper_, block.frequency_hz);

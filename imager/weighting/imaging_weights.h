@@ -40,6 +40,8 @@ struct WeightSums {
   static WeightSums of_natural(double weight) { return {weight, weight, weight}; }
   WeightSums& operator+=(const WeightSums& other);
 
+  /// Whether the weights that `samples` have at least, see ImagingWeights::of(), count for a millionth of the image at most.
+  bool outweigh_least(std::uint64_t samples) const;
   /// The standard deviation of an image's noise in Jy/beam, where w is 1/(4 σ²) of the data's noise in Jy (see
   /// VisibilityBlock::weight): √(Σ w'²/(4w)) / Σ w'. It is as right as the weights that the data came with.
   double noise_jy() const;

@@ -131,7 +131,8 @@ class ImageRun {
     for (std::size_t s = 0; s < stokes_.size(); ++s)
       report_.stokes[s].theory =
           imager::theoretical_error(made_.plan, made_.images.sums[s], imager::root_mean_square(made_.images.dirty[s]), phase);
-    if (!made_.promise_kept) warn(accuracy_warning(o_.accuracy, largest_expected_error(report_)));
+    if (!made_.promise_kept)
+      warn(accuracy_warning(o_.accuracy, std::max(made_.judged_error, largest_expected_error(report_))));
   }
 
   /// What was read; samples that the pixel size cannot represent, and the pixel size that could.
@@ -147,6 +148,9 @@ class ImageRun {
   void predict_noise() {
     const imager::WeightSums sums =
         weights_ ? source_->weight_sums() : imager::WeightSums::of_natural(made_.images.sums.front().weight);
+    if (weights_ && !sums.outweigh_least(report_.counts.used))
+      throw std::runtime_error("--uvtaper " + o_.uvtaper + ": no sample keeps a weight that counts; expected a taper of larger radius in the "
+                               "uv plane, or a smaller angle");
     report_.predicted_noise_jy = sums.noise_jy();
     if (weights_) report_.plan.push_back(weights_decision(*weights_, sums));
     weights_.reset();
@@ -227,7 +231,8 @@ class ImageRun {
     outside_ = check_outside(*source_, made_.plan, *plan_.wider, made_.images, noise_jy, progress(), own);
     progress_.end();
     report_.outside = &outside_;
-    const imager::Decision told = outside_decision(outside_);
+    imager::Decision told = outside_decision(outside_);
+    if (stokes_.size() > 1) told.item += " in " + stokes_name(stokes_.front()) + " alone";
     report_.plan.push_back(told);
     progress_.say(told.item + ": " + told.decision + "; " + told.because);
     for (const std::string& warning : outside_warnings(outside_)) warn(warning);

@@ -28,7 +28,7 @@ std::string outside_grid_warning(std::uint64_t samples, const imager::UvwReach& 
 
 std::string accuracy_warning(double asked, double expected) {
   return "the accuracy of " + significant(asked, 2) +
-         " is out of reach: the image is weak against its data, and its expected error is " + significant(expected, 2);
+         " is out of reach: the image is weak against its data, and its error may come to " + significant(expected, 2);
 }
 
 std::string cycle_message(const imager::CleanState& state) {

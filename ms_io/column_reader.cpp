@@ -1,0 +1,147 @@
+#include <algorithm>
+#include <utility>
+
+#include "ms_io/column_reader_internal.h"
+
+namespace misfit::ms_io {
+
+ColumnReader::ColumnReader(std::shared_ptr<const OpenSet> source) : source_(std::move(source)) {
+  translated("cannot read the columns of " + source_->path, [&] {
+    const casacore::Table& table = source_->set;
+    antenna1_.attach(table, "ANTENNA1");
+    antenna2_.attach(table, "ANTENNA2");
+    flag_row_.attach(table, "FLAG_ROW");
+    attach(uvw_, "UVW");
+    attach(data_, source_->data_column);
+    attach(flag_, "FLAG");
+    attach(weight_, "WEIGHT");
+    has_spectrum_ = table.tableDesc().isColumn("WEIGHT_SPECTRUM");
+    if (has_spectrum_) attach(spectrum_, "WEIGHT_SPECTRUM");
+  });
+}
+
+template <typename T>
+void ColumnReader::attach(Cells<T>& cells, const std::string& name) const {
+  cells.name = name;
+  cells.column.attach(source_->set, name);
+  cells.fixed_shape = (cells.column.columnDesc().options() & casacore::ColumnDesc::FixedShape) != 0;
+  cells.one_shape = has_one_shape(source_->set, name);
+}
+
+template <typename Action>
+void ColumnReader::reading(const std::string& column, const Action& action) const {
+  translated("cannot read " + column + " of " + source_->path, action);
+}
+
+const StoredRows& ColumnReader::read_rows(const Rows& rows, const Setup& setup) {
+  reading("ANTENNA1", [&] { read(antenna1_, rows, stored_.antenna1); });
+  reading("ANTENNA2", [&] { read(antenna2_, rows, stored_.antenna2); });
+  reading("FLAG_ROW", [&] { read(flag_row_, rows, stored_.flag_row); });
+  read_cells(uvw_, rows, casacore::IPosition(1, 3), stored_.uvw);
+  read_channels(data_, rows, setup, stored_.data);
+  read_channels(flag_, rows, setup, stored_.flag);
+  read_weights(rows, setup);
+  return stored_;
+}
+
+/// Looks at the first of `rows`, or at all of them.
+template <typename T>
+void ColumnReader::require_shape(const Cells<T>& cells, const Rows& rows, const casacore::IPosition& shape, bool all) const {
+  bool look = true;
+  for (const casacore::rownr_t row : rows.numbers()) {
+    if (cells.column.isDefined(row) && (!look || cells.column.shape(row).isEqual(shape))) {
+      if (cells.fixed_shape || !all) return;
+      look = !cells.one_shape;
+      continue;
+    }
+    throw std::runtime_error(
+        "cannot read " + cells.name + " of " + source_->path + ": the cell of row " + std::to_string(row) +
+        (cells.column.isDefined(row) ? " has the shape " + cells.column.shape(row).toString() : " is empty") + "; expected " +
+        shape.toString() + ", as DATA_DESC_ID says");
+  }
+}
+
+/// casacore 3.5 throws where a cell is undefined or has another shape, save where it reads a whole column: there it takes one
+/// shape for granted, and ends the program at an undefined cell.
+template <typename T, typename Action>
+void ColumnReader::reading_cells(const Cells<T>& cells, const Rows& rows, const casacore::IPosition& shape,
+                                 const Action& action) const {
+  reading(cells.name, [&] {
+    require_shape(cells, rows, shape, rows.contiguous() && rows.count() == cells.column.nrow());
+    try {
+      action();
+    } catch (const std::exception&) {
+      require_shape(cells, rows, shape, true);
+      throw;
+    }
+  });
+}
+
+template <typename T>
+void ColumnReader::read_cells(const Cells<T>& cells, const Rows& rows, const casacore::IPosition& shape,
+                              casacore::Array<T>& values) const {
+  reading_cells(cells, rows, shape, [&] { read(cells.column, rows, values); });
+}
+
+/// All the correlations of the channels needed. Reading every correlation is faster than a strided slice of two of four.
+template <typename T>
+void ColumnReader::read_channels(const Cells<T>& cells, const Rows& rows, const Setup& setup,
+                                 casacore::Array<T>& values) const {
+  const std::size_t correlations = setup.correlation_types.size();
+  const casacore::IPosition shape(2, static_cast<ssize_t>(correlations), static_cast<ssize_t>(setup.stored_channels));
+  if (setup.channel_span() == setup.stored_channels) {
+    read_cells(cells, rows, shape, values);
+  } else {
+    reading_cells(cells, rows, shape, [&] { read(cells.column, rows, channel_slice(setup, correlations), values); });
+  }
+}
+
+/// Tiled cells of one shape are never empty where they are defined.
+bool ColumnReader::spectrum_defined(casacore::rownr_t row) const {
+  return spectrum_.column.isDefined(row) && (spectrum_.one_shape || spectrum_.column.shape(row).product() > 0);
+}
+
+/// How many of `rows` have WEIGHT_SPECTRUM.
+std::size_t ColumnReader::spectra_defined(const Rows& rows) const {
+  if (!has_spectrum_) return 0;
+  if (spectrum_.fixed_shape) return rows.count();
+  std::size_t defined = 0;
+  reading("WEIGHT_SPECTRUM", [&] {
+    for (const casacore::rownr_t row : rows.numbers()) defined += spectrum_defined(row);
+  });
+  return defined;
+}
+
+/// WEIGHT_SPECTRUM where its cell is defined, else WEIGHT.
+void ColumnReader::read_weights(const Rows& rows, const Setup& setup) {
+  const std::size_t defined = spectra_defined(rows);
+  stored_.weight_per_channel = defined > 0;
+  if (defined == rows.count()) {
+    read_channels(spectrum_, rows, setup, stored_.weight);
+    return;
+  }
+  read_cells(weight_, rows, casacore::IPosition(1, static_cast<ssize_t>(setup.correlation_types.size())), stored_.weight);
+  if (defined > 0) reading("WEIGHT_SPECTRUM", [&] { mix_weights(rows, setup); });
+}
+
+/// Spreads WEIGHT over the channels, and puts WEIGHT_SPECTRUM where it is defined.
+void ColumnReader::mix_weights(const Rows& rows, const Setup& setup) {
+  const std::size_t span = setup.channel_span(), correlations = setup.correlation_types.size();
+  casacore::Array<float> mixed(casacore::IPosition(3, static_cast<ssize_t>(correlations), static_cast<ssize_t>(span),
+                                                   static_cast<ssize_t>(rows.count())));
+  float* out = mixed.data();
+  const float* weight = stored_.weight.data();
+  for (const casacore::rownr_t row : rows.numbers()) {
+    if (spectrum_defined(row)) {
+      const casacore::Array<float> cell = spectrum_.column.getSlice(row, channel_slice(setup, setup.correlation_types.size()));
+      std::copy(cell.begin(), cell.end(), out);
+    } else {
+      for (std::size_t c = 0; c < span; ++c) std::copy_n(weight, correlations, out + c * correlations);
+    }
+    out += correlations * span;
+    weight += correlations;
+  }
+  stored_.weight.reference(mixed);
+}
+
+}  // namespace misfit::ms_io

@@ -1,0 +1,69 @@
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "ms_io/row_columns_internal.h"
+#include "ms_io/visibility_reader_internal.h"
+
+namespace misfit::ms_io {
+
+/// Rows of the main table as they are stored, of the channels from the first selected to the last one.
+struct StoredRows {
+  casacore::Vector<int> antenna1, antenna2;  ///< [row]
+  casacore::Vector<bool> flag_row;           ///< [row]
+  casacore::Array<double> uvw;               ///< [row][3]
+  casacore::Array<casacore::Complex> data;   ///< [row][channel][correlation]
+  casacore::Array<bool> flag;                ///< [row][channel][correlation]
+  casacore::Array<float> weight;             ///< [row][channel][correlation] or [row][correlation]
+  bool weight_per_channel = false;
+};
+
+/// Reads the columns that visibilities are formed of, some rows at a time, into buffers that are used again.
+class ColumnReader {
+ public:
+  explicit ColumnReader(std::shared_ptr<const OpenSet> source);
+
+  /// `rows`, whose cells all have the shape that `setup` says. Valid until the next call. Throws std::runtime_error that names
+  /// the column which cannot be read.
+  const StoredRows& read_rows(const Rows& rows, const Setup& setup);
+
+ private:
+  /// A column of arrays, and what is known of the shapes of its cells.
+  template <typename T>
+  struct Cells {
+    std::string name;
+    casacore::ArrayColumn<T> column;
+    bool fixed_shape = false;  ///< of cells that are all defined
+    bool one_shape = false;    ///< of those that are defined
+  };
+
+  template <typename T>
+  void attach(Cells<T>& cells, const std::string& name) const;
+  template <typename Action>
+  void reading(const std::string& column, const Action& action) const;
+  template <typename T>
+  void require_shape(const Cells<T>& cells, const Rows& rows, const casacore::IPosition& shape, bool all) const;
+  template <typename T, typename Action>
+  void reading_cells(const Cells<T>& cells, const Rows& rows, const casacore::IPosition& shape, const Action& action) const;
+  template <typename T>
+  void read_cells(const Cells<T>& cells, const Rows& rows, const casacore::IPosition& shape, casacore::Array<T>& values) const;
+  template <typename T>
+  void read_channels(const Cells<T>& cells, const Rows& rows, const Setup& setup, casacore::Array<T>& values) const;
+  bool spectrum_defined(casacore::rownr_t row) const;
+  std::size_t spectra_defined(const Rows& rows) const;
+  void read_weights(const Rows& rows, const Setup& setup);
+  void mix_weights(const Rows& rows, const Setup& setup);
+
+  std::shared_ptr<const OpenSet> source_;
+  casacore::ScalarColumn<int> antenna1_, antenna2_;
+  casacore::ScalarColumn<bool> flag_row_;
+  Cells<double> uvw_;
+  Cells<casacore::Complex> data_;
+  Cells<bool> flag_;
+  Cells<float> weight_, spectrum_;
+  bool has_spectrum_ = false;
+  StoredRows stored_;
+};
+
+}  // namespace misfit::ms_io
