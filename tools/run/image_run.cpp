@@ -131,8 +131,7 @@ class ImageRun {
     for (std::size_t s = 0; s < stokes_.size(); ++s)
       report_.stokes[s].theory =
           imager::theoretical_error(made_.plan, made_.images.sums[s], imager::root_mean_square(made_.images.dirty[s]), phase);
-    if (!made_.promise_kept)
-      warn(accuracy_warning(o_.accuracy, std::max(made_.judged_error, largest_expected_error(report_))));
+    if (!made_.promise_kept) warn(accuracy_warning(o_.accuracy, std::max(made_.judged_error, largest_expected_error(report_))));
   }
 
   /// What was read; samples that the pixel size cannot represent, and the pixel size that could.
@@ -149,7 +148,8 @@ class ImageRun {
     const imager::WeightSums sums =
         weights_ ? source_->weight_sums() : imager::WeightSums::of_natural(made_.images.sums.front().weight);
     if (weights_ && !sums.outweigh_least(report_.counts.used))
-      throw std::runtime_error("--uvtaper " + o_.uvtaper + ": no sample keeps a weight that counts; expected a taper of larger radius in the "
+      throw std::runtime_error("--uvtaper " + o_.uvtaper +
+                               ": no sample keeps a weight that counts; expected a taper of larger radius in the "
                                "uv plane, or a smaller angle");
     report_.predicted_noise_jy = sums.noise_jy();
     if (weights_) report_.plan.push_back(weights_decision(*weights_, sums));
