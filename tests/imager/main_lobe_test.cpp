@@ -38,12 +38,12 @@ std::vector<Point> square_of_points(double largest) {
 
 }  // namespace
 
-BOOST_AUTO_TEST_SUITE(main_lobe_of_a_psf)
+BOOST_AUTO_TEST_SUITE(main_lobe)
 
 BOOST_AUTO_TEST_CASE(a_lobe_of_few_pixels_is_sampled_between_them) {
   const int size = 256, last = 127;
   const std::vector<Point> points = square_of_points(0.45);
-  const MainLobe lobe = main_lobe(psf_of(points, size));
+  const MainLobe lobe = misfit::imager::main_lobe(psf_of(points, size));
   // Per axis the sum over |n| ≤ W of exp(2πiun) sinc(x − n) differs from exp(2πiux) by (2/π) / ((W + 1 − |x|) cos πu) at most:
   // summation by parts, where the partial sums of (−1)ⁿ exp(2πiun) are 1 / cos πu at most. The axes' errors e become 2e + e².
   double bound = 0;
@@ -59,11 +59,11 @@ BOOST_AUTO_TEST_CASE(a_lobe_of_few_pixels_is_sampled_between_them) {
 
 BOOST_AUTO_TEST_CASE(however_coarse_the_cell_the_lobe_has_41_samples) {
   // Nothing falls faster than the coverage of the grid's corners alone, 0.49 instead of 0.5 so that the image tells them apart.
-  const MainLobe corners = main_lobe(psf_of({{0.49, 0.49}, {0.49, -0.49}}, 128));
+  const MainLobe corners = misfit::imager::main_lobe(psf_of({{0.49, 0.49}, {0.49, -0.49}}, 128));
   BOOST_TEST(corners.samples.size() >= 41U);
   Image uniform(32, 32);  // the whole grid covered alike
   uniform.at(16, 16) = 1;
-  const MainLobe lobe = main_lobe(uniform);
+  const MainLobe lobe = misfit::imager::main_lobe(uniform);
   BOOST_TEST(lobe.samples.size() >= 41U);
   const auto sinc = [](double t) { return t == 0 ? 1 : std::sin(M_PI * t) / (M_PI * t); };
   for (const LobeSample& s : lobe.samples)
@@ -72,7 +72,7 @@ BOOST_AUTO_TEST_CASE(however_coarse_the_cell_the_lobe_has_41_samples) {
 
 BOOST_AUTO_TEST_CASE(a_lobe_of_30_pixels_is_its_pixels) {
   const Image psf = psf_of(square_of_points(0.09), 64);
-  const MainLobe lobe = main_lobe(psf);
+  const MainLobe lobe = misfit::imager::main_lobe(psf);
   BOOST_TEST(lobe.samples.size() >= 30U);
   BOOST_TEST(lobe.scale == std::sqrt(static_cast<double>(lobe.samples.size()) / M_PI));
   for (const LobeSample& s : lobe.samples) {
@@ -85,7 +85,7 @@ BOOST_AUTO_TEST_CASE(an_open_lobe_is_its_pixels) {
   // A ridge one pixel wide, to the north-east: its pixels touch at their corners.
   Image psf(80, 80);
   for (int i = 1; i < 80; ++i) psf.at(i, 80 - i) = 1;
-  const MainLobe lobe = main_lobe(psf);
+  const MainLobe lobe = misfit::imager::main_lobe(psf);
   BOOST_TEST(lobe.samples.size() == 1U);
   BOOST_TEST(lobe.samples.front().value == 1);
 }
@@ -93,9 +93,9 @@ BOOST_AUTO_TEST_CASE(an_open_lobe_is_its_pixels) {
 BOOST_AUTO_TEST_CASE(a_blank_pixel_counts_as_0) {
   Image psf = psf_of(square_of_points(0.3), 64);
   psf.at(3, 5) = 0;
-  const MainLobe zero = main_lobe(psf);
+  const MainLobe zero = misfit::imager::main_lobe(psf);
   psf.at(3, 5) = std::numeric_limits<double>::quiet_NaN();
-  const MainLobe blank = main_lobe(psf);
+  const MainLobe blank = misfit::imager::main_lobe(psf);
   BOOST_TEST(zero.samples.size() == blank.samples.size());
   for (std::size_t i = 0; i < zero.samples.size(); ++i) BOOST_REQUIRE(zero.samples[i].value == blank.samples[i].value);
 }

@@ -99,6 +99,23 @@ BOOST_AUTO_TEST_CASE(clean_finds_the_points_in_each_stokes_parameter) {
   BOOST_TEST(report["clean"] == report["stokes"][0]["clean"]);
 }
 
+BOOST_AUTO_TEST_CASE(masks_of_each_stokes_parameter_are_made_and_taken_back) {
+  const Copy copy(circular);
+  copy.predict(stokes_columns, two_points);
+  const Arguments clean{"--stokes", "IV", "--niter", "100"};
+  const std::vector<imager::SkyImage> made = copy.images(clean + Arguments{"--usemask", "auto"}, "mask");
+  BOOST_TEST_REQUIRE(made.size() == 2U);
+  std::filesystem::rename(copy.folder / "a.mask.fits", copy.folder / "own.fits");
+  const auto used = copy.images(clean + Arguments{"--mask", copy.folder / "own.fits"}, "mask");
+  for (std::size_t s = 0; s < 2; ++s) BOOST_TEST(used[s].image.pixel == made[s].image.pixel, boost::test_tools::per_element());
+  const Outcome outcome =
+      run(small_image(copy.set, copy.folder / "b") +
+          Arguments{"--datacolumn", "model", "--niter", "9", "--stokes", "Q", "--mask", copy.folder / "own.fits"});
+  BOOST_TEST(outcome.code == 1);
+  BOOST_TEST(outcome.err.find("has several planes but none of Q; expected one plane, or one of each of Q") !=
+             std::string::npos);
+}
+
 BOOST_AUTO_TEST_CASE(what_cannot_be_formed_is_refused_with_the_correlations_there_are) {
   const Copy copy(std::vector<int>{9, 12});
   for (const auto& [stokes, expected] : {std::pair("V", "Stokes V cannot be formed from correlations XX, YY; it needs"),

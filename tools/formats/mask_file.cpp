@@ -201,12 +201,8 @@ imager::Image regions_mask(const std::string& path, std::string_view text, const
   return mask;
 }
 
-}  // namespace
-
-imager::Image read_mask(const std::string& path, const imager::ImageGeometry& geometry) {
-  const std::string content = read_file(path);
-  if (!content.starts_with("SIMPLE")) return regions_mask(path, content, geometry);
-  imager::SkyImage file = imager::read_fits(path);
+/// Which pixels of a file's plane allow components, where it has the image's pixels.
+imager::Image mask_of(const std::string& path, imager::SkyImage file, const imager::ImageGeometry& geometry) {
   imager::Image mask = std::move(file.image);
   if (mask.width != geometry.width || mask.height != geometry.height)
     throw std::runtime_error("mask " + path + " of " + std::to_string(mask.width) + " × " + std::to_string(mask.height) +
@@ -222,6 +218,35 @@ imager::Image read_mask(const std::string& path, const imager::ImageGeometry& ge
                              sexagesimal(geometry.phase_centre));
   for (double& pixel : mask.pixel) pixel = imager::mask_allows(pixel) ? 1 : 0;
   return mask;
+}
+
+}  // namespace
+
+imager::Image read_mask(const std::string& path, const imager::ImageGeometry& geometry) {
+  return read_masks(path, geometry, {imager::Stokes::I}).front();
+}
+
+std::vector<imager::Image> read_masks(const std::string& path, const imager::ImageGeometry& geometry,
+                                      const std::vector<imager::Stokes>& stokes) {
+  const std::string content = read_file(path);
+  std::vector<imager::Image> masks;
+  if (!content.starts_with("SIMPLE")) {
+    masks.push_back(regions_mask(path, content, geometry));
+    return masks;
+  }
+  std::vector<imager::SkyImage> planes = imager::read_stokes_images(path);
+  if (planes.size() == 1) {
+    masks.push_back(mask_of(path, std::move(planes.front()), geometry));
+    return masks;
+  }
+  for (const imager::Stokes wanted : stokes) {
+    const auto found = std::find_if(planes.begin(), planes.end(), [&](const auto& plane) { return plane.stokes == wanted; });
+    if (found == planes.end())
+      throw std::runtime_error("mask " + path + " has several planes but none of " + stokes_name(wanted) +
+                               "; expected one plane, or one of each of " + stokes_names(stokes));
+    masks.push_back(mask_of(path, std::move(*found), geometry));
+  }
+  return masks;
 }
 
 }  // namespace misfit::tools

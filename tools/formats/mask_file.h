@@ -1,9 +1,11 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "imager/geometry.h"
 #include "imager/image.h"
+#include "imager/stokes.h"
 
 namespace misfit::tools {
 
@@ -19,5 +21,9 @@ namespace misfit::tools {
 /// image's frame; other keywords, and annotations, have no meaning here. Throws std::runtime_error that names the file, the
 /// line and what was expected.
 imager::Image read_mask(const std::string& path, const imager::ImageGeometry& geometry);
+
+/// The same for images of these Stokes parameters: one mask for all, or one for each where the FITS image has a plane of each.
+std::vector<imager::Image> read_masks(const std::string& path, const imager::ImageGeometry& geometry,
+                                      const std::vector<imager::Stokes>& stokes);
 
 }  // namespace misfit::tools

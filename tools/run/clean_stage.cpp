@@ -29,11 +29,11 @@ double mean_width_rad(const imager::Beam& beam) {
 CleanStage::CleanStage(const ImageOptions& options, const imager::ImageGeometry& geometry, int threads)
     : o_(options), geometry_(geometry), threads_(threads), stokes_(imager::parse_stokes(options.stokes)) {
   if (!o_.startmodel.empty()) read_start_model();
-  if (!o_.mask.empty()) mask_ = std::make_unique<imager::Image>(read_mask(o_.mask, geometry_));
+  if (!o_.mask.empty()) masks_ = read_masks(o_.mask, geometry_, stokes_);
 }
 
 std::string CleanStage::warning() const {
-  if (mask_ != nullptr && imager::mask_is_empty(*mask_))
+  if (std::any_of(masks_.begin(), masks_.end(), imager::mask_is_empty))
     return "the mask " + o_.mask + " allows no pixel of the image: nothing is cleaned";
   for (std::size_t s = 0; o_.restart && s < stokes_.size(); ++s)
     if (!std::filesystem::exists(state_path(s))) return "there is no " + state_path(s) + " to go on from: CLEAN begins anew";
@@ -85,7 +85,7 @@ imager::CleanResult CleanStage::run(const CleanScene& scene, const nlohmann::jso
                                     imager::StageTimes& times) {
   imager::CleanOptions options = clean_options(o_, threads_);
   options.stop_requested = interrupted;
-  options.mask = mask_.get();
+  options.mask = mask(scene.stokes);
   std::unique_ptr<imager::MinorCycle> minor;
   {
     const imager::StageTimer timer(times, "minor cycles");
@@ -97,7 +97,7 @@ imager::CleanResult CleanStage::run(const CleanScene& scene, const nlohmann::jso
   {
     const imager::StageTimer timer(times, "CLEAN state");
     const imager::Image* const start = start_model_.empty() ? nullptr : &start_model_[scene.stokes];
-    owner.checksum = checksum({&scene.dirty, &scene.psf, mask_.get(), start});
+    owner.checksum = checksum({&scene.dirty, &scene.psf, mask(scene.stokes), start});
     state = begin(scene.stokes, *minor, owner);
     sidelobe = max_sidelobe(scene);
   }

@@ -33,7 +33,9 @@ class CleanStage {
   CleanStage(const ImageOptions& options, const imager::ImageGeometry& geometry, int threads);
 
   /// Null where CLEAN may go everywhere, or makes its own.
-  const imager::Image* mask() const { return mask_.get(); }
+  const imager::Image* mask(std::size_t stokes) const {
+    return masks_.empty() ? nullptr : &masks_[masks_.size() == 1 ? 0 : stokes];
+  }
   /// What the user should know before CLEAN begins; empty if nothing.
   std::string warning() const;
 
@@ -51,7 +53,7 @@ class CleanStage {
   const ImageOptions& o_;
   imager::ImageGeometry geometry_;
   int threads_;
-  std::unique_ptr<imager::Image> mask_;
+  std::vector<imager::Image> masks_;  ///< none, one for all, or [Stokes]
   std::vector<imager::Stokes> stokes_;
   std::vector<imager::Image> start_model_;  ///< [Stokes], or none
 };

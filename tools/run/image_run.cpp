@@ -93,7 +93,7 @@ class ImageRun {
   }
 
   void plan() {
-    const bool mask = clean_ && (clean_->mask() != nullptr || o_.usemask == "auto");
+    const bool mask = clean_ && (clean_->mask(0) != nullptr || o_.usemask == "auto");
     const RunScene scene{o_, *set_, geometry_, reach_, threads_, mask};
     plan_ = plan_run(scene, forecast_, times_, progress_);
     for (const std::string& warning : plan_.warnings) warn(warning);
@@ -178,7 +178,8 @@ class ImageRun {
                                                ProductScene{geometry_, stokes_, set_->observation(), report_.command_line,
                                                             error_cards(report_), beams_.restoring, threads_},
                                                times_);
-    products_->draw_dirty(source_->uv_coverage(), made_.images, clean_ ? clean_->mask() : nullptr);
+    products_->draw_dirty(source_->uv_coverage(), made_.images,
+                          [this](std::size_t s) { return clean_ ? clean_->mask(s) : nullptr; });
   }
 
   void clean() {
@@ -204,7 +205,7 @@ class ImageRun {
     progress_.end();
     made_.images.dirty[s] = {};
     imager::CleanResult& result = cleaned_.back();
-    if (clean_->mask() != nullptr) result.mask = *clean_->mask();
+    if (const imager::Image* const mask = clean_->mask(s); mask != nullptr) result.mask = *mask;
     report_.stokes[s].clean = &result.report;
     const imager::CleanStop stop = result.report.stop;
     if (stop == imager::CleanStop::diverging || stop == imager::CleanStop::diverging_from_best)

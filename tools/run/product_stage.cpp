@@ -39,7 +39,7 @@ ProductPicture ProductStage::picture_of(std::size_t stokes, ProductPicture pictu
 }
 
 void ProductStage::draw_dirty(const imager::UvCoverage& coverage, const imager::DirtyImages& images,
-                              const imager::Image* mask) {
+                              const std::function<const imager::Image*(std::size_t)>& mask_of) {
   const imager::StageTimer timer(times_, "draw pictures");
   products_.draw(coverage);
   products_.draw({{.name = "psf", .title = "PSF", .image = &images.psf}});
@@ -50,8 +50,8 @@ void ProductStage::draw_dirty(const imager::UvCoverage& coverage, const imager::
     if (o_.usemask == "auto")
       dirty_[s] = sketch(dirty, Shades::brightness, picture_side);
     else
-      pictures.push_back(
-          picture_of(s, {.name = o_.niter == 0 ? "residual" : "dirty", .title = "Dirty image", .image = &dirty, .mask = mask}));
+      pictures.push_back(picture_of(
+          s, {.name = o_.niter == 0 ? "residual" : "dirty", .title = "Dirty image", .image = &dirty, .mask = mask_of(s)}));
   }
   products_.draw(pictures);
 }

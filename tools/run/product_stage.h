@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -31,7 +32,9 @@ class ProductStage {
 
   /// Begins to draw what is there before CLEAN, while the caller does other things; an automatic mask is not known yet, and
   /// the dirty image then drawn with the others. Images are looked at until it returns.
-  void draw_dirty(const imager::UvCoverage& coverage, const imager::DirtyImages& images, const imager::Image* mask);
+  /// `mask_of` gives a Stokes parameter's mask, or null.
+  void draw_dirty(const imager::UvCoverage& coverage, const imager::DirtyImages& images,
+                  const std::function<const imager::Image*(std::size_t)>& mask_of);
 
   /// Writes the images of a run without CLEAN. Returns the names of files that an earlier run left and this one removed.
   std::vector<std::string> write(imager::DirtyImages images);
