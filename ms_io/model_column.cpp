@@ -3,6 +3,8 @@
 #include <casacore/tables/Tables/ArrColDesc.h>
 #include <casacore/tables/Tables/ArrayColumn.h>
 #include <casacore/tables/Tables/ScalarColumn.h>
+#include <casacore/tables/Tables/TableColumn.h>
+#include <casacore/tables/Tables/TableRecord.h>
 
 #include <algorithm>
 #include <sstream>
@@ -15,6 +17,9 @@
 
 namespace misfit::ms_io {
 namespace {
+
+/// A keyword of columns that were made here, which tells them from those that another program made while a journal lay about.
+constexpr const char* made_here = "MISFIT_MADE";
 
 constexpr ssize_t tile_samples = 1 << 16;  ///< half a megabyte of complex<float>
 
@@ -61,9 +66,11 @@ void add_column(casacore::MeasurementSet& set, const std::string& column, const 
   casacore::TableDesc description;
   if (fixed) {
     description.addColumn(Description(column, "", "TiledColumnStMan", group, cell, casacore::ColumnDesc::FixedShape));
+    description.rwColumnDesc(column).rwKeywordSet().define(made_here, true);
     set.addColumn(description, casacore::TiledColumnStMan(group, tile_shape(set, cell)));
   } else {
     description.addColumn(Description(column, "", "TiledShapeStMan", group, 2));
+    description.rwColumnDesc(column).rwKeywordSet().define(made_here, true);
     set.addColumn(description, casacore::TiledShapeStMan(group, tile_shape(set, cell)));
   }
 }
@@ -173,7 +180,8 @@ void require_writable_column(const casacore::MeasurementSet& set, const std::str
   }
   if (!data.empty()) require_visibility_column(set, path, data);
   if (set.tableDesc().isColumn(column.name)) {
-    if (!column.may_exist && !read_journal(set, column.name)) throw_exists(path, column.name);
+    const bool made = casacore::TableColumn(set, column.name).keywordSet().isDefined(made_here);
+    if (!column.may_exist && !(made && read_journal(set, column.name))) throw_exists(path, column.name);
     require_exact_storage(set, path, column.name);
   } else if (const std::string others = tables_referred_to(set); !others.empty()) {
     throw std::runtime_error(path + " has no column " + column.name + " and refers to the rows of " + others +
@@ -192,6 +200,7 @@ void create_model_column(casacore::MeasurementSet& set, const std::string& path,
       set.flush();
     } catch (...) {
       set.removeColumn(column.name);
+      remove_journal(set, column.name);
       throw;
     }
   });

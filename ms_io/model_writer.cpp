@@ -208,12 +208,14 @@ class ModelWriter {
   void go_on() {
     const std::optional<ModelJournal> before = read_journal(set_, column_.name);
     if (!before) return;
-    std::string fate = "; this run has another model, selection or option, and begins anew";
+    std::string fate =
+        "; this run has another model, selection or option, and begins anew: rows that it does not select stay as they are";
     if (!journal_.identity.empty() && before->identity == journal_.identity) {
       const ModelJournal anew = journal_;
       journal_ = *before;
       fate = ", going on";
       if (!as_it_was_left()) {
+        if (!column_.may_exist) throw_exists(path_, column_.name);
         journal_ = anew;
         fate = ", and have changed since; this run begins anew";
       }

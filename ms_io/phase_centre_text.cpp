@@ -43,7 +43,8 @@ std::optional<imager::SkyDirection> direction_in(const std::string& text) {
   const std::optional<double> ra = angle_rad(words[0]), dec = angle_rad(words[1]);
   // casacore reads colons as hours, also in a declination.
   constexpr double pole = 1.5707963267948968;
-  if (!ra || !dec || words[1].find(':') != std::string::npos || !(std::abs(*dec) <= pole) || !std::isfinite(*ra)) return {};
+  if (!ra || !dec || words[1].find(':') != std::string::npos || !(std::abs(*dec) <= pole) || !(std::abs(*ra) <= 4 * pole))
+    return {};
   direction.ra_rad = std::fmod(std::fmod(*ra, 4 * pole) + 4 * pole, 4 * pole);
   direction.dec_rad = *dec;
   return direction;
@@ -75,9 +76,10 @@ imager::SkyDirection parse_phase_centre(const std::string& text, const std::stri
   const casacore::MeasurementSet set = open_measurement_set(path, Access::read);
   const auto field = translated("cannot read FIELD of " + path, [&] { return field_in(set, one_line(text)); });
   if (field && set.nrow() > 0) return field_centre(set, path, *field, first_row_of(set, *field)).direction;
-  throw std::runtime_error("--phasecenter '" + text + "' is neither a direction nor a field of " + path +
-                           "; expected such as 'J2000 12h30m49.4s +12d23m28s', or one of its " +
-                           std::to_string(set.field().nrow()) + " fields by id or name");
+  throw std::runtime_error(
+      "--phasecenter '" + text + "' is neither a direction nor a field of " + path +
+      "; expected J2000, ICRS or B1950 with angles such as 12h30m49.4s +12d23m28s or 187.7deg 12.39deg, or one of its " +
+      std::to_string(set.field().nrow()) + " fields by id or name");
 }
 
 }  // namespace misfit::ms_io

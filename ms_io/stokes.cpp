@@ -6,6 +6,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include "ms_io/stokes_response_internal.h"
+
 namespace misfit::ms_io {
 namespace {
 
@@ -21,17 +23,23 @@ struct Pair {
   std::complex<float> of_first, of_second;
 };
 
-const std::array<Pair, 8>& pairs() {
-  constexpr float half = 0.5F;
-  const std::complex<float> turned(0, -half);  // 1/(2i)
-  static const std::array<Pair, 8> all = {{{Stokes::I, Stokes::XX, Stokes::YY, half, half},
-                                           {Stokes::Q, Stokes::XX, Stokes::YY, half, -half},
-                                           {Stokes::U, Stokes::XY, Stokes::YX, half, half},
-                                           {Stokes::V, Stokes::XY, Stokes::YX, turned, -turned},
-                                           {Stokes::I, Stokes::RR, Stokes::LL, half, half},
-                                           {Stokes::V, Stokes::RR, Stokes::LL, half, -half},
-                                           {Stokes::Q, Stokes::RL, Stokes::LR, half, half},
-                                           {Stokes::U, Stokes::RL, Stokes::LR, turned, -turned}}};
+/// From what correlations respond to: V_1 = S + c T and V_2 = S − c T give S = (V_1 + V_2)/2 and T = (V_1 − V_2)/(2c).
+std::vector<Pair> solved_pairs() {
+  const std::array<std::array<Stokes, 2>, 4> hands = {
+      {{Stokes::XX, Stokes::YY}, {Stokes::XY, Stokes::YX}, {Stokes::RR, Stokes::LL}, {Stokes::RL, Stokes::LR}}};
+  std::vector<Pair> pairs;
+  for (const auto& [first, second] : hands) {
+    const StokesResponse response = stokes_response(code(first));
+    const std::complex<float> c(static_cast<float>(response.re), static_cast<float>(response.im));
+    pairs.push_back({static_cast<Stokes>(response.first + 1), first, second, 0.5F, 0.5F});
+    pairs.push_back(
+        {static_cast<Stokes>(response.second + 1), first, second, 0.5F * std::conj(c), -0.5F * std::conj(c)});  // |c| = 1
+  }
+  return pairs;
+}
+
+const std::vector<Pair>& pairs() {
+  static const std::vector<Pair> all = solved_pairs();
   return all;
 }
 

@@ -1,3 +1,4 @@
+#include <casacore/casa/IO/LockFile.h>
 #include <casacore/casa/Logging/LogSink.h>
 #include <casacore/casa/Logging/NullLogSink.h>
 #include <casacore/tables/Tables/ColumnDesc.h>
@@ -43,6 +44,43 @@ void require_main_columns(const casacore::Table& table, const std::string& path)
   if (!missing.empty()) throw std::runtime_error(path + " is a table but not a MeasurementSet: it has no column " + missing);
 }
 
+/// Whether the table has other columns than its lock file says: another process changed it just now, or was killed before it
+/// wrote both.
+bool contradicts_lock_file(const casacore::AipsError& error) {
+  return std::string(error.getMesg()).find("cannot sync table") != std::string::npos;
+}
+
+/// Removes a lock file that no other process uses: casacore makes a new one, from the table as it is.
+void forget_lock_file(const std::string& path) {
+  const std::string file = path + "/table.lock";
+  casacore::uInt process = 0;
+  bool permanent = false;
+  std::error_code ignored;
+  if (casacore::LockFile::showLock(process, permanent, file) == 0) std::filesystem::remove(file, ignored);
+}
+
+casacore::MeasurementSet opened(const std::string& path, Access access) {
+  if (!casacore::Table::isReadable(path)) {
+    throw std::runtime_error(path + " is not a casacore table; expected the directory of a MeasurementSet");
+  }
+  // Locking creates lock files where there are none, which reading must not. Unlike the default, neither waits for others.
+  const bool update = access == Access::update;
+  const casacore::TableLock look(update ? casacore::TableLock::AutoNoReadLocking : casacore::TableLock::NoLocking);
+  require_main_columns(casacore::Table(path, look), path);
+  if (update && !casacore::Table::isWritable(path)) {
+    throw std::runtime_error(path + " is read-only; writing a column needs write permission");
+  }
+  const auto option = update ? casacore::Table::Update : casacore::Table::Old;
+  const casacore::TableLock lock(update ? casacore::TableLock::UserNoReadLocking : casacore::TableLock::NoLocking);
+  casacore::MeasurementSet set(path, lock, option);
+  if (update && !set.lock(casacore::FileLocker::Write, lock_attempts)) {
+    throw std::runtime_error(path +
+                             " is locked by another process; expected one that is not being written, or read by a program "
+                             "that keeps it locked");
+  }
+  return set;
+}
+
 }  // namespace
 
 std::string one_line(const std::string& message) {
@@ -57,25 +95,13 @@ casacore::MeasurementSet open_measurement_set(const std::string& path, Access ac
   std::error_code ignored;
   if (!std::filesystem::exists(path, ignored)) throw std::runtime_error(path + " does not exist; expected a MeasurementSet");
   return translated("cannot open " + path, [&] {
-    if (!casacore::Table::isReadable(path)) {
-      throw std::runtime_error(path + " is not a casacore table; expected the directory of a MeasurementSet");
+    try {
+      return opened(path, access);
+    } catch (const casacore::AipsError& error) {
+      if (access == Access::read || !contradicts_lock_file(error)) throw;
     }
-    // Locking creates lock files where there are none, which reading must not. Unlike the default, neither waits for others.
-    const bool update = access == Access::update;
-    const casacore::TableLock look(update ? casacore::TableLock::AutoNoReadLocking : casacore::TableLock::NoLocking);
-    require_main_columns(casacore::Table(path, look), path);
-    if (access == Access::update && !casacore::Table::isWritable(path)) {
-      throw std::runtime_error(path + " is read-only; writing a column needs write permission");
-    }
-    const auto option = access == Access::update ? casacore::Table::Update : casacore::Table::Old;
-    const casacore::TableLock lock(update ? casacore::TableLock::UserNoReadLocking : casacore::TableLock::NoLocking);
-    casacore::MeasurementSet set(path, lock, option);
-    if (update && !set.lock(casacore::FileLocker::Write, lock_attempts)) {
-      throw std::runtime_error(path +
-                               " is locked by another process; expected one that is not being written, or read by a program "
-                               "that keeps it locked");
-    }
-    return set;
+    forget_lock_file(path);
+    return opened(path, access);
   });
 }
 

@@ -87,11 +87,11 @@ BOOST_AUTO_TEST_CASE(fields_are_found_by_name_and_id) {
 BOOST_AUTO_TEST_CASE(what_is_no_direction_is_refused_with_what_was_expected) {
   const SmallSet set;
   for (const std::string wrong :
-       {"", "2", "NOBODY", "J2000 12h30m49.4s", "J2000 1.2 0.3", "GALACTIC 1deg 2deg", "J2000 12h 91deg",
+       {"", "2", "NOBODY", "J2000 12h30m49.4s", "J2000 1.2 0.3", "GALACTIC 1deg 2deg", "J2000 12h 91deg", "J2000 28h 1deg",
         "J2000 12h30m +12:23:28", "J2000 nan inf", "J2000 1deg 2Jy", "J2000 12h30m49.4s +12d23m28s now"}) {
     const std::string error = error_of([&] { ms_io::parse_phase_centre(wrong, set.path()); });
     BOOST_TEST(contains(error, "--phasecenter '" + wrong + "'"));
-    BOOST_TEST(contains(error, "expected such as 'J2000 12h30m49.4s +12d23m28s'"));
+    BOOST_TEST(contains(error, "expected J2000, ICRS or B1950 with angles such as 12h30m49.4s +12d23m28s"));
   }
 }
 

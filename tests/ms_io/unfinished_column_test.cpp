@@ -144,6 +144,22 @@ BOOST_AUTO_TEST_CASE(a_column_that_must_be_new_is_taken_up_by_the_run_that_made_
   BOOST_TEST((all_of(set, "CORRECTED_DATA") == whole(difference)));
 }
 
+BOOST_AUTO_TEST_CASE(a_column_that_another_program_made_or_changed_is_left_alone_whatever_the_record_says) {
+  // Killed before it made the column; then calibration makes it.
+  const MixedSet made, changed;
+  write(made, difference, selection, 1);
+  made.modify([](casacore::MeasurementSet& ms) {
+    ms.removeColumn("CORRECTED_DATA");
+    ms.addColumn(casacore::ArrayColumnDesc<Complex>("CORRECTED_DATA", 2));
+    casacore::ArrayColumn<Complex> corrected(ms, "CORRECTED_DATA"), data(ms, "DATA");
+    for (casacore::rownr_t row = 0; row < ms.nrow(); ++row) corrected.put(row, data(row));
+  });
+  BOOST_TEST(contains(error_of([&] { write(made, difference); }), "CORRECTED_DATA already"));
+  write(changed, difference, selection, 2);
+  changed.put("CORRECTED_DATA", 1, 0, 2, Complex(99));
+  BOOST_TEST(contains(error_of([&] { write(changed, difference); }), "CORRECTED_DATA already"));
+}
+
 BOOST_AUTO_TEST_CASE(a_record_without_its_column_is_none) {
   const MixedSet set;
   write(set, plain, selection, 1);

@@ -116,6 +116,26 @@ BOOST_AUTO_TEST_CASE(masks_of_each_stokes_parameter_are_made_and_taken_back) {
              std::string::npos);
 }
 
+BOOST_AUTO_TEST_CASE(the_model_of_any_stokes_parameters_is_saved_as_all_correlations_show_it) {
+  for (const char* stokes : {"V", "QU", "IQUV"}) {
+    const Copy copy(linear);
+    copy.predict(stokes_columns, two_points);
+    succeed(small_image(copy.set, copy.folder / "a") +
+            Arguments{"--datacolumn", "model", "--stokes", stokes, "--niter", "200", "--savemodel", "modelcolumn"});
+    // The saved model's own image is that of the model's planes.
+    for (const imager::SkyImage& plane : imager::read_stokes_images(copy.folder / "a.model.fits")) {
+      const std::string name = imager::stokes_name(plane.stokes);
+      double flux = 0;
+      for (const double pixel : plane.image.pixel) flux += pixel;
+      const Arguments one{"--datacolumn", "model", "--stokes", name, "--niter", "200", "--gain", "0.5"};
+      succeed(small_image(copy.set, copy.folder / "b") + one);
+      const double again = report_of(copy.folder / "b")["clean"]["model_flux_jy"];
+      BOOST_TEST_INFO(stokes << " " << name);
+      BOOST_TEST(std::abs(again - flux) < 0.02 * 5);  // two percent of the brightest point
+    }
+  }
+}
+
 BOOST_AUTO_TEST_CASE(what_cannot_be_formed_is_refused_with_the_correlations_there_are) {
   const Copy copy(std::vector<int>{9, 12});
   for (const auto& [stokes, expected] : {std::pair("V", "Stokes V cannot be formed from correlations XX, YY; it needs"),

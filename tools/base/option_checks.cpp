@@ -1,5 +1,6 @@
 #include "tools/base/option_checks.h"
 
+#include <cstdio>
 #include <stdexcept>
 
 namespace misfit::tools {
@@ -19,6 +20,16 @@ CLI::Validator quantity(double (*parse)(const std::string&)) {
 
 CLI::Validator not_empty() {
   return CLI::Validator([](const std::string& value) -> std::string { return value.empty() ? "'': expected a name" : ""; }, "");
+}
+
+void refuse_option(const std::string& option, const std::string& value, const std::string& expected) {
+  throw std::invalid_argument("--" + option + " " + value + ": expected " + expected);
+}
+
+std::string typed(double value) {
+  char buffer[32];
+  std::snprintf(buffer, sizeof buffer, "%g", value);
+  return buffer;
 }
 
 }  // namespace misfit::tools

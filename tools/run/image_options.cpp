@@ -20,128 +20,6 @@
 #include "tools/run/weighting_options.h"
 
 namespace misfit::tools {
-namespace {
-
-[[noreturn]] void refuse(const std::string& option, const std::string& value, const std::string& expected) {
-  throw std::invalid_argument("--" + option + " " + value + ": expected " + expected);
-}
-
-std::string text(double value) {
-  char buffer[32];
-  std::snprintf(buffer, sizeof buffer, "%g", value);
-  return buffer;
-}
-
-/// The same set twice would count twice.
-void check_sets(const ImageOptions& o) {
-  std::set<std::filesystem::path> met;
-  for (const std::string& name : o.vis) {
-    const std::filesystem::path path = std::filesystem::weakly_canonical(name);
-    if (!met.insert(path.has_filename() ? path : path.parent_path()).second) refuse("vis", name, "each set once");
-  }
-}
-
-void check_image(const ImageOptions& o) {
-  check_sets(o);
-  const std::string name = std::filesystem::path(o.imagename).filename();
-  if (name.empty() || name == "." || name == "..")
-    refuse("imagename", "'" + o.imagename + "'", "a name for files to begin with, not a folder");
-  constexpr int largest = 65536;
-  for (const int size : o.imsize)
-    if (size < 1 || size > largest) refuse("imsize", std::to_string(size), "1 to 65536 pixels");
-  for (const imager::Stokes stokes : imager::parse_stokes(o.stokes))
-    if (stokes == imager::Stokes::XY || stokes == imager::Stokes::YX || stokes == imager::Stokes::RL ||
-        stokes == imager::Stokes::LR)
-      refuse("stokes", o.stokes, "no crossed hands, which are complex on the sky: Q, U and V show their parts");
-  if (!(parse_angle_rad(o.cell) > 0)) refuse("cell", o.cell, "an angle above 0");
-  if (parse_angle_rad(o.cell) > 0.5) refuse("cell", o.cell, "less than 0.5 rad");
-}
-
-void check_deconvolver(const ImageOptions& o) {
-  const bool multiscale = o.deconvolver == "multiscale";
-  const std::string scales = o.scales.empty() ? "" : text(o.scales.front()) + " …";
-  if (!multiscale && !o.scales.empty()) refuse("scales", scales, "--deconvolver multiscale beside it");
-  if (!multiscale && o.smallscalebias != 0)
-    refuse("smallscalebias", text(o.smallscalebias), "--deconvolver multiscale beside it");
-  if (multiscale && o.scales.empty()) refuse("deconvolver", o.deconvolver, "--scales beside it, such as 0,5,15");
-  for (std::size_t i = 0; i < o.scales.size(); ++i)
-    if (!(o.scales[i] >= 0 && o.scales[i] <= *std::min_element(o.imsize.begin(), o.imsize.end())) ||
-        (i > 0 && !(o.scales[i] > o.scales[i - 1])) || (o.scales[i] > 0 && o.scales[i] < 3))
-      refuse("scales", text(o.scales[i]), "pixels in ascending order, each 0 or from 3 to the image's size");
-  if (!(o.smallscalebias >= 0 && o.smallscalebias < 1))
-    refuse("smallscalebias", text(o.smallscalebias), "0 or more, and below 1");
-}
-
-void check_auto_mask(const ImageOptions& o) {
-  if (o.usemask == "auto" && o.niter == 0) refuse("usemask", o.usemask, "--niter above 0 beside it");
-  if (o.usemask == "auto" && !o.mask.empty()) refuse("mask", o.mask, "--usemask user, or no mask");
-  if (!(o.sidelobethreshold >= 0)) refuse("sidelobethreshold", text(o.sidelobethreshold), "0 or more");
-  if (!(o.noisethreshold > 0)) refuse("noisethreshold", text(o.noisethreshold), "more than 0");
-  if (!(o.lownoisethreshold > 0 && o.lownoisethreshold <= o.noisethreshold))
-    refuse("lownoisethreshold", text(o.lownoisethreshold), "more than 0 and at most noisethreshold");
-  if (!(o.minbeamfrac >= 0)) refuse("minbeamfrac", text(o.minbeamfrac), "0 or more");
-  if (o.growiterations < 0) refuse("growiterations", std::to_string(o.growiterations), "0 or more");
-}
-
-void check_clean(const ImageOptions& o) {
-  if (o.niter < 0) refuse("niter", std::to_string(o.niter), "0 or more");
-  if (!(o.gain > 0 && o.gain <= 1)) refuse("gain", text(o.gain), "more than 0 and at most 1");
-  if (!(parse_flux_jy(o.threshold) >= 0)) refuse("threshold", o.threshold, "0 or more");
-  if (!(o.nsigma >= 0)) refuse("nsigma", text(o.nsigma), "0 or more");
-  if (!(o.cyclefactor > 0)) refuse("cyclefactor", text(o.cyclefactor), "more than 0");
-  if (!(o.minpsffraction > 0 && o.minpsffraction <= 1))
-    refuse("minpsffraction", text(o.minpsffraction), "more than 0 and at most 1");
-  if (!(o.maxpsffraction >= o.minpsffraction && o.maxpsffraction <= 1))
-    refuse("maxpsffraction", text(o.maxpsffraction), "minpsffraction to 1");
-  if (o.cycleniter == 0 || o.cycleniter < -1) refuse("cycleniter", std::to_string(o.cycleniter), "-1 (no limit), 1 or more");
-  if (o.nmajor < -1) refuse("nmajor", std::to_string(o.nmajor), "-1 (no limit) or more");
-  if (restoring_beam(o) && o.niter == 0) refuse("restoringbeam", o.restoringbeam, "--niter above 0 beside it");
-  const int smallest = *std::min_element(o.imsize.begin(), o.imsize.end());
-  if (o.niter > 0 && smallest < 3 && !restoring_beam(o))
-    refuse("imsize", std::to_string(smallest), "3 pixels or more to fit a beam to, or --restoringbeam");
-  if (!o.startmodel.empty() && o.niter == 0) refuse("startmodel", o.startmodel, "--niter above 0 beside it");
-  for (const imager::Stokes stokes : imager::parse_stokes(o.stokes))
-    if (o.savemodel != "none" && stokes > imager::Stokes::V)
-      refuse("savemodel", o.savemodel, "--stokes of I, Q, U and V, of which a column's correlations are made");
-  if (o.savemodel != "none" && o.niter == 0) refuse("savemodel", o.savemodel, "--niter above 0 beside it");
-  if (!o.mask.empty() && o.niter == 0) refuse("mask", o.mask, "--niter above 0 beside it");
-  if (o.restart && o.niter == 0) refuse("restart", "true", "--niter above 0 beside it");
-  check_deconvolver(o);
-  check_auto_mask(o);
-}
-
-/// The tables that --evaluation names, if it does.
-std::optional<kernels::TableOptions> lookup_of(const ImageOptions& o) {
-  const auto& names = kernels::interpolation_names;
-  const auto found = std::find(names.begin(), names.end(), o.evaluation);
-  if (found == names.end()) return {};
-  return kernels::TableOptions{o.sampling, static_cast<kernels::Interpolation>(found - names.begin())};
-}
-
-void check_tables(const ImageOptions& o) {
-  const std::optional<kernels::TableOptions> lookup = lookup_of(o);
-  constexpr int most = kernels::kernel_table_max_per_cell;
-  if (lookup && !(o.sampling >= 1 && o.sampling <= most))
-    refuse("sampling", std::to_string(o.sampling),
-           "1 to " + std::to_string(most) + " entries a cell beside --evaluation " + o.evaluation);
-  if (!lookup && o.sampling != 0)
-    refuse("sampling", std::to_string(o.sampling), "--evaluation nearest, linear, quadratic or cubic beside it");
-}
-
-/// What needs neither the data nor the kernel's solution.
-void check_gridding(const ImageOptions& o) {
-  check_tables(o);
-  const bool accuracy_is_free = kernel_is_given(o);
-  if (!(o.accuracy > 0 && o.accuracy < 1) && !(o.accuracy == 0 && accuracy_is_free))
-    refuse("accuracy", text(o.accuracy), "a number above 0 and below 1");
-  if (!(o.psf_accuracy >= 0 && o.psf_accuracy < 1))
-    refuse("psf-accuracy", text(o.psf_accuracy), "a number above 0 and below 1, or 0 (chosen)");
-  if (o.psf_accuracy != 0 && o.accuracy == 0)
-    refuse("psf-accuracy", text(o.psf_accuracy), "--accuracy beside it, since the kernel given decides otherwise");
-  imager::check_request(gridding_request(o, 1));
-}
-
-}  // namespace
 
 void declare_scene(CLI::App& command, ImageOptions& o) {
   command.add_option("--vis", o.vis, "MeasurementSet, or several for one image; opened read-only, but to save a model")
@@ -155,8 +33,6 @@ void declare_scene(CLI::App& command, ImageOptions& o) {
       ->required()
       ->check(quantity(parse_angle_rad));
   declare_selection(command, o.selection);
-  command.add_option("--stokes", o.stokes,
-                     "Stokes parameters, or correlations of parallel hands, which share one PSF: I, IQUV, IV, XXYY, RR, …");
   command.add_option("--datacolumn", o.datacolumn,
                      "data, corrected, model, or a column's name; or one for each set: corrected,data");
   declare_weighting(command, o);
@@ -181,6 +57,8 @@ ms_io::Selection selection_of(const ImageOptions& o) {
 void declare(CLI::App& command, ImageOptions& o) {
   declare_scene(command, o);
   command.add_option("--imagename", o.imagename, "Names of the output files begin with this")->required();
+  command.add_option("--stokes", o.stokes,
+                     "Stokes parameters, or correlations of parallel hands, which share one PSF: I, IQUV, IV, XXYY, RR, …");
   command.add_option("--kernel", o.kernel.name,
                      "Gridding function: a name such as least-misfit or spheroidal, or a kernel-table file");
   declare_kernel_folder(command, o.kernel.folder);
@@ -245,15 +123,11 @@ bool kernel_is_given(const ImageOptions& o) {
   return is_kernel_file(o.kernel) || (o.kernel_width != 0 && o.padding != 0);
 }
 
-void check(const ImageOptions& o) {
-  check_image(o);
-  check_weighting(o);
-  check_clean(o);
-  check_gridding(o);
-  if (o.verify < 0) refuse("verify", std::to_string(o.verify), "0 or more");
-  if (o.threads < 0) refuse("threads", std::to_string(o.threads), "0 (all cores) or more");
-  if (!(o.memory_gib >= 0 && std::isfinite(o.memory_gib)))
-    refuse("memory", text(o.memory_gib), "0 (half of the machine's memory) or more, in GiB");
+std::optional<kernels::TableOptions> lookup_of(const ImageOptions& o) {
+  const auto& names = kernels::interpolation_names;
+  const auto found = std::find(names.begin(), names.end(), o.evaluation);
+  if (found == names.end()) return {};
+  return kernels::TableOptions{o.sampling, static_cast<kernels::Interpolation>(found - names.begin())};
 }
 
 imager::ImageGeometry geometry_of(const ImageOptions& o, const imager::SkyDirection& phase_centre) {
@@ -283,8 +157,8 @@ std::optional<imager::Beam> restoring_beam(const ImageOptions& o) {
   if (o.restoringbeam.empty() || o.restoringbeam == "common") return std::nullopt;
   const auto expect = [&](bool holds) {
     if (!holds)
-      refuse("restoringbeam", o.restoringbeam,
-             "common, MAJ, or MAJ,MIN,PA such as 0.5arcsec,0.4arcsec,30deg with MAJ at least MIN, and MIN above 0");
+      refuse_option("restoringbeam", o.restoringbeam,
+                    "common, MAJ, or MAJ,MIN,PA such as 0.5arcsec,0.4arcsec,30deg with MAJ at least MIN, and MIN above 0");
   };
   const auto angle = [&](std::string_view part) {
     const std::string text(part);

@@ -11,6 +11,7 @@
 #include "imager/clean/deconvolver.h"
 #include "imager/geometry.h"
 #include "imager/plan/gridding_choice.h"
+#include "kernels/lookup_table.h"
 #include "ms_io/measurement_set.h"
 #include "tools/kernel_choice/kernel_choice.h"
 
@@ -89,6 +90,8 @@ bool kernel_is_given(const ImageOptions& options);
 /// file that cannot be used.
 void check(const ImageOptions& options);
 
+/// The tables that --evaluation names, if it does.
+std::optional<kernels::TableOptions> lookup_of(const ImageOptions& options);
 imager::ImageGeometry geometry_of(const ImageOptions& options, const imager::SkyDirection& phase_centre);
 imager::GriddingRequest gridding_request(const ImageOptions& options, int threads);
 /// The beam that --restoringbeam names: "0.5arcsec" or "0.5arcsec,0.4arcsec,30deg"; nothing where it is the fitted one.

@@ -9,14 +9,12 @@
 #include "imager/parallel.h"
 #include "imager/stokes.h"
 #include "imager/stokes_view.h"
-#include "ms_io/fingerprint.h"
+#include "ms_io/model_writer.h"
 #include "tools/base/files.h"
 #include "tools/base/progress.h"
-#include "tools/base/text.h"
-#include "tools/formats/model_image.h"
-#include "tools/kernel_choice/kernel_choice.h"
 #include "tools/run/beam_choice.h"
 #include "tools/run/clean_stage.h"
+#include "tools/run/model_stage.h"
 #include "tools/run/outside_stage.h"
 #include "tools/run/product_stage.h"
 #include "tools/run/run_messages.h"
@@ -24,7 +22,6 @@
 #include "tools/run/run_report.h"
 #include "tools/run/weighting_options.h"
 #include "tools/run_page/report_page.h"
-#include "tools/version.h"
 
 namespace misfit::tools {
 namespace {
@@ -82,8 +79,7 @@ class ImageRun {
     if (!o_.dry_run) check_writable_folder(o_.imagename);
     if (o_.savemodel == "modelcolumn")
       for (const std::string& set : o_.vis) ms_io::require_writable(set);
-    selection_ = selection_of(o_);
-    set_ = std::make_unique<ms_io::MeasurementSet>(o_.vis, selection_, o_.datacolumn, stokes_);
+    set_ = std::make_unique<ms_io::MeasurementSet>(o_.vis, selection_of(o_), o_.datacolumn, stokes_);
     for (const std::string& sentence : set_->incomplete_columns()) warn(sentence);
     geometry_ = geometry_of(o_, set_->observation().phase_centre);
     reach_ = set_->reach();
@@ -147,7 +143,7 @@ class ImageRun {
   void predict_noise() {
     const imager::WeightSums sums =
         weights_ ? source_->weight_sums() : imager::WeightSums::of_natural(made_.images.sums.front().weight);
-    if (weights_ && !sums.outweigh_least(report_.counts.used))
+    if (weights_ && !o_.uvtaper.empty() && !sums.outweigh_least(report_.counts.used))
       throw std::runtime_error("--uvtaper " + o_.uvtaper +
                                ": no sample keeps a weight that counts; expected a taper of larger radius in the "
                                "uv plane, or a smaller angle");
@@ -248,27 +244,10 @@ class ImageRun {
 
   void save_model() {
     progress_.begin("save model", true);  // a column half written helps no one
-    ModelVisibilities model;
-    {
-      const ms_io::MeasurementSet set(o_.vis, selection_, o_.datacolumn, stokes_);
-      model = image_visibilities(model_planes(), geometry_, gridding_request(o_, threads_), set);
-    }
-    ms_io::Fingerprint fingerprint;
-    fingerprint.add(std::string(version)).add(report_.options.dump());
-    for (const imager::CleanResult& result : cleaned_) fingerprint.add(result.model.pixel);
-    ms_io::ModelColumn column{"MODEL_DATA"};
-    column.origin = {"misfit image --savemodel modelcolumn --imagename " + shell_quoted(o_.imagename), fingerprint.value(),
-                     [this](const std::string& sentence) { progress_.say(sentence); }};
-    for (const std::string& set : o_.vis)
-      ms_io::write_model(set, selection_, column, model.predict, progress(), model.samples_at_once);
+    const SavedModel model{geometry_, stokes_, cleaned_, report_.options.dump(),
+                           [this](const std::string& sentence) { progress_.say(sentence); }};
+    tools::save_model(o_, model, threads_, progress());
     progress_.end();
-  }
-
-  /// Those of I, Q, U and V.
-  StokesPlanes model_planes() const {
-    StokesPlanes planes{};
-    for (std::size_t s = 0; s < stokes_.size(); ++s) planes.at(static_cast<std::size_t>(stokes_[s]) - 1) = &cleaned_[s].model;
-    return planes;
   }
 
   void write_images() {
@@ -328,7 +307,6 @@ class ImageRun {
   RunWork work_;
   std::optional<int> iterations_before_;  ///< this run's CLEAN
 
-  ms_io::Selection selection_;
   std::unique_ptr<ms_io::MeasurementSet> set_;
   imager::ImageGeometry geometry_;
   imager::UvwReach reach_;

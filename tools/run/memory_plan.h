@@ -1,5 +1,7 @@
 #pragma once
 
+#include <functional>
+
 #include "imager/plan/memory_use.h"
 #include "imager/plan/plan.h"
 #include "tools/run/image_options.h"
@@ -19,7 +21,14 @@ void limit_memory(double bytes, imager::GriddingRequest& request);
 /// Keeps the visibilities where --memory, or half of the machine's memory, allows it; else reads them again in every pass, and
 /// less far ahead where that helps. Nothing of this changes a bit of the images. Throws std::invalid_argument that says how
 /// much memory is needed when --memory, or the machine's memory, is less.
-MemoryPlan plan_memory(const imager::MemoryDemand& demand, const ImageOptions& options);
+///
+/// `least_with` gives what a run takes at least when it is planned for so many bytes, which may be more than so many: the
+/// memory that the message names is one that is enough. Without it that of `demand` counts.
+MemoryPlan plan_memory(const imager::MemoryDemand& demand, const ImageOptions& options,
+                       const std::function<double(double)>& least_with = {});
+
+/// How visibilities stream where memory is scarcest.
+inline const imager::StreamingOptions least_streaming{false, 0};
 
 /// The peak and what it consists of, a line each.
 std::string memory_table(const imager::MemoryUse& use);

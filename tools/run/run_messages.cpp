@@ -13,6 +13,18 @@ std::string counted(std::uint64_t count) {
   return grouped(static_cast<long long>(count));
 }
 
+std::string beam_text(const imager::Beam& beam) {
+  const ScaledUnit unit = angle_unit(beam.major_rad);
+  return significant(beam.major_rad / unit.size, 4) + " × " + significant(beam.minor_rad / unit.size, 4) + unit.name + " at " +
+         significant(beam.position_angle_rad * 180 / M_PI, 3) + "°";
+}
+
+/// With the one that WSClean would have, since people compare.
+std::string beam_line(const BeamChoice& beams) {
+  return "beam " + beam_text(*beams.restoring) + (beams.quadrant ? "; by WSClean's rule " + beam_text(*beams.quadrant) : "") +
+         "\n";
+}
+
 }  // namespace
 
 imager::Decision left_out_decision(const imager::SampleCounts& counts) {
@@ -55,6 +67,7 @@ std::string summary(const RunReport& r) {
     text += (r.stokes.size() > 1 ? " of " + stokes_name(of.stokes) + " " : " ") +
             with_prefix(of.histogram.noise_jy, "Jy/beam", 3) + ",";
   text += " predicted " + with_prefix(r.predicted_noise_jy, "Jy/beam", 3) + "\n";
+  if (r.beams != nullptr && r.beams->restoring) text += beam_line(*r.beams);
   for (const StokesReport& of : r.stokes)
     if (of.clean != nullptr)
       text += (r.stokes.size() > 1 ? stokes_name(of.stokes) + ": " : "") + grouped(of.clean->iterations) +

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <functional>
 #include <optional>
 
 #include "imager/outside/wide_search.h"
@@ -26,12 +27,13 @@ class RunPlanner {
     request.samples = scene_.set.samples();
     request.stokes = static_cast<int>(imager::parse_stokes(o_.stokes).size());
     request.max_abs_w = scene_.reach.max_abs_w;
+    const imager::GriddingRequest unlimited = request;
     if (o_.memory_gib > 0) limit_memory(o_.memory_gib * gib, request);
     plan_.gridding = imager::plan_gridding(request);
     decide_pixels();
     plan_.decisions.push_back(weighting_decision(o_, scene_.geometry));
     if (o_.check_outside) plan_search(request);
-    decide_memory();
+    decide_memory([&](double bytes) { return least_memory(unlimited, bytes); });
     decide("columns and correlations", "only what Stokes " + o_.stokes + " needs",
            "UVW, antennas, flags, weights and one data column, each read once");
     if (o_.niter > 0)
@@ -85,25 +87,37 @@ class RunPlanner {
     return 0;
   }
 
-  std::optional<imager::WiderDemand> wider_demand() const {
-    if (!plan_.wider) return {};
-    return imager::WiderDemand{imager::memory_of(*plan_.wider), static_cast<double>(wide_field_.geometry.pixels())};
+  static imager::WiderDemand wider_demand(const imager::GriddingPlan& wider, const imager::WideField& field) {
+    return {imager::memory_of(wider), static_cast<double>(field.geometry.pixels())};
   }
 
-  void decide_memory() {
-    const MemoryPlan memory = plan_memory({.transform = imager::memory_of(plan_.gridding),
-                                           .pixels = static_cast<double>(scene_.geometry.pixels()),
-                                           .rows = static_cast<double>(scene_.set.rows()),
-                                           .samples = static_cast<double>(scene_.set.samples()),
-                                           .block_samples = static_cast<double>(ms_io::MeasurementSet::usual_block_samples),
-                                           .stokes = plan_.gridding.request.stokes,
-                                           .verify = o_.verify > 0,
-                                           .clean_scales = o_.niter > 0 ? std::max(1, static_cast<int>(o_.scales.size())) : 0,
-                                           .mask = scene_.mask,
-                                           .start_model = !o_.startmodel.empty(),
-                                           .density = weighting_options(o_).needs_density(),
-                                           .wider = wider_demand()},
-                                          o_);
+  imager::MemoryDemand demand_of(const imager::GriddingPlan& gridding, std::optional<imager::WiderDemand> wider) const {
+    return {.transform = imager::memory_of(gridding),
+            .pixels = static_cast<double>(scene_.geometry.pixels()),
+            .rows = static_cast<double>(scene_.set.rows()),
+            .samples = static_cast<double>(scene_.set.samples()),
+            .block_samples = static_cast<double>(ms_io::MeasurementSet::usual_block_samples),
+            .stokes = gridding.request.stokes,
+            .verify = o_.verify > 0,
+            .clean_scales = o_.niter > 0 ? std::max(1, static_cast<int>(o_.scales.size())) : 0,
+            .mask = scene_.mask,
+            .start_model = !o_.startmodel.empty(),
+            .density = weighting_options(o_).needs_density(),
+            .wider = wider};
+  }
+
+  /// What the run takes at least where it is planned for so many bytes.
+  double least_memory(imager::GriddingRequest request, double bytes) const {
+    limit_memory(bytes, request);
+    std::optional<imager::WiderDemand> wider;
+    if (plan_.wider) wider = wider_demand(imager::plan_wide_field(wide_field_, request), wide_field_);
+    return imager::peak_memory(demand_of(imager::plan_gridding(request), wider), least_streaming).total();
+  }
+
+  void decide_memory(const std::function<double(double)>& least_with) {
+    std::optional<imager::WiderDemand> wider;
+    if (plan_.wider) wider = wider_demand(*plan_.wider, wide_field_);
+    const MemoryPlan memory = plan_memory(demand_of(plan_.gridding, wider), o_, least_with);
     plan_.streaming = memory.streaming;
     plan_.streaming.uv_reach_lambda =
         std::min(std::max(scene_.reach.max_abs_u, scene_.reach.max_abs_v), 0.5 / scene_.geometry.cell_rad);

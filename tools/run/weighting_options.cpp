@@ -4,6 +4,7 @@
 #include <stdexcept>
 
 #include "tools/base/numbers.h"
+#include "tools/base/option_checks.h"
 #include "tools/base/quantity.h"
 #include "tools/base/text.h"
 
@@ -14,17 +15,6 @@ using imager::Weighting;
 
 constexpr double default_robust = 0.5;
 constexpr int default_npixels = 6;
-
-[[noreturn]] void refuse(const std::string& option, const std::string& value, const std::string& expected) {
-  throw std::invalid_argument("--" + option + " " + value + ": expected " + expected);
-}
-
-/// As it is typed.
-std::string text(double value) {
-  char buffer[32];
-  std::snprintf(buffer, sizeof buffer, "%g", value);
-  return buffer;
-}
 
 Weighting weighting_of(const std::string& name) {
   if (name == "uniform") return Weighting::uniform;
@@ -92,18 +82,19 @@ void declare_weighting(CLI::App& command, ImageOptions& o) {
 
 void check_weighting(const ImageOptions& o) {
   const bool briggs = o.weighting == "briggs", superuniform = o.weighting == "superuniform";
-  if (!(o.robust >= -2 && o.robust <= 2)) refuse("robust", text(o.robust), "-2 to 2");
-  if (!briggs && o.robust != default_robust) refuse("robust", text(o.robust), "--weighting briggs beside it");
+  if (!(o.robust >= -2 && o.robust <= 2)) refuse_option("robust", typed(o.robust), "-2 to 2");
+  if (!briggs && o.robust != default_robust) refuse_option("robust", typed(o.robust), "--weighting briggs beside it");
   constexpr int most = 200;
   if (o.npixels < 0 || o.npixels == 1 || o.npixels > most)
-    refuse("npixels", std::to_string(o.npixels), "2 to " + std::to_string(most) + " cells, or 0 (6)");
-  if (!superuniform && o.npixels != 0) refuse("npixels", std::to_string(o.npixels), "--weighting superuniform beside it");
+    refuse_option("npixels", std::to_string(o.npixels), "2 to " + std::to_string(most) + " cells, or 0 (6)");
+  if (!superuniform && o.npixels != 0)
+    refuse_option("npixels", std::to_string(o.npixels), "--weighting superuniform beside it");
   if (o.uvtaper.empty()) return;
   try {
     parse_taper(o.uvtaper);
   } catch (const std::invalid_argument& wrong) {
-    refuse("uvtaper", o.uvtaper,
-           std::string("MAJ, MAJ,MIN or MAJ,MIN,PA such as 5arcsec,4arcsec,30deg or 3klambda; ") + wrong.what());
+    refuse_option("uvtaper", o.uvtaper,
+                  std::string("MAJ, MAJ,MIN or MAJ,MIN,PA such as 5arcsec,4arcsec,30deg or 3klambda; ") + wrong.what());
   }
 }
 
@@ -117,14 +108,14 @@ imager::WeightingOptions weighting_options(const ImageOptions& o) {
 }
 
 std::string weighting_text(const ImageOptions& o) {
-  std::string said = o.weighting == "briggs" ? "Briggs, robust " + text(o.robust) : o.weighting;
+  std::string said = o.weighting == "briggs" ? "Briggs, robust " + typed(o.robust) : o.weighting;
   if (!o.uvtaper.empty()) said += ", tapered by " + o.uvtaper;
   return said;
 }
 
 std::vector<std::string> weighting_arguments(const ImageOptions& o) {
   std::vector<std::string> words{"--weighting", o.weighting};
-  if (o.weighting == "briggs") words.insert(words.end(), {"--robust", text(o.robust)});
+  if (o.weighting == "briggs") words.insert(words.end(), {"--robust", typed(o.robust)});
   if (o.npixels != 0) words.insert(words.end(), {"--npixels", std::to_string(o.npixels)});
   if (!o.uvtaper.empty()) words.insert(words.end(), {"--uvtaper", o.uvtaper});
   return words;

@@ -10,6 +10,7 @@
 #include "tools/base/numbers.h"
 #include "tools/base/text.h"
 #include "tools/run/selection_options.h"
+#include "tools/run/weighting_options.h"
 #include "tools/scene/pareto.h"
 #include "tools/scene/timing.h"
 #include "tools/scene/verdict.h"
@@ -80,6 +81,7 @@ std::string command_of(const ImageOptions& scene, const ScenePoint& point) {
   for (const std::string& word : words_of(scene.selection)) line += " " + shell_quoted(word);
   add("--phasecenter", scene.phasecenter, "");
   add("--datacolumn", scene.datacolumn, "data");
+  for (const std::string& word : weighting_arguments(scene)) line += " " + shell_quoted(word);
   add("--gridder", scene.gridder, "auto");
   add("--kernel-folder", scene.kernel.folder, "");
   return line + " " + options_text(point);

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "imager/clean/clean.h"
+#include "imager/geometry.h"
+#include "imager/stokes.h"
+#include "tools/run/image_options.h"
+
+namespace misfit::tools {
+
+/// What --savemodel writes.
+struct SavedModel {
+  const imager::ImageGeometry& geometry;
+  const std::vector<imager::Stokes>& stokes;              ///< some of I, Q, U and V
+  const std::vector<imager::CleanResult>& cleaned;        ///< [Stokes]
+  std::string option_values;                              ///< by which a column cut short is known again
+  std::function<void(const std::string& sentence)> tell;  ///< what becomes of such a column
+};
+
+/// Writes the models' visibilities into MODEL_DATA of each set of the run, about its own phase centre. Throws what
+/// ms_io::write_model does.
+void save_model(const ImageOptions& options, const SavedModel& model, int threads, const imager::Progress& progress);
+
+}  // namespace misfit::tools
