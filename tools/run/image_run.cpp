@@ -225,7 +225,8 @@ class ImageRun {
     progress_.begin("sources outside", true);
     const double noise_jy = cleaned_.empty() ? imager::robust_noise(made_.images.dirty.front(), threads_)
                                              : cleaned_.front().report.final_state().rms_jy;
-    outside_ = check_outside(*source_, made_.plan, *plan_.wider, made_.images, noise_jy, progress(), own);
+    outside_ = check_outside(*source_, made_.plan, *plan_.wider, made_.images, {noise_jy, !weighting_options(o_).none()},
+                             progress(), own);
     progress_.end();
     report_.outside = &outside_;
     imager::Decision told = outside_decision(outside_);

@@ -87,7 +87,7 @@ imager::Decision search_decision(const imager::WideField& field, double seconds)
 }
 
 OutsideReport check_outside(const imager::VisibilitySource& source, const imager::GriddingPlan& plan,
-                            const imager::GriddingPlan& wider, const imager::DirtyImages& images, double pixel_noise_jy,
+                            const imager::GriddingPlan& wider, const imager::DirtyImages& images, const PixelNoise& pixels,
                             const imager::Progress& progress, imager::StageTimes& times) {
   const imager::ImageGeometry &image = plan.request.geometry, &field = wider.request.geometry;
   OutsideReport report;
@@ -97,8 +97,8 @@ OutsideReport check_outside(const imager::VisibilitySource& source, const imager
   const imager::WideSearch search = imager::search_wide_field(source, wider, progress, times);
   report.least_jy = std::max(search.least_jy, search.sidelobe_jy);
   const double scatter_jy = search.unexplained.image_noise_jy(images.sums.front().weight);
-  report.noise_of_pixels = pixel_noise_jy <= scatter_jy;
-  report.noise_jy = std::min(pixel_noise_jy, scatter_jy);
+  report.noise_of_pixels = pixels.alone || pixels.noise_jy <= scatter_jy;
+  report.noise_jy = report.noise_of_pixels ? pixels.noise_jy : scatter_jy;
   report.elsewhere = something_elsewhere(search);
   report.elsewhere_jy = report.elsewhere ? search.unexplained.sources_least_jy : search.unexplained.sources_most_jy;
   if (plan.direct) return report;  // direct sums have no aliases

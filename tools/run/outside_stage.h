@@ -27,6 +27,12 @@ struct OutsideReport {
   bool elsewhere = false;                      ///< there certainly is some
 };
 
+/// The robust noise of an image's pixels, Jy/beam.
+struct PixelNoise {
+  double noise_jy = 0;
+  bool alone = false;  ///< no other figure bounds the image's noise: its weights are not the data's
+};
+
 /// The noise to compare aliases with is what the image would have without a source, or the most that it can be. Two figures are
 /// such bounds, and the lower one counts: the robust noise of the image's pixels, in which sidelobes count until CLEAN takes
 /// them off; and the scatter of the visibilities about the sources found in the wider field, as far as neighbours in u and v do
@@ -34,10 +40,10 @@ struct OutsideReport {
 /// none. Where data have no noise both are small, and still above 0: an alias above is real, and one below is told with its
 /// level.
 ///
-/// `pixel_noise_jy` is the first of the two; `plan` and `images` are the image's, `wider` is the plan of the field to search.
+/// `pixels` is the first of the two; `plan` and `images` are the image's, `wider` is the plan of the field to search.
 /// Stages timed: those of imaging and CLEAN.
 OutsideReport check_outside(const imager::VisibilitySource& source, const imager::GriddingPlan& plan,
-                            const imager::GriddingPlan& wider, const imager::DirtyImages& images, double pixel_noise_jy,
+                            const imager::GriddingPlan& wider, const imager::DirtyImages& images, const PixelNoise& pixels,
                             const imager::Progress& progress, imager::StageTimes& times);
 
 /// How a field is searched, why, and how long that is expected to take.
