@@ -50,6 +50,7 @@ void parse_uv_ranges(const casacore::MeasurementSet& set, const Selection& selec
   const casacore::Matrix<double> ends = expression.getUVList(&set);  // columns of least and most
   const casacore::Vector<bool> in_metres = expression.getUVUnitsList(&set);
   for (std::size_t r = 0; r < in_metres.nelements(); ++r) parsed.uv.push_back({ends(0, r), ends(1, r), in_metres(r)});
+  if (parsed.uv.empty()) throw casacore::AipsError("it names no range");  // none would stand for all
 }
 
 /// MSSelection moves channels beyond the last one onto it. A range whose first channel exists ends with the window instead.
