@@ -10,7 +10,7 @@
 namespace misfit::ms_io {
 
 /// How far a column has been written. While that lasts, a file `misfit_unfinished_<COLUMN>` in the folder of each table that
-/// holds the rows says so; casacore knows nothing of it. What it says is written is on disk: the rows are handed to the system
+/// holds the rows says so; casacore knows nothing of it. What it says is written has been: the rows are handed to the system
 /// first, and the file is replaced as a whole afterwards, so that it holds wherever the run is killed.
 struct ModelJournal {
   std::string column;

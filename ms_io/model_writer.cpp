@@ -109,7 +109,7 @@ StokesVisibilities predicted(const Predict& predict, const imager::PhaseShift& s
   shift.rotate(shifted.uvw_m);
   StokesVisibilities model = predict(shifted);
   for (std::vector<std::complex<double>>& plane : model.plane) {
-    if (plane.empty() && &plane != &model.plane.front()) continue;
+    if (plane.empty()) continue;
     if (plane.size() != where.samples()) {
       throw std::invalid_argument("prediction returned " + std::to_string(plane.size()) + " visibilities; expected " +
                                   std::to_string(where.samples()));

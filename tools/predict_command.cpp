@@ -46,8 +46,7 @@ NamedModel image_model(const PredictOptions& o, const ms_io::MeasurementSet& set
   request.accuracy = is_kernel_file(o.kernel) && !o.accuracy_is_typed ? 0 : o.accuracy;
   request.threads = threads;
   const std::vector<imager::SkyImage> planes = read_stokes_model(o.model, set.observation().phase_centre);
-  const imager::Image zero(planes.front().image.width, planes.front().image.height);
-  StokesPlanes model{&zero};
+  StokesPlanes model{};
   NamedModel named;
   named.fingerprint.add(o.kernel.name).add(std::vector<double>{request.accuracy});
   for (const imager::SkyImage& plane : planes) {

@@ -173,8 +173,8 @@ BOOST_AUTO_TEST_CASE(a_refused_write_creates_no_column) {
 
 BOOST_AUTO_TEST_CASE(a_prediction_of_the_wrong_size_is_refused) {
   const SmallSet set;
-  const auto none = [](const imager::SampleCoordinates&) { return std::vector<std::complex<double>>(); };
-  BOOST_CHECK_THROW(write_model(set.path(), {}, {"MODEL_DATA"}, none, {}), std::invalid_argument);
+  const auto one = [](const imager::SampleCoordinates&) { return std::vector<std::complex<double>>(1); };
+  BOOST_CHECK_THROW(write_model(set.path(), {}, {"MODEL_DATA"}, one, {}), std::invalid_argument);
 }
 
 BOOST_AUTO_TEST_CASE(a_read_only_set_is_named) {

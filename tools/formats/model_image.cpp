@@ -46,12 +46,6 @@ void check_model(const imager::SkyImage& model, const imager::SkyDirection& cent
 
 }  // namespace
 
-imager::SkyImage read_model(const std::string& path, const imager::SkyDirection& centre) {
-  imager::SkyImage model = imager::read_fits(path);
-  check_model(model, centre, path);
-  return model;
-}
-
 std::vector<imager::SkyImage> read_stokes_model(const std::string& path, const imager::SkyDirection& centre) {
   std::vector<imager::SkyImage> planes = imager::read_stokes_images(path);
   for (const imager::SkyImage& plane : planes) check_model(plane, centre, path);

@@ -13,10 +13,8 @@
 
 namespace misfit::tools {
 
-/// A model image in Jy/pixel whose reference position is `centre`, with a finite number in every pixel above the horizon.
-/// Throws std::runtime_error that names the file and what was expected.
-imager::SkyImage read_model(const std::string& path, const imager::SkyDirection& centre);
-/// The same with a plane for each Stokes parameter that the file holds.
+/// A model image in Jy/pixel whose reference position is `centre`, with a finite number in every pixel above the horizon: a
+/// plane for each Stokes parameter that the file holds. Throws std::runtime_error that names the file and what was expected.
 std::vector<imager::SkyImage> read_stokes_model(const std::string& path, const imager::SkyDirection& centre);
 
 /// A model as an operator from coordinates to visibilities.
@@ -27,7 +25,7 @@ struct ModelVisibilities {
   std::uint64_t samples_at_once = ms_io::MeasurementSet::usual_block_samples;
 };
 
-/// The planes of a model, I, Q, U and V; null where one is 0, but for I.
+/// The planes of a model, I, Q, U and V; null where one is 0.
 using StokesPlanes = std::array<const imager::Image*, 4>;
 
 /// The visibilities of a model at all selected samples of `set`, flagged or not, as `request` would have them gridded.

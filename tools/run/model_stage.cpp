@@ -9,8 +9,7 @@
 namespace misfit::tools {
 
 void save_model(const ImageOptions& o, const SavedModel& model, int threads, const imager::Progress& progress) {
-  const imager::Image zero(model.geometry.width, model.geometry.height);
-  StokesPlanes planes{&zero};
+  StokesPlanes planes{};
   ms_io::Fingerprint fingerprint;
   fingerprint.add(std::string(version)).add(model.option_values);
   for (std::size_t s = 0; s < model.stokes.size(); ++s) {
