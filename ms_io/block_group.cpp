@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <limits>
 
 #include "ms_io/block_group_internal.h"
 
@@ -10,6 +11,8 @@ constexpr std::uint64_t most_samples = std::uint64_t{1} << 23;
 
 /// Runs of more rows than this are read as fast as the whole.
 constexpr std::uint64_t long_run = 32;
+
+constexpr std::ptrdiff_t most_blocks = std::numeric_limits<std::uint16_t>::max();
 
 bool scattered(const BlockRows& block) {
   return block.rows < long_run * block.runs.size();
@@ -30,7 +33,7 @@ std::size_t end_of_group(const SelectedRows& selected, std::size_t first) {
   while (end != selected.blocks.end()) {
     const Setup& other = selected.setups[end->setup];
     samples += end->rows * other.frequency_hz.size();
-    const bool joins = scattered(*begin) && scattered(*end) && alike(setup, other) && samples <= most_samples &&
+    const bool joins = end - begin < most_blocks && scattered(*begin) && scattered(*end) && alike(setup, other) && samples <= most_samples &&
                        std::none_of(begin, end, [&](const BlockRows& block) { return block.setup == end->setup; });
     if (end != begin && !joins) break;
     ++end;
@@ -43,22 +46,28 @@ std::size_t end_of_group(const SelectedRows& selected, std::size_t first) {
 BlockGroup block_group(const SelectedRows& selected, std::size_t first) {
   BlockGroup group;
   group.blocks = end_of_group(selected, first) - first;
-  std::vector<std::size_t> next(group.blocks, 0);  // run of each
-  while (true) {
-    const Run* lowest = nullptr;
-    std::size_t of = 0;
-    for (std::size_t b = 0; b < group.blocks; ++b) {
-      const std::vector<Run>& runs = selected.blocks[first + b].runs;
-      if (next[b] == runs.size() || (lowest != nullptr && lowest->first < runs[next[b]].first)) continue;
-      lowest = &runs[next[b]];
-      of = b;
-    }
-    if (lowest == nullptr) return group;
-    ++next[of];
-    append(group.runs, lowest->first, lowest->count);
-    if (group.shares.empty() || group.shares.back().block != of) group.shares.push_back({of, 0});
-    group.shares.back().rows += lowest->count;
+  if (group.blocks == 1) {
+    group.runs = selected.blocks[first].runs;
+    return group;
   }
+  std::uint64_t rows = 0;
+  std::vector<const Run*> next, end;  // of each block
+  for (std::size_t b = 0; b < group.blocks; ++b) {
+    const BlockRows& block = selected.blocks[first + b];
+    next.push_back(block.runs.data());
+    end.push_back(block.runs.data() + block.runs.size());
+    rows += block.rows;
+  }
+  group.owner.reserve(rows);
+  while (group.owner.size() < rows) {
+    std::size_t lowest = group.blocks;
+    for (std::size_t b = 0; b < group.blocks; ++b)
+      if (next[b] != end[b] && (lowest == group.blocks || next[b]->first < next[lowest]->first)) lowest = b;
+    append(group.runs, next[lowest]->first, next[lowest]->count);
+    group.owner.insert(group.owner.end(), next[lowest]->count, static_cast<std::uint16_t>(lowest));
+    ++next[lowest];
+  }
+  return group;
 }
 
 }  // namespace misfit::ms_io

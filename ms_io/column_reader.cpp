@@ -1,4 +1,7 @@
+#include <casacore/tables/DataMan/DataManager.h>
+
 #include <algorithm>
+#include <cstring>
 #include <utility>
 
 #include "ms_io/column_reader_internal.h"
@@ -11,6 +14,7 @@ ColumnReader::ColumnReader(std::shared_ptr<const OpenSet> source) : source_(std:
     antenna1_.attach(table, "ANTENNA1");
     antenna2_.attach(table, "ANTENNA2");
     flag_row_.attach(table, "FLAG_ROW");
+    flag_row_is_dear_ = table.findDataManager("FLAG_ROW", true)->dataManagerType() == "IncrementalStMan";
     attach(uvw_, "UVW");
     attach(data_, source_->data_column);
     attach(flag_, "FLAG");
@@ -24,8 +28,7 @@ template <typename T>
 void ColumnReader::attach(Cells<T>& cells, const std::string& name) const {
   cells.name = name;
   cells.column.attach(source_->set, name);
-  cells.fixed_shape = (cells.column.columnDesc().options() & casacore::ColumnDesc::FixedShape) != 0;
-  cells.one_shape = has_one_shape(source_->set, name);
+  cells.shapes = cell_shapes(source_->set, name);
 }
 
 template <typename Action>
@@ -36,22 +39,35 @@ void ColumnReader::reading(const std::string& column, const Action& action) cons
 const StoredRows& ColumnReader::read_rows(const Rows& rows, const Setup& setup) {
   reading("ANTENNA1", [&] { read(antenna1_, rows, stored_.antenna1); });
   reading("ANTENNA2", [&] { read(antenna2_, rows, stored_.antenna2); });
-  reading("FLAG_ROW", [&] { read(flag_row_, rows, stored_.flag_row); });
   read_cells(uvw_, rows, casacore::IPosition(1, 3), stored_.uvw);
   read_channels(data_, rows, setup, stored_.data);
   read_channels(flag_, rows, setup, stored_.flag);
+  reading("FLAG_ROW", [&] { read_flag_rows(rows); });
   read_weights(rows, setup);
   return stored_;
+}
+
+/// An IncrementalStMan searches for every row whose value is not that of the row before; rows all of whose samples are flagged
+/// need none.
+void ColumnReader::read_flag_rows(const Rows& rows) {
+  if (!flag_row_is_dear_) return read(flag_row_, rows, stored_.flag_row);
+  stored_.flag_row.resize(rows.count());
+  const std::size_t cell = stored_.flag.size() / rows.count();
+  const bool* const flag = stored_.flag.data();
+  bool* const flag_row = stored_.flag_row.data();
+  for (std::uint64_t r = 0; r < rows.count(); ++r)
+    flag_row[r] = std::memchr(flag + r * cell, 0, cell) == nullptr || flag_row_(rows[r]);
 }
 
 /// Looks at the first of `rows`, or at all of them.
 template <typename T>
 void ColumnReader::require_shape(const Cells<T>& cells, const Rows& rows, const casacore::IPosition& shape, bool all) const {
   bool look = true;
-  for (const casacore::rownr_t row : rows.numbers()) {
+  for (std::uint64_t r = 0; r < rows.count(); ++r) {
+    const casacore::rownr_t row = rows[r];
     if (cells.column.isDefined(row) && (!look || cells.column.shape(row).isEqual(shape))) {
-      if (cells.fixed_shape || !all) return;
-      look = !cells.one_shape;
+      if (cells.shapes.all || !all) return;
+      look = !cells.shapes.one;
       continue;
     }
     throw std::runtime_error(
@@ -98,16 +114,16 @@ void ColumnReader::read_channels(const Cells<T>& cells, const Rows& rows, const 
 
 /// Tiled cells of one shape are never empty where they are defined.
 bool ColumnReader::spectrum_defined(casacore::rownr_t row) const {
-  return spectrum_.column.isDefined(row) && (spectrum_.one_shape || spectrum_.column.shape(row).product() > 0);
+  return spectrum_.column.isDefined(row) && (spectrum_.shapes.one || spectrum_.column.shape(row).product() > 0);
 }
 
 /// How many of `rows` have WEIGHT_SPECTRUM.
 std::size_t ColumnReader::spectra_defined(const Rows& rows) const {
   if (!has_spectrum_) return 0;
-  if (spectrum_.fixed_shape) return rows.count();
+  if (spectrum_.shapes.all) return rows.count();
   std::size_t defined = 0;
   reading("WEIGHT_SPECTRUM", [&] {
-    for (const casacore::rownr_t row : rows.numbers()) defined += spectrum_defined(row);
+    for (std::uint64_t r = 0; r < rows.count(); ++r) defined += spectrum_defined(rows[r]);
   });
   return defined;
 }
@@ -131,7 +147,8 @@ void ColumnReader::mix_weights(const Rows& rows, const Setup& setup) {
                                                    static_cast<ssize_t>(rows.count())));
   float* out = mixed.data();
   const float* weight = stored_.weight.data();
-  for (const casacore::rownr_t row : rows.numbers()) {
+  for (std::uint64_t r = 0; r < rows.count(); ++r) {
+    const casacore::rownr_t row = rows[r];
     if (spectrum_defined(row)) {
       const casacore::Array<float> cell = spectrum_.column.getSlice(row, channel_slice(setup, setup.correlation_types.size()));
       std::copy(cell.begin(), cell.end(), out);

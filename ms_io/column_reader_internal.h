@@ -11,7 +11,7 @@ namespace misfit::ms_io {
 /// Rows of the main table as they are stored, of the channels from the first selected to the last one.
 struct StoredRows {
   casacore::Vector<int> antenna1, antenna2;  ///< [row]
-  casacore::Vector<bool> flag_row;           ///< [row]
+  casacore::Vector<bool> flag_row;           ///< [row] of the row, or of all its samples
   casacore::Array<double> uvw;               ///< [row][3]
   casacore::Array<casacore::Complex> data;   ///< [row][channel][correlation]
   casacore::Array<bool> flag;                ///< [row][channel][correlation]
@@ -29,13 +29,12 @@ class ColumnReader {
   const StoredRows& read_rows(const Rows& rows, const Setup& setup);
 
  private:
-  /// A column of arrays, and what is known of the shapes of its cells.
+  /// A column of arrays.
   template <typename T>
   struct Cells {
     std::string name;
     casacore::ArrayColumn<T> column;
-    bool fixed_shape = false;  ///< of cells that are all defined
-    bool one_shape = false;    ///< of those that are defined
+    CellShapes shapes;
   };
 
   template <typename T>
@@ -50,6 +49,7 @@ class ColumnReader {
   void read_cells(const Cells<T>& cells, const Rows& rows, const casacore::IPosition& shape, casacore::Array<T>& values) const;
   template <typename T>
   void read_channels(const Cells<T>& cells, const Rows& rows, const Setup& setup, casacore::Array<T>& values) const;
+  void read_flag_rows(const Rows& rows);
   bool spectrum_defined(casacore::rownr_t row) const;
   std::size_t spectra_defined(const Rows& rows) const;
   void read_weights(const Rows& rows, const Setup& setup);
@@ -58,6 +58,7 @@ class ColumnReader {
   std::shared_ptr<const OpenSet> source_;
   casacore::ScalarColumn<int> antenna1_, antenna2_;
   casacore::ScalarColumn<bool> flag_row_;
+  bool flag_row_is_dear_ = false;
   Cells<double> uvw_;
   Cells<casacore::Complex> data_;
   Cells<bool> flag_;

@@ -16,8 +16,8 @@ std::uint64_t checksum_of(const Rows& rows, const Cells& cells) {
   const std::size_t row_values = rows.count() == 0 ? 0 : cells.nelements() / rows.count();
   std::uint64_t sum = 0;
   const casacore::Complex* row = cells.data();
-  for (const casacore::rownr_t number : rows.numbers()) {
-    sum += Fingerprint().add(number).add(row, row_values * sizeof(casacore::Complex)).value();
+  for (std::uint64_t r = 0; r < rows.count(); ++r) {
+    sum += Fingerprint().add(rows[r]).add(row, row_values * sizeof(casacore::Complex)).value();
     row += row_values;
   }
   return sum;

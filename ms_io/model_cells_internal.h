@@ -28,9 +28,9 @@ class CellColumn {
   template <typename Blank>
   void require_shape(const Rows& rows, const casacore::IPosition& shape, const Blank& blank) {
     if (fixed_shape_ && column_.shapeColumn().isEqual(shape)) return;
-    for (const casacore::rownr_t row : rows.numbers()) {
-      if (!column_.isDefined(row)) column_.put(row, blank(row));
-      require_cell_shape(row, shape);
+    for (std::uint64_t r = 0; r < rows.count(); ++r) {
+      if (!column_.isDefined(rows[r])) column_.put(rows[r], blank(rows[r]));
+      require_cell_shape(rows[r], shape);
     }
   }
 

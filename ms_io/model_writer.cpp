@@ -257,8 +257,7 @@ class ModelWriter {
     journal_.checksum += block.cells.checksum;
     journal_.written += block.rows.count();
     for (const bool row_is_unknown : block.unknown) journal_.nonfinite_uvw_rows += row_is_unknown;
-    const casacore::Vector<casacore::rownr_t>& numbers = block.rows.numbers();
-    journal_.done_below[static_cast<std::size_t>(block.setup - selected_.setups.data())] = numbers[numbers.nelements() - 1] + 1;
+    journal_.done_below[static_cast<std::size_t>(block.setup - selected_.setups.data())] = block.rows[block.rows.count() - 1] + 1;
     write_journal(set_, journal_);
   }
 

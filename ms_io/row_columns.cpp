@@ -26,8 +26,9 @@ casacore::Vector<casacore::rownr_t> numbered(const std::vector<Run>& runs) {
 Rows::Rows(const std::vector<Run>& runs)
     : contiguous_(runs.size() == 1),
       first_(runs.front().first),
-      numbers_(numbered(runs)),
-      listed_(contiguous_ ? casacore::RefRows(first_, runs.front().first + runs.front().count - 1)
+      numbers_(contiguous_ ? casacore::Vector<casacore::rownr_t>() : numbered(runs)),
+      count_(contiguous_ ? runs.front().count : numbers_.size()),
+      listed_(contiguous_ ? casacore::RefRows(first_, first_ + count_ - 1)
                           : casacore::RefRows(numbers_, false, true)) {}
 
 casacore::Slicer Rows::range() const {
@@ -35,13 +36,17 @@ casacore::Slicer Rows::range() const {
                           casacore::IPosition(1, static_cast<ssize_t>(count())));
 }
 
-bool has_one_shape(const casacore::Table& table, const std::string& column) {
-  if ((table.tableDesc()[column].options() & casacore::ColumnDesc::FixedShape) != 0) return true;
-  if (table.getPartNames(true).size() != 1) return false;
+CellShapes cell_shapes(const casacore::Table& table, const std::string& column) {
+  if ((table.tableDesc()[column].options() & casacore::ColumnDesc::FixedShape) != 0) return {true, true};
+  if (table.getPartNames(true).size() != 1) return {};
   const casacore::String manager = table.findDataManager(column, true)->dataManagerType();
-  if (manager != "TiledShapeStMan" && manager != "TiledDataStMan") return false;
-  const casacore::uInt undefined = manager == "TiledShapeStMan" ? 1 : 0;  // a hypercube of cells without shape
-  return casacore::ROTiledStManAccessor(table, column, true).nhypercubes() == undefined + 1;
+  if (manager != "TiledShapeStMan" && manager != "TiledDataStMan") return {};
+  const casacore::ROTiledStManAccessor tiles(table, column, true);
+  const casacore::uInt first = manager == "TiledShapeStMan" ? 1 : 0;  // after a hypercube of cells without shape
+  if (tiles.nhypercubes() != first + 1) return {};
+  // Every defined cell has a place of its own along the last axis.
+  const bool all = table.isRootTable() && static_cast<casacore::rownr_t>(tiles.getHypercubeShape(first).last()) == table.nrow();
+  return {true, all};
 }
 
 std::vector<Rows> pieces(const std::vector<Run>& runs, std::uint64_t rows) {

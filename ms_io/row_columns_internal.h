@@ -17,21 +17,27 @@ class Rows {
  public:
   explicit Rows(const std::vector<Run>& runs);
 
-  std::uint64_t count() const { return numbers_.size(); }
+  std::uint64_t count() const { return count_; }
   bool contiguous() const { return contiguous_; }
   casacore::Slicer range() const;                              ///< only when contiguous
   const casacore::RefRows& listed() const { return listed_; }  ///< always
-  const casacore::Vector<casacore::rownr_t>& numbers() const { return numbers_; }
+  casacore::rownr_t operator[](std::uint64_t i) const { return contiguous_ ? first_ + i : numbers_.data()[i]; }
 
  private:
   bool contiguous_;
   casacore::rownr_t first_;
-  casacore::Vector<casacore::rownr_t> numbers_;
+  casacore::Vector<casacore::rownr_t> numbers_;  ///< unless contiguous
+  std::uint64_t count_;
   casacore::RefRows listed_;
 };
 
-/// Whether all cells of an array column that are defined have one shape, as far as that is known without a look at each.
-bool has_one_shape(const casacore::Table& table, const std::string& column);
+/// What is known of the cells of an array column without a look at each.
+struct CellShapes {
+  bool one = false;  ///< those that are defined have one shape
+  bool all = false;  ///< and all are defined
+};
+
+CellShapes cell_shapes(const casacore::Table& table, const std::string& column);
 
 /// `runs` cut into pieces of at most `rows` rows.
 std::vector<Rows> pieces(const std::vector<Run>& runs, std::uint64_t rows);

@@ -28,39 +28,40 @@ class GrowingBlock {
     const std::size_t samples = rows * setup.frequency_hz.size();
     for (std::size_t i = 0; i < recipe.terms.size(); ++i) {
       blocks_.push_back(std::make_shared<imager::VisibilityBlock>());
-      blocks_.back()->visibility.reserve(samples);
+      blocks_.back()->visibility.resize(samples);
+      next_.visibility[i] = blocks_.back()->visibility.data();
     }
     imager::VisibilityBlock& block = *blocks_.front();
     block.frequency_hz = setup.frequency_hz;
-    block.uvw_m.reserve(rows * 3);
-    block.weight.reserve(samples);
+    block.uvw_m.resize(rows * 3);
+    block.weight.resize(samples);
     block.counts.rows_read = rows;
     block.counts.samples_read = samples;
+    next_uvw_m_ = block.uvw_m.data();
+    next_.weight = block.weight.data();
   }
 
   /// Appends the Stokes parameters of `count` rows, of which `first` is the first of `stored`.
   void append(const StoredRows& stored, std::size_t first, std::size_t count) {
+    imager::SampleCounts& counts = blocks_.front()->counts;
     const std::size_t channels = setup_.frequency_hz.size(), cell = recipe_.correlations * setup_.channel_span();
     const std::size_t weight_cell = stored.weight_per_channel ? cell : recipe_.correlations;
-    imager::VisibilityBlock& block = *blocks_.front();
-    const std::size_t before = block.weight.size();
-    for (const auto& stokes : blocks_) stokes->visibility.resize(before + count * channels);
-    block.weight.resize(before + count * channels);
-    block.uvw_m.insert(block.uvw_m.end(), stored.uvw.data() + 3 * first, stored.uvw.data() + 3 * (first + count));
     const int* const antenna1 = stored.antenna1.data();
     const int* const antenna2 = stored.antenna2.data();
     const bool* const flag_row = stored.flag_row.data();
-    for (std::size_t i = 0; i < count; ++i) {
-      const std::size_t r = first + i;
+    for (std::size_t r = first; r < first + count; ++r) {
+      const double* const uvw = stored.uvw.data() + 3 * r;
+      next_uvw_m_ = std::copy_n(uvw, 3, next_uvw_m_);
       if (antenna1[r] == antenna2[r]) {
-        block.counts.autocorrelations += channels;
+        counts.autocorrelations += channels;
+        advance(channels);
       } else if (flag_row[r]) {
-        block.counts.flagged += channels;
+        counts.flagged += channels;
+        advance(channels);
       } else {
-        const double* const uvw = stored.uvw.data() + 3 * r;
         form_row({stored.data.data() + r * cell, stored.flag.data() + r * cell, stored.weight.data() + r * weight_cell,
-                  stored.weight_per_channel, std::isfinite(uvw[0]) && std::isfinite(uvw[1]) && std::isfinite(uvw[2]), channels},
-                 before + i * channels);
+                  stored.weight_per_channel, std::isfinite(uvw[0]) && std::isfinite(uvw[1]) && std::isfinite(uvw[2]),
+                  channels});
       }
     }
   }
@@ -79,12 +80,8 @@ class GrowingBlock {
   }
 
  private:
-  /// One row, a run of selected channels at a time, to samples from `sample` on.
-  void form_row(const StoredSamples& row, std::size_t sample) {
-    imager::VisibilityBlock& block = *blocks_.front();
-    StokesSamples out;
-    for (std::size_t i = 0; i < blocks_.size(); ++i) out.visibility[i] = blocks_[i]->visibility.data() + sample;
-    out.weight = block.weight.data() + sample;
+  /// One row, a run of selected channels at a time.
+  void form_row(const StoredSamples& row) {
     for (const Run& run : setup_.channels) {
       const std::size_t offset = (run.first - setup_.first_channel()) * recipe_.correlations;
       StoredSamples part = row;
@@ -92,15 +89,21 @@ class GrowingBlock {
       part.flag += offset;
       if (row.weight_per_channel) part.weight += offset;
       part.channels = run.count;
-      form_stokes(recipe_, part, out, block.counts);
-      for (std::size_t i = 0; i < blocks_.size(); ++i) out.visibility[i] += run.count;
-      out.weight += run.count;
+      form_stokes(recipe_, part, next_, blocks_.front()->counts);
+      advance(run.count);
     }
+  }
+
+  void advance(std::size_t samples) {
+    for (std::size_t i = 0; i < blocks_.size(); ++i) next_.visibility[i] += samples;
+    next_.weight += samples;
   }
 
   const Setup& setup_;
   const StokesRecipe& recipe_;
   std::vector<std::shared_ptr<imager::VisibilityBlock>> blocks_;  ///< [Stokes parameter]
+  StokesSamples next_;                                            ///< where the next samples go
+  double* next_uvw_m_;
 };
 
 /// Reads a group of blocks at once, a piece of their rows at a time, and hands them out one by one.
@@ -129,18 +132,13 @@ class Reader : public imager::BlockStream {
       all_rows += rows.rows;
       growing_.emplace_back(selected.setups[rows.setup], source_->recipes[rows.setup], rows.rows);
     }
-    auto share = group.shares.begin();
-    std::uint64_t taken = 0;  // of that share
+    const std::uint16_t* owner = group.owner.data();  // of the next row
     for (const Rows& piece : pieces(group.runs, rows_of_piece(all_rows, alike))) {
       const StoredRows& stored = columns_.read_rows(piece, alike);
-      for (std::uint64_t row = 0; row < piece.count();) {
-        const std::uint64_t count = std::min(share->rows - taken, piece.count() - row);
-        growing_[share->block].append(stored, row, count);
-        row += count;
-        taken += count;
-        if (taken < share->rows) continue;
-        ++share;
-        taken = 0;
+      if (group.blocks == 1) {
+        growing_.front().append(stored, 0, piece.count());
+      } else {
+        for (std::uint64_t row = 0; row < piece.count(); ++row) growing_[*owner++].append(stored, row, 1);
       }
     }
   }
