@@ -33,7 +33,8 @@ std::size_t end_of_group(const SelectedRows& selected, std::size_t first) {
   while (end != selected.blocks.end()) {
     const Setup& other = selected.setups[end->setup];
     samples += end->rows * other.frequency_hz.size();
-    const bool joins = end - begin < most_blocks && scattered(*begin) && scattered(*end) && alike(setup, other) && samples <= most_samples &&
+    const bool joins = end - begin < most_blocks && scattered(*begin) && scattered(*end) && alike(setup, other) &&
+                       samples <= most_samples &&
                        std::none_of(begin, end, [&](const BlockRows& block) { return block.setup == end->setup; });
     if (end != begin && !joins) break;
     ++end;
@@ -47,25 +48,27 @@ BlockGroup block_group(const SelectedRows& selected, std::size_t first) {
   BlockGroup group;
   group.blocks = end_of_group(selected, first) - first;
   if (group.blocks == 1) {
+    group.rows = selected.blocks[first].rows;
     group.runs = selected.blocks[first].runs;
     return group;
   }
-  std::uint64_t rows = 0;
+  constexpr std::uint64_t none = std::numeric_limits<std::uint64_t>::max();
   std::vector<const Run*> next, end;  // of each block
+  std::vector<std::uint64_t> row;     // the first of its next run
   for (std::size_t b = 0; b < group.blocks; ++b) {
     const BlockRows& block = selected.blocks[first + b];
     next.push_back(block.runs.data());
     end.push_back(block.runs.data() + block.runs.size());
-    rows += block.rows;
+    row.push_back(block.runs.front().first);
+    group.rows += block.rows;
   }
-  group.owner.reserve(rows);
-  while (group.owner.size() < rows) {
-    std::size_t lowest = group.blocks;
-    for (std::size_t b = 0; b < group.blocks; ++b)
-      if (next[b] != end[b] && (lowest == group.blocks || next[b]->first < next[lowest]->first)) lowest = b;
-    append(group.runs, next[lowest]->first, next[lowest]->count);
-    group.owner.insert(group.owner.end(), next[lowest]->count, static_cast<std::uint16_t>(lowest));
-    ++next[lowest];
+  group.owner.resize(group.rows);
+  for (std::uint16_t* owner = group.owner.data(); owner != group.owner.data() + group.rows;) {
+    const auto lowest = static_cast<std::size_t>(std::min_element(row.begin(), row.end()) - row.begin());
+    const Run*& run = next[lowest];
+    append(group.runs, run->first, run->count);
+    owner = std::fill_n(owner, run->count, static_cast<std::uint16_t>(lowest));
+    row[lowest] = ++run == end[lowest] ? none : run->first;
   }
   return group;
 }

@@ -12,6 +12,7 @@ namespace misfit::ms_io {
 /// they are ranges of the table, which are read faster than row by row. Else one block.
 struct BlockGroup {
   std::size_t blocks = 0;
+  std::uint64_t rows = 0;
   std::vector<Run> runs;             ///< rows of all the blocks, ascending
   std::vector<std::uint16_t> owner;  ///< [row of the group] which of its blocks; empty where there is one
 };

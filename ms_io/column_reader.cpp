@@ -36,25 +36,24 @@ void ColumnReader::reading(const std::string& column, const Action& action) cons
   translated("cannot read " + column + " of " + source_->path, action);
 }
 
-const StoredRows& ColumnReader::read_rows(const Rows& rows, const Setup& setup) {
-  reading("ANTENNA1", [&] { read(antenna1_, rows, stored_.antenna1); });
-  reading("ANTENNA2", [&] { read(antenna2_, rows, stored_.antenna2); });
-  read_cells(uvw_, rows, casacore::IPosition(1, 3), stored_.uvw);
-  read_channels(data_, rows, setup, stored_.data);
-  read_channels(flag_, rows, setup, stored_.flag);
-  reading("FLAG_ROW", [&] { read_flag_rows(rows); });
-  read_weights(rows, setup);
-  return stored_;
+void ColumnReader::read_rows(const Rows& rows, const Setup& setup, StoredRows& stored) {
+  reading("ANTENNA1", [&] { read(antenna1_, rows, stored.antenna1); });
+  reading("ANTENNA2", [&] { read(antenna2_, rows, stored.antenna2); });
+  read_narrow(uvw_, rows, casacore::IPosition(1, 3), stored.uvw);
+  read_channels(data_, rows, setup, stored.data);
+  read_channels(flag_, rows, setup, stored.flag);
+  reading("FLAG_ROW", [&] { read_flag_rows(rows, stored); });
+  read_weights(rows, setup, stored);
 }
 
 /// An IncrementalStMan searches for every row whose value is not that of the row before; rows all of whose samples are flagged
 /// need none.
-void ColumnReader::read_flag_rows(const Rows& rows) {
-  if (!flag_row_is_dear_) return read(flag_row_, rows, stored_.flag_row);
-  stored_.flag_row.resize(rows.count());
-  const std::size_t cell = stored_.flag.size() / rows.count();
-  const bool* const flag = stored_.flag.data();
-  bool* const flag_row = stored_.flag_row.data();
+void ColumnReader::read_flag_rows(const Rows& rows, StoredRows& stored) const {
+  if (!flag_row_is_dear_) return read(flag_row_, rows, stored.flag_row);
+  stored.flag_row.resize(rows.count());
+  const std::size_t cell = stored.flag.size() / rows.count();
+  const bool* const flag = stored.flag.data();
+  bool* const flag_row = stored.flag_row.data();
   for (std::uint64_t r = 0; r < rows.count(); ++r)
     flag_row[r] = std::memchr(flag + r * cell, 0, cell) == nullptr || flag_row_(rows[r]);
 }
@@ -99,6 +98,26 @@ void ColumnReader::read_cells(const Cells<T>& cells, const Rows& rows, const cas
   reading_cells(cells, rows, shape, [&] { read(cells.column, rows, values); });
 }
 
+/// A column of a few values a row, of which casacore reads the whole many times as fast as ranges of rows.
+template <typename T>
+void ColumnReader::read_narrow(Cells<T>& cells, const Rows& rows, const casacore::IPosition& shape,
+                               casacore::Array<T>& values) const {
+  constexpr casacore::rownr_t most_rows = 1 << 19;
+  const casacore::rownr_t all_rows = cells.column.nrow();
+  if (!cells.shapes.all || all_rows > most_rows || all_rows == rows.count()) return read_cells(cells, rows, shape, values);
+  reading_cells(cells, rows, shape, [&] {
+    if (cells.whole.empty()) cells.column.getColumn(cells.whole);
+  });
+  const auto cell = static_cast<std::size_t>(shape.last());
+  values.resize(casacore::IPosition(2, shape.last(), static_cast<ssize_t>(rows.count())));
+  T* out = values.data();
+  if (rows.contiguous()) {
+    std::copy_n(cells.whole.data() + rows[0] * cell, rows.count() * cell, out);
+  } else {
+    for (std::uint64_t r = 0; r < rows.count(); ++r) out = std::copy_n(cells.whole.data() + rows[r] * cell, cell, out);
+  }
+}
+
 /// All the correlations of the channels needed. Reading every correlation is faster than a strided slice of two of four.
 template <typename T>
 void ColumnReader::read_channels(const Cells<T>& cells, const Rows& rows, const Setup& setup,
@@ -129,24 +148,24 @@ std::size_t ColumnReader::spectra_defined(const Rows& rows) const {
 }
 
 /// WEIGHT_SPECTRUM where its cell is defined, else WEIGHT.
-void ColumnReader::read_weights(const Rows& rows, const Setup& setup) {
+void ColumnReader::read_weights(const Rows& rows, const Setup& setup, StoredRows& stored) {
   const std::size_t defined = spectra_defined(rows);
-  stored_.weight_per_channel = defined > 0;
+  stored.weight_per_channel = defined > 0;
   if (defined == rows.count()) {
-    read_channels(spectrum_, rows, setup, stored_.weight);
+    read_channels(spectrum_, rows, setup, stored.weight);
     return;
   }
-  read_cells(weight_, rows, casacore::IPosition(1, static_cast<ssize_t>(setup.correlation_types.size())), stored_.weight);
-  if (defined > 0) reading("WEIGHT_SPECTRUM", [&] { mix_weights(rows, setup); });
+  read_narrow(weight_, rows, casacore::IPosition(1, static_cast<ssize_t>(setup.correlation_types.size())), stored.weight);
+  if (defined > 0) reading("WEIGHT_SPECTRUM", [&] { mix_weights(rows, setup, stored); });
 }
 
 /// Spreads WEIGHT over the channels, and puts WEIGHT_SPECTRUM where it is defined.
-void ColumnReader::mix_weights(const Rows& rows, const Setup& setup) {
+void ColumnReader::mix_weights(const Rows& rows, const Setup& setup, StoredRows& stored) const {
   const std::size_t span = setup.channel_span(), correlations = setup.correlation_types.size();
   casacore::Array<float> mixed(casacore::IPosition(3, static_cast<ssize_t>(correlations), static_cast<ssize_t>(span),
                                                    static_cast<ssize_t>(rows.count())));
   float* out = mixed.data();
-  const float* weight = stored_.weight.data();
+  const float* weight = stored.weight.data();
   for (std::uint64_t r = 0; r < rows.count(); ++r) {
     const casacore::rownr_t row = rows[r];
     if (spectrum_defined(row)) {
@@ -158,7 +177,7 @@ void ColumnReader::mix_weights(const Rows& rows, const Setup& setup) {
     out += correlations * span;
     weight += correlations;
   }
-  stored_.weight.reference(mixed);
+  stored.weight.reference(mixed);
 }
 
 }  // namespace misfit::ms_io

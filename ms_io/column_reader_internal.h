@@ -19,14 +19,14 @@ struct StoredRows {
   bool weight_per_channel = false;
 };
 
-/// Reads the columns that visibilities are formed of, some rows at a time, into buffers that are used again.
+/// Reads the columns that visibilities are formed of, some rows at a time.
 class ColumnReader {
  public:
   explicit ColumnReader(std::shared_ptr<const OpenSet> source);
 
-  /// `rows`, whose cells all have the shape that `setup` says. Valid until the next call. Throws std::runtime_error that names
-  /// the column which cannot be read.
-  const StoredRows& read_rows(const Rows& rows, const Setup& setup);
+  /// `rows`, whose cells all have the shape that `setup` says, into memory of `stored` that is used again. Throws
+  /// std::runtime_error that names the column which cannot be read.
+  void read_rows(const Rows& rows, const Setup& setup, StoredRows& stored);
 
  private:
   /// A column of arrays.
@@ -35,6 +35,7 @@ class ColumnReader {
     std::string name;
     casacore::ArrayColumn<T> column;
     CellShapes shapes;
+    casacore::Array<T> whole;  ///< all cells of a narrow column, once they are read
   };
 
   template <typename T>
@@ -48,12 +49,14 @@ class ColumnReader {
   template <typename T>
   void read_cells(const Cells<T>& cells, const Rows& rows, const casacore::IPosition& shape, casacore::Array<T>& values) const;
   template <typename T>
+  void read_narrow(Cells<T>& cells, const Rows& rows, const casacore::IPosition& shape, casacore::Array<T>& values) const;
+  template <typename T>
   void read_channels(const Cells<T>& cells, const Rows& rows, const Setup& setup, casacore::Array<T>& values) const;
-  void read_flag_rows(const Rows& rows);
+  void read_flag_rows(const Rows& rows, StoredRows& stored) const;
   bool spectrum_defined(casacore::rownr_t row) const;
   std::size_t spectra_defined(const Rows& rows) const;
-  void read_weights(const Rows& rows, const Setup& setup);
-  void mix_weights(const Rows& rows, const Setup& setup);
+  void read_weights(const Rows& rows, const Setup& setup, StoredRows& stored);
+  void mix_weights(const Rows& rows, const Setup& setup, StoredRows& stored) const;
 
   std::shared_ptr<const OpenSet> source_;
   casacore::ScalarColumn<int> antenna1_, antenna2_;
@@ -64,7 +67,6 @@ class ColumnReader {
   Cells<bool> flag_;
   Cells<float> weight_, spectrum_;
   bool has_spectrum_ = false;
-  StoredRows stored_;
 };
 
 }  // namespace misfit::ms_io

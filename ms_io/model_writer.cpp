@@ -257,7 +257,8 @@ class ModelWriter {
     journal_.checksum += block.cells.checksum;
     journal_.written += block.rows.count();
     for (const bool row_is_unknown : block.unknown) journal_.nonfinite_uvw_rows += row_is_unknown;
-    journal_.done_below[static_cast<std::size_t>(block.setup - selected_.setups.data())] = block.rows[block.rows.count() - 1] + 1;
+    journal_.done_below[static_cast<std::size_t>(block.setup - selected_.setups.data())] =
+        block.rows[block.rows.count() - 1] + 1;
     write_journal(set_, journal_);
   }
 

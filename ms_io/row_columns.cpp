@@ -28,8 +28,7 @@ Rows::Rows(const std::vector<Run>& runs)
       first_(runs.front().first),
       numbers_(contiguous_ ? casacore::Vector<casacore::rownr_t>() : numbered(runs)),
       count_(contiguous_ ? runs.front().count : numbers_.size()),
-      listed_(contiguous_ ? casacore::RefRows(first_, first_ + count_ - 1)
-                          : casacore::RefRows(numbers_, false, true)) {}
+      listed_(contiguous_ ? casacore::RefRows(first_, first_ + count_ - 1) : casacore::RefRows(numbers_, false, true)) {}
 
 casacore::Slicer Rows::range() const {
   return casacore::Slicer(casacore::IPosition(1, static_cast<ssize_t>(first_)),

@@ -1,6 +1,8 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <deque>
+#include <future>
 #include <utility>
 
 #include "ms_io/block_group_internal.h"
@@ -10,16 +12,10 @@
 namespace misfit::ms_io {
 namespace {
 
-/// Samples read from the table at once: few enough that they are still in the cache when Stokes parameters are formed.
-constexpr std::uint64_t piece_samples = 1 << 16;
-
-/// Tables of no more samples are read at once, since casacore reads whole columns faster than ranges of them.
-constexpr std::uint64_t whole_samples = 1 << 17;
-
-std::uint64_t rows_of_piece(std::uint64_t rows, const Setup& setup) {
-  if (rows * setup.channel_span() <= whole_samples) return rows;
-  return std::max<std::uint64_t>(1, piece_samples / setup.channel_span());
-}
+/// Samples read from the table at once: enough for another thread to be worth its start, and for the whole of small tables,
+/// which casacore reads faster than ranges of them; few enough that they are still in the cache when Stokes parameters are
+/// formed.
+constexpr std::uint64_t piece_samples = 1 << 17;
 
 /// A block to which rows are appended, and those of the other Stokes parameters.
 class GrowingBlock {
@@ -122,29 +118,44 @@ class Reader : public imager::BlockStream {
   }
 
  private:
+  /// While this thread reads, which casacore allows to one alone, another makes the blocks and fills them.
   void read_group() {
     const SelectedRows& selected = source_->selected;
     const BlockGroup group = block_group(selected, next_);
     const Setup& alike = selected.setups[selected.blocks[next_].setup];
-    std::uint64_t all_rows = 0;
-    for (std::size_t i = 0; i < group.blocks; ++i) {
-      const BlockRows& rows = selected.blocks[next_++];
-      all_rows += rows.rows;
-      growing_.emplace_back(selected.setups[rows.setup], source_->recipes[rows.setup], rows.rows);
+    auto beside = std::async(std::launch::async, [this, first = next_, count = group.blocks] { make_blocks(first, count); });
+    next_ += group.blocks;
+    std::uint64_t left = group.rows;
+    const std::uint16_t* owner = group.blocks == 1 ? nullptr : group.owner.data();  // of the next row
+    StoredRows *read = &stored_.front(), *other = &stored_.back();
+    for (const Rows& piece : pieces(group.runs, std::max<std::uint64_t>(1, piece_samples / alike.channel_span()))) {
+      const std::uint64_t rows = piece.count();
+      columns_.read_rows(piece, alike, *read);
+      beside.get();
+      left -= rows;
+      if (left == 0) return form(*read, owner, rows);
+      beside = std::async(std::launch::async, [this, read, owner, rows] { form(*read, owner, rows); });
+      std::swap(read, other);
+      if (owner != nullptr) owner += rows;
     }
-    const std::uint16_t* owner = group.owner.data();  // of the next row
-    for (const Rows& piece : pieces(group.runs, rows_of_piece(all_rows, alike))) {
-      const StoredRows& stored = columns_.read_rows(piece, alike);
-      if (group.blocks == 1) {
-        growing_.front().append(stored, 0, piece.count());
-      } else {
-        for (std::uint64_t row = 0; row < piece.count(); ++row) growing_[*owner++].append(stored, row, 1);
-      }
+  }
+
+  void make_blocks(std::size_t first, std::size_t count) {
+    for (std::size_t b = first; b < first + count; ++b) {
+      const BlockRows& block = source_->selected.blocks[b];
+      growing_.emplace_back(source_->selected.setups[block.setup], source_->recipes[block.setup], block.rows);
     }
+  }
+
+  /// Deals `rows` rows to the blocks that own them; null where there is one block.
+  void form(const StoredRows& stored, const std::uint16_t* owner, std::uint64_t rows) {
+    if (owner == nullptr) return growing_.front().append(stored, 0, rows);
+    for (std::uint64_t row = 0; row < rows; ++row) growing_[owner[row]].append(stored, row, 1);
   }
 
   std::shared_ptr<const OpenSet> source_;
   ColumnReader columns_;
+  std::array<StoredRows, 2> stored_;  ///< one is read while Stokes parameters are formed of the other
   std::size_t next_ = 0;              ///< block to be read
   std::deque<GrowingBlock> growing_;  ///< of the group read last, those not yet handed out
 };

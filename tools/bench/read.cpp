@@ -1,5 +1,5 @@
 // How fast visibilities are read: casacore alone, in a bare loop over the columns that misfit reads, which no imager can beat,
-// and misfit's reader to the end of its stream, in one thread and by turns. Opened before: the columns that select rows are
+// and misfit's reader to the end of its stream, by turns; it forms Stokes parameters in a second thread. Opened before: the columns that select rows are
 // read.
 #include <casacore/tables/Tables/ArrayColumn.h>
 #include <casacore/tables/Tables/ScalarColumn.h>
