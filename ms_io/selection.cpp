@@ -130,7 +130,7 @@ SelectedRows select_rows(const casacore::MeasurementSet& set, const std::string&
   if (selected.phase_centre) {
     for (Setup& setup : selected.setups) {
       const FieldCentre from = field_centre(set, path, setup.field, selected.first_row_of_field.at(setup.field));
-      setup.shift = phase_shift(from.direction, *selected.phase_centre);
+      setup.shift = phase_shift(from, *selected.phase_centre);
     }
   }
   if (selected.rows > 0) return selected;
