@@ -148,7 +148,7 @@ class ModelWriter {
   ModelWriter(const std::string& path, const Selection& selection, const ModelColumn& column, std::uint64_t block_samples)
       : path_(path), column_(spelt_out(column)), set_(open_measurement_set(path, Access::update)) {
     require_writable_column(set_, path_, column_);
-    selected_ = select_rows(set_, path_, selection, block_samples);
+    selected_ = select_rows(set_, path_, selection, {block_samples, false});
     describe(set_, path_, selected_);  // throws unless there is one phase centre
     journal_.column = column_.name;
     journal_.command = one_line(column_.origin.command);

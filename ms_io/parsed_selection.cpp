@@ -112,6 +112,10 @@ void parse_alone(const casacore::MeasurementSet& set, const Selection& selection
 
 }  // namespace
 
+bool ParsedSelection::uv_in_wavelengths() const {
+  return std::any_of(uv.begin(), uv.end(), [](const UvRange& range) { return !range.in_metres; });
+}
+
 bool ParsedSelection::has_uv(const double* uvw_m, double reference_frequency_hz) const {
   const double square_m2 = uvw_m[0] * uvw_m[0] + uvw_m[1] * uvw_m[1];
   return uv.empty() || std::any_of(uv.begin(), uv.end(), [&](const UvRange& range) {
