@@ -5,11 +5,14 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <cerrno>
 #include <csignal>
+#include <cstdint>
 #include <cstring>
 #include <functional>
 #include <set>
 #include <stdexcept>
+#include <string>
 
 namespace misfit::testing {
 
@@ -20,7 +23,11 @@ inline bool killed_before_change(int changes, const std::function<void()>& actio
   if (child == 0) {
     ptrace(PTRACE_TRACEME, 0, nullptr, nullptr);
     raise(SIGSTOP);
-    action();
+    try {
+      action();
+    } catch (...) {
+      _exit(1);
+    }
     _exit(0);
   }
   std::set<std::uint64_t> renames{SYS_renameat, SYS_renameat2}, others{SYS_write, SYS_pwrite64, SYS_ftruncate};
@@ -28,7 +35,7 @@ inline bool killed_before_change(int changes, const std::function<void()>& actio
   renames.insert(SYS_rename);
 #endif
   int status = 0, seen = -1;
-  waitpid(child, &status, 0);
+  waitpid(child, &status, WUNTRACED);
   if (ptrace(PTRACE_SETOPTIONS, child, nullptr, PTRACE_O_TRACESYSGOOD | PTRACE_O_EXITKILL) != 0) {
     kill(child, SIGKILL);
     waitpid(child, nullptr, 0);
