@@ -14,6 +14,12 @@ inline bool inside_grid(double u_turns, double v_turns) {
   return std::abs(u_turns) <= 0.5 && std::abs(v_turns) <= 0.5;
 }
 
+/// The largest integer that does not exceed x, of less than 2^31: std::floor is a call where the instruction may be missing.
+inline int floor_to_int(double x) {
+  const int towards_zero = static_cast<int>(x);
+  return towards_zero - (x < towards_zero ? 1 : 0);
+}
+
 /// Adds one sample to the sums, without counting it.
 inline void add_to_sums(SampleSums& sums, double weight, std::complex<double> visibility) {
   const double square = std::norm(visibility);

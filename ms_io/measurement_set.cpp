@@ -21,7 +21,7 @@ std::shared_ptr<const OpenSet> open_selected(const std::string& path, const Sele
   opened->data_column = column_name(data_column);
   opened->set = open_measurement_set(path, Access::read);
   if (!data_column.empty()) require_visibility_column(opened->set, path, opened->data_column);
-  opened->selected = select_rows(opened->set, path, selection, block_samples);
+  opened->selected = select_rows(opened->set, path, selection, {block_samples, true});
   if (data_column.empty()) return opened;
   for (const Setup& setup : opened->selected.setups) {
     try {

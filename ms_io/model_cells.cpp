@@ -87,16 +87,16 @@ void BlockCells::form(const Rows& rows, const Setup& setup, const StokesVisibili
       from += run.count;
     }
   }
-  checksum = checksum_of(rows, values);
+  checksum = {checksum_of(rows, values), data.empty() ? 0 : checksum_of(rows, data)};
 }
 
-std::uint64_t ModelCells::checksum(const Rows& rows, const Setup& setup) {
+CellChecksum ModelCells::checksum(const Rows& rows, const Setup& setup) {
   model_.require_shape(rows, stored_shape(setup), [](casacore::rownr_t row) -> Cells {
     throw casacore::AipsError("row " + std::to_string(row) + " has no values");
   });
   Cells cells;
   model_.read(rows, channel_slice(setup, setup.correlation_types.size()), cells);
-  return checksum_of(rows, cells);
+  return {checksum_of(rows, cells), data_.exists() ? checksum_of(rows, data(rows, setup)) : 0};
 }
 
 }  // namespace misfit::ms_io

@@ -41,11 +41,23 @@ class CellColumn {
   bool fixed_shape_ = false;
 };
 
+/// Sums over rows of the fingerprints of their number and cells, from the first selected channel to the last one.
+struct CellChecksum {
+  std::uint64_t values = 0;
+  std::uint64_t data = 0;  ///< that the model was subtracted from; 0 where it was not
+
+  CellChecksum& operator+=(const CellChecksum& other) {
+    values += other.values;
+    data += other.data;
+    return *this;
+  }
+};
+
 /// What goes into the cells of a block, from the first selected channel to the last one.
 struct BlockCells {
-  CellColumn::Cells values;    ///< as they are stored, where channels between are not selected; then what is to be
-  CellColumn::Cells data;      ///< that the model is subtracted from; empty where it is not
-  std::uint64_t checksum = 0;  ///< as ModelCells::checksum() has it
+  CellColumn::Cells values;  ///< as they are stored, where channels between are not selected; then what is to be
+  CellColumn::Cells data;    ///< that the model is subtracted from; empty where it is not
+  CellChecksum checksum;
 
   /// Puts `model` [row][selected channel] into the values, or the data without it. Needs no casacore table.
   void form(const Rows& rows, const Setup& setup, const StokesVisibilities& model);
@@ -62,8 +74,8 @@ class ModelCells {
   CellColumn::Cells values(const Rows& rows, const Setup& setup);
   void write(const Rows& rows, const Setup& setup, const CellColumn::Cells& values);
 
-  /// The sum of the fingerprints of each row's number and values, from the first selected channel to the last one.
-  std::uint64_t checksum(const Rows& rows, const Setup& setup);
+  /// Of what the column holds now, and the data.
+  CellChecksum checksum(const Rows& rows, const Setup& setup);
 
  private:
   CellColumn model_, data_;

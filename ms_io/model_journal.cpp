@@ -26,7 +26,10 @@ std::string text_of(const ModelJournal& journal) {
   std::ostringstream text;
   text << "misfit is writing a column, or was stopped while it did\n"
        << "command " << journal.command << "\nidentity " << journal.identity << "\nrows " << journal.rows << "\nwritten "
-       << journal.written << "\nnonfinite_uvw_rows " << journal.nonfinite_uvw_rows << "\nchecksum " << journal.checksum << '\n';
+       << journal.written << "\nnonfinite_uvw_rows " << journal.nonfinite_uvw_rows << "\nchecksum " << journal.checksum.values
+       << ' ' << journal.checksum.data << '\n';
+  for (const Witness& witness : journal.witnesses)
+    text << "witness " << witness.row << ' ' << witness.channel << ' ' << witness.before << ' ' << witness.after << '\n';
   for (const auto& [setup, row] : journal.done_below) text << "done " << setup << ' ' << row << '\n';
   text << "end\n";
   return text.str();
@@ -45,7 +48,9 @@ ModelJournal journal_of(std::istream& text, const std::string& column) {
     if (key == "rows") words >> journal.rows;
     if (key == "written") words >> journal.written;
     if (key == "nonfinite_uvw_rows") words >> journal.nonfinite_uvw_rows;
-    if (key == "checksum") words >> journal.checksum;
+    if (key == "checksum") words >> journal.checksum.values >> journal.checksum.data;
+    if (Witness found; key == "witness" && words >> found.row >> found.channel >> found.before >> found.after)
+      journal.witnesses.push_back(found);
     if (std::size_t setup = 0; key == "done" && words >> setup) words >> journal.done_below[setup];
     ended = key == "end";
   }
@@ -80,6 +85,10 @@ void remove_journal(const casacore::Table& set, const std::string& column) {
     std::filesystem::remove(path, ignored);
     std::filesystem::remove(path + part, ignored);
   }
+}
+
+bool outlived(const casacore::Table& set, const ModelJournal& journal) {
+  return !journal.witnesses.empty() && changed(journal.witnesses, set, journal.column) == journal.witnesses.size();
 }
 
 std::string incompleteness(const std::string& path, const ModelJournal& journal) {

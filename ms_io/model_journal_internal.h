@@ -6,6 +6,10 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <vector>
+
+#include "ms_io/model_cells_internal.h"
+#include "ms_io/model_witness_internal.h"
 
 namespace misfit::ms_io {
 
@@ -19,7 +23,8 @@ struct ModelJournal {
   std::uint64_t rows = 0;                ///< to be written
   std::uint64_t written = 0;             ///< rows
   std::uint64_t nonfinite_uvw_rows = 0;  ///< of those written
-  std::uint64_t checksum = 0;            ///< sum over the rows written of the fingerprints of their number and values
+  CellChecksum checksum;                 ///< of the rows written
+  std::vector<Witness> witnesses;        ///< that show it to whoever does not read all of them
   std::map<std::size_t, std::uint64_t> done_below;  ///< by setup: its rows that are selected are written below this one
 };
 
@@ -29,6 +34,9 @@ std::optional<ModelJournal> read_journal(const casacore::Table& set, const std::
 /// Throws std::runtime_error that names the file.
 void write_journal(const casacore::Table& set, const ModelJournal& journal);
 void remove_journal(const casacore::Table& set, const std::string& column);
+
+/// Whether another program has written all of the column since, so that the journal says nothing of what it holds.
+bool outlived(const casacore::Table& set, const ModelJournal& journal);
 
 /// "MODEL_DATA of `path` is incomplete: 12 of 30 rows were written before by …".
 std::string incompleteness(const std::string& path, const ModelJournal& journal);

@@ -148,12 +148,13 @@ class ModelWriter {
   ModelWriter(const std::string& path, const Selection& selection, const ModelColumn& column, std::uint64_t block_samples)
       : path_(path), column_(spelt_out(column)), set_(open_measurement_set(path, Access::update)) {
     require_writable_column(set_, path_, column_);
-    selected_ = select_rows(set_, path_, selection, block_samples);
+    selected_ = select_rows(set_, path_, selection, {block_samples, false});
     describe(set_, path_, selected_);  // throws unless there is one phase centre
     journal_.column = column_.name;
     journal_.command = one_line(column_.origin.command);
     journal_.identity = identity_of(column_, selected_);
     journal_.rows = selected_.rows;
+    journal_.witnesses = translated(doing_(), [&] { return choose_witnesses(set_, column_, selected_); });
     const bool exists = set_.tableDesc().isColumn(column_.name);
     if (exists) go_on();
     write_journal(set_, journal_);  // before there is a column, so that none is ever without
@@ -173,7 +174,7 @@ class ModelWriter {
       if (progress) progress(samples_, selected_.samples);
     };
     for (const BlockRows& rows : selected_.blocks) {
-      const BlockRows rest = rows_between(rows, done_below(rows), set_.nrow());
+      const BlockRows rest = rows_between(rows, done_below(journal_, rows), set_.nrow());
       samples_ += (rows.rows - rest.rows) * selected_.setups[rows.setup].frequency_hz.size();
       if (rest.rows == 0) continue;
       auto block = std::make_unique<PredictedBlock>(rest, selected_.setups);
@@ -199,46 +200,49 @@ class ModelWriter {
   std::string doing_() const { return "cannot write " + column_.name + " of " + path_; }
 
   /// All rows of the block's setup below this one are written.
-  std::uint64_t done_below(const BlockRows& block) const {
-    const auto found = journal_.done_below.find(block.setup);
-    return found == journal_.done_below.end() ? 0 : found->second;
+  static std::uint64_t done_below(const ModelJournal& journal, const BlockRows& block) {
+    const auto found = journal.done_below.find(block.setup);
+    return found == journal.done_below.end() ? 0 : found->second;
   }
 
   /// Takes up what an earlier run left, where that is the beginning of this one.
   void go_on() {
     const std::optional<ModelJournal> before = read_journal(set_, column_.name);
     if (!before) return;
-    std::string fate =
-        "; this run has another model, selection or option, and begins anew: rows that it does not select stay as they are";
-    if (!journal_.identity.empty() && before->identity == journal_.identity) {
-      const ModelJournal anew = journal_;
-      journal_ = *before;
-      fate = ", going on";
-      if (!as_it_was_left()) {
-        if (!column_.may_exist) throw_exists(path_, column_.name);
-        journal_ = anew;
-        fate = ", and have changed since; this run begins anew";
-      }
-    } else if (!column_.may_exist) {
-      throw_exists(path_, column_.name);
-    }
+    const Left left = what_is_left(*before);
+    if (!column_.may_exist && (left == Left::another || left == Left::changed)) throw_exists(path_, column_.name);
+    if (left == Left::beginning) journal_ = *before;
+    const std::string fate = left == Left::beginning ? ", going on"
+                             : left == Left::changed ? ", and have changed since; this run begins anew"
+                             : left == Left::other_data
+                                 ? " from " + column_.subtracted_from + ", which has changed since; this run begins anew"
+                                 : "; this run has another model, selection or option, and begins anew: rows that it does not "
+                                   "select stay as they are";
     if (column_.origin.tell) column_.origin.tell(incompleteness(path_, *before) + fate);
   }
 
-  /// Whether the rows that the journal says are written still hold what was.
-  bool as_it_was_left() {
-    std::uint64_t rows = 0, checksum = 0;
+  enum class Left { beginning, other_data, changed, another };
+
+  /// What the column holds of the run whose journal this is: the beginning of this one, or that of other data, or what another
+  /// program wrote, or another run's.
+  Left what_is_left(const ModelJournal& before) {
+    if (outlived(set_, before)) return Left::changed;
+    if (journal_.identity.empty() || before.identity != journal_.identity) return Left::another;
+    std::uint64_t rows = 0;
+    CellChecksum checksum;
     try {
       ModelCells cells(set_, column_);
       for (const BlockRows& block : selected_.blocks) {
-        const BlockRows done = rows_between(block, 0, done_below(block));
+        const BlockRows done = rows_between(block, 0, done_below(before, block));
         if (done.rows > 0) checksum += cells.checksum(Rows(done.runs), selected_.setups[block.setup]);
         rows += done.rows;
       }
+      if (changed(before.witnesses, set_, column_.name) > 0) return Left::changed;
     } catch (const casacore::AipsError&) {  // the column is another one
-      return false;
+      return Left::changed;
     }
-    return rows == journal_.written && checksum == journal_.checksum;
+    if (rows != before.written || checksum.values != before.checksum.values) return Left::changed;
+    return checksum.data == before.checksum.data ? Left::beginning : Left::other_data;
   }
 
   void prepare(const casacore::ArrayColumn<double>& uvw, PredictedBlock& block) {
@@ -250,6 +254,7 @@ class ModelWriter {
   }
 
   void write(const PredictedBlock& block) {
+    if (foretell(journal_.witnesses, block.rows, *block.setup, block.cells.values)) write_journal(set_, journal_);
     translated(doing_(), [&] {
       cells_->write(block.rows, *block.setup, block.cells.values);
       (*flush_)();
@@ -278,7 +283,7 @@ std::string incomplete_column(const std::string& path, const std::string& column
   const std::string name = column_name(column);
   const casacore::MeasurementSet set = open_measurement_set(path, Access::read);
   const std::optional<ModelJournal> journal = set.tableDesc().isColumn(name) ? read_journal(set, name) : std::nullopt;
-  return journal ? incompleteness(path, *journal) : "";
+  return journal && !outlived(set, *journal) ? incompleteness(path, *journal) : "";
 }
 
 void require_writable(const std::string& path, const ModelColumn& column) {

@@ -48,7 +48,8 @@ struct ModelWriteReport {
 };
 
 /// "MODEL_DATA of `path` is incomplete: 12 of 30 rows were written before by …", or nothing where no run was cut short while it
-/// wrote that column. Throws std::runtime_error where `path` is no MeasurementSet.
+/// wrote that column, or another program has written all of it since, as up to 16 cells spread over the selection show. Throws
+/// std::runtime_error where `path` is no MeasurementSet.
 std::string incomplete_column(const std::string& path, const std::string& column);
 
 /// Throws what write_model would where the MeasurementSet at `path`, or `column` of it, cannot be written.
@@ -61,7 +62,8 @@ void require_writable(const std::string& path, const ModelColumn& column = {});
 /// what the data are read from, since nobody could tell afterwards where a run was cut short.
 ///
 /// A run that ends early, even killed, leaves a set that opens, and a record of the rows that are written. The next one with
-/// the same model, options and selection goes on there, unless these rows have changed since; any other begins anew.
+/// the same model, options and selection goes on there, unless these rows, or the data of these rows, have changed since; any
+/// other begins anew.
 ///
 /// `progress(done, total)` is called after every block, in samples. Throws std::runtime_error as MeasurementSet does (but
 /// correlations from which I cannot be formed are written all the same), where another process has locked the set for more than

@@ -3,6 +3,7 @@
 #include <casacore/tables/Tables/ScalarColumn.h>
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <cstdlib>
 
@@ -12,20 +13,6 @@
 
 namespace misfit::ms_io {
 namespace {
-
-/// Hands the expression of `kind` to MSSelection.
-void give(casacore::MSSelection& to, const SelectionKind& kind, const Selection& selection) {
-  const std::string& expression = selection.*kind.expression;
-  if (one_line(expression).empty()) return;
-  const std::string option = kind.option;
-  if (option == "field") to.setFieldExpr(expression);
-  if (option == "spw") to.setSpwExpr(expression);
-  if (option == "timerange") to.setTimeExpr(expression);
-  if (option == "antenna") to.setAntennaExpr(expression);
-  if (option == "scan") to.setScanExpr(expression);
-  if (option == "intent") to.setStateExpr(expression);
-  if (option == "observation") to.setObservationExpr(expression);
-}
 
 std::vector<std::string> split(const std::string& text, char separator) {
   std::vector<std::string> parts(1);
@@ -94,23 +81,40 @@ void parse_windows(const casacore::MeasurementSet& set, const Selection& selecti
   parsed.all_windows = false;
 }
 
-/// Whether `kind` is for MSSelection to look for among the rows.
-bool needs_rows(const SelectionKind& kind) {
-  return kind.expression != &Selection::field && kind.expression != &Selection::spectral_window &&
-         kind.expression != &Selection::uv_range;
+/// What becomes of an expression.
+struct Parser {
+  std::string Selection::*expression;
+  casacore::Bool (casacore::MSSelection::*give)(const casacore::String&);  ///< null: it is not MSSelection's
+  void (*alone)(const casacore::MeasurementSet&, const Selection&, ParsedSelection&) = nullptr;  ///< null: it is for the rows
+};
+
+constexpr std::array<Parser, selection_kinds.size()> parsers{
+    {{&Selection::field, &casacore::MSSelection::setFieldExpr, parse_fields},
+     {&Selection::spectral_window, &casacore::MSSelection::setSpwExpr, parse_windows},
+     {&Selection::uv_range, nullptr, parse_uv_ranges},
+     {&Selection::time_range, &casacore::MSSelection::setTimeExpr},
+     {&Selection::antenna, &casacore::MSSelection::setAntennaExpr},
+     {&Selection::scan, &casacore::MSSelection::setScanExpr},
+     {&Selection::intent, &casacore::MSSelection::setStateExpr},
+     {&Selection::observation, &casacore::MSSelection::setObservationExpr}}};
+
+const Parser& parser_of(const SelectionKind& kind) {
+  return *std::find_if(parsers.begin(), parsers.end(), [&](const Parser& p) { return p.expression == kind.expression; });
 }
 
-void parse_alone(const casacore::MeasurementSet& set, const Selection& selection, const SelectionKind& kind,
+void parse_alone(const casacore::MeasurementSet& set, const Selection& selection, const Parser& parser,
                  ParsedSelection& parsed) {
-  if (kind.expression == &Selection::field) return parse_fields(set, selection, parsed);
-  if (kind.expression == &Selection::spectral_window) return parse_windows(set, selection, parsed);
-  if (kind.expression == &Selection::uv_range) return parse_uv_ranges(set, selection, parsed);
+  if (parser.alone) return parser.alone(set, selection, parsed);
   casacore::MSSelection expression;
-  give(expression, kind, selection);
+  (expression.*parser.give)(selection.*parser.expression);
   expression.toTableExprNode(&set);
 }
 
 }  // namespace
+
+bool ParsedSelection::uv_in_wavelengths() const {
+  return std::any_of(uv.begin(), uv.end(), [](const UvRange& range) { return !range.in_metres; });
+}
 
 bool ParsedSelection::has_uv(const double* uvw_m, double reference_frequency_hz) const {
   const double square_m2 = uvw_m[0] * uvw_m[0] + uvw_m[1] * uvw_m[1];
@@ -132,14 +136,15 @@ ParsedSelection parse_selection(const casacore::MeasurementSet& set, const std::
   for (const SelectionKind& kind : selection_kinds) {
     const std::string& expression = selection.*kind.expression;
     if (one_line(expression).empty()) continue;
+    const Parser& parser = parser_of(kind);
     try {
-      parse_alone(set, selection, kind, parsed);
+      parse_alone(set, selection, parser, parsed);
     } catch (const casacore::AipsError& error) {
       throw std::runtime_error(path + ": --" + kind.option + " '" + expression +
                                "' selects nothing: " + one_line(error.getMesg()) + "; expected " + kind.expected);
     }
-    give(all, kind, selection);
-    among_rows = among_rows || needs_rows(kind);
+    if (parser.give) (all.*parser.give)(expression);
+    among_rows = among_rows || !parser.alone;
   }
   if (among_rows) {
     parsed.rows = translated(path + ": " + to_text(selection), [&] { return all.toTableExprNode(&set); });

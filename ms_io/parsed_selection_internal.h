@@ -31,8 +31,9 @@ struct ParsedSelection {
 
   bool has_field(int field) const { return all_fields || fields.count(field) > 0; }
   bool has_window(int window) const { return all_windows || channels.count(window) > 0; }
-  /// Whether one of `uv` holds; in wavelengths, of the reference frequency. TaQL takes 6 µs for a row, which is why this is
-  /// apart.
+  bool uv_in_wavelengths() const;  ///< whether some of it is
+  /// Whether one of `uv` holds, or there are none; in wavelengths, of the reference frequency. TaQL takes 6 µs for a row, which
+  /// is why this is apart.
   bool has_uv(const double* uvw_m, double reference_frequency_hz) const;
   /// Of the table as it was opened, whatever table its rows are stored in. Throws AipsError where they cannot be read.
   bool has_row(std::uint64_t row) const;

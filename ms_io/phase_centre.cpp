@@ -36,10 +36,10 @@ casacore::MDirection::Types frame_code(const std::string& frame) {
 
 imager::SkyDirection sky_direction(const casacore::MDirection& direction) {
   constexpr double turn = 2 * 3.14159265358979323846;
-  const auto& angles = direction.getValue();
+  const auto& towards = direction.getValue();
   imager::SkyDirection sky;
-  sky.ra_rad = angles.getLong() < 0 ? angles.getLong() + turn : angles.getLong();
-  sky.dec_rad = angles.getLat();
+  sky.ra_rad = towards.getLong() < 0 ? towards.getLong() + turn : towards.getLong();
+  sky.dec_rad = std::atan2(towards(2), std::hypot(towards(0), towards(1)));  // getLat() is not exact beside the poles
   const auto frame = casacore::MDirection::castType(direction.getRef().getType());
   sky.frame = frame == casacore::MDirection::ICRS ? "ICRS" : frame == casacore::MDirection::B1950 ? "FK4" : "FK5";
   return sky;
@@ -47,11 +47,12 @@ imager::SkyDirection sky_direction(const casacore::MDirection& direction) {
 
 using Vector = imager::UvwAxes::Vector;
 
-/// A unit vector in one frame as another has it.
-Vector converted(const Vector& direction, const std::string& from, const std::string& to) {
+/// A unit vector in one frame as another has it, at a time.
+Vector converted(const Vector& direction, const std::string& from, const std::string& to, const casacore::MeasFrame& when) {
   if (from == to) return direction;
   const casacore::MDirection there(casacore::MVDirection(direction[0], direction[1], direction[2]), frame_code(from));
-  const casacore::MVDirection here = casacore::MDirection::Convert(there, frame_code(to))().getValue();
+  const casacore::MDirection::Ref reference(frame_code(to), when);
+  const casacore::MVDirection here = casacore::MDirection::Convert(there, reference)().getValue();
   return {here(0), here(1), here(2)};
 }
 
@@ -81,24 +82,32 @@ FieldCentre field_centre(const casacore::MeasurementSet& set, const std::string&
       direction = casacore::MDirection::Convert(direction,
                                                 casacore::MDirection::Ref(casacore::MDirection::J2000, frame_of(set, row)))();
     }
-    return FieldCentre{field, columns.name()(index), sky_direction(direction)};
+    return FieldCentre{field, columns.name()(index), sky_direction(direction),
+                       casacore::ScalarMeasColumn<casacore::MEpoch>(set, "TIME")(row)};
   });
 }
 
 double separation_rad(const imager::SkyDirection& a, const imager::SkyDirection& b) {
-  const Vector one = imager::uvw_axes(a).w, other = converted(imager::uvw_axes(b).w, b.frame, a.frame);
+  const Vector one = imager::uvw_axes(a).w, other = converted(imager::uvw_axes(b).w, b.frame, a.frame, {});
   const double chord = std::hypot(one[0] - other[0], one[1] - other[1], one[2] - other[2]);
   return 2 * std::asin(std::min(1.0, chord / 2));
 }
 
-imager::PhaseShift phase_shift(const imager::SkyDirection& from, const imager::SkyDirection& to) {
+imager::PhaseShift phase_shift(const FieldCentre& from, const imager::SkyDirection& to) {
   imager::UvwAxes axes = imager::uvw_axes(to);
-  if (from.frame != to.frame) {
-    axes.w = converted(axes.w, to.frame, from.frame);
-    axes.u = unit(cross(converted(axes.v, to.frame, from.frame), axes.w));
+  if (from.direction.frame != to.frame) {
+    const casacore::MeasFrame when(from.observed);
+    const auto north_by = [&](double tangent) {
+      const Vector &v = axes.v, &w = axes.w;
+      const Vector direction = unit({w[0] + tangent * v[0], w[1] + tangent * v[1], w[2] + tangent * v[2]});
+      return converted(direction, to.frame, from.direction.frame, when);
+    };
+    const Vector here = north_by(0), there = north_by(1e-3);  // near, for B1950 holds aberration, which bends long ways
+    axes.w = here;
+    axes.u = unit(cross(there, here));
     axes.v = cross(axes.w, axes.u);
   }
-  return {imager::uvw_axes(from), axes};
+  return {imager::uvw_axes(from.direction), axes};
 }
 
 }  // namespace misfit::ms_io

@@ -2,6 +2,7 @@
 #include <casacore/tables/Tables/ScalarColumn.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <stdexcept>
 
@@ -18,15 +19,15 @@ constexpr std::size_t not_selected = std::numeric_limits<std::size_t>::max();
 /// Sorts rows, met in the order of the table, into blocks of one setup each.
 class BlockBuilder {
  public:
-  BlockBuilder(const SetupTable& table, const ParsedSelection& parsed, const Selection& selection, std::uint64_t block_samples)
-      : table_(table), parsed_(parsed), block_samples_(block_samples) {
+  BlockBuilder(const SetupTable& table, const ParsedSelection& parsed, const Selection& selection, const RowUse& use)
+      : table_(table), parsed_(parsed), use_(use) {
     result_.phase_centre = selection.phase_centre;
   }
 
   /// `uvw_m` is looked at only where the selection asks for it.
   void add(std::uint64_t row, int data_description, int field, const double* uvw_m) {
     if (!parsed_.has_field(field)) return;
-    if (!parsed_.uv.empty() && !parsed_.has_uv(uvw_m, reference_frequency_hz(data_description))) return;
+    if (!parsed_.uv.empty() && !has_uv(uvw_m, data_description)) return;
     if (!parsed_.has_row(row)) return;
     const std::size_t setup = setup_of({data_description, result_.phase_centre ? field : 0});
     if (setup == not_selected) return;
@@ -43,10 +44,16 @@ class BlockBuilder {
   }
 
  private:
+  bool has_uv(const double* uvw_m, int data_description) {
+    if (!std::isfinite(uvw_m[0]) || !std::isfinite(uvw_m[1])) return use_.reading;
+    return parsed_.has_uv(uvw_m, parsed_.uv_in_wavelengths() ? reference_frequency_hz(data_description) : 0);
+  }
+
   double reference_frequency_hz(int data_description) {
     const auto known = reference_frequency_hz_.find(data_description);
     if (known != reference_frequency_hz_.end()) return known->second;
-    return reference_frequency_hz_[data_description] = table_.reference_frequency_hz(data_description);
+    const bool selected = parsed_.has_window(table_.spectral_window(data_description));
+    return reference_frequency_hz_[data_description] = selected ? table_.reference_frequency_hz(data_description) : 0;
   }
 
   /// DATA_DESC_ID, and the field where each is shifted in a way of its own.
@@ -66,7 +73,7 @@ class BlockBuilder {
     index = result_.setups.size();
     result_.setups.push_back(table_.setup(key.first, parsed_));
     result_.setups.back().field = key.second;
-    rows_per_block_.push_back(std::max<std::uint64_t>(1, block_samples_ / result_.setups.back().frequency_hz.size()));
+    rows_per_block_.push_back(std::max<std::uint64_t>(1, use_.block_samples / result_.setups.back().frequency_hz.size()));
     pending_.push_back({index, {}, 0});
     return index;
   }
@@ -81,7 +88,7 @@ class BlockBuilder {
 
   const SetupTable& table_;
   const ParsedSelection& parsed_;
-  std::uint64_t block_samples_;
+  RowUse use_;
   SelectedRows result_;
   std::map<Key, std::size_t> setup_;
   std::map<int, double> reference_frequency_hz_;  ///< by DATA_DESC_ID
@@ -102,10 +109,10 @@ void append(std::vector<Run>& runs, std::uint64_t first, std::uint64_t count) {
 }
 
 SelectedRows select_rows(const casacore::MeasurementSet& set, const std::string& path, const Selection& selection,
-                         std::uint64_t block_samples) {
+                         const RowUse& use) {
   const SetupTable table(set, path);
   const ParsedSelection parsed = parse_selection(set, path, selection);
-  BlockBuilder builder(table, parsed, selection, block_samples);
+  BlockBuilder builder(table, parsed, selection, use);
   constexpr std::uint64_t rows_at_once = 1 << 20;
   for (std::uint64_t first = 0; first < set.nrow(); first += rows_at_once) {
     const std::uint64_t count = std::min<std::uint64_t>(rows_at_once, set.nrow() - first);
@@ -130,7 +137,7 @@ SelectedRows select_rows(const casacore::MeasurementSet& set, const std::string&
   if (selected.phase_centre) {
     for (Setup& setup : selected.setups) {
       const FieldCentre from = field_centre(set, path, setup.field, selected.first_row_of_field.at(setup.field));
-      setup.shift = phase_shift(from.direction, *selected.phase_centre);
+      setup.shift = phase_shift(from, *selected.phase_centre);
     }
   }
   if (selected.rows > 0) return selected;

@@ -10,8 +10,9 @@ namespace misfit::ms_io {
 
 /// Which samples of a MeasurementSet are meant, in casacore's MSSelection syntax, as CASA's tasks take it; empty means all. A
 /// sample must be in each that is given. As in MSSelection, uv distances are √(u² + v²), those in wavelengths at the
-/// REF_FREQUENCY of the spectral window, whatever the channel. The ends of ranges of time and uv distance belong to them; times
-/// are rounded down to milliseconds. A time without a date has that of the first row that the rest, but for uv_range, selects.
+/// REF_FREQUENCY of the spectral window, whatever the channel; where they are not finite, rows are read, to be counted, but no
+/// model is written. The ends of ranges of time and uv distance belong to them; times are rounded down to milliseconds. A time
+/// without a date has that of the first row that the rest, but for uv_range, selects.
 struct Selection {
   std::string field;
   std::string spectral_window;

@@ -57,10 +57,16 @@ struct SelectedRows {
   std::optional<imager::SkyDirection> phase_centre;  ///< where the visibilities are shifted to
 };
 
-/// Finds the rows and channels that `selection` means, in blocks of about `block_samples` samples. Throws
-/// std::runtime_error, which begins with `path`, for a wrong or empty selection and for rows that point nowhere.
+/// What the rows are for.
+struct RowUse {
+  std::uint64_t block_samples = 0;  ///< a block has about so many
+  bool reading = true;              ///< rows whose u or v is not finite are then within all uv ranges, so that they are counted
+};
+
+/// Finds the rows and channels that `selection` means, in blocks. Throws std::runtime_error, which begins with `path`, for a
+/// wrong or empty selection and for rows that point nowhere.
 SelectedRows select_rows(const casacore::MeasurementSet& set, const std::string& path, const Selection& selection,
-                         std::uint64_t block_samples);
+                         const RowUse& use);
 
 /// Appends `count` rows or channels, of which `first` is the first, to ascending runs.
 void append(std::vector<Run>& runs, std::uint64_t first, std::uint64_t count = 1);

@@ -60,8 +60,13 @@ int SetupTable::spectral_window(int data_description) const {
 
 double SetupTable::reference_frequency_hz(int data_description) const {
   const auto window = static_cast<casacore::rownr_t>(spectral_window(data_description));
-  return translated("cannot read REF_FREQUENCY of " + path_,
-                    [&] { return casacore::ScalarColumn<double>(set_.spectralWindow(), "REF_FREQUENCY")(window); });
+  const double reference_hz = translated("cannot read REF_FREQUENCY of " + path_, [&] {
+    return casacore::ScalarColumn<double>(set_.spectralWindow(), "REF_FREQUENCY")(window);
+  });
+  if (reference_hz > 0 && std::isfinite(reference_hz)) return reference_hz;
+  throw std::runtime_error(
+      path_ + ": spectral window " + std::to_string(window) + " has REF_FREQUENCY " + to_text(reference_hz) +
+      " Hz, at which a --uvrange in wavelengths is meant; expected a positive number, or a range in metres");
 }
 
 Setup SetupTable::setup(int data_description, const ParsedSelection& parsed) const {

@@ -6,6 +6,7 @@
 
 #include "imager/constants.h"
 #include "imager/plane/half_grid.h"
+#include "imager/sampling.h"
 #include "imager/transform.h"
 
 namespace misfit::imager {
@@ -38,12 +39,6 @@ struct FoldedRow {
     return std::abs(u_per_hz) * frequency_hz <= 0.5 * shape.nu && v_per_hz * frequency_hz <= 0.5 * shape.nv;
   }
 };
-
-/// The largest integer that does not exceed x, of less than 2^31: std::floor is a call where the instruction may be missing.
-inline int floor_to_int(double x) {
-  const int towards_zero = static_cast<int>(x);
-  return towards_zero - (x < towards_zero ? 1 : 0);
-}
 
 /// Where the taps of a sample lie along one axis: the first cell they touch, and the position of the sample within its cell.
 struct TapPosition {

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "imager/constants.h"
+#include "imager/sampling.h"
 
 namespace misfit::imager {
 
@@ -29,11 +30,10 @@ void UvCells::of_row(const double* uvw_m, const std::vector<double>& turns_per_m
   const std::uint32_t columns = static_cast<std::uint32_t>(this->columns());
   for (std::size_t c = 0; c < turns_per_m.size(); ++c) {
     const double u_turns = u_m * turns_per_m[c], v_turns = v_m * turns_per_m[c];
-    const bool inside = std::abs(u_turns) <= 0.5 && v_turns <= 0.5;
+    const bool inside = inside_grid(u_turns, v_turns);
     const double u = inside ? u_turns * width : 0, v = inside ? v_turns * height : 0;
-    const int towards_zero = static_cast<int>(u);
-    const int column = towards_zero - (u < towards_zero ? 1 : 0) + origin_;
-    const std::uint32_t at = static_cast<std::uint32_t>(static_cast<int>(v)) * columns + static_cast<std::uint32_t>(column);
+    const std::uint32_t column = static_cast<std::uint32_t>(floor_to_int(u) + origin_);
+    const std::uint32_t at = static_cast<std::uint32_t>(static_cast<int>(v)) * columns + column;
     cell[c] = inside ? at : outside;
   }
 }

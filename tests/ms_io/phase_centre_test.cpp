@@ -143,6 +143,50 @@ BOOST_AUTO_TEST_CASE(axes_turn_with_the_frame_of_the_phase_centre) {
   BOOST_TEST((there.uvw_m == own.uvw_m));
 }
 
+// 3C 286 in NRAO's list of VLA calibrators, whose B1950 positions are of 1979.9: printed to 1e-4 s of right ascension, 7e-9
+// rad. The matrix that takes FK4 to FK5, and its change in arcseconds in a century, are those of Yallop et al. 1989, AJ 97,
+// 274.
+BOOST_AUTO_TEST_CASE(between_b1950_and_j2000_a_calibrator_stays_where_it_is_and_north_turns_with_the_pole) {
+  const imager::SkyDirection b1950 = parse_phase_centre("B1950 13h28m49.6577s +30d45m58.640s", "");
+  const imager::SkyDirection j2000 = parse_phase_centre("J2000 13h31m08.287984s +30d30m32.958850s", "");
+  const double centuries = -0.201, epoch_mjd_s = 44203.0 * 86400, arcsec = degree / 3600;
+  const double from_fk4[3][3] = {{0.9999256782, -0.0111820611, -0.0048579477},
+                                 {0.0111820610, 0.9999374784, -0.0000271765},
+                                 {0.0048579479, -0.0000271474, 0.9999881997}};
+  const double change[3][3] = {
+      {-0.000551, -0.238565, 0.435739}, {0.238514, -0.002667, -0.008541}, {-0.435623, 0.012254, 0.002117}};
+  const imager::UvwAxes::Vector north = imager::uvw_axes(b1950).v, east = imager::uvw_axes(j2000).u;
+  double turn = 0;
+  for (std::size_t i = 0; i < 3; ++i)
+    for (std::size_t k = 0; k < 3; ++k) turn += east[i] * (from_fk4[i][k] + centuries * change[i][k] * arcsec) * north[k];
+  BOOST_TEST(std::abs(turn) > 1e-3);
+  for (const bool set_is_b1950 : {true, false}) {
+    SimulatedObservation observation = small_observation();
+    observation.phase_centre = j2000;
+    for (double& time : observation.time_mjd_s) time += epoch_mjd_s - 4.9e9;
+    const SmallSet set(observation);
+    if (set_is_b1950) set.phase_to_b1950(b1950.ra_rad, b1950.dec_rad);
+    for (ssize_t axis = 0; axis < 3; ++axis) {
+      for (ssize_t row = 0; row < 2; ++row) set.put("UVW", static_cast<std::size_t>(row), axis, 0, axis == row + 1 ? 1.0 : 0.0);
+    }
+    const MeasurementSet own(set.path(), {}, "DATA");
+    BOOST_TEST(own.observation().phase_centre.frame == (set_is_b1950 ? "FK4" : "FK5"));
+    const AllSamples read = read_all(MeasurementSet(set.path(), shifted_to(set_is_b1950 ? j2000 : b1950), "DATA"));
+    const double *const v = read.uvw_m.data(), *const w = v + 3;  // a metre to the north, and one towards the source
+    BOOST_TEST(std::abs(w[0]) < 5e-9);
+    BOOST_TEST(std::abs(w[1]) < 5e-9);
+    BOOST_TEST(std::abs(v[0] - (set_is_b1950 ? turn : -turn)) < 5e-9);
+  }
+}
+
+BOOST_AUTO_TEST_CASE(a_phase_centre_beside_the_pole_is_as_exact_as_any) {
+  const SmallSet set;
+  const double dec_rad = pi / 2 - 1e-6;
+  set.add_field(1.5, dec_rad);
+  BOOST_TEST(std::abs(parse_phase_centre("1", set.path()).dec_rad - dec_rad) < 1e-15);
+  BOOST_TEST(std::abs(parse_phase_centre("1", set.path()).ra_rad - 1.5) < 1e-9);  // 1e-15 rad on the sky
+}
+
 BOOST_AUTO_TEST_CASE(a_model_about_the_shifted_centre_is_written_as_each_field_sees_it) {
   const Mosaic set;
   const imager::SkyDirection to{1.2, -0.45, "FK5"};

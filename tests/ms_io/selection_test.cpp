@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <boost/test/unit_test.hpp>
 
+#include "ms_io/model_writer.h"
 #include "tests/ms_io/small_set.h"
 
 namespace misfit::ms_io {
@@ -117,6 +118,35 @@ BOOST_AUTO_TEST_CASE(distances_in_wavelengths_are_at_the_reference_frequency_of_
                     {one(&Selection::uv_range, "50~100lambda"), wavelengths + " between 50 and 100"},
                     {one(&Selection::uv_range, ">0.1klambda"), wavelengths + " > 100"},
                     {one(&Selection::uv_range, "<1e-4Mlambda"), wavelengths + " <= 100"}});
+}
+
+BOOST_AUTO_TEST_CASE(rows_without_a_distance_are_counted_as_not_finite_and_a_model_is_not_written_there) {
+  const SmallSet set;
+  set.put("UVW", 1, 0, 0, nan_value);
+  set.put("UVW", 2, 1, 0, -std::numeric_limits<double>::infinity());
+  set.put("UVW", 4, 0, 0, nan_value);
+  set.put("ANTENNA2", 4, 1);  // of A1 and A1
+  const Selection far = one(&Selection::uv_range, ">25m");
+  const std::size_t selected = rows_queried(set.path(), "sqrt(sum(square(UVW[1:2]))) between 25 and 1e9").size();
+  const AllSamples read = read_all(MeasurementSet(set.path(), far, "DATA"));
+  BOOST_TEST(read.counts.used == selected * channels);
+  BOOST_TEST(read.counts.nonfinite == 2U * channels);
+  BOOST_TEST(read.counts.autocorrelations == channels);
+  const ModelWriteReport report = write_model(set.path(), far, {}, small_visibilities, {});
+  BOOST_TEST(report.rows == selected);
+  BOOST_TEST(report.nonfinite_uvw_rows == 0U);
+}
+
+BOOST_AUTO_TEST_CASE(distances_in_wavelengths_need_a_reference_frequency_and_others_do_not) {
+  for (const double wrong : {0.0, nan_value, -1e9}) {
+    const SmallSet set;
+    set.modify(
+        [&](casacore::MeasurementSet& ms) { casacore::MSSpWindowColumns(ms.spectralWindow()).refFrequency().put(0, wrong); });
+    const std::string error = error_of_selection(set, one(&Selection::uv_range, "<25m,>0.1klambda"));
+    BOOST_TEST(contains(error, set.path() + ": spectral window 0 has REF_FREQUENCY " + (wrong == 0 ? "0 Hz" : "")));
+    BOOST_TEST(contains(error, "--uvrange"));
+    BOOST_TEST(!rows_read(set.path(), one(&Selection::uv_range, "<25m")).empty());
+  }
 }
 
 BOOST_AUTO_TEST_CASE(antennas_and_baselines_are_those_of_a_query) {

@@ -110,6 +110,18 @@ class SmallSet {
     });
   }
 
+  /// Phases field 0 to a direction in B1950.
+  void phase_to_b1950(double ra_rad, double dec_rad) const {
+    modify([&](casacore::MeasurementSet& set) {
+      casacore::MSFieldColumns columns(set.field());
+      casacore::Matrix<double> direction(2, 1);
+      direction(0, 0) = ra_rad;
+      direction(1, 0) = dec_rad;
+      columns.phaseDirMeasCol().setDescRefCode(casacore::MDirection::B1950, false);
+      columns.phaseDir().put(0, direction);
+    });
+  }
+
   /// Adds DATA_DESC_ID 1 with a spectral window 1 GHz higher, and gives it every third row.
   void add_spectral_window() const {
     modify([&](casacore::MeasurementSet& set) {

@@ -2,10 +2,12 @@
 #include <sys/wait.h>
 
 #include <boost/test/unit_test.hpp>
-#include <chrono>
+#include <fstream>
+#include <iterator>
 #include <thread>
 
 #include "ms_io/model_writer.h"
+#include "tests/ms_io/killed.h"
 #include "tests/ms_io/small_set.h"
 
 namespace misfit::ms_io {
@@ -41,7 +43,7 @@ struct Told {
 
 struct Stop {};
 
-/// Writes the model; `stop_after` blocks a Stop comes through.
+/// Writes the model; `stop_after` blocks, or before the first one is predicted, a Stop comes through.
 Told write(const SmallSet& set, ModelColumn column, const Selection& which = selection, int stop_after = 1 << 20,
            std::uint64_t fingerprint = 1) {
   Told told;
@@ -50,8 +52,12 @@ Told write(const SmallSet& set, ModelColumn column, const Selection& which = sel
   const auto progress = [&](std::uint64_t, std::uint64_t) {
     if (++blocks == stop_after) throw Stop();
   };
+  const auto predict = [&](const imager::SampleCoordinates& where) {
+    if (stop_after == 0) throw Stop();
+    return model(where);
+  };
   try {
-    told.report = write_model(set.path(), which, column, model, progress, rows_at_once * 4);
+    told.report = write_model(set.path(), which, column, predict, progress, rows_at_once * 4);
   } catch (const Stop&) {
   }
   return told;
@@ -76,6 +82,30 @@ const std::vector<Complex>& whole(const ModelColumn& column) {
     values = all_of(set, column.name);
   }
   return values;
+}
+
+/// As another program does that writes the whole column.
+void fill(const SmallSet& set, const std::string& column, const Complex& value) {
+  set.modify([&](casacore::MeasurementSet& ms) {
+    casacore::ArrayColumn<Complex> cells(ms, column);
+    for (casacore::rownr_t row = 0; row < ms.nrow(); ++row) cells.put(row, casacore::Array<Complex>(cells.shape(row), value));
+  });
+}
+
+std::string record(const SmallSet& set, const ModelColumn& column) {
+  std::ifstream file(set.path() + "/misfit_unfinished_" + column.name);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+/// The set opens, and the next run begins or goes on to what an uninterrupted one makes.
+void check_rest(const SmallSet& set, const ModelColumn& column, const std::vector<Complex>& expected) {
+  BOOST_TEST(read_all(MeasurementSet(set.path(), {"0", ""}, "DATA")).counts.rows_read == 15U);
+  const std::string incomplete = incomplete_column(set.path(), column.name);
+  const Told told = write(set, column);
+  BOOST_TEST(told.sentences.size() == (incomplete.empty() ? 0U : 1U));
+  for (const std::string& sentence : told.sentences) BOOST_TEST(sentence == incomplete + ", going on");
+  BOOST_TEST((all_of(set, column.name) == expected));
+  BOOST_TEST(incomplete_column(set.path(), column.name) == "");
 }
 
 const ModelColumn plain{"MODEL_DATA"}, difference{"CORRECTED_DATA", "DATA", false};
@@ -136,6 +166,50 @@ BOOST_AUTO_TEST_CASE(rows_that_another_program_changed_are_written_again) {
   BOOST_TEST((all_of(set, "MODEL_DATA") == whole(plain)));
 }
 
+BOOST_AUTO_TEST_CASE(data_that_changed_after_the_model_was_subtracted_from_them_are_taken_anew) {
+  for (const std::size_t row : {std::size_t{1}, rows - 1}) {  // is written before the run stops, and is not
+    const MixedSet set, equal;
+    for (const MixedSet* one : {&set, &equal}) {
+      if (one == &set) write(set, difference, selection, 2);
+      one->put("DATA", row, 0, 2, Complex(99));
+    }
+    const Told told = write(set, difference);
+    BOOST_REQUIRE(told.sentences.size() == 1U);
+    BOOST_TEST(contains(told.sentences.front(),
+                        row == 1 ? " from DATA, which has changed since; this run begins anew" : ", going on"));
+    write(equal, difference);
+    BOOST_TEST((all_of(set, "CORRECTED_DATA") == all_of(equal, "CORRECTED_DATA")));
+  }
+}
+
+BOOST_AUTO_TEST_CASE(data_of_another_column_begin_anew) {
+  const MixedSet set;
+  write(set, {"RESIDUAL", "DATA"}, selection, 2);
+  write(set, {"OTHER_DATA", "DATA"}, {"1", "0~1:2"});
+  const Told told = write(set, {"RESIDUAL", "OTHER_DATA"});
+  BOOST_REQUIRE(told.sentences.size() == 1U);
+  BOOST_TEST(contains(told.sentences.front(), "begins anew"));
+}
+
+BOOST_AUTO_TEST_CASE(a_column_that_another_program_wrote_since_is_complete_and_the_next_run_begins_anew) {
+  for (const int stop_after : {0, 3}) {
+    const MixedSet set;
+    write(set, plain, selection, stop_after);
+    BOOST_TEST(incomplete_column(set.path(), "MODEL_DATA") != "");
+    fill(set, "MODEL_DATA", Complex(0.5F, 2));
+    BOOST_TEST(incomplete_column(set.path(), "MODEL_DATA") == "");
+    const Told told = write(set, plain);
+    BOOST_REQUIRE(told.sentences.size() == 1U);
+    BOOST_TEST(contains(told.sentences.front(), "have changed since; this run begins anew"));
+    BOOST_TEST(told.report.rows_before == 0U);
+    const MixedSet equal;
+    write(equal, plain);
+    fill(equal, "MODEL_DATA", Complex(0.5F, 2));
+    write(equal, plain);
+    BOOST_TEST((all_of(set, "MODEL_DATA") == all_of(equal, "MODEL_DATA")));
+  }
+}
+
 BOOST_AUTO_TEST_CASE(a_column_that_must_be_new_is_taken_up_by_the_run_that_made_it_alone) {
   const MixedSet set;
   write(set, difference, selection, 1);
@@ -158,6 +232,11 @@ BOOST_AUTO_TEST_CASE(a_column_that_another_program_made_or_changed_is_left_alone
   write(changed, difference, selection, 2);
   changed.put("CORRECTED_DATA", 1, 0, 2, Complex(99));
   BOOST_TEST(contains(error_of([&] { write(changed, difference); }), "CORRECTED_DATA already"));
+  // Stopped before it wrote a row; then calibration writes them all.
+  const MixedSet calibrated;
+  write(calibrated, difference, selection, 0);
+  fill(calibrated, "CORRECTED_DATA", Complex(1, 1));
+  BOOST_TEST(contains(error_of([&] { write(calibrated, difference); }), "CORRECTED_DATA already"));
 }
 
 BOOST_AUTO_TEST_CASE(a_record_without_its_column_is_none) {
@@ -179,27 +258,51 @@ BOOST_AUTO_TEST_CASE(a_record_that_cannot_be_read_counts_as_nothing_written) {
   BOOST_TEST((all_of(set, "MODEL_DATA") == whole(plain)));
 }
 
-BOOST_AUTO_TEST_CASE(a_run_that_was_killed_leaves_a_set_that_opens_and_its_record_claims_no_more_than_is_written) {
-  const std::vector<Complex> expected = whole(plain), subtracted = whole(difference);
-  for (int wait_us = 0; wait_us < 60'000; wait_us += 6'000) {
-    const ModelColumn& column = wait_us % 12'000 == 0 ? plain : difference;
-    const MixedSet set;
-    const pid_t child = fork();
-    if (child == 0) {
-      write(set, column);
-      _exit(0);
+BOOST_AUTO_TEST_CASE(a_run_that_was_killed_leaves_the_record_of_one_that_was_stopped_and_goes_on) {
+  for (const ModelColumn& column : {plain, difference}) {
+    const std::vector<Complex> expected = whole(column);
+    for (const int blocks : {0, 3}) {
+      const MixedSet set, stopped;
+      write(stopped, column, selection, blocks);
+      const pid_t child = fork();
+      if (child == 0) {
+        int predictions = 0;
+        const auto predict = [&](const imager::SampleCoordinates& where) {
+          while (predictions == blocks) pause();
+          ++predictions;
+          return model(where);
+        };
+        ModelColumn told = column;
+        told.origin = {"misfit predict --model a.fits", 1, {}};
+        try {
+          write_model(set.path(), selection, told, predict, {}, rows_at_once * 4);
+        } catch (...) {
+        }
+        _exit(1);
+      }
+      while (record(set, column) != record(stopped, column) && waitpid(child, nullptr, WNOHANG) == 0) std::this_thread::yield();
+      kill(child, SIGKILL);
+      waitpid(child, nullptr, 0);
+      check_rest(set, column, expected);
     }
-    std::this_thread::sleep_for(std::chrono::microseconds(wait_us));
-    kill(child, SIGKILL);
-    waitpid(child, nullptr, 0);
-    BOOST_TEST(read_all(MeasurementSet(set.path(), {"0", ""}, "DATA")).counts.rows_read == 15U);
-    const std::string incomplete = incomplete_column(set.path(), column.name);
-    // Killed between its last row and the record's removal it is complete, and may not be made again.
-    const bool complete = incomplete.empty() && casacore::MeasurementSet(set.path()).tableDesc().isColumn(column.name);
-    if (!complete) BOOST_TEST(write(set, column).sentences.size() == (incomplete.empty() ? 0U : 1U));
-    BOOST_TEST((all_of(set, column.name) == (column.subtracted_from.empty() ? expected : subtracted)));
-    BOOST_TEST(incomplete_column(set.path(), column.name) == "");
   }
+}
+
+// The files are written in the order of values, their index, the table's description and its lock file. Killed before the last
+// of these, the table has a column that its lock file does not know.
+BOOST_AUTO_TEST_CASE(a_run_that_was_killed_while_it_made_the_column_leaves_a_set_that_opens_and_can_be_written) {
+  const std::vector<Complex> expected = whole(difference);
+  int without = 0, with = 0;
+  for (int changes = 1; changes < 10; ++changes) {
+    BOOST_TEST_CONTEXT(changes) {
+      const MixedSet set;
+      BOOST_TEST(misfit::testing::killed_before_change(changes, [&] { write(set, difference); }));
+      ++(casacore::MeasurementSet(set.path()).tableDesc().isColumn(difference.name) ? with : without);
+      check_rest(set, difference, expected);
+    }
+  }
+  BOOST_TEST(without > 1);
+  BOOST_TEST(with > 1);
 }
 
 BOOST_AUTO_TEST_SUITE_END()
