@@ -59,12 +59,11 @@ std::vector<Witness> choose_witnesses(const casacore::MeasurementSet& set, const
 bool foretell(std::vector<Witness>& witnesses, const Rows& rows, const Setup& setup,
               const casacore::Array<casacore::Complex>& values) {
   const std::size_t correlations = setup.correlation_types.size(), row_values = correlations * setup.channel_span();
-  const casacore::rownr_t *const begin = rows.numbers().data(), *const end = begin + rows.count();
   bool any = false;
   for (Witness& witness : witnesses) {
-    const casacore::rownr_t* const found = std::lower_bound(begin, end, witness.row);
-    if (found == end || *found != witness.row) continue;
-    witness.after = fingerprint(values.data() + static_cast<std::size_t>(found - begin) * row_values, correlations);
+    const std::uint64_t at = rows.index_of(witness.row);
+    if (at == rows.count()) continue;
+    witness.after = fingerprint(values.data() + at * row_values, correlations);
     any = true;
   }
   return any;

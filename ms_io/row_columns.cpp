@@ -30,6 +30,13 @@ Rows::Rows(const std::vector<Run>& runs)
       count_(contiguous_ ? runs.front().count : numbers_.size()),
       listed_(contiguous_ ? casacore::RefRows(first_, first_ + count_ - 1) : casacore::RefRows(numbers_, false, true)) {}
 
+std::uint64_t Rows::index_of(casacore::rownr_t row) const {
+  if (contiguous_) return std::min<std::uint64_t>(row - first_, count_);  // far too many where it is before them
+  const casacore::rownr_t *const begin = numbers_.data(), *const end = begin + count_;
+  const casacore::rownr_t* const found = std::lower_bound(begin, end, row);
+  return found != end && *found == row ? static_cast<std::uint64_t>(found - begin) : count_;
+}
+
 casacore::Slicer Rows::range() const {
   return casacore::Slicer(casacore::IPosition(1, static_cast<ssize_t>(first_)),
                           casacore::IPosition(1, static_cast<ssize_t>(count())));

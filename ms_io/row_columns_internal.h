@@ -21,6 +21,7 @@ class Rows {
   bool contiguous() const { return contiguous_; }
   casacore::Slicer range() const;                              ///< only when contiguous
   const casacore::RefRows& listed() const { return listed_; }  ///< always
+  std::uint64_t index_of(casacore::rownr_t row) const;         ///< count() where it is not among them
   casacore::rownr_t operator[](std::uint64_t i) const { return contiguous_ ? first_ + i : numbers_.data()[i]; }
 
  private:
