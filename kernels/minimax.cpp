@@ -41,13 +41,14 @@ Weighted reweight(const MisfitSolution& start, int width, double x0, int& iterat
   constexpr int most_rounds = 400;
   constexpr double rounding = 0.1;
   constexpr double largest_power = 0.9;
+  constexpr double least_power = 1e-6;  // moves no weight any more
   const int nodes = nodes_for(width, x0);
   const Eigen::VectorXd weight = misfit_nodes(nodes, x0).weight;
   Weighted best;
   best.problem = {width, x0, nodes, Eigen::VectorXd::Ones(nodes), start.minimum.log_h, start.minimum.log_h, 1e-5, 1e-5};
   best.solution = minimise_misfit(best.problem, Arithmetic::binary64, rounding);
   double power = largest_power;
-  for (int round = 0; round < most_rounds && above_bound(best.solution.minimum) > enough; ++round) {
+  for (int round = 0; round < most_rounds && power > least_power && above_bound(best.solution.minimum) > enough; ++round) {
     Weighted next = best;
     next.problem.last = next.problem.before = best.solution.minimum.log_h;
     next.problem.importance = reweighted(best.problem.importance, best.solution.minimum, weight, power);

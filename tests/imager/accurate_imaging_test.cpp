@@ -150,6 +150,7 @@ BOOST_AUTO_TEST_CASE(without_an_accuracy_there_is_no_promise_to_break) {
   BOOST_TEST(!has_second_pass(made.plan));
 }
 
+BOOST_TEST_DECORATOR(*boost::unit_test::label("sweep"))
 BOOST_DATA_TEST_CASE(no_data_exceed_the_bounds_even_where_all_errors_align,
                      bdata::make({1, 2, 4, 7, 11}) * bdata::make({0.0, 0.25, 0.5}), kernel_width, offset) {
   for (const double padding : {1.15, 2.0})

@@ -155,6 +155,7 @@ BOOST_DATA_TEST_CASE(a_neglected_w_that_aligns_with_the_kernels_error_keeps_with
   if (bound < 0.5) BOOST_TEST(largest > bound / 2);
 }
 
+BOOST_TEST_DECORATOR(*boost::unit_test::label("sweep"))
 BOOST_DATA_TEST_CASE(a_single_visibility_at_the_worst_place_of_its_cell_reaches_the_bound_on_the_rms,
                      bdata::make({"nearest", "least-misfit", "spheroidal"}) * bdata::make({1, 4, 6}), name, kernel_width) {
   const KernelFamily family = family_called(name);
@@ -204,6 +205,7 @@ BOOST_DATA_TEST_CASE(rounding_adds_up_within_the_bound_where_all_samples_lie_in_
   }
 }
 
+BOOST_TEST_DECORATOR(*boost::unit_test::label("sweep"))
 BOOST_DATA_TEST_CASE(data_with_random_phases_have_the_expected_error,
                      bdata::make({"nearest", "least-misfit", "minimax", "spheroidal", "kaiser-bessel"}) *
                          bdata::make({1, 3, 6}) * bdata::make({1.15, 2.0}),

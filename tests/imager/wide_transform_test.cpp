@@ -79,6 +79,7 @@ const double most_w = 600;
 
 BOOST_AUTO_TEST_SUITE(wide_transform)
 
+BOOST_TEST_DECORATOR(*boost::unit_test::label("sweep"))
 BOOST_DATA_TEST_CASE(dirty_image_and_psf_equal_the_direct_transform_within_the_kernel_error,
                      bdata::xrange(2, 15) * bdata::make({1, 2, 3}), width, facets) {
   const WideTransformOptions o = options({field, width, 1.6, facets, 3 - facets / 2});
@@ -91,6 +92,7 @@ BOOST_DATA_TEST_CASE(dirty_image_and_psf_equal_the_direct_transform_within_the_k
   BOOST_TEST(gridded.sums[0].used == block.samples());
 }
 
+BOOST_TEST_DECORATOR(*boost::unit_test::label("sweep"))
 BOOST_DATA_TEST_CASE(predicted_visibilities_equal_the_direct_transform_within_the_kernel_error,
                      bdata::xrange(2, 15) * bdata::make({1, 2}), width, facets) {
   const WideTransformOptions o = options({field, width, 1.6, facets, facets});

@@ -19,7 +19,7 @@ BOOST_AUTO_TEST_CASE(every_family_makes_what_it_offers) {
     }
 }
 
-BOOST_AUTO_TEST_CASE(no_family_is_better_than_least_misfit) {
+BOOST_AUTO_TEST_CASE(no_family_is_better_than_least_misfit, *boost::unit_test::label("sweep")) {
   for (const double x0 : {0.02, 0.1, 0.25, 0.4, 0.47})
     for (int width = 1; width <= 8; ++width) {
       const double least = kernel_family("least-misfit").make(width, x0).origin.mean_error;

@@ -87,7 +87,7 @@ struct HostFile {
 
 BOOST_AUTO_TEST_SUITE(kernel_table)
 
-BOOST_AUTO_TEST_CASE(a_kernel_comes_back_bit_for_bit) {
+BOOST_AUTO_TEST_CASE(a_kernel_comes_back_bit_for_bit, *boost::unit_test::label("sweep")) {
   const Files files;
   for (const KernelFamily& family : kernel_catalogue())
     for (int width = family.min_width; width <= std::min(family.max_width, 11); ++width)

@@ -63,6 +63,7 @@ BOOST_AUTO_TEST_CASE(solver_converges_over_its_whole_range_and_width_always_help
   }
 }
 
+BOOST_TEST_DECORATOR(*boost::unit_test::label("sweep"))
 BOOST_DATA_TEST_CASE(the_hardest_corners_converge, bdata::make({0.01, 0.49}), x0) {
   BOOST_TEST(solve_least_misfit(least_misfit_max_width, x0).h_step < 1e-8);
 }

@@ -1,5 +1,6 @@
 #include "tools/formats/config_file.h"
 
+#include <CLI/CLI.hpp>
 #include <boost/test/unit_test.hpp>
 #include <functional>
 

@@ -56,6 +56,7 @@ void check_refused(const Arguments& arguments, const std::string& part) {
 
 BOOST_AUTO_TEST_SUITE(emit)
 
+BOOST_TEST_DECORATOR(*boost::unit_test::label("sweep"))
 BOOST_DATA_TEST_CASE(a_host_errs_by_what_is_said, bdata::make(emulated) * bdata::make({1.2, 2.0}) * bdata::make({4, 7, 8}),
                      host, padding, width) {
   const Scene scene;
@@ -133,6 +134,7 @@ BOOST_DATA_TEST_CASE(a_narrower_kernel_than_is_chosen_for_a_target_misses_it,
   }
 }
 
+BOOST_TEST_DECORATOR(*boost::unit_test::label("sweep"))
 BOOST_DATA_TEST_CASE(a_target_is_reached_at_paddings_where_cells_meet_badly, bdata::make({"1.04", "1.05", "1.06"}), padding) {
   const Scene scene;  // of even tables an entry lies where C jumps, and the error depends on it
   const json said = scene.emitted("casacore", {"--host-padding", padding, "--target-error", "5e-3"});

@@ -1,5 +1,6 @@
 #include "tools/run/image_options.h"
 
+#include <CLI/CLI.hpp>
 #include <boost/test/unit_test.hpp>
 #include <cmath>
 #include <functional>

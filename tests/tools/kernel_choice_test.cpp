@@ -1,5 +1,7 @@
 #include "tools/kernel_choice/kernel_choice.h"
 
+#include <CLI/CLI.hpp>
+
 #include "kernels/kernel_table.h"
 #include "tests/kernels/kernels.h"
 #include "tests/tools/program.h"

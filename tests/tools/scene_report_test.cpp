@@ -94,7 +94,7 @@ std::string stopped_report_of(const std::string& vis, const std::string& output,
 
 BOOST_AUTO_TEST_SUITE(scene_report)
 
-BOOST_AUTO_TEST_CASE(every_point_is_measured_within_its_bounds_and_its_command_makes_it) {
+BOOST_AUTO_TEST_CASE(every_point_is_measured_within_its_bounds_and_its_command_makes_it, *boost::unit_test::label("sweep")) {
   const TemporaryFolder folder;
   succeed(report_of_scene(folder / "report"));
   BOOST_TEST(!std::filesystem::exists(folder / "report/measured.json"));

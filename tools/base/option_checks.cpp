@@ -1,5 +1,6 @@
 #include "tools/base/option_checks.h"
 
+#include <CLI/CLI.hpp>
 #include <cstdio>
 #include <stdexcept>
 

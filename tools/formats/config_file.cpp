@@ -1,5 +1,6 @@
 #include "tools/formats/config_file.h"
 
+#include <CLI/CLI.hpp>
 #include <iomanip>
 #include <set>
 #include <sstream>

@@ -1,5 +1,6 @@
 #include "tools/kernel_choice/kernel_choice.h"
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdlib>
 

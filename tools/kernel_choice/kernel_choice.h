@@ -1,10 +1,13 @@
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <filesystem>
 #include <string>
 
 #include "kernels/catalogue.h"
+
+namespace CLI {
+class App;
+}
 
 namespace misfit::tools {
 

@@ -1,5 +1,6 @@
 #include "tools/run/image_options.h"
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
 #include <cmath>

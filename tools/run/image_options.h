@@ -1,6 +1,5 @@
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
@@ -14,6 +13,10 @@
 #include "kernels/lookup_table.h"
 #include "ms_io/measurement_set.h"
 #include "tools/kernel_choice/kernel_choice.h"
+
+namespace CLI {
+class App;
+}
 
 namespace misfit::tools {
 

@@ -1,5 +1,7 @@
 #include "tools/run/selection_options.h"
 
+#include <CLI/CLI.hpp>
+
 namespace misfit::tools {
 
 void declare_selection(CLI::App& command, ms_io::Selection& selection) {

@@ -1,10 +1,13 @@
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <string>
 #include <vector>
 
 #include "ms_io/selection.h"
+
+namespace CLI {
+class App;
+}
 
 namespace misfit::tools {
 

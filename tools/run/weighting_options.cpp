@@ -1,5 +1,6 @@
 #include "tools/run/weighting_options.h"
 
+#include <CLI/CLI.hpp>
 #include <cstdio>
 #include <stdexcept>
 

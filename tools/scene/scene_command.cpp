@@ -1,5 +1,6 @@
 #include "tools/scene/scene_command.h"
 
+#include <CLI/CLI.hpp>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
