@@ -47,6 +47,8 @@ class MeasurementSet : public imager::VisibilitySource {
   const imager::Observation& observation() const;
   std::uint64_t rows() const;
   std::uint64_t samples() const override;
+  /// Samples of the blocks that are read at once, at most: several blocks where rows of DATA_DESC_IDs alternate.
+  std::uint64_t read_at_once() const;
   /// Bounds at the highest channel selected, of rows with finite UVW. Reads UVW, antennas and FLAG_ROW alone. Throws
   /// std::runtime_error when they cannot be read.
   imager::UvwReach reach(ReachOf rows = ReachOf::usable) const;

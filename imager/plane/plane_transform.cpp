@@ -351,10 +351,15 @@ double longest_plane_sum(Precision precision, double samples) {
   return std::min<double>(samples, most_in_registers + most_in_buffer / most_in_registers + in_grid / most_in_buffer);
 }
 
-TransformMemory memory_of(const PlaneTransformOptions& o, int stokes) {
-  const double real_bytes = o.precision == Precision::single_precision ? sizeof(float) : sizeof(double);
-  const double plane = static_cast<double>(shape_of(o).cells()) * real_bytes;
-  return {2 * plane, plane, transform_buffer_bytes(shape_of(o), o.threads, real_bytes), 2 * plane * (stokes - 1)};
+TransformMemory memory_of(const PlaneTransformOptions& o, int stokes, double samples) {
+  const bool single = o.precision == Precision::single_precision;
+  const double real_bytes = single ? sizeof(float) : sizeof(double);
+  const GridShape shape = shape_of(o);
+  const double tiles = static_cast<double>(shape.tiles_u()) * static_cast<double>(shape.tiles_v());
+  const double crowded = single ? std::min(tiles, samples / most_in_single) : 0;
+  const double side = shape.tile + padded_taps<float>(shape.width);
+  const double plane = static_cast<double>(shape.cells()) * real_bytes + crowded * side * side * sizeof(double);
+  return {2 * plane, plane, transform_buffer_bytes(shape, o.threads, real_bytes), 2 * plane * (stokes - 1), 0};
 }
 
 }  // namespace misfit::imager
