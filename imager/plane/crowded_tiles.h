@@ -21,13 +21,13 @@ template <typename Real>
 class CrowdedTiles {
  public:
   /// Counts what the tiles take in, samples [tile], and gives those that are crowded from now on a buffer like `pattern`. Up to
-  /// `most_in_place` samples are added to the grid one by one, and count for more.
-  void count(const std::vector<std::size_t>& samples, std::size_t most_in_place, const TileBuffer<double>& pattern) {
+  /// `most_alone` samples are added to the grid one by one, and count for more.
+  void count(const std::vector<std::size_t>& samples, std::size_t most_alone, const TileBuffer<double>& pattern) {
     if constexpr (std::is_same_v<Real, float>) {
       taken_.resize(samples.size());
       sum_.resize(samples.size());
       for (std::size_t tile = 0; tile < samples.size(); ++tile) {
-        taken_[tile] += (samples[tile] <= most_in_place ? one_by_one : 1) * samples[tile];
+        taken_[tile] += (samples[tile] <= most_alone ? one_by_one : 1) * samples[tile];
         if (taken_[tile] > most_in_single && !sum_[tile]) sum_[tile] = std::make_unique<TileBuffer<double>>(pattern);
       }
     }
