@@ -9,7 +9,8 @@ namespace {
 /// 40 MB with the smallest images, 32 MiB that the allocator keeps, and some twenty of holes between images of a few MB.
 constexpr double process_bytes = 96e6;
 constexpr double pixel_bytes = sizeof(double);
-constexpr double sample_bytes = sizeof(std::complex<float>) + sizeof(float);
+constexpr double visibility_bytes = sizeof(std::complex<float>), weight_bytes = sizeof(float);
+constexpr double sample_bytes = visibility_bytes + weight_bytes;
 constexpr double row_bytes = 3 * sizeof(double);
 /// For each sample of the block at hand: its run twice while runs are sorted, at worst one a sample, and room to grow.
 constexpr double order_bytes = 2 * 12 + 8;
@@ -29,7 +30,8 @@ struct Streaming {
   double prediction = 0;  ///< bytes of the visibilities that a prediction hands out
 };
 
-/// The one at hand is let go before the next is read, so that what is read at once counts once. None is more than all.
+/// The one at hand is let go before the next is read. Of what is read with it, Stokes parameters share their weights until each
+/// block is handed out.
 Streaming streaming_of(const MemoryDemand& d, const StreamingOptions& options) {
   const auto bytes = [&](double samples) {
     const double rows = d.samples == 0 ? 0 : d.rows * samples / d.samples;
@@ -44,9 +46,10 @@ Streaming streaming_of(const MemoryDemand& d, const StreamingOptions& options) {
     s.in_flight = s.gathered = s.order;
     return s;
   }
-  const double in_flight = static_cast<double>(options.ahead) * s.samples + std::max(s.samples, d.read_at_once);
-  s.in_flight = bytes(std::min(d.samples, in_flight)) + s.order;
-  s.gathered = bytes(std::min(d.samples, in_flight + d.transform.gathered)) + s.order;
+  const double handed_out = static_cast<double>(options.ahead + 1) * s.samples;
+  const double grown = std::max(0.0, d.read_at_once - s.samples) * (d.stokes * visibility_bytes + weight_bytes);
+  s.in_flight = bytes(std::min(d.samples, handed_out)) + grown + s.order;
+  s.gathered = bytes(std::min(d.samples, handed_out + d.transform.gathered)) + grown + s.order;
   return s;
 }
 
@@ -92,7 +95,8 @@ MemoryUse peak_memory(const MemoryDemand& d, const StreamingOptions& streaming) 
   const double finished = (d.stokes - 1) * (2 + (d.mask ? 1 : 0)) * image;
 
   std::vector<MemoryUse> stages;
-  stages.push_back({"the samples are gridded", process_bytes, kept, s.in_flight, t.visibilities + t.other_stokes + t.psf, 0, 0});
+  stages.push_back(
+      {"the samples are gridded", process_bytes, kept, s.in_flight, t.visibilities + t.other_stokes + t.psf, 0, 0});
   stages.push_back({"the dirty image is made", process_bytes, kept, 0, t.visibilities + t.other_stokes + t.psf, t.fft, image});
   if (d.stokes > 1)
     stages.push_back({"the last dirty image is made", process_bytes, kept, 0, t.visibilities + t.psf, t.fft, others + image});

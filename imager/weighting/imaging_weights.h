@@ -72,8 +72,8 @@ class ImagingWeights {
   ImagingWeights(const UvDensity& density, const WeightingOptions& options);
 
   /// `block`, with its other Stokes parameters and the weights of the image: the same block where nobody else holds it, else a
-  /// copy. What is usable stays so: samples beyond 1/(2 cell), and what a taper leaves nothing of, keep the smallest weight that
-  /// there is.
+  /// copy. What is usable stays so: samples beyond 1/(2 cell), and what a taper leaves nothing of, keep the smallest weight
+  /// that there is.
   WeightedBlock of(std::shared_ptr<const VisibilityBlock> block) const;
   /// Does so with all blocks.
   WeightTotals put_on(StoredVisibilities& visibilities, int threads) const;
