@@ -1,12 +1,14 @@
 #include "ms_io/measurement_set.h"
 
 #include <algorithm>
+#include <limits>
 #include <stdexcept>
 #include <utility>
 
 #include "ms_io/block_group_internal.h"
 #include "ms_io/metadata_internal.h"
 #include "ms_io/model_writer.h"
+#include "ms_io/nearest_field_internal.h"
 #include "ms_io/table_access_internal.h"
 #include "ms_io/uvw_scan_internal.h"
 #include "ms_io/visibility_reader_internal.h"
@@ -135,6 +137,15 @@ std::uint64_t MeasurementSet::read_at_once() const {
   std::uint64_t most = 0;
   for (const auto& set : impl_->sets) most = std::max(most, largest_group(set->selected));
   return most;
+}
+NearestField MeasurementSet::nearest_field() const {
+  NearestField nearest;
+  nearest.distance_rad = std::numeric_limits<double>::infinity();
+  for (const auto& set : impl_->sets) {
+    const NearestField one = ms_io::nearest_field(set->set, set->path, set->selected, impl_->observation.phase_centre);
+    if (one.distance_rad < nearest.distance_rad) nearest = one;
+  }
+  return nearest;
 }
 imager::UvwReach MeasurementSet::reach(ReachOf rows) const {
   imager::UvwReach all;
