@@ -31,7 +31,7 @@ class StreamedVisibilities::Recorder : public BlockStream {
  private:
   std::shared_ptr<const VisibilityBlock> weighted(std::shared_ptr<const VisibilityBlock> block) {
     if (source_.weights_) {
-      WeightedBlock made = source_.weights_->of(*block);
+      WeightedBlock made = source_.weights_->of(std::move(block));
       pass_->weights += made.totals;
       return std::move(made.block);
     }
@@ -51,8 +51,8 @@ class StreamedVisibilities::Weighted : public BlockStream {
       : weights_(weights), stream_(std::move(stream)) {}
 
   std::shared_ptr<const VisibilityBlock> next() override {
-    const auto block = stream_->next();
-    return block ? weights_.of(*block).block : nullptr;
+    auto block = stream_->next();
+    return block ? weights_.of(std::move(block)).block : nullptr;
   }
 
  private:

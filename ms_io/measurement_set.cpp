@@ -1,11 +1,14 @@
 #include "ms_io/measurement_set.h"
 
 #include <algorithm>
+#include <limits>
 #include <stdexcept>
 #include <utility>
 
+#include "ms_io/block_group_internal.h"
 #include "ms_io/metadata_internal.h"
 #include "ms_io/model_writer.h"
+#include "ms_io/nearest_field_internal.h"
 #include "ms_io/table_access_internal.h"
 #include "ms_io/uvw_scan_internal.h"
 #include "ms_io/visibility_reader_internal.h"
@@ -31,6 +34,20 @@ std::shared_ptr<const OpenSet> open_selected(const std::string& path, const Sele
     }
   }
   return opened;
+}
+
+/// Samples of the largest group of blocks.
+std::uint64_t largest_group(const SelectedRows& selected) {
+  std::uint64_t most = 0;
+  for (std::size_t first = 0; first < selected.blocks.size();) {
+    std::uint64_t samples = 0;
+    for (const std::size_t end = first + block_group(selected, first).blocks; first < end; ++first) {
+      const BlockRows& block = selected.blocks[first];
+      samples += block.rows * selected.setups[block.setup].frequency_hz.size();
+    }
+    most = std::max(most, samples);
+  }
+  return most;
 }
 
 /// The columns that `names` has between commas, one for each of `sets`.
@@ -115,6 +132,20 @@ std::uint64_t MeasurementSet::samples() const {
   std::uint64_t samples = 0;
   for (const auto& set : impl_->sets) samples += set->selected.samples;
   return samples;
+}
+std::uint64_t MeasurementSet::read_at_once() const {
+  std::uint64_t most = 0;
+  for (const auto& set : impl_->sets) most = std::max(most, largest_group(set->selected));
+  return most;
+}
+NearestField MeasurementSet::nearest_field() const {
+  NearestField nearest;
+  nearest.distance_rad = std::numeric_limits<double>::infinity();
+  for (const auto& set : impl_->sets) {
+    const NearestField one = ms_io::nearest_field(set->set, set->path, set->selected, impl_->observation.phase_centre);
+    if (one.distance_rad < nearest.distance_rad) nearest = one;
+  }
+  return nearest;
 }
 imager::UvwReach MeasurementSet::reach(ReachOf rows) const {
   imager::UvwReach all;

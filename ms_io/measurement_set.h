@@ -17,6 +17,13 @@ namespace misfit::ms_io {
 /// Rows that can be used, neither flagged nor of one antenna; or all.
 enum class ReachOf { usable, all };
 
+/// Where antennas pointed: the selected field whose own phase centre lies nearest to that of the image.
+struct NearestField {
+  std::string name;
+  double distance_rad = 0;
+  double dish_m = 0;  ///< diameter of the smallest antenna; 0 where none is known
+};
+
 /// A selected part of a MeasurementSet, or of several that make one image, as visibilities of Stokes parameters, opened
 /// read-only and streamed in blocks, one set after the other. Only the columns and channels that are needed are read. A block
 /// never mixes sets, DATA_DESC_IDs or, where the phase centre is shifted, fields. Reading never runs in two threads at once.
@@ -47,6 +54,10 @@ class MeasurementSet : public imager::VisibilitySource {
   const imager::Observation& observation() const;
   std::uint64_t rows() const;
   std::uint64_t samples() const override;
+  /// Samples of the blocks that are read at once, at most: several blocks where rows of DATA_DESC_IDs alternate.
+  std::uint64_t read_at_once() const;
+  /// Throws std::runtime_error when FIELD or ANTENNA cannot be read.
+  NearestField nearest_field() const;
   /// Bounds at the highest channel selected, of rows with finite UVW. Reads UVW, antennas and FLAG_ROW alone. Throws
   /// std::runtime_error when they cannot be read.
   imager::UvwReach reach(ReachOf rows = ReachOf::usable) const;

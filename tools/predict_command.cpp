@@ -1,4 +1,5 @@
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdio>
 #include <memory>
 
@@ -39,6 +40,7 @@ struct PredictOptions {
 struct NamedModel {
   ModelVisibilities visibilities;
   ms_io::Fingerprint fingerprint;
+  bool empty = false;  ///< a list without sources
 };
 
 NamedModel image_model(const PredictOptions& o, const ms_io::MeasurementSet& set, int threads) {
@@ -70,6 +72,7 @@ NamedModel component_model(const PredictOptions& o, const ms_io::MeasurementSet&
     for (const imager::Source& s : plane)
       named.fingerprint.add(std::vector<double>{s.position.l, s.position.m, s.flux_jy, s.fwhm_rad});
   }
+  named.empty = std::all_of(sources.begin(), sources.end(), [](const auto& plane) { return plane.empty(); });
   named.visibilities.predict = [sources = std::move(sources), threads](const imager::SampleCoordinates& at) {
     ms_io::StokesVisibilities visibilities(imager::predict_sources(sources[0], at, threads));
     for (std::size_t k = 1; k < sources.size(); ++k)
@@ -123,6 +126,9 @@ void predict(const PredictOptions& o) {
     const ms_io::MeasurementSet set(o.vis, o.selection, "");
     model = o.model.empty() ? component_model(o, set, threads) : image_model(o, set, threads);
   }
+  if (model.empty)
+    progress.say("warning: " + o.components +
+                 " lists no source: " + (o.subtract ? "the data are written as they are" : "all visibilities written are 0"));
   column.origin = {command_of(o), model.fingerprint.add(version).value(),
                    [&](const std::string& sentence) { progress.say(sentence); }};
   progress.begin(o.subtract ? "subtract" : "predict");

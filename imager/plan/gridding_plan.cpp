@@ -279,23 +279,25 @@ TransformMemory memory_of(const GriddingPlan& plan) {
   if (plan.direct) {
     const double image = static_cast<double>(plan.request.geometry.pixels()) * sizeof(double);
     const double samples = static_cast<double>(plan.request.samples), others = plan.request.stokes - 1;
-    return {image + 64 * samples, image, 0, others * (image + 16 * samples)};
+    return {image + 64 * samples, image, 0, others * (image + 16 * samples), 0};
   }
   if (plan.psf) {
     GriddingPlan image = plan;
     image.psf.reset();
     const TransformMemory of_image = memory_of(image), of_psf = memory_of(*plan.psf);
-    return {of_image.visibilities, of_psf.visibilities + of_psf.psf, std::max(of_image.fft, of_psf.fft), of_image.other_stokes};
+    return {of_image.visibilities, of_psf.visibilities + of_psf.psf, std::max(of_image.fft, of_psf.fft), of_image.other_stokes,
+            of_image.gathered};
   }
   const int stokes = plan.request.stokes;
-  if (!plan.options.has_w_axis()) return memory_of(static_cast<const PlaneTransformOptions&>(plan.options), stokes);
+  const auto samples = static_cast<double>(plan.request.samples);
+  if (!plan.options.has_w_axis()) return memory_of(static_cast<const PlaneTransformOptions&>(plan.options), stokes, samples);
   const GriddingCandidate& best = plan.choice.best;
   const std::vector<double>& turns = best.faceting.turns;
   const double most = *std::max_element(turns.begin(), turns.end());
   Faceting largest = best.faceting;
   largest.turns = {most};
   const int planes = largest.planes(best.padding_w, best.work.width_w);
-  return memory_of(plan.options, {static_cast<double>(plan.request.samples), planes, stokes});
+  return memory_of(plan.options, {samples, planes, stokes});
 }
 
 }  // namespace misfit::imager

@@ -9,7 +9,8 @@ namespace {
 /// 40 MB with the smallest images, 32 MiB that the allocator keeps, and some twenty of holes between images of a few MB.
 constexpr double process_bytes = 96e6;
 constexpr double pixel_bytes = sizeof(double);
-constexpr double sample_bytes = sizeof(std::complex<float>) + sizeof(float);
+constexpr double visibility_bytes = sizeof(std::complex<float>), weight_bytes = sizeof(float);
+constexpr double sample_bytes = visibility_bytes + weight_bytes;
 constexpr double row_bytes = 3 * sizeof(double);
 /// For each sample of the block at hand: its run twice while runs are sorted, at worst one a sample, and room to grow.
 constexpr double order_bytes = 2 * 12 + 8;
@@ -19,19 +20,51 @@ constexpr double residual_bytes = 2 * sizeof(double);
 constexpr double minor_images = 3, minor_passing_images = 2, minor_kept_images = 1.25;
 constexpr double core_bytes = sizeof(float) * 1025. * 1025;  // of a PSF, see PsfCore
 
+/// Blocks while they stream by.
+struct Streaming {
+  double samples = 0;     ///< of a block
+  double order = 0;       ///< bytes in which those of a block are sorted
+  double kept = 0;        ///< bytes of all blocks, where they stay
+  double in_flight = 0;   ///< bytes of those read ahead and at hand, where they do not, and `order`
+  double gathered = 0;    ///< the same while a prediction gathers blocks
+  double prediction = 0;  ///< bytes of the visibilities that a prediction hands out
+};
+
+/// The one at hand is let go before the next is read. Of what is read with it, Stokes parameters share their weights until each
+/// block is handed out.
+Streaming streaming_of(const MemoryDemand& d, const StreamingOptions& options) {
+  const auto bytes = [&](double samples) {
+    const double rows = d.samples == 0 ? 0 : d.rows * samples / d.samples;
+    return d.stokes * (samples * sample_bytes + rows * row_bytes);
+  };
+  Streaming s;
+  s.samples = std::min(d.block_samples, d.samples);
+  s.order = s.samples * order_bytes;
+  s.prediction = d.transform.gathered > 0 ? 0 : s.samples * residual_bytes;  // where it gathers, they count as its own
+  if (options.keep) {
+    s.kept = bytes(d.samples);
+    s.in_flight = s.gathered = s.order;
+    return s;
+  }
+  const double handed_out = static_cast<double>(options.ahead + 1) * s.samples;
+  const double grown = std::max(0.0, d.read_at_once - s.samples) * (d.stokes * visibility_bytes + weight_bytes);
+  s.in_flight = bytes(std::min(d.samples, handed_out)) + grown + s.order;
+  s.gathered = bytes(std::min(d.samples, handed_out + d.transform.gathered)) + grown + s.order;
+  return s;
+}
+
 /// Each scale has a core of its own.
 double minor_kept_bytes(double image, int scales) {
   return minor_kept_images * image + scales * core_bytes;
 }
 
-/// While a wider field is searched: `kept` visibilities, `blocks` in flight and `lasting` bytes of the run's own images stay.
-void add_wider_stages(const WiderDemand& d, double kept, double blocks, double block_samples, double lasting,
-                      std::vector<MemoryUse>& stages) {
+/// While a wider field is searched: visibilities, and `lasting` bytes of the run's own images, stay.
+void add_wider_stages(const WiderDemand& d, const Streaming& s, double lasting, std::vector<MemoryUse>& stages) {
   const TransformMemory& t = d.transform;
-  const double image = d.pixels * pixel_bytes;
-  const double tapered = blocks + block_samples * sample_bytes;  // a copy with other weights
-  constexpr double placed_bytes = 32, growing = 2;               // of each sample, by cells of the uv plane
-  const double placed = blocks + block_samples * (residual_bytes + growing * placed_bytes);
+  const double image = d.pixels * pixel_bytes, kept = s.kept;
+  const double tapered = s.in_flight + s.samples * sample_bytes;  // a copy with other weights
+  constexpr double placed_bytes = 32, growing = 2;                // of each sample, by cells of the uv plane
+  const double placed = s.in_flight + s.samples * (residual_bytes + growing * placed_bytes);
   stages.push_back({"the wider field is gridded", process_bytes, kept, tapered, t.visibilities + t.psf, 0, lasting});
   stages.push_back(
       {"the wider field's images are made", process_bytes, kept, 0, t.visibilities + t.psf, t.fft, lasting + 2 * image});
@@ -39,7 +72,7 @@ void add_wider_stages(const WiderDemand& d, double kept, double blocks, double b
   stages.push_back({"the wider field is cleaned", process_bytes, kept, 0, minor + minor_passing_images * image, 0,
                     lasting + (2 + minor_images) * image});
   // Dirty image, PSF, model and residual.
-  stages.push_back({"the wider field's residual is made", process_bytes, kept, tapered + block_samples * residual_bytes,
+  stages.push_back({"the wider field's residual is made", process_bytes, kept, tapered + s.samples * residual_bytes,
                     2 * t.visibilities + minor, t.fft, lasting + 4 * image});
   stages.push_back(
       {"the wider field's noise is measured", process_bytes, kept, placed, t.visibilities, t.fft, lasting + 2 * image});
@@ -50,12 +83,8 @@ void add_wider_stages(const WiderDemand& d, double kept, double blocks, double b
 MemoryUse peak_memory(const MemoryDemand& d, const StreamingOptions& streaming) {
   const TransformMemory& t = d.transform;
   const double image = d.pixels * pixel_bytes;
-  const double block_samples = std::min(d.block_samples, d.samples);
-  const double read_ahead = streaming.keep ? 0 : static_cast<double>(streaming.ahead + 1);  // and the one at hand
-  const double block_rows = d.samples == 0 ? 0 : d.rows * block_samples / d.samples;
-  const double blocks =
-      read_ahead * d.stokes * (block_samples * sample_bytes + block_rows * row_bytes) + block_samples * order_bytes;
-  const double kept = streaming.keep ? d.stokes * (d.samples * sample_bytes + d.rows * row_bytes) : 0;
+  const Streaming s = streaming_of(d, streaming);
+  const double kept = s.kept;
   const double others = (d.stokes - 1) * image;  // dirty images of the other Stokes parameters
 
   // The PSF, one more to find the median of each, one that the allocator keeps of several CLEANs, and those of every Stokes
@@ -66,7 +95,8 @@ MemoryUse peak_memory(const MemoryDemand& d, const StreamingOptions& streaming) 
   const double finished = (d.stokes - 1) * (2 + (d.mask ? 1 : 0)) * image;
 
   std::vector<MemoryUse> stages;
-  stages.push_back({"the samples are gridded", process_bytes, kept, blocks, t.visibilities + t.other_stokes + t.psf, 0, 0});
+  stages.push_back(
+      {"the samples are gridded", process_bytes, kept, s.in_flight, t.visibilities + t.other_stokes + t.psf, 0, 0});
   stages.push_back({"the dirty image is made", process_bytes, kept, 0, t.visibilities + t.other_stokes + t.psf, t.fft, image});
   if (d.stokes > 1)
     stages.push_back({"the last dirty image is made", process_bytes, kept, 0, t.visibilities + t.psf, t.fft, others + image});
@@ -82,8 +112,7 @@ MemoryUse peak_memory(const MemoryDemand& d, const StreamingOptions& streaming) 
     stages.push_back({"the minor cycles run", process_bytes, kept, 0, minor + minor_passing_images * image, 0,
                       finished + (lasting + minor_images) * image});
     // Of a model image.
-    const double residual_blocks = blocks + block_samples * residual_bytes;
-    stages.push_back({"the residual is gridded", process_bytes, kept, residual_blocks, 2 * t.visibilities + minor, 0,
+    stages.push_back({"the residual is gridded", process_bytes, kept, s.gathered + s.prediction, 2 * t.visibilities + minor, 0,
                       finished + (lasting + 1) * image});
     stages.push_back({"the residual image is made", process_bytes, kept, 0, t.visibilities + minor, t.fft,
                       finished + (lasting + 2) * image});
@@ -92,15 +121,14 @@ MemoryUse peak_memory(const MemoryDemand& d, const StreamingOptions& streaming) 
     // After CLEAN the PSF, the model with its components, the residual and the mask; else the dirty image and the PSF.
     const double components = d.start_model ? 3 * 24 / pixel_bytes : 0;
     const double lasting = d.clean_scales > 0 ? 3 + components + (d.mask ? 1 : 0) : 2;
-    add_wider_stages(*d.wider, kept, blocks, block_samples, (d.clean_scales > 0 ? finished : others) + lasting * image, stages);
+    add_wider_stages(*d.wider, s, (d.clean_scales > 0 ? finished : others) + lasting * image, stages);
   }
   if (d.density) {
     // Factors that blocks are weighed by as they are read, in single precision for half the plane.
     if (!streaming.keep)
       for (MemoryUse& stage : stages) stage.grids += image / 4;
-    // The density, its sums along an axis, and the factors; a block's runs, sorted too, and its copy with other weights.
-    const double weight_blocks = block_samples * (2 * 16 + sample_bytes);
-    stages.push_back({"the weights are made", process_bytes, kept, blocks + weight_blocks, 2.5 * image / 2, 0, 0});
+    // The density, its sums along an axis, and the factors; a block's runs, sorted too. Weights are put into the blocks.
+    stages.push_back({"the weights are made", process_bytes, kept, s.in_flight + s.samples * 2 * 16, 2.5 * image / 2, 0, 0});
   }
   stages.push_back({"the pictures are drawn", process_bytes, 0, 0, 0, 0, drawn_images * image});
   return *std::max_element(stages.begin(), stages.end(),

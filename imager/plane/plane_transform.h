@@ -29,16 +29,17 @@ struct PlaneTransformOptions {
 /// options contradict each other.
 std::unique_ptr<Transform> make_plane_transform(const PlaneTransformOptions& options);
 
-/// Memory that a transform takes, in bytes.
+/// Memory that a transform takes, in bytes. Grids count with the sums in double precision of their crowded tiles.
 struct TransformMemory {
   double visibilities = 0;  ///< grid of an adjoint without PSF, or of a prediction
   double psf = 0;           ///< grid that the PSF adds to an adjoint
   double fft = 0;           ///< buffers
   double other_stokes = 0;  ///< grids that further Stokes parameters add to an adjoint
+  double gathered = 0;      ///< samples whose blocks a prediction holds at once; 0: a block's
 };
 
-/// Of an adjoint of `stokes` images.
-TransformMemory memory_of(const PlaneTransformOptions& options, int stokes = 1);
+/// Of an adjoint of `stokes` images from so many samples.
+TransformMemory memory_of(const PlaneTransformOptions& options, int stokes = 1, double samples = 0);
 
 /// Additions, one after another, that go into a cell of the grid where all samples lie in one: by so much can their rounding
 /// add up. Those in double precision do not count where the rest is in single.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "imager/constants.h"
 #include "imager/parallel.h"
@@ -36,13 +37,10 @@ class RowTaper {
   double exponent_m2_ = 0;
 };
 
-std::shared_ptr<VisibilityBlock> with_weights(const VisibilityBlock& block, std::vector<float> weight) {
-  auto copy = std::make_shared<VisibilityBlock>();
-  static_cast<SampleCoordinates&>(*copy) = block;
-  copy->visibility = block.visibility;
-  copy->weight = std::move(weight);
-  copy->counts = block.counts;
-  return copy;
+/// What nobody else holds, else a copy. Whoever held it before handed it over under a lock.
+std::shared_ptr<VisibilityBlock> own(std::shared_ptr<const VisibilityBlock> block) {
+  if (block.use_count() > 1) return std::make_shared<VisibilityBlock>(*block);
+  return std::const_pointer_cast<VisibilityBlock>(std::move(block));  // made to be filled, so no constant
 }
 
 }  // namespace
@@ -82,10 +80,15 @@ ImagingWeights::ImagingWeights(const UvDensity& density, const WeightingOptions&
   filled_ = static_cast<std::uint64_t>(std::count_if(factor_.begin(), factor_.end(), [](float x) { return x > 0; }));
 }
 
-WeightedBlock ImagingWeights::of(const VisibilityBlock& block) const {
+WeightedBlock ImagingWeights::of(std::shared_ptr<const VisibilityBlock> block) const {
   WeightedBlock made;
-  const auto first = with_weights(block, weights_of(block, made.totals.sums));
-  for (const auto& other : block.other_stokes) first->other_stokes.push_back(with_weights(*other, first->weight));
+  const std::shared_ptr<VisibilityBlock> first = own(std::move(block));
+  weigh(*first, made.totals.sums);
+  for (auto& other : first->other_stokes) {
+    const std::shared_ptr<VisibilityBlock> same = own(std::move(other));
+    same->weight = first->weight;
+    other = same;
+  }
   made.totals.w_spread.add(*first);
   made.block = first;
   return made;
@@ -95,7 +98,7 @@ WeightTotals ImagingWeights::put_on(StoredVisibilities& visibilities, int thread
   std::vector<std::shared_ptr<const VisibilityBlock>>& blocks = visibilities.blocks();
   std::vector<WeightTotals> part(blocks.size());
   parallel_for(blocks.size(), threads, [&](std::size_t b) {
-    WeightedBlock made = of(*blocks[b]);
+    WeightedBlock made = of(std::move(blocks[b]));
     blocks[b] = std::move(made.block);
     part[b] = made.totals;
   });
@@ -104,27 +107,25 @@ WeightTotals ImagingWeights::put_on(StoredVisibilities& visibilities, int thread
   return totals;
 }
 
-std::vector<float> ImagingWeights::weights_of(const VisibilityBlock& block, WeightSums& sums) const {
+void ImagingWeights::weigh(VisibilityBlock& block, WeightSums& sums) const {
   const std::size_t channels = block.channels();
   const std::vector<double> turns = cells_.turns_per_m(block.frequency_hz);
   RowTaper taper(taper_, block.frequency_hz);
-  std::vector<float> weight(block.samples());
   std::vector<std::uint32_t> cell(channels);
   for (std::size_t row = 0; row < block.rows(); ++row) {
     cells_.of_row(&block.uvw_m[3 * row], turns, cell.data());
     taper.set_row(&block.uvw_m[3 * row]);
     for (std::size_t c = 0; c < channels; ++c) {
-      const double natural{block.weight[row * channels + c]};
+      float& weight = block.weight[row * channels + c];
+      const double natural{weight};
       if (natural == 0) continue;
-      float& made = weight[row * channels + c];
-      made = least;
+      weight = least;
       if (cell[c] == UvCells::outside) continue;
       const double factor = (factor_.empty() ? 1 : double{factor_[cell[c]]}) * taper.at(c);
-      made = std::max(least, static_cast<float>(natural * factor));
+      weight = std::max(least, static_cast<float>(natural * factor));
       sums += {natural, natural * factor, natural * factor * factor};
     }
   }
-  return weight;
 }
 
 std::shared_ptr<const ImagingWeights> make_imaging_weights(const VisibilitySource& source, const WeightingOptions& options,

@@ -71,10 +71,11 @@ class ImagingWeights {
   /// By density; `options.weighting` is not natural.
   ImagingWeights(const UvDensity& density, const WeightingOptions& options);
 
-  /// A copy of `block`, with its other Stokes parameters, that has the weights of the image. What is usable stays so: samples
-  /// beyond 1/(2 cell), and what a taper leaves nothing of, keep the smallest weight that there is.
-  WeightedBlock of(const VisibilityBlock& block) const;
-  /// Puts such copies in the place of all blocks.
+  /// `block`, with its other Stokes parameters and the weights of the image: the same block where nobody else holds it, else a
+  /// copy. What is usable stays so: samples beyond 1/(2 cell), and what a taper leaves nothing of, keep the smallest weight
+  /// that there is.
+  WeightedBlock of(std::shared_ptr<const VisibilityBlock> block) const;
+  /// Does so with all blocks.
   WeightTotals put_on(StoredVisibilities& visibilities, int threads) const;
 
   double f2() const { return f2_; }                       ///< of Briggs weights, else 0
@@ -82,7 +83,7 @@ class ImagingWeights {
   const UvCells& cells() const { return cells_; }
 
  private:
-  std::vector<float> weights_of(const VisibilityBlock& block, WeightSums& sums) const;
+  void weigh(VisibilityBlock& block, WeightSums& sums) const;
 
   UvCells cells_;
   std::optional<UvTaper> taper_;

@@ -63,7 +63,7 @@ TransformMemory memory_of(const WideTransformOptions& o, const WideDemand& deman
   const int others = demand.stokes - 1;
   const double column = 6.0 * largest_facet(o.geometry.height, o.facets_m) * sizeof(double) + o.nv * complex_bytes;
   return {at_once * wide_bytes_a_sample + stack(1) + image, stack(demand.stokes + 1) - stack(demand.stokes) + image,
-          o.threads * 16 * column, stack(demand.stokes) - stack(1) + others * (image + at_once * wide_bytes_a_value)};
+          o.threads * 16 * column, stack(demand.stokes) - stack(1) + others * (image + at_once * wide_bytes_a_value), at_once};
 }
 
 double longest_sum(const WideTransformOptions& options, double samples) {

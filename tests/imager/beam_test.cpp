@@ -97,12 +97,14 @@ BOOST_AUTO_TEST_CASE(the_angle_grows_from_north_towards_lower_columns) {
   Image psf(33, 33);
   for (int i = -6; i <= 6; ++i)
     for (int j = -3; j <= 3; ++j) psf.at(16 + i, 16 - i + j) = std::exp(-0.05 * i * i - 0.3 * j * j);
+  // The ridge runs towards higher rows and lower columns: somewhere between north and east.
   const double angle_rad = fit_beam(psf, cell_rad).position_angle_rad;
   BOOST_TEST((angle_rad > 0.1 && angle_rad < M_PI_2));
 }
 
 BOOST_AUTO_TEST_CASE(turning_the_psf_by_a_right_angle_turns_the_beam) {
-  // No Gaussian: the main lobe's fit must turn all the same. 1e-9: least squares stops within about √(rounding) of its minimum.
+  // No Gaussian: the main lobe's fit must turn all the same. Where the residual is not 0, steps that lower the sum of squares
+  // by less than its rounding are not taken: either fit stops within some √(2⁻⁵³) = 1e-8 of its minimum.
   Image psf = sampled(oblique, 65, 65);
   for (double& value : psf.pixel) value = std::pow(value, 1.4) * 0.7 + 0.3 * std::sqrt(value);
   const Beam before = fit_beam(psf, cell_rad);
@@ -133,12 +135,14 @@ BOOST_AUTO_TEST_CASE(where_the_quadrant_fits_no_bounded_gaussian_the_main_lobe_i
 
 BOOST_AUTO_TEST_CASE(the_beam_is_proportional_to_the_cell) {
   const Image psf = sampled(oblique, 65, 65);
+  // As exact as any sampled Gaussian is recovered, see above.
   BOOST_TEST(std::abs(fit_beam(psf, 3 * cell_rad).major_rad / oblique.major_rad - 3) < 1e-6);
 }
 
 BOOST_AUTO_TEST_CASE(one_uv_coverage_has_one_beam_however_coarse_the_cell) {
   // From 9 pixels a beam's minor axis, whose lobe is fitted at its pixels, to 1.2. The fit depends a little on where the PSF is
-  // taken: a pixel more or less of 30 that lie above the cutoff changes an axis by up to 1/60, hardly ever by half of that.
+  // taken: a pixel more or less of 30 that lie above the cutoff changes an axis by up to 1/60, hardly ever by half of that; and
+  // the angle by q/(1 − q²) = 2/3 of such a part, where q = 1/2 is the ratio of the axes.
   const Beam fine = fit_beam(tapered_psf(0.08, 64), 0.08);
   for (const double edge : {0.1, 0.12, 0.13, 0.14, 0.15, 0.16, 0.17, 0.18, 0.2, 0.25, 0.3, 0.4, 0.5, 0.55, 0.63}) {
     const Beam beam = fit_beam(tapered_psf(edge, 64), edge);
@@ -160,6 +164,7 @@ BOOST_AUTO_TEST_CASE(what_is_nan_outside_the_main_lobe_is_not_fitted) {
   BOOST_TEST(holed.minor_rad == whole.minor_rad);
   BOOST_TEST(holed.position_angle_rad == whole.position_angle_rad);
   const Beam quadrant = fit_beam(psf, cell_rad, BeamRegion::quadrant);
+  // What is left is a sampled Gaussian, recovered as above.
   BOOST_TEST(std::abs(quadrant.major_rad / oblique.major_rad - 1) < 1e-6);
 }
 
@@ -183,6 +188,7 @@ BOOST_AUTO_TEST_CASE(a_psf_without_slopes_is_an_error) {
 
 BOOST_AUTO_TEST_CASE(a_round_beam_is_fitted_exactly_and_an_elongated_one_between_its_axes) {
   const Beam round{5.3 * cell_rad, 5.3 * cell_rad, 0};
+  // The residual is 0 at the solution, and steps end below 1e-14 of it: what is left is the rounding of some twenty pixels.
   BOOST_TEST(std::abs(fit_circular_beam(sampled(round, 32, 32), cell_rad).major_rad / round.major_rad - 1) < 1e-12);
   const Beam between = fit_circular_beam(sampled(oblique, 65, 65), cell_rad);
   BOOST_TEST(between.major_rad == between.minor_rad);
@@ -194,6 +200,7 @@ BOOST_AUTO_TEST_CASE(a_lobe_that_is_open_along_one_axis_has_a_round_beam_alone) 
   for (int r = 0; r < 64; ++r)
     for (int c = 0; c < 64; ++c) psf.at(r, c) = std::exp(-(c - 32) * (c - 32) / 8.0);
   BOOST_CHECK_THROW(fit_beam(psf, cell_rad), std::runtime_error);
+  // Wider than the lobe is across, σ = 2 pixels, and far from it: along its ridge the beam falls where the lobe stays at 1.
   const Beam beam = fit_circular_beam(psf, cell_rad);
   BOOST_TEST(beam.major_rad > 2 * std::sqrt(2 * std::log(2.0)) * 2 * cell_rad);
   BOOST_TEST(beam_misfit(psf, beam, cell_rad) > 0.1);
@@ -201,9 +208,10 @@ BOOST_AUTO_TEST_CASE(a_lobe_that_is_open_along_one_axis_has_a_round_beam_alone) 
 
 BOOST_AUTO_TEST_CASE(the_misfit_of_a_beam_is_0_for_its_own_psf_and_what_the_psf_differs_by) {
   Image psf = sampled(oblique, 65, 65);
-  BOOST_TEST(beam_misfit(psf, oblique, cell_rad) < 1e-15);
-  for (double& pixel : psf.pixel) pixel += 0.05;  // hardly adds pixels to the lobe
-  BOOST_TEST(std::abs(beam_misfit(psf, oblique, cell_rad) - 0.05) < 1e-12);
+  BOOST_TEST(beam_misfit(psf, oblique, cell_rad) < 1e-15);  // a few roundings of values up to 1
+  for (double& pixel : psf.pixel) pixel += 0.05;
+  // Whichever pixels the lobe has now, each differs by it, but for as few roundings.
+  BOOST_TEST(std::abs(beam_misfit(psf, oblique, cell_rad) - 0.05) < 1e-15);
 }
 
 BOOST_AUTO_TEST_CASE(an_isolated_component_keeps_its_flux_as_its_peak) {
@@ -219,6 +227,7 @@ BOOST_AUTO_TEST_CASE(the_total_is_the_flux_times_the_sum_over_the_beam) {
   double total = 0, beam_sum = 0;
   for (const double value : convolve_with_beam(model, oblique, cell_rad, 1).pixel) total += value;
   for (const double value : sampled(oblique, 61, 61).pixel) beam_sum += value >= 1e-8 ? value : 0;
+  // 61² additions of positive numbers, with 2⁻⁵³ each at most: 4e-13, in both sums.
   BOOST_TEST(std::abs(total / (3 * beam_sum) - 1) < 1e-12);
 }
 
@@ -251,7 +260,8 @@ BOOST_AUTO_TEST_CASE(convolution_gives_the_same_bits_on_any_number_of_threads) {
 
 BOOST_AUTO_TEST_CASE(a_beam_wider_than_the_image_is_cut_at_its_border) {
   const Image out = convolve_with_beam(components(), {1.0, 1.0, 0}, cell_rad, 1);
-  // Flat to 1e-9 over the image: every pixel is the sum of the components.
+  // Over 50 pixels of 1e-6 rad the beam falls by 4 ln 2 (5e-5)² = 7e-9: every pixel is the sum of the components, which are 7.9
+  // in all by size, to 5e-8.
   for (const double value : out.pixel) BOOST_REQUIRE(std::abs(value - 7.375) < 1e-7);
 }
 

@@ -38,7 +38,31 @@ BOOST_AUTO_TEST_CASE(visibilities_kept_count_for_as_much_as_they_are) {
 BOOST_AUTO_TEST_CASE(less_read_ahead_takes_less) {
   MemoryDemand d = demand();
   d.block_samples = 1e8;  // so that the blocks decide
+  d.samples = 4e8;
   for (const std::size_t ahead : {0, 1, 2}) BOOST_TEST(peak(d, {false, ahead}) < peak(d, {false, ahead + 1}));
+}
+
+BOOST_AUTO_TEST_CASE(blocks_read_at_once_stand_beside_each_other_with_one_weight_for_all_their_stokes_parameters) {
+  MemoryDemand d = demand();
+  d.transform = {1e6, 5e5, 1e3};
+  d.pixels = 1e4;
+  d.stokes = 4;
+  const double one = peak(d, {false, 2}), kept = peak(d, {true, 2});
+  d.read_at_once = 8 * d.block_samples;
+  BOOST_TEST(peak(d, {false, 2}) == one + 7 * d.block_samples * (4 * 8 + 4));
+  BOOST_TEST(peak(d, {true, 2}) == kept);
+}
+
+BOOST_AUTO_TEST_CASE(blocks_that_a_prediction_gathers_count_where_they_are_not_kept) {
+  MemoryDemand d = demand();
+  d.transform = {1e6, 5e5, 1e3};
+  d.pixels = 1e4;
+  d.clean_scales = 1;
+  const double kept = peak(d, {true, 2}), read_again = peak(d, {false, 2});
+  const double handed_out = d.block_samples * 16;  // their visibilities, which the transform counts where it gathers
+  d.transform.gathered = 3 * d.block_samples;
+  BOOST_TEST(peak(d, {true, 2}) == kept - handed_out);
+  BOOST_TEST(peak(d, {false, 2}) == read_again - handed_out + 3 * d.block_samples * (12 + 24 * d.rows / d.samples));
 }
 
 BOOST_AUTO_TEST_CASE(a_block_holds_no_more_samples_than_there_are) {
@@ -113,6 +137,25 @@ BOOST_DATA_TEST_CASE(the_plane_transform_counts_the_planes_of_its_grid, bdata::m
   BOOST_TEST(memory_of(options, 4).other_stokes == 3 * memory.visibilities);
 }
 
+BOOST_DATA_TEST_CASE(crowded_tiles_add_their_sums_in_double_precision_and_no_more_than_all_tiles, bdata::make({true, false}),
+                     single) {
+  GriddingRequest request;
+  request.geometry = {500, 300, 1e-6, {}};
+  request.accuracy = 1e-3;
+  request.precision = single ? Precision::single_precision : Precision::double_precision;
+  const PlaneTransformOptions options = plan_gridding(request).options;
+  const double none = memory_of(options).psf, some = memory_of(options, 1, 1e6).psf, all = memory_of(options, 1, 1e12).psf;
+  if (!single) {
+    BOOST_TEST(all == none);
+  } else {
+    // A buffer holds a tile of 32 × 32 cells with its margin, at most 20, for each 2¹⁵ samples.
+    BOOST_TEST(some - none >= 1e6 / 32768 * 8 * 32 * 32);
+    BOOST_TEST(some - none <= 1e6 / 32768 * 8 * 52 * 52);
+    BOOST_TEST(all <= 8 * none);  // doubles for floats, and (52/32)² of margins
+  }
+  BOOST_TEST(memory_of(options, 1, 1e6).visibilities == 2 * some);
+}
+
 BOOST_DATA_TEST_CASE(further_stokes_parameters_add_their_grids_blocks_and_images, bdata::make({0.0, 1e5}), max_abs_w) {
   GriddingRequest request;
   request.geometry = {2000, 2000, 1e-5, {}};
@@ -123,9 +166,11 @@ BOOST_DATA_TEST_CASE(further_stokes_parameters_add_their_grids_blocks_and_images
   const TransformMemory three = memory_of(plan_gridding(request));
   BOOST_TEST(one.other_stokes == 0);
   BOOST_TEST(three.visibilities <= one.visibilities);  // of w planes fewer stand in memory at a time
-  BOOST_TEST(three.other_stokes > 0);
+  // A grid and, where w planes share stack_bytes, an image and what is gathered for each.
+  BOOST_TEST(three.other_stokes >= 2 * 8. * 2000 * 2000);
   BOOST_TEST(three.other_stokes <= 2 * three.visibilities);
   BOOST_TEST(three.visibilities + three.other_stokes >= one.visibilities);
+  BOOST_TEST(three.visibilities + three.other_stokes <= 3 * one.visibilities);
   MemoryDemand d = demand();
   d.transform = {8e9, 4e9, 1e7};
   const double alone = peak(d, {false, 0});
@@ -140,10 +185,15 @@ BOOST_AUTO_TEST_CASE(many_stokes_parameters_have_the_moment_of_their_last_image)
   MemoryDemand d = demand();
   d.transform = {1e6, 5e5, 1e3};
   d.stokes = 4;
-  const double drawn = peak(d, {});
-  BOOST_TEST(drawn >= 5 * 8 * d.pixels);
+  const double least = peak(MemoryDemand{}, {}), image = 8 * d.pixels;  // of the program alone
+  d.samples = d.rows = 0;
+  const double drawn = peak(d, {}) - least;
+  BOOST_TEST(drawn >= 5 * image);
+  BOOST_TEST(drawn <= 6 * image);  // and one to find medians
   d.clean_scales = 1;
-  BOOST_TEST(peak(d, {}) >= 13 * 8 * d.pixels);  // three of each, and the PSF
+  const double cleaned = peak(d, {}) - least;
+  BOOST_TEST(cleaned >= 13 * image);  // three of each, and the PSF
+  BOOST_TEST(cleaned <= 16 * image);  // medians, what the allocator keeps, and PSF cores
 }
 
 BOOST_AUTO_TEST_SUITE_END()

@@ -229,6 +229,18 @@ BOOST_AUTO_TEST_CASE(a_block_never_mixes_data_description_ids_and_keeps_their_or
   BOOST_TEST(count[1] == rows / 3);
 }
 
+BOOST_AUTO_TEST_CASE(blocks_whose_rows_alternate_are_read_at_once) {
+  const SmallSet set;
+  const auto read_at_once = [&](const std::string& spw) {
+    return MeasurementSet(set.path(), {"", spw}, "DATA", {imager::Stokes::I}, 3 * channels).read_at_once();
+  };
+  BOOST_TEST(read_at_once("") == 3 * channels);
+  set.add_spectral_window();
+  BOOST_TEST(read_at_once("") == 6 * channels);
+  BOOST_TEST(read_at_once("1") == 3 * channels);
+  BOOST_TEST(read_at_once("0:1~2,1:1~2") == 2 * 2 * 9U);  // 9 rows of two channels each
+}
+
 BOOST_AUTO_TEST_CASE(the_spectral_windows_selected_decide_rows_and_band) {
   const SmallSet set;
   set.add_spectral_window();

@@ -310,7 +310,10 @@ BOOST_AUTO_TEST_CASE(the_memory_estimated_is_enough, *boost::unit_test::precondi
         {"--niter", "10", "--deconvolver", "multiscale", "--scales", "0,5,20", "--usemask", "auto"}}) {
     BOOST_REQUIRE_EQUAL(run(card_image(snapshot(), folder / "a") + options).code, 0);
     const json report = report_of(folder / "a");
-    BOOST_TEST(report["memory_gib_peak"].get<double>() <= report["memory_gib_estimated"].get<double>());
+    const double peak = report["memory_gib_peak"], estimated = report["memory_gib_estimated"];
+    BOOST_TEST(peak <= estimated);
+    // The program counts for 0.09 GiB, of which a small run takes half; and not every image is made in the moment of most.
+    BOOST_TEST(estimated <= 0.1 + 1.5 * peak);
     const std::string memory = std::to_string(report["memory_gib_estimated"].get<double>() + 1e-3);
     BOOST_TEST(run(card_image(snapshot(), folder / "a") + options + Arguments{"--memory", memory}).code == 0);
   }

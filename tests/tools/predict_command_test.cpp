@@ -44,6 +44,23 @@ BOOST_AUTO_TEST_CASE(a_component_is_imaged_where_the_list_puts_it_in_each_quadra
   }
 }
 
+BOOST_AUTO_TEST_CASE(a_list_without_sources_is_warned_of_and_one_without_columns_refused) {
+  const Copy copy;
+  const std::string list = copy.folder / "none.csv";
+  const Arguments predict{"predict", "--vis", copy.set, "--components", list};
+  std::ofstream(list) << "# nothing\n";
+  const Outcome refused = run(predict);
+  BOOST_TEST(refused.code == 1);
+  BOOST_TEST(refused.err.find("none.csv, line 1: the list ends before a line that names its columns") != std::string::npos);
+  std::ofstream(list) << "l_arcsec,m_arcsec,flux_jy\n";
+  const Outcome warned = run(predict);
+  BOOST_TEST(warned.code == 0);
+  BOOST_TEST(warned.err.find("warning: " + list + " lists no source: all visibilities written are 0") != std::string::npos);
+  BOOST_TEST(rms(visibilities(copy.set, "MODEL_DATA")) == 0);
+  const Outcome subtracted = run(predict + Arguments{"--subtract"});
+  BOOST_TEST(subtracted.err.find("lists no source: the data are written as they are") != std::string::npos);
+}
+
 BOOST_AUTO_TEST_CASE(data_minus_prediction_is_what_the_residual_image_shows) {
   const Copy copy;
   succeed(small_image(copy.set, copy.folder / "a") + Arguments{"--niter", "200", "--imsize", "128"});

@@ -102,7 +102,9 @@ BOOST_AUTO_TEST_CASE(askap_shows_its_two_sources) {
   double second = 0;
   for (int row = 505; row <= 511; ++row)
     for (int column = 548; column <= 554; ++column) second = std::max(second, image.at(row, column));
-  BOOST_TEST(std::abs(second - 0.007) < 0.0015);  // a figure given to one digit
+  // A figure given to one digit says 0.0065 to 0.0075, and what 500 components leave of the bright source's sidelobes around
+  // this one has an RMS of 0.001.
+  BOOST_TEST(std::abs(second - 0.007) < 0.0015);
   BOOST_TEST(second == image.at(508, 551));
 }
 

@@ -62,6 +62,18 @@ BOOST_AUTO_TEST_CASE(the_model_is_written_into_each_set_as_that_sees_it) {
   }
 }
 
+BOOST_AUTO_TEST_CASE(a_phase_centre_that_the_antennas_hardly_see_is_warned_of) {
+  const TemporaryFolder folder;  // the snapshot's field lies at +40d; λ/D is 0.17 degrees
+  const auto warnings_at = [&](const std::string& dec) {
+    succeed(small_image(snapshot(), folder / "a") + Arguments{"--phasecenter", "J2000 4h00m00s " + dec});
+    return report_of(folder / "a")["warnings"].dump();
+  };
+  BOOST_TEST(warnings_at("+40d24m00s").find("nearest field") == std::string::npos);
+  const std::string far = warnings_at("+42d00m00s");
+  BOOST_TEST(far.find("2 degrees from the nearest field, ") != std::string::npos, far);
+  BOOST_TEST(far.find("12 times λ/D of antennas 25 m wide") != std::string::npos, far);
+}
+
 BOOST_AUTO_TEST_CASE(what_cannot_be_one_image_is_one_line_that_says_why) {
   const TwoSets sets;
   const auto said = [](const Arguments& arguments, int code) {

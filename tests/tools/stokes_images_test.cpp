@@ -107,6 +107,13 @@ BOOST_AUTO_TEST_CASE(masks_of_each_stokes_parameter_are_made_and_taken_back) {
   BOOST_TEST_REQUIRE(made.size() == 2U);
   std::filesystem::rename(copy.folder / "a.mask.fits", copy.folder / "own.fits");
   const auto used = copy.images(clean + Arguments{"--mask", copy.folder / "own.fits"}, "mask");
+  std::vector<imager::SkyImage> closed = made;
+  closed[1].image = imager::Image(closed[1].image.width, closed[1].image.height);
+  imager::write_fits(closed, copy.folder / "closed.fits", imager::PixelFormat::float32);
+  copy.images(clean + Arguments{"--mask", copy.folder / "closed.fits"}, "residual");
+  const std::string warnings = report_of(copy.folder / "a")["warnings"].dump();
+  BOOST_TEST(warnings.find("closed.fits allows no pixel of the image of V, of which nothing is cleaned") != std::string::npos,
+             warnings);
   for (std::size_t s = 0; s < 2; ++s) BOOST_TEST(used[s].image.pixel == made[s].image.pixel, boost::test_tools::per_element());
   const Outcome outcome =
       run(small_image(copy.set, copy.folder / "b") +

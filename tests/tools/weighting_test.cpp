@@ -41,6 +41,8 @@ struct Field {
   std::string vis;
   std::string pixels;
   std::string cell_arcsec;
+  Arguments ours{};    ///< what else the program is told
+  Arguments theirs{};  ///< the same in WSClean's words
 };
 
 /// Its PSF, made in the image's own uv grid.
@@ -63,7 +65,7 @@ imager::SkyImage wsclean_psf(const Field& field, const std::string& name, const 
                         "-reorder",
                         "-no-update-model-required",
                         "-weight"};
-  const Outcome outcome = Child(words + weighting + Arguments{field.vis}, "wsclean").wait();
+  const Outcome outcome = Child(words + weighting + field.theirs + Arguments{field.vis}, "wsclean").wait();
   BOOST_REQUIRE_MESSAGE(outcome.code == 0, outcome.err);
   return imager::read_fits(name + "-psf.fits");
 }
@@ -78,7 +80,7 @@ Arguments ours(const Arguments& way) {
 void check_against_wsclean(const Field& field, const std::string& name, const Arguments& way) {
   succeed(Arguments{"image", "--vis", field.vis, "--imagename", name, "--imsize", field.pixels, "--cell",
                     field.cell_arcsec + "arcsec"} +
-          ours(way));
+          field.ours + ours(way));
   const imager::Image psf = pixels_of(name, "psf");
   const imager::SkyImage other = wsclean_psf(field, name, way);
   double largest = 0;
@@ -108,11 +110,30 @@ BOOST_AUTO_TEST_CASE(psfs_and_beams_agree_with_wsclean) {
   }
 }
 
-BOOST_AUTO_TEST_CASE(psfs_and_beams_of_a_real_set_agree_with_wsclean) {
-  const misfit::testing::Unpacked data("alma_hd142527_b9");
-  if (!data.present() || !installed()) return;
-  for (const Arguments& way : {Arguments{"uniform"}, {"briggs", "0.5"}})
-    check_against_wsclean({data / "alma_hd142527_b9.ms", "512", "0.04"}, data / "a", way);
+BOOST_AUTO_TEST_CASE(psfs_and_beams_of_real_sets_agree_with_wsclean) {
+  if (!installed()) return;
+  const Arguments corrected{"--datacolumn", "corrected"}, corrected_too{"-data-column", "CORRECTED_DATA"};
+  // The PSFs of ALMA and VLBA differ by up to 0.004 and 0.009, since WSClean weighs Stokes I by the smaller weight of two
+  // hands; the others by up to 3e-4. ASKAP's cell is half the recipe's, with which a beam is a pixel wide: WSClean's fit to a
+  // quadrant of so few pixels jumps where one of them changes by 1e-5.
+  const std::map<std::string, Field> fields{
+      {"alma_hd142527_b9", {"", "256", "0.04"}},
+      {"lofar_3c295_snapshot",
+       {"", "512", "20", corrected + Arguments{"--uvrange", "<5klambda"}, corrected_too + Arguments{"-maxuv-l", "5000"}}},
+      {"vlba_m87_mojave", {"", "512", "0.0002"}},
+      {"askap36_sim_4chan", {"", "256", "3"}},
+      {"atca_sim_tileddata", {"", "256", "2", corrected, corrected_too}}};
+  for (const auto& [name, field] : fields) {
+    const misfit::testing::Unpacked data(name);
+    if (!data.present()) return;
+    Field here = field;
+    here.vis = data / (name + ".ms");
+    for (const Arguments& way : ways) {
+      BOOST_TEST_CONTEXT(name << " " << way.back()) {
+        check_against_wsclean(here, data / "a", way);
+      }
+    }
+  }
 }
 
 BOOST_AUTO_TEST_CASE(the_noise_of_simulated_noise_is_the_one_predicted) {

@@ -15,6 +15,14 @@ std::string_view trimmed(std::string_view text) {
   return text.substr(first, text.find_last_not_of(space) - first + 1);
 }
 
+std::vector<std::string_view> split_at_commas(std::string_view text) {
+  std::vector<std::string_view> parts;
+  for (std::size_t comma; (comma = text.find(',')) != std::string_view::npos; text.remove_prefix(comma + 1))
+    parts.push_back(trimmed(text.substr(0, comma)));
+  parts.push_back(trimmed(text));
+  return parts;
+}
+
 std::optional<double> finite_number(std::string_view text) {
   const std::string_view digits = text.substr(text.starts_with('+') ? 1 : 0);
   double value = 0;

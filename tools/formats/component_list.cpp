@@ -39,18 +39,10 @@ std::string quoted(std::string_view text) {
 
 using Fields = std::vector<std::string_view>;
 
-Fields split(std::string_view line) {
-  Fields fields;
-  for (std::size_t comma; (comma = line.find(',')) != std::string_view::npos; line.remove_prefix(comma + 1))
-    fields.push_back(trimmed(line.substr(0, comma)));
-  fields.push_back(trimmed(line));
-  return fields;
-}
-
 /// Where each quantity stands in a line.
 class Columns {
  public:
-  Columns(std::string_view line, Polarised polarised) : names_(split(line)) {
+  Columns(std::string_view line, Polarised polarised) : names_(split_at_commas(line)) {
     if (names_.size() == 1 && line.find(';') != line.npos) fail("columns are separated by ';', " + expected());
     for (std::size_t i = 0; i < names_.size(); ++i) {
       const bool is_flux = polarised == Polarised::yes && std::count(flux_names.begin(), flux_names.end(), names_[i]) > 0;
@@ -85,7 +77,7 @@ class Columns {
 /// A line of values.
 class Line {
  public:
-  Line(std::string_view text, const Columns& columns) : columns_(columns), fields_(split(text)) {
+  Line(std::string_view text, const Columns& columns) : columns_(columns), fields_(split_at_commas(text)) {
     if (fields_.size() != columns.count())
       fail(std::to_string(fields_.size()) + " values, expected " + std::to_string(columns.count()));
   }

@@ -33,8 +33,12 @@ CleanStage::CleanStage(const ImageOptions& options, const imager::ImageGeometry&
 }
 
 std::string CleanStage::warning() const {
-  if (std::any_of(masks_.begin(), masks_.end(), imager::mask_is_empty))
-    return "the mask " + o_.mask + " allows no pixel of the image: nothing is cleaned";
+  std::string closed;
+  for (std::size_t m = 0; m < masks_.size(); ++m)
+    if (imager::mask_is_empty(masks_[m])) closed += (closed.empty() ? "" : ", ") + stokes_name(stokes_[m]);
+  if (!closed.empty())
+    return "the mask " + o_.mask + " allows no pixel of the image" +
+           (masks_.size() > 1 ? " of " + closed + ", of which nothing is cleaned" : ": nothing is cleaned");
   for (std::size_t s = 0; o_.restart && s < stokes_.size(); ++s)
     if (!std::filesystem::exists(state_path(s))) return "there is no " + state_path(s) + " to go on from: CLEAN begins anew";
   return "";

@@ -166,13 +166,7 @@ std::optional<imager::Beam> restoring_beam(const ImageOptions& o) {
     expect(has_unit(text) && quantity(parse_angle_rad)(text).empty());
     return parse_angle_rad(text);
   };
-  std::vector<std::string_view> parts;
-  for (std::string_view rest = o.restoringbeam;;) {
-    const std::size_t comma = rest.find(',');
-    parts.push_back(trimmed(rest.substr(0, comma)));
-    if (comma == std::string_view::npos) break;
-    rest.remove_prefix(comma + 1);
-  }
+  const std::vector<std::string_view> parts = split_at_commas(o.restoringbeam);
   expect(parts.size() == 1 || parts.size() == 3);
   imager::Beam beam;
   beam.major_rad = angle(parts[0]);

@@ -82,10 +82,17 @@ class ImageRun {
     set_ = std::make_unique<ms_io::MeasurementSet>(o_.vis, selection_of(o_), o_.datacolumn, stokes_);
     for (const std::string& sentence : set_->incomplete_columns()) warn(sentence);
     geometry_ = geometry_of(o_, set_->observation().phase_centre);
+    warn_of_pointing();
     reach_ = set_->reach();
     if (o_.niter == 0) return;
     clean_ = std::make_unique<CleanStage>(o_, geometry_, threads_);
     if (const std::string warning = clean_->warning(); !warning.empty()) warn(warning);
+  }
+
+  void warn_of_pointing() {
+    if (o_.phasecenter.empty()) return;
+    const std::string warning = pointing_warning(set_->nearest_field(), geometry_, set_->observation().frequency_hz);
+    if (!warning.empty()) warn(warning);
   }
 
   void plan() {

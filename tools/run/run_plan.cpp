@@ -97,6 +97,7 @@ class RunPlanner {
             .rows = static_cast<double>(scene_.set.rows()),
             .samples = static_cast<double>(scene_.set.samples()),
             .block_samples = static_cast<double>(ms_io::MeasurementSet::usual_block_samples),
+            .read_at_once = static_cast<double>(scene_.set.read_at_once()),
             .stokes = gridding.request.stokes,
             .verify = o_.verify > 0,
             .clean_scales = o_.niter > 0 ? std::max(1, static_cast<int>(o_.scales.size())) : 0,

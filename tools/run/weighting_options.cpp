@@ -34,12 +34,7 @@ bool is_uv_distance(const std::string& quantity) {
 /// The taper that `values` name, one to three values; throws std::invalid_argument that shows the one that is wrong.
 imager::UvTaper parse_taper(const std::string& values) {
   std::vector<std::string> parts;
-  for (std::string_view rest = values;;) {
-    const std::size_t comma = rest.find(',');
-    parts.emplace_back(trimmed(rest.substr(0, comma)));
-    if (comma == std::string_view::npos) break;
-    rest.remove_prefix(comma + 1);
-  }
+  for (const std::string_view part : split_at_commas(values)) parts.emplace_back(part);
   if (parts.size() > 3) throw std::invalid_argument(std::to_string(parts.size()) + " values");
   const bool uv = is_uv_distance(parts[0]);
   if (parts.size() > 1 && is_uv_distance(parts[1]) != uv) throw std::invalid_argument("an angle beside wavelengths");

@@ -97,7 +97,7 @@ StabilityCase case_of(const std::string& name, imager::VisibilityBlock block, co
   block.visibility.assign(exact.begin(), exact.end());
   StabilityCase made;
   made.name = name;
-  made.block = std::make_shared<const imager::VisibilityBlock>(std::move(block));
+  made.block = std::make_shared<imager::VisibilityBlock>(std::move(block));
   made.geometry = geometry;
   return made;
 }

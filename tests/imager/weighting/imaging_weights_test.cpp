@@ -44,6 +44,10 @@ std::shared_ptr<const ImagingWeights> weights_of(const VisibilitySource& source,
   return make_imaging_weights(source, options, geometry, threads, ignore_progress, times);
 }
 
+std::shared_ptr<const VisibilityBlock> weighted(const ImagingWeights& weights, const VisibilityBlock& block) {
+  return weights.of(std::make_shared<VisibilityBlock>(block)).block;
+}
+
 std::vector<float> weights_of_a_pass(const VisibilitySource& source) {
   std::vector<float> weights;
   const auto stream = source.open();
@@ -85,7 +89,8 @@ BOOST_AUTO_TEST_CASE(weights_are_their_formulas_times_the_taper) {
   const auto uniform = weights_of(stored(blocks), every_way[0], 1), briggs = weights_of(stored(blocks), every_way[3], 1),
              natural = weights_of(stored(blocks), every_way[4], 1);
   for (const VisibilityBlock& block : blocks) {
-    const auto by_uniform = uniform->of(block).block, by_briggs = briggs->of(block).block, by_taper = natural->of(block).block;
+    const auto by_uniform = weighted(*uniform, block), by_briggs = weighted(*briggs, block),
+               by_taper = weighted(*natural, block);
     plain.for_each(block, [&](std::size_t row, std::size_t channel, const PlainDensity::Cell& cell, std::uint32_t) {
       const std::size_t i = row * block.channels() + channel;
       const double w{block.weight[i]}, per_m = block.frequency_hz[channel] / speed_of_light_m_s;
@@ -104,8 +109,8 @@ BOOST_DATA_TEST_CASE(what_is_usable_stays_usable, bdata::xrange(every_way.size()
   if (options.taper) options.taper = taper_of_radii({10, 10, 0});  // of which hardly anything is left
   const auto weights = weights_of(stored(blocks), options, 1);
   for (const VisibilityBlock& block : blocks) {
-    const auto weighted = weights->of(block).block;
-    for (std::size_t i = 0; i < block.samples(); ++i) BOOST_TEST((weighted->weight[i] > 0) == (block.weight[i] > 0));
+    const auto made = weighted(*weights, block);
+    for (std::size_t i = 0; i < block.samples(); ++i) BOOST_TEST((made->weight[i] > 0) == (block.weight[i] > 0));
   }
 }
 
@@ -140,18 +145,39 @@ BOOST_AUTO_TEST_CASE(other_stokes_parameters_have_the_same_weights_and_their_own
   const auto other = std::make_shared<VisibilityBlock>(block);
   for (auto& visibility : other->visibility) visibility *= 2;
   block.other_stokes.push_back(other);
-  const auto weighted = weights_of(stored({block}), every_way[3], 1)->of(block).block;
-  BOOST_REQUIRE(weighted->other_stokes.size() == 1);
-  BOOST_CHECK(weighted->other_stokes[0]->weight == weighted->weight);
-  BOOST_CHECK(weighted->other_stokes[0]->visibility == other->visibility);
-  BOOST_CHECK(weighted->visibility == block.visibility);
+  const auto made = weighted(*weights_of(stored({block}), every_way[3], 1), block);
+  BOOST_REQUIRE(made->other_stokes.size() == 1);
+  BOOST_CHECK(made->other_stokes[0]->weight == made->weight);
+  BOOST_CHECK(made->other_stokes[0]->visibility == other->visibility);
+  BOOST_CHECK(made->visibility == block.visibility);
+}
+
+BOOST_AUTO_TEST_CASE(blocks_that_nobody_else_holds_are_weighed_where_they_lie_and_others_stay_as_they_are) {
+  const auto weights = weights_of(stored(some_blocks()), every_way[0], 1);
+  VisibilityBlock both = some_blocks().front();
+  both.other_stokes = {std::make_shared<VisibilityBlock>(both)};
+  const std::vector<float> natural = both.weight;
+  auto held = std::make_shared<const VisibilityBlock>(both);  // and so is what it carries, by `both` too
+  const auto copy = weights->of(held).block;
+  BOOST_CHECK(held->weight == natural);
+  BOOST_CHECK(held->other_stokes[0]->weight == natural);
+  BOOST_CHECK(copy->weight != natural);
+  auto alone = std::make_shared<VisibilityBlock>(both);
+  alone->other_stokes = {std::make_shared<VisibilityBlock>(both)};
+  const VisibilityBlock* const block = alone.get();
+  const VisibilityBlock* const other = alone->other_stokes[0].get();
+  const auto same = weights->of(std::move(alone)).block;
+  BOOST_TEST(same.get() == block);
+  BOOST_TEST(same->other_stokes[0].get() == other);
+  BOOST_CHECK(same->weight == copy->weight);
+  BOOST_CHECK(other->weight == copy->weight);
 }
 
 BOOST_AUTO_TEST_CASE(evenly_spread_samples_tapered_by_a_beam_have_it_as_their_psf) {
   const Beam asked{6e-5, 4e-5, 0.5};
   const ImageGeometry image{48, 48, cell_rad, {}};
   const ImagingWeights weights(image, taper_of_beam(asked));
-  const StoredVisibilities source = stored({*weights.of(even_samples()).block});
+  const StoredVisibilities source = stored({*weighted(weights, even_samples())});
   StageTimes times;
   const DirtyImages made = make_dirty_images(source, DirectTransform(image, 2), {.with_psf = true}, ignore_progress, times);
   double largest = 0;

@@ -1,0 +1,130 @@
+#include "imager/fits_file.h"
+
+#include <fitsio.h>
+
+#include <array>
+#include <filesystem>
+#include <limits>
+#include <stdexcept>
+
+namespace misfit::imager {
+
+struct FitsFile::Handle {
+  fitsfile* file = nullptr;
+};
+
+FitsFile::FitsFile(std::string doing, std::string path)
+    : doing_(std::move(doing)), path_(std::move(path)), handle_(std::make_unique<Handle>()) {
+  fits_clear_errmsg();
+}
+
+FitsFile::~FitsFile() {
+  int status = 0;
+  if (handle_->file != nullptr) fits_close_file(handle_->file, &status);
+  fits_clear_errmsg();
+}
+
+// CFITSIO's "disk file" calls take the name as it stands; an absolute one keeps them from expanding a tilde.
+void FitsFile::create(const std::string& name) {
+  int status = 0;
+  check(fits_create_diskfile(&handle_->file, std::filesystem::absolute(name).c_str(), &status));
+}
+
+void FitsFile::open(const std::string& name) {
+  int status = 0;
+  check(fits_open_diskfile(&handle_->file, std::filesystem::absolute(name).c_str(), READONLY, &status));
+}
+
+void FitsFile::close() {
+  int status = 0;
+  fits_close_file(handle_->file, &status);
+  handle_->file = nullptr;
+  check(status);
+}
+
+void FitsFile::fail(const std::string& reason) const {
+  throw std::runtime_error("cannot " + doing_ + " " + path_ + ": " + reason);
+}
+
+void FitsFile::check(int status) const {
+  if (status == 0) return;
+  std::array<char, FLEN_STATUS> text{};
+  fits_get_errstatus(status, text.data());
+  std::string reason = text.data();
+  std::array<char, FLEN_ERRMSG> detail{};
+  if (fits_read_errmsg(detail.data())) reason += std::string(" (") + detail.data() + ")";
+  fail(reason);
+}
+
+void FitsFile::write_number(const std::string& key, double value, const std::string& comment) {
+  int status = 0;
+  check(fits_update_key(handle_->file, TDOUBLE, key.c_str(), &value, comment.c_str(), &status));
+}
+
+void FitsFile::write_text(const std::string& key, const std::string& value, const std::string& comment) {
+  int status = 0;
+  if (!value.empty()) check(fits_update_key_str(handle_->file, key.c_str(), value.c_str(), comment.c_str(), &status));
+}
+
+void FitsFile::write_history(const std::string& line) {
+  int status = 0;
+  check(fits_write_history(handle_->file, line.c_str(), &status));
+}
+
+bool FitsFile::read_key(const std::string& key, int type, void* value) const {
+  int status = 0;
+  fits_read_key(handle_->file, type, key.c_str(), value, nullptr, &status);
+  const bool absent = status == KEY_NO_EXIST || status == VALUE_UNDEFINED;
+  if (absent)
+    fits_clear_errmsg();
+  else
+    check(status);
+  return !absent;
+}
+
+std::optional<double> FitsFile::number(const std::string& key) const {
+  double value = 0;
+  return read_key(key, TDOUBLE, &value) ? std::optional(value) : std::nullopt;
+}
+
+double FitsFile::needed_number(const std::string& key) const {
+  const std::optional<double> value = number(key);
+  if (!value) fail("it has no " + key);
+  return *value;
+}
+
+std::string FitsFile::text(const std::string& key) const {
+  std::array<char, FLEN_VALUE> value{};
+  return read_key(key, TSTRING, value.data()) ? value.data() : "";
+}
+
+void FitsFile::create_image(std::vector<long> size, PixelFormat format) {
+  int status = 0;
+  check(fits_create_img(handle_->file, format == PixelFormat::float32 ? FLOAT_IMG : DOUBLE_IMG, static_cast<int>(size.size()),
+                        size.data(), &status));
+}
+
+void FitsFile::write_pixels(std::vector<long> first, const std::vector<double>& pixels) {
+  int status = 0;
+  check(fits_write_pix(handle_->file, TDOUBLE, first.data(), static_cast<LONGLONG>(pixels.size()),
+                       const_cast<double*>(pixels.data()), &status));
+}
+
+std::vector<long> FitsFile::size() const {
+  int status = 0, axes = 0;
+  check(fits_get_img_dim(handle_->file, &axes, &status));
+  std::vector<long> size(static_cast<std::size_t>(axes));
+  check(fits_get_img_size(handle_->file, axes, size.data(), &status));
+  return size;
+}
+
+void FitsFile::read_pixels(std::vector<long> first, std::vector<double>& pixels) const {
+  int status = 0, type = 0, any_blank = 0;
+  check(fits_get_img_type(handle_->file, &type, &status));
+  // Asked to look for blanks, CFITSIO rounds subnormal numbers to zero; only integers need it.
+  double blank = std::numeric_limits<double>::quiet_NaN();
+  check(fits_read_pix(handle_->file, TDOUBLE, first.data(), static_cast<LONGLONG>(pixels.size()), type > 0 ? &blank : nullptr,
+                      pixels.data(), &any_blank, &status));
+}
+
+}  // namespace misfit::imager
