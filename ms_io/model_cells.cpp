@@ -36,10 +36,15 @@ void CellColumn::write(const Rows& rows, const casacore::Slicer& slice, const Ce
   }
 }
 
-void CellColumn::require_cell_shape(casacore::rownr_t row, const casacore::IPosition& shape) const {
-  if (column_.shape(row).isEqual(shape)) return;
-  throw casacore::AipsError("the cell of row " + std::to_string(row) + " has shape " + column_.shape(row).toString() +
-                            "; expected " + shape.toString());
+void CellColumn::require_shape(const Rows& rows, const casacore::IPosition& shape) const {
+  if (fixed_shape_ && column_.shapeColumn().isEqual(shape)) return;
+  for (std::uint64_t r = 0; r < rows.count(); ++r) {
+    const casacore::rownr_t row = rows[r];
+    if (!column_.isDefined(row)) throw casacore::AipsError("row " + std::to_string(row) + " has no data");
+    if (column_.shape(row).isEqual(shape)) continue;
+    throw casacore::AipsError("the cell of row " + std::to_string(row) + " has shape " + column_.shape(row).toString() +
+                              "; expected " + shape.toString());
+  }
 }
 
 ModelCells::ModelCells(const casacore::MeasurementSet& set, const ModelColumn& column) : model_(set, column.name) {
@@ -49,17 +54,14 @@ ModelCells::ModelCells(const casacore::MeasurementSet& set, const ModelColumn& c
 Cells ModelCells::data(const Rows& rows, const Setup& setup) {
   Cells cells;
   if (!data_.exists()) return cells;
-  data_.require_shape(rows, stored_shape(setup), [](casacore::rownr_t row) -> Cells {
-    throw casacore::AipsError("row " + std::to_string(row) + " has no data");
-  });
+  data_.require_shape(rows, stored_shape(setup));
   data_.read(rows, channel_slice(setup, setup.correlation_types.size()), cells);
   return cells;
 }
 
 Cells ModelCells::values(const Rows& rows, const Setup& setup) {
   const casacore::IPosition shape = stored_shape(setup);
-  model_.require_shape(rows, shape,
-                       [&](casacore::rownr_t row) { return data_.exists() ? data_(row) : Cells(shape, casacore::Complex(0)); });
+  model_.require_shape(rows, shape);
   Cells cells;
   if (setup.channels.size() > 1) {
     model_.read(rows, channel_slice(setup, setup.correlation_types.size()), cells);
@@ -91,9 +93,7 @@ void BlockCells::form(const Rows& rows, const Setup& setup, const StokesVisibili
 }
 
 CellChecksum ModelCells::checksum(const Rows& rows, const Setup& setup) {
-  model_.require_shape(rows, stored_shape(setup), [](casacore::rownr_t row) -> Cells {
-    throw casacore::AipsError("row " + std::to_string(row) + " has no values");
-  });
+  model_.require_shape(rows, stored_shape(setup));
   Cells cells;
   model_.read(rows, channel_slice(setup, setup.correlation_types.size()), cells);
   return {checksum_of(rows, cells), data_.exists() ? checksum_of(rows, data(rows, setup)) : 0};

@@ -24,19 +24,10 @@ class CellColumn {
   void read(const Rows& rows, const casacore::Slicer& slice, Cells& cells) const { ms_io::read(column_, rows, slice, cells); }
   void write(const Rows& rows, const casacore::Slicer& slice, const Cells& cells);
 
-  /// Gives cells that have no shape yet what `blank(row)` returns. Throws AipsError when one has another shape than `shape`.
-  template <typename Blank>
-  void require_shape(const Rows& rows, const casacore::IPosition& shape, const Blank& blank) {
-    if (fixed_shape_ && column_.shapeColumn().isEqual(shape)) return;
-    for (std::uint64_t r = 0; r < rows.count(); ++r) {
-      if (!column_.isDefined(rows[r])) column_.put(rows[r], blank(rows[r]));
-      require_cell_shape(rows[r], shape);
-    }
-  }
+  /// Throws AipsError when a cell has none, or another.
+  void require_shape(const Rows& rows, const casacore::IPosition& shape) const;
 
  private:
-  void require_cell_shape(casacore::rownr_t row, const casacore::IPosition& shape) const;
-
   casacore::ArrayColumn<casacore::Complex> column_;
   bool fixed_shape_ = false;
 };
@@ -70,7 +61,7 @@ class ModelCells {
 
   /// The data of a block, where they are needed. Apart, since errors in them are told as such.
   CellColumn::Cells data(const Rows& rows, const Setup& setup);
-  /// Its cells before a model is formed; the column has them from here on.
+  /// Its cells before a model is formed.
   CellColumn::Cells values(const Rows& rows, const Setup& setup);
   void write(const Rows& rows, const Setup& setup, const CellColumn::Cells& values);
 

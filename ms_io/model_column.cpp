@@ -16,14 +16,7 @@
 #include "ms_io/table_access_internal.h"
 
 namespace misfit::ms_io {
-namespace {
 
-/// A keyword of columns that were made here, which tells them from those that another program made while a journal lay about.
-constexpr const char* made_here = "MISFIT_MADE";
-
-constexpr ssize_t tile_samples = 1 << 16;  ///< half a megabyte of complex<float>
-
-/// TYPE, NAME, COLUMNS and SPEC of what stores `column`.
 casacore::Record storage_of(const casacore::Table& set, const casacore::String& column) {
   const casacore::Record managers = set.dataManagerInfo();
   for (casacore::uInt i = 0; i < managers.nfields(); ++i) {
@@ -34,17 +27,6 @@ casacore::Record storage_of(const casacore::Table& set, const casacore::String& 
   return {};
 }
 
-/// The tile shape of DATA, or one that holds whole cells of `cell`.
-casacore::IPosition tile_shape(const casacore::MeasurementSet& set, const casacore::IPosition& cell) {
-  const casacore::Record storage = storage_of(set, "DATA");
-  if (storage.isDefined("SPEC") && storage.asRecord("SPEC").isDefined("DEFAULTTILESHAPE")) {
-    casacore::IPosition shape(storage.asRecord("SPEC").toArrayInt("DEFAULTTILESHAPE"));
-    if (shape.nelements() == 3 && shape.product() > 0) return shape;
-  }
-  return casacore::IPosition(3, cell(0), cell(1), std::max<ssize_t>(1, tile_samples / std::max<ssize_t>(1, cell.product())));
-}
-
-/// The shape of a cell of each DATA_DESC_ID: correlations × channels.
 std::vector<casacore::IPosition> cell_shapes(const casacore::MeasurementSet& set, const std::string& path) {
   const casacore::ScalarColumn<int> window(set.dataDescription(), "SPECTRAL_WINDOW_ID");
   const casacore::ScalarColumn<int> polarisation(set.dataDescription(), "POLARIZATION_ID");
@@ -58,6 +40,23 @@ std::vector<casacore::IPosition> cell_shapes(const casacore::MeasurementSet& set
                         channels(static_cast<casacore::rownr_t>(window(d))));
   }
   return shapes;
+}
+
+namespace {
+
+/// A keyword of columns that were made here, which tells them from those that another program made while a journal lay about.
+constexpr const char* made_here = "MISFIT_MADE";
+
+constexpr ssize_t tile_samples = 1 << 16;  ///< half a megabyte of complex<float>
+
+/// The tile shape of DATA, or one that holds whole cells of `cell`.
+casacore::IPosition tile_shape(const casacore::MeasurementSet& set, const casacore::IPosition& cell) {
+  const casacore::Record storage = storage_of(set, "DATA");
+  if (storage.isDefined("SPEC") && storage.asRecord("SPEC").isDefined("DEFAULTTILESHAPE")) {
+    casacore::IPosition shape(storage.asRecord("SPEC").toArrayInt("DEFAULTTILESHAPE"));
+    if (shape.nelements() == 3 && shape.product() > 0) return shape;
+  }
+  return casacore::IPosition(3, cell(0), cell(1), std::max<ssize_t>(1, tile_samples / std::max<ssize_t>(1, cell.product())));
 }
 
 void add_column(casacore::MeasurementSet& set, const std::string& column, const casacore::IPosition& cell, bool fixed) {
@@ -157,6 +156,11 @@ void require_exact_storage(const casacore::MeasurementSet& set, const std::strin
   if (storage == "DyscoStMan" || storage.rfind("CompressComplex", 0) == 0) {
     throw std::runtime_error(name + " is stored by " + storage +
                              ", which rounds what it is given, other rows with it; expected another --column");
+  }
+  if (storage == "IncrementalStMan") {
+    throw std::runtime_error(name +
+                             " is stored by IncrementalStMan, whose index changes with the values, so that a run that is "
+                             "killed could spoil the set; expected another --column");
   }
 }
 

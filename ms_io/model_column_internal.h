@@ -3,6 +3,7 @@
 #include <casacore/ms/MeasurementSets/MeasurementSet.h>
 
 #include <string>
+#include <vector>
 
 #include "ms_io/model_writer.h"
 
@@ -13,6 +14,12 @@ void require_writable_column(const casacore::MeasurementSet& set, const std::str
 
 /// Throws std::runtime_error: the column is there already, and may not be.
 [[noreturn]] void throw_exists(const std::string& path, const std::string& column);
+
+/// TYPE, NAME, COLUMNS, SEQNR and SPEC of what stores `column`.
+casacore::Record storage_of(const casacore::Table& set, const casacore::String& column);
+
+/// The shape of a cell of each DATA_DESC_ID: correlations × channels.
+std::vector<casacore::IPosition> cell_shapes(const casacore::MeasurementSet& set, const std::string& path);
 
 /// Adds `column`, complex, shaped and tiled as DATA is (one tile shape for each shape of cell, when these vary), full of zeros
 /// or of the data that something will be subtracted from. From here on the set on disk has the column, or, when this fails, has

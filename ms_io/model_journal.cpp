@@ -82,8 +82,8 @@ void write_journal(const casacore::Table& set, const ModelJournal& journal) {
 void remove_journal(const casacore::Table& set, const std::string& column) {
   std::error_code ignored;
   for (const std::string& path : journal_files(set, column)) {
-    std::filesystem::remove(path, ignored);
     std::filesystem::remove(path + part, ignored);
+    std::filesystem::remove(path, ignored);
   }
 }
 

@@ -1,7 +1,5 @@
 #include "ms_io/model_writer.h"
 
-#include <casacore/tables/DataMan/TiledStManAccessor.h>
-
 #include <algorithm>
 #include <cmath>
 #include <future>
@@ -11,10 +9,12 @@
 
 #include "ms_io/fingerprint.h"
 #include "ms_io/metadata_internal.h"
+#include "ms_io/missing_cells_internal.h"
 #include "ms_io/model_cells_internal.h"
 #include "ms_io/model_column_internal.h"
 #include "ms_io/model_journal_internal.h"
 #include "ms_io/table_access_internal.h"
+#include "ms_io/value_flush_internal.h"
 
 namespace misfit::ms_io {
 namespace {
@@ -60,31 +60,6 @@ std::string identity_of(const ModelColumn& column, const SelectedRows& selected)
   text << std::hex << all.value();
   return text.str();
 }
-
-/// Hands the values written to the system, so that they outlive this process.
-class ValueFlush {
- public:
-  ValueFlush(casacore::MeasurementSet& set, const std::string& column) : set_(set) {
-    try {
-      tiles_ = casacore::ROTiledStManAccessor(set, column, true);
-      tiled_ = true;
-    } catch (const casacore::AipsError&) {  // other storage, or rows of several tables
-    }
-  }
-  /// Of tiles alone where there are: flushing the whole table truncates and rewrites their header, each time at a risk.
-  void operator()() {
-    if (tiled_) {
-      tiles_.clearCaches();
-    } else {
-      set_.flush();
-    }
-  }
-
- private:
-  casacore::MeasurementSet& set_;
-  casacore::ROTiledStManAccessor tiles_;
-  bool tiled_ = false;
-};
 
 /// Where the block lies; rows with a non-finite UVW are put at 0 and marked.
 imager::SampleCoordinates coordinates(const casacore::ArrayColumn<double>& uvw_column, const Rows& rows, const Setup& setup,
@@ -158,7 +133,12 @@ class ModelWriter {
     const bool exists = set_.tableDesc().isColumn(column_.name);
     if (exists) go_on();
     write_journal(set_, journal_);  // before there is a column, so that none is ever without
-    if (!exists) create_model_column(set_, path_, column_);
+    if (!exists) {
+      create_model_column(set_, path_, column_);
+    } else if (translated(doing_(), [&] { return give_missing_cells(set_, column_); })) {
+      set_ = casacore::MeasurementSet();
+      set_ = open_measurement_set(path_, Access::update);
+    }
   }
 
   ModelWriteReport write(const Predict& predict, const Progress& progress) {
@@ -188,7 +168,6 @@ class ModelWriter {
       before->formed.get();
       finish();
     }
-    translated(doing_(), [&] { set_.flush(); });
     remove_journal(set_, column_.name);
     report.rows = journal_.written;
     report.samples = samples_;

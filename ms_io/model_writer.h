@@ -58,8 +58,8 @@ void require_writable(const std::string& path, const ModelColumn& column = {});
 /// Writes predicted visibilities into `column` of the MeasurementSet at `path`, for every sample selected whatever its flags
 /// and weights, auto-correlations included. Each correlation gets what the model's Stokes parameters are to it, XX = I + Q and
 /// so on, or loses that. A column that does not exist is created, uncompressed, with the shape and tiling of DATA; rows and
-/// channels outside the selection are left alone, and hold 0, or the data, in a new column. `column` may be neither DATA nor
-/// what the data are read from, since nobody could tell afterwards where a run was cut short.
+/// channels outside the selection are left alone, and hold 0, or the data, in a new column and in cells that had no shape.
+/// `column` may be neither DATA nor what the data are read from, since nobody could tell afterwards where a run was cut short.
 ///
 /// A run that ends early, even killed, leaves a set that opens, and a record of the rows that are written. The next one with
 /// the same model, options and selection goes on there, unless these rows, or the data of these rows, have changed since; any

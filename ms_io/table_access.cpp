@@ -78,6 +78,8 @@ casacore::MeasurementSet opened(const std::string& path, Access access) {
                              " is locked by another process; expected one that is not being written, or read by a program "
                              "that keeps it locked");
   }
+  // Counts as written from here on. casacore would truncate table.info to write the same again.
+  if (update) set.tableInfo().flush("/dev/null");
   return set;
 }
 

@@ -2,6 +2,7 @@
 
 #include <casacore/casa/Exceptions/Error.h>
 #include <casacore/ms/MeasurementSets/MeasurementSet.h>
+#include <casacore/tables/Tables/BaseTable.h>
 
 #include <stdexcept>
 #include <string>
@@ -26,6 +27,12 @@ enum class Access { read, update };
 /// Opens the MeasurementSet at `path`, and silences casacore's log, since nothing below the program prints. Throws
 /// std::runtime_error when there is none, or when it cannot be written but `access` asks for it.
 casacore::MeasurementSet open_measurement_set(const std::string& path, Access access);
+
+/// A table that is written when it is flushed alone, not when it is closed, whoever else has it open.
+class UnwrittenTable : public casacore::Table {
+ public:
+  explicit UnwrittenTable(const casacore::Table& table) : casacore::Table(table) { baseTabPtr_p->doNotWrite(); }
+};
 
 /// `name`, with the short names data, corrected and model spelt out.
 std::string column_name(const std::string& name);

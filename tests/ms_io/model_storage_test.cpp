@@ -1,5 +1,7 @@
 // Where a model column can be written, and how one is stored that is made.
+#include <casacore/tables/DataMan/IncrementalStMan.h>
 #include <casacore/tables/DataMan/StandardStMan.h>
+#include <casacore/tables/DataMan/TiledShapeStMan.h>
 #include <casacore/tables/Tables/ScaColDesc.h>
 #include <sys/wait.h>
 
@@ -122,6 +124,14 @@ BOOST_AUTO_TEST_CASE(other_storage_is_written_as_it_stands) {
   for (std::size_t r = 0; r < rows; ++r) BOOST_TEST(set.cell("PLAIN", r)(0, 5) == expected_at(r, 5));
 }
 
+BOOST_AUTO_TEST_CASE(storage_that_a_killed_run_would_spoil_is_refused) {
+  const SmallSet set;
+  set.modify([](casacore::MeasurementSet& ms) {
+    ms.addColumn(casacore::ArrayColumnDesc<Complex>("SHARED", 2), casacore::IncrementalStMan("SharedStMan"));
+  });
+  BOOST_TEST(contains(error_of([&] { write(set.path(), "SHARED"); }), "is stored by IncrementalStMan, whose index changes"));
+}
+
 BOOST_AUTO_TEST_CASE(rows_that_a_table_refers_to_are_written_and_no_others_of_theirs) {
   const SmallSet set;
   const std::string odd = odd_rows(set);
@@ -146,6 +156,19 @@ BOOST_AUTO_TEST_CASE(rows_that_a_table_refers_to_are_written_and_no_others_of_th
     BOOST_TEST(set.cell("MODEL_DATA", r)(0, 2) == (r % 2 == 1 ? expected_at(r, 2) : Complex(7)));
   }
   BOOST_TEST(incomplete_column(set.path(), "model") == "");
+}
+
+BOOST_AUTO_TEST_CASE(cells_without_a_shape_are_given_one_where_a_table_refers_to_them) {
+  const SmallSet set;
+  set.modify([](casacore::MeasurementSet& ms) {
+    ms.addColumn(casacore::ArrayColumnDesc<Complex>("MINE", 2),
+                 casacore::TiledShapeStMan("Mine", casacore::IPosition(3, 2, channels, 7)));
+    casacore::ArrayColumn<Complex>(ms, "MINE").put(2, casacore::Matrix<Complex>(2, channels, Complex(7)));
+  });
+  write(odd_rows(set), "MINE");
+  for (std::size_t r = 0; r < rows; ++r) {
+    BOOST_TEST(set.cell("MINE", r)(0, 2) == (r % 2 == 1 ? expected_at(r, 2) : Complex(r == 2 ? 7 : 0)));
+  }
 }
 
 BOOST_AUTO_TEST_CASE(a_set_that_another_process_keeps_locked_is_named) {

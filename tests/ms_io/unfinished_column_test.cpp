@@ -7,7 +7,6 @@
 #include <thread>
 
 #include "ms_io/model_writer.h"
-#include "tests/ms_io/killed.h"
 #include "tests/ms_io/small_set.h"
 
 namespace misfit::ms_io {
@@ -286,23 +285,6 @@ BOOST_AUTO_TEST_CASE(a_run_that_was_killed_leaves_the_record_of_one_that_was_sto
       check_rest(set, column, expected);
     }
   }
-}
-
-// The files are written in the order of values, their index, the table's description and its lock file. Killed before the last
-// of these, the table has a column that its lock file does not know.
-BOOST_AUTO_TEST_CASE(a_run_that_was_killed_while_it_made_the_column_leaves_a_set_that_opens_and_can_be_written) {
-  const std::vector<Complex> expected = whole(difference);
-  int without = 0, with = 0;
-  for (int changes = 1; changes < 10; ++changes) {
-    BOOST_TEST_CONTEXT(changes) {
-      const MixedSet set;
-      BOOST_TEST(misfit::testing::killed_before_change(changes, [&] { write(set, difference); }));
-      ++(casacore::MeasurementSet(set.path()).tableDesc().isColumn(difference.name) ? with : without);
-      check_rest(set, difference, expected);
-    }
-  }
-  BOOST_TEST(without > 1);
-  BOOST_TEST(with > 1);
 }
 
 BOOST_AUTO_TEST_SUITE_END()
