@@ -58,31 +58,31 @@ void ColumnReader::read_flag_rows(const Rows& rows, StoredRows& stored) const {
     flag_row[r] = std::memchr(flag + r * cell, 0, cell) == nullptr || flag_row_(rows[r]);
 }
 
+template <typename T>
+void ColumnReader::require_cell(const Cells<T>& cells, casacore::rownr_t row, const casacore::IPosition& shape) const {
+  const bool defined = cells.column.isDefined(row);
+  if (defined && cells.column.shape(row).isEqual(shape)) return;
+  throw std::runtime_error("cannot read " + cells.name + " of " + source_->path + ": the cell of row " + std::to_string(row) +
+                           (defined ? " has the shape " + cells.column.shape(row).toString() : " is empty") + "; expected " +
+                           shape.toString() + ", as DATA_DESC_ID says");
+}
+
 /// Looks at the first of `rows`, or at all of them.
 template <typename T>
 void ColumnReader::require_shape(const Cells<T>& cells, const Rows& rows, const casacore::IPosition& shape, bool all) const {
-  bool look = true;
-  for (std::uint64_t r = 0; r < rows.count(); ++r) {
-    const casacore::rownr_t row = rows[r];
-    if (cells.column.isDefined(row) && (!look || cells.column.shape(row).isEqual(shape))) {
-      if (cells.shapes.all || !all) return;
-      look = !cells.shapes.one;
-      continue;
-    }
-    throw std::runtime_error(
-        "cannot read " + cells.name + " of " + source_->path + ": the cell of row " + std::to_string(row) +
-        (cells.column.isDefined(row) ? " has the shape " + cells.column.shape(row).toString() : " is empty") + "; expected " +
-        shape.toString() + ", as DATA_DESC_ID says");
-  }
+  require_cell(cells, rows[0], shape);
+  if (!all || cells.shapes.all) return;
+  for (std::uint64_t r = 1; r < rows.count(); ++r)
+    if (!cells.shapes.one || !cells.column.isDefined(rows[r])) require_cell(cells, rows[r], shape);
 }
 
 /// casacore 3.5 throws where a cell is undefined or has another shape, save where it reads a whole column: there it takes one
-/// shape for granted, and ends the program at an undefined cell.
+/// shape for granted, and ends the program at an undefined cell; and save where it reads slices, of whatever holds them.
 template <typename T, typename Action>
-void ColumnReader::reading_cells(const Cells<T>& cells, const Rows& rows, const casacore::IPosition& shape,
+void ColumnReader::reading_cells(const Cells<T>& cells, const Rows& rows, const casacore::IPosition& shape, bool sliced,
                                  const Action& action) const {
   reading(cells.name, [&] {
-    require_shape(cells, rows, shape, rows.contiguous() && rows.count() == cells.column.nrow());
+    require_shape(cells, rows, shape, sliced || (rows.contiguous() && rows.count() == cells.column.nrow()));
     try {
       action();
     } catch (const std::exception&) {
@@ -95,7 +95,7 @@ void ColumnReader::reading_cells(const Cells<T>& cells, const Rows& rows, const 
 template <typename T>
 void ColumnReader::read_cells(const Cells<T>& cells, const Rows& rows, const casacore::IPosition& shape,
                               casacore::Array<T>& values) const {
-  reading_cells(cells, rows, shape, [&] { read(cells.column, rows, values); });
+  reading_cells(cells, rows, shape, false, [&] { read(cells.column, rows, values); });
 }
 
 /// A column of a few values a row, of which casacore reads the whole many times as fast as ranges of rows.
@@ -105,7 +105,7 @@ void ColumnReader::read_narrow(Cells<T>& cells, const Rows& rows, const casacore
   constexpr casacore::rownr_t most_rows = 1 << 19;
   const casacore::rownr_t all_rows = cells.column.nrow();
   if (!cells.shapes.all || all_rows > most_rows || all_rows == rows.count()) return read_cells(cells, rows, shape, values);
-  reading_cells(cells, rows, shape, [&] {
+  reading_cells(cells, rows, shape, false, [&] {
     if (cells.whole.empty()) cells.column.getColumn(cells.whole);
   });
   const auto cell = static_cast<std::size_t>(shape.last());
@@ -127,7 +127,7 @@ void ColumnReader::read_channels(const Cells<T>& cells, const Rows& rows, const 
   if (setup.channel_span() == setup.stored_channels) {
     read_cells(cells, rows, shape, values);
   } else {
-    reading_cells(cells, rows, shape, [&] { read(cells.column, rows, channel_slice(setup, correlations), values); });
+    reading_cells(cells, rows, shape, true, [&] { read(cells.column, rows, channel_slice(setup, correlations), values); });
   }
 }
 
@@ -164,12 +164,14 @@ void ColumnReader::mix_weights(const Rows& rows, const Setup& setup, StoredRows&
   const std::size_t span = setup.channel_span(), correlations = setup.correlation_types.size();
   casacore::Array<float> mixed(casacore::IPosition(3, static_cast<ssize_t>(correlations), static_cast<ssize_t>(span),
                                                    static_cast<ssize_t>(rows.count())));
+  const casacore::IPosition shape(2, static_cast<ssize_t>(correlations), static_cast<ssize_t>(setup.stored_channels));
   float* out = mixed.data();
   const float* weight = stored.weight.data();
   for (std::uint64_t r = 0; r < rows.count(); ++r) {
     const casacore::rownr_t row = rows[r];
     if (spectrum_defined(row)) {
-      const casacore::Array<float> cell = spectrum_.column.getSlice(row, channel_slice(setup, setup.correlation_types.size()));
+      require_cell(spectrum_, row, shape);
+      const casacore::Array<float> cell = spectrum_.column.getSlice(row, channel_slice(setup, correlations));
       std::copy(cell.begin(), cell.end(), out);
     } else {
       for (std::size_t c = 0; c < span; ++c) std::copy_n(weight, correlations, out + c * correlations);

@@ -43,9 +43,12 @@ class ColumnReader {
   template <typename Action>
   void reading(const std::string& column, const Action& action) const;
   template <typename T>
+  void require_cell(const Cells<T>& cells, casacore::rownr_t row, const casacore::IPosition& shape) const;
+  template <typename T>
   void require_shape(const Cells<T>& cells, const Rows& rows, const casacore::IPosition& shape, bool all) const;
   template <typename T, typename Action>
-  void reading_cells(const Cells<T>& cells, const Rows& rows, const casacore::IPosition& shape, const Action& action) const;
+  void reading_cells(const Cells<T>& cells, const Rows& rows, const casacore::IPosition& shape, bool sliced,
+                     const Action& action) const;
   template <typename T>
   void read_cells(const Cells<T>& cells, const Rows& rows, const casacore::IPosition& shape, casacore::Array<T>& values) const;
   template <typename T>

@@ -40,13 +40,17 @@ BlockRows rows_between(const BlockRows& block, std::uint64_t first, std::uint64_
 }
 
 /// Equal for runs that write the same values into the same cells, in whatever blocks; empty where that cannot be told.
-std::string identity_of(const ModelColumn& column, const SelectedRows& selected) {
+std::string identity_of(const casacore::Table& set, const ModelColumn& column, const SelectedRows& selected) {
   if (column.origin.fingerprint == 0) return "";
-  std::vector<Fingerprint> setups(selected.setups.size());
+  std::vector<Fingerprint> setups;
+  for (const Setup& setup : selected.setups) setups.push_back(Fingerprint().add(setup.frequency_hz));
+  const casacore::ArrayColumn<double> uvw_column(set, "UVW");
+  casacore::Array<double> uvw;
   for (const BlockRows& block : selected.blocks) {
-    for (const Run& run : block.runs) {
-      for (std::uint64_t row = run.first; row < run.first + run.count; ++row) setups[block.setup].add(row);
-    }
+    const Rows rows(block.runs);
+    read(uvw_column, rows, uvw);
+    for (std::uint64_t r = 0; r < rows.count(); ++r)
+      setups[block.setup].add(rows[r]).add(uvw.data() + 3 * r, 3 * sizeof(double));
   }
   Fingerprint all;
   all.add(column.origin.fingerprint).add(column.name).add(column.subtracted_from);
@@ -127,7 +131,7 @@ class ModelWriter {
     describe(set_, path_, selected_);  // throws unless there is one phase centre
     journal_.column = column_.name;
     journal_.command = one_line(column_.origin.command);
-    journal_.identity = identity_of(column_, selected_);
+    journal_.identity = translated("cannot read UVW of " + path_, [&] { return identity_of(set_, column_, selected_); });
     journal_.rows = selected_.rows;
     journal_.witnesses = translated(doing_(), [&] { return choose_witnesses(set_, column_, selected_); });
     const bool exists = set_.tableDesc().isColumn(column_.name);
@@ -195,8 +199,8 @@ class ModelWriter {
                              : left == Left::changed ? ", and have changed since; this run begins anew"
                              : left == Left::other_data
                                  ? " from " + column_.subtracted_from + ", which has changed since; this run begins anew"
-                                 : "; this run has another model, selection or option, and begins anew: rows that it does not "
-                                   "select stay as they are";
+                                 : "; this run has another model, selection or option, or other coordinates, and begins anew: "
+                                   "rows that it does not select stay as they are";
     if (column_.origin.tell) column_.origin.tell(incompleteness(path_, *before) + fate);
   }
 

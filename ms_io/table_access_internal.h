@@ -1,5 +1,6 @@
 #pragma once
 
+#include <casacore/casa/Arrays/ArrayError.h>
 #include <casacore/casa/Exceptions/Error.h>
 #include <casacore/ms/MeasurementSets/MeasurementSet.h>
 #include <casacore/tables/Tables/BaseTable.h>
@@ -19,6 +20,8 @@ auto translated(const std::string& doing, const Action& action) -> decltype(acti
     return action();
   } catch (const casacore::AipsError& error) {
     throw std::runtime_error(doing + ": " + one_line(error.getMesg()));
+  } catch (const casacore::ArrayError& error) {
+    throw std::runtime_error(doing + ": " + one_line(error.what()));
   }
 }
 

@@ -145,6 +145,40 @@ BOOST_AUTO_TEST_CASE(a_tiled_cell_of_another_shape_or_none_is_one_line_that_name
   }
 }
 
+// casacore takes slices of whatever cell holds them.
+BOOST_AUTO_TEST_CASE(a_cell_of_another_shape_is_refused_where_some_channels_of_some_rows_are_read) {
+  const SmallSet set;
+  set.modify([](casacore::MeasurementSet& ms) {
+    store<casacore::Complex>(ms, "DATA", [](std::size_t r, const auto& old) {
+      return r == 17 ? casacore::Array<casacore::Complex>(casacore::IPosition(2, 2, 12), casacore::Complex(1e3)) : old;
+    });
+  });
+  for (const char* antenna : {"", "!1&2"})  // all rows, and some
+    for (const std::uint64_t block_samples : {std::uint64_t{24}, MeasurementSet::usual_block_samples}) {
+      Selection some{"", "0:0~1"};
+      some.antenna = antenna;
+      const MeasurementSet open(set.path(), some, "DATA", {imager::Stokes::I}, block_samples);
+      BOOST_TEST(contains(error_of([&] { read_all(open); }), "the cell of row 17 has the shape [2, 12]; expected [2, 6]"));
+    }
+}
+
+BOOST_AUTO_TEST_CASE(a_weight_spectrum_of_another_shape_is_one_line_that_names_its_row_also_where_others_have_none) {
+  for (const ssize_t correlations : {1, 2})
+    for (const bool others : {false, true}) {
+      const SmallSet set;
+      set.modify([&](casacore::MeasurementSet& ms) {
+        ms.addColumn(casacore::ArrayColumnDesc<float>("WEIGHT_SPECTRUM", 2));
+        casacore::ArrayColumn<float> spectrum(ms, "WEIGHT_SPECTRUM");
+        for (std::size_t r = others ? 1 : 0; r < rows; ++r)
+          spectrum.put(r, casacore::Array<float>(
+                              r == 17 ? casacore::IPosition(2, correlations, 12) : casacore::IPosition(2, 2, 6), 1.0F));
+      });
+      const std::string expected =
+          "WEIGHT_SPECTRUM of " + set.path() + ": the cell of row 17 has the shape [" + std::to_string(correlations) + ", 12]";
+      BOOST_TEST(contains(error_of([&] { read_all(MeasurementSet(set.path(), {}, "DATA")); }), expected));
+    }
+}
+
 BOOST_AUTO_TEST_SUITE_END()
 
 }  // namespace misfit::ms_io

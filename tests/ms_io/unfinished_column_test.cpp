@@ -181,6 +181,30 @@ BOOST_AUTO_TEST_CASE(data_that_changed_after_the_model_was_subtracted_from_them_
   }
 }
 
+BOOST_AUTO_TEST_CASE(coordinates_that_changed_since_begin_anew) {
+  const auto move = [](const MixedSet& set) { set.put("UVW", 1, 0, 0, 99.0); };
+  const auto retune = [](const MixedSet& set) {
+    set.modify([](casacore::MeasurementSet& ms) {
+      casacore::MSSpWindowColumns window(ms.spectralWindow());
+      for (casacore::rownr_t w = 0; w < ms.spectralWindow().nrow(); ++w) {
+        casacore::Vector<double> frequency = window.chanFreq()(w);
+        for (double& f : frequency) f *= 1.5;
+        window.chanFreq().put(w, frequency);
+      }
+    });
+  };
+  for (const std::function<void(const MixedSet&)>& change : {std::function<void(const MixedSet&)>(move), {retune}}) {
+    const MixedSet set, equal;
+    write(set, plain, selection, 2);
+    for (const MixedSet* one : {&set, &equal}) change(*one);
+    const Told told = write(set, plain);
+    BOOST_REQUIRE(told.sentences.size() == 1U);
+    BOOST_TEST(contains(told.sentences.front(), "other coordinates, and begins anew"));
+    write(equal, plain);
+    BOOST_TEST((all_of(set, "MODEL_DATA") == all_of(equal, "MODEL_DATA")));
+  }
+}
+
 BOOST_AUTO_TEST_CASE(data_of_another_column_begin_anew) {
   const MixedSet set;
   write(set, {"RESIDUAL", "DATA"}, selection, 2);
