@@ -1,6 +1,7 @@
 // From a MeasurementSet to the files of an image.
 #include "tests/tools/program.h"
 #include "tests/tools/set_changes.h"
+#include "tools/base/files.h"
 #include "tools/formats/sky.h"
 
 namespace {
@@ -439,6 +440,23 @@ BOOST_AUTO_TEST_CASE(the_mask_given_is_written_and_holds_all_components) {
   for (std::size_t i = 0; i < mask.pixel.size(); ++i) BOOST_REQUIRE((mask.pixel[i] != 0 || model.pixel[i] == 0));
   succeed(small_image(snapshot(), folder / "b") + cleaned + Arguments{folder / "a.mask.fits"});
   BOOST_TEST((pixels_of(folder / "b", "model").pixel == model.pixel));
+}
+
+BOOST_AUTO_TEST_CASE(files_of_the_user_under_names_of_products_stay) {
+  const TemporaryFolder folder;
+  std::ofstream(folder / "a.mask.fits") << "mine";
+  succeed(small_image(snapshot(), folder / "a"));
+  BOOST_TEST(misfit::tools::read_file(folder / "a.mask.fits") == "mine");
+  std::ofstream(folder / "mask.crtf") << "circle [[32pix, 32pix], 6pix]\n";
+  succeed(small_image(snapshot(), folder / "b") + Arguments{"--niter", "5", "--mask", folder / "mask.crtf"});
+  std::string kept = misfit::tools::read_file(folder / "b.mask.fits");
+  kept.replace(kept.find("ORIGIN  = 'misfit"), 17, "ORIGIN  = 'others");
+  std::ofstream(folder / "a.mask.fits", std::ios::binary) << kept;
+  succeed(small_image(snapshot(), folder / "a") + Arguments{"--niter", "5", "--mask", folder / "a.mask.fits"});
+  succeed(small_image(snapshot(), folder / "a") + Arguments{"--niter", "5"});
+  BOOST_TEST(misfit::tools::read_file(folder / "a.mask.fits") == kept);
+  succeed(small_image(snapshot(), folder / "b"));
+  BOOST_TEST(!std::filesystem::exists(folder / "b.mask.fits"));  // which an earlier run made
 }
 
 BOOST_AUTO_TEST_CASE(a_mask_outside_the_image_cleans_nothing_and_says_so) {

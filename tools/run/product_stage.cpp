@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <fstream>
 #include <string_view>
 
 #include "tools/base/files.h"
@@ -9,6 +10,15 @@
 
 namespace misfit::tools {
 namespace {
+
+/// Whether a file of one of our names is ours: people keep masks and models of theirs under such names too.
+bool is_ours(const std::string& path) {
+  if (!path.ends_with(".fits")) return true;
+  std::ifstream file(path, std::ios::binary);
+  std::string header(16 * 2880, '\0');  // ORIGIN stands before the history
+  file.read(header.data(), static_cast<std::streamsize>(header.size()));
+  return header.find("ORIGIN  = 'misfit") != std::string::npos;
+}
 
 /// A list of one, which an initializer cannot be moved into.
 std::vector<imager::Image> alone(imager::Image image) {
@@ -98,7 +108,10 @@ std::vector<std::string> ProductStage::write(imager::Image psf, std::vector<imag
   products_.add("psf", "Jy/beam", alone(std::move(psf)));
   products_.add("model", "Jy/pixel", std::move(models));
   products_.add("residual", "Jy/beam", std::move(residuals));
-  if (masked) products_.add("mask", "", std::move(masks));
+  std::error_code absent;
+  const bool kept =
+      std::filesystem::equivalent(o_.mask, o_.imagename + ".mask.fits", absent);  // the user's file stays as it is
+  if (masked && !kept) products_.add("mask", "", std::move(masks));
   products_.add("image", "Jy/beam", std::move(images));
   auto removed = masked ? std::vector<std::string>() : remove_old({"mask.fits"});
   remove_other_stokes(removed);
@@ -158,7 +171,7 @@ std::vector<std::string> ProductStage::remove_old(const std::vector<std::string>
   for (const std::string& kind : kinds) {
     const std::string path = o_.imagename + "." + kind;
     std::error_code failed;  // a folder of that name stays
-    if (std::filesystem::remove(path, failed)) removed.push_back(path);
+    if (is_ours(path) && std::filesystem::remove(path, failed)) removed.push_back(path);
   }
   return removed;
 }
