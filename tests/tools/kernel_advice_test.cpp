@@ -67,7 +67,7 @@ BOOST_AUTO_TEST_CASE(costs_are_measured_once_and_kept) {
   BOOST_TEST(measured.fft_ns > 0);
 }
 
-BOOST_AUTO_TEST_CASE(damaged_files_of_costs_are_not_trusted, *boost::unit_test::label("sweep")) {
+BOOST_AUTO_TEST_CASE(damaged_files_of_costs_are_not_trusted) {
   const testing::TemporaryFolder folder;
   const std::filesystem::path file = folder / "costs.json";
   for (const char* damage : {"", "{\"machine\": 3}", "[1, 2"}) {
