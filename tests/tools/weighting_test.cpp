@@ -110,6 +110,7 @@ BOOST_AUTO_TEST_CASE(psfs_and_beams_agree_with_wsclean) {
   }
 }
 
+BOOST_TEST_DECORATOR(*boost::unit_test::label("sweep"))
 BOOST_AUTO_TEST_CASE(psfs_and_beams_of_real_sets_agree_with_wsclean) {
   if (!installed()) return;
   const Arguments corrected{"--datacolumn", "corrected"}, corrected_too{"-data-column", "CORRECTED_DATA"};
