@@ -28,7 +28,7 @@ template <typename T>
 void ColumnReader::attach(Cells<T>& cells, const std::string& name) const {
   cells.name = name;
   cells.column.attach(source_->set, name);
-  cells.shapes = cell_shapes(source_->set, name);
+  cells.shapes = known_shapes(source_->set, name);
 }
 
 template <typename Action>

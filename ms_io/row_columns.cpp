@@ -42,7 +42,7 @@ casacore::Slicer Rows::range() const {
                           casacore::IPosition(1, static_cast<ssize_t>(count())));
 }
 
-CellShapes cell_shapes(const casacore::Table& table, const std::string& column) {
+CellShapes known_shapes(const casacore::Table& table, const std::string& column) {
   if ((table.tableDesc()[column].options() & casacore::ColumnDesc::FixedShape) != 0) return {true, true};
   if (table.getPartNames(true).size() != 1) return {};
   const casacore::String manager = table.findDataManager(column, true)->dataManagerType();

@@ -38,7 +38,7 @@ struct CellShapes {
   bool all = false;  ///< and all are defined
 };
 
-CellShapes cell_shapes(const casacore::Table& table, const std::string& column);
+CellShapes known_shapes(const casacore::Table& table, const std::string& column);
 
 /// `runs` cut into pieces of at most `rows` rows.
 std::vector<Rows> pieces(const std::vector<Run>& runs, std::uint64_t rows);
