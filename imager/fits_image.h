@@ -7,17 +7,9 @@
 #include "imager/beam.h"
 #include "imager/geometry.h"
 #include "imager/image.h"
-#include "imager/observation.h"
-#include "imager/stokes.h"
+#include "imager/image_header.h"
 
 namespace misfit::imager {
-
-/// A number for the header, with its comment.
-struct HeaderCard {
-  std::string keyword;  ///< at most 8 characters
-  double value = 0;
-  std::string comment;
-};
 
 /// An image on the sky with what its header states. FITS axes: RA---SIN, DEC--SIN, FREQ, STOKES, in this order. CRVAL is
 /// the phase centre and CRPIX the place where l = m = 0, be it between pixels or outside the image. NaN marks a pixel without
