@@ -46,6 +46,8 @@ struct VisibilityBlock : SampleCoordinates {
   /// in Jy where the data's own weights are 1/σ²; weighting for an image multiplies it.
   std::vector<float> weight;
   SampleCounts counts;  ///< of this block alone
+  /// [row]: a frequency in the image's spectral frame over what it is in the frame of frequency_hz; empty: 1.
+  std::vector<double> frame_ratio;
   /// The other Stokes parameters that are imaged in the same run, of the same samples with the same weights.
   std::vector<std::shared_ptr<const VisibilityBlock>> other_stokes;
 };

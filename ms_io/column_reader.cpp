@@ -13,6 +13,7 @@ ColumnReader::ColumnReader(std::shared_ptr<const OpenSet> source) : source_(std:
     const casacore::Table& table = source_->set;
     antenna1_.attach(table, "ANTENNA1");
     antenna2_.attach(table, "ANTENNA2");
+    time_.attach(table, "TIME");
     flag_row_.attach(table, "FLAG_ROW");
     flag_row_is_dear_ = table.findDataManager("FLAG_ROW", true)->dataManagerType() == "IncrementalStMan";
     attach(uvw_, "UVW");
@@ -44,6 +45,17 @@ void ColumnReader::read_rows(const Rows& rows, const Setup& setup, StoredRows& s
   read_channels(flag_, rows, setup, stored.flag);
   reading("FLAG_ROW", [&] { read_flag_rows(rows, stored); });
   read_weights(rows, setup, stored);
+  if (!source_->selected.spectral_frame.empty()) read_frame_ratios(rows, setup, stored);
+}
+
+void ColumnReader::read_frame_ratios(const Rows& rows, const Setup& setup, StoredRows& stored) {
+  reading("TIME", [&] { read(time_, rows, times_); });
+  std::unique_ptr<FrameRatio>& ratio = ratio_[setup.spectral_frame];
+  if (!ratio) ratio = std::make_unique<FrameRatio>(source_->set, source_->path, source_->selected, setup);
+  stored.frame_ratio.resize(rows.count());
+  translated("cannot convert frequencies of " + source_->path + " to " + source_->selected.spectral_frame, [&] {
+    std::transform(times_.begin(), times_.end(), stored.frame_ratio.begin(), [&](double time_s) { return ratio->at(time_s); });
+  });
 }
 
 /// An IncrementalStMan searches for every row whose value is not that of the row before; rows all of whose samples are flagged

@@ -1,5 +1,7 @@
 #include "ms_io/measurement_set.h"
 
+#include <casacore/tables/Tables/ScalarColumn.h>
+
 #include <algorithm>
 #include <limits>
 #include <stdexcept>
@@ -9,6 +11,7 @@
 #include "ms_io/metadata_internal.h"
 #include "ms_io/model_writer.h"
 #include "ms_io/nearest_field_internal.h"
+#include "ms_io/spectral_frame_internal.h"
 #include "ms_io/table_access_internal.h"
 #include "ms_io/uvw_scan_internal.h"
 #include "ms_io/visibility_reader_internal.h"
@@ -34,6 +37,18 @@ std::shared_ptr<const OpenSet> open_selected(const std::string& path, const Sele
     }
   }
   return opened;
+}
+
+/// Of the setup's channels in the frame of the selection, when the set's first selected row was observed.
+SpectralWindow window_at_first_row(const OpenSet& from, const Setup& setup) {
+  SpectralWindow window{setup.frequency_hz, setup.channel_width_hz};
+  if (from.selected.spectral_frame.empty()) return window;
+  const double time_s = translated("cannot read TIME of " + from.path,
+                                   [&] { return casacore::ScalarColumn<double>(from.set, "TIME")(from.selected.first_row); });
+  const double ratio = FrameRatio(from.set, from.path, from.selected, setup).at(time_s);
+  for (double& hz : window.frequency_hz) hz *= ratio;
+  for (double& hz : window.channel_width_hz) hz *= ratio;
+  return window;
 }
 
 /// Samples of the largest group of blocks.
@@ -156,6 +171,12 @@ imager::UvwReach MeasurementSet::reach(ReachOf rows) const {
     all.max_abs_w = std::max(all.max_abs_w, one.max_abs_w);
   }
   return all;
+}
+std::vector<SpectralWindow> MeasurementSet::spectral_windows() const {
+  std::vector<SpectralWindow> windows;
+  for (const auto& set : impl_->sets)
+    for (const Setup& setup : set->selected.setups) windows.push_back(window_at_first_row(*set, setup));
+  return windows;
 }
 void MeasurementSet::visit_coordinates(const std::function<void(const imager::SampleCoordinates&)>& visit) const {
   for (const auto& set : impl_->sets) visit_uvw(*set, visit);

@@ -11,6 +11,7 @@
 #include "imager/stokes.h"
 #include "imager/visibilities.h"
 #include "ms_io/selection.h"
+#include "ms_io/spectral_frame.h"
 
 namespace misfit::ms_io {
 
@@ -61,6 +62,8 @@ class MeasurementSet : public imager::VisibilitySource {
   /// Bounds at the highest channel selected, of rows with finite UVW. Reads UVW, antennas and FLAG_ROW alone. Throws
   /// std::runtime_error when they cannot be read.
   imager::UvwReach reach(ReachOf rows = ReachOf::usable) const;
+  /// The windows of all sets, in the frame that the selection names.
+  std::vector<SpectralWindow> spectral_windows() const;
   /// Calls visit(coordinates) for some rows after others, all selected that have finite UVW and are neither flagged as a whole
   /// nor of one antenna. Reads and throws what reach() does.
   void visit_coordinates(const std::function<void(const imager::SampleCoordinates&)>& visit) const;

@@ -17,17 +17,6 @@
 namespace misfit::ms_io {
 namespace {
 
-/// When and where the row was observed.
-casacore::MeasFrame frame_of(const casacore::MeasurementSet& set, std::uint64_t row) {
-  casacore::MeasFrame frame(casacore::ScalarMeasColumn<casacore::MEpoch>(set, "TIME")(row));
-  casacore::MPosition position;
-  if (!casacore::MeasTable::Observatory(position, telescope_name(set, row)) && set.antenna().nrow() > 0) {
-    position = casacore::MSAntennaColumns(set.antenna()).positionMeas()(0);
-  }
-  frame.set(position);
-  return frame;
-}
-
 casacore::MDirection::Types frame_code(const std::string& frame) {
   return frame == "ICRS"  ? casacore::MDirection::ICRS
          : frame == "FK4" ? casacore::MDirection::B1950
@@ -66,6 +55,20 @@ Vector unit(const Vector& a) {
 }
 
 }  // namespace
+
+casacore::MDirection measure_of(const imager::SkyDirection& direction) {
+  return {casacore::MVDirection(direction.ra_rad, direction.dec_rad), frame_code(direction.frame)};
+}
+
+casacore::MeasFrame frame_of(const casacore::MeasurementSet& set, std::uint64_t row) {
+  casacore::MeasFrame frame(casacore::ScalarMeasColumn<casacore::MEpoch>(set, "TIME")(row));
+  casacore::MPosition position;
+  if (!casacore::MeasTable::Observatory(position, telescope_name(set, row)) && set.antenna().nrow() > 0) {
+    position = casacore::MSAntennaColumns(set.antenna()).positionMeas()(0);
+  }
+  frame.set(position);
+  return frame;
+}
 
 FieldCentre field_centre(const casacore::MeasurementSet& set, const std::string& path, int field, std::uint64_t row) {
   if (field < 0 || static_cast<casacore::rownr_t>(field) >= set.field().nrow()) {

@@ -2,6 +2,7 @@
 
 #include <casacore/measures/Measures/MDirection.h>
 #include <casacore/measures/Measures/MEpoch.h>
+#include <casacore/measures/Measures/MeasFrame.h>
 #include <casacore/ms/MeasurementSets/MeasurementSet.h>
 
 #include <string>
@@ -27,6 +28,11 @@ struct FieldCentre {
 /// The phase centre of `field` at the time of `row`, in J2000 where its own frame is neither that nor ICRS or B1950. Throws
 /// std::runtime_error when there is no such field.
 FieldCentre field_centre(const casacore::MeasurementSet& set, const std::string& path, int field, std::uint64_t row);
+
+casacore::MDirection measure_of(const imager::SkyDirection& direction);
+
+/// When and where the row was observed: from the telescope's place, or the first antenna's where casacore does not know that.
+casacore::MeasFrame frame_of(const casacore::MeasurementSet& set, std::uint64_t row);
 
 /// The angle between two directions, whatever their frames; B1950 as it was in 1950.
 double separation_rad(const imager::SkyDirection& a, const imager::SkyDirection& b);

@@ -22,6 +22,7 @@ class BlockBuilder {
   BlockBuilder(const SetupTable& table, const ParsedSelection& parsed, const Selection& selection, const RowUse& use)
       : table_(table), parsed_(parsed), use_(use) {
     result_.phase_centre = selection.phase_centre;
+    result_.spectral_frame = selection.spectral_frame;
   }
 
   /// `uvw_m` is looked at only where the selection asks for it.

@@ -24,6 +24,8 @@ struct Selection {
   std::string observation = "";
   /// Where the visibilities are phased to; none: where they are, which must be one direction.
   std::optional<imager::SkyDirection> phase_centre = {};
+  /// FITS SPECSYS of the frame in which frequencies count, see parse_spectral_frame(); empty: that of the data.
+  std::string spectral_frame = "";
 };
 
 /// One of the ways to select.

@@ -55,6 +55,7 @@ struct SelectedRows {
   std::uint64_t first_row = 0;                       ///< the first row selected
   std::map<int, std::uint64_t> first_row_of_field;   ///< for the fields that have selected rows
   std::optional<imager::SkyDirection> phase_centre;  ///< where the visibilities are shifted to
+  std::string spectral_frame;                        ///< in which frequencies count; empty: that of each window
 };
 
 /// What the rows are for.

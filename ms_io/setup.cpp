@@ -9,17 +9,11 @@
 #include <sstream>
 
 #include "ms_io/setup_internal.h"
+#include "ms_io/spectral_frame_internal.h"
 #include "ms_io/table_access_internal.h"
 
 namespace misfit::ms_io {
 namespace {
-
-/// FITS SPECSYS of casacore's frequency frames (MFrequency::Types), whose codes are those of MEAS_FREQ_REF.
-std::string spectral_frame(int code) {
-  const char* const names[] = {"SOURCE",   "LSRK",     "LSRD",     "BARYCENT", "GEOCENTR",
-                               "TOPOCENT", "GALACTOC", "LOCALGRP", "CMBDIPOL"};
-  return code >= 0 && code < 9 ? names[code] : "";
-}
 
 template <typename T>
 std::vector<T> cell(const casacore::Table& table, const char* column, std::uint64_t row) {
@@ -80,7 +74,8 @@ Setup SetupTable::setup(int data_description, const ParsedSelection& parsed) con
     frequency = cell<double>(set_.spectralWindow(), "CHAN_FREQ", window);
     width = cell<double>(set_.spectralWindow(), "CHAN_WIDTH", window);
     setup.correlation_types = cell<int>(set_.polarization(), "CORR_TYPE", polarisation);
-    setup.spectral_frame = spectral_frame(casacore::ScalarColumn<int>(set_.spectralWindow(), "MEAS_FREQ_REF")(window));
+    setup.spectral_frame =
+        spectral_frame_of(casacore::ScalarColumn<int>(set_.spectralWindow(), "MEAS_FREQ_REF")(window));
   });
   setup.stored_channels = frequency.size();
   width.resize(frequency.size(), 0.0);

@@ -32,6 +32,7 @@ class GrowingBlock {
     block.uvw_m.resize(rows * 3);
     block.weight.resize(samples);
     block.counts.rows_read = rows;
+    block.frame_ratio.reserve(rows);
     block.counts.samples_read = samples;
     next_uvw_m_ = block.uvw_m.data();
     next_.weight = block.weight.data();
@@ -41,6 +42,10 @@ class GrowingBlock {
   void append(const StoredRows& stored, std::size_t first, std::size_t count) {
     imager::SampleCounts& counts = blocks_.front()->counts;
     const std::size_t channels = setup_.frequency_hz.size(), cell = recipe_.correlations * setup_.channel_span();
+    if (!stored.frame_ratio.empty())
+      blocks_.front()->frame_ratio.insert(blocks_.front()->frame_ratio.end(),
+                                          stored.frame_ratio.begin() + static_cast<std::ptrdiff_t>(first),
+                                          stored.frame_ratio.begin() + static_cast<std::ptrdiff_t>(first + count));
     const std::size_t weight_cell = stored.weight_per_channel ? cell : recipe_.correlations;
     const int* const antenna1 = stored.antenna1.data();
     const int* const antenna2 = stored.antenna2.data();

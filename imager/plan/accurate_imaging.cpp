@@ -15,12 +15,14 @@ double random_image_rms(const SampleSums& sums) {
   return std::sqrt(0.5 * sums.weight2_square) / sums.weight;
 }
 
-AccurateImages make_images(const VisibilitySource& source, GriddingPlan plan, const Progress& progress, StageTimes& times) {
+AccurateImages make_images(const VisibilitySource& source, GriddingPlan plan, const Progress& progress, StageTimes& times,
+                           std::shared_ptr<const PlannedTransform> transform = nullptr) {
   AccurateImages made;
   made.plan = std::move(plan);
-  {
+  made.transform = std::move(transform);
+  if (!made.transform) {
     const StageTimer timer(times, "plan");
-    made.transform = std::make_unique<PlannedTransform>(made.plan);
+    made.transform = std::make_shared<PlannedTransform>(made.plan);
   }
   if (!made.plan.psf) {
     const AdjointOptions options{made.plan.request.stokes, made.plan.request.psf};
@@ -91,9 +93,9 @@ TheoreticalError theoretical_error(const GriddingPlan& plan, const SampleSums& s
 }
 
 AccurateImages make_accurate_images(const VisibilitySource& source, GriddingPlan plan, const Progress& progress,
-                                    StageTimes& times) {
+                                    StageTimes& times, std::shared_ptr<const PlannedTransform> transform) {
   const GriddingRequest request = plan.request;
-  AccurateImages made = make_images(source, std::move(plan), progress, times);
+  AccurateImages made = make_images(source, std::move(plan), progress, times, std::move(transform));
   // The images' largest gridding error over the accuracy, once by theory and once by direct sums at pixels, which may miss half
   // of it.
   const auto excess = [&] {

@@ -19,7 +19,7 @@ TheoreticalError theoretical_error(const GriddingPlan& plan, const SampleSums& s
 
 struct AccurateImages {
   GriddingPlan plan;
-  std::unique_ptr<PlannedTransform> transform;
+  std::shared_ptr<const PlannedTransform> transform;
   DirtyImages images;
   double judged_error = 0;   ///< over the images' RMS, where they were made twice: by theory, or twice that of pixels checked
   bool promise_kept = true;  ///< whether the gridding error is within the accuracy, judged by the images that came out
@@ -32,7 +32,9 @@ struct AccurateImages {
 /// sums (without w where the transform has no w axis). Where the error is too large the images are made once more with a kernel
 /// that is right by as much, or, where there is none, by the best. Stages timed: "plan", "statistics", "check pixels", and
 /// those of make_dirty_images.
+///
+/// `transform`, if there is one, is that of `plan`, which other images have been made by.
 AccurateImages make_accurate_images(const VisibilitySource& source, GriddingPlan plan, const Progress& progress,
-                                    StageTimes& times);
+                                    StageTimes& times, std::shared_ptr<const PlannedTransform> transform = nullptr);
 
 }  // namespace misfit::imager

@@ -10,10 +10,12 @@ std::vector<imager::HeaderCard> error_cards(const RunReport& report) {
   if (report.accuracy != 0) cards.push_back({"ERRASKED", report.accuracy, "accuracy asked: RMS error over image RMS"});
   const auto add_largest = [&](const char* keyword, const auto& of, const char* comment) {
     double largest = 0;
-    for (const StokesReport& stokes : report.stokes) largest = std::max(largest, of(stokes));
+    for (const PlaneReport& plane : report.planes)
+      for (const StokesReport& stokes : plane.stokes) largest = std::max(largest, of(stokes));
     cards.push_back({keyword, largest, comment});
   };
-  if (report.stokes.front().theory) {
+  const PlaneReport& first = report.planes.front();
+  if (first.stokes.front().theory) {
     add_largest(
         "ERREXPEC", [](const auto& s) { return s.theory->expected_rms; }, "expected RMS error over image RMS");
     add_largest(
@@ -21,16 +23,15 @@ std::vector<imager::HeaderCard> error_cards(const RunReport& report) {
     add_largest(
         "ERRBMAX", [](const auto& s) { return s.theory->bound_max; }, "bound on any pixel's error over image RMS");
   }
-  if (report.stokes.front().measured) {
+  if (first.stokes.front().measured) {
     add_largest(
         "ERRMEAS", [](const auto& s) { return s.measured->rms; }, "measured RMS error over image RMS");
     add_largest(
         "ERRMMAX", [](const auto& s) { return s.measured->max; }, "largest measured error over image RMS");
   }
-  if (report.measured_predict_rms)
-    cards.push_back({"ERRPRED", *report.measured_predict_rms, "measured RMS error of prediction"});
-  if (report.predicted_noise_jy != 0)
-    cards.push_back({"NOISPRED", report.predicted_noise_jy, "Jy/beam, noise predicted from the weights"});
+  if (first.measured_predict_rms) cards.push_back({"ERRPRED", *first.measured_predict_rms, "measured RMS error of prediction"});
+  if (first.predicted_noise_jy != 0)
+    cards.push_back({"NOISPRED", first.predicted_noise_jy, "Jy/beam, noise predicted from the weights"});
   // An image of zeros has no relative error, and a FITS header no number for that.
   std::erase_if(cards, [](const imager::HeaderCard& card) { return !std::isfinite(card.value); });
   return cards;

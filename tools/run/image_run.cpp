@@ -4,18 +4,18 @@
 #include <cstdio>
 #include <memory>
 #include <optional>
+#include <utility>
 
 #include "imager/noise.h"
 #include "imager/parallel.h"
 #include "imager/stokes.h"
-#include "imager/stokes_view.h"
 #include "ms_io/model_writer.h"
 #include "tools/base/files.h"
 #include "tools/base/progress.h"
-#include "tools/run/beam_choice.h"
 #include "tools/run/clean_stage.h"
 #include "tools/run/model_stage.h"
 #include "tools/run/outside_stage.h"
+#include "tools/run/plane_run.h"
 #include "tools/run/product_stage.h"
 #include "tools/run/run_messages.h"
 #include "tools/run/run_plan.h"
@@ -37,8 +37,6 @@ class ImageRun {
     report_.command_line = std::move(command_line);
     report_.options = std::move(option_values);
     report_.times = &times_;
-    report_.stokes.clear();
-    for (const imager::Stokes stokes : stokes_) report_.stokes.push_back({.stokes = stokes});
   }
 
   /// Whether all was done, and the user did not stop it.
@@ -49,10 +47,10 @@ class ImageRun {
       if (!o_.quiet) print_plan(plan_, expected());
       return true;
     }
-    weigh();
+    plane_->weigh();
     make_dirty();
-    if (o_.verify > 0) verify();
-    choose_beams();
+    if (o_.verify > 0) plane_->verify();
+    plane_->choose_beams();
     begin_products();
     if (o_.niter > 0) clean();
     if (o_.check_outside) look_outside();
@@ -61,14 +59,12 @@ class ImageRun {
     write_report();
     if (o_.savemodel == "modelcolumn") save_model();
     summarise();
-    return std::none_of(cleaned_.begin(), cleaned_.end(),
+    const auto& cleaned = plane_->cleaned();
+    return std::none_of(cleaned.begin(), cleaned.end(),
                         [](const auto& result) { return result.report.stop == imager::CleanStop::user; });
   }
 
  private:
-  imager::Progress progress() {
-    return [this](std::uint64_t done, std::uint64_t total) { progress_.update(done, total); };
-  }
   void warn(const std::string& sentence) {
     report_.warnings.push_back(sentence);
     progress_.say("warning: " + sentence);
@@ -104,42 +100,27 @@ class ImageRun {
     report_.estimated_memory_bytes = plan_.memory.total();
     work_ = work_of(scene, plan_);
     source_ = std::make_unique<imager::StreamedVisibilities>(*set_, plan_.streaming);
+    scene_ = std::make_unique<PlaneScene>(PlaneScene{o_, geometry_, stokes_, reach_, threads_, progress_, times_,
+                                                     [this](const std::string& sentence) { warn(sentence); }});
+    plane_ = std::make_unique<PlaneRun>(*scene_, *source_, "");
   }
 
   std::vector<StageSeconds> expected() const { return expected_seconds(plan_, forecast_, work_); }
 
-  /// A pass over the samples where their weights follow from their density.
-  void weigh() {
-    const imager::WeightingOptions options = weighting_options(o_);
-    if (options.none()) return;
-    progress_.begin("weights");
-    weights_ = imager::make_imaging_weights(*source_, options, geometry_, threads_, progress(), times_);
-    const imager::StageTimer timer(times_, "weights");
-    source_->apply(weights_, threads_);
-    progress_.end();
-  }
-
   void make_dirty() {
-    progress_.begin("dirty image and PSF");
-    made_ = imager::make_accurate_images(*source_, plan_.gridding, progress(), times_);
-    progress_.end();
-    work_.plan = &made_.plan;
-    report_.plan.insert(report_.plan.end(), made_.plan.decisions.begin(), made_.plan.decisions.end());
+    plane_->make_dirty(plan_.gridding);
+    const imager::AccurateImages& made = plane_->made();
+    work_.plan = &made.plan;
+    report_.plan.insert(report_.plan.end(), made.plan.decisions.begin(), made.plan.decisions.end());
     report_.accuracy = o_.accuracy;
-    report_.gridding = &made_.plan;
+    report_.gridding = &made.plan;
     count_samples();
-    predict_noise();
-    const imager::StageTimer timer(times_, "statistics");
-    const imager::NeglectedPhase phase = imager::neglected_w_phase(reach_, source_->w_spread(), geometry_);
-    for (std::size_t s = 0; s < stokes_.size(); ++s)
-      report_.stokes[s].theory =
-          imager::theoretical_error(made_.plan, made_.images.sums[s], imager::root_mean_square(made_.images.dirty[s]), phase);
-    if (!made_.promise_kept) warn(accuracy_warning(o_.accuracy, std::max(made_.judged_error, largest_expected_error(report_))));
+    for (const imager::Decision& decision : plane_->take_decisions()) report_.plan.push_back(decision);
   }
 
   /// What was read; samples that the pixel size cannot represent, and the pixel size that could.
   void count_samples() {
-    const imager::SampleSums& sums = made_.images.sums.front();
+    const imager::SampleSums& sums = plane_->report().sums;
     report_.counts = source_->counts();
     report_.counts.outside_grid = sums.outside_grid;
     report_.counts.used = sums.used;
@@ -147,72 +128,24 @@ class ImageRun {
     if (sums.outside_grid > 0) warn(outside_grid_warning(sums.outside_grid, reach_));
   }
 
-  void predict_noise() {
-    const imager::WeightSums sums =
-        weights_ ? source_->weight_sums() : imager::WeightSums::of_natural(made_.images.sums.front().weight);
-    if (weights_ && !o_.uvtaper.empty() && !sums.outweigh_least(report_.counts.used))
-      throw std::runtime_error("--uvtaper " + o_.uvtaper +
-                               ": no sample keeps a weight that counts; expected a taper of larger radius in the "
-                               "uv plane, or a smaller angle");
-    report_.predicted_noise_jy = sums.noise_jy();
-    if (weights_) report_.plan.push_back(weights_decision(*weights_, sums));
-    weights_.reset();
-  }
-
-  void verify() {
-    const imager::StageTimer timer(times_, "verify");
-    progress_.begin("verify");
-    const imager::MeasuredError measured =
-        imager::measure_error(*source_, made_.transform->images(), geometry_, made_.images, o_.verify, threads_, progress());
-    progress_.end();
-    for (std::size_t s = 0; s < stokes_.size(); ++s) report_.stokes[s].measured = measured.image[s];
-    report_.measured_predict_rms = measured.predict_rms;
-  }
-
-  void choose_beams() {
-    const imager::StageTimer timer(times_, "fit beam");
-    beams_ = choose_beam(made_.images.psf, geometry_.cell_rad, restoring_beam(o_), o_.niter > 0);
-    report_.beams = &beams_;
-    for (const std::string& warning : beams_.warnings) warn(warning);
-  }
-
   void begin_products() {
+    report_.planes = {plane_->report()};
     products_ = std::make_unique<ProductStage>(o_,
                                                ProductScene{geometry_, stokes_, set_->observation(), report_.command_line,
-                                                            error_cards(report_), beams_.restoring, threads_},
+                                                            error_cards(report_), plane_->report().beams->restoring, threads_},
                                                times_);
-    products_->draw_dirty(source_->uv_coverage(), made_.images,
+    products_->draw_dirty(source_->uv_coverage(), plane_->made().images,
                           [this](std::size_t s) { return clean_ ? clean_->mask(s) : nullptr; });
   }
 
   void clean() {
-    cleaned_.reserve(stokes_.size());  // the report points to what they hold
-    for (std::size_t s = 0; s < stokes_.size(); ++s) clean(s);
+    std::size_t now = stokes_.size();  // none
+    plane_->clean(*clean_, report_.options, [&](std::size_t stokes, const imager::CleanState& state) {
+      if (stokes != std::exchange(now, stokes)) iterations_before_.reset();
+      count_cycle(state.cycles.back());
+      if (state.cycles.size() > 1) progress_.say("  " + cycle_message(state));
+    });
     clean_.reset();
-  }
-
-  void clean(std::size_t s) {
-    const std::string of = stokes_.size() > 1 ? " of " + stokes_name(stokes_[s]) : "";
-    progress_.begin("CLEAN" + of, true);
-    iterations_before_.reset();
-    const imager::StokesView view(*source_, static_cast<int>(s));
-    cleaned_.push_back(clean_->run(
-        {s, view, *made_.transform, made_.images.dirty[s], made_.images.psf, *beams_.main_lobe,
-         report_.stokes[s].theory->expected_rms},
-        report_.options, progress(),
-        [this](const imager::CleanState& state) {
-          count_cycle(state.cycles.back());
-          if (state.cycles.size() > 1) progress_.say("  " + cycle_message(state));
-        },
-        times_));
-    progress_.end();
-    made_.images.dirty[s] = {};
-    imager::CleanResult& result = cleaned_.back();
-    if (const imager::Image* const mask = clean_->mask(s); mask != nullptr) result.mask = *mask;
-    report_.stokes[s].clean = &result.report;
-    const imager::CleanStop stop = result.report.stop;
-    if (stop == imager::CleanStop::diverging || stop == imager::CleanStop::diverging_from_best)
-      warn(divergence_warning(result.report) + of);
   }
 
   /// Told of the state with which CLEAN begins, which may be that of a run before, and after every major cycle.
@@ -230,10 +163,12 @@ class ImageRun {
     const imager::StageTimer timer(times_, "sources outside");
     imager::StageTimes own;  // its gridding is not this image's
     progress_.begin("sources outside", true);
-    const double noise_jy = cleaned_.empty() ? imager::robust_noise(made_.images.dirty.front(), threads_)
-                                             : cleaned_.front().report.final_state().rms_jy;
-    outside_ = check_outside(*source_, made_.plan, *plan_.wider, made_.images, {noise_jy, !weighting_options(o_).none()},
-                             progress(), own);
+    const imager::AccurateImages& made = plane_->made();
+    const auto& cleaned = plane_->cleaned();
+    const double noise_jy = cleaned.empty() ? imager::robust_noise(made.images.dirty.front(), threads_)
+                                            : cleaned.front().report.final_state().rms_jy;
+    outside_ = check_outside(*source_, made.plan, *plan_.wider, made.images, {noise_jy, !weighting_options(o_).none()},
+                             scene_->updates(), own);
     progress_.end();
     report_.outside = &outside_;
     imager::Decision told = outside_decision(outside_);
@@ -247,32 +182,36 @@ class ImageRun {
   void release_visibilities() {
     source_.reset();
     set_.reset();
-    made_.transform.reset();
+    plane_->made().transform.reset();
   }
 
   void save_model() {
     progress_.begin("save model", true);  // a column half written helps no one
-    const SavedModel model{geometry_, stokes_, cleaned_, report_.options.dump(),
+    const SavedModel model{geometry_, stokes_, plane_->cleaned(), report_.options.dump(),
                            [this](const std::string& sentence) { progress_.say(sentence); }};
-    tools::save_model(o_, model, threads_, progress());
+    tools::save_model(o_, model, threads_, scene_->updates());
     progress_.end();
   }
 
   void write_images() {
     count_pixels();
+    report_.planes = {plane_->report()};
+    imager::DirtyImages& images = plane_->made().images;
+    auto& cleaned = plane_->cleaned();
     std::string removed;
     for (const std::string& path :
-         cleaned_.empty() ? products_->write(std::move(made_.images)) : products_->write(std::move(made_.images.psf), cleaned_))
+         cleaned.empty() ? products_->write(std::move(images)) : products_->write(std::move(images.psf), cleaned))
       removed += (removed.empty() ? "" : ", ") + path;
     if (!removed.empty()) progress_.say("removed what an earlier run left: " + removed);
   }
 
   void count_pixels() {
     const imager::StageTimer timer(times_, "statistics");
+    const auto& cleaned = plane_->cleaned();
     for (std::size_t s = 0; s < stokes_.size(); ++s) {
-      const imager::Image& image = cleaned_.empty() ? made_.images.dirty[s] : cleaned_[s].residual;
-      const double noise_jy = cleaned_.empty() ? imager::sampled_noise(image) : cleaned_[s].report.final_state().rms_jy;
-      report_.stokes[s].histogram = pixel_histogram(image, noise_jy, threads_);
+      const imager::Image& image = cleaned.empty() ? plane_->made().images.dirty[s] : cleaned[s].residual;
+      const double noise_jy = cleaned.empty() ? imager::sampled_noise(image) : cleaned[s].report.final_state().rms_jy;
+      plane_->report().stokes[s].histogram = pixel_histogram(image, noise_jy, threads_);
     }
   }
 
@@ -280,7 +219,7 @@ class ImageRun {
   std::string histogram_drawing() {
     const imager::StageTimer timer(times_, "draw pictures");
     try {
-      const PixelHistogram& histogram = report_.stokes.front().histogram;
+      const PixelHistogram& histogram = report_.planes.front().stokes.front().histogram;
       return histogram.pixels == 0 ? "" : draw_svg(histogram_figure(histogram));
     } catch (const std::runtime_error&) {  // the pictures say why
       return "";
@@ -292,7 +231,7 @@ class ImageRun {
     std::vector<PagePicture> pictures;
     if (const std::string failure = products_->finish_pictures(pictures); !failure.empty()) warn(failure);
     report_.expected = expected();
-    const bool one_pass = made_.plan.request.accuracy == o_.accuracy;  // a second asks for more
+    const bool one_pass = plane_->made().plan.request.accuracy == o_.accuracy;  // a second asks for more
     if (one_pass) forecast_.learn(work_, times_);
     report_.wall_clock_s = watch_.seconds();
     const nlohmann::json json = report_json(report_);
@@ -321,11 +260,9 @@ class ImageRun {
   std::unique_ptr<CleanStage> clean_;  ///< null without CLEAN, and after it
   RunPlan plan_;
   std::unique_ptr<imager::StreamedVisibilities> source_;
-  std::shared_ptr<const imager::ImagingWeights> weights_;  ///< until the noise is predicted; null where they are the data's
-  imager::AccurateImages made_;
-  BeamChoice beams_;
+  std::unique_ptr<PlaneScene> scene_;
+  std::unique_ptr<PlaneRun> plane_;
   OutsideReport outside_;
-  std::vector<imager::CleanResult> cleaned_;  ///< [Stokes], or none
   std::unique_ptr<ProductStage> products_;
 };
 

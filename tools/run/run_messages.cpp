@@ -72,20 +72,21 @@ std::string divergence_warning(const imager::CleanReport& report) {
 std::string summary(const RunReport& r) {
   std::string text = counted(r.counts.used) + " of " + counted(r.counts.samples_read) + " samples imaged; expected error " +
                      significant(largest_expected_error(r), 2);
-  if (r.measured_predict_rms) {
+  const PlaneReport& plane = r.planes.front();
+  if (plane.measured_predict_rms) {
     double measured = 0;
-    for (const StokesReport& of : r.stokes) measured = std::max(measured, of.measured->rms);
-    text += ", measured " + significant(measured, 2) + " (prediction " + significant(*r.measured_predict_rms, 2) + ")";
+    for (const StokesReport& of : plane.stokes) measured = std::max(measured, of.measured->rms);
+    text += ", measured " + significant(measured, 2) + " (prediction " + significant(*plane.measured_predict_rms, 2) + ")";
   }
   text += "; noise";
-  for (const StokesReport& of : r.stokes)
-    text += (r.stokes.size() > 1 ? " of " + stokes_name(of.stokes) + " " : " ") +
+  for (const StokesReport& of : plane.stokes)
+    text += (plane.stokes.size() > 1 ? " of " + stokes_name(of.stokes) + " " : " ") +
             with_prefix(of.histogram.noise_jy, "Jy/beam", 3) + ",";
-  text += " predicted " + with_prefix(r.predicted_noise_jy, "Jy/beam", 3) + "\n";
-  if (r.beams != nullptr && r.beams->restoring) text += beam_line(*r.beams);
-  for (const StokesReport& of : r.stokes)
-    if (of.clean != nullptr)
-      text += (r.stokes.size() > 1 ? stokes_name(of.stokes) + ": " : "") + grouped(of.clean->iterations) +
+  text += " predicted " + with_prefix(plane.predicted_noise_jy, "Jy/beam", 3) + "\n";
+  if (plane.beams && plane.beams->restoring) text += beam_line(*plane.beams);
+  for (const StokesReport& of : plane.stokes)
+    if (of.clean)
+      text += (plane.stokes.size() > 1 ? stokes_name(of.stokes) + ": " : "") + grouped(of.clean->iterations) +
               " components, model flux " + significant(of.clean->final_state().model_flux_jy, 4) + "; " +
               of.clean->stop_reason + "\n";
   return text;

@@ -47,8 +47,8 @@ json kernel_json(const imager::GriddingPlan* gridding) {
   return kernel;
 }
 
-json error_json(const RunReport& r, const StokesReport& of) {
-  json error = {{"requested", r.accuracy == 0 ? json() : json(r.accuracy)},
+json error_json(double asked, const PlaneReport& plane, const StokesReport& of) {
+  json error = {{"requested", asked == 0 ? json() : json(asked)},
                 {"expected_rms", nullptr},
                 {"bound_rms", nullptr},
                 {"bound_max", nullptr},
@@ -64,14 +64,14 @@ json error_json(const RunReport& r, const StokesReport& of) {
     error["measured_rms"] = number(of.measured->rms);
     error["measured_max"] = number(of.measured->max);
   }
-  if (r.measured_predict_rms) error["measured_predict_rms"] = number(*r.measured_predict_rms);
+  if (plane.measured_predict_rms) error["measured_predict_rms"] = number(*plane.measured_predict_rms);
   return error;
 }
 
 /// What is not known is null.
-json noise_json(const RunReport& r, const StokesReport& of) {
+json noise_json(const PlaneReport& plane, const StokesReport& of) {
   const auto known = [](double noise_jy) { return noise_jy > 0 ? number(noise_jy) : json(); };
-  return {{"predicted_jy", known(r.predicted_noise_jy)}, {"measured_jy", known(of.histogram.noise_jy)}};
+  return {{"predicted_jy", known(plane.predicted_noise_jy)}, {"measured_jy", known(of.histogram.noise_jy)}};
 }
 
 json beam_json(const std::optional<imager::Beam>& beam) {
@@ -81,8 +81,8 @@ json beam_json(const std::optional<imager::Beam>& beam) {
           {"pa_deg", beam->position_angle_rad * 180 / std::numbers::pi}};
 }
 
-json restoring_json(const BeamChoice* beams) {
-  if (beams == nullptr || !beams->restoring) return nullptr;
+json restoring_json(const std::optional<BeamChoice>& beams) {
+  if (!beams || !beams->restoring) return nullptr;
   json beam = beam_json(beams->restoring);
   beam["how"] = beams->how;
   beam["misfit"] = number(beams->misfit);
@@ -99,8 +99,8 @@ json cycle_json(const imager::MajorCycle& cycle) {
           {"from", cycle.from}};
 }
 
-json clean_json(const imager::CleanReport* clean) {
-  if (clean == nullptr) return nullptr;
+json clean_json(const std::optional<imager::CleanReport>& clean) {
+  if (!clean) return nullptr;
   json log = json::array();
   for (const imager::MajorCycle& cycle : clean->cycles) log.push_back(cycle_json(cycle));
   json report = cycle_json(clean->final_state());
@@ -115,12 +115,12 @@ json clean_json(const imager::CleanReport* clean) {
   return report;
 }
 
-json stokes_json(const RunReport& r) {
+json stokes_json(double asked, const PlaneReport& plane) {
   json list = json::array();
-  for (const StokesReport& of : r.stokes)
+  for (const StokesReport& of : plane.stokes)
     list.push_back({{"stokes", imager::stokes_name(of.stokes)},
-                    {"error", error_json(r, of)},
-                    {"noise", noise_json(r, of)},
+                    {"error", error_json(asked, plane, of)},
+                    {"noise", noise_json(plane, of)},
                     {"clean", clean_json(of.clean)},
                     {"residual_histogram", histogram_json(of.histogram)}});
   return list;
@@ -157,30 +157,32 @@ json expected_json(const std::vector<StageSeconds>& stages) {
 
 double largest_expected_error(const RunReport& r) {
   double largest = 0;
-  for (const StokesReport& of : r.stokes) largest = std::max(largest, of.theory ? of.theory->expected_rms : 0);
+  for (const PlaneReport& plane : r.planes)
+    for (const StokesReport& of : plane.stokes) largest = std::max(largest, of.theory ? of.theory->expected_rms : 0);
   return largest;
 }
 
 json report_json(const RunReport& r) {
-  const StokesReport& first = r.stokes.front();
+  const PlaneReport& plane = r.planes.front();
+  const StokesReport& first = plane.stokes.front();
   return {{"version", version},
           {"command_line", r.command_line},
           {"options", r.options},
           {"plan", plan_json(r.plan)},
           {"warnings", r.warnings},
           {"kernel", kernel_json(r.gridding)},
-          {"error", error_json(r, first)},
-          {"noise", noise_json(r, first)},
+          {"error", error_json(r.accuracy, plane, first)},
+          {"noise", noise_json(plane, first)},
           {"visibilities", counts_json(r.counts)},
           {"timings_s", timings_json(r)},
           {"timings_expected_s", expected_json(r.expected)},
           {"memory_gib_peak", peak_memory_bytes() / gib},
           {"memory_gib_estimated", r.estimated_memory_bytes / gib},
-          {"beam", restoring_json(r.beams)},
-          {"beam_by_quadrant", r.beams == nullptr ? json() : beam_json(r.beams->quadrant)},
+          {"beam", restoring_json(plane.beams)},
+          {"beam_by_quadrant", plane.beams ? beam_json(plane.beams->quadrant) : json()},
           {"clean", clean_json(first.clean)},
           {"residual_histogram", histogram_json(first.histogram)},
-          {"stokes", stokes_json(r)},
+          {"stokes", stokes_json(r.accuracy, plane)},
           {"outside", outside_json(r.outside)},
           {"outside_search", outside_search_json(r.outside)}};
 }

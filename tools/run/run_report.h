@@ -22,8 +22,18 @@ struct StokesReport {
   imager::Stokes stokes = imager::Stokes::I;
   std::optional<imager::TheoreticalError> theory{};
   std::optional<imager::PixelError> measured{};  ///< over the image's RMS
-  const imager::CleanReport* clean = nullptr;
+  std::optional<imager::CleanReport> clean{};
   PixelHistogram histogram{};  ///< of the residual, or of the dirty image where nothing was cleaned
+};
+
+/// What it has to tell of one plane of frequency.
+struct PlaneReport {
+  double frequency_hz = 0;                  ///< its middle
+  std::vector<StokesReport> stokes = {{}};  ///< at least one
+  std::optional<double> measured_predict_rms{};
+  imager::SampleSums sums{};      ///< of the first Stokes parameter
+  double predicted_noise_jy = 0;  ///< a beam, from the weights; 0 = not known
+  std::optional<BeamChoice> beams{};
 };
 
 /// What a run of `misfit image` has to tell; a part that does not exist is null in report.json.
@@ -34,11 +44,8 @@ struct RunReport {
   std::vector<std::string> warnings;
   double accuracy = 0;  ///< 0 = none was asked
   const imager::GriddingPlan* gridding = nullptr;
-  std::vector<StokesReport> stokes = {{}};  ///< at least one
-  std::optional<double> measured_predict_rms;
+  std::vector<PlaneReport> planes = {{}};  ///< at least one
   imager::SampleCounts counts;
-  double predicted_noise_jy = 0;  ///< a beam, from the weights; 0 = not known
-  const BeamChoice* beams = nullptr;
   const OutsideReport* outside = nullptr;
   double wall_clock_s = 0;
   double estimated_memory_bytes = 0;  ///< at the peak
@@ -46,7 +53,7 @@ struct RunReport {
   std::vector<StageSeconds> expected;  ///< the same as they were expected, for the cycles and components that there were
 };
 
-/// Of all Stokes parameters, over each image's RMS.
+/// Of all planes and Stokes parameters, over each image's RMS.
 double largest_expected_error(const RunReport& report);
 
 /// report.json, with the keys of the project's design; `noise` {predicted_jy, measured_jy}, `beam.how`, `beam.misfit`,

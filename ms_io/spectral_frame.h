@@ -1,0 +1,19 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace misfit::ms_io {
+
+/// FITS SPECSYS of the frame that CASA's tasks call `name`, in capitals or not: "LSRK" for LSRK, "TOPOCENT" for TOPO,
+/// "GEOCENTR" for GEO, "BARYCENT" for BARY, "LSRD" for LSRD, "GALACTOC" for GALACTO, "LOCALGRP" for LGROUP, "CMBDIPOL" for CMB.
+/// Throws std::invalid_argument that lists them.
+std::string parse_spectral_frame(const std::string& name);
+
+/// The channels of one spectral window as another frame has them when its first selected row was observed.
+struct SpectralWindow {
+  std::vector<double> frequency_hz;      ///< [selected channel]
+  std::vector<double> channel_width_hz;  ///< [selected channel], positive
+};
+
+}  // namespace misfit::ms_io

@@ -1,0 +1,76 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <vector>
+
+#include "imager/extent.h"
+#include "imager/plan/accurate_imaging.h"
+#include "imager/streamed_visibilities.h"
+#include "tools/base/progress.h"
+#include "tools/run/clean_stage.h"
+#include "tools/run/image_options.h"
+#include "tools/run/run_report.h"
+
+namespace misfit::tools {
+
+/// What the planes of a run share.
+struct PlaneScene {
+  const ImageOptions& options;
+  const imager::ImageGeometry& geometry;
+  const std::vector<imager::Stokes>& stokes;
+  imager::UvwReach reach;
+  int threads = 1;
+  ProgressLine& progress;
+  imager::StageTimes& times;
+  std::function<void(const std::string& sentence)> warn;
+
+  imager::Progress updates() const {
+    return [this](std::uint64_t done, std::uint64_t total) { progress.update(done, total); };
+  }
+};
+
+/// What is done for one plane of frequency, of all Stokes parameters: weights, dirty images and PSF, their errors, beam, CLEAN.
+/// The steps are called in the order in which they stand here, and tell in report() what came of them. Stages timed: "weights",
+/// "statistics", "verify", "fit beam", and those of the imager's functions.
+class PlaneRun {
+ public:
+  /// Both are kept by reference. `name` follows what messages speak of: " of plane 12"; empty where there is one.
+  PlaneRun(const PlaneScene& scene, imager::StreamedVisibilities& source, std::string name);
+
+  /// A pass over the samples where their weights follow from their density.
+  void weigh();
+  /// The same with weights made before.
+  void weigh(std::shared_ptr<const imager::ImagingWeights> weights);
+  /// By `transform`, if it is given, which is that of `plan`.
+  void make_dirty(imager::GriddingPlan plan, std::shared_ptr<const imager::PlannedTransform> transform = nullptr);
+  void verify();
+  void choose_beams();
+  /// One Stokes parameter after the other. Told of the state with which CLEAN of each begins, and after every major cycle.
+  void clean(CleanStage& stage, const nlohmann::json& option_values,
+             const std::function<void(std::size_t stokes, const imager::CleanState&)>& cycle);
+
+  PlaneReport& report() { return report_; }
+  imager::AccurateImages& made() { return made_; }
+  std::vector<imager::CleanResult>& cleaned() { return cleaned_; }  ///< [Stokes], or none
+  /// What weighting did, where weights are not the data's.
+  imager::Plan take_decisions() { return std::move(decisions_); }
+
+ private:
+  void predict_noise();
+  imager::CleanResult clean(CleanStage& stage, std::size_t stokes, const nlohmann::json& option_values,
+                            const imager::CycleProgress& cycle);
+
+  const PlaneScene& scene_;
+  imager::StreamedVisibilities& source_;
+  std::string name_;
+  std::shared_ptr<const imager::ImagingWeights> weights_;  ///< until the noise is predicted; null where they are the data's
+  imager::AccurateImages made_;
+  std::vector<imager::CleanResult> cleaned_;
+  imager::Plan decisions_;
+  PlaneReport report_;
+};
+
+}  // namespace misfit::tools
