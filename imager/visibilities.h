@@ -48,6 +48,7 @@ struct VisibilityBlock : SampleCoordinates {
   SampleCounts counts;  ///< of this block alone
   /// [row]: a frequency in the image's spectral frame over what it is in the frame of frequency_hz; empty: 1.
   std::vector<double> frame_ratio;
+  std::vector<double> channel_width_hz;  ///< [channel], positive; empty unless a cube is made of the block
   /// The other Stokes parameters that are imaged in the same run, of the same samples with the same weights.
   std::vector<std::shared_ptr<const VisibilityBlock>> other_stokes;
 };

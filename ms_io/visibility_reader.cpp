@@ -32,7 +32,6 @@ class GrowingBlock {
     block.uvw_m.resize(rows * 3);
     block.weight.resize(samples);
     block.counts.rows_read = rows;
-    block.frame_ratio.reserve(rows);
     block.counts.samples_read = samples;
     next_uvw_m_ = block.uvw_m.data();
     next_.weight = block.weight.data();
@@ -42,10 +41,7 @@ class GrowingBlock {
   void append(const StoredRows& stored, std::size_t first, std::size_t count) {
     imager::SampleCounts& counts = blocks_.front()->counts;
     const std::size_t channels = setup_.frequency_hz.size(), cell = recipe_.correlations * setup_.channel_span();
-    if (!stored.frame_ratio.empty())
-      blocks_.front()->frame_ratio.insert(blocks_.front()->frame_ratio.end(),
-                                          stored.frame_ratio.begin() + static_cast<std::ptrdiff_t>(first),
-                                          stored.frame_ratio.begin() + static_cast<std::ptrdiff_t>(first + count));
+    if (!stored.frame_ratio.empty()) append_spectral(stored, first, count);
     const std::size_t weight_cell = stored.weight_per_channel ? cell : recipe_.correlations;
     const int* const antenna1 = stored.antenna1.data();
     const int* const antenna2 = stored.antenna2.data();
@@ -81,6 +77,14 @@ class GrowingBlock {
   }
 
  private:
+  /// What a cube needs to know.
+  void append_spectral(const StoredRows& stored, std::size_t first, std::size_t count) {
+    imager::VisibilityBlock& block = *blocks_.front();
+    if (block.channel_width_hz.empty()) block.channel_width_hz = setup_.channel_width_hz;
+    const auto begin = stored.frame_ratio.begin() + static_cast<std::ptrdiff_t>(first);
+    block.frame_ratio.insert(block.frame_ratio.end(), begin, begin + static_cast<std::ptrdiff_t>(count));
+  }
+
   /// One row, a run of selected channels at a time.
   void form_row(const StoredSamples& row) {
     for (const Run& run : setup_.channels) {

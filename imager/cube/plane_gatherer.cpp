@@ -1,0 +1,195 @@
+#include "imager/cube/plane_gatherer.h"
+
+#include <algorithm>
+#include <stdexcept>
+#include <string>
+
+#include "imager/parallel.h"
+#include "imager/prefetch.h"
+
+namespace misfit::imager {
+namespace {
+
+constexpr std::size_t full_samples = std::size_t{1} << 20;
+
+/// Of an interpolated visibility; 0 where a sample that it needs is unusable.
+float weight_of(const float* row_weight, const ChannelTap& tap) {
+  const float one = row_weight[tap.channel];
+  if (tap.part == 0) return one;
+  const float two = row_weight[tap.other];
+  if (one == 0 || two == 0) return 0;
+  const double rest = 1 - tap.part;
+  return static_cast<float>(1 / (rest * rest / one + tap.part * tap.part / two));
+}
+
+void append_visibilities(const std::complex<float>* row, const std::vector<ChannelTap>& taps, const float* weight,
+                         std::vector<std::complex<float>>& to) {
+  for (std::size_t i = 0; i < taps.size(); ++i) {
+    const ChannelTap& tap = taps[i];
+    const auto part = static_cast<float>(tap.part);
+    to.push_back(weight[i] == 0  ? std::complex<float>()
+                 : tap.part == 0 ? row[tap.channel]
+                                 : (1 - part) * row[tap.channel] + part * row[tap.other]);
+  }
+}
+
+/// A block of as many Stokes parameters as `like`, without rows.
+std::shared_ptr<VisibilityBlock> empty_block(const VisibilityBlock& like, const std::vector<double>& frequency_hz) {
+  auto block = std::make_shared<VisibilityBlock>();
+  block->frequency_hz = frequency_hz;
+  for (std::size_t i = 0; i < like.other_stokes.size(); ++i) block->other_stokes.push_back(std::make_shared<VisibilityBlock>());
+  return block;
+}
+
+VisibilityBlock& other(VisibilityBlock& block, std::size_t i) {
+  return const_cast<VisibilityBlock&>(*block.other_stokes[i]);  // nobody else holds it yet
+}
+
+/// The other Stokes parameters get what they share with the first.
+std::shared_ptr<const VisibilityBlock> finished(const std::shared_ptr<VisibilityBlock>& block) {
+  for (std::size_t i = 0; i < block->other_stokes.size(); ++i) {
+    VisibilityBlock& one = other(*block, i);
+    static_cast<SampleCoordinates&>(one) = *block;
+    one.weight = block->weight;
+    one.counts = block->counts;
+  }
+  return block;
+}
+
+/// Hands on the blocks of one plane.
+class PlaneStream : public BlockStream {
+ public:
+  PlaneStream(std::unique_ptr<BlockStream> from, const CubeSampling& sampling, int plane)
+      : from_(std::move(from)), gatherer_(sampling, {plane, 1}, 1) {}
+
+  std::shared_ptr<const VisibilityBlock> next() override {
+    while (ready_.empty() && from_) {
+      const auto block = from_->next();
+      if (block) gatherer_.add(*block);
+      ready_ = gatherer_.take(0, block == nullptr);
+      std::reverse(ready_.begin(), ready_.end());
+      if (!block) from_.reset();
+    }
+    if (ready_.empty()) return nullptr;
+    auto block = std::move(ready_.back());
+    ready_.pop_back();
+    return block;
+  }
+
+ private:
+  std::unique_ptr<BlockStream> from_;  ///< null at its end
+  PlaneGatherer gatherer_;
+  std::vector<std::shared_ptr<const VisibilityBlock>> ready_;  ///< the next at the end
+};
+
+}  // namespace
+
+PlaneGatherer::PlaneGatherer(const CubeSampling& sampling, const PlaneRange& range, int threads)
+    : sampling_(sampling), range_(range), threads_(threads), planes_(static_cast<std::size_t>(range.count)) {}
+
+std::vector<PlaneGatherer::Rows> PlaneGatherer::rows_of(const VisibilityBlock& block) const {
+  const auto ratio = [&](std::size_t row) { return block.frame_ratio.empty() ? 1 : block.frame_ratio[row]; };
+  std::vector<Rows> all;
+  for (std::size_t row = 0; row < block.rows();) {
+    std::size_t end = row + 1;
+    while (end < block.rows() && ratio(end) == ratio(row)) ++end;
+    all.push_back({row, end, map_channels(sampling_, range_, {block.frequency_hz, block.channel_width_hz}, ratio(row))});
+    row = end;
+  }
+  return all;
+}
+
+void PlaneGatherer::add(const VisibilityBlock& block) {
+  if (block.channel_width_hz.size() != block.channels())
+    throw std::invalid_argument("a block of " + std::to_string(block.channels()) + " channels with " +
+                                std::to_string(block.channel_width_hz.size()) + " widths; expected one for each");
+  const std::vector<Rows> rows = rows_of(block);
+  count_outside(block, rows);
+  parallel_for(planes_.size(), threads_, [&](std::size_t p) {
+    for (const Rows& some : rows) append(block, some, some.map.planes[p], planes_[p]);
+  });
+}
+
+void PlaneGatherer::append(const VisibilityBlock& block, const Rows& rows, const PlaneChannels& channels, Plane& plane) {
+  if (channels.tap.empty()) return;
+  std::shared_ptr<VisibilityBlock>& to = plane.growing[channels.frequency_hz];
+  if (!to) to = empty_block(block, channels.frequency_hz);
+  std::vector<float> weight(channels.tap.size());
+  for (std::size_t row = rows.first; row < rows.end; ++row) {
+    const std::size_t begin = row * block.channels();
+    std::uint64_t used = 0;
+    for (std::size_t i = 0; i < weight.size(); ++i) {
+      weight[i] = weight_of(&block.weight[begin], channels.tap[i]);
+      used += weight[i] != 0;
+    }
+    if (used == 0) continue;
+    for (int axis = 0; axis < 3; ++axis)
+      to->uvw_m.push_back(block.uvw_m[3 * row + static_cast<std::size_t>(axis)] * rows.map.uvw_scale);
+    to->weight.insert(to->weight.end(), weight.begin(), weight.end());
+    append_visibilities(&block.visibility[begin], channels.tap, weight.data(), to->visibility);
+    for (std::size_t i = 0; i < block.other_stokes.size(); ++i)
+      append_visibilities(&block.other_stokes[i]->visibility[begin], channels.tap, weight.data(), other(*to, i).visibility);
+    ++to->counts.rows_read;
+    to->counts.samples_read += weight.size();
+    to->counts.used += used;
+    if (to->samples() < full_samples) continue;
+    plane.full.push_back(finished(to));
+    to = empty_block(block, channels.frequency_hz);
+  }
+}
+
+void PlaneGatherer::count_outside(const VisibilityBlock& block, const std::vector<Rows>& rows) {
+  const double low = -0.5, high = sampling_.axis.channels - 0.5;
+  for (const Rows& some : rows) {
+    const double ratio = block.frame_ratio.empty() ? 1 : block.frame_ratio[some.first];
+    for (std::size_t c = 0; c < block.channels(); ++c) {
+      const double plane = sampling_.axis.plane_of(block.frequency_hz[c] * ratio);
+      if (plane >= low && plane < high) continue;
+      for (std::size_t row = some.first; row < some.end; ++row)
+        outside_planes_ += block.weight[row * block.channels() + c] != 0;
+    }
+  }
+}
+
+std::vector<std::shared_ptr<const VisibilityBlock>> PlaneGatherer::take(int plane, bool all) {
+  Plane& from = planes_[static_cast<std::size_t>(plane)];
+  std::vector<std::shared_ptr<const VisibilityBlock>> taken = std::move(from.full);
+  from.full.clear();
+  if (!all) return taken;
+  for (auto& [frequencies, block] : from.growing)
+    if (block && block->rows() > 0) taken.push_back(finished(block));
+  from.growing.clear();
+  return taken;
+}
+
+GatheredPlanes gather_planes(const VisibilitySource& source, const CubeSampling& sampling, const PlaneRange& range, int threads,
+                             const Progress& progress, StageTimes& times) {
+  constexpr std::size_t ahead = 2;
+  PlaneGatherer gatherer(sampling, range, threads);
+  const auto stream = prefetched(source.open(), ahead);
+  GatheredPlanes gathered;
+  std::uint64_t done = 0;
+  const auto next = [&] {
+    const StageTimer timer(times, "read");
+    return stream->next();
+  };
+  while (const auto block = next()) {
+    const StageTimer timer(times, "planes");
+    gatherer.add(*block);
+    gathered.counts += block->counts;
+    progress(done += block->samples(), source.samples());
+  }
+  const StageTimer timer(times, "planes");
+  for (int plane = 0; plane < range.count; ++plane) {
+    StoredVisibilities& stored = gathered.planes.emplace_back();
+    for (auto& block : gatherer.take(plane, true)) stored.append(std::move(block));
+  }
+  gathered.outside_planes = gatherer.outside_planes();
+  return gathered;
+}
+
+std::unique_ptr<BlockStream> PlaneView::open() const {
+  return std::make_unique<PlaneStream>(from_.open(), sampling_, plane_);
+}
+
+}  // namespace misfit::imager
