@@ -17,7 +17,7 @@ void read_table(FitsFile& file, PlaneBeams& beams) {
   const std::vector<double> major = file.column("BMAJ"), minor = file.column("BMIN"), angle = file.column("BPA"),
                             channel = file.column("CHAN"), stokes = file.column("POL");
   for (std::size_t row = 0; row < major.size(); ++row) {
-    if (!(major[row] > 0) || !(minor[row] > 0)) continue;
+    if (stands_for_no_beam(major[row])) continue;
     if (!(channel[row] >= 0 && channel[row] < beams.channels() && stokes[row] >= 0 && stokes[row] < beams.stokes()))
       file.fail("row " + std::to_string(row + 1) + " of its table BEAMS is of channel " + std::to_string(channel[row]) +
                 ", polarisation " + std::to_string(stokes[row]) + ", which its image does not have");
@@ -47,7 +47,7 @@ void write_beam_table(FitsFile& file, const PlaneBeams& beams) {
                                 {"POL", "", true, {}}};
   for (int stokes = 0; stokes < beams.stokes(); ++stokes)
     for (int channel = 0; channel < beams.channels(); ++channel) {
-      const Beam beam = beams.at({channel, stokes}).value_or(Beam{});
+      const Beam beam = beams.at({channel, stokes}).value_or(Beam{no_beam_arcsec * arcsec, no_beam_arcsec * arcsec, 0});
       table[0].values.push_back(beam.major_rad / arcsec);
       table[1].values.push_back(beam.minor_rad / arcsec);
       table[2].values.push_back(beam.position_angle_rad / degree);

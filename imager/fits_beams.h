@@ -13,8 +13,8 @@ constexpr int fits_beam_cards = 3;
 void write_beams(FitsFile& file, const PlaneBeams& beams);
 
 /// Appends the binary table BEAMS where the planes do not share one beam: a row for each with BMAJ and BMIN in arcsec, BPA in
-/// degrees, CHAN and POL, the plane counted from 0. It is the convention of CASA, which casacore and spectral-cube read; they
-/// take a plane for one without beam where BMAJ and BMIN are 0.
+/// degrees, CHAN and POL, the plane counted from 0. A plane without
+/// beam has BMAJ = BMIN = no_beam_arcsec. It is the convention of CASA, which casacore and spectral-cube read.
 void write_beam_table(FitsFile& file, const PlaneBeams& beams);
 
 /// The beams that the file states, of an image of so many planes. Leaves the file at its primary image.

@@ -9,6 +9,13 @@
 
 namespace misfit::imager {
 
+/// What stands in files for no beam: a circle of this width. tclean writes it, since casacore opens no image, CASA's or FITS,
+/// with a beam of no width.
+constexpr double no_beam_arcsec = 1e-6;
+inline bool stands_for_no_beam(double major_arcsec) {
+  return !(major_arcsec > 1.001 * no_beam_arcsec);
+}
+
 /// Whether two beams are the same to the last bit.
 inline bool same_beam(const Beam& a, const Beam& b) {
   return a.major_rad == b.major_rad && a.minor_rad == b.minor_rad && a.position_angle_rad == b.position_angle_rad;

@@ -1,0 +1,196 @@
+#include <casacore/casa/Arrays/Array.h>
+#include <casacore/images/Images/PagedImage.h>
+#include <casacore/tables/Tables/TableUtil.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <stdexcept>
+#include <system_error>
+
+#include "imager/written_planes.h"
+#include "ms_io/casa_coordinates_internal.h"
+#include "ms_io/casa_image.h"
+#include "ms_io/table_access_internal.h"
+
+namespace misfit::ms_io {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Where an image called `path` is to be written. Throws where anything else than a casacore image lies.
+fs::path writable_target(const std::string& path) {
+  fs::path target = fs::path(path).lexically_normal();
+  if (!target.has_filename()) target = target.parent_path();
+  std::error_code error;
+  if (fs::exists(target, error)) target = fs::canonical(target, error);  // links are followed
+  if (fs::exists(target, error) && !is_casa_image(target.string()))
+    throw std::runtime_error("cannot write " + path + ": it is there already and no casacore image; expected another name");
+  return target;
+}
+
+casacore::GaussianBeam casa_beam(const imager::Beam& beam) {
+  return {casacore::Quantity(beam.major_rad * 180 * 3600 / M_PI, "arcsec"),
+          casacore::Quantity(beam.minor_rad * 180 * 3600 / M_PI, "arcsec"),
+          casacore::Quantity(beam.position_angle_rad * 180 / M_PI, "deg")};
+}
+
+casacore::ImageBeamSet beam_set(const imager::PlaneBeams& beams) {
+  const casacore::Quantity tiny(imager::no_beam_arcsec, "arcsec");
+  casacore::ImageBeamSet set(static_cast<casacore::uInt>(beams.channels()), static_cast<casacore::uInt>(beams.stokes()),
+                             casacore::GaussianBeam(tiny, tiny, casacore::Quantity(0, "deg")));
+  for (int channel = 0; channel < beams.channels(); ++channel)
+    for (int stokes = 0; stokes < beams.stokes(); ++stokes)
+      if (const std::optional<imager::Beam>& beam = beams.at({channel, stokes})) set.setBeam(channel, stokes, casa_beam(*beam));
+  return set;
+}
+
+casacore::ImageInfo image_info(const imager::PlaneBeams& beams, const std::string& object) {
+  casacore::ImageInfo info;
+  info.setImageType(casacore::ImageInfo::Intensity);
+  info.setObjectName(object);
+  if (const std::optional<imager::Beam> beam = beams.shared())
+    info.setRestoringBeam(casa_beam(*beam));
+  else if (beams.any())
+    info.setBeams(beam_set(beams));
+  return info;
+}
+
+casacore::TableRecord misc_info(const std::vector<imager::HeaderCard>& cards) {
+  casacore::TableRecord record;
+  for (const imager::HeaderCard& card : cards) {
+    record.define(card.keyword, card.value);
+    record.setComment(card.keyword, card.comment);
+  }
+  return record;
+}
+
+/// The pixels of a plane with as many axes as the image has.
+template <typename Pixel>
+casacore::Array<Pixel> pixels_of(const imager::Image& image, const casacore::IPosition& shape) {
+  casacore::Array<Pixel> pixels(shape);
+  std::transform(image.pixel.begin(), image.pixel.end(), pixels.data(), [](double value) { return static_cast<Pixel>(value); });
+  return pixels;
+}
+
+template <typename Pixel>
+class CasaImageWriter : public imager::ImageWriter {
+ public:
+  CasaImageWriter(const imager::ImageHeader& header, const std::string& path)
+      : path_(path), target_(writable_target(path)), temporary_(target_.string() + ".part"), header_(header), planes_(header) {
+    layout_.shape = casacore::IPosition(4, header.geometry.width, header.geometry.height,
+                                        static_cast<ssize_t>(header.stokes.size()), header.spectral.channels);
+    layout_.stokes = 2;
+    layout_.spectral = 3;
+    remove_unfinished();
+    try {
+      translated("cannot write " + path_, [&] { create(); });
+    } catch (...) {
+      abandon();
+      throw;
+    }
+  }
+
+  CasaImageWriter(const CasaImageWriter&) = delete;
+  CasaImageWriter& operator=(const CasaImageWriter&) = delete;
+  ~CasaImageWriter() override { abandon(); }
+
+  void write(const imager::PlaneIndex& at, const imager::Image& image, const std::optional<imager::Beam>& beam) override {
+    planes_.add(at, image, beam);
+    translated("cannot write " + path_, [&] { write_pixels(at, image); });
+  }
+
+  void finish() override {
+    translated("cannot write " + path_, [&] {
+      if (const std::vector<imager::PlaneIndex> missing = planes_.missing(); !missing.empty()) {
+        const imager::Image blank = planes_.blank();
+        for (const imager::PlaneIndex& at : missing) write_pixels(at, blank);
+      }
+      if (!image_->setImageInfo(image_info(planes_.beams(), header_.observation.object)))
+        throw std::runtime_error("cannot write " + path_ + ": casacore keeps no beams of it");
+      for (const std::string& line : header_.history)
+        image_->logger().sink().postLocally(casacore::LogMessage(line, casacore::LogOrigin("misfit")));
+      image_->flush();
+    });
+    image_.reset();
+    put_in_place();
+  }
+
+ private:
+  void create() {
+    casacore::IPosition tile = layout_.plane_shape();  // planes are written, and shown, one by one
+    constexpr ssize_t tile_side = 512;
+    for (const std::size_t axis : {0, 1}) tile[axis] = std::min(tile[axis], tile_side);
+    image_ = std::make_unique<casacore::PagedImage<Pixel>>(casacore::TiledShape(layout_.shape, tile), casa_coordinates(header_),
+                                                           temporary_.string(),
+                                                           casacore::TableLock(casacore::TableLock::PermanentLocking));
+    image_->setUnits(casacore::Unit(header_.unit));
+    image_->setMiscInfo(misc_info(header_.cards));
+  }
+
+  void write_pixels(const imager::PlaneIndex& at, const imager::Image& image) {
+    const casacore::IPosition shape = layout_.plane_shape(), first = layout_.first_pixel(at);
+    image_->putSlice(pixels_of<Pixel>(image, shape), first);
+    const auto valueless = [](double pixel) { return std::isnan(pixel); };
+    const bool any = std::any_of(image.pixel.begin(), image.pixel.end(), valueless);
+    if (any && !image_->hasPixelMask()) image_->makeMask("mask0", true, true, true, true);
+    if (!any) return;
+    casacore::Array<bool> mask(shape);
+    std::transform(image.pixel.begin(), image.pixel.end(), mask.data(), [&](double pixel) { return !valueless(pixel); });
+    image_->pixelMask().putSlice(mask, first);
+  }
+
+  /// An image that is there gives way once the new one is complete.
+  void put_in_place() {
+    std::error_code error;
+    const fs::path old = target_.string() + ".old";
+    if (fs::exists(target_, error)) {
+      writable_target(path_);
+      fs::rename(target_, old, error);
+    }
+    if (!error) fs::rename(temporary_, target_, error);
+    if (error) throw std::runtime_error("cannot write " + path_ + ": " + error.message());
+    fs::remove_all(old, error);
+  }
+
+  void abandon() {
+    if (image_) {
+      try {
+        image_->table().markForDelete();
+      } catch (const casacore::AipsError&) {  // what is left of it is removed below
+      }
+      image_.reset();
+    }
+    remove_unfinished();
+  }
+
+  void remove_unfinished() {
+    std::error_code ignored;
+    fs::remove_all(temporary_, ignored);
+  }
+
+  std::string path_;
+  fs::path target_;
+  fs::path temporary_;
+  imager::ImageHeader header_;
+  imager::WrittenPlanes planes_;
+  CasaPlanes layout_;
+  std::unique_ptr<casacore::PagedImage<Pixel>> image_;
+};
+
+}  // namespace
+
+bool is_casa_image(const std::string& path) {
+  silence_casacore();
+  return casacore::Table::isReadable(path) &&
+         casacore::TableUtil::tableInfo(path).type() == casacore::TableInfo::type(casacore::TableInfo::PAGEDIMAGE);
+}
+
+std::unique_ptr<imager::ImageWriter> create_casa_image(const imager::ImageHeader& header, const std::string& path,
+                                                       imager::PixelFormat format) {
+  silence_casacore();
+  if (format == imager::PixelFormat::float64) return std::make_unique<CasaImageWriter<double>>(header, path);
+  return std::make_unique<CasaImageWriter<float>>(header, path);
+}
+
+}  // namespace misfit::ms_io
