@@ -23,4 +23,7 @@ std::unique_ptr<imager::ImageReader> open_casa_image(const std::string& path);
 /// Whether a casacore image lies at `path`, whoever wrote it.
 bool is_casa_image(const std::string& path);
 
+/// Whether create_casa_image() wrote it.
+bool is_own_casa_image(const std::string& path);
+
 }  // namespace misfit::ms_io

@@ -56,8 +56,12 @@ casacore::ImageInfo image_info(const imager::PlaneBeams& beams, const std::strin
   return info;
 }
 
+constexpr const char* creator_key = "creator";
+constexpr const char* creator = "misfit";
+
 casacore::TableRecord misc_info(const std::vector<imager::HeaderCard>& cards) {
   casacore::TableRecord record;
+  record.define(creator_key, creator);
   for (const imager::HeaderCard& card : cards) {
     record.define(card.keyword, card.value);
     record.setComment(card.keyword, card.comment);
@@ -184,6 +188,18 @@ bool is_casa_image(const std::string& path) {
   silence_casacore();
   return casacore::Table::isReadable(path) &&
          casacore::TableUtil::tableInfo(path).type() == casacore::TableInfo::type(casacore::TableInfo::PAGEDIMAGE);
+}
+
+bool is_own_casa_image(const std::string& path) {
+  if (!is_casa_image(path)) return false;
+  return translated("cannot read " + path, [&] {
+    const casacore::Table table(path, casacore::TableLock(casacore::TableLock::NoLocking));
+    const casacore::TableRecord& keywords = table.keywordSet();
+    if (!keywords.isDefined("miscinfo")) return false;
+    const casacore::RecordInterface& info = keywords.asRecord("miscinfo");
+    return info.isDefined(creator_key) && info.dataType(creator_key) == casacore::TpString &&
+           info.asString(creator_key) == creator;
+  });
 }
 
 std::unique_ptr<imager::ImageWriter> create_casa_image(const imager::ImageHeader& header, const std::string& path,

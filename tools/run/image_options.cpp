@@ -17,6 +17,7 @@
 #include "tools/base/quantity.h"
 #include "tools/base/text.h"
 #include "tools/formats/config_file.h"
+#include "tools/run/image_files.h"
 #include "tools/run/selection_options.h"
 #include "tools/run/weighting_options.h"
 
@@ -117,6 +118,7 @@ void declare(CLI::App& command, ImageOptions& o) {
   command.add_flag("--check-outside", o.check_outside,
                    "Look for sources outside the image, in four times its field, whose aliases may exceed its noise");
   command.add_option("--memory", o.memory_gib, "GiB that the run may take; 0 means half of the machine's memory");
+  command.add_option("--outformat", o.outformat, "Images as files of: fits, casa, both")->check(CLI::IsMember(image_formats()));
   command.add_flag("--dry-run", o.dry_run, "Print the plan and the memory it takes; read no visibilities and write nothing");
 }
 
