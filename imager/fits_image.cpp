@@ -53,6 +53,12 @@ void write_fits(const std::vector<SkyImage>& images, const std::string& path, Pi
   write_planes(planes, path, format);
 }
 
+std::vector<SkyImage> read_channel(const ImageReader& file, int channel) {
+  std::vector<SkyImage> images;
+  for (int s = 0; s < static_cast<int>(file.header().stokes.size()); ++s) images.push_back(sky_image(file, {channel, s}));
+  return images;
+}
+
 SkyImage read_fits(const std::string& path) {
   std::vector<SkyImage> planes = read_stokes_images(path);
   if (planes.size() > 1)
@@ -66,9 +72,7 @@ std::vector<SkyImage> read_stokes_images(const std::string& path) {
   if (const int channels = file->header().spectral.channels; channels > 1)
     throw std::runtime_error("cannot read " + path + ": it has planes of " + std::to_string(channels) +
                              " frequencies; expected one");
-  std::vector<SkyImage> images;
-  for (int s = 0; s < static_cast<int>(file->header().stokes.size()); ++s) images.push_back(sky_image(*file, {0, s}));
-  return images;
+  return read_channel(*file, 0);
 }
 
 }  // namespace misfit::imager

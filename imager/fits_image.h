@@ -7,6 +7,7 @@
 #include "imager/geometry.h"
 #include "imager/image.h"
 #include "imager/image_header.h"
+#include "imager/image_reader.h"
 #include "imager/image_writer.h"
 
 namespace misfit::imager {
@@ -30,6 +31,9 @@ void write_fits(const SkyImage& image, const std::string& path, PixelFormat form
 /// The same of images that differ in their pixels and Stokes parameters alone, as planes along the STOKES axis. Throws
 /// std::invalid_argument when there are none, they differ in size, or their codes are not evenly spaced.
 void write_fits(const std::vector<SkyImage>& planes, const std::string& path, PixelFormat format);
+
+/// The planes of one channel of an image, in the order of its Stokes parameters.
+std::vector<SkyImage> read_channel(const ImageReader& file, int channel);
 
 /// Reads the only plane of a FITS file that open_fits_image() opens. Throws std::runtime_error that names the path where there
 /// are more.

@@ -99,7 +99,8 @@ void declare(CLI::App& command, ImageOptions& o) {
   command.add_option(
       "--restoringbeam", o.restoringbeam,
       "Restore with this beam: MAJ, or MAJ,MIN,PA such as 0.5arcsec,0.4arcsec,30deg; the fitted one when empty or common");
-  command.add_option("--mask", o.mask, "Where CLEAN finds components: a FITS image, not 0 there, or CASA region text (CRTF)");
+  command.add_option("--mask", o.mask,
+                     "Where CLEAN finds components: a FITS or CASA image, not 0 there, or CASA region text (CRTF)");
   command
       .add_option("--usemask", o.usemask, "user: --mask, or everywhere; auto: from the residuals, as tclean's auto-multithresh")
       ->check(CLI::IsMember({"user", "auto"}));
@@ -109,7 +110,8 @@ void declare(CLI::App& command, ImageOptions& o) {
   command.add_option("--lownoisethreshold", o.lownoisethreshold, "… grown down to this times the noise");
   command.add_option("--minbeamfrac", o.minbeamfrac, "… without regions below this part of the beam's area");
   command.add_option("--growiterations", o.growiterations, "… by this many pixels a major cycle at most");
-  command.add_option("--startmodel", o.startmodel, "Begin with this model, a FITS image in Jy/pixel of the same pixels");
+  command.add_option("--startmodel", o.startmodel,
+                     "Begin with this model, a FITS or CASA image in Jy/pixel of the same pixels");
   command.add_option("--savemodel", o.savemodel, "modelcolumn: write the model's visibilities into MODEL_DATA; none")
       ->check(CLI::IsMember({"none", "modelcolumn"}));
   command.add_flag("--restart", o.restart,
