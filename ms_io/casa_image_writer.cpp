@@ -29,6 +29,26 @@ fs::path writable_target(const std::string& path) {
   return target;
 }
 
+/// Removes what a run that was killed left of a table. Throws where it is anything else.
+void remove_left(const fs::path& left, const std::string& path) {
+  std::error_code error;
+  if (!fs::exists(left, error)) return;
+  if (!fs::is_directory(left, error) || !(fs::is_empty(left, error) || fs::exists(left / "table.lock", error)))
+    throw std::runtime_error("cannot write " + path + ": " + left.string() + " is in the way, and no casacore table");
+  fs::remove_all(left, error);
+}
+
+/// Throws where the disk has not the room: casacore would end the program where it is full before a table is there.
+void require_room(const fs::path& target, std::uintmax_t bytes, const std::string& path) {
+  std::error_code error;
+  const fs::path folder = target.has_parent_path() ? target.parent_path() : fs::path(".");
+  const std::uintmax_t free = fs::space(folder, error).available;
+  constexpr std::uintmax_t tables = 1 << 20;
+  if (!error && free < bytes + tables)
+    throw std::runtime_error("cannot write " + path + ": it takes " + std::to_string(bytes + tables) + " bytes, and " +
+                             std::to_string(free) + " are free");
+}
+
 casacore::GaussianBeam casa_beam(const imager::Beam& beam) {
   return {casacore::Quantity(beam.major_rad * 180 * 3600 / M_PI, "arcsec"),
           casacore::Quantity(beam.minor_rad * 180 * 3600 / M_PI, "arcsec"),
@@ -86,11 +106,13 @@ class CasaImageWriter : public imager::ImageWriter {
                                         static_cast<ssize_t>(header.stokes.size()), header.spectral.channels);
     layout_.stokes = 2;
     layout_.spectral = 3;
-    remove_unfinished();
+    for (const fs::path& left : {temporary_, old_name()}) remove_left(left, path_);
+    require_room(target_, static_cast<std::uintmax_t>(layout_.shape.product()) * sizeof(Pixel), path_);
     try {
       translated("cannot write " + path_, [&] { create(); });
     } catch (...) {
       abandon();
+      remove_unfinished();
       throw;
     }
   }
@@ -146,8 +168,8 @@ class CasaImageWriter : public imager::ImageWriter {
 
   /// An image that is there gives way once the new one is complete.
   void put_in_place() {
+    const fs::path old = old_name();
     std::error_code error;
-    const fs::path old = target_.string() + ".old";
     if (fs::exists(target_, error)) {
       writable_target(path_);
       fs::rename(target_, old, error);
@@ -157,14 +179,16 @@ class CasaImageWriter : public imager::ImageWriter {
     fs::remove_all(old, error);
   }
 
+  fs::path old_name() const { return target_.string() + ".old"; }
+
+  /// Tables that are to be deleted are not written when they are closed, which on a full disk would throw where nobody catches.
   void abandon() {
-    if (image_) {
-      try {
-        image_->table().markForDelete();
-      } catch (const casacore::AipsError&) {  // what is left of it is removed below
+    if (!image_) return;
+    for (const char* part : {"", "/logtable", "/mask0"}) try {
+        casacore::Table(temporary_.string() + part, casacore::Table::Update).markForDelete();
+      } catch (const casacore::AipsError&) {  // it was not made yet
       }
-      image_.reset();
-    }
+    image_.reset();
     remove_unfinished();
   }
 

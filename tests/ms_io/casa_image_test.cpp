@@ -169,6 +169,22 @@ BOOST_AUTO_TEST_CASE(a_writer_that_goes_before_it_is_finished_leaves_nothing_and
   BOOST_TEST(all_nan(ms_io::open_casa_image(folder / "a.image")->read({1, 0})));
 }
 
+BOOST_AUTO_TEST_CASE(what_a_killed_run_left_is_replaced_and_what_others_left_is_not) {
+  const TemporaryFolder folder;
+  const ImageHeader header = example_header(1);
+  for (const char* left : {"a.image.part", "a.image.old"}) {
+    ms_io::create_casa_image(header, folder / left)->finish();
+    fs::remove(folder / (left + std::string("/table.dat")));
+  }
+  ms_io::create_casa_image(header, folder / "a.image")->finish();
+  BOOST_TEST(entries(folder) == 1);
+  fs::create_directory(folder / "a.image.part");
+  std::ofstream(folder / "a.image.part/precious") << "yes";
+  check_error_names(folder / "a.image", "in the way", [&] { ms_io::create_casa_image(header, folder / "a.image"); });
+  BOOST_TEST(fs::exists(folder / "a.image.part/precious"));
+  BOOST_TEST(ms_io::is_casa_image(folder / "a.image"));
+}
+
 BOOST_AUTO_TEST_CASE(what_is_no_casacore_image_is_refused_and_left_alone) {
   const TemporaryFolder folder;
   fs::create_directory(folder / "a.image");
