@@ -33,17 +33,20 @@ void WrittenPlanes::add(const PlaneIndex& at, const Image& image, const std::opt
                                 std::to_string(beams_.stokes()) + " Stokes parameters, counted from 0");
   if (image.width != width_ || image.height != height_)
     throw std::invalid_argument(which + " has " + by(image.width, image.height) + " pixels; expected " + by(width_, height_));
-  const auto place = static_cast<std::size_t>(at.channel * beams_.stokes() + at.stokes);
-  if (written_[place]) throw std::invalid_argument(which + " written twice; expected each plane once");
-  written_[place] = true;
+  if (written_[place(at)]) throw std::invalid_argument(which + " written twice; expected each plane once");
+  written_[place(at)] = true;
   beams_.at(at) = beam;
+}
+
+std::size_t WrittenPlanes::place(const PlaneIndex& at) const {
+  return static_cast<std::size_t>(at.channel) * static_cast<std::size_t>(beams_.stokes()) + static_cast<std::size_t>(at.stokes);
 }
 
 std::vector<PlaneIndex> WrittenPlanes::missing() const {
   std::vector<PlaneIndex> planes;
   for (int channel = 0; channel < beams_.channels(); ++channel)
     for (int stokes = 0; stokes < beams_.stokes(); ++stokes)
-      if (!written_[static_cast<std::size_t>(channel * beams_.stokes() + stokes)]) planes.push_back({channel, stokes});
+      if (!written_[place({channel, stokes})]) planes.push_back({channel, stokes});
   return planes;
 }
 

@@ -23,6 +23,8 @@ class WrittenPlanes {
   const PlaneBeams& beams() const { return beams_; }
 
  private:
+  std::size_t place(const PlaneIndex& at) const;
+
   int width_;
   int height_;
   PlaneBeams beams_;

@@ -1,6 +1,5 @@
 #include <casacore/tables/Tables/ScalarColumn.h>
 
-#include <algorithm>
 #include <array>
 #include <stdexcept>
 
