@@ -89,12 +89,22 @@ casacore::TableRecord misc_info(const std::vector<imager::HeaderCard>& cards) {
   return record;
 }
 
-/// The pixels of a plane with as many axes as the image has.
-template <typename Pixel>
-casacore::Array<Pixel> pixels_of(const imager::Image& image, const casacore::IPosition& shape) {
-  casacore::Array<Pixel> pixels(shape);
-  std::transform(image.pixel.begin(), image.pixel.end(), pixels.data(), [](double value) { return static_cast<Pixel>(value); });
-  return pixels;
+constexpr ssize_t tile_side = 512;
+
+/// Some rows of a plane, with as many axes as the image has.
+struct Band {
+  casacore::IPosition first;
+  casacore::IPosition shape;
+  std::size_t begin;  ///< its pixels in the plane
+  std::size_t end;
+};
+
+/// What of(pixel) is of a band.
+template <typename Value, typename Function>
+casacore::Array<Value> values_of(const imager::Image& image, const Band& band, const Function& of) {
+  casacore::Array<Value> values(band.shape);
+  std::transform(image.pixel.data() + band.begin, image.pixel.data() + band.end, values.data(), of);
+  return values;
 }
 
 template <typename Pixel>
@@ -145,7 +155,6 @@ class CasaImageWriter : public imager::ImageWriter {
  private:
   void create() {
     casacore::IPosition tile = layout_.plane_shape();  // planes are written, and shown, one by one
-    constexpr ssize_t tile_side = 512;
     for (const std::size_t axis : {0, 1}) tile[axis] = std::min(tile[axis], tile_side);
     image_ = std::make_unique<casacore::PagedImage<Pixel>>(casacore::TiledShape(layout_.shape, tile), casa_coordinates(header_),
                                                            temporary_.string(),
@@ -154,16 +163,23 @@ class CasaImageWriter : public imager::ImageWriter {
     image_->setMiscInfo(misc_info(header_.cards));
   }
 
+  /// In bands as high as tiles are, so that little is copied at a time.
   void write_pixels(const imager::PlaneIndex& at, const imager::Image& image) {
-    const casacore::IPosition shape = layout_.plane_shape(), first = layout_.first_pixel(at);
-    image_->putSlice(pixels_of<Pixel>(image, shape), first);
+    for (int row = 0; row < image.height; row += tile_side) {
+      Band band{layout_.first_pixel(at), layout_.plane_shape(), static_cast<std::size_t>(image.row(row) - image.row(0)), 0};
+      band.first[1] = row;
+      band.shape[1] = std::min<ssize_t>(tile_side, image.height - row);
+      band.end = band.begin + static_cast<std::size_t>(band.shape.product());
+      write_band(image, band);
+    }
+  }
+
+  void write_band(const imager::Image& image, const Band& band) {
+    image_->putSlice(values_of<Pixel>(image, band, [](double pixel) { return static_cast<Pixel>(pixel); }), band.first);
     const auto valueless = [](double pixel) { return std::isnan(pixel); };
-    const bool any = std::any_of(image.pixel.begin(), image.pixel.end(), valueless);
-    if (any && !image_->hasPixelMask()) image_->makeMask("mask0", true, true, true, true);
-    if (!any) return;
-    casacore::Array<bool> mask(shape);
-    std::transform(image.pixel.begin(), image.pixel.end(), mask.data(), [&](double pixel) { return !valueless(pixel); });
-    image_->pixelMask().putSlice(mask, first);
+    if (std::none_of(image.pixel.data() + band.begin, image.pixel.data() + band.end, valueless)) return;
+    if (!image_->hasPixelMask()) image_->makeMask("mask0", true, true, true, true);
+    image_->pixelMask().putSlice(values_of<bool>(image, band, [&](double pixel) { return !valueless(pixel); }), band.first);
   }
 
   /// An image that is there gives way once the new one is complete.

@@ -1,5 +1,8 @@
 #include "ms_io/casa_image.h"
 
+#include <casacore/coordinates/Coordinates/DirectionCoordinate.h>
+#include <casacore/images/Images/PagedImage.h>
+
 #include <algorithm>
 #include <boost/test/unit_test.hpp>
 #include <cmath>
@@ -7,7 +10,9 @@
 #include <fstream>
 #include <iterator>
 #include <limits>
+#include <map>
 
+#include "ms_io/casa_coordinates_internal.h"
 #include "tests/example_cube.h"
 #include "tests/temporary_folder.h"
 
@@ -20,6 +25,24 @@ namespace fs = std::filesystem;
 
 void write_planes(ImageWriter& writer, const ImageHeader& header, const std::vector<PlaneIndex>& planes) {
   for (const PlaneIndex& at : planes) writer.write(at, example_plane(header, at), example_beam(at));
+}
+
+/// Another program's image, whose pixels count.
+template <typename Pixel>
+void write_foreign(const std::string& path, const casacore::CoordinateSystem& coordinates, const casacore::IPosition& shape) {
+  casacore::PagedImage<Pixel> image(casacore::TiledShape(shape), coordinates, path);
+  casacore::Array<Pixel> pixels(shape);
+  for (std::size_t i = 0; i < pixels.size(); ++i) pixels.data()[i] = static_cast<float>(i);
+  image.put(pixels);
+}
+
+std::map<std::string, std::string> contents_below(const std::string& folder) {
+  std::map<std::string, std::string> files;
+  for (const auto& entry : fs::recursive_directory_iterator(folder)) {
+    std::ifstream file(entry.path(), std::ios::binary);
+    files[entry.path()] = entry.is_regular_file() ? std::string(std::istreambuf_iterator<char>(file), {}) : "";
+  }
+  return files;
 }
 
 bool all_nan(const Image& image) {
@@ -142,6 +165,75 @@ BOOST_AUTO_TEST_CASE(pixels_without_value_are_masked_and_images_without_them_hav
       BOOST_TEST(std::isfinite(image.at(2, 4)));
     }
   }
+}
+
+BOOST_AUTO_TEST_CASE(planes_of_several_tiles_come_back) {
+  const TemporaryFolder folder;
+  ImageHeader header = example_header(2);
+  header.geometry.width = 700;
+  header.geometry.height = 1100;
+  const auto writer = ms_io::create_casa_image(header, folder / "a.image");
+  Image image = example_plane(header, {1, 0});
+  for (const int row : {0, 511, 512, 1099}) image.at(row, row / 2) = std::numeric_limits<double>::quiet_NaN();
+  writer->write({1, 0}, image, std::nullopt);
+  writer->finish();
+  const Image read = ms_io::open_casa_image(folder / "a.image")->read({1, 0});
+  int wrong = 0;
+  for (std::size_t i = 0; i < image.pixel.size(); ++i)
+    wrong += image.pixel[i] != read.pixel[i] && !(std::isnan(image.pixel[i]) && std::isnan(read.pixel[i]));
+  BOOST_TEST(wrong == 0);
+}
+
+BOOST_AUTO_TEST_CASE(reading_changes_nothing_in_the_folder) {
+  const TemporaryFolder folder;
+  const ImageHeader header = example_header(2);
+  const auto writer = ms_io::create_casa_image(header, folder / "a.image");
+  write_planes(*writer, header, {{1, 0}});
+  writer->finish();
+  const auto before = contents_below(folder / "a.image");
+  ms_io::open_casa_image(folder / "a.image")->read({0, 0});
+  BOOST_TEST(ms_io::is_own_casa_image(folder / "a.image"));
+  BOOST_TEST((contents_below(folder / "a.image") == before));
+}
+
+BOOST_AUTO_TEST_CASE(images_of_two_axes_or_of_another_order_are_read) {
+  const TemporaryFolder folder;
+  const casacore::CoordinateSystem whole = ms_io::casa_coordinates(example_header(3, "IQ"));
+  casacore::CoordinateSystem flat, turned;
+  flat.addCoordinate(whole.directionCoordinate());
+  { write_foreign<float>(folder / "flat", flat, casacore::IPosition(2, 7, 4)); }
+  for (const int coordinate : {0, 2, 1}) turned.addCoordinate(whole.coordinate(static_cast<casacore::uInt>(coordinate)));
+  { write_foreign<float>(folder / "turned", turned, casacore::IPosition(4, 7, 4, 3, 2)); }
+  const auto one = ms_io::open_casa_image(folder / "flat"), other = ms_io::open_casa_image(folder / "turned");
+  BOOST_TEST(one->header().spectral.channels == 1);
+  BOOST_TEST((one->header().stokes == std::vector<Stokes>{Stokes::I}));
+  BOOST_TEST(one->read({0, 0}).at(3, 2) == 3 * 7 + 2);
+  BOOST_TEST(other->header().spectral.channels == 3);
+  BOOST_TEST(other->read({2, 1}).at(3, 2) == ((1 * 3 + 2) * 4 + 3) * 7 + 2);
+  BOOST_TEST(!ms_io::is_own_casa_image(folder / "flat"));
+}
+
+BOOST_AUTO_TEST_CASE(images_that_misfit_could_not_place_are_refused) {
+  const TemporaryFolder folder;
+  const casacore::DirectionCoordinate sine = ms_io::casa_coordinates(example_header(1)).directionCoordinate();
+  const auto refused = [&](const casacore::Projection& projection, double angle_rad, const std::string& expected) {
+    casacore::Matrix<double> turn(2, 2);
+    turn(0, 0) = turn(1, 1) = std::cos(angle_rad);
+    turn(0, 1) = std::sin(angle_rad);
+    turn(1, 0) = -turn(0, 1);
+    casacore::CoordinateSystem coordinates;
+    coordinates.addCoordinate(
+        casacore::DirectionCoordinate(casacore::MDirection::J2000, projection, 1, 0.5, -1e-6, 1e-6, turn, 3, 2));
+    const std::string path = folder / std::to_string(entries(folder));
+    write_foreign<float>(path, coordinates, casacore::IPosition(2, 7, 4));
+    check_error_names(path, expected, [&] { ms_io::open_casa_image(path); });
+  };
+  refused(casacore::Projection(casacore::Projection::TAN), 0, "projection is TAN; expected SIN");
+  refused(sine.projection(), 0.01, "not square with north up");
+  casacore::CoordinateSystem coordinates;
+  coordinates.addCoordinate(sine);
+  write_foreign<casacore::Complex>(folder / "complex", coordinates, casacore::IPosition(2, 7, 4));
+  check_error_names(folder / "complex", "no real numbers", [&] { ms_io::open_casa_image(folder / "complex"); });
 }
 
 BOOST_AUTO_TEST_CASE(an_image_replaces_another_and_leaves_nothing_else) {
