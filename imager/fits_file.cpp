@@ -66,9 +66,24 @@ void FitsFile::write_text(const std::string& key, const std::string& value, cons
   if (!value.empty()) check(fits_update_key_str(handle_->file, key.c_str(), value.c_str(), comment.c_str(), &status));
 }
 
+void FitsFile::write_integer(const std::string& key, int value, const std::string& comment) {
+  int status = 0;
+  check(fits_update_key(handle_->file, TINT, key.c_str(), &value, comment.c_str(), &status));
+}
+
+void FitsFile::write_flag(const std::string& key, bool value, const std::string& comment) {
+  int status = 0, logical = value ? 1 : 0;
+  check(fits_update_key(handle_->file, TLOGICAL, key.c_str(), &logical, comment.c_str(), &status));
+}
+
 void FitsFile::write_history(const std::string& line) {
   int status = 0;
   check(fits_write_history(handle_->file, line.c_str(), &status));
+}
+
+void FitsFile::reserve_cards(int count) {
+  int status = 0;
+  check(fits_set_hdrsize(handle_->file, count, &status));
 }
 
 bool FitsFile::read_key(const std::string& key, int type, void* value) const {
@@ -125,6 +140,51 @@ void FitsFile::read_pixels(std::vector<long> first, std::vector<double>& pixels)
   double blank = std::numeric_limits<double>::quiet_NaN();
   check(fits_read_pix(handle_->file, TDOUBLE, first.data(), static_cast<LONGLONG>(pixels.size()), type > 0 ? &blank : nullptr,
                       pixels.data(), &any_blank, &status));
+}
+
+void FitsFile::append_table(const std::string& name, const std::vector<FitsColumn>& columns) {
+  std::vector<char*> names, forms, units;
+  std::string whole = "1J", real = "1E";
+  for (const FitsColumn& column : columns) {
+    names.push_back(const_cast<char*>(column.name.c_str()));
+    forms.push_back(column.whole ? whole.data() : real.data());
+    units.push_back(const_cast<char*>(column.unit.c_str()));
+  }
+  int status = 0;
+  const auto rows = static_cast<LONGLONG>(columns.front().values.size());
+  check(fits_create_tbl(handle_->file, BINARY_TBL, rows, static_cast<int>(columns.size()), names.data(), forms.data(),
+                        units.data(), name.c_str(), &status));
+  for (std::size_t i = 0; i < columns.size(); ++i)
+    check(fits_write_col(handle_->file, TDOUBLE, static_cast<int>(i) + 1, 1, 1, rows,
+                         const_cast<double*>(columns[i].values.data()), &status));
+}
+
+bool FitsFile::open_table(const std::string& name) {
+  int status = 0;
+  std::string text = name;
+  fits_movnam_hdu(handle_->file, BINARY_TBL, text.data(), 0, &status);
+  if (status == BAD_HDU_NUM) {
+    fits_clear_errmsg();
+    return false;
+  }
+  check(status);
+  return true;
+}
+
+void FitsFile::open_image() {
+  int status = 0;
+  check(fits_movabs_hdu(handle_->file, 1, nullptr, &status));
+}
+
+std::vector<double> FitsFile::column(const std::string& name) const {
+  int status = 0, number = 0, any_null = 0;
+  std::string text = name;
+  check(fits_get_colnum(handle_->file, CASEINSEN, text.data(), &number, &status));
+  long rows = 0;
+  check(fits_get_num_rows(handle_->file, &rows, &status));
+  std::vector<double> values(static_cast<std::size_t>(rows));
+  check(fits_read_col(handle_->file, TDOUBLE, number, 1, 1, rows, nullptr, values.data(), &any_null, &status));
+  return values;
 }
 
 }  // namespace misfit::imager

@@ -5,12 +5,21 @@
 #include <string>
 #include <vector>
 
-#include "imager/fits_image.h"
+#include "imager/image_writer.h"
 
 namespace misfit::imager {
 
-/// The primary image of a FITS file, as CFITSIO has it, closed when it goes out of scope. Axes count from 0, pixels along them
-/// from 1. Errors are std::runtime_errors that name the path that the user gave: "cannot read a.fits: …".
+/// A column of a binary table.
+struct FitsColumn {
+  std::string name;
+  std::string unit;
+  bool whole = false;          ///< 32-bit integers; otherwise 32-bit floating-point numbers
+  std::vector<double> values;  ///< [row]
+};
+
+/// A FITS file as CFITSIO has it, at its primary image unless a table was opened, closed when it goes out of scope. Axes count
+/// from 0, pixels along them from 1. Errors are std::runtime_errors that name the path that the user gave: "cannot read a.fits:
+/// …".
 class FitsFile {
  public:
   /// `doing`: "read" or "write".
@@ -28,7 +37,11 @@ class FitsFile {
   void write_number(const std::string& key, double value, const std::string& comment = "");
   /// An empty text stands for what is not known, and is left out.
   void write_text(const std::string& key, const std::string& value, const std::string& comment = "");
+  void write_integer(const std::string& key, int value, const std::string& comment = "");
+  void write_flag(const std::string& key, bool value, const std::string& comment = "");
   void write_history(const std::string& line);
+  /// Leaves room for so many more cards, so that those written after pixels do not move them.
+  void reserve_cards(int count);
   std::optional<double> number(const std::string& key) const;
   double needed_number(const std::string& key) const;
   /// Empty where there is none.
@@ -41,6 +54,14 @@ class FitsFile {
   std::vector<long> size() const;
   /// As many as `pixels` holds. Blanks are NaN.
   void read_pixels(std::vector<long> first, std::vector<double>& pixels) const;
+
+  /// Appends a binary table, whose columns have one length, and goes there.
+  void append_table(const std::string& name, const std::vector<FitsColumn>& columns);
+  /// Goes to the table of this name, if there is one.
+  bool open_table(const std::string& name);
+  /// Goes to the primary image.
+  void open_image();
+  std::vector<double> column(const std::string& name) const;
 
  private:
   struct Handle;

@@ -4,20 +4,22 @@
 #include <cmath>
 #include <optional>
 
+#include "imager/constants.h"
+#include "imager/julian_date.h"
+
 namespace misfit::imager {
 namespace {
 
-constexpr double degree = M_PI / 180;
+constexpr double degree = pi / 180;
 
-void write_axes(FitsFile& file, const SkyImage& sky, const FitsAxis& stokes) {
-  const ImageGeometry& g = sky.geometry;
-  const double bandwidth_hz = sky.observation.bandwidth_hz > 0 ? sky.observation.bandwidth_hz : 1;
+void write_axes(FitsFile& file, const ImageHeader& header) {
+  const ImageGeometry& g = header.geometry;
   const std::array<FitsAxis, 4> axes{{
       {"RA---SIN", "deg", g.centre_column() + 1 + g.centre.l / g.cell_rad, g.phase_centre.ra_rad / degree,
        -g.cell_rad / degree},
       {"DEC--SIN", "deg", g.centre_row() + 1 - g.centre.m / g.cell_rad, g.phase_centre.dec_rad / degree, g.cell_rad / degree},
-      {"FREQ", "Hz", 1, sky.observation.frequency_hz, bandwidth_hz},
-      stokes,
+      {"FREQ", "Hz", 1, header.spectral.reference_hz, header.spectral.step_hz()},
+      stokes_axis(header.stokes),
   }};
   for (std::size_t i = 0; i < axes.size(); ++i) {
     const std::string n = std::to_string(i + 1);
@@ -31,6 +33,31 @@ void write_axes(FitsFile& file, const SkyImage& sky, const FitsAxis& stokes) {
   file.write_number("LATPOLE", g.phase_centre.dec_rad / degree);
   file.write_text("RADESYS", g.phase_centre.frame);
   file.write_number("EQUINOX", g.phase_centre.frame == "FK4" ? 1950 : 2000);
+}
+
+/// Greisen et al. 2006, section 7; the frame is that of the phase centre's planes, and holds for it alone unless SSYSOBS says
+/// the same.
+void write_spectral_frame(FitsFile& file, const ImageHeader& header) {
+  const SpectralAxis& axis = header.spectral;
+  file.write_text("SPECSYS", axis.frame);
+  if (!axis.frame.empty() && axis.frame != "TOPOCENT") file.write_text("SSYSOBS", "TOPOCENT", "away from the phase centre too");
+  const double rest_hz = axis.rest_frequency_hz > 0 ? axis.rest_frequency_hz : header.observation.frequency_hz;
+  file.write_number("RESTFRQ", rest_hz, "Hz");
+  const int frame = axis.frame == "LSRK" ? 1 : axis.frame == "BARYCENT" ? 2 : axis.frame == "TOPOCENT" ? 3 : 0;
+  if (axis.channels == 1 || frame == 0 || !(rest_hz > 0)) return;
+  file.write_integer("VELREF", 256 + frame, "1 LSR, 2 HEL, 3 OBS; + 256 radio");
+  file.write_number("ALTRVAL", speed_of_light_m_s * (1 - axis.reference_hz / rest_hz), "m/s, radio velocity of plane 1");
+  file.write_number("ALTRPIX", 1);
+}
+
+void write_observation(FitsFile& file, const Observation& observation) {
+  file.write_text("TELESCOP", observation.telescope);
+  file.write_text("OBSERVER", observation.observer);
+  file.write_text("OBJECT", observation.object);
+  file.write_text("TIMESYS", "UTC");
+  file.write_text("DATE-OBS", observation.date_obs);
+  if (const std::optional<double> date = modified_julian_date(observation.date_obs)) file.write_number("MJD-OBS", *date, "d");
+  file.write_text("ORIGIN", "misfit");
 }
 
 std::string read_frame(const FitsFile& file) {
@@ -49,13 +76,14 @@ void check_projection(const FitsFile& file) {
       file.fail(std::string(key) + " = " + std::to_string(value) + ", where only 0 (no rotation, no slant) is known");
 }
 
-ImageGeometry read_geometry(const FitsFile& file, const Image& image) {
+ImageGeometry read_geometry(const FitsFile& file) {
   check_projection(file);
   const double east = -file.needed_number("CDELT1"), north = file.needed_number("CDELT2");
   if (!(north > 0) || !(std::abs(east - north) <= 1e-6 * north))
     file.fail("its pixels are not square with east on the left: CDELT1 = " + std::to_string(-east) +
               ", CDELT2 = " + std::to_string(north));
-  ImageGeometry geometry{image.width, image.height, north * degree, {}};
+  const std::vector<long> size = file.size();
+  ImageGeometry geometry{static_cast<int>(size[0]), static_cast<int>(size[1]), north * degree, {}};
   geometry.centre = {(file.needed_number("CRPIX1") - (geometry.centre_column() + 1)) * geometry.cell_rad,
                      (geometry.centre_row() + 1 - file.needed_number("CRPIX2")) * geometry.cell_rad};
   geometry.phase_centre = {file.number("CRVAL1").value_or(0) * degree, file.number("CRVAL2").value_or(0) * degree,
@@ -63,58 +91,38 @@ ImageGeometry read_geometry(const FitsFile& file, const Image& image) {
   return geometry;
 }
 
-Observation read_observation(const FitsFile& file) {
+Observation read_observation(const FitsFile& file, const SpectralAxis& axis) {
   Observation observation;
   observation.telescope = file.text("TELESCOP");
   observation.observer = file.text("OBSERVER");
   observation.object = file.text("OBJECT");
   observation.date_obs = file.text("DATE-OBS");
-  observation.spectral_frame = file.text("SPECSYS");
-  observation.frequency_hz = file.number("RESTFRQ").value_or(0);
-  for (const char* axis : {"3", "4"})
-    if (file.text(std::string("CTYPE") + axis) == "FREQ") {
-      observation.frequency_hz = file.needed_number(std::string("CRVAL") + axis);
-      observation.bandwidth_hz = file.number(std::string("CDELT") + axis).value_or(0);
-    }
+  observation.spectral_frame = axis.frame;
+  observation.frequency_hz = axis.reference_hz + 0.5 * (axis.channels - 1) * axis.increment_hz;
+  observation.bandwidth_hz = axis.channels * axis.width_hz();
   return observation;
 }
 
 }  // namespace
 
-void write_header(FitsFile& file, const SkyImage& sky, const FitsAxis& stokes) {
-  file.write_text("BUNIT", sky.unit);
+void write_header(FitsFile& file, const ImageHeader& header) {
+  file.write_text("BUNIT", header.unit);
   file.write_text("BTYPE", "Intensity");
-  write_axes(file, sky, stokes);
-  const Observation& observation = sky.observation;
-  file.write_text("SPECSYS", observation.spectral_frame);
-  file.write_number("RESTFRQ", observation.frequency_hz, "Hz");
-  file.write_text("TELESCOP", observation.telescope);
-  file.write_text("OBSERVER", observation.observer);
-  file.write_text("OBJECT", observation.object);
-  file.write_text("TIMESYS", "UTC");
-  file.write_text("DATE-OBS", observation.date_obs);
-  file.write_text("ORIGIN", "misfit");
-  if (sky.has_beam) {
-    file.write_number("BMAJ", sky.beam.major_rad / degree, "major axis of the beam, FWHM, deg");
-    file.write_number("BMIN", sky.beam.minor_rad / degree, "minor axis of the beam, FWHM, deg");
-    file.write_number("BPA", sky.beam.position_angle_rad / degree, "position angle, north through east, deg");
-  }
-  for (const HeaderCard& card : sky.cards) file.write_number(card.keyword, card.value, card.comment);
-  for (const std::string& line : sky.history) file.write_history(line);
+  write_axes(file, header);
+  write_spectral_frame(file, header);
+  write_observation(file, header.observation);
+  for (const HeaderCard& card : header.cards) file.write_number(card.keyword, card.value, card.comment);
 }
 
-SkyImage with_header(const FitsFile& file, Image plane) {
-  SkyImage sky;
-  sky.image = std::move(plane);
-  sky.geometry = read_geometry(file, sky.image);
-  sky.observation = read_observation(file);
-  sky.observation.phase_centre = sky.geometry.phase_centre;
-  sky.unit = file.text("BUNIT");
-  const double major_deg = file.number("BMAJ").value_or(0);
-  sky.has_beam = major_deg > 0;
-  if (sky.has_beam)
-    sky.beam = {major_deg * degree, file.needed_number("BMIN") * degree, file.number("BPA").value_or(0) * degree};
-  return sky;
+ImageHeader read_header(const FitsFile& file, const FitsPlanes& planes) {
+  ImageHeader header;
+  header.geometry = read_geometry(file);
+  header.spectral = read_spectral_axis(file, planes);
+  header.stokes = read_stokes(file, planes);
+  header.observation = read_observation(file, header.spectral);
+  header.observation.phase_centre = header.geometry.phase_centre;
+  header.unit = file.text("BUNIT");
+  return header;
 }
 
 }  // namespace misfit::imager

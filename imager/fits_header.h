@@ -1,25 +1,16 @@
 #pragma once
 
-#include <string>
-
+#include "imager/fits_axes.h"
 #include "imager/fits_file.h"
+#include "imager/image_header.h"
 
 namespace misfit::imager {
 
-/// What a FITS header says of an axis.
-struct FitsAxis {
-  std::string type;
-  std::string unit;
-  double reference_pixel = 1;
-  double reference_value = 0;
-  double increment = 1;
-};
+/// Writes what `header` holds but for its history, for an image with the axes RA---SIN, DEC--SIN, FREQ and STOKES.
+void write_header(FitsFile& file, const ImageHeader& header);
 
-/// Writes all that `sky` holds beside its pixels and Stokes parameter, which the axis `stokes` tells.
-void write_header(FitsFile& file, const SkyImage& sky, const FitsAxis& stokes);
-
-/// `plane` with what the header says, but for its Stokes parameter. Throws std::runtime_error where it has another projection
-/// than SIN, or pixels that are not square.
-SkyImage with_header(const FitsFile& file, Image plane);
+/// What the file says but for its cards and history. Throws std::runtime_error where it states another projection than SIN,
+/// pixels that are not square, or what read_spectral_axis() and read_stokes() refuse.
+ImageHeader read_header(const FitsFile& file, const FitsPlanes& planes);
 
 }  // namespace misfit::imager

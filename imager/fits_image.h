@@ -1,19 +1,18 @@
 #pragma once
 
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "imager/beam.h"
 #include "imager/geometry.h"
 #include "imager/image.h"
 #include "imager/image_header.h"
+#include "imager/image_reader.h"
+#include "imager/image_writer.h"
 
 namespace misfit::imager {
 
-/// An image on the sky with what its header states. FITS axes: RA---SIN, DEC--SIN, FREQ, STOKES, in this order. CRVAL is
-/// the phase centre and CRPIX the place where l = m = 0, be it between pixels or outside the image. NaN marks a pixel without
-/// value.
+/// An image on the sky with what its header states: one plane of an ImageHeader's.
 struct SkyImage {
   Image image;
   ImageGeometry geometry;
@@ -26,23 +25,21 @@ struct SkyImage {
   std::vector<std::string> history;
 };
 
-enum class PixelFormat { float32, float64 };
-
-/// Writes `image` to `path`, replacing what is there. The file appears under its name only when complete (it is written
-/// beside it and renamed). Throws std::runtime_error that names the path and CFITSIO's reason.
+/// Writes `image` to `path` as create_fits_image() does.
 void write_fits(const SkyImage& image, const std::string& path, PixelFormat format);
 
 /// The same of images that differ in their pixels and Stokes parameters alone, as planes along the STOKES axis. Throws
 /// std::invalid_argument when there are none, they differ in size, or their codes are not evenly spaced.
 void write_fits(const std::vector<SkyImage>& planes, const std::string& path, PixelFormat format);
 
-/// Reads the first plane of the primary image of a FITS file with a SIN (or no) projection, in any pixel type. Throws
-/// std::runtime_error that names the path when it cannot be read, is no two-dimensional image (axes beyond the second must have
-/// length 1), or has pixels that are not square.
+/// The planes of one channel of an image, in the order of its Stokes parameters.
+std::vector<SkyImage> read_channel(const ImageReader& file, int channel);
+
+/// Reads the only plane of a FITS file that open_fits_image() opens. Throws std::runtime_error that names the path where there
+/// are more.
 SkyImage read_fits(const std::string& path);
 
-/// The same for each plane of an image whose STOKES axis may be longer than 1, in the order of the file. Throws where a plane
-/// is none that Stokes names, or two are of the same.
+/// The same for each plane of an image whose STOKES axis may be longer than 1, in the order of the file.
 std::vector<SkyImage> read_stokes_images(const std::string& path);
 
 }  // namespace misfit::imager

@@ -14,6 +14,9 @@ struct PlaneIndex {
   int stokes = 0;
 };
 
+/// How pixels are stored.
+enum class PixelFormat { float32, float64 };
+
 /// An image on its way into a file, plane by plane, so that no more than one need be in memory. The file has its final name
 /// once finish() returns; a writer that goes before leaves nothing.
 class ImageWriter {

@@ -17,6 +17,8 @@ struct SpectralAxis {
 
   double frequency_hz(int plane) const { return reference_hz + plane * increment_hz; }
   double width_hz() const { return std::abs(increment_hz); }
+  /// The increment that files state: 1 Hz where the planes have no width, since none of 0 makes an axis.
+  double step_hz() const { return increment_hz != 0 ? increment_hz : 1; }
   /// The fractional plane at a frequency; plane k reaches from k − 0.5 to k + 0.5.
   double plane_of(double hz) const { return (hz - reference_hz) / increment_hz; }
 };

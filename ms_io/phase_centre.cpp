@@ -10,6 +10,7 @@
 
 #include <cmath>
 
+#include "ms_io/celestial_frame_internal.h"
 #include "ms_io/metadata_internal.h"
 #include "ms_io/phase_centre_internal.h"
 #include "ms_io/table_access_internal.h"
@@ -17,20 +18,13 @@
 namespace misfit::ms_io {
 namespace {
 
-casacore::MDirection::Types frame_code(const std::string& frame) {
-  return frame == "ICRS"  ? casacore::MDirection::ICRS
-         : frame == "FK4" ? casacore::MDirection::B1950
-                          : casacore::MDirection::J2000;
-}
-
 imager::SkyDirection sky_direction(const casacore::MDirection& direction) {
   constexpr double turn = 2 * 3.14159265358979323846;
   const auto& towards = direction.getValue();
   imager::SkyDirection sky;
   sky.ra_rad = towards.getLong() < 0 ? towards.getLong() + turn : towards.getLong();
   sky.dec_rad = std::atan2(towards(2), std::hypot(towards(0), towards(1)));  // getLat() is not exact beside the poles
-  const auto frame = casacore::MDirection::castType(direction.getRef().getType());
-  sky.frame = frame == casacore::MDirection::ICRS ? "ICRS" : frame == casacore::MDirection::B1950 ? "FK4" : "FK5";
+  sky.frame = frame_name(casacore::MDirection::castType(direction.getRef().getType()));
   return sky;
 }
 
@@ -39,8 +33,8 @@ using Vector = imager::UvwAxes::Vector;
 /// A unit vector in one frame as another has it, at a time.
 Vector converted(const Vector& direction, const std::string& from, const std::string& to, const casacore::MeasFrame& when) {
   if (from == to) return direction;
-  const casacore::MDirection there(casacore::MVDirection(direction[0], direction[1], direction[2]), frame_code(from));
-  const casacore::MDirection::Ref reference(frame_code(to), when);
+  const casacore::MDirection there(casacore::MVDirection(direction[0], direction[1], direction[2]), direction_type(from));
+  const casacore::MDirection::Ref reference(direction_type(to), when);
   const casacore::MVDirection here = casacore::MDirection::Convert(there, reference)().getValue();
   return {here(0), here(1), here(2)};
 }
@@ -57,7 +51,7 @@ Vector unit(const Vector& a) {
 }  // namespace
 
 casacore::MDirection measure_of(const imager::SkyDirection& direction) {
-  return {casacore::MVDirection(direction.ra_rad, direction.dec_rad), frame_code(direction.frame)};
+  return {casacore::MVDirection(direction.ra_rad, direction.dec_rad), direction_type(direction.frame)};
 }
 
 casacore::MeasFrame frame_of(const casacore::MeasurementSet& set, std::uint64_t row) {

@@ -1,6 +1,5 @@
 #include <casacore/tables/Tables/ScalarColumn.h>
 
-#include <algorithm>
 #include <array>
 #include <stdexcept>
 
@@ -27,12 +26,6 @@ constexpr std::array<FrameName, 9> frames{{{"", "SOURCE"},
                                            {"LGROUP", "LOCALGRP"},
                                            {"CMB", "CMBDIPOL"}}};
 
-casacore::MFrequency::Types code_of(const std::string& spectral_frame) {
-  const auto found =
-      std::find_if(frames.begin(), frames.end(), [&](const FrameName& frame) { return spectral_frame == frame.fits; });
-  return static_cast<casacore::MFrequency::Types>(found - frames.begin());
-}
-
 }  // namespace
 
 std::string parse_spectral_frame(const std::string& name) {
@@ -45,6 +38,12 @@ std::string parse_spectral_frame(const std::string& name) {
     known += (known.empty() ? "" : ", ") + std::string(frame.casa);
   }
   throw std::invalid_argument("spectral frame '" + name + "'; expected one of " + known);
+}
+
+casacore::MFrequency::Types spectral_frame_code(const std::string& spectral_frame) {
+  for (std::size_t code = 0; code < frames.size(); ++code)
+    if (spectral_frame == frames[code].fits) return static_cast<casacore::MFrequency::Types>(code);
+  return casacore::MFrequency::Undefined;
 }
 
 std::string spectral_frame_of(int code) {
@@ -69,8 +68,8 @@ FrameRatio::FrameRatio(const casacore::MeasurementSet& set, const std::string& p
         selected.phase_centre ? *selected.phase_centre
                               : field_centre(set, path, casacore::ScalarColumn<int>(set, "FIELD_ID")(row), row).direction;
     frame_.set(measure_of(towards));
-    convert_.emplace(casacore::MFrequency::Ref(code_of(setup.spectral_frame), frame_),
-                     casacore::MFrequency::Ref(code_of(selected.spectral_frame), frame_));
+    convert_.emplace(casacore::MFrequency::Ref(spectral_frame_code(setup.spectral_frame), frame_),
+                     casacore::MFrequency::Ref(spectral_frame_code(selected.spectral_frame), frame_));
   });
 }
 

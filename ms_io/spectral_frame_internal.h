@@ -16,6 +16,8 @@ namespace misfit::ms_io {
 /// FITS SPECSYS of casacore's frequency frames (MFrequency::Types), whose codes are those of MEAS_FREQ_REF; empty where it has
 /// none.
 std::string spectral_frame_of(int code);
+/// The code of such a frame; Undefined where casacore has none.
+casacore::MFrequency::Types spectral_frame_code(const std::string& spectral_frame);
 
 /// By how much frequencies of a spectral window differ in another frame, at the telescope's place and towards a direction: all
 /// by one factor, that of Doppler's shift, which changes with time.

@@ -16,14 +16,6 @@ namespace {
 
 constexpr casacore::uInt lock_attempts = 3;  ///< a second apart
 
-void silence_casacore() {
-  static std::once_flag once;
-  std::call_once(once, [] {
-    casacore::LogSinkInterface* silent = new casacore::NullLogSink;  // owned by casacore from here on
-    casacore::LogSink::globalSink(silent);
-  });
-}
-
 bool is_visibility_column(const casacore::ColumnDesc& column) {
   return column.isArray() && column.dataType() == casacore::TpComplex;
 }
@@ -84,6 +76,14 @@ casacore::MeasurementSet opened(const std::string& path, Access access) {
 }
 
 }  // namespace
+
+void silence_casacore() {
+  static std::once_flag once;
+  std::call_once(once, [] {
+    casacore::LogSinkInterface* silent = new casacore::NullLogSink;  // owned by casacore from here on
+    casacore::LogSink::globalSink(silent);
+  });
+}
 
 std::string one_line(const std::string& message) {
   std::istringstream words(message);

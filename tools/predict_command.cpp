@@ -148,7 +148,7 @@ void add_predict_command(CLI::App& program) {
   command->add_option("--vis", o->vis, "MeasurementSet; only the column is written")->required();
   command->add_option(
       "--model", o->model,
-      "FITS image in Jy/pixel whose reference position is the phase centre; its STOKES axis may hold I, Q, U and V");
+      "FITS or CASA image in Jy/pixel whose reference position is the phase centre; its STOKES axis may hold I, Q, U and V");
   command->add_option(
       "--components", o->components,
       "CSV file with ra_deg,dec_deg,flux_jy or l_arcsec,m_arcsec,flux_jy, and scale_arcsec for the full width at "

@@ -321,7 +321,7 @@ BOOST_AUTO_TEST_CASE(a_stack_of_planes_is_no_image) {
   const TemporaryFolder folder;
   const std::string path = folder.file("a.fits");
   write_altered(path, "NAXIS3", "NAXIS3  =                    2");
-  check_error_names(path, "two-dimensional", [&] { read_fits(path); });
+  check_error_names(path, "2 frequencies; expected one", [&] { read_fits(path); });
 }
 
 BOOST_AUTO_TEST_CASE(integers_with_a_scale_and_blanks_are_read) {

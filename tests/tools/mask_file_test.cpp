@@ -1,15 +1,19 @@
 #include "tools/formats/mask_file.h"
 
+#include <algorithm>
 #include <boost/test/unit_test.hpp>
 #include <cmath>
 #include <fstream>
 #include <functional>
 
 #include "imager/fits_image.h"
+#include "tests/example_cube.h"
 #include "tests/temporary_folder.h"
+#include "tools/run/image_files.h"
 
 using namespace misfit;
 using namespace misfit::tools;
+using misfit::testing::example_header;
 using misfit::testing::TemporaryFolder;
 
 namespace {
@@ -54,6 +58,23 @@ std::string direction(double east, double north) {
   char text[80];
   std::snprintf(text, sizeof text, "[%.9fdeg, %.9fdeg]", ra / degree, dec / degree);
   return text;
+}
+
+/// The pixel that is marked in a plane.
+int mark(const imager::PlaneIndex& at) {
+  return at.channel * 2 + at.stokes;
+}
+
+/// Masks with one pixel marked in each plane, as FITS and CASA images.
+void write_marked(const imager::ImageHeader& header, const std::string& name) {
+  const auto writer = open_image_files(name, header, imager::PixelFormat::float32, "both");
+  for (int channel = 0; channel < header.spectral.channels; ++channel)
+    for (int stokes = 0; stokes < static_cast<int>(header.stokes.size()); ++stokes) {
+      imager::Image image(header.geometry.width, header.geometry.height);
+      image.pixel[static_cast<std::size_t>(mark({channel, stokes}))] = 1;
+      writer->write({channel, stokes}, image, std::nullopt);
+    }
+  writer->finish();
 }
 
 }  // namespace
@@ -155,6 +176,64 @@ BOOST_AUTO_TEST_CASE(a_fits_image_allows_what_is_neither_0_nor_nan) {
   imager::ImageGeometry other = geometry;
   other.width = 61;
   BOOST_CHECK_THROW(read_mask(folder / "mask.fits", other), std::runtime_error);
+}
+
+BOOST_AUTO_TEST_CASE(each_plane_of_a_cube_is_the_mask_of_its_channel_and_stokes_parameter) {
+  const TemporaryFolder folder;
+  const imager::ImageHeader cube = example_header(3, "IQ");
+  write_marked(cube, folder / "mask");
+  imager::ImageHeader image = cube;
+  image.stokes = {imager::Stokes::Q};
+  for (const char* name : {"mask.fits", "mask"}) {
+    const MaskFile file(folder / name, image);
+    BOOST_TEST(!file.one_for_all_channels());
+    BOOST_TEST(!file.one_for_all_stokes());
+    for (int channel = 0; channel < 3; ++channel) {
+      const imager::Image mask = file.mask({channel, 0});
+      for (std::size_t i = 0; i < mask.pixel.size(); ++i)
+        BOOST_TEST(mask.pixel[i] == (static_cast<int>(i) == mark(imager::PlaneIndex{channel, 1}) ? 1 : 0));
+    }
+  }
+}
+
+BOOST_AUTO_TEST_CASE(a_mask_of_one_plane_or_of_regions_serves_every_plane) {
+  const TemporaryFolder folder;
+  const imager::ImageHeader cube = example_header(3, "IQ");
+  write_marked(example_header(1), folder / "mask");
+  std::ofstream(folder / "mask.crtf") << "#CRTF\nbox [[0pix, 0pix], [0pix, 0pix]]\n";
+  for (const char* name : {"mask.fits", "mask", "mask.crtf"}) {
+    const MaskFile file(folder / name, cube);
+    BOOST_TEST(file.one_for_all_channels());
+    BOOST_TEST(file.one_for_all_stokes());
+    const imager::Image mask = file.mask({2, 1});
+    BOOST_TEST(mask.pixel[0] == 1);
+    BOOST_TEST(std::count(mask.pixel.begin(), mask.pixel.end(), 1.0) == 1);
+  }
+}
+
+BOOST_AUTO_TEST_CASE(a_mask_of_other_planes_is_refused) {
+  const TemporaryFolder folder;
+  const imager::ImageHeader cube = example_header(3, "IQ");
+  write_marked(cube, folder / "mask");
+  const auto refused_for = [&](const imager::ImageHeader& image, const std::string& part) {
+    for (const char* name : {"mask.fits", "mask"})
+      BOOST_CHECK_EXCEPTION(MaskFile(folder / name, image), std::runtime_error, [&](const std::exception& error) {
+        BOOST_TEST_INFO(error.what());
+        return std::string(error.what()).find(part) != std::string::npos;
+      });
+  };
+  imager::ImageHeader other = cube;
+  other.spectral.channels = 4;
+  refused_for(other, "expected one plane, or the image's 4 planes");
+  other = cube;
+  other.spectral.reference_hz += 0.2 * other.spectral.increment_hz;
+  refused_for(other, "expected one plane, or the image's 3 planes");
+  other = cube;
+  other.stokes = {imager::Stokes::I, imager::Stokes::V};
+  refused_for(other, "none of V");
+  other = cube;
+  other.geometry.phase_centre.ra_rad += 1e-4;
+  refused_for(other, "lies elsewhere");
 }
 
 BOOST_AUTO_TEST_SUITE_END()

@@ -25,9 +25,9 @@ std::uint64_t checksum(const std::vector<const imager::Image*>& images);
 void write_clean_state(const std::string& path, const imager::CleanState& state, const CleanStateOwner& owner);
 
 /// Reads a state for a run of these options and data. Options that only end CLEAN or do not reach it (niter, threshold, nsigma,
-/// nmajor, savemodel, restoringbeam, verify, threads, memory, quiet, restart), the name of the images, and the folder of
-/// kernels may differ. Throws std::runtime_error that names the file, and the option or what else is different, or that the
-/// file is damaged.
+/// nmajor, savemodel, restoringbeam, verify, threads, memory, quiet, outformat, restart), the name of the images, and the
+/// folder of kernels may differ. Throws std::runtime_error that names the file, and the option or what else is different, or
+/// that the file is damaged.
 imager::CleanState read_clean_state(const std::string& path, const CleanStateOwner& owner);
 
 }  // namespace misfit::tools

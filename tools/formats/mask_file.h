@@ -1,28 +1,39 @@
 #pragma once
 
+#include <memory>
 #include <string>
 #include <vector>
 
-#include "imager/geometry.h"
-#include "imager/image.h"
-#include "imager/stokes.h"
+#include "imager/image_header.h"
+#include "imager/image_reader.h"
 
 namespace misfit::tools {
 
-/// A mask for images of this geometry: 1 where CLEAN may take components from, 0 elsewhere. `path` is a FITS image of the same
-/// size, whose pixels that are neither 0 nor NaN are allowed, or CASA region text (CRTF) of boxes, centred boxes and circles:
-///
-///     #CRTF
-///     circle [[12h30m49.42s, +12d23m28.0s], 10arcsec]
-///     box [[100pix, 100pix], [180pix, 140pix]]
-///     -centerbox [[187.70deg, 12.39deg], [4arcsec, 2arcsec]]
-///
-/// Pixels count from 0, columns first. A minus sign takes a region's pixels away from those before it. `coord` must be the
-/// image's frame; other keywords, and annotations, have no meaning here. Throws std::runtime_error that names the file, the
-/// line and what was expected.
+/// A file that says where CLEAN may take components from in the planes of an image: a FITS or CASA image of the same pixels,
+/// where those that are neither 0 nor NaN are allowed, with one plane for all or one for each, along the spectral axis and
+/// that of Stokes parameters alike; or region text, see region_text.h.
+class MaskFile {
+ public:
+  /// Of an image with these pixels, planes and Stokes parameters. Throws std::runtime_error that names the file and what was
+  /// expected.
+  MaskFile(const std::string& path, imager::ImageHeader image);
+
+  bool one_for_all_channels() const;
+  bool one_for_all_stokes() const;
+  /// Of a plane of the image: 1 where CLEAN may take components from, 0 elsewhere.
+  imager::Image mask(const imager::PlaneIndex& at) const;
+
+ private:
+  imager::ImageHeader image_;
+  std::unique_ptr<imager::ImageReader> file_;  ///< null where the file is region text
+  imager::Image regions_;
+};
+
+/// The mask of an image of one plane.
 imager::Image read_mask(const std::string& path, const imager::ImageGeometry& geometry);
 
-/// The same for images of these Stokes parameters: one mask for all, or one for each where the FITS image has a plane of each.
+/// Those of an image of one frequency: one mask for all of these Stokes parameters, or one for each where the file has one of
+/// each.
 std::vector<imager::Image> read_masks(const std::string& path, const imager::ImageGeometry& geometry,
                                       const std::vector<imager::Stokes>& stokes);
 

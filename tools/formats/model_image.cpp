@@ -8,6 +8,7 @@
 #include "imager/extent.h"
 #include "imager/plan/planned_transform.h"
 #include "tools/base/numbers.h"
+#include "tools/formats/image_file.h"
 
 namespace misfit::tools {
 namespace {
@@ -47,8 +48,17 @@ void check_model(const imager::SkyImage& model, const imager::SkyDirection& cent
 }  // namespace
 
 std::vector<imager::SkyImage> read_stokes_model(const std::string& path, const imager::SkyDirection& centre) {
-  std::vector<imager::SkyImage> planes = imager::read_stokes_images(path);
-  for (const imager::SkyImage& plane : planes) check_model(plane, centre, path);
+  const auto file = open_image_file(path);
+  const int channels = file->header().spectral.channels;
+  if (channels > 1)
+    throw std::runtime_error(path + " has planes of " + std::to_string(channels) + " frequencies; expected one");
+  return read_model_channel(*file, {path, 0}, centre);
+}
+
+std::vector<imager::SkyImage> read_model_channel(const imager::ImageReader& file, const ModelChannel& of,
+                                                 const imager::SkyDirection& centre) {
+  std::vector<imager::SkyImage> planes = imager::read_channel(file, of.channel);
+  for (const imager::SkyImage& plane : planes) check_model(plane, centre, of.path);
   return planes;
 }
 

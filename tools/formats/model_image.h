@@ -13,9 +13,20 @@
 
 namespace misfit::tools {
 
-/// A model image in Jy/pixel whose reference position is `centre`, with a finite number in every pixel above the horizon: a
-/// plane for each Stokes parameter that the file holds. Throws std::runtime_error that names the file and what was expected.
+/// A model of one frequency, a FITS or CASA image in Jy/pixel whose reference position is `centre`, with a finite number in
+/// every pixel above the horizon: a plane for each Stokes parameter that the file holds. Throws std::runtime_error that names
+/// the file and what was expected.
 std::vector<imager::SkyImage> read_stokes_model(const std::string& path, const imager::SkyDirection& centre);
+
+/// A channel of a file of this name.
+struct ModelChannel {
+  std::string path;
+  int channel = 0;
+};
+
+/// The same of one channel of a model with several; see channel_for() in image_file.h.
+std::vector<imager::SkyImage> read_model_channel(const imager::ImageReader& file, const ModelChannel& of,
+                                                 const imager::SkyDirection& centre);
 
 /// A model as an operator from coordinates to visibilities.
 struct ModelVisibilities {

@@ -17,6 +17,7 @@
 #include "tools/base/quantity.h"
 #include "tools/base/text.h"
 #include "tools/formats/config_file.h"
+#include "tools/run/image_files.h"
 #include "tools/run/selection_options.h"
 #include "tools/run/weighting_options.h"
 
@@ -98,7 +99,8 @@ void declare(CLI::App& command, ImageOptions& o) {
   command.add_option(
       "--restoringbeam", o.restoringbeam,
       "Restore with this beam: MAJ, or MAJ,MIN,PA such as 0.5arcsec,0.4arcsec,30deg; the fitted one when empty or common");
-  command.add_option("--mask", o.mask, "Where CLEAN finds components: a FITS image, not 0 there, or CASA region text (CRTF)");
+  command.add_option("--mask", o.mask,
+                     "Where CLEAN finds components: a FITS or CASA image, not 0 there, or CASA region text (CRTF)");
   command
       .add_option("--usemask", o.usemask, "user: --mask, or everywhere; auto: from the residuals, as tclean's auto-multithresh")
       ->check(CLI::IsMember({"user", "auto"}));
@@ -108,7 +110,8 @@ void declare(CLI::App& command, ImageOptions& o) {
   command.add_option("--lownoisethreshold", o.lownoisethreshold, "… grown down to this times the noise");
   command.add_option("--minbeamfrac", o.minbeamfrac, "… without regions below this part of the beam's area");
   command.add_option("--growiterations", o.growiterations, "… by this many pixels a major cycle at most");
-  command.add_option("--startmodel", o.startmodel, "Begin with this model, a FITS image in Jy/pixel of the same pixels");
+  command.add_option("--startmodel", o.startmodel,
+                     "Begin with this model, a FITS or CASA image in Jy/pixel of the same pixels");
   command.add_option("--savemodel", o.savemodel, "modelcolumn: write the model's visibilities into MODEL_DATA; none")
       ->check(CLI::IsMember({"none", "modelcolumn"}));
   command.add_flag("--restart", o.restart,
@@ -117,6 +120,7 @@ void declare(CLI::App& command, ImageOptions& o) {
   command.add_flag("--check-outside", o.check_outside,
                    "Look for sources outside the image, in four times its field, whose aliases may exceed its noise");
   command.add_option("--memory", o.memory_gib, "GiB that the run may take; 0 means half of the machine's memory");
+  command.add_option("--outformat", o.outformat, "Images as files of: fits, casa, both")->check(CLI::IsMember(image_formats()));
   command.add_flag("--dry-run", o.dry_run, "Print the plan and the memory it takes; read no visibilities and write nothing");
 }
 

@@ -63,13 +63,14 @@ struct ImageOptions {
   double lownoisethreshold = 1.5;
   double minbeamfrac = 0.3;
   int growiterations = 75;
-  std::string startmodel;  ///< a FITS image in Jy/pixel; empty = none
+  std::string startmodel;  ///< an image in Jy/pixel; empty = none
   std::string savemodel = "none";
   bool restart = false;
   int verify = 0;
   bool check_outside = false;
   int threads = 0;
   double memory_gib = 0;
+  std::string outformat = "fits";  ///< of images, see image_files.h
   bool dry_run = false;
   bool quiet = false;
 };

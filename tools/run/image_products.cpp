@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "tools/run/image_files.h"
+
 namespace misfit::tools {
 
 std::vector<imager::HeaderCard> error_cards(const RunReport& report) {
@@ -37,42 +39,50 @@ std::vector<imager::HeaderCard> error_cards(const RunReport& report) {
   return cards;
 }
 
-ImageProducts::ImageProducts(std::string imagename, const imager::ImageGeometry& geometry,
-                             const imager::Observation& observation, double accuracy)
-    : imagename_(std::move(imagename)),
-      format_(accuracy != 0 && accuracy < 1e-7 ? imager::PixelFormat::float64 : imager::PixelFormat::float32) {
-  common_.geometry = geometry;
-  common_.observation = observation;
-}
-
-void ImageProducts::set_beam(const imager::Beam& beam) {
-  common_.has_beam = true;
-  common_.beam = beam;
+ImageProducts::ImageProducts(const ImageOptions& options, const imager::ImageGeometry& geometry,
+                             const imager::Observation& observation)
+    : imagename_(options.imagename), outformat_(options.outformat), format_(pixel_format(options.accuracy)) {
+  header_.geometry = geometry;
+  header_.observation = observation;
+  header_.spectral = imager::whole_band(observation);
 }
 
 void ImageProducts::add(const std::string& name, const std::string& unit, std::vector<imager::Image> images) {
-  files_.push_back({imagename_ + "." + name + ".fits", {}});
-  for (std::size_t i = 0; i < images.size(); ++i) {
-    imager::SkyImage& plane = files_.back().planes.emplace_back(common_);
-    plane.stokes = stokes_[i];
-    plane.unit = unit;
-    plane.image = std::move(images[i]);
-  }
+  files_.push_back({imagename_ + "." + name, unit, std::move(images)});
 }
 
 void ImageProducts::write() const {
-  for (const File& file : files_) imager::write_fits(file.planes, file.path, format_);
+  for (const File& file : files_) {
+    imager::ImageHeader header = header_;
+    header.unit = file.unit;
+    header.stokes.resize(file.planes.size());
+    const auto writer = open_image_files(file.name, header, format_, outformat_);
+    for (std::size_t s = 0; s < file.planes.size(); ++s) writer->write({0, static_cast<int>(s)}, file.planes[s], beam_);
+    writer->finish();
+  }
+}
+
+std::vector<std::string> ImageProducts::paths() const {
+  std::vector<std::string> paths;
+  for (const File& file : files_)
+    for (const std::string& path : image_paths(file.name, outformat_)) paths.push_back(path);
+  return paths;
 }
 
 void ImageProducts::draw(const std::vector<ProductPicture>& pictures) {
-  std::vector<imager::SkyImage> about(pictures.size(), common_);
+  imager::SkyImage about;
+  about.geometry = header_.geometry;
+  about.observation = header_.observation;
+  about.has_beam = beam_.has_value();
+  about.beam = beam_.value_or(imager::Beam{});
+  std::vector<imager::SkyImage> each(pictures.size(), about);
   std::vector<Picture> wanted;
   for (std::size_t i = 0; i < pictures.size(); ++i) {
     const ProductPicture& picture = pictures[i];
     const std::string path = imagename_ + "." + picture.name + ".png";
-    about[i].unit = picture.unit;
+    each[i].unit = picture.unit;
     titles_and_paths_.emplace_back(picture.title, path);
-    wanted.push_back({&about[i], picture.title, path, picture.shades, picture.image, picture.sketch, picture.mask});
+    wanted.push_back({&each[i], picture.title, path, picture.shades, picture.image, picture.sketch, picture.mask});
   }
   drawing_.add(wanted);
 }

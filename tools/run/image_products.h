@@ -1,11 +1,14 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include "imager/fits_image.h"
+#include "imager/image_header.h"
+#include "imager/image_writer.h"
 #include "tools/drawing/pictures.h"
+#include "tools/run/image_options.h"
 #include "tools/run/run_report.h"
 
 namespace misfit::tools {
@@ -27,19 +30,21 @@ struct ProductPicture {
 /// The images of a run, as files and as pictures. What is set applies to those that come afterwards.
 class ImageProducts {
  public:
-  /// Files are 64-bit when the accuracy asked is below 1e-7, 32-bit otherwise.
-  ImageProducts(std::string imagename, const imager::ImageGeometry& geometry, const imager::Observation& observation,
-                double accuracy);
+  /// Files are of the format that --outformat names, see image_files.h, and 64-bit when the accuracy asked is below 1e-7,
+  /// 32-bit otherwise.
+  ImageProducts(const ImageOptions& options, const imager::ImageGeometry& geometry, const imager::Observation& observation);
 
-  void set_stokes(const std::vector<imager::Stokes>& stokes) { stokes_ = stokes; }
+  void set_stokes(const std::vector<imager::Stokes>& stokes) { header_.stokes = stokes; }
+  void set_history(const std::string& line) { header_.history = {line}; }
+  void set_cards(std::vector<imager::HeaderCard> cards) { header_.cards = std::move(cards); }
+  void set_beam(const imager::Beam& beam) { beam_ = beam; }
 
-  void set_history(const std::string& line) { common_.history = {line}; }
-  void set_cards(std::vector<imager::HeaderCard> cards) { common_.cards = std::move(cards); }
-  void set_beam(const imager::Beam& beam);
-
-  /// Images for write(), as <imagename>.<name>.fits: of the Stokes parameters in their order, or one that serves all.
+  /// Images for write(), as files of the name <imagename>.<name>: of the Stokes parameters in their order, or one that serves
+  /// all.
   void add(const std::string& name, const std::string& unit, std::vector<imager::Image> images);
   void write() const;
+  /// The paths that write() writes.
+  std::vector<std::string> paths() const;
 
   /// Begins to draw <imagename>.<name>.png while the caller does other things; images are looked at until it returns.
   void draw(const std::vector<ProductPicture>& pictures);
@@ -52,14 +57,16 @@ class ImageProducts {
 
  private:
   struct File {
-    std::string path;
-    std::vector<imager::SkyImage> planes;
+    std::string name;
+    std::string unit;
+    std::vector<imager::Image> planes;  ///< [Stokes]
   };
 
   std::string imagename_;
+  std::string outformat_;
   imager::PixelFormat format_;
-  imager::SkyImage common_;
-  std::vector<imager::Stokes> stokes_{imager::Stokes::I};
+  imager::ImageHeader header_;
+  std::optional<imager::Beam> beam_;
   std::vector<File> files_;
   PictureDrawing drawing_;
   std::vector<std::pair<std::string, std::string>> titles_and_paths_;

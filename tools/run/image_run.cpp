@@ -72,7 +72,7 @@ class ImageRun {
 
   void open() {
     const imager::StageTimer timer(times_, "open");
-    if (!o_.dry_run) check_writable_folder(o_.imagename);
+    if (!o_.dry_run) check_product_paths(o_);
     if (o_.savemodel == "modelcolumn")
       for (const std::string& set : o_.vis) ms_io::require_writable(set);
     set_ = std::make_unique<ms_io::MeasurementSet>(o_.vis, selection_of(o_), o_.datacolumn, stokes_);

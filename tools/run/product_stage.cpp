@@ -1,24 +1,18 @@
 #include "tools/run/product_stage.h"
 
 #include <algorithm>
+#include <array>
 #include <filesystem>
-#include <fstream>
 #include <string_view>
 
 #include "tools/base/files.h"
 #include "tools/formats/component_list.h"
+#include "tools/run/image_files.h"
 
 namespace misfit::tools {
 namespace {
 
-/// Whether a file of one of our names is ours: people keep masks and models of theirs under such names too.
-bool is_ours(const std::string& path) {
-  if (!path.ends_with(".fits")) return true;
-  std::ifstream file(path, std::ios::binary);
-  std::string header(16 * 2880, '\0');  // ORIGIN stands before the history
-  file.read(header.data(), static_cast<std::streamsize>(header.size()));
-  return header.find("ORIGIN  = 'misfit") != std::string::npos;
-}
+constexpr std::array image_kinds{"psf", "residual", "model", "image", "mask"};
 
 /// A list of one, which an initializer cannot be moved into.
 std::vector<imager::Image> alone(imager::Image image) {
@@ -29,11 +23,13 @@ std::vector<imager::Image> alone(imager::Image image) {
 
 }  // namespace
 
+void check_product_paths(const ImageOptions& o) {
+  check_writable_folder(o.imagename);
+  for (const char* kind : image_kinds) check_image_paths(o.imagename + "." + kind, o.outformat);
+}
+
 ProductStage::ProductStage(const ImageOptions& options, ProductScene scene, imager::StageTimes& times)
-    : o_(options),
-      scene_(std::move(scene)),
-      times_(times),
-      products_(o_.imagename, scene_.geometry, scene_.observation, o_.accuracy) {
+    : o_(options), scene_(std::move(scene)), times_(times), products_(o_, scene_.geometry, scene_.observation) {
   products_.set_stokes(scene_.stokes);
   products_.set_history(scene_.history);
   products_.set_cards(scene_.cards);
@@ -70,8 +66,8 @@ std::vector<std::string> ProductStage::write(imager::DirtyImages images) {
   const imager::StageTimer timer(times_, "write images");
   products_.add("psf", "Jy/beam", alone(std::move(images.psf)));
   products_.add("residual", "Jy/beam", std::move(images.dirty));
-  auto removed = remove_old(
-      {"model.fits", "model.png", "image.fits", "image.png", "dirty.png", "mask.fits", "components.csv", "clean.state"});
+  auto removed = remove_old({"model.png", "image.png", "dirty.png", "components.csv", "clean.state"});
+  remove_other_images(removed);
   remove_other_stokes(removed);
   products_.write();
   return removed;
@@ -108,12 +104,12 @@ std::vector<std::string> ProductStage::write(imager::Image psf, std::vector<imag
   products_.add("psf", "Jy/beam", alone(std::move(psf)));
   products_.add("model", "Jy/pixel", std::move(models));
   products_.add("residual", "Jy/beam", std::move(residuals));
-  std::error_code absent;
-  const bool kept =
-      std::filesystem::equivalent(o_.mask, o_.imagename + ".mask.fits", absent);  // the user's file stays as it is
+  const std::vector<std::string> paths = image_paths(o_.imagename + ".mask", o_.outformat);
+  const bool kept = std::any_of(paths.begin(), paths.end(), [&](const std::string& path) { return is_input(path); });
   if (masked && !kept) products_.add("mask", "", std::move(masks));
   products_.add("image", "Jy/beam", std::move(images));
-  auto removed = masked ? std::vector<std::string>() : remove_old({"mask.fits"});
+  std::vector<std::string> removed;
+  remove_other_images(removed);
   remove_other_stokes(removed);
   products_.write();
   return removed;
@@ -165,13 +161,30 @@ void ProductStage::remove_other_stokes(std::vector<std::string>& removed) const 
   removed.insert(removed.end(), others.begin(), others.end());
 }
 
-/// What an earlier run of this name left and this one does not make.
+/// Files of images that an earlier run left, of kinds or in a format that this one does not make.
+void ProductStage::remove_other_images(std::vector<std::string>& removed) const {
+  const std::vector<std::string> made = products_.paths();
+  for (const char* kind : image_kinds)
+    for (const std::string& path : image_paths(o_.imagename + "." + kind, "both")) {
+      std::error_code failed;
+      if (std::count(made.begin(), made.end(), path) > 0 || is_input(path) || !is_own_image(path)) continue;
+      if (std::filesystem::remove_all(path, failed) > 0 && !failed) removed.push_back(path);
+    }
+}
+
+/// Whether the user named it: such a file stays as it is.
+bool ProductStage::is_input(const std::string& path) const {
+  std::error_code absent;
+  return std::filesystem::equivalent(path, o_.mask, absent) || std::filesystem::equivalent(path, o_.startmodel, absent);
+}
+
+/// Other files that an earlier run of this name left and this one does not make.
 std::vector<std::string> ProductStage::remove_old(const std::vector<std::string>& kinds) const {
   std::vector<std::string> removed;
   for (const std::string& kind : kinds) {
     const std::string path = o_.imagename + "." + kind;
     std::error_code failed;  // a folder of that name stays
-    if (is_ours(path) && std::filesystem::remove(path, failed)) removed.push_back(path);
+    if (std::filesystem::remove(path, failed)) removed.push_back(path);
   }
   return removed;
 }

@@ -25,6 +25,10 @@ struct ProductScene {
   int threads = 1;
 };
 
+/// Throws std::runtime_error that names it where the folder of the images cannot be written, or something lies under the name
+/// of one that none may take the place of.
+void check_product_paths(const ImageOptions& options);
+
 /// The images, pictures and lists that `misfit image` leaves. Stages timed: "draw pictures", "restore", "write images".
 class ProductStage {
  public:
@@ -52,6 +56,8 @@ class ProductStage {
   void write_components(const std::vector<imager::CleanResult>& cleaned) const;
   imager::Image restored(const imager::CleanResult& cleaned) const;
   std::vector<imager::Source> sources(const imager::ComponentModel& model) const;
+  void remove_other_images(std::vector<std::string>& removed) const;
+  bool is_input(const std::string& path) const;
   void remove_other_stokes(std::vector<std::string>& removed) const;
   std::vector<std::string> remove_old(const std::vector<std::string>& kinds) const;
 

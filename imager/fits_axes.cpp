@@ -1,0 +1,127 @@
+#include "imager/fits_axes.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+#include "imager/constants.h"
+
+namespace misfit::imager {
+namespace {
+
+/// Of the axis that counts from 0.
+FitsAxis read_axis(const FitsFile& file, std::size_t axis) {
+  const std::string n = std::to_string(axis + 1);
+  return {file.text("CTYPE" + n), file.text("CUNIT" + n), file.number("CRPIX" + n).value_or(1), file.needed_number("CRVAL" + n),
+          file.number("CDELT" + n).value_or(1)};
+}
+
+/// Hz or m/s in one of the axis's unit.
+double unit_of(const FitsFile& file, const FitsAxis& axis) {
+  struct Unit {
+    const char* name;
+    double value;
+  };
+  static constexpr Unit frequency[]{{"", 1}, {"Hz", 1}, {"kHz", 1e3}, {"MHz", 1e6}, {"GHz", 1e9}};
+  static constexpr Unit velocity[]{{"", 1}, {"m/s", 1}, {"m s-1", 1}, {"km/s", 1e3}, {"km s-1", 1e3}};
+  if (axis.type == "FREQ") {
+    for (const Unit& unit : frequency)
+      if (axis.unit == unit.name) return unit.value;
+    file.fail("its FREQ axis has the unit " + axis.unit + "; expected Hz, kHz, MHz or GHz");
+  }
+  for (const Unit& unit : velocity)
+    if (axis.unit == unit.name) return unit.value;
+  file.fail("its " + axis.type + " axis has the unit " + axis.unit + "; expected m/s or km/s");
+}
+
+/// The frequencies that a FREQ or VRAD axis of so many planes states. Both are linear: ν = ν₀ (1 − v/c) (Greisen et al. 2006,
+/// table 3).
+void set_frequencies(const FitsFile& file, FitsAxis axis, SpectralAxis& spectral) {
+  const double unit = unit_of(file, axis);
+  axis.reference_value *= unit;
+  axis.increment *= unit;
+  if (axis.type == "VRAD") {
+    if (!(spectral.rest_frequency_hz > 0)) file.fail("its VRAD axis has no RESTFRQ");
+    axis.reference_value = spectral.rest_frequency_hz * (1 - axis.reference_value / speed_of_light_m_s);
+    axis.increment *= -spectral.rest_frequency_hz / speed_of_light_m_s;
+  }
+  spectral.reference_hz = axis.reference_value + (1 - axis.reference_pixel) * axis.increment;
+  spectral.increment_hz = axis.increment;
+}
+
+Stokes stokes_of(const FitsFile& file, const FitsAxis& axis, long plane) {
+  const double code = axis.reference_value + (static_cast<double>(plane) - axis.reference_pixel) * axis.increment;
+  const double whole = std::round(code);
+  if (std::abs(whole) > 8 || !is_fits_stokes_code(static_cast<int>(whole)) || std::abs(code - whole) > 0.01)
+    file.fail("plane " + std::to_string(plane) + " of its STOKES axis has the code " + std::to_string(code) +
+              "; expected 1 to 4, for I, Q, U and V, or -1 to -8, for correlations");
+  return stokes_of_fits_code(static_cast<int>(whole));
+}
+
+}  // namespace
+
+FitsAxis stokes_axis(const std::vector<Stokes>& stokes) {
+  if (stokes.empty()) throw std::invalid_argument("a FITS image of no planes; expected one at least");
+  const auto code = [&](std::size_t i) { return fits_stokes_code(stokes[i]); };
+  const int step = stokes.size() == 1 ? 1 : code(1) - code(0);
+  for (std::size_t i = 1; i < stokes.size(); ++i)
+    if (step == 0 || code(i) - code(i - 1) != step)
+      throw std::invalid_argument("STOKES codes " + std::to_string(code(i - 1)) + " and " + std::to_string(code(i)) +
+                                  " in one FITS image; expected evenly spaced ones");
+  return {"STOKES", "", 1, static_cast<double>(code(0)), static_cast<double>(step)};
+}
+
+FitsPlanes find_planes(const FitsFile& file) {
+  const std::vector<long> size = file.size();
+  FitsPlanes planes;
+  planes.axes = size.size();
+  bool is_image = size.size() >= 2;
+  for (std::size_t i = 0; is_image && i < size.size(); ++i) {
+    is_image = size[i] >= 1 && size[i] <= std::numeric_limits<int>::max();
+    if (i < 2 || !is_image) continue;
+    const std::string type = file.text("CTYPE" + std::to_string(i + 1));
+    if (type == "STOKES" && !planes.stokes)
+      planes.stokes = i;
+    else if ((type == "FREQ" || type == "VRAD") && !planes.spectral)
+      planes.spectral = i;
+    else if (size[i] > 1)
+      file.fail("its axis " + std::to_string(i + 1) + " of type '" + type + "' has length " + std::to_string(size[i]) +
+                "; expected 1 of all but one STOKES axis and one FREQ or VRAD axis");
+  }
+  if (!is_image) file.fail("its primary image has no two axes of pixels");
+  return planes;
+}
+
+std::vector<long> first_pixel(const FitsPlanes& planes, const PlaneIndex& at) {
+  std::vector<long> first(planes.axes, 1);
+  if (planes.spectral) first[*planes.spectral] = at.channel + 1;
+  if (planes.stokes) first[*planes.stokes] = at.stokes + 1;
+  return first;
+}
+
+SpectralAxis read_spectral_axis(const FitsFile& file, const FitsPlanes& planes) {
+  SpectralAxis spectral;
+  spectral.frame = file.text("SPECSYS");
+  const std::optional<double> rest_hz = file.number("RESTFRQ");
+  spectral.rest_frequency_hz = rest_hz ? *rest_hz : file.number("RESTFREQ").value_or(0);
+  spectral.reference_hz = spectral.rest_frequency_hz;
+  if (!planes.spectral) return spectral;
+  spectral.channels = static_cast<int>(file.size()[*planes.spectral]);
+  set_frequencies(file, read_axis(file, *planes.spectral), spectral);
+  return spectral;
+}
+
+std::vector<Stokes> read_stokes(const FitsFile& file, const FitsPlanes& planes) {
+  if (!planes.stokes) return {Stokes::I};
+  const FitsAxis axis = read_axis(file, *planes.stokes);
+  std::vector<Stokes> list;
+  for (long plane = 1; plane <= file.size()[*planes.stokes]; ++plane) {
+    const Stokes stokes = stokes_of(file, axis, plane);
+    if (std::find(list.begin(), list.end(), stokes) != list.end()) file.fail("it has two planes of " + stokes_name(stokes));
+    list.push_back(stokes);
+  }
+  return list;
+}
+
+}  // namespace misfit::imager

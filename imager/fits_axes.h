@@ -1,0 +1,50 @@
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "imager/fits_file.h"
+#include "imager/spectral_axis.h"
+#include "imager/stokes.h"
+
+namespace misfit::imager {
+
+/// What a FITS header says of an axis: pixel p, counted from 1, has the value reference_value + (p − reference_pixel) ·
+/// increment.
+struct FitsAxis {
+  std::string type;
+  std::string unit;
+  double reference_pixel = 1;
+  double reference_value = 0;
+  double increment = 1;
+};
+
+/// The STOKES axis of these Stokes parameters. Throws std::invalid_argument where there are none, or their codes are not
+/// evenly spaced.
+FitsAxis stokes_axis(const std::vector<Stokes>& stokes);
+
+/// Where the planes of a file lie among its axes, which count from 0.
+struct FitsPlanes {
+  std::size_t axes = 2;
+  std::optional<std::size_t> spectral;  ///< FREQ or VRAD
+  std::optional<std::size_t> stokes;
+};
+
+/// Throws std::runtime_error where the primary image has no two axes of pixels, or beyond those any that is longer than 1 but
+/// one spectral axis and one of Stokes parameters.
+FitsPlanes find_planes(const FitsFile& file);
+
+/// The first pixel of a plane, counted from 1 along each axis.
+std::vector<long> first_pixel(const FitsPlanes& planes, const PlaneIndex& at);
+
+/// The frequencies of the planes; of none, RESTFRQ. Throws std::runtime_error where a velocity has no rest frequency, or a
+/// unit is not known.
+SpectralAxis read_spectral_axis(const FitsFile& file, const FitsPlanes& planes);
+
+/// In the order of the file; I where it has no such axis. Throws std::runtime_error where a plane is none that Stokes names,
+/// or two are of the same.
+std::vector<Stokes> read_stokes(const FitsFile& file, const FitsPlanes& planes);
+
+}  // namespace misfit::imager

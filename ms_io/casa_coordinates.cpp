@@ -1,0 +1,194 @@
+#include <casacore/casa/Arrays/ArrayLogical.h>
+#include <casacore/casa/Arrays/Matrix.h>
+#include <casacore/casa/Quanta/MVTime.h>
+#include <casacore/coordinates/Coordinates/DirectionCoordinate.h>
+#include <casacore/coordinates/Coordinates/SpectralCoordinate.h>
+#include <casacore/coordinates/Coordinates/StokesCoordinate.h>
+
+#include <cmath>
+#include <stdexcept>
+
+#include "imager/constants.h"
+#include "imager/julian_date.h"
+#include "ms_io/casa_coordinates_internal.h"
+#include "ms_io/celestial_frame_internal.h"
+#include "ms_io/spectral_frame_internal.h"
+
+namespace misfit::ms_io {
+namespace {
+
+constexpr double degree = imager::pi / 180;
+
+[[noreturn]] void refuse(const std::string& path, const std::string& reason) {
+  throw std::runtime_error("cannot read " + path + ": " + reason);
+}
+
+casacore::DirectionCoordinate direction_coordinate(const imager::ImageGeometry& g) {
+  casacore::Matrix<double> unrotated(2, 2, 0.0);
+  unrotated.diagonal() = 1.0;
+  // LONPOLE of 180 degrees as in the FITS header: beside a pole casacore would take another.
+  return {direction_type(g.phase_centre.frame),
+          casacore::Projection(casacore::Projection::SIN, casacore::Vector<double>(2, 0.0)),
+          g.phase_centre.ra_rad,
+          g.phase_centre.dec_rad,
+          -g.cell_rad,
+          g.cell_rad,
+          unrotated,
+          g.centre_column() + g.centre.l / g.cell_rad,
+          g.centre_row() - g.centre.m / g.cell_rad,
+          imager::pi,
+          g.phase_centre.dec_rad};
+}
+
+casacore::StokesCoordinate stokes_coordinate(const std::vector<imager::Stokes>& list) {
+  casacore::Vector<casacore::Int> codes(list.size());
+  for (std::size_t s = 0; s < list.size(); ++s) codes[s] = static_cast<int>(list[s]);
+  return casacore::StokesCoordinate(codes);
+}
+
+casacore::SpectralCoordinate spectral_coordinate(const imager::ImageHeader& header) {
+  const imager::SpectralAxis& axis = header.spectral;
+  const double rest_hz = axis.rest_frequency_hz > 0 ? axis.rest_frequency_hz : header.observation.frequency_hz;
+  return {spectral_frame_code(axis.frame), axis.reference_hz, axis.step_hz(), 0, rest_hz};
+}
+
+casacore::ObsInfo obs_info(const imager::Observation& observation, const imager::SkyDirection& phase_centre) {
+  casacore::ObsInfo info;
+  info.setTelescope(observation.telescope);
+  info.setObserver(observation.observer);
+  if (const auto date = imager::modified_julian_date(observation.date_obs))
+    info.setObsDate(casacore::MEpoch(casacore::Quantity(*date, "d"), casacore::MEpoch::UTC));
+  info.setPointingCenter(casacore::MVDirection(phase_centre.ra_rad, phase_centre.dec_rad));
+  return info;
+}
+
+/// Whether the pixels along the edges lie where the geometry has them, to a thousandth of a cell.
+bool lies_as(const casacore::DirectionCoordinate& direction, const imager::ImageGeometry& g) {
+  for (const auto& [row, column] : {std::pair(0, g.centre_column()),
+                                    {g.height - 1, g.centre_column()},
+                                    {g.centre_row(), 0},
+                                    {g.centre_row(), g.width - 1},
+                                    {g.centre_row(), g.centre_column()}}) {
+    const imager::DirectionCosines at = g.at(row, column);
+    if (imager::beyond_horizon(at)) continue;
+    casacore::Vector<double> pixel(2), world(2);
+    pixel[0] = column;
+    pixel[1] = row;
+    if (!direction.toWorld(world, pixel)) return false;
+    const imager::DirectionCosines has = imager::direction_cosines({world[0], world[1], g.phase_centre.frame}, g.phase_centre);
+    if (!(std::hypot(has.l - at.l, has.m - at.m) < 1e-3 * g.cell_rad)) return false;
+  }
+  return true;
+}
+
+imager::ImageGeometry geometry_of(casacore::DirectionCoordinate direction, const casacore::IPosition& shape,
+                                  const std::string& path) {
+  direction.setWorldAxisUnits(casacore::Vector<casacore::String>(2, "rad"));
+  const auto type = direction.directionType();
+  const std::string frame = frame_name(type);
+  if (frame.empty())
+    refuse(path, "its directions are in " + casacore::MDirection::showType(type) + "; expected J2000, ICRS or B1950");
+  if (direction.projection().type() != casacore::Projection::SIN)
+    refuse(path, "its projection is " + direction.projection().name() + "; expected SIN");
+  const auto value = direction.referenceValue(), pixel = direction.referencePixel(), increment = direction.increment();
+  imager::ImageGeometry g{static_cast<int>(shape[0]), static_cast<int>(shape[1]), increment[1], {}};
+  const double ra_rad = value[0] < 0 ? value[0] + 2 * imager::pi : value[0];
+  g.phase_centre = {ra_rad, value[1], frame};
+  g.centre = {(pixel[0] - g.centre_column()) * g.cell_rad, (g.centre_row() - pixel[1]) * g.cell_rad};
+  if (!(g.cell_rad > 0) || !lies_as(direction, g)) refuse(path, "its pixels are not square with north up and east on the left");
+  return g;
+}
+
+imager::SpectralAxis spectral_axis_of(casacore::SpectralCoordinate spectral, int channels, const std::string& path) {
+  spectral.setWorldAxisUnits(casacore::Vector<casacore::String>(1, "Hz"));
+  imager::SpectralAxis axis;
+  axis.increment_hz = spectral.increment()[0];
+  axis.reference_hz = spectral.referenceValue()[0] - spectral.referencePixel()[0] * axis.increment_hz;
+  axis.channels = channels;
+  axis.frame = spectral_frame_of(spectral.frequencySystem(false));
+  axis.rest_frequency_hz = spectral.restFrequency();
+  const casacore::Vector<double> listed = spectral.worldValues();
+  for (std::size_t k = 0; k < listed.size(); ++k)
+    if (!(std::abs(listed[k] - axis.frequency_hz(static_cast<int>(k))) < 1e-3 * axis.width_hz()))
+      refuse(path, "the frequencies of its planes are not evenly spaced");
+  return axis;
+}
+
+std::vector<imager::Stokes> stokes_of(const casacore::StokesCoordinate& coordinate, const std::string& path) {
+  std::vector<imager::Stokes> list;
+  for (const casacore::Int code : coordinate.stokes()) {
+    if (!imager::is_stokes_code(code))
+      refuse(path, "it has a plane of " + casacore::Stokes::name(casacore::Stokes::type(code)));
+    list.push_back(static_cast<imager::Stokes>(code));
+  }
+  return list;
+}
+
+imager::Observation observation_of(const casacore::ObsInfo& info, const imager::SpectralAxis& axis) {
+  imager::Observation observation;
+  observation.telescope = info.telescope();
+  observation.observer = info.observer();
+  const casacore::MVEpoch& date = info.obsDate().getValue();
+  if (date.get() > 0) observation.date_obs = casacore::MVTime(date).string(casacore::MVTime::FITS, 9);
+  observation.frequency_hz = axis.frequency_hz(0) + 0.5 * (axis.channels - 1) * axis.increment_hz;
+  observation.bandwidth_hz = axis.channels * axis.width_hz();
+  observation.spectral_frame = axis.frame;
+  return observation;
+}
+
+}  // namespace
+
+casacore::CoordinateSystem casa_coordinates(const imager::ImageHeader& header) {
+  casacore::CoordinateSystem coordinates;
+  coordinates.addCoordinate(direction_coordinate(header.geometry));
+  coordinates.addCoordinate(stokes_coordinate(header.stokes));
+  coordinates.addCoordinate(spectral_coordinate(header));
+  coordinates.setObsInfo(obs_info(header.observation, header.geometry.phase_centre));
+  return coordinates;
+}
+
+casacore::IPosition CasaPlanes::first_pixel(const imager::PlaneIndex& at) const {
+  casacore::IPosition first(shape.size(), 0);
+  if (stokes >= 0) first[static_cast<std::size_t>(stokes)] = at.stokes;
+  if (spectral >= 0) first[static_cast<std::size_t>(spectral)] = at.channel;
+  return first;
+}
+
+casacore::IPosition CasaPlanes::plane_shape() const {
+  casacore::IPosition plane(shape.size(), 1);
+  plane[0] = shape[0];
+  plane[1] = shape[1];
+  return plane;
+}
+
+CasaPlanes find_planes(const casacore::CoordinateSystem& coordinates, const casacore::IPosition& shape,
+                       const std::string& path) {
+  CasaPlanes planes;
+  planes.shape = shape;
+  planes.stokes = coordinates.polarizationAxisNumber();
+  planes.spectral = coordinates.spectralAxisNumber();
+  const casacore::Vector<casacore::Int> direction = coordinates.directionAxesNumbers();
+  if (direction.size() != 2 || direction[0] != 0 || direction[1] != 1)
+    refuse(path, "its first two axes are not right ascension and declination");
+  for (int axis = 2; axis < static_cast<int>(shape.size()); ++axis)
+    if (axis != planes.stokes && axis != planes.spectral && shape[static_cast<std::size_t>(axis)] > 1)
+      refuse(path, "its axis " + std::to_string(axis + 1) + " has length " +
+                       std::to_string(shape[static_cast<std::size_t>(axis)]) +
+                       "; expected 1 of all but a Stokes and a spectral axis");
+  return planes;
+}
+
+imager::ImageHeader header_of(const casacore::CoordinateSystem& coordinates, const CasaPlanes& planes,
+                              const std::string& path) {
+  imager::ImageHeader header;
+  header.geometry = geometry_of(coordinates.directionCoordinate(), planes.shape, path);
+  if (planes.spectral >= 0)
+    header.spectral = spectral_axis_of(coordinates.spectralCoordinate(),
+                                       static_cast<int>(planes.shape[static_cast<std::size_t>(planes.spectral)]), path);
+  if (planes.stokes >= 0) header.stokes = stokes_of(coordinates.stokesCoordinate(), path);
+  header.observation = observation_of(coordinates.obsInfo(), header.spectral);
+  header.observation.phase_centre = header.geometry.phase_centre;
+  return header;
+}
+
+}  // namespace misfit::ms_io

@@ -1,0 +1,83 @@
+#include <casacore/casa/Arrays/Array.h>
+#include <casacore/images/Images/PagedImage.h>
+#include <casacore/tables/Tables/ArrayColumn.h>
+#include <casacore/tables/Tables/TableDesc.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+#include "imager/plane_beams.h"
+#include "ms_io/casa_coordinates_internal.h"
+#include "ms_io/casa_image.h"
+#include "ms_io/table_access_internal.h"
+
+namespace misfit::ms_io {
+namespace {
+
+imager::PlaneBeams beams_of(const casacore::ImageInfo& info, const imager::ImageHeader& header) {
+  imager::PlaneBeams beams(header.spectral.channels, static_cast<int>(header.stokes.size()));
+  if (!info.hasBeam()) return beams;
+  for (int channel = 0; channel < beams.channels(); ++channel)
+    for (int stokes = 0; stokes < beams.stokes(); ++stokes) {
+      const casacore::GaussianBeam beam = info.restoringBeam(channel, stokes);
+      if (!imager::stands_for_no_beam(beam.getMajor("arcsec")))
+        beams.at({channel, stokes}) = imager::Beam{beam.getMajor("rad"), beam.getMinor("rad"), beam.getPA("rad", true)};
+    }
+  return beams;
+}
+
+template <typename Pixel>
+class CasaImageReader : public imager::ImageReader {
+ public:
+  CasaImageReader(const std::string& path, casacore::Table& table) : path_(path), image_(table) {
+    planes_ = find_planes(image_.coordinates(), image_.shape(), path);
+    header_ = header_of(image_.coordinates(), planes_, path);
+    header_.unit = image_.units().getName();
+    header_.observation.object = image_.imageInfo().objectName();
+    beams_ = beams_of(image_.imageInfo(), header_);
+  }
+
+  const imager::ImageHeader& header() const override { return header_; }
+  std::optional<imager::Beam> beam(const imager::PlaneIndex& at) const override { return beams_.at(at); }
+
+  imager::Image read(const imager::PlaneIndex& at) const override {
+    return translated("cannot read " + path_, [&] {
+      const casacore::Slicer plane(planes_.first_pixel(at), planes_.plane_shape());
+      const casacore::Array<Pixel> pixels = image_.getSlice(plane);
+      imager::Image image(header_.geometry.width, header_.geometry.height);
+      std::copy(pixels.begin(), pixels.end(), image.pixel.begin());
+      if (!image_.isMasked()) return image;
+      const casacore::Array<bool> mask = image_.getMaskSlice(plane);
+      std::transform(image.pixel.begin(), image.pixel.end(), mask.begin(), image.pixel.begin(),
+                     [](double value, bool valid) { return valid ? value : std::numeric_limits<double>::quiet_NaN(); });
+      return image;
+    });
+  }
+
+ private:
+  std::string path_;
+  casacore::PagedImage<Pixel> image_;
+  CasaPlanes planes_;
+  imager::ImageHeader header_;
+  imager::PlaneBeams beams_;
+};
+
+std::unique_ptr<imager::ImageReader> open_table(const std::string& path) {
+  casacore::Table table(path, casacore::TableLock(casacore::TableLock::NoLocking));
+  if (!table.tableDesc().isColumn("map")) throw std::runtime_error("cannot read " + path + ": it has no column of pixels");
+  const casacore::DataType type = table.tableDesc()["map"].dataType();
+  if (type == casacore::TpFloat) return std::make_unique<CasaImageReader<float>>(path, table);
+  if (type == casacore::TpDouble) return std::make_unique<CasaImageReader<double>>(path, table);
+  throw std::runtime_error("cannot read " + path + ": its pixels are no real numbers");
+}
+
+}  // namespace
+
+std::unique_ptr<imager::ImageReader> open_casa_image(const std::string& path) {
+  if (!is_casa_image(path)) throw std::runtime_error("cannot read " + path + ": it is no casacore image");
+  return translated("cannot read " + path, [&] { return open_table(path); });
+}
+
+}  // namespace misfit::ms_io

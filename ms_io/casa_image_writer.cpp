@@ -1,0 +1,252 @@
+#include <casacore/casa/Arrays/Array.h>
+#include <casacore/images/Images/PagedImage.h>
+#include <casacore/tables/Tables/TableUtil.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <stdexcept>
+#include <system_error>
+
+#include "imager/written_planes.h"
+#include "ms_io/casa_coordinates_internal.h"
+#include "ms_io/casa_image.h"
+#include "ms_io/table_access_internal.h"
+
+namespace misfit::ms_io {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Where an image called `path` is to be written. Throws where anything else than a casacore image lies.
+fs::path writable_target(const std::string& path) {
+  fs::path target = fs::path(path).lexically_normal();
+  if (!target.has_filename()) target = target.parent_path();
+  std::error_code error;
+  if (fs::exists(target, error)) target = fs::canonical(target, error);  // links are followed
+  if (fs::exists(target, error) && !is_casa_image(target.string()))
+    throw std::runtime_error("cannot write " + path + ": it is there already and no casacore image; expected another name");
+  return target;
+}
+
+/// Removes what a run that was killed left of a table. Throws where it is anything else.
+void remove_left(const fs::path& left, const std::string& path) {
+  std::error_code error;
+  if (!fs::exists(left, error)) return;
+  if (!fs::is_directory(left, error) || !(fs::is_empty(left, error) || fs::exists(left / "table.lock", error)))
+    throw std::runtime_error("cannot write " + path + ": " + left.string() + " is in the way, and no casacore table");
+  fs::remove_all(left, error);
+}
+
+/// Throws where the disk has not the room: casacore would end the program where it is full before a table is there.
+void require_room(const fs::path& target, std::uintmax_t bytes, const std::string& path) {
+  std::error_code error;
+  const fs::path folder = target.has_parent_path() ? target.parent_path() : fs::path(".");
+  const std::uintmax_t free = fs::space(folder, error).available;
+  constexpr std::uintmax_t tables = 1 << 20;
+  if (!error && free < bytes + tables)
+    throw std::runtime_error("cannot write " + path + ": it takes " + std::to_string(bytes + tables) + " bytes, and " +
+                             std::to_string(free) + " are free");
+}
+
+casacore::GaussianBeam casa_beam(const imager::Beam& beam) {
+  return {casacore::Quantity(beam.major_rad * 180 * 3600 / M_PI, "arcsec"),
+          casacore::Quantity(beam.minor_rad * 180 * 3600 / M_PI, "arcsec"),
+          casacore::Quantity(beam.position_angle_rad * 180 / M_PI, "deg")};
+}
+
+casacore::ImageBeamSet beam_set(const imager::PlaneBeams& beams) {
+  const casacore::Quantity tiny(imager::no_beam_arcsec, "arcsec");
+  casacore::ImageBeamSet set(static_cast<casacore::uInt>(beams.channels()), static_cast<casacore::uInt>(beams.stokes()),
+                             casacore::GaussianBeam(tiny, tiny, casacore::Quantity(0, "deg")));
+  for (int channel = 0; channel < beams.channels(); ++channel)
+    for (int stokes = 0; stokes < beams.stokes(); ++stokes)
+      if (const std::optional<imager::Beam>& beam = beams.at({channel, stokes})) set.setBeam(channel, stokes, casa_beam(*beam));
+  return set;
+}
+
+casacore::ImageInfo image_info(const imager::PlaneBeams& beams, const std::string& object) {
+  casacore::ImageInfo info;
+  info.setImageType(casacore::ImageInfo::Intensity);
+  info.setObjectName(object);
+  if (const std::optional<imager::Beam> beam = beams.shared())
+    info.setRestoringBeam(casa_beam(*beam));
+  else if (beams.any())
+    info.setBeams(beam_set(beams));
+  return info;
+}
+
+constexpr const char* creator_key = "creator";
+constexpr const char* creator = "misfit";
+
+casacore::TableRecord misc_info(const std::vector<imager::HeaderCard>& cards) {
+  casacore::TableRecord record;
+  record.define(creator_key, creator);
+  for (const imager::HeaderCard& card : cards) {
+    record.define(card.keyword, card.value);
+    record.setComment(card.keyword, card.comment);
+  }
+  return record;
+}
+
+constexpr ssize_t tile_side = 512;
+
+/// Some rows of a plane, with as many axes as the image has.
+struct Band {
+  casacore::IPosition first;
+  casacore::IPosition shape;
+  std::size_t begin;  ///< its pixels in the plane
+  std::size_t end;
+};
+
+/// What of(pixel) is of a band.
+template <typename Value, typename Function>
+casacore::Array<Value> values_of(const imager::Image& image, const Band& band, const Function& of) {
+  casacore::Array<Value> values(band.shape);
+  std::transform(image.pixel.data() + band.begin, image.pixel.data() + band.end, values.data(), of);
+  return values;
+}
+
+template <typename Pixel>
+class CasaImageWriter : public imager::ImageWriter {
+ public:
+  CasaImageWriter(const imager::ImageHeader& header, const std::string& path)
+      : path_(path), target_(writable_target(path)), temporary_(target_.string() + ".part"), header_(header), planes_(header) {
+    layout_.shape = casacore::IPosition(4, header.geometry.width, header.geometry.height,
+                                        static_cast<ssize_t>(header.stokes.size()), header.spectral.channels);
+    layout_.stokes = 2;
+    layout_.spectral = 3;
+    for (const fs::path& left : {temporary_, old_name()}) remove_left(left, path_);
+    require_room(target_, static_cast<std::uintmax_t>(layout_.shape.product()) * sizeof(Pixel), path_);
+    try {
+      translated("cannot write " + path_, [&] { create(); });
+    } catch (...) {
+      abandon();
+      remove_unfinished();
+      throw;
+    }
+  }
+
+  CasaImageWriter(const CasaImageWriter&) = delete;
+  CasaImageWriter& operator=(const CasaImageWriter&) = delete;
+  ~CasaImageWriter() override { abandon(); }
+
+  void write(const imager::PlaneIndex& at, const imager::Image& image, const std::optional<imager::Beam>& beam) override {
+    planes_.add(at, image, beam);
+    translated("cannot write " + path_, [&] { write_pixels(at, image); });
+  }
+
+  void finish() override {
+    translated("cannot write " + path_, [&] {
+      if (const std::vector<imager::PlaneIndex> missing = planes_.missing(); !missing.empty()) {
+        const imager::Image blank = planes_.blank();
+        for (const imager::PlaneIndex& at : missing) write_pixels(at, blank);
+      }
+      if (!image_->setImageInfo(image_info(planes_.beams(), header_.observation.object)))
+        throw std::runtime_error("cannot write " + path_ + ": casacore keeps no beams of it");
+      for (const std::string& line : header_.history)
+        image_->logger().sink().postLocally(casacore::LogMessage(line, casacore::LogOrigin("misfit")));
+      image_->flush();
+    });
+    image_.reset();
+    put_in_place();
+  }
+
+ private:
+  void create() {
+    casacore::IPosition tile = layout_.plane_shape();  // planes are written, and shown, one by one
+    for (const std::size_t axis : {0, 1}) tile[axis] = std::min(tile[axis], tile_side);
+    image_ = std::make_unique<casacore::PagedImage<Pixel>>(casacore::TiledShape(layout_.shape, tile), casa_coordinates(header_),
+                                                           temporary_.string(),
+                                                           casacore::TableLock(casacore::TableLock::PermanentLocking));
+    image_->setUnits(casacore::Unit(header_.unit));
+    image_->setMiscInfo(misc_info(header_.cards));
+  }
+
+  /// In bands as high as tiles are, so that little is copied at a time.
+  void write_pixels(const imager::PlaneIndex& at, const imager::Image& image) {
+    for (int row = 0; row < image.height; row += tile_side) {
+      Band band{layout_.first_pixel(at), layout_.plane_shape(), static_cast<std::size_t>(image.row(row) - image.row(0)), 0};
+      band.first[1] = row;
+      band.shape[1] = std::min<ssize_t>(tile_side, image.height - row);
+      band.end = band.begin + static_cast<std::size_t>(band.shape.product());
+      write_band(image, band);
+    }
+  }
+
+  void write_band(const imager::Image& image, const Band& band) {
+    image_->putSlice(values_of<Pixel>(image, band, [](double pixel) { return static_cast<Pixel>(pixel); }), band.first);
+    const auto valueless = [](double pixel) { return std::isnan(pixel); };
+    if (std::none_of(image.pixel.data() + band.begin, image.pixel.data() + band.end, valueless)) return;
+    if (!image_->hasPixelMask()) image_->makeMask("mask0", true, true, true, true);
+    image_->pixelMask().putSlice(values_of<bool>(image, band, [&](double pixel) { return !valueless(pixel); }), band.first);
+  }
+
+  /// An image that is there gives way once the new one is complete.
+  void put_in_place() {
+    const fs::path old = old_name();
+    std::error_code error;
+    if (fs::exists(target_, error)) {
+      writable_target(path_);
+      fs::rename(target_, old, error);
+    }
+    if (!error) fs::rename(temporary_, target_, error);
+    if (error) throw std::runtime_error("cannot write " + path_ + ": " + error.message());
+    fs::remove_all(old, error);
+  }
+
+  fs::path old_name() const { return target_.string() + ".old"; }
+
+  /// Tables that are to be deleted are not written when they are closed, which on a full disk would throw where nobody catches.
+  void abandon() {
+    if (!image_) return;
+    for (const char* part : {"", "/logtable", "/mask0"}) try {
+        casacore::Table(temporary_.string() + part, casacore::Table::Update).markForDelete();
+      } catch (const casacore::AipsError&) {  // it was not made yet
+      }
+    image_.reset();
+    remove_unfinished();
+  }
+
+  void remove_unfinished() {
+    std::error_code ignored;
+    fs::remove_all(temporary_, ignored);
+  }
+
+  std::string path_;
+  fs::path target_;
+  fs::path temporary_;
+  imager::ImageHeader header_;
+  imager::WrittenPlanes planes_;
+  CasaPlanes layout_;
+  std::unique_ptr<casacore::PagedImage<Pixel>> image_;
+};
+
+}  // namespace
+
+bool is_casa_image(const std::string& path) {
+  silence_casacore();
+  return casacore::Table::isReadable(path) &&
+         casacore::TableUtil::tableInfo(path).type() == casacore::TableInfo::type(casacore::TableInfo::PAGEDIMAGE);
+}
+
+bool is_own_casa_image(const std::string& path) {
+  if (!is_casa_image(path)) return false;
+  return translated("cannot read " + path, [&] {
+    const casacore::Table table(path, casacore::TableLock(casacore::TableLock::NoLocking));
+    const casacore::TableRecord& keywords = table.keywordSet();
+    if (!keywords.isDefined("miscinfo")) return false;
+    const casacore::RecordInterface& info = keywords.asRecord("miscinfo");
+    return info.isDefined(creator_key) && info.dataType(creator_key) == casacore::TpString &&
+           info.asString(creator_key) == creator;
+  });
+}
+
+std::unique_ptr<imager::ImageWriter> create_casa_image(const imager::ImageHeader& header, const std::string& path,
+                                                       imager::PixelFormat format) {
+  silence_casacore();
+  if (format == imager::PixelFormat::float64) return std::make_unique<CasaImageWriter<double>>(header, path);
+  return std::make_unique<CasaImageWriter<float>>(header, path);
+}
+
+}  // namespace misfit::ms_io

@@ -1,0 +1,40 @@
+#include "tools/formats/image_file.h"
+
+#include <cmath>
+#include <filesystem>
+#include <stdexcept>
+#include <system_error>
+
+#include "imager/fits_image_reader.h"
+#include "ms_io/casa_image.h"
+#include "tools/base/numbers.h"
+
+namespace misfit::tools {
+namespace {
+
+std::string described(const imager::SpectralAxis& axis) {
+  return std::to_string(axis.channels) + " planes of " + significant(axis.width_hz(), 6) + " Hz from " +
+         significant(axis.reference_hz, 9) + " Hz on";
+}
+
+bool same_planes(const imager::SpectralAxis& a, const imager::SpectralAxis& b) {
+  const auto near = [&](int plane) { return std::abs(b.plane_of(a.frequency_hz(plane)) - plane) < 0.1; };
+  return a.channels == b.channels && near(0) && near(a.channels - 1);
+}
+
+}  // namespace
+
+std::unique_ptr<imager::ImageReader> open_image_file(const std::string& path) {
+  std::error_code absent;
+  return std::filesystem::is_directory(path, absent) ? ms_io::open_casa_image(path) : imager::open_fits_image(path);
+}
+
+int channel_for(const imager::ImageReader& file, const std::string& path, const imager::SpectralAxis& axis, int channel) {
+  const imager::SpectralAxis& has = file.header().spectral;
+  if (has.channels == 1) return 0;
+  if (!same_planes(has, axis))
+    throw std::runtime_error(path + " has " + described(has) + "; expected one plane, or the image's " + described(axis));
+  return channel;
+}
+
+}  // namespace misfit::tools

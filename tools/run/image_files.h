@@ -1,0 +1,31 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "imager/image_writer.h"
+
+namespace misfit::tools {
+
+/// What --outformat names: fits, casa or both.
+const std::vector<std::string>& image_formats();
+
+/// 64-bit where the accuracy asked for is below 1e-7, 32-bit otherwise.
+imager::PixelFormat pixel_format(double accuracy);
+
+/// The paths of an image's files: `name`.fits, or the CASA image `name`, or both.
+std::vector<std::string> image_paths(const std::string& name, const std::string& outformat);
+
+/// Whether a file of images at such a path was written here: people keep masks and models of theirs under our names too.
+bool is_own_image(const std::string& path);
+
+/// Throws std::runtime_error where something lies at such a path that no image may take the place of.
+void check_image_paths(const std::string& name, const std::string& outformat);
+
+/// Begins the files of an image at these paths. One writer writes them all, and finish() leaves all under their names. Throws
+/// what create_fits_image() and create_casa_image() throw.
+std::unique_ptr<imager::ImageWriter> open_image_files(const std::string& name, const imager::ImageHeader& header,
+                                                      imager::PixelFormat format, const std::string& outformat);
+
+}  // namespace misfit::tools
