@@ -90,8 +90,7 @@ std::vector<std::vector<std::complex<double>>> residuals(const Prediction& predi
 void require_any(const SampleSums& sums) {
   if (sums.weight != 0) return;
   if (sums.outside_grid == 0) throw std::runtime_error("no visibility can be imaged: none has a weight above 0");
-  throw std::runtime_error("no visibility can be imaged: " + std::to_string(sums.outside_grid) +
-                           " usable samples lie beyond 1/(2 cell), none within; expected smaller pixels");
+  throw NothingInGrid(sums.outside_grid);
 }
 
 /// Divides all by Σ w.
@@ -121,6 +120,11 @@ std::vector<std::complex<double>> visibilities_of_middle(const VisibilityBlock& 
 }
 
 }  // namespace
+
+NothingInGrid::NothingInGrid(std::uint64_t samples)
+    : std::runtime_error("no visibility can be imaged: " + std::to_string(samples) +
+                         " usable samples lie beyond 1/(2 cell), none within; expected smaller pixels"),
+      outside_grid(samples) {}
 
 DirtyImages make_dirty_images(const VisibilitySource& source, const Transform& transform, const AdjointOptions& options,
                               const Progress& progress, StageTimes& times) {

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <stdexcept>
 
 #include "imager/geometry.h"
 #include "imager/stage_times.h"
@@ -12,6 +13,12 @@ namespace misfit::imager {
 /// Told after every block how many samples of how many are done. It may throw to end the work.
 using Progress = std::function<void(std::uint64_t done, std::uint64_t total)>;
 
+/// Thrown where every usable sample lies beyond 1/(2 cell).
+struct NothingInGrid : std::runtime_error {
+  explicit NothingInGrid(std::uint64_t samples);
+  std::uint64_t outside_grid = 0;
+};
+
 struct DirtyImages {
   std::vector<Image> dirty;      ///< [Stokes], Jy/beam: the adjoint over Σ w
   Image psf;                     ///< 1 at the centre up to the accuracy; empty unless asked for
@@ -19,7 +26,7 @@ struct DirtyImages {
 };
 
 /// One pass over the visibilities. Stages timed: "read", "grid", "fft", which counts corrections in. Throws std::runtime_error
-/// when no sample can be used.
+/// when no sample can be used, NothingInGrid where that is why.
 DirtyImages make_dirty_images(const VisibilitySource& source, const Transform& transform, const AdjointOptions& options,
                               const Progress& progress, StageTimes& times);
 

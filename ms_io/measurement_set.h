@@ -68,9 +68,13 @@ class MeasurementSet : public imager::VisibilitySource {
   /// nor of one antenna. Reads and throws what reach() does.
   void visit_coordinates(const std::function<void(const imager::SampleCoordinates&)>& visit) const;
   std::unique_ptr<imager::BlockStream> open() const override;
+  /// The same set, of which only channels are read that may come between two frequencies, in the frame that the selection
+  /// names, in the course of a year; null where there are none.
+  std::unique_ptr<MeasurementSet> part(double low_hz, double high_hz) const;
 
  private:
   struct Impl;
+  explicit MeasurementSet(std::shared_ptr<const Impl> impl);
   std::shared_ptr<const Impl> impl_;
 };
 

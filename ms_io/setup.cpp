@@ -74,8 +74,7 @@ Setup SetupTable::setup(int data_description, const ParsedSelection& parsed) con
     frequency = cell<double>(set_.spectralWindow(), "CHAN_FREQ", window);
     width = cell<double>(set_.spectralWindow(), "CHAN_WIDTH", window);
     setup.correlation_types = cell<int>(set_.polarization(), "CORR_TYPE", polarisation);
-    setup.spectral_frame =
-        spectral_frame_of(casacore::ScalarColumn<int>(set_.spectralWindow(), "MEAS_FREQ_REF")(window));
+    setup.spectral_frame = spectral_frame_of(casacore::ScalarColumn<int>(set_.spectralWindow(), "MEAS_FREQ_REF")(window));
   });
   setup.stored_channels = frequency.size();
   width.resize(frequency.size(), 0.0);

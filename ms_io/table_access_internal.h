@@ -30,7 +30,8 @@ void silence_casacore();
 
 enum class Access { read, update };
 
-/// Opens the MeasurementSet at `path`, and silences casacore's log. Throws std::runtime_error when there is none, or when it cannot be written but `access` asks for it.
+/// Opens the MeasurementSet at `path`, and silences casacore's log. Throws std::runtime_error when there is none, or when it
+/// cannot be written but `access` asks for it.
 casacore::MeasurementSet open_measurement_set(const std::string& path, Access access);
 
 /// A table that is written when it is flushed alone, not when it is closed, whoever else has it open.

@@ -6,6 +6,7 @@
 #include "tools/base/interrupt.h"
 #include "tools/command.h"
 #include "tools/formats/config_file.h"
+#include "tools/run/cube_run.h"
 #include "tools/run/image_options.h"
 #include "tools/run/image_run.h"
 #include "tools/run/named_data.h"
@@ -24,8 +25,10 @@ void add_image_command(CLI::App& program, const std::string& command_line) {
       accuracy->default_str("0");
     }
     check(*options);
-    const bool done =
-        naming(names_of(options->vis), [&] { return run_image(*options, command_line, option_values(*command)); });
+    const bool done = naming(names_of(options->vis), [&] {
+      const auto run = options->cube.is_cube() ? run_cube : run_image;
+      return run(*options, command_line, option_values(*command));
+    });
     if (!options->dry_run) write_file(options->imagename + ".last.ini", config_text(*command));
     if (!done) throw Interrupted();
   });

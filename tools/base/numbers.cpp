@@ -119,6 +119,12 @@ std::string angle_text(double angle_rad, int digits) {
   return significant(angle_rad / unit.size, digits) + " " + unit.name;
 }
 
+std::string frequency_text(double hz, int digits) {
+  for (const auto& [size, name] : {std::pair{1e9, " GHz"}, {1e6, " MHz"}, {1e3, " kHz"}})
+    if (std::abs(hz) >= size) return significant(hz / size, digits) + name;
+  return significant(hz, digits) + " Hz";
+}
+
 std::string sexagesimal(const imager::SkyDirection& direction) {
   constexpr double degree = std::numbers::pi / 180;
   const double turn = std::fmod(direction.ra_rad / degree / 15, 24.0);

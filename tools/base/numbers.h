@@ -45,6 +45,9 @@ std::string with_prefix(double value, const std::string& base, int digits);
 /// The angle in that unit, as "1.2 arcsec".
 std::string angle_text(double angle_rad, int digits);
 
+/// A frequency in GHz, MHz, kHz or Hz, as "1.42041 GHz".
+std::string frequency_text(double hz, int digits);
+
 /// A direction as "12h 30m 49.42s  +12° 23′ 28.0″".
 std::string sexagesimal(const imager::SkyDirection& direction);
 

@@ -55,6 +55,10 @@ double parse_frequency_hz(const std::string& text) {
   return parse(text, "frequency", "1.4GHz", {{"", 1}, {"Hz", 1}, {"kHz", 1e3}, {"MHz", 1e6}, {"GHz", 1e9}});
 }
 
+double parse_velocity_m_s(const std::string& text) {
+  return parse(text, "velocity", "20km/s", {{"m/s", 1}, {"km/s", 1e3}});
+}
+
 double parse_uv_distance_lambda(const std::string& text) {
   return parse(text, "distance in the uv plane", "3klambda", {{"lambda", 1}, {"klambda", 1e3}, {"Mlambda", 1e6}});
 }

@@ -12,6 +12,7 @@
 #include "tools/base/interrupt.h"
 #include "tools/base/numbers.h"
 #include "tools/formats/clean_state_file.h"
+#include "tools/formats/image_file.h"
 #include "tools/formats/mask_file.h"
 #include "tools/formats/model_image.h"
 #include "tools/version.h"
@@ -26,51 +27,67 @@ double mean_width_rad(const imager::Beam& beam) {
 
 }  // namespace
 
-CleanStage::CleanStage(const ImageOptions& options, const imager::ImageGeometry& geometry, int threads)
-    : o_(options), geometry_(geometry), threads_(threads), stokes_(imager::parse_stokes(options.stokes)) {
-  if (!o_.startmodel.empty()) read_start_model();
-  if (!o_.mask.empty()) masks_ = read_masks(o_.mask, geometry_, stokes_);
+CleanStage::CleanStage(const ImageOptions& options, imager::ImageHeader image, int threads)
+    : o_(options), image_(std::move(image)), threads_(threads) {
+  if (!o_.startmodel.empty()) start_file_ = open_image_file(o_.startmodel);
+  if (!o_.mask.empty()) mask_file_ = std::make_unique<MaskFile>(o_.mask, image_);
+}
+
+void CleanStage::begin_channel(int channel) {
+  channel_ = channel;
+  if (start_file_) read_start_model();
+  if (!mask_file_ || (channel > 0 && mask_file_->one_for_all_channels())) return;
+  masks_.clear();
+  const int masks = mask_file_->one_for_all_stokes() ? 1 : static_cast<int>(image_.stokes.size());
+  for (int stokes = 0; stokes < masks; ++stokes) masks_.push_back(mask_file_->mask({channel, stokes}));
 }
 
 std::string CleanStage::warning() const {
   std::string closed;
   for (std::size_t m = 0; m < masks_.size(); ++m)
-    if (imager::mask_is_empty(masks_[m])) closed += (closed.empty() ? "" : ", ") + stokes_name(stokes_[m]);
+    if (imager::mask_is_empty(masks_[m])) closed += (closed.empty() ? "" : ", ") + stokes_name(image_.stokes[m]);
   if (!closed.empty())
     return "the mask " + o_.mask + " allows no pixel of the image" +
            (masks_.size() > 1 ? " of " + closed + ", of which nothing is cleaned" : ": nothing is cleaned");
-  for (std::size_t s = 0; o_.restart && s < stokes_.size(); ++s)
+  for (std::size_t s = 0; o_.restart && s < image_.stokes.size(); ++s)
     if (!std::filesystem::exists(state_path(s))) return "there is no " + state_path(s) + " to go on from: CLEAN begins anew";
   return "";
 }
 
 std::string CleanStage::state_path(std::size_t stokes) const {
-  return o_.imagename + ".clean" + (stokes_.size() > 1 ? "." + stokes_name(stokes_[stokes]) : "") + ".state";
+  const std::string of = image_.stokes.size() > 1 ? "." + stokes_name(image_.stokes[stokes]) : "";
+  if (!o_.cube.is_cube()) return o_.imagename + ".clean" + of + ".state";
+  return o_.imagename + ".clean/" + std::to_string(channel_) + of + ".state";
+}
+
+void CleanStage::refuse_start_model(const std::string& has, const std::string& expected) const {
+  throw std::runtime_error("start model " + o_.startmodel + " " + has + ", expected " + expected);
 }
 
 void CleanStage::read_start_model() {
-  std::vector<imager::SkyImage> planes = read_stokes_model(o_.startmodel, geometry_.phase_centre);
-  const imager::ImageGeometry& g = planes.front().geometry;
-  const double cell_off = std::abs(g.cell_rad / geometry_.cell_rad - 1) * std::max(g.width, g.height);
+  const imager::ImageGeometry &own = image_.geometry, &g = start_file_->header().geometry;
+  const double cell_off = std::abs(g.cell_rad / own.cell_rad - 1) * std::max(g.width, g.height);
   const auto size = [](int width, int height) { return std::to_string(width) + " × " + std::to_string(height) + " pixels"; };
-  const auto refuse = [this](const std::string& has, const std::string& expected) {
-    throw std::runtime_error("start model " + o_.startmodel + " " + has + ", expected " + expected);
-  };
-  if (g.width != geometry_.width || g.height != geometry_.height)
-    refuse("has " + size(g.width, g.height), size(geometry_.width, geometry_.height));
-  if (!(cell_off < 1e-3)) refuse("has pixels of " + significant(g.cell_rad * 180 / M_PI * 3600, 6) + "arcsec", o_.cell);
-  if (g.off_phase_centre()) refuse("has its phase centre off the middle pixel", "it there");
-  for (const imager::Stokes wanted : stokes_) {
+  if (g.width != own.width || g.height != own.height)
+    refuse_start_model("has " + size(g.width, g.height), size(own.width, own.height));
+  if (!(cell_off < 1e-3))
+    refuse_start_model("has pixels of " + significant(g.cell_rad * 180 / M_PI * 3600, 6) + "arcsec", o_.cell);
+  if (g.off_phase_centre()) refuse_start_model("has its phase centre off the middle pixel", "it there");
+  const int channel = channel_for(*start_file_, "start model " + o_.startmodel, image_.spectral, channel_);
+  std::vector<imager::SkyImage> planes = read_model_channel(*start_file_, {o_.startmodel, channel}, own.phase_centre);
+  start_model_.clear();
+  for (const imager::Stokes wanted : image_.stokes) {
     const auto found = std::find_if(planes.begin(), planes.end(), [&](const auto& plane) { return plane.stokes == wanted; });
-    if (found == planes.end()) refuse("has no plane of " + stokes_name(wanted), "one of each in --stokes " + o_.stokes);
+    if (found == planes.end())
+      refuse_start_model("has no plane of " + stokes_name(wanted), "one of each in --stokes " + o_.stokes);
     start_model_.push_back(std::move(found->image));
   }
 }
 
 double CleanStage::max_sidelobe(const CleanScene& scene) const {
-  imager::Image point(geometry_.width, geometry_.height);
-  point.at(geometry_.centre_row(), geometry_.centre_column()) = 1;
-  const imager::Image beam = imager::convolve_with_beam(point, scene.main_lobe, geometry_.cell_rad, threads_);
+  imager::Image point(image_.geometry.width, image_.geometry.height);
+  point.at(image_.geometry.centre_row(), image_.geometry.centre_column()) = 1;
+  const imager::Image beam = imager::convolve_with_beam(point, scene.main_lobe, image_.geometry.cell_rad, threads_);
   return imager::largest_sidelobe(scene.psf, beam);
 }
 
@@ -78,8 +95,10 @@ imager::CleanState CleanStage::begin(std::size_t stokes, const imager::MinorCycl
   imager::Image start;
   if (!start_model_.empty()) start = std::move(start_model_[stokes]);
   if (o_.restart && std::filesystem::exists(state_path(stokes))) return read_clean_state(state_path(stokes), owner);
-  std::filesystem::remove(state_path(stokes));
-  imager::ComponentModel model(geometry_.width, geometry_.height, minor.scale_pixels());
+  const std::filesystem::path state = state_path(stokes);
+  if (o_.cube.is_cube()) std::filesystem::create_directories(state.parent_path());
+  std::filesystem::remove(state);
+  imager::ComponentModel model(image_.geometry.width, image_.geometry.height, minor.scale_pixels());
   if (!start.pixel.empty()) model.add(imager::components_of(start));
   return imager::first_state(model);
 }
@@ -111,7 +130,7 @@ imager::CleanResult CleanStage::run(const CleanScene& scene, const nlohmann::jso
                                  scene.psf,
                                  sidelobe,
                                  std::max(o_.accuracy, scene.expected_error),
-                                 mean_width_rad(scene.main_lobe) / geometry_.cell_rad};
+                                 mean_width_rad(scene.main_lobe) / image_.geometry.cell_rad};
   return imager::clean(
       input, *minor, options, std::move(state), progress,
       [&](const imager::CleanState& now) {

@@ -9,7 +9,9 @@
 #include "imager/clean/clean.h"
 #include "imager/clean/deconvolver.h"
 #include "imager/fits_image.h"
+#include "imager/image_header.h"
 #include "tools/formats/clean_state_file.h"
+#include "tools/formats/mask_file.h"
 #include "tools/run/image_options.h"
 
 namespace misfit::tools {
@@ -29,8 +31,13 @@ struct CleanScene {
 /// and the states that it leaves after every major cycle and may begin with.
 class CleanStage {
  public:
-  /// Reads the mask and the start model. Throws std::runtime_error that names the file and what was expected.
-  CleanStage(const ImageOptions& options, const imager::ImageGeometry& geometry, int threads);
+  /// Opens the mask and the start model of an image with these planes and Stokes parameters. Throws std::runtime_error that
+  /// names the file and what was expected.
+  CleanStage(const ImageOptions& options, imager::ImageHeader image, int threads);
+
+  /// From here on everything is of this channel of the image. Reads its mask and start model. To be called before all that
+  /// follows.
+  void begin_channel(int channel);
 
   /// Null where CLEAN may go everywhere, or makes its own.
   const imager::Image* mask(std::size_t stokes) const {
@@ -46,16 +53,19 @@ class CleanStage {
  private:
   std::string state_path(std::size_t stokes) const;
   void read_start_model();
+  void refuse_start_model(const std::string& has, const std::string& expected) const;
   /// That of a run before, or that of the start model, which it frees.
   imager::CleanState begin(std::size_t stokes, const imager::MinorCycle& minor, const CleanStateOwner& owner);
   double max_sidelobe(const CleanScene& scene) const;
 
   const ImageOptions& o_;
-  imager::ImageGeometry geometry_;
+  imager::ImageHeader image_;
   int threads_;
-  std::vector<imager::Image> masks_;  ///< none, one for all, or [Stokes]
-  std::vector<imager::Stokes> stokes_;
-  std::vector<imager::Image> start_model_;  ///< [Stokes], or none
+  int channel_ = 0;
+  std::unique_ptr<MaskFile> mask_file_;              ///< null without a mask
+  std::unique_ptr<imager::ImageReader> start_file_;  ///< null without a start model
+  std::vector<imager::Image> masks_;                 ///< none, one for all, or [Stokes]
+  std::vector<imager::Image> start_model_;           ///< [Stokes], or none
 };
 
 }  // namespace misfit::tools

@@ -39,6 +39,13 @@ void check_image(const ImageOptions& o) {
   if (parse_angle_rad(o.cell) > 0.5) refuse_option("cell", o.cell, "less than 0.5 rad");
 }
 
+/// What is done with one plane of frequency alone.
+void check_cube(const ImageOptions& o) {
+  if (!o.cube.is_cube()) return;
+  if (o.savemodel != "none") refuse_option("savemodel", o.savemodel, "none with --specmode cube");
+  if (o.check_outside) refuse_option("check-outside", "true", "--specmode mfs beside it");
+}
+
 void check_deconvolver(const ImageOptions& o) {
   const bool multiscale = o.deconvolver == "multiscale";
   const std::string scales = o.scales.empty() ? "" : typed(o.scales.front()) + " …";
@@ -120,6 +127,8 @@ void check_gridding(const ImageOptions& o) {
 
 void check(const ImageOptions& o) {
   check_image(o);
+  check(o.cube);
+  check_cube(o);
   check_weighting(o);
   check_clean(o);
   check_gridding(o);

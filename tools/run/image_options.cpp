@@ -52,6 +52,7 @@ std::string names_of(const std::vector<std::string>& vis) {
 
 ms_io::Selection selection_of(const ImageOptions& o) {
   ms_io::Selection selection = o.selection;
+  if (o.cube.is_cube()) selection.spectral_frame = ms_io::parse_spectral_frame(o.cube.outframe);
   if (!o.phasecenter.empty()) selection.phase_centre = ms_io::parse_phase_centre(o.phasecenter, o.vis.front());
   return selection;
 }
@@ -61,6 +62,7 @@ void declare(CLI::App& command, ImageOptions& o) {
   command.add_option("--imagename", o.imagename, "Names of the output files begin with this")->required();
   command.add_option("--stokes", o.stokes,
                      "Stokes parameters, or correlations of parallel hands, which share one PSF: I, IQUV, IV, XXYY, RR, …");
+  declare(command, o.cube);
   command.add_option("--kernel", o.kernel.name,
                      "Gridding function: a name such as least-misfit or spheroidal, or a kernel-table file");
   declare_kernel_folder(command, o.kernel.folder);

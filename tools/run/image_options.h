@@ -13,6 +13,7 @@
 #include "kernels/lookup_table.h"
 #include "ms_io/measurement_set.h"
 #include "tools/kernel_choice/kernel_choice.h"
+#include "tools/run/cube_options.h"
 
 namespace CLI {
 class App;
@@ -30,6 +31,7 @@ struct ImageOptions {
   ms_io::Selection selection;
   std::string datacolumn = "data";
   std::string stokes = "I";
+  CubeOptions cube;
   std::string weighting = "natural";
   double robust = 0.5;  ///< of briggs
   int npixels = 0;      ///< of superuniform, see weighting_options.h; 0 = 6

@@ -81,7 +81,13 @@ class ImageRun {
     warn_of_pointing();
     reach_ = set_->reach();
     if (o_.niter == 0) return;
-    clean_ = std::make_unique<CleanStage>(o_, geometry_, threads_);
+    const imager::Observation& observation = set_->observation();
+    clean_ = std::make_unique<CleanStage>(
+        o_,
+        imager::ImageHeader{
+            .geometry = geometry_, .observation = observation, .spectral = whole_band(observation), .stokes = stokes_},
+        threads_);
+    clean_->begin_channel(0);
     if (const std::string warning = clean_->warning(); !warning.empty()) warn(warning);
   }
 
@@ -93,7 +99,13 @@ class ImageRun {
 
   void plan() {
     const bool mask = clean_ && (clean_->mask(0) != nullptr || o_.usemask == "auto");
-    const RunScene scene{o_, *set_, geometry_, reach_, threads_, mask};
+    const RunScene scene{.options = o_,
+                         .set = *set_,
+                         .geometry = geometry_,
+                         .reach = reach_,
+                         .threads = threads_,
+                         .mask = mask,
+                         .samples = static_cast<double>(set_->samples())};
     plan_ = plan_run(scene, forecast_, times_, progress_);
     for (const std::string& warning : plan_.warnings) warn(warning);
     report_.plan = plan_.decisions;

@@ -64,6 +64,19 @@ std::string cycle_message(const imager::CleanState& state) {
          ", noise " + with_prefix(cycle.rms_jy, "Jy/beam", 3) + (state.now + 1 == state.cycles.size() ? "" : ": taken back");
 }
 
+std::string plane_message(const PlaneReport& plane, int planes) {
+  std::string text = "  plane " + std::to_string(plane.channel) + " of " + std::to_string(planes) + ", " +
+                     frequency_text(plane.frequency_hz, 9);
+  for (const StokesReport& of : plane.stokes) {
+    text += plane.stokes.size() > 1 ? "; " + stokes_name(of.stokes) + " " : ": ";
+    if (of.clean)
+      text += grouped(of.clean->iterations) + " components, peak residual " +
+              with_prefix(of.clean->final_state().peak_residual_jy, "Jy/beam", 3) + ", ";
+    text += "noise " + with_prefix(of.histogram.noise_jy, "Jy/beam", 3);
+  }
+  return text;
+}
+
 std::string divergence_warning(const imager::CleanReport& report) {
   return "CLEAN diverged: a lower --gain, a --mask around the sources, or more scales may help; the largest sidelobe is " +
          significant(100 * report.max_sidelobe, 2) + " % of the PSF's peak";
@@ -72,7 +85,7 @@ std::string divergence_warning(const imager::CleanReport& report) {
 std::string summary(const RunReport& r) {
   std::string text = counted(r.counts.used) + " of " + counted(r.counts.samples_read) + " samples imaged; expected error " +
                      significant(largest_expected_error(r), 2);
-  const PlaneReport& plane = r.planes.front();
+  const PlaneReport& plane = r.planes[r.shown];
   if (plane.measured_predict_rms) {
     double measured = 0;
     for (const StokesReport& of : plane.stokes) measured = std::max(measured, of.measured->rms);

@@ -28,6 +28,9 @@ std::string accuracy_warning(double asked, double expected);
 /// Of the last major cycle: components, residual, noise, and whether it was taken back.
 std::string cycle_message(const imager::CleanState& state);
 
+/// Of a plane of a cube that is done.
+std::string plane_message(const PlaneReport& plane, int planes);
+
 /// That CLEAN diverged, and what may help.
 std::string divergence_warning(const imager::CleanReport& report);
 

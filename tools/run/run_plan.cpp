@@ -24,7 +24,7 @@ class RunPlanner {
   void decide_all() {
     imager::GriddingRequest request = gridding_request(o_, scene_.threads);
     request.geometry = scene_.geometry;
-    request.samples = scene_.set.samples();
+    request.samples = static_cast<std::uint64_t>(scene_.samples);
     request.stokes = static_cast<int>(imager::parse_stokes(o_.stokes).size());
     request.max_abs_w = scene_.reach.max_abs_w;
     const imager::GriddingRequest unlimited = request;
@@ -95,7 +95,7 @@ class RunPlanner {
     return {.transform = imager::memory_of(gridding),
             .pixels = static_cast<double>(scene_.geometry.pixels()),
             .rows = static_cast<double>(scene_.set.rows()),
-            .samples = static_cast<double>(scene_.set.samples()),
+            .samples = scene_.samples,
             .block_samples = static_cast<double>(ms_io::MeasurementSet::usual_block_samples),
             .read_at_once = static_cast<double>(scene_.set.read_at_once()),
             .stokes = gridding.request.stokes,
@@ -159,6 +159,7 @@ RunWork work_of(const RunScene& scene, const RunPlan& plan) {
   return {.plan = &plan.gridding,
           .rows = static_cast<double>(scene.set.rows()),
           .samples = static_cast<double>(scene.set.samples()),
+          .planes = scene.planes,
           .pixels = static_cast<double>(scene.geometry.pixels()),
           .images = 1 + stokes * (o.niter > 0 ? 3 : 1),
           .pictures = 2 + stokes * (o.niter > 0 ? 4 : 1),

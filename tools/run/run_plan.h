@@ -21,7 +21,9 @@ struct RunScene {
   imager::ImageGeometry geometry;
   imager::UvwReach reach;
   int threads = 1;
-  bool mask = false;  ///< there is or will be one, where components may lie
+  bool mask = false;   ///< there is or will be one, where components may lie
+  int planes = 1;      ///< of frequency
+  double samples = 0;  ///< of a plane at most, in Stokes samples
 };
 
 /// What `misfit image` decides before it reads a visibility. The stages that follow do as it says and leave it as it is.

@@ -163,7 +163,7 @@ double largest_expected_error(const RunReport& r) {
 }
 
 json report_json(const RunReport& r) {
-  const PlaneReport& plane = r.planes.front();
+  const PlaneReport& plane = r.planes[r.shown];
   const StokesReport& first = plane.stokes.front();
   return {{"version", version},
           {"command_line", r.command_line},

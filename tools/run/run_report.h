@@ -7,8 +7,10 @@
 
 #include "imager/clean/clean.h"
 #include "imager/direct/verify.h"
+#include "imager/noise.h"
 #include "imager/plan/accurate_imaging.h"
 #include "imager/plan/plan.h"
+#include "imager/spectral_axis.h"
 #include "imager/stokes.h"
 #include "tools/run/beam_choice.h"
 #include "tools/run/outside_stage.h"
@@ -23,11 +25,13 @@ struct StokesReport {
   std::optional<imager::TheoreticalError> theory{};
   std::optional<imager::PixelError> measured{};  ///< over the image's RMS
   std::optional<imager::CleanReport> clean{};
+  imager::Peak brightest{};    ///< of the restored image, or of the dirty one
   PixelHistogram histogram{};  ///< of the residual, or of the dirty image where nothing was cleaned
 };
 
 /// What it has to tell of one plane of frequency.
 struct PlaneReport {
+  int channel = 0;
   double frequency_hz = 0;                  ///< its middle
   std::vector<StokesReport> stokes = {{}};  ///< at least one
   std::optional<double> measured_predict_rms{};
@@ -44,7 +48,10 @@ struct RunReport {
   std::vector<std::string> warnings;
   double accuracy = 0;  ///< 0 = none was asked
   const imager::GriddingPlan* gridding = nullptr;
-  std::vector<PlaneReport> planes = {{}};  ///< at least one
+  std::vector<PlaneReport> planes = {{}};      ///< at least one
+  std::size_t shown = 0;                       ///< the plane that is drawn, and told of where one is
+  std::optional<imager::SpectralAxis> cube{};  ///< null where there is one plane, of the whole band
+  std::uint64_t outside_planes = 0;            ///< usable samples that lie in none of them
   imager::SampleCounts counts;
   const OutsideReport* outside = nullptr;
   double wall_clock_s = 0;

@@ -109,9 +109,22 @@ double wider_seconds(const RunWork& w) {
   return total_seconds(stages) + minor_seconds(wider) + taper_s * w.samples * (2 * wider.major_cycles);
 }
 
+/// As many images as there are planes, of a part of the samples each, drawn once.
+std::vector<StageSeconds> cube_seconds(const RunWork& w) {
+  RunWork plane = w;
+  plane.planes = 1;
+  plane.samples = w.samples / w.planes;
+  std::vector<StageSeconds> stages = counted_seconds(plane);
+  for (StageSeconds& s : stages)
+    if (s.stage != "draw pictures") s.seconds *= w.planes;
+  stages.push_back({"planes", "dealing out to planes", shared(1e-8 * w.samples, w.threads)});
+  return stages;
+}
+
 }  // namespace
 
 std::vector<StageSeconds> counted_seconds(const RunWork& w) {
+  if (w.planes > 1) return cube_seconds(w);
   std::vector<StageSeconds> stages{{"read", "reading", 4e-9 * w.samples + 1e-7 * w.rows}};
   if (w.density) stages.push_back({"weights", "weighting by density", weight_seconds(w)});
   add_pass(w, true, 1, stages);

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <array>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "imager/image_writer.h"
+#include "tools/run/image_options.h"
+
+namespace misfit::tools {
+
+/// The images of a cube on their way into files: <imagename>.psf, .residual, and with CLEAN .model, .image and, where there are
+/// masks, .mask. Each plane is written as soon as it is done.
+class CubeFiles {
+ public:
+  /// Throws std::runtime_error that names the file which cannot be written.
+  CubeFiles(const ImageOptions& options, const imager::ImageHeader& header, bool masks);
+
+  /// What a plane of one Stokes parameter has; null where there is none.
+  struct Plane {
+    const imager::Image* residual = nullptr;
+    const imager::Image* model = nullptr;
+    const imager::Image* restored = nullptr;
+    const imager::Image* mask = nullptr;
+  };
+
+  /// The PSF of a channel, and the beam fitted to it.
+  void write_psf(int channel, const imager::Image& psf, const std::optional<imager::Beam>& beam);
+  void write(const imager::PlaneIndex& at, const Plane& plane, const std::optional<imager::Beam>& beam);
+  /// All files get their names.
+  void finish();
+
+ private:
+  using Writer = std::unique_ptr<imager::ImageWriter>;
+  Writer psf_, residual_, model_, restored_, mask_;  ///< null where there is no such image
+};
+
+}  // namespace misfit::tools

@@ -1,0 +1,213 @@
+#include "tools/run/cube_options.h"
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <stdexcept>
+#include <tuple>
+
+#include "imager/constants.h"
+#include "tools/base/numbers.h"
+#include "tools/base/option_checks.h"
+#include "tools/base/quantity.h"
+
+namespace misfit::tools {
+namespace {
+
+/// What --start and --chanwidth may be given in.
+enum class SpectralUnit { none, channels, frequency, velocity };
+
+struct SpectralQuantity {
+  SpectralUnit unit = SpectralUnit::none;
+  double value = 0;  ///< channels, Hz or m/s
+};
+
+SpectralQuantity parse(const std::string& option, const std::string& text) {
+  if (text.empty()) return {};
+  int channels = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), channels);
+  if (error == std::errc() && end == text.data() + text.size()) return {SpectralUnit::channels, 1.0 * channels};
+  try {
+    if (text.ends_with("/s")) return {SpectralUnit::velocity, parse_velocity_m_s(text)};
+    if (has_unit(text)) return {SpectralUnit::frequency, parse_frequency_hz(text)};
+  } catch (const std::invalid_argument&) {  // said below
+  }
+  refuse_option(option, text, "a number of channels, a frequency such as 1.4GHz, or a velocity such as 20km/s");
+}
+
+double rest_frequency_hz(const CubeOptions& o) {
+  if (o.restfreq.empty()) return 0;
+  const double hz = parse_frequency_hz(o.restfreq);
+  if (!(hz > 0) || !has_unit(o.restfreq)) refuse_option("restfreq", o.restfreq, "a frequency such as 1.420405752GHz");
+  return hz;
+}
+
+/// The band of all windows, edges included.
+struct Band {
+  double low_hz = std::numeric_limits<double>::infinity();
+  double high_hz = 0;
+};
+
+Band band_of(const std::vector<ms_io::SpectralWindow>& windows) {
+  Band band;
+  for (const ms_io::SpectralWindow& window : windows)
+    for (std::size_t c = 0; c < window.frequency_hz.size(); ++c) {
+      const double hz = window.frequency_hz[c], width_hz = window.channel_width_hz[c];
+      if (!(width_hz > 0))
+        throw std::runtime_error("a channel at " + frequency_text(hz, 8) +
+                                 " has no width; expected a positive CHAN_WIDTH, which cubes need");
+      band.low_hz = std::min(band.low_hz, hz - width_hz / 2);
+      band.high_hz = std::max(band.high_hz, hz + width_hz / 2);
+    }
+  return band;
+}
+
+/// The axis, option by option.
+class AxisMaker {
+ public:
+  AxisMaker(const CubeOptions& o, const std::vector<ms_io::SpectralWindow>& windows)
+      : o_(o),
+        first_(windows.front()),
+        band_(band_of(windows)),
+        start_(parse("start", o.start)),
+        width_(parse("chanwidth", o.chanwidth)) {
+    axis_.frame = ms_io::parse_spectral_frame(o.outframe);
+    axis_.rest_frequency_hz = rest_frequency_hz(o);
+  }
+
+  imager::SpectralAxis make() {
+    axis_.increment_hz = increment_hz();
+    axis_.reference_hz = start_hz();
+    axis_.channels = o_.nchan > 0 ? o_.nchan : planes_to_end();
+    check();
+    return axis_;
+  }
+
+ private:
+  double channel_width_hz() const {
+    const auto& hz = first_.frequency_hz;
+    const bool falls = hz.size() > 1 && hz.back() < hz.front();
+    return (falls ? -1 : 1) * first_.channel_width_hz.front();
+  }
+
+  double increment_hz() const {
+    const double channel = channel_width_hz();
+    const double up = start_.unit == SpectralUnit::frequency  ? std::abs(channel)
+                      : start_.unit == SpectralUnit::velocity ? -std::abs(channel)
+                                                              : channel;
+    if (width_.unit == SpectralUnit::none) return up;
+    if (width_.unit == SpectralUnit::channels) return up * width_.value;
+    if (width_.unit == SpectralUnit::frequency) return width_.value;
+    return -axis_.rest_frequency_hz * width_.value / imager::speed_of_light_m_s;
+  }
+
+  double start_hz() const {
+    const auto channels = static_cast<int>(first_.frequency_hz.size());
+    if (start_.unit == SpectralUnit::frequency) return start_.value;
+    if (start_.unit == SpectralUnit::velocity) return axis_.rest_frequency_hz * (1 - start_.value / imager::speed_of_light_m_s);
+    const bool backwards = axis_.increment_hz * channel_width_hz() < 0;
+    const int channel = start_.unit == SpectralUnit::channels ? static_cast<int>(start_.value) : backwards ? channels - 1 : 0;
+    if (channel < 0 || channel >= channels)
+      refuse_option("start", o_.start, "0 to " + std::to_string(channels - 1) + ", a channel of the first window selected");
+    const double hz = first_.frequency_hz[static_cast<std::size_t>(channel)];
+    // The first plane begins where the first channel does.
+    return hz + 0.5 * (axis_.increment_hz - std::copysign(std::abs(channel_width_hz()), axis_.increment_hz));
+  }
+
+  /// So many that the last one holds the middle of the last data, or reaches half-way into them.
+  int planes_to_end() const {
+    const double end = axis_.increment_hz > 0 ? band_.high_hz : band_.low_hz;
+    const double planes = (end - (axis_.reference_hz - 0.5 * axis_.increment_hz)) / axis_.increment_hz;
+    return static_cast<int>(std::clamp(std::round(planes), 1.0, 1.0 * most_planes));
+  }
+
+  void check() const {
+    const double first = axis_.frequency_hz(0), last = axis_.frequency_hz(axis_.channels - 1);
+    const double low = std::min(first, last) - 0.5 * axis_.width_hz(), high = std::max(first, last) + 0.5 * axis_.width_hz();
+    const std::string planes =
+        "the cube's planes, " + frequency_text(low, 8) + " to " + frequency_text(high, 8) + " in " + axis_.frame;
+    if (!(low > 0))
+      throw std::invalid_argument(planes + ", reach frequencies that are not positive; expected fewer, or another --start");
+    if (!(high > band_.low_hz && low < band_.high_hz))
+      throw std::invalid_argument(planes + ", hold no data; expected some within " + frequency_text(band_.low_hz, 8) + " to " +
+                                  frequency_text(band_.high_hz, 8));
+  }
+
+  static constexpr int most_planes = 65536;
+
+  const CubeOptions& o_;
+  const ms_io::SpectralWindow& first_;
+  Band band_;
+  SpectralQuantity start_, width_;
+  imager::SpectralAxis axis_;
+};
+
+}  // namespace
+
+void declare(CLI::App& command, CubeOptions& o) {
+  command.add_option("--specmode", o.specmode, "mfs: one image of the whole band; cube: planes of frequency")
+      ->check(CLI::IsMember({"mfs", "cube"}));
+  command.add_option("--nchan", o.nchan, "Planes of a cube; -1 = to the end of the data");
+  command.add_option("--start", o.start,
+                     "The first plane: a channel of those selected in the first window, a frequency such as 1.4GHz, or a "
+                     "radio velocity such as 20km/s, in --outframe; the first channel when empty");
+  command.add_option("--chanwidth", o.chanwidth,
+                     "From plane to plane: channels, a frequency or a velocity, negative to go down; one channel when empty");
+  command.add_option("--outframe", o.outframe,
+                     "Where planes have their frequencies: LSRK, LSRD, BARY, GEO, TOPO, GALACTO, LGROUP or CMB");
+  command.add_option("--restfreq", o.restfreq, "Of the line: velocities are relative to it, and headers state it");
+  command
+      .add_option("--interpolation", o.interpolation,
+                  "linear: planes take visibilities interpolated between channels; nearest: the channels within them")
+      ->check(CLI::IsMember({"linear", "nearest"}));
+  command.add_option("--perchanweightdensity", o.perchanweightdensity,
+                     "true: the weights of each plane follow from its own density of samples; false: from that of all planes");
+}
+
+void check(const CubeOptions& o) {
+  const CubeOptions usual;
+  const auto only_of_cubes = [&](const char* option, const std::string& value, bool given) {
+    if (given && !o.is_cube()) refuse_option(option, value, "--specmode cube beside it");
+  };
+  only_of_cubes("nchan", std::to_string(o.nchan), o.nchan != usual.nchan);
+  only_of_cubes("start", o.start, !o.start.empty());
+  only_of_cubes("restfreq", o.restfreq, !o.restfreq.empty());
+  only_of_cubes("chanwidth", o.chanwidth, !o.chanwidth.empty());
+  only_of_cubes("outframe", o.outframe, o.outframe != usual.outframe);
+  only_of_cubes("interpolation", o.interpolation, o.interpolation != usual.interpolation);
+  only_of_cubes("perchanweightdensity", "false", !o.perchanweightdensity);
+  if (o.nchan != -1 && (o.nchan < 1 || o.nchan > 65536)) refuse_option("nchan", std::to_string(o.nchan), "1 to 65536, or -1");
+  const SpectralQuantity start = parse("start", o.start), width = parse("chanwidth", o.chanwidth);
+  if (width.unit != SpectralUnit::none && width.value == 0) refuse_option("chanwidth", o.chanwidth, "other than 0");
+  const double rest_hz = rest_frequency_hz(o);
+  for (const auto& [option, given, text] : {std::tuple{"start", start, o.start}, {"chanwidth", width, o.chanwidth}})
+    if (given.unit == SpectralUnit::velocity && rest_hz == 0) refuse_option(option, text, "--restfreq beside a velocity");
+  if (start.unit == SpectralUnit::channels && start.value < 0) refuse_option("start", o.start, "a channel from 0 on");
+  try {
+    ms_io::parse_spectral_frame(o.outframe);
+  } catch (const std::invalid_argument&) {
+    refuse_option("outframe", o.outframe, "LSRK, LSRD, BARY, GEO, TOPO, GALACTO, LGROUP or CMB");
+  }
+}
+
+imager::Decision axis_decision(const imager::CubeSampling& sampling, const CubeOptions& o) {
+  const imager::SpectralAxis& axis = sampling.axis;
+  const double last = axis.frequency_hz(axis.channels - 1);
+  const bool linear = sampling.interpolation == imager::SpectralInterpolation::linear;
+  return {"frequencies",
+          std::to_string(axis.channels) + (axis.channels == 1 ? " plane" : " planes") + " from " +
+              frequency_text(axis.reference_hz, 9) + " to " + frequency_text(last, 9) + " in " + axis.frame + ", " +
+              frequency_text(axis.width_hz(), 6) + " each",
+          linear ? "visibilities are interpolated between channels at each integration's own Doppler shift"
+                 : "each takes the channels within it at each integration's own Doppler shift"};
+}
+
+imager::CubeSampling cube_sampling(const CubeOptions& o, const std::vector<ms_io::SpectralWindow>& windows) {
+  return {AxisMaker(o, windows).make(),
+          o.interpolation == "nearest" ? imager::SpectralInterpolation::nearest : imager::SpectralInterpolation::linear};
+}
+
+}  // namespace misfit::tools

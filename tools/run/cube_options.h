@@ -1,0 +1,45 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "imager/cube/channel_map.h"
+#include "imager/plan/plan.h"
+#include "ms_io/spectral_frame.h"
+
+namespace CLI {
+class App;
+}
+
+namespace misfit::tools {
+
+/// Which planes of frequency an image has: one of the whole band, or those of a cube. Names and meaning are tclean's.
+struct CubeOptions {
+  std::string specmode = "mfs";
+  int nchan = -1;                        ///< planes; −1 = to the end of the data
+  std::string start;                     ///< a channel, "1.4GHz" or "20km/s"; empty = the first channel
+  std::string chanwidth;                 ///< channels, "1MHz" or "2km/s"; empty = one channel
+  std::string outframe = "LSRK";         ///< as ms_io::parse_spectral_frame() takes it
+  std::string restfreq;                  ///< of the line, for velocities; empty = none
+  std::string interpolation = "linear";  ///< or nearest
+  bool perchanweightdensity = true;      ///< each plane's weights follow from its own samples; or from those of all
+
+  bool is_cube() const { return specmode == "cube"; }
+};
+
+void declare(CLI::App& command, CubeOptions& options);
+
+/// Throws std::invalid_argument that names the option, its value and what was expected.
+void check(const CubeOptions& options);
+
+/// The planes, of data with these windows in the frame of --outframe. Channels count from 0 among those selected of the first
+/// window, whose width and direction are one channel's. Velocities are radio's, c (1 − f/f_rest). Where --start is a velocity,
+/// planes go up in velocity; where it is a frequency, up in frequency; else as channels do; a negative --chanwidth turns them
+/// about. Throws std::invalid_argument where no plane holds data or a frequency is not positive, std::runtime_error where
+/// channels have no width.
+imager::CubeSampling cube_sampling(const CubeOptions& options, const std::vector<ms_io::SpectralWindow>& windows);
+
+/// What the planes are and how data come into them.
+imager::Decision axis_decision(const imager::CubeSampling& sampling, const CubeOptions& options);
+
+}  // namespace misfit::tools

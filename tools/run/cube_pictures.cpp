@@ -1,0 +1,80 @@
+#include "tools/run/cube_pictures.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "imager/stokes.h"
+#include "tools/base/files.h"
+#include "tools/base/numbers.h"
+#include "tools/drawing/pictures.h"
+#include "tools/report/figure.h"
+
+namespace misfit::tools {
+
+void CubePictures::look_at_psf(int, const imager::Image& psf) {
+  psf_ = sketch(psf, Shades::brightness, picture_side);
+}
+
+void CubePictures::look_at(int channel, const imager::Image& image, const imager::Peak& brightest) {
+  const double magnitude = std::abs(brightest.value);
+  if (shown_ && !(magnitude > shown_->brightest)) return;
+  shown_ = Plane{channel, sketch(image, Shades::brightness, picture_side), *psf_, magnitude};
+}
+
+std::size_t CubePictures::shown_among(const std::vector<PlaneReport>& planes) const {
+  const auto found = std::find_if(planes.begin(), planes.end(),
+                                  [&](const PlaneReport& plane) { return shown_ && plane.channel == shown_->channel; });
+  return found == planes.end() ? 0 : static_cast<std::size_t>(found - planes.begin());
+}
+
+std::string CubePictures::draw(const ImageOptions& o, const imager::ImageHeader& header, const RunReport& report,
+                               std::vector<PagePicture>& drawn) const {
+  if (!shown_) return "";
+  const PlaneReport& plane = report.planes[report.shown];
+  const std::string of =
+      ", plane " + std::to_string(plane.channel) + " at " + frequency_text(plane.frequency_hz, 7) + " " + header.spectral.frame;
+  imager::SkyImage about;
+  about.geometry = header.geometry;
+  about.observation = header.observation;
+  about.observation.frequency_hz = plane.frequency_hz;
+  if (plane.beams && plane.beams->restoring) {
+    about.has_beam = true;
+    about.beam = *plane.beams->restoring;
+  }
+  const bool cleaned = o.niter > 0;
+  const std::string image_path = o.imagename + (cleaned ? ".image.png" : ".residual.png"), psf_path = o.imagename + ".psf.png";
+  PictureDrawing drawing;
+  const std::string title = (cleaned ? "Restored image" : "Dirty image") + of;
+  drawing.add({{.image = &about, .title = title, .path = image_path, .sketch = &shown_->image},
+               {.image = &about, .title = "PSF" + of, .path = psf_path, .sketch = &shown_->psf}});
+  std::string failure = drawing.finish();
+  if (failure.empty()) drawn = {{title, read_file(image_path)}, {"PSF" + of, read_file(psf_path)}};
+  return failure;
+}
+
+std::string spectrum_drawing(const RunReport& report) {
+  Figure figure{.name = "spectrum",
+                .title = "Planes",
+                .caption = "",
+                .x = {.label = "Frequency in GHz" + (report.cube ? ", " + report.cube->frame : "")},
+                .y = {.label = "Jy/beam"},
+                .series = {}};
+  Series brightest{.label = "brightest pixel", .x = {}, .y = {}}, noise{.label = "noise", .x = {}, .y = {}};
+  for (const PlaneReport& plane : report.planes) {
+    if (plane.sums.used == 0) continue;
+    const StokesReport& first = plane.stokes.front();
+    for (Series* series : {&brightest, &noise}) series->x.push_back(plane.frequency_hz / 1e9);
+    brightest.y.push_back(first.brightest.value);
+    noise.y.push_back(first.histogram.noise_jy);
+  }
+  if (brightest.x.empty()) return "";
+  brightest.points = noise.points = brightest.x.size() < 20;
+  figure.series = {brightest, noise};
+  try {
+    return draw_svg(figure);
+  } catch (const std::runtime_error&) {  // the pictures say why
+    return "";
+  }
+}
+
+}  // namespace misfit::tools

@@ -1,0 +1,376 @@
+#include "tools/run/cube_run.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <stdexcept>
+
+#include "imager/cube/plane_gatherer.h"
+#include "imager/handed_over.h"
+#include "imager/noise.h"
+#include "imager/parallel.h"
+#include "tools/base/files.h"
+#include "tools/base/interrupt.h"
+#include "tools/base/numbers.h"
+#include "tools/run/cube_batches.h"
+#include "tools/run/cube_files.h"
+#include "tools/run/cube_pictures.h"
+#include "tools/run/plane_run.h"
+#include "tools/run/product_stage.h"
+#include "tools/run/run_messages.h"
+#include "tools/run/run_plan.h"
+#include "tools/run/weighting_options.h"
+#include "tools/run_page/report_page.h"
+
+namespace misfit::tools {
+namespace {
+
+/// One run, from options to files. The steps are called in the order in which they stand here.
+class CubeRun {
+ public:
+  CubeRun(const ImageOptions& options, std::string command_line, nlohmann::json option_values)
+      : o_(options),
+        stokes_(imager::parse_stokes(options.stokes)),
+        threads_(options.threads == 0 ? imager::available_threads() : options.threads),
+        progress_(options.quiet) {
+    report_.command_line = std::move(command_line);
+    report_.options = std::move(option_values);
+    report_.times = &times_;
+    report_.planes.clear();
+  }
+
+  bool run() {
+    open();
+    plan();
+    if (o_.dry_run) {
+      if (!o_.quiet) print_plan(plan_, expected());
+      return true;
+    }
+    begin_files();
+    if (!o_.cube.perchanweightdensity) weigh_in_common();
+    make_planes();
+    finish_files();
+    write_report();
+    if (!o_.quiet) std::printf("%s%s.report.html\n", summary(report_).c_str(), o_.imagename.c_str());
+    return !stopped_;
+  }
+
+ private:
+  void warn(const std::string& sentence) {
+    report_.warnings.push_back(sentence);
+    progress_.say("warning: " + sentence);
+  }
+  imager::Progress updates() {
+    return [this](std::uint64_t done, std::uint64_t total) { progress_.update(done, total); };
+  }
+  int planes() const { return header_.spectral.channels; }
+
+  void open() {
+    const imager::StageTimer timer(times_, "open");
+    if (!o_.dry_run) check_product_paths(o_);
+    set_ = std::make_unique<ms_io::MeasurementSet>(o_.vis, selection_of(o_), o_.datacolumn, stokes_);
+    for (const std::string& sentence : set_->incomplete_columns()) warn(sentence);
+    windows_ = set_->spectral_windows();
+    sampling_ = cube_sampling(o_.cube, windows_);
+    header_ = {.geometry = geometry_of(o_, set_->observation().phase_centre),
+               .observation = set_->observation(),
+               .spectral = sampling_.axis,
+               .stokes = stokes_,
+               .history = {report_.command_line}};
+    report_.cube = sampling_.axis;
+    if (o_.niter > 0) clean_ = std::make_unique<CleanStage>(o_, header_, threads_);
+    find_reach();
+  }
+
+  /// Planes may lie half a channel beyond the data's last.
+  void find_reach() {
+    reach_ = set_->reach();
+    double beyond = 0;
+    for (const ms_io::SpectralWindow& window : windows_)
+      for (std::size_t c = 0; c < window.frequency_hz.size(); ++c)
+        beyond = std::max(beyond, 0.5 * window.channel_width_hz[c] / window.frequency_hz[c]);
+    for (double* reach : {&reach_.max_abs_u, &reach_.max_abs_v, &reach_.max_abs_w}) *reach *= 1 + beyond;
+  }
+
+  void plan() {
+    const RunScene scene{.options = o_,
+                         .set = *set_,
+                         .geometry = header_.geometry,
+                         .reach = reach_,
+                         .threads = threads_,
+                         .mask = clean_ && (!o_.mask.empty() || o_.usemask == "auto"),
+                         .planes = planes(),
+                         .samples = static_cast<double>(set_->rows()) * samples_of_a_row(sampling_, windows_)};
+    plan_ = plan_run(scene, forecast_, times_, progress_);
+    plan_.decisions.push_back(axis_decision(sampling_, o_.cube));
+    batches_ = plan_batches(scene, plan_);
+    plan_.decisions.push_back(batches_.decision);
+    for (const std::string& warning : plan_.warnings) warn(warning);
+    report_.plan = plan_.decisions;
+    report_.plan.insert(report_.plan.end(), plan_.gridding.decisions.begin(), plan_.gridding.decisions.end());
+    report_.accuracy = o_.accuracy;
+    report_.gridding = &plan_.gridding;
+    report_.estimated_memory_bytes = batches_.memory_bytes;
+    work_ = work_of(scene, plan_);
+    const imager::StageTimer timer(times_, "plan");
+    if (!o_.dry_run) transform_ = std::make_shared<imager::PlannedTransform>(plan_.gridding);
+  }
+
+  std::vector<StageSeconds> expected() const { return expected_seconds(plan_, forecast_, work_); }
+
+  void begin_files() {
+    const imager::StageTimer timer(times_, "write images");
+    files_ = std::make_unique<CubeFiles>(o_, header_, o_.usemask == "auto" || !o_.mask.empty());
+    // Planes tell of themselves; their stages would fill the screen.
+    scene_ = std::make_unique<PlaneScene>(PlaneScene{o_, header_.geometry, stokes_, reach_, threads_, silent_, times_,
+                                                     [this](const std::string& sentence) { warn(sentence); }});
+  }
+
+  /// A pass over all planes for the density of their samples together.
+  void weigh_in_common() {
+    const imager::WeightingOptions options = weighting_options(o_);
+    if (!options.needs_density()) return;
+    imager::UvDensity density(header_.geometry, threads_);
+    for (const imager::PlaneRange& batch : batches_of(planes(), batches_.planes)) {
+      gather(batch);
+      const imager::StageTimer timer(times_, "weights");
+      for (const imager::StoredVisibilities& plane : gathered_.planes) {
+        const auto stream = plane.open();
+        while (const auto block = stream->next()) density.add(*block);
+      }
+      if (batch.count < planes()) gathered_ = {};
+    }
+    common_weights_ = std::make_shared<imager::ImagingWeights>(density, options);
+  }
+
+  /// The visibilities of some planes, unless they are there.
+  void gather(const imager::PlaneRange& batch) {
+    if (gathered_.planes.size() == static_cast<std::size_t>(batch.count)) return;
+    progress_.begin("planes " + numbers_of(batch));
+    const auto part = part_of(batch);
+    if (part) {
+      gathered_ = imager::gather_planes(*part, sampling_, batch, threads_, updates(), times_);
+    } else {
+      gathered_.planes.resize(static_cast<std::size_t>(batch.count));
+    }
+    progress_.end();
+  }
+
+  /// What of the set such planes need; null where it has nothing for them.
+  std::unique_ptr<ms_io::MeasurementSet> part_of(const imager::PlaneRange& range) const {
+    const double first = sampling_.axis.frequency_hz(range.first);
+    const double last = sampling_.axis.frequency_hz(range.first + range.count - 1), half = 0.5 * sampling_.axis.width_hz();
+    return set_->part(std::min(first, last) - half, std::max(first, last) + half);
+  }
+
+  std::string numbers_of(const imager::PlaneRange& range) const {
+    const std::string of = " of " + std::to_string(planes());
+    if (range.count == 1) return std::to_string(range.first) + of;
+    return std::to_string(range.first) + " to " + std::to_string(range.first + range.count - 1) + of;
+  }
+
+  void make_planes() {
+    for (const imager::PlaneRange& batch : batches_of(planes(), batches_.planes)) {
+      if (stopped_) return;
+      if (batches_.read_again) {
+        make_streamed(batch.first);
+        continue;
+      }
+      gather(batch);
+      report_.counts += gathered_.counts;
+      report_.outside_planes += gathered_.outside_planes;
+      progress_.begin("images " + numbers_of(batch), o_.niter > 0);
+      for (int i = 0; i < batch.count && !stopped_; ++i) {
+        progress_.update(static_cast<std::uint64_t>(i), static_cast<std::uint64_t>(batch.count));
+        imager::StoredVisibilities& plane = gathered_.planes[static_cast<std::size_t>(i)];
+        if (plane.samples() == 0) {
+          leave_empty(batch.first + i);
+          continue;
+        }
+        const imager::HandedOver source(std::move(plane));
+        imager::StreamedVisibilities visibilities(source, {.keep = true, .ahead = 0, .uv_reach_lambda = 0});
+        make_plane(batch.first + i, visibilities);
+      }
+      progress_.end();
+      gathered_ = {};
+    }
+  }
+
+  /// A plane that reads its own visibilities in every pass.
+  void make_streamed(int channel) {
+    const auto part = part_of({channel, 1});
+    if (!part) return leave_empty(channel);
+    const imager::PlaneView source(*part, sampling_, channel);
+    imager::StreamedVisibilities visibilities(source, {.keep = false, .ahead = plan_.streaming.ahead, .uv_reach_lambda = 0});
+    try {
+      make_plane(channel, visibilities);
+    } catch (const imager::NothingUsable&) {
+      leave_empty(channel);
+    }
+  }
+
+  /// It has no values and no beam.
+  void leave_empty(int channel) {
+    PlaneReport& plane = report_.planes.emplace_back();
+    plane.channel = channel;
+    plane.frequency_hz = sampling_.axis.frequency_hz(channel);
+    plane.stokes.clear();
+    for (const imager::Stokes stokes : stokes_) plane.stokes.push_back({.stokes = stokes});
+    ++empty_;
+  }
+
+  void make_plane(int channel, imager::StreamedVisibilities& visibilities) {
+    const std::string name = " of plane " + std::to_string(channel);
+    PlaneRun plane(*scene_, visibilities, name);
+    if (common_weights_)
+      plane.weigh(common_weights_);
+    else
+      plane.weigh();
+    try {
+      plane.make_dirty(plan_.gridding, transform_);
+    } catch (const imager::NothingInGrid& nothing) {
+      outside_grid_ += nothing.outside_grid;
+      return leave_empty(channel);
+    }
+    if (o_.verify > 0) plane.verify();
+    plane.choose_beams();
+    const bool beam = plane.report().beams->restoring.has_value();
+    if (o_.niter > 0 && beam) clean(channel, plane);
+    write(channel, plane);
+    finish(channel, plane);
+  }
+
+  void clean(int channel, PlaneRun& plane) {
+    clean_->begin_channel(channel);
+    plane.clean(*clean_, report_.options, [&](std::size_t, const imager::CleanState& state) {
+      if (state.cycles.size() > 1) ++work_.major_cycles;
+    });
+    for (const imager::CleanResult& result : plane.cleaned()) {
+      work_.components += result.report.iterations;
+      stopped_ = stopped_ || result.report.stop == imager::CleanStop::user;
+    }
+  }
+
+  void write(int channel, PlaneRun& plane) {
+    const std::optional<imager::Beam>& beam = plane.report().beams->restoring;
+    imager::DirtyImages& images = plane.made().images;
+    pictures_.look_at_psf(channel, images.psf);
+    {
+      const imager::StageTimer timer(times_, "write images");
+      files_->write_psf(channel, images.psf, beam);
+    }
+    for (std::size_t s = 0; s < stokes_.size(); ++s) {
+      const bool cleaned = !plane.cleaned().empty();
+      const imager::CleanResult* const result = cleaned ? &plane.cleaned()[s] : nullptr;
+      const imager::Image& residual = cleaned ? result->residual : images.dirty[s];
+      const imager::Image restored = cleaned ? restore(*result, *beam) : imager::Image();
+      look_at(channel, s, residual, cleaned ? restored : residual, plane.report());
+      const imager::StageTimer timer(times_, "write images");
+      files_->write(
+          {channel, static_cast<int>(s)},
+          {&residual, cleaned ? &result->model : nullptr, cleaned ? &restored : nullptr, cleaned ? &result->mask : nullptr},
+          beam);
+    }
+  }
+
+  imager::Image restore(const imager::CleanResult& result, const imager::Beam& beam) {
+    const imager::StageTimer timer(times_, "restore");
+    imager::Image sum = imager::convolve_with_beam(result.model, beam, header_.geometry.cell_rad, threads_);
+    for (std::size_t i = 0; i < sum.pixel.size(); ++i) sum.pixel[i] += result.residual.pixel[i];
+    return sum;
+  }
+
+  /// What the report tells of a plane, and the picture of the brightest.
+  void look_at(int channel, std::size_t stokes, const imager::Image& residual, const imager::Image& image, PlaneReport& plane) {
+    const imager::StageTimer timer(times_, "statistics");
+    StokesReport& told = plane.stokes[stokes];
+    const double noise_jy = told.clean ? told.clean->final_state().rms_jy : imager::sampled_noise(residual);
+    told.histogram = pixel_histogram(residual, noise_jy, threads_);
+    told.brightest = imager::find_peak(image);
+    if (stokes == 0) pictures_.look_at(channel, image, told.brightest);
+  }
+
+  void finish(int channel, PlaneRun& run) {
+    PlaneReport& plane = report_.planes.emplace_back(std::move(run.report()));
+    plane.channel = channel;
+    plane.frequency_hz = sampling_.axis.frequency_hz(channel);
+    report_.counts.used += plane.sums.used;
+    outside_grid_ += plane.sums.outside_grid;
+    if (o_.niter > 0) progress_.say(plane_message(plane, planes()));
+  }
+
+  void finish_files() {
+    if (report_.planes.size() == empty_) throw_nothing();
+    const imager::StageTimer timer(times_, "write images");
+    files_->finish();
+    report_.counts.outside_grid = outside_grid_;
+    report_.plan.push_back(left_out_decision(report_.counts));
+    if (outside_grid_ > 0) warn(outside_grid_warning(outside_grid_, reach_));
+    if (empty_ > 0)
+      warn(std::to_string(empty_) + " of " + std::to_string(planes()) +
+           " planes have no samples: they have no values and no beam");
+    if (const std::size_t left = static_cast<std::size_t>(planes()) - report_.planes.size(); left > 0)
+      warn("stopped by the user: the last " + std::to_string(left) + " of " + std::to_string(planes()) +
+           " planes have no values");
+  }
+
+  [[noreturn]] void throw_nothing() const {
+    if (outside_grid_ > 0) throw imager::NothingInGrid(outside_grid_);
+    throw imager::NothingUsable(report_.counts);
+  }
+
+  void write_report() {
+    report_.shown = pictures_.shown_among(report_.planes);
+    std::vector<PagePicture> drawn;
+    {
+      const imager::StageTimer timer(times_, "draw pictures");
+      if (const std::string failure = pictures_.draw(o_, header_, report_, drawn); !failure.empty()) warn(failure);
+    }
+    report_.expected = expected();
+    forecast_.learn(work_, times_);
+    report_.wall_clock_s = watch_.seconds();
+    const nlohmann::json json = report_json(report_);
+    write_file(o_.imagename + ".report.json", json.dump(2) + "\n");
+    write_file(o_.imagename + ".report.html", report_page(json, drawn, spectrum_drawing(report_)));
+  }
+
+  const ImageOptions& o_;
+  std::vector<imager::Stokes> stokes_;
+  int threads_;
+  ProgressLine progress_;
+  ProgressLine silent_{true};
+  imager::Stopwatch watch_;
+  imager::StageTimes times_;
+  RunReport report_;
+  TimeForecast forecast_{default_cache_folder()};
+  RunWork work_;
+
+  std::unique_ptr<ms_io::MeasurementSet> set_;
+  std::vector<ms_io::SpectralWindow> windows_;
+  imager::CubeSampling sampling_;
+  imager::ImageHeader header_;
+  imager::UvwReach reach_;
+  std::unique_ptr<CleanStage> clean_;  ///< null without CLEAN
+  RunPlan plan_;
+  CubeBatches batches_;
+  std::shared_ptr<const imager::PlannedTransform> transform_;
+  std::unique_ptr<CubeFiles> files_;
+  std::unique_ptr<PlaneScene> scene_;
+  std::shared_ptr<const imager::ImagingWeights> common_weights_;  ///< null where each plane has its own
+  imager::GatheredPlanes gathered_;                               ///< of the batch at hand
+  CubePictures pictures_;
+  std::uint64_t outside_grid_ = 0;
+  std::size_t empty_ = 0;  ///< planes
+  bool stopped_ = false;
+};
+
+}  // namespace
+
+bool run_cube(const ImageOptions& options, const std::string& command_line, const nlohmann::json& option_values) {
+  return CubeRun(options, command_line, option_values).run();
+}
+
+}  // namespace misfit::tools
