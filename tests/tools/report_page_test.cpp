@@ -108,7 +108,7 @@ BOOST_AUTO_TEST_CASE(an_error_beyond_what_was_asked_stands_out) {
 
 BOOST_AUTO_TEST_CASE(a_histogram_is_shown_with_its_numbers) {
   const std::string drawing = "<svg class=\"here\"></svg>";
-  const std::string page = misfit::tools::report_page(full_report(), {}, drawing);
+  const std::string page = misfit::tools::report_page(full_report(), {}, {.histogram = drawing, .spectrum = ""});
   for (const char* text : {drawing.c_str(), "Noise σ = 2 mJy/beam", "from −4\u00a0σ to 12.5\u00a0σ",
                            "3 of 1\u2009000\u2009000 lie beyond 5\u00a0σ", "noise alone would leave 0.6"})
     BOOST_TEST(contains(page, text), text);

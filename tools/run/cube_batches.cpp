@@ -22,7 +22,7 @@ double gathered_bytes(const RunScene& scene, const RunPlan& plan) {
 /// Of the blocks that are read ahead, and at hand.
 double in_flight_bytes(const RunScene& scene, const RunPlan& plan) {
   constexpr double blocks = 3;
-  const double sample = plan.gridding.request.stokes * sizeof(std::complex<float>) + sizeof(float);
+  const double sample = 1.0 * plan.gridding.request.stokes * sizeof(std::complex<float>) + sizeof(float);
   const double row = 4 * sizeof(double) / std::max(1.0, scene.samples / static_cast<double>(scene.set.rows()));
   return blocks * static_cast<double>(scene.set.read_at_once()) * (sample + row);
 }

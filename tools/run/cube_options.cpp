@@ -193,7 +193,7 @@ void check(const CubeOptions& o) {
   }
 }
 
-imager::Decision axis_decision(const imager::CubeSampling& sampling, const CubeOptions& o) {
+imager::Decision axis_decision(const imager::CubeSampling& sampling) {
   const imager::SpectralAxis& axis = sampling.axis;
   const double last = axis.frequency_hz(axis.channels - 1);
   const bool linear = sampling.interpolation == imager::SpectralInterpolation::linear;

@@ -40,6 +40,6 @@ void check(const CubeOptions& options);
 imager::CubeSampling cube_sampling(const CubeOptions& options, const std::vector<ms_io::SpectralWindow>& windows);
 
 /// What the planes are and how data come into them.
-imager::Decision axis_decision(const imager::CubeSampling& sampling, const CubeOptions& options);
+imager::Decision axis_decision(const imager::CubeSampling& sampling);
 
 }  // namespace misfit::tools

@@ -79,6 +79,7 @@ class CubeRun {
                .observation = set_->observation(),
                .spectral = sampling_.axis,
                .stokes = stokes_,
+               .cards = {},
                .history = {report_.command_line}};
     report_.cube = sampling_.axis;
     if (o_.niter > 0) clean_ = std::make_unique<CleanStage>(o_, header_, threads_);
@@ -105,7 +106,7 @@ class CubeRun {
                          .planes = planes(),
                          .samples = static_cast<double>(set_->rows()) * samples_of_a_row(sampling_, windows_)};
     plan_ = plan_run(scene, forecast_, times_, progress_);
-    plan_.decisions.push_back(axis_decision(sampling_, o_.cube));
+    plan_.decisions.push_back(axis_decision(sampling_));
     batches_ = plan_batches(scene, plan_);
     plan_.decisions.push_back(batches_.decision);
     for (const std::string& warning : plan_.warnings) warn(warning);
@@ -180,6 +181,7 @@ class CubeRun {
         continue;
       }
       gather(batch);
+      gathered_.counts.used = 0;  // the planes' own samples count
       report_.counts += gathered_.counts;
       report_.outside_planes += gathered_.outside_planes;
       progress_.begin("images " + numbers_of(batch), o_.niter > 0);
@@ -334,7 +336,7 @@ class CubeRun {
     report_.wall_clock_s = watch_.seconds();
     const nlohmann::json json = report_json(report_);
     write_file(o_.imagename + ".report.json", json.dump(2) + "\n");
-    write_file(o_.imagename + ".report.html", report_page(json, drawn, spectrum_drawing(report_)));
+    write_file(o_.imagename + ".report.html", report_page(json, drawn, {"", spectrum_drawing(report_)}));
   }
 
   const ImageOptions& o_;

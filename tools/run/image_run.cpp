@@ -82,11 +82,14 @@ class ImageRun {
     reach_ = set_->reach();
     if (o_.niter == 0) return;
     const imager::Observation& observation = set_->observation();
-    clean_ = std::make_unique<CleanStage>(
-        o_,
-        imager::ImageHeader{
-            .geometry = geometry_, .observation = observation, .spectral = whole_band(observation), .stokes = stokes_},
-        threads_);
+    clean_ = std::make_unique<CleanStage>(o_,
+                                          imager::ImageHeader{.geometry = geometry_,
+                                                              .observation = observation,
+                                                              .spectral = whole_band(observation),
+                                                              .stokes = stokes_,
+                                                              .cards = {},
+                                                              .history = {}},
+                                          threads_);
     clean_->begin_channel(0);
     if (const std::string warning = clean_->warning(); !warning.empty()) warn(warning);
   }
@@ -248,7 +251,7 @@ class ImageRun {
     report_.wall_clock_s = watch_.seconds();
     const nlohmann::json json = report_json(report_);
     write_file(o_.imagename + ".report.json", json.dump(2) + "\n");
-    write_file(o_.imagename + ".report.html", report_page(json, pictures, histogram));
+    write_file(o_.imagename + ".report.html", report_page(json, pictures, {histogram, ""}));
   }
 
   void summarise() const {

@@ -123,7 +123,7 @@ class RunPlanner {
     plan_.streaming.uv_reach_lambda =
         std::min(std::max(scene_.reach.max_abs_u, scene_.reach.max_abs_v), 0.5 / scene_.geometry.cell_rad);
     plan_.memory = memory.peak;
-    plan_.decisions.push_back(memory.decision);
+    if (scene_.planes == 1) plan_.decisions.push_back(memory.decision);
   }
 
   void warn_of_neglected_w() {

@@ -126,6 +126,33 @@ json stokes_json(double asked, const PlaneReport& plane) {
   return list;
 }
 
+/// Of a cube; null where there is one plane, of the whole band.
+json spectral_json(const std::optional<imager::SpectralAxis>& axis) {
+  if (!axis) return nullptr;
+  return {{"frame", axis->frame},
+          {"reference_hz", axis->reference_hz},
+          {"increment_hz", axis->increment_hz},
+          {"channels", axis->channels},
+          {"rest_frequency_hz", axis->rest_frequency_hz > 0 ? json(axis->rest_frequency_hz) : json()}};
+}
+
+json planes_json(const RunReport& r) {
+  json list = json::array();
+  for (const PlaneReport& plane : r.planes) {
+    const StokesReport& first = plane.stokes.front();
+    const bool empty = plane.sums.used == 0;
+    list.push_back({{"plane", plane.channel},
+                    {"frequency_hz", plane.frequency_hz},
+                    {"used", plane.sums.used},
+                    {"beam", restoring_json(plane.beams)},
+                    {"noise", noise_json(plane, first)},
+                    {"brightest_jy", empty ? json() : number(first.brightest.value)},
+                    {"clean", clean_json(first.clean)},
+                    {"stokes", stokes_json(r.accuracy, plane)}});
+  }
+  return list;
+}
+
 json counts_json(const imager::SampleCounts& c) {
   return {{"rows_read", c.rows_read},
           {"samples_read", c.samples_read},
@@ -183,6 +210,9 @@ json report_json(const RunReport& r) {
           {"clean", clean_json(first.clean)},
           {"residual_histogram", histogram_json(first.histogram)},
           {"stokes", stokes_json(r.accuracy, plane)},
+          {"spectral_axis", spectral_json(r.cube)},
+          {"planes", r.cube ? planes_json(r) : json()},
+          {"samples_outside_planes", r.cube ? json(r.outside_planes) : json()},
           {"outside", outside_json(r.outside)},
           {"outside_search", outside_search_json(r.outside)}};
 }

@@ -67,7 +67,10 @@ double largest_expected_error(const RunReport& report);
 /// `beam_by_quadrant`, `memory_gib_estimated`, `warnings`, `command_line`, `outside`, `outside_search`, `timings_s.total`,
 /// `timings_expected_s` (by stage, with `total`; null where nothing was expected), `clean.major_cycles_log`, `clean.kept_cycle`
 /// (whose model was kept), `residual_histogram` (see histogram_json()) and `stokes` (a list of {stokes, error, noise, clean,
-/// residual_histogram}, of which the first is what the report's own keys hold) are additions.
+/// residual_histogram}, of which the first is what the report's own keys hold) are additions. Of a cube these keys tell of the
+/// plane that is drawn, `spectral_axis` of its planes' frequencies, `planes` (a list of {plane, frequency_hz, used, beam,
+/// noise, brightest_jy, clean, stokes}) of each, and `samples_outside_planes` of usable samples in none; they are null
+/// otherwise.
 nlohmann::json report_json(const RunReport& report);
 
 }  // namespace misfit::tools

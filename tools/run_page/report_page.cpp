@@ -11,6 +11,7 @@
 #include "tools/report/html_elements.h"
 #include "tools/report/report_values.h"
 #include "tools/run_page/clean_section.h"
+#include "tools/run_page/cube_section.h"
 #include "tools/run_page/outside_section.h"
 #include "tools/run_page/time_section.h"
 
@@ -222,7 +223,7 @@ std::string options(const json& used) {
 
 }  // namespace
 
-std::string report_page(const json& report, const std::vector<PagePicture>& pictures, const std::string& histogram) {
+std::string report_page(const json& report, const std::vector<PagePicture>& pictures, const PageDrawings& drawings) {
   const json& name = member(member(report, "options"), "imagename");
   const std::string title = name.is_string() ? plain(name) : "misfit";
   const json& command = member(report, "command_line");
@@ -231,7 +232,9 @@ std::string report_page(const json& report, const std::vector<PagePicture>& pict
   content += headline(report);
   const json& clean = member(report, "clean");
   const std::string caption = histogram_caption(member(report, "residual_histogram"), clean.is_object());
-  content += figures(pictures, {clean_progress(clean), histogram.empty() ? "" : histogram + tag("figcaption", caption)});
+  content += figures(pictures, {clean_progress(clean), drawings.spectrum,
+                                drawings.histogram.empty() ? "" : drawings.histogram + tag("figcaption", caption)});
+  content += section("Planes", cube_section(report));
   content += section("Stokes parameters", stokes_section(member(report, "stokes")));
   content += section("CLEAN", clean_section(clean));
   content += section("Sources outside the image", outside_section(report));

@@ -1,0 +1,120 @@
+#include "ms_io/spectral_frame.h"
+
+#include <boost/test/unit_test.hpp>
+#include <cmath>
+
+#include "tests/ms_io/small_set.h"
+
+using namespace misfit;
+using namespace misfit::ms_io;
+using namespace misfit::ms_io::testing;
+
+namespace {
+
+/// The small set, seen from the VLA's place at times of the year and day when the Earth moves differently.
+SimulatedObservation observed_at_three_times() {
+  SimulatedObservation observation = small_observation();
+  observation.time_mjd_s = {4.9e9, 4.9e9 + 40000, 4.9e9 + 1.2e7};
+  return observation;
+}
+
+Selection in_frame(const std::string& name) {
+  Selection selection;
+  selection.spectral_frame = parse_spectral_frame(name);
+  return selection;
+}
+
+std::vector<double> ratios(const SmallSet& set, const std::string& frame) {
+  const MeasurementSet read(set.path(), in_frame(frame), "data");
+  std::vector<double> all;
+  const auto stream = read.open();
+  while (const auto block = stream->next()) {
+    BOOST_TEST(block->channel_width_hz == std::vector<double>(channels, 1e6), boost::test_tools::per_element());
+    all.insert(all.end(), block->frame_ratio.begin(), block->frame_ratio.end());
+  }
+  return all;
+}
+
+}  // namespace
+
+BOOST_AUTO_TEST_SUITE(spectral_frame)
+
+// Origin: astropy 5.2.1, SkyCoord.radial_velocity_correction and EarthLocation.get_gcrs_posvel, and 20 km/s towards 18h +30°
+// (B1900). They count the Earth's time dilation and the Sun's potential, 1.5e-8 and 4e-10 more or less in the course of a year,
+// which frames of frequency do not.
+BOOST_AUTO_TEST_CASE(frequencies_shift_as_the_earth_moves) {
+  const SmallSet set(observed_at_three_times());
+  struct Reference {
+    const char* frame;
+    double ratio[3];
+    double dilation;
+  };
+  for (const Reference& reference : {Reference{"GEO", {0.9999993050996122, 1.000000875863832, 1.0000009673682537}, 0},
+                                     Reference{"bary", {1.000063179454893, 1.0000647345733211, 0.9999554057549129}, 1.55e-8},
+                                     Reference{"LSRK", {1.0001270187375062, 1.0001285739552055, 1.000019238157765}, 1.55e-8}}) {
+    BOOST_TEST_CONTEXT(reference.frame) {
+      const std::vector<double> all = ratios(set, reference.frame);
+      BOOST_TEST_REQUIRE(all.size() == 3 * baselines);
+      for (std::size_t row = 0; row < all.size(); ++row)  // 1e-9 is 0.3 m/s
+        BOOST_TEST(std::abs(all[row] / reference.ratio[row / baselines] - 1 - reference.dilation) < 1e-9);
+    }
+  }
+}
+
+BOOST_AUTO_TEST_CASE(the_frame_of_the_data_stays) {
+  const SmallSet set(observed_at_three_times());
+  for (const double ratio : ratios(set, "TOPO")) BOOST_TEST(ratio == 1);
+}
+
+BOOST_AUTO_TEST_CASE(windows_are_those_of_the_first_row) {
+  const SmallSet set(observed_at_three_times());
+  const MeasurementSet read(set.path(), in_frame("LSRK"), "data");
+  const auto windows = read.spectral_windows();
+  BOOST_TEST_REQUIRE(windows.size() == 1U);
+  const double ratio = ratios(set, "LSRK").front();
+  BOOST_TEST_REQUIRE(windows[0].frequency_hz.size() == channels);
+  for (std::size_t c = 0; c < channels; ++c) {
+    BOOST_TEST(windows[0].frequency_hz[c] == (1e9 + 1e6 * static_cast<double>(c)) * ratio);
+    BOOST_TEST(windows[0].channel_width_hz[c] == 1e6 * ratio);
+  }
+}
+
+BOOST_AUTO_TEST_CASE(a_part_reads_the_channels_that_may_come_between_two_frequencies) {
+  const SmallSet set(observed_at_three_times());
+  const MeasurementSet read(set.path(), in_frame("TOPO"), "data");
+  const auto part = read.part(1.0029e9, 1.0031e9);
+  BOOST_TEST_REQUIRE(part != nullptr);
+  const auto block = part->open()->next();
+  // 0.2 MHz of Doppler shift and one and a half channels on either side.
+  BOOST_TEST(block->frequency_hz == (std::vector<double>{1.002e9, 1.003e9, 1.004e9}), boost::test_tools::per_element());
+  BOOST_TEST(block->rows() == 3 * baselines);
+  const auto whole = read.open()->next();
+  for (std::size_t row = 0; row < block->rows(); ++row)
+    for (std::size_t c = 0; c < 3; ++c) BOOST_TEST(block->visibility[row * 3 + c] == whole->visibility[row * channels + c + 2]);
+  BOOST_TEST((read.part(2e9, 2.1e9) == nullptr));
+}
+
+BOOST_AUTO_TEST_CASE(frames_go_by_the_names_of_casa) {
+  BOOST_TEST(parse_spectral_frame("lsrk") == "LSRK");
+  BOOST_TEST(parse_spectral_frame("Bary") == "BARYCENT");
+  BOOST_TEST(parse_spectral_frame("CMB") == "CMBDIPOL");
+  for (const char* unknown : {"", "LSR", "SOURCE", "TOPOCENT"})
+    BOOST_CHECK_EXCEPTION(parse_spectral_frame(unknown), std::invalid_argument, [&](const auto& error) {
+      return std::string(error.what()) ==
+             "spectral frame '" + std::string(unknown) + "'; expected one of LSRK, LSRD, BARY, GEO, TOPO, GALACTO, LGROUP, CMB";
+    });
+}
+
+BOOST_AUTO_TEST_CASE(windows_at_rest_or_of_no_frame_are_refused) {
+  for (const auto& [code, what] : {std::pair{0, "at rest in the source"}, {77, "no frame that is known"}}) {
+    const SmallSet set(observed_at_three_times());
+    set.modify([&, frame = code](casacore::MeasurementSet& changed) {
+      casacore::ScalarColumn<int>(changed.spectralWindow(), "MEAS_FREQ_REF").put(0, frame);
+    });
+    BOOST_CHECK_EXCEPTION(ratios(set, "LSRK"), std::runtime_error, [&, text = what](const auto& error) {
+      return std::string(error.what()).find(text) != std::string::npos;
+    });
+  }
+}
+
+BOOST_AUTO_TEST_SUITE_END()

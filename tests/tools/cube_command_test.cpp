@@ -1,0 +1,227 @@
+// Cubes by the program itself, of simulated lines.
+#include <cmath>
+
+#include "imager/fits_image_reader.h"
+#include "ms_io/measurement_set.h"
+#include "ms_io/simulated_set.h"
+#include "tests/tools/program.h"
+#include "tools/formats/image_file.h"
+
+namespace {
+
+using namespace misfit;
+using namespace misfit::tools::testing;
+
+constexpr std::size_t antennas = 5, baselines = 10, channels = 32;
+constexpr double first_hz = 1.42e9, channel_hz = 20e3;  // 4.2 km/s: within a year lines move by ±7 channels
+
+/// Days apart, each with some integrations.
+std::vector<double> times() {
+  std::vector<double> all;
+  for (const double day : {0.0, 90.0, 180.0, 270.0})
+    for (int i = 0; i < 3; ++i) all.push_back(4.9e9 + day * 86400 + 600 * i);
+  return all;
+}
+
+ms_io::SimulatedObservation observation() {
+  ms_io::SimulatedObservation o;
+  o.phase_centre = {1.25, 0.3, "FK5"};
+  for (std::size_t a = 0; a < antennas; ++a) {
+    const double east = 90.0 * static_cast<double>(a * a);
+    o.antenna_name.push_back("A" + std::to_string(a));
+    o.antenna_itrf_m.push_back({-1601185.4 + east, -5041977.5 + 0.3 * east, 3554875.9});
+  }
+  o.time_mjd_s = times();
+  for (std::size_t c = 0; c < channels; ++c) o.frequency_hz.push_back(first_hz + channel_hz * static_cast<double>(c));
+  o.channel_width_hz = channel_hz;
+  return o;
+}
+
+/// So that all lie within the grid of the images below.
+std::vector<double> uvw(std::size_t integration) {
+  std::vector<double> all;
+  for (std::size_t b = 0; b < baselines; ++b) {
+    const double angle = 0.26 * static_cast<double>(integration) + 0.31 * static_cast<double>(b);
+    const double length = 60 + 55 * static_cast<double>(b);
+    all.insert(all.end(), {length * std::cos(angle), length * std::sin(angle), 0});
+  }
+  return all;
+}
+
+using Spectrum = std::function<double(std::size_t integration, double hz)>;
+
+/// A point in the phase centre with a spectrum, in the frame of the data.
+void write_point(const std::string& path, const Spectrum& spectrum) {
+  std::size_t now = 0;
+  const auto coordinates = [&](std::size_t integration) { return uvw(now = integration); };
+  const auto visibilities = [&](const imager::SampleCoordinates& at) {
+    std::vector<std::complex<double>> all;
+    for (std::size_t row = 0; row < at.rows(); ++row)
+      for (const double hz : at.frequency_hz) all.emplace_back(spectrum(now, hz));
+    return all;
+  };
+  ms_io::write_simulated_set(path, observation(), coordinates, visibilities, {});
+}
+
+/// [integration], see VisibilityBlock::frame_ratio, which tests of ms_io compare with others'.
+std::vector<double> frame_ratios(const std::string& set, const std::string& frame) {
+  ms_io::Selection selection;
+  selection.spectral_frame = ms_io::parse_spectral_frame(frame);
+  const ms_io::MeasurementSet read(set, selection, "data");
+  const auto block = read.open()->next();
+  std::vector<double> ratios;
+  for (std::size_t row = 0; row < block->rows(); row += baselines) ratios.push_back(block->frame_ratio[row]);
+  return ratios;
+}
+
+/// A Gaussian in one frame.
+struct Line {
+  double at_hz;
+  double width_hz = 1.2 * channel_hz;  ///< σ
+
+  double operator()(double hz) const { return std::exp(-0.5 * std::pow((hz - at_hz) / width_hz, 2)); }
+};
+
+Arguments cube(const std::string& set, const std::string& imagename) {
+  return {"image", "--vis", set, "--imagename", imagename, "--imsize", "16", "--cell", "20arcsec", "--specmode", "cube"};
+}
+
+/// [plane], of the middle pixel.
+std::vector<double> spectrum_of(const imager::ImageReader& file) {
+  std::vector<double> all;
+  for (int plane = 0; plane < file.header().spectral.channels; ++plane) all.push_back(file.read({plane, 0}).at(8, 8));
+  return all;
+}
+
+/// The point with a line in `frame` at the middle of the band at the first time.
+struct LineSet {
+  TemporaryFolder folder;
+  std::string set = folder / "line.ms";
+  Line line{};
+
+  explicit LineSet(const std::string& frame) {
+    write_point(folder / "empty.ms", [](auto, auto) { return 0; });
+    const std::vector<double> ratio = frame_ratios(folder / "empty.ms", frame);
+    line.at_hz = (first_hz + 16.3 * channel_hz) * ratio.front();
+    write_point(set, [&](std::size_t integration, double hz) { return line(hz * ratio[integration]); });
+  }
+};
+
+bool all_nan(const imager::Image& image) {
+  return std::all_of(image.pixel.begin(), image.pixel.end(), [](double x) { return std::isnan(x); });
+}
+
+}  // namespace
+
+BOOST_AUTO_TEST_SUITE(cube_command)
+
+BOOST_AUTO_TEST_CASE(a_line_lands_in_its_channel_in_every_frame) {
+  for (const std::string frame : {"LSRK", "BARY", "GEO", "TOPO", "LSRD", "GALACTO", "LGROUP", "CMB"}) {
+    const LineSet data(frame);
+    for (const std::string interpolation : {"linear", "nearest"}) {
+      BOOST_TEST_CONTEXT(frame << ", " << interpolation) {
+        succeed(cube(data.set, data.folder / "a") + Arguments{"--outframe", frame, "--interpolation", interpolation});
+        const auto file = imager::open_fits_image(data.folder / "a.residual.fits");
+        const imager::SpectralAxis& axis = file->header().spectral;
+        BOOST_TEST(axis.frame == ms_io::parse_spectral_frame(frame));
+        BOOST_TEST_REQUIRE(axis.channels == 32);
+        const std::vector<double> spectrum = spectrum_of(*file);
+        const double at = axis.plane_of(data.line.at_hz);
+        const auto peak = std::max_element(spectrum.begin() + 8, spectrum.begin() + 24) - spectrum.begin();
+        BOOST_TEST(std::abs(static_cast<double>(peak) - at) <= 0.5);
+        // Interpolated between channels of 1/1.2 σ, a Gaussian errs by 1/8 of the square of that times its second derivative at
+        // most; the nearest channel is half a channel off, where the slope is 0.61/σ at most.
+        const double tolerance = interpolation == "linear" ? 0.125 / 1.44 : 0.61 * 0.5 / 1.2;
+        for (int plane = 8; plane < 24; ++plane)
+          BOOST_TEST(std::abs(spectrum[static_cast<std::size_t>(plane)] - data.line(axis.frequency_hz(plane))) < tolerance);
+      }
+    }
+  }
+}
+
+BOOST_AUTO_TEST_CASE(a_line_of_another_frame_is_smeared) {
+  const LineSet data("LSRK");
+  succeed(cube(data.set, data.folder / "a") + Arguments{"--outframe", "TOPO"});
+  const std::vector<double> spectrum = spectrum_of(*imager::open_fits_image(data.folder / "a.residual.fits"));
+  BOOST_TEST(*std::max_element(spectrum.begin(), spectrum.end()) < 0.6);
+}
+
+BOOST_AUTO_TEST_CASE(planes_without_samples_have_no_values_and_no_beam) {
+  const LineSet data("TOPO");
+  succeed(cube(data.set, data.folder / "a") +
+          Arguments{"--outframe", "TOPO", "--start", "1.41990GHz", "--nchan", "8", "--niter", "20", "--outformat", "both"});
+  for (const char* name : {"a.residual.fits", "a.image.fits", "a.psf.fits", "a.model.fits", "a.image", "a.psf"}) {
+    BOOST_TEST_CONTEXT(name) {
+      const auto file = tools::open_image_file(data.folder / name);
+      for (int plane = 0; plane < 8; ++plane) {  // the first channel's lower edge is 90 kHz above the first plane's middle
+        const bool empty = plane < 5;
+        BOOST_TEST(all_nan(file->read({plane, 0})) == empty);
+        if (std::string(name).find("model") == std::string::npos) BOOST_TEST(file->beam({plane, 0}).has_value() == !empty);
+      }
+    }
+  }
+  const nlohmann::json report = report_of(data.folder / "a");
+  BOOST_TEST(report["warnings"][0] == "5 of 8 planes have no samples: they have no values and no beam");
+}
+
+BOOST_AUTO_TEST_CASE(a_cube_without_data_is_refused) {
+  const LineSet data("TOPO");
+  const Outcome outcome = run(cube(data.set, data.folder / "a") + Arguments{"--start", "1.5GHz", "--nchan", "4"});
+  BOOST_TEST(outcome.code == 2);
+  BOOST_TEST(outcome.err.find("hold no data; expected some within 1.42") != std::string::npos);
+  BOOST_TEST(!std::filesystem::exists(data.folder / "a.residual.fits"));
+}
+
+BOOST_AUTO_TEST_CASE(planes_read_again_and_again_are_those_held) {
+  const LineSet data("LSRK");
+  const Arguments options{"--weighting", "briggs", "--niter", "30", "--nchan", "6", "--start", "13"};
+  succeed(cube(data.set, data.folder / "held") + options);
+  const Outcome refused = run(cube(data.set, data.folder / "x") + options + Arguments{"--memory", "0.001"});
+  const std::string before = "expected at least ";
+  const auto at = refused.err.find(before);
+  BOOST_TEST_REQUIRE(at != std::string::npos);
+  const std::string least =
+      refused.err.substr(at + before.size(), refused.err.find(' ', at + before.size()) - at - before.size());
+  succeed(cube(data.set, data.folder / "read") + options + Arguments{"--memory", least});
+  for (const char* kind : {"residual", "image", "psf", "model"}) {
+    const auto held = imager::open_fits_image(data.folder / ("held." + std::string(kind) + ".fits"));
+    const auto read = imager::open_fits_image(data.folder / ("read." + std::string(kind) + ".fits"));
+    for (int plane = 0; plane < 6; ++plane)
+      BOOST_TEST(held->read({plane, 0}).pixel == read->read({plane, 0}).pixel, boost::test_tools::per_element());
+  }
+}
+
+BOOST_AUTO_TEST_CASE(each_plane_is_cleaned_and_restarted_by_itself) {
+  const LineSet data("LSRK");
+  const Arguments options{"--nchan", "4", "--start", "15"};
+  succeed(cube(data.set, data.folder / "a") + options + Arguments{"--niter", "10"});
+  succeed(cube(data.set, data.folder / "a") + options + Arguments{"--niter", "40", "--restart"});
+  succeed(cube(data.set, data.folder / "b") + options + Arguments{"--niter", "40"});
+  const nlohmann::json planes = report_of(data.folder / "a")["planes"];
+  BOOST_TEST_REQUIRE(planes.size() == 4U);
+  const auto image = imager::open_fits_image(data.folder / "a.image.fits");
+  for (int plane = 0; plane < 4; ++plane) {
+    BOOST_TEST(planes[static_cast<std::size_t>(plane)]["clean"]["iterations"] == 40);
+    BOOST_TEST(std::filesystem::exists(data.folder / ("a.clean/" + std::to_string(plane) + ".state")));
+    const double flux = data.line(image->header().spectral.frequency_hz(plane));
+    BOOST_TEST(std::abs(image->read({plane, 0}).at(8, 8) - flux) < 0.1);  // as above; CLEAN leaves 0.9⁴⁰ of it
+  }
+}
+
+BOOST_AUTO_TEST_CASE(common_density_weighs_all_planes_alike) {
+  const LineSet data("TOPO");
+  const Arguments options{"--outframe", "TOPO", "--weighting", "uniform", "--nchan", "3", "--start", "4"};
+  succeed(cube(data.set, data.folder / "own") + options);
+  succeed(cube(data.set, data.folder / "common") + options + Arguments{"--perchanweightdensity", "false"});
+  const auto own = imager::open_fits_image(data.folder / "own.psf.fits");
+  const auto common = imager::open_fits_image(data.folder / "common.psf.fits");
+  double differ = 0;
+  for (std::size_t i = 0; i < 256; ++i)
+    differ = std::max(differ, std::abs(own->read({1, 0}).pixel[i] - common->read({1, 0}).pixel[i]));
+  BOOST_TEST(differ < 0.2);  // channels next to each other lie in nearly the same cells …
+  BOOST_TEST(common->read({1, 0}).at(8, 8) > 0.9999);
+  const auto noise = [&](const char* name) { return report_of(data.folder / name)["noise"]["predicted_jy"].get<double>(); };
+  BOOST_TEST(std::abs(noise("common") / noise("own") - 1) < 0.2);
+}
+
+BOOST_AUTO_TEST_SUITE_END()

@@ -1,0 +1,123 @@
+#include "tools/run/cube_options.h"
+
+#include <boost/test/unit_test.hpp>
+#include <cmath>
+
+#include "imager/constants.h"
+
+using namespace misfit;
+using namespace misfit::tools;
+
+namespace {
+
+ms_io::SpectralWindow window(double first_hz, double step_hz, std::size_t channels) {
+  ms_io::SpectralWindow w;
+  for (std::size_t c = 0; c < channels; ++c) {
+    w.frequency_hz.push_back(first_hz + step_hz * static_cast<double>(c));
+    w.channel_width_hz.push_back(std::abs(step_hz));
+  }
+  return w;
+}
+
+CubeOptions cube(const std::string& start = "", const std::string& width = "", int nchan = -1) {
+  CubeOptions o;
+  o.specmode = "cube";
+  o.start = start;
+  o.chanwidth = width;
+  o.nchan = nchan;
+  o.restfreq = "1.4GHz";
+  return o;
+}
+
+imager::SpectralAxis axis_of(const CubeOptions& o, double step_hz = 1e6) {
+  check(o);
+  return cube_sampling(o, {window(step_hz > 0 ? 1.4e9 : 1.409e9, step_hz, 10)}).axis;
+}
+
+struct Expected {
+  double first_hz, step_hz;
+  int channels;
+};
+
+void compare(const imager::SpectralAxis& axis, const Expected& expected) {
+  BOOST_TEST(std::abs(axis.reference_hz - expected.first_hz) < 1e-3);
+  BOOST_TEST(std::abs(axis.increment_hz - expected.step_hz) < 1e-3);
+  BOOST_TEST(axis.channels == expected.channels);
+}
+
+/// The message with which options are refused.
+std::string refusal(const CubeOptions& o) {
+  try {
+    axis_of(o);
+  } catch (const std::invalid_argument& error) {
+    return error.what();
+  }
+  return "";
+}
+
+}  // namespace
+
+BOOST_AUTO_TEST_SUITE(cube_options)
+
+BOOST_AUTO_TEST_CASE(planes_are_channels_unless_told_otherwise) {
+  compare(axis_of(cube()), {1.4e9, 1e6, 10});
+  compare(axis_of(cube(), -1e6), {1.409e9, -1e6, 10});
+  compare(axis_of(cube("3")), {1.403e9, 1e6, 7});
+  compare(axis_of(cube("3", "", 2)), {1.403e9, 1e6, 2});
+}
+
+BOOST_AUTO_TEST_CASE(planes_of_several_channels_begin_where_their_first_channel_does) {
+  compare(axis_of(cube("", "2")), {1.4005e9, 2e6, 5});
+  compare(axis_of(cube("2", "4")), {1.4035e9, 4e6, 2});
+  compare(axis_of(cube("", "-1")), {1.409e9, -1e6, 10});
+  compare(axis_of(cube("", "-2")), {1.4085e9, -2e6, 5});
+  compare(axis_of(cube("", "2"), -1e6), {1.4085e9, -2e6, 5});
+}
+
+BOOST_AUTO_TEST_CASE(frequencies_go_up_and_velocities_too) {
+  compare(axis_of(cube("1.402GHz")), {1.402e9, 1e6, 8});
+  compare(axis_of(cube("1.402GHz"), -1e6), {1.402e9, 1e6, 8});
+  compare(axis_of(cube("1.402GHz", "500kHz", 3)), {1.402e9, 0.5e6, 3});
+  compare(axis_of(cube("1.402GHz", "-500kHz", 3)), {1.402e9, -0.5e6, 3});
+  const double c = imager::speed_of_light_m_s;
+  compare(axis_of(cube("-1000km/s", "100km/s", 4)), {1.4e9 * (1 + 1e6 / c), -1.4e9 * 1e5 / c, 4});
+  compare(axis_of(cube("-1000km/s", "-100km/s", 4)), {1.4e9 * (1 + 1e6 / c), 1.4e9 * 1e5 / c, 4});
+  compare(axis_of(cube("-1000km/s", "", 4)), {1.4e9 * (1 + 1e6 / c), -1e6, 4});
+}
+
+BOOST_AUTO_TEST_CASE(all_windows_count_for_the_end) {
+  const auto axis = cube_sampling(cube(), {window(1.4e9, 1e6, 10), window(1.42e9, 1e6, 10)}).axis;
+  BOOST_TEST(axis.channels == 30);
+}
+
+BOOST_AUTO_TEST_CASE(what_cannot_be_is_refused_in_one_line) {
+  for (const auto& [options, named] : {std::pair{cube("10"), "--start 10: expected 0 to 9"},
+                                       {cube("-1"), "--start -1"},
+                                       {cube("1.5GHz", "", 4), "hold no data; expected some within 1.3995 GHz to 1.4095 GHz"},
+                                       {cube("1.4GHz", "-500MHz", 9), "not positive"},
+                                       {cube("somewhere"), "--start somewhere: expected a number of channels, a frequency"},
+                                       {cube("5km"), "--start 5km"},
+                                       {cube("", "0"), "--chanwidth 0"},
+                                       {cube("", "0MHz"), "--chanwidth 0MHz"},
+                                       {cube("", "", 0), "--nchan 0"}}) {
+    BOOST_TEST_INFO(refusal(options));
+    BOOST_TEST(refusal(options).find(named) != std::string::npos);
+  }
+  CubeOptions no_line = cube("5km/s");
+  no_line.restfreq = "";
+  BOOST_TEST(refusal(no_line).find("--restfreq beside a velocity") != std::string::npos);
+  CubeOptions other_frame = cube();
+  other_frame.outframe = "HELIO";
+  BOOST_TEST(refusal(other_frame).find("--outframe HELIO: expected LSRK") != std::string::npos);
+  CubeOptions no_cube = cube("3");
+  no_cube.specmode = "mfs";
+  BOOST_TEST(refusal(no_cube).find("--specmode cube beside it") != std::string::npos);
+}
+
+BOOST_AUTO_TEST_CASE(channels_without_width_are_refused) {
+  ms_io::SpectralWindow flat = window(1.4e9, 1e6, 3);
+  flat.channel_width_hz[1] = 0;
+  BOOST_CHECK_THROW(cube_sampling(cube(), {flat}), std::runtime_error);
+}
+
+BOOST_AUTO_TEST_SUITE_END()
