@@ -5,6 +5,7 @@
 #include <fstream>
 #include <string_view>
 
+#include "imager/primary_beam.h"
 #include "tools/base/files.h"
 #include "tools/formats/component_list.h"
 
@@ -68,10 +69,11 @@ void ProductStage::draw_dirty(const imager::UvCoverage& coverage, const imager::
 
 std::vector<std::string> ProductStage::write(imager::DirtyImages images) {
   const imager::StageTimer timer(times_, "write images");
-  products_.add("psf", "Jy/beam", alone(std::move(images.psf)));
-  products_.add("residual", "Jy/beam", std::move(images.dirty));
   auto removed = remove_old(
       {"model.fits", "model.png", "image.fits", "image.png", "dirty.png", "mask.fits", "components.csv", "clean.state"});
+  add_primary_beam(images.dirty, removed);
+  products_.add("psf", "Jy/beam", alone(std::move(images.psf)));
+  products_.add("residual", "Jy/beam", std::move(images.dirty));
   remove_other_stokes(removed);
   products_.write();
   return removed;
@@ -112,11 +114,27 @@ std::vector<std::string> ProductStage::write(imager::Image psf, std::vector<imag
   const bool kept =
       std::filesystem::equivalent(o_.mask, o_.imagename + ".mask.fits", absent);  // the user's file stays as it is
   if (masked && !kept) products_.add("mask", "", std::move(masks));
-  products_.add("image", "Jy/beam", std::move(images));
   auto removed = masked ? std::vector<std::string>() : remove_old({"mask.fits"});
+  add_primary_beam(images, removed);
+  products_.add("image", "Jy/beam", std::move(images));
   remove_other_stokes(removed);
   products_.write();
   return removed;
+}
+
+void ProductStage::add_primary_beam(const std::vector<imager::Image>& images, std::vector<std::string>& removed) {
+  const bool made = !primary_beam_.pixel.empty();
+  std::vector<std::string> others;
+  if (!made) others.emplace_back("pb.fits");
+  if (!made || !o_.pbcor) others.emplace_back("image.pbcor.fits");
+  for (const std::string& path : remove_old(others)) removed.push_back(path);
+  if (!made) return;
+  if (o_.pbcor) {
+    std::vector<imager::Image> quotients;
+    for (const imager::Image& image : images) quotients.push_back(imager::corrected(image, primary_beam_));
+    products_.add("image.pbcor", "Jy/beam", std::move(quotients));
+  }
+  products_.add("pb", "", alone(std::move(primary_beam_)));
 }
 
 void ProductStage::write_components(const std::vector<imager::CleanResult>& cleaned) const {
