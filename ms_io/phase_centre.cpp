@@ -107,11 +107,7 @@ imager::SkyDirection field_pointing(const casacore::MeasurementSet& set, const s
 
 imager::SkyDirection in_frame(const imager::SkyDirection& direction, const std::string& frame) {
   if (direction.frame == frame) return direction;
-  const Vector there = converted(imager::uvw_axes(direction).w, direction.frame, frame, {});
-  imager::SkyDirection here =
-      sky_direction(casacore::MDirection(casacore::MVDirection(there[0], there[1], there[2]), frame_code(frame)));
-  here.frame = frame;
-  return here;
+  return sky_direction(casacore::MDirection::Convert(measure_of(direction), casacore::MDirection::Ref(frame_code(frame)))());
 }
 
 double separation_rad(const imager::SkyDirection& a, const imager::SkyDirection& b) {
