@@ -39,7 +39,8 @@ BOOST_AUTO_TEST_CASE(weights_add_up_by_kind_and_frequency_over_all_blocks_withou
       BOOST_TEST(share.weight == (next++)->second);  // sums of few floats in double precision are exact
     }
   }
-  BOOST_TEST(misfit::imager::weight_shares(stored(blocks), {cell_rad, {}, 1}).size() == 4U);  // frequencies; they share the lowest
+  BOOST_TEST(misfit::imager::weight_shares(stored(blocks), {cell_rad, {}, 1}).size() ==
+             4U);  // frequencies; they share the lowest
 }
 
 BOOST_AUTO_TEST_SUITE_END()

@@ -143,7 +143,8 @@ BOOST_AUTO_TEST_CASE(real_sets_tell_what_they_were_observed_with) {
   if (!atca.present() || !lofar.present()) return;
   const BeamRows five_beams = MeasurementSet(atca / "atca_sim_tileddata.ms", {}, "DATA").beam_rows();
   BOOST_TEST(five_beams.sorts.at(0).telescope == "ATCA");
-  BOOST_TEST(std::abs(five_beams.beam_offset_rad - std::hypot(0.25, 0.25) * 3.14159265358979 / 180) < 1e-8);  // as it is rounded there
+  BOOST_TEST(std::abs(five_beams.beam_offset_rad - std::hypot(0.25, 0.25) * 3.14159265358979 / 180) <
+             1e-8);  // as it is rounded there
   const BeamRows stations = MeasurementSet(lofar / "lofar_3c295_snapshot.ms", {}, "DATA").beam_rows();
   BOOST_TEST(stations.sorts.at(0).telescope == "LOFAR");
   BOOST_TEST(stations.sorts.size() > 1U);
