@@ -7,6 +7,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "ms_io/beam_rows_internal.h"
 #include "ms_io/block_group_internal.h"
 #include "ms_io/metadata_internal.h"
 #include "ms_io/model_writer.h"
@@ -198,6 +199,12 @@ NearestField MeasurementSet::nearest_field() const {
     if (one.distance_rad < nearest.distance_rad) nearest = one;
   }
   return nearest;
+}
+BeamRows MeasurementSet::beam_rows() const {
+  BeamRows rows;
+  for (const auto& set : impl_->sets) add_beam_rows(*set, impl_->observation.phase_centre.frame, rows);
+  if (rows.sorts.size() <= 1) rows.pairs = {};
+  return rows;
 }
 imager::UvwReach MeasurementSet::reach(ReachOf rows) const {
   imager::UvwReach all;

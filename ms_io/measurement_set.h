@@ -10,6 +10,7 @@
 #include "imager/observation.h"
 #include "imager/stokes.h"
 #include "imager/visibilities.h"
+#include "ms_io/beam_rows.h"
 #include "ms_io/selection.h"
 #include "ms_io/spectral_frame.h"
 
@@ -59,6 +60,8 @@ class MeasurementSet : public imager::VisibilitySource {
   std::uint64_t read_at_once() const;
   /// Throws std::runtime_error when FIELD or ANTENNA cannot be read.
   NearestField nearest_field() const;
+  /// Reads antennas and feeds of all rows. Throws std::runtime_error when they, ANTENNA, FEED or FIELD cannot be read.
+  BeamRows beam_rows() const;
   /// Bounds at the highest channel selected, of rows with finite UVW. Reads UVW, antennas and FLAG_ROW alone. Throws
   /// std::runtime_error when they cannot be read.
   imager::UvwReach reach(ReachOf rows = ReachOf::usable) const;

@@ -48,6 +48,20 @@ Vector unit(const Vector& a) {
   return {a[0] / length, a[1] / length, a[2] / length};
 }
 
+/// In J2000 where the direction is neither in that nor in ICRS or B1950.
+casacore::MDirection equatorial(const casacore::MDirection& direction, const casacore::MeasurementSet& set, std::uint64_t row) {
+  const auto frame = casacore::MDirection::castType(direction.getRef().getType());
+  if (frame == casacore::MDirection::J2000 || frame == casacore::MDirection::ICRS || frame == casacore::MDirection::B1950)
+    return direction;
+  return casacore::MDirection::Convert(direction, casacore::MDirection::Ref(casacore::MDirection::J2000, frame_of(set, row)))();
+}
+
+void require_field(const casacore::MeasurementSet& set, const std::string& path, int field) {
+  if (field >= 0 && static_cast<casacore::rownr_t>(field) < set.field().nrow()) return;
+  throw std::runtime_error(path + " has rows with FIELD_ID " + std::to_string(field) + ", but FIELD has " +
+                           std::to_string(set.field().nrow()) + " rows");
+}
+
 }  // namespace
 
 casacore::MDirection measure_of(const imager::SkyDirection& direction) {
@@ -65,23 +79,29 @@ casacore::MeasFrame frame_of(const casacore::MeasurementSet& set, std::uint64_t 
 }
 
 FieldCentre field_centre(const casacore::MeasurementSet& set, const std::string& path, int field, std::uint64_t row) {
-  if (field < 0 || static_cast<casacore::rownr_t>(field) >= set.field().nrow()) {
-    throw std::runtime_error(path + " has rows with FIELD_ID " + std::to_string(field) + ", but FIELD has " +
-                             std::to_string(set.field().nrow()) + " rows");
-  }
+  require_field(set, path, field);
   return translated("cannot find the phase centre of field " + std::to_string(field) + " of " + path, [&] {
     const casacore::MSFieldColumns columns(set.field());
     const auto index = static_cast<casacore::rownr_t>(field);
     const double time = casacore::ScalarColumn<double>(set, "TIME")(row);
-    casacore::MDirection direction = columns.phaseDirMeas(index, time);
-    const auto frame = casacore::MDirection::castType(direction.getRef().getType());
-    if (frame != casacore::MDirection::J2000 && frame != casacore::MDirection::ICRS && frame != casacore::MDirection::B1950) {
-      direction = casacore::MDirection::Convert(direction,
-                                                casacore::MDirection::Ref(casacore::MDirection::J2000, frame_of(set, row)))();
-    }
-    return FieldCentre{field, columns.name()(index), sky_direction(direction),
+    return FieldCentre{field, columns.name()(index), sky_direction(equatorial(columns.phaseDirMeas(index, time), set, row)),
                        casacore::ScalarMeasColumn<casacore::MEpoch>(set, "TIME")(row)};
   });
+}
+
+imager::SkyDirection field_pointing(const casacore::MeasurementSet& set, const std::string& path, int field,
+                                    std::uint64_t row) {
+  require_field(set, path, field);
+  return translated("cannot find where antennas point in field " + std::to_string(field) + " of " + path, [&] {
+    const casacore::MSFieldColumns columns(set.field());
+    const double time = casacore::ScalarColumn<double>(set, "TIME")(row);
+    return sky_direction(equatorial(columns.referenceDirMeas(static_cast<casacore::rownr_t>(field), time), set, row));
+  });
+}
+
+imager::SkyDirection in_frame(const imager::SkyDirection& direction, const std::string& frame) {
+  if (direction.frame == frame) return direction;
+  return sky_direction(casacore::MDirection::Convert(measure_of(direction), casacore::MDirection::Ref(frame_code(frame)))());
 }
 
 double separation_rad(const imager::SkyDirection& a, const imager::SkyDirection& b) {

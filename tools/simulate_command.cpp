@@ -6,6 +6,7 @@
 
 #include "imager/direct/source_sums.h"
 #include "imager/parallel.h"
+#include "imager/telescopes.h"
 #include "ms_io/simulated_set.h"
 #include "tools/base/array.h"
 #include "tools/base/numbers.h"
@@ -27,6 +28,7 @@ struct SimulateOptions {
   std::string array = "vla-a";
   bool coplanar = false;
   bool noncoplanar = false;
+  bool primary_beam = false;
   std::string cell = "0.05arcsec";
   std::string ra = "60deg";
   std::string dec = "40deg";
@@ -84,6 +86,26 @@ ms_io::SimulatedObservation observation_of(const SimulateOptions& o, const Anten
   return observation;
 }
 
+/// The sources as dishes that point to the phase centre see them at a frequency.
+std::vector<imager::Source> attenuated(std::vector<imager::Source> sources, const imager::Dish& dish, double frequency_hz) {
+  const imager::PrimaryBeam beam({{dish, dish, frequency_hz, 1}});
+  for (imager::Source& source : sources) source.flux_jy *= beam.power(std::hypot(source.position.l, source.position.m));
+  return sources;
+}
+
+/// Their visibilities [row][channel], each channel with its own beam.
+std::vector<std::complex<double>> predict_attenuated(const std::vector<imager::Source>& sources, const imager::Dish& dish,
+                                                     const imager::SampleCoordinates& at, int threads) {
+  const std::size_t channels = at.channels();
+  std::vector<std::complex<double>> visibilities(at.samples());
+  for (std::size_t c = 0; c < channels; ++c) {
+    const auto seen = attenuated(sources, dish, at.frequency_hz[c]);
+    const auto of_channel = imager::predict_sources(seen, {at.uvw_m, {at.frequency_hz[c]}}, threads);
+    for (std::size_t row = 0; row < at.rows(); ++row) visibilities[row * channels + c] = of_channel[row];
+  }
+  return visibilities;
+}
+
 void simulate(const SimulateOptions& o) {
   check(o);
   const AntennaArray array = antenna_array(o.array);
@@ -103,7 +125,10 @@ void simulate(const SimulateOptions& o) {
       for (std::size_t i = 2; i < baseline.size(); i += 3) baseline[i] = 0;
     return baseline;
   };
-  const auto exact = [&](const imager::SampleCoordinates& at) { return imager::predict_sources(sources, at, threads); };
+  const imager::Dish dish = imager::dish_model({array.telescope, array.dish_diameter_m}).dish;
+  const auto exact = [&](const imager::SampleCoordinates& at) {
+    return o.primary_beam ? predict_attenuated(sources, dish, at, threads) : imager::predict_sources(sources, at, threads);
+  };
   ms_io::write_simulated_set(o.output, observation, baselines, exact,
                              [&](std::size_t done, std::size_t total) { progress.update(done, total); });
   progress.end();
@@ -127,6 +152,9 @@ void add_simulate_command(CLI::App& program) {
   command->add_option("--array", o->array, "vla-a, vla-b, vla-c or vla-d");
   CLI::Option* coplanar = command->add_flag("--coplanar", o->coplanar, "Set w to 0 (the default with the test card)");
   command->add_flag("--noncoplanar", o->noncoplanar, "Keep w (the default otherwise)")->excludes(coplanar);
+  command->add_flag("--primary-beam", o->primary_beam,
+                    "Let the dishes attenuate the sources by their Airy disc around the phase centre, at the frequency of each "
+                    "channel; Gaussians as at their middle");
   command->add_option("--cell", o->cell, "The test card's cell")->check(quantity(parse_angle_rad));
   command->add_option("--ra", o->ra, "Right ascension of the phase centre, J2000")->check(quantity(parse_angle_rad));
   command->add_option("--dec", o->dec, "Its declination")->check(quantity(parse_angle_rad));

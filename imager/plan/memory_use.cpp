@@ -89,8 +89,8 @@ MemoryUse peak_memory(const MemoryDemand& d, const StreamingOptions& streaming) 
 
   // The PSF, one more to find the median of each, one that the allocator keeps of several CLEANs, and those of every Stokes
   // parameter.
-  const double drawn_images =
-      2 + (d.stokes > 1 && d.clean_scales > 0 ? 1 : 0) + d.stokes * ((d.clean_scales > 0 ? 3 : 1) + (d.mask ? 1 : 0));
+  const double drawn_images = 2 + d.beam_images + (d.stokes > 1 && d.clean_scales > 0 ? 1 : 0) +
+                              d.stokes * ((d.clean_scales > 0 ? 3 : 1) + (d.mask ? 1 : 0));
   // Those that CLEAN is over with hold a model, a residual and perhaps a mask each.
   const double finished = (d.stokes - 1) * (2 + (d.mask ? 1 : 0)) * image;
 

@@ -29,6 +29,7 @@ struct MemoryDemand {
   bool mask = false;         ///< where components may lie
   bool start_model = false;  ///< that CLEAN begins with
   bool density = false;      ///< from which weights follow
+  int beam_images = 0;       ///< primary beams, and images that are divided by them
   std::optional<WiderDemand> wider{};
 };
 

@@ -1,6 +1,8 @@
 #include "tools/run/cube_files.h"
 
+#include "imager/primary_beam.h"
 #include "tools/run/image_files.h"
+#include "tools/run/primary_beam_stage.h"
 
 namespace misfit::tools {
 
@@ -13,6 +15,8 @@ CubeFiles::CubeFiles(const ImageOptions& o, const imager::ImageHeader& header, b
   };
   psf_ = open("psf", "Jy/beam", true);
   residual_ = open("residual", "Jy/beam");
+  if (wants_primary_beam(o)) primary_beam_ = open("pb", "", true);
+  if (o.pbcor) corrected_ = open("image.pbcor", "Jy/beam");
   if (o.niter == 0) return;
   model_ = open("model", "Jy/pixel");
   restored_ = open("image", "Jy/beam");
@@ -31,10 +35,16 @@ void CubeFiles::write(const imager::PlaneIndex& at, const Plane& plane, const st
   put(model_, plane.model, {});
   put(restored_, plane.restored, beam);
   put(mask_, plane.mask, {});
+  if (plane.primary_beam == nullptr) return;
+  if (at.stokes == 0) put(primary_beam_, plane.primary_beam, {});
+  if (!corrected_) return;
+  const imager::Image corrected =
+      imager::corrected(plane.restored == nullptr ? *plane.residual : *plane.restored, *plane.primary_beam);
+  put(corrected_, &corrected, beam);
 }
 
 void CubeFiles::finish() {
-  for (const Writer* writer : {&psf_, &residual_, &model_, &mask_, &restored_})
+  for (const Writer* writer : {&psf_, &residual_, &model_, &mask_, &primary_beam_, &restored_, &corrected_})
     if (*writer) (*writer)->finish();
 }
 

@@ -12,7 +12,7 @@
 namespace misfit::tools {
 
 /// The images of a cube on their way into files: <imagename>.psf, .residual, and with CLEAN .model, .image and, where there are
-/// masks, .mask. Each plane is written as soon as it is done.
+/// masks, .mask; .pb and .image.pbcor where they are wanted. Each plane is written as soon as it is done.
 class CubeFiles {
  public:
   /// Throws std::runtime_error that names the file which cannot be written.
@@ -24,6 +24,7 @@ class CubeFiles {
     const imager::Image* model = nullptr;
     const imager::Image* restored = nullptr;
     const imager::Image* mask = nullptr;
+    const imager::Image* primary_beam = nullptr;  ///< by which the brightness is divided for --pbcor
   };
 
   /// The PSF of a channel, and the beam fitted to it.
@@ -34,7 +35,7 @@ class CubeFiles {
 
  private:
   using Writer = std::unique_ptr<imager::ImageWriter>;
-  Writer psf_, residual_, model_, restored_, mask_;  ///< null where there is no such image
+  Writer psf_, residual_, model_, restored_, mask_, primary_beam_, corrected_;  ///< null where there is no such image
 };
 
 }  // namespace misfit::tools

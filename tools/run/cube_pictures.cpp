@@ -11,14 +11,11 @@
 
 namespace misfit::tools {
 
-void CubePictures::look_at_psf(int, const imager::Image& psf) {
-  psf_ = sketch(psf, Shades::brightness, picture_side);
-}
-
-void CubePictures::look_at(int channel, const imager::Image& image, const imager::Peak& brightest) {
+void CubePictures::look_at(int channel, const imager::Image& image, const imager::Image& psf, const imager::Peak& brightest) {
   const double magnitude = std::abs(brightest.value);
   if (shown_ && !(magnitude > shown_->brightest)) return;
-  shown_ = Plane{channel, sketch(image, Shades::brightness, picture_side), *psf_, magnitude};
+  shown_ =
+      Plane{channel, sketch(image, Shades::brightness, picture_side), sketch(psf, Shades::brightness, picture_side), magnitude};
 }
 
 std::size_t CubePictures::shown_among(const std::vector<PlaneReport>& planes) const {

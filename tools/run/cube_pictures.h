@@ -17,9 +17,7 @@ namespace misfit::tools {
 /// and its PSF.
 class CubePictures {
  public:
-  /// To be called for each plane before look_at().
-  void look_at_psf(int channel, const imager::Image& psf);
-  void look_at(int channel, const imager::Image& image, const imager::Peak& brightest);
+  void look_at(int channel, const imager::Image& image, const imager::Image& psf, const imager::Peak& brightest);
 
   /// The index of that plane among `planes`; 0 where there was none.
   std::size_t shown_among(const std::vector<PlaneReport>& planes) const;
@@ -35,7 +33,6 @@ class CubePictures {
     Sketch psf;
     double brightest = 0;
   };
-  std::optional<Sketch> psf_;  ///< of the plane at hand
   std::optional<Plane> shown_;
 };
 

@@ -259,7 +259,6 @@ class CubeRun {
   void write(int channel, PlaneRun& plane) {
     const std::optional<imager::Beam>& beam = plane.report().beams->restoring;
     imager::DirtyImages& images = plane.made().images;
-    pictures_.look_at_psf(channel, images.psf);
     {
       const imager::StageTimer timer(times_, "write images");
       files_->write_psf(channel, images.psf, beam);
@@ -269,7 +268,7 @@ class CubeRun {
       const imager::CleanResult* const result = cleaned ? &plane.cleaned()[s] : nullptr;
       const imager::Image& residual = cleaned ? result->residual : images.dirty[s];
       const imager::Image restored = cleaned ? restore(*result, *beam) : imager::Image();
-      look_at(channel, s, residual, cleaned ? restored : residual, plane.report());
+      look_at({channel, static_cast<int>(s)}, residual, cleaned ? restored : residual, plane);
       const imager::StageTimer timer(times_, "write images");
       files_->write(
           {channel, static_cast<int>(s)},
@@ -286,13 +285,13 @@ class CubeRun {
   }
 
   /// What the report tells of a plane, and the picture of the brightest.
-  void look_at(int channel, std::size_t stokes, const imager::Image& residual, const imager::Image& image, PlaneReport& plane) {
+  void look_at(const imager::PlaneIndex& at, const imager::Image& residual, const imager::Image& image, PlaneRun& plane) {
     const imager::StageTimer timer(times_, "statistics");
-    StokesReport& told = plane.stokes[stokes];
+    StokesReport& told = plane.report().stokes[static_cast<std::size_t>(at.stokes)];
     const double noise_jy = told.clean ? told.clean->final_state().rms_jy : imager::sampled_noise(residual);
     told.histogram = pixel_histogram(residual, noise_jy, threads_);
     told.brightest = imager::find_peak(image);
-    if (stokes == 0) pictures_.look_at(channel, image, told.brightest);
+    if (at.stokes == 0) pictures_.look_at(at.channel, image, plane.made().images.psf, told.brightest);
   }
 
   void finish(int channel, PlaneRun& run) {

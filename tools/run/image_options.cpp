@@ -118,6 +118,13 @@ void declare(CLI::App& command, ImageOptions& o) {
       ->check(CLI::IsMember({"none", "modelcolumn"}));
   command.add_flag("--restart", o.restart,
                    "Go on from the last major cycle of a run that was cut, or ended, with these options");
+  command.add_flag(
+      "--pbcor", o.pbcor,
+      "Write .image.pbcor too, the image divided by the antennas' primary beam, and .pb, the beam: Airy discs, for "
+      "dishes that point alike");
+  command.add_option("--pblimit", o.pblimit,
+                     "Where the primary beam is lower, .pb and .image.pbcor have no values; 0.2 when 0. Without --pbcor .pb "
+                     "alone is written. The sign makes no difference, since no other image is masked");
   command.add_option("--verify", o.verify, "Compare this many random pixels and visibilities with the direct transform");
   command.add_flag("--check-outside", o.check_outside,
                    "Look for sources outside the image, in four times its field, whose aliases may exceed its noise");

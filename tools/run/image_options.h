@@ -68,6 +68,8 @@ struct ImageOptions {
   std::string startmodel;  ///< an image in Jy/pixel; empty = none
   std::string savemodel = "none";
   bool restart = false;
+  bool pbcor = false;
+  double pblimit = 0;  ///< 0: not given, and 0.2 with pbcor; its sign makes no difference
   int verify = 0;
   bool check_outside = false;
   int threads = 0;

@@ -16,6 +16,7 @@
 #include "tools/run/model_stage.h"
 #include "tools/run/outside_stage.h"
 #include "tools/run/plane_run.h"
+#include "tools/run/primary_beam_stage.h"
 #include "tools/run/product_stage.h"
 #include "tools/run/run_messages.h"
 #include "tools/run/run_plan.h"
@@ -51,6 +52,7 @@ class ImageRun {
     make_dirty();
     if (o_.verify > 0) plane_->verify();
     plane_->choose_beams();
+    weigh_primary_beam();
     begin_products();
     if (o_.niter > 0) clean();
     if (o_.check_outside) look_outside();
@@ -80,6 +82,9 @@ class ImageRun {
     geometry_ = geometry_of(o_, set_->observation().phase_centre);
     warn_of_pointing();
     reach_ = set_->reach();
+    if (wants_primary_beam(o_))
+      primary_beam_ = std::make_unique<PrimaryBeamStage>(
+          o_, BeamScene{set_->beam_rows(), geometry_, set_->observation().frequency_hz}, threads_);
     if (o_.niter == 0) return;
     const imager::Observation& observation = set_->observation();
     clean_ = std::make_unique<CleanStage>(o_,
@@ -110,7 +115,10 @@ class ImageRun {
                          .mask = mask,
                          .samples = static_cast<double>(set_->samples())};
     plan_ = plan_run(scene, forecast_, times_, progress_);
+    if (primary_beam_) plan_.decisions.push_back(primary_beam_->decision());
     for (const std::string& warning : plan_.warnings) warn(warning);
+    if (primary_beam_)
+      for (const std::string& doubt : primary_beam_->doubts()) warn(doubt);
     report_.plan = plan_.decisions;
     report_.estimated_memory_bytes = plan_.memory.total();
     work_ = work_of(scene, plan_);
@@ -141,6 +149,12 @@ class ImageRun {
     report_.counts.used = sums.used;
     report_.plan.push_back(left_out_decision(report_.counts));
     if (sums.outside_grid > 0) warn(outside_grid_warning(sums.outside_grid, reach_));
+  }
+
+  void weigh_primary_beam() {
+    if (!primary_beam_) return;
+    const imager::StageTimer timer(times_, "primary beam");
+    primary_beam_->weigh(*source_);
   }
 
   void begin_products() {
@@ -213,11 +227,19 @@ class ImageRun {
     report_.planes = {plane_->report()};
     imager::DirtyImages& images = plane_->made().images;
     auto& cleaned = plane_->cleaned();
+    if (primary_beam_) products_->set_primary_beam(primary_beam());
     std::string removed;
     for (const std::string& path :
          cleaned.empty() ? products_->write(std::move(images)) : products_->write(std::move(images.psf), cleaned))
       removed += (removed.empty() ? "" : ", ") + path;
     if (!removed.empty()) progress_.say("removed what an earlier run left: " + removed);
+  }
+
+  imager::Image primary_beam() {
+    const imager::StageTimer timer(times_, "primary beam");
+    imager::Image beam = primary_beam_->whole_band();
+    if (const std::string warning = primary_beam_->warning_of(beam); !warning.empty()) warn(warning);
+    return beam;
   }
 
   void count_pixels() {
@@ -272,7 +294,8 @@ class ImageRun {
   std::unique_ptr<ms_io::MeasurementSet> set_;
   imager::ImageGeometry geometry_;
   imager::UvwReach reach_;
-  std::unique_ptr<CleanStage> clean_;  ///< null without CLEAN, and after it
+  std::unique_ptr<CleanStage> clean_;               ///< null without CLEAN, and after it
+  std::unique_ptr<PrimaryBeamStage> primary_beam_;  ///< null where none is wanted
   RunPlan plan_;
   std::unique_ptr<imager::StreamedVisibilities> source_;
   std::unique_ptr<PlaneScene> scene_;

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <string_view>
 
+#include "imager/primary_beam.h"
 #include "tools/base/files.h"
 #include "tools/formats/component_list.h"
 #include "tools/run/image_files.h"
@@ -12,7 +13,7 @@
 namespace misfit::tools {
 namespace {
 
-constexpr std::array image_kinds{"psf", "residual", "model", "image", "mask"};
+constexpr std::array image_kinds{"psf", "residual", "model", "image", "mask", "pb", "image.pbcor"};
 
 /// A list of one, which an initializer cannot be moved into.
 std::vector<imager::Image> alone(imager::Image image) {
@@ -64,9 +65,10 @@ void ProductStage::draw_dirty(const imager::UvCoverage& coverage, const imager::
 
 std::vector<std::string> ProductStage::write(imager::DirtyImages images) {
   const imager::StageTimer timer(times_, "write images");
+  std::vector<std::string> removed = remove_old({"model.png", "image.png", "dirty.png", "components.csv", "clean.state"});
+  add_primary_beam(images.dirty);
   products_.add("psf", "Jy/beam", alone(std::move(images.psf)));
   products_.add("residual", "Jy/beam", std::move(images.dirty));
-  auto removed = remove_old({"model.png", "image.png", "dirty.png", "components.csv", "clean.state"});
   remove_other_images(removed);
   remove_other_stokes(removed);
   products_.write();
@@ -107,12 +109,23 @@ std::vector<std::string> ProductStage::write(imager::Image psf, std::vector<imag
   const std::vector<std::string> paths = image_paths(o_.imagename + ".mask", o_.outformat);
   const bool kept = std::any_of(paths.begin(), paths.end(), [&](const std::string& path) { return is_input(path); });
   if (masked && !kept) products_.add("mask", "", std::move(masks));
+  add_primary_beam(images);
   products_.add("image", "Jy/beam", std::move(images));
   std::vector<std::string> removed;
   remove_other_images(removed);
   remove_other_stokes(removed);
   products_.write();
   return removed;
+}
+
+void ProductStage::add_primary_beam(const std::vector<imager::Image>& images) {
+  if (primary_beam_.pixel.empty()) return;
+  if (o_.pbcor) {
+    std::vector<imager::Image> quotients;
+    for (const imager::Image& image : images) quotients.push_back(imager::corrected(image, primary_beam_));
+    products_.add("image.pbcor", "Jy/beam", std::move(quotients));
+  }
+  products_.add("pb", "", alone(std::move(primary_beam_)));
 }
 
 void ProductStage::write_components(const std::vector<imager::CleanResult>& cleaned) const {

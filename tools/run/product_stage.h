@@ -40,6 +40,8 @@ class ProductStage {
   void draw_dirty(const imager::UvCoverage& coverage, const imager::DirtyImages& images,
                   const std::function<const imager::Image*(std::size_t)>& mask_of);
 
+  /// To be written with the images, which --pbcor divides by it.
+  void set_primary_beam(imager::Image beam) { primary_beam_ = std::move(beam); }
   /// Writes the images of a run without CLEAN. Returns the names of files that an earlier run left and this one removed.
   std::vector<std::string> write(imager::DirtyImages images);
   /// Those of CLEAN [Stokes], restored, and the list of components. Takes the images out of `cleaned`, but for models that
@@ -53,6 +55,8 @@ class ProductStage {
   /// The picture of one Stokes parameter, whose name and title say which where there are several.
   ProductPicture picture_of(std::size_t stokes, ProductPicture picture) const;
   void draw(std::vector<imager::CleanResult>& cleaned, const std::vector<imager::Image>& restored_images);
+  /// The primary beam, and `images` divided by it where that is wanted; removes what an earlier run left of them else.
+  void add_primary_beam(const std::vector<imager::Image>& images);
   void write_components(const std::vector<imager::CleanResult>& cleaned) const;
   imager::Image restored(const imager::CleanResult& cleaned) const;
   std::vector<imager::Source> sources(const imager::ComponentModel& model) const;
@@ -65,7 +69,8 @@ class ProductStage {
   ProductScene scene_;
   imager::StageTimes& times_;
   ImageProducts products_;
-  std::vector<Sketch> dirty_;  ///< what is left of the dirty images when CLEAN is over, where masks were not known before
+  imager::Image primary_beam_;  ///< without pixels where none is wanted
+  std::vector<Sketch> dirty_;   ///< what is left of the dirty images when CLEAN is over, where masks were not known before
 };
 
 }  // namespace misfit::tools

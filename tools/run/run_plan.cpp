@@ -11,6 +11,7 @@
 #include "tools/base/quantity.h"
 #include "tools/run/memory_plan.h"
 #include "tools/run/outside_stage.h"
+#include "tools/run/primary_beam_stage.h"
 #include "tools/run/weighting_options.h"
 
 namespace misfit::tools {
@@ -104,6 +105,7 @@ class RunPlanner {
             .mask = scene_.mask,
             .start_model = !o_.startmodel.empty(),
             .density = weighting_options(o_).needs_density(),
+            .beam_images = !wants_primary_beam(o_) ? 0 : 1 + (o_.pbcor ? gridding.request.stokes : 0),
             .wider = wider};
   }
 
@@ -161,13 +163,14 @@ RunWork work_of(const RunScene& scene, const RunPlan& plan) {
           .samples = static_cast<double>(scene.set.samples()),
           .planes = scene.planes,
           .pixels = static_cast<double>(scene.geometry.pixels()),
-          .images = 1 + stokes * (o.niter > 0 ? 3 : 1),
+          .images = 1 + stokes * (o.niter > 0 ? 3 : 1) + (wants_primary_beam(o) ? 1 : 0) + (o.pbcor ? stokes : 0),
           .pictures = 2 + stokes * (o.niter > 0 ? 4 : 1),
           .threads = scene.threads,
           .verified = static_cast<double>(o.verify),
           .deconvolver = o.deconvolver,
           .density = weighting_options(o).needs_density(),
           .tapered = !o.uvtaper.empty(),
+          .primary_beam = wants_primary_beam(o),
           .wider = plan.wider.get()};
 }
 

@@ -139,6 +139,8 @@ std::vector<StageSeconds> counted_seconds(const RunWork& w) {
     stages.push_back({"restore", "restoring", 1e-8 * w.pixels});
   }
   if (w.wider != nullptr) stages.push_back({"sources outside", "search outside", wider_seconds(w)});
+  if (w.primary_beam)
+    stages.push_back({"primary beam", "primary beams", shared(2e-9 * w.samples + 3e-8 * w.pixels, w.threads)});
   stages.push_back({"write images", "writing images", 1e-8 * w.pixels * w.images});
   stages.push_back({"draw pictures", "drawing pictures", 0.07 * w.pictures + 1e-9 * w.pixels * w.pictures});
   return stages;

@@ -24,6 +24,7 @@ struct RunWork {
   std::string deconvolver;
   bool density = false;  ///< whether weights follow from it
   bool tapered = false;
+  bool primary_beam = false;
   double components = 0;
   double major_cycles = 0;                      ///< that predicted and subtracted
   const imager::GriddingPlan* wider = nullptr;  ///< of the field that is searched for sources outside; null without

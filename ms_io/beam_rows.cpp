@@ -1,0 +1,133 @@
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "ms_io/beam_rows_internal.h"
+#include "ms_io/metadata_internal.h"
+#include "ms_io/phase_centre_internal.h"
+#include "ms_io/row_columns_internal.h"
+
+namespace misfit::ms_io {
+namespace {
+
+constexpr std::uint64_t piece_rows = 1 << 16;
+
+/// The antennas of a set, by what their beams depend on.
+class Antennas {
+ public:
+  Antennas(const OpenSet& open_set, BeamRows& rows)
+      : path_(open_set.path),
+        telescope_(telescope_name(open_set.set, open_set.selected.first_row)),
+        diameter_m_(casacore::ScalarColumn<double>(open_set.set.antenna(), "DISH_DIAMETER").getColumn()),
+        name_(casacore::ScalarColumn<casacore::String>(open_set.set.antenna(), "NAME").getColumn()),
+        sort_(diameter_m_.nelements(), unknown),
+        feeds_(diameter_m_.nelements()),
+        rows_(rows) {}
+
+  /// Notes that an antenna was used with a feed. Returns its sort.
+  std::uint8_t use(int antenna, int feed) {
+    if (antenna < 0 || static_cast<std::size_t>(antenna) >= sort_.size())
+      throw std::runtime_error(path_ + " has rows of antenna " + std::to_string(antenna) + ", but ANTENNA has " +
+                               std::to_string(sort_.size()) + " rows");
+    const auto a = static_cast<std::size_t>(antenna);
+    if (sort_[a] == unknown) sort_[a] = find_sort(a);
+    if (feeds_[a].empty() || feeds_[a].back() != feed) feeds_[a].push_back(feed);
+    return static_cast<std::uint8_t>(sort_[a]);
+  }
+
+  bool uses(int antenna, int feed) const {
+    const auto has = [feed](const std::vector<int>& feeds) {
+      return std::find(feeds.begin(), feeds.end(), feed) != feeds.end();
+    };
+    if (antenna < 0) return std::any_of(feeds_.begin(), feeds_.end(), has);  // a row of FEED for all
+    return static_cast<std::size_t>(antenna) < feeds_.size() && has(feeds_[static_cast<std::size_t>(antenna)]);
+  }
+
+  /// Feeds that rows use by turns are noted once.
+  void forget_repetitions() {
+    for (std::vector<int>& feeds : feeds_) {
+      const std::set<int> different(feeds.begin(), feeds.end());
+      feeds.assign(different.begin(), different.end());
+    }
+  }
+
+ private:
+  static constexpr int unknown = -1;
+
+  int find_sort(std::size_t antenna) {
+    constexpr std::size_t most = 256;
+    const double diameter_m = diameter_m_(antenna);
+    for (std::size_t s = 0; s < rows_.sorts.size(); ++s) {
+      const imager::AntennaSort& sort = rows_.sorts[s];
+      const bool alike = sort.diameter_m == diameter_m || (std::isnan(sort.diameter_m) && std::isnan(diameter_m));
+      if (alike && sort.telescope == telescope_) return static_cast<int>(s);
+    }
+    if (rows_.sorts.size() == most)
+      throw std::runtime_error(path_ + ": antennas of more than " + std::to_string(most) +
+                               " different diameters; expected a few sorts of dishes");
+    rows_.sorts.push_back({telescope_, diameter_m, name_(antenna)});
+    return static_cast<int>(rows_.sorts.size() - 1);
+  }
+
+  std::string path_;
+  std::string telescope_;
+  casacore::Vector<double> diameter_m_;
+  casacore::Vector<casacore::String> name_;
+  std::vector<int> sort_;                ///< [antenna]
+  std::vector<std::vector<int>> feeds_;  ///< [antenna], in use
+  BeamRows& rows_;
+};
+
+void add_pairs(const OpenSet& open_set, Antennas& antennas, BeamRows& rows) {
+  const casacore::ScalarColumn<int> columns[] = {
+      {open_set.set, "ANTENNA1"}, {open_set.set, "ANTENNA2"}, {open_set.set, "FEED1"}, {open_set.set, "FEED2"}};
+  casacore::Vector<int> values[4];
+  for (const BlockRows& block : open_set.selected.blocks) {
+    for (const Rows& piece : pieces(block.runs, piece_rows)) {
+      for (std::size_t c = 0; c < 4; ++c) read(columns[c], piece, values[c]);
+      for (std::size_t r = 0; r < piece.count(); ++r) {
+        SortPair& pair = rows.pairs.emplace_back();
+        if (values[0](r) == values[1](r)) continue;  // of an antenna with itself nothing is imaged
+        pair = {antennas.use(values[0](r), values[2](r)), antennas.use(values[1](r), values[3](r))};
+      }
+      antennas.forget_repetitions();
+    }
+  }
+}
+
+/// The mean of the receptors' offsets.
+double offset_rad(const casacore::Matrix<double>& of_receptors) {
+  const double receptors = static_cast<double>(of_receptors.ncolumn());
+  double x = 0, y = 0;
+  for (std::size_t r = 0; r < of_receptors.ncolumn(); ++r) {
+    x += of_receptors(0, r) / receptors;
+    y += of_receptors(1, r) / receptors;
+  }
+  return std::hypot(x, y);
+}
+
+void add_beam_offsets(const OpenSet& open_set, const Antennas& antennas, BeamRows& rows) {
+  const casacore::Table& feed = open_set.set.feed();
+  const casacore::ScalarColumn<int> antenna(feed, "ANTENNA_ID"), id(feed, "FEED_ID");
+  const casacore::ArrayColumn<double> offset(feed, "BEAM_OFFSET");
+  for (casacore::rownr_t r = 0; r < feed.nrow(); ++r)
+    if (antennas.uses(antenna(r), id(r)) && offset.isDefined(r) && offset.ndim(r) == 2 && offset.shape(r)(0) == 2)
+      rows.beam_offset_rad = std::max(rows.beam_offset_rad, offset_rad(offset(r)));
+}
+
+}  // namespace
+
+void add_beam_rows(const OpenSet& open_set, const std::string& frame, BeamRows& rows) {
+  translated("cannot read ANTENNA, FEED, or the antennas of the rows of " + open_set.path, [&] {
+    Antennas antennas(open_set, rows);
+    add_pairs(open_set, antennas, rows);
+    add_beam_offsets(open_set, antennas, rows);
+  });
+  for (const auto& [field, row] : open_set.selected.first_row_of_field) {
+    const FieldCentre centre = field_centre(open_set.set, open_set.path, field, row);
+    rows.pointings.push_back({std::to_string(field) + " (" + centre.name + ")",
+                              in_frame(field_pointing(open_set.set, open_set.path, field, row), frame)});
+  }
+}
+
+}  // namespace misfit::ms_io

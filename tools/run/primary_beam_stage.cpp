@@ -1,0 +1,131 @@
+#include "tools/run/primary_beam_stage.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "tools/base/numbers.h"
+
+namespace misfit::tools {
+namespace {
+
+double apart_rad(imager::DirectionCosines a, imager::DirectionCosines b) {
+  const double chord = std::hypot(a.l - b.l, a.m - b.m, imager::n_minus_1(a) - imager::n_minus_1(b));
+  return 2 * std::asin(std::min(1.0, chord / 2));
+}
+
+imager::DirectionCosines on_image(const ms_io::FieldPointing& pointing, const imager::ImageGeometry& geometry) {
+  try {
+    return imager::direction_cosines(pointing.direction, geometry.phase_centre);
+  } catch (const std::invalid_argument&) {
+    throw std::runtime_error("--pbcor, --pblimit: antennas of field " + pointing.field +
+                             " pointed more than 90 degrees away from the image; expected one within its hemisphere");
+  }
+}
+
+}  // namespace
+
+bool wants_primary_beam(const ImageOptions& o) {
+  return o.pbcor || o.pblimit != 0;
+}
+
+PrimaryBeamStage::PrimaryBeamStage(const ImageOptions& o, BeamScene scene, int threads) : scene_(std::move(scene)) {
+  constexpr double usual_limit = 0.2;
+  view_.limit = o.pblimit == 0 ? usual_limit : std::abs(o.pblimit);
+  view_.threads = threads;
+  if (scene_.rows.sorts.empty())
+    throw std::runtime_error("--pbcor, --pblimit: no row of two antennas is selected, and a primary beam needs one");
+  for (const imager::AntennaSort& sort : scene_.rows.sorts) {
+    try {
+      models_.push_back(imager::dish_model(sort));
+    } catch (const imager::NoSimpleBeam& error) {
+      throw std::runtime_error("--pbcor, --pblimit: " + std::string(error.what()));
+    }
+  }
+  find_pointing();
+}
+
+/// All fields must point alike, to a thousandth of the beam: at its half-power points that changes it by 0.15%.
+void PrimaryBeamStage::find_pointing() {
+  constexpr double same = 1e-3, beside = 0.01;
+  width_rad_ = nominal_beam(scene_.frequency_hz).half_power_width_rad();
+  const ms_io::FieldPointing& first = scene_.rows.pointings.front();
+  view_.pointing = on_image(first, scene_.geometry);
+  for (const ms_io::FieldPointing& other : scene_.rows.pointings) {
+    const double apart = apart_rad(view_.pointing, on_image(other, scene_.geometry));
+    if (apart > same * width_rad_)
+      throw std::runtime_error(
+          "--pbcor, --pblimit: antennas of fields " + first.field + " and " + other.field + " pointed " + angle_text(apart, 3) +
+          " apart, which makes a mosaic, and primary beams of mosaics are not made; " + "select one with --field");
+  }
+  if (scene_.rows.beam_offset_rad > beside * width_rad_)
+    throw std::runtime_error("--pbcor, --pblimit: FEED's column BEAM_OFFSET says that beams point " +
+                             angle_text(scene_.rows.beam_offset_rad, 3) +
+                             " beside the field's direction; expected beams on the axis of their dishes");
+}
+
+std::uint32_t PrimaryBeamStage::kind_of(std::uint64_t row) const {
+  const ms_io::SortPair& pair = scene_.rows.pairs[row];
+  return static_cast<std::uint32_t>(pair.one) * static_cast<std::uint32_t>(models_.size()) + pair.other;
+}
+
+imager::BeamShare PrimaryBeamStage::beam_share(std::uint32_t kind, double frequency_hz, double weight) const {
+  const auto sorts = static_cast<std::uint32_t>(models_.size());
+  return {models_[kind / sorts].dish, models_[kind % sorts].dish, frequency_hz, weight};
+}
+
+imager::PrimaryBeam PrimaryBeamStage::nominal_beam(double frequency_hz) const {
+  std::vector<double> rows(models_.size() * models_.size());  // [kind]
+  for (std::uint64_t row = 0; row < scene_.rows.pairs.size(); ++row) ++rows[kind_of(row)];
+  if (scene_.rows.pairs.empty()) rows[0] = 1;
+  std::vector<imager::BeamShare> shares;
+  for (std::uint32_t kind = 0; kind < rows.size(); ++kind) shares.push_back(beam_share(kind, frequency_hz, rows[kind]));
+  return imager::PrimaryBeam(shares);
+}
+
+imager::Decision PrimaryBeamStage::decision() const {
+  std::string because;
+  for (const imager::DishModel& model : models_) because += (because.empty() ? "" : "; ") + model.because;
+  const double away_rad = apart_rad(view_.pointing, {});
+  if (away_rad > 0) because += "; its axis is " + angle_text(away_rad, 3) + " from the phase centre";
+  return {"primary beam",
+          "Airy disc, " + angle_text(width_rad_, 4) + " wide at half power at " + significant(scene_.frequency_hz / 1e9, 6) +
+              " GHz, where it is " + significant(view_.limit, 3) + " or more",
+          because};
+}
+
+std::vector<std::string> PrimaryBeamStage::doubts() const {
+  std::vector<std::string> doubts;
+  for (const imager::DishModel& model : models_)
+    if (!model.doubt.empty() && std::find(doubts.begin(), doubts.end(), model.doubt) == doubts.end())
+      doubts.push_back(model.doubt);
+  return doubts;
+}
+
+void PrimaryBeamStage::weigh(const imager::VisibilitySource& source) {
+  imager::ShareOptions options{scene_.geometry.cell_rad, {}, view_.threads};
+  if (models_.size() > 1) options.kind_of = [this](std::uint64_t row) { return kind_of(row); };
+  shares_ = imager::weight_shares(source, options);
+}
+
+imager::Image PrimaryBeamStage::whole_band() const {
+  std::vector<imager::BeamShare> shares;
+  for (const imager::WeightShare& s : shares_) shares.push_back(beam_share(s.kind, s.frequency_hz, s.weight));
+  return image_of(imager::PrimaryBeam(shares));
+}
+
+imager::Image PrimaryBeamStage::at(double frequency_hz) const {
+  return image_of(nominal_beam(frequency_hz));
+}
+
+imager::Image PrimaryBeamStage::image_of(const imager::PrimaryBeam& beam) const {
+  return imager::primary_beam_image(beam, scene_.geometry, view_);
+}
+
+std::string PrimaryBeamStage::warning_of(const imager::Image& beam) const {
+  if (!std::all_of(beam.pixel.begin(), beam.pixel.end(), [](double value) { return std::isnan(value); })) return "";
+  return "the primary beam is below --pblimit " + significant(view_.limit, 3) + " in all of the image: the antennas pointed " +
+         angle_text(apart_rad(view_.pointing, {}), 3) + " from its phase centre";
+}
+
+}  // namespace misfit::tools

@@ -1,0 +1,64 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "imager/plan/plan.h"
+#include "imager/primary_beam.h"
+#include "imager/telescopes.h"
+#include "imager/weight_shares.h"
+#include "ms_io/measurement_set.h"
+#include "tools/run/image_options.h"
+
+namespace misfit::tools {
+
+/// Whether a primary beam is wanted: with --pbcor or --pblimit.
+bool wants_primary_beam(const ImageOptions& options);
+
+/// What a run's samples were observed with, and how that lies on its image.
+struct BeamScene {
+  ms_io::BeamRows rows;
+  imager::ImageGeometry geometry;
+  double frequency_hz = 0;  ///< middle of the band, for what is told before weights are known
+};
+
+/// The primary beam of a run, from what its sets tell about antennas to images of it. Its stage is timed as "primary beam" by
+/// who calls it.
+class PrimaryBeamStage {
+ public:
+  /// Throws std::runtime_error that names what it is about where antennas have no simple beam, fields point in different
+  /// directions, which makes a mosaic, or feeds point beside them.
+  PrimaryBeamStage(const ImageOptions& options, BeamScene scene, int threads);
+
+  /// Which beam is taken, from what, and its width in the middle of the band.
+  imager::Decision decision() const;
+  /// What may be wrong with it, a sentence each.
+  std::vector<std::string> doubts() const;
+
+  /// Learns by how much each pair of dishes and each frequency weigh in the image, in a pass over its samples as they are
+  /// weighed. To be called before whole_band().
+  void weigh(const imager::VisibilitySource& source);
+  /// The beam of an image of the whole band: the mean over its samples, by weight.
+  imager::Image whole_band() const;
+  /// The beam of a plane of a cube: that at its frequency, with as much weight for each row where dishes differ.
+  imager::Image at(double frequency_hz) const;
+
+  /// That the antennas see nothing of the image; else empty.
+  std::string warning_of(const imager::Image& beam) const;
+
+ private:
+  /// With as much weight for each row.
+  imager::PrimaryBeam nominal_beam(double frequency_hz) const;
+  imager::BeamShare beam_share(std::uint32_t kind, double frequency_hz, double weight) const;
+  imager::Image image_of(const imager::PrimaryBeam& beam) const;
+  std::uint32_t kind_of(std::uint64_t row) const;
+  void find_pointing();
+
+  BeamScene scene_;
+  imager::BeamOnImage view_;
+  std::vector<imager::DishModel> models_;  ///< [sort of antennas]
+  double width_rad_ = 0;                   ///< between half-power points of the nominal beam
+  std::vector<imager::WeightShare> shares_;
+};
+
+}  // namespace misfit::tools
