@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <stdexcept>
+#include <utility>
 
 #include "imager/cube/plane_gatherer.h"
 #include "imager/handed_over.h"
@@ -19,6 +20,7 @@
 #include "tools/run/cube_files.h"
 #include "tools/run/cube_pictures.h"
 #include "tools/run/plane_run.h"
+#include "tools/run/primary_beam_stage.h"
 #include "tools/run/product_stage.h"
 #include "tools/run/run_messages.h"
 #include "tools/run/run_plan.h"
@@ -83,6 +85,9 @@ class CubeRun {
                .history = {report_.command_line}};
     report_.cube = sampling_.axis;
     if (o_.niter > 0) clean_ = std::make_unique<CleanStage>(o_, header_, threads_);
+    if (wants_primary_beam(o_))
+      primary_beam_ = std::make_unique<PrimaryBeamStage>(
+          o_, BeamScene{set_->beam_rows(), header_.geometry, set_->observation().frequency_hz}, threads_);
     find_reach();
   }
 
@@ -107,6 +112,10 @@ class CubeRun {
                          .samples = static_cast<double>(set_->rows()) * samples_of_a_row(sampling_, windows_)};
     plan_ = plan_run(scene, forecast_, times_, progress_);
     plan_.decisions.push_back(axis_decision(sampling_));
+    if (primary_beam_) {
+      plan_.decisions.push_back(primary_beam_->decision());
+      for (const std::string& doubt : primary_beam_->doubts()) warn(doubt);
+    }
     batches_ = plan_batches(scene, plan_);
     plan_.decisions.push_back(batches_.decision);
     for (const std::string& warning : plan_.warnings) warn(warning);
@@ -263,6 +272,7 @@ class CubeRun {
       const imager::StageTimer timer(times_, "write images");
       files_->write_psf(channel, images.psf, beam);
     }
+    const imager::Image primary_beam = primary_beam_at(sampling_.axis.frequency_hz(channel));
     for (std::size_t s = 0; s < stokes_.size(); ++s) {
       const bool cleaned = !plane.cleaned().empty();
       const imager::CleanResult* const result = cleaned ? &plane.cleaned()[s] : nullptr;
@@ -270,11 +280,21 @@ class CubeRun {
       const imager::Image restored = cleaned ? restore(*result, *beam) : imager::Image();
       look_at({channel, static_cast<int>(s)}, residual, cleaned ? restored : residual, plane);
       const imager::StageTimer timer(times_, "write images");
-      files_->write(
-          {channel, static_cast<int>(s)},
-          {&residual, cleaned ? &result->model : nullptr, cleaned ? &restored : nullptr, cleaned ? &result->mask : nullptr},
-          beam);
+      files_->write({channel, static_cast<int>(s)},
+                    {&residual, cleaned ? &result->model : nullptr, cleaned ? &restored : nullptr,
+                     cleaned ? &result->mask : nullptr, primary_beam_ ? &primary_beam : nullptr},
+                    beam);
     }
+  }
+
+  /// Without pixels where none is wanted.
+  imager::Image primary_beam_at(double frequency_hz) {
+    if (!primary_beam_) return {};
+    const imager::StageTimer timer(times_, "primary beam");
+    imager::Image beam = primary_beam_->at(frequency_hz);
+    if (const std::string warning = primary_beam_->warning_of(beam); !warning.empty() && !std::exchange(unseen_, true))
+      warn(warning);
+    return beam;
   }
 
   imager::Image restore(const imager::CleanResult& result, const imager::Beam& beam) {
@@ -362,6 +382,8 @@ class CubeRun {
   std::unique_ptr<PlaneScene> scene_;
   std::shared_ptr<const imager::ImagingWeights> common_weights_;  ///< null where each plane has its own
   imager::GatheredPlanes gathered_;                               ///< of the batch at hand
+  std::unique_ptr<PrimaryBeamStage> primary_beam_;                ///< null where none is wanted
+  bool unseen_ = false;                                           ///< by the antennas, which was said
   CubePictures pictures_;
   std::uint64_t outside_grid_ = 0;
   std::size_t empty_ = 0;  ///< planes
