@@ -136,6 +136,10 @@ class CasaImageWriter : public imager::ImageWriter {
     translated("cannot write " + path_, [&] { write_pixels(at, image); });
   }
 
+  void add_cards(const std::vector<imager::HeaderCard>& cards) override {
+    header_.cards.insert(header_.cards.end(), cards.begin(), cards.end());
+  }
+
   void finish() override {
     translated("cannot write " + path_, [&] {
       if (const std::vector<imager::PlaneIndex> missing = planes_.missing(); !missing.empty()) {
@@ -144,6 +148,7 @@ class CasaImageWriter : public imager::ImageWriter {
       }
       if (!image_->setImageInfo(image_info(planes_.beams(), header_.observation.object)))
         throw std::runtime_error("cannot write " + path_ + ": casacore keeps no beams of it");
+      image_->setMiscInfo(misc_info(header_.cards));
       for (const std::string& line : header_.history)
         image_->logger().sink().postLocally(casacore::LogMessage(line, casacore::LogOrigin("misfit")));
       image_->flush();
@@ -160,7 +165,6 @@ class CasaImageWriter : public imager::ImageWriter {
                                                            temporary_.string(),
                                                            casacore::TableLock(casacore::TableLock::PermanentLocking));
     image_->setUnits(casacore::Unit(header_.unit));
-    image_->setMiscInfo(misc_info(header_.cards));
   }
 
   /// In bands as high as tiles are, so that little is copied at a time.
