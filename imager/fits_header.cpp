@@ -111,7 +111,11 @@ void write_header(FitsFile& file, const ImageHeader& header) {
   write_axes(file, header);
   write_spectral_frame(file, header);
   write_observation(file, header.observation);
-  for (const HeaderCard& card : header.cards) file.write_number(card.keyword, card.value, card.comment);
+  write_cards(file, header.cards);
+}
+
+void write_cards(FitsFile& file, const std::vector<HeaderCard>& cards) {
+  for (const HeaderCard& card : cards) file.write_number(card.keyword, card.value, card.comment);
 }
 
 ImageHeader read_header(const FitsFile& file, const FitsPlanes& planes) {

@@ -12,6 +12,9 @@
 namespace misfit::imager {
 namespace {
 
+/// Of add_cards(), for which there is room; more move the pixels.
+constexpr int later_cards = 24;
+
 /// Cards that the history takes at most; each holds 72 characters of it.
 int history_cards(const ImageHeader& header) {
   std::size_t cards = 0;
@@ -36,7 +39,7 @@ class FitsImageWriter : public ImageWriter {
           {header.geometry.width, header.geometry.height, header.spectral.channels, static_cast<long>(header.stokes.size())},
           format);
       write_header(file_, header);
-      file_.reserve_cards(fits_beam_cards + history_cards(header));
+      file_.reserve_cards(fits_beam_cards + later_cards + history_cards(header));
     } catch (...) {
       remove_unfinished();
       throw;
@@ -53,6 +56,8 @@ class FitsImageWriter : public ImageWriter {
     planes_.add(at, image, beam);
     write_pixels(at, image);
   }
+
+  void add_cards(const std::vector<HeaderCard>& cards) override { write_cards(file_, cards); }
 
   void finish() override {
     write_missing();

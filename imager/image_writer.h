@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <vector>
 
 #include "imager/beam.h"
 #include "imager/image.h"
@@ -26,7 +27,9 @@ class ImageWriter {
   /// beam. Throws std::invalid_argument for a plane that the header does not have, or pixels of another shape;
   /// std::runtime_error that names the file where it cannot be written.
   virtual void write(const PlaneIndex& at, const Image& image, const std::optional<Beam>& beam) = 0;
-  /// To be called once, after the last plane.
+  /// Cards beside the header's, of what is known only when the planes are made.
+  virtual void add_cards(const std::vector<HeaderCard>& cards) = 0;
+  /// To be called once, after all else.
   virtual void finish() = 0;
 };
 

@@ -128,7 +128,7 @@ imager::Observation observation_of(const casacore::ObsInfo& info, const imager::
   imager::Observation observation;
   observation.telescope = info.telescope();
   observation.observer = info.observer();
-  const casacore::MVEpoch& date = info.obsDate().getValue();
+  const casacore::MVEpoch date = info.obsDate().getValue();
   if (date.get() > 0) observation.date_obs = casacore::MVTime(date).string(casacore::MVTime::FITS, 9);
   observation.frequency_hz = axis.frequency_hz(0) + 0.5 * (axis.channels - 1) * axis.increment_hz;
   observation.bandwidth_hz = axis.channels * axis.width_hz();

@@ -76,7 +76,8 @@ std::unique_ptr<imager::ImageReader> open_table(const std::string& path) {
 }  // namespace
 
 std::unique_ptr<imager::ImageReader> open_casa_image(const std::string& path) {
-  if (!is_casa_image(path)) throw std::runtime_error("cannot read " + path + ": it is no casacore image");
+  if (!is_casa_image(path))
+    throw std::runtime_error("cannot read " + path + ": it is no casacore image; expected the folder of one");
   return translated("cannot read " + path, [&] { return open_table(path); });
 }
 

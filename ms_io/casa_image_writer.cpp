@@ -4,50 +4,17 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
+#include <cstdint>
 #include <stdexcept>
-#include <system_error>
 
 #include "imager/written_planes.h"
 #include "ms_io/casa_coordinates_internal.h"
 #include "ms_io/casa_image.h"
+#include "ms_io/image_folder_internal.h"
 #include "ms_io/table_access_internal.h"
 
 namespace misfit::ms_io {
 namespace {
-
-namespace fs = std::filesystem;
-
-/// Where an image called `path` is to be written. Throws where anything else than a casacore image lies.
-fs::path writable_target(const std::string& path) {
-  fs::path target = fs::path(path).lexically_normal();
-  if (!target.has_filename()) target = target.parent_path();
-  std::error_code error;
-  if (fs::exists(target, error)) target = fs::canonical(target, error);  // links are followed
-  if (fs::exists(target, error) && !is_casa_image(target.string()))
-    throw std::runtime_error("cannot write " + path + ": it is there already and no casacore image; expected another name");
-  return target;
-}
-
-/// Removes what a run that was killed left of a table. Throws where it is anything else.
-void remove_left(const fs::path& left, const std::string& path) {
-  std::error_code error;
-  if (!fs::exists(left, error)) return;
-  if (!fs::is_directory(left, error) || !(fs::is_empty(left, error) || fs::exists(left / "table.lock", error)))
-    throw std::runtime_error("cannot write " + path + ": " + left.string() + " is in the way, and no casacore table");
-  fs::remove_all(left, error);
-}
-
-/// Throws where the disk has not the room: casacore would end the program where it is full before a table is there.
-void require_room(const fs::path& target, std::uintmax_t bytes, const std::string& path) {
-  std::error_code error;
-  const fs::path folder = target.has_parent_path() ? target.parent_path() : fs::path(".");
-  const std::uintmax_t free = fs::space(folder, error).available;
-  constexpr std::uintmax_t tables = 1 << 20;
-  if (!error && free < bytes + tables)
-    throw std::runtime_error("cannot write " + path + ": it takes " + std::to_string(bytes + tables) + " bytes, and " +
-                             std::to_string(free) + " are free");
-}
 
 casacore::GaussianBeam casa_beam(const imager::Beam& beam) {
   return {casacore::Quantity(beam.major_rad * 180 * 3600 / M_PI, "arcsec"),
@@ -111,20 +78,15 @@ template <typename Pixel>
 class CasaImageWriter : public imager::ImageWriter {
  public:
   CasaImageWriter(const imager::ImageHeader& header, const std::string& path)
-      : path_(path), target_(writable_target(path)), temporary_(target_.string() + ".part"), header_(header), planes_(header) {
+      : path_(path), folder_(path), header_(header), planes_(header) {
     layout_.shape = casacore::IPosition(4, header.geometry.width, header.geometry.height,
                                         static_cast<ssize_t>(header.stokes.size()), header.spectral.channels);
     layout_.stokes = 2;
     layout_.spectral = 3;
-    for (const fs::path& left : {temporary_, old_name()}) remove_left(left, path_);
-    require_room(target_, static_cast<std::uintmax_t>(layout_.shape.product()) * sizeof(Pixel), path_);
-    try {
-      translated("cannot write " + path_, [&] { create(); });
-    } catch (...) {
-      abandon();
-      remove_unfinished();
-      throw;
-    }
+    // On a full disk casacore would end the program before its tables are there.
+    constexpr std::uintmax_t tables = 1 << 20;
+    folder_.require_room(static_cast<std::uintmax_t>(layout_.shape.product()) * sizeof(Pixel) + tables);
+    translated("cannot write " + path_, [&] { create(); });
   }
 
   CasaImageWriter(const CasaImageWriter&) = delete;
@@ -136,6 +98,10 @@ class CasaImageWriter : public imager::ImageWriter {
     translated("cannot write " + path_, [&] { write_pixels(at, image); });
   }
 
+  void add_cards(const std::vector<imager::HeaderCard>& cards) override {
+    header_.cards.insert(header_.cards.end(), cards.begin(), cards.end());
+  }
+
   void finish() override {
     translated("cannot write " + path_, [&] {
       if (const std::vector<imager::PlaneIndex> missing = planes_.missing(); !missing.empty()) {
@@ -144,12 +110,13 @@ class CasaImageWriter : public imager::ImageWriter {
       }
       if (!image_->setImageInfo(image_info(planes_.beams(), header_.observation.object)))
         throw std::runtime_error("cannot write " + path_ + ": casacore keeps no beams of it");
+      image_->setMiscInfo(misc_info(header_.cards));
       for (const std::string& line : header_.history)
         image_->logger().sink().postLocally(casacore::LogMessage(line, casacore::LogOrigin("misfit")));
       image_->flush();
     });
     image_.reset();
-    put_in_place();
+    folder_.put_in_place();
   }
 
  private:
@@ -157,10 +124,9 @@ class CasaImageWriter : public imager::ImageWriter {
     casacore::IPosition tile = layout_.plane_shape();  // planes are written, and shown, one by one
     for (const std::size_t axis : {0, 1}) tile[axis] = std::min(tile[axis], tile_side);
     image_ = std::make_unique<casacore::PagedImage<Pixel>>(casacore::TiledShape(layout_.shape, tile), casa_coordinates(header_),
-                                                           temporary_.string(),
+                                                           folder_.name(),
                                                            casacore::TableLock(casacore::TableLock::PermanentLocking));
     image_->setUnits(casacore::Unit(header_.unit));
-    image_->setMiscInfo(misc_info(header_.cards));
   }
 
   /// In bands as high as tiles are, so that little is copied at a time.
@@ -182,40 +148,18 @@ class CasaImageWriter : public imager::ImageWriter {
     image_->pixelMask().putSlice(values_of<bool>(image, band, [&](double pixel) { return !valueless(pixel); }), band.first);
   }
 
-  /// An image that is there gives way once the new one is complete.
-  void put_in_place() {
-    const fs::path old = old_name();
-    std::error_code error;
-    if (fs::exists(target_, error)) {
-      writable_target(path_);
-      fs::rename(target_, old, error);
-    }
-    if (!error) fs::rename(temporary_, target_, error);
-    if (error) throw std::runtime_error("cannot write " + path_ + ": " + error.message());
-    fs::remove_all(old, error);
-  }
-
-  fs::path old_name() const { return target_.string() + ".old"; }
-
   /// Tables that are to be deleted are not written when they are closed, which on a full disk would throw where nobody catches.
   void abandon() {
     if (!image_) return;
     for (const char* part : {"", "/logtable", "/mask0"}) try {
-        casacore::Table(temporary_.string() + part, casacore::Table::Update).markForDelete();
+        casacore::Table(folder_.name() + part, casacore::Table::Update).markForDelete();
       } catch (const casacore::AipsError&) {  // it was not made yet
       }
     image_.reset();
-    remove_unfinished();
-  }
-
-  void remove_unfinished() {
-    std::error_code ignored;
-    fs::remove_all(temporary_, ignored);
   }
 
   std::string path_;
-  fs::path target_;
-  fs::path temporary_;
+  ImageFolder folder_;  ///< outlives the image in it
   imager::ImageHeader header_;
   imager::WrittenPlanes planes_;
   CasaPlanes layout_;

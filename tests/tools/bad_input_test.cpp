@@ -135,7 +135,7 @@ BOOST_AUTO_TEST_CASE(data_that_cannot_be_used_are_named) {
   scene.unusable("--vis", MISFIT_PROGRAM, "expected the directory of a MeasurementSet");
   scene.unusable("--vis", snapshot() + "/ANTENNA", "not a MeasurementSet");
   check_refused(scene.image("--mask", scene.out) + Arguments{"--niter", "10"}, 1,
-                {"cannot read " + scene.out + ": it is a folder; expected a file"}, scene.out);
+                {"cannot read " + scene.out + ": it is no casacore image; expected the folder of one"}, scene.out);
   scene.unusable("--datacolumn", "CORRECTED_DATA", "columns with visibilities: DATA");
   scene.unusable("--datacolumn", "FLAG", "columns with visibilities: DATA");
   scene.unusable("--field", "nosuch", "No match");

@@ -43,6 +43,7 @@ void write_both(const std::string& name, const imager::ImageHeader& header) {
     if (at.channel == 2) image.at(1, 2) = std::nan("");
     writer->write(at, image, example_beam(at));
   }
+  writer->add_cards({{"ERRMEAS", 1.5e-7, "measured"}});
   writer->finish();
 }
 
@@ -123,6 +124,7 @@ BOOST_AUTO_TEST_CASE(astropy_and_casacore_read_the_same_headers_beams_masks_and_
     BOOST_TEST(file["rest_hz"] == header.spectral.rest_frequency_hz);
     BOOST_TEST(file["spectral_frame"] == "LSRK");
     BOOST_TEST(file["asked"] == 2.5e-7);
+    BOOST_TEST(file["measured"] == 1.5e-7);
     BOOST_TEST(file["history"] == header.history[0] + header.history[1]);
     BOOST_TEST(std::count(file["pixels"].begin(), file["pixels"].end(), json()) == 5 * 28 + 2);
     BOOST_TEST_REQUIRE(file["beams"].size() == 8);

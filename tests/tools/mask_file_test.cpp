@@ -154,7 +154,7 @@ BOOST_AUTO_TEST_CASE(what_cannot_be_read_is_refused_by_its_line) {
   BOOST_TEST(refused("circle [[1pix, 2pix], 3pix] garbage", "'garbage', expected a comma"));
   for (const char* nothing : {"", "\n", "#CRTF\n", "ann\ttext [[1pix, 2pix], 'x']"})
     BOOST_TEST(refused(nothing, "holds no region"));
-  BOOST_TEST(refused(std::string("circle\0", 7), "neither a FITS image nor region text"));
+  BOOST_TEST(refused(std::string("circle\0", 7), "neither a FITS image, a CASA image nor region text"));
   BOOST_TEST(refused("circle [[12h30m0s, 12d-3m0s], 3pix]", "'12d-3m0s'"));
   BOOST_TEST(refused("circle [[1deg, 91deg], 3pix]", "-90 to 90 degrees"));
   BOOST_TEST(refused("circle [[1deg, 2deg], 3pix], coord=GALACTIC", "expected the image's frame, J2000"));

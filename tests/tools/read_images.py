@@ -33,6 +33,7 @@ def read_fits(path):
             "unit": header["BUNIT"], "telescope": header["TELESCOP"], "observer": header["OBSERVER"],
             "object": header["OBJECT"], "mjd": header["MJD-OBS"], "rest_hz": header["RESTFRQ"],
             "frame": header["RADESYS"], "spectral_frame": header["SPECSYS"], "asked": header["ERRASKED"],
+            "measured": header["ERRMEAS"],
             "history": "".join(header["HISTORY"])}
 
 
@@ -55,7 +56,8 @@ def read_casa(path):
         "object": about["imageinfo"]["objectname"], "mjd": coordinates["obsdate"]["m0"]["value"],
         "rest_hz": file.coordinates()["spectral"].get_restfrequency(),
         "frame": file.coordinates()["direction"].get_frame(), "spectral_frame": file.coordinates()["spectral"].get_frame(),
-        "asked": file.miscinfo()["ERRASKED"], "history": "".join(file.history())}
+        "asked": file.miscinfo()["ERRASKED"],
+        "measured": file.miscinfo()["ERRMEAS"], "history": "".join(file.history())}
 
 
 json.dump([{"fits": read_fits(name + ".fits"), "casa": read_casa(name)} for name in sys.argv[1:]], sys.stdout)

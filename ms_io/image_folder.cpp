@@ -1,0 +1,74 @@
+#include <stdexcept>
+#include <system_error>
+
+#include "ms_io/casa_image.h"
+#include "ms_io/image_folder_internal.h"
+
+namespace misfit::ms_io {
+namespace {
+
+namespace fs = std::filesystem;
+
+fs::path without_links(const std::string& path) {
+  fs::path target = fs::path(path).lexically_normal();
+  if (!target.has_filename()) target = target.parent_path();
+  std::error_code error;
+  return fs::exists(target, error) ? fs::canonical(target, error) : target;
+}
+
+}  // namespace
+
+ImageFolder::ImageFolder(const std::string& path)
+    : path_(path), target_(without_links(path)), unfinished_(target_.string() + ".part") {
+  require_image_or_nothing();
+  for (const fs::path& left : {unfinished_, old()}) remove_left(left);
+}
+
+ImageFolder::~ImageFolder() {
+  std::error_code ignored;
+  fs::remove_all(unfinished_, ignored);
+}
+
+void ImageFolder::fail(const std::string& reason) const {
+  throw std::runtime_error("cannot write " + path_ + ": " + reason);
+}
+
+/// Where the image lies that gives way, for the moment that two renames take.
+fs::path ImageFolder::old() const {
+  return target_.string() + ".old";
+}
+
+void ImageFolder::require_image_or_nothing() const {
+  std::error_code error;
+  if (fs::exists(target_, error) && !is_casa_image(target_.string()))
+    fail("it is there already and no casacore image; expected another name");
+}
+
+/// Removes what a run that was killed left of a table.
+void ImageFolder::remove_left(const fs::path& left) const {
+  std::error_code error;
+  if (!fs::exists(left, error)) return;
+  if (!fs::is_directory(left, error) || !(fs::is_empty(left, error) || fs::exists(left / "table.lock", error)))
+    fail(left.string() + " is in the way, and no casacore table");
+  fs::remove_all(left, error);
+}
+
+void ImageFolder::require_room(std::uintmax_t bytes) const {
+  std::error_code error;
+  const std::uintmax_t free = fs::space(target_.has_parent_path() ? target_.parent_path() : fs::path("."), error).available;
+  if (!error && free < bytes) fail("it takes " + std::to_string(bytes) + " bytes, and " + std::to_string(free) + " are free");
+}
+
+void ImageFolder::put_in_place() {
+  require_image_or_nothing();
+  std::error_code error, ignored;
+  const bool replaces = fs::exists(target_, ignored);
+  if (replaces) fs::rename(target_, old(), error);
+  if (error) fail(error.message());
+  fs::rename(unfinished_, target_, error);
+  if (error && replaces) fs::rename(old(), target_, ignored);
+  if (error) fail(error.message());
+  fs::remove_all(old(), ignored);
+}
+
+}  // namespace misfit::ms_io
