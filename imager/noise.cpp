@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <vector>
 
 #include "imager/parallel.h"
@@ -96,15 +97,21 @@ double sampled_noise(const Image& image) {
   return robust_noise(some);
 }
 
+/// In lanes, so that no addition waits for the one before.
 double root_mean_square(const Image& image) {
-  double square = 0;
-  std::size_t pixels = 0;
-  for (const double pixel : image.pixel) {
-    if (std::isnan(pixel)) continue;
-    square += pixel * pixel;
-    ++pixels;
-  }
-  return std::sqrt(square / static_cast<double>(std::max<std::size_t>(pixels, 1)));
+  constexpr std::size_t lanes = 8;
+  double square[lanes] = {}, count[lanes] = {};
+  const std::vector<double>& pixel = image.pixel;
+  const auto add = [&](std::size_t i, std::size_t lane) {
+    const bool is_number = pixel[i] == pixel[i];
+    square[lane] += is_number ? pixel[i] * pixel[i] : 0;
+    count[lane] += is_number ? 1 : 0;
+  };
+  const std::size_t whole = pixel.size() / lanes * lanes;
+  for (std::size_t i = 0; i < whole; i += lanes)
+    for (std::size_t lane = 0; lane < lanes; ++lane) add(i + lane, lane);
+  for (std::size_t i = whole; i < pixel.size(); ++i) add(i, 0);
+  return std::sqrt(std::accumulate(square, square + lanes, 0.0) / std::max(1.0, std::accumulate(count, count + lanes, 0.0)));
 }
 
 /// In lanes, so that no comparison waits for the one before.

@@ -12,6 +12,9 @@ namespace {
 
 constexpr std::size_t full_samples = std::size_t{1} << 20;
 
+/// Rows that are dealt out to all planes before the next ones: few enough to stay in the cache.
+constexpr std::size_t rows_at_once = 512;
+
 /// Of an interpolated visibility; 0 where a sample that it needs is unusable.
 float weight_of(const float* row_weight, const ChannelTap& tap) {
   const float one = row_weight[tap.channel];
@@ -22,15 +25,21 @@ float weight_of(const float* row_weight, const ChannelTap& tap) {
   return static_cast<float>(1 / (rest * rest / one + tap.part * tap.part / two));
 }
 
-void append_visibilities(const std::complex<float>* row, const std::vector<ChannelTap>& taps, const float* weight,
-                         std::vector<std::complex<float>>& to) {
-  for (std::size_t i = 0; i < taps.size(); ++i) {
-    const ChannelTap& tap = taps[i];
-    const auto part = static_cast<float>(tap.part);
-    to.push_back(weight[i] == 0  ? std::complex<float>()
-                 : tap.part == 0 ? row[tap.channel]
-                                 : (1 - part) * row[tap.channel] + part * row[tap.other]);
-  }
+std::complex<float> visibility_of(const std::complex<float>* row, const ChannelTap& tap) {
+  if (tap.part == 0) return row[tap.channel];
+  const auto part = static_cast<float>(tap.part);
+  return (1 - part) * row[tap.channel] + part * row[tap.other];
+}
+
+/// Appends the visibilities of rows, those of weight 0 as 0.
+void append_visibilities(const VisibilityBlock& from, const std::vector<std::size_t>& rows, const std::vector<ChannelTap>& taps,
+                         const float* weight, std::vector<std::complex<float>>& to) {
+  const std::size_t old = to.size();
+  to.resize(old + rows.size() * taps.size());
+  std::complex<float>* out = to.data() + old;
+  for (const std::size_t row : rows)
+    for (const ChannelTap& tap : taps)
+      *out++ = *weight++ == 0 ? std::complex<float>() : visibility_of(&from.visibility[row * from.channels()], tap);
 }
 
 /// A block of as many Stokes parameters as `like`, without rows.
@@ -92,8 +101,12 @@ std::vector<PlaneGatherer::Rows> PlaneGatherer::rows_of(const VisibilityBlock& b
   std::vector<Rows> all;
   for (std::size_t row = 0; row < block.rows();) {
     std::size_t end = row + 1;
-    while (end < block.rows() && ratio(end) == ratio(row)) ++end;
-    all.push_back({row, end, map_channels(sampling_, range_, {block.frequency_hz, block.channel_width_hz}, ratio(row))});
+    while (end < block.rows() && end < row + rows_at_once && ratio(end) == ratio(row)) ++end;
+    const bool again = !all.empty() && ratio(row) == ratio(row - 1);
+    all.push_back({row, end,
+                   again ? all.back().map
+                         : std::make_shared<const ChannelMap>(
+                               map_channels(sampling_, range_, {block.frequency_hz, block.channel_width_hz}, ratio(row)))});
     row = end;
   }
   return all;
@@ -105,8 +118,11 @@ void PlaneGatherer::add(const VisibilityBlock& block) {
                                 std::to_string(block.channel_width_hz.size()) + " widths; expected one for each");
   const std::vector<Rows> rows = rows_of(block);
   count_outside(block, rows);
-  parallel_for(planes_.size(), threads_, [&](std::size_t p) {
-    for (const Rows& some : rows) append(block, some, some.map.planes[p], planes_[p]);
+  const std::size_t groups = std::min(planes_.size(), static_cast<std::size_t>(threads_));
+  parallel_for(groups, threads_, [&](std::size_t g) {
+    for (const Rows& some : rows)
+      for (std::size_t p = planes_.size() * g / groups; p < planes_.size() * (g + 1) / groups; ++p)
+        append(block, some, some.map->planes[p], planes_[p]);
   });
 }
 
@@ -114,28 +130,36 @@ void PlaneGatherer::append(const VisibilityBlock& block, const Rows& rows, const
   if (channels.tap.empty()) return;
   std::shared_ptr<VisibilityBlock>& to = plane.growing[channels.frequency_hz];
   if (!to) to = empty_block(block, channels.frequency_hz);
-  std::vector<float> weight(channels.tap.size());
+  const std::size_t taps = channels.tap.size(), old = to->weight.size();
+  std::vector<std::size_t> used_rows;
+  used_rows.reserve(rows.end - rows.first);
+  to->weight.resize(old + (rows.end - rows.first) * taps);
+  float* weight = to->weight.data() + old;
+  std::uint64_t used = 0;
   for (std::size_t row = rows.first; row < rows.end; ++row) {
-    const std::size_t begin = row * block.channels();
-    std::uint64_t used = 0;
-    for (std::size_t i = 0; i < weight.size(); ++i) {
-      weight[i] = weight_of(&block.weight[begin], channels.tap[i]);
-      used += weight[i] != 0;
+    std::uint64_t of_row = 0;
+    for (std::size_t i = 0; i < taps; ++i) {
+      weight[i] = weight_of(&block.weight[row * block.channels()], channels.tap[i]);
+      of_row += weight[i] != 0;
     }
-    if (used == 0) continue;
-    for (int axis = 0; axis < 3; ++axis)
-      to->uvw_m.push_back(block.uvw_m[3 * row + static_cast<std::size_t>(axis)] * rows.map.uvw_scale);
-    to->weight.insert(to->weight.end(), weight.begin(), weight.end());
-    append_visibilities(&block.visibility[begin], channels.tap, weight.data(), to->visibility);
-    for (std::size_t i = 0; i < block.other_stokes.size(); ++i)
-      append_visibilities(&block.other_stokes[i]->visibility[begin], channels.tap, weight.data(), other(*to, i).visibility);
-    ++to->counts.rows_read;
-    to->counts.samples_read += weight.size();
-    to->counts.used += used;
-    if (to->samples() < full_samples) continue;
-    plane.full.push_back(finished(to));
-    to = empty_block(block, channels.frequency_hz);
+    if (of_row == 0) continue;
+    used_rows.push_back(row);
+    used += of_row;
+    weight += taps;
   }
+  to->weight.resize(old + used_rows.size() * taps);
+  for (const std::size_t row : used_rows)
+    for (int axis = 0; axis < 3; ++axis)
+      to->uvw_m.push_back(block.uvw_m[3 * row + static_cast<std::size_t>(axis)] * rows.map->uvw_scale);
+  append_visibilities(block, used_rows, channels.tap, to->weight.data() + old, to->visibility);
+  for (std::size_t i = 0; i < block.other_stokes.size(); ++i)
+    append_visibilities(*block.other_stokes[i], used_rows, channels.tap, to->weight.data() + old, other(*to, i).visibility);
+  to->counts.rows_read += used_rows.size();
+  to->counts.samples_read += used_rows.size() * taps;
+  to->counts.used += used;
+  if (to->samples() < full_samples) return;
+  plane.full.push_back(finished(to));
+  to = empty_block(block, channels.frequency_hz);
 }
 
 void PlaneGatherer::count_outside(const VisibilityBlock& block, const std::vector<Rows>& rows) {

@@ -32,7 +32,7 @@ class PlaneGatherer {
   struct Rows {
     std::size_t first = 0;
     std::size_t end = 0;
-    ChannelMap map;
+    std::shared_ptr<const ChannelMap> map;
   };
   /// A plane's blocks.
   struct Plane {

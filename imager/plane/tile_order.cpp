@@ -18,21 +18,42 @@ struct TiledRun {
   ChannelRun run;
 };
 
-/// The samples of a row whose first tap falls into one tile, by their position in cells; none when they lie beyond the grid.
+/// Which tile a sample's first tap falls into. What does not change from sample to sample is worked out beforehand: divisions
+/// of integers would take longer than all the rest.
+class TileFinder {
+ public:
+  explicit TileFinder(const GridShape& shape) : shape_(shape), tiles_u_(shape.tiles_u()), per_cell_(1.0 / shape.tile) {}
+
+  struct Place {
+    int column;
+    int line;
+  };
+  Place place(double u, double v, bool folded) const {
+    const PeriodicPosition at(u, v, folded, shape_);
+    return {tile_of(shape_.first_column(TapPosition(at.u, shape_.width).first)),
+            tile_of(shape_.first_row(TapPosition(at.v, shape_.width).first))};
+  }
+  std::uint32_t number(const Place& place) const { return static_cast<std::uint32_t>(place.line * tiles_u_ + place.column); }
+
+ private:
+  /// The whole part of cell / tile: half a cell is more than rounding takes off.
+  int tile_of(int cell) const { return static_cast<int>((cell + 0.5) * per_cell_); }
+
+  const GridShape& shape_;
+  int tiles_u_;
+  double per_cell_;
+};
+
+/// The positions, in cells, of samples whose first tap falls into one tile; none lie beyond the grid.
 struct TileBox {
-  std::uint32_t tile;
   double u_low, u_end, v_low, v_end;
 
-  TileBox(double u, double v, bool folded, const GridShape& s) {
-    const PeriodicPosition at(u, v, folded, s);
-    const int column = s.first_column(TapPosition(at.u, s.width).first) / s.tile;
-    const int line = s.first_row(TapPosition(at.v, s.width).first) / s.tile;
-    tile = static_cast<std::uint32_t>(line * s.tiles_u() + column);
+  TileBox(const TileFinder::Place& place, const GridShape& s) {
     const double to_first = 0.5 * s.width - 1;  // the first tap is the whole part of position − to_first
-    u_low = std::max(column * s.tile - s.first_column(0) + to_first, -0.5 * s.nu);
-    v_low = line * s.tile - s.first_row(0) + to_first;
-    u_end = std::min(column * s.tile - s.first_column(0) + s.tile + to_first, beyond(0.5 * s.nu));
-    v_end = std::min(line * s.tile - s.first_row(0) + s.tile + to_first, beyond(0.5 * s.nv));
+    u_low = std::max(place.column * s.tile - s.first_column(0) + to_first, -0.5 * s.nu);
+    v_low = place.line * s.tile - s.first_row(0) + to_first;
+    u_end = std::min(place.column * s.tile - s.first_column(0) + s.tile + to_first, beyond(0.5 * s.nu));
+    v_end = std::min(place.line * s.tile - s.first_row(0) + s.tile + to_first, beyond(0.5 * s.nv));
   }
   bool holds(double u, double v) const { return u >= u_low && u < u_end && v >= v_low && v < v_end; }
 
@@ -45,7 +66,7 @@ class RunFinder {
  public:
   RunFinder(const VisibilityBlock& block, const std::vector<VisibilitySet>& sets, const GridShape& shape, double cell_rad,
             Wanted wanted)
-      : sums(sets.size()), block_(block), sets_(sets), shape_(shape), scale_(shape, cell_rad), wanted_(wanted) {}
+      : sums(sets.size()), block_(block), sets_(sets), shape_(shape), scale_(shape, cell_rad), tiles_(shape), wanted_(wanted) {}
 
   void find(std::size_t begin_row, std::size_t end_row) {
     span_begin_ = span_end_ = begin_row * block_.channels();
@@ -65,14 +86,22 @@ class RunFinder {
       const double u = folded.u_per_hz * frequency[channel], v = folded.v_per_hz * frequency[channel];
       std::size_t end = channel + 1;
       if (wants(row * channels + channel, u, v)) {
-        const TileBox box(u, v, folded.folded, shape_);
-        while (end < channels && end - channel < longest_run && usable(row * channels + end) &&
-               box.holds(folded.u_per_hz * frequency[end], folded.v_per_hz * frequency[end]))
-          ++end;
-        add_run(box.tile, row, channel, end);
+        const TileFinder::Place place = tiles_.place(u, v, folded.folded);
+        if (end < channels) end = end_of_run(row, channel, TileBox(place, shape_), folded);
+        add_run(tiles_.number(place), row, channel, end);
       }
       channel = end;
     }
+  }
+
+  std::size_t end_of_run(std::size_t row, std::size_t first, const TileBox& box, const FoldedRow& folded) const {
+    const std::size_t channels = block_.channels();
+    const double* const frequency = block_.frequency_hz.data();
+    std::size_t end = first + 1;
+    while (end < channels && end - first < longest_run && usable(row * channels + end) &&
+           box.holds(folded.u_per_hz * frequency[end], folded.v_per_hz * frequency[end]))
+      ++end;
+    return end;
   }
 
   bool usable(std::size_t sample) const { return wanted_ == Wanted::all || block_.weight[sample] != 0; }
@@ -110,6 +139,7 @@ class RunFinder {
   const std::vector<VisibilitySet>& sets_;
   const GridShape& shape_;
   CellScale scale_;
+  TileFinder tiles_;
   Wanted wanted_;
   std::size_t span_begin_ = 0;
   std::size_t span_end_ = 0;

@@ -21,11 +21,9 @@ HWY_ATTR HWY_INLINE void positions_along(Line line, int tile, const double* HWY_
                                          int* HWY_RESTRICT cell, Real* HWY_RESTRICT t) {
   for (int i = 0; i < count; ++i) {
     const double position = line.per_hz * frequency_hz[i] - line.origin;
-    int whole = static_cast<int>(position + line.tie);
-    whole = whole < 0 ? 0 : whole;
-    whole = whole < tile ? whole : tile - 1;
-    cell[i] = whole;
-    t[i] = static_cast<Real>(position - whole - 0.5);
+    const PositionAlong at(position, line.tie, tile);
+    cell[i] = at.cell;
+    t[i] = static_cast<Real>(at.t);
   }
 }
 

@@ -56,14 +56,17 @@ class RowWalk {
   template <typename Real>
   bool append(const double* frequency_hz, std::size_t count, TileBatch<Real>& batch) const {
     if (within_) {
+      if (count == 1) {
+        append_position({row_.u_per_hz, u_origin_, row_.v_per_hz, v_origin_, shape_.tile}, *frequency_hz, batch);
+        return row_.folded;
+      }
       const auto room = static_cast<std::size_t>(TileBatch<Real>::capacity - batch.count);
       append_positions({row_.u_per_hz, u_origin_, row_.v_per_hz, v_origin_, shape_.tile}, frequency_hz,
                        static_cast<int>(std::min(count, room)), batch);
       return row_.folded;
     }
     const PeriodicPosition at(row_.u_per_hz * *frequency_hz, row_.v_per_hz * *frequency_hz, row_.folded, shape_);
-    constexpr double unit = 1;
-    append_positions({at.u, u_origin_, at.v, v_origin_, shape_.tile}, &unit, 1, batch);
+    append_position({at.u, u_origin_, at.v, v_origin_, shape_.tile}, 1, batch);
     return at.conjugate;
   }
 

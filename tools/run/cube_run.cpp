@@ -1,8 +1,11 @@
 #include "tools/run/cube_run.h"
 
+#include <malloc.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <limits>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -30,6 +33,16 @@
 namespace misfit::tools {
 namespace {
 
+/// The smallest and the largest pixel that is not NaN.
+std::pair<double, double> extremes(const imager::Image& image) {
+  double least = std::numeric_limits<double>::infinity(), largest = -least;
+  for (const double pixel : image.pixel) {  // comparisons with NaN are false
+    least = pixel < least ? pixel : least;
+    largest = pixel > largest ? pixel : largest;
+  }
+  return {least, largest};
+}
+
 /// One run, from options to files. The steps are called in the order in which they stand here.
 class CubeRun {
  public:
@@ -45,6 +58,8 @@ class CubeRun {
   }
 
   bool run() {
+    mallopt(M_MMAP_THRESHOLD, 1 << 30);  // what a plane's images and grids took, the next one's take:
+    mallopt(M_TRIM_THRESHOLD, 1 << 30);  // pages fresh from the system are as dear as gridding into them
     open();
     plan();
     if (o_.dry_run) {
@@ -309,7 +324,8 @@ class CubeRun {
     const imager::StageTimer timer(times_, "statistics");
     StokesReport& told = plane.report().stokes[static_cast<std::size_t>(at.stokes)];
     const double noise_jy = told.clean ? told.clean->final_state().rms_jy : imager::sampled_noise(residual);
-    told.histogram = pixel_histogram(residual, noise_jy, threads_);
+    const auto [least, largest] = extremes(residual);
+    told.histogram = {.noise_jy = noise_jy, .min_jy = least, .max_jy = largest, .count = {}};
     told.brightest = imager::find_peak(image);
     if (at.stokes == 0) pictures_.look_at(at.channel, image, plane.made().images.psf, told.brightest);
   }
