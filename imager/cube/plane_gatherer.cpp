@@ -93,8 +93,21 @@ class PlaneStream : public BlockStream {
 
 }  // namespace
 
-PlaneGatherer::PlaneGatherer(const CubeSampling& sampling, const PlaneRange& range, int threads)
-    : sampling_(sampling), range_(range), threads_(threads), planes_(static_cast<std::size_t>(range.count)) {}
+PlaneGatherer::PlaneGatherer(const CubeSampling& sampling, const PlaneRange& range, int threads, std::uint64_t expected_samples)
+    : sampling_(sampling),
+      range_(range),
+      threads_(threads),
+      planes_(static_cast<std::size_t>(range.count)),
+      expected_samples_(std::min<std::size_t>(expected_samples, full_samples)) {}
+
+std::shared_ptr<VisibilityBlock> PlaneGatherer::begin_block(const VisibilityBlock& like, const PlaneChannels& channels) const {
+  auto block = empty_block(like, channels.frequency_hz);
+  if (!alone) return block;
+  block->uvw_m.reserve(3 * expected_samples_ / channels.tap.size());
+  block->weight.reserve(expected_samples_);
+  block->visibility.reserve(expected_samples_);
+  return block;
+}
 
 std::vector<PlaneGatherer::Rows> PlaneGatherer::rows_of(const VisibilityBlock& block) const {
   const auto ratio = [&](std::size_t row) { return block.frame_ratio.empty() ? 1 : block.frame_ratio[row]; };
@@ -126,10 +139,10 @@ void PlaneGatherer::add(const VisibilityBlock& block) {
   });
 }
 
-void PlaneGatherer::append(const VisibilityBlock& block, const Rows& rows, const PlaneChannels& channels, Plane& plane) {
+void PlaneGatherer::append(const VisibilityBlock& block, const Rows& rows, const PlaneChannels& channels, Plane& plane) const {
   if (channels.tap.empty()) return;
   std::shared_ptr<VisibilityBlock>& to = plane.growing[channels.frequency_hz];
-  if (!to) to = empty_block(block, channels.frequency_hz);
+  if (!to) to = begin_block(block, channels, plane.growing.size() == 1);
   const std::size_t taps = channels.tap.size(), old = to->weight.size();
   std::vector<std::size_t> used_rows;
   used_rows.reserve(rows.end - rows.first);
@@ -159,7 +172,7 @@ void PlaneGatherer::append(const VisibilityBlock& block, const Rows& rows, const
   to->counts.used += used;
   if (to->samples() < full_samples) return;
   plane.full.push_back(finished(to));
-  to = empty_block(block, channels.frequency_hz);
+  to = begin_block(block, channels, plane.growing.size() == 1);
 }
 
 void PlaneGatherer::count_outside(const VisibilityBlock& block, const std::vector<Rows>& rows) {
@@ -189,7 +202,7 @@ std::vector<std::shared_ptr<const VisibilityBlock>> PlaneGatherer::take(int plan
 GatheredPlanes gather_planes(const VisibilitySource& source, const CubeSampling& sampling, const PlaneRange& range, int threads,
                              const Progress& progress, StageTimes& times) {
   constexpr std::size_t ahead = 2;
-  PlaneGatherer gatherer(sampling, range, threads);
+  PlaneGatherer gatherer(sampling, range, threads, source.samples() / static_cast<std::uint64_t>(range.count));
   const auto stream = prefetched(source.open(), ahead);
   GatheredPlanes gathered;
   std::uint64_t done = 0;

@@ -18,7 +18,8 @@ namespace misfit::imager {
 /// without a usable sample for a plane are not among its blocks.
 class PlaneGatherer {
  public:
-  PlaneGatherer(const CubeSampling& sampling, const PlaneRange& range, int threads);
+  /// `expected_samples` of each plane make room for as many beforehand.
+  PlaneGatherer(const CubeSampling& sampling, const PlaneRange& range, int threads, std::uint64_t expected_samples = 0);
 
   /// Throws std::invalid_argument when the block does not tell the widths of its channels.
   void add(const VisibilityBlock& block);
@@ -41,13 +42,16 @@ class PlaneGatherer {
   };
 
   std::vector<Rows> rows_of(const VisibilityBlock& block) const;
-  static void append(const VisibilityBlock& block, const Rows& rows, const PlaneChannels& channels, Plane& plane);
+  /// With room for what is expected, where the plane has no other that grows.
+  std::shared_ptr<VisibilityBlock> begin_block(const VisibilityBlock& like, const PlaneChannels& channels, bool alone) const;
+  void append(const VisibilityBlock& block, const Rows& rows, const PlaneChannels& channels, Plane& plane) const;
   void count_outside(const VisibilityBlock& block, const std::vector<Rows>& rows);
 
   CubeSampling sampling_;
   PlaneRange range_;
   int threads_;
   std::vector<Plane> planes_;  ///< [plane − range.first]
+  std::size_t expected_samples_;
   std::uint64_t outside_planes_ = 0;
 };
 

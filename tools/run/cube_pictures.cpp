@@ -7,26 +7,23 @@
 #include "tools/base/files.h"
 #include "tools/base/numbers.h"
 #include "tools/drawing/pictures.h"
+#include "tools/formats/image_file.h"
 #include "tools/report/figure.h"
+#include "tools/run/image_files.h"
 
 namespace misfit::tools {
 
-void CubePictures::look_at(int channel, const imager::Image& image, const imager::Image& psf, const imager::Peak& brightest) {
-  const double magnitude = std::abs(brightest.value);
-  if (shown_ && !(magnitude > shown_->brightest)) return;
-  shown_ =
-      Plane{channel, sketch(image, Shades::brightness, picture_side), sketch(psf, Shades::brightness, picture_side), magnitude};
+std::size_t brightest_plane(const std::vector<PlaneReport>& planes) {
+  const auto brightness = [](const PlaneReport& plane) {
+    return plane.sums.used == 0 ? -1 : std::abs(plane.stokes.front().brightest.value);
+  };
+  const auto found = std::max_element(
+      planes.begin(), planes.end(), [&](const PlaneReport& a, const PlaneReport& b) { return brightness(a) < brightness(b); });
+  return static_cast<std::size_t>(found - planes.begin());
 }
 
-std::size_t CubePictures::shown_among(const std::vector<PlaneReport>& planes) const {
-  const auto found = std::find_if(planes.begin(), planes.end(),
-                                  [&](const PlaneReport& plane) { return shown_ && plane.channel == shown_->channel; });
-  return found == planes.end() ? 0 : static_cast<std::size_t>(found - planes.begin());
-}
-
-std::string CubePictures::draw(const ImageOptions& o, const imager::ImageHeader& header, const RunReport& report,
-                               std::vector<PagePicture>& drawn) const {
-  if (!shown_) return "";
+std::string draw_cube(const ImageOptions& o, const imager::ImageHeader& header, const RunReport& report,
+                      std::vector<PagePicture>& drawn) {
   const PlaneReport& plane = report.planes[report.shown];
   const std::string of =
       ", plane " + std::to_string(plane.channel) + " at " + frequency_text(plane.frequency_hz, 7) + " " + header.spectral.frame;
@@ -38,12 +35,17 @@ std::string CubePictures::draw(const ImageOptions& o, const imager::ImageHeader&
     about.has_beam = true;
     about.beam = *plane.beams->restoring;
   }
-  const bool cleaned = o.niter > 0;
-  const std::string image_path = o.imagename + (cleaned ? ".image.png" : ".residual.png"), psf_path = o.imagename + ".psf.png";
-  PictureDrawing drawing;
+  const bool cleaned = o.niter > 0 && plane.stokes.front().clean;
+  const std::string kind = cleaned ? "image" : "residual";
+  const auto read = [&](const std::string& name) {
+    return open_image_file(image_paths(o.imagename + "." + name, o.outformat).front())->read({plane.channel, 0});
+  };
+  const imager::Image image = read(kind), psf = read("psf");
+  const std::string image_path = o.imagename + "." + kind + ".png", psf_path = o.imagename + ".psf.png";
   const std::string title = (cleaned ? "Restored image" : "Dirty image") + of;
-  drawing.add({{.image = &about, .title = title, .path = image_path, .sketch = &shown_->image},
-               {.image = &about, .title = "PSF" + of, .path = psf_path, .sketch = &shown_->psf}});
+  PictureDrawing drawing;
+  drawing.add({{.image = &about, .title = title, .path = image_path, .pixels = &image},
+               {.image = &about, .title = "PSF" + of, .path = psf_path, .pixels = &psf}});
   std::string failure = drawing.finish();
   if (failure.empty()) drawn = {{title, read_file(image_path)}, {"PSF" + of, read_file(psf_path)}};
   return failure;

@@ -319,7 +319,7 @@ class CubeRun {
     return sum;
   }
 
-  /// What the report tells of a plane, and the picture of the brightest.
+  /// What the report tells of a plane.
   void look_at(const imager::PlaneIndex& at, const imager::Image& residual, const imager::Image& image, PlaneRun& plane) {
     const imager::StageTimer timer(times_, "statistics");
     StokesReport& told = plane.report().stokes[static_cast<std::size_t>(at.stokes)];
@@ -327,7 +327,6 @@ class CubeRun {
     const auto [least, largest] = extremes(residual);
     told.histogram = {.noise_jy = noise_jy, .min_jy = least, .max_jy = largest, .count = {}};
     told.brightest = imager::find_peak(image);
-    if (at.stokes == 0) pictures_.look_at(at.channel, image, plane.made().images.psf, told.brightest);
   }
 
   void finish(int channel, PlaneRun& run) {
@@ -360,11 +359,11 @@ class CubeRun {
   }
 
   void write_report() {
-    report_.shown = pictures_.shown_among(report_.planes);
+    report_.shown = brightest_plane(report_.planes);
     std::vector<PagePicture> drawn;
     {
       const imager::StageTimer timer(times_, "draw pictures");
-      if (const std::string failure = pictures_.draw(o_, header_, report_, drawn); !failure.empty()) warn(failure);
+      if (const std::string failure = draw_cube(o_, header_, report_, drawn); !failure.empty()) warn(failure);
     }
     report_.expected = expected();
     forecast_.learn(work_, times_);
@@ -400,7 +399,6 @@ class CubeRun {
   imager::GatheredPlanes gathered_;                               ///< of the batch at hand
   std::unique_ptr<PrimaryBeamStage> primary_beam_;                ///< null where none is wanted
   bool unseen_ = false;                                           ///< by the antennas, which was said
-  CubePictures pictures_;
   std::uint64_t outside_grid_ = 0;
   std::size_t empty_ = 0;  ///< planes
   bool stopped_ = false;
