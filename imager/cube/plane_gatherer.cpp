@@ -100,7 +100,8 @@ PlaneGatherer::PlaneGatherer(const CubeSampling& sampling, const PlaneRange& ran
       planes_(static_cast<std::size_t>(range.count)),
       expected_samples_(std::min<std::size_t>(expected_samples, full_samples)) {}
 
-std::shared_ptr<VisibilityBlock> PlaneGatherer::begin_block(const VisibilityBlock& like, const PlaneChannels& channels) const {
+std::shared_ptr<VisibilityBlock> PlaneGatherer::begin_block(const VisibilityBlock& like, const PlaneChannels& channels,
+                                                            bool alone) const {
   auto block = empty_block(like, channels.frequency_hz);
   if (!alone) return block;
   block->uvw_m.reserve(3 * expected_samples_ / channels.tap.size());
