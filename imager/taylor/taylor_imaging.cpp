@@ -45,8 +45,10 @@ std::vector<Image> make_taylor_residuals(const VisibilitySource& source, const T
                                          const Progress& progress, StageTimes& times) {
   auto sum = begin_adjoint(transform, {.images = expansion.terms}, times);
   const TaylorPowers powers{0, expansion.terms - 1};
+  std::vector<const Image*> terms;
+  for (const Image& model : models) terms.push_back(&model);
   for_each_residual(
-      source, [&] { return std::make_unique<TaylorPrediction>(transform, models, expansion); }, progress, times,
+      source, [&] { return std::make_unique<TaylorPrediction>(transform, terms, expansion); }, progress, times,
       [&](const VisibilityBlock& block, const std::vector<std::complex<double>>& residual) {
         const StageTimer timer(times, "grid");
         sum->add(block, taylor_sets(expansion, block, residual, powers));

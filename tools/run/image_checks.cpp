@@ -10,6 +10,7 @@
 #include "tools/base/option_checks.h"
 #include "tools/base/quantity.h"
 #include "tools/run/image_options.h"
+#include "tools/run/taylor_options.h"
 #include "tools/run/weighting_options.h"
 
 namespace misfit::tools {
@@ -90,6 +91,7 @@ void check_clean(const ImageOptions& o) {
   if (!o.mask.empty() && o.niter == 0) refuse_option("mask", o.mask, "--niter above 0 beside it");
   if (o.restart && o.niter == 0) refuse_option("restart", "true", "--niter above 0 beside it");
   check_deconvolver(o);
+  check_taylor(o);
   check_auto_mask(o);
 }
 

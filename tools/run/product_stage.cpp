@@ -7,6 +7,7 @@
 
 #include "tools/base/files.h"
 #include "tools/formats/component_list.h"
+#include "tools/run/taylor_options.h"
 
 namespace misfit::tools {
 namespace {
@@ -68,11 +69,16 @@ void ProductStage::draw_dirty(const imager::UvCoverage& coverage, const imager::
 
 std::vector<std::string> ProductStage::write(imager::DirtyImages images) {
   const imager::StageTimer timer(times_, "write images");
-  products_.add("psf", "Jy/beam", alone(std::move(images.psf)));
-  products_.add("residual", "Jy/beam", std::move(images.dirty));
+  products_.add(named("psf"), "Jy/beam", alone(std::move(images.psf)));
+  products_.add(named("residual"), "Jy/beam", std::move(images.dirty));
+  if (taylor_ != nullptr) {
+    add_further("psf", taylor_->images().psf);
+    add_further("residual", taylor_->images().dirty);
+  }
   auto removed = remove_old(
       {"model.fits", "model.png", "image.fits", "image.png", "dirty.png", "mask.fits", "components.csv", "clean.state"});
   remove_other_stokes(removed);
+  remove_other_terms(false, removed);
   products_.write();
   return removed;
 }
@@ -89,6 +95,8 @@ void ProductStage::draw(std::vector<imager::CleanResult>& cleaned, const std::ve
     pictures.push_back(picture_of(s, {"residual", "Residual", "Jy/beam", Shades::about_zero, &result.residual, nullptr, mask}));
     pictures.push_back(
         picture_of(s, {"image", "Restored image", "Jy/beam", Shades::brightness, &restored_images[s], nullptr, mask}));
+    if (taylor_ != nullptr)
+      pictures.push_back({"alpha", "Spectral index", "", Shades::about_zero, &restored_.spectra.alpha, nullptr, mask});
   }
   products_.draw(pictures);
 }
@@ -98,25 +106,64 @@ std::vector<std::string> ProductStage::write(imager::Image psf, std::vector<imag
   for (const imager::CleanResult& result : cleaned) images.push_back(restored(result));
   draw(cleaned, images);
   const imager::StageTimer timer(times_, "write images");
-  write_components(cleaned);
+  if (taylor_ == nullptr) write_components(cleaned);
   for (imager::CleanResult& result : cleaned) {
     models.push_back(o_.savemodel == "none" ? std::move(result.model) : result.model);
     residuals.push_back(std::move(result.residual));
     if (!result.mask.pixel.empty()) masks.push_back(std::move(result.mask));
   }
   const bool masked = !masks.empty();
-  products_.add("psf", "Jy/beam", alone(std::move(psf)));
-  products_.add("model", "Jy/pixel", std::move(models));
-  products_.add("residual", "Jy/beam", std::move(residuals));
+  products_.add(named("psf"), "Jy/beam", alone(std::move(psf)));
+  products_.add(named("model"), "Jy/pixel", std::move(models));
+  products_.add(named("residual"), "Jy/beam", std::move(residuals));
   std::error_code absent;
   const bool kept =
       std::filesystem::equivalent(o_.mask, o_.imagename + ".mask.fits", absent);  // the user's file stays as it is
   if (masked && !kept) products_.add("mask", "", std::move(masks));
-  products_.add("image", "Jy/beam", std::move(images));
+  products_.add(named("image"), "Jy/beam", std::move(images));
+  if (taylor_ != nullptr) add_taylor(cleaned.front());
   auto removed = masked ? std::vector<std::string>() : remove_old({"mask.fits"});
   remove_other_stokes(removed);
+  remove_other_terms(true, removed);
   products_.write();
   return removed;
+}
+
+std::string ProductStage::named(const std::string& kind, int term) const {
+  return taylor_ == nullptr ? kind : kind + ".tt" + std::to_string(term);
+}
+
+void ProductStage::add_further(const std::string& kind, std::vector<imager::Image>& images) {
+  for (std::size_t t = 0; t < images.size(); ++t)
+    products_.add(named(kind, static_cast<int>(t) + 1), kind == "model" ? "Jy/pixel" : "Jy/beam", alone(std::move(images[t])));
+}
+
+void ProductStage::add_taylor(imager::CleanResult& cleaned) {
+  add_further("psf", taylor_->images().psf);
+  add_further("residual", cleaned.further_residuals);
+  std::vector<imager::Image> models = o_.savemodel == "none" ? std::move(cleaned.further_models) : cleaned.further_models;
+  add_further("model", models);
+  add_further("image", restored_.further);
+  imager::SpectralImages& spectra = restored_.spectra;
+  std::vector<imager::HeaderCard> cards = scene_.cards;
+  cards.push_back({"ALPHALIM", spectra.level_jy, "Jy/beam of .image.tt0, below which pixels are NaN"});
+  products_.set_cards(std::move(cards));
+  products_.add("alpha", "", alone(std::move(spectra.alpha)));
+  products_.add("alpha.error", "", alone(std::move(spectra.alpha_error)));
+  if (!spectra.beta.pixel.empty()) products_.add("beta", "", alone(std::move(spectra.beta)));
+  products_.set_cards(scene_.cards);
+}
+
+void ProductStage::remove_other_terms(bool cleaned, std::vector<std::string>& removed) const {
+  const std::vector<std::string> made = taylor_products(o_.nterms, cleaned);
+  std::vector<std::string> kinds;
+  for (const std::string& name : taylor_products(imager::most_taylor_terms, true))
+    if (std::count(made.begin(), made.end(), name) == 0) kinds.push_back(name + ".fits");
+  if (std::count(made.begin(), made.end(), "alpha") == 0) kinds.emplace_back("alpha.png");
+  if (taylor_ != nullptr)
+    kinds.insert(kinds.end(), {"psf.fits", "residual.fits", "model.fits", "image.fits", "components.csv"});
+  const std::vector<std::string> others = remove_old(kinds);
+  removed.insert(removed.end(), others.begin(), others.end());
 }
 
 void ProductStage::write_components(const std::vector<imager::CleanResult>& cleaned) const {
@@ -133,8 +180,12 @@ std::string ProductStage::finish_pictures(std::vector<PagePicture>& drawn) {
   return failure;
 }
 
-imager::Image ProductStage::restored(const imager::CleanResult& cleaned) const {
+imager::Image ProductStage::restored(const imager::CleanResult& cleaned) {
   const imager::StageTimer timer(times_, "restore");
+  if (taylor_ != nullptr) {
+    restored_ = taylor_->restore(cleaned, *scene_.restoring_beam, scene_.geometry.cell_rad);
+    return std::move(restored_.first);
+  }
   imager::Image sum =
       imager::convolve_with_beam(cleaned.model, *scene_.restoring_beam, scene_.geometry.cell_rad, scene_.threads);
   for (std::size_t i = 0; i < sum.pixel.size(); ++i) sum.pixel[i] += cleaned.residual.pixel[i];

@@ -10,6 +10,7 @@
 #include "imager/stage_times.h"
 #include "tools/run/image_options.h"
 #include "tools/run/image_products.h"
+#include "tools/run/taylor_stage.h"
 #include "tools/run_page/report_page.h"
 
 namespace misfit::tools {
@@ -29,6 +30,9 @@ struct ProductScene {
 class ProductStage {
  public:
   ProductStage(const ImageOptions& options, ProductScene scene, imager::StageTimes& times);
+
+  /// Images are those of Taylor terms from now on. Kept by reference.
+  void set_taylor(TaylorStage& taylor) { taylor_ = &taylor; }
 
   /// Begins to draw what is there before CLEAN, while the caller does other things; an automatic mask is not known yet, and
   /// the dirty image then drawn with the others. Images are looked at until it returns.
@@ -50,7 +54,13 @@ class ProductStage {
   ProductPicture picture_of(std::size_t stokes, ProductPicture picture) const;
   void draw(std::vector<imager::CleanResult>& cleaned, const std::vector<imager::Image>& restored_images);
   void write_components(const std::vector<imager::CleanResult>& cleaned) const;
-  imager::Image restored(const imager::CleanResult& cleaned) const;
+  imager::Image restored(const imager::CleanResult& cleaned);
+  /// The middle of a file's name, which tells the Taylor term where there are several.
+  std::string named(const std::string& kind, int term = 0) const;
+  void add_further(const std::string& kind, std::vector<imager::Image>& images);
+  void add_taylor(imager::CleanResult& cleaned);
+  /// Removes what runs of another number of Taylor terms left.
+  void remove_other_terms(bool cleaned, std::vector<std::string>& removed) const;
   std::vector<imager::Source> sources(const imager::ComponentModel& model) const;
   void remove_other_stokes(std::vector<std::string>& removed) const;
   std::vector<std::string> remove_old(const std::vector<std::string>& kinds) const;
@@ -59,7 +69,9 @@ class ProductStage {
   ProductScene scene_;
   imager::StageTimes& times_;
   ImageProducts products_;
-  std::vector<Sketch> dirty_;  ///< what is left of the dirty images when CLEAN is over, where masks were not known before
+  TaylorStage* taylor_ = nullptr;  ///< null where there is one term
+  RestoredTerms restored_;         ///< of several
+  std::vector<Sketch> dirty_;      ///< what is left of the dirty images when CLEAN is over, where masks were not known before
 };
 
 }  // namespace misfit::tools
