@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <vector>
 
+#include "imager/clean/components.h"
+
 namespace misfit::imager {
 namespace {
 
@@ -15,6 +17,7 @@ constexpr double row_bytes = 3 * sizeof(double);
 /// For each sample of the block at hand: its run twice while runs are sorted, at worst one a sample, and room to grow.
 constexpr double order_bytes = 2 * 12 + 8;
 constexpr double residual_bytes = 2 * sizeof(double);
+constexpr double component_bytes = sizeof(Component);
 /// Minor cycles take: the residual; for a convolution, what is convolved and what comes of it. In single precision the residual
 /// and a transform of 3/2 the size either way pass; the PSF's transform, or the PSF, is kept through major cycles.
 constexpr double minor_images = 3, minor_passing_images = 2, minor_kept_images = 1.25;
@@ -135,7 +138,7 @@ MemoryUse peak_memory(const MemoryDemand& d, const StreamingOptions& streaming) 
   if (d.clean_scales > 0) {
     const double masks = d.mask ? 2 : 0;  // it, and the residual within
     // Where every pixel is a component of the model, those of two models and of what they are sorted in.
-    const double components = d.start_model ? 3 * 24 / pixel_bytes : 0;
+    const double components = d.start_model ? 3 * component_bytes / pixel_bytes : 0;
     const double lasting = masks + components + 2 + n.lasting();  // dirty image and PSF
     const double minor = minor_kept_bytes(image, d.clean_scales, n);
     stages.push_back({"the minor cycles run", process_bytes, kept, 0, minor + minor_passing_images * image, 0,
@@ -149,7 +152,7 @@ MemoryUse peak_memory(const MemoryDemand& d, const StreamingOptions& streaming) 
   }
   if (d.wider) {
     // After CLEAN the PSF, the model with its components, the residual and the mask; else the dirty image and the PSF.
-    const double components = d.start_model ? 3 * 24 / pixel_bytes : 0;
+    const double components = d.start_model ? 3 * component_bytes / pixel_bytes : 0;
     const double lasting = d.clean_scales > 0 ? 3 + components + (d.mask ? 1 : 0) : 2;
     add_wider_stages(*d.wider, s, (d.clean_scales > 0 ? finished : others) + lasting * image, stages);
   }
