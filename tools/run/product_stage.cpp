@@ -222,6 +222,7 @@ std::vector<std::string> ProductStage::remove_old(const std::vector<std::string>
   for (const std::string& kind : kinds) {
     const std::string path = o_.imagename + "." + kind;
     std::error_code failed;  // a folder of that name stays
+    if (std::filesystem::equivalent(path, o_.startmodel, failed)) continue;
     if (is_ours(path) && std::filesystem::remove(path, failed)) removed.push_back(path);
   }
   return removed;
