@@ -25,7 +25,7 @@ void AdjointSum::add(const VisibilityBlock& block, const std::vector<std::comple
   add_sets(block, {visibility.data()});
 }
 
-void AdjointSum::add(const VisibilityBlock& block, const std::vector<std::vector<std::complex<double>>>& visibilities) {
+void AdjointSum::add_several(const VisibilityBlock& block, const std::vector<std::vector<std::complex<double>>>& visibilities) {
   require_sets(visibilities.size());
   std::vector<VisibilitySet> sets;
   for (const auto& visibility : visibilities) sets.emplace_back(visibility.data());

@@ -49,7 +49,7 @@ class AdjointSum {
   /// than one image is made.
   void add(const VisibilityBlock& block, const std::vector<std::complex<double>>& visibility);
   /// The same of several images, with a set of visibilities for each. Throws std::invalid_argument unless there are as many.
-  void add(const VisibilityBlock& block, const std::vector<std::vector<std::complex<double>>>& visibilities);
+  void add_several(const VisibilityBlock& block, const std::vector<std::vector<std::complex<double>>>& visibilities);
   /// To be called once, after the last block.
   virtual AdjointResult finish() = 0;
 

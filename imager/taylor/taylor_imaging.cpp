@@ -31,8 +31,8 @@ TaylorImages make_taylor_images(const VisibilitySource& source, const Transform&
   auto psf_sum = begin_adjoint(psf.transform, {.images = of_psf.last}, times);
   pass.for_each_block([&](const VisibilityBlock& block) {
     const StageTimer timer(times, "grid");
-    sum->add(block, taylor_sets(expansion, block, {block.visibility.begin(), block.visibility.end()}, of_dirty));
-    psf_sum->add(block, taylor_sets(expansion, block, visibilities_of_middle(block, psf), of_psf));
+    sum->add_several(block, taylor_sets(expansion, block, {block.visibility.begin(), block.visibility.end()}, of_dirty));
+    psf_sum->add_several(block, taylor_sets(expansion, block, visibilities_of_middle(block, psf), of_psf));
   });
   TaylorImages images;
   images.psf = normalised_images(std::move(psf_sum), times);
@@ -51,7 +51,7 @@ std::vector<Image> make_taylor_residuals(const VisibilitySource& source, const T
       source, [&] { return std::make_unique<TaylorPrediction>(transform, terms, expansion); }, progress, times,
       [&](const VisibilityBlock& block, const std::vector<std::complex<double>>& residual) {
         const StageTimer timer(times, "grid");
-        sum->add(block, taylor_sets(expansion, block, residual, powers));
+        sum->add_several(block, taylor_sets(expansion, block, residual, powers));
       });
   return normalised_images(std::move(sum), times);
 }

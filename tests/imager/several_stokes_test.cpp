@@ -130,7 +130,7 @@ BOOST_DATA_TEST_CASE(sets_given_are_imaged_as_those_that_blocks_carry, bdata::ma
       const VisibilityBlock one = alone(block, s);
       sets.emplace_back(one.visibility.begin(), one.visibility.end());
     }
-    sum->add(block, sets);
+    sum->add_several(block, sets);
   }
   const AdjointResult given = sum->finish();
   for (std::size_t i = 0; i < 3; ++i) BOOST_TEST(relative_error(given.images[i].pixel, carried.images[i].pixel) < 1e-6);
