@@ -69,9 +69,8 @@ void check_refusal(const Arguments& arguments, int code, const std::string& part
 
 BOOST_AUTO_TEST_SUITE(wide_band_images)
 
-/// Noise of a thousandth of the source over the spread of the channels, 0.057, leaves 0.02 of α to one standard deviation, and
-/// 0.03 to the fainter: sources that CLEAN is told of with less. So here the error's pull is checked; the index itself without
-/// noise below.
+/// Noise of a thousandth of the steep source over channels that spread by 0.057 about ν_0 leaves 0.02 of its α to one standard
+/// deviation, and 0.03 of the fainter source's: too much to judge the index itself by, which the next case does without noise.
 BOOST_AUTO_TEST_CASE(the_spectral_index_is_right_within_three_times_its_error) {
   const TemporaryFolder folder;
   succeed(images(folder / "a"));
