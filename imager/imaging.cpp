@@ -5,79 +5,13 @@
 #include "imager/big_array.h"
 #include "imager/phase.h"
 #include "imager/phasors.h"
+#include "imager/visibility_pass_internal.h"
 
 namespace misfit::imager {
 namespace {
 
-void divide(Image& image, double by) {
-  for (double& pixel : image.pixel) pixel /= by;
-}
-
-/// One pass over visibilities; a source that reads ahead begins when this is made.
-class Pass {
- public:
-  using Blocks = std::vector<std::shared_ptr<const VisibilityBlock>>;
-
-  Pass(const VisibilitySource& source, const Progress& progress, StageTimes& times)
-      : total_(source.samples()), stream_(source.open()), progress_(progress), times_(times) {}
-
-  /// Calls visit(block) for every block.
-  template <typename Visit>
-  void for_each_block(const Visit& visit) {
-    for_each_group(0, [&](const Blocks& group) { visit(*group.front()); });
-  }
-  /// Calls visit(blocks) for groups of blocks, of at least `samples` but for the last.
-  template <typename Visit>
-  void for_each_group(std::size_t samples, const Visit& visit) {
-    std::uint64_t done = 0;
-    Blocks group;
-    std::size_t gathered = 0;
-    const auto finish = [&] {
-      visit(group);
-      done += gathered;
-      progress_(done, total_);
-      group.clear();
-      gathered = 0;
-    };
-    while (auto block = next()) {
-      gathered += block->samples();
-      group.push_back(std::move(block));
-      if (gathered >= samples) finish();
-    }
-    if (!group.empty()) finish();
-  }
-
- private:
-  std::shared_ptr<const VisibilityBlock> next() {
-    const StageTimer timer(times_, "read");
-    return stream_->next();
-  }
-
-  std::uint64_t total_;
-  std::unique_ptr<BlockStream> stream_;
-  const Progress& progress_;
-  StageTimes& times_;
-};
-
-std::unique_ptr<AdjointSum> begin(const Transform& transform, const AdjointOptions& options, StageTimes& times) {
-  const StageTimer timer(times, "grid");
-  return transform.adjoint(options);
-}
-
-/// Also frees the grid.
-AdjointResult finish(std::unique_ptr<AdjointSum> sum, StageTimes& times) {
-  AdjointResult result;
-  {
-    const StageTimer timer(times, "grid");
-    result = sum->finish();
-    sum.reset();
-  }
-  times.move("grid", "fft", result.fft_s);
-  return result;
-}
-
 /// Data − model. [block][row][channel]
-std::vector<std::vector<std::complex<double>>> residuals(const Prediction& prediction, const Pass::Blocks& blocks) {
+std::vector<std::vector<std::complex<double>>> residuals(const Prediction& prediction, const VisibilityPass::Blocks& blocks) {
   std::vector<const VisibilityBlock*> plain;
   for (const auto& block : blocks) plain.push_back(block.get());
   auto residual = prediction.at_usable_of(plain);
@@ -103,7 +37,8 @@ DirtyImages dirty_images(AdjointResult sum, Image psf, StageTimes& times) {
   return {std::move(sum.images), std::move(psf), std::move(sum.sums)};
 }
 
-/// Those of a source of 1 Jy at the image's middle pixel.
+}  // namespace
+
 std::vector<std::complex<double>> visibilities_of_middle(const VisibilityBlock& block, const OwnPsf& psf) {
   std::vector<std::complex<double>> visibility(block.samples(), 1);
   if (psf.middle.l == 0 && psf.middle.m == 0) return visibility;
@@ -128,41 +63,41 @@ NothingInGrid::NothingInGrid(std::uint64_t samples)
 
 DirtyImages make_dirty_images(const VisibilitySource& source, const Transform& transform, const AdjointOptions& options,
                               const Progress& progress, StageTimes& times) {
-  Pass pass(source, progress, times);
-  auto sum = begin(transform, options, times);
+  VisibilityPass pass(source, progress, times);
+  auto sum = begin_adjoint(transform, options, times);
   pass.for_each_block([&](const VisibilityBlock& block) {
     const StageTimer timer(times, "grid");
     sum->add(block);
   });
-  AdjointResult result = finish(std::move(sum), times);
+  AdjointResult result = finish_adjoint(std::move(sum), times);
   Image psf = std::move(result.psf);
   return dirty_images(std::move(result), std::move(psf), times);
 }
 
 DirtyImages make_dirty_images(const VisibilitySource& source, const Transform& transform, const OwnPsf& psf,
                               const Progress& progress, StageTimes& times) {
-  Pass pass(source, progress, times);
-  auto sum = begin(transform, {.images = psf.images}, times);
-  auto psf_sum = begin(psf.transform, {}, times);
+  VisibilityPass pass(source, progress, times);
+  auto sum = begin_adjoint(transform, {.images = psf.images}, times);
+  auto psf_sum = begin_adjoint(psf.transform, {}, times);
   pass.for_each_block([&](const VisibilityBlock& block) {
     const StageTimer timer(times, "grid");
     sum->add(block);
     psf_sum->add(block, visibilities_of_middle(block, psf));
   });
-  AdjointResult of_psf = finish(std::move(psf_sum), times);
-  AdjointResult result = finish(std::move(sum), times);
+  AdjointResult of_psf = finish_adjoint(std::move(psf_sum), times);
+  AdjointResult result = finish_adjoint(std::move(sum), times);
   return dirty_images(std::move(result), std::move(of_psf.images.front()), times);
 }
 
-void for_each_residual(const VisibilitySource& source, const Transform& transform, const Image& model, const Progress& progress,
+void for_each_residual(const VisibilitySource& source, const MakePrediction& predict, const Progress& progress,
                        StageTimes& times, const VisitResidual& visit) {
-  Pass pass(source, progress, times);
+  VisibilityPass pass(source, progress, times);
   std::unique_ptr<Prediction> prediction;
   {
     const StageTimer timer(times, "degrid");
-    prediction = transform.predict(model);
+    prediction = predict();
   }
-  pass.for_each_group(prediction->samples_at_once(), [&](const Pass::Blocks& blocks) {
+  pass.for_each_group(prediction->samples_at_once(), [&](const VisibilityPass::Blocks& blocks) {
     std::vector<std::vector<std::complex<double>>> residual;
     {
       const StageTimer timer(times, "degrid");
@@ -173,15 +108,21 @@ void for_each_residual(const VisibilitySource& source, const Transform& transfor
   times.move("degrid", "fft", prediction->fft_s());
 }
 
+void for_each_residual(const VisibilitySource& source, const Transform& transform, const Image& model, const Progress& progress,
+                       StageTimes& times, const VisitResidual& visit) {
+  for_each_residual(
+      source, [&] { return transform.predict(model); }, progress, times, visit);
+}
+
 Image make_residual_image(const VisibilitySource& source, const Transform& transform, const Image& model,
                           const Progress& progress, StageTimes& times) {
-  auto sum = begin(transform, {}, times);
+  auto sum = begin_adjoint(transform, {}, times);
   for_each_residual(source, transform, model, progress, times,
                     [&](const VisibilityBlock& block, const std::vector<std::complex<double>>& residual) {
                       const StageTimer timer(times, "grid");
                       sum->add(block, residual);
                     });
-  AdjointResult result = finish(std::move(sum), times);
+  AdjointResult result = finish_adjoint(std::move(sum), times);
   divide(result.images.front(), result.sums.front().weight);
   return std::move(result.images.front());
 }

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <stdexcept>
 
 #include "imager/geometry.h"
@@ -47,6 +48,11 @@ using VisitResidual = std::function<void(const VisibilityBlock& block, const std
 
 /// One pass over the visibilities less those of a model. Stages timed: "read", "fft", "degrid".
 void for_each_residual(const VisibilitySource& source, const Transform& transform, const Image& model, const Progress& progress,
+                       StageTimes& times, const VisitResidual& visit);
+
+/// The same of a model whose prediction is made once the pass has begun.
+using MakePrediction = std::function<std::unique_ptr<Prediction>()>;
+void for_each_residual(const VisibilitySource& source, const MakePrediction& predict, const Progress& progress,
                        StageTimes& times, const VisitResidual& visit);
 
 /// The dirty image of data − model, of the blocks' own Stokes parameter: the model is predicted at every usable sample and

@@ -14,10 +14,14 @@ namespace misfit::imager {
 /// the source's centre. Over the source itself it changes, which to first order moves (u, v) to (u − wl/n, v − wm/n) in the
 /// second factor, and to second order changes V by about π|w|θ²/(4 ln 2) of itself: 0.03 % for 10″ at 10⁵ wavelengths, and 100
 /// times that for ten times the width. Where this matters, the source belongs into an image.
+///
+/// S may depend on the frequency: S(ν) = S(ν_0) (ν/ν_0)^α.
 struct Source {
   DirectionCosines position;  ///< relative to the phase centre
   double flux_jy = 0;
-  double fwhm_rad = 0;  ///< never negative
+  double fwhm_rad = 0;        ///< never negative
+  double spectral_index = 0;  ///< α
+  double reference_hz = 0;    ///< ν_0, at which flux_jy is meant; of no matter where α is 0
 };
 
 }  // namespace misfit::imager

@@ -21,10 +21,21 @@ AdjointSum::AdjointSum(const AdjointOptions& options) : options_(options) {
 }
 
 void AdjointSum::add(const VisibilityBlock& block, const std::vector<std::complex<double>>& visibility) {
-  if (options_.images != 1)
-    throw std::invalid_argument("one set of visibilities for " + std::to_string(options_.images) +
-                                " images; expected one for each");
+  require_sets(1);
   add_sets(block, {visibility.data()});
+}
+
+void AdjointSum::add_several(const VisibilityBlock& block, const std::vector<std::vector<std::complex<double>>>& visibilities) {
+  require_sets(visibilities.size());
+  std::vector<VisibilitySet> sets;
+  for (const auto& visibility : visibilities) sets.emplace_back(visibility.data());
+  add_sets(block, sets);
+}
+
+void AdjointSum::require_sets(std::size_t given) const {
+  if (given != static_cast<std::size_t>(options_.images))
+    throw std::invalid_argument(std::to_string(given) + (given == 1 ? " set" : " sets") + " of visibilities for " +
+                                std::to_string(options_.images) + " images; expected one for each");
 }
 
 std::vector<std::vector<std::complex<double>>> Prediction::at_usable_of(

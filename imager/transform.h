@@ -48,6 +48,8 @@ class AdjointSum {
   /// Adds the samples of `block` with `visibility` [row][channel] in place of its own. Throws std::invalid_argument when more
   /// than one image is made.
   void add(const VisibilityBlock& block, const std::vector<std::complex<double>>& visibility);
+  /// The same of several images, with a set of visibilities for each. Throws std::invalid_argument unless there are as many.
+  void add_several(const VisibilityBlock& block, const std::vector<std::vector<std::complex<double>>>& visibilities);
   /// To be called once, after the last block.
   virtual AdjointResult finish() = 0;
 
@@ -58,6 +60,9 @@ class AdjointSum {
   virtual void add_sets(const VisibilityBlock& block, const std::vector<VisibilitySet>& sets) = 0;
 
   const AdjointOptions options_;
+
+ private:
+  void require_sets(std::size_t given) const;
 };
 
 /// The forward transform of one model image.

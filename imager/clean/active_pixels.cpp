@@ -23,9 +23,13 @@ double level_for(const Image& residual, double lowest, double peak, std::size_t 
 
 }  // namespace
 
-ActivePixels::ActivePixels(const Image& residual, double stop_jy, const PsfCore& core, std::size_t most) : core_(core) {
+double active_level(const Image& residual, double stop_jy, double largest_outside, std::size_t most) {
   const double peak = largest_magnitude(residual);
-  level_jy_ = level_for(residual, std::max(stop_jy / 2, core.largest_outside() * peak), peak, most);
+  return level_for(residual, std::max(stop_jy / 2, largest_outside * peak), peak, most);
+}
+
+ActivePixels::ActivePixels(const Image& residual, double stop_jy, const PsfCore& core, std::size_t most)
+    : core_(core), level_jy_(active_level(residual, stop_jy, core.largest_outside(), most)) {
   row_.resize(static_cast<std::size_t>(residual.height) + 1);
   for (int r = 0; r < residual.height; ++r) {
     row_[static_cast<std::size_t>(r)].first = value_.size();

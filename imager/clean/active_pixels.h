@@ -10,13 +10,16 @@
 
 namespace misfit::imager {
 
+/// The level for a search down to `stop_jy` among pixels of a residual, where sidelobes outside the core of the PSF are up to
+/// `largest_outside`: half of that (fainter pixels hardly rise above it before all are chosen anew), what these sidelobes make
+/// of the peak, or, a 4096th of the peak higher at most, above which no more than `most` pixels lie; the highest of these.
+double active_level(const Image& residual, double stop_jy, double largest_outside, std::size_t most);
+
 /// The brightest pixels of a residual, from which alone components are taken, and only as far as the core of the PSF reaches
 /// (Clark 1980, A&A 89, 377). What they miss of a component is at most its flux × PsfCore::largest_outside().
 class ActivePixels {
  public:
-  /// The pixels of `residual` for a search down to `stop_jy`: those above half of that (fainter ones hardly rise above it
-  /// before all are chosen anew) and above what the sidelobes outside the core make of the peak. No more of them than
-  /// `most`: then those above a higher level. NaN is left out. `core` must outlive this.
+  /// The pixels of `residual` above the active_level of a search down to `stop_jy`. NaN is left out. `core` must outlive this.
   ActivePixels(const Image& residual, double stop_jy, const PsfCore& core, std::size_t most = fit_a_cache);
 
   static constexpr std::size_t fit_a_cache = 65536;

@@ -2,283 +2,48 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
-#include <memory>
-#include <stdexcept>
-#include <string>
 #include <utility>
 
-#include "imager/big_array.h"
-#include "imager/clean/mask.h"
-#include "imager/noise.h"
+#include "imager/clean/finite_images.h"
+#include "imager/clean/major_cycles.h"
 
 namespace misfit::imager {
 namespace {
 
-constexpr double grown = 1.5;   // a residual this many times the best is taken back
-constexpr double diverged = 3;  // tclean's factor between its codes
-constexpr int most_tightenings = 3;
-constexpr std::size_t patience = 5;  // cycles without any progress
-
-[[noreturn]] void refuse(const std::string& what, double value) {
-  throw std::runtime_error(what + " is " + std::to_string(value) +
-                           ", expected a finite number: the data or the model are too large");
-}
-
-void require_finite(const Image& psf) {
-  const double peak = find_peak(psf).value, middle = psf.at(psf.height / 2, psf.width / 2);
-  if (!std::isfinite(middle)) refuse("the PSF's middle pixel", middle);
-  if (!std::isfinite(peak)) refuse("the PSF's largest pixel", peak);
-}
-
-/// NaN may be only where the dirty image is, beyond the horizon.
-void require_finite(const Image& residual, const Image& dirty) {
-  if (const double peak = find_peak(residual).value; !std::isfinite(peak)) refuse("the residual image's peak in Jy/beam", peak);
-  for (std::size_t i = 0; i < dirty.pixel.size(); ++i)
-    if (std::isnan(residual.pixel[i]) && !std::isnan(dirty.pixel[i])) refuse("a pixel of the residual image", NAN);
-}
-
-std::string in_jy(double value) {
-  char text[40];
-  std::snprintf(text, sizeof text, "%.3g Jy/beam", value);
-  return text;
-}
-
-struct Ending {
-  CleanStop stop;
-  std::string reason;
-};
-
-/// One run of CLEAN.
-class Run {
+/// One image.
+class OneTerm : public CleanProblem {
  public:
-  Run(const CleanInput& input, const MinorCycle& minor, const CleanOptions& options, CleanState state, const Progress& progress,
-      StageTimes& times)
-      : input_(input), minor_(minor), o_(options), progress_(progress), times_(times), state_(std::move(state)) {
-    if (state_.model.scale_pixels() != minor.scale_pixels())
-      throw std::invalid_argument("a model of other scales than those of the minor cycle");
-    require_finite(input.psf);
+  OneTerm(const CleanInput& input, const MinorCycle& minor, const Progress& progress, StageTimes& times)
+      : input_(input), minor_(minor), progress_(progress), times_(times) {
+    require_finite_psf(input.psf);
   }
 
-  CleanResult run(const CycleProgress& cycle_progress) {
-    make_residual();
-    if (state_.cycles.empty()) {
-      if (o_.automask) state_.mask = Image(residual_->width, residual_->height);
-      MajorCycle start;
-      measure(start);
-      keep(std::move(start));
-    }
-    cycle_progress(state_);
-    while (!(end_ = ending())) {
-      one_cycle();
-      cycle_progress(state_);
-    }
-    if (is_worse_than_best()) {
-      return_to_best();
-      end_->reason += "; the best model was kept";
-    }
-    return result();
+  const std::vector<double>& scale_pixels() const override { return minor_.scale_pixels(); }
+  /// That of no model is the dirty image.
+  Residuals residuals(const ComponentModel& model, int threads) override {
+    if (model.components().empty()) return checked(std::shared_ptr<const Image>(std::shared_ptr<void>(), &input_.dirty));
+    return checked(std::make_shared<const Image>(
+        make_residual_image(input_.source, input_.transform, model_image(model, threads), progress_, times_)));
+  }
+  MinorCycleReport find(const Residuals& residuals, const MinorCycleOptions& options) const override {
+    return minor_.clean(*residuals.front(), options);
   }
 
  private:
-  const MajorCycle& now() const { return state_.cycles[state_.now]; }
-  const MajorCycle& best() const { return state_.cycles[state_.best]; }
-  const Image* mask() const { return o_.automask ? &state_.mask : o_.mask; }
-
-  /// Residuals are made anew, never changed; that of no model is the dirty image.
-  void make_residual() {
-    residual_.reset();
-    residual_ = state_.model.components().empty() ? std::shared_ptr<const Image>(std::shared_ptr<void>(), &input_.dirty)
-                                                  : std::make_shared<const Image>(make_residual_image(
-                                                        input_.source, input_.transform, model_image(), progress_, times_));
-    const StageTimer timer(times_, "statistics");
-    require_finite(*residual_, input_.dirty);
-  }
-
-  Image model_image() const {
+  Image model_image(const ComponentModel& model, int threads) const {
     const StageTimer timer(times_, "minor cycles");
-    return state_.model.image(o_.threads);
+    return model.image(threads);
   }
-
-  bool mask_is_empty() const { return mask() != nullptr && imager::mask_is_empty(*mask()); }
-  /// Of the whole image where the mask is empty.
-  double peak_within_mask() const {
-    const bool everywhere = mask() == nullptr || mask_is_empty();
-    return largest_magnitude(everywhere ? *residual_ : masked(*residual_, *mask()));
-  }
-
-  /// What the residual is now.
-  void measure(MajorCycle& cycle) {
+  Residuals checked(std::shared_ptr<const Image> residual) const {
     const StageTimer timer(times_, "statistics");
-    cycle.rms_jy = robust_noise(*residual_, o_.threads);
-    cycle.peak_residual_jy = peak_within_mask();
-    cycle.mean_square_jy2 = std::pow(root_mean_square(*residual_), 2);
-    cycle.model_flux_jy = state_.model.flux_jy();
-  }
-
-  /// Goes on from a cycle that was measured, within a mask that its residual has grown.
-  void keep(MajorCycle cycle) {
-    if (o_.automask) {
-      extend_mask(*residual_, *o_.automask,
-                  {.max_sidelobe = input_.max_sidelobe,
-                   .noise_jy = cycle.rms_jy,
-                   .beam_fwhm_pixels = input_.beam_fwhm_pixels,
-                   .threads = o_.threads},
-                  state_.mask);
-      cycle.peak_residual_jy = peak_within_mask();
-    }
-    state_.cycles.push_back(std::move(cycle));
-    state_.now = state_.cycles.size() - 1;
-  }
-
-  /// What ends CLEAN before another minor cycle, if anything.
-  std::optional<Ending> ending() const {
-    if (mask_is_empty())
-      return Ending{CleanStop::empty_mask, std::string(o_.automask ? "nothing in the residual exceeds the mask's thresholds"
-                                                                   : "the mask allows no pixel") +
-                                               "; the peak residual is that of the whole image"};
-    if (o_.stop_requested && o_.stop_requested()) return Ending{CleanStop::user, "stopped by the user"};
-    if (now().peak_residual_jy <= (1 + threshold_tolerance) * o_.threshold_jy)
-      return Ending{CleanStop::threshold, "the peak residual reached the threshold"};
-    if (o_.nsigma > 0 && now().peak_residual_jy <= o_.nsigma * now().rms_jy)
-      return Ending{CleanStop::nsigma, "the peak residual reached nsigma times the noise"};
-    if (now().iterations >= o_.max_iterations) return Ending{CleanStop::iteration_limit, "the iteration limit was reached"};
-    if (o_.max_major_cycles >= 0 && static_cast<int>(state_.cycles.size()) > o_.max_major_cycles)
-      return Ending{CleanStop::major_cycle_limit, "the limit of major cycles was reached"};
-    if (state_.found_nothing) return Ending{CleanStop::no_change, "a minor cycle found nothing to clean"};
-    if (state_.tightened > most_tightenings) return divergence();
-    if (!progresses())
-      return Ending{CleanStop::no_change,
-                    "neither peak nor mean square of the residual fell in " + std::to_string(patience) + " major cycles"};
-    return std::nullopt;
-  }
-
-  Ending divergence() const {
-    constexpr double near = 10;
-    const double grew_to = state_.cycles.back().peak_residual_jy;
-    if (grew_to <= near * input_.accuracy * largest_magnitude(input_.dirty))
-      return {CleanStop::no_change,
-              "what is left, " + in_jy(grew_to) + ", is the error of the transforms; a smaller --accuracy goes deeper"};
-    return {grew_to <= diverged * best().peak_residual_jy ? CleanStop::diverging_from_best : CleanStop::diverging,
-            "the residual grew from " + in_jy(best().peak_residual_jy) + " to " + in_jy(grew_to) +
-                " although minor cycles had been made less deep; the best model was kept"};
-  }
-
-  /// Whether one of the last cycles left a smaller peak, or less power, than all before them.
-  bool progresses() const {
-    const std::vector<MajorCycle>& cycles = state_.cycles;
-    if (cycles.size() <= patience) return true;
-    const auto recent = cycles.end() - static_cast<std::ptrdiff_t>(patience);
-    const auto fell = [&](double MajorCycle::*what) {
-      const auto less = [what](const MajorCycle& a, const MajorCycle& b) { return a.*what < b.*what; };
-      return (*std::min_element(recent, cycles.end(), less)).*what < (*std::min_element(cycles.begin(), recent, less)).*what;
-    };
-    return fell(&MajorCycle::peak_residual_jy) || fell(&MajorCycle::mean_square_jy2);
-  }
-
-  /// The depth of the next minor cycle: where the sidelobes of the brightest source could pass for sources. Five percent below
-  /// the nsigma limit, since the noise falls as sources go, and cycles that chase it by less are wasted.
-  double cycle_threshold() const {
-    const double fraction = std::clamp(o_.cycle_factor * input_.max_sidelobe, o_.min_psf_fraction, o_.max_psf_fraction);
-    const double tightened = 1 - std::ldexp(1 - fraction, -state_.tightened);
-    return std::max({tightened * now().peak_residual_jy, o_.threshold_jy, 0.95 * o_.nsigma * now().rms_jy});
-  }
-
-  void one_cycle() {
-    MajorCycle cycle;
-    cycle.cycle_threshold_jy = cycle_threshold();
-    const int left = o_.max_iterations - now().iterations;
-    {
-      const StageTimer timer(times_, "minor cycles");
-      const MinorCycleReport found =
-          minor_.clean(*residual_, {.gain = o_.gain,
-                                    .max_iterations = o_.cycle_iterations < 0 ? left : std::min(left, o_.cycle_iterations),
-                                    .threshold_jy = cycle.cycle_threshold_jy,
-                                    .mask = mask(),
-                                    .stop_requested = o_.stop_requested});
-      state_.found_nothing = found.components.empty();
-      cycle.iterations = now().iterations + found.iterations();
-      cycle.ended = description(found.end);
-      state_.model.add(found.components);
-    }
-    cycle.from = state_.now;
-    make_residual();
-    judge(std::move(cycle));
-  }
-
-  /// Keeps the cycle whose residual was made, or takes it back. Masks that grow let brighter pixels in: peaks are compared
-  /// within the mask that the cycle had, and the mask grows only when it is kept.
-  void judge(MajorCycle cycle) {
-    const double before = o_.automask ? now().peak_residual_jy : best().peak_residual_jy;
-    measure(cycle);
-    const double peak = cycle.peak_residual_jy;
-    if (!(peak <= grown * before)) return take_back(std::move(cycle));
-    keep(std::move(cycle));
-    if (o_.automask || peak < before) {
-      state_.best = state_.now;
-      state_.best_model = state_.model;
-    }
-  }
-
-  static std::string description(MinorCycleEnd end) {
-    switch (end) {
-      case MinorCycleEnd::threshold:
-        return "reached its depth";
-      case MinorCycleEnd::iterations:
-        return "found as many components as allowed";
-      case MinorCycleEnd::diverging:
-        return "its peak grew threefold";
-      case MinorCycleEnd::stopped:
-        return "stopped by the user";
-      case MinorCycleEnd::no_place:
-        return "no scale fits what is left";
-    }
-    return "";
-  }
-
-  void take_back(MajorCycle cycle) {
-    cycle.ended += "; the residual grew, taken back";
-    state_.cycles.push_back(std::move(cycle));
-    ++state_.tightened;
-    return_to_best();
-  }
-
-  void return_to_best() {
-    state_.model = state_.best_model;
-    state_.now = state_.best;
-    make_residual();
-  }
-
-  /// Cycles may leave somewhat more than the best, on the way to less. CLEAN shall not end there. Masks that grow compare
-  /// nothing.
-  bool is_worse_than_best() const {
-    return !o_.automask && now().peak_residual_jy > best().peak_residual_jy && now().mean_square_jy2 > best().mean_square_jy2;
-  }
-
-  CleanResult result() {
-    BigMemory::release();
-    CleanResult result;
-    result.model = state_.model.image(o_.threads);
-    result.residual = *residual_;
-    result.report.iterations = now().iterations;
-    result.report.stop = end_->stop;
-    result.report.stop_reason = end_->reason;
-    result.report.max_sidelobe = input_.max_sidelobe;
-    result.report.kept = state_.now;
-    result.report.cycles = std::move(state_.cycles);
-    result.components = std::move(state_.model);
-    result.mask = std::move(state_.mask);
-    return result;
+    require_finite_residual(*residual, input_.dirty);
+    return {std::move(residual)};
   }
 
   const CleanInput& input_;
   const MinorCycle& minor_;
-  const CleanOptions& o_;
   const Progress& progress_;
   StageTimes& times_;
-  CleanState state_;
-  std::shared_ptr<const Image> residual_;  ///< of state_.model
-  std::optional<Ending> end_;
 };
 
 }  // namespace
@@ -297,7 +62,8 @@ CleanState first_state(const ComponentModel& model) {
 
 CleanResult clean(const CleanInput& input, const MinorCycle& minor, const CleanOptions& options, CleanState state,
                   const Progress& progress, const CycleProgress& cycle_progress, StageTimes& times) {
-  return Run(input, minor, options, std::move(state), progress, times).run(cycle_progress);
+  OneTerm problem(input, minor, progress, times);
+  return run_major_cycles(problem, input, options, std::move(state), cycle_progress, times);
 }
 
 }  // namespace misfit::imager

@@ -89,6 +89,8 @@ struct CleanResult {
   Image residual;  ///< Jy/beam, of this model
   Image mask;      ///< made by CleanOptions::automask; empty without
   CleanReport report;
+  std::vector<Image> further_models;     ///< of Taylor terms after the first [term − 1], Jy/pixel; none of one term
+  std::vector<Image> further_residuals;  ///< [term − 1], Jy/beam
 };
 
 /// What is to be cleaned.

@@ -18,23 +18,35 @@ bool before(const Component& a, const Component& b) {
   return std::tie(a.scale, a.row, a.column) < std::tie(b.scale, b.row, b.column);
 }
 
+void add(const Component& c, Component& to) {
+  to.flux_jy += c.flux_jy;
+  for (std::size_t t = 0; t < c.further_jy.size(); ++t) to.further_jy[t] += c.further_jy[t];
+}
+
 /// Adds up neighbours at one place, in their order.
 std::vector<Component> with_one_at_a_place(const std::vector<Component>& sorted) {
   std::vector<Component> result;
   for (const Component& c : sorted) {
     const bool same = !result.empty() && !before(result.back(), c);
     if (same)
-      result.back().flux_jy += c.flux_jy;
+      add(c, result.back());
     else
       result.push_back(c);
   }
-  std::erase_if(result, [](const Component& c) { return c.flux_jy == 0; });
+  std::erase_if(result, [](const Component& c) { return c.flux_jy == 0 && c.further_jy == Component{}.further_jy; });
   return result;
 }
 
-/// Adds the Gaussians of components, which are in the order of rows, to an image.
+/// Gaussians of the flux that components have in a Taylor term.
+struct GaussianTerm {
+  int term = 0;
+  std::vector<double> taps;
+};
+
+/// Adds those of components, which are in the order of rows, to an image.
 template <typename Iterator>
-void add_gaussians(Iterator begin, Iterator end, const std::vector<double>& taps, int threads, Image& image) {
+void add_gaussians(Iterator begin, Iterator end, const GaussianTerm& of, int threads, Image& image) {
+  const std::vector<double>& taps = of.taps;
   const int reach = static_cast<int>(taps.size()) - 1;
   const auto tap = [&taps](int k) { return taps[static_cast<std::size_t>(std::abs(k))]; };
   std::vector<double> along_row;  // columns −reach … reach
@@ -43,7 +55,7 @@ void add_gaussians(Iterator begin, Iterator end, const std::vector<double>& taps
     const int r = static_cast<int>(at);
     const auto above = [](const Component& c, int row) { return c.row < row; };
     for (auto c = std::lower_bound(begin, end, r - reach, above); c != end && c->row <= r + reach; ++c) {
-      const double flux = c->flux_jy * tap(r - c->row);
+      const double flux = c->coefficient_jy(of.term) * tap(r - c->row);
       const int first = std::max(0, c->column - reach), last = std::min(image.width - 1, c->column + reach);
       const double* const from = along_row.data() + (first - c->column + reach);
       double* const to = image.row(r) + first;
@@ -78,18 +90,18 @@ double ComponentModel::flux_jy() const {
   return sum;
 }
 
-Image ComponentModel::image(int threads) const {
+Image ComponentModel::image(int threads, int term) const {
   Image result(width_, height_);
   for (auto c = components_.begin(); c != components_.end();) {
     const int scale = c->scale;
     const double fwhm = scale_pixels_[static_cast<std::size_t>(scale)];
     if (fwhm == 0) {
-      for (; c != components_.end() && c->scale == scale; ++c) result.at(c->row, c->column) += c->flux_jy;
+      for (; c != components_.end() && c->scale == scale; ++c) result.at(c->row, c->column) += c->coefficient_jy(term);
       continue;
     }
     const auto first = c;
     while (c != components_.end() && c->scale == scale) ++c;
-    add_gaussians(first, c, gaussian_taps(fwhm), threads, result);
+    add_gaussians(first, c, {term, gaussian_taps(fwhm)}, threads, result);
   }
   return result;
 }

@@ -1,9 +1,11 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <vector>
 
 #include "imager/image.h"
+#include "imager/taylor/taylor_expansion.h"
 
 namespace misfit::imager {
 
@@ -13,6 +15,9 @@ struct Component {
   int row = 0;
   int column = 0;
   double flux_jy = 0;
+  std::array<double, most_taylor_terms - 1> further_jy{};  ///< of a spectrum, its Taylor coefficients after this one, I_0
+
+  double coefficient_jy(int term) const { return term == 0 ? flux_jy : further_jy[static_cast<std::size_t>(term - 1)]; }
 };
 
 /// A model made of components. Those at one place and scale are one. Equal components added in the same order give equal bits,
@@ -26,14 +31,14 @@ class ComponentModel {
   int width() const { return width_; }
   int height() const { return height_; }
   const std::vector<double>& scale_pixels() const { return scale_pixels_; }
-  /// One at a place, in the order of scale, row, column; none without flux.
+  /// One at a place, in the order of scale, row, column; none without flux at every frequency.
   const std::vector<Component>& components() const { return components_; }
 
   /// Throws std::invalid_argument when one of them lies outside the image or has no scale of the model.
   void add(const std::vector<Component>& found);
   double flux_jy() const;
-  /// Jy/pixel. Gaussians are those of gaussian_taps; what of them lies beyond the image is lost.
-  Image image(int threads) const;
+  /// Jy/pixel, of a Taylor term. Gaussians are those of gaussian_taps; what of them lies beyond the image is lost.
+  Image image(int threads, int term = 0) const;
 
  private:
   int width_ = 0;

@@ -2,72 +2,28 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
-#include <stdexcept>
-#include <string>
 #include <utility>
 
 #include "imager/clean/active_pixels.h"
 #include "imager/clean/components.h"
 #include "imager/clean/gaussian_blur.h"
 #include "imager/clean/mask.h"
+#include "imager/clean/scale_places.h"
 #include "imager/noise.h"
-#include "imager/parallel.h"
 
 namespace misfit::imager {
 namespace {
-
-void check(const MultiscaleOptions& o) {
-  if (o.scale_pixels.empty()) throw std::invalid_argument("no scales: expected one at least");
-  for (std::size_t s = 0; s < o.scale_pixels.size(); ++s) {
-    const double scale = o.scale_pixels[s];
-    if (!(std::isfinite(scale) && scale >= 0) || (s > 0 && !(scale > o.scale_pixels[s - 1])))
-      throw std::invalid_argument("scale " + std::to_string(scale) + ": expected ascending numbers of pixels, 0 or more");
-  }
-  if (!(o.small_scale_bias >= 0 && o.small_scale_bias < 1))
-    throw std::invalid_argument("small-scale bias " + std::to_string(o.small_scale_bias) + ": expected 0 or more, and below 1");
-}
 
 Image divided(Image image, double by) {
   for (double& pixel : image.pixel) pixel /= by;
   return image;
 }
 
-constexpr double none = std::numeric_limits<double>::quiet_NaN();
-
-/// The largest magnitude at `places`; other pixels become NaN.
-double peak_at(const std::vector<bool>& places, Image& image, int threads) {
-  const auto width = static_cast<std::size_t>(image.width);
-  std::vector<double> peak(static_cast<std::size_t>(image.height));
-  parallel_for(peak.size(), threads, [&](std::size_t row) {
-    for (std::size_t i = row * width; i < (row + 1) * width; ++i) {
-      if (places[i])
-        peak[row] = std::max(peak[row], std::abs(image.pixel[i]));
-      else
-        image.pixel[i] = none;
-    }
-  });
-  return *std::max_element(peak.begin(), peak.end());
-}
-
-/// A residual is smooth over the scale that it was convolved with, and as well fitted from every third pixel of fifteen: others
-/// than those become NaN, counted from the peak.
-void thin(Image& residual, double scale_pixels, int threads) {
-  const int step = static_cast<int>(scale_pixels / 5);
-  if (step < 2) return;
-  const Peak peak = find_peak(residual);
-  parallel_for(static_cast<std::size_t>(residual.height), threads, [&](std::size_t row) {
-    const int r = static_cast<int>(row);
-    for (int c = 0; c < residual.width; ++c)
-      if ((r - peak.row) % step != 0 || (c - peak.column) % step != 0) residual.at(r, c) = none;
-  });
-}
-
 }  // namespace
 
 Multiscale::Multiscale(const Image& psf, const MultiscaleOptions& options)
     : MinorCycle(psf), options_(options), convolution_(psf, options.threads) {
-  check(options);
+  check_scales(options);
   const double largest = options.scale_pixels.back();
   for (const double scale : options.scale_pixels) {
     const Image twice = scale == 0 ? psf : gaussian_blur(psf, std::sqrt(2.0) * scale, options.threads);
@@ -76,36 +32,10 @@ Multiscale::Multiscale(const Image& psf, const MultiscaleOptions& options)
   }
 }
 
-Image Multiscale::convolved(const Image& image, std::size_t scale) const {
-  const double fwhm = options_.scale_pixels[scale];
-  return fwhm == 0 ? image : gaussian_blur(image, fwhm, options_.threads);
-}
-
-/// [scale][pixel]: whether a component may be put there.
-std::vector<std::vector<bool>> Multiscale::places(const Image& residual, const Image* mask) const {
-  constexpr double enough = 0.9;
-  Image allowed(residual.width, residual.height);
-  for (std::size_t i = 0; i < allowed.pixel.size(); ++i)
-    allowed.pixel[i] = (mask == nullptr || mask_allows(mask->pixel[i])) && !std::isnan(residual.pixel[i]) ? 1 : 0;
-  std::vector<std::vector<bool>> result;
-  for (std::size_t s = 0; s < scale_.size(); ++s) {
-    const Image within = convolved(allowed, s);
-    std::vector<bool>& places = result.emplace_back(within.pixel.size());
-    const int border = static_cast<int>(std::ceil(2 * options_.scale_pixels[s]));  // beyond lies a millionth
-    for (int r = border; r < within.height - border; ++r)
-      for (int c = border; c < within.width - border; ++c) {
-        const std::size_t i =
-            static_cast<std::size_t>(r) * static_cast<std::size_t>(within.width) + static_cast<std::size_t>(c);
-        places[i] = allowed.pixel[i] != 0 && within.pixel[i] >= enough;
-      }
-  }
-  return result;
-}
-
-Multiscale::Choice Multiscale::choose(const Image& left, const std::vector<std::vector<bool>>& places) const {
+Multiscale::Choice Multiscale::choose(const Image& left, const ScalePlaces& places) const {
   Choice best;
   for (std::size_t s = 0; s < scale_.size(); ++s) {
-    Image residual = convolved(left, s);
+    Image residual = blurred(left, options_.scale_pixels[s], options_.threads);
     const double peak = peak_at(places[s], residual, options_.threads);
     const double merit = scale_[s].bias * peak * peak / scale_[s].psf_peak;
     if (merit <= best.merit) {
@@ -121,7 +51,7 @@ MinorCycleReport Multiscale::clean(const Image& residual, const MinorCycleOption
   constexpr double merit_left = 0.5;
   constexpr double least_merit = 0.01;  // of a point's at the threshold: no scale sees what is left
   require_size(residual, options);
-  const std::vector<std::vector<bool>> allowed = places(residual, options.mask);
+  const ScalePlaces allowed = scale_places(residual, options.mask, options_);
   const auto peak_of = [&](const Image& image) {
     return largest_magnitude(options.mask == nullptr ? image : masked(image, *options.mask));
   };

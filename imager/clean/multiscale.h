@@ -5,16 +5,9 @@
 #include "imager/clean/convolution.h"
 #include "imager/clean/minor_cycle.h"
 #include "imager/clean/psf_core.h"
+#include "imager/clean/scale_places.h"
 
 namespace misfit::imager {
-
-struct MultiscaleOptions {
-  /// Full widths at half maximum of round Gaussians in pixels, ascending; 0 for points.
-  std::vector<double> scale_pixels{0};
-  /// Between 0 and 1: the merit of a scale is multiplied by 1 − this × scale / largest scale.
-  double small_scale_bias = 0;
-  int threads = 1;
-};
 
 /// Multiscale CLEAN (Cornwell 2008, IEEE J. Sel. Top. Signal Process. 2, 793): components are Gaussians of several widths. With
 /// R_s the residual and P_ss the PSF's peak when they are convolved with the scale's unit Gaussian once and twice, a component
@@ -45,9 +38,7 @@ class Multiscale : public MinorCycle {
     double next_merit = 0;  ///< of the best of the others
     Image residual;         ///< convolved with it, NaN where it may not be put
   };
-  Image convolved(const Image& image, std::size_t scale) const;
-  std::vector<std::vector<bool>> places(const Image& residual, const Image* mask) const;
-  Choice choose(const Image& left, const std::vector<std::vector<bool>>& places) const;
+  Choice choose(const Image& left, const ScalePlaces& places) const;
 
   MultiscaleOptions options_;
   std::vector<Scale> scale_;

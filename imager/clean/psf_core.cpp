@@ -22,16 +22,27 @@ std::vector<double> largest_beyond(const Image& psf) {
   return largest;
 }
 
-}  // namespace
-
-PsfCore::PsfCore(const Image& psf) {
+/// See PsfCore.
+int reach_that_pays(const std::vector<double>& beyond) {
   constexpr int largest_reach = 512;
   constexpr double hardly = 1.1;
-  const std::vector<double> beyond = largest_beyond(psf);
   const auto outside = [&](int reach) { return beyond[static_cast<std::size_t>(reach) + 1]; };
   const int end = std::min(largest_reach, static_cast<int>(beyond.size()) - 2);
-  while (reach_ < end && outside(reach_) > hardly * outside(end)) ++reach_;
-  largest_outside_ = outside(reach_);
+  int reach = 0;
+  while (reach < end && outside(reach) > hardly * outside(end)) ++reach;
+  return reach;
+}
+
+}  // namespace
+
+PsfCore::PsfCore(const Image& psf) : PsfCore(psf, largest_beyond(psf)) {}
+
+PsfCore::PsfCore(const Image& psf, int reach) : PsfCore(psf, reach, largest_beyond(psf)) {}
+
+PsfCore::PsfCore(const Image& psf, const std::vector<double>& beyond) : PsfCore(psf, reach_that_pays(beyond), beyond) {}
+
+PsfCore::PsfCore(const Image& psf, int reach, const std::vector<double>& beyond) : reach_(reach) {
+  largest_outside_ = beyond[std::min(static_cast<std::size_t>(reach_) + 1, beyond.size() - 1)];
   value_.reserve(static_cast<std::size_t>(2 * reach_ + 1) * static_cast<std::size_t>(2 * reach_ + 1));
   for (int r = -reach_; r <= reach_; ++r)
     for (int c = -reach_; c <= reach_; ++c) {

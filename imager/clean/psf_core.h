@@ -12,6 +12,8 @@ class PsfCore {
   /// The smallest reach beyond which the PSF is hardly weaker (by a tenth) than beyond 512 pixels, which fit a cache. NaN
   /// counts as 0, as does what lies beyond the PSF.
   explicit PsfCore(const Image& psf);
+  /// All up to a reach.
+  PsfCore(const Image& psf, int reach);
 
   int reach() const { return reach_; }
   /// The largest magnitude of the PSF outside.
@@ -23,6 +25,10 @@ class PsfCore {
   }
 
  private:
+  /// `beyond`: the largest magnitude at each distance from the middle or beyond it.
+  PsfCore(const Image& psf, int reach, const std::vector<double>& beyond);
+  PsfCore(const Image& psf, const std::vector<double>& beyond);
+
   int reach_ = 0;
   double largest_outside_ = 0;
   std::vector<float> value_;  ///< [row + reach][column + reach]

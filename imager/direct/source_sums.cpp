@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <memory>
 #include <numeric>
+#include <utility>
 
 #include "imager/constants.h"
 #include "imager/direct/source_loops.h"
@@ -132,15 +134,38 @@ class SourceSums {
   OrderedChannels order_;
 };
 
-}  // namespace
-
-std::vector<std::complex<double>> predict_sources(const std::vector<Source>& sources, const SampleCoordinates& at, int threads,
-                                                  bool with_w) {
+/// As if α were 0.
+std::vector<std::complex<double>> predict_flat(const std::vector<Source>& sources, const SampleCoordinates& at, int threads,
+                                               bool with_w) {
   std::vector<std::complex<double>> visibility(at.samples());
   if (visibility.empty()) return visibility;
   const SourceSums sums(sources, at, with_w);
   parallel_for(sums.pieces(), threads, [&](std::size_t piece) { sums.sum(piece, visibility); });
   return visibility;
+}
+
+/// α and ν_0; both 0 where the flux is the same at all frequencies.
+std::pair<double, double> spectrum_of(const Source& source) {
+  return source.spectral_index == 0 ? std::pair(0.0, 0.0) : std::pair(source.spectral_index, source.reference_hz);
+}
+
+}  // namespace
+
+std::vector<std::complex<double>> predict_sources(const std::vector<Source>& sources, const SampleCoordinates& at, int threads,
+                                                  bool with_w) {
+  const auto is_flat = [](const Source& source) { return source.spectral_index == 0; };
+  if (std::all_of(sources.begin(), sources.end(), is_flat)) return predict_flat(sources, at, threads, with_w);
+  std::map<std::pair<double, double>, std::vector<Source>> by_spectrum;
+  for (const Source& source : sources) by_spectrum[spectrum_of(source)].push_back(source);
+  std::vector<std::complex<double>> sum(at.samples());
+  for (const auto& [spectrum, alike] : by_spectrum) {
+    const std::vector<std::complex<double>> flat = predict_flat(alike, at, threads, with_w);
+    for (std::size_t c = 0; c < at.channels(); ++c) {
+      const double factor = spectrum.first == 0 ? 1 : std::pow(at.frequency_hz[c] / spectrum.second, spectrum.first);
+      for (std::size_t i = c; i < sum.size(); i += at.channels()) sum[i] += factor * flat[i];
+    }
+  }
+  return sum;
 }
 
 }  // namespace misfit::imager

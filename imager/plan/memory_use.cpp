@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <vector>
 
+#include "imager/clean/components.h"
+
 namespace misfit::imager {
 namespace {
 
@@ -15,6 +17,7 @@ constexpr double row_bytes = 3 * sizeof(double);
 /// For each sample of the block at hand: its run twice while runs are sorted, at worst one a sample, and room to grow.
 constexpr double order_bytes = 2 * 12 + 8;
 constexpr double residual_bytes = 2 * sizeof(double);
+constexpr double component_bytes = sizeof(Component);
 /// Minor cycles take: the residual; for a convolution, what is convolved and what comes of it. In single precision the residual
 /// and a transform of 3/2 the size either way pass; the PSF's transform, or the PSF, is kept through major cycles.
 constexpr double minor_images = 3, minor_passing_images = 2, minor_kept_images = 1.25;
@@ -53,9 +56,36 @@ Streaming streaming_of(const MemoryDemand& d, const StreamingOptions& options) {
   return s;
 }
 
-/// Each scale has a core of its own.
-double minor_kept_bytes(double image, int scales) {
-  return minor_kept_images * image + scales * core_bytes;
+/// Images of Taylor terms: residuals, or models, of each; and the spectral PSFs.
+struct Terms {
+  int terms = 1;
+
+  double further() const { return terms - 1; }
+  double psfs() const { return 2 * terms - 1; }
+  double lasting() const { return further() + psfs() - 1; }  ///< dirty images and PSFs besides the first
+  /// Of a minor cycle: residuals; the same convolved, and their brightness, twice; what goes into a convolution and comes out.
+  double minor() const { return terms == 1 ? minor_images : terms + 2 * (terms + 1) + 2; }
+  double cores() const { return terms * (terms + 1) / 2; }
+  /// Drawn and written, besides those of one term: PSFs and dirty images that last, models, residuals and restored images, the
+  /// principal solution, and those of the spectrum.
+  double drawn() const { return terms == 1 ? 0 : lasting() + 3 * further() + terms + 4; }
+};
+
+/// Each scale has cores of its own.
+double minor_kept_bytes(double image, int scales, const Terms& n = {}) {
+  return minor_kept_images * n.psfs() * image + scales * n.cores() * core_bytes;
+}
+
+/// The pass for images of further Taylor terms; every image has a grid as large as the first one's.
+void add_taylor_stages(const MemoryDemand& d, const Streaming& s, std::vector<MemoryUse>& stages) {
+  const Terms n{d.terms};
+  if (n.terms == 1) return;
+  const TransformMemory& t = d.transform;
+  const double image = d.pixels * pixel_bytes;
+  stages.push_back({"the Taylor terms are gridded", process_bytes, s.kept,
+                    s.in_flight + s.samples * residual_bytes * (n.lasting() + 1), n.lasting() * t.visibilities, 0, 2 * image});
+  stages.push_back({"the images of Taylor terms are made", process_bytes, s.kept, 0, n.lasting() * t.visibilities, t.fft,
+                    (2 + n.lasting()) * image});
 }
 
 /// While a wider field is searched: visibilities, and `lasting` bytes of the run's own images, stay.
@@ -85,6 +115,7 @@ MemoryUse peak_memory(const MemoryDemand& d, const StreamingOptions& streaming) 
   const double image = d.pixels * pixel_bytes;
   const Streaming s = streaming_of(d, streaming);
   const double kept = s.kept;
+  const Terms n{d.terms};
   const double others = (d.stokes - 1) * image;  // dirty images of the other Stokes parameters
 
   // The PSF, one more to find the median of each, one that the allocator keeps of several CLEANs, and those of every Stokes
@@ -103,23 +134,25 @@ MemoryUse peak_memory(const MemoryDemand& d, const StreamingOptions& streaming) 
   stages.push_back({"the PSF is made", process_bytes, kept, 0, t.psf, t.fft, others + 2 * image});
   // Of a model image.
   if (d.verify) stages.push_back({"prediction is verified", process_bytes, kept, 0, t.visibilities, t.fft, others + 3 * image});
+  add_taylor_stages(d, s, stages);
   if (d.clean_scales > 0) {
     const double masks = d.mask ? 2 : 0;  // it, and the residual within
     // Where every pixel is a component of the model, those of two models and of what they are sorted in.
-    const double components = d.start_model ? 3 * 24 / pixel_bytes : 0;
-    const double lasting = masks + components + 2;  // dirty image and PSF
-    const double minor = minor_kept_bytes(image, d.clean_scales);
+    const double components = d.start_model ? 3 * component_bytes / pixel_bytes : 0;
+    const double lasting = masks + components + 2 + n.lasting();  // dirty image and PSF
+    const double minor = minor_kept_bytes(image, d.clean_scales, n);
     stages.push_back({"the minor cycles run", process_bytes, kept, 0, minor + minor_passing_images * image, 0,
-                      finished + (lasting + minor_images) * image});
-    // Of a model image.
-    stages.push_back({"the residual is gridded", process_bytes, kept, s.gathered + s.prediction, 2 * t.visibilities + minor, 0,
-                      finished + (lasting + 1) * image});
-    stages.push_back({"the residual image is made", process_bytes, kept, 0, t.visibilities + minor, t.fft,
-                      finished + (lasting + 2) * image});
+                      finished + (lasting + n.further() + n.minor()) * image});
+    // Of model images.
+    const double sets = n.terms == 1 ? 0 : n.terms * s.samples * residual_bytes;
+    stages.push_back({"the residual is gridded", process_bytes, kept, s.gathered + s.prediction + sets,
+                      2 * n.terms * t.visibilities + minor, 0, finished + (lasting + n.terms) * image});
+    stages.push_back({"the residual image is made", process_bytes, kept, 0, n.terms * t.visibilities + minor, t.fft,
+                      finished + (lasting + 2 * n.terms) * image});
   }
   if (d.wider) {
     // After CLEAN the PSF, the model with its components, the residual and the mask; else the dirty image and the PSF.
-    const double components = d.start_model ? 3 * 24 / pixel_bytes : 0;
+    const double components = d.start_model ? 3 * component_bytes / pixel_bytes : 0;
     const double lasting = d.clean_scales > 0 ? 3 + components + (d.mask ? 1 : 0) : 2;
     add_wider_stages(*d.wider, s, (d.clean_scales > 0 ? finished : others) + lasting * image, stages);
   }
@@ -130,7 +163,7 @@ MemoryUse peak_memory(const MemoryDemand& d, const StreamingOptions& streaming) 
     // The density, its sums along an axis, and the factors; a block's runs, sorted too. Weights are put into the blocks.
     stages.push_back({"the weights are made", process_bytes, kept, s.in_flight + s.samples * 2 * 16, 2.5 * image / 2, 0, 0});
   }
-  stages.push_back({"the pictures are drawn", process_bytes, 0, 0, 0, 0, drawn_images * image});
+  stages.push_back({"the pictures are drawn", process_bytes, 0, 0, 0, 0, (drawn_images + n.drawn()) * image});
   return *std::max_element(stages.begin(), stages.end(),
                            [](const MemoryUse& a, const MemoryUse& b) { return a.total() < b.total(); });
 }

@@ -65,6 +65,22 @@ BOOST_AUTO_TEST_CASE(blocks_that_a_prediction_gathers_count_where_they_are_not_k
   BOOST_TEST(peak(d, {false, 2}) == read_again - handed_out + 3 * d.block_samples * (12 + 24 * d.rows / d.samples));
 }
 
+/// Grids of what is predicted and imaged, and spectral PSFs, which minor cycles keep transformed.
+BOOST_AUTO_TEST_CASE(further_taylor_terms_have_grids_and_images_of_their_own) {
+  MemoryDemand d = demand();
+  d.clean_scales = 1;
+  for (const int terms : {2, 3}) {
+    MemoryDemand more = d;
+    more.terms = terms;
+    const double further = terms - 1;
+    BOOST_TEST(peak(more, {true, 2}) >= peak(d, {true, 2}) + further * 2 * d.transform.visibilities);
+    more.transform = d.transform = {1e6, 5e5, 1e3};  // so that images decide
+    BOOST_TEST(peak(more, {true, 2}) >= peak(d, {true, 2}) + (3 * further + 1.25 * 2 * further) * d.pixels * 8);
+    d = demand();
+    d.clean_scales = 1;
+  }
+}
+
 BOOST_AUTO_TEST_CASE(a_block_holds_no_more_samples_than_there_are) {
   MemoryDemand d = demand();
   d.block_samples = 2 * d.samples;

@@ -118,6 +118,24 @@ BOOST_DATA_TEST_CASE(images_made_at_once_have_the_bits_of_those_made_one_by_one,
   BOOST_TEST(made.sums[0].outside_grid > 0U);
 }
 
+/// Visibilities given in double precision, one set for each image, are imaged as those that blocks carry; the same but for the
+/// order of roundings, of single precision where grids are.
+BOOST_DATA_TEST_CASE(sets_given_are_imaged_as_those_that_blocks_carry, bdata::make(transforms()), named) {
+  const auto samples = blocks(2);
+  const AdjointResult carried = together(*named.transform, samples, {.images = 3});
+  const auto sum = named.transform->adjoint({.images = 3});
+  for (const VisibilityBlock& block : samples) {
+    std::vector<std::vector<std::complex<double>>> sets;
+    for (std::size_t s = 0; s < 3; ++s) {
+      const VisibilityBlock one = alone(block, s);
+      sets.emplace_back(one.visibility.begin(), one.visibility.end());
+    }
+    sum->add_several(block, sets);
+  }
+  const AdjointResult given = sum->finish();
+  for (std::size_t i = 0; i < 3; ++i) BOOST_TEST(relative_error(given.images[i].pixel, carried.images[i].pixel) < 1e-6);
+}
+
 BOOST_DATA_TEST_CASE(every_image_is_the_direct_one_within_the_kernel_error, bdata::make(transforms()), named) {
   const auto samples = blocks(3);
   const AdjointResult made = together(*named.transform, samples, {4, true});

@@ -1,5 +1,6 @@
 #include "imager/direct/source_sums.h"
 
+#include <array>
 #include <boost/test/data/test_case.hpp>
 #include <boost/test/unit_test.hpp>
 #include <cmath>
@@ -109,6 +110,26 @@ BOOST_AUTO_TEST_CASE(channels_may_be_uneven_descending_shuffled_or_equal) {
   std::shuffle(sets.back().begin(), sets.back().end(), random);
   for (const std::vector<double>& frequency_hz : sets)
     BOOST_TEST(error_of(some_sources(30), rows_at(20, frequency_hz)) < bound);
+}
+
+BOOST_AUTO_TEST_CASE(fluxes_follow_their_power_laws_of_frequency) {
+  const SampleCoordinates at = rows_at(20, {1.1e9, 1.4e9, 1.9e9});
+  std::vector<Source> sources = some_sources(7);
+  for (std::size_t i = 0; i < sources.size(); ++i) {
+    sources[i].spectral_index = std::array{-0.7, 0.0, 1.2}[i % 3];
+    sources[i].reference_hz = i % 2 == 0 ? 1.4e9 : 1e9;
+  }
+  const auto visibility = predict_sources(sources, at, 2);
+  for (std::size_t c = 0; c < at.channels(); ++c) {
+    std::vector<Source> flat = sources;
+    for (Source& source : flat) {
+      source.flux_jy *= std::pow(at.frequency_hz[c] / source.reference_hz, source.spectral_index);
+      source.spectral_index = 0;
+    }
+    const auto should = predict_sources(flat, at, 2);
+    for (std::size_t row = 0; row < at.rows(); ++row)  // of 7 sources of 1 Jy, to the rounding of recurrences
+      BOOST_TEST(std::abs(visibility[row * at.channels() + c] - should[row * at.channels() + c]) < 1e-11);
+  }
 }
 
 BOOST_AUTO_TEST_CASE(a_source_in_the_centre_has_the_same_visibility_everywhere) {

@@ -53,6 +53,16 @@ std::string refusal(const std::function<void()>& act) {
 
 BOOST_AUTO_TEST_SUITE(clean_state_file)
 
+BOOST_AUTO_TEST_CASE(spectra_come_back_bit_for_bit) {
+  const testing::TemporaryFolder folder;
+  imager::CleanState was = some_state();
+  was.model.add({{0, 1, 1, 0, {-0.7, 1.0 / 3}}, {1, 2, 3, 2, {0.1, 0}}});
+  write_clean_state(folder / "a.state", was, owner());
+  const imager::CleanState is = read_clean_state(folder / "a.state", owner());
+  for (const int term : {0, 1, 2}) BOOST_TEST((is.model.image(1, term).pixel == was.model.image(1, term).pixel));
+  BOOST_TEST(same(is.best_model, was.best_model));
+}
+
 BOOST_AUTO_TEST_CASE(a_state_comes_back_bit_for_bit) {
   const testing::TemporaryFolder folder;
   const imager::CleanState was = some_state();

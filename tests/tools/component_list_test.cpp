@@ -85,6 +85,17 @@ BOOST_AUTO_TEST_CASE(a_scale_is_the_full_width_at_half_maximum_whatever_the_coor
   }
 }
 
+BOOST_AUTO_TEST_CASE(spectra_are_given_by_an_index_and_the_frequency_of_the_flux) {
+  const auto sources = read("l_arcsec,m_arcsec,flux_jy,spectral_index,reference_frequency_hz\n1,2,3,-0.7,1.4e9\n1,2,3,0,1e9\n");
+  BOOST_TEST((sources.at(0).spectral_index == -0.7 && sources.at(0).reference_hz == 1.4e9));
+  BOOST_TEST(sources.at(1).spectral_index == 0);
+  BOOST_TEST(read("l_arcsec,m_arcsec,flux_jy\n1,2,3\n").at(0).spectral_index == 0);
+  check_error("l_arcsec,m_arcsec,flux_jy,spectral_index\n1,2,3,-0.7\n", {"no column 'reference_frequency_hz'"});
+  check_error("l_arcsec,m_arcsec,flux_jy,reference_frequency_hz\n1,2,3,1e9\n", {"no column 'spectral_index'"});
+  check_error("l_arcsec,m_arcsec,flux_jy,spectral_index,reference_frequency_hz\n1,2,3,-0.7,0\n",
+              {"line 2", "reference_frequency_hz is '0'"});
+}
+
 BOOST_AUTO_TEST_CASE(columns_may_come_in_any_order_among_comments_blanks_carriage_returns_and_behind_a_byte_order_mark) {
   const auto sources = read(
       "\xef\xbb\xbf# made by hand\r\n\r\n flux_jy , scale_arcsec,m_arcsec,\tl_arcsec\r\n# one\r\n +2 , 1, 10,20 \r\n   \r\n");

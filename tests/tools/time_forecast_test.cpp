@@ -48,6 +48,23 @@ double expected_of(const TimeForecast& forecast, const RunWork& work, const std:
 
 BOOST_AUTO_TEST_SUITE(time_forecast)
 
+BOOST_AUTO_TEST_CASE(further_taylor_terms_take_time_in_every_pass) {
+  const imager::GriddingPlan plan = plan_of(1e7, 1024);
+  const TimeForecast forecast("");
+  for (const double cycles : {0.0, 4.0}) {
+    RunWork work = work_of(plan, cycles);
+    for (const int terms : {2, 3}) {
+      const RunWork fewer = work;
+      work.terms = terms;
+      for (const std::string stage : {"grid", "fft"})
+        BOOST_TEST(expected_of(forecast, work, stage) > expected_of(forecast, fewer, stage));
+      if (cycles > 0)
+        for (const std::string stage : {"degrid", "minor cycles", "restore"})
+          BOOST_TEST(expected_of(forecast, work, stage) > expected_of(forecast, fewer, stage));
+    }
+  }
+}
+
 BOOST_AUTO_TEST_CASE(weights_take_time_where_they_follow_from_a_density) {
   const imager::GriddingPlan plan = plan_of(1e7, 1024);
   RunWork work = work_of(plan);

@@ -44,25 +44,35 @@ std::vector<T> unpacked(const json& value) {
 
 json packed_model(const imager::ComponentModel& model) {
   std::vector<std::int32_t> place;
-  std::vector<double> flux_jy;
+  std::vector<double> flux_jy, further_jy;
   for (const imager::Component& c : model.components()) {
     place.insert(place.end(), {c.scale, c.row, c.column});
     flux_jy.push_back(c.flux_jy);
+    further_jy.insert(further_jy.end(), c.further_jy.begin(), c.further_jy.end());
   }
-  return {{"width", model.width()},
-          {"height", model.height()},
-          {"scale_pixels", model.scale_pixels()},
-          {"place", packed(place)},
-          {"flux_jy", packed(flux_jy)}};
+  json packed_model = {{"width", model.width()},
+                       {"height", model.height()},
+                       {"scale_pixels", model.scale_pixels()},
+                       {"place", packed(place)},
+                       {"flux_jy", packed(flux_jy)}};
+  if (std::any_of(further_jy.begin(), further_jy.end(), [](double x) { return x != 0; }))
+    packed_model["further_jy"] = packed(further_jy);
+  return packed_model;
 }
 
 imager::ComponentModel unpacked_model(const json& value) {
   const auto place = unpacked<std::int32_t>(value.at("place"));
   const auto flux_jy = unpacked<double>(value.at("flux_jy"));
-  if (place.size() != 3 * flux_jy.size()) throw std::runtime_error("its components are incomplete");
+  const auto further_jy = value.contains("further_jy") ? unpacked<double>(value.at("further_jy")) : std::vector<double>();
+  constexpr std::size_t further = imager::most_taylor_terms - 1;
+  if (place.size() != 3 * flux_jy.size() || (!further_jy.empty() && further_jy.size() != further * flux_jy.size()))
+    throw std::runtime_error("its components are incomplete");
   std::vector<imager::Component> components;
-  for (std::size_t i = 0; i < flux_jy.size(); ++i)
+  for (std::size_t i = 0; i < flux_jy.size(); ++i) {
     components.push_back({place[3 * i], place[3 * i + 1], place[3 * i + 2], flux_jy[i]});
+    for (std::size_t t = 0; !further_jy.empty() && t < further; ++t)
+      components.back().further_jy[t] = further_jy[further * i + t];
+  }
   imager::ComponentModel model(value.at("width"), value.at("height"), value.at("scale_pixels"));
   model.add(components);
   return model;

@@ -54,10 +54,14 @@ class Columns {
     for (const std::string_view name : {equatorial ? "ra_deg" : "l_arcsec", equatorial ? "dec_deg" : "m_arcsec", "flux_jy"})
       if (!has(name)) fail("no column " + quoted(name) + ", " + expected());
     if (equatorial && (has("l_arcsec") || has("m_arcsec"))) fail("positions are given twice, " + expected());
+    if (has("spectral_index") != has("reference_frequency_hz"))
+      fail("no column " + quoted(has("spectral_index") ? "reference_frequency_hz" : "spectral_index") +
+           ", expected both or neither of spectral_index and reference_frequency_hz");
   }
 
   static std::string expected() {
-    return "expected ra_deg,dec_deg,flux_jy or l_arcsec,m_arcsec,flux_jy, and scale_arcsec if sources are extended";
+    return "expected ra_deg,dec_deg,flux_jy or l_arcsec,m_arcsec,flux_jy, and scale_arcsec if sources are extended, "
+           "spectral_index,reference_frequency_hz if fluxes depend on frequency";
   }
   std::size_t count() const { return names_.size(); }
   bool has(std::string_view name) const { return place(name) < names_.size(); }
@@ -68,8 +72,8 @@ class Columns {
   bool equatorial = false;
 
  private:
-  static constexpr std::array<std::string_view, 6> known{"ra_deg",   "dec_deg", "l_arcsec",
-                                                         "m_arcsec", "flux_jy", "scale_arcsec"};
+  static constexpr std::array<std::string_view, 8> known{"ra_deg",  "dec_deg",      "l_arcsec",       "m_arcsec",
+                                                         "flux_jy", "scale_arcsec", "spectral_index", "reference_frequency_hz"};
 
   Fields names_;
 };
@@ -101,7 +105,13 @@ class Line {
     const double scale_arcsec = columns_.has("scale_arcsec") ? number("scale_arcsec", 0, std::numeric_limits<double>::max(),
                                                                       "a full width at half maximum, 0 (a point) or more")
                                                              : 0;
-    return {columns_.equatorial ? equatorial_position(phase_centre) : tangent_position(), number(flux), scale_arcsec * arcsec};
+    Source source{columns_.equatorial ? equatorial_position(phase_centre) : tangent_position(), number(flux),
+                  scale_arcsec * arcsec};
+    if (!columns_.has("spectral_index")) return source;
+    source.spectral_index = number("spectral_index");
+    source.reference_hz = number("reference_frequency_hz", std::numeric_limits<double>::min(),
+                                 std::numeric_limits<double>::max(), "a frequency above 0");
+    return source;
   }
 
  private:

@@ -11,8 +11,9 @@ namespace misfit::tools {
 
 /// The sources of a CSV file. Its first line names the columns, in any order: `flux_jy`; either `ra_deg` and `dec_deg`, in the
 /// frame of `phase_centre`, or `l_arcsec` and `m_arcsec`, direction cosines in units of an arcsecond; and, if there are
-/// extended sources, `scale_arcsec`, the full width at half maximum of a circular Gaussian, 0 for a point. Blank lines and
-/// lines that begin with # are skipped. Throws std::runtime_error that names the file, the line, the value and what was
+/// extended sources, `scale_arcsec`, the full width at half maximum of a circular Gaussian, 0 for a point; and, if there are
+/// spectra, `spectral_index` and `reference_frequency_hz`, which flux_jy is that of. Blank lines and lines that begin with #
+/// are skipped. Throws std::runtime_error that names the file, the line, the value and what was
 /// expected.
 std::vector<imager::Source> read_component_list(const std::string& path, const imager::SkyDirection& phase_centre);
 

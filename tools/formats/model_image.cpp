@@ -7,6 +7,7 @@
 
 #include "imager/extent.h"
 #include "imager/plan/planned_transform.h"
+#include "imager/taylor/taylor_prediction.h"
 #include "tools/base/numbers.h"
 #include "tools/formats/image_file.h"
 
@@ -63,7 +64,8 @@ std::vector<imager::SkyImage> read_model_channel(const imager::ImageReader& file
 }
 
 ModelVisibilities image_visibilities(const StokesPlanes& planes, const imager::ImageGeometry& geometry,
-                                     imager::GriddingRequest request, const ms_io::MeasurementSet& set) {
+                                     imager::GriddingRequest request, const ms_io::MeasurementSet& set,
+                                     const TaylorTerms& taylor) {
   request.geometry = geometry;
   request.samples = set.samples();
   request.psf = false;
@@ -73,7 +75,13 @@ ModelVisibilities image_visibilities(const StokesPlanes& planes, const imager::I
   std::array<const imager::Prediction*, 4> of{};
   for (std::size_t k = 0; k < planes.size(); ++k) {
     if (planes[k] == nullptr) continue;
-    model.predictions[k] = model.transform->predict(*planes[k]);
+    if (taylor.further.empty()) {
+      model.predictions[k] = model.transform->predict(*planes[k]);
+    } else {
+      std::vector<const imager::Image*> terms{planes[k]};
+      terms.insert(terms.end(), taylor.further.begin(), taylor.further.end());
+      model.predictions[k] = std::make_unique<imager::TaylorPrediction>(*model.transform, terms, taylor.expansion);
+    }
     of[k] = model.predictions[k].get();
     model.samples_at_once = std::max<std::uint64_t>(model.samples_at_once, of[k]->samples_at_once());
   }

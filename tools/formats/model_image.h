@@ -7,6 +7,7 @@
 
 #include "imager/fits_image.h"
 #include "imager/plan/gridding_choice.h"
+#include "imager/taylor/taylor_expansion.h"
 #include "imager/transform.h"
 #include "ms_io/measurement_set.h"
 #include "ms_io/model_writer.h"
@@ -39,8 +40,15 @@ struct ModelVisibilities {
 /// The planes of a model, I, Q, U and V; null where one is 0.
 using StokesPlanes = std::array<const imager::Image*, 4>;
 
+/// The Taylor terms of a model after the first, which its planes are.
+struct TaylorTerms {
+  imager::TaylorExpansion expansion;
+  std::vector<const imager::Image*> further;  ///< [term − 1], of the one plane that is not null
+};
+
 /// The visibilities of a model at all selected samples of `set`, flagged or not, as `request` would have them gridded.
 ModelVisibilities image_visibilities(const StokesPlanes& model, const imager::ImageGeometry& geometry,
-                                     imager::GriddingRequest request, const ms_io::MeasurementSet& set);
+                                     imager::GriddingRequest request, const ms_io::MeasurementSet& set,
+                                     const TaylorTerms& taylor = {});
 
 }  // namespace misfit::tools

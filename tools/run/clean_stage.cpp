@@ -25,6 +25,24 @@ double mean_width_rad(const imager::Beam& beam) {
   return std::sqrt(beam.major_rad * beam.minor_rad);
 }
 
+/// A minor cycle of one term or of several.
+struct Minor {
+  std::unique_ptr<imager::MinorCycle> of_one_term;
+  std::unique_ptr<imager::MultiTerm> of_several;
+
+  const std::vector<double>& scale_pixels() const {
+    return of_several ? of_several->scale_pixels() : of_one_term->scale_pixels();
+  }
+};
+
+Minor make_minor(const CleanScene& scene, const imager::DeconvolverChoice& choice) {
+  if (scene.band == nullptr) return {imager::make_deconvolver(choice, scene.psf), nullptr};
+  imager::MultiscaleOptions options;  // points
+  if (choice.name == "multiscale") options = {choice.scale_pixels, choice.small_scale_bias};
+  options.threads = choice.threads;
+  return {nullptr, std::make_unique<imager::MultiTerm>(scene.band->psf, options)};
+}
+
 }  // namespace
 
 CleanStage::CleanStage(const ImageOptions& options, imager::ImageHeader image, int threads)
@@ -91,16 +109,27 @@ double CleanStage::max_sidelobe(const CleanScene& scene) const {
   return imager::largest_sidelobe(scene.psf, beam);
 }
 
-imager::CleanState CleanStage::begin(std::size_t stokes, const imager::MinorCycle& minor, const CleanStateOwner& owner) {
+imager::CleanState CleanStage::begin(std::size_t stokes, const std::vector<double>& scale_pixels,
+                                     const CleanStateOwner& owner) {
   imager::Image start;
   if (!start_model_.empty()) start = std::move(start_model_[stokes]);
   if (o_.restart && std::filesystem::exists(state_path(stokes))) return read_clean_state(state_path(stokes), owner);
   const std::filesystem::path state = state_path(stokes);
   if (o_.cube.is_cube()) std::filesystem::create_directories(state.parent_path());
   std::filesystem::remove(state);
-  imager::ComponentModel model(image_.geometry.width, image_.geometry.height, minor.scale_pixels());
+  imager::ComponentModel model(image_.geometry.width, image_.geometry.height, scale_pixels);
   if (!start.pixel.empty()) model.add(imager::components_of(start));
   return imager::first_state(model);
+}
+
+std::uint64_t CleanStage::checksum_of(const CleanScene& scene) const {
+  const imager::Image* const start = start_model_.empty() ? nullptr : &start_model_[scene.stokes];
+  std::vector<const imager::Image*> images{&scene.dirty, &scene.psf, mask(scene.stokes), start};
+  if (scene.band != nullptr) {
+    for (const imager::Image& dirty : scene.band->further_dirty) images.push_back(&dirty);
+    images.insert(images.end(), scene.band->psf.begin() + 1, scene.band->psf.end());
+  }
+  return checksum(images);
 }
 
 imager::CleanResult CleanStage::run(const CleanScene& scene, const nlohmann::json& option_values,
@@ -109,19 +138,18 @@ imager::CleanResult CleanStage::run(const CleanScene& scene, const nlohmann::jso
   imager::CleanOptions options = clean_options(o_, threads_);
   options.stop_requested = interrupted;
   options.mask = mask(scene.stokes);
-  std::unique_ptr<imager::MinorCycle> minor;
+  Minor minor;
   {
     const imager::StageTimer timer(times, "minor cycles");
-    minor = imager::make_deconvolver(deconvolver_choice(o_, threads_), scene.psf);
+    minor = make_minor(scene, deconvolver_choice(o_, threads_));
   }
   CleanStateOwner owner{version, option_values, 0};
   imager::CleanState state;
   double sidelobe = 0;
   {
     const imager::StageTimer timer(times, "CLEAN state");
-    const imager::Image* const start = start_model_.empty() ? nullptr : &start_model_[scene.stokes];
-    owner.checksum = checksum({&scene.dirty, &scene.psf, mask(scene.stokes), start});
-    state = begin(scene.stokes, *minor, owner);
+    owner.checksum = checksum_of(scene);
+    state = begin(scene.stokes, minor.scale_pixels(), owner);
     sidelobe = max_sidelobe(scene);
   }
   const imager::CleanInput input{scene.source,
@@ -131,14 +159,14 @@ imager::CleanResult CleanStage::run(const CleanScene& scene, const nlohmann::jso
                                  sidelobe,
                                  std::max(o_.accuracy, scene.expected_error),
                                  mean_width_rad(scene.main_lobe) / image_.geometry.cell_rad};
-  return imager::clean(
-      input, *minor, options, std::move(state), progress,
-      [&](const imager::CleanState& now) {
-        const imager::StageTimer timer(times, "CLEAN state");
-        write_clean_state(state_path(scene.stokes), now, owner);
-        cycle_progress(now);
-      },
-      times);
+  const auto save = [&](const imager::CleanState& now) {
+    const imager::StageTimer timer(times, "CLEAN state");
+    write_clean_state(state_path(scene.stokes), now, owner);
+    cycle_progress(now);
+  };
+  return scene.band == nullptr
+             ? imager::clean(input, *minor.of_one_term, options, std::move(state), progress, save, times)
+             : imager::clean(input, *scene.band, *minor.of_several, options, std::move(state), progress, save, times);
 }
 
 }  // namespace misfit::tools

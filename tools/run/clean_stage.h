@@ -8,6 +8,7 @@
 #include "imager/beam.h"
 #include "imager/clean/clean.h"
 #include "imager/clean/deconvolver.h"
+#include "imager/clean/wide_band_clean.h"
 #include "imager/fits_image.h"
 #include "imager/image_header.h"
 #include "tools/formats/clean_state_file.h"
@@ -23,8 +24,9 @@ struct CleanScene {
   const imager::Transform& transform;
   const imager::Image& dirty;
   const imager::Image& psf;
-  imager::Beam main_lobe;     ///< of the PSF
-  double expected_error = 0;  ///< of the dirty image
+  imager::Beam main_lobe;                  ///< of the PSF
+  double expected_error = 0;               ///< of the dirty image
+  const imager::WideBand* band = nullptr;  ///< the Taylor terms of all that; null where there is one
 };
 
 /// CLEAN as `misfit image` runs it, one Stokes parameter after the other, with the files that go into it: mask, start model,
@@ -55,7 +57,8 @@ class CleanStage {
   void read_start_model();
   void refuse_start_model(const std::string& has, const std::string& expected) const;
   /// That of a run before, or that of the start model, which it frees.
-  imager::CleanState begin(std::size_t stokes, const imager::MinorCycle& minor, const CleanStateOwner& owner);
+  imager::CleanState begin(std::size_t stokes, const std::vector<double>& scale_pixels, const CleanStateOwner& owner);
+  std::uint64_t checksum_of(const CleanScene& scene) const;
   double max_sidelobe(const CleanScene& scene) const;
 
   const ImageOptions& o_;

@@ -10,6 +10,7 @@
 #include "tools/base/option_checks.h"
 #include "tools/base/quantity.h"
 #include "tools/run/image_options.h"
+#include "tools/run/taylor_options.h"
 #include "tools/run/weighting_options.h"
 
 namespace misfit::tools {
@@ -44,6 +45,7 @@ void check_cube(const ImageOptions& o) {
   if (!o.cube.is_cube()) return;
   if (o.savemodel != "none") refuse_option("savemodel", o.savemodel, "none with --specmode cube");
   if (o.check_outside) refuse_option("check-outside", "true", "--specmode mfs beside it");
+  if (o.nterms > 1) refuse_option("nterms", std::to_string(o.nterms), "1 with --specmode cube");
 }
 
 void check_deconvolver(const ImageOptions& o) {
@@ -97,6 +99,7 @@ void check_clean(const ImageOptions& o) {
   if (!o.mask.empty() && o.niter == 0) refuse_option("mask", o.mask, "--niter above 0 beside it");
   if (o.restart && o.niter == 0) refuse_option("restart", "true", "--niter above 0 beside it");
   check_deconvolver(o);
+  check_taylor(o);
   check_auto_mask(o);
 }
 

@@ -19,6 +19,7 @@
 #include "tools/formats/config_file.h"
 #include "tools/run/image_files.h"
 #include "tools/run/selection_options.h"
+#include "tools/run/taylor_options.h"
 #include "tools/run/weighting_options.h"
 
 namespace misfit::tools {
@@ -86,6 +87,7 @@ void declare(CLI::App& command, ImageOptions& o) {
                   "Of multiscale, in pixels: 0,5,15. As wide at half maximum as tclean's, 0.74 of the number; 0 = points")
       ->delimiter(',');
   command.add_option("--smallscalebias", o.smallscalebias, "The largest scale counts this part less than points");
+  declare_taylor(command, o);
   command.add_option("--niter", o.niter, "CLEAN components to find at most; 0 makes the dirty image");
   command.add_option("--gain", o.gain, "Part of a peak that a component takes");
   command

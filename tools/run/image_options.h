@@ -48,6 +48,8 @@ struct ImageOptions {
   std::string deconvolver = "hogbom";
   std::vector<double> scales;  ///< of multiscale, in pixels as tclean means them
   double smallscalebias = 0;
+  int nterms = 1;
+  std::string reffreq;  ///< of the Taylor terms; empty = the middle of the band
   int niter = 0;
   double gain = 0.1;
   std::string threshold = "0Jy";

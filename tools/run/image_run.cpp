@@ -21,6 +21,8 @@
 #include "tools/run/run_messages.h"
 #include "tools/run/run_plan.h"
 #include "tools/run/run_report.h"
+#include "tools/run/taylor_options.h"
+#include "tools/run/taylor_stage.h"
 #include "tools/run/weighting_options.h"
 #include "tools/run_page/report_page.h"
 
@@ -50,6 +52,7 @@ class ImageRun {
     }
     plane_->weigh();
     make_dirty();
+    if (taylor_) plane_->make_terms(*taylor_);
     if (o_.verify > 0) plane_->verify();
     plane_->choose_beams();
     weigh_primary_beam();
@@ -85,6 +88,7 @@ class ImageRun {
     if (wants_primary_beam(o_))
       primary_beam_ = std::make_unique<PrimaryBeamStage>(
           o_, BeamScene{set_->beam_rows(), geometry_, set_->observation().frequency_hz}, threads_);
+    if (o_.nterms > 1) taylor_ = std::make_unique<TaylorStage>(taylor_expansion(o_, set_->observation()), threads_);
     if (o_.niter == 0) return;
     const imager::Observation& observation = set_->observation();
     clean_ = std::make_unique<CleanStage>(o_,
@@ -159,10 +163,13 @@ class ImageRun {
 
   void begin_products() {
     report_.planes = {plane_->report()};
+    imager::Observation observation = set_->observation();
+    if (taylor_) observation.frequency_hz = taylor_->expansion().reference_hz;
     products_ = std::make_unique<ProductStage>(o_,
-                                               ProductScene{geometry_, stokes_, set_->observation(), report_.command_line,
+                                               ProductScene{geometry_, stokes_, observation, report_.command_line,
                                                             error_cards(report_), plane_->report().beams->restoring, threads_},
                                                times_);
+    if (taylor_) products_->set_taylor(*taylor_);
     products_->draw_dirty(source_->uv_coverage(), plane_->made().images,
                           [this](std::size_t s) { return clean_ ? clean_->mask(s) : nullptr; });
   }
@@ -216,8 +223,12 @@ class ImageRun {
 
   void save_model() {
     progress_.begin("save model", true);  // a column half written helps no one
-    const SavedModel model{geometry_, stokes_, plane_->cleaned(), report_.options.dump(),
-                           [this](const std::string& sentence) { progress_.say(sentence); }};
+    const SavedModel model{geometry_,
+                           stokes_,
+                           plane_->cleaned(),
+                           report_.options.dump(),
+                           [this](const std::string& sentence) { progress_.say(sentence); },
+                           taylor_ ? taylor_->expansion() : imager::TaylorExpansion()};
     tools::save_model(o_, model, threads_, scene_->updates());
     progress_.end();
   }
@@ -237,7 +248,8 @@ class ImageRun {
 
   imager::Image primary_beam() {
     const imager::StageTimer timer(times_, "primary beam");
-    imager::Image beam = primary_beam_->whole_band();
+    // Taylor's first term is the sky at one frequency.
+    imager::Image beam = taylor_ ? primary_beam_->at(taylor_->expansion().reference_hz) : primary_beam_->whole_band();
     if (const std::string warning = primary_beam_->warning_of(beam); !warning.empty()) warn(warning);
     return beam;
   }
@@ -296,6 +308,8 @@ class ImageRun {
   imager::UvwReach reach_;
   std::unique_ptr<CleanStage> clean_;               ///< null without CLEAN, and after it
   std::unique_ptr<PrimaryBeamStage> primary_beam_;  ///< null where none is wanted
+  std::unique_ptr<CleanStage> clean_;               ///< null without CLEAN, and after it
+  std::unique_ptr<TaylorStage> taylor_;             ///< null where there is one term
   RunPlan plan_;
   std::unique_ptr<imager::StreamedVisibilities> source_;
   std::unique_ptr<PlaneScene> scene_;

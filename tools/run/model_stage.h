@@ -18,6 +18,7 @@ struct SavedModel {
   const std::vector<imager::CleanResult>& cleaned;        ///< [Stokes]
   std::string option_values;                              ///< by which a column cut short is known again
   std::function<void(const std::string& sentence)> tell;  ///< what becomes of such a column
+  imager::TaylorExpansion expansion{};                    ///< of the models' spectra
 };
 
 /// Writes the models' visibilities into MODEL_DATA of each set of the run, about its own phase centre. Throws what

@@ -1,6 +1,7 @@
 #include "tools/run/plane_run.h"
 
 #include <algorithm>
+#include <optional>
 
 #include "imager/direct/verify.h"
 #include "imager/noise.h"
@@ -47,6 +48,13 @@ void PlaneRun::make_dirty(imager::GriddingPlan plan, std::shared_ptr<const image
   }
   if (!made_.promise_kept)
     scene_.warn(accuracy_warning(scene_.options.accuracy, std::max(made_.judged_error, expected)) + name_);
+}
+
+void PlaneRun::make_terms(TaylorStage& taylor) {
+  taylor_ = &taylor;
+  scene_.progress.begin("Taylor terms" + name_);
+  taylor.make_images(source_, made_, scene_.updates(), scene_.times);
+  scene_.progress.end();
 }
 
 void PlaneRun::predict_noise() {
@@ -96,9 +104,12 @@ void PlaneRun::clean(CleanStage& stage, const nlohmann::json& option_values,
 imager::CleanResult PlaneRun::clean(CleanStage& stage, std::size_t stokes, const nlohmann::json& option_values,
                                     const imager::CycleProgress& cycle) {
   const imager::StokesView view(source_, static_cast<int>(stokes));
-  imager::CleanResult result = stage.run({stokes, view, *made_.transform, made_.images.dirty[stokes], made_.images.psf,
-                                          *report_.beams->main_lobe, report_.stokes[stokes].theory->expected_rms},
-                                         option_values, scene_.updates(), cycle, scene_.times);
+  std::optional<imager::WideBand> band;
+  if (taylor_ != nullptr) band.emplace(taylor_->band());
+  imager::CleanResult result =
+      stage.run({stokes, view, *made_.transform, made_.images.dirty[stokes], made_.images.psf, *report_.beams->main_lobe,
+                 report_.stokes[stokes].theory->expected_rms, band ? &*band : nullptr},
+                option_values, scene_.updates(), cycle, scene_.times);
   made_.images.dirty[stokes] = {};
   if (const imager::Image* const mask = stage.mask(stokes); mask != nullptr) result.mask = *mask;
   return result;

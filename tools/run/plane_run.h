@@ -13,6 +13,7 @@
 #include "tools/run/clean_stage.h"
 #include "tools/run/image_options.h"
 #include "tools/run/run_report.h"
+#include "tools/run/taylor_stage.h"
 
 namespace misfit::tools {
 
@@ -46,6 +47,8 @@ class PlaneRun {
   void weigh(std::shared_ptr<const imager::ImagingWeights> weights);
   /// By `transform`, if it is given, which is that of `plan`.
   void make_dirty(imager::GriddingPlan plan, std::shared_ptr<const imager::PlannedTransform> transform = nullptr);
+  /// Those of further Taylor terms, which CLEAN then has too. `taylor` is kept by reference.
+  void make_terms(TaylorStage& taylor);
   void verify();
   void choose_beams();
   /// One Stokes parameter after the other. Told of the state with which CLEAN of each begins, and after every major cycle.
@@ -68,6 +71,7 @@ class PlaneRun {
   std::string name_;
   std::shared_ptr<const imager::ImagingWeights> weights_;  ///< until the noise is predicted; null where they are the data's
   imager::AccurateImages made_;
+  TaylorStage* taylor_ = nullptr;  ///< null where there is one term
   std::vector<imager::CleanResult> cleaned_;
   imager::Plan decisions_;
   PlaneReport report_;

@@ -1,7 +1,6 @@
 #include "tools/run/product_stage.h"
 
 #include <algorithm>
-#include <array>
 #include <filesystem>
 #include <string_view>
 
@@ -9,11 +8,18 @@
 #include "tools/base/files.h"
 #include "tools/formats/component_list.h"
 #include "tools/run/image_files.h"
+#include "tools/run/taylor_options.h"
 
 namespace misfit::tools {
 namespace {
 
-constexpr std::array image_kinds{"psf", "residual", "model", "image", "mask", "pb", "image.pbcor"};
+/// The middles of the names of all images that a run may write.
+std::vector<std::string> image_kinds() {
+  std::vector<std::string> kinds = taylor_products(imager::most_taylor_terms, true);
+  for (const char* kind : {"psf", "residual", "model", "image", "mask", "pb", "image.pbcor", "pb.tt0", "image.tt0.pbcor"})
+    kinds.emplace_back(kind);
+  return kinds;
+}
 
 /// A list of one, which an initializer cannot be moved into.
 std::vector<imager::Image> alone(imager::Image image) {
@@ -26,7 +32,7 @@ std::vector<imager::Image> alone(imager::Image image) {
 
 void check_product_paths(const ImageOptions& o) {
   check_writable_folder(o.imagename);
-  for (const char* kind : image_kinds) check_image_paths(o.imagename + "." + kind, o.outformat);
+  for (const std::string& kind : image_kinds()) check_image_paths(o.imagename + "." + kind, o.outformat);
 }
 
 ProductStage::ProductStage(const ImageOptions& options, ProductScene scene, imager::StageTimes& times)
@@ -65,10 +71,15 @@ void ProductStage::draw_dirty(const imager::UvCoverage& coverage, const imager::
 
 std::vector<std::string> ProductStage::write(imager::DirtyImages images) {
   const imager::StageTimer timer(times_, "write images");
-  std::vector<std::string> removed = remove_old({"model.png", "image.png", "dirty.png", "components.csv", "clean.state"});
+  std::vector<std::string> removed =
+      remove_old({"model.png", "image.png", "dirty.png", "alpha.png", "components.csv", "clean.state"});
   add_primary_beam(images.dirty);
-  products_.add("psf", "Jy/beam", alone(std::move(images.psf)));
-  products_.add("residual", "Jy/beam", std::move(images.dirty));
+  products_.add(named("psf"), "Jy/beam", alone(std::move(images.psf)));
+  products_.add(named("residual"), "Jy/beam", std::move(images.dirty));
+  if (taylor_ != nullptr) {
+    add_further("psf", taylor_->images().psf);
+    add_further("residual", taylor_->images().dirty);
+  }
   remove_other_images(removed);
   remove_other_stokes(removed);
   products_.write();
@@ -87,6 +98,8 @@ void ProductStage::draw(std::vector<imager::CleanResult>& cleaned, const std::ve
     pictures.push_back(picture_of(s, {"residual", "Residual", "Jy/beam", Shades::about_zero, &result.residual, nullptr, mask}));
     pictures.push_back(
         picture_of(s, {"image", "Restored image", "Jy/beam", Shades::brightness, &restored_images[s], nullptr, mask}));
+    if (taylor_ != nullptr)
+      pictures.push_back({"alpha", "Spectral index", "", Shades::about_zero, &restored_.spectra.alpha, nullptr, mask});
   }
   products_.draw(pictures);
 }
@@ -96,22 +109,23 @@ std::vector<std::string> ProductStage::write(imager::Image psf, std::vector<imag
   for (const imager::CleanResult& result : cleaned) images.push_back(restored(result));
   draw(cleaned, images);
   const imager::StageTimer timer(times_, "write images");
-  write_components(cleaned);
+  if (taylor_ == nullptr) write_components(cleaned);
   for (imager::CleanResult& result : cleaned) {
     models.push_back(o_.savemodel == "none" ? std::move(result.model) : result.model);
     residuals.push_back(std::move(result.residual));
     if (!result.mask.pixel.empty()) masks.push_back(std::move(result.mask));
   }
   const bool masked = !masks.empty();
-  products_.add("psf", "Jy/beam", alone(std::move(psf)));
-  products_.add("model", "Jy/pixel", std::move(models));
-  products_.add("residual", "Jy/beam", std::move(residuals));
+  products_.add(named("psf"), "Jy/beam", alone(std::move(psf)));
+  products_.add(named("model"), "Jy/pixel", std::move(models));
+  products_.add(named("residual"), "Jy/beam", std::move(residuals));
   const std::vector<std::string> paths = image_paths(o_.imagename + ".mask", o_.outformat);
   const bool kept = std::any_of(paths.begin(), paths.end(), [&](const std::string& path) { return is_input(path); });
   if (masked && !kept) products_.add("mask", "", std::move(masks));
   add_primary_beam(images);
-  products_.add("image", "Jy/beam", std::move(images));
-  std::vector<std::string> removed;
+  products_.add(named("image"), "Jy/beam", std::move(images));
+  if (taylor_ != nullptr) add_taylor(cleaned.front());
+  std::vector<std::string> removed = remove_old({taylor_ != nullptr ? "components.csv" : "alpha.png"});
   remove_other_images(removed);
   remove_other_stokes(removed);
   products_.write();
@@ -123,9 +137,34 @@ void ProductStage::add_primary_beam(const std::vector<imager::Image>& images) {
   if (o_.pbcor) {
     std::vector<imager::Image> quotients;
     for (const imager::Image& image : images) quotients.push_back(imager::corrected(image, primary_beam_));
-    products_.add("image.pbcor", "Jy/beam", std::move(quotients));
+    products_.add(named("image") + ".pbcor", "Jy/beam", std::move(quotients));
   }
-  products_.add("pb", "", alone(std::move(primary_beam_)));
+  products_.add(named("pb"), "", alone(std::move(primary_beam_)));
+}
+
+std::string ProductStage::named(const std::string& kind, int term) const {
+  return taylor_ == nullptr ? kind : kind + ".tt" + std::to_string(term);
+}
+
+void ProductStage::add_further(const std::string& kind, std::vector<imager::Image>& images) {
+  for (std::size_t t = 0; t < images.size(); ++t)
+    products_.add(named(kind, static_cast<int>(t) + 1), kind == "model" ? "Jy/pixel" : "Jy/beam", alone(std::move(images[t])));
+}
+
+void ProductStage::add_taylor(imager::CleanResult& cleaned) {
+  add_further("psf", taylor_->images().psf);
+  add_further("residual", cleaned.further_residuals);
+  std::vector<imager::Image> models = o_.savemodel == "none" ? std::move(cleaned.further_models) : cleaned.further_models;
+  add_further("model", models);
+  add_further("image", restored_.further);
+  imager::SpectralImages& spectra = restored_.spectra;
+  std::vector<imager::HeaderCard> cards = scene_.cards;
+  cards.push_back({"ALPHALIM", spectra.level_jy, "Jy/beam of .image.tt0, below which pixels are NaN"});
+  products_.set_cards(std::move(cards));
+  products_.add("alpha", "", alone(std::move(spectra.alpha)));
+  products_.add("alpha.error", "", alone(std::move(spectra.alpha_error)));
+  if (!spectra.beta.pixel.empty()) products_.add("beta", "", alone(std::move(spectra.beta)));
+  products_.set_cards(scene_.cards);
 }
 
 void ProductStage::write_components(const std::vector<imager::CleanResult>& cleaned) const {
@@ -142,8 +181,12 @@ std::string ProductStage::finish_pictures(std::vector<PagePicture>& drawn) {
   return failure;
 }
 
-imager::Image ProductStage::restored(const imager::CleanResult& cleaned) const {
+imager::Image ProductStage::restored(const imager::CleanResult& cleaned) {
   const imager::StageTimer timer(times_, "restore");
+  if (taylor_ != nullptr) {
+    restored_ = taylor_->restore(cleaned, *scene_.restoring_beam, scene_.geometry.cell_rad);
+    return std::move(restored_.first);
+  }
   imager::Image sum =
       imager::convolve_with_beam(cleaned.model, *scene_.restoring_beam, scene_.geometry.cell_rad, scene_.threads);
   for (std::size_t i = 0; i < sum.pixel.size(); ++i) sum.pixel[i] += cleaned.residual.pixel[i];
@@ -177,7 +220,7 @@ void ProductStage::remove_other_stokes(std::vector<std::string>& removed) const 
 /// Files of images that an earlier run left, of kinds or in a format that this one does not make.
 void ProductStage::remove_other_images(std::vector<std::string>& removed) const {
   const std::vector<std::string> made = products_.paths();
-  for (const char* kind : image_kinds)
+  for (const std::string& kind : image_kinds())
     for (const std::string& path : image_paths(o_.imagename + "." + kind, "both")) {
       std::error_code failed;
       if (std::count(made.begin(), made.end(), path) > 0 || is_input(path) || !is_own_image(path)) continue;

@@ -10,6 +10,7 @@
 #include "imager/stage_times.h"
 #include "tools/run/image_options.h"
 #include "tools/run/image_products.h"
+#include "tools/run/taylor_stage.h"
 #include "tools/run_page/report_page.h"
 
 namespace misfit::tools {
@@ -34,6 +35,9 @@ class ProductStage {
  public:
   ProductStage(const ImageOptions& options, ProductScene scene, imager::StageTimes& times);
 
+  /// Images are those of Taylor terms from now on. Kept by reference.
+  void set_taylor(TaylorStage& taylor) { taylor_ = &taylor; }
+
   /// Begins to draw what is there before CLEAN, while the caller does other things; an automatic mask is not known yet, and
   /// the dirty image then drawn with the others. Images are looked at until it returns.
   /// `mask_of` gives a Stokes parameter's mask, or null.
@@ -55,10 +59,14 @@ class ProductStage {
   /// The picture of one Stokes parameter, whose name and title say which where there are several.
   ProductPicture picture_of(std::size_t stokes, ProductPicture picture) const;
   void draw(std::vector<imager::CleanResult>& cleaned, const std::vector<imager::Image>& restored_images);
-  /// The primary beam, and `images` divided by it where that is wanted; removes what an earlier run left of them else.
+  /// The primary beam, and `images` divided by it where that is wanted.
   void add_primary_beam(const std::vector<imager::Image>& images);
   void write_components(const std::vector<imager::CleanResult>& cleaned) const;
-  imager::Image restored(const imager::CleanResult& cleaned) const;
+  imager::Image restored(const imager::CleanResult& cleaned);
+  /// The middle of a file's name, which tells the Taylor term where there are several.
+  std::string named(const std::string& kind, int term = 0) const;
+  void add_further(const std::string& kind, std::vector<imager::Image>& images);
+  void add_taylor(imager::CleanResult& cleaned);
   std::vector<imager::Source> sources(const imager::ComponentModel& model) const;
   void remove_other_images(std::vector<std::string>& removed) const;
   bool is_input(const std::string& path) const;
@@ -69,8 +77,11 @@ class ProductStage {
   ProductScene scene_;
   imager::StageTimes& times_;
   ImageProducts products_;
-  imager::Image primary_beam_;  ///< without pixels where none is wanted
-  std::vector<Sketch> dirty_;   ///< what is left of the dirty images when CLEAN is over, where masks were not known before
+  imager::Image primary_beam_;     ///< without pixels where none is wanted
+  std::vector<Sketch> dirty_;      ///< what is left of the dirty images when CLEAN is over, where masks were not known before
+  TaylorStage* taylor_ = nullptr;  ///< null where there is one term
+  RestoredTerms restored_;         ///< of several
+  std::vector<Sketch> dirty_;      ///< what is left of the dirty images when CLEAN is over, where masks were not known before
 };
 
 }  // namespace misfit::tools

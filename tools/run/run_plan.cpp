@@ -12,6 +12,7 @@
 #include "tools/run/memory_plan.h"
 #include "tools/run/outside_stage.h"
 #include "tools/run/primary_beam_stage.h"
+#include "tools/run/taylor_options.h"
 #include "tools/run/weighting_options.h"
 
 namespace misfit::tools {
@@ -32,6 +33,7 @@ class RunPlanner {
     if (o_.memory_gib > 0) limit_memory(o_.memory_gib * gib, request);
     plan_.gridding = imager::plan_gridding(request);
     decide_pixels();
+    if (o_.nterms > 1) decide_terms();
     plan_.decisions.push_back(weighting_decision(o_, scene_.geometry));
     if (o_.check_outside) plan_search(request);
     decide_memory([&](double bytes) { return least_memory(unlimited, bytes); });
@@ -74,6 +76,13 @@ class RunPlanner {
     if (!told) progress_.say(because);
   }
 
+  void decide_terms() {
+    const double reference_hz = taylor_expansion(o_, scene_.set.observation()).reference_hz;
+    decide("Taylor terms", std::to_string(o_.nterms) + " about " + significant(reference_hz / 1e9, 9) + " GHz",
+           (o_.reffreq.empty() ? "the middle of the band" : "--reffreq " + o_.reffreq) + "; " +
+               std::to_string(2 * o_.nterms - 1) + " spectral PSFs. --accuracy holds for .tt0");
+  }
+
   /// Of sources outside, by what is known before a visibility is read.
   void plan_search(const imager::GriddingRequest& request) {
     imager::WideFieldFinder finder(scene_.geometry);
@@ -101,6 +110,7 @@ class RunPlanner {
             .read_at_once = static_cast<double>(scene_.set.read_at_once()),
             .stokes = gridding.request.stokes,
             .verify = o_.verify > 0,
+            .terms = o_.nterms,
             .clean_scales = o_.niter > 0 ? std::max(1, static_cast<int>(o_.scales.size())) : 0,
             .mask = scene_.mask,
             .start_model = !o_.startmodel.empty(),
@@ -163,11 +173,14 @@ RunWork work_of(const RunScene& scene, const RunPlan& plan) {
           .samples = static_cast<double>(scene.set.samples()),
           .planes = scene.planes,
           .pixels = static_cast<double>(scene.geometry.pixels()),
-          .images = 1 + stokes * (o.niter > 0 ? 3 : 1) + (wants_primary_beam(o) ? 1 : 0) + (o.pbcor ? stokes : 0),
-          .pictures = 2 + stokes * (o.niter > 0 ? 4 : 1),
+          .images = (o.nterms > 1 ? static_cast<int>(taylor_products(o.nterms, o.niter > 0).size())
+                                  : 1 + stokes * (o.niter > 0 ? 3 : 1)) +
+                    (wants_primary_beam(o) ? 1 : 0) + (o.pbcor ? stokes : 0),
+          .pictures = 2 + stokes * (o.niter > 0 ? 4 : 1) + (o.nterms > 1 && o.niter > 0 ? 1 : 0),
           .threads = scene.threads,
           .verified = static_cast<double>(o.verify),
           .deconvolver = o.deconvolver,
+          .terms = o.nterms,
           .density = weighting_options(o).needs_density(),
           .tapered = !o.uvtaper.empty(),
           .primary_beam = wants_primary_beam(o),

@@ -32,7 +32,7 @@ struct TransformSeconds {
 
 /// What is made in a pass.
 struct Images {
-  int stokes = 1;
+  int stokes = 1;  ///< or Taylor terms
   bool psf = false;
 };
 
@@ -52,13 +52,13 @@ std::string size_of(const RunWork& w) {
 
 constexpr double direct_term_s = 0.5e-9;  ///< measured, in vectors; CostModel's decides what is summed directly, and is wary
 
-/// A pass that images: the first makes the PSF and all Stokes parameters.
+/// A pass that images: the first makes the PSF and all Stokes parameters, others all Taylor terms.
 void add_pass(const RunWork& w, bool with_psf, double times, std::vector<StageSeconds>& stages) {
   const imager::GriddingPlan& plan = *w.plan;
-  const int stokes = with_psf ? plan.request.stokes : 1;
+  const int stokes = with_psf ? plan.request.stokes : w.terms;
   if (plan.direct) {
-    const double terms = w.samples * w.pixels * (with_psf ? 1 + stokes : 1);
-    stages.push_back({"grid", "direct sums of images", times * shared(direct_term_s * terms, w.threads)});
+    const double sums = w.samples * w.pixels * (with_psf ? 1 + stokes : stokes);
+    stages.push_back({"grid", "direct sums of images", times * shared(direct_term_s * sums, w.threads)});
     return;
   }
   const TransformSeconds own = transform_seconds(plan, {stokes, with_psf && !plan.psf}, w.threads);
@@ -68,23 +68,40 @@ void add_pass(const RunWork& w, bool with_psf, double times, std::vector<StageSe
   stages.push_back({"fft", "FFTs" + way, times * (own.fft + psf.fft)});
 }
 
+/// The pass for dirty images and PSFs of further Taylor terms.
+void add_taylor_pass(const RunWork& w, std::vector<StageSeconds>& stages) {
+  if (w.terms == 1) return;
+  const imager::GriddingPlan& plan = *w.plan;
+  const int dirty = w.terms - 1, psfs = 2 * w.terms - 2;
+  if (plan.direct) {
+    stages.push_back({"grid", "direct sums of images",
+                      shared(direct_term_s * w.samples * w.pixels * static_cast<double>(dirty + psfs), w.threads)});
+    return;
+  }
+  const TransformSeconds own = transform_seconds(plan, {dirty}, w.threads);
+  const TransformSeconds psf = transform_seconds(plan.psf ? *plan.psf : plan, {psfs}, w.threads);
+  const std::string way = way_of(plan.choice.best.work);
+  stages.push_back({"grid", "gridding" + way, own.grid + psf.grid});
+  stages.push_back({"fft", "FFTs" + way, own.fft + psf.fft});
+}
+
 void add_predictions(const RunWork& w, std::vector<StageSeconds>& stages) {
   const imager::GriddingPlan& plan = *w.plan;
   const double model_pixels = std::min(w.components, w.pixels) / 2;  // on average over the cycles
   if (plan.direct || model_pixels <= static_cast<double>(plan.direct_pixels)) {
     stages.push_back({"degrid", "direct sums of visibilities",
-                      w.major_cycles * shared(direct_term_s * w.samples * model_pixels, w.threads)});
+                      w.terms * w.major_cycles * shared(direct_term_s * w.samples * model_pixels, w.threads)});
     return;
   }
   const TransformSeconds one = transform_seconds(plan, {}, w.threads);
   const std::string way = way_of(plan.choice.best.work);
-  stages.push_back({"degrid", "degridding" + way, w.major_cycles * one.grid});
-  stages.push_back({"fft", "FFTs" + way, w.major_cycles * one.fft});
+  stages.push_back({"degrid", "degridding" + way, w.terms * w.major_cycles * one.grid});
+  stages.push_back({"fft", "FFTs" + way, w.terms * w.major_cycles * one.fft});
 }
 
 double minor_seconds(const RunWork& w) {
   const double component_s = w.deconvolver == "multiscale" ? 1e-4 : 2e-5;
-  return component_s * w.components + 3e-8 * w.pixels * w.major_cycles;
+  return w.terms * w.terms * (component_s * w.components + 3e-8 * w.pixels * w.major_cycles);
 }
 
 /// The density of samples, the factors of its cells, and the samples' weights from them.
@@ -101,6 +118,7 @@ double wider_seconds(const RunWork& w) {
   wider.deconvolver = "clark";
   wider.components = 500;
   wider.major_cycles = 5;
+  wider.terms = 1;
   constexpr double taper_s = 2e-8;  // of a sample's weight, and of the copy of its block
   std::vector<StageSeconds> stages;
   add_pass(wider, true, 1, stages);
@@ -128,15 +146,17 @@ std::vector<StageSeconds> counted_seconds(const RunWork& w) {
   std::vector<StageSeconds> stages{{"read", "reading", 4e-9 * w.samples + 1e-7 * w.rows}};
   if (w.density) stages.push_back({"weights", "weighting by density", weight_seconds(w)});
   add_pass(w, true, 1, stages);
+  add_taylor_pass(w, stages);
   stages.push_back({"statistics", "statistics", 8e-9 * w.pixels * (1 + w.major_cycles)});
   if (w.verified > 0) stages.push_back({"verify", "verifying", shared(direct_term_s * w.samples * w.verified, w.threads)});
   stages.push_back({"fit beam", "fitting the beam", 5e-3});
   if (w.major_cycles > 0) {
-    stages.push_back({"minor cycles", "minor cycles of " + w.deconvolver, minor_seconds(w)});
+    const std::string several = w.terms > 1 ? " with Taylor terms" : "";
+    stages.push_back({"minor cycles", "minor cycles of " + w.deconvolver + several, minor_seconds(w)});
     add_predictions(w, stages);
     add_pass(w, false, w.major_cycles, stages);
     stages.push_back({"CLEAN state", "writing CLEAN's state", 1e-8 * w.pixels + 5e-3 * w.major_cycles});
-    stages.push_back({"restore", "restoring", 1e-8 * w.pixels});
+    stages.push_back({"restore", "restoring", 1e-8 * w.pixels * w.terms});
   }
   if (w.wider != nullptr) stages.push_back({"sources outside", "search outside", wider_seconds(w)});
   if (w.primary_beam)

@@ -22,6 +22,7 @@ struct RunWork {
   int threads = 1;
   double verified = 0;  ///< pixels and samples of --verify
   std::string deconvolver;
+  int terms = 1;         ///< Taylor terms
   bool density = false;  ///< whether weights follow from it
   bool tapered = false;
   bool primary_beam = false;

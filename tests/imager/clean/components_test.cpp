@@ -80,6 +80,21 @@ BOOST_AUTO_TEST_CASE(the_components_of_an_image_make_that_image) {
   BOOST_TEST((model.image(1).pixel == image.pixel));
 }
 
+BOOST_AUTO_TEST_CASE(taylor_coefficients_add_up_and_have_images_of_their_own) {
+  ComponentModel model(20, 15, {0, 3});
+  model.add({{0, 9, 1, 2, {-1, 0.5}}, {1, 3, 12, 0, {0.25, 0}}});
+  model.add({{0, 9, 1, -2, {-2, 1}}, {0, 3, 3, 1, {1, 0}}, {0, 3, 3, -1, {-1, 0}}});
+  const auto& is = model.components();
+  BOOST_REQUIRE(is.size() == 2U);  // one without flux in I_0 alone stays, one without any goes
+  BOOST_TEST((is[0].flux_jy == 0 && is[0].further_jy[0] == -3 && is[0].further_jy[1] == 1.5));
+  BOOST_TEST(model.image(1, 0).at(9, 1) == 0);
+  BOOST_TEST(model.image(1, 1).at(9, 1) == -3);
+  BOOST_TEST(model.image(1, 2).at(9, 1) == 1.5);
+  ComponentModel alone(20, 15, {0, 3});
+  alone.add({{1, 3, 12, 0.25}});
+  BOOST_TEST(model.image(1, 1).at(4, 12) == alone.image(1).at(4, 12));
+}
+
 BOOST_AUTO_TEST_SUITE_END()
 
 BOOST_AUTO_TEST_SUITE(gaussian_blur)

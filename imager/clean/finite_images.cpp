@@ -1,0 +1,31 @@
+#include "imager/clean/finite_images.h"
+
+#include <cmath>
+#include <stdexcept>
+#include <string>
+
+#include "imager/noise.h"
+
+namespace misfit::imager {
+namespace {
+
+[[noreturn]] void refuse(const std::string& what, double value) {
+  throw std::runtime_error(what + " is " + std::to_string(value) +
+                           ", expected a finite number: the data or the model are too large");
+}
+
+}  // namespace
+
+void require_finite_psf(const Image& psf) {
+  const double peak = find_peak(psf).value, middle = psf.at(psf.height / 2, psf.width / 2);
+  if (!std::isfinite(middle)) refuse("the PSF's middle pixel", middle);
+  if (!std::isfinite(peak)) refuse("the PSF's largest pixel", peak);
+}
+
+void require_finite_residual(const Image& residual, const Image& dirty) {
+  if (const double peak = find_peak(residual).value; !std::isfinite(peak)) refuse("the residual image's peak in Jy/beam", peak);
+  for (std::size_t i = 0; i < dirty.pixel.size(); ++i)
+    if (std::isnan(residual.pixel[i]) && !std::isnan(dirty.pixel[i])) refuse("a pixel of the residual image", NAN);
+}
+
+}  // namespace misfit::imager

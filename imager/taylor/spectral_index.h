@@ -1,0 +1,26 @@
+#pragma once
+
+#include <vector>
+
+#include "imager/image.h"
+
+namespace misfit::imager {
+
+/// Spectra as power laws about the reference frequency, I(ν) = I_0 (ν/ν_0)^(α + β ln(ν/ν_0)), whose first Taylor coefficients
+/// are I_1 = α I_0 and I_2 = (α (α − 1)/2 + β) I_0 (Rau & Cornwell 2011, A&A 532, A71).
+struct SpectralImages {
+  Image alpha;          ///< α = I_1/I_0
+  Image alpha_error;    ///< one standard deviation of α by noise
+  Image beta;           ///< β = I_2/I_0 − α (α − 1)/2; empty of two terms
+  double level_jy = 0;  ///< of I_0, below which the others are NaN
+};
+
+/// Of restored images [term] of two terms or more, whose noise is that of `residual`, the principal solutions of what CLEAN
+/// left. With σ_0, σ_1 their robust noise and c its covariance,
+///
+///     σ_α² = (σ_1² − 2 α c + α² σ_0²)/I_0²,
+///
+/// to first order in noise over I_0. NaN where I_0 is less than five times σ_0.
+SpectralImages spectral_images(const std::vector<Image>& restored, const std::vector<Image>& residual, int threads);
+
+}  // namespace misfit::imager

@@ -1,0 +1,125 @@
+#include "imager/taylor/taylor_basis.h"
+
+#include <cmath>
+#include <cstddef>
+#include <stdexcept>
+#include <string>
+
+#include "imager/parallel.h"
+
+namespace misfit::imager {
+namespace {
+
+using Matrix = TaylorBasis::Matrix;
+
+/// L of H = L Lᵀ.
+Matrix cholesky_factor(const std::vector<double>& peaks, std::size_t n) {
+  constexpr double least_part = 1e-5;
+  Matrix factor{};
+  for (std::size_t j = 0; j < n; ++j) {
+    double square = peaks[2 * j];
+    for (std::size_t k = 0; k < j; ++k) square -= factor[j][k] * factor[j][k];
+    if (!(square > least_part * peaks[2 * j]))
+      throw std::runtime_error("the frequencies of the samples do not tell " + std::to_string(n) +
+                               " Taylor terms apart; expected a wider band, or fewer terms");
+    factor[j][j] = std::sqrt(square);
+    for (std::size_t i = j + 1; i < n; ++i) {
+      double value = peaks[i + j];
+      for (std::size_t k = 0; k < j; ++k) value -= factor[i][k] * factor[j][k];
+      factor[i][j] = value / factor[j][j];
+    }
+  }
+  return factor;
+}
+
+/// Of a lower triangle.
+Matrix inverse(const Matrix& factor, std::size_t n) {
+  Matrix result{};
+  for (std::size_t column = 0; column < n; ++column)
+    for (std::size_t i = column; i < n; ++i) {
+      double value = i == column ? 1 : 0;
+      for (std::size_t k = column; k < i; ++k) value -= factor[i][k] * result[k][column];
+      result[i][column] = value / factor[i][i];
+    }
+  return result;
+}
+
+/// Calls visit(pixel, its values in each image) for every pixel, by rows that threads share.
+template <typename Visit>
+void for_each_pixel(const std::vector<const Image*>& images, int threads, const Visit& visit) {
+  const auto width = static_cast<std::size_t>(images.front()->width), height = static_cast<std::size_t>(images.front()->height);
+  parallel_for(height, threads, [&](std::size_t row) {
+    for (std::size_t i = row * width; i < (row + 1) * width; ++i) {
+      TaylorValues values{};
+      for (std::size_t t = 0; t < images.size(); ++t) values[t] = images[t]->pixel[i];
+      visit(i, values);
+    }
+  });
+}
+
+}  // namespace
+
+TaylorBasis::TaylorBasis(const std::vector<double>& psf_peaks)
+    : terms_(static_cast<int>(psf_peaks.size() + 1) / 2), root_peak_(psf_peaks.empty() ? 0 : std::sqrt(psf_peaks.front())) {
+  if (psf_peaks.size() % 2 != 1 || terms_ > most_taylor_terms)
+    throw std::invalid_argument(std::to_string(psf_peaks.size()) + " spectral PSFs; expected 1, 3 or 5");
+  const auto n = static_cast<std::size_t>(terms_);
+  inverse_factor_ = inverse(cholesky_factor(psf_peaks, n), n);
+}
+
+TaylorValues TaylorBasis::coordinates(const TaylorValues& residual) const {
+  const auto n = static_cast<std::size_t>(terms_);
+  TaylorValues y{};
+  for (std::size_t a = 0; a < n; ++a) {
+    for (std::size_t q = 0; q <= a; ++q) y[a] += inverse_factor_[a][q] * residual[q];
+    y[a] *= root_peak_;
+  }
+  return y;
+}
+
+TaylorValues TaylorBasis::coefficients(const TaylorValues& y) const {
+  const auto n = static_cast<std::size_t>(terms_);
+  TaylorValues coefficient{};
+  for (std::size_t t = 0; t < n; ++t) {
+    for (std::size_t a = t; a < n; ++a) coefficient[t] += inverse_factor_[a][t] * y[a];
+    coefficient[t] /= root_peak_;
+  }
+  return coefficient;
+}
+
+TaylorBasis::Matrix TaylorBasis::response(const std::vector<double>& psf) const {
+  const auto n = static_cast<std::size_t>(terms_);
+  Matrix s{};
+  for (std::size_t a = 0; a < n; ++a)
+    for (std::size_t b = 0; b < n; ++b)
+      for (std::size_t q = 0; q <= a; ++q)
+        for (std::size_t t = 0; t <= b; ++t) s[a][b] += inverse_factor_[a][q] * psf[q + t] * inverse_factor_[b][t];
+  return s;
+}
+
+TaylorBasis basis_of(const std::vector<const Image*>& psf) {
+  std::vector<double> peaks;
+  for (const Image* image : psf) peaks.push_back(image->at(image->height / 2, image->width / 2));
+  return TaylorBasis(peaks);
+}
+
+Image brightness(const TaylorBasis& basis, const std::vector<const Image*>& residual, int threads) {
+  Image result(residual.front()->width, residual.front()->height);
+  for_each_pixel(residual, threads, [&](std::size_t i, const TaylorValues& values) {
+    double square = 0;
+    for (const double y : basis.coordinates(values)) square += y * y;
+    result.pixel[i] = std::sqrt(square);
+  });
+  return result;
+}
+
+std::vector<Image> principal_solution(const TaylorBasis& basis, const std::vector<const Image*>& residual, int threads) {
+  std::vector<Image> result(residual.size(), Image(residual.front()->width, residual.front()->height));
+  for_each_pixel(residual, threads, [&](std::size_t i, const TaylorValues& values) {
+    const TaylorValues coefficient = basis.coefficients(basis.coordinates(values));
+    for (std::size_t t = 0; t < result.size(); ++t) result[t].pixel[i] = coefficient[t];
+  });
+  return result;
+}
+
+}  // namespace misfit::imager

@@ -1,0 +1,58 @@
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "imager/image.h"
+#include "imager/taylor/taylor_expansion.h"
+
+namespace misfit::imager {
+
+/// What the spectral PSFs P_k of n Taylor terms make of one pixel. With their peaks the matrix H_qt = P_{q+t}(0), and residuals
+/// R_q(p), the coefficients that fit a source there best are those of the principal solution (Rau & Cornwell 2011, A&A 532,
+/// A71),
+///
+///     I(p) = H⁻¹ R(p),   which takes Rᵀ H⁻¹ R off χ²/Σw.
+///
+/// With Cholesky's H = L Lᵀ, and residuals in coordinates in which all directions count alike,
+///
+///     y = √H_00 L⁻¹ R,   |y|² = H_00 Rᵀ H⁻¹ R,   I = L⁻ᵀ y / √H_00,
+///
+/// |y| is what |R_0| is to a single term: of a point source of one term it is the brightness of its peak in Jy/beam, and its
+/// square says by how much χ² would fall. L⁻¹ makes of the powers x^t those polynomials that are orthonormal over the samples.
+/// A component of coordinates y at p takes S(q − p) y off those at q, where S = L⁻¹ P L⁻ᵀ, P_ab = P_{a+b}, is the unit matrix
+/// at 0.
+class TaylorBasis {
+ public:
+  using Matrix = std::array<TaylorValues, most_taylor_terms>;  ///< [row][column]
+
+  /// Of peaks P_k(0) [k], 2n − 1 of them. Throws std::invalid_argument where their number is none of these;
+  /// std::runtime_error where the samples' frequencies do not tell n terms apart: where what of x^t is orthogonal to lower
+  /// powers is less than 1e-5 of its square, which the error of PSFs made to 1e-4 could be.
+  explicit TaylorBasis(const std::vector<double>& psf_peaks);
+
+  int terms() const { return terms_; }
+  double peak() const { return root_peak_ * root_peak_; }  ///< H_00
+  /// y, of residuals R [term].
+  TaylorValues coordinates(const TaylorValues& residual) const;
+  /// I, of y.
+  TaylorValues coefficients(const TaylorValues& y) const;
+  /// S, of P_k at a pixel [k].
+  Matrix response(const std::vector<double>& psf) const;
+
+ private:
+  int terms_;
+  double root_peak_;         ///< √H_00
+  Matrix inverse_factor_{};  ///< L⁻¹
+};
+
+/// Of the PSFs' middle pixels. [k], 2n − 1 of them.
+TaylorBasis basis_of(const std::vector<const Image*>& psf);
+
+/// |y| of each pixel of residual images [term]; NaN where one of them is.
+Image brightness(const TaylorBasis& basis, const std::vector<const Image*>& residual, int threads);
+
+/// The principal solution: images of I [term], Jy/beam.
+std::vector<Image> principal_solution(const TaylorBasis& basis, const std::vector<const Image*>& residual, int threads);
+
+}  // namespace misfit::imager

@@ -1,0 +1,59 @@
+#include "imager/taylor/taylor_imaging.h"
+
+#include <stdexcept>
+#include <utility>
+
+#include "imager/big_array.h"
+#include "imager/taylor/taylor_prediction.h"
+#include "imager/visibility_pass_internal.h"
+
+namespace misfit::imager {
+namespace {
+
+/// The images of a sum, over Σ w.
+std::vector<Image> normalised_images(std::unique_ptr<AdjointSum> sum, StageTimes& times) {
+  AdjointResult result = finish_adjoint(std::move(sum), times);
+  BigMemory::release();
+  const double weight = result.sums.front().weight;
+  if (weight == 0) throw std::runtime_error("no visibility can be imaged: none has a weight above 0 within 1/(2 cell)");
+  const StageTimer timer(times, "fft");
+  for (Image& image : result.images) divide(image, weight);
+  return std::move(result.images);
+}
+
+}  // namespace
+
+TaylorImages make_taylor_images(const VisibilitySource& source, const Transform& transform, const OwnPsf& psf,
+                                const TaylorExpansion& expansion, const Progress& progress, StageTimes& times) {
+  const TaylorPowers of_dirty{1, expansion.terms - 1}, of_psf{1, 2 * expansion.terms - 2};
+  VisibilityPass pass(source, progress, times);
+  auto sum = begin_adjoint(transform, {.images = of_dirty.last}, times);
+  auto psf_sum = begin_adjoint(psf.transform, {.images = of_psf.last}, times);
+  pass.for_each_block([&](const VisibilityBlock& block) {
+    const StageTimer timer(times, "grid");
+    sum->add_several(block, taylor_sets(expansion, block, {block.visibility.begin(), block.visibility.end()}, of_dirty));
+    psf_sum->add_several(block, taylor_sets(expansion, block, visibilities_of_middle(block, psf), of_psf));
+  });
+  TaylorImages images;
+  images.psf = normalised_images(std::move(psf_sum), times);
+  images.dirty = normalised_images(std::move(sum), times);
+  return images;
+}
+
+std::vector<Image> make_taylor_residuals(const VisibilitySource& source, const Transform& transform,
+                                         const std::vector<Image>& models, const TaylorExpansion& expansion,
+                                         const Progress& progress, StageTimes& times) {
+  auto sum = begin_adjoint(transform, {.images = expansion.terms}, times);
+  const TaylorPowers powers{0, expansion.terms - 1};
+  std::vector<const Image*> terms;
+  for (const Image& model : models) terms.push_back(&model);
+  for_each_residual(
+      source, [&] { return std::make_unique<TaylorPrediction>(transform, terms, expansion); }, progress, times,
+      [&](const VisibilityBlock& block, const std::vector<std::complex<double>>& residual) {
+        const StageTimer timer(times, "grid");
+        sum->add_several(block, taylor_sets(expansion, block, residual, powers));
+      });
+  return normalised_images(std::move(sum), times);
+}
+
+}  // namespace misfit::imager

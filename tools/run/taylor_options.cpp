@@ -1,0 +1,65 @@
+#include "tools/run/taylor_options.h"
+
+#include <CLI/CLI.hpp>
+#include <stdexcept>
+
+#include "imager/stokes.h"
+#include "tools/base/option_checks.h"
+#include "tools/base/quantity.h"
+
+namespace misfit::tools {
+namespace {
+
+bool is_frequency(const std::string& text) {
+  try {
+    return parse_frequency_hz(text) > 0;
+  } catch (const std::invalid_argument&) {
+    return false;
+  }
+}
+
+}  // namespace
+
+void declare_taylor(CLI::App& command, ImageOptions& o) {
+  command.add_option(
+      "--nterms", o.nterms,
+      "Terms of spectra, 1 to 3: I(f) is a polynomial of (f - reffreq)/reffreq. With 2 or 3 images are .tt0, .tt1, "
+      "…, whose .image has the principal solution of the residuals; .alpha is the spectral index, .alpha.error "
+      "its error by noise, NaN where .image.tt0 is below 5 times its noise, and .beta the curvature (of 3). "
+      "Components are points, or with --deconvolver multiscale Gaussians, and have no list");
+  command.add_option(
+      "--reffreq", o.reffreq,
+      "Of the terms: 1.4GHz, …; the middle of the band, between the edges of the outermost channels, when empty");
+}
+
+void check_taylor(const ImageOptions& o) {
+  if (o.nterms < 1 || o.nterms > imager::most_taylor_terms)
+    refuse_option("nterms", std::to_string(o.nterms), "1 to " + std::to_string(imager::most_taylor_terms));
+  if (o.nterms == 1 && !o.reffreq.empty()) refuse_option("reffreq", o.reffreq, "--nterms 2 or 3 beside it");
+  if (!o.reffreq.empty() && !is_frequency(o.reffreq))
+    refuse_option("reffreq", o.reffreq, "a frequency above 0, such as 1.4GHz");
+  if (o.nterms > 1 && imager::parse_stokes(o.stokes).size() > 1)
+    refuse_option("nterms", std::to_string(o.nterms), "--stokes of one parameter beside it, not " + o.stokes);
+}
+
+imager::TaylorExpansion taylor_expansion(const ImageOptions& o, const imager::Observation& observation) {
+  return {o.reffreq.empty() ? observation.frequency_hz : parse_frequency_hz(o.reffreq), o.nterms};
+}
+
+std::vector<std::string> taylor_products(int terms, bool cleaned) {
+  std::vector<std::string> names;
+  if (terms == 1) return names;
+  const auto add = [&names](const std::string& kind, int count) {
+    for (int t = 0; t < count; ++t) names.push_back(kind + ".tt" + std::to_string(t));
+  };
+  add("psf", 2 * terms - 1);
+  add("residual", terms);
+  if (!cleaned) return names;
+  add("model", terms);
+  add("image", terms);
+  names.insert(names.end(), {"alpha", "alpha.error"});
+  if (terms > 2) names.emplace_back("beta");
+  return names;
+}
+
+}  // namespace misfit::tools

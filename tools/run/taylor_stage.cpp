@@ -1,0 +1,57 @@
+#include "tools/run/taylor_stage.h"
+
+#include <memory>
+
+namespace misfit::tools {
+namespace {
+
+/// The transform that made the PSF, and how.
+struct PsfTransform {
+  std::unique_ptr<imager::Transform> own;
+  imager::OwnPsf psf;
+};
+
+PsfTransform psf_transform(const imager::AccurateImages& made) {
+  const imager::GriddingPlan& plan = made.plan;
+  const imager::DirectionCosines middle = plan.options.geometry.centre;
+  if (!plan.psf) return {nullptr, {*made.transform, middle, plan.direct || plan.options.has_w_axis()}};
+  auto own = imager::make_transform(plan.psf->options);
+  const imager::Transform& transform = *own;
+  return {std::move(own), {transform, middle, plan.psf->options.has_w_axis()}};
+}
+
+/// Of the first term and the further ones.
+std::vector<const imager::Image*> all_terms(const imager::Image& first, const std::vector<imager::Image>& further) {
+  std::vector<const imager::Image*> terms{&first};
+  for (const imager::Image& image : further) terms.push_back(&image);
+  return terms;
+}
+
+}  // namespace
+
+void TaylorStage::make_images(const imager::VisibilitySource& source, const imager::AccurateImages& made,
+                              const imager::Progress& progress, imager::StageTimes& times) {
+  const PsfTransform of_psf = psf_transform(made);
+  images_ = imager::make_taylor_images(source, *made.transform, of_psf.psf, expansion_, progress, times);
+  psf_ = all_terms(made.images.psf, images_.psf);
+  basis_ = imager::basis_of(psf_);
+}
+
+RestoredTerms TaylorStage::restore(const imager::CleanResult& cleaned, const imager::Beam& beam, double cell_rad) const {
+  const std::vector<imager::Image> left =
+      imager::principal_solution(*basis_, all_terms(cleaned.residual, cleaned.further_residuals), threads_);
+  std::vector<imager::Image> images;
+  for (const imager::Image* model : all_terms(cleaned.model, cleaned.further_models)) {
+    imager::Image image = imager::convolve_with_beam(*model, beam, cell_rad, threads_);
+    const imager::Image& residual = left[images.size()];
+    for (std::size_t i = 0; i < image.pixel.size(); ++i) image.pixel[i] += residual.pixel[i];
+    images.push_back(std::move(image));
+  }
+  RestoredTerms terms;
+  terms.spectra = imager::spectral_images(images, left, threads_);
+  terms.first = std::move(images.front());
+  for (std::size_t t = 1; t < images.size(); ++t) terms.further.push_back(std::move(images[t]));
+  return terms;
+}
+
+}  // namespace misfit::tools

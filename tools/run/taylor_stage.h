@@ -1,0 +1,49 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "imager/beam.h"
+#include "imager/clean/wide_band_clean.h"
+#include "imager/geometry.h"
+#include "imager/plan/accurate_imaging.h"
+#include "imager/taylor/spectral_index.h"
+#include "imager/taylor/taylor_imaging.h"
+
+namespace misfit::tools {
+
+/// What CLEAN found of Taylor terms, at the beam's resolution.
+struct RestoredTerms {
+  imager::Image first;                 ///< the model seen with the beam, and the principal solution of the residuals
+  std::vector<imager::Image> further;  ///< [term − 1], the same
+  imager::SpectralImages spectra;
+};
+
+/// The Taylor terms of a run of --nterms above 1. As tclean does, restored images have the principal solution H⁻¹ R of the
+/// residuals R, whose files have R itself. Stages timed: those of make_taylor_images, and "restore".
+class TaylorStage {
+ public:
+  TaylorStage(const imager::TaylorExpansion& expansion, int threads) : expansion_(expansion), threads_(threads) {}
+
+  const imager::TaylorExpansion& expansion() const { return expansion_; }
+
+  /// Besides the dirty image and the PSF that are made: a pass over the same samples, by the same transforms. The promise of an
+  /// accuracy holds for those alone: terms of odd order are weak against their data. Throws std::runtime_error where the
+  /// samples' frequencies do not tell the terms apart. `made` stays where it is until CLEAN is over.
+  void make_images(const imager::VisibilitySource& source, const imager::AccurateImages& made, const imager::Progress& progress,
+                   imager::StageTimes& times);
+  imager::WideBand band() const { return {expansion_, images_.dirty, psf_}; }
+  imager::TaylorImages& images() { return images_; }
+
+  /// Of all terms of a result.
+  RestoredTerms restore(const imager::CleanResult& cleaned, const imager::Beam& beam, double cell_rad) const;
+
+ private:
+  imager::TaylorExpansion expansion_;
+  int threads_;
+  imager::TaylorImages images_;
+  std::vector<const imager::Image*> psf_;  ///< [k]
+  std::optional<imager::TaylorBasis> basis_;
+};
+
+}  // namespace misfit::tools
