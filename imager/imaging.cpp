@@ -54,8 +54,6 @@ std::vector<std::complex<double>> visibilities_of_middle(const VisibilityBlock& 
   return visibility;
 }
 
-}  // namespace
-
 NothingInGrid::NothingInGrid(std::uint64_t samples)
     : std::runtime_error("no visibility can be imaged: " + std::to_string(samples) +
                          " usable samples lie beyond 1/(2 cell), none within; expected smaller pixels"),
