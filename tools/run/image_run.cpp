@@ -306,7 +306,6 @@ class ImageRun {
   std::unique_ptr<ms_io::MeasurementSet> set_;
   imager::ImageGeometry geometry_;
   imager::UvwReach reach_;
-  std::unique_ptr<CleanStage> clean_;               ///< null without CLEAN, and after it
   std::unique_ptr<PrimaryBeamStage> primary_beam_;  ///< null where none is wanted
   std::unique_ptr<CleanStage> clean_;               ///< null without CLEAN, and after it
   std::unique_ptr<TaylorStage> taylor_;             ///< null where there is one term

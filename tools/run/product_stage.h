@@ -78,7 +78,6 @@ class ProductStage {
   imager::StageTimes& times_;
   ImageProducts products_;
   imager::Image primary_beam_;     ///< without pixels where none is wanted
-  std::vector<Sketch> dirty_;      ///< what is left of the dirty images when CLEAN is over, where masks were not known before
   TaylorStage* taylor_ = nullptr;  ///< null where there is one term
   RestoredTerms restored_;         ///< of several
   std::vector<Sketch> dirty_;      ///< what is left of the dirty images when CLEAN is over, where masks were not known before
