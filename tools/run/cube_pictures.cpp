@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 
 #include "imager/stokes.h"
 #include "tools/base/files.h"
@@ -12,6 +13,13 @@
 #include "tools/run/image_files.h"
 
 namespace misfit::tools {
+namespace {
+
+std::unique_ptr<imager::ImageReader> open_written(const ImageOptions& o, const std::string& kind) {
+  return open_image_file(image_paths(o.imagename + "." + kind, o.outformat).front());
+}
+
+}  // namespace
 
 std::size_t brightest_plane(const std::vector<PlaneReport>& planes) {
   const auto brightness = [](const PlaneReport& plane) {
@@ -20,6 +28,15 @@ std::size_t brightest_plane(const std::vector<PlaneReport>& planes) {
   const auto found = std::max_element(
       planes.begin(), planes.end(), [&](const PlaneReport& a, const PlaneReport& b) { return brightness(a) < brightness(b); });
   return static_cast<std::size_t>(found - planes.begin());
+}
+
+void count_pixels(const ImageOptions& o, PlaneReport& plane, int threads) {
+  if (plane.sums.used == 0) return;
+  const auto file = open_written(o, "residual");
+  for (std::size_t s = 0; s < plane.stokes.size(); ++s) {
+    PixelHistogram& histogram = plane.stokes[s].histogram;
+    histogram = pixel_histogram(file->read({plane.channel, static_cast<int>(s)}), histogram.noise_jy, threads);
+  }
 }
 
 std::string draw_cube(const ImageOptions& o, const imager::ImageHeader& header, const RunReport& report,
@@ -37,10 +54,8 @@ std::string draw_cube(const ImageOptions& o, const imager::ImageHeader& header, 
   }
   const bool cleaned = o.niter > 0 && plane.stokes.front().clean;
   const std::string kind = cleaned ? "image" : "residual";
-  const auto read = [&](const std::string& name) {
-    return open_image_file(image_paths(o.imagename + "." + name, o.outformat).front())->read({plane.channel, 0});
-  };
-  const imager::Image image = read(kind), psf = read("psf");
+  const imager::PlaneIndex at{plane.channel, 0};
+  const imager::Image image = open_written(o, kind)->read(at), psf = open_written(o, "psf")->read(at);
   const std::string image_path = o.imagename + "." + kind + ".png", psf_path = o.imagename + ".psf.png";
   const std::string title = (cleaned ? "Restored image" : "Dirty image") + of;
   PictureDrawing drawing;

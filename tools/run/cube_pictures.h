@@ -13,6 +13,9 @@ namespace misfit::tools {
 /// The index among `planes` of the one with the brightest pixel of the first Stokes parameter; 0 where none has samples.
 std::size_t brightest_plane(const std::vector<PlaneReport>& planes);
 
+/// Makes the histograms of a plane's residuals, of images that have been written.
+void count_pixels(const ImageOptions& options, PlaneReport& plane, int threads);
+
 /// Draws the plane that `report` shows, of images that have been written: <imagename>.image.png, or .residual.png without
 /// CLEAN, and .psf.png. Adds them to `drawn`, or returns in a sentence why there are none.
 std::string draw_cube(const ImageOptions& options, const imager::ImageHeader& header, const RunReport& report,

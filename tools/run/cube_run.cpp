@@ -360,6 +360,10 @@ class CubeRun {
 
   void write_report() {
     report_.shown = brightest_plane(report_.planes);
+    {
+      const imager::StageTimer timer(times_, "statistics");
+      count_pixels(o_, report_.planes[report_.shown], threads_);
+    }
     std::vector<PagePicture> drawn;
     {
       const imager::StageTimer timer(times_, "draw pictures");
