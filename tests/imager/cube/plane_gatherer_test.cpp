@@ -77,10 +77,10 @@ std::vector<Sample> expected_sample(const VisibilityBlock& block, const CubeSamp
   const double low = std::clamp(std::floor(at), 0.0, channels - 2.0);
   const double t = std::clamp(at - low, 0.0, 1.0);
   const std::size_t a = sample(static_cast<std::size_t>(low)), b = a + 1;
-  if (block.weight[a] == 0 || block.weight[b] == 0) return {};
+  if ((t < 1 && block.weight[a] == 0) || (t > 0 && block.weight[b] == 0)) return {};
   const auto mixed = [&](const auto& v) { return (1 - t) * std::complex<double>(v[a]) + t * std::complex<double>(v[b]); };
-  return {made(middle_hz, mixed(block.visibility), mixed(second.visibility),
-               1 / ((1 - t) * (1 - t) / block.weight[a] + t * t / block.weight[b]))};
+  const double variance = (t < 1 ? (1 - t) * (1 - t) / block.weight[a] : 0) + (t > 0 ? t * t / block.weight[b] : 0);
+  return {made(middle_hz, mixed(block.visibility), mixed(second.visibility), 1 / variance)};
 }
 
 bool same_bits(const VisibilityBlock& a, const VisibilityBlock& b) {
