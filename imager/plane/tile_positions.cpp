@@ -21,9 +21,11 @@ HWY_ATTR HWY_INLINE void positions_along(Line line, int tile, const double* HWY_
                                          int* HWY_RESTRICT cell, Real* HWY_RESTRICT t) {
   for (int i = 0; i < count; ++i) {
     const double position = line.per_hz * frequency_hz[i] - line.origin;
-    const PositionAlong at(position, line.tie, tile);
-    cell[i] = at.cell;
-    t[i] = static_cast<Real>(at.t);
+    int whole = static_cast<int>(position + line.tie);
+    whole = whole < 0 ? 0 : whole;
+    whole = whole < tile ? whole : tile - 1;
+    cell[i] = whole;
+    t[i] = static_cast<Real>(position - whole - 0.5);
   }
 }
 
@@ -56,6 +58,39 @@ void append_positions(const RowInTile& row, const double* frequency_hz, int coun
 }
 void append_positions(const RowInTile& row, const double* frequency_hz, int count, TilePlaces<double>& places) {
   HWY_DYNAMIC_DISPATCH(append_double)(row, frequency_hz, count, places);
+}
+
+namespace {
+
+struct PositionAlong {
+  int cell;
+  double t;
+
+  PositionAlong(double position, double tie, int tile) : cell(static_cast<int>(position + tie)) {
+    cell = cell < 0 ? 0 : cell;
+    cell = cell < tile ? cell : tile - 1;
+    t = position - cell - 0.5;
+  }
+};
+
+template <typename Real>
+void append_one(const RowInTile& row, double frequency_hz, TilePlaces<Real>& places) {
+  const PositionAlong u(row.u_per_hz * frequency_hz - row.u_origin, row.tie, row.tile);
+  const PositionAlong v(row.v_per_hz * frequency_hz - row.v_origin, row.tie, row.tile);
+  const int at = places.count++;
+  places.column[at] = u.cell;
+  places.row[at] = v.cell;
+  places.tu[at] = static_cast<Real>(u.t);
+  places.tv[at] = static_cast<Real>(v.t);
+}
+
+}  // namespace
+
+void append_position(const RowInTile& row, double frequency_hz, TilePlaces<float>& places) {
+  append_one(row, frequency_hz, places);
+}
+void append_position(const RowInTile& row, double frequency_hz, TilePlaces<double>& places) {
+  append_one(row, frequency_hz, places);
 }
 
 }  // namespace misfit::imager

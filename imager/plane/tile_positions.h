@@ -25,33 +25,13 @@ struct RowInTile {
   double tie = 0;
 };
 
-/// Where a position in [0, tile) along one axis lies: its cell, and t.
-struct PositionAlong {
-  int cell;
-  double t;
-
-  PositionAlong(double position, double tie, int tile) : cell(static_cast<int>(position + tie)) {
-    cell = cell < 0 ? 0 : cell;
-    cell = cell < tile ? cell : tile - 1;
-    t = position - cell - 0.5;
-  }
-};
-
-/// append_positions() of one sample.
-template <typename Real>
-void append_position(const RowInTile& row, double frequency_hz, TilePlaces<Real>& places) {
-  const PositionAlong u(row.u_per_hz * frequency_hz - row.u_origin, row.tie, row.tile);
-  const PositionAlong v(row.v_per_hz * frequency_hz - row.v_origin, row.tie, row.tile);
-  const int at = places.count++;
-  places.column[at] = u.cell;
-  places.row[at] = v.cell;
-  places.tu[at] = static_cast<Real>(u.t);
-  places.tv[at] = static_cast<Real>(v.t);
-}
-
 /// Appends to places, which must have room, the columns, rows, tu and tv of the samples at `count` frequencies. Positions
 /// that rounding takes out of the tile are taken to the nearest cell within.
 void append_positions(const RowInTile& row, const double* frequency_hz, int count, TilePlaces<float>& places);
 void append_positions(const RowInTile& row, const double* frequency_hz, int count, TilePlaces<double>& places);
+
+/// The same of one sample, to the same bits, without the way to the vectors.
+void append_position(const RowInTile& row, double frequency_hz, TilePlaces<float>& places);
+void append_position(const RowInTile& row, double frequency_hz, TilePlaces<double>& places);
 
 }  // namespace misfit::imager

@@ -9,8 +9,8 @@
 #include "tools/base/numbers.h"
 #include "tools/drawing/pictures.h"
 #include "tools/formats/image_file.h"
-#include "tools/report/figure.h"
 #include "tools/run/image_files.h"
+#include "tools/run_page/spectrum_figure.h"
 
 namespace misfit::tools {
 namespace {
@@ -67,25 +67,16 @@ std::string draw_cube(const ImageOptions& o, const imager::ImageHeader& header, 
 }
 
 std::string spectrum_drawing(const RunReport& report) {
-  Figure figure{.name = "spectrum",
-                .title = "Planes",
-                .caption = "",
-                .x = {.label = "Frequency in GHz" + (report.cube ? ", " + report.cube->frame : "")},
-                .y = {.label = "Jy/beam"},
-                .series = {}};
-  Series brightest{.label = "brightest pixel", .x = {}, .y = {}}, noise{.label = "noise", .x = {}, .y = {}};
+  Spectrum spectrum{.frame = report.cube ? report.cube->frame : "", .frequency_hz = {}, .brightest_jy = {}, .noise_jy = {}};
   for (const PlaneReport& plane : report.planes) {
     if (plane.sums.used == 0) continue;
-    const StokesReport& first = plane.stokes.front();
-    for (Series* series : {&brightest, &noise}) series->x.push_back(plane.frequency_hz / 1e9);
-    brightest.y.push_back(first.brightest.value);
-    noise.y.push_back(first.histogram.noise_jy);
+    spectrum.frequency_hz.push_back(plane.frequency_hz);
+    spectrum.brightest_jy.push_back(plane.stokes.front().brightest.value);
+    spectrum.noise_jy.push_back(plane.stokes.front().histogram.noise_jy);
   }
-  if (brightest.x.empty()) return "";
-  brightest.points = noise.points = brightest.x.size() < 20;
-  figure.series = {brightest, noise};
+  if (spectrum.frequency_hz.empty()) return "";
   try {
-    return draw_svg(figure);
+    return draw_svg(spectrum_figure(spectrum));
   } catch (const std::runtime_error&) {  // the pictures say why
     return "";
   }
