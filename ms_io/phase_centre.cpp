@@ -101,7 +101,8 @@ imager::SkyDirection field_pointing(const casacore::MeasurementSet& set, const s
 
 imager::SkyDirection in_frame(const imager::SkyDirection& direction, const std::string& frame) {
   if (direction.frame == frame) return direction;
-  return sky_direction(casacore::MDirection::Convert(measure_of(direction), casacore::MDirection::Ref(direction_type(frame)))());
+  return sky_direction(
+      casacore::MDirection::Convert(measure_of(direction), casacore::MDirection::Ref(direction_type(frame)))());
 }
 
 double separation_rad(const imager::SkyDirection& a, const imager::SkyDirection& b) {
