@@ -1,6 +1,7 @@
 // Cubes by the program itself, of simulated lines.
 #include <cmath>
 
+#include "imager/beam.h"
 #include "imager/fits_image_reader.h"
 #include "ms_io/measurement_set.h"
 #include "ms_io/simulated_set.h"
@@ -205,6 +206,29 @@ BOOST_AUTO_TEST_CASE(each_plane_is_cleaned_and_restarted_by_itself) {
     BOOST_TEST(std::filesystem::exists(data.folder / ("a.clean/" + std::to_string(plane) + ".state")));
     const double flux = data.line(image->header().spectral.frequency_hz(plane));
     BOOST_TEST(std::abs(image->read({plane, 0}).at(8, 8) - flux) < 0.1);  // as above; CLEAN leaves 0.9⁴⁰ of it
+  }
+}
+
+BOOST_AUTO_TEST_CASE(planes_are_restored_with_one_beam_on_demand) {
+  const LineSet data("TOPO");
+  const Arguments options{"--outframe", "TOPO", "--nchan", "3", "--start", "1", "--chanwidth", "12", "--niter", "20"};
+  succeed(cube(data.set, data.folder / "own") + options);
+  succeed(cube(data.set, data.folder / "one") + options + Arguments{"--restoringbeam", "common"});
+  const auto own = imager::open_fits_image(data.folder / "own.image.fits");
+  const auto one = imager::open_fits_image(data.folder / "one.image.fits");
+  const auto model = imager::open_fits_image(data.folder / "one.model.fits");
+  const auto residual = imager::open_fits_image(data.folder / "one.residual.fits");
+  const imager::Beam common = *one->beam({0, 0});
+  for (int plane = 0; plane < 2; ++plane) {  // the third lies beyond the band in part
+    const imager::Beam beam = *one->beam({plane, 0}), fitted = *own->beam({plane, 0});
+    BOOST_TEST(beam.major_rad == common.major_rad);
+    BOOST_TEST(beam.minor_rad == common.minor_rad);
+    BOOST_TEST(beam.major_rad >= fitted.major_rad * (1 - 1e-6));  // as headers round it
+    BOOST_TEST(beam.minor_rad >= fitted.minor_rad * (1 - 1e-6));
+    const imager::Image sum = imager::convolve_with_beam(model->read({plane, 0}), common, one->header().geometry.cell_rad, 1);
+    const imager::Image image = one->read({plane, 0}), left = residual->read({plane, 0});
+    for (std::size_t i = 0; i < image.pixel.size(); ++i)  // in single precision
+      BOOST_TEST(std::abs(image.pixel[i] - sum.pixel[i] - left.pixel[i]) < 1e-6);
   }
 }
 

@@ -27,24 +27,35 @@ void CubeFiles::write_psf(int channel, const imager::Image& psf, const std::opti
   psf_->write({channel, 0}, psf, beam);
 }
 
-void CubeFiles::write(const imager::PlaneIndex& at, const Plane& plane, const std::optional<imager::Beam>& beam) {
-  const auto put = [&](const Writer& writer, const imager::Image* image, const std::optional<imager::Beam>& of) {
-    if (writer && image != nullptr && !image->pixel.empty()) writer->write(at, *image, of);
-  };
-  put(residual_, plane.residual, beam);
-  put(model_, plane.model, {});
-  put(restored_, plane.restored, beam);
-  put(mask_, plane.mask, {});
-  if (plane.primary_beam == nullptr) return;
-  if (at.stokes == 0) put(primary_beam_, plane.primary_beam, {});
-  if (!corrected_) return;
-  const imager::Image corrected =
-      imager::corrected(plane.restored == nullptr ? *plane.residual : *plane.restored, *plane.primary_beam);
-  put(corrected_, &corrected, beam);
+void CubeFiles::put(const Writer& writer, const imager::PlaneIndex& at, const imager::Image* image,
+                    const std::optional<imager::Beam>& beam) {
+  if (writer && image != nullptr && !image->pixel.empty()) writer->write(at, *image, beam);
 }
 
-void CubeFiles::finish() {
-  for (const Writer* writer : {&psf_, &residual_, &model_, &mask_, &primary_beam_, &restored_, &corrected_})
+void CubeFiles::write(const imager::PlaneIndex& at, const Plane& plane, const std::optional<imager::Beam>& beam) {
+  put(residual_, at, plane.residual, beam);
+  put(model_, at, plane.model, {});
+  put(mask_, at, plane.mask, {});
+  if (at.stokes == 0) put(primary_beam_, at, plane.primary_beam, {});
+  write_restored(at, plane, beam);
+}
+
+void CubeFiles::write_restored(const imager::PlaneIndex& at, const Plane& plane, const std::optional<imager::Beam>& beam) {
+  put(restored_, at, plane.restored, beam);
+  const imager::Image* const brightness = restored_ ? plane.restored : plane.residual;
+  if (!corrected_ || plane.primary_beam == nullptr || brightness == nullptr) return;
+  const imager::Image corrected = imager::corrected(*brightness, *plane.primary_beam);
+  put(corrected_, at, &corrected, beam);
+}
+
+void CubeFiles::finish(bool restored_follow) {
+  for (const Writer* writer : {&psf_, &residual_, &model_, &mask_, &primary_beam_})
+    if (*writer) (*writer)->finish();
+  if (!restored_follow) finish_restored();
+}
+
+void CubeFiles::finish_restored() {
+  for (const Writer* writer : {&restored_, &corrected_})
     if (*writer) (*writer)->finish();
 }
 

@@ -30,11 +30,16 @@ class CubeFiles {
   /// The PSF of a channel, and the beam fitted to it.
   void write_psf(int channel, const imager::Image& psf, const std::optional<imager::Beam>& beam);
   void write(const imager::PlaneIndex& at, const Plane& plane, const std::optional<imager::Beam>& beam);
-  /// All files get their names.
-  void finish();
+  /// The restored image alone, where it comes later, and what --pbcor makes of it.
+  void write_restored(const imager::PlaneIndex& at, const Plane& plane, const std::optional<imager::Beam>& beam);
+  /// All files get their names; but for those of restored images where these follow, since they wait for a beam of all.
+  void finish(bool restored_follow);
+  void finish_restored();
 
  private:
   using Writer = std::unique_ptr<imager::ImageWriter>;
+  static void put(const Writer& writer, const imager::PlaneIndex& at, const imager::Image* image,
+                  const std::optional<imager::Beam>& beam);
   Writer psf_, residual_, model_, restored_, mask_, primary_beam_, corrected_;  ///< null where there is no such image
 };
 

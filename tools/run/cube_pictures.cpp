@@ -13,13 +13,10 @@
 #include "tools/run_page/spectrum_figure.h"
 
 namespace misfit::tools {
-namespace {
 
 std::unique_ptr<imager::ImageReader> open_written(const ImageOptions& o, const std::string& kind) {
   return open_image_file(image_paths(o.imagename + "." + kind, o.outformat).front());
 }
-
-}  // namespace
 
 std::size_t brightest_plane(const std::vector<PlaneReport>& planes) {
   const auto brightness = [](const PlaneReport& plane) {

@@ -1,14 +1,19 @@
 #pragma once
 
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "imager/image_header.h"
+#include "imager/image_reader.h"
 #include "tools/run/image_options.h"
 #include "tools/run/run_report.h"
 #include "tools/run_page/report_page.h"
 
 namespace misfit::tools {
+
+/// One of a run's images, in the first of its formats.
+std::unique_ptr<imager::ImageReader> open_written(const ImageOptions& options, const std::string& kind);
 
 /// The index among `planes` of the one with the brightest pixel of the first Stokes parameter; 0 where none has samples.
 std::size_t brightest_plane(const std::vector<PlaneReport>& planes);

@@ -12,6 +12,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "imager/common_beam.h"
 #include "imager/cube/plane_gatherer.h"
 #include "imager/handed_over.h"
 #include "imager/noise.h"
@@ -292,11 +293,15 @@ class CubeRun {
       const bool cleaned = !plane.cleaned().empty();
       const imager::CleanResult* const result = cleaned ? &plane.cleaned()[s] : nullptr;
       const imager::Image& residual = cleaned ? result->residual : images.dirty[s];
-      const imager::Image restored = cleaned ? restore(*result, *beam) : imager::Image();
-      look_at({channel, static_cast<int>(s)}, residual, cleaned ? restored : residual, plane);
+      imager::Image restored;
+      if (cleaned && !in_common()) {
+        const imager::StageTimer timer(times_, "restore");
+        restored = restore(result->model, residual, *beam);
+      }
+      look_at({channel, static_cast<int>(s)}, residual, restored.pixel.empty() ? residual : restored, plane);
       const imager::StageTimer timer(times_, "write images");
       files_->write({channel, static_cast<int>(s)},
-                    {&residual, cleaned ? &result->model : nullptr, cleaned ? &restored : nullptr,
+                    {&residual, cleaned ? &result->model : nullptr, restored.pixel.empty() ? nullptr : &restored,
                      cleaned ? &result->mask : nullptr, primary_beam_ ? &primary_beam : nullptr},
                     beam);
     }
@@ -312,12 +317,39 @@ class CubeRun {
     return beam;
   }
 
-  imager::Image restore(const imager::CleanResult& result, const imager::Beam& beam) {
-    const imager::StageTimer timer(times_, "restore");
-    imager::Image sum = imager::convolve_with_beam(result.model, beam, header_.geometry.cell_rad, threads_);
-    for (std::size_t i = 0; i < sum.pixel.size(); ++i) sum.pixel[i] += result.residual.pixel[i];
+  imager::Image restore(const imager::Image& model, const imager::Image& residual, const imager::Beam& beam) {
+    imager::Image sum = imager::convolve_with_beam(model, beam, header_.geometry.cell_rad, threads_);
+    for (std::size_t i = 0; i < sum.pixel.size(); ++i) sum.pixel[i] += residual.pixel[i];
     return sum;
   }
+
+  /// Whether all planes are restored with one beam that is known only once they are there.
+  bool in_common() const { return o_.niter > 0 && o_.restoringbeam == "common"; }
+
+  /// Of models and residuals as they were written.
+  void restore_in_common() {
+    const imager::StageTimer timer(times_, "restore");
+    std::vector<imager::Beam> beams;
+    for (const PlaneReport& plane : report_.planes)
+      if (cleaned(plane)) beams.push_back(*plane.beams->restoring);
+    if (beams.empty()) return files_->finish_restored();
+    const imager::Beam common = imager::common_beam(beams);
+    const auto models = open_written(o_, "model"), residuals = open_written(o_, "residual");
+    for (PlaneReport& plane : report_.planes) {
+      if (!cleaned(plane)) continue;
+      plane.beams->restoring = common;
+      plane.beams->how = "common to all planes";
+      const imager::Image primary_beam = primary_beam_at(plane.frequency_hz);
+      for (std::size_t s = 0; s < stokes_.size(); ++s) {
+        const imager::PlaneIndex at{plane.channel, static_cast<int>(s)};
+        const imager::Image restored = restore(models->read(at), residuals->read(at), common);
+        plane.stokes[s].brightest = imager::find_peak(restored);
+        files_->write_restored(at, {.restored = &restored, .primary_beam = primary_beam_ ? &primary_beam : nullptr}, common);
+      }
+    }
+    files_->finish_restored();
+  }
+  static bool cleaned(const PlaneReport& plane) { return plane.stokes.front().clean.has_value(); }
 
   /// What the report tells of a plane.
   void look_at(const imager::PlaneIndex& at, const imager::Image& residual, const imager::Image& image, PlaneRun& plane) {
@@ -341,7 +373,8 @@ class CubeRun {
   void finish_files() {
     if (report_.planes.size() == empty_) throw_nothing();
     const imager::StageTimer timer(times_, "write images");
-    files_->finish();
+    files_->finish(in_common());
+    if (in_common()) restore_in_common();
     report_.counts.outside_grid = outside_grid_;
     report_.plan.push_back(left_out_decision(report_.counts));
     if (outside_grid_ > 0) warn(outside_grid_warning(outside_grid_, reach_));
