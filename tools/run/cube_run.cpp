@@ -160,13 +160,18 @@ class CubeRun {
     const imager::WeightingOptions options = weighting_options(o_);
     if (!options.needs_density()) return;
     imager::UvDensity density(header_.geometry, threads_);
-    for (const imager::PlaneRange& batch : batches_of(planes(), batches_.planes)) {
-      gather(batch);
+    const auto add = [&](const imager::VisibilitySource& plane) {
       const imager::StageTimer timer(times_, "weights");
-      for (const imager::StoredVisibilities& plane : gathered_.planes) {
-        const auto stream = plane.open();
-        while (const auto block = stream->next()) density.add(*block);
+      const auto stream = plane.open();
+      while (const auto block = stream->next()) density.add(*block);
+    };
+    for (const imager::PlaneRange& batch : batches_of(planes(), batches_.planes)) {
+      if (batches_.read_again) {
+        if (const auto part = part_of(batch)) add(imager::PlaneView(*part, sampling_, batch.first));
+        continue;
       }
+      gather(batch);
+      for (const imager::StoredVisibilities& plane : gathered_.planes) add(plane);
       if (batch.count < planes()) gathered_ = {};
     }
     common_weights_ = std::make_shared<imager::ImagingWeights>(density, options);
@@ -198,32 +203,46 @@ class CubeRun {
     return std::to_string(range.first) + " to " + std::to_string(range.first + range.count - 1) + of;
   }
 
+  /// Until the user stops: planes that are done by then stay.
   void make_planes() {
-    for (const imager::PlaneRange& batch : batches_of(planes(), batches_.planes)) {
-      if (stopped_) return;
-      if (batches_.read_again) {
-        make_streamed(batch.first);
+    try {
+      for (const imager::PlaneRange& batch : batches_of(planes(), batches_.planes)) {
+        if (stopped_) return;
+        if (batches_.read_again)
+          make_streamed(batch.first);
+        else
+          make_held(batch);
+      }
+    } catch (const Interrupted&) {
+      if (report_.planes.empty()) throw;
+      stopped_ = true;
+    }
+  }
+
+  void make_held(const imager::PlaneRange& batch) {
+    gather(batch);
+    count_read(gathered_.counts);
+    report_.outside_planes += gathered_.outside_planes;
+    progress_.begin("images " + numbers_of(batch), o_.niter > 0);
+    for (int i = 0; i < batch.count && !stopped_; ++i) {
+      progress_.update(static_cast<std::uint64_t>(i), static_cast<std::uint64_t>(batch.count));
+      imager::StoredVisibilities& plane = gathered_.planes[static_cast<std::size_t>(i)];
+      if (plane.samples() == 0) {
+        leave_empty(batch.first + i);
         continue;
       }
-      gather(batch);
-      gathered_.counts.used = 0;  // the planes' own samples count
-      report_.counts += gathered_.counts;
-      report_.outside_planes += gathered_.outside_planes;
-      progress_.begin("images " + numbers_of(batch), o_.niter > 0);
-      for (int i = 0; i < batch.count && !stopped_; ++i) {
-        progress_.update(static_cast<std::uint64_t>(i), static_cast<std::uint64_t>(batch.count));
-        imager::StoredVisibilities& plane = gathered_.planes[static_cast<std::size_t>(i)];
-        if (plane.samples() == 0) {
-          leave_empty(batch.first + i);
-          continue;
-        }
-        const imager::HandedOver source(std::move(plane));
-        imager::StreamedVisibilities visibilities(source, {.keep = true, .ahead = 0, .uv_reach_lambda = 0});
-        make_plane(batch.first + i, visibilities);
-      }
-      progress_.end();
-      gathered_ = {};
+      const imager::HandedOver source(std::move(plane));
+      imager::StreamedVisibilities visibilities(source, {.keep = true, .ahead = 0, .uv_reach_lambda = 0});
+      make_plane(batch.first + i, visibilities);
     }
+    progress_.end();
+    gathered_ = {};
+  }
+
+  /// Those used are the planes' own, which are counted as they are made.
+  void count_read(imager::SampleCounts counts) {
+    counts.used = 0;
+    report_.counts += counts;
   }
 
   /// A plane that reads its own visibilities in every pass.
@@ -234,6 +253,7 @@ class CubeRun {
     imager::StreamedVisibilities visibilities(source, {.keep = false, .ahead = plan_.streaming.ahead, .uv_reach_lambda = 0});
     try {
       make_plane(channel, visibilities);
+      count_read(visibilities.counts());
     } catch (const imager::NothingUsable&) {
       leave_empty(channel);
     }
