@@ -12,17 +12,13 @@
 #include <stdexcept>
 #include <utility>
 
-#include "imager/common_beam.h"
-#include "imager/cube/plane_gatherer.h"
-#include "imager/handed_over.h"
-#include "imager/noise.h"
 #include "imager/parallel.h"
 #include "tools/base/files.h"
 #include "tools/base/interrupt.h"
 #include "tools/base/numbers.h"
-#include "tools/run/cube_batches.h"
-#include "tools/run/cube_files.h"
 #include "tools/run/cube_pictures.h"
+#include "tools/run/cube_products.h"
+#include "tools/run/cube_visibilities.h"
 #include "tools/run/plane_run.h"
 #include "tools/run/primary_beam_stage.h"
 #include "tools/run/product_stage.h"
@@ -33,16 +29,6 @@
 
 namespace misfit::tools {
 namespace {
-
-/// The smallest and the largest pixel that is not NaN.
-std::pair<double, double> extremes(const imager::Image& image) {
-  double least = std::numeric_limits<double>::infinity(), largest = -least;
-  for (const double pixel : image.pixel) {  // comparisons with NaN are false
-    least = pixel < least ? pixel : least;
-    largest = pixel > largest ? pixel : largest;
-  }
-  return {least, largest};
-}
 
 /// One run, from options to files. The steps are called in the order in which they stand here.
 class CubeRun {
@@ -80,9 +66,6 @@ class CubeRun {
   void warn(const std::string& sentence) {
     report_.warnings.push_back(sentence);
     progress_.say("warning: " + sentence);
-  }
-  imager::Progress updates() {
-    return [this](std::uint64_t done, std::uint64_t total) { progress_.update(done, total); };
   }
   int planes() const { return header_.spectral.channels; }
 
@@ -132,14 +115,15 @@ class CubeRun {
       plan_.decisions.push_back(primary_beam_->decision());
       for (const std::string& doubt : primary_beam_->doubts()) warn(doubt);
     }
-    batches_ = plan_batches(scene, plan_);
-    plan_.decisions.push_back(batches_.decision);
+    const CubeBatches batches = plan_batches(scene, plan_);
+    plan_.decisions.push_back(batches.decision);
+    visibilities_ = std::make_unique<CubeVisibilities>(*set_, sampling_, batches, threads_, o_.niter > 0);
     for (const std::string& warning : plan_.warnings) warn(warning);
     report_.plan = plan_.decisions;
     report_.plan.insert(report_.plan.end(), plan_.gridding.decisions.begin(), plan_.gridding.decisions.end());
     report_.accuracy = o_.accuracy;
     report_.gridding = &plan_.gridding;
-    report_.estimated_memory_bytes = batches_.memory_bytes;
+    report_.estimated_memory_bytes = batches.memory_bytes;
     work_ = work_of(scene, plan_);
     const imager::StageTimer timer(times_, "plan");
     if (!o_.dry_run) transform_ = std::make_shared<imager::PlannedTransform>(plan_.gridding);
@@ -148,14 +132,14 @@ class CubeRun {
   std::vector<StageSeconds> expected() const { return expected_seconds(plan_, forecast_, work_); }
 
   void begin_files() {
-    const imager::StageTimer timer(times_, "write images");
-    files_ = std::make_unique<CubeFiles>(o_, header_, o_.usemask == "auto" || !o_.mask.empty());
     // Planes tell of themselves; their stages would fill the screen.
     scene_ = std::make_unique<PlaneScene>(PlaneScene{o_, header_.geometry, stokes_, reach_, threads_, silent_, times_,
                                                      [this](const std::string& sentence) { warn(sentence); }});
+    const imager::StageTimer timer(times_, "write images");
+    products_ = std::make_unique<CubeProducts>(*scene_, header_, primary_beam_.get());
   }
 
-  /// A pass over all planes for the density of their samples together.
+  /// From the density of all planes' samples together.
   void weigh_in_common() {
     const imager::WeightingOptions options = weighting_options(o_);
     if (!options.needs_density()) return;
@@ -165,98 +149,25 @@ class CubeRun {
       const auto stream = plane.open();
       while (const auto block = stream->next()) density.add(*block);
     };
-    for (const imager::PlaneRange& batch : batches_of(planes(), batches_.planes)) {
-      if (batches_.read_again) {
-        if (const auto part = part_of(batch)) add(imager::PlaneView(*part, sampling_, batch.first));
-        continue;
-      }
-      gather(batch);
-      for (const imager::StoredVisibilities& plane : gathered_.planes) add(plane);
-      if (batch.count < planes()) gathered_ = {};
-    }
+    visibilities_->look_through(add, progress_, times_);
     common_weights_ = std::make_shared<imager::ImagingWeights>(density, options);
-  }
-
-  /// The visibilities of some planes, unless they are there.
-  void gather(const imager::PlaneRange& batch) {
-    if (gathered_.planes.size() == static_cast<std::size_t>(batch.count)) return;
-    progress_.begin("planes " + numbers_of(batch));
-    const auto part = part_of(batch);
-    if (part) {
-      gathered_ = imager::gather_planes(*part, sampling_, batch, threads_, updates(), times_);
-    } else {
-      gathered_.planes.resize(static_cast<std::size_t>(batch.count));
-    }
-    progress_.end();
-  }
-
-  /// What of the set such planes need; null where it has nothing for them.
-  std::unique_ptr<ms_io::MeasurementSet> part_of(const imager::PlaneRange& range) const {
-    const double first = sampling_.axis.frequency_hz(range.first);
-    const double last = sampling_.axis.frequency_hz(range.first + range.count - 1), half = 0.5 * sampling_.axis.width_hz();
-    return set_->part(std::min(first, last) - half, std::max(first, last) + half);
-  }
-
-  std::string numbers_of(const imager::PlaneRange& range) const {
-    const std::string of = " of " + std::to_string(planes());
-    if (range.count == 1) return std::to_string(range.first) + of;
-    return std::to_string(range.first) + " to " + std::to_string(range.first + range.count - 1) + of;
   }
 
   /// Until the user stops: planes that are done by then stay.
   void make_planes() {
+    const PlaneVisitor visitor{
+        [this](int channel, imager::StreamedVisibilities& visibilities) { make_plane(channel, visibilities); },
+        [this](int channel) { leave_empty(channel); }, [this] { return stopped_; }};
     try {
-      for (const imager::PlaneRange& batch : batches_of(planes(), batches_.planes)) {
-        if (stopped_) return;
-        if (batches_.read_again)
-          make_streamed(batch.first);
-        else
-          make_held(batch);
-      }
+      visibilities_->for_each_plane(visitor, progress_, times_);
     } catch (const Interrupted&) {
       if (report_.planes.empty()) throw;
       stopped_ = true;
     }
-  }
-
-  void make_held(const imager::PlaneRange& batch) {
-    gather(batch);
-    count_read(gathered_.counts);
-    report_.outside_planes += gathered_.outside_planes;
-    progress_.begin("images " + numbers_of(batch), o_.niter > 0);
-    for (int i = 0; i < batch.count && !stopped_; ++i) {
-      progress_.update(static_cast<std::uint64_t>(i), static_cast<std::uint64_t>(batch.count));
-      imager::StoredVisibilities& plane = gathered_.planes[static_cast<std::size_t>(i)];
-      if (plane.samples() == 0) {
-        leave_empty(batch.first + i);
-        continue;
-      }
-      const imager::HandedOver source(std::move(plane));
-      imager::StreamedVisibilities visibilities(source, {.keep = true, .ahead = 0, .uv_reach_lambda = 0});
-      make_plane(batch.first + i, visibilities);
-    }
-    progress_.end();
-    gathered_ = {};
-  }
-
-  /// Those used are the planes' own, which are counted as they are made.
-  void count_read(imager::SampleCounts counts) {
-    counts.used = 0;
-    report_.counts += counts;
-  }
-
-  /// A plane that reads its own visibilities in every pass.
-  void make_streamed(int channel) {
-    const auto part = part_of({channel, 1});
-    if (!part) return leave_empty(channel);
-    const imager::PlaneView source(*part, sampling_, channel);
-    imager::StreamedVisibilities visibilities(source, {.keep = false, .ahead = plan_.streaming.ahead, .uv_reach_lambda = 0});
-    try {
-      make_plane(channel, visibilities);
-      count_read(visibilities.counts());
-    } catch (const imager::NothingUsable&) {
-      leave_empty(channel);
-    }
+    const std::uint64_t used = report_.counts.used;
+    report_.counts = visibilities_->counts();
+    report_.counts.used = used;
+    report_.outside_planes = visibilities_->outside_planes();
   }
 
   /// It has no values and no beam.
@@ -286,7 +197,7 @@ class CubeRun {
     plane.choose_beams();
     const bool beam = plane.report().beams->restoring.has_value();
     if (o_.niter > 0 && beam) clean(channel, plane);
-    write(channel, plane);
+    products_->write(channel, plane);
     finish(channel, plane);
   }
 
@@ -301,86 +212,6 @@ class CubeRun {
     }
   }
 
-  void write(int channel, PlaneRun& plane) {
-    const std::optional<imager::Beam>& beam = plane.report().beams->restoring;
-    imager::DirtyImages& images = plane.made().images;
-    {
-      const imager::StageTimer timer(times_, "write images");
-      files_->write_psf(channel, images.psf, beam);
-    }
-    const imager::Image primary_beam = primary_beam_at(sampling_.axis.frequency_hz(channel));
-    for (std::size_t s = 0; s < stokes_.size(); ++s) {
-      const bool cleaned = !plane.cleaned().empty();
-      const imager::CleanResult* const result = cleaned ? &plane.cleaned()[s] : nullptr;
-      const imager::Image& residual = cleaned ? result->residual : images.dirty[s];
-      imager::Image restored;
-      if (cleaned && !in_common()) {
-        const imager::StageTimer timer(times_, "restore");
-        restored = restore(result->model, residual, *beam);
-      }
-      look_at({channel, static_cast<int>(s)}, residual, restored.pixel.empty() ? residual : restored, plane);
-      const imager::StageTimer timer(times_, "write images");
-      files_->write({channel, static_cast<int>(s)},
-                    {&residual, cleaned ? &result->model : nullptr, restored.pixel.empty() ? nullptr : &restored,
-                     cleaned ? &result->mask : nullptr, primary_beam_ ? &primary_beam : nullptr},
-                    beam);
-    }
-  }
-
-  /// Without pixels where none is wanted.
-  imager::Image primary_beam_at(double frequency_hz) {
-    if (!primary_beam_) return {};
-    const imager::StageTimer timer(times_, "primary beam");
-    imager::Image beam = primary_beam_->at(frequency_hz);
-    if (const std::string warning = primary_beam_->warning_of(beam); !warning.empty() && !std::exchange(unseen_, true))
-      warn(warning);
-    return beam;
-  }
-
-  imager::Image restore(const imager::Image& model, const imager::Image& residual, const imager::Beam& beam) {
-    imager::Image sum = imager::convolve_with_beam(model, beam, header_.geometry.cell_rad, threads_);
-    for (std::size_t i = 0; i < sum.pixel.size(); ++i) sum.pixel[i] += residual.pixel[i];
-    return sum;
-  }
-
-  /// Whether all planes are restored with one beam that is known only once they are there.
-  bool in_common() const { return o_.niter > 0 && o_.restoringbeam == "common"; }
-
-  /// Of models and residuals as they were written.
-  void restore_in_common() {
-    const imager::StageTimer timer(times_, "restore");
-    std::vector<imager::Beam> beams;
-    for (const PlaneReport& plane : report_.planes)
-      if (cleaned(plane)) beams.push_back(*plane.beams->restoring);
-    if (beams.empty()) return files_->finish_restored();
-    const imager::Beam common = imager::common_beam(beams);
-    const auto models = open_written(o_, "model"), residuals = open_written(o_, "residual");
-    for (PlaneReport& plane : report_.planes) {
-      if (!cleaned(plane)) continue;
-      plane.beams->restoring = common;
-      plane.beams->how = "common to all planes";
-      const imager::Image primary_beam = primary_beam_at(plane.frequency_hz);
-      for (std::size_t s = 0; s < stokes_.size(); ++s) {
-        const imager::PlaneIndex at{plane.channel, static_cast<int>(s)};
-        const imager::Image restored = restore(models->read(at), residuals->read(at), common);
-        plane.stokes[s].brightest = imager::find_peak(restored);
-        files_->write_restored(at, {.restored = &restored, .primary_beam = primary_beam_ ? &primary_beam : nullptr}, common);
-      }
-    }
-    files_->finish_restored();
-  }
-  static bool cleaned(const PlaneReport& plane) { return plane.stokes.front().clean.has_value(); }
-
-  /// What the report tells of a plane.
-  void look_at(const imager::PlaneIndex& at, const imager::Image& residual, const imager::Image& image, PlaneRun& plane) {
-    const imager::StageTimer timer(times_, "statistics");
-    StokesReport& told = plane.report().stokes[static_cast<std::size_t>(at.stokes)];
-    const double noise_jy = told.clean ? told.clean->final_state().rms_jy : imager::sampled_noise(residual);
-    const auto [least, largest] = extremes(residual);
-    told.histogram = {.noise_jy = noise_jy, .min_jy = least, .max_jy = largest, .count = {}};
-    told.brightest = imager::find_peak(image);
-  }
-
   void finish(int channel, PlaneRun& run) {
     PlaneReport& plane = report_.planes.emplace_back(std::move(run.report()));
     plane.channel = channel;
@@ -392,9 +223,7 @@ class CubeRun {
 
   void finish_files() {
     if (report_.planes.size() == empty_) throw_nothing();
-    const imager::StageTimer timer(times_, "write images");
-    files_->finish(in_common());
-    if (in_common()) restore_in_common();
+    products_->finish(report_.planes);
     report_.counts.outside_grid = outside_grid_;
     report_.plan.push_back(left_out_decision(report_.counts));
     if (outside_grid_ > 0) warn(outside_grid_warning(outside_grid_, reach_));
@@ -448,14 +277,12 @@ class CubeRun {
   imager::UvwReach reach_;
   std::unique_ptr<CleanStage> clean_;  ///< null without CLEAN
   RunPlan plan_;
-  CubeBatches batches_;
+  std::unique_ptr<CubeVisibilities> visibilities_;
   std::shared_ptr<const imager::PlannedTransform> transform_;
-  std::unique_ptr<CubeFiles> files_;
   std::unique_ptr<PlaneScene> scene_;
+  std::unique_ptr<CubeProducts> products_;
   std::shared_ptr<const imager::ImagingWeights> common_weights_;  ///< null where each plane has its own
-  imager::GatheredPlanes gathered_;                               ///< of the batch at hand
   std::unique_ptr<PrimaryBeamStage> primary_beam_;                ///< null where none is wanted
-  bool unseen_ = false;                                           ///< by the antennas, which was said
   std::uint64_t outside_grid_ = 0;
   std::size_t empty_ = 0;  ///< planes
   bool stopped_ = false;

@@ -1,0 +1,103 @@
+#include "tools/run/cube_visibilities.h"
+
+#include <algorithm>
+#include <string>
+
+#include "imager/handed_over.h"
+
+namespace misfit::tools {
+
+CubeVisibilities::CubeVisibilities(const ms_io::MeasurementSet& set, const imager::CubeSampling& sampling,
+                                   const CubeBatches& batches, int threads, bool stops_itself)
+    : set_(set), sampling_(sampling), batches_(batches), threads_(threads), stops_itself_(stops_itself) {}
+
+/// What of the set such planes need; null where it has nothing for them.
+std::unique_ptr<ms_io::MeasurementSet> CubeVisibilities::part_of(const imager::PlaneRange& range) const {
+  const double first = sampling_.axis.frequency_hz(range.first);
+  const double last = sampling_.axis.frequency_hz(range.first + range.count - 1), half = 0.5 * sampling_.axis.width_hz();
+  return set_.part(std::min(first, last) - half, std::max(first, last) + half);
+}
+
+std::string CubeVisibilities::numbers_of(const imager::PlaneRange& range) const {
+  const std::string of = " of " + std::to_string(sampling_.axis.channels);
+  if (range.count == 1) return std::to_string(range.first) + of;
+  return std::to_string(range.first) + " to " + std::to_string(range.first + range.count - 1) + of;
+}
+
+/// The visibilities of some planes, unless they are there.
+void CubeVisibilities::gather(const imager::PlaneRange& batch, ProgressLine& progress, imager::StageTimes& times) {
+  if (gathered_.planes.size() == static_cast<std::size_t>(batch.count)) return;
+  progress.begin("planes " + numbers_of(batch));
+  if (const auto part = part_of(batch)) {
+    const auto update = [&](std::uint64_t done, std::uint64_t total) { progress.update(done, total); };
+    gathered_ = imager::gather_planes(*part, sampling_, batch, threads_, update, times);
+  } else {
+    gathered_.planes.resize(static_cast<std::size_t>(batch.count));
+  }
+  progress.end();
+}
+
+void CubeVisibilities::look_through(const std::function<void(const imager::VisibilitySource&)>& visit, ProgressLine& progress,
+                                    imager::StageTimes& times) {
+  for (const imager::PlaneRange& batch : batches_of(sampling_.axis.channels, batches_.planes)) {
+    if (batches_.read_again) {
+      if (const auto part = part_of(batch)) visit(imager::PlaneView(*part, sampling_, batch.first));
+      continue;
+    }
+    gather(batch, progress, times);
+    for (const imager::StoredVisibilities& plane : gathered_.planes) visit(plane);
+    if (batch.count < sampling_.axis.channels) gathered_ = {};
+  }
+}
+
+void CubeVisibilities::for_each_plane(const PlaneVisitor& visitor, ProgressLine& progress, imager::StageTimes& times) {
+  for (const imager::PlaneRange& batch : batches_of(sampling_.axis.channels, batches_.planes)) {
+    if (visitor.stopped()) return;
+    if (batches_.read_again) {
+      visit_streamed(batch.first, visitor);
+      continue;
+    }
+    gather(batch, progress, times);
+    count_read(gathered_.counts);
+    outside_planes_ += gathered_.outside_planes;
+    visit_held(batch, visitor, progress);
+    gathered_ = {};
+  }
+}
+
+void CubeVisibilities::visit_held(const imager::PlaneRange& batch, const PlaneVisitor& visitor, ProgressLine& progress) {
+  progress.begin("images " + numbers_of(batch), stops_itself_);
+  for (int i = 0; i < batch.count && !visitor.stopped(); ++i) {
+    progress.update(static_cast<std::uint64_t>(i), static_cast<std::uint64_t>(batch.count));
+    imager::StoredVisibilities& plane = gathered_.planes[static_cast<std::size_t>(i)];
+    if (plane.samples() == 0) {
+      visitor.leave_empty(batch.first + i);
+      continue;
+    }
+    const imager::HandedOver source(std::move(plane));
+    imager::StreamedVisibilities visibilities(source, {.keep = true, .ahead = 0, .uv_reach_lambda = 0});
+    visitor.make(batch.first + i, visibilities);
+  }
+  progress.end();
+}
+
+/// A plane that reads its own visibilities in every pass.
+void CubeVisibilities::visit_streamed(int channel, const PlaneVisitor& visitor) {
+  const auto part = part_of({channel, 1});
+  if (!part) return visitor.leave_empty(channel);
+  const imager::PlaneView source(*part, sampling_, channel);
+  imager::StreamedVisibilities visibilities(source, {.keep = false, .ahead = 0, .uv_reach_lambda = 0});
+  try {
+    visitor.make(channel, visibilities);
+    count_read(visibilities.counts());
+  } catch (const imager::NothingUsable&) {
+    visitor.leave_empty(channel);
+  }
+}
+
+void CubeVisibilities::count_read(imager::SampleCounts counts) {
+  counts.used = 0;
+  counts_ += counts;
+}
+
+}  // namespace misfit::tools
