@@ -39,7 +39,7 @@ int samples_of_a_row(const imager::CubeSampling& sampling, const std::vector<ms_
 }
 
 CubeBatches plan_batches(const RunScene& scene, const RunPlan& plan) {
-  constexpr double enough_bytes = gib;  // each pass over the set reads little more than its planes' channels
+  constexpr double enough_bytes = gib / 4;  // each pass over the set reads little more than its planes' channels
   const double wanted = scene.options.memory_gib > 0 ? scene.options.memory_gib * gib : physical_memory_bytes() / 2;
   const double plane = gathered_bytes(scene, plan), flight = in_flight_bytes(scene, plan);
   // Planes wait while one is imaged, whose visibilities the plan counts.
