@@ -30,6 +30,7 @@ void ColumnReader::attach(Cells<T>& cells, const std::string& name) const {
   cells.name = name;
   cells.column.attach(source_->set, name);
   cells.shapes = known_shapes(source_->set, name);
+  limit_tile_cache(source_->set, name);
 }
 
 template <typename Action>

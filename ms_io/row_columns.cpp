@@ -55,6 +55,14 @@ CellShapes known_shapes(const casacore::Table& table, const std::string& column)
   return {true, all};
 }
 
+void limit_tile_cache(const casacore::Table& table, const std::string& column) {
+  constexpr casacore::uInt most_mib = 64;
+  const casacore::Block<casacore::String> parts = table.getPartNames(true);
+  if (parts.size() != 1 || !table.isRootTable()) return;
+  if (table.findDataManager(column, true)->dataManagerType().substr(0, 5) != "Tiled") return;
+  casacore::ROTiledStManAccessor(table, column, true).setMaximumCacheSize(most_mib);
+}
+
 std::vector<Rows> pieces(const std::vector<Run>& runs, std::uint64_t rows) {
   std::vector<Rows> result;
   std::vector<Run> piece;

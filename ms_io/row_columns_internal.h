@@ -40,6 +40,10 @@ struct CellShapes {
 
 CellShapes known_shapes(const casacore::Table& table, const std::string& column);
 
+/// Keeps the tiles that a column holds in memory within 64 MiB. Without that slices of channels leave all tiles that they touched
+/// there.
+void limit_tile_cache(const casacore::Table& table, const std::string& column);
+
 /// `runs` cut into pieces of at most `rows` rows.
 std::vector<Rows> pieces(const std::vector<Run>& runs, std::uint64_t rows);
 

@@ -1,7 +1,5 @@
 #include "tools/run/cube_run.h"
 
-#include <malloc.h>
-
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -45,8 +43,6 @@ class CubeRun {
   }
 
   bool run() {
-    mallopt(M_MMAP_THRESHOLD, 1 << 30);  // what a plane's images and grids took, the next one's take:
-    mallopt(M_TRIM_THRESHOLD, 1 << 30);  // pages fresh from the system are as dear as gridding into them
     open();
     plan();
     if (o_.dry_run) {
