@@ -232,6 +232,48 @@ BOOST_AUTO_TEST_CASE(planes_are_restored_with_one_beam_on_demand) {
   }
 }
 
+BOOST_AUTO_TEST_CASE(what_other_runs_left_goes) {
+  const LineSet data("TOPO");
+  const Arguments options{"--outframe", "TOPO", "--nchan", "2", "--start", "15"};
+  const auto there = [&](const char* name) { return std::filesystem::exists(data.folder / name); };
+  const auto quiet = [](const Arguments& arguments) {  // it says what it removes, but not when quiet
+    const Outcome outcome = run(arguments + Arguments{"--quiet"});
+    BOOST_TEST_INFO(outcome.err);
+    BOOST_TEST(outcome.code == 0);
+  };
+  Arguments band = cube(data.set, data.folder / "a");
+  band.resize(band.size() - 2);  // without --specmode
+  quiet(band + Arguments{"--niter", "5"});
+  BOOST_TEST(there("a.components.csv"));
+  quiet(cube(data.set, data.folder / "a") + options + Arguments{"--niter", "5", "--usemask", "auto"});
+  for (const char* gone : {"a.components.csv", "a.clean.state", "a.dirty.png", "a.uv.png"}) BOOST_TEST(!there(gone), gone);
+  for (const char* made : {"a.image.fits", "a.mask.fits", "a.clean/1.state"}) BOOST_TEST(there(made), made);
+  quiet(cube(data.set, data.folder / "a") + options);
+  for (const char* gone : {"a.image.fits", "a.model.fits", "a.mask.fits", "a.image.png", "a.clean"})
+    BOOST_TEST(!there(gone), gone);
+  BOOST_TEST(there("a.residual.fits"));
+}
+
+BOOST_AUTO_TEST_CASE(headers_state_the_error_of_all_planes) {
+  const LineSet data("TOPO");
+  succeed(cube(data.set, data.folder / "a") +
+          Arguments{"--outframe", "TOPO", "--start", "1.41990GHz", "--nchan", "8", "--verify", "16"});  // the first are empty
+  const std::string header = content(data.folder / "a.residual.fits").substr(0, 2880 * 4);
+  for (const char* card : {"ERRASKED", "ERREXPEC", "ERRBOUND", "ERRBMAX", "ERRMEAS", "ERRPRED"})
+    BOOST_TEST(header.find(card) != std::string::npos, card);
+}
+
+BOOST_AUTO_TEST_CASE(masks_of_another_frame_are_refused) {
+  const LineSet data("TOPO");
+  const Arguments options{"--nchan", "3", "--start", "1.4202GHz", "--niter", "5"};
+  succeed(cube(data.set, data.folder / "a") + options + Arguments{"--outframe", "TOPO"});
+  const Outcome outcome = run(cube(data.set, data.folder / "b") + options +
+                              Arguments{"--outframe", "LSRK", "--startmodel", data.folder / "a.model.fits"});
+  BOOST_TEST(outcome.code == 1);
+  BOOST_TEST_INFO(outcome.err);
+  BOOST_TEST(outcome.err.find("in TOPOCENT; expected one plane, or the image's") != std::string::npos);
+}
+
 BOOST_AUTO_TEST_CASE(common_density_weighs_all_planes_alike) {
   const LineSet data("TOPO");
   const Arguments options{"--outframe", "TOPO", "--weighting", "uniform", "--nchan", "3", "--start", "4"};

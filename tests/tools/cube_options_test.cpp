@@ -95,6 +95,7 @@ BOOST_AUTO_TEST_CASE(what_cannot_be_is_refused_in_one_line) {
                                        {cube("-1"), "--start -1"},
                                        {cube("1.5GHz", "", 4), "hold no data; expected some within 1.3995 GHz to 1.4095 GHz"},
                                        {cube("1.4GHz", "-500MHz", 9), "not positive"},
+                                       {cube("", "0.01Hz"), "wider planes, or --nchan: it takes 1e+09 to the end"},
                                        {cube("somewhere"), "--start somewhere: expected a number of channels, a frequency"},
                                        {cube("5km"), "--start 5km"},
                                        {cube("", "0"), "--chanwidth 0"},

@@ -14,12 +14,13 @@ namespace {
 
 std::string described(const imager::SpectralAxis& axis) {
   return std::to_string(axis.channels) + " planes of " + significant(axis.width_hz(), 6) + " Hz from " +
-         significant(axis.reference_hz, 9) + " Hz on";
+         significant(axis.reference_hz, 9) + " Hz on" + (axis.frame.empty() ? "" : " in " + axis.frame);
 }
 
 bool same_planes(const imager::SpectralAxis& a, const imager::SpectralAxis& b) {
   const auto near = [&](int plane) { return std::abs(b.plane_of(a.frequency_hz(plane)) - plane) < 0.1; };
-  return a.channels == b.channels && near(0) && near(a.channels - 1);
+  const bool frames = a.frame.empty() || b.frame.empty() || a.frame == b.frame;
+  return frames && a.channels == b.channels && near(0) && near(a.channels - 1);
 }
 
 }  // namespace

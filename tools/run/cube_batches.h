@@ -20,7 +20,8 @@ struct CubeBatches {
   imager::Decision decision;
 };
 
-/// As many as take a quarter of a GiB together, and fit in --memory, or half of the machine's, beside what one plane's images need.
+/// As many as take a quarter of a GiB together, and fit in --memory, or half of the machine's, beside what one plane's images
+/// need.
 CubeBatches plan_batches(const RunScene& scene, const RunPlan& plan);
 
 /// The planes in batches of nearly the same size, at most `most`.

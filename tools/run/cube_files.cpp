@@ -11,6 +11,7 @@ CubeFiles::CubeFiles(const ImageOptions& o, const imager::ImageHeader& header, b
     imager::ImageHeader own = header;
     own.unit = unit;
     if (one_stokes) own.stokes.resize(1);
+    for (const std::string& path : image_paths(o.imagename + "." + kind, o.outformat)) paths_.push_back(path);
     return open_image_files(o.imagename + "." + kind, own, pixel_format(o.accuracy), o.outformat);
   };
   psf_ = open("psf", "Jy/beam", true);
@@ -46,6 +47,11 @@ void CubeFiles::write_restored(const imager::PlaneIndex& at, const Plane& plane,
   if (!corrected_ || plane.primary_beam == nullptr || brightness == nullptr) return;
   const imager::Image corrected = imager::corrected(*brightness, *plane.primary_beam);
   put(corrected_, at, &corrected, beam);
+}
+
+void CubeFiles::add_cards(const std::vector<imager::HeaderCard>& cards) {
+  for (const Writer* writer : {&psf_, &residual_, &model_, &mask_, &primary_beam_, &restored_, &corrected_})
+    if (*writer) (*writer)->add_cards(cards);
 }
 
 void CubeFiles::finish(bool restored_follow) {

@@ -32,6 +32,10 @@ class CubeFiles {
   void write(const imager::PlaneIndex& at, const Plane& plane, const std::optional<imager::Beam>& beam);
   /// The restored image alone, where it comes later, and what --pbcor makes of it.
   void write_restored(const imager::PlaneIndex& at, const Plane& plane, const std::optional<imager::Beam>& beam);
+  /// Numbers for the headers of all of them, which are known once planes are made.
+  void add_cards(const std::vector<imager::HeaderCard>& cards);
+  /// Those that finish() makes.
+  const std::vector<std::string>& paths() const { return paths_; }
   /// All files get their names; but for those of restored images where these follow, since they wait for a beam of all.
   void finish(bool restored_follow);
   void finish_restored();
@@ -40,6 +44,7 @@ class CubeFiles {
   using Writer = std::unique_ptr<imager::ImageWriter>;
   static void put(const Writer& writer, const imager::PlaneIndex& at, const imager::Image* image,
                   const std::optional<imager::Beam>& beam);
+  std::vector<std::string> paths_;
   Writer psf_, residual_, model_, restored_, mask_, primary_beam_, corrected_;  ///< null where there is no such image
 };
 

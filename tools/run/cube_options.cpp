@@ -121,7 +121,11 @@ class AxisMaker {
   int planes_to_end() const {
     const double end = axis_.increment_hz > 0 ? band_.high_hz : band_.low_hz;
     const double planes = (end - (axis_.reference_hz - 0.5 * axis_.increment_hz)) / axis_.increment_hz;
-    return static_cast<int>(std::clamp(std::round(planes), 1.0, 1.0 * most_planes));
+    if (planes > most_planes)
+      refuse_option("chanwidth", o_.chanwidth,
+                    "wider planes, or --nchan: it takes " + significant(planes, 3) + " to the end of the data, where " +
+                        std::to_string(most_planes) + " are the most");
+    return std::max(1, static_cast<int>(std::round(planes)));
   }
 
   void check() const {

@@ -7,6 +7,8 @@
 #include "imager/common_beam.h"
 #include "imager/noise.h"
 #include "tools/run/cube_pictures.h"
+#include "tools/run/image_files.h"
+#include "tools/run/left_over.h"
 
 namespace misfit::tools {
 namespace {
@@ -19,6 +21,13 @@ std::pair<double, double> extremes(const imager::Image& image) {
     largest = pixel > largest ? pixel : largest;
   }
   return {least, largest};
+}
+
+/// Whether a mask is to be written: one that the user has under its name stays.
+bool has_mask(const ImageOptions& o) {
+  const std::vector<std::string> paths = image_paths(o.imagename + ".mask", o.outformat);
+  const bool kept = std::any_of(paths.begin(), paths.end(), [&](const std::string& path) { return is_input(o, path); });
+  return o.niter > 0 && (o.usemask == "auto" || !o.mask.empty()) && !kept;
 }
 
 /// Whether it holds what CLEAN made.
@@ -36,7 +45,7 @@ const imager::Image* unless_empty(const imager::Image& image) {
 CubeProducts::CubeProducts(const PlaneScene& scene, const imager::ImageHeader& header, const PrimaryBeamStage* primary_beam)
     : scene_(scene),
       axis_(header.spectral),
-      files_(scene.options, header, scene.options.usemask == "auto" || !scene.options.mask.empty()),
+      files_(scene.options, header, has_mask(scene.options)),
       primary_beam_(primary_beam),
       in_common_(scene.options.niter > 0 && scene.options.restoringbeam == "common") {}
 
@@ -69,12 +78,17 @@ void CubeProducts::write(int channel, PlaneRun& plane) {
   }
 }
 
-void CubeProducts::finish(std::vector<PlaneReport>& planes) {
+std::vector<std::string> CubeProducts::finish(std::vector<PlaneReport>& planes, const std::vector<imager::HeaderCard>& cards) {
+  std::vector<std::string> removed;
   {
     const imager::StageTimer timer(scene_.times, "write images");
+    remove_other_images(scene_.options, files_.paths(), removed);
+    remove_left_over_of_cube(scene_.options, axis_.channels, removed);
+    files_.add_cards(cards);
     files_.finish(in_common_);
   }
   if (in_common_) restore_in_common(planes);
+  return removed;
 }
 
 /// Without pixels where none is wanted.

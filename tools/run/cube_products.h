@@ -19,8 +19,9 @@ class CubeProducts {
 
   /// Writes a plane, and adds to its report what its pixels tell.
   void write(int channel, PlaneRun& plane);
-  /// After the last plane. Tells reports of the common beam, where there is one.
-  void finish(std::vector<PlaneReport>& planes);
+  /// After the last plane, with numbers for the headers. Tells reports of the common beam, where there is one. Returns the
+  /// names of files that an earlier run left and this one removed.
+  std::vector<std::string> finish(std::vector<PlaneReport>& planes, const std::vector<imager::HeaderCard>& cards);
 
  private:
   imager::Image primary_beam_at(double frequency_hz);

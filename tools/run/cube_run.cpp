@@ -199,6 +199,8 @@ class CubeRun {
 
   void clean(int channel, PlaneRun& plane) {
     clean_->begin_channel(channel);
+    if (const std::string warning = clean_->warning(); !warning.empty() && !std::exchange(warned_of_clean_, true))
+      warn("plane " + std::to_string(channel) + ": " + warning);
     plane.clean(*clean_, report_.options, [&](std::size_t, const imager::CleanState& state) {
       if (state.cycles.size() > 1) ++work_.major_cycles;
     });
@@ -219,7 +221,10 @@ class CubeRun {
 
   void finish_files() {
     if (report_.planes.size() == empty_) throw_nothing();
-    products_->finish(report_.planes);
+    std::string removed;
+    for (const std::string& path : products_->finish(report_.planes, error_cards(report_)))
+      removed += (removed.empty() ? "" : ", ") + path;
+    if (!removed.empty()) progress_.say("removed what an earlier run left: " + removed);
     report_.counts.outside_grid = outside_grid_;
     report_.plan.push_back(left_out_decision(report_.counts));
     if (outside_grid_ > 0) warn(outside_grid_warning(outside_grid_, reach_));
@@ -282,6 +287,7 @@ class CubeRun {
   std::uint64_t outside_grid_ = 0;
   std::size_t empty_ = 0;  ///< planes
   bool stopped_ = false;
+  bool warned_of_clean_ = false;  ///< what is so of one plane is mostly so of all
 };
 
 }  // namespace

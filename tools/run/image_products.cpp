@@ -10,30 +10,26 @@ namespace misfit::tools {
 std::vector<imager::HeaderCard> error_cards(const RunReport& report) {
   std::vector<imager::HeaderCard> cards;
   if (report.accuracy != 0) cards.push_back({"ERRASKED", report.accuracy, "accuracy asked: RMS error over image RMS"});
-  const auto add_largest = [&](const char* keyword, const auto& of, const char* comment) {
-    double largest = 0;
+  // Of all planes and Stokes parameters; planes without samples have none.
+  const auto add_largest = [&](const char* keyword, const auto& part, const auto& number, const char* comment) {
+    double largest = -1;
     for (const PlaneReport& plane : report.planes)
-      for (const StokesReport& stokes : plane.stokes) largest = std::max(largest, of(stokes));
-    cards.push_back({keyword, largest, comment});
+      for (const StokesReport& stokes : plane.stokes)
+        if (const auto& has = stokes.*part) largest = std::max(largest, (*has).*number);
+    if (largest >= 0) cards.push_back({keyword, largest, comment});
   };
-  const PlaneReport& first = report.planes.front();
-  if (first.stokes.front().theory) {
-    add_largest(
-        "ERREXPEC", [](const auto& s) { return s.theory->expected_rms; }, "expected RMS error over image RMS");
-    add_largest(
-        "ERRBOUND", [](const auto& s) { return s.theory->bound_rms; }, "bound on it, whatever the data");
-    add_largest(
-        "ERRBMAX", [](const auto& s) { return s.theory->bound_max; }, "bound on any pixel's error over image RMS");
-  }
-  if (first.stokes.front().measured) {
-    add_largest(
-        "ERRMEAS", [](const auto& s) { return s.measured->rms; }, "measured RMS error over image RMS");
-    add_largest(
-        "ERRMMAX", [](const auto& s) { return s.measured->max; }, "largest measured error over image RMS");
-  }
-  if (first.measured_predict_rms) cards.push_back({"ERRPRED", *first.measured_predict_rms, "measured RMS error of prediction"});
-  if (first.predicted_noise_jy != 0)
-    cards.push_back({"NOISPRED", first.predicted_noise_jy, "Jy/beam, noise predicted from the weights"});
+  using Theory = imager::TheoreticalError;
+  using Measured = imager::PixelError;
+  add_largest("ERREXPEC", &StokesReport::theory, &Theory::expected_rms, "expected RMS error over image RMS");
+  add_largest("ERRBOUND", &StokesReport::theory, &Theory::bound_rms, "bound on it, whatever the data");
+  add_largest("ERRBMAX", &StokesReport::theory, &Theory::bound_max, "bound on any pixel's error over image RMS");
+  add_largest("ERRMEAS", &StokesReport::measured, &Measured::rms, "measured RMS error over image RMS");
+  add_largest("ERRMMAX", &StokesReport::measured, &Measured::max, "largest measured error over image RMS");
+  double predicted = -1;
+  for (const PlaneReport& plane : report.planes) predicted = std::max(predicted, plane.measured_predict_rms.value_or(-1));
+  if (predicted >= 0) cards.push_back({"ERRPRED", predicted, "measured RMS error of prediction"});
+  if (!report.cube && report.planes.front().predicted_noise_jy != 0)
+    cards.push_back({"NOISPRED", report.planes.front().predicted_noise_jy, "Jy/beam, noise predicted from the weights"});
   // An image of zeros has no relative error, and a FITS header no number for that.
   std::erase_if(cards, [](const imager::HeaderCard& card) { return !std::isfinite(card.value); });
   return cards;

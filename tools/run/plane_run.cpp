@@ -84,7 +84,8 @@ void PlaneRun::choose_beams() {
   const imager::StageTimer timer(scene_.times, "fit beam");
   const ImageOptions& o = scene_.options;
   report_.beams = choose_beam(made_.images.psf, scene_.geometry.cell_rad, restoring_beam(o), o.niter > 0 && !o.cube.is_cube());
-  for (const std::string& warning : report_.beams->warnings) scene_.warn(warning + name_);
+  const std::string plane = name_.empty() ? "" : name_.substr(std::string(" of ").size()) + ": ";
+  for (const std::string& warning : report_.beams->warnings) scene_.warn(plane + warning);
 }
 
 void PlaneRun::clean(CleanStage& stage, const nlohmann::json& option_values,

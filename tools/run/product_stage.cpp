@@ -1,25 +1,16 @@
 #include "tools/run/product_stage.h"
 
 #include <algorithm>
-#include <filesystem>
 #include <string_view>
 
 #include "imager/primary_beam.h"
 #include "tools/base/files.h"
 #include "tools/formats/component_list.h"
 #include "tools/run/image_files.h"
-#include "tools/run/taylor_options.h"
+#include "tools/run/left_over.h"
 
 namespace misfit::tools {
 namespace {
-
-/// The middles of the names of all images that a run may write.
-std::vector<std::string> image_kinds() {
-  std::vector<std::string> kinds = taylor_products(imager::most_taylor_terms, true);
-  for (const char* kind : {"psf", "residual", "model", "image", "mask", "pb", "image.pbcor", "pb.tt0", "image.tt0.pbcor"})
-    kinds.emplace_back(kind);
-  return kinds;
-}
 
 /// A list of one, which an initializer cannot be moved into.
 std::vector<imager::Image> alone(imager::Image image) {
@@ -72,7 +63,7 @@ void ProductStage::draw_dirty(const imager::UvCoverage& coverage, const imager::
 std::vector<std::string> ProductStage::write(imager::DirtyImages images) {
   const imager::StageTimer timer(times_, "write images");
   std::vector<std::string> removed =
-      remove_old({"model.png", "image.png", "dirty.png", "alpha.png", "components.csv", "clean.state"});
+      remove_kinds(o_, {"model.png", "image.png", "dirty.png", "alpha.png", "components.csv", "clean.state"});
   add_primary_beam(images.dirty);
   products_.add(named("psf"), "Jy/beam", alone(std::move(images.psf)));
   products_.add(named("residual"), "Jy/beam", std::move(images.dirty));
@@ -80,7 +71,8 @@ std::vector<std::string> ProductStage::write(imager::DirtyImages images) {
     add_further("psf", taylor_->images().psf);
     add_further("residual", taylor_->images().dirty);
   }
-  remove_other_images(removed);
+  remove_other_images(o_, products_.paths(), removed);
+  remove_cube_states(o_, 0, removed);
   remove_other_stokes(removed);
   products_.write();
   return removed;
@@ -120,13 +112,14 @@ std::vector<std::string> ProductStage::write(imager::Image psf, std::vector<imag
   products_.add(named("model"), "Jy/pixel", std::move(models));
   products_.add(named("residual"), "Jy/beam", std::move(residuals));
   const std::vector<std::string> paths = image_paths(o_.imagename + ".mask", o_.outformat);
-  const bool kept = std::any_of(paths.begin(), paths.end(), [&](const std::string& path) { return is_input(path); });
+  const bool kept = std::any_of(paths.begin(), paths.end(), [&](const std::string& path) { return is_input(o_, path); });
   if (masked && !kept) products_.add("mask", "", std::move(masks));
   add_primary_beam(images);
   products_.add(named("image"), "Jy/beam", std::move(images));
   if (taylor_ != nullptr) add_taylor(cleaned.front());
-  std::vector<std::string> removed = remove_old({taylor_ != nullptr ? "components.csv" : "alpha.png"});
-  remove_other_images(removed);
+  std::vector<std::string> removed = remove_kinds(o_, {taylor_ != nullptr ? "components.csv" : "alpha.png"});
+  remove_other_images(o_, products_.paths(), removed);
+  remove_cube_states(o_, 0, removed);
   remove_other_stokes(removed);
   products_.write();
   return removed;
@@ -213,36 +206,8 @@ void ProductStage::remove_other_stokes(std::vector<std::string>& removed) const 
   }
   if (scene_.stokes.size() > 1)
     for (const char* kind : {"dirty.png", "model.png", "residual.png", "image.png", "clean.state"}) kinds.emplace_back(kind);
-  const std::vector<std::string> others = remove_old(kinds);
+  const std::vector<std::string> others = remove_kinds(o_, kinds);
   removed.insert(removed.end(), others.begin(), others.end());
-}
-
-/// Files of images that an earlier run left, of kinds or in a format that this one does not make.
-void ProductStage::remove_other_images(std::vector<std::string>& removed) const {
-  const std::vector<std::string> made = products_.paths();
-  for (const std::string& kind : image_kinds())
-    for (const std::string& path : image_paths(o_.imagename + "." + kind, "both")) {
-      std::error_code failed;
-      if (std::count(made.begin(), made.end(), path) > 0 || is_input(path) || !is_own_image(path)) continue;
-      if (std::filesystem::remove_all(path, failed) > 0 && !failed) removed.push_back(path);
-    }
-}
-
-/// Whether the user named it: such a file stays as it is.
-bool ProductStage::is_input(const std::string& path) const {
-  std::error_code absent;
-  return std::filesystem::equivalent(path, o_.mask, absent) || std::filesystem::equivalent(path, o_.startmodel, absent);
-}
-
-/// Other files that an earlier run of this name left and this one does not make.
-std::vector<std::string> ProductStage::remove_old(const std::vector<std::string>& kinds) const {
-  std::vector<std::string> removed;
-  for (const std::string& kind : kinds) {
-    const std::string path = o_.imagename + "." + kind;
-    std::error_code failed;  // a folder of that name stays
-    if (std::filesystem::remove(path, failed)) removed.push_back(path);
-  }
-  return removed;
 }
 
 }  // namespace misfit::tools

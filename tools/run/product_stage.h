@@ -68,10 +68,7 @@ class ProductStage {
   void add_further(const std::string& kind, std::vector<imager::Image>& images);
   void add_taylor(imager::CleanResult& cleaned);
   std::vector<imager::Source> sources(const imager::ComponentModel& model) const;
-  void remove_other_images(std::vector<std::string>& removed) const;
-  bool is_input(const std::string& path) const;
   void remove_other_stokes(std::vector<std::string>& removed) const;
-  std::vector<std::string> remove_old(const std::vector<std::string>& kinds) const;
 
   const ImageOptions& o_;
   ProductScene scene_;
