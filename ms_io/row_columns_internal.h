@@ -40,8 +40,8 @@ struct CellShapes {
 
 CellShapes known_shapes(const casacore::Table& table, const std::string& column);
 
-/// Keeps the tiles that a column holds in memory within 64 MiB. Without that slices of channels leave all tiles that they touched
-/// there.
+/// Keeps the tiles that a column holds in memory within 64 MiB. Without that slices of channels leave all tiles that they
+/// touched there.
 void limit_tile_cache(const casacore::Table& table, const std::string& column);
 
 /// `runs` cut into pieces of at most `rows` rows.

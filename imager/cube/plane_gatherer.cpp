@@ -180,9 +180,12 @@ void PlaneGatherer::count_outside(const VisibilityBlock& block, const std::vecto
   const double low = -0.5, high = sampling_.axis.channels - 0.5;
   for (const Rows& some : rows) {
     const double ratio = block.frame_ratio.empty() ? 1 : block.frame_ratio[some.first];
+    std::vector<bool> taken(block.channels());
+    for (const PlaneChannels& plane : some.map->planes)
+      for (const ChannelTap& tap : plane.tap) taken[tap.channel] = taken[tap.other] = true;
     for (std::size_t c = 0; c < block.channels(); ++c) {
       const double plane = sampling_.axis.plane_of(block.frequency_hz[c] * ratio);
-      if (plane >= low && plane < high) continue;
+      if ((plane >= low && plane < high) || taken[c]) continue;
       for (std::size_t row = some.first; row < some.end; ++row)
         outside_planes_ += block.weight[row * block.channels() + c] != 0;
     }

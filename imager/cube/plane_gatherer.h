@@ -25,7 +25,7 @@ class PlaneGatherer {
   void add(const VisibilityBlock& block);
   /// The blocks of a plane, counted from range.first, that are full, or all there are after the last add().
   std::vector<std::shared_ptr<const VisibilityBlock>> take(int plane, bool all);
-  /// Usable samples added that lie in no plane of the cube.
+  /// Usable samples added that lie in no plane of the cube, and are taken by none of the range.
   std::uint64_t outside_planes() const { return outside_planes_; }
 
  private:

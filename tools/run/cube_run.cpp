@@ -160,10 +160,7 @@ class CubeRun {
       if (report_.planes.empty()) throw;
       stopped_ = true;
     }
-    const std::uint64_t used = report_.counts.used;
-    report_.counts = visibilities_->counts();
-    report_.counts.used = used;
-    report_.outside_planes = visibilities_->outside_planes();
+    count_samples();
   }
 
   /// It has no values and no beam.
@@ -214,9 +211,19 @@ class CubeRun {
     PlaneReport& plane = report_.planes.emplace_back(std::move(run.report()));
     plane.channel = channel;
     plane.frequency_hz = sampling_.axis.frequency_hz(channel);
-    report_.counts.used += plane.sums.used;
+    report_.plane_samples += plane.sums.used;
     outside_grid_ += plane.sums.outside_grid;
     if (o_.niter > 0) progress_.say(plane_message(plane, planes()));
+  }
+
+  /// Each sample read once: what is left out for no reason is used.
+  void count_samples() {
+    imager::SampleCounts& counts = report_.counts = visibilities_->counts();
+    report_.outside_planes = visibilities_->outside_planes();
+    counts.outside_grid = outside_grid_;
+    const std::uint64_t left_out = counts.autocorrelations + counts.flagged + counts.nonfinite + counts.zero_weight +
+                                   counts.outside_grid + report_.outside_planes;
+    counts.used = counts.samples_read - std::min(counts.samples_read, left_out);
   }
 
   void finish_files() {
@@ -225,7 +232,6 @@ class CubeRun {
     for (const std::string& path : products_->finish(report_.planes, error_cards(report_)))
       removed += (removed.empty() ? "" : ", ") + path;
     if (!removed.empty()) progress_.say("removed what an earlier run left: " + removed);
-    report_.counts.outside_grid = outside_grid_;
     report_.plan.push_back(left_out_decision(report_.counts));
     if (outside_grid_ > 0) warn(outside_grid_warning(outside_grid_, reach_));
     if (empty_ > 0)

@@ -83,9 +83,13 @@ std::string divergence_warning(const imager::CleanReport& report) {
 }
 
 std::string summary(const RunReport& r) {
-  std::string text = counted(r.counts.used) + " of " + counted(r.counts.samples_read) + " samples imaged; expected error " +
-                     significant(largest_expected_error(r), 2);
   const PlaneReport& plane = r.planes[r.shown];
+  const std::string imaged = r.cube ? " samples imaged, as " + counted(r.plane_samples) + " of " +
+                                          std::to_string(r.cube->channels) + " planes; at plane " +
+                                          std::to_string(plane.channel) + ", the brightest: expected error "
+                                    : " samples imaged; expected error ";
+  std::string text =
+      counted(r.counts.used) + " of " + counted(r.counts.samples_read) + imaged + significant(largest_expected_error(r), 2);
   if (plane.measured_predict_rms) {
     double measured = 0;
     for (const StokesReport& of : plane.stokes) measured = std::max(measured, of.measured->rms);

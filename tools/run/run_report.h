@@ -51,6 +51,7 @@ struct RunReport {
   std::vector<PlaneReport> planes = {{}};      ///< at least one
   std::size_t shown = 0;                       ///< the plane that is drawn, and told of where one is
   std::optional<imager::SpectralAxis> cube{};  ///< null where there is one plane, of the whole band
+  std::uint64_t plane_samples = 0;             ///< in them, which interpolation makes of those used
   std::uint64_t outside_planes = 0;            ///< usable samples that lie in none of them
   imager::SampleCounts counts;
   const OutsideReport* outside = nullptr;
@@ -69,8 +70,8 @@ double largest_expected_error(const RunReport& report);
 /// (whose model was kept), `residual_histogram` (see histogram_json()) and `stokes` (a list of {stokes, error, noise, clean,
 /// residual_histogram}, of which the first is what the report's own keys hold) are additions. Of a cube these keys tell of the
 /// plane that is drawn, `spectral_axis` of its planes' frequencies, `planes` (a list of {plane, frequency_hz, used, beam,
-/// noise, brightest_jy, clean, stokes}) of each, and `samples_outside_planes` of usable samples in none; they are null
-/// otherwise.
+/// noise, brightest_jy, clean, stokes}) of each, `plane_samples` and `samples_outside_planes` of usable samples in them and in
+/// none; they are null otherwise.
 nlohmann::json report_json(const RunReport& report);
 
 }  // namespace misfit::tools
