@@ -84,7 +84,7 @@ std::string divergence_warning(const imager::CleanReport& report) {
 
 std::string summary(const RunReport& r) {
   const PlaneReport& plane = r.planes[r.shown];
-  const std::string imaged = r.cube ? " samples imaged, as " + counted(r.plane_samples) + " of " +
+  const std::string imaged = r.cube ? " samples imaged, as " + counted(r.plane_samples) + " in " +
                                           std::to_string(r.cube->channels) + " planes; at plane " +
                                           std::to_string(plane.channel) + ", the brightest: expected error "
                                     : " samples imaged; expected error ";
