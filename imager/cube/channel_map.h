@@ -11,8 +11,7 @@ namespace misfit::imager {
 /// How channels of data become samples of a cube's planes.
 enum class SpectralInterpolation {
   /// A plane takes the channels whose middles lie within it, each with its own u, v and w; where there is none, that which
-  /// covers
-  /// the plane's middle.
+  /// covers the plane's middle.
   nearest,
   /// A plane takes visibilities interpolated between adjacent channels: at its own middle; or, where it is wider than channels,
   /// at as many places, evenly spaced within it, as whole channels fit best. Up to half a channel beyond the last the last

@@ -197,7 +197,6 @@ BOOST_AUTO_TEST_CASE(each_plane_is_cleaned_and_restarted_by_itself) {
   const Arguments options{"--nchan", "4", "--start", "15"};
   succeed(cube(data.set, data.folder / "a") + options + Arguments{"--niter", "10"});
   succeed(cube(data.set, data.folder / "a") + options + Arguments{"--niter", "40", "--restart"});
-  succeed(cube(data.set, data.folder / "b") + options + Arguments{"--niter", "40"});
   const nlohmann::json planes = report_of(data.folder / "a")["planes"];
   BOOST_TEST_REQUIRE(planes.size() == 4U);
   const auto image = imager::open_fits_image(data.folder / "a.image.fits");

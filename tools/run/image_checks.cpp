@@ -43,6 +43,8 @@ void check_image(const ImageOptions& o) {
 /// What is done with one plane of frequency alone.
 void check_cube(const ImageOptions& o) {
   if (!o.cube.is_cube()) return;
+  if (!o.cube.perchanweightdensity && o.weighting == "natural")
+    refuse_option("perchanweightdensity", "false", "weights by density beside it, such as --weighting briggs");
   if (o.savemodel != "none") refuse_option("savemodel", o.savemodel, "none with --specmode cube");
   if (o.check_outside) refuse_option("check-outside", "true", "--specmode mfs beside it");
   if (o.nterms > 1) refuse_option("nterms", std::to_string(o.nterms), "1 with --specmode cube");
