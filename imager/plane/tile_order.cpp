@@ -15,14 +15,19 @@ constexpr std::uint32_t longest_run = (1U << 12) - 1;
 
 struct TiledRun {
   std::uint32_t tile;
-  ChannelRun run;
+  SampleRun run;
 };
 
 /// Which tile a sample's first tap falls into. What does not change from sample to sample is worked out beforehand: divisions
 /// of integers would take longer than all the rest.
 class TileFinder {
  public:
-  explicit TileFinder(const GridShape& shape) : shape_(shape), tiles_u_(shape.tiles_u()), per_cell_(1.0 / shape.tile) {}
+  explicit TileFinder(const GridShape& shape)
+      : shape_(shape),
+        tiles_u_(shape.tiles_u()),
+        per_cell_(1.0 / shape.tile),
+        beyond_u_(beyond(0.5 * shape.nu)),
+        beyond_v_(beyond(0.5 * shape.nv)) {}
 
   struct Place {
     int column;
@@ -35,30 +40,27 @@ class TileFinder {
   }
   std::uint32_t number(const Place& place) const { return static_cast<std::uint32_t>(place.line * tiles_u_ + place.column); }
 
+  /// The positions, in cells, of samples whose first tap falls into one tile; none lie beyond the grid.
+  struct Box {
+    double u_low, u_end, v_low, v_end;
+    bool holds(double u, double v) const { return u >= u_low && u < u_end && v >= v_low && v < v_end; }
+  };
+  Box box(const Place& place) const {
+    const GridShape& s = shape_;
+    const double to_first = 0.5 * s.width - 1;  // the first tap is the whole part of position − to_first
+    const double u = place.column * s.tile - s.first_column(0) + to_first, v = place.line * s.tile - s.first_row(0) + to_first;
+    return {std::max(u, -0.5 * s.nu), std::min(u + s.tile, beyond_u_), v, std::min(v + s.tile, beyond_v_)};
+  }
+
  private:
+  static double beyond(double edge) { return std::nextafter(edge, 2 * edge); }
   /// The whole part of cell / tile: half a cell is more than rounding takes off.
   int tile_of(int cell) const { return static_cast<int>((cell + 0.5) * per_cell_); }
 
   const GridShape& shape_;
   int tiles_u_;
   double per_cell_;
-};
-
-/// The positions, in cells, of samples whose first tap falls into one tile; none lie beyond the grid.
-struct TileBox {
-  double u_low, u_end, v_low, v_end;
-
-  TileBox(const TileFinder::Place& place, const GridShape& s) {
-    const double to_first = 0.5 * s.width - 1;  // the first tap is the whole part of position − to_first
-    u_low = std::max(place.column * s.tile - s.first_column(0) + to_first, -0.5 * s.nu);
-    v_low = place.line * s.tile - s.first_row(0) + to_first;
-    u_end = std::min(place.column * s.tile - s.first_column(0) + s.tile + to_first, beyond(0.5 * s.nu));
-    v_end = std::min(place.line * s.tile - s.first_row(0) + s.tile + to_first, beyond(0.5 * s.nv));
-  }
-  bool holds(double u, double v) const { return u >= u_low && u < u_end && v >= v_low && v < v_end; }
-
- private:
-  static double beyond(double edge) { return std::nextafter(edge, 2 * edge); }
+  double beyond_u_, beyond_v_;  ///< the least positions beyond the grid
 };
 
 /// The runs of a range of rows, in order.
@@ -70,7 +72,10 @@ class RunFinder {
 
   void find(std::size_t begin_row, std::size_t end_row) {
     span_begin_ = span_end_ = begin_row * block_.channels();
-    for (std::size_t row = begin_row; row < end_row; ++row) find_in_row(row);
+    if (block_.channels() == 1)
+      find_among_rows(begin_row, end_row);
+    else
+      for (std::size_t row = begin_row; row < end_row; ++row) find_in_row(row);
     close_span();
   }
 
@@ -87,14 +92,14 @@ class RunFinder {
       std::size_t end = channel + 1;
       if (wants(row * channels + channel, u, v)) {
         const TileFinder::Place place = tiles_.place(u, v, folded.folded);
-        if (end < channels) end = end_of_run(row, channel, TileBox(place, shape_), folded);
-        add_run(tiles_.number(place), row, channel, end);
+        if (end < channels) end = end_of_run(row, channel, tiles_.box(place), folded);
+        add_run(tiles_.number(place), row, channel, end - channel);
       }
       channel = end;
     }
   }
 
-  std::size_t end_of_run(std::size_t row, std::size_t first, const TileBox& box, const FoldedRow& folded) const {
+  std::size_t end_of_run(std::size_t row, std::size_t first, const TileFinder::Box& box, const FoldedRow& folded) const {
     const std::size_t channels = block_.channels();
     const double* const frequency = block_.frequency_hz.data();
     std::size_t end = first + 1;
@@ -102,6 +107,29 @@ class RunFinder {
            box.holds(folded.u_per_hz * frequency[end], folded.v_per_hz * frequency[end]))
       ++end;
     return end;
+  }
+
+  /// Of one channel.
+  void find_among_rows(std::size_t begin_row, std::size_t end_row) {
+    const double frequency = block_.frequency_hz.front();
+    for (std::size_t row = begin_row; row < end_row;) {
+      const FoldedRow folded(&block_.uvw_m[3 * row], scale_);
+      const double u = folded.u_per_hz * frequency, v = folded.v_per_hz * frequency;
+      std::size_t end = row + 1;
+      if (wants(row, u, v)) {
+        const TileFinder::Place place = tiles_.place(u, v, folded.folded);
+        const TileFinder::Box box = tiles_.box(place);
+        const std::size_t limit = std::min(end_row, row + longest_run);
+        if (box.holds(u, v))  // it is where it seems to be, not where it comes by periodicity
+          while (end < limit && usable(end) && holds_row(box, end, frequency)) ++end;
+        add_run(tiles_.number(place), row, 0, end - row);
+      }
+      row = end;
+    }
+  }
+  bool holds_row(const TileFinder::Box& box, std::size_t row, double frequency) const {
+    const FoldedRow folded(&block_.uvw_m[3 * row], scale_);
+    return box.holds(folded.u_per_hz * frequency, folded.v_per_hz * frequency);
   }
 
   bool usable(std::size_t sample) const { return wanted_ == Wanted::all || block_.weight[sample] != 0; }
@@ -113,18 +141,18 @@ class RunFinder {
     return false;
   }
 
-  void add_run(std::uint32_t tile, std::size_t row, std::size_t channel, std::size_t end) {
+  void add_run(std::uint32_t tile, std::size_t row, std::size_t channel, std::size_t count) {
     runs.push_back({tile,
                     {static_cast<std::uint32_t>(row), static_cast<std::uint32_t>(channel) & 0xFFFFF,
-                     static_cast<std::uint32_t>(end - channel) & longest_run}});
+                     static_cast<std::uint32_t>(count) & longest_run}});
     if (wanted_ != Wanted::imaging) return;
-    for (SampleSums& of_set : sums) of_set.used += end - channel;
+    for (SampleSums& of_set : sums) of_set.used += count;
     const std::size_t first = row * block_.channels() + channel;
     if (std::any_of(block_.weight.data() + span_end_, block_.weight.data() + first, [](float w) { return w != 0; })) {
       close_span();
       span_begin_ = first;
     }
-    span_end_ = row * block_.channels() + end;
+    span_end_ = first + count;
   }
 
   /// Sums are taken of spans, since whole vectors are quicker: all samples of weight other than 0 from the first to the last.

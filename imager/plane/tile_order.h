@@ -48,10 +48,10 @@ struct TapPosition {
   TapPosition(double cells, int width) : first(floor_to_int(cells - 0.5 * width + 1)), t(cells - first - 0.5 * (width - 1)) {}
 };
 
-/// Consecutive channels of one row that fall into one tile.
-struct ChannelRun {
+/// Consecutive samples that fall into one tile: channels of one row; or rows, where there is one channel.
+struct SampleRun {
   std::uint32_t row;
-  std::uint32_t first : 20;
+  std::uint32_t first : 20;  ///< channel
   std::uint32_t count : 12;
 };
 
@@ -60,7 +60,7 @@ struct ChannelRun {
 struct TileOrder {
   std::vector<std::size_t> begin;    ///< [tile + 1]
   std::vector<std::size_t> samples;  ///< [tile]
-  std::vector<ChannelRun> run;
+  std::vector<SampleRun> run;
   double highest_frequency_hz = 0;  ///< of the block
   std::vector<SampleSums> sums;     ///< [set]: when imaging, of the samples in the order, and those outside the grid
 };

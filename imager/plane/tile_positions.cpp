@@ -37,6 +37,42 @@ HWY_ATTR void append(const RowInTile& row, const double* frequency_hz, int count
   places.count += count;
 }
 
+HWY_ATTR HWY_INLINE int cell_within(double position, int tile) {
+  int whole = static_cast<int>(position);
+  whole = whole < 0 ? 0 : whole;
+  return whole < tile ? whole : tile - 1;
+}
+
+template <typename Real>
+HWY_ATTR void append_some(RowsInTile rows, const double* HWY_RESTRICT uvw_m, int count, TilePlaces<Real>& places,
+                          bool* HWY_RESTRICT negated) {
+  int* HWY_RESTRICT const column = places.column + places.count;
+  int* HWY_RESTRICT const row = places.row + places.count;
+  Real* HWY_RESTRICT const tu = places.tu + places.count;
+  Real* HWY_RESTRICT const tv = places.tv + places.count;
+  for (int i = 0; i < count; ++i) {
+    const double u_per_hz = uvw_m[3 * i] * rows.u_cells_per_m_hz, v_per_hz = uvw_m[3 * i + 1] * rows.v_cells_per_m_hz;
+    const bool other_half = v_per_hz < 0;
+    const double u = (other_half ? -u_per_hz : u_per_hz) * rows.frequency_hz - rows.u_origin;
+    const double v = (other_half ? -v_per_hz : v_per_hz) * rows.frequency_hz - rows.v_origin;
+    column[i] = cell_within(u, rows.tile);
+    row[i] = cell_within(v, rows.tile);
+    tu[i] = static_cast<Real>(u - column[i] - 0.5);
+    tv[i] = static_cast<Real>(v - row[i] - 0.5);
+    negated[i] = other_half;
+  }
+  places.count += count;
+}
+
+HWY_ATTR void append_rows_float(const RowsInTile& rows, const double* uvw_m, int count, TilePlaces<float>& places,
+                                bool* negated) {
+  append_some(rows, uvw_m, count, places, negated);
+}
+HWY_ATTR void append_rows_double(const RowsInTile& rows, const double* uvw_m, int count, TilePlaces<double>& places,
+                                 bool* negated) {
+  append_some(rows, uvw_m, count, places, negated);
+}
+
 HWY_ATTR void append_float(const RowInTile& row, const double* frequency_hz, int count, TilePlaces<float>& places) {
   append(row, frequency_hz, count, places);
 }
@@ -52,12 +88,21 @@ namespace misfit::imager {
 
 HWY_EXPORT(append_float);
 HWY_EXPORT(append_double);
+HWY_EXPORT(append_rows_float);
+HWY_EXPORT(append_rows_double);
 
 void append_positions(const RowInTile& row, const double* frequency_hz, int count, TilePlaces<float>& places) {
   HWY_DYNAMIC_DISPATCH(append_float)(row, frequency_hz, count, places);
 }
 void append_positions(const RowInTile& row, const double* frequency_hz, int count, TilePlaces<double>& places) {
   HWY_DYNAMIC_DISPATCH(append_double)(row, frequency_hz, count, places);
+}
+
+void append_rows(const RowsInTile& rows, const double* uvw_m, int count, TilePlaces<float>& places, bool* negated) {
+  HWY_DYNAMIC_DISPATCH(append_rows_float)(rows, uvw_m, count, places, negated);
+}
+void append_rows(const RowsInTile& rows, const double* uvw_m, int count, TilePlaces<double>& places, bool* negated) {
+  HWY_DYNAMIC_DISPATCH(append_rows_double)(rows, uvw_m, count, places, negated);
 }
 
 namespace {

@@ -34,4 +34,19 @@ void append_positions(const RowInTile& row, const double* frequency_hz, int coun
 void append_position(const RowInTile& row, double frequency_hz, TilePlaces<float>& places);
 void append_position(const RowInTile& row, double frequency_hz, TilePlaces<double>& places);
 
+/// Rows of UVW at one frequency as a tile sees them, none beyond the grid: (u, v) in metres times *_cells_per_m are cells,
+/// which are negated where v < 0.
+struct RowsInTile {
+  double u_cells_per_m_hz = 0;
+  double v_cells_per_m_hz = 0;
+  double frequency_hz = 0;
+  double u_origin = 0;  ///< see RowInTile
+  double v_origin = 0;
+  int tile = 0;
+};
+
+/// The same of `count` rows of UVW [row][3], which are in `negated` [row] where they are; to the bits of one by one.
+void append_rows(const RowsInTile& rows, const double* uvw_m, int count, TilePlaces<float>& places, bool* negated);
+void append_rows(const RowsInTile& rows, const double* uvw_m, int count, TilePlaces<double>& places, bool* negated);
+
 }  // namespace misfit::imager

@@ -94,7 +94,7 @@ BOOST_AUTO_TEST_CASE(runs_are_as_long_as_they_can_be_and_follow_the_rows) {
   const TileOrder order = order_by_tile(block, sets_of(block, 1), shape_of(6), cell_rad, Wanted::imaging, 2);
   for (std::size_t tile = 0; tile + 1 < order.begin.size(); ++tile)
     for (std::size_t r = order.begin[tile]; r + 1 < order.begin[tile + 1]; ++r) {
-      const ChannelRun a = order.run[r], b = order.run[r + 1];
+      const SampleRun a = order.run[r], b = order.run[r + 1];
       BOOST_TEST((a.row < b.row || (a.row == b.row && a.first + a.count < b.first)));
     }
 }

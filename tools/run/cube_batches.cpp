@@ -4,19 +4,21 @@
 #include <cmath>
 #include <complex>
 
+#include "imager/cube/plane_gatherer.h"
 #include "tools/base/memory.h"
 #include "tools/base/numbers.h"
 
 namespace misfit::tools {
 namespace {
 
-/// Of a plane's blocks while they grow, with what vectors keep in reserve.
+/// Of a plane while it waits; UVW is held once for all.
 double gathered_bytes(const RunScene& scene, const RunPlan& plan) {
-  constexpr double growing = 1.5;
-  const double row = 3 * sizeof(double) + sizeof(float), visibility = sizeof(std::complex<float>);
-  const double rows = static_cast<double>(scene.set.rows());
-  const int stokes = plan.gridding.request.stokes;
-  return growing * stokes * (rows * row + scene.samples * (visibility + sizeof(float)));
+  return scene.samples * (sizeof(float) + 1.0 * plan.gridding.request.stokes * sizeof(std::complex<float>));
+}
+
+/// Of UVW and the order of rows, which planes share.
+double shared_bytes(double rows) {
+  return rows * (3 * sizeof(double) + sizeof(std::uint32_t));
 }
 
 /// Of the blocks that are read ahead, and at hand.
@@ -41,15 +43,16 @@ int samples_of_a_row(const imager::CubeSampling& sampling, const std::vector<ms_
 CubeBatches plan_batches(const RunScene& scene, const RunPlan& plan) {
   constexpr double enough_bytes = gib / 4;  // each pass over the set reads little more than its planes' channels
   const double wanted = scene.options.memory_gib > 0 ? scene.options.memory_gib * gib : physical_memory_bytes() / 2;
-  const double plane = gathered_bytes(scene, plan), flight = in_flight_bytes(scene, plan);
-  // Planes wait while one is imaged, whose visibilities the plan counts.
-  const double room = std::min({enough_bytes, wanted - plan.memory.total() + plane, wanted - plan.memory.process - flight});
+  const double rows = static_cast<double>(scene.set.rows());
+  const double plane = gathered_bytes(scene, plan), shared = shared_bytes(rows), flight = in_flight_bytes(scene, plan);
+  // Planes wait while one is imaged, of whose visibilities the plan counts a copy.
+  const double busy = shared + std::max(plan.memory.total(), plan.memory.process + flight);
+  const double room = std::min(std::max(enough_bytes, plane), wanted - busy);
   CubeBatches batches;
   batches.read_again = !plan.streaming.keep || room < plane;
   batches.planes = batches.read_again ? 1 : static_cast<int>(std::clamp(room / plane, 1.0, 1.0 * scene.planes));
-  const double held = batches.read_again ? 0 : batches.planes * plane;
-  batches.memory_bytes =
-      std::max(plan.memory.total() + held - (batches.read_again ? 0 : plane), plan.memory.process + held + flight);
+  const double streamed = std::min(1.0, static_cast<double>(imager::rows_gathered_at_once) / rows);
+  batches.memory_bytes = busy + (batches.read_again ? streamed : batches.planes) * plane;
   const auto passes = batches_of(scene.planes, batches.planes).size();
   batches.decision = {"planes",
                       std::to_string(scene.planes) + ", of which " + std::to_string(batches.planes) +

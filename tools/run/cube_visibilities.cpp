@@ -26,13 +26,13 @@ std::string CubeVisibilities::numbers_of(const imager::PlaneRange& range) const 
 
 /// The visibilities of some planes, unless they are there.
 void CubeVisibilities::gather(const imager::PlaneRange& batch, ProgressLine& progress, imager::StageTimes& times) {
-  if (gathered_.planes.size() == static_cast<std::size_t>(batch.count)) return;
+  if (gathered_) return;
   progress.begin("planes " + numbers_of(batch));
   if (const auto part = part_of(batch)) {
     const auto update = [&](std::uint64_t done, std::uint64_t total) { progress.update(done, total); };
     gathered_ = imager::gather_planes(*part, sampling_, batch, threads_, update, times);
   } else {
-    gathered_.planes.resize(static_cast<std::size_t>(batch.count));
+    gathered_.emplace();
   }
   progress.end();
 }
@@ -45,8 +45,8 @@ void CubeVisibilities::look_through(const std::function<void(const imager::Visib
       continue;
     }
     gather(batch, progress, times);
-    for (const imager::StoredVisibilities& plane : gathered_.planes) visit(plane);
-    if (batch.count < sampling_.axis.channels) gathered_ = {};
+    for (int i = 0; i < batch.count; ++i) visit(gathered_->plane(i));
+    if (batch.count < sampling_.axis.channels) gathered_.reset();
   }
 }
 
@@ -58,10 +58,10 @@ void CubeVisibilities::for_each_plane(const PlaneVisitor& visitor, ProgressLine&
       continue;
     }
     gather(batch, progress, times);
-    count_read(gathered_.counts);
-    outside_planes_ += gathered_.outside_planes;
+    count_read(gathered_->counts().read);
+    outside_planes_ += gathered_->counts().outside_planes;
     visit_held(batch, visitor, progress);
-    gathered_ = {};
+    gathered_.reset();
   }
 }
 
@@ -69,7 +69,7 @@ void CubeVisibilities::visit_held(const imager::PlaneRange& batch, const PlaneVi
   progress.begin("images " + numbers_of(batch), stops_itself_);
   for (int i = 0; i < batch.count && !visitor.stopped(); ++i) {
     progress.update(static_cast<std::uint64_t>(i), static_cast<std::uint64_t>(batch.count));
-    imager::StoredVisibilities& plane = gathered_.planes[static_cast<std::size_t>(i)];
+    imager::StoredVisibilities plane = gathered_->take(i);
     if (plane.samples() == 0) {
       visitor.leave_empty(batch.first + i);
       continue;

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 
 #include "imager/cube/plane_gatherer.h"
 #include "imager/streamed_visibilities.h"
@@ -51,7 +52,7 @@ class CubeVisibilities {
   CubeBatches batches_;
   int threads_;
   bool stops_itself_;
-  imager::GatheredPlanes gathered_;  ///< of the batch at hand
+  std::optional<imager::GatheredPlanes> gathered_;  ///< of the batch at hand
   imager::SampleCounts counts_;
   std::uint64_t outside_planes_ = 0;
 };

@@ -103,6 +103,13 @@ StoredVisibilities two_blocks() {
   return source;
 }
 
+std::vector<std::shared_ptr<const VisibilityBlock>> blocks_of(PlaneGatherer& gatherer, int plane) {
+  std::vector<std::shared_ptr<const VisibilityBlock>> blocks;
+  for (const auto& some : gatherer.take(true))
+    for (auto& block : some->blocks(plane)) blocks.push_back(std::move(block));
+  return blocks;
+}
+
 GatheredPlanes gathered(const VisibilitySource& source, const CubeSampling& sampling, const PlaneRange& range, int threads) {
   StageTimes times;
   return gather_planes(
@@ -117,14 +124,14 @@ BOOST_AUTO_TEST_CASE(samples_are_those_of_the_definition) {
   for (const auto how : {SpectralInterpolation::nearest, SpectralInterpolation::linear}) {
     const CubeSampling sampling = cube(how);
     const VisibilityBlock block = block_of(3);
-    PlaneGatherer gatherer(sampling, {0, 6}, 2);
-    gatherer.add(block);
     for (int plane = 0; plane < 6; ++plane) {
+      PlaneGatherer gatherer(sampling, {0, 6}, 2);
+      gatherer.add(block);
       BOOST_TEST_CONTEXT((how == SpectralInterpolation::nearest ? "nearest" : "linear") << ", plane " << plane) {
         std::vector<Sample> expected;
         for (std::size_t row = 0; row < rows; ++row)
           for (const Sample& sample : expected_sample(block, sampling, plane, row)) expected.push_back(sample);
-        std::vector<Sample> taken = samples_of(gatherer.take(plane, true));
+        std::vector<Sample> taken = samples_of(blocks_of(gatherer, plane));
         BOOST_TEST_REQUIRE(taken.size() == expected.size());
         const auto by_u = [](const Sample& a, const Sample& b) { return a.u_lambda < b.u_lambda; };
         std::sort(taken.begin(), taken.end(), by_u);
@@ -147,15 +154,15 @@ BOOST_AUTO_TEST_CASE(planes_have_the_same_bits_however_they_are_gathered) {
     const CubeSampling sampling = cube(how, 1.7e6);
     const GatheredPlanes all = gathered(source, sampling, {0, 6}, 1);
     const GatheredPlanes again = gathered(source, sampling, {0, 6}, 3);
-    for (std::size_t plane = 0; plane < 6; ++plane) {
-      BOOST_TEST(same_bits(all.planes[plane], again.planes[plane]));
-      const GatheredPlanes alone = gathered(source, sampling, {static_cast<int>(plane), 1}, 2);
-      BOOST_TEST(same_bits(all.planes[plane], alone.planes[0]));
-      const PlaneView view(source, sampling, static_cast<int>(plane));
+    for (int plane = 0; plane < 6; ++plane) {
+      BOOST_TEST(same_bits(all.plane(plane), again.plane(plane)));
+      const GatheredPlanes alone = gathered(source, sampling, {plane, 1}, 2);
+      BOOST_TEST(same_bits(all.plane(plane), alone.plane(0)));
+      const PlaneView view(source, sampling, plane);
       StoredVisibilities viewed;
       const auto stream = view.open();
       while (auto block = stream->next()) viewed.append(std::move(block));
-      BOOST_TEST(same_bits(all.planes[plane], viewed));
+      BOOST_TEST(same_bits(all.plane(plane), viewed));
     }
   }
 }
@@ -163,9 +170,11 @@ BOOST_AUTO_TEST_CASE(planes_have_the_same_bits_however_they_are_gathered) {
 BOOST_AUTO_TEST_CASE(rows_without_a_usable_sample_are_left_out) {
   VisibilityBlock block = block_of(4);
   std::fill(block.weight.begin(), block.weight.end(), 0.0F);
-  PlaneGatherer gatherer(cube(SpectralInterpolation::linear), {0, 6}, 1);
-  gatherer.add(block);
-  for (int plane = 0; plane < 6; ++plane) BOOST_TEST(gatherer.take(plane, true).empty());
+  for (int plane = 0; plane < 6; ++plane) {
+    PlaneGatherer gatherer(cube(SpectralInterpolation::linear), {0, 6}, 1);
+    gatherer.add(block);
+    BOOST_TEST(blocks_of(gatherer, plane).empty());
+  }
 }
 
 BOOST_AUTO_TEST_CASE(samples_in_no_plane_are_counted) {
