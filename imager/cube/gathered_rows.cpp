@@ -94,6 +94,9 @@ void GatheredRows::add(const VisibilityBlock& block, const std::vector<MappedRow
 
 void GatheredRows::set_order() {
   order_ = order_in_uv(uvw_m_);
+  std::vector<double> ordered(uvw_m_.size());
+  for (std::size_t i = 0; i < order_.size(); ++i) std::copy_n(&uvw_m_[std::size_t{3} * order_[i]], 3, &ordered[3 * i]);
+  uvw_m_ = std::move(ordered);
 }
 
 std::vector<GatheredRows::Place> GatheredRows::places_of(const Piece& piece) const {
@@ -104,12 +107,12 @@ std::vector<GatheredRows::Place> GatheredRows::places_of(const Piece& piece) con
   for (const Span& span : piece.spans)
     for (std::size_t row = span.first; row < span.end; ++row, ++next) {
       const float* const weight = &piece.weight[next * channels];
-      if (std::any_of(weight, weight + channels, [](float w) { return w != 0; })) in_piece[row] = next;
+      if (*weight != 0 || std::any_of(weight, weight + channels, [](float w) { return w != 0; })) in_piece[row] = next;
     }
   std::vector<Place> places;
   places.reserve(next);
-  for (const std::uint32_t row : order_)
-    if (in_piece[row] != none) places.push_back({row, in_piece[row]});
+  for (std::uint32_t i = 0; i < order_.size(); ++i)
+    if (const std::uint32_t at = in_piece[order_[i]]; at != none) places.push_back({i, at});
   return places;
 }
 
@@ -117,14 +120,25 @@ std::shared_ptr<const VisibilityBlock> GatheredRows::block_of(const Piece& piece
   const std::size_t channels = piece.frequency_hz.size();
   const auto of_rows = [&](const auto& from, auto& to) {
     to.resize(places.size() * channels);
+    if (channels == 1) {  // copied in place, not by calls
+      for (std::size_t i = 0; i < places.size(); ++i) to[i] = from[places[i].in_piece];
+      return;
+    }
     auto out = to.begin();
     for (const Place& place : places)
       out = std::copy_n(from.begin() + static_cast<std::ptrdiff_t>(place.in_piece * channels), channels, out);
   };
   auto block = std::make_shared<VisibilityBlock>();
   block->frequency_hz = piece.frequency_hz;
-  block->uvw_m.resize(3 * places.size());
-  for (std::size_t i = 0; i < places.size(); ++i) std::copy_n(&uvw_m_[std::size_t{3} * places[i].row], 3, &block->uvw_m[3 * i]);
+  if (places.size() == rows()) {
+    block->uvw_m = uvw_m_;
+  } else {
+    block->uvw_m.reserve(3 * places.size());
+    for (const Place& place : places) {
+      const double* const uvw_m = &uvw_m_[std::size_t{3} * place.ordered];
+      block->uvw_m.insert(block->uvw_m.end(), uvw_m, uvw_m + 3);
+    }
+  }
   of_rows(piece.weight, block->weight);
   of_rows(piece.visibility.front(), block->visibility);
   block->counts.rows_read = places.size();

@@ -50,9 +50,9 @@ class GatheredRows {
     std::vector<float> weight;                                 ///< [row of spans][frequency]
     std::vector<std::vector<std::complex<float>>> visibility;  ///< [Stokes][row of spans][frequency]
   };
-  /// A row of a piece: its place among all rows, and among the piece's.
+  /// A row of a piece: its place among all rows, in their order, and among the piece's.
   struct Place {
-    std::uint32_t row;
+    std::uint32_t ordered;
     std::uint32_t in_piece;
   };
 
@@ -61,7 +61,7 @@ class GatheredRows {
   std::vector<Place> places_of(const Piece& piece) const;
   std::shared_ptr<const VisibilityBlock> block_of(const Piece& piece, const std::vector<Place>& places) const;
 
-  std::vector<double> uvw_m_;               ///< [row][3], scaled as ChannelMap says
+  std::vector<double> uvw_m_;               ///< [row][3], scaled as ChannelMap says; in order once that is set
   std::vector<std::uint32_t> order_;        ///< [row]
   std::vector<std::vector<Piece>> planes_;  ///< [plane]
   std::size_t expected_rows_;
