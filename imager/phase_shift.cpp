@@ -55,7 +55,7 @@ void PhaseShift::turn(const SampleCoordinates& old, double sign, std::vector<std
 void PhaseShift::apply(VisibilityBlock& block) const {
   if (none_) return;
   turn(block, -1, block.visibility);
-  rotate(block.uvw_m);
+  rotate(block.uvw_m.edit());
 }
 
 void PhaseShift::undo(const SampleCoordinates& old, std::vector<std::complex<double>>& visibilities) const {

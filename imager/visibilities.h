@@ -7,6 +7,8 @@
 #include <stdexcept>
 #include <vector>
 
+#include "imager/shared_vector.h"
+
 namespace misfit::imager {
 
 /// What became of the samples read, in Stokes samples (row × channel). Each sample left out is counted once, under the first
@@ -29,9 +31,9 @@ struct NothingUsable : std::runtime_error {
   explicit NothingUsable(const SampleCounts& counts);
 };
 
-/// Where samples lie: rows of UVW, each seen at every channel.
+/// Where samples lie: rows of UVW, each seen at every channel. Those of the same rows share UVW.
 struct SampleCoordinates {
-  std::vector<double> uvw_m;         ///< [row][3], metres, with the sign stored in the MeasurementSet
+  SharedVector<double> uvw_m;        ///< [row][3], metres, with the sign stored in the MeasurementSet
   std::vector<double> frequency_hz;  ///< [channel]
 
   std::size_t rows() const { return uvw_m.size() / 3; }

@@ -73,7 +73,7 @@ imager::SampleCoordinates coordinates(const casacore::ArrayColumn<double>& uvw_c
   imager::SampleCoordinates where{uvw.tovector(), setup.frequency_hz};
   unknown.assign(rows.count(), false);
   for (std::size_t r = 0; r < rows.count(); ++r) {
-    double* const row = where.uvw_m.data() + 3 * r;
+    double* const row = where.uvw_m.edit().data() + 3 * r;
     if (std::isfinite(row[0]) && std::isfinite(row[1]) && std::isfinite(row[2])) continue;
     unknown[r] = true;
     row[0] = row[1] = row[2] = 0;
@@ -85,7 +85,7 @@ imager::SampleCoordinates coordinates(const casacore::ArrayColumn<double>& uvw_c
 StokesVisibilities predicted(const Predict& predict, const imager::PhaseShift& shift, const imager::SampleCoordinates& where,
                              const std::vector<bool>& unknown) {
   imager::SampleCoordinates shifted = where;
-  shift.rotate(shifted.uvw_m);
+  shift.rotate(shifted.uvw_m.edit());
   StokesVisibilities model = predict(shifted);
   for (std::vector<std::complex<double>>& plane : model.plane) {
     if (plane.empty()) continue;

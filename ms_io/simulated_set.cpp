@@ -151,12 +151,13 @@ void observe(casacore::MeasurementSet& set, const SimulatedObservation& observat
   const casacore::Array<bool> unflagged(cells, false);
   std::mt19937_64 generator(observation.seed);
   for (std::size_t t = 0; t < observation.time_mjd_s.size(); ++t) {
-    const imager::SampleCoordinates where{uvw(t), observation.frequency_hz};
+    const std::vector<double> uvw_m = uvw(t);
+    const imager::SampleCoordinates where{uvw_m, observation.frequency_hz};
     require_size("UVW", where.uvw_m.size(), 3 * count);
     const std::vector<std::complex<double>> exact = visibilities(where);
     require_size("visibilities", exact.size(), where.samples());
     const casacore::Slicer rows(casacore::IPosition(1, signed_size(t * count)), casacore::IPosition(1, signed_size(count)));
-    const casacore::Vector<double> flat(where.uvw_m);
+    const casacore::Vector<double> flat(uvw_m);
     columns.uvw().putColumnRange(rows, flat.reform(casacore::IPosition(2, 3, signed_size(count))));
     columns.data().putColumnRange(rows, observed(exact, cells, observation.noise_jy, generator));
     columns.flag().putColumnRange(rows, unflagged);

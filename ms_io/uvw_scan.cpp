@@ -53,11 +53,10 @@ void scan(const OpenSet& open_set, ReachOf wanted, const Visit& visit) {
     const Setup& setup = open_set.selected.setups[block.setup];
     some.frequency_hz = setup.frequency_hz;
     for (const Rows& piece : pieces(block.runs, piece_rows)) {
-      some.uvw_m.clear();
-      translated("cannot read UVW, antennas or FLAG_ROW of " + open_set.path, [&] {
-        scan.for_each(piece, wanted, [&](const double* uvw_m) { some.uvw_m.insert(some.uvw_m.end(), uvw_m, uvw_m + 3); });
-      });
-      setup.shift.rotate(some.uvw_m);
+      some.uvw_m.edit().clear();
+      translated("cannot read UVW, antennas or FLAG_ROW of " + open_set.path,
+                 [&] { scan.for_each(piece, wanted, [&](const double* uvw_m) { some.uvw_m.append(uvw_m, uvw_m + 3); }); });
+      setup.shift.rotate(some.uvw_m.edit());
       visit(some);
     }
   }

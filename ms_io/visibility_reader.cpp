@@ -29,11 +29,11 @@ class GrowingBlock {
     }
     imager::VisibilityBlock& block = *blocks_.front();
     block.frequency_hz = setup.frequency_hz;
-    block.uvw_m.resize(rows * 3);
+    block.uvw_m.edit().resize(rows * 3);
     block.weight.resize(samples);
     block.counts.rows_read = rows;
     block.counts.samples_read = samples;
-    next_uvw_m_ = block.uvw_m.data();
+    next_uvw_m_ = block.uvw_m.edit().data();
     next_.weight = block.weight.data();
   }
 

@@ -44,7 +44,7 @@ void append_visibilities(const VisibilityBlock& from, const MappedRows& rows, co
 
 GatheredRows::GatheredRows(int planes, std::size_t expected_rows)
     : planes_(static_cast<std::size_t>(planes)), expected_rows_(expected_rows) {
-  uvw_m_.reserve(3 * expected_rows);
+  uvw_m_.edit().reserve(3 * expected_rows);
 }
 
 GatheredRows::Piece& GatheredRows::piece_of(std::vector<Piece>& plane, const std::vector<double>& frequency_hz,
@@ -65,7 +65,7 @@ void GatheredRows::add(const VisibilityBlock& block, const std::vector<MappedRow
   for (const MappedRows& some : rows) {
     const double scale = some.map->uvw_scale;
     const double* const from = block.uvw_m.data();
-    std::transform(from + 3 * some.first, from + 3 * some.end, extend(uvw_m_, 3 * (some.end - some.first)),
+    std::transform(from + 3 * some.first, from + 3 * some.end, extend(uvw_m_.edit(), 3 * (some.end - some.first)),
                    [scale](double metres) { return metres * scale; });
   }
   const auto append = [&](const MappedRows& some, const PlaneChannels& channels, std::vector<Piece>& plane) {
@@ -93,7 +93,7 @@ void GatheredRows::add(const VisibilityBlock& block, const std::vector<MappedRow
 }
 
 void GatheredRows::set_order() {
-  order_ = order_in_uv(uvw_m_);
+  order_ = order_in_uv(uvw_m_.edit());
   std::vector<double> ordered(uvw_m_.size());
   for (std::size_t i = 0; i < order_.size(); ++i) std::copy_n(&uvw_m_[std::size_t{3} * order_[i]], 3, &ordered[3 * i]);
   uvw_m_ = std::move(ordered);
@@ -133,11 +133,9 @@ std::shared_ptr<const VisibilityBlock> GatheredRows::block_of(const Piece& piece
   if (places.size() == rows()) {
     block->uvw_m = uvw_m_;
   } else {
-    block->uvw_m.reserve(3 * places.size());
-    for (const Place& place : places) {
-      const double* const uvw_m = &uvw_m_[std::size_t{3} * place.ordered];
-      block->uvw_m.insert(block->uvw_m.end(), uvw_m, uvw_m + 3);
-    }
+    std::vector<double> uvw_m(3 * places.size());
+    for (std::size_t i = 0; i < places.size(); ++i) std::copy_n(&uvw_m_[std::size_t{3} * places[i].ordered], 3, &uvw_m[3 * i]);
+    block->uvw_m = std::move(uvw_m);
   }
   of_rows(piece.weight, block->weight);
   of_rows(piece.visibility.front(), block->visibility);

@@ -61,7 +61,7 @@ class GatheredRows {
   std::vector<Place> places_of(const Piece& piece) const;
   std::shared_ptr<const VisibilityBlock> block_of(const Piece& piece, const std::vector<Place>& places) const;
 
-  std::vector<double> uvw_m_;               ///< [row][3], scaled as ChannelMap says; in order once that is set
+  SharedVector<double> uvw_m_;              ///< [row][3], scaled as ChannelMap says; in order once that is set
   std::vector<std::uint32_t> order_;        ///< [row]
   std::vector<std::vector<Piece>> planes_;  ///< [plane]
   std::size_t expected_rows_;

@@ -27,7 +27,7 @@ void collect(const VisibilityBlock& block, std::uint64_t first, const std::vecto
     const double* uvw_m = &block.uvw_m[3 * ((*i - first) / block.channels())];
     const double scale = block.frequency_hz[(*i - first) % block.channels()] / any_frequency_hz;
     if (std::all_of(uvw_m, uvw_m + 3, [](double x) { return std::isfinite(x); }))
-      found.uvw_m.insert(found.uvw_m.end(), {uvw_m[0] * scale, uvw_m[1] * scale, uvw_m[2] * scale});
+      found.uvw_m.append({uvw_m[0] * scale, uvw_m[1] * scale, uvw_m[2] * scale});
   }
 }
 

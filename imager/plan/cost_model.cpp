@@ -40,7 +40,7 @@ VisibilityBlock random_block(int samples, double cell_rad) {
   VisibilityBlock block;
   block.frequency_hz = {299792458.0};  // u in wavelengths is u in metres
   for (int i = 0; i < samples; ++i) {
-    block.uvw_m.insert(block.uvw_m.end(), {within(random), within(random), 0});
+    block.uvw_m.append({within(random), within(random), 0});
     block.visibility.emplace_back(1.0F, 0.0F);
     block.weight.push_back(1);
   }

@@ -49,7 +49,7 @@ VisibilityBlock samples_of_a_source(std::size_t rows, double west, double north,
 VisibilityBlock nearly_cancelling(unsigned seed) {
   VisibilityBlock block = random_samples(200, 1, cell_rad, seed);
   for (std::size_t row = 0; row < 200; ++row) {
-    for (std::size_t axis = 0; axis < 3; ++axis) block.uvw_m.push_back(block.uvw_m[3 * row + axis]);
+    for (std::size_t axis = 0; axis < 3; ++axis) block.uvw_m.edit().push_back(block.uvw_m[3 * row + axis]);
     block.visibility.push_back(block.visibility[row] * -0.9999F);
     block.weight.push_back(block.weight[row]);
   }
@@ -84,7 +84,7 @@ BOOST_DATA_TEST_CASE(a_single_visibility_anywhere_in_its_cell_keeps_the_promise,
     double worst = 0;
     for (double offset = 0; offset < 1; offset += 0.125) {
       for (std::size_t axis = 0; axis < 2; ++axis)
-        block.uvw_m[axis] = (5 + offset) * lambda_m / ((axis == 0 ? plan.options.nu : plan.options.nv) * cell_rad);
+        block.uvw_m.edit()[axis] = (5 + offset) * lambda_m / ((axis == 0 ? plan.options.nu : plan.options.nv) * cell_rad);
       StageTimes times;
       const Image image = make_dirty_images(stored({block}), *transform, {}, ignore_progress, times).dirty[0];
       worst = std::max(worst, relative_error(image.pixel, direct_image(block, r.geometry).pixel));
@@ -136,7 +136,7 @@ BOOST_DATA_TEST_CASE(the_promise_holds_for_every_stokes_parameter_one_of_zeros_t
 
 BOOST_AUTO_TEST_CASE(an_image_too_weak_for_any_kernel_is_said_to_be) {
   VisibilityBlock block = random_samples(2, 1, cell_rad, 4);
-  for (std::size_t i = 0; i < 3; ++i) block.uvw_m[3 + i] = block.uvw_m[i];
+  for (std::size_t i = 0; i < 3; ++i) block.uvw_m.edit()[3 + i] = block.uvw_m[i];
   block.weight = {1, 1};
   block.visibility = {{1, 0}, {-1.0F + 1e-7F, 0}};
   BOOST_TEST(!images_of(block, request(40, 40, 1e-10)).promise_kept);
@@ -161,13 +161,13 @@ BOOST_DATA_TEST_CASE(no_data_exceed_the_bounds_even_where_all_errors_align,
       const GriddingPlan plan = plan_gridding(r);
       // All samples `offset` of a cell from a grid point, their phases those of a source on the corner pixel.
       VisibilityBlock block = samples_of_a_source(1, 0, 0, 6);
-      block.uvw_m.clear();
+      block.uvw_m.edit().clear();
       const double lambda_m = speed_of_light_m_s / block.frequency_hz[0];
       for (int p = -9; p < 9; ++p)
         for (int q = -9; q < 9; ++q) {
-          block.uvw_m.push_back((p + offset) * lambda_m / (plan.options.nu * cell_rad));
-          block.uvw_m.push_back((q + offset) * lambda_m / (plan.options.nv * cell_rad));
-          block.uvw_m.push_back(0);
+          block.uvw_m.edit().push_back((p + offset) * lambda_m / (plan.options.nu * cell_rad));
+          block.uvw_m.edit().push_back((q + offset) * lambda_m / (plan.options.nv * cell_rad));
+          block.uvw_m.edit().push_back(0);
         }
       block.weight.assign(block.samples(), 1);
       const auto exact = predict_sources({{{r.geometry.l(0), r.geometry.m(0)}, 1}}, block, 2);
@@ -192,7 +192,7 @@ BOOST_AUTO_TEST_CASE(the_bounds_count_a_neglected_w) {
   for (const double w : {1.0, 30.0, 1000.0}) {
     VisibilityBlock block = random_samples(50, 1, geometry.cell_rad, 7);
     WSpread spread;
-    for (std::size_t row = 0; row < 50; ++row) block.uvw_m[3 * row + 2] = w;
+    for (std::size_t row = 0; row < 50; ++row) block.uvw_m.edit()[3 * row + 2] = w;
     spread.add(block);
     GriddingRequest r = request(40, 30, 1e-6);
     r.geometry = geometry;

@@ -58,7 +58,7 @@ class Adversary {
         const double w = options_.has_w_axis() ? position(2, p % 3) * plane_step_ : neglected_w_;
         const double u = position(0, p - across / 2) / (g.cell_rad * options_.nu) - facet_.slope_l * (w - neglected_w_);
         const double v = position(1, q - across / 2) / (g.cell_rad * options_.nv) - facet_.slope_m * (w - neglected_w_);
-        block.uvw_m.insert(block.uvw_m.end(), {u, v, w});
+        block.uvw_m.append({u, v, w});
         const double turns = u * direction_.l + v * direction_.m + w * n_minus_1(direction_);
         block.visibility.emplace_back(std::polar(1.0, 2 * pi * turns) * phase);
         block.weight.push_back(1);

@@ -19,7 +19,7 @@ const ImageGeometry geometry{24, 17, 1e-3, {}};
 /// Random samples with a w as long as u and v.
 VisibilityBlock samples(std::size_t rows) {
   VisibilityBlock block = random_samples(rows, 3, geometry.cell_rad, 1);
-  for (std::size_t row = 0; row < rows; ++row) block.uvw_m[3 * row + 2] = 0.7 * block.uvw_m[3 * (rows - 1 - row)];
+  for (std::size_t row = 0; row < rows; ++row) block.uvw_m.edit()[3 * row + 2] = 0.7 * block.uvw_m[3 * (rows - 1 - row)];
   return block;
 }
 
@@ -56,7 +56,7 @@ BOOST_AUTO_TEST_CASE(a_point_source_gives_the_defining_phase_w_included) {
 BOOST_AUTO_TEST_CASE(w_is_left_out_where_it_is_not_wanted) {
   const VisibilityBlock block = samples(300);
   VisibilityBlock flat = block;
-  for (std::size_t row = 0; row < flat.rows(); ++row) flat.uvw_m[3 * row + 2] = 0;
+  for (std::size_t row = 0; row < flat.rows(); ++row) flat.uvw_m.edit()[3 * row + 2] = 0;
   const DirectTransform without({geometry, false, 2}), with({geometry, true, 2});
   const auto image_of = [](const DirectTransform& transform, const VisibilityBlock& of) {
     const auto sum = transform.adjoint({});
@@ -150,7 +150,7 @@ BOOST_AUTO_TEST_CASE(adjoint_is_the_transpose_of_prediction) {
 
 BOOST_AUTO_TEST_CASE(a_few_pixels_equal_those_of_the_whole_image) {
   VisibilityBlock block = samples(40);
-  block.uvw_m[0] *= 100;  // beyond the grid: left out of both
+  block.uvw_m.edit()[0] *= 100;  // beyond the grid: left out of both
   block.weight[10] = 0;
   const AdjointResult whole = adjoint_of(block);
   const std::vector<Pixel> pixels{{0, 0}, {16, 23}, {8, 12}, {3, 20}};

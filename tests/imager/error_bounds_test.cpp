@@ -197,7 +197,7 @@ BOOST_DATA_TEST_CASE(rounding_adds_up_within_the_bound_where_all_samples_lie_in_
     const std::complex<float> value(static_cast<float>(1 + uniform(random)), static_cast<float>(uniform(random)));
     VisibilityBlock block;
     block.frequency_hz = {speed_of_light_m_s};
-    for (int i = 0; i < samples; ++i) block.uvw_m.insert(block.uvw_m.end(), {u, v, w});
+    for (int i = 0; i < samples; ++i) block.uvw_m.append({u, v, w});
     block.visibility.assign(static_cast<std::size_t>(samples), value);
     block.weight.assign(static_cast<std::size_t>(samples), 1);
     const Errors measured = measure(plan, block);

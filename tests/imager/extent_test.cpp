@@ -13,7 +13,7 @@ constexpr double cell_rad = 1e-3;
 
 VisibilityBlock samples(unsigned seed) {
   VisibilityBlock block = random_samples(50, 4, cell_rad, seed);
-  for (std::size_t row = 0; row < block.rows(); ++row) block.uvw_m[3 * row + 2] = 3 * block.uvw_m[3 * (49 - row)];
+  for (std::size_t row = 0; row < block.rows(); ++row) block.uvw_m.edit()[3 * row + 2] = 3 * block.uvw_m[3 * (49 - row)];
   for (std::size_t i = 0; i < block.samples(); i += 3) block.weight[i] = 0;
   return block;
 }
@@ -75,7 +75,7 @@ BOOST_AUTO_TEST_CASE(rows_without_a_usable_sample_may_lie_anywhere) {
   VisibilityBlock block = samples(3);
   WSpread spread;
   std::fill_n(block.weight.begin(), block.channels(), 0);
-  block.uvw_m[2] = std::nan("");
+  block.uvw_m.edit()[2] = std::nan("");
   spread.add(block);
   BOOST_TEST(std::isfinite(spread.weighted_w_square));
 }

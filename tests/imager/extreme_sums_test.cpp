@@ -53,7 +53,7 @@ VisibilityBlock equal_samples(std::size_t count, double w) {
   VisibilityBlock block;
   block.frequency_hz = {speed_of_light_m_s};
   for (std::size_t i = 0; i < count; ++i) {
-    block.uvw_m.insert(block.uvw_m.end(), {0.171 / cell_rad, 0.093 / cell_rad, w});
+    block.uvw_m.append({0.171 / cell_rad, 0.093 / cell_rad, w});
     block.visibility.emplace_back(0.7F, 0.1F);
     block.weight.push_back(0.3F);
   }

@@ -91,7 +91,7 @@ BOOST_AUTO_TEST_CASE(progress_ends_at_all_samples_and_every_stage_is_timed) {
 
 BOOST_AUTO_TEST_CASE(no_usable_sample_is_an_error_that_counts_those_outside) {
   VisibilityBlock outside = random_samples(5, 2, geometry.cell_rad, 6);
-  for (std::size_t row = 0; row < 5; ++row) outside.uvw_m[3 * row] = 1e9;
+  for (std::size_t row = 0; row < 5; ++row) outside.uvw_m.edit()[3 * row] = 1e9;
   StageTimes times;
   BOOST_CHECK_EXCEPTION(
       make_dirty_images(stored({outside}), *gridded(), {.with_psf = true}, ignore_progress, times), std::runtime_error,

@@ -44,7 +44,7 @@ VisibilityBlock observed(const std::vector<Source>& sources, double noise_jy, do
   VisibilityBlock block = random_samples_with_w(3000, 1, geometry.cell_rad, max_w, 4);
   for (std::size_t row = 0; row < 3000; ++row) {
     const double shorter = std::pow(static_cast<double>(row + 1) / 3000, 1.5);
-    for (std::size_t i = 0; i < 2; ++i) block.uvw_m[3 * row + i] *= shorter;
+    for (std::size_t i = 0; i < 2; ++i) block.uvw_m.edit()[3 * row + i] *= shorter;
   }
   const auto exact = predict_sources(sources, block, 2);
   for (std::size_t i = 0; i < exact.size(); ++i)
@@ -287,7 +287,7 @@ BOOST_AUTO_TEST_CASE(noise_alone_has_no_sources) {
 BOOST_AUTO_TEST_CASE(a_field_without_short_baselines_is_imaged_as_finely_as_they_need) {
   VisibilityBlock block = random_samples(500, 1, geometry.cell_rad, 5);
   BOOST_TEST(wide_field(block).geometry.cell_rad == geometry.cell_rad);
-  for (double& coordinate : block.uvw_m) coordinate /= 16;
+  for (double& coordinate : block.uvw_m.edit()) coordinate /= 16;
   const WideField field = wide_field(block);
   BOOST_TEST(field.geometry.cell_rad == 4 * geometry.cell_rad);
   BOOST_TEST(field.geometry.width == geometry.width);

@@ -90,7 +90,7 @@ BOOST_AUTO_TEST_CASE(what_is_predicted_about_the_new_centre_comes_back_as_that_o
     const VisibilityBlock block = samples();
     const PhaseShift shift = shift_of(centres);
     SampleCoordinates moved = block;
-    shift.rotate(moved.uvw_m);
+    shift.rotate(moved.uvw_m.edit());
     auto visibilities = predict_sources({Source{offset, 1.5}}, moved, 1);
     shift.undo(block, visibilities);
     const DirectionCosines seen = direction_cosines(sky_direction(offset, centres.to), centres.from);

@@ -209,8 +209,8 @@ BOOST_AUTO_TEST_CASE(samples_on_the_edge_of_the_grid_count_and_those_beyond_do_n
   const double u[] = {edge, -edge, 0, 0, 1.001 * edge, 0};
   const double v[] = {0, edge, -edge, edge, 0, -1.001 * edge};
   for (std::size_t row = 0; row < 6; ++row) {
-    block.uvw_m[3 * row] = u[row] * (1 - 1e-15);
-    block.uvw_m[3 * row + 1] = v[row] * (1 - 1e-15);
+    block.uvw_m.edit()[3 * row] = u[row] * (1 - 1e-15);
+    block.uvw_m.edit()[3 * row + 1] = v[row] * (1 - 1e-15);
   }
   const AdjointResult gridded = adjoint_of(*make_plane_transform(o), block);
   const AdjointResult direct = adjoint_of(DirectTransform(o.geometry, 1), block);

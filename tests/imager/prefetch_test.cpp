@@ -23,7 +23,7 @@ class Counting : public BlockStream {
     if (before_) before_(given_);
     if (given_ == blocks_) return nullptr;
     const auto block = std::make_shared<VisibilityBlock>();
-    block->uvw_m.resize(3 * ++given_);
+    block->uvw_m.edit().resize(3 * ++given_);
     return block;
   }
 

@@ -20,7 +20,7 @@ inline VisibilityBlock random_samples(std::size_t rows, std::size_t channels, do
   for (std::size_t row = 0; row < rows; ++row) {
     const double u_m = edge_m * uniform(random);
     const double v_m = edge_m * uniform(random);
-    for (const double x : {u_m, v_m, 0.0}) block.uvw_m.push_back(x);
+    for (const double x : {u_m, v_m, 0.0}) block.uvw_m.edit().push_back(x);
   }
   for (std::size_t i = 0; i < rows * channels; ++i) {
     block.visibility.emplace_back(normal(random), normal(random));
@@ -36,7 +36,7 @@ inline VisibilityBlock random_samples_with_w(std::size_t rows, std::size_t chann
   std::mt19937_64 random(seed + 1000);
   std::uniform_real_distribution<double> uniform(-1, 1);
   const double most_m = max_w * speed_of_light_m_s / block.frequency_hz.back();
-  for (std::size_t row = 0; row < rows; ++row) block.uvw_m[3 * row + 2] = most_m * uniform(random);
+  for (std::size_t row = 0; row < rows; ++row) block.uvw_m.edit()[3 * row + 2] = most_m * uniform(random);
   return block;
 }
 

@@ -61,7 +61,7 @@ std::vector<VisibilityBlock> blocks(int others) {
   std::vector<VisibilityBlock> all;
   for (const unsigned seed : {1U, 2U}) {
     VisibilityBlock block = with_others(random_samples_with_w(150, 5, centred.cell_rad, 60, seed, 1.02), others, seed);
-    block.uvw_m[0] = 0.4999999 / centred.cell_rad * speed_of_light_m_s / block.frequency_hz.back();
+    block.uvw_m.edit()[0] = 0.4999999 / centred.cell_rad * speed_of_light_m_s / block.frequency_hz.back();
     for (std::size_t i = 3; i < block.samples(); i += 17) {
       block.weight[i] = 0;
       block.visibility[i] = std::numeric_limits<float>::quiet_NaN();

@@ -43,7 +43,7 @@ SampleCoordinates rows_at(std::size_t rows, const std::vector<double>& frequency
   at.frequency_hz = frequency_hz;
   for (std::size_t row = 0; row < rows; ++row) {
     const double length_m = 2.1e4 * std::pow(10, -2 * std::abs(uniform(random)));
-    for (int axis = 0; axis < 3; ++axis) at.uvw_m.push_back(length_m * uniform(random));
+    for (int axis = 0; axis < 3; ++axis) at.uvw_m.edit().push_back(length_m * uniform(random));
   }
   return at;
 }
@@ -166,7 +166,7 @@ BOOST_AUTO_TEST_CASE(a_gaussian_is_its_image_sampled_in_pixels_where_w_is_left_o
   SampleCoordinates at = rows_at(50, {1e9});
   // All over |u|, |v| < 1/(4 cell), where what sampling folds back has fallen to exp(−(3/4 · 6.3 π)² / (4 ln 2)) = 4e-35;
   // beyond the image's border the Gaussian has fallen to 2^(−4 · (34/6.3)²) = 1e-35. So only rounding is left.
-  for (double& x : at.uvw_m) x *= 0.25 / geometry.cell_rad * speed_of_light_m_s / 1e9 / 2.1e4;
+  for (double& x : at.uvw_m.edit()) x *= 0.25 / geometry.cell_rad * speed_of_light_m_s / 1e9 / 2.1e4;
   const auto of_image = DirectTransform({geometry, false, 2}).predict(image)->at(at);
   const auto of_source = predict_sources({{centre, 2.5, fwhm_rad}}, at, 1, false);
   for (std::size_t i = 0; i < of_image.size(); ++i) BOOST_TEST(std::abs(of_image[i] - of_source[i]) < 1e-12);
@@ -200,7 +200,7 @@ BOOST_AUTO_TEST_CASE(w_over_the_source_itself_costs_what_its_definition_says) {
 BOOST_AUTO_TEST_CASE(w_is_left_out_where_it_is_not_wanted) {
   const SampleCoordinates at = rows_at(20, {1.4e9, 1.5e9});
   SampleCoordinates flat = at;
-  for (std::size_t row = 0; row < flat.rows(); ++row) flat.uvw_m[3 * row + 2] = 0;
+  for (std::size_t row = 0; row < flat.rows(); ++row) flat.uvw_m.edit()[3 * row + 2] = 0;
   const std::vector<Source> sources = some_sources(20);
   BOOST_TEST((predict_sources(sources, at, 1, false) == predict_sources(sources, flat, 1)));
   BOOST_TEST((predict_sources(sources, at, 1, false) != predict_sources(sources, at, 1)));

@@ -21,7 +21,7 @@ constexpr std::size_t rows = 4000;
 VisibilityBlock observed(double flux_jy, bool pairs) {
   VisibilityBlock block = random_samples(rows, 1, field.cell_rad, 7);
   for (std::size_t row = 1; pairs && row < rows; row += 2)
-    for (std::size_t i = 0; i < 2; ++i) block.uvw_m[3 * row + i] = (1 + 1e-6) * block.uvw_m[3 * (row - 1) + i];
+    for (std::size_t i = 0; i < 2; ++i) block.uvw_m.edit()[3 * row + i] = (1 + 1e-6) * block.uvw_m[3 * (row - 1) + i];
   const auto exact = predict_sources({{{0.8 * field.width * field.cell_rad, 0}, flux_jy}}, block, 2);
   for (std::size_t i = 0; i < rows; ++i)
     block.visibility[i] = block.visibility[i] / std::sqrt(block.weight[i]) + std::complex<float>(exact[i]);
@@ -75,7 +75,7 @@ BOOST_AUTO_TEST_CASE(noise_that_neighbouring_channels_share_is_no_source_and_is_
   for (std::size_t c = 0; c < channels; ++c)
     block.frequency_hz[c] = block.frequency_hz.front() * (1 + 1e-5 * static_cast<double>(c));
   for (std::size_t row = 1; row < rows; row += 2)
-    for (std::size_t i = 0; i < 2; ++i) block.uvw_m[3 * row + i] = block.uvw_m[3 * (row - 1) + i];
+    for (std::size_t i = 0; i < 2; ++i) block.uvw_m.edit()[3 * row + i] = block.uvw_m[3 * (row - 1) + i];
   std::fill(block.weight.begin(), block.weight.end(), 1.f);
   const std::vector<std::complex<float>> noise = block.visibility;
   for (std::size_t row = 0; row < rows; ++row)
@@ -106,8 +106,8 @@ BOOST_AUTO_TEST_CASE(without_pairs_all_may_be_a_source_and_all_may_be_noise) {
   VisibilityBlock block = observed(2, false);
   for (std::size_t row = 0; row < rows; ++row) {  // each in a cell of its own, of those 1/(4 · 64 · cell) wide
     const double turns_to_m = misfit::imager::speed_of_light_m_s / block.frequency_hz.front() / field.cell_rad;
-    block.uvw_m[3 * row] = (static_cast<double>(row % 200) - 99.5) / (4 * field.width) * turns_to_m;
-    block.uvw_m[3 * row + 1] = (static_cast<double>(row / 200) + 0.5) / (4 * field.height) * turns_to_m;
+    block.uvw_m.edit()[3 * row] = (static_cast<double>(row % 200) - 99.5) / (4 * field.width) * turns_to_m;
+    block.uvw_m.edit()[3 * row + 1] = (static_cast<double>(row / 200) + 0.5) / (4 * field.height) * turns_to_m;
   }
   const Unexplained all = seen(block).unexplained;
   BOOST_TEST(all.sources_least_jy == 0);

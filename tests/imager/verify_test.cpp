@@ -102,7 +102,7 @@ BOOST_AUTO_TEST_CASE(every_stokes_parameter_has_an_error_of_its_own) {
 BOOST_AUTO_TEST_CASE(a_neglected_w_counts_as_error) {
   const ImageGeometry wide{50, 40, 1e-2, {}};
   VisibilityBlock block = random_samples(100, 1, wide.cell_rad, 5);
-  for (std::size_t row = 0; row < 100; ++row) block.uvw_m[3 * row + 2] = 30;
+  for (std::size_t row = 0; row < 100; ++row) block.uvw_m.edit()[3 * row + 2] = 30;
   GriddingRequest request;
   request.geometry = wide;
   const auto transform = make_plane_transform(plan_gridding(request).options);

@@ -31,7 +31,7 @@ inline VisibilityBlock vla_samples(int hour_angles, double arm_m = 21000) {
         const double y = east[b] - east[a];
         const double z = std::cos(latitude) * (north[b] - north[a]);
         const double v = std::sin(declination) * (s * y - c * x) + std::cos(declination) * z;
-        for (const double coordinate : {s * x + c * y, v, 0.0}) block.uvw_m.push_back(coordinate);
+        for (const double coordinate : {s * x + c * y, v, 0.0}) block.uvw_m.edit().push_back(coordinate);
       }
   }
   block.weight.assign(block.samples(), 1);

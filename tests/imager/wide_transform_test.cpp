@@ -194,7 +194,7 @@ BOOST_AUTO_TEST_CASE(rows_of_weight_zero_do_not_count_wherever_they_lie) {
   const VisibilityBlock block = random_samples_with_w(100, 2, field.cell_rad, most_w, 3);
   VisibilityBlock more = block;
   for (const double x : {std::nan(""), 1e300, -1e300}) {
-    more.uvw_m.insert(more.uvw_m.end(), {x, x, x});
+    more.uvw_m.append({x, x, x});
     more.visibility.insert(more.visibility.end(), 2, {std::nanf(""), 0});
     more.weight.insert(more.weight.end(), 2, 0);
   }
@@ -206,7 +206,7 @@ BOOST_DATA_TEST_CASE(w_of_any_kind_is_as_exact, bdata::make({0, 1, 2, 3, 4}), ki
   const WideTransformOptions o = options({field, 9, 1.6, 2, 2});
   VisibilityBlock block = random_samples_with_w(kind == 4 ? 1 : 100, 2, field.cell_rad, most_w, 11);
   for (std::size_t row = 0; row < block.rows(); ++row) {
-    double& w = block.uvw_m[3 * row + 2];
+    double& w = block.uvw_m.edit()[3 * row + 2];
     const double values[] = {0, 500, -500, row % 2 == 0 ? 1e5 : -3, w};
     w = values[kind];
   }

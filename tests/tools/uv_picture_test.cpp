@@ -19,7 +19,7 @@ imager::UvCoverage coverage_of(double reach_lambda, const std::vector<std::pair<
   imager::VisibilityBlock block;
   block.frequency_hz = {imager::speed_of_light_m_s};
   const auto add = [&](const std::pair<double, double>& place) {
-    for (const double x : {place.first, place.second, 0.0}) block.uvw_m.push_back(x);
+    for (const double x : {place.first, place.second, 0.0}) block.uvw_m.edit().push_back(x);
     block.visibility.emplace_back(1);
     block.weight.push_back(1);
   };

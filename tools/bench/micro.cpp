@@ -106,7 +106,7 @@ VisibilityBlock block_of(std::size_t rows) {
   for (int channel = 0; channel < 64; ++channel) block.frequency_hz.push_back(1e9 * (1 + 0.05 * channel / 64));
   const double edge_m = 0.45 / cell_rad * speed_of_light_m_s / block.frequency_hz.back();
   for (std::size_t row = 0; row < rows; ++row)
-    for (const double x : {uniform(random), uniform(random), 0.0}) block.uvw_m.push_back(edge_m * x * std::abs(x));
+    for (const double x : {uniform(random), uniform(random), 0.0}) block.uvw_m.edit().push_back(edge_m * x * std::abs(x));
   for (std::size_t i = 0; i < block.samples(); ++i) {
     block.visibility.emplace_back(static_cast<float>(uniform(random)), static_cast<float>(uniform(random)));
     block.weight.push_back(1);
@@ -151,7 +151,8 @@ void add_transform(Precision precision, std::vector<Piece>& pieces) {
 const VisibilityBlock& large_block() {
   static const VisibilityBlock block = [] {
     VisibilityBlock first = block_of(156250);
-    for (std::size_t row = 0; row < first.rows(); ++row) first.uvw_m[3 * row + 2] = first.uvw_m[3 * ((row + 7) % first.rows())];
+    for (std::size_t row = 0; row < first.rows(); ++row)
+      first.uvw_m.edit()[3 * row + 2] = first.uvw_m[3 * ((row + 7) % first.rows())];
     const auto other = std::make_shared<VisibilityBlock>(first);
     first.other_stokes.assign(most_stokes - 1, other);
     return first;

@@ -54,8 +54,8 @@ SmallField small_field() {
   std::uniform_real_distribution<double> uniform(-0.5 / cell_rad, 0.5 / cell_rad);
   field.block.frequency_hz = {imager::speed_of_light_m_s};  // so that metres are wavelengths
   for (int i = 0; i < samples; ++i) {
-    for (int axis = 0; axis < 2; ++axis) field.block.uvw_m.push_back(uniform(random));
-    field.block.uvw_m.push_back(0);
+    for (int axis = 0; axis < 2; ++axis) field.block.uvw_m.edit().push_back(uniform(random));
+    field.block.uvw_m.edit().push_back(0);
   }
   field.block.visibility.resize(samples);
   field.block.weight.assign(samples, 1);

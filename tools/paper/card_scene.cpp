@@ -84,9 +84,9 @@ imager::VisibilityBlock card_samples(const CardSceneOptions& options) {
   block.frequency_hz = {frequency_hz};
   for (int i = 0; i < options.integrations; ++i) {
     const double hour_angle = hour_angle_span * ((i + 0.5) / options.integrations - 0.5);
-    for (const double metres : uvw(array, {hour_angle, declination})) block.uvw_m.push_back(metres);
+    for (const double metres : uvw(array, {hour_angle, declination})) block.uvw_m.edit().push_back(metres);
   }
-  for (std::size_t i = 2; i < block.uvw_m.size(); i += 3) block.uvw_m[i] = 0;
+  for (std::size_t i = 2; i < block.uvw_m.size(); i += 3) block.uvw_m.edit()[i] = 0;
   block.visibility.resize(block.samples());
   block.weight.assign(block.samples(), 1);
   return block;

@@ -41,7 +41,7 @@ int samples_of_a_row(const imager::CubeSampling& sampling, const std::vector<ms_
 }
 
 CubeBatches plan_batches(const RunScene& scene, const RunPlan& plan) {
-  constexpr double enough_bytes = gib / 4;  // each pass over the set reads little more than its planes' channels
+  constexpr double enough_bytes = gib / 2;  // each pass over the set reads little more than its planes' channels
   const double wanted = scene.options.memory_gib > 0 ? scene.options.memory_gib * gib : physical_memory_bytes() / 2;
   const double rows = static_cast<double>(scene.set.rows());
   const double plane = gathered_bytes(scene, plan), shared = shared_bytes(rows), flight = in_flight_bytes(scene, plan);

@@ -82,7 +82,7 @@ SceneTruth::SceneTruth(const imager::VisibilitySource& source, const imager::Ima
       const std::size_t sample = random() % block->samples();
       if (block->weight[sample] == 0) continue;
       const double* uvw_m = &block->uvw_m[3 * (sample / block->channels())];
-      one.uvw_m.assign(uvw_m, uvw_m + 3);
+      one.uvw_m.edit().assign(uvw_m, uvw_m + 3);
       one.frequency_hz.front() = block->frequency_hz[sample % block->channels()];
       samples_.push_back({index, sample, predict->at(one).front()});
       visibility_square_ += std::norm(samples_.back().visibility);

@@ -37,8 +37,8 @@ imager::VisibilityBlock random_block(double reach) {
   imager::VisibilityBlock block;
   block.frequency_hz = {imager::speed_of_light_m_s};  // so that metres are wavelengths
   for (int i = 0; i < samples; ++i) {
-    for (int axis = 0; axis < 2; ++axis) block.uvw_m.push_back(uniform(random) / (2 * cell_rad));
-    block.uvw_m.push_back(0);
+    for (int axis = 0; axis < 2; ++axis) block.uvw_m.edit().push_back(uniform(random) / (2 * cell_rad));
+    block.uvw_m.edit().push_back(0);
     block.visibility.emplace_back(normal(random), normal(random));
     block.weight.push_back(1);
   }

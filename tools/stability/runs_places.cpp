@@ -12,7 +12,8 @@ namespace {
 template <typename Place>
 imager::VisibilityBlock moved(const StabilityData& data, const Place& place) {
   imager::VisibilityBlock block = data.block;
-  for (std::size_t row = 0; row < block.rows(); ++row) place(block.uvw_m[3 * row], block.uvw_m[3 * row + 1], row);
+  std::vector<double>& uvw_m = block.uvw_m.edit();
+  for (std::size_t row = 0; row < block.rows(); ++row) place(uvw_m[3 * row], uvw_m[3 * row + 1], row);
   return block;
 }
 
@@ -56,7 +57,7 @@ StabilityCase in_band(const StabilityData& data, double ratio, std::size_t chann
   }
   for (std::size_t row = 0; row < rows; ++row) {
     const double* const uvw_m = &data.block.uvw_m[3 * row * step];
-    block.uvw_m.insert(block.uvw_m.end(), uvw_m, uvw_m + 3);
+    block.uvw_m.append(uvw_m, uvw_m + 3);
     block.weight.insert(block.weight.end(), channels, data.block.weight[row * step]);
   }
   return case_of(name, block, data);

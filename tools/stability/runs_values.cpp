@@ -106,7 +106,7 @@ std::vector<StabilityCase> one_cell_cases(std::uint64_t most) {
     const double a_block = std::min(count, std::max(1e4, count / 100));
     imager::VisibilityBlock block;
     block.frequency_hz = {imager::speed_of_light_m_s};
-    for (int i = 0; i < a_block; ++i) block.uvw_m.insert(block.uvw_m.end(), {0.171 / cell_rad, 0.093 / cell_rad, 0});
+    for (int i = 0; i < a_block; ++i) block.uvw_m.append({0.171 / cell_rad, 0.093 / cell_rad, 0});
     block.weight.assign(block.rows(), 0.3F);
     StabilityCase made = case_of(power_of_ten(count, 1) + " equal samples", block, geometry);
     made.repeats = static_cast<std::uint64_t>(count / a_block);

@@ -75,7 +75,7 @@ std::vector<StabilityCase> w_cases(const StabilityData& data, const std::vector<
     imager::VisibilityBlock block = data.block;
     std::mt19937_64 random(1);
     std::uniform_real_distribution<double> uniform(-1, 1);
-    for (std::size_t row = 0; row < block.rows(); ++row) block.uvw_m[3 * row + 2] = reach * uniform(random);
+    for (std::size_t row = 0; row < block.rows(); ++row) block.uvw_m.edit()[3 * row + 2] = reach * uniform(random);
     cases.push_back(case_of("|w| to " + power_of_ten(reach, 1), block, geometry));
   }
   return cases;

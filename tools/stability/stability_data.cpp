@@ -23,7 +23,7 @@ imager::VisibilityBlock empty_block() {
 }
 
 void append(double u, double v, float weight, imager::VisibilityBlock& block) {
-  block.uvw_m.insert(block.uvw_m.end(), {u, v, 0});
+  block.uvw_m.append({u, v, 0});
   block.weight.push_back(weight);
 }
 

@@ -91,7 +91,7 @@ imager::SampleCoordinates random_samples(const imager::VisibilityBlock& block, i
   imager::SampleCoordinates some{{}, {block.frequency_hz[random() % block.channels()]}};
   for (int i = 0; i < count; ++i) {
     const double* const uvw_m = &block.uvw_m[3 * (random() % block.rows())];
-    some.uvw_m.insert(some.uvw_m.end(), uvw_m, uvw_m + 3);
+    some.uvw_m.append(uvw_m, uvw_m + 3);
   }
   return some;
 }

@@ -69,7 +69,7 @@ VisibilityBlock even_samples() {
   for (int row = -side / 2; row < side / 2; ++row)
     for (int column = -side / 2; column < side / 2; ++column)
       for (const double x : {(column + 0.5) / (side * cell_rad), (row + 0.5) / (side * cell_rad), 0.0})
-        block.uvw_m.push_back(x);
+        block.uvw_m.edit().push_back(x);
   block.visibility.assign(block.rows(), 1);
   block.weight.assign(block.rows(), 1);
   return block;

@@ -20,7 +20,7 @@ constexpr double cell_rad = 1e-5;
 VisibilityBlock some_samples() {
   VisibilityBlock block = random_samples(400, 7, cell_rad, 1, 1.2);
   for (std::size_t i = 0; i < block.samples(); i += 11) block.weight[i] = 0;
-  block.uvw_m[0] = std::nan("");
+  block.uvw_m.edit()[0] = std::nan("");
   for (std::size_t c = 0; c < block.channels(); ++c) block.weight[c] = 0;
   return block;
 }
@@ -41,7 +41,7 @@ std::vector<VisibilityBlock> cut(const VisibilityBlock& block, std::size_t rows)
     const auto take = [&](const auto& from, std::size_t each, auto& to) {
       to.assign(from.begin() + static_cast<std::ptrdiff_t>(row * each), from.begin() + static_cast<std::ptrdiff_t>(end * each));
     };
-    take(block.uvw_m, 3, part.uvw_m);
+    take(block.uvw_m, 3, part.uvw_m.edit());
     take(block.visibility, channels, part.visibility);
     take(block.weight, channels, part.weight);
     parts.push_back(part);
