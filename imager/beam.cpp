@@ -46,8 +46,13 @@ struct Normal {
   }
 };
 
-/// Levenberg–Marquardt from a circle; empty when it ends at a Gaussian that is not bounded.
-std::optional<Eigen::Matrix2d> fit_precision(const std::vector<LobeSample>& samples) {
+/// The FWHM in units of the lobe's scale beyond which pixels tell no width: ten times the image's size.
+double widest(const Image& psf, const MainLobe& lobe) {
+  return 10 * std::max(psf.width, psf.height) / lobe.scale;
+}
+
+/// Levenberg–Marquardt from a circle; empty when it ends at a Gaussian that is not bounded, or wider than `widest`.
+std::optional<Eigen::Matrix2d> fit_precision(const std::vector<LobeSample>& samples, double widest) {
   // The circle of radius 1 is where a round beam falls to the cutoff.
   Eigen::Vector3d p = -2 * std::log(MainLobe::cutoff) * Eigen::Vector3d(1, 0, 1);
   Normal here(samples, p);
@@ -64,7 +69,9 @@ std::optional<Eigen::Matrix2d> fit_precision(const std::vector<LobeSample>& samp
   }
   const Eigen::Matrix2d precision{{p[0], p[1]}, {p[1], p[2]}};
   const bool bounded = p.allFinite() && p[0] > 0 && precision.determinant() > 1e-12 * precision.squaredNorm();
-  return bounded ? std::optional(precision) : std::nullopt;
+  if (!bounded || precision.selfadjointView<Eigen::Lower>().eigenvalues()[0] < std::pow(fwhm_per_sigma / widest, 2))
+    return std::nullopt;
+  return precision;
 }
 
 Beam beam_of(const Eigen::Matrix2d& precision, double unit_rad) {
@@ -113,8 +120,8 @@ Beam fit_beam(const Image& psf, double cell_rad, BeamRegion region) {
   const std::size_t needed = region == BeamRegion::main_lobe ? fewest_samples : 5;  // beyond the lobe lie further ones
   std::optional<Eigen::Matrix2d> precision;
   if (lobe.samples.size() >= needed) {
-    if (region == BeamRegion::quadrant) precision = fit_precision(quadrant(psf, lobe));
-    if (!precision) precision = fit_precision(lobe.samples);
+    if (region == BeamRegion::quadrant) precision = fit_precision(quadrant(psf, lobe), widest(psf, lobe));
+    if (!precision) precision = fit_precision(lobe.samples, widest(psf, lobe));
   }
   if (!precision) refuse(lobe.samples.size(), needed);
   return beam_of(*precision, lobe.scale * cell_rad);
