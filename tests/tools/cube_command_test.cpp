@@ -273,20 +273,4 @@ BOOST_AUTO_TEST_CASE(masks_of_another_frame_are_refused) {
   BOOST_TEST(outcome.err.find("in TOPOCENT; expected one plane, or the image's") != std::string::npos);
 }
 
-BOOST_AUTO_TEST_CASE(common_density_weighs_all_planes_alike) {
-  const LineSet data("TOPO");
-  const Arguments options{"--outframe", "TOPO", "--weighting", "uniform", "--nchan", "3", "--start", "4"};
-  succeed(cube(data.set, data.folder / "own") + options);
-  succeed(cube(data.set, data.folder / "common") + options + Arguments{"--perchanweightdensity", "false"});
-  const auto own = imager::open_fits_image(data.folder / "own.psf.fits");
-  const auto common = imager::open_fits_image(data.folder / "common.psf.fits");
-  double differ = 0;
-  for (std::size_t i = 0; i < 256; ++i)
-    differ = std::max(differ, std::abs(own->read({1, 0}).pixel[i] - common->read({1, 0}).pixel[i]));
-  BOOST_TEST(differ < 0.2);  // channels next to each other lie in nearly the same cells …
-  BOOST_TEST(common->read({1, 0}).at(8, 8) > 0.9999);
-  const auto noise = [&](const char* name) { return report_of(data.folder / name)["noise"]["predicted_jy"].get<double>(); };
-  BOOST_TEST(std::abs(noise("common") / noise("own") - 1) < 0.2);
-}
-
 BOOST_AUTO_TEST_SUITE_END()

@@ -59,6 +59,16 @@ void flag_sample(const std::string& set, std::size_t row) {
   put_first(set, "FLAG", row, true);
 }
 
+void flag_channel(const std::string& set, std::size_t channel, std::size_t first_row) {
+  const casacore::MeasurementSet open = opened(set);
+  casacore::ArrayColumn<bool> cells(open, "FLAG");
+  for (casacore::rownr_t row = first_row; row < open.nrow(); ++row) {
+    casacore::Matrix<bool> cell = cells(row);
+    cell.column(channel) = true;
+    cells.put(row, cell);
+  }
+}
+
 void flag_row(const std::string& set, std::size_t row) {
   casacore::ScalarColumn<bool>(opened(set), "FLAG_ROW").put(row, true);
 }

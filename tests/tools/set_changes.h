@@ -7,12 +7,14 @@
 
 namespace misfit::tools::testing {
 
-/// What tests do to simulated MeasurementSets: one channel, XX and YY. Apart because casacore needs C++17.
+/// What tests do to simulated MeasurementSets of XX and YY, in their first channel where none is named. Apart because casacore
+/// needs C++17.
 void put_data(const std::string& set, std::size_t row, std::complex<float> value);  ///< in XX
 void put_weight(const std::string& set, std::size_t row, float value);              ///< in XX
 void put_weights(const std::string& set, float value);                              ///< in all of WEIGHT
 void put_u(const std::string& set, std::size_t row, double u_m);
-void flag_sample(const std::string& set, std::size_t row);  ///< in XX
+void flag_sample(const std::string& set, std::size_t row);                              ///< in XX
+void flag_channel(const std::string& set, std::size_t channel, std::size_t first_row);  ///< from that row on
 void flag_row(const std::string& set, std::size_t row);
 void flag_all(const std::string& set);
 void make_autocorrelation(const std::string& set, std::size_t row);

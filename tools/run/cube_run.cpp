@@ -1,6 +1,7 @@
 #include "tools/run/cube_run.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -214,14 +215,18 @@ class CubeRun {
     if (o_.niter > 0) progress_.say(plane_message(plane, planes()));
   }
 
-  /// Each sample read once: what is left out for no reason is used.
+  /// Each sample read once: what is left out for no reason is used. Of those that planes take, as large a part is outside the
+  /// grid as of the planes' samples.
   void count_samples() {
     imager::SampleCounts& counts = report_.counts = visibilities_->counts();
     report_.outside_planes = visibilities_->outside_planes();
-    counts.outside_grid = outside_grid_;
-    const std::uint64_t left_out = counts.autocorrelations + counts.flagged + counts.nonfinite + counts.zero_weight +
-                                   counts.outside_grid + report_.outside_planes;
-    counts.used = counts.samples_read - std::min(counts.samples_read, left_out);
+    const std::uint64_t taken = counts.samples_read - counts.autocorrelations - counts.flagged - counts.nonfinite -
+                                counts.zero_weight - report_.outside_planes;
+    const double in_planes = static_cast<double>(outside_grid_ + report_.plane_samples);
+    if (outside_grid_ > 0)
+      counts.outside_grid =
+          static_cast<std::uint64_t>(std::ceil(static_cast<double>(taken) * (static_cast<double>(outside_grid_) / in_planes)));
+    counts.used = taken - counts.outside_grid;
   }
 
   void finish_files() {
@@ -231,7 +236,7 @@ class CubeRun {
       removed += (removed.empty() ? "" : ", ") + path;
     if (!removed.empty()) progress_.say("removed what an earlier run left: " + removed);
     report_.plan.push_back(left_out_decision(report_.counts));
-    if (outside_grid_ > 0) warn(outside_grid_warning(outside_grid_, reach_));
+    if (outside_grid_ > 0) warn(outside_grid_warning(report_.counts.outside_grid, reach_));
     if (empty_ > 0)
       warn(std::to_string(empty_) + " of " + std::to_string(planes()) +
            " planes have no samples: they have no values and no beam");
@@ -288,8 +293,8 @@ class CubeRun {
   std::unique_ptr<CubeProducts> products_;
   std::shared_ptr<const imager::ImagingWeights> common_weights_;  ///< null where each plane has its own
   std::unique_ptr<PrimaryBeamStage> primary_beam_;                ///< null where none is wanted
-  std::uint64_t outside_grid_ = 0;
-  std::size_t empty_ = 0;  ///< planes
+  std::uint64_t outside_grid_ = 0;                                ///< samples of planes
+  std::size_t empty_ = 0;                                         ///< planes
   bool stopped_ = false;
   bool warned_of_clean_ = false;  ///< what is so of one plane is mostly so of all
 };
