@@ -1,7 +1,10 @@
 #include "ms_io/spectral_frame.h"
 
+#include <casacore/tables/DataMan/TiledShapeStMan.h>
+
 #include <boost/test/unit_test.hpp>
 #include <cmath>
+#include <fstream>
 
 #include "tests/ms_io/small_set.h"
 
@@ -33,6 +36,48 @@ std::vector<double> ratios(const SmallSet& set, const std::string& frame) {
     all.insert(all.end(), block->frame_ratio.begin(), block->frame_ratio.end());
   }
   return all;
+}
+
+/// Of a thousand channels, with DATA in tiles of eight.
+class ManyChannels : public SmallSet {
+ public:
+  ManyChannels() : SmallSet(observed()) {
+    modify([](casacore::MeasurementSet& set) {
+      const casacore::Array<casacore::Complex> data = casacore::ArrayColumn<casacore::Complex>(set, "DATA").getColumn();
+      set.removeColumn("DATA");
+      casacore::TableDesc description;
+      description.addColumn(casacore::ArrayColumnDesc<casacore::Complex>("DATA", 2));
+      description.defineHypercolumn("Tiles", 3, casacore::Vector<casacore::String>(1, "DATA"));
+      set.addColumn(description, casacore::TiledShapeStMan("Tiles", casacore::IPosition(3, 2, 8, rows)));
+      casacore::ArrayColumn<casacore::Complex>(set, "DATA").putColumn(data);
+    });
+  }
+
+ private:
+  static SimulatedObservation observed() {
+    SimulatedObservation observation = small_observation();
+    observation.frequency_hz.clear();
+    for (int c = 0; c < 1000; ++c) observation.frequency_hz.push_back(1e9 + 1e6 * c);
+    return observation;
+  }
+};
+
+/// What this process has read of files so far.
+std::uint64_t bytes_read() {
+  std::ifstream file("/proc/self/io");
+  std::string name;
+  std::uint64_t bytes = 0;
+  file >> name >> bytes;
+  BOOST_TEST_REQUIRE(name == "rchar:");
+  return bytes;
+}
+
+/// By a pass over all of `set`.
+std::uint64_t bytes_of_pass(const MeasurementSet& set) {
+  const std::uint64_t before = bytes_read();
+  const auto stream = set.open();
+  while (stream->next()) continue;
+  return bytes_read() - before;
 }
 
 }  // namespace
@@ -92,6 +137,17 @@ BOOST_AUTO_TEST_CASE(a_part_reads_the_channels_that_may_come_between_two_frequen
   for (std::size_t row = 0; row < block->rows(); ++row)
     for (std::size_t c = 0; c < 3; ++c) BOOST_TEST(block->visibility[row * 3 + c] == whole->visibility[row * channels + c + 2]);
   BOOST_TEST((read.part(2e9, 2.1e9) == nullptr));
+}
+
+BOOST_AUTO_TEST_CASE(a_part_reads_and_holds_no_other_channels) {
+  const ManyChannels set;
+  const auto part = MeasurementSet(set.path(), in_frame("TOPO"), "data").part(1.1e9, 1.1e9);
+  BOOST_TEST(part->samples() == 3 * rows);
+  BOOST_TEST(part->read_at_once() == 3 * rows);
+  // Coordinates, antennas, times and flags come with every channel. What was read once casacore may hold: two open sets.
+  const std::uint64_t all = bytes_of_pass(MeasurementSet(set.path(), in_frame("TOPO"), "data")), data = rows * 1000 * 2 * 8;
+  BOOST_TEST(all >= data);
+  BOOST_TEST(bytes_of_pass(*part) <= all - data + 2 * 8 * rows * 2 * 8);  // two tiles
 }
 
 BOOST_AUTO_TEST_CASE(frames_go_by_the_names_of_casa) {
