@@ -202,6 +202,16 @@ BOOST_AUTO_TEST_CASE(warnings_of_clean_name_the_plane) {
     BOOST_TEST(planes[plane]["clean"]["iterations"] == (plane == 2 ? 0 : 5));
 }
 
+BOOST_AUTO_TEST_CASE(regions_of_a_range_are_cleaned_in_its_planes_alone) {
+  const TemporaryFolder folder;
+  const std::string set = write_point(folder, "point"), mask = folder / "mask.crtf";
+  std::ofstream(mask) << "#CRTF\nbox [[4pix, 4pix], [12pix, 12pix]], range=[1.2GHz, 1.7GHz]\n";  // planes 1 and 2
+  BOOST_TEST(run(cube(set, folder / "a") + Arguments{"--niter", "5", "--mask", mask}).code == 0);
+  const nlohmann::json planes = report_of(folder / "a")["planes"];
+  for (std::size_t plane = 0; plane < channels; ++plane)
+    BOOST_TEST(planes[plane]["clean"]["iterations"] == (plane == 1 || plane == 2 ? 5 : 0));
+}
+
 BOOST_AUTO_TEST_CASE(a_sample_is_counted_once) {
   const TemporaryFolder folder;
   const std::string set = write_point(folder, "point");

@@ -211,6 +211,32 @@ BOOST_AUTO_TEST_CASE(a_mask_of_one_plane_or_of_regions_serves_every_plane) {
   }
 }
 
+BOOST_AUTO_TEST_CASE(regions_of_a_range_are_of_its_planes_alone) {
+  const TemporaryFolder folder;
+  const std::string path = folder / "mask.crtf";
+  std::ofstream(path) << "#CRTF\nglobal range=[1chan, 2chan]\nbox [[0pix, 0pix], [1pix, 0pix]]\n"
+                         "-box [[1pix, 0pix], [1pix, 0pix]], range=[2chan, 9chan]\n"
+                         "circle [[3pix, 0pix], 0.5pix], label='a, range=[0chan, 0chan]', range=[3chan, 3chan]\n";
+  const MaskFile file(path, example_header(5));
+  BOOST_TEST(!file.one_for_all_channels());
+  const std::vector<std::vector<int>> allowed{{}, {0, 1}, {0}, {3}, {}};  // of row 0
+  for (int channel = 0; channel < 5; ++channel) {
+    const imager::Image mask = file.mask({channel, 0});
+    std::vector<int> found;
+    for (int i = 0; i < static_cast<int>(mask.pixel.size()); ++i)
+      if (mask.pixel[static_cast<std::size_t>(i)] != 0) found.push_back(i);
+    BOOST_TEST(found == allowed[static_cast<std::size_t>(channel)], boost::test_tools::per_element());
+  }
+  std::ofstream(path) << "box [[0pix, 0pix], [1pix, 0pix]], range=[0chan, 4chan]";
+  BOOST_TEST(MaskFile(path, example_header(5)).one_for_all_channels());
+}
+
+BOOST_AUTO_TEST_CASE(a_range_that_misses_the_only_plane_is_refused) {
+  BOOST_TEST(refused("circle [[1pix, 2pix], 3pix], range=[3chan, 7chan]",
+                     "line 1: 'range=[3chan, 7chan]', expected one that reaches"));
+  BOOST_TEST(mask_of("circle [[1pix, 2pix], 3pix], range=[0chan, 7chan]").at(2, 1) == 1);
+}
+
 BOOST_AUTO_TEST_CASE(a_mask_of_other_planes_is_refused) {
   const TemporaryFolder folder;
   const imager::ImageHeader cube = example_header(3, "IQ");

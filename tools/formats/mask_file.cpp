@@ -12,7 +12,6 @@
 #include "tools/base/files.h"
 #include "tools/base/numbers.h"
 #include "tools/formats/image_file.h"
-#include "tools/formats/region_text.h"
 
 namespace misfit::tools {
 namespace {
@@ -44,7 +43,7 @@ bool is_image(const std::string& path) {
 
 MaskFile::MaskFile(const std::string& path, imager::ImageHeader image) : image_(std::move(image)) {
   if (!is_image(path)) {
-    regions_ = regions_mask(path, read_file(path), image_.geometry);
+    regions_ = std::make_unique<RegionText>(path, read_file(path), image_);
     return;
   }
   file_ = open_image_file(path);
@@ -58,15 +57,15 @@ MaskFile::MaskFile(const std::string& path, imager::ImageHeader image) : image_(
 }
 
 bool MaskFile::one_for_all_channels() const {
-  return !file_ || file_->header().spectral.channels == 1;
+  return regions_ ? regions_->one_for_all_channels() : file_->header().spectral.channels == 1;
 }
 
 bool MaskFile::one_for_all_stokes() const {
-  return !file_ || file_->header().stokes.size() == 1;
+  return regions_ != nullptr || file_->header().stokes.size() == 1;
 }
 
 imager::Image MaskFile::mask(const imager::PlaneIndex& at) const {
-  if (!file_) return regions_;
+  if (regions_) return regions_->mask(at.channel);
   const std::vector<imager::Stokes>& has = file_->header().stokes;
   const auto plane = std::find(has.begin(), has.end(), image_.stokes.at(static_cast<std::size_t>(at.stokes)));
   imager::Image mask =

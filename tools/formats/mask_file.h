@@ -6,6 +6,7 @@
 
 #include "imager/image_header.h"
 #include "imager/image_reader.h"
+#include "tools/formats/region_text.h"
 
 namespace misfit::tools {
 
@@ -26,7 +27,7 @@ class MaskFile {
  private:
   imager::ImageHeader image_;
   std::unique_ptr<imager::ImageReader> file_;  ///< null where the file is region text
-  imager::Image regions_;
+  std::unique_ptr<RegionText> regions_;        ///< null where it is an image
 };
 
 /// The mask of an image of one plane.

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <optional>
 #include <stdexcept>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -101,16 +102,6 @@ double length(std::string_view text, const imager::ImageGeometry& g) {
   return q.pixels ? q.value : q.value / g.cell_rad;
 }
 
-/// Calls visit(pixel) for the pixels whose centres lie in a box, and for which within(column, row) holds.
-template <typename Within>
-void fill(const Place& low, const Place& high, double value, const Within& within, imager::Image& mask) {
-  const auto first = [](double x) { return static_cast<int>(std::ceil(std::clamp(x, 0.0, 1e6))); };
-  const auto last = [](double x, int size) { return static_cast<int>(std::floor(std::clamp(x, -1.0, size - 1.0))); };
-  for (int r = first(low.row); r <= last(high.row, mask.height); ++r)
-    for (int c = first(low.column); c <= last(high.column, mask.width); ++c)
-      if (within(c, r)) mask.at(r, c) = value;
-}
-
 /// What stands between the outermost brackets, without the inner ones, at commas.
 std::vector<std::string_view> arguments(std::string_view text) {
   const std::size_t open = text.find('['), close = text.rfind(']');
@@ -136,56 +127,19 @@ std::pair<std::string_view, std::string_view> split_keywords(std::string_view li
   return {line, {}};
 }
 
-void check_frame(std::string_view keywords, const std::string& frame) {
-  const std::size_t at = keywords.find("coord");
-  if (at == std::string_view::npos) return;
-  std::string_view value = keywords.substr(at + 5);
-  value = trimmed(value.substr(0, value.find(',')));
-  if (value.starts_with('=')) value = trimmed(value.substr(1));
+void check_frame(const RegionKeywords& keywords, const std::string& frame) {
+  const auto coord = keywords.find("coord");
   const std::string here = frame == "FK5" ? "J2000" : frame == "FK4" ? "B1950" : frame;
-  if (value != here) expected("coord=" + std::string(value), "the image's frame, " + here);
-}
-
-void add_region(std::string_view line, const imager::ImageGeometry& g, imager::Image& mask) {
-  const auto [region, keywords] = split_keywords(line);
-  if (!trimmed(keywords).empty() && !trimmed(keywords).starts_with(',')) expected(trimmed(keywords), "a comma and keywords");
-  check_frame(keywords, g.phase_centre.frame);
-  const double value = region.starts_with('-') ? 0 : 1;
-  std::string_view shape = region.substr(region.starts_with('-') || region.starts_with('+') ? 1 : 0);
-  const std::vector<std::string_view> a = arguments(shape);
-  shape = trimmed(shape.substr(0, shape.find('[')));
-  const auto anywhere = [](int, int) { return true; };
-  if (shape == "box" && a.size() == 4) {
-    const Place one = place(a[0], a[1], g), other = place(a[2], a[3], g);
-    fill({std::min(one.column, other.column), std::min(one.row, other.row)},
-         {std::max(one.column, other.column), std::max(one.row, other.row)}, value, anywhere, mask);
-  } else if (shape == "centerbox" && a.size() == 4) {
-    const Place centre = place(a[0], a[1], g);
-    const double x = length(a[2], g) / 2, y = length(a[3], g) / 2;
-    fill({centre.column - x, centre.row - y}, {centre.column + x, centre.row + y}, value, anywhere, mask);
-  } else if (shape == "circle" && a.size() == 3) {
-    const Place centre = place(a[0], a[1], g);
-    const double radius = length(a[2], g);
-    const auto within = [&](int c, int r) { return std::hypot(c - centre.column, r - centre.row) <= radius; };
-    fill({centre.column - radius, centre.row - radius}, {centre.column + radius, centre.row + radius}, value, within, mask);
-  } else {
-    throw std::runtime_error("'" + std::string(region) + "', " + regions_known);
-  }
+  if (coord != keywords.end() && coord->second != here) expected("coord=" + coord->second, "the image's frame, " + here);
 }
 
 }  // namespace
 
-imager::Image regions_mask(const std::string& path, std::string_view text, const imager::ImageGeometry& g) {
+RegionText::RegionText(const std::string& path, std::string_view text, const imager::ImageHeader& image)
+    : geometry_(image.geometry), axis_(image.spectral) {
   if (text.find('\0') != std::string_view::npos)
     throw std::runtime_error(path + " is neither a FITS image, a CASA image nor region text");
-  imager::Image mask(g.width, g.height);
-  int line_number = 0, regions = 0;
-  const auto read_line = [&](std::string_view line) {
-    if (line.empty() || line.starts_with('#') || line.starts_with("ann ") || line.starts_with("ann\t")) return;
-    if (line.starts_with("global")) return check_frame(line, g.phase_centre.frame);
-    add_region(line, g, mask);
-    ++regions;
-  };
+  int line_number = 0;
   try {
     while (!text.empty()) {
       ++line_number;
@@ -197,7 +151,65 @@ imager::Image regions_mask(const std::string& path, std::string_view text, const
   } catch (const std::exception& error) {
     throw std::runtime_error(path + ", line " + std::to_string(line_number) + ": " + error.what());
   }
-  if (regions == 0) throw std::runtime_error(path + " holds no region; " + regions_known);
+  if (regions_.empty()) throw std::runtime_error(path + " holds no region; " + regions_known);
+}
+
+void RegionText::read_line(std::string_view line) {
+  constexpr std::string_view global = "global";
+  if (line.empty() || line.starts_with('#') || line.starts_with("ann ") || line.starts_with("ann\t")) return;
+  if (line.starts_with(global)) {
+    for (const auto& [name, value] : parse_region_keywords(line.substr(global.size()))) global_[name] = value;
+    return check_frame(global_, geometry_.phase_centre.frame);
+  }
+  const auto [text, rest] = split_keywords(line);
+  if (!trimmed(rest).empty() && !trimmed(rest).starts_with(',')) expected(trimmed(rest), "a comma and keywords");
+  RegionKeywords keywords = parse_region_keywords(rest);
+  keywords.insert(global_.begin(), global_.end());
+  check_frame(keywords, geometry_.phase_centre.frame);
+  Region region = parse_region(text);
+  region.planes = planes_of_range(keywords, axis_);
+  regions_.push_back(region);
+}
+
+RegionText::Region RegionText::parse_region(std::string_view text) const {
+  Region region;
+  region.added = !text.starts_with('-');
+  std::string_view shape = text.substr(!region.added || text.starts_with('+') ? 1 : 0);
+  const std::vector<std::string_view> a = arguments(shape);
+  shape = trimmed(shape.substr(0, shape.find('[')));
+  region.circle = shape == "circle" && a.size() == 3;
+  if (shape == "box" && a.size() == 4) {
+    const Place one = place(a[0], a[1], geometry_), other = place(a[2], a[3], geometry_);
+    std::tie(region.low_column, region.high_column) = std::minmax(one.column, other.column);
+    std::tie(region.low_row, region.high_row) = std::minmax(one.row, other.row);
+  } else if (region.circle || (shape == "centerbox" && a.size() == 4)) {
+    const Place centre = place(a[0], a[1], geometry_);
+    const double x = length(a[2], geometry_) / (region.circle ? 1 : 2), y = region.circle ? x : length(a[3], geometry_) / 2;
+    std::tie(region.low_column, region.high_column) = std::pair(centre.column - x, centre.column + x);
+    std::tie(region.low_row, region.high_row) = std::pair(centre.row - y, centre.row + y);
+  } else {
+    throw std::runtime_error("'" + std::string(text) + "', " + regions_known);
+  }
+  return region;
+}
+
+bool RegionText::one_for_all_channels() const {
+  return std::all_of(regions_.begin(), regions_.end(),
+                     [&](const Region& r) { return r.planes.first == 0 && r.planes.last == axis_.channels - 1; });
+}
+
+imager::Image RegionText::mask(int channel) const {
+  const auto first = [](double x) { return static_cast<int>(std::ceil(std::clamp(x, 0.0, 1e6))); };
+  const auto last = [](double x, int size) { return static_cast<int>(std::floor(std::clamp(x, -1.0, size - 1.0))); };
+  imager::Image mask(geometry_.width, geometry_.height);
+  for (const Region& region : regions_) {
+    if (!region.planes.holds(channel)) continue;
+    const double column = 0.5 * (region.low_column + region.high_column), row = 0.5 * (region.low_row + region.high_row);
+    const double radius = 0.5 * (region.high_column - region.low_column);
+    for (int r = first(region.low_row); r <= last(region.high_row, mask.height); ++r)
+      for (int c = first(region.low_column); c <= last(region.high_column, mask.width); ++c)
+        if (!region.circle || std::hypot(c - column, r - row) <= radius) mask.at(r, c) = region.added ? 1 : 0;
+  }
   return mask;
 }
 

@@ -103,8 +103,10 @@ void declare(CLI::App& command, ImageOptions& o) {
   command.add_option(
       "--restoringbeam", o.restoringbeam,
       "Restore with this beam: MAJ, or MAJ,MIN,PA such as 0.5arcsec,0.4arcsec,30deg; the fitted one when empty or common");
-  command.add_option("--mask", o.mask,
-                     "Where CLEAN finds components: a FITS or CASA image, not 0 there, or CASA region text (CRTF)");
+  command.add_option(
+      "--mask", o.mask,
+      "Where CLEAN finds components: a FITS or CASA image, not 0 there, or CASA region text (CRTF), which may name "
+      "planes: range=[3chan, 7chan]");
   command
       .add_option("--usemask", o.usemask, "user: --mask, or everywhere; auto: from the residuals, as tclean's auto-multithresh")
       ->check(CLI::IsMember({"user", "auto"}));

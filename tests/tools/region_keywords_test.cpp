@@ -1,0 +1,117 @@
+#include "tools/formats/region_keywords.h"
+
+#include <boost/test/unit_test.hpp>
+#include <stdexcept>
+#include <string>
+
+using namespace misfit;
+using namespace misfit::tools;
+
+namespace {
+
+/// Ten planes of 1 MHz from 1.42 GHz on; the line lies in the middle of plane 4.
+const imager::SpectralAxis axis{1.42e9, 1e6, 10, "LSRK", 1.424e9};
+
+PlaneSpan span_of(const std::string& keywords, const imager::SpectralAxis& of = axis) {
+  return planes_of_range(parse_region_keywords(keywords), of);
+}
+
+void check_span(const std::string& keywords, int first, int last, const imager::SpectralAxis& of = axis) {
+  BOOST_TEST_CONTEXT(keywords) {
+    const PlaneSpan span = span_of(keywords, of);
+    BOOST_TEST(span.first == first);
+    BOOST_TEST(span.last == last);
+  }
+}
+
+bool refused(const std::string& keywords, const std::string& part, const imager::SpectralAxis& of = axis) {
+  try {
+    span_of(keywords, of);
+  } catch (const std::exception& error) {
+    BOOST_TEST_INFO(error.what());
+    BOOST_TEST(std::string(error.what()).find(part) != std::string::npos);
+    return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+BOOST_AUTO_TEST_SUITE(region_keywords)
+
+BOOST_AUTO_TEST_CASE(commas_in_brackets_and_quotes_part_nothing) {
+  const RegionKeywords keywords =
+      parse_region_keywords(", coord = J2000, range=[1chan, 2chan],label='a, range=[3]', bare, font=\"x,y\"");
+  BOOST_TEST(keywords.size() == 4U);
+  BOOST_TEST(keywords.at("coord") == "J2000");
+  BOOST_TEST(keywords.at("range") == "[1chan, 2chan]");
+  BOOST_TEST(keywords.at("label") == "'a, range=[3]'");
+  BOOST_TEST(keywords.at("font") == "\"x,y\"");
+}
+
+BOOST_AUTO_TEST_CASE(without_a_range_all_planes_are_meant) {
+  check_span("coord=J2000", 0, 9);
+}
+
+BOOST_AUTO_TEST_CASE(channels_count_from_0_and_both_ends_are_within) {
+  for (const char* range : {"range=[3chan, 7chan]", "range=[3channel,7channel]", "range=[7, 3]"}) check_span(range, 3, 7);
+  check_span("range=[-4chan, 0chan]", 0, 0);
+  check_span("range=[9chan, 1e12chan]", 9, 9);
+}
+
+BOOST_AUTO_TEST_CASE(frequencies_mean_the_planes_that_they_reach_into) {
+  check_span("range=[1.4226GHz, 1.4243GHz]", 3, 4);
+  check_span("range=[1424.3MHz, 1422600kHz]", 3, 4);
+  check_span("range=[1.4233GHz, 1.4233GHz]", 3, 3);
+  check_span("range=[1.4225GHz, 1.4245GHz]", 3, 4);  // from edge to edge
+  imager::SpectralAxis falling = axis;
+  falling.increment_hz = -1e6;
+  check_span("range=[1.4174GHz, 1.4157GHz]", 3, 4, falling);
+}
+
+BOOST_AUTO_TEST_CASE(velocities_are_those_of_the_line) {
+  // 2 MHz of 1.424 GHz are 421.06 km/s.
+  check_span("range=[-421km/s, 421km/s]", 2, 6);
+  check_span("range=[100000m/s, 105km/s]", 4, 4);
+  check_span("range=[-421km/s, 421km/s], restfreq=1.425GHz", 3, 7);
+}
+
+BOOST_AUTO_TEST_CASE(optical_velocities_are_of_wavelengths) {
+  // A tenth of c: 0.9 and 1/1.1 of the line.
+  const imager::SpectralAxis wide{1e9, 1e6, 200, "LSRK", 1.2e9};
+  check_span("range=[29979.2458km/s, 29979.2458km/s]", 80, 80, wide);
+  check_span("range=[29979.2458km/s, 29979.2458km/s], veltype=RADIO", 80, 80, wide);
+  check_span("range=[29979.2458km/s, 29979.2458km/s], veltype=OPTICAL", 91, 91, wide);
+}
+
+BOOST_AUTO_TEST_CASE(a_range_beside_the_planes_is_of_none) {
+  const PlaneSpan span = span_of("range=[1.5GHz, 1.6GHz]");
+  for (int plane = 0; plane < 10; ++plane) BOOST_TEST(!span.holds(plane));
+}
+
+BOOST_AUTO_TEST_CASE(one_plane_of_the_whole_band_must_be_reached) {
+  const imager::SpectralAxis band{1.4e9, 0.1e9, 1, "LSRK", 0};
+  check_span("range=[1.44GHz, 1.5GHz]", 0, 0, band);
+  BOOST_TEST(
+      refused("range=[1.46GHz, 1.5GHz]", "expected one that reaches into the image's only plane, 1.35 GHz to 1.45 GHz", band));
+  BOOST_TEST(refused("range=[3chan, 7chan]", "'range=[3chan, 7chan]', expected one that reaches", band));
+  const imager::SpectralAxis one_frequency{1.4e9, 0, 1, "LSRK", 0};
+  check_span("range=[1.4GHz, 1.5GHz]", 0, 0, one_frequency);
+  BOOST_TEST(refused("range=[1.41GHz, 1.5GHz]", "only plane", one_frequency));
+}
+
+BOOST_AUTO_TEST_CASE(what_cannot_be_meant_is_refused) {
+  for (const char* range : {"range=3chan", "range=[3chan]", "range=[3chan, 1.42GHz]", "range=[1GHz, 2]", "range=[1GHz, 2GHZ]",
+                            "range=[1deg, 2deg]", "range=[, ]", "range=[1chan, 2chan, 3chan]", "range=[nan, 2chan]"})
+    BOOST_TEST(refused(range, "expected two channels, frequencies or velocities"));
+  BOOST_TEST(refused("range=[1.42GHz, 1.43GHz], frame=BARY", "'frame=BARY', expected the image's, LSRK"));
+  BOOST_TEST(refused("range=[1.42GHz, 1.43GHz], frame=REST", "spectral frame 'REST'"));
+  BOOST_TEST(refused("range=[1km/s, 2km/s], veltype=Z", "expected RADIO or OPTICAL"));
+  BOOST_TEST(refused("range=[1km/s, 2km/s], restfreq=7", "expected a frequency"));
+  imager::SpectralAxis no_line = axis;
+  no_line.rest_frequency_hz = 0;
+  BOOST_TEST(refused("range=[1km/s, 2km/s]", "expected restfreq", no_line));
+  check_span("range=[1chan, 2chan], frame=BARY, veltype=Z", 1, 2);  // channels have neither
+}
+
+BOOST_AUTO_TEST_SUITE_END()
