@@ -82,6 +82,7 @@ class ImageRun {
       for (const std::string& set : o_.vis) ms_io::require_writable(set);
     set_ = std::make_unique<ms_io::MeasurementSet>(o_.vis, selection_of(o_), o_.datacolumn, stokes_);
     for (const std::string& sentence : set_->incomplete_columns()) warn(sentence);
+    check_taylor_band(o_, set_->spectral_windows());
     geometry_ = geometry_of(o_, set_->observation().phase_centre);
     warn_of_pointing();
     reach_ = set_->reach();

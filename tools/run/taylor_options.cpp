@@ -1,9 +1,11 @@
 #include "tools/run/taylor_options.h"
 
 #include <CLI/CLI.hpp>
+#include <set>
 #include <stdexcept>
 
 #include "imager/stokes.h"
+#include "tools/base/numbers.h"
 #include "tools/base/option_checks.h"
 #include "tools/base/quantity.h"
 
@@ -40,6 +42,18 @@ void check_taylor(const ImageOptions& o) {
     refuse_option("reffreq", o.reffreq, "a frequency above 0, such as 1.4GHz");
   if (o.nterms > 1 && imager::parse_stokes(o.stokes).size() > 1)
     refuse_option("nterms", std::to_string(o.nterms), "--stokes of one parameter beside it, not " + o.stokes);
+}
+
+void check_taylor_band(const ImageOptions& o, const std::vector<ms_io::SpectralWindow>& windows) {
+  std::set<double> frequencies_hz;
+  for (const ms_io::SpectralWindow& window : windows)
+    frequencies_hz.insert(window.frequency_hz.begin(), window.frequency_hz.end());
+  if (o.nterms == 1 || frequencies_hz.size() >= static_cast<std::size_t>(o.nterms)) return;
+  std::string found;
+  for (const double hz : frequencies_hz) found += (found.empty() ? "" : ", ") + frequency_text(hz, 8);
+  throw std::runtime_error("--nterms " + std::to_string(o.nterms) + ": the channels selected have " +
+                           (frequencies_hz.size() == 1 ? "one frequency, " : "two frequencies, ") + found + "; expected " +
+                           std::to_string(o.nterms) + " or more, or fewer terms");
 }
 
 imager::TaylorExpansion taylor_expansion(const ImageOptions& o, const imager::Observation& observation) {
