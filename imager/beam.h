@@ -39,4 +39,13 @@ double beam_misfit(const Image& psf, const Beam& beam, double cell_rad);
 /// std::invalid_argument when an axis of the beam or the cell is not positive.
 Image convolve_with_beam(const Image& model, const Beam& beam, double cell_rad, int threads);
 
+/// What CLEAN leaves of a plane, of one shape.
+struct CleanedPlane {
+  const Image& model;     ///< Jy/pixel
+  const Image& residual;  ///< Jy/beam
+};
+
+/// model ⊗ beam + residual, see convolve_with_beam(). Throws what that does, and std::invalid_argument where the shapes differ.
+Image restored(const CleanedPlane& plane, const Beam& beam, double cell_rad, int threads);
+
 }  // namespace misfit::imager

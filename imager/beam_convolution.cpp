@@ -91,4 +91,15 @@ Image convolve_with_beam(const Image& model, const Beam& beam, double cell_rad, 
   return out;
 }
 
+Image restored(const CleanedPlane& plane, const Beam& beam, double cell_rad, int threads) {
+  const Image &model = plane.model, &residual = plane.residual;
+  if (model.width != residual.width || model.height != residual.height)
+    throw std::invalid_argument("a residual of " + std::to_string(residual.width) + " × " + std::to_string(residual.height) +
+                                " pixels; expected the model's " + std::to_string(model.width) + " × " +
+                                std::to_string(model.height));
+  Image sum = convolve_with_beam(model, beam, cell_rad, threads);
+  for (std::size_t i = 0; i < sum.pixel.size(); ++i) sum.pixel[i] += residual.pixel[i];
+  return sum;
+}
+
 }  // namespace misfit::imager

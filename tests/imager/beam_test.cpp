@@ -257,6 +257,15 @@ BOOST_AUTO_TEST_CASE(a_model_pixel_that_is_nan_adds_nothing) {
   BOOST_TEST((convolve_with_beam(model, oblique, cell_rad, 1).pixel == without.pixel));
 }
 
+BOOST_AUTO_TEST_CASE(what_is_restored_is_the_residual_and_the_model_at_the_resolution_of_the_beam) {
+  const Image model = components(), convolved = convolve_with_beam(model, oblique, cell_rad, 1);
+  Image residual(model.width, model.height);
+  for (std::size_t i = 0; i < residual.pixel.size(); ++i) residual.pixel[i] = 0.01 * static_cast<double>(i);
+  const Image image = restored({model, residual}, oblique, cell_rad, 2);
+  for (std::size_t i = 0; i < image.pixel.size(); ++i) BOOST_TEST(image.pixel[i] == convolved.pixel[i] + residual.pixel[i]);
+  BOOST_CHECK_THROW(restored({model, Image(3, 4)}, oblique, cell_rad, 1), std::invalid_argument);
+}
+
 BOOST_AUTO_TEST_CASE(convolution_gives_the_same_bits_on_any_number_of_threads) {
   const Image model = components(), one = convolve_with_beam(model, oblique, cell_rad, 1);
   for (const int threads : {2, 3, 50}) BOOST_TEST((convolve_with_beam(model, oblique, cell_rad, threads).pixel == one.pixel));

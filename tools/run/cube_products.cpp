@@ -102,9 +102,7 @@ imager::Image CubeProducts::primary_beam_at(double frequency_hz) {
 }
 
 imager::Image CubeProducts::restore(const imager::Image& model, const imager::Image& residual, const imager::Beam& beam) const {
-  imager::Image sum = imager::convolve_with_beam(model, beam, scene_.geometry.cell_rad, scene_.threads);
-  for (std::size_t i = 0; i < sum.pixel.size(); ++i) sum.pixel[i] += residual.pixel[i];
-  return sum;
+  return imager::restored({model, residual}, beam, scene_.geometry.cell_rad, scene_.threads);
 }
 
 /// What the report tells of a plane.

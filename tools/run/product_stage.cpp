@@ -180,10 +180,7 @@ imager::Image ProductStage::restored(const imager::CleanResult& cleaned) {
     restored_ = taylor_->restore(cleaned, *scene_.restoring_beam, scene_.geometry.cell_rad);
     return std::move(restored_.first);
   }
-  imager::Image sum =
-      imager::convolve_with_beam(cleaned.model, *scene_.restoring_beam, scene_.geometry.cell_rad, scene_.threads);
-  for (std::size_t i = 0; i < sum.pixel.size(); ++i) sum.pixel[i] += cleaned.residual.pixel[i];
-  return sum;
+  return imager::restored({cleaned.model, cleaned.residual}, *scene_.restoring_beam, scene_.geometry.cell_rad, scene_.threads);
 }
 
 /// What CLEAN found, on the sky.

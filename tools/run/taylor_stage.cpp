@@ -41,12 +41,8 @@ RestoredTerms TaylorStage::restore(const imager::CleanResult& cleaned, const ima
   const std::vector<imager::Image> left =
       imager::principal_solution(*basis_, all_terms(cleaned.residual, cleaned.further_residuals), threads_);
   std::vector<imager::Image> images;
-  for (const imager::Image* model : all_terms(cleaned.model, cleaned.further_models)) {
-    imager::Image image = imager::convolve_with_beam(*model, beam, cell_rad, threads_);
-    const imager::Image& residual = left[images.size()];
-    for (std::size_t i = 0; i < image.pixel.size(); ++i) image.pixel[i] += residual.pixel[i];
-    images.push_back(std::move(image));
-  }
+  for (const imager::Image* model : all_terms(cleaned.model, cleaned.further_models))
+    images.push_back(imager::restored({*model, left[images.size()]}, beam, cell_rad, threads_));
   RestoredTerms terms;
   terms.spectra = imager::spectral_images(images, left, threads_);
   terms.first = std::move(images.front());
