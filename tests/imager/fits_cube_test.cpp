@@ -3,35 +3,20 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
-#include <iterator>
 #include <limits>
 
 #include "imager/fits_image_reader.h"
 #include "imager/fits_image_writer.h"
 #include "tests/example_cube.h"
+#include "tests/imager/fits_cards.h"
 #include "tests/temporary_folder.h"
 
 namespace {
 
 using namespace misfit::imager;
+using namespace misfit::imager::testing;
 using namespace misfit::testing;
 namespace fs = std::filesystem;
-
-std::string contents(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), {}};
-}
-
-/// The card that begins with `keyword`, 80 characters.
-std::string card(const std::string& fits, const std::string& keyword) {
-  for (std::size_t i = 0; i + 80 <= fits.size(); i += 80)
-    if (fits.compare(i, 8, (keyword + "        ").substr(0, 8)) == 0) return fits.substr(i, 80);
-  return "";
-}
-
-double number(const std::string& fits, const std::string& keyword) {
-  return std::stod(card(fits, keyword).substr(9));
-}
 
 void write_planes(ImageWriter& writer, const ImageHeader& header, const std::vector<PlaneIndex>& planes) {
   for (const PlaneIndex& at : planes) writer.write(at, example_plane(header, at), example_beam(at));

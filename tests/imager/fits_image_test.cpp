@@ -1,30 +1,25 @@
 #include "imager/fits_image.h"
 
-#include <unistd.h>
-
 #include <bit>
 #include <boost/test/unit_test.hpp>
 #include <cmath>
 #include <cstdint>
 #include <filesystem>
 #include <fstream>
-#include <iterator>
 #include <limits>
 #include <random>
+
+#include "tests/imager/fits_cards.h"
+#include "tests/temporary_folder.h"
 
 namespace {
 
 using namespace misfit::imager;
+using namespace misfit::imager::testing;
+using misfit::testing::TemporaryFolder;
 namespace fs = std::filesystem;
 
 constexpr double degree = M_PI / 180;
-
-struct TemporaryFolder {
-  fs::path path = fs::temp_directory_path() / ("misfit_fits_image_" + std::to_string(getpid()));
-  TemporaryFolder() { fs::create_directory(path); }
-  ~TemporaryFolder() { fs::remove_all(path); }
-  std::string file(const std::string& name) const { return (path / name).string(); }
-};
 
 SkyImage example(int width = 7, int height = 4) {
   SkyImage sky;
@@ -37,22 +32,6 @@ SkyImage example(int width = 7, int height = 4) {
   sky.has_beam = true;
   sky.beam = {3e-6, 2e-6, -0.4};
   return sky;
-}
-
-std::string contents(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), {}};
-}
-
-/// The card that begins with `keyword`, 80 characters.
-std::string card(const std::string& fits, const std::string& keyword) {
-  for (std::size_t i = 0; i + 80 <= fits.size(); i += 80)
-    if (fits.compare(i, 8, (keyword + "        ").substr(0, 8)) == 0) return fits.substr(i, 80);
-  return "";
-}
-
-double number(const std::string& fits, const std::string& keyword) {
-  return std::stod(card(fits, keyword).substr(9));
 }
 
 /// Of a file of 64-bit pixels, big-endian, after a header of one or more blocks of 2880 bytes.
@@ -96,8 +75,8 @@ BOOST_AUTO_TEST_CASE(pixels_of_64_bits_come_back_bit_for_bit) {
   sky.image.at(0, 1) = std::numeric_limits<double>::denorm_min();
   sky.image.at(1, 2) = std::numeric_limits<double>::infinity();
   sky.image.at(2, 2) = std::numeric_limits<double>::max();
-  write_fits(sky, folder.file("a.fits"), PixelFormat::float64);
-  const SkyImage read = read_fits(folder.file("a.fits"));
+  write_fits(sky, folder / "a.fits", PixelFormat::float64);
+  const SkyImage read = read_fits(folder / "a.fits");
   BOOST_TEST(read.image.width == 300);
   BOOST_TEST(read.image.height == 200);
   BOOST_TEST((read.image.pixel == sky.image.pixel));
@@ -106,8 +85,8 @@ BOOST_AUTO_TEST_CASE(pixels_of_64_bits_come_back_bit_for_bit) {
 BOOST_AUTO_TEST_CASE(pixels_of_32_bits_come_back_rounded_to_single_precision) {
   const TemporaryFolder folder;
   const SkyImage sky = example();
-  write_fits(sky, folder.file("a.fits"), PixelFormat::float32);
-  const SkyImage read = read_fits(folder.file("a.fits"));
+  write_fits(sky, folder / "a.fits", PixelFormat::float32);
+  const SkyImage read = read_fits(folder / "a.fits");
   for (std::size_t i = 0; i < sky.image.pixel.size(); ++i)
     BOOST_TEST(read.image.pixel[i] == static_cast<double>(static_cast<float>(sky.image.pixel[i])));
 }
@@ -117,11 +96,11 @@ BOOST_AUTO_TEST_CASE(pixels_without_value_are_ieee_nan_in_the_file_and_when_read
   for (const PixelFormat format : {PixelFormat::float32, PixelFormat::float64}) {
     SkyImage sky = example();
     sky.image.at(2, 3) = std::numeric_limits<double>::quiet_NaN();
-    write_fits(sky, folder.file("a.fits"), format);
-    const SkyImage read = read_fits(folder.file("a.fits"));
+    write_fits(sky, folder / "a.fits", format);
+    const SkyImage read = read_fits(folder / "a.fits");
     BOOST_TEST(std::isnan(read.image.at(2, 3)));
     BOOST_TEST(std::isfinite(read.image.at(2, 4)));
-    const std::string fits = contents(folder.file("a.fits"));
+    const std::string fits = contents(folder / "a.fits");
     const std::size_t bytes = format == PixelFormat::float32 ? 4 : 8;
     const std::size_t at = fits.size() - 2880 + (2 * 7 + 3) * bytes;
     BOOST_TEST((fits[at] & 0x7f) == 0x7f);  // big-endian: the exponent of NaN is all ones
@@ -132,8 +111,8 @@ BOOST_AUTO_TEST_CASE(pixels_without_value_are_ieee_nan_in_the_file_and_when_read
 BOOST_AUTO_TEST_CASE(what_the_header_states_comes_back) {
   const TemporaryFolder folder;
   const SkyImage sky = example();
-  write_fits(sky, folder.file("a.fits"), PixelFormat::float32);
-  const SkyImage read = read_fits(folder.file("a.fits"));
+  write_fits(sky, folder / "a.fits", PixelFormat::float32);
+  const SkyImage read = read_fits(folder / "a.fits");
   const double rounding = 1e-14;  // 15 digits are written
   BOOST_TEST(read.geometry.width == 7);
   BOOST_TEST(read.geometry.height == 4);
@@ -159,8 +138,8 @@ BOOST_AUTO_TEST_CASE(every_frame_comes_back) {
   for (const char* frame : {"ICRS", "FK5", "FK4"}) {
     SkyImage sky = example();
     sky.geometry.phase_centre.frame = frame;
-    write_fits(sky, folder.file("a.fits"), PixelFormat::float32);
-    BOOST_TEST(read_fits(folder.file("a.fits")).geometry.phase_centre.frame == frame);
+    write_fits(sky, folder / "a.fits", PixelFormat::float32);
+    BOOST_TEST(read_fits(folder / "a.fits").geometry.phase_centre.frame == frame);
   }
 }
 
@@ -170,8 +149,8 @@ BOOST_AUTO_TEST_CASE(the_header_places_pixels_where_the_geometry_has_them) {
   std::string fits;
   for (const DirectionCosines& centre : {DirectionCosines{1e-4, -2.5e-6}, DirectionCosines{-0.2, 0.3}, DirectionCosines{}}) {
     sky.geometry.centre = centre;
-    write_fits(sky, folder.file("a.fits"), PixelFormat::float32);
-    fits = contents(folder.file("a.fits"));
+    write_fits(sky, folder / "a.fits", PixelFormat::float32);
+    fits = contents(folder / "a.fits");
     const double rounding = 2e-14 * (std::hypot(centre.l, centre.m) + 7 * sky.geometry.cell_rad);
     for (int column = 0; column < 7; ++column) {
       const double x_deg = (column + 1 - number(fits, "CRPIX1")) * number(fits, "CDELT1");
@@ -207,8 +186,8 @@ BOOST_AUTO_TEST_CASE(an_image_off_the_phase_centre_comes_back_where_it_was) {
   const double cell = sky.geometry.cell_rad;
   for (const auto& [l, m] : {std::pair(2 * cell, -3 * cell), {0.4 * cell, 0.7 * cell}, {-0.31, 0.22}, {0.5, 0.0}}) {
     sky.geometry.centre = {l, m};
-    write_fits(sky, folder.file("a.fits"), PixelFormat::float32);
-    const ImageGeometry read = read_fits(folder.file("a.fits")).geometry;
+    write_fits(sky, folder / "a.fits", PixelFormat::float32);
+    const ImageGeometry read = read_fits(folder / "a.fits").geometry;
     // 15 digits of CRPIX and CDELT are written: each is right to 5e-15.
     BOOST_TEST(std::abs(read.centre.l - l) < 2e-14 * (std::abs(l) + 7 * cell));
     BOOST_TEST(std::abs(read.centre.m - m) < 2e-14 * (std::abs(m) + 7 * cell));
@@ -219,8 +198,8 @@ BOOST_AUTO_TEST_CASE(an_image_off_the_phase_centre_comes_back_where_it_was) {
 
 BOOST_AUTO_TEST_CASE(an_image_on_the_phase_centre_comes_back_exactly_there) {
   const TemporaryFolder folder;
-  write_fits(example(), folder.file("a.fits"), PixelFormat::float32);
-  const DirectionCosines centre = read_fits(folder.file("a.fits")).geometry.centre;
+  write_fits(example(), folder / "a.fits", PixelFormat::float32);
+  const DirectionCosines centre = read_fits(folder / "a.fits").geometry.centre;
   BOOST_TEST(centre.l == 0);
   BOOST_TEST(centre.m == 0);
 }
@@ -230,8 +209,8 @@ BOOST_AUTO_TEST_CASE(cards_and_long_history_are_written) {
   SkyImage sky = example();
   sky.cards = {{"MFERRRMS", 2.5e-7, "expected error"}};
   sky.history = {"misfit image " + std::string(200, 'x'), "done"};
-  write_fits(sky, folder.file("a.fits"), PixelFormat::float32);
-  const std::string fits = contents(folder.file("a.fits"));
+  write_fits(sky, folder / "a.fits", PixelFormat::float32);
+  const std::string fits = contents(folder / "a.fits");
   BOOST_TEST(number(fits, "MFERRRMS") == 2.5e-7);
   BOOST_TEST(card(fits, "MFERRRMS").find("/ expected error") != std::string::npos);
   std::string history;
@@ -245,15 +224,15 @@ BOOST_AUTO_TEST_CASE(an_image_without_beam_has_none) {
   const TemporaryFolder folder;
   SkyImage sky = example();
   sky.has_beam = false;
-  write_fits(sky, folder.file("a.fits"), PixelFormat::float32);
-  BOOST_TEST(card(contents(folder.file("a.fits")), "BMAJ").empty());
-  BOOST_TEST(!read_fits(folder.file("a.fits")).has_beam);
+  write_fits(sky, folder / "a.fits", PixelFormat::float32);
+  BOOST_TEST(card(contents(folder / "a.fits"), "BMAJ").empty());
+  BOOST_TEST(!read_fits(folder / "a.fits").has_beam);
 }
 
 BOOST_AUTO_TEST_CASE(names_that_cfitsio_would_parse_are_plain_names) {
   const TemporaryFolder folder;
   const auto before = fs::current_path();
-  fs::current_path(folder.path);
+  fs::current_path(folder / "");
   for (const char* name : {"a[1:2,3].fits", "b(c).fits", "d+1", "!e.fits", "~f.fits", "mem:g.fits", " h i.fits"}) {
     BOOST_TEST_INFO(name);
     write_fits(example(), name, PixelFormat::float32);
@@ -265,32 +244,32 @@ BOOST_AUTO_TEST_CASE(names_that_cfitsio_would_parse_are_plain_names) {
 
 BOOST_AUTO_TEST_CASE(writing_replaces_and_leaves_nothing_else_behind) {
   const TemporaryFolder folder;
-  write_fits(example(7, 4), folder.file("a.fits"), PixelFormat::float32);
-  write_fits(example(5, 6), folder.file("a.fits"), PixelFormat::float32);
-  BOOST_TEST(read_fits(folder.file("a.fits")).image.width == 5);
-  BOOST_TEST(std::distance(fs::directory_iterator(folder.path), fs::directory_iterator()) == 1);
+  write_fits(example(7, 4), folder / "a.fits", PixelFormat::float32);
+  write_fits(example(5, 6), folder / "a.fits", PixelFormat::float32);
+  BOOST_TEST(read_fits(folder / "a.fits").image.width == 5);
+  BOOST_TEST(std::distance(fs::directory_iterator(folder / ""), fs::directory_iterator()) == 1);
 }
 
 BOOST_AUTO_TEST_CASE(a_place_that_cannot_be_written_is_an_error_that_names_it) {
   const TemporaryFolder folder;
-  const std::string missing = folder.file("no/such/folder.fits"), taken = folder.file("taken");
+  const std::string missing = folder / "no/such/folder.fits", taken = folder / "taken";
   check_error_names(missing, "write", [&] { write_fits(example(), missing, PixelFormat::float32); });
   fs::create_directories(taken + "/full");
   check_error_names(taken, "write", [&] { write_fits(example(), taken, PixelFormat::float32); });
-  BOOST_TEST(std::distance(fs::directory_iterator(folder.path), fs::directory_iterator()) == 1);
+  BOOST_TEST(std::distance(fs::directory_iterator(folder / ""), fs::directory_iterator()) == 1);
 }
 
 BOOST_AUTO_TEST_CASE(a_card_that_cannot_be_written_leaves_no_file) {
   const TemporaryFolder folder;
   SkyImage sky = example();
   sky.cards = {{"BAD", std::numeric_limits<double>::quiet_NaN(), ""}};
-  check_error_names(folder.file("a.fits"), "", [&] { write_fits(sky, folder.file("a.fits"), PixelFormat::float32); });
-  BOOST_TEST(fs::is_empty(folder.path));
+  check_error_names(folder / "a.fits", "", [&] { write_fits(sky, folder / "a.fits", PixelFormat::float32); });
+  BOOST_TEST(fs::is_empty(folder / ""));
 }
 
 BOOST_AUTO_TEST_CASE(a_file_that_is_missing_cut_short_or_no_image_is_an_error_that_names_it) {
   const TemporaryFolder folder;
-  const std::string path = folder.file("a.fits");
+  const std::string path = folder / "a.fits";
   check_error_names(path, "read", [&] { read_fits(path); });
   write_fits(example(100, 100), path, PixelFormat::float64);
   fs::resize_file(path, fs::file_size(path) / 2);
@@ -303,7 +282,7 @@ BOOST_AUTO_TEST_CASE(a_file_that_is_missing_cut_short_or_no_image_is_an_error_th
 
 BOOST_AUTO_TEST_CASE(geometry_that_is_not_known_is_an_error_that_says_why) {
   const TemporaryFolder folder;
-  const std::string path = folder.file("a.fits");
+  const std::string path = folder / "a.fits";
   const auto refused = [&](const std::string& keyword, const std::string& new_card, const std::string& expected) {
     write_altered(path, keyword, new_card);
     check_error_names(path, expected, [&] { read_fits(path); });
@@ -319,7 +298,7 @@ BOOST_AUTO_TEST_CASE(geometry_that_is_not_known_is_an_error_that_says_why) {
 
 BOOST_AUTO_TEST_CASE(a_stack_of_planes_is_no_image) {
   const TemporaryFolder folder;
-  const std::string path = folder.file("a.fits");
+  const std::string path = folder / "a.fits";
   write_altered(path, "NAXIS3", "NAXIS3  =                    2");
   check_error_names(path, "2 frequencies; expected one", [&] { read_fits(path); });
 }
@@ -336,8 +315,8 @@ BOOST_AUTO_TEST_CASE(integers_with_a_scale_and_blanks_are_read) {
   fits.resize(2880, ' ');
   fits += std::string("\x00\x06\xff\xff", 4);
   fits.resize(2 * 2880, '\0');
-  std::ofstream(folder.file("a.fits"), std::ios::binary) << fits;
-  const SkyImage read = read_fits(folder.file("a.fits"));
+  std::ofstream(folder / "a.fits", std::ios::binary) << fits;
+  const SkyImage read = read_fits(folder / "a.fits");
   BOOST_TEST(read.image.at(0, 0) == 4);
   BOOST_TEST(std::isnan(read.image.at(0, 1)));
   BOOST_TEST(read.geometry.phase_centre.frame == "ICRS");
@@ -352,8 +331,8 @@ BOOST_AUTO_TEST_CASE(planes_lie_along_the_stokes_axis_with_codes_that_say_which_
       planes.back().stokes = stokes;
       for (double& pixel : planes.back().image.pixel) pixel += 10.0 * static_cast<double>(planes.size());
     }
-    write_fits(planes, folder.file("a.fits"), PixelFormat::float64);
-    const std::string fits = contents(folder.file("a.fits"));
+    write_fits(planes, folder / "a.fits", PixelFormat::float64);
+    const std::string fits = contents(folder / "a.fits");
     const std::vector<double> values = all_pixels(fits);
     const std::size_t each = planes.front().image.pixel.size();
     BOOST_TEST_REQUIRE(values.size() == each * planes.size());
@@ -368,15 +347,15 @@ BOOST_AUTO_TEST_CASE(planes_lie_along_the_stokes_axis_with_codes_that_say_which_
 BOOST_AUTO_TEST_CASE(planes_that_do_not_fit_together_are_not_written) {
   const TemporaryFolder folder;
   std::vector<SkyImage> planes(3, example());
-  BOOST_CHECK_THROW(write_fits(std::vector<SkyImage>(), folder.file("a.fits"), PixelFormat::float32), std::invalid_argument);
-  BOOST_CHECK_THROW(write_fits(planes, folder.file("a.fits"), PixelFormat::float32), std::invalid_argument);  // I three times
+  BOOST_CHECK_THROW(write_fits(std::vector<SkyImage>(), folder / "a.fits", PixelFormat::float32), std::invalid_argument);
+  BOOST_CHECK_THROW(write_fits(planes, folder / "a.fits", PixelFormat::float32), std::invalid_argument);  // I three times
   planes[1].stokes = Stokes::Q;
   planes[2].stokes = Stokes::V;
-  BOOST_CHECK_THROW(write_fits(planes, folder.file("a.fits"), PixelFormat::float32), std::invalid_argument);
+  BOOST_CHECK_THROW(write_fits(planes, folder / "a.fits", PixelFormat::float32), std::invalid_argument);
   planes[2] = example(3, 3);
   planes[2].stokes = Stokes::U;
-  BOOST_CHECK_THROW(write_fits(planes, folder.file("a.fits"), PixelFormat::float32), std::invalid_argument);
-  BOOST_TEST(fs::is_empty(folder.path));
+  BOOST_CHECK_THROW(write_fits(planes, folder / "a.fits", PixelFormat::float32), std::invalid_argument);
+  BOOST_TEST(fs::is_empty(folder / ""));
 }
 
 BOOST_AUTO_TEST_SUITE_END()
