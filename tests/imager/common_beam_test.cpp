@@ -12,16 +12,15 @@ double area(const Beam& beam) {
   return beam.major_rad * beam.minor_rad;
 }
 
-/// By how much a point of `inner` reaches beyond `outer`, (x/r)² − 1 at most.
+/// By how much the farthest point of `inner` reaches beyond `outer`, (x/r)² − 1: with x = L y, |y| ≤ 1, the larger eigenvalue
+/// of Lᵀ diag(1/major², 1/minor²) L.
 double beyond(const Beam& inner, const Beam& outer) {
-  double most = 0;
-  for (int k = 0; k < 3600; ++k) {
-    const double angle = M_PI * k / 1800, a = inner.major_rad * std::cos(angle), b = inner.minor_rad * std::sin(angle);
-    const double turn = inner.position_angle_rad - outer.position_angle_rad;
-    const double along = a * std::cos(turn) - b * std::sin(turn), across = a * std::sin(turn) + b * std::cos(turn);
-    most = std::max(most, std::pow(along / outer.major_rad, 2) + std::pow(across / outer.minor_rad, 2));
-  }
-  return most - 1;
+  const double turn = inner.position_angle_rad - outer.position_angle_rad, c = std::cos(turn), s = std::sin(turn);
+  const double a = 1 / (outer.major_rad * outer.major_rad), b = 1 / (outer.minor_rad * outer.minor_rad);
+  const double major = inner.major_rad * inner.major_rad * (a * c * c + b * s * s);
+  const double minor = inner.minor_rad * inner.minor_rad * (a * s * s + b * c * c);
+  const double mixed = inner.major_rad * inner.minor_rad * c * s * (b - a);
+  return 0.5 * (major + minor) + std::hypot(0.5 * (major - minor), mixed) - 1;
 }
 
 std::vector<Beam> random_beams(std::size_t count, unsigned seed) {
