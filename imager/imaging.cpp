@@ -3,8 +3,6 @@
 #include <stdexcept>
 
 #include "imager/big_array.h"
-#include "imager/phase.h"
-#include "imager/phasors.h"
 #include "imager/visibility_pass_internal.h"
 
 namespace misfit::imager {
@@ -39,21 +37,6 @@ DirtyImages dirty_images(AdjointResult sum, Image psf, StageTimes& times) {
 
 }  // namespace
 
-std::vector<std::complex<double>> visibilities_of_middle(const VisibilityBlock& block, const OwnPsf& psf) {
-  std::vector<std::complex<double>> visibility(block.samples(), 1);
-  if (psf.middle.l == 0 && psf.middle.m == 0) return visibility;
-  PhasePosition at = phase_position(psf.middle);
-  if (!psf.with_w) at.n_minus_1 = 0;
-  std::vector<double> turns(block.channels()), cosine(block.channels()), sine(block.channels());
-  for (std::size_t row = 0; row < block.rows(); ++row) {
-    const double per_hz = turns_per_hz(&block.uvw_m[3 * row], at);
-    for (std::size_t c = 0; c < turns.size(); ++c) turns[c] = per_hz * block.frequency_hz[c];
-    phasors(turns.data(), static_cast<int>(turns.size()), cosine.data(), sine.data());
-    for (std::size_t c = 0; c < turns.size(); ++c) visibility[row * turns.size() + c] = {cosine[c], sine[c]};
-  }
-  return visibility;
-}
-
 NothingInGrid::NothingInGrid(std::uint64_t samples)
     : std::runtime_error("no visibility can be imaged: " + std::to_string(samples) +
                          " usable samples lie beyond 1/(2 cell), none within; expected smaller pixels"),
@@ -76,15 +59,15 @@ DirtyImages make_dirty_images(const VisibilitySource& source, const Transform& t
                               const Progress& progress, StageTimes& times) {
   VisibilityPass pass(source, progress, times);
   auto sum = begin_adjoint(transform, {.images = psf.images}, times);
-  auto psf_sum = begin_adjoint(psf.transform, {}, times);
+  auto psf_sum = begin_adjoint(psf.transform, {.images = 0, .with_psf = true}, times);
   pass.for_each_block([&](const VisibilityBlock& block) {
     const StageTimer timer(times, "grid");
     sum->add(block);
-    psf_sum->add(block, visibilities_of_middle(block, psf));
+    psf_sum->add(block);
   });
   AdjointResult of_psf = finish_adjoint(std::move(psf_sum), times);
   AdjointResult result = finish_adjoint(std::move(sum), times);
-  return dirty_images(std::move(result), std::move(of_psf.images.front()), times);
+  return dirty_images(std::move(result), std::move(of_psf.psf), times);
 }
 
 void for_each_residual(const VisibilitySource& source, const MakePrediction& predict, const Progress& progress,

@@ -5,7 +5,6 @@
 #include <memory>
 #include <stdexcept>
 
-#include "imager/geometry.h"
 #include "imager/stage_times.h"
 #include "imager/transform.h"
 
@@ -31,12 +30,10 @@ struct DirtyImages {
 DirtyImages make_dirty_images(const VisibilitySource& source, const Transform& transform, const AdjointOptions& options,
                               const Progress& progress, StageTimes& times);
 
-/// A PSF made by a transform of its own, for an image whose middle pixel lies at `middle`.
+/// A PSF made by a transform of its own.
 struct OwnPsf {
   const Transform& transform;
-  DirectionCosines middle;
-  bool with_w = true;  ///< as the transform
-  int images = 1;      ///< made by the other transform, see AdjointOptions
+  int images = 1;  ///< made by the other transform, see AdjointOptions
 };
 
 /// The same with the PSF by a transform of its own, in the same pass.

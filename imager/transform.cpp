@@ -15,9 +15,10 @@ SampleSums& SampleSums::operator+=(const SampleSums& other) {
 }
 
 AdjointSum::AdjointSum(const AdjointOptions& options) : options_(options) {
-  if (options.images < 1 || options.images > most_stokes)
-    throw std::invalid_argument(std::to_string(options.images) + " images of one adjoint not in [1, " +
-                                std::to_string(most_stokes) + "]");
+  const int least = options.with_psf ? 0 : 1;
+  if (options.images < least || options.images > most_stokes)
+    throw std::invalid_argument(std::to_string(options.images) + " images of one adjoint not in [" + std::to_string(least) +
+                                ", " + std::to_string(most_stokes) + "]");
 }
 
 void AdjointSum::add(const VisibilityBlock& block, const std::vector<std::complex<double>>& visibility) {

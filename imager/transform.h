@@ -1,6 +1,7 @@
 #pragma once
 
 #include <complex>
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <vector>
@@ -24,7 +25,7 @@ struct SampleSums {
 
 /// What an adjoint makes of the samples.
 struct AdjointOptions {
-  int images = 1;  ///< [1, most_stokes]: of a block's own Stokes parameter, or of all that it carries
+  int images = 1;  ///< of a block's own Stokes parameter, or of all that it carries, up to most_stokes; 0: the PSF alone
   bool with_psf = false;
 };
 
@@ -35,7 +36,7 @@ struct AdjointResult {
   /// The same with V = exp(+2πi(u l_0 + v m_0 + w(n_0−1))), the response to a source of 1 Jy in the image's middle pixel, where
   /// it is Σ w; empty unless it was asked for. It is NaN where w counts and that pixel lies beyond the horizon.
   Image psf;
-  std::vector<SampleSums> sums;  ///< [Stokes]: they differ in those of |V| alone
+  std::vector<SampleSums> sums;  ///< [Stokes], of the block's own for a PSF alone: they differ in those of |V| alone
   double fft_s = 0;              ///< seconds of wall clock that FFTs and corrections took, as samples were added and at the end
 };
 
@@ -44,9 +45,9 @@ class AdjointSum {
  public:
   virtual ~AdjointSum() = default;
   /// Throws std::invalid_argument when several images are made and the block does not carry as many Stokes parameters.
-  void add(const VisibilityBlock& block) { add_sets(block, sets_of(block, options_.images)); }
-  /// Adds the samples of `block` with `visibility` [row][channel] in place of its own. Throws std::invalid_argument when more
-  /// than one image is made.
+  void add(const VisibilityBlock& block) { add_sets(block, sets_of(block, static_cast<int>(sets()))); }
+  /// Adds the samples of `block` with `visibility` [row][channel] in place of its own. Throws std::invalid_argument unless one
+  /// image is made.
   void add(const VisibilityBlock& block, const std::vector<std::complex<double>>& visibility);
   /// The same of several images, with a set of visibilities for each. Throws std::invalid_argument unless there are as many.
   void add_several(const VisibilityBlock& block, const std::vector<std::vector<std::complex<double>>>& visibilities);
@@ -54,10 +55,13 @@ class AdjointSum {
   virtual AdjointResult finish() = 0;
 
  protected:
-  /// Throws std::invalid_argument when there are to be no images, or too many.
+  /// Throws std::invalid_argument when nothing is to be made, or there are to be too many images.
   explicit AdjointSum(const AdjointOptions& options);
-  /// Adds a block's samples with a set of visibilities for each image.
+  /// Adds a block's samples with a set of visibilities for each image; for a PSF alone with the block's own, of which sums are
+  /// taken.
   virtual void add_sets(const VisibilityBlock& block, const std::vector<VisibilitySet>& sets) = 0;
+  std::size_t images() const { return static_cast<std::size_t>(options_.images); }
+  std::size_t sets() const { return images() == 0 ? 1 : images(); }
 
   const AdjointOptions options_;
 

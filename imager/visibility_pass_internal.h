@@ -77,7 +77,4 @@ inline void divide(Image& image, double by) {
   for (double& pixel : image.pixel) pixel /= by;
 }
 
-/// Those of a source of 1 Jy at the image's middle pixel. [row][channel]
-std::vector<std::complex<double>> visibilities_of_middle(const VisibilityBlock& block, const OwnPsf& psf);
-
 }  // namespace misfit::imager

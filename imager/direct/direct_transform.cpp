@@ -114,9 +114,8 @@ struct WeightedSamples {
 class DirectAdjoint : public AdjointSum {
  public:
   DirectAdjoint(const DirectSums& o, const AdjointOptions& options) : AdjointSum(options), o_(o) {
-    const auto images = static_cast<std::size_t>(options.images);
-    result_.images.assign(images, Image(o.geometry.width, o.geometry.height));
-    result_.sums.resize(images);
+    result_.images.assign(images(), Image(o.geometry.width, o.geometry.height));
+    result_.sums.resize(sets());
     if (options.with_psf) result_.psf = Image(o.geometry.width, o.geometry.height);
   }
 
@@ -134,14 +133,17 @@ class DirectAdjoint : public AdjointSum {
       result_.sums[s] += counted;
       std::visit([&](const auto* v) { add_span_to_sums(weight.data(), v, weight.size(), result_.sums[s]); }, sets[s]);
     }
-    const WeightedSamples samples(block, weight, sets, 0, weight.size());
+    const std::vector<VisibilitySet> imaged(sets.begin(), sets.begin() + options_.images);
+    const WeightedSamples samples(block, weight, imaged, 0, weight.size());
     const PhasePosition middle = position_of(o_.geometry.centre, o_.with_w);
     parallel_for(static_cast<std::size_t>(o_.geometry.height), o_.threads, [&](std::size_t r) {
       const int row = static_cast<int>(r);
       for (int column = 0; column < o_.geometry.width; ++column) {
         const PhasePosition at = position_of(o_.geometry.at(row, column), o_.with_w);
-        const WeightedSamples::Sums sums = samples.images_at(at);
-        for (std::size_t s = 0; s < sets.size(); ++s) result_.images[s].at(row, column) += sums[s];
+        if (!imaged.empty()) {
+          const WeightedSamples::Sums sums = samples.images_at(at);
+          for (std::size_t s = 0; s < imaged.size(); ++s) result_.images[s].at(row, column) += sums[s];
+        }
         if (options_.with_psf) result_.psf.at(row, column) += samples.beam_at(relative(at, middle));
       }
     });

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "imager/geometry.h"
 #include "imager/imaging.h"
 
 namespace misfit::imager {

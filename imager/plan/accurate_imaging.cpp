@@ -28,8 +28,7 @@ AccurateImages make_images(const VisibilitySource& source, GriddingPlan plan, co
     const AdjointOptions options{made.plan.request.stokes, made.plan.request.psf};
     made.images = make_dirty_images(source, *made.transform, options, progress, times);
   } else {
-    const auto of_psf = make_transform(made.plan.psf->options);
-    const OwnPsf psf{*of_psf, made.plan.options.geometry.centre, made.plan.psf->options.has_w_axis(), made.plan.request.stokes};
+    const OwnPsf psf{made.transform->psf(), made.plan.request.stokes};
     made.images = make_dirty_images(source, *made.transform, psf, progress, times);
   }
   return made;

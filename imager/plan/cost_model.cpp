@@ -26,11 +26,14 @@ constexpr double wide_cell = 1.1;
 constexpr double wide_point = 1.15;
 constexpr double wide_double_cost = 1.45;  ///< over single precision
 
-/// Points times logarithms of the rows and the kept columns; half of both where the grid is Hermitian, in the plane.
+/// Points times logarithms of the rows and the kept columns of all images; half of both where the grid is Hermitian, in the
+/// plane, and there only half the columns of a PSF, which is even.
 double fft_points(const GriddingWork& work) {
   const double row = work.nu * std::log2(work.nu);
   const double column = work.nv * std::log2(work.nv);
-  return (work.has_w_axis() ? 1 : 0.5) * work.planes * (work.nv * row + work.columns * column);
+  const double rows = work.images() * work.nv;
+  const double columns = work.columns * (work.has_w_axis() || !work.psf ? work.images() : work.stokes + 0.5);
+  return (work.has_w_axis() ? 1 : 0.5) * work.planes * (rows * row + columns * column);
 }
 
 /// Samples at random over the grid, each a row.
@@ -94,7 +97,7 @@ double CostModel::gridding_seconds(const GriddingWork& work) const {
 
 double CostModel::fft_seconds(const GriddingWork& work) const {
   const double per_point = fft_ns * (work.has_w_axis() ? wide_point : 1);
-  return 1e-9 * work.images() * fft_points(work) * per_point * precision_cost(work, *this);
+  return 1e-9 * fft_points(work) * per_point * precision_cost(work, *this);
 }
 
 double operation_count(const GriddingWork& work) {
@@ -114,7 +117,7 @@ CostModel measure_costs() {
   CostModel model;
   const double tap_over_cell = model.tap_ns / model.cell_ns;
   const double more_cells = cells_of(wide.work, tap_over_cell) - cells_of(narrow.work, tap_over_cell);
-  model.fft_ns = 1e9 * fft.seconds / (2 * fft_points(fft.work));
+  model.fft_ns = 1e9 * fft.seconds / fft_points(fft.work);
   model.cell_ns = std::max(0.01, 1e9 * (wide.seconds - narrow.seconds) / samples / more_cells);
   model.tap_ns = tap_over_cell * model.cell_ns;
   model.sample_ns = std::max(1.0, 1e9 * narrow.seconds / samples - model.cell_ns * cells_of(narrow.work, tap_over_cell));

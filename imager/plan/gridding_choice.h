@@ -22,7 +22,7 @@ struct GriddingRequest {
   double padding = 0;         ///< FFT size over image size along u and v, at least 1.02; 0 = chosen
   bool best_effort = false;   ///< take the most exact kernel when the accuracy is out of reach
   std::uint64_t samples = 0;  ///< visibilities in a pass
-  int stokes = 1;             ///< Stokes parameters, each of which has a dirty image made in the pass
+  int stokes = 1;             ///< Stokes parameters, each of which has a dirty image made in the pass; 0: the PSF alone
   bool psf = true;            ///< made besides
   double psf_accuracy = 0;    ///< of a PSF that may have a transform of its own; 0 = the accuracy
   int threads = 1;

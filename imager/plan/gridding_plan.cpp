@@ -250,7 +250,8 @@ GriddingPlan plan_images(const GriddingRequest& request) {
     GriddingRequest alone = request;
     alone.psf = false;
     GriddingPlan apart = plan_together(alone);
-    alone.stokes = 1;
+    alone.stokes = 0;
+    alone.psf = true;
     alone.accuracy = psf_accuracy;
     alone.best_effort = true;
     apart.psf = std::make_shared<GriddingPlan>(plan_together(alone));
@@ -285,10 +286,11 @@ TransformMemory memory_of(const GriddingPlan& plan) {
     GriddingPlan image = plan;
     image.psf.reset();
     const TransformMemory of_image = memory_of(image), of_psf = memory_of(*plan.psf);
-    return {of_image.visibilities, of_psf.visibilities + of_psf.psf, std::max(of_image.fft, of_psf.fft), of_image.other_stokes,
-            of_image.gathered};
+    const double psf =
+        plan.psf->options.has_w_axis() ? of_psf.visibilities : of_psf.psf;  // weights alone make one in the plane
+    return {of_image.visibilities, psf, std::max(of_image.fft, of_psf.fft), of_image.other_stokes, of_image.gathered};
   }
-  const int stokes = plan.request.stokes;
+  const int stokes = std::max(1, plan.request.stokes);
   const auto samples = static_cast<double>(plan.request.samples);
   if (!plan.options.has_w_axis()) return memory_of(static_cast<const PlaneTransformOptions&>(plan.options), stokes, samples);
   const GriddingCandidate& best = plan.choice.best;

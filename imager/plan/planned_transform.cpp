@@ -15,6 +15,7 @@ std::unique_ptr<Transform> transform_of(const GriddingPlan& plan, const DirectSu
 PlannedTransform::PlannedTransform(const GriddingPlan& plan)
     : direct_{plan.options.geometry, true, plan.options.threads}, direct_pixels_(plan.direct_pixels) {
   images_ = transform_of(plan, direct_);
+  if (plan.psf) psf_ = make_transform(plan.psf->options);
 }
 
 std::unique_ptr<Prediction> PlannedTransform::predict(const Image& model) const {

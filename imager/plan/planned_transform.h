@@ -18,9 +18,12 @@ class PlannedTransform : public Transform {
   std::unique_ptr<Prediction> predict(const Image& model) const override;
   /// What makes images, and predicts larger models.
   const Transform& images() const { return *images_; }
+  /// What makes PSFs: the same, or one of their own.
+  const Transform& psf() const { return psf_ ? *psf_ : *images_; }
 
  private:
   std::unique_ptr<Transform> images_;
+  std::unique_ptr<Transform> psf_;  ///< null where images and PSF share one
   DirectSums direct_;
   std::uint64_t direct_pixels_;
 };

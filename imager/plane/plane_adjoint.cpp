@@ -19,7 +19,8 @@ template <typename Real>
 class PlaneAdjoint : public AdjointSum {
  public:
   PlaneAdjoint(const PlaneSetup<Real>& setup, const AdjointOptions& options)
-      : AdjointSum(options), setup_(setup), value_unit_(images()), sums_(images()) {
+      : AdjointSum(options), setup_(setup), seen_(setup.geometry), value_unit_(images()), sums_(sets()) {
+    if (images() == 0) seen_.centre = {};
     grid_.resize(2 * images() + (options.with_psf ? 1 : 0));
     for (auto& plane : grid_) {
       plane.resize(setup.shape.cells());
@@ -42,7 +43,7 @@ class PlaneAdjoint : public AdjointSum {
  protected:
   void add_sets(const VisibilityBlock& block, const std::vector<VisibilitySet>& sets) override {
     const TileOrder order = order_by_tile(block, sets, setup_.shape, setup_.geometry.cell_rad, Wanted::imaging, setup_.threads);
-    for (std::size_t i = 0; i < images(); ++i) sums_[i] += order.sums[i];
+    for (std::size_t i = 0; i < sums_.size(); ++i) sums_[i] += order.sums[i];
     make_room(order.sums);
     crowded_.count(order.samples, most_in_place, TileBuffer<double>(setup_.shape.tile, setup_.taps_u.padded, plane_count()));
     for (const std::vector<TileTask>& tasks : coloured_tasks(order, setup_.shape))
@@ -50,7 +51,6 @@ class PlaneAdjoint : public AdjointSum {
   }
 
  private:
-  std::size_t images() const { return static_cast<std::size_t>(options_.images); }
   int plane_count() const { return static_cast<int>(planes_.size()); }
 
   Image to_image(std::vector<Real> real, std::vector<Real> imaginary, double unit) const {
@@ -102,7 +102,7 @@ class PlaneAdjoint : public AdjointSum {
       std::fill(buffer.cell.begin(), buffer.cell.end(), Real(0));
       in_buffer = 0;
     };
-    for_each_batch<Real>(setup_.geometry, setup_.shape, block, order, task, ahead, done);
+    for_each_batch<Real>(seen_, setup_.shape, block, order, task, ahead, done);
     if (!in_place) empty_buffer();
   }
 
@@ -111,7 +111,7 @@ class PlaneAdjoint : public AdjointSum {
                   TileBatch<Real>& batch) const {
     double weight[BatchSamples::capacity];
     for (int k = 0; k < batch.count; ++k) weight[k] = block.weight[samples.index[k]];
-    for (std::size_t i = 0; i < sets.size(); ++i) {
+    for (std::size_t i = 0; i < images(); ++i) {
       const double per_unit = value_unit_[i].per_unit();
       Real *const real = batch.value[2 * i], *const imaginary = batch.value[2 * i + 1];
       const auto set_both = [&](const auto* visibility) {
@@ -126,7 +126,7 @@ class PlaneAdjoint : public AdjointSum {
     }
     if (!options_.with_psf) return;
     const double per_unit = weight_unit_.per_unit();
-    for (int k = 0; k < batch.count; ++k) batch.value[2 * sets.size()][k] = static_cast<Real>(weight[k] * per_unit);
+    for (int k = 0; k < batch.count; ++k) batch.value[2 * images()][k] = static_cast<Real>(weight[k] * per_unit);
   }
 
   static void add_up(const TileBuffer<Real>& buffer, TileBuffer<double>& to) {
@@ -154,12 +154,13 @@ class PlaneAdjoint : public AdjointSum {
   }
 
   const PlaneSetup<Real>& setup_;
-  std::vector<std::vector<Real>> grid_;  ///< [plane]: real and imaginary parts of each image; last, with a PSF, weights
+  ImageGeometry seen_;                   ///< from its middle pixel a PSF needs no phases
+  std::vector<std::vector<Real>> grid_;  ///< [plane]: real and imaginary parts of each image; last, for a PSF, weights
   std::vector<Real*> planes_;
   CrowdedTiles<Real> crowded_;
   std::vector<SumUnit<Real>> value_unit_;  ///< [image], of real and imaginary parts
   SumUnit<Real> weight_unit_;              ///< of the weights
-  std::vector<SampleSums> sums_;           ///< [image]
+  std::vector<SampleSums> sums_;           ///< [set]
 };
 
 }  // namespace

@@ -148,11 +148,12 @@ HWY_ATTR void spread_any(std::integer_sequence<int, Before...>, const TapTable<R
   evaluate_taps(u, samples.tu, samples.count, along_u.value);
   evaluate_taps(v, samples.tv, samples.count, along_v.value);
   using Loop = void (*)(const TileBatch<Real>&, const Evaluated<Real>&, const Evaluated<Real>&, const TileCells<Real>&, int);
+  constexpr Loop one_plane[] = {spread_samples<Real, Before + 1, 1>...};
   constexpr Loop two_planes[] = {spread_samples<Real, Before + 1, 2>...};
   constexpr Loop three_planes[] = {spread_samples<Real, Before + 1, 3>...};
   for (int plane = 0; plane < cells.planes;) {
-    const int left = cells.planes - plane, some = left == 2 || left == 4 ? 2 : 3;
-    (some == 3 ? three_planes : two_planes)[u.width - 1](samples, along_u, along_v, cells, plane);
+    const int left = cells.planes - plane, some = left == 1 ? 1 : left == 2 || left == 4 ? 2 : 3;
+    (some == 1 ? one_plane : some == 2 ? two_planes : three_planes)[u.width - 1](samples, along_u, along_v, cells, plane);
     plane += some;
   }
 }

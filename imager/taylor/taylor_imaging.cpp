@@ -4,6 +4,8 @@
 #include <utility>
 
 #include "imager/big_array.h"
+#include "imager/phase.h"
+#include "imager/phasors.h"
 #include "imager/taylor/taylor_prediction.h"
 #include "imager/visibility_pass_internal.h"
 
@@ -21,9 +23,25 @@ std::vector<Image> normalised_images(std::unique_ptr<AdjointSum> sum, StageTimes
   return std::move(result.images);
 }
 
+/// Those of a source of 1 Jy at the image's middle pixel. [row][channel]
+std::vector<std::complex<double>> visibilities_of_middle(const VisibilityBlock& block, const TaylorPsf& psf) {
+  std::vector<std::complex<double>> visibility(block.samples(), 1);
+  if (psf.middle.l == 0 && psf.middle.m == 0) return visibility;
+  PhasePosition at = phase_position(psf.middle);
+  if (!psf.with_w) at.n_minus_1 = 0;
+  std::vector<double> turns(block.channels()), cosine(block.channels()), sine(block.channels());
+  for (std::size_t row = 0; row < block.rows(); ++row) {
+    const double per_hz = turns_per_hz(&block.uvw_m[3 * row], at);
+    for (std::size_t c = 0; c < turns.size(); ++c) turns[c] = per_hz * block.frequency_hz[c];
+    phasors(turns.data(), static_cast<int>(turns.size()), cosine.data(), sine.data());
+    for (std::size_t c = 0; c < turns.size(); ++c) visibility[row * turns.size() + c] = {cosine[c], sine[c]};
+  }
+  return visibility;
+}
+
 }  // namespace
 
-TaylorImages make_taylor_images(const VisibilitySource& source, const Transform& transform, const OwnPsf& psf,
+TaylorImages make_taylor_images(const VisibilitySource& source, const Transform& transform, const TaylorPsf& psf,
                                 const TaylorExpansion& expansion, const Progress& progress, StageTimes& times) {
   const TaylorPowers of_dirty{1, expansion.terms - 1}, of_psf{1, 2 * expansion.terms - 2};
   VisibilityPass pass(source, progress, times);

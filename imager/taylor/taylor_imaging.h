@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "imager/geometry.h"
 #include "imager/imaging.h"
 #include "imager/taylor/taylor_expansion.h"
 
@@ -13,12 +14,19 @@ struct TaylorImages {
   std::vector<Image> psf;    ///< [k − 1], 1 ≤ k ≤ 2 terms − 2: P_k = A*(w x^k) / Σ w, of a source in the middle pixel
 };
 
+/// What makes PSFs: responses to a source in the image's middle pixel.
+struct TaylorPsf {
+  const Transform& transform;
+  DirectionCosines middle;
+  bool with_w = true;  ///< as the transform
+};
+
 /// One pass over the visibilities for all of them: dirty images by `transform`, PSFs by that of `psf`, which may be the same.
 /// For a sky of Taylor coefficients I_t is R_q = Σ_t P_{q+t} ⋆ I_t, the normal equations of Rau & Cornwell (2011). With ν_0 in
 /// the middle of the band R_t and P_k of odd t and k are weak against their data: the transforms' errors are relative to the
 /// images of |x^t V| rather than to them. Stages timed: "read", "grid", "fft". Throws std::runtime_error when no sample can be
 /// used.
-TaylorImages make_taylor_images(const VisibilitySource& source, const Transform& transform, const OwnPsf& psf,
+TaylorImages make_taylor_images(const VisibilitySource& source, const Transform& transform, const TaylorPsf& psf,
                                 const TaylorExpansion& expansion, const Progress& progress, StageTimes& times);
 
 /// The residual images A*(w x^t (V − Σ_s x^s A I_s)) / Σ w [t], of model images [s] of each term, in one pass. Stages timed: as

@@ -27,7 +27,7 @@ class WideAdjoint : public AdjointSum {
         value_unit_(images()) {
     const ImageGeometry& g = setup.options.geometry;
     result_.images.assign(images(), Image(g.width, g.height));
-    result_.sums.resize(images());
+    result_.sums.resize(sets());
     if (options.with_psf) result_.psf = Image(g.width, g.height);
   }
 
@@ -55,7 +55,7 @@ class WideAdjoint : public AdjointSum {
       sums.push_back(std::visit([&](const auto* visibility) { return sums_of(g.weight, visibility); }, set));
       sums.back() += counted;
     }
-    for (std::size_t i = 0; i < images(); ++i) result_.sums[i] += sums[i];
+    for (std::size_t i = 0; i < sums.size(); ++i) result_.sums[i] += sums[i];
     make_room(sums);
     for (std::size_t i = 0; i < images(); ++i)
       g.weighted.push_back(std::visit(
@@ -72,8 +72,6 @@ class WideAdjoint : public AdjointSum {
     std::vector<float> weight;
     std::vector<std::vector<std::complex<Real>>> weighted;  ///< [image]: weight · V, in the values' unit
   };
-
-  std::size_t images() const { return static_cast<std::size_t>(options_.images); }
 
   static void multiply(Image& image, double by) {
     if (by != 1)
@@ -128,7 +126,7 @@ class WideAdjoint : public AdjointSum {
   }
 
   void flush() {
-    if (gathered_.empty()) return;
+    if (gathered_.empty() || (images() == 0 && !with_psf_)) return;
     std::vector<WantedSamples> blocks;
     for (const Gathered& g : gathered_) blocks.push_back({&g.at, g.weight.data()});
     std::vector<Image*> of_grid;

@@ -118,6 +118,21 @@ BOOST_DATA_TEST_CASE(images_made_at_once_have_the_bits_of_those_made_one_by_one,
   BOOST_TEST(made.sums[0].outside_grid > 0U);
 }
 
+BOOST_DATA_TEST_CASE(a_psf_alone_has_the_bits_of_one_made_beside_images, bdata::make(transforms()), named) {
+  const auto samples = blocks(1);
+  const AdjointResult beside = together(*named.transform, samples, {2, true});
+  const AdjointResult made = together(*named.transform, samples, {0, true});
+  BOOST_TEST(made.images.empty());
+  BOOST_TEST(same(made.psf, beside.psf));
+  BOOST_REQUIRE(made.sums.size() == 1U);
+  BOOST_TEST(made.sums[0].used == beside.sums[0].used);
+  BOOST_TEST(made.sums[0].outside_grid == beside.sums[0].outside_grid);
+  BOOST_TEST(made.sums[0].weight == beside.sums[0].weight);
+  BOOST_TEST(made.sums[0].weight2_square == beside.sums[0].weight2_square);
+  const auto sum = named.transform->adjoint({0, true});
+  BOOST_CHECK_THROW(sum->add(samples[0], std::vector<std::complex<double>>(samples[0].samples())), std::invalid_argument);
+}
+
 /// Visibilities given in double precision, one set for each image, are imaged as those that blocks carry; the same but for the
 /// order of roundings, of single precision where grids are.
 BOOST_DATA_TEST_CASE(sets_given_are_imaged_as_those_that_blocks_carry, bdata::make(transforms()), named) {

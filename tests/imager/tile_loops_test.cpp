@@ -52,7 +52,7 @@ BOOST_AUTO_TEST_CASE_TEMPLATE(spread_adds_the_plain_double_loop_for_every_width_
   for_each_width_and_target([](int width) {
     const auto u = random_polynomial(width, 3), v = random_polynomial(width, 4);
     const TapTable<Real> table_u(u), table_v(v);
-    for (const int planes : {2, 3, 4, most_grid_planes})
+    for (const int planes : {1, 2, 3, 4, most_grid_planes})
       for (const int count : {0, 1, 20}) {
         const TileBatch<Real> batch = random_batch<Real>(count);
         TileBuffer<Real> buffer = random_buffer<Real>(table_u.padded, planes);

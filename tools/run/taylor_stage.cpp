@@ -1,23 +1,12 @@
 #include "tools/run/taylor_stage.h"
 
-#include <memory>
-
 namespace misfit::tools {
 namespace {
 
-/// The transform that made the PSF, and how.
-struct PsfTransform {
-  std::unique_ptr<imager::Transform> own;
-  imager::OwnPsf psf;
-};
-
-PsfTransform psf_transform(const imager::AccurateImages& made) {
+imager::TaylorPsf psf_of(const imager::AccurateImages& made) {
   const imager::GriddingPlan& plan = made.plan;
-  const imager::DirectionCosines middle = plan.options.geometry.centre;
-  if (!plan.psf) return {nullptr, {*made.transform, middle, plan.direct || plan.options.has_w_axis()}};
-  auto own = imager::make_transform(plan.psf->options);
-  const imager::Transform& transform = *own;
-  return {std::move(own), {transform, middle, plan.psf->options.has_w_axis()}};
+  const bool with_w = plan.direct || (plan.psf ? *plan.psf : plan).options.has_w_axis();
+  return {made.transform->psf(), plan.options.geometry.centre, with_w};
 }
 
 /// Of the first term and the further ones.
@@ -31,8 +20,7 @@ std::vector<const imager::Image*> all_terms(const imager::Image& first, const st
 
 void TaylorStage::make_images(const imager::VisibilitySource& source, const imager::AccurateImages& made,
                               const imager::Progress& progress, imager::StageTimes& times) {
-  const PsfTransform of_psf = psf_transform(made);
-  images_ = imager::make_taylor_images(source, *made.transform, of_psf.psf, expansion_, progress, times);
+  images_ = imager::make_taylor_images(source, *made.transform, psf_of(made), expansion_, progress, times);
   psf_ = all_terms(made.images.psf, images_.psf);
   basis_ = imager::basis_of(psf_);
 }

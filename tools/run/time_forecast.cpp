@@ -32,7 +32,7 @@ struct TransformSeconds {
 
 /// What is made in a pass.
 struct Images {
-  int stokes = 1;  ///< or Taylor terms
+  int stokes = 1;  ///< or Taylor terms; 0: a PSF alone
   bool psf = false;
 };
 
@@ -62,7 +62,7 @@ void add_pass(const RunWork& w, bool with_psf, double times, std::vector<StageSe
     return;
   }
   const TransformSeconds own = transform_seconds(plan, {stokes, with_psf && !plan.psf}, w.threads);
-  const TransformSeconds psf = with_psf && plan.psf ? transform_seconds(*plan.psf, {}, w.threads) : TransformSeconds();
+  const TransformSeconds psf = with_psf && plan.psf ? transform_seconds(*plan.psf, {0, true}, w.threads) : TransformSeconds();
   const std::string way = way_of(plan.choice.best.work);
   stages.push_back({"grid", "gridding" + way, times * (own.grid + psf.grid)});
   stages.push_back({"fft", "FFTs" + way, times * (own.fft + psf.fft)});
