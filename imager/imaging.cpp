@@ -30,9 +30,11 @@ DirtyImages dirty_images(AdjointResult sum, Image psf, StageTimes& times) {
   BigMemory::release();
   require_any(sum.sums.front());
   const StageTimer timer(times, "fft");
-  for (Image& image : sum.images) divide(image, sum.sums.front().weight);
-  divide(psf, sum.sums.front().weight);
-  return {std::move(sum.images), std::move(psf), std::move(sum.sums)};
+  const double weight = sum.sums.front().weight;
+  DirtyImages made{std::move(sum.images), std::move(psf), std::move(sum.sums), {}, {}};
+  for (Image& image : made.dirty) made.dirty_statistics.push_back(divide(image, weight));
+  made.psf_statistics = divide(made.psf, weight);
+  return made;
 }
 
 }  // namespace

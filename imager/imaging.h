@@ -5,6 +5,7 @@
 #include <memory>
 #include <stdexcept>
 
+#include "imager/image_statistics.h"
 #include "imager/stage_times.h"
 #include "imager/transform.h"
 
@@ -20,9 +21,11 @@ struct NothingInGrid : std::runtime_error {
 };
 
 struct DirtyImages {
-  std::vector<Image> dirty;      ///< [Stokes], Jy/beam: the adjoint over Σ w
-  Image psf;                     ///< 1 at the centre up to the accuracy; empty unless asked for
-  std::vector<SampleSums> sums;  ///< [Stokes]
+  std::vector<Image> dirty;                       ///< [Stokes], Jy/beam: the adjoint over Σ w
+  Image psf;                                      ///< 1 at the centre up to the accuracy; empty unless asked for
+  std::vector<SampleSums> sums;                   ///< [Stokes]
+  std::vector<ImageStatistics> dirty_statistics;  ///< [Stokes], as the images are made
+  ImageStatistics psf_statistics;
 };
 
 /// One pass over the visibilities. Stages timed: "read", "grid", "fft", which counts corrections in. Throws std::runtime_error

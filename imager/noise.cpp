@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 #include <vector>
 
 #include "imager/parallel.h"
@@ -95,48 +94,6 @@ double sampled_noise(const Image& image) {
   Image some;
   for (std::size_t i = 0; i < image.pixel.size(); i += step) some.pixel.push_back(image.pixel[i]);
   return robust_noise(some);
-}
-
-/// In lanes, so that no addition waits for the one before.
-double root_mean_square(const Image& image) {
-  constexpr std::size_t lanes = 8;
-  double square[lanes] = {}, count[lanes] = {};
-  const std::vector<double>& pixel = image.pixel;
-  const auto add = [&](std::size_t i, std::size_t lane) {
-    const bool is_number = pixel[i] == pixel[i];
-    square[lane] += is_number ? pixel[i] * pixel[i] : 0;
-    count[lane] += is_number ? 1 : 0;
-  };
-  const std::size_t whole = pixel.size() / lanes * lanes;
-  for (std::size_t i = 0; i < whole; i += lanes)
-    for (std::size_t lane = 0; lane < lanes; ++lane) add(i + lane, lane);
-  for (std::size_t i = whole; i < pixel.size(); ++i) add(i, 0);
-  return std::sqrt(std::accumulate(square, square + lanes, 0.0) / std::max(1.0, std::accumulate(count, count + lanes, 0.0)));
-}
-
-/// In lanes, so that no comparison waits for the one before.
-Peak find_peak(const Image& image) {
-  constexpr std::size_t lanes = 8;
-  double largest[lanes];
-  std::fill_n(largest, lanes, -1.0);
-  const std::vector<double>& pixel = image.pixel;
-  const std::size_t whole = pixel.size() / lanes * lanes;
-  const auto raise = [&](std::size_t i, std::size_t lane) {
-    const double magnitude = std::abs(pixel[i]);
-    largest[lane] = magnitude > largest[lane] ? magnitude : largest[lane];
-  };
-  for (std::size_t i = 0; i < whole; i += lanes)
-    for (std::size_t lane = 0; lane < lanes; ++lane) raise(i + lane, lane);
-  for (std::size_t i = whole; i < pixel.size(); ++i) raise(i, 0);
-  const double peak = *std::max_element(largest, largest + lanes);
-  const auto first = std::find_if(pixel.begin(), pixel.end(), [&](double x) { return std::abs(x) == peak; });
-  const auto at = static_cast<int>(first == pixel.end() ? 0 : first - pixel.begin());
-  return {at / image.width, at % image.width, pixel[static_cast<std::size_t>(at)]};
-}
-
-double largest_magnitude(const Image& image) {
-  const double peak = std::abs(find_peak(image).value);
-  return std::isnan(peak) ? 0 : peak;
 }
 
 }  // namespace misfit::imager

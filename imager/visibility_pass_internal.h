@@ -73,8 +73,4 @@ inline AdjointResult finish_adjoint(std::unique_ptr<AdjointSum> sum, StageTimes&
   return result;
 }
 
-inline void divide(Image& image, double by) {
-  for (double& pixel : image.pixel) pixel /= by;
-}
-
 }  // namespace misfit::imager

@@ -5,7 +5,6 @@
 #include <cstdio>
 
 #include "imager/direct/verify.h"
-#include "imager/noise.h"
 
 namespace misfit::imager {
 namespace {
@@ -61,12 +60,11 @@ struct Weakness {
 };
 
 /// The largest of all images; one of zeros has no relative error.
-Weakness weakness_of(const DirtyImages& images, StageTimes& times) {
-  const StageTimer timer(times, "statistics");
-  const double psf_rms = root_mean_square(images.psf);
+Weakness weakness_of(const DirtyImages& images) {
+  const double psf_rms = images.psf_statistics.root_mean_square();
   Weakness largest;
   for (std::size_t i = 0; i < images.dirty.size(); ++i) {
-    const double image_rms = root_mean_square(images.dirty[i]);
+    const double image_rms = images.dirty_statistics[i].root_mean_square();
     if (image_rms == 0) continue;
     const SampleSums& sums = images.sums[i];
     largest.random = std::max(largest.random, random_image_rms(sums) / image_rms);
@@ -98,7 +96,7 @@ AccurateImages make_accurate_images(const VisibilitySource& source, GriddingPlan
   // The images' largest gridding error over the accuracy, once by theory and once by direct sums at pixels, which may miss half
   // of it.
   const auto excess = [&] {
-    const Weakness weak = weakness_of(made.images, times);
+    const Weakness weak = weakness_of(made.images);
     const double expected = made.plan.expected_error * weak.random / request.accuracy;
     if (expected > 1 || made.plan.expected_error * weak.coherent <= request.accuracy) return expected;
     return std::max(expected, 2 * largest_checked_error(source, made, times) / request.accuracy);
@@ -110,6 +108,7 @@ AccurateImages make_accurate_images(const VisibilitySource& source, GriddingPlan
   stricter.accuracy = request.accuracy / first;
   stricter.best_effort = true;
   Image psf;
+  const ImageStatistics psf_statistics = made.images.psf_statistics;
   if (made.plan.psf) {  // it is exact enough
     psf = std::move(made.images.psf);
     stricter.psf = false;
@@ -121,7 +120,10 @@ AccurateImages make_accurate_images(const VisibilitySource& source, GriddingPlan
     plan = plan_gridding(stricter);
   }
   made = make_images(source, std::move(plan), progress, times);
-  if (!psf.pixel.empty()) made.images.psf = std::move(psf);
+  if (!psf.pixel.empty()) {
+    made.images.psf = std::move(psf);
+    made.images.psf_statistics = psf_statistics;
+  }
   char because[160];
   std::snprintf(because, sizeof because, "the image is weak against its data: its error came to %.3g times the accuracy",
                 first);

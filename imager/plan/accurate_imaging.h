@@ -30,8 +30,8 @@ struct AccurateImages {
 /// random data would give; or weaker than the PSF's RMS times that of the visibilities, as when they belong to a source
 /// outside, whose alias adds up in phase. The second may as well be noise, so that a few pixels are then compared with direct
 /// sums (without w where the transform has no w axis). Where the error is too large the images are made once more with a kernel
-/// that is right by as much, or, where there is none, by the best. Stages timed: "plan", "statistics", "check pixels", and
-/// those of make_dirty_images.
+/// that is right by as much, or, where there is none, by the best. Stages timed: "plan", "check pixels", and those of
+/// make_dirty_images.
 ///
 /// `transform`, if there is one, is that of `plan`, which other images have been made by.
 AccurateImages make_accurate_images(const VisibilitySource& source, GriddingPlan plan, const Progress& progress,

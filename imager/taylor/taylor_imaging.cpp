@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "imager/big_array.h"
+#include "imager/image_statistics.h"
 #include "imager/phase.h"
 #include "imager/phasors.h"
 #include "imager/taylor/taylor_prediction.h"

@@ -13,16 +13,6 @@
 namespace misfit::tools {
 namespace {
 
-/// The smallest and the largest pixel that is not NaN.
-std::pair<double, double> extremes(const imager::Image& image) {
-  double least = std::numeric_limits<double>::infinity(), largest = -least;
-  for (const double pixel : image.pixel) {  // comparisons with NaN are false
-    least = pixel < least ? pixel : least;
-    largest = pixel > largest ? pixel : largest;
-  }
-  return {least, largest};
-}
-
 /// Whether a mask is to be written: one that the user has under its name stays.
 bool has_mask(const ImageOptions& o) {
   const std::vector<std::string> paths = image_paths(o.imagename + ".mask", o.outformat);
@@ -111,9 +101,9 @@ void CubeProducts::look_at(const imager::PlaneIndex& at, const imager::Image& re
   const imager::StageTimer timer(scene_.times, "statistics");
   StokesReport& told = plane.stokes[static_cast<std::size_t>(at.stokes)];
   const double noise_jy = told.clean ? told.clean->final_state().rms_jy : imager::sampled_noise(residual);
-  const auto [least, largest] = extremes(residual);
-  told.histogram = {.noise_jy = noise_jy, .min_jy = least, .max_jy = largest, .count = {}};
-  told.brightest = imager::find_peak(image);
+  const imager::ImageStatistics of_residual = imager::statistics_of(residual);
+  told.histogram = {.noise_jy = noise_jy, .min_jy = of_residual.least, .max_jy = of_residual.largest, .count = {}};
+  told.brightest = &image == &residual ? imager::find_peak(image, of_residual) : imager::find_peak(image);
 }
 
 /// Of models and residuals as they were written.

@@ -4,7 +4,6 @@
 #include <optional>
 
 #include "imager/direct/verify.h"
-#include "imager/noise.h"
 #include "imager/stokes_view.h"
 #include "tools/run/beam_choice.h"
 #include "tools/run/run_messages.h"
@@ -42,7 +41,7 @@ void PlaneRun::make_dirty(imager::GriddingPlan plan, std::shared_ptr<const image
   const imager::NeglectedPhase phase = imager::neglected_w_phase(scene_.reach, source_.w_spread(), scene_.geometry);
   double expected = 0;
   for (std::size_t s = 0; s < scene_.stokes.size(); ++s) {
-    const double rms = imager::root_mean_square(made_.images.dirty[s]);
+    const double rms = made_.images.dirty_statistics[s].root_mean_square();
     report_.stokes[s].theory = imager::theoretical_error(made_.plan, made_.images.sums[s], rms, phase);
     expected = std::max(expected, report_.stokes[s].theory->expected_rms);
   }
