@@ -122,12 +122,12 @@ void transform_image_columns(const Image& image, const ImageCorrection& h, int t
     for (const auto& column : buffers.pixels) std::fill_n(column.get(), nv, Real(0));
     for_runs(-(image.height / 2), image.height - image.height / 2, nv, [&](int first, int at, int count) {
       const int row = first + image.height / 2;
+      const double* const h_row = h.row.data() + row;
       for_rows(count, [&](int begin_row, int end_row) {
         for (int c = begin; c < end; ++c) {
           Real* const to = buffers.pixels[static_cast<std::size_t>(c - begin)].get() + at;
           const double h_column = h.column[static_cast<std::size_t>(c)];
-          for (int r = begin_row; r < end_row; ++r)
-            to[r] = static_cast<Real>(h.row[static_cast<std::size_t>(row + r)] * h_column * image.at(row + r, c));
+          for (int r = begin_row; r < end_row; ++r) to[r] = static_cast<Real>(h_row[r] * h_column * image.at(row + r, c));
         }
       });
     });
