@@ -118,6 +118,12 @@ void check_request(const GriddingRequest& request) {
     throw std::invalid_argument("accuracy of the PSF " + text("%g", request.psf_accuracy) + " not in (0, 1)");
 }
 
+GriddingPlan with_threads(GriddingPlan plan, int threads) {
+  plan.request.threads = plan.options.threads = threads;
+  if (plan.psf) plan.psf = std::make_shared<const GriddingPlan>(with_threads(*plan.psf, threads));
+  return plan;
+}
+
 std::string evaluation_of(const PlaneTransformOptions& options) {
   if (!options.lookup) return "polynomials of degree " + std::to_string(options.kernel_u.polynomial.degree());
   return text(*options.lookup);

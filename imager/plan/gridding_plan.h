@@ -33,6 +33,9 @@ void check_request(const GriddingRequest& request);
 /// out_of_reach.
 GriddingPlan plan_gridding(const GriddingRequest& request);
 
+/// The same for so many threads, which changes no bit of what it makes.
+GriddingPlan with_threads(GriddingPlan plan, int threads);
+
 /// How its taps are had: "polynomials of degree 9", or "cubic tables of 64 entries a cell".
 std::string evaluation_of(const PlaneTransformOptions& options);
 

@@ -15,6 +15,7 @@ void remember(int signal) {
 }  // namespace
 
 void catch_interrupts() {
+  if (interrupted()) return;
   std::signal(SIGINT, remember);
   std::signal(SIGTERM, remember);
 }

@@ -9,7 +9,8 @@ struct Interrupted : std::runtime_error {
   Interrupted() : std::runtime_error("stopped by the user") {}
 };
 
-/// From here on the first SIGINT or SIGTERM only sets a flag; a second ends the process at once.
+/// From here on the first SIGINT or SIGTERM only sets a flag; a second ends the process at once,
+/// whoever calls this again.
 void catch_interrupts();
 bool interrupted();
 

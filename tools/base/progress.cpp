@@ -18,6 +18,7 @@ ProgressLine::~ProgressLine() {
 }
 
 void ProgressLine::begin(const std::string& stage, bool stops_itself) {
+  const std::lock_guard lock(mutex_);
   stage_ = stage;
   stops_itself_ = stops_itself;
   open_ = true;
@@ -26,6 +27,7 @@ void ProgressLine::begin(const std::string& stage, bool stops_itself) {
 }
 
 void ProgressLine::update(std::uint64_t done, std::uint64_t total) {
+  const std::lock_guard lock(mutex_);
   if (interrupted() && !stops_itself_) throw Interrupted();
   const auto now = std::chrono::steady_clock::now();
   if (!live_ || done == 0 || total == 0 || now - drawn_ < std::chrono::milliseconds(100)) return;
@@ -36,6 +38,7 @@ void ProgressLine::update(std::uint64_t done, std::uint64_t total) {
 }
 
 void ProgressLine::end() {
+  const std::lock_guard lock(mutex_);
   if (!open_) return;
   open_ = false;
   if (live_) std::fprintf(stderr, "\r\033[K");
@@ -44,6 +47,7 @@ void ProgressLine::end() {
 
 void ProgressLine::say(const std::string& line) {
   if (quiet_) return;
+  const std::lock_guard lock(mutex_);
   if (live_) std::fprintf(stderr, "\r\033[K");
   std::fprintf(stderr, "%s\n", line.c_str());
 }

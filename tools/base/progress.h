@@ -2,12 +2,14 @@
 
 #include <chrono>
 #include <cstdint>
+#include <mutex>
 #include <string>
 
 namespace misfit::tools {
 
 /// Says on stderr what a run is doing: on a terminal one live line with percentage and time left, elsewhere a plain line when a
-/// stage ends. Throws Interrupted from update() once the user asked to stop, unless a stage finishes by itself.
+/// stage ends. Throws Interrupted from update() once the user asked to stop, unless a stage finishes by itself. Any thread may
+/// call it.
 class ProgressLine {
  public:
   explicit ProgressLine(bool quiet);
@@ -25,6 +27,7 @@ class ProgressLine {
 
   bool quiet_;
   bool live_;
+  std::mutex mutex_;  ///< guards what follows
   bool open_ = false;
   bool stops_itself_ = false;
   std::string stage_;

@@ -54,7 +54,7 @@ CleanStage::CleanStage(const ImageOptions& options, imager::ImageHeader image, i
 void CleanStage::begin_channel(int channel) {
   channel_ = channel;
   if (start_file_) read_start_model();
-  if (!mask_file_ || (channel > 0 && mask_file_->one_for_all_channels())) return;
+  if (!mask_file_ || (!masks_.empty() && mask_file_->one_for_all_channels())) return;
   masks_.clear();
   const int masks = mask_file_->one_for_all_stokes() ? 1 : static_cast<int>(image_.stokes.size());
   for (int stokes = 0; stokes < masks; ++stokes) masks_.push_back(mask_file_->mask({channel, stokes}));

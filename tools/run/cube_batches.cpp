@@ -29,6 +29,29 @@ double in_flight_bytes(const RunScene& scene, const RunPlan& plan) {
   return blocks * static_cast<double>(scene.set.read_at_once()) * (sample + row);
 }
 
+/// While so many planes are imaged at a time: each has grids and images, and its thread an allocator's memory; buffers of FFTs
+/// are the threads' anyway.
+imager::MemoryUse while_imaging(imager::MemoryUse one, double held_bytes, int workers) {
+  constexpr double allocator_bytes = 56e6;  // see imager::peak_memory()
+  one.process += (workers - 1) * allocator_bytes;
+  one.visibilities = held_bytes;
+  for (double* bytes : {&one.blocks, &one.grids, &one.images}) *bytes *= workers;
+  return one;
+}
+
+imager::Decision decision_on(const CubeBatches& batches, const RunScene& scene, double plane_bytes) {
+  const auto held = std::to_string(batches.planes) + (batches.planes == 1 ? " is" : " are") + " held";
+  const int at_once = batches.workers.count;
+  const auto passes = batches_of(scene.planes, batches).size();
+  return {"planes",
+          std::to_string(scene.planes) + ", of which " + held +
+              (at_once == 1 ? " at a time" : " and " + std::to_string(at_once) + " imaged at a time"),
+          batches.read_again
+              ? "there is no room for the visibilities of one: it reads the set in every pass"
+              : "the visibilities of one take " + significant(plane_bytes / gib, 2) + " GiB at most; the set is read in " +
+                    std::to_string(passes) + (passes == 1 ? " pass" : " passes")};
+}
+
 }  // namespace
 
 int samples_of_a_row(const imager::CubeSampling& sampling, const std::vector<ms_io::SpectralWindow>& windows) {
@@ -43,34 +66,38 @@ int samples_of_a_row(const imager::CubeSampling& sampling, const std::vector<ms_
 CubeBatches plan_batches(const RunScene& scene, const RunPlan& plan) {
   constexpr double enough_bytes = gib / 2;  // each pass over the set reads little more than its planes' channels
   const double wanted = scene.options.memory_gib > 0 ? scene.options.memory_gib * gib : physical_memory_bytes() / 2;
-  const double rows = static_cast<double>(scene.set.rows());
-  const double plane = gathered_bytes(scene, plan), shared = shared_bytes(rows), flight = in_flight_bytes(scene, plan);
-  // Planes wait while one is imaged, of whose visibilities the plan counts a copy.
-  const double busy = shared + std::max(plan.memory.total(), plan.memory.process + flight);
-  const double room = std::min(std::max(enough_bytes, plane), wanted - busy);
+  const double plane = gathered_bytes(scene, plan), flight = in_flight_bytes(scene, plan);
+  const auto room = [&](int workers) {
+    return wanted - std::max(while_imaging(plan.memory, 0, workers).total(), plan.memory.process + flight);
+  };
   CubeBatches batches;
-  batches.read_again = !plan.streaming.keep || room < plane;
-  batches.planes = batches.read_again ? 1 : static_cast<int>(std::clamp(room / plane, 1.0, 1.0 * scene.planes));
-  const double streamed = std::min(1.0, static_cast<double>(imager::rows_gathered_at_once) / rows);
-  batches.memory_bytes = busy + (batches.read_again ? streamed : batches.planes) * plane;
-  const auto passes = batches_of(scene.planes, batches.planes).size();
-  batches.decision = {"planes",
-                      std::to_string(scene.planes) + ", of which " + std::to_string(batches.planes) +
-                          (batches.planes == 1 ? " is" : " are") + " held at a time",
-                      batches.read_again ? "there is no room for the visibilities of one: it reads the set in every pass"
-                                         : "the visibilities of one take " + significant(plane / gib, 2) +
-                                               " GiB at most; the set is read in " + std::to_string(passes) +
-                                               (passes == 1 ? " pass" : " passes")};
+  batches.read_again = !plan.streaming.keep || room(1) < plane;
+  batches.memory = plan.memory;
+  batches.workers = {1, scene.threads};
+  if (!batches.read_again) {
+    int workers = std::min(scene.threads, scene.planes);
+    while (workers > 1 && room(workers) < workers * plane) --workers;
+    batches.workers = {workers, scene.threads / workers};
+    const double held = std::clamp(std::min(enough_bytes, room(workers)) / plane, 1.0 * workers, 1.0 * scene.planes);
+    batches.planes = static_cast<int>(held);
+    if (batches.planes < scene.planes) batches.planes -= batches.planes % workers;
+    const double bytes = batches.planes * plane;
+    const imager::MemoryUse gathering{"planes are gathered", plan.memory.process, bytes, flight, 0, 0, 0};
+    batches.memory = while_imaging(plan.memory, bytes, workers);
+    if (gathering.total() > batches.memory.total()) batches.memory = gathering;
+  }
+  batches.decision = decision_on(batches, scene, plane);
   return batches;
 }
 
-std::vector<imager::PlaneRange> batches_of(int planes, int most) {
-  const int count = (planes + most - 1) / most;
+std::vector<imager::PlaneRange> batches_of(int planes, const CubeBatches& batches) {
+  const int at_once = batches.workers.count, most = std::max(1, batches.planes / at_once);
+  const int rounds = (planes + at_once - 1) / at_once, count = (rounds + most - 1) / most;
+  const auto first = [&](int b) {
+    return std::min(planes, at_once * static_cast<int>(static_cast<long long>(rounds) * b / count));
+  };
   std::vector<imager::PlaneRange> ranges;
-  for (int b = 0; b < count; ++b) {
-    const int first = static_cast<int>(static_cast<long long>(planes) * b / count);
-    ranges.push_back({first, static_cast<int>(static_cast<long long>(planes) * (b + 1) / count) - first});
-  }
+  for (int b = 0; b < count; ++b) ranges.push_back({first(b), first(b + 1) - first(b)});
   return ranges;
 }
 

@@ -12,19 +12,28 @@ namespace misfit::tools {
 /// Samples that a row gives to one plane, at most.
 int samples_of_a_row(const imager::CubeSampling& sampling, const std::vector<ms_io::SpectralWindow>& windows);
 
-/// How a cube's planes come to their visibilities.
+/// How planes share the threads of a run.
+struct PlaneWorkers {
+  int count = 1;    ///< planes that are made at a time
+  int threads = 1;  ///< for each of them
+};
+
+/// How a cube's planes come to their visibilities, and are made.
 struct CubeBatches {
   int planes = 1;           ///< whose visibilities are gathered in one pass and held
   bool read_again = false;  ///< there is no room for those of one: it reads the set in every pass of its own
-  double memory_bytes = 0;  ///< at the peak
+  PlaneWorkers workers;
+  imager::MemoryUse memory;  ///< at the peak
   imager::Decision decision;
 };
 
-/// As many as take a quarter of a GiB together, and fit in --memory, or half of the machine's, beside what one plane's images
-/// need.
+/// A plane for each thread is made at a time: that keeps all busy, where a plane would leave them waiting for each other. Fewer
+/// where there are fewer planes, or where --memory, or half of the machine's, has no room for the images and visibilities of so
+/// many; then they share the threads. One where it reads the set itself. As many planes are held as take a quarter of a GiB
+/// together, one for each worker at least, and fit in that memory too.
 CubeBatches plan_batches(const RunScene& scene, const RunPlan& plan);
 
-/// The planes in batches of nearly the same size, at most `most`.
-std::vector<imager::PlaneRange> batches_of(int planes, int most);
+/// The planes in batches of nearly the same size, whole numbers of planes for each worker but for the last.
+std::vector<imager::PlaneRange> batches_of(int planes, const CubeBatches& batches);
 
 }  // namespace misfit::tools

@@ -1,5 +1,7 @@
 #include "tools/run/cube_files.h"
 
+#include <mutex>
+
 #include "imager/primary_beam.h"
 #include "tools/run/image_files.h"
 #include "tools/run/primary_beam_stage.h"
@@ -25,6 +27,7 @@ CubeFiles::CubeFiles(const ImageOptions& o, const imager::ImageHeader& header, b
 }
 
 void CubeFiles::write_psf(int channel, const imager::Image& psf, const std::optional<imager::Beam>& beam) {
+  const std::lock_guard lock(image_files_mutex());
   psf_->write({channel, 0}, psf, beam);
 }
 
@@ -34,18 +37,23 @@ void CubeFiles::put(const Writer& writer, const imager::PlaneIndex& at, const im
 }
 
 void CubeFiles::write(const imager::PlaneIndex& at, const Plane& plane, const std::optional<imager::Beam>& beam) {
-  put(residual_, at, plane.residual, beam);
-  put(model_, at, plane.model, {});
-  put(mask_, at, plane.mask, {});
-  if (at.stokes == 0) put(primary_beam_, at, plane.primary_beam, {});
+  {
+    const std::lock_guard lock(image_files_mutex());
+    put(residual_, at, plane.residual, beam);
+    put(model_, at, plane.model, {});
+    put(mask_, at, plane.mask, {});
+    if (at.stokes == 0) put(primary_beam_, at, plane.primary_beam, {});
+  }
   write_restored(at, plane, beam);
 }
 
 void CubeFiles::write_restored(const imager::PlaneIndex& at, const Plane& plane, const std::optional<imager::Beam>& beam) {
-  put(restored_, at, plane.restored, beam);
   const imager::Image* const brightness = restored_ ? plane.restored : plane.residual;
-  if (!corrected_ || plane.primary_beam == nullptr || brightness == nullptr) return;
-  const imager::Image corrected = imager::corrected(*brightness, *plane.primary_beam);
+  imager::Image corrected;
+  if (corrected_ && plane.primary_beam != nullptr && brightness != nullptr)
+    corrected = imager::corrected(*brightness, *plane.primary_beam);
+  const std::lock_guard lock(image_files_mutex());
+  put(restored_, at, plane.restored, beam);
   put(corrected_, at, &corrected, beam);
 }
 

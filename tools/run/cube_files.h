@@ -12,7 +12,8 @@
 namespace misfit::tools {
 
 /// The images of a cube on their way into files: <imagename>.psf, .residual, and with CLEAN .model, .image and, where there are
-/// masks, .mask; .pb and .image.pbcor where they are wanted. Each plane is written as soon as it is done.
+/// masks, .mask; .pb and .image.pbcor where they are wanted. Each plane is written as soon as it is done, in any order; planes
+/// of several threads wait for each other.
 class CubeFiles {
  public:
   /// Throws std::runtime_error that names the file which cannot be written.

@@ -1,6 +1,7 @@
 #include "tools/run/cube_run.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <cstdio>
 #include <memory>
@@ -11,12 +12,12 @@
 
 #include "imager/parallel.h"
 #include "tools/base/files.h"
+#include "tools/base/in_order.h"
 #include "tools/base/interrupt.h"
 #include "tools/base/numbers.h"
 #include "tools/run/cube_pictures.h"
-#include "tools/run/cube_products.h"
+#include "tools/run/cube_planes.h"
 #include "tools/run/cube_visibilities.h"
-#include "tools/run/plane_run.h"
 #include "tools/run/primary_beam_stage.h"
 #include "tools/run/product_stage.h"
 #include "tools/run/run_messages.h"
@@ -48,7 +49,7 @@ class CubeRun {
       if (!o_.quiet) print_plan(plan_, expected());
       return true;
     }
-    begin_files();
+    begin_planes();
     if (!o_.cube.perchanweightdensity) weigh_in_common();
     make_planes();
     finish_files();
@@ -61,6 +62,9 @@ class CubeRun {
   void warn(const std::string& sentence) {
     report_.warnings.push_back(sentence);
     progress_.say("warning: " + sentence);
+  }
+  void warn_once(const std::string& sentence, bool& said) {
+    if (!sentence.empty() && !std::exchange(said, true)) warn(sentence);
   }
   int planes() const { return header_.spectral.channels; }
 
@@ -78,10 +82,11 @@ class CubeRun {
                .cards = {},
                .history = {report_.command_line}};
     report_.cube = sampling_.axis;
-    if (o_.niter > 0) clean_ = std::make_unique<CleanStage>(o_, header_, threads_);
+    if (o_.niter > 0) CleanStage(o_, header_, threads_);  // so that what is wrong with masks and models is said at once
     if (wants_primary_beam(o_))
       primary_beam_ = std::make_unique<PrimaryBeamStage>(
-          o_, BeamScene{set_->beam_rows(), header_.geometry, set_->observation().frequency_hz}, threads_);
+          o_, BeamScene{set_->beam_rows(), header_.geometry, set_->observation().frequency_hz},
+          std::max(1, threads_ / planes()));
     find_reach();
   }
 
@@ -101,7 +106,7 @@ class CubeRun {
                          .geometry = header_.geometry,
                          .reach = reach_,
                          .threads = threads_,
-                         .mask = clean_ && (!o_.mask.empty() || o_.usemask == "auto"),
+                         .mask = o_.niter > 0 && (!o_.mask.empty() || o_.usemask == "auto"),
                          .planes = planes(),
                          .samples = static_cast<double>(set_->rows()) * samples_of_a_row(sampling_, windows_)};
     plan_ = plan_run(scene, forecast_, times_, progress_);
@@ -111,6 +116,9 @@ class CubeRun {
       for (const std::string& doubt : primary_beam_->doubts()) warn(doubt);
     }
     const CubeBatches batches = plan_batches(scene, plan_);
+    workers_ = batches.workers;
+    plan_.gridding = imager::with_threads(std::move(plan_.gridding), workers_.threads);
+    plan_.memory = batches.memory;
     plan_.decisions.push_back(batches.decision);
     visibilities_ = std::make_unique<CubeVisibilities>(*set_, sampling_, batches, threads_, o_.niter > 0);
     for (const std::string& warning : plan_.warnings) warn(warning);
@@ -118,20 +126,19 @@ class CubeRun {
     report_.plan.insert(report_.plan.end(), plan_.gridding.decisions.begin(), plan_.gridding.decisions.end());
     report_.accuracy = o_.accuracy;
     report_.gridding = &plan_.gridding;
-    report_.estimated_memory_bytes = batches.memory_bytes;
+    report_.estimated_memory_bytes = plan_.memory.total();
     work_ = work_of(scene, plan_);
+    work_.workers = workers_.count;
     const imager::StageTimer timer(times_, "plan");
     if (!o_.dry_run) transform_ = std::make_shared<imager::PlannedTransform>(plan_.gridding);
   }
 
   std::vector<StageSeconds> expected() const { return expected_seconds(plan_, forecast_, work_); }
 
-  void begin_files() {
-    // Planes tell of themselves; their stages would fill the screen.
-    scene_ = std::make_unique<PlaneScene>(PlaneScene{o_, header_.geometry, stokes_, reach_, threads_, silent_, times_,
-                                                     [this](const std::string& sentence) { warn(sentence); }});
+  void begin_planes() {
     const imager::StageTimer timer(times_, "write images");
-    products_ = std::make_unique<CubeProducts>(*scene_, header_, primary_beam_.get());
+    planes_ = std::make_unique<CubePlanes>(
+        CubeScene{o_, report_.options, header_, reach_, plan_.gridding, transform_, workers_, primary_beam_.get()});
   }
 
   /// From the density of all planes' samples together.
@@ -145,74 +152,42 @@ class CubeRun {
       while (const auto block = stream->next()) density.add(*block);
     };
     visibilities_->look_through(add, progress_, times_);
-    common_weights_ = std::make_shared<imager::ImagingWeights>(density, options);
+    planes_->weigh_by(std::make_shared<imager::ImagingWeights>(density, options));
   }
 
   /// Until the user stops: planes that are done by then stay.
   void make_planes() {
-    const PlaneVisitor visitor{
-        [this](int channel, imager::StreamedVisibilities& visibilities) { make_plane(channel, visibilities); },
-        [this](int channel) { leave_empty(channel); }, [this] { return stopped_; }};
+    InOrder<CubePlane> in_order([this](int, CubePlane&& plane) { take(std::move(plane)); });
+    const auto make = [&](int channel, imager::StreamedVisibilities& visibilities) {
+      CubePlane plane = planes_->make(channel, visibilities);
+      if (plane.stopped()) stopped_ = true;
+      in_order.put(channel, std::move(plane));
+    };
+    const auto leave_empty = [&](int channel) { in_order.put(channel, planes_->empty(channel)); };
     try {
-      visibilities_->for_each_plane(visitor, progress_, times_);
+      visibilities_->for_each_plane({make, leave_empty, [this] { return stopped_.load(); }, [this] { planes_->give_up(); }},
+                                    progress_, times_);
     } catch (const Interrupted&) {
-      if (report_.planes.empty()) throw;
       stopped_ = true;
     }
+    in_order.flush();
+    if (stopped_ && report_.planes.empty()) throw Interrupted();
     count_samples();
   }
 
-  /// It has no values and no beam.
-  void leave_empty(int channel) {
-    PlaneReport& plane = report_.planes.emplace_back();
-    plane.channel = channel;
-    plane.frequency_hz = sampling_.axis.frequency_hz(channel);
-    plane.stokes.clear();
-    for (const imager::Stokes stokes : stokes_) plane.stokes.push_back({.stokes = stokes});
-    ++empty_;
-  }
-
-  void make_plane(int channel, imager::StreamedVisibilities& visibilities) {
-    const std::string name = " of plane " + std::to_string(channel);
-    PlaneRun plane(*scene_, visibilities, name);
-    if (common_weights_)
-      plane.weigh(common_weights_);
-    else
-      plane.weigh();
-    try {
-      plane.make_dirty(plan_.gridding, transform_);
-    } catch (const imager::NothingInGrid& nothing) {
-      outside_grid_ += nothing.outside_grid;
-      return leave_empty(channel);
-    }
-    if (o_.verify > 0) plane.verify();
-    plane.choose_beams();
-    const bool beam = plane.report().beams->restoring.has_value();
-    if (o_.niter > 0 && beam) clean(channel, plane);
-    products_->write(channel, plane);
-    finish(channel, plane);
-  }
-
-  void clean(int channel, PlaneRun& plane) {
-    clean_->begin_channel(channel);
-    if (const std::string warning = clean_->warning(); !warning.empty() && !std::exchange(warned_of_clean_, true))
-      warn("plane " + std::to_string(channel) + ": " + warning);
-    plane.clean(*clean_, report_.options, [&](std::size_t, const imager::CleanState& state) {
-      if (state.cycles.size() > 1) ++work_.major_cycles;
-    });
-    for (const imager::CleanResult& result : plane.cleaned()) {
-      work_.components += result.report.iterations;
-      stopped_ = stopped_ || result.report.stop == imager::CleanStop::user;
-    }
-  }
-
-  void finish(int channel, PlaneRun& run) {
-    PlaneReport& plane = report_.planes.emplace_back(std::move(run.report()));
-    plane.channel = channel;
-    plane.frequency_hz = sampling_.axis.frequency_hz(channel);
-    report_.plane_samples += plane.sums.used;
-    outside_grid_ += plane.sums.outside_grid;
-    if (o_.niter > 0) progress_.say(plane_message(plane, planes()));
+  /// The next plane, of several threads' one at a time.
+  void take(CubePlane&& plane) {
+    for (const std::string& sentence : plane.warnings) warn(sentence);
+    warn_once(plane.clean_warning, warned_of_clean_);
+    warn_once(plane.beam_warning, warned_of_beam_);
+    for (const auto& [stage, seconds] : plane.times.stages()) times_.add(stage, seconds / workers_.count);
+    outside_grid_ += plane.outside_grid;
+    work_.components += plane.components;
+    work_.major_cycles += plane.major_cycles;
+    empty_ += plane.empty() ? 1 : 0;
+    report_.plane_samples += plane.report.sums.used;
+    if (o_.niter > 0 && !plane.empty()) progress_.say(plane_message(plane.report, planes()));
+    report_.planes.push_back(std::move(plane.report));
   }
 
   /// Each sample read once: what is left out for no reason is used. Of those that planes take, as large a part is outside the
@@ -232,7 +207,7 @@ class CubeRun {
   void finish_files() {
     if (report_.planes.size() == empty_) throw_nothing();
     std::string removed;
-    for (const std::string& path : products_->finish(report_.planes, error_cards(report_)))
+    for (const std::string& path : planes_->products().finish(report_.planes, error_cards(report_), times_))
       removed += (removed.empty() ? "" : ", ") + path;
     if (!removed.empty()) progress_.say("removed what an earlier run left: " + removed);
     report_.plan.push_back(left_out_decision(report_.counts));
@@ -241,8 +216,7 @@ class CubeRun {
       warn(std::to_string(empty_) + " of " + std::to_string(planes()) +
            " planes have no samples: they have no values and no beam");
     if (const std::size_t left = static_cast<std::size_t>(planes()) - report_.planes.size(); left > 0)
-      warn("stopped by the user: the last " + std::to_string(left) + " of " + std::to_string(planes()) +
-           " planes have no values");
+      warn("stopped by the user: " + std::to_string(left) + " of " + std::to_string(planes()) + " planes have no values");
   }
 
   [[noreturn]] void throw_nothing() const {
@@ -273,7 +247,6 @@ class CubeRun {
   std::vector<imager::Stokes> stokes_;
   int threads_;
   ProgressLine progress_;
-  ProgressLine silent_{true};
   imager::Stopwatch watch_;
   imager::StageTimes times_;
   RunReport report_;
@@ -285,18 +258,17 @@ class CubeRun {
   imager::CubeSampling sampling_;
   imager::ImageHeader header_;
   imager::UvwReach reach_;
-  std::unique_ptr<CleanStage> clean_;  ///< null without CLEAN
   RunPlan plan_;
   std::unique_ptr<CubeVisibilities> visibilities_;
   std::shared_ptr<const imager::PlannedTransform> transform_;
-  std::unique_ptr<PlaneScene> scene_;
-  std::unique_ptr<CubeProducts> products_;
-  std::shared_ptr<const imager::ImagingWeights> common_weights_;  ///< null where each plane has its own
-  std::unique_ptr<PrimaryBeamStage> primary_beam_;                ///< null where none is wanted
-  std::uint64_t outside_grid_ = 0;                                ///< samples of planes
-  std::size_t empty_ = 0;                                         ///< planes
-  bool stopped_ = false;
+  PlaneWorkers workers_;
+  std::unique_ptr<PrimaryBeamStage> primary_beam_;  ///< null where none is wanted
+  std::unique_ptr<CubePlanes> planes_;
+  std::uint64_t outside_grid_ = 0;
+  std::size_t empty_ = 0;  ///< planes
+  std::atomic<bool> stopped_ = false;
   bool warned_of_clean_ = false;  ///< what is so of one plane is mostly so of all
+  bool warned_of_beam_ = false;
 };
 
 }  // namespace

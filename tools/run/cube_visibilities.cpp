@@ -1,9 +1,13 @@
 #include "tools/run/cube_visibilities.h"
 
 #include <algorithm>
+#include <atomic>
+#include <numeric>
 #include <string>
 
 #include "imager/handed_over.h"
+#include "imager/parallel.h"
+#include "tools/base/interrupt.h"
 
 namespace misfit::tools {
 
@@ -39,7 +43,7 @@ void CubeVisibilities::gather(const imager::PlaneRange& batch, ProgressLine& pro
 
 void CubeVisibilities::look_through(const std::function<void(const imager::VisibilitySource&)>& visit, ProgressLine& progress,
                                     imager::StageTimes& times) {
-  for (const imager::PlaneRange& batch : batches_of(sampling_.axis.channels, batches_.planes)) {
+  for (const imager::PlaneRange& batch : batches_of(sampling_.axis.channels, batches_)) {
     if (batches_.read_again) {
       if (const auto part = part_of(batch)) visit(imager::PlaneView(*part, sampling_, batch.first));
       continue;
@@ -51,7 +55,7 @@ void CubeVisibilities::look_through(const std::function<void(const imager::Visib
 }
 
 void CubeVisibilities::for_each_plane(const PlaneVisitor& visitor, ProgressLine& progress, imager::StageTimes& times) {
-  for (const imager::PlaneRange& batch : batches_of(sampling_.axis.channels, batches_.planes)) {
+  for (const imager::PlaneRange& batch : batches_of(sampling_.axis.channels, batches_)) {
     if (visitor.stopped()) return;
     if (batches_.read_again) {
       visit_streamed(batch.first, visitor);
@@ -60,25 +64,42 @@ void CubeVisibilities::for_each_plane(const PlaneVisitor& visitor, ProgressLine&
     gather(batch, progress, times);
     count_read(gathered_->counts().read);
     outside_planes_ += gathered_->counts().outside_planes;
-    visit_held(batch, visitor, progress);
+    visit_held(batch, visitor, progress, times);
     gathered_.reset();
   }
 }
 
-void CubeVisibilities::visit_held(const imager::PlaneRange& batch, const PlaneVisitor& visitor, ProgressLine& progress) {
+void CubeVisibilities::visit_held(const imager::PlaneRange& batch, const PlaneVisitor& visitor, ProgressLine& progress,
+                                  imager::StageTimes& times) {
   progress.begin("images " + numbers_of(batch), stops_itself_);
-  for (int i = 0; i < batch.count && !visitor.stopped(); ++i) {
-    progress.update(static_cast<std::uint64_t>(i), static_cast<std::uint64_t>(batch.count));
-    imager::StoredVisibilities plane = gathered_->take(i);
-    if (plane.samples() == 0) {
-      visitor.leave_empty(batch.first + i);
-      continue;
+  const auto planes = static_cast<std::size_t>(batch.count);
+  std::vector<double> taking_s(planes);
+  std::atomic<std::uint64_t> done = 0;
+  std::atomic<bool> interrupted = false;
+  imager::parallel_for(planes, batches_.workers.count, [&](std::size_t i) {
+    if (visitor.stopped() || interrupted) return;
+    try {
+      imager::StoredVisibilities samples;
+      imager::add_seconds_of(taking_s[i], [&] { samples = gathered_->take(static_cast<int>(i)); });
+      visit_held(batch.first + static_cast<int>(i), std::move(samples), visitor);
+      progress.update(++done, planes);
+    } catch (const Interrupted&) {  // also one that gave up: what another threw comes before it
+      interrupted = true;
+    } catch (...) {
+      visitor.give_up();
+      throw;
     }
-    const imager::HandedOver source(std::move(plane));
-    imager::StreamedVisibilities visibilities(source, {.keep = true, .ahead = 0, .uv_reach_lambda = 0});
-    visitor.make(batch.first + i, visibilities);
-  }
+  });
+  times.add("planes", std::accumulate(taking_s.begin(), taking_s.end(), 0.0) / batches_.workers.count);
+  if (interrupted) throw Interrupted();
   progress.end();
+}
+
+void CubeVisibilities::visit_held(int channel, imager::StoredVisibilities samples, const PlaneVisitor& visitor) {
+  if (samples.samples() == 0) return visitor.leave_empty(channel);
+  const imager::HandedOver source(std::move(samples));
+  imager::StreamedVisibilities visibilities(source, {.keep = true, .ahead = 0, .uv_reach_lambda = 0});
+  visitor.make(channel, visibilities);
 }
 
 /// A plane that reads its own visibilities in every pass.

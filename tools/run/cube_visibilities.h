@@ -13,11 +13,12 @@
 
 namespace misfit::tools {
 
-/// What is done with the planes of a cube, which come in their order.
+/// What is done with the planes of a cube. They begin in their order, several at the same time, each in one thread.
 struct PlaneVisitor {
   std::function<void(int channel, imager::StreamedVisibilities& visibilities)> make;  ///< one that has samples
   std::function<void(int channel)> leave_empty;                                       ///< one that has none
   std::function<bool()> stopped;                                                      ///< whether the user wants no more
+  std::function<void()> give_up;  ///< one failed: others that are being made are of no use any more
 };
 
 /// The visibilities of a cube's planes, as CubeBatches says: held for some planes at a time, or read by each again.
@@ -31,7 +32,7 @@ class CubeVisibilities {
   /// Calls visit(samples of a plane) for every plane, in passes of its own. Stages timed: "read", "planes".
   void look_through(const std::function<void(const imager::VisibilitySource&)>& visit, ProgressLine& progress,
                     imager::StageTimes& times);
-  /// Stages timed: the same.
+  /// Rethrows what a visitor throws, once all planes at work are over; Interrupted last. Stages timed: the same.
   void for_each_plane(const PlaneVisitor& visitor, ProgressLine& progress, imager::StageTimes& times);
 
   /// Of what for_each_plane() read; those used are the planes' own.
@@ -43,7 +44,9 @@ class CubeVisibilities {
   std::unique_ptr<ms_io::MeasurementSet> part_of(const imager::PlaneRange& range) const;
   std::string numbers_of(const imager::PlaneRange& range) const;
   void gather(const imager::PlaneRange& batch, ProgressLine& progress, imager::StageTimes& times);
-  void visit_held(const imager::PlaneRange& batch, const PlaneVisitor& visitor, ProgressLine& progress);
+  void visit_held(const imager::PlaneRange& batch, const PlaneVisitor& visitor, ProgressLine& progress,
+                  imager::StageTimes& times);
+  void visit_held(int channel, imager::StoredVisibilities samples, const PlaneVisitor& visitor);
   void visit_streamed(int channel, const PlaneVisitor& visitor);
   void count_read(imager::SampleCounts counts);
 

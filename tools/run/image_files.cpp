@@ -31,6 +31,11 @@ class SeveralWriters : public imager::ImageWriter {
 
 }  // namespace
 
+std::mutex& image_files_mutex() {
+  static std::mutex mutex;
+  return mutex;
+}
+
 const std::vector<std::string>& image_formats() {
   static const std::vector<std::string> names{"fits", "casa", "both"};
   return names;

@@ -1,12 +1,16 @@
 #pragma once
 
 #include <memory>
+#include <mutex>
 #include <string>
 #include <vector>
 
 #include "imager/image_writer.h"
 
 namespace misfit::tools {
+
+/// CFITSIO and casacore need not be safe in threads: who reads or writes images while others may do so holds this.
+std::mutex& image_files_mutex();
 
 /// What --outformat names: fits, casa or both.
 const std::vector<std::string>& image_formats();

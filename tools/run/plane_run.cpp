@@ -5,11 +5,19 @@
 
 #include "imager/direct/verify.h"
 #include "imager/stokes_view.h"
+#include "tools/base/interrupt.h"
 #include "tools/run/beam_choice.h"
 #include "tools/run/run_messages.h"
 #include "tools/run/weighting_options.h"
 
 namespace misfit::tools {
+
+imager::Progress PlaneScene::updates() const {
+  return [this](std::uint64_t done, std::uint64_t total) {
+    if (given_up && given_up()) throw Interrupted();
+    progress.update(done, total);
+  };
+}
 
 PlaneRun::PlaneRun(const PlaneScene& scene, imager::StreamedVisibilities& source, std::string name)
     : scene_(scene), source_(source), name_(std::move(name)) {

@@ -17,7 +17,7 @@
 
 namespace misfit::tools {
 
-/// What the planes of a run share.
+/// What a plane of a run is made with. Planes that are made at the same time have a `progress`, `times` and `warn` each.
 struct PlaneScene {
   const ImageOptions& options;
   const imager::ImageGeometry& geometry;
@@ -27,10 +27,9 @@ struct PlaneScene {
   ProgressLine& progress;
   imager::StageTimes& times;
   std::function<void(const std::string& sentence)> warn;
+  std::function<bool()> given_up = {};  ///< whether the plane is of no use any more: its work then ends in Interrupted
 
-  imager::Progress updates() const {
-    return [this](std::uint64_t done, std::uint64_t total) { progress.update(done, total); };
-  }
+  imager::Progress updates() const;
 };
 
 /// What is done for one plane of frequency, of all Stokes parameters: weights, dirty images and PSF, their errors, beam, CLEAN.
@@ -55,6 +54,7 @@ class PlaneRun {
   void clean(CleanStage& stage, const nlohmann::json& option_values,
              const std::function<void(std::size_t stokes, const imager::CleanState&)>& cycle);
 
+  const PlaneScene& scene() const { return scene_; }
   PlaneReport& report() { return report_; }
   imager::AccurateImages& made() { return made_; }
   std::vector<imager::CleanResult>& cleaned() { return cleaned_; }  ///< [Stokes], or none

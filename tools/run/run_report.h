@@ -71,7 +71,9 @@ double largest_expected_error(const RunReport& report);
 /// residual_histogram}, of which the first is what the report's own keys hold) are additions. Of a cube these keys tell of the
 /// plane that is drawn, `spectral_axis` of its planes' frequencies, `planes` (a list of {plane, frequency_hz, used, beam,
 /// noise, brightest_jy, clean, stokes}) of each, `plane_samples` and `samples_outside_planes` of usable samples in them and in
-/// none; they are null otherwise.
+/// none; they are null otherwise. Where several planes are made at a time, `timings_s` counts the seconds that they spent on a
+/// stage together over the number of planes made at a time, so that the stages add up to the run's wall clock, as far as all
+/// were busy.
 nlohmann::json report_json(const RunReport& report);
 
 }  // namespace misfit::tools

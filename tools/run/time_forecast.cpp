@@ -131,10 +131,12 @@ double wider_seconds(const RunWork& w) {
 std::vector<StageSeconds> cube_seconds(const RunWork& w) {
   RunWork plane = w;
   plane.planes = 1;
+  plane.workers = 1;
+  plane.threads = std::max(1, w.threads / w.workers);
   plane.samples = w.samples / w.planes;
   std::vector<StageSeconds> stages = counted_seconds(plane);
   for (StageSeconds& s : stages)
-    if (s.stage != "draw pictures") s.seconds *= w.planes;
+    if (s.stage != "draw pictures") s.seconds *= s.stage == "read" ? w.planes : 1.0 * w.planes / w.workers;
   stages.push_back({"planes", "dealing out to planes", shared(1e-8 * w.samples, w.threads)});
   return stages;
 }

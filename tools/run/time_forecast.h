@@ -15,7 +15,8 @@ struct RunWork {
   const imager::GriddingPlan* plan = nullptr;
   double rows = 0;  ///< of the visibilities
   double samples = 0;
-  int planes = 1;  ///< of frequency; each has a part of the samples, and all that follows is of each
+  int planes = 1;   ///< of frequency; each has a part of the samples, and all that follows is of each
+  int workers = 1;  ///< planes made at a time, which share the threads
   double pixels = 0;
   int images = 2;    ///< files
   int pictures = 2;  ///< drawn
