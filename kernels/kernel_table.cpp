@@ -6,9 +6,9 @@
 #include <array>
 #include <cmath>
 #include <cstdlib>
-#include <mutex>
 #include <stdexcept>
 
+#include "kernels/cfitsio_mutex.h"
 #include "kernels/fits_sizes_internal.h"
 #include "kernels/kernel_table_content_internal.h"
 #include "kernels/whole_file.h"
@@ -19,12 +19,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::size_t largest_file = std::size_t{1} << 28;  // 2^20 rows a cell, 16 bytes each, in half of 20 cells: 168 MB
-
-/// Builds of CFITSIO need not be safe in threads.
-std::mutex& cfitsio_mutex() {
-  static std::mutex mutex;
-  return mutex;
-}
 
 /// A FITS file in memory. CFITSIO has no part in files on the disk, so that these are whole or not there.
 class FitsMemory {
@@ -275,6 +269,11 @@ bool is_intact(const FitsMemory& file, std::size_t size) {
 }
 
 }  // namespace
+
+std::mutex& cfitsio_mutex() {
+  static std::mutex mutex;
+  return mutex;
+}
 
 void write_kernel_table(const Kernel& kernel, const std::optional<TableSampling>& sampling, const fs::path& path,
                         const std::vector<HostTable>& more) {
