@@ -1,5 +1,6 @@
 #include "tools/run/cube_batches.h"
 
+#include <algorithm>
 #include <boost/test/unit_test.hpp>
 
 namespace {
@@ -15,7 +16,10 @@ BOOST_AUTO_TEST_CASE(batches_hold_every_plane_once_no_more_than_there_is_room_fo
     for (const int workers : {1, 2, 3, 16})
       for (const int held : {1, 2, 5, 22, 1000}) {
         if (workers > planes || held < workers) continue;
-        const tools::CubeBatches batches{.planes = std::min(held, planes), .workers = {workers, 1}};
+        tools::CubeBatches batches;
+        batches.planes = std::min(held, planes);
+        batches.workers.count = workers;
+        BOOST_TEST((tools::batches_of(planes, batches).size() == 1) == (held >= planes));
         int next = 0;
         for (const imager::PlaneRange& range : tools::batches_of(planes, batches)) {
           BOOST_TEST_CONTEXT(planes << " planes, " << workers << " workers, " << held << " held, from " << range.first) {

@@ -75,7 +75,7 @@ CubeBatches plan_batches(const RunScene& scene, const RunPlan& plan) {
   batches.memory = plan.memory;
   batches.workers = {1, scene.threads};
   if (!batches.read_again) {
-    int workers = std::min(scene.threads, scene.planes);
+    int workers = scene.workers;
     while (workers > 1 && room(workers) < workers * plane) --workers;
     batches.workers = {workers, scene.threads / workers};
     const double held = std::clamp(std::min(enough_bytes, room(workers)) / plane, 1.0 * workers, 1.0 * scene.planes);
@@ -91,7 +91,8 @@ CubeBatches plan_batches(const RunScene& scene, const RunPlan& plan) {
 }
 
 std::vector<imager::PlaneRange> batches_of(int planes, const CubeBatches& batches) {
-  const int at_once = batches.workers.count, most = std::max(1, batches.planes / at_once);
+  if (batches.planes >= planes) return {{0, planes}};
+  const int at_once = batches.workers.count, most = batches.planes / at_once;
   const int rounds = (planes + at_once - 1) / at_once, count = (rounds + most - 1) / most;
   const auto first = [&](int b) {
     return std::min(planes, at_once * static_cast<int>(static_cast<long long>(rounds) * b / count));

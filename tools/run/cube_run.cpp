@@ -108,6 +108,7 @@ class CubeRun {
                          .threads = threads_,
                          .mask = o_.niter > 0 && (!o_.mask.empty() || o_.usemask == "auto"),
                          .planes = planes(),
+                         .workers = std::min(threads_, planes()),
                          .samples = static_cast<double>(set_->rows()) * samples_of_a_row(sampling_, windows_)};
     plan_ = plan_run(scene, forecast_, times_, progress_);
     plan_.decisions.push_back(axis_decision(sampling_));

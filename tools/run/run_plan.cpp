@@ -172,6 +172,7 @@ RunWork work_of(const RunScene& scene, const RunPlan& plan) {
           .rows = static_cast<double>(scene.set.rows()),
           .samples = static_cast<double>(scene.set.samples()),
           .planes = scene.planes,
+          .workers = scene.workers,
           .pixels = static_cast<double>(scene.geometry.pixels()),
           .images = (o.nterms > 1 ? static_cast<int>(taylor_products(o.nterms, o.niter > 0).size())
                                   : 1 + stokes * (o.niter > 0 ? 3 : 1)) +

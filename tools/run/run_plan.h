@@ -23,6 +23,7 @@ struct RunScene {
   int threads = 1;
   bool mask = false;   ///< there is or will be one, where components may lie
   int planes = 1;      ///< of frequency
+  int workers = 1;     ///< planes made at a time, where memory allows; they share the threads
   double samples = 0;  ///< of a plane at most, in Stokes samples
 };
 
