@@ -29,14 +29,19 @@ double in_flight_bytes(const RunScene& scene, const RunPlan& plan) {
   return blocks * static_cast<double>(scene.set.read_at_once()) * (sample + row);
 }
 
-/// While so many planes are imaged at a time: each has grids and images, and its thread an allocator's memory; buffers of FFTs
-/// are the threads' anyway.
-imager::MemoryUse while_imaging(imager::MemoryUse one, double held_bytes, int workers) {
+/// While so many planes are imaged at a time, beside `waiting` bytes: each has a copy of its visibilities, grids and images,
+/// and its thread an allocator's memory; buffers of FFTs are the threads' anyway.
+imager::MemoryUse while_imaging(imager::MemoryUse one, double waiting, int workers) {
   constexpr double allocator_bytes = 56e6;  // see imager::peak_memory()
   one.process += (workers - 1) * allocator_bytes;
-  one.visibilities = held_bytes;
-  for (double* bytes : {&one.blocks, &one.grids, &one.images}) *bytes *= workers;
+  for (double* bytes : {&one.visibilities, &one.blocks, &one.grids, &one.images}) *bytes *= workers;
+  one.visibilities += waiting;
   return one;
+}
+
+/// The larger of both.
+imager::MemoryUse peak_of(const imager::MemoryUse& one, const imager::MemoryUse& other) {
+  return one.total() < other.total() ? other : one;
 }
 
 imager::Decision decision_on(const CubeBatches& batches, const RunScene& scene, double plane_bytes) {
@@ -66,26 +71,27 @@ int samples_of_a_row(const imager::CubeSampling& sampling, const std::vector<ms_
 CubeBatches plan_batches(const RunScene& scene, const RunPlan& plan) {
   constexpr double enough_bytes = gib / 2;  // each pass over the set reads little more than its planes' channels
   const double wanted = scene.options.memory_gib > 0 ? scene.options.memory_gib * gib : physical_memory_bytes() / 2;
+  const double rows = static_cast<double>(scene.set.rows());
   const double plane = gathered_bytes(scene, plan), flight = in_flight_bytes(scene, plan);
-  const auto room = [&](int workers) {
-    return wanted - std::max(while_imaging(plan.memory, 0, workers).total(), plan.memory.process + flight);
+  const auto memory = [&](double waiting, int workers) {
+    waiting += shared_bytes(rows);
+    return peak_of(while_imaging(plan.memory, waiting, workers),
+                   {"planes are gathered", plan.memory.process, waiting, flight, 0, 0, 0});
   };
+  const auto room = [&](int workers) { return wanted - memory(0, workers).total(); };
   CubeBatches batches;
   batches.read_again = !plan.streaming.keep || room(1) < plane;
-  batches.memory = plan.memory;
-  batches.workers = {1, scene.threads};
+  int& workers = batches.workers.count;
+  if (!batches.read_again)
+    for (workers = scene.workers; workers > 1 && room(workers) < workers * plane;) --workers;
+  batches.workers.threads = scene.threads / workers;
   if (!batches.read_again) {
-    int workers = scene.workers;
-    while (workers > 1 && room(workers) < workers * plane) --workers;
-    batches.workers = {workers, scene.threads / workers};
     const double held = std::clamp(std::min(enough_bytes, room(workers)) / plane, 1.0 * workers, 1.0 * scene.planes);
     batches.planes = static_cast<int>(held);
     if (batches.planes < scene.planes) batches.planes -= batches.planes % workers;
-    const double bytes = batches.planes * plane;
-    const imager::MemoryUse gathering{"planes are gathered", plan.memory.process, bytes, flight, 0, 0, 0};
-    batches.memory = while_imaging(plan.memory, bytes, workers);
-    if (gathering.total() > batches.memory.total()) batches.memory = gathering;
   }
+  const double streamed = std::min(1.0, static_cast<double>(imager::rows_gathered_at_once) / rows);
+  batches.memory = memory((batches.read_again ? streamed : batches.planes) * plane, workers);
   batches.decision = decision_on(batches, scene, plane);
   return batches;
 }
