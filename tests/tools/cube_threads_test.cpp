@@ -89,10 +89,12 @@ BOOST_AUTO_TEST_CASE(pixels_beams_and_report_do_not_depend_on_the_number_of_thre
     succeed(cube(folder / "one", "1") + options);
     succeed(cube(folder / "three", "3") + options);
     for (const std::string& kind : kinds)
-      for (const std::string suffix : {".fits", ""})
-        BOOST_TEST_CONTEXT(kind << suffix)
-        check_same(*tools::open_image_file(folder / ("one." + kind + suffix)),
-                   *tools::open_image_file(folder / ("three." + kind + suffix)));
+      for (const std::string suffix : {".fits", ""}) {
+        BOOST_TEST_CONTEXT(kind << suffix) {
+          check_same(*tools::open_image_file(folder / ("one." + kind + suffix)),
+                     *tools::open_image_file(folder / ("three." + kind + suffix)));
+        }
+      }
     const nlohmann::json one = report_of(folder / "one"), three = report_of(folder / "three");
     BOOST_TEST(decision_on(one, "planes").find("imaged at a time") == std::string::npos);
     BOOST_TEST(decision_on(three, "planes").find("and 3 imaged at a time") != std::string::npos);
