@@ -19,6 +19,9 @@ struct WSpread {
 
   void add(const VisibilityBlock& block);
   WSpread& operator+=(const WSpread& other);
+
+ private:
+  void add_rows(const VisibilityBlock& block);
 };
 
 /// The phase 2πw(n−1) that a transform in two dimensions neglects.

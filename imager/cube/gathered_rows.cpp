@@ -31,13 +31,38 @@ T* extend(std::vector<T>& list, std::size_t more) {
   return list.data() + (list.size() - more);
 }
 
+/// Calls visit(row, tap) for every tap of every row.
+template <typename Visit>
+void for_each_tap(const MappedRows& rows, const std::vector<ChannelTap>& taps, const Visit& visit) {
+  if (taps.size() == 1) {  // mostly; what is so of all rows is then worked out once
+    const ChannelTap tap = taps.front();
+    for (std::size_t row = rows.first; row < rows.end; ++row) visit(row, tap);
+    return;
+  }
+  for (std::size_t row = rows.first; row < rows.end; ++row)
+    for (const ChannelTap& tap : taps) visit(row, tap);
+}
+
+/// Appends the weights of rows; returns where they begin.
+const float* append_weights(const VisibilityBlock& from, const MappedRows& rows, const std::vector<ChannelTap>& taps,
+                            std::vector<float>& to) {
+  float* const weight = extend(to, (rows.end - rows.first) * taps.size());
+  float* next = weight;
+  const auto append = [&](std::size_t row, const ChannelTap& tap) {
+    *next++ = weight_of(&from.weight[row * from.channels()], tap);
+  };
+  for_each_tap(rows, taps, append);
+  return weight;
+}
+
 /// Appends the visibilities of rows, those of weight 0 as 0.
 void append_visibilities(const VisibilityBlock& from, const MappedRows& rows, const std::vector<ChannelTap>& taps,
                          const float* weight, std::vector<std::complex<float>>& to) {
-  std::complex<float>* out = extend(to, (rows.end - rows.first) * taps.size());
-  for (std::size_t row = rows.first; row < rows.end; ++row)
-    for (const ChannelTap& tap : taps)
-      *out++ = *weight++ == 0 ? std::complex<float>() : visibility_of(&from.visibility[row * from.channels()], tap);
+  std::complex<float>* next = extend(to, (rows.end - rows.first) * taps.size());
+  const auto append = [&](std::size_t row, const ChannelTap& tap) {
+    *next++ = *weight++ == 0 ? std::complex<float>() : visibility_of(&from.visibility[row * from.channels()], tap);
+  };
+  for_each_tap(rows, taps, append);
 }
 
 }  // namespace
@@ -76,10 +101,7 @@ void GatheredRows::add(const VisibilityBlock& block, const std::vector<MappedRow
       piece.spans.back().end = span.end;
     else
       piece.spans.push_back(span);
-    float* const weight = extend(piece.weight, (some.end - some.first) * channels.tap.size());
-    float* next = weight;
-    for (std::size_t row = some.first; row < some.end; ++row)
-      for (const ChannelTap& tap : channels.tap) *next++ = weight_of(&block.weight[row * block.channels()], tap);
+    const float* const weight = append_weights(block, some, channels.tap, piece.weight);
     append_visibilities(block, some, channels.tap, weight, piece.visibility.front());
     for (std::size_t i = 0; i < block.other_stokes.size(); ++i)
       append_visibilities(*block.other_stokes[i], some, channels.tap, weight, piece.visibility[i + 1]);
@@ -119,14 +141,15 @@ std::vector<GatheredRows::Place> GatheredRows::places_of(const Piece& piece) con
 std::shared_ptr<const VisibilityBlock> GatheredRows::block_of(const Piece& piece, const std::vector<Place>& places) const {
   const std::size_t channels = piece.frequency_hz.size();
   const auto of_rows = [&](const auto& from, auto& to) {
-    to.resize(places.size() * channels);
-    if (channels == 1) {  // copied in place, not by calls
-      for (std::size_t i = 0; i < places.size(); ++i) to[i] = from[places[i].in_piece];
+    to.reserve(places.size() * channels);
+    if (channels == 1) {
+      for (const Place& place : places) to.push_back(from[place.in_piece]);
       return;
     }
-    auto out = to.begin();
-    for (const Place& place : places)
-      out = std::copy_n(from.begin() + static_cast<std::ptrdiff_t>(place.in_piece * channels), channels, out);
+    for (const Place& place : places) {
+      const auto first = from.begin() + static_cast<std::ptrdiff_t>(place.in_piece * channels);
+      to.insert(to.end(), first, first + static_cast<std::ptrdiff_t>(channels));
+    }
   };
   auto block = std::make_shared<VisibilityBlock>();
   block->frequency_hz = piece.frequency_hz;

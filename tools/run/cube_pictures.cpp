@@ -13,6 +13,26 @@
 #include "tools/run_page/spectrum_figure.h"
 
 namespace misfit::tools {
+namespace {
+
+/// Empty where gnuplot cannot draw it.
+std::string spectrum_drawing(const RunReport& report) {
+  Spectrum spectrum{.frame = report.cube ? report.cube->frame : "", .frequency_hz = {}, .brightest_jy = {}, .noise_jy = {}};
+  for (const PlaneReport& plane : report.planes) {
+    if (plane.sums.used == 0) continue;
+    spectrum.frequency_hz.push_back(plane.frequency_hz);
+    spectrum.brightest_jy.push_back(plane.stokes.front().brightest.value);
+    spectrum.noise_jy.push_back(plane.stokes.front().histogram.noise_jy);
+  }
+  if (spectrum.frequency_hz.empty()) return "";
+  try {
+    return draw_svg(spectrum_figure(spectrum));
+  } catch (const std::runtime_error&) {  // the pictures say why
+    return "";
+  }
+}
+
+}  // namespace
 
 std::unique_ptr<imager::ImageReader> open_written(const ImageOptions& o, const std::string& kind) {
   return open_image_file(image_paths(o.imagename + "." + kind, o.outformat).front());
@@ -36,8 +56,7 @@ void count_pixels(const ImageOptions& o, PlaneReport& plane, int threads) {
   }
 }
 
-std::string draw_cube(const ImageOptions& o, const imager::ImageHeader& header, const RunReport& report,
-                      std::vector<PagePicture>& drawn) {
+CubeDrawings draw_cube(const ImageOptions& o, const imager::ImageHeader& header, const RunReport& report) {
   const PlaneReport& plane = report.planes[report.shown];
   const std::string of =
       ", plane " + std::to_string(plane.channel) + " at " + frequency_text(plane.frequency_hz, 7) + " " + header.spectral.frame;
@@ -58,25 +77,11 @@ std::string draw_cube(const ImageOptions& o, const imager::ImageHeader& header, 
   PictureDrawing drawing;
   drawing.add({{.image = &about, .title = title, .path = image_path, .pixels = &image},
                {.image = &about, .title = "PSF" + of, .path = psf_path, .pixels = &psf}});
-  std::string failure = drawing.finish();
-  if (failure.empty()) drawn = {{title, read_file(image_path)}, {"PSF" + of, read_file(psf_path)}};
-  return failure;
-}
-
-std::string spectrum_drawing(const RunReport& report) {
-  Spectrum spectrum{.frame = report.cube ? report.cube->frame : "", .frequency_hz = {}, .brightest_jy = {}, .noise_jy = {}};
-  for (const PlaneReport& plane : report.planes) {
-    if (plane.sums.used == 0) continue;
-    spectrum.frequency_hz.push_back(plane.frequency_hz);
-    spectrum.brightest_jy.push_back(plane.stokes.front().brightest.value);
-    spectrum.noise_jy.push_back(plane.stokes.front().histogram.noise_jy);
-  }
-  if (spectrum.frequency_hz.empty()) return "";
-  try {
-    return draw_svg(spectrum_figure(spectrum));
-  } catch (const std::runtime_error&) {  // the pictures say why
-    return "";
-  }
+  CubeDrawings drawn;
+  drawn.spectrum = spectrum_drawing(report);
+  drawn.failure = drawing.finish();
+  if (drawn.failure.empty()) drawn.pictures = {{title, read_file(image_path)}, {"PSF" + of, read_file(psf_path)}};
+  return drawn;
 }
 
 }  // namespace misfit::tools

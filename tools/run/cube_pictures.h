@@ -21,12 +21,15 @@ std::size_t brightest_plane(const std::vector<PlaneReport>& planes);
 /// Makes the histograms of a plane's residuals, of images that have been written.
 void count_pixels(const ImageOptions& options, PlaneReport& plane, int threads);
 
-/// Draws the plane that `report` shows, of images that have been written: <imagename>.image.png, or .residual.png without
-/// CLEAN, and .psf.png. Adds them to `drawn`, or returns in a sentence why there are none.
-std::string draw_cube(const ImageOptions& options, const imager::ImageHeader& header, const RunReport& report,
-                      std::vector<PagePicture>& drawn);
+/// What is drawn of a cube.
+struct CubeDrawings {
+  std::vector<PagePicture> pictures;
+  std::string spectrum;  ///< SVG: the brightest pixel and the noise of each plane against frequency; may be empty
+  std::string failure;   ///< why there are none, in a sentence; empty where there are
+};
 
-/// The brightest pixel and the noise of each plane against frequency, as SVG; empty where gnuplot cannot draw it.
-std::string spectrum_drawing(const RunReport& report);
+/// Draws the plane that `report` shows, of images that have been written: <imagename>.image.png, or .residual.png without
+/// CLEAN, and .psf.png.
+CubeDrawings draw_cube(const ImageOptions& options, const imager::ImageHeader& header, const RunReport& report);
 
 }  // namespace misfit::tools

@@ -231,17 +231,18 @@ class CubeRun {
       const imager::StageTimer timer(times_, "statistics");
       count_pixels(o_, report_.planes[report_.shown], threads_);
     }
-    std::vector<PagePicture> drawn;
+    CubeDrawings drawn;
     {
       const imager::StageTimer timer(times_, "draw pictures");
-      if (const std::string failure = draw_cube(o_, header_, report_, drawn); !failure.empty()) warn(failure);
+      drawn = draw_cube(o_, header_, report_);
+      if (!drawn.failure.empty()) warn(drawn.failure);
     }
     report_.expected = expected();
     forecast_.learn(work_, times_);
     report_.wall_clock_s = watch_.seconds();
     const nlohmann::json json = report_json(report_);
     write_file(o_.imagename + ".report.json", json.dump(2) + "\n");
-    write_file(o_.imagename + ".report.html", report_page(json, drawn, {"", spectrum_drawing(report_)}));
+    write_file(o_.imagename + ".report.html", report_page(json, drawn.pictures, {"", drawn.spectrum}));
   }
 
   const ImageOptions& o_;
