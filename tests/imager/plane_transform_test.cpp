@@ -78,9 +78,11 @@ std::vector<double> parts(const std::vector<std::complex<double>>& z) {
 BOOST_AUTO_TEST_SUITE(plane_transform)
 
 BOOST_DATA_TEST_CASE(dirty_image_and_psf_equal_the_direct_transform_within_the_kernel_error,
-                     bdata::xrange(1, 12) * bdata::make({1.25, 1.5, 2.0}), kernel_width, padding) {
+                     bdata::xrange(1, 12) * bdata::make({1.25, 1.5, 2.0}) * bdata::make({1, 3}), kernel_width, padding,
+                     channels) {
   const PlaneTransformOptions o = options(64, 48, kernel_width, padding);
-  const VisibilityBlock block = random_samples(150, 3, cell_rad, 1);
+  const VisibilityBlock block =
+      random_samples(450U / static_cast<unsigned>(channels), static_cast<std::size_t>(channels), cell_rad, 1);
   const AdjointResult gridded = adjoint_of(*make_plane_transform(o), block);
   const AdjointResult direct = adjoint_of(DirectTransform(o.geometry, 2), block);
   // The dirty image of random data has random phases. 1e-14 is the rounding of doubles.
@@ -119,9 +121,9 @@ BOOST_AUTO_TEST_CASE(the_error_of_random_data_is_what_theory_expects_down_to_rou
 }
 
 BOOST_DATA_TEST_CASE(predicted_visibilities_equal_the_direct_transform_within_the_kernel_error,
-                     bdata::xrange(1, 12) * bdata::make({1.25, 2.0}), kernel_width, padding) {
+                     bdata::xrange(1, 12) * bdata::make({1.25, 2.0}) * bdata::make({1, 2}), kernel_width, padding, channels) {
   const PlaneTransformOptions o = options(64, 48, kernel_width, padding);
-  const VisibilityBlock block = random_samples(300, 2, cell_rad, 2);
+  const VisibilityBlock block = random_samples(300, static_cast<std::size_t>(channels), cell_rad, 2);
   const Image model = random_image(64, 48, 3);
   const auto gridded = parts(make_plane_transform(o)->predict(model)->at(block));
   const auto direct = parts(DirectTransform(o.geometry, 2).predict(model)->at(block));
@@ -157,12 +159,13 @@ BOOST_DATA_TEST_CASE(image_shapes_odd_thin_and_tiny_are_as_exact,
   BOOST_TEST(norm(difference) < 3 * bound * data);
 }
 
-BOOST_DATA_TEST_CASE(adjoint_is_the_transpose_of_prediction, bdata::make({1, 2, 5, 8, 11, 15, 20}) * bdata::make({0.0, 0.2}),
-                     kernel_width, offset) {
+BOOST_DATA_TEST_CASE(adjoint_is_the_transpose_of_prediction,
+                     bdata::make({1, 2, 5, 8, 11, 15, 20}) * bdata::make({0.0, 0.2}) * bdata::make({1, 3}), kernel_width,
+                     offset, channels) {
   PlaneTransformOptions o = options(50, 37, kernel_width, 1.3);
   o.geometry.centre = {offset, -offset / 3};
   const auto transform = make_plane_transform(o);
-  VisibilityBlock y = random_samples(200, 3, cell_rad, 5);
+  VisibilityBlock y = random_samples(200, static_cast<std::size_t>(channels), cell_rad, 5);
   std::fill(y.weight.begin(), y.weight.end(), 1.0F);
   const Image x = random_image(50, 37, 6);
   const auto ax = transform->predict(x)->at(y);
@@ -221,22 +224,24 @@ BOOST_AUTO_TEST_CASE(samples_on_the_edge_of_the_grid_count_and_those_beyond_do_n
   BOOST_TEST(relative_error(gridded.images[0].pixel, direct.images[0].pixel) < 2 * bound);
 }
 
-BOOST_AUTO_TEST_CASE(prediction_beyond_the_grid_is_periodic_and_exact) {
+BOOST_DATA_TEST_CASE(prediction_beyond_the_grid_is_periodic_and_exact, bdata::make({1, 2}) * bdata::make({1.3, 7.3}), channels,
+                     reach) {
   const PlaneTransformOptions o = options(40, 30, 8, 2.0);
-  const VisibilityBlock block = random_samples(200, 2, cell_rad, 11, 7.3);
+  const VisibilityBlock block = random_samples(200, static_cast<std::size_t>(channels), cell_rad, 11, reach);
   const Image model = random_image(40, 30, 12);
   const auto gridded = parts(make_plane_transform(o)->predict(model)->at(block));
   const auto direct = parts(DirectTransform(o.geometry, 2).predict(model)->at(block));
   BOOST_TEST(relative_error(gridded, direct) < 1.5 * expected_error(o));
 }
 
-BOOST_DATA_TEST_CASE(images_off_the_phase_centre_are_as_exact, bdata::xrange(1, 12) * bdata::make({0.37 * cell_rad, 0.3, -0.5}),
-                     kernel_width, offset) {
+BOOST_DATA_TEST_CASE(images_off_the_phase_centre_are_as_exact,
+                     bdata::xrange(1, 12) * bdata::make({0.37 * cell_rad, 0.3, -0.5}) * bdata::make({1, 3}), kernel_width,
+                     offset, channels) {
   PlaneTransformOptions o = options(64, 48, kernel_width, 1.6);
   o.geometry.centre = {offset, -0.4 * offset};
   const auto transform = make_plane_transform(o);
   const DirectTransform exact(o.geometry, 2);
-  const VisibilityBlock block = random_samples(150, 3, cell_rad, 1);
+  const VisibilityBlock block = random_samples(150, static_cast<std::size_t>(channels), cell_rad, 1);
   const AdjointResult gridded = adjoint_of(*transform, block), direct = adjoint_of(exact, block);
   constexpr double rounding = 1e-10;  // of phases of 10⁴ turns
   BOOST_TEST(relative_error(gridded.images[0].pixel, direct.images[0].pixel) < 1.5 * expected_error(o) + rounding);

@@ -1,5 +1,6 @@
 #include "imager/plane/tile_order.h"
 
+#include <algorithm>
 #include <boost/test/data/test_case.hpp>
 #include <boost/test/unit_test.hpp>
 #include <limits>
@@ -16,8 +17,8 @@ namespace {
 constexpr double cell_rad = 1e-5;
 
 /// Some samples of weight 0, some beyond the grid.
-VisibilityBlock samples() {
-  VisibilityBlock block = random_samples(300, 17, cell_rad, 1, 1.3);
+VisibilityBlock samples(std::size_t channels = 17) {
+  VisibilityBlock block = random_samples(5100 / channels, channels, cell_rad, 1, 1.3);
   for (std::size_t i = 0; i < block.samples(); i += 7) block.weight[i] = 0;
   return block;
 }
@@ -68,10 +69,11 @@ bool wants(Wanted wanted, const VisibilityBlock& block, std::size_t sample) {
 BOOST_AUTO_TEST_SUITE(tile_order)
 
 BOOST_DATA_TEST_CASE(every_wanted_sample_occurs_once_in_the_tile_of_its_first_tap,
-                     bdata::make({0, 1, 2}) * bdata::make({1, 2, 7, 8, 16}), kind, kernel_width) {
+                     bdata::make({0, 1, 2}) * bdata::make({1, 2, 7, 8, 16}) * bdata::make({1, 17}), kind, kernel_width,
+                     channels) {
   const auto wanted = static_cast<Wanted>(kind);
   const GridShape shape = shape_of(kernel_width);
-  const VisibilityBlock block = samples();
+  const VisibilityBlock block = samples(static_cast<std::size_t>(channels));
   const TileOrder order = order_by_tile(block, sets_of(block, 1), shape, cell_rad, wanted, 2);
   std::vector<int> seen(block.samples());
   std::vector<std::size_t> in_tile(order.samples.size());
@@ -97,6 +99,30 @@ BOOST_AUTO_TEST_CASE(runs_are_as_long_as_they_can_be_and_follow_the_rows) {
       const SampleRun a = order.run[r], b = order.run[r + 1];
       BOOST_TEST((a.row < b.row || (a.row == b.row && a.first + a.count < b.first)));
     }
+}
+
+BOOST_AUTO_TEST_CASE(rows_of_one_channel_make_runs_within_a_tile_which_longer_ones_would_leave) {
+  VisibilityBlock block = random_samples(10000, 1, cell_rad, 3, 1.3);
+  std::vector<double>& uvw_m = block.uvw_m.edit();
+  const auto at = [&](std::size_t i) { return std::vector<double>{uvw_m[3 * i], uvw_m[3 * i + 1], 0}; };
+  std::vector<std::vector<double>> places;
+  for (std::size_t i = 0; i < block.rows(); ++i) places.push_back(at(i));
+  std::sort(places.begin(), places.end(), [](const auto& a, const auto& b) { return a[1] < b[1]; });
+  for (std::size_t i = 0; i < places.size(); ++i) std::copy(places[i].begin(), places[i].end(), &uvw_m[3 * i]);
+  const GridShape shape = shape_of(6);
+  const TileOrder order = order_by_tile(block, sets_of(block, 1), shape, cell_rad, Wanted::usable, 2);
+  std::vector<std::size_t> tile_of(block.rows());
+  for_each_sample(order, 1, [&](std::size_t tile, std::size_t sample) { tile_of[sample] = tile; });
+  std::size_t longest = 0, needless = 0;
+  for (const SampleRun& run : order.run) {
+    longest = std::max<std::size_t>(longest, run.count);
+    const std::size_t end = run.row + run.count;
+    const auto inside = [&](std::size_t row) { return wants(Wanted::imaging, block, row); };
+    const bool of_a_chunk = (end * 32 + 31) % block.rows() < 32;  // rows are looked through in 32 parts
+    if (end < block.rows() && tile_of[end] == tile_of[run.row] && inside(run.row) && inside(end) && !of_a_chunk) ++needless;
+  }
+  BOOST_TEST(longest > 3U);
+  BOOST_TEST(needless == 0U);
 }
 
 BOOST_AUTO_TEST_CASE(a_run_of_more_channels_than_its_counter_holds_is_split) {

@@ -6,6 +6,7 @@
 #include <boost/test/unit_test.hpp>
 #include <cmath>
 #include <limits>
+#include <vector>
 
 using namespace misfit::imager;
 
@@ -38,6 +39,39 @@ BOOST_AUTO_TEST_CASE_TEMPLATE(positions_are_whole_cells_and_what_is_left_with_ev
     }
     // t is rounded once to Real, and positions of some 1500 cells to double.
     BOOST_TEST(largest <= 0.5 * double{std::numeric_limits<Real>::epsilon()} + 1e-12);
+  }
+  hwy::SetSupportedTargetsForTest(0);
+}
+
+BOOST_AUTO_TEST_CASE_TEMPLATE(rows_of_one_channel_are_placed_to_the_bits_of_one_by_one, Real, Precisions) {
+  constexpr int count = 37;
+  const RowsInTile rows{-2.1e-9, 3.3e-9, 1.1e9, -20.5, 90.25, 16};
+  std::vector<double> uvw_m;
+  for (int i = 0; i < count; ++i) {  // across the tile, every third in the other half of the plane
+    const double sign = i % 3 == 0 ? -1 : 1;
+    uvw_m.insert(uvw_m.end(), {sign * (8.8 - 0.19 * i), sign * (24.9 + 0.119 * i), 7});
+  }
+  for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {
+    hwy::SetSupportedTargetsForTest(target);
+    TilePlaces<Real> together, alone;
+    bool negated[count];
+    for (const int some : {5, 0, 32})
+      append_rows(rows, &uvw_m[3 * static_cast<std::size_t>(together.count)], some, together, negated + together.count);
+    BOOST_TEST_REQUIRE(together.count == count);
+    for (int i = 0; i < count; ++i) {
+      const double sign = i % 3 == 0 ? -1 : 1;
+      const double* const at = &uvw_m[3 * static_cast<std::size_t>(i)];
+      append_position(
+          {sign * at[0] * rows.u_cells_per_m_hz, rows.u_origin, sign * at[1] * rows.v_cells_per_m_hz, rows.v_origin, 16},
+          rows.frequency_hz, alone);
+      BOOST_TEST(negated[i] == (i % 3 == 0));
+      BOOST_TEST(together.column[i] == alone.column[i]);
+      BOOST_TEST(together.row[i] == alone.row[i]);
+      BOOST_TEST(together.tu[i] == alone.tu[i]);
+      BOOST_TEST(together.tv[i] == alone.tv[i]);
+    }
+    BOOST_TEST(together.column[0] != together.column[count - 1]);
+    BOOST_TEST(together.row[0] != together.row[count - 1]);
   }
   hwy::SetSupportedTargetsForTest(0);
 }
