@@ -12,13 +12,22 @@ namespace misfit::imager {
 namespace {
 
 /// Rows that are dealt out to all planes before the next ones: few enough to stay in the cache.
-constexpr std::size_t rows_at_once = 256;
+constexpr std::size_t rows_dealt_at_once = 256;
+
+/// Of a window: fewer where a plane takes several channels.
+std::size_t rows_at_once_of(const CubeSampling& sampling, const std::vector<double>& channel_width_hz) {
+  constexpr auto rows = static_cast<double>(samples_gathered_at_once);
+  const double plane_hz = sampling.axis.width_hz();
+  double narrowest_hz = plane_hz;
+  for (const double width_hz : channel_width_hz) narrowest_hz = std::min(narrowest_hz, width_hz);
+  return static_cast<std::size_t>(plane_hz > 0 ? std::max(1.0, rows * narrowest_hz / plane_hz) : rows);
+}
 
 /// Hands on the blocks of one plane.
 class PlaneStream : public BlockStream {
  public:
-  PlaneStream(std::unique_ptr<BlockStream> from, const CubeSampling& sampling, int plane)
-      : from_(std::move(from)), gatherer_(sampling, {plane, 1}, 1) {}
+  PlaneStream(const VisibilitySource& from, const CubeSampling& sampling, int plane)
+      : from_(from.open()), gatherer_(sampling, {plane, 1}, 1, from.samples()) {}
 
   std::shared_ptr<const VisibilityBlock> next() override {
     while (ready_.empty() && from_) {
@@ -51,7 +60,7 @@ std::vector<MappedRows> PlaneGatherer::rows_of(const VisibilityBlock& block) con
   std::vector<MappedRows> all;
   for (std::size_t row = 0; row < block.rows();) {
     std::size_t end = row + 1;
-    while (end < block.rows() && end < row + rows_at_once && ratio(end) == ratio(row)) ++end;
+    while (end < block.rows() && end < row + rows_dealt_at_once && ratio(end) == ratio(row)) ++end;
     const bool again = !all.empty() && ratio(row) == ratio(row - 1);
     all.push_back({row, end,
                    again ? all.back().map
@@ -68,20 +77,25 @@ void PlaneGatherer::add(const VisibilityBlock& block) {
                                 std::to_string(block.channel_width_hz.size()) + " widths; expected one for each");
   const std::vector<MappedRows> rows = rows_of(block);
   count_outside(block, rows);
-  std::unique_ptr<GatheredRows>& to = growing_[block.frequency_hz];
-  if (!to)
-    to = std::make_unique<GatheredRows>(range_.count,
-                                        std::min<std::size_t>(expected_samples_ / block.channels(), rows_gathered_at_once));
+  std::unique_ptr<GatheredRows>& to = window_of(block).growing;
+  const std::size_t most = rows_at_once_of(sampling_, block.channel_width_hz);
+  if (!to) to = std::make_unique<GatheredRows>(range_.count, std::min<std::size_t>(expected_samples_ / block.channels(), most));
   to->add(block, rows, threads_);
-  if (to->rows() >= rows_gathered_at_once) full_.push_back(std::move(to));
+  if (to->rows() >= most) full_.push_back(std::move(to));
+}
+
+PlaneGatherer::Window& PlaneGatherer::window_of(const VisibilityBlock& block) {
+  for (Window& window : windows_)
+    if (window.frequency_hz == block.frequency_hz) return window;
+  return windows_.emplace_back(Window{block.frequency_hz, nullptr});
 }
 
 std::vector<std::unique_ptr<GatheredRows>> PlaneGatherer::take(bool all) {
   std::vector<std::unique_ptr<GatheredRows>> taken = std::exchange(full_, {});
   if (all) {
-    for (auto& [frequencies, rows] : growing_)
-      if (rows) taken.push_back(std::move(rows));
-    growing_.clear();
+    for (Window& window : windows_)
+      if (window.growing) taken.push_back(std::move(window.growing));
+    windows_.clear();
   }
   for (const auto& rows : taken) rows->set_order();
   return taken;
@@ -140,7 +154,7 @@ GatheredPlanes gather_planes(const VisibilitySource& source, const CubeSampling&
 }
 
 std::unique_ptr<BlockStream> PlaneView::open() const {
-  return std::make_unique<PlaneStream>(from_.open(), sampling_, plane_);
+  return std::make_unique<PlaneStream>(from_, sampling_, plane_);
 }
 
 }  // namespace misfit::imager

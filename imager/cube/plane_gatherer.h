@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstdint>
-#include <map>
 #include <memory>
 #include <utility>
 #include <vector>
@@ -13,11 +12,12 @@
 
 namespace misfit::imager {
 
-/// So many are gridded together, where there are as many: each tile of the grid then has more than a few.
-inline constexpr std::size_t rows_gathered_at_once = std::size_t{1} << 19;
+/// About so many samples of a plane are gridded together, where there are as many: each tile of the grid then has more than a
+/// few.
+inline constexpr std::size_t samples_gathered_at_once = std::size_t{1} << 19;
 
-/// Deals the samples of blocks out to the planes of a cube. What a plane gets is the same for any number of threads, and
-/// whichever other planes are gathered.
+/// Deals the samples of blocks out to the planes of a cube. What a plane gets of the same blocks is the same for any number of
+/// threads, and whichever other planes are gathered.
 class PlaneGatherer {
  public:
   /// `expected_samples` of all blocks together make room for as many beforehand.
@@ -38,7 +38,14 @@ class PlaneGatherer {
   PlaneRange range_;
   int threads_;
   std::uint64_t expected_samples_;
-  std::map<std::vector<double>, std::unique_ptr<GatheredRows>> growing_;  ///< by the frequencies of a window
+  /// Those of a window, known by its frequencies; in the order in which they appeared.
+  struct Window {
+    std::vector<double> frequency_hz;
+    std::unique_ptr<GatheredRows> growing;  ///< null where none are begun
+  };
+  Window& window_of(const VisibilityBlock& block);
+
+  std::vector<Window> windows_;
   std::vector<std::unique_ptr<GatheredRows>> full_;
   std::uint64_t outside_planes_ = 0;
 };

@@ -60,6 +60,7 @@ class WideAdjoint : public AdjointSum {
     for (std::size_t i = 0; i < images(); ++i)
       g.weighted.push_back(std::visit(
           [&](const auto* visibility) { return weighted(g.weight, visibility, value_unit_[i].per_unit()); }, sets[i]));
+    if (images() == 0 && !with_psf_) return;  // the PSF's middle lies beyond the horizon
     samples_ += block.samples();
     gathered_.push_back(std::move(g));
     if (samples_ >= setup_.options.samples_at_once) flush();
@@ -126,7 +127,7 @@ class WideAdjoint : public AdjointSum {
   }
 
   void flush() {
-    if (gathered_.empty() || (images() == 0 && !with_psf_)) return;
+    if (gathered_.empty()) return;
     std::vector<WantedSamples> blocks;
     for (const Gathered& g : gathered_) blocks.push_back({&g.at, g.weight.data()});
     std::vector<Image*> of_grid;

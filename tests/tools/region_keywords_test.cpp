@@ -39,6 +39,11 @@ bool refused(const std::string& keywords, const std::string& part, const imager:
 
 BOOST_AUTO_TEST_SUITE(region_keywords)
 
+BOOST_AUTO_TEST_CASE(apostrophes_within_words_and_brackets_that_close_nothing_hide_nothing) {
+  for (const char* text : {", label=O'Neill, range=[3chan, 7chan]", ", label=a], range=[3chan, 7chan]"})
+    BOOST_TEST(parse_region_keywords(text).at("range") == "[3chan, 7chan]");
+}
+
 BOOST_AUTO_TEST_CASE(commas_in_brackets_and_quotes_part_nothing) {
   const RegionKeywords keywords =
       parse_region_keywords(", coord = J2000, range=[1chan, 2chan],label='a, range=[3]', bare, font=\"x,y\"");

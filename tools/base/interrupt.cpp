@@ -1,27 +1,32 @@
 #include "tools/base/interrupt.h"
 
+#include <atomic>
 #include <csignal>
+#include <mutex>
 
 namespace misfit::tools {
 namespace {
 
-volatile std::sig_atomic_t flag = 0;
+std::atomic<bool> flag = false;
+static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler sets it");
 
 void remember(int signal) {
-  flag = 1;
+  flag = true;
   std::signal(signal, SIG_DFL);
 }
 
 }  // namespace
 
 void catch_interrupts() {
-  if (interrupted()) return;
-  std::signal(SIGINT, remember);
-  std::signal(SIGTERM, remember);
+  static std::once_flag once;
+  std::call_once(once, [] {
+    std::signal(SIGINT, remember);
+    std::signal(SIGTERM, remember);
+  });
 }
 
 bool interrupted() {
-  return flag != 0;
+  return flag;
 }
 
 }  // namespace misfit::tools

@@ -99,7 +99,7 @@ RegionKeywords parse_region_keywords(std::string_view text) {
     keywords[std::string(trimmed(one.substr(0, equals)))] = trimmed(one.substr(equals + 1));
   };
   int depth = 0;
-  char quote = 0;
+  char quote = 0, before = 0;  // of what is quoted; the last that is no blank
   std::size_t begin = 0;
   for (std::size_t i = 0; i < text.size(); ++i) {
     const char c = text[i];
@@ -107,8 +107,9 @@ RegionKeywords parse_region_keywords(std::string_view text) {
       if (c == quote) quote = 0;
       continue;
     }
-    if (c == '\'' || c == '"') quote = c;
-    depth += c == '[' ? 1 : c == ']' ? -1 : 0;
+    if (before == '=' && (c == '\'' || c == '"')) quote = c;  // elsewhere it is an apostrophe
+    if (c != ' ') before = c;
+    depth = std::max(0, depth + (c == '[' ? 1 : c == ']' ? -1 : 0));
     if (c != ',' || depth > 0) continue;
     add(text.substr(begin, i - begin));
     begin = i + 1;

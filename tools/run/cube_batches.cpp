@@ -90,7 +90,8 @@ CubeBatches plan_batches(const RunScene& scene, const RunPlan& plan) {
     batches.planes = static_cast<int>(held);
     if (batches.planes < scene.planes) batches.planes -= batches.planes % workers;
   }
-  const double streamed = std::min(1.0, static_cast<double>(imager::rows_gathered_at_once) / rows);
+  // A plane that reads the set holds the rows that are gridded together, and the blocks that are made of them.
+  const double streamed = 2 * std::min(1.0, static_cast<double>(imager::samples_gathered_at_once) / scene.samples);
   batches.memory = memory((batches.read_again ? streamed : batches.planes) * plane, workers);
   batches.decision = decision_on(batches, scene, plane);
   return batches;

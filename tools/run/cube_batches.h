@@ -29,7 +29,7 @@ struct CubeBatches {
 
 /// A plane for each thread is made at a time: that keeps all busy, where a plane would leave them waiting for each other. Fewer
 /// where there are fewer planes, or where --memory, or half of the machine's, has no room for the images and visibilities of so
-/// many; then they share the threads. One where it reads the set itself. As many planes are held as take a quarter of a GiB
+/// many; then they share the threads. One where it reads the set itself. As many planes are held as take half a GiB
 /// together, one for each worker at least, and fit in that memory too.
 CubeBatches plan_batches(const RunScene& scene, const RunPlan& plan);
 

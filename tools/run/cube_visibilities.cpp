@@ -58,7 +58,9 @@ void CubeVisibilities::for_each_plane(const PlaneVisitor& visitor, ProgressLine&
   for (const imager::PlaneRange& batch : batches_of(sampling_.axis.channels, batches_)) {
     if (visitor.stopped()) return;
     if (batches_.read_again) {
+      progress.begin("image " + numbers_of(batch), stops_itself_);
       visit_streamed(batch.first, visitor);
+      progress.end();
       continue;
     }
     gather(batch, progress, times);
