@@ -56,6 +56,8 @@ class Ladder {
     return alone(*step);
   }
 
+  /// From the lower edge of the lowest channel to the upper edge of the highest, at least.
+  std::pair<double, double> reach_hz() const { return {frequency_hz_.front() - widest_hz_, frequency_hz_.back() + widest_hz_}; }
   std::size_t size() const { return index_.size(); }
   std::size_t channel(std::size_t step) const { return index_[step]; }
   /// Of the channels that reach into a range; nothing where none does.
@@ -120,9 +122,17 @@ PlaneChannels linear(const SpectralAxis& axis, int plane, const Ladder& ladder) 
   const double middle = axis.frequency_hz(plane);
   const std::optional<double> width = ladder.mean_width_hz(edges.low_hz, edges.high_hz);
   if (!width) return {};
-  const int places = std::max(1, static_cast<int>(std::lround(axis.width_hz() / *width)));
+  const double places = std::max(1.0, std::round(axis.width_hz() / *width));
+  double first = 0, end = places;
+  if (places > 1) {  // beside the channels there is nothing, however far a plane reaches
+    const auto place_of = [&](double hz) { return ((hz - middle) / axis.increment_hz + 0.5) * places; };
+    const auto [low_hz, high_hz] = ladder.reach_hz();
+    const auto [one, other] = std::minmax({place_of(low_hz), place_of(high_hz)});
+    first = std::max(first, std::floor(one) - 1);
+    end = std::min(end, std::ceil(other) + 1);
+  }
   PlaneChannels taken;
-  for (int i = 0; i < places; ++i) {
+  for (double i = first; i < end; ++i) {
     const double hz = middle + ((i + 0.5) / places - 0.5) * axis.increment_hz;
     if (const std::optional<ChannelTap> tap = ladder.interpolated(hz)) {
       taken.frequency_hz.push_back(hz);

@@ -478,4 +478,16 @@ BOOST_AUTO_TEST_CASE(a_name_with_blanks_quotes_and_umlauts_is_a_name) {
   BOOST_TEST(pixels_of(odd + "/%d a", "psf").width == 64);
 }
 
+BOOST_AUTO_TEST_CASE(samples_without_baselines_are_an_image_of_their_mean) {
+  const TemporaryFolder folder;
+  const std::string set = folder / "origin.ms";
+  succeed({"simulate", "--output", set});
+  scale_uvw(set, 0);
+  succeed({"image", "--vis", set, "--imagename", folder / "mean", "--imsize", "32", "--cell", "1arcsec"});
+  const Image dirty = imager::read_fits(folder / "mean.residual.fits").image;
+  const auto [least, most] = std::minmax_element(dirty.pixel.begin(), dirty.pixel.end());
+  BOOST_TEST(*most - *least < 1e-4 * std::abs(*most));  // the accuracy asked
+  BOOST_TEST(std::filesystem::exists(folder / "mean.uv.png"));
+}
+
 BOOST_AUTO_TEST_SUITE_END()

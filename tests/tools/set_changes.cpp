@@ -88,6 +88,12 @@ void scale_data(const std::string& set, float factor) {
   data.putColumn(data.getColumn() * casacore::Complex(factor));
 }
 
+void scale_uvw(const std::string& set, double factor) {
+  const casacore::MeasurementSet open = opened(set);
+  casacore::ArrayColumn<double> uvw(open, "UVW");
+  uvw.putColumn(uvw.getColumn() * factor);
+}
+
 void store_correlations(const std::string& path, const std::vector<int>& types) {
   casacore::MeasurementSet set = opened(path);
   const auto channels = static_cast<std::size_t>(casacore::ArrayColumn<casacore::Complex>(set, "DATA").shape(0)(1));

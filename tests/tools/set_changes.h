@@ -19,6 +19,7 @@ void flag_row(const std::string& set, std::size_t row);
 void flag_all(const std::string& set);
 void make_autocorrelation(const std::string& set, std::size_t row);
 void scale_data(const std::string& set, float factor);
+void scale_uvw(const std::string& set, double factor);
 
 /// Makes a set of other correlations, given by casacore's codes, with data of 0 and weights of 1.
 void store_correlations(const std::string& set, const std::vector<int>& types);

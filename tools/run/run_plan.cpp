@@ -132,8 +132,9 @@ class RunPlanner {
     if (plan_.wider) wider = wider_demand(*plan_.wider, wide_field_);
     const MemoryPlan memory = plan_memory(demand_of(plan_.gridding, wider), o_, least_with);
     plan_.streaming = memory.streaming;
-    plan_.streaming.uv_reach_lambda =
-        std::min(std::max(scene_.reach.max_abs_u, scene_.reach.max_abs_v), 0.5 / scene_.geometry.cell_rad);
+    constexpr double least_lambda = 1;  // where samples of u = v = 0 alone have cells, too
+    plan_.streaming.uv_reach_lambda = std::max(
+        least_lambda, std::min(std::max(scene_.reach.max_abs_u, scene_.reach.max_abs_v), 0.5 / scene_.geometry.cell_rad));
     plan_.memory = memory.peak;
     if (scene_.planes == 1) plan_.decisions.push_back(memory.decision);
   }

@@ -133,4 +133,14 @@ BOOST_AUTO_TEST_CASE(one_channel_alone_is_taken_where_it_covers_the_plane) {
   }
 }
 
+BOOST_AUTO_TEST_CASE(a_plane_far_wider_than_the_data_takes_what_there_is_at_once) {
+  const std::vector<double> frequency_hz{1e9, 1.001e9, 1.002e9}, width_hz(3, 1e6);
+  for (const double increment_hz : {1e16, -1e16, 1e6}) {
+    const CubeSampling sampling{{1.0012e9, increment_hz, 1, "TOPO", 0}, SpectralInterpolation::linear};
+    const ChannelMap map = map_channels(sampling, {0, 1}, {frequency_hz, width_hz}, 1);
+    const double taken = static_cast<double>(map.planes.front().tap.size());
+    BOOST_TEST(taken == (increment_hz == 1e6 ? 1 : 3));
+  }
+}
+
 BOOST_AUTO_TEST_SUITE_END()
