@@ -52,7 +52,7 @@ DirtyImages make_dirty_images(const VisibilitySource& source, const Transform& t
     const StageTimer timer(times, "grid");
     sum->add(block);
   });
-  AdjointResult result = finish_adjoint(std::move(sum), times);
+  AdjointResult result = finish_adjoint(std::move(sum), source.ranks(), times);
   Image psf = std::move(result.psf);
   return dirty_images(std::move(result), std::move(psf), times);
 }
@@ -67,8 +67,8 @@ DirtyImages make_dirty_images(const VisibilitySource& source, const Transform& t
     sum->add(block);
     psf_sum->add(block);
   });
-  AdjointResult of_psf = finish_adjoint(std::move(psf_sum), times);
-  AdjointResult result = finish_adjoint(std::move(sum), times);
+  AdjointResult of_psf = finish_adjoint(std::move(psf_sum), source.ranks(), times);
+  AdjointResult result = finish_adjoint(std::move(sum), source.ranks(), times);
   return dirty_images(std::move(result), std::move(of_psf.psf), times);
 }
 
@@ -105,7 +105,7 @@ Image make_residual_image(const VisibilitySource& source, const Transform& trans
                       const StageTimer timer(times, "grid");
                       sum->add(block, residual);
                     });
-  AdjointResult result = finish_adjoint(std::move(sum), times);
+  AdjointResult result = finish_adjoint(std::move(sum), source.ranks(), times);
   divide(result.images.front(), result.sums.front().weight);
   return std::move(result.images.front());
 }

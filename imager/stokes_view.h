@@ -14,6 +14,7 @@ class StokesView : public VisibilitySource {
 
   std::unique_ptr<BlockStream> open() const override;
   std::uint64_t samples() const override { return from_.samples(); }
+  const Ranks& ranks() const override { return from_.ranks(); }
 
  private:
   const VisibilitySource& from_;

@@ -24,6 +24,7 @@ class StreamedVisibilities : public VisibilitySource {
 
   std::unique_ptr<BlockStream> open() const override;
   std::uint64_t samples() const override { return from_.samples(); }
+  const Ranks& ranks() const override { return from_.ranks(); }
   /// Gives all passes from now on these weights, in place of those that `from` has: at once where blocks are kept, else as they
   /// are read. To be called once at most, while nobody reads.
   void apply(std::shared_ptr<const ImagingWeights> weights, int threads);

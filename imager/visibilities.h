@@ -7,6 +7,7 @@
 #include <stdexcept>
 #include <vector>
 
+#include "imager/ranks.h"
 #include "imager/shared_vector.h"
 
 namespace misfit::imager {
@@ -70,6 +71,8 @@ class VisibilitySource {
   virtual std::unique_ptr<BlockStream> open() const = 0;
   /// Samples that a full pass hands out, usable or not.
   virtual std::uint64_t samples() const = 0;
+  /// Those who have the other samples of the same image, with whom whoever adds up samples adds up what came of them.
+  virtual const Ranks& ranks() const { return alone(); }
 };
 
 }  // namespace misfit::imager

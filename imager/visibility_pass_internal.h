@@ -61,8 +61,8 @@ inline std::unique_ptr<AdjointSum> begin_adjoint(const Transform& transform, con
   return transform.adjoint(options);
 }
 
-/// Also frees the grid.
-inline AdjointResult finish_adjoint(std::unique_ptr<AdjointSum> sum, StageTimes& times) {
+/// That of the samples of all ranks. Also frees the grid.
+inline AdjointResult finish_adjoint(std::unique_ptr<AdjointSum> sum, const Ranks& ranks, StageTimes& times) {
   AdjointResult result;
   {
     const StageTimer timer(times, "grid");
@@ -70,6 +70,12 @@ inline AdjointResult finish_adjoint(std::unique_ptr<AdjointSum> sum, StageTimes&
     sum.reset();
   }
   times.move("grid", "fft", result.fft_s);
+  if (ranks.alone()) return result;
+  const StageTimer timer(times, "exchange");
+  for (Image& image : result.images) ranks.sum(image.pixel.data(), image.pixel.size());
+  ranks.sum(result.psf.pixel.data(), result.psf.pixel.size());
+  for (SampleSums& sums : result.sums)
+    sum_over(ranks, sums.used, sums.outside_grid, sums.weight, sums.weight_abs, sums.weight_square, sums.weight2_square);
   return result;
 }
 

@@ -14,8 +14,8 @@ namespace misfit::imager {
 namespace {
 
 /// The images of a sum, over Σ w.
-std::vector<Image> normalised_images(std::unique_ptr<AdjointSum> sum, StageTimes& times) {
-  AdjointResult result = finish_adjoint(std::move(sum), times);
+std::vector<Image> normalised_images(std::unique_ptr<AdjointSum> sum, const Ranks& ranks, StageTimes& times) {
+  AdjointResult result = finish_adjoint(std::move(sum), ranks, times);
   BigMemory::release();
   const double weight = result.sums.front().weight;
   if (weight == 0) throw std::runtime_error("no visibility can be imaged: none has a weight above 0 within 1/(2 cell)");
@@ -54,8 +54,8 @@ TaylorImages make_taylor_images(const VisibilitySource& source, const Transform&
     psf_sum->add_several(block, taylor_sets(expansion, block, visibilities_of_middle(block, psf), of_psf));
   });
   TaylorImages images;
-  images.psf = normalised_images(std::move(psf_sum), times);
-  images.dirty = normalised_images(std::move(sum), times);
+  images.psf = normalised_images(std::move(psf_sum), source.ranks(), times);
+  images.dirty = normalised_images(std::move(sum), source.ranks(), times);
   return images;
 }
 
@@ -72,7 +72,7 @@ std::vector<Image> make_taylor_residuals(const VisibilitySource& source, const T
         const StageTimer timer(times, "grid");
         sum->add_several(block, taylor_sets(expansion, block, residual, powers));
       });
-  return normalised_images(std::move(sum), times);
+  return normalised_images(std::move(sum), source.ranks(), times);
 }
 
 }  // namespace misfit::imager

@@ -1,0 +1,64 @@
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <type_traits>
+#include <vector>
+
+namespace misfit::imager {
+
+/// The processes of a run that share its samples, "ranks" as MPI has them. Each has a part of the samples and computes with it;
+/// what the parts add up to comes to all, so that all decide alike and go on together. Every call is made by all of them, in
+/// the same order, from one thread at a time. What cannot be exchanged ends the run.
+class Ranks {
+ public:
+  virtual ~Ranks() = default;
+  virtual int size() const = 0;
+  /// Which of them this is, from 0.
+  virtual int rank() const = 0;
+  bool alone() const { return size() == 1; }
+  /// Whether this is the one that speaks, and writes.
+  bool first() const { return rank() == 0; }
+
+  /// Adds up `count` numbers of each rank, the first with the first; all get the same bits.
+  virtual void sum(double* values, std::size_t count) const = 0;
+  /// The largest of each, the same way.
+  virtual void largest(double* values, std::size_t count) const = 0;
+  /// Gives all what rank 0 has; each gives room for as many bytes.
+  virtual void share(void* bytes, std::size_t count) const = 0;
+  /// What each rank gives, at all of them. [rank]
+  virtual std::vector<std::string> gather(const std::string& bytes) const = 0;
+};
+
+/// The one process of a run that shares with nobody.
+const Ranks& alone();
+
+/// Adds up numbers over all ranks. Counts are exact up to 2^53.
+template <typename... Number>
+void sum_over(const Ranks& ranks, Number&... values) {
+  if (ranks.alone()) return;
+  double all[] = {static_cast<double>(values)...};
+  ranks.sum(all, sizeof...(values));
+  std::size_t next = 0;
+  ((values = static_cast<Number>(all[next++])), ...);
+}
+
+/// Gives all ranks the values of rank 0.
+template <typename... Value>
+void share_values(const Ranks& ranks, Value&... values) {
+  static_assert((std::is_trivially_copyable_v<Value> && ...));
+  if (!ranks.alone()) (ranks.share(&values, sizeof values), ...);
+}
+
+/// Gives all ranks the list of rank 0.
+template <typename Value>
+void share_list(const Ranks& ranks, std::vector<Value>& values) {
+  static_assert(std::is_trivially_copyable_v<Value>);
+  if (ranks.alone()) return;
+  std::size_t count = values.size();
+  share_values(ranks, count);
+  values.resize(count);
+  ranks.share(values.data(), count * sizeof(Value));
+}
+
+}  // namespace misfit::imager
