@@ -69,6 +69,12 @@ int fast_fft_size(int size) {
   }
 }
 
+std::string fftw_library_version() {
+  const std::string name = fftw_version;  // fftw-3.3.10-sse2-avx
+  const std::size_t begin = name.find('-') + 1;
+  return name.substr(begin, name.find('-', begin) - begin);
+}
+
 template <typename Real>
 struct Fft<Real>::Plans {
   typename Fftw<Real>::Plan forward;

@@ -3,12 +3,16 @@
 #include <complex>
 #include <cstddef>
 #include <memory>
+#include <string>
 
 namespace misfit::imager {
 
 /// The smallest multiple of 4 that is a product of 2, 3, 5 and 7 and at least `size`: a length that FFTs take quickly
 /// (FFTW 3.3.10 takes two to three times as long for 2250 as for 2240).
 int fast_fft_size(int size);
+
+/// Version of the FFTW that is linked: "3.3.10".
+std::string fftw_library_version();
 
 /// Unnormalised one-dimensional transforms of a fixed length, in place in a buffer of their own type. Any number of threads may
 /// execute one plan at a time, each in its own buffer. `Real` is float or double.

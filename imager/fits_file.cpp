@@ -3,6 +3,7 @@
 #include <fitsio.h>
 
 #include <array>
+#include <cmath>
 #include <filesystem>
 #include <limits>
 #include <stdexcept>
@@ -10,6 +11,13 @@
 #include "kernels/cfitsio_mutex.h"
 
 namespace misfit::imager {
+
+std::string cfitsio_version() {
+  float version = 0;  // 4.0200 is 4.2.0
+  fits_get_version(&version);
+  const long parts = std::lround(1e4 * version);
+  return std::to_string(parts / 10000) + '.' + std::to_string(parts / 100 % 100) + '.' + std::to_string(parts % 100);
+}
 
 struct FitsFile::Handle {
   fitsfile* file = nullptr;

@@ -9,6 +9,9 @@
 
 namespace misfit::imager {
 
+/// Version of the CFITSIO that is linked: "4.2.0".
+std::string cfitsio_version();
+
 /// A column of a binary table.
 struct FitsColumn {
   std::string name;

@@ -40,18 +40,20 @@ inline bool beyond_horizon(DirectionCosines at) {
 }
 
 /// The pixels of an image. Column c lies at l = centre.l − (c − width/2)·cell, so that east is on the left; row r lies at
-/// m = centre.m + (r − height/2)·cell, so that north is up in a FITS viewer. The divisions are integer divisions.
+/// m = centre.m + (r − height/2)·cell·aspect, so that north is up in a FITS viewer. The divisions are integer divisions.
 struct ImageGeometry {
   int width = 0;
   int height = 0;
-  double cell_rad = 0;
+  double cell_rad = 0;  ///< a pixel's width
   SkyDirection phase_centre;
   DirectionCosines centre = {};  ///< of the pixel in the middle, from the phase centre
+  double pixel_aspect = 1;       ///< a pixel's height over its width; what makes beams and files expects 1
 
+  double cell_height_rad() const { return cell_rad * pixel_aspect; }
   int centre_column() const { return width / 2; }
   int centre_row() const { return height / 2; }
   double l(int column) const { return centre.l - (column - centre_column()) * cell_rad; }
-  double m(int row) const { return centre.m + (row - centre_row()) * cell_rad; }
+  double m(int row) const { return centre.m + (row - centre_row()) * cell_height_rad(); }
   DirectionCosines at(int row, int column) const { return {l(column), m(row)}; }
   std::array<DirectionCosines, 4> corners() const {
     return {at(0, 0), at(0, width - 1), at(height - 1, 0), at(height - 1, width - 1)};

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <chrono>
 #include <cstddef>
 #include <functional>
 
@@ -8,6 +9,24 @@ namespace misfit::imager {
 /// Runs body(i) for i = 0 … count − 1, shared among `threads` threads, each taking the next i when it is free. Returns when all
 /// are done; the first exception that a body throws is rethrown, and no further i is begun.
 void parallel_for(std::size_t count, int threads, const std::function<void(std::size_t i)>& body);
+
+/// While it lives, parallel_for calls `check` now and then, on the thread that made this and where that one calls it; what the
+/// check throws ends the loop as a body's exception does.
+class StopCheck {
+ public:
+  explicit StopCheck(std::function<void()> check);
+  ~StopCheck();
+  StopCheck(const StopCheck&) = delete;
+  StopCheck& operator=(const StopCheck&) = delete;
+
+  /// Calls the check of the current thread, if there is one and its last call was 20 ms ago.
+  static void now_and_then();
+
+ private:
+  std::function<void()> check_;
+  std::chrono::steady_clock::time_point last_;
+  StopCheck* outer_;  ///< that this one stands for while it lives
+};
 
 /// The number of threads that `--threads 0` means: all cores this process may use.
 int available_threads();

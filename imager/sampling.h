@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "imager/constants.h"
+#include "imager/geometry.h"
 #include "imager/transform.h"
 
 namespace misfit::imager {
@@ -29,8 +30,15 @@ inline void add_to_sums(SampleSums& sums, double weight, std::complex<double> vi
   sums.weight2_square += weight * weight * square;
 }
 
-/// The block's weights [row][channel], 0 for samples outside the grid, which take no part in imaging. Counts samples inside and
-/// outside.
-std::vector<float> imaging_weights(const VisibilityBlock& block, double cell_rad, int threads, SampleSums& sums);
+/// Which samples take part in imaging.
+struct ImagedSamples {
+  ImageGeometry geometry;
+  bool beyond_grid = false;  ///< see AdjointOptions
+  int threads = 1;
+};
+
+/// The block's weights [row][channel], 0 for samples that take no part in imaging. Counts samples inside and outside the grid,
+/// those that take part as used.
+std::vector<float> imaging_weights(const VisibilityBlock& block, const ImagedSamples& imaged, SampleSums& sums);
 
 }  // namespace misfit::imager

@@ -21,9 +21,9 @@ AdjointSum::AdjointSum(const AdjointOptions& options) : options_(options) {
                                 ", " + std::to_string(most_stokes) + "]");
 }
 
-void AdjointSum::add(const VisibilityBlock& block, const std::vector<std::complex<double>>& visibility) {
+void AdjointSum::add(const VisibilityBlock& block, VisibilitySet visibility) {
   require_sets(1);
-  add_sets(block, {visibility.data()});
+  add_sets(block, {visibility});
 }
 
 void AdjointSum::add_several(const VisibilityBlock& block, const std::vector<std::vector<std::complex<double>>>& visibilities) {

@@ -14,7 +14,7 @@ namespace misfit::imager {
 /// Sums over the samples that an adjoint took in.
 struct SampleSums {
   std::uint64_t used = 0;
-  std::uint64_t outside_grid = 0;  ///< usable samples beyond |u| or |v| = 1/(2 cell), left out
+  std::uint64_t outside_grid = 0;  ///< usable samples beyond |u| or |v| = 1/(2 cell), left out unless they are asked for
   double weight = 0;               ///< Σ w
   double weight_abs = 0;           ///< Σ w |V|
   double weight_square = 0;        ///< Σ w |V|²
@@ -27,6 +27,9 @@ struct SampleSums {
 struct AdjointOptions {
   int images = 1;  ///< of a block's own Stokes parameter, or of all that it carries, up to most_stokes; 0: the PSF alone
   bool with_psf = false;
+  /// Whether samples beyond 1/(2 cell) count too, as they do in the definition: pixels are points, whose values are periodic in
+  /// u and v but for the phase of the middle one. What they add is no picture of the sky.
+  bool beyond_grid = false;
 };
 
 /// Images made from all samples added, not yet divided by Σ w.
@@ -48,7 +51,10 @@ class AdjointSum {
   void add(const VisibilityBlock& block) { add_sets(block, sets_of(block, static_cast<int>(sets()))); }
   /// Adds the samples of `block` with `visibility` [row][channel] in place of its own. Throws std::invalid_argument unless one
   /// image is made.
-  void add(const VisibilityBlock& block, const std::vector<std::complex<double>>& visibility);
+  void add(const VisibilityBlock& block, const std::vector<std::complex<double>>& visibility) {
+    add(block, VisibilitySet(visibility.data()));
+  }
+  void add(const VisibilityBlock& block, VisibilitySet visibility);
   /// The same of several images, with a set of visibilities for each. Throws std::invalid_argument unless there are as many.
   void add_several(const VisibilityBlock& block, const std::vector<std::vector<std::complex<double>>>& visibilities);
   /// To be called once, after the last block.

@@ -13,7 +13,9 @@ using ChannelSums = std::map<std::uint32_t, std::vector<double>>;
 
 ChannelSums sums_of(const VisibilityBlock& block, std::uint64_t first_row, const ShareOptions& options) {
   SampleSums uncounted;
-  const std::vector<float> weight = imaging_weights(block, options.cell_rad, options.threads, uncounted);
+  ImageGeometry image;
+  image.cell_rad = options.cell_rad;
+  const std::vector<float> weight = imaging_weights(block, {image, false, options.threads}, uncounted);
   const std::size_t channels = block.channels();
   ChannelSums sums;
   for (std::size_t row = 0; row < block.rows(); ++row) {

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "imager/beam.h"
 #include "imager/clean/auto_mask.h"
 #include "imager/clean/components.h"
 #include "imager/clean/minor_cycle.h"
@@ -33,6 +34,9 @@ struct CleanOptions {
   int threads = 1;
   std::function<bool()> stop_requested;  ///< the user's wish to end; may be empty
 };
+
+/// Throws std::invalid_argument that names a parameter whose value is outside its range, as an option with `prefix` before it.
+void check(const CleanOptions& options, const std::string& prefix = "");
 
 /// Why CLEAN ended, with tclean's codes.
 enum class CleanStop {
@@ -109,6 +113,8 @@ using CycleProgress = std::function<void(const CleanState&)>;
 
 /// Largest magnitude of the PSF once the Gaussian `beam` is taken off; NaN does not count.
 double largest_sidelobe(const Image& psf, const Image& beam);
+/// The same of a beam about the middle pixel, on pixels of this size.
+double largest_sidelobe(const Image& psf, const Beam& beam, double cell_rad, int threads);
 
 /// The state with which CLEAN begins: a model of the minor cycle's scales, of these points.
 CleanState first_state(const ComponentModel& model);

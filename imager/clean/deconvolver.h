@@ -8,6 +8,9 @@
 
 namespace misfit::imager {
 
+/// Full width at half maximum over radius of tclean's scales, (1 − r²) × spheroidal function (Schwab's, m = 6, α = 1).
+inline constexpr double tclean_scale_width = 0.7412;
+
 /// A minor cycle by name.
 struct DeconvolverChoice {
   std::string name = "hogbom";          ///< one of deconvolver_names()

@@ -128,7 +128,7 @@ class DirectAdjoint : public AdjointSum {
  protected:
   void add_sets(const VisibilityBlock& block, const std::vector<VisibilitySet>& sets) override {
     SampleSums counted;
-    const std::vector<float> weight = imaging_weights(block, o_.geometry.cell_rad, o_.threads, counted);
+    const std::vector<float> weight = imaging_weights(block, {o_.geometry, options_.beyond_grid, o_.threads}, counted);
     for (std::size_t s = 0; s < sets.size(); ++s) {
       result_.sums[s] += counted;
       std::visit([&](const auto* v) { add_span_to_sums(weight.data(), v, weight.size(), result_.sums[s]); }, sets[s]);
@@ -192,7 +192,7 @@ std::unique_ptr<Prediction> DirectTransform::predict(const Image& model) const {
 
 void add_direct_pixels(const VisibilityBlock& block, const DirectPixels& at, std::vector<std::vector<double>>& sum) {
   SampleSums unused;
-  const std::vector<float> weight = imaging_weights(block, at.geometry.cell_rad, at.threads, unused);
+  const std::vector<float> weight = imaging_weights(block, {at.geometry, false, at.threads}, unused);
   const std::vector<VisibilitySet> sets = sets_of(block, static_cast<int>(sum.size()));
   constexpr std::size_t samples_a_piece = 1 << 14;
   const std::size_t pieces = (weight.size() + samples_a_piece - 1) / samples_a_piece;

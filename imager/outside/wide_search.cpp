@@ -102,7 +102,7 @@ bool can_be_imaged(const ImageGeometry& field, const VisibilitySource& source) {
   const auto stream = source.open();
   while (const auto block = stream->next()) {
     SampleSums sums;
-    const std::vector<float> weight = imaging_weights(*block, field.cell_rad, 1, sums);
+    const std::vector<float> weight = imaging_weights(*block, {field, false, 1}, sums);
     if (sums.used > 0) return true;
   }
   return false;

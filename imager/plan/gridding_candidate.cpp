@@ -26,7 +26,12 @@ double phase_rounding(double turns) {
 void judge(GriddingCandidate& c) {
   const double sums = c.u.noise_gain * c.v.noise_gain * c.w.noise_gain * unit_rounding(c.work.precision, c.work.samples);
   c.rounding = std::hypot(sums, phase_rounding(c.turns));
-  const kernels::Misfit &u = c.u.misfit, &v = c.v.misfit, &w = c.w.misfit;
+  const kernels::Misfit &u = c.u.misfit, &v = c.v.misfit;
+  kernels::Misfit w = c.w.misfit;
+  const int pixels = std::min(c.faceting.width, c.faceting.height);
+  constexpr int handful = 16;
+  if (pixels < handful) w.mean = w.max;  // the few pixels may all lie where it errs most
+  if (pixels < continuum) w.worst_mean = w.worst;
   // An image of a single visibility at the worst position of its cell, or the visibilities of a single pixel at the corner.
   const double worst = std::max(u.worst_mean + v.worst_mean + w.worst_mean, u.max + v.max + w.max);
   c.expected_error = std::hypot(std::sqrt(u.mean + v.mean + w.mean), c.rounding);

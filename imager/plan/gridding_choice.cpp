@@ -54,9 +54,12 @@ class Search {
     if (request_.accuracy == 0) return {least_padding()};  // what the given kernel is made for
     std::vector<double> found;
     for (const double usual : usual_) {
+      if (usual < request_.least_padding || usual > request_.most_padding) continue;
       found.push_back(std::max(usual, least_padding()));
       if (usual <= least_padding()) break;
     }
+    if (found.empty() || request_.most_padding < usual_.front())
+      found.insert(found.begin(), std::max(request_.most_padding, least_padding()));
     return found;
   }
   int narrowest() const { return request_.kernel_width != 0 ? request_.kernel_width : request_.kernel.min_width; }
@@ -88,7 +91,7 @@ class Search {
     c.work.psf = request_.psf;
     c.faceting.width = g.width;
     c.faceting.height = g.height;
-    c.turns = (std::abs(g.centre.l) + std::abs(g.centre.m)) / (2 * g.cell_rad);
+    c.turns = std::abs(g.centre.l) / (2 * g.cell_rad) + std::abs(g.centre.m) / (2 * g.cell_height_rad());
     if (has_w_axis()) c.turns += request_.max_abs_w * largest_drop(g);
     c.cost_s = CostModel().seconds(c.work);
     if (has_w_axis()) split(c, 1, request_.kernel.min_width);  // the least that a w axis costs
@@ -164,7 +167,7 @@ class Search {
     if (!best_ || request_.padding != 0 || best_->work.precision != precision) return;
     const GriddingCandidate square = *best_;
     const auto smaller = std::find_if(usual_.begin(), usual_.end(), [&](double usual) { return usual < square.padding_u; });
-    if (smaller == usual_.end() || *smaller < least_padding()) return;
+    if (smaller == usual_.end() || *smaller < std::max(least_padding(), request_.least_padding)) return;
     for (const auto& [u, v] : {std::pair(*smaller, square.padding_v), std::pair(square.padding_u, *smaller)})
       consider(sized(square.work.width, u, v, precision));
   }

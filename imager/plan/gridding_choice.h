@@ -18,8 +18,10 @@ struct GriddingRequest {
   ImageGeometry geometry;
   double accuracy = 1e-6;  ///< ε: ‖I − I_DFT‖₂ ≤ ε ‖I_DFT‖₂; 0 = whatever the given width and padding reach
   kernels::KernelFamily kernel = kernels::kernel_family("least-misfit");
-  int kernel_width = 0;       ///< cells along u and v; 0 = chosen
-  double padding = 0;         ///< FFT size over image size along u and v, at least 1.02; 0 = chosen
+  int kernel_width = 0;         ///< cells along u and v; 0 = chosen
+  double padding = 0;           ///< FFT size over image size along u and v, at least 1.02; 0 = chosen
+  double least_padding = 1.02;  ///< of those that are chosen from along u and v
+  double most_padding = 10;
   bool best_effort = false;   ///< take the most exact kernel when the accuracy is out of reach
   std::uint64_t samples = 0;  ///< visibilities in a pass
   int stokes = 1;             ///< Stokes parameters, each of which has a dirty image made in the pass; 0: the PSF alone

@@ -105,6 +105,9 @@ void check_request(const GriddingRequest& request) {
                                 "], which kernel " + family.name + " offers");
   if (request.padding != 0 && !(request.padding >= 1.02 && request.padding <= 10))
     throw std::invalid_argument("padding " + text("%g", request.padding) + " not in [1.02, 10]");
+  if (!(request.least_padding >= 1.02 && request.least_padding <= request.most_padding && request.most_padding <= 10))
+    throw std::invalid_argument("padding from " + text("%g", request.least_padding) + " to " +
+                                text("%g", request.most_padding) + " not in [1.02, 10], in ascending order");
   constexpr double typed = 1e-3;  // what a padding of four digits may be off by
   if (request.padding != 0 && request.padding < (1 - typed) * 0.5 / family.max_x0)
     throw std::invalid_argument("padding " + text("%g", request.padding) + " is less than " +
@@ -186,7 +189,8 @@ GriddingPlan plan_together(const GriddingRequest& request) {
 /// Nobody has asked for a certain kernel, nor for a certain way.
 bool free_to_choose(const GriddingRequest& r) {
   return r.kernel.name == GriddingRequest().kernel.name && r.accuracy != 0 && r.kernel_width == 0 && r.padding == 0 &&
-         r.gridder == Gridder::automatic && !r.precision && !r.lookup && r.shortest_polynomials && r.samples > 0;
+         r.gridder == Gridder::automatic && r.precision != Precision::single_precision && !r.lookup && r.shortest_polynomials &&
+         r.samples > 0;
 }
 
 /// Seconds of the terms of direct sums, for each pixel.

@@ -42,7 +42,8 @@ class PlaneAdjoint : public AdjointSum {
 
  protected:
   void add_sets(const VisibilityBlock& block, const std::vector<VisibilitySet>& sets) override {
-    const TileOrder order = order_by_tile(block, sets, setup_.shape, setup_.geometry.cell_rad, Wanted::imaging, setup_.threads);
+    const Wanted wanted = options_.beyond_grid ? Wanted::imaging_beyond : Wanted::imaging;
+    const TileOrder order = order_by_tile(block, sets, setup_.shape, setup_.geometry, wanted, setup_.threads);
     for (std::size_t i = 0; i < sums_.size(); ++i) sums_[i] += order.sums[i];
     make_room(order.sums);
     crowded_.count(order.samples, most_in_place, TileBuffer<double>(setup_.shape.tile, setup_.taps_u.padded, plane_count()));

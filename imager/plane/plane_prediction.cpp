@@ -37,7 +37,7 @@ class PlanePrediction : public Prediction {
 
  private:
   std::vector<std::complex<double>> degrid(const VisibilityBlock& block, Wanted wanted) const {
-    const TileOrder order = order_by_tile(block, {}, setup_.shape, setup_.geometry.cell_rad, wanted, setup_.threads);
+    const TileOrder order = order_by_tile(block, {}, setup_.shape, setup_.geometry, wanted, setup_.threads);
     std::vector<std::complex<double>> visibility(block.samples());
     const std::vector<const Real*> planes{grid_.real.data(), grid_.imaginary.data()};
     std::vector<TileTask> tasks;

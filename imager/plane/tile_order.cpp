@@ -66,9 +66,9 @@ class TileFinder {
 /// The runs of a range of rows, in order.
 class RunFinder {
  public:
-  RunFinder(const VisibilityBlock& block, const std::vector<VisibilitySet>& sets, const GridShape& shape, double cell_rad,
-            Wanted wanted)
-      : sums(sets.size()), block_(block), sets_(sets), shape_(shape), scale_(shape, cell_rad), tiles_(shape), wanted_(wanted) {}
+  RunFinder(const VisibilityBlock& block, const std::vector<VisibilitySet>& sets, const GridShape& shape,
+            const ImageGeometry& geometry, Wanted wanted)
+      : sums(sets.size()), block_(block), sets_(sets), shape_(shape), scale_(shape, geometry), tiles_(shape), wanted_(wanted) {}
 
   void find(std::size_t begin_row, std::size_t end_row) {
     span_begin_ = span_end_ = begin_row * block_.channels();
@@ -132,6 +132,7 @@ class RunFinder {
     return box.holds(folded.u_per_hz * frequency, folded.v_per_hz * frequency);
   }
 
+  bool takes_sums() const { return wanted_ == Wanted::imaging || wanted_ == Wanted::imaging_beyond; }
   bool usable(std::size_t sample) const { return wanted_ == Wanted::all || block_.weight[sample] != 0; }
 
   bool wants(std::size_t sample, double u, double v) {
@@ -145,7 +146,7 @@ class RunFinder {
     runs.push_back({tile,
                     {static_cast<std::uint32_t>(row), static_cast<std::uint32_t>(channel) & 0xFFFFF,
                      static_cast<std::uint32_t>(count) & longest_run}});
-    if (wanted_ != Wanted::imaging) return;
+    if (!takes_sums()) return;
     for (SampleSums& of_set : sums) of_set.used += count;
     const std::size_t first = row * block_.channels() + channel;
     if (std::any_of(block_.weight.data() + span_end_, block_.weight.data() + first, [](float w) { return w != 0; })) {
@@ -183,9 +184,9 @@ void check_channels(std::size_t channels) {
 }
 
 TileOrder order_by_tile(const VisibilityBlock& block, const std::vector<VisibilitySet>& sets, const GridShape& shape,
-                        double cell_rad, Wanted wanted, int threads) {
+                        const ImageGeometry& geometry, Wanted wanted, int threads) {
   check_channels(block.channels());
-  std::vector<RunFinder> part(chunks, RunFinder(block, sets, shape, cell_rad, wanted));
+  std::vector<RunFinder> part(chunks, RunFinder(block, sets, shape, geometry, wanted));
   parallel_for(chunks, threads,
                [&](std::size_t i) { part[i].find(block.rows() * i / chunks, block.rows() * (i + 1) / chunks); });
 

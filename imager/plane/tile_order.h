@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "imager/constants.h"
+#include "imager/geometry.h"
 #include "imager/plane/half_grid.h"
 #include "imager/sampling.h"
 #include "imager/transform.h"
@@ -14,11 +15,11 @@ namespace misfit::imager {
 /// Turns UVW into cells of a HalfGrid.
 struct CellScale {
   double u_cells_per_m_hz = 0;  ///< −cell_rad · nu / c
-  double v_cells_per_m_hz = 0;  ///< +cell_rad · nv / c
+  double v_cells_per_m_hz = 0;  ///< +cell height · nv / c
 
-  CellScale(const GridShape& shape, double cell_rad)
-      : u_cells_per_m_hz(-cell_rad * shape.nu / speed_of_light_m_s),
-        v_cells_per_m_hz(cell_rad * shape.nv / speed_of_light_m_s) {}
+  CellScale(const GridShape& shape, const ImageGeometry& geometry)
+      : u_cells_per_m_hz(-geometry.cell_rad * shape.nu / speed_of_light_m_s),
+        v_cells_per_m_hz(geometry.cell_height_rad() * shape.nv / speed_of_light_m_s) {}
 };
 
 /// A row of UVW at unit frequency, folded to v ≥ 0.
@@ -68,13 +69,14 @@ struct TileOrder {
 /// Throws std::invalid_argument when there are more than a run can count.
 void check_channels(std::size_t channels);
 
-/// Which samples are wanted: those that take part in imaging, with their sums; or for prediction those of weight not 0; or all.
-enum class Wanted { imaging, usable, all };
+/// Which samples are wanted: for imaging, with their sums, those of weight not 0 inside the grid or beyond it too; or for
+/// prediction those of weight not 0; or all.
+enum class Wanted { imaging, imaging_beyond, usable, all };
 
 /// Orders the wanted samples by the tile of their first tap. `block` needs weights unless all are wanted; sums are taken of
 /// each of the sets.
 TileOrder order_by_tile(const VisibilityBlock& block, const std::vector<VisibilitySet>& sets, const GridShape& shape,
-                        double cell_rad, Wanted wanted, int threads);
+                        const ImageGeometry& geometry, Wanted wanted, int threads);
 
 /// Cells reduced by the period of the grid to [−n/2, n/2] along u and [0, n/2] along v, as prediction beyond the grid needs.
 /// Inside the grid nothing changes.

@@ -91,7 +91,7 @@ class BatchFiller {
       : shape_(shape),
         at_(at),
         task_(task),
-        scale_(shape, geometry.cell_rad),
+        scale_(shape, geometry),
         middle_{geometry.centre.l, geometry.centre.m, 0},
         done_(done) {
     samples_.off_phase_centre = geometry.off_phase_centre();

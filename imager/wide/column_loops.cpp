@@ -30,7 +30,7 @@ struct CurvatureLoop {
   HWY_ATTR void operator()(D d, int row) const {
     const ImageGeometry& g = f.geometry;
     const auto rows = hn::Add(hn::Iota(d, 0), hn::Set(d, static_cast<double>(row - g.centre_row())));
-    const auto dm = hn::Mul(rows, hn::Set(d, g.cell_rad));
+    const auto dm = hn::Mul(rows, hn::Set(d, g.cell_height_rad()));
     const auto m = hn::Add(dm, hn::Set(d, g.centre.m));
     const auto r2 = hn::MulAdd(m, m, hn::Set(d, l * l));
     const auto one = hn::Set(d, 1.0);

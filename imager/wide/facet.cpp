@@ -37,7 +37,7 @@ void fit_plane(Facet& f, int steps) {
   });
   const Eigen::Vector3d plane = normal.completeOrthogonalDecomposition().solve(right);
   f.slope_l = -plane[0] / f.geometry.cell_rad;
-  f.slope_m = plane[1] / f.geometry.cell_rad;
+  f.slope_m = plane[1] / f.geometry.cell_height_rad();
 }
 
 /// How far n − 1 strays from the plane.

@@ -68,7 +68,7 @@ HWY_EXPORT(places);
 
 StackScale::StackScale(const StackShape& shape, const Facet& at, double plane_step)
     : u_cells_per_m_hz(-at.geometry.cell_rad * shape.nu / speed_of_light_m_s),
-      v_cells_per_m_hz(at.geometry.cell_rad * shape.nv / speed_of_light_m_s),
+      v_cells_per_m_hz(at.geometry.cell_height_rad() * shape.nv / speed_of_light_m_s),
       planes_per_m_hz(1 / (plane_step * speed_of_light_m_s)),
       turns_per_m_hz(1 / speed_of_light_m_s),
       facet(at) {}

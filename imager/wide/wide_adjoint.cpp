@@ -49,7 +49,8 @@ class WideAdjoint : public AdjointSum {
  protected:
   void add_sets(const VisibilityBlock& block, const std::vector<VisibilitySet>& sets) override {
     SampleSums counted;
-    Gathered g{block, imaging_weights(block, setup_.options.geometry.cell_rad, setup_.options.threads, counted), {}};
+    const WideTransformOptions& o = setup_.options;
+    Gathered g{block, imaging_weights(block, {o.geometry, options_.beyond_grid, o.threads}, counted), {}};
     std::vector<SampleSums> sums;
     for (const VisibilitySet& set : sets) {
       sums.push_back(std::visit([&](const auto* visibility) { return sums_of(g.weight, visibility); }, set));

@@ -4,6 +4,7 @@
 #include <boost/test/unit_test.hpp>
 #include <memory>
 #include <stdexcept>
+#include <thread>
 
 using namespace misfit::imager;
 
@@ -36,6 +37,21 @@ BOOST_AUTO_TEST_CASE(an_exception_reaches_the_caller_and_ends_the_work) {
 BOOST_AUTO_TEST_CASE(one_of_many_exceptions_is_rethrown) {
   const auto fail = [](std::size_t i) { throw std::out_of_range(std::to_string(i)); };
   BOOST_CHECK_THROW(parallel_for(100, 4, fail), std::out_of_range);
+}
+
+BOOST_AUTO_TEST_CASE(a_check_of_the_caller_s_thread_ends_the_work) {
+  const auto pause = [](std::size_t) { std::this_thread::sleep_for(std::chrono::milliseconds(1)); };
+  for (const int threads : {1, 4}) {
+    std::atomic<int> runs{0};
+    const StopCheck stop([] { throw std::runtime_error("stop"); });
+    const auto body = [&](std::size_t i) {
+      pause(i);
+      ++runs;
+    };
+    BOOST_CHECK_THROW(parallel_for(100000, threads, body), std::runtime_error);
+    BOOST_TEST(runs < 50000);
+  }
+  parallel_for(50, 1, pause);  // without one there is nothing to stop it
 }
 
 BOOST_AUTO_TEST_CASE(there_is_always_a_thread_to_run_in) {
