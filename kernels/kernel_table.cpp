@@ -11,6 +11,7 @@
 #include "kernels/cfitsio_mutex.h"
 #include "kernels/fits_sizes_internal.h"
 #include "kernels/kernel_table_content_internal.h"
+#include "kernels/version.h"
 #include "kernels/whole_file.h"
 
 namespace misfit::kernels {

@@ -12,6 +12,21 @@ double tap(const PiecewisePolynomial& polynomial, Eigen::Index r, double t) {
   return value;
 }
 
+double value_at(const PiecewisePolynomial& polynomial, double u) {
+  const Eigen::Index width = polynomial.width();
+  const double from_middle = std::abs(u);
+  if (!(from_middle <= static_cast<double>(width) / 2)) return std::isnan(u) ? u : 0;
+  const double whole = std::floor(from_middle);
+  const double part = from_middle - whole;
+  const bool odd = width % 2 == 1;
+  const bool next = odd && part >= 0.5;
+  const Eigen::Index r = width / 2 + static_cast<Eigen::Index>(whole) + (next ? 1 : 0);
+  const double t = (odd ? (next ? 1 : 0) : 0.5) - part;
+  if (t < 0.5) return tap(polynomial, r, t);
+  const double left = tap(polynomial, r - 1, -0.5);
+  return r == width ? left : (left + tap(polynomial, r, 0.5)) / 2;
+}
+
 }  // namespace
 
 Eigen::VectorXd sampled_function(const PiecewisePolynomial& polynomial, int per_cell) {
@@ -30,6 +45,10 @@ Eigen::VectorXd sampled_function(const PiecewisePolynomial& polynomial, int per_
       value[i] = r == 0 ? tap(polynomial, r, 0.5) : (tap(polynomial, r - 1, -0.5) + tap(polynomial, r, 0.5)) / 2;
   }
   return value;
+}
+
+Eigen::VectorXd function_values(const PiecewisePolynomial& polynomial, const Eigen::VectorXd& u) {
+  return u.unaryExpr([&](double each) { return value_at(polynomial, each); });
 }
 
 Eigen::VectorXd sampled_to_both_ends(const PiecewisePolynomial& polynomial, int per_cell) {

@@ -10,8 +10,11 @@ namespace misfit::kernels {
 /// C jumps, between two cells, the value is the mean of both sides; at |u| = W/2 it is the limit from inside.
 Eigen::VectorXd sampled_function(const PiecewisePolynomial& polynomial, int per_cell);
 
-/// The same for hosts that read both ends of the function for a visibility halfway between them: at |u| = W/2 the mean of both
-/// sides too, half the limit from inside.
+/// C at any u, symmetric to the bit: as above where it jumps and at |u| = W/2, 0 beyond, NaN for NaN.
+Eigen::VectorXd function_values(const PiecewisePolynomial& polynomial, const Eigen::VectorXd& u);
+
+/// sampled_function() for hosts that read both ends of the function for a visibility halfway between them: at |u| = W/2 the
+/// mean of both sides too, half the limit from inside.
 Eigen::VectorXd sampled_to_both_ends(const PiecewisePolynomial& polynomial, int per_cell);
 
 /// The taps of a host that gives the 2·support + 1 cells around the nearest one the nearest of the table's entries |u| =

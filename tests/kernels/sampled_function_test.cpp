@@ -60,6 +60,28 @@ BOOST_DATA_TEST_CASE(both_ends_are_halved_where_an_entry_lies_there, bdata::make
   BOOST_TEST(halved[halved.size() - 1] == whole[halved.size() - 1] / (width * per_cell % 2 == 0 ? 2 : 1));
 }
 
+BOOST_DATA_TEST_CASE(values_are_the_entries_on_both_sides_and_zero_beyond, bdata::make({1, 2, 3, 6, 7, 12}), width) {
+  for (const PiecewisePolynomial& c : {steps(width), kernel_family("least-misfit").make(width, 0.25).polynomial}) {
+    const Eigen::VectorXd entry = misfit::kernels::sampled_function(c, 64);
+    const Eigen::VectorXd u = Eigen::VectorXd::LinSpaced(entry.size(), 0, width / 2.0);
+    BOOST_TEST(function_values(c, u) == entry);
+    BOOST_TEST(function_values(c, -u) == entry);
+  }
+  const Eigen::VectorXd beyond = (Eigen::VectorXd(3) << std::nextafter(width / 2.0, 99), -1e300, INFINITY).finished();
+  BOOST_TEST(function_values(steps(width), beyond) == Eigen::VectorXd::Zero(3));
+  BOOST_TEST(std::isnan(function_values(steps(width), Eigen::VectorXd::Constant(1, NAN))[0]));
+}
+
+BOOST_DATA_TEST_CASE(values_are_those_of_the_cell_that_holds_them_up_to_its_edges, bdata::make({1, 2, 3, 6, 7}), width) {
+  const PiecewisePolynomial c = steps(width);
+  for (int edge = width % 2; edge <= width; edge += 2) {  // in halves
+    const Eigen::VectorXd u = (Eigen::VectorXd(2) << std::nextafter(edge / 2.0, 0), std::nextafter(edge / 2.0, 99)).finished();
+    const Eigen::VectorXd value = function_values(c, u);
+    BOOST_TEST(value[1] == from_right(c, u[1]));
+    if (edge > 0) BOOST_TEST(value[0] == value[1] + 1);
+  }
+}
+
 BOOST_AUTO_TEST_CASE(a_host_takes_the_nearest_entry_and_zero_beyond_the_end) {
   const Eigen::VectorXd table = Eigen::VectorXd::LinSpaced(11, 10, 20);  // of 4 a cell, to |u| = 2.5
   const TapFunction taps = nearest_entries(table, 4, 3);
