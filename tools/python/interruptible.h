@@ -1,0 +1,48 @@
+#pragma once
+
+#include <pybind11/pybind11.h>
+
+#include <algorithm>
+#include <chrono>
+#include <functional>
+#include <future>
+#include <thread>
+
+namespace misfit::python {
+
+/// How long Ctrl-C may wait.
+inline constexpr std::chrono::milliseconds patience(50);
+
+/// What `work` returns or throws, called on a thread of its own while other Python threads run. Ctrl-C raises its Python
+/// exception (pybind11::error_already_set) soon; `work` then goes on unseen until it ends or the
+/// process does, so it must own what it uses and keep away from Python.
+template <typename Result>
+Result interruptibly(std::function<Result()> work) {
+  std::packaged_task<Result()> task(std::move(work));
+  std::future<Result> result = task.get_future();
+  std::thread(std::move(task)).detach();
+  while (true) {
+    {
+      const pybind11::gil_scoped_release others_run;
+      if (result.wait_for(patience) == std::future_status::ready) return result.get();
+    }
+    if (PyErr_CheckSignals() != 0) throw pybind11::error_already_set();
+  }
+}
+
+/// Calls `work(begin, end)` for one block of [0, size) after the other while other Python threads run. Ctrl-C raises its Python
+/// exception between two.
+template <typename Work>
+void in_blocks(pybind11::ssize_t size, pybind11::ssize_t block, const Work& work) {
+  const pybind11::gil_scoped_release others_run;
+  auto last = std::chrono::steady_clock::now();
+  for (pybind11::ssize_t begin = 0; begin < size; begin += block) {
+    work(begin, std::min(begin + block, size));
+    if (std::chrono::steady_clock::now() - last < patience) continue;
+    const pybind11::gil_scoped_acquire alone;
+    if (PyErr_CheckSignals() != 0) throw pybind11::error_already_set();
+    last = std::chrono::steady_clock::now();
+  }
+}
+
+}  // namespace misfit::python
