@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
+#include <memory>
 #include <new>
 #include <stdexcept>
 #include <string>
@@ -11,12 +12,11 @@
 
 #include "tools/base/interrupt.h"
 #include "tools/base/text.h"
-#include "tools/command.h"
-#include "tools/version.h"
+#include "tools/program.h"
 
 namespace {
 
-enum ExitCode { done = 0, unusable_data = 1, wrong_usage = 2, stopped_by_user = 130 };
+using namespace misfit::tools;
 
 /// Pages fresh from the system are as dear as what is done with them: images of every major cycle lie where those before lay.
 /// The largest blocks that glibc takes from its heap are of 32 MiB.
@@ -47,7 +47,7 @@ std::string usage_message(const CLI::ParseError& error, const CLI::App& program)
   const std::string word = rest.empty() || rest.front().front() == '-' ? "" : rest.front();
   std::string said = &command == &program ? word : command.get_name() + (word.empty() ? "" : " ") + word;
   said += said.empty() ? "expected " : ": expected ";
-  if (!word.empty()) names = misfit::tools::nearest_first(word, names);
+  if (!word.empty()) names = nearest_first(word, names);
   for (std::size_t i = 0; i < names.size(); ++i) said += (i == 0 ? "" : i + 1 == names.size() ? " or " : ", ") + names[i];
   return said;
 }
@@ -67,20 +67,12 @@ std::string conversion_message(const std::string& said, const CLI::App& program)
 }  // namespace
 
 int main(int argc, char** argv) {
-  using namespace misfit::tools;
   keep_memory();
   setenv("HOME", "/", 0);  // casacore looks for its settings there, and ends where there is none
-  CLI::App program("misfit images radio-interferometry MeasurementSets with least-misfit gridding functions", "misfit");
-  program.set_version_flag("--version", "misfit " + std::string(version));
-  program.require_subcommand(1);
-  program.option_defaults()->always_capture_default();
   std::string line = "misfit";
   for (int i = 1; i < argc; ++i) line += std::string(" ") + argv[i];
-  add_image_command(program, line);
-  add_predict_command(program);
-  add_simulate_command(program);
-  add_kernel_command(program);
-  add_report_command(program);
+  const std::unique_ptr<CLI::App> made = make_program(line);
+  CLI::App& program = *made;
   try {
     program.parse(argc, argv);
     return done;

@@ -23,6 +23,13 @@ CLI::Validator not_empty() {
   return CLI::Validator([](const std::string& value) -> std::string { return value.empty() ? "'': expected a name" : ""; }, "");
 }
 
+CLI::Validator values_are(const std::vector<std::string>& names, Others others) {
+  std::string list;
+  for (const std::string& name : names) list += (list.empty() ? "" : ",") + name;
+  if (others == Others::possible) list += std::string(",") + and_others;
+  return CLI::Validator([](const std::string&) -> std::string { return ""; }, "{" + list + "}");
+}
+
 void refuse_option(const std::string& option, const std::string& value, const std::string& expected) {
   throw std::invalid_argument("--" + option + " " + value + ": expected " + expected);
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 namespace CLI {
 class Validator;
@@ -15,6 +16,23 @@ CLI::Validator quantity(double (*parse)(const std::string&));
 
 /// That there is one: "" is no file's name.
 CLI::Validator not_empty();
+
+/// Whether an option takes values besides those that --help lists.
+enum class Others { refused, possible };
+
+/// Stands in such a list for the others.
+inline constexpr const char* and_others = "…";
+
+/// No check, for options whose command looks at the value itself: it says in --help, and so in manual pages and to completion,
+/// what can be given.
+CLI::Validator values_are(const std::vector<std::string>& names, Others others = Others::refused);
+
+/// Types of values for Option::type_name(), of options that take a path: by them --help, manual pages and completion know that.
+/// A path is where something is to be, and what its name begins with.
+inline constexpr const char* file_type = "FILE";
+inline constexpr const char* folder_type = "FOLDER";
+inline constexpr const char* path_type = "PATH";
+inline constexpr const char* name_or_file_type = "NAME|FILE";
 
 /// Throws std::invalid_argument("--option value: expected …"), for what several options decide together.
 [[noreturn]] void refuse_option(const std::string& option, const std::string& value, const std::string& expected);

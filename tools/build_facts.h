@@ -1,0 +1,15 @@
+#pragma once
+
+namespace misfit::tools {
+
+/// What the build was configured with; "" stands for none.
+struct BuildFacts {
+  const char* commit;      ///< of git; none where the sources are no checkout
+  const char* compiler;    ///< name and version
+  const char* build_type;  ///< CMake's
+  const char* sanitizers;  ///< as in -fsanitize=
+};
+
+extern const BuildFacts build_facts;
+
+}  // namespace misfit::tools
