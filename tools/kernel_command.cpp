@@ -14,6 +14,7 @@
 #include "tools/base/option_checks.h"
 #include "tools/command.h"
 #include "tools/emit/emission_plan.h"
+#include "tools/kernel_choice/cache_folder.h"
 #include "tools/kernel_choice/kernel_advice.h"
 #include "tools/kernel_choice/kernel_choice.h"
 #include "tools/kernel_choice/machine_costs.h"
@@ -262,7 +263,8 @@ void choose(KernelOptions& o) {
 void add_kernel_command(CLI::App& program) {
   CLI::App* command = program.add_subcommand("kernel", "Make a kernel-table file, or show what is in one");
   const auto o = std::make_shared<KernelOptions>();
-  command->add_option("--kernel", o->kernel.name, "Gridding function: a name, or a kernel-table file to tabulate anew");
+  list_kernels(
+      *command->add_option("--kernel", o->kernel.name, "Gridding function: a name, or a kernel-table file to tabulate anew"));
   declare_kernel_folder(*command, o->kernel.folder);
   command->add_option("--width", o->width, "Cells a visibility touches per axis");
   command->add_option("--x0", o->x0, "Half the part of the FFT image that is kept; or give --padding");
@@ -276,7 +278,8 @@ void add_kernel_command(CLI::App& program) {
   command->add_option("--sampling", o->sampling.per_cell, "Rows of the lookup table a cell");
   command->add_option("--interpolation", o->sampling.interpolation, "Degree to which a host is to interpolate it, 0 to 3");
   command->add_option("--degree", o->degree, "Cut the polynomials to this degree; -1 = as many terms as the kernel has");
-  CLI::Option* host = command->add_option("--emit", o->emit.host, "Write --output as a host wants it: " + host_names());
+  CLI::Option* host =
+      command->add_option("--emit", o->emit.host, "Write --output as this host wants it")->check(values_are(host_names()));
   command->add_option("--host-padding", o->emit.host_padding, "Padding that the host will use, where it is not its own")
       ->needs(host);
   command
@@ -284,9 +287,11 @@ void add_kernel_command(CLI::App& program) {
       ->needs(host);
   host->excludes(accuracy);
   command->add_flag("--force", o->emit.force, "Emit a kernel that is made for another padding than the host's")->needs(host);
-  CLI::Option* output = command->add_option("--output", o->output, "FITS file to write")->check(not_empty());
+  CLI::Option* output = command->add_option("--output", o->output, "File to write: FITS, or what --emit says")
+                            ->type_name(file_type)
+                            ->check(not_empty());
   command->add_flag("--quiet", o->quiet, "Print nothing but errors");
-  CLI::Option* inspected = command->add_option("--inspect", o->inspect, "Kernel-table file to show");
+  CLI::Option* inspected = command->add_option("--inspect", o->inspect, "Kernel-table file to show")->type_name(file_type);
   inspected->excludes(output)->excludes(accuracy)->excludes(host);
   for (const char* making :
        {"--kernel", "--kernel-folder", "--width", "--x0", "--padding", "--sampling", "--interpolation", "--degree", "--quiet"})

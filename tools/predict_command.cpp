@@ -5,10 +5,12 @@
 
 #include "imager/direct/source_sums.h"
 #include "imager/parallel.h"
+#include "kernels/version.h"
 #include "ms_io/fingerprint.h"
 #include "ms_io/measurement_set.h"
 #include "ms_io/model_writer.h"
 #include "tools/base/numbers.h"
+#include "tools/base/option_checks.h"
 #include "tools/base/progress.h"
 #include "tools/base/text.h"
 #include "tools/command.h"
@@ -16,7 +18,6 @@
 #include "tools/formats/model_image.h"
 #include "tools/kernel_choice/kernel_choice.h"
 #include "tools/run/selection_options.h"
-#include "tools/version.h"
 
 namespace misfit::tools {
 namespace {
@@ -129,7 +130,7 @@ void predict(const PredictOptions& o) {
   if (model.empty)
     progress.say("warning: " + o.components +
                  " lists no source: " + (o.subtract ? "the data are written as they are" : "all visibilities written are 0"));
-  column.origin = {command_of(o), model.fingerprint.add(version).value(),
+  column.origin = {command_of(o), model.fingerprint.add(MISFIT_VERSION).value(),
                    [&](const std::string& sentence) { progress.say(sentence); }};
   progress.begin(o.subtract ? "subtract" : "predict");
   const auto show = [&](std::uint64_t done, std::uint64_t total) { progress.update(done, total); };
@@ -145,27 +146,32 @@ void add_predict_command(CLI::App& program) {
   CLI::App* command =
       program.add_subcommand("predict", "Write a model's visibilities, or data without them, into a MeasurementSet");
   const auto o = std::make_shared<PredictOptions>();
-  command->add_option("--vis", o->vis, "MeasurementSet; only the column is written")->required();
-  command->add_option(
-      "--model", o->model,
-      "FITS or CASA image in Jy/pixel whose reference position is the phase centre; its STOKES axis may hold I, Q, U and V");
-  command->add_option(
-      "--components", o->components,
-      "CSV file with ra_deg,dec_deg,flux_jy or l_arcsec,m_arcsec,flux_jy, and scale_arcsec for the full width at "
-      "half maximum of a circular Gaussian (0: a point), summed directly with w; polarised ones have flux_q_jy, flux_u_jy, "
-      "flux_v_jy too");
+  command->add_option("--vis", o->vis, "MeasurementSet; only the column is written")->required()->type_name(folder_type);
+  command
+      ->add_option(
+          "--model", o->model,
+          "FITS or CASA image in Jy/pixel whose reference position is the phase centre; its STOKES axis may hold I, Q, U and V")
+      ->type_name(file_type);
+  command
+      ->add_option(
+          "--components", o->components,
+          "CSV file with ra_deg,dec_deg,flux_jy or l_arcsec,m_arcsec,flux_jy, and scale_arcsec for the full width at "
+          "half maximum of a circular Gaussian (0: a point), summed directly with w; polarised ones have flux_q_jy, flux_u_jy, "
+          "flux_v_jy too")
+      ->type_name(file_type);
   CLI::Option* subtract =
       command->add_flag("--subtract", o->subtract,
                         "Write data − model instead: each correlation loses what the model is to it, XX = I + Q and so on");
   command->add_option("--datacolumn", o->datacolumn, "What is subtracted from: data, corrected, model, or a column's name")
-      ->needs(subtract);
+      ->needs(subtract)
+      ->check(values_are({"data", "corrected", "model"}, Others::possible));
   command->add_option(
       "--column", o->column,
       "Column to write: MODEL_DATA, or CORRECTED_DATA with --subtract, where that must not exist yet unless it is "
       "named. A new column holds 0, or the data, outside the selection");
   declare_selection(*command, o->selection);
   command->add_option("--accuracy", o->accuracy, "Relative accuracy of the visibilities");
-  command->add_option("--kernel", o->kernel.name, "Gridding function: a name or a kernel-table file");
+  list_kernels(*command->add_option("--kernel", o->kernel.name, "Gridding function: a name or a kernel-table file"));
   declare_kernel_folder(*command, o->kernel.folder);
   command->add_option("--threads", o->threads, "Threads; 0 means all cores");
   command->add_flag("--quiet", o->quiet, "Print nothing");

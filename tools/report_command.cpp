@@ -37,6 +37,7 @@ CLI::App* add_report(CLI::App& reports, const std::string& name, const std::stri
   const auto o = std::make_shared<ReportOptions>();
   command->add_option("--output", o->output, "Folder for index.html, SVG, CSV and report.json; made where there is none")
       ->required()
+      ->type_name(folder_type)
       ->check(not_empty());
   command->add_flag("--quiet", o->quiet, "Print nothing");
   command->callback([o, make] { write(*o, make); });
@@ -56,7 +57,8 @@ void add_stability_report(CLI::App& reports) {
   const auto o = std::make_shared<StabilityOptions>();
   CLI::App* command = add_report(reports, "stability", "What rounding does to kernels, gridding, sums and whole runs",
                                  [o](ProgressLine& progress) { return stability_report(*o, progress); });
-  command->add_option("--vis", o->vis, "MeasurementSet whose uv coverage and weights the runs begin with; else one is made");
+  command->add_option("--vis", o->vis, "MeasurementSet whose uv coverage and weights the runs begin with; else one is made")
+      ->type_name(folder_type);
   command->add_flag("--quick", o->quick, "Fewer samples: done within a minute or so");
 }
 

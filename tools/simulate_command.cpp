@@ -146,10 +146,14 @@ void add_simulate_command(CLI::App& program) {
   CLI::App* command =
       program.add_subcommand("simulate", "Write a MeasurementSet with exact visibilities of points and Gaussians");
   const auto o = std::make_shared<SimulateOptions>();
-  command->add_option("--output", o->output, "MeasurementSet to make")->required()->check(not_empty());
-  command->add_option("--sky", o->sky,
-                      "testcard: the 34 sources of Ye et al. 2020; or a CSV file as `misfit predict --components` takes");
-  command->add_option("--array", o->array, "vla-a, vla-b, vla-c or vla-d");
+  command->add_option("--output", o->output, "MeasurementSet to make")->required()->type_name(path_type)->check(not_empty());
+  command
+      ->add_option("--sky", o->sky,
+                   "testcard: the 34 sources of Ye et al. 2020; or a CSV file as `misfit predict --components` takes")
+      ->type_name(name_or_file_type)
+      ->check(values_are({"testcard"}, Others::possible));
+  command->add_option("--array", o->array, "The VLA in its A, B, C or D configuration")
+      ->check(values_are({"vla-a", "vla-b", "vla-c", "vla-d"}));
   CLI::Option* coplanar = command->add_flag("--coplanar", o->coplanar, "Set w to 0 (the default with the test card)");
   command->add_flag("--noncoplanar", o->noncoplanar, "Keep w (the default otherwise)")->excludes(coplanar);
   command->add_flag("--primary-beam", o->primary_beam,

@@ -15,12 +15,6 @@ using nlohmann::json;
 
 const std::vector<std::string> emulated{"wsclean", "ducc", "finufft", "yandasoft", "c-header", "csv"};
 
-std::vector<std::string> host_names() {
-  std::vector<std::string> names;
-  for (const tools::Host& host : tools::host_catalogue()) names.push_back(host.name);
-  return names;
-}
-
 struct Scene {
   TemporaryFolder folder;
   std::string file = folder / "k";
@@ -98,7 +92,7 @@ BOOST_AUTO_TEST_CASE(what_is_forced_is_judged_where_the_host_keeps_the_image) {
   }
 }
 
-BOOST_DATA_TEST_CASE(a_target_is_reached_by_the_least_that_does, bdata::make(host_names()), host) {
+BOOST_DATA_TEST_CASE(a_target_is_reached_by_the_least_that_does, bdata::make(tools::host_names()), host) {
   const Scene scene;
   for (const char* target : {"1e-2", "3e-3", "1e-3"}) {
     const json said = scene.emitted(host, {"--target-error", target, "--padding", "1.5", "--host-padding", "1.5"});

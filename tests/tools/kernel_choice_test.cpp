@@ -5,6 +5,7 @@
 #include "kernels/kernel_table.h"
 #include "tests/kernels/kernels.h"
 #include "tests/tools/program.h"
+#include "tools/kernel_choice/cache_folder.h"
 
 using namespace misfit::tools;
 using misfit::testing::TemporaryFolder;

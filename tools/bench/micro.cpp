@@ -116,10 +116,12 @@ VisibilityBlock block_of(std::size_t rows) {
 
 void add_ordering(std::vector<Piece>& pieces) {
   const auto block = std::make_shared<VisibilityBlock>(block_of(4096));
+  imager::ImageGeometry image;
+  image.cell_rad = cell_rad;
   for (const Wanted wanted : {Wanted::imaging, Wanted::usable})
     pieces.push_back({std::string("order_by_tile for ") + (wanted == Wanted::imaging ? "imaging" : "prediction"),
-                      static_cast<double>(block->samples()), [block, wanted] {
-                        order_by_tile(*block, imager::sets_of(*block, 1), {2048, 2048, 7, tile}, cell_rad, wanted, 1);
+                      static_cast<double>(block->samples()), [block, image, wanted] {
+                        order_by_tile(*block, imager::sets_of(*block, 1), {2048, 2048, 7, tile}, image, wanted, 1);
                       }});
 }
 

@@ -72,8 +72,8 @@ struct Host {
 /// Every host there is. A new one is a line there.
 const std::vector<Host>& host_catalogue();
 
-/// Their names, with commas between.
-std::string host_names();
+/// Their names.
+std::vector<std::string> host_names();
 
 /// The host called `name`; for any other name std::invalid_argument lists those there are.
 const Host& find_host(const std::string& name);

@@ -10,16 +10,18 @@ const std::vector<Host>& host_catalogue() {
   return hosts;
 }
 
-std::string host_names() {
-  std::string names;
-  for (const Host& host : host_catalogue()) names += (names.empty() ? "" : ", ") + host.name;
+std::vector<std::string> host_names() {
+  std::vector<std::string> names;
+  for (const Host& host : host_catalogue()) names.push_back(host.name);
   return names;
 }
 
 const Host& find_host(const std::string& name) {
   for (const Host& host : host_catalogue())
     if (host.name == name) return host;
-  throw std::invalid_argument("--emit " + name + ": expected one of " + host_names());
+  std::string known;
+  for (const Host& host : host_catalogue()) known += (known.empty() ? "" : ", ") + host.name;
+  throw std::invalid_argument("--emit " + name + ": expected one of " + known);
 }
 
 }  // namespace misfit::tools

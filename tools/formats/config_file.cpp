@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "tools/base/files.h"
+#include "tools/base/option_checks.h"
 
 namespace misfit::tools {
 namespace {
@@ -82,6 +83,7 @@ void add_config_option(CLI::App& command) {
       .add_option_function<std::string>(
           "--config", [&command](const std::string& path) { take_all(command, path); },
           "Read options from a file with lines name = value; those given here win")
+      ->type_name(file_type)
       ->configurable(false);
 }
 

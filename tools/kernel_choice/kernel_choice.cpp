@@ -7,16 +7,13 @@
 #include "kernels/kernel_cache.h"
 #include "kernels/kernel_table.h"
 #include "kernels/plugin_family.h"
+#include "tools/base/option_checks.h"
+#include "tools/kernel_choice/cache_folder.h"
 
 namespace misfit::tools {
 namespace {
 
 namespace fs = std::filesystem;
-
-fs::path path_in_environment(const char* name) {
-  const char* const value = std::getenv(name);
-  return value == nullptr ? fs::path() : fs::path(value);
-}
 
 bool is_in_catalogue(const std::string& name) {
   const auto& families = kernels::kernel_catalogue();
@@ -69,20 +66,19 @@ std::string libraries_in(const KernelSource& kernel) {
 
 }  // namespace
 
-fs::path default_cache_folder() {
-  if (fs::path given = path_in_environment("MISFIT_CACHE"); !given.empty()) return given;
-  // The XDG Base Directory Specification has relative paths ignored.
-  if (const fs::path cache = path_in_environment("XDG_CACHE_HOME"); cache.is_absolute()) return cache / "misfit";
-  const fs::path home = path_in_environment("HOME");
-  if (!home.is_absolute() || home == home.root_path()) return {};  // nobody's home
-  return home / ".cache" / "misfit";
+void list_kernels(CLI::Option& option) {
+  std::vector<std::string> names;
+  for (const kernels::KernelFamily& family : kernels::kernel_catalogue()) names.push_back(family.name);
+  option.type_name(name_or_file_type)->check(values_are(names, Others::possible));
 }
 
 void declare_kernel_folder(CLI::App& command, std::string& folder) {
-  folder = path_in_environment("MISFIT_KERNEL_FOLDER").string();
-  command.add_option("--kernel-folder", folder,
-                     "Folder with kernels from outside: --kernel NAME there is libmisfit_kernel_NAME.so; or "
-                     "$MISFIT_KERNEL_FOLDER");
+  if (const char* const given = std::getenv("MISFIT_KERNEL_FOLDER")) folder = given;
+  command
+      .add_option("--kernel-folder", folder,
+                  "Folder with kernels from outside: --kernel NAME there is libmisfit_kernel_NAME.so; or "
+                  "$MISFIT_KERNEL_FOLDER")
+      ->type_name(folder_type);
 }
 
 bool is_kernel_file(const KernelSource& kernel) {

@@ -7,7 +7,8 @@
 
 namespace CLI {
 class App;
-}
+class Option;
+}  // namespace CLI
 
 namespace misfit::tools {
 
@@ -16,6 +17,9 @@ struct KernelSource {
   std::string name = "least-misfit";  ///< of the catalogue, of a library in `folder`, or a kernel-table file
   std::string folder;                 ///< the only place where libmisfit_kernel_<name>.so is looked for; empty = nowhere
 };
+
+/// Lets --help list the kernels of the catalogue as values of `option`, beside which there are files and others' libraries.
+void list_kernels(CLI::Option& option);
 
 /// Declares --kernel-folder; what is not given there is $MISFIT_KERNEL_FOLDER.
 void declare_kernel_folder(CLI::App& command, std::string& folder);
@@ -32,9 +36,5 @@ std::filesystem::path file_of(const KernelSource& kernel);
 /// no library takes the place of a kernel of the catalogue or of a file. Throws std::runtime_error that names the file when it
 /// cannot be used or, a table, has changed since it was written.
 kernels::KernelFamily choose_kernel(const KernelSource& kernel);
-
-/// Where solved kernels are kept: $MISFIT_CACHE, else misfit in $XDG_CACHE_HOME, else .cache/misfit in $HOME, else nowhere (an
-/// empty path).
-std::filesystem::path default_cache_folder();
 
 }  // namespace misfit::tools

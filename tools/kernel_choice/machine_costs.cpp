@@ -6,8 +6,8 @@
 #include <optional>
 #include <stdexcept>
 
+#include "kernels/version.h"
 #include "tools/base/files.h"
-#include "tools/version.h"
 
 namespace misfit::tools {
 namespace {
@@ -50,8 +50,8 @@ std::string machine_name() {
   std::ifstream info("/proc/cpuinfo");
   std::string line;
   while (std::getline(info, line))
-    if (line.rfind("model name", 0) == 0) return line.substr(line.find(':') + 1) + ", misfit " + version;
-  return std::string("processor unknown, misfit ") + version;
+    if (line.rfind("model name", 0) == 0) return line.substr(line.find(':') + 1) + ", misfit " MISFIT_VERSION;
+  return "processor unknown, misfit " MISFIT_VERSION;
 }
 
 imager::CostModel machine_costs(const fs::path& folder) {

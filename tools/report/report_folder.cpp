@@ -6,10 +6,10 @@
 #include <set>
 #include <stdexcept>
 
+#include "kernels/version.h"
 #include "tools/base/files.h"
 #include "tools/report/html.h"
 #include "tools/report/html_elements.h"
-#include "tools/version.h"
 
 namespace misfit::tools {
 namespace {
@@ -60,7 +60,7 @@ json report_json(const Report& report) {
     for (const DataTable& table : section.tables) part["tables"].push_back(table_json(table));
     sections.push_back(part);
   }
-  return {{"title", report.title}, {"version", version}, {"introduction", report.introduction}, {"sections", sections}};
+  return {{"title", report.title}, {"version", MISFIT_VERSION}, {"introduction", report.introduction}, {"sections", sections}};
 }
 
 /// An SVG element as a file of its own.
@@ -87,8 +87,7 @@ void write_report(const Report& report, const std::string& folder) {
   check_names(report);
   const auto path = [&](const std::string& name) { return (fs::path(folder) / name).string(); };
   std::map<std::string, std::string> drawing;
-  std::string content =
-      html::header(html_escaped(report.title), "misfit " + std::string(version)) + paragraph(report.introduction);
+  std::string content = html::header(html_escaped(report.title), "misfit " MISFIT_VERSION) + paragraph(report.introduction);
   for (const ReportSection& section : report.sections) {
     for (const Figure& figure : section.figures) {
       drawing[figure.name] = draw_svg(figure);

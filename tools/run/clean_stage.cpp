@@ -9,13 +9,13 @@
 
 #include "imager/clean/mask.h"
 #include "imager/stokes.h"
+#include "kernels/version.h"
 #include "tools/base/interrupt.h"
 #include "tools/base/numbers.h"
 #include "tools/formats/clean_state_file.h"
 #include "tools/formats/image_file.h"
 #include "tools/formats/mask_file.h"
 #include "tools/formats/model_image.h"
-#include "tools/version.h"
 
 namespace misfit::tools {
 namespace {
@@ -102,13 +102,6 @@ void CleanStage::read_start_model() {
   }
 }
 
-double CleanStage::max_sidelobe(const CleanScene& scene) const {
-  imager::Image point(image_.geometry.width, image_.geometry.height);
-  point.at(image_.geometry.centre_row(), image_.geometry.centre_column()) = 1;
-  const imager::Image beam = imager::convolve_with_beam(point, scene.main_lobe, image_.geometry.cell_rad, threads_);
-  return imager::largest_sidelobe(scene.psf, beam);
-}
-
 imager::CleanState CleanStage::begin(std::size_t stokes, const std::vector<double>& scale_pixels,
                                      const CleanStateOwner& owner) {
   imager::Image start;
@@ -143,14 +136,14 @@ imager::CleanResult CleanStage::run(const CleanScene& scene, const nlohmann::jso
     const imager::StageTimer timer(times, "minor cycles");
     minor = make_minor(scene, deconvolver_choice(o_, threads_));
   }
-  CleanStateOwner owner{version, option_values, 0};
+  CleanStateOwner owner{MISFIT_VERSION, option_values, 0};
   imager::CleanState state;
   double sidelobe = 0;
   {
     const imager::StageTimer timer(times, "CLEAN state");
     owner.checksum = checksum_of(scene);
     state = begin(scene.stokes, minor.scale_pixels(), owner);
-    sidelobe = max_sidelobe(scene);
+    sidelobe = imager::largest_sidelobe(scene.psf, scene.main_lobe, image_.geometry.cell_rad, threads_);
   }
   const imager::CleanInput input{scene.source,
                                  scene.transform,

@@ -59,7 +59,6 @@ class CleanStage {
   /// That of a run before, or that of the start model, which it frees.
   imager::CleanState begin(std::size_t stokes, const std::vector<double>& scale_pixels, const CleanStateOwner& owner);
   std::uint64_t checksum_of(const CleanScene& scene) const;
-  double max_sidelobe(const CleanScene& scene) const;
 
   const ImageOptions& o_;
   imager::ImageHeader image_;

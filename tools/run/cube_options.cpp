@@ -160,15 +160,19 @@ void declare(CLI::App& command, CubeOptions& o) {
                      "radio velocity such as 20km/s, in --outframe; the first channel when empty");
   command.add_option("--chanwidth", o.chanwidth,
                      "From plane to plane: channels, a frequency or a velocity, negative to go down; one channel when empty");
-  command.add_option("--outframe", o.outframe,
-                     "Where planes have their frequencies: LSRK, LSRD, BARY, GEO, TOPO, GALACTO, LGROUP or CMB");
+  command
+      .add_option("--outframe", o.outframe,
+                  "Where planes have their frequencies: LSRK, LSRD, BARY, GEO, TOPO, GALACTO, LGROUP or CMB")
+      ->check(values_are({"LSRK", "LSRD", "BARY", "GEO", "TOPO", "GALACTO", "LGROUP", "CMB"}));
   command.add_option("--restfreq", o.restfreq, "Of the line: velocities are relative to it, and headers state it");
   command
       .add_option("--interpolation", o.interpolation,
                   "linear: planes take visibilities interpolated between channels; nearest: the channels within them")
       ->check(CLI::IsMember({"linear", "nearest"}));
-  command.add_option("--perchanweightdensity", o.perchanweightdensity,
-                     "true: the weights of each plane follow from its own density of samples; false: from that of all planes");
+  command
+      .add_option("--perchanweightdensity", o.perchanweightdensity,
+                  "true: the weights of each plane follow from its own density of samples; false: from that of all planes")
+      ->check(values_are({"true", "false"}));
 }
 
 void check(const CubeOptions& o) {

@@ -15,6 +15,7 @@
 #include "tools/base/in_order.h"
 #include "tools/base/interrupt.h"
 #include "tools/base/numbers.h"
+#include "tools/kernel_choice/cache_folder.h"
 #include "tools/run/cube_pictures.h"
 #include "tools/run/cube_planes.h"
 #include "tools/run/cube_visibilities.h"

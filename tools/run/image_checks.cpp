@@ -77,18 +77,8 @@ void check_auto_mask(const ImageOptions& o) {
 }
 
 void check_clean(const ImageOptions& o) {
-  if (o.niter < 0) refuse_option("niter", std::to_string(o.niter), "0 or more");
-  if (!(o.gain > 0 && o.gain <= 1)) refuse_option("gain", typed(o.gain), "more than 0 and at most 1");
-  if (!(parse_flux_jy(o.threshold) >= 0)) refuse_option("threshold", o.threshold, "0 or more");
-  if (!(o.nsigma >= 0)) refuse_option("nsigma", typed(o.nsigma), "0 or more");
-  if (!(o.cyclefactor > 0)) refuse_option("cyclefactor", typed(o.cyclefactor), "more than 0");
-  if (!(o.minpsffraction > 0 && o.minpsffraction <= 1))
-    refuse_option("minpsffraction", typed(o.minpsffraction), "more than 0 and at most 1");
-  if (!(o.maxpsffraction >= o.minpsffraction && o.maxpsffraction <= 1))
-    refuse_option("maxpsffraction", typed(o.maxpsffraction), "minpsffraction to 1");
-  if (o.cycleniter == 0 || o.cycleniter < -1)
-    refuse_option("cycleniter", std::to_string(o.cycleniter), "-1 (no limit), 1 or more");
-  if (o.nmajor < -1) refuse_option("nmajor", std::to_string(o.nmajor), "-1 (no limit) or more");
+  if (!(parse_flux_jy(o.threshold) >= 0)) refuse_option("threshold", o.threshold, "0 or more");  // as it was typed
+  imager::check(clean_options(o, 1), "--");
   if (restoring_beam(o) && o.niter == 0) refuse_option("restoringbeam", o.restoringbeam, "--niter above 0 beside it");
   const int smallest = *std::min_element(o.imsize.begin(), o.imsize.end());
   if (o.niter > 0 && smallest < 3 && !restoring_beam(o))

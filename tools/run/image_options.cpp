@@ -26,7 +26,8 @@ namespace misfit::tools {
 
 void declare_scene(CLI::App& command, ImageOptions& o) {
   command.add_option("--vis", o.vis, "MeasurementSet, or several for one image; opened read-only, but to save a model")
-      ->required();
+      ->required()
+      ->type_name(folder_type);
   command.add_option(
       "--phasecenter", o.phasecenter,
       "Shift the visibilities to a direction, such as 'J2000 12h30m49.4s +12d23m28s', or to the phase centre of a "
@@ -36,8 +37,10 @@ void declare_scene(CLI::App& command, ImageOptions& o) {
       ->required()
       ->check(quantity(parse_angle_rad));
   declare_selection(command, o.selection);
-  command.add_option("--datacolumn", o.datacolumn,
-                     "data, corrected, model, or a column's name; or one for each set: corrected,data");
+  command
+      .add_option("--datacolumn", o.datacolumn,
+                  "data, corrected, model, or a column's name; or one for each set: corrected,data")
+      ->check(values_are({"data", "corrected", "model"}, Others::possible));
   declare_weighting(command, o);
   command.add_option("--gridder", o.gridder, "w planes: auto (where w matters), standard (none), wide (always)")
       ->check(CLI::IsMember({"auto", "standard", "wide"}));
@@ -60,12 +63,12 @@ ms_io::Selection selection_of(const ImageOptions& o) {
 
 void declare(CLI::App& command, ImageOptions& o) {
   declare_scene(command, o);
-  command.add_option("--imagename", o.imagename, "Names of the output files begin with this")->required();
+  command.add_option("--imagename", o.imagename, "Names of the output files begin with this")->required()->type_name(path_type);
   command.add_option("--stokes", o.stokes,
                      "Stokes parameters, or correlations of parallel hands, which share one PSF: I, IQUV, IV, XXYY, RR, …");
   declare(command, o.cube);
-  command.add_option("--kernel", o.kernel.name,
-                     "Gridding function: a name such as least-misfit or spheroidal, or a kernel-table file");
+  list_kernels(*command.add_option("--kernel", o.kernel.name,
+                                   "Gridding function: a name such as least-misfit or spheroidal, or a kernel-table file"));
   declare_kernel_folder(command, o.kernel.folder);
   command.add_option("--accuracy", o.accuracy,
                      "Largest error of the whole image relative to the direct transform, RMS over RMS");
@@ -100,13 +103,16 @@ void declare(CLI::App& command, ImageOptions& o) {
   command.add_option("--maxpsffraction", o.maxpsffraction, "… and at least this deep");
   command.add_option("--cycleniter", o.cycleniter, "Components that a minor cycle finds at most; -1 = no limit");
   command.add_option("--nmajor", o.nmajor, "Major cycles at most; -1 = no limit");
-  command.add_option(
-      "--restoringbeam", o.restoringbeam,
-      "Restore with this beam: MAJ, or MAJ,MIN,PA such as 0.5arcsec,0.4arcsec,30deg; the fitted one when empty or common");
-  command.add_option(
-      "--mask", o.mask,
-      "Where CLEAN finds components: a FITS or CASA image, not 0 there, or CASA region text (CRTF), which may name "
-      "planes: range=[3chan, 7chan]");
+  command
+      .add_option(
+          "--restoringbeam", o.restoringbeam,
+          "Restore with this beam: MAJ, or MAJ,MIN,PA such as 0.5arcsec,0.4arcsec,30deg; the fitted one when empty or common")
+      ->check(values_are({"common"}, Others::possible));
+  command
+      .add_option("--mask", o.mask,
+                  "Where CLEAN finds components: a FITS or CASA image, not 0 there, or CASA region text (CRTF), which may name "
+                  "planes: range=[3chan, 7chan]")
+      ->type_name(file_type);
   command
       .add_option("--usemask", o.usemask, "user: --mask, or everywhere; auto: from the residuals, as tclean's auto-multithresh")
       ->check(CLI::IsMember({"user", "auto"}));
@@ -116,8 +122,9 @@ void declare(CLI::App& command, ImageOptions& o) {
   command.add_option("--lownoisethreshold", o.lownoisethreshold, "… grown down to this times the noise");
   command.add_option("--minbeamfrac", o.minbeamfrac, "… without regions below this part of the beam's area");
   command.add_option("--growiterations", o.growiterations, "… by this many pixels a major cycle at most");
-  command.add_option("--startmodel", o.startmodel,
-                     "Begin with this model, a FITS or CASA image in Jy/pixel of the same pixels");
+  command
+      .add_option("--startmodel", o.startmodel, "Begin with this model, a FITS or CASA image in Jy/pixel of the same pixels")
+      ->type_name(file_type);
   command.add_option("--savemodel", o.savemodel, "modelcolumn: write the model's visibilities into MODEL_DATA; none")
       ->check(CLI::IsMember({"none", "modelcolumn"}));
   command.add_flag("--restart", o.restart,
@@ -216,12 +223,10 @@ imager::CleanOptions clean_options(const ImageOptions& o, int threads) {
 }
 
 imager::DeconvolverChoice deconvolver_choice(const ImageOptions& o, int threads) {
-  // Full width at half maximum over radius of tclean's (1 − r²) × spheroidal function (Schwab's, m = 6, α = 1).
-  constexpr double width = 0.7412;
   imager::DeconvolverChoice choice;
   choice.name = o.deconvolver;
   choice.scale_pixels.clear();
-  for (const double scale : o.scales) choice.scale_pixels.push_back(width * scale);
+  for (const double scale : o.scales) choice.scale_pixels.push_back(imager::tclean_scale_width * scale);
   choice.small_scale_bias = o.smallscalebias;
   choice.threads = threads;
   return choice;

@@ -12,6 +12,7 @@
 #include "ms_io/model_writer.h"
 #include "tools/base/files.h"
 #include "tools/base/progress.h"
+#include "tools/kernel_choice/cache_folder.h"
 #include "tools/run/clean_stage.h"
 #include "tools/run/model_stage.h"
 #include "tools/run/outside_stage.h"

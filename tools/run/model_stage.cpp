@@ -1,10 +1,10 @@
 #include "tools/run/model_stage.h"
 
+#include "kernels/version.h"
 #include "ms_io/fingerprint.h"
 #include "ms_io/model_writer.h"
 #include "tools/base/text.h"
 #include "tools/formats/model_image.h"
-#include "tools/version.h"
 
 namespace misfit::tools {
 
@@ -12,7 +12,7 @@ void save_model(const ImageOptions& o, const SavedModel& model, int threads, con
   StokesPlanes planes{};
   TaylorTerms taylor{model.expansion, {}};
   ms_io::Fingerprint fingerprint;
-  fingerprint.add(std::string(version)).add(model.option_values);
+  fingerprint.add(std::string(MISFIT_VERSION)).add(model.option_values);
   for (std::size_t s = 0; s < model.stokes.size(); ++s) {
     planes.at(static_cast<std::size_t>(model.stokes[s]) - 1) = &model.cleaned[s].model;
     fingerprint.add(model.cleaned[s].model.pixel);

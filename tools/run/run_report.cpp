@@ -5,8 +5,8 @@
 #include <numbers>
 
 #include "imager/wide/facet.h"
+#include "kernels/version.h"
 #include "tools/base/memory.h"
-#include "tools/version.h"
 
 namespace misfit::tools {
 namespace {
@@ -192,7 +192,7 @@ double largest_expected_error(const RunReport& r) {
 json report_json(const RunReport& r) {
   const PlaneReport& plane = r.planes[r.shown];
   const StokesReport& first = plane.stokes.front();
-  return {{"version", version},
+  return {{"version", MISFIT_VERSION},
           {"command_line", r.command_line},
           {"options", r.options},
           {"plan", plan_json(r.plan)},

@@ -50,7 +50,8 @@ void add_scene_report(CLI::App& reports) {
   const auto o = std::make_shared<Options>();
   o->report.scene.imagename = "image";
   declare_scene(*command, o->report.scene);
-  command->add_option("--kernel", o->report.kernels, "Kernels to compare besides the usual ones: names or kernel-table files");
+  list_kernels(*command->add_option("--kernel", o->report.kernels,
+                                    "Kernels to compare besides the usual ones: names or kernel-table files"));
   declare_kernel_folder(*command, o->report.scene.kernel.folder);
   command->add_flag("--quick", o->report.quick,
                     "Fewer points and runs: an answer within two minutes for a million visibilities");
@@ -62,6 +63,7 @@ void add_scene_report(CLI::App& reports) {
       ->add_option("--output", o->output,
                    "Folder for index.html, SVG, CSV and report.json; a run that was stopped goes on there")
       ->required()
+      ->type_name(folder_type)
       ->check(not_empty());
   command->callback([o] { write(*o); });
 }

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <random>
 
+#include "kernels/version.h"
 #include "tools/base/interrupt.h"
 #include "tools/base/numbers.h"
 #include "tools/run/selection_options.h"
@@ -14,7 +15,6 @@
 #include "tools/scene/programs.h"
 #include "tools/scene/results_file.h"
 #include "tools/scene/sections.h"
-#include "tools/version.h"
 
 namespace misfit::tools {
 namespace {
@@ -38,7 +38,7 @@ std::vector<std::string> absolute(std::vector<std::string> paths) {
 /// What measurements belong to, named as people know it: the samples, the image, and who measured.
 json owner_of(const SceneReportOptions& o, const Scene& scene) {
   const ImageOptions& s = o.scene;
-  return {{"version", version},
+  return {{"version", MISFIT_VERSION},
           {"--vis", absolute(s.vis)},
           {"--phasecenter", s.phasecenter},
           {"number of samples", scene.samples()},

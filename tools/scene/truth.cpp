@@ -76,7 +76,7 @@ SceneTruth::SceneTruth(const imager::VisibilitySource& source, const imager::Ima
     const imager::Stopwatch watch;
     imager::add_direct_pixels(*block, at, direct);
     seconds += watch.seconds();
-    for (const float w : imager::imaging_weights(*block, geometry.cell_rad, threads, sums)) weight += double{w};
+    for (const float w : imager::imaging_weights(*block, {geometry, false, threads}, sums)) weight += double{w};
     imager::SampleCoordinates one{{}, {0}};
     for (std::size_t i = 0; i < samples_a_block; ++i) {
       const std::size_t sample = random() % block->samples();

@@ -35,7 +35,7 @@ std::complex<Extended> phasor(const double* uvw_m, double frequency_hz, const Ex
 std::vector<double> extended_pixels(const imager::VisibilityBlock& block, const imager::ImageGeometry& geometry,
                                     const std::vector<imager::Pixel>& pixels) {
   imager::SampleSums unused;
-  const std::vector<float> weight = imager::imaging_weights(block, geometry.cell_rad, 1, unused);
+  const std::vector<float> weight = imager::imaging_weights(block, {geometry}, unused);
   Extended weights = 0;
   for (const float w : weight) weights += Extended{w};
   std::vector<double> image(pixels.size());

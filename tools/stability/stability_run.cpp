@@ -131,10 +131,7 @@ bool is_finite(const imager::Image& image) {
 double max_sidelobe(const imager::Image& psf, double cell_rad) {
   const BeamChoice beams = choose_beam(psf, cell_rad, {}, false);
   if (!beams.main_lobe) return 1;
-  imager::Image point(psf.width, psf.height);
-  point.at(psf.height / 2, psf.width / 2) = 1;
-  const imager::Image beam = imager::convolve_with_beam(point, *beams.main_lobe, cell_rad, imager::available_threads());
-  return imager::largest_sidelobe(psf, beam);
+  return imager::largest_sidelobe(psf, *beams.main_lobe, cell_rad, imager::available_threads());
 }
 
 imager::CleanReport clean(const StabilityCase& asked, const imager::VisibilitySource& source,
