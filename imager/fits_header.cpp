@@ -10,14 +10,15 @@
 namespace misfit::imager {
 namespace {
 
-constexpr double degree = pi / 180;
+constexpr double rad_per_deg = pi / 180;
 
 void write_axes(FitsFile& file, const ImageHeader& header) {
   const ImageGeometry& g = header.geometry;
   const std::array<FitsAxis, 4> axes{{
-      {"RA---SIN", "deg", g.centre_column() + 1 + g.centre.l / g.cell_rad, g.phase_centre.ra_rad / degree,
-       -g.cell_rad / degree},
-      {"DEC--SIN", "deg", g.centre_row() + 1 - g.centre.m / g.cell_rad, g.phase_centre.dec_rad / degree, g.cell_rad / degree},
+      {"RA---SIN", "deg", g.centre_column() + 1 + g.centre.l / g.cell_rad, g.phase_centre.ra_rad / rad_per_deg,
+       -g.cell_rad / rad_per_deg},
+      {"DEC--SIN", "deg", g.centre_row() + 1 - g.centre.m / g.cell_rad, g.phase_centre.dec_rad / rad_per_deg,
+       g.cell_rad / rad_per_deg},
       {"FREQ", "Hz", 1, header.spectral.reference_hz, header.spectral.step_hz()},
       stokes_axis(header.stokes),
   }};
@@ -30,7 +31,7 @@ void write_axes(FitsFile& file, const ImageHeader& header) {
     file.write_number("CDELT" + n, axes[i].increment);
   }
   file.write_number("LONPOLE", 180);
-  file.write_number("LATPOLE", g.phase_centre.dec_rad / degree);
+  file.write_number("LATPOLE", g.phase_centre.dec_rad / rad_per_deg);
   file.write_text("RADESYS", g.phase_centre.frame);
   file.write_number("EQUINOX", g.phase_centre.frame == "FK4" ? 1950 : 2000);
 }
@@ -83,10 +84,10 @@ ImageGeometry read_geometry(const FitsFile& file) {
     file.fail("its pixels are not square with east on the left: CDELT1 = " + std::to_string(-east) +
               ", CDELT2 = " + std::to_string(north));
   const std::vector<long> size = file.size();
-  ImageGeometry geometry{static_cast<int>(size[0]), static_cast<int>(size[1]), north * degree, {}};
+  ImageGeometry geometry{static_cast<int>(size[0]), static_cast<int>(size[1]), north * rad_per_deg, {}};
   geometry.centre = {(file.needed_number("CRPIX1") - (geometry.centre_column() + 1)) * geometry.cell_rad,
                      (geometry.centre_row() + 1 - file.needed_number("CRPIX2")) * geometry.cell_rad};
-  geometry.phase_centre = {file.number("CRVAL1").value_or(0) * degree, file.number("CRVAL2").value_or(0) * degree,
+  geometry.phase_centre = {file.number("CRVAL1").value_or(0) * rad_per_deg, file.number("CRVAL2").value_or(0) * rad_per_deg,
                            read_frame(file)};
   return geometry;
 }

@@ -10,7 +10,7 @@ namespace misfit::kernels {
 namespace {
 
 /// ℓ of the solution oscillates about W/2 times in 0 … x0; nodes must see its maxima to a percent.
-int nodes_for(int width, double x0) {
+int kernel_nodes(int width, double x0) {
   return x0 > 0.42 ? 9 * width + 40 : 6 * width + 30;
 }
 
@@ -42,7 +42,7 @@ Weighted reweight(const MisfitSolution& start, int width, double x0, int& iterat
   constexpr double rounding = 0.1;
   constexpr double largest_power = 0.9;
   constexpr double least_power = 1e-6;  // moves no weight any more
-  const int nodes = nodes_for(width, x0);
+  const int nodes = kernel_nodes(width, x0);
   const Eigen::VectorXd weight = misfit_nodes(nodes, x0).weight;
   Weighted best;
   best.problem = {width, x0, nodes, Eigen::VectorXd::Ones(nodes), start.minimum.log_h, start.minimum.log_h, 1e-5, 1e-5};

@@ -9,6 +9,8 @@
 #include "tools/emit/emission_plan.h"
 #include "tools/hosts/convolve_gridder_table.h"
 
+BOOST_AUTO_TEST_SUITE(casacore_emission)
+
 using namespace misfit;
 using namespace misfit::testing;
 namespace bdata = boost::unit_test::data;
@@ -33,8 +35,6 @@ void check_agrees(double measured, double said) {
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(casacore_emission)
 
 BOOST_DATA_TEST_CASE(casacore_errs_by_what_is_said,
                      bdata::make({4, 6, 7}) * bdata::make({100, 10000}) * bdata::make({1.2, 2.0}), width, per_cell, padding) {

@@ -16,6 +16,8 @@
 #include "tests/hosts/gridded_sky.h"
 #include "tests/hosts/least_misfit_file.h"
 
+BOOST_AUTO_TEST_SUITE(casacore_gridder)
+
 using namespace misfit;
 using namespace misfit::testing;
 using casacore::Array;
@@ -49,8 +51,6 @@ Vector<double> at(std::initializer_list<double> position) {
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(casacore_gridder)
 
 BOOST_DATA_TEST_CASE(every_width_errs_as_theory_says_in_both_directions, bdata::xrange(1, 21) * bdata::make({0, 1}), width,
                      little) {

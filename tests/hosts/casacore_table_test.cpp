@@ -8,6 +8,8 @@
 #include "kernels/catalogue.h"
 #include "kernels/piecewise_polynomial.h"
 
+BOOST_AUTO_TEST_SUITE(casacore_table)
+
 using namespace misfit;
 using namespace misfit::hosts;
 namespace bdata = boost::unit_test::data;
@@ -27,8 +29,6 @@ double value(const kernels::PiecewisePolynomial& function, double u) {
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(casacore_table)
 
 BOOST_DATA_TEST_CASE(an_entry_is_the_mean_of_the_function_on_its_two_sides, bdata::xrange(1, 8) * bdata::make({7, 10, 128}),
                      width, per_cell) {

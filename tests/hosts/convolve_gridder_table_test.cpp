@@ -16,6 +16,8 @@
 #include "tests/hosts/least_misfit_file.h"
 #include "tools/hosts/casacore_table.h"
 
+BOOST_AUTO_TEST_SUITE(convolve_gridder_table)
+
 using namespace misfit;
 using namespace misfit::testing;
 using casacore::IPosition;
@@ -44,8 +46,6 @@ ConvolveGridderTable gridder_for(const LeastMisfitFile& file, const GriddedSky& 
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(convolve_gridder_table)
 
 BOOST_DATA_TEST_CASE(the_table_errs_as_theory_says_in_both_directions,
                      bdata::xrange(1, 8) * bdata::make({100, 128, 100000}) * bdata::make({0, 1}), width, per_cell, little) {

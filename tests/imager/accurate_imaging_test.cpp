@@ -8,6 +8,8 @@
 #include "tests/imager/comparison.h"
 #include "tests/imager/several_stokes.h"
 
+BOOST_AUTO_TEST_SUITE(accurate_imaging)
+
 namespace bdata = boost::unit_test::data;
 using namespace misfit::imager;
 using namespace misfit::imager::testing;
@@ -63,8 +65,6 @@ bool has_second_pass(const GriddingPlan& plan) {
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(accurate_imaging)
 
 BOOST_DATA_TEST_CASE(random_data_are_imaged_to_the_accuracy_in_one_pass, bdata::make({1e-2, 1e-4, 1e-6, 1e-9}), accuracy) {
   const VisibilityBlock block = random_samples(400, 2, cell_rad, 1);

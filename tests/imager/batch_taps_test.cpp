@@ -7,10 +7,10 @@
 #include <limits>
 #include <random>
 
+BOOST_AUTO_TEST_SUITE(batch_taps)
+
 using namespace misfit;
 using namespace misfit::imager;
-
-BOOST_AUTO_TEST_SUITE(batch_taps)
 
 using Precisions = boost::mpl::list<float, double>;
 

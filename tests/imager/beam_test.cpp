@@ -6,6 +6,8 @@
 #include <random>
 #include <string>
 
+BOOST_AUTO_TEST_SUITE(beam)
+
 namespace {
 
 using namespace misfit::imager;
@@ -73,8 +75,6 @@ Image tapered_psf(double edge, int size) {
 const Beam oblique{7.3 * cell_rad, 4.1 * cell_rad, 0.6};
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(beam)
 
 BOOST_AUTO_TEST_CASE(a_sampled_gaussian_is_recovered_from_either_region) {
   // The residual is zero at the solution, so only rounding and the stop of the iteration (1e-14) remain; 1e-6 is the promise.

@@ -5,10 +5,10 @@
 #include <cstdint>
 #include <memory>
 
+BOOST_AUTO_TEST_SUITE(big_array)
+
 using misfit::imager::BigArray;
 using misfit::imager::BigMemory;
-
-BOOST_AUTO_TEST_SUITE(big_array)
 
 BOOST_AUTO_TEST_CASE(room_for_less_keeps_the_content) {
   BigArray<int> array;

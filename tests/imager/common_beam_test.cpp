@@ -4,6 +4,8 @@
 #include <cmath>
 #include <random>
 
+BOOST_AUTO_TEST_SUITE(common_beam)
+
 using namespace misfit::imager;
 
 namespace {
@@ -35,8 +37,6 @@ std::vector<Beam> random_beams(std::size_t count, unsigned seed) {
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(common_beam)
 
 BOOST_AUTO_TEST_CASE(one_beam_is_its_own) {
   const Beam beam{5e-6, 2e-6, 0.7};

@@ -8,6 +8,8 @@
 #include "tests/imager/comparison.h"
 #include "tests/imager/random_samples.h"
 
+BOOST_AUTO_TEST_SUITE(direct_transform)
+
 using namespace misfit::imager;
 using namespace misfit::imager::testing;
 using Complex = std::complex<double>;
@@ -39,8 +41,6 @@ AdjointResult adjoint_of(const VisibilityBlock& block, const ImageGeometry& of =
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(direct_transform)
 
 BOOST_AUTO_TEST_CASE(a_point_source_gives_the_defining_phase_w_included) {
   const VisibilityBlock block = samples(40);

@@ -10,6 +10,8 @@
 #include "tests/imager/comparison.h"
 #include "tests/imager/random_samples.h"
 
+BOOST_AUTO_TEST_SUITE(error_bounds)
+
 namespace bdata = boost::unit_test::data;
 using namespace misfit::imager;
 using namespace misfit::imager::testing;
@@ -112,8 +114,6 @@ void check_aligned_errors(const GriddingPlan& plan) {
 constexpr Scene flat[] = {{1, 1}, {2, 3}, {33, 20}, {128, 40}};
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(error_bounds)
 
 BOOST_TEST_DECORATOR(*boost::unit_test::label("sweep"))
 BOOST_DATA_TEST_CASE(aligned_errors_of_every_family_reach_the_bound_but_do_not_exceed_it,

@@ -4,6 +4,8 @@
 
 #include "tests/imager/random_samples.h"
 
+BOOST_AUTO_TEST_SUITE(extent)
+
 using namespace misfit::imager;
 using misfit::imager::testing::random_samples;
 
@@ -49,8 +51,6 @@ Expected brute_force(const std::vector<VisibilityBlock>& blocks, const ImageGeom
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(extent)
 
 BOOST_AUTO_TEST_CASE(the_neglected_phase_is_that_of_every_usable_sample_and_pixel) {
   const std::vector<VisibilityBlock> blocks{samples(1), samples(2)};

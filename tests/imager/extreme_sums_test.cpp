@@ -6,6 +6,8 @@
 #include "tests/imager/comparison.h"
 #include "tests/imager/random_samples.h"
 
+BOOST_AUTO_TEST_SUITE(extreme_sums)
+
 namespace bdata = boost::unit_test::data;
 using namespace misfit::imager;
 using namespace misfit::imager::testing;
@@ -61,8 +63,6 @@ VisibilityBlock equal_samples(std::size_t count, double w) {
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(extreme_sums)
 
 BOOST_DATA_TEST_CASE(any_number_of_equal_samples_in_one_cell_is_summed_to_the_accuracy,
                      bdata::make({false, true}) * bdata::make({150U, 450U, 3000U, 400000U}), wide, count) {

@@ -4,10 +4,10 @@
 #include <boost/test/unit_test.hpp>
 #include <cmath>
 
+BOOST_AUTO_TEST_SUITE(facet)
+
 namespace bdata = boost::unit_test::data;
 using namespace misfit::imager;
-
-BOOST_AUTO_TEST_SUITE(facet)
 
 // Sizes around multiples of the lattice on which planes are fitted, and much larger ones.
 BOOST_DATA_TEST_CASE(the_plane_of_a_whole_image_leaves_no_more_than_n_minus_1_itself_spans,

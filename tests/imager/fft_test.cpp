@@ -7,6 +7,8 @@
 #include <random>
 #include <vector>
 
+BOOST_AUTO_TEST_SUITE(fft)
+
 using namespace misfit::imager;
 
 namespace {
@@ -70,8 +72,6 @@ bool is_seven_smooth(int n) {
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(fft)
 
 BOOST_AUTO_TEST_CASE_TEMPLATE(complex_transforms_equal_the_plain_sum_with_either_sign, Real, Precisions) {
   using Sign = typename Fft<Real>::Sign;

@@ -11,6 +11,8 @@
 #include "tests/imager/fits_cards.h"
 #include "tests/temporary_folder.h"
 
+BOOST_AUTO_TEST_SUITE(fits_cube)
+
 namespace {
 
 using namespace misfit::imager;
@@ -31,8 +33,6 @@ bool empty(const TemporaryFolder& folder) {
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(fits_cube)
 
 BOOST_AUTO_TEST_CASE(planes_written_in_any_order_lie_where_the_header_has_them) {
   const TemporaryFolder folder;

@@ -12,6 +12,8 @@
 #include "tests/imager/fits_cards.h"
 #include "tests/temporary_folder.h"
 
+BOOST_AUTO_TEST_SUITE(fits_image)
+
 namespace {
 
 using namespace misfit::imager;
@@ -66,8 +68,6 @@ void check_error_names(const std::string& path, const std::string& expected, con
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(fits_image)
 
 BOOST_AUTO_TEST_CASE(pixels_of_64_bits_come_back_bit_for_bit) {
   const TemporaryFolder folder;

@@ -7,6 +7,8 @@
 
 #include "imager/constants.h"
 
+BOOST_AUTO_TEST_SUITE(geometry)
+
 using namespace misfit::imager;
 
 namespace {
@@ -22,8 +24,6 @@ double dot(const Vector& a, const Vector& b) {
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(geometry)
 
 BOOST_AUTO_TEST_CASE(direction_cosines_are_projections_on_east_and_north) {
   std::mt19937_64 random(1);

@@ -7,6 +7,8 @@
 #include <stdexcept>
 #include <string>
 
+BOOST_AUTO_TEST_SUITE(gridding_plan)
+
 namespace bdata = boost::unit_test::data;
 using namespace misfit::imager;
 
@@ -61,8 +63,6 @@ void check_refusal_or_promise(const GriddingRequest& r) {
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(gridding_plan)
 
 BOOST_TEST_DECORATOR(*boost::unit_test::label("sweep"))
 BOOST_DATA_TEST_CASE(the_worst_error_is_within_the_accuracy_and_less_accuracy_never_costs_more, bdata::xrange(std::size(sizes)),

@@ -6,6 +6,8 @@
 #include "imager/constants.h"
 #include "tests/imager/comparison.h"
 
+BOOST_AUTO_TEST_SUITE(half_grid)
+
 namespace bdata = boost::unit_test::data;
 using namespace misfit::imager;
 using misfit::imager::testing::norm;
@@ -74,8 +76,6 @@ Image plain_image(const HalfGrid<Real>& grid, const ImageCorrection& h) {
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(half_grid)
 
 BOOST_DATA_TEST_CASE(image_of_a_grid_equals_the_double_sum_over_its_cells_and_margins, shapes, width, height, kernel_width) {
   const HalfGrid<double> grid = random_grid<double>(shape_of(kernel_width));

@@ -8,6 +8,8 @@
 
 #include "tests/imager/comparison.h"
 
+BOOST_AUTO_TEST_SUITE(image_statistics)
+
 namespace bdata = boost::unit_test::data;
 using namespace misfit::imager;
 using misfit::imager::testing::random_image;
@@ -31,8 +33,6 @@ bool same(const ImageStatistics& a, const ImageStatistics& b) {
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(image_statistics)
 
 BOOST_DATA_TEST_CASE(they_are_those_of_the_pixels_that_are_not_nan, widths, width) {
   const Image image = holed(width);

@@ -7,6 +7,8 @@
 #include "tests/imager/comparison.h"
 #include "tests/imager/random_samples.h"
 
+BOOST_AUTO_TEST_SUITE(imaging)
+
 using namespace misfit::imager;
 using namespace misfit::imager::testing;
 
@@ -36,8 +38,6 @@ std::vector<VisibilityBlock> observed(const Image& model) {
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(imaging)
 
 BOOST_AUTO_TEST_CASE(dirty_image_and_psf_are_the_direct_ones_over_the_sum_of_weights) {
   const std::vector<VisibilityBlock> blocks = observed(random_image(60, 44, 3));

@@ -6,6 +6,8 @@
 #include <random>
 #include <vector>
 
+BOOST_AUTO_TEST_SUITE(main_lobe)
+
 namespace {
 
 using namespace misfit::imager;
@@ -37,8 +39,6 @@ std::vector<Point> square_of_points(double largest) {
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(main_lobe)
 
 BOOST_AUTO_TEST_CASE(a_lobe_of_few_pixels_is_sampled_between_them) {
   const int size = 256, last = 127;

@@ -6,6 +6,8 @@
 #include "imager/plan/gridding_plan.h"
 #include "imager/plane/half_grid.h"
 
+BOOST_AUTO_TEST_SUITE(memory_use)
+
 namespace bdata = boost::unit_test::data;
 using namespace misfit::imager;
 
@@ -20,8 +22,6 @@ double peak(const MemoryDemand& demand, const StreamingOptions& streaming) {
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(memory_use)
 
 BOOST_AUTO_TEST_CASE(the_total_is_the_sum_of_its_parts) {
   const MemoryUse use{"", 1, 20, 300, 4000, 50000, 600000};

@@ -8,10 +8,10 @@
 
 #include "tests/imager/comparison.h"
 
+BOOST_AUTO_TEST_SUITE(noise)
+
 using namespace misfit::imager;
 using misfit::imager::testing::random_image;
-
-BOOST_AUTO_TEST_SUITE(noise)
 
 BOOST_AUTO_TEST_CASE(normal_pixels_have_their_standard_deviation) {
   Image image = random_image(300, 300, 1);

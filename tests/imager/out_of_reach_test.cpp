@@ -6,6 +6,8 @@
 #include "imager/extent.h"
 #include "imager/plan/gridding_plan.h"
 
+BOOST_AUTO_TEST_SUITE(out_of_reach)
+
 namespace bdata = boost::unit_test::data;
 using namespace misfit;
 using namespace misfit::imager;
@@ -42,8 +44,6 @@ double number_after(const std::string& before, const std::string& text) {
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(out_of_reach)
 
 BOOST_DATA_TEST_CASE(tables_are_blamed_with_a_sampling_that_serves,
                      bdata::make({64, 500}) * bdata::xrange(4) * bdata::make({1e-3, 1e-5, 1e-7}), pixels, degree, accuracy) {

@@ -12,6 +12,8 @@
 #include "tests/imager/comparison.h"
 #include "tests/imager/random_samples.h"
 
+BOOST_AUTO_TEST_SUITE(outside)
+
 namespace bdata = boost::unit_test::data;
 using namespace misfit::imager;
 using namespace misfit::imager::testing;
@@ -113,8 +115,6 @@ GriddingPlan plan_of_way(const std::string& kernel, double padding, const ImageG
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(outside)
 
 /// Sources whose copies fall upon the image, beside it along one axis or both, and sources within the padding.
 BOOST_TEST_DECORATOR(*boost::unit_test::label("sweep"))

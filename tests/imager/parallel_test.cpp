@@ -6,9 +6,9 @@
 #include <stdexcept>
 #include <thread>
 
-using namespace misfit::imager;
-
 BOOST_AUTO_TEST_SUITE(parallel)
+
+using namespace misfit::imager;
 
 BOOST_AUTO_TEST_CASE(every_index_runs_once_for_any_number_of_threads) {
   for (const int threads : {-1, 0, 1, 2, 7, 100})

@@ -6,6 +6,8 @@
 #include "imager/direct/direct_transform.h"
 #include "tests/imager/random_samples.h"
 
+BOOST_AUTO_TEST_SUITE(phase_shift)
+
 using namespace misfit::imager;
 using namespace misfit::imager::testing;
 using Complex = std::complex<double>;
@@ -51,8 +53,6 @@ double direct_sum(const VisibilityBlock& block, const PhasePosition& at) {
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(phase_shift)
 
 BOOST_AUTO_TEST_CASE(the_image_about_the_new_centre_is_the_direct_sum_of_the_old_at_the_same_directions) {
   for (const Centres& centres : all_centres) {

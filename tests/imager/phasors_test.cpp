@@ -8,9 +8,9 @@
 #include <random>
 #include <vector>
 
-namespace bdata = boost::unit_test::data;
-
 BOOST_AUTO_TEST_SUITE(phasors)
+
+namespace bdata = boost::unit_test::data;
 
 BOOST_DATA_TEST_CASE(they_are_the_sine_and_cosine_of_the_part_beyond_whole_turns, bdata::make({1e-9, 0.3, 2.0, 1e3, 1e9}),
                      largest) {

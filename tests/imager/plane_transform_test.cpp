@@ -9,6 +9,8 @@
 #include "kernels/evaluation.h"
 #include "tests/imager/random_samples.h"
 
+BOOST_AUTO_TEST_SUITE(plane_transform)
+
 namespace bdata = boost::unit_test::data;
 using namespace misfit;
 using namespace misfit::imager;
@@ -74,8 +76,6 @@ std::vector<double> parts(const std::vector<std::complex<double>>& z) {
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(plane_transform)
 
 BOOST_DATA_TEST_CASE(dirty_image_and_psf_equal_the_direct_transform_within_the_kernel_error,
                      bdata::xrange(1, 12) * bdata::make({1.25, 1.5, 2.0}) * bdata::make({1, 3}), kernel_width, padding,

@@ -5,6 +5,8 @@
 #include "tests/imager/comparison.h"
 #include "tests/imager/random_samples.h"
 
+BOOST_AUTO_TEST_SUITE(planned_transform)
+
 using namespace misfit::imager;
 using namespace misfit::imager::testing;
 
@@ -39,8 +41,6 @@ bool decided(const GriddingPlan& plan, const std::string& item) {
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(planned_transform)
 
 BOOST_AUTO_TEST_CASE(images_of_a_few_samples_are_direct_sums) {
   const VisibilityBlock block = random_samples_with_w(3, 2, field.cell_rad, 200, 1);

@@ -9,6 +9,8 @@
 #include <stdexcept>
 #include <thread>
 
+BOOST_AUTO_TEST_SUITE(prefetch)
+
 namespace bdata = boost::unit_test::data;
 using namespace misfit::imager;
 
@@ -34,8 +36,6 @@ class Counting : public BlockStream {
 };
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(prefetch)
 
 BOOST_DATA_TEST_CASE(blocks_come_in_their_order_and_end, bdata::make({0, 1, 2, 7, 100}), ahead) {
   for (const std::size_t blocks : {0, 1, 5, 40}) {

@@ -7,6 +7,8 @@
 
 #include "imager/constants.h"
 
+BOOST_AUTO_TEST_SUITE(primary_beam)
+
 namespace bdata = boost::unit_test::data;
 using namespace misfit::imager;
 
@@ -37,8 +39,6 @@ double angle(DirectionCosines a, DirectionCosines b) {
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(primary_beam)
 
 BOOST_DATA_TEST_CASE(a_voltage_is_the_transform_of_the_lit_ring, bdata::make({0.0, 0.3, 2.36, 12.0}), blockage_m) {
   const Dish dish{25, blockage_m};

@@ -3,6 +3,8 @@
 #include <boost/test/unit_test.hpp>
 #include <limits>
 
+BOOST_AUTO_TEST_SUITE(sampling)
+
 using namespace misfit::imager;
 
 namespace {
@@ -28,8 +30,6 @@ VisibilityBlock row_at(double u_turns, double v_turns) {
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(sampling)
 
 BOOST_AUTO_TEST_CASE(a_turn_per_two_cells_is_the_last_that_an_image_can_represent) {
   constexpr double beyond = 0.5 + std::numeric_limits<double>::epsilon();

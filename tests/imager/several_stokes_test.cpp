@@ -9,6 +9,8 @@
 #include "kernels/catalogue.h"
 #include "tests/imager/comparison.h"
 
+BOOST_AUTO_TEST_SUITE(several_stokes)
+
 namespace bdata = boost::unit_test::data;
 using namespace misfit;
 using namespace misfit::imager;
@@ -97,8 +99,6 @@ bool same(const Image& a, const Image& b) {
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(several_stokes)
 
 BOOST_DATA_TEST_CASE(images_made_at_once_have_the_bits_of_those_made_one_by_one,
                      bdata::make(transforms()) * bdata::make({2, 3, 4}) * bdata::make({false, true}), named, images, with_psf) {

@@ -2,9 +2,9 @@
 
 #include <boost/test/unit_test.hpp>
 
-using misfit::imager::SharedVector;
-
 BOOST_AUTO_TEST_SUITE(shared_vector)
+
+using misfit::imager::SharedVector;
 
 BOOST_AUTO_TEST_CASE(copies_share_values_until_one_is_edited) {
   SharedVector<double> one{1, 2, 3};

@@ -10,6 +10,8 @@
 #include "imager/direct/direct_transform.h"
 #include "tests/imager/comparison.h"
 
+BOOST_AUTO_TEST_SUITE(source_sums)
+
 namespace bdata = boost::unit_test::data;
 
 using namespace misfit::imager;
@@ -83,8 +85,6 @@ double error_of(const std::vector<Source>& sources, const SampleCoordinates& at)
 constexpr double bound = 1e-11;
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(source_sums)
 
 BOOST_DATA_TEST_CASE(they_are_the_defining_sum_for_any_number_of_rows_channels_and_sources,
                      bdata::make({1, 7, 8, 70}) * bdata::make({1, 2, 3, 64, 131}) * bdata::make({1, 2, 5, 40}), rows, channels,

@@ -3,6 +3,8 @@
 #include "imager/wide/plane_stack.h"
 #include "tests/imager/loop_checks.h"
 
+BOOST_AUTO_TEST_SUITE(stack_loops)
+
 using namespace misfit;
 using namespace misfit::imager;
 using namespace misfit::imager::testing;
@@ -89,8 +91,6 @@ void for_each_tap(const Kernels<Real>& k, const StackBatch<Real>& batch, const V
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(stack_loops)
 
 BOOST_AUTO_TEST_CASE_TEMPLATE(spread_adds_the_plain_double_loop_in_a_buffer_and_in_the_stack, Real, Precisions) {
   for_each_width_and_target([](int width) {

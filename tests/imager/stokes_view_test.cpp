@@ -5,6 +5,8 @@
 #include "tests/imager/comparison.h"
 #include "tests/imager/several_stokes.h"
 
+BOOST_AUTO_TEST_SUITE(stokes_view)
+
 using namespace misfit::imager;
 using namespace misfit::imager::testing;
 
@@ -22,8 +24,6 @@ std::vector<std::shared_ptr<const VisibilityBlock>> blocks_of(const VisibilitySo
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(stokes_view)
 
 BOOST_AUTO_TEST_CASE(a_view_hands_out_the_blocks_of_its_stokes_parameter_without_a_copy) {
   const StoredVisibilities from = source();

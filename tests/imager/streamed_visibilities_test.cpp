@@ -8,6 +8,8 @@
 #include "tests/imager/comparison.h"
 #include "tests/imager/random_samples.h"
 
+BOOST_AUTO_TEST_SUITE(streamed_visibilities)
+
 namespace bdata = boost::unit_test::data;
 using namespace misfit::imager;
 using namespace misfit::imager::testing;
@@ -49,8 +51,6 @@ std::vector<float> weights_of_a_pass(const VisibilitySource& source) {
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(streamed_visibilities)
 
 BOOST_DATA_TEST_CASE(every_pass_hands_out_what_the_source_does, bdata::make({false, true}) * bdata::make({0, 2}), keep, ahead) {
   const Counted source(blocks());

@@ -6,6 +6,8 @@
 
 #include "imager/constants.h"
 
+BOOST_AUTO_TEST_SUITE(telescopes)
+
 using namespace misfit::imager;
 
 namespace {
@@ -26,8 +28,6 @@ std::string refusal(const AntennaSort& antennas) {
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(telescopes)
 
 BOOST_AUTO_TEST_CASE(beams_are_as_wide_as_measured) {
   // Perley 2016 has 40.6 to 43.6 for the VLA; of ALMA's 12 m dishes the technical handbook says 1.13 λ/D, 97.1; fits to the

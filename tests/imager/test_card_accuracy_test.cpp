@@ -8,6 +8,8 @@
 #include "tests/imager/comparison.h"
 #include "tests/imager/vla_samples.h"
 
+BOOST_AUTO_TEST_SUITE(test_card_accuracy)
+
 namespace bdata = boost::unit_test::data;
 using namespace misfit::imager;
 using namespace misfit::imager::testing;
@@ -86,8 +88,6 @@ std::unique_ptr<Transform> planned(double accuracy) {
 const auto accuracies = bdata::make({1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7});
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(test_card_accuracy)
 
 BOOST_DATA_TEST_CASE(the_whole_image_and_psf_keep_the_accuracy_borders_included, accuracies, accuracy) {
   StageTimes times;

@@ -2,6 +2,8 @@
 
 #include "tests/imager/loop_checks.h"
 
+BOOST_AUTO_TEST_SUITE(tile_loops)
+
 using namespace misfit;
 using namespace misfit::imager;
 using namespace misfit::imager::testing;
@@ -45,8 +47,6 @@ std::size_t index(const TileBuffer<Real>& buffer, int row, int plane, int column
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(tile_loops)
 
 BOOST_AUTO_TEST_CASE_TEMPLATE(spread_adds_the_plain_double_loop_for_every_width_and_instruction_set, Real, Precisions) {
   for_each_width_and_target([](int width) {

@@ -8,6 +8,8 @@
 
 #include "tests/imager/random_samples.h"
 
+BOOST_AUTO_TEST_SUITE(tile_order)
+
 namespace bdata = boost::unit_test::data;
 using namespace misfit::imager;
 using misfit::imager::testing::random_samples;
@@ -71,8 +73,6 @@ bool wants(Wanted wanted, const VisibilityBlock& block, std::size_t sample) {
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(tile_order)
 
 BOOST_DATA_TEST_CASE(every_wanted_sample_occurs_once_in_the_tile_of_its_first_tap,
                      bdata::make({0, 1, 2, 3}) * bdata::make({1, 2, 7, 8, 16}) * bdata::make({1, 17}), kind, kernel_width,

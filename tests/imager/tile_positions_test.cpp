@@ -8,6 +8,8 @@
 #include <limits>
 #include <vector>
 
+BOOST_AUTO_TEST_SUITE(tile_positions)
+
 using namespace misfit::imager;
 
 namespace {
@@ -17,8 +19,6 @@ using Precisions = boost::mpl::list<float, double>;
 constexpr RowInTile row{2e-9, 1000, 3e-9, 1500, 16};
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(tile_positions)
 
 BOOST_AUTO_TEST_CASE_TEMPLATE(positions_are_whole_cells_and_what_is_left_with_every_instruction_set, Real, Precisions) {
   constexpr int count = 37;

@@ -8,6 +8,8 @@
 #include "tests/imager/comparison.h"
 #include "tests/imager/random_samples.h"
 
+BOOST_AUTO_TEST_SUITE(unexplained)
+
 using namespace misfit::imager;
 using namespace misfit::imager::testing;
 
@@ -44,8 +46,6 @@ Seen seen(const VisibilityBlock& block) {
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(unexplained)
 
 BOOST_AUTO_TEST_CASE(noise_alone_is_no_source_and_is_that_of_the_image) {
   const Seen of = seen(observed(0, true));

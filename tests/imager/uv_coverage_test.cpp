@@ -8,6 +8,8 @@
 
 #include "tests/imager/random_samples.h"
 
+BOOST_AUTO_TEST_SUITE(uv_coverage)
+
 using namespace misfit::imager;
 using misfit::imager::testing::random_samples;
 
@@ -45,8 +47,6 @@ std::vector<double> narrow_channels() {
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(uv_coverage)
 
 BOOST_AUTO_TEST_CASE(every_usable_sample_and_its_mirror_image_count_once) {
   VisibilityBlock block = random_samples(200, 40, cell_rad, 1);

@@ -6,6 +6,8 @@
 #include "tests/imager/comparison.h"
 #include "tests/imager/several_stokes.h"
 
+BOOST_AUTO_TEST_SUITE(verify)
+
 using namespace misfit::imager;
 using namespace misfit::imager::testing;
 
@@ -37,8 +39,6 @@ std::unique_ptr<Transform> bad_transform(int kernel_width) {
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(verify)
 
 BOOST_AUTO_TEST_CASE(an_exact_transform_has_no_error_but_rounding) {
   const DirectTransform exact(geometry, 2);

@@ -6,10 +6,10 @@
 #include "tests/imager/comparison.h"
 #include "tests/imager/random_samples.h"
 
+BOOST_AUTO_TEST_SUITE(weight_shares)
+
 using namespace misfit::imager;
 using namespace misfit::imager::testing;
-
-BOOST_AUTO_TEST_SUITE(weight_shares)
 
 BOOST_AUTO_TEST_CASE(weights_add_up_by_kind_and_frequency_over_all_blocks_without_what_lies_outside) {
   constexpr double cell_rad = 1e-4;

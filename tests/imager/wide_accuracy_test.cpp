@@ -9,6 +9,8 @@
 #include "tests/imager/comparison.h"
 #include "tests/imager/random_samples.h"
 
+BOOST_AUTO_TEST_SUITE(wide_accuracy)
+
 namespace bdata = boost::unit_test::data;
 using namespace misfit::imager;
 using namespace misfit::imager::testing;
@@ -107,8 +109,6 @@ void check_promise(std::size_t i, double accuracy) {
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(wide_accuracy)
 
 BOOST_DATA_TEST_CASE(a_plan_keeps_its_promise_over_the_whole_image,
                      bdata::xrange(std::size(scenes)) * bdata::make({1e-2, 1e-6}), i, accuracy) {

@@ -11,6 +11,8 @@
 #include "tests/imager/comparison.h"
 #include "tests/imager/random_samples.h"
 
+BOOST_AUTO_TEST_SUITE(wide_transform)
+
 namespace bdata = boost::unit_test::data;
 using namespace misfit;
 using namespace misfit::imager;
@@ -76,8 +78,6 @@ const ImageGeometry field{64, 48, 0.0055, {}};
 const double most_w = 600;
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(wide_transform)
 
 BOOST_TEST_DECORATOR(*boost::unit_test::label("sweep"))
 BOOST_DATA_TEST_CASE(dirty_image_and_psf_equal_the_direct_transform_within_the_kernel_error,

@@ -7,6 +7,8 @@
 
 namespace misfit::ms_io {
 
+BOOST_AUTO_TEST_SUITE(beam_rows)
+
 using namespace testing;
 
 namespace {
@@ -25,8 +27,6 @@ BeamRows rows_of(const SmallSet& set, const Selection& selection = {}) {
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(beam_rows)
 
 BOOST_AUTO_TEST_CASE(antennas_of_one_sort_need_no_pairs) {
   const SmallSet set;

@@ -16,6 +16,8 @@
 #include "tests/example_cube.h"
 #include "tests/temporary_folder.h"
 
+BOOST_AUTO_TEST_SUITE(casa_image)
+
 namespace {
 
 using namespace misfit;
@@ -63,8 +65,6 @@ void check_error_names(const std::string& path, const std::string& expected, con
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(casa_image)
 
 BOOST_AUTO_TEST_CASE(planes_written_in_any_order_come_back_with_their_beams) {
   const TemporaryFolder folder;

@@ -8,6 +8,8 @@
 
 namespace misfit::ms_io {
 
+BOOST_AUTO_TEST_SUITE(column_reader)
+
 using namespace testing;
 
 namespace {
@@ -108,8 +110,6 @@ void check_windows(const SmallSet& set, const std::vector<std::string>& windows)
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(column_reader)
 
 BOOST_AUTO_TEST_CASE(windows_whose_rows_alternate_give_the_samples_of_each_alone) {
   const std::vector<std::vector<std::string>> selections = {

@@ -15,6 +15,8 @@
 
 // The FITS file and the CASA image of one header, both as casacore reads them.
 
+BOOST_AUTO_TEST_SUITE(image_coordinates)
+
 namespace {
 
 using namespace misfit;
@@ -116,8 +118,6 @@ void check_description(const casacore::ImageInterface<float>& image) {
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(image_coordinates)
 
 BOOST_DATA_TEST_CASE(both_formats_place_pixels_and_planes_where_the_header_does, boost::unit_test::data::make(places), place) {
   const TemporaryFolder folder;

@@ -13,6 +13,8 @@
 
 namespace misfit::ms_io {
 
+BOOST_AUTO_TEST_SUITE(killed_run)
+
 using namespace testing;
 
 namespace {
@@ -159,8 +161,6 @@ const casacore::TiledShapeStMan tiled("Model", casacore::IPosition(3, 2, 4, 15))
 const casacore::StandardStMan standard("Model");
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(killed_run)
 
 BOOST_AUTO_TEST_CASE(while_it_makes_a_column) {
   check_kills(MixedSet(), {"CORRECTED_DATA", "DATA", false});

@@ -10,6 +10,8 @@
 
 namespace misfit::ms_io {
 
+BOOST_AUTO_TEST_SUITE(measurement_set)
+
 using namespace testing;
 
 namespace {
@@ -40,8 +42,6 @@ imager::UvwReach reach_of_samples(const MeasurementSet& set) {
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(measurement_set)
 
 BOOST_AUTO_TEST_CASE(what_was_written_is_read) {
   const SmallSet set;

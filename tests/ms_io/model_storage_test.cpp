@@ -12,6 +12,8 @@
 
 namespace misfit::ms_io {
 
+BOOST_AUTO_TEST_SUITE(model_storage)
+
 using namespace testing;
 
 namespace {
@@ -58,8 +60,6 @@ std::string storage(const SmallSet& set, const casacore::String& column) {
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(model_storage)
 
 BOOST_AUTO_TEST_CASE(a_new_column_is_plain_where_the_data_are_compressed) {
   const SmallSet set;

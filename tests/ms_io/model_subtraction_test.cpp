@@ -8,6 +8,8 @@
 
 namespace misfit::ms_io {
 
+BOOST_AUTO_TEST_SUITE(model_subtraction)
+
 using namespace testing;
 
 namespace {
@@ -63,8 +65,6 @@ bool same_bits(const Complex& a, const Complex& b) {
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(model_subtraction)
 
 BOOST_AUTO_TEST_CASE(every_selected_sample_loses_the_model_whatever_its_flags_and_weights) {
   const SmallSet set;

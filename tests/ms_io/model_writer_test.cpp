@@ -7,6 +7,8 @@
 
 namespace misfit::ms_io {
 
+BOOST_AUTO_TEST_SUITE(model_writer)
+
 using namespace testing;
 
 namespace {
@@ -21,8 +23,6 @@ ModelWriteReport write(const SmallSet& set, const Selection& selection, const st
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(model_writer)
 
 BOOST_AUTO_TEST_CASE(every_selected_sample_is_written_whatever_its_flags_and_weights) {
   const SmallSet set;

@@ -11,6 +11,8 @@
 
 namespace misfit::ms_io {
 
+BOOST_AUTO_TEST_SUITE(phase_centre)
+
 using namespace testing;
 
 namespace {
@@ -52,8 +54,6 @@ class Mosaic : public SmallSet {
 };
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(phase_centre)
 
 BOOST_AUTO_TEST_CASE(directions_are_understood_as_casa_writes_them) {
   const SmallSet set;

@@ -7,6 +7,8 @@
 
 namespace misfit::ms_io {
 
+BOOST_AUTO_TEST_SUITE(real_sets)
+
 using namespace testing;
 using misfit::testing::Unpacked;
 
@@ -30,8 +32,6 @@ AllSamples read_checked(const MeasurementSet& set) {
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(real_sets)
 
 BOOST_AUTO_TEST_CASE(alma_has_three_windows_and_is_56_percent_flagged) {
   const Unpacked data("alma_hd142527_b9");

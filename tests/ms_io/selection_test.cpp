@@ -9,6 +9,8 @@
 
 namespace misfit::ms_io {
 
+BOOST_AUTO_TEST_SUITE(selection)
+
 using namespace testing;
 using misfit::testing::Unpacked;
 
@@ -80,8 +82,6 @@ std::string error_of_selection(const SmallSet& set, const Selection& selection) 
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(selection)
 
 BOOST_AUTO_TEST_CASE(fields_scans_intents_and_observations_are_those_of_a_query) {
   check(ManySet(), {{one(&Selection::field, "3C 295"), "FIELD_ID == 0"},

@@ -7,6 +7,8 @@
 
 namespace misfit::ms_io {
 
+BOOST_AUTO_TEST_SUITE(several_sets)
+
 using namespace testing;
 
 namespace {
@@ -35,8 +37,6 @@ MeasurementSet both(const SmallSet& first, const SmallSet& second, const std::st
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(several_sets)
 
 BOOST_AUTO_TEST_CASE(what_is_read_is_the_samples_of_one_after_those_of_the_other) {
   const SmallSet first;

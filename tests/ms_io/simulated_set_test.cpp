@@ -8,9 +8,9 @@
 
 namespace misfit::ms_io {
 
-using namespace testing;
-
 BOOST_AUTO_TEST_SUITE(simulated_set)
+
+using namespace testing;
 
 BOOST_AUTO_TEST_CASE(every_required_subtable_has_rows) {
   const SmallSet set;

@@ -8,6 +8,8 @@
 
 #include "tests/ms_io/small_set.h"
 
+BOOST_AUTO_TEST_SUITE(spectral_frame)
+
 using namespace misfit;
 using namespace misfit::ms_io;
 using namespace misfit::ms_io::testing;
@@ -81,8 +83,6 @@ std::uint64_t bytes_of_pass(const MeasurementSet& set) {
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(spectral_frame)
 
 // Origin: astropy 5.2.1, SkyCoord.radial_velocity_correction and EarthLocation.get_gcrs_posvel, and 20 km/s towards 18h +30°
 // (B1900). They count the Earth's time dilation and the Sun's potential, 1.5e-8 and 4e-10 more or less in the course of a year,

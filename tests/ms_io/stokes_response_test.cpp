@@ -7,6 +7,8 @@
 
 namespace misfit::ms_io {
 
+BOOST_AUTO_TEST_SUITE(stokes_response)
+
 using namespace testing;
 
 namespace {
@@ -27,8 +29,6 @@ StokesVisibilities polarised(const imager::SampleCoordinates& where) {
 const std::vector<int> linear{9, 10, 11, 12}, circular{5, 6, 7, 8}, stokes{1, 2, 3, 4};
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(stokes_response)
 
 BOOST_AUTO_TEST_CASE(every_correlation_gets_what_the_stokes_parameters_are_to_it) {
   const std::complex<double> i(0, 1);

@@ -8,6 +8,9 @@
 #include <stdexcept>
 
 namespace misfit::ms_io {
+
+BOOST_AUTO_TEST_SUITE(stokes)
+
 namespace {
 
 using imager::parse_stokes;
@@ -70,8 +73,6 @@ const std::vector<std::vector<int>> linear_orders = {{9, 10, 11, 12}, {12, 11, 1
 const std::vector<std::vector<int>> circular_orders = {{5, 6, 7, 8}, {5, 8, 7, 6}, {8, 5, 6, 7}};
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(stokes)
 
 BOOST_AUTO_TEST_CASE(what_is_formed_is_what_the_feeds_measured_in_any_order) {
   const std::array<Complex, 4> source = {Complex(4, 0.5), {1, -2}, {-0.25, 3}, {0.75, 1.5}};  // exact in single precision

@@ -15,6 +15,8 @@
 
 namespace misfit::ms_io {
 
+BOOST_AUTO_TEST_SUITE(storage)
+
 using namespace testing;
 
 namespace {
@@ -103,8 +105,6 @@ std::vector<std::string> state_of(const std::string& folder) {
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(storage)
 
 BOOST_AUTO_TEST_CASE(any_storage_manager_gives_the_same_samples) {
   const SmallSet plain;

@@ -11,6 +11,8 @@
 
 namespace misfit::ms_io {
 
+BOOST_AUTO_TEST_SUITE(unfinished_column)
+
 using namespace testing;
 
 namespace {
@@ -110,8 +112,6 @@ void check_rest(const SmallSet& set, const ModelColumn& column, const std::vecto
 const ModelColumn plain{"MODEL_DATA"}, difference{"CORRECTED_DATA", "DATA", false};
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(unfinished_column)
 
 BOOST_AUTO_TEST_CASE(a_run_that_was_stopped_goes_on_to_the_same_bits) {
   for (const ModelColumn& column : {plain, difference}) {

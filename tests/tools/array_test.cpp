@@ -4,6 +4,8 @@
 #include <cmath>
 #include <string>
 
+BOOST_AUTO_TEST_SUITE(array)
+
 namespace {
 
 using namespace misfit;
@@ -32,8 +34,6 @@ AntennaArray pair(const std::array<double, 3>& first, const std::array<double, 3
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(array)
 
 BOOST_AUTO_TEST_CASE(each_vla_has_27_antennas_near_sea_level_and_is_smaller_than_the_last) {
   double last_m = 36500 * 3.285;

@@ -2,6 +2,8 @@
 #include "tests/tools/program.h"
 #include "tests/tools/set_changes.h"
 
+BOOST_AUTO_TEST_SUITE(bad_input)
+
 namespace {
 
 using namespace misfit::tools::testing;
@@ -71,8 +73,6 @@ void check_complete(const std::string& folder) {
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(bad_input)
 
 BOOST_AUTO_TEST_CASE(options_with_impossible_values_are_wrong_usage) {
   const Scene scene;

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <stdexcept>
 
+BOOST_AUTO_TEST_SUITE(beam_choice)
+
 using namespace misfit;
 using namespace misfit::tools;
 
@@ -21,8 +23,6 @@ imager::Image psf(bool closed) {
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(beam_choice)
 
 BOOST_AUTO_TEST_CASE(the_fitted_beam_is_taken_and_its_misfit_stated) {
   const BeamChoice choice = choose_beam(psf(true), cell_rad, std::nullopt, true);

@@ -7,6 +7,8 @@
 
 #include "tests/tools/markup.h"
 
+BOOST_AUTO_TEST_SUITE(clean_curve)
+
 using misfit::tools::CurvePoint;
 using misfit::tools::testing::contains;
 
@@ -35,8 +37,6 @@ const std::vector<CurvePoint> course{{0, 1, 0.1, 0, 0}, {50, 0.1, 0.05, 0.12, 2}
 constexpr double rounding = 0.11;  // coordinates have one decimal
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(clean_curve)
 
 BOOST_AUTO_TEST_CASE(equal_ratios_of_peaks_are_equal_steps_down) {
   const auto peak = lines_of(misfit::tools::clean_curve(course), "peak").back();

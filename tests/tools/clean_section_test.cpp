@@ -5,6 +5,8 @@
 
 #include "tests/tools/markup.h"
 
+BOOST_AUTO_TEST_SUITE(clean_section)
+
 using misfit::tools::testing::contains;
 using nlohmann::json;
 
@@ -37,8 +39,6 @@ std::string row(std::initializer_list<const char*> cells) {
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(clean_section)
 
 BOOST_AUTO_TEST_CASE(a_cycle_found_and_cleaned_what_it_has_more_than_the_one_before) {
   const std::string page = misfit::tools::clean_section(report());

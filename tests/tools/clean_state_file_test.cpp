@@ -10,6 +10,8 @@
 #include "tests/temporary_folder.h"
 #include "tools/base/files.h"
 
+BOOST_AUTO_TEST_SUITE(clean_state_file)
+
 using namespace misfit;
 using namespace misfit::tools;
 
@@ -51,10 +53,8 @@ std::string refusal(const std::function<void()>& act) {
 
 }  // namespace
 
-BOOST_AUTO_TEST_SUITE(clean_state_file)
-
 BOOST_AUTO_TEST_CASE(spectra_come_back_bit_for_bit) {
-  const testing::TemporaryFolder folder;
+  const misfit::testing::TemporaryFolder folder;
   imager::CleanState was = some_state();
   was.model.add({{0, 1, 1, 0, {-0.7, 1.0 / 3}}, {1, 2, 3, 2, {0.1, 0}}});
   write_clean_state(folder / "a.state", was, owner());
@@ -64,7 +64,7 @@ BOOST_AUTO_TEST_CASE(spectra_come_back_bit_for_bit) {
 }
 
 BOOST_AUTO_TEST_CASE(a_state_comes_back_bit_for_bit) {
-  const testing::TemporaryFolder folder;
+  const misfit::testing::TemporaryFolder folder;
   const imager::CleanState was = some_state();
   write_clean_state(folder / "a.state", was, owner());
   const imager::CleanState is = read_clean_state(folder / "a.state", owner());
@@ -80,7 +80,7 @@ BOOST_AUTO_TEST_CASE(a_state_comes_back_bit_for_bit) {
 }
 
 BOOST_AUTO_TEST_CASE(a_state_of_other_options_is_refused_by_the_name_of_the_option) {
-  const testing::TemporaryFolder folder;
+  const misfit::testing::TemporaryFolder folder;
   write_clean_state(folder / "a.state", some_state(), owner());
   CleanStateOwner other = owner();
   other.options["gain"] = "0.2";
@@ -96,7 +96,7 @@ BOOST_AUTO_TEST_CASE(a_state_of_other_options_is_refused_by_the_name_of_the_opti
 }
 
 BOOST_AUTO_TEST_CASE(a_state_of_other_data_or_another_version_is_refused) {
-  const testing::TemporaryFolder folder;
+  const misfit::testing::TemporaryFolder folder;
   write_clean_state(folder / "a.state", some_state(), owner());
   CleanStateOwner other = owner();
   other.checksum = 43;
@@ -107,7 +107,7 @@ BOOST_AUTO_TEST_CASE(a_state_of_other_data_or_another_version_is_refused) {
 }
 
 BOOST_AUTO_TEST_CASE(what_is_cut_or_no_state_is_refused_by_name) {
-  const testing::TemporaryFolder folder;
+  const misfit::testing::TemporaryFolder folder;
   write_clean_state(folder / "a.state", some_state(), owner());
   const std::string whole = read_file(folder / "a.state");
   for (std::size_t length = 0; length < whole.size(); length += 7) {
@@ -119,7 +119,7 @@ BOOST_AUTO_TEST_CASE(what_is_cut_or_no_state_is_refused_by_name) {
 }
 
 BOOST_AUTO_TEST_CASE(no_byte_of_a_state_can_change_unnoticed) {
-  const testing::TemporaryFolder folder;
+  const misfit::testing::TemporaryFolder folder;
   write_clean_state(folder / "a.state", some_state(), owner());
   const std::string whole = read_file(folder / "a.state");
   for (std::size_t i = 0; i < whole.size(); i += 3) {
@@ -132,7 +132,7 @@ BOOST_AUTO_TEST_CASE(no_byte_of_a_state_can_change_unnoticed) {
 }
 
 BOOST_AUTO_TEST_CASE(numbers_may_be_written_differently) {
-  const testing::TemporaryFolder folder;
+  const misfit::testing::TemporaryFolder folder;
   write_clean_state(folder / "a.state", some_state(), owner());
   CleanStateOwner other = owner();
   other.options["gain"] = "1e-1";

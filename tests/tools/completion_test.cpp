@@ -14,6 +14,8 @@
 #include "tools/base/text.h"
 #include "tools/program.h"
 
+BOOST_AUTO_TEST_SUITE(completion)
+
 namespace {
 
 using namespace misfit;
@@ -23,7 +25,7 @@ using Words = std::set<std::string>;
 /// What bash offers after `line`, whose last word is the one that is typed; "" where a new one begins. Files and folders are
 /// those of `folder`.
 Words offered(const std::vector<std::string>& line, const std::string& folder) {
-  const testing::TemporaryFolder work;
+  const misfit::testing::TemporaryFolder work;
   write_file(work / "completion", bash_completion(facts_of(*make_program(""))));
   std::string words;
   for (const std::string& word : line) words += ' ' + shell_quoted(word);
@@ -39,7 +41,7 @@ Words offered(const std::vector<std::string>& line, const std::string& folder) {
 }
 
 Words offered(const std::vector<std::string>& line) {
-  const testing::TemporaryFolder folder;
+  const misfit::testing::TemporaryFolder folder;
   return offered(line, folder / "");
 }
 
@@ -57,8 +59,6 @@ std::vector<OptionFacts> options_below(const CommandFacts& command) {
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(completion)
 
 BOOST_AUTO_TEST_CASE(commands_and_options_are_completed_where_they_can_stand) {
   check_offered({""}, {"image", "predict", "simulate", "kernel", "report", "-h", "--help", "--version"});
@@ -89,7 +89,7 @@ BOOST_AUTO_TEST_CASE(kernels_of_the_catalogue_are_completed) {
 }
 
 BOOST_AUTO_TEST_CASE(paths_are_completed_where_an_option_takes_one) {
-  const testing::TemporaryFolder folder;
+  const misfit::testing::TemporaryFolder folder;
   std::filesystem::create_directories(folder / "one set.ms");
   std::ofstream(folder / "one.fits") << "";
   const auto check = [&](const std::vector<std::string>& line, const Words& expected) {

@@ -10,6 +10,8 @@
 
 #include "tests/temporary_folder.h"
 
+BOOST_AUTO_TEST_SUITE(component_list)
+
 namespace {
 
 using namespace misfit;
@@ -53,8 +55,6 @@ double distance(imager::DirectionCosines a, imager::DirectionCosines b) {
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(component_list)
 
 BOOST_AUTO_TEST_CASE(direction_cosines_are_given_in_arcseconds) {
   const auto sources = read("l_arcsec,m_arcsec,flux_jy\n3600,-7200,1.5\n0,0,-2e-3\n");

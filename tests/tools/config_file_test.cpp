@@ -6,6 +6,8 @@
 
 #include "tests/tools/program.h"
 
+BOOST_AUTO_TEST_SUITE(config_file)
+
 namespace {
 
 using namespace misfit::tools;
@@ -51,8 +53,6 @@ void check_error(const std::string& text, const std::string& expected) {
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(config_file)
 
 BOOST_AUTO_TEST_CASE(options_come_from_the_file_unless_they_are_typed) {
   const ConfigFile file("# comment\n; another\n\nname = \"a = 'b' \" \r\nnumber=2.5\n  sizes = 7 8\nflag=true\n");

@@ -3,13 +3,13 @@
 #include <algorithm>
 #include <boost/test/unit_test.hpp>
 
+BOOST_AUTO_TEST_SUITE(cube_batches)
+
 namespace {
 
 using namespace misfit;
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(cube_batches)
 
 BOOST_AUTO_TEST_CASE(batches_hold_every_plane_once_no_more_than_there_is_room_for_and_a_round_for_every_worker) {
   for (const int planes : {1, 2, 7, 64, 1000})

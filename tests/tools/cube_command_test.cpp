@@ -8,6 +8,8 @@
 #include "tests/tools/program.h"
 #include "tools/formats/image_file.h"
 
+BOOST_AUTO_TEST_SUITE(cube_command)
+
 namespace {
 
 using namespace misfit;
@@ -113,8 +115,6 @@ bool all_nan(const imager::Image& image) {
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(cube_command)
 
 BOOST_AUTO_TEST_CASE(a_line_lands_in_its_channel_in_every_frame) {
   for (const std::string frame : {"LSRK", "BARY", "GEO", "TOPO", "LSRD", "GALACTO", "LGROUP", "CMB"}) {

@@ -5,6 +5,8 @@
 
 #include "imager/constants.h"
 
+BOOST_AUTO_TEST_SUITE(cube_options)
+
 using namespace misfit;
 using namespace misfit::tools;
 
@@ -56,8 +58,6 @@ std::string refusal(const CubeOptions& o) {
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(cube_options)
 
 BOOST_AUTO_TEST_CASE(planes_are_channels_unless_told_otherwise) {
   compare(axis_of(cube()), {1.4e9, 1e6, 10});

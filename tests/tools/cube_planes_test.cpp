@@ -12,6 +12,8 @@
 #include "tests/tools/program.h"
 #include "tests/tools/set_changes.h"
 
+BOOST_AUTO_TEST_SUITE(cube_planes)
+
 namespace {
 
 using namespace misfit;
@@ -128,8 +130,6 @@ bool warned(const std::string& imagename, const std::string& begin) {
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(cube_planes)
 
 BOOST_AUTO_TEST_CASE(uniform_weights_follow_from_the_density_of_the_plane_or_of_all) {
   const TemporaryFolder folder;

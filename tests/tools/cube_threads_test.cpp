@@ -6,6 +6,8 @@
 #include "tests/tools/program.h"
 #include "tools/formats/image_file.h"
 
+BOOST_AUTO_TEST_SUITE(cube_threads)
+
 namespace {
 
 using namespace misfit;
@@ -76,8 +78,6 @@ std::string decision_on(const nlohmann::json& report, const std::string& item) {
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(cube_threads)
 
 BOOST_AUTO_TEST_CASE(pixels_beams_and_report_do_not_depend_on_the_number_of_threads) {
   for (const std::string restoringbeam : {"", "common"}) {

@@ -6,6 +6,8 @@
 
 #include "tests/tools/markup.h"
 
+BOOST_AUTO_TEST_SUITE(data_table)
+
 using namespace misfit::tools;
 using misfit::tools::testing::balanced;
 using misfit::tools::testing::contains;
@@ -21,8 +23,6 @@ DataTable table() {
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(data_table)
 
 BOOST_AUTO_TEST_CASE(fields_of_csv_are_quoted_and_numbers_keep_their_bits) {
   BOOST_TEST(table_csv(table()) == "\"what, and why\",E\n\"say \"\"<E>\"\"\"," + csv_number(1.0 / 3e9) + "\n,1630\nnone,\n");

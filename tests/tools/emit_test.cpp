@@ -6,6 +6,8 @@
 #include "tests/tools/program.h"
 #include "tools/emit/hosts.h"
 
+BOOST_AUTO_TEST_SUITE(emit)
+
 namespace bdata = boost::unit_test::data;
 namespace {
 
@@ -47,8 +49,6 @@ void check_refused(const Arguments& arguments, const std::string& part) {
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(emit)
 
 BOOST_TEST_DECORATOR(*boost::unit_test::label("sweep"))
 BOOST_DATA_TEST_CASE(a_host_errs_by_what_is_said, bdata::make(emulated) * bdata::make({1.2, 2.0}) * bdata::make({4, 7, 8}),

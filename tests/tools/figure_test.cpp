@@ -9,6 +9,8 @@
 
 #include "tests/tools/markup.h"
 
+BOOST_AUTO_TEST_SUITE(figure)
+
 using misfit::tools::draw_svg;
 using misfit::tools::Figure;
 using misfit::tools::figure_csv;
@@ -30,8 +32,6 @@ Figure figure_called(const std::string& name) {
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(figure)
 
 BOOST_AUTO_TEST_CASE(a_drawing_is_well_formed_and_shows_every_label_as_it_is) {
   const std::string svg = draw_svg(figure_called("one"));

@@ -6,11 +6,11 @@
 
 #include "tests/tools/program.h"
 
+BOOST_AUTO_TEST_SUITE(files)
+
 using namespace misfit::tools;
 using misfit::tools::testing::files_below;
 using misfit::tools::testing::TemporaryFolder;
-
-BOOST_AUTO_TEST_SUITE(files)
 
 BOOST_AUTO_TEST_CASE(bytes_written_are_read_back_and_replace_what_was_there) {
   const TemporaryFolder folder;

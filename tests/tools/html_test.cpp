@@ -2,11 +2,11 @@
 
 #include <boost/test/unit_test.hpp>
 
+BOOST_AUTO_TEST_SUITE(html)
+
 using misfit::tools::base64;
 using misfit::tools::html_escaped;
 using misfit::tools::html_power;
-
-BOOST_AUTO_TEST_SUITE(html)
 
 BOOST_AUTO_TEST_CASE(characters_with_a_meaning_are_escaped) {
   BOOST_TEST(html_escaped("<a & 'b' \"c\">") == "&lt;a &amp; &#39;b&#39; &quot;c&quot;&gt;");

@@ -4,6 +4,8 @@
 #include "tools/base/files.h"
 #include "tools/formats/sky.h"
 
+BOOST_AUTO_TEST_SUITE(image_command)
+
 namespace {
 
 using namespace misfit;
@@ -53,8 +55,6 @@ void check_keys(const json& object, const std::vector<std::string>& keys) {
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(image_command)
 
 BOOST_AUTO_TEST_CASE(cleaned_sources_have_their_positions_and_fluxes_in_all_four_quadrants) {
   const TemporaryFolder folder;

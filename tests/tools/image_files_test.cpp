@@ -8,6 +8,8 @@
 #include "tests/example_cube.h"
 #include "tests/tools/program.h"
 
+BOOST_AUTO_TEST_SUITE(image_files)
+
 namespace {
 
 using namespace misfit;
@@ -76,8 +78,6 @@ bool is_there(const std::string& path) {
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(image_files)
 
 BOOST_AUTO_TEST_CASE(astropy_and_casacore_find_pixels_and_planes_where_the_header_has_them) {
   if (!readers_are_there()) return;

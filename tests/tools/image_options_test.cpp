@@ -6,6 +6,8 @@
 #include <functional>
 #include <nlohmann/json.hpp>
 
+BOOST_AUTO_TEST_SUITE(image_options)
+
 namespace {
 
 using namespace misfit::tools;
@@ -31,8 +33,6 @@ bool is_refused(const std::function<void(ImageOptions&)>& change) {
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(image_options)
 
 BOOST_AUTO_TEST_CASE(limits_belong_to_what_is_allowed) {
   BOOST_TEST(!is_refused([](ImageOptions&) {}));

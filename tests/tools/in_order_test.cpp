@@ -5,13 +5,13 @@
 
 #include "imager/parallel.h"
 
+BOOST_AUTO_TEST_SUITE(in_order)
+
 namespace {
 
 using namespace misfit;
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(in_order)
 
 BOOST_AUTO_TEST_CASE(what_threads_put_in_any_order_is_handed_on_in_order_one_at_a_time) {
   constexpr int count = 1000;

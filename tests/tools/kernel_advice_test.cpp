@@ -8,6 +8,8 @@
 #include "tests/temporary_folder.h"
 #include "tools/kernel_choice/machine_costs.h"
 
+BOOST_AUTO_TEST_SUITE(kernel_advice)
+
 using namespace misfit;
 using namespace misfit::tools;
 
@@ -18,8 +20,6 @@ KernelJob job(double accuracy, double w_turns = 0) {
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(kernel_advice)
 
 BOOST_AUTO_TEST_CASE(the_choice_keeps_the_accuracy_and_costs_least_among_its_neighbours) {
   for (const double accuracy : {1e-2, 1e-4, 1e-6, 1e-8}) {
@@ -61,14 +61,14 @@ BOOST_AUTO_TEST_CASE(the_text_names_cost_operations_and_neighbours) {
 }
 
 BOOST_AUTO_TEST_CASE(costs_are_measured_once_and_kept) {
-  const testing::TemporaryFolder folder;
+  const misfit::testing::TemporaryFolder folder;
   const imager::CostModel measured = machine_costs(folder / "");
   BOOST_TEST(machine_costs(folder / "").sample_ns == measured.sample_ns);  // two measurements would differ
   BOOST_TEST(measured.fft_ns > 0);
 }
 
 BOOST_AUTO_TEST_CASE(damaged_files_of_costs_are_not_trusted) {
-  const testing::TemporaryFolder folder;
+  const misfit::testing::TemporaryFolder folder;
   const std::filesystem::path file = folder / "costs.json";
   for (const char* damage : {"", "{\"machine\": 3}", "[1, 2"}) {
     std::ofstream(file) << damage;

@@ -7,6 +7,8 @@
 #include "tests/tools/program.h"
 #include "tools/kernel_choice/cache_folder.h"
 
+BOOST_AUTO_TEST_SUITE(kernel_choice)
+
 using namespace misfit::tools;
 using misfit::testing::TemporaryFolder;
 
@@ -75,8 +77,6 @@ std::string cache_folder_for(const char* given, const char* xdg, const char* hom
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(kernel_choice)
 
 BOOST_AUTO_TEST_CASE(the_cache_is_where_the_user_says_or_where_caches_are) {
   BOOST_TEST(cache_folder_for("/a", "/b", "/c") == "/a");

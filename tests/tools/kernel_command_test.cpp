@@ -4,6 +4,8 @@
 #include "tests/kernels/kernels.h"
 #include "tests/tools/program.h"
 
+BOOST_AUTO_TEST_SUITE(kernel_command)
+
 namespace {
 
 using namespace misfit;
@@ -44,8 +46,6 @@ double relative_difference(const std::vector<double>& a, const std::vector<doubl
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(kernel_command)
 
 BOOST_AUTO_TEST_CASE(a_made_file_holds_the_kernel_asked_for) {
   const Scene scene;

@@ -4,6 +4,8 @@
 #include <boost/test/unit_test.hpp>
 #include <cmath>
 
+BOOST_AUTO_TEST_SUITE(kernel_report)
+
 using namespace misfit::tools;
 
 namespace {
@@ -21,8 +23,6 @@ SolvedKernels& solved() {
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(kernel_report)
 
 BOOST_AUTO_TEST_CASE(a_function_is_drawn_over_half_its_width_and_broken_between_cells) {
   for (const int width : {1, 4, 7}) {

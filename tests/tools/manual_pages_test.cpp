@@ -12,6 +12,8 @@
 #include "tools/manual/roff.h"
 #include "tools/program.h"
 
+BOOST_AUTO_TEST_SUITE(manual_pages)
+
 namespace {
 
 using namespace misfit::tools;
@@ -48,8 +50,6 @@ std::optional<std::string> groff(const std::string& page, const std::vector<std:
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(manual_pages)
 
 BOOST_AUTO_TEST_CASE(every_option_of_every_command_is_on_its_page_and_completed) {
   const auto program = make_program("");

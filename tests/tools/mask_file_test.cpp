@@ -11,6 +11,8 @@
 #include "tests/temporary_folder.h"
 #include "tools/run/image_files.h"
 
+BOOST_AUTO_TEST_SUITE(mask_file)
+
 using namespace misfit;
 using namespace misfit::tools;
 using misfit::testing::example_header;
@@ -78,8 +80,6 @@ void write_marked(const imager::ImageHeader& header, const std::string& name) {
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(mask_file)
 
 BOOST_AUTO_TEST_CASE(boxes_in_pixels_hold_the_pixels_whose_centres_lie_within) {
   const auto box = [](int c, int r) { return c >= 10 && c <= 20 && r >= 5 && r <= 8; };

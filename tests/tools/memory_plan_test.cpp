@@ -4,6 +4,8 @@
 
 #include "tools/base/memory.h"
 
+BOOST_AUTO_TEST_SUITE(memory_plan)
+
 using namespace misfit;
 using namespace misfit::tools;
 
@@ -21,8 +23,6 @@ MemoryPlan plan(double memory_gib) {
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(memory_plan)
 
 BOOST_AUTO_TEST_CASE(visibilities_are_kept_where_they_fit) {
   const MemoryPlan roomy = plan(3);

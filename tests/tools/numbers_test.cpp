@@ -4,9 +4,9 @@
 #include <limits>
 #include <numbers>
 
-using namespace misfit::tools;
-
 BOOST_AUTO_TEST_SUITE(numbers)
+
+using namespace misfit::tools;
 
 BOOST_AUTO_TEST_CASE(significant_digits_are_kept_and_trailing_zeros_are_not) {
   BOOST_TEST(significant(0, 3) == "0");

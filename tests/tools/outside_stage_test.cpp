@@ -9,6 +9,8 @@
 #include "tests/tools/program.h"
 #include "tools/run_page/outside_section.h"
 
+BOOST_AUTO_TEST_SUITE(outside_stage)
+
 using namespace misfit;
 using namespace misfit::tools::testing;
 using nlohmann::json;
@@ -45,8 +47,6 @@ json json_of(const OutsideReport* report) {
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(outside_stage)
 
 BOOST_AUTO_TEST_CASE(a_source_is_told_with_its_position_flux_and_alias) {
   const OutsideReport report = report_with(1);

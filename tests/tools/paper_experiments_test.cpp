@@ -8,6 +8,8 @@
 #include "imager/direct/source_sums.h"
 #include "tools/formats/sky.h"
 
+BOOST_AUTO_TEST_SUITE(paper_experiments)
+
 using namespace misfit;
 using namespace misfit::tools;
 
@@ -56,8 +58,6 @@ constexpr double sampling_error = 0.15;
 constexpr double strip_error = 0.35;
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(paper_experiments)
 
 BOOST_AUTO_TEST_CASE(direct_sums_of_a_scene_are_its_definition) {
   const CardScene& s = scene();

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <random>
 
+BOOST_AUTO_TEST_SUITE(pareto)
+
 using namespace misfit::tools;
 
 namespace {
@@ -33,8 +35,6 @@ std::vector<CostAndError> crowd(std::mt19937_64& random, double cost_noise, doub
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(pareto)
 
 BOOST_AUTO_TEST_CASE(nothing_beats_the_front_and_all_else_is_beaten) {
   std::mt19937_64 random(1);

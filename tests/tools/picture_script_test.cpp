@@ -7,6 +7,8 @@
 
 #include "tests/temporary_folder.h"
 
+BOOST_AUTO_TEST_SUITE(picture_script)
+
 using misfit::imager::Image;
 using misfit::imager::SkyImage;
 using misfit::testing::TemporaryFolder;
@@ -42,8 +44,6 @@ std::istringstream after(const std::string& script, const std::string& key) {
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(picture_script)
 
 BOOST_AUTO_TEST_CASE(a_scale_bar_has_as_many_pixels_as_its_angle_has_cells) {
   for (const double cell_arcsec : {0.0003, 0.05, 1.7, 40.0}) {

@@ -10,6 +10,8 @@
 #include <limits>
 #include <sstream>
 
+BOOST_AUTO_TEST_SUITE(pictures)
+
 using misfit::imager::Image;
 using misfit::imager::SkyImage;
 using misfit::tools::draw_pictures;
@@ -106,8 +108,6 @@ Offset bright_from_dark(const Folder& folder, const std::string& name) {
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(pictures)
 
 BOOST_AUTO_TEST_CASE(a_drawing_that_is_not_finished_leaves_nothing) {
   const Folder folder;

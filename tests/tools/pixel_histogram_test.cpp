@@ -9,6 +9,8 @@
 
 #include "imager/noise.h"
 
+BOOST_AUTO_TEST_SUITE(pixel_histogram)
+
 using namespace misfit;
 using misfit::tools::histogram_figure;
 using misfit::tools::histogram_json;
@@ -29,8 +31,6 @@ std::uint64_t counted(const PixelHistogram& histogram) {
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(pixel_histogram)
 
 BOOST_AUTO_TEST_CASE(noise_follows_the_gaussian_drawn_over_it) {
   const imager::Image image = gaussian_noise(3e-4, 1);

@@ -10,6 +10,8 @@
 #include "kernels/catalogue.h"
 #include "tools/paper/card_scene.h"
 
+BOOST_AUTO_TEST_SUITE(plain_gridder)
+
 namespace bdata = boost::unit_test::data;
 using namespace misfit;
 using namespace misfit::tools;
@@ -50,8 +52,6 @@ imager::Image gridded(const CardScene& scene, const kernels::Kernel& kernel) {
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(plain_gridder)
 
 BOOST_DATA_TEST_CASE(it_makes_the_image_that_the_plane_transform_makes, bdata::make({1, 2, 3, 6, 7}), width) {
   const CardScene s = scene("vla-c");

@@ -5,6 +5,8 @@
 #include "tests/tools/program.h"
 #include "tests/tools/set_changes.h"
 
+BOOST_AUTO_TEST_SUITE(predict_command)
+
 namespace {
 
 using namespace misfit;
@@ -25,8 +27,6 @@ double rms(const Visibilities& values) {
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(predict_command)
 
 BOOST_AUTO_TEST_CASE(a_component_is_imaged_where_the_list_puts_it_in_each_quadrant) {
   const Copy copy;

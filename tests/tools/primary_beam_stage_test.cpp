@@ -8,6 +8,8 @@
 #include "tests/imager/random_samples.h"
 #include "tests/tools/program.h"
 
+BOOST_AUTO_TEST_SUITE(primary_beam_stage)
+
 namespace {
 
 using namespace misfit;
@@ -76,8 +78,6 @@ Arguments wide_image(const std::string& imagename, const std::string& vis = seen
 constexpr int source_row = 128 - 34, source_column = 128 - 46;
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(primary_beam_stage)
 
 BOOST_AUTO_TEST_CASE(a_source_at_half_power_is_corrected_to_its_flux_over_an_octave_with_any_weights) {
   const misfit::testing::TemporaryFolder folder;

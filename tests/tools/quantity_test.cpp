@@ -4,6 +4,8 @@
 #include <cmath>
 #include <stdexcept>
 
+BOOST_AUTO_TEST_SUITE(quantity)
+
 using namespace misfit::tools;
 
 namespace {
@@ -16,8 +18,6 @@ bool same(double a, double b) {
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(quantity)
 
 BOOST_AUTO_TEST_CASE(angles_have_units_and_are_arcseconds_without) {
   BOOST_TEST(same(parse_angle_rad("180deg"), M_PI));

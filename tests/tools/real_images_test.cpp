@@ -2,6 +2,8 @@
 #include "imager/noise.h"
 #include "tests/tools/program.h"
 
+BOOST_AUTO_TEST_SUITE(real_images)
+
 namespace {
 
 using namespace misfit;
@@ -30,8 +32,6 @@ void check_beam(const nlohmann::json& beam, double major_arcsec, double minor_ar
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(real_images)
 
 // Peaks, noise and beams are those that WSClean 3.1 gets with -use-wgridder -mgain 0.8 -auto-threshold 3, whose beams are
 // fitted to a quadrant (`beam_by_quadrant`) and whose noise is 1.4826 × the median absolute deviation of the residual.

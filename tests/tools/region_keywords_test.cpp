@@ -4,6 +4,8 @@
 #include <stdexcept>
 #include <string>
 
+BOOST_AUTO_TEST_SUITE(region_keywords)
+
 using namespace misfit;
 using namespace misfit::tools;
 
@@ -36,8 +38,6 @@ bool refused(const std::string& keywords, const std::string& part, const imager:
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(region_keywords)
 
 BOOST_AUTO_TEST_CASE(apostrophes_within_words_and_brackets_that_close_nothing_hide_nothing) {
   for (const char* text : {", label=O'Neill, range=[3chan, 7chan]", ", label=a], range=[3chan, 7chan]"})

@@ -6,6 +6,8 @@
 #include "tests/tools/markup.h"
 #include "tests/tools/program.h"
 
+BOOST_AUTO_TEST_SUITE(report_folder)
+
 using namespace misfit::tools;
 using namespace misfit::tools::testing;
 
@@ -30,8 +32,6 @@ Report report() {
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(report_folder)
 
 BOOST_AUTO_TEST_CASE(every_part_is_on_the_page_and_in_files_and_nothing_else_is_left) {
   const TemporaryFolder folder;

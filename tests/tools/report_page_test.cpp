@@ -6,6 +6,8 @@
 
 #include "tests/tools/markup.h"
 
+BOOST_AUTO_TEST_SUITE(report_page)
+
 using misfit::tools::testing::balanced;
 using misfit::tools::testing::contains;
 using nlohmann::json;
@@ -35,8 +37,6 @@ json full_report() {
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(report_page)
 
 BOOST_AUTO_TEST_CASE(every_element_is_closed_whatever_is_missing) {
   BOOST_TEST(balanced(misfit::tools::report_page(full_report(), {{"Image", "bytes"}})));

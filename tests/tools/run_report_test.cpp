@@ -4,10 +4,10 @@
 #include <limits>
 #include <numbers>
 
+BOOST_AUTO_TEST_SUITE(run_report)
+
 using namespace misfit;
 using nlohmann::json;
-
-BOOST_AUTO_TEST_SUITE(run_report)
 
 BOOST_AUTO_TEST_CASE(what_does_not_exist_is_null) {
   const json report = tools::report_json({});

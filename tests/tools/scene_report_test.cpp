@@ -14,6 +14,8 @@
 #include "tools/scene/timing.h"
 #include "tools/scene/verdict.h"
 
+BOOST_AUTO_TEST_SUITE(scene_report)
+
 namespace {
 
 using namespace misfit;
@@ -91,8 +93,6 @@ std::string stopped_report_of(const std::string& vis, const std::string& output,
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(scene_report)
 
 BOOST_AUTO_TEST_CASE(every_point_is_measured_within_its_bounds_and_its_command_makes_it, *boost::unit_test::label("sweep")) {
   const TemporaryFolder folder;

@@ -2,6 +2,8 @@
 #include "tests/tools/program.h"
 #include "tests/tools/set_changes.h"
 
+BOOST_AUTO_TEST_SUITE(several_sets_command)
+
 namespace {
 
 using namespace misfit;
@@ -33,8 +35,6 @@ struct TwoSets {
 };
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(several_sets_command)
 
 BOOST_AUTO_TEST_CASE(sets_phased_apart_are_one_image_of_the_source_that_they_are_shifted_to) {
   const TwoSets sets;

@@ -5,10 +5,10 @@
 #include <limits>
 #include <map>
 
+BOOST_AUTO_TEST_SUITE(sketch)
+
 using misfit::imager::Image;
 using namespace misfit::tools;
-
-BOOST_AUTO_TEST_SUITE(sketch)
 
 BOOST_AUTO_TEST_CASE(a_block_keeps_its_largest_magnitude) {
   Image image(5, 3);

@@ -3,6 +3,8 @@
 #include <boost/test/unit_test.hpp>
 #include <cmath>
 
+BOOST_AUTO_TEST_SUITE(sky_marks)
+
 using namespace misfit::tools;
 using misfit::imager::Beam;
 
@@ -12,8 +14,6 @@ constexpr double degree = M_PI / 180;
 constexpr double arcsec = degree / 3600;
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(sky_marks)
 
 BOOST_AUTO_TEST_CASE(the_tips_of_a_beam_lie_where_its_position_angle_says) {
   for (const double angle : {-80.0, -30.0, 0.0, 10.0, 45.0, 90.0}) {

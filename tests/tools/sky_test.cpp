@@ -4,9 +4,9 @@
 #include <boost/test/unit_test.hpp>
 #include <cmath>
 
-using namespace misfit;
-
 BOOST_AUTO_TEST_SUITE(sky)
+
+using namespace misfit;
 
 BOOST_AUTO_TEST_CASE(the_test_card_has_34_sources_within_390_cells) {
   const double cell_rad = 1e-7;

@@ -5,6 +5,8 @@
 
 #include "tools/base/numbers.h"
 
+BOOST_AUTO_TEST_SUITE(stability_report)
+
 using namespace misfit::tools;
 
 namespace {
@@ -31,8 +33,6 @@ double error_of_a_loop(int additions) {
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(stability_report)
 
 BOOST_AUTO_TEST_CASE(sums_of_equal_terms_are_those_of_a_plain_loop) {
   const ReportSection section = accumulation_section();

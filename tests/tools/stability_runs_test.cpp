@@ -8,6 +8,8 @@
 #include "imager/fits_image.h"
 #include "tests/temporary_folder.h"
 
+BOOST_AUTO_TEST_SUITE(stability_runs)
+
 using namespace misfit;
 using namespace misfit::tools;
 
@@ -37,8 +39,6 @@ void check(const std::vector<StabilityOutcome>& outcomes) {
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(stability_runs)
 
 BOOST_AUTO_TEST_CASE(weights_over_sixty_orders_of_magnitude_keep_the_promise) {
   check(run_cases(weight_cases(few_samples())));
@@ -109,7 +109,7 @@ BOOST_AUTO_TEST_CASE(phase_centres_at_the_poles_keep_the_promise) {
 }
 
 BOOST_AUTO_TEST_CASE(images_of_the_poles_have_headers_that_read_back) {
-  const testing::TemporaryFolder folder;
+  const misfit::testing::TemporaryFolder folder;
   for (const StabilityCase& at : pole_cases(few_samples())) {
     imager::SkyImage sky;
     sky.image = imager::Image(stability_pixels, stability_pixels);

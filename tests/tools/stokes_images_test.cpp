@@ -5,6 +5,8 @@
 #include "tests/tools/program.h"
 #include "tests/tools/set_changes.h"
 
+BOOST_AUTO_TEST_SUITE(stokes_images)
+
 namespace {
 
 using namespace misfit;
@@ -58,8 +60,6 @@ double relative_difference(const imager::Image& image, const imager::Image& from
 constexpr double of_two_images = 3e-6;
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(stokes_images)
 
 BOOST_AUTO_TEST_CASE(every_stokes_parameter_looks_like_an_unpolarised_sky_of_its_brightness) {
   for (const auto& [types, lists] : {std::pair(linear, Arguments{"IQUV", "V", "XXYY"}), {circular, {"IQUV", "QU", "LL"}}})

@@ -7,6 +7,8 @@
 
 #include "imager/noise.h"
 
+BOOST_AUTO_TEST_SUITE(stretch)
+
 using misfit::imager::Image;
 using misfit::tools::choose_stretch;
 using misfit::tools::Shades;
@@ -24,8 +26,6 @@ Image noise_image() {
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(stretch)
 
 BOOST_AUTO_TEST_CASE(the_noise_sets_the_limits_whatever_the_sources) {
   Image image = noise_image();

@@ -2,9 +2,9 @@
 
 #include <boost/test/unit_test.hpp>
 
-using namespace misfit::tools;
-
 BOOST_AUTO_TEST_SUITE(text)
+
+using namespace misfit::tools;
 
 BOOST_AUTO_TEST_CASE(there_is_one_part_more_than_commas_and_none_begins_or_ends_with_white_space) {
   const auto parts = [](std::string_view text) {

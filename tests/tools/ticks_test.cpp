@@ -3,9 +3,9 @@
 #include <boost/test/unit_test.hpp>
 #include <cmath>
 
-using namespace misfit::tools;
-
 BOOST_AUTO_TEST_SUITE(ticks)
+
+using namespace misfit::tools;
 
 BOOST_AUTO_TEST_CASE(steps_are_one_two_or_five_and_near_what_was_asked) {
   for (double rough = 1e-7; rough < 1e7; rough *= 1.03) {

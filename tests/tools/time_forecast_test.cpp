@@ -6,6 +6,8 @@
 #include "tests/temporary_folder.h"
 #include "tools/base/files.h"
 
+BOOST_AUTO_TEST_SUITE(time_forecast)
+
 using namespace misfit;
 using namespace misfit::tools;
 
@@ -46,8 +48,6 @@ double expected_of(const TimeForecast& forecast, const RunWork& work, const std:
 
 }  // namespace
 
-BOOST_AUTO_TEST_SUITE(time_forecast)
-
 BOOST_AUTO_TEST_CASE(further_taylor_terms_take_time_in_every_pass) {
   const imager::GriddingPlan plan = plan_of(1e7, 1024);
   const TimeForecast forecast("");
@@ -78,7 +78,7 @@ BOOST_AUTO_TEST_CASE(weights_take_time_where_they_follow_from_a_density) {
 }
 
 BOOST_AUTO_TEST_CASE(a_machine_of_another_speed_is_known_after_one_run_and_scenes_of_another_size_too) {
-  const testing::TemporaryFolder folder;
+  const misfit::testing::TemporaryFolder folder;
   const imager::GriddingPlan plan = plan_of(1e7, 1024), larger = plan_of(4e7, 2048);
   const RunWork work = work_of(plan, 3), other = work_of(larger, 5);
   BOOST_TEST(!TimeForecast(folder / "cache").knows(work));
@@ -122,7 +122,7 @@ BOOST_AUTO_TEST_CASE(one_slow_run_among_many_is_forgotten) {
 }
 
 BOOST_AUTO_TEST_CASE(files_that_are_damaged_or_of_another_machine_are_not_used) {
-  const testing::TemporaryFolder folder;
+  const misfit::testing::TemporaryFolder folder;
   const imager::GriddingPlan plan = plan_of(1e7, 1024);
   const RunWork work = work_of(plan);
   TimeForecast(folder / "cache").learn(work, times_of(work, 3));

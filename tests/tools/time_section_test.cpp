@@ -6,6 +6,8 @@
 
 #include "tests/tools/markup.h"
 
+BOOST_AUTO_TEST_SUITE(time_section)
+
 using misfit::tools::testing::balanced;
 using misfit::tools::testing::contains;
 using nlohmann::json;
@@ -27,8 +29,6 @@ std::vector<double> values_of(const std::string& html, const std::string& attrib
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(time_section)
 
 BOOST_AUTO_TEST_CASE(times_are_shares_of_the_wall_clock) {
   const std::string html = misfit::tools::time_section(measured, nullptr);

@@ -8,6 +8,8 @@
 #include "imager/stored_visibilities.h"
 #include "tests/imager/random_samples.h"
 
+BOOST_AUTO_TEST_SUITE(truth)
+
 using namespace misfit;
 using namespace misfit::tools;
 
@@ -59,8 +61,6 @@ imager::Image sum(imager::Image a, const imager::Image& b) {
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(truth)
 
 BOOST_AUTO_TEST_CASE(an_error_is_that_of_the_whole_image_within_its_noise) {
   const imager::StoredVisibilities source = samples(0.99);

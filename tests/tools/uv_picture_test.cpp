@@ -9,6 +9,8 @@
 #include "tests/tools/program.h"
 #include "tools/drawing/pictures.h"
 
+BOOST_AUTO_TEST_SUITE(uv_picture)
+
 using namespace misfit;
 using namespace misfit::tools::testing;
 
@@ -48,8 +50,6 @@ Drawing drawing_of(const imager::UvCoverage& coverage) {
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(uv_picture)
 
 BOOST_AUTO_TEST_CASE(shades_are_logarithms_of_counts_and_empty_cells_are_left_out) {
   // Twenty places on a line fill enough cells that none is drawn larger.

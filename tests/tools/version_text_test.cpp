@@ -7,6 +7,8 @@
 #include "tests/tools/program.h"
 #include "tools/build_facts.h"
 
+BOOST_AUTO_TEST_SUITE(version_text)
+
 namespace {
 
 using namespace misfit::tools;
@@ -20,8 +22,6 @@ std::vector<std::string> lines(const std::string& text) {
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(version_text)
 
 BOOST_AUTO_TEST_CASE(the_first_line_is_the_program_and_its_version_alone) {
   const testing::Outcome outcome = testing::run({"--version"});

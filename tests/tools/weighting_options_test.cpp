@@ -5,6 +5,8 @@
 #include <functional>
 #include <numbers>
 
+BOOST_AUTO_TEST_SUITE(weighting_options)
+
 namespace {
 
 using namespace misfit;
@@ -25,12 +27,10 @@ imager::UvTaper taper(const std::string& text) {
   ImageOptions options;
   options.uvtaper = text;
   check_weighting(options);
-  return weighting_options(options).taper.value();
+  return misfit::tools::weighting_options(options).taper.value();
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(weighting_options)
 
 BOOST_AUTO_TEST_CASE(an_option_without_effect_or_out_of_range_is_refused_by_name) {
   BOOST_TEST(refusal([](ImageOptions&) {}) == "");

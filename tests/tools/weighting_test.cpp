@@ -1,6 +1,8 @@
 // Images weighted by the program, also against the installed WSClean, where there is one.
 #include "tests/tools/program.h"
 
+BOOST_AUTO_TEST_SUITE(weighting)
+
 namespace {
 
 using namespace misfit;
@@ -97,8 +99,6 @@ const std::vector<Arguments> ways{{"uniform"},     {"briggs", "-2"},  {"briggs",
                                   {"briggs", "0"}, {"briggs", "0.5"}, {"briggs", "2"}};
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(weighting)
 
 BOOST_AUTO_TEST_CASE(psfs_and_beams_agree_with_wsclean) {
   if (!installed()) return;

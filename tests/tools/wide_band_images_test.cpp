@@ -6,6 +6,8 @@
 #include "tests/tools/set_changes.h"
 #include "tools/run/taylor_options.h"
 
+BOOST_AUTO_TEST_SUITE(wide_band_images)
+
 namespace {
 
 using namespace misfit;
@@ -66,8 +68,6 @@ void check_refusal(const Arguments& arguments, int code, const std::string& part
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(wide_band_images)
 
 /// Noise of a thousandth of the steep source over channels that spread by 0.057 about ν_0 leaves 0.02 of its α to one standard
 /// deviation, and 0.03 of the fainter source's: too much to judge the index itself by, which the next case does without noise.

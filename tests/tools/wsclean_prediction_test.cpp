@@ -4,6 +4,8 @@
 #include "tests/tools/program.h"
 #include "tests/tools/set_changes.h"
 
+BOOST_AUTO_TEST_SUITE(wsclean_prediction)
+
 namespace {
 
 using namespace misfit;
@@ -79,8 +81,6 @@ void compare(const Model& model) {
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(wsclean_prediction)
 
 BOOST_AUTO_TEST_CASE(a_small_field_without_w_agrees) {
   compare(Model(256, 0.05, {"--coplanar", "--hours", "1", "--interval", "120", "--channels", "3"}));

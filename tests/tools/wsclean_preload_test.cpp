@@ -3,6 +3,8 @@
 
 #include "tests/tools/program.h"
 
+BOOST_AUTO_TEST_SUITE(wsclean_preload)
+
 namespace bdata = boost::unit_test::data;
 namespace {
 
@@ -90,8 +92,6 @@ Arguments preloaded(const std::string& file) {
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(wsclean_preload)
 
 BOOST_AUTO_TEST_CASE(wsclean_errs_by_what_is_said_without_the_kernel_and_with_it) {
   if (!installed()) return;

@@ -10,18 +10,18 @@
 namespace misfit::tools {
 namespace {
 
-constexpr double rounding = 1e-3;  // a PSF whose peak is not quite 1 has a mark there all the same
+constexpr double mark_rounding = 1e-3;  // a PSF whose peak is not quite 1 has a mark there all the same
 
 /// 0 and ±`factors` × 10^k beyond the knee, from the lowest to the highest.
 std::vector<double> asinh_tick_values(const Stretch& stretch, const std::vector<double>& factors, int every) {
   std::vector<double> values{0};
   const int first = static_cast<int>(std::floor(std::log10(stretch.knee)));
-  for (int power = first; std::pow(10.0, power) <= std::max(stretch.high, -stretch.low) * (1 + rounding); power += every) {
+  for (int power = first; std::pow(10.0, power) <= std::max(stretch.high, -stretch.low) * (1 + mark_rounding); power += every) {
     for (const double factor : factors) {
       const double value = factor * std::pow(10.0, power);
       if (value < stretch.knee * 0.9) continue;
-      if (value <= stretch.high * (1 + rounding)) values.push_back(value);
-      if (-value >= stretch.low * (1 + rounding)) values.insert(values.begin(), -value);
+      if (value <= stretch.high * (1 + mark_rounding)) values.push_back(value);
+      if (-value >= stretch.low * (1 + mark_rounding)) values.insert(values.begin(), -value);
     }
   }
   if (stretch.low > 0) values.erase(std::find(values.begin(), values.end(), 0.0));

@@ -16,7 +16,7 @@ constexpr double left = 84, right = 504;
 constexpr double residual_top = 64, residual_bottom = 286;
 constexpr double flux_top = 312, flux_bottom = 436;
 
-std::string with_unit(double value, const std::string& base, int digits) {
+std::string with_prefix(double value, const std::string& base, int digits) {
   const ScaledUnit unit = scaled_unit(value, base);
   return significant(value / unit.size, digits) + "\u00a0" + unit.name;
 }
@@ -103,8 +103,8 @@ std::string dots(const std::vector<CurvePoint>& points, const Scale& x, const Sc
     if (!y.shows(point.*member)) continue;
     marks += "<circle cx=\"" + decimal(x(point.iterations)) + "\" cy=\"" + decimal(y(point.*member)) + "\" r=\"3\"" +
              (flux ? " class=\"flux\"" : "") + "><title>" + (k == 0 ? "start" : "cycle " + std::to_string(k)) + ", " +
-             grouped(std::llround(point.iterations)) + " iterations: " + with_unit(point.*member, flux ? "Jy" : "Jy/beam", 4) +
-             "</title></circle>";
+             grouped(std::llround(point.iterations)) +
+             " iterations: " + with_prefix(point.*member, flux ? "Jy" : "Jy/beam", 4) + "</title></circle>";
   }
   return marks;
 }
@@ -136,7 +136,7 @@ std::string legend_entry(const std::string& kind, double x, const std::string& n
 std::string residual_panel(const std::vector<CurvePoint>& points, const Scale& x) {
   const Range range(points, {&CurvePoint::peak_jy, &CurvePoint::noise_jy, &CurvePoint::depth_jy}, true);
   const Scale y{range.low / 1.2, range.high * 1.2, residual_bottom, residual_top, true};
-  return horizontal_grid(y, logarithmic_ticks(y.low, y.high), [](double value) { return with_unit(value, "Jy", 1); }) +
+  return horizontal_grid(y, logarithmic_ticks(y.low, y.high), [](double value) { return with_prefix(value, "Jy", 1); }) +
          across("residual, per beam", (residual_top + residual_bottom) / 2) + legend_entry("peak", left, "peak residual") +
          legend_entry("noise", left + 138, "noise") + legend_entry("depth", left + 236, "depth of a cycle") +
          line("depth", steps_of(points, x, y, &CurvePoint::depth_jy)) +
@@ -160,10 +160,10 @@ std::string flux_panel(const std::vector<CurvePoint>& points, const Scale& x) {
 std::string in_words(const CurvePoint& first, const CurvePoint& last) {
   const bool flux_known = std::isfinite(first.flux_jy) && std::isfinite(last.flux_jy);
   return "From " + grouped(std::llround(first.iterations)) + " to " + grouped(std::llround(last.iterations)) +
-         " iterations the peak residual went from " + with_unit(first.peak_jy, "Jy/beam", 3) + " to " +
-         with_unit(last.peak_jy, "Jy/beam", 3) +
+         " iterations the peak residual went from " + with_prefix(first.peak_jy, "Jy/beam", 3) + " to " +
+         with_prefix(last.peak_jy, "Jy/beam", 3) +
          (flux_known
-              ? ", the model’s flux from " + with_unit(first.flux_jy, "Jy", 3) + " to " + with_unit(last.flux_jy, "Jy", 3)
+              ? ", the model’s flux from " + with_prefix(first.flux_jy, "Jy", 3) + " to " + with_prefix(last.flux_jy, "Jy", 3)
               : "") +
          ".";
 }

@@ -15,7 +15,7 @@ using nlohmann::json;
 
 constexpr std::size_t most_rows = 256;
 
-std::string beam_text(const json& beam) {
+std::string plane_beam(const json& beam) {
   const json &major = member(beam, "major_arcsec"), &minor = member(beam, "minor_arcsec"), &angle = member(beam, "pa_deg");
   if (!major.is_number() || !minor.is_number() || !angle.is_number()) return "";
   return significant(major.get<double>(), 4) + " × " + significant(minor.get<double>(), 4) + "″ at " +
@@ -33,7 +33,7 @@ html::Row row_of(const json& plane, bool cleaned) {
     row.resize(cleaned ? 9 : 6);
     return row;
   }
-  row.insert(row.end(), {beam_text(member(plane, "beam")), with_unit(member(noise, "measured_jy"), "Jy/beam"),
+  row.insert(row.end(), {plane_beam(member(plane, "beam")), with_unit(member(noise, "measured_jy"), "Jy/beam"),
                          with_unit(member(plane, "brightest_jy"), "Jy/beam")});
   if (!cleaned) return row;
   const json& clean = member(plane, "clean");

@@ -7,6 +7,8 @@
 #include "tests/imager/arrays/array_scene.h"
 #include "tests/imager/comparison.h"
 
+BOOST_AUTO_TEST_SUITE(array_clean)
+
 using namespace misfit::imager;
 using namespace misfit::imager::testing;
 
@@ -39,8 +41,6 @@ ArrayCleanOptions options_of(const ArrayScene<double>& scene) {
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(array_clean)
 
 BOOST_AUTO_TEST_CASE(a_point_comes_back_where_it_was_with_its_flux) {
   const ArrayScene<double> scene = point_scene();

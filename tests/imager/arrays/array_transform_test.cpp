@@ -8,6 +8,8 @@
 #include "tests/imager/arrays/array_scene.h"
 #include "tests/imager/comparison.h"
 
+BOOST_AUTO_TEST_SUITE(array_transform)
+
 namespace bdata = boost::unit_test::data;
 using namespace misfit::imager;
 using namespace misfit::imager::testing;
@@ -55,8 +57,6 @@ std::string refusal_of(const ArrayTransform& transform, const ArrayScene<double>
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(array_transform)
 
 BOOST_TEST_DECORATOR(*boost::unit_test::label("sweep"))
 BOOST_DATA_TEST_CASE(images_and_visibilities_equal_their_definition,

@@ -6,6 +6,8 @@
 
 #include "imager/clean/gaussian_blur.h"
 
+BOOST_AUTO_TEST_SUITE(auto_mask)
+
 using namespace misfit::imager;
 
 namespace {
@@ -39,8 +41,6 @@ double pixels(const Image& mask) {
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(auto_mask)
 
 BOOST_AUTO_TEST_CASE(sources_above_the_noise_threshold_are_in_and_those_below_are_not) {
   const Image mask = mask_of(source(30, 40, 10, 4) + source(70, 20, 4.9, 4));

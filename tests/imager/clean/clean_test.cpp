@@ -12,6 +12,8 @@
 #include "tests/imager/comparison.h"
 #include "tests/imager/vla_samples.h"
 
+BOOST_AUTO_TEST_SUITE(clean)
+
 using namespace misfit;
 using namespace misfit::imager;
 using namespace misfit::imager::testing;
@@ -109,8 +111,6 @@ void check_consistent(const CleanResult& result) {
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(clean)
 
 BOOST_AUTO_TEST_CASE(the_peak_residual_falls_to_the_threshold_and_the_flux_is_recovered) {
   const CleanResult result = cleaned(deep());

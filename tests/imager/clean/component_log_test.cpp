@@ -6,6 +6,8 @@
 #include <set>
 #include <utility>
 
+BOOST_AUTO_TEST_SUITE(component_log)
+
 using namespace misfit::imager;
 
 namespace {
@@ -22,8 +24,6 @@ std::vector<PointComponent> random_components(int count, int side) {
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(component_log)
 
 BOOST_AUTO_TEST_CASE(what_came_since_any_component_sums_to_these_components_and_no_others) {
   const std::vector<PointComponent> all = random_components(200, 60);

@@ -7,6 +7,8 @@
 
 #include "tests/imager/comparison.h"
 
+BOOST_AUTO_TEST_SUITE(convolution)
+
 namespace bdata = boost::unit_test::data;
 using namespace misfit;
 using namespace misfit::imager;
@@ -29,8 +31,6 @@ Image plain(const Image& image, const Image& psf) {
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(convolution)
 
 BOOST_DATA_TEST_CASE(it_is_the_plain_sum, bdata::make({1, 2, 3, 16, 33, 40}) ^ bdata::make({1, 5, 1, 16, 21, 31}), width,
                      height) {

@@ -7,6 +7,8 @@
 #include "imager/noise.h"
 #include "tests/imager/comparison.h"
 
+BOOST_AUTO_TEST_SUITE(hogbom)
+
 namespace bdata = boost::unit_test::data;
 using namespace misfit;
 using namespace misfit::imager;
@@ -55,8 +57,6 @@ Cleaned plain(Image residual, const Image& psf, const MinorCycleOptions& options
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(hogbom)
 
 BOOST_DATA_TEST_CASE(components_are_those_of_the_plain_double_loop,
                      bdata::make({1, 2, 7, 16, 33, 40}) ^ bdata::make({1, 5, 1, 16, 21, 150}), width, height) {

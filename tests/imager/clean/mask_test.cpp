@@ -7,11 +7,11 @@
 
 #include "tests/imager/comparison.h"
 
+BOOST_AUTO_TEST_SUITE(mask)
+
 using namespace misfit;
 using namespace misfit::imager;
 using namespace misfit::imager::testing;
-
-BOOST_AUTO_TEST_SUITE(mask)
 
 BOOST_AUTO_TEST_CASE(what_is_neither_0_nor_nan_is_allowed) {
   for (const double value : {1.0, -1.0, 1e-30, std::numeric_limits<double>::infinity()}) BOOST_TEST(mask_allows(value));

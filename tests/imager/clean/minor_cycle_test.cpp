@@ -9,6 +9,8 @@
 #include "imager/noise.h"
 #include "tests/imager/comparison.h"
 
+BOOST_AUTO_TEST_SUITE(minor_cycle)
+
 namespace bdata = boost::unit_test::data;
 using namespace misfit;
 using namespace misfit::imager;
@@ -68,8 +70,6 @@ Cleaned cleaned(const std::string& name, const Image& residual, const MinorCycle
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(minor_cycle)
 
 BOOST_DATA_TEST_CASE(the_residual_of_its_components_reaches_the_threshold, bdata::make(deconvolver_names()), name) {
   const Cleaned is = cleaned(name, dirty(), deep());

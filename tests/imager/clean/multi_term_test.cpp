@@ -8,6 +8,8 @@
 #include "imager/noise.h"
 #include "tests/imager/comparison.h"
 
+BOOST_AUTO_TEST_SUITE(multi_term)
+
 using namespace misfit;
 using namespace misfit::imager;
 using namespace misfit::imager::testing;
@@ -79,8 +81,6 @@ std::vector<const Image*> pointers(const std::vector<Image>& images) {
 const std::vector<Sky> points{{40, 30, 0, {1, -0.7, 0.6}}, {60, 66, 0, {0.5, 0, 0}}, {20, 70, 0, {-0.3, 0.9, -0.5}}};
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(multi_term)
 
 BOOST_AUTO_TEST_CASE(points_without_noise_give_their_taylor_coefficients) {
   for (const int terms : {2, 3}) {

@@ -9,6 +9,8 @@
 #include "imager/noise.h"
 #include "tests/imager/comparison.h"
 
+BOOST_AUTO_TEST_SUITE(multiscale)
+
 using namespace misfit;
 using namespace misfit::imager;
 using namespace misfit::imager::testing;
@@ -38,8 +40,6 @@ Image observed(const Image& sky, const Image& beam, double noise_jy) {
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(multiscale)
 
 /// Flux within 2 %, no bowl below −3 σ.
 BOOST_AUTO_TEST_CASE(a_gaussian_of_ten_beams_keeps_its_flux_and_leaves_no_bowl) {

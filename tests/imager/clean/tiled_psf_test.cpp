@@ -8,6 +8,8 @@
 
 #include "tests/imager/comparison.h"
 
+BOOST_AUTO_TEST_SUITE(tiled_psf)
+
 namespace bdata = boost::unit_test::data;
 using namespace misfit::imager;
 using namespace misfit::imager::testing;
@@ -28,8 +30,6 @@ float plain_reach(const Image& psf, int side, int rows, int columns) {
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(tiled_psf)
 
 BOOST_DATA_TEST_CASE(reaches_are_the_largest_values_between_squares, bdata::make({1, 31, 100}) ^ bdata::make({5, 64, 71}),
                      width, height) {

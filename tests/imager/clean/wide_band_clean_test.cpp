@@ -10,6 +10,8 @@
 #include "tests/imager/comparison.h"
 #include "tests/imager/taylor/wide_band.h"
 
+BOOST_AUTO_TEST_SUITE(wide_band_clean)
+
 using namespace misfit;
 using namespace misfit::imager;
 using namespace misfit::imager::testing;
@@ -126,8 +128,6 @@ double at(const Image& image, Place place) {
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(wide_band_clean)
 
 /// With two terms the straight line through (1+x)^−0.7 over 20 % of bandwidth has a slope over height of −0.7018: the third
 /// coefficient −0.5355 adds 0.6 × 0.1² of itself, the second 0.595 × 0.1²/3 to the height. Noise of 1e-3 of the brightest

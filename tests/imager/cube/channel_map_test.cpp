@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numeric>
 
+BOOST_AUTO_TEST_SUITE(channel_map)
+
 using namespace misfit::imager;
 
 namespace {
@@ -31,8 +33,6 @@ double frequency_of(const ChannelTap& tap, const Window& window) {
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(channel_map)
 
 BOOST_AUTO_TEST_CASE(every_channel_belongs_to_the_one_plane_that_holds_its_middle) {
   for (const double step : {1e6, -1e6})

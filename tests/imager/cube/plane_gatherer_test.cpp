@@ -6,6 +6,8 @@
 
 #include "tests/imager/random_samples.h"
 
+BOOST_AUTO_TEST_SUITE(plane_gatherer)
+
 using namespace misfit::imager;
 
 namespace {
@@ -117,8 +119,6 @@ GatheredPlanes gathered(const VisibilitySource& source, const CubeSampling& samp
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(plane_gatherer)
 
 BOOST_AUTO_TEST_CASE(samples_are_those_of_the_definition) {
   for (const auto how : {SpectralInterpolation::nearest, SpectralInterpolation::linear}) {

@@ -7,9 +7,9 @@
 #include <numeric>
 #include <random>
 
-using namespace misfit::imager;
-
 BOOST_AUTO_TEST_SUITE(row_order)
+
+using namespace misfit::imager;
 
 BOOST_AUTO_TEST_CASE(each_row_of_a_lattice_lies_beside_the_one_before) {
   constexpr int side = 64;

@@ -7,6 +7,8 @@
 #include "imager/noise.h"
 #include "tests/imager/comparison.h"
 
+BOOST_AUTO_TEST_SUITE(spectral_index)
+
 using namespace misfit::imager;
 using namespace misfit::imager::testing;
 
@@ -32,8 +34,6 @@ Image constant(double value) {
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(spectral_index)
 
 /// Taylor coefficients of (ν/ν_0)^(α + β ln(ν/ν_0)), by numerical differentiation.
 BOOST_AUTO_TEST_CASE(index_and_curvature_are_those_whose_taylor_coefficients_are_given) {

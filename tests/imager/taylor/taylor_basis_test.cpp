@@ -4,6 +4,8 @@
 #include <cmath>
 #include <random>
 
+BOOST_AUTO_TEST_SUITE(taylor_basis)
+
 using namespace misfit::imager;
 
 namespace {
@@ -69,8 +71,6 @@ std::vector<double> normal_numbers(std::size_t count) {
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(taylor_basis)
 
 /// A small step in any coefficient makes the fit worse.
 BOOST_AUTO_TEST_CASE(the_principal_solution_fits_best) {

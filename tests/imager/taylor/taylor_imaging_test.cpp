@@ -6,6 +6,8 @@
 #include "tests/imager/comparison.h"
 #include "tests/imager/random_samples.h"
 
+BOOST_AUTO_TEST_SUITE(taylor_imaging)
+
 using namespace misfit;
 using namespace misfit::imager;
 using namespace misfit::imager::testing;
@@ -57,8 +59,6 @@ std::unique_ptr<Transform> gridding(const ImageGeometry& g) {
 constexpr double bound = 2 * accuracy;
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(taylor_imaging)
 
 BOOST_AUTO_TEST_CASE(dirty_images_and_psfs_are_direct_sums_with_taylor_weights) {
   const VisibilityBlock block = random_samples(80, 6, cell_rad, 5);

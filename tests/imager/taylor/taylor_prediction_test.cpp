@@ -7,6 +7,8 @@
 #include "tests/imager/comparison.h"
 #include "tests/imager/random_samples.h"
 
+BOOST_AUTO_TEST_SUITE(taylor_prediction)
+
 using namespace misfit::imager;
 using namespace misfit::imager::testing;
 
@@ -40,8 +42,6 @@ std::unique_ptr<Transform> gridding() {
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(taylor_prediction)
 
 BOOST_AUTO_TEST_CASE(it_is_the_sum_of_the_terms_predictions_times_powers_of_x) {
   const DirectTransform transform({geometry, true, 1});

@@ -13,6 +13,8 @@
 #include "tests/imager/random_samples.h"
 #include "tests/imager/weighting/plain_density.h"
 
+BOOST_AUTO_TEST_SUITE(imaging_weights)
+
 namespace bdata = boost::unit_test::data;
 using namespace misfit::imager;
 using namespace misfit::imager::testing;
@@ -76,8 +78,6 @@ VisibilityBlock even_samples() {
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(imaging_weights)
 
 BOOST_AUTO_TEST_CASE(natural_weights_without_a_taper_are_those_of_the_data) {
   BOOST_TEST(weights_of(stored(some_blocks()), {}, 1) == nullptr);

@@ -8,6 +8,8 @@
 #include "tests/imager/random_samples.h"
 #include "tests/imager/weighting/plain_density.h"
 
+BOOST_AUTO_TEST_SUITE(uv_density)
+
 namespace bdata = boost::unit_test::data;
 using namespace misfit::imager;
 using namespace misfit::imager::testing;
@@ -58,8 +60,6 @@ double box_sum(const PlainDensity& plain, const PlainDensity::Cell& at, int reac
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(uv_density)
 
 BOOST_DATA_TEST_CASE(cells_hold_the_weight_of_all_samples_and_conjugates_in_them,
                      bdata::make({64, 33, 20}) ^ bdata::make({48, 31, 51}), width, height) {
