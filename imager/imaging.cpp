@@ -25,15 +25,22 @@ void require_any(const SampleSums& sums) {
   throw NothingInGrid(sums.outside_grid);
 }
 
+/// Divides by Σ w. What the image is then, as rank 0 has it.
+ImageStatistics normalise(Image& image, double weight, const Ranks& ranks) {
+  ImageStatistics statistics = divide(image, weight);
+  share_values(ranks, statistics);
+  return statistics;
+}
+
 /// Divides all by Σ w.
-DirtyImages dirty_images(AdjointResult sum, Image psf, StageTimes& times) {
+DirtyImages dirty_images(AdjointResult sum, Image psf, const Ranks& ranks, StageTimes& times) {
   BigMemory::release();
   require_any(sum.sums.front());
   const StageTimer timer(times, "fft");
   const double weight = sum.sums.front().weight;
   DirtyImages made{std::move(sum.images), std::move(psf), std::move(sum.sums), {}, {}};
-  for (Image& image : made.dirty) made.dirty_statistics.push_back(divide(image, weight));
-  made.psf_statistics = divide(made.psf, weight);
+  for (Image& image : made.dirty) made.dirty_statistics.push_back(normalise(image, weight, ranks));
+  made.psf_statistics = normalise(made.psf, weight, ranks);
   return made;
 }
 
@@ -54,7 +61,7 @@ DirtyImages make_dirty_images(const VisibilitySource& source, const Transform& t
   });
   AdjointResult result = finish_adjoint(std::move(sum), source.ranks(), times);
   Image psf = std::move(result.psf);
-  return dirty_images(std::move(result), std::move(psf), times);
+  return dirty_images(std::move(result), std::move(psf), source.ranks(), times);
 }
 
 DirtyImages make_dirty_images(const VisibilitySource& source, const Transform& transform, const OwnPsf& psf,
@@ -69,7 +76,7 @@ DirtyImages make_dirty_images(const VisibilitySource& source, const Transform& t
   });
   AdjointResult of_psf = finish_adjoint(std::move(psf_sum), source.ranks(), times);
   AdjointResult result = finish_adjoint(std::move(sum), source.ranks(), times);
-  return dirty_images(std::move(result), std::move(of_psf.psf), times);
+  return dirty_images(std::move(result), std::move(of_psf.psf), source.ranks(), times);
 }
 
 void for_each_residual(const VisibilitySource& source, const MakePrediction& predict, const Progress& progress,

@@ -20,6 +20,8 @@ struct NothingInGrid : std::runtime_error {
   std::uint64_t outside_grid = 0;
 };
 
+/// Where several ranks share the samples, images are at rank 0, and empty at others, here and wherever images are made; all
+/// that else is told is that of all samples, and of the images, at every rank.
 struct DirtyImages {
   std::vector<Image> dirty;                       ///< [Stokes], Jy/beam: the adjoint over Σ w
   Image psf;                                      ///< 1 at the centre up to the accuracy; empty unless asked for
@@ -46,7 +48,7 @@ DirtyImages make_dirty_images(const VisibilitySource& source, const Transform& t
 /// Given a block and its data − model [row][channel], which is that at usable samples alone.
 using VisitResidual = std::function<void(const VisibilityBlock& block, const std::vector<std::complex<double>>& residual)>;
 
-/// One pass over the visibilities less those of a model. Stages timed: "read", "fft", "degrid".
+/// One pass over the visibilities less those of a model, which every rank has. Stages timed: "read", "fft", "degrid".
 void for_each_residual(const VisibilitySource& source, const Transform& transform, const Image& model, const Progress& progress,
                        StageTimes& times, const VisitResidual& visit);
 

@@ -1,5 +1,7 @@
 #include "imager/parallel.h"
 
+#include <sched.h>
+
 #include <algorithm>
 #include <atomic>
 #include <exception>
@@ -60,8 +62,11 @@ void parallel_for(std::size_t count, int threads, const std::function<void(std::
   if (failure) std::rethrow_exception(failure);
 }
 
-int available_threads() {
-  return std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+int available_threads(int processes) {
+  const int all = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+  cpu_set_t mine;
+  const int own = sched_getaffinity(0, sizeof mine, &mine) == 0 ? std::max(1, CPU_COUNT(&mine)) : all;
+  return own < all ? own : std::max(1, all / processes);
 }
 
 }  // namespace misfit::imager

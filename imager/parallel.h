@@ -28,7 +28,8 @@ class StopCheck {
   StopCheck* outer_;  ///< that this one stands for while it lives
 };
 
-/// The number of threads that `--threads 0` means: all cores this process may use.
-int available_threads();
+/// The number of threads that `--threads 0` means: all cores this process may use; its share of them where `processes` like it
+/// run on this machine and none is bound to cores of its own.
+int available_threads(int processes = 1);
 
 }  // namespace misfit::imager

@@ -7,10 +7,13 @@ class Alone : public Ranks {
  public:
   int size() const override { return 1; }
   int rank() const override { return 0; }
+  int on_this_machine() const override { return 1; }
   void sum(double*, std::size_t) const override {}
+  void sum_at_first(double*, std::size_t) const override {}
   void largest(double*, std::size_t) const override {}
   void share(void*, std::size_t) const override {}
-  std::vector<std::string> gather(const std::string& bytes) const override { return {bytes}; }
+  std::vector<std::string> gather_at_first(const std::string& bytes) const override { return {bytes}; }
+  Traffic traffic() const override { return {}; }
 };
 
 }  // namespace

@@ -1,11 +1,19 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
+#include <cstring>
 #include <string>
 #include <type_traits>
 #include <vector>
 
 namespace misfit::imager {
+
+/// What ranks told each other.
+struct Traffic {
+  std::uint64_t exchanges = 0;
+  std::uint64_t bytes = 0;  ///< that one of them gave
+};
 
 /// The processes of a run that share its samples, "ranks" as MPI has them. Each has a part of the samples and computes with it;
 /// what the parts add up to comes to all, so that all decide alike and go on together. Every call is made by all of them, in
@@ -16,18 +24,24 @@ class Ranks {
   virtual int size() const = 0;
   /// Which of them this is, from 0.
   virtual int rank() const = 0;
+  /// How many of them share this one's machine, itself included.
+  virtual int on_this_machine() const = 0;
   bool alone() const { return size() == 1; }
   /// Whether this is the one that speaks, and writes.
   bool first() const { return rank() == 0; }
 
   /// Adds up `count` numbers of each rank, the first with the first; all get the same bits.
   virtual void sum(double* values, std::size_t count) const = 0;
+  /// The same for rank 0 alone; what others have afterwards is of no use.
+  virtual void sum_at_first(double* values, std::size_t count) const = 0;
   /// The largest of each, the same way.
   virtual void largest(double* values, std::size_t count) const = 0;
   /// Gives all what rank 0 has; each gives room for as many bytes.
   virtual void share(void* bytes, std::size_t count) const = 0;
-  /// What each rank gives, at all of them. [rank]
-  virtual std::vector<std::string> gather(const std::string& bytes) const = 0;
+  /// What each rank gives [rank], at rank 0; nothing at others.
+  virtual std::vector<std::string> gather_at_first(const std::string& bytes) const = 0;
+  /// So far.
+  virtual Traffic traffic() const = 0;
 };
 
 /// The one process of a run that shares with nobody.
@@ -41,6 +55,17 @@ void sum_over(const Ranks& ranks, Number&... values) {
   ranks.sum(all, sizeof...(values));
   std::size_t next = 0;
   ((values = static_cast<Number>(all[next++])), ...);
+}
+
+/// The largest over all ranks.
+inline double largest_of(const Ranks& ranks, double value) {
+  ranks.largest(&value, 1);
+  return value;
+}
+
+/// Whether it is so on any rank.
+inline bool any_of(const Ranks& ranks, bool here) {
+  return largest_of(ranks, here ? 1 : 0) > 0;
 }
 
 /// Gives all ranks the values of rank 0.
@@ -59,6 +84,21 @@ void share_list(const Ranks& ranks, std::vector<Value>& values) {
   share_values(ranks, count);
   values.resize(count);
   ranks.share(values.data(), count * sizeof(Value));
+}
+
+/// The lists of all ranks one after the other, at rank 0; nothing at others.
+template <typename Value>
+std::vector<Value> join_at_first(const Ranks& ranks, const std::vector<Value>& values) {
+  static_assert(std::is_trivially_copyable_v<Value>);
+  if (ranks.alone()) return values;
+  std::vector<Value> all;
+  for (const std::string& bytes :
+       ranks.gather_at_first(std::string(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(Value)))) {
+    const std::size_t before = all.size();
+    all.resize(before + bytes.size() / sizeof(Value));
+    if (!bytes.empty()) std::memcpy(all.data() + before, bytes.data(), bytes.size());
+  }
+  return all;
 }
 
 }  // namespace misfit::imager

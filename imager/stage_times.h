@@ -25,6 +25,12 @@ class StageTimes {
     add(from, -seconds);
     add(to, seconds);
   }
+  /// Seconds of a stage so far.
+  double of(const std::string& stage) const {
+    for (const auto& [name, total] : stages_)
+      if (name == stage) return total;
+    return 0;
+  }
   const std::vector<std::pair<std::string, double>>& stages() const { return stages_; }
 
  private:

@@ -15,6 +15,7 @@ class StokesView : public VisibilitySource {
   std::unique_ptr<BlockStream> open() const override;
   std::uint64_t samples() const override { return from_.samples(); }
   const Ranks& ranks() const override { return from_.ranks(); }
+  void end_pass() const override { from_.end_pass(); }
 
  private:
   const VisibilitySource& from_;

@@ -22,7 +22,7 @@ class StreamedVisibilities::Recorder : public BlockStream {
       pass_->uv_coverage.add(*block);
       if (source_.options_.keep) pass_->blocks.append(block);
     } else {
-      if (pass_->counts.used == 0) throw NothingUsable(pass_->counts);
+      if (pass_->counts.used == 0 && source_.ranks().alone()) throw NothingUsable(pass_->counts);
       source_.finish(pass_);
     }
     return block;
@@ -74,10 +74,21 @@ std::unique_ptr<BlockStream> StreamedVisibilities::open() const {
   return prefetched(std::move(stream), options_.ahead);
 }
 
+void StreamedVisibilities::end_pass() const {
+  const std::lock_guard lock(mutex_);
+  if (ranks().alone() || !first_pass_ || first_pass_->of_all_ranks) return;
+  first_pass_->counts.add_up(ranks());
+  first_pass_->weights.add_up(ranks());
+  first_pass_->uv_coverage.add_up(ranks());
+  first_pass_->of_all_ranks = true;
+  if (first_pass_->counts.used == 0) throw NothingUsable(first_pass_->counts);
+}
+
 void StreamedVisibilities::apply(std::shared_ptr<const ImagingWeights> weights, int threads) {
   const std::lock_guard lock(mutex_);
   if (first_pass_ && options_.keep) {
     first_pass_->weights = weights->put_on(first_pass_->blocks, threads);
+    first_pass_->weights.add_up(ranks());
     return;
   }
   weights_ = std::move(weights);

@@ -16,7 +16,8 @@ struct StreamingOptions {
 };
 
 /// Another source, read ahead of its user, in the same blocks. The first pass that is read to its end tells what was in it, and
-/// may serve all later passes from memory. A pass without a usable sample ends in a std::runtime_error that counts the reasons.
+/// may serve all later passes from memory. A pass without a usable sample ends in NothingUsable: where ranks share the samples,
+/// once it is known of all of them, in end_pass().
 class StreamedVisibilities : public VisibilitySource {
  public:
   /// `from` must outlive this.
@@ -25,8 +26,9 @@ class StreamedVisibilities : public VisibilitySource {
   std::unique_ptr<BlockStream> open() const override;
   std::uint64_t samples() const override { return from_.samples(); }
   const Ranks& ranks() const override { return from_.ranks(); }
+  void end_pass() const override;
   /// Gives all passes from now on these weights, in place of those that `from` has: at once where blocks are kept, else as they
-  /// are read. To be called once at most, while nobody reads.
+  /// are read. To be called once at most, while nobody reads, and by all ranks.
   void apply(std::shared_ptr<const ImagingWeights> weights, int threads);
   /// Of a full pass, and zero before there was one.
   SampleCounts counts() const;
@@ -42,6 +44,7 @@ class StreamedVisibilities : public VisibilitySource {
     WeightTotals weights;  ///< only their spread where none were applied
     UvCoverage uv_coverage;
     StoredVisibilities blocks;
+    bool of_all_ranks = false;
   };
   class Recorder;
   class Weighted;

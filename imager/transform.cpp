@@ -14,6 +14,10 @@ SampleSums& SampleSums::operator+=(const SampleSums& other) {
   return *this;
 }
 
+void SampleSums::add_up(const Ranks& ranks) {
+  sum_over(ranks, used, outside_grid, weight, weight_abs, weight_square, weight2_square);
+}
+
 AdjointSum::AdjointSum(const AdjointOptions& options) : options_(options) {
   const int least = options.with_psf ? 0 : 1;
   if (options.images < least || options.images > most_stokes)

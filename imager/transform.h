@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "imager/image.h"
+#include "imager/ranks.h"
 #include "imager/visibility_sets.h"
 
 namespace misfit::imager {
@@ -21,6 +22,8 @@ struct SampleSums {
   double weight2_square = 0;       ///< Σ w² |V|²
 
   SampleSums& operator+=(const SampleSums& other);
+  /// Becomes that of all ranks.
+  void add_up(const Ranks& ranks);
 };
 
 /// What an adjoint makes of the samples.

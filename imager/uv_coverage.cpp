@@ -68,9 +68,15 @@ void UvCoverage::add(const VisibilityBlock& block) {
   }
 }
 
+void UvCoverage::add_up(const Ranks& ranks) {
+  std::vector<double> all(count_.begin(), count_.end());
+  ranks.sum(all.data(), all.size());
+  for (std::size_t i = 0; i < all.size(); ++i) count_[i] = static_cast<std::uint64_t>(all[i]);
+}
+
 std::vector<std::uint64_t> UvCoverage::counts() const {
   std::vector<std::uint64_t> both(count_.size());
-  for (std::size_t i = 0; i < both.size(); ++i) both[i] = std::uint64_t{count_[i]} + count_[count_.size() - 1 - i];
+  for (std::size_t i = 0; i < both.size(); ++i) both[i] = count_[i] + count_[count_.size() - 1 - i];
   return both;
 }
 

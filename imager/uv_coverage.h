@@ -18,6 +18,8 @@ class UvCoverage {
   explicit UvCoverage(double reach_lambda = 0);
 
   void add(const VisibilityBlock& block);
+  /// Becomes that of all ranks, which have the same reach.
+  void add_up(const Ranks& ranks);
 
   double reach_lambda() const { return reach_lambda_; }
   /// Samples and their mirror images V(−u, −v) = conj V(u, v), row-major [v][u] from −reach_lambda; empty without a reach.
@@ -25,7 +27,7 @@ class UvCoverage {
 
  private:
   double reach_lambda_;
-  std::vector<std::uint32_t> count_;  ///< [v][u], of the samples as they are stored
+  std::vector<std::uint64_t> count_;  ///< [v][u], of the samples as they are stored
 };
 
 }  // namespace misfit::imager

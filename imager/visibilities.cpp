@@ -34,4 +34,8 @@ SampleCounts& SampleCounts::operator+=(const SampleCounts& other) {
   return *this;
 }
 
+void SampleCounts::add_up(const Ranks& ranks) {
+  sum_over(ranks, rows_read, samples_read, autocorrelations, flagged, nonfinite, zero_weight, outside_grid, used);
+}
+
 }  // namespace misfit::imager

@@ -25,6 +25,8 @@ struct SampleCounts {
   std::uint64_t used = 0;
 
   SampleCounts& operator+=(const SampleCounts& other);
+  /// Becomes that of all ranks.
+  void add_up(const Ranks& ranks);
 };
 
 /// Thrown where none of the samples read can be used: its message counts why not.
@@ -73,6 +75,9 @@ class VisibilitySource {
   virtual std::uint64_t samples() const = 0;
   /// Those who have the other samples of the same image, with whom whoever adds up samples adds up what came of them.
   virtual const Ranks& ranks() const { return alone(); }
+  /// To be called by all ranks, each in the thread that exchanges, when it has read a pass to its end: what the source tells of
+  /// its passes is that of all ranks from then on.
+  virtual void end_pass() const {}
 };
 
 }  // namespace misfit::imager

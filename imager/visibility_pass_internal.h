@@ -16,7 +16,7 @@ class VisibilityPass {
   using Blocks = std::vector<std::shared_ptr<const VisibilityBlock>>;
 
   VisibilityPass(const VisibilitySource& source, const Progress& progress, StageTimes& times)
-      : total_(source.samples()), stream_(source.open()), progress_(progress), times_(times) {}
+      : source_(source), stream_(source.open()), progress_(progress), times_(times) {}
 
   /// Calls visit(block) for every block.
   template <typename Visit>
@@ -32,7 +32,7 @@ class VisibilityPass {
     const auto finish = [&] {
       visit(group);
       done += gathered;
-      progress_(done, total_);
+      progress_(done, source_.samples());
       group.clear();
       gathered = 0;
     };
@@ -42,6 +42,7 @@ class VisibilityPass {
       if (gathered >= samples) finish();
     }
     if (!group.empty()) finish();
+    source_.end_pass();
   }
 
  private:
@@ -50,7 +51,7 @@ class VisibilityPass {
     return stream_->next();
   }
 
-  std::uint64_t total_;
+  const VisibilitySource& source_;
   std::unique_ptr<BlockStream> stream_;
   const Progress& progress_;
   StageTimes& times_;
@@ -61,7 +62,13 @@ inline std::unique_ptr<AdjointSum> begin_adjoint(const Transform& transform, con
   return transform.adjoint(options);
 }
 
-/// That of the samples of all ranks. Also frees the grid.
+/// Becomes that of all ranks at rank 0, and empty at others.
+inline void add_up(Image& image, const Ranks& ranks) {
+  ranks.sum_at_first(image.pixel.data(), image.pixel.size());
+  if (!ranks.first()) image = {};
+}
+
+/// Of the samples of all ranks; images at rank 0 alone. Also frees the grid.
 inline AdjointResult finish_adjoint(std::unique_ptr<AdjointSum> sum, const Ranks& ranks, StageTimes& times) {
   AdjointResult result;
   {
@@ -72,10 +79,9 @@ inline AdjointResult finish_adjoint(std::unique_ptr<AdjointSum> sum, const Ranks
   times.move("grid", "fft", result.fft_s);
   if (ranks.alone()) return result;
   const StageTimer timer(times, "exchange");
-  for (Image& image : result.images) ranks.sum(image.pixel.data(), image.pixel.size());
-  ranks.sum(result.psf.pixel.data(), result.psf.pixel.size());
-  for (SampleSums& sums : result.sums)
-    sum_over(ranks, sums.used, sums.outside_grid, sums.weight, sums.weight_abs, sums.weight_square, sums.weight2_square);
+  for (Image& image : result.images) add_up(image, ranks);
+  add_up(result.psf, ranks);
+  for (SampleSums& sums : result.sums) sums.add_up(ranks);
   return result;
 }
 

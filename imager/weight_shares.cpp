@@ -26,10 +26,19 @@ ChannelSums sums_of(const VisibilityBlock& block, std::uint64_t first_row, const
   return sums;
 }
 
+/// Σ w, [kind and frequency].
+using ByKind = std::map<std::pair<std::uint32_t, double>, double>;
+
+std::vector<WeightShare> listed(const ByKind& weight) {
+  std::vector<WeightShare> shares;
+  for (const auto& [key, sum] : weight) shares.push_back({key.first, key.second, sum});
+  return shares;
+}
+
 }  // namespace
 
 std::vector<WeightShare> weight_shares(const VisibilitySource& source, const ShareOptions& options) {
-  std::map<std::pair<std::uint32_t, double>, double> weight;
+  ByKind weight;
   std::uint64_t first_row = 0;
   const auto stream = source.open();
   while (const auto block = stream->next()) {
@@ -38,9 +47,10 @@ std::vector<WeightShare> weight_shares(const VisibilitySource& source, const Sha
         if (sums[channel] > 0) weight[{kind, block->frequency_hz[channel]}] += sums[channel];
     first_row += block->rows();
   }
-  std::vector<WeightShare> shares;
-  for (const auto& [key, sum] : weight) shares.push_back({key.first, key.second, sum});
-  return shares;
+  if (source.ranks().alone()) return listed(weight);
+  ByKind of_all;
+  for (const WeightShare& s : join_at_first(source.ranks(), listed(weight))) of_all[{s.kind, s.frequency_hz}] += s.weight;
+  return listed(of_all);
 }
 
 }  // namespace misfit::imager

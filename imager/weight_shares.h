@@ -22,7 +22,8 @@ struct ShareOptions {
   int threads = 1;
 };
 
-/// The shares of all samples of `source`, as they are weighed there, in a pass over it; by kind, then by frequency.
+/// The shares of all samples of `source`, as they are weighed there, in a pass over it; by kind, then by frequency. Where
+/// several ranks share the samples, they are at rank 0.
 std::vector<WeightShare> weight_shares(const VisibilitySource& source, const ShareOptions& options);
 
 }  // namespace misfit::imager

@@ -8,6 +8,7 @@
 
 #include "imager/clean/finite_images.h"
 #include "imager/clean/major_cycles.h"
+#include "imager/clean/shared_model.h"
 
 namespace misfit::imager {
 namespace {
@@ -16,7 +17,7 @@ namespace {
 class OneTerm : public CleanProblem {
  public:
   OneTerm(const CleanInput& input, const MinorCycle& minor, const Progress& progress, StageTimes& times)
-      : input_(input), minor_(minor), progress_(progress), times_(times) {
+      : input_(input), minor_(minor), progress_(progress), times_(times), sharer_(input.source.ranks()) {
     require_finite_psf(input.psf);
   }
 
@@ -24,9 +25,11 @@ class OneTerm : public CleanProblem {
   /// That of no model is the dirty image.
   Residuals residuals(const ComponentModel& model, int threads) override {
     if (model.components().empty()) return checked(std::shared_ptr<const Image>(std::shared_ptr<void>(), &input_.dirty));
+    sharer_.share(model);
     return checked(std::make_shared<const Image>(
         make_residual_image(input_.source, input_.transform, model_image(model, threads), progress_, times_)));
   }
+  void end() const override { sharer_.end(); }
   MinorCycleReport find(const Residuals& residuals, const MinorCycleOptions& options) const override {
     return minor_.clean(*residuals.front(), options);
   }
@@ -46,6 +49,7 @@ class OneTerm : public CleanProblem {
   const MinorCycle& minor_;
   const Progress& progress_;
   StageTimes& times_;
+  ModelSharer sharer_;
 };
 
 }  // namespace

@@ -97,7 +97,7 @@ struct CleanResult {
   std::vector<Image> further_residuals;  ///< [term − 1], Jy/beam
 };
 
-/// What is to be cleaned.
+/// What is to be cleaned. Where several ranks share the samples, rank 0 cleans and the others call follow_clean().
 struct CleanInput {
   const VisibilitySource& source;
   const Transform& transform;

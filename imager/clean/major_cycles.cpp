@@ -57,6 +57,7 @@ class Run {
       return_to_best();
       end_->reason += "; the best model was kept";
     }
+    problem_.end();
     return result();
   }
 

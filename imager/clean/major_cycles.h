@@ -18,6 +18,8 @@ class CleanProblem {
   virtual const std::vector<double>& scale_pixels() const = 0;
   /// Of data − model. Throws std::runtime_error where one is not finite.
   virtual Residuals residuals(const ComponentModel& model, int threads) = 0;
+  /// Tells those who make residuals with it that there will be no more.
+  virtual void end() const = 0;
   /// A minor cycle.
   virtual MinorCycleReport find(const Residuals& residuals, const MinorCycleOptions& options) const = 0;
 };

@@ -6,6 +6,7 @@
 
 #include "imager/clean/finite_images.h"
 #include "imager/clean/major_cycles.h"
+#include "imager/clean/shared_model.h"
 #include "imager/taylor/taylor_imaging.h"
 
 namespace misfit::imager {
@@ -16,7 +17,7 @@ class SeveralTerms : public CleanProblem {
  public:
   SeveralTerms(const CleanInput& input, const WideBand& band, const MultiTerm& minor, const Progress& progress,
                StageTimes& times)
-      : input_(input), band_(band), minor_(minor), progress_(progress), times_(times) {
+      : input_(input), band_(band), minor_(minor), progress_(progress), times_(times), sharer_(input.source.ranks()) {
     const int terms = band.expansion.terms;
     if (minor.terms() != terms || band.further_dirty.size() + 1 != static_cast<std::size_t>(terms))
       throw std::invalid_argument(std::to_string(terms) + " Taylor terms, dirty images of " +
@@ -33,6 +34,7 @@ class SeveralTerms : public CleanProblem {
       made.push_back(without_owner(input_.dirty));
       for (const Image& dirty : band_.further_dirty) made.push_back(without_owner(dirty));
     } else {
+      sharer_.share(model);
       for (Image& image : make_taylor_residuals(input_.source, input_.transform, model_images(model, threads), band_.expansion,
                                                 progress_, times_))
         made.push_back(std::make_shared<const Image>(std::move(image)));
@@ -41,6 +43,7 @@ class SeveralTerms : public CleanProblem {
     for (const auto& residual : made) require_finite_residual(*residual, input_.dirty);
     return made;
   }
+  void end() const override { sharer_.end(); }
   MinorCycleReport find(const Residuals& residuals, const MinorCycleOptions& options) const override {
     std::vector<const Image*> images;
     for (const auto& residual : residuals) images.push_back(residual.get());
@@ -61,6 +64,7 @@ class SeveralTerms : public CleanProblem {
   const MultiTerm& minor_;
   const Progress& progress_;
   StageTimes& times_;
+  ModelSharer sharer_;
 };
 
 }  // namespace

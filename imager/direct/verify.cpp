@@ -12,7 +12,7 @@ namespace {
 /// Indices of samples in ascending order, so that one pass finds them.
 std::vector<std::uint64_t> random_samples(std::uint64_t samples, int count, std::mt19937_64& random) {
   std::vector<std::uint64_t> chosen;
-  for (int i = 0; i < count; ++i) chosen.push_back(random() % samples);
+  for (int i = 0; i < count; ++i) chosen.push_back(random() % std::max<std::uint64_t>(samples, 1));
   std::sort(chosen.begin(), chosen.end());
   return chosen;
 }
@@ -68,7 +68,10 @@ PixelError relative_pixel_error(const PixelError& error, const Image& dirty) {
 MeasuredError measure_error(const VisibilitySource& source, const Transform& transform, const ImageGeometry& geometry,
                             const DirtyImages& images, int count, int threads, const Progress& progress) {
   std::mt19937_64 random(20200112);
-  count = static_cast<int>(std::min({std::uint64_t(count), std::uint64_t{geometry.pixels()}, source.samples()}));
+  const Ranks& ranks = source.ranks();
+  std::uint64_t all_samples = source.samples();
+  sum_over(ranks, all_samples);
+  count = static_cast<int>(std::min({std::uint64_t(count), std::uint64_t{geometry.pixels()}, all_samples}));
   const std::vector<Pixel> pixels = random_pixels(geometry, count);
   const DirectPixels direct_pixels{geometry, pixels, true, threads};
   const std::vector<std::uint64_t> chosen = random_samples(source.samples(), count, random);
@@ -85,9 +88,11 @@ MeasuredError measure_error(const VisibilitySource& source, const Transform& tra
   }
 
   MeasuredError error;
-  for (std::size_t i = 0; i < sum.size(); ++i)
+  for (std::vector<double>& of_image : sum) ranks.sum_at_first(of_image.data(), of_image.size());
+  for (std::size_t i = 0; ranks.first() && i < sum.size(); ++i)
     error.image.push_back(
         relative_pixel_error(pixel_error(images.dirty[i], pixels, sum[i], images.sums[i].weight), images.dirty[i]));
+  share_list(ranks, error.image);
 
   Image model(geometry.width, geometry.height);
   for (const Pixel& pixel : pixels) model.at(pixel.row, pixel.column) = random() % 2 == 0 ? 1 : -1;
@@ -99,6 +104,7 @@ MeasuredError measure_error(const VisibilitySource& source, const Transform& tra
     difference += std::norm(gridded[i] - direct[i]);
     size += std::norm(direct[i]);
   }
+  sum_over(ranks, difference, size);
   error.predict_rms = size == 0 ? 0 : std::sqrt(difference / size);
   return error;
 }

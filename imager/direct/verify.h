@@ -28,8 +28,8 @@ struct MeasuredError {
 };
 
 /// Compares the dirty images with direct sums at `count` random pixels, and predicted visibilities with direct sums at `count`
-/// random samples, for a model of `count` random pixels; fewer where there are fewer pixels or samples. The choice depends on
-/// `count` alone.
+/// random samples of each rank, for a model of `count` random pixels; fewer where there are fewer pixels or samples. The choice
+/// depends on `count` alone.
 MeasuredError measure_error(const VisibilitySource& source, const Transform& transform, const ImageGeometry& geometry,
                             const DirtyImages& images, int count, int threads, const Progress& progress);
 

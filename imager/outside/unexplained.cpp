@@ -56,6 +56,10 @@ struct Sums {
     pair_power += std::norm(sum) - power2;
   }
 
+  void add_up(const Ranks& ranks) {
+    sum_over(ranks, means, weight, power, shared, scatter, pair_weight, pair_weight2, pair_power);
+  }
+
   /// The most that the noise of weight 1 can be in one part: as means of one cell scatter, to three standard deviations; or as
   /// all do.
   double most_unit_noise() const {
@@ -105,6 +109,7 @@ Unexplained unexplained_by(const Image& model, const VisibilitySource& source, c
                         sums.add_cell(at, next);
                       }
                     });
+  sums.add_up(source.ranks());
   if (sums.weight == 0) return {};
   const double square = sums.power / sums.weight;
   const double alike = sums.pair_weight == 0 ? 0 : sums.pair_power / sums.pair_weight;

@@ -6,6 +6,7 @@
 
 #include "imager/clean/clean.h"
 #include "imager/clean/deconvolver.h"
+#include "imager/clean/shared_model.h"
 #include "imager/constants.h"
 #include "imager/noise.h"
 #include "imager/outside/tapered_visibilities.h"
@@ -22,7 +23,7 @@ constexpr double lobe_pixels = 5;  ///< where the main lobe is over
 struct CleanedField {
   ComponentModel components;
   Image model;
-  Sidelobes sidelobes;
+  Sidelobes sidelobes{Image()};
   double least_jy = 0;
 };
 
@@ -30,6 +31,14 @@ CleanedField clean_wide_field(const VisibilitySource& source, const Transform& t
                               const Progress& progress, StageTimes& times) {
   const TaperedVisibilities tapered(source, g.cell_rad);
   const DirtyImages images = make_dirty_images(tapered, transform, {.with_psf = true}, progress, times);
+  const Ranks& ranks = source.ranks();
+  CleanedField field;
+  if (!ranks.first()) {
+    follow_clean(tapered, transform, threads, progress, times);
+    field.model = Image(g.width, g.height);
+    ranks.share(field.model.pixel.data(), field.model.pixel.size() * sizeof(double));
+    return field;
+  }
   const Image& dirty = images.dirty.front();
   constexpr double deep = 2e-3;           // a source between pixels leaves hardly more of itself
   constexpr double least_of_peak = 5e-3;  // what is fainter may be made of what such sources leave
@@ -44,6 +53,7 @@ CleanedField clean_wide_field(const VisibilitySource& source, const Transform& t
   CleanResult cleaned = clean(
       {tapered, transform, dirty, images.psf, sidelobes.from(lobe_pixels), 1e-4}, *minor, options,
       first_state(ComponentModel(g.width, g.height, minor->scale_pixels())), progress, [](const CleanState&) {}, times);
+  ranks.share(cleaned.model.pixel.data(), cleaned.model.pixel.size() * sizeof(double));
   return {std::move(cleaned.components), std::move(cleaned.model), sidelobes,
           std::max(5 * robust_noise(cleaned.residual, threads), least_of_peak * largest_magnitude(dirty))};
 }
@@ -64,6 +74,12 @@ void WideFieldFinder::add(const SampleCoordinates& samples) {
       }
     }
   }
+}
+
+void WideFieldFinder::add_up(const Ranks& ranks) {
+  sum_over(ranks, samples_);
+  for (std::uint64_t& count : inner_) sum_over(ranks, count);
+  ranks.largest(max_abs_w_.data(), max_abs_w_.size());
 }
 
 WideField WideFieldFinder::field() const {
@@ -99,13 +115,14 @@ GriddingPlan plan_wide_field(const WideField& field, const GriddingRequest& imag
 }
 
 bool can_be_imaged(const ImageGeometry& field, const VisibilitySource& source) {
+  bool any = false;
   const auto stream = source.open();
-  while (const auto block = stream->next()) {
+  while (const auto block = any ? nullptr : stream->next()) {
     SampleSums sums;
     const std::vector<float> weight = imaging_weights(*block, {field, false, 1}, sums);
-    if (sums.used > 0) return true;
+    any = sums.used > 0;
   }
-  return false;
+  return any_of(source.ranks(), any);
 }
 
 WideSearch search_wide_field(const VisibilitySource& source, const GriddingPlan& plan, const Progress& progress,

@@ -25,6 +25,8 @@ class WideFieldFinder {
   explicit WideFieldFinder(const ImageGeometry& image) : image_(image) {}
 
   void add(const SampleCoordinates& samples);
+  /// Becomes that of all ranks.
+  void add_up(const Ranks& ranks);
   WideField field() const;
 
  private:
@@ -40,7 +42,7 @@ class WideFieldFinder {
 /// How the wider field is imaged: to 1e-4, within the memory that `image` allows.
 GriddingPlan plan_wide_field(const WideField& field, const GriddingRequest& image);
 
-/// Whether there is a sample to image it from: those that there should be may be flagged.
+/// Whether any rank has a sample to image it from: those that there should be may be flagged.
 bool can_be_imaged(const ImageGeometry& field, const VisibilitySource& source);
 
 /// What was found in it.
@@ -55,8 +57,8 @@ struct WideSearch {
 };
 
 /// Images the wider field of `plan` with weights that fall off towards the edge of its grid, and finds its sources by Clark's
-/// CLEAN with major cycles, down to five times the noise or a five-hundredth of the peak. Stages timed: "statistics", and those
-/// of make_dirty_images and clean. Throws what they throw.
+/// CLEAN with major cycles, down to five times the noise or a five-hundredth of the peak. Ranks after the first get no more
+/// than what is unexplained. Stages timed: "statistics", and those of make_dirty_images and clean. Throws what they throw.
 WideSearch search_wide_field(const VisibilitySource& source, const GriddingPlan& plan, const Progress& progress,
                              StageTimes& times);
 

@@ -45,11 +45,13 @@ double largest_checked_error(const VisibilitySource& source, const AccurateImage
   std::vector<std::vector<double>> sum(images.dirty.size(), std::vector<double>(at.pixel.size()));
   const auto stream = source.open();
   while (const auto block = stream->next()) add_direct_pixels(*block, at, sum);
+  for (std::vector<double>& of_image : sum) source.ranks().sum_at_first(of_image.data(), of_image.size());
   double largest = 0;
-  for (std::size_t i = 0; i < sum.size(); ++i) {
+  for (std::size_t i = 0; source.ranks().first() && i < sum.size(); ++i) {
     const PixelError error = pixel_error(images.dirty[i], at.pixel, sum[i], images.sums[i].weight);
     largest = std::max(largest, relative_pixel_error(error, images.dirty[i]).rms);
   }
+  share_values(source.ranks(), largest);
   return largest;
 }
 
@@ -120,7 +122,7 @@ AccurateImages make_accurate_images(const VisibilitySource& source, GriddingPlan
     plan = plan_gridding(stricter);
   }
   made = make_images(source, std::move(plan), progress, times);
-  if (!psf.pixel.empty()) {
+  if (!stricter.psf) {
     made.images.psf = std::move(psf);
     made.images.psf_statistics = psf_statistics;
   }

@@ -58,6 +58,10 @@ WeightTotals& WeightTotals::operator+=(const WeightTotals& other) {
   return *this;
 }
 
+void WeightTotals::add_up(const Ranks& ranks) {
+  sum_over(ranks, sums.natural, sums.image, sums.square_over_natural, w_spread.weight, w_spread.weighted_w_square);
+}
+
 bool WeightSums::outweigh_least(std::uint64_t samples) const {
   return image >= 1e6 * double{least} * static_cast<double>(samples);
 }
@@ -146,7 +150,9 @@ std::shared_ptr<const ImagingWeights> make_imaging_weights(const VisibilitySourc
     done += block->samples();
     progress(done, source.samples());
   }
+  source.end_pass();
   const StageTimer timer(times, "weights");
+  density.add_up(source.ranks());
   return std::make_shared<ImagingWeights>(density, options);
 }
 

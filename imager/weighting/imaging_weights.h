@@ -55,6 +55,8 @@ struct WeightTotals {
   WSpread w_spread;
 
   WeightTotals& operator+=(const WeightTotals& other);
+  /// Becomes that of all ranks.
+  void add_up(const Ranks& ranks);
 };
 
 /// A block with its weights for the image.

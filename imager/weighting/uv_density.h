@@ -15,6 +15,8 @@ class UvDensity {
   UvDensity(const ImageGeometry& geometry, int threads);
 
   void add(const VisibilityBlock& block);
+  /// Becomes that of all ranks.
+  void add_up(const Ranks& ranks) { ranks.sum(weight_.data(), weight_.size()); }
 
   const UvCells& cells() const { return cells_; }
   /// W_k of the half plane that UvCells describes, row-major [v][u].

@@ -1,0 +1,31 @@
+#pragma once
+
+#include "imager/clean/components.h"
+#include "imager/imaging.h"
+#include "imager/taylor/taylor_expansion.h"
+
+namespace misfit::imager {
+
+/// How rank 0, which alone has the images and runs CLEAN on them, has the others make residuals with it: it tells them of each
+/// model before it makes that model's residuals, and of the end. What it says, others wait for in follow_clean().
+class ModelSharer {
+ public:
+  /// Kept by reference.
+  explicit ModelSharer(const Ranks& ranks) : ranks_(ranks) {}
+  void share(const ComponentModel& model) const;
+  /// Others stop following.
+  void end() const;
+
+ private:
+  const Ranks& ranks_;
+};
+
+/// On ranks after the first: makes the parts of residuals that this rank's samples give, of every model that rank 0 tells of,
+/// until it tells of the end.
+void follow_clean(const VisibilitySource& source, const Transform& transform, int threads, const Progress& progress,
+                  StageTimes& times);
+/// The same of Taylor terms.
+void follow_clean(const VisibilitySource& source, const Transform& transform, const TaylorExpansion& expansion, int threads,
+                  const Progress& progress, StageTimes& times);
+
+}  // namespace misfit::imager
