@@ -12,6 +12,7 @@
 #include "ms_io/metadata_internal.h"
 #include "ms_io/model_writer.h"
 #include "ms_io/nearest_field_internal.h"
+#include "ms_io/row_shares_internal.h"
 #include "ms_io/spectral_frame_internal.h"
 #include "ms_io/table_access_internal.h"
 #include "ms_io/uvw_scan_internal.h"
@@ -120,7 +121,7 @@ std::vector<std::string> columns_of(const std::string& names, std::size_t sets) 
 /// The blocks of one set after the other.
 class JoinedStream : public imager::BlockStream {
  public:
-  explicit JoinedStream(std::vector<std::shared_ptr<const OpenSet>> sets) : sets_(std::move(sets)) {}
+  explicit JoinedStream(OpenSets sets) : sets_(std::move(sets)) {}
 
   std::shared_ptr<const imager::VisibilityBlock> next() override {
     for (; next_ < sets_.size(); ++next_, stream_.reset()) {
@@ -131,7 +132,7 @@ class JoinedStream : public imager::BlockStream {
   }
 
  private:
-  std::vector<std::shared_ptr<const OpenSet>> sets_;
+  OpenSets sets_;
   std::size_t next_ = 0;  ///< set
   std::unique_ptr<imager::BlockStream> stream_;
 };
@@ -139,8 +140,11 @@ class JoinedStream : public imager::BlockStream {
 }  // namespace
 
 struct MeasurementSet::Impl {
-  std::vector<std::shared_ptr<const OpenSet>> sets;
+  OpenSets sets;
   imager::Observation observation;
+  std::shared_ptr<const Impl> whole;  ///< of which this is the share of a rank; null where it is all
+  const imager::Ranks* ranks = &imager::alone();
+  SampleSharing sharing;  ///< empty where it is all
 };
 
 MeasurementSet::MeasurementSet(const std::string& path, const Selection& selection, const std::string& data_column,
@@ -166,12 +170,16 @@ MeasurementSet::MeasurementSet(std::shared_ptr<const Impl> impl) : impl_(std::mo
 
 MeasurementSet::~MeasurementSet() = default;
 
+const MeasurementSet::Impl& MeasurementSet::whole() const {
+  return impl_->whole ? *impl_->whole : *impl_;
+}
+
 const imager::Observation& MeasurementSet::observation() const {
   return impl_->observation;
 }
 std::vector<std::string> MeasurementSet::incomplete_columns() const {
   std::vector<std::string> sentences;
-  for (const auto& set : impl_->sets)
+  for (const auto& set : whole().sets)
     if (std::string sentence = incomplete_column(set->path, set->data_column); !sentence.empty())
       sentences.push_back(std::move(sentence));
   return sentences;
@@ -194,15 +202,24 @@ std::uint64_t MeasurementSet::read_at_once() const {
 NearestField MeasurementSet::nearest_field() const {
   NearestField nearest;
   nearest.distance_rad = std::numeric_limits<double>::infinity();
-  for (const auto& set : impl_->sets) {
+  for (const auto& set : whole().sets) {
     const NearestField one = ms_io::nearest_field(set->set, set->path, set->selected, impl_->observation.phase_centre);
     if (one.distance_rad < nearest.distance_rad) nearest = one;
   }
   return nearest;
 }
 BeamRows MeasurementSet::beam_rows() const {
+  const auto add_rows = [&](const OpenSets& sets, BeamRows& rows) {
+    for (const auto& set : sets) add_beam_rows(*set, impl_->observation.phase_centre.frame, rows);
+  };
   BeamRows rows;
-  for (const auto& set : impl_->sets) add_beam_rows(*set, impl_->observation.phase_centre.frame, rows);
+  add_rows(whole().sets, rows);
+  if (impl_->whole) {  // sorts are numbered alike on all ranks, and rows are this one's
+    BeamRows own;
+    own.sorts = rows.sorts;
+    add_rows(impl_->sets, own);
+    rows.pairs = std::move(own.pairs);
+  }
   if (rows.sorts.size() <= 1) rows.pairs = {};
   return rows;
 }
@@ -214,11 +231,12 @@ imager::UvwReach MeasurementSet::reach(ReachOf rows) const {
     all.max_abs_v = std::max(all.max_abs_v, one.max_abs_v);
     all.max_abs_w = std::max(all.max_abs_w, one.max_abs_w);
   }
+  for (double* reach : {&all.max_abs_u, &all.max_abs_v, &all.max_abs_w}) *reach = imager::largest_of(ranks(), *reach);
   return all;
 }
 std::vector<SpectralWindow> MeasurementSet::spectral_windows() const {
   std::vector<SpectralWindow> windows;
-  for (const auto& set : impl_->sets)
+  for (const auto& set : whole().sets)
     for (const Setup& setup : set->selected.setups) windows.push_back(window_at_first_row(*set, setup));
   return windows;
 }
@@ -232,6 +250,22 @@ std::unique_ptr<MeasurementSet> MeasurementSet::part(double low_hz, double high_
     if (auto some = channels_between(*set, low_hz, high_hz)) part->sets.push_back(std::move(some));
   if (part->sets.empty()) return nullptr;
   return std::unique_ptr<MeasurementSet>(new MeasurementSet(part));
+}
+std::unique_ptr<MeasurementSet> MeasurementSet::share(const imager::Ranks& ranks) const {
+  const auto share = std::make_shared<Impl>();
+  const RowShares shares(impl_->sets, ranks.size());
+  share->sets = shares.part(ranks.rank());
+  share->observation = impl_->observation;
+  share->whole = impl_;
+  share->ranks = &ranks;
+  share->sharing = {shares.samples(), impl_->sets.size(), shares.whole_sets()};
+  return std::unique_ptr<MeasurementSet>(new MeasurementSet(share));
+}
+const imager::Ranks& MeasurementSet::ranks() const {
+  return *impl_->ranks;
+}
+SampleSharing MeasurementSet::sharing() const {
+  return impl_->whole ? impl_->sharing : SampleSharing{{samples()}, impl_->sets.size(), true};
 }
 std::unique_ptr<imager::BlockStream> MeasurementSet::open() const {
   return std::make_unique<JoinedStream>(impl_->sets);

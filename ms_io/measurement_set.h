@@ -19,6 +19,13 @@ namespace misfit::ms_io {
 /// Rows that can be used, neither flagged nor of one antenna; or all.
 enum class ReachOf { usable, all };
 
+/// How ranks share the samples of a selection.
+struct SampleSharing {
+  std::vector<std::uint64_t> samples;  ///< [rank]
+  std::size_t sets = 1;
+  bool whole_sets = true;  ///< each rank has some of the sets; else ranges of rows, in the order of the tables
+};
+
 /// Where antennas pointed: the selected field whose own phase centre lies nearest to that of the image.
 struct NearestField {
   std::string name;
@@ -74,10 +81,18 @@ class MeasurementSet : public imager::VisibilitySource {
   /// The same set, of which only channels are read that may come between two frequencies, in the frame that the selection
   /// names, in the course of a year; null where there are none.
   std::unique_ptr<MeasurementSet> part(double low_hz, double high_hz) const;
+  /// The same set, of which this rank reads its share alone: rows(), samples(), read_at_once(), visit_coordinates() and open()
+  /// are of that, and may be of nothing. All else is of the whole set, and reach() is called by all ranks. `ranks` must outlive
+  /// it.
+  std::unique_ptr<MeasurementSet> share(const imager::Ranks& ranks) const;
+  const imager::Ranks& ranks() const override;
+  /// Of one rank without share().
+  SampleSharing sharing() const;
 
  private:
   struct Impl;
   explicit MeasurementSet(std::shared_ptr<const Impl> impl);
+  const Impl& whole() const;
   std::shared_ptr<const Impl> impl_;
 };
 

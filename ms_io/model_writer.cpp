@@ -13,6 +13,7 @@
 #include "ms_io/model_cells_internal.h"
 #include "ms_io/model_column_internal.h"
 #include "ms_io/model_journal_internal.h"
+#include "ms_io/row_shares_internal.h"
 #include "ms_io/table_access_internal.h"
 #include "ms_io/value_flush_internal.h"
 
@@ -25,18 +26,6 @@ ModelColumn spelt_out(const ModelColumn& column) {
   result.name = column_name(column.name);
   result.subtracted_from = column_name(column.subtracted_from);
   return result;
-}
-
-/// The rows of a block from `first` up to `end`.
-BlockRows rows_between(const BlockRows& block, std::uint64_t first, std::uint64_t end) {
-  BlockRows part{block.setup, {}, 0};
-  for (const Run& run : block.runs) {
-    const std::uint64_t from = std::max(run.first, first), to = std::min(run.first + run.count, end);
-    if (from >= to) continue;
-    part.runs.push_back({from, to - from});
-    part.rows += to - from;
-  }
-  return part;
 }
 
 /// Equal for runs that write the same values into the same cells, in whatever blocks; empty where that cannot be told.
