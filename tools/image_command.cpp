@@ -13,12 +13,12 @@
 
 namespace misfit::tools {
 
-void add_image_command(CLI::App& program, const std::string& command_line) {
+void add_image_command(CLI::App& program, const std::string& command_line, const imager::Ranks& ranks) {
   CLI::App* command = program.add_subcommand("image", "Image and CLEAN a MeasurementSet");
   const auto options = std::make_shared<ImageOptions>();
   add_config_option(*command);
   declare(*command, *options);
-  command->callback([command, options, command_line] {
+  command->callback([command, options, command_line, &ranks] {
     CLI::Option* accuracy = command->get_option("--accuracy");
     if (accuracy->count() == 0 && kernel_is_given(*options)) {
       options->accuracy = 0;
@@ -27,9 +27,9 @@ void add_image_command(CLI::App& program, const std::string& command_line) {
     check(*options);
     const bool done = naming(names_of(options->vis), [&] {
       const auto run = options->cube.is_cube() ? run_cube : run_image;
-      return run(*options, command_line, option_values(*command));
+      return run(*options, {command_line, option_values(*command)}, ranks);
     });
-    if (!options->dry_run) write_file(options->imagename + ".last.ini", config_text(*command));
+    if (!options->dry_run && ranks.first()) write_file(options->imagename + ".last.ini", config_text(*command));
     if (!done) throw Interrupted();
   });
 }

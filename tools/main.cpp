@@ -1,6 +1,7 @@
 #include <malloc.h>
 
 #include <CLI/CLI.hpp>
+#include <chrono>
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
@@ -8,15 +9,18 @@
 #include <new>
 #include <stdexcept>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "tools/base/interrupt.h"
 #include "tools/base/text.h"
+#include "tools/mpi/world.h"
 #include "tools/program.h"
 
 namespace {
 
 using namespace misfit::tools;
+namespace imager = misfit::imager;
 
 /// Pages fresh from the system are as dear as what is done with them: images of every major cycle lie where those before lay.
 /// The largest blocks that glibc takes from its heap are of 32 MiB.
@@ -25,8 +29,13 @@ void keep_memory() {
   mallopt(M_TRIM_THRESHOLD, 32 << 20);
 }
 
-int fail(const char* message, ExitCode code) {
-  std::fprintf(stderr, "misfit: %s\n", message);
+/// Says why, and ends the other ranks, too. What is wrong for all is said by the first, which the others give time for that.
+int fail(const char* message, ExitCode code, const World& world) {
+  const imager::Ranks& ranks = world.ranks();
+  if (!ranks.first()) std::this_thread::sleep_for(std::chrono::seconds(1));
+  const std::string which = ranks.alone() ? "" : "rank " + std::to_string(ranks.rank()) + ": ";
+  std::fprintf(stderr, "misfit: %s%s\n", which.c_str(), message);
+  world.end_all(code);
   return code;
 }
 
@@ -64,30 +73,40 @@ std::string conversion_message(const std::string& said, const CLI::App& program)
   return name + ' ' + said.substr(equals + 3) + ": expected a " + (fraction ? "number" : "whole number");
 }
 
-}  // namespace
-
-int main(int argc, char** argv) {
-  keep_memory();
-  setenv("HOME", "/", 0);  // casacore looks for its settings there, and ends where there is none
+int run(int argc, char** argv, const World& world) {
   std::string line = "misfit";
   for (int i = 1; i < argc; ++i) line += std::string(" ") + argv[i];
-  const std::unique_ptr<CLI::App> made = make_program(line);
+  const std::unique_ptr<CLI::App> made = make_program(line, world.ranks());
   CLI::App& program = *made;
   try {
     program.parse(argc, argv);
     return done;
   } catch (const CLI::ConversionError& error) {
-    return fail(conversion_message(error.what(), program).c_str(), wrong_usage);
+    return fail(conversion_message(error.what(), program).c_str(), wrong_usage, world);
   } catch (const CLI::ParseError& error) {
-    if (error.get_exit_code() == 0) return program.exit(error);
-    return fail(usage_message(error, program).c_str(), wrong_usage);
+    if (error.get_exit_code() == 0) return world.ranks().first() ? program.exit(error) : done;
+    return fail(usage_message(error, program).c_str(), wrong_usage, world);
   } catch (const Interrupted& error) {
-    return fail(error.what(), stopped_by_user);
+    return fail(error.what(), stopped_by_user, world);
   } catch (const std::invalid_argument& error) {
-    return fail(error.what(), wrong_usage);
+    return fail(error.what(), wrong_usage, world);
   } catch (const std::bad_alloc&) {
-    return fail("out of memory; expected fewer pixels or channels, or more memory", unusable_data);
+    return fail("out of memory; expected fewer pixels or channels, or more memory", unusable_data, world);
   } catch (const std::exception& error) {
-    return fail(error.what(), unusable_data);
+    return fail(error.what(), unusable_data, world);
+  }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  keep_memory();
+  setenv("HOME", "/", 0);  // casacore looks for its settings there, and ends where there is none
+  try {
+    const World world;
+    return run(argc, argv, world);
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "misfit: %s\n", error.what());
+    return unusable_data;
   }
 }

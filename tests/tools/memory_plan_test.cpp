@@ -19,7 +19,7 @@ MemoryPlan plan(double memory_gib) {
   ImageOptions options;
   options.imsize = {4000, 2500};
   options.memory_gib = memory_gib;
-  return plan_memory(demand, options);
+  return plan_memory(demand, options, physical_memory_bytes());
 }
 
 }  // namespace
@@ -69,14 +69,15 @@ BOOST_AUTO_TEST_CASE(by_default_half_of_the_machine_is_there_for_visibilities) {
   imager::MemoryDemand large = demand;
   ImageOptions options;
   options.imsize = {4000, 2500};
-  BOOST_TEST(plan_memory(demand, options).streaming.keep ==
+  BOOST_TEST(plan_memory(demand, options, physical_memory_bytes()).streaming.keep ==
              (imager::peak_memory(demand, {}).total() < physical_memory_bytes() / 2));
   large.samples = physical_memory_bytes();  // twelve times what there is
-  BOOST_TEST(!plan_memory(large, options).streaming.keep);
+  BOOST_TEST(!plan_memory(large, options, physical_memory_bytes()).streaming.keep);
   large.pixels = physical_memory_bytes();
-  BOOST_CHECK_EXCEPTION(plan_memory(large, options), std::invalid_argument, [](const std::exception& error) {
-    return std::string(error.what()).find("--imsize 4000 2500: expected an image that fits this machine's") == 0;
-  });
+  BOOST_CHECK_EXCEPTION(
+      plan_memory(large, options, physical_memory_bytes()), std::invalid_argument, [](const std::exception& error) {
+        return std::string(error.what()).find("--imsize 4000 2500: expected an image that fits this machine's") == 0;
+      });
 }
 
 BOOST_AUTO_TEST_CASE(the_table_names_the_peak_and_every_part) {

@@ -7,6 +7,7 @@
 #include "imager/cube/plane_gatherer.h"
 #include "tools/base/memory.h"
 #include "tools/base/numbers.h"
+#include "tools/run/memory_plan.h"
 
 namespace misfit::tools {
 namespace {
@@ -70,7 +71,8 @@ int samples_of_a_row(const imager::CubeSampling& sampling, const std::vector<ms_
 
 CubeBatches plan_batches(const RunScene& scene, const RunPlan& plan) {
   constexpr double enough_bytes = gib / 2;  // each pass over the set reads little more than its planes' channels
-  const double wanted = scene.options.memory_gib > 0 ? scene.options.memory_gib * gib : physical_memory_bytes() / 2;
+  const double wanted =
+      scene.options.memory_gib > 0 ? scene.options.memory_gib * gib : memory_of_a_process(scene.set.ranks()) / 2;
   const double rows = static_cast<double>(scene.set.rows());
   const double plane = gathered_bytes(scene, plan), flight = in_flight_bytes(scene, plan);
   const auto memory = [&](double waiting, int workers) {

@@ -32,13 +32,13 @@ namespace {
 /// One run, from options to files. The steps are called in the order in which they stand here.
 class CubeRun {
  public:
-  CubeRun(const ImageOptions& options, std::string command_line, nlohmann::json option_values)
+  CubeRun(const ImageOptions& options, const RunCall& call)
       : o_(options),
         stokes_(imager::parse_stokes(options.stokes)),
         threads_(options.threads == 0 ? imager::available_threads() : options.threads),
         progress_(options.quiet) {
-    report_.command_line = std::move(command_line);
-    report_.options = std::move(option_values);
+    report_.command_line = call.command_line;
+    report_.options = call.option_values;
     report_.times = &times_;
     report_.planes.clear();
   }
@@ -276,8 +276,9 @@ class CubeRun {
 
 }  // namespace
 
-bool run_cube(const ImageOptions& options, const std::string& command_line, const nlohmann::json& option_values) {
-  return CubeRun(options, command_line, option_values).run();
+bool run_cube(const ImageOptions& options, const RunCall& call, const imager::Ranks& ranks) {
+  if (!ranks.alone()) throw std::invalid_argument("--specmode cube was started as several processes; expected one");
+  return CubeRun(options, call).run();
 }
 
 }  // namespace misfit::tools

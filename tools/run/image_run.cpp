@@ -22,6 +22,7 @@
 #include "tools/run/run_messages.h"
 #include "tools/run/run_plan.h"
 #include "tools/run/run_report.h"
+#include "tools/run/sharing.h"
 #include "tools/run/taylor_options.h"
 #include "tools/run/taylor_stage.h"
 #include "tools/run/weighting_options.h"
@@ -30,16 +31,18 @@
 namespace misfit::tools {
 namespace {
 
-/// One run of `misfit image`, from options to files. The steps are called in the order in which they stand here.
+/// One run of `misfit image`, from options to files. The steps are called in the order in which they stand here. Ranks take
+/// them together; what needs images, or writes, the first takes alone.
 class ImageRun {
  public:
-  ImageRun(const ImageOptions& options, std::string command_line, nlohmann::json option_values)
+  ImageRun(const ImageOptions& options, const RunCall& call, const imager::Ranks& ranks)
       : o_(options),
+        ranks_(ranks),
         stokes_(imager::parse_stokes(options.stokes)),
-        threads_(options.threads == 0 ? imager::available_threads() : options.threads),
-        progress_(options.quiet) {
-    report_.command_line = std::move(command_line);
-    report_.options = std::move(option_values);
+        threads_(options.threads == 0 ? imager::available_threads(ranks.on_this_machine()) : options.threads),
+        progress_(options.quiet || !ranks.first()) {
+    report_.command_line = call.command_line;
+    report_.options = call.option_values;
     report_.times = &times_;
   }
 
@@ -48,26 +51,22 @@ class ImageRun {
     open();
     plan();
     if (o_.dry_run) {
-      if (!o_.quiet) print_plan(plan_, expected());
+      if (!o_.quiet && ranks_.first()) print_plan(plan_, expected());
       return true;
     }
     plane_->weigh();
     make_dirty();
     if (taylor_) plane_->make_terms(*taylor_);
     if (o_.verify > 0) plane_->verify();
-    plane_->choose_beams();
     weigh_primary_beam();
-    begin_products();
+    if (ranks_.first()) begin_products();
     if (o_.niter > 0) clean();
     if (o_.check_outside) look_outside();
     release_visibilities();
-    write_images();
-    write_report();
-    if (o_.savemodel == "modelcolumn") save_model();
-    summarise();
-    const auto& cleaned = plane_->cleaned();
-    return std::none_of(cleaned.begin(), cleaned.end(),
-                        [](const auto& result) { return result.report.stop == imager::CleanStop::user; });
+    if (ranks_.first()) write();
+    bool done = !stopped();
+    imager::share_values(ranks_, done);
+    return done;
   }
 
  private:
@@ -78,10 +77,11 @@ class ImageRun {
 
   void open() {
     const imager::StageTimer timer(times_, "open");
-    if (!o_.dry_run) check_product_paths(o_);
-    if (o_.savemodel == "modelcolumn")
+    if (!o_.dry_run && ranks_.first()) check_product_paths(o_);
+    if (o_.savemodel == "modelcolumn" && ranks_.first())
       for (const std::string& set : o_.vis) ms_io::require_writable(set);
     set_ = std::make_unique<ms_io::MeasurementSet>(o_.vis, selection_of(o_), o_.datacolumn, stokes_);
+    if (!ranks_.alone()) set_ = set_->share(ranks_);
     for (const std::string& sentence : set_->incomplete_columns()) warn(sentence);
     check_taylor_band(o_, set_->spectral_windows());
     geometry_ = geometry_of(o_, set_->observation().phase_centre);
@@ -91,7 +91,7 @@ class ImageRun {
       primary_beam_ = std::make_unique<PrimaryBeamStage>(
           o_, BeamScene{set_->beam_rows(), geometry_, set_->observation().frequency_hz}, threads_);
     if (o_.nterms > 1) taylor_ = std::make_unique<TaylorStage>(taylor_expansion(o_, set_->observation()), threads_);
-    if (o_.niter == 0) return;
+    if (o_.niter == 0 || !ranks_.first()) return;
     const imager::Observation& observation = set_->observation();
     clean_ = std::make_unique<CleanStage>(o_,
                                           imager::ImageHeader{.geometry = geometry_,
@@ -113,13 +113,17 @@ class ImageRun {
 
   void plan() {
     const bool mask = clean_ && (clean_->mask(0) != nullptr || o_.usemask == "auto");
+    const auto own = static_cast<double>(set_->samples());
+    double all = own;
+    imager::sum_over(ranks_, all);
     const RunScene scene{.options = o_,
                          .set = *set_,
                          .geometry = geometry_,
                          .reach = reach_,
                          .threads = threads_,
                          .mask = mask,
-                         .samples = static_cast<double>(set_->samples())};
+                         .samples = all,
+                         .share = own / all};
     plan_ = plan_run(scene, forecast_, times_, progress_);
     if (primary_beam_) plan_.decisions.push_back(primary_beam_->decision());
     for (const std::string& warning : plan_.warnings) warn(warning);
@@ -164,6 +168,7 @@ class ImageRun {
   }
 
   void begin_products() {
+    plane_->choose_beams();
     report_.planes = {plane_->report()};
     imager::Observation observation = set_->observation();
     if (taylor_) observation.frequency_hz = taylor_->expansion().reference_hz;
@@ -177,6 +182,7 @@ class ImageRun {
   }
 
   void clean() {
+    if (!ranks_.first()) return plane_->follow_clean();
     std::size_t now = stokes_.size();  // none
     plane_->clean(*clean_, report_.options, [&](std::size_t stokes, const imager::CleanState& state) {
       if (stokes != std::exchange(now, stokes)) iterations_before_.reset();
@@ -203,11 +209,13 @@ class ImageRun {
     progress_.begin("sources outside", true);
     const imager::AccurateImages& made = plane_->made();
     const auto& cleaned = plane_->cleaned();
-    const double noise_jy = cleaned.empty() ? imager::robust_noise(made.images.dirty.front(), threads_)
-                                            : cleaned.front().report.final_state().rms_jy;
+    const double noise_jy = !ranks_.first()   ? 0
+                            : cleaned.empty() ? imager::robust_noise(made.images.dirty.front(), threads_)
+                                              : cleaned.front().report.final_state().rms_jy;
     outside_ = check_outside(*source_, made.plan, *plan_.wider, made.images, {noise_jy, !weighting_options(o_).none()},
                              scene_->updates(), own);
     progress_.end();
+    if (!ranks_.first()) return;
     report_.outside = &outside_;
     imager::Decision told = outside_decision(outside_);
     if (stokes_.size() > 1) told.item += " in " + stokes_name(stokes_.front()) + " alone";
@@ -221,6 +229,19 @@ class ImageRun {
     source_.reset();
     set_.reset();
     plane_->made().transform.reset();
+  }
+
+  bool stopped() const {
+    const auto& cleaned = plane_->cleaned();
+    return std::any_of(cleaned.begin(), cleaned.end(),
+                       [](const auto& result) { return result.report.stop == imager::CleanStop::user; });
+  }
+
+  void write() {
+    write_images();
+    write_report();
+    if (o_.savemodel == "modelcolumn") save_model();
+    summarise();
   }
 
   void save_model() {
@@ -281,6 +302,7 @@ class ImageRun {
     const std::string histogram = histogram_drawing();
     std::vector<PagePicture> pictures;
     if (const std::string failure = products_->finish_pictures(pictures); !failure.empty()) warn(failure);
+    if (!ranks_.alone()) report_.plan.push_back(traffic_decision(ranks_.traffic(), times_.of("exchange")));
     report_.expected = expected();
     const bool one_pass = plane_->made().plan.request.accuracy == o_.accuracy;  // a second asks for more
     if (one_pass) forecast_.learn(work_, times_);
@@ -295,6 +317,7 @@ class ImageRun {
   }
 
   const ImageOptions& o_;
+  const imager::Ranks& ranks_;
   std::vector<imager::Stokes> stokes_;
   int threads_;
   ProgressLine progress_;
@@ -321,8 +344,8 @@ class ImageRun {
 
 }  // namespace
 
-bool run_image(const ImageOptions& options, const std::string& command_line, const nlohmann::json& option_values) {
-  return ImageRun(options, command_line, option_values).run();
+bool run_image(const ImageOptions& options, const RunCall& call, const imager::Ranks& ranks) {
+  return ImageRun(options, call, ranks).run();
 }
 
 }  // namespace misfit::tools

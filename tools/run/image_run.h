@@ -1,14 +1,22 @@
 #pragma once
 
-#include <nlohmann/json_fwd.hpp>
+#include <nlohmann/json.hpp>
 #include <string>
 
+#include "imager/ranks.h"
 #include "tools/run/image_options.h"
 
 namespace misfit::tools {
 
-/// One run of `misfit image`, from options to files; with --dry-run its plan alone, on standard output. `option_values` go into
-/// the report. Returns whether all was done, and the user did not stop CLEAN. Throws what subcommands do, see command.h.
-bool run_image(const ImageOptions& options, const std::string& command_line, const nlohmann::json& option_values);
+/// How a run was called, for HISTORY and the report.
+struct RunCall {
+  std::string command_line;
+  nlohmann::json option_values;  ///< {name: value}, as typed or by default
+};
+
+/// One run of `misfit image`, from options to files; with --dry-run its plan alone, on standard output. All ranks call it; the
+/// first alone speaks and writes. Returns whether all was done, and the user did not stop CLEAN. Throws what subcommands do,
+/// see command.h.
+bool run_image(const ImageOptions& options, const RunCall& call, const imager::Ranks& ranks);
 
 }  // namespace misfit::tools

@@ -25,15 +25,16 @@ std::string enough_text(double bytes, const std::function<double(double)>& least
   return significant(hundredths / 100, 6) + " GiB";
 }
 
-[[noreturn]] void refuse(const ImageOptions& o, double needed_bytes, const std::function<double(double)>& least_with) {
+[[noreturn]] void refuse(const ImageOptions& o, double needed_bytes, double machine_bytes,
+                         const std::function<double(double)>& least_with) {
   const std::string size = std::to_string(o.imsize.front()) + " × " + std::to_string(o.imsize.back());
   if (o.memory_gib > 0)
     throw std::invalid_argument("--memory " + significant(o.memory_gib, 6) + ": expected at least " +
                                 enough_text(needed_bytes, least_with) + ", which grids and images of " + size +
                                 " pixels need, or fewer pixels");
   throw std::invalid_argument("--imsize " + std::to_string(o.imsize.front()) + " " + std::to_string(o.imsize.back()) +
-                              ": expected an image that fits this machine's " + gib_text(physical_memory_bytes()) +
-                              "; this one needs " + gib_text(needed_bytes));
+                              ": expected an image that fits this machine's " + gib_text(machine_bytes) + "; this one needs " +
+                              gib_text(needed_bytes));
 }
 
 }  // namespace
@@ -43,12 +44,16 @@ void limit_memory(double bytes, imager::GriddingRequest& o) {
   o.samples_at_once = std::min(o.samples_at_once, static_cast<std::size_t>(bytes / 8 / imager::wide_bytes_a_sample));
 }
 
-MemoryPlan plan_memory(const imager::MemoryDemand& demand, const ImageOptions& o,
+double memory_of_a_process(const imager::Ranks& ranks) {
+  return physical_memory_bytes() / ranks.on_this_machine();
+}
+
+MemoryPlan plan_memory(const imager::MemoryDemand& demand, const ImageOptions& o, double machine_bytes,
                        const std::function<double(double)>& least_with) {
-  const double wanted = o.memory_gib > 0 ? o.memory_gib * gib : physical_memory_bytes() / 2;
-  const double limit = o.memory_gib > 0 ? wanted : physical_memory_bytes();
+  const double wanted = o.memory_gib > 0 ? o.memory_gib * gib : machine_bytes / 2;
+  const double limit = o.memory_gib > 0 ? wanted : machine_bytes;
   const std::string within =
-      o.memory_gib > 0 ? gib_text(wanted) + " asked" : "half of the machine's " + gib_text(physical_memory_bytes());
+      o.memory_gib > 0 ? gib_text(wanted) + " asked" : "half of the machine's " + gib_text(machine_bytes);
   MemoryPlan plan;
   for (const imager::StreamingOptions streaming :
        {imager::StreamingOptions{true, 2}, {false, 2}, {false, 1}, least_streaming}) {
@@ -56,7 +61,7 @@ MemoryPlan plan_memory(const imager::MemoryDemand& demand, const ImageOptions& o
     plan.peak = imager::peak_memory(demand, streaming);
     if (plan.peak.total() <= wanted) break;
   }
-  if (plan.peak.total() > limit) refuse(o, plan.peak.total(), least_with);
+  if (plan.peak.total() > limit) refuse(o, plan.peak.total(), machine_bytes, least_with);
   const double if_kept = imager::peak_memory(demand, {true, 2}).total();
   plan.decision = {"visibilities", plan.streaming.keep ? "kept in memory" : "read again in every pass",
                    "kept, they bring the run's memory to " + gib_text(if_kept) + ", against " + within};

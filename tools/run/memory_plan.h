@@ -4,6 +4,7 @@
 
 #include "imager/plan/memory_use.h"
 #include "imager/plan/plan.h"
+#include "imager/ranks.h"
 #include "tools/run/image_options.h"
 
 namespace misfit::tools {
@@ -18,13 +19,16 @@ struct MemoryPlan {
 /// Lets a w axis take no more than parts of `bytes` for its planes and for the samples that it gathers.
 void limit_memory(double bytes, imager::GriddingRequest& request);
 
-/// Keeps the visibilities where --memory, or half of the machine's memory, allows it; else reads them again in every pass, and
+/// What a machine has of memory, for one of the processes of a run that share it.
+double memory_of_a_process(const imager::Ranks& ranks);
+
+/// Keeps the visibilities where --memory, or half of `machine_bytes`, allows it; else reads them again in every pass, and
 /// less far ahead where that helps. Nothing of this changes a bit of the images. Throws std::invalid_argument that says how
-/// much memory is needed when --memory, or the machine's memory, is less.
+/// much memory is needed when --memory, or `machine_bytes`, is less.
 ///
 /// `least_with` gives what a run takes at least when it is planned for so many bytes, which may be more than so many: the
 /// memory that the message names is one that is enough. Without it that of `demand` counts.
-MemoryPlan plan_memory(const imager::MemoryDemand& demand, const ImageOptions& options,
+MemoryPlan plan_memory(const imager::MemoryDemand& demand, const ImageOptions& options, double machine_bytes,
                        const std::function<double(double)>& least_with = {});
 
 /// How visibilities stream where memory is scarcest.

@@ -95,6 +95,7 @@ OutsideReport check_outside(const imager::VisibilitySource& source, const imager
   report.searched = imager::can_be_imaged(field, source);
   if (!report.searched) return report;
   const imager::WideSearch search = imager::search_wide_field(source, wider, progress, times);
+  if (!source.ranks().first()) return report;
   report.least_jy = std::max(search.least_jy, search.sidelobe_jy);
   const double scatter_jy = search.unexplained.image_noise_jy(images.sums.front().weight);
   report.noise_of_pixels = pixels.alone || pixels.noise_jy <= scatter_jy;

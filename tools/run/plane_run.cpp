@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <optional>
 
+#include "imager/clean/shared_model.h"
 #include "imager/direct/verify.h"
 #include "imager/stokes_view.h"
 #include "tools/base/interrupt.h"
@@ -106,6 +107,17 @@ void PlaneRun::clean(CleanStage& stage, const nlohmann::json& option_values,
     report_.stokes[s].clean = report;
     if (report.stop == imager::CleanStop::diverging || report.stop == imager::CleanStop::diverging_from_best)
       scene_.warn(divergence_warning(report) + of);
+  }
+}
+
+void PlaneRun::follow_clean() {
+  for (std::size_t s = 0; s < scene_.stokes.size(); ++s) {
+    const imager::StokesView view(source_, static_cast<int>(s));
+    const imager::Transform& transform = *made_.transform;
+    if (taylor_ != nullptr)
+      imager::follow_clean(view, transform, taylor_->expansion(), scene_.threads, scene_.updates(), scene_.times);
+    else
+      imager::follow_clean(view, transform, scene_.threads, scene_.updates(), scene_.times);
   }
 }
 

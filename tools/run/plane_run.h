@@ -49,7 +49,10 @@ class PlaneRun {
   /// Those of further Taylor terms, which CLEAN then has too. `taylor` is kept by reference.
   void make_terms(TaylorStage& taylor);
   void verify();
+  /// For rank 0, which has the PSF.
   void choose_beams();
+  /// Makes the parts of residuals that this rank's samples give, while rank 0 is in clean().
+  void follow_clean();
   /// One Stokes parameter after the other. Told of the state with which CLEAN of each begins, and after every major cycle.
   void clean(CleanStage& stage, const nlohmann::json& option_values,
              const std::function<void(std::size_t stokes, const imager::CleanState&)>& cycle);

@@ -12,6 +12,7 @@
 #include "tools/run/memory_plan.h"
 #include "tools/run/outside_stage.h"
 #include "tools/run/primary_beam_stage.h"
+#include "tools/run/sharing.h"
 #include "tools/run/taylor_options.h"
 #include "tools/run/weighting_options.h"
 
@@ -33,6 +34,7 @@ class RunPlanner {
     if (o_.memory_gib > 0) limit_memory(o_.memory_gib * gib, request);
     plan_.gridding = imager::plan_gridding(request);
     decide_pixels();
+    if (!scene_.set.ranks().alone()) decide_sharing();
     if (o_.nterms > 1) decide_terms();
     plan_.decisions.push_back(weighting_decision(o_, scene_.geometry));
     if (o_.check_outside) plan_search(request);
@@ -76,6 +78,13 @@ class RunPlanner {
     if (!told) progress_.say(because);
   }
 
+  void decide_sharing() {
+    const int stokes = plan_.gridding.request.stokes;
+    const ExchangeForecast exchange =
+        exchange_of(static_cast<double>(scene_.geometry.pixels()), 3 * o_.nterms - 2 + stokes, o_.nterms);
+    plan_.decisions.push_back(sharing_decision(scene_.set.sharing(), exchange));
+  }
+
   void decide_terms() {
     const double reference_hz = taylor_expansion(o_, scene_.set.observation()).reference_hz;
     decide("Taylor terms", std::to_string(o_.nterms) + " about " + significant(reference_hz / 1e9, 9) + " GHz",
@@ -87,6 +96,7 @@ class RunPlanner {
   void plan_search(const imager::GriddingRequest& request) {
     imager::WideFieldFinder finder(scene_.geometry);
     scene_.set.visit_coordinates([&](const imager::SampleCoordinates& some) { finder.add(some); });
+    finder.add_up(scene_.set.ranks());
     wide_field_ = finder.field();
     plan_.wider = std::make_unique<imager::GriddingPlan>(imager::plan_wide_field(wide_field_, request));
   }
@@ -105,7 +115,7 @@ class RunPlanner {
     return {.transform = imager::memory_of(gridding),
             .pixels = static_cast<double>(scene_.geometry.pixels()),
             .rows = static_cast<double>(scene_.set.rows()),
-            .samples = scene_.samples,
+            .samples = scene_.samples * scene_.share,
             .block_samples = static_cast<double>(ms_io::MeasurementSet::usual_block_samples),
             .read_at_once = static_cast<double>(scene_.set.read_at_once()),
             .stokes = gridding.request.stokes,
@@ -130,7 +140,8 @@ class RunPlanner {
   void decide_memory(const std::function<double(double)>& least_with) {
     std::optional<imager::WiderDemand> wider;
     if (plan_.wider) wider = wider_demand(*plan_.wider, wide_field_);
-    const MemoryPlan memory = plan_memory(demand_of(plan_.gridding, wider), o_, least_with);
+    const MemoryPlan memory =
+        plan_memory(demand_of(plan_.gridding, wider), o_, memory_of_a_process(scene_.set.ranks()), least_with);
     plan_.streaming = memory.streaming;
     constexpr double least_lambda = 1;  // where samples of u = v = 0 alone have cells, too
     plan_.streaming.uv_reach_lambda = std::max(

@@ -24,7 +24,8 @@ struct RunScene {
   bool mask = false;   ///< there is or will be one, where components may lie
   int planes = 1;      ///< of frequency
   int workers = 1;     ///< planes made at a time, where memory allows; they share the threads
-  double samples = 0;  ///< of a plane at most, in Stokes samples
+  double samples = 0;  ///< of a plane at most, in Stokes samples of all ranks: gridding is chosen by them, whoever does it
+  double share = 1;    ///< the part of them that this rank has
 };
 
 /// What `misfit image` decides before it reads a visibility. The stages that follow do as it says and leave it as it is.

@@ -1,0 +1,42 @@
+#include "tools/run/sharing.h"
+
+#include <algorithm>
+
+#include "tools/base/memory.h"
+#include "tools/base/numbers.h"
+
+namespace misfit::tools {
+namespace {
+
+std::string mib_text(double bytes) {
+  return significant(bytes / (1 << 20), 3) + " MiB";
+}
+
+std::string parts_text(const ms_io::SampleSharing& sharing) {
+  if (!sharing.whole_sets) return "a range of rows each";
+  return sharing.sets < sharing.samples.size() ? "a set each, as far as there are some" : "whole sets each";
+}
+
+}  // namespace
+
+ExchangeForecast exchange_of(double pixels, int images, int residuals) {
+  return {sizeof(double) * pixels * images, sizeof(double) * pixels * residuals};
+}
+
+imager::Decision sharing_decision(const ms_io::SampleSharing& sharing, const ExchangeForecast& exchange) {
+  const auto [least, most] = std::minmax_element(sharing.samples.begin(), sharing.samples.end());
+  const std::string samples = grouped(static_cast<long long>(*least)) +
+                              (*least == *most ? "" : " to " + grouped(static_cast<long long>(*most))) + " samples";
+  return {"shared among ranks", std::to_string(sharing.samples.size()) + ", " + parts_text(sharing),
+          samples + " each; images come to rank 0, which cleans and writes: each other rank gives " +
+              mib_text(exchange.first_bytes) + " for PSF and dirty image, and " + mib_text(exchange.cycle_bytes) +
+              " a major cycle, for which it gets the model's components"};
+}
+
+imager::Decision traffic_decision(const imager::Traffic& traffic, double seconds) {
+  return {"exchanged among ranks", mib_text(static_cast<double>(traffic.bytes)),
+          grouped(static_cast<long long>(traffic.exchanges)) + " exchanges, in " + duration(seconds) +
+              " of rank 0, waiting for others included"};
+}
+
+}  // namespace misfit::tools
