@@ -1,5 +1,7 @@
 #include "imager/ranks.h"
 
+#include <stdexcept>
+
 namespace misfit::imager {
 namespace {
 
@@ -8,12 +10,18 @@ class Alone : public Ranks {
   int size() const override { return 1; }
   int rank() const override { return 0; }
   int on_this_machine() const override { return 1; }
+  void meet() const override {}
   void sum(double*, std::size_t) const override {}
   void sum_at_first(double*, std::size_t) const override {}
   void largest(double*, std::size_t) const override {}
   void share(void*, std::size_t) const override {}
   std::vector<std::string> gather_at_first(const std::string& bytes) const override { return {bytes}; }
+  void send(int to, const std::string&) const override { throw_none(to); }
+  std::string receive(int from) const override { throw_none(from); }
   Traffic traffic() const override { return {}; }
+
+ private:
+  [[noreturn]] static void throw_none(int rank) { throw std::logic_error("there is no rank " + std::to_string(rank)); }
 };
 
 }  // namespace

@@ -16,8 +16,8 @@ struct Traffic {
 };
 
 /// The processes of a run that share its samples, "ranks" as MPI has them. Each has a part of the samples and computes with it;
-/// what the parts add up to comes to all, so that all decide alike and go on together. Every call is made by all of them, in
-/// the same order, from one thread at a time. What cannot be exchanged ends the run.
+/// what the parts add up to comes to all, so that all decide alike and go on together. Calls but for send() and receive() are
+/// made by all of them, in the same order, from one thread at a time. What cannot be exchanged ends the run.
 class Ranks {
  public:
   virtual ~Ranks() = default;
@@ -30,6 +30,8 @@ class Ranks {
   /// Whether this is the one that speaks, and writes.
   bool first() const { return rank() == 0; }
 
+  /// Waits until all are here.
+  virtual void meet() const = 0;
   /// Adds up `count` numbers of each rank, the first with the first; all get the same bits.
   virtual void sum(double* values, std::size_t count) const = 0;
   /// The same for rank 0 alone; what others have afterwards is of no use.
@@ -40,6 +42,9 @@ class Ranks {
   virtual void share(void* bytes, std::size_t count) const = 0;
   /// What each rank gives [rank], at rank 0; nothing at others.
   virtual std::vector<std::string> gather_at_first(const std::string& bytes) const = 0;
+  /// Gives another rank bytes that it waits for in receive(). Any thread may call these two, one at a time for each rank.
+  virtual void send(int to, const std::string& bytes) const = 0;
+  virtual std::string receive(int from) const = 0;
   /// So far.
   virtual Traffic traffic() const = 0;
 };

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <deque>
 #include <future>
 #include <memory>
 #include <sstream>
@@ -106,6 +107,10 @@ struct PredictedBlock {
     formed = std::async(std::launch::async,
                         [this, &predict] { cells.form(rows, *setup, predicted(predict, setup->shift, where, unknown)); });
   }
+  /// Rethrows what the other thread threw.
+  void finish() {
+    if (formed.valid()) formed.get();
+  }
 };
 
 /// A column while it is written.
@@ -134,33 +139,34 @@ class ModelWriter {
     }
   }
 
-  ModelWriteReport write(const Predict& predict, const Progress& progress) {
+  ModelWriteReport write(const Predict& predict, int at_once, const Progress& progress) {
     cells_ = std::make_unique<ModelCells>(translated(doing_(), [&] { return ModelCells(set_, column_); }));
     flush_ = std::make_unique<ValueFlush>(set_, column_.name);
     const casacore::ArrayColumn<double> uvw(set_, "UVW");
     ModelWriteReport report;
     report.rows_before = journal_.written;
-    std::unique_ptr<PredictedBlock> before;  // is written while the next one is predicted
+    std::deque<std::unique_ptr<PredictedBlock>> under_way;  // the first is written while the others are predicted
     const auto finish = [&] {
-      write(*before);
-      samples_ += before->where.samples();
+      PredictedBlock& first = *under_way.front();
+      first.finish();
+      write(first);
+      samples_ += first.where.samples();
+      under_way.pop_front();
       if (progress) progress(samples_, selected_.samples);
     };
+    const auto together = static_cast<std::size_t>(at_once);
     for (const BlockRows& rows : selected_.blocks) {
       const BlockRows rest = rows_between(rows, done_below(journal_, rows), set_.nrow());
       samples_ += (rows.rows - rest.rows) * selected_.setups[rows.setup].frequency_hz.size();
       if (rest.rows == 0) continue;
       auto block = std::make_unique<PredictedBlock>(rest, selected_.setups);
       prepare(uvw, *block);
-      if (before) before->formed.get();  // predictions have all threads, one after the other
+      if (under_way.size() >= together) under_way[under_way.size() - together]->finish();
       block->begin(predict);
-      if (before) finish();
-      before = std::move(block);
+      under_way.push_back(std::move(block));
+      if (under_way.size() > together) finish();
     }
-    if (before) {
-      before->formed.get();
-      finish();
-    }
+    while (!under_way.empty()) finish();
     remove_journal(set_, column_.name);
     report.rows = journal_.written;
     report.samples = samples_;
@@ -264,8 +270,8 @@ void require_writable(const std::string& path, const ModelColumn& column) {
 
 ModelWriteReport write_model(const std::string& path, const Selection& selection, const ModelColumn& column,
                              const Predict& predict, const std::function<void(std::uint64_t, std::uint64_t)>& progress,
-                             std::uint64_t block_samples) {
-  return ModelWriter(path, selection, column, block_samples).write(predict, progress);
+                             const PredictionPace& pace) {
+  return ModelWriter(path, selection, column, pace.block_samples).write(predict, pace.at_once, progress);
 }
 
 }  // namespace misfit::ms_io

@@ -24,6 +24,12 @@ struct StokesVisibilities {
 /// Computes them at the coordinates given.
 using Predict = std::function<StokesVisibilities(const imager::SampleCoordinates&)>;
 
+/// How predictions are asked for.
+struct PredictionPace {
+  std::uint64_t block_samples = MeasurementSet::usual_block_samples;  ///< about so many samples at a time
+  int at_once = 1;                                                    ///< by so many threads
+};
+
 /// What a column that was not written to its end is told by.
 struct ModelOrigin {
   std::string command;                           ///< which writes it, as people are told: "misfit predict --model a.fits"
@@ -68,10 +74,9 @@ void require_writable(const std::string& path, const ModelColumn& column = {});
 /// `progress(done, total)` is called after every block, in samples. Throws std::runtime_error as MeasurementSet does (but
 /// correlations from which I cannot be formed are written all the same), where another process has locked the set for more than
 /// a few seconds, and where the column is missing in a table that refers to the rows of others; std::invalid_argument when
-/// `predict` returns the wrong number of values. It is asked for about `block_samples` samples at a time, in a thread of its
-/// own while the block before is written.
+/// `predict` returns the wrong number of values. It is asked in threads of its own while blocks before are written.
 ModelWriteReport write_model(const std::string& path, const Selection& selection, const ModelColumn& column,
                              const Predict& predict, const std::function<void(std::uint64_t, std::uint64_t)>& progress,
-                             std::uint64_t block_samples = MeasurementSet::usual_block_samples);
+                             const PredictionPace& pace = {});
 
 }  // namespace misfit::ms_io

@@ -15,7 +15,7 @@ namespace misfit::tools {
 /// or files that cannot be used, and Interrupted.
 void add_image_command(CLI::App& program, const std::string& command_line, const imager::Ranks& ranks);
 void add_kernel_command(CLI::App& program);
-void add_predict_command(CLI::App& program);
+void add_predict_command(CLI::App& program, const imager::Ranks& ranks);
 void add_simulate_command(CLI::App& program);
 void add_report_command(CLI::App& program);
 

@@ -18,6 +18,7 @@
 #include "tools/formats/model_image.h"
 #include "tools/kernel_choice/kernel_choice.h"
 #include "tools/run/selection_options.h"
+#include "tools/run/shared_prediction.h"
 
 namespace misfit::tools {
 namespace {
@@ -112,21 +113,26 @@ std::string command_of(const PredictOptions& o) {
          (o.model.empty() ? "--components " + shell_quoted(o.components) : "--model " + shell_quoted(o.model));
 }
 
-void predict(const PredictOptions& o) {
+/// Of this rank.
+NamedModel read_model(const PredictOptions& o, const imager::Ranks& ranks) {
+  const int threads = o.threads == 0 ? imager::available_threads(ranks.on_this_machine()) : o.threads;
+  const std::unique_ptr<ms_io::MeasurementSet> set = ms_io::MeasurementSet(o.vis, o.selection, "").share(ranks);
+  return o.model.empty() ? component_model(o, *set, threads) : image_model(o, *set, threads);
+}
+
+void predict(const PredictOptions& o, const imager::Ranks& ranks) {
   check(o);
   ms_io::ModelColumn column = column_of(o);
-  ms_io::require_writable(o.vis, column);
-  ProgressLine progress(o.quiet);
+  if (ranks.first()) ms_io::require_writable(o.vis, column);
+  ProgressLine progress(o.quiet || !ranks.first());
   if (o.subtract) {
     if (const std::string sentence = ms_io::incomplete_column(o.vis, o.datacolumn); !sentence.empty())
       progress.say("warning: " + sentence);
   }
-  const int threads = o.threads == 0 ? imager::available_threads() : o.threads;
-  NamedModel model;
-  {
-    const ms_io::MeasurementSet set(o.vis, o.selection, "");
-    model = o.model.empty() ? component_model(o, set, threads) : image_model(o, set, threads);
-  }
+  NamedModel model = read_model(o, ranks);
+  ranks.meet();  // before the set changes
+  SharedPrediction shared(ranks, model.visibilities.predict);
+  if (!ranks.first()) return shared.follow();
   if (model.empty)
     progress.say("warning: " + o.components +
                  " lists no source: " + (o.subtract ? "the data are written as they are" : "all visibilities written are 0"));
@@ -135,14 +141,16 @@ void predict(const PredictOptions& o) {
   progress.begin(o.subtract ? "subtract" : "predict");
   const auto show = [&](std::uint64_t done, std::uint64_t total) { progress.update(done, total); };
   const ms_io::ModelWriteReport report =
-      ms_io::write_model(o.vis, o.selection, column, model.visibilities.predict, show, model.visibilities.samples_at_once);
+      ms_io::write_model(o.vis, o.selection, column, [&](const imager::SampleCoordinates& at) { return shared.predict(at); },
+                         show, {model.visibilities.samples_at_once, ranks.size()});
+  shared.end();
   progress.end();
   if (!o.quiet) print(o, report);
 }
 
 }  // namespace
 
-void add_predict_command(CLI::App& program) {
+void add_predict_command(CLI::App& program, const imager::Ranks& ranks) {
   CLI::App* command =
       program.add_subcommand("predict", "Write a model's visibilities, or data without them, into a MeasurementSet");
   const auto o = std::make_shared<PredictOptions>();
@@ -175,9 +183,9 @@ void add_predict_command(CLI::App& program) {
   declare_kernel_folder(*command, o->kernel.folder);
   command->add_option("--threads", o->threads, "Threads; 0 means all cores");
   command->add_flag("--quiet", o->quiet, "Print nothing");
-  command->callback([command, o] {
+  command->callback([command, o, &ranks] {
     o->accuracy_is_typed = command->get_option("--accuracy")->count() > 0;
-    predict(*o);
+    predict(*o, ranks);
   });
 }
 

@@ -28,7 +28,7 @@ std::unique_ptr<CLI::App> make_program(const std::string& command_line, const im
   program->require_subcommand(1);
   program->option_defaults()->always_capture_default();
   add_image_command(*program, command_line, ranks);
-  add_predict_command(*program);
+  add_predict_command(*program, ranks);
   add_simulate_command(*program);
   add_kernel_command(*program);
   add_report_command(*program);

@@ -8,6 +8,7 @@
 #include "kernels/version.h"
 #include "ms_io/casacore_version.h"
 #include "tools/build_facts.h"
+#include "tools/mpi/world.h"
 
 namespace misfit::tools {
 namespace {
@@ -37,6 +38,7 @@ std::string version_text() {
   add("CFITSIO", imager::cfitsio_version());
   add("FFTW", imager::fftw_library_version());
   add("Eigen", eigen_version());
+  add("MPI", mpi_version());
   add("Highway", imager::highway_version() + ", loops run with " + imager::instruction_set());
   return text;
 }

@@ -3,9 +3,12 @@
 #include <algorithm>
 #include <barrier>
 #include <cmath>
+#include <condition_variable>
 #include <cstring>
+#include <deque>
 #include <exception>
 #include <functional>
+#include <map>
 #include <mutex>
 #include <string>
 #include <thread>
@@ -52,6 +55,7 @@ class ThreadRanks {
     int size() const override { return all_.size_; }
     int rank() const override { return rank_; }
     int on_this_machine() const override { return all_.size_; }
+    void meet() const override { all_.barrier_.arrive_and_wait(); }
     void sum(double* values, std::size_t count) const override {
       combine(values, count, true, [](double a, double b) { return a + b; });
     }
@@ -74,6 +78,8 @@ class ThreadRanks {
       });
       return all;
     }
+    void send(int to, const std::string& bytes) const override { all_.mail(rank_, to).put(bytes); }
+    std::string receive(int from) const override { return all_.mail(from, rank_).take(); }
     Traffic traffic() const override { return {}; }
 
    private:
@@ -102,7 +108,36 @@ class ThreadRanks {
     int rank_;
   };
 
+  /// What one rank sent another.
+  class Mail {
+   public:
+    void put(const std::string& bytes) {
+      const std::lock_guard lock(mutex_);
+      bytes_.push_back(bytes);
+      there_is_some_.notify_one();
+    }
+    std::string take() {
+      std::unique_lock lock(mutex_);
+      there_is_some_.wait(lock, [&] { return !bytes_.empty(); });
+      std::string first = std::move(bytes_.front());
+      bytes_.pop_front();
+      return first;
+    }
+
+   private:
+    std::mutex mutex_;
+    std::condition_variable there_is_some_;
+    std::deque<std::string> bytes_;
+  };
+
+  Mail& mail(int from, int to) {
+    const std::lock_guard lock(mutex_);
+    return mail_[{from, to}];
+  }
+
   int size_;
+  std::mutex mutex_;  ///< guards what follows
+  std::map<std::pair<int, int>, Mail> mail_;
   std::barrier<> barrier_;
   std::vector<Given> values_;
 };

@@ -94,7 +94,7 @@ struct State {
 std::string write(const SmallSet& set, ModelColumn column) {
   std::string told;
   column.origin = {"misfit predict --model a.fits", 1, [&](const std::string& sentence) { told += sentence; }};
-  write_model(set.path(), selection, column, small_visibilities, {}, 24);
+  write_model(set.path(), selection, column, small_visibilities, {}, {24});
   return told;
 }
 

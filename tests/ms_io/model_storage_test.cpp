@@ -148,7 +148,7 @@ BOOST_AUTO_TEST_CASE(rows_that_a_table_refers_to_are_written_and_no_others_of_th
   const auto stop = [&](std::uint64_t, std::uint64_t) {
     if (++blocks == 2) throw std::runtime_error("stop");
   };
-  BOOST_CHECK_THROW(write_model(with_model, {}, {"MODEL_DATA"}, small_visibilities, stop, 2 * channels), std::runtime_error);
+  BOOST_CHECK_THROW(write_model(with_model, {}, {"MODEL_DATA"}, small_visibilities, stop, {2 * channels}), std::runtime_error);
   for (const std::string& path : {with_model, set.path()})
     BOOST_TEST(contains(incomplete_column(path, "model"), "4 of 15 rows"));
   write(with_model);

@@ -81,7 +81,7 @@ BOOST_AUTO_TEST_CASE(every_selected_sample_loses_the_model_whatever_its_flags_an
 
 BOOST_AUTO_TEST_CASE(data_that_are_the_model_leave_nothing) {
   const SmallSet set;
-  write_model(set.path(), {}, corrected, small_visibilities, {}, 2 * channels);
+  write_model(set.path(), {}, corrected, small_visibilities, {}, {2 * channels});
   check_column(set, "CORRECTED_DATA", [](std::size_t, std::size_t) { return Complex(0); });
 }
 
@@ -177,7 +177,7 @@ BOOST_AUTO_TEST_CASE(a_run_cut_short_leaves_a_full_column_that_another_run_mends
       return quarters(where);
     };
     const std::size_t rows_at_once = 4;
-    BOOST_CHECK_THROW(write_model(set.path(), {}, corrected, predict, {}, rows_at_once * channels), std::runtime_error);
+    BOOST_CHECK_THROW(write_model(set.path(), {}, corrected, predict, {}, {rows_at_once * channels}), std::runtime_error);
     const std::size_t done = (static_cast<std::size_t>(failing) - 1) * rows_at_once;
     check_column(set, "DATA", data_at);
     check_column(set, "CORRECTED_DATA",

@@ -137,7 +137,7 @@ BOOST_AUTO_TEST_CASE(a_prediction_that_fails_ends_the_writing_at_once) {
       if (++calls == failing) throw std::runtime_error("no more");
       return std::vector<std::complex<double>>(where.samples(), 1.0);
     };
-    BOOST_CHECK_THROW(write_model(set.path(), {}, {"MODEL_DATA"}, predict, {}, channels), std::runtime_error);
+    BOOST_CHECK_THROW(write_model(set.path(), {}, {"MODEL_DATA"}, predict, {}, {channels}), std::runtime_error);
     BOOST_TEST(calls == failing);
   }
 }

@@ -58,7 +58,7 @@ Told write(const SmallSet& set, ModelColumn column, const Selection& which = sel
     return model(where);
   };
   try {
-    told.report = write_model(set.path(), which, column, predict, progress, rows_at_once * 4);
+    told.report = write_model(set.path(), which, column, predict, progress, {rows_at_once * 4});
   } catch (const Stop&) {
   }
   return told;
@@ -298,7 +298,7 @@ BOOST_AUTO_TEST_CASE(a_run_that_was_killed_leaves_the_record_of_one_that_was_sto
         ModelColumn told = column;
         told.origin = {"misfit predict --model a.fits", 1, {}};
         try {
-          write_model(set.path(), selection, told, predict, {}, rows_at_once * 4);
+          write_model(set.path(), selection, told, predict, {}, {rows_at_once * 4});
         } catch (...) {
         }
         _exit(1);

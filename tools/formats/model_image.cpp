@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <numeric>
 #include <stdexcept>
 
 #include "imager/extent.h"
@@ -67,7 +68,8 @@ ModelVisibilities image_visibilities(const StokesPlanes& planes, const imager::I
                                      imager::GriddingRequest request, const ms_io::MeasurementSet& set,
                                      const TaylorTerms& taylor) {
   request.geometry = geometry;
-  request.samples = set.samples();
+  const std::vector<std::uint64_t> samples = set.sharing().samples;
+  request.samples = std::accumulate(samples.begin(), samples.end(), std::uint64_t{0});
   request.psf = false;
   request.max_abs_w = set.reach(ms_io::ReachOf::all).max_abs_w;
   ModelVisibilities model;

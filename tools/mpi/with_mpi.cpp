@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <mutex>
 #include <thread>
 
 #include "tools/mpi/launcher.h"
@@ -37,6 +38,9 @@ class MpiRanks : public imager::Ranks {
   int rank() const override { return rank_; }
   int on_this_machine() const override { return on_this_machine_; }
 
+  void meet() const override {
+    wait([](MPI_Request* request) { MPI_Ibarrier(MPI_COMM_WORLD, request); });
+  }
   void sum(double* values, std::size_t count) const override {
     sum_at_first(values, count);
     share(values, count * sizeof(double));  // so that all have the same bits, whatever the order of the sums
@@ -54,38 +58,58 @@ class MpiRanks : public imager::Ranks {
     });
   }
   std::vector<std::string> gather_at_first(const std::string& bytes) const override {
-    std::vector<double> sizes(static_cast<std::size_t>(size_));
-    sizes[static_cast<std::size_t>(rank_)] = static_cast<double>(bytes.size());
-    sum(sizes.data(), sizes.size());
-    count_bytes(bytes.size());
     if (!first()) {
-      in_pieces(bytes.size(),
-                [&](std::size_t at, int some) { MPI_Send(bytes.data() + at, some, MPI_BYTE, 0, tag, MPI_COMM_WORLD); });
+      send(0, bytes);
       return {};
     }
     std::vector<std::string> all{bytes};
-    for (int from = 1; from < size_; ++from) {
-      std::string& theirs = all.emplace_back(static_cast<std::size_t>(sizes[static_cast<std::size_t>(from)]), '\0');
-      in_pieces(theirs.size(), [&](std::size_t at, int some) {
-        MPI_Recv(theirs.data() + at, some, MPI_BYTE, from, tag, MPI_COMM_WORLD, MPI_STATUS_IGNORE);
-      });
-    }
+    for (int from = 1; from < size_; ++from) all.push_back(receive(from));
     return all;
   }
-  imager::Traffic traffic() const override { return traffic_; }
-
-  /// Waits until all are here. MPI itself keeps a core busy while it waits, of which the others' threads may have need.
-  void meet() const {
-    MPI_Request request = MPI_REQUEST_NULL;
-    MPI_Ibarrier(MPI_COMM_WORLD, &request);
-    const auto start = std::chrono::steady_clock::now();
-    for (int here = 0; MPI_Test(&request, &here, MPI_STATUS_IGNORE), here == 0;)
-      if (std::chrono::steady_clock::now() - start > std::chrono::microseconds(200))
-        std::this_thread::sleep_for(std::chrono::microseconds(100));
+  void send(int to, const std::string& bytes) const override {
+    count_bytes(bytes.size());
+    std::uint64_t size = bytes.size();
+    wait([&](MPI_Request* request) { MPI_Isend(&size, sizeof size, MPI_BYTE, to, tag, MPI_COMM_WORLD, request); });
+    in_pieces(bytes.size(), [&](std::size_t at, int some) {
+      wait([&](MPI_Request* request) { MPI_Isend(bytes.data() + at, some, MPI_BYTE, to, tag, MPI_COMM_WORLD, request); });
+    });
+  }
+  std::string receive(int from) const override {
+    std::uint64_t size = 0;
+    wait([&](MPI_Request* request) { MPI_Irecv(&size, sizeof size, MPI_BYTE, from, tag, MPI_COMM_WORLD, request); });
+    std::string bytes(size, '\0');
+    in_pieces(bytes.size(), [&](std::size_t at, int some) {
+      wait([&](MPI_Request* request) { MPI_Irecv(bytes.data() + at, some, MPI_BYTE, from, tag, MPI_COMM_WORLD, request); });
+    });
+    return bytes;
+  }
+  imager::Traffic traffic() const override {
+    const std::lock_guard lock(one_at_a_time_);
+    return traffic_;
   }
 
  private:
   static constexpr int tag = 0;
+
+  /// Begins something and waits for its end. MPI itself keeps a core busy while it waits, of which the others' threads may have
+  /// need. Several threads may wait; MPI is for one at a time.
+  template <typename Begin>
+  void wait(const Begin& begin) const {
+    MPI_Request request = MPI_REQUEST_NULL;
+    {
+      const std::lock_guard lock(one_at_a_time_);
+      begin(&request);
+    }
+    const auto start = std::chrono::steady_clock::now();
+    for (int over = 0; over == 0;) {
+      {
+        const std::lock_guard lock(one_at_a_time_);
+        MPI_Test(&request, &over, MPI_STATUS_IGNORE);
+      }
+      if (over == 0 && std::chrono::steady_clock::now() - start > std::chrono::microseconds(200))
+        std::this_thread::sleep_for(std::chrono::microseconds(100));
+    }
+  }
 
   void reduce(double* values, std::size_t count, MPI_Op how) const {
     meet();
@@ -95,6 +119,7 @@ class MpiRanks : public imager::Ranks {
     });
   }
   void count_bytes(std::size_t bytes) const {
+    const std::lock_guard lock(one_at_a_time_);
     ++traffic_.exchanges;
     traffic_.bytes += bytes;
   }
@@ -102,6 +127,7 @@ class MpiRanks : public imager::Ranks {
   int size_ = 1;
   int rank_ = 0;
   int on_this_machine_ = 1;
+  mutable std::mutex one_at_a_time_;  ///< guards calls of MPI, and what follows
   mutable imager::Traffic traffic_;
 };
 

@@ -63,7 +63,12 @@ class ImageRun {
     if (o_.niter > 0) clean();
     if (o_.check_outside) look_outside();
     release_visibilities();
-    if (ranks_.first()) write();
+    if (ranks_.first()) {
+      write_images();
+      write_report();
+    }
+    if (o_.savemodel == "modelcolumn") save_model();
+    if (ranks_.first()) summarise();
     bool done = !stopped();
     imager::share_values(ranks_, done);
     return done;
@@ -237,22 +242,32 @@ class ImageRun {
                        [](const auto& result) { return result.report.stop == imager::CleanStop::user; });
   }
 
-  void write() {
-    write_images();
-    write_report();
-    if (o_.savemodel == "modelcolumn") save_model();
-    summarise();
+  /// Gives all ranks the models.
+  void share_models() {
+    plane_->cleaned().resize(stokes_.size());
+    for (imager::CleanResult& result : plane_->cleaned()) {
+      result.further_models.resize(static_cast<std::size_t>(o_.nterms - 1));
+      share_image(result.model);
+      for (imager::Image& further : result.further_models) share_image(further);
+    }
+  }
+
+  void share_image(imager::Image& image) const {
+    imager::share_values(ranks_, image.width, image.height);
+    imager::share_list(ranks_, image.pixel);
   }
 
   void save_model() {
     progress_.begin("save model", true);  // a column half written helps no one
+    if (!ranks_.alone()) share_models();
     const SavedModel model{geometry_,
+                           threads_,
                            stokes_,
                            plane_->cleaned(),
                            report_.options.dump(),
                            [this](const std::string& sentence) { progress_.say(sentence); },
                            taylor_ ? taylor_->expansion() : imager::TaylorExpansion()};
-    tools::save_model(o_, model, threads_, scene_->updates());
+    tools::save_model(o_, model, ranks_, scene_->updates());
     progress_.end();
   }
 

@@ -5,10 +5,11 @@
 #include "ms_io/model_writer.h"
 #include "tools/base/text.h"
 #include "tools/formats/model_image.h"
+#include "tools/run/shared_prediction.h"
 
 namespace misfit::tools {
 
-void save_model(const ImageOptions& o, const SavedModel& model, int threads, const imager::Progress& progress) {
+void save_model(const ImageOptions& o, const SavedModel& model, const imager::Ranks& ranks, const imager::Progress& progress) {
   StokesPlanes planes{};
   TaylorTerms taylor{model.expansion, {}};
   ms_io::Fingerprint fingerprint;
@@ -24,14 +25,19 @@ void save_model(const ImageOptions& o, const SavedModel& model, int threads, con
   const ms_io::Selection selection = selection_of(o);
   ModelVisibilities visibilities;
   {
-    const ms_io::MeasurementSet set(o.vis, selection, o.datacolumn, model.stokes);
-    visibilities = image_visibilities(planes, model.geometry, gridding_request(o, threads), set, taylor);
+    const auto set = ms_io::MeasurementSet(o.vis, selection, o.datacolumn, model.stokes).share(ranks);
+    visibilities = image_visibilities(planes, model.geometry, gridding_request(o, model.threads), *set, taylor);
   }
+  ranks.meet();  // before sets change
+  SharedPrediction shared(ranks, visibilities.predict);
+  if (!ranks.first()) return shared.follow();
   ms_io::ModelColumn column{"MODEL_DATA"};
   column.origin = {"misfit image --savemodel modelcolumn --imagename " + shell_quoted(o.imagename), fingerprint.value(),
                    model.tell};
+  const auto predict = [&](const imager::SampleCoordinates& at) { return shared.predict(at); };
   for (const std::string& set : o.vis)
-    ms_io::write_model(set, selection, column, visibilities.predict, progress, visibilities.samples_at_once);
+    ms_io::write_model(set, selection, column, predict, progress, {visibilities.samples_at_once, ranks.size()});
+  shared.end();
 }
 
 }  // namespace misfit::tools

@@ -14,6 +14,7 @@ namespace misfit::tools {
 /// What --savemodel writes.
 struct SavedModel {
   const imager::ImageGeometry& geometry;
+  int threads = 1;
   const std::vector<imager::Stokes>& stokes;              ///< some of I, Q, U and V
   const std::vector<imager::CleanResult>& cleaned;        ///< [Stokes]
   std::string option_values;                              ///< by which a column cut short is known again
@@ -21,8 +22,9 @@ struct SavedModel {
   imager::TaylorExpansion expansion{};                    ///< of the models' spectra
 };
 
-/// Writes the models' visibilities into MODEL_DATA of each set of the run, about its own phase centre. Throws what
-/// ms_io::write_model does.
-void save_model(const ImageOptions& options, const SavedModel& model, int threads, const imager::Progress& progress);
+/// Writes the models' visibilities into MODEL_DATA of each set of the run, about its own phase centre. Called by all ranks,
+/// which have the same models: they predict, and the first writes. Throws what ms_io::write_model does.
+void save_model(const ImageOptions& options, const SavedModel& model, const imager::Ranks& ranks,
+                const imager::Progress& progress);
 
 }  // namespace misfit::tools

@@ -1,0 +1,140 @@
+// Runs of several processes that MPI started, by the program itself.
+#include <cstring>
+
+#include "tests/imager/comparison.h"
+#include "tests/tools/program.h"
+#include "tests/tools/set_changes.h"
+
+BOOST_AUTO_TEST_SUITE(ranks_command)
+
+namespace {
+
+using namespace misfit;
+using namespace misfit::tools::testing;
+
+bool has_mpi() {
+  static const bool has =
+      run({"--version"}).out.find("\nMPI ") != std::string::npos && Child({"--version"}, "mpirun").wait().code == 0;
+  if (!has) BOOST_TEST_MESSAGE("skipped: the program was built without MPI, or there is no mpirun");
+  return has;
+}
+
+/// The program in so many processes, on whatever cores there are.
+Arguments ranks(int size) {
+  return {"--allow-run-as-root", "--oversubscribe", "--bind-to", "none", "-n", std::to_string(size), MISFIT_PROGRAM};
+}
+
+void succeed_together(int size, const Arguments& arguments) {
+  const Outcome outcome = Child(ranks(size) + arguments + Arguments{"--quiet"}, "mpirun").wait();
+  BOOST_TEST_INFO(outcome.err);
+  BOOST_REQUIRE_EQUAL(outcome.code, 0);
+  BOOST_TEST(outcome.out == "");
+}
+
+Arguments image(const std::string& imagename) {
+  return {"image", "--vis", track(), "--imagename", imagename, "--imsize", "128", "--cell", "0.1arcsec", "--threads", "1"};
+}
+
+double difference(const std::string& is, const std::string& should, const std::string& kind) {
+  return imager::testing::relative_error(pixels_of(is, kind).pixel, pixels_of(should, kind).pixel);
+}
+
+/// Decisions about ranks that a report holds.
+std::size_t told_of_ranks(const nlohmann::json& report) {
+  std::size_t told = 0;
+  for (const auto& decision : report["plan"])
+    told += decision["item"] == "shared among ranks" || decision["item"] == "exchanged among ranks" ? 1 : 0;
+  return told;
+}
+
+}  // namespace
+
+BOOST_AUTO_TEST_CASE(images_and_clean_are_those_of_one_process) {
+  if (!has_mpi()) return;
+  const TemporaryFolder folder;
+  const Arguments options{"--accuracy",  "1e-8",   "--psf-accuracy", "1e-8", "--niter",        "200", "--verify", "50",
+                          "--weighting", "briggs", "--pblimit",      "0.1",  "--check-outside"};
+  succeed(image(folder / "one") + options);
+  const nlohmann::json one = report_of(folder / "one");
+  BOOST_TEST(told_of_ranks(one) == 0U);
+  for (const int size : {1, 2, 3, 8}) {
+    const std::string name = folder / std::to_string(size);
+    succeed_together(size, image(name) + options);
+    BOOST_TEST_CONTEXT(size << " ranks") {
+      for (const char* kind : {"psf", "residual", "model", "image"}) BOOST_TEST(difference(name, folder / "one", kind) < 1e-7);
+      const nlohmann::json report = report_of(name);
+      BOOST_TEST(report["visibilities"] == one["visibilities"]);
+      BOOST_TEST(report["clean"]["stop_code"] == one["clean"]["stop_code"]);
+      BOOST_TEST(report["clean"]["iterations"] == one["clean"]["iterations"]);
+      BOOST_TEST(report["error"]["measured_rms"].get<double>() < 1e-8);
+      BOOST_TEST(report["outside_search"]["found"] == one["outside_search"]["found"]);
+      BOOST_TEST(told_of_ranks(report) == (size == 1 ? 0U : 2U));
+    }
+  }
+}
+
+BOOST_AUTO_TEST_CASE(clean_goes_on_with_other_ranks_from_where_it_was) {
+  if (!has_mpi()) return;
+  const TemporaryFolder folder;
+  succeed_together(2, image(folder / "a") + Arguments{"--niter", "100", "--psf-accuracy", "1e-6", "--nterms", "1"});
+  succeed_together(2,
+                   image(folder / "a") + Arguments{"--niter", "200", "--psf-accuracy", "1e-6", "--nterms", "1", "--restart"});
+  BOOST_TEST(report_of(folder / "a")["clean"]["iterations"] == 200);
+}
+
+BOOST_AUTO_TEST_CASE(predicted_and_saved_models_are_those_of_one_process) {
+  if (!has_mpi()) return;
+  const TemporaryFolder folder;
+  const auto copy_of_track = [&](const std::string& name) {
+    std::filesystem::copy(track(), folder / name, std::filesystem::copy_options::recursive);
+    return folder / name;
+  };
+  const std::string one = copy_of_track("one.ms"), three = copy_of_track("three.ms");
+  succeed(image(folder / "model") + Arguments{"--niter", "50"});
+  const Arguments model{"--model", folder / "model.model.fits"};
+  succeed(Arguments{"predict", "--vis", one} + model);
+  succeed_together(3, Arguments{"predict", "--vis", three} + model);
+  BOOST_TEST((visibilities(three, "MODEL_DATA") == visibilities(one, "MODEL_DATA")));
+  for (const auto& [set, size] : {std::pair(one, 1), {three, 3}}) {
+    Arguments saving =
+        image(folder / "saving") + Arguments{"--niter", "50", "--psf-accuracy", "1e-6", "--savemodel", "modelcolumn"};
+    saving[2] = set;
+    succeed_together(size, saving);
+  }
+  // Components are those of images that differ by the order of sums.
+  BOOST_TEST(imager::testing::relative_error(visibilities(three, "MODEL_DATA"), visibilities(one, "MODEL_DATA")) < 1e-5);
+}
+
+BOOST_AUTO_TEST_CASE(what_is_wrong_for_all_ends_all_with_its_message) {
+  if (!has_mpi()) return;
+  const TemporaryFolder folder;
+  Arguments nowhere = image(folder / "a");
+  nowhere[2] = folder / "nowhere.ms";
+  const Arguments kernel{"kernel", "--width", "7", "--output", folder / "k.fits"};
+  struct Case {
+    Arguments arguments;
+    int code;
+    std::string said;
+  };
+  for (const Case& wrong : {Case{nowhere, 1, "nowhere.ms does not exist; expected a MeasurementSet"},
+                            {image(folder / "a") + Arguments{"--robbust", "1"}, 2, "--robbust"},
+                            {kernel, 2, "misfit kernel was started as 2 processes"}}) {
+    const Outcome outcome = Child(ranks(2) + wrong.arguments, "mpirun").wait();
+    BOOST_TEST(outcome.code == wrong.code);
+    BOOST_TEST(outcome.err.find(wrong.said) != std::string::npos, outcome.err);
+  }
+  BOOST_TEST(files_below(folder / "").empty());
+}
+
+/// A rank that dies takes the others with it, whatever they wait for.
+BOOST_AUTO_TEST_CASE(a_killed_rank_ends_the_run_without_a_file) {
+  if (!has_mpi()) return;
+  const TemporaryFolder folder;
+  // The second rank is a shell that ends at once by the signal.
+  const Arguments both = ranks(1) + image(folder / "a") + Arguments{":", "-n", "1", "sh", "-c", "sleep 0.2; kill -KILL $$"};
+  const Outcome outcome = Child(both, "mpirun").wait();
+  BOOST_TEST(outcome.code != 0);
+  BOOST_TEST(files_below(folder / "").empty());
+}
+
+BOOST_AUTO_TEST_SUITE_END()
