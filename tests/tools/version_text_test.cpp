@@ -33,19 +33,16 @@ BOOST_AUTO_TEST_CASE(the_first_line_is_the_program_and_its_version_alone) {
 }
 
 BOOST_AUTO_TEST_CASE(each_other_line_is_a_fact_in_the_same_column) {
-  const std::vector<std::pair<std::string, std::string>> facts{{"commit", "[0-9a-f]{12,}"},
-                                                               {"build", R"(\w+ [\d.]+, \w+(, sanitizers [a-z,]+)?)"},
-                                                               {"casacore", R"([\d.]+)"},
-                                                               {"CFITSIO", R"(\d+\.\d+\.\d+)"},
-                                                               {"FFTW", R"(\d+\.\d+\.\d+)"},
-                                                               {"Eigen", R"(3\.\d+\.\d+)"},
-                                                               {"MPI", R"(.+ v?\d+\.\d+\.\d+)"},
-                                                               {"Highway", R"(\d+\.\d+\.\d+, loops run with [A-Z0-9_]+)"}};
+  const std::vector<std::pair<std::string, std::string>> facts{
+      {"commit", "[0-9a-f]{12,}"},      {"build", R"(\w+ [\d.]+, \w+(, sanitizers [a-z,]+)?)"},
+      {"casacore", R"([\d.]+)"},        {"CFITSIO", R"(\d+\.\d+\.\d+)"},
+      {"FFTW", R"(\d+\.\d+\.\d+)"},     {"Eigen", R"(3\.\d+\.\d+)"},
+      {"MPI", R"(.+ v?\d+\.\d+\.\d+)"}, {"Highway", R"(\d+\.\d+\.\d+, loops run with [A-Z0-9_]+)"}};
   const std::vector<std::string> said = lines(misfit::tools::version_text());
   std::size_t at = 1;
   for (const auto& [name, value] : facts) {
     if (name == "commit" && std::string(build_facts.commit).empty()) continue;  // of sources that are no checkout
-    if (name == "MPI" && misfit::tools::mpi_version().empty()) continue;  // of a build without
+    if (name == "MPI" && misfit::tools::mpi_version().empty()) continue;        // of a build without
     BOOST_REQUIRE(at < said.size());
     BOOST_TEST(std::regex_match(said[at], std::regex(name + std::string(10 - name.size(), ' ') + value)), said[at]);
     ++at;
