@@ -32,7 +32,7 @@ void keep_memory() {
 /// Says why, and ends the other ranks, too. What is wrong for all is said by the first, which the others give time for that.
 int fail(const char* message, ExitCode code, const World& world) {
   const imager::Ranks& ranks = world.ranks();
-  if (!ranks.first()) std::this_thread::sleep_for(std::chrono::seconds(1));
+  if (!ranks.first()) std::this_thread::sleep_for(std::chrono::seconds(3));
   const std::string which = ranks.alone() ? "" : "rank " + std::to_string(ranks.rank()) + ": ";
   std::fprintf(stderr, "misfit: %s%s\n", which.c_str(), message);
   world.end_all(code);
