@@ -4,8 +4,11 @@
 
 namespace misfit::tools {
 
-/// Whether a launcher of MPI programs started this process: Open MPI's, or one that speaks PMI or PMIx, as srun may.
+/// Whether a launcher of MPI programs started this process and others: Open MPI's, or one that speaks PMI or PMIx, as srun may.
+/// A script that one process runs may start misfit again and again, which MPI does not allow.
 inline bool was_launched() {
+  const char* const size = std::getenv("OMPI_COMM_WORLD_SIZE");
+  if (size != nullptr && std::atoi(size) == 1) return false;
   for (const char* name : {"OMPI_COMM_WORLD_SIZE", "PMIX_RANK", "PMI_RANK"})
     if (std::getenv(name) != nullptr) return true;
   return false;

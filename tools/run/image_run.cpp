@@ -137,6 +137,8 @@ class ImageRun {
     report_.plan = plan_.decisions;
     report_.estimated_memory_bytes = plan_.memory.total();
     work_ = work_of(scene, plan_);
+    // Ranks exchange the same in every pass, so that all keep visibilities or none does.
+    plan_.streaming.keep = !imager::any_of(ranks_, !plan_.streaming.keep);
     source_ = std::make_unique<imager::StreamedVisibilities>(*set_, plan_.streaming);
     scene_ = std::make_unique<PlaneScene>(PlaneScene{o_, geometry_, stokes_, reach_, threads_, progress_, times_,
                                                      [this](const std::string& sentence) { warn(sentence); }});

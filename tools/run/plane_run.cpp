@@ -111,6 +111,7 @@ void PlaneRun::clean(CleanStage& stage, const nlohmann::json& option_values,
 }
 
 void PlaneRun::follow_clean() {
+  scene_.progress.begin("CLEAN" + name_, true);  // rank 0 decides when it stops
   for (std::size_t s = 0; s < scene_.stokes.size(); ++s) {
     const imager::StokesView view(source_, static_cast<int>(s));
     const imager::Transform& transform = *made_.transform;
