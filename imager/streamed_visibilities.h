@@ -10,7 +10,7 @@
 namespace misfit::imager {
 
 struct StreamingOptions {
-  bool keep = true;            ///< whether the blocks of the first pass stay in memory
+  bool keep = true;            ///< whether the blocks of the first pass stay in memory: of all ranks or of none
   std::size_t ahead = 2;       ///< blocks read ahead of their user
   double uv_reach_lambda = 0;  ///< up to where the uv coverage is gathered; 0: nowhere
 };
