@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <optional>
 #include <string>
 #include <type_traits>
 #include <vector>
@@ -16,8 +17,8 @@ struct Traffic {
 };
 
 /// The processes of a run that share its samples, "ranks" as MPI has them. Each has a part of the samples and computes with it;
-/// what the parts add up to comes to all, so that all decide alike and go on together. Calls but for send() and receive() are
-/// made by all of them, in the same order, from one thread at a time. What cannot be exchanged ends the run.
+/// what the parts add up to comes to all, so that all decide alike and go on together. Calls but for send(), receive() and
+/// waiting() are made by all of them, in the same order, from one thread at a time. What cannot be exchanged ends the run.
 class Ranks {
  public:
   virtual ~Ranks() = default;
@@ -42,9 +43,11 @@ class Ranks {
   virtual void share(void* bytes, std::size_t count) const = 0;
   /// What each rank gives [rank], at rank 0; nothing at others.
   virtual std::vector<std::string> gather_at_first(const std::string& bytes) const = 0;
-  /// Gives another rank bytes that it waits for in receive(). Any thread may call these two, one at a time for each rank.
+  /// Gives another rank bytes that it waits for in receive(). Any thread may call these, one at a time for each rank.
   virtual void send(int to, const std::string& bytes) const = 0;
   virtual std::string receive(int from) const = 0;
+  /// A rank whose message waits for receive(); none where nobody has sent one.
+  virtual std::optional<int> waiting() const = 0;
   /// So far.
   virtual Traffic traffic() const = 0;
 };

@@ -53,9 +53,9 @@ SpectralWindow window_at_first_row(const OpenSet& from, const Setup& setup) {
   return window;
 }
 
-/// The setup with those of its channels that, as `window` has them, may come between two frequencies: the telescope's velocity
+/// The setup with those of its channels that, as `window` has them, may come into a range: the telescope's velocity
 /// changes by 61 km/s in a year and a day, and interpolation takes a channel beyond.
-Setup between(const Setup& setup, const SpectralWindow& window, double low_hz, double high_hz) {
+Setup between(const Setup& setup, const SpectralWindow& window, const FrequencyRange& range) {
   constexpr double doppler = 61e3 / 2.99792458e8;
   Setup part = setup;
   part.channels.clear();
@@ -65,7 +65,7 @@ Setup between(const Setup& setup, const SpectralWindow& window, double low_hz, d
   for (const Run& run : setup.channels)
     for (std::uint64_t channel = run.first; channel < run.first + run.count; ++channel, ++c) {
       const double margin_hz = doppler * window.frequency_hz[c] + 1.5 * window.channel_width_hz[c];
-      if (window.frequency_hz[c] < low_hz - margin_hz || window.frequency_hz[c] > high_hz + margin_hz) continue;
+      if (window.frequency_hz[c] < range.low_hz - margin_hz || window.frequency_hz[c] > range.high_hz + margin_hz) continue;
       append(part.channels, channel);
       part.frequency_hz.push_back(setup.frequency_hz[c]);
       part.channel_width_hz.push_back(setup.channel_width_hz[c]);
@@ -73,12 +73,19 @@ Setup between(const Setup& setup, const SpectralWindow& window, double low_hz, d
   return part;
 }
 
-/// Null where no channel of the set may come between two frequencies.
-std::shared_ptr<const OpenSet> channels_between(const OpenSet& set, double low_hz, double high_hz) {
+/// Null where no channel of the set may come into the range.
+std::shared_ptr<const OpenSet> channels_between(const OpenSet& set, const FrequencyRange& range,
+                                                const std::optional<FrequencyRange>& counted) {
   const auto part = std::make_shared<OpenSet>(set);
   SelectedRows& selected = part->selected;
   selected.rows = selected.samples = 0;
-  for (Setup& setup : selected.setups) setup = between(setup, window_at_first_row(set, setup), low_hz, high_hz);
+  for (Setup& setup : selected.setups) {
+    const SpectralWindow window = window_at_first_row(set, setup);
+    Setup before;
+    if (counted) before = between(setup, window, *counted);
+    setup = between(setup, window, range);
+    if (!before.channels.empty()) setup.uncounted = {before.first_channel(), before.channel_span()};
+  }
   const auto without = [&](const BlockRows& block) { return selected.setups[block.setup].channels.empty(); };
   selected.blocks.erase(std::remove_if(selected.blocks.begin(), selected.blocks.end(), without), selected.blocks.end());
   for (const BlockRows& block : selected.blocks) {
@@ -243,11 +250,12 @@ std::vector<SpectralWindow> MeasurementSet::spectral_windows() const {
 void MeasurementSet::visit_coordinates(const std::function<void(const imager::SampleCoordinates&)>& visit) const {
   for (const auto& set : impl_->sets) visit_uvw(*set, visit);
 }
-std::unique_ptr<MeasurementSet> MeasurementSet::part(double low_hz, double high_hz) const {
+std::unique_ptr<MeasurementSet> MeasurementSet::part(const FrequencyRange& range,
+                                                     const std::optional<FrequencyRange>& counted) const {
   const auto part = std::make_shared<Impl>();
   part->observation = impl_->observation;
   for (const auto& set : impl_->sets)
-    if (auto some = channels_between(*set, low_hz, high_hz)) part->sets.push_back(std::move(some));
+    if (auto some = channels_between(*set, range, counted)) part->sets.push_back(std::move(some));
   if (part->sets.empty()) return nullptr;
   return std::unique_ptr<MeasurementSet>(new MeasurementSet(part));
 }

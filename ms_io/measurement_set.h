@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -18,6 +19,12 @@ namespace misfit::ms_io {
 
 /// Rows that can be used, neither flagged nor of one antenna; or all.
 enum class ReachOf { usable, all };
+
+/// Ends included.
+struct FrequencyRange {
+  double low_hz = 0;
+  double high_hz = 0;
+};
 
 /// How ranks share the samples of a selection.
 struct SampleSharing {
@@ -78,9 +85,9 @@ class MeasurementSet : public imager::VisibilitySource {
   /// nor of one antenna. Reads and throws what reach() does.
   void visit_coordinates(const std::function<void(const imager::SampleCoordinates&)>& visit) const;
   std::unique_ptr<imager::BlockStream> open() const override;
-  /// The same set, of which only channels are read that may come between two frequencies, in the frame that the selection
-  /// names, in the course of a year; null where there are none.
-  std::unique_ptr<MeasurementSet> part(double low_hz, double high_hz) const;
+  /// The same set, of which only channels are read that may come into a range of frequencies, in the frame that the selection
+  /// names, in the course of a year; null where there are none. The part of the range `counted` has counted its samples.
+  std::unique_ptr<MeasurementSet> part(const FrequencyRange& range, const std::optional<FrequencyRange>& counted = {}) const;
   /// The same set, of which this rank reads its share alone: rows(), samples(), read_at_once(), visit_coordinates() and open()
   /// are of that, and may be of nothing. All else is of the whole set, and reach() is called by all ranks. `ranks` must outlive
   /// it.

@@ -32,6 +32,7 @@ struct Setup {
   std::vector<Run> channels;             ///< selected, ascending
   std::vector<double> frequency_hz;      ///< [selected channel]
   std::vector<double> channel_width_hz;  ///< [selected channel], positive
+  Run uncounted;                         ///< stored channels whose samples another part of the set counts
 
   std::uint64_t first_channel() const { return channels.front().first; }
   std::uint64_t last_channel() const { return channels.back().first + channels.back().count - 1; }

@@ -31,8 +31,9 @@ class GrowingBlock {
     block.frequency_hz = setup.frequency_hz;
     block.uvw_m.edit().resize(rows * 3);
     block.weight.resize(samples);
-    block.counts.rows_read = rows;
-    block.counts.samples_read = samples;
+    find_counted();
+    block.counts.rows_read = setup.uncounted.count == 0 ? rows : 0;
+    block.counts.samples_read = rows * counted_channels_;
     next_uvw_m_ = block.uvw_m.edit().data();
     next_.weight = block.weight.data();
   }
@@ -50,10 +51,10 @@ class GrowingBlock {
       const double* const uvw = stored.uvw.data() + 3 * r;
       next_uvw_m_ = std::copy_n(uvw, 3, next_uvw_m_);
       if (antenna1[r] == antenna2[r]) {
-        counts.autocorrelations += channels;
+        counts.autocorrelations += counted_channels_;
         advance(channels);
       } else if (flag_row[r]) {
-        counts.flagged += channels;
+        counts.flagged += counted_channels_;
         advance(channels);
       } else {
         form_row({stored.data.data() + r * cell, stored.flag.data() + r * cell, stored.weight.data() + r * weight_cell,
@@ -85,16 +86,34 @@ class GrowingBlock {
     block.frame_ratio.insert(block.frame_ratio.end(), begin, begin + static_cast<std::ptrdiff_t>(count));
   }
 
+  /// Cuts the runs of selected channels where samples begin or cease to be counted.
+  void find_counted() {
+    const std::uint64_t begin = setup_.uncounted.first, end = begin + setup_.uncounted.count;
+    const auto add = [&](std::uint64_t first, std::uint64_t last, bool counted) {
+      if (first >= last) return;
+      runs_.push_back({{first, last - first}, counted});
+      if (counted) counted_channels_ += last - first;
+    };
+    for (const Run& run : setup_.channels) {
+      const std::uint64_t last = run.first + run.count;
+      const std::uint64_t cut = std::clamp(begin, run.first, last), next = std::clamp(end, cut, last);
+      add(run.first, cut, true);
+      add(cut, next, false);
+      add(next, last, true);
+    }
+  }
+
   /// One row, a run of selected channels at a time.
   void form_row(const StoredSamples& row) {
-    for (const Run& run : setup_.channels) {
+    imager::SampleCounts uncounted;
+    for (const auto& [run, counted] : runs_) {
       const std::size_t offset = (run.first - setup_.first_channel()) * recipe_.correlations;
       StoredSamples part = row;
       part.data += offset;
       part.flag += offset;
       if (row.weight_per_channel) part.weight += offset;
       part.channels = run.count;
-      form_stokes(recipe_, part, next_, blocks_.front()->counts);
+      form_stokes(recipe_, part, next_, counted ? blocks_.front()->counts : uncounted);
       advance(run.count);
     }
   }
@@ -104,8 +123,15 @@ class GrowingBlock {
     next_.weight += samples;
   }
 
+  struct CountedRun {
+    Run channels;
+    bool counted = true;
+  };
+
   const Setup& setup_;
   const StokesRecipe& recipe_;
+  std::vector<CountedRun> runs_;
+  std::size_t counted_channels_ = 0;
   std::vector<std::shared_ptr<imager::VisibilityBlock>> blocks_;  ///< [Stokes parameter]
   StokesSamples next_;                                            ///< where the next samples go
   double* next_uvw_m_;

@@ -103,6 +103,8 @@ std::vector<std::unique_ptr<GatheredRows>> PlaneGatherer::take(bool all) {
 
 void PlaneGatherer::count_outside(const VisibilityBlock& block, const std::vector<MappedRows>& rows) {
   const double low = -0.5, high = sampling_.axis.channels - 0.5;
+  // Ranges of planes share channels: those below all planes are the first one's to count, those above the last one's.
+  const bool first = range_.first == 0, last = range_.first + range_.count == sampling_.axis.channels;
   for (const MappedRows& some : rows) {
     const double ratio = block.frame_ratio.empty() ? 1 : block.frame_ratio[some.first];
     std::vector<bool> taken(block.channels());
@@ -110,7 +112,8 @@ void PlaneGatherer::count_outside(const VisibilityBlock& block, const std::vecto
       for (const ChannelTap& tap : plane.tap) taken[tap.channel] = taken[tap.other] = true;
     for (std::size_t c = 0; c < block.channels(); ++c) {
       const double plane = sampling_.axis.plane_of(block.frequency_hz[c] * ratio);
-      if ((plane >= low && plane < high) || taken[c]) continue;
+      const bool counted = (plane < low && first) || (plane >= high && last);
+      if (!counted || taken[c]) continue;
       for (std::size_t row = some.first; row < some.end; ++row)
         outside_planes_ += block.weight[row * block.channels() + c] != 0;
     }

@@ -27,7 +27,8 @@ class PlaneGatherer {
   void add(const VisibilityBlock& block);
   /// Those rows that are many enough to be gridded together, or all there are after the last add(); in order.
   std::vector<std::unique_ptr<GatheredRows>> take(bool all);
-  /// Usable samples added that lie in no plane of the cube, and are taken by none of the range.
+  /// Usable samples added that lie in no plane of the cube, and are taken by none of the range: those below all planes where
+  /// the range has the first plane, those above where it has the last.
   std::uint64_t outside_planes() const { return outside_planes_; }
 
  private:

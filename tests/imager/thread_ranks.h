@@ -80,6 +80,11 @@ class ThreadRanks {
     }
     void send(int to, const std::string& bytes) const override { all_.mail(rank_, to).put(bytes); }
     std::string receive(int from) const override { return all_.mail(from, rank_).take(); }
+    std::optional<int> waiting() const override {
+      for (int from = 0; from < size(); ++from)
+        if (!all_.mail(from, rank_).empty()) return from;
+      return {};
+    }
     Traffic traffic() const override { return {}; }
 
    private:
@@ -115,6 +120,10 @@ class ThreadRanks {
       const std::lock_guard lock(mutex_);
       bytes_.push_back(bytes);
       there_is_some_.notify_one();
+    }
+    bool empty() {
+      const std::lock_guard lock(mutex_);
+      return bytes_.empty();
     }
     std::string take() {
       std::unique_lock lock(mutex_);

@@ -1,9 +1,9 @@
-// Planes of a cube that are made at the same time, by the program itself.
+// Planes of a cube that are made at the same time, by the program itself, in threads and in ranks.
 #include <algorithm>
 #include <cmath>
 #include <cstring>
 
-#include "tests/tools/program.h"
+#include "tests/tools/ranks_program.h"
 #include "tools/formats/image_file.h"
 
 BOOST_AUTO_TEST_SUITE(cube_threads)
@@ -53,6 +53,10 @@ Arguments cube(const std::string& imagename, const std::string& threads, const s
 
 const std::string kinds[] = {"psf", "residual", "model", "image", "mask"};
 
+/// What a report tells of the sky.
+const char* const told[] = {"planes", "warnings", "visibilities", "error",         "noise",
+                            "clean",  "beam",     "kernel",       "plane_samples", "samples_outside_planes"};
+
 bool has_values(const imager::Image& image) {
   return std::any_of(image.pixel.begin(), image.pixel.end(), [](double x) { return !std::isnan(x); });
 }
@@ -64,7 +68,8 @@ bool same(const imager::Image& a, const imager::Image& b) {
 
 void check_same(const imager::ImageReader& one, const imager::ImageReader& other) {
   for (int plane = 0; plane < one.header().spectral.channels; ++plane) {
-    BOOST_TEST(same(one.read({plane, 0}), other.read({plane, 0})), "plane " << plane);
+    for (int stokes = 0; stokes < static_cast<int>(one.header().stokes.size()); ++stokes)
+      BOOST_TEST(same(one.read({plane, stokes}), other.read({plane, stokes})), "plane " << plane << ", " << stokes);
     const auto beam = one.beam({plane, 0}), other_beam = other.beam({plane, 0});
     BOOST_TEST(beam.has_value() == other_beam.has_value());
     if (beam && other_beam) BOOST_TEST(beam->major_rad == other_beam->major_rad);
@@ -99,9 +104,48 @@ BOOST_AUTO_TEST_CASE(pixels_beams_and_report_do_not_depend_on_the_number_of_thre
     BOOST_TEST(decision_on(one, "planes").find("imaged at a time") == std::string::npos);
     BOOST_TEST(decision_on(three, "planes").find("and 3 imaged at a time") != std::string::npos);
     BOOST_TEST_REQUIRE(one["planes"].size() == 10U);
-    for (const char* key : {"planes", "warnings", "visibilities", "error", "noise", "clean", "beam", "kernel"})
-      BOOST_TEST(one[key] == three[key], key);
+    for (const char* key : told) BOOST_TEST(one[key] == three[key], key);
   }
+}
+
+BOOST_AUTO_TEST_CASE(pixels_beams_and_report_do_not_depend_on_the_number_of_ranks) {
+  if (!has_mpi()) return;
+  for (const Arguments& common : {Arguments{}, {"--restoringbeam", "common", "--perchanweightdensity", "false"}}) {
+    const TemporaryFolder folder;
+    const Arguments options =
+        Arguments{"--start",     "3.997GHz", "--nchan",  "10", "--niter",   "40",  // the first planes are empty
+                  "--usemask",   "auto",     "--nsigma", "3",  "--pblimit", "0.1",
+                  "--weighting", "briggs",   "--verify", "8",  "--stokes",  "IQ"} +
+        common;
+    succeed(cube(folder / "one", "1") + options);
+    const nlohmann::json one = report_of(folder / "one");
+    for (const int size : {2, 8}) {
+      const std::string name = folder / std::to_string(size);
+      succeed_together(size, cube(name, "1") + options);
+      BOOST_TEST_CONTEXT(size << " ranks") {
+        for (const std::string kind : {"psf", "residual", "model", "image", "mask", "pb"})
+          check_same(*tools::open_image_file(folder / ("one." + kind + ".fits")),
+                     *tools::open_image_file(name + "." + kind + ".fits"));
+        const nlohmann::json report = report_of(name);
+        for (const char* key : told) BOOST_TEST(one[key] == report[key], key);
+        BOOST_TEST(decision_on(report, "shared among ranks") ==
+                   std::to_string(size) + ", which take " + (size == 2 ? "2 planes" : "a plane") + " at a time");
+        BOOST_TEST(decision_on(report, "exchanged among ranks") != "");
+      }
+    }
+  }
+}
+
+BOOST_AUTO_TEST_CASE(a_plane_of_another_rank_that_fails_ends_all_and_leaves_no_images) {
+  if (!has_mpi()) return;
+  const TemporaryFolder folder;
+  std::ofstream(folder / "a.clean") << "no folder";  // for CLEAN's states
+  const Outcome outcome = Child(ranks(3) + cube(folder / "a", "1") + Arguments{"--niter", "10", "--quiet"}, "mpirun").wait();
+  BOOST_TEST_INFO(outcome.err);
+  BOOST_TEST(outcome.code == 1);
+  BOOST_TEST(outcome.err.find("a.clean") != std::string::npos);
+  for (const auto& file : std::filesystem::directory_iterator(folder / ""))
+    BOOST_TEST(file.path().string().find(".fits") == std::string::npos, file.path().string());
 }
 
 BOOST_AUTO_TEST_CASE(a_plane_that_fails_ends_the_run_with_one_line_and_leaves_no_images) {

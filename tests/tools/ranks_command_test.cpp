@@ -2,7 +2,7 @@
 #include <cstring>
 
 #include "tests/imager/comparison.h"
-#include "tests/tools/program.h"
+#include "tests/tools/ranks_program.h"
 #include "tests/tools/set_changes.h"
 
 BOOST_AUTO_TEST_SUITE(ranks_command)
@@ -11,27 +11,6 @@ namespace {
 
 using namespace misfit;
 using namespace misfit::tools::testing;
-
-bool has_mpi() {
-  static const bool has =
-      run({"--version"}).out.find("\nMPI ") != std::string::npos && Child({"--version"}, "mpirun").wait().code == 0;
-  if (!has) BOOST_TEST_MESSAGE("skipped: the program was built without MPI, or there is no mpirun");
-  return has;
-}
-
-/// The program in so many processes, on whatever cores there are. Open MPI loses memory in parts of it that are gone when the
-/// leak sanitizer looks, which can thus not be told of them.
-Arguments ranks(int size) {
-  return {"--allow-run-as-root", "--oversubscribe", "--bind-to", "none", "-x", "ASAN_OPTIONS=detect_leaks=0", "-n",
-          std::to_string(size),  MISFIT_PROGRAM};
-}
-
-void succeed_together(int size, const Arguments& arguments) {
-  const Outcome outcome = Child(ranks(size) + arguments + Arguments{"--quiet"}, "mpirun").wait();
-  BOOST_TEST_INFO(outcome.err);
-  BOOST_REQUIRE_EQUAL(outcome.code, 0);
-  BOOST_TEST(outcome.out == "");
-}
 
 Arguments image(const std::string& imagename) {
   return {"image", "--vis", track(), "--imagename", imagename, "--imsize", "128", "--cell", "0.1arcsec", "--threads", "1"};

@@ -83,6 +83,13 @@ class MpiRanks : public imager::Ranks {
     });
     return bytes;
   }
+  std::optional<int> waiting() const override {
+    const std::lock_guard lock(one_at_a_time_);
+    int there = 0;
+    MPI_Status status;
+    MPI_Iprobe(MPI_ANY_SOURCE, tag, MPI_COMM_WORLD, &there, &status);
+    return there != 0 ? std::optional(status.MPI_SOURCE) : std::nullopt;
+  }
   imager::Traffic traffic() const override {
     const std::lock_guard lock(one_at_a_time_);
     return traffic_;

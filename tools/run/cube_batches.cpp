@@ -31,13 +31,27 @@ double in_flight_bytes(const RunScene& scene, const RunPlan& plan) {
 }
 
 /// While so many planes are imaged at a time, beside `waiting` bytes: each has a copy of its visibilities, grids and images,
-/// and its thread an allocator's memory; buffers of FFTs are the threads' anyway.
-imager::MemoryUse while_imaging(imager::MemoryUse one, double waiting, int workers) {
+/// and its thread an allocator's memory; buffers of FFTs are the threads' anyway. An image on its way to another rank is there
+/// as an image, as a message, and as that which MPI sends.
+imager::MemoryUse while_imaging(imager::MemoryUse one, double waiting, int workers, double message_bytes) {
   constexpr double allocator_bytes = 56e6;  // see imager::peak_memory()
   one.process += (workers - 1) * allocator_bytes;
   for (double* bytes : {&one.visibilities, &one.blocks, &one.grids, &one.images}) *bytes *= workers;
   one.visibilities += waiting;
+  one.images += message_bytes;
   return one;
+}
+
+/// Ranks take planes in turns until there are none, and are done at about the same time.
+int planes_dealt_out(const RunScene& scene) {
+  constexpr int turns = 3;
+  return scene.ranks.alone() ? scene.planes : (scene.planes + turns * scene.ranks.size() - 1) / (turns * scene.ranks.size());
+}
+
+/// All ranks hold what each has room for.
+void agree(CubeBatches& batches, const imager::Ranks& ranks) {
+  batches.planes = -static_cast<int>(imager::largest_of(ranks, -batches.planes));
+  batches.read_again = imager::any_of(ranks, batches.read_again);
 }
 
 /// The larger of both.
@@ -52,10 +66,10 @@ imager::Decision decision_on(const CubeBatches& batches, const RunScene& scene, 
   return {"planes",
           std::to_string(scene.planes) + ", of which " + held +
               (at_once == 1 ? " at a time" : " and " + std::to_string(at_once) + " imaged at a time"),
-          batches.read_again
-              ? "there is no room for the visibilities of one: it reads the set in every pass"
-              : "the visibilities of one take " + significant(plane_bytes / gib, 2) + " GiB at most; the set is read in " +
-                    std::to_string(passes) + (passes == 1 ? " pass" : " passes")};
+          batches.read_again ? "there is no room for the visibilities of one: it reads the set in every pass"
+                             : "the visibilities of one take " + significant(plane_bytes / gib, 2) +
+                                   " GiB at most; the set is read in " + std::to_string(passes) +
+                                   (passes == 1 ? " pass" : " passes") + (scene.ranks.alone() ? "" : " of all ranks")};
 }
 
 }  // namespace
@@ -71,13 +85,13 @@ int samples_of_a_row(const imager::CubeSampling& sampling, const std::vector<ms_
 
 CubeBatches plan_batches(const RunScene& scene, const RunPlan& plan) {
   constexpr double enough_bytes = gib / 2;  // each pass over the set reads little more than its planes' channels
-  const double wanted =
-      scene.options.memory_gib > 0 ? scene.options.memory_gib * gib : memory_of_a_process(scene.set.ranks()) / 2;
+  const double wanted = scene.options.memory_gib > 0 ? scene.options.memory_gib * gib : memory_of_a_process(scene.ranks) / 2;
   const double rows = static_cast<double>(scene.set.rows());
   const double plane = gathered_bytes(scene, plan), flight = in_flight_bytes(scene, plan);
+  const double message = scene.ranks.alone() ? 0 : 3 * sizeof(double) * static_cast<double>(scene.geometry.pixels());
   const auto memory = [&](double waiting, int workers) {
     waiting += shared_bytes(rows);
-    return peak_of(while_imaging(plan.memory, waiting, workers),
+    return peak_of(while_imaging(plan.memory, waiting, workers, message),
                    {"planes are gathered", plan.memory.process, waiting, flight, 0, 0, 0});
   };
   const auto room = [&](int workers) { return wanted - memory(0, workers).total(); };
@@ -88,10 +102,12 @@ CubeBatches plan_batches(const RunScene& scene, const RunPlan& plan) {
     for (workers = scene.workers; workers > 1 && room(workers) < workers * plane;) --workers;
   batches.workers.threads = scene.threads / workers;
   if (!batches.read_again) {
-    const double held = std::clamp(std::min(enough_bytes, room(workers)) / plane, 1.0 * workers, 1.0 * scene.planes);
+    const double most = std::max(workers, planes_dealt_out(scene));
+    const double held = std::clamp(std::min(enough_bytes, room(workers)) / plane, 1.0 * workers, most);
     batches.planes = static_cast<int>(held);
     if (batches.planes < scene.planes) batches.planes -= batches.planes % workers;
   }
+  agree(batches, scene.ranks);
   // A plane that reads the set holds the rows that are gridded together, and the blocks that are made of them.
   const double streamed = 2 * std::min(1.0, static_cast<double>(imager::samples_gathered_at_once) / scene.samples);
   batches.memory = memory((batches.read_again ? streamed : batches.planes) * plane, workers);

@@ -30,7 +30,8 @@ struct CubeBatches {
 /// A plane for each thread is made at a time: that keeps all busy, where a plane would leave them waiting for each other. Fewer
 /// where there are fewer planes, or where --memory, or half of the machine's, has no room for the images and visibilities of so
 /// many; then they share the threads. One where it reads the set itself. As many planes are held as take half a GiB
-/// together, one for each worker at least, and fit in that memory too.
+/// together, one for each worker at least, and fit in that memory too; of several ranks, which take batches in turns, no more
+/// than that each has some turns, and all hold as many as the one with the least room. Called by all ranks.
 CubeBatches plan_batches(const RunScene& scene, const RunPlan& plan);
 
 /// The planes in batches of nearly the same size, whole numbers of planes for each worker but for the last.

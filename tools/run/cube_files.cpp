@@ -8,13 +8,15 @@
 
 namespace misfit::tools {
 
-CubeFiles::CubeFiles(const ImageOptions& o, const imager::ImageHeader& header, bool masks) {
+CubeFiles::CubeFiles(const ImageOptions& o, const imager::ImageHeader& header, bool masks, const Open& open_file) {
   const auto open = [&](const char* kind, const char* unit, bool one_stokes = false) {
     imager::ImageHeader own = header;
     own.unit = unit;
     if (one_stokes) own.stokes.resize(1);
     for (const std::string& path : image_paths(o.imagename + "." + kind, o.outformat)) paths_.push_back(path);
-    return open_image_files(o.imagename + "." + kind, own, pixel_format(o.accuracy), o.outformat);
+    Writer file = open_file(o.imagename + "." + kind, own);
+    files_.push_back(file.get());
+    return file;
   };
   psf_ = open("psf", "Jy/beam", true);
   residual_ = open("residual", "Jy/beam");
@@ -29,6 +31,12 @@ CubeFiles::CubeFiles(const ImageOptions& o, const imager::ImageHeader& header, b
 void CubeFiles::write_psf(int channel, const imager::Image& psf, const std::optional<imager::Beam>& beam) {
   const std::lock_guard lock(image_files_mutex());
   psf_->write({channel, 0}, psf, beam);
+}
+
+void CubeFiles::write_sent(int file, const imager::PlaneIndex& at, const imager::Image& image,
+                           const std::optional<imager::Beam>& beam) {
+  const std::lock_guard lock(image_files_mutex());
+  files_.at(static_cast<std::size_t>(file))->write(at, image, beam);
 }
 
 void CubeFiles::put(const Writer& writer, const imager::PlaneIndex& at, const imager::Image* image,

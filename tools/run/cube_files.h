@@ -1,6 +1,6 @@
 #pragma once
 
-#include <array>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -16,8 +16,11 @@ namespace misfit::tools {
 /// of several threads wait for each other.
 class CubeFiles {
  public:
+  /// Begins one of the files, which is called <imagename>.<kind>.
+  using Open = std::function<std::unique_ptr<imager::ImageWriter>(const std::string& name, const imager::ImageHeader& header)>;
+
   /// Throws std::runtime_error that names the file which cannot be written.
-  CubeFiles(const ImageOptions& options, const imager::ImageHeader& header, bool masks);
+  CubeFiles(const ImageOptions& options, const imager::ImageHeader& header, bool masks, const Open& open);
 
   /// What a plane of one Stokes parameter has; null where there is none.
   struct Plane {
@@ -33,6 +36,8 @@ class CubeFiles {
   void write(const imager::PlaneIndex& at, const Plane& plane, const std::optional<imager::Beam>& beam);
   /// The restored image alone, where it comes later, and what --pbcor makes of it.
   void write_restored(const imager::PlaneIndex& at, const Plane& plane, const std::optional<imager::Beam>& beam);
+  /// A plane that another rank made, of the file that it opened as this one, counted from 0.
+  void write_sent(int file, const imager::PlaneIndex& at, const imager::Image& image, const std::optional<imager::Beam>& beam);
   /// Numbers for the headers of all of them, which are known once planes are made.
   void add_cards(const std::vector<imager::HeaderCard>& cards);
   /// Those that finish() makes.
@@ -46,6 +51,7 @@ class CubeFiles {
   static void put(const Writer& writer, const imager::PlaneIndex& at, const imager::Image* image,
                   const std::optional<imager::Beam>& beam);
   std::vector<std::string> paths_;
+  std::vector<imager::ImageWriter*> files_;                                     ///< in the order in which they were opened
   Writer psf_, residual_, model_, restored_, mask_, primary_beam_, corrected_;  ///< null where there is no such image
 };
 

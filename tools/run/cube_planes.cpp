@@ -14,7 +14,7 @@ bool CubePlane::stopped() const {
 }
 
 CubePlanes::CubePlanes(CubeScene scene)
-    : scene_(std::move(scene)), products_(scene_.options, scene_.header, scene_.primary_beam, scene_.workers) {
+    : scene_(std::move(scene)), products_(scene_.options, scene_.header, scene_.primary_beam, scene_.workers, scene_.open) {
   for (int i = 0; scene_.options.niter > 0 && i < scene_.workers.count; ++i)
     cleans_.give_back(std::make_unique<CleanStage>(scene_.options, scene_.header, scene_.workers.threads));
 }

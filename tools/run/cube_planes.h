@@ -40,6 +40,7 @@ struct CubeScene {
   std::shared_ptr<const imager::PlannedTransform> transform;  ///< of `plan`
   PlaneWorkers workers;
   const PrimaryBeamStage* primary_beam = nullptr;  ///< null where none is wanted
+  CubeFiles::Open open;
 };
 
 /// Makes the planes of a cube and writes their images: as many at a time as there are workers, in any order, each in a thread

@@ -47,10 +47,10 @@ struct CubeProducts::Written {
 };
 
 CubeProducts::CubeProducts(const ImageOptions& options, const imager::ImageHeader& header, const PrimaryBeamStage* primary_beam,
-                           const PlaneWorkers& workers)
+                           const PlaneWorkers& workers, const CubeFiles::Open& open)
     : o_(options),
       header_(header),
-      files_(options, header, has_mask(options)),
+      files_(options, header, has_mask(options), open),
       primary_beam_(primary_beam),
       workers_(workers),
       in_common_(options.niter > 0 && options.restoringbeam == "common") {}

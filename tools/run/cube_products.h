@@ -17,11 +17,12 @@ class CubeProducts {
  public:
   /// `primary_beam` is null where none is wanted; options and it are kept by reference.
   CubeProducts(const ImageOptions& options, const imager::ImageHeader& header, const PrimaryBeamStage* primary_beam,
-               const PlaneWorkers& workers);
+               const PlaneWorkers& workers, const CubeFiles::Open& open);
 
   /// Writes the plane that its report names, in any order, and adds to the report what its pixels tell. May be called for
   /// several planes at the same time. Returns what the user should know of its primary beam; empty if nothing.
   std::string write(PlaneRun& plane);
+  CubeFiles& files() { return files_; }
   /// After the last plane, with numbers for the headers. Tells reports of the common beam, where there is one. Returns the
   /// names of files that an earlier run left and this one removed.
   std::vector<std::string> finish(std::vector<PlaneReport>& planes, const std::vector<imager::HeaderCard>& cards,

@@ -7,7 +7,6 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
-#include <stdexcept>
 #include <utility>
 
 #include "imager/parallel.h"
@@ -19,24 +18,29 @@
 #include "tools/run/cube_pictures.h"
 #include "tools/run/cube_planes.h"
 #include "tools/run/cube_visibilities.h"
+#include "tools/run/image_files.h"
 #include "tools/run/primary_beam_stage.h"
 #include "tools/run/product_stage.h"
 #include "tools/run/run_messages.h"
 #include "tools/run/run_plan.h"
+#include "tools/run/shared_cube.h"
+#include "tools/run/sharing.h"
 #include "tools/run/weighting_options.h"
 #include "tools/run_page/report_page.h"
 
 namespace misfit::tools {
 namespace {
 
-/// One run, from options to files. The steps are called in the order in which they stand here.
+/// One run, from options to files. The steps are called in the order in which they stand here. Ranks make planes in turns; the
+/// first puts them together, and writes.
 class CubeRun {
  public:
-  CubeRun(const ImageOptions& options, const RunCall& call)
+  CubeRun(const ImageOptions& options, const RunCall& call, const imager::Ranks& ranks)
       : o_(options),
+        ranks_(ranks),
         stokes_(imager::parse_stokes(options.stokes)),
-        threads_(options.threads == 0 ? imager::available_threads() : options.threads),
-        progress_(options.quiet) {
+        threads_(options.threads == 0 ? imager::available_threads(ranks.on_this_machine()) : options.threads),
+        progress_(options.quiet || !ranks.first()) {
     report_.command_line = call.command_line;
     report_.options = call.option_values;
     report_.times = &times_;
@@ -47,16 +51,22 @@ class CubeRun {
     open();
     plan();
     if (o_.dry_run) {
-      if (!o_.quiet) print_plan(plan_, expected());
+      if (!o_.quiet && ranks_.first()) print_plan(plan_, expected());
       return true;
     }
     begin_planes();
     if (!o_.cube.perchanweightdensity) weigh_in_common();
     make_planes();
-    finish_files();
-    write_report();
-    if (!o_.quiet) std::printf("%s%s.report.html\n", summary(report_).c_str(), o_.imagename.c_str());
-    return !stopped_;
+    count_samples();
+    count_traffic();
+    if (ranks_.first()) {
+      finish_files();
+      write_report();
+      if (!o_.quiet) std::printf("%s%s.report.html\n", summary(report_).c_str(), o_.imagename.c_str());
+    }
+    bool done = !stopped_;
+    imager::share_values(ranks_, done);
+    return done;
   }
 
  private:
@@ -68,10 +78,11 @@ class CubeRun {
     if (!sentence.empty() && !std::exchange(said, true)) warn(sentence);
   }
   int planes() const { return header_.spectral.channels; }
+  int planes_of_a_rank() const { return (planes() + ranks_.size() - 1) / ranks_.size(); }
 
   void open() {
     const imager::StageTimer timer(times_, "open");
-    if (!o_.dry_run) check_product_paths(o_);
+    if (!o_.dry_run && ranks_.first()) check_product_paths(o_);
     set_ = std::make_unique<ms_io::MeasurementSet>(o_.vis, selection_of(o_), o_.datacolumn, stokes_);
     for (const std::string& sentence : set_->incomplete_columns()) warn(sentence);
     windows_ = set_->spectral_windows();
@@ -87,13 +98,13 @@ class CubeRun {
     if (wants_primary_beam(o_))
       primary_beam_ = std::make_unique<PrimaryBeamStage>(
           o_, BeamScene{set_->beam_rows(), header_.geometry, set_->observation().frequency_hz},
-          std::max(1, threads_ / planes()));
+          std::max(1, threads_ / planes_of_a_rank()));
     find_reach();
   }
 
   /// Planes may lie half a channel beyond the data's last.
   void find_reach() {
-    reach_ = set_->reach();
+    reach_ = ranks_.alone() ? set_->reach() : set_->share(ranks_)->reach();
     double beyond = 0;
     for (const ms_io::SpectralWindow& window : windows_)
       for (std::size_t c = 0; c < window.frequency_hz.size(); ++c)
@@ -104,12 +115,13 @@ class CubeRun {
   void plan() {
     const RunScene scene{.options = o_,
                          .set = *set_,
+                         .ranks = ranks_,
                          .geometry = header_.geometry,
                          .reach = reach_,
                          .threads = threads_,
                          .mask = o_.niter > 0 && (!o_.mask.empty() || o_.usemask == "auto"),
                          .planes = planes(),
-                         .workers = std::min(threads_, planes()),
+                         .workers = std::min(threads_, planes_of_a_rank()),
                          .samples = static_cast<double>(set_->rows()) * samples_of_a_row(sampling_, windows_)};
     plan_ = plan_run(scene, forecast_, times_, progress_);
     plan_.decisions.push_back(axis_decision(sampling_));
@@ -118,7 +130,12 @@ class CubeRun {
       for (const std::string& doubt : primary_beam_->doubts()) warn(doubt);
     }
     const CubeBatches batches = plan_batches(scene, plan_);
+    batches_ = batches_of(planes(), batches);
     workers_ = batches.workers;
+    at_once_ = workers_.count;
+    imager::sum_over(ranks_, at_once_);
+    if (!ranks_.alone())
+      plan_.decisions.push_back(plane_sharing_decision(ranks_.size(), planes(), batches.planes, plane_bytes()));
     plan_.gridding = imager::with_threads(std::move(plan_.gridding), workers_.threads);
     plan_.memory = batches.memory;
     plan_.decisions.push_back(batches.decision);
@@ -130,17 +147,27 @@ class CubeRun {
     report_.gridding = &plan_.gridding;
     report_.estimated_memory_bytes = plan_.memory.total();
     work_ = work_of(scene, plan_);
-    work_.workers = workers_.count;
+    work_.workers = at_once_;
     const imager::StageTimer timer(times_, "plan");
     if (!o_.dry_run) transform_ = std::make_shared<imager::PlannedTransform>(plan_.gridding);
   }
 
   std::vector<StageSeconds> expected() const { return expected_seconds(plan_, forecast_, work_); }
 
+  /// Of its images.
+  double plane_bytes() const {
+    const int images = 1 + static_cast<int>(stokes_.size()) * (o_.niter > 0 ? 3 : 1) + (primary_beam_ ? 1 : 0) +
+                       (o_.pbcor ? static_cast<int>(stokes_.size()) : 0);
+    return 1.0 * images * sizeof(double) * static_cast<double>(header_.geometry.pixels());
+  }
+
   void begin_planes() {
     const imager::StageTimer timer(times_, "write images");
+    const auto open = [this](const std::string& name, const imager::ImageHeader& header) {
+      return ranks_.first() ? open_image_files(name, header, pixel_format(o_.accuracy), o_.outformat) : first_rank_.open();
+    };
     planes_ = std::make_unique<CubePlanes>(
-        CubeScene{o_, report_.options, header_, reach_, plan_.gridding, transform_, workers_, primary_beam_.get()});
+        CubeScene{o_, report_.options, header_, reach_, plan_.gridding, transform_, workers_, primary_beam_.get(), open});
   }
 
   /// From the density of all planes' samples together.
@@ -153,28 +180,59 @@ class CubeRun {
       const auto stream = plane.open();
       while (const auto block = stream->next()) density.add(*block);
     };
-    visibilities_->look_through(add, progress_, times_);
+    visibilities_->look_through(own_batches(), add, progress_, times_);
+    if (!ranks_.alone()) density.add_up(ranks_);
     planes_->weigh_by(std::make_shared<imager::ImagingWeights>(density, options));
+  }
+
+  /// A part of them for each rank, where all have the same to do.
+  std::vector<imager::PlaneRange> own_batches() const {
+    std::vector<imager::PlaneRange> own;
+    for (auto b = static_cast<std::size_t>(ranks_.rank()); b < batches_.size(); b += static_cast<std::size_t>(ranks_.size()))
+      own.push_back(batches_[b]);
+    return own;
   }
 
   /// Until the user stops: planes that are done by then stay.
   void make_planes() {
+    if (!ranks_.first()) return make_planes_for_first();
     InOrder<CubePlane> in_order([this](int, CubePlane&& plane) { take(std::move(plane)); });
-    const auto make = [&](int channel, imager::StreamedVisibilities& visibilities) {
-      CubePlane plane = planes_->make(channel, visibilities);
+    const auto put = [&](CubePlane&& plane) {
       if (plane.stopped()) stopped_ = true;
+      const int channel = plane.report.channel;
       in_order.put(channel, std::move(plane));
     };
-    const auto leave_empty = [&](int channel) { in_order.put(channel, planes_->empty(channel)); };
+    const auto write = [&](int file, const imager::PlaneIndex& at, const imager::Image& image,
+                           const std::optional<imager::Beam>& beam) {
+      planes_->products().files().write_sent(file, at, image, beam);
+    };
+    PlaneDealer dealer(ranks_, batches_, {write, put, [this] { return stopped_.load(); }, [this] { planes_->give_up(); }});
+    visit_planes([&] { return dealer.next(); }, put);
+    dealer.finish();
+    in_order.flush();
+    if (stopped_ && report_.planes.empty()) throw Interrupted();
+  }
+
+  void make_planes_for_first() {
+    visit_planes([this] { return first_rank_.next(); },
+                 [this](CubePlane&& plane) {
+                   if (plane.stopped()) stopped_ = true;
+                   first_rank_.put(std::move(plane));
+                   if (first_rank_.stopped()) stopped_ = true;
+                 });
+    first_rank_.end();
+  }
+
+  void visit_planes(const std::function<std::optional<imager::PlaneRange>()>& next,
+                    const std::function<void(CubePlane&&)>& put) {
+    const auto make = [&](int channel, imager::StreamedVisibilities& samples) { put(planes_->make(channel, samples)); };
+    const auto leave_empty = [&](int channel) { put(planes_->empty(channel)); };
     try {
-      visibilities_->for_each_plane({make, leave_empty, [this] { return stopped_.load(); }, [this] { planes_->give_up(); }},
-                                    progress_, times_);
+      visibilities_->visit_planes({next, make, leave_empty, [this] { return stopped_.load(); }, [this] { planes_->give_up(); }},
+                                  progress_, times_);
     } catch (const Interrupted&) {
       stopped_ = true;
     }
-    in_order.flush();
-    if (stopped_ && report_.planes.empty()) throw Interrupted();
-    count_samples();
   }
 
   /// The next plane, of several threads' one at a time.
@@ -182,7 +240,7 @@ class CubeRun {
     for (const std::string& sentence : plane.warnings) warn(sentence);
     warn_once(plane.clean_warning, warned_of_clean_);
     warn_once(plane.beam_warning, warned_of_beam_);
-    for (const auto& [stage, seconds] : plane.times.stages()) times_.add(stage, seconds / workers_.count);
+    for (const auto& [stage, seconds] : plane.times.stages()) times_.add(stage, seconds / at_once_);
     outside_grid_ += plane.outside_grid;
     work_.components += plane.components;
     work_.major_cycles += plane.major_cycles;
@@ -197,6 +255,8 @@ class CubeRun {
   void count_samples() {
     imager::SampleCounts& counts = report_.counts = visibilities_->counts();
     report_.outside_planes = visibilities_->outside_planes();
+    counts.add_up(ranks_);
+    imager::sum_over(ranks_, report_.outside_planes);
     const std::uint64_t taken = counts.samples_read - counts.autocorrelations - counts.flagged - counts.nonfinite -
                                 counts.zero_weight - report_.outside_planes;
     const double in_planes = static_cast<double>(outside_grid_ + report_.plane_samples);
@@ -204,6 +264,13 @@ class CubeRun {
       counts.outside_grid =
           static_cast<std::uint64_t>(std::ceil(static_cast<double>(taken) * (static_cast<double>(outside_grid_) / in_planes)));
     counts.used = taken - counts.outside_grid;
+  }
+
+  void count_traffic() {
+    if (ranks_.alone()) return;
+    imager::Traffic all = ranks_.traffic();
+    imager::sum_over(ranks_, all.bytes, all.exchanges);
+    report_.plan.push_back(plane_traffic_decision(all));
   }
 
   void finish_files() {
@@ -247,6 +314,7 @@ class CubeRun {
   }
 
   const ImageOptions& o_;
+  const imager::Ranks& ranks_;
   std::vector<imager::Stokes> stokes_;
   int threads_;
   ProgressLine progress_;
@@ -264,7 +332,10 @@ class CubeRun {
   RunPlan plan_;
   std::unique_ptr<CubeVisibilities> visibilities_;
   std::shared_ptr<const imager::PlannedTransform> transform_;
+  std::vector<imager::PlaneRange> batches_;
   PlaneWorkers workers_;
+  int at_once_ = 1;                                 ///< planes that all ranks make at a time
+  PlaneLink first_rank_{ranks_};                    ///< of the others
   std::unique_ptr<PrimaryBeamStage> primary_beam_;  ///< null where none is wanted
   std::unique_ptr<CubePlanes> planes_;
   std::uint64_t outside_grid_ = 0;
@@ -277,8 +348,7 @@ class CubeRun {
 }  // namespace
 
 bool run_cube(const ImageOptions& options, const RunCall& call, const imager::Ranks& ranks) {
-  if (!ranks.alone()) throw std::invalid_argument("--specmode cube was started as several processes; expected one");
-  return CubeRun(options, call).run();
+  return CubeRun(options, call, ranks).run();
 }
 
 }  // namespace misfit::tools

@@ -15,11 +15,17 @@ CubeVisibilities::CubeVisibilities(const ms_io::MeasurementSet& set, const image
                                    const CubeBatches& batches, int threads, bool stops_itself)
     : set_(set), sampling_(sampling), batches_(batches), threads_(threads), stops_itself_(stops_itself) {}
 
-/// What of the set such planes need; null where it has nothing for them.
-std::unique_ptr<ms_io::MeasurementSet> CubeVisibilities::part_of(const imager::PlaneRange& range) const {
+ms_io::FrequencyRange CubeVisibilities::frequencies_of(const imager::PlaneRange& range) const {
   const double first = sampling_.axis.frequency_hz(range.first);
   const double last = sampling_.axis.frequency_hz(range.first + range.count - 1), half = 0.5 * sampling_.axis.width_hz();
-  return set_.part(std::min(first, last) - half, std::max(first, last) + half);
+  return {std::min(first, last) - half, std::max(first, last) + half};
+}
+
+/// What of the set such planes need; null where it has nothing for them. What planes before them need too is counted for those.
+std::unique_ptr<ms_io::MeasurementSet> CubeVisibilities::part_of(const imager::PlaneRange& range) const {
+  std::optional<ms_io::FrequencyRange> counted;
+  if (range.first > 0) counted = frequencies_of({0, range.first});
+  return set_.part(frequencies_of(range), counted);
 }
 
 std::string CubeVisibilities::numbers_of(const imager::PlaneRange& range) const {
@@ -41,9 +47,10 @@ void CubeVisibilities::gather(const imager::PlaneRange& batch, ProgressLine& pro
   progress.end();
 }
 
-void CubeVisibilities::look_through(const std::function<void(const imager::VisibilitySource&)>& visit, ProgressLine& progress,
+void CubeVisibilities::look_through(const std::vector<imager::PlaneRange>& batches,
+                                    const std::function<void(const imager::VisibilitySource&)>& visit, ProgressLine& progress,
                                     imager::StageTimes& times) {
-  for (const imager::PlaneRange& batch : batches_of(sampling_.axis.channels, batches_)) {
+  for (const imager::PlaneRange& batch : batches) {
     if (batches_.read_again) {
       if (const auto part = part_of(batch)) visit(imager::PlaneView(*part, sampling_, batch.first));
       continue;
@@ -54,19 +61,20 @@ void CubeVisibilities::look_through(const std::function<void(const imager::Visib
   }
 }
 
-void CubeVisibilities::for_each_plane(const PlaneVisitor& visitor, ProgressLine& progress, imager::StageTimes& times) {
-  for (const imager::PlaneRange& batch : batches_of(sampling_.axis.channels, batches_)) {
-    if (visitor.stopped()) return;
+void CubeVisibilities::visit_planes(const PlaneVisitor& visitor, ProgressLine& progress, imager::StageTimes& times) {
+  while (!visitor.stopped()) {
+    const std::optional<imager::PlaneRange> batch = visitor.next();
+    if (!batch) return;
     if (batches_.read_again) {
-      progress.begin("image " + numbers_of(batch), stops_itself_);
-      visit_streamed(batch.first, visitor);
+      progress.begin("image " + numbers_of(*batch), stops_itself_);
+      visit_streamed(batch->first, visitor);
       progress.end();
       continue;
     }
-    gather(batch, progress, times);
+    gather(*batch, progress, times);
     count_read(gathered_->counts().read);
     outside_planes_ += gathered_->counts().outside_planes;
-    visit_held(batch, visitor, progress, times);
+    visit_held(*batch, visitor, progress, times);
     gathered_.reset();
   }
 }

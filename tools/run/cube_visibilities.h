@@ -13,8 +13,9 @@
 
 namespace misfit::tools {
 
-/// What is done with the planes of a cube. They begin in their order, several at the same time, each in one thread.
+/// What is done with planes of a cube, of a batch several at the same time, each in one thread.
 struct PlaneVisitor {
+  std::function<std::optional<imager::PlaneRange>()> next;                            ///< those to visit; none: no more
   std::function<void(int channel, imager::StreamedVisibilities& visibilities)> make;  ///< one that has samples
   std::function<void(int channel)> leave_empty;                                       ///< one that has none
   std::function<bool()> stopped;                                                      ///< whether the user wants no more
@@ -29,18 +30,20 @@ class CubeVisibilities {
   CubeVisibilities(const ms_io::MeasurementSet& set, const imager::CubeSampling& sampling, const CubeBatches& batches,
                    int threads, bool stops_itself);
 
-  /// Calls visit(samples of a plane) for every plane, in passes of its own. Stages timed: "read", "planes".
-  void look_through(const std::function<void(const imager::VisibilitySource&)>& visit, ProgressLine& progress,
+  /// Calls visit(samples of a plane) for every plane of these batches, in passes of its own. Stages timed: "read", "planes".
+  void look_through(const std::vector<imager::PlaneRange>& batches,
+                    const std::function<void(const imager::VisibilitySource&)>& visit, ProgressLine& progress,
                     imager::StageTimes& times);
   /// Rethrows what a visitor throws, once all planes at work are over; Interrupted last. Stages timed: the same.
-  void for_each_plane(const PlaneVisitor& visitor, ProgressLine& progress, imager::StageTimes& times);
+  void visit_planes(const PlaneVisitor& visitor, ProgressLine& progress, imager::StageTimes& times);
 
-  /// Of what for_each_plane() read; those used are the planes' own.
+  /// Of what visit_planes() read; those used are the planes' own.
   const imager::SampleCounts& counts() const { return counts_; }
   /// Usable samples among them that lie in no plane.
   std::uint64_t outside_planes() const { return outside_planes_; }
 
  private:
+  ms_io::FrequencyRange frequencies_of(const imager::PlaneRange& range) const;
   std::unique_ptr<ms_io::MeasurementSet> part_of(const imager::PlaneRange& range) const;
   std::string numbers_of(const imager::PlaneRange& range) const;
   void gather(const imager::PlaneRange& batch, ProgressLine& progress, imager::StageTimes& times);

@@ -123,6 +123,7 @@ class ImageRun {
     imager::sum_over(ranks_, all);
     const RunScene scene{.options = o_,
                          .set = *set_,
+                         .ranks = ranks_,
                          .geometry = geometry_,
                          .reach = reach_,
                          .threads = threads_,

@@ -140,8 +140,7 @@ class RunPlanner {
   void decide_memory(const std::function<double(double)>& least_with) {
     std::optional<imager::WiderDemand> wider;
     if (plan_.wider) wider = wider_demand(*plan_.wider, wide_field_);
-    const MemoryPlan memory =
-        plan_memory(demand_of(plan_.gridding, wider), o_, memory_of_a_process(scene_.set.ranks()), least_with);
+    const MemoryPlan memory = plan_memory(demand_of(plan_.gridding, wider), o_, memory_of_a_process(scene_.ranks), least_with);
     plan_.streaming = memory.streaming;
     constexpr double least_lambda = 1;  // where samples of u = v = 0 alone have cells, too
     plan_.streaming.uv_reach_lambda = std::max(
@@ -184,7 +183,8 @@ RunWork work_of(const RunScene& scene, const RunPlan& plan) {
           .rows = static_cast<double>(scene.set.rows()),
           .samples = static_cast<double>(scene.set.samples()),
           .planes = scene.planes,
-          .workers = scene.workers,
+          .workers = scene.planes > 1 ? scene.workers * scene.ranks.size() : 1,
+          .ranks = (scene.planes > 1 ? scene.ranks : scene.set.ranks()).size(),
           .pixels = static_cast<double>(scene.geometry.pixels()),
           .images = (o.nterms > 1 ? static_cast<int>(taylor_products(o.nterms, o.niter > 0).size())
                                   : 1 + stokes * (o.niter > 0 ? 3 : 1)) +

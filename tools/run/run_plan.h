@@ -18,6 +18,7 @@ namespace misfit::tools {
 struct RunScene {
   const ImageOptions& options;
   const ms_io::MeasurementSet& set;
+  const imager::Ranks& ranks;  ///< that take part in the run
   imager::ImageGeometry geometry;
   imager::UvwReach reach;
   int threads = 1;

@@ -1,79 +1,58 @@
 #include "tools/run/shared_prediction.h"
 
+#include <cereal/types/vector.hpp>
 #include <condition_variable>
-#include <cstring>
 #include <mutex>
-#include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "tools/base/packed.h"
+
+// The members of what is sent, in their order. cereal finds these functions by the types' namespaces.
+
+namespace misfit::imager {
+
+template <typename Archive>
+void save(Archive& archive, const SampleCoordinates& where) {
+  archive(static_cast<std::uint64_t>(where.uvw_m.size()));
+  archive(cereal::binary_data(where.uvw_m.data(), where.uvw_m.size() * sizeof(double)), where.frequency_hz);
+}
+
+template <typename Archive>
+void load(Archive& archive, SampleCoordinates& where) {
+  std::uint64_t size = 0;
+  archive(size);
+  std::vector<double> uvw_m(size);
+  archive(cereal::binary_data(uvw_m.data(), uvw_m.size() * sizeof(double)), where.frequency_hz);
+  where.uvw_m = std::move(uvw_m);
+}
+
+}  // namespace misfit::imager
+
+namespace misfit::ms_io {
+
+template <typename Archive>
+void save(Archive& archive, const StokesVisibilities& visibilities) {
+  for (const auto& plane : visibilities.plane) {
+    archive(static_cast<std::uint64_t>(plane.size()));
+    archive(cereal::binary_data(plane.data(), plane.size() * sizeof plane[0]));
+  }
+}
+
+template <typename Archive>
+void load(Archive& archive, StokesVisibilities& visibilities) {
+  for (auto& plane : visibilities.plane) {
+    std::uint64_t size = 0;
+    archive(size);
+    plane.resize(size);
+    archive(cereal::binary_data(plane.data(), plane.size() * sizeof plane[0]));
+  }
+}
+
+}  // namespace misfit::ms_io
+
 namespace misfit::tools {
-namespace {
-
-/// Lists one after the other, each after its length.
-class Message {
- public:
-  Message() = default;
-  explicit Message(std::string bytes) : bytes_(std::move(bytes)) {}
-
-  template <typename Value>
-  void put(const Value* values, std::size_t count) {
-    const auto length = static_cast<std::uint64_t>(count);
-    bytes_.append(reinterpret_cast<const char*>(&length), sizeof length);
-    bytes_.append(reinterpret_cast<const char*>(values), count * sizeof(Value));
-  }
-  template <typename Value>
-  std::vector<Value> take() {
-    std::uint64_t length = 0;
-    read(&length, sizeof length);
-    if (length > (bytes_.size() - next_) / sizeof(Value)) throw std::runtime_error("ranks sent a message that ends early");
-    std::vector<Value> values(length);
-    read(values.data(), length * sizeof(Value));
-    return values;
-  }
-  const std::string& bytes() const { return bytes_; }
-
- private:
-  void read(void* to, std::size_t count) {
-    if (count == 0) return;
-    if (count > bytes_.size() - next_) throw std::runtime_error("ranks sent a message that ends early");
-    std::memcpy(to, bytes_.data() + next_, count);
-    next_ += count;
-  }
-
-  std::string bytes_;
-  std::size_t next_ = 0;
-};
-
-std::string packed(const imager::SampleCoordinates& where) {
-  Message message;
-  message.put(where.uvw_m.data(), where.uvw_m.size());
-  message.put(where.frequency_hz.data(), where.frequency_hz.size());
-  return message.bytes();
-}
-
-imager::SampleCoordinates coordinates(std::string bytes) {
-  Message message(std::move(bytes));
-  imager::SampleCoordinates where;
-  where.uvw_m = message.take<double>();
-  where.frequency_hz = message.take<double>();
-  return where;
-}
-
-std::string packed(const ms_io::StokesVisibilities& visibilities) {
-  Message message;
-  for (const auto& plane : visibilities.plane) message.put(plane.data(), plane.size());
-  return message.bytes();
-}
-
-ms_io::StokesVisibilities visibilities(std::string bytes) {
-  Message message(std::move(bytes));
-  ms_io::StokesVisibilities all;
-  for (auto& plane : all.plane) plane = message.take<std::complex<double>>();
-  return all;
-}
-
-}  // namespace
 
 /// Which ranks have nothing to do.
 class SharedPrediction::FreeRanks {
@@ -122,7 +101,7 @@ ms_io::StokesVisibilities SharedPrediction::predict(const imager::SampleCoordina
   const FreeRanks::Turn turn(*free_);
   if (turn.rank == ranks_.rank()) return own_(where);
   ranks_.send(turn.rank, packed(where));
-  return visibilities(ranks_.receive(turn.rank));
+  return unpacked<ms_io::StokesVisibilities>(ranks_.receive(turn.rank));
 }
 
 void SharedPrediction::end() {
@@ -131,7 +110,7 @@ void SharedPrediction::end() {
 
 void SharedPrediction::follow() {
   for (std::string bytes = ranks_.receive(0); !bytes.empty(); bytes = ranks_.receive(0))
-    ranks_.send(0, packed(own_(coordinates(std::move(bytes)))));
+    ranks_.send(0, packed(own_(unpacked<imager::SampleCoordinates>(std::move(bytes)))));
 }
 
 }  // namespace misfit::tools

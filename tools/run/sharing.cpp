@@ -33,10 +33,27 @@ imager::Decision sharing_decision(const ms_io::SampleSharing& sharing, const Exc
               " a major cycle, for which it gets the model's components"};
 }
 
+imager::Decision plane_sharing_decision(int ranks, int planes, int planes_of_a_batch, double plane_bytes) {
+  const std::string idle =
+      planes >= ranks ? ""
+                      : "; " + std::to_string(ranks - planes) + " of the ranks have nothing to do, as there are few planes";
+  return {"shared among ranks",
+          std::to_string(ranks) + ", which take " +
+              (planes_of_a_batch == 1 ? "a plane" : std::to_string(planes_of_a_batch) + " planes") + " at a time",
+          "planes do not need each other: whoever is free takes the next and reads its channels alone; images come to rank 0, "
+          "which writes, " +
+              mib_text(plane_bytes) + " a plane" + idle};
+}
+
 imager::Decision traffic_decision(const imager::Traffic& traffic, double seconds) {
   return {"exchanged among ranks", mib_text(static_cast<double>(traffic.bytes)),
           grouped(static_cast<long long>(traffic.exchanges)) + " exchanges, in " + duration(seconds) +
               " of rank 0, waiting for others included"};
+}
+
+imager::Decision plane_traffic_decision(const imager::Traffic& traffic) {
+  return {"exchanged among ranks", mib_text(static_cast<double>(traffic.bytes)),
+          grouped(static_cast<long long>(traffic.exchanges)) + " messages: batches to make, and the images that come of them"};
 }
 
 }  // namespace misfit::tools

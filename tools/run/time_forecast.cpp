@@ -36,8 +36,9 @@ struct Images {
   bool psf = false;
 };
 
-TransformSeconds transform_seconds(const imager::GriddingPlan& plan, const Images& images, int threads) {
+TransformSeconds transform_seconds(const imager::GriddingPlan& plan, const Images& images, int threads, int ranks) {
   imager::GriddingWork work = plan.choice.best.work;
+  work.samples /= ranks;
   work.stokes = images.stokes;
   work.psf = images.psf;
   const imager::CostModel model;
@@ -61,8 +62,9 @@ void add_pass(const RunWork& w, bool with_psf, double times, std::vector<StageSe
     stages.push_back({"grid", "direct sums of images", times * shared(direct_term_s * sums, w.threads)});
     return;
   }
-  const TransformSeconds own = transform_seconds(plan, {stokes, with_psf && !plan.psf}, w.threads);
-  const TransformSeconds psf = with_psf && plan.psf ? transform_seconds(*plan.psf, {0, true}, w.threads) : TransformSeconds();
+  const TransformSeconds own = transform_seconds(plan, {stokes, with_psf && !plan.psf}, w.threads, w.ranks);
+  const TransformSeconds psf =
+      with_psf && plan.psf ? transform_seconds(*plan.psf, {0, true}, w.threads, w.ranks) : TransformSeconds();
   const std::string way = way_of(plan.choice.best.work);
   stages.push_back({"grid", "gridding" + way, times * (own.grid + psf.grid)});
   stages.push_back({"fft", "FFTs" + way, times * (own.fft + psf.fft)});
@@ -78,8 +80,8 @@ void add_taylor_pass(const RunWork& w, std::vector<StageSeconds>& stages) {
                       shared(direct_term_s * w.samples * w.pixels * static_cast<double>(dirty + psfs), w.threads)});
     return;
   }
-  const TransformSeconds own = transform_seconds(plan, {dirty}, w.threads);
-  const TransformSeconds psf = transform_seconds(plan.psf ? *plan.psf : plan, {psfs}, w.threads);
+  const TransformSeconds own = transform_seconds(plan, {dirty}, w.threads, w.ranks);
+  const TransformSeconds psf = transform_seconds(plan.psf ? *plan.psf : plan, {psfs}, w.threads, w.ranks);
   const std::string way = way_of(plan.choice.best.work);
   stages.push_back({"grid", "gridding" + way, own.grid + psf.grid});
   stages.push_back({"fft", "FFTs" + way, own.fft + psf.fft});
@@ -93,7 +95,7 @@ void add_predictions(const RunWork& w, std::vector<StageSeconds>& stages) {
                       w.terms * w.major_cycles * shared(direct_term_s * w.samples * model_pixels, w.threads)});
     return;
   }
-  const TransformSeconds one = transform_seconds(plan, {}, w.threads);
+  const TransformSeconds one = transform_seconds(plan, {}, w.threads, w.ranks);
   const std::string way = way_of(plan.choice.best.work);
   stages.push_back({"degrid", "degridding" + way, w.terms * w.major_cycles * one.grid});
   stages.push_back({"fft", "FFTs" + way, w.terms * w.major_cycles * one.fft});
@@ -132,12 +134,13 @@ std::vector<StageSeconds> cube_seconds(const RunWork& w) {
   RunWork plane = w;
   plane.planes = 1;
   plane.workers = 1;
-  plane.threads = std::max(1, w.threads / w.workers);
+  plane.ranks = 1;
+  plane.threads = std::max(1, w.ranks * w.threads / w.workers);
   plane.samples = w.samples / w.planes;
   std::vector<StageSeconds> stages = counted_seconds(plane);
   for (StageSeconds& s : stages)
-    if (s.stage != "draw pictures") s.seconds *= s.stage == "read" ? w.planes : 1.0 * w.planes / w.workers;
-  stages.push_back({"planes", "dealing out to planes", shared(1e-8 * w.samples, w.threads)});
+    if (s.stage != "draw pictures") s.seconds *= 1.0 * w.planes / (s.stage == "read" ? w.ranks : w.workers);
+  stages.push_back({"planes", "dealing out to planes", shared(1e-8 * w.samples / w.ranks, w.threads)});
   return stages;
 }
 

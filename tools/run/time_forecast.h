@@ -16,7 +16,8 @@ struct RunWork {
   double rows = 0;  ///< of the visibilities
   double samples = 0;
   int planes = 1;   ///< of frequency; each has a part of the samples, and all that follows is of each
-  int workers = 1;  ///< planes made at a time, which share the threads
+  int workers = 1;  ///< planes made at a time by all ranks, which share their threads
+  int ranks = 1;    ///< that share the samples of an image, of which these are one's, or the planes of a cube
   double pixels = 0;
   int images = 2;    ///< files
   int pictures = 2;  ///< drawn

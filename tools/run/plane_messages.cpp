@@ -1,0 +1,137 @@
+#include "tools/run/plane_messages.h"
+
+#include <cereal/types/optional.hpp>
+#include <cereal/types/string.hpp>
+#include <cereal/types/utility.hpp>
+#include <cereal/types/vector.hpp>
+#include <utility>
+
+#include "tools/base/packed.h"
+
+// The members of what is sent, in their order. cereal finds these functions by the types' namespaces.
+
+namespace misfit::imager {
+
+template <typename Archive>
+void serialize(Archive& archive, PlaneIndex& at) {
+  archive(at.channel, at.stokes);
+}
+
+template <typename Archive>
+void serialize(Archive& archive, PlaneRange& range) {
+  archive(range.first, range.count);
+}
+
+template <typename Archive>
+void serialize(Archive& archive, Image& image) {
+  archive(image.width, image.height, image.pixel);
+}
+
+template <typename Archive>
+void serialize(Archive& archive, Beam& beam) {
+  archive(beam.major_rad, beam.minor_rad, beam.position_angle_rad);
+}
+
+template <typename Archive>
+void serialize(Archive& archive, SampleSums& sums) {
+  archive(sums.used, sums.outside_grid, sums.weight, sums.weight_abs, sums.weight_square, sums.weight2_square);
+}
+
+template <typename Archive>
+void serialize(Archive& archive, TheoreticalError& error) {
+  archive(error.expected_rms, error.bound_rms, error.bound_max);
+}
+
+template <typename Archive>
+void serialize(Archive& archive, PixelError& error) {
+  archive(error.rms, error.max);
+}
+
+template <typename Archive>
+void serialize(Archive& archive, Peak& peak) {
+  archive(peak.row, peak.column, peak.value);
+}
+
+template <typename Archive>
+void serialize(Archive& archive, MajorCycle& cycle) {
+  archive(cycle.iterations, cycle.peak_residual_jy, cycle.rms_jy, cycle.model_flux_jy, cycle.cycle_threshold_jy, cycle.ended,
+          cycle.mean_square_jy2, cycle.from);
+}
+
+template <typename Archive>
+void serialize(Archive& archive, CleanReport& report) {
+  archive(report.iterations, report.stop, report.stop_reason, report.max_sidelobe, report.cycles, report.kept);
+}
+
+template <typename Archive>
+void save(Archive& archive, const StageTimes& times) {
+  archive(times.stages());
+}
+
+template <typename Archive>
+void load(Archive& archive, StageTimes& times) {
+  std::vector<std::pair<std::string, double>> stages;
+  archive(stages);
+  times = {};
+  for (const auto& [stage, seconds] : stages) times.add(stage, seconds);
+}
+
+}  // namespace misfit::imager
+
+namespace misfit::tools {
+
+template <typename Archive>
+void serialize(Archive& archive, PixelHistogram& histogram) {
+  archive(histogram.noise_jy, histogram.min_jy, histogram.max_jy, histogram.pixels, histogram.beyond_5_sigma,
+          histogram.step_sigma, histogram.count);
+}
+
+template <typename Archive>
+void serialize(Archive& archive, StokesReport& report) {
+  archive(report.stokes, report.theory, report.measured, report.clean, report.brightest, report.histogram);
+}
+
+template <typename Archive>
+void serialize(Archive& archive, BeamChoice& beams) {
+  archive(beams.restoring, beams.main_lobe, beams.quadrant, beams.how, beams.misfit, beams.warnings);
+}
+
+template <typename Archive>
+void serialize(Archive& archive, PlaneReport& report) {
+  archive(report.channel, report.frequency_hz, report.stokes, report.measured_predict_rms, report.sums,
+          report.predicted_noise_jy, report.beams);
+}
+
+template <typename Archive>
+void serialize(Archive& archive, CubePlane& plane) {
+  archive(plane.report, plane.outside_grid, plane.components, plane.major_cycles, plane.warnings, plane.clean_warning,
+          plane.beam_warning, plane.times);
+}
+
+template <typename Archive>
+void serialize(Archive& archive, PlaneMessage& message) {
+  archive(message.kind, message.file, message.at, message.image, message.beam, message.plane);
+}
+
+template <typename Archive>
+void serialize(Archive& archive, PlaneAnswer& answer) {
+  archive(answer.stop, answer.planes);
+}
+
+std::string bytes_of(const PlaneMessage& message) {
+  return packed(message);
+}
+
+PlaneMessage plane_message(std::string bytes) {
+  return unpacked<PlaneMessage>(std::move(bytes));
+}
+
+std::string bytes_of(const PlaneAnswer& answer) {
+  return packed(answer);
+}
+
+PlaneAnswer plane_answer(std::string bytes) {
+  return unpacked<PlaneAnswer>(std::move(bytes));
+}
+
+}  // namespace misfit::tools
