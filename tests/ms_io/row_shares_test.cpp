@@ -31,6 +31,7 @@ class OneOf : public imager::Ranks {
   std::vector<std::string> gather_at_first(const std::string&) const override { return {}; }
   void send(int, const std::string&) const override {}
   std::string receive(int) const override { return ""; }
+  std::optional<int> waiting() const override { return {}; }
   imager::Traffic traffic() const override { return {}; }
 
  private:

@@ -95,6 +95,19 @@ BOOST_AUTO_TEST_CASE(a_machine_of_another_speed_is_known_after_one_run_and_scene
   }
 }
 
+BOOST_AUTO_TEST_CASE(the_run_of_the_nearest_size_counts) {
+  const imager::GriddingPlan small = plan_of(1e5, 512), large = plan_of(1e8, 2048), larger = plan_of(8e8, 2048);
+  TimeForecast forecast{std::filesystem::path()};
+  const RunWork between = work_of(larger);
+  forecast.learn(work_of(large), times_of(work_of(large), 4));
+  forecast.learn(work_of(small), times_of(work_of(small), 0.3));
+  for (const std::string stage : {"read", "grid"}) {
+    double counted = 0;
+    for (const StageSeconds& part : counted_seconds(between)) counted += part.stage == stage ? part.seconds : 0;
+    BOOST_TEST(expected_of(forecast, between, stage) == 4 * counted, boost::test_tools::tolerance(1e-9));
+  }
+}
+
 BOOST_AUTO_TEST_CASE(a_search_outside_is_expected_and_its_speed_learned_apart) {
   const imager::GriddingPlan plan = plan_of(1e7, 1024), wider = plan_of(1e7, 1000);
   RunWork work = work_of(plan);

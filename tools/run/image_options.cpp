@@ -142,6 +142,7 @@ void declare(CLI::App& command, ImageOptions& o) {
   command.add_option("--memory", o.memory_gib, "GiB that the run may take; 0 means half of the machine's memory");
   command.add_option("--outformat", o.outformat, "Images as files of: fits, casa, both")->check(CLI::IsMember(image_formats()));
   command.add_flag("--dry-run", o.dry_run, "Print the plan and the memory it takes; read no visibilities and write nothing");
+  declare(command, o.scale);
 }
 
 bool kernel_is_given(const ImageOptions& o) {

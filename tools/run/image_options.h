@@ -14,6 +14,7 @@
 #include "ms_io/measurement_set.h"
 #include "tools/kernel_choice/kernel_choice.h"
 #include "tools/run/cube_options.h"
+#include "tools/run/scale_options.h"
 
 namespace CLI {
 class App;
@@ -78,6 +79,7 @@ struct ImageOptions {
   double memory_gib = 0;
   std::string outformat = "fits";  ///< of images, see image_files.h
   bool dry_run = false;
+  ScaleOptions scale;
   bool quiet = false;
 };
 

@@ -121,6 +121,7 @@ class ImageRun {
     const auto own = static_cast<double>(set_->samples());
     double all = own;
     imager::sum_over(ranks_, all);
+    const double enlarged = o_.scale.enlarged(all);
     const RunScene scene{.options = o_,
                          .set = *set_,
                          .ranks = ranks_,
@@ -128,8 +129,9 @@ class ImageRun {
                          .reach = reach_,
                          .threads = threads_,
                          .mask = mask,
-                         .samples = all,
-                         .share = own / all};
+                         .samples = all * enlarged,
+                         .share = own / all,
+                         .enlarged = enlarged};
     plan_ = plan_run(scene, forecast_, times_, progress_);
     if (primary_beam_) plan_.decisions.push_back(primary_beam_->decision());
     for (const std::string& warning : plan_.warnings) warn(warning);

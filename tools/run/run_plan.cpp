@@ -12,6 +12,7 @@
 #include "tools/run/memory_plan.h"
 #include "tools/run/outside_stage.h"
 #include "tools/run/primary_beam_stage.h"
+#include "tools/run/scale_forecast.h"
 #include "tools/run/sharing.h"
 #include "tools/run/taylor_options.h"
 #include "tools/run/weighting_options.h"
@@ -114,7 +115,7 @@ class RunPlanner {
   imager::MemoryDemand demand_of(const imager::GriddingPlan& gridding, std::optional<imager::WiderDemand> wider) const {
     return {.transform = imager::memory_of(gridding),
             .pixels = static_cast<double>(scene_.geometry.pixels()),
-            .rows = static_cast<double>(scene_.set.rows()),
+            .rows = static_cast<double>(scene_.set.rows()) * scene_.enlarged,
             .samples = scene_.samples * scene_.share,
             .block_samples = static_cast<double>(ms_io::MeasurementSet::usual_block_samples),
             .read_at_once = static_cast<double>(scene_.set.read_at_once()),
@@ -167,21 +168,24 @@ class RunPlanner {
 }  // namespace
 
 RunPlan plan_run(const RunScene& scene, const TimeForecast& forecast, imager::StageTimes& times, ProgressLine& progress) {
+  check(scene.options.scale, scene.ranks);
   RunPlanner planner(scene, progress);
   {
     const imager::StageTimer timer(times, "plan");
     planner.decide_all();
   }
   planner.foretell(forecast, times);
-  return planner.take();
+  RunPlan plan = planner.take();
+  if (scene.options.scale.nodes > 0) plan.scale = ScaleForecast(scene, plan, forecast).table();
+  return plan;
 }
 
 RunWork work_of(const RunScene& scene, const RunPlan& plan) {
   const ImageOptions& o = scene.options;
   const int stokes = plan.gridding.request.stokes;
   return {.plan = &plan.gridding,
-          .rows = static_cast<double>(scene.set.rows()),
-          .samples = static_cast<double>(scene.set.samples()),
+          .rows = static_cast<double>(scene.set.rows()) * scene.enlarged,
+          .samples = static_cast<double>(scene.set.samples()) * scene.enlarged,
           .planes = scene.planes,
           .workers = scene.planes > 1 ? scene.workers * scene.ranks.size() : 1,
           .ranks = (scene.planes > 1 ? scene.ranks : scene.set.ranks()).size(),
@@ -212,7 +216,7 @@ void print_plan(const RunPlan& plan, const std::vector<StageSeconds>& expected) 
       std::printf("%s: %s; %s\n", d.item.c_str(), d.decision.c_str(), d.because.c_str());
   for (const StageSeconds& s : expected) std::printf("expected: %-16s %s\n", s.stage.c_str(), duration(s.seconds).c_str());
   std::printf("expected: %-16s %s\n", "total", duration(total_seconds(expected)).c_str());
-  std::printf("%s", memory_table(plan.memory).c_str());
+  std::printf("%s%s", memory_table(plan.memory).c_str(), plan.scale.c_str());
 }
 
 }  // namespace misfit::tools

@@ -22,11 +22,12 @@ struct RunScene {
   imager::ImageGeometry geometry;
   imager::UvwReach reach;
   int threads = 1;
-  bool mask = false;   ///< there is or will be one, where components may lie
-  int planes = 1;      ///< of frequency
-  int workers = 1;     ///< planes made at a time, where memory allows; they share the threads
-  double samples = 0;  ///< of a plane at most, in Stokes samples of all ranks: gridding is chosen by them, whoever does it
-  double share = 1;    ///< the part of them that this rank has
+  bool mask = false;    ///< there is or will be one, where components may lie
+  int planes = 1;       ///< of frequency
+  int workers = 1;      ///< planes made at a time, where memory allows; they share the threads
+  double samples = 0;   ///< of a plane at most, in Stokes samples of all ranks: gridding is chosen by them, whoever does it
+  double share = 1;     ///< the part of them that this rank has
+  double enlarged = 1;  ///< samples and rows over those of `set`, where others are planned for; `samples` is of these
 };
 
 /// What `misfit image` decides before it reads a visibility. The stages that follow do as it says and leave it as it is.
@@ -38,6 +39,7 @@ struct RunPlan {
   std::vector<StageSeconds> spent;      ///< on the stages up to here
   imager::Plan decisions;               ///< but for those of `gridding`
   std::vector<std::string> warnings{};  ///< what the user should know before the run goes on
+  std::string scale{};                  ///< what ScaleForecast says of --nodes; empty without
 };
 
 /// Plans the gridding, the search for sources outside, the memory, and foretells the time. How an option is understood is said
@@ -50,7 +52,7 @@ RunWork work_of(const RunScene& scene, const RunPlan& plan);
 /// The seconds of all stages: those of `plan.spent`, and those expected of `work`.
 std::vector<StageSeconds> expected_seconds(const RunPlan& plan, const TimeForecast& forecast, const RunWork& work);
 
-/// Prints every decision, the seconds expected and the memory, a line each.
+/// Prints every decision, the seconds expected and the memory, a line each; and what --nodes asks for.
 void print_plan(const RunPlan& plan, const std::vector<StageSeconds>& expected);
 
 }  // namespace misfit::tools

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <stdexcept>
 
 #include "tools/base/files.h"
@@ -49,6 +51,14 @@ TransformSeconds transform_seconds(const imager::GriddingPlan& plan, const Image
 std::string size_of(const RunWork& w) {
   const auto power = [](double count) { return std::to_string(std::lround(std::log2(std::max(count, 1.0)))); };
   return ", 2^" + power(w.samples) + " samples, 2^" + power(w.pixels) + " pixels";
+}
+
+/// How unlike the sizes are that two such parts of names tell of, in powers of two; none where one of them is no such part.
+std::optional<int> between_sizes(const std::string& one, const std::string& other) {
+  int samples[2], pixels[2];
+  for (const int i : {0, 1})
+    if (std::sscanf((i == 0 ? one : other).c_str(), ", 2^%d samples, 2^%d pixels", &samples[i], &pixels[i]) != 2) return {};
+  return std::abs(samples[0] - samples[1]) + std::abs(pixels[0] - pixels[1]);
 }
 
 constexpr double direct_term_s = 0.5e-9;  ///< measured, in vectors; CostModel's decides what is summed directly, and is wary
@@ -195,9 +205,15 @@ TimeForecast::TimeForecast(const fs::path& folder) {
 }
 
 double TimeForecast::log_factor(const std::string& kind, const std::string& size) const {
-  for (const std::string& name : {kind + size, kind})
-    if (const auto found = factor_.find(name); found != factor_.end()) return found->second.log;
-  return 0;
+  double log = 0;
+  std::optional<int> nearest;
+  for (auto factor = factor_.lower_bound(kind); factor != factor_.end() && factor->first.rfind(kind, 0) == 0; ++factor) {
+    const std::optional<int> distance = between_sizes(factor->first.substr(kind.size()), size);
+    if (!distance || (nearest && *nearest <= *distance)) continue;
+    nearest = distance;
+    log = factor->second.log;
+  }
+  return log;
 }
 
 std::vector<StageSeconds> TimeForecast::expected(const RunWork& work) const {

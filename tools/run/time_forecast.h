@@ -47,8 +47,8 @@ std::vector<StageSeconds> counted_seconds(const RunWork& work);
 double total_seconds(const std::vector<StageSeconds>& stages);
 
 /// Expects the seconds of runs from their counts of operations and from how long earlier runs on this machine really took: for
-/// each kind of work a factor, and another for runs of about the same size (powers of two of samples and pixels), which comes
-/// first. They are kept in a file, and every run makes them a little better. They decide nothing but what is printed.
+/// each kind of work a factor for runs of about the same size (powers of two of samples and pixels), of the size nearest to a
+/// run's. They are kept in a file, and every run makes them a little better. They decide nothing but what is printed.
 class TimeForecast {
  public:
   /// Reads times.json in `folder`, if it is there and of this machine; an empty path keeps nothing.
@@ -66,11 +66,11 @@ class TimeForecast {
     int runs = 0;
   };
 
-  /// Of the kind at this size, or else of the kind, or else none.
+  /// Of the kind at the size nearest to this one; 0 where it was never timed.
   double log_factor(const std::string& kind, const std::string& size) const;
 
   std::filesystem::path file_;
-  std::map<std::string, Factor> factor_;  ///< by kind, and by kind and size
+  std::map<std::string, Factor> factor_;  ///< by kind, which tells that it was timed, and by kind and size
 };
 
 }  // namespace misfit::tools

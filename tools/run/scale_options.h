@@ -1,0 +1,29 @@
+#pragma once
+
+#include "imager/ranks.h"
+
+namespace CLI {
+class App;
+}
+
+namespace misfit::tools {
+
+/// What --dry-run tells of machines that are not there.
+struct ScaleOptions {
+  int nodes = 0;               ///< machines, a rank on each; 0: nothing is told of any
+  double visibilities = 0;     ///< as if the data had so many samples; 0: those that they have
+  double network_gb_s = 12.5;  ///< 10^9 bytes that a node sends, or gets, in a second
+
+  /// The samples that are planned for over those there are.
+  double enlarged(double samples) const { return visibilities > 0 ? visibilities / samples : 1; }
+};
+
+void declare(CLI::App& command, ScaleOptions& options);
+
+/// Throws std::invalid_argument that names the option, its value and what was expected.
+void check(const ScaleOptions& options, bool dry_run);
+
+/// Where the run itself is of several ranks: their shares are not those of the nodes.
+void check(const ScaleOptions& options, const imager::Ranks& ranks);
+
+}  // namespace misfit::tools
