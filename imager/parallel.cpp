@@ -65,8 +65,8 @@ void parallel_for(std::size_t count, int threads, const std::function<void(std::
 int available_threads(int processes) {
   const int all = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
   cpu_set_t mine;
-  const int own = sched_getaffinity(0, sizeof mine, &mine) == 0 ? std::max(1, CPU_COUNT(&mine)) : all;
-  return own < all ? own : std::max(1, all / processes);
+  const int own = sched_getaffinity(0, sizeof mine, &mine) == 0 ? CPU_COUNT(&mine) : all;
+  return std::max(1, own / processes);
 }
 
 }  // namespace misfit::imager

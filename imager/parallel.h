@@ -28,8 +28,8 @@ class StopCheck {
   StopCheck* outer_;  ///< that this one stands for while it lives
 };
 
-/// The number of threads that `--threads 0` means: all cores this process may use; its share of them where `processes` like it
-/// run on this machine and none is bound to cores of its own.
+/// The number of threads that `--threads 0` means: all cores that this process may use, or its share of them where so many
+/// processes may.
 int available_threads(int processes = 1);
 
 }  // namespace misfit::imager

@@ -10,6 +10,7 @@ class Alone : public Ranks {
   int size() const override { return 1; }
   int rank() const override { return 0; }
   int on_this_machine() const override { return 1; }
+  int on_these_cores() const override { return 1; }
   void meet() const override {}
   void sum(double*, std::size_t) const override {}
   void sum_at_first(double*, std::size_t) const override {}

@@ -25,8 +25,9 @@ class Ranks {
   virtual int size() const = 0;
   /// Which of them this is, from 0.
   virtual int rank() const = 0;
-  /// How many of them share this one's machine, itself included.
+  /// How many of them share this one's machine, and how many of these may run on its cores; itself included.
   virtual int on_this_machine() const = 0;
+  virtual int on_these_cores() const = 0;
   bool alone() const { return size() == 1; }
   /// Whether this is the one that speaks, and writes.
   bool first() const { return rank() == 0; }

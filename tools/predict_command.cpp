@@ -115,7 +115,7 @@ std::string command_of(const PredictOptions& o) {
 
 /// Of this rank.
 NamedModel read_model(const PredictOptions& o, const imager::Ranks& ranks) {
-  const int threads = o.threads == 0 ? imager::available_threads(ranks.on_this_machine()) : o.threads;
+  const int threads = o.threads == 0 ? imager::available_threads(ranks.on_these_cores()) : o.threads;
   const std::unique_ptr<ms_io::MeasurementSet> set = ms_io::MeasurementSet(o.vis, o.selection, "").share(ranks);
   return o.model.empty() ? component_model(o, *set, threads) : image_model(o, *set, threads);
 }

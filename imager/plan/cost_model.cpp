@@ -97,7 +97,7 @@ double CostModel::gridding_seconds(const GriddingWork& work) const {
 
 double CostModel::fft_seconds(const GriddingWork& work) const {
   const double per_point = fft_ns * (work.has_w_axis() ? wide_point : 1);
-  return 1e-9 * fft_points(work) * per_point * precision_cost(work, *this);
+  return 1e-9 * work.gathers * fft_points(work) * per_point * precision_cost(work, *this);
 }
 
 double operation_count(const GriddingWork& work) {

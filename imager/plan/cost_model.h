@@ -16,6 +16,7 @@ struct GriddingWork {
   int width_w = 0;  ///< planes a visibility touches in each facet; 0 = no w axis
   int facets = 1;
   int planes = 1;   ///< FFTs of two dimensions: one for each w plane of each facet
+  int gathers = 1;  ///< times that samples are gathered for a w axis and all planes transformed
   int stokes = 1;   ///< images made from the same samples; 0: the PSF alone
   bool psf = true;  ///< made besides
 

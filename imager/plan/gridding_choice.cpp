@@ -92,7 +92,11 @@ class Search {
     c.faceting.width = g.width;
     c.faceting.height = g.height;
     c.turns = std::abs(g.centre.l) / (2 * g.cell_rad) + std::abs(g.centre.m) / (2 * g.cell_height_rad());
-    if (has_w_axis()) c.turns += request_.max_abs_w * largest_drop(g);
+    if (has_w_axis()) {
+      c.turns += request_.max_abs_w * largest_drop(g);
+      const std::uint64_t at_once = std::max<std::size_t>(1, request_.samples_at_once);
+      c.work.gathers = std::max(1, static_cast<int>((request_.samples + at_once - 1) / at_once));
+    }
     c.cost_s = CostModel().seconds(c.work);
     if (has_w_axis()) split(c, 1, request_.kernel.min_width);  // the least that a w axis costs
     return c;

@@ -45,13 +45,17 @@ Plan w_decisions(const GriddingRequest& request, const GriddingChoice& choice) {
   const bool whole_image = way.along_l * way.along_m == 1;
   const double whole = static_cast<double>(request.geometry.width) * request.geometry.height;
   const double equal = work.planes * (static_cast<double>(way.width) * way.height) / whole;
+  const std::string again = work.gathers == 1
+                                ? ""
+                                : "; made " + std::to_string(work.gathers) + " times, since memory gathers no more than " +
+                                      text("%.2g", static_cast<double>(request.samples_at_once)) + " samples at once";
   return {{"w axis", "width " + std::to_string(work.width_w) + " at padding " + text("%.2f", choice.best.padding_w), phase},
           {"facets", times(way.along_l, way.along_m),
            whole_image ? "the whole image on one plane leaves " + text("%.3g", left) + " turns to the w axis"
                        : "each on its own tangent plane: at most " + text("%.3g", left) + " of " + text("%.3g", turns) +
                              " turns are left to the w axis"},
           {"w planes", std::to_string(work.planes) + " in all facets, w ≥ 0 alone",
-           "FFTs as of " + text("%.1f", equal) + " planes of the whole image; V(−u, −v, −w) = conj V(u, v, w)"}};
+           "FFTs as of " + text("%.1f", equal) + " planes of the whole image; V(−u, −v, −w) = conj V(u, v, w)" + again}};
 }
 
 Plan decisions_of(const GriddingRequest& request, const GriddingPlan& plan) {

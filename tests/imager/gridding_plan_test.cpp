@@ -2,6 +2,7 @@
 
 #include <boost/test/data/test_case.hpp>
 #include <boost/test/unit_test.hpp>
+#include <cmath>
 #include <cstdio>
 #include <optional>
 #include <stdexcept>
@@ -252,6 +253,30 @@ BOOST_DATA_TEST_CASE(stokes_parameters_at_once_cost_more_than_one_and_less_than_
   BOOST_TEST(four < with_psf + 3 * one);
   r.stokes = 4;
   BOOST_TEST(plan_gridding(r).choice.best.work.stokes == 4);
+}
+
+/// All planes are transformed whenever samples have gathered, so that FFTs count as often.
+BOOST_AUTO_TEST_CASE(the_less_is_gathered_at_once_the_less_is_left_to_ffts) {
+  GriddingRequest r = request({2048, 2048}, 1e-4);
+  r.geometry.cell_rad = 5e-6;
+  r.max_abs_w = 5e4;
+  r.samples = 1000000000;
+  double last = HUGE_VAL;
+  for (const std::size_t at_once : {std::size_t{1} << 40, std::size_t{1} << 26, std::size_t{1} << 20, std::size_t{1} << 17}) {
+    r.samples_at_once = at_once;
+    const GriddingPlan plan = plan_gridding(r);
+    const GriddingWork& work = plan.choice.best.work;
+    BOOST_TEST(work.gathers == static_cast<int>((r.samples + at_once - 1) / at_once));
+    BOOST_TEST((decision_of(plan, "w planes").because.find("; made ") != std::string::npos) == (work.gathers > 1));
+    GriddingWork once = work;
+    once.gathers = 1;
+    const double ffts_s = CostModel().fft_seconds(once);
+    BOOST_TEST(CostModel().fft_seconds(work) == work.gathers * ffts_s, boost::test_tools::tolerance(1e-12));
+    BOOST_TEST(ffts_s <= last);
+    last = ffts_s;
+  }
+  r.samples_at_once = std::size_t{1} << 40;
+  BOOST_TEST(CostModel().fft_seconds(plan_gridding(r).choice.best.work) > last);
 }
 
 BOOST_AUTO_TEST_SUITE_END()

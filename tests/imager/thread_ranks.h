@@ -55,6 +55,7 @@ class ThreadRanks {
     int size() const override { return all_.size_; }
     int rank() const override { return rank_; }
     int on_this_machine() const override { return all_.size_; }
+    int on_these_cores() const override { return all_.size_; }
     void meet() const override { all_.barrier_.arrive_and_wait(); }
     void sum(double* values, std::size_t count) const override {
       combine(values, count, true, [](double a, double b) { return a + b; });

@@ -23,6 +23,7 @@ class OneOf : public imager::Ranks {
   int size() const override { return size_; }
   int rank() const override { return rank_; }
   int on_this_machine() const override { return size_; }
+  int on_these_cores() const override { return size_; }
   void meet() const override {}
   void sum(double*, std::size_t) const override {}
   void sum_at_first(double*, std::size_t) const override {}

@@ -80,6 +80,42 @@ BOOST_AUTO_TEST_CASE(by_default_half_of_the_machine_is_there_for_visibilities) {
       });
 }
 
+BOOST_AUTO_TEST_CASE(a_w_axis_gathers_as_many_samples_as_there_is_room_for) {
+  const auto demand_of = [](const imager::GriddingPlan& plan) {
+    const auto samples = static_cast<double>(plan.request.samples);
+    return imager::MemoryDemand{.transform = imager::memory_of(plan),
+                                .pixels = static_cast<double>(plan.request.geometry.pixels()),
+                                .rows = samples / 64,
+                                .samples = samples,
+                                .block_samples = 1e6};
+  };
+  for (const double memory_gib : {1.0, 2.0, 16.0})
+    for (const double samples : {1e5, 1e7, 1e9})
+      for (const double max_abs_w : {0.0, 5e4}) {
+        imager::GriddingRequest request;
+        request.geometry = {2048, 2048, 5e-6, {}};
+        request.accuracy = 1e-4;
+        request.samples = static_cast<std::uint64_t>(samples);
+        request.max_abs_w = max_abs_w;
+        limit_memory(memory_gib * gib, request);
+        ImageOptions options;
+        options.memory_gib = memory_gib;
+        const imager::GriddingPlan plan = plan_with_room(request, demand_of, options, physical_memory_bytes());
+        const std::size_t at_once = plan.request.samples_at_once;
+        BOOST_TEST_CONTEXT(memory_gib << " GiB, " << samples << " samples, w to " << max_abs_w) {
+          const double held = imager::peak_memory(demand_of(plan), least_streaming).total();
+          BOOST_TEST(held <= memory_gib * gib);
+          BOOST_TEST(at_once >= request.samples_at_once);
+          if (max_abs_w == 0 || samples <= static_cast<double>(request.samples_at_once)) {
+            BOOST_TEST(at_once == request.samples_at_once);
+          } else if (samples == 1e9) {  // more than visibilities leave room for beside them
+            BOOST_TEST(at_once > 2 * request.samples_at_once);
+            BOOST_TEST(held > 0.5 * memory_gib * gib);
+          }
+        }
+      }
+}
+
 BOOST_AUTO_TEST_CASE(the_table_names_the_peak_and_every_part) {
   const std::string table = memory_table({"the PSF is made", gib, 2 * gib, 0.5 * gib, 4 * gib, 0.25 * gib, 8 * gib});
   for (const char* part : {"15.8 GiB at most, while the PSF is made", "program: 1 GiB", "visibilities kept: 2 GiB",

@@ -73,8 +73,18 @@ class Child {
 
   /// Waits until stderr holds `text`, or the program has ended.
   void wait_for(const std::string& text) {
-    while (!ended() && content(folder_ / "err").find(text) == std::string::npos)
-      std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    wait_until([&] { return content(folder_ / "err").find(text) != std::string::npos; });
+  }
+  /// Waits until `there`, or the program has ended.
+  void wait_until(const std::function<bool()>& there) {
+    while (!ended() && !there()) std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  }
+  /// The processes that it started.
+  std::vector<pid_t> children() const {
+    std::istringstream listed(content("/proc/" + std::to_string(pid_) + "/task/" + std::to_string(pid_) + "/children"));
+    std::vector<pid_t> all;
+    for (pid_t child; listed >> child;) all.push_back(child);
+    return all;
   }
   bool ended() {
     if (!ended_) ended_ = waitpid(pid_, &status_, WNOHANG) == pid_;

@@ -16,6 +16,9 @@ Arguments image(const std::string& imagename) {
   return {"image", "--vis", track(), "--imagename", imagename, "--imsize", "128", "--cell", "0.1arcsec", "--threads", "1"};
 }
 
+/// Enough for an image of 128 × 128 pixels, and not for the visibilities of a rank.
+const std::string tight_gib = "0.1";
+
 double difference(const std::string& is, const std::string& should, const std::string& kind) {
   return imager::testing::relative_error(pixels_of(is, kind).pixel, pixels_of(should, kind).pixel);
 }
@@ -107,14 +110,59 @@ BOOST_AUTO_TEST_CASE(what_is_wrong_for_all_ends_all_with_its_message) {
 }
 
 /// A rank that dies takes the others with it, whatever they wait for.
-BOOST_AUTO_TEST_CASE(a_killed_rank_ends_the_run_without_a_file) {
+BOOST_AUTO_TEST_CASE(a_killed_rank_ends_the_run_without_an_image) {
+  if (!has_mpi()) return;
+  for (const Arguments& kind : {Arguments{}, {"--specmode", "cube", "--outframe", "TOPO"}})
+    for (const std::size_t victim : {0U, 1U}) {
+      const TemporaryFolder folder;
+      Arguments long_run = image(folder / "a") + kind + Arguments{"--niter", "1000000", "--gain", "0.001", "--cycleniter", "5"};
+      Child child(ranks(2) + long_run, "mpirun");
+      child.wait_until([&] {
+        const auto files = files_below(folder / "");
+        return std::any_of(files.begin(), files.end(),
+                           [](const auto& file) { return file.first.find(".state") != std::string::npos; });
+      });
+      const std::vector<pid_t> started = child.children();
+      BOOST_TEST_REQUIRE(started.size() == 2U);
+      kill(started[victim], SIGKILL);
+      BOOST_TEST(child.wait().code != 0);
+      for (const auto& [file, content] : files_below(folder / ""))
+        BOOST_TEST(std::filesystem::path(file).extension() != ".fits", file);
+    }
+}
+
+/// Of ranks with unlike memory none keeps visibilities where one cannot, so that all exchange the same in every pass.
+BOOST_AUTO_TEST_CASE(ranks_of_unlike_memory_go_together) {
   if (!has_mpi()) return;
   const TemporaryFolder folder;
-  // The second rank is a shell that ends at once by the signal.
-  const Arguments both = ranks(1) + image(folder / "a") + Arguments{":", "-n", "1", "sh", "-c", "sleep 0.2; kill -KILL $$"};
+  const Arguments options{"--accuracy", "1e-8", "--psf-accuracy", "1e-8", "--niter", "50", "--weighting", "briggs", "--quiet"};
+  succeed(image(folder / "one") + options);
+  const Arguments roomy = image(folder / "two") + options + Arguments{"--memory", "1"};
+  const Arguments tight = image(folder / "two") + options + Arguments{"--memory", tight_gib};
+  Arguments both = ranks(1) + roomy + Arguments{":", "-n", "1", MISFIT_PROGRAM} + tight;
   const Outcome outcome = Child(both, "mpirun").wait();
-  BOOST_TEST(outcome.code != 0);
+  BOOST_TEST_INFO(outcome.err);
+  BOOST_REQUIRE_EQUAL(outcome.code, 0);
+  BOOST_TEST(difference(folder / "two", folder / "one", "image") < 1e-7);
+}
+
+BOOST_AUTO_TEST_CASE(processes_that_another_mpi_starts_are_refused) {
+  if (!has_mpi()) return;
+  const TemporaryFolder folder;
+  const EnvironmentVariable rank("PMI_RANK", "1"), size("PMI_SIZE", "4");
+  const Outcome outcome = run(image(folder / "a"));
+  BOOST_TEST(outcome.code == 1);
+  BOOST_TEST(outcome.err.find("started as one of 4 processes by a launcher that Open MPI") != std::string::npos, outcome.err);
   BOOST_TEST(files_below(folder / "").empty());
+}
+
+BOOST_AUTO_TEST_CASE(clean_does_not_go_on_from_another_number_of_ranks) {
+  if (!has_mpi()) return;
+  const TemporaryFolder folder;
+  succeed_together(2, image(folder / "a") + Arguments{"--niter", "100"});
+  const Outcome outcome = run(image(folder / "a") + Arguments{"--niter", "200", "--restart"});
+  BOOST_TEST(outcome.code == 1);
+  BOOST_TEST(outcome.err.find("was saved with mpirun -n 2, expected that of this run, 1") != std::string::npos, outcome.err);
 }
 
 BOOST_AUTO_TEST_SUITE_END()

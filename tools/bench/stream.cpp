@@ -108,7 +108,13 @@ struct Options {
   bool coplanar = false;
 };
 
-imager::GriddingPlan plan_for(const GeneratedSource& source, const Options& o) {
+struct Planned {
+  imager::GriddingPlan gridding;
+  tools::MemoryPlan memory;
+};
+
+/// As `misfit image` plans it.
+Planned plan_for(const GeneratedSource& source, const Options& o) {
   imager::GriddingRequest request;
   request.geometry = {o.pixels, o.pixels, o.cell_arcsec * M_PI / 180 / 3600, {}};
   request.kernel = kernels::cached(request.kernel, "");
@@ -117,35 +123,34 @@ imager::GriddingPlan plan_for(const GeneratedSource& source, const Options& o) {
   request.max_abs_w = source.max_abs_w();
   request.threads = o.threads;
   tools::limit_memory(o.memory_gib * tools::gib, request);
-  return imager::plan_gridding(request);
-}
-
-/// As `misfit image` plans it.
-tools::MemoryPlan memory_for(const GeneratedSource& source, const imager::GriddingPlan& plan, const Options& o) {
   tools::ImageOptions options;
   options.memory_gib = o.memory_gib;
   options.imsize = {o.pixels, o.pixels};
-  return tools::plan_memory({.transform = imager::memory_of(plan),
-                             .pixels = static_cast<double>(plan.request.geometry.pixels()),
-                             .rows = static_cast<double>(source.rows()),
-                             .samples = static_cast<double>(source.samples()),
-                             .block_samples = static_cast<double>(ms_io::MeasurementSet::usual_block_samples)},
-                            options, tools::physical_memory_bytes());
+  const auto demand = [&](const imager::GriddingPlan& plan) {
+    return imager::MemoryDemand{.transform = imager::memory_of(plan),
+                                .pixels = static_cast<double>(plan.request.geometry.pixels()),
+                                .rows = static_cast<double>(source.rows()),
+                                .samples = static_cast<double>(source.samples()),
+                                .block_samples = static_cast<double>(ms_io::MeasurementSet::usual_block_samples)};
+  };
+  const double machine_bytes = tools::physical_memory_bytes();
+  imager::GriddingPlan plan = tools::plan_with_room(request, demand, options, machine_bytes);
+  const tools::MemoryPlan memory = tools::plan_memory(demand(plan), options, machine_bytes);
+  return {std::move(plan), memory};
 }
 
 /// Nanoseconds a sample.
 double run(double samples, const Options& o) {
   const GeneratedSource source(static_cast<std::uint64_t>(samples), o.coplanar);
-  const imager::GriddingPlan plan = plan_for(source, o);
-  const tools::MemoryPlan memory = memory_for(source, plan, o);
+  const auto [plan, memory] = plan_for(source, o);
   const imager::StreamedVisibilities streamed(source, memory.streaming);
   imager::StageTimes times;
   const imager::Stopwatch watch;
   const imager::AccurateImages made = imager::make_accurate_images(
       streamed, plan, [](std::uint64_t, std::uint64_t) {}, times);
   const double seconds = watch.seconds(), a_sample_ns = 1e9 * seconds / static_cast<double>(source.samples());
-  std::printf("| %.3g | %.2f | %.2f | %.2f | %.2f | %.2f | %.2f | %s |\n", static_cast<double>(source.samples()), seconds,
-              times.of("grid"), times.of("read"), a_sample_ns, memory.peak.total() / tools::gib,
+  std::printf("| %.3g | %.2f | %.2f | %.2f | %d | %.2f | %.2f | %.2f | %s |\n", static_cast<double>(source.samples()), seconds,
+              times.of("grid"), times.of("fft"), plan.choice.best.work.gathers, a_sample_ns, memory.peak.total() / tools::gib,
               tools::peak_memory_bytes() / tools::gib, memory.streaming.keep ? "kept" : "streamed");
   std::fflush(stdout);
   if (made.images.sums.front().used != source.samples()) throw std::runtime_error("samples were lost");

@@ -184,6 +184,7 @@ void require_same(const std::string& path, const json& file, const CleanStateOwn
     const json then = has.value(name, json()), now = owner.options.value(name, json());
     if (!may_differ && !means_the_same(then, now)) refuse("--" + name, then, now);
   }
+  if (file.value("ranks", 1) != owner.ranks) refuse("mpirun -n", file.value("ranks", 1), owner.ranks);
   if (file.at("checksum") != owner.checksum)
     throw std::runtime_error(path +
                              " was saved with other data: the dirty image, the PSF, the mask or the start model differ; " +
@@ -210,6 +211,7 @@ void write_clean_state(const std::string& path, const imager::CleanState& state,
                {"version", owner.version},
                {"options", owner.options},
                {"checksum", owner.checksum},
+               {"ranks", owner.ranks},
                {"model", packed_model(state.model)},
                {"best_model", packed_model(state.best_model)},
                {"mask", packed_mask(state.mask)},

@@ -14,6 +14,7 @@ struct CleanStateOwner {
   std::string version;         ///< of the program
   nlohmann::json options;      ///< {name: value}, as typed or by default
   std::uint64_t checksum = 0;  ///< of the dirty image, the PSF, and what CLEAN is given besides
+  int ranks = 1;               ///< that summed them, on whose number their last bits depend
 };
 
 /// A number that differs when a bit of any image does; null stands for none. Over the dirty image and the PSF it is that of the

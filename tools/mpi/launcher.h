@@ -14,4 +14,11 @@ inline bool was_launched() {
   return false;
 }
 
+/// How many processes it started together, as far as it tells; 0 where it does not.
+inline int launched() {
+  for (const char* name : {"OMPI_COMM_WORLD_SIZE", "PMI_SIZE", "SLURM_STEP_NUM_TASKS"})
+    if (const char* const size = std::getenv(name)) return std::atoi(size);
+  return 0;
+}
+
 }  // namespace misfit::tools

@@ -1,9 +1,11 @@
 #define OMPI_SKIP_MPICXX
 #include <mpi.h>
+#include <sched.h>
 
 #include <algorithm>
 #include <chrono>
 #include <mutex>
+#include <stdexcept>
 #include <thread>
 
 #include "tools/mpi/launcher.h"
@@ -32,12 +34,14 @@ class MpiRanks : public imager::Ranks {
     MPI_Comm here = MPI_COMM_NULL;
     MPI_Comm_split_type(MPI_COMM_WORLD, MPI_COMM_TYPE_SHARED, rank_, MPI_INFO_NULL, &here);
     MPI_Comm_size(here, &on_this_machine_);
+    count_on_these_cores(here);
     MPI_Comm_free(&here);
   }
 
   int size() const override { return size_; }
   int rank() const override { return rank_; }
   int on_this_machine() const override { return on_this_machine_; }
+  int on_these_cores() const override { return on_these_cores_; }
 
   void meet() const override {
     wait([](MPI_Request* request) { MPI_Ibarrier(MPI_COMM_WORLD, request); });
@@ -99,6 +103,22 @@ class MpiRanks : public imager::Ranks {
  private:
   static constexpr int tag = 0;
 
+  /// A launcher may bind ranks to cores, several of them to the same.
+  void count_on_these_cores(MPI_Comm here) {
+    std::vector<cpu_set_t> all(static_cast<std::size_t>(on_this_machine_));
+    cpu_set_t own;
+    CPU_ZERO(&own);
+    sched_getaffinity(0, sizeof own, &own);
+    MPI_Allgather(&own, sizeof own, MPI_BYTE, all.data(), sizeof own, MPI_BYTE, here);
+    on_these_cores_ = 0;
+    for (const cpu_set_t& other : all) {
+      cpu_set_t both;
+      CPU_AND(&both, &own, &other);
+      on_these_cores_ += CPU_COUNT(&both) > 0 ? 1 : 0;
+    }
+    on_these_cores_ = std::max(1, on_these_cores_);
+  }
+
   /// Begins something and waits for its end. MPI itself keeps a core busy while it waits, of which the others' threads may have
   /// need. Several threads may wait; MPI is for one at a time.
   template <typename Begin>
@@ -135,6 +155,7 @@ class MpiRanks : public imager::Ranks {
   int size_ = 1;
   int rank_ = 0;
   int on_this_machine_ = 1;
+  int on_these_cores_ = 1;
   mutable std::mutex one_at_a_time_;  ///< guards calls of MPI, and what follows
   mutable imager::Traffic traffic_;
 };
@@ -159,7 +180,12 @@ class World::Mpi {
 };
 
 World::World() {
-  if (was_launched()) mpi_ = std::make_unique<Mpi>();
+  if (!was_launched()) return;
+  mpi_ = std::make_unique<Mpi>();
+  if (const int size = launched(); mpi_->ranks().alone() && size > 1)
+    throw std::runtime_error("started as one of " + std::to_string(size) + " processes by a launcher that " + mpi_version() +
+                             " does not understand, so that each would write the same files; expected its own mpirun, or " +
+                             "srun --mpi=pmix");
 }
 
 World::~World() = default;

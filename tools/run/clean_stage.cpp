@@ -136,7 +136,7 @@ imager::CleanResult CleanStage::run(const CleanScene& scene, const nlohmann::jso
     const imager::StageTimer timer(times, "minor cycles");
     minor = make_minor(scene, deconvolver_choice(o_, threads_));
   }
-  CleanStateOwner owner{MISFIT_VERSION, option_values, 0};
+  CleanStateOwner owner{MISFIT_VERSION, option_values, 0, scene.source.ranks().size()};
   imager::CleanState state;
   double sidelobe = 0;
   {

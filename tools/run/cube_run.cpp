@@ -39,7 +39,7 @@ class CubeRun {
       : o_(options),
         ranks_(ranks),
         stokes_(imager::parse_stokes(options.stokes)),
-        threads_(options.threads == 0 ? imager::available_threads(ranks.on_this_machine()) : options.threads),
+        threads_(options.threads == 0 ? imager::available_threads(ranks.on_these_cores()) : options.threads),
         progress_(options.quiet || !ranks.first()) {
     report_.command_line = call.command_line;
     report_.options = call.option_values;

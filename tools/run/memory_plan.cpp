@@ -37,11 +37,45 @@ std::string enough_text(double bytes, const std::function<double(double)>& least
                               gib_text(needed_bytes));
 }
 
+double wanted_bytes(const ImageOptions& o, double machine_bytes) {
+  return o.memory_gib > 0 ? o.memory_gib * gib : machine_bytes / 2;
+}
+
+/// The fastest that takes no more, or the one that takes least.
+MemoryPlan streaming_within(double wanted, const imager::MemoryDemand& demand) {
+  MemoryPlan plan;
+  for (const imager::StreamingOptions streaming :
+       {imager::StreamingOptions{true, 2}, {false, 2}, {false, 1}, least_streaming}) {
+    plan.streaming = streaming;
+    plan.peak = imager::peak_memory(demand, streaming);
+    if (plan.peak.total() <= wanted) break;
+  }
+  return plan;
+}
+
 }  // namespace
 
 void limit_memory(double bytes, imager::GriddingRequest& o) {
   o.stack_bytes = std::min(o.stack_bytes, static_cast<std::size_t>(bytes / 4));
   o.samples_at_once = std::min(o.samples_at_once, static_cast<std::size_t>(bytes / 8 / imager::wide_bytes_a_sample));
+}
+
+imager::GriddingPlan plan_with_room(imager::GriddingRequest request,
+                                    const std::function<imager::MemoryDemand(const imager::GriddingPlan&)>& demand,
+                                    const ImageOptions& o, double machine_bytes) {
+  imager::GriddingPlan plan = imager::plan_gridding(request);
+  const double wanted = wanted_bytes(o, machine_bytes);
+  const imager::MemoryDemand first = demand(plan);
+  const double left = wanted - streaming_within(wanted, first).peak.total();
+  if (!plan.options.has_w_axis() || first.samples <= static_cast<double>(request.samples_at_once) || left <= 0) return plan;
+  const double sample_bytes = imager::wide_bytes_a_sample + (imager::wide_bytes_a_value + 16.0) * std::max(1, request.stokes);
+  const std::size_t at_once = request.samples_at_once;
+  for (double room = left; room > left / 4; room /= 1.5) {
+    request.samples_at_once = at_once + static_cast<std::size_t>(room / sample_bytes);
+    imager::GriddingPlan roomy = imager::plan_gridding(request);
+    if (streaming_within(wanted, demand(roomy)).peak.total() <= wanted) return roomy;
+  }
+  return plan;
 }
 
 double memory_of_a_process(const imager::Ranks& ranks) {
@@ -50,17 +84,11 @@ double memory_of_a_process(const imager::Ranks& ranks) {
 
 MemoryPlan plan_memory(const imager::MemoryDemand& demand, const ImageOptions& o, double machine_bytes,
                        const std::function<double(double)>& least_with) {
-  const double wanted = o.memory_gib > 0 ? o.memory_gib * gib : machine_bytes / 2;
+  const double wanted = wanted_bytes(o, machine_bytes);
   const double limit = o.memory_gib > 0 ? wanted : machine_bytes;
   const std::string within =
       o.memory_gib > 0 ? gib_text(wanted) + " asked" : "half of the machine's " + gib_text(machine_bytes);
-  MemoryPlan plan;
-  for (const imager::StreamingOptions streaming :
-       {imager::StreamingOptions{true, 2}, {false, 2}, {false, 1}, least_streaming}) {
-    plan.streaming = streaming;
-    plan.peak = imager::peak_memory(demand, streaming);
-    if (plan.peak.total() <= wanted) break;
-  }
+  MemoryPlan plan = streaming_within(wanted, demand);
   if (plan.peak.total() > limit) refuse(o, plan.peak.total(), machine_bytes, least_with);
   const double if_kept = imager::peak_memory(demand, {true, 2}).total();
   plan.decision = {"visibilities", plan.streaming.keep ? "kept in memory" : "read again in every pass",

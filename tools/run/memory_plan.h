@@ -2,6 +2,7 @@
 
 #include <functional>
 
+#include "imager/plan/gridding_plan.h"
 #include "imager/plan/memory_use.h"
 #include "imager/plan/plan.h"
 #include "imager/ranks.h"
@@ -18,6 +19,13 @@ struct MemoryPlan {
 
 /// Lets a w axis take no more than parts of `bytes` for its planes and for the samples that it gathers.
 void limit_memory(double bytes, imager::GriddingRequest& request);
+
+/// Plans the gridding of `request`. A w axis transforms all planes whenever it has gathered as many samples as `request` says:
+/// where it does so again and again, it gathers as many as the memory has room for that --memory, or half of `machine_bytes`,
+/// leaves after all that `demand` makes of a plan.
+imager::GriddingPlan plan_with_room(imager::GriddingRequest request,
+                                    const std::function<imager::MemoryDemand(const imager::GriddingPlan&)>& demand,
+                                    const ImageOptions& options, double machine_bytes);
 
 /// What a machine has of memory, for one of the processes of a run that share it.
 double memory_of_a_process(const imager::Ranks& ranks);

@@ -33,7 +33,7 @@ class RunPlanner {
     request.max_abs_w = scene_.reach.max_abs_w;
     const imager::GriddingRequest unlimited = request;
     if (o_.memory_gib > 0) limit_memory(o_.memory_gib * gib, request);
-    plan_.gridding = imager::plan_gridding(request);
+    plan_.gridding = plan_gridding(request);
     decide_pixels();
     if (!scene_.set.ranks().alone()) decide_sharing();
     if (o_.nterms > 1) decide_terms();
@@ -69,6 +69,14 @@ class RunPlanner {
  private:
   void decide(const std::string& item, const std::string& decision, const std::string& because) {
     plan_.decisions.push_back({item, decision, because});
+  }
+
+  /// A search outside shares the memory.
+  imager::GriddingPlan plan_gridding(const imager::GriddingRequest& request) const {
+    if (o_.check_outside) return imager::plan_gridding(request);
+    return plan_with_room(
+        request, [this](const imager::GriddingPlan& plan) { return demand_of(plan, {}); }, o_,
+        memory_of_a_process(scene_.ranks));
   }
 
   void decide_pixels() {

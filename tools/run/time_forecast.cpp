@@ -41,6 +41,7 @@ struct Images {
 TransformSeconds transform_seconds(const imager::GriddingPlan& plan, const Images& images, int threads, int ranks) {
   imager::GriddingWork work = plan.choice.best.work;
   work.samples /= ranks;
+  work.gathers = (work.gathers + ranks - 1) / ranks;
   work.stokes = images.stokes;
   work.psf = images.psf;
   const imager::CostModel model;
