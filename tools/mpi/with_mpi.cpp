@@ -3,6 +3,7 @@
 #include <sched.h>
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <mutex>
 #include <stdexcept>
@@ -14,8 +15,9 @@
 namespace misfit::tools {
 namespace {
 
-/// MPI counts with int, and holds copies of what is reduced, which had better fit a cache: two ranks of a machine sum 4.2 GB/s
-/// in pieces of 2^20 numbers, and 1.2 in pieces of 2^22.
+using imager::chain_piece;
+
+/// MPI counts with int, and holds copies of what is reduced, which had better fit a cache.
 constexpr std::size_t most_at_once = std::size_t{1} << 20;
 
 /// Calls exchange(first, count) for pieces of `count` values.
@@ -50,7 +52,9 @@ class MpiRanks : public imager::Ranks {
     sum_at_first(values, count);
     share(values, count * sizeof(double));  // so that all have the same bits, whatever the order of the sums
   }
-  void sum_at_first(double* values, std::size_t count) const override { reduce(values, count, MPI_SUM); }
+  void sum_at_first(double* values, std::size_t count) const override {
+    count < least_in_chain ? reduce(values, count, MPI_SUM) : sum_along_ranks(values, count);
+  }
   void largest(double* values, std::size_t count) const override {
     reduce(values, count, MPI_MAX);
     share(values, count * sizeof(double));
@@ -101,7 +105,8 @@ class MpiRanks : public imager::Ranks {
   }
 
  private:
-  static constexpr int tag = 0;
+  static constexpr int tag = 0, chain_tag = 1;
+  static constexpr std::size_t least_in_chain = std::size_t{1} << 16;  ///< numbers; of fewer the way is too long
 
   /// A launcher may bind ranks to cores, several of them to the same.
   void count_on_these_cores(MPI_Comm here) {
@@ -137,6 +142,41 @@ class MpiRanks : public imager::Ranks {
       if (over == 0 && std::chrono::steady_clock::now() - start > std::chrono::microseconds(200))
         std::this_thread::sleep_for(std::chrono::microseconds(100));
     }
+  }
+
+  /// Each rank adds its own to what the next gives it, and gives that to the one before, a piece at a time: while a piece is on
+  /// its way to rank 0 others follow it, so that all take in and give the numbers once, at the same time. A tree, which
+  /// MPI_Reduce makes, lets rank 0 take them in as often as it has branches.
+  void sum_along_ranks(double* values, std::size_t count) const {
+    constexpr std::size_t ahead = 2;
+    meet();
+    count_bytes(first() ? 0 : count * sizeof(double));
+    const bool gets = rank_ + 1 < size_;
+    const std::size_t pieces = (count + chain_piece - 1) / chain_piece;
+    const auto length = [&](std::size_t piece) { return static_cast<int>(std::min(chain_piece, count - piece * chain_piece)); };
+    std::array<std::vector<double>, ahead> theirs;
+    std::array<MPI_Request, ahead> coming{MPI_REQUEST_NULL, MPI_REQUEST_NULL};
+    MPI_Request going = MPI_REQUEST_NULL;
+    const auto expect = [&](std::size_t piece) {
+      if (!gets || piece >= pieces) return;
+      theirs[piece % ahead].resize(chain_piece);
+      MPI_Irecv(theirs[piece % ahead].data(), length(piece), MPI_DOUBLE, rank_ + 1, chain_tag, MPI_COMM_WORLD,
+                &coming[piece % ahead]);
+    };
+    for (std::size_t piece = 0; piece < ahead; ++piece) expect(piece);
+    for (std::size_t piece = 0; piece < pieces; ++piece) {
+      double* const own = values + piece * chain_piece;
+      if (gets) {
+        MPI_Wait(&coming[piece % ahead], MPI_STATUS_IGNORE);
+        const double* const their = theirs[piece % ahead].data();
+        for (int i = 0; i < length(piece); ++i) own[i] += their[i];
+        expect(piece + ahead);
+      }
+      if (first()) continue;
+      MPI_Wait(&going, MPI_STATUS_IGNORE);
+      MPI_Isend(own, length(piece), MPI_DOUBLE, rank_ - 1, chain_tag, MPI_COMM_WORLD, &going);
+    }
+    MPI_Wait(&going, MPI_STATUS_IGNORE);
   }
 
   void reduce(double* values, std::size_t count, MPI_Op how) const {

@@ -108,8 +108,20 @@ NodeSeconds ScaleForecast::seconds_of(const RunWork& work) const {
   return seconds;
 }
 
-double ScaleForecast::reduce_seconds(int nodes, double bytes) const {
-  return levels_of(nodes) * bytes * (1 / (scene_.options.scale.network_gb_s * 1e9) + 1 / added_bytes_s);
+double ScaleForecast::taking_in_seconds(double bytes) const {
+  return bytes * (1 / (scene_.options.scale.network_gb_s * 1e9) + 1 / added_bytes_s);
+}
+
+/// The first piece passes all nodes, and the others follow.
+double ScaleForecast::sum_seconds(int nodes, double bytes) const {
+  if (nodes == 1) return 0;
+  const double piece = std::min(bytes, 1.0 * sizeof(double) * imager::chain_piece);
+  return taking_in_seconds(bytes + (nodes - 2) * piece);
+}
+
+/// What the same would take in a binomial tree, where rank 0 takes in a whole image from each of its branches.
+double ScaleForecast::tree_seconds(int nodes, double bytes) const {
+  return levels_of(nodes) * taking_in_seconds(bytes);
 }
 
 void ScaleForecast::set_memory(NodeForecast& forecast, double samples) const {
@@ -136,13 +148,13 @@ NodeForecast ScaleForecast::at(int nodes) const {
   const int stokes = plan_.gridding.request.stokes, terms = scene_.options.nterms;
   const ExchangeForecast exchange = exchange_of(work.pixels, 3 * terms - 2 + stokes, terms);
   if (nodes > 1) node.image_bytes = exchange.first_bytes;
-  node.image.exchange = reduce_seconds(nodes, node.image_bytes);
+  node.image.exchange = sum_seconds(nodes, node.image_bytes);
   if (!clean_) return node;
   node.cycle = cycle_seconds(work);
   if (!node.kept) node.cycle.read = node.image.read;
   if (nodes > 1) node.cycle_bytes = exchange.cycle_bytes;
   const double model_s = components_of_a_cycle() * sizeof(imager::Component) / (scene_.options.scale.network_gb_s * 1e9);
-  node.cycle.exchange = reduce_seconds(nodes, node.cycle_bytes) + levels_of(nodes) * model_s;
+  node.cycle.exchange = sum_seconds(nodes, node.cycle_bytes) + levels_of(nodes) * model_s;
   return node;
 }
 
@@ -188,7 +200,7 @@ NodeForecast ScaleForecast::facet_forecast(int nodes, const Facets& facets) cons
     is.gridding = of_a_facet.gridding + turned_s;
     is.fft = of_a_facet.fft;
     // A group sums its facet; rank 0 gets them all.
-    is.exchange = reduce_seconds(group, bytes / facets.count) + bytes * (facets.count - 1) / facets.count / network;
+    is.exchange = sum_seconds(group, bytes / facets.count) + bytes * (facets.count - 1) / facets.count / network;
   };
   share(node.image, image, rows.image_bytes);
   node.image.read = image.read;
@@ -269,6 +281,12 @@ std::string ScaleForecast::table() const {
   const NodeForecast there = at(stop), twice = at(2 * stop);
   text += "nodes: more than " + grouped(stop) + " do not help: twice as many are " +
           significant(there.shown(clean_).total() / twice.shown(clean_).total(), 3) + " times as fast; " + why(twice) + "\n";
+  if (scene_.planes == 1 && asked.nodes > 2) {
+    const double bytes = clean_ ? at(asked.nodes).cycle_bytes : at(asked.nodes).image_bytes;
+    text += "nodes: images are added up on their way along the nodes, in pieces: " + duration(sum_seconds(asked.nodes, bytes)) +
+            " of " + grouped(asked.nodes) + " nodes, where a tree would take " + duration(tree_seconds(asked.nodes, bytes)) +
+            "\n";
+  }
   std::optional<int> before;
   for (const int nodes : {asked.nodes, 4 * stop}) {
     if (before == nodes || scene_.planes > 1) continue;

@@ -38,8 +38,8 @@ struct NodeForecast {
   const NodeSeconds& shown(bool clean) const { return clean ? cycle : image; }
 };
 
-/// Expects the time of a planned run on several machines. Compute and reading are those of TimeForecast; images are summed in
-/// a binomial tree, so that rank 0 takes in ⌈log2 N⌉ of them one after the other, over a network of the bandwidth given.
+/// Expects the time of a planned run on several machines. Compute and reading are those of TimeForecast; images are summed on
+/// their way from node to node, in pieces that follow each other, over a network of the bandwidth given.
 class ScaleForecast {
  public:
   /// Kept by reference.
@@ -65,7 +65,9 @@ class ScaleForecast {
   RunWork with_cycles(RunWork work, int cycles) const;
   int components_of_a_cycle() const;
   void set_memory(NodeForecast& forecast, double samples) const;
-  double reduce_seconds(int nodes, double bytes) const;
+  double taking_in_seconds(double bytes) const;
+  double sum_seconds(int nodes, double bytes) const;
+  double tree_seconds(int nodes, double bytes) const;
   std::string row(const NodeForecast& forecast) const;
   std::string why(const NodeForecast& forecast) const;
 
