@@ -108,7 +108,7 @@ BOOST_AUTO_TEST_CASE(a_w_axis_gathers_as_many_samples_as_there_is_room_for) {
           BOOST_TEST(at_once >= request.samples_at_once);
           if (max_abs_w == 0 || samples <= static_cast<double>(request.samples_at_once)) {
             BOOST_TEST(at_once == request.samples_at_once);
-          } else if (samples == 1e9) {  // more than visibilities leave room for beside them
+          } else if (samples == 1e9 && memory_gib < 12) {  // where visibilities are not kept
             BOOST_TEST(at_once > 2 * request.samples_at_once);
             BOOST_TEST(held > 0.5 * memory_gib * gib);
           }
