@@ -96,7 +96,7 @@ BOOST_DATA_TEST_CASE(each_plane_comes_once_with_all_that_it_has, bdata::make({1,
            ++taken[one.report.channel];
            check_plane(one);
          },
-         [] { return false; }, [] {}});
+         [] {}, [] { return false; }, [] {}});
     while (const auto batch = dealer.next())
       for (int channel = batch->first; channel < batch->first + batch->count; ++channel) {
         const std::lock_guard lock(mutex);
@@ -112,7 +112,7 @@ BOOST_DATA_TEST_CASE(each_plane_comes_once_with_all_that_it_has, bdata::make({1,
 BOOST_AUTO_TEST_CASE(who_is_told_to_stop_gets_no_more) {
   ThreadRanks(3).run([&](const imager::Ranks& ranks) {
     if (ranks.first()) {
-      PlaneDealer dealer(ranks, batches, {[](auto&&...) {}, [](CubePlane&&) {}, [] { return true; }, [] {}});
+      PlaneDealer dealer(ranks, batches, {[](auto&&...) {}, [](CubePlane&&) {}, [] {}, [] { return true; }, [] {}});
       return dealer.finish();
     }
     PlaneLink link(ranks);
@@ -122,13 +122,30 @@ BOOST_AUTO_TEST_CASE(who_is_told_to_stop_gets_no_more) {
   });
 }
 
+BOOST_AUTO_TEST_CASE(whoever_is_told_to_stop_stops_all) {
+  bool stopped = false;
+  ThreadRanks(3).run([&](const imager::Ranks& ranks) {
+    if (ranks.first()) {
+      PlaneDealer dealer(ranks, batches,
+                         {[](auto&&...) {}, [](CubePlane&&) {}, [&] { stopped = true; }, [&] { return stopped; }, [] {}});
+      return dealer.finish();
+    }
+    PlaneLink link(ranks);
+    if (ranks.rank() == 1) link.stop();
+    while (link.next())  // as long as the other has not said so
+      continue;
+    link.end();
+  });
+  BOOST_TEST(stopped);
+}
+
 BOOST_AUTO_TEST_CASE(what_fails_with_what_others_send_fails_at_rank_0) {
   bool told = false;
   ThreadRanks(2).run([&](const imager::Ranks& ranks) {
     if (!ranks.first()) return ranks.send(0, bytes_of(PlaneMessage{PlaneMessage::Kind::plane, 0, {}, {}, {}, plane(0)}));
-    PlaneDealer dealer(
-        ranks, batches,
-        {[](auto&&...) {}, [](CubePlane&&) { throw std::runtime_error("full"); }, [] { return false; }, [&] { told = true; }});
+    PlaneDealer dealer(ranks, batches,
+                       {[](auto&&...) {}, [](CubePlane&&) { throw std::runtime_error("full"); }, [] {}, [] { return false; },
+                        [&] { told = true; }});
     BOOST_CHECK_EXCEPTION(dealer.finish(), std::runtime_error, [](const auto& e) { return std::string(e.what()) == "full"; });
   });
   BOOST_TEST(told);
@@ -137,7 +154,7 @@ BOOST_AUTO_TEST_CASE(what_fails_with_what_others_send_fails_at_rank_0) {
 /// Rank 0 does not wait for planes that others still make when it fails itself.
 BOOST_AUTO_TEST_CASE(who_leaves_does_not_wait_for_others) {
   ThreadRanks(2).run([&](const imager::Ranks& ranks) {
-    if (ranks.first()) PlaneDealer(ranks, batches, {[](auto&&...) {}, [](CubePlane&&) {}, [] { return false; }, [] {}});
+    if (ranks.first()) PlaneDealer(ranks, batches, {[](auto&&...) {}, [](CubePlane&&) {}, [] {}, [] { return false; }, [] {}});
   });
 }
 

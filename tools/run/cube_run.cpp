@@ -1,7 +1,6 @@
 #include "tools/run/cube_run.h"
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 #include <cstdio>
 #include <memory>
@@ -11,19 +10,18 @@
 
 #include "imager/parallel.h"
 #include "tools/base/files.h"
-#include "tools/base/in_order.h"
 #include "tools/base/interrupt.h"
 #include "tools/base/numbers.h"
 #include "tools/kernel_choice/cache_folder.h"
 #include "tools/run/cube_pictures.h"
 #include "tools/run/cube_planes.h"
+#include "tools/run/cube_turns.h"
 #include "tools/run/cube_visibilities.h"
 #include "tools/run/image_files.h"
 #include "tools/run/primary_beam_stage.h"
 #include "tools/run/product_stage.h"
 #include "tools/run/run_messages.h"
 #include "tools/run/run_plan.h"
-#include "tools/run/shared_cube.h"
 #include "tools/run/sharing.h"
 #include "tools/run/weighting_options.h"
 #include "tools/run_page/report_page.h"
@@ -132,12 +130,13 @@ class CubeRun {
       for (const std::string& doubt : primary_beam_->doubts()) warn(doubt);
     }
     const CubeBatches batches = plan_batches(scene, plan_);
-    batches_ = batches_of(planes(), batches);
+    turns_ = std::make_unique<CubeTurns>(ranks_, batches_of(planes(), batches));
     workers_ = batches.workers;
     at_once_ = workers_.count;
     imager::sum_over(ranks_, at_once_);
     if (!ranks_.alone())
-      plan_.decisions.push_back(plane_sharing_decision(ranks_.size(), planes(), batches.planes, plane_bytes()));
+      plan_.decisions.push_back(
+          plane_sharing_decision(ranks_.size(), planes(), batches.planes, plane_bytes(work_of(scene, plan_))));
     plan_.gridding = imager::with_threads(std::move(plan_.gridding), workers_.threads);
     plan_.memory = batches.memory;
     plan_.decisions.push_back(batches.decision);
@@ -156,17 +155,10 @@ class CubeRun {
 
   std::vector<StageSeconds> expected() const { return expected_seconds(plan_, forecast_, work_); }
 
-  /// Of its images.
-  double plane_bytes() const {
-    const int images = 1 + static_cast<int>(stokes_.size()) * (o_.niter > 0 ? 3 : 1) + (primary_beam_ ? 1 : 0) +
-                       (o_.pbcor ? static_cast<int>(stokes_.size()) : 0);
-    return 1.0 * images * sizeof(double) * static_cast<double>(header_.geometry.pixels());
-  }
-
   void begin_planes() {
     const imager::StageTimer timer(times_, "write images");
     const auto open = [this](const std::string& name, const imager::ImageHeader& header) {
-      return ranks_.first() ? open_image_files(name, header, pixel_format(o_.accuracy), o_.outformat) : first_rank_.open();
+      return turns_->open([&] { return open_image_files(name, header, pixel_format(o_.accuracy), o_.outformat); });
     };
     planes_ = std::make_unique<CubePlanes>(
         CubeScene{o_, report_.options, header_, reach_, plan_.gridding, transform_, workers_, primary_beam_.get(), open});
@@ -182,59 +174,15 @@ class CubeRun {
       const auto stream = plane.open();
       while (const auto block = stream->next()) density.add(*block);
     };
-    visibilities_->look_through(own_batches(), add, progress_, times_);
+    visibilities_->look_through(turns_->own_batches(), add, progress_, times_);
     if (!ranks_.alone()) density.add_up(ranks_);
     planes_->weigh_by(std::make_shared<imager::ImagingWeights>(density, options));
   }
 
-  /// A part of them for each rank, where all have the same to do.
-  std::vector<imager::PlaneRange> own_batches() const {
-    std::vector<imager::PlaneRange> own;
-    for (auto b = static_cast<std::size_t>(ranks_.rank()); b < batches_.size(); b += static_cast<std::size_t>(ranks_.size()))
-      own.push_back(batches_[b]);
-    return own;
-  }
-
-  /// Until the user stops: planes that are done by then stay.
   void make_planes() {
-    if (!ranks_.first()) return make_planes_for_first();
-    InOrder<CubePlane> in_order([this](int, CubePlane&& plane) { take(std::move(plane)); });
-    const auto put = [&](CubePlane&& plane) {
-      if (plane.stopped()) stopped_ = true;
-      const int channel = plane.report.channel;
-      in_order.put(channel, std::move(plane));
-    };
-    const auto write = [&](int file, const imager::PlaneIndex& at, const imager::Image& image,
-                           const std::optional<imager::Beam>& beam) {
-      planes_->products().files().write_sent(file, at, image, beam);
-    };
-    PlaneDealer dealer(ranks_, batches_, {write, put, [this] { return stopped_.load(); }, [this] { planes_->give_up(); }});
-    visit_planes([&] { return dealer.next(); }, put);
-    dealer.finish();
-    in_order.flush();
-    if (stopped_ && report_.planes.empty()) throw Interrupted();
-  }
-
-  void make_planes_for_first() {
-    visit_planes([this] { return first_rank_.next(); },
-                 [this](CubePlane&& plane) {
-                   if (plane.stopped()) stopped_ = true;
-                   first_rank_.put(std::move(plane));
-                   if (first_rank_.stopped()) stopped_ = true;
-                 });
-    first_rank_.end();
-  }
-
-  void visit_planes(const std::function<std::optional<imager::PlaneRange>()>& next,
-                    const std::function<void(CubePlane&&)>& put) {
-    const auto make = [&](int channel, imager::StreamedVisibilities& samples) { put(planes_->make(channel, samples)); };
-    const auto leave_empty = [&](int channel) { put(planes_->empty(channel)); };
-    try {
-      visibilities_->visit_planes({next, make, leave_empty, [this] { return stopped_.load(); }, [this] { planes_->give_up(); }},
-                                  progress_, times_);
-    } catch (const Interrupted&) {
-      stopped_ = true;
-    }
+    const auto take = [this](CubePlane&& plane) { this->take(std::move(plane)); };
+    stopped_ = turns_->make(*visibilities_, *planes_, take, progress_, times_);
+    if (ranks_.first() && stopped_ && report_.planes.empty()) throw Interrupted();
   }
 
   /// The next plane, of several threads' one at a time.
@@ -334,15 +282,14 @@ class CubeRun {
   RunPlan plan_;
   std::unique_ptr<CubeVisibilities> visibilities_;
   std::shared_ptr<const imager::PlannedTransform> transform_;
-  std::vector<imager::PlaneRange> batches_;
   PlaneWorkers workers_;
   int at_once_ = 1;                                 ///< planes that all ranks make at a time
-  PlaneLink first_rank_{ranks_};                    ///< of the others
   std::unique_ptr<PrimaryBeamStage> primary_beam_;  ///< null where none is wanted
+  std::unique_ptr<CubeTurns> turns_;
   std::unique_ptr<CubePlanes> planes_;
   std::uint64_t outside_grid_ = 0;
   std::size_t empty_ = 0;  ///< planes
-  std::atomic<bool> stopped_ = false;
+  bool stopped_ = false;
   bool warned_of_clean_ = false;  ///< what is so of one plane is mostly so of all
   bool warned_of_beam_ = false;
 };

@@ -9,7 +9,7 @@
 namespace misfit::tools {
 namespace {
 
-constexpr double arcsec = M_PI / 180 / 3600;
+constexpr double arcsec_rad = M_PI / 180 / 3600;
 
 std::string angle(double rad) {
   return angle_text(std::abs(rad), 3);
@@ -146,8 +146,8 @@ nlohmann::json outside_json(const OutsideReport* report) {
     const imager::SkyDirection at = direction_of(s, *report);
     list.push_back({{"ra_deg", at.ra_rad * 180 / M_PI},
                     {"dec_deg", at.dec_rad * 180 / M_PI},
-                    {"l_arcsec", s.source.position.l / arcsec},
-                    {"m_arcsec", s.source.position.m / arcsec},
+                    {"l_arcsec", s.source.position.l / arcsec_rad},
+                    {"m_arcsec", s.source.position.m / arcsec_rad},
                     {"flux_jy", s.source.flux_jy},
                     {"alias_jy", s.alias_jy},
                     {"at_border", s.at_border}});
@@ -168,7 +168,7 @@ nlohmann::json outside_search_json(const OutsideReport* report) {
           {"elsewhere", sentence.empty() ? nlohmann::json() : nlohmann::json(sentence)},
           {"width", report->field.width},
           {"height", report->field.height},
-          {"cell_arcsec", report->field.cell_rad / arcsec}};
+          {"cell_arcsec", report->field.cell_rad / arcsec_rad}};
 }
 
 }  // namespace misfit::tools

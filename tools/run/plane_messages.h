@@ -12,10 +12,11 @@ namespace misfit::tools {
 /// What a rank that makes planes of a cube tells rank 0.
 struct PlaneMessage {
   enum class Kind {
-    next,   ///< it has nothing to do
-    image,  ///< a plane of one of the files
-    plane,  ///< what came of a plane, whose images came before
-    ended,  ///< it makes no more
+    next,     ///< it has nothing to do
+    image,    ///< a plane of one of the files
+    plane,    ///< what came of a plane, whose images came before
+    stopped,  ///< the user wants no more
+    ended,    ///< it makes no more
   };
 
   Kind kind = Kind::next;

@@ -176,7 +176,7 @@ NodeForecast ScaleForecast::plane_forecast(int nodes) const {
   }
   for (const StageSeconds& stage : forecast_.expected(work_))
     if (is_of_files(stage)) node.image.first += stage.seconds;
-  if (nodes > 1) node.image_bytes = sizeof(double) * work.pixels * work.images * planes;
+  if (nodes > 1) node.image_bytes = plane_bytes(work) * planes;
   node.image.exchange = node.image_bytes * (nodes - 1) / (scene_.options.scale.network_gb_s * 1e9);
   if (!clean_) return node;
   node.cycle = cycle_seconds(work);

@@ -53,6 +53,9 @@ void PlaneDealer::answer(int rank, PlaneMessage&& message) {
     case PlaneMessage::Kind::plane:
       taker_.take(std::move(message.plane));
       break;
+    case PlaneMessage::Kind::stopped:
+      taker_.stop();
+      break;
     case PlaneMessage::Kind::ended:
       --at_work_;
       break;
@@ -89,6 +92,10 @@ std::unique_ptr<imager::ImageWriter> PlaneLink::open() {
 
 void PlaneLink::put(CubePlane&& plane) {
   tell({PlaneMessage::Kind::plane, 0, {}, {}, {}, std::move(plane)});
+}
+
+void PlaneLink::stop() {
+  tell({PlaneMessage::Kind::stopped, 0, {}, {}, {}, {}});
 }
 
 void PlaneLink::end() {

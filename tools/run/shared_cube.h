@@ -23,6 +23,7 @@ class PlaneDealer {
                        const std::optional<imager::Beam>& beam)>
         write;
     std::function<void(CubePlane&& plane)> take;
+    std::function<void()> stop;     ///< the user wants no more, and told another rank
     std::function<bool()> stopped;  ///< whether others shall make no more
     std::function<void()> failed;   ///< one of these threw: nothing is of any use any more
   };
@@ -64,6 +65,8 @@ class PlaneLink {
   /// A file that rank 0 writes. The files of a cube are opened in the same order by all.
   std::unique_ptr<imager::ImageWriter> open();
   void put(CubePlane&& plane);
+  /// The user wants no more, and told this rank.
+  void stop();
   /// Whether rank 0 told of the user that wants no more.
   bool stopped() const { return stopped_; }
   /// After all others.

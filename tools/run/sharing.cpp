@@ -33,6 +33,10 @@ imager::Decision sharing_decision(const ms_io::SampleSharing& sharing, const Exc
               " a major cycle, for which it gets the model's components"};
 }
 
+double plane_bytes(const RunWork& work) {
+  return sizeof(double) * work.pixels * work.images;
+}
+
 imager::Decision plane_sharing_decision(int ranks, int planes, int planes_of_a_batch, double plane_bytes) {
   const std::string idle =
       planes >= ranks ? ""

@@ -2,6 +2,7 @@
 
 #include "imager/plan/plan.h"
 #include "ms_io/measurement_set.h"
+#include "tools/run/time_forecast.h"
 
 namespace misfit::tools {
 
@@ -16,6 +17,9 @@ ExchangeForecast exchange_of(double pixels, int images, int residuals);
 
 /// How the ranks share the samples, and what they will exchange.
 imager::Decision sharing_decision(const ms_io::SampleSharing& sharing, const ExchangeForecast& exchange);
+
+/// Of the images of a plane, as ranks send them.
+double plane_bytes(const RunWork& work);
 
 /// How the ranks share the planes of a cube, in batches of so many, of each of which rank 0 gets so many bytes.
 imager::Decision plane_sharing_decision(int ranks, int planes, int planes_of_a_batch, double plane_bytes);
