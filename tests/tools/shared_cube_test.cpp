@@ -26,7 +26,10 @@ CubePlane plane(int channel) {
   plane.report.stokes[0].clean =
       imager::CleanReport{.iterations = channel, .stop_reason = "so", .cycles = {{}, {.ended = "why"}}, .kept = 1};
   plane.report.stokes[0].brightest = {1, 2, 3.5};
-  plane.report.beams = BeamChoice{.restoring = imager::Beam{3, 2, 1}, .how = "fitted", .warnings = {"a", "b"}};
+  plane.report.beams.emplace();
+  plane.report.beams->restoring = imager::Beam{3, 2, 1};
+  plane.report.beams->how = "fitted";
+  plane.report.beams->warnings = {"a", "b"};
   plane.report.sums.used = 7;
   plane.components = 12;
   plane.warnings = {"c"};

@@ -129,7 +129,7 @@ void ScaleForecast::set_memory(NodeForecast& forecast, double samples) const {
   const double room = o.memory_gib > 0 ? o.memory_gib * gib : physical_memory_bytes() / 2;
   const double channels = std::max(1.0, work_.samples / std::max(1.0, work_.rows));
   const double sample =
-      plan_.gridding.request.stokes * sizeof(std::complex<float>) + sizeof(float) + 3 * sizeof(double) / channels;
+      1.0 * plan_.gridding.request.stokes * sizeof(std::complex<float>) + sizeof(float) + 3 * sizeof(double) / channels;
   const double others = plan_.memory.total() - plan_.memory.visibilities;
   forecast.kept = others + samples * sample <= room;
   forecast.memory_bytes = others + (forecast.kept ? samples * sample : 0);
