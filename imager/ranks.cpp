@@ -28,6 +28,13 @@ class Alone : public Ranks {
 
 }  // namespace
 
+bool pass_along_ranks(int ranks, std::size_t count) {
+  std::size_t branches = 0;
+  while ((std::size_t{1} << branches) < static_cast<std::size_t>(ranks)) ++branches;
+  const std::size_t pieces = (count + chain_piece - 1) / chain_piece;
+  return pieces + static_cast<std::size_t>(ranks) <= branches * pieces + 2;
+}
+
 const Ranks& alone() {
   static const Alone ranks;
   return ranks;

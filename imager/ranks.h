@@ -19,6 +19,10 @@ struct Traffic {
 /// Numbers of an image that pass from rank to rank at a time, where they are added up on their way to rank 0.
 inline constexpr std::size_t chain_piece = std::size_t{1} << 18;
 
+/// Whether so many numbers come to rank 0 sooner along all ranks, in pieces that follow each other, than in a binomial tree,
+/// where it takes them in from each of its branches.
+bool pass_along_ranks(int ranks, std::size_t count);
+
 /// The processes of a run that share its samples, "ranks" as MPI has them. Each has a part of the samples and computes with it;
 /// what the parts add up to comes to all, so that all decide alike and go on together. Calls but for send(), receive() and
 /// waiting() are made by all of them, in the same order, from one thread at a time. What cannot be exchanged ends the run.

@@ -303,4 +303,11 @@ BOOST_AUTO_TEST_CASE(sources_outside_are_found_in_the_samples_of_all) {
   });
 }
 
+BOOST_AUTO_TEST_CASE(what_has_more_pieces_than_there_are_ranks_passes_along_them) {
+  for (const int ranks : {2, 3, 8, 100, 5000}) {
+    BOOST_TEST(pass_along_ranks(ranks, static_cast<std::size_t>(ranks) * chain_piece));
+    BOOST_TEST(!pass_along_ranks(ranks, chain_piece / 2) == (ranks > 3));
+  }
+}
+
 BOOST_AUTO_TEST_SUITE_END()

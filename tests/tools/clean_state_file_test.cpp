@@ -106,8 +106,9 @@ BOOST_AUTO_TEST_CASE(a_state_of_other_data_or_another_version_is_refused) {
   BOOST_TEST(refusal([&] { read_clean_state(folder / "a.state", other); }).find("version") != std::string::npos);
   other = owner();
   other.ranks = 3;
-  BOOST_TEST(refusal([&] { read_clean_state(folder / "a.state", other); })
-                 .find("was saved with mpirun -n 1, expected that of this run, 3") != std::string::npos);
+  BOOST_TEST(refusal([&] {
+               read_clean_state(folder / "a.state", other);
+             }).find("was saved with mpirun -n 1, expected that of this run, 3") != std::string::npos);
 }
 
 BOOST_AUTO_TEST_CASE(what_is_cut_or_no_state_is_refused_by_name) {

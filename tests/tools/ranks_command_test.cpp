@@ -1,6 +1,7 @@
 // Runs of several processes that MPI started, by the program itself.
 #include <cstring>
 
+#include "imager/ranks.h"
 #include "tests/imager/comparison.h"
 #include "tests/tools/ranks_program.h"
 #include "tests/tools/set_changes.h"
@@ -54,6 +55,21 @@ BOOST_AUTO_TEST_CASE(images_and_clean_are_those_of_one_process) {
       BOOST_TEST(report["outside_search"]["found"] == one["outside_search"]["found"]);
       BOOST_TEST(told_of_ranks(report) == (size == 1 ? 0U : 2U));
     }
+  }
+}
+
+/// Large images pass from rank to rank in pieces.
+BOOST_AUTO_TEST_CASE(images_of_several_pieces_are_those_of_one_process) {
+  if (!has_mpi()) return;
+  const TemporaryFolder folder;
+  Arguments large = image(folder / "one") + Arguments{"--accuracy", "1e-8", "--psf-accuracy", "1e-8"};
+  large[6] = "1100";
+  BOOST_TEST_REQUIRE(imager::pass_along_ranks(8, 1100 * 1100));
+  succeed(large);
+  for (const int size : {3, 8}) {
+    large[4] = folder / std::to_string(size);
+    succeed_together(size, large);
+    for (const char* kind : {"psf", "residual"}) BOOST_TEST(difference(large[4], folder / "one", kind) < 1e-7);
   }
 }
 

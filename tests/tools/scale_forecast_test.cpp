@@ -37,9 +37,9 @@ struct Planned {
                            .enlarged = samples / static_cast<double>(set.samples())});
     imager::StageTimes times;
     ProgressLine silent(true);
-    plan = plan_run(*scene, forecast, times, silent);
+    plan = plan_run(*scene, times, silent);
   }
-  ScaleForecast scale() const { return {*scene, plan, forecast}; }
+  ScaleForecast scale() const { return {*scene, plan, forecast, work_of(*scene, plan)}; }
 
   ImageOptions options;
   ms_io::MeasurementSet set{track(), {}, "data"};
@@ -99,7 +99,7 @@ BOOST_AUTO_TEST_CASE(samples_are_shared_and_images_are_not) {
 BOOST_AUTO_TEST_CASE(a_network_half_as_fast_takes_longer_for_the_same_bytes) {
   Planned run(0);
   const double fast = run.scale().at(2).image.exchange;
-  run.options.scale.network_gb_s /= 1000;
+  run.options.scale.network_gb_s = 12.5 / 1000;
   const double bytes = 2 * one_image_bytes;
   BOOST_TEST(run.scale().at(2).image.exchange - fast == bytes * (1000 - 1) / 12.5e9, nearly);
 }
@@ -161,7 +161,9 @@ BOOST_AUTO_TEST_CASE(nodes_are_refused_where_nothing_is_told_of_them) {
         {dry + Arguments{"--nodes", "-1"}, "--nodes -1: expected 0 (none) to 1048576 machines"},
         {dry + Arguments{"--visibilities", "1e9"}, "--visibilities 1e+09: expected --nodes"},
         {dry + Arguments{"--nodes", "4", "--visibilities", "-1"}, "--visibilities -1: expected 0"},
-        {dry + Arguments{"--nodes", "4", "--network", "0"}, "--network 0: expected more than 0"}}) {
+        {dry + Arguments{"--nodes", "4", "--network", "1e-9"}, "--network 1e-09: expected 0.001 to 1e6"},
+        {dry + Arguments{"--nodes", "4", "--visibilities", "0.5"}, "--visibilities 0.5: expected 0"},
+        {dry + Arguments{"--network", "4"}, "--network 4: expected --nodes"}}) {
     const Outcome outcome = run(arguments);
     BOOST_TEST(outcome.code == 2);
     BOOST_TEST(outcome.err.find(said) != std::string::npos, outcome.err);

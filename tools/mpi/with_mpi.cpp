@@ -53,7 +53,7 @@ class MpiRanks : public imager::Ranks {
     share(values, count * sizeof(double));  // so that all have the same bits, whatever the order of the sums
   }
   void sum_at_first(double* values, std::size_t count) const override {
-    count < least_in_chain ? reduce(values, count, MPI_SUM) : sum_along_ranks(values, count);
+    imager::pass_along_ranks(size_, count) ? sum_along_ranks(values, count) : reduce(values, count, MPI_SUM);
   }
   void largest(double* values, std::size_t count) const override {
     reduce(values, count, MPI_MAX);
@@ -106,7 +106,6 @@ class MpiRanks : public imager::Ranks {
 
  private:
   static constexpr int tag = 0, chain_tag = 1;
-  static constexpr std::size_t least_in_chain = std::size_t{1} << 16;  ///< numbers; of fewer the way is too long
 
   /// A launcher may bind ranks to cores, several of them to the same.
   void count_on_these_cores(MPI_Comm here) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <complex>
+#include <stdexcept>
 
 #include "imager/cube/plane_gatherer.h"
 #include "tools/base/memory.h"
@@ -111,6 +112,10 @@ CubeBatches plan_batches(const RunScene& scene, const RunPlan& plan) {
   // A plane that reads the set holds the rows that are gridded together, and the blocks that are made of them.
   const double streamed = 2 * std::min(1.0, static_cast<double>(imager::samples_gathered_at_once) / scene.samples);
   batches.memory = memory((batches.read_again ? streamed : batches.planes) * plane, workers);
+  if (scene.options.memory_gib > 0 && batches.memory.total() > wanted)
+    throw std::invalid_argument("--memory " + significant(scene.options.memory_gib, 6) + ": expected at least " +
+                                significant(std::ceil(batches.memory.total() / gib * 100) / 100, 6) +
+                                " GiB, which a plane of the cube and the samples on their way to it need");
   batches.decision = decision_on(batches, scene, plane);
   return batches;
 }

@@ -31,7 +31,8 @@ struct CubeBatches {
 /// where there are fewer planes, or where --memory, or half of the machine's, has no room for the images and visibilities of so
 /// many; then they share the threads. One where it reads the set itself. As many planes are held as take half a GiB
 /// together, one for each worker at least, and fit in that memory too; of several ranks, which take batches in turns, no more
-/// than that each has some turns, and all hold as many as the one with the least room. Called by all ranks.
+/// than that each has some turns, and all hold as many as the one with the least room. Called by all ranks. Throws
+/// std::invalid_argument that says how much memory is needed where --memory is less.
 CubeBatches plan_batches(const RunScene& scene, const RunPlan& plan);
 
 /// The planes in batches of nearly the same size, whole numbers of planes for each worker but for the last.

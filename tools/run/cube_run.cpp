@@ -123,7 +123,7 @@ class CubeRun {
                          .workers = std::min(threads_, planes_of_a_rank()),
                          .samples = enlarged * static_cast<double>(set_->rows()) * samples_of_a_row(sampling_, windows_),
                          .enlarged = enlarged};
-    plan_ = plan_run(scene, forecast_, times_, progress_);
+    plan_ = plan_run(scene, times_, progress_);
     plan_.decisions.push_back(axis_decision(sampling_));
     if (primary_beam_) {
       plan_.decisions.push_back(primary_beam_->decision());
@@ -140,6 +140,10 @@ class CubeRun {
     plan_.gridding = imager::with_threads(std::move(plan_.gridding), workers_.threads);
     plan_.memory = batches.memory;
     plan_.decisions.push_back(batches.decision);
+    work_ = work_of(scene, plan_);
+    work_.workers = at_once_;
+    work_.kept = !batches.read_again;
+    foretell(scene, forecast_, work_, times_, plan_);
     visibilities_ = std::make_unique<CubeVisibilities>(*set_, sampling_, batches, threads_, o_.niter > 0);
     for (const std::string& warning : plan_.warnings) warn(warning);
     report_.plan = plan_.decisions;
@@ -147,8 +151,6 @@ class CubeRun {
     report_.accuracy = o_.accuracy;
     report_.gridding = &plan_.gridding;
     report_.estimated_memory_bytes = plan_.memory.total();
-    work_ = work_of(scene, plan_);
-    work_.workers = at_once_;
     const imager::StageTimer timer(times_, "plan");
     if (!o_.dry_run) transform_ = std::make_shared<imager::PlannedTransform>(plan_.gridding);
   }

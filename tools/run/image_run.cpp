@@ -132,14 +132,15 @@ class ImageRun {
                          .samples = all * enlarged,
                          .share = own / all,
                          .enlarged = enlarged};
-    plan_ = plan_run(scene, forecast_, times_, progress_);
+    plan_ = plan_run(scene, times_, progress_);
     if (primary_beam_) plan_.decisions.push_back(primary_beam_->decision());
     for (const std::string& warning : plan_.warnings) warn(warning);
     if (primary_beam_)
       for (const std::string& doubt : primary_beam_->doubts()) warn(doubt);
+    work_ = work_of(scene, plan_);
+    foretell(scene, forecast_, work_, times_, plan_);
     report_.plan = plan_.decisions;
     report_.estimated_memory_bytes = plan_.memory.total();
-    work_ = work_of(scene, plan_);
     // Ranks exchange the same in every pass, so that all keep visibilities or none does.
     plan_.streaming.keep = !imager::any_of(ranks_, !plan_.streaming.keep);
     source_ = std::make_unique<imager::StreamedVisibilities>(*set_, plan_.streaming);

@@ -47,23 +47,6 @@ class RunPlanner {
     warn_of_neglected_w();
   }
 
-  /// How long it will take; of CLEAN, whose cycles nobody knows beforehand, what each of them takes.
-  void foretell(const TimeForecast& forecast, const imager::StageTimes& times) {
-    for (const auto& [stage, seconds] : times.stages()) plan_.spent.push_back({stage, "", seconds});
-    const RunWork work = work_of(scene_, plan_);
-    if (plan_.wider) plan_.decisions.push_back(search_decision(wide_field_, search_seconds(forecast.expected(work))));
-    const double all_s = total_seconds(expected_seconds(plan_, forecast, work));
-    decide("expected time", duration(all_s) + (o_.niter > 0 ? " without CLEAN" : ""),
-           forecast.knows(work) ? "from counts of operations, and what earlier runs took on this machine"
-                                : "from counts of operations; not all of them were timed on this machine before");
-    if (o_.niter == 0) return;
-    RunWork one = work;
-    one.components = std::min(o_.niter, 1000);
-    one.major_cycles = 1;
-    decide("expected time of a major cycle", duration(total_seconds(expected_seconds(plan_, forecast, one)) - all_s),
-           "with " + grouped(static_cast<long long>(one.components)) + " components");
-  }
-
   RunPlan take() { return std::move(plan_); }
 
  private:
@@ -106,14 +89,8 @@ class RunPlanner {
     imager::WideFieldFinder finder(scene_.geometry);
     scene_.set.visit_coordinates([&](const imager::SampleCoordinates& some) { finder.add(some); });
     finder.add_up(scene_.set.ranks());
-    wide_field_ = finder.field();
-    plan_.wider = std::make_unique<imager::GriddingPlan>(imager::plan_wide_field(wide_field_, request));
-  }
-
-  static double search_seconds(const std::vector<StageSeconds>& stages) {
-    for (const StageSeconds& s : stages)
-      if (s.stage == "sources outside") return s.seconds;
-    return 0;
+    plan_.wide_field = finder.field();
+    plan_.wider = std::make_unique<imager::GriddingPlan>(imager::plan_wide_field(plan_.wide_field, request));
   }
 
   static imager::WiderDemand wider_demand(const imager::GriddingPlan& wider, const imager::WideField& field) {
@@ -142,13 +119,13 @@ class RunPlanner {
   double least_memory(imager::GriddingRequest request, double bytes) const {
     limit_memory(bytes, request);
     std::optional<imager::WiderDemand> wider;
-    if (plan_.wider) wider = wider_demand(imager::plan_wide_field(wide_field_, request), wide_field_);
+    if (plan_.wider) wider = wider_demand(imager::plan_wide_field(plan_.wide_field, request), plan_.wide_field);
     return imager::peak_memory(demand_of(imager::plan_gridding(request), wider), least_streaming).total();
   }
 
   void decide_memory(const std::function<double(double)>& least_with) {
     std::optional<imager::WiderDemand> wider;
-    if (plan_.wider) wider = wider_demand(*plan_.wider, wide_field_);
+    if (plan_.wider) wider = wider_demand(*plan_.wider, plan_.wide_field);
     const MemoryPlan memory = plan_memory(demand_of(plan_.gridding, wider), o_, memory_of_a_process(scene_.ranks), least_with);
     plan_.streaming = memory.streaming;
     constexpr double least_lambda = 1;  // where samples of u = v = 0 alone have cells, too
@@ -169,23 +146,47 @@ class RunPlanner {
   const RunScene& scene_;
   const ImageOptions& o_;
   ProgressLine& progress_;
-  imager::WideField wide_field_;
   RunPlan plan_;
 };
 
+double search_seconds(const std::vector<StageSeconds>& stages) {
+  for (const StageSeconds& s : stages)
+    if (s.stage == "sources outside") return s.seconds;
+  return 0;
+}
+
 }  // namespace
 
-RunPlan plan_run(const RunScene& scene, const TimeForecast& forecast, imager::StageTimes& times, ProgressLine& progress) {
+RunPlan plan_run(const RunScene& scene, imager::StageTimes& times, ProgressLine& progress) {
   check(scene.options.scale, scene.ranks);
   RunPlanner planner(scene, progress);
   {
     const imager::StageTimer timer(times, "plan");
     planner.decide_all();
   }
-  planner.foretell(forecast, times);
-  RunPlan plan = planner.take();
-  if (scene.options.scale.nodes > 0) plan.scale = ScaleForecast(scene, plan, forecast).table();
-  return plan;
+  return planner.take();
+}
+
+void foretell(const RunScene& scene, const TimeForecast& forecast, const RunWork& work, const imager::StageTimes& times,
+              RunPlan& plan) {
+  for (const auto& [stage, seconds] : times.stages()) plan.spent.push_back({stage, "", seconds});
+  if (plan.wider) plan.decisions.push_back(search_decision(plan.wide_field, search_seconds(forecast.expected(work))));
+  const bool cleans = scene.options.niter > 0;
+  plan.decisions.push_back(
+      {"expected time", duration(total_seconds(expected_seconds(plan, forecast, work))) + (cleans ? " without CLEAN" : ""),
+       forecast.knows(work) ? "from counts of operations, and what earlier runs took on this machine"
+                            : "from counts of operations; not all of them were timed on this machine before"});
+  if (cleans) {
+    const int components = components_of_a_cycle(scene.options);
+    const auto seconds = [&](int cycles) { return total_seconds(forecast.expected(with_cycles(work, cycles, components))); };
+    plan.decisions.push_back(
+        {"expected time of a major cycle", duration(seconds(2) - seconds(1)), "with " + grouped(components) + " components"});
+  }
+  if (scene.options.scale.nodes > 0) plan.scale = ScaleForecast(scene, plan, forecast, work).table();
+}
+
+int components_of_a_cycle(const ImageOptions& options) {
+  return std::min(options.niter, 1000);
 }
 
 RunWork work_of(const RunScene& scene, const RunPlan& plan) {
@@ -197,6 +198,7 @@ RunWork work_of(const RunScene& scene, const RunPlan& plan) {
           .planes = scene.planes,
           .workers = scene.planes > 1 ? scene.workers * scene.ranks.size() : 1,
           .ranks = (scene.planes > 1 ? scene.ranks : scene.set.ranks()).size(),
+          .kept = plan.streaming.keep,
           .pixels = static_cast<double>(scene.geometry.pixels()),
           .images = (o.nterms > 1 ? static_cast<int>(taylor_products(o.nterms, o.niter > 0).size())
                                   : 1 + stokes * (o.niter > 0 ? 3 : 1)) +

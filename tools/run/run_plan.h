@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "imager/outside/wide_search.h"
 #include "imager/plan/gridding_plan.h"
 #include "imager/plan/memory_use.h"
 #include "imager/plan/plan.h"
@@ -34,6 +35,7 @@ struct RunScene {
 struct RunPlan {
   imager::GriddingPlan gridding;
   std::unique_ptr<imager::GriddingPlan> wider;  ///< of the field to search for sources outside; null without
+  imager::WideField wide_field;                 ///< which it is
   imager::StreamingOptions streaming;
   imager::MemoryUse memory;             ///< at its peak
   std::vector<StageSeconds> spent;      ///< on the stages up to here
@@ -42,9 +44,17 @@ struct RunPlan {
   std::string scale{};                  ///< what ScaleForecast says of --nodes; empty without
 };
 
-/// Plans the gridding, the search for sources outside, the memory, and foretells the time. How an option is understood is said
-/// on `progress`. Stages timed: "plan". Throws what plan_gridding and plan_memory do.
-RunPlan plan_run(const RunScene& scene, const TimeForecast& forecast, imager::StageTimes& times, ProgressLine& progress);
+/// Plans the gridding, the search for sources outside, and the memory. How an option is understood is said on `progress`.
+/// Stages timed: "plan". Throws what plan_gridding and plan_memory do.
+RunPlan plan_run(const RunScene& scene, imager::StageTimes& times, ProgressLine& progress);
+
+/// Adds to the plan how long it will take, after what `times` says of the stages before; of CLEAN, whose cycles nobody knows
+/// beforehand, what each of them takes; and what --nodes asks for. `work` is that of the plan.
+void foretell(const RunScene& scene, const TimeForecast& forecast, const RunWork& work, const imager::StageTimes& times,
+              RunPlan& plan);
+
+/// That a major cycle is expected to find.
+int components_of_a_cycle(const ImageOptions& options);
 
 /// What the time of the planned run depends on, without CLEAN. Points to what `plan` holds.
 RunWork work_of(const RunScene& scene, const RunPlan& plan);

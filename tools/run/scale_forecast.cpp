@@ -75,8 +75,8 @@ class ScaleForecast::Facets {
   imager::GriddingPlan plan;
 };
 
-ScaleForecast::ScaleForecast(const RunScene& scene, const RunPlan& plan, const TimeForecast& forecast)
-    : scene_(scene), plan_(plan), forecast_(forecast), work_(tools::work_of(scene, plan)), clean_(scene.options.niter > 0) {}
+ScaleForecast::ScaleForecast(const RunScene& scene, const RunPlan& plan, const TimeForecast& forecast, const RunWork& work)
+    : scene_(scene), plan_(plan), forecast_(forecast), work_(work), clean_(scene.options.niter > 0) {}
 
 RunWork ScaleForecast::work_of_a_node(int nodes) const {
   RunWork work = work_;
@@ -87,34 +87,26 @@ RunWork ScaleForecast::work_of_a_node(int nodes) const {
   return work;
 }
 
-RunWork ScaleForecast::with_cycles(RunWork work, int cycles) const {
-  work.components = 1.0 * cycles * components_of_a_cycle();
-  work.major_cycles = cycles;
-  return work;
-}
-
-int ScaleForecast::components_of_a_cycle() const {
-  return std::min(scene_.options.niter, 1000);
-}
-
 /// A second cycle, which has no part in what is done once after the last.
 NodeSeconds ScaleForecast::cycle_seconds(const RunWork& work) const {
-  return seconds_of(with_cycles(work, 2)) - seconds_of(with_cycles(work, 1));
+  const int components = components_of_a_cycle(scene_.options);
+  return seconds_of(with_cycles(work, 2, components)) - seconds_of(with_cycles(work, 1, components));
 }
 
 NodeSeconds ScaleForecast::seconds_of(const RunWork& work) const {
   NodeSeconds seconds;
-  for (const StageSeconds& stage : forecast_.expected(work)) part_of(seconds, stage.stage) += stage.seconds;
+  for (const StageSeconds& stage : forecast_.expected(work, work_)) part_of(seconds, stage.stage) += stage.seconds;
   return seconds;
 }
 
 double ScaleForecast::taking_in_seconds(double bytes) const {
-  return bytes * (1 / (scene_.options.scale.network_gb_s * 1e9) + 1 / added_bytes_s);
+  return bytes * (1 / (scene_.options.scale.network_bytes_s()) + 1 / added_bytes_s);
 }
 
 /// The first piece passes all nodes, and the others follow.
 double ScaleForecast::sum_seconds(int nodes, double bytes) const {
   if (nodes == 1) return 0;
+  if (!imager::pass_along_ranks(nodes, static_cast<std::size_t>(bytes) / sizeof(double))) return tree_seconds(nodes, bytes);
   const double piece = std::min(bytes, 1.0 * sizeof(double) * imager::chain_piece);
   return taking_in_seconds(bytes + (nodes - 2) * piece);
 }
@@ -142,8 +134,9 @@ NodeForecast ScaleForecast::at(int nodes) const {
   if (scene_.planes > 1) return plane_forecast(nodes);
   NodeForecast node;
   node.sharing.nodes = nodes;
-  const RunWork work = work_of_a_node(nodes);
+  RunWork work = work_of_a_node(nodes);
   set_memory(node, work.samples);
+  work.kept = node.kept;
   node.image = seconds_of(work);
   const int stokes = plan_.gridding.request.stokes, terms = scene_.options.nterms;
   const ExchangeForecast exchange = exchange_of(work.pixels, 3 * terms - 2 + stokes, terms);
@@ -151,9 +144,9 @@ NodeForecast ScaleForecast::at(int nodes) const {
   node.image.exchange = sum_seconds(nodes, node.image_bytes);
   if (!clean_) return node;
   node.cycle = cycle_seconds(work);
-  if (!node.kept) node.cycle.read = node.image.read;
   if (nodes > 1) node.cycle_bytes = exchange.cycle_bytes;
-  const double model_s = components_of_a_cycle() * sizeof(imager::Component) / (scene_.options.scale.network_gb_s * 1e9);
+  const double model_s =
+      components_of_a_cycle(scene_.options) * sizeof(imager::Component) / (scene_.options.scale.network_bytes_s());
   node.cycle.exchange = sum_seconds(nodes, node.cycle_bytes) + levels_of(nodes) * model_s;
   return node;
 }
@@ -164,20 +157,22 @@ NodeForecast ScaleForecast::plane_forecast(int nodes) const {
   RunWork work = work_;
   work.planes = planes;
   work.samples *= 1.0 * planes / scene_.planes;
-  work.workers = std::min(scene_.threads, planes);
+  work.workers = std::min(work_.workers, planes);
   work.ranks = 1;
   if (planes == 1) work.threads = scene_.threads;
   NodeForecast node;
   node.sharing.nodes = nodes;
-  set_memory(node, work.samples / planes);
-  for (const StageSeconds& stage : forecast_.expected(work)) {
+  set_memory(node, work.samples);
+  node.kept = work.kept;
+  node.memory_bytes = plan_.memory.total();  // which holds as many planes as it has room for
+  for (const StageSeconds& stage : forecast_.expected(work, work_)) {
     double& part = part_of(node.image, stage.stage);
     if (!is_of_files(stage)) (&part == &node.image.first ? node.image.gridding : part) += stage.seconds;
   }
   for (const StageSeconds& stage : forecast_.expected(work_))
     if (is_of_files(stage)) node.image.first += stage.seconds;
   if (nodes > 1) node.image_bytes = plane_bytes(work) * planes;
-  node.image.exchange = node.image_bytes * (nodes - 1) / (scene_.options.scale.network_gb_s * 1e9);
+  node.image.exchange = node.image_bytes * (nodes - 1) / (scene_.options.scale.network_bytes_s());
   if (!clean_) return node;
   node.cycle = cycle_seconds(work);
   node.cycle.gridding += std::exchange(node.cycle.first, 0);
@@ -186,13 +181,14 @@ NodeForecast ScaleForecast::plane_forecast(int nodes) const {
 
 NodeForecast ScaleForecast::facet_forecast(int nodes, const Facets& facets) const {
   const int group = nodes / facets.count;  // nodes that share the samples
-  const double network = scene_.options.scale.network_gb_s * 1e9;
+  const double network = scene_.options.scale.network_bytes_s();
   const NodeForecast rows = at(nodes);
   NodeForecast node = rows;
   node.sharing.facets = facets.count;
   RunWork work = work_of_a_node(group);
   const double samples = work.samples, threads = work.threads, all_images = sizeof(double) * work.pixels;
   set_memory(node, samples);
+  work.kept = node.kept;
   work.plan = &facets.plan;
   const NodeSeconds image = seconds_of(work), cycle = cycle_seconds(work);
   const double turned_s = turned_sample_s * samples / threads;
@@ -207,7 +203,7 @@ NodeForecast ScaleForecast::facet_forecast(int nodes, const Facets& facets) cons
   if (!clean_) return node;
   share(node.cycle, cycle, rows.cycle_bytes);
   node.cycle.gridding += turned_s;
-  node.cycle.read = node.kept ? 0 : image.read;
+  node.cycle.read = cycle.read;
   // What the facets' models add up to, at each sample; and the model, which is of the whole image.
   const double sums = 2.0 * (facets.count - 1) / facets.count;
   node.cycle.exchange += sums * samples * sizeof(std::complex<double>) / network;
@@ -240,8 +236,9 @@ std::string ScaleForecast::row(const NodeForecast& node) const {
   const double alone = at(1).shown(clean_).total();
   std::string line = column(grouped(node.sharing.nodes), 9);
   for (const double seconds : {s.total(), s.read, s.gridding, s.fft, s.exchange, s.first})
-    line += column(duration(seconds), 13);
-  line += column(significant(100 * alone / s.total() / node.sharing.nodes, 2) + "%", 7);
+    line += column(duration(seconds), 15);
+  const double used = 100 * alone / s.total() / node.sharing.nodes;
+  line += column(used < 0.1 ? "<0.1%" : significant(used, 2) + "%", 8);
   const bool reads = !clean_ || !node.kept;
   for (const double bytes : {reads ? node.read_bytes : 0, clean_ ? node.cycle_bytes : node.image_bytes, node.memory_bytes})
     line += column(bytes_text(bytes), 11);
@@ -265,14 +262,14 @@ std::string ScaleForecast::why(const NodeForecast& node) const {
 std::string ScaleForecast::table() const {
   const ScaleOptions& asked = scene_.options.scale;
   const std::string what = scene_.planes > 1 ? (clean_ ? "a major cycle of every plane" : "the cube")
-                           : clean_          ? "a major cycle of " + grouped(components_of_a_cycle()) + " components"
-                                             : "dirty image and PSF";
+                           : clean_ ? "a major cycle of " + grouped(components_of_a_cycle(scene_.options)) + " components"
+                                    : "dirty image and PSF";
   std::string text = "nodes: time of " + what + ", for " + grouped(std::llround(work_.samples)) + " samples on nodes of " +
-                     std::to_string(scene_.threads) + " threads, with " + significant(asked.network_gb_s, 3) +
+                     std::to_string(scene_.threads) + " threads, with " + significant(asked.network_bytes_s() / 1e9, 3) +
                      " GB/s between them\n";
   text += column("nodes", 9);
-  for (const char* name : {"total", "read", "gridding", "FFTs", "exchange", "rank 0"}) text += column(name, 13);
-  text += column("used", 7);
+  for (const char* name : {"total", "read", "gridding", "FFTs", "exchange", "rank 0"}) text += column(name, 15);
+  text += column("used", 8);
   for (const char* name : {"reads", "gives", "holds"}) text += column(name, 11);
   text += "\n";
   for (int nodes = 1; nodes < asked.nodes; nodes *= 2) text += row(at(nodes));
@@ -281,28 +278,29 @@ std::string ScaleForecast::table() const {
   const NodeForecast there = at(stop), twice = at(2 * stop);
   text += "nodes: more than " + grouped(stop) + " do not help: twice as many are " +
           significant(there.shown(clean_).total() / twice.shown(clean_).total(), 3) + " times as fast; " + why(twice) + "\n";
-  if (scene_.planes == 1 && asked.nodes > 2) {
-    const double bytes = clean_ ? at(asked.nodes).cycle_bytes : at(asked.nodes).image_bytes;
+  const double bytes = clean_ ? at(asked.nodes).cycle_bytes : at(asked.nodes).image_bytes;
+  if (const double tree_s = tree_seconds(asked.nodes, bytes);
+      scene_.planes == 1 && sum_seconds(asked.nodes, bytes) < 0.9 * tree_s)
     text += "nodes: images are added up on their way along the nodes, in pieces: " + duration(sum_seconds(asked.nodes, bytes)) +
             " of " + grouped(asked.nodes) + " nodes, where a tree would take " + duration(tree_seconds(asked.nodes, bytes)) +
             "\n";
+}
+std::optional<int> before;
+for (const int nodes : {asked.nodes, 4 * stop}) {
+  if (before == nodes || scene_.planes > 1) continue;
+  before = nodes;
+  const NodeForecast rows = at(nodes), facets = best_facets(nodes);
+  const std::string of = "nodes: facets shared among " + grouped(nodes);
+  if (facets.sharing.facets == 1) {
+    text += of + " would gain nothing\n";
+    continue;
   }
-  std::optional<int> before;
-  for (const int nodes : {asked.nodes, 4 * stop}) {
-    if (before == nodes || scene_.planes > 1) continue;
-    before = nodes;
-    const NodeForecast rows = at(nodes), facets = best_facets(nodes);
-    const std::string of = "nodes: facets shared among " + grouped(nodes);
-    if (facets.sharing.facets == 1) {
-      text += of + " would gain nothing\n";
-      continue;
-    }
-    const NodeSeconds& s = facets.shown(clean_);
-    text += of + ", " + std::to_string(facets.sharing.facets) + " of them, would take " + duration(s.total()) + " instead of " +
-            duration(rows.shown(clean_).total()) + ": gridding " + duration(s.gridding) + ", FFTs " + duration(s.fft) +
-            ", exchange " + duration(s.exchange) + ", rank 0 " + duration(s.first) + "\n";
-  }
-  return text;
+  const NodeSeconds& s = facets.shown(clean_);
+  text += of + ", " + std::to_string(facets.sharing.facets) + " of them, would take " + duration(s.total()) + " instead of " +
+          duration(rows.shown(clean_).total()) + ": gridding " + duration(s.gridding) + ", FFTs " + duration(s.fft) +
+          ", exchange " + duration(s.exchange) + ", rank 0 " + duration(s.first) + "\n";
+}
+return text;
 }
 
 }  // namespace misfit::tools

@@ -42,8 +42,8 @@ struct NodeForecast {
 /// their way from node to node, in pieces that follow each other, over a network of the bandwidth given.
 class ScaleForecast {
  public:
-  /// Kept by reference.
-  ScaleForecast(const RunScene& scene, const RunPlan& plan, const TimeForecast& forecast);
+  /// Kept by reference, but for `work`, the plan's.
+  ScaleForecast(const RunScene& scene, const RunPlan& plan, const TimeForecast& forecast, const RunWork& work);
 
   /// What is built: ranks share samples, or the planes of a cube.
   NodeForecast at(int nodes) const;
@@ -62,8 +62,6 @@ class ScaleForecast {
   NodeForecast facet_forecast(int nodes, const Facets& facets) const;
   NodeSeconds seconds_of(const RunWork& work) const;
   NodeSeconds cycle_seconds(const RunWork& work) const;
-  RunWork with_cycles(RunWork work, int cycles) const;
-  int components_of_a_cycle() const;
   void set_memory(NodeForecast& forecast, double samples) const;
   double taking_in_seconds(double bytes) const;
   double sum_seconds(int nodes, double bytes) const;

@@ -1,7 +1,6 @@
 #include "tools/run/scale_options.h"
 
 #include <CLI/CLI.hpp>
-#include <cmath>
 #include <stdexcept>
 #include <string>
 
@@ -19,7 +18,7 @@ void declare(CLI::App& command, ScaleOptions& o) {
                      "With --dry-run: print how long up to so many machines like this one would take, each with --threads and "
                      "--memory, and where more of them do not help");
   command.add_option("--visibilities", o.visibilities, "With --nodes: as if the data had so many samples, such as 1e12");
-  command.add_option("--network", o.network_gb_s, "With --nodes: GB/s between machines; 12.5 is a network of 100 Gbit/s");
+  command.add_option("--network", o.network_gb_s, "With --nodes: GB/s between machines; 12.5, a network of 100 Gbit/s, when 0");
 }
 
 void check(const ScaleOptions& o, bool dry_run) {
@@ -27,11 +26,12 @@ void check(const ScaleOptions& o, bool dry_run) {
     refuse_option("nodes", std::to_string(o.nodes), "0 (none) to " + std::to_string(most_nodes) + " machines");
   if (o.nodes > 0 && !dry_run)
     refuse_option("nodes", std::to_string(o.nodes), "--dry-run beside it; mpirun -n starts runs of several processes");
-  if (!(o.visibilities >= 0 && o.visibilities <= 1e18))
-    refuse_option("visibilities", typed(o.visibilities), "0 (those of the data) to 1e18");
+  if (o.visibilities != 0 && !(o.visibilities >= 1 && o.visibilities <= 1e18))
+    refuse_option("visibilities", typed(o.visibilities), "0 (those of the data), or 1 to 1e18");
   if (o.visibilities > 0 && o.nodes == 0) refuse_option("visibilities", typed(o.visibilities), "--nodes beside it");
-  if (!(o.network_gb_s > 0 && std::isfinite(o.network_gb_s)))
-    refuse_option("network", typed(o.network_gb_s), "more than 0, in GB/s");
+  if (o.network_gb_s != 0 && !(o.network_gb_s >= 1e-3 && o.network_gb_s <= 1e6))
+    refuse_option("network", typed(o.network_gb_s), "0.001 to 1e6, in GB/s");
+  if (o.network_gb_s != 0 && o.nodes == 0) refuse_option("network", typed(o.network_gb_s), "--nodes beside it");
 }
 
 void check(const ScaleOptions& o, const imager::Ranks& ranks) {

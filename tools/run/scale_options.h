@@ -10,10 +10,11 @@ namespace misfit::tools {
 
 /// What --dry-run tells of machines that are not there.
 struct ScaleOptions {
-  int nodes = 0;               ///< machines, a rank on each; 0: nothing is told of any
-  double visibilities = 0;     ///< as if the data had so many samples; 0: those that they have
-  double network_gb_s = 12.5;  ///< 10^9 bytes that a node sends, or gets, in a second
+  int nodes = 0;            ///< machines, a rank on each; 0: nothing is told of any
+  double visibilities = 0;  ///< as if the data had so many samples; 0: those that they have
+  double network_gb_s = 0;  ///< 10^9 bytes that a node sends, or gets, in a second; 0: of a network of 100 Gbit/s
 
+  double network_bytes_s() const { return network_gb_s > 0 ? network_gb_s * 1e9 : 12.5e9; }
   /// The samples that are planned for over those there are.
   double enlarged(double samples) const { return visibilities > 0 ? visibilities / samples : 1; }
 };

@@ -159,7 +159,8 @@ std::vector<StageSeconds> cube_seconds(const RunWork& w) {
 
 std::vector<StageSeconds> counted_seconds(const RunWork& w) {
   if (w.planes > 1) return cube_seconds(w);
-  std::vector<StageSeconds> stages{{"read", "reading", 4e-9 * w.samples + 1e-7 * w.rows}};
+  const double passes = w.kept ? 1 : 1 + (w.density ? 1 : 0) + w.major_cycles;
+  std::vector<StageSeconds> stages{{"read", "reading", passes * (4e-9 * w.samples + 1e-7 * w.rows)}};
   if (w.density) stages.push_back({"weights", "weighting by density", weight_seconds(w)});
   add_pass(w, true, 1, stages);
   add_taylor_pass(w, stages);
@@ -180,6 +181,12 @@ std::vector<StageSeconds> counted_seconds(const RunWork& w) {
   stages.push_back({"write images", "writing images", 1e-8 * w.pixels * w.images});
   stages.push_back({"draw pictures", "drawing pictures", 0.07 * w.pictures + 1e-9 * w.pixels * w.pictures});
   return stages;
+}
+
+RunWork with_cycles(RunWork work, int cycles, int components) {
+  work.major_cycles = cycles;
+  work.components = 1.0 * cycles * components;
+  return work;
 }
 
 double total_seconds(const std::vector<StageSeconds>& stages) {
@@ -217,10 +224,11 @@ double TimeForecast::log_factor(const std::string& kind, const std::string& size
   return log;
 }
 
-std::vector<StageSeconds> TimeForecast::expected(const RunWork& work) const {
+std::vector<StageSeconds> TimeForecast::expected(const RunWork& work, const RunWork& as_large) const {
   std::vector<StageSeconds> sums;
+  const std::string size = size_of(as_large);
   for (StageSeconds counted : counted_seconds(work)) {
-    counted.seconds *= std::exp(log_factor(counted.kind, size_of(work)));
+    counted.seconds *= std::exp(log_factor(counted.kind, size));
     const auto same = std::find_if(sums.begin(), sums.end(), [&](const StageSeconds& s) { return s.stage == counted.stage; });
     if (same == sums.end()) {
       sums.push_back(counted);

@@ -15,9 +15,10 @@ struct RunWork {
   const imager::GriddingPlan* plan = nullptr;
   double rows = 0;  ///< of the visibilities
   double samples = 0;
-  int planes = 1;   ///< of frequency; each has a part of the samples, and all that follows is of each
-  int workers = 1;  ///< planes made at a time by all ranks, which share their threads
-  int ranks = 1;    ///< that share the samples of an image, of which these are one's, or the planes of a cube
+  int planes = 1;    ///< of frequency; each has a part of the samples, and all that follows is of each
+  int workers = 1;   ///< planes made at a time by all ranks, which share their threads
+  int ranks = 1;     ///< that share the samples of an image, of which these are one's, or the planes of a cube
+  bool kept = true;  ///< whether visibilities are read once, or in every pass
   double pixels = 0;
   int images = 2;    ///< files
   int pictures = 2;  ///< drawn
@@ -46,6 +47,9 @@ std::vector<StageSeconds> counted_seconds(const RunWork& work);
 
 double total_seconds(const std::vector<StageSeconds>& stages);
 
+/// The work with so many major cycles, of so many components each.
+RunWork with_cycles(RunWork work, int cycles, int components);
+
 /// Expects the seconds of runs from their counts of operations and from how long earlier runs on this machine really took: for
 /// each kind of work a factor for runs of about the same size (powers of two of samples and pixels), of the size nearest to a
 /// run's. They are kept in a file, and every run makes them a little better. They decide nothing but what is printed.
@@ -54,7 +58,9 @@ class TimeForecast {
   /// Reads times.json in `folder`, if it is there and of this machine; an empty path keeps nothing.
   explicit TimeForecast(const std::filesystem::path& folder);
 
-  std::vector<StageSeconds> expected(const RunWork& work) const;
+  std::vector<StageSeconds> expected(const RunWork& work) const { return expected(work, work); }
+  /// The same by the speed of runs as large as another, so that works of several sizes compare.
+  std::vector<StageSeconds> expected(const RunWork& work, const RunWork& as_large) const;
   /// Whether runs like this have been timed here.
   bool knows(const RunWork& work) const;
   /// Takes in what a run took, and keeps it. Stages of less than 5 ms say nothing.
