@@ -282,25 +282,23 @@ std::string ScaleForecast::table() const {
   if (const double tree_s = tree_seconds(asked.nodes, bytes);
       scene_.planes == 1 && sum_seconds(asked.nodes, bytes) < 0.9 * tree_s)
     text += "nodes: images are added up on their way along the nodes, in pieces: " + duration(sum_seconds(asked.nodes, bytes)) +
-            " of " + grouped(asked.nodes) + " nodes, where a tree would take " + duration(tree_seconds(asked.nodes, bytes)) +
-            "\n";
-}
-std::optional<int> before;
-for (const int nodes : {asked.nodes, 4 * stop}) {
-  if (before == nodes || scene_.planes > 1) continue;
-  before = nodes;
-  const NodeForecast rows = at(nodes), facets = best_facets(nodes);
-  const std::string of = "nodes: facets shared among " + grouped(nodes);
-  if (facets.sharing.facets == 1) {
-    text += of + " would gain nothing\n";
-    continue;
+            " of " + grouped(asked.nodes) + " nodes, where a tree would take " + duration(tree_s) + "\n";
+  std::optional<int> before;
+  for (const int nodes : {asked.nodes, 4 * stop}) {
+    if (before == nodes || scene_.planes > 1) continue;
+    before = nodes;
+    const NodeForecast rows = at(nodes), facets = best_facets(nodes);
+    const std::string of = "nodes: facets shared among " + grouped(nodes);
+    if (facets.sharing.facets == 1) {
+      text += of + " would gain nothing\n";
+      continue;
+    }
+    const NodeSeconds& s = facets.shown(clean_);
+    text += of + ", " + std::to_string(facets.sharing.facets) + " of them, would take " + duration(s.total()) + " instead of " +
+            duration(rows.shown(clean_).total()) + ": gridding " + duration(s.gridding) + ", FFTs " + duration(s.fft) +
+            ", exchange " + duration(s.exchange) + ", rank 0 " + duration(s.first) + "\n";
   }
-  const NodeSeconds& s = facets.shown(clean_);
-  text += of + ", " + std::to_string(facets.sharing.facets) + " of them, would take " + duration(s.total()) + " instead of " +
-          duration(rows.shown(clean_).total()) + ": gridding " + duration(s.gridding) + ", FFTs " + duration(s.fft) +
-          ", exchange " + duration(s.exchange) + ", rank 0 " + duration(s.first) + "\n";
-}
-return text;
+  return text;
 }
 
 }  // namespace misfit::tools
