@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <optional>
 
@@ -95,7 +96,8 @@ class Search {
     if (has_w_axis()) {
       c.turns += request_.max_abs_w * largest_drop(g);
       const std::uint64_t at_once = std::max<std::size_t>(1, request_.samples_at_once);
-      c.work.gathers = std::max(1, static_cast<int>((request_.samples + at_once - 1) / at_once));
+      constexpr std::uint64_t most = std::numeric_limits<int>::max();
+      c.work.gathers = static_cast<int>(std::clamp<std::uint64_t>((request_.samples + at_once - 1) / at_once, 1, most));
     }
     c.cost_s = CostModel().seconds(c.work);
     if (has_w_axis()) split(c, 1, request_.kernel.min_width);  // the least that a w axis costs

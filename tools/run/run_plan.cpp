@@ -54,12 +54,18 @@ class RunPlanner {
     plan_.decisions.push_back({item, decision, because});
   }
 
-  /// A search outside shares the memory.
-  imager::GriddingPlan plan_gridding(const imager::GriddingRequest& request) const {
+  /// A search outside shares the memory. Ranks whose plans differed would not exchange the same: all gather as many samples as
+  /// the one with the least room.
+  imager::GriddingPlan plan_gridding(imager::GriddingRequest request) const {
     if (o_.check_outside) return imager::plan_gridding(request);
-    return plan_with_room(
-        request, [this](const imager::GriddingPlan& plan) { return demand_of(plan, {}); }, o_,
+    imager::GriddingPlan plan = plan_with_room(
+        request, [this](const imager::GriddingPlan& made) { return demand_of(made, {}); }, o_,
         memory_of_a_process(scene_.ranks));
+    const auto own = static_cast<double>(plan.request.samples_at_once);
+    const double least = -imager::largest_of(scene_.ranks, -own);
+    if (least == own) return plan;
+    request.samples_at_once = static_cast<std::size_t>(least);
+    return imager::plan_gridding(request);
   }
 
   void decide_pixels() {
