@@ -177,15 +177,24 @@ BOOST_AUTO_TEST_CASE(rows_without_a_usable_sample_are_left_out) {
   }
 }
 
-BOOST_AUTO_TEST_CASE(samples_in_no_plane_are_counted) {
+BOOST_AUTO_TEST_CASE(samples_in_no_plane_are_counted_once_by_the_ranges_together) {
   VisibilityBlock block = block_of(5);
   block.frame_ratio.assign(rows, 1);
-  const CubeSampling two{{first_hz + 2e6, channel_hz, 2, "TOPOCENT", 0}, SpectralInterpolation::linear};
-  std::uint64_t outside = 0;
-  for (std::size_t i = 0; i < block.samples(); ++i) outside += block.weight[i] != 0 && i % channels != 2 && i % channels != 3;
-  PlaneGatherer gatherer(two, {0, 1}, 1);
-  gatherer.add(block);
-  BOOST_TEST(gatherer.outside_planes() == outside);
+  const CubeSampling three{{first_hz + 2e6, channel_hz, 3, "TOPOCENT", 0}, SpectralInterpolation::linear};
+  std::uint64_t below = 0, above = 0;
+  for (std::size_t i = 0; i < block.samples(); ++i) {
+    below += block.weight[i] != 0 && i % channels < 2;
+    above += block.weight[i] != 0 && i % channels > 4;
+  }
+  const auto counted = [&](const PlaneRange& range) {
+    PlaneGatherer gatherer(three, range, 1);
+    gatherer.add(block);
+    return gatherer.outside_planes();
+  };
+  BOOST_TEST(counted({0, 3}) == below + above);
+  BOOST_TEST(counted({0, 1}) == below);
+  BOOST_TEST(counted({1, 1}) == 0U);
+  BOOST_TEST(counted({2, 1}) == above);
 }
 
 BOOST_AUTO_TEST_CASE(blocks_must_tell_the_widths_of_channels) {
