@@ -42,7 +42,7 @@ BOOST_AUTO_TEST_CASE(images_and_clean_are_those_of_one_process) {
   succeed(image(folder / "one") + options);
   const nlohmann::json one = report_of(folder / "one");
   BOOST_TEST(told_of_ranks(one) == 0U);
-  for (const int size : {1, 2, 3, 8}) {
+  for (const int size : {1, 2, 3, 4, 8}) {
     const std::string name = folder / std::to_string(size);
     succeed_together(size, image(name) + options);
     BOOST_TEST_CONTEXT(size << " ranks") {
