@@ -62,7 +62,7 @@ BOOST_AUTO_TEST_CASE(one_node_takes_what_the_plan_expects) {
     if (planes == 1)
       BOOST_TEST(one.image.total() == expected, nearly);
     else
-      BOOST_TEST(one.image.total() >= expected);
+      BOOST_TEST(one.image.total() >= expected * (1 - 1e-9));
     BOOST_TEST(one.image.exchange == 0);
     BOOST_TEST(one.cycle.total() == 0);
   }
@@ -77,7 +77,8 @@ BOOST_AUTO_TEST_CASE(samples_are_shared_and_images_are_not) {
     const NodeForecast some = scale.at(nodes);
     BOOST_TEST_CONTEXT(nodes << " nodes") {
       for (const auto& [is, was] : {std::pair(some.image, one.image), {some.cycle, one.cycle}}) {
-        BOOST_TEST(is.gridding == was.gridding / nodes, nearly);
+        BOOST_TEST(is.gridding >= was.gridding / nodes * (1 - 1e-9));
+        BOOST_TEST(is.gridding <= was.gridding / nodes + is.fft);  // grids, which each node has, are less than their FFTs
         BOOST_TEST(is.fft == was.fft, nearly);
         BOOST_TEST(is.first == was.first, nearly);
         BOOST_TEST(is.exchange > 0);
@@ -135,7 +136,6 @@ BOOST_AUTO_TEST_CASE(facets_are_taken_where_they_gain) {
   BOOST_TEST(facets.cycle.total() < rows.cycle.total());
   BOOST_TEST(facets.cycle.fft < rows.cycle.fft);
   BOOST_TEST(facets.cycle.exchange < rows.cycle.exchange);
-  BOOST_TEST(facets.cycle.gridding > rows.cycle.gridding);
   BOOST_TEST(facets.cycle.first == rows.cycle.first, nearly);
 }
 
