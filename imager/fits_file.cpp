@@ -2,10 +2,14 @@
 
 #include <fitsio.h>
 
+#include <algorithm>
 #include <array>
+#include <cerrno>
 #include <cmath>
+#include <cstring>
 #include <filesystem>
 #include <limits>
+#include <mutex>
 #include <stdexcept>
 
 #include "kernels/cfitsio_mutex.h"
@@ -23,14 +27,40 @@ struct FitsFile::Handle {
   fitsfile* file = nullptr;
 };
 
+namespace {
+
+/// One at a time, whose failure errno tells of, where the system caused it.
+class CallOfCfitsio {
+ public:
+  CallOfCfitsio() : lock_(kernels::cfitsio_mutex()) { errno = 0; }
+
+ private:
+  std::lock_guard<std::mutex> lock_;
+};
+
+/// Whether a disk failed. CFITSIO 4.2 does not look whether what its buffers held could be written before it moves to another
+/// place of the file, and goes on without it.
+bool is_lost_write(int error) {
+  constexpr std::array errors{ENOSPC, EDQUOT, EIO, EFBIG};
+  return std::find(errors.begin(), errors.end(), error) != errors.end();
+}
+
+/// Whether the system refused something: CFITSIO leaves other numbers in errno as well.
+bool is_of_the_system(int error) {
+  constexpr std::array errors{EROFS, EACCES, EPERM, ENOMEM, EMFILE, ENFILE, ENAMETOOLONG};
+  return is_lost_write(error) || std::find(errors.begin(), errors.end(), error) != errors.end();
+}
+
+}  // namespace
+
 FitsFile::FitsFile(std::string doing, std::string path)
     : doing_(std::move(doing)), path_(std::move(path)), handle_(std::make_unique<Handle>()) {
-  const std::lock_guard lock(kernels::cfitsio_mutex());
+  const CallOfCfitsio call;
   fits_clear_errmsg();
 }
 
 FitsFile::~FitsFile() {
-  const std::lock_guard lock(kernels::cfitsio_mutex());
+  const CallOfCfitsio call;
   int status = 0;
   if (handle_->file != nullptr) fits_close_file(handle_->file, &status);
   fits_clear_errmsg();
@@ -38,19 +68,19 @@ FitsFile::~FitsFile() {
 
 // CFITSIO's "disk file" calls take the name as it stands; an absolute one keeps them from expanding a tilde.
 void FitsFile::create(const std::string& name) {
-  const std::lock_guard lock(kernels::cfitsio_mutex());
+  const CallOfCfitsio call;
   int status = 0;
   check(fits_create_diskfile(&handle_->file, std::filesystem::absolute(name).c_str(), &status));
 }
 
 void FitsFile::open(const std::string& name) {
-  const std::lock_guard lock(kernels::cfitsio_mutex());
+  const CallOfCfitsio call;
   int status = 0;
   check(fits_open_diskfile(&handle_->file, std::filesystem::absolute(name).c_str(), READONLY, &status));
 }
 
 void FitsFile::close() {
-  const std::lock_guard lock(kernels::cfitsio_mutex());
+  const CallOfCfitsio call;
   int status = 0;
   fits_close_file(handle_->file, &status);
   handle_->file = nullptr;
@@ -62,7 +92,12 @@ void FitsFile::fail(const std::string& reason) const {
 }
 
 void FitsFile::check(int status) const {
-  if (status == 0) return;
+  const int error = errno;
+  if (status == 0 && !is_lost_write(error)) return;
+  if (is_of_the_system(error)) {
+    fits_clear_errmsg();
+    fail(std::strerror(error));
+  }
   std::array<char, FLEN_STATUS> text{};
   fits_get_errstatus(status, text.data());
   std::string reason = text.data();
@@ -72,43 +107,43 @@ void FitsFile::check(int status) const {
 }
 
 void FitsFile::write_number(const std::string& key, double value, const std::string& comment) {
-  const std::lock_guard lock(kernels::cfitsio_mutex());
+  const CallOfCfitsio call;
   int status = 0;
   check(fits_update_key(handle_->file, TDOUBLE, key.c_str(), &value, comment.c_str(), &status));
 }
 
 void FitsFile::write_text(const std::string& key, const std::string& value, const std::string& comment) {
-  const std::lock_guard lock(kernels::cfitsio_mutex());
+  const CallOfCfitsio call;
   int status = 0;
   if (!value.empty()) check(fits_update_key_str(handle_->file, key.c_str(), value.c_str(), comment.c_str(), &status));
 }
 
 void FitsFile::write_integer(const std::string& key, int value, const std::string& comment) {
-  const std::lock_guard lock(kernels::cfitsio_mutex());
+  const CallOfCfitsio call;
   int status = 0;
   check(fits_update_key(handle_->file, TINT, key.c_str(), &value, comment.c_str(), &status));
 }
 
 void FitsFile::write_flag(const std::string& key, bool value, const std::string& comment) {
-  const std::lock_guard lock(kernels::cfitsio_mutex());
+  const CallOfCfitsio call;
   int status = 0, logical = value ? 1 : 0;
   check(fits_update_key(handle_->file, TLOGICAL, key.c_str(), &logical, comment.c_str(), &status));
 }
 
 void FitsFile::write_history(const std::string& line) {
-  const std::lock_guard lock(kernels::cfitsio_mutex());
+  const CallOfCfitsio call;
   int status = 0;
   check(fits_write_history(handle_->file, line.c_str(), &status));
 }
 
 void FitsFile::reserve_cards(int count) {
-  const std::lock_guard lock(kernels::cfitsio_mutex());
+  const CallOfCfitsio call;
   int status = 0;
   check(fits_set_hdrsize(handle_->file, count, &status));
 }
 
 bool FitsFile::read_key(const std::string& key, int type, void* value) const {
-  const std::lock_guard lock(kernels::cfitsio_mutex());
+  const CallOfCfitsio call;
   int status = 0;
   fits_read_key(handle_->file, type, key.c_str(), value, nullptr, &status);
   const bool absent = status == KEY_NO_EXIST || status == VALUE_UNDEFINED;
@@ -136,21 +171,21 @@ std::string FitsFile::text(const std::string& key) const {
 }
 
 void FitsFile::create_image(std::vector<long> size, PixelFormat format) {
-  const std::lock_guard lock(kernels::cfitsio_mutex());
+  const CallOfCfitsio call;
   int status = 0;
   check(fits_create_img(handle_->file, format == PixelFormat::float32 ? FLOAT_IMG : DOUBLE_IMG, static_cast<int>(size.size()),
                         size.data(), &status));
 }
 
 void FitsFile::write_pixels(std::vector<long> first, const std::vector<double>& pixels) {
-  const std::lock_guard lock(kernels::cfitsio_mutex());
+  const CallOfCfitsio call;
   int status = 0;
   check(fits_write_pix(handle_->file, TDOUBLE, first.data(), static_cast<LONGLONG>(pixels.size()),
                        const_cast<double*>(pixels.data()), &status));
 }
 
 std::vector<long> FitsFile::size() const {
-  const std::lock_guard lock(kernels::cfitsio_mutex());
+  const CallOfCfitsio call;
   int status = 0, axes = 0;
   check(fits_get_img_dim(handle_->file, &axes, &status));
   std::vector<long> size(static_cast<std::size_t>(axes));
@@ -159,7 +194,7 @@ std::vector<long> FitsFile::size() const {
 }
 
 void FitsFile::read_pixels(std::vector<long> first, std::vector<double>& pixels) const {
-  const std::lock_guard lock(kernels::cfitsio_mutex());
+  const CallOfCfitsio call;
   int status = 0, type = 0, any_blank = 0;
   check(fits_get_img_type(handle_->file, &type, &status));
   // Asked to look for blanks, CFITSIO rounds subnormal numbers to zero; only integers need it.
@@ -169,7 +204,7 @@ void FitsFile::read_pixels(std::vector<long> first, std::vector<double>& pixels)
 }
 
 void FitsFile::append_table(const std::string& name, const std::vector<FitsColumn>& columns) {
-  const std::lock_guard lock(kernels::cfitsio_mutex());
+  const CallOfCfitsio call;
   std::vector<char*> names, forms, units;
   std::string whole = "1J", real = "1E";
   for (const FitsColumn& column : columns) {
@@ -187,7 +222,7 @@ void FitsFile::append_table(const std::string& name, const std::vector<FitsColum
 }
 
 bool FitsFile::open_table(const std::string& name) {
-  const std::lock_guard lock(kernels::cfitsio_mutex());
+  const CallOfCfitsio call;
   int status = 0;
   std::string text = name;
   fits_movnam_hdu(handle_->file, BINARY_TBL, text.data(), 0, &status);
@@ -200,13 +235,13 @@ bool FitsFile::open_table(const std::string& name) {
 }
 
 void FitsFile::open_image() {
-  const std::lock_guard lock(kernels::cfitsio_mutex());
+  const CallOfCfitsio call;
   int status = 0;
   check(fits_movabs_hdu(handle_->file, 1, nullptr, &status));
 }
 
 std::vector<double> FitsFile::column(const std::string& name) const {
-  const std::lock_guard lock(kernels::cfitsio_mutex());
+  const CallOfCfitsio call;
   int status = 0, number = 0, any_null = 0;
   std::string text = name;
   check(fits_get_colnum(handle_->file, CASEINSEN, text.data(), &number, &status));

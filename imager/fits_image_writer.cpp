@@ -26,13 +26,11 @@ class FitsImageWriter : public ImageWriter {
  public:
   FitsImageWriter(const ImageHeader& header, const std::string& path, PixelFormat format)
       : target_(kernels::writable_target(path)),
-        temporary_(target_.string() + ".part"),
+        temporary_(kernels::temporary_beside(target_)),
         planes_(header),
         history_(header.history),
         file_("write", path) {
     stokes_axis(header.stokes);
-    std::error_code absent;
-    std::filesystem::remove(temporary_, absent);
     try {
       file_.create(temporary_);
       file_.create_image(

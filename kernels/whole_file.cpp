@@ -3,7 +3,9 @@
 #include <cerrno>
 #include <cstring>
 #include <fstream>
+#include <iomanip>
 #include <random>
+#include <regex>
 #include <sstream>
 #include <stdexcept>
 
@@ -12,19 +14,23 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A name beside `path` that nobody else uses, in another process or on another machine either.
-fs::path temporary_beside(const fs::path& path) {
-  std::random_device random;
-  std::ostringstream name;
-  name << path.string() << '.' << std::hex << random() << random() << ".part";
-  return name.str();
-}
-
 [[noreturn]] void fail(const std::string& doing, const fs::path& path, const std::string& reason) {
   throw std::runtime_error("cannot " + doing + " " + path.string() + ": " + reason);
 }
 
 }  // namespace
+
+fs::path temporary_beside(const fs::path& path) {
+  std::random_device random;
+  std::ostringstream name;
+  name << path.string() << '.' << std::hex << std::setfill('0') << std::setw(8) << random() << std::setw(8) << random() << ".part";
+  return name.str();
+}
+
+bool is_temporary(const fs::path& path) {
+  static const std::regex ending("\\.[0-9a-f]{16}\\.part$");
+  return std::regex_search(path.string(), ending);
+}
 
 std::vector<char> read_whole_file(const fs::path& path, std::size_t limit) {
   std::error_code error;

@@ -13,6 +13,13 @@ std::vector<char> read_whole_file(const std::filesystem::path& path, std::size_t
 /// regular file, as a device or a folder, since a new file would take its place.
 std::filesystem::path writable_target(const std::filesystem::path& path);
 
+/// A name beside `path` that nobody else uses, in another process or on another machine either: of a file that takes the name
+/// `path` when it is complete.
+std::filesystem::path temporary_beside(const std::filesystem::path& path);
+
+/// Whether a name is one that temporary_beside() gives.
+bool is_temporary(const std::filesystem::path& path);
+
 /// Writes `size` bytes; the file appears under its name only when complete, and whoever writes the same name at the same time
 /// does no harm. Throws std::runtime_error that names the path, and leaves nothing behind then.
 void write_whole_file(const std::filesystem::path& path, const char* bytes, std::size_t size);

@@ -52,23 +52,27 @@ inline const std::string& kernel_cache() {
   return path;
 }
 
+/// Turns a child process into another program, found on PATH, whose output goes to files.
+[[noreturn]] inline void become(const std::string& program, const Arguments& arguments, const std::string& out,
+                                const std::string& err, const std::string& cache) {
+  std::vector<char*> argv{const_cast<char*>(program.c_str())};
+  for (const std::string& argument : arguments) argv.push_back(const_cast<char*>(argument.c_str()));
+  argv.push_back(nullptr);
+  setenv("MISFIT_CACHE", cache.c_str(), 0);
+  dup2(open(out.c_str(), O_WRONLY | O_CREAT, 0600), STDOUT_FILENO);
+  dup2(open(err.c_str(), O_WRONLY | O_CREAT, 0600), STDERR_FILENO);
+  execvp(argv[0], argv.data());
+  _exit(127);
+}
+
 /// The program as a child process, or another one found on PATH; its output goes to files in a folder of its own.
 class Child {
  public:
   explicit Child(const Arguments& arguments, const std::string& program = MISFIT_PROGRAM) {
-    std::vector<char*> argv{const_cast<char*>(program.c_str())};
-    for (const std::string& argument : arguments) argv.push_back(const_cast<char*>(argument.c_str()));
-    argv.push_back(nullptr);
-    const std::string out = folder_ / "out", err = folder_ / "err";
-    const std::string& cache = kernel_cache();
+    const std::string out = folder_ / "out", err = folder_ / "err", cache = kernel_cache();
     pid_ = fork();
     BOOST_REQUIRE(pid_ >= 0);
-    if (pid_ != 0) return;
-    setenv("MISFIT_CACHE", cache.c_str(), 0);
-    dup2(open(out.c_str(), O_WRONLY | O_CREAT, 0600), STDOUT_FILENO);
-    dup2(open(err.c_str(), O_WRONLY | O_CREAT, 0600), STDERR_FILENO);
-    execvp(argv[0], argv.data());
-    _exit(127);
+    if (pid_ == 0) become(program, arguments, out, err, cache);
   }
 
   /// Waits until stderr holds `text`, or the program has ended.

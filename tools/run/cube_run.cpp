@@ -80,7 +80,7 @@ class CubeRun {
 
   void open() {
     const imager::StageTimer timer(times_, "open");
-    if (!o_.dry_run && ranks_.first()) check_product_paths(o_);
+    if (!o_.dry_run && ranks_.first()) name_ = claim_product_paths(o_);
     set_ = std::make_unique<ms_io::MeasurementSet>(o_.vis, selection_of(o_), o_.datacolumn, stokes_);
     for (const std::string& sentence : set_->incomplete_columns()) warn(sentence);
     windows_ = set_->spectral_windows();
@@ -267,6 +267,7 @@ class CubeRun {
 
   const ImageOptions& o_;
   const imager::Ranks& ranks_;
+  std::unique_ptr<NameLock> name_;  ///< the first rank's
   std::vector<imager::Stokes> stokes_;
   int threads_;
   ProgressLine progress_;

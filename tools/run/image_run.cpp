@@ -82,7 +82,7 @@ class ImageRun {
 
   void open() {
     const imager::StageTimer timer(times_, "open");
-    if (!o_.dry_run && ranks_.first()) check_product_paths(o_);
+    if (!o_.dry_run && ranks_.first()) name_ = claim_product_paths(o_);
     if (o_.savemodel == "modelcolumn" && ranks_.first())
       for (const std::string& set : o_.vis) ms_io::require_writable(set);
     set_ = std::make_unique<ms_io::MeasurementSet>(o_.vis, selection_of(o_), o_.datacolumn, stokes_);
@@ -339,6 +339,7 @@ class ImageRun {
 
   const ImageOptions& o_;
   const imager::Ranks& ranks_;
+  std::unique_ptr<NameLock> name_;  ///< the first rank's
   std::vector<imager::Stokes> stokes_;
   int threads_;
   ProgressLine progress_;

@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include "imager/stokes.h"
+#include "kernels/whole_file.h"
 #include "tools/run/image_files.h"
 #include "tools/run/taylor_options.h"
 
@@ -31,6 +32,17 @@ void remove_other_images(const ImageOptions& o, const std::vector<std::string>& 
       if (std::count(made.begin(), made.end(), path) > 0 || is_input(o, path) || !is_own_image(path)) continue;
       if (fs::remove_all(path, failed) > 0 && !failed) removed.push_back(path);
     }
+}
+
+void remove_half_written(const ImageOptions& o) {
+  const fs::path name = o.imagename;
+  const std::string begin = name.filename().string() + ".";
+  std::error_code failed;
+  std::vector<fs::path> halves;
+  for (const fs::directory_entry& entry : fs::directory_iterator(name.has_parent_path() ? name.parent_path() : ".", failed))
+    if (entry.path().filename().string().rfind(begin, 0) == 0 && kernels::is_temporary(entry.path()))
+      halves.push_back(entry.path());
+  for (const fs::path& half : halves) fs::remove(half, failed);
 }
 
 std::vector<std::string> remove_kinds(const ImageOptions& o, const std::vector<std::string>& kinds) {

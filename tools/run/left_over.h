@@ -17,6 +17,9 @@ bool is_input(const ImageOptions& options, const std::string& path);
 /// `made`, does not make; and adds them to `removed`.
 void remove_other_images(const ImageOptions& options, const std::vector<std::string>& made, std::vector<std::string>& removed);
 
+/// Removes files that a run of this name was writing when it was killed.
+void remove_half_written(const ImageOptions& options);
+
 /// Removes files <imagename>.<kind>; folders stay. Returns those that were there.
 std::vector<std::string> remove_kinds(const ImageOptions& options, const std::vector<std::string>& kinds);
 

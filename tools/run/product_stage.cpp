@@ -21,9 +21,12 @@ std::vector<imager::Image> alone(imager::Image image) {
 
 }  // namespace
 
-void check_product_paths(const ImageOptions& o) {
+std::unique_ptr<NameLock> claim_product_paths(const ImageOptions& o) {
   check_writable_folder(o.imagename);
   for (const std::string& kind : image_kinds()) check_image_paths(o.imagename + "." + kind, o.outformat);
+  auto lock = std::make_unique<NameLock>(o.imagename);
+  remove_half_written(o);
+  return lock;
 }
 
 ProductStage::ProductStage(const ImageOptions& options, ProductScene scene, imager::StageTimes& times)

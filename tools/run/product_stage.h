@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -10,6 +11,7 @@
 #include "imager/stage_times.h"
 #include "tools/run/image_options.h"
 #include "tools/run/image_products.h"
+#include "tools/run/name_lock.h"
 #include "tools/run/taylor_stage.h"
 #include "tools/run_page/report_page.h"
 
@@ -26,9 +28,10 @@ struct ProductScene {
   int threads = 1;
 };
 
-/// Throws std::runtime_error that names it where the folder of the images cannot be written, or something lies under the name
-/// of one that none may take the place of.
-void check_product_paths(const ImageOptions& options);
+/// Keeps the name of the images from other runs, and removes what one that was killed left half written. Throws
+/// std::runtime_error that names it where the folder of the images cannot be written, something lies under the name of one that
+/// none may take the place of, or another run is making them.
+std::unique_ptr<NameLock> claim_product_paths(const ImageOptions& options);
 
 /// The images, pictures and lists that `misfit image` leaves. Stages timed: "draw pictures", "restore", "write images".
 class ProductStage {

@@ -1,0 +1,21 @@
+#pragma once
+
+#include "tests/faults/traced_process.h"
+#include "tests/tools/program.h"
+
+namespace misfit::tools::testing {
+
+using misfit::testing::Answer, misfit::testing::SystemCall;
+
+/// The program, or another one found on PATH, while `answer` says what becomes of each of the `calls` that it makes.
+inline Outcome run_with_faults(const Arguments& arguments, const std::vector<long>& calls,
+                               const std::function<Answer(const SystemCall&)>& answer,
+                               const std::string& program = MISFIT_PROGRAM) {
+  const TemporaryFolder folder;
+  const std::string out = folder / "out", err = folder / "err", cache = kernel_cache();
+  const auto action = [&] { become(program, arguments, out, err, cache); };
+  const int code = misfit::testing::trace(action, calls, answer);
+  return {code, content(out), content(err)};
+}
+
+}  // namespace misfit::tools::testing
