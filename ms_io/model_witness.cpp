@@ -21,9 +21,9 @@ std::uint64_t fingerprint(const Column& column, std::uint64_t row, std::uint64_t
   if (row >= column.nrow() || !column.isDefined(row)) return 0;
   const casacore::IPosition shape = column.shape(row);
   if (shape.nelements() != 2 || static_cast<std::uint64_t>(shape(1)) <= channel) return 0;
-  const casacore::Array<casacore::Complex> part = column.getSlice(
+  const casacore::Array<casacore::Complex> piece = column.getSlice(
       row, casacore::Slicer(casacore::IPosition(2, 0, static_cast<ssize_t>(channel)), casacore::IPosition(2, shape(0), 1)));
-  return fingerprint(part.data(), part.nelements());
+  return fingerprint(piece.data(), piece.nelements());
 }
 
 bool refers_to_others(const casacore::Table& set) {

@@ -9,6 +9,7 @@
 #include <mutex>
 #include <sstream>
 
+#include "ms_io/lock_files.h"
 #include "ms_io/table_access_internal.h"
 
 namespace misfit::ms_io {
@@ -22,8 +23,8 @@ bool is_visibility_column(const casacore::ColumnDesc& column) {
 
 std::string visibility_columns(const casacore::TableDesc& description) {
   std::string list;
-  for (casacore::uInt i = 0; i < description.ncolumn(); ++i) {
-    if (is_visibility_column(description[i])) list += (list.empty() ? "" : ", ") + description[i].name();
+  for (casacore::uInt column = 0; column < description.ncolumn(); ++column) {
+    if (is_visibility_column(description[column])) list += (list.empty() ? "" : ", ") + description[column].name();
   }
   return list.empty() ? "none" : list;
 }
@@ -96,6 +97,7 @@ casacore::MeasurementSet open_measurement_set(const std::string& path, Access ac
   silence_casacore();
   std::error_code ignored;
   if (!std::filesystem::exists(path, ignored)) throw std::runtime_error(path + " does not exist; expected a MeasurementSet");
+  check_lock_files(path);
   return translated("cannot open " + path, [&] {
     try {
       return opened(path, access);

@@ -22,12 +22,12 @@
 
 namespace misfit::testing {
 
-const std::vector<long> changing_calls{SYS_rename,   SYS_renameat,  SYS_renameat2, SYS_unlink, SYS_unlinkat, SYS_rmdir,
-                                       SYS_mkdir,    SYS_mkdirat,   SYS_link,      SYS_linkat, SYS_symlink,  SYS_symlinkat,
-                                       SYS_write,    SYS_writev,    SYS_pwrite64,  SYS_pwritev, SYS_truncate, SYS_ftruncate,
-                                       SYS_fallocate, SYS_fsync,    SYS_fdatasync, SYS_openat, SYS_open,     SYS_creat};
+const std::vector<long> changing_calls{SYS_rename,    SYS_renameat, SYS_renameat2, SYS_unlink,  SYS_unlinkat, SYS_rmdir,
+                                       SYS_mkdir,     SYS_mkdirat,  SYS_link,      SYS_linkat,  SYS_symlink,  SYS_symlinkat,
+                                       SYS_write,     SYS_writev,   SYS_pwrite64,  SYS_pwritev, SYS_truncate, SYS_ftruncate,
+                                       SYS_fallocate, SYS_fsync,    SYS_fdatasync, SYS_openat,  SYS_open,     SYS_creat};
 const std::vector<long> reading_calls{SYS_read, SYS_pread64, SYS_readv, SYS_preadv};
-const std::vector<long> memory_calls{SYS_mmap, SYS_brk, SYS_mremap};
+const std::vector<long> memory_calls{SYS_mmap, SYS_mremap};
 
 namespace {
 
@@ -102,11 +102,12 @@ std::string SystemCall::path() const {
   };
   if (is_one_of(number, {SYS_openat, SYS_mkdirat, SYS_unlinkat, SYS_renameat, SYS_renameat2, SYS_linkat}))
     return text_at(thread_, argument[1]);
-  if (is_one_of(number, {SYS_open, SYS_creat, SYS_rename, SYS_unlink, SYS_rmdir, SYS_mkdir, SYS_link, SYS_symlink, SYS_truncate}))
+  if (is_one_of(number,
+                {SYS_open, SYS_creat, SYS_rename, SYS_unlink, SYS_rmdir, SYS_mkdir, SYS_link, SYS_symlink, SYS_truncate}))
     return text_at(thread_, argument[0]);
   if (number == SYS_symlinkat) return text_at(thread_, argument[0]);
   if (number == SYS_mmap) return (argument[3] & 0x20) != 0 ? "" : of(argument[4]);  // MAP_ANONYMOUS
-  return is_one_of(number, {SYS_brk, SYS_mremap}) ? "" : of(argument[0]);
+  return number == SYS_mremap ? "" : of(argument[0]);
 }
 
 bool SystemCall::changes_file() const {

@@ -1,0 +1,71 @@
+// Runs to which the system refuses memory.
+#include <sys/syscall.h>
+
+#include "tests/faults/replaced_products.h"
+
+BOOST_AUTO_TEST_SUITE(memory)
+
+using namespace misfit::tools::testing;
+using misfit::testing::memory_calls;
+
+namespace {
+
+/// Memory alone, not what makes a file readable; once the program has begun to work.
+bool asks_for_memory(const SystemCall& call) {
+  return (call.number != SYS_mmap || call.path().empty()) && std::filesystem::exists(products().path("a.lock"));
+}
+
+}  // namespace
+
+/// Small pieces come from what the process has; what it asks of the system are grids, images, and stacks of threads.
+BOOST_AUTO_TEST_CASE(a_run_that_gets_no_more_memory_says_so_and_leaves_whole_files, *boost::unit_test::label("sweep")) {
+  std::size_t all = 0, refused = 0;
+  products().restore();
+  run_with_faults(products().run(), memory_calls, [&](const SystemCall& call) {
+    all += asks_for_memory(call) ? 1 : 0;
+    return Answer{};
+  });
+  BOOST_TEST(all > 40U);
+  for (const bool once : {false, true})
+    for (std::size_t first = 0; first < all; first += std::max<std::size_t>(1, all / 40)) {
+      products().restore();
+      std::size_t calls = 0;
+      const Outcome outcome = run_with_faults(products().run(), memory_calls, [&](const SystemCall& call) {
+        const bool fails = asks_for_memory(call) && calls++ >= first && (!once || calls == first + 1);
+        return Answer{fails ? ENOMEM : 0};
+      });
+      BOOST_TEST_CONTEXT("call " << first << " of " << all << (once ? " alone: " : " and later ones: ") << outcome.err) {
+        BOOST_TEST((outcome.code == 1 || outcome.code == 0));
+        BOOST_TEST(std::count(outcome.err.begin(), outcome.err.end(), '\n') == outcome.code);
+        products().expect_whole();
+      }
+      refused += outcome.code == 1 ? 1 : 0;
+    }
+  BOOST_TEST(refused > 0U);
+  products().expect_set_unharmed();
+}
+
+#ifndef __SANITIZE_ADDRESS__  // which takes terabytes of addresses for itself
+/// From what the program cannot begin with to what a run needs.
+BOOST_AUTO_TEST_CASE(a_process_of_little_memory_says_so_and_leaves_nothing) {
+  const TemporaryFolder folder;
+  Arguments image = small_image(snapshot(), folder / "a") + Arguments{"--threads", "1", "--quiet"};
+  image[6] = "2048";
+  std::size_t refused = 0;
+  Outcome outcome{1, "", ""};
+  for (int mib = 160; outcome.code != 0 && mib < 2000; mib += 16) {
+    outcome = Child(Arguments{"--as=" + std::to_string(std::int64_t{mib} << 20), MISFIT_PROGRAM} + image, "prlimit").wait();
+    if (outcome.code != 1) continue;  // its libraries could not be loaded, or all went well
+    BOOST_TEST_CONTEXT(mib << " MiB: " << outcome.err) {
+      BOOST_TEST(outcome.err.find("memory") != std::string::npos);
+      BOOST_TEST(std::count(outcome.err.begin(), outcome.err.end(), '\n') == 1);
+      for (const auto& file : files_below(folder / "")) BOOST_TEST(!ends_with(file.first, ".part"));
+    }
+    ++refused;
+  }
+  BOOST_TEST(outcome.code == 0);
+  BOOST_TEST(refused > 3U);
+}
+#endif
+
+BOOST_AUTO_TEST_SUITE_END()
