@@ -13,8 +13,7 @@ namespace misfit::testing {
 /// A call that a thread is about to make of the system.
 class SystemCall {
  public:
-  SystemCall(pid_t by, long which, const std::array<std::uint64_t, 6>& with)
-      : number(which), argument(with), thread_(by) {}
+  SystemCall(pid_t by, long which, const std::array<std::uint64_t, 6>& with) : number(which), argument(with), thread_(by) {}
 
   /// The file that it is about: what its descriptor stands for, or the first path it names; empty where it is about none.
   std::string path() const;
