@@ -15,8 +15,8 @@ namespace {
 
 /// Whether the file that was opened still lies under its name: whoever held the lock before removes it.
 bool is_in_place(int file, const std::string& path) {
-  struct stat opened {
-  }, named{};
+  struct stat opened = {};
+  struct stat named = {};
   return fstat(file, &opened) == 0 && stat(path.c_str(), &named) == 0 && opened.st_ino == named.st_ino &&
          opened.st_dev == named.st_dev;
 }
