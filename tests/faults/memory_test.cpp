@@ -18,7 +18,7 @@ bool asks_for_memory(const SystemCall& call) {
 }  // namespace
 
 /// Small pieces come from what the process has; what it asks of the system are grids, images, and stacks of threads.
-BOOST_AUTO_TEST_CASE(a_run_that_gets_no_more_memory_says_so_and_leaves_whole_files, *boost::unit_test::label("sweep")) {
+BOOST_AUTO_TEST_CASE(a_run_that_gets_no_more_memory_says_so_and_leaves_whole_files) {
   std::size_t all = 0, refused = 0;
   products().restore();
   run_with_faults(products().run(), memory_calls, [&](const SystemCall& call) {
@@ -45,7 +45,6 @@ BOOST_AUTO_TEST_CASE(a_run_that_gets_no_more_memory_says_so_and_leaves_whole_fil
   products().expect_set_unharmed();
 }
 
-#ifndef __SANITIZE_ADDRESS__  // which takes terabytes of addresses for itself
 /// From what the program cannot begin with to what a run needs.
 BOOST_AUTO_TEST_CASE(a_process_of_little_memory_says_so_and_leaves_nothing) {
   const TemporaryFolder folder;
@@ -66,6 +65,5 @@ BOOST_AUTO_TEST_CASE(a_process_of_little_memory_says_so_and_leaves_nothing) {
   BOOST_TEST(outcome.code == 0);
   BOOST_TEST(refused > 3U);
 }
-#endif
 
 BOOST_AUTO_TEST_SUITE_END()

@@ -12,10 +12,10 @@ inline bool has_mpi() {
 }
 
 /// The program in so many processes, on whatever cores there are. Open MPI loses memory in parts of it that are gone when the
-/// leak sanitizer looks, which can thus not be told of them.
-inline Arguments ranks(int size) {
-  return {"--allow-run-as-root", "--oversubscribe", "--bind-to", "none", "-x", "ASAN_OPTIONS=detect_leaks=0", "-n",
-          std::to_string(size),  MISFIT_PROGRAM};
+/// leak sanitizer looks, which can thus not be told of them. After a ":", others that are started with the `first`.
+inline Arguments ranks(int size, bool first = true) {
+  const Arguments of_each{"-x", "ASAN_OPTIONS=detect_leaks=0", "-n", std::to_string(size), MISFIT_PROGRAM};
+  return first ? Arguments{"--allow-run-as-root", "--oversubscribe", "--bind-to", "none"} + of_each : of_each;
 }
 
 inline void succeed_together(int size, const Arguments& arguments) {
