@@ -36,7 +36,8 @@ Prose image_prose() {
                  {"NAME.components.csv", "The components that CLEAN found, which misfit predict takes."},
                  {"NAME.clean.state", "The last major cycle, which --restart goes on from."},
                  {"NAME.report.html, NAME.report.json", "The run with its plan, pictures and times; the same for machines."},
-                 {"NAME.last.ini", "The options of the run, which --config takes to repeat it."}};
+                 {"NAME.last.ini", "The options of the run, which --config takes to repeat it."},
+                 {"NAME.lock", "There while the run goes on: keeps other runs from the same name."}};
   prose.examples = {
       {"The dirty image and the PSF of two sets",
        "misfit image --vis a.ms b.ms --imagename both --imsize 2048 --cell 0.2arcsec"},
