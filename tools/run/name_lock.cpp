@@ -9,6 +9,7 @@
 #include <cerrno>
 #include <cstring>
 #include <stdexcept>
+#include <string_view>
 
 namespace misfit::tools {
 namespace {
@@ -25,8 +26,9 @@ bool is_in_place(int file, const std::string& path) {
 std::string holder(int file) {
   std::array<char, 512> text{};
   const ssize_t size = pread(file, text.data(), text.size(), 0);
-  const std::string who(text.data(), size > 0 ? static_cast<std::size_t>(size) : 0);
-  return who.empty() || who.find_first_not_of("\n") == std::string::npos ? "" : ", " + who.substr(0, who.find('\n'));
+  const std::string_view told(text.data(), size > 0 ? static_cast<std::size_t>(size) : 0);
+  const std::string who(told.substr(0, told.find('\n')));
+  return who.empty() ? "" : ", " + who;
 }
 
 std::string own_name() {
