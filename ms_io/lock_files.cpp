@@ -1,4 +1,4 @@
-#include "ms_io/lock_files.h"
+#include "ms_io/lock_files_internal.h"
 
 #include <fcntl.h>
 #include <unistd.h>

@@ -9,7 +9,7 @@
 #include <mutex>
 #include <sstream>
 
-#include "ms_io/lock_files.h"
+#include "ms_io/lock_files_internal.h"
 #include "ms_io/table_access_internal.h"
 
 namespace misfit::ms_io {
