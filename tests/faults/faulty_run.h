@@ -14,15 +14,14 @@ constexpr std::size_t stride = 8;
 constexpr std::size_t stride = 1;
 #endif
 
-/// The program, or another one found on PATH, while `answer` says what becomes of each of the `calls` that it makes.
+/// The program, while `answer` says what becomes of each of the `calls` that it makes.
 inline Outcome run_with_faults(const Arguments& arguments, const std::vector<long>& calls,
-                               const std::function<Answer(const SystemCall&)>& answer,
-                               const std::string& program = MISFIT_PROGRAM) {
+                               const std::function<Answer(const SystemCall&)>& answer) {
   const TemporaryFolder folder;
   const std::string out = folder / "out", err = folder / "err", cache = kernel_cache();
   const auto action = [&] {
     setenv("ASAN_OPTIONS", "detect_leaks=0", 1);  // the leak sanitizer traces processes itself
-    become(program, arguments, out, err, cache);
+    become(MISFIT_PROGRAM, arguments, out, err, cache);
   };
   const int code = misfit::testing::trace(action, calls, answer);
   return {code, content(out), content(err)};

@@ -4,6 +4,7 @@
 #include <linux/filter.h>
 #include <linux/limits.h>
 #include <linux/seccomp.h>
+#include <sys/mman.h>
 #include <sys/prctl.h>
 #include <sys/ptrace.h>
 #include <sys/syscall.h>
@@ -106,7 +107,7 @@ std::string SystemCall::path() const {
                 {SYS_open, SYS_creat, SYS_rename, SYS_unlink, SYS_rmdir, SYS_mkdir, SYS_link, SYS_symlink, SYS_truncate}))
     return text_at(thread_, argument[0]);
   if (number == SYS_symlinkat) return text_at(thread_, argument[0]);
-  if (number == SYS_mmap) return (argument[3] & 0x20) != 0 ? "" : of(argument[4]);  // MAP_ANONYMOUS
+  if (number == SYS_mmap) return (argument[3] & MAP_ANONYMOUS) != 0 ? "" : of(argument[4]);
   return number == SYS_mremap ? "" : of(argument[0]);
 }
 

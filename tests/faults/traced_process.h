@@ -34,7 +34,7 @@ struct Answer {
   int signal = 0;     ///< sent to the process at that moment
 };
 
-/// Calls that change files, and those that read them, open them, and ask for memory.
+/// Calls that change files or open them, that read them, and that ask for memory.
 extern const std::vector<long> changing_calls, reading_calls, memory_calls;
 
 /// Runs `action` in a process of its own, which shall not return or ends with code 0, and asks `answer` what becomes of each of

@@ -8,7 +8,7 @@
 #include <map>
 
 #include "ms_io/model_writer.h"
-#include "tests/ms_io/file_changes.h"
+#include "tests/faults/traced_process.h"
 #include "tests/ms_io/small_set.h"
 
 namespace misfit::ms_io {
@@ -133,7 +133,11 @@ void check_kills(const SmallSet& set, const ModelColumn& column) {
       BOOST_TEST((State(left, column.name).column == after.column));
     }
   };
-  BOOST_TEST(misfit::testing::before_each_change([&] { write(set, column); }, look));
+  const auto before_change = [&](const misfit::testing::SystemCall& call) {
+    if (call.changes_file()) look();
+    return misfit::testing::Answer{};
+  };
+  BOOST_TEST(misfit::testing::trace([&] { write(set, column); }, misfit::testing::changing_calls, before_change) == 0);
   BOOST_TEST(states > 10);
   BOOST_TEST((State(set, column.name).column == after.column));
 }
