@@ -1,5 +1,3 @@
-#include "ms_io/lock_files_internal.h"
-
 #include <fcntl.h>
 #include <unistd.h>
 
@@ -9,6 +7,8 @@
 #include <cstring>
 #include <filesystem>
 #include <stdexcept>
+
+#include "ms_io/lock_files_internal.h"
 
 namespace misfit::ms_io {
 namespace {
