@@ -27,7 +27,10 @@ std::shared_ptr<const OpenSet> open_selected(const std::string& path, const Sele
   const auto opened = std::make_shared<OpenSet>();
   opened->path = path;
   opened->data_column = column_name(data_column);
+  opened->files.remember(path);
   opened->set = open_measurement_set(path, Access::read);
+  for (const casacore::String& part : opened->set.getPartNames())  // those that it refers to
+    if (part != opened->set.tableName()) opened->files.remember(part);
   if (!data_column.empty()) require_visibility_column(opened->set, path, opened->data_column);
   opened->selected = select_rows(opened->set, path, selection, {block_samples, true});
   if (data_column.empty()) return opened;
@@ -190,6 +193,14 @@ std::vector<std::string> MeasurementSet::incomplete_columns() const {
     if (std::string sentence = incomplete_column(set->path, set->data_column); !sentence.empty())
       sentences.push_back(std::move(sentence));
   return sentences;
+}
+std::vector<std::string> MeasurementSet::changed_files() const {
+  std::vector<std::string> paths;
+  for (const auto& set : whole().sets) {
+    const std::vector<std::string> some = set->files.changed();
+    paths.insert(paths.end(), some.begin(), some.end());
+  }
+  return paths;
 }
 std::uint64_t MeasurementSet::rows() const {
   std::uint64_t rows = 0;

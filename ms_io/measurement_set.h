@@ -66,6 +66,9 @@ class MeasurementSet : public imager::VisibilitySource {
 
   /// A sentence for each set whose column was not written to its end, see incomplete_column().
   std::vector<std::string> incomplete_columns() const;
+  /// Files of the sets that something changed, removed or made since they were opened: what was read may be neither what was
+  /// there before nor what is there now.
+  std::vector<std::string> changed_files() const;
   /// Of the first set, with the band of all.
   const imager::Observation& observation() const;
   std::uint64_t rows() const;

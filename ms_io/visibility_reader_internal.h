@@ -3,6 +3,7 @@
 #include <memory>
 #include <string>
 
+#include "ms_io/file_states_internal.h"
 #include "ms_io/selection_internal.h"
 #include "ms_io/stokes.h"
 
@@ -15,6 +16,7 @@ struct OpenSet {
   casacore::MeasurementSet set;
   SelectedRows selected;
   std::vector<StokesRecipe> recipes;  ///< [setup]
+  FileStates files;                   ///< before it was opened
 };
 
 /// Streams the blocks of `open_set`.

@@ -13,6 +13,7 @@
 #include "tools/base/interrupt.h"
 #include "tools/base/numbers.h"
 #include "tools/kernel_choice/cache_folder.h"
+#include "tools/run/changed_files.h"
 #include "tools/run/cube_pictures.h"
 #include "tools/run/cube_planes.h"
 #include "tools/run/cube_turns.h"
@@ -46,6 +47,15 @@ class CubeRun {
   }
 
   bool run() {
+    try {
+      return take_steps();
+    } catch (const std::runtime_error&) {
+      rethrow_with_changed_files(ranks_.first() ? set_.get() : nullptr);
+    }
+  }
+
+ private:
+  bool take_steps() {
     open();
     plan();
     if (o_.dry_run) {
@@ -67,7 +77,6 @@ class CubeRun {
     return done;
   }
 
- private:
   void warn(const std::string& sentence) {
     report_.warnings.push_back(sentence);
     progress_.say("warning: " + sentence);
@@ -232,6 +241,7 @@ class CubeRun {
       removed += (removed.empty() ? "" : ", ") + path;
     if (!removed.empty()) progress_.say("removed what an earlier run left: " + removed);
     report_.plan.push_back(left_out_decision(report_.counts));
+    if (const std::string warning = changed_files_warning(*set_); !warning.empty()) warn(warning);
     if (outside_grid_ > 0) warn(outside_grid_warning(report_.counts.outside_grid, reach_));
     if (empty_ > 0)
       warn(std::to_string(empty_) + " of " + std::to_string(planes()) +

@@ -13,6 +13,7 @@
 #include "tools/base/files.h"
 #include "tools/base/progress.h"
 #include "tools/kernel_choice/cache_folder.h"
+#include "tools/run/changed_files.h"
 #include "tools/run/clean_stage.h"
 #include "tools/run/model_stage.h"
 #include "tools/run/outside_stage.h"
@@ -48,6 +49,15 @@ class ImageRun {
 
   /// Whether all was done, and the user did not stop it.
   bool run() {
+    try {
+      return take_steps();
+    } catch (const std::runtime_error&) {
+      rethrow_with_changed_files(ranks_.first() ? set_.get() : nullptr);
+    }
+  }
+
+ private:
+  bool take_steps() {
     open();
     plan();
     if (o_.dry_run) {
@@ -74,7 +84,6 @@ class ImageRun {
     return done;
   }
 
- private:
   void warn(const std::string& sentence) {
     report_.warnings.push_back(sentence);
     progress_.say("warning: " + sentence);
@@ -237,6 +246,8 @@ class ImageRun {
 
   /// They make room for the pictures, and are closed before a column is written.
   void release_visibilities() {
+    if (ranks_.first())
+      if (const std::string warning = changed_files_warning(*set_); !warning.empty()) warn(warning);
     source_.reset();
     set_.reset();
     plane_->made().transform.reset();
