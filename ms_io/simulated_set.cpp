@@ -72,7 +72,7 @@ casacore::MeasurementSet create(const std::string& path, const SimulatedObservat
   bind_tiled(description, tiled, "SIGMA", casacore::IPosition(1, correlations));
   casacore::SetupNewTable setup(path, description, casacore::Table::New);
   setup.bindAll(casacore::IncrementalStMan("ISMData"));
-  const casacore::StandardStMan standard("SSMData");
+  const casacore::StandardStMan standard("SSMData", 32768);  // bytes read at once; by default what 32 rows take
   for (const char* column : {"ANTENNA1", "ANTENNA2", "FLAG_CATEGORY"}) setup.bindColumn(column, standard);
   for (const std::string& column : tiled) {
     casacore::IPosition tile = description[column].shape();
