@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "tools/base/interrupt.h"
+#include "tools/base/standard_streams.h"
 #include "tools/base/text.h"
 #include "tools/mpi/world.h"
 #include "tools/program.h"
@@ -80,11 +81,16 @@ int run(int argc, char** argv, const World& world) {
   CLI::App& program = *made;
   try {
     program.parse(argc, argv);
+    finish_standard_output();
     return done;
   } catch (const CLI::ConversionError& error) {
     return fail(conversion_message(error.what(), program).c_str(), wrong_usage, world);
   } catch (const CLI::ParseError& error) {
-    if (error.get_exit_code() == 0) return world.ranks().first() ? program.exit(error) : done;
+    if (error.get_exit_code() == 0) {
+      if (world.ranks().first()) program.exit(error);
+      finish_standard_output();
+      return done;
+    }
     return fail(usage_message(error, program).c_str(), wrong_usage, world);
   } catch (const Interrupted& error) {
     return fail(error.what(), stopped_by_user, world);
@@ -100,6 +106,7 @@ int run(int argc, char** argv, const World& world) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  hold_standard_streams();
   keep_memory();
   setenv("HOME", "/", 0);  // casacore looks for its settings there, and ends where there is none
   try {

@@ -20,8 +20,8 @@ void remember(int signal) {
 void catch_interrupts() {
   static std::once_flag once;
   std::call_once(once, [] {
-    std::signal(SIGINT, remember);
-    std::signal(SIGTERM, remember);
+    for (const int signal : {SIGINT, SIGTERM, SIGHUP})
+      if (std::signal(signal, remember) == SIG_IGN) std::signal(signal, SIG_IGN);
   });
 }
 
