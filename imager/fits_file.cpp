@@ -9,10 +9,9 @@
 #include <cstring>
 #include <filesystem>
 #include <limits>
-#include <mutex>
 #include <stdexcept>
 
-#include "kernels/cfitsio_mutex.h"
+#include "kernels/cfitsio_call.h"
 
 namespace misfit::imager {
 
@@ -29,13 +28,10 @@ struct FitsFile::Handle {
 
 namespace {
 
-/// One at a time, whose failure errno tells of, where the system caused it.
-class CallOfCfitsio {
+/// One whose failure errno tells of, where the system caused it.
+class CallOfCfitsio : kernels::CfitsioCall {
  public:
-  CallOfCfitsio() : lock_(kernels::cfitsio_mutex()) { errno = 0; }
-
- private:
-  std::lock_guard<std::mutex> lock_;
+  CallOfCfitsio() { errno = 0; }
 };
 
 /// Whether a disk failed. CFITSIO 4.2 does not look whether what its buffers held could be written before it moves to another

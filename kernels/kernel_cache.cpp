@@ -27,6 +27,7 @@ std::uint64_t bits_of(double value) {
 
 std::string file_name(const Key& key) {
   std::ostringstream name;
+  name.imbue(std::locale::classic());
   name << key.name << "-w" << key.width << "-x0-" << std::hex << bits_of(key.x0) << std::dec << "-v" << solver_version
        << ".fits";
   return name.str();

@@ -8,7 +8,7 @@
 #include <cstdlib>
 #include <stdexcept>
 
-#include "kernels/cfitsio_mutex.h"
+#include "kernels/cfitsio_call.h"
 #include "kernels/fits_sizes_internal.h"
 #include "kernels/kernel_table_content_internal.h"
 #include "kernels/version.h"
@@ -271,15 +271,10 @@ bool is_intact(const FitsMemory& file, std::size_t size) {
 
 }  // namespace
 
-std::mutex& cfitsio_mutex() {
-  static std::mutex mutex;
-  return mutex;
-}
-
 void write_kernel_table(const Kernel& kernel, const std::optional<TableSampling>& sampling, const fs::path& path,
                         const std::vector<HostTable>& more) {
   check_storable(kernel, sampling);
-  const std::lock_guard<std::mutex> lock(cfitsio_mutex());
+  const CfitsioCall call;
   FitsMemory file("write kernel table " + path.string());
   int status = 0;
   file.check(fits_create_img(file.get(), BYTE_IMG, 0, nullptr, &status));
@@ -303,7 +298,7 @@ KernelTable read_kernel_table(const fs::path& path) {
   } catch (const std::runtime_error& error) {
     throw std::runtime_error("cannot " + doing + ": " + error.what());
   }
-  const std::lock_guard<std::mutex> lock(cfitsio_mutex());
+  const CfitsioCall call;
   const FitsMemory file(doing, std::move(bytes));
   KernelTable table = read_facts(file);
   const HeaderReader header(file);

@@ -11,8 +11,8 @@
 namespace misfit::kernels {
 namespace {
 
-constexpr int min_width = 4;
-constexpr int max_width = 8;
+constexpr int schwab_min_width = 4;
+constexpr int schwab_max_width = 8;
 
 /// One rational approximation: Σ p_k x^k / (1 + q_0 x + q_1 x²).
 struct Rational {
@@ -102,7 +102,7 @@ double psi(int m, std::size_t order, double eta) {
 }  // namespace
 
 TapFunction spheroidal_taps(int width, double alpha) {
-  if (width < min_width || width > max_width)
+  if (width < schwab_min_width || width > schwab_max_width)
     throw std::invalid_argument("spheroidal kernel: width " + std::to_string(width) +
                                 " not in [4, 8], where Schwab's approximations exist");
   if (!(alpha >= 0 && alpha <= 2 && 2 * alpha == std::floor(2 * alpha)))
@@ -118,8 +118,8 @@ KernelFamily spheroidal_family(double alpha) {
   return {name,
           "Schwab's approximation of the spheroidal function of order " + text_of(alpha) +
               (alpha == 1 ? ", as in AIPS and CASA" : ""),
-          min_width,
-          max_width,
+          schwab_min_width,
+          schwab_max_width,
           0.01,
           0.49,
           [name, alpha](int width, double x0) { return make_kernel(name, x0, spheroidal_taps(width, alpha)); }};

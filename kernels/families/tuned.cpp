@@ -10,7 +10,7 @@
 namespace misfit::kernels {
 namespace {
 
-constexpr int min_width = 2;  // a single cell hardly wants a taper: for small x0 its best β is 0
+constexpr int tuned_min_width = 2;  // a single cell hardly wants a taper: for small x0 its best β is 0
 
 /// E for one width and x0 as a function of β, with as many nodes in x as its zeros and its rise towards x0 need.
 class MeanError {
@@ -58,7 +58,7 @@ double golden_section(const MeanError& error, double low, double high, double to
 /// The widest function up to `width` whose E is not rounding, some 1e-31.
 int widest_clear_of_rounding(const TapsOfParameter& taps, int width, double x0) {
   constexpr double clear = 1e-25;
-  for (; width > min_width; --width) {
+  for (; width > tuned_min_width; --width) {
     const MeanError error(taps, width, x0);
     if (error(error.natural()) >= clear) break;
   }
@@ -91,7 +91,7 @@ double tune_parameter(const TapsOfParameter& taps, int width, double x0) {
 }
 
 KernelFamily tuned_family(const std::string& name, const std::string& description, const TapsOfParameter& taps) {
-  return {name, description, min_width, 20, 0.01, 0.49, [name, taps](int width, double x0) {
+  return {name, description, tuned_min_width, 20, 0.01, 0.49, [name, taps](int width, double x0) {
             const double parameter = tune_parameter(taps, width, x0);
             Kernel kernel = make_kernel(name, x0, taps(width, parameter));
             kernel.origin.parameter = parameter;
