@@ -55,6 +55,22 @@ class ReplacedProducts {
       BOOST_TEST((as_before || as_after || is_whole(name, bytes)), name);
     }
   }
+  Files files() const {
+    Files files;
+    for (const auto& [name, bytes] : files_below(path(""))) files[std::filesystem::relative(name, path(""))] = bytes;
+    return files;
+  }
+  /// Each file is as another run made it.
+  void expect(const Files& made) const {
+    const Files now = files();
+    for (const auto& [name, bytes] : now) {
+      const auto other = made.find(name);
+      BOOST_TEST(((other != made.end() && bytes == other->second) || is_whole(name, bytes)), name);
+    }
+    BOOST_TEST(now.size() == made.size());
+  }
+  /// Of the run that replaces them.
+  const Files& made() const { return after_; }
   void expect_set_unharmed() const { BOOST_TEST((files_below(snapshot()) == set_)); }
   /// Whether the call is about a file of theirs.
   bool concerns(const SystemCall& call) const { return call.path().rfind(path("a."), 0) == 0; }
@@ -64,12 +80,6 @@ class ReplacedProducts {
     return small_image(snapshot(), path("a")) +
            Arguments{"--niter", "20", "--weighting", "briggs", "--robust", robust, "--threads", "1"};
   }
-  Files files() const {
-    Files files;
-    for (const auto& [name, bytes] : files_below(path(""))) files[std::filesystem::relative(name, path(""))] = bytes;
-    return files;
-  }
-
   TemporaryFolder folder_;  // one for both, as headers tell of it
   Files before_, after_, set_;
 };
