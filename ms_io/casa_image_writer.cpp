@@ -11,6 +11,7 @@
 #include "ms_io/casa_coordinates_internal.h"
 #include "ms_io/casa_image.h"
 #include "ms_io/image_folder_internal.h"
+#include "ms_io/room_internal.h"
 #include "ms_io/table_access_internal.h"
 
 namespace misfit::ms_io {
@@ -83,9 +84,8 @@ class CasaImageWriter : public imager::ImageWriter {
                                         static_cast<ssize_t>(header.stokes.size()), header.spectral.channels);
     layout_.stokes = 2;
     layout_.spectral = 3;
-    // On a full disk casacore would end the program before its tables are there.
     constexpr std::uintmax_t tables = 1 << 20;
-    folder_.require_room(static_cast<std::uintmax_t>(layout_.shape.product()) * sizeof(Pixel) + tables);
+    require_room(path_, static_cast<std::uintmax_t>(layout_.shape.product()) * sizeof(Pixel) + tables);
     translated("cannot write " + path_, [&] { create(); });
   }
 

@@ -53,12 +53,6 @@ void ImageFolder::remove_left(const fs::path& left) const {
   fs::remove_all(left, error);
 }
 
-void ImageFolder::require_room(std::uintmax_t bytes) const {
-  std::error_code error;
-  const std::uintmax_t free = fs::space(target_.has_parent_path() ? target_.parent_path() : fs::path("."), error).available;
-  if (!error && free < bytes) fail("it takes " + std::to_string(bytes) + " bytes, and " + std::to_string(free) + " are free");
-}
-
 void ImageFolder::put_in_place() {
   require_image_or_nothing();
   std::error_code error, ignored;

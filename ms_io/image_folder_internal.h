@@ -1,6 +1,5 @@
 #pragma once
 
-#include <cstdint>
 #include <filesystem>
 #include <string>
 
@@ -18,8 +17,6 @@ class ImageFolder {
 
   /// Where it is made.
   std::string name() const { return unfinished_.string(); }
-  /// Throws std::runtime_error where so many bytes are not free.
-  void require_room(std::uintmax_t bytes) const;
   /// Puts it in its place; a casacore image that is there gives way. Throws as the constructor does.
   void put_in_place();
 

@@ -12,6 +12,7 @@
 
 #include "ms_io/model_column_internal.h"
 #include "ms_io/model_journal_internal.h"
+#include "ms_io/room_internal.h"
 #include "ms_io/setup_internal.h"
 #include "ms_io/table_access_internal.h"
 
@@ -117,18 +118,38 @@ class Filler {
   casacore::ArrayColumn<casacore::Complex> cells_, data_;
 };
 
-void fill(casacore::MeasurementSet& set, const std::string& path, const ModelColumn& column,
-          const std::vector<casacore::IPosition>& shapes) {
+void fill(casacore::MeasurementSet& set, const ModelColumn& column, const std::vector<casacore::IPosition>& shapes) {
   const std::vector<int> setup = casacore::ScalarColumn<int>(set, "DATA_DESC_ID").getColumn().tovector();
-  const SetupTable table(set, path);
   Filler filler(set, column);
   for (RowSpan rows; rows.begin < setup.size(); rows.begin = rows.end) {
-    table.spectral_window(setup[rows.begin]);  // throws when there is no such DATA_DESC_ID
     const casacore::IPosition& shape = shapes[static_cast<std::size_t>(setup[rows.begin])];
     const auto most = static_cast<std::size_t>(std::max<ssize_t>(1, (1 << 20) / std::max<ssize_t>(1, shape.product())));
     while (rows.end < setup.size() && rows.end - rows.begin < most && setup[rows.end] == setup[rows.begin]) ++rows.end;
     filler.fill(rows, shape);
   }
+}
+
+/// Throws unless all data that are to be copied into cells of one shape have it.
+void require_shape(const casacore::MeasurementSet& set, const std::string& path, const std::string& data,
+                   const casacore::IPosition& shape) {
+  const casacore::ArrayColumn<casacore::Complex> cells(set, data);
+  if (cells.columnDesc().isFixedShape() && cells.shapeColumn().isEqual(shape)) return;
+  for (casacore::rownr_t row = 0; row < cells.nrow(); ++row)
+    if (cells.isDefined(row) && !cells.shape(row).isEqual(shape))
+      throw std::runtime_error(path + ": row " + std::to_string(row) + " of " + data + " has the shape " +
+                               cells.shape(row).toString() + ", expected " + shape.toString());
+}
+
+/// Of a column with a cell for every row. Throws where the DATA_DESC_ID of one is none.
+std::uintmax_t column_bytes(const casacore::MeasurementSet& set, const std::string& path,
+                            const std::vector<casacore::IPosition>& shapes) {
+  const SetupTable table(set, path);
+  std::uintmax_t samples = 0;
+  for (const int setup : casacore::ScalarColumn<int>(set, "DATA_DESC_ID").getColumn()) {
+    table.spectral_window(setup);
+    samples += static_cast<std::uintmax_t>(shapes[static_cast<std::size_t>(setup)].product());
+  }
+  return samples * sizeof(casacore::Complex);
 }
 
 /// "A.ms, B.ms", for tables that only refer to the rows of others; nothing for one that has rows of its own.
@@ -198,15 +219,13 @@ void create_model_column(casacore::MeasurementSet& set, const std::string& path,
     const std::vector<casacore::IPosition> shapes = cell_shapes(set, path);
     const casacore::TableDesc& description = set.tableDesc();
     const bool fixed = description.isColumn("DATA") && description["DATA"].isFixedShape() && shapes.size() == 1;
+    if (fixed && !column.subtracted_from.empty()) require_shape(set, path, column.subtracted_from, shapes.front());
+    require_room(path, column_bytes(set, path, shapes));
+    // From here on, what fails leaves a column that is incomplete, as a kill does: casacore removes the files of one before it
+    // forgets it, for which the disk may be too full.
     add_column(set, column.name, shapes.front(), fixed);
-    try {
-      fill(set, path, column, shapes);
-      set.flush();
-    } catch (...) {
-      set.removeColumn(column.name);
-      remove_journal(set, column.name);
-      throw;
-    }
+    fill(set, column, shapes);
+    set.flush();
   });
 }
 

@@ -1,9 +1,12 @@
 #include <algorithm>
+#include <cerrno>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <locale>
 #include <sstream>
 #include <stdexcept>
+#include <system_error>
 #include <vector>
 
 #include "ms_io/model_journal_internal.h"
@@ -24,6 +27,7 @@ std::vector<std::string> journal_files(const casacore::Table& set, std::string c
 
 std::string text_of(const ModelJournal& journal) {
   std::ostringstream text;
+  text.imbue(std::locale::classic());
   text << "misfit is writing a column, or was stopped while it did\n"
        << "command " << journal.command << "\nidentity " << journal.identity << "\nrows " << journal.rows << "\nwritten "
        << journal.written << "\nnonfinite_uvw_rows " << journal.nonfinite_uvw_rows << "\nchecksum " << journal.checksum.values
@@ -42,6 +46,7 @@ ModelJournal journal_of(std::istream& text, const std::string& column) {
   std::getline(text, line);
   while (!ended && std::getline(text, line)) {
     std::istringstream words(line);
+    words.imbue(std::locale::classic());
     words >> key >> std::ws;
     if (key == "command") std::getline(words, journal.command);
     if (key == "identity") words >> journal.identity;
@@ -71,11 +76,13 @@ std::optional<ModelJournal> read_journal(const casacore::Table& set, const std::
 void write_journal(const casacore::Table& set, const ModelJournal& journal) {
   for (const std::string& path : journal_files(set, journal.column)) {
     const std::string beside = path + part;
+    errno = 0;
     std::ofstream file(beside, std::ios::binary);
     file << text_of(journal) << std::flush;
     std::error_code error;
     if (file) std::filesystem::rename(beside, path, error);
-    if (!file || error) throw std::runtime_error("cannot write " + path + ", which tells how far the column is");
+    if (!file) error = {errno, std::generic_category()};
+    if (error) throw std::runtime_error("cannot write " + path + ", which tells how far the column is: " + error.message());
   }
 }
 

@@ -4,6 +4,7 @@
 #include <casacore/tables/Tables/ColumnDesc.h>
 #include <casacore/tables/Tables/TableDesc.h>
 
+#include <cstring>
 #include <filesystem>
 #include <map>
 #include <mutex>
@@ -91,6 +92,16 @@ std::string one_line(const std::string& message) {
   std::string line;
   for (std::string word; words >> word;) line += (line.empty() ? "" : " ") + word;
   return line;
+}
+
+std::string reason_of(const casacore::AipsError& error) {
+  const int of_system = errno;
+  std::string reason = one_line(error.getMesg());
+  if (reason.find("LockFile.cc") != std::string::npos && reason.find("PWRITE") != std::string::npos)
+    reason = "its lock file cannot be written";
+  if (of_system != ENOSPC && of_system != EDQUOT && of_system != EIO) return reason;
+  const std::string why = std::strerror(of_system);
+  return reason.find(why) == std::string::npos ? reason + ": " + why : reason;
 }
 
 casacore::MeasurementSet open_measurement_set(const std::string& path, Access access) {

@@ -5,6 +5,7 @@
 #include <casacore/ms/MeasurementSets/MeasurementSet.h>
 #include <casacore/tables/Tables/BaseTable.h>
 
+#include <cerrno>
 #include <stdexcept>
 #include <string>
 
@@ -13,13 +14,17 @@ namespace misfit::ms_io {
 /// `message` with every run of white space, line ends included, as one blank.
 std::string one_line(const std::string& message);
 
+/// What casacore says of a failure, on one line, with the system's reason where a disk failed it and it says nothing of that.
+std::string reason_of(const casacore::AipsError& error);
+
 /// The result of `action`, with casacore's exceptions turned into std::runtime_error("`doing`: reason") of one line.
 template <typename Action>
 auto translated(const std::string& doing, const Action& action) -> decltype(action()) {
   try {
+    errno = 0;
     return action();
   } catch (const casacore::AipsError& error) {
-    throw std::runtime_error(doing + ": " + one_line(error.getMesg()));
+    throw std::runtime_error(doing + ": " + reason_of(error));
   } catch (const casacore::ArrayError& error) {
     throw std::runtime_error(doing + ": " + one_line(error.what()));
   }

@@ -1,10 +1,15 @@
 #include <malloc.h>
+#include <unistd.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cerrno>
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
+#include <cstring>
 #include <exception>
+#include <iostream>
 #include <memory>
 #include <new>
 #include <stdexcept>
@@ -74,6 +79,22 @@ std::string conversion_message(const std::string& said, const CLI::App& program)
   return name + ' ' + said.substr(equals + 3) + ": expected a " + (fraction ? "number" : "whole number");
 }
 
+/// For exceptions that nothing can catch: casacore throws some while it closes tables.
+[[noreturn]] void end_at_once() {
+  std::string why = "an error that is none";
+  try {
+    if (std::current_exception()) throw;
+  } catch (const std::exception& error) {
+    why = error.what();
+    std::replace(why.begin(), why.end(), '\n', ' ');
+  } catch (...) {
+  }
+  const std::string system = errno == ENOSPC || errno == EDQUOT || errno == EIO ? std::strerror(errno) : "";
+  if (why.find(system) == std::string::npos) why += ": " + system;
+  std::fprintf(stderr, "misfit: cannot go on: %s\n", why.c_str());
+  _exit(unusable_data);
+}
+
 int run(int argc, char** argv, const World& world) {
   std::string line = "misfit";
   for (int i = 1; i < argc; ++i) line += std::string(" ") + argv[i];
@@ -107,6 +128,8 @@ int run(int argc, char** argv, const World& world) {
 
 int main(int argc, char** argv) {
   hold_standard_streams();
+  std::set_terminate(end_at_once);
+  std::cerr.rdbuf(nullptr);  // where casacore tells of failures that it throws, too
   keep_memory();
   setenv("HOME", "/", 0);  // casacore looks for its settings there, and ends where there is none
   try {
