@@ -110,4 +110,15 @@ std::vector<std::complex<float>> visibilities(const std::string& set, const std:
   return casacore::ArrayColumn<casacore::Complex>(casacore::MeasurementSet(set), column).getColumn().tovector();
 }
 
+struct LockedSet::Open {
+  casacore::MeasurementSet set;
+};
+
+LockedSet::LockedSet(const std::string& set) : open_(std::make_unique<Open>()) {
+  const casacore::TableLock lock(casacore::TableLock::PermanentLocking);
+  open_->set = casacore::MeasurementSet(set, lock, casacore::Table::Update);
+}
+
+LockedSet::~LockedSet() = default;
+
 }  // namespace misfit::tools::testing

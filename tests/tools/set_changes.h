@@ -2,6 +2,7 @@
 
 #include <complex>
 #include <cstddef>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -20,6 +21,17 @@ void flag_all(const std::string& set);
 void make_autocorrelation(const std::string& set, std::size_t row);
 void scale_data(const std::string& set, float factor);
 void scale_uvw(const std::string& set, double factor);
+
+/// A set that this process has locked for writing, as one that flags or calibrates it does.
+class LockedSet {
+ public:
+  explicit LockedSet(const std::string& set);
+  ~LockedSet();
+
+ private:
+  struct Open;
+  std::unique_ptr<Open> open_;
+};
 
 /// Makes a set of other correlations, given by casacore's codes, with data of 0 and weights of 1.
 void store_correlations(const std::string& set, const std::vector<int>& types);
