@@ -48,12 +48,14 @@ void set_frequencies(const FitsFile& file, FitsAxis axis, SpectralAxis& spectral
   }
   spectral.reference_hz = axis.reference_value + (1 - axis.reference_pixel) * axis.increment;
   spectral.increment_hz = axis.increment;
+  if (!std::isfinite(spectral.reference_hz) || !std::isfinite(spectral.frequency_hz(spectral.channels - 1)))
+    file.fail("its " + axis.type + " axis has frequencies that are not finite");
 }
 
 Stokes stokes_of(const FitsFile& file, const FitsAxis& axis, long plane) {
   const double code = axis.reference_value + (static_cast<double>(plane) - axis.reference_pixel) * axis.increment;
   const double whole = std::round(code);
-  if (std::abs(whole) > 8 || !is_fits_stokes_code(static_cast<int>(whole)) || std::abs(code - whole) > 0.01)
+  if (!(std::abs(whole) <= 8) || !is_fits_stokes_code(static_cast<int>(whole)) || std::abs(code - whole) > 0.01)
     file.fail("plane " + std::to_string(plane) + " of its STOKES axis has the code " + std::to_string(code) +
               "; expected 1 to 4, for I, Q, U and V, or -1 to -8, for correlations");
   return stokes_of_fits_code(static_cast<int>(whole));

@@ -14,8 +14,10 @@ bool need_table(const PlaneBeams& beams) {
 }
 
 void read_table(FitsFile& file, PlaneBeams& beams) {
-  const std::vector<double> major = file.column("BMAJ"), minor = file.column("BMIN"), angle = file.column("BPA"),
-                            channel = file.column("CHAN"), stokes = file.column("POL");
+  const std::size_t planes = static_cast<std::size_t>(beams.channels()) * static_cast<std::size_t>(beams.stokes());
+  const auto column = [&](const char* name) { return file.column(name, planes); };
+  const std::vector<double> major = column("BMAJ"), minor = column("BMIN"), angle = column("BPA"), channel = column("CHAN"),
+                            stokes = column("POL");
   for (std::size_t row = 0; row < major.size(); ++row) {
     if (stands_for_no_beam(major[row])) continue;
     if (!(channel[row] >= 0 && channel[row] < beams.channels() && stokes[row] >= 0 && stokes[row] < beams.stokes()))

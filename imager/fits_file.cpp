@@ -8,10 +8,12 @@
 #include <cmath>
 #include <cstring>
 #include <filesystem>
+#include <fstream>
 #include <limits>
 #include <stdexcept>
 
 #include "kernels/cfitsio_call.h"
+#include "kernels/fits_sizes.h"
 
 namespace misfit::imager {
 
@@ -47,6 +49,29 @@ bool is_of_the_system(int error) {
   return is_lost_write(error) || std::find(errors.begin(), errors.end(), error) != errors.end();
 }
 
+/// Text of a header, or about one, which others may have filled with anything.
+std::string printable(std::string text) {
+  std::replace_if(
+      text.begin(), text.end(), [](unsigned char c) { return c < ' ' || c == 0x7f; }, '?');
+  return text;
+}
+
+/// Throws std::runtime_error where headers are not to be trusted. A file that cannot be opened is left to CFITSIO.
+void check_sizes(const std::string& path) {
+  std::error_code none;
+  const std::uintmax_t size = std::filesystem::file_size(path, none);
+  std::ifstream file(path, std::ios::binary);
+  if (none || !file) return;
+  kernels::check_fits_sizes(
+      {size, [&file](std::uint64_t at, std::size_t count) {
+         std::string bytes(count, '\0');
+         file.clear();
+         file.seekg(static_cast<std::streamoff>(at)).read(bytes.data(), static_cast<std::streamsize>(count));
+         bytes.resize(static_cast<std::size_t>(file.gcount()));
+         return bytes;
+       }});
+}
+
 }  // namespace
 
 FitsFile::FitsFile(std::string doing, std::string path)
@@ -70,6 +95,11 @@ void FitsFile::create(const std::string& name) {
 }
 
 void FitsFile::open(const std::string& name) {
+  try {
+    check_sizes(name);
+  } catch (const std::runtime_error& error) {
+    fail(error.what());
+  }
   const CallOfCfitsio call;
   int status = 0;
   check(fits_open_diskfile(&handle_->file, std::filesystem::absolute(name).c_str(), READONLY, &status));
@@ -98,7 +128,7 @@ void FitsFile::check(int status) const {
   fits_get_errstatus(status, text.data());
   std::string reason = text.data();
   std::array<char, FLEN_ERRMSG> detail{};
-  if (fits_read_errmsg(detail.data())) reason += std::string(" (") + detail.data() + ")";
+  if (fits_read_errmsg(detail.data())) reason += " (" + printable(detail.data()) + ")";
   fail(reason);
 }
 
@@ -152,7 +182,9 @@ bool FitsFile::read_key(const std::string& key, int type, void* value) const {
 
 std::optional<double> FitsFile::number(const std::string& key) const {
   double value = 0;
-  return read_key(key, TDOUBLE, &value) ? std::optional(value) : std::nullopt;
+  if (!read_key(key, TDOUBLE, &value)) return std::nullopt;
+  if (!std::isfinite(value)) fail("its " + key + " is not finite");
+  return value;
 }
 
 double FitsFile::needed_number(const std::string& key) const {
@@ -163,7 +195,7 @@ double FitsFile::needed_number(const std::string& key) const {
 
 std::string FitsFile::text(const std::string& key) const {
   std::array<char, FLEN_VALUE> value{};
-  return read_key(key, TSTRING, value.data()) ? value.data() : "";
+  return read_key(key, TSTRING, value.data()) ? printable(value.data()) : "";
 }
 
 void FitsFile::create_image(std::vector<long> size, PixelFormat format) {
@@ -236,13 +268,15 @@ void FitsFile::open_image() {
   check(fits_movabs_hdu(handle_->file, 1, nullptr, &status));
 }
 
-std::vector<double> FitsFile::column(const std::string& name) const {
+std::vector<double> FitsFile::column(const std::string& name, std::size_t most) const {
   const CallOfCfitsio call;
   int status = 0, number = 0, any_null = 0;
   std::string text = name;
   check(fits_get_colnum(handle_->file, CASEINSEN, text.data(), &number, &status));
   long rows = 0;
   check(fits_get_num_rows(handle_->file, &rows, &status));
+  if (static_cast<std::size_t>(rows) > most)
+    fail("its column " + name + " has " + std::to_string(rows) + " rows, expected at most " + std::to_string(most));
   std::vector<double> values(static_cast<std::size_t>(rows));
   check(fits_read_col(handle_->file, TDOUBLE, number, 1, 1, rows, nullptr, values.data(), &any_null, &status));
   return values;

@@ -47,7 +47,7 @@ class FitsFile {
   void reserve_cards(int count);
   std::optional<double> number(const std::string& key) const;
   double needed_number(const std::string& key) const;
-  /// Empty where there is none.
+  /// Empty where there is none, with ? for control characters.
   std::string text(const std::string& key) const;
 
   void create_image(std::vector<long> size, PixelFormat format);
@@ -64,7 +64,8 @@ class FitsFile {
   bool open_table(const std::string& name);
   /// Goes to the primary image.
   void open_image();
-  std::vector<double> column(const std::string& name) const;
+  /// Throws where it has more than `most` rows.
+  std::vector<double> column(const std::string& name, std::size_t most) const;
 
  private:
   struct Handle;

@@ -77,6 +77,15 @@ void check_projection(const FitsFile& file) {
       file.fail(std::string(key) + " = " + std::to_string(value) + ", where only 0 (no rotation, no slant) is known");
 }
 
+/// A number of degrees, 0 where there is none.
+double angle_rad(const FitsFile& file, const std::string& key, double most_deg) {
+  const double value = file.number(key).value_or(0);
+  if (std::abs(value) > most_deg)
+    file.fail("its " + key + " is " + std::to_string(value) + ", expected at most " + std::to_string(std::lround(most_deg)) +
+              " degrees");
+  return value * rad_per_deg;
+}
+
 ImageGeometry read_geometry(const FitsFile& file) {
   check_projection(file);
   const double east = -file.needed_number("CDELT1"), north = file.needed_number("CDELT2");
@@ -87,8 +96,9 @@ ImageGeometry read_geometry(const FitsFile& file) {
   ImageGeometry geometry{static_cast<int>(size[0]), static_cast<int>(size[1]), north * rad_per_deg, {}};
   geometry.centre = {(file.needed_number("CRPIX1") - (geometry.centre_column() + 1)) * geometry.cell_rad,
                      (geometry.centre_row() + 1 - file.needed_number("CRPIX2")) * geometry.cell_rad};
-  geometry.phase_centre = {file.number("CRVAL1").value_or(0) * rad_per_deg, file.number("CRVAL2").value_or(0) * rad_per_deg,
-                           read_frame(file)};
+  if (!std::isfinite(geometry.centre.l) || !std::isfinite(geometry.centre.m))
+    file.fail("its CRPIX1 or CRPIX2 is farther away than numbers reach");
+  geometry.phase_centre = {angle_rad(file, "CRVAL1", 360), angle_rad(file, "CRVAL2", 90), read_frame(file)};
   return geometry;
 }
 

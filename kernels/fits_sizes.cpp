@@ -1,8 +1,9 @@
+#include "kernels/fits_sizes.h"
+
+#include <algorithm>
 #include <cstdlib>
 #include <stdexcept>
 #include <string>
-
-#include "kernels/fits_sizes_internal.h"
 
 namespace misfit::kernels {
 namespace {
@@ -14,15 +15,25 @@ constexpr int most_axes = 999, most_columns = 999;
   throw std::runtime_error(reason);
 }
 
-/// Reads the cards at the head of an HDU, in their order.
-class MandatoryCards {
- public:
-  explicit MandatoryCards(std::string_view hdu) : rest_(hdu) {}
+std::uint64_t blocks(std::uint64_t bytes) {
+  return (bytes + block - 1) / block * block;
+}
 
-  void skip() { next(); }
+/// The cards of a header, of which a block at a time is read.
+class Header {
+ public:
+  Header(const FitsBytes& file, std::uint64_t begin) : file_(file), begin_(begin) {}
+
+  std::string next() {
+    if (at_ % block == 0) read_ = file_.read(begin_ + at_, block);
+    const std::string card = read_.substr(std::min<std::size_t>(at_ % block, read_.size()), card_size);
+    if (card.size() < card_size) fail("it was cut short within a header");
+    at_ += card_size;
+    return card;
+  }
   /// The value of the next card, which must have this key.
   long long whole(const std::string& key, long long least, long long most) {
-    const std::string card(next());
+    const std::string card = next();
     std::string padded = key;
     padded.resize(8, ' ');
     if (card.compare(0, 10, padded + "= ") != 0) fail("a header has no " + key + " where one is due");
@@ -36,61 +47,63 @@ class MandatoryCards {
       fail(key + " is " + number + ", expected " + std::to_string(least) + " to " + std::to_string(most));
     return found;
   }
+  /// Goes to the card END. Returns the size of all.
+  std::uint64_t end() {
+    std::string card = next();
+    while (card.compare(0, 8, "END     ") != 0) card = next();
+    if (card.find_first_not_of(' ', 3) != std::string::npos) fail("END has a value");
+    return blocks(at_);
+  }
 
  private:
-  std::string_view next() {
-    if (rest_.size() < card_size) fail("it was cut short within a header");
-    const std::string_view card = rest_.substr(0, card_size);
-    rest_.remove_prefix(card_size);
-    return card;
-  }
-  std::string_view rest_;
+  const FitsBytes& file_;
+  std::uint64_t begin_;
+  std::uint64_t at_ = 0;
+  std::string read_;  ///< the block that holds at_ − 1
 };
 
-std::size_t blocks(std::size_t bytes) {
-  return (bytes + block - 1) / block * block;
-}
-
-std::size_t header_size(std::string_view hdu) {
-  for (std::size_t at = 0; at + card_size <= hdu.size(); at += card_size) {
-    const std::string_view card = hdu.substr(at, card_size);
-    if (card.substr(0, 8) != "END     ") continue;
-    if (card.find_first_not_of(' ', 3) != std::string_view::npos) fail("END has a value");
-    return blocks(at + card_size);
-  }
-  fail("it was cut short within a header");
-}
-
-/// Header and data of the HDU at the start of `rest`.
-std::size_t hdu_size(std::string_view rest, bool primary) {
+/// Header and data of the HDU that begins at `begin`.
+std::uint64_t hdu_size(const FitsBytes& file, std::uint64_t begin) {
   constexpr long long any = 1LL << 62;
-  const std::size_t header = header_size(rest);
-  MandatoryCards cards(rest.substr(0, header));
-  cards.skip();
+  Header cards(file, begin);
+  const std::string first = cards.next();
   const long long bits = cards.whole("BITPIX", -64, 64);
   const long long axes = cards.whole("NAXIS", 0, most_axes);
   double data = axes == 0 ? 0 : static_cast<double>(std::llabs(bits)) / 8;
   for (long long axis = 1; axis <= axes; ++axis)
     data *= static_cast<double>(cards.whole("NAXIS" + std::to_string(axis), 0, any));
-  if (!primary) {
+  if (first.starts_with("XTENSION")) {
     const auto heap = static_cast<double>(cards.whole("PCOUNT", 0, any));
     data = (data + heap * static_cast<double>(std::llabs(bits)) / 8) * static_cast<double>(cards.whole("GCOUNT", 1, 1));
-    if (rest.substr(10, 10) == "'BINTABLE'") cards.whole("TFIELDS", 0, most_columns);
+    if (first.substr(10, 10) == "'BINTABLE'") cards.whole("TFIELDS", 0, most_columns);
   }
-  if (data > static_cast<double>(rest.size() - header))
+  const std::uint64_t header = cards.end();
+  if (data > static_cast<double>(file.size) - static_cast<double>(begin + header))
     fail("a header announces more data than the file has: it was cut short");
-  return header + blocks(static_cast<std::size_t>(data));
+  return header + blocks(static_cast<std::uint64_t>(data));
+}
+
+/// Whether a reader takes for a header what begins there.
+bool is_header(const FitsBytes& file, std::uint64_t at) {
+  const std::string key = at < file.size ? file.read(at, 8) : "";
+  return key == "XTENSION" || key == "SIMPLE  ";
 }
 
 }  // namespace
 
+void check_fits_sizes(const FitsBytes& file) {
+  if (file.read(0, 9) != "SIMPLE  =") fail("it is no FITS file, which begins with \"SIMPLE  =\"");
+  std::uint64_t end = hdu_size(file, 0);
+  while (is_header(file, end)) end += hdu_size(file, end);
+}
+
 void check_fits_sizes(std::string_view file) {
-  if (file.substr(0, 9) != "SIMPLE  =") fail("it is no FITS file, which begins with \"SIMPLE  =\"");
+  check_fits_sizes({file.size(), [file](std::uint64_t at, std::size_t count) {
+                      return std::string(file.substr(std::min<std::uint64_t>(at, file.size()), count));
+                    }});
   if (file.size() % block != 0)
     fail("it has " + std::to_string(file.size()) + " bytes, expected a multiple of " + std::to_string(block) +
          ": it was cut short");
-  std::size_t end = hdu_size(file, true);
-  while (file.substr(end, 9) == "XTENSION=") end += hdu_size(file.substr(end), false);
 }
 
 }  // namespace misfit::kernels

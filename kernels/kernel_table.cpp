@@ -9,7 +9,7 @@
 #include <stdexcept>
 
 #include "kernels/cfitsio_call.h"
-#include "kernels/fits_sizes_internal.h"
+#include "kernels/fits_sizes.h"
 #include "kernels/kernel_table_content_internal.h"
 #include "kernels/version.h"
 #include "kernels/whole_file.h"

@@ -294,6 +294,24 @@ BOOST_AUTO_TEST_CASE(geometry_that_is_not_known_is_an_error_that_says_why) {
   refused("CTYPE1", "CTYPE1  = 'RA---TAN'", "RA---TAN");
   refused("BTYPE", "CROTA2  = 12.0", "CROTA2");
   refused("CDELT2", "CDELT2  = 'wide'", "read");
+  refused("CRVAL2", "CRVAL2  = 90.5", "its CRVAL2 is 90.500000, expected at most 90 degrees");
+  refused("CRVAL1", "CRVAL1  = -1E300", "CRVAL1");
+}
+
+BOOST_AUTO_TEST_CASE(headers_are_looked_at_before_memory_is_taken) {
+  const TemporaryFolder folder;
+  const std::string path = folder / "a.fits";
+  const auto refused = [&](const std::string& keyword, const std::string& new_card, const std::string& expected) {
+    write_altered(path, keyword, new_card);
+    check_error_names(path, expected, [&] { read_fits(path); });
+  };
+  refused("NAXIS3", "NAXIS3  =  4000000000000000000", "more data than the file has");
+  refused("NAXIS1", "NAXIS1  =                   -1", "NAXIS1 is -1");
+  refused("NAXIS1", "NAXIS   =                    1", "no NAXIS1 where one is due");
+  write_fits(example(), path, PixelFormat::float64);
+  std::string fits = contents(path);
+  std::ofstream(path, std::ios::binary) << fits.replace(0, 9, "\x1f\x8b\x08 IMPLE");
+  check_error_names(path, "it is no FITS file", [&] { read_fits(path); });
 }
 
 BOOST_AUTO_TEST_CASE(a_stack_of_planes_is_no_image) {

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <string_view>
+
+namespace misfit::kernels {
+
+/// A FITS file that need not be in memory.
+struct FitsBytes {
+  std::uint64_t size = 0;
+  std::function<std::string(std::uint64_t at, std::size_t count)> read;  ///< bytes of the file, as many as there are
+};
+
+/// Checks what a reader of the FITS file would take memory by: in each header the mandatory cards in their order, each a whole
+/// number (FITS Standard 4.0, section 4.4.1), and data no larger than the file. Reads headers alone. Throws std::runtime_error
+/// that says what is wrong.
+void check_fits_sizes(const FitsBytes& file);
+/// The same of a file in memory, whose last block must be whole, too.
+void check_fits_sizes(std::string_view file);
+
+}  // namespace misfit::kernels
