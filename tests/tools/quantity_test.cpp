@@ -57,6 +57,7 @@ BOOST_AUTO_TEST_CASE(what_is_no_quantity_is_shown_with_what_was_expected) {
   BOOST_CHECK_THROW(parse_flux_jy("1Hz"), std::invalid_argument);
   BOOST_CHECK_THROW(parse_flux_jy("1jy"), std::invalid_argument);
   BOOST_CHECK_THROW(parse_frequency_hz("1Jy"), std::invalid_argument);
+  BOOST_CHECK_THROW(parse_frequency_hz("1e305GHz"), std::invalid_argument);  // in Hz it is no number
 }
 
 BOOST_AUTO_TEST_SUITE_END()

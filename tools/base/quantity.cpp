@@ -29,7 +29,7 @@ double parse(const std::string& text, const std::string& what, const std::string
   std::string unit(rest, end);
   unit.erase(0, unit.find_first_not_of(' '));
   for (const auto& [name, size] : units)
-    if (name == unit) return number * size;
+    if (name == unit && std::isfinite(number * size)) return number * size;
   fail();
   return 0;
 }
