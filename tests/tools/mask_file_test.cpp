@@ -155,6 +155,7 @@ BOOST_AUTO_TEST_CASE(what_cannot_be_read_is_refused_by_its_line) {
   for (const char* nothing : {"", "\n", "#CRTF\n", "ann\ttext [[1pix, 2pix], 'x']"})
     BOOST_TEST(refused(nothing, "holds no region"));
   BOOST_TEST(refused(std::string("circle\0", 7), "neither a FITS image, a CASA image nor region text"));
+  BOOST_TEST(refused("\ncircle\x1b [[1pix, 2pix], 3pix]", "line 2: it has the control character 0x1b"));
   BOOST_TEST(refused("circle [[12h30m0s, 12d-3m0s], 3pix]", "'12d-3m0s'"));
   BOOST_TEST(refused("circle [[1deg, 91deg], 3pix]", "-90 to 90 degrees"));
   BOOST_TEST(refused("circle [[1deg, 2deg], 3pix], coord=GALACTIC", "expected the image's frame, J2000"));

@@ -32,6 +32,15 @@ std::optional<double> finite_number(std::string_view text) {
   return value;
 }
 
+std::string control_character_of(std::string_view text) {
+  const auto is_control = [](unsigned char c) { return (c < ' ' && c != '\t') || c == 0x7f; };
+  const auto found = std::find_if(text.begin(), text.end(), is_control);
+  if (found == text.end()) return "";
+  constexpr std::string_view digits = "0123456789abcdef";
+  const auto code = static_cast<unsigned char>(*found);
+  return std::string("the control character 0x") + digits[code / 16] + digits[code % 16];
+}
+
 namespace {
 
 /// The fewest letters to be changed, added or removed (Levenshtein 1966).

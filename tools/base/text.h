@@ -16,6 +16,9 @@ std::vector<std::string_view> split_at_commas(std::string_view text);
 /// The finite number that `text` is as a whole, with a sign or without; nothing where it is none.
 std::optional<double> finite_number(std::string_view text);
 
+/// What of `text` is neither printable nor a tab, as "the control character 0x1b"; empty where all is text.
+std::string control_character_of(std::string_view text);
+
 /// `names` with those first that take the fewest letters changed, added or removed to become `word`.
 std::vector<std::string> nearest_first(const std::string& word, std::vector<std::string> names);
 

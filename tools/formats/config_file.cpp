@@ -8,6 +8,7 @@
 
 #include "tools/base/files.h"
 #include "tools/base/option_checks.h"
+#include "tools/base/text.h"
 
 namespace misfit::tools {
 namespace {
@@ -68,6 +69,8 @@ void take_all(CLI::App& command, const std::string& path) {
     line = trimmed(line);
     if (line.empty() || line.front() == '#' || line.front() == ';') continue;
     try {
+      if (const std::string control = control_character_of(line); !control.empty())
+        throw std::invalid_argument("it has " + control + ", expected text");
       take(command, line, taken);
     } catch (const std::invalid_argument& error) {
       throw std::invalid_argument(path + ", line " + std::to_string(number) + ": " + error.what());

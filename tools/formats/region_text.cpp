@@ -144,7 +144,10 @@ RegionText::RegionText(const std::string& path, std::string_view text, const ima
     while (!text.empty()) {
       ++line_number;
       const std::size_t end = text.find_first_of("\r\n");
-      read_line(trimmed(text.substr(0, end)));
+      const std::string_view line = trimmed(text.substr(0, end));
+      if (const std::string control = control_character_of(line); !control.empty())
+        throw std::runtime_error("it has " + control + ", expected text");
+      read_line(line);
       if (end == std::string_view::npos) break;
       text.remove_prefix(end + (text.substr(end).starts_with("\r\n") ? 2 : 1));
     }
