@@ -34,7 +34,7 @@ imager::CleanState some_state() {
 }
 
 CleanStateOwner owner() {
-  return {"1.0", {{"gain", "0.1"}, {"niter", "100"}, {"mask", ""}}, 42};
+  return {"1.0", {{"gain", "0.1"}, {"niter", "100"}, {"mask", ""}}, 42, 1, {7, 5, {0, 3.7}}};
 }
 
 bool same(const imager::ComponentModel& a, const imager::ComponentModel& b) {

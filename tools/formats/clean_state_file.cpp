@@ -4,6 +4,7 @@
 #include <array>
 #include <bit>
 #include <cstring>
+#include <limits>
 #include <stdexcept>
 #include <string_view>
 #include <type_traits>
@@ -24,6 +25,16 @@ constexpr std::array free_options = {"niter",         "threshold", "nsigma",    
                                      "outformat",     "restart",   "dry-run",       "nodes",  "visibilities",
                                      "network",       "imagename", "kernel-folder", "pbcor",  "pblimit"};
 
+/// In one line.
+std::string escaped(const std::string& text) {
+  const std::string quoted = json(text).dump();
+  return quoted.substr(1, quoted.size() - 2);
+}
+
+std::string shown(const json& value) {
+  return value.is_null() ? "nothing" : value.is_string() ? "'" + escaped(value) + "'" : value.dump();
+}
+
 /// Its bytes as they lie in memory, little-endian where this runs.
 template <typename T>
 json packed(const std::vector<T>& values) {
@@ -36,10 +47,28 @@ json packed(const std::vector<T>& values) {
 template <typename T>
 std::vector<T> unpacked(const json& value) {
   const auto& bytes = value.get_binary();
-  if (bytes.size() % sizeof(T) != 0) throw std::runtime_error("an array is cut");
+  if (bytes.size() % sizeof(T) != 0) throw std::invalid_argument("an array is cut");
   std::vector<T> values(bytes.size() / sizeof(T));
   if (!values.empty()) std::memcpy(values.data(), bytes.data(), bytes.size());
   return values;
+}
+
+/// A whole number from `least` on.
+template <typename T>
+T whole(const json& object, const char* name, T least = 0) {
+  const json& value = object.at(name);
+  if (!value.is_number_integer() || value < least || value > std::numeric_limits<T>::max())
+    throw std::invalid_argument(std::string(name) + " is " + shown(value) + ", expected a whole number from " +
+                                std::to_string(least) + " on");
+  return value;
+}
+
+/// Throws unless something of a file has the pixels of the image.
+void check_pixels(const json& value, const imager::ComponentModel& like) {
+  const auto size = [](int width, int height) { return std::to_string(width) + " × " + std::to_string(height) + " pixels"; };
+  const int width = whole<int>(value, "width"), height = whole<int>(value, "height");
+  if (width != like.width() || height != like.height())
+    throw std::invalid_argument("it is of " + size(width, height) + ", expected " + size(like.width(), like.height()));
 }
 
 json packed_model(const imager::ComponentModel& model) {
@@ -60,20 +89,22 @@ json packed_model(const imager::ComponentModel& model) {
   return packed_model;
 }
 
-imager::ComponentModel unpacked_model(const json& value) {
+imager::ComponentModel unpacked_model(const json& value, const imager::ComponentModel& like) {
+  check_pixels(value, like);
+  if (value.at("scale_pixels") != json(like.scale_pixels())) throw std::invalid_argument("its model has other scales");
   const auto place = unpacked<std::int32_t>(value.at("place"));
   const auto flux_jy = unpacked<double>(value.at("flux_jy"));
   const auto further_jy = value.contains("further_jy") ? unpacked<double>(value.at("further_jy")) : std::vector<double>();
   constexpr std::size_t further = imager::most_taylor_terms - 1;
   if (place.size() != 3 * flux_jy.size() || (!further_jy.empty() && further_jy.size() != further * flux_jy.size()))
-    throw std::runtime_error("its components are incomplete");
+    throw std::invalid_argument("its components are incomplete");
   std::vector<imager::Component> components;
   for (std::size_t i = 0; i < flux_jy.size(); ++i) {
     components.push_back({place[3 * i], place[3 * i + 1], place[3 * i + 2], flux_jy[i]});
     for (std::size_t t = 0; !further_jy.empty() && t < further; ++t)
       components.back().further_jy[t] = further_jy[further * i + t];
   }
-  imager::ComponentModel model(value.at("width"), value.at("height"), value.at("scale_pixels"));
+  imager::ComponentModel model(like.width(), like.height(), like.scale_pixels());
   model.add(components);
   return model;
 }
@@ -90,12 +121,15 @@ json packed_mask(const imager::Image& mask) {
   return {{"width", mask.width}, {"height", mask.height}, {"runs", packed(runs)}};
 }
 
-imager::Image unpacked_mask(const json& value) {
-  imager::Image mask(value.at("width"), value.at("height"));
+/// Without pixels, where none was made.
+imager::Image unpacked_mask(const json& value, const imager::ComponentModel& like) {
+  if (value.at("width") == 0 && value.at("height") == 0) return {};
+  check_pixels(value, like);
+  imager::Image mask(like.width(), like.height());
   std::size_t first = 0;
   double in = 0;
   for (const std::uint64_t run : unpacked<std::uint64_t>(value.at("runs"))) {
-    if (run > mask.pixel.size() - first) throw std::runtime_error("its mask is larger than the image");
+    if (run > mask.pixel.size() - first) throw std::invalid_argument("its mask is larger than the image");
     std::fill_n(mask.pixel.begin() + static_cast<std::ptrdiff_t>(first), run, in);
     first += run;
     in = 1 - in;
@@ -116,31 +150,61 @@ json packed_cycle(const imager::MajorCycle& c) {
 
 imager::MajorCycle unpacked_cycle(const json& c) {
   imager::MajorCycle cycle;
-  cycle.iterations = c.at("iterations");
+  cycle.iterations = whole<int>(c, "iterations");
   cycle.peak_residual_jy = c.at("peak_residual_jy");
   cycle.rms_jy = c.at("rms_jy");
   cycle.model_flux_jy = c.at("model_flux_jy");
   cycle.cycle_threshold_jy = c.at("depth_jy");
   cycle.ended = c.at("ended");
   cycle.mean_square_jy2 = c.at("mean_square_jy2");
-  cycle.from = c.at("from");
+  cycle.from = whole<std::size_t>(c, "from");
   return cycle;
 }
 
-imager::CleanState unpacked_state(const json& file) {
+imager::CleanState unpacked_state(const json& file, const imager::ComponentModel& like) {
   imager::CleanState state;
-  state.model = unpacked_model(file.at("model"));
-  state.best_model = unpacked_model(file.at("best_model"));
-  state.mask = unpacked_mask(file.at("mask"));
+  state.model = unpacked_model(file.at("model"), like);
+  state.best_model = unpacked_model(file.at("best_model"), like);
+  state.mask = unpacked_mask(file.at("mask"), like);
   for (const json& cycle : file.at("cycles")) state.cycles.push_back(unpacked_cycle(cycle));
-  state.now = file.at("now");
-  state.best = file.at("best");
-  state.tightened = file.at("tightened");
+  state.now = whole<std::size_t>(file, "now");
+  state.best = whole<std::size_t>(file, "best");
+  state.tightened = whole<int>(file, "tightened");
   state.found_nothing = file.at("found_nothing");
   if (state.now >= state.cycles.size() || state.best >= state.cycles.size())
-    throw std::runtime_error("it names major cycles that are not in it");
+    throw std::invalid_argument("it names major cycles that are not in it");
   return state;
 }
+
+/// Reads a file without keeping it, and ends where it is nested more deeply than a state is, since each level takes stack, or a
+/// part has more elements than the file has bytes.
+class Shape : public nlohmann::json_sax<json> {
+ public:
+  explicit Shape(std::size_t bytes) : bytes_(bytes) {}
+  bool null() override { return true; }
+  bool boolean(bool) override { return true; }
+  bool number_integer(number_integer_t) override { return true; }
+  bool number_unsigned(number_unsigned_t) override { return true; }
+  bool number_float(number_float_t, const string_t&) override { return true; }
+  bool string(string_t&) override { return true; }
+  bool binary(binary_t&) override { return true; }
+  bool key(string_t&) override { return true; }
+  bool start_object(std::size_t elements) override { return begin(elements); }
+  bool end_object() override { return --depth_ >= 0; }
+  bool start_array(std::size_t elements) override { return begin(elements); }
+  bool end_array() override { return --depth_ >= 0; }
+  bool parse_error(std::size_t, const std::string&, const nlohmann::detail::exception&) override { return false; }
+
+ private:
+  bool begin(std::size_t elements) {
+    constexpr int deepest = 8;
+    constexpr auto unknown = static_cast<std::size_t>(-1);
+    return ++depth_ <= deepest && (elements <= bytes_ || elements == unknown);
+  }
+
+  std::size_t bytes_;
+  int depth_ = 0;
+};
 
 std::uint64_t fnv1a(std::string_view bytes) {
   std::uint64_t sum = 0xcbf29ce484222325;
@@ -155,11 +219,9 @@ json intact_content(std::string_view file) {
   const std::string_view content = file.substr(0, file.size() - sizeof sum);
   std::memcpy(&sum, file.data() + content.size(), sizeof sum);
   if (sum != fnv1a(content)) return nullptr;
+  Shape shape(content.size());
+  if (!json::sax_parse(content.begin(), content.end(), &shape, json::input_format_t::cbor)) return nullptr;
   return json::from_cbor(content.begin(), content.end(), true, false);
-}
-
-std::string shown(const json& value) {
-  return value.is_null() ? "nothing" : value.is_string() ? "'" + value.get<std::string>() + "'" : value.dump();
 }
 
 /// Equal, or the same numbers differently written.
@@ -182,9 +244,10 @@ void require_same(const std::string& path, const json& file, const CleanStateOwn
   for (const auto& [name, value] : names.items()) {
     const bool may_differ = std::find(free_options.begin(), free_options.end(), name) != free_options.end();
     const json then = has.value(name, json()), now = owner.options.value(name, json());
-    if (!may_differ && !means_the_same(then, now)) refuse("--" + name, then, now);
+    if (!may_differ && !means_the_same(then, now)) refuse("--" + escaped(name), then, now);
   }
-  if (file.value("ranks", 1) != owner.ranks) refuse("mpirun -n", file.value("ranks", 1), owner.ranks);
+  const int ranks = file.contains("ranks") ? whole<int>(file, "ranks") : 1;
+  if (ranks != owner.ranks) refuse("mpirun -n", ranks, owner.ranks);
   if (file.at("checksum") != owner.checksum)
     throw std::runtime_error(path +
                              " was saved with other data: the dirty image, the PSF, the mask or the start model differ; " +
@@ -237,7 +300,7 @@ imager::CleanState read_clean_state(const std::string& path, const CleanStateOwn
   };
   try {
     require_same(path, file, owner);
-    return unpacked_state(file);
+    return unpacked_state(file, owner.like);
   } catch (const json::exception& error) {
     damaged(error);
   } catch (const std::invalid_argument& error) {

@@ -11,10 +11,11 @@ namespace misfit::tools {
 
 /// What a state of CLEAN belongs to.
 struct CleanStateOwner {
-  std::string version;         ///< of the program
-  nlohmann::json options;      ///< {name: value}, as typed or by default
-  std::uint64_t checksum = 0;  ///< of the dirty image, the PSF, and what CLEAN is given besides
-  int ranks = 1;               ///< that summed them, on whose number their last bits depend
+  std::string version;          ///< of the program
+  nlohmann::json options;       ///< {name: value}, as typed or by default
+  std::uint64_t checksum = 0;   ///< of the dirty image, the PSF, and what CLEAN is given besides
+  int ranks = 1;                ///< that summed them, on whose number their last bits depend
+  imager::ComponentModel like;  ///< a model of the image's pixels and of the scales that CLEAN looks for
 };
 
 /// A number that differs when a bit of any image does; null stands for none. Over the dirty image and the PSF it is that of the

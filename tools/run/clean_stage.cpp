@@ -102,15 +102,14 @@ void CleanStage::read_start_model() {
   }
 }
 
-imager::CleanState CleanStage::begin(std::size_t stokes, const std::vector<double>& scale_pixels,
-                                     const CleanStateOwner& owner) {
+imager::CleanState CleanStage::begin(std::size_t stokes, const CleanStateOwner& owner) {
   imager::Image start;
   if (!start_model_.empty()) start = std::move(start_model_[stokes]);
   if (o_.restart && std::filesystem::exists(state_path(stokes))) return read_clean_state(state_path(stokes), owner);
   const std::filesystem::path state = state_path(stokes);
   if (o_.cube.is_cube()) std::filesystem::create_directories(state.parent_path());
   std::filesystem::remove(state);
-  imager::ComponentModel model(image_.geometry.width, image_.geometry.height, scale_pixels);
+  imager::ComponentModel model = owner.like;
   if (!start.pixel.empty()) model.add(imager::components_of(start));
   return imager::first_state(model);
 }
@@ -136,13 +135,17 @@ imager::CleanResult CleanStage::run(const CleanScene& scene, const nlohmann::jso
     const imager::StageTimer timer(times, "minor cycles");
     minor = make_minor(scene, deconvolver_choice(o_, threads_));
   }
-  CleanStateOwner owner{MISFIT_VERSION, option_values, 0, scene.source.ranks().size()};
+  CleanStateOwner owner{MISFIT_VERSION,
+                        option_values,
+                        0,
+                        scene.source.ranks().size(),
+                        {image_.geometry.width, image_.geometry.height, minor.scale_pixels()}};
   imager::CleanState state;
   double sidelobe = 0;
   {
     const imager::StageTimer timer(times, "CLEAN state");
     owner.checksum = checksum_of(scene);
-    state = begin(scene.stokes, minor.scale_pixels(), owner);
+    state = begin(scene.stokes, owner);
     sidelobe = imager::largest_sidelobe(scene.psf, scene.main_lobe, image_.geometry.cell_rad, threads_);
   }
   const imager::CleanInput input{scene.source,

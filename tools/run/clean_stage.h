@@ -57,7 +57,7 @@ class CleanStage {
   void read_start_model();
   void refuse_start_model(const std::string& has, const std::string& expected) const;
   /// That of a run before, or that of the start model, which it frees.
-  imager::CleanState begin(std::size_t stokes, const std::vector<double>& scale_pixels, const CleanStateOwner& owner);
+  imager::CleanState begin(std::size_t stokes, const CleanStateOwner& owner);
   std::uint64_t checksum_of(const CleanScene& scene) const;
 
   const ImageOptions& o_;
