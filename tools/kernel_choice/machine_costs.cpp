@@ -3,7 +3,6 @@
 #include <cmath>
 #include <fstream>
 #include <nlohmann/json.hpp>
-#include <optional>
 #include <stdexcept>
 
 #include "kernels/version.h"
@@ -28,14 +27,19 @@ constexpr Constant constants[] = {{"sample_ns", &imager::CostModel::sample_ns},
 /// What a file says, if it says it of this machine.
 std::optional<imager::CostModel> costs_in(const std::string& content) {
   const json kept = json::parse(content, nullptr, false);
-  if (!kept.is_object() || kept.value("machine", json()) != json(machine_name())) return {};
+  if (!kept.is_object() || !kept.contains("machine") || kept["machine"] != machine_name()) return {};
   imager::CostModel model;
   for (const Constant& constant : constants) {
-    const json value = kept.value(constant.name, json());
+    if (!kept.contains(constant.name)) return {};
+    const json& value = kept[constant.name];  // a copy takes as much stack as a damaged file has brackets
     if (!value.is_number() || !(value.get<double>() > 0) || !std::isfinite(value.get<double>())) return {};
     model.*constant.value = value.get<double>();
   }
   return model;
+}
+
+fs::path costs_file(const fs::path& folder) {
+  return folder / "costs.json";
 }
 
 std::string text_of(const imager::CostModel& model) {
@@ -54,16 +58,20 @@ std::string machine_name() {
   return "processor unknown, misfit " MISFIT_VERSION;
 }
 
+std::optional<imager::CostModel> kept_costs(const fs::path& folder) {
+  const fs::path file = costs_file(folder);
+  std::error_code none;
+  return fs::is_regular_file(file, none) ? costs_in(read_file(file)) : std::nullopt;
+}
+
 imager::CostModel machine_costs(const fs::path& folder) {
   if (folder.empty()) return imager::measure_costs();
-  const std::string file = folder / "costs.json";
-  std::error_code none;
-  if (fs::is_regular_file(file, none))
-    if (const auto kept = costs_in(read_file(file))) return *kept;
+  if (const auto kept = kept_costs(folder)) return *kept;
   const imager::CostModel measured = imager::measure_costs();
+  std::error_code none;
   fs::create_directories(folder, none);
   try {
-    write_file(file, text_of(measured));
+    write_file(costs_file(folder), text_of(measured));
   } catch (const std::runtime_error&) {  // a folder that cannot be written is no cache, and no error
   }
   return measured;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 
 #include "imager/plan/cost_model.h"
@@ -14,5 +15,8 @@ std::string machine_name();
 /// A file that is damaged, of another machine or of another version is measured anew; where nothing can be kept, they are
 /// measured each time.
 imager::CostModel machine_costs(const std::filesystem::path& folder);
+
+/// Those kept in `folder`, if there are any of this machine.
+std::optional<imager::CostModel> kept_costs(const std::filesystem::path& folder);
 
 }  // namespace misfit::tools

@@ -16,6 +16,11 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
+/// Without a copy, which takes as much stack as a damaged file has brackets.
+bool has(const json& object, const char* name, const json& value) {
+  return object.is_object() && object.contains(name) && object[name] == value;
+}
+
 /// Seconds of one core to those of all: two cores do 1.8 times as much as one, as measured.
 double shared(double seconds, int threads) {
   return seconds / std::pow(static_cast<double>(threads), 0.85);
@@ -61,9 +66,11 @@ std::string size_of(const RunWork& w) {
 std::optional<int> between_sizes(const std::string& one, const std::string& other) {
   int samples[2], pixels[2];
   for (const int i : {0, 1})
-    if (std::sscanf((i == 0 ? one : other).c_str(), ", 2^%d samples, 2^%d pixels", &samples[i], &pixels[i]) != 2) return {};
+    if (std::sscanf((i == 0 ? one : other).c_str(), ", 2^%3d samples, 2^%3d pixels", &samples[i], &pixels[i]) != 2) return {};
   return std::abs(samples[0] - samples[1]) + std::abs(pixels[0] - pixels[1]);
 }
+
+constexpr int most_runs = 8;  ///< that count
 
 /// Changes with what is counted: factors between seconds and other counts say nothing.
 constexpr int count_version = 2;
@@ -207,15 +214,12 @@ TimeForecast::TimeForecast(const fs::path& folder) {
   std::error_code none;
   if (!fs::is_regular_file(file_, none)) return;
   const json kept = json::parse(read_file(file_), nullptr, false);
-  if (!kept.is_object() || kept.value("machine", json()) != json(machine_name()) ||
-      kept.value("counts", json()) != json(count_version))
-    return;
-  const json kinds = kept.value("kinds", json::object());
-  if (!kinds.is_object()) return;
-  for (const auto& [kind, value] : kinds.items()) {
-    if (!value.is_object()) continue;
-    const json log = value.value("log", json()), runs = value.value("runs", json());
-    if (log.is_number() && std::isfinite(log.get<double>()) && runs.is_number_integer() && runs.get<int>() > 0)
+  if (!has(kept, "machine", machine_name()) || !has(kept, "counts", count_version) || !kept.contains("kinds")) return;
+  for (const auto& [kind, value] : kept["kinds"].items()) {
+    if (!value.is_object() || !value.contains("log") || !value.contains("runs")) continue;
+    const json &log = value["log"], &runs = value["runs"];
+    constexpr double most_log = 30;  // no machine is so much slower
+    if (log.is_number() && std::abs(log.get<double>()) < most_log && runs.is_number_integer() && runs >= 1 && runs <= most_runs)
       factor_[kind] = {log, runs};
   }
 }
@@ -254,7 +258,6 @@ bool TimeForecast::knows(const RunWork& work) const {
 
 void TimeForecast::learn(const RunWork& work, const imager::StageTimes& took) {
   constexpr double least_s = 5e-3;
-  constexpr int memory = 8;           // runs that count
   std::map<std::string, double> off;  // log of seconds taken over seconds expected, by stage
   for (const StageSeconds& e : expected(work))
     for (const auto& [stage, seconds] : took.stages())
@@ -265,7 +268,7 @@ void TimeForecast::learn(const RunWork& work, const imager::StageTimes& took) {
   for (const auto& [kind, log] : should)
     for (const std::string& name : {kind, kind + size_of(work)}) {
       Factor& factor = factor_[name];
-      factor.runs = std::min(factor.runs + 1, memory);
+      factor.runs = std::min(factor.runs + 1, most_runs);
       factor.log += (log - factor.log) / factor.runs;
     }
   if (file_.empty()) return;
