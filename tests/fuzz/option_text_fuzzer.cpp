@@ -1,0 +1,61 @@
+// Values of options that are parsed without data: quantities, Stokes parameters, frames, numbers, lists.
+#include <cmath>
+
+#include "imager/stokes.h"
+#include "ms_io/spectral_frame.h"
+#include "tests/fuzz/fuzzing.h"
+#include "tools/base/quantity.h"
+#include "tools/base/text.h"
+#include "tools/formats/region_keywords.h"
+#include "tools/run/cube_options.h"
+#include "tools/run/image_options.h"
+#include "tools/run/weighting_options.h"
+
+using namespace misfit;
+using namespace misfit::fuzz;
+
+namespace {
+
+void require_quantities(const std::string& text) {
+  for (const auto parse : {tools::parse_angle_rad, tools::parse_flux_jy, tools::parse_frequency_hz, tools::parse_velocity_m_s,
+                           tools::parse_uv_distance_lambda})
+    if (const auto value = read_or_refused(text, [&] { return parse(text); }))
+      require(std::isfinite(*value), "a quantity is finite");
+}
+
+/// Options that have a value of their own kind.
+void require_options(const std::string& text) {
+  tools::ImageOptions options;
+  options.restoringbeam = text;
+  if (const auto beam = read_or_refused(text, [&] { return tools::restoring_beam(options); }); beam && *beam)
+    require((*beam)->minor_rad > 0 && (*beam)->major_rad >= (*beam)->minor_rad && std::isfinite((*beam)->position_angle_rad),
+            "a beam is an ellipse");
+  options.uvtaper = text;
+  if (read_or_refused(text, [&] { return tools::check_weighting(options), true; })) tools::weighting_options(options);
+  for (std::string tools::CubeOptions::*option : {&tools::CubeOptions::start, &tools::CubeOptions::chanwidth,
+                                                  &tools::CubeOptions::restfreq, &tools::CubeOptions::outframe}) {
+    tools::CubeOptions cube;
+    cube.specmode = "cube";
+    cube.*option = text;
+    read_or_refused(text, [&] { return tools::check(cube), true; });
+  }
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  const std::string text(reinterpret_cast<const char*>(data), size);
+  for (const char c : text)
+    if (static_cast<unsigned char>(c) < ' ' || c == '\x7f') return 0;  // a shell's word may have it, and is shown
+  require_quantities(text);
+  require_options(text);
+  if (const auto stokes = read_or_refused(text, [&] { return imager::parse_stokes(text); }))
+    require(imager::parse_stokes(imager::stokes_names(*stokes)) == *stokes, "names of Stokes parameters are read again");
+  read_or_refused(text, [&] { return ms_io::parse_spectral_frame(text); });
+  if (const auto number = tools::finite_number(text)) require(std::isfinite(*number), "a finite number is one");
+  const tools::RegionKeywords keywords = tools::parse_region_keywords(text);
+  const imager::SpectralAxis axis{1.42e9, 1e6, 5, "LSRK", 1.420405752e9};
+  if (const auto planes = read_or_refused("", [&] { return tools::planes_of_range(keywords, axis); }))
+    require(planes->first >= 0 && planes->last < axis.channels, "planes are those of the image");
+  return 0;
+}
