@@ -42,17 +42,17 @@ void fit_plane(Facet& f, int steps) {
 
 /// How far n − 1 strays from the plane.
 void measure_reach(Facet& f, int steps) {
-  double least = std::numeric_limits<double>::infinity(), most = -least;
+  double lowest = std::numeric_limits<double>::infinity(), highest = -lowest;
   for_lattice(f.geometry, steps, [&](int column, int row) {
     const double q = f.curvature(column, row);
-    least = std::min(least, q);
-    most = std::max(most, q);
+    lowest = std::min(lowest, q);
+    highest = std::max(highest, q);
   });
-  f.empty = least > most;
+  f.empty = lowest > highest;
   if (f.empty) return;
   constexpr double between = 1.002;  // the lattice's points: of 49 along a side, which miss up to 1/600 of what q spans
-  f.middle = (least + most) / 2;
-  f.reach = between * (most - least) / 2;
+  f.middle = (lowest + highest) / 2;
+  f.reach = between * (highest - lowest) / 2;
 }
 
 }  // namespace
