@@ -230,7 +230,6 @@ class Search {
       const Outcome outcome = consider(sized(width, padding_u, padding_v, precision));
       if (outcome != Outcome::not_exact_enough) return width;
       const GriddingCandidate& c = considered_.back().candidate;
-      constexpr double stored = 1e-13;  // below, the rounding of the stored kernel may hold the error up
       constexpr double falling = 0.99;  // where tables limit it, no wider kernel helps
       if (exhausted(c) || (c.worst_error < stored && c.worst_error > narrower / 2)) return {};
       if (request_.lookup && c.worst_error > falling * narrower) return {};
@@ -241,7 +240,7 @@ class Search {
 
   /// With the cheapest w axis that keeps the accuracy, or where the plane alone misses it, with one that is as exact as it.
   GriddingCandidate with_w(const GriddingCandidate& plane) {
-    const double goal = plane.worst_error < target_ && target_ < HUGE_VAL ? target_ : 1.2 * plane.worst_error;
+    const double goal = plane.worst_error < target_ && target_ < HUGE_VAL ? target_ : std::max(1.2 * plane.worst_error, stored);
     std::optional<GriddingCandidate> cheapest, most_exact;
     int least = request_.kernel.min_width;
     for (const double usual : usual_w_paddings)
@@ -290,6 +289,8 @@ class Search {
     for (const auto& [padding, rejected] : cheapest) found.push_back(rejected);
     return found;
   }
+
+  static constexpr double stored = 1e-13;  ///< below, the rounding of the stored kernel may hold the error up
 
   GriddingRequest request_;
   KernelShelf shelf_;
