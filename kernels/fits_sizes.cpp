@@ -32,8 +32,18 @@ class Header {
     return card;
   }
   /// The value of the next card, which must have this key.
-  long long whole(const std::string& key, long long least, long long most) {
-    const std::string card = next();
+  long long whole(const std::string& key, long long least, long long most) { return whole_of(next(), key, least, most); }
+  /// Goes to the card END. Returns the size of all. The heap of a table may begin anywhere in `data` bytes.
+  std::uint64_t end(double data) {
+    std::string card = next();
+    for (; card.compare(0, 8, "END     ") != 0; card = next())
+      if (card.starts_with("THEAP   ")) whole_of(card, "THEAP", 0, static_cast<long long>(std::min(data, 1e18)));
+    if (card.find_first_not_of(' ', 3) != std::string::npos) fail("END has a value");
+    return blocks(at_);
+  }
+
+ private:
+  static long long whole_of(const std::string& card, const std::string& key, long long least, long long most) {
     std::string padded = key;
     padded.resize(8, ' ');
     if (card.compare(0, 10, padded + "= ") != 0) fail("a header has no " + key + " where one is due");
@@ -47,15 +57,6 @@ class Header {
       fail(key + " is " + number + ", expected " + std::to_string(least) + " to " + std::to_string(most));
     return found;
   }
-  /// Goes to the card END. Returns the size of all.
-  std::uint64_t end() {
-    std::string card = next();
-    while (card.compare(0, 8, "END     ") != 0) card = next();
-    if (card.find_first_not_of(' ', 3) != std::string::npos) fail("END has a value");
-    return blocks(at_);
-  }
-
- private:
   const FitsBytes& file_;
   std::uint64_t begin_;
   std::uint64_t at_ = 0;
@@ -77,7 +78,7 @@ std::uint64_t hdu_size(const FitsBytes& file, std::uint64_t begin) {
     data = (data + heap * static_cast<double>(std::llabs(bits)) / 8) * static_cast<double>(cards.whole("GCOUNT", 1, 1));
     if (first.substr(10, 10) == "'BINTABLE'") cards.whole("TFIELDS", 0, most_columns);
   }
-  const std::uint64_t header = cards.end();
+  const std::uint64_t header = cards.end(data);
   if (data > static_cast<double>(file.size) - static_cast<double>(begin + header))
     fail("a header announces more data than the file has: it was cut short");
   return header + blocks(static_cast<std::uint64_t>(data));

@@ -14,8 +14,8 @@ struct FitsBytes {
 };
 
 /// Checks what a reader of the FITS file would take memory by: in each header the mandatory cards in their order, each a whole
-/// number (FITS Standard 4.0, section 4.4.1), and data no larger than the file. Reads headers alone. Throws std::runtime_error
-/// that says what is wrong.
+/// number (FITS Standard 4.0, section 4.4.1), data no larger than the file, and the heap of a table within them. Reads headers
+/// alone. Throws std::runtime_error that says what is wrong.
 void check_fits_sizes(const FitsBytes& file);
 /// The same of a file in memory, whose last block must be whole, too.
 void check_fits_sizes(std::string_view file);
