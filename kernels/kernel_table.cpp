@@ -211,6 +211,9 @@ KernelTable read_facts(const FitsMemory& file) {
   Kernel& kernel = table.kernel;
   kernel.name = header.needed("KERNEL", header.text("KERNEL"));
   if (kernel.name.empty()) file.fail("KERNEL is empty, expected a name");
+  if (kernel.name.size() > longest_name)
+    file.fail("KERNEL has " + std::to_string(kernel.name.size()) + " characters, expected at most " +
+              std::to_string(longest_name));
   for (const Fact& fact : facts_of(kernel)) {
     const std::optional<double> value = header.number(fact.key);
     if (!value && fact.may_lack) continue;

@@ -9,7 +9,6 @@ namespace misfit::kernels {
 namespace {
 
 constexpr int rows_in_x = 1025;
-constexpr int longest_name = 60;  // what a card of 80 characters holds beside keyword and quotes
 
 }  // namespace
 

@@ -7,6 +7,8 @@
 
 namespace misfit::kernels {
 
+inline constexpr int longest_name = 60;  ///< of a kernel: what a card of 80 characters holds beside keyword and quotes
+
 /// A number of a kernel and the header key that holds it.
 struct Fact {
   const char* key;
