@@ -44,60 +44,64 @@ void make_set(const std::string& path) {
 
 /// One of what the program does with a set.
 Arguments command(std::size_t which, const std::string& set, const fs::path& folder) {
-  const Arguments image{"image",     "--vis",   set,         "--imagename", folder / "a", "--imsize", "16",         "--cell",
-                        "300arcsec", "--quiet", "--threads", "1",           "--memory",   "0.5",      "--outframe", "TOPO"};
-  const auto with = [&](const Arguments& more) {
-    Arguments all = image;
-    if (more.empty() || more.front() != "--specmode") all.resize(all.size() - 2);
+  const auto image = [&](const Arguments& more) {
+    Arguments all{"image",  "--vis",     set,       "--imagename", folder / "a", "--imsize", "16",
+                  "--cell", "300arcsec", "--quiet", "--threads",   "1",          "--memory", "0.5"};
+    all.insert(all.end(), more.begin(), more.end());
+    return all;
+  };
+  const auto predict = [&](const Arguments& more) {
+    Arguments all{"predict", "--vis", set, "--components", folder / "sky.csv", "--quiet"};
     all.insert(all.end(), more.begin(), more.end());
     return all;
   };
   switch (which) {
     case 0:
-      return with({});
+      return image({});
     case 1:
-      return with({"--niter", "3", "--weighting", "briggs", "--savemodel", "modelcolumn"});
+      return image({"--niter", "3", "--weighting", "briggs", "--savemodel", "modelcolumn"});
     case 2:
-      return with({"--specmode", "cube"});
+      return image({"--specmode", "cube", "--outframe", "TOPO"});
     case 3:
-      return with({"--stokes", "IV", "--pbcor", "--phasecenter", "J2000 1.25rad 0.5rad"});
+      return image({"--stokes", "IV", "--pbcor", "--phasecenter", "J2000 1.25rad 0.5rad"});
     case 4:
-      return with(
-          {"--field", "0", "--spw", "0:0~1", "--timerange", ">2000/01/01", "--uvrange", ">1klambda", "--antenna", "A0&A1"});
+      return image({"--field", "0", "--spw", "0:0~1", "--timerange", ">2000/01/01", "--antenna", "A0&A1"});
     case 5:
-      return with({"--specmode", "cube", "--outframe", "LSRK"});
+      return image({"--specmode", "cube", "--outframe", "LSRK"});
     case 6:
-      return {"predict", "--vis", set, "--components", folder / "sky.csv", "--quiet"};
+      return predict({});
     default:
-      return {"predict", "--vis", set, "--components", folder / "sky.csv", "--subtract", "--column", "REST", "--quiet"};
+      return predict({"--subtract", "--column", "REST"});
   }
 }
 
-/// The folder of everything, with the whole set.
-const fs::path& workplace() {
-  static const fs::path folder = [] {
-    fs::path made = fs::temp_directory_path() / ("misfit-fuzz-set-" + std::to_string(getpid()));
-    fs::create_directories(made);
-    setenv("MISFIT_CACHE", (made / "cache").c_str(), 1);
+/// The folder of everything, with the whole set, until the program ends.
+struct Workplace {
+  Workplace() {
+    fs::create_directories(folder);
+    setenv("MISFIT_CACHE", (folder / "cache").c_str(), 1);
     setenv("PATH", "", 1);  // no pictures, which take most of the time
-    make_set(made / "whole.ms");
-    std::ofstream(made / "sky.csv") << "l_arcsec,m_arcsec,flux_jy\n1,2,1\n";
-    std::atexit([] { fs::remove_all(workplace()); });
-    return made;
-  }();
-  return folder;
-}
+    make_set(folder / "whole.ms");
+    std::ofstream(folder / "sky.csv") << "l_arcsec,m_arcsec,flux_jy\n1,2,1\n";
+  }
+  Workplace(const Workplace&) = delete;
+  Workplace& operator=(const Workplace&) = delete;
+  ~Workplace() { fs::remove_all(folder); }
+
+  fs::path folder = fs::temp_directory_path() / ("misfit-fuzz-set-" + std::to_string(getpid()));
+};
 
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   if (size == 0 || size > 64) return 0;
+  static const Workplace workplace;
   static std::size_t runs = 0;
-  const fs::path folder = workplace() / std::to_string(++runs);  // casacore remembers tables by name
+  const fs::path folder = workplace.folder / std::to_string(++runs);  // casacore remembers tables by name
   fs::create_directories(folder);
   const std::string set = folder / "a.ms";
-  fs::copy(workplace() / "whole.ms", set, fs::copy_options::recursive);
-  fs::copy(workplace() / "sky.csv", folder / "sky.csv");
+  fs::copy(workplace.folder / "whole.ms", set, fs::copy_options::recursive);
+  fs::copy(workplace.folder / "sky.csv", folder / "sky.csv");
   fuzz::damage(set, data + 1, size - 1);
   const Arguments typed = command(data[0] % 8, set, folder);
   try {
