@@ -12,6 +12,7 @@
 #include "ms_io/casa_image.h"
 #include "ms_io/image_folder_internal.h"
 #include "ms_io/room_internal.h"
+#include "ms_io/storage_managers_internal.h"
 #include "ms_io/table_access_internal.h"
 
 namespace misfit::ms_io {
@@ -176,6 +177,7 @@ bool is_casa_image(const std::string& path) {
 
 bool is_own_casa_image(const std::string& path) {
   if (!is_casa_image(path)) return false;
+  check_storage_managers(path);
   return translated("cannot read " + path, [&] {
     const casacore::Table table(path, casacore::TableLock(casacore::TableLock::NoLocking));
     const casacore::TableRecord& keywords = table.keywordSet();
