@@ -234,12 +234,16 @@ BOOST_AUTO_TEST_CASE(width_and_padding_are_chosen_for_a_library_and_the_run_can_
   const Arguments accuracy = {"--accuracy", "0.02", "--verify", "100", "--kernel", "gauss"};
   succeed(small_image(snapshot(), folder / "a") + accuracy + Arguments{"--kernel-folder", MISFIT_PLUGINS});
   BOOST_TEST(report_of(folder / "a")["error"]["measured_rms"].get<double>() < 0.02);
-  succeed({"image", "--config", folder / "a.last.ini", "--imagename", folder / "b"});
+  const Arguments repeat = {"image", "--kernel-folder", MISFIT_PLUGINS, "--config"};
+  succeed(repeat + Arguments{folder / "a.last.ini", "--imagename", folder / "b"});
+  const Outcome without = run({"image", "--config", folder / "a.last.ini", "--imagename", folder / "b"});
+  BOOST_TEST(without.code == 2);  // a file that is handed around brings no programs
+  BOOST_TEST(without.err.find("or with --kernel-folder a library") != std::string::npos, without.err);
   const EnvironmentVariable environment("MISFIT_KERNEL_FOLDER", MISFIT_PLUGINS);
   succeed(small_image(snapshot(), folder / "c") + accuracy);
   {
     const EnvironmentVariable elsewhere("MISFIT_KERNEL_FOLDER", folder / "none");
-    succeed({"image", "--config", folder / "c.last.ini", "--imagename", folder / "d"});
+    succeed(repeat + Arguments{folder / "c.last.ini", "--imagename", folder / "d"});
   }
   for (const char* other : {"b", "c", "d"})
     BOOST_TEST((pixels_of(folder / other, "residual").pixel == pixels_of(folder / "a", "residual").pixel), other);

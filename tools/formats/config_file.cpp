@@ -13,6 +13,8 @@
 namespace misfit::tools {
 namespace {
 
+constexpr const char* folder_of_programs = "kernel-folder";  ///< which only who runs misfit names, never a file
+
 std::string trimmed(const std::string& text) {
   const std::size_t first = text.find_first_not_of(" \t\r");
   if (first == std::string::npos) return "";
@@ -49,6 +51,8 @@ void take(CLI::App& command, const std::string& line, std::set<std::string>& tak
   CLI::Option* option = command.get_option_no_throw("--" + name);
   if (name.empty() || option == nullptr || !option->get_configurable())
     throw std::invalid_argument("'" + name + "' is no option of misfit " + command.get_name());
+  if (name == folder_of_programs)
+    throw std::invalid_argument("'" + name + "' names a folder whose programs would be run; expected it on the command line");
   if (!taken.insert(name).second) throw std::invalid_argument("'" + name + "' stands in the file twice");
   if (option->count() > 0) return;
   if (option->get_items_expected_max() == 0) check_flag(name, value);
@@ -109,7 +113,8 @@ std::vector<std::pair<std::string, std::string>> options_in_force(const CLI::App
 std::string config_text(const CLI::App& command) {
   std::string text;
   for (const auto& [name, value] : options_in_force(command))
-    if (!value.empty() && name != "restart") text += name + "=\"" + value + "\"\n";
+    if (!value.empty() && name != "restart")
+      text += (name == folder_of_programs ? "# on the command line: --" : "") + name + "=\"" + value + "\"\n";
   return text;
 }
 
