@@ -31,9 +31,18 @@ void collect(const VisibilityBlock& block, std::uint64_t first, const std::vecto
   }
 }
 
+std::vector<Pixel> all_pixels(const ImageGeometry& geometry) {
+  std::vector<Pixel> pixels;
+  for (int row = 0; row < geometry.height; ++row)
+    for (int column = 0; column < geometry.width; ++column)
+      if (!beyond_horizon(geometry.at(row, column))) pixels.push_back({row, column});
+  return pixels;
+}
+
 }  // namespace
 
 std::vector<Pixel> random_pixels(const ImageGeometry& geometry, int count) {
+  if (count >= 0 && static_cast<std::size_t>(count) >= geometry.pixels()) return all_pixels(geometry);
   std::mt19937_64 random(20200112);
   const auto width = static_cast<std::uint64_t>(geometry.width);
   std::vector<Pixel> pixels;
@@ -71,10 +80,10 @@ MeasuredError measure_error(const VisibilitySource& source, const Transform& tra
   const Ranks& ranks = source.ranks();
   std::uint64_t all_samples = source.samples();
   sum_over(ranks, all_samples);
-  count = static_cast<int>(std::min({std::uint64_t(count), std::uint64_t{geometry.pixels()}, all_samples}));
+  const int predicted = static_cast<int>(std::min(std::uint64_t(count), all_samples));
   const std::vector<Pixel> pixels = random_pixels(geometry, count);
   const DirectPixels direct_pixels{geometry, pixels, true, threads};
-  const std::vector<std::uint64_t> chosen = random_samples(source.samples(), count, random);
+  const std::vector<std::uint64_t> chosen = random_samples(source.samples(), predicted, random);
 
   std::vector<std::vector<double>> sum(images.dirty.size(), std::vector<double>(pixels.size()));
   SampleCoordinates samples{{}, {any_frequency_hz}};

@@ -5,7 +5,8 @@
 
 namespace misfit::imager {
 
-/// `count` pixels above the horizon at random, always the same; fewer where hardly any is.
+/// `count` pixels above the horizon at random, always the same; fewer where hardly any is, and each of them once where the
+/// image has no more than `count`.
 std::vector<Pixel> random_pixels(const ImageGeometry& geometry, int count);
 
 /// How far an image is from direct sums at some of its pixels, in Jy/beam.
@@ -28,8 +29,8 @@ struct MeasuredError {
 };
 
 /// Compares the dirty images with direct sums at `count` random pixels, and predicted visibilities with direct sums at `count`
-/// random samples of each rank, for a model of `count` random pixels; fewer where there are fewer pixels or samples. The choice
-/// depends on `count` alone.
+/// random samples of each rank, for a model of the same pixels; with all pixels where there are no more, and fewer samples
+/// where there are fewer. The choice depends on `count` alone.
 MeasuredError measure_error(const VisibilitySource& source, const Transform& transform, const ImageGeometry& geometry,
                             const DirtyImages& images, int count, int threads, const Progress& progress);
 

@@ -63,6 +63,25 @@ BOOST_AUTO_TEST_CASE(the_error_of_a_bad_kernel_is_that_of_the_whole_image) {
   }
 }
 
+BOOST_AUTO_TEST_CASE(no_pixel_of_a_small_image_is_left_out) {
+  const auto transform = bad_transform(3);
+  const auto few_samples = stored({random_samples(20, 1, geometry.cell_rad, 1)});
+  StageTimes times;
+  const DirtyImages images = make_dirty_images(few_samples, *transform, {.with_psf = true}, ignore_progress, times);
+  const Image exact =
+      make_dirty_images(few_samples, DirectTransform(geometry, 2), {.with_psf = true}, ignore_progress, times).dirty[0];
+  const MeasuredError error = measure_error(few_samples, *transform, geometry, images, 50 * 40, 2, ignore_progress);
+  double largest = 0;
+  for (std::size_t i = 0; i < exact.pixel.size(); ++i)
+    largest = std::max(largest, std::abs(images.dirty[0].pixel[i] - exact.pixel[i]));
+  const double rms = norm(images.dirty[0].pixel) / std::sqrt(geometry.pixels());
+  // The same sums in another order, whose rounding is that much less than the error.
+  constexpr double rounding = 1e-9;
+  BOOST_TEST(error.image[0].rms == distance(images.dirty[0].pixel, exact.pixel) / norm(images.dirty[0].pixel),
+             boost::test_tools::tolerance(rounding));
+  BOOST_TEST(error.image[0].max == largest / rms, boost::test_tools::tolerance(rounding));
+}
+
 BOOST_AUTO_TEST_CASE(the_error_of_prediction_is_that_of_all_samples) {
   const VisibilityBlock block = random_samples(2000, 1, geometry.cell_rad, 3);
   const Image model = random_image(geometry.width, geometry.height, 4);

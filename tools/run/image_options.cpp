@@ -136,7 +136,8 @@ void declare(CLI::App& command, ImageOptions& o) {
   command.add_option("--pblimit", o.pblimit,
                      "Where the primary beam is lower, .pb and .image.pbcor have no values; 0.2 when 0. Without --pbcor .pb "
                      "alone is written. The sign makes no difference, since no other image is masked");
-  command.add_option("--verify", o.verify, "Compare this many random pixels and visibilities with the direct transform");
+  command.add_option("--verify", o.verify,
+                     "Compare this many random pixels, or all of a smaller image, and visibilities with the direct transform");
   command.add_flag("--check-outside", o.check_outside,
                    "Look for sources outside the image, in four times its field, whose aliases may exceed its noise");
   command.add_option("--memory", o.memory_gib, "GiB that the run may take; 0 means half of the machine's memory");
