@@ -230,7 +230,6 @@ class Search {
       const Outcome outcome = consider(sized(width, padding_u, padding_v, precision));
       if (outcome != Outcome::not_exact_enough) return width;
       const GriddingCandidate& c = considered_.back().candidate;
-      constexpr double falling = 0.99;  // where tables limit it, no wider kernel helps
       if (exhausted(c) || (c.worst_error < stored && c.worst_error > narrower / 2)) return {};
       if (request_.lookup && c.worst_error > falling * narrower) return {};
       narrower = c.worst_error;
@@ -243,7 +242,8 @@ class Search {
     const double goal = plane.worst_error < target_ && target_ < HUGE_VAL ? target_ : std::max(1.2 * plane.worst_error, stored);
     std::optional<GriddingCandidate> cheapest, most_exact;
     int least = request_.kernel.min_width;
-    for (const double usual : usual_w_paddings)
+    for (const double usual : usual_w_paddings) {
+      double narrower = HUGE_VAL;
       for (int width = least; width <= request_.kernel.max_width; ++width) {
         const double padding = std::max(usual, least_padding());
         GriddingCandidate c = plane;
@@ -252,11 +252,15 @@ class Search {
         c.w = shelf_.axis(width, padding);
         judge(c);
         if (!most_exact || c.worst_error < most_exact->worst_error) most_exact = c;
-        if (c.worst_error > goal && !exhausted(c)) continue;
+        const double alone = std::sqrt(c.w.misfit.worst);
+        const bool limited = request_.lookup && alone > falling * narrower;
+        narrower = alone;
+        if (c.worst_error > goal && !exhausted(c) && !limited) continue;
         if (c.worst_error <= goal) cheapest = c;
         least = width;
         break;
       }
+    }
     return cheapest ? *cheapest : *most_exact;
   }
 
@@ -291,6 +295,7 @@ class Search {
   }
 
   static constexpr double stored = 1e-13;  ///< below, the rounding of the stored kernel may hold the error up
+  static constexpr double falling = 0.99;  ///< from width to width: where tables limit it, no wider kernel helps
 
   GriddingRequest request_;
   KernelShelf shelf_;

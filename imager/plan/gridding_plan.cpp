@@ -166,13 +166,13 @@ void set_bounds(GriddingPlan& plan) {
   plan.bound_max = all(u.worst, v.worst, w.worst) + largest_gain * rounding + phases;
 }
 
-/// With one transform for all images.
-GriddingPlan plan_together(const GriddingRequest& request) {
+/// With one transform for all images. `what` the accuracy is of is for those who ask too much.
+GriddingPlan plan_together(const GriddingRequest& request, const std::string& what = "accuracy") {
   GriddingPlan plan;
   plan.request = request;
   plan.choice = choose_gridding(request);
   const GriddingCandidate& best = plan.choice.best;
-  if (!plan.choice.reached && !request.best_effort) throw std::invalid_argument(out_of_reach(request, best));
+  if (!plan.choice.reached && !request.best_effort) throw std::invalid_argument(out_of_reach(request, best, what));
   static_cast<PlaneTransformOptions&>(plan.options) = {request.geometry, best.work.nu,        best.work.nv,    best.u.kernel,
                                                        best.v.kernel,    best.work.precision, request.threads, request.lookup};
   if (best.work.has_w_axis()) {
@@ -257,7 +257,7 @@ GriddingPlan plan_images(const GriddingRequest& request) {
   const double psf_accuracy = request.psf_accuracy == 0 || request.accuracy == 0 ? request.accuracy : request.psf_accuracy;
   GriddingRequest both = request;
   both.accuracy = std::min(request.accuracy, psf_accuracy);
-  GriddingPlan together = plan_together(both);
+  GriddingPlan together = plan_together(both, psf_accuracy < request.accuracy ? "accuracy of the PSF" : "accuracy");
   together.request = request;
   const double together_s = together.choice.best.cost_s;
   if (psf_accuracy != request.accuracy) {

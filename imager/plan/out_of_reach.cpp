@@ -83,9 +83,9 @@ double nameable_accuracy(double worst_error) {
 
 }  // namespace
 
-std::string out_of_reach(const GriddingRequest& request, const GriddingCandidate& best) {
+std::string out_of_reach(const GriddingRequest& request, const GriddingCandidate& best, const std::string& what) {
   const Limit limits = limit(request, best);
-  return "accuracy " + text("%g", request.accuracy) + " is out of reach of " + limits.name + "; it can reach " +
+  return what + " " + text("%g", request.accuracy) + " is out of reach of " + limits.name + "; it can reach " +
          text("%.2g", nameable_accuracy(best.worst_error)) + " for this image, with width " + std::to_string(best.work.width) +
          " at padding " + text("%g", best.padding_u) + (limits.expected.empty() ? "" : "; expected " + limits.expected);
 }

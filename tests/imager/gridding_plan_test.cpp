@@ -48,6 +48,17 @@ double named_accuracy(const GriddingRequest& r) {
   return 0;
 }
 
+/// The widest kernel that is solved for before a plan stands.
+int widest_solved(GriddingRequest r) {
+  int widest = 0;
+  r.kernel.solve = [&widest, solve = r.kernel.solve](int width, double x0) {
+    widest = std::max(widest, width);
+    return solve(width, x0);
+  };
+  plan_gridding(r);
+  return widest;
+}
+
 /// A refusal names an accuracy that is granted.
 void check_refusal(GriddingRequest r) {
   const double asked = r.accuracy;
@@ -148,6 +159,34 @@ BOOST_AUTO_TEST_CASE(a_given_width_and_padding_are_taken) {
         BOOST_TEST_INFO("padding " << padding << " of " << size.width << " × " << size.height);
         BOOST_CHECK_NO_THROW(make_plane_transform(plan.options));
       }
+}
+
+BOOST_AUTO_TEST_CASE(what_tables_or_stored_kernels_limit_is_not_looked_for_along_w_among_ever_wider_kernels) {
+  GriddingRequest r = request({1, 1}, 0);
+  r.gridder = Gridder::wide;
+  r.max_abs_w = 1000;
+  r.kernel_width = 6;
+  r.padding = 1.126;
+  r.lookup = misfit::kernels::TableOptions{100, misfit::kernels::Interpolation::nearest};
+  BOOST_TEST(widest_solved(r) < 12);  // of 20, since at the least padding one of 10 is below the error of the tables
+
+  r = request({64, 64}, 0, "kaiser-bessel");
+  r.gridder = Gridder::wide;
+  r.max_abs_w = 1000;
+  r.kernel_width = 16;
+  r.padding = 3;
+  BOOST_TEST(widest_solved(r) < 20);
+}
+
+BOOST_AUTO_TEST_CASE(a_refusal_says_whether_it_is_the_psf_whose_accuracy_is_out_of_reach) {
+  GriddingRequest r = request({64, 64}, 1e-3, "spheroidal");
+  r.psf_accuracy = 1e-9;
+  const auto begins_with = [](const std::string& begin) {
+    return [begin](const std::invalid_argument& error) { return std::string(error.what()).rfind(begin, 0) == 0; };
+  };
+  BOOST_CHECK_EXCEPTION(plan_gridding(r), std::invalid_argument, begins_with("accuracy of the PSF 1e-09 is out of reach"));
+  std::swap(r.accuracy, r.psf_accuracy);
+  BOOST_CHECK_EXCEPTION(plan_gridding(r), std::invalid_argument, begins_with("accuracy 1e-09 is out of reach"));
 }
 
 BOOST_AUTO_TEST_CASE(single_precision_never_limits_a_given_width_and_padding) {
