@@ -36,13 +36,17 @@ class Header {
   /// Goes to the card END. Returns the size of all. The heap of a table may begin anywhere in `data` bytes.
   std::uint64_t end(double data) {
     std::string card = next();
-    for (; card.compare(0, 8, "END     ") != 0; card = next())
-      if (card.starts_with("THEAP   ")) whole_of(card, "THEAP", 0, static_cast<long long>(std::min(data, 1e18)));
+    for (; key_of(card) != "END"; card = next())
+      if (key_of(card) == "THEAP") whole_of(card, "THEAP", 0, static_cast<long long>(std::min(data, 1e18)));
     if (card.find_first_not_of(' ', 3) != std::string::npos) fail("END has a value");
     return blocks(at_);
   }
 
  private:
+  /// As CFITSIO takes it, whatever follows.
+  static std::string key_of(const std::string& card) {
+    return card.substr(0, std::min<std::size_t>(8, card.find_first_not_of("ABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-")));
+  }
   static long long whole_of(const std::string& card, const std::string& key, long long least, long long most) {
     std::string padded = key;
     padded.resize(8, ' ');

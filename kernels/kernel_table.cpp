@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <cstdlib>
+#include <new>
 #include <stdexcept>
 
 #include "kernels/cfitsio_call.h"
@@ -21,6 +22,12 @@ namespace fs = std::filesystem;
 
 constexpr std::size_t largest_file = std::size_t{1} << 28;  // 2^20 rows a cell, 16 bytes each, in half of 20 cells: 168 MB
 
+/// CFITSIO lengthens a file in memory to what its headers say, even one that it only reads. Given no function for that it reads
+/// beyond the memory.
+void* within_limit(void* memory, std::size_t size) {
+  return size <= largest_file ? std::realloc(memory, size) : nullptr;
+}
+
 /// A FITS file in memory. CFITSIO has no part in files on the disk, so that these are whole or not there.
 class FitsMemory {
  public:
@@ -29,10 +36,10 @@ class FitsMemory {
     int status = 0;
     check(fits_create_memfile(&file_, &buffer_, &size_, growth, std::realloc, &status));
   }
-  FitsMemory(std::string doing, std::vector<char> bytes)
-      : doing_(std::move(doing)), bytes_(std::move(bytes)), buffer_(bytes_.data()), size_(bytes_.size()) {
+  FitsMemory(std::string doing, const std::vector<char>& bytes) : FitsMemory(std::move(doing), bytes.size()) {
+    std::copy(bytes.begin(), bytes.end(), static_cast<char*>(buffer_));
     int status = 0;
-    check(fits_open_memfile(&file_, "kernel-table", READONLY, &buffer_, &size_, 0, nullptr, &status));
+    check(fits_open_memfile(&file_, "kernel-table", READONLY, &buffer_, &size_, 0, within_limit, &status));
   }
   FitsMemory(const FitsMemory&) = delete;
   FitsMemory& operator=(const FitsMemory&) = delete;
@@ -40,7 +47,7 @@ class FitsMemory {
     int status = 0;
     if (file_ != nullptr) fits_close_file(file_, &status);
     fits_clear_errmsg();
-    if (bytes_.empty()) std::free(buffer_);
+    std::free(buffer_);
   }
 
   fitsfile* get() const { return file_; }
@@ -73,8 +80,11 @@ class FitsMemory {
   }
 
  private:
+  FitsMemory(std::string doing, std::size_t size) : doing_(std::move(doing)), buffer_(std::malloc(size)), size_(size) {
+    if (buffer_ == nullptr) throw std::bad_alloc();
+  }
+
   std::string doing_;
-  std::vector<char> bytes_;
   void* buffer_ = nullptr;
   std::size_t size_ = 0;
   fitsfile* file_ = nullptr;
@@ -293,7 +303,7 @@ void write_kernel_table(const Kernel& kernel, const std::optional<TableSampling>
 }
 
 KernelTable read_kernel_table(const fs::path& path) {
-  std::vector<char> bytes = read_whole_file(path, largest_file);
+  const std::vector<char> bytes = read_whole_file(path, largest_file);
   const std::size_t size = bytes.size();
   const std::string doing = "read kernel table " + path.string();
   try {
@@ -302,7 +312,7 @@ KernelTable read_kernel_table(const fs::path& path) {
     throw std::runtime_error("cannot " + doing + ": " + error.what());
   }
   const CfitsioCall call;
-  const FitsMemory file(doing, std::move(bytes));
+  const FitsMemory file(doing, bytes);
   KernelTable table = read_facts(file);
   const HeaderReader header(file);
   const int width = header.needed("W", header.whole("W", 1, kernel_table_max_width));

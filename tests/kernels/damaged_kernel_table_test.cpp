@@ -143,6 +143,7 @@ BOOST_AUTO_TEST_CASE(tables_of_another_shape_are_refused_before_memory_is_taken)
   refused(altered(good, "NAXIS2  =", "900000000000000"), "cut short");
   refused(altered(good, "NAXIS2  =", "9000000000000000000"), "cannot read kernel table");
   refused(exchanged("COMMENT Row r = 0 ... W-1", "THEAP   = 2147483647 /   "), "THEAP is 2147483647, expected 0 to ");
+  refused(exchanged("END     ", "END SIMP"), "END has a value");
   const std::size_t format = good.find("TFORM1");
   std::string wide = good;
   refused(wide.replace(format + 10, 13, "'900000000D' "), "cannot read kernel table");
