@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <filesystem>
+#include <limits>
 #include <stdexcept>
 #include <system_error>
 
@@ -36,6 +37,15 @@ int channel_for(const imager::ImageReader& file, const std::string& path, const 
   if (!same_planes(has, axis))
     throw std::runtime_error(path + " has " + described(has) + "; expected one plane, or the image's " + described(axis));
   return channel;
+}
+
+double cosine_distance(const imager::SkyDirection& one, const imager::SkyDirection& other) {
+  try {
+    const imager::DirectionCosines offset = imager::direction_cosines(one, other);
+    return std::hypot(offset.l, offset.m);
+  } catch (const std::invalid_argument&) {
+    return std::numeric_limits<double>::infinity();
+  }
 }
 
 }  // namespace misfit::tools

@@ -15,4 +15,7 @@ std::unique_ptr<imager::ImageReader> open_image_file(const std::string& path);
 /// file has the image's planes, to a tenth of their width. Throws std::runtime_error(`path` …) where it has others.
 int channel_for(const imager::ImageReader& file, const std::string& path, const imager::SpectralAxis& axis, int channel);
 
+/// How far apart two directions are, as direction cosines; infinity where one lies beyond the other's horizon.
+double cosine_distance(const imager::SkyDirection& one, const imager::SkyDirection& other);
+
 }  // namespace misfit::tools

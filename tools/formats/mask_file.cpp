@@ -22,9 +22,8 @@ void check_pixels(const std::string& path, const imager::ImageGeometry& g, const
     throw std::runtime_error("mask " + path + " of " + std::to_string(g.width) + " × " + std::to_string(g.height) +
                              " pixels: expected the image's " + std::to_string(geometry.width) + " × " +
                              std::to_string(geometry.height));
-  const imager::DirectionCosines offset = imager::direction_cosines(g.phase_centre, geometry.phase_centre);
   const double off = std::abs(g.cell_rad / geometry.cell_rad - 1) * std::max(g.width, g.height) +
-                     std::hypot(offset.l, offset.m) / geometry.cell_rad;
+                     cosine_distance(g.phase_centre, geometry.phase_centre) / geometry.cell_rad;
   if (!(off < 0.5) || g.phase_centre.frame != geometry.phase_centre.frame)
     throw std::runtime_error("mask " + path + " lies elsewhere on the sky: expected the image's pixels, of " +
                              significant(geometry.cell_rad * 180 / M_PI * 3600, 6) + "arcsec about " +

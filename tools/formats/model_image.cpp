@@ -20,8 +20,7 @@ constexpr double same_centre_pixels = 1e-3;
 
 void check_centre(const imager::SkyImage& model, const imager::SkyDirection& centre, const std::string& path) {
   const imager::SkyDirection& has = model.geometry.phase_centre;
-  const imager::DirectionCosines offset = imager::direction_cosines(has, centre);
-  if (has.frame != centre.frame || std::hypot(offset.l, offset.m) > same_centre_pixels * model.geometry.cell_rad)
+  if (has.frame != centre.frame || cosine_distance(has, centre) > same_centre_pixels * model.geometry.cell_rad)
     throw std::runtime_error(path + " is centred on " + sexagesimal(has) + " (" + has.frame +
                              "), expected the phase centre of the visibilities, " + sexagesimal(centre) + " (" + centre.frame +
                              ")");
