@@ -2,8 +2,9 @@
 
 namespace misfit::tools {
 
-/// Opens those of stdin, stdout and stderr that whoever started the program closed, as nothing: else files that it opens get their
-/// numbers, and messages are written into them. Lets a pipe that nobody reads any more be a failed write, not the end of a run.
+/// Opens those of stdin, stdout and stderr that whoever started the program closed, as nothing: else files that it opens get
+/// their numbers, and messages are written into them. Lets a pipe that nobody reads any more be a failed write, not the end of
+/// a run.
 void hold_standard_streams();
 
 /// Throws std::runtime_error where what was printed could not be written; a pipe may be read in part.
