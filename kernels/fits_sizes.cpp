@@ -26,7 +26,7 @@ class Header {
 
   std::string next() {
     if (at_ % block == 0) read_ = file_.read(begin_ + at_, block);
-    const std::string card = read_.substr(std::min<std::size_t>(at_ % block, read_.size()), card_size);
+    std::string card = read_.substr(std::min<std::size_t>(at_ % block, read_.size()), card_size);
     if (card.size() < card_size) fail("it was cut short within a header");
     at_ += card_size;
     return card;
