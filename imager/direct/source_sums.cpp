@@ -123,10 +123,10 @@ class SourceSums {
   template <typename Add>
   static void add(const Add& add_some, const SourceArrays& sources, const std::vector<RowGroup>& groups,
                   const EvenChannels& channels, std::vector<GroupSums>& sums) {
-    constexpr std::size_t at_once = 512;
-    for (std::size_t begin = 0; begin < sources.size(); begin += at_once)
+    constexpr std::size_t sources_at_once = 512;
+    for (std::size_t begin = 0; begin < sources.size(); begin += sources_at_once)
       for (std::size_t g = 0; g < groups.size(); ++g)
-        add_some(sources, {begin, std::min(begin + at_once, sources.size())}, groups[g], channels, sums[g]);
+        add_some(sources, {begin, std::min(begin + sources_at_once, sources.size())}, groups[g], channels, sums[g]);
   }
 
   SourceArrays points_, gaussians_;
