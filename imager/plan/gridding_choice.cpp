@@ -319,12 +319,16 @@ GriddingChoice choose_gridding(const GriddingRequest& request) {
     if (wide) ways = facetings(request.geometry, request.max_abs_w, request.facets ? most_facets : 1);
     GriddingChoice choice = Search(request, target - neglected, ways).run();
     choice.w_phase_rad = phase;
+    choice.borne_phase_rad = neglected;
     return choice;
   };
-  if (!automatic || request.accuracy != 0)
-    return search(request.gridder == Gridder::wide || (automatic && phase > neglected_part * request.accuracy));
+  if (!automatic) return search(request.gridder == Gridder::wide);
+  if (phase > neglected_part * request.accuracy && request.accuracy != 0) return search(true);
   GriddingChoice plane = search(false);
-  return phase > neglected_part * plane.best.worst_error ? search(true) : plane;
+  if (request.accuracy == 0) return phase > neglected_part * plane.best.worst_error ? search(true) : plane;
+  if (plane.reached || phase == 0) return plane;
+  GriddingChoice wide = search(true);
+  return wide.best.worst_error < plane.best.worst_error + phase ? wide : plane;
 }
 
 }  // namespace misfit::imager

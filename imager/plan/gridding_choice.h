@@ -52,6 +52,7 @@ struct RejectedCandidate {
 struct GriddingChoice {
   GriddingCandidate best;  ///< the cheapest that reaches the accuracy, or the most exact
   bool reached = true;
+  double borne_phase_rad = 0;               ///< of w, neglected, that the accuracy bears beside the error of `best`
   double w_phase_rad = 0;                   ///< the largest that w makes over the image; neglected unless `best` has a w axis
   std::vector<RejectedCandidate> rejected;  ///< the cheapest at each other padding, and the widths next to the best
 };

@@ -172,7 +172,7 @@ GriddingPlan plan_together(const GriddingRequest& request, const std::string& wh
   plan.request = request;
   plan.choice = choose_gridding(request);
   const GriddingCandidate& best = plan.choice.best;
-  if (!plan.choice.reached && !request.best_effort) throw std::invalid_argument(out_of_reach(request, best, what));
+  if (!plan.choice.reached && !request.best_effort) throw std::invalid_argument(out_of_reach(request, plan.choice, what));
   static_cast<PlaneTransformOptions&>(plan.options) = {request.geometry, best.work.nu,        best.work.nv,    best.u.kernel,
                                                        best.v.kernel,    best.work.precision, request.threads, request.lookup};
   if (best.work.has_w_axis()) {

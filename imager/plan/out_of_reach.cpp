@@ -83,11 +83,13 @@ double nameable_accuracy(double worst_error) {
 
 }  // namespace
 
-std::string out_of_reach(const GriddingRequest& request, const GriddingCandidate& best, const std::string& what) {
+std::string out_of_reach(const GriddingRequest& request, const GriddingChoice& choice, const std::string& what) {
+  const GriddingCandidate& best = choice.best;
   const Limit limits = limit(request, best);
   return what + " " + text("%g", request.accuracy) + " is out of reach of " + limits.name + "; it can reach " +
-         text("%.2g", nameable_accuracy(best.worst_error)) + " for this image, with width " + std::to_string(best.work.width) +
-         " at padding " + text("%g", best.padding_u) + (limits.expected.empty() ? "" : "; expected " + limits.expected);
+         text("%.2g", nameable_accuracy(best.worst_error + choice.borne_phase_rad)) + " for this image, with width " +
+         std::to_string(best.work.width) + " at padding " + text("%g", best.padding_u) +
+         (limits.expected.empty() ? "" : "; expected " + limits.expected);
 }
 
 }  // namespace misfit::imager

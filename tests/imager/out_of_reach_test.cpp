@@ -73,6 +73,19 @@ BOOST_DATA_TEST_CASE(single_precision_is_blamed_where_double_serves, bdata::make
   BOOST_CHECK_NO_THROW(plan_gridding(r));
 }
 
+BOOST_DATA_TEST_CASE(where_w_may_be_neglected_what_is_named_is_granted,
+                     bdata::make({"sinc", "nearest", "spheroidal-0"}) * bdata::make({0.01, 0.2, 0.31}), kernel, part) {
+  for (const double asked : {0.07, 1e-4}) {
+    GriddingRequest r = request(64, asked);
+    r.kernel = kernels::kernel_family(kernel);
+    r.max_abs_w = part * asked / max_w_phase_rad(1, r.geometry);
+    if (choose_gridding(r).reached) continue;
+    r.accuracy = number_after("it can reach ", refusal(r));
+    BOOST_TEST_INFO("asked " << asked << ", then " << r.accuracy);
+    if (r.accuracy < 1) BOOST_CHECK_NO_THROW(plan_gridding(r));
+  }
+}
+
 BOOST_AUTO_TEST_CASE(of_tables_and_single_precision_the_worse_is_blamed) {
   GriddingRequest r = request(64, 1e-9);
   r.precision = Precision::single_precision;

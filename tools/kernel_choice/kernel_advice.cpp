@@ -49,7 +49,7 @@ imager::GriddingChoice choose_for(const KernelJob& job) {
   request.gridder = job.w_turns > 0 ? imager::Gridder::wide : imager::Gridder::standard;
   request.facets = false;
   imager::GriddingChoice choice = imager::choose_gridding(request);
-  if (!choice.reached) throw std::invalid_argument(imager::out_of_reach(request, choice.best));
+  if (!choice.reached) throw std::invalid_argument(imager::out_of_reach(request, choice));
   return choice;
 }
 
