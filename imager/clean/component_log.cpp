@@ -12,8 +12,7 @@ constexpr std::size_t shortest = 16;  ///< components of the shortest piece that
 
 /// In the order of tiles: what lies close together finds its part of the PSF in a cache.
 auto place(const PointComponent& c) {
-  constexpr int side = residual_tile_side;
-  return std::tuple(c.row / side, c.column / side, c.row, c.column);
+  return std::tuple(c.row / residual_tile_side, c.column / residual_tile_side, c.row, c.column);
 }
 
 /// Replaces components of one pixel, which are neighbours, by their sum.

@@ -14,14 +14,16 @@
 namespace misfit::tools {
 namespace {
 
-constexpr double x0 = 0.25;
+constexpr double part_imaged = 0.25;  ///< x0
 
-/// The error of one visibility over the image: RMS over |x| ≤ x0 of exp(2πiux) − h(x) Σ_r C_r exp(2πi(k + s_r)x), where the
-/// visibility at u was gridded to the cell k with the taps of position t.
+/// The error of one visibility over the image: RMS over |x| ≤ part_imaged of exp(2πiux) − h(x) Σ_r C_r exp(2πi(k + s_r)x),
+/// where the visibility at u was gridded to the cell k with the taps of position t.
 class PointError {
  public:
   explicit PointError(const kernels::PiecewisePolynomial& kernel)
-      : kernel_(kernel), rule_(kernels::gauss_legendre(24, -x0, x0)), h_(kernels::optimal_correction(kernel, rule_.node)) {}
+      : kernel_(kernel),
+        rule_(kernels::gauss_legendre(24, -part_imaged, part_imaged)),
+        h_(kernels::optimal_correction(kernel, rule_.node)) {}
 
   /// `off` = u − (k + t): how far the visibility lies from where it was taken to be.
   double square(double t, double off = 0) const {
@@ -47,7 +49,7 @@ class PointError {
   double mean(const Difference& difference) const {
     double sum = 0;
     for (Eigen::Index i = 0; i < rule_.node.size(); ++i) sum += rule_.weight[i] * std::norm(difference(i));
-    return sum / (2 * x0);
+    return sum / (2 * part_imaged);
   }
 
   kernels::PiecewisePolynomial kernel_;
@@ -56,7 +58,7 @@ class PointError {
 };
 
 kernels::Kernel kernel_of(int width) {
-  return kernels::kernel_family("least-misfit").make(width, x0);
+  return kernels::kernel_family("least-misfit").make(width, part_imaged);
 }
 
 /// The largest jump of C where cells meet, its ends at ±W/2 left out.
@@ -130,12 +132,12 @@ Series coordinate_curve(const std::string& label, int width) {
   return series;
 }
 
-/// 2π x0/√3 times the RMS of a rounding that is uniform over a unit in the last place.
+/// 2π part_imaged/√3 times the RMS of a rounding that is uniform over a unit in the last place.
 Series coordinate_law(const std::string& label, double epsilon) {
   Series law{.label = label, .x = {}, .y = {}, .law = true};
   for (int power = 0; power <= 40; power += 2) {
     const double rounding = std::ldexp(epsilon, power) / std::sqrt(12.0);
-    const double error = 2 * std::numbers::pi * x0 / std::sqrt(3.0) * rounding;
+    const double error = 2 * std::numbers::pi * part_imaged / std::sqrt(3.0) * rounding;
     if (error > 1) break;
     law.x.push_back(std::ldexp(1.0, power));
     law.y.push_back(error);
