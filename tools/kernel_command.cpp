@@ -10,6 +10,7 @@
 #include "kernels/lookup_table.h"
 #include "kernels/map_error.h"
 #include "tools/base/files.h"
+#include "tools/base/json_text.h"
 #include "tools/base/numbers.h"
 #include "tools/base/option_checks.h"
 #include "tools/command.h"
@@ -152,7 +153,7 @@ nlohmann::json json_of(const kernels::KernelTable& table) {
 void inspect(const KernelOptions& o) {
   const kernels::KernelTable table = kernels::read_kernel_table(o.inspect);
   if (o.json)
-    std::printf("%s\n", json_of(table).dump(2).c_str());
+    std::printf("%s\n", json_text(json_of(table), 2).c_str());
   else
     print(table, o.inspect);
   if (!table.checksum_ok)
@@ -235,7 +236,7 @@ void emit(KernelOptions& o) {
     throw std::invalid_argument("--output " + o.output + " is the kernel that is to be emitted; expected another file");
   const Emission emission = plan_emission(o.emit, family);
   emission.host->write(emission, o.output);
-  if (o.json) std::printf("%s\n", json_of(emission).dump(2).c_str());
+  if (o.json) std::printf("%s\n", json_text(json_of(emission), 2).c_str());
   if (o.json || o.quiet) return;
   const char* before = "";
   std::printf("%s: ", o.output.c_str());

@@ -40,7 +40,7 @@ int fail(const char* message, ExitCode code, const World& world) {
   const imager::Ranks& ranks = world.ranks();
   if (!ranks.first()) std::this_thread::sleep_for(std::chrono::seconds(3));
   const std::string which = ranks.alone() ? "" : "rank " + std::to_string(ranks.rank()) + ": ";
-  std::fprintf(stderr, "misfit: %s%s\n", which.c_str(), message);
+  std::fprintf(stderr, "misfit: %s%s\n", which.c_str(), legible(message).c_str());
   world.end_all(code);
   return code;
 }
@@ -86,12 +86,11 @@ std::string conversion_message(const std::string& said, const CLI::App& program)
     if (std::current_exception()) throw;
   } catch (const std::exception& error) {
     why = error.what();
-    std::replace(why.begin(), why.end(), '\n', ' ');
   } catch (...) {
   }
   const std::string system = errno == ENOSPC || errno == EDQUOT || errno == EIO ? std::strerror(errno) : "";
   if (why.find(system) == std::string::npos) why += ": " + system;
-  std::fprintf(stderr, "misfit: cannot go on: %s\n", why.c_str());
+  std::fprintf(stderr, "misfit: cannot go on: %s\n", legible(why).c_str());
   _exit(unusable_data);
 }
 
@@ -136,7 +135,7 @@ int main(int argc, char** argv) {
     const World world;
     return run(argc, argv, world);
   } catch (const std::exception& error) {
-    std::fprintf(stderr, "misfit: %s\n", error.what());
+    std::fprintf(stderr, "misfit: %s\n", legible(error.what()).c_str());
     return unusable_data;
   }
 }

@@ -10,6 +10,7 @@ using misfit::tools::html_power;
 
 BOOST_AUTO_TEST_CASE(characters_with_a_meaning_are_escaped) {
   BOOST_TEST(html_escaped("<a & 'b' \"c\">") == "&lt;a &amp; &#39;b&#39; &quot;c&quot;&gt;");
+  BOOST_TEST(html_escaped("a\tb\n\x1b[0m\x7f ü") == "a\tb\n?[0m? ü");
 }
 
 // RFC 4648, section 10.

@@ -478,6 +478,22 @@ BOOST_AUTO_TEST_CASE(a_name_with_blanks_quotes_and_umlauts_is_a_name) {
   BOOST_TEST(pixels_of(odd + "/%d a", "psf").width == 64);
 }
 
+BOOST_AUTO_TEST_CASE(names_of_any_bytes_are_imaged_and_a_terminal_obeys_none) {
+  const TemporaryFolder folder;
+  const std::string set = folder / "b\xe4r.ms", image = folder / "b\xe4r";  // Latin-1
+  std::filesystem::copy(snapshot(), set, std::filesystem::copy_options::recursive);
+  name_all(set, "\x1b]0;owned\x07\xff\n<b>");
+  const Outcome far = run(small_image(set, image) + Arguments{"--phasecenter", "J2000 12h00m00s -80d00m00s"});
+  BOOST_TEST(far.code == 0);
+  BOOST_TEST(far.err.find("degrees from the nearest field, ?]0;owned???<b>") != std::string::npos);
+  BOOST_TEST(far.err.find('\x1b') == std::string::npos);
+  const std::string page = content(image + ".report.html");
+  BOOST_TEST(page.find('\x1b') == std::string::npos);
+  BOOST_TEST(page.find("]0;owned?") != std::string::npos);
+  BOOST_TEST(page.find("<b>: they") == std::string::npos);
+  BOOST_TEST(report_of(image).dump().find("b\xef\xbf\xbdr.ms") != std::string::npos);
+}
+
 BOOST_AUTO_TEST_CASE(samples_without_baselines_are_an_image_of_their_mean) {
   const TemporaryFolder folder;
   const std::string set = folder / "origin.ms";

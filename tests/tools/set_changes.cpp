@@ -77,6 +77,14 @@ void flag_all(const std::string& set) {
   casacore::ScalarColumn<bool>(opened(set), "FLAG_ROW").fillColumn(true);
 }
 
+void name_all(const std::string& set, const std::string& name) {
+  const casacore::MeasurementSet open = opened(set);
+  casacore::ScalarColumn<casacore::String>(open.field(), "NAME").fillColumn(name);
+  casacore::ScalarColumn<casacore::String>(open.antenna(), "NAME").fillColumn(name);
+  casacore::ScalarColumn<casacore::String>(open.observation(), "TELESCOPE_NAME").fillColumn(name);
+  casacore::ScalarColumn<casacore::String>(open.observation(), "OBSERVER").fillColumn(name);
+}
+
 void make_autocorrelation(const std::string& set, std::size_t row) {
   const casacore::MeasurementSet open = opened(set);
   casacore::ScalarColumn<int>(open, "ANTENNA2").put(row, casacore::ScalarColumn<int>(open, "ANTENNA1")(row));

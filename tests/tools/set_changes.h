@@ -18,6 +18,7 @@ void flag_sample(const std::string& set, std::size_t row);                      
 void flag_channel(const std::string& set, std::size_t channel, std::size_t first_row);  ///< from that row on
 void flag_row(const std::string& set, std::size_t row);
 void flag_all(const std::string& set);
+void name_all(const std::string& set, const std::string& name);  ///< fields, telescopes, observers and antennas
 void make_autocorrelation(const std::string& set, std::size_t row);
 void scale_data(const std::string& set, float factor);
 void scale_uvw(const std::string& set, double factor);

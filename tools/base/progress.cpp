@@ -6,6 +6,7 @@
 
 #include "tools/base/interrupt.h"
 #include "tools/base/numbers.h"
+#include "tools/base/text.h"
 
 namespace misfit::tools {
 
@@ -49,7 +50,7 @@ void ProgressLine::say(const std::string& line) {
   if (quiet_) return;
   const std::lock_guard lock(mutex_);
   if (live_) std::fprintf(stderr, "\r\033[K");
-  std::fprintf(stderr, "%s\n", line.c_str());
+  std::fprintf(stderr, "%s\n", legible(line).c_str());
 }
 
 double ProgressLine::elapsed_s() const {

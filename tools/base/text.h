@@ -19,6 +19,10 @@ std::optional<double> finite_number(std::string_view text);
 /// What of `text` is neither printable nor a tab, as "the control character 0x1b"; empty where all is text.
 std::string control_character_of(std::string_view text);
 
+/// `text`, which may come from anybody's file, in one line that a terminal prints and does not obey: control characters, and
+/// bytes that are not UTF-8, become ?.
+std::string legible(std::string_view text);
+
 /// `names` with those first that take the fewest letters changed, added or removed to become `word`.
 std::vector<std::string> nearest_first(const std::string& word, std::vector<std::string> names);
 

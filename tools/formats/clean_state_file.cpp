@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "tools/base/files.h"
+#include "tools/base/json_text.h"
 #include "tools/base/text.h"
 
 namespace misfit::tools {
@@ -27,12 +28,12 @@ constexpr std::array free_options = {"niter",         "threshold", "nsigma",    
 
 /// In one line.
 std::string escaped(const std::string& text) {
-  const std::string quoted = json(text).dump();
+  const std::string quoted = json_text(json(text));
   return quoted.substr(1, quoted.size() - 2);
 }
 
 std::string shown(const json& value) {
-  return value.is_null() ? "nothing" : value.is_string() ? "'" + escaped(value) + "'" : value.dump();
+  return value.is_null() ? "nothing" : value.is_string() ? "'" + escaped(value) + "'" : json_text(value);
 }
 
 /// Its bytes as they lie in memory, little-endian where this runs.

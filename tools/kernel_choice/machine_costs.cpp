@@ -7,6 +7,7 @@
 
 #include "kernels/version.h"
 #include "tools/base/files.h"
+#include "tools/base/json_text.h"
 
 namespace misfit::tools {
 namespace {
@@ -45,7 +46,7 @@ fs::path costs_file(const fs::path& folder) {
 std::string text_of(const imager::CostModel& model) {
   json kept{{"machine", machine_name()}};
   for (const Constant& constant : constants) kept[constant.name] = model.*constant.value;
-  return kept.dump(2) + "\n";
+  return json_text(kept, 2) + "\n";
 }
 
 }  // namespace

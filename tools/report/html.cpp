@@ -27,7 +27,8 @@ std::string html_escaped(const std::string& text) {
         result += "&#39;";
         break;
       default:
-        result += c;
+        const bool control = (static_cast<unsigned char>(c) < ' ' && c != '\t' && c != '\n') || c == '\x7f';
+        result += control ? '?' : c;
     }
   }
   return result;

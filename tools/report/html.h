@@ -4,7 +4,7 @@
 
 namespace misfit::tools {
 
-/// `text` with & < > " ' replaced by their entities.
+/// `text` with & < > " ' replaced by their entities, and control characters by ?.
 std::string html_escaped(const std::string& text);
 
 /// The bytes as base64 (RFC 4648, section 4).

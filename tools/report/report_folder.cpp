@@ -8,6 +8,7 @@
 
 #include "kernels/version.h"
 #include "tools/base/files.h"
+#include "tools/base/json_text.h"
 #include "tools/report/html.h"
 #include "tools/report/html_elements.h"
 
@@ -97,7 +98,7 @@ void write_report(const Report& report, const std::string& folder) {
     for (const DataTable& table : section.tables) write_file(path(table.name + ".csv"), table_csv(table));
     content += section_html(section, drawing);
   }
-  write_file(path("report.json"), report_json(report).dump(1) + "\n");
+  write_file(path("report.json"), json_text(report_json(report), 1) + "\n");
   write_file(path("index.html"), html::page(html_escaped(report.title) + " — misfit", content));
 }
 

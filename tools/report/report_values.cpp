@@ -4,6 +4,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
+#include "tools/base/json_text.h"
 #include "tools/base/numbers.h"
 #include "tools/report/html.h"
 
@@ -29,7 +30,7 @@ std::string plain(const json& value) {
   if (value.is_string()) return html_escaped(value.get<std::string>());
   if (value.is_boolean()) return value.get<bool>() ? "yes" : "no";
   if (value.is_number_float()) return significant(value.get<double>(), 6);
-  if (!value.is_array()) return value.is_null() ? not_measured : html_escaped(value.dump());
+  if (!value.is_array()) return value.is_null() ? not_measured : html_escaped(json_text(value));
   std::string text;
   for (const json& element : value) text += (text.empty() ? "" : ", ") + plain(element);
   return text;

@@ -11,6 +11,7 @@
 #include "imager/parallel.h"
 #include "tools/base/files.h"
 #include "tools/base/interrupt.h"
+#include "tools/base/json_text.h"
 #include "tools/base/numbers.h"
 #include "tools/kernel_choice/cache_folder.h"
 #include "tools/run/changed_files.h"
@@ -271,7 +272,7 @@ class CubeRun {
     forecast_.learn(work_, times_);
     report_.wall_clock_s = watch_.seconds();
     const nlohmann::json json = report_json(report_);
-    write_file(o_.imagename + ".report.json", json.dump(2) + "\n");
+    write_file(o_.imagename + ".report.json", json_text(json, 2) + "\n");
     write_file(o_.imagename + ".report.html", report_page(json, drawn.pictures, {"", drawn.spectrum}));
   }
 

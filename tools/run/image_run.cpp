@@ -11,6 +11,7 @@
 #include "imager/stokes.h"
 #include "ms_io/model_writer.h"
 #include "tools/base/files.h"
+#include "tools/base/json_text.h"
 #include "tools/base/progress.h"
 #include "tools/kernel_choice/cache_folder.h"
 #include "tools/run/changed_files.h"
@@ -281,7 +282,7 @@ class ImageRun {
                            threads_,
                            stokes_,
                            plane_->cleaned(),
-                           report_.options.dump(),
+                           json_text(report_.options),
                            [this](const std::string& sentence) { progress_.say(sentence); },
                            taylor_ ? taylor_->expansion() : imager::TaylorExpansion()};
     tools::save_model(o_, model, ranks_, scene_->updates());
@@ -340,7 +341,7 @@ class ImageRun {
     if (one_pass) forecast_.learn(work_, times_);
     report_.wall_clock_s = watch_.seconds();
     const nlohmann::json json = report_json(report_);
-    write_file(o_.imagename + ".report.json", json.dump(2) + "\n");
+    write_file(o_.imagename + ".report.json", json_text(json, 2) + "\n");
     write_file(o_.imagename + ".report.html", report_page(json, pictures, {histogram, ""}));
   }
 

@@ -9,6 +9,7 @@
 #include "tools/base/memory.h"
 #include "tools/base/numbers.h"
 #include "tools/base/quantity.h"
+#include "tools/base/text.h"
 #include "tools/run/memory_plan.h"
 #include "tools/run/outside_stage.h"
 #include "tools/run/primary_beam_stage.h"
@@ -229,7 +230,7 @@ std::vector<StageSeconds> expected_seconds(const RunPlan& plan, const TimeForeca
 void print_plan(const RunPlan& plan, const std::vector<StageSeconds>& expected) {
   for (const imager::Plan* decisions : {&plan.decisions, &plan.gridding.decisions})
     for (const imager::Decision& d : *decisions)
-      std::printf("%s: %s; %s\n", d.item.c_str(), d.decision.c_str(), d.because.c_str());
+      std::printf("%s\n", legible(d.item + ": " + d.decision + "; " + d.because).c_str());
   for (const StageSeconds& s : expected) std::printf("expected: %-16s %s\n", s.stage.c_str(), duration(s.seconds).c_str());
   std::printf("expected: %-16s %s\n", "total", duration(total_seconds(expected)).c_str());
   std::printf("%s%s", memory_table(plan.memory).c_str(), plan.scale.c_str());

@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "tools/base/files.h"
+#include "tools/base/json_text.h"
 #include "tools/kernel_choice/machine_costs.h"
 
 namespace misfit::tools {
@@ -277,7 +278,7 @@ void TimeForecast::learn(const RunWork& work, const imager::StageTimes& took) {
   std::error_code none;
   fs::create_directories(file_.parent_path(), none);
   try {
-    write_file(file_.string(), kept.dump(2) + "\n");
+    write_file(file_.string(), json_text(kept, 2) + "\n");
   } catch (const std::runtime_error&) {  // a folder that cannot be written is no cache, and no error
   }
 }
