@@ -4,9 +4,11 @@
 #include <filesystem>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <stdexcept>
 
 #include "tools/base/files.h"
+#include "tools/base/json_text.h"
 
 namespace misfit::tools {
 namespace {
@@ -71,8 +73,12 @@ json json_of(const V& value) {
 void take(const json& from, double& to) {
   to = from.is_null() ? std::numeric_limits<double>::quiet_NaN() : from.get<double>();
 }
-template <typename V>
-void take(const json& from, V& to) {
+void take(const json& from, int& to) {
+  if (!from.is_number_integer() || from < std::numeric_limits<int>::min() || from > std::numeric_limits<int>::max())
+    throw std::runtime_error("a count is no whole number");
+  from.get_to(to);
+}
+void take(const json& from, std::string& to) {
   from.get_to(to);
 }
 
@@ -115,11 +121,17 @@ void take_result(const json& value, PointResult& r) {
 
 /// Names of what the two do not have in common: "version, threads".
 std::string differences(const json& has, const json& expected) {
+  std::set<std::string> all;
+  for (const json* of : {&has, &expected})
+    for (const auto& [name, value] : of->items()) all.insert(name);
+  const json nothing;
+  const auto at = [&](const json& of, const std::string& name) -> const json& {  // a copy takes stack for every bracket
+    const auto found = of.find(name);
+    return found == of.end() ? nothing : *found;
+  };
   std::string names;
-  json all = expected;
-  all.update(has);
-  for (const auto& [name, value] : all.items())
-    if (has.value(name, json()) != expected.value(name, json())) names += (names.empty() ? "" : ", ") + name;
+  for (const std::string& name : all)
+    if (at(has, name) != at(expected, name)) names += (names.empty() ? "" : ", ") + name;
   return names;
 }
 
@@ -129,7 +141,7 @@ void write_results(const std::string& path, const json& owner, const std::vector
   json content{{"owner", owner}, {"results", json::array()}};
   for (const PointResult& r : results)
     if (!r.runs.empty() || !r.refused.empty()) content["results"].push_back(written(r));
-  write_file(path, content.dump() + "\n");
+  write_file(path, json_text(content) + "\n");
 }
 
 FoundResults read_results(const std::string& path, const json& owner, std::vector<PointResult>& results) {
@@ -140,12 +152,13 @@ FoundResults read_results(const std::string& path, const json& owner, std::vecto
   try {
     const json content = json::parse(read_file(path));
     const json& has = content.at("owner");
+    if (!has.is_object()) throw std::runtime_error("nothing says what it belongs to");
     if (has != owner) return {0, "it was measured with other " + differences(has, owner)};
     for (const json& value : content.at("results"))
       for (PointResult& r : found)
         if (value.at("options") == options_text(r.point)) {
           take_result(value, r);
-          taken.runs += r.runs.size();
+          taken.runs += value.at("runs").size();
         }
   } catch (const std::exception&) {
     return {0, "it is damaged"};
