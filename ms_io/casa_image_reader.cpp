@@ -1,7 +1,9 @@
 #include <casacore/casa/Arrays/Array.h>
 #include <casacore/images/Images/PagedImage.h>
 #include <casacore/tables/Tables/ArrayColumn.h>
+#include <casacore/tables/Tables/TableAttr.h>
 #include <casacore/tables/Tables/TableDesc.h>
+#include <casacore/tables/Tables/TableRecord.h>
 
 #include <algorithm>
 #include <cmath>
@@ -65,9 +67,36 @@ class CasaImageReader : public imager::ImageReader {
   imager::PlaneBeams beams_;
 };
 
+/// The tables that an image holds, of masks and of a log, lie in its folder: casacore would look for others wherever the image
+/// says.
+void check_tables(const casacore::TableRecord& keywords, const std::string& image, const std::string& path) {
+  for (casacore::uInt field = 0; field < keywords.nfields(); ++field) {
+    if (keywords.dataType(field) == casacore::TpRecord) check_tables(keywords.subRecord(field), image, path);
+    if (keywords.dataType(field) != casacore::TpTable) continue;
+    const std::string name = keywords.name(field), table = keywords.tableAttributes(field).name();
+    if (table.rfind(image + "/", 0) != 0 || table.find("/../") != std::string::npos)
+      throw std::runtime_error("cannot read " + path + ": its " + name + " is the table " + table +
+                               ", expected one in the image's own folder");
+  }
+}
+
+/// Of masks that an image has, that which holds unless told otherwise; one may be an expression about other images.
+void check_mask(const casacore::TableRecord& keywords, const std::string& path) {
+  if (!keywords.isDefined("Image_defaultmask") || !keywords.isDefined("masks")) return;
+  const std::string mask = keywords.asString("Image_defaultmask");
+  const casacore::TableRecord& masks = keywords.subRecord("masks");
+  if (mask.empty() || !masks.isDefined(mask)) return;
+  const std::string kind = masks.subRecord(mask).asString("name");
+  if (kind != "LCPagedMask")
+    throw std::runtime_error("cannot read " + path + ": its " + mask + " is a " + kind +
+                             ", expected a stored mask, LCPagedMask");
+}
+
 std::unique_ptr<imager::ImageReader> open_table(const std::string& path) {
   casacore::Table table(path, casacore::TableLock(casacore::TableLock::NoLocking));
   if (!table.tableDesc().isColumn("map")) throw std::runtime_error("cannot read " + path + ": it has no column of pixels");
+  check_tables(table.keywordSet(), table.tableName(), path);
+  check_mask(table.keywordSet(), path);
   const casacore::DataType type = table.tableDesc()["map"].dataType();
   if (type == casacore::TpFloat) return std::make_unique<CasaImageReader<float>>(path, table);
   if (type == casacore::TpDouble) return std::make_unique<CasaImageReader<double>>(path, table);

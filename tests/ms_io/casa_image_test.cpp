@@ -235,6 +235,39 @@ BOOST_AUTO_TEST_CASE(images_that_misfit_could_not_place_are_refused) {
   check_error_names(folder / "complex", "no real numbers", [&] { ms_io::open_casa_image(folder / "complex"); });
 }
 
+BOOST_AUTO_TEST_CASE(tables_that_an_image_says_are_its_own_lie_in_it) {
+  const TemporaryFolder folder;
+  const ImageHeader header = example_header(1);
+  const auto made = [&](const std::string& name) {
+    const auto writer = ms_io::create_casa_image(header, folder / name);
+    Image plane = example_plane(header, {0, 0});
+    plane.pixel.front() = std::numeric_limits<double>::quiet_NaN();  // so it has a mask
+    writer->write({0, 0}, plane, std::nullopt);
+    writer->finish();
+    return folder / name;
+  };
+  const std::string other = made("other.im");
+  const auto masks_of = [](casacore::Table& table) -> casacore::TableRecord& {
+    return table.rwKeywordSet().rwSubRecord("masks").rwSubRecord("mask0");
+  };
+  const auto refused = [&](const std::string& name, const std::string& why, const auto& change) {
+    const std::string path = made(name);
+    ms_io::open_casa_image(path);
+    {
+      casacore::Table table(path, casacore::Table::Update);
+      change(table);
+    }
+    check_error_names(path, why, [&] { ms_io::open_casa_image(path); });
+  };
+  refused("mask.im", "its mask is the table " + other + "/mask0",
+          [&](casacore::Table& table) { masks_of(table).defineTable("mask", casacore::Table(other + "/mask0")); });
+  refused("log.im", "its logtable is the table " + other + "/logtable",
+          [&](casacore::Table& table) { table.rwKeywordSet().defineTable("logtable", casacore::Table(other + "/logtable")); });
+  refused("kind.im", "its mask0 is a LCLELMask", [&](casacore::Table& table) { masks_of(table).define("name", "LCLELMask"); });
+  fs::rename(folder / "other.im", folder / "moved.im");
+  ms_io::open_casa_image(folder / "moved.im");
+}
+
 BOOST_AUTO_TEST_CASE(an_image_replaces_another_and_leaves_nothing_else) {
   const TemporaryFolder folder;
   ms_io::create_casa_image(example_header(1), folder / "a.image")->finish();
