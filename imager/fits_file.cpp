@@ -49,11 +49,12 @@ bool is_of_the_system(int error) {
   return is_lost_write(error) || std::find(errors.begin(), errors.end(), error) != errors.end();
 }
 
-/// Text of a header, or about one, which others may have filled with anything.
-std::string printable(std::string text) {
-  std::replace_if(
-      text.begin(), text.end(), [](unsigned char c) { return c < ' ' || c == 0x7f; }, '?');
-  return text;
+/// What a header may hold of `text` (FITS 4.0, section 4.1.2): other letters, of UTF-8 or of one byte, become ?.
+std::string header_text(const std::string& text) {
+  std::string kept;
+  for (const char c : text)
+    if (const bool continues = (c & 0xc0) == 0x80; !continues) kept += c >= ' ' && c <= '~' ? c : '?';
+  return kept;
 }
 
 /// Throws std::runtime_error where headers are not to be trusted. A file that cannot be opened is left to CFITSIO.
@@ -128,7 +129,7 @@ void FitsFile::check(int status) const {
   fits_get_errstatus(status, text.data());
   std::string reason = text.data();
   std::array<char, FLEN_ERRMSG> detail{};
-  if (fits_read_errmsg(detail.data())) reason += " (" + printable(detail.data()) + ")";
+  if (fits_read_errmsg(detail.data())) reason += " (" + header_text(detail.data()) + ")";
   fail(reason);
 }
 
@@ -141,7 +142,8 @@ void FitsFile::write_number(const std::string& key, double value, const std::str
 void FitsFile::write_text(const std::string& key, const std::string& value, const std::string& comment) {
   const CallOfCfitsio call;
   int status = 0;
-  if (!value.empty()) check(fits_update_key_str(handle_->file, key.c_str(), value.c_str(), comment.c_str(), &status));
+  if (value.empty()) return;
+  check(fits_update_key_str(handle_->file, key.c_str(), header_text(value).c_str(), comment.c_str(), &status));
 }
 
 void FitsFile::write_integer(const std::string& key, int value, const std::string& comment) {
@@ -159,7 +161,7 @@ void FitsFile::write_flag(const std::string& key, bool value, const std::string&
 void FitsFile::write_history(const std::string& line) {
   const CallOfCfitsio call;
   int status = 0;
-  check(fits_write_history(handle_->file, line.c_str(), &status));
+  check(fits_write_history(handle_->file, header_text(line).c_str(), &status));
 }
 
 void FitsFile::reserve_cards(int count) {
@@ -195,7 +197,7 @@ double FitsFile::needed_number(const std::string& key) const {
 
 std::string FitsFile::text(const std::string& key) const {
   std::array<char, FLEN_VALUE> value{};
-  return read_key(key, TSTRING, value.data()) ? printable(value.data()) : "";
+  return read_key(key, TSTRING, value.data()) ? header_text(value.data()) : "";
 }
 
 void FitsFile::create_image(std::vector<long> size, PixelFormat format) {

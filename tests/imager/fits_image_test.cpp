@@ -220,6 +220,17 @@ BOOST_AUTO_TEST_CASE(cards_and_long_history_are_written) {
   BOOST_TEST(history.find("done") != std::string::npos);
 }
 
+BOOST_AUTO_TEST_CASE(letters_that_no_header_may_have_become_question_marks) {
+  const TemporaryFolder folder;
+  SkyImage sky = example();
+  sky.observation.observer = "M\xc3\xbcller \xfc\x1b[2J\n'";
+  sky.history = {"misfit image --vis b\xc3\xa4r.ms\t"};
+  write_fits(sky, folder / "a.fits", PixelFormat::float32);
+  const std::string fits = contents(folder / "a.fits");
+  BOOST_TEST(card(fits, "OBSERVER").substr(0, 32) == "OBSERVER= 'M?ller ??[2J?'''     ");
+  BOOST_TEST(card(fits, "HISTORY").substr(0, 40) == "HISTORY misfit image --vis b?r.ms?      ");
+}
+
 BOOST_AUTO_TEST_CASE(an_image_without_beam_has_none) {
   const TemporaryFolder folder;
   SkyImage sky = example();
