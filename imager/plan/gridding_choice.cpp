@@ -43,8 +43,8 @@ class Search {
       if (best_ && request_.accuracy == 0) break;
     }
     GriddingChoice choice;
-    choice.reached = best_.has_value();
     choice.best = simplified(best_ ? made_exactly(*best_) : *most_exact_);
+    choice.reached = best_ || choice.best.worst_error <= target_;  // short polynomials may err less
     choice.rejected = neighbours(choice.best);
     return choice;
   }

@@ -86,6 +86,21 @@ BOOST_DATA_TEST_CASE(where_w_may_be_neglected_what_is_named_is_granted,
   }
 }
 
+BOOST_DATA_TEST_CASE(with_a_w_axis_what_is_named_and_more_is_granted,
+                     bdata::make({"spheroidal", "spheroidal-0", "spheroidal-1.5", "gaussian"}) * bdata::make({16, 40}), kernel,
+                     pixels) {
+  GriddingRequest r = request(pixels, 1e-7);
+  r.kernel = kernels::kernel_family(kernel);
+  r.gridder = Gridder::wide;
+  r.max_abs_w = 1e-3 / max_w_phase_rad(1, r.geometry);
+  const double named = number_after("it can reach ", refusal(r));
+  for (const double times : {1.0, 1.03, 1.07, 1.12, 1.2}) {
+    r.accuracy = times * named;
+    BOOST_TEST_INFO("named " << named << ", asked " << times << " times that");
+    BOOST_CHECK_NO_THROW(plan_gridding(r));
+  }
+}
+
 BOOST_AUTO_TEST_CASE(of_tables_and_single_precision_the_worse_is_blamed) {
   GriddingRequest r = request(64, 1e-9);
   r.precision = Precision::single_precision;
