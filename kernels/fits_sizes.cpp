@@ -1,6 +1,7 @@
 #include "kernels/fits_sizes.h"
 
 #include <algorithm>
+#include <array>
 #include <cstdlib>
 #include <stdexcept>
 #include <string>
@@ -33,11 +34,16 @@ class Header {
   }
   /// The value of the next card, which must have this key.
   long long whole(const std::string& key, long long least, long long most) { return whole_of(next(), key, least, most); }
-  /// Goes to the card END. Returns the size of all. The heap of a table may begin anywhere in `data` bytes.
+  /// Goes to the card END. Returns the size of all. The heap of a table may begin anywhere in `data` bytes. What gives sizes,
+  /// and the card that begins a header, is there once: a header that lacks its END goes on into the next one.
   std::uint64_t end(double data) {
+    constexpr std::array once{"SIMPLE", "XTENSION", "BITPIX", "NAXIS"};
     std::string card = next();
-    for (; key_of(card) != "END"; card = next())
-      if (key_of(card) == "THEAP") whole_of(card, "THEAP", 0, static_cast<long long>(std::min(data, 1e18)));
+    for (std::string key = key_of(card); key != "END"; key = key_of(card)) {
+      if (std::find(once.begin(), once.end(), key) != once.end()) fail("a header has " + key + " where no other begins");
+      if (key == "THEAP") whole_of(card, "THEAP", 0, static_cast<long long>(std::min(data, 1e18)));
+      card = next();
+    }
     if (card.find_first_not_of(' ', 3) != std::string::npos) fail("END has a value");
     return blocks(at_);
   }
