@@ -7,7 +7,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <limits>
+#include <sstream>
 #include <stdexcept>
 
 #include "imager/plane_beams.h"
@@ -31,10 +33,24 @@ imager::PlaneBeams beams_of(const casacore::ImageInfo& info, const imager::Image
   return beams;
 }
 
+/// Throws where the files of an image cannot hold its pixels: memory is taken for a plane at once.
+void check_size(const casacore::IPosition& shape, std::size_t pixel_bytes, const std::string& path) {
+  double held = 0, needed = static_cast<double>(pixel_bytes);
+  for (const std::filesystem::directory_entry& entry : std::filesystem::directory_iterator(path))
+    if (entry.is_regular_file()) held += static_cast<double>(entry.file_size());
+  for (const auto length : shape) needed *= static_cast<double>(length);
+  if (needed <= held) return;
+  std::ostringstream message;
+  message << "cannot read " << path << ": its pixels take " << needed << " bytes, expected no more than the " << held
+          << " that it has";
+  throw std::runtime_error(message.str());
+}
+
 template <typename Pixel>
 class CasaImageReader : public imager::ImageReader {
  public:
   CasaImageReader(const std::string& path, casacore::Table& table) : path_(path), image_(table) {
+    check_size(image_.shape(), sizeof(Pixel), path);
     planes_ = find_planes(image_.coordinates(), image_.shape(), path);
     header_ = header_of(image_.coordinates(), planes_, path);
     header_.unit = image_.units().getName();

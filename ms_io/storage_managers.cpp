@@ -10,6 +10,7 @@
 
 #include "ms_io/storage_managers_internal.h"
 #include "ms_io/table_access_internal.h"
+#include "ms_io/tiled_headers_internal.h"
 
 namespace misfit::ms_io {
 namespace {
@@ -29,7 +30,11 @@ class TableFile {
     if (kind == "ConcatTable") read_reference(0);
   }
 
-  const std::vector<std::string>& managers() const { return managers_; }
+  struct Manager {
+    std::string type;
+    uInt number;  ///< in the names of its files
+  };
+  const std::vector<Manager>& managers() const { return managers_; }
   /// Tables that it refers to, or holds.
   const std::vector<std::string>& tables() const { return tables_; }
 
@@ -67,8 +72,7 @@ class TableFile {
     number();
     const uInt count = number();
     for (uInt i = 0; i < count; ++i) {
-      managers_.push_back(text());
-      number();
+      managers_.push_back({text(), number()});
     }
   }
 
@@ -87,17 +91,20 @@ class TableFile {
 
   std::string table_;
   casacore::AipsIO file_;
-  std::vector<std::string> managers_, tables_;
+  std::vector<Manager> managers_;
+  std::vector<std::string> tables_;
 };
 
 void check(const std::string& path, std::set<std::string>& checked) {
   if (!checked.insert(path).second) return;
   try {
     const TableFile table(path);
-    for (const std::string& manager : table.managers())
-      if (manager.find('/') != std::string::npos)
-        throw std::runtime_error(path + " has columns stored by '" + manager +
+    for (const TableFile::Manager& manager : table.managers()) {
+      if (manager.type.find('/') != std::string::npos)
+        throw std::runtime_error(path + " has columns stored by '" + manager.type +
                                  "', expected the name of a storage manager, not a path");
+      if (manager.type.rfind("Tiled", 0) == 0) check_tiled_header(path + "/table.f" + std::to_string(manager.number));
+    }
     for (const std::string& other : table.tables()) check(other, checked);
   } catch (const casacore::AipsError&) {  // casacore will say why
   }

@@ -1,0 +1,135 @@
+// Headers of tiled storage managers, any four bytes of which are others. casacore would divide by 0, look past the end of what
+// it has, or take gigabytes.
+#include <casacore/images/Images/PagedImage.h>
+#include <casacore/tables/DataMan/TiledShapeStMan.h>
+#include <casacore/tables/Tables/SetupNewTab.h>
+#include <casacore/tables/Tables/TableDesc.h>
+#include <sys/resource.h>
+
+#include <boost/test/unit_test.hpp>
+#include <fstream>
+#include <iterator>
+
+#include "ms_io/casa_image.h"
+#include "ms_io/storage_managers_internal.h"
+#include "tests/example_cube.h"
+#include "tests/ms_io/small_set.h"
+
+namespace misfit::ms_io {
+
+BOOST_AUTO_TEST_SUITE(tiled_headers)
+
+using namespace testing;
+
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string bytes_of(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+double peak_mib() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<double>(usage.ru_maxrss) / 1024;
+}
+
+/// The header of the table's tiles, which is the only one that is `manager`'s.
+std::string header_of(const std::string& table, const std::string& manager) {
+  for (const auto& entry : fs::directory_iterator(table))
+    if (entry.is_regular_file() && bytes_of(entry.path()).find(manager) < 64) return entry.path();
+  BOOST_FAIL(table << " has no " << manager);
+  return "";
+}
+
+/// Has `read` read the table with every four bytes of the header as each of some numbers: it returns, or refuses.
+void check_every_number(const std::string& header, const std::function<void()>& read) {
+  const std::string whole = bytes_of(header);
+  read();
+  const double before = peak_mib();
+  int refused = 0;
+  for (const std::string& number : {std::string("\0\0\0\0", 4), std::string("\x7f\xff\xff\xff"),
+                                    std::string("\xff\xff\xff\xff"), std::string("\0\0\x01\0", 4)})
+    for (std::size_t at = 0; at + 4 <= whole.size(); ++at) {
+      std::string damaged = whole;
+      damaged.replace(at, 4, number);
+      std::ofstream(header, std::ios::binary) << damaged;
+      BOOST_TEST_CONTEXT("byte " << at) try { read(); } catch (const std::exception&) {  // casacore's, where it is not ours
+        ++refused;
+      }
+    }
+  BOOST_TEST(refused > 0);
+  const double reached = 400;  // sanitizers keep what was given back
+  BOOST_TEST(peak_mib() < before + reached);
+  std::ofstream(header, std::ios::binary) << whole;
+  read();
+}
+
+void read_cells(const std::string& path, const std::string& column) {
+  check_storage_managers(path);
+  const casacore::Table table(path, casacore::TableLock(casacore::TableLock::NoLocking));
+  const casacore::ArrayColumn<float> cells(table, column);
+  for (casacore::rownr_t row = 0; row < table.nrow(); ++row)
+    if (cells.isDefined(row) && cells.shape(row).product() <= 1000) cells.get(row);
+}
+
+/// Every pixel has a value, so that there is no mask.
+void make_image(const std::string& path) {
+  const imager::ImageHeader header = misfit::testing::example_header(1);
+  const auto writer = create_casa_image(header, path);
+  writer->write({0, 0}, misfit::testing::example_plane(header, {0, 0}), std::nullopt);
+  writer->finish();
+}
+
+}  // namespace
+
+BOOST_AUTO_TEST_CASE(an_image_is_read_or_refused) {
+  const TemporaryFolder folder;
+  make_image(folder / "a.image");
+  check_every_number(header_of(folder / "a.image", "TiledCellStMan"), [&] {
+    const auto image = open_casa_image(folder / "a.image");
+    if (image->header().geometry.pixels() <= 1000) image->read({0, 0});
+  });
+}
+
+BOOST_AUTO_TEST_CASE(an_image_of_more_pixels_than_its_files_hold_is_refused) {
+  const TemporaryFolder folder;
+  make_image(folder / "a.image");
+  const std::string file = header_of(folder / "a.image", "TiledCellStMan");
+  std::string bytes = bytes_of(file);
+  const std::string shape("\0\0\0\7\0\0\0\4\0\0\0\1", 12), larger("\0\0\x7\0\0\0\x4\0\0\0\0\1", 12);
+  const std::size_t cube = bytes.find(shape, bytes.find("TiledStMan"));
+  bytes.replace(cube, larger.size(), larger);  // and not the tiles
+  std::ofstream(file, std::ios::binary) << bytes;
+  BOOST_CHECK_EXCEPTION(open_casa_image(folder / "a.image"), std::runtime_error, [](const std::exception& error) {
+    return std::string(error.what()).find("its pixels take 7.34003e+06 bytes, expected no more than the ") != std::string::npos;
+  });
+}
+
+BOOST_AUTO_TEST_CASE(cells_of_one_shape_are_read_or_refused) {
+  const SmallSet set;
+  check_every_number(header_of(set.path(), "TiledColumnStMan"), [&] { read_cells(set.path(), "WEIGHT"); });
+}
+
+BOOST_AUTO_TEST_CASE(cells_of_many_shapes_are_read_or_refused) {
+  const TemporaryFolder folder;
+  const std::string path = folder / "a.table";
+  {
+    casacore::TableDesc description;
+    description.addColumn(casacore::ArrayColumnDesc<float>("CELLS", 2));
+    description.defineHypercolumn("Tiled", 3, casacore::Vector<casacore::String>(1, "CELLS"));
+    casacore::SetupNewTable setup(path, description, casacore::Table::New);
+    setup.bindAll(casacore::TiledShapeStMan("Tiled", casacore::IPosition(3, 2, 3, 4)));
+    casacore::Table table(setup, 6);
+    casacore::ArrayColumn<float> cells(table, "CELLS");
+    for (casacore::rownr_t row = 0; row < 6; ++row)
+      cells.put(row, casacore::Array<float>(casacore::IPosition(2, 2, row < 3 ? 3 : 5), static_cast<float>(row)));
+  }
+  check_every_number(header_of(path, "TiledShapeStMan"), [&] { read_cells(path, "CELLS"); });
+}
+
+BOOST_AUTO_TEST_SUITE_END()
+
+}  // namespace misfit::ms_io
