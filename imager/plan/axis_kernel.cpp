@@ -36,10 +36,11 @@ const AxisKernel& KernelShelf::made(const Key& key, double x0,
                                     const std::function<kernels::Misfit(const kernels::Kernel&)>& misfit_of) {
   const auto found = shelf_.find(key);
   if (found != shelf_.end()) return found->second;
-  AxisKernel axis{family_.make(key[0], std::clamp(x0, family_.min_x0, family_.max_x0)), {}, 1};
+  AxisKernel axis{family_.make(key[0], std::clamp(x0, family_.min_x0, family_.max_x0)), {}};
   axis.misfit = misfit_of(axis.kernel);
   if (lookup_) axis.misfit = kernels::judge_table(axis.kernel.polynomial, axis.misfit, *lookup_, x0);
   axis.noise_gain = kernels::noise_gain(axis.kernel.polynomial, axis.kernel.x0);
+  axis.largest_gain = kernels::largest_noise_gain(axis.kernel.polynomial, axis.kernel.x0);
   return shelf_.emplace(key, axis).first->second;
 }
 

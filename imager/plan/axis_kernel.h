@@ -13,8 +13,9 @@ namespace misfit::imager {
 /// One axis of the transform: a kernel over the pixels of an image.
 struct AxisKernel {
   kernels::Kernel kernel;
-  kernels::Misfit misfit;  ///< over this image's pixels
-  double noise_gain = 1;
+  kernels::Misfit misfit;   ///< over this image's pixels
+  double noise_gain = 1;    ///< RMS over them
+  double largest_gain = 1;  ///< at the one where it is largest
 };
 
 inline constexpr int continuum = 128;  ///< fewer pixels are no mean over the field, and need no wide kernels

@@ -156,10 +156,8 @@ void set_bounds(GriddingPlan& plan) {
   };
   const kernels::Misfit &u = best.u.misfit, &v = best.v.misfit, &w = best.w.misfit;
   const double rounding = adverse_rounding(plan.options, best.work.samples);
-  double largest_gain = 1;
-  for (const AxisKernel* axis : {&best.u, &best.v, &best.w})
-    if (axis->kernel.width() > 0) largest_gain *= kernels::largest_noise_gain(axis->kernel.polynomial, axis->kernel.x0);
-  const double gain = best.u.noise_gain * best.v.noise_gain * best.w.noise_gain;
+  const double largest_gain = best.u.largest_gain * best.v.largest_gain * best.w.largest_gain;
+  const double gain = best.u.noise_gain * best.v.noise_gain * best.w.largest_gain;
   constexpr double several = 6;  // steps that lead to a phase, each rounded by less than the law's RMS
   const double phases = several * phase_rounding(best.turns);
   plan.bound_rms = all(u.worst_mean, v.worst_mean, w.worst) + gain * rounding + phases;

@@ -35,6 +35,7 @@ const Scene scenes[] = {
     {"off the phase centre", {100, 64, 1e-3, {}, {0.2, -0.35}}, 3000, 300, 2},
     {"331 × 517", {331, 517, 2e-4, {}}, 2000, 30, 2},
     {"channels that span 1 : 3", {90, 70, 1e-3, {}}, 3000, 20, 64},
+    {"10.5 degrees with 0.8 km at 0.46 GHz", {128, 128, 1.43209e-3, {}}, 1281, 300, 1},
 };
 
 VisibilityBlock samples_of(const Scene& s) {
@@ -123,6 +124,10 @@ BOOST_DATA_TEST_CASE(and_at_accuracies_between, bdata::xrange(std::size(scenes))
 BOOST_TEST_DECORATOR(*boost::unit_test::label("sweep"))
 BOOST_DATA_TEST_CASE(and_to_ten_digits, bdata::xrange(3), i) {
   check_promise(static_cast<std::size_t>(i), 1e-10);
+}
+
+BOOST_DATA_TEST_CASE(and_where_u_v_and_w_magnify_rounding_at_the_corners, bdata::make({1e-10, 1.55e-11}), accuracy) {
+  check_promise(std::size(scenes) - 1, accuracy);
 }
 
 BOOST_AUTO_TEST_SUITE_END()
