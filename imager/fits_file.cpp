@@ -52,14 +52,21 @@ bool is_of_the_system(int error) {
 /// What a header may hold of `text` (FITS 4.0, section 4.1.2): other letters, of UTF-8 or of one byte, become ?.
 std::string header_text(const std::string& text) {
   std::string kept;
-  for (const char c : text)
-    if (const bool continues = (c & 0xc0) == 0x80; !continues) kept += c >= ' ' && c <= '~' ? c : '?';
+  bool in_letter = false;
+  for (const char c : text) {
+    const bool continues = in_letter && (c & 0xc0) == 0x80;
+    if (!continues) kept += c >= ' ' && c <= '~' ? c : '?';
+    in_letter = continues || (c & 0xc0) == 0xc0;
+  }
   return kept;
 }
 
 /// Throws std::runtime_error where headers are not to be trusted. A file that cannot be opened is left to CFITSIO.
 void check_sizes(const std::string& path) {
   std::error_code none;
+  const std::filesystem::file_status status = std::filesystem::status(path, none);
+  if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status))
+    throw std::runtime_error("it is no regular file");
   const std::uintmax_t size = std::filesystem::file_size(path, none);
   std::ifstream file(path, std::ios::binary);
   if (none || !file) return;

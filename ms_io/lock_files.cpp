@@ -30,7 +30,7 @@ std::uint32_t number_at(const std::array<unsigned char, state_at>& head, std::si
 }
 
 void check_lock_file(const fs::path& file) {
-  const int descriptor = open(file.c_str(), O_RDONLY | O_CLOEXEC);
+  const int descriptor = open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
   if (descriptor < 0) {
     if (errno == ENOENT || errno == ENOTDIR || errno == EACCES) return;  // casacore does without it, or says why it cannot
     fail(file, std::strerror(errno));

@@ -4,6 +4,7 @@
 #include <casacore/tables/Tables/TableDesc.h>
 #include <casacore/tables/Tables/TableRecord.h>
 
+#include <filesystem>
 #include <set>
 #include <stdexcept>
 #include <vector>
@@ -15,6 +16,7 @@
 namespace misfit::ms_io {
 namespace {
 
+namespace fs = std::filesystem;
 using casacore::uInt;
 
 /// What a table holds beside its rows, read in the order in which casacore (Table, PlainTable, ColumnSet) does.
@@ -95,8 +97,17 @@ class TableFile {
   std::vector<std::string> tables_;
 };
 
+/// casacore would wait for somebody to write into a pipe.
+void check_files(const std::string& table) {
+  std::error_code none;
+  for (const fs::directory_entry& entry : fs::directory_iterator(table, none))
+    if (entry.path().filename().string().rfind("table.", 0) == 0 && entry.exists(none) && !entry.is_regular_file(none))
+      throw std::runtime_error("cannot read " + entry.path().string() + ": it is no regular file");
+}
+
 void check(const std::string& path, std::set<std::string>& checked) {
   if (!checked.insert(path).second) return;
+  check_files(path);
   try {
     const TableFile table(path);
     for (const TableFile::Manager& manager : table.managers()) {

@@ -1,11 +1,13 @@
 #include <casacore/casa/Utilities/DataType.h>
 
 #include <algorithm>
+#include <array>
+#include <cerrno>
 #include <cmath>
 #include <cstdint>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
-#include <iterator>
 #include <sstream>
 #include <stdexcept>
 #include <vector>
@@ -22,18 +24,27 @@ struct NoHeader {};
 
 /// What casacore's AipsIO writes: numbers with the highest byte first, and objects that begin with their length, their type and
 /// its version.
-class ObjectBytes {
+class ObjectFile {
  public:
-  ObjectBytes(const std::string& path, std::string bytes) : path_(path), bytes_(std::move(bytes)) {}
+  explicit ObjectFile(const std::string& path) : path_(path) {
+    std::error_code none;
+    const fs::file_status status = fs::status(path, none);
+    if (!fs::exists(status)) throw NoHeader();
+    if (!fs::is_regular_file(status)) throw std::runtime_error("cannot read " + path + ": it is no regular file");
+    left_ = fs::file_size(path, none);
+    file_.open(path, std::ios::binary);
+    if (none || !file_) throw NoHeader();
+  }
 
   [[noreturn]] void fail(const std::string& tells, const std::string& expected) const {
     throw std::runtime_error("cannot read " + path_ + ": it tells of " + tells + ", expected " + expected);
   }
 
   std::uint64_t number(std::size_t size) {
-    if (size > left()) throw NoHeader();
+    std::array<char, 8> bytes{};
+    take(bytes.data(), size);
     std::uint64_t value = 0;
-    for (const std::size_t end = at_ + size; at_ < end; ++at_) value = value << 8 | static_cast<unsigned char>(bytes_[at_]);
+    for (std::size_t i = 0; i < size; ++i) value = value << 8 | static_cast<unsigned char>(bytes[i]);
     return value;
   }
   std::int64_t integer(std::size_t size) {
@@ -43,19 +54,22 @@ class ObjectBytes {
   /// A number of things that take as many bytes each, at least.
   std::uint64_t count(std::size_t size, const std::string& things, std::size_t bytes_each) {
     const std::uint64_t counted = number(size);
-    if (counted > left() / bytes_each) fail(std::to_string(counted) + " " + things, "no more than it holds");
+    if (counted > left_ / bytes_each) fail(std::to_string(counted) + " " + things, "no more than it holds");
     return counted;
   }
   std::string text() {
-    const std::size_t length = count(4, "letters", 1);
-    at_ += length;
-    return bytes_.substr(at_ - length, length);
+    constexpr std::uint64_t longest = 1 << 16;
+    const std::uint64_t length = count(4, "letters", 1);
+    if (length > longest) fail("a name of " + std::to_string(length) + " letters", std::to_string(longest) + " or fewer");
+    std::string text(length, '\0');
+    take(text.data(), length);
+    return text;
   }
   void skip_object() {
-    const std::size_t begin = at_, length = number(4);
-    if (length < 4 || length > bytes_.size() - begin)
-      fail("an object of " + std::to_string(length) + " bytes", "no more than it holds");
-    at_ = begin + length;
+    const std::uint64_t length = number(4), rest = length - 4;
+    if (length < 4 || rest > left_) fail("an object of " + std::to_string(length) + " bytes", "no more than it holds");
+    file_.seekg(static_cast<std::streamoff>(rest), std::ios::cur);
+    left_ -= rest;
   }
   /// Begins an object of that type; its version.
   std::uint64_t object(const std::string& type) {
@@ -65,11 +79,18 @@ class ObjectBytes {
   }
 
  private:
-  std::uint64_t left() const { return bytes_.size() - at_; }
+  void take(char* to, std::size_t count) {
+    if (count > left_) throw NoHeader();
+    errno = 0;
+    file_.read(to, static_cast<std::streamsize>(count));
+    if (file_.bad()) throw std::runtime_error("cannot read " + path_ + ": " + std::strerror(errno));
+    if (!file_) throw NoHeader();
+    left_ -= count;
+  }
 
   std::string path_;
-  std::string bytes_;
-  std::size_t at_ = 0;
+  std::ifstream file_;
+  std::uint64_t left_ = 0;
 };
 
 double bits_of(std::uint64_t data_type) {
@@ -96,7 +117,7 @@ double bits_of(std::uint64_t data_type) {
 /// Reads in the order in which casacore (TiledStMan, TSMFile, TSMCube) does.
 class TiledHeader {
  public:
-  TiledHeader(const std::string& path, std::string bytes) : path_(path), in_(path, std::move(bytes)) {}
+  explicit TiledHeader(const std::string& path) : path_(path), in_(path) {}
 
   void check() {
     constexpr std::uint64_t magic = 0xbebebebe;
@@ -104,10 +125,11 @@ class TiledHeader {
     in_.number(4);
     const std::string manager = in_.text();
     may_have_values_ = manager == "TiledDataStMan";
-    in_.number(4);
+    const std::uint64_t version = in_.number(4);
     if (manager == "TiledColumnStMan" || manager == "TiledCellStMan") lengths();
     check_common();
     if (manager == "TiledShapeStMan") check_rows();
+    if (manager == "TiledDataStMan") check_chunks(version);
   }
 
  private:
@@ -119,9 +141,9 @@ class TiledHeader {
   }
 
   void check_common() {
-    const std::uint64_t version = in_.object("TiledStMan");
-    const std::size_t size = version >= 3 ? 8 : 4;
-    if (version >= 2) in_.number(1);
+    common_version_ = in_.object("TiledStMan");
+    const std::size_t size = common_version_ >= 3 ? 8 : 4;
+    if (common_version_ >= 2) in_.number(1);
     in_.number(4);
     in_.number(size);
     const std::uint64_t columns = in_.count(4, "columns", 4);
@@ -136,6 +158,10 @@ class TiledHeader {
     for (std::uint64_t c = 0; c < cubes; ++c) check_cube();
   }
 
+  struct Cube {
+    std::uint64_t rows = 0;  ///< the length of its last axis
+    double cells_a_row = 0;  ///< of all others
+  };
   struct File {
     bool exists = false;
     double bytes = 0;
@@ -161,6 +187,7 @@ class TiledHeader {
       in_.fail(std::to_string(cube.size()) + " and " + std::to_string(tile.size()) + " axes of a hypercube and its tiles",
                std::to_string(axes) + " of both");
     double elements = 1, tiles = 1;
+    double across = 1;
     bool empty = axes == 0;
     for (std::size_t i = 0; i < axes; ++i) {
       if (cube[i] < 0) in_.fail("a hypercube of length " + std::to_string(cube[i]), "0 or more");
@@ -168,8 +195,9 @@ class TiledHeader {
       elements *= static_cast<double>(tile[i]);
       tiles *= std::max(1.0, std::ceil(static_cast<double>(cube[i]) / static_cast<double>(tile[i])));
       empty = empty || cube[i] == 0;
+      if (i + 1 < axes) across *= static_cast<double>(cube[i]);
     }
-    rows_of_cube_.push_back(empty ? 0 : cube.back());
+    cubes_.push_back({empty ? 0 : static_cast<std::uint64_t>(cube.back()), across});
     const File file =
         in_file < 0 || static_cast<std::size_t>(in_file) >= files_.size() ? File() : files_[static_cast<std::size_t>(in_file)];
     if (!empty && !file.exists) in_.fail("tiles in file " + std::to_string(in_file), "a file that it has");
@@ -197,47 +225,67 @@ class TiledHeader {
     in_.number(4);
   }
 
-  /// Which rows lie in which hypercube.
+  std::vector<std::uint64_t> numbers(const std::string& things, std::size_t size = 4) {
+    in_.object("Block");
+    std::vector<std::uint64_t> all(in_.count(4, things, size));
+    for (std::uint64_t& value : all) value = in_.number(size);
+    return all;
+  }
+  void check_hypercube(std::uint64_t cube) const {
+    if (cube >= cubes_.size()) in_.fail("rows in hypercube " + std::to_string(cube), "one of " + std::to_string(cubes_.size()));
+  }
+  [[noreturn]] void refuse_rows(std::uint64_t rows, std::uint64_t place, const Cube& cube) const {
+    in_.fail(std::to_string(rows) + " rows at row " + std::to_string(place) + " of a hypercube",
+             "some of its " + std::to_string(cube.rows));
+  }
+
+  /// Of TiledShapeStMan: runs of rows, by the last of each and where that lies.
   void check_rows() {
     lengths();
     const std::uint64_t used = in_.number(4);
-    const auto map = [&](const std::string& things) {
-      in_.object("Block");
-      std::vector<std::uint64_t> all(in_.count(4, things, 4));
-      for (std::uint64_t& value : all) value = in_.number(4);
-      if (all.size() < used)
-        in_.fail(std::to_string(used) + " runs of rows", "no more than its " + std::to_string(all.size()) + " " + things);
-      return all;
-    };
-    const std::vector<std::uint64_t> last = map("last rows"), cube = map("hypercubes of rows"),
-                                     place = map("places of last rows");
-    std::int64_t before = -1;
+    const std::vector<std::uint64_t> last = numbers("last rows"), cube = numbers("hypercubes"), place = numbers("places");
+    if (const std::size_t all = std::min({last.size(), cube.size(), place.size()}); used > all)
+      in_.fail(std::to_string(used) + " runs of rows", "no more than the " + std::to_string(all) + " that it has");
     for (std::size_t i = 0; i < used; ++i) {
-      if (cube[i] >= rows_of_cube_.size())
-        in_.fail("rows in hypercube " + std::to_string(cube[i]), "one of " + std::to_string(rows_of_cube_.size()));
-      const auto rows = static_cast<std::int64_t>(last[i]) - before, in_cube = rows_of_cube_[cube[i]];
-      if (cube[i] != 0 &&
-          (rows < 1 || static_cast<std::int64_t>(place[i]) >= in_cube || rows > static_cast<std::int64_t>(place[i]) + 1))
-        in_.fail(std::to_string(rows) + " rows up to row " + std::to_string(place[i]) + " of a hypercube",
-                 "some of its " + std::to_string(in_cube));
-      before = static_cast<std::int64_t>(last[i]);
+      check_hypercube(cube[i]);
+      const std::uint64_t begin = i == 0 ? 0 : last[i - 1] + 1, rows = last[i] + 1 - begin;
+      if (cube[i] != 0 && (last[i] < begin || place[i] >= cubes_[cube[i]].rows || rows > place[i] + 1))
+        refuse_rows(rows, place[i], cubes_[cube[i]]);
+    }
+  }
+
+  /// Of TiledDataStMan: chunks, by the first row of each and where that lies; several rows may share a place along the last
+  /// axis.
+  void check_chunks(std::uint64_t version) {
+    const std::uint64_t rows = in_.number(version == 1 && common_version_ < 3 ? 4 : 8);
+    if (version == 1) in_.number(4);
+    const std::vector<std::uint64_t> first = numbers("first rows", version == 1 ? 4 : 8), cube = numbers("hypercubes"),
+                                     place = numbers("places");
+    if (first.size() > std::min(cube.size(), place.size()) || (rows > 0 && (first.empty() || first.front() != 0)))
+      in_.fail(std::to_string(first.size()) + " chunks of rows", "a hypercube and a place for each, from row 0 on");
+    for (std::size_t i = 0; i < first.size(); ++i) {
+      check_hypercube(cube[i]);
+      const std::uint64_t end = i + 1 < first.size() ? first[i + 1] : rows;
+      const Cube& in = cubes_[cube[i]];
+      const double room = static_cast<double>(in.rows - std::min(in.rows, place[i])) * in.cells_a_row;
+      if (end <= first[i] || static_cast<double>(end - first[i]) > room) refuse_rows(end - first[i], place[i], in);
     }
   }
 
   std::string path_;
-  ObjectBytes in_;
+  ObjectFile in_;
   bool may_have_values_ = false;
   double bits_ = 0;  ///< of an element of the column that takes most
   std::vector<File> files_;
-  std::vector<std::int64_t> rows_of_cube_;
+  std::uint64_t common_version_ = 0;
+  std::vector<Cube> cubes_;
 };
 
 }  // namespace
 
 void check_tiled_header(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
   try {
-    TiledHeader(path, {std::istreambuf_iterator<char>(file), {}}).check();
+    TiledHeader(path).check();
   } catch (const NoHeader&) {  // casacore will say so
   }
 }

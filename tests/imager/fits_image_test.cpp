@@ -223,7 +223,7 @@ BOOST_AUTO_TEST_CASE(cards_and_long_history_are_written) {
 BOOST_AUTO_TEST_CASE(letters_that_no_header_may_have_become_question_marks) {
   const TemporaryFolder folder;
   SkyImage sky = example();
-  sky.observation.observer = "M\xc3\xbcller \xfc\x1b[2J\n'";
+  sky.observation.observer = "M\xc3\xbcller \x9c\x1b[2J\n'";
   sky.history = {"misfit image --vis b\xc3\xa4r.ms\t"};
   write_fits(sky, folder / "a.fits", PixelFormat::float32);
   const std::string fits = contents(folder / "a.fits");

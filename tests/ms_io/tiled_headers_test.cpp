@@ -1,10 +1,14 @@
 // Headers of tiled storage managers, any four bytes of which are others. casacore would divide by 0, look past the end of what
 // it has, or take gigabytes.
 #include <casacore/images/Images/PagedImage.h>
+#include <casacore/tables/DataMan/TiledDataStMan.h>
+#include <casacore/tables/DataMan/TiledDataStManAccessor.h>
 #include <casacore/tables/DataMan/TiledShapeStMan.h>
+#include <casacore/tables/Tables/ScaColDesc.h>
 #include <casacore/tables/Tables/SetupNewTab.h>
 #include <casacore/tables/Tables/TableDesc.h>
 #include <sys/resource.h>
+#include <sys/stat.h>
 
 #include <boost/test/unit_test.hpp>
 #include <fstream>
@@ -44,15 +48,16 @@ std::string header_of(const std::string& table, const std::string& manager) {
   return "";
 }
 
-/// Has `read` read the table with every four bytes of the header as each of some numbers: it returns, or refuses.
-void check_every_number(const std::string& header, const std::function<void()>& read) {
+/// Has `read` read the table with every four bytes of the header, from `begin` on, as each of some numbers: it returns, or
+/// refuses.
+void check_every_number(const std::string& header, const std::function<void()>& read, const std::string& begin = "") {
   const std::string whole = bytes_of(header);
   read();
   const double before = peak_mib();
   int refused = 0;
   for (const std::string& number : {std::string("\0\0\0\0", 4), std::string("\x7f\xff\xff\xff"),
                                     std::string("\xff\xff\xff\xff"), std::string("\0\0\x01\0", 4)})
-    for (std::size_t at = 0; at + 4 <= whole.size(); ++at) {
+    for (std::size_t at = whole.find(begin); at + 4 <= whole.size(); ++at) {
       std::string damaged = whole;
       damaged.replace(at, 4, number);
       std::ofstream(header, std::ios::binary) << damaged;
@@ -128,6 +133,49 @@ BOOST_AUTO_TEST_CASE(cells_of_many_shapes_are_read_or_refused) {
       cells.put(row, casacore::Array<float>(casacore::IPosition(2, 2, row < 3 ? 3 : 5), static_cast<float>(row)));
   }
   check_every_number(header_of(path, "TiledShapeStMan"), [&] { read_cells(path, "CELLS"); });
+}
+
+BOOST_AUTO_TEST_CASE(cells_of_hypercubes_told_apart_by_values_are_read_or_refused) {
+  const TemporaryFolder folder;
+  const std::string path = folder / "a.table";
+  {
+    casacore::TableDesc description;
+    description.addColumn(
+        casacore::ArrayColumnDesc<float>("CELLS", casacore::IPosition(2, 2, 3), casacore::ColumnDesc::FixedShape));
+    description.addColumn(casacore::ScalarColumnDesc<int>("ID"));
+    description.defineHypercolumn("Tiled", 3, casacore::Vector<casacore::String>(1, "CELLS"),
+                                  casacore::Vector<casacore::String>(), casacore::Vector<casacore::String>(1, "ID"));
+    casacore::SetupNewTable setup(path, description, casacore::Table::New);
+    casacore::TiledDataStMan manager("Tiled");
+    setup.bindAll(manager);
+    casacore::Table table(setup, 6);
+    casacore::TiledDataStManAccessor tiles(table, "Tiled");
+    for (const int id : {7, 8}) {
+      casacore::Record values;
+      values.define("ID", id);
+      tiles.addHypercube(casacore::IPosition(3, 2, 3, 3), casacore::IPosition(3, 2, 3, 2), values);
+    }
+    casacore::ArrayColumn<float> cells(table, "CELLS");
+    for (casacore::rownr_t row = 0; row < 6; ++row) cells.put(row, casacore::Array<float>(casacore::IPosition(2, 2, 3), 1.0F));
+  }
+  // Up to there lie values, of any kind and length, which casacore alone reads.
+  check_every_number(
+      header_of(path, "TiledDataStMan"), [&] { read_cells(path, "CELLS"); }, "Block");
+}
+
+BOOST_AUTO_TEST_CASE(what_is_no_file_is_named) {
+  const SmallSet set;
+  const std::string file = header_of(set.path(), "TiledColumnStMan");
+  for (const bool pipe : {false, true}) {
+    fs::remove(file);
+    if (pipe)
+      mkfifo(file.c_str(), 0600);
+    else
+      fs::create_directory(file);
+    BOOST_CHECK_EXCEPTION(check_storage_managers(set.path()), std::runtime_error, [&](const std::exception& error) {
+      return std::string(error.what()).find("cannot read " + file + ": it is no regular file") != std::string::npos;
+    });
+  }
 }
 
 BOOST_AUTO_TEST_SUITE_END()

@@ -33,6 +33,8 @@ void check_pixels(const std::string& path, const imager::ImageGeometry& g, const
 bool is_image(const std::string& path) {
   std::error_code absent;
   if (std::filesystem::is_directory(path, absent)) return true;
+  if (std::filesystem::exists(path, absent) && !std::filesystem::is_regular_file(path, absent))
+    throw std::runtime_error("cannot read mask " + path + ": it is no regular file");  // a pipe would give its beginning once
   std::ifstream file(path, std::ios::binary);
   std::string begin(6, '\0');
   return file.read(begin.data(), 6) && begin == "SIMPLE";
