@@ -4,10 +4,12 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
 #include <cmath>
 #include <cstdlib>
 #include <new>
 #include <stdexcept>
+#include <string_view>
 
 #include "kernels/cfitsio_call.h"
 #include "kernels/fits_sizes.h"
@@ -178,8 +180,13 @@ class HeaderReader {
     return read(key, TDOUBLE, &value) ? std::optional(value) : std::nullopt;
   }
   std::optional<int> whole(const char* key, int least, int most) const {
-    LONGLONG value = 0;
-    if (!read(key, TLONGLONG, &value)) return {};
+    // CFITSIO 4.2 itself, where a number cannot be understood, writes past the end of its message.
+    std::array<char, FLEN_VALUE> digits{};
+    if (!read(key, TSTRING, digits.data())) return {};
+    const std::string_view text = digits.data();
+    long long value = 0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (error != std::errc() || end != text.data() + text.size()) file_.fail(std::string(key) + " cannot be understood");
     if (value < least || value > most)
       file_.fail(std::string(key) + " is " + std::to_string(value) + ", expected " + std::to_string(least) + " to " +
                  std::to_string(most));
