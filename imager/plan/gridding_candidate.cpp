@@ -22,7 +22,6 @@ double unit_rounding(Precision precision, double samples) {
 /// largest along w; or along u and v, where n − 1 takes any value π/2 times as often as a uniform one at most, as that of a
 /// paraboloid over a square.
 double image_gain(const AxisKernel& u, const AxisKernel& v, const AxisKernel& w) {
-  if (w.kernel.width() == 0) return u.noise_gain * v.noise_gain;
   const double denser = std::sqrt(pi / 2);
   return std::min(u.noise_gain * v.noise_gain * w.largest_gain, u.largest_gain * v.largest_gain * w.noise_gain * denser);
 }
