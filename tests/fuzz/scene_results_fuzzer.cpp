@@ -1,7 +1,7 @@
 // What a comparison of kernels that was stopped left in its folder: results.json. Any content is taken or left; none is an
 // error.
-#include <cmath>
 #include <nlohmann/json.hpp>
+#include <vector>
 
 #include "tests/fuzz/fuzzing.h"
 #include "tools/scene/results_file.h"

@@ -81,6 +81,7 @@ BOOST_DATA_TEST_CASE(where_w_may_be_neglected_what_is_named_is_granted,
     r.max_abs_w = part * asked / max_w_phase_rad(1, r.geometry);
     if (choose_gridding(r).reached) continue;
     r.accuracy = number_after("it can reach ", refusal(r));
+    BOOST_REQUIRE(r.accuracy > 0);  // 0 asks for none
     BOOST_TEST_INFO("asked " << asked << ", then " << r.accuracy);
     if (r.accuracy < 1) BOOST_CHECK_NO_THROW(plan_gridding(r));
   }
@@ -94,6 +95,7 @@ BOOST_DATA_TEST_CASE(with_a_w_axis_what_is_named_and_more_is_granted,
   r.gridder = Gridder::wide;
   r.max_abs_w = 1e-3 / max_w_phase_rad(1, r.geometry);
   const double named = number_after("it can reach ", refusal(r));
+  BOOST_REQUIRE(named > 0);
   for (const double times : {1.0, 1.03, 1.07, 1.12, 1.2}) {
     r.accuracy = times * named;
     BOOST_TEST_INFO("named " << named << ", asked " << times << " times that");
