@@ -20,7 +20,8 @@ std::unique_ptr<imager::ImageWriter> create_casa_image(const imager::ImageHeader
 /// any. What its default mask leaves out is NaN. Throws std::runtime_error that names the path and what was expected.
 std::unique_ptr<imager::ImageReader> open_casa_image(const std::string& path);
 
-/// Whether a casacore image lies at `path`, whoever wrote it.
+/// Whether a casacore image lies at `path`, whoever wrote it. Throws std::runtime_error where it is a table that casacore must
+/// not read.
 bool is_casa_image(const std::string& path);
 
 /// Whether create_casa_image() wrote it.

@@ -15,7 +15,6 @@
 #include "imager/plane_beams.h"
 #include "ms_io/casa_coordinates_internal.h"
 #include "ms_io/casa_image.h"
-#include "ms_io/storage_managers_internal.h"
 #include "ms_io/table_access_internal.h"
 
 namespace misfit::ms_io {
@@ -124,7 +123,6 @@ std::unique_ptr<imager::ImageReader> open_table(const std::string& path) {
 std::unique_ptr<imager::ImageReader> open_casa_image(const std::string& path) {
   if (!is_casa_image(path))
     throw std::runtime_error("cannot read " + path + ": it is no casacore image; expected the folder of one");
-  check_storage_managers(path);
   return translated("cannot read " + path, [&] { return open_table(path); });
 }
 

@@ -171,13 +171,13 @@ class CasaImageWriter : public imager::ImageWriter {
 
 bool is_casa_image(const std::string& path) {
   silence_casacore();
+  check_storage_managers(path);
   return casacore::Table::isReadable(path) &&
          casacore::TableUtil::tableInfo(path).type() == casacore::TableInfo::type(casacore::TableInfo::PAGEDIMAGE);
 }
 
 bool is_own_casa_image(const std::string& path) {
   if (!is_casa_image(path)) return false;
-  check_storage_managers(path);
   return translated("cannot read " + path, [&] {
     const casacore::Table table(path, casacore::TableLock(casacore::TableLock::NoLocking));
     const casacore::TableRecord& keywords = table.keywordSet();

@@ -5,22 +5,23 @@
 namespace misfit::ms_io {
 namespace {
 
-constexpr int i = 0, q = 1, u = 2, v = 3;
-
 /// By casacore's code: undefined, I, Q, U, V, RR, RL, LR, LL, XX, XY, YX, YY.
-constexpr std::array<StokesResponse, 13> responses = {{{},
-                                                       {i},
-                                                       {q},
-                                                       {u},
-                                                       {v},
-                                                       {i, v, 1, 0},
-                                                       {q, u, 0, 1},
-                                                       {q, u, 0, -1},
-                                                       {i, v, -1, 0},
-                                                       {i, q, 1, 0},
-                                                       {u, v, 0, 1},
-                                                       {u, v, 0, -1},
-                                                       {i, q, -1, 0}}};
+constexpr std::array<StokesResponse, 13> responses = [] {
+  constexpr int i = 0, q = 1, u = 2, v = 3;
+  return std::array<StokesResponse, 13>{{{},
+                                         {i},
+                                         {q},
+                                         {u},
+                                         {v},
+                                         {i, v, 1, 0},
+                                         {q, u, 0, 1},
+                                         {q, u, 0, -1},
+                                         {i, v, -1, 0},
+                                         {i, q, 1, 0},
+                                         {u, v, 0, 1},
+                                         {u, v, 0, -1},
+                                         {i, q, -1, 0}}};
+}();
 
 using Plane = std::vector<std::complex<double>>;
 

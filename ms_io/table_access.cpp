@@ -10,7 +10,6 @@
 #include <mutex>
 #include <sstream>
 
-#include "ms_io/lock_files_internal.h"
 #include "ms_io/storage_managers_internal.h"
 #include "ms_io/table_access_internal.h"
 
@@ -109,7 +108,6 @@ casacore::MeasurementSet open_measurement_set(const std::string& path, Access ac
   silence_casacore();
   std::error_code ignored;
   if (!std::filesystem::exists(path, ignored)) throw std::runtime_error(path + " does not exist; expected a MeasurementSet");
-  check_lock_files(path);
   check_storage_managers(path);
   return translated("cannot open " + path, [&] {
     try {

@@ -13,7 +13,9 @@
 #include <array>
 #include <complex>
 #include <filesystem>
+#include <fstream>
 #include <limits>
+#include <stdexcept>
 #include <type_traits>
 #include <vector>
 
@@ -28,7 +30,8 @@ class Bytes {
  public:
   Bytes(const std::uint8_t* bytes, std::size_t count) : next_(bytes), end_(bytes + count) {}
   bool empty() const { return next_ == end_; }
-  std::size_t below(std::size_t count) { return count == 0 ? 0 : (empty() ? 0 : *next_++) % count; }
+  std::size_t next() { return empty() ? 0 : *next_++; }
+  std::size_t below(std::size_t count) { return count == 0 ? 0 : next() % count; }
   template <typename Choices>
   const auto& one_of(const Choices& choices) {
     return choices[below(std::size(choices))];
@@ -221,14 +224,32 @@ void change_rows(Table& table, Bytes& bytes) {
   }
 }
 
-/// Files of a table end early, or are no more.
-void cut_file(const fs::path& folder, Bytes& bytes) {
+fs::path any_file(const fs::path& folder, Bytes& bytes) {
   std::vector<fs::path> files;
   for (const auto& entry : fs::directory_iterator(folder))
     if (entry.is_regular_file()) files.push_back(entry.path());
-  if (files.empty()) return;
+  if (files.empty()) throw std::runtime_error("no files");
   std::sort(files.begin(), files.end());
-  const fs::path& file = bytes.one_of(files);
+  return bytes.one_of(files);
+}
+
+/// Four bytes somewhere in a file of a table become others.
+void change_bytes(const fs::path& folder, Bytes& bytes) {
+  const fs::path file = any_file(folder, bytes);
+  const std::array<std::string, 8> numbers_there{std::string("\0\0\0\0", 4), std::string("\0\0\0\1", 4),
+                                                 std::string("\1\0\0\0", 4), std::string("\0\0\1\0", 4),
+                                                 "\x7f\xff\xff\xff",         "\xff\xff\xff\xff",
+                                                 "\xff\xff\xff\x7f",         std::string(4, static_cast<char>(bytes.next()))};
+  const std::size_t size = fs::file_size(file), at = bytes.next() << 16 | bytes.next() << 8 | bytes.next();
+  if (size < 4) return;
+  std::fstream stream(file, std::ios::binary | std::ios::in | std::ios::out);
+  stream.seekp(static_cast<std::streamoff>(at % (size - 3)));
+  stream << bytes.one_of(numbers_there);
+}
+
+/// Files of a table end early, or are no more.
+void cut_file(const fs::path& folder, Bytes& bytes) {
+  const fs::path file = any_file(folder, bytes);
   const std::size_t part = bytes.below(256);
   if (part == 0)
     fs::remove(file);
@@ -236,18 +257,17 @@ void cut_file(const fs::path& folder, Bytes& bytes) {
     fs::resize_file(file, fs::file_size(file) * part / 256);
 }
 
-void damage_once(const fs::path& set, Bytes& bytes) {
+/// The set, or one of its subtables.
+fs::path any_table(const fs::path& set, Bytes& bytes) {
   std::vector<fs::path> tables;
   for (const auto& entry : fs::directory_iterator(set))
     if (entry.is_directory()) tables.push_back(entry.path());
   std::sort(tables.begin(), tables.end());
-  const fs::path folder = bytes.below(2) == 0 || tables.empty() ? set : bytes.one_of(tables);
-  const std::size_t kind = bytes.below(10);
+  return bytes.below(2) == 0 || tables.empty() ? set : bytes.one_of(tables);
+}
+
+void damage_table(const fs::path& folder, std::size_t kind, Bytes& bytes) {
   if (kind == 8) return cut_file(folder, bytes);
-  if (kind == 9 && folder != set) {
-    fs::remove_all(folder);
-    return;
-  }
   Table table(folder.string(), casacore::TableLock(casacore::TableLock::NoLocking), Table::Update);
   if (kind == 0) return change_rows(table, bytes);
   if (kind == 1) return change_keyword(table.rwKeywordSet(), bytes);
@@ -266,9 +286,19 @@ void damage_once(const fs::path& set, Bytes& bytes) {
 }  // namespace
 
 void damage(const std::string& set, const std::uint8_t* bytes, std::size_t count) {
+  constexpr std::size_t first_of_bytes = 192;
   Bytes left(bytes, count);
+  bool opens = true;  // casacore must not open what has other bytes
   while (!left.empty()) try {
-      damage_once(set, left);
+      const fs::path folder = any_table(set, left);
+      const std::size_t choice = left.next();
+      opens = opens && choice < first_of_bytes;
+      if (!opens)
+        change_bytes(folder, left);
+      else if (choice % 10 == 9 && folder != set)
+        fs::remove_all(folder);
+      else
+        damage_table(folder, choice % 10, left);
     } catch (const std::exception&) {  // not with this table
     }
 }

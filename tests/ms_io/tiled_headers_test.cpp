@@ -7,16 +7,14 @@
 #include <casacore/tables/Tables/ScaColDesc.h>
 #include <casacore/tables/Tables/SetupNewTab.h>
 #include <casacore/tables/Tables/TableDesc.h>
-#include <sys/resource.h>
 #include <sys/stat.h>
 
 #include <boost/test/unit_test.hpp>
-#include <fstream>
-#include <iterator>
 
 #include "ms_io/casa_image.h"
 #include "ms_io/storage_managers_internal.h"
 #include "tests/example_cube.h"
+#include "tests/ms_io/damaged_files.h"
 #include "tests/ms_io/small_set.h"
 
 namespace misfit::ms_io {
@@ -28,49 +26,6 @@ using namespace testing;
 namespace {
 
 namespace fs = std::filesystem;
-
-std::string bytes_of(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), {}};
-}
-
-double peak_mib() {
-  rusage usage{};
-  getrusage(RUSAGE_SELF, &usage);
-  return static_cast<double>(usage.ru_maxrss) / 1024;
-}
-
-/// The header of the table's tiles, which is the only one that is `manager`'s.
-std::string header_of(const std::string& table, const std::string& manager) {
-  for (const auto& entry : fs::directory_iterator(table))
-    if (entry.is_regular_file() && bytes_of(entry.path()).find(manager) < 64) return entry.path();
-  BOOST_FAIL(table << " has no " << manager);
-  return "";
-}
-
-/// Has `read` read the table with every four bytes of the header, from `begin` on, as each of some numbers: it returns, or
-/// refuses.
-void check_every_number(const std::string& header, const std::function<void()>& read, const std::string& begin = "") {
-  const std::string whole = bytes_of(header);
-  read();
-  const double before = peak_mib();
-  int refused = 0;
-  for (const std::string& number : {std::string("\0\0\0\0", 4), std::string("\x7f\xff\xff\xff"),
-                                    std::string("\xff\xff\xff\xff"), std::string("\0\0\x01\0", 4)})
-    for (std::size_t at = whole.find(begin); at + 4 <= whole.size(); ++at) {
-      std::string damaged = whole;
-      damaged.replace(at, 4, number);
-      std::ofstream(header, std::ios::binary) << damaged;
-      BOOST_TEST_CONTEXT("byte " << at) try { read(); } catch (const std::exception&) {  // casacore's, where it is not ours
-        ++refused;
-      }
-    }
-  BOOST_TEST(refused > 0);
-  const double reached = 400;  // sanitizers keep what was given back
-  BOOST_TEST(peak_mib() < before + reached);
-  std::ofstream(header, std::ios::binary) << whole;
-  read();
-}
 
 void read_cells(const std::string& path, const std::string& column) {
   check_storage_managers(path);

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "ms_io/table_file_internal.h"
+
+namespace misfit::ms_io {
+
+/// The columns that a storage manager stores, in its order.
+std::vector<StoredColumn> columns_of(const TableFile& table, const StorageManager& manager);
+
+/// The file of a storage manager of casacore, the path of which ends in its number.
+std::string file_of(const std::string& table, const StorageManager& manager);
+
+/// Buckets of one size, in which casacore's StandardStMan and IncrementalStMan keep rows, after a header.
+class Buckets {
+ public:
+  static constexpr std::uint64_t begin = 512;
+
+  /// Throws std::runtime_error where a header tells of more of them, or larger ones, than its file holds, or of a cache of more
+  /// than there may be.
+  Buckets(StoredBytes& bytes, std::uint64_t size, std::uint64_t count, std::uint64_t cached);
+
+  std::uint64_t size() const { return size_; }
+  std::uint64_t count() const { return count_; }
+  /// The place in the file; throws std::runtime_error where there is no such bucket.
+  std::uint64_t at(std::uint64_t bucket) const;
+
+ private:
+  StoredBytes& bytes_;
+  std::uint64_t size_, count_;
+};
+
+}  // namespace misfit::ms_io

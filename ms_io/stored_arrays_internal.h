@@ -1,0 +1,28 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "ms_io/table_file_internal.h"
+
+namespace misfit::ms_io {
+
+/// The file of the arrays that a storage manager of casacore does not keep among other columns, each with its shape before it.
+class StoredArrays {
+ public:
+  /// Reads its head. Throws as StoredBytes() does.
+  StoredArrays(const std::string& path, ByteOrder order);
+
+  /// Throws std::runtime_error that names the file where the array at a place is not within it, with its texts if it is of
+  /// those. 0 is the place of none. Files of more than 1 GiB are left to casacore: to look at each array is to read all of
+  /// them.
+  void check(std::int64_t place, casacore::DataType type);
+
+ private:
+  StoredBytes bytes_;
+  ByteOrder order_;
+  bool counts_references_ = false;
+};
+
+}  // namespace misfit::ms_io
