@@ -48,7 +48,6 @@ std::uint64_t rows_in(StoredBytes state) {
 
 std::uint64_t check_lock_file(const std::string& table) {
   const fs::path file = fs::path(table) / "table.lock";
-
   const int descriptor = open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
   if (descriptor < 0) {
     if (errno == ENOENT || errno == ENOTDIR || errno == EACCES) return 0;  // casacore does without it, or says why it cannot

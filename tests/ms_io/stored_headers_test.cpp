@@ -143,6 +143,17 @@ BOOST_AUTO_TEST_CASE(whatever_its_lock_file_says) {
   check_file("table.lock");
 }
 
+BOOST_AUTO_TEST_CASE(a_table_of_rows_of_another_is_read_or_refused) {
+  const TemporaryFolder folder;
+  make_table(folder / "a.table", storages.front());
+  {
+    casacore::Vector<rownr_t> rows(2, table_rows - 1);
+    rows[0] = 1;
+    casacore::Table(folder / "a.table")(rows).rename(folder / "b.table", casacore::Table::New);
+  }
+  check_every_number(folder / "b.table/table.dat", [&] { read_table(folder / "b.table"); });
+}
+
 BOOST_AUTO_TEST_SUITE_END()
 
 }  // namespace misfit::ms_io

@@ -1,5 +1,7 @@
 #include "tools/formats/mask_file.h"
 
+#include <sys/stat.h>
+
 #include <algorithm>
 #include <boost/test/unit_test.hpp>
 #include <cmath>
@@ -9,6 +11,7 @@
 #include "imager/fits_image.h"
 #include "tests/example_cube.h"
 #include "tests/temporary_folder.h"
+#include "tools/formats/image_file.h"
 #include "tools/run/image_files.h"
 
 BOOST_AUTO_TEST_SUITE(mask_file)
@@ -261,6 +264,17 @@ BOOST_AUTO_TEST_CASE(a_mask_of_other_planes_is_refused) {
   other = cube;
   other.geometry.phase_centre.ra_rad += 1e-4;
   refused_for(other, "lies elsewhere");
+}
+
+BOOST_AUTO_TEST_CASE(a_pipe_is_no_mask_and_no_model) {
+  const TemporaryFolder folder;
+  const std::string pipe = folder / "pipe";
+  BOOST_REQUIRE(mkfifo(pipe.c_str(), 0600) == 0);
+  const auto refused_as = [](const std::string& what) {
+    return [what](const std::exception& error) { return error.what() == "cannot read " + what + ": it is no regular file"; };
+  };
+  BOOST_CHECK_EXCEPTION(read_mask(pipe, geometry), std::runtime_error, refused_as("mask " + pipe));
+  BOOST_CHECK_EXCEPTION(open_image_file(pipe), std::runtime_error, refused_as(pipe));
 }
 
 BOOST_AUTO_TEST_SUITE_END()
