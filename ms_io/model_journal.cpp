@@ -14,7 +14,7 @@
 namespace misfit::ms_io {
 namespace {
 
-constexpr const char* part = ".part";  ///< while it is written
+constexpr const char* unfinished = ".part";  ///< while it is written
 
 /// In every table that holds rows of `set`: itself, or what it refers to.
 std::vector<std::string> journal_files(const casacore::Table& set, std::string column) {
@@ -75,7 +75,7 @@ std::optional<ModelJournal> read_journal(const casacore::Table& set, const std::
 
 void write_journal(const casacore::Table& set, const ModelJournal& journal) {
   for (const std::string& path : journal_files(set, journal.column)) {
-    const std::string beside = path + part;
+    const std::string beside = path + unfinished;
     errno = 0;
     std::ofstream file(beside, std::ios::binary);
     file << text_of(journal) << std::flush;
@@ -89,7 +89,7 @@ void write_journal(const casacore::Table& set, const ModelJournal& journal) {
 void remove_journal(const casacore::Table& set, const std::string& column) {
   std::error_code ignored;
   for (const std::string& path : journal_files(set, column)) {
-    std::filesystem::remove(path + part, ignored);
+    std::filesystem::remove(path + unfinished, ignored);
     std::filesystem::remove(path, ignored);
   }
 }

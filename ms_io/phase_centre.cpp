@@ -8,6 +8,7 @@
 #include <casacore/ms/MeasurementSets/MSFieldColumns.h>
 #include <casacore/tables/Tables/ScalarColumn.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "ms_io/celestial_frame_internal.h"
@@ -62,6 +63,17 @@ void require_field(const casacore::MeasurementSet& set, const std::string& path,
                            std::to_string(set.field().nrow()) + " rows");
 }
 
+/// That a field has the directions that NUM_POLY tells of: casacore would look for them without.
+void require_directions(const casacore::MSFieldColumns& columns, const casacore::ArrayColumn<double>& cells,
+                        casacore::rownr_t row) {
+  const int powers = columns.numPoly()(row);
+  const casacore::IPosition shape = cells.shape(row);
+  const ssize_t directions = shape.empty() || shape[0] == 0 ? 0 : shape.product() / shape[0];
+  if (directions > std::max(powers, 0)) return;
+  throw casacore::AipsError(std::string(cells.columnDesc().name()) + " has " + std::to_string(directions) +
+                            " directions, expected more than NUM_POLY, " + std::to_string(powers));
+}
+
 }  // namespace
 
 casacore::MDirection measure_of(const imager::SkyDirection& direction) {
@@ -83,6 +95,7 @@ FieldCentre field_centre(const casacore::MeasurementSet& set, const std::string&
   return translated("cannot find the phase centre of field " + std::to_string(field) + " of " + path, [&] {
     const casacore::MSFieldColumns columns(set.field());
     const auto index = static_cast<casacore::rownr_t>(field);
+    require_directions(columns, columns.phaseDir(), index);
     const double time = casacore::ScalarColumn<double>(set, "TIME")(row);
     return FieldCentre{field, columns.name()(index), sky_direction(equatorial(columns.phaseDirMeas(index, time), set, row)),
                        casacore::ScalarMeasColumn<casacore::MEpoch>(set, "TIME")(row)};
@@ -94,8 +107,10 @@ imager::SkyDirection field_pointing(const casacore::MeasurementSet& set, const s
   require_field(set, path, field);
   return translated("cannot find where antennas point in field " + std::to_string(field) + " of " + path, [&] {
     const casacore::MSFieldColumns columns(set.field());
+    const auto index = static_cast<casacore::rownr_t>(field);
+    require_directions(columns, columns.referenceDir(), index);
     const double time = casacore::ScalarColumn<double>(set, "TIME")(row);
-    return sky_direction(equatorial(columns.referenceDirMeas(static_cast<casacore::rownr_t>(field), time), set, row));
+    return sky_direction(equatorial(columns.referenceDirMeas(index, time), set, row));
   });
 }
 

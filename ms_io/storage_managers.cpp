@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <set>
 #include <stdexcept>
+#include <vector>
 
 #include "ms_io/buckets_internal.h"
 #include "ms_io/incremental_headers_internal.h"
@@ -36,6 +37,15 @@ void check_manager(const std::string& path, const TableFile& table, const Storag
   }
 }
 
+/// Which casacore finds by their names, in the folder of FIELD.
+std::vector<std::string> ephemerides(const std::string& table) {
+  std::vector<std::string> found;
+  std::error_code none;
+  for (const fs::directory_entry& entry : fs::directory_iterator(table, none))
+    if (entry.path().filename().string().rfind("EPHEM", 0) == 0) found.push_back(entry.path());
+  return found;
+}
+
 void check(const std::string& path, std::set<std::string>& checked) {
   if (!checked.insert(path).second) return;
   check_files(path);
@@ -45,6 +55,7 @@ void check(const std::string& path, std::set<std::string>& checked) {
     if (locked_rows > 0) table.rows = locked_rows;
     for (const StorageManager& manager : table.managers) check_manager(path, table, manager);
     for (const std::string& other : table.tables) check(other, checked);
+    for (const std::string& other : ephemerides(path)) check(other, checked);
   } catch (const Malformed&) {  // casacore will say so
   }
 }

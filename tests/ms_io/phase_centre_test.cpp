@@ -229,6 +229,24 @@ BOOST_AUTO_TEST_CASE(sets_apart_are_one_image_where_they_are_shifted) {
   BOOST_TEST(MeasurementSet(paths, shifted_to({1.25, -0.5, "FK5"}), "DATA").rows() == 2 * rows);
 }
 
+BOOST_AUTO_TEST_CASE(a_field_without_its_directions_is_refused) {
+  const auto refused = [](const std::function<void(casacore::Table&)>& change, const std::string& part) {
+    const SmallSet set;
+    {
+      casacore::Table field(set.path() + "/FIELD", casacore::Table::Update);
+      change(field);
+    }
+    const std::string error = error_of([&] { MeasurementSet(set.path(), {}, "DATA"); });
+    BOOST_TEST(error.find("cannot find the phase centre of field 0") == 0U, error);
+    BOOST_TEST(error.find(part) != std::string::npos, error);
+  };
+  refused([](casacore::Table& field) { casacore::ScalarColumn<int>(field, "NUM_POLY").put(0, 2000000000); },
+          "PHASE_DIR has 1 directions, expected more than NUM_POLY, 2000000000");
+  refused(
+      [](casacore::Table& field) { casacore::ArrayColumn<double>(field, "PHASE_DIR").put(0, casacore::Matrix<double>(2, 0)); },
+      "PHASE_DIR has 0 directions");
+}
+
 BOOST_AUTO_TEST_SUITE_END()
 
 }  // namespace misfit::ms_io
