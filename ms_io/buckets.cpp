@@ -4,17 +4,6 @@
 
 namespace misfit::ms_io {
 
-std::vector<StoredColumn> columns_of(const TableFile& table, const StorageManager& manager) {
-  std::vector<StoredColumn> columns;
-  std::copy_if(table.columns.begin(), table.columns.end(), std::back_inserter(columns),
-               [&](const StoredColumn& column) { return column.manager == manager.number; });
-  return columns;
-}
-
-std::string file_of(const std::string& table, const StorageManager& manager) {
-  return table + "/table.f" + std::to_string(manager.number);
-}
-
 Buckets::Buckets(StoredBytes& bytes, std::uint64_t size, std::uint64_t count, std::uint64_t cached)
     : bytes_(bytes), size_(size), count_(count) {
   constexpr std::uint64_t smallest = 32, any_size = 1 << 24, any_cached = 1 << 20;

@@ -1,18 +1,10 @@
 #pragma once
 
 #include <cstdint>
-#include <string>
-#include <vector>
 
-#include "ms_io/table_file_internal.h"
+#include "ms_io/stored_bytes_internal.h"
 
 namespace misfit::ms_io {
-
-/// The columns that a storage manager stores, in its order.
-std::vector<StoredColumn> columns_of(const TableFile& table, const StorageManager& manager);
-
-/// The file of a storage manager of casacore, the path of which ends in its number.
-std::string file_of(const std::string& table, const StorageManager& manager);
 
 /// Buckets of one size, in which casacore's StandardStMan and IncrementalStMan keep rows, after a header.
 class Buckets {

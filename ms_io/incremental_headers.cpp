@@ -15,7 +15,7 @@ class IncrementalStorage {
  public:
   IncrementalStorage(const std::string& path, const TableFile& table, const StorageManager& manager)
       : table_(table), columns_(columns_of(table, manager)), path_(file_of(path, manager)), bytes_(path_) {
-    StoredBytes kept(path_, manager.kept);
+    StoredBytes kept(path + "/table.dat", manager.kept);
     ObjectReader in(kept);
     in.magic();
     version_ = in.object("ISM");
@@ -30,9 +30,11 @@ class IncrementalStorage {
     if (has_arrays && version_ < first_with_one_file)
       bytes_.fail("arrays of version " + std::to_string(version_), std::to_string(first_with_one_file) + " or later");
     if (has_arrays) arrays_ = std::make_unique<StoredArrays>(path_ + "i", table_.order);
-    for (const StoredColumn& column : columns_)
+    for (const StoredColumn& column : columns_) {
+      if (column.is_array && !column.in_place) arrays_->check_column(column);
       if (bytes_in_place(column) > static_cast<double>(buckets_->size()))
         bytes_.fail("cells of " + column.name + " of " + shown(bytes_in_place(column)) + " bytes", "no more than a bucket");
+    }
     for (std::size_t i = 0; i + 1 < first_row_.size(); ++i) check_bucket(bucket_[i], first_row_[i + 1] - first_row_[i]);
   }
 
@@ -40,19 +42,22 @@ class IncrementalStorage {
   void read_header() {
     ObjectReader in(bytes_, table_.order);
     in.magic();
-    const std::uint64_t version = in.object("IncrementalStMan");
+    const std::uint64_t begin = in.at(), version = in.object("IncrementalStMan");
     if (version == 3) version_ = version;  // written so by one release of casacore
     if (version > 4) in.number(1);
     const std::uint64_t size = in.number(4), count = in.number(4), cached = in.number(4);
+    in.skip(version > 1 ? 12 : 4);
+    in.end(begin);
     buckets_ = std::make_unique<Buckets>(bytes_, size, count, cached);
     read_index(ObjectReader(bytes_, table_.order, Buckets::begin + size * count));
   }
 
   void read_index(ObjectReader in) {
     in.magic();
-    const std::uint64_t version = in.object("ISMIndex"), used = in.number(4);
+    const std::uint64_t begin = in.at(), version = in.object("ISMIndex"), used = in.number(4);
     first_row_ = in.block("rows", version > 1 ? 8 : 4);
     bucket_ = in.block("buckets");
+    in.end(begin);
     if (used > bucket_.size() || used + 1 > first_row_.size())
       bytes_.fail(std::to_string(used) + " runs of rows", "no more than it has buckets for");
     first_row_.resize(used + 1);
@@ -97,12 +102,12 @@ class IncrementalStorage {
     if (at > end || bytes_in_place(column) > static_cast<double>(end - at))
       fail_bucket(bucket, column.name + " at byte " + std::to_string(at));
     ObjectReader in(bytes, table_.order, at);
-    if (column.is_array && !column.in_place) return arrays_->check(in.integer(8), column.type);
+    if (column.is_array && !column.in_place) return arrays_->check(in.integer(8), column);
     if (column.type != casacore::TpString) return;
     const double values = values_of(column);
     const std::uint64_t length = in.number(4);
     std::uint64_t left = length > end - at || length < 4 ? 0 : length - 4;
-    bool within = length >= 4 && length <= end - at;
+    bool within = (length >= 4 || values == 0) && length <= end - at;
     for (double i = 0; within && values > 1 && i < values; ++i) {
       const std::uint64_t text = left < 4 ? left + 1 : 4 + in.number(4);
       within = text <= left;

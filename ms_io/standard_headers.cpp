@@ -14,7 +14,7 @@ class StandardStorage {
  public:
   StandardStorage(const std::string& path, const TableFile& table, const StorageManager& manager)
       : table_(table), columns_(columns_of(table, manager)), path_(file_of(path, manager)), bytes_(path_) {
-    read_kept(manager.kept);
+    read_kept({path + "/table.dat", manager.kept});
     read_header();
   }
 
@@ -36,21 +36,20 @@ class StandardStorage {
     std::vector<Run> runs;
   };
 
-  void read_kept(const std::string& kept) {
-    StoredBytes bytes(path_, kept);
+  void read_kept(StoredBytes bytes) {
     ObjectReader in(bytes);
     in.magic();
     in.object("SSM");
     in.text();
     offsets_ = in.block("offsets of columns");
     index_of_ = in.block("indices of columns");
-    if (std::min(offsets_.size(), index_of_.size()) < columns_.size()) throw Malformed();
+    if (std::min(offsets_.size(), index_of_.size()) < columns_.size()) throw Malformed{bytes.path()};
   }
 
   void read_header() {
     ObjectReader in(bytes_, table_.order);
     in.magic();
-    const std::uint64_t version = in.object("StandardStMan");
+    const std::uint64_t begin = in.at(), version = in.object("StandardStMan");
     if (version > 2) in.number(1);
     const std::uint64_t size = in.number(4), count = in.number(4), cached = in.number(4);
     buckets_ = std::make_unique<Buckets>(bytes_, size, count, cached);
@@ -58,6 +57,7 @@ class StandardStorage {
     const std::uint64_t index_buckets = in.number(4), first = in.number(4), offset = version > 1 ? in.number(4) : 0;
     in.number(4);
     const std::uint64_t length = in.number(4), indices = in.number(4);
+    in.end(begin);
     StoredBytes gathered(path_, index_bytes(index_buckets, first, offset, length));
     constexpr std::uint64_t smallest = 64;
     if (indices > length / smallest) bytes_.fail(std::to_string(indices) + " indices of rows", "no more than it holds");
@@ -85,17 +85,18 @@ class StandardStorage {
 
   Index read_index(ObjectReader& in) {
     in.magic();
-    const std::uint64_t version = in.object("SSMIndex"), used = in.number(4);
+    const std::uint64_t begin_of_index = in.at(), version = in.object("SSMIndex"), used = in.number(4);
     Index index;
     index.rows_per_bucket = in.number(4);
     in.number(4);
     skip_free_space(in);
     const std::vector<std::uint64_t> last = in.block("last rows", version == 1 ? 4 : 8), bucket = in.block("buckets");
+    in.end(begin_of_index);
     if (used > std::min(last.size(), bucket.size()))
       bytes_.fail(std::to_string(used) + " runs of rows", "no more than it has buckets for");
     for (std::size_t i = 0; i < used; ++i) {
       const std::uint64_t begin = i == 0 ? 0 : index.runs.back().end, end = last[i] + 1;
-      if (end < begin || end - begin > index.rows_per_bucket)
+      if (end < begin || end == 0 || end - begin > index.rows_per_bucket)
         bytes_.fail("rows " + std::to_string(begin) + " to " + std::to_string(last[i]) + " in a bucket",
                     "at most " + std::to_string(index.rows_per_bucket));
       index.runs.push_back({begin, end, bucket[i]});
@@ -104,11 +105,13 @@ class StandardStorage {
   }
 
   static void skip_free_space(ObjectReader& in) {
+    const std::uint64_t begin = in.at();
     in.object("SimpleOrderedMap");
     in.number(4);
     const std::uint64_t gaps = in.count(4, "gaps", 8);
     in.number(4);
     in.skip(8 * gaps);
+    in.end(begin);
   }
 
   static bool is_text(const StoredColumn& column) { return column.type == casacore::TpString && !has_fixed_length(column); }
@@ -159,7 +162,8 @@ class StandardStorage {
 
   void check_arrays(std::size_t c) const {
     StoredArrays arrays(path_ + "i", table_.order);
-    for_each_cell(c, 8, [&](ObjectReader& in) { arrays.check(in.integer(8), columns_[c].type); });
+    arrays.check_column(columns_[c]);
+    for_each_cell(c, 8, [&](ObjectReader& in) { arrays.check(in.integer(8), columns_[c]); });
   }
 
   /// A cell has the bucket of its text, the place there and the length, or a short text; each has a place of its own.

@@ -1,11 +1,12 @@
 #include <casacore/casa/OS/Path.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <set>
 #include <stdexcept>
+#include <utility>
 #include <vector>
 
-#include "ms_io/buckets_internal.h"
 #include "ms_io/incremental_headers_internal.h"
 #include "ms_io/lock_files_internal.h"
 #include "ms_io/standard_headers_internal.h"
@@ -25,16 +26,12 @@ void check_files(const std::string& table) {
       throw std::runtime_error("cannot read " + entry.path().string() + ": it is no regular file");
 }
 
-void check_manager(const std::string& path, const TableFile& table, const StorageManager& manager) {
-  if (manager.type.find('/') != std::string::npos)
-    throw std::runtime_error(path + " has columns stored by '" + manager.type +
-                             "', expected the name of a storage manager, not a path");
-  try {
-    if (manager.type.rfind("Tiled", 0) == 0) check_tiled_header(file_of(path, manager));
-    if (manager.type == "StandardStMan") check_standard_header(path, table, manager);
-    if (manager.type == "IncrementalStMan") check_incremental_header(path, table, manager);
-  } catch (const Malformed&) {  // casacore will say so
-  }
+/// Tables whose cells this project reads; casacore opens all subtables of a set, but reads of others only what they say of
+/// themselves.
+bool reads_cells_of(const std::string& subtable) {
+  static const std::set<std::string> read{"ANTENNA",      "DATA_DESCRIPTION", "FEED", "FIELD", "OBSERVATION",
+                                          "POLARIZATION", "SPECTRAL_WINDOW",  "STATE"};
+  return read.count(fs::path(subtable).filename()) > 0;
 }
 
 /// Which casacore finds by their names, in the folder of FIELD.
@@ -46,25 +43,50 @@ std::vector<std::string> ephemerides(const std::string& table) {
   return found;
 }
 
-void check(const std::string& path, std::set<std::string>& checked) {
-  if (!checked.insert(path).second) return;
-  check_files(path);
-  try {
-    const std::uint64_t locked_rows = check_lock_file(path);
-    TableFile table = read_table_file(path);
-    if (locked_rows > 0) table.rows = locked_rows;
-    for (const StorageManager& manager : table.managers) check_manager(path, table, manager);
-    for (const std::string& other : table.tables) check(other, checked);
-    for (const std::string& other : ephemerides(path)) check(other, checked);
-  } catch (const Malformed&) {  // casacore will say so
+class TableChecks {
+ public:
+  /// `referring`: tables that refer to it, one through the other.
+  void check(const std::string& path, bool reads_cells, std::vector<std::string> referring = {}) {
+    if (std::find(referring.begin(), referring.end(), path) != referring.end())
+      throw std::runtime_error("cannot read " + path + ": it refers to itself, expected rows of another table");
+    if (!checked_.insert({path, reads_cells}).second) return;
+    check_files(path);
+    try {
+      const std::uint64_t locked_rows = check_lock_file(path);
+      TableFile table = read_table_file(path);
+      if (locked_rows > 0) table.rows = locked_rows;
+      check_managers(path, table, reads_cells);
+      referring.push_back(path);
+      for (const std::string& other : table.references) check(other, reads_cells, referring);
+      for (const std::string& other : table.subtables) check(other, reads_cells_of(other));
+      for (const std::string& other : ephemerides(path)) check(other, true);
+    } catch (const Malformed&) {  // casacore will say so
+    }
   }
-}
+
+ private:
+  static void check_managers(const std::string& path, const TableFile& table, bool reads_cells) {
+    for (const StorageManager& manager : table.managers) try {
+        if (manager.type.find('/') != std::string::npos)
+          throw std::runtime_error(path + " has columns stored by '" + manager.type +
+                                   "', expected the name of a storage manager, not a path");
+        if (manager.type.rfind("Tiled", 0) == 0) check_tiled_header(path, table, manager);  // which is read in any case
+        if (reads_cells && manager.type == "StandardStMan") check_standard_header(path, table, manager);
+        if (reads_cells && manager.type == "IncrementalStMan") check_incremental_header(path, table, manager);
+      } catch (const Malformed& file) {  // casacore refuses one once, and believes what it has read of it when asked again
+        std::error_code none;
+        if (fs::exists(file.path, none))
+          throw std::runtime_error("cannot read " + file.path + ": it ends early, or is not as " + manager.type + " writes it");
+      }
+  }
+
+  std::set<std::pair<std::string, bool>> checked_;
+};
 
 }  // namespace
 
 void check_storage_managers(const std::string& path) {
-  std::set<std::string> checked;
-  check(casacore::Path(path).absoluteName(), checked);
+  TableChecks().check(casacore::Path(path).absoluteName(), true);
 }
 
 }  // namespace misfit::ms_io

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
 #include <string>
 
 #include "ms_io/table_file_internal.h"
@@ -14,10 +13,12 @@ class StoredArrays {
   /// Reads its head. Throws as StoredBytes() does.
   StoredArrays(const std::string& path, ByteOrder order);
 
+  /// Throws std::runtime_error that names the file where it cannot hold a cell of the shape that the column says all have.
+  void check_column(const StoredColumn& column) const;
   /// Throws std::runtime_error that names the file where the array at a place is not within it, with its texts if it is of
-  /// those. 0 is the place of none. Files of more than 1 GiB are left to casacore: to look at each array is to read all of
-  /// them.
-  void check(std::int64_t place, casacore::DataType type);
+  /// those, or not of the column's shape. 0 is the place of none. Files of more than 1 GiB are left to casacore: to look at
+  /// each array is to read all of them.
+  void check(std::int64_t place, const StoredColumn& column);
 
  private:
   StoredBytes bytes_;

@@ -15,12 +15,13 @@ namespace fs = std::filesystem;
 StoredBytes::StoredBytes(const std::string& path) : path_(path) {
   std::error_code none;
   const fs::file_status status = fs::status(path, none);
-  if (!fs::exists(status)) throw Malformed();
+  if (!fs::exists(status)) throw Malformed{path_};
   if (!fs::is_regular_file(status)) throw std::runtime_error("cannot read " + path + ": it is no regular file");
-  size_ = fs::file_size(path, none);
+  errno = 0;
   file_.rdbuf()->pubsetbuf(nullptr, 0);
   file_.open(path, std::ios::binary);
-  if (none || !file_) throw Malformed();
+  if (!file_) throw std::runtime_error("cannot read " + path + ": " + std::strerror(errno));
+  size_ = fs::file_size(path);
 }
 
 StoredBytes::StoredBytes(std::string path, std::string gathered)
@@ -35,30 +36,31 @@ void StoredBytes::fetch(std::uint64_t at, char* to, std::size_t count) {
   file_.seekg(static_cast<std::streamoff>(at));
   file_.read(to, static_cast<std::streamsize>(count));
   if (file_.bad()) throw std::runtime_error("cannot read " + path_ + ": " + std::strerror(errno));
-  if (!file_) throw Malformed();
+  if (!file_) throw Malformed{path_};
 }
 
 void StoredBytes::read(std::uint64_t at, char* to, std::size_t count) {
   constexpr std::size_t most = 4096;
-  if (at > size_ || count > size_ - at) throw Malformed();
+  if (at > size_ || count > size_ - at) throw Malformed{path_};
   if (at < window_at_ || at + count > window_at_ + window_.size()) {
     if (count > most) return fetch(at, to, count);
-    window_.resize(std::min<std::uint64_t>(most, size_ - at));
+    std::string window(std::min<std::uint64_t>(most, size_ - at), '\0');
+    fetch(at, window.data(), window.size());
+    window_ = std::move(window);
     window_at_ = at;
-    fetch(at, window_.data(), window_.size());
   }
   std::copy_n(window_.data() + (at - window_at_), count, to);
 }
 
 std::string StoredBytes::read(std::uint64_t at, std::size_t count) {
-  if (at > size_ || count > size_ - at) throw Malformed();
+  if (at > size_ || count > size_ - at) throw Malformed{path_};
   std::string bytes(count, '\0');
   read(at, bytes.data(), count);
   return bytes;
 }
 
 void ObjectReader::skip(std::uint64_t count) {
-  if (count > left()) throw Malformed();
+  if (count > left()) throw Malformed{bytes_.path()};
   at_ += count;
 }
 
@@ -92,7 +94,7 @@ std::string ObjectReader::text() {
 }
 
 void ObjectReader::magic() {
-  if (number(4) != 0xbebebebe) throw Malformed();
+  if (number(4) != 0xbebebebe) throw Malformed{bytes_.path()};
 }
 
 std::string ObjectReader::object() {
@@ -101,37 +103,42 @@ std::string ObjectReader::object() {
 }
 
 std::uint64_t ObjectReader::object(const std::string& type) {
-  if (object() != type) throw Malformed();
+  if (object() != type) throw Malformed{bytes_.path()};
   return number(4);
 }
 
-void ObjectReader::skip_object() {
-  const std::uint64_t length = number(4);
-  if (length < 4 || length - 4 > left())
-    bytes_.fail("an object of " + std::to_string(length) + " bytes", "no more than it holds");
-  skip(length - 4);
+void ObjectReader::end(std::uint64_t begin) {
+  if (ObjectReader(bytes_, order_, begin).number(4) != at_ - begin) throw Malformed{bytes_.path()};
 }
 
 std::vector<std::int64_t> ObjectReader::lengths() {
+  const std::uint64_t begin = at_;
   const std::size_t size = object("IPosition") == 1 ? 4 : 8;
   std::vector<std::int64_t> all(count(4, "axes", size));
   for (std::int64_t& length : all) length = integer(size);
+  end(begin);
   return all;
 }
 
 std::vector<std::uint64_t> ObjectReader::block(const std::string& things, std::size_t size) {
+  const std::uint64_t begin = at_;
   object("Block");
   std::vector<std::uint64_t> all(count(4, things, size));
   for (std::uint64_t& value : all) value = number(size);
+  end(begin);
   return all;
 }
 
 double product(const std::vector<std::int64_t>& lengths, const StoredBytes& of, const std::string& things) {
-  double all = 1;
+  constexpr double most = 1e18;
+  double all = lengths.empty() ? 0 : 1, steps = 1;
   for (const std::int64_t length : lengths) {
     if (length < 0) of.fail(things + " of length " + std::to_string(length), "0 or more");
     all *= static_cast<double>(length);
+    steps *= static_cast<double>(std::max<std::int64_t>(1, length));
   }
+  if (steps > most)
+    of.fail(things + " of " + std::to_string(lengths.size()) + " axes, with " + shown(steps) + " values", "fewer");
   return all;
 }
 

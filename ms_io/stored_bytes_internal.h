@@ -7,8 +7,10 @@
 
 namespace misfit::ms_io {
 
-/// Thrown where bytes end or are not what casacore would go on to read: it will say so itself.
-struct Malformed {};
+/// Thrown where there is no file, or it ends or is not what casacore would go on to read: it will say so itself.
+struct Malformed {
+  std::string path;
+};
 
 /// The bytes of a file of casacore, or some gathered from it, at any place.
 class StoredBytes {
@@ -63,7 +65,8 @@ class ObjectReader {
   /// Begins an object of any type, which it returns; of the type given, or throws Malformed, and returns its version.
   std::string object();
   std::uint64_t object(const std::string& type);
-  void skip_object();
+  /// Ends the object that began at a place: throws Malformed where that is not of the length that it says.
+  void end(std::uint64_t begin);
   /// An IPosition.
   std::vector<std::int64_t> lengths();
   /// A Block of numbers.
@@ -75,8 +78,8 @@ class ObjectReader {
   std::uint64_t at_;
 };
 
-/// The product of lengths, infinite beyond what a double holds; throws std::runtime_error that names `things` where one is
-/// negative.
+/// The product of lengths, 0 of none; throws std::runtime_error that names `things` where one is negative, or where that of
+/// those that are not 0 is beyond what casacore counts.
 double product(const std::vector<std::int64_t>& lengths, const StoredBytes& of, const std::string& things);
 
 /// A number as people read it, of any size.

@@ -3,6 +3,8 @@
 #include <casacore/tables/Tables/ColumnDesc.h>
 #include <casacore/tables/Tables/Table.h>
 
+#include <algorithm>
+#include <iterator>
 #include <utility>
 
 #include "ms_io/table_file_internal.h"
@@ -30,31 +32,26 @@ class TableFileReader {
   }
 
  private:
-  struct Field {
-    DataType type = casacore::TpOther;
-    std::vector<Field> fields;  ///< of a record; where there are none, they come with its values
-  };
-
   void read_plain(std::uint64_t version) {
     const std::uint64_t described = in_.object("TableDesc");
     for (int i = 0; i < 3; ++i) in_.skip_text();
-    read_record();
-    if (described != 1) read_record();
+    read_keywords();
+    if (described != 1) read_keywords();
     const std::uint64_t columns = in_.count(4, "columns", 4);
     for (std::uint64_t c = 0; c < columns; ++c) read_description();
-    if (version == 1) read_record();
+    if (version == 1) read_keywords();
     read_columns();
   }
 
   void read_reference() {
     const std::uint64_t version = in_.object("RefTable");
-    add_table(in_.text());
+    file_.references.push_back(path_of(in_.text()));
     in_.object("SimpleOrderedMap");
     in_.skip_text();
     const std::uint64_t names = in_.count(4, "columns", 8);
     in_.number(4);
     for (std::uint64_t i = 0; i < 2 * names; ++i) in_.skip_text();
-    if (version > 1) read_array(casacore::TpString);
+    if (version > 1) skip_array(in_, casacore::TpString);
     const std::size_t size = version > 2 ? 8 : 4;
     const std::uint64_t referred = in_.number(size);
     in_.number(1);
@@ -69,82 +66,14 @@ class TableFileReader {
   void read_concatenation() {
     in_.object("ConcatTable");
     const std::uint64_t tables = in_.count(4, "tables", 4);
-    for (std::uint64_t i = 0; i < tables; ++i) add_table(in_.text());
+    for (std::uint64_t i = 0; i < tables; ++i) file_.references.push_back(path_of(in_.text()));
     in_.block("names of tables");
   }
 
-  void add_table(const std::string& name) { file_.tables.push_back(casacore::Path::addDirectory(name, table_)); }
+  std::string path_of(const std::string& table) const { return casacore::Path::addDirectory(table, table_); }
 
-  void read_record(int depth = 0) {
-    const std::string type = in_.object();
-    if (type != "TableRecord" && type != "Record") bytes_.fail("keywords in a '" + type + "'", "a record");
-    in_.number(4);
-    const std::vector<Field> fields = read_fields(depth);
-    in_.number(4);
-    read_values(fields, depth);
-  }
-
-  std::vector<Field> read_fields(int depth) {
-    constexpr int deepest = 64;
-    if (depth > deepest) bytes_.fail("records in " + std::to_string(depth) + " others", std::to_string(deepest) + " or fewer");
-    const std::uint64_t version = in_.object("RecordDesc");
-    std::vector<Field> fields(in_.count(4, "keywords", 8));
-    for (Field& field : fields) {
-      in_.skip_text();
-      field.type = type();
-      if (field.type == casacore::TpRecord) field.fields = read_fields(depth + 1);
-      if (field.type == casacore::TpTable) in_.skip_text();
-      if (casacore::isArray(field.type)) check_values(in_.lengths(), casacore::asScalar(field.type));
-      if (version > 1) in_.skip_text();
-    }
-    return fields;
-  }
-
-  /// That an array's values can be in what is left of the file; one whose first length is negative may have any shape.
-  double check_values(const std::vector<std::int64_t>& shape, DataType type) const {
-    if (!shape.empty() && shape.front() < 0) return 0;
-    const double values = product(shape, bytes_, "an array");
-    if (values * static_cast<double>(bits_of(type)) / 8 > static_cast<double>(in_.left()))
-      bytes_.fail("an array of " + shown(values) + " values", "no more than it holds");
-    return values;
-  }
-
-  void read_values(const std::vector<Field>& fields, int depth) {
-    for (const Field& field : fields)
-      if (field.type == casacore::TpRecord && field.fields.empty())
-        read_record(depth + 1);
-      else if (field.type == casacore::TpRecord)
-        read_values(field.fields, depth + 1);
-      else if (field.type == casacore::TpTable)
-        add_table(in_.text());
-      else if (casacore::isArray(field.type))
-        read_array(casacore::asScalar(field.type));
-      else
-        read_value(field.type);
-  }
-
-  void read_value(DataType type) {
-    if (type == casacore::TpString) return in_.skip_text();
-    in_.skip((bits_of(type) + 7) / 8);
-  }
-
-  void read_array(DataType type) {
-    in_.object();
-    const std::int64_t version = in_.integer(4);
-    std::vector<std::int64_t> shape(in_.count(4, "axes", 4));
-    if (version < 3) in_.skip(4 * shape.size());
-    for (std::int64_t& length : shape) length = static_cast<std::int64_t>(in_.number(4));
-    const double values = check_values(shape, type);
-    const std::uint64_t held = in_.number(4);
-    if (static_cast<double>(held) != values) throw Malformed();
-    if (type != casacore::TpString) return in_.skip((held * bits_of(type) + 7) / 8);
-    for (std::uint64_t i = 0; i < held; ++i) in_.skip_text();
-  }
-
-  DataType type() {
-    const std::uint64_t type = in_.number(4);
-    if (type >= casacore::TpNumberOfTypes) bytes_.fail("values of type " + std::to_string(type), "one that casacore has");
-    return static_cast<DataType>(type);
+  void read_keywords() {
+    for (const std::string& name : read_record(in_)) file_.subtables.push_back(path_of(name));
   }
 
   enum class Kind { scalar, array, record };
@@ -167,7 +96,7 @@ class TableFileReader {
     StoredColumn column;
     column.name = in_.text();
     for (int i = 0; i < 3; ++i) in_.skip_text();
-    column.type = type();
+    column.type = read_type(in_);
     const Kind kind = kind_of(name, column.name, column.type);
     column.is_array = kind != Kind::scalar;
     const std::uint64_t options = in_.number(4);
@@ -178,9 +107,9 @@ class TableFileReader {
     in_.number(4);
     if (kind == Kind::array) in_.lengths();
     column.longest_text = in_.number(4);
-    read_record();
+    read_keywords();
     in_.number(4);
-    if (kind == Kind::scalar) read_value(column.type);
+    if (kind == Kind::scalar) skip_value(in_, column.type);
     if (kind == Kind::array) in_.number(1);
     if (kind == Kind::record) column.type = casacore::TpUChar;  // as whose array casacore stores it
     kinds_.push_back(kind);
@@ -208,7 +137,7 @@ class TableFileReader {
   }
 
   void read_column(StoredColumn& column, Kind kind) {
-    if (in_.number(4) == 1) read_record();
+    if (in_.number(4) == 1) read_keywords();
     in_.skip_text();
     in_.number(4);
     column.manager = in_.number(4);
@@ -226,29 +155,19 @@ class TableFileReader {
 
 }  // namespace
 
-std::uint64_t bits_of(std::uint64_t type) {
-  switch (type) {
-    case casacore::TpBool:
-      return 1;
-    case casacore::TpChar:
-    case casacore::TpUChar:
-      return 8;
-    case casacore::TpShort:
-    case casacore::TpUShort:
-      return 16;
-    case casacore::TpDouble:
-    case casacore::TpComplex:
-    case casacore::TpInt64:
-      return 64;
-    case casacore::TpDComplex:
-      return 128;
-    default:
-      return 32;
-  }
-}
-
 TableFile read_table_file(const std::string& path) {
   return TableFileReader(path).read();
+}
+
+std::vector<StoredColumn> columns_of(const TableFile& table, const StorageManager& manager) {
+  std::vector<StoredColumn> columns;
+  std::copy_if(table.columns.begin(), table.columns.end(), std::back_inserter(columns),
+               [&](const StoredColumn& column) { return column.manager == manager.number; });
+  return columns;
+}
+
+std::string file_of(const std::string& path, const StorageManager& manager) {
+  return path + "/table.f" + std::to_string(manager.number);
 }
 
 }  // namespace misfit::ms_io

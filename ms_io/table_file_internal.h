@@ -1,18 +1,12 @@
 #pragma once
 
-#include <casacore/casa/Utilities/DataType.h>
-
 #include <cstdint>
-#include <optional>
 #include <string>
 #include <vector>
 
-#include "ms_io/stored_bytes_internal.h"
+#include "ms_io/stored_records_internal.h"
 
 namespace misfit::ms_io {
-
-/// Bits that a value of one of casacore's DataType takes in a file; of a text, those of the length before it.
-std::uint64_t bits_of(std::uint64_t data_type);
 
 struct StoredColumn {
   std::string name;
@@ -38,7 +32,8 @@ struct TableFile {
   ByteOrder order = ByteOrder::big;  ///< of what storage managers write
   std::vector<StoredColumn> columns;
   std::vector<StorageManager> managers;
-  std::vector<std::string> tables;  ///< paths of those that it refers to, or that lie in its keywords
+  std::vector<std::string> references;  ///< paths of the tables whose rows are its own
+  std::vector<std::string> subtables;   ///< paths of those in its keywords
 };
 
 /// Reads the file of the table at `path` as casacore does, without taking memory for what it says it holds but does not. Throws
@@ -46,5 +41,11 @@ struct TableFile {
 /// kind of column that casacore does not know, over which it would end the program; Malformed where casacore says what is
 /// wrong.
 TableFile read_table_file(const std::string& path);
+
+/// The columns that one of its storage managers stores, in its order.
+std::vector<StoredColumn> columns_of(const TableFile& table, const StorageManager& manager);
+
+/// The file of a storage manager of the table at `path`.
+std::string file_of(const std::string& path, const StorageManager& manager);
 
 }  // namespace misfit::ms_io

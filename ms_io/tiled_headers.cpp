@@ -4,8 +4,6 @@
 #include <filesystem>
 #include <vector>
 
-#include "ms_io/stored_bytes_internal.h"
-#include "ms_io/table_file_internal.h"
 #include "ms_io/tiled_headers_internal.h"
 
 namespace misfit::ms_io {
@@ -16,17 +14,17 @@ namespace fs = std::filesystem;
 /// Reads in the order in which casacore (TiledStMan, TSMFile, TSMCube) does.
 class TiledHeader {
  public:
-  explicit TiledHeader(const std::string& path) : bytes_(path), in_(bytes_) {}
+  TiledHeader(const std::string& path, const TableFile& table, const StorageManager& manager)
+      : rows_(table.rows), columns_(columns_of(table, manager)), manager_(manager.type), bytes_(path), in_(bytes_) {}
 
   void check() {
     in_.magic();
-    const std::string manager = in_.object();
-    may_have_values_ = manager == "TiledDataStMan";
-    const std::uint64_t version = in_.number(4);
-    if (manager == "TiledColumnStMan" || manager == "TiledCellStMan") in_.lengths();
+    const std::uint64_t version = in_.object(manager_);
+    if (manager_ == "TiledColumnStMan" || manager_ == "TiledCellStMan") in_.lengths();
     check_common();
-    if (manager == "TiledShapeStMan") check_rows();
-    if (manager == "TiledDataStMan") check_chunks(version);
+    check_cubes();
+    if (manager_ == "TiledShapeStMan") check_rows();
+    if (manager_ == "TiledDataStMan") check_chunks(version);
   }
 
  private:
@@ -40,7 +38,7 @@ class TiledHeader {
     for (std::uint64_t c = 0; c < columns; ++c) bits_ = std::max(bits_, static_cast<double>(bits_of(in_.number(4))));
     in_.text();
     in_.number(size);
-    in_.number(4);
+    axes_ = in_.number(4);
     files_.resize(in_.count(size, "files", 1));
     for (std::size_t f = 0; f < files_.size(); ++f)
       if (in_.number(1) != 0) files_[f] = file();
@@ -87,6 +85,7 @@ class TiledHeader {
       empty = empty || cube[i] == 0;
       if (i + 1 < axes) across *= static_cast<double>(cube[i]);
     }
+    if (!empty) check_shapes(cube);
     cubes_.push_back({empty ? 0 : static_cast<std::uint64_t>(cube.back()), across});
     const File file =
         in_file < 0 || static_cast<std::size_t>(in_file) >= files_.size() ? File() : files_[static_cast<std::size_t>(in_file)];
@@ -100,9 +99,34 @@ class TiledHeader {
       bytes_.fail(shown(tiles) + " tiles", "no more than their file holds");
   }
 
-  /// They tell hypercubes of TiledDataStMan apart, for which they are read as they are; others have none.
+  /// That cells are of the shape that their column says they have. Of TiledDataStMan, those of one axis may be coordinates.
+  void check_shapes(std::vector<std::int64_t> cube) const {
+    if (cube.size() != axes_)
+      bytes_.fail("a hypercube of " + std::to_string(cube.size()) + " axes", std::to_string(axes_) + " as of all");
+    if (manager_ != "TiledCellStMan") cube.pop_back();
+    for (const StoredColumn& column : columns_) {
+      const bool may_be_coordinate = manager_ == "TiledDataStMan" && column.shape.size() < 2;
+      if (column.has_shape && !may_be_coordinate && column.shape != cube)
+        bytes_.fail("cells of " + column.name + " of another shape", "that of the column in table.dat");
+    }
+  }
+
+  /// That there are as many as casacore looks for, and no rows beyond the table's.
+  void check_cubes() const {
+    const std::uint64_t fewest = manager_ == "TiledCellStMan" ? rows_ : manager_ == "TiledDataStMan" ? 0 : 1;
+    if (cubes_.size() < fewest) bytes_.fail(std::to_string(cubes_.size()) + " hypercubes", std::to_string(fewest) + " or more");
+    for (const Cube& cube : cubes_)
+      if ((manager_ == "TiledColumnStMan" && cube.rows != rows_ && cube.cells_a_row > 0) ||
+          (manager_ == "TiledShapeStMan" && cube.rows > rows_))
+        bytes_.fail("a hypercube of " + std::to_string(cube.rows) + " rows", "the table's " + std::to_string(rows_));
+  }
+
+  /// They tell hypercubes of TiledDataStMan apart; others have none.
   void check_values() {
-    if (may_have_values_) return in_.skip_object();
+    if (manager_ == "TiledDataStMan") {
+      read_record(in_);
+      return;
+    }
     in_.object("Record");
     in_.object("RecordDesc");
     if (const std::uint64_t fields = in_.number(4); fields != 0)
@@ -152,9 +176,12 @@ class TiledHeader {
     }
   }
 
+  std::uint64_t rows_;
+  std::vector<StoredColumn> columns_;
+  std::string manager_;
   StoredBytes bytes_;
   ObjectReader in_;
-  bool may_have_values_ = false;
+  std::uint64_t axes_ = 0;
   double bits_ = 0;  ///< of an element of the column that takes most
   std::vector<File> files_;
   std::uint64_t common_version_ = 0;
@@ -163,8 +190,8 @@ class TiledHeader {
 
 }  // namespace
 
-void check_tiled_header(const std::string& path) {
-  TiledHeader(path).check();
+void check_tiled_header(const std::string& path, const TableFile& table, const StorageManager& manager) {
+  TiledHeader(file_of(path, manager), table, manager).check();
 }
 
 }  // namespace misfit::ms_io

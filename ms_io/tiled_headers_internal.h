@@ -2,12 +2,14 @@
 
 #include <string>
 
+#include "ms_io/table_file_internal.h"
+
 namespace misfit::ms_io {
 
-/// Throws std::runtime_error that names the file at `path`, the header of a tiled storage manager of casacore, where it tells
-/// of more than it and the files of tiles beside it can hold, of tiles without length, or of files and hypercubes that there
-/// are not: casacore takes memory for what it says, divides by it and looks there. Throws Malformed where it ends too early, or
-/// is no such header, which is for casacore to refuse.
-void check_tiled_header(const std::string& path);
+/// Throws std::runtime_error that names the header of a tiled storage manager of casacore, of the table at `path`, where it
+/// tells of more than it and the files of tiles beside it can hold, of tiles without length, or of files and hypercubes that
+/// there are not: casacore takes memory for what it says, divides by it and looks there. Throws Malformed where it ends too
+/// early, or is no such header, which is for casacore to refuse.
+void check_tiled_header(const std::string& path, const TableFile& table, const StorageManager& manager);
 
 }  // namespace misfit::ms_io

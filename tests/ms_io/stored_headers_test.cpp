@@ -9,6 +9,8 @@
 #include <casacore/tables/Tables/TableDesc.h>
 #include <casacore/tables/Tables/TableRecord.h>
 
+#include <exception>
+
 #include "ms_io/storage_managers_internal.h"
 #include "tests/ms_io/damaged_files.h"
 #include "tests/ms_io/small_set.h"
@@ -34,26 +36,30 @@ void read_column(const casacore::Table& table, const std::string& name, bool is_
     if (cells.isDefined(row)) cells.get(row);
 }
 
-void read_columns(const casacore::Table& table) {
-  for (casacore::uInt c = 0; c < table.tableDesc().ncolumn(); ++c) {
-    const casacore::ColumnDesc& column = table.tableDesc()[c];
-    switch (column.dataType()) {
-      case casacore::TpInt:
-        read_column<int>(table, column.name(), column.isArray());
-        break;
-      case casacore::TpBool:
-        read_column<bool>(table, column.name(), column.isArray());
-        break;
-      case casacore::TpDouble:
-        read_column<double>(table, column.name(), column.isArray());
-        break;
-      case casacore::TpString:
-        read_column<String>(table, column.name(), column.isArray());
-        break;
-      default:
-        break;
-    }
+void read_column(const casacore::Table& table, const casacore::ColumnDesc& column) {
+  switch (column.dataType()) {
+    case casacore::TpInt:
+      return read_column<int>(table, column.name(), column.isArray());
+    case casacore::TpBool:
+      return read_column<bool>(table, column.name(), column.isArray());
+    case casacore::TpDouble:
+      return read_column<double>(table, column.name(), column.isArray());
+    case casacore::TpString:
+      return read_column<String>(table, column.name(), column.isArray());
+    default:
+      return;
   }
+}
+
+/// All that can be read, also after one that cannot.
+void read_columns(const casacore::Table& table) {
+  std::exception_ptr refused;
+  for (casacore::uInt c = 0; c < table.tableDesc().ncolumn(); ++c) try {
+      read_column(table, table.tableDesc()[c]);
+    } catch (const std::exception&) {
+      refused = std::current_exception();
+    }
+  if (refused) std::rethrow_exception(refused);
 }
 
 void read_table(const std::string& path) {
