@@ -62,7 +62,8 @@ class Header {
     const std::string number = first == std::string::npos ? "" : value.substr(first, end - first);
     char* parsed = nullptr;
     const long long found = std::strtoll(number.c_str(), &parsed, 10);  // saturates, and is refused
-    if (number.empty() || *parsed != '\0') fail(key + " cannot be understood: it is no whole number");
+    const bool is_whole = number.find_first_not_of("+-0123456789") == std::string::npos && *parsed == '\0';
+    if (number.empty() || !is_whole) fail(key + " cannot be understood: it is no whole number");
     if (found < least || found > most)
       fail(key + " is " + number + ", expected " + std::to_string(least) + " to " + std::to_string(most));
     return found;

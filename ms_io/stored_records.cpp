@@ -23,12 +23,16 @@ class RecordReader {
 
  private:
   struct Field {
+    std::string name;
     DataType type = casacore::TpOther;
     std::vector<Field> fields;  ///< of a record; where there are none, they come with its values
   };
 
   static bool has_values_of(DataType type) {
     return type <= casacore::TpString && type != casacore::TpChar && type != casacore::TpUShort;
+  }
+  static bool is_whole(DataType type) {
+    return type == casacore::TpInt || type == casacore::TpUInt || type == casacore::TpInt64;
   }
   DataType read_field_type() {
     const DataType type = read_type(in_);
@@ -46,7 +50,7 @@ class RecordReader {
     const std::uint64_t version = in_.object("RecordDesc");
     std::vector<Field> fields(in_.count(4, "keywords", 8));
     for (Field& field : fields) {
-      in_.skip_text();
+      field.name = in_.text();
       field.type = read_field_type();
       if (field.type == casacore::TpRecord) field.fields = read_fields(depth + 1);
       if (field.type == casacore::TpTable) in_.skip_text();
@@ -68,12 +72,21 @@ class RecordReader {
         read(depth + 1);
       else if (field.type == casacore::TpRecord)
         read_values(field.fields, depth + 1);
+      else if (field.name == "ndim" && is_whole(field.type))
+        read_axes(bits_of(field.type) / 8);
       else if (field.type == casacore::TpTable)
         tables.push_back(in_.text());
       else if (casacore::isArray(field.type))
         skip_array(in_, casacore::asScalar(field.type));
       else
         skip_value(in_, field.type);
+  }
+
+  /// Of a hypercolumn, for each of which casacore takes memory.
+  void read_axes(std::size_t size) {
+    constexpr std::uint64_t most = 1 << 16;
+    if (const std::uint64_t axes = in_.number(size); axes > most)
+      in_.bytes().fail("ndim of " + std::to_string(axes), std::to_string(most) + " or less");
   }
 
   ObjectReader& in_;

@@ -37,16 +37,24 @@ inline void put_bytes(const std::string& path, std::size_t at, const std::string
   file << bytes;
 }
 
-/// Has `read` read the table with every four bytes of a file of it, from `begin` on, as each of some numbers: it returns, or
-/// refuses.
-inline void check_every_number(const std::string& file, const std::function<void()>& read, const std::string& begin = "") {
+/// Puts bytes in the place of the only others that are these, which are as many.
+inline void replace_bytes(const std::string& path, const std::string& held, const std::string& bytes) {
+  const std::string whole = bytes_of(path);
+  const std::size_t at = whole.find(held);
+  BOOST_REQUIRE(at != std::string::npos);
+  BOOST_REQUIRE(whole.find(held, at + 1) == std::string::npos);
+  put_bytes(path, at, bytes);
+}
+
+/// Has `read` read the table with every four bytes of a file of it as each of some numbers: it returns, or refuses.
+inline void check_every_number(const std::string& file, const std::function<void()>& read) {
   const std::string whole = bytes_of(file);
   read();
   const double before = peak_mib();
   int refused = 0;
   for (const std::string& number : {std::string("\0\0\0\0", 4), std::string("\x7f\xff\xff\xff"),
                                     std::string("\xff\xff\xff\xff"), std::string("\0\0\x01\0", 4)})
-    for (std::size_t at = whole.find(begin); at + 4 <= whole.size(); ++at) {
+    for (std::size_t at = 0; at + 4 <= whole.size(); ++at) {
       const std::string held = whole.substr(at, 4);
       if (held == number) continue;
       put_bytes(file, at, number);

@@ -83,6 +83,7 @@ casacore::TableDesc description() {
   casacore::TableRecord units;
   units.define("UNITS", casacore::Vector<String>(2, "km"));
   units.define("ORDER", 3);
+  units.define("NONE", casacore::Array<int>());
   table.rwColumnDesc("CELLS").rwKeywordSet().defineRecord("ABOUT", units);
   table.rwKeywordSet().define("VERSION", 2.0F);
   return table;
@@ -113,6 +114,7 @@ void make_table(const std::string& path, const Storage& storage) {
     casacore::ScalarColumn<String>(table, "NAME").put(row, String(5 * row, 'x'));
     casacore::ScalarColumn<String>(table, "CODE").put(row, "ab");
     casacore::ArrayColumn<double>(table, "PLACE").put(row, casacore::Vector<double>(3, value));
+    if (row == 0) casacore::ArrayColumn<double>(table, "CELLS").put(row, casacore::Array<double>());  // without axes
     if (row % 3 != 0) casacore::ArrayColumn<double>(table, "CELLS").put(row, casacore::Matrix<double>(2, row, value));
     casacore::ArrayColumn<bool>(table, "BITS").put(row, casacore::Vector<bool>(row, true));
     if (storage.manager == "StandardStMan" || row % 3 != 0)
@@ -158,6 +160,41 @@ BOOST_AUTO_TEST_CASE(a_table_of_rows_of_another_is_read_or_refused) {
     casacore::Table(folder / "a.table")(rows).rename(folder / "b.table", casacore::Table::New);
   }
   check_every_number(folder / "b.table/table.dat", [&] { read_table(folder / "b.table"); });
+}
+
+BOOST_AUTO_TEST_CASE(a_table_that_refers_to_itself_is_refused) {
+  const TemporaryFolder folder;
+  make_table(folder / "a.table", storages.front());
+  {
+    casacore::Vector<rownr_t> rows(1, 1);
+    casacore::Table(folder / "a.table")(rows).rename(folder / "b.table", casacore::Table::New);
+  }
+  replace_bytes(folder / "b.table/table.dat", "/a.table", "/b.table");
+  BOOST_CHECK_EXCEPTION(read_table(folder / "b.table"), std::runtime_error, [&](const std::exception& error) {
+    return std::string(error.what()).find("b.table: it refers to itself") != std::string::npos;
+  });
+}
+
+BOOST_AUTO_TEST_CASE(a_keyword_of_a_type_that_no_record_has_is_refused) {
+  const TemporaryFolder folder;
+  make_table(folder / "a.table", storages.front());
+  const std::string name = "ORDER", integer("\0\0\0\5", 4), short_unsigned("\0\0\0\4", 4);
+  replace_bytes(folder / "a.table/table.dat", name + integer, name + short_unsigned);
+  BOOST_CHECK_EXCEPTION(read_table(folder / "a.table"), std::runtime_error, [&](const std::exception& error) {
+    return std::string(error.what()).find("a keyword of type 4") != std::string::npos;
+  });
+}
+
+BOOST_AUTO_TEST_CASE(tables_that_are_not_read_may_have_been_emptied) {
+  const SmallSet set;
+  for (const bool adds : {true, false}) {
+    casacore::Table history(set.path() + "/HISTORY", casacore::Table::Update);
+    if (adds)
+      history.addRow(3);
+    else
+      history.removeRow(history.rowNumbers());
+  }
+  BOOST_TEST(MeasurementSet(set.path(), {}, "DATA").rows() == rows);
 }
 
 BOOST_AUTO_TEST_SUITE_END()
