@@ -36,11 +36,15 @@ class Header {
   long long whole(const std::string& key, long long least, long long most) { return whole_of(next(), key, least, most); }
   /// Goes to the card END. Returns the size of all. The heap of a table may begin anywhere in `data` bytes. What gives sizes,
   /// and the card that begins a header, is there once: a header that lacks its END goes on into the next one.
-  std::uint64_t end(double data) {
+  /// CFITSIO believes PCOUNT and GCOUNT of a primary header, too, wherever they stand.
+  std::uint64_t end(double data, bool is_extension) {
     constexpr std::array once{"SIMPLE", "XTENSION", "BITPIX", "NAXIS"};
     std::string card = next();
     for (std::string key = key_of(card); key != "END"; key = key_of(card)) {
-      if (std::find(once.begin(), once.end(), key) != once.end()) fail("a header has " + key + " where no other begins");
+      const bool counts = key == "PCOUNT" || key == "GCOUNT";
+      if (std::find(once.begin(), once.end(), key) != once.end() || (counts && is_extension))
+        fail("a header has " + key + " where no other begins");
+      if (counts) whole_of(card, key, key == "GCOUNT" ? 1 : 0, key == "GCOUNT" ? 1 : 0);
       if (key == "THEAP") whole_of(card, "THEAP", 0, static_cast<long long>(std::min(data, 1e18)));
       card = next();
     }
@@ -84,12 +88,13 @@ std::uint64_t hdu_size(const FitsBytes& file, std::uint64_t begin) {
   double data = axes == 0 ? 0 : static_cast<double>(std::llabs(bits)) / 8;
   for (long long axis = 1; axis <= axes; ++axis)
     data *= static_cast<double>(cards.whole("NAXIS" + std::to_string(axis), 0, any));
-  if (first.starts_with("XTENSION")) {
+  const bool is_extension = first.starts_with("XTENSION");
+  if (is_extension) {
     const auto heap = static_cast<double>(cards.whole("PCOUNT", 0, any));
     data = (data + heap * static_cast<double>(std::llabs(bits)) / 8) * static_cast<double>(cards.whole("GCOUNT", 1, 1));
     if (first.substr(10, 10) == "'BINTABLE'") cards.whole("TFIELDS", 0, most_columns);
   }
-  const std::uint64_t header = cards.end(data);
+  const std::uint64_t header = cards.end(data, is_extension);
   if (data > static_cast<double>(file.size) - static_cast<double>(begin + header))
     fail("a header announces more data than the file has: it was cut short");
   return header + blocks(static_cast<std::uint64_t>(data));

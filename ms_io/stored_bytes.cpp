@@ -88,7 +88,7 @@ std::string ObjectReader::text() {
   constexpr std::uint64_t longest = 1 << 16;
   const std::uint64_t length = count(4, "letters", 1);
   if (length > longest) bytes_.fail("a name of " + std::to_string(length) + " letters", std::to_string(longest) + " or fewer");
-  const std::string text = bytes_.read(at_, length);
+  std::string text = bytes_.read(at_, length);
   at_ += length;
   return text;
 }

@@ -143,6 +143,9 @@ BOOST_AUTO_TEST_CASE(tables_of_another_shape_are_refused_before_memory_is_taken)
   refused(altered(good, "NAXIS2  =", "900000000000000"), "cut short");
   refused(altered(good, "NAXIS2  =", "9000000000000000000"), "cannot read kernel table");
   refused(exchanged("COMMENT Row r = 0 ... W-1", "THEAP   = 2147483647 /   "), "THEAP is 2147483647, expected 0 to ");
+  refused(altered(good, "BITPIX  =", "\r4294967294"), "BITPIX cannot be understood");
+  refused(altered(exchanged("EXTEND  =", "PCOUNT  ="), "PCOUNT  =", "1"), "PCOUNT is 1, expected 0 to 0");  // and no axes
+  refused(exchanged("COMMENT Row r = 0 ... W-1", "GCOUNT  =          1 /   "), "a header has GCOUNT where no other begins");
   refused(exchanged("END     ", "END SIMP"), "END has a value");
   const std::size_t format = good.find("TFORM1");
   std::string wide = good;
