@@ -123,14 +123,8 @@ int run(int argc, char** argv, const World& world) {
   }
 }
 
-}  // namespace
-
-int main(int argc, char** argv) {
-  hold_standard_streams();
-  std::set_terminate(end_at_once);
-  std::cerr.rdbuf(nullptr);  // where casacore tells of failures that it throws, too
-  keep_memory();
-  setenv("HOME", "/", 0);  // casacore looks for its settings there, and ends where there is none
+/// The run among the processes that share it, which have all left it when this returns.
+int run_together(int argc, char** argv) {
   try {
     const World world;
     return run(argc, argv, world);
@@ -138,4 +132,22 @@ int main(int argc, char** argv) {
     std::fprintf(stderr, "misfit: %s\n", legible(error.what()).c_str());
     return unusable_data;
   }
+}
+
+}  // namespace
+
+/// OpenBLAS, which casacore loads where it is the system's LAPACK, asks its own function of this name how many threads to start
+/// before main begins; an executable's definition comes before a library's. A run solves nothing by LAPACK, and such a thread
+/// asks for memory until it gets it.
+extern "C" [[gnu::visibility("default")]] int openblas_num_threads_env() {
+  return 1;
+}
+
+int main(int argc, char** argv) {
+  hold_standard_streams();
+  std::set_terminate(end_at_once);
+  std::cerr.rdbuf(nullptr);  // where casacore tells of failures that it throws, too
+  keep_memory();
+  setenv("HOME", "/", 0);  // casacore looks for its settings there, and ends where there is none
+  end_process(run_together(argc, argv));
 }

@@ -12,6 +12,8 @@
 #include <stdexcept>
 #include <string>
 
+extern "C" [[gnu::weak]] void __lsan_do_leak_check();  // sanitized programs have it
+
 namespace misfit::tools {
 
 void hold_standard_streams() {
@@ -27,6 +29,13 @@ void finish_standard_output() {
   struct stat found = {};
   const bool pipe = fstat(STDOUT_FILENO, &found) == 0 && (S_ISFIFO(found.st_mode) || S_ISSOCK(found.st_mode));
   if (!written && !pipe) throw std::runtime_error("cannot write to standard output" + reason);
+}
+
+void end_process(int exit_code) {
+  std::cout.flush();
+  std::fflush(nullptr);
+  if (__lsan_do_leak_check != nullptr) __lsan_do_leak_check();
+  _exit(exit_code);
 }
 
 }  // namespace misfit::tools

@@ -10,4 +10,8 @@ void hold_standard_streams();
 /// Throws std::runtime_error where what was printed could not be written; a pipe may be read in part.
 void finish_standard_output();
 
+/// Writes what streams still hold and ends the process, without the destructors of static objects: those of libraries may wait
+/// for threads that never end. A leak sanitizer looks for leaks first, and changes the code where it finds one.
+[[noreturn]] void end_process(int exit_code);
+
 }  // namespace misfit::tools
