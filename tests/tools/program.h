@@ -52,6 +52,15 @@ inline const std::string& kernel_cache() {
   return path;
 }
 
+constexpr const char* gnuplot_draws = "MISFIT_TEST_GNUPLOT";  ///< set in the environment where gnuplot itself shall draw pictures
+
+/// Lets tests/stand_ins draw the pictures of the program, which by gnuplot take most of a small run's time.
+inline void draw_dots() {
+  if (std::getenv(gnuplot_draws) != nullptr) return;
+  const char* const path = std::getenv("PATH");
+  setenv("PATH", (std::string(MISFIT_SOURCE_DIR) + "/tests/stand_ins:" + (path == nullptr ? "" : path)).c_str(), 1);
+}
+
 /// Turns a child process into another program, found on PATH, whose output goes to files.
 [[noreturn]] inline void become(const std::string& program, const Arguments& arguments, const std::string& out,
                                 const std::string& err, const std::string& cache) {
@@ -59,6 +68,7 @@ inline const std::string& kernel_cache() {
   for (const std::string& argument : arguments) argv.push_back(const_cast<char*>(argument.c_str()));
   argv.push_back(nullptr);
   setenv("MISFIT_CACHE", cache.c_str(), 0);
+  draw_dots();
   for (const int signal : {SIGINT, SIGTERM, SIGHUP}) std::signal(signal, SIG_DFL);  // whoever started the tests may ignore them
   dup2(open(out.c_str(), O_WRONLY | O_CREAT, 0600), STDOUT_FILENO);
   dup2(open(err.c_str(), O_WRONLY | O_CREAT, 0600), STDERR_FILENO);
@@ -96,6 +106,13 @@ class Child {
     return ended_;
   }
   void signal(int number) const { kill(pid_, number); }
+  /// Its outcome; where it has not ended by then, it is killed and its code is −SIGKILL.
+  Outcome wait_at_most(std::chrono::seconds longest) {
+    const auto start = std::chrono::steady_clock::now();
+    wait_until([&] { return std::chrono::steady_clock::now() - start > longest; });
+    if (!ended()) signal(SIGKILL);
+    return wait();
+  }
   Outcome wait() {
     if (!ended_) waitpid(pid_, &status_, 0);
     ended_ = true;
