@@ -14,6 +14,7 @@
 #include <new>
 #include <stdexcept>
 #include <string>
+#include <system_error>
 #include <thread>
 #include <vector>
 
@@ -118,6 +119,10 @@ int run(int argc, char** argv, const World& world) {
     return fail(error.what(), wrong_usage, world);
   } catch (const std::bad_alloc&) {
     return fail("out of memory; expected fewer pixels or channels, or more memory", unusable_data, world);
+  } catch (const std::system_error& error) {
+    if (error.code() != std::errc::resource_unavailable_try_again) return fail(error.what(), unusable_data, world);
+    return fail("the system refuses another thread; expected more memory, or a higher limit of processes (ulimit -u)",
+                unusable_data, world);
   } catch (const std::exception& error) {
     return fail(error.what(), unusable_data, world);
   }
