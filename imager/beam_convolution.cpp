@@ -3,10 +3,10 @@
 #include <cmath>
 #include <stdexcept>
 #include <string>
-#include <thread>
 #include <vector>
 
 #include "imager/beam.h"
+#include "imager/parallel.h"
 
 namespace misfit::imager {
 namespace {
@@ -79,15 +79,8 @@ Image convolve_with_beam(const Image& model, const Beam& beam, double cell_rad, 
   const Stamp stamp = make_stamp(beam, cell_rad, model);
   const ComponentRows components = component_rows(model);
   Image out(model.width, model.height);
-  const int stride = std::max(1, threads);
-  const auto work = [&](int first) {
-    for (int r = first; r < out.height; r += stride) convolve_row(components, stamp, r, out);
-  };
-  {
-    std::vector<std::jthread> others;
-    for (int t = 1; t < stride; ++t) others.emplace_back(work, t);
-    work(0);
-  }
+  parallel_for(static_cast<std::size_t>(out.height), threads,
+               [&](std::size_t r) { convolve_row(components, stamp, static_cast<int>(r), out); });
   return out;
 }
 
