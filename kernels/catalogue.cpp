@@ -6,6 +6,7 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "kernels/catalogue_internal.h"
 #include "kernels/families/families.h"
 #include "kernels/text_internal.h"
 
@@ -21,14 +22,18 @@ Kernel KernelFamily::make(int width, double x0) const {
   return solve(width, x0);
 }
 
-const std::vector<KernelFamily>& kernel_catalogue() {
-  static const std::vector<KernelFamily> families{
+std::vector<KernelFamily>& changeable_catalogue() {
+  static std::vector<KernelFamily> families{
       least_misfit_family(),  minimax_family(),       spheroidal_family(1),    spheroidal_family(0),
       spheroidal_family(0.5), spheroidal_family(1.5), spheroidal_family(2),    spheroidal_exact_family(),
       prolate_family(),       kaiser_bessel_family(), exp_semicircle_family(), nearest_family(),
       linear_family(),        sinc_family(),          gaussian_family(),       gaussian_sinc_family(),
   };
   return families;
+}
+
+const std::vector<KernelFamily>& kernel_catalogue() {
+  return changeable_catalogue();
 }
 
 KernelFamily kernel_family(const std::string& name) {

@@ -52,11 +52,10 @@ inline const std::string& kernel_cache() {
   return path;
 }
 
-constexpr const char* gnuplot_draws = "MISFIT_TEST_GNUPLOT";  ///< set in the environment where gnuplot itself shall draw pictures
-
-/// Lets tests/stand_ins draw the pictures of the program, which by gnuplot take most of a small run's time.
+/// Lets tests/stand_ins draw the pictures of the program, which by gnuplot take most of a small run's time; where
+/// MISFIT_TEST_GNUPLOT is set gnuplot draws them.
 inline void draw_dots() {
-  if (std::getenv(gnuplot_draws) != nullptr) return;
+  if (std::getenv("MISFIT_TEST_GNUPLOT") != nullptr) return;
   const char* const path = std::getenv("PATH");
   setenv("PATH", (std::string(MISFIT_SOURCE_DIR) + "/tests/stand_ins:" + (path == nullptr ? "" : path)).c_str(), 1);
 }
