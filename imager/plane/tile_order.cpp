@@ -158,6 +158,7 @@ class RunFinder {
 
   /// Sums are taken of spans, since whole vectors are quicker: all samples of weight other than 0 from the first to the last.
   void close_span() {
+    if (sets_.empty()) return;  // predicted samples have neither sums nor weights
     const float* const weight = block_.weight.data() + span_begin_;
     const std::size_t count = span_end_ - span_begin_;
     for (std::size_t i = 0; i < sets_.size(); ++i)

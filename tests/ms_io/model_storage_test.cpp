@@ -108,7 +108,7 @@ BOOST_AUTO_TEST_CASE(a_column_of_another_type_is_named_with_it) {
   });
   for (const auto& [column, type] : std::map<std::string, std::string>{
            {"DOUBLE", "arrays of type DComplex"}, {"REAL", "arrays of type float"}, {"SINGLE", "single values"}}) {
-    const std::string error = error_of([&] { write(set.path(), column); });
+    const std::string error = error_of([&, to = column] { write(set.path(), to); });
     BOOST_TEST_INFO(error);
     BOOST_TEST(contains(error, "column " + column + " of " + set.path() + " holds " + type));
   }
