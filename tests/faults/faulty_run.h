@@ -8,7 +8,7 @@ namespace misfit::tools::testing {
 using misfit::testing::Answer, misfit::testing::SystemCall;
 
 /// Of places where a fault is tried, the program as its users have it fails at each; sanitized, each run takes seconds.
-#ifdef __SANITIZE_ADDRESS__
+#ifdef MISFIT_SANITIZED
 constexpr std::size_t stride = 8;
 #else
 constexpr std::size_t stride = 1;

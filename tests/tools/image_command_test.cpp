@@ -291,7 +291,7 @@ BOOST_AUTO_TEST_CASE(a_dry_run_reads_neither_data_nor_flags) {
 
 /// Whether the peak of memory is the program's own: a sanitizer's counts in it.
 boost::test_tools::assertion_result memory_is_its_own(boost::unit_test::test_unit_id /*unit*/) {
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#ifdef MISFIT_SANITIZED
   return false;
 #else
   return true;
