@@ -3,6 +3,9 @@
 #include <Eigen/Core>
 #include <cmath>
 #include <limits>
+#include <map>
+#include <mutex>
+#include <vector>
 
 namespace misfit::kernels {
 
@@ -29,27 +32,48 @@ struct LegendrePair {
   }
 };
 
+/// A zero of P_n, and the slope of P_n there.
+template <typename Real>
+struct LegendreZero {
+  Real x;
+  Real slope;
+};
+
+/// The zeros of P_n from the largest to the smallest, found once for each n: searches ask for one rule many thousand times.
+template <typename Real>
+const std::vector<LegendreZero<Real>>& legendre_zeros(int n) {
+  using std::abs;
+  static std::mutex one_at_a_time;
+  static std::map<int, std::vector<LegendreZero<Real>>> known;  // whose entries stay where they are
+  const std::lock_guard lock(one_at_a_time);
+  std::vector<LegendreZero<Real>>& zeros = known[n];
+  for (int i = static_cast<int>(zeros.size()); i < n; ++i) {
+    LegendreZero<Real> zero{static_cast<Real>(std::cos(std::acos(-1.0) * (i + 0.75) / (n + 0.5))), 0};
+    for (int newton = 0; newton < 12; ++newton) {
+      const LegendrePair<Real> p(n, zero.x);
+      zero.slope = n * (zero.x * p.last - p.before) / (zero.x * zero.x - 1);
+      const Real step = p.last / zero.slope;
+      zero.x -= step;
+      if (abs(step) < std::numeric_limits<Real>::epsilon()) break;
+    }
+    zeros.push_back(zero);
+  }
+  return zeros;
+}
+
 /// The Gauss–Legendre rule of `points` points on [from, to], exact for polynomials of degree 2·points − 1
 /// (Abramowitz & Stegun 1964, eq. 25.4.29).
 template <typename Real>
 QuadratureOf<Real> gauss_legendre_in(int points, const Real& from, const Real& to) {
-  using std::abs;
   QuadratureOf<Real> rule;
   rule.node.resize(points);
   rule.weight.resize(points);
   const Real half = (to - from) / 2;
-  for (int i = 0; i < points; ++i) {
-    Real x = static_cast<Real>(std::cos(std::acos(-1.0) * (i + 0.75) / (points + 0.5)));
-    Real slope = 0;
-    for (int newton = 0; newton < 12; ++newton) {
-      const LegendrePair<Real> p(points, x);
-      slope = points * (x * p.last - p.before) / (x * x - 1);
-      const Real step = p.last / slope;
-      x -= step;
-      if (abs(step) < std::numeric_limits<Real>::epsilon()) break;
-    }
-    rule.node[points - 1 - i] = from + half * (1 + x);
-    rule.weight[points - 1 - i] = half * 2 / ((1 - x * x) * slope * slope);
+  int i = points;
+  for (const auto& [x, slope] : legendre_zeros<Real>(points)) {
+    --i;
+    rule.node[i] = from + half * (1 + x);
+    rule.weight[i] = half * 2 / ((1 - x * x) * slope * slope);
   }
   return rule;
 }
