@@ -112,6 +112,7 @@ std::vector<std::complex<double>> direct_visibilities(const ArrayImage& image, c
       const ArrayPhase phase(image, i, j, at);
       if (!(phase.n > 0)) continue;
       const double flux = double{model[static_cast<std::size_t>(i * image.pixels_y + j)]} / (divide_by_n ? phase.n : 1);
+      if (flux == 0) continue;
       for (std::size_t row = 0; row < at.rows(); ++row)
         for (std::size_t channel = 0; channel < at.channels(); ++channel)
           if (!at.mask || at.mask.at(row, channel) != 0)
