@@ -65,10 +65,10 @@ std::optional<imager::CostModel> kept_costs(const fs::path& folder) {
   return fs::is_regular_file(file, none) ? costs_in(read_file(file)) : std::nullopt;
 }
 
-imager::CostModel machine_costs(const fs::path& folder) {
-  if (folder.empty()) return imager::measure_costs();
+imager::CostModel machine_costs(const fs::path& folder, const std::function<imager::CostModel()>& measure) {
+  if (folder.empty()) return measure();
   if (const auto kept = kept_costs(folder)) return *kept;
-  const imager::CostModel measured = imager::measure_costs();
+  const imager::CostModel measured = measure();
   std::error_code none;
   fs::create_directories(folder, none);
   try {

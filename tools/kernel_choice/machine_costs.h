@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 
@@ -13,8 +14,9 @@ std::string machine_name();
 
 /// The cost constants of this machine: measured once for a processor and version of misfit, and kept as costs.json in `folder`.
 /// A file that is damaged, of another machine or of another version is measured anew; where nothing can be kept, they are
-/// measured each time.
-imager::CostModel machine_costs(const std::filesystem::path& folder);
+/// measured each time, which `measure` does.
+imager::CostModel machine_costs(const std::filesystem::path& folder,
+                                const std::function<imager::CostModel()>& measure = imager::measure_costs);
 
 /// Those kept in `folder`, if there are any of this machine.
 std::optional<imager::CostModel> kept_costs(const std::filesystem::path& folder);
