@@ -140,7 +140,8 @@ BOOST_AUTO_TEST_CASE(tables_add_to_images_what_interpolation_leaves) {
   BOOST_TEST(std::abs(number(table, 2, 2) / (std::sqrt(2.0) * 1.5707963 / 600) - 1) < 0.05);
 }
 
-BOOST_AUTO_TEST_CASE(a_source_outside_leaves_the_alias_that_the_transform_of_the_kernel_says) {
+BOOST_AUTO_TEST_CASE(a_source_outside_leaves_the_alias_that_the_transform_of_the_kernel_says,
+                     *boost::unit_test::label("sweep")) {
   const Figure& figure = aliases().section.figures.at(0);
   for (const std::size_t k : {0U, 1U}) {
     const Series& measured = figure.series.at(k);
@@ -173,7 +174,7 @@ BOOST_AUTO_TEST_CASE(all_aliases_together_are_the_misfit) {
   }
 }
 
-BOOST_AUTO_TEST_CASE(degridding_errs_as_the_map_error_says_down_to_rounding) {
+BOOST_AUTO_TEST_CASE(degridding_errs_as_the_map_error_says_down_to_rounding, *boost::unit_test::label("sweep")) {
   const std::vector<Series>& series = degridding().section.figures.at(0).series;
   for (const std::size_t kernel : {0U, 1U}) {
     const Series& twice = series.at(2 * kernel);

@@ -62,7 +62,7 @@ BOOST_AUTO_TEST_CASE(alma_shows_the_dust_ring_with_its_gap) {
   BOOST_TEST(report["warnings"].empty());              // w, which is not negligible here, is imaged rather than warned of
 }
 
-BOOST_AUTO_TEST_CASE(lofar_shows_3c295_alone) {
+BOOST_AUTO_TEST_CASE(lofar_shows_3c295_alone, *boost::unit_test::label("sweep")) {
   const Unpacked data("lofar_3c295_snapshot");
   if (!data.present()) return;
   succeed({"image",        "--vis",        data / "lofar_3c295_snapshot.ms",

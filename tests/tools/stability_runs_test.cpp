@@ -53,7 +53,7 @@ BOOST_AUTO_TEST_CASE(clean_beside_1e9_jansky_goes_as_deep_as_single_precision_vi
   BOOST_TEST(outcomes.back().peak_after_jy() < 6 * noise_jy);
 }
 
-BOOST_AUTO_TEST_CASE(a_million_equal_samples_in_one_cell_keep_the_promise) {
+BOOST_AUTO_TEST_CASE(a_million_equal_samples_in_one_cell_keep_the_promise, *boost::unit_test::label("sweep")) {
   check(run_cases({one_cell_cases(1000000).back()}));
 }
 

@@ -174,7 +174,7 @@ BOOST_AUTO_TEST_CASE(over_a_very_wide_band_spectra_are_those_of_the_polynomials_
 
 /// α less what the fit of two terms makes of it, over its error, of two sources in 12 realisations of noise: the root mean
 /// square of 24 normal numbers is 1 to 1/√48 = 14 %; three times that is allowed.
-BOOST_AUTO_TEST_CASE(with_noise_the_error_of_the_index_is_its_scatter) {
+BOOST_AUTO_TEST_CASE(with_noise_the_error_of_the_index_is_its_scatter, *boost::unit_test::label("sweep")) {
   constexpr int realisations = 12;
   constexpr double fraction = 0.2, image_noise_jy = 2e-3;
   // A pixel is the mean of the real parts of so many samples, turned to it.
