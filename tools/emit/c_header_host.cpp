@@ -5,7 +5,7 @@
 namespace misfit::tools {
 namespace {
 
-void write(const Emission& e, const std::string& path) {
+void write_c_header(const Emission& e, const std::string& path) {
   const kernels::PiecewisePolynomial& function = e.table.kernel.polynomial;
   const Eigen::MatrixXd by_cell = function.coefficient;  // column-major: a cell after the other
   const std::string count = std::to_string(function.degree() + 1);
@@ -40,7 +40,7 @@ Host c_header_host() {
   host.degrees = [](int) { return std::pair(0, kernels::highest_degree); };
   host.taps_of = [](int width) { return width; };
   host.taps = [](const HostKernel& k) { return kernels::TapFunction(k.kernel.polynomial); };
-  host.write = write;
+  host.write = write_c_header;
   return host;
 }
 

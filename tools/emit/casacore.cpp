@@ -10,7 +10,7 @@ namespace misfit::tools {
 namespace {
 
 /// Schwab's function with the image divided by its own transform, as ConvolveGridder("SF") has it.
-HostRule stock(const HostKernel& k) {
+HostRule stock_of_casacore(const HostKernel& k) {
   constexpr int per_cell = 100, width = 6;
   const kernels::Kernel own = kernels::kernel_family("spheroidal").make(width, k.x0());
   return {hosts::casacore_taps(hosts::casacore_table(own.polynomial, per_cell), per_cell), per_cell,
@@ -50,7 +50,7 @@ kernels::HostTable divisor_of(const Emission& e) {
            "X = |loc - len / 2| / len: 1/h for the taps divided by their sum."}};
 }
 
-void write(const Emission& e, const std::string& path) {
+void write_casacore(const Emission& e, const std::string& path) {
   kernels::write_kernel_table(e.table.kernel, kernels::TableSampling{e.table.per_cell, 0}, path, {table_of(e), divisor_of(e)});
 }
 
@@ -71,9 +71,9 @@ Host casacore_host() {
     return hosts::casacore_taps(hosts::casacore_table(k.kernel.polynomial, k.per_cell), k.per_cell);
   };
   host.bytes = [](const HostKernel& k) { return (hosts::casacore_support + 1.0) * k.per_cell * sizeof(double); };
-  host.stock = stock;
+  host.stock = stock_of_casacore;
   host.stock_name = "its spheroidal function, 100 entries a cell";
-  host.write = write;
+  host.write = write_casacore;
   return host;
 }
 

@@ -54,7 +54,7 @@ std::string line(const std::string& what, double position, const Eigen::VectorXd
   return text + "\n";
 }
 
-void write(const Emission& e, const std::string& path) {
+void write_csv(const Emission& e, const std::string& path) {
   const int width = e.table.kernel.width();
   std::string text;
   for (const std::string& s : statement(e)) text += "# " + s + "\n";
@@ -85,7 +85,7 @@ Host csv_host() {
   host.taps_of = [](int width) { return width; };
   host.bytes = [](const HostKernel& k) { return (k.per_cell + 1.0) * k.kernel.width() * sizeof(double); };
   host.taps = taps;
-  host.write = write;
+  host.write = write_csv;
   return host;
 }
 

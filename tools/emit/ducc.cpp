@@ -14,7 +14,7 @@ int degree_of(int width) {
   return width + 3 + width % 2;
 }
 
-void write(const Emission& e, const std::string& path) {
+void write_ducc(const Emission& e, const std::string& path) {
   const kernels::PiecewisePolynomial& function = e.table.kernel.polynomial;
   const TaperNodes nodes = taper_nodes(function);
   const std::string w = std::to_string(function.width());
@@ -62,7 +62,7 @@ Host ducc_host() {
   host.own_correction = [](const HostKernel& k) {
     return whole_support_correction(k.kernel.polynomial, 3 * k.kernel.width() / 2 + 2);
   };
-  host.write = write;
+  host.write = write_ducc;
   return host;
 }
 

@@ -39,7 +39,7 @@ std::string phi(int count) {
          "}\n\n";
 }
 
-void write(const Emission& e, const std::string& path) {
+void write_finufft(const Emission& e, const std::string& path) {
   const kernels::PiecewisePolynomial function = scaled(e.table.kernel.polynomial);
   const TaperNodes nodes = taper_nodes(function);
   const int count = std::max(function.degree(), degrees(function.width()).first) + 1;
@@ -65,7 +65,7 @@ void write(const Emission& e, const std::string& path) {
 }
 
 /// Its prolate function, bandwidth π w (1 − 1/(2σ)) − 0.05 (kerformula 8).
-HostRule stock(const HostKernel& k) {
+HostRule stock_of_finufft(const HostKernel& k) {
   const int width = k.kernel.width();
   const double bandwidth = std::numbers::pi * width * (1 - 0.5 / k.padding) - 0.05;
   const kernels::Kernel own = kernels::make_kernel("prolate", k.x0(), kernels::spheroidal_exact_taps(width, 0, bandwidth));
@@ -91,9 +91,9 @@ Host finufft_host() {
   host.own_correction = [](const HostKernel& k) {
     return whole_support_correction(k.kernel.polynomial, static_cast<int>(2 + 3.0 * k.kernel.width() / 2));
   };
-  host.stock = stock;
+  host.stock = stock_of_finufft;
   host.stock_name = "its prolate function of the same width";
-  host.write = write;
+  host.write = write_finufft;
   return host;
 }
 

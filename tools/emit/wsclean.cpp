@@ -28,7 +28,7 @@ kernels::Correction dct_correction(const Eigen::VectorXd& table, const HostKerne
 }
 
 /// WSClean's default: a Kaiser–Bessel function of α = 8.6 times a sinc, over 7 cells, 1023 entries each.
-HostRule stock(const HostKernel& asked) {
+HostRule stock_of_wsclean(const HostKernel& asked) {
   constexpr double alpha = 8.6;
   HostKernel k = asked;
   k.per_cell = 1023;
@@ -42,7 +42,7 @@ HostRule stock(const HostKernel& asked) {
   return {kernels::nearest_entries(table, k.per_cell, 3), k.per_cell, dct_correction(table, k)};
 }
 
-void write(const Emission& e, const std::string& path) {
+void write_wsclean(const Emission& e, const std::string& path) {
   const HostKernel& k = e.table;
   const Eigen::VectorXd half = kernels::sampled_to_both_ends(k.kernel.polynomial, k.per_cell);
   const int taps = taps_of(k.kernel.width());
@@ -88,9 +88,9 @@ Host wsclean_host() {
     return dct_correction(kernels::sampled_to_both_ends(k.kernel.polynomial, k.per_cell), k);
   };
   host.bytes = [](const HostKernel& k) { return 2.0 * taps_of(k.kernel.width()) * k.per_cell * sizeof(double); };
-  host.stock = stock;
+  host.stock = stock_of_wsclean;
   host.stock_name = "its Kaiser-Bessel function of 7 cells, 1023 entries a cell";
-  host.write = write;
+  host.write = write_wsclean;
   return host;
 }
 

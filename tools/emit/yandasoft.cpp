@@ -45,20 +45,20 @@ kernels::TapFunction taps_of_rows(const Eigen::MatrixXd& rows) {
 }
 
 /// SphFuncVisGridder with support 3, oversample 128, α = 1, without the filter of its correction.
-HostRule stock(const HostKernel& k) {
+HostRule stock_of_yandasoft(const HostKernel& k) {
   constexpr int per_cell = 128, support = 3;
   const kernels::Kernel own = kernels::kernel_family("spheroidal-exact-1").make(2 * support, k.x0());
   return {taps_of_rows(rows(kernels::sampled_to_both_ends(own.polynomial, per_cell), per_cell, support)), per_cell,
           kernels::relative_reciprocal_taper(own.polynomial)};
 }
 
-Eigen::MatrixXd rows_of(const HostKernel& k) {
+Eigen::MatrixXd rows_by_fraction(const HostKernel& k) {
   return rows(kernels::sampled_to_both_ends(k.kernel.polynomial, k.per_cell), k.per_cell, support_for(k.kernel.width()));
 }
 
-void write(const Emission& e, const std::string& path) {
+void write_yandasoft(const Emission& e, const std::string& path) {
   const int support = support_for(e.table.kernel.width()), per_cell = e.table.per_cell;
-  const Eigen::MatrixXd by_fraction = rows_of(e.table).transpose();  // column-major: a fraction after the other
+  const Eigen::MatrixXd by_fraction = rows_by_fraction(e.table).transpose();  // column-major: a fraction after the other
   write_file(
       path,
       c_header(e,
@@ -87,14 +87,14 @@ Host yandasoft_host() {
   host.table = {128, 1024, false, false};
   host.bits = 24;
   host.taps_of = [](int width) { return 2 * support_for(width) + 1; };
-  host.taps = [](const HostKernel& k) { return taps_of_rows(rows_of(k)); };
+  host.taps = [](const HostKernel& k) { return taps_of_rows(rows_by_fraction(k)); };
   host.bytes = [](const HostKernel& k) {
     const double cells = 2 * support_for(k.kernel.width()) + 1;
     return std::pow(k.per_cell * cells, 2) * sizeof(std::complex<float>);
   };
-  host.stock = stock;
+  host.stock = stock_of_yandasoft;
   host.stock_name = "its spheroidal function of support 3, oversample 128";
-  host.write = write;
+  host.write = write_yandasoft;
   return host;
 }
 

@@ -10,7 +10,7 @@ namespace misfit::tools {
 namespace {
 
 constexpr int image_size = 4096;
-constexpr int widest = 12;
+constexpr int widest_costed = 12;
 constexpr std::array<int, 5> shown_widths{5, 6, 7, 9, 12};
 
 /// A gridding of equal accuracy.
@@ -38,7 +38,7 @@ Pair pair_like(int width, double wanted) {
 
 std::vector<Pair> pairs_like(const kernels::LeastMisfit& reference) {
   std::vector<Pair> pairs;
-  for (int width = shown_widths.front(); width <= widest; ++width)
+  for (int width = shown_widths.front(); width <= widest_costed; ++width)
     pairs.push_back(width == reference.width ? pair_of(reference) : pair_like(width, reference.origin.mean_error));
   return pairs;
 }

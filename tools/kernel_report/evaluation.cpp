@@ -16,7 +16,6 @@ using kernels::Interpolation;
 using kernels::Precision;
 
 constexpr int width = 7;
-constexpr double x0 = 0.25;
 
 struct Degree {
   Interpolation interpolation;
@@ -71,9 +70,9 @@ Figure rms_of_tables(const kernels::Kernel& kernel) {
     for (int samples = 1; samples <= 4096; samples *= 2) {
       const JudgedTable table = table_of(kernel, {samples, degree.interpolation});
       measured.x.push_back(samples);
-      measured.y.push_back(std::sqrt(judge(table.way.taps, x0, table.judging).mean));
+      measured.y.push_back(std::sqrt(judge(table.way.taps, paper_x0, table.judging).mean));
       law.x.push_back(samples);
-      law.y.push_back(std::sqrt(kernel.misfit.mean + kernels::table_misfit({samples, degree.interpolation}, x0)));
+      law.y.push_back(std::sqrt(kernel.misfit.mean + kernels::table_misfit({samples, degree.interpolation}, paper_x0)));
     }
     law.x.push_back(law.x.back());
     law.y.push_back(std::numeric_limits<double>::quiet_NaN());
@@ -107,7 +106,7 @@ DataTable ways_to_evaluate(const kernels::LeastMisfit& solution, const kernels::
   }
   const std::vector<double> time_ns = nanoseconds_a_visibility(ways, {});
   for (std::size_t i = 0; i < ways.size(); ++i) {
-    const kernels::Misfit misfit = judge(ways[i].taps, x0, ways[i].judging());
+    const kernels::Misfit misfit = judge(ways[i].taps, paper_x0, ways[i].judging());
     table.rows.push_back({ways[i].name, static_cast<double>(ways[i].bytes), misfit.mean,
                           misfit.mean / solution.origin.mean_error, misfit.worst_mean, misfit.worst, time_ns[i]});
   }
@@ -117,7 +116,7 @@ DataTable ways_to_evaluate(const kernels::LeastMisfit& solution, const kernels::
 }  // namespace
 
 ReportSection evaluation_section(SolvedKernels& solved) {
-  const kernels::LeastMisfit& solution = solved(width, x0);
+  const kernels::LeastMisfit& solution = solved(width, paper_x0);
   const kernels::Kernel kernel = store("least-misfit", solution);
   ReportSection section{
       .heading = "Tables and other ways to evaluate",

@@ -11,8 +11,6 @@ namespace {
 using kernels::Kernel;
 using kernels::TapFunction;
 
-constexpr double x0 = 0.25;
-
 struct ClassicalFunction {
   const char* family;
   const char* label;
@@ -26,7 +24,7 @@ constexpr std::array<ClassicalFunction, 5> classical{{{"nearest", "nearest cell"
                                                       {"gaussian", "Gaussian", 8},
                                                       {"gaussian-sinc", "Gaussian × sinc", 8}}};
 
-DataTable::Cell number(double value) {
+DataTable::Cell number_cell(double value) {
   return value;
 }
 
@@ -68,7 +66,7 @@ CorrectionErrors correction_errors_of(const TapFunction& taps) {
 /// A figure of C(u) or h(x) for W = 1…10.
 template <typename Curve>
 void add_widths(Figure& figure, SolvedKernels& solved, Curve curve_of) {
-  for (int width = 1; width <= 10; ++width) figure.series.push_back(curve_of(width_label(width), solved(width, x0).taps));
+  for (int width = 1; width <= 10; ++width) figure.series.push_back(curve_of(width_label(width), solved(width, paper_x0).taps));
 }
 
 Figure functions_figure(SolvedKernels& solved) {
@@ -89,11 +87,11 @@ Figure least_misfit_corrections_figure(SolvedKernels& solved) {
       .name = "least-misfit-corrections",
       .title = "Their corrections h(x)",
       .caption = "What the image is multiplied by: the wider C, the narrower its taper, the more h rises to the edge.",
-      .x = {.label = "x, offset from the phase centre / size of the FFT", .from = 0, .to = x0},
+      .x = {.label = "x, offset from the phase centre / size of the FFT", .from = 0, .to = paper_x0},
       .y = {.label = "h(x)"},
       .series = {}};
   add_widths(figure, solved,
-             [](const std::string& label, const TapFunction& taps) { return correction_curve(label, taps, x0); });
+             [](const std::string& label, const TapFunction& taps) { return correction_curve(label, taps, paper_x0); });
   return figure;
 }
 
@@ -110,10 +108,11 @@ ReportSection classical_section(SolvedKernels& solved) {
                   .columns = {"function", "W", "√E", "max ℓ", "× least-misfit"},
                   .rows = {}};
   for (const auto& [family, label, width] : classical) {
-    const Kernel kernel = kernels::kernel_family(family).make(width, x0);
+    const Kernel kernel = kernels::kernel_family(family).make(width, paper_x0);
     figure.series.push_back(map_error_curve(label, kernel.polynomial));
     const double rms = std::sqrt(kernel.misfit.mean);
-    table.rows.push_back({label, number(width), rms, kernel.misfit.max, rms / std::sqrt(solved(width, x0).origin.mean_error)});
+    table.rows.push_back(
+        {label, number_cell(width), rms, kernel.misfit.max, rms / std::sqrt(solved(width, paper_x0).origin.mean_error)});
   }
   return {.heading = "Classical functions",
           .paragraphs = {"ℓ(x) is the squared relative error of a one-dimensional transform at x, averaged over where "
@@ -127,8 +126,8 @@ ReportSection spheroidal_section(SolvedKernels& /*solved*/) {
   figure.caption = "(1 − η²) ψ(η), order α = 1, c = πW/2, computed exactly, with the optimal correction.";
   const kernels::KernelFamily family = kernels::kernel_family("spheroidal-exact");
   for (int width = 6; width <= 14; ++width)
-    figure.series.push_back(map_error_curve(width_label(width), family.make(width, x0).polynomial));
-  const TapFunction six = family.make(6, x0).polynomial;
+    figure.series.push_back(map_error_curve(width_label(width), family.make(width, paper_x0).polynomial));
+  const TapFunction six = family.make(6, paper_x0).polynomial;
   const CorrectionErrors errors = correction_errors_of(six);
   return {.heading = "Spheroidal functions",
           .paragraphs = {"Computed directly, the error with 1/c is ℓ/(1 − ℓ) to " + power_of_ten(errors.from_law, 1) +
@@ -146,7 +145,7 @@ ReportSection least_misfit_section(SolvedKernels& solved) {
   by_width.caption =
       "Taps solved for every position, then rounded to doubles. A width more divides ℓ by about 100 where |x| ≤ x₀.";
   for (int width = 6; width <= 14; ++width)
-    by_width.series.push_back(map_error_curve(width_label(width), solved(width, x0).taps));
+    by_width.series.push_back(map_error_curve(width_label(width), solved(width, paper_x0).taps));
   return {.heading = "Least-misfit functions",
           .paragraphs = {"C and h together make E, the mean of ℓ over |x| ≤ x₀, as small as it can be."},
           .figures = {by_x0, by_width, functions_figure(solved), least_misfit_corrections_figure(solved)},

@@ -9,7 +9,7 @@ namespace misfit::tools {
 namespace {
 
 constexpr int narrowest = 4;
-constexpr int widest = 16;
+constexpr int widest_compared = 16;
 
 /// E and max ℓ of one family, W by W.
 struct Errors {
@@ -35,7 +35,7 @@ constexpr double smallest_in_doubles = 1e-29;
 Errors errors_of(const Rival& rival, double x0) {
   Errors errors{rival.label, {}, {}, {}};
   const kernels::KernelFamily family = kernels::kernel_family(rival.family);
-  for (int width = narrowest; width <= widest; ++width) {
+  for (int width = narrowest; width <= widest_compared; ++width) {
     const kernels::Origin origin = family.make(width, x0).origin;
     const bool rounded = origin.precision == "double" && origin.mean_error < smallest_in_doubles;
     errors.width.push_back(width);
@@ -47,7 +47,7 @@ Errors errors_of(const Rival& rival, double x0) {
 
 Errors least_misfit_errors(SolvedKernels& solved, double x0) {
   Errors errors{"least-misfit", {}, {}, {}};
-  for (int width = narrowest; width <= widest; ++width) {
+  for (int width = narrowest; width <= widest_compared; ++width) {
     errors.width.push_back(width);
     errors.mean.push_back(solved(width, x0).origin.mean_error);
     errors.max.push_back(solved(width, x0).origin.max_error);
@@ -89,7 +89,7 @@ Figure ratio_figure(const AllErrors& all, const Norm& norm, double x0) {
   Figure figure{.name = name_of(norm, x0),
                 .title = norm.title + (" of rivals, " + x0_label(x0)),
                 .caption = norm.caption,
-                .x = {.label = "width W", .from = narrowest - 0.5, .to = widest + 0.5},
+                .x = {.label = "width W", .from = narrowest - 0.5, .to = widest_compared + 0.5},
                 .y = {.label = norm.symbol + std::string(", over that of least-misfit"), .logarithmic = true},
                 .series = {}};
   for (std::size_t k = 1; k < all.size(); ++k) figure.series.push_back(ratio_curve(all[k], all[0], norm));

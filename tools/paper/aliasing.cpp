@@ -17,7 +17,6 @@
 namespace misfit::tools {
 namespace {
 
-constexpr double x0 = 0.25;
 constexpr int shown_width = 7;
 constexpr int pixels = 32;
 constexpr int fft_size = 2 * pixels;
@@ -36,7 +35,7 @@ Eigen::VectorXd levels_of_aliases(const kernels::Kernel& kernel, const Eigen::Ve
       kernels::optimal_correction(kernel.polynomial, zero)[0] * kernels::image_taper(kernel.polynomial, zero)[0];
   const Eigen::ArrayXd level = across * kernels::optimal_correction(kernel.polynomial, folded).array() *
                                kernels::image_taper(kernel.polynomial, x).array();
-  return (folded.array().abs() <= x0).select(level.abs(), std::numeric_limits<double>::quiet_NaN());
+  return (folded.array().abs() <= paper_x0).select(level.abs(), std::numeric_limits<double>::quiet_NaN());
 }
 
 /// Samples and image of the experiment.
@@ -103,7 +102,7 @@ class LargestErrors {
 /// Of the least-misfit and the spheroidal function.
 std::vector<Series> measured_levels(const SmallField& field, const ComparedKernels& pair) {
   Series least{.label = "least-misfit", .x = {}, .y = {}, .points = true, .line = false};
-  for (int p = static_cast<int>(x0 * fft_size) + step / 2; p <= farthest * fft_size; p += step)
+  for (int p = static_cast<int>(paper_x0 * fft_size) + step / 2; p <= farthest * fft_size; p += step)
     least.x.push_back(static_cast<double>(p) / fft_size);
   least.y.resize(least.x.size());
   Series spheroidal = least;
@@ -116,7 +115,7 @@ std::vector<Series> measured_levels(const SmallField& field, const ComparedKerne
 
 Series expected_levels(const std::string& label, const kernels::Kernel& kernel) {
   constexpr int points = 1537;  // 512 a field: the measured positions are among them
-  const Eigen::VectorXd x = Eigen::VectorXd::LinSpaced(points, x0, farthest);
+  const Eigen::VectorXd x = Eigen::VectorXd::LinSpaced(points, paper_x0, farthest);
   Series series = curve(label, x, levels_of_aliases(kernel, x));
   series.law = true;
   return series;
@@ -147,7 +146,7 @@ struct AliasLevels {
 
 AliasLevels alias_levels(const kernels::Kernel& kernel) {
   constexpr int places = 257;  // exact in binary, the edges included
-  const Eigen::VectorXd folded = Eigen::VectorXd::LinSpaced(places, -x0, x0);
+  const Eigen::VectorXd folded = Eigen::VectorXd::LinSpaced(places, -paper_x0, paper_x0);
   AliasLevels levels;
   for (int n = 1; n <= fields; ++n) {
     const Eigen::VectorXd level = levels_of_aliases(kernel, (folded.array() + n).matrix());
@@ -170,7 +169,7 @@ PaperExperiment aliasing_experiment(SolvedKernels& solved) {
                   .rows = {}};
   std::map<int, double> ratio_by_width;
   for (int width = 4; width <= 10; ++width) {
-    const ComparedKernels pair = compared_kernels(solved, width, x0);
+    const ComparedKernels pair = compared_kernels(solved, width, paper_x0);
     const AliasLevels least = alias_levels(pair.least_misfit);
     const AliasLevels spheroidal = alias_levels(pair.spheroidal);
     const double ratio = spheroidal.rms / least.rms;
@@ -182,7 +181,7 @@ PaperExperiment aliasing_experiment(SolvedKernels& solved) {
   result.section = {.heading = "The paper's experiments: aliases",
                     .paragraphs = {"Gridding repeats the sky at every whole x, tapered: a source at x comes back at x − n, "
                                    "times the taper c(x) and the correction h(x − n)."},
-                    .figures = {levels_figure(compared_kernels(solved, shown_width, x0))},
+                    .figures = {levels_figure(compared_kernels(solved, shown_width, paper_x0))},
                     .tables = {table}};
   result.statements = {
       hundredfold_row("Suppression of aliases: spheroidal over least-misfit, same W, x₀ = 0.25", ratio_by_width)};

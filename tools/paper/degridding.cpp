@@ -15,9 +15,8 @@ namespace {
 
 using kernels::Precision;
 
-constexpr double x0 = 0.25;
 constexpr int narrowest = 2;
-constexpr int widest = 16;
+constexpr int widest_measured = 16;
 
 /// The sources as an image.
 imager::Image model_of(const CardScene& scene) {
@@ -32,7 +31,7 @@ imager::Image model_of(const CardScene& scene) {
 
 /// ‖predicted − direct‖ / ‖direct‖.
 double measured_error(const CardScene& scene, const kernels::Kernel& kernel, Precision precision) {
-  const int size = fft_size_for(scene, x0);
+  const int size = fft_size_for(scene, paper_x0);
   const auto transform =
       imager::make_plane_transform({scene.geometry, size, size, kernel, kernel, precision, imager::available_threads()});
   const std::vector<std::complex<double>> predicted = transform->predict(model_of(scene))->at(scene.block);
@@ -47,7 +46,7 @@ double measured_error(const CardScene& scene, const kernels::Kernel& kernel, Pre
 
 /// √(Σ S² (ℓ(x) + ℓ(y)) / Σ S²) over the sources: each errs by its own map errors, in directions that do not correlate.
 double expected_error(const CardScene& scene, const kernels::Kernel& kernel) {
-  const double per_rad = 1 / (scene.geometry.cell_rad * fft_size_for(scene, x0));
+  const double per_rad = 1 / (scene.geometry.cell_rad * fft_size_for(scene, paper_x0));
   double error = 0;
   double norm = 0;
   for (const imager::Source& source : scene.sources) {
@@ -80,8 +79,8 @@ std::vector<Series> empty_series() {
 
 std::vector<Series> errors_by_width(const CardScene& scene, SolvedKernels& solved) {
   std::vector<Series> series = empty_series();
-  for (int width = narrowest; width <= widest; ++width) {
-    const ComparedKernels pair = compared_kernels(solved, width, x0);
+  for (int width = narrowest; width <= widest_measured; ++width) {
+    const ComparedKernels pair = compared_kernels(solved, width, paper_x0);
     for (std::size_t k = 0; k < ways.size(); ++k)
       series[k].y.push_back(measured_error(scene, pair.*ways[k].kernel, ways[k].precision));
     series[ways.size()].y.push_back(expected_error(scene, pair.least_misfit));
@@ -125,7 +124,7 @@ PaperExperiment degridding_experiment(const CardScene& scene, SolvedKernels& sol
                    .caption =
                        "Broken: √(Σ S² (ℓ(x) + ℓ(y)) / Σ S²) over the sources, of fluxes S. Curves leave it where rounding "
                        "takes over.",
-                   .x = {.label = "width W", .from = narrowest - 0.5, .to = widest + 0.5},
+                   .x = {.label = "width W", .from = narrowest - 0.5, .to = widest_measured + 0.5},
                    .y = {.label = "RMS misfit", .logarithmic = true, .from = 1e-16, .to = 1},
                    .series = series}},
       .tables = {errors_table(series)}};

@@ -14,7 +14,6 @@
 namespace misfit::tools {
 namespace {
 
-constexpr double x0 = 0.25;
 constexpr std::array<int, 7> widths{2, 4, 6, 7, 8, 10, 12};
 
 /// A kernel's misfit, measured and expected.
@@ -33,7 +32,7 @@ struct Compared {
 
 /// The image by gridding and FFT with one kernel on both axes, not divided by Σ w.
 imager::Image gridded_image(const CardScene& scene, const kernels::Kernel& kernel) {
-  const int size = fft_size_for(scene, x0);
+  const int size = fft_size_for(scene, paper_x0);
   const auto transform = imager::make_plane_transform(
       {scene.geometry, size, size, kernel, kernel, kernels::Precision::double_precision, imager::available_threads()});
   const auto sum = transform->adjoint({});
@@ -42,7 +41,7 @@ imager::Image gridded_image(const CardScene& scene, const kernels::Kernel& kerne
 }
 
 Compared compare(const CardScene& scene, const kernels::Kernel& kernel) {
-  const int size = fft_size_for(scene, x0);
+  const int size = fft_size_for(scene, paper_x0);
   const imager::Image image = gridded_image(scene, kernel);
   const Eigen::VectorXd map_error = kernels::map_error(kernel.polynomial, pixel_offsets(scene.geometry.width, size));
   const AxisErrors errors{map_error, map_error};  // 1 − hc = ℓ with the optimal h
@@ -56,7 +55,7 @@ Figure misfit_figure(const std::string& name, const std::string& title, const st
       .caption =
           "RMS of gridded − direct image in strips of pixels at |x| and |y|, relative to the RMS that the image would "
           "have with random phases. Broken: √(ℓ(x) + E), since the two axes add their map errors.",
-      .x = {.label = "x, offset from the phase centre / size of the FFT", .from = 0, .to = x0},
+      .x = {.label = "x, offset from the phase centre / size of the FFT", .from = 0, .to = paper_x0},
       .y = {.label = "RMS misfit", .logarithmic = true, .from = 1e-14, .to = 1},
       .series = {}};
   Series law{.label = "theory", .x = {}, .y = {}, .law = true};
@@ -111,7 +110,7 @@ PaperExperiment image_misfit_experiment(const CardScene& scene, SolvedKernels& s
   std::vector<Compared> least;
   std::vector<Compared> spheroidal;
   for (const int width : widths) {
-    const ComparedKernels pair = compared_kernels(solved, width, x0);
+    const ComparedKernels pair = compared_kernels(solved, width, paper_x0);
     least.push_back(compare(scene, pair.least_misfit));
     spheroidal.push_back(compare(scene, pair.spheroidal));
   }
@@ -125,7 +124,8 @@ PaperExperiment image_misfit_experiment(const CardScene& scene, SolvedKernels& s
           {"The 34 sources of the paper's test card, as `misfit simulate` has them, seen by the VLA in configuration A "
            "at 4 GHz in snapshots over six hours: " +
                grouped(static_cast<long long>(scene.block.samples())) + " visibilities without w and noise, " + pixels +
-               "² pixels of 0.05″ out of an FFT of " + std::to_string(fft_size_for(scene, x0)) + "², x₀ = 0.25, in doubles.",
+               "² pixels of 0.05″ out of an FFT of " + std::to_string(fft_size_for(scene, paper_x0)) +
+               "², x₀ = 0.25, in doubles.",
            "Each visibility errs by its own position in a cell, so that errors add up at random, whatever the phases "
            "are. They are shown relative to what the RMS of the image would be with random phases; it is " +
                significant(coherence(scene), 3) + " times that."},

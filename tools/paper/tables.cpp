@@ -17,13 +17,12 @@ using kernels::Interpolation;
 using kernels::TableOptions;
 
 constexpr int width = 7;
-constexpr double x0 = 0.25;
 
 constexpr std::array<const char*, 4> degree_names{"nearest", "linear", "quadratic", "cubic"};
 constexpr std::array<int, 10> sizes{10, 30, 100, 300, 1000, 3000, 10000, 100000, 1000000, 10000000};
 
 /// Measured and expected misfit of one table.
-struct Compared {
+struct ComparedTables {
   TableOptions table;
   MisfitProfile measured;
   MisfitProfile expected;
@@ -35,12 +34,12 @@ class TableImages {
   TableImages(const CardScene& scene, const kernels::Kernel& kernel)
       : scene_(scene),
         kernel_(kernel),
-        size_(fft_size_for(scene, x0)),
+        size_(fft_size_for(scene, paper_x0)),
         x_(pixel_offsets(scene.geometry.width, size_)),
         correction_(kernels::optimal_correction(kernel.polynomial, x_)),
         map_error_(kernels::map_error(kernel.polynomial, x_)) {}
 
-  Compared operator()(const TableOptions& options) const {
+  ComparedTables operator()(const TableOptions& options) const {
     const kernels::Evaluation table =
         kernels::evaluate_by_table(kernel_.polynomial, options, kernels::Precision::double_precision);
     const imager::Image image = plain_image({scene_.geometry, size_, table.taps, correction_}, scene_.block, scene_.visibility);
@@ -49,7 +48,7 @@ class TableImages {
 
  private:
   /// Of interpolation, δ = binomial(p, d+1) (2πx/Ms)^(d+1): its mean square adds to ℓ (kernels::table_misfit is the mean of
-  /// that over |x| ≤ x0). Its mean is not 0 for odd d, where the curve between two entries always bends to one side.
+  /// that over |x| ≤ paper_x0). Its mean is not 0 for odd d, where the curve between two entries always bends to one side.
   MisfitProfile expected(const TableOptions& options) const {
     constexpr std::array<double, 4> mean_binomial{0, 1.0 / 12, 0, 19.0 / 720};
     const int degree = static_cast<int>(options.interpolation);
@@ -70,21 +69,21 @@ class TableImages {
 };
 
 /// [degree][size]; without entries where a finer table than the last is as good as the function.
-using AllTables = std::array<std::vector<Compared>, 4>;
+using AllTables = std::array<std::vector<ComparedTables>, 4>;
 
 AllTables all_tables(const CardScene& scene, const kernels::Kernel& kernel) {
   const TableImages images(scene, kernel);
   struct Job {
     std::size_t degree;
     TableOptions options;
-    Compared result;
+    ComparedTables result;
   };
   std::vector<Job> jobs;
   for (std::size_t degree = 0; degree < degree_names.size(); ++degree) {
     for (const int samples : sizes) {
       const TableOptions options{samples, static_cast<Interpolation>(degree)};
       jobs.push_back({degree, options, {}});
-      if (kernels::table_misfit(options, x0) < 0.01 * kernel.misfit.mean) break;
+      if (kernels::table_misfit(options, paper_x0) < 0.01 * kernel.misfit.mean) break;
     }
   }
   imager::parallel_for(jobs.size(), imager::available_threads(),
@@ -95,14 +94,14 @@ AllTables all_tables(const CardScene& scene, const kernels::Kernel& kernel) {
 }
 
 Figure by_x_figure(const std::string& name, const std::string& title, const std::vector<std::string>& labels,
-                   const std::vector<const Compared*>& shown) {
+                   const std::vector<const ComparedTables*>& shown) {
   Figure figure{.name = name,
                 .title = title,
                 .caption =
                     "As measured in the image of the test card. Broken: theory, for which interpolation of degree d adds "
                     "κ² (2πx/Ms)²ᵈ⁺² to ℓ(x). Linear and cubic interpolation err to one side, so that a part of their error "
                     "is the image itself, scaled.",
-                .x = {.label = "x, offset from the phase centre / size of the FFT", .from = 0, .to = x0},
+                .x = {.label = "x, offset from the phase centre / size of the FFT", .from = 0, .to = paper_x0},
                 .y = {.label = "RMS misfit", .logarithmic = true},
                 .series = {}};
   Series law{.label = "theory", .x = {}, .y = {}, .law = true};
@@ -118,15 +117,15 @@ Figure by_x_figure(const std::string& name, const std::string& title, const std:
   return figure;
 }
 
-const Compared* find(const std::vector<Compared>& tables, int samples) {
-  const auto found =
-      std::find_if(tables.begin(), tables.end(), [=](const Compared& one) { return one.table.samples_per_cell == samples; });
+const ComparedTables* find(const std::vector<ComparedTables>& tables, int samples) {
+  const auto found = std::find_if(tables.begin(), tables.end(),
+                                  [=](const ComparedTables& one) { return one.table.samples_per_cell == samples; });
   return found == tables.end() ? nullptr : &*found;
 }
 
 Figure nearest_figure(const AllTables& all) {
   std::vector<std::string> labels;
-  std::vector<const Compared*> shown;
+  std::vector<const ComparedTables*> shown;
   for (const int samples : {100, 1000, 10000, 100000, 1000000, 10000000}) {
     labels.push_back("Ms = " + power_of_ten(samples, 2));
     shown.push_back(find(all[0], samples));
@@ -136,7 +135,7 @@ Figure nearest_figure(const AllTables& all) {
 
 Figure degrees_figure(const AllTables& all) {
   std::vector<std::string> labels;
-  std::vector<const Compared*> shown;
+  std::vector<const ComparedTables*> shown;
   for (std::size_t degree = 0; degree < all.size(); ++degree) {
     labels.emplace_back(degree_names[degree]);
     shown.push_back(find(all[degree], 30));
@@ -156,8 +155,8 @@ DataTable by_size_table(const AllTables& all) {
       .rows = {}};
   for (const int samples : sizes) {
     table.rows.push_back({static_cast<double>(samples)});
-    for (const std::vector<Compared>& tables : all) {
-      const Compared* one = find(tables, samples);
+    for (const std::vector<ComparedTables>& tables : all) {
+      const ComparedTables* one = find(tables, samples);
       table.rows.back().emplace_back(one == nullptr ? std::nan("") : one->measured.whole);
       table.rows.back().emplace_back(one == nullptr ? std::nan("") : one->expected.whole);
     }
@@ -168,8 +167,8 @@ DataTable by_size_table(const AllTables& all) {
 /// The largest deviation of the whole image's misfit from the law where Ms is large enough for it.
 double largest_deviation(const AllTables& all) {
   double largest = 0;
-  for (const std::vector<Compared>& tables : all)
-    for (const Compared& one : tables)
+  for (const std::vector<ComparedTables>& tables : all)
+    for (const ComparedTables& one : tables)
       if (one.table.samples_per_cell >= 30) largest = std::max(largest, std::abs(one.measured.whole / one.expected.whole - 1));
   return largest;
 }
@@ -177,9 +176,9 @@ double largest_deviation(const AllTables& all) {
 }  // namespace
 
 PaperExperiment table_experiment(const CardScene& scene, SolvedKernels& solved) {
-  const kernels::Kernel kernel = store("least-misfit", solved(width, x0));
+  const kernels::Kernel kernel = store("least-misfit", solved(width, paper_x0));
   const AllTables all = all_tables(scene, kernel);
-  const double million = std::sqrt(kernel.misfit.mean + kernels::table_misfit({1000000, Interpolation::nearest}, x0));
+  const double million = std::sqrt(kernel.misfit.mean + kernels::table_misfit({1000000, Interpolation::nearest}, paper_x0));
   constexpr double sampling_error = 0.2;
   const double deviation = largest_deviation(all);
   PaperExperiment result;

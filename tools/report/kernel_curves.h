@@ -11,6 +11,9 @@
 
 namespace misfit::tools {
 
+/// That of most kernels in the paper (Ye, Gull, Tan & Nikolic 2020), a padding of 2, and of most of those in reports.
+inline constexpr double paper_x0 = 0.25;
+
 /// Least-misfit functions, each solved when it is first asked for.
 class SolvedKernels {
  public:
