@@ -15,7 +15,7 @@ using kernels::Evaluation;
 using kernels::Interpolation;
 using kernels::Precision;
 
-constexpr int width = 7;
+constexpr int table_width = 7;
 
 struct Degree {
   Interpolation interpolation;
@@ -101,7 +101,7 @@ DataTable ways_to_evaluate(const kernels::LeastMisfit& solution, const kernels::
     ways.push_back(kernels::evaluate_directly(solution, precision));
     for (const kernels::TableOptions& shape : shapes)
       ways.push_back(kernels::evaluate_by_table(kernel.polynomial, shape, precision));
-    for (const int degree : {width - 1, width, width + 1, kernel.polynomial.degree()})
+    for (const int degree : {table_width - 1, table_width, table_width + 1, kernel.polynomial.degree()})
       ways.push_back(kernels::evaluate_by_polynomial(kernels::fit_polynomial(kernel.polynomial, degree), precision));
   }
   const std::vector<double> time_ns = nanoseconds_a_visibility(ways, {});
@@ -116,7 +116,7 @@ DataTable ways_to_evaluate(const kernels::LeastMisfit& solution, const kernels::
 }  // namespace
 
 ReportSection evaluation_section(SolvedKernels& solved) {
-  const kernels::LeastMisfit& solution = solved(width, paper_x0);
+  const kernels::LeastMisfit& solution = solved(table_width, paper_x0);
   const kernels::Kernel kernel = store("least-misfit", solution);
   ReportSection section{
       .heading = "Tables and other ways to evaluate",

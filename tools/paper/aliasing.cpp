@@ -19,7 +19,7 @@ namespace {
 
 constexpr int shown_width = 7;
 constexpr int pixels = 32;
-constexpr int fft_size = 2 * pixels;
+constexpr int alias_fft_size = 2 * pixels;
 constexpr double farthest = 3.25;  // sizes of the FFT
 constexpr int fields = 3;          // that alias into the image, on either side
 /// Of the FFT, in pixels, so that sources are pixels of the endless plane.
@@ -71,7 +71,7 @@ class LargestErrors {
         spheroidal_(plane(field, pair.spheroidal)) {}
 
   std::pair<double, double> operator()(double x) const {
-    const imager::Source source{{x * fft_size * field_.geometry.cell_rad, 0}, 1};
+    const imager::Source source{{x * alias_fft_size * field_.geometry.cell_rad, 0}, 1};
     const std::vector<std::complex<double>> visibility = imager::predict_sources({source}, field_.block, 1, false);
     const std::vector<double> exact = image_by(direct_, visibility);
     return {largest(image_by(*least_misfit_, visibility), exact), largest(image_by(*spheroidal_, visibility), exact)};
@@ -80,7 +80,7 @@ class LargestErrors {
  private:
   static std::unique_ptr<imager::Transform> plane(const SmallField& field, const kernels::Kernel& kernel) {
     return imager::make_plane_transform(
-        {field.geometry, fft_size, fft_size, kernel, kernel, kernels::Precision::double_precision, 1});
+        {field.geometry, alias_fft_size, alias_fft_size, kernel, kernel, kernels::Precision::double_precision, 1});
   }
   std::vector<double> image_by(const imager::Transform& transform, const std::vector<std::complex<double>>& visibility) const {
     const auto sum = transform.adjoint({});
@@ -102,8 +102,8 @@ class LargestErrors {
 /// Of the least-misfit and the spheroidal function.
 std::vector<Series> measured_levels(const SmallField& field, const ComparedKernels& pair) {
   Series least{.label = "least-misfit", .x = {}, .y = {}, .points = true, .line = false};
-  for (int p = static_cast<int>(paper_x0 * fft_size) + step / 2; p <= farthest * fft_size; p += step)
-    least.x.push_back(static_cast<double>(p) / fft_size);
+  for (int p = static_cast<int>(paper_x0 * alias_fft_size) + step / 2; p <= farthest * alias_fft_size; p += step)
+    least.x.push_back(static_cast<double>(p) / alias_fft_size);
   least.y.resize(least.x.size());
   Series spheroidal = least;
   spheroidal.label = "spheroidal";

@@ -13,9 +13,9 @@
 namespace misfit::tools {
 namespace {
 
-constexpr double degree = imager::pi / 180;
-constexpr double card_cell_rad = 0.05 / 3600 * degree;
-constexpr double hour_angle_span = 6 * 15 * degree;
+constexpr double degree_rad = imager::pi / 180;
+constexpr double card_cell_rad = 0.05 / 3600 * degree_rad;
+constexpr double hour_angle_span = 6 * 15 * degree_rad;
 constexpr int strips = 40;
 
 /// Sums of squares in the strips of an image that is as wide as high.
@@ -78,7 +78,7 @@ imager::ImageGeometry card_geometry(const CardSceneOptions& options) {
 
 imager::VisibilityBlock card_samples(const CardSceneOptions& options) {
   constexpr double frequency_hz = 4e9;
-  constexpr double declination = 40 * degree;
+  constexpr double declination = 40 * degree_rad;
   const AntennaArray array = antenna_array(options.array);
   imager::VisibilityBlock block;
   block.frequency_hz = {frequency_hz};

@@ -16,7 +16,7 @@ namespace {
 using kernels::Interpolation;
 using kernels::TableOptions;
 
-constexpr int width = 7;
+constexpr int tables_width = 7;
 
 constexpr std::array<const char*, 4> degree_names{"nearest", "linear", "quadratic", "cubic"};
 constexpr std::array<int, 10> sizes{10, 30, 100, 300, 1000, 3000, 10000, 100000, 1000000, 10000000};
@@ -176,7 +176,7 @@ double largest_deviation(const AllTables& all) {
 }  // namespace
 
 PaperExperiment table_experiment(const CardScene& scene, SolvedKernels& solved) {
-  const kernels::Kernel kernel = store("least-misfit", solved(width, paper_x0));
+  const kernels::Kernel kernel = store("least-misfit", solved(tables_width, paper_x0));
   const AllTables all = all_tables(scene, kernel);
   const double million = std::sqrt(kernel.misfit.mean + kernels::table_misfit({1000000, Interpolation::nearest}, paper_x0));
   constexpr double sampling_error = 0.2;

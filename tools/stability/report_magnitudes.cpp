@@ -16,16 +16,16 @@ namespace misfit::tools {
 namespace {
 
 constexpr int pixels = 48;
-constexpr double cell_rad = 1e-6;
-constexpr int width = 12;
+constexpr double pixel_rad = 1e-6;
+constexpr int wide_kernel = 12;
 constexpr int samples = 1000;
 
 imager::ImageGeometry geometry() {
-  return {pixels, pixels, cell_rad, {}};
+  return {pixels, pixels, pixel_rad, {}};
 }
 
 std::unique_ptr<imager::Transform> plane(imager::Precision precision) {
-  const kernels::Kernel kernel = kernels::kernel_family("least-misfit").make(width, 0.25);
+  const kernels::Kernel kernel = kernels::kernel_family("least-misfit").make(wide_kernel, 0.25);
   return imager::make_plane_transform({geometry(), 2 * pixels, 2 * pixels, kernel, kernel, precision, 1});
 }
 
@@ -37,7 +37,7 @@ imager::VisibilityBlock random_block(double reach) {
   imager::VisibilityBlock block;
   block.frequency_hz = {imager::speed_of_light_m_s};  // so that metres are wavelengths
   for (int i = 0; i < samples; ++i) {
-    for (int axis = 0; axis < 2; ++axis) block.uvw_m.edit().push_back(uniform(random) / (2 * cell_rad));
+    for (int axis = 0; axis < 2; ++axis) block.uvw_m.edit().push_back(uniform(random) / (2 * pixel_rad));
     block.uvw_m.edit().push_back(0);
     block.visibility.emplace_back(normal(random), normal(random));
     block.weight.push_back(1);
