@@ -54,13 +54,15 @@ class Definition(unittest.TestCase):
                 self.assertLessEqual(relative_error(vis, truth), epsilon)
 
     def test_so_they_do_where_gridding_is_cheaper_than_direct_sums(self):
-        for fov, epsilon, do_wgridding in itertools.product((0.1, 20), (1e-3, 1e-6, 1e-10), (False, True)):
+        for fov, do_wgridding in itertools.product((0.1, 20), (False, True)):
             scene = Scene(fov, (80, 61), 1500, 2, do_wgridding=do_wgridding)
-            with self.subTest(fov=fov, epsilon=epsilon, do_wgridding=do_wgridding):
-                image = misfit.vis2dirty(**scene.image_options(epsilon))
-                self.assertLessEqual(relative_error(image, scene.image()), epsilon)
-                vis = misfit.dirty2vis(**scene.options(epsilon, dirty=scene.dirty))
-                self.assertLessEqual(relative_error(vis, scene.visibilities()), epsilon)
+            image_truth, vis_truth = scene.image(), scene.visibilities()
+            for epsilon in (1e-3, 1e-6, 1e-10):
+                with self.subTest(fov=fov, epsilon=epsilon, do_wgridding=do_wgridding):
+                    image = misfit.vis2dirty(**scene.image_options(epsilon))
+                    self.assertLessEqual(relative_error(image, image_truth), epsilon)
+                    vis = misfit.dirty2vis(**scene.options(epsilon, dirty=scene.dirty))
+                    self.assertLessEqual(relative_error(vis, vis_truth), epsilon)
 
     def test_centers_flips_and_n_mean_what_they_say(self):
         for divide_by_n in (False, True):
