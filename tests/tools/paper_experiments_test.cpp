@@ -123,7 +123,7 @@ BOOST_AUTO_TEST_CASE(images_err_by_the_square_root_of_twice_the_misfit) {
   }
 }
 
-BOOST_AUTO_TEST_CASE(tables_add_to_images_what_interpolation_leaves) {
+BOOST_AUTO_TEST_CASE(tables_add_to_images_what_interpolation_leaves, *boost::unit_test::label("sweep")) {
   const DataTable& table = tables().section.tables.at(0);
   int compared = 0;
   for (std::size_t row = 0; row < table.rows.size(); ++row) {

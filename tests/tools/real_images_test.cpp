@@ -36,7 +36,7 @@ void check_beam(const nlohmann::json& beam, double major_arcsec, double minor_ar
 // Peaks, noise and beams are those that WSClean 3.1 gets with -use-wgridder -mgain 0.8 -auto-threshold 3, whose beams are
 // fitted to a quadrant (`beam_by_quadrant`) and whose noise is 1.4826 × the median absolute deviation of the residual.
 
-BOOST_AUTO_TEST_CASE(alma_shows_the_dust_ring_with_its_gap) {
+BOOST_AUTO_TEST_CASE(alma_shows_the_dust_ring_with_its_gap, *boost::unit_test::label("sweep")) {
   const Unpacked data("alma_hd142527_b9");
   if (!data.present()) return;
   // Restored with WSClean's beam, and as deep: 3 times the noise that its dirty image has. Components are a tenth of that where
@@ -79,7 +79,7 @@ BOOST_AUTO_TEST_CASE(lofar_shows_3c295_alone, *boost::unit_test::label("sweep"))
   check_beam(report_of(data / "lofar")["beam_by_quadrant"], 246, 178);
 }
 
-BOOST_AUTO_TEST_CASE(vlba_shows_the_core_and_the_jet_to_the_west) {
+BOOST_AUTO_TEST_CASE(vlba_shows_the_core_and_the_jet_to_the_west, *boost::unit_test::label("sweep")) {
   const Unpacked data("vlba_m87_mojave");
   if (!data.present()) return;
   succeed({"image", "--vis", data / "vlba_m87_mojave.ms", "--imagename", data / "vlba", "--imsize", "512", "--cell",
@@ -91,7 +91,7 @@ BOOST_AUTO_TEST_CASE(vlba_shows_the_core_and_the_jet_to_the_west) {
   for (const double r : {15, 20, 25}) BOOST_TEST(towards(image, r, 285) > 5 * std::abs(towards(image, r, 105)));
 }
 
-BOOST_AUTO_TEST_CASE(askap_shows_its_two_sources) {
+BOOST_AUTO_TEST_CASE(askap_shows_its_two_sources, *boost::unit_test::label("sweep")) {
   const Unpacked data("askap36_sim_4chan");
   if (!data.present()) return;
   succeed({"image", "--vis", data / "askap36_sim_4chan.ms", "--imagename", data / "askap", "--imsize", "1024", "--cell",
@@ -108,7 +108,7 @@ BOOST_AUTO_TEST_CASE(askap_shows_its_two_sources) {
   BOOST_TEST(second == image.at(508, 551));
 }
 
-BOOST_AUTO_TEST_CASE(atca_shows_a_point_at_the_centre) {
+BOOST_AUTO_TEST_CASE(atca_shows_a_point_at_the_centre, *boost::unit_test::label("sweep")) {
   const Unpacked data("atca_sim_tileddata");
   if (!data.present()) return;
   for (const char* weighting : {"natural", "uniform"}) {
