@@ -1,4 +1,4 @@
-// Lets all tests but those of kernels/ take solved kernels from one cache, whose bits are those that solving gives.
+// Lets tests of imager/, hosts/ and tools/ take solved kernels from one cache, whose bits are those that solving gives.
 #include <boost/test/unit_test.hpp>
 #include <cstdlib>
 
