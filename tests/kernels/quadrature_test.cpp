@@ -1,8 +1,11 @@
 #include "kernels/quadrature.h"
 
+#include <array>
 #include <boost/test/data/test_case.hpp>
 #include <boost/test/unit_test.hpp>
 #include <cmath>
+#include <thread>
+#include <vector>
 
 using misfit::kernels::gauss_legendre;
 
@@ -15,6 +18,20 @@ BOOST_DATA_TEST_CASE(integrates_polynomials_of_degree_2n_minus_1_exactly, boost:
     const double exact = (std::pow(1.5, degree + 1) - std::pow(-0.5, degree + 1)) / (degree + 1);
     BOOST_TEST(std::abs(integral / exact - 1) < 1e-13);  // a few dozen roundings
   }
+}
+
+/// Each is the first to ask for some of the rules.
+BOOST_AUTO_TEST_CASE(threads_that_ask_at_once_get_the_same_rules) {
+  std::array<std::vector<misfit::kernels::Quadrature>, 4> got;
+  std::vector<std::thread> threads;
+  for (auto& rules : got)
+    threads.emplace_back([&rules] {
+      for (int points = 70; points < 110; ++points) rules.push_back(gauss_legendre(points, 0, 1));
+    });
+  for (std::thread& thread : threads) thread.join();
+  for (const auto& rules : got)
+    for (std::size_t i = 0; i < rules.size(); ++i)
+      BOOST_TEST((rules[i].node == got[0][i].node && rules[i].weight == got[0][i].weight));
 }
 
 BOOST_AUTO_TEST_CASE(nodes_ascend_inside_the_interval) {
