@@ -48,7 +48,7 @@ class TableImages {
 
  private:
   /// Of interpolation, δ = binomial(p, d+1) (2πx/Ms)^(d+1): its mean square adds to ℓ (kernels::table_misfit is the mean of
-  /// that over |x| ≤ paper_x0). Its mean is not 0 for odd d, where the curve between two entries always bends to one side.
+  /// that over |x| ≤ x0). Its mean is not 0 for odd d, where the curve between two entries always bends to one side.
   MisfitProfile expected(const TableOptions& options) const {
     constexpr std::array<double, 4> mean_binomial{0, 1.0 / 12, 0, 19.0 / 720};
     const int degree = static_cast<int>(options.interpolation);

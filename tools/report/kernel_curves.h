@@ -11,7 +11,7 @@
 
 namespace misfit::tools {
 
-/// That of most kernels in the paper (Ye, Gull, Tan & Nikolic 2020), a padding of 2, and of most of those in reports.
+/// The x0 of most kernels in the paper (Ye, Gull, Tan & Nikolic 2020) and in reports: that of a padding of 2.
 inline constexpr double paper_x0 = 0.25;
 
 /// Least-misfit functions, each solved when it is first asked for.
