@@ -79,7 +79,8 @@ bool is_there(const std::string& path) {
 
 }  // namespace
 
-BOOST_AUTO_TEST_CASE(astropy_and_casacore_find_pixels_and_planes_where_the_header_has_them) {
+BOOST_AUTO_TEST_CASE(astropy_and_casacore_find_pixels_and_planes_where_the_header_has_them,
+                     *boost::unit_test::label("others")) {
   if (!readers_are_there()) return;
   const TemporaryFolder folder;
   const std::vector<imager::ImageGeometry> geometries{
@@ -108,7 +109,7 @@ BOOST_AUTO_TEST_CASE(astropy_and_casacore_find_pixels_and_planes_where_the_heade
   }
 }
 
-BOOST_AUTO_TEST_CASE(astropy_and_casacore_read_the_same_headers_beams_masks_and_history) {
+BOOST_AUTO_TEST_CASE(astropy_and_casacore_read_the_same_headers_beams_masks_and_history, *boost::unit_test::label("others")) {
   if (!readers_are_there()) return;
   const TemporaryFolder folder;
   const imager::ImageHeader header = example_header(4, "IQ");

@@ -138,7 +138,7 @@ BOOST_AUTO_TEST_CASE(every_image_is_drawn_and_nothing_else_is_left) {
   BOOST_TEST(std::distance(fs::directory_iterator(folder.path), fs::directory_iterator()) == 3);
 }
 
-BOOST_AUTO_TEST_CASE(east_is_left_and_north_is_up) {
+BOOST_AUTO_TEST_CASE(east_is_left_and_north_is_up, *boost::unit_test::label("others")) {
   const Folder folder;
   for (const int column : {2, 8}) {
     for (const int row : {1, 7}) {
@@ -154,7 +154,7 @@ BOOST_AUTO_TEST_CASE(east_is_left_and_north_is_up) {
   }
 }
 
-BOOST_AUTO_TEST_CASE(pixels_without_value_have_the_colour_of_the_background) {
+BOOST_AUTO_TEST_CASE(pixels_without_value_have_the_colour_of_the_background, *boost::unit_test::label("others")) {
   const Folder folder;
   SkyImage sky = sky_image(10, 10);
   sky.image.at(2, 7) = 1;
@@ -185,7 +185,7 @@ BOOST_AUTO_TEST_CASE(a_sketch_draws_what_its_image_would) {
   }
 }
 
-BOOST_AUTO_TEST_CASE(a_mask_is_outlined_where_it_lies) {
+BOOST_AUTO_TEST_CASE(a_mask_is_outlined_where_it_lies, *boost::unit_test::label("others")) {
   SkyImage sky = sky_image(10, 10);
   sky.image.at(5, 5) = 1;
   Image mask(10, 10);
@@ -204,7 +204,7 @@ BOOST_AUTO_TEST_CASE(a_mask_is_outlined_where_it_lies) {
   BOOST_TEST(std::abs(outline.y / outline.count - source.y / source.count - 1.5 * 64) < 32);
 }
 
-BOOST_AUTO_TEST_CASE(a_mask_of_nothing_or_of_everything_has_no_outline) {
+BOOST_AUTO_TEST_CASE(a_mask_of_nothing_or_of_everything_has_no_outline, *boost::unit_test::label("others")) {
   SkyImage sky = sky_image(10, 10);
   sky.image.at(5, 5) = 1;
   const Folder folder;
@@ -216,7 +216,7 @@ BOOST_AUTO_TEST_CASE(a_mask_of_nothing_or_of_everything_has_no_outline) {
   }
 }
 
-BOOST_AUTO_TEST_CASE(a_beam_is_drawn_to_scale_unless_it_takes_half_of_a_side) {
+BOOST_AUTO_TEST_CASE(a_beam_is_drawn_to_scale_unless_it_takes_half_of_a_side, *boost::unit_test::label("others")) {
   SkyImage sky = sky_image(64, 64);
   const Folder folder;
   const auto ink = [&](double beam_pixels) {
