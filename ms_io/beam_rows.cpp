@@ -3,6 +3,7 @@
 #include <set>
 
 #include "ms_io/beam_rows_internal.h"
+#include "ms_io/celestial_frames.h"
 #include "ms_io/metadata_internal.h"
 #include "ms_io/phase_centre_internal.h"
 #include "ms_io/row_columns_internal.h"

@@ -86,7 +86,7 @@ imager::ImageGeometry geometry_of(casacore::DirectionCoordinate direction, const
   direction.setWorldAxisUnits(casacore::Vector<casacore::String>(2, "rad"));
   const auto type = direction.directionType();
   const std::string frame = frame_name(type);
-  if (frame.empty())
+  if (frame.empty() || frame == "GALACTIC")
     refuse(path, "its directions are in " + casacore::MDirection::showType(type) + "; expected J2000, ICRS or B1950");
   if (direction.projection().type() != casacore::Projection::SIN)
     refuse(path, "its projection is " + direction.projection().name() + "; expected SIN");

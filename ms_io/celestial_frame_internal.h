@@ -4,21 +4,19 @@
 
 #include <string>
 
+#include "ms_io/celestial_frames.h"
+
 namespace misfit::ms_io {
 
-/// casacore's code of a frame that SkyDirection names.
-inline casacore::MDirection::Types direction_type(const std::string& frame) {
-  return frame == "ICRS"  ? casacore::MDirection::ICRS
-         : frame == "FK4" ? casacore::MDirection::B1950
-                          : casacore::MDirection::J2000;
-}
+/// casacore's code of a frame of in_frame(). Throws std::invalid_argument for another.
+casacore::MDirection::Types direction_type(const std::string& frame);
 
-/// The frame that a code stands for; empty where SkyDirection has no name for it.
-inline std::string frame_name(casacore::MDirection::Types type) {
-  return type == casacore::MDirection::ICRS    ? "ICRS"
-         : type == casacore::MDirection::B1950 ? "FK4"
-         : type == casacore::MDirection::J2000 ? "FK5"
-                                               : "";
-}
+/// The frame that a code stands for; empty where in_frame() has no name for it.
+std::string frame_name(casacore::MDirection::Types type);
+
+/// 0 ≤ ra_rad < 2π. The frame is empty where frame_name() is.
+imager::SkyDirection sky_direction(const casacore::MDirection& direction);
+
+casacore::MDirection measure_of(const imager::SkyDirection& direction);
 
 }  // namespace misfit::ms_io

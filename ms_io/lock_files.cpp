@@ -54,7 +54,7 @@ std::uint64_t check_lock_file(const std::string& table) {
     fail(file, std::strerror(errno));
   }
   std::array<unsigned char, state_at> head{};
-  const ssize_t got = read(descriptor, head.data(), head.size());
+  const ssize_t got = ::read(descriptor, head.data(), head.size());
   const int error = errno;
   close(descriptor);
   if (got < 0) fail(file, std::strerror(error));

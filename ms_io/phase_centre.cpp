@@ -19,16 +19,6 @@
 namespace misfit::ms_io {
 namespace {
 
-imager::SkyDirection sky_direction(const casacore::MDirection& direction) {
-  constexpr double turn = 2 * 3.14159265358979323846;
-  const auto& towards = direction.getValue();
-  imager::SkyDirection sky;
-  sky.ra_rad = towards.getLong() < 0 ? towards.getLong() + turn : towards.getLong();
-  sky.dec_rad = std::atan2(towards(2), std::hypot(towards(0), towards(1)));  // getLat() is not exact beside the poles
-  sky.frame = frame_name(casacore::MDirection::castType(direction.getRef().getType()));
-  return sky;
-}
-
 using Vector = imager::UvwAxes::Vector;
 
 /// A unit vector in one frame as another has it, at a time.
@@ -76,10 +66,6 @@ void require_directions(const casacore::MSFieldColumns& columns, const casacore:
 
 }  // namespace
 
-casacore::MDirection measure_of(const imager::SkyDirection& direction) {
-  return {casacore::MVDirection(direction.ra_rad, direction.dec_rad), direction_type(direction.frame)};
-}
-
 casacore::MeasFrame frame_of(const casacore::MeasurementSet& set, std::uint64_t row) {
   casacore::MeasFrame frame(casacore::ScalarMeasColumn<casacore::MEpoch>(set, "TIME")(row));
   casacore::MPosition position;
@@ -112,12 +98,6 @@ imager::SkyDirection field_pointing(const casacore::MeasurementSet& set, const s
     const double time = casacore::ScalarColumn<double>(set, "TIME")(row);
     return sky_direction(equatorial(columns.referenceDirMeas(index, time), set, row));
   });
-}
-
-imager::SkyDirection in_frame(const imager::SkyDirection& direction, const std::string& frame) {
-  if (direction.frame == frame) return direction;
-  return sky_direction(
-      casacore::MDirection::Convert(measure_of(direction), casacore::MDirection::Ref(direction_type(frame)))());
 }
 
 double separation_rad(const imager::SkyDirection& a, const imager::SkyDirection& b) {

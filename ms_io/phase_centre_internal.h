@@ -29,16 +29,11 @@ struct FieldCentre {
 /// std::runtime_error when there is no such field.
 FieldCentre field_centre(const casacore::MeasurementSet& set, const std::string& path, int field, std::uint64_t row);
 
-casacore::MDirection measure_of(const imager::SkyDirection& direction);
-
 /// When and where the row was observed: from the telescope's place, or the first antenna's where casacore does not know that.
 casacore::MeasFrame frame_of(const casacore::MeasurementSet& set, std::uint64_t row);
 
 /// Where the antennas of `field` point at the time of `row`: its REFERENCE_DIR, in such a frame. Throws what that does.
 imager::SkyDirection field_pointing(const casacore::MeasurementSet& set, const std::string& path, int field, std::uint64_t row);
-
-/// The direction as another frame has it; B1950 as it was in 1950.
-imager::SkyDirection in_frame(const imager::SkyDirection& direction, const std::string& frame);
 
 /// The angle between two directions, whatever their frames; B1950 as it was in 1950.
 double separation_rad(const imager::SkyDirection& a, const imager::SkyDirection& b);

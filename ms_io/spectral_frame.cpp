@@ -3,6 +3,7 @@
 #include <array>
 #include <stdexcept>
 
+#include "ms_io/celestial_frame_internal.h"
 #include "ms_io/phase_centre_internal.h"
 #include "ms_io/spectral_frame_internal.h"
 #include "ms_io/table_access_internal.h"

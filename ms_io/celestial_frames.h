@@ -1,0 +1,13 @@
+#pragma once
+
+#include <string>
+
+#include "imager/geometry.h"
+
+namespace misfit::ms_io {
+
+/// The direction in another frame: "ICRS", "FK5" (J2000), "FK4" (B1950, as it was in 1950) or "GALACTIC", whose ra_rad and
+/// dec_rad are longitude and latitude. Throws std::invalid_argument where either frame is none of these.
+imager::SkyDirection in_frame(const imager::SkyDirection& direction, const std::string& frame);
+
+}  // namespace misfit::ms_io
