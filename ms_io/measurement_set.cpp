@@ -14,6 +14,7 @@
 #include "ms_io/nearest_field_internal.h"
 #include "ms_io/row_shares_internal.h"
 #include "ms_io/spectral_frame_internal.h"
+#include "ms_io/subtracted_models_internal.h"
 #include "ms_io/table_access_internal.h"
 #include "ms_io/uvw_scan_internal.h"
 #include "ms_io/visibility_reader_internal.h"
@@ -26,9 +27,9 @@ std::shared_ptr<const OpenSet> open_selected(const std::string& path, const Sele
                                              std::uint64_t block_samples) {
   const auto opened = std::make_shared<OpenSet>();
   opened->path = path;
-  opened->data_column = column_name(data_column);
   opened->files.remember(path);
   opened->set = open_measurement_set(path, Access::read);
+  opened->data_column = column_name(opened->set, data_column);
   for (const casacore::String& part : opened->set.getPartNames())  // those that it refers to
     if (part != opened->set.tableName()) opened->files.remember(part);
   if (!data_column.empty()) require_visibility_column(opened->set, path, opened->data_column);
@@ -149,6 +150,17 @@ class JoinedStream : public imager::BlockStream {
 
 }  // namespace
 
+std::string named_columns(const std::vector<std::string>& paths, const std::string& data_column) {
+  std::vector<std::string> columns = columns_of(data_column, paths.size());
+  for (std::size_t i = 0; i < paths.size(); ++i)
+    columns[i] = column_name(open_measurement_set(paths[i], Access::read), columns[i]);
+  if (std::all_of(columns.begin(), columns.end(), [&](const std::string& one) { return one == columns.front(); }))
+    columns.resize(1);
+  std::string names;
+  for (const std::string& column : columns) names += (names.empty() ? "" : ",") + column;
+  return names;
+}
+
 struct MeasurementSet::Impl {
   OpenSets sets;
   imager::Observation observation;
@@ -193,6 +205,23 @@ std::vector<std::string> MeasurementSet::incomplete_columns() const {
     if (std::string sentence = incomplete_column(set->path, set->data_column); !sentence.empty())
       sentences.push_back(std::move(sentence));
   return sentences;
+}
+std::vector<DataColumn> MeasurementSet::data_columns() const {
+  std::vector<DataColumn> columns;
+  for (const auto& set : whole().sets) {
+    columns.push_back({set->path, set->data_column, {}});
+    for (const SubtractedModel& one : subtracted_models(set->set, set->data_column))
+      columns.back().subtracted.push_back(one.command);
+  }
+  return columns;
+}
+std::vector<DataColumn> MeasurementSet::columns_of_zeros(const imager::Ranks& ranks) const {
+  std::vector<DataColumn> columns;
+  for (const DataColumn& column : data_columns()) {
+    const auto reads = [&](const std::shared_ptr<const OpenSet>& set) { return set->path == column.path && *set->any_data; };
+    if (!imager::any_of(ranks, std::any_of(impl_->sets.begin(), impl_->sets.end(), reads))) columns.push_back(column);
+  }
+  return columns;
 }
 std::vector<std::string> MeasurementSet::changed_files() const {
   std::vector<std::string> paths;

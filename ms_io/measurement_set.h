@@ -40,6 +40,17 @@ struct NearestField {
   double dish_m = 0;  ///< diameter of the smallest antenna; 0 where none is known
 };
 
+/// What visibilities are read from.
+struct DataColumn {
+  std::string path;                     ///< of the set
+  std::string name;                     ///< "CORRECTED_DATA"
+  std::vector<std::string> subtracted;  ///< commands that subtracted models from these data
+};
+
+/// `data_column`, as MeasurementSet takes it, with the names that these sets have: "CORRECTED_DATA", or one for each set,
+/// separated by commas. Throws std::runtime_error where a set cannot be opened.
+std::string named_columns(const std::vector<std::string>& paths, const std::string& data_column);
+
 /// A selected part of a MeasurementSet, or of several that make one image, as visibilities of Stokes parameters, opened
 /// read-only and streamed in blocks, one set after the other. Only the columns and channels that are needed are read. A block
 /// never mixes sets, DATA_DESC_IDs or, where the phase centre is shifted, fields. Reading never runs in two threads at once.
@@ -52,8 +63,9 @@ class MeasurementSet : public imager::VisibilitySource {
   /// std::runtime_error when the path is no MeasurementSet, the column is missing, the selection is empty or wrong, one of
   /// `stokes` cannot be formed (the message lists the correlations there are), or the rows selected have several phase centres
   /// and `selection` does not say where to shift them. The short names data, corrected and model stand for DATA, CORRECTED_DATA
-  /// and MODEL_DATA. A block holds whole rows, about `block_samples` samples of them; what is read does not depend on that
-  /// number. Where `data_column` is empty, all but open() can be called, whatever columns and correlations there are.
+  /// and MODEL_DATA, and auto for CORRECTED_DATA where the set has it, else DATA. A block holds whole rows, about
+  /// `block_samples` samples of them; what is read does not depend on that number. Where `data_column` is empty, all but open()
+  /// can be called, whatever columns and correlations there are.
   MeasurementSet(const std::string& path, const Selection& selection, const std::string& data_column,
                  const std::vector<imager::Stokes>& stokes = {imager::Stokes::I},
                  std::uint64_t block_samples = usual_block_samples);
@@ -66,6 +78,10 @@ class MeasurementSet : public imager::VisibilitySource {
 
   /// A sentence for each set whose column was not written to its end, see incomplete_column().
   std::vector<std::string> incomplete_columns() const;
+  /// One for each set.
+  std::vector<DataColumn> data_columns() const;
+  /// Of these, those of which every value is 0 that any of `ranks` has read; they call this together.
+  std::vector<DataColumn> columns_of_zeros(const imager::Ranks& ranks) const;
   /// Files of the sets that something changed, removed or made since they were opened: what was read may be neither what was
   /// there before nor what is there now.
   std::vector<std::string> changed_files() const;

@@ -189,7 +189,8 @@ void require_exact_storage(const casacore::MeasurementSet& set, const std::strin
 
 void throw_exists(const std::string& path, const std::string& column) {
   throw std::runtime_error(path + " has a column " + column +
-                           " already, which may hold calibrated data; expected another --column, or this one by name");
+                           " already, which may hold calibrated data; expected another --column, or this one by name, and "
+                           "--datacolumn for the data that a model is subtracted from");
 }
 
 void require_writable_column(const casacore::MeasurementSet& set, const std::string& path, const ModelColumn& column) {
@@ -198,10 +199,6 @@ void require_writable_column(const casacore::MeasurementSet& set, const std::str
     throw std::runtime_error("a model cannot be written to column '" + column.name + "' of " + path +
                              "; expected a column other than DATA, such as " +
                              (data.empty() ? "MODEL_DATA" : "CORRECTED_DATA"));
-  }
-  if (column.name == data) {
-    throw std::runtime_error("data − model cannot be written to column '" + column.name + "' of " + path +
-                             ", from which the data are read: a run cut short could not be mended; expected another column");
   }
   if (!data.empty()) require_visibility_column(set, path, data);
   if (set.tableDesc().isColumn(column.name)) {

@@ -16,14 +16,7 @@ namespace {
 
 constexpr const char* unfinished = ".part";  ///< while it is written
 
-/// In every table that holds rows of `set`: itself, or what it refers to.
-std::vector<std::string> journal_files(const casacore::Table& set, std::string column) {
-  std::replace(column.begin(), column.end(), '/', '_');
-  std::vector<std::string> files;
-  const casacore::Block<casacore::String> tables = set.getPartNames(true);
-  for (std::size_t t = 0; t < tables.nelements(); ++t) files.push_back(std::string(tables[t]) + "/misfit_unfinished_" + column);
-  return files;
-}
+constexpr const char* journal_kind = "unfinished";
 
 std::string text_of(const ModelJournal& journal) {
   std::ostringstream text;
@@ -66,32 +59,46 @@ ModelJournal journal_of(std::istream& text, const std::string& column) {
 
 }  // namespace
 
+std::vector<std::string> files_beside(const casacore::Table& set, const std::string& kind, const std::string& column) {
+  std::string name = "misfit_" + kind + "_" + column;
+  std::replace(name.begin(), name.end(), '/', '_');
+  std::vector<std::string> files;
+  const casacore::Block<casacore::String> tables = set.getPartNames(true);
+  for (std::size_t t = 0; t < tables.nelements(); ++t) files.push_back(std::string(tables[t]) + "/" + name);
+  return files;
+}
+
+void replace_file(const std::string& path, const std::string& contents, const std::string& meaning) {
+  const std::string beside = path + unfinished;
+  errno = 0;
+  std::ofstream file(beside, std::ios::binary);
+  file << contents << std::flush;
+  std::error_code error;
+  if (file) std::filesystem::rename(beside, path, error);
+  if (!file) error = {errno, std::generic_category()};
+  if (error) throw std::runtime_error("cannot write " + path + ", which tells " + meaning + ": " + error.message());
+}
+
+void remove_file(const std::string& path) {
+  std::error_code ignored;
+  std::filesystem::remove(path + unfinished, ignored);
+  std::filesystem::remove(path, ignored);
+}
+
 std::optional<ModelJournal> read_journal(const casacore::Table& set, const std::string& column) {
-  for (const std::string& path : journal_files(set, column)) {
+  for (const std::string& path : files_beside(set, journal_kind, column)) {
     if (std::ifstream file(path); file) return journal_of(file, column);
   }
   return std::nullopt;
 }
 
 void write_journal(const casacore::Table& set, const ModelJournal& journal) {
-  for (const std::string& path : journal_files(set, journal.column)) {
-    const std::string beside = path + unfinished;
-    errno = 0;
-    std::ofstream file(beside, std::ios::binary);
-    file << text_of(journal) << std::flush;
-    std::error_code error;
-    if (file) std::filesystem::rename(beside, path, error);
-    if (!file) error = {errno, std::generic_category()};
-    if (error) throw std::runtime_error("cannot write " + path + ", which tells how far the column is: " + error.message());
-  }
+  for (const std::string& path : files_beside(set, journal_kind, journal.column))
+    replace_file(path, text_of(journal), "how far the column is");
 }
 
 void remove_journal(const casacore::Table& set, const std::string& column) {
-  std::error_code ignored;
-  for (const std::string& path : journal_files(set, column)) {
-    std::filesystem::remove(path + unfinished, ignored);
-    std::filesystem::remove(path, ignored);
-  }
+  for (const std::string& path : files_beside(set, journal_kind, column)) remove_file(path);
 }
 
 bool outlived(const casacore::Table& set, const ModelJournal& journal) {

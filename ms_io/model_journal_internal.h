@@ -28,6 +28,12 @@ struct ModelJournal {
   std::map<std::size_t, std::uint64_t> done_below;  ///< by setup: its rows that are selected are written below this one
 };
 
+/// `misfit_<KIND>_<COLUMN>` in the folder of every table that holds rows of `set`: itself, or the tables that it refers to.
+std::vector<std::string> files_beside(const casacore::Table& set, const std::string& kind, const std::string& column);
+/// Replaces a file as a whole. Throws std::runtime_error that names the file and `meaning`.
+void replace_file(const std::string& path, const std::string& contents, const std::string& meaning);
+void remove_file(const std::string& path);
+
 /// The journal of `column`; none where no run is under way, or was cut short. A file that cannot be understood is a journal
 /// of which nothing is known.
 std::optional<ModelJournal> read_journal(const casacore::Table& set, const std::string& column);

@@ -9,12 +9,14 @@
 #include <stdexcept>
 
 #include "ms_io/fingerprint.h"
+#include "ms_io/kept_cells_internal.h"
 #include "ms_io/metadata_internal.h"
 #include "ms_io/missing_cells_internal.h"
 #include "ms_io/model_cells_internal.h"
 #include "ms_io/model_column_internal.h"
 #include "ms_io/model_journal_internal.h"
 #include "ms_io/row_shares_internal.h"
+#include "ms_io/subtracted_models_internal.h"
 #include "ms_io/table_access_internal.h"
 #include "ms_io/value_flush_internal.h"
 
@@ -29,9 +31,15 @@ ModelColumn spelt_out(const ModelColumn& column) {
   return result;
 }
 
-/// Equal for runs that write the same values into the same cells, in whatever blocks; empty where that cannot be told.
-std::string identity_of(const casacore::Table& set, const ModelColumn& column, const SelectedRows& selected) {
-  if (column.origin.fingerprint == 0) return "";
+std::string hexadecimal(std::uint64_t number) {
+  std::ostringstream text;
+  text.imbue(std::locale::classic());
+  text << std::hex << number;
+  return text.str();
+}
+
+/// A fingerprint of the cells that are selected, in whatever blocks, and of their coordinates.
+std::string identity_of(const casacore::Table& set, const SelectedRows& selected) {
   std::vector<Fingerprint> setups;
   for (const Setup& setup : selected.setups) setups.push_back(Fingerprint().add(setup.frequency_hz));
   const casacore::ArrayColumn<double> uvw_column(set, "UVW");
@@ -43,16 +51,18 @@ std::string identity_of(const casacore::Table& set, const ModelColumn& column, c
       setups[block.setup].add(rows[r]).add(uvw.data() + 3 * r, 3 * sizeof(double));
   }
   Fingerprint all;
-  all.add(column.origin.fingerprint).add(column.name).add(column.subtracted_from);
   for (std::size_t s = 0; s < setups.size(); ++s) {
     all.add(setups[s].value())
         .add(static_cast<std::uint64_t>(selected.setups[s].data_description))
         .add(static_cast<std::uint64_t>(selected.setups[s].field));
     for (const Run& run : selected.setups[s].channels) all.add(run.first).add(run.count);
   }
-  std::ostringstream text;
-  text << std::hex << all.value();
-  return text.str();
+  return hexadecimal(all.value());
+}
+
+/// A fingerprint of the model; "-" where it is not known.
+std::string identity_of(const ModelOrigin& origin) {
+  return origin.fingerprint == 0 ? "-" : hexadecimal(origin.fingerprint);
 }
 
 /// Where the block lies; rows with a non-finite UVW are put at 0 and marked.
@@ -119,21 +129,28 @@ class ModelWriter {
   using Progress = std::function<void(std::uint64_t, std::uint64_t)>;
 
   ModelWriter(const std::string& path, const Selection& selection, const ModelColumn& column, std::uint64_t block_samples)
-      : path_(path), column_(spelt_out(column)), set_(open_measurement_set(path, Access::update)) {
+      : path_(path), column_(spelt_out(column)), set_(open_measurement_set(path, Access::update)), kept_(set_, column_.name) {
     require_writable_column(set_, path_, column_);
     selected_ = select_rows(set_, path_, selection, {block_samples, false});
     describe(set_, path_, selected_);  // throws unless there is one phase centre
     journal_.column = column_.name;
     journal_.command = one_line(column_.origin.command);
-    journal_.identity = translated("cannot read UVW of " + path_, [&] { return identity_of(set_, column_, selected_); });
+    here_ = {identity_of(column_.origin),
+             translated("cannot read UVW of " + path_, [&] { return identity_of(set_, selected_); }), journal_.command};
+    if (column_.origin.fingerprint != 0)  // equal for runs that write the same values into the same cells
+      journal_.identity = hexadecimal(
+          Fingerprint().add(here_.model).add(here_.selection).add(column_.name).add(column_.subtracted_from).value());
     journal_.rows = selected_.rows;
     journal_.witnesses = translated(doing_(), [&] { return choose_witnesses(set_, column_, selected_); });
     const bool exists = set_.tableDesc().isColumn(column_.name);
     if (exists) go_on();
+    if (journal_.written == 0) tell_of_subtracted();
+    if (column_.in_place())  // what tells of changes by others is about to change
+      write_subtracted_models(set_, column_.name, subtracted_models(set_, column_.name), {});
     write_journal(set_, journal_);  // before there is a column, so that none is ever without
     if (!exists) {
       create_model_column(set_, path_, column_);
-    } else if (translated(doing_(), [&] { return give_missing_cells(set_, column_); })) {
+    } else if (!column_.in_place() && translated(doing_(), [&] { return give_missing_cells(set_, column_); })) {
       set_ = casacore::MeasurementSet();
       set_ = open_measurement_set(path_, Access::update);
     }
@@ -142,6 +159,7 @@ class ModelWriter {
   ModelWriteReport write(const Predict& predict, int at_once, const Progress& progress) {
     cells_ = std::make_unique<ModelCells>(translated(doing_(), [&] { return ModelCells(set_, column_); }));
     flush_ = std::make_unique<ValueFlush>(set_, column_.name);
+    if (column_.in_place()) take_back_block_that_was_cut();
     const casacore::ArrayColumn<double> uvw(set_, "UVW");
     ModelWriteReport report;
     report.rows_before = journal_.written;
@@ -167,7 +185,12 @@ class ModelWriter {
       if (under_way.size() > together) finish();
     }
     while (!under_way.empty()) finish();
+    kept_.forget();
+    translated(doing_(), [&] {
+      write_subtracted_models(set_, column_.name, models_that_are_lacking(), choose_witnesses(set_, {column_.name}, selected_));
+    });
     remove_journal(set_, column_.name);
+    report.zero_data = !column_.subtracted_from.empty() && !any_data_ && report.rows_before == 0;
     report.rows = journal_.written;
     report.samples = samples_;
     report.nonfinite_uvw_rows = journal_.nonfinite_uvw_rows;
@@ -188,6 +211,11 @@ class ModelWriter {
     const std::optional<ModelJournal> before = read_journal(set_, column_.name);
     if (!before) return;
     const Left left = what_is_left(*before);
+    if (column_.in_place() && outlived(set_, *before)) write_subtracted_models(set_, column_.name, {}, {});
+    if (column_.in_place() && left != Left::beginning && !outlived(set_, *before))
+      throw std::runtime_error(
+          incompleteness(path_, *before) +
+          "; expected the same command, which goes on there, before a model is subtracted from these data");
     if (!column_.may_exist && (left == Left::another || left == Left::changed)) throw_exists(path_, column_.name);
     if (left == Left::beginning) journal_ = *before;
     const std::string fate = left == Left::beginning ? ", going on"
@@ -220,7 +248,44 @@ class ModelWriter {
       return Left::changed;
     }
     if (rows != before.written || checksum.values != before.checksum.values) return Left::changed;
-    return checksum.data == before.checksum.data ? Left::beginning : Left::other_data;
+    const bool same_data = column_.in_place() || checksum.data == before.checksum.data;  // in place they are the values
+    return same_data ? Left::beginning : Left::other_data;
+  }
+
+  /// Throws where the data lack this model already; tells where they lack another.
+  void tell_of_subtracted() const {
+    if (column_.subtracted_from.empty()) return;
+    for (const SubtractedModel& one : subtracted_models(set_, column_.subtracted_from)) {
+      const std::string sentence = lacks_already(path_, column_.subtracted_from, one);
+      const bool same = one.model != "-" && one.model == here_.model && one.selection == here_.selection;
+      if (same && column_.in_place())
+        throw std::runtime_error(sentence + "; expected another model or selection, or data that hold this one");
+      if (column_.origin.tell) column_.origin.tell("warning: " + sentence);
+    }
+  }
+
+  /// Of the column when it is complete: those that the data lacked, this one, and those of other selections.
+  std::vector<SubtractedModel> models_that_are_lacking() const {
+    std::vector<SubtractedModel> models;
+    const bool subtracts = !column_.subtracted_from.empty();
+    if (subtracts) models = subtracted_models(set_, column_.subtracted_from);
+    if (!column_.in_place())
+      for (const SubtractedModel& one : subtracted_models(set_, column_.name))
+        if (one.selection != here_.selection) models.push_back(one);
+    const auto is_this = [&](const SubtractedModel& one) {
+      return one.model == here_.model && one.selection == here_.selection;
+    };
+    // A run that was cut short after it had written this record finds itself there.
+    if (subtracts && std::none_of(models.begin(), models.end(), is_this)) models.push_back(here_);
+    return models;
+  }
+
+  /// A run that was cut short while it wrote a block in place of the data left some of it written.
+  void take_back_block_that_was_cut() {
+    translated(doing_(), [&] {
+      kept_.put_back(journal_, selected_.setups, *cells_);
+      (*flush_)();
+    });
   }
 
   void prepare(const casacore::ArrayColumn<double>& uvw, PredictedBlock& block) {
@@ -232,6 +297,11 @@ class ModelWriter {
   }
 
   void write(const PredictedBlock& block) {
+    const auto setup = static_cast<std::size_t>(block.setup - selected_.setups.data());
+    if (!any_data_)
+      any_data_ = std::any_of(block.cells.data.begin(), block.cells.data.end(),
+                              [](const casacore::Complex& value) { return value != casacore::Complex(0); });
+    if (column_.in_place()) kept_.keep(journal_, setup, block.rows, block.cells.data);
     if (foretell(journal_.witnesses, block.rows, *block.setup, block.cells.values)) write_journal(set_, journal_);
     translated(doing_(), [&] {
       cells_->write(block.rows, *block.setup, block.cells.values);
@@ -240,22 +310,28 @@ class ModelWriter {
     journal_.checksum += block.cells.checksum;
     journal_.written += block.rows.count();
     for (const bool row_is_unknown : block.unknown) journal_.nonfinite_uvw_rows += row_is_unknown;
-    journal_.done_below[static_cast<std::size_t>(block.setup - selected_.setups.data())] =
-        block.rows[block.rows.count() - 1] + 1;
+    journal_.done_below[setup] = block.rows[block.rows.count() - 1] + 1;
     write_journal(set_, journal_);
   }
 
   std::string path_;
   ModelColumn column_;
   casacore::MeasurementSet set_;
+  KeptCells kept_;
   SelectedRows selected_;
   ModelJournal journal_;
+  SubtractedModel here_;       ///< this run's
+  bool any_data_ = false;      ///< that are not 0
   std::uint64_t samples_ = 0;  ///< that hold the model
   std::unique_ptr<ModelCells> cells_;
   std::unique_ptr<ValueFlush> flush_;
 };
 
 }  // namespace
+
+bool ModelColumn::in_place() const {
+  return column_name(name) == column_name(subtracted_from);
+}
 
 std::string incomplete_column(const std::string& path, const std::string& column) {
   const std::string name = column_name(column);

@@ -44,6 +44,9 @@ struct ModelColumn {
   std::string subtracted_from = "";  ///< column of the data: data − model is written. Empty: the model itself
   bool may_exist = true;             ///< and is then overwritten where the selection lies
   ModelOrigin origin = {};
+
+  /// Whether data − model take the place of the data.
+  bool in_place() const;
 };
 
 struct ModelWriteReport {
@@ -51,6 +54,7 @@ struct ModelWriteReport {
   std::uint64_t rows_before = 0;         ///< of these, written by an earlier run that this one went on with
   std::uint64_t samples = 0;             ///< Stokes samples: rows × channels
   std::uint64_t nonfinite_uvw_rows = 0;  ///< rows for which the model counts as 0
+  bool zero_data = false;                ///< all data that the model was subtracted from are 0
 };
 
 /// "MODEL_DATA of `path` is incomplete: 12 of 30 rows were written before by …", or nothing where no run was cut short while it
@@ -65,11 +69,14 @@ void require_writable(const std::string& path, const ModelColumn& column = {});
 /// and weights, auto-correlations included. Each correlation gets what the model's Stokes parameters are to it, XX = I + Q and
 /// so on, or loses that. A column that does not exist is created, uncompressed, with the shape and tiling of DATA; rows and
 /// channels outside the selection are left alone, and hold 0, or the data, in a new column and in cells that had no shape.
-/// `column` may be neither DATA nor what the data are read from, since nobody could tell afterwards where a run was cut short.
+/// `column` may not be DATA.
 ///
 /// A run that ends early, even killed, leaves a set that opens, and a record of the rows that are written. The next one with
 /// the same model, options and selection goes on there, unless these rows, or the data of these rows, have changed since; any
-/// other begins anew.
+/// other begins anew, but is refused where data − model take the place of the data.
+///
+/// A complete run that subtracts leaves a record of the model that the column lacks from then on. The origin is told of models
+/// that the data lack already; where data − model take their place, the same model and selection are refused.
 ///
 /// `progress(done, total)` is called after every block, in samples. Throws std::runtime_error as MeasurementSet does (but
 /// correlations from which I cannot be formed are written all the same), where another process has locked the set for more than

@@ -127,6 +127,11 @@ std::string column_name(const std::string& name) {
   return found == full.end() ? name : found->second;
 }
 
+std::string column_name(const casacore::Table& table, const std::string& name) {
+  if (name != "auto") return column_name(name);
+  return table.tableDesc().isColumn("CORRECTED_DATA") ? "CORRECTED_DATA" : "DATA";
+}
+
 void require_visibility_column(const casacore::Table& table, const std::string& path, const std::string& column) {
   const casacore::TableDesc& description = table.tableDesc();
   if (description.isColumn(column) && is_visibility_column(description[column])) return;

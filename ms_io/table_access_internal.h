@@ -48,6 +48,9 @@ class UnwrittenTable : public casacore::Table {
 /// `name`, with the short names data, corrected and model spelt out.
 std::string column_name(const std::string& name);
 
+/// The same in `table`, where auto is CORRECTED_DATA if there is such a column, else DATA.
+std::string column_name(const casacore::Table& table, const std::string& name);
+
 /// Throws std::runtime_error, which lists the columns there are, unless `column` holds complex visibilities.
 void require_visibility_column(const casacore::Table& table, const std::string& path, const std::string& column);
 

@@ -17,6 +17,11 @@ namespace {
 /// formed.
 constexpr std::uint64_t piece_samples = 1 << 17;
 
+bool any_not_zero(const casacore::Array<casacore::Complex>& values) {
+  return std::any_of(values.cbegin(), values.cend(),
+                     [](const casacore::Complex& value) { return value != casacore::Complex(0); });
+}
+
 /// A block to which rows are appended, and those of the other Stokes parameters.
 class GrowingBlock {
  public:
@@ -166,6 +171,7 @@ class Reader : public imager::BlockStream {
     for (const Rows& piece : pieces(group.runs, std::max<std::uint64_t>(1, piece_samples / alike.channel_span()))) {
       const std::uint64_t rows = piece.count();
       columns_.read_rows(piece, alike, *read);
+      if (!*source_->any_data && any_not_zero(read->data)) *source_->any_data = true;
       beside.get();
       left -= rows;
       if (left == 0) return form(*read, owner, rows);

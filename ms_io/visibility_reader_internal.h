@@ -1,5 +1,6 @@
 #pragma once
 
+#include <atomic>
 #include <memory>
 #include <string>
 
@@ -17,6 +18,8 @@ struct OpenSet {
   SelectedRows selected;
   std::vector<StokesRecipe> recipes;  ///< [setup]
   FileStates files;                   ///< before it was opened
+  /// Whether any value of the data column that was read is not 0.
+  std::shared_ptr<std::atomic<bool>> any_data = std::make_shared<std::atomic<bool>>(false);
 };
 
 /// Streams the blocks of `open_set`.

@@ -28,8 +28,8 @@ struct PredictOptions {
   std::string model;
   std::string components;
   bool subtract = false;
-  std::string datacolumn = "data";
-  std::string column;  ///< empty: what column_of() says
+  std::string datacolumn;  ///< empty: DATA
+  std::string column;      ///< empty: what column_of() says
   ms_io::Selection selection;
   double accuracy = 1e-6;
   bool accuracy_is_typed = false;
@@ -84,10 +84,11 @@ NamedModel component_model(const PredictOptions& o, const ms_io::MeasurementSet&
   return named;
 }
 
-/// Where the model goes. Calibrated data are overwritten only for those who name their column.
+/// Where the model goes. Calibrated data are overwritten only for those who name what is read and what is written.
 ms_io::ModelColumn column_of(const PredictOptions& o) {
-  const std::string usual = o.subtract ? "CORRECTED_DATA" : "MODEL_DATA";
-  return {o.column.empty() ? usual : o.column, o.subtract ? o.datacolumn : "", !o.subtract || !o.column.empty(), {}};
+  if (!o.subtract) return {o.column.empty() ? "MODEL_DATA" : o.column};
+  return {o.column.empty() ? "CORRECTED_DATA" : o.column, o.datacolumn.empty() ? "DATA" : o.datacolumn,
+          !o.column.empty() && !o.datacolumn.empty()};
 }
 
 void check(const PredictOptions& o) {
@@ -125,8 +126,8 @@ void predict(const PredictOptions& o, const imager::Ranks& ranks) {
   ms_io::ModelColumn column = column_of(o);
   if (ranks.first()) ms_io::require_writable(o.vis, column);
   ProgressLine progress(o.quiet || !ranks.first());
-  if (o.subtract) {
-    if (const std::string sentence = ms_io::incomplete_column(o.vis, o.datacolumn); !sentence.empty())
+  if (o.subtract && !column.in_place()) {
+    if (const std::string sentence = ms_io::incomplete_column(o.vis, column.subtracted_from); !sentence.empty())
       progress.say("warning: " + sentence);
   }
   NamedModel model = read_model(o, ranks);
@@ -145,6 +146,8 @@ void predict(const PredictOptions& o, const imager::Ranks& ranks) {
                          show, {model.visibilities.samples_at_once, ranks.size()});
   shared.end();
   progress.end();
+  if (report.zero_data)
+    progress.say("warning: all of " + column.subtracted_from + " that was selected is 0: it was never filled");
   if (!o.quiet) print(o, report);
 }
 
@@ -170,13 +173,17 @@ void add_predict_command(CLI::App& program, const imager::Ranks& ranks) {
   CLI::Option* subtract =
       command->add_flag("--subtract", o->subtract,
                         "Write data − model instead: each correlation loses what the model is to it, XX = I + Q and so on");
-  command->add_option("--datacolumn", o->datacolumn, "What is subtracted from: data, corrected, model, or a column's name")
+  command
+      ->add_option("--datacolumn", o->datacolumn,
+                   "What is subtracted from: data (the default), corrected, model, or a column's name")
       ->needs(subtract)
       ->check(values_are({"data", "corrected", "model"}, Others::possible));
   command->add_option(
       "--column", o->column,
-      "Column to write: MODEL_DATA, or CORRECTED_DATA with --subtract, where that must not exist yet unless it is "
-      "named. A new column holds 0, or the data, outside the selection");
+      "Column to write: MODEL_DATA, or CORRECTED_DATA with --subtract, where that must not exist yet unless it and "
+      "--datacolumn "
+      "are named. It may be the column that is read, unless that is DATA. A new column holds 0, or the data, outside the "
+      "selection");
   declare_selection(*command, o->selection);
   command->add_option("--accuracy", o->accuracy, "Relative accuracy of the visibilities");
   list_kernels(*command->add_option("--kernel", o->kernel.name, "Gridding function: a name or a kernel-table file"));

@@ -476,6 +476,49 @@ BOOST_AUTO_TEST_CASE(a_phase_centre_in_another_frame_is_converted_to_j2000) {
   BOOST_TEST(std::abs(centre.dec_rad + 0.505031) < 1e-5);
 }
 
+BOOST_AUTO_TEST_CASE(the_column_is_that_of_calibrated_data_where_a_set_has_it) {
+  const SmallSet set, calibrated;
+  calibrated.modify([](casacore::MeasurementSet& ms) {
+    ms.addColumn(casacore::ArrayColumnDesc<casacore::Complex>("CORRECTED_DATA", 2));
+    for (casacore::rownr_t row = 0; row < ms.nrow(); ++row)
+      casacore::ArrayColumn<casacore::Complex>(ms, "CORRECTED_DATA")
+          .put(row, casacore::Matrix<casacore::Complex>(2, channels, casacore::Complex(7)));
+  });
+  const std::vector<std::string> paths{set.path(), calibrated.path()};
+  const auto columns = MeasurementSet(paths, {}, "auto").data_columns();
+  BOOST_REQUIRE(columns.size() == 2U);
+  BOOST_TEST(columns[0].name == "DATA");
+  BOOST_TEST(columns[1].name == "CORRECTED_DATA");
+  BOOST_TEST(columns[1].path == calibrated.path());
+  BOOST_TEST(named_columns(paths, "auto") == "DATA,CORRECTED_DATA");
+  BOOST_TEST(named_columns(paths, "data") == "DATA");
+  BOOST_TEST(named_columns({calibrated.path()}, "auto") == "CORRECTED_DATA");
+  BOOST_TEST((testing::read_all(MeasurementSet(calibrated.path(), {}, "auto")).visibility ==
+              testing::read_all(MeasurementSet(calibrated.path(), {}, "CORRECTED_DATA")).visibility));
+}
+
+BOOST_AUTO_TEST_CASE(a_column_that_was_never_filled_is_told_from_one_with_a_single_value) {
+  const SmallSet set, one_value;
+  for (const SmallSet* of : {&set, &one_value})
+    of->modify([](casacore::MeasurementSet& ms) {
+      casacore::ArrayColumn<casacore::Complex> data(ms, "DATA");
+      for (casacore::rownr_t row = 0; row < ms.nrow(); ++row)
+        data.put(row, casacore::Matrix<casacore::Complex>(2, channels, casacore::Complex(0)));
+    });
+  one_value.put("DATA", rows - 1, 1, 2, casacore::Complex(0, 1e-30F));
+  const SmallSet filled;
+  for (const auto& [channels_selected, expected] : {std::pair("", 0U), {"0:0~1", 1U}}) {
+    const MeasurementSet read({one_value.path(), filled.path()}, {"", channels_selected}, "data");
+    testing::read_all(read);
+    BOOST_TEST(read.columns_of_zeros(imager::alone()).size() == expected);
+  }
+  const MeasurementSet empty({set.path(), filled.path()}, {}, "data");
+  testing::read_all(empty);
+  const auto columns = empty.columns_of_zeros(imager::alone());
+  BOOST_REQUIRE(columns.size() == 1U);
+  BOOST_TEST(columns.front().path == set.path());
+}
+
 BOOST_AUTO_TEST_SUITE_END()
 
 }  // namespace misfit::ms_io

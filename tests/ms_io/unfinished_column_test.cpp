@@ -109,7 +109,7 @@ void check_rest(const SmallSet& set, const ModelColumn& column, const std::vecto
   BOOST_TEST(incomplete_column(set.path(), column.name) == "");
 }
 
-const ModelColumn plain{"MODEL_DATA"}, difference{"CORRECTED_DATA", "DATA", false};
+const ModelColumn plain{"MODEL_DATA"}, difference{"CORRECTED_DATA", "DATA", false}, in_place{"MODEL_DATA", "MODEL_DATA"};
 
 }  // namespace
 
@@ -210,8 +210,9 @@ BOOST_AUTO_TEST_CASE(data_of_another_column_begin_anew) {
   write(set, {"RESIDUAL", "DATA"}, selection, 2);
   write(set, {"OTHER_DATA", "DATA"}, {"1", "0~1:2"});
   const Told told = write(set, {"RESIDUAL", "OTHER_DATA"});
-  BOOST_REQUIRE(told.sentences.size() == 1U);
+  BOOST_REQUIRE(told.sentences.size() == 2U);
   BOOST_TEST(contains(told.sentences.front(), "begins anew"));
+  BOOST_TEST(contains(told.sentences.back(), "OTHER_DATA of " + set.path() + " lacks a model already"));
 }
 
 BOOST_AUTO_TEST_CASE(a_column_that_another_program_wrote_since_is_complete_and_the_next_run_begins_anew) {
@@ -279,6 +280,52 @@ BOOST_AUTO_TEST_CASE(a_record_that_cannot_be_read_counts_as_nothing_written) {
   BOOST_REQUIRE(told.sentences.size() == 1U);
   BOOST_TEST(contains(told.sentences.front(), "a run that left no trace"));
   BOOST_TEST((all_of(set, "MODEL_DATA") == whole(plain)));
+}
+
+BOOST_AUTO_TEST_CASE(a_model_is_subtracted_in_place_once_however_often_the_run_is_stopped) {
+  const MixedSet set, whole_set;
+  for (const MixedSet* one : {&set, &whole_set})
+    for (const char* field : {"0", "1"}) write(*one, plain, {field, ""}, 1 << 20, 7);
+  write(whole_set, in_place);
+  for (const int stop_after : {0, 1, 1, 2}) write(set, in_place, selection, stop_after);
+  BOOST_TEST(contains(incomplete_column(set.path(), "model"), "is incomplete"));
+  BOOST_TEST(contains(error_of([&] { write(set, in_place, selection, 1 << 20, 2); }), "expected the same command"));
+  BOOST_TEST(contains(error_of([&] { write(set, in_place, {"1", "0~1:1~3"}); }), "expected the same command"));
+  write(set, in_place);
+  BOOST_TEST((all_of(set, "MODEL_DATA") == all_of(whole_set, "MODEL_DATA")));
+  BOOST_TEST(incomplete_column(set.path(), "model") == "");
+}
+
+BOOST_AUTO_TEST_CASE(data_that_lack_a_model_lose_it_once_and_tell_of_it_when_another_is_subtracted) {
+  const MixedSet set;
+  write(set, difference);
+  const auto corrected = all_of(set, "CORRECTED_DATA");
+  const ModelColumn again{"CORRECTED_DATA", "CORRECTED_DATA"}, beside{"TWICE", "CORRECTED_DATA"};
+  BOOST_TEST(contains(error_of([&] { write(set, again); }), "lacks a model already: misfit predict --model a.fits"));
+  BOOST_TEST((all_of(set, "CORRECTED_DATA") == corrected));
+  const auto told = [&](const ModelColumn& column, std::uint64_t fingerprint) {
+    return write(set, column, selection, 1 << 20, fingerprint).sentences;
+  };
+  BOOST_TEST(told(beside, 1).size() == 1U);  // into another column it may be subtracted twice
+  BOOST_TEST(told(again, 2).size() == 1U);   // this one lacks two from here on
+  BOOST_TEST(told(again, 3).size() == 2U);
+  BOOST_TEST(contains(error_of([&] { write(set, again); }), "lacks a model already"));
+  BOOST_TEST(told({"CORRECTED_DATA", "DATA"}, 1).empty());  // and one
+  BOOST_TEST(told(again, 2).size() == 1U);
+  fill(set, "CORRECTED_DATA", Complex(1, 1));  // and none
+  BOOST_TEST(told(again, 1).empty());
+  write(set, {"CORRECTED_DATA"});  // a prediction is no data
+  BOOST_TEST(told(again, 2).empty());
+}
+
+BOOST_AUTO_TEST_CASE(the_command_that_reads_the_data_tells_what_they_lack) {
+  const MixedSet set;
+  write(set, difference);
+  const auto columns = MeasurementSet(set.path(), {"0", ""}, "auto").data_columns();
+  BOOST_REQUIRE(columns.size() == 1U);
+  BOOST_TEST(columns.front().name == "CORRECTED_DATA");
+  BOOST_TEST(columns.front().subtracted == std::vector<std::string>{"misfit predict --model a.fits"});
+  BOOST_TEST(MeasurementSet(set.path(), {"0", ""}, "data").data_columns().front().subtracted.empty());
 }
 
 BOOST_AUTO_TEST_CASE(a_run_that_was_killed_leaves_the_record_of_one_that_was_stopped_and_goes_on) {

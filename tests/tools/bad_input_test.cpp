@@ -280,7 +280,8 @@ BOOST_AUTO_TEST_CASE(what_is_subtracted_from_is_not_overwritten) {
   check_refused(predict + Arguments{"--datacolumn", "data"}, 2, {"--datacolumn", "--subtract"}, set);
   const Arguments subtract = predict + Arguments{"--subtract"};
   check_refused(subtract + Arguments{"--column", "data"}, 1, {"DATA", "such as CORRECTED_DATA"}, set);
-  check_refused(subtract + Arguments{"--datacolumn", "corrected"}, 1, {"CORRECTED_DATA", "expected another column"}, set);
+  check_refused(subtract + Arguments{"--datacolumn", "corrected"}, 1, {"CORRECTED_DATA", "columns with visibilities: DATA"},
+                set);
   check_refused(subtract + Arguments{"--datacolumn", "model"}, 1, {"MODEL_DATA", "columns with visibilities: DATA"}, set);
   std::ofstream(list) << "l_arcsec,m_arcsec,flux_jy\n1,2,3\n";
   succeed(predict + Arguments{"--column", "CORRECTED_DATA"});

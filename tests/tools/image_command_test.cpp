@@ -56,6 +56,45 @@ void check_keys(const json& object, const std::vector<std::string>& keys) {
 
 }  // namespace
 
+BOOST_AUTO_TEST_CASE(calibrated_data_are_imaged_where_there_are_some_and_files_say_so) {
+  const TemporaryFolder folder;
+  const std::string set = folder / "copy.ms";
+  std::filesystem::copy(snapshot(), set, std::filesystem::copy_options::recursive);
+  const auto image = [&](const std::string& name, const Arguments& more) {
+    succeed(small_image(set, folder / name) + more);
+    const json report = json::parse(content(folder / name + ".report.json"));
+    for (const json& decision : report["plan"])
+      if (decision["item"] == "data column") return decision["decision"].get<std::string>();
+    return std::string();
+  };
+  BOOST_TEST(image("before", {}) == "DATA");
+  std::ofstream(folder / "one.csv") << "l_arcsec,m_arcsec,flux_jy\n1,2,3\n";
+  succeed({"predict", "--vis", set, "--components", folder / "one.csv", "--column", "CORRECTED_DATA"});
+  BOOST_TEST(image("usual", {}) == "CORRECTED_DATA");
+  BOOST_TEST(image("corrected", {"--datacolumn", "corrected"}) == "CORRECTED_DATA");
+  BOOST_TEST(image("data", {"--datacolumn", "data"}) == "DATA");
+  BOOST_TEST((pixels_of(folder / "usual", "residual").pixel == pixels_of(folder / "corrected", "residual").pixel));
+  BOOST_TEST((pixels_of(folder / "data", "residual").pixel == pixels_of(folder / "before", "residual").pixel));
+  for (const auto& [name, column] : {std::pair("usual", "CORRECTED_DATA"), {"data", "DATA"}})
+    BOOST_TEST(content(folder / (std::string(name) + ".residual.fits")).find("HISTORY data column: " + std::string(column)) !=
+               std::string::npos);
+}
+
+BOOST_AUTO_TEST_CASE(a_column_that_was_never_filled_is_warned_of) {
+  const TemporaryFolder folder;
+  const std::string set = folder / "copy.ms";
+  std::filesystem::copy(snapshot(), set, std::filesystem::copy_options::recursive);
+  std::ofstream(folder / "none.csv") << "l_arcsec,m_arcsec,flux_jy\n1,2,0\n";
+  succeed({"predict", "--vis", set, "--components", folder / "none.csv", "--column", "CORRECTED_DATA"});
+  for (const Arguments& mode : {Arguments{}, Arguments{"--specmode", "cube"}}) {
+    const Outcome outcome = run(small_image(set, folder / "a") + mode);
+    BOOST_TEST(outcome.code == 0);
+    BOOST_TEST(outcome.err.find("all that was read of CORRECTED_DATA of " + set + " is 0") != std::string::npos);
+    BOOST_TEST(run(small_image(set, folder / "a") + mode + Arguments{"--datacolumn", "data"}).err.find(" is 0") ==
+               std::string::npos);
+  }
+}
+
 BOOST_AUTO_TEST_CASE(cleaned_sources_have_their_positions_and_fluxes_in_all_four_quadrants) {
   const TemporaryFolder folder;
   succeed(card_image(track(), folder / "card") + Arguments{"--niter", "20000", "--threshold", "2mJy"});

@@ -142,10 +142,41 @@ BOOST_AUTO_TEST_CASE(corrected_data_that_exist_are_overwritten_only_by_name) {
   const Arguments predict{"predict", "--vis", copy.set, "--components", copy.folder / "one.csv"};
   succeed(predict + Arguments{"--column", "corrected"});
   const Visibilities before = visibilities(copy.set, "CORRECTED_DATA");
-  BOOST_TEST(run(predict + Arguments{"--subtract"}).code == 1);
+  const Arguments subtract = predict + Arguments{"--subtract"};
+  for (const Arguments& unnamed : {Arguments{}, Arguments{"--column", "corrected"}, Arguments{"--datacolumn", "data"}}) {
+    const Outcome refused = run(subtract + unnamed);
+    BOOST_TEST(refused.code == 1);
+    BOOST_TEST(refused.err.find("has a column CORRECTED_DATA already") != std::string::npos);
+  }
   BOOST_TEST((visibilities(copy.set, "CORRECTED_DATA") == before));
-  succeed(predict + Arguments{"--subtract", "--column", "corrected"});
+  succeed(subtract + Arguments{"--column", "corrected", "--datacolumn", "data"});
   BOOST_TEST((visibilities(copy.set, "CORRECTED_DATA") != before));
+}
+
+BOOST_AUTO_TEST_CASE(subtraction_in_place_is_that_into_another_column_and_refused_a_second_time) {
+  const Copy copy;
+  std::ofstream(copy.folder / "one.csv") << "l_arcsec,m_arcsec,flux_jy\n1,2,3\n";
+  const Arguments predict{"predict", "--vis", copy.set, "--components", copy.folder / "one.csv"};
+  std::ofstream(copy.folder / "other.csv") << "l_arcsec,m_arcsec,flux_jy\n-1,1,2\n";
+  succeed({"predict", "--vis", copy.set, "--components", copy.folder / "other.csv", "--column", "CORRECTED_DATA"});
+  succeed(predict + Arguments{"--subtract", "--datacolumn", "corrected", "--column", "BESIDE"});
+  const Arguments in_place = predict + Arguments{"--subtract", "--datacolumn", "corrected", "--column", "CORRECTED_DATA"};
+  succeed(in_place);
+  BOOST_TEST((visibilities(copy.set, "CORRECTED_DATA") == visibilities(copy.set, "BESIDE")));
+  const Outcome second = run(in_place);
+  BOOST_TEST(second.code == 1);
+  BOOST_TEST(second.err.find("CORRECTED_DATA of " + copy.set + " lacks a model already: misfit predict --subtract") !=
+             std::string::npos);
+  BOOST_TEST((visibilities(copy.set, "CORRECTED_DATA") == visibilities(copy.set, "BESIDE")));
+}
+
+BOOST_AUTO_TEST_CASE(a_column_that_was_never_filled_is_told_of) {
+  const Copy copy;
+  scale_data(copy.set, 0);
+  std::ofstream(copy.folder / "one.csv") << "l_arcsec,m_arcsec,flux_jy\n1,2,3\n";
+  const Outcome subtracted = run({"predict", "--vis", copy.set, "--components", copy.folder / "one.csv", "--subtract"});
+  BOOST_TEST(subtracted.code == 0);
+  BOOST_TEST(subtracted.err.find("warning: all of DATA that was selected is 0: it was never filled") != std::string::npos);
 }
 
 BOOST_AUTO_TEST_CASE(only_the_column_asked_for_changes) {

@@ -19,6 +19,7 @@
 #include "tools/run/cube_planes.h"
 #include "tools/run/cube_turns.h"
 #include "tools/run/cube_visibilities.h"
+#include "tools/run/data_columns.h"
 #include "tools/run/image_files.h"
 #include "tools/run/primary_beam_stage.h"
 #include "tools/run/product_stage.h"
@@ -100,7 +101,7 @@ class CubeRun {
                .spectral = sampling_.axis,
                .stokes = stokes_,
                .cards = {},
-               .history = {report_.command_line}};
+               .history = history_of(report_.command_line, set_->data_columns())};
     report_.cube = sampling_.axis;
     if (o_.niter > 0) CleanStage(o_, header_, threads_);  // so that what is wrong with masks and models is said at once
     if (wants_primary_beam(o_))
@@ -226,6 +227,7 @@ class CubeRun {
       counts.outside_grid =
           static_cast<std::uint64_t>(std::ceil(static_cast<double>(taken) * (static_cast<double>(outside_grid_) / in_planes)));
     counts.used = taken - counts.outside_grid;
+    for (const ms_io::DataColumn& column : set_->columns_of_zeros(ranks_)) warn(zeros_warning(column));
   }
 
   void count_traffic() {

@@ -39,8 +39,9 @@ void declare_scene(CLI::App& command, ImageOptions& o) {
   declare_selection(command, o.selection);
   command
       .add_option("--datacolumn", o.datacolumn,
-                  "data, corrected, model, or a column's name; or one for each set: corrected,data")
-      ->check(values_are({"data", "corrected", "model"}, Others::possible));
+                  "auto (CORRECTED_DATA where a set has it, else DATA), data, corrected, model, or a column's name; or one for "
+                  "each set: corrected,data")
+      ->check(values_are({"auto", "data", "corrected", "model"}, Others::possible));
   declare_weighting(command, o);
   command.add_option("--gridder", o.gridder, "w planes: auto (where w matters), standard (none), wide (always)")
       ->check(CLI::IsMember({"auto", "standard", "wide"}));

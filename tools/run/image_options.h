@@ -30,7 +30,7 @@ struct ImageOptions {
   std::vector<int> imsize;  ///< width, or width and height
   std::string cell;
   ms_io::Selection selection;
-  std::string datacolumn = "data";
+  std::string datacolumn = "auto";  ///< as ms_io::MeasurementSet takes it
   std::string stokes = "I";
   CubeOptions cube;
   std::string weighting = "natural";

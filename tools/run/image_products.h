@@ -35,7 +35,7 @@ class ImageProducts {
   ImageProducts(const ImageOptions& options, const imager::ImageGeometry& geometry, const imager::Observation& observation);
 
   void set_stokes(const std::vector<imager::Stokes>& stokes) { header_.stokes = stokes; }
-  void set_history(const std::string& line) { header_.history = {line}; }
+  void set_history(std::vector<std::string> lines) { header_.history = std::move(lines); }
   void set_cards(std::vector<imager::HeaderCard> cards) { header_.cards = std::move(cards); }
   void set_beam(const imager::Beam& beam) { beam_ = beam; }
 

@@ -16,6 +16,7 @@
 #include "tools/kernel_choice/cache_folder.h"
 #include "tools/run/changed_files.h"
 #include "tools/run/clean_stage.h"
+#include "tools/run/data_columns.h"
 #include "tools/run/model_stage.h"
 #include "tools/run/outside_stage.h"
 #include "tools/run/plane_run.h"
@@ -180,6 +181,7 @@ class ImageRun {
     report_.counts.used = sums.used;
     report_.plan.push_back(left_out_decision(report_.counts));
     if (sums.outside_grid > 0) warn(outside_grid_warning(sums.outside_grid, reach_));
+    for (const ms_io::DataColumn& column : set_->columns_of_zeros(ranks_)) warn(zeros_warning(column));
   }
 
   void weigh_primary_beam() {
@@ -193,10 +195,11 @@ class ImageRun {
     report_.planes = {plane_->report()};
     imager::Observation observation = set_->observation();
     if (taylor_) observation.frequency_hz = taylor_->expansion().reference_hz;
-    products_ = std::make_unique<ProductStage>(o_,
-                                               ProductScene{geometry_, stokes_, observation, report_.command_line,
-                                                            error_cards(report_), plane_->report().beams->restoring, threads_},
-                                               times_);
+    products_ = std::make_unique<ProductStage>(
+        o_,
+        ProductScene{geometry_, stokes_, observation, history_of(report_.command_line, set_->data_columns()),
+                     error_cards(report_), plane_->report().beams->restoring, threads_},
+        times_);
     if (taylor_) products_->set_taylor(*taylor_);
     products_->draw_dirty(source_->uv_coverage(), plane_->made().images,
                           [this](std::size_t s) { return clean_ ? clean_->mask(s) : nullptr; });

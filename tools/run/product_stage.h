@@ -22,7 +22,7 @@ struct ProductScene {
   const imager::ImageGeometry& geometry;
   std::vector<imager::Stokes> stokes;
   imager::Observation observation;
-  std::string history;
+  std::vector<std::string> history;
   std::vector<imager::HeaderCard> cards;
   std::optional<imager::Beam> restoring_beam;
   int threads = 1;

@@ -10,6 +10,7 @@
 #include "tools/base/numbers.h"
 #include "tools/base/quantity.h"
 #include "tools/base/text.h"
+#include "tools/run/data_columns.h"
 #include "tools/run/memory_plan.h"
 #include "tools/run/outside_stage.h"
 #include "tools/run/primary_beam_stage.h"
@@ -41,6 +42,7 @@ class RunPlanner {
     plan_.decisions.push_back(weighting_decision(o_, scene_.geometry));
     if (o_.check_outside) plan_search(request);
     decide_memory([&](double bytes) { return least_memory(unlimited, bytes); });
+    decide_columns();
     decide("columns and correlations", "only what Stokes " + o_.stokes + " needs",
            "UVW, antennas, flags, weights and one data column, each read once");
     if (o_.niter > 0)
@@ -75,6 +77,13 @@ class RunPlanner {
     const std::string because = "--cell " + o_.cell + (told ? "" : " has no unit, and is in arcsec as in tclean");
     decide("pixels", std::to_string(g.width) + " × " + std::to_string(g.height) + " of " + angle_text(g.cell_rad, 6), because);
     if (!told) progress_.say(because);
+  }
+
+  void decide_columns() {
+    const std::vector<ms_io::DataColumn> columns = scene_.set.data_columns();
+    plan_.decisions.push_back(data_column_decision(columns, o_.datacolumn));
+    if (std::string warning = unlike_columns_warning(columns, o_.datacolumn); !warning.empty())
+      plan_.warnings.push_back(std::move(warning));
   }
 
   void decide_sharing() {

@@ -9,6 +9,7 @@
 #include "imager/parallel.h"
 #include "imager/stage_times.h"
 #include "ms_io/measurement_set.h"
+#include "tools/run/data_columns.h"
 #include "tools/run/weighting_options.h"
 
 namespace misfit::tools {
@@ -59,6 +60,8 @@ Scene::Scene(const ImageOptions& options, bool quick, const imager::Progress& pr
   const auto stream = set.open();
   while (auto block = stream->next()) visibilities_.append(std::move(block));
   read_s_ = watch.seconds();
+  warnings_ = set.incomplete_columns();
+  for (const ms_io::DataColumn& column : set.columns_of_zeros(imager::alone())) warnings_.push_back(zeros_warning(column));
   weigh();
   truth_ =
       std::make_unique<SceneTruth>(visibilities_, geometry_, pixels_for(visibilities_.samples(), quick), threads_, progress);

@@ -57,6 +57,8 @@ class Scene {
   /// Runs a point once more, all passes of it; the first time its errors are taken.
   void run(PointResult& result, int stretch);
 
+  /// What people should know of the columns that were read.
+  const std::vector<std::string>& warnings() const { return warnings_; }
   std::uint64_t samples() const { return visibilities_.samples(); }
   const Fingerprint& fingerprint() const { return fingerprint_; }
   const imager::ImageGeometry& geometry() const { return geometry_; }
@@ -82,6 +84,7 @@ class Scene {
   int threads_;
   imager::ImageGeometry geometry_;
   imager::UvwReach reach_;
+  std::vector<std::string> warnings_;
   imager::WSpread w_spread_;
   imager::StoredVisibilities visibilities_;
   Fingerprint fingerprint_{};

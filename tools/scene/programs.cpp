@@ -81,7 +81,7 @@ Program wsclean(const ImageOptions& scene, const std::string& name, const std::v
                                  "-reorder",
                                  "-j",
                                  std::to_string(threads)};
-  words.insert(words.end(), {"-data-column", scene.datacolumn == "corrected" ? "CORRECTED_DATA" : "DATA"});
+  words.insert(words.end(), {"-data-column", scene.datacolumn});
   words.insert(words.end(), gridder.begin(), gridder.end());
   words.insert(words.end(), scene.vis.begin(), scene.vis.end());
   std::vector<std::string> predict{"wsclean", "-quiet",   "-predict", "-reorder",
@@ -140,7 +140,8 @@ void run_once(Program& program, const std::vector<std::string>& vis, const Scene
 std::string why_not_wsclean(const ImageOptions& scene) {
   if (!words_of(scene.selection).empty()) return "it selects in a way of its own, and might take other samples";
   if (!scene.phasecenter.empty()) return "it is not given --phasecenter";
-  if (scene.datacolumn != "data" && scene.datacolumn != "corrected") return "it is not given --datacolumn " + scene.datacolumn;
+  if (scene.datacolumn != "DATA" && scene.datacolumn != "CORRECTED_DATA")
+    return "it is not given --datacolumn " + scene.datacolumn;
   if (!weighting_options(scene).none()) return "it is given natural weights alone";
   return is_installed("wsclean") ? "" : "it is not installed";
 }

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <memory>
 
+#include "ms_io/measurement_set.h"
 #include "tools/base/numbers.h"
 #include "tools/base/option_checks.h"
 #include "tools/base/quantity.h"
@@ -31,6 +32,7 @@ void write(const Options& o) {
   prepare_report_folder(o.output);
   SceneReportOptions options = o.report;
   if (!has_unit(options.scene.cell)) options.scene.cell += "arcsec";
+  options.scene.datacolumn = ms_io::named_columns(options.scene.vis, options.scene.datacolumn);
   options.results_file = (std::filesystem::path(o.output) / "measured.json").string();
   ProgressLine progress(options.scene.quiet);
   const Report report = naming(names_of(options.scene.vis), [&] { return scene_report(options, progress); });

@@ -153,6 +153,7 @@ Report scene_report(const SceneReportOptions& o, ProgressLine& progress) {
   progress.begin("read, direct sums");
   Scene scene(o.scene, o.quick, [&](std::uint64_t done, std::uint64_t total) { progress.update(done, total); });
   progress.end();
+  for (const std::string& warning : scene.warnings()) progress.say("warning: " + warning);
   std::vector<PointResult> results;
   for (const ScenePoint& point : scene_points(o.quick, o.kernels)) results.emplace_back().point = point;
   progress.begin("kernels");
@@ -165,8 +166,8 @@ Report scene_report(const SceneReportOptions& o, ProgressLine& progress) {
   Report report{.title = "Error against run time",
                 .introduction = names_of(o.scene.vis) + ": " + grouped(static_cast<long long>(scene.samples())) + " samples, " +
                                 std::to_string(g.width) + " × " + std::to_string(g.height) + " pixels of " + o.scene.cell +
-                                ", weighting: " + weighting_text(o.scene) + ", " + std::to_string(scene.threads()) +
-                                (scene.threads() == 1 ? " thread" : " threads") +
+                                ", " + o.scene.datacolumn + ", weighting: " + weighting_text(o.scene) + ", " +
+                                std::to_string(scene.threads()) + (scene.threads() == 1 ? " thread" : " threads") +
                                 ". Every point is one way to make the dirty image, run by turns with the others.",
                 .sections = {}};
   report.sections.push_back(front_section(o.scene, scene, results));

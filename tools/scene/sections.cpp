@@ -80,7 +80,7 @@ std::string command_of(const ImageOptions& scene, const ScenePoint& point) {
   line += " --cell " + scene.cell;
   for (const std::string& word : words_of(scene.selection)) line += " " + shell_quoted(word);
   add("--phasecenter", scene.phasecenter, "");
-  add("--datacolumn", scene.datacolumn, "data");
+  add("--datacolumn", scene.datacolumn, "");
   for (const std::string& word : weighting_arguments(scene)) line += " " + shell_quoted(word);
   add("--gridder", scene.gridder, "auto");
   add("--kernel-folder", scene.kernel.folder, "");
