@@ -45,13 +45,29 @@ std::shared_ptr<const OpenSet> open_selected(const std::string& path, const Sele
   return opened;
 }
 
+/// Of the earliest selected row.
+double first_time_s(const OpenSet& set) {
+  return translated("cannot read TIME of " + set.path,
+                    [&] { return casacore::ScalarColumn<double>(set.set, "TIME")(set.selected.first_row); });
+}
+
+/// In the order in which they were observed, so that nothing depends on the order in which they are named.
+void sort_by_time(OpenSets& sets) {
+  const auto key = [](const std::shared_ptr<const OpenSet>& set) {
+    double lowest_hz = std::numeric_limits<double>::infinity();
+    for (const Setup& setup : set->selected.setups)
+      lowest_hz = std::min(lowest_hz, *std::min_element(setup.frequency_hz.begin(), setup.frequency_hz.end()));
+    return std::pair(first_time_s(*set), lowest_hz);
+  };
+  if (sets.size() == 1) return;
+  std::stable_sort(sets.begin(), sets.end(), [&](const auto& a, const auto& b) { return key(a) < key(b); });
+}
+
 /// Of the setup's channels in the frame of the selection, when the set's first selected row was observed.
 SpectralWindow window_at_first_row(const OpenSet& from, const Setup& setup) {
   SpectralWindow window{setup.frequency_hz, setup.channel_width_hz};
   if (from.selected.spectral_frame.empty()) return window;
-  const double time_s = translated("cannot read TIME of " + from.path,
-                                   [&] { return casacore::ScalarColumn<double>(from.set, "TIME")(from.selected.first_row); });
-  const double ratio = FrameRatio(from.set, from.path, from.selected, setup).at(time_s);
+  const double ratio = FrameRatio(from.set, from.path, from.selected, setup).at(first_time_s(from));
   for (double& hz : window.frequency_hz) hz *= ratio;
   for (double& hz : window.channel_width_hz) hz *= ratio;
   return window;
@@ -179,12 +195,16 @@ MeasurementSet::MeasurementSet(const std::vector<std::string>& paths, const Sele
   if (paths.empty()) throw std::invalid_argument("no MeasurementSet; expected one or more");
   const auto impl = std::make_shared<Impl>();
   const std::vector<std::string> columns = columns_of(data_column, paths.size());
-  std::vector<imager::Observation> observations;
-  for (std::size_t i = 0; i < paths.size(); ++i) {
+  for (std::size_t i = 0; i < paths.size(); ++i)
     impl->sets.push_back(open_selected(paths[i], selection, columns[i], stokes, block_samples));
-    observations.push_back(describe(impl->sets.back()->set, paths[i], impl->sets.back()->selected));
+  sort_by_time(impl->sets);
+  std::vector<imager::Observation> observations;
+  std::vector<std::string> in_order;
+  for (const auto& set : impl->sets) {
+    observations.push_back(describe(set->set, set->path, set->selected));
+    in_order.push_back(set->path);
   }
-  impl->observation = joined(observations, paths);
+  impl->observation = joined(observations, in_order);
   impl_ = impl;
 }
 
@@ -283,8 +303,12 @@ imager::UvwReach MeasurementSet::reach(ReachOf rows) const {
 }
 std::vector<SpectralWindow> MeasurementSet::spectral_windows() const {
   std::vector<SpectralWindow> windows;
-  for (const auto& set : whole().sets)
-    for (const Setup& setup : set->selected.setups) windows.push_back(window_at_first_row(*set, setup));
+  for (const auto& set : whole().sets) {
+    std::vector<const Setup*> setups;
+    for (const Setup& setup : set->selected.setups) setups.push_back(&setup);
+    std::stable_sort(setups.begin(), setups.end(), [](const Setup* a, const Setup* b) { return a->place < b->place; });
+    for (const Setup* setup : setups) windows.push_back(window_at_first_row(*set, *setup));
+  }
   return windows;
 }
 void MeasurementSet::visit_coordinates(const std::function<void(const imager::SampleCoordinates&)>& visit) const {

@@ -52,8 +52,9 @@ struct DataColumn {
 std::string named_columns(const std::vector<std::string>& paths, const std::string& data_column);
 
 /// A selected part of a MeasurementSet, or of several that make one image, as visibilities of Stokes parameters, opened
-/// read-only and streamed in blocks, one set after the other. Only the columns and channels that are needed are read. A block
-/// never mixes sets, DATA_DESC_IDs or, where the phase centre is shifted, fields. Reading never runs in two threads at once.
+/// read-only and streamed in blocks, one set after the other, in the order in which they were observed. Only the columns and
+/// channels that are needed are read. A block never mixes sets, DATA_DESC_IDs or, where the phase centre is shifted, fields.
+/// Reading never runs in two threads at once.
 class MeasurementSet : public imager::VisibilitySource {
  public:
   /// Enough that the samples of a block share what a pass over the tiles of a grid costs.
@@ -98,7 +99,7 @@ class MeasurementSet : public imager::VisibilitySource {
   /// Bounds at the highest channel selected, of rows with finite UVW. Reads UVW, antennas and FLAG_ROW alone. Throws
   /// std::runtime_error when they cannot be read.
   imager::UvwReach reach(ReachOf rows = ReachOf::usable) const;
-  /// The windows of all sets, in the frame that the selection names.
+  /// The windows of all sets, in the frame that the selection names, and in the order in which it lists them, or of their ids.
   std::vector<SpectralWindow> spectral_windows() const;
   /// Calls visit(coordinates) for some rows after others, all selected that have finite UVW and are neither flagged as a whole
   /// nor of one antenna. Reads and throws what reach() does.

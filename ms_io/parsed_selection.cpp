@@ -79,6 +79,12 @@ void parse_windows(const casacore::MeasurementSet& set, const Selection& selecti
     for (int c = ranges(r, 1); c <= ranges(r, 2); c += step) parsed.channels[ranges(r, 0)].insert(c);
   }
   parsed.all_windows = false;
+  for (const std::string& part : split(selection.spectral_window, ',')) {  // MSSelection sorts them
+    casacore::MSSelection one;
+    one.setSpwExpr(part);
+    for (const int window : one.getSpwList(&set))
+      if (parsed.place_of(window) == parsed.listed_windows.size()) parsed.listed_windows.push_back(window);
+  }
 }
 
 /// What becomes of an expression.
@@ -111,6 +117,11 @@ void parse_alone(const casacore::MeasurementSet& set, const Selection& selection
 }
 
 }  // namespace
+
+std::size_t ParsedSelection::place_of(int window) const {
+  if (all_windows) return static_cast<std::size_t>(window);
+  return static_cast<std::size_t>(std::find(listed_windows.begin(), listed_windows.end(), window) - listed_windows.begin());
+}
 
 bool ParsedSelection::uv_in_wavelengths() const {
   return std::any_of(uv.begin(), uv.end(), [](const UvRange& range) { return !range.in_metres; });

@@ -26,11 +26,14 @@ struct ParsedSelection {
   std::set<int> fields;
   bool all_windows = true;
   std::map<int, std::set<int>> channels;  ///< of each spectral window selected
+  std::vector<int> listed_windows;        ///< those selected, as the expression lists them; empty: all
   std::vector<UvRange> uv;                ///< one of them must hold, unless there are none
   casacore::TableExprNode rows;           ///< true where the rest of the selection holds; null: everywhere
 
   bool has_field(int field) const { return all_fields || fields.count(field) > 0; }
   bool has_window(int window) const { return all_windows || channels.count(window) > 0; }
+  /// Where a window stands among those that are listed; its id where none are.
+  std::size_t place_of(int window) const;
   bool uv_in_wavelengths() const;  ///< whether some of it is
   /// Whether one of `uv` holds, or there are none; in wavelengths, of the reference frequency. TaQL takes 6 µs for a row, which
   /// is why this is apart.

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <stdexcept>
+#include <tuple>
 
 #include "ms_io/phase_centre_internal.h"
 #include "ms_io/selection_internal.h"
@@ -16,6 +17,23 @@ namespace {
 
 constexpr std::size_t not_selected = std::numeric_limits<std::size_t>::max();
 
+/// A row of the main table, and what tells it from others of its time. Nothing but these decides which row is the first, so
+/// that the order of the table does not matter.
+struct TimedRow {
+  double time_s = 0;  ///< as the set stores it
+  int field = 0;
+  int data_description = 0;
+  std::uint64_t row = 0;
+
+  /// Rows without a time come last.
+  bool before(const TimedRow& other) const {
+    const auto key = [](const TimedRow& r) {
+      return std::tuple(std::isnan(r.time_s), std::isnan(r.time_s) ? 0 : r.time_s, r.field, r.data_description, r.row);
+    };
+    return key(*this) < key(other);
+  }
+};
+
 /// Sorts rows, met in the order of the table, into blocks of one setup each.
 class BlockBuilder {
  public:
@@ -26,21 +44,28 @@ class BlockBuilder {
   }
 
   /// `uvw_m` is looked at only where the selection asks for it.
-  void add(std::uint64_t row, int data_description, int field, const double* uvw_m) {
-    if (!parsed_.has_field(field)) return;
-    if (!parsed_.uv.empty() && !has_uv(uvw_m, data_description)) return;
-    if (!parsed_.has_row(row)) return;
-    const std::size_t setup = setup_of({data_description, result_.phase_centre ? field : 0});
+  void add(const TimedRow& at, const double* uvw_m) {
+    if (!parsed_.has_field(at.field)) return;
+    if (!parsed_.uv.empty() && !has_uv(uvw_m, at.data_description)) return;
+    if (!parsed_.has_row(at.row)) return;
+    const std::size_t setup = setup_of({at.data_description, result_.phase_centre ? at.field : 0});
     if (setup == not_selected) return;
-    if (result_.rows++ == 0) result_.first_row = row;
-    result_.first_row_of_field.emplace(field, row);
+    ++result_.rows;
+    TimedRow& first = first_of_field_.emplace(at.field, at).first->second;
+    if (at.before(first)) first = at;
     BlockRows& block = pending_[setup];
-    append(block.runs, row);
+    append(block.runs, at.row);
     if (++block.rows >= rows_per_block_[setup]) flush(setup);
   }
 
   SelectedRows finish() {
     for (std::size_t s = 0; s < pending_.size(); ++s) flush(s);
+    const TimedRow* first = nullptr;
+    for (const auto& [field, row] : first_of_field_) {
+      result_.first_row_of_field[field] = row.row;
+      if (first == nullptr || row.before(*first)) first = &row;
+    }
+    if (first != nullptr) result_.first_row = first->row;
     return std::move(result_);
   }
 
@@ -74,6 +99,7 @@ class BlockBuilder {
     index = result_.setups.size();
     result_.setups.push_back(table_.setup(key.first, parsed_));
     result_.setups.back().field = key.second;
+    result_.setups.back().place = parsed_.place_of(result_.setups.back().spectral_window);
     rows_per_block_.push_back(std::max<std::uint64_t>(1, use_.block_samples / result_.setups.back().frequency_hz.size()));
     pending_.push_back({index, {}, 0});
     return index;
@@ -91,6 +117,7 @@ class BlockBuilder {
   const ParsedSelection& parsed_;
   RowUse use_;
   SelectedRows result_;
+  std::map<int, TimedRow> first_of_field_;
   std::map<Key, std::size_t> setup_;
   std::map<int, double> reference_frequency_hz_;  ///< by DATA_DESC_ID
   std::vector<BlockRows> pending_;                ///< [setup]
@@ -124,6 +151,9 @@ SelectedRows select_rows(const casacore::MeasurementSet& set, const std::string&
                         [&] { return casacore::ScalarColumn<int>(set, column).getColumnRange(rows).tovector(); });
     };
     const std::vector<int> description = ids("DATA_DESC_ID"), field = ids("FIELD_ID");
+    const std::vector<double> time_s = translated("cannot read TIME of " + path, [&] {
+      return casacore::ScalarColumn<double>(set, "TIME").getColumnRange(rows).tovector();
+    });
     casacore::Array<double> uvw;
     if (!parsed.uv.empty()) {
       uvw = translated("cannot read UVW of " + path,
@@ -131,7 +161,7 @@ SelectedRows select_rows(const casacore::MeasurementSet& set, const std::string&
     }
     translated("cannot select rows of " + path, [&] {
       for (std::uint64_t r = 0; r < count; ++r)
-        builder.add(first + r, description[r], field[r], uvw.empty() ? nullptr : uvw.data() + 3 * r);
+        builder.add({time_s[r], field[r], description[r], first + r}, uvw.empty() ? nullptr : uvw.data() + 3 * r);
     });
   }
   SelectedRows selected = builder.finish();

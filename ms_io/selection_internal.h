@@ -26,6 +26,7 @@ struct Setup {
   int field = 0;             ///< where visibilities are shifted; else 0
   imager::PhaseShift shift;  ///< from where its rows are phased to
   int spectral_window = 0;
+  std::size_t place = 0;                 ///< of the window among those that the selection lists, or among all
   std::string spectral_frame;            ///< FITS SPECSYS
   std::vector<int> correlation_types;    ///< casacore's Stokes codes
   std::size_t stored_channels = 0;       ///< in a cell
@@ -53,8 +54,8 @@ struct SelectedRows {
   std::vector<BlockRows> blocks;  ///< in the order of the table, as far as several setups allow
   std::uint64_t rows = 0;
   std::uint64_t samples = 0;                         ///< rows × selected channels
-  std::uint64_t first_row = 0;                       ///< the first row selected
-  std::map<int, std::uint64_t> first_row_of_field;   ///< for the fields that have selected rows
+  std::uint64_t first_row = 0;                       ///< the earliest row selected, wherever it stands
+  std::map<int, std::uint64_t> first_row_of_field;   ///< the earliest, for the fields that have selected rows
   std::optional<imager::SkyDirection> phase_centre;  ///< where the visibilities are shifted to
   std::string spectral_frame;                        ///< in which frequencies count; empty: that of each window
 };

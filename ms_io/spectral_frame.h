@@ -10,7 +10,7 @@ namespace misfit::ms_io {
 /// Throws std::invalid_argument that lists them.
 std::string parse_spectral_frame(const std::string& name);
 
-/// The channels of one spectral window as another frame has them when its first selected row was observed.
+/// The channels of one spectral window as another frame has them when its earliest selected row was observed.
 struct SpectralWindow {
   std::vector<double> frequency_hz;      ///< [selected channel]
   std::vector<double> channel_width_hz;  ///< [selected channel], positive

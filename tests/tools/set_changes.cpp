@@ -8,6 +8,10 @@
 #include <casacore/tables/Tables/ArrayColumn.h>
 #include <casacore/tables/Tables/ScalarColumn.h>
 
+#include <algorithm>
+#include <numeric>
+#include <random>
+
 namespace misfit::tools::testing {
 namespace {
 
@@ -34,6 +38,15 @@ void replace(casacore::MeasurementSet& set, const std::string& column, const cas
 }
 
 }  // namespace
+
+void shuffle_rows(const std::string& set, const std::string& copy, unsigned seed) {
+  const casacore::MeasurementSet open(set);
+  std::vector<casacore::rownr_t> order(open.nrow());
+  std::iota(order.begin(), order.end(), casacore::rownr_t{0});
+  std::shuffle(order.begin(), order.end(), std::mt19937(seed));
+  const casacore::Table shuffled = open(casacore::Vector<casacore::rownr_t>(order));
+  shuffled.deepCopy(copy, casacore::Table::New, true);
+}
 
 void put_data(const std::string& set, std::size_t row, std::complex<float> value) {
   put_first(set, "DATA", row, value);

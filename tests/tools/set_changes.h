@@ -23,6 +23,9 @@ void make_autocorrelation(const std::string& set, std::size_t row);
 void scale_data(const std::string& set, float factor);
 void scale_uvw(const std::string& set, double factor);
 
+/// Copies a set with its rows in another order.
+void shuffle_rows(const std::string& set, const std::string& copy, unsigned seed);
+
 /// A set that this process has locked for writing, as one that flags or calibrates it does.
 class LockedSet {
  public:
