@@ -124,8 +124,9 @@ BOOST_AUTO_TEST_CASE(masks_of_each_stokes_parameter_are_made_and_taken_back) {
 }
 
 BOOST_AUTO_TEST_CASE(the_model_of_any_stokes_parameters_is_saved_as_all_correlations_show_it) {
-  for (const char* stokes : {"V", "QU", "IQUV"}) {
-    const Copy copy(linear);
+  for (const char* stokes : {"V", "QU", "IQUV", "XX", "YY", "XXYY", "LL", "RRLL"}) {
+    const bool is_circular = std::string(stokes).find_first_of("RL") != std::string::npos;
+    const Copy copy(is_circular ? circular : linear);
     copy.predict(stokes_columns, two_points);
     succeed(small_image(copy.set, copy.folder / "a") +
             Arguments{"--datacolumn", "model", "--stokes", stokes, "--niter", "200", "--savemodel", "modelcolumn"});
@@ -141,6 +142,20 @@ BOOST_AUTO_TEST_CASE(the_model_of_any_stokes_parameters_is_saved_as_all_correlat
       BOOST_TEST(std::abs(again - flux) < 0.02 * 5);  // two percent of the brightest point
     }
   }
+}
+
+BOOST_AUTO_TEST_CASE(of_one_hand_the_other_is_saved_as_nothing_and_that_is_said) {
+  const Copy copy(linear);
+  copy.predict(stokes_columns, two_points);
+  const Arguments image = small_image(copy.set, copy.folder / "a") +
+                          Arguments{"--datacolumn", "model", "--niter", "20", "--savemodel", "modelcolumn", "--stokes"};
+  const std::string said = "YY of MODEL_DATA is 0";
+  BOOST_TEST(run(image + Arguments{"XXYY"}).err.find(said) == std::string::npos);
+  BOOST_TEST(run(image + Arguments{"XX"}).err.find(said) != std::string::npos);
+  BOOST_TEST(run(image + Arguments{"I,XX"}).err.find("or of parallel hands, such as XXYY or RR") != std::string::npos);
+  const auto model = visibilities(copy.set, "MODEL_DATA");
+  for (std::size_t i = 0; i < model.size(); ++i)
+    if (i % 4 != 0) BOOST_TEST(std::abs(model[i]) < 1e-6);  // of 7 Jy, rounded to single precision
 }
 
 BOOST_AUTO_TEST_CASE(what_cannot_be_formed_is_refused_with_the_correlations_there_are) {

@@ -76,11 +76,12 @@ ModelVisibilities image_visibilities(const StokesPlanes& planes, const imager::I
   std::array<const imager::Prediction*, 4> of{};
   for (std::size_t k = 0; k < planes.size(); ++k) {
     if (planes[k] == nullptr) continue;
-    if (taylor.further.empty()) {
+    const std::vector<const imager::Image*>& further = taylor.further[k];
+    if (further.empty()) {
       model.predictions[k] = model.transform->predict(*planes[k]);
     } else {
       std::vector<const imager::Image*> terms{planes[k]};
-      terms.insert(terms.end(), taylor.further.begin(), taylor.further.end());
+      terms.insert(terms.end(), further.begin(), further.end());
       model.predictions[k] = std::make_unique<imager::TaylorPrediction>(*model.transform, terms, taylor.expansion);
     }
     of[k] = model.predictions[k].get();

@@ -43,7 +43,7 @@ using StokesPlanes = std::array<const imager::Image*, 4>;
 /// The Taylor terms of a model after the first, which its planes are.
 struct TaylorTerms {
   imager::TaylorExpansion expansion;
-  std::vector<const imager::Image*> further;  ///< [term − 1], of the one plane that is not null
+  std::array<std::vector<const imager::Image*>, 4> further;  ///< [plane][term − 1]; empty where there is one term
 };
 
 /// The visibilities of a model at all selected samples of `set`, flagged or not, as `request` would have them gridded.

@@ -10,6 +10,7 @@
 #include "tools/base/option_checks.h"
 #include "tools/base/quantity.h"
 #include "tools/run/image_options.h"
+#include "tools/run/model_stage.h"
 #include "tools/run/taylor_options.h"
 #include "tools/run/weighting_options.h"
 
@@ -84,9 +85,10 @@ void check_clean(const ImageOptions& o) {
   if (o.niter > 0 && smallest < 3 && !restoring_beam(o))
     refuse_option("imsize", std::to_string(smallest), "3 pixels or more to fit a beam to, or --restoringbeam");
   if (!o.startmodel.empty() && o.niter == 0) refuse_option("startmodel", o.startmodel, "--niter above 0 beside it");
-  for (const imager::Stokes stokes : imager::parse_stokes(o.stokes))
-    if (o.savemodel != "none" && stokes > imager::Stokes::V)
-      refuse_option("savemodel", o.savemodel, "--stokes of I, Q, U and V, of which a column's correlations are made");
+  if (o.savemodel != "none" && !saves_model(imager::parse_stokes(o.stokes)))
+    refuse_option(
+        "savemodel", o.savemodel,
+        "--stokes of I, Q, U and V, or of parallel hands, such as XXYY or RR, of which a column's correlations are made");
   if (o.savemodel != "none" && o.niter == 0) refuse_option("savemodel", o.savemodel, "--niter above 0 beside it");
   if (!o.mask.empty() && o.niter == 0) refuse_option("mask", o.mask, "--niter above 0 beside it");
   if (o.restart && o.niter == 0) refuse_option("restart", "true", "--niter above 0 beside it");

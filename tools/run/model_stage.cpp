@@ -1,5 +1,8 @@
 #include "tools/run/model_stage.h"
 
+#include <algorithm>
+#include <deque>
+
 #include "kernels/version.h"
 #include "ms_io/fingerprint.h"
 #include "ms_io/model_writer.h"
@@ -9,31 +12,116 @@
 
 namespace misfit::tools {
 
-void save_model(const ImageOptions& o, const SavedModel& model, const imager::Ranks& ranks, const imager::Progress& progress) {
+namespace {
+
+using imager::Image;
+using imager::Stokes;
+
+/// The model of a Stokes parameter or hand: one image for each Taylor term.
+using Terms = std::vector<const Image*>;
+
+Terms terms_of(const imager::CleanResult& cleaned) {
+  Terms terms{&cleaned.model};
+  for (const Image& further : cleaned.further_models) terms.push_back(&further);
+  return terms;
+}
+
+bool is_hand(Stokes stokes) {
+  return stokes == Stokes::RR || stokes == Stokes::LL || stokes == Stokes::XX || stokes == Stokes::YY;
+}
+
+bool is_circular(Stokes hand) {
+  return hand == Stokes::RR || hand == Stokes::LL;
+}
+
+bool is_first(Stokes hand) {
+  return hand == Stokes::RR || hand == Stokes::XX;
+}
+
+/// The models as planes of I, Q, U and V.
+class ModelPlanes {
+ public:
+  explicit ModelPlanes(const SavedModel& model) {
+    taylor.expansion = model.expansion;
+    if (!is_hand(model.stokes.front())) {
+      for (std::size_t s = 0; s < model.stokes.size(); ++s) put(model.stokes[s], terms_of(model.cleaned[s]));
+      return;
+    }
+    put(Stokes::I, half(model, 1));
+    put(is_circular(model.stokes.front()) ? Stokes::V : Stokes::Q, half(model, -1));
+  }
+  ModelPlanes(const ModelPlanes&) = delete;
+  ModelPlanes& operator=(const ModelPlanes&) = delete;
+
   StokesPlanes planes{};
-  TaylorTerms taylor{model.expansion, {}};
+  TaylorTerms taylor;
+
+ private:
+  void put(Stokes stokes, const Terms& terms) {
+    const auto plane = static_cast<std::size_t>(stokes) - 1;
+    planes.at(plane) = terms.front();
+    taylor.further.at(plane).assign(terms.begin() + 1, terms.end());
+  }
+
+  /// (a + sign · b) / 2 of the first hand a and the second b, term by term.
+  Terms half(const SavedModel& model, double sign) {
+    Terms halves;
+    for (std::size_t t = 0; t <= model.cleaned.front().further_models.size(); ++t) {
+      const Image& like = model.cleaned.front().model;
+      Image& sum = made_.emplace_back(like.width, like.height);
+      for (std::size_t s = 0; s < model.stokes.size(); ++s) {
+        const Image& hand = *terms_of(model.cleaned[s])[t];
+        const double factor = is_first(model.stokes[s]) ? 0.5 : 0.5 * sign;
+        for (std::size_t i = 0; i < sum.pixel.size(); ++i) sum.pixel[i] += factor * hand.pixel[i];
+      }
+      halves.push_back(&sum);
+    }
+    return halves;
+  }
+
+  std::deque<Image> made_;
+};
+
+ms_io::Fingerprint fingerprint_of(const SavedModel& model) {
   ms_io::Fingerprint fingerprint;
   fingerprint.add(std::string(MISFIT_VERSION)).add(model.option_values);
-  for (std::size_t s = 0; s < model.stokes.size(); ++s) {
-    planes.at(static_cast<std::size_t>(model.stokes[s]) - 1) = &model.cleaned[s].model;
-    fingerprint.add(model.cleaned[s].model.pixel);
-    for (const imager::Image& further : model.cleaned[s].further_models) {
-      fingerprint.add(further.pixel);
-      taylor.further.push_back(&further);
-    }
-  }
+  for (const imager::CleanResult& cleaned : model.cleaned)
+    for (const Image* term : terms_of(cleaned)) fingerprint.add(term->pixel);
+  return fingerprint;
+}
+
+}  // namespace
+
+bool saves_model(const std::vector<Stokes>& stokes) {
+  const auto all = [&](const auto& holds) { return std::all_of(stokes.begin(), stokes.end(), holds); };
+  return all([](Stokes s) { return s <= Stokes::V; }) ||
+         (all(is_hand) && all([&](Stokes s) { return is_circular(s) == is_circular(stokes.front()); }));
+}
+
+std::string missing_hand_warning(const std::vector<Stokes>& stokes) {
+  if (stokes.size() != 1 || !is_hand(stokes.front())) return "";
+  const Stokes hand = stokes.front();
+  const Stokes other = is_circular(hand) ? (is_first(hand) ? Stokes::LL : Stokes::RR)
+                       : is_first(hand)  ? Stokes::YY
+                                         : Stokes::XX;
+  return "--savemodel modelcolumn writes the model of " + stokes_name(hand) + " alone: " + stokes_name(other) +
+         " of MODEL_DATA is 0, where the set has it";
+}
+
+void save_model(const ImageOptions& o, const SavedModel& model, const imager::Ranks& ranks, const imager::Progress& progress) {
+  const ModelPlanes planes(model);
   const ms_io::Selection selection = selection_of(o);
   ModelVisibilities visibilities;
   {
     const auto set = ms_io::MeasurementSet(o.vis, selection, o.datacolumn, model.stokes).share(ranks);
-    visibilities = image_visibilities(planes, model.geometry, gridding_request(o, model.threads), *set, taylor);
+    visibilities = image_visibilities(planes.planes, model.geometry, gridding_request(o, model.threads), *set, planes.taylor);
   }
   ranks.meet();  // before sets change
   SharedPrediction shared(ranks, visibilities.predict);
   if (!ranks.first()) return shared.follow();
   ms_io::ModelColumn column{"MODEL_DATA"};
-  column.origin = {"misfit image --savemodel modelcolumn --imagename " + shell_quoted(o.imagename), fingerprint.value(),
-                   model.tell};
+  column.origin = {"misfit image --savemodel modelcolumn --imagename " + shell_quoted(o.imagename),
+                   fingerprint_of(model).value(), model.tell};
   const auto predict = [&](const imager::SampleCoordinates& at) { return shared.predict(at); };
   for (const std::string& set : o.vis)
     ms_io::write_model(set, selection, column, predict, progress, {visibilities.samples_at_once, ranks.size()});

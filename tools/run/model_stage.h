@@ -15,15 +15,22 @@ namespace misfit::tools {
 struct SavedModel {
   const imager::ImageGeometry& geometry;
   int threads = 1;
-  const std::vector<imager::Stokes>& stokes;              ///< some of I, Q, U and V
+  const std::vector<imager::Stokes>& stokes;              ///< that saves_model() holds for
   const std::vector<imager::CleanResult>& cleaned;        ///< [Stokes]
   std::string option_values;                              ///< by which a column cut short is known again
   std::function<void(const std::string& sentence)> tell;  ///< what becomes of such a column
   imager::TaylorExpansion expansion{};                    ///< of the models' spectra
 };
 
-/// Writes the models' visibilities into MODEL_DATA of each set of the run, about its own phase centre. Called by all ranks,
-/// which have the same models: they predict, and the first writes. Throws what ms_io::write_model does.
+/// Whether a column can be made of images of these: I, Q, U and V, or parallel hands of one kind of feed.
+bool saves_model(const std::vector<imager::Stokes>& stokes);
+
+/// That correlations of which there is no image are written as 0: of one hand the other; else empty.
+std::string missing_hand_warning(const std::vector<imager::Stokes>& stokes);
+
+/// Writes the models' visibilities into MODEL_DATA of each set of the run, about its own phase centre: of parallel hands as
+/// those of I = (a + b) / 2 and of Q or V = (a − b) / 2, where a is XX or RR and b is YY or LL, and 0 without an image. Called
+/// by all ranks, which have the same models: they predict, and the first writes. Throws what ms_io::write_model does.
 void save_model(const ImageOptions& options, const SavedModel& model, const imager::Ranks& ranks,
                 const imager::Progress& progress);
 
