@@ -23,7 +23,7 @@ constexpr double arcsec = M_PI / 180 / 3600;
 OutsideReport report_with(std::size_t sources) {
   OutsideReport report;
   report.field = {100, 100, arcsec, {1, 0.5}};
-  report.found = sources + 2;
+  report.harmless = {{{{-50 * arcsec, 60 * arcsec}, 3}, 1e-5}, {{{0, 70 * arcsec}, 0.6}, 2e-5}};
   report.least_jy = 0.5;
   report.highest_alias_jy = sources > 0 ? 0.1 : 5e-4;
   report.all_aliases_jy = 1.5 * report.highest_alias_jy;
@@ -60,6 +60,20 @@ BOOST_AUTO_TEST_CASE(a_source_is_told_with_its_position_flux_and_alias) {
              boost::test_tools::tolerance(1e-7));
   BOOST_TEST(told.at("dec_deg").get<double>() == (0.5 - 30 * arcsec) * 180 / M_PI, boost::test_tools::tolerance(1e-7));
   BOOST_TEST(contains(outside_warnings(report).at(0), "40 arcsec east and 30 arcsec south"));
+}
+
+BOOST_AUTO_TEST_CASE(every_source_found_is_told_with_its_place_the_brightest_first) {
+  const auto lines = outside_places(report_with(1));
+  BOOST_REQUIRE(lines.size() == 3U);
+  BOOST_TEST(contains(lines[0], "3 Jy at "));
+  BOOST_TEST(contains(lines[0], "50 arcsec west and 60 arcsec north of the phase centre; alias 10 µJy/beam at most"));
+  BOOST_TEST(contains(lines[1], "2 Jy at "));
+  BOOST_TEST(contains(lines[2], "600 mJy at "));
+  BOOST_TEST(outside_places(report_with(9)).size() == 11U);
+  BOOST_TEST(outside_places(report_with(9)).back() == "  and 1 more, which the report lists");
+  const OutsideReport report = report_with(1);
+  BOOST_TEST(outside_search_json(&report).at("found") == 3);
+  BOOST_TEST(outside_search_json(&report).at("harmless").size() == 2U);
 }
 
 BOOST_AUTO_TEST_CASE(three_sources_are_warned_of_and_the_others_counted) {

@@ -54,6 +54,16 @@ imager::Sidelobes sidelobes_of(const imager::Image& psf, const imager::WideSearc
   return sidelobes;
 }
 
+bool brighter(const imager::OutsideSource& a, const imager::OutsideSource& b) {
+  return std::abs(a.source.flux_jy) > std::abs(b.source.flux_jy);
+}
+
+/// "2 Jy at 12h30m49.4s +12d23m28s, 1.2 deg east and 30 arcmin south of the phase centre"
+std::string place(const imager::OutsideSource& s, const OutsideReport& r) {
+  return sexagesimal(direction_of(s, r)) + ", " + offset(s.source.position) +
+         (s.at_border ? ", at the border of the field searched or beyond it" : "");
+}
+
 /// Tells sources from what may be sidelobes, and those that matter from others.
 void sort_out(const std::vector<imager::OutsideSource>& all, OutsideReport& r) {
   for (const imager::OutsideSource& s : all) {
@@ -61,11 +71,11 @@ void sort_out(const std::vector<imager::OutsideSource>& all, OutsideReport& r) {
       ++r.doubtful;
       continue;
     }
-    ++r.found;
     r.highest_alias_jy = std::max(r.highest_alias_jy, s.alias_jy);
     r.all_aliases_jy += s.alias_jy;
-    if (s.alias_jy > r.noise_jy) r.sources.push_back(s);
+    (s.alias_jy > r.noise_jy ? r.sources : r.harmless).push_back(s);
   }
+  std::stable_sort(r.harmless.begin(), r.harmless.end(), brighter);
 }
 
 /// CLEAN leaves a hundredth or so of what it finds between pixels; three are something else.
@@ -110,10 +120,10 @@ OutsideReport check_outside(const imager::VisibilitySource& source, const imager
 
 imager::Decision outside_decision(const OutsideReport& r) {
   if (!r.searched) return {"sources outside the image", "not looked for", why_not_searched(r)};
-  std::string because = std::to_string(r.found) + " above " + with_prefix(r.least_jy, "Jy", 2) + " in " +
+  std::string because = std::to_string(r.found()) + " above " + with_prefix(r.least_jy, "Jy", 2) + " in " +
                         angle(r.field.width * r.field.cell_rad) + " × " + angle(r.field.height * r.field.cell_rad);
-  if (r.found > 0) because += "; the highest alias is " + with_prefix(r.highest_alias_jy, "Jy/beam", 2) + " at most";
-  if (r.found > 1) because += ", all together " + with_prefix(r.all_aliases_jy, "Jy/beam", 2);
+  if (r.found() > 0) because += "; the highest alias is " + with_prefix(r.highest_alias_jy, "Jy/beam", 2) + " at most";
+  if (r.found() > 1) because += ", all together " + with_prefix(r.all_aliases_jy, "Jy/beam", 2);
   because += "; the image's noise is " + noise_text(r);
   const std::string above = " above " + with_prefix(r.noise_jy, "Jy/beam", 2);
   const bool blind = r.elsewhere || r.doubtful > 0;
@@ -122,16 +132,27 @@ imager::Decision outside_decision(const OutsideReport& r) {
   return {"sources outside the image", std::to_string(r.sources.size()) + " may show through the kernel", because};
 }
 
+std::vector<std::string> outside_places(const OutsideReport& r) {
+  constexpr std::size_t told = 10;
+  std::vector<imager::OutsideSource> all = r.sources;
+  all.insert(all.end(), r.harmless.begin(), r.harmless.end());
+  std::stable_sort(all.begin(), all.end(), brighter);
+  std::vector<std::string> lines;
+  for (std::size_t i = 0; i < std::min(told, all.size()); ++i)
+    lines.push_back("  " + with_prefix(all[i].source.flux_jy, "Jy", 3) + " at " + place(all[i], r) + "; alias " +
+                    with_prefix(all[i].alias_jy, "Jy/beam", 2) + " at most");
+  if (all.size() > told) lines.push_back("  and " + std::to_string(all.size() - told) + " more, which the report lists");
+  return lines;
+}
+
 std::vector<std::string> outside_warnings(const OutsideReport& r) {
   constexpr std::size_t told = 3;
   if (!r.searched) return {"sources outside the image were not looked for: " + why_not_searched(r)};
   std::vector<std::string> warnings;
   for (const imager::OutsideSource& s : r.sources) {
     if (warnings.size() == told) break;
-    warnings.push_back("a source of " + with_prefix(s.source.flux_jy, "Jy", 3) + " outside the image, at " +
-                       sexagesimal(direction_of(s, r)) + ", " + offset(s.source.position) +
-                       (s.at_border ? ", at the border of the field searched or beyond it" : "") + ", may leave an alias of " +
-                       with_prefix(s.alias_jy, "Jy/beam", 2));
+    warnings.push_back("a source of " + with_prefix(s.source.flux_jy, "Jy", 3) + " outside the image, at " + place(s, r) +
+                       ", may leave an alias of " + with_prefix(s.alias_jy, "Jy/beam", 2));
   }
   if (r.sources.size() > told)
     warnings.back() += "; and " + std::to_string(r.sources.size() - told) + " more, which the report lists";
@@ -139,11 +160,12 @@ std::vector<std::string> outside_warnings(const OutsideReport& r) {
   return warnings;
 }
 
-nlohmann::json outside_json(const OutsideReport* report) {
-  if (report == nullptr || !report->searched) return nullptr;
+namespace {
+
+nlohmann::json json_of(const std::vector<imager::OutsideSource>& sources, const OutsideReport& report) {
   nlohmann::json list = nlohmann::json::array();
-  for (const imager::OutsideSource& s : report->sources) {
-    const imager::SkyDirection at = direction_of(s, *report);
+  for (const imager::OutsideSource& s : sources) {
+    const imager::SkyDirection at = direction_of(s, report);
     list.push_back({{"ra_deg", at.ra_rad * 180 / M_PI},
                     {"dec_deg", at.dec_rad * 180 / M_PI},
                     {"l_arcsec", s.source.position.l / arcsec_rad},
@@ -155,10 +177,17 @@ nlohmann::json outside_json(const OutsideReport* report) {
   return list;
 }
 
+}  // namespace
+
+nlohmann::json outside_json(const OutsideReport* report) {
+  return report == nullptr || !report->searched ? nlohmann::json() : json_of(report->sources, *report);
+}
+
 nlohmann::json outside_search_json(const OutsideReport* report) {
   if (report == nullptr || !report->searched) return nullptr;
   const std::string sentence = elsewhere_sentence(*report);
-  return {{"found", report->found},
+  return {{"found", report->found()},
+          {"harmless", json_of(report->harmless, *report)},
           {"doubtful", report->doubtful},
           {"least_jy", report->least_jy},
           {"highest_alias_jy", report->highest_alias_jy},
