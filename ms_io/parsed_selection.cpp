@@ -116,6 +116,28 @@ void parse_alone(const casacore::MeasurementSet& set, const Selection& selection
   expression.toTableExprNode(&set);
 }
 
+/// Whether a time of the expression may be one without a date.
+bool lacks_date(const std::string& times) {
+  const std::vector<std::string> parts = split(times, ',');
+  return !one_line(times).empty() &&
+         std::any_of(parts.begin(), parts.end(), [](const std::string& part) { return part.find('/') == std::string::npos; });
+}
+
+bool in_order_of_time(const casacore::MeasurementSet& set) {
+  const casacore::Vector<double> time = casacore::ScalarColumn<double>(set, "TIME").getColumn();
+  return std::is_sorted(time.begin(), time.end());
+}
+
+/// Where the selection holds [row]. casacore takes the date of a time without one from the first row, which is the earliest
+/// here.
+std::vector<bool> rows_in_order_of_time(const casacore::MeasurementSet& set, casacore::MSSelection& selection) {
+  const casacore::MeasurementSet sorted(set.sort("TIME"));
+  const casacore::Table found = sorted(selection.toTableExprNode(&sorted));
+  std::vector<bool> rows(set.nrow(), false);
+  for (const casacore::rownr_t row : found.rowNumbers(set)) rows[row] = true;
+  return rows;
+}
+
 }  // namespace
 
 std::size_t ParsedSelection::place_of(int window) const {
@@ -137,13 +159,14 @@ bool ParsedSelection::has_uv(const double* uvw_m, double reference_frequency_hz)
 }
 
 bool ParsedSelection::has_row(std::uint64_t row) const {
+  if (!listed_rows.empty()) return listed_rows[row];
   return rows.isNull() || rows.getBool(casacore::TableExprId(row));
 }
 
 ParsedSelection parse_selection(const casacore::MeasurementSet& set, const std::string& path, const Selection& selection) {
   ParsedSelection parsed;
   bool among_rows = false;
-  casacore::MSSelection all;  // a time without a date has that of the first row that the others select
+  casacore::MSSelection all;  // a time without a date has that of the earliest row that the others select
   for (const SelectionKind& kind : selection_kinds) {
     const std::string& expression = selection.*kind.expression;
     if (one_line(expression).empty()) continue;
@@ -158,7 +181,12 @@ ParsedSelection parse_selection(const casacore::MeasurementSet& set, const std::
     among_rows = among_rows || !parser.alone;
   }
   if (among_rows) {
-    parsed.rows = translated(path + ": " + to_text(selection), [&] { return all.toTableExprNode(&set); });
+    translated(path + ": " + to_text(selection), [&] {
+      if (lacks_date(selection.time_range) && !in_order_of_time(set))
+        parsed.listed_rows = rows_in_order_of_time(set, all);
+      else
+        parsed.rows = all.toTableExprNode(&set);
+    });
   }
   return parsed;
 }

@@ -29,6 +29,7 @@ struct ParsedSelection {
   std::vector<int> listed_windows;        ///< those selected, as the expression lists them; empty: all
   std::vector<UvRange> uv;                ///< one of them must hold, unless there are none
   casacore::TableExprNode rows;           ///< true where the rest of the selection holds; null: everywhere
+  std::vector<bool> listed_rows;          ///< [row] the same in place of `rows`; empty where that tells
 
   bool has_field(int field) const { return all_fields || fields.count(field) > 0; }
   bool has_window(int window) const { return all_windows || channels.count(window) > 0; }

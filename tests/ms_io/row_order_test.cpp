@@ -72,11 +72,12 @@ std::vector<double> sorted_u(const MeasurementSet& set) {
 BOOST_AUTO_TEST_CASE(shuffled_rows_have_the_same_observation_windows_and_samples) {
   const MixedSet set;
   const TemporaryFolder folder;
-  std::vector<Selection> selections(4);
+  std::vector<Selection> selections(5);
   selections[1].spectral_frame = "LSRK";
   selections[2].spectral_window = "1,0";
   selections[2].spectral_frame = "BARYCENT";
   selections[3].phase_centre = imager::SkyDirection{1.26, -0.49, "ICRS"};
+  selections[4].time_range = "00:00:00~23:59:59";  // of the earlier day
   for (const unsigned seed : {1U, 2U, 3U}) {
     const std::string other = shuffled(set, folder, seed);
     for (const Selection& selection : selections) {
