@@ -61,15 +61,17 @@ std::string header_text(const std::string& text) {
   return kept;
 }
 
-/// Throws std::runtime_error where headers are not to be trusted. A file that cannot be opened is left to CFITSIO.
+/// Throws std::runtime_error where headers are not to be trusted.
 void check_sizes(const std::string& path) {
   std::error_code none;
   const std::filesystem::file_status status = std::filesystem::status(path, none);
   if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status))
     throw std::runtime_error("it is no regular file");
   const std::uintmax_t size = std::filesystem::file_size(path, none);
+  errno = 0;
   std::ifstream file(path, std::ios::binary);
-  if (none || !file) return;
+  if (!file) throw std::runtime_error(std::strerror(errno != 0 ? errno : EIO));
+  if (none) return;
   kernels::check_fits_sizes(
       {size, [&file](std::uint64_t at, std::size_t count) {
          std::string bytes(count, '\0');

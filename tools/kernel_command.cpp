@@ -267,11 +267,15 @@ void add_kernel_command(CLI::App& program) {
   list_kernels(
       *command->add_option("--kernel", o->kernel.name, "Gridding function: a name, or a kernel-table file to tabulate anew"));
   declare_kernel_folder(*command, o->kernel.folder);
-  command->add_option("--width", o->width, "Cells a visibility touches per axis");
-  command->add_option("--x0", o->x0, "Half the part of the FFT image that is kept; or give --padding");
-  command->add_option("--padding", o->padding, "FFT size over image size, 1 / (2 x0)");
+  command->add_option("--width", o->width, "Cells a visibility touches per axis")
+      ->check(not_zero("the number of cells a visibility touches per axis"));
+  command->add_option("--x0", o->x0, "Half the part of the FFT image that is kept; or give --padding")
+      ->check(not_zero("more than 0, below 0.5"));
+  command->add_option("--padding", o->padding, "FFT size over image size, 1 / (2 x0)")
+      ->check(not_zero("more than 1, at most 500"));
   CLI::Option* accuracy =
-      command->add_option("--accuracy", o->job.accuracy, "Choose width and padding that reach it at the least cost");
+      command->add_option("--accuracy", o->job.accuracy, "Choose width and padding that reach it at the least cost")
+          ->check(not_zero("a number above 0 and below 1"));
   command->add_option("--imsize", o->job.imsize, "Of the image: width, or width and height, in pixels")->expected(1, 2);
   command->add_option("--samples", o->job.samples, "Visibilities to be gridded")->needs(accuracy);
   command->add_option("--w-turns", o->job.w_turns, "Range of w in wavelengths times the image's range of n - 1; 0 = no w axis")
@@ -282,9 +286,11 @@ void add_kernel_command(CLI::App& program) {
   CLI::Option* host =
       command->add_option("--emit", o->emit.host, "Write --output as this host wants it")->check(values_are(host_names()));
   command->add_option("--host-padding", o->emit.host_padding, "Padding that the host will use, where it is not its own")
+      ->check(not_zero("more than 1, at most 500"))
       ->needs(host);
   command
       ->add_option("--target-error", o->emit.target_error, "Choose width, sampling and degree with which the host reaches it")
+      ->check(not_zero("a number above 0 and below 1"))
       ->needs(host);
   host->excludes(accuracy);
   command->add_flag("--force", o->emit.force, "Emit a kernel that is made for another padding than the host's")->needs(host);

@@ -56,10 +56,13 @@ const CLI::App& called(const CLI::App& program) {
 /// What the parser says, or where a subcommand is missing, or is none, those that there are.
 std::string usage_message(const CLI::ParseError& error, const CLI::App& program) {
   const CLI::App& command = called(program);
+  const bool missing = error.get_name() == "RequiredError";
   std::vector<std::string> names;
   for (const CLI::App* each : command.get_subcommands({})) names.push_back(each->get_name());
-  if (names.empty() || error.get_name() != "RequiredError") return error.what();
   const std::vector<std::string> rest = command.remaining();
+  if (names.empty() && missing && !rest.empty())
+    return CLI::ExtrasError(rest).what();  // whose right name may be what is missing
+  if (names.empty() || !missing) return error.what();
   const std::string word = rest.empty() || rest.front().front() == '-' ? "" : rest.front();
   std::string said = &command == &program ? word : command.get_name() + (word.empty() ? "" : " ") + word;
   said += said.empty() ? "expected " : ": expected ";

@@ -270,6 +270,23 @@ BOOST_AUTO_TEST_CASE(a_model_must_be_an_image_on_the_phase_centre) {
   check_refused(predict(folder / "a.model.fits") + Arguments{"--column", "DATA"}, 1, {"DATA"}, set);
 }
 
+BOOST_AUTO_TEST_CASE(an_option_that_there_is_not_is_named_before_one_that_is_missing) {
+  const TemporaryFolder folder;
+  for (const char* command : {"image", "predict", "simulate"}) {
+    const Outcome outcome = run({command, "--no-such-option"});
+    BOOST_TEST(outcome.code == 2);
+    BOOST_TEST(outcome.err.find("not expected: --no-such-option") != std::string::npos, outcome.err);
+  }
+  BOOST_TEST(run({"image"}).err.find("--vis is required") != std::string::npos);
+}
+
+BOOST_AUTO_TEST_CASE(a_number_given_as_0_is_named) {
+  const TemporaryFolder folder;
+  for (const char* option : {"--width", "--x0", "--padding", "--accuracy"})
+    check_refused({"kernel", option, "0", "--output", folder / "k.fits"}, 2, {option + std::string(": 0: expected")},
+                  folder / "");
+}
+
 BOOST_AUTO_TEST_CASE(what_is_subtracted_from_is_not_overwritten) {
   const Scene scene;
   const TemporaryFolder folder;

@@ -26,6 +26,11 @@ BOOST_AUTO_TEST_CASE(angles_have_units_and_are_arcseconds_without) {
   BOOST_TEST(same(parse_angle_rad("1"), degree / 3600));
   BOOST_TEST(same(parse_angle_rad("1000mas"), degree / 3600));
   BOOST_TEST(parse_angle_rad("0.25rad") == 0.25);
+  BOOST_TEST(same(parse_angle_rad("20uas"), 20e-6 * degree / 3600));
+  for (const char* mine : {"2uarcsec", "2uasec"}) BOOST_TEST(parse_angle_rad(mine) == parse_angle_rad("2uas"));
+  for (const char* mine : {"2marcsec", "2masec"}) BOOST_TEST(parse_angle_rad(mine) == parse_angle_rad("2mas"));
+  BOOST_TEST(parse_angle_rad("2asec") == parse_angle_rad("2arcsec"));
+  BOOST_TEST(parse_angle_rad("2amin") == parse_angle_rad("2arcmin"));
   BOOST_TEST(same(parse_angle_rad("-1.5e-1 deg"), -0.15 * degree));
   BOOST_TEST(same(parse_angle_rad("+40deg"), 40 * degree));
   BOOST_TEST(parse_angle_rad("0") == 0);
@@ -51,7 +56,7 @@ BOOST_AUTO_TEST_CASE(what_is_no_quantity_is_shown_with_what_was_expected) {
     BOOST_CHECK_EXCEPTION(parse_angle_rad(text), std::invalid_argument, [&](const std::exception& error) {
       return std::string(error.what()) ==
              "'" + std::string(text) +
-                 "' is no angle; expected a number with a unit of deg, arcmin, arcsec, mas, rad, such as 0.2arcsec";
+                 "' is no angle; expected a number with a unit of deg, arcmin, arcsec, mas, uas, rad, such as 0.2arcsec";
     });
   }
   BOOST_CHECK_THROW(parse_flux_jy("1Hz"), std::invalid_argument);

@@ -31,10 +31,12 @@ void write_file(const std::string& path, const std::string& content) {
 
 std::string read_file(const std::string& path) {
   if (fs::is_directory(path)) throw std::runtime_error("cannot read " + path + ": it is a folder; expected a file");
+  errno = 0;
   std::ifstream file(path, std::ios::binary);
   std::ostringstream content;
-  content << file.rdbuf();
-  if (!file.is_open() || file.bad()) throw std::runtime_error("cannot read " + path);
+  if (file.is_open()) content << file.rdbuf();
+  if (!file.is_open() || file.bad())
+    throw std::runtime_error("cannot read " + path + ": " + std::strerror(errno != 0 ? errno : EIO));
   return content.str();
 }
 

@@ -2,6 +2,7 @@
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
+#include <cstdlib>
 #include <stdexcept>
 
 namespace misfit::tools {
@@ -15,6 +16,16 @@ CLI::Validator quantity(double (*parse)(const std::string&)) {
         } catch (const std::invalid_argument& error) {
           return error.what();
         }
+      },
+      "");
+}
+
+CLI::Validator not_zero(const std::string& expected) {
+  return CLI::Validator(
+      [expected](const std::string& value) -> std::string {
+        char* end = nullptr;
+        const bool zero = std::strtod(value.c_str(), &end) == 0 && end != value.c_str() && *end == '\0';
+        return zero ? value + ": expected " + expected : "";
       },
       "");
 }

@@ -14,6 +14,9 @@ namespace misfit::tools {
 /// That `parse`, one of quantity.h, can read it.
 CLI::Validator quantity(double (*parse)(const std::string&));
 
+/// That a number which decides nothing when it is left out is not given as 0: "0: expected …".
+CLI::Validator not_zero(const std::string& expected);
+
 /// That there is one: "" is no file's name.
 CLI::Validator not_empty();
 

@@ -15,9 +15,13 @@ using Units = std::vector<std::pair<std::string, double>>;
 
 double parse(const std::string& text, const std::string& what, const std::string& such_as, const Units& units) {
   const auto fail = [&] {
-    std::string names;
-    for (const auto& [name, size] : units)
-      if (!name.empty()) names += (names.empty() ? "" : ", ") + name;
+    std::string names;  // the first of those of one size
+    double size_before = 0;
+    for (const auto& [name, size] : units) {
+      if (name.empty()) continue;
+      if (size != size_before) names += (names.empty() ? "" : ", ") + name;
+      size_before = size;
+    }
     throw std::invalid_argument("'" + text + "' is no " + what + "; expected a number with a unit of " + names + ", such as " +
                                 such_as);
   };
@@ -42,8 +46,15 @@ double parse_angle_rad(const std::string& text) {
                {{"", degree / 3600},
                 {"deg", degree},
                 {"arcmin", degree / 60},
+                {"amin", degree / 60},
                 {"arcsec", degree / 3600},
+                {"asec", degree / 3600},
                 {"mas", degree / 3.6e6},
+                {"marcsec", degree / 3.6e6},
+                {"masec", degree / 3.6e6},
+                {"uas", degree / 3.6e9},
+                {"uarcsec", degree / 3.6e9},
+                {"uasec", degree / 3.6e9},
                 {"rad", 1}});
 }
 

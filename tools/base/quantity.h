@@ -6,7 +6,7 @@ namespace misfit::tools {
 
 /// Numbers with units as astronomers write them: "0.2arcsec", "-40deg", "1.2 mas", "10mJy", "4GHz". A number alone is in the
 /// unit that each function names. Throw std::invalid_argument that shows the text and what was expected.
-double parse_angle_rad(const std::string& text);           ///< deg, arcmin, arcsec, mas, rad; alone: arcsec, as in tclean
+double parse_angle_rad(const std::string& text);           ///< deg, amin, asec, mas, uas, rad, …; alone: arcsec, as in tclean
 double parse_flux_jy(const std::string& text);             ///< Jy, mJy, uJy; alone: Jy
 double parse_frequency_hz(const std::string& text);        ///< Hz, kHz, MHz, GHz; alone: Hz
 double parse_velocity_m_s(const std::string& text);        ///< m/s, km/s; none alone

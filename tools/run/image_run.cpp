@@ -99,6 +99,7 @@ class ImageRun {
     set_ = std::make_unique<ms_io::MeasurementSet>(o_.vis, selection_of(o_), o_.datacolumn, stokes_);
     if (!ranks_.alone()) set_ = set_->share(ranks_);
     for (const std::string& sentence : set_->incomplete_columns()) warn(sentence);
+    if (const std::string sentence = missing_hand_warning(stokes_); o_.savemodel != "none" && !sentence.empty()) warn(sentence);
     check_taylor_band(o_, set_->spectral_windows());
     geometry_ = geometry_of(o_, set_->observation().phase_centre);
     warn_of_pointing();
@@ -245,6 +246,7 @@ class ImageRun {
     if (stokes_.size() > 1) told.item += " in " + stokes_name(stokes_.front()) + " alone";
     report_.plan.push_back(told);
     progress_.say(told.item + ": " + told.decision + "; " + told.because);
+    for (const std::string& line : outside_places(outside_)) progress_.say(line);
     for (const std::string& warning : outside_warnings(outside_)) warn(warning);
   }
 
