@@ -9,7 +9,7 @@
 
 #include "imager/constants.h"
 #include "imager/horizon.h"
-#include "imager/parallel.h"
+#include "imager/radial_function.h"
 
 namespace misfit::imager {
 namespace {
@@ -31,9 +31,8 @@ void check(const BeamShare& share) {
     throw std::invalid_argument("share of a primary beam with weight " + std::to_string(share.weight) + "; expected 0 or more");
 }
 
-/// Shares of the same dishes at nearly the same frequency as one, with weights that add up to 1.
-std::vector<BeamShare> taken_together(const std::vector<BeamShare>& shares) {
-  constexpr double apart = 1e-3;  // relative
+/// Shares of the same dishes at nearly the same frequency, less than `apart` of it, as one, with weights that add up to 1.
+std::vector<BeamShare> taken_together(const std::vector<BeamShare>& shares, double apart) {
   using Key = std::tuple<double, double, double, double, long>;
   std::map<Key, BeamShare> sums;  // Σ frequency · weight in place of the frequency
   double weight = 0;
@@ -53,46 +52,6 @@ std::vector<BeamShare> taken_together(const std::vector<BeamShare>& shares) {
   return together;
 }
 
-/// The beam from its axis to a radius, at points close enough that a cubic through four of them is right to 1e-10 in the main
-/// lobe.
-class RadialTable {
- public:
-  RadialTable(const PrimaryBeam& beam, double reach, int threads) : reach_(reach), value_(points + 3) {
-    parallel_for(value_.size(), threads, [&](std::size_t i) {
-      value_[i] = beam.power(std::abs(static_cast<double>(i) - 1) * step());  // even about the axis
-    });
-  }
-
-  /// At sin θ up to the reach.
-  double operator()(double sine) const {
-    const double place = sine / step();
-    const int cell = std::min(static_cast<int>(place), points - 1);
-    const double t = place - cell;
-    const double* const v = value_.data() + cell;  // at −1, 0, 1, 2
-    return -t * (t - 1) * (t - 2) / 6 * v[0] + (t + 1) * (t - 1) * (t - 2) / 2 * v[1] - (t + 1) * t * (t - 2) / 2 * v[2] +
-           (t + 1) * t * (t - 1) / 6 * v[3];
-  }
-
- private:
-  static constexpr int points = 1024;
-  double step() const { return reach_ / points; }
-
-  double reach_;
-  std::vector<double> value_;  ///< [point + 1]
-};
-
-/// A direction as a vector towards it: east, north, and to the phase centre.
-struct Towards {
-  double l, m, n;
-  explicit Towards(DirectionCosines at) : l(at.l), m(at.m), n(1 + n_minus_1(at)) {}
-};
-
-/// sin θ of the angle between two; more than 1 where they are farther apart than 90°. From the chord, which keeps small ones.
-double sine_between(const Towards& a, const Towards& b) {
-  const double chord2 = (a.l - b.l) * (a.l - b.l) + (a.m - b.m) * (a.m - b.m) + (a.n - b.n) * (a.n - b.n);
-  return chord2 > 2 ? 2 : std::sqrt(chord2 * (1 - chord2 / 4));
-}
-
 }  // namespace
 
 double voltage_pattern(const Dish& dish, double sin_per_wavelength) {
@@ -100,7 +59,18 @@ double voltage_pattern(const Dish& dish, double sin_per_wavelength) {
   return b == 0 ? jinc(x) : (jinc(x) - b * b * jinc(b * x)) / (1 - b * b);
 }
 
-PrimaryBeam::PrimaryBeam(const std::vector<BeamShare>& shares) : shares_(taken_together(shares)) {
+double first_null_per_m(const Dish& dish) {
+  const double beyond = 4 / (pi * dish.diameter_m);  // x = 4, where that of an open dish is at 3.83 and that of a ring at 2.40
+  return beyond * first_sine_at(0, 0.05, [&](double part) { return voltage_pattern(dish, part * beyond); });
+}
+
+double power(const BeamShare& share, double sine) {
+  const double per_wavelength = sine * share.frequency_hz / speed_of_light_m_s;
+  const double one = voltage_pattern(share.one, per_wavelength);
+  return one * (share.other == share.one ? one : voltage_pattern(share.other, per_wavelength));
+}
+
+PrimaryBeam::PrimaryBeam(const std::vector<BeamShare>& shares, double apart) : shares_(taken_together(shares, apart)) {
   double most = 0;  // D/λ
   for (const BeamShare& s : shares_)
     most = std::max(most, std::max(s.one.diameter_m, s.other.diameter_m) * s.frequency_hz / speed_of_light_m_s);
@@ -109,47 +79,38 @@ PrimaryBeam::PrimaryBeam(const std::vector<BeamShare>& shares) : shares_(taken_t
 
 double PrimaryBeam::power(double sine) const {
   double sum = 0;
-  for (const BeamShare& s : shares_) {
-    const double per_wavelength = sine * s.frequency_hz / speed_of_light_m_s;
-    const double one = voltage_pattern(s.one, per_wavelength);
-    sum += s.weight * one * (s.other == s.one ? one : voltage_pattern(s.other, per_wavelength));
-  }
+  for (const BeamShare& s : shares_) sum += s.weight * imager::power(s, sine);
   return sum;
 }
 
 double PrimaryBeam::sine_at(double level) const {
-  const double step = 0.02 * narrowest_;  // of which the narrowest main lobe has 60
-  double before = 0, after = 0;
-  while (after < 1 && power(after) > level) {
-    before = after;
-    after = std::min(1.0, after + step);
-  }
-  if (power(after) > level) return 1;
-  for (int halvings = 0; halvings < 60; ++halvings) {
-    const double middle = (before + after) / 2;
-    (power(middle) > level ? before : after) = middle;
-  }
-  return after;
+  return first_sine_at(level, step(), [this](double sine) { return power(sine); });
 }
 
 double PrimaryBeam::half_power_width_rad() const {
   return 2 * std::asin(sine_at(0.5));
 }
 
-Image primary_beam_image(const PrimaryBeam& beam, const ImageGeometry& geometry, const BeamOnImage& view) {
+double PrimaryBeam::main_lobe_sine() const {
+  double widest = 0;
+  for (const BeamShare& s : shares_)
+    for (const Dish& dish : {s.one, s.other})
+      widest = std::max(widest, first_null_per_m(dish) * speed_of_light_m_s / s.frequency_hz);
+  return std::min(1.0, widest);
+}
+
+void require_limit(const BeamOnImage& view) {
   if (!(view.limit > 0 && view.limit < 1))
     throw std::invalid_argument("limit of a primary beam " + std::to_string(view.limit) + "; expected more than 0, below 1");
-  const double reach = beam.sine_at(view.limit);
-  const RadialTable table(beam, reach, view.threads);
-  const Towards axis(view.pointing);
+}
+
+Image primary_beam_image(const PrimaryBeam& beam, const ImageGeometry& geometry, const BeamOnImage& view) {
+  require_limit(view);
+  const RadialTable table(beam.sine_at(view.limit), view.threads, [&](double sine) { return beam.power(sine); });
   Image image(geometry.width, geometry.height);
-  parallel_for(static_cast<std::size_t>(geometry.height), view.threads, [&](std::size_t r) {
-    const int row = static_cast<int>(r);
-    for (int column = 0; column < geometry.width; ++column) {
-      const double sine = sine_between(Towards(geometry.at(row, column)), axis);
-      image.at(row, column) = sine <= reach ? table(sine) : no_value;  // beyond the horizon it is NaN
-    }
-  });
+  std::fill(image.pixel.begin(), image.pixel.end(), no_value);
+  for_each_within(table.reach(), view.pointing, geometry, view.threads,
+                  [&](std::size_t pixel, double sine) { image.pixel[pixel] = table(sine); });
   return image;
 }
 

@@ -26,6 +26,9 @@ inline bool operator==(const Dish& a, const Dish& b) {
 /// CASA (PBMath1DAiry) takes J₁ of x/b there, not of bx, which makes beams wider: of ALMA's dishes by 0.9 % at half power.
 double voltage_pattern(const Dish& dish, double sin_per_wavelength);
 
+/// sin θ / λ, 1/m, at which the voltage is first 0: 1.219 670/D of an open dish, nearer where there is a blockage.
+double first_null_per_m(const Dish& dish);
+
 /// What part of an image pairs of two dishes make at a frequency.
 struct BeamShare {
   Dish one;
@@ -34,15 +37,18 @@ struct BeamShare {
   double weight = 0;  ///< Σ of the image's weights over their samples, in any unit
 };
 
+/// Vₒₙₑ Vₒₜₕₑᵣ of the two at an angle θ ≤ 90° from the axis, of which `sine` is sin θ.
+double power(const BeamShare& share, double sine);
+
 /// The power that an array sees of a source off axis, relative to the same on axis: the mean of Vₒₙₑ Vₒₜₕₑᵣ over all that make
 /// the image, by their weights. A source's dirty image is its flux times this, and so is what CLEAN finds. The same at all
 /// position angles.
 class PrimaryBeam {
  public:
-  /// Shares of frequencies within a thousandth of each other are taken together, at their mean, which changes the main lobe by
-  /// less than 1e-6. Throws std::invalid_argument where the weights do not add up to more than 0, a frequency is not positive,
-  /// or a dish is none: 0 ≤ blockage < diameter.
-  explicit PrimaryBeam(const std::vector<BeamShare>& shares);
+  /// Shares of frequencies less than `apart` of themselves from each other may be taken together, at their mean, which changes
+  /// the main lobe by less than 1e-6 where that is a thousandth. Throws std::invalid_argument where the weights do not add up
+  /// to more than 0, a frequency is not positive, or a dish is none: 0 ≤ blockage < diameter.
+  explicit PrimaryBeam(const std::vector<BeamShare>& shares, double apart = 1e-3);
 
   /// At an angle θ ≤ 90° from the axis, of which `sine` is sin θ.
   double power(double sine) const;
@@ -50,6 +56,10 @@ class PrimaryBeam {
   double sine_at(double level) const;
   /// The whole angle between its half-power points; 180° where there are none.
   double half_power_width_rad() const;
+  /// sin θ beyond which no dish's main lobe reaches at any frequency: the widest first null; 1 where one has none.
+  double main_lobe_sine() const;
+  /// Of sin θ: what the narrowest main lobe has 60 of.
+  double step() const { return 0.02 * narrowest_; }
 
   const std::vector<BeamShare>& shares() const { return shares_; }  ///< as taken together; the weights add up to 1
 
@@ -64,6 +74,9 @@ struct BeamOnImage {
   double limit = 0.2;              ///< pixels where it is lower have no value; above 0 and below 1
   int threads = 1;
 };
+
+/// Throws std::invalid_argument unless its limit is above 0 and below 1.
+void require_limit(const BeamOnImage& view);
 
 /// The beam in each pixel, by the true angle between it and the axis. NaN beyond where it first falls to the limit, sidelobes
 /// included, whose shape no simple model has, and beyond the horizon. Right to 1e-9.

@@ -59,6 +59,20 @@ BOOST_AUTO_TEST_CASE(an_unblocked_dish_has_the_airy_discs_half_power_and_null) {
              1e-4 * wavelength_m / 25);  // and arc sines, 1e-5 here
 }
 
+BOOST_AUTO_TEST_CASE(the_main_lobe_ends_where_the_voltage_is_first_0) {
+  for (const double diameter_m : {0.5, 25.0, 300.0})
+    for (const double part : {0.0, 0.1, 0.5, 0.99}) {
+      const Dish dish{diameter_m, part * diameter_m};
+      const double null = first_null_per_m(dish);
+      BOOST_TEST(std::abs(voltage_pattern(dish, null)) < 1e-12);
+      for (double s = 0; s < 0.99 * null; s += null / 50) BOOST_TEST(voltage_pattern(dish, s) > 0);
+    }
+  BOOST_TEST(std::abs(first_null_per_m(plain) * 25 - 1.219670) < 1e-6);
+  const PrimaryBeam mixed({{large, small, hz, 3}, {large, large, 2 * hz, 4}});
+  BOOST_TEST(mixed.main_lobe_sine() == first_null_per_m(small) * wavelength_m);
+  BOOST_TEST(PrimaryBeam({{{0.1, 0}, {0.1, 0}, hz, 1}}).main_lobe_sine() == 1.0);  // smaller than the wavelength
+}
+
 BOOST_AUTO_TEST_CASE(blockage_narrows_the_lobe_and_raises_the_next) {
   BOOST_TEST(alone(blocked).half_power_width_rad() < alone(plain).half_power_width_rad());
   const auto highest_sidelobe = [](const Dish& dish) {
