@@ -1,11 +1,16 @@
+#include <casacore/casa/Arrays/Matrix.h>
+#include <casacore/tables/Tables/ArrayColumn.h>
+#include <casacore/tables/Tables/ScalarColumn.h>
+
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <set>
+#include <utility>
 
 #include "ms_io/beam_rows_internal.h"
-#include "ms_io/celestial_frames.h"
+#include "ms_io/field_pointings_internal.h"
 #include "ms_io/metadata_internal.h"
-#include "ms_io/phase_centre_internal.h"
 #include "ms_io/row_columns_internal.h"
 
 namespace misfit::ms_io {
@@ -79,21 +84,40 @@ class Antennas {
   BeamRows& rows_;
 };
 
-void add_pairs(const OpenSet& open_set, Antennas& antennas, BeamRows& rows) {
-  const casacore::ScalarColumn<int> columns[] = {
-      {open_set.set, "ANTENNA1"}, {open_set.set, "ANTENNA2"}, {open_set.set, "FEED1"}, {open_set.set, "FEED2"}};
-  casacore::Vector<int> values[4];
+/// [FIELD_ID]
+using RowsOfFields = std::map<int, std::vector<SortRows>>;
+
+void count_row(const SortPair& pair, std::vector<SortRows>& rows) {
+  for (SortRows& some : rows)
+    if (some.pair.one == pair.one && some.pair.other == pair.other) {
+      ++some.rows;
+      return;
+    }
+  rows.push_back({pair, 1});
+}
+
+/// Returns how many rows of two antennas each field has.
+RowsOfFields add_pairs(const OpenSet& open_set, Antennas& antennas, BeamRows& rows) {
+  const casacore::ScalarColumn<int> columns[] = {{open_set.set, "ANTENNA1"},
+                                                 {open_set.set, "ANTENNA2"},
+                                                 {open_set.set, "FEED1"},
+                                                 {open_set.set, "FEED2"},
+                                                 {open_set.set, "FIELD_ID"}};
+  casacore::Vector<int> values[5];
+  RowsOfFields of_fields;
   for (const BlockRows& block : open_set.selected.blocks) {
     for (const Rows& piece : pieces(block.runs, piece_rows)) {
-      for (std::size_t c = 0; c < 4; ++c) read(columns[c], piece, values[c]);
+      for (std::size_t c = 0; c < 5; ++c) read(columns[c], piece, values[c]);
       for (std::size_t r = 0; r < piece.count(); ++r) {
         SortPair& pair = rows.pairs.emplace_back();
         if (values[0](r) == values[1](r)) continue;  // of an antenna with itself nothing is imaged
         pair = {antennas.use(values[0](r), values[2](r)), antennas.use(values[1](r), values[3](r))};
+        count_row(pair, of_fields[values[4](r)]);
       }
       antennas.forget_repetitions();
     }
   }
+  return of_fields;
 }
 
 /// The mean of the receptors' offsets.
@@ -118,16 +142,17 @@ void add_beam_offsets(const OpenSet& open_set, const Antennas& antennas, BeamRow
 
 }  // namespace
 
-void add_beam_rows(const OpenSet& open_set, const std::string& frame, BeamRows& rows) {
-  translated("cannot read ANTENNA, FEED, or the antennas of the rows of " + open_set.path, [&] {
+void add_beam_rows(const OpenSet& open_set, const imager::SkyDirection& centre, BeamRows& rows) {
+  RowsOfFields of_fields = translated("cannot read ANTENNA, FEED, or the antennas of the rows of " + open_set.path, [&] {
     Antennas antennas(open_set, rows);
-    add_pairs(open_set, antennas, rows);
+    RowsOfFields counted = add_pairs(open_set, antennas, rows);
     add_beam_offsets(open_set, antennas, rows);
+    return counted;
   });
-  for (const auto& [field, row] : open_set.selected.first_row_of_field) {
-    const FieldCentre centre = field_centre(open_set.set, open_set.path, field, row);
-    rows.pointings.push_back({std::to_string(field) + " (" + centre.name + ")",
-                              in_frame(field_pointing(open_set.set, open_set.path, field, row), frame)});
+  auto next = open_set.selected.first_row_of_field.begin();
+  for (FieldPointing& pointing : field_pointings(open_set, centre)) {
+    pointing.rows = std::move(of_fields[next++->first]);
+    rows.pointings.push_back(std::move(pointing));
   }
 }
 

@@ -9,25 +9,35 @@
 
 namespace misfit::ms_io {
 
-/// Where the antennas of a field pointed.
-struct FieldPointing {
-  std::string field;  ///< "3 (M51)"
-  imager::SkyDirection direction;
-};
-
 /// The sorts of antennas of a row, as places in a list.
 struct SortPair {
   std::uint8_t one = 0;
   std::uint8_t other = 0;
 };
 
+/// How many rows have these sorts.
+struct SortRows {
+  SortPair pair;
+  std::uint64_t rows = 0;
+};
+
+/// Where the antennas of a field pointed: its REFERENCE_DIR. It stays where it is when visibilities are shifted to another
+/// phase centre, which moves PHASE_DIR. The table POINTING is not looked at, as in tclean by default.
+struct FieldPointing {
+  std::string field;                ///< "3 (M51)"
+  imager::SkyDirection direction;   ///< in the frame of the image
+  std::string name = {};            ///< "M51"
+  std::string set = {};             ///< path of the set whose field it is
+  double from_centre_rad = 0;       ///< from the phase centre of the image
+  double smallest_dish_m = 0;       ///< diameter of the set's smallest antenna; 0 where none is known
+  std::vector<SortRows> rows = {};  ///< its rows of two antennas; of BeamRows alone
+};
+
 /// What rows were observed with, and in which direction.
 struct BeamRows {
   std::vector<imager::AntennaSort> sorts;  ///< of antennas in rows of two antennas
   std::vector<SortPair> pairs;             ///< [row], in the order in which blocks hold them; empty where there is one sort
-  /// FIELD's REFERENCE_DIR, of all fields with selected rows, in the frame of the image. It stays where it is when visibilities
-  /// are shifted to another phase centre, which moves PHASE_DIR. The table POINTING is not looked at, as in tclean by default.
-  std::vector<FieldPointing> pointings;
+  std::vector<FieldPointing> pointings;    ///< of all fields with selected rows
   double beam_offset_rad = 0;  ///< the largest by which FEED's BEAM_OFFSET says that a beam points elsewhere, of feeds in use
 };
 

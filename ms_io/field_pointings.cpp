@@ -1,9 +1,9 @@
 #include <casacore/tables/Tables/ScalarColumn.h>
 
 #include <cmath>
-#include <limits>
 
-#include "ms_io/nearest_field_internal.h"
+#include "ms_io/celestial_frames.h"
+#include "ms_io/field_pointings_internal.h"
 #include "ms_io/phase_centre_internal.h"
 #include "ms_io/table_access_internal.h"
 
@@ -21,19 +21,21 @@ double smallest_dish_m(const casacore::MeasurementSet& set, const std::string& p
 
 }  // namespace
 
-NearestField nearest_field(const casacore::MeasurementSet& set, const std::string& path, const SelectedRows& selected,
-                           const imager::SkyDirection& centre) {
-  NearestField nearest;
-  nearest.distance_rad = std::numeric_limits<double>::infinity();
-  for (const auto& [field, row] : selected.first_row_of_field) {
-    const FieldCentre one = field_centre(set, path, field, row);
-    const double distance_rad = separation_rad(one.direction, centre);
-    if (distance_rad >= nearest.distance_rad) continue;
-    nearest.name = one.name;
-    nearest.distance_rad = distance_rad;
+std::vector<FieldPointing> field_pointings(const OpenSet& open_set, const imager::SkyDirection& centre) {
+  const double dish_m = smallest_dish_m(open_set.set, open_set.path);
+  std::vector<FieldPointing> pointings;
+  for (const auto& [field, row] : open_set.selected.first_row_of_field) {
+    const std::string name = field_centre(open_set.set, open_set.path, field, row).name;
+    const imager::SkyDirection direction = in_frame(field_pointing(open_set.set, open_set.path, field, row), centre.frame);
+    pointings.push_back({std::to_string(field) + " (" + name + ")",
+                         direction,
+                         name,
+                         open_set.path,
+                         separation_rad(direction, centre),
+                         dish_m,
+                         {}});
   }
-  nearest.dish_m = smallest_dish_m(set, path);
-  return nearest;
+  return pointings;
 }
 
 }  // namespace misfit::ms_io

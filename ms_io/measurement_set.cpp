@@ -3,15 +3,14 @@
 #include <casacore/tables/Tables/ScalarColumn.h>
 
 #include <algorithm>
-#include <limits>
 #include <stdexcept>
 #include <utility>
 
 #include "ms_io/beam_rows_internal.h"
 #include "ms_io/block_group_internal.h"
+#include "ms_io/field_pointings_internal.h"
 #include "ms_io/metadata_internal.h"
 #include "ms_io/model_writer.h"
-#include "ms_io/nearest_field_internal.h"
 #include "ms_io/row_shares_internal.h"
 #include "ms_io/spectral_frame_internal.h"
 #include "ms_io/subtracted_models_internal.h"
@@ -266,18 +265,16 @@ std::uint64_t MeasurementSet::read_at_once() const {
   for (const auto& set : impl_->sets) most = std::max(most, largest_group(set->selected));
   return most;
 }
-NearestField MeasurementSet::nearest_field() const {
-  NearestField nearest;
-  nearest.distance_rad = std::numeric_limits<double>::infinity();
-  for (const auto& set : whole().sets) {
-    const NearestField one = ms_io::nearest_field(set->set, set->path, set->selected, impl_->observation.phase_centre);
-    if (one.distance_rad < nearest.distance_rad) nearest = one;
-  }
-  return nearest;
+std::vector<FieldPointing> MeasurementSet::field_pointings() const {
+  std::vector<FieldPointing> all;
+  for (const auto& set : whole().sets)
+    for (FieldPointing& pointing : ms_io::field_pointings(*set, impl_->observation.phase_centre))
+      all.push_back(std::move(pointing));
+  return all;
 }
 BeamRows MeasurementSet::beam_rows() const {
   const auto add_rows = [&](const OpenSets& sets, BeamRows& rows) {
-    for (const auto& set : sets) add_beam_rows(*set, impl_->observation.phase_centre.frame, rows);
+    for (const auto& set : sets) add_beam_rows(*set, impl_->observation.phase_centre, rows);
   };
   BeamRows rows;
   add_rows(whole().sets, rows);

@@ -33,13 +33,6 @@ struct SampleSharing {
   bool whole_sets = true;  ///< each rank has some of the sets; else ranges of rows, in the order of the tables
 };
 
-/// Where antennas pointed: the selected field whose own phase centre lies nearest to that of the image.
-struct NearestField {
-  std::string name;
-  double distance_rad = 0;
-  double dish_m = 0;  ///< diameter of the smallest antenna; 0 where none is known
-};
-
 /// What visibilities are read from.
 struct DataColumn {
   std::string path;                     ///< of the set
@@ -92,8 +85,9 @@ class MeasurementSet : public imager::VisibilitySource {
   std::uint64_t samples() const override;
   /// Samples of the blocks that are read at once, at most: several blocks where rows of DATA_DESC_IDs alternate.
   std::uint64_t read_at_once() const;
-  /// Throws std::runtime_error when FIELD or ANTENNA cannot be read.
-  NearestField nearest_field() const;
+  /// Of the selected fields of all sets; their rows are not counted. Throws std::runtime_error when FIELD or ANTENNA cannot be
+  /// read.
+  std::vector<FieldPointing> field_pointings() const;
   /// Reads antennas and feeds of all rows. Throws std::runtime_error when they, ANTENNA, FEED or FIELD cannot be read.
   BeamRows beam_rows() const;
   /// Bounds at the highest channel selected, of rows with finite UVW. Reads UVW, antennas and FLAG_ROW alone. Throws

@@ -2,6 +2,7 @@
 
 #include <boost/test/unit_test.hpp>
 #include <cmath>
+#include <map>
 
 #include "tests/ms_io/small_set.h"
 
@@ -95,17 +96,56 @@ BOOST_AUTO_TEST_CASE(antennas_point_to_the_reference_direction_wherever_visibili
   BOOST_TEST(std::abs(direction.dec_rad + 0.5) < 5e-7);
 }
 
-BOOST_AUTO_TEST_CASE(every_field_that_is_selected_has_its_pointing) {
+BOOST_AUTO_TEST_CASE(every_field_that_is_selected_has_its_pointing_seen_from_the_images_centre) {
+  const SmallSet first, second;
+  first.add_field(1.26, -0.51);
+  Selection selection;
+  selection.phase_centre = imager::SkyDirection{1.25, -0.51, "FK5"};
+  const auto pointings = [&](const std::string& field) {
+    selection.field = field;
+    return MeasurementSet({first.path(), second.path()}, selection, "DATA").field_pointings();
+  };
+  const std::vector<FieldPointing> all = pointings("");
+  BOOST_REQUIRE_EQUAL(all.size(), 3U);
+  BOOST_TEST(all[0].field == "0 (SIMULATED)");
+  BOOST_TEST(all[1].field == "1 (OTHER)");
+  BOOST_TEST(all[1].name == "OTHER");
+  BOOST_TEST(all[1].direction.ra_rad == 1.26);
+  BOOST_TEST(all[1].set == first.path());
+  BOOST_TEST(all[2].set == second.path());
+  // The chord along right ascension, and the difference of declinations.
+  BOOST_TEST(std::abs(all[1].from_centre_rad - 2 * std::asin(std::cos(0.51) * std::sin(0.005))) < 1e-12);
+  BOOST_TEST(std::abs(all[0].from_centre_rad - 0.01) < 1e-12);
+  BOOST_REQUIRE_EQUAL(pointings("0").size(), 2U);
+  BOOST_TEST(pointings("0")[0].field == "0 (SIMULATED)");
+  BOOST_TEST(all[0].smallest_dish_m == small_observation().dish_diameter_m);
+  first.modify([](casacore::MeasurementSet& table) {
+    casacore::ScalarColumn<double>(table.antenna(), "DISH_DIAMETER").fillColumn(0);
+    casacore::ScalarColumn<double>(table.antenna(), "DISH_DIAMETER").put(1, 12);
+  });
+  BOOST_TEST(pointings("")[0].smallest_dish_m == 12);
+}
+
+BOOST_AUTO_TEST_CASE(rows_of_each_pair_of_sorts_are_counted_by_field) {
   const SmallSet set;
-  set.add_field(1.26, -0.51);
+  make_mixed(set);
+  set.add_field(1.26, -0.51);  // every second row
+  set.put("ANTENNA2", 4, 1);   // an antenna with itself
   Selection selection;
   selection.phase_centre = imager::SkyDirection{1.25, -0.5, "FK5"};
-  BOOST_TEST(rows_of(set, selection).pointings.size() == 2U);
-  selection.field = "OTHER";
-  const BeamRows rows = rows_of(set, selection);
-  BOOST_REQUIRE_EQUAL(rows.pointings.size(), 1U);
-  BOOST_TEST(rows.pointings[0].field == "1 (OTHER)");
-  BOOST_TEST(rows.pointings[0].direction.ra_rad == 1.26);
+  const BeamRows beams = rows_of(set, selection);
+  BOOST_REQUIRE_EQUAL(beams.pointings.size(), 2U);
+  std::map<std::pair<double, double>, std::uint64_t> expected[2], counted[2];
+  const casacore::MeasurementSet table(set.path());
+  const casacore::ScalarColumn<int> one(table, "ANTENNA1"), other(table, "ANTENNA2");
+  const auto diameter_m = [](int antenna) { return antenna < 2 ? 25.0 : 12.0; };
+  for (casacore::rownr_t row = 0; row < table.nrow(); ++row)
+    if (one(row) != other(row)) ++expected[row % 2][{diameter_m(one(row)), diameter_m(other(row))}];
+  for (std::size_t field = 0; field < 2; ++field)
+    for (const SortRows& some : beams.pointings[field].rows)
+      counted[field][{beams.sorts[some.pair.one].diameter_m, beams.sorts[some.pair.other].diameter_m}] += some.rows;
+  BOOST_TEST((counted[0] == expected[0]));
+  BOOST_TEST((counted[1] == expected[1]));
 }
 
 BOOST_AUTO_TEST_CASE(offsets_count_of_feeds_that_are_used_as_the_mean_of_their_receptors) {

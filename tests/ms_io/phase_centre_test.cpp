@@ -75,27 +75,6 @@ BOOST_AUTO_TEST_CASE(directions_are_understood_as_casa_writes_them) {
   BOOST_TEST(std::abs(ms_io::parse_phase_centre("J2000 -10deg -0d30m0s", set.path()).dec_rad + 0.5 * degree) < 1e-14);
 }
 
-BOOST_AUTO_TEST_CASE(the_nearest_field_is_that_of_those_selected) {
-  const Mosaic mosaic;
-  const auto nearest = [&](const imager::SkyDirection& centre, const std::string& field) {
-    Selection selection = shifted_to(centre);
-    selection.field = field;
-    return MeasurementSet(mosaic.path(), selection, "DATA").nearest_field();
-  };
-  const imager::SkyDirection by_second{mosaic.second.ra_rad, mosaic.second.dec_rad - degree, "FK5"};
-  BOOST_TEST(nearest(by_second, "").name == "OTHER");
-  BOOST_TEST(std::abs(nearest(by_second, "").distance_rad - degree) < 1e-12);
-  BOOST_TEST(nearest(by_second, "0").name != "OTHER");
-  BOOST_TEST(nearest(by_second, "0").distance_rad > 3 * degree);
-  BOOST_TEST(nearest(mosaic.first, "").distance_rad < 1e-12);
-  BOOST_TEST(nearest(mosaic.first, "").dish_m == small_observation().dish_diameter_m);
-  mosaic.modify([](casacore::MeasurementSet& set) {
-    casacore::ScalarColumn<double>(set.antenna(), "DISH_DIAMETER").fillColumn(0);
-    casacore::ScalarColumn<double>(set.antenna(), "DISH_DIAMETER").put(1, 12);
-  });
-  BOOST_TEST(nearest(mosaic.first, "").dish_m == 12);
-}
-
 BOOST_AUTO_TEST_CASE(fields_are_found_by_name_and_id) {
   const SmallSet set;
   set.add_field(1.5, -0.25);

@@ -2,6 +2,7 @@
 
 #include <casacore/casa/Arrays/ArrayMath.h>
 #include <casacore/casa/Arrays/Matrix.h>
+#include <casacore/ms/MeasurementSets/MSFieldColumns.h>
 #include <casacore/ms/MeasurementSets/MSPolColumns.h>
 #include <casacore/ms/MeasurementSets/MeasurementSet.h>
 #include <casacore/tables/Tables/ArrColDesc.h>
@@ -96,6 +97,41 @@ void name_all(const std::string& set, const std::string& name) {
   casacore::ScalarColumn<casacore::String>(open.antenna(), "NAME").fillColumn(name);
   casacore::ScalarColumn<casacore::String>(open.observation(), "TELESCOPE_NAME").fillColumn(name);
   casacore::ScalarColumn<casacore::String>(open.observation(), "OBSERVER").fillColumn(name);
+}
+
+void add_field(const std::string& set, const AddedField& field) {
+  casacore::MeasurementSet open = opened(set);
+  const casacore::rownr_t row = open.field().nrow();
+  open.field().addRow(1);
+  casacore::MSFieldColumns columns(open.field());
+  casacore::Matrix<double> direction(2, 1);
+  direction(0, 0) = field.ra_rad;
+  direction(1, 0) = field.dec_rad;
+  columns.name().put(row, field.name);
+  columns.numPoly().put(row, 0);
+  columns.phaseDir().put(row, direction);
+  columns.delayDir().put(row, direction);
+  columns.referenceDir().put(row, direction);
+  casacore::ScalarColumn<int> of_rows(open, "FIELD_ID");
+  for (casacore::rownr_t r = field.first_row; r < open.nrow(); r += 2) of_rows.put(r, static_cast<int>(row));
+}
+
+void point_field(const std::string& set, std::size_t field, double ra_rad, double dec_rad) {
+  casacore::MeasurementSet open = opened(set);
+  casacore::Matrix<double> direction(2, 1);
+  direction(0, 0) = ra_rad;
+  direction(1, 0) = dec_rad;
+  casacore::MSFieldColumns(open.field()).referenceDir().put(field, direction);
+}
+
+void name_telescope(const std::string& set, const std::string& name) {
+  casacore::MeasurementSet open = opened(set);
+  casacore::ScalarColumn<casacore::String>(open.observation(), "TELESCOPE_NAME").fillColumn(name);
+}
+
+void set_dish_diameters(const std::string& set, double diameter_m) {
+  casacore::MeasurementSet open = opened(set);
+  casacore::ScalarColumn<double>(open.antenna(), "DISH_DIAMETER").fillColumn(diameter_m);
 }
 
 void make_autocorrelation(const std::string& set, std::size_t row) {

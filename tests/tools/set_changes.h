@@ -19,6 +19,18 @@ void flag_channel(const std::string& set, std::size_t channel, std::size_t first
 void flag_row(const std::string& set, std::size_t row);
 void flag_all(const std::string& set);
 void name_all(const std::string& set, const std::string& name);  ///< fields, telescopes, observers and antennas
+/// Adds a field that points and is phased to a direction in J2000, and gives it the rows from `first_row` on, every second.
+struct AddedField {
+  std::string name;
+  double ra_rad = 0;
+  double dec_rad = 0;
+  std::size_t first_row = 1;
+};
+void add_field(const std::string& set, const AddedField& field);
+/// Where its antennas point, in J2000; where it is phased to stays as it is.
+void point_field(const std::string& set, std::size_t field, double ra_rad, double dec_rad);
+void name_telescope(const std::string& set, const std::string& name);
+void set_dish_diameters(const std::string& set, double diameter_m);
 void make_autocorrelation(const std::string& set, std::size_t row);
 void scale_data(const std::string& set, float factor);
 void scale_uvw(const std::string& set, double factor);

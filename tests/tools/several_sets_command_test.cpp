@@ -25,7 +25,9 @@ struct TwoSets {
     Arguments words{"image", "--vis"};
     return words + sets + Arguments{"--imagename", folder / "a", "--imsize", "64", "--cell", "5arcsec", "--quiet"};
   }
-  Arguments shifted() const { return image({first, second}) + Arguments{"--phasecenter", "J2000 2h00m00s +40d00m00s"}; }
+  Arguments shifted() const {
+    return image({first, second}) + Arguments{"--phasecenter", "J2000 2h00m00s +40d00m00s", "--force-average"};
+  }
 
  private:
   void simulate(const std::string& set, const std::string& ra, const std::string& dec, const std::string& channels) const {

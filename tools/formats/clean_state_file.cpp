@@ -21,10 +21,10 @@ namespace {
 using nlohmann::json;
 
 constexpr const char* format = "misfit CLEAN state 1";
-constexpr std::array free_options = {"niter",         "threshold", "nsigma",        "nmajor", "savemodel",
-                                     "restoringbeam", "verify",    "threads",       "memory", "quiet",
-                                     "outformat",     "restart",   "dry-run",       "nodes",  "visibilities",
-                                     "network",       "imagename", "kernel-folder", "pbcor",  "pblimit"};
+constexpr std::array free_options = {"niter",   "threshold", "nsigma",       "nmajor",  "savemodel", "restoringbeam",
+                                     "verify",  "threads",   "memory",       "quiet",   "outformat", "restart",
+                                     "dry-run", "nodes",     "visibilities", "network", "imagename", "kernel-folder",
+                                     "pbcor",   "pblimit",   "force-average"};
 
 /// In one line.
 std::string escaped(const std::string& text) {

@@ -20,6 +20,7 @@
 #include "tools/run/cube_turns.h"
 #include "tools/run/cube_visibilities.h"
 #include "tools/run/data_columns.h"
+#include "tools/run/field_beams.h"
 #include "tools/run/image_files.h"
 #include "tools/run/primary_beam_stage.h"
 #include "tools/run/product_stage.h"
@@ -103,6 +104,8 @@ class CubeRun {
                .cards = {},
                .history = history_of(report_.command_line, set_->data_columns())};
     report_.cube = sampling_.axis;
+    fields_ = notes_on_fields(o_, *set_, header_.geometry);
+    for (const std::string& warning : fields_.warnings) warn(warning);
     if (o_.niter > 0) CleanStage(o_, header_, threads_);  // so that what is wrong with masks and models is said at once
     if (wants_primary_beam(o_))
       primary_beam_ = std::make_unique<PrimaryBeamStage>(
@@ -136,6 +139,7 @@ class CubeRun {
                          .enlarged = enlarged};
     plan_ = plan_run(scene, times_, progress_);
     plan_.decisions.push_back(axis_decision(sampling_));
+    plan_.decisions.insert(plan_.decisions.end(), fields_.decisions.begin(), fields_.decisions.end());
     if (primary_beam_) {
       plan_.decisions.push_back(primary_beam_->decision());
       for (const std::string& doubt : primary_beam_->doubts()) warn(doubt);
@@ -295,6 +299,7 @@ class CubeRun {
   imager::CubeSampling sampling_;
   imager::ImageHeader header_;
   imager::UvwReach reach_;
+  FieldNotes fields_;
   RunPlan plan_;
   std::unique_ptr<CubeVisibilities> visibilities_;
   std::shared_ptr<const imager::PlannedTransform> transform_;

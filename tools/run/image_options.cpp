@@ -131,6 +131,9 @@ void declare(CLI::App& command, ImageOptions& o) {
   command.add_flag("--restart", o.restart,
                    "Go on from the last major cycle of a run that was cut, or ended, with these options");
   command.add_flag(
+  command.add_flag("--force-average", o.force_average,
+                   "Average fields whose antennas pointed apart even where the image's centre lies beyond the first null of "
+                   "one's beam, which dims what the others see; without it they are refused by name");
       "--pbcor", o.pbcor,
       "Write .image.pbcor too, the image divided by the antennas' primary beam, and .pb, the beam: Airy discs, for "
       "dishes that point alike");

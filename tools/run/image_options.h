@@ -71,6 +71,7 @@ struct ImageOptions {
   std::string startmodel;  ///< an image in Jy/pixel; empty = none
   std::string savemodel = "none";
   bool restart = false;
+  bool force_average = false;
   bool pbcor = false;
   double pblimit = 0;  ///< 0: not given, and 0.2 with pbcor; its sign makes no difference
   int verify = 0;

@@ -17,6 +17,7 @@
 #include "tools/run/changed_files.h"
 #include "tools/run/clean_stage.h"
 #include "tools/run/data_columns.h"
+#include "tools/run/field_beams.h"
 #include "tools/run/model_stage.h"
 #include "tools/run/outside_stage.h"
 #include "tools/run/plane_run.h"
@@ -102,7 +103,8 @@ class ImageRun {
     if (const std::string sentence = missing_hand_warning(stokes_); o_.savemodel != "none" && !sentence.empty()) warn(sentence);
     check_taylor_band(o_, set_->spectral_windows());
     geometry_ = geometry_of(o_, set_->observation().phase_centre);
-    warn_of_pointing();
+    fields_ = notes_on_fields(o_, *set_, geometry_);
+    for (const std::string& warning : fields_.warnings) warn(warning);
     reach_ = set_->reach();
     if (wants_primary_beam(o_))
       primary_beam_ = std::make_unique<PrimaryBeamStage>(
@@ -122,12 +124,6 @@ class ImageRun {
     if (const std::string warning = clean_->warning(); !warning.empty()) warn(warning);
   }
 
-  void warn_of_pointing() {
-    if (o_.phasecenter.empty()) return;
-    const std::string warning = pointing_warning(set_->nearest_field(), geometry_, set_->observation().frequency_hz);
-    if (!warning.empty()) warn(warning);
-  }
-
   void plan() {
     const bool mask = clean_ && (clean_->mask(0) != nullptr || o_.usemask == "auto");
     const auto own = static_cast<double>(set_->samples());
@@ -145,6 +141,7 @@ class ImageRun {
                          .share = own / all,
                          .enlarged = enlarged};
     plan_ = plan_run(scene, times_, progress_);
+    plan_.decisions.insert(plan_.decisions.end(), fields_.decisions.begin(), fields_.decisions.end());
     if (primary_beam_) plan_.decisions.push_back(primary_beam_->decision());
     for (const std::string& warning : plan_.warnings) warn(warning);
     if (primary_beam_)
@@ -377,6 +374,7 @@ class ImageRun {
   std::unique_ptr<imager::StreamedVisibilities> source_;
   std::unique_ptr<PlaneScene> scene_;
   std::unique_ptr<PlaneRun> plane_;
+  FieldNotes fields_;
   OutsideReport outside_;
   std::unique_ptr<ProductStage> products_;
 };

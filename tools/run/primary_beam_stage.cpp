@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "tools/base/numbers.h"
+#include "tools/run/field_beams.h"
 
 namespace misfit::tools {
 namespace {
@@ -47,13 +48,13 @@ PrimaryBeamStage::PrimaryBeamStage(const ImageOptions& o, BeamScene scene, int t
 
 /// All fields must point alike, to a thousandth of the beam: at its half-power points that changes it by 0.15%.
 void PrimaryBeamStage::find_pointing() {
-  constexpr double same = 1e-3, beside = 0.01;
+  constexpr double beside = 0.01;
   width_rad_ = nominal_beam(scene_.frequency_hz).half_power_width_rad();
   const ms_io::FieldPointing& first = scene_.rows.pointings.front();
   view_.pointing = on_image(first, scene_.geometry);
   for (const ms_io::FieldPointing& other : scene_.rows.pointings) {
     const double apart = apart_rad(view_.pointing, on_image(other, scene_.geometry));
-    if (apart > same * width_rad_)
+    if (apart > same_pointing_beams * width_rad_)
       throw std::runtime_error(
           "--pbcor, --pblimit: antennas of fields " + first.field + " and " + other.field + " pointed " + angle_text(apart, 3) +
           " apart, which makes a mosaic, and primary beams of mosaics are not made; " + "select one with --field");

@@ -39,16 +39,16 @@ std::string outside_grid_warning(std::uint64_t samples, const imager::UvwReach& 
          significant(std::floor(largest_cell_rad / unit.size * 1e4) / 1e4, 4) + unit.name + " would keep them";
 }
 
-std::string pointing_warning(const ms_io::NearestField& nearest, const imager::ImageGeometry& geometry, double frequency_hz) {
+std::string pointing_warning(const ms_io::FieldPointing& nearest, const imager::ImageGeometry& geometry, double frequency_hz) {
   constexpr double degree = M_PI / 180, most_beams = 3, most_without_dish_rad = 10 * degree;
-  const double beam_rad = nearest.dish_m > 0 ? imager::speed_of_light_m_s / frequency_hz / nearest.dish_m : 0;
+  const double beam_rad = nearest.smallest_dish_m > 0 ? imager::speed_of_light_m_s / frequency_hz / nearest.smallest_dish_m : 0;
   const double half_diagonal_rad = 0.5 * std::hypot(geometry.width, geometry.height) * geometry.cell_rad;
-  const double beyond_rad = nearest.distance_rad - half_diagonal_rad;
+  const double beyond_rad = nearest.from_centre_rad - half_diagonal_rad;
   if (!(beyond_rad > (beam_rad > 0 ? most_beams * beam_rad : most_without_dish_rad))) return "";
-  return "the image's centre is " + significant(nearest.distance_rad / degree, 3) + " degrees from the nearest field, " +
+  return "the image's centre is " + significant(nearest.from_centre_rad / degree, 3) + " degrees from the nearest field, " +
          nearest.name +
-         (beam_rad > 0 ? ", or " + significant(nearest.distance_rad / beam_rad, 2) + " times λ/D of antennas " +
-                             significant(nearest.dish_m, 3) + " m wide"
+         (beam_rad > 0 ? ", or " + significant(nearest.from_centre_rad / beam_rad, 2) + " times λ/D of antennas " +
+                             significant(nearest.smallest_dish_m, 3) + " m wide"
                        : "") +
          ": they hardly see it, and it may show noise alone";
 }

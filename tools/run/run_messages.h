@@ -18,9 +18,9 @@ imager::Decision left_out_decision(const imager::SampleCounts& counts);
 /// That the pixel size cannot represent so many samples, and the one that could.
 std::string outside_grid_warning(std::uint64_t samples, const imager::UvwReach& reach);
 
-/// That the antennas hardly see the image, since it lies 3 λ/D beyond where they pointed, or 10 degrees where D is unknown;
-/// else empty.
-std::string pointing_warning(const ms_io::NearestField& nearest, const imager::ImageGeometry& geometry, double frequency_hz);
+/// That the antennas hardly see the image, since it lies 3 λ/D beyond where they pointed in the nearest field, or 10 degrees
+/// where D is unknown; else empty.
+std::string pointing_warning(const ms_io::FieldPointing& nearest, const imager::ImageGeometry& geometry, double frequency_hz);
 
 /// That the image could not be made to the accuracy asked.
 std::string accuracy_warning(double asked, double expected);

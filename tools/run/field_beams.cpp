@@ -1,0 +1,154 @@
+#include "tools/run/field_beams.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+#include <stdexcept>
+
+#include "imager/constants.h"
+#include "imager/phase_shift.h"
+#include "imager/primary_beam.h"
+#include "imager/telescopes.h"
+#include "tools/base/numbers.h"
+#include "tools/run/run_messages.h"
+
+namespace misfit::tools {
+namespace {
+
+constexpr double rounding_rad = 1e-9;  ///< by which directions that mean the same may differ
+constexpr std::size_t most_listed = 20;
+
+/// How a field's antennas see the centre of the image.
+struct SeenCentre {
+  std::string field;
+  double from_centre_rad = 0;
+  std::string no_beam = {};  ///< why none is known; else empty, and
+  double width_rad = 0;      ///< of the beam between its half-power points,
+  double beam = 0;           ///< the beam at the centre,
+  bool beyond_null = false;  ///< whether no dish's main lobe reaches that far
+};
+
+/// Throws imager::NoSimpleBeam.
+imager::PrimaryBeam beam_of(const ms_io::FieldPointing& pointing, const std::vector<imager::AntennaSort>& sorts,
+                            double frequency_hz) {
+  const auto dish = [&](std::uint8_t sort) { return imager::dish_model(sorts.at(sort)).dish; };
+  std::vector<imager::BeamShare> shares;
+  for (const ms_io::SortRows& some : pointing.rows)
+    shares.push_back({dish(some.pair.one), dish(some.pair.other), frequency_hz, static_cast<double>(some.rows)});
+  if (shares.empty()) throw imager::NoSimpleBeam("no row of two antennas is selected");
+  return imager::PrimaryBeam(shares);
+}
+
+SeenCentre seen_centre(const ms_io::FieldPointing& pointing, const ms_io::BeamRows& rows, double frequency_hz,
+                       bool several_sets) {
+  SeenCentre seen{pointing.field + (several_sets ? " of " + pointing.set : ""), pointing.from_centre_rad};
+  try {
+    const imager::PrimaryBeam beam = beam_of(pointing, rows.sorts, frequency_hz);
+    const double sine = seen.from_centre_rad < imager::pi / 2 ? std::sin(seen.from_centre_rad) : 1;
+    const bool behind = seen.from_centre_rad >= imager::pi / 2;
+    seen.width_rad = beam.half_power_width_rad();
+    seen.beam = behind ? 0 : beam.power(sine);
+    seen.beyond_null = behind || sine > beam.main_lobe_sine();
+  } catch (const imager::NoSimpleBeam& error) {
+    seen.no_beam = error.what();
+  }
+  return seen;
+}
+
+std::string described(const SeenCentre& seen) {
+  const bool at_centre = seen.from_centre_rad < rounding_rad;
+  std::string text = seen.field + (at_centre ? ", at it" : ", " + angle_text(seen.from_centre_rad, 3) + " away");
+  if (!seen.no_beam.empty()) return text;
+  if (!at_centre) text += " (" + significant(seen.from_centre_rad / seen.width_rad, 3) + " beam widths)";
+  return text + ", to " + significant(seen.beam, 3);
+}
+
+/// The first so many of them, which lie farthest away; all where that is 0.
+std::string described(const std::vector<SeenCentre>& farthest_first, std::size_t most) {
+  std::string text;
+  const std::size_t count = most == 0 ? farthest_first.size() : std::min(most, farthest_first.size());
+  for (std::size_t i = 0; i < count; ++i) text += (i == 0 ? "" : "; ") + described(farthest_first[i]);
+  if (count < farthest_first.size()) text += "; and " + std::to_string(farthest_first.size() - count) + " nearer ones";
+  return text;
+}
+
+/// Why beams are not known, once each.
+std::string unknown_beams(const std::vector<SeenCentre>& fields) {
+  std::vector<std::string> reasons;
+  for (const SeenCentre& seen : fields)
+    if (!seen.no_beam.empty() && std::find(reasons.begin(), reasons.end(), seen.no_beam) == reasons.end())
+      reasons.push_back(seen.no_beam);
+  std::string text;
+  for (const std::string& reason : reasons) text += (text.empty() ? "" : "; ") + reason;
+  return text.empty() ? "" : "; where no number stands the beam is not known: " + text;
+}
+
+double largest_apart_rad(const std::vector<ms_io::FieldPointing>& pointings) {
+  double largest = 0;
+  for (const ms_io::FieldPointing& pointing : pointings)
+    largest = std::max(largest, angle_between(pointing.direction, pointings.front().direction));
+  return largest;
+}
+
+/// Names of those that do not see the centre.
+std::string names_beyond(const std::vector<SeenCentre>& fields) {
+  std::string names;
+  std::size_t beyond = 0;
+  for (const SeenCentre& seen : fields)
+    if (seen.beyond_null && ++beyond <= most_listed) names += (names.empty() ? "" : ", ") + seen.field;
+  return beyond > most_listed ? names + " and " + std::to_string(beyond - most_listed) + " more" : names;
+}
+
+}  // namespace
+
+double angle_between(const imager::SkyDirection& one, const imager::SkyDirection& other) {
+  const auto a = imager::uvw_axes(one).w, b = imager::uvw_axes(other).w;
+  return 2 * std::asin(std::min(1.0, std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]) / 2));
+}
+
+FieldNotes notes_on_apart_fields(const ms_io::BeamRows& rows, double frequency_hz, bool force) {
+  constexpr double same_without_beam_rad = 5e-6;  // an arcsecond
+  const std::vector<ms_io::FieldPointing>& pointings = rows.pointings;
+  const bool several_sets = std::any_of(pointings.begin(), pointings.end(),
+                                        [&](const auto& pointing) { return pointing.set != pointings.front().set; });
+  std::vector<SeenCentre> fields;
+  double narrowest_rad = 0;
+  for (const ms_io::FieldPointing& pointing : pointings) {
+    fields.push_back(seen_centre(pointing, rows, frequency_hz, several_sets));
+    const double width_rad = fields.back().width_rad;
+    if (width_rad > 0 && (narrowest_rad == 0 || width_rad < narrowest_rad)) narrowest_rad = width_rad;
+  }
+  if (largest_apart_rad(pointings) <= (narrowest_rad > 0 ? same_pointing_beams * narrowest_rad : same_without_beam_rad))
+    return {};
+  std::stable_sort(fields.begin(), fields.end(),
+                   [](const SeenCentre& a, const SeenCentre& b) { return a.from_centre_rad > b.from_centre_rad; });
+  const std::string beyond = names_beyond(fields), at = "the image's centre, " + frequency_text(frequency_hz, 4) + ": ";
+  const std::string listed = at + described(fields, most_listed) + unknown_beams(fields);
+  if (!beyond.empty() && !force)
+    throw std::runtime_error("fields that point apart would be averaged into one image, but " + beyond +
+                             " cannot see its centre, which lies beyond the first null of the beam. Each is dimmed at " +
+                             listed +
+                             "; expected fields that see it: choose them by --field or --vis, or average all with "
+                             "--force-average, which dims what each sees");
+  return {{{"fields averaged", std::to_string(fields.size()) + ", which point apart",
+            "each is dimmed at " + at + described(fields, 0) + unknown_beams(fields)}},
+          {"fields that point apart are averaged into one image. Each is dimmed at " + listed +
+           (beyond.empty() ? "" : "; --force-average takes those beyond the first null too") +
+           ". No flux is that of one field; choose one by --field or --vis"}};
+}
+
+FieldNotes notes_on_fields(const ImageOptions& o, const ms_io::MeasurementSet& set, const imager::ImageGeometry& geometry) {
+  const std::vector<ms_io::FieldPointing> pointings = set.field_pointings();
+  const double frequency_hz = set.observation().frequency_hz;
+  FieldNotes notes;
+  if (largest_apart_rad(pointings) > rounding_rad)
+    notes = notes_on_apart_fields(set.beam_rows(), frequency_hz, o.force_average);
+  const auto nearest = std::min_element(pointings.begin(), pointings.end(),
+                                        [](const auto& a, const auto& b) { return a.from_centre_rad < b.from_centre_rad; });
+  if (std::string warning = pointing_warning(*nearest, geometry, frequency_hz); !warning.empty())
+    notes.warnings.push_back(std::move(warning));
+  return notes;
+}
+
+}  // namespace misfit::tools

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "imager/geometry.h"
+#include "imager/plan/plan.h"
+#include "ms_io/measurement_set.h"
+#include "tools/run/image_options.h"
+
+namespace misfit::tools {
+
+/// Fields point alike where the directions of their antennas are less apart than this part of a beam between its half-power
+/// points: at these points that changes a beam by 0.15%.
+constexpr double same_pointing_beams = 1e-3;
+
+/// The angle between two directions of one frame.
+double angle_between(const imager::SkyDirection& one, const imager::SkyDirection& other);
+
+/// How the antennas of the fields of an image see its centre.
+struct FieldNotes {
+  imager::Plan decisions;
+  std::vector<std::string> warnings;
+};
+
+/// Of fields with these pointings, at a frequency. Where they point apart, each field's distance from the image's centre and
+/// its beam there, that of PrimaryBeamStage for the field's own rows; the distance alone where its antennas have no simple
+/// beam. Throws std::runtime_error that names the fields of which the centre lies beyond the first null, of all their dishes,
+/// unless `force`: they dim whatever others see.
+FieldNotes notes_on_apart_fields(const ms_io::BeamRows& rows, double frequency_hz, bool force);
+
+/// Of the fields of a run; where they point alike, that the antennas hardly see the image, if they do. Throws what
+/// notes_on_apart_fields() does without --force-average. Reads antennas of all rows where fields point apart.
+FieldNotes notes_on_fields(const ImageOptions& options, const ms_io::MeasurementSet& set,
+                           const imager::ImageGeometry& geometry);
+
+}  // namespace misfit::tools
