@@ -161,7 +161,8 @@ void add_predict_command(CLI::App& program, const imager::Ranks& ranks) {
   command
       ->add_option(
           "--model", o->model,
-          "FITS or CASA image in Jy/pixel whose reference position is the phase centre; its STOKES axis may hold I, Q, U and V")
+          "FITS or CASA image in Jy/pixel whose reference position is the phase centre; its STOKES axis may hold I, Q, U and "
+          "V. Of one Taylor term: names with .tt0, .tt1, … are refused")
       ->type_name(file_type);
   command
       ->add_option(

@@ -2,9 +2,13 @@
 
 #include <algorithm>
 #include <cctype>
+#include <charconv>
 #include <cmath>
+#include <filesystem>
 #include <numeric>
+#include <optional>
 #include <stdexcept>
+#include <system_error>
 
 #include "imager/extent.h"
 #include "imager/plan/planned_transform.h"
@@ -33,9 +37,13 @@ void check_finite(const imager::SkyImage& model, const std::string& path) {
         throw std::runtime_error(path + " has pixels that are not finite; a model needs a number in each above the horizon");
 }
 
+char lower(char letter) {
+  return static_cast<char>(std::tolower(static_cast<unsigned char>(letter)));
+}
+
 /// Programs write it in upper and lower case.
 bool is_jy_per_pixel(std::string unit) {
-  for (char& letter : unit) letter = static_cast<char>(std::tolower(static_cast<unsigned char>(letter)));
+  for (char& letter : unit) letter = lower(letter);
   return unit == "jy/pixel";
 }
 
@@ -46,9 +54,61 @@ void check_model(const imager::SkyImage& model, const imager::SkyDirection& cent
   check_finite(model, path);
 }
 
+/// Where a path names its Taylor term: by ".tt" and a number in the file's own name, before a dot or its end.
+struct TermInName {
+  std::string before;  ///< "x.model.tt"
+  int term = 0;
+  std::string after;  ///< ".fits", ""
+
+  std::string path_of(int other) const { return before + std::to_string(other) + after; }
+};
+
+std::optional<TermInName> term_in_name(std::string path) {
+  while (path.size() > 1 && path.back() == '/') path.pop_back();
+  const std::size_t name = path.rfind('/') == std::string::npos ? 0 : path.rfind('/') + 1;
+  for (std::size_t dot = path.rfind('.'); dot != std::string::npos && dot >= name; dot = path.rfind('.', dot - 1)) {
+    const std::size_t number = dot + 3, end = std::min(path.find('.', dot + 1), path.size());
+    int term = 0;
+    const bool is_term = end > number && lower(path[dot + 1]) == 't' && lower(path[dot + 2]) == 't' &&
+                         std::from_chars(path.data() + number, path.data() + end, term).ptr == path.data() + end;
+    if (is_term && term >= 0) return TermInName{path.substr(0, number), term, path.substr(end)};
+    if (dot == 0) break;
+  }
+  return {};
+}
+
+/// Of other terms, those that lie beside it.
+std::string other_terms(const TermInName& name) {
+  std::string found;
+  for (int term = 0; term < 10; ++term)
+    if (std::error_code absent; term != name.term && std::filesystem::exists(name.path_of(term), absent))
+      found += (found.empty() ? "" : ", ") + name.path_of(term);
+  return found;
+}
+
 }  // namespace
 
+void refuse_taylor_term(const std::string& path) {
+  const std::optional<TermInName> name = term_in_name(path);
+  std::error_code absent;
+  if (!name || !std::filesystem::exists(path, absent)) return;
+  const std::string others = other_terms(*name);
+  const std::string whole =
+      "Models of several terms are not read: misfit image --savemodel modelcolumn predicts all that it finds, and --restart "
+      "goes on from them";
+  if (name->term > 0)
+    throw std::runtime_error(path + " is by its name Taylor term " + std::to_string(name->term) +
+                             ", which is how brightness changes with frequency, and no brightness; " +
+                             (others.empty() ? "there is no " + name->path_of(0) + " beside it" : "beside it lies " + others) +
+                             "; expected a model of one term. " + whole);
+  throw std::runtime_error(path + " is by its name the first of several Taylor terms, " +
+                           (others.empty() ? "but there is no " + name->path_of(1) + " beside it"
+                                           : "and would be taken without " + others + ", as if spectra were flat") +
+                           "; expected a model of one term, which it is under a name without .tt0, of flat spectra. " + whole);
+}
+
 std::vector<imager::SkyImage> read_stokes_model(const std::string& path, const imager::SkyDirection& centre) {
+  refuse_taylor_term(path);
   const auto file = open_image_file(path);
   const int channels = file->header().spectral.channels;
   if (channels > 1)

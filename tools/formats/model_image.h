@@ -14,9 +14,14 @@
 
 namespace misfit::tools {
 
+/// Throws std::runtime_error where the file that lies at `path` is by its name one of several Taylor terms, x.model.tt0.fits,
+/// or as a CASA image x.model.tt1: models of one term alone are read, and without the others it is half a model. Says which
+/// are left out, as far as they lie beside it, and what can be done.
+void refuse_taylor_term(const std::string& path);
+
 /// A model of one frequency, a FITS or CASA image in Jy/pixel whose reference position is `centre`, with a finite number in
 /// every pixel above the horizon: a plane for each Stokes parameter that the file holds. Throws std::runtime_error that names
-/// the file and what was expected.
+/// the file and what was expected, and what refuse_taylor_term() does.
 std::vector<imager::SkyImage> read_stokes_model(const std::string& path, const imager::SkyDirection& centre);
 
 /// A channel of a file of this name.

@@ -124,7 +124,8 @@ void declare(CLI::App& command, ImageOptions& o) {
   command.add_option("--minbeamfrac", o.minbeamfrac, "… without regions below this part of the beam's area");
   command.add_option("--growiterations", o.growiterations, "… by this many pixels a major cycle at most");
   command
-      .add_option("--startmodel", o.startmodel, "Begin with this model, a FITS or CASA image in Jy/pixel of the same pixels")
+      .add_option("--startmodel", o.startmodel,
+                  "Begin with this model, a FITS or CASA image in Jy/pixel of the same pixels, and of one Taylor term")
       ->type_name(file_type);
   command.add_option("--savemodel", o.savemodel, "modelcolumn: write the model's visibilities into MODEL_DATA; none")
       ->check(CLI::IsMember({"none", "modelcolumn"}));

@@ -1,0 +1,92 @@
+// Models that are one of several Taylor terms, by their names.
+#include "tests/tools/program.h"
+
+BOOST_AUTO_TEST_SUITE(taylor_models)
+
+namespace {
+
+using namespace misfit;
+using namespace misfit::tools::testing;
+
+/// A set, and the model of an image of it in one term, as FITS and as a CASA image.
+class Model {
+ public:
+  Model() {
+    std::filesystem::copy(snapshot(), set(), std::filesystem::copy_options::recursive);
+    succeed(small_image(set(), folder_ / "a") + Arguments{"--niter", "20", "--outformat", "both"});
+  }
+  std::string set() const { return folder_ / "s.ms"; }
+  /// The model under another name.
+  std::string as(const std::string& name) const {
+    const bool fits = name.find(".fits") != std::string::npos;
+    std::filesystem::copy(folder_ / (fits ? "a.model.fits" : "a.model"), folder_ / name,
+                          std::filesystem::copy_options::recursive);
+    return folder_ / name;
+  }
+  std::vector<Arguments> uses(const std::string& model) const {
+    const Arguments clean = small_image(set(), folder_ / "b") + Arguments{"--niter", "5", "--startmodel", model};
+    return {{"predict", "--vis", set(), "--model", model}, clean, clean + Arguments{"--specmode", "cube"}};
+  }
+  const TemporaryFolder& folder() const { return folder_; }
+
+ private:
+  TemporaryFolder folder_;
+};
+
+void check_refusal(const Arguments& arguments, const std::vector<std::string>& parts) {
+  const Outcome outcome = run(arguments + Arguments{"--quiet"});
+  BOOST_TEST_INFO(outcome.err);
+  BOOST_TEST(outcome.code == 1);
+  BOOST_TEST(std::count(outcome.err.begin(), outcome.err.end(), '\n') == 1);
+  for (const std::string& part : parts) BOOST_TEST(outcome.err.find(part) != std::string::npos, part << " in " << outcome.err);
+}
+
+}  // namespace
+
+BOOST_AUTO_TEST_CASE(a_first_term_is_refused_with_the_names_of_those_that_would_be_left_out) {
+  for (const std::string end : {".fits", "", ".smooth.fits"}) {
+    const Model model;
+    const std::string first = model.as("x.model.tt0" + end), second = model.as("x.model.tt1" + end),
+                      third = model.as("x.model.tt2" + end);
+    for (const Arguments& use : model.uses(first)) check_refusal(use, {first, "taken without " + second + ", " + third});
+    for (const Arguments& use : model.uses(second)) check_refusal(use, {second + " is by its name Taylor term 1", first});
+  }
+}
+
+BOOST_AUTO_TEST_CASE(a_term_whose_others_are_not_there_is_refused_with_what_is_possible) {
+  for (const std::string end : {".fits", ""}) {
+    const Model model;
+    const std::string first = model.as("x.model.tt0" + end), second = model.as("y.model.TT1" + end);
+    for (const Arguments& use : model.uses(first))
+      check_refusal(use, {"there is no " + (model.folder() / ("x.model.tt1" + end)), "under a name without .tt0"});
+    for (const Arguments& use : model.uses(second))
+      check_refusal(use, {"there is no " + (model.folder() / ("y.model.TT0" + end)), "--savemodel modelcolumn"});
+  }
+  const Model model;
+  check_refusal(model.uses(model.as("x.tt0") + "/").front(), {"first of several Taylor terms"});
+}
+
+BOOST_AUTO_TEST_CASE(other_names_are_no_terms) {
+  const Model model;
+  std::filesystem::create_directory(model.folder() / "x.tt0");
+  for (const std::string name : {"x.tt0/a.fits", "tt0.fits", "a.tt.fits", "a.tt0b.fits", "a.att0.fits", "x.tt0/casa"})
+    for (const Arguments& use : model.uses(model.as(name))) {
+      const Outcome outcome = run(use + Arguments{"--quiet"});
+      BOOST_TEST(outcome.err.find("Taylor") == std::string::npos, outcome.err);
+    }
+  BOOST_TEST(run(model.uses(model.folder() / "x.tt0/a.fits").front()).code == 0);
+  check_refusal(model.uses(model.folder() / "none.tt0.fits").front(), {"none.tt0.fits"});
+}
+
+/// Flat spectra, which the run changes: what the refusal says is possible.
+BOOST_AUTO_TEST_CASE(a_model_without_terms_begins_a_run_of_several) {
+  const TemporaryFolder folder;
+  succeed({"simulate", "--output", folder / "s.ms", "--channels", "4", "--channel-width", "100MHz"});
+  const Arguments clean{"--niter", "20"};
+  succeed(small_image(folder / "s.ms", folder / "a") + clean);
+  succeed(small_image(folder / "s.ms", folder / "b") + clean +
+          Arguments{"--nterms", "2", "--startmodel", folder / "a.model.fits"});
+  succeed({"predict", "--vis", folder / "s.ms", "--model", folder / "a.model.fits"});
+}
+
+BOOST_AUTO_TEST_SUITE_END()
