@@ -60,6 +60,7 @@ class ImageProducts {
     std::string name;
     std::string unit;
     std::vector<imager::Image> planes;  ///< [Stokes]
+    std::vector<imager::HeaderCard> cards;
   };
 
   std::string imagename_;
