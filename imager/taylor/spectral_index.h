@@ -23,4 +23,8 @@ struct SpectralImages {
 /// to first order in noise over I_0. NaN where I_0 is less than five times σ_0.
 SpectralImages spectral_images(const std::vector<Image>& restored, const std::vector<Image>& residual, int threads);
 
+/// α and β of `sky`, images [term] of the same sources without the beam, where `apparent` has them and I_0 is positive; without
+/// errors: those of `apparent`, up to noise by which the beam's own α does not change.
+SpectralImages spectral_images_of_sky(const std::vector<Image>& sky, const SpectralImages& apparent, int threads);
+
 }  // namespace misfit::imager

@@ -131,13 +131,14 @@ void declare(CLI::App& command, ImageOptions& o) {
       ->check(CLI::IsMember({"none", "modelcolumn"}));
   command.add_flag("--restart", o.restart,
                    "Go on from the last major cycle of a run that was cut, or ended, with these options");
-  command.add_flag(
   command.add_flag("--force-average", o.force_average,
                    "Average fields whose antennas pointed apart even where the image's centre lies beyond the first null of "
                    "one's beam, which dims what the others see; without it they are refused by name");
+  command.add_flag(
       "--pbcor", o.pbcor,
       "Write .image.pbcor too, the image divided by the antennas' primary beam, and .pb, the beam: Airy discs, for "
-      "dishes that point alike");
+      "dishes that point alike. With --nterms 2 or 3 each term is divided by the beam's own spectrum too: .image.tt0.pbcor, "
+      ".image.tt1.pbcor, …, .alpha.pbcor and .beta.pbcor");
   command.add_option("--pblimit", o.pblimit,
                      "Where the primary beam is lower, .pb and .image.pbcor have no values; 0.2 when 0. Without --pbcor .pb "
                      "alone is written. The sign makes no difference, since no other image is masked");

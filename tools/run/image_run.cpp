@@ -296,7 +296,7 @@ class ImageRun {
     report_.planes = {plane_->report()};
     imager::DirtyImages& images = plane_->made().images;
     auto& cleaned = plane_->cleaned();
-    if (primary_beam_) products_->set_primary_beam(primary_beam());
+    if (primary_beam_) set_primary_beam();
     std::string removed;
     for (const std::string& path :
          cleaned.empty() ? products_->write(std::move(images)) : products_->write(std::move(images.psf), cleaned))
@@ -304,12 +304,17 @@ class ImageRun {
     if (!removed.empty()) progress_.say("removed what an earlier run left: " + removed);
   }
 
-  imager::Image primary_beam() {
+  void set_primary_beam() {
     const imager::StageTimer timer(times_, "primary beam");
-    // Taylor's first term is the sky at one frequency.
-    imager::Image beam = taylor_ ? primary_beam_->at(taylor_->expansion().reference_hz) : primary_beam_->whole_band();
-    if (const std::string warning = primary_beam_->warning_of(beam); !warning.empty()) warn(warning);
-    return beam;
+    std::vector<imager::Image> beam;  // [term]
+    if (taylor_) {
+      taylor_beam_ = primary_beam_->of_terms(taylor_->expansion());
+      beam = taylor_beam_->terms();
+    } else {
+      beam.push_back(primary_beam_->whole_band());
+    }
+    if (const std::string warning = primary_beam_->warning_of(beam.front()); !warning.empty()) warn(warning);
+    products_->set_primary_beam(std::move(beam), taylor_beam_ ? &*taylor_beam_ : nullptr);
   }
 
   void count_pixels() {
@@ -367,14 +372,15 @@ class ImageRun {
   std::unique_ptr<ms_io::MeasurementSet> set_;
   imager::ImageGeometry geometry_;
   imager::UvwReach reach_;
+  FieldNotes fields_;
   std::unique_ptr<PrimaryBeamStage> primary_beam_;  ///< null where none is wanted
   std::unique_ptr<CleanStage> clean_;               ///< null without CLEAN, and after it
   std::unique_ptr<TaylorStage> taylor_;             ///< null where there is one term
+  std::optional<imager::TaylorBeam> taylor_beam_;   ///< of several, where a primary beam is wanted
   RunPlan plan_;
   std::unique_ptr<imager::StreamedVisibilities> source_;
   std::unique_ptr<PlaneScene> scene_;
   std::unique_ptr<PlaneRun> plane_;
-  FieldNotes fields_;
   OutsideReport outside_;
   std::unique_ptr<ProductStage> products_;
 };

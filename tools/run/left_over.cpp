@@ -15,8 +15,8 @@ namespace fs = std::filesystem;
 
 std::vector<std::string> image_kinds() {
   std::vector<std::string> kinds = taylor_products(imager::most_taylor_terms, true);
-  for (const char* kind : {"psf", "residual", "model", "image", "mask", "pb", "image.pbcor", "pb.tt0", "image.tt0.pbcor"})
-    kinds.emplace_back(kind);
+  for (const std::string& kind : taylor_beam_products(imager::most_taylor_terms, true, true)) kinds.push_back(kind);
+  for (const char* kind : {"psf", "residual", "model", "image", "mask", "pb", "image.pbcor"}) kinds.emplace_back(kind);
   return kinds;
 }
 

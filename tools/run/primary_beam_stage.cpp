@@ -109,10 +109,18 @@ void PrimaryBeamStage::weigh(const imager::VisibilitySource& source) {
   shares_ = imager::weight_shares(source, options);
 }
 
-imager::Image PrimaryBeamStage::whole_band() const {
+std::vector<imager::BeamShare> PrimaryBeamStage::beam_shares() const {
   std::vector<imager::BeamShare> shares;
   for (const imager::WeightShare& s : shares_) shares.push_back(beam_share(s.kind, s.frequency_hz, s.weight));
-  return image_of(imager::PrimaryBeam(shares));
+  return shares;
+}
+
+imager::Image PrimaryBeamStage::whole_band() const {
+  return image_of(imager::PrimaryBeam(beam_shares()));
+}
+
+imager::TaylorBeam PrimaryBeamStage::of_terms(const imager::TaylorExpansion& expansion) const {
+  return {beam_shares(), expansion, scene_.geometry, view_};
 }
 
 imager::Image PrimaryBeamStage::at(double frequency_hz) const {

@@ -5,6 +5,7 @@
 
 #include "imager/plan/plan.h"
 #include "imager/primary_beam.h"
+#include "imager/taylor/taylor_beam.h"
 #include "imager/telescopes.h"
 #include "imager/weight_shares.h"
 #include "ms_io/measurement_set.h"
@@ -36,10 +37,12 @@ class PrimaryBeamStage {
   std::vector<std::string> doubts() const;
 
   /// Learns by how much each pair of dishes and each frequency weigh in the image, in a pass over its samples as they are
-  /// weighed. To be called before whole_band().
+  /// weighed. To be called before whole_band() and of_terms().
   void weigh(const imager::VisibilitySource& source);
   /// The beam of an image of the whole band: the mean over its samples, by weight.
   imager::Image whole_band() const;
+  /// The beam of Taylor terms, of the same samples by the same weights.
+  imager::TaylorBeam of_terms(const imager::TaylorExpansion& expansion) const;
   /// The beam of a plane of a cube: that at its frequency, with as much weight for each row where dishes differ.
   imager::Image at(double frequency_hz) const;
 
@@ -49,6 +52,7 @@ class PrimaryBeamStage {
  private:
   /// With as much weight for each row.
   imager::PrimaryBeam nominal_beam(double frequency_hz) const;
+  std::vector<imager::BeamShare> beam_shares() const;
   imager::BeamShare beam_share(std::uint32_t kind, double frequency_hz, double weight) const;
   imager::Image image_of(const imager::PrimaryBeam& beam) const;
   std::uint32_t kind_of(std::uint64_t row) const;

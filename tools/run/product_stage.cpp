@@ -19,6 +19,12 @@ std::vector<imager::Image> alone(imager::Image image) {
   return list;
 }
 
+std::vector<const imager::Image*> pointers_to(const std::vector<imager::Image>& images) {
+  std::vector<const imager::Image*> pointers;
+  for (const imager::Image& image : images) pointers.push_back(&image);
+  return pointers;
+}
+
 }  // namespace
 
 std::unique_ptr<NameLock> claim_product_paths(const ImageOptions& o) {
@@ -67,7 +73,10 @@ std::vector<std::string> ProductStage::write(imager::DirtyImages images) {
   const imager::StageTimer timer(times_, "write images");
   std::vector<std::string> removed =
       remove_kinds(o_, {"model.png", "image.png", "dirty.png", "alpha.png", "components.csv", "clean.state"});
-  add_primary_beam(images.dirty);
+  if (o_.pbcor && taylor_ != nullptr)
+    add_corrected_terms(pointers_to(taylor_->principal_solution(images.dirty.front())), nullptr);
+  if (o_.pbcor && taylor_ == nullptr) add_corrected(images.dirty);
+  add_primary_beam();
   products_.add(named("psf"), "Jy/beam", alone(std::move(images.psf)));
   products_.add(named("residual"), "Jy/beam", std::move(images.dirty));
   if (taylor_ != nullptr) {
@@ -94,7 +103,7 @@ void ProductStage::draw(std::vector<imager::CleanResult>& cleaned, const std::ve
     pictures.push_back(
         picture_of(s, {"image", "Restored image", "Jy/beam", Shades::brightness, &restored_images[s], nullptr, mask}));
     if (taylor_ != nullptr)
-      pictures.push_back({"alpha", "Spectral index", "", Shades::about_zero, &restored_.spectra.alpha, nullptr, mask});
+      pictures.push_back({"alpha", "Spectral index as seen", "", Shades::about_zero, &restored_.spectra.alpha, nullptr, mask});
   }
   products_.draw(pictures);
 }
@@ -117,7 +126,13 @@ std::vector<std::string> ProductStage::write(imager::Image psf, std::vector<imag
   const std::vector<std::string> paths = image_paths(o_.imagename + ".mask", o_.outformat);
   const bool kept = std::any_of(paths.begin(), paths.end(), [&](const std::string& path) { return is_input(o_, path); });
   if (masked && !kept) products_.add("mask", "", std::move(masks));
-  add_primary_beam(images);
+  if (o_.pbcor && taylor_ != nullptr) {
+    std::vector<const imager::Image*> terms = pointers_to(restored_.further);
+    terms.insert(terms.begin(), &images.front());
+    add_corrected_terms(terms, &restored_.spectra);
+  }
+  if (o_.pbcor && taylor_ == nullptr) add_corrected(images);
+  add_primary_beam();
   products_.add(named("image"), "Jy/beam", std::move(images));
   if (taylor_ != nullptr) add_taylor(cleaned.front());
   std::vector<std::string> removed = remove_kinds(o_, {taylor_ != nullptr ? "components.csv" : "alpha.png"});
@@ -128,14 +143,26 @@ std::vector<std::string> ProductStage::write(imager::Image psf, std::vector<imag
   return removed;
 }
 
-void ProductStage::add_primary_beam(const std::vector<imager::Image>& images) {
-  if (primary_beam_.pixel.empty()) return;
-  if (o_.pbcor) {
-    std::vector<imager::Image> quotients;
-    for (const imager::Image& image : images) quotients.push_back(imager::corrected(image, primary_beam_));
-    products_.add(named("image") + ".pbcor", "Jy/beam", std::move(quotients));
+void ProductStage::add_primary_beam() {
+  for (std::size_t t = 0; t < primary_beam_.size(); ++t)
+    products_.add(named("pb", static_cast<int>(t)), "", alone(std::move(primary_beam_[t])));
+}
+
+void ProductStage::add_corrected(const std::vector<imager::Image>& images) {
+  std::vector<imager::Image> quotients;
+  for (const imager::Image& image : images) quotients.push_back(imager::corrected(image, primary_beam_.front()));
+  products_.add("image.pbcor", "Jy/beam", std::move(quotients));
+}
+
+void ProductStage::add_corrected_terms(const std::vector<const imager::Image*>& apparent,
+                                       const imager::SpectralImages* spectra) {
+  std::vector<imager::Image> sky = taylor_beam_->corrected(apparent);
+  if (spectra != nullptr) {
+    imager::SpectralImages of_sky = imager::spectral_images_of_sky(sky, *spectra, scene_.threads);
+    add_spectra(of_sky, ".pbcor", true);
   }
-  products_.add(named("pb"), "", alone(std::move(primary_beam_)));
+  for (std::size_t t = 0; t < sky.size(); ++t)
+    products_.add(named("image", static_cast<int>(t)) + ".pbcor", "Jy/beam", alone(std::move(sky[t])));
 }
 
 std::string ProductStage::named(const std::string& kind, int term) const {
@@ -153,13 +180,18 @@ void ProductStage::add_taylor(imager::CleanResult& cleaned) {
   std::vector<imager::Image> models = o_.savemodel == "none" ? std::move(cleaned.further_models) : cleaned.further_models;
   add_further("model", models);
   add_further("image", restored_.further);
-  imager::SpectralImages& spectra = restored_.spectra;
+  add_spectra(restored_.spectra, "", false);
+}
+
+void ProductStage::add_spectra(imager::SpectralImages& spectra, const std::string& end, bool corrected) {
   std::vector<imager::HeaderCard> cards = scene_.cards;
   cards.push_back({"ALPHALIM", spectra.level_jy, "Jy/beam of .image.tt0, below which pixels are NaN"});
+  cards.push_back(corrected ? imager::HeaderCard{"PBCOR", 1, "the primary beam's spectrum is divided out"}
+                            : imager::HeaderCard{"PBCOR", 0, "the primary beam's spectrum is still in it"});
   products_.set_cards(std::move(cards));
-  products_.add("alpha", "", alone(std::move(spectra.alpha)));
-  products_.add("alpha.error", "", alone(std::move(spectra.alpha_error)));
-  if (!spectra.beta.pixel.empty()) products_.add("beta", "", alone(std::move(spectra.beta)));
+  products_.add("alpha" + end, "", alone(std::move(spectra.alpha)));
+  if (!spectra.alpha_error.pixel.empty()) products_.add("alpha.error" + end, "", alone(std::move(spectra.alpha_error)));
+  if (!spectra.beta.pixel.empty()) products_.add("beta" + end, "", alone(std::move(spectra.beta)));
   products_.set_cards(scene_.cards);
 }
 

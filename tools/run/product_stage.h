@@ -9,6 +9,7 @@
 #include "imager/clean/clean.h"
 #include "imager/imaging.h"
 #include "imager/stage_times.h"
+#include "imager/taylor/taylor_beam.h"
 #include "tools/run/image_options.h"
 #include "tools/run/image_products.h"
 #include "tools/run/name_lock.h"
@@ -47,8 +48,11 @@ class ProductStage {
   void draw_dirty(const imager::UvCoverage& coverage, const imager::DirtyImages& images,
                   const std::function<const imager::Image*(std::size_t)>& mask_of);
 
-  /// To be written with the images, which --pbcor divides by it.
-  void set_primary_beam(imager::Image beam) { primary_beam_ = std::move(beam); }
+  /// To be written with the images [term], which --pbcor divides by it; of several terms `of_terms` does, which is kept.
+  void set_primary_beam(std::vector<imager::Image> beam, const imager::TaylorBeam* of_terms) {
+    primary_beam_ = std::move(beam);
+    taylor_beam_ = of_terms;
+  }
   /// Writes the images of a run without CLEAN. Returns the names of files that an earlier run left and this one removed.
   std::vector<std::string> write(imager::DirtyImages images);
   /// Those of CLEAN [Stokes], restored, and the list of components. Takes the images out of `cleaned`, but for models that
@@ -62,8 +66,14 @@ class ProductStage {
   /// The picture of one Stokes parameter, whose name and title say which where there are several.
   ProductPicture picture_of(std::size_t stokes, ProductPicture picture) const;
   void draw(std::vector<imager::CleanResult>& cleaned, const std::vector<imager::Image>& restored_images);
-  /// The primary beam, and `images` divided by it where that is wanted.
-  void add_primary_beam(const std::vector<imager::Image>& images);
+  /// The primary beam, if there is one.
+  void add_primary_beam();
+  /// Images [Stokes] divided by it.
+  void add_corrected(const std::vector<imager::Image>& images);
+  /// The same of Taylor terms [term], and of their spectral indices, or null.
+  void add_corrected_terms(const std::vector<const imager::Image*>& apparent, const imager::SpectralImages* spectra);
+  /// Images for files whose headers tell whether the beam is divided out of the spectra that they have.
+  void add_spectra(imager::SpectralImages& spectra, const std::string& end, bool corrected);
   void write_components(const std::vector<imager::CleanResult>& cleaned) const;
   imager::Image restored(const imager::CleanResult& cleaned);
   /// The middle of a file's name, which tells the Taylor term where there are several.
@@ -77,10 +87,11 @@ class ProductStage {
   ProductScene scene_;
   imager::StageTimes& times_;
   ImageProducts products_;
-  imager::Image primary_beam_;     ///< without pixels where none is wanted
-  TaylorStage* taylor_ = nullptr;  ///< null where there is one term
-  RestoredTerms restored_;         ///< of several
-  std::vector<Sketch> dirty_;      ///< what is left of the dirty images when CLEAN is over, where masks were not known before
+  std::vector<imager::Image> primary_beam_;          ///< [term]; empty where none is wanted
+  const imager::TaylorBeam* taylor_beam_ = nullptr;  ///< null where none is wanted, or there is one term
+  TaylorStage* taylor_ = nullptr;                    ///< null where there is one term
+  RestoredTerms restored_;                           ///< of several
+  std::vector<Sketch> dirty_;  ///< what is left of the dirty images when CLEAN is over, where masks were not known before
 };
 
 }  // namespace misfit::tools

@@ -22,6 +22,13 @@
 namespace misfit::tools {
 namespace {
 
+/// Primary beams that a run writes, and images that are divided by them.
+int beam_images(const ImageOptions& o, int stokes) {
+  if (!wants_primary_beam(o)) return 0;
+  if (o.nterms > 1) return static_cast<int>(taylor_beam_products(o.nterms, o.niter > 0, o.pbcor).size());
+  return 1 + (o.pbcor ? stokes : 0);
+}
+
 /// The decisions of a run, in the order in which they are made.
 class RunPlanner {
  public:
@@ -98,6 +105,12 @@ class RunPlanner {
     decide("Taylor terms", std::to_string(o_.nterms) + " about " + significant(reference_hz / 1e9, 9) + " GHz",
            (o_.reffreq.empty() ? "the middle of the band" : "--reffreq " + o_.reffreq) + "; " +
                std::to_string(2 * o_.nterms - 1) + " spectral PSFs. --accuracy holds for .tt0");
+    if (o_.niter == 0) return;
+    const std::string seen =
+        "as the antennas saw it: their beam narrows with frequency, which adds −1.5 at the half power of an Airy disc";
+    const std::string sky = o_.pbcor ? ".alpha.pbcor is that of the sky" : "--pbcor writes that of the sky, .alpha.pbcor";
+    decide("spectral index .alpha", seen, sky);
+    progress_.say(".alpha is the spectral index " + seen + "; " + sky);
   }
 
   /// Of sources outside, by what is known before a visibility is read.
@@ -127,7 +140,7 @@ class RunPlanner {
             .mask = scene_.mask,
             .start_model = !o_.startmodel.empty(),
             .density = weighting_options(o_).needs_density(),
-            .beam_images = !wants_primary_beam(o_) ? 0 : 1 + (o_.pbcor ? gridding.request.stokes : 0),
+            .beam_images = beam_images(o_, gridding.request.stokes),
             .wider = wider};
   }
 
@@ -218,7 +231,7 @@ RunWork work_of(const RunScene& scene, const RunPlan& plan) {
           .pixels = static_cast<double>(scene.geometry.pixels()),
           .images = (o.nterms > 1 ? static_cast<int>(taylor_products(o.nterms, o.niter > 0).size())
                                   : 1 + stokes * (o.niter > 0 ? 3 : 1)) +
-                    (wants_primary_beam(o) ? 1 : 0) + (o.pbcor ? stokes : 0),
+                    beam_images(o, stokes),
           .pictures = 2 + stokes * (o.niter > 0 ? 4 : 1) + (o.nterms > 1 && o.niter > 0 ? 1 : 0),
           .threads = scene.threads,
           .verified = static_cast<double>(o.verify),

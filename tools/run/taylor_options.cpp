@@ -20,13 +20,18 @@ bool is_frequency(const std::string& text) {
   }
 }
 
+void add_terms(const std::string& kind, int count, std::vector<std::string>& names, const std::string& end = "") {
+  for (int t = 0; t < count; ++t) names.push_back(kind + ".tt" + std::to_string(t) + end);
+}
+
 }  // namespace
 
 void declare_taylor(CLI::App& command, ImageOptions& o) {
   command.add_option(
       "--nterms", o.nterms,
       "Terms of spectra, 1 to 3: I(f) is a polynomial of (f - reffreq)/reffreq. With 2 or 3 images are .tt0, .tt1, "
-      "…, whose .image has the principal solution of the residuals; .alpha is the spectral index, .alpha.error "
+      "…, whose .image has the principal solution of the residuals; .alpha is the spectral index as the antennas saw it, "
+      "whose beam narrows with frequency (--pbcor takes that out, as .alpha.pbcor), .alpha.error "
       "its error by noise, NaN where .image.tt0 is below 5 times its noise, and .beta the curvature (of 3). "
       "Components are points, or with --deconvolver multiscale Gaussians, and have no list");
   command.add_option(
@@ -63,16 +68,24 @@ imager::TaylorExpansion taylor_expansion(const ImageOptions& o, const imager::Ob
 std::vector<std::string> taylor_products(int terms, bool cleaned) {
   std::vector<std::string> names;
   if (terms == 1) return names;
-  const auto add = [&names](const std::string& kind, int count) {
-    for (int t = 0; t < count; ++t) names.push_back(kind + ".tt" + std::to_string(t));
-  };
-  add("psf", 2 * terms - 1);
-  add("residual", terms);
+  add_terms("psf", 2 * terms - 1, names);
+  add_terms("residual", terms, names);
   if (!cleaned) return names;
-  add("model", terms);
-  add("image", terms);
+  add_terms("model", terms, names);
+  add_terms("image", terms, names);
   names.insert(names.end(), {"alpha", "alpha.error"});
   if (terms > 2) names.emplace_back("beta");
+  return names;
+}
+
+std::vector<std::string> taylor_beam_products(int terms, bool cleaned, bool corrected) {
+  std::vector<std::string> names;
+  if (terms == 1) return names;
+  add_terms("pb", terms, names);
+  if (!corrected) return names;
+  add_terms("image", terms, names, ".pbcor");
+  if (cleaned) names.emplace_back("alpha.pbcor");
+  if (cleaned && terms > 2) names.emplace_back("beta.pbcor");
   return names;
 }
 

@@ -26,4 +26,7 @@ imager::TaylorExpansion taylor_expansion(const ImageOptions& options, const imag
 /// Those of a run of one term are none.
 std::vector<std::string> taylor_products(int terms, bool cleaned);
 
+/// The same of what --pblimit and --pbcor write besides: the beam's terms, and where images are `corrected` those of the sky.
+std::vector<std::string> taylor_beam_products(int terms, bool cleaned, bool corrected);
+
 }  // namespace misfit::tools

@@ -26,6 +26,10 @@ void TaylorStage::make_images(const imager::VisibilitySource& source, const imag
   basis_ = imager::basis_of(psf_);
 }
 
+std::vector<imager::Image> TaylorStage::principal_solution(const imager::Image& dirty) const {
+  return imager::principal_solution(*basis_, all_terms(dirty, images_.dirty), threads_);
+}
+
 RestoredTerms TaylorStage::restore(const imager::CleanResult& cleaned, const imager::Beam& beam, double cell_rad) const {
   const std::vector<imager::Image> left =
       imager::principal_solution(*basis_, all_terms(cleaned.residual, cleaned.further_residuals), threads_);

@@ -35,6 +35,8 @@ class TaylorStage {
   imager::WideBand band() const { return {expansion_, images_.dirty, psf_}; }
   imager::TaylorImages& images() { return images_; }
 
+  /// H⁻¹ R, Jy/beam [term], of the dirty images.
+  std::vector<imager::Image> principal_solution(const imager::Image& dirty) const;
   /// Of all terms of a result.
   RestoredTerms restore(const imager::CleanResult& cleaned, const imager::Beam& beam, double cell_rad) const;
 

@@ -73,6 +73,26 @@ BOOST_AUTO_TEST_CASE(the_error_of_the_index_is_its_scatter) {
   }
 }
 
+/// A sky of α and β seen through a beam, of which nothing is left: values are known where those of what was seen are.
+BOOST_AUTO_TEST_CASE(indices_of_the_sky_are_known_where_those_of_its_image_are) {
+  SpectralImages apparent{constant(-2), constant(0.1), constant(0), 0.3};
+  apparent.alpha.at(3, 4) = std::nan("");
+  std::vector<Image> sky{constant(2), constant(2 * -0.7), constant(2 * (0.7 * 1.7 / 2 + 0.2))};
+  sky[0].at(5, 6) = std::nan("");
+  sky[0].at(7, 8) = -1;
+  const SpectralImages made = spectral_images_of_sky(sky, apparent, 2);
+  BOOST_TEST(std::abs(made.alpha.at(0, 0) + 0.7) < 1e-15);
+  BOOST_TEST(std::abs(made.beta.at(0, 0) - 0.2) < 1e-15);
+  for (const Image* image : {&made.alpha, &made.beta}) {
+    BOOST_TEST(std::isnan(image->at(3, 4)));
+    BOOST_TEST(std::isnan(image->at(5, 6)));
+    BOOST_TEST(std::isnan(image->at(7, 8)));
+  }
+  BOOST_TEST(made.level_jy == 0.3);
+  sky.pop_back();
+  BOOST_TEST(spectral_images_of_sky(sky, apparent, 1).beta.pixel.empty());
+}
+
 BOOST_AUTO_TEST_CASE(pixels_below_five_times_the_noise_are_nan) {
   const std::vector<Image> residual = noise(0.1, 0.3, 0);
   const double sigma = robust_noise(residual[0]);
