@@ -3,6 +3,7 @@
 #include <casacore/tables/Tables/ScalarColumn.h>
 
 #include <algorithm>
+#include <limits>
 #include <stdexcept>
 #include <utility>
 
