@@ -6,7 +6,7 @@
 #include "tests/fuzz/fuzzing.h"
 #include "tools/base/quantity.h"
 #include "tools/base/text.h"
-#include "tools/formats/region_keywords.h"
+#include "tools/formats/regions/keywords.h"
 #include "tools/run/cube_options.h"
 #include "tools/run/image_options.h"
 #include "tools/run/weighting_options.h"
@@ -41,6 +41,15 @@ void require_options(const std::string& text) {
   }
 }
 
+void require_planes(const tools::regions::RegionKeywords& keywords) {
+  const imager::SpectralAxis axis{1.42e9, 1e6, 5, "LSRK", 1.420405752e9};
+  if (const auto planes = read_or_refused("", [&] { return tools::regions::planes_of_range(keywords, axis); }))
+    require(planes->first >= 0 && planes->last < axis.channels, "planes are those of the image");
+  const std::vector<imager::Stokes> stokes{imager::Stokes::I, imager::Stokes::Q};
+  if (const auto named = read_or_refused("", [&] { return tools::regions::stokes_of_corr(keywords, stokes); }))
+    require(named->size() == stokes.size(), "each Stokes parameter is of a region or not");
+}
+
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
@@ -53,9 +62,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     require(imager::parse_stokes(imager::stokes_names(*stokes)) == *stokes, "names of Stokes parameters are read again");
   read_or_refused(text, [&] { return ms_io::parse_spectral_frame(text); });
   if (const auto number = tools::finite_number(text)) require(std::isfinite(*number), "a finite number is one");
-  const tools::RegionKeywords keywords = tools::parse_region_keywords(text);
-  const imager::SpectralAxis axis{1.42e9, 1e6, 5, "LSRK", 1.420405752e9};
-  if (const auto planes = read_or_refused("", [&] { return tools::planes_of_range(keywords, axis); }))
-    require(planes->first >= 0 && planes->last < axis.channels, "planes are those of the image");
+  if (const auto keywords = read_or_refused("", [&] { return tools::regions::parse_region_keywords(text); }))
+    require_planes(*keywords);
   return 0;
 }

@@ -1,8 +1,8 @@
-// CASA region text, as --mask reads it, for an image of one plane and for one of several.
+// Regions of CASA and DS9, as --mask reads them, for an image of one plane and for one of several.
 #include <cmath>
 
 #include "tests/fuzz/fuzzing.h"
-#include "tools/formats/region_text.h"
+#include "tools/formats/regions/region_text.h"
 
 using namespace misfit;
 using namespace misfit::fuzz;
@@ -13,6 +13,7 @@ imager::ImageHeader image(int channels) {
   constexpr double degree = M_PI / 180;
   imager::ImageHeader header;
   header.geometry = {16, 12, degree / 3600, {187.7 * degree, 12.39 * degree, "FK5"}};
+  if (channels > 1) header.stokes = {imager::Stokes::I, imager::Stokes::Q};
   header.spectral = {1.42e9, -1e6, channels, "LSRK", channels > 1 ? 1.420405752e9 : 0};
   return header;
 }
@@ -27,10 +28,12 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       return tools::RegionText(name, {reinterpret_cast<const char*>(data), size}, of);
     });
     for (int channel = 0; regions && channel < channels; ++channel) {
-      const imager::Image mask = regions->mask(channel);
+      const imager::Image mask = regions->mask({channel, 0});
       require(mask.pixel.size() == of.geometry.pixels(), "a mask has the image's pixels");
       if (regions->one_for_all_channels())
-        require(mask.pixel == regions->mask(0).pixel, "a mask for all planes is the same in each");
+        require(mask.pixel == regions->mask({0, 0}).pixel, "a mask for all channels is the same in each");
+      if (regions->one_for_all_stokes() && channels > 1)
+        require(mask.pixel == regions->mask({channel, 1}).pixel, "a mask for all Stokes parameters is the same in each");
     }
   }
   return 0;

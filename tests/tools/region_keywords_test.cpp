@@ -1,13 +1,13 @@
-#include "tools/formats/region_keywords.h"
-
 #include <boost/test/unit_test.hpp>
 #include <stdexcept>
 #include <string>
 
+#include "tools/formats/regions/keywords.h"
+
 BOOST_AUTO_TEST_SUITE(region_keywords)
 
 using namespace misfit;
-using namespace misfit::tools;
+using namespace misfit::tools::regions;
 
 namespace {
 
@@ -45,13 +45,25 @@ BOOST_AUTO_TEST_CASE(apostrophes_within_words_and_brackets_that_close_nothing_hi
 }
 
 BOOST_AUTO_TEST_CASE(commas_in_brackets_and_quotes_part_nothing) {
-  const RegionKeywords keywords =
-      parse_region_keywords(", coord = J2000, range=[1chan, 2chan],label='a, range=[3]', bare, font=\"x,y\"");
-  BOOST_TEST(keywords.size() == 4U);
-  BOOST_TEST(keywords.at("coord") == "J2000");
-  BOOST_TEST(keywords.at("range") == "[1chan, 2chan]");
-  BOOST_TEST(keywords.at("label") == "'a, range=[3]'");
-  BOOST_TEST(keywords.at("font") == "\"x,y\"");
+  for (const char* text : {", Coord = J2000, range=[1chan, 2chan],label='a, range=[3]', font=\"x,y\"",
+                           " coord=J2000 range=[1chan, 2chan] label='a, range=[3]'  font='x,y',"}) {
+    const RegionKeywords keywords = parse_region_keywords(text);
+    BOOST_TEST(keywords.size() == 4U);
+    BOOST_TEST(keywords.at("coord") == "J2000");
+    BOOST_TEST(keywords.at("range") == "[1chan, 2chan]");
+    BOOST_TEST(keywords.at("label") == "a, range=[3]");
+    BOOST_TEST(keywords.at("font") == "x,y");
+  }
+}
+
+BOOST_AUTO_TEST_CASE(what_viewers_draw_means_nothing) {
+  for (const char* keyword : {"color=red", "color=#2EE6D6", "linewidth=2", "linestyle=:", "symsize=1", "symthick=1",
+                              "font=Fixed [Sony]", "fontsize=10pt", "fontstyle=bold", "usetex=True", "label=''",
+                              "labelcolor='green'", "labelpos=top", "labeloff=[1, -1]"}) {
+    check_span(keyword, 0, 9);
+    BOOST_TEST(stokes_of_corr(parse_region_keywords(keyword), {misfit::imager::Stokes::Q}).at(0));
+    BOOST_TEST(frame_of_coord(parse_region_keywords(keyword), "ICRS") == "ICRS");
+  }
 }
 
 BOOST_AUTO_TEST_CASE(without_a_range_all_planes_are_meant) {
@@ -81,12 +93,15 @@ BOOST_AUTO_TEST_CASE(velocities_are_those_of_the_line) {
   check_span("range=[-421km/s, 421km/s], restfreq=1.425GHz", 3, 7);
 }
 
-BOOST_AUTO_TEST_CASE(optical_velocities_are_of_wavelengths) {
+BOOST_AUTO_TEST_CASE(velocities_are_of_the_kind_that_is_named) {
   // A tenth of c: 0.9 and 1/1.1 of the line.
   const imager::SpectralAxis wide{1e9, 1e6, 200, "LSRK", 1.2e9};
   check_span("range=[29979.2458km/s, 29979.2458km/s]", 80, 80, wide);
   check_span("range=[29979.2458km/s, 29979.2458km/s], veltype=RADIO", 80, 80, wide);
   check_span("range=[29979.2458km/s, 29979.2458km/s], veltype=OPTICAL", 91, 91, wide);
+  check_span("range=[29979.2458km/s, 29979.2458km/s], veltype=Z", 91, 91, wide);
+  // The square root of 0.9/1.1 of the line.
+  check_span("range=[29979.2458km/s, 29979.2458km/s], veltype=BETA", 85, 85, wide);
 }
 
 BOOST_AUTO_TEST_CASE(a_range_beside_the_planes_is_of_none) {
@@ -111,7 +126,7 @@ BOOST_AUTO_TEST_CASE(what_cannot_be_meant_is_refused) {
     BOOST_TEST(refused(range, "expected two channels, frequencies or velocities"));
   BOOST_TEST(refused("range=[1.42GHz, 1.43GHz], frame=BARY", "'frame=BARY', expected the image's, LSRK"));
   BOOST_TEST(refused("range=[1.42GHz, 1.43GHz], frame=REST", "spectral frame 'REST'"));
-  BOOST_TEST(refused("range=[1km/s, 2km/s], veltype=Z", "expected RADIO or OPTICAL"));
+  BOOST_TEST(refused("range=[1km/s, 2km/s], veltype=GAMMA", "expected RADIO, OPTICAL, Z or BETA"));
   BOOST_TEST(refused("range=[1km/s, 2km/s], restfreq=7", "expected a frequency"));
   imager::SpectralAxis no_line = axis;
   no_line.rest_frequency_hz = 0;

@@ -62,17 +62,21 @@ bool MaskFile::one_for_all_channels() const {
 }
 
 bool MaskFile::one_for_all_stokes() const {
-  return regions_ != nullptr || file_->header().stokes.size() == 1;
+  return regions_ ? regions_->one_for_all_stokes() : file_->header().stokes.size() == 1;
 }
 
 imager::Image MaskFile::mask(const imager::PlaneIndex& at) const {
-  if (regions_) return regions_->mask(at.channel);
+  if (regions_) return regions_->mask(at);
   const std::vector<imager::Stokes>& has = file_->header().stokes;
   const auto plane = std::find(has.begin(), has.end(), image_.stokes.at(static_cast<std::size_t>(at.stokes)));
   imager::Image mask =
       file_->read({one_for_all_channels() ? 0 : at.channel, has.size() == 1 ? 0 : static_cast<int>(plane - has.begin())});
   for (double& pixel : mask.pixel) pixel = imager::mask_allows(pixel) ? 1 : 0;
   return mask;
+}
+
+std::vector<std::string> MaskFile::doubts() const {
+  return regions_ ? regions_->doubts() : std::vector<std::string>{};
 }
 
 imager::Image read_mask(const std::string& path, const imager::ImageGeometry& geometry) {

@@ -6,13 +6,13 @@
 
 #include "imager/image_header.h"
 #include "imager/image_reader.h"
-#include "tools/formats/region_text.h"
+#include "tools/formats/regions/region_text.h"
 
 namespace misfit::tools {
 
 /// A file that says where CLEAN may take components from in the planes of an image: a FITS or CASA image of the same pixels,
 /// where those that are neither 0 nor NaN are allowed, with one plane for all or one for each, along the spectral axis and
-/// that of Stokes parameters alike; or region text, see region_text.h.
+/// that of Stokes parameters alike; or region text, see regions/region_text.h.
 class MaskFile {
  public:
   /// Of an image with these pixels, planes and Stokes parameters. Throws std::runtime_error that names the file and what was
@@ -23,6 +23,8 @@ class MaskFile {
   bool one_for_all_stokes() const;
   /// Of a plane of the image: 1 where CLEAN may take components from, 0 elsewhere.
   imager::Image mask(const imager::PlaneIndex& at) const;
+  /// What of the file has no pixel of the image, a sentence each.
+  std::vector<std::string> doubts() const;
 
  private:
   imager::ImageHeader image_;

@@ -1,0 +1,227 @@
+#include "tools/formats/regions/ds9.h"
+
+#include <algorithm>
+#include <array>
+#include <optional>
+#include <utility>
+
+#include "tools/base/text.h"
+#include "tools/formats/regions/ds9_properties.h"
+#include "tools/formats/regions/words.h"
+
+namespace misfit::tools::regions {
+namespace {
+
+const std::string shapes_known =
+    "circle x y radius, ellipse x y radius radius [angle], box x y width height [angle], polygon x1 y1 x2 y2 x3 y3 …, annulus "
+    "x y "
+    "inner outer, or one of the frames image, physical, fk5, fk4, icrs, galactic";
+
+/// The frame that a word stands for, or nothing; `own` is the image's.
+std::optional<std::string> frame_of(const std::string& word, const std::string& own) {
+  const std::array<std::pair<const char*, std::string>, 9> frames{{{"image", ""},
+                                                                   {"physical", ""},
+                                                                   {"fk5", "FK5"},
+                                                                   {"j2000", "FK5"},
+                                                                   {"fk4", "FK4"},
+                                                                   {"b1950", "FK4"},
+                                                                   {"icrs", "ICRS"},
+                                                                   {"galactic", "GALACTIC"},
+                                                                   {"wcs", own}}};
+  for (const auto& [name, frame] : frames)
+    if (word == name) return frame;
+  return std::nullopt;
+}
+
+/// Lines and the like, which DS9 leaves out of analyses.
+bool has_no_pixels(const std::string& word) {
+  constexpr std::array<std::string_view, 8> drawn{"line",  "vector",  "segment", "projection",
+                                                  "ruler", "compass", "text",    "textbox"};
+  return std::find(drawn.begin(), drawn.end(), word) != drawn.end();
+}
+
+/// The arguments of a description, "(1, 2 3)" or "1 2 3"; n=4, which parts an annulus only, is left out.
+std::vector<std::string_view> arguments_of_ds9(std::string_view text, std::string_view whole) {
+  if (text.starts_with('(')) {
+    const std::size_t end = text.find(')');
+    if (end == std::string_view::npos) refuse(whole, "a closing parenthesis");
+    if (const std::string_view behind = trimmed(text.substr(end + 1)); !behind.empty())
+      refuse(behind, "nothing behind a region but properties, which begin with #");
+    text = text.substr(1, end - 1);
+  }
+  std::vector<std::string_view> arguments;
+  while (!text.empty()) {
+    const std::size_t begin = text.find_first_not_of(", \t");
+    if (begin == std::string_view::npos) break;
+    const std::size_t end = std::min(text.find_first_of(", \t", begin), text.size());
+    const std::string_view argument = text.substr(begin, end - begin);
+    if (!argument.starts_with("n=")) arguments.push_back(argument);
+    text.remove_prefix(end);
+  }
+  return arguments;
+}
+
+/// A shape's arguments in a frame.
+class Ds9Shape {
+ public:
+  /// `frame`: empty for pixels. `description`: of which `arguments` are parts.
+  Ds9Shape(const Canvas& canvas, std::string frame, std::string_view description, std::vector<std::string_view> arguments)
+      : canvas_(canvas), frame_(std::move(frame)), whole_(description), arguments_(std::move(arguments)) {}
+
+  Shape of(const std::string& name) const {
+    if (name == "polygon") return {polygon(), {}};
+    if (name == "circle") {
+      if (arguments_.size() != 3) refuse(whole_, "circle x y radius");
+      return {ellipse({2, 2}, 0), {}};
+    }
+    if (name == "annulus") {
+      if (arguments_.size() < 4) refuse(whole_, "annulus x y inner outer");
+      return rings(1, [&](Radii r) -> Outline { return ellipse(r, 0); });
+    }
+    if (arguments_.size() < 4)
+      refuse(whole_, name == "box" ? "box x y width height [angle]" : "ellipse x y radius radius [angle]");
+    const double turn_rad = arguments_.size() % 2 == 1 ? angle(arguments_.back()) : 0;
+    if (name == "box") return rings(2, [&](Radii r) -> Outline { return box(r, turn_rad); });
+    return rings(2, [&](Radii r) -> Outline { return ellipse(r, turn_rad); });
+  }
+
+ private:
+  /// Which arguments are lengths along x and y.
+  struct Radii {
+    std::size_t x;
+    std::size_t y;
+  };
+
+  /// The outline of the last lengths without that of the first, if there are several; each has so many arguments.
+  template <typename Draw>
+  Shape rings(std::size_t each, const Draw& draw) const {
+    const std::size_t count = (arguments_.size() - 2) / each;
+    const auto radii = [&](std::size_t i) { return Radii{2 + i * each, 2 + i * each + each - 1}; };
+    for (std::size_t i = 2 + each; i < 2 + count * each; ++i)
+      if (size(i) <= size(i - each)) refuse(whole_, "radii that rise from the inner to the outer");
+    Shape shape{draw(radii(count - 1)), {}};
+    if (count > 1 && size(2) != 0) shape.hole = draw(radii(0));
+    return shape;
+  }
+
+  Ellipse ellipse(Radii r, double turn_rad) const {
+    return {canvas_.point(centre()), pixels(r.x), pixels(r.y), canvas_.north_rad(centre()) + turn_rad};
+  }
+
+  Polygon box(Radii r, double turn_rad) const {
+    return polygon_of({canvas_.point(centre()), pixels(r.x), pixels(r.y), canvas_.north_rad(centre()) + turn_rad});
+  }
+
+  Polygon polygon() const {
+    if (arguments_.size() < 6 || arguments_.size() % 2 == 1) refuse(whole_, "polygon x1 y1 x2 y2 x3 y3 …");
+    Polygon polygon;
+    for (std::size_t i = 0; i < arguments_.size(); i += 2)
+      polygon.corners.push_back(canvas_.point(place(arguments_[i], arguments_[i + 1])));
+    return polygon;
+  }
+
+  Place centre() const { return place(arguments_[0], arguments_[1]); }
+  Place place(std::string_view x, std::string_view y) const {
+    const std::string frame = frame_.empty() ? canvas_.frame() : frame_;
+    const bool galactic = frame == "GALACTIC";
+    return {coordinate(x, !galactic), coordinate(y, false), frame, std::string(x) + ", " + std::string(y)};
+  }
+
+  /// `colons_are_hours`: of a right ascension.
+  Quantity coordinate(std::string_view text, bool colons_are_hours) const {
+    const std::string expected = "a coordinate such as 100, 187.7d, 3.2r, 100i, 12:30:49.4, 12h30m49.4s or 12d23m28s";
+    if (text.find(':') != std::string_view::npos)
+      return {false, (colons_are_hours ? 15 : 1) * degree * parse_sexagesimal(text, colons, expected)};
+    if (text.find('h') != std::string_view::npos)
+      return {false, 15 * degree * parse_sexagesimal(text, hours_letters, expected)};
+    if (text.ends_with('s')) return {false, degree * parse_sexagesimal(text, degrees_letters, expected)};
+    Quantity q = number_with_unit(text, "dr", expected);
+    if (q.pixels) q.value -= 1;
+    return q;
+  }
+
+  Quantity length(std::size_t i) const {
+    return number_with_unit(arguments_[i], "\"'dr", "a length such as 10, 10\", 0.5', 0.1d, 0.01r or 20i");
+  }
+  double pixels(std::size_t i) const { return canvas_.pixels(length(i), arguments_[i]); }
+
+  /// The same, or 0, as an inner radius may be.
+  double size(std::size_t i) const { return length(i).value == 0 ? 0 : pixels(i); }
+
+  /// A number alone, in pixels (i, p), or with one of these units of angles.
+  Quantity number_with_unit(std::string_view text, std::string_view units, const std::string& expected) const {
+    const char unit = text.empty() ? '\0' : text.back();
+    const bool pixels = unit == 'i' || unit == 'p', angle = units.find(unit) != std::string_view::npos;
+    const double value = number_of(text.substr(0, text.size() - (pixels || angle ? 1 : 0)), text, expected);
+    if (pixels) return {true, value};
+    if (!angle) return {frame_.empty(), frame_.empty() ? value : value * degree};
+    const double size = unit == '"' ? degree / 3600 : unit == '\'' ? degree / 60 : unit == 'd' ? degree : 1;
+    return {false, value * size};
+  }
+
+  double angle(std::string_view text) const {
+    const bool unit = text.ends_with('d') || text.ends_with('r');
+    const double value = number_of(text.substr(0, text.size() - (unit ? 1 : 0)), text, "an angle in degrees, or such as 0.5r");
+    return text.ends_with('r') ? value : value * degree;
+  }
+
+  const Canvas& canvas_;
+  std::string frame_;
+  std::string_view whole_;
+  std::vector<std::string_view> arguments_;
+};
+
+}  // namespace
+
+Ds9Reader::Ds9Reader(const imager::ImageHeader& image)
+    : canvas_(image.geometry), stokes_(image.stokes.size(), true), channels_{0, image.spectral.channels - 1} {}
+
+RegionLine Ds9Reader::read(std::string_view line) {
+  RegionLine found;
+  if (line.starts_with('#')) return found;  // parts of a composite region, which such a line begins, are regions as others
+  for (const std::string_view statement : ds9_statements(line)) read_statement(statement, found);
+  return found;
+}
+
+void Ds9Reader::read_statement(std::string_view statement, RegionLine& found) {
+  std::string_view rest = statement;
+  const std::string word = small_letters(take_word(rest));
+  if (word == "global") {
+    const Ds9Properties global = parse_ds9_properties(rest);
+    included_ = global.included.value_or(included_);
+    background_ = global.background.value_or(background_);
+    return;
+  }
+  if (const auto frame = frame_of(word, canvas_.frame()); frame && (rest.empty() || rest.starts_with('#'))) {
+    frame_ = *frame;
+    return;
+  }
+  if (word == "tile" && rest == "1") return;
+  if (has_no_pixels(word)) return;
+  const auto [description, properties] = split_ds9_properties(statement);
+  const Ds9Properties own = parse_ds9_properties(properties);
+  if (own.background.value_or(background_))
+    refuse(statement, "a source: what is background is nothing to find components in; take the region out, or write source");
+  Region region = read_shape(description);
+  region.added = region.added && own.included.value_or(included_);
+  found.regions.push_back(std::move(region));
+}
+
+Region Ds9Reader::read_shape(std::string_view description) const {
+  std::string_view rest = description;
+  while (rest.ends_with('|') || rest.ends_with(' ')) rest.remove_suffix(1);  // "||" joins the parts of a composite region
+  Region region;
+  region.added = !rest.starts_with('-');
+  if (rest.starts_with('-') || rest.starts_with('+')) rest.remove_prefix(1);
+  const std::string name = small_letters(take_word(rest));
+  if (name == "point" || small_letters(rest).starts_with("point"))
+    refuse(description, "an area: a point holds no pixel; write circle x y radius");
+  if (name != "circle" && name != "ellipse" && name != "box" && name != "polygon" && name != "annulus")
+    refuse(description, shapes_known);
+  region.shape = Ds9Shape(canvas_, frame_, description, arguments_of_ds9(rest, description)).of(name);
+  region.channels = channels_;
+  region.stokes = stokes_;
+  return region;
+}
+
+}  // namespace misfit::tools::regions

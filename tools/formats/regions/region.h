@@ -1,0 +1,36 @@
+#pragma once
+
+#include <string_view>
+#include <vector>
+
+#include "tools/formats/regions/keywords.h"
+#include "tools/formats/regions/shape.h"
+
+namespace misfit::tools::regions {
+
+/// Pixels that a region file adds to a mask, or takes away from it, in some planes of the image.
+struct Region {
+  Shape shape;
+  bool added = true;
+  PlaneSpan channels;
+  std::vector<bool> stokes;  ///< [Stokes parameter of the image], whether it is of it
+  int line = 0;              ///< of the file, counted from 1
+
+  bool holds(int channel, std::size_t stokes_index) const { return channels.holds(channel) && stokes[stokes_index]; }
+};
+
+/// What one line of a region file says.
+struct RegionLine {
+  std::vector<Region> regions;
+  bool mark = false;  ///< whether it shows a point, which holds no pixel, though it may be meant to
+};
+
+/// Reads one format, line by line.
+class RegionReader {
+ public:
+  virtual ~RegionReader() = default;
+  /// Throws std::runtime_error or std::invalid_argument that says what was expected.
+  virtual RegionLine read(std::string_view line) = 0;
+};
+
+}  // namespace misfit::tools::regions

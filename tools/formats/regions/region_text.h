@@ -1,0 +1,44 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "imager/image.h"
+#include "imager/image_header.h"
+#include "imager/image_reader.h"
+#include "tools/formats/regions/region.h"
+
+namespace misfit::tools {
+
+/// The regions of a text in CASA's format or DS9's (see regions/crtf.h, regions/ds9.h), as masks of an image. DS9's are those
+/// of a text whose header says so, or whose first region has no square brackets.
+///
+/// A region adds the pixels whose centres lie within it or on its border, in the planes that it names; one that is taken away
+/// takes them from those before it, or, if it is the first, from the whole image. DS9 takes away last.
+class RegionText {
+ public:
+  /// Throws std::runtime_error that names the file `path`, the line and what was expected; so, too, where there is no region,
+  /// or none of a plane of the image.
+  RegionText(const std::string& path, std::string_view text, const imager::ImageHeader& image);
+
+  /// Whether no region is of some planes alone.
+  bool one_for_all_channels() const;
+  bool one_for_all_stokes() const;
+  /// 1 in pixels of a plane that the regions allow, 0 elsewhere.
+  imager::Image mask(const imager::PlaneIndex& at) const;
+  /// What of the text has no pixel of the image, a sentence each.
+  const std::vector<std::string>& doubts() const { return doubts_; }
+
+ private:
+  void read_lines(const std::string& path, std::string_view text, regions::RegionReader& reader);
+  void look_for_pixels(const std::string& path, const std::vector<imager::Stokes>& stokes);
+
+  int width_;
+  int height_;
+  int channels_;
+  std::vector<regions::Region> regions_;
+  std::vector<std::string> doubts_;
+};
+
+}  // namespace misfit::tools

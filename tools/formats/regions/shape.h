@@ -1,0 +1,52 @@
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <variant>
+#include <vector>
+
+namespace misfit::tools::regions {
+
+/// A point of an image's plane, in pixels; the first pixel's centre is 0, 0. Columns run to the right, rows upwards.
+struct Point {
+  double column = 0;
+  double row = 0;
+};
+
+/// (x / x_radius)² + (y / y_radius)² ≤ 1, with x and y from the centre along axes that are turned anticlockwise by `turn_rad`
+/// from columns and rows.
+struct Ellipse {
+  Point centre;
+  double x_radius = 0;  ///< pixels
+  double y_radius = 0;  ///< pixels
+  double turn_rad = 0;
+};
+
+/// What closed straight sides go round, once or more often: parts that overlap belong to it, as CASA has it.
+struct Polygon {
+  std::vector<Point> corners;
+};
+
+using Outline = std::variant<Ellipse, Polygon>;
+
+/// A rectangle of so many pixels about a centre, turned anticlockwise by `turn_rad`.
+struct Rectangle {
+  Point centre;
+  double width = 0;   ///< pixels
+  double height = 0;  ///< pixels
+  double turn_rad = 0;
+};
+Polygon polygon_of(const Rectangle& rectangle);
+
+/// An outline without the hole in it.
+struct Shape {
+  Outline outline;
+  std::optional<Outline> hole;
+};
+
+/// Calls `visit` once for each pixel of an image that the shape holds: those whose centres lie within the outline or on it,
+/// and not within the hole nor on its border. What is a millionth of a pixel away from a border lies on it, which is above the
+/// rounding of angles and frames.
+void for_each_pixel(const Shape& shape, int width, int height, const std::function<void(int row, int column)>& visit);
+
+}  // namespace misfit::tools::regions
