@@ -63,6 +63,10 @@ void CleanStage::begin_channel(int channel) {
   for (int stokes = 0; stokes < masks; ++stokes) masks_.push_back(mask_file_->mask({channel, stokes}));
 }
 
+std::vector<std::string> CleanStage::mask_doubts() const {
+  return mask_file_ ? mask_file_->doubts() : std::vector<std::string>{};
+}
+
 std::string CleanStage::warning() const {
   std::string closed;
   for (std::size_t m = 0; m < masks_.size(); ++m)

@@ -120,6 +120,7 @@ class ImageRun {
                                                               .cards = {},
                                                               .history = {}},
                                           threads_);
+    for (const std::string& doubt : clean_->mask_doubts()) warn(doubt);
     clean_->begin_channel(0);
     if (const std::string warning = clean_->warning(); !warning.empty()) warn(warning);
   }
