@@ -23,6 +23,19 @@ const std::array<std::pair<const char*, MDirection::Types>, 4> frames{{
     {"GALACTIC", MDirection::GALACTIC},
 }};
 
+/// Frames that regions may be of, and images not.
+const std::array<std::pair<const char*, MDirection::Types>, 3> further_frames{{
+    {"B1950_VLA", MDirection::B1950_VLA},
+    {"ECLIPTIC", MDirection::ECLIPTIC},
+    {"SUPERGAL", MDirection::SUPERGAL},
+}};
+
+MDirection::Types any_direction_type(const std::string& frame) {
+  for (const auto& [name, type] : further_frames)
+    if (name == frame) return type;
+  return direction_type(frame);
+}
+
 }  // namespace
 
 MDirection::Types direction_type(const std::string& frame) {
@@ -52,7 +65,10 @@ MDirection measure_of(const imager::SkyDirection& direction) {
 
 imager::SkyDirection in_frame(const imager::SkyDirection& direction, const std::string& frame) {
   if (direction.frame == frame) return direction;
-  return sky_direction(MDirection::Convert(measure_of(direction), MDirection::Ref(direction_type(frame)))());
+  const MDirection here(casacore::MVDirection(direction.ra_rad, direction.dec_rad), any_direction_type(direction.frame));
+  imager::SkyDirection there = sky_direction(MDirection::Convert(here, MDirection::Ref(any_direction_type(frame)))());
+  there.frame = frame;
+  return there;
 }
 
 }  // namespace misfit::ms_io

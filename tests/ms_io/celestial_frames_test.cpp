@@ -26,7 +26,7 @@ BOOST_AUTO_TEST_CASE(there_and_back_is_the_same_direction) {
   for (const double ra : {0.0, 1.2, 3.1, 4.6, 6.2})
     for (const double dec : {-1.5, -0.3, 0.0, 0.8, 1.5})
       for (const char* from : {"ICRS", "FK5", "FK4", "GALACTIC"})
-        for (const char* to : {"ICRS", "FK5", "FK4", "GALACTIC"}) {
+        for (const char* to : {"ICRS", "FK5", "FK4", "GALACTIC", "B1950_VLA", "ECLIPTIC", "SUPERGAL"}) {
           const SkyDirection here{ra, dec, from}, there = in_frame(here, to);
           BOOST_TEST(there.ra_rad >= 0);
           BOOST_TEST(there.ra_rad < 2 * M_PI);
@@ -48,6 +48,17 @@ BOOST_AUTO_TEST_CASE(frames_lie_to_one_another_as_they_are_defined) {
   const SkyDirection icrs{1, 0.5, "ICRS"}, j2000 = in_frame(icrs, "FK5");
   BOOST_TEST(distance_rad({j2000.ra_rad, j2000.dec_rad, "ICRS"}, icrs) < 0.03 * arcsec);
   BOOST_TEST(distance_rad({j2000.ra_rad, j2000.dec_rad, "ICRS"}, icrs) > 0.001 * arcsec);
+}
+
+BOOST_AUTO_TEST_CASE(frames_that_images_have_not_lie_as_they_are_defined) {
+  // The pole of the ecliptic of J2000, at its obliquity of 84381.448″ (Lieske et al. 1977, A&A 58, 1), and the pole of
+  // supergalactic coordinates (de Vaucouleurs et al. 1991, RC3, volume I, section 1.2).
+  BOOST_TEST(in_frame({270 * degree, 90 * degree - 84381.448 * arcsec, "FK5"}, "ECLIPTIC").dec_rad >
+             90 * degree - 0.1 * arcsec);
+  BOOST_TEST(in_frame({47.37 * degree, 6.32 * degree, "GALACTIC"}, "SUPERGAL").dec_rad > 90 * degree - 1 * arcsec);
+  // The VLA's B1950 and B1950 differ by less than their equinoxes' corrections, an arcsecond.
+  const SkyDirection vla = in_frame({1, 0.5, "B1950_VLA"}, "FK4");
+  BOOST_TEST(distance_rad(vla, {1, 0.5, "FK4"}) < 1 * arcsec);
 }
 
 BOOST_AUTO_TEST_CASE(frames_that_nobody_knows_are_refused) {

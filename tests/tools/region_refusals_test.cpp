@@ -45,6 +45,7 @@ BOOST_AUTO_TEST_CASE(what_casa_region_text_cannot_mean_is_refused) {
   BOOST_TEST(refused(box + " " + box, "expected a keyword and its value"));
   BOOST_TEST(refused(box + ", coor=J2000", "'coor', expected one of coord, corr"));
   BOOST_TEST(refused(box + ", coord=AZEL", "'coord=AZEL', expected J2000"));
+  BOOST_TEST(refused(box + ", coord=BMEAN", "a mean equinox is that of a date"));
   BOOST_TEST(refused(box + ", coord=", "expected a value"));
   BOOST_TEST(refused(box + ", corr=[I, S]", "'corr=[I, S]', expected some of I, Q"));
   BOOST_TEST(refused(box + ", corr=[I", "expected a closing bracket"));
@@ -63,7 +64,7 @@ BOOST_AUTO_TEST_CASE(what_ds9_regions_cannot_mean_is_refused) {
   BOOST_TEST(refused("image\npoint(3,4) # point=circle 10", "line 2: 'point(3,4)', expected an area"));
   BOOST_TEST(refused("image;circle point 3 4", "expected an area"));
   BOOST_TEST(refused("image;panda(3,4,0,90,1,2,3,1)", "'panda(3,4,0,90,1,2,3,1)', expected circle"));
-  BOOST_TEST(refused("ecliptic\ncircle(3,4,5)", "'ecliptic', expected"));
+  BOOST_TEST(refused("azel\ncircle(3,4,5)", "'azel', expected"));
   BOOST_TEST(refused("linear;circle(3,4,5)", "'linear', expected"));
   BOOST_TEST(refused("wcsa;fk5;circle(3,4,5)", "'wcsa', expected"));
   BOOST_TEST(refused("tile 2;circle(3,4,5)", "'tile 2', expected"));

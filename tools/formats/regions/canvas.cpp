@@ -15,6 +15,10 @@ constexpr double farthest_pixels = 1e9;  // where a double still tells millionth
 
 }  // namespace
 
+bool has_right_ascensions(const std::string& frame) {
+  return frame != "GALACTIC" && frame != "ECLIPTIC" && frame != "SUPERGAL";
+}
+
 Point Canvas::at(const Place& place, double latitude_rad) const {
   const imager::SkyDirection centre = geometry_.phase_centre;
   imager::DirectionCosines seen;

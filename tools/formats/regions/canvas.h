@@ -22,6 +22,9 @@ struct Place {
   std::string text;   ///< as it is written, for errors
 };
 
+/// Whether longitudes of a frame are right ascensions, of which sexagesimal ones are in hours.
+bool has_right_ascensions(const std::string& frame);
+
 /// The pixels of an image, for regions to be drawn on.
 class Canvas {
  public:

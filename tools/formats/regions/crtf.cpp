@@ -20,16 +20,16 @@ Quantity crtf_quantity(std::string_view text, const std::string& expected) {
 }
 
 Quantity longitude(std::string_view text, const std::string& frame) {
-  const bool galactic = frame == "GALACTIC";
-  const std::string expected =
-      galactic ? "a longitude such as 120.47deg, 120d28m03s or 120.28.03.0, or a column such as 100pix"
-               : "a right ascension such as 12h30m49.4s, 12:30:49.4 or 187.7deg, or a column such as 100pix";
+  const bool hours = has_right_ascensions(frame);
+  const std::string expected = hours
+                                   ? "a right ascension such as 12h30m49.4s, 12:30:49.4 or 187.7deg, or a column such as 100pix"
+                                   : "a longitude such as 120.47deg, 120d28m03s or 120.28.03.0, or a column such as 100pix";
   if (text.find('h') != std::string_view::npos) return {false, 15 * degree * parse_sexagesimal(text, hours_letters, expected)};
-  if (!galactic && text.find(':') != std::string_view::npos)
+  if (hours && text.find(':') != std::string_view::npos)
     return {false, 15 * degree * parse_sexagesimal(text, colons, expected)};
   if (text.ends_with('s') && text.find('d') != std::string_view::npos)
     return {false, degree * parse_sexagesimal(text, degrees_letters, expected)};
-  if (galactic && std::count(text.begin(), text.end(), '.') >= 2)
+  if (!hours && std::count(text.begin(), text.end(), '.') >= 2)
     return {false, degree * parse_sexagesimal(text, dots, expected)};
   return crtf_quantity(text, expected);
 }

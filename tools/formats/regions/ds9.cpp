@@ -15,19 +15,20 @@ namespace {
 const std::string shapes_known =
     "circle x y radius, ellipse x y radius radius [angle], box x y width height [angle], polygon x1 y1 x2 y2 x3 y3 …, annulus "
     "x y "
-    "inner outer, or one of the frames image, physical, fk5, fk4, icrs, galactic";
+    "inner outer, or one of the frames image, physical, fk5, fk4, icrs, galactic, ecliptic";
 
 /// The frame that a word stands for, or nothing; `own` is the image's.
 std::optional<std::string> frame_of(const std::string& word, const std::string& own) {
-  const std::array<std::pair<const char*, std::string>, 9> frames{{{"image", ""},
-                                                                   {"physical", ""},
-                                                                   {"fk5", "FK5"},
-                                                                   {"j2000", "FK5"},
-                                                                   {"fk4", "FK4"},
-                                                                   {"b1950", "FK4"},
-                                                                   {"icrs", "ICRS"},
-                                                                   {"galactic", "GALACTIC"},
-                                                                   {"wcs", own}}};
+  const std::array<std::pair<const char*, std::string>, 10> frames{{{"image", ""},
+                                                                    {"physical", ""},
+                                                                    {"fk5", "FK5"},
+                                                                    {"j2000", "FK5"},
+                                                                    {"fk4", "FK4"},
+                                                                    {"b1950", "FK4"},
+                                                                    {"icrs", "ICRS"},
+                                                                    {"galactic", "GALACTIC"},
+                                                                    {"ecliptic", "ECLIPTIC"},
+                                                                    {"wcs", own}}};
   for (const auto& [name, frame] : frames)
     if (word == name) return frame;
   return std::nullopt;
@@ -123,8 +124,7 @@ class Ds9Shape {
   Place centre() const { return place(arguments_[0], arguments_[1]); }
   Place place(std::string_view x, std::string_view y) const {
     const std::string frame = frame_.empty() ? canvas_.frame() : frame_;
-    const bool galactic = frame == "GALACTIC";
-    return {coordinate(x, !galactic), coordinate(y, false), frame, std::string(x) + ", " + std::string(y)};
+    return {coordinate(x, has_right_ascensions(frame)), coordinate(y, false), frame, std::string(x) + ", " + std::string(y)};
   }
 
   /// `colons_are_hours`: of a right ascension.

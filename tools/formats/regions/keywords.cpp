@@ -214,11 +214,21 @@ std::vector<bool> stokes_of_corr(const RegionKeywords& keywords, const std::vect
 std::string frame_of_coord(const RegionKeywords& keywords, const std::string& image) {
   const std::string coord = value_of(keywords, "coord");
   if (coord.empty()) return image;
-  const std::array<std::pair<const char*, const char*>, 6> frames{
-      {{"j2000", "FK5"}, {"fk5", "FK5"}, {"b1950", "FK4"}, {"fk4", "FK4"}, {"icrs", "ICRS"}, {"galactic", "GALACTIC"}}};
+  const std::array<std::pair<const char*, const char*>, 9> frames{{{"j2000", "FK5"},
+                                                                   {"fk5", "FK5"},
+                                                                   {"b1950", "FK4"},
+                                                                   {"fk4", "FK4"},
+                                                                   {"b1950_vla", "B1950_VLA"},
+                                                                   {"icrs", "ICRS"},
+                                                                   {"galactic", "GALACTIC"},
+                                                                   {"ecliptic", "ECLIPTIC"},
+                                                                   {"supergal", "SUPERGAL"}}};
   for (const auto& [name, frame] : frames)
     if (small_letters(coord) == name) return frame;
-  refuse_keyword("coord", coord, "J2000 (FK5), B1950 (FK4), ICRS or GALACTIC");
+  const bool of_a_date = small_letters(coord) == "bmean";
+  refuse_keyword("coord", coord,
+                 "J2000 (FK5), B1950 (FK4), B1950_VLA, ICRS, GALACTIC, ECLIPTIC or SUPERGAL" +
+                     std::string(of_a_date ? ": a mean equinox is that of a date, which nothing names" : ""));
 }
 
 }  // namespace misfit::tools::regions
