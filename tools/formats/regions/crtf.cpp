@@ -229,6 +229,9 @@ RegionLine CrtfReader::read_shape(std::string_view line) const {
   region.shape = CrtfShape(canvas_, frame_of_coord(keywords, canvas_.frame()), arguments).of(form.name);
   region.channels = planes_of_range(keywords, axis_);
   region.stokes = stokes_of_corr(keywords, stokes_);
+  for (const char* name : {"corr", "range"})
+    if (const auto found = keywords.find(name); found != keywords.end())
+      region.planes += (region.planes.empty() ? "" : ", ") + found->first + "=" + found->second;
   return {{region}, false};
 }
 

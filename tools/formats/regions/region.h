@@ -1,5 +1,7 @@
 #pragma once
 
+#include <algorithm>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -14,9 +16,12 @@ struct Region {
   bool added = true;
   PlaneSpan channels;
   std::vector<bool> stokes;  ///< [Stokes parameter of the image], whether it is of it
+  std::string planes;        ///< what names them, as "corr=[Q]"; empty if nothing
   int line = 0;              ///< of the file, counted from 1
 
   bool holds(int channel, std::size_t stokes_index) const { return channels.holds(channel) && stokes[stokes_index]; }
+  /// Whether it is of some plane of the image.
+  bool of_planes() const { return !channels.empty() && std::find(stokes.begin(), stokes.end(), true) != stokes.end(); }
 };
 
 /// What one line of a region file says.

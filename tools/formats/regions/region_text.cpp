@@ -73,19 +73,18 @@ void RegionText::read_lines(const std::string& path, std::string_view text, regi
 }
 
 void RegionText::look_for_pixels(const std::string& path, const std::vector<imager::Stokes>& stokes) {
-  bool any = false;
+  if (std::none_of(regions_.begin(), regions_.end(), [](const regions::Region& r) { return r.of_planes(); }))
+    throw std::runtime_error(line_of(path, regions_.front().line) + "'" + regions_.front().planes +
+                             "', expected planes of the image, corr of " + stokes_names(stokes) + " and range within its " +
+                             std::to_string(channels_) + (channels_ == 1 ? " channel" : " channels") +
+                             ": no region of the file is of any");
   for (const regions::Region& region : regions_) {
-    const bool of_planes =
-        !region.channels.empty() && std::find(region.stokes.begin(), region.stokes.end(), true) != region.stokes.end();
-    any = any || of_planes;
     bool pixels = false;
     regions::for_each_pixel(region.shape, width_, height_, [&](int, int) { pixels = true; });
-    if (!of_planes) doubts_.push_back(line_of(path, region.line) + "the region is of no plane of the image");
+    if (!region.of_planes())
+      doubts_.push_back(line_of(path, region.line) + "the region of " + region.planes + " is of no plane of the image");
     if (!pixels) doubts_.push_back(line_of(path, region.line) + "the region holds the centre of no pixel of the image");
   }
-  if (any) return;
-  throw std::runtime_error(path + " holds no region of a plane of the image: expected corr of " + stokes_names(stokes) +
-                           " and ranges within its " + std::to_string(channels_) + (channels_ == 1 ? " plane" : " planes"));
 }
 
 bool RegionText::one_for_all_channels() const {
