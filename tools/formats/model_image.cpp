@@ -90,8 +90,7 @@ std::string other_terms(const TermInName& name) {
 
 void refuse_taylor_term(const std::string& path) {
   const std::optional<TermInName> name = term_in_name(path);
-  std::error_code absent;
-  if (!name || !std::filesystem::exists(path, absent)) return;
+  if (!name) return;
   const std::string others = other_terms(*name);
   const std::string whole =
       "Models of several terms are not read: misfit image --savemodel modelcolumn predicts all that it finds, and --restart "
@@ -108,8 +107,8 @@ void refuse_taylor_term(const std::string& path) {
 }
 
 std::vector<imager::SkyImage> read_stokes_model(const std::string& path, const imager::SkyDirection& centre) {
-  refuse_taylor_term(path);
   const auto file = open_image_file(path);
+  refuse_taylor_term(path);
   const int channels = file->header().spectral.channels;
   if (channels > 1)
     throw std::runtime_error(path + " has planes of " + std::to_string(channels) + " frequencies; expected one");

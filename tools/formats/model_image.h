@@ -14,7 +14,7 @@
 
 namespace misfit::tools {
 
-/// Throws std::runtime_error where the file that lies at `path` is by its name one of several Taylor terms, x.model.tt0.fits,
+/// Throws std::runtime_error where the image that `path` names is by that name one of several Taylor terms, x.model.tt0.fits,
 /// or as a CASA image x.model.tt1: models of one term alone are read, and without the others it is half a model. Says which
 /// are left out, as far as they lie beside it, and what can be done.
 void refuse_taylor_term(const std::string& path);

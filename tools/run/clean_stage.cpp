@@ -48,8 +48,8 @@ Minor make_minor(const CleanScene& scene, const imager::DeconvolverChoice& choic
 CleanStage::CleanStage(const ImageOptions& options, imager::ImageHeader image, int threads)
     : o_(options), image_(std::move(image)), threads_(threads) {
   if (!o_.startmodel.empty()) {
-    refuse_taylor_term(o_.startmodel);
     start_file_ = open_image_file(o_.startmodel);
+    refuse_taylor_term(o_.startmodel);
   }
   if (!o_.mask.empty()) mask_file_ = std::make_unique<MaskFile>(o_.mask, image_);
 }
