@@ -202,6 +202,15 @@ BOOST_AUTO_TEST_CASE(what_counts_is_where_antennas_pointed_not_where_visibilitie
   check_refused(image);
 }
 
+BOOST_AUTO_TEST_CASE(a_set_that_does_not_say_where_antennas_pointed_is_imaged_with_a_warning) {
+  const TwoFields unsaid(0);
+  forget_pointing(unsaid.set(), 1);
+  BOOST_TEST(run(unsaid.image()).code == 0);
+  BOOST_TEST(
+      has(unsaid.warnings(), "whether the antennas see the image is not known: cannot find where antennas point in field 1"),
+      unsaid.warnings());
+}
+
 BOOST_AUTO_TEST_CASE(fields_of_several_sets_are_named_with_their_sets) {
   const TwoFields first(0), second(4 * degree);
   Arguments image = first.image();
@@ -220,6 +229,7 @@ BOOST_AUTO_TEST_CASE(telescopes_without_known_beams_are_imaged_with_a_warning_of
   BOOST_TEST(has(stations.warnings(), "1 (ASIDE), 4 deg away;"), stations.warnings());
   name_telescope(unheard.set(), "UNHEARD");
   check_refused(unheard.image());  // its dishes of 25 m are taken as they are
+  BOOST_TEST(has(run(unheard.image()).err, "is not known: it is taken to be that of a uniformly lit one"));
   set_dish_diameters(unheard.set(), 0);
   BOOST_TEST(run(unheard.image()).code == 0);
   BOOST_TEST(has(unheard.warnings(), "DISH_DIAMETER of 0 m"), unheard.warnings());

@@ -124,6 +124,11 @@ void point_field(const std::string& set, std::size_t field, double ra_rad, doubl
   casacore::MSFieldColumns(open.field()).referenceDir().put(field, direction);
 }
 
+void forget_pointing(const std::string& set, std::size_t field) {
+  casacore::MeasurementSet open = opened(set);
+  casacore::MSFieldColumns(open.field()).referenceDir().put(field, casacore::Matrix<double>(2, 0));
+}
+
 void name_telescope(const std::string& set, const std::string& name) {
   casacore::MeasurementSet open = opened(set);
   casacore::ScalarColumn<casacore::String>(open.observation(), "TELESCOPE_NAME").fillColumn(name);

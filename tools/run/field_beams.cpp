@@ -27,12 +27,17 @@ struct SeenCentre {
   double width_rad = 0;      ///< of the beam between its half-power points,
   double beam = 0;           ///< the beam at the centre,
   bool beyond_null = false;  ///< whether no dish's main lobe reaches that far
+  std::string doubt = {};    ///< what may be wrong with it; else empty
 };
 
-/// Throws imager::NoSimpleBeam.
+/// By the pointing's rows. Throws imager::NoSimpleBeam.
 imager::PrimaryBeam beam_of(const ms_io::FieldPointing& pointing, const std::vector<imager::AntennaSort>& sorts,
-                            double frequency_hz) {
-  const auto dish = [&](std::uint8_t sort) { return imager::dish_model(sorts.at(sort)).dish; };
+                            double frequency_hz, std::string& doubt) {
+  const auto dish = [&](std::uint8_t sort) {
+    const imager::DishModel model = imager::dish_model(sorts.at(sort));
+    if (!model.doubt.empty()) doubt = model.doubt;
+    return model.dish;
+  };
   std::vector<imager::BeamShare> shares;
   for (const ms_io::SortRows& some : pointing.rows)
     shares.push_back({dish(some.pair.one), dish(some.pair.other), frequency_hz, static_cast<double>(some.rows)});
@@ -44,7 +49,7 @@ SeenCentre seen_centre(const ms_io::FieldPointing& pointing, const ms_io::BeamRo
                        bool several_sets) {
   SeenCentre seen{pointing.field + (several_sets ? " of " + pointing.set : ""), pointing.from_centre_rad};
   try {
-    const imager::PrimaryBeam beam = beam_of(pointing, rows.sorts, frequency_hz);
+    const imager::PrimaryBeam beam = beam_of(pointing, rows.sorts, frequency_hz, seen.doubt);
     const double sine = seen.from_centre_rad < imager::pi / 2 ? std::sin(seen.from_centre_rad) : 1;
     const bool behind = seen.from_centre_rad >= imager::pi / 2;
     seen.width_rad = beam.half_power_width_rad();
@@ -73,15 +78,19 @@ std::string described(const std::vector<SeenCentre>& farthest_first, std::size_t
   return text;
 }
 
-/// Why beams are not known, once each.
-std::string unknown_beams(const std::vector<SeenCentre>& fields) {
-  std::vector<std::string> reasons;
-  for (const SeenCentre& seen : fields)
-    if (!seen.no_beam.empty() && std::find(reasons.begin(), reasons.end(), seen.no_beam) == reasons.end())
-      reasons.push_back(seen.no_beam);
+/// Why beams are not known, or in doubt, once each.
+std::string doubts_of(const std::vector<SeenCentre>& fields) {
+  std::vector<std::string> told;
+  const auto tell = [&told](const std::string& before, const std::string& reason) {
+    if (!reason.empty() && std::find(told.begin(), told.end(), before + reason) == told.end()) told.push_back(before + reason);
+  };
+  for (const SeenCentre& seen : fields) {
+    tell("where no number stands the beam is not known: ", seen.no_beam);
+    tell("", seen.doubt);
+  }
   std::string text;
-  for (const std::string& reason : reasons) text += (text.empty() ? "" : "; ") + reason;
-  return text.empty() ? "" : "; where no number stands the beam is not known: " + text;
+  for (const std::string& sentence : told) text += "; " + sentence;
+  return text;
 }
 
 double largest_apart_rad(const std::vector<ms_io::FieldPointing>& pointings) {
@@ -124,7 +133,7 @@ FieldNotes notes_on_apart_fields(const ms_io::BeamRows& rows, double frequency_h
   std::stable_sort(fields.begin(), fields.end(),
                    [](const SeenCentre& a, const SeenCentre& b) { return a.from_centre_rad > b.from_centre_rad; });
   const std::string beyond = names_beyond(fields), at = "the image's centre, " + frequency_text(frequency_hz, 4) + ": ";
-  const std::string listed = at + described(fields, most_listed) + unknown_beams(fields);
+  const std::string listed = at + described(fields, most_listed) + doubts_of(fields);
   if (!beyond.empty() && !force)
     throw std::runtime_error("fields that point apart would be averaged into one image, but " + beyond +
                              " cannot see its centre, which lies beyond the first null of the beam. Each is dimmed at " +
@@ -132,16 +141,22 @@ FieldNotes notes_on_apart_fields(const ms_io::BeamRows& rows, double frequency_h
                              "; expected fields that see it: choose them by --field or --vis, or average all with "
                              "--force-average, which dims what each sees");
   return {{{"fields averaged", std::to_string(fields.size()) + ", which point apart",
-            "each is dimmed at " + at + described(fields, 0) + unknown_beams(fields)}},
+            "each is dimmed at " + at + described(fields, 0) + doubts_of(fields)}},
           {"fields that point apart are averaged into one image. Each is dimmed at " + listed +
            (beyond.empty() ? "" : "; --force-average takes those beyond the first null too") +
            ". No flux is that of one field; choose one by --field or --vis"}};
 }
 
 FieldNotes notes_on_fields(const ImageOptions& o, const ms_io::MeasurementSet& set, const imager::ImageGeometry& geometry) {
-  const std::vector<ms_io::FieldPointing> pointings = set.field_pointings();
-  const double frequency_hz = set.observation().frequency_hz;
   FieldNotes notes;
+  std::vector<ms_io::FieldPointing> pointings;
+  try {
+    pointings = set.field_pointings();
+  } catch (const std::runtime_error& error) {  // which images do not need
+    notes.warnings.push_back("whether the antennas see the image is not known: " + std::string(error.what()));
+    return notes;
+  }
+  const double frequency_hz = set.observation().frequency_hz;
   if (largest_apart_rad(pointings) > rounding_rad)
     notes = notes_on_apart_fields(set.beam_rows(), frequency_hz, o.force_average);
   const auto nearest = std::min_element(pointings.begin(), pointings.end(),

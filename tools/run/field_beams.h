@@ -29,8 +29,9 @@ struct FieldNotes {
 /// unless `force`: they dim whatever others see.
 FieldNotes notes_on_apart_fields(const ms_io::BeamRows& rows, double frequency_hz, bool force);
 
-/// Of the fields of a run; where they point alike, that the antennas hardly see the image, if they do. Throws what
-/// notes_on_apart_fields() does without --force-average. Reads antennas of all rows where fields point apart.
+/// Of the fields of a run; where they point alike, that the antennas hardly see the image, if they do;
+/// or that FIELD or ANTENNA does not say where they pointed. Throws what notes_on_apart_fields() does without --force-average,
+/// and what MeasurementSet::beam_rows() does. Reads antennas of all rows where fields point apart.
 FieldNotes notes_on_fields(const ImageOptions& options, const ms_io::MeasurementSet& set,
                            const imager::ImageGeometry& geometry);
 
