@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <stdexcept>
 
 #include "imager/constants.h"
@@ -10,11 +11,71 @@
 namespace misfit::imager {
 namespace {
 
-/// Of the axis that counts from 0.
-FitsAxis read_axis(const FitsFile& file, std::size_t axis) {
+/// Of the axis that counts from 0. Readers differ in where a reference pixel lies that is not stated.
+FitsAxis read_axis(const FitsFile& file, const FitsPlanes& planes, std::size_t axis) {
   const std::string n = std::to_string(axis + 1);
-  return {file.text("CTYPE" + n), file.text("CUNIT" + n), file.number("CRPIX" + n).value_or(1), file.needed_number("CRVAL" + n),
-          file.number("CDELT" + n).value_or(1)};
+  return {file.text("CTYPE" + n), file.text("CUNIT" + n), file.needed_number("CRPIX" + n), file.needed_number("CRVAL" + n),
+          planes.steps[axis][axis]};
+}
+
+/// An element of a matrix of axes, "PC" or "CD", as it is written now, or as it was (PC001002).
+std::optional<double> element(const FitsFile& file, const std::string& matrix, std::size_t i, std::size_t j) {
+  const std::string row = std::to_string(i + 1), column = std::to_string(j + 1);
+  if (const std::optional<double> value = file.number(matrix + row + "_" + column)) return value;
+  return file.number(matrix + "00" + row + "00" + column);
+}
+
+double cdelt(const FitsFile& file, std::size_t axis) {
+  return file.number("CDELT" + std::to_string(axis + 1)).value_or(1);
+}
+
+/// The matrix where any element of it is stated: those that are not are 0, but 1 on the diagonal of PC, and CDELT there of
+/// other axes than the first two in CD.
+std::optional<FitsSteps> read_matrix(const FitsFile& file, const std::string& matrix, std::size_t axes) {
+  FitsSteps all(axes, std::vector<double>(axes));
+  bool any = false;
+  for (std::size_t i = 0; i < axes; ++i)
+    for (std::size_t j = 0; j < axes; ++j) {
+      const std::optional<double> value = element(file, matrix, i, j);
+      any = any || value;
+      all[i][j] = value.value_or(i != j ? 0 : matrix == "PC" ? 1 : i > 1 ? cdelt(file, i) : 0);
+      if (i != j && (i > 1 || j > 1) && all[i][j] != 0)
+        file.fail("its " + matrix + std::to_string(i + 1) + "_" + std::to_string(j + 1) + " is " + std::to_string(all[i][j]) +
+                  "; expected 0, since only the first two axes may depend on each other");
+    }
+  return any ? std::optional(all) : std::nullopt;
+}
+
+/// The angle by which CROTA2 turns the first two axes, rad; 0 where a matrix says how they are turned.
+double turn_rad(const FitsFile& file, std::size_t axes, bool has_matrix) {
+  const double turn = file.number("CROTA2").value_or(0);
+  for (std::size_t i = 0; i < axes; ++i) {
+    const std::string key = "CROTA" + std::to_string(i + 1);
+    const double other = file.number(key).value_or(0);
+    if (other != 0 && (i > 1 || other != turn))
+      file.fail("its " + key + " is " + std::to_string(other) + "; expected 0, and the turn of the image in CROTA2");
+  }
+  if (has_matrix && turn != 0) file.fail("its CROTA2 is " + std::to_string(turn) + " beside a matrix PC; expected one of them");
+  return turn * pi / 180;
+}
+
+/// Throws where keywords contradict each other.
+FitsSteps read_steps(const FitsFile& file) {
+  const std::size_t axes = file.size().size();
+  if (axes > 9) file.fail("it has " + std::to_string(axes) + " axes; expected at most 9");
+  const std::optional<FitsSteps> cd = read_matrix(file, "CD", axes), pc = read_matrix(file, "PC", axes);
+  if (cd && pc) file.fail("it has a matrix CD and a matrix PC of its axes; expected one of them");
+  if (cd) return *cd;  // CDELT and CROTA may stand beside it, for programs that do not know it
+  FitsSteps steps(axes, std::vector<double>(axes));
+  for (std::size_t i = 0; i < axes; ++i)
+    for (std::size_t j = 0; j < axes; ++j) steps[i][j] = cdelt(file, i) * (pc ? (*pc)[i][j] : i == j ? 1 : 0);
+  if (const double turn = turn_rad(file, axes, pc.has_value()); turn != 0) {
+    const double x = steps[0][0], y = steps[1][1], c = std::cos(turn), s = std::sin(turn);
+    steps[0] = {c * x, -s * y};
+    steps[1] = {s * x, c * y};
+    for (std::size_t i : {0, 1}) steps[i].resize(axes);
+  }
+  return steps;
 }
 
 /// Hz or m/s in one of the axis's unit.
@@ -92,6 +153,7 @@ FitsPlanes find_planes(const FitsFile& file) {
                 "; expected 1 of all but one STOKES axis and one FREQ or VRAD axis");
   }
   if (!is_image) file.fail("its primary image has no two axes of pixels");
+  planes.steps = read_steps(file);
   return planes;
 }
 
@@ -110,13 +172,13 @@ SpectralAxis read_spectral_axis(const FitsFile& file, const FitsPlanes& planes) 
   spectral.reference_hz = spectral.rest_frequency_hz;
   if (!planes.spectral) return spectral;
   spectral.channels = static_cast<int>(file.size()[*planes.spectral]);
-  set_frequencies(file, read_axis(file, *planes.spectral), spectral);
+  set_frequencies(file, read_axis(file, planes, *planes.spectral), spectral);
   return spectral;
 }
 
 std::vector<Stokes> read_stokes(const FitsFile& file, const FitsPlanes& planes) {
   if (!planes.stokes) return {Stokes::I};
-  const FitsAxis axis = read_axis(file, *planes.stokes);
+  const FitsAxis axis = read_axis(file, planes, *planes.stokes);
   std::vector<Stokes> list;
   for (long plane = 1; plane <= file.size()[*planes.stokes]; ++plane) {
     const Stokes stokes = stokes_of(file, axis, plane);

@@ -25,15 +25,21 @@ struct FitsAxis {
 /// evenly spaced.
 FitsAxis stokes_axis(const std::vector<Stokes>& stokes);
 
+/// The change of each axis per pixel along each, [axis][along], in the unit of the axis: CDELTi · PCi_j, the first two turned
+/// by CROTA2 where there is no PC, or CDi_j where there are such (Calabretta & Greisen 2002, section 2.1.2 and equation 186).
+using FitsSteps = std::vector<std::vector<double>>;
+
 /// Where the planes of a file lie among its axes, which count from 0.
 struct FitsPlanes {
   std::size_t axes = 2;
   std::optional<std::size_t> spectral;  ///< FREQ or VRAD
   std::optional<std::size_t> stokes;
+  FitsSteps steps;
 };
 
 /// Throws std::runtime_error where the primary image has no two axes of pixels, or beyond those any that is longer than 1 but
-/// one spectral axis and one of Stokes parameters.
+/// one spectral axis and one of Stokes parameters, where other axes than the first two depend on each other, or keywords of
+/// their steps contradict each other.
 FitsPlanes find_planes(const FitsFile& file);
 
 /// The first pixel of a plane, counted from 1 along each axis.

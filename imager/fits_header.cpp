@@ -61,47 +61,6 @@ void write_observation(FitsFile& file, const Observation& observation) {
   file.write_text("ORIGIN", "misfit");
 }
 
-std::string read_frame(const FitsFile& file) {
-  if (std::string frame = file.text("RADESYS"); !frame.empty()) return frame;
-  const std::optional<double> equinox = file.number("EQUINOX");
-  if (!equinox) return "ICRS";
-  return *equinox < 1984 ? "FK4" : "FK5";  // Calabretta & Greisen 2002, section 3.1
-}
-
-void check_projection(const FitsFile& file) {
-  const std::string x = file.text("CTYPE1"), y = file.text("CTYPE2");
-  if (!(x.empty() && y.empty()) && !(x == "RA---SIN" && y == "DEC--SIN"))
-    file.fail("its axes are '" + x + "' and '" + y + "', not RA---SIN and DEC--SIN");
-  for (const char* key : {"CROTA1", "CROTA2", "PC1_2", "PC2_1", "CD1_2", "CD2_1", "PV2_1", "PV2_2"})
-    if (const double value = file.number(key).value_or(0); value != 0)
-      file.fail(std::string(key) + " = " + std::to_string(value) + ", where only 0 (no rotation, no slant) is known");
-}
-
-/// A number of degrees, 0 where there is none.
-double angle_rad(const FitsFile& file, const std::string& key, double most_deg) {
-  const double value = file.number(key).value_or(0);
-  if (std::abs(value) > most_deg)
-    file.fail("its " + key + " is " + std::to_string(value) + ", expected at most " + std::to_string(std::lround(most_deg)) +
-              " degrees");
-  return value * rad_per_deg;
-}
-
-ImageGeometry read_geometry(const FitsFile& file) {
-  check_projection(file);
-  const double east = -file.needed_number("CDELT1"), north = file.needed_number("CDELT2");
-  if (!(north > 0) || !(std::abs(east - north) <= 1e-6 * north))
-    file.fail("its pixels are not square with east on the left: CDELT1 = " + std::to_string(-east) +
-              ", CDELT2 = " + std::to_string(north));
-  const std::vector<long> size = file.size();
-  ImageGeometry geometry{static_cast<int>(size[0]), static_cast<int>(size[1]), north * rad_per_deg, {}};
-  geometry.centre = {(file.needed_number("CRPIX1") - (geometry.centre_column() + 1)) * geometry.cell_rad,
-                     (geometry.centre_row() + 1 - file.needed_number("CRPIX2")) * geometry.cell_rad};
-  if (!std::isfinite(geometry.centre.l) || !std::isfinite(geometry.centre.m))
-    file.fail("its CRPIX1 or CRPIX2 is farther away than numbers reach");
-  geometry.phase_centre = {angle_rad(file, "CRVAL1", 360), angle_rad(file, "CRVAL2", 90), read_frame(file)};
-  return geometry;
-}
-
 Observation read_observation(const FitsFile& file, const SpectralAxis& axis) {
   Observation observation;
   observation.telescope = file.text("TELESCOP");
@@ -131,11 +90,9 @@ void write_cards(FitsFile& file, const std::vector<HeaderCard>& cards) {
 
 ImageHeader read_header(const FitsFile& file, const FitsPlanes& planes) {
   ImageHeader header;
-  header.geometry = read_geometry(file);
   header.spectral = read_spectral_axis(file, planes);
   header.stokes = read_stokes(file, planes);
   header.observation = read_observation(file, header.spectral);
-  header.observation.phase_centre = header.geometry.phase_centre;
   header.unit = file.text("BUNIT");
   return header;
 }

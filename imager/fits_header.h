@@ -11,8 +11,8 @@ void write_header(FitsFile& file, const ImageHeader& header);
 
 void write_cards(FitsFile& file, const std::vector<HeaderCard>& cards);
 
-/// What the file says but for its cards and history. Throws std::runtime_error where it states another projection than SIN,
-/// pixels that are not square, or what read_spectral_axis() and read_stokes() refuse.
+/// What the file says but for its cards, its history, and where it lies on the sky. Throws std::runtime_error as
+/// read_spectral_axis() and read_stokes() do.
 ImageHeader read_header(const FitsFile& file, const FitsPlanes& planes);
 
 }  // namespace misfit::imager

@@ -7,9 +7,9 @@
 
 namespace misfit::imager {
 
-/// Opens the primary image of a FITS file with a SIN (or no) projection, in any pixel type, with planes along a FREQ or VRAD
-/// axis and a STOKES axis if there are any. Throws std::runtime_error that names the path when it cannot be read, is cut
-/// short, has pixels that are not square, or other axes that are longer than 1.
-std::unique_ptr<ImageReader> open_fits_image(const std::string& path);
+/// Opens the primary image of a FITS file whose pixels lie on the sky as read_sky_grid() says and `grids` wants, in any pixel
+/// type, with planes along a FREQ or VRAD axis and a STOKES axis if there are any. Throws std::runtime_error that names the
+/// path when it cannot be read, is cut short, lies otherwise, or has other axes that are longer than 1.
+std::unique_ptr<ImageReader> open_fits_image(const std::string& path, Grids grids = Grids::upright);
 
 }  // namespace misfit::imager

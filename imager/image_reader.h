@@ -6,6 +6,7 @@
 #include "imager/image.h"
 #include "imager/image_header.h"
 #include "imager/image_writer.h"
+#include "imager/sky_grid.h"
 
 namespace misfit::imager {
 
@@ -15,10 +16,14 @@ class ImageReader {
   virtual ~ImageReader() = default;
   /// What the file says, but for its cards and history.
   virtual const ImageHeader& header() const = 0;
+  /// Where the pixels lie on the sky; none where the file does not say.
+  virtual const std::optional<SkyGrid>& grid() const = 0;
   virtual std::optional<Beam> beam(const PlaneIndex& at) const = 0;
   /// The pixels of a plane; NaN where they have no value. Throws std::runtime_error that names the file where they cannot be
   /// read.
-  virtual Image read(const PlaneIndex& at) const = 0;
+  Image read(const PlaneIndex& at) const { return read_rows(at, 0, header().geometry.height); }
+  /// The same of so many rows of it, as an image of as many.
+  virtual Image read_rows(const PlaneIndex& at, int first, int count) const = 0;
 };
 
 }  // namespace misfit::imager

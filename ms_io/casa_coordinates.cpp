@@ -1,4 +1,3 @@
-#include <casacore/casa/Arrays/ArrayLogical.h>
 #include <casacore/casa/Arrays/Matrix.h>
 #include <casacore/casa/Quanta/MVTime.h>
 #include <casacore/coordinates/Coordinates/DirectionCoordinate.h>
@@ -62,41 +61,40 @@ casacore::ObsInfo obs_info(const imager::Observation& observation, const imager:
   return info;
 }
 
-/// Whether the pixels along the edges lie where the geometry has them, to a thousandth of a cell.
-bool lies_as(const casacore::DirectionCoordinate& direction, const imager::ImageGeometry& g) {
-  for (const auto& [row, column] : {std::pair(0, g.centre_column()),
-                                    {g.height - 1, g.centre_column()},
-                                    {g.centre_row(), 0},
-                                    {g.centre_row(), g.width - 1},
-                                    {g.centre_row(), g.centre_column()}}) {
-    const imager::DirectionCosines at = g.at(row, column);
-    if (imager::beyond_horizon(at)) continue;
-    casacore::Vector<double> pixel(2), world(2);
-    pixel[0] = column;
-    pixel[1] = row;
-    if (!direction.toWorld(world, pixel)) return false;
-    const imager::DirectionCosines has = imager::direction_cosines({world[0], world[1], g.phase_centre.frame}, g.phase_centre);
-    if (!(std::hypot(has.l - at.l, has.m - at.m) < 1e-3 * g.cell_rad)) return false;
-  }
-  return true;
+/// The slant of a SIN projection; of others, which have no parameters, none.
+std::array<double, 2> slant_of(const casacore::Projection& projection, const std::string& path) {
+  const casacore::Vector<double> parameters = projection.parameters();
+  if (projection.type() == casacore::Projection::SIN && parameters.size() == 2) return {parameters[0], parameters[1]};
+  for (const double parameter : parameters)
+    if (parameter != 0)
+      refuse(path, "its projection " + std::string(projection.name()) + " has the parameter " + std::to_string(parameter) +
+                       "; expected none");
+  return {};
 }
 
-imager::ImageGeometry geometry_of(casacore::DirectionCoordinate direction, const casacore::IPosition& shape,
-                                  const std::string& path) {
+imager::SkyGrid grid_of(casacore::DirectionCoordinate direction, const casacore::IPosition& shape, const std::string& path) {
   direction.setWorldAxisUnits(casacore::Vector<casacore::String>(2, "rad"));
-  const auto type = direction.directionType();
-  const std::string frame = frame_name(type);
-  if (frame.empty() || frame == "GALACTIC")
-    refuse(path, "its directions are in " + casacore::MDirection::showType(type) + "; expected J2000, ICRS or B1950");
-  if (direction.projection().type() != casacore::Projection::SIN)
-    refuse(path, "its projection is " + direction.projection().name() + "; expected SIN");
+  const casacore::Projection projection = direction.projection();
+  const auto known = imager::projection_named(projection.name());
+  if (!known) refuse(path, "its projection is " + projection.name() + "; expected SIN, TAN, STG, ARC or ZEA");
+  const std::string frame = frame_name(direction.directionType());
+  if (frame.empty())
+    refuse(path, "its directions are in " + casacore::MDirection::showType(direction.directionType()) +
+                     "; expected J2000, ICRS, B1950 or GALACTIC");
   const auto value = direction.referenceValue(), pixel = direction.referencePixel(), increment = direction.increment();
-  imager::ImageGeometry g{static_cast<int>(shape[0]), static_cast<int>(shape[1]), increment[1], {}};
-  const double ra_rad = value[0] < 0 ? value[0] + 2 * imager::pi : value[0];
-  g.phase_centre = {ra_rad, value[1], frame};
-  g.centre = {(pixel[0] - g.centre_column()) * g.cell_rad, (g.centre_row() - pixel[1]) * g.cell_rad};
-  if (!(g.cell_rad > 0) || !lies_as(direction, g)) refuse(path, "its pixels are not square with north up and east on the left");
-  return g;
+  const casacore::Matrix<double> turn = direction.linearTransform();
+  imager::SkyGrid grid;
+  grid.width = static_cast<int>(shape[0]);
+  grid.height = static_cast<int>(shape[1]);
+  grid.projection = *known;
+  grid.reference = {value[0] < 0 ? value[0] + 2 * imager::pi : value[0], value[1], frame};
+  grid.reference_pixel = {pixel[0], pixel[1]};
+  for (std::size_t i = 0; i < 2; ++i)
+    for (std::size_t j = 0; j < 2; ++j) grid.step[i][j] = increment[i] * turn(j, i);  // casacore holds PC transposed
+  grid.slant = slant_of(projection, path);
+  imager::set_pole(grid, direction.longLatPoles()[2] * degree);
+  if (!grid.is_regular()) refuse(path, "its pixels have no area, or lie farther away than numbers reach");
+  return grid;
 }
 
 imager::SpectralAxis spectral_axis_of(casacore::SpectralCoordinate spectral, int channels, const std::string& path) {
@@ -167,9 +165,12 @@ CasaPlanes find_planes(const casacore::CoordinateSystem& coordinates, const casa
   planes.shape = shape;
   planes.stokes = coordinates.polarizationAxisNumber();
   planes.spectral = coordinates.spectralAxisNumber();
+  planes.celestial = coordinates.findCoordinate(casacore::Coordinate::DIRECTION) >= 0;
   const casacore::Vector<casacore::Int> direction = coordinates.directionAxesNumbers();
-  if (direction.size() != 2 || direction[0] != 0 || direction[1] != 1)
+  if (planes.celestial && (direction.size() != 2 || direction[0] != 0 || direction[1] != 1))
     refuse(path, "its first two axes are not right ascension and declination");
+  if (shape.size() < 2 || (planes.stokes >= 0 && planes.stokes < 2) || (planes.spectral >= 0 && planes.spectral < 2))
+    refuse(path, "its first two axes are no axes of pixels");
   for (int axis = 2; axis < static_cast<int>(shape.size()); ++axis)
     if (axis != planes.stokes && axis != planes.spectral && shape[static_cast<std::size_t>(axis)] > 1)
       refuse(path, "its axis " + std::to_string(axis + 1) + " has length " +
@@ -181,14 +182,18 @@ CasaPlanes find_planes(const casacore::CoordinateSystem& coordinates, const casa
 imager::ImageHeader header_of(const casacore::CoordinateSystem& coordinates, const CasaPlanes& planes,
                               const std::string& path) {
   imager::ImageHeader header;
-  header.geometry = geometry_of(coordinates.directionCoordinate(), planes.shape, path);
   if (planes.spectral >= 0)
     header.spectral = spectral_axis_of(coordinates.spectralCoordinate(),
                                        static_cast<int>(planes.shape[static_cast<std::size_t>(planes.spectral)]), path);
   if (planes.stokes >= 0) header.stokes = stokes_of(coordinates.stokesCoordinate(), path);
   header.observation = observation_of(coordinates.obsInfo(), header.spectral);
-  header.observation.phase_centre = header.geometry.phase_centre;
   return header;
+}
+
+std::optional<imager::SkyGrid> grid_of(const casacore::CoordinateSystem& coordinates, const CasaPlanes& planes,
+                                       const std::string& path) {
+  if (!planes.celestial) return std::nullopt;
+  return grid_of(coordinates.directionCoordinate(), planes.shape, path);
 }
 
 }  // namespace misfit::ms_io

@@ -3,10 +3,12 @@
 #include <casacore/casa/Arrays/IPosition.h>
 #include <casacore/coordinates/Coordinates/CoordinateSystem.h>
 
+#include <optional>
 #include <string>
 
 #include "imager/image_header.h"
 #include "imager/image_writer.h"
+#include "imager/sky_grid.h"
 
 namespace misfit::ms_io {
 
@@ -18,19 +20,25 @@ struct CasaPlanes {
   casacore::IPosition shape;  ///< pixels along each axis
   int stokes = -1;            ///< the Stokes axis; -1 = none
   int spectral = -1;          ///< the spectral axis; -1 = none
+  bool celestial = true;      ///< whether the first two say where pixels lie on the sky
 
   casacore::IPosition first_pixel(const imager::PlaneIndex& at) const;
   /// Of one plane.
   casacore::IPosition plane_shape() const;
 };
 
-/// Throws std::runtime_error(`path` …) where the first two axes are not right ascension and declination, or another than the
-/// Stokes and the spectral axis is longer than 1.
+/// Throws std::runtime_error(`path` …) where a longitude and a latitude are not the first two axes, or another than the Stokes
+/// and the spectral axis is longer than 1.
 CasaPlanes find_planes(const casacore::CoordinateSystem& coordinates, const casacore::IPosition& shape,
                        const std::string& path);
 
-/// What coordinates say, but for the unit. Throws std::runtime_error(`path` …) where the projection is not SIN with square
-/// pixels and north up, or the spectral axis not linear.
+/// What coordinates say, but for the unit and where pixels lie on the sky. Throws std::runtime_error(`path` …) where the
+/// spectral axis is not linear.
 imager::ImageHeader header_of(const casacore::CoordinateSystem& coordinates, const CasaPlanes& planes, const std::string& path);
+
+/// Where the pixels lie on the sky; none where the image has no directions. Throws std::runtime_error(`path` …) where they are
+/// in another frame than in_frame() knows, or in another projection than SkyGrid has.
+std::optional<imager::SkyGrid> grid_of(const casacore::CoordinateSystem& coordinates, const CasaPlanes& planes,
+                                       const std::string& path);
 
 }  // namespace misfit::ms_io

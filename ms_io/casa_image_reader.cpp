@@ -48,10 +48,13 @@ void check_size(const casacore::IPosition& shape, std::size_t pixel_bytes, const
 template <typename Pixel>
 class CasaImageReader : public imager::ImageReader {
  public:
-  CasaImageReader(const std::string& path, casacore::Table& table) : path_(path), image_(table) {
+  CasaImageReader(const std::string& path, casacore::Table& table, imager::Grids grids) : path_(path), image_(table) {
     check_size(image_.shape(), sizeof(Pixel), path);
     planes_ = find_planes(image_.coordinates(), image_.shape(), path);
     header_ = header_of(image_.coordinates(), planes_, path);
+    grid_ = grid_of(image_.coordinates(), planes_, path);
+    header_.geometry = geometry(grids);
+    header_.observation.phase_centre = header_.geometry.phase_centre;
     header_.unit = image_.units().getName();
     header_.observation.object = image_.imageInfo().objectName();
     beams_ = beams_of(image_.imageInfo(), header_);
@@ -60,11 +63,16 @@ class CasaImageReader : public imager::ImageReader {
   const imager::ImageHeader& header() const override { return header_; }
   std::optional<imager::Beam> beam(const imager::PlaneIndex& at) const override { return beams_.at(at); }
 
-  imager::Image read(const imager::PlaneIndex& at) const override {
+  const std::optional<imager::SkyGrid>& grid() const override { return grid_; }
+
+  imager::Image read_rows(const imager::PlaneIndex& at, int first, int count) const override {
     return translated("cannot read " + path_, [&] {
-      const casacore::Slicer plane(planes_.first_pixel(at), planes_.plane_shape());
+      casacore::IPosition from = planes_.first_pixel(at), shape = planes_.plane_shape();
+      from[1] = first;
+      shape[1] = count;
+      const casacore::Slicer plane(from, shape);
       const casacore::Array<Pixel> pixels = image_.getSlice(plane);
-      imager::Image image(header_.geometry.width, header_.geometry.height);
+      imager::Image image(header_.geometry.width, count);
       std::copy(pixels.begin(), pixels.end(), image.pixel.begin());
       if (!image_.isMasked()) return image;
       const casacore::Array<bool> mask = image_.getMaskSlice(plane);
@@ -75,9 +83,19 @@ class CasaImageReader : public imager::ImageReader {
   }
 
  private:
+  imager::ImageGeometry geometry(imager::Grids wanted) const {
+    try {
+      return imager::geometry_on(grid_, wanted,
+                                 {static_cast<int>(planes_.shape[0]), static_cast<int>(planes_.shape[1]), 0, {}});
+    } catch (const std::invalid_argument& error) {
+      throw std::runtime_error("cannot read " + path_ + ": " + error.what());
+    }
+  }
+
   std::string path_;
   casacore::PagedImage<Pixel> image_;
   CasaPlanes planes_;
+  std::optional<imager::SkyGrid> grid_;
   imager::ImageHeader header_;
   imager::PlaneBeams beams_;
 };
@@ -107,23 +125,23 @@ void check_mask(const casacore::TableRecord& keywords, const std::string& path) 
                              ", expected a stored mask, LCPagedMask");
 }
 
-std::unique_ptr<imager::ImageReader> open_table(const std::string& path) {
+std::unique_ptr<imager::ImageReader> open_table(const std::string& path, imager::Grids grids) {
   casacore::Table table(path, casacore::TableLock(casacore::TableLock::NoLocking));
   if (!table.tableDesc().isColumn("map")) throw std::runtime_error("cannot read " + path + ": it has no column of pixels");
   check_tables(table.keywordSet(), table.tableName(), path);
   check_mask(table.keywordSet(), path);
   const casacore::DataType type = table.tableDesc()["map"].dataType();
-  if (type == casacore::TpFloat) return std::make_unique<CasaImageReader<float>>(path, table);
-  if (type == casacore::TpDouble) return std::make_unique<CasaImageReader<double>>(path, table);
+  if (type == casacore::TpFloat) return std::make_unique<CasaImageReader<float>>(path, table, grids);
+  if (type == casacore::TpDouble) return std::make_unique<CasaImageReader<double>>(path, table, grids);
   throw std::runtime_error("cannot read " + path + ": its pixels are no real numbers");
 }
 
 }  // namespace
 
-std::unique_ptr<imager::ImageReader> open_casa_image(const std::string& path) {
+std::unique_ptr<imager::ImageReader> open_casa_image(const std::string& path, imager::Grids grids) {
   if (!is_casa_image(path))
     throw std::runtime_error("cannot read " + path + ": it is no casacore image; expected the folder of one");
-  return translated("cannot read " + path, [&] { return open_table(path); });
+  return translated("cannot read " + path, [&] { return open_table(path, grids); });
 }
 
 }  // namespace misfit::ms_io

@@ -215,20 +215,22 @@ BOOST_AUTO_TEST_CASE(images_of_two_axes_or_of_another_order_are_read) {
 BOOST_AUTO_TEST_CASE(images_that_misfit_could_not_place_are_refused) {
   const TemporaryFolder folder;
   const casacore::DirectionCoordinate sine = ms_io::casa_coordinates(example_header(1)).directionCoordinate();
-  const auto refused = [&](const casacore::Projection& projection, double angle_rad, const std::string& expected) {
+  const auto refused = [&](const casacore::Projection& projection, double cell_rad, double angle_rad,
+                           const std::string& expected) {
     casacore::Matrix<double> turn(2, 2);
     turn(0, 0) = turn(1, 1) = std::cos(angle_rad);
     turn(0, 1) = std::sin(angle_rad);
     turn(1, 0) = -turn(0, 1);
     casacore::CoordinateSystem coordinates;
     coordinates.addCoordinate(
-        casacore::DirectionCoordinate(casacore::MDirection::J2000, projection, 1, 0.5, -1e-6, 1e-6, turn, 3, 2));
+        casacore::DirectionCoordinate(casacore::MDirection::J2000, projection, 1, 0.5, -cell_rad, cell_rad, turn, 3, 2));
     const std::string path = folder / std::to_string(entries(folder));
     write_foreign<float>(path, coordinates, casacore::IPosition(2, 7, 4));
     check_error_names(path, expected, [&] { ms_io::open_casa_image(path); });
   };
-  refused(casacore::Projection(casacore::Projection::TAN), 0, "projection is TAN; expected SIN");
-  refused(sine.projection(), 0.01, "not square with north up");
+  refused(casacore::Projection(casacore::Projection::TAN), 1e-2, 0, "projection is TAN; expected SIN");
+  refused(sine.projection(), 1e-6, 0.01, "turned by");
+  refused(casacore::Projection(casacore::Projection::CAR), 1e-6, 0, "projection is CAR; expected SIN, TAN");
   casacore::CoordinateSystem coordinates;
   coordinates.addCoordinate(sine);
   write_foreign<casacore::Complex>(folder / "complex", coordinates, casacore::IPosition(2, 7, 4));

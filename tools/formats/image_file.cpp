@@ -26,9 +26,10 @@ bool same_planes(const imager::SpectralAxis& a, const imager::SpectralAxis& b) {
 
 }  // namespace
 
-std::unique_ptr<imager::ImageReader> open_image_file(const std::string& path) {
+std::unique_ptr<imager::ImageReader> open_image_file(const std::string& path, imager::Grids grids) {
   std::error_code absent;
-  return std::filesystem::is_directory(path, absent) ? ms_io::open_casa_image(path) : imager::open_fits_image(path);
+  return std::filesystem::is_directory(path, absent) ? ms_io::open_casa_image(path, grids)
+                                                     : imager::open_fits_image(path, grids);
 }
 
 int channel_for(const imager::ImageReader& file, const std::string& path, const imager::SpectralAxis& axis, int channel) {

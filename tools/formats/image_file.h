@@ -7,9 +7,9 @@
 
 namespace misfit::tools {
 
-/// Opens an image: a CASA image where `path` is a folder, a FITS image otherwise. Throws what open_casa_image() and
-/// open_fits_image() throw.
-std::unique_ptr<imager::ImageReader> open_image_file(const std::string& path);
+/// Opens an image whose pixels lie on the sky as `grids` wants: a CASA image where `path` is a folder, a FITS image otherwise.
+/// Throws what open_casa_image() and open_fits_image() throw.
+std::unique_ptr<imager::ImageReader> open_image_file(const std::string& path, imager::Grids grids = imager::Grids::upright);
 
 /// The channel of `file` for channel `channel` of an image with this spectral axis: the only one, or the same one where the
 /// file has the image's planes, to a tenth of their width. Throws std::runtime_error(`path` …) where it has others.
