@@ -1,34 +1,17 @@
 #include "tools/formats/mask_file.h"
 
 #include <algorithm>
-#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <stdexcept>
 #include <system_error>
 #include <utility>
 
-#include "imager/clean/mask.h"
 #include "tools/base/files.h"
-#include "tools/base/numbers.h"
 #include "tools/formats/image_file.h"
 
 namespace misfit::tools {
 namespace {
-
-/// Throws where a file has not the image's pixels.
-void check_pixels(const std::string& path, const imager::ImageGeometry& g, const imager::ImageGeometry& geometry) {
-  if (g.width != geometry.width || g.height != geometry.height)
-    throw std::runtime_error("mask " + path + " of " + std::to_string(g.width) + " × " + std::to_string(g.height) +
-                             " pixels: expected the image's " + std::to_string(geometry.width) + " × " +
-                             std::to_string(geometry.height));
-  const double off = std::abs(g.cell_rad / geometry.cell_rad - 1) * std::max(g.width, g.height) +
-                     cosine_distance(g.phase_centre, geometry.phase_centre) / geometry.cell_rad;
-  if (!(off < 0.5) || g.phase_centre.frame != geometry.phase_centre.frame)
-    throw std::runtime_error("mask " + path + " lies elsewhere on the sky: expected the image's pixels, of " +
-                             significant(geometry.cell_rad * 180 / M_PI * 3600, 6) + "arcsec about " +
-                             sexagesimal(geometry.phase_centre));
-}
 
 bool is_image(const std::string& path) {
   std::error_code absent;
@@ -47,14 +30,18 @@ MaskFile::MaskFile(const std::string& path, imager::ImageHeader image) : image_(
     regions_ = std::make_unique<RegionText>(path, read_file(path), image_);
     return;
   }
-  file_ = open_image_file(path);
+  file_ = open_image_file(path, imager::Grids::any);
   const imager::ImageHeader& has = file_->header();
-  check_pixels(path, has.geometry, image_.geometry);
+  placement_.emplace(*file_, path, image_.geometry);
   channel_for(*file_, "mask " + path, image_.spectral, 0);
   for (const imager::Stokes wanted : image_.stokes)
     if (has.stokes.size() > 1 && std::find(has.stokes.begin(), has.stokes.end(), wanted) == has.stokes.end())
       throw std::runtime_error("mask " + path + " has several planes but none of " + stokes_name(wanted) +
                                "; expected one plane, or one of each of " + stokes_names(image_.stokes));
+}
+
+std::string MaskFile::placement() const {
+  return placement_ ? placement_->sentence() : "";
 }
 
 bool MaskFile::one_for_all_channels() const {
@@ -69,10 +56,8 @@ imager::Image MaskFile::mask(const imager::PlaneIndex& at) const {
   if (regions_) return regions_->mask(at);
   const std::vector<imager::Stokes>& has = file_->header().stokes;
   const auto plane = std::find(has.begin(), has.end(), image_.stokes.at(static_cast<std::size_t>(at.stokes)));
-  imager::Image mask =
-      file_->read({one_for_all_channels() ? 0 : at.channel, has.size() == 1 ? 0 : static_cast<int>(plane - has.begin())});
-  for (double& pixel : mask.pixel) pixel = imager::mask_allows(pixel) ? 1 : 0;
-  return mask;
+  return placement_->lay(
+      *file_, {one_for_all_channels() ? 0 : at.channel, has.size() == 1 ? 0 : static_cast<int>(plane - has.begin())});
 }
 
 std::vector<std::string> MaskFile::doubts() const {

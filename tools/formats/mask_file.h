@@ -1,24 +1,28 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "imager/image_header.h"
 #include "imager/image_reader.h"
+#include "tools/formats/mask_placement.h"
 #include "tools/formats/regions/region_text.h"
 
 namespace misfit::tools {
 
-/// A file that says where CLEAN may take components from in the planes of an image: a FITS or CASA image of the same pixels,
-/// where those that are neither 0 nor NaN are allowed, with one plane for all or one for each, along the spectral axis and
-/// that of Stokes parameters alike; or region text, see regions/region_text.h.
+/// A file that says where CLEAN may take components from in the planes of an image: a FITS or CASA image, whose pixels that are
+/// neither 0 nor NaN are allowed, wherever they lie (see mask_placement.h), with one plane for all or one for each, along the
+/// spectral axis and that of Stokes parameters alike; or region text, see regions/region_text.h.
 class MaskFile {
  public:
   /// Of an image with these pixels, planes and Stokes parameters. Throws std::runtime_error that names the file and what was
   /// expected.
   MaskFile(const std::string& path, imager::ImageHeader image);
 
+  /// What the user should know of where the mask lies; empty if nothing.
+  std::string placement() const;
   bool one_for_all_channels() const;
   bool one_for_all_stokes() const;
   /// Of a plane of the image: 1 where CLEAN may take components from, 0 elsewhere.
@@ -29,6 +33,7 @@ class MaskFile {
  private:
   imager::ImageHeader image_;
   std::unique_ptr<imager::ImageReader> file_;  ///< null where the file is region text
+  std::optional<MaskPlacement> placement_;     ///< of it
   std::unique_ptr<RegionText> regions_;        ///< null where it is an image
 };
 

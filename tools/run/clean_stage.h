@@ -47,6 +47,8 @@ class CleanStage {
   }
   /// What of the mask's file has no pixel of the image, a sentence each.
   std::vector<std::string> mask_doubts() const;
+  /// What the user should know of where the mask lies; empty if nothing.
+  std::string mask_placement() const { return mask_file_ ? mask_file_->placement() : ""; }
   /// What the user should know before CLEAN begins; empty if nothing.
   std::string warning() const;
 

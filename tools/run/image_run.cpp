@@ -122,7 +122,8 @@ class ImageRun {
                                           threads_);
     for (const std::string& doubt : clean_->mask_doubts()) warn(doubt);
     clean_->begin_channel(0);
-    if (const std::string warning = clean_->warning(); !warning.empty()) warn(warning);
+    for (const std::string& warning : {clean_->mask_placement(), clean_->warning()})
+      if (!warning.empty()) warn(warning);
   }
 
   void plan() {
