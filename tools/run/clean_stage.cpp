@@ -97,7 +97,11 @@ void CleanStage::read_start_model() {
     refuse_start_model("has " + size(g.width, g.height), size(own.width, own.height));
   if (!(cell_off < 1e-3))
     refuse_start_model("has pixels of " + significant(g.cell_rad * 180 / M_PI * 3600, 6) + "arcsec", o_.cell);
-  if (g.off_phase_centre()) refuse_start_model("has its phase centre off the middle pixel", "it there");
+  if (g.off_phase_centre()) {
+    const imager::PixelPlace at = imager::grid_of(g).reference_pixel;  // counted from 1 in files
+    refuse_start_model("has its reference pixel at " + significant(at.column + 1, 9) + ", " + significant(at.row + 1, 9),
+                       std::to_string(g.centre_column() + 1) + ", " + std::to_string(g.centre_row() + 1));
+  }
   const int channel = channel_for(*start_file_, "start model " + o_.startmodel, image_.spectral, channel_);
   std::vector<imager::SkyImage> planes = read_model_channel(*start_file_, {o_.startmodel, channel}, own.phase_centre);
   start_model_.clear();

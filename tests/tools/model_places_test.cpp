@@ -1,0 +1,198 @@
+// What models and start models state of their place: equivalent statements predict the same, and all others are refused by
+// name.
+#include <complex>
+
+#include "tests/stated_fits.h"
+#include "tests/tools/casa_copy.h"
+#include "tests/tools/program.h"
+#include "tests/tools/set_changes.h"
+
+BOOST_AUTO_TEST_SUITE(model_places)
+
+namespace {
+
+using namespace misfit;
+using namespace misfit::tools::testing;
+using misfit::testing::stated;
+using misfit::testing::StatedCards;
+using misfit::testing::with;
+using misfit::testing::write_stated_fits;
+using Visibilities = std::vector<std::complex<float>>;
+
+constexpr double cell_deg = 0.1 / 3600, degree = M_PI / 180;
+
+/// A copy of the snapshot, a model of its 64 × 64 pixels of 0.1 arcsec, and where they lie.
+struct Model {
+  TemporaryFolder folder;
+  std::string set = folder / "copy.ms";
+  imager::Image pixels{64, 64};
+  StatedCards cards;
+  double ra_deg = 0, dec_deg = 0;
+
+  Model() {
+    std::filesystem::copy(snapshot(), set, std::filesystem::copy_options::recursive);
+    succeed(small_image(set, folder / "a"));
+    const imager::SkyDirection centre = imager::read_fits(folder / "a.residual.fits").geometry.phase_centre;
+    ra_deg = centre.ra_rad / degree;
+    dec_deg = centre.dec_rad / degree;
+    BOOST_REQUIRE(centre.frame == "FK5");
+    pixels.at(25, 20) = 2;
+    pixels.at(46, 53) = 1;
+    cards = {{"CTYPE1", "'RA---SIN'"},
+             {"CTYPE2", "'DEC--SIN'"},
+             {"CRPIX1", "33"},
+             {"CRPIX2", "33"},
+             {"CRVAL1", stated(ra_deg)},
+             {"CRVAL2", stated(dec_deg)},
+             {"CDELT1", stated(-cell_deg)},
+             {"CDELT2", stated(cell_deg)},
+             {"RADESYS", "'FK5'"},
+             {"EQUINOX", "2000."},
+             {"BUNIT", "'Jy/pixel'"}};
+  }
+
+  std::string write(const StatedCards& changes) const {
+    write_stated_fits(folder / "m.fits", pixels, with(cards, changes));
+    return folder / "m.fits";
+  }
+  Visibilities predicted(const std::string& model) const {
+    succeed({"predict", "--vis", set, "--model", model});
+    return visibilities(set, "MODEL_DATA");
+  }
+};
+
+/// The largest difference, as a part of the largest visibility.
+double difference(const Visibilities& a, const Visibilities& b) {
+  float most = 0, largest = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    most = std::max(most, std::abs(a[i] - b[i]));
+    largest = std::max(largest, std::abs(b[i]));
+  }
+  return most / largest;
+}
+
+/// Whether a run fails for what a file holds, and says so in one line with this in it.
+bool refused(const Outcome& outcome, const std::string& part) {
+  BOOST_TEST(outcome.code == 1);
+  BOOST_TEST_INFO(outcome.err);
+  return outcome.err.find(part) != std::string::npos && outcome.err.find("m.fits") != std::string::npos;
+}
+
+StatedCards in_unit(const Model& m, const std::string& name, double per_degree) {
+  return {{"CUNIT1", "'" + name + "'"},
+          {"CUNIT2", "'" + name + "'"},
+          {"CRVAL1", stated(m.ra_deg * per_degree)},
+          {"CRVAL2", stated(m.dec_deg * per_degree)},
+          {"CDELT1", stated(-cell_deg * per_degree)},
+          {"CDELT2", stated(cell_deg * per_degree)}};
+}
+
+const StatedCards no_cdelt{{"CDELT1", ""}, {"CDELT2", ""}};
+/// Pixels of a degree, among which no projection is another.
+const StatedCards wide{{"CDELT1", "-1."}, {"CDELT2", "1."}};
+
+}  // namespace
+
+BOOST_AUTO_TEST_CASE(equivalent_statements_of_a_place_predict_the_same) {
+  const Model m;
+  const Visibilities usual = m.predicted(m.write({}));
+  const std::vector<StatedCards> statements{
+      in_unit(m, "rad", degree),
+      in_unit(m, "arcsec", 3600),
+      in_unit(m, "arcmin", 60),
+      {{"LONPOLE", "180."}, {"LATPOLE", "12."}},
+      {{"CROTA2", "0."}},
+      {{"CROTA2", "180."}, {"CDELT1", stated(cell_deg)}, {"CDELT2", stated(-cell_deg)}},
+      with(no_cdelt, {{"CD1_1", stated(-cell_deg)}, {"CD1_2", "0."}, {"CD2_1", "0."}, {"CD2_2", stated(cell_deg)}}),
+      {{"PC1_1", "2."}, {"PC2_2", "2."}, {"CDELT1", stated(-cell_deg / 2)}, {"CDELT2", stated(cell_deg / 2)}},
+      {{"LONPOLE", "90."}, {"PC1_1", "0."}, {"PC1_2", "-1."}, {"PC2_1", "1."}, {"PC2_2", "0."}},
+      {{"PV2_1", "0."}, {"PV2_2", "0."}},
+      {{"EQUINOX", ""}},
+      {{"RADESYS", ""}},
+      {{"RADESYS", ""}, {"EQUINOX", ""}, {"EPOCH", "2000."}},
+      {{"RADESYS", ""}, {"RADECSYS", "'FK5'"}},
+      {{"CTYPE1", "'RA---TAN'"}, {"CTYPE2", "'DEC--TAN'"}},  // whose pixels lie 4e-9 pixels elsewhere
+      {{"BUNIT", "'JY/PIXEL'"}},
+  };
+  for (const StatedCards& statement : statements) {
+    const std::string fits = m.write(statement);
+    BOOST_TEST_INFO(statement.begin()->first + " = " + statement.begin()->second);
+    // 2^-24 is the rounding of a visibility; degrees in decimals move pixels by less.
+    BOOST_TEST(difference(m.predicted(fits), usual) < 1e-7);
+    std::filesystem::remove_all(m.folder / "m.image");
+    copy_to_casa(fits, m.folder / "m.image");
+    BOOST_TEST(difference(m.predicted(m.folder / "m.image"), usual) < 1e-7);
+  }
+}
+
+BOOST_AUTO_TEST_CASE(a_reference_pixel_elsewhere_moves_the_model) {
+  const Model m;
+  Model moved;
+  moved.pixels = imager::Image(64, 64);
+  moved.pixels.at(25 - 4, 20 + 7) = 2;
+  moved.pixels.at(46 - 4, 53 + 7) = 1;
+  // The model's accuracy, twice: the two are gridded about different centres.
+  BOOST_TEST(difference(moved.predicted(moved.write({{"CRPIX1", "40."}, {"CRPIX2", "29."}})), m.predicted(m.write({}))) < 4e-6);
+}
+
+BOOST_AUTO_TEST_CASE(other_statements_of_a_place_are_refused_with_their_value) {
+  const Model m;
+  const std::vector<std::pair<StatedCards, std::string>> statements{
+      {{{"CROTA2", "10."}}, "turned by -10 degrees from north; expected square pixels with north up"},
+      {{{"LONPOLE", "170."}}, "turned by -10 degrees"},
+      {{{"PC1_2", "0.1"}}, "turned by"},
+      {{{"CDELT1", stated(cell_deg)}}, "mirrored"},
+      {{{"CDELT2", stated(2 * cell_deg)}}, "0.1arcsec wide and 0.2arcsec high"},
+      {{{"CDELT2", "0."}}, "no area"},
+      {with(wide, {{"CTYPE1", "'RA---TAN'"}, {"CTYPE2", "'DEC--TAN'"}}), "its projection is TAN; expected SIN"},
+      {with(wide, {{"CTYPE1", "'RA---ARC'"}, {"CTYPE2", "'DEC--ARC'"}}), "its projection is ARC; expected SIN"},
+      {with(wide, {{"CTYPE1", "'RA---NCP'"}, {"CTYPE2", "'DEC--NCP'"}}), "slanted"},
+      {with(wide, {{"PV2_1", "0.3"}}), "slanted by 0.3, 0"},
+      {{{"CTYPE1", "'RA---SFL'"}, {"CTYPE2", "'DEC--SFL'"}}, "'RA---SFL' and 'DEC--SFL'; expected RA---SIN"},
+      {{{"CTYPE1", "'RA---TAN-SIP'"}, {"CTYPE2", "'DEC--TAN-SIP'"}}, "RA---TAN-SIP"},
+      {{{"CTYPE1", "'DEC--SIN'"}, {"CTYPE2", "'RA---SIN'"}}, "'DEC--SIN' and 'RA---SIN'"},
+      {{{"CTYPE1", "'ELON-SIN'"}, {"CTYPE2", "'ELAT-SIN'"}}, "'ELON-SIN'"},
+      {{{"CTYPE1", ""}, {"CTYPE2", ""}}, "there is no CTYPE1 that says of what"},
+      {with(no_cdelt, {{"CTYPE1", ""}, {"CTYPE2", ""}}), "does not say where its pixels lie"},
+      {{{"CTYPE1", "'GLON-SIN'"}, {"CTYPE2", "'GLAT-SIN'"}}, "in GALACTIC; expected ICRS, FK5"},
+      {{{"RADESYS", "'ICRS'"}}, "(ICRS), expected the phase centre of the visibilities"},
+      {{{"RADESYS", "'FK4'"}, {"EQUINOX", "1950."}}, "(FK4), expected the phase centre of the visibilities"},
+      {{{"RADESYS", "'FK4-NO-E'"}}, "its RADESYS is FK4-NO-E; expected ICRS, FK5 or FK4"},
+      {{{"RADESYS", "'GAPPT'"}}, "its RADESYS is GAPPT"},
+      {{{"RADESYS", ""}, {"RADECSYS", "'GAPPT'"}}, "its RADECSYS is GAPPT"},
+      {{{"EQUINOX", "1975."}}, "its EQUINOX is 1975; expected 2000 of FK5"},
+      {{{"RADESYS", ""}, {"EQUINOX", "1975."}}, "its EQUINOX is 1975; expected 1950 of FK4"},
+      {{{"RADESYS", ""}, {"EQUINOX", ""}, {"EPOCH", "2016."}}, "its EPOCH is 2016; expected 2000 of FK5"},
+      {{{"RADESYS", "'FK4'"}}, "its EQUINOX is 2000; expected 1950 of FK4"},
+      {{{"CUNIT1", "'hour'"}}, "its CUNIT1 is hour; expected deg, rad"},
+      {{{"CUNIT2", "'rad'"}}, "its CRVAL2 is"},
+      {{{"CRVAL1", ""}}, "CRVAL1"},
+      {{{"CRVAL2", stated(m.dec_deg + 1)}}, "expected the phase centre of the visibilities"},
+      {{{"PV1_1", "10."}}, "its PV1_1 is 10; expected 0"},
+      {{{"PV1_2", "45."}}, "its PV1_2 is 45; expected 90"},
+      {{{"PV1_3", "45."}, {"LONPOLE", "180."}}, "its LONPOLE is 180 and its PV1_3 45"},
+      {{{"CD1_1", stated(-cell_deg)}, {"PC1_1", "1."}}, "a matrix CD and a matrix PC"},
+      {{{"CROTA2", "5."}, {"PC1_1", "1."}}, "CROTA2"},
+      {{{"CROTA1", "5."}}, "its CROTA1 is 5"},
+      {{{"A_ORDER", "2"}}, "its A_ORDER is 2; expected no distortion"},
+      {{{"CPDIS1", "'LOOKUP'"}}, "its CPDIS1 is LOOKUP; expected no distortion"},
+      {{{"BUNIT", "'K'"}}, "has the unit K, expected Jy/pixel"},
+      {{{"BUNIT", "'Jy/beam'"}}, "has the unit Jy/beam, expected Jy/pixel"},
+      {{{"BUNIT", ""}}, "has the unit none, expected Jy/pixel"},
+  };
+  const Arguments predict{"predict", "--vis", m.set, "--model", m.folder / "m.fits"};
+  const Arguments begin =
+      small_image(m.set, m.folder / "b") + Arguments{"--niter", "5", "--startmodel", m.folder / "m.fits", "--quiet"};
+  for (const auto& [statement, part] : statements) {
+    m.write(statement);
+    BOOST_TEST(refused(run(predict), part), part);
+  }
+  for (const std::size_t some : {0U, 4U, 17U, 22U, 38U}) {  // start models are read by the same code
+    m.write(statements[some].first);
+    BOOST_TEST(refused(run(begin), statements[some].second.substr(0, 10)), statements[some].second);
+  }
+  m.write({{"CRPIX1", "30."}});
+  BOOST_TEST(refused(run(begin), "reference pixel at 30, 33, expected 33, 33"));
+}
+
+BOOST_AUTO_TEST_SUITE_END()
