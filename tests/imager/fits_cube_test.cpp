@@ -136,20 +136,27 @@ BOOST_AUTO_TEST_CASE(the_header_says_what_viewers_look_for) {
     BOOST_TEST(card(fits, key).find(value) != std::string::npos);
 }
 
+namespace {
+
+/// Puts `value` in the card of a keyword, or a card in place of another where it has none.
+void change(std::string& fits, const std::string& keyword, const std::string& value, const std::string& in_place_of = "") {
+  const std::string text = (keyword + "        ").substr(0, 8) + "= " + value;
+  fits.replace(fits.find(card(fits, in_place_of.empty() ? keyword : in_place_of)), 80,
+               (text + std::string(80, ' ')).substr(0, 80));
+}
+
+}  // namespace
+
 BOOST_AUTO_TEST_CASE(velocities_along_the_spectral_axis_are_frequencies) {
   const TemporaryFolder folder;
   const ImageHeader header = example_header(5);
   create_fits_image(header, folder / "a.fits", PixelFormat::float32)->finish();
   std::string fits = contents(folder / "a.fits");
-  const auto change = [&](const std::string& keyword, const std::string& value) {
-    const std::string text = (keyword + "        ").substr(0, 8) + "= " + value;
-    fits.replace(fits.find(card(fits, keyword)), 80, (text + std::string(80, ' ')).substr(0, 80));
-  };
-  change("CTYPE3", "'VRAD    '");
-  change("CUNIT3", "'km/s    '");
-  change("CRPIX3", "3.0");
-  change("CRVAL3", "100.0");
-  change("CDELT3", "-2.5");
+  change(fits, "CTYPE3", "'VRAD    '");
+  change(fits, "CUNIT3", "'km/s    '");
+  change(fits, "CRPIX3", "3.0");
+  change(fits, "CRVAL3", "100.0");
+  change(fits, "CDELT3", "-2.5");
   std::ofstream(folder / "a.fits", std::ios::binary) << fits;
   const SpectralAxis read = open_fits_image(folder / "a.fits")->header().spectral;
   for (int plane = 0; plane < 5; ++plane) {
@@ -157,6 +164,58 @@ BOOST_AUTO_TEST_CASE(velocities_along_the_spectral_axis_are_frequencies) {
     const double expected_hz = header.spectral.rest_frequency_hz * (1 - velocity_m_s / 299792458.0);
     BOOST_TEST(std::abs(read.frequency_hz(plane) / expected_hz - 1) < 1e-15 * 4);
   }
+}
+
+BOOST_AUTO_TEST_CASE(steps_of_planes_are_stated_by_matrices_too) {
+  const TemporaryFolder folder;
+  const ImageHeader header = example_header(5);
+  create_fits_image(header, folder / "a.fits", PixelFormat::float32)->finish();
+  const std::string fits = contents(folder / "a.fits");
+  const std::vector<std::pair<std::string, double>> statements{{"PC3_3", 3}, {"PC003003", 3}};
+  for (const auto& [keyword, times] : statements) {
+    std::string other = fits;
+    change(other, keyword, std::to_string(times), "OBSERVER");
+    std::ofstream(folder / "a.fits", std::ios::binary) << other;
+    BOOST_TEST(open_fits_image(folder / "a.fits")->header().spectral.increment_hz == times * header.spectral.increment_hz);
+  }
+  std::string other = fits;
+  for (const auto& [keyword, in_place_of] : {std::pair("1", "OBSERVER"), {"2", "OBJECT"}})
+    change(other, "CD" + std::string(keyword) + "_" + keyword, card(fits, "CDELT" + std::string(keyword)).substr(10),
+           in_place_of);
+  change(other, "CD3_3", "-4.5E4", "TELESCOP");
+  for (const bool stated : {true, false}) {
+    if (!stated) change(other, "TELESCOP", "'EVLA'", "CD3_3");  // then CDELT3 holds
+    std::ofstream(folder / "a.fits", std::ios::binary) << other;
+    BOOST_TEST(open_fits_image(folder / "a.fits")->header().spectral.increment_hz ==
+               (stated ? -4.5e4 : header.spectral.increment_hz));
+  }
+}
+
+BOOST_AUTO_TEST_CASE(axes_of_planes_that_are_not_known_are_refused_by_name) {
+  const TemporaryFolder folder;
+  create_fits_image(example_header(5), folder / "a.fits", PixelFormat::float32)->finish();
+  const std::string fits = contents(folder / "a.fits");
+  const auto refused = [&](const std::string& keyword, const std::string& value, const std::string& in_place_of,
+                           const std::string& part) {
+    std::string other = fits;
+    change(other, keyword, value, in_place_of);
+    std::ofstream(folder / "a.fits", std::ios::binary) << other;
+    for (const Grids grids : {Grids::upright, Grids::any})
+      BOOST_CHECK_EXCEPTION(open_fits_image(folder / "a.fits", grids), std::runtime_error, [&](const std::exception& error) {
+        BOOST_TEST_INFO(error.what());
+        return std::string(error.what()).find(part) != std::string::npos;
+      });
+  };
+  for (const char* type : {"VELO-LSR", "FELO-HEL", "VOPT", "FREQ-LOG", "WAVE", "FREQ-W2F", ""})
+    refused("CTYPE3", "'" + std::string(type) + "'", "", "of type '" + std::string(type) + "' has length 5");
+  refused("CUNIT3", "'eV'", "", "the unit eV; expected Hz, kHz");
+  refused("PC3_1", "0.5", "OBSERVER", "its PC3_1 is 0.5");
+  refused("PC1_4", "0.5", "OBSERVER", "its PC1_4 is 0.5");
+  refused("CD2_3", "0.5", "OBSERVER", "its CD2_3 is 0.5");
+  refused("PC003002", "0.5", "OBSERVER", "its PC3_2 is 0.5");
+  refused("CROTA3", "5", "OBSERVER", "its CROTA3 is 5");
+  refused("COMMENT", "'none'", "CRPIX3", "CRPIX3");
+  refused("COMMENT", "'none'", "CRVAL3", "CRVAL3");
 }
 
 BOOST_AUTO_TEST_CASE(a_writer_that_goes_before_it_is_finished_leaves_nothing_and_keeps_what_was_there) {

@@ -192,4 +192,118 @@ BOOST_DATA_TEST_CASE(a_mask_allows_the_directions_that_it_allows_on_its_own_pixe
   }
 }
 
+namespace {
+
+const Mask same{"the image's pixels", image.width, image.height, {12, 10}};
+
+/// What the user is told of a mask, as a FITS and as a CASA image, or what refuses it.
+void check_told(const Mask& mask, const std::string& part) {
+  const TemporaryFolder folder;
+  write_stated_fits(folder / "mask.fits", mask.pixels(), mask.header());
+  copy_to_casa(folder / "mask.fits", folder / "mask.image");
+  imager::ImageHeader header;
+  header.geometry = image;
+  for (const char* name : {"mask.fits", "mask.image"}) {
+    std::string told;
+    try {
+      told = MaskFile(folder / name, header).placement();
+    } catch (const std::runtime_error& error) {
+      told = error.what();
+    }
+    BOOST_TEST((part.empty() ? told.empty() : told.find(part) != std::string::npos),
+               name << " of " << mask.name << ": " << told);
+  }
+}
+
+}  // namespace
+
+BOOST_AUTO_TEST_CASE(a_mask_of_the_images_pixels_is_laid_in_silence_and_others_with_a_word) {
+  check_told(same, "");
+  for (const auto& [right, up] : {std::pair(10, 0), {-3, 4}, {0, 1}}) {
+    Mask moved = same;
+    moved.centre[0] += right;
+    moved.centre[1] += up;
+    check_told(moved, "begins at column " + std::to_string(-right) + ", row " + std::to_string(-up) + " of the image");
+  }
+  Mask cut = same;
+  cut.width -= 2;
+  check_told(cut, "22 × 20 pixels begins at column 0, row 0");
+  for (const Mask& mask : masks)
+    if (mask.name == std::string("TAN about another reference"))
+      check_told(mask, "has other pixels than the image, 36arcsec × 36arcsec, TAN about");
+  Mask aside = same;
+  aside.centre[0] += 0.3;
+  check_told(aside, "each pixel of the image takes the nearest of the mask");
+}
+
+BOOST_AUTO_TEST_CASE(a_mask_that_covers_none_of_the_image_is_refused) {
+  for (const double right : {24.0, -24.0, 1000.0, 1e12}) {
+    Mask beside = same;
+    beside.centre[0] += right;
+    check_told(beside, "covers none of the image");
+  }
+  Mask turned{"turned", 26, 23, {1000, 11.1}, {{-0.0084, 0.0054}, {0.0054, 0.0084}}};
+  check_told(turned, "covers none of the image");
+  Mask behind = same;
+  behind.reference = {image.phase_centre.ra_rad - M_PI, -image.phase_centre.dec_rad, "FK5"};
+  check_told(behind, "lies elsewhere on the sky, and covers none of the image");
+}
+
+BOOST_AUTO_TEST_CASE(a_mask_that_says_nothing_of_the_sky_is_laid_pixel_by_pixel_with_a_word) {
+  const TemporaryFolder folder;
+  imager::ImageHeader header;
+  header.geometry = image;
+  for (const StatedCards& cards : {StatedCards{},
+                                   {{"CRPIX1", "0."}, {"CRVAL1", "0."}, {"CDELT1", "1."}},
+                                   {{"CTYPE1", "'LINEAR'"}, {"CTYPE2", "'LINEAR'"}}}) {
+    write_stated_fits(folder / "mask.fits", same.pixels(), cards);
+    copy_to_casa(folder / "mask.fits", folder / "mask.image");
+    for (const char* name : {"mask.fits", "mask.image"}) {
+      BOOST_TEST_INFO(name);
+      const MaskFile file(folder / name, header);
+      BOOST_TEST(file.placement().find("does not say where it lies on the sky: it is laid on the image pixel by pixel") !=
+                 std::string::npos);
+      BOOST_TEST((file.mask({0, 0}).pixel == same.pixels().pixel));
+    }
+    std::filesystem::remove_all(folder / "mask.image");
+  }
+  header.geometry.width += 1;
+  BOOST_CHECK_EXCEPTION(MaskFile(folder / "mask.fits", header), std::runtime_error, [](const std::exception& error) {
+    return std::string(error.what())
+               .find("24 × 20 pixels does not say where it lies on the sky: expected the image's 25 × 20") != std::string::npos;
+  });
+  write_stated_fits(folder / "mask.fits", same.pixels(), {{"CDELT1", "-0.01"}, {"CDELT2", "0.01"}});
+  BOOST_CHECK_EXCEPTION(MaskFile(folder / "mask.fits", header), std::runtime_error, [](const std::exception& error) {
+    return std::string(error.what()).find("its CDELT1 is -0.01, but there is no CTYPE1") != std::string::npos;
+  });
+}
+
+BOOST_AUTO_TEST_CASE(components_are_found_where_the_masks_coordinates_have_it) {
+  const TemporaryFolder folder;
+  succeed(small_image(snapshot(), folder / "dirty"));
+  imager::SkyImage mask = imager::read_fits(folder / "dirty.residual.fits");
+  const auto peak = std::max_element(mask.image.pixel.begin(), mask.image.pixel.end()) - mask.image.pixel.begin();
+  const int row = static_cast<int>(peak / 64), column = static_cast<int>(peak % 64);
+  const auto cleaned = [&](int right, int up, const std::string& name) {
+    mask.image = imager::Image(64, 64);
+    for (int r = std::max(0, row + up - 4); r < std::min(64, row + up + 4); ++r)
+      for (int c = std::max(0, column + right - 3); c < std::min(64, column + right + 3); ++c) mask.image.at(r, c) = 1;
+    mask.geometry.centre = {right * mask.geometry.cell_rad, -up * mask.geometry.cell_rad};
+    imager::write_fits(mask, folder / "mask.fits", imager::PixelFormat::float32);
+    std::filesystem::remove_all(folder / "mask.image");
+    copy_to_casa(folder / "mask.fits", folder / "mask.image");
+    succeed(small_image(snapshot(), folder / "a") + Arguments{"--niter", "20", "--mask", folder / name});
+    return pixels_of(folder / "a", "model").pixel;
+  };
+  const auto usual = cleaned(0, 0, "mask.fits");
+  BOOST_TEST(report_of(folder / "a")["warnings"].empty());
+  BOOST_TEST(usual[static_cast<std::size_t>(peak)] > 0);
+  for (const auto& [right, up] : {std::pair(10, 0), {-7, 5}})
+    for (const char* name : {"mask.fits", "mask.image"}) {
+      BOOST_TEST((cleaned(right, up, name) == usual), name << " moved by " << right << ", " << up);
+      BOOST_TEST(report_of(folder / "a")["warnings"].dump().find("begins at column " + std::to_string(-right)) !=
+                 std::string::npos);
+    }
+}
+
 BOOST_AUTO_TEST_SUITE_END()
