@@ -190,7 +190,8 @@ ImageGeometry geometry_on(const std::optional<SkyGrid>& grid, Grids wanted, cons
     throw std::invalid_argument(
         "it does not say where its pixels lie on the sky; expected right ascension and declination, in SIN");
   UprightGeometry upright = upright_geometry(*grid);
-  if (!upright.difference.empty()) throw std::invalid_argument(upright.difference);
+  if (!upright.difference.empty())
+    throw std::invalid_argument(upright.difference + "; regrid it first, as with CASA's imregrid");
   return upright.geometry;
 }
 

@@ -42,7 +42,8 @@ struct PredictOptions {
 struct NamedModel {
   ModelVisibilities visibilities;
   ms_io::Fingerprint fingerprint;
-  bool empty = false;  ///< a list without sources
+  bool empty = false;   ///< a list without sources
+  std::string warning;  ///< of what it is written in spite of
 };
 
 NamedModel image_model(const PredictOptions& o, const ms_io::MeasurementSet& set, int threads) {
@@ -63,6 +64,7 @@ NamedModel image_model(const PredictOptions& o, const ms_io::MeasurementSet& set
         .add(std::vector<double>{plane.geometry.cell_rad, plane.geometry.centre.l, plane.geometry.centre.m});
   }
   named.visibilities = image_visibilities(model, planes.front().geometry, request, set);
+  named.warning = band_warning(planes.front().observation, set.observation(), o.model);
   return named;
 }
 
@@ -134,6 +136,7 @@ void predict(const PredictOptions& o, const imager::Ranks& ranks) {
   ranks.meet();  // before the set changes
   SharedPrediction shared(ranks, model.visibilities.predict);
   if (!ranks.first()) return shared.follow();
+  if (!model.warning.empty()) progress.say("warning: " + model.warning);
   if (model.empty)
     progress.say("warning: " + o.components +
                  " lists no source: " + (o.subtract ? "the data are written as they are" : "all visibilities written are 0"));

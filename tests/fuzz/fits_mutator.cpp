@@ -13,22 +13,24 @@ namespace {
 constexpr std::size_t card_size = 80, block = 2880;
 
 constexpr std::array keywords{
-    "SIMPLE", "XTENSION", "BITPIX",  "NAXIS",  "NAXIS1",  "NAXIS2",   "NAXIS3",   "NAXIS4",   "PCOUNT", "GCOUNT",   "TFIELDS",
-    "TFORM1", "TFORM2",   "TTYPE1",  "TTYPE2", "TSCAL1",  "TZERO1",   "TNULL1",   "TDIM1",    "TBCOL1", "THEAP",    "EXTNAME",
-    "EXTEND", "GROUPS",   "BZERO",   "BSCALE", "BLANK",   "CTYPE1",   "CTYPE3",   "CTYPE4",   "CUNIT3", "CRVAL1",   "CRVAL2",
-    "CRVAL3", "CRPIX1",   "CDELT1",  "CDELT2", "CDELT3",  "CDELT4",   "BUNIT",    "BMAJ",     "BMIN",   "BPA",      "RADESYS",
-    "CD1_2",  "RESTFRQ",  "SPECSYS", "ZIMAGE", "ZBITPIX", "CHECKSUM", "DATASUM",  "CONTINUE", "END",    "HIERARCH", "COMMENT",
-    "KERNEL", "W",        "X0",      "MS",     "INTERP",  "SOLVER",   "LONGSTRN", "INHERIT",  ""};
+    "SIMPLE",  "XTENSION", "BITPIX",  "NAXIS",    "NAXIS1",   "NAXIS2",   "NAXIS3", "NAXIS4",   "PCOUNT",  "GCOUNT", "TFIELDS",
+    "TFORM1",  "TFORM2",   "TTYPE1",  "TTYPE2",   "TSCAL1",   "TZERO1",   "TNULL1", "TDIM1",    "TBCOL1",  "THEAP",  "EXTNAME",
+    "EXTEND",  "GROUPS",   "BZERO",   "BSCALE",   "BLANK",    "CTYPE1",   "CTYPE2", "CUNIT1",   "CROTA2",  "PC2_1",  "CD1_1",
+    "CD2_2",   "LONPOLE",  "PV2_1",   "EQUINOX",  "CTYPE3",   "CTYPE4",   "CUNIT3", "CRVAL1",   "CRVAL2",  "CRVAL3", "CRPIX1",
+    "CDELT1",  "CDELT2",   "CDELT3",  "CDELT4",   "BUNIT",    "BMAJ",     "BMIN",   "BPA",      "RADESYS", "CD1_2",  "RESTFRQ",
+    "SPECSYS", "ZIMAGE",   "ZBITPIX", "CHECKSUM", "DATASUM",  "CONTINUE", "END",    "HIERARCH", "COMMENT", "KERNEL", "W",
+    "X0",      "MS",       "INTERP",  "SOLVER",   "LONGSTRN", "INHERIT",  ""};
 
 constexpr std::array values{
-    "0",    "1",      "-1",      "2",           "3",          "4",           "8",          "16",
-    "-32",  "-64",    "64",      "7",           "80",         "2880",        "999",        "1000",
-    "T",    "F",      "32767",   "2147483647",  "2147483648", "-2147483648", "4294967296", "9223372036854775807",
-    "1e18", "1e308",  "1e-320",  "1e400",       "NaN",        "INF",         "0.5",        "1D5",
-    "''",   "'",      "'1D'",    "'0D'",        "'1E'",       "'1J'",        "'1PD(3)'",   "'1QD(9)'",
-    "'1X'", "'9A'",   "'1M'",    "'99999999D'", "'IMAGE   '", "'BINTABLE'",  "'TABLE   '", "'BEAMS'",
-    "'I8'", "'POLY'", "'COEFF'", "'STOKES'",    "'FREQ'",     "'VRAD'",      "'RA---SIN'", "'Jy/pixel'",
-    "&",    "'abc&'", "(1,2)",   "/",           "",           "1 2",         "0x10",       "+5"};
+    "0",          "1",      "-1",         "2",           "3",          "4",           "8",          "16",
+    "-32",        "-64",    "64",         "7",           "80",         "2880",        "999",        "1000",
+    "T",          "F",      "32767",      "2147483647",  "2147483648", "-2147483648", "4294967296", "9223372036854775807",
+    "1e18",       "1e308",  "1e-320",     "1e400",       "NaN",        "INF",         "0.5",        "1D5",
+    "''",         "'",      "'1D'",       "'0D'",        "'1E'",       "'1J'",        "'1PD(3)'",   "'1QD(9)'",
+    "'1X'",       "'9A'",   "'1M'",       "'99999999D'", "'IMAGE   '", "'BINTABLE'",  "'TABLE   '", "'BEAMS'",
+    "'I8'",       "'POLY'", "'COEFF'",    "'STOKES'",    "'FREQ'",     "'VRAD'",      "'RA---SIN'", "'RA---TAN'",
+    "'DEC--TAN'", "'rad'",  "'Jy/pixel'", "&",           "'abc&'",     "(1,2)",       "/",          "",
+    "1 2",        "0x10",   "+5"};
 
 /// A FITS file that is changed in place.
 class Cards {

@@ -195,4 +195,22 @@ BOOST_AUTO_TEST_CASE(other_statements_of_a_place_are_refused_with_their_value) {
   BOOST_TEST(refused(run(begin), "reference pixel at 30, 33, expected 33, 33"));
 }
 
+BOOST_AUTO_TEST_CASE(a_model_of_another_band_is_told_of) {
+  const Model m;
+  imager::SkyImage model = imager::read_fits(m.folder / "a.residual.fits");
+  model.unit = "Jy/pixel";
+  const Arguments predict{"predict", "--vis", m.set, "--model", m.folder / "m.fits"};
+  const Arguments begin = small_image(m.set, m.folder / "b") + Arguments{"--niter", "5", "--startmodel", m.folder / "m.fits"};
+  for (const double times : {1.0, 1.5}) {
+    model.observation.frequency_hz = times * 4e9;
+    imager::write_fits(model, m.folder / "m.fits", imager::PixelFormat::float32);
+    for (const Arguments& arguments : {predict, begin}) {
+      const Outcome outcome = run(arguments);
+      BOOST_TEST(outcome.code == 0);
+      BOOST_TEST((outcome.err.find("m.fits is of 6 GHz, and the data of 4 GHz") != std::string::npos) == (times > 1),
+                 outcome.err);
+    }
+  }
+}
+
 BOOST_AUTO_TEST_SUITE_END()

@@ -40,10 +40,6 @@ MaskFile::MaskFile(const std::string& path, imager::ImageHeader image) : image_(
                                "; expected one plane, or one of each of " + stokes_names(image_.stokes));
 }
 
-std::string MaskFile::placement() const {
-  return placement_ ? placement_->sentence() : "";
-}
-
 bool MaskFile::one_for_all_channels() const {
   return regions_ ? regions_->one_for_all_channels() : file_->header().spectral.channels == 1;
 }
@@ -61,7 +57,8 @@ imager::Image MaskFile::mask(const imager::PlaneIndex& at) const {
 }
 
 std::vector<std::string> MaskFile::doubts() const {
-  return regions_ ? regions_->doubts() : std::vector<std::string>{};
+  if (regions_) return regions_->doubts();
+  return placement_->sentence().empty() ? std::vector<std::string>{} : std::vector{placement_->sentence()};
 }
 
 imager::Image read_mask(const std::string& path, const imager::ImageGeometry& geometry) {

@@ -21,13 +21,11 @@ class MaskFile {
   /// expected.
   MaskFile(const std::string& path, imager::ImageHeader image);
 
-  /// What the user should know of where the mask lies; empty if nothing.
-  std::string placement() const;
   bool one_for_all_channels() const;
   bool one_for_all_stokes() const;
   /// Of a plane of the image: 1 where CLEAN may take components from, 0 elsewhere.
   imager::Image mask(const imager::PlaneIndex& at) const;
-  /// What of the file has no pixel of the image, a sentence each.
+  /// What the user should know of where the mask lies, and which of its regions have no pixel of the image, a sentence each.
   std::vector<std::string> doubts() const;
 
  private:

@@ -133,9 +133,10 @@ std::int64_t MaskPlacement::nearest(int row, int column) const {
 }
 
 bool MaskPlacement::covers_any() const {
-  if (!map_)
-    return std::max(0, -right_) < std::min(image_.width, width_ - right_) &&
-           std::max(0, -up_) < std::min(image_.height, height_ - up_);
+  const auto overlap = [](std::int64_t size, std::int64_t of_mask, std::int64_t shift) {
+    return std::max<std::int64_t>(0, -shift) < std::min(size, of_mask - shift);
+  };
+  if (!map_) return overlap(image_.width, width_, right_) && overlap(image_.height, height_, up_);
   for (int row = 0; row < image_.height; ++row)
     for (int column = 0; column < image_.width; ++column)
       if (nearest(row, column) >= 0) return true;

@@ -122,6 +122,13 @@ std::vector<imager::SkyImage> read_model_channel(const imager::ImageReader& file
   return planes;
 }
 
+std::string band_warning(const imager::Observation& model, const imager::Observation& data, const std::string& path) {
+  const double gap_hz = std::abs(model.frequency_hz - data.frequency_hz) - 0.5 * (model.bandwidth_hz + data.bandwidth_hz);
+  if (!(model.bandwidth_hz > 0) || !(gap_hz > 1e-3 * data.frequency_hz)) return "";
+  return "the model " + path + " is of " + frequency_text(model.frequency_hz, 6) + ", and the data of " +
+         frequency_text(data.frequency_hz, 6) + ": its fluxes are taken as they are";
+}
+
 ModelVisibilities image_visibilities(const StokesPlanes& planes, const imager::ImageGeometry& geometry,
                                      imager::GriddingRequest request, const ms_io::MeasurementSet& set,
                                      const TaylorTerms& taylor) {

@@ -34,6 +34,10 @@ struct ModelChannel {
 std::vector<imager::SkyImage> read_model_channel(const imager::ImageReader& file, const ModelChannel& of,
                                                  const imager::SkyDirection& centre);
 
+/// That the model at `path` is of other frequencies than the data, in words; empty where the bands meet, but for a thousandth
+/// that frames shift them by, or the model states none.
+std::string band_warning(const imager::Observation& model, const imager::Observation& data, const std::string& path);
+
 /// A model as an operator from coordinates to visibilities.
 struct ModelVisibilities {
   std::unique_ptr<imager::Transform> transform;                    // outlives the prediction

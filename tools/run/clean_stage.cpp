@@ -63,8 +63,12 @@ void CleanStage::begin_channel(int channel) {
   for (int stokes = 0; stokes < masks; ++stokes) masks_.push_back(mask_file_->mask({channel, stokes}));
 }
 
-std::vector<std::string> CleanStage::mask_doubts() const {
-  return mask_file_ ? mask_file_->doubts() : std::vector<std::string>{};
+std::vector<std::string> CleanStage::words_on_files() const {
+  std::vector<std::string> words;
+  if (mask_file_) words = mask_file_->doubts();
+  if (start_file_) words.push_back(band_warning(start_file_->header().observation, image_.observation, o_.startmodel));
+  words.erase(std::remove(words.begin(), words.end(), ""), words.end());
+  return words;
 }
 
 std::string CleanStage::warning() const {

@@ -45,10 +45,8 @@ class CleanStage {
   const imager::Image* mask(std::size_t stokes) const {
     return masks_.empty() ? nullptr : &masks_[masks_.size() == 1 ? 0 : stokes];
   }
-  /// What of the mask's file has no pixel of the image, a sentence each.
-  std::vector<std::string> mask_doubts() const;
-  /// What the user should know of where the mask lies; empty if nothing.
-  std::string mask_placement() const { return mask_file_ ? mask_file_->placement() : ""; }
+  /// What the user should know of the mask's file, and of which band the start model is, a sentence each.
+  std::vector<std::string> words_on_files() const;
   /// What the user should know before CLEAN begins; empty if nothing.
   std::string warning() const;
 

@@ -106,11 +106,8 @@ class CubeRun {
     report_.cube = sampling_.axis;
     fields_ = notes_on_fields(o_, *set_, header_.geometry);
     for (const std::string& warning : fields_.warnings) warn(warning);
-    if (o_.niter > 0) {  // so that what is wrong with masks and models is said at once
-      const CleanStage clean(o_, header_, threads_);
-      for (const std::string& doubt : clean.mask_doubts()) warn(doubt);
-      if (!clean.mask_placement().empty()) warn(clean.mask_placement());
-    }
+    if (o_.niter > 0)  // so that what is wrong with masks and models is said at once
+      for (const std::string& words : CleanStage(o_, header_, threads_).words_on_files()) warn(words);
     if (wants_primary_beam(o_))
       primary_beam_ = std::make_unique<PrimaryBeamStage>(
           o_, BeamScene{set_->beam_rows(), header_.geometry, set_->observation().frequency_hz},

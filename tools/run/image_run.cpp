@@ -120,10 +120,9 @@ class ImageRun {
                                                               .cards = {},
                                                               .history = {}},
                                           threads_);
-    for (const std::string& doubt : clean_->mask_doubts()) warn(doubt);
     clean_->begin_channel(0);
-    for (const std::string& warning : {clean_->mask_placement(), clean_->warning()})
-      if (!warning.empty()) warn(warning);
+    for (const std::string& words : clean_->words_on_files()) warn(words);
+    if (const std::string warning = clean_->warning(); !warning.empty()) warn(warning);
   }
 
   void plan() {
