@@ -28,6 +28,12 @@ bool refused(const std::string& regions, const std::string& part, const imager::
 
 }  // namespace
 
+BOOST_AUTO_TEST_CASE(an_editor_s_mark_of_utf_8_is_none_of_the_text) {
+  const std::string mark = "\xef\xbb\xbf";
+  check_same(mark + "#CRTFv0\ncircle [[30pix, 20pix], 7pix]", "circle [[30pix, 20pix], 7pix]");
+  check_same(mark + "image;circle(31,21,7)", "circle [[30pix, 20pix], 7pix]");
+}
+
 BOOST_AUTO_TEST_CASE(files_of_carta_and_ds9_are_read_as_they_write_them) {
   check_same(
       "#CRTFv0 CASA Region Text Format version 0\n"

@@ -20,10 +20,11 @@ bool has_right_ascensions(const std::string& frame) {
 }
 
 Point Canvas::at(const Place& place, double latitude_rad) const {
-  const imager::SkyDirection centre = geometry_.phase_centre;
+  const imager::SkyDirection& centre = geometry_.phase_centre;
+  const imager::SkyDirection there = ms_io::in_frame({place.x.value, latitude_rad, place.frame}, centre.frame);
   imager::DirectionCosines seen;
   try {
-    seen = direction_cosines(ms_io::in_frame({place.x.value, latitude_rad, place.frame}, centre.frame), centre);
+    seen = direction_cosines(there, centre);
   } catch (const std::invalid_argument&) {
     refuse(place.text, "a place within 90 degrees of the image's phase centre: beyond is its horizon");
   }

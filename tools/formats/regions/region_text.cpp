@@ -40,6 +40,7 @@ RegionText::RegionText(const std::string& path, std::string_view text, const ima
     : width_(image.geometry.width), height_(image.geometry.height), channels_(image.spectral.channels) {
   if (text.find('\0') != std::string_view::npos)
     throw std::runtime_error(path + " is neither a FITS image, a CASA image nor region text");
+  if (text.starts_with("\xef\xbb\xbf")) text.remove_prefix(3);  // the mark that some editors begin UTF-8 with
   const bool ds9 = is_ds9(text);
   std::unique_ptr<regions::RegionReader> reader;
   if (ds9)
