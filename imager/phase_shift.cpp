@@ -29,20 +29,20 @@ PhaseShift::PhaseShift(const UvwAxes& from, const UvwAxes& to) : none_(from.u ==
   to_ = {dot(moved, from.u), dot(moved, from.v), -dot(moved, moved) / 2};
 }
 
-void PhaseShift::rotate(std::vector<double>& uvw_m) const {
+void PhaseShift::rotate(std::vector<double>& uvw_m, RowRange rows) const {
   if (none_) return;
-  for (std::size_t i = 0; i < uvw_m.size(); i += 3) {
+  for (std::size_t i = 3 * rows.first; i < 3 * (rows.first + rows.count); i += 3) {
     const UvwAxes::Vector old{uvw_m[i], uvw_m[i + 1], uvw_m[i + 2]};
     for (std::size_t axis = 0; axis < 3; ++axis) uvw_m[i + axis] = dot(rotation_[axis], old);
   }
 }
 
 template <typename T>
-void PhaseShift::turn(const SampleCoordinates& old, double sign, std::vector<std::complex<T>>& visibilities) const {
+void PhaseShift::turn(const SampleCoordinates& old, const Turn& how, std::vector<std::complex<T>>& visibilities) const {
   const std::size_t channels = old.channels();
   std::vector<double> turns(channels), cosine(channels), sine(channels);
-  for (std::size_t row = 0; row < old.rows(); ++row) {
-    const double per_hz = sign * turns_per_hz(old.uvw_m.data() + 3 * row, to_);
+  for (std::size_t row = how.rows.first; row < how.rows.first + how.rows.count; ++row) {
+    const double per_hz = how.sign * turns_per_hz(old.uvw_m.data() + 3 * row, to_);
     for (std::size_t c = 0; c < channels; ++c) turns[c] = per_hz * old.frequency_hz[c];
     phasors(turns.data(), static_cast<int>(channels), cosine.data(), sine.data());
     for (std::size_t c = 0; c < channels; ++c) {
@@ -52,14 +52,34 @@ void PhaseShift::turn(const SampleCoordinates& old, double sign, std::vector<std
   }
 }
 
-void PhaseShift::apply(VisibilityBlock& block) const {
+void PhaseShift::apply(VisibilityBlock& block, RowRange rows) const {
   if (none_) return;
-  turn(block, -1, block.visibility);
-  rotate(block.uvw_m.edit());
+  turn(block, {-1, rows}, block.visibility);
+  rotate(block.uvw_m.edit(), rows);
 }
 
-void PhaseShift::undo(const SampleCoordinates& old, std::vector<std::complex<double>>& visibilities) const {
-  if (!none_) turn(old, 1, visibilities);
+void PhaseShift::undo(const SampleCoordinates& old, std::vector<std::complex<double>>& visibilities, RowRange rows) const {
+  if (!none_) turn(old, {1, rows}, visibilities);
+}
+
+void RowShifts::append(const PhaseShift& shift, std::size_t rows) {
+  if (!runs_.empty() && runs_.back().shift == &shift) {
+    runs_.back().rows.count += rows;
+  } else {
+    runs_.push_back({&shift, {runs_.empty() ? 0 : runs_.back().rows.first + runs_.back().rows.count, rows}});
+  }
+}
+
+void RowShifts::rotate(std::vector<double>& uvw_m) const {
+  for (const Run& run : runs_) run.shift->rotate(uvw_m, run.rows);
+}
+
+void RowShifts::apply(VisibilityBlock& block) const {
+  for (const Run& run : runs_) run.shift->apply(block, run.rows);
+}
+
+void RowShifts::undo(const SampleCoordinates& old, std::vector<std::complex<double>>& visibilities) const {
+  for (const Run& run : runs_) run.shift->undo(old, visibilities, run.rows);
 }
 
 }  // namespace misfit::imager

@@ -123,4 +123,29 @@ BOOST_AUTO_TEST_CASE(to_where_it_is_changes_no_bit) {
   BOOST_CHECK(block.uvw_m == samples().uvw_m);
 }
 
+BOOST_AUTO_TEST_CASE(rows_with_shifts_of_their_own_are_each_shifted_as_if_alone) {
+  const VisibilityBlock old = samples();
+  std::vector<PhaseShift> shifts{PhaseShift()};
+  for (const Centres& centres : all_centres) shifts.push_back(shift_of(centres));
+  RowShifts rows;
+  for (std::size_t row = 0; row < old.rows(); ++row) rows.append(shifts[row / 2 % shifts.size()], 1);
+  VisibilityBlock block = old;
+  rows.apply(block);
+  std::vector<double> rotated(old.uvw_m.begin(), old.uvw_m.end());
+  rows.rotate(rotated);
+  BOOST_CHECK(block.uvw_m == rotated);
+  std::vector<Complex> back(block.visibility.begin(), block.visibility.end());
+  rows.undo(old, back);
+  for (std::size_t row = 0; row < old.rows(); ++row) {
+    VisibilityBlock alone = old;
+    shifts[row / 2 % shifts.size()].apply(alone);
+    for (std::size_t axis = 0; axis < 3; ++axis) BOOST_TEST(block.uvw_m[3 * row + axis] == alone.uvw_m[3 * row + axis]);
+    for (std::size_t i = row * old.channels(); i < (row + 1) * old.channels(); ++i) {
+      BOOST_CHECK(block.visibility[i] == alone.visibility[i]);
+      // Of two roundings to single precision, the first remains.
+      BOOST_TEST(std::abs(back[i] - Complex(old.visibility[i])) < 1e-7 * std::abs(old.visibility[i]));
+    }
+  }
+}
+
 BOOST_AUTO_TEST_SUITE_END()
