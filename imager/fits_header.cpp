@@ -11,6 +11,7 @@ namespace misfit::imager {
 namespace {
 
 constexpr double rad_per_deg = pi / 180;
+constexpr const char* moving_key = "TRACKFLD";
 
 void write_axes(FitsFile& file, const ImageHeader& header) {
   const ImageGeometry& g = header.geometry;
@@ -58,6 +59,8 @@ void write_observation(FitsFile& file, const Observation& observation) {
   file.write_text("TIMESYS", "UTC");
   file.write_text("DATE-OBS", observation.date_obs);
   if (const std::optional<double> date = modified_julian_date(observation.date_obs)) file.write_number("MJD-OBS", *date, "d");
+  if (!observation.moving_at.empty())
+    file.write_text(moving_key, observation.moving_at, "UTC of CRVAL1 and CRVAL2: the image moves along with its field");
   file.write_text("ORIGIN", "misfit");
 }
 
@@ -67,6 +70,7 @@ Observation read_observation(const FitsFile& file, const SpectralAxis& axis) {
   observation.observer = file.text("OBSERVER");
   observation.object = file.text("OBJECT");
   observation.date_obs = file.text("DATE-OBS");
+  observation.moving_at = file.text(moving_key);
   observation.spectral_frame = axis.frame;
   observation.frequency_hz = axis.reference_hz + 0.5 * (axis.channels - 1) * axis.increment_hz;
   observation.bandwidth_hz = axis.channels * axis.width_hz();

@@ -149,9 +149,8 @@ void add_beam_rows(const OpenSet& open_set, const imager::SkyDirection& centre, 
     add_beam_offsets(open_set, antennas, rows);
     return counted;
   });
-  auto next = open_set.selected.first_row_of_field.begin();
   for (FieldPointing& pointing : field_pointings(open_set, centre)) {
-    pointing.rows = std::move(of_fields[next++->first]);
+    pointing.rows = of_fields[pointing.id];
     rows.pointings.push_back(std::move(pointing));
   }
 }

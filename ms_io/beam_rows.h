@@ -21,11 +21,13 @@ struct SortRows {
   std::uint64_t rows = 0;
 };
 
-/// Where the antennas of a field pointed: its REFERENCE_DIR. It stays where it is when visibilities are shifted to another
-/// phase centre, which moves PHASE_DIR. The table POINTING is not looked at, as in tclean by default.
+/// Where the antennas of a field pointed: its REFERENCE_DIR; where that moves, at one of three times, and where the image moves
+/// along, where it stands in the image. It stays where it is when visibilities are shifted to another phase centre, which moves
+/// PHASE_DIR. The table POINTING is not looked at, as in tclean by default.
 struct FieldPointing {
-  std::string field;                ///< "3 (M51)"
+  std::string field;                ///< "3 (M51)", or "3 (M51) at 2026-01-02T03:04:05"
   imager::SkyDirection direction;   ///< in the frame of the image
+  int id = 0;                       ///< FIELD_ID
   std::string name = {};            ///< "M51"
   std::string set = {};             ///< path of the set whose field it is
   double from_centre_rad = 0;       ///< from the phase centre of the image
@@ -37,7 +39,7 @@ struct FieldPointing {
 struct BeamRows {
   std::vector<imager::AntennaSort> sorts;  ///< of antennas in rows of two antennas
   std::vector<SortPair> pairs;             ///< [row], in the order in which blocks hold them; empty where there is one sort
-  std::vector<FieldPointing> pointings;    ///< of all fields with selected rows
+  std::vector<FieldPointing> pointings;    ///< of all fields with selected rows, see field_pointings()
   double beam_offset_rad = 0;  ///< the largest by which FEED's BEAM_OFFSET says that a beam points elsewhere, of feeds in use
 };
 

@@ -12,6 +12,9 @@
 
 namespace misfit::ms_io {
 
+/// Observation::moving_at, among an image's miscellaneous information.
+constexpr const char* moving_key = "TRACKFLD";
+
 /// Direction, Stokes and spectral coordinates, and what the header says of the observation.
 casacore::CoordinateSystem casa_coordinates(const imager::ImageHeader& header);
 

@@ -57,6 +57,9 @@ class CasaImageReader : public imager::ImageReader {
     header_.observation.phase_centre = header_.geometry.phase_centre;
     header_.unit = image_.units().getName();
     header_.observation.object = image_.imageInfo().objectName();
+    const casacore::TableRecord& others = image_.miscInfo();
+    if (others.isDefined(moving_key) && others.dataType(moving_key) == casacore::TpString)
+      header_.observation.moving_at = others.asString(moving_key);
     beams_ = beams_of(image_.imageInfo(), header_);
   }
 

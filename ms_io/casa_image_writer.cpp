@@ -48,10 +48,14 @@ casacore::ImageInfo image_info(const imager::PlaneBeams& beams, const std::strin
 constexpr const char* creator_key = "creator";
 constexpr const char* creator = "misfit";
 
-casacore::TableRecord misc_info(const std::vector<imager::HeaderCard>& cards) {
+casacore::TableRecord misc_info(const imager::ImageHeader& header) {
   casacore::TableRecord record;
   record.define(creator_key, creator);
-  for (const imager::HeaderCard& card : cards) {
+  if (!header.observation.moving_at.empty()) {
+    record.define(moving_key, header.observation.moving_at);
+    record.setComment(moving_key, "UTC of the reference value: the image moves along with its field");
+  }
+  for (const imager::HeaderCard& card : header.cards) {
     record.define(card.keyword, card.value);
     record.setComment(card.keyword, card.comment);
   }
@@ -111,7 +115,7 @@ class CasaImageWriter : public imager::ImageWriter {
       }
       if (!image_->setImageInfo(image_info(planes_.beams(), header_.observation.object)))
         throw std::runtime_error("cannot write " + path_ + ": casacore keeps no beams of it");
-      image_->setMiscInfo(misc_info(header_.cards));
+      image_->setMiscInfo(misc_info(header_));
       for (const std::string& line : header_.history)
         image_->logger().sink().postLocally(casacore::LogMessage(line, casacore::LogOrigin("misfit")));
       image_->flush();

@@ -14,6 +14,7 @@ ColumnReader::ColumnReader(std::shared_ptr<const OpenSet> source) : source_(std:
     antenna1_.attach(table, "ANTENNA1");
     antenna2_.attach(table, "ANTENNA2");
     time_.attach(table, "TIME");
+    needs_time_ = !source_->selected.spectral_frame.empty() || source_->selected.shift_moves();
     flag_row_.attach(table, "FLAG_ROW");
     flag_row_is_dear_ = table.findDataManager("FLAG_ROW", true)->dataManagerType() == "IncrementalStMan";
     attach(uvw_, "UVW");
@@ -46,16 +47,17 @@ void ColumnReader::read_rows(const Rows& rows, const Setup& setup, StoredRows& s
   read_channels(flag_, rows, setup, stored.flag);
   reading("FLAG_ROW", [&] { read_flag_rows(rows, stored); });
   read_weights(rows, setup, stored);
-  if (!source_->selected.spectral_frame.empty()) read_frame_ratios(rows, setup, stored);
+  if (needs_time_) reading("TIME", [&] { read(time_, rows, stored.time_s); });
+  if (!source_->selected.spectral_frame.empty()) find_frame_ratios(setup, stored);
 }
 
-void ColumnReader::read_frame_ratios(const Rows& rows, const Setup& setup, StoredRows& stored) {
-  reading("TIME", [&] { read(time_, rows, times_); });
+void ColumnReader::find_frame_ratios(const Setup& setup, StoredRows& stored) {
   std::unique_ptr<FrameRatio>& ratio = ratio_[setup.spectral_frame];
   if (!ratio) ratio = std::make_unique<FrameRatio>(source_->set, source_->path, source_->selected, setup);
-  stored.frame_ratio.resize(rows.count());
+  stored.frame_ratio.resize(stored.time_s.size());
   translated("cannot convert frequencies of " + source_->path + " to " + source_->selected.spectral_frame, [&] {
-    std::transform(times_.begin(), times_.end(), stored.frame_ratio.begin(), [&](double time_s) { return ratio->at(time_s); });
+    std::transform(stored.time_s.begin(), stored.time_s.end(), stored.frame_ratio.begin(),
+                   [&](double time_s) { return ratio->at(time_s); });
   });
 }
 

@@ -19,6 +19,7 @@ struct StoredRows {
   casacore::Array<bool> flag;                ///< [row][channel][correlation]
   casacore::Array<float> weight;             ///< [row][channel][correlation] or [row][correlation]
   bool weight_per_channel = false;
+  casacore::Vector<double> time_s;  ///< [row]; empty where no spectral frame is selected and no phase centre moves
   std::vector<double> frame_ratio;  ///< [row], see FrameRatio; empty where no spectral frame is selected
 };
 
@@ -62,13 +63,13 @@ class ColumnReader {
   bool spectrum_defined(casacore::rownr_t row) const;
   std::size_t spectra_defined(const Rows& rows) const;
   void read_weights(const Rows& rows, const Setup& setup, StoredRows& stored);
-  void read_frame_ratios(const Rows& rows, const Setup& setup, StoredRows& stored);
+  void find_frame_ratios(const Setup& setup, StoredRows& stored);
   void mix_weights(const Rows& rows, const Setup& setup, StoredRows& stored) const;
 
   std::shared_ptr<const OpenSet> source_;
   casacore::ScalarColumn<int> antenna1_, antenna2_;
-  casacore::ScalarColumn<double> time_;                       ///< where a spectral frame is selected
-  casacore::Vector<double> times_;                            ///< of the rows read last
+  casacore::ScalarColumn<double> time_;
+  bool needs_time_ = false;
   std::map<std::string, std::unique_ptr<FrameRatio>> ratio_;  ///< by the frame of the window
   casacore::ScalarColumn<bool> flag_row_;
   bool flag_row_is_dear_ = false;

@@ -10,10 +10,11 @@
 #include "ms_io/beam_rows_internal.h"
 #include "ms_io/block_group_internal.h"
 #include "ms_io/field_pointings_internal.h"
+#include "ms_io/followed_field_internal.h"
 #include "ms_io/metadata_internal.h"
 #include "ms_io/model_writer.h"
 #include "ms_io/row_shares_internal.h"
-#include "ms_io/spectral_frame_internal.h"
+#include "ms_io/spectral_part_internal.h"
 #include "ms_io/subtracted_models_internal.h"
 #include "ms_io/table_access_internal.h"
 #include "ms_io/uvw_scan_internal.h"
@@ -45,12 +46,6 @@ std::shared_ptr<const OpenSet> open_selected(const std::string& path, const Sele
   return opened;
 }
 
-/// Of the earliest selected row.
-double first_time_s(const OpenSet& set) {
-  return translated("cannot read TIME of " + set.path,
-                    [&] { return casacore::ScalarColumn<double>(set.set, "TIME")(set.selected.first_row); });
-}
-
 /// In the order in which they were observed, so that nothing depends on the order in which they are named.
 void sort_by_time(OpenSets& sets) {
   const auto key = [](const std::shared_ptr<const OpenSet>& set) {
@@ -61,58 +56,6 @@ void sort_by_time(OpenSets& sets) {
   };
   if (sets.size() == 1) return;
   std::stable_sort(sets.begin(), sets.end(), [&](const auto& a, const auto& b) { return key(a) < key(b); });
-}
-
-/// Of the setup's channels in the frame of the selection, when the set's first selected row was observed.
-SpectralWindow window_at_first_row(const OpenSet& from, const Setup& setup) {
-  SpectralWindow window{setup.frequency_hz, setup.channel_width_hz};
-  if (from.selected.spectral_frame.empty()) return window;
-  const double ratio = FrameRatio(from.set, from.path, from.selected, setup).at(first_time_s(from));
-  for (double& hz : window.frequency_hz) hz *= ratio;
-  for (double& hz : window.channel_width_hz) hz *= ratio;
-  return window;
-}
-
-/// The setup with those of its channels that, as `window` has them, may come into a range: the telescope's velocity
-/// changes by 61 km/s in a year and a day, and interpolation takes a channel beyond.
-Setup between(const Setup& setup, const SpectralWindow& window, const FrequencyRange& range) {
-  constexpr double doppler = 61e3 / 2.99792458e8;
-  Setup part = setup;
-  part.channels.clear();
-  part.frequency_hz.clear();
-  part.channel_width_hz.clear();
-  std::size_t c = 0;
-  for (const Run& run : setup.channels)
-    for (std::uint64_t channel = run.first; channel < run.first + run.count; ++channel, ++c) {
-      const double margin_hz = doppler * window.frequency_hz[c] + 1.5 * window.channel_width_hz[c];
-      if (window.frequency_hz[c] < range.low_hz - margin_hz || window.frequency_hz[c] > range.high_hz + margin_hz) continue;
-      append(part.channels, channel);
-      part.frequency_hz.push_back(setup.frequency_hz[c]);
-      part.channel_width_hz.push_back(setup.channel_width_hz[c]);
-    }
-  return part;
-}
-
-/// Null where no channel of the set may come into the range.
-std::shared_ptr<const OpenSet> channels_between(const OpenSet& set, const FrequencyRange& range,
-                                                const std::optional<FrequencyRange>& counted) {
-  const auto part = std::make_shared<OpenSet>(set);
-  SelectedRows& selected = part->selected;
-  selected.rows = selected.samples = 0;
-  for (Setup& setup : selected.setups) {
-    const SpectralWindow window = window_at_first_row(set, setup);
-    Setup before;
-    if (counted) before = between(setup, window, *counted);
-    setup = between(setup, window, range);
-    if (!before.channels.empty()) setup.uncounted = {before.first_channel(), before.channel_span()};
-  }
-  const auto without = [&](const BlockRows& block) { return selected.setups[block.setup].channels.empty(); };
-  selected.blocks.erase(std::remove_if(selected.blocks.begin(), selected.blocks.end(), without), selected.blocks.end());
-  for (const BlockRows& block : selected.blocks) {
-    selected.rows += block.rows;
-    selected.samples += block.rows * selected.setups[block.setup].frequency_hz.size();
-  }
-  return selected.blocks.empty() ? nullptr : part;
 }
 
 /// Samples of the largest group of blocks.
@@ -179,7 +122,9 @@ std::string named_columns(const std::vector<std::string>& paths, const std::stri
 
 struct MeasurementSet::Impl {
   OpenSets sets;
+  Selection selection;
   imager::Observation observation;
+  std::vector<std::string> remarks;
   std::shared_ptr<const Impl> whole;  ///< of which this is the share of a rank; null where it is all
   const imager::Ranks* ranks = &imager::alone();
   SampleSharing sharing;  ///< empty where it is all
@@ -194,17 +139,21 @@ MeasurementSet::MeasurementSet(const std::vector<std::string>& paths, const Sele
                                std::uint64_t block_samples) {
   if (paths.empty()) throw std::invalid_argument("no MeasurementSet; expected one or more");
   const auto impl = std::make_shared<Impl>();
+  impl->selection = selection;
   const std::vector<std::string> columns = columns_of(data_column, paths.size());
   for (std::size_t i = 0; i < paths.size(); ++i)
     impl->sets.push_back(open_selected(paths[i], selection, columns[i], stokes, block_samples));
   sort_by_time(impl->sets);
-  std::vector<imager::Observation> observations;
-  std::vector<std::string> in_order;
-  for (const auto& set : impl->sets) {
-    observations.push_back(describe(set->set, set->path, set->selected));
-    in_order.push_back(set->path);
+  for (auto& set : impl->sets) {
+    if (selection.phase_centre || set == impl->sets.front()) continue;
+    const auto centre = centre_but_for_rounding(*impl->sets.front(), *set);
+    if (!centre) continue;
+    impl->selection.phase_centre = centre;
+    set = open_selected(set->path, impl->selection, set->data_column, stokes, block_samples);
   }
-  impl->observation = joined(observations, in_order);
+  if (!impl->selection.phase_centre) impl->selection.phase_centre = impl->sets.front()->selected.phase_centre;
+  impl->observation = joined(impl->sets);
+  impl->remarks = remarks_on(impl->sets, selection, impl->observation);
   impl_ = impl;
 }
 
@@ -216,6 +165,12 @@ const MeasurementSet::Impl& MeasurementSet::whole() const {
   return impl_->whole ? *impl_->whole : *impl_;
 }
 
+const Selection& MeasurementSet::selection() const {
+  return impl_->selection;
+}
+const std::vector<std::string>& MeasurementSet::remarks() const {
+  return impl_->remarks;
+}
 const imager::Observation& MeasurementSet::observation() const {
   return impl_->observation;
 }
@@ -315,6 +270,7 @@ void MeasurementSet::visit_coordinates(const std::function<void(const imager::Sa
 std::unique_ptr<MeasurementSet> MeasurementSet::part(const FrequencyRange& range,
                                                      const std::optional<FrequencyRange>& counted) const {
   const auto part = std::make_shared<Impl>();
+  part->selection = impl_->selection;
   part->observation = impl_->observation;
   for (const auto& set : impl_->sets)
     if (auto some = channels_between(*set, range, counted)) part->sets.push_back(std::move(some));
@@ -325,7 +281,9 @@ std::unique_ptr<MeasurementSet> MeasurementSet::share(const imager::Ranks& ranks
   const auto share = std::make_shared<Impl>();
   const RowShares shares(impl_->sets, ranks.size());
   share->sets = shares.part(ranks.rank());
+  share->selection = impl_->selection;
   share->observation = impl_->observation;
+  share->remarks = impl_->remarks;
   share->whole = impl_;
   share->ranks = &ranks;
   share->sharing = {shares.samples(), impl_->sets.size(), shares.whole_sets()};

@@ -79,7 +79,12 @@ class MeasurementSet : public imager::VisibilitySource {
   /// Files of the sets that something changed, removed or made since they were opened: what was read may be neither what was
   /// there before nor what is there now.
   std::vector<std::string> changed_files() const;
-  /// Of the first set, with the band of all.
+  /// What users should know of the directions and frames of what is selected, in sentences: of phase centres that move, or
+  /// differ by rounding, and of places from which frequencies cannot be converted as they should.
+  const std::vector<std::string>& remarks() const;
+  /// The selection, with the phase centre that visibilities are shifted to, also where it names none.
+  const Selection& selection() const;
+  /// Of the first set, with the band of all; where the image moves with fields, in the middle of their run.
   const imager::Observation& observation() const;
   std::uint64_t rows() const;
   std::uint64_t samples() const override;

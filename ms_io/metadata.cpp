@@ -10,8 +10,8 @@
 #include <limits>
 #include <sstream>
 
+#include "ms_io/followed_field_internal.h"
 #include "ms_io/metadata_internal.h"
-#include "ms_io/phase_centre_internal.h"
 #include "ms_io/table_access_internal.h"
 
 namespace misfit::ms_io {
@@ -24,32 +24,11 @@ T cell_or(const casacore::Table& table, const char* column, casacore::Int64 row,
   return casacore::ScalarColumn<T>(table, column)(static_cast<casacore::rownr_t>(row));
 }
 
-std::string label(const FieldCentre& centre) {
-  return std::to_string(centre.field) + " (" + centre.name + ")";
-}
-
-FieldCentre common_centre(const casacore::MeasurementSet& set, const std::string& path, const SelectedRows& selected) {
-  std::vector<FieldCentre> centres;
-  for (const auto& [field, row] : selected.first_row_of_field) centres.push_back(field_centre(set, path, field, row));
-  for (const FieldCentre& centre : centres) {
-    const double apart = separation_rad(centres.front().direction, centre.direction);
-    if (apart <= same_centre_rad) continue;
-    std::ostringstream message;
-    message << path << ": fields " << label(centres.front()) << " and " << label(centre) << " have phase centres " << apart
-            << " rad apart; select one with --field, or shift all to one with --phasecenter";
-    throw std::runtime_error(message.str());
-  }
-  const int field_of_first_row = casacore::ScalarColumn<int>(set, "FIELD_ID")(selected.first_row);
-  return *std::find_if(centres.begin(), centres.end(), [&](const auto& centre) { return centre.field == field_of_first_row; });
-}
-
 /// The start of the integration of `row`, UTC.
 std::string start_time(const casacore::MeasurementSet& set, std::uint64_t row) {
   const casacore::MEpoch middle = casacore::ScalarMeasColumn<casacore::MEpoch>(set, "TIME")(row);
-  const casacore::MEpoch utc = casacore::MEpoch::Convert(middle, casacore::MEpoch::UTC)();
-  const double start_s = utc.get("s").getValue() - casacore::ScalarColumn<double>(set, "INTERVAL")(row) / 2;
-  if (!std::isfinite(start_s)) return "";
-  return casacore::MVTime(casacore::Quantity(start_s, "s")).string(casacore::MVTime::FITS, 9);
+  const double start_s = utc_s(middle) - casacore::ScalarColumn<double>(set, "INTERVAL")(row) / 2;
+  return utc_text(start_s);
 }
 
 void describe_band(const std::vector<Setup>& setups, imager::Observation& observation) {
@@ -73,13 +52,29 @@ std::string telescope_name(const casacore::MeasurementSet& set, std::uint64_t ro
   return cell_or<casacore::String>(set.observation(), "TELESCOPE_NAME", observation, "");
 }
 
+double utc_s(const casacore::MEpoch& time) {
+  return casacore::MEpoch::Convert(time, casacore::MEpoch::UTC)().get("s").getValue();
+}
+
+std::string utc_text(double utc_s) {
+  if (!std::isfinite(utc_s)) return "";
+  return casacore::MVTime(casacore::Quantity(utc_s, "s")).string(casacore::MVTime::FITS, 9);
+}
+
+void centre_on_field(const casacore::MeasurementSet& set, const std::string& path, const SelectedRows& selected, double time_s,
+                     imager::Observation& observation) {
+  FieldDirections fields(set, path);
+  const FieldCentre centre = followed_centre(fields, selected, first_field(set, selected), {time_s, selected.first_row});
+  observation.phase_centre = centre.direction;
+  observation.moving_at = utc_text(utc_s(centre.observed));
+}
+
 imager::Observation describe(const casacore::MeasurementSet& set, const std::string& path, const SelectedRows& selected) {
-  const int first_field = casacore::ScalarColumn<int>(set, "FIELD_ID")(selected.first_row);
-  const FieldCentre centre =
-      selected.phase_centre ? field_centre(set, path, first_field, selected.first_row) : common_centre(set, path, selected);
+  const FieldCentre centre = field_centre(set, path, first_field(set, selected), selected.first_row);
   imager::Observation observation;
   observation.phase_centre = selected.phase_centre.value_or(centre.direction);
   observation.object = centre.name;
+  if (selected.follows_field) centre_on_field(set, path, selected, moving_span(selected).middle_s(), observation);
   describe_band(selected.setups, observation);
   translated("cannot read what " + path + " says of its observation", [&] {
     const int id = cell_or<int>(set, "OBSERVATION_ID", static_cast<casacore::Int64>(selected.first_row), -1);
@@ -90,15 +85,23 @@ imager::Observation describe(const casacore::MeasurementSet& set, const std::str
   return observation;
 }
 
-imager::Observation joined(const std::vector<imager::Observation>& observations, const std::vector<std::string>& paths) {
+imager::Observation joined(const OpenSets& sets) {
+  std::vector<imager::Observation> observations;
+  for (const auto& set : sets) observations.push_back(describe(set->set, set->path, set->selected));
   imager::Observation all = observations.front();
   double lowest = all.frequency_hz - all.bandwidth_hz / 2, highest = all.frequency_hz + all.bandwidth_hz / 2;
   for (std::size_t i = 1; i < observations.size(); ++i) {
     const imager::Observation& one = observations[i];
-    if (const double apart = separation_rad(all.phase_centre, one.phase_centre); apart > same_centre_rad) {
+    const auto both = [&] {
+      return sets.front()->path + " (field " + all.object + ") and " + sets[i]->path + " (field " + one.object + ") ";
+    };
+    if (all.moving_at.empty() != one.moving_at.empty())
+      throw std::runtime_error("of " + both() +
+                               "the phase centre of one moves, and one stands still; shift all to one with --phasecenter");
+    const double apart = all.moving_at.empty() ? separation_rad(all.phase_centre, one.phase_centre) : 0;
+    if (apart > same_centre_rad) {
       std::ostringstream message;
-      message << paths.front() << " (field " << all.object << ") and " << paths[i] << " (field " << one.object
-              << ") have phase centres " << apart << " rad apart; shift all to one with --phasecenter";
+      message << both() << "have phase centres " << apart << " rad apart; shift all to one with --phasecenter";
       throw std::runtime_error(message.str());
     }
     if (one.spectral_frame != all.spectral_frame) all.spectral_frame.clear();
@@ -106,6 +109,7 @@ imager::Observation joined(const std::vector<imager::Observation>& observations,
     highest = std::max(highest, one.frequency_hz + one.bandwidth_hz / 2);
   }
   if (observations.size() == 1) return all;
+  if (!all.moving_at.empty()) follow_one_target(sets, all);
   all.frequency_hz = (lowest + highest) / 2;
   all.bandwidth_hz = highest - lowest;
   return all;

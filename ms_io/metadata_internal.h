@@ -3,19 +3,28 @@
 #include <string>
 
 #include "imager/observation.h"
-#include "ms_io/selection_internal.h"
+#include "ms_io/field_centres_internal.h"
+#include "ms_io/row_shares_internal.h"
 
 namespace misfit::ms_io {
 
-/// What the image header says of the rows selected. Throws std::runtime_error when their fields have phase centres more than
-/// 1e-9 rad apart and are not shifted, or one in a frame that cannot be converted to J2000.
+/// What the image header says of the rows selected; where the image moves with a field, that has the field's place in the
+/// middle of the rows. Throws std::runtime_error where that cannot be found.
 imager::Observation describe(const casacore::MeasurementSet& set, const std::string& path, const SelectedRows& selected);
 
 /// TELESCOPE_NAME of the observation of `row`; empty where there is none.
 std::string telescope_name(const casacore::MeasurementSet& set, std::uint64_t row);
 
+/// Seconds of UTC, and these in ISO 8601; empty where they are not finite.
+double utc_s(const casacore::MEpoch& time);
+std::string utc_text(double utc_s);
+
+/// Centres the header of an image that moves with a field on where that is at a time.
+void centre_on_field(const casacore::MeasurementSet& set, const std::string& path, const SelectedRows& selected, double time_s,
+                     imager::Observation& observation);
+
 /// What the header of one image of all says: the first, with the band of all. Throws std::runtime_error when two have different
-/// phase centres; `paths` name them.
-imager::Observation joined(const std::vector<imager::Observation>& observations, const std::vector<std::string>& paths);
+/// phase centres, or move with different targets.
+imager::Observation joined(const OpenSets& sets);
 
 }  // namespace misfit::ms_io

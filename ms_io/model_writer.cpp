@@ -10,7 +10,6 @@
 
 #include "ms_io/fingerprint.h"
 #include "ms_io/kept_cells_internal.h"
-#include "ms_io/metadata_internal.h"
 #include "ms_io/missing_cells_internal.h"
 #include "ms_io/model_cells_internal.h"
 #include "ms_io/model_column_internal.h"
@@ -51,6 +50,9 @@ std::string identity_of(const casacore::Table& set, const SelectedRows& selected
       setups[block.setup].add(rows[r]).add(uvw.data() + 3 * r, 3 * sizeof(double));
   }
   Fingerprint all;
+  if (const auto& centre = selected.phase_centre)
+    all.add(std::vector<double>{centre->ra_rad, centre->dec_rad}).add(centre->frame);
+  if (selected.follows_target) all.add(std::string("TRACKFIELD"));
   for (std::size_t s = 0; s < setups.size(); ++s) {
     all.add(setups[s].value())
         .add(static_cast<std::uint64_t>(selected.setups[s].data_description))
@@ -81,11 +83,11 @@ imager::SampleCoordinates coordinates(const casacore::ArrayColumn<double>& uvw_c
   return where;
 }
 
-/// At `where` of the set itself, of a model about the phase centre that `shift` leads to.
-StokesVisibilities predicted(const Predict& predict, const imager::PhaseShift& shift, const imager::SampleCoordinates& where,
+/// At `where` of the set itself, of a model about the phase centre that `shifts` lead to.
+StokesVisibilities predicted(const Predict& predict, const imager::RowShifts& shifts, const imager::SampleCoordinates& where,
                              const std::vector<bool>& unknown) {
   imager::SampleCoordinates shifted = where;
-  shift.rotate(shifted.uvw_m.edit());
+  shifts.rotate(shifted.uvw_m.edit());
   StokesVisibilities model = predict(shifted);
   for (std::vector<std::complex<double>>& plane : model.plane) {
     if (plane.empty()) continue;
@@ -93,7 +95,7 @@ StokesVisibilities predicted(const Predict& predict, const imager::PhaseShift& s
       throw std::invalid_argument("prediction returned " + std::to_string(plane.size()) + " visibilities; expected " +
                                   std::to_string(where.samples()));
     }
-    shift.undo(where, plane);
+    shifts.undo(where, plane);
     for (std::size_t r = 0; r < unknown.size(); ++r) {
       if (unknown[r]) std::fill_n(plane.begin() + static_cast<std::ptrdiff_t>(r * where.channels()), where.channels(), 0.0);
     }
@@ -106,6 +108,7 @@ struct PredictedBlock {
   const Setup* setup;
   Rows rows;
   imager::SampleCoordinates where;
+  imager::RowShifts shifts;
   std::vector<bool> unknown;
   BlockCells cells;
   std::future<void> formed;
@@ -115,7 +118,7 @@ struct PredictedBlock {
   /// Another thread predicts, and forms what is to be stored; casacore is for one thread alone.
   void begin(const Predict& predict) {
     formed = std::async(std::launch::async,
-                        [this, &predict] { cells.form(rows, *setup, predicted(predict, setup->shift, where, unknown)); });
+                        [this, &predict] { cells.form(rows, *setup, predicted(predict, shifts, where, unknown)); });
   }
   /// Rethrows what the other thread threw.
   void finish() {
@@ -132,7 +135,6 @@ class ModelWriter {
       : path_(path), column_(spelt_out(column)), set_(open_measurement_set(path, Access::update)), kept_(set_, column_.name) {
     require_writable_column(set_, path_, column_);
     selected_ = select_rows(set_, path_, selection, {block_samples, false});
-    describe(set_, path_, selected_);  // throws unless there is one phase centre
     journal_.column = column_.name;
     journal_.command = one_line(column_.origin.command);
     here_ = {identity_of(column_.origin),
@@ -291,9 +293,17 @@ class ModelWriter {
   void prepare(const casacore::ArrayColumn<double>& uvw, PredictedBlock& block) {
     block.where =
         translated("cannot read UVW of " + path_, [&] { return coordinates(uvw, block.rows, *block.setup, block.unknown); });
+    translated("cannot read TIME of " + path_, [&] { find_shifts(block); });
     translated("cannot read " + column_.subtracted_from + " of " + path_,
                [&] { block.cells.data.reference(cells_->data(block.rows, *block.setup)); });
     translated(doing_(), [&] { block.cells.values.reference(cells_->values(block.rows, *block.setup)); });
+  }
+
+  void find_shifts(PredictedBlock& block) const {
+    const FieldShift& shift = block.setup->shift;
+    casacore::Vector<double> time_s;
+    if (shift.moves()) read(casacore::ScalarColumn<double>(set_, "TIME"), block.rows, time_s);
+    shift.append(shift.moves() ? time_s.data() : nullptr, block.rows.count(), block.shifts);
   }
 
   void write(const PredictedBlock& block) {

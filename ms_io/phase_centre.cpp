@@ -1,20 +1,12 @@
 #include <casacore/measures/Measures/MCDirection.h>
-#include <casacore/measures/Measures/MCEpoch.h>
 #include <casacore/measures/Measures/MeasConvert.h>
 #include <casacore/measures/Measures/MeasFrame.h>
-#include <casacore/measures/Measures/MeasTable.h>
-#include <casacore/measures/TableMeasures/ScalarMeasColumn.h>
-#include <casacore/ms/MeasurementSets/MSAntennaColumns.h>
-#include <casacore/ms/MeasurementSets/MSFieldColumns.h>
-#include <casacore/tables/Tables/ScalarColumn.h>
 
 #include <algorithm>
 #include <cmath>
 
 #include "ms_io/celestial_frame_internal.h"
-#include "ms_io/metadata_internal.h"
 #include "ms_io/phase_centre_internal.h"
-#include "ms_io/table_access_internal.h"
 
 namespace misfit::ms_io {
 namespace {
@@ -39,66 +31,7 @@ Vector unit(const Vector& a) {
   return {a[0] / length, a[1] / length, a[2] / length};
 }
 
-/// In J2000 where the direction is neither in that nor in ICRS or B1950.
-casacore::MDirection equatorial(const casacore::MDirection& direction, const casacore::MeasurementSet& set, std::uint64_t row) {
-  const auto frame = casacore::MDirection::castType(direction.getRef().getType());
-  if (frame == casacore::MDirection::J2000 || frame == casacore::MDirection::ICRS || frame == casacore::MDirection::B1950)
-    return direction;
-  return casacore::MDirection::Convert(direction, casacore::MDirection::Ref(casacore::MDirection::J2000, frame_of(set, row)))();
-}
-
-void require_field(const casacore::MeasurementSet& set, const std::string& path, int field) {
-  if (field >= 0 && static_cast<casacore::rownr_t>(field) < set.field().nrow()) return;
-  throw std::runtime_error(path + " has rows with FIELD_ID " + std::to_string(field) + ", but FIELD has " +
-                           std::to_string(set.field().nrow()) + " rows");
-}
-
-/// That a field has the directions that NUM_POLY tells of: casacore would look for them without.
-void require_directions(const casacore::MSFieldColumns& columns, const casacore::ArrayColumn<double>& cells,
-                        casacore::rownr_t row) {
-  const int powers = columns.numPoly()(row);
-  const casacore::IPosition shape = cells.shape(row);
-  const ssize_t directions = shape.empty() || shape[0] == 0 ? 0 : shape.product() / shape[0];
-  if (directions > std::max(powers, 0)) return;
-  throw casacore::AipsError(std::string(cells.columnDesc().name()) + " has " + std::to_string(directions) +
-                            " directions, expected more than NUM_POLY, " + std::to_string(powers));
-}
-
 }  // namespace
-
-casacore::MeasFrame frame_of(const casacore::MeasurementSet& set, std::uint64_t row) {
-  casacore::MeasFrame frame(casacore::ScalarMeasColumn<casacore::MEpoch>(set, "TIME")(row));
-  casacore::MPosition position;
-  if (!casacore::MeasTable::Observatory(position, telescope_name(set, row)) && set.antenna().nrow() > 0) {
-    position = casacore::MSAntennaColumns(set.antenna()).positionMeas()(0);
-  }
-  frame.set(position);
-  return frame;
-}
-
-FieldCentre field_centre(const casacore::MeasurementSet& set, const std::string& path, int field, std::uint64_t row) {
-  require_field(set, path, field);
-  return translated("cannot find the phase centre of field " + std::to_string(field) + " of " + path, [&] {
-    const casacore::MSFieldColumns columns(set.field());
-    const auto index = static_cast<casacore::rownr_t>(field);
-    require_directions(columns, columns.phaseDir(), index);
-    const double time = casacore::ScalarColumn<double>(set, "TIME")(row);
-    return FieldCentre{field, columns.name()(index), sky_direction(equatorial(columns.phaseDirMeas(index, time), set, row)),
-                       casacore::ScalarMeasColumn<casacore::MEpoch>(set, "TIME")(row)};
-  });
-}
-
-imager::SkyDirection field_pointing(const casacore::MeasurementSet& set, const std::string& path, int field,
-                                    std::uint64_t row) {
-  require_field(set, path, field);
-  return translated("cannot find where antennas point in field " + std::to_string(field) + " of " + path, [&] {
-    const casacore::MSFieldColumns columns(set.field());
-    const auto index = static_cast<casacore::rownr_t>(field);
-    require_directions(columns, columns.referenceDir(), index);
-    const double time = casacore::ScalarColumn<double>(set, "TIME")(row);
-    return sky_direction(equatorial(columns.referenceDirMeas(index, time), set, row));
-  });
-}
 
 double separation_rad(const imager::SkyDirection& a, const imager::SkyDirection& b) {
   const Vector one = imager::uvw_axes(a).w, other = converted(imager::uvw_axes(b).w, b.frame, a.frame, {});

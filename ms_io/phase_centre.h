@@ -3,12 +3,18 @@
 #include <string>
 
 #include "imager/geometry.h"
+#include "ms_io/selection.h"
 
 namespace misfit::ms_io {
 
 /// The direction that `text` means, as CASA's tasks take it: "J2000 12h30m49.4s +12d23m28s", with J2000 (also when left out),
 /// ICRS or B1950, angles such as 12h30m49.4s, 12:30:49.4, +12d23m28s, +12.23.28 and 187.7deg; or the id or name of a field of
-/// the MeasurementSet at `path`, for its phase centre. Throws std::runtime_error that says what was expected.
+/// the MeasurementSet at `path`, for its phase centre, and where that moves, for where it is in the middle of the field's rows.
+/// Throws std::runtime_error that says what was expected.
 imager::SkyDirection parse_phase_centre(const std::string& text, const std::string& path);
+
+/// `selection` with its visibilities phased to what `text` means: such a direction, or "TRACKFIELD", for what the fields of the
+/// sets follow. Throws what parse_phase_centre() does.
+Selection phased_to(Selection selection, const std::string& text, const std::string& path);
 
 }  // namespace misfit::ms_io

@@ -1,6 +1,6 @@
 #include <casacore/casa/Quanta/MVAngle.h>
 #include <casacore/casa/Quanta/Quantum.h>
-#include <casacore/ms/MeasurementSets/MSFieldColumns.h>
+#include <casacore/measures/Measures/MDirection.h>
 #include <casacore/tables/Tables/ScalarColumn.h>
 
 #include <algorithm>
@@ -9,15 +9,21 @@
 #include <optional>
 #include <sstream>
 
-#include "ms_io/phase_centre_internal.h"
+#include "ms_io/field_centres_internal.h"
+#include "ms_io/metadata_internal.h"
 #include "ms_io/table_access_internal.h"
 
 namespace misfit::ms_io {
 namespace {
 
+std::string capitals(std::string text) {
+  for (char& letter : text) letter = static_cast<char>(std::toupper(static_cast<unsigned char>(letter)));
+  return text;
+}
+
 /// FITS RADESYS of a frame's name in CASA; empty for others.
-std::string frame_named(std::string name) {
-  for (char& letter : name) letter = static_cast<char>(std::toupper(static_cast<unsigned char>(letter)));
+std::string frame_named(const std::string& of) {
+  const std::string name = capitals(of);
   return name == "J2000" ? "FK5" : name == "ICRS" ? "ICRS" : name == "B1950" ? "FK4" : "";
 }
 
@@ -69,17 +75,63 @@ std::uint64_t first_row_of(const casacore::MeasurementSet& set, int field) {
   return 0;
 }
 
+/// The direction that a text means.
+struct Meant {
+  imager::SkyDirection direction;
+  std::string remark;  ///< empty, but of a field that moves
+};
+
+/// Where a field is phased to and, where that moves, in the middle of its rows.
+Meant centre_in(const casacore::MeasurementSet& set, const std::string& path, int field) {
+  SelectedRows all;
+  all.first_row = first_row_of(set, field);
+  all.first_row_of_field[field] = all.first_row;
+  all.blocks = {{0, {{0, set.nrow()}}, set.nrow()}};
+  FieldDirections fields(set, path);
+  const bool moves = fields.motion(field) != Motion::none;
+  const auto times = moves ? times_of(set, path, all, {field}) : std::map<int, std::vector<double>>();
+  for (const auto& [moving, times_s] : times) all.moving[moving] = {times_s.front(), times_s.back()};
+  const FieldCentre centre = usual_centre(fields, set, all, field);
+  if (!moves) return {centre.direction, ""};
+  return {centre.direction, "field " + fields.label(field) + " of " + path +
+                                " moves: --phasecenter takes where it was in the middle of its rows, at " +
+                                utc_text(utc_s(centre.observed)) + "; TRACKFIELD moves along with it"};
+}
+
+Meant meaning_of(const std::string& text, const std::string& path) {
+  if (const auto direction = direction_in(text)) return {*direction, ""};
+  const casacore::MeasurementSet set = open_measurement_set(path, Access::read);
+  const auto field = translated("cannot read FIELD of " + path, [&] { return field_in(set, one_line(text)); });
+  if (field && set.nrow() > 0) return translated("cannot read FIELD of " + path, [&] { return centre_in(set, path, *field); });
+  casacore::MDirection::Types type = casacore::MDirection::J2000;
+  const bool body = casacore::MDirection::getType(type, capitals(one_line(text))) && type >= casacore::MDirection::MERCURY;
+  const std::string fields = "one of its " + std::to_string(set.field().nrow()) + " fields by id or name";
+  if (body)
+    throw std::runtime_error("--phasecenter '" + text +
+                             "' is a body of the solar system, whose place is not looked up; expected TRACKFIELD, which images "
+                             "fields that follow an ephemeris about what they follow, a direction, or " +
+                             fields);
+  throw std::runtime_error("--phasecenter '" + text + "' is neither a direction nor a field of " + path +
+                           "; expected J2000, ICRS or B1950 with angles such as 12h30m49.4s +12d23m28s or 187.7deg 12.39deg, "
+                           "TRACKFIELD, or " +
+                           fields);
+}
+
 }  // namespace
 
 imager::SkyDirection parse_phase_centre(const std::string& text, const std::string& path) {
-  if (const auto direction = direction_in(text)) return *direction;
-  const casacore::MeasurementSet set = open_measurement_set(path, Access::read);
-  const auto field = translated("cannot read FIELD of " + path, [&] { return field_in(set, one_line(text)); });
-  if (field && set.nrow() > 0) return field_centre(set, path, *field, first_row_of(set, *field)).direction;
-  throw std::runtime_error(
-      "--phasecenter '" + text + "' is neither a direction nor a field of " + path +
-      "; expected J2000, ICRS or B1950 with angles such as 12h30m49.4s +12d23m28s or 187.7deg 12.39deg, or one of its " +
-      std::to_string(set.field().nrow()) + " fields by id or name");
+  return meaning_of(text, path).direction;
+}
+
+Selection phased_to(Selection selection, const std::string& text, const std::string& path) {
+  if (capitals(one_line(text)) == "TRACKFIELD") {
+    selection.moving = Selection::Moving::about_targets;
+    return selection;
+  }
+  const Meant meant = meaning_of(text, path);
+  selection.phase_centre = meant.direction;
+  selection.phase_centre_remark = meant.remark;
+  return selection;
 }
 
 }  // namespace misfit::ms_io

@@ -7,7 +7,7 @@
 #include <stdexcept>
 #include <tuple>
 
-#include "ms_io/phase_centre_internal.h"
+#include "ms_io/field_centres_internal.h"
 #include "ms_io/selection_internal.h"
 #include "ms_io/setup_internal.h"
 #include "ms_io/table_access_internal.h"
@@ -38,7 +38,10 @@ struct TimedRow {
 class BlockBuilder {
  public:
   BlockBuilder(const SetupTable& table, const ParsedSelection& parsed, const Selection& selection, const RowUse& use)
-      : table_(table), parsed_(parsed), use_(use) {
+      : table_(table),
+        parsed_(parsed),
+        use_(use),
+        by_field_(selection.phase_centre || selection.moving == Selection::Moving::about_targets) {
     result_.phase_centre = selection.phase_centre;
     result_.spectral_frame = selection.spectral_frame;
   }
@@ -48,7 +51,7 @@ class BlockBuilder {
     if (!parsed_.has_field(at.field)) return;
     if (!parsed_.uv.empty() && !has_uv(uvw_m, at.data_description)) return;
     if (!parsed_.has_row(at.row)) return;
-    const std::size_t setup = setup_of({at.data_description, result_.phase_centre ? at.field : 0});
+    const std::size_t setup = setup_of({at.data_description, by_field_ ? at.field : 0});
     if (setup == not_selected) return;
     ++result_.rows;
     TimedRow& first = first_of_field_.emplace(at.field, at).first->second;
@@ -116,6 +119,7 @@ class BlockBuilder {
   const SetupTable& table_;
   const ParsedSelection& parsed_;
   RowUse use_;
+  bool by_field_;  ///< each is shifted in a way of its own
   SelectedRows result_;
   std::map<int, TimedRow> first_of_field_;
   std::map<Key, std::size_t> setup_;
@@ -136,8 +140,11 @@ void append(std::vector<Run>& runs, std::uint64_t first, std::uint64_t count) {
   }
 }
 
-SelectedRows select_rows(const casacore::MeasurementSet& set, const std::string& path, const Selection& selection,
-                         const RowUse& use) {
+namespace {
+
+/// Those of the selection, wherever they are phased to.
+SelectedRows find_rows(const casacore::MeasurementSet& set, const std::string& path, const Selection& selection,
+                       const RowUse& use) {
   const SetupTable table(set, path);
   const ParsedSelection parsed = parse_selection(set, path, selection);
   BlockBuilder builder(table, parsed, selection, use);
@@ -165,16 +172,24 @@ SelectedRows select_rows(const casacore::MeasurementSet& set, const std::string&
     });
   }
   SelectedRows selected = builder.finish();
-  if (selected.phase_centre) {
-    for (Setup& setup : selected.setups) {
-      const FieldCentre from = field_centre(set, path, setup.field, selected.first_row_of_field.at(setup.field));
-      setup.shift = phase_shift(from, *selected.phase_centre);
-    }
-  }
   if (selected.rows > 0) return selected;
   const std::string given = to_text(selection);
   throw std::runtime_error(path + ": " + (given.empty() ? "there is" : given + " selects") + " none of its " +
                            std::to_string(set.nrow()) + " rows");
+}
+
+}  // namespace
+
+SelectedRows select_rows(const casacore::MeasurementSet& set, const std::string& path, const Selection& selection,
+                         const RowUse& use) {
+  SelectedRows selected = find_rows(set, path, selection, use);
+  const std::optional<imager::SkyDirection> centre = settle_phase_centre(set, path, selection, selected);
+  if (!centre) return selected;
+  Selection shifted = selection;
+  shifted.phase_centre = centre;
+  SelectedRows again = select_rows(set, path, shifted, use);
+  again.remarks.insert(again.remarks.begin(), selected.remarks.begin(), selected.remarks.end());
+  return again;
 }
 
 }  // namespace misfit::ms_io

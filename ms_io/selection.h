@@ -22,8 +22,14 @@ struct Selection {
   std::string scan = "";
   std::string intent = "";  ///< of STATE's OBS_MODE
   std::string observation = "";
-  /// Where the visibilities are phased to; none: where they are, which must be one direction.
+  /// Where the visibilities are phased to; none: where they are, which must be one direction, or one moving field.
   std::optional<imager::SkyDirection> phase_centre = {};
+  std::string phase_centre_remark = "";  ///< what users should know of `phase_centre`, in a sentence; mostly empty
+  /// What becomes of fields whose phase centres move, without a phase_centre. They stay phased to themselves: what moves along
+  /// stands still, unless they turn with the Earth, which is refused. Or to what they follow, offsets of ephemerides undone, or
+  /// the Earth. Or they are shifted to where they are in the middle of their rows: the sky stands still.
+  enum class Moving { about_themselves, about_targets, shifted_to_middle };
+  Moving moving = Moving::about_themselves;
   /// FITS SPECSYS of the frame in which frequencies count, see parse_spectral_frame(); empty: that of the data.
   std::string spectral_frame = "";
 };

@@ -2,6 +2,7 @@
 
 #include <casacore/ms/MeasurementSets/MeasurementSet.h>
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <map>
@@ -9,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "imager/phase_shift.h"
+#include "ms_io/field_shift_internal.h"
 #include "ms_io/measurement_set.h"
 
 namespace misfit::ms_io {
@@ -23,8 +24,8 @@ struct Run {
 /// One DATA_DESC_ID of the selection: what its rows have in common. Of one field where each has a phase shift of its own.
 struct Setup {
   int data_description = 0;
-  int field = 0;             ///< where visibilities are shifted; else 0
-  imager::PhaseShift shift;  ///< from where its rows are phased to
+  int field = 0;     ///< where visibilities are shifted; else 0
+  FieldShift shift;  ///< from where its rows are phased to
   int spectral_window = 0;
   std::size_t place = 0;                 ///< of the window among those that the selection lists, or among all
   std::string spectral_frame;            ///< FITS SPECSYS
@@ -48,6 +49,14 @@ struct BlockRows {
   std::uint64_t rows = 0;
 };
 
+/// TIME of the first and last selected rows of a field, as the set stores it.
+struct TimeSpan {
+  double first_s = 0;
+  double last_s = 0;
+
+  double middle_s() const { return first_s + (last_s - first_s) / 2; }
+};
+
 /// The selection, resolved into what is to be read.
 struct SelectedRows {
   std::vector<Setup> setups;
@@ -56,8 +65,18 @@ struct SelectedRows {
   std::uint64_t samples = 0;                         ///< rows × selected channels
   std::uint64_t first_row = 0;                       ///< the earliest row selected, wherever it stands
   std::map<int, std::uint64_t> first_row_of_field;   ///< the earliest, for the fields that have selected rows
+  std::map<int, TimeSpan> moving;                    ///< the fields of these whose phase centres move
+  double moved_rad = 0;                              ///< the farthest that one does
   std::optional<imager::SkyDirection> phase_centre;  ///< where the visibilities are shifted to
+  bool follows_field = false;                        ///< instead the image moves with the field of the first row
+  bool follows_target = false;                       ///< namely with that field's ephemeris, without offset
+  std::vector<std::string> remarks;                  ///< what users should know of phase centres, in sentences
   std::string spectral_frame;                        ///< in which frequencies count; empty: that of each window
+
+  /// Whether a setup's shift depends on time.
+  bool shift_moves() const {
+    return std::any_of(setups.begin(), setups.end(), [](const Setup& setup) { return setup.shift.moves(); });
+  }
 };
 
 /// What the rows are for.

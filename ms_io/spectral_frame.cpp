@@ -4,7 +4,8 @@
 #include <stdexcept>
 
 #include "ms_io/celestial_frame_internal.h"
-#include "ms_io/phase_centre_internal.h"
+#include "ms_io/field_centres_internal.h"
+#include "ms_io/observing_place_internal.h"
 #include "ms_io/spectral_frame_internal.h"
 #include "ms_io/table_access_internal.h"
 
@@ -65,10 +66,9 @@ FrameRatio::FrameRatio(const casacore::MeasurementSet& set, const std::string& p
   translated("cannot find the frame of frequencies of " + path, [&] {
     const std::uint64_t row = selected.first_row;
     frame_ = frame_of(set, row);  // shared with the conversion below
-    const imager::SkyDirection towards =
-        selected.phase_centre ? *selected.phase_centre
-                              : field_centre(set, path, casacore::ScalarColumn<int>(set, "FIELD_ID")(row), row).direction;
-    frame_.set(measure_of(towards));
+    const int field = first_field(set, selected);
+    frame_.set(measure_of(selected.phase_centre.value_or(field_centre(set, path, field, row).direction)));
+    if (selected.follows_field) moving_.reset(new Towards{{set, path}, selected, field});
     convert_.emplace(casacore::MFrequency::Ref(spectral_frame_code(setup.spectral_frame), frame_),
                      casacore::MFrequency::Ref(spectral_frame_code(selected.spectral_frame), frame_));
   });
@@ -78,6 +78,11 @@ double FrameRatio::at(double time_s) {
   if (!convert_ || (ratio_ != 0 && time_s == time_s_)) return ratio_;
   constexpr double any_hz = 1e9;
   frame_.resetEpoch(casacore::MVEpoch(casacore::Quantity(time_s, "s")));
+  if (moving_) {
+    const Moment moment{time_s, moving_->selected.first_row};
+    const FieldCentre centre = followed_centre(moving_->fields, moving_->selected, moving_->field, moment);
+    frame_.resetDirection(measure_of(centre.direction));
+  }
   ratio_ = (*convert_)(any_hz).getValue().getValue() / any_hz;
   time_s_ = time_s;
   return ratio_;

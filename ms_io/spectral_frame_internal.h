@@ -5,9 +5,11 @@
 #include <casacore/measures/Measures/MeasFrame.h>
 #include <casacore/ms/MeasurementSets/MeasurementSet.h>
 
+#include <memory>
 #include <optional>
 #include <string>
 
+#include "ms_io/field_directions_internal.h"
 #include "ms_io/selection_internal.h"
 #include "ms_io/spectral_frame.h"
 
@@ -20,7 +22,7 @@ std::string spectral_frame_of(int code);
 casacore::MFrequency::Types spectral_frame_code(const std::string& spectral_frame);
 
 /// By how much frequencies of a spectral window differ in another frame, at the telescope's place and towards a direction: all
-/// by one factor, that of Doppler's shift, which changes with time.
+/// by one factor, that of Doppler's shift, which changes with time. The set and `selected` must outlive it.
 class FrameRatio {
  public:
   FrameRatio(const FrameRatio&) = delete;
@@ -32,7 +34,15 @@ class FrameRatio {
   double at(double time_s);
 
  private:
+  /// Where a field is that the image moves with.
+  struct Towards {
+    FieldDirections fields;
+    const SelectedRows& selected;
+    int field;
+  };
+
   casacore::MeasFrame frame_;
+  std::unique_ptr<Towards> moving_;                       ///< null where the direction stays
   std::optional<casacore::MFrequency::Convert> convert_;  ///< none where the frames are the same
   double time_s_ = 0;                                     ///< of ratio_
   double ratio_ = 0;                                      ///< 0: not known yet

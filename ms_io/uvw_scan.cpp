@@ -19,9 +19,10 @@ class UvwScan {
       : antenna1_column_(table, "ANTENNA1"),
         antenna2_column_(table, "ANTENNA2"),
         flag_row_column_(table, "FLAG_ROW"),
+        time_column_(table, "TIME"),
         uvw_column_(table, "UVW") {}
 
-  /// Calls visit(uvw_m) for each of `rows` that is wanted.
+  /// Calls visit(uvw_m, row's place among `rows`) for each of `rows` that is wanted.
   template <typename Visit>
   void for_each(const Rows& rows, ReachOf wanted, const Visit& visit) {
     read(antenna1_column_, rows, antenna1_);
@@ -31,16 +32,24 @@ class UvwScan {
     const double* uvw = uvw_.data();
     for (std::size_t r = 0; r < rows.count(); ++r, uvw += 3) {
       if (wanted == ReachOf::usable && (antenna1_(r) == antenna2_(r) || flag_row_(r))) continue;
-      if (std::isfinite(uvw[0]) && std::isfinite(uvw[1]) && std::isfinite(uvw[2])) visit(uvw);
+      if (std::isfinite(uvw[0]) && std::isfinite(uvw[1]) && std::isfinite(uvw[2])) visit(uvw, r);
     }
+  }
+
+  /// TIME of `rows`.
+  const double* times_s(const Rows& rows) {
+    read(time_column_, rows, time_s_);
+    return time_s_.data();
   }
 
  private:
   casacore::ScalarColumn<int> antenna1_column_, antenna2_column_;
   casacore::ScalarColumn<bool> flag_row_column_;
+  casacore::ScalarColumn<double> time_column_;
   casacore::ArrayColumn<double> uvw_column_;
   casacore::Vector<int> antenna1_, antenna2_;  ///< [row]
   casacore::Vector<bool> flag_row_;            ///< [row]
+  casacore::Vector<double> time_s_;            ///< [row]
   casacore::Array<double> uvw_;                ///< [row][3]
 };
 
@@ -54,9 +63,18 @@ void scan(const OpenSet& open_set, ReachOf wanted, const Visit& visit) {
     some.frequency_hz = setup.frequency_hz;
     for (const Rows& piece : pieces(block.runs, piece_rows)) {
       some.uvw_m.edit().clear();
-      translated("cannot read UVW, antennas or FLAG_ROW of " + open_set.path,
-                 [&] { scan.for_each(piece, wanted, [&](const double* uvw_m) { some.uvw_m.append(uvw_m, uvw_m + 3); }); });
-      setup.shift.rotate(some.uvw_m.edit());
+      imager::RowShifts shifts;
+      const double* const time_s = setup.shift.moves()
+                                       ? translated("cannot read TIME of " + open_set.path, [&] { return scan.times_s(piece); })
+                                       : nullptr;
+      translated("cannot read UVW, antennas or FLAG_ROW of " + open_set.path, [&] {
+        scan.for_each(piece, wanted, [&](const double* uvw_m, std::size_t row) {
+          some.uvw_m.append(uvw_m, uvw_m + 3);
+          if (time_s != nullptr) setup.shift.append(time_s + row, 1, shifts);
+        });
+      });
+      if (time_s == nullptr) setup.shift.append(nullptr, some.rows(), shifts);
+      shifts.rotate(some.uvw_m.edit());
       visit(some);
     }
   }

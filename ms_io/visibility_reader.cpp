@@ -37,6 +37,7 @@ class GrowingBlock {
     block.uvw_m.edit().resize(rows * 3);
     block.weight.resize(samples);
     find_counted();
+    if (!setup.shift.moves()) setup.shift.append(nullptr, rows, shifts_);
     block.counts.rows_read = setup.uncounted.count == 0 ? rows : 0;
     block.counts.samples_read = rows * counted_channels_;
     next_uvw_m_ = block.uvw_m.edit().data();
@@ -48,6 +49,7 @@ class GrowingBlock {
     imager::SampleCounts& counts = blocks_.front()->counts;
     const std::size_t channels = setup_.frequency_hz.size(), cell = recipe_.correlations * setup_.channel_span();
     if (!stored.frame_ratio.empty()) append_spectral(stored, first, count);
+    if (setup_.shift.moves()) setup_.shift.append(stored.time_s.data() + first, count, shifts_);
     const std::size_t weight_cell = stored.weight_per_channel ? cell : recipe_.correlations;
     const int* const antenna1 = stored.antenna1.data();
     const int* const antenna2 = stored.antenna2.data();
@@ -78,7 +80,7 @@ class GrowingBlock {
       blocks_[i]->counts = first.counts;
       first.other_stokes.push_back(blocks_[i]);
     }
-    for (const auto& stokes : blocks_) setup_.shift.apply(*stokes);
+    for (const auto& stokes : blocks_) shifts_.apply(*stokes);
     return blocks_.front();
   }
 
@@ -140,6 +142,7 @@ class GrowingBlock {
   std::vector<std::shared_ptr<imager::VisibilityBlock>> blocks_;  ///< [Stokes parameter]
   StokesSamples next_;                                            ///< where the next samples go
   double* next_uvw_m_;
+  imager::RowShifts shifts_;
 };
 
 /// Reads a group of blocks at once, a piece of their rows at a time, and hands them out one by one.

@@ -9,12 +9,14 @@
 #include "ms_io/fingerprint.h"
 #include "ms_io/measurement_set.h"
 #include "ms_io/model_writer.h"
+#include "ms_io/phase_centre.h"
 #include "tools/base/numbers.h"
 #include "tools/base/option_checks.h"
 #include "tools/base/progress.h"
 #include "tools/base/text.h"
 #include "tools/command.h"
 #include "tools/formats/component_list.h"
+#include "tools/formats/image_file.h"
 #include "tools/formats/model_image.h"
 #include "tools/kernel_choice/kernel_choice.h"
 #include "tools/run/selection_options.h"
@@ -28,8 +30,9 @@ struct PredictOptions {
   std::string model;
   std::string components;
   bool subtract = false;
-  std::string datacolumn;  ///< empty: DATA
-  std::string column;      ///< empty: what column_of() says
+  std::string datacolumn;   ///< empty: DATA
+  std::string column;       ///< empty: what column_of() says
+  std::string phasecenter;  ///< as ms_io::phased_to() takes it; empty: see selection_about()
   ms_io::Selection selection;
   double accuracy = 1e-6;
   bool accuracy_is_typed = false;
@@ -42,16 +45,40 @@ struct PredictOptions {
 struct NamedModel {
   ModelVisibilities visibilities;
   ms_io::Fingerprint fingerprint;
-  bool empty = false;   ///< a list without sources
-  std::string warning;  ///< of what it is written in spite of
+  bool empty = false;          ///< a list without sources
+  ms_io::Selection selection;  ///< with the phase centre that it is about
+  std::vector<std::string> remarks;
 };
+
+/// The selection, phased to where the model is. Directions on the sky, in a list or the header of an image, stand still where a
+/// field moves; offsets from the phase centre, and images of what a field follows, move along.
+ms_io::Selection selection_about(const PredictOptions& o) {
+  if (!o.phasecenter.empty()) return ms_io::phased_to(o.selection, o.phasecenter, o.vis);
+  const bool stands =
+      o.model.empty() ? lists_directions(o.components) : open_image_file(o.model)->header().observation.moving_at.empty();
+  ms_io::Selection selection = o.selection;
+  if (stands) selection.moving = ms_io::Selection::Moving::shifted_to_middle;
+  return selection;
+}
+
+/// Where an image has to be centred for this set. One that moves along is centred on where the field was in the middle of
+/// another run.
+imager::SkyDirection centre_expected(const PredictOptions& o, const ms_io::MeasurementSet& set) {
+  const auto file = open_image_file(o.model);
+  const imager::ImageHeader& header = file->header();
+  if (!set.observation().moving_at.empty()) return header.geometry.phase_centre;
+  if (header.observation.moving_at.empty()) return set.observation().phase_centre;
+  throw std::runtime_error(o.model + " moves along with its field (TRACKFLD is " + header.observation.moving_at +
+                           "), and what is selected of " + o.vis +
+                           " is phased to a direction; expected a field that moves, or an image that stands still");
+}
 
 NamedModel image_model(const PredictOptions& o, const ms_io::MeasurementSet& set, int threads) {
   imager::GriddingRequest request;
   request.kernel = choose_kernel(o.kernel);
   request.accuracy = is_kernel_file(o.kernel) && !o.accuracy_is_typed ? 0 : o.accuracy;
   request.threads = threads;
-  const std::vector<imager::SkyImage> planes = read_stokes_model(o.model, set.observation().phase_centre);
+  const std::vector<imager::SkyImage> planes = read_stokes_model(o.model, centre_expected(o, set));
   StokesPlanes model{};
   NamedModel named;
   named.fingerprint.add(o.kernel.name).add(std::vector<double>{request.accuracy});
@@ -64,7 +91,8 @@ NamedModel image_model(const PredictOptions& o, const ms_io::MeasurementSet& set
         .add(std::vector<double>{plane.geometry.cell_rad, plane.geometry.centre.l, plane.geometry.centre.m});
   }
   named.visibilities = image_visibilities(model, planes.front().geometry, request, set);
-  named.warning = band_warning(planes.front().observation, set.observation(), o.model);
+  if (std::string warning = band_warning(planes.front().observation, set.observation(), o.model); !warning.empty())
+    named.remarks.push_back(std::move(warning));
   return named;
 }
 
@@ -119,8 +147,17 @@ std::string command_of(const PredictOptions& o) {
 /// Of this rank.
 NamedModel read_model(const PredictOptions& o, const imager::Ranks& ranks) {
   const int threads = o.threads == 0 ? imager::available_threads(ranks.on_these_cores()) : o.threads;
-  const std::unique_ptr<ms_io::MeasurementSet> set = ms_io::MeasurementSet(o.vis, o.selection, "").share(ranks);
-  return o.model.empty() ? component_model(o, *set, threads) : image_model(o, *set, threads);
+  ms_io::Selection selection = selection_about(o);
+  std::unique_ptr<ms_io::MeasurementSet> set = ms_io::MeasurementSet(o.vis, selection, "").share(ranks);
+  const std::vector<std::string> remarks = set->remarks();
+  if (!o.model.empty() && selection.moving == ms_io::Selection::Moving::shifted_to_middle && set->selection().phase_centre) {
+    selection.phase_centre = open_image_file(o.model)->header().geometry.phase_centre;
+    set = ms_io::MeasurementSet(o.vis, selection, "").share(ranks);
+  }
+  NamedModel model = o.model.empty() ? component_model(o, *set, threads) : image_model(o, *set, threads);
+  model.selection = set->selection();
+  model.remarks.insert(model.remarks.begin(), remarks.begin(), remarks.end());
+  return model;
 }
 
 void predict(const PredictOptions& o, const imager::Ranks& ranks) {
@@ -133,10 +170,10 @@ void predict(const PredictOptions& o, const imager::Ranks& ranks) {
       progress.say("warning: " + sentence);
   }
   NamedModel model = read_model(o, ranks);
+  for (const std::string& sentence : model.remarks) progress.say("warning: " + sentence);
   ranks.meet();  // before the set changes
   SharedPrediction shared(ranks, model.visibilities.predict);
   if (!ranks.first()) return shared.follow();
-  if (!model.warning.empty()) progress.say("warning: " + model.warning);
   if (model.empty)
     progress.say("warning: " + o.components +
                  " lists no source: " + (o.subtract ? "the data are written as they are" : "all visibilities written are 0"));
@@ -144,9 +181,9 @@ void predict(const PredictOptions& o, const imager::Ranks& ranks) {
                    [&](const std::string& sentence) { progress.say(sentence); }};
   progress.begin(o.subtract ? "subtract" : "predict");
   const auto show = [&](std::uint64_t done, std::uint64_t total) { progress.update(done, total); };
-  const ms_io::ModelWriteReport report =
-      ms_io::write_model(o.vis, o.selection, column, [&](const imager::SampleCoordinates& at) { return shared.predict(at); },
-                         show, {model.visibilities.samples_at_once, ranks.size()});
+  const ms_io::ModelWriteReport report = ms_io::write_model(
+      o.vis, model.selection, column, [&](const imager::SampleCoordinates& at) { return shared.predict(at); }, show,
+      {model.visibilities.samples_at_once, ranks.size()});
   shared.end();
   progress.end();
   if (report.zero_data)
@@ -189,6 +226,10 @@ void add_predict_command(CLI::App& program, const imager::Ranks& ranks) {
       "are named. It may be the column that is read, unless that is DATA. A new column holds 0, or the data, outside the "
       "selection");
   declare_selection(*command, o->selection);
+  command->add_option("--phasecenter", o->phasecenter,
+                      "Direction, field or TRACKFIELD that the model is about, as in misfit image; what is selected may then "
+                      "have several phase "
+                      "centres. When empty: the data's own; where that moves, directions on the sky stand still");
   command->add_option("--accuracy", o->accuracy, "Relative accuracy of the visibilities");
   list_kernels(*command->add_option("--kernel", o->kernel.name, "Gridding function: a name or a kernel-table file"));
   declare_kernel_folder(*command, o->kernel.folder);

@@ -1,5 +1,6 @@
 #include "ms_io/spectral_frame.h"
 
+#include <casacore/casa/Arrays/ArrayMath.h>
 #include <casacore/tables/DataMan/TiledShapeStMan.h>
 
 #include <boost/test/unit_test.hpp>
@@ -174,6 +175,67 @@ BOOST_AUTO_TEST_CASE(a_part_reads_and_holds_no_other_channels) {
   const std::uint64_t all = bytes_of_pass(MeasurementSet(set.path(), in_frame("TOPO"), "data")), data = rows * 1000 * 2 * 8;
   BOOST_TEST(all >= data);
   BOOST_TEST(bytes_of_pass(*part) <= all - data + 2 * 8 * rows * 2 * 8);  // two tiles
+}
+
+namespace {
+
+/// Antennas relative to the first, as some simulators have them.
+void make_positions_relative(const SmallSet& set) {
+  set.modify([](casacore::MeasurementSet& open) {
+    casacore::ArrayColumn<double> position(open.antenna(), "POSITION");
+    const casacore::Array<double> first = position(0);
+    for (casacore::rownr_t a = 0; a < antennas; ++a) position.put(a, position(a) - first);
+  });
+}
+
+void name_telescope(const SmallSet& set, const std::string& name) {
+  set.modify([&](casacore::MeasurementSet& open) {
+    casacore::ScalarColumn<casacore::String>(open.observation(), "TELESCOPE_NAME").put(0, name);
+  });
+}
+
+}  // namespace
+
+BOOST_AUTO_TEST_CASE(a_telescope_that_is_known_stands_where_it_does_whatever_its_antennas_say) {
+  for (const std::string name : {"VLA", "EVLA"}) {
+    const SmallSet set(observed_at_three_times());
+    name_telescope(set, name);
+    const std::vector<double> before = ratios(set, "LSRK");
+    make_positions_relative(set);
+    // The antennas of a set called EVLA, which casacore does not know, stand some 10 m from the VLA's centre: the ground turns
+    // by 1e-3 m/s more or less.
+    const std::vector<double> after = ratios(set, "LSRK");
+    for (std::size_t row = 0; row < before.size(); ++row)
+      BOOST_TEST(std::abs(after[row] - before[row]) <= (name == "VLA" ? 0 : 1e-10));
+    BOOST_TEST(MeasurementSet(set.path(), in_frame("LSRK"), "data").remarks().empty());
+  }
+}
+
+BOOST_AUTO_TEST_CASE(frequencies_without_the_turning_of_the_earth_are_warned_of) {
+  const SmallSet set(observed_at_three_times());
+  const auto remarks = [&](const Selection& selection) { return MeasurementSet(set.path(), selection, "data").remarks(); };
+  name_telescope(set, "NOWHERE");
+  BOOST_TEST(remarks(in_frame("LSRK")).empty());
+  // Another antenna on the Earth will do: it stands 100 m from the first, where the ground turns by 7 mm/s more or less.
+  const std::vector<double> before = ratios(set, "LSRK");
+  set.modify([](casacore::MeasurementSet& open) {
+    casacore::ArrayColumn<double>(open.antenna(), "POSITION").put(0, casacore::Vector<double>(3, 0.0));
+  });
+  BOOST_TEST(remarks(in_frame("LSRK")).empty());
+  for (std::size_t row = 0; row < before.size(); ++row) BOOST_TEST(std::abs(ratios(set, "LSRK")[row] - before[row]) < 3e-11);
+  set.modify([](casacore::MeasurementSet& open) {
+    for (casacore::rownr_t a = 1; a < antennas; ++a)
+      casacore::ArrayColumn<double>(open.antenna(), "POSITION").put(a, casacore::Vector<double>(3, 100.0));
+  });
+  BOOST_REQUIRE(remarks(in_frame("LSRK")).size() == 1);
+  const std::string remark = remarks(in_frame("LSRK")).front();
+  BOOST_TEST(remark == "frequencies of " + set.path() +
+                           " are converted to LSRK without the Earth's rotation, up to 0.5 km/s, since casacore does not know "
+                           "where a telescope 'NOWHERE' stands, and POSITION of antenna 0 (A0) is 0 m from the middle of the "
+                           "Earth, expected some 6371000 m; expected a TELESCOPE_NAME that casacore knows, or positions from "
+                           "the Earth's middle");
+  BOOST_TEST(remarks(in_frame("TOPO")).empty());
+  BOOST_TEST(remarks({}).empty());
 }
 
 BOOST_AUTO_TEST_CASE(frames_go_by_the_names_of_casa) {

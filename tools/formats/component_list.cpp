@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <sstream>
 #include <stdexcept>
 #include <string_view>
 
@@ -201,18 +202,25 @@ std::vector<imager::Stokes> flux_columns(const std::vector<SourcesOf>& lists) {
   return columns;
 }
 
+/// The position's two values, see write_stokes_components().
+std::vector<double> position_values(const imager::DirectionCosines& at,
+                                    const std::optional<imager::SkyDirection>& phase_centre) {
+  if (!phase_centre) return {at.l / arcsec, at.m / arcsec};
+  const imager::SkyDirection direction = imager::sky_direction(at, *phase_centre);
+  const double ra_deg = direction.ra_rad / degree;
+  return {ra_deg < 360 ? ra_deg : 0, direction.dec_rad / degree};
+}
+
 /// With `fluxes`, one of which is the source's own, and 0 in the other columns.
-void append_line(const Source& source, const std::vector<double>& fluxes, const imager::SkyDirection& phase_centre,
-                 std::string& text) {
+void append_line(const Source& source, const std::vector<double>& fluxes,
+                 const std::optional<imager::SkyDirection>& phase_centre, std::string& text) {
   const auto& [l, m] = source.position;
   if (!(std::hypot(l, m) < 1))
     fail("l " + significant(l, 9) + ", m " + significant(m, 9) + ": beyond the horizon, expected l² + m² below 1");
   if (!std::isfinite(source.flux_jy) || !std::isfinite(source.fwhm_rad) || source.fwhm_rad < 0)
     fail("flux " + std::to_string(source.flux_jy) + " Jy and width " + std::to_string(source.fwhm_rad) +
          " rad, expected finite numbers, and a width of 0 or more");
-  const imager::SkyDirection direction = imager::sky_direction(source.position, phase_centre);
-  const double ra_deg = direction.ra_rad / degree;
-  std::vector<double> values{ra_deg < 360 ? ra_deg : 0, direction.dec_rad / degree};
+  std::vector<double> values = position_values(source.position, phase_centre);
   values.insert(values.end(), fluxes.begin(), fluxes.end());
   values.push_back(source.fwhm_rad / arcsec);
   for (const double value : values) {
@@ -232,15 +240,26 @@ std::array<std::vector<Source>, 4> read_stokes_components(const std::string& pat
   return read_list(path, phase_centre, Polarised::yes);
 }
 
+bool lists_directions(const std::string& path) {
+  std::istringstream lines(read_file(path));
+  for (std::string line; std::getline(lines, line);) {
+    if (trimmed(line).empty() || trimmed(line).starts_with('#')) continue;
+    const std::vector<std::string_view> names = split_at_commas(line);
+    // The first may have a byte order mark before it.
+    return std::any_of(names.begin(), names.end(), [](std::string_view name) { return trimmed(name).ends_with("ra_deg"); });
+  }
+  return false;
+}
+
 void write_component_list(const std::string& path, const std::vector<Source>& sources,
                           const imager::SkyDirection& phase_centre) {
   write_stokes_components(path, {{imager::Stokes::I, sources}}, phase_centre);
 }
 
 void write_stokes_components(const std::string& path, const std::vector<SourcesOf>& lists,
-                             const imager::SkyDirection& phase_centre) {
+                             const std::optional<imager::SkyDirection>& phase_centre) {
   const std::vector<imager::Stokes> columns = flux_columns(lists);
-  std::string text = "ra_deg,dec_deg";
+  std::string text = phase_centre ? "ra_deg,dec_deg" : "l_arcsec,m_arcsec";
   for (const imager::Stokes column : columns) text += "," + flux_column(column);
   text += ",scale_arcsec\n";
   int line = 1;

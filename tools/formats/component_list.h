@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -22,6 +23,10 @@ std::vector<imager::Source> read_component_list(const std::string& path, const i
 std::array<std::vector<imager::Source>, 4> read_stokes_components(const std::string& path,
                                                                   const imager::SkyDirection& phase_centre);
 
+/// Whether the list has columns of right ascension and declination, whatever else is wrong with it. Throws std::runtime_error
+/// where it cannot be read.
+bool lists_directions(const std::string& path);
+
 /// Writes a list that `read_component_list` takes, with the columns ra_deg,dec_deg,flux_jy,scale_arcsec and as many digits as
 /// give each number back exactly; 0 ≤ ra_deg < 360, in the frame of `phase_centre`. The file appears under its name only when
 /// complete. Throws std::runtime_error that names the path, and the line of a source that has no place on the sky, or whose
@@ -35,8 +40,8 @@ struct SourcesOf {
   std::vector<imager::Source> sources;
 };
 /// The same of several, one after the other, with a column for each besides `flux_jy`: flux_q_jy, flux_xx_jy and so on. A line
-/// has 0 in all but its own.
+/// has 0 in all but its own. Without a phase centre, as where that moves, with the columns l_arcsec,m_arcsec.
 void write_stokes_components(const std::string& path, const std::vector<SourcesOf>& lists,
-                             const imager::SkyDirection& phase_centre);
+                             const std::optional<imager::SkyDirection>& phase_centre);
 
 }  // namespace misfit::tools

@@ -101,6 +101,8 @@ void CleanStage::read_start_model() {
     refuse_start_model("has " + size(g.width, g.height), size(own.width, own.height));
   if (!(cell_off < 1e-3))
     refuse_start_model("has pixels of " + significant(g.cell_rad * 180 / M_PI * 3600, 6) + "arcsec", o_.cell);
+  if (!start_file_->header().observation.moving_at.empty() && image_.observation.moving_at.empty())
+    refuse_start_model("moves along with its field", "one that stands still, as this image does");
   if (g.off_phase_centre()) {
     const imager::PixelPlace at = imager::grid_of(g).reference_pixel;  // counted from 1 in files
     refuse_start_model("has its reference pixel at " + significant(at.column + 1, 9) + ", " + significant(at.row + 1, 9),

@@ -95,6 +95,7 @@ class CubeRun {
     if (!o_.dry_run && ranks_.first()) name_ = claim_product_paths(o_);
     set_ = std::make_unique<ms_io::MeasurementSet>(o_.vis, selection_of(o_), o_.datacolumn, stokes_);
     for (const std::string& sentence : set_->incomplete_columns()) warn(sentence);
+    for (const std::string& sentence : set_->remarks()) warn(sentence);
     windows_ = set_->spectral_windows();
     sampling_ = cube_sampling(o_.cube, windows_);
     header_ = {.geometry = geometry_of(o_, set_->observation().phase_centre),

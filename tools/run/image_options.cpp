@@ -31,7 +31,7 @@ void declare_scene(CLI::App& command, ImageOptions& o) {
   command.add_option(
       "--phasecenter", o.phasecenter,
       "Shift the visibilities to a direction, such as 'J2000 12h30m49.4s +12d23m28s', or to the phase centre of a "
-      "field by id or name; what is selected may then have several");
+      "field by id or name; what is selected may then have several. TRACKFIELD: to what fields with an ephemeris follow");
   command.add_option("--imsize", o.imsize, "Width, or width and height, in pixels")->required()->expected(1, 2);
   command.add_option("--cell", o.cell, "Size of a pixel: 0.2arcsec, 3mas, …; in arcsec without a unit")
       ->required()
@@ -58,8 +58,7 @@ std::string names_of(const std::vector<std::string>& vis) {
 ms_io::Selection selection_of(const ImageOptions& o) {
   ms_io::Selection selection = o.selection;
   if (o.cube.is_cube()) selection.spectral_frame = ms_io::parse_spectral_frame(o.cube.outframe);
-  if (!o.phasecenter.empty()) selection.phase_centre = ms_io::parse_phase_centre(o.phasecenter, o.vis.front());
-  return selection;
+  return o.phasecenter.empty() ? selection : ms_io::phased_to(selection, o.phasecenter, o.vis.front());
 }
 
 void declare(CLI::App& command, ImageOptions& o) {

@@ -25,7 +25,7 @@ namespace misfit::tools {
 /// Options of `misfit image` as typed; names and meaning are tclean's where the meaning is the same.
 struct ImageOptions {
   std::vector<std::string> vis;
-  std::string phasecenter;  ///< as ms_io::parse_phase_centre() takes it; empty = where the data are phased to
+  std::string phasecenter;  ///< as ms_io::phased_to() takes it; empty = where the data are phased to
   std::string imagename;
   std::vector<int> imsize;  ///< width, or width and height
   std::string cell;

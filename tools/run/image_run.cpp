@@ -101,6 +101,7 @@ class ImageRun {
     if (!ranks_.alone()) set_ = set_->share(ranks_);
     for (const std::string& sentence : set_->incomplete_columns()) warn(sentence);
     if (const std::string sentence = missing_hand_warning(stokes_); o_.savemodel != "none" && !sentence.empty()) warn(sentence);
+    for (const std::string& sentence : set_->remarks()) warn(sentence);
     check_taylor_band(o_, set_->spectral_windows());
     geometry_ = geometry_of(o_, set_->observation().phase_centre);
     fields_ = notes_on_fields(o_, *set_, geometry_);

@@ -110,10 +110,11 @@ std::string missing_hand_warning(const std::vector<Stokes>& stokes) {
 
 void save_model(const ImageOptions& o, const SavedModel& model, const imager::Ranks& ranks, const imager::Progress& progress) {
   const ModelPlanes planes(model);
-  const ms_io::Selection selection = selection_of(o);
+  ms_io::Selection selection = selection_of(o);
   ModelVisibilities visibilities;
   {
     const auto set = ms_io::MeasurementSet(o.vis, selection, o.datacolumn, model.stokes).share(ranks);
+    selection = set->selection();
     visibilities = image_visibilities(planes.planes, model.geometry, gridding_request(o, model.threads), *set, planes.taylor);
   }
   ranks.meet();  // before sets change

@@ -198,7 +198,9 @@ void ProductStage::add_spectra(imager::SpectralImages& spectra, const std::strin
 void ProductStage::write_components(const std::vector<imager::CleanResult>& cleaned) const {
   std::vector<SourcesOf> found;
   for (std::size_t s = 0; s < cleaned.size(); ++s) found.push_back({scene_.stokes[s], sources(cleaned[s].components)});
-  write_stokes_components(o_.imagename + ".components.csv", found, scene_.geometry.phase_centre);
+  const bool stands = scene_.observation.moving_at.empty();
+  write_stokes_components(o_.imagename + ".components.csv", found,
+                          stands ? std::optional(scene_.geometry.phase_centre) : std::nullopt);
 }
 
 std::string ProductStage::finish_pictures(std::vector<PagePicture>& drawn) {

@@ -1,0 +1,96 @@
+#include <casacore/casa/Quanta/MVDirection.h>
+#include <casacore/casa/Quanta/Quantum.h>
+#include <casacore/tables/Tables/ScalarColumn.h>
+#include <casacore/tables/Tables/Table.h>
+#include <casacore/tables/Tables/TableRecord.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iomanip>
+#include <optional>
+#include <sstream>
+#include <utility>
+
+#include "ms_io/ephemeris_internal.h"
+
+namespace misfit::ms_io {
+namespace {
+
+using casacore::MDirection;
+
+/// The values of a column, which is in its usual unit unless it says otherwise.
+std::vector<double> values_of(const casacore::Table& table, const char* name, const char* usual_unit, const char* wanted_unit) {
+  const casacore::ScalarColumn<double> column(table, name);
+  std::vector<double> values = column.getColumn().tovector();
+  const casacore::TableRecord& keywords = column.keywordSet();
+  const casacore::String unit =
+      keywords.isDefined("QuantumUnits") ? *keywords.asArrayString("QuantumUnits").begin() : casacore::String(usual_unit);
+  const double size = casacore::Quantity(1, unit).getValue(wanted_unit);
+  for (double& value : values) value *= size;
+  return values;
+}
+
+/// As casacore finds it, but that it takes frames that it does not know for apparent places.
+std::optional<MDirection::Types> frame_in(const casacore::TableRecord& keywords) {
+  if (!keywords.isDefined("posrefsys"))
+    return keywords.isDefined("GeoDist") && keywords.asDouble("GeoDist") != 0 ? MDirection::TOPO : MDirection::APP;
+  casacore::String name = keywords.asString("posrefsys");
+  name.upcase();
+  constexpr std::pair<const char*, MDirection::Types> frames[] = {{"J2000", MDirection::J2000},
+                                                                  {"B1950", MDirection::B1950},
+                                                                  {"APP", MDirection::APP},
+                                                                  {"ICRS", MDirection::ICRS},
+                                                                  {"TOPO", MDirection::TOPO}};
+  for (const auto& [part, frame] : frames)
+    if (name.contains(part)) return frame;
+  return {};
+}
+
+}  // namespace
+
+Ephemeris::Ephemeris(const std::string& path) : path_(path) {
+  const casacore::Table table(path, casacore::TableLock(casacore::TableLock::NoLocking));
+  const std::optional<MDirection::Types> frame = frame_in(table.keywordSet());
+  if (!frame)
+    fail("is in the frame posrefsys '" + std::string(table.keywordSet().asString("posrefsys")) +
+         "', expected one such as ICRF/ICRS, ICRF/J2000.0, B1950, APP or TOPO");
+  frame_ = *frame;
+  mjd_ = values_of(table, "MJD", "d", "d");
+  const std::vector<double> ra_rad = values_of(table, "RA", "deg", "rad"), dec_rad = values_of(table, "DEC", "deg", "rad");
+  if (mjd_.size() < 2) fail("has " + std::to_string(mjd_.size()) + " rows, expected two or more");
+  for (std::size_t row = 0; row < mjd_.size(); ++row) {
+    if (!std::isfinite(mjd_[row]) || !std::isfinite(ra_rad[row]) || !std::isfinite(dec_rad[row]))
+      fail("has numbers that are not finite in row " + std::to_string(row));
+    if (row > 0 && !(mjd_[row] > mjd_[row - 1])) fail("is not in the order of MJD at row " + std::to_string(row));
+    direction_.push_back({std::cos(dec_rad[row]) * std::cos(ra_rad[row]), std::cos(dec_rad[row]) * std::sin(ra_rad[row]),
+                          std::sin(dec_rad[row])});
+  }
+}
+
+void Ephemeris::fail(const std::string& what) const {
+  throw casacore::AipsError("its ephemeris " + path_ + " " + what);
+}
+
+/// Lagrange's polynomial through the rows about the time, normalised.
+MDirection Ephemeris::at(double utc_mjd) const {
+  if (!(utc_mjd >= mjd_.front() && utc_mjd <= mjd_.back())) {
+    std::ostringstream what;
+    what << std::setprecision(11) << "goes from MJD " << mjd_.front() << " to " << mjd_.back() << ", not to " << utc_mjd;
+    fail(what.str());
+  }
+  const std::size_t points = std::min<std::size_t>(4, mjd_.size());
+  const auto next = static_cast<std::size_t>(std::upper_bound(mjd_.begin(), mjd_.end(), utc_mjd) - mjd_.begin());
+  const std::size_t first = std::min(next - std::min<std::size_t>(next, points / 2), mjd_.size() - points);
+  std::array<double, 3> sum{};
+  for (std::size_t row = first; row < first + points; ++row) {
+    double weight = 1;
+    for (std::size_t other = first; other < first + points; ++other)
+      if (other != row) weight *= (utc_mjd - mjd_[other]) / (mjd_[row] - mjd_[other]);
+    for (std::size_t i = 0; i < 3; ++i) sum[i] += weight * direction_[row][i];
+  }
+  casacore::MVDirection direction(sum[0], sum[1], sum[2]);
+  direction.adjust();
+  return {direction, frame_};
+}
+
+}  // namespace misfit::ms_io

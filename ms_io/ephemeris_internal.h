@@ -1,0 +1,32 @@
+#pragma once
+
+#include <casacore/measures/Measures/MDirection.h>
+
+#include <array>
+#include <string>
+#include <vector>
+
+namespace misfit::ms_io {
+
+/// Where a body of the solar system goes: a table of right ascensions and declinations such as CASA keeps beside FIELD. Between
+/// its rows directions are cubic polynomials of time, through the four rows about it: where the body goes by δ between rows,
+/// they err by some 0.02 δ⁴, and straight lines, as casacore draws them, by δ²/8.
+class Ephemeris {
+ public:
+  /// Reads the table at `path`. Throws casacore::AipsError that names it and what was expected where it does not have two rows
+  /// or more in the order of time, of finite numbers, in a frame that is known.
+  explicit Ephemeris(const std::string& path);
+
+  /// Seen from the middle of the Earth, or from where the table says. Throws casacore::AipsError outside the table's times.
+  casacore::MDirection at(double utc_mjd) const;
+
+ private:
+  [[noreturn]] void fail(const std::string& what) const;
+
+  std::string path_;
+  casacore::MDirection::Types frame_;
+  std::vector<double> mjd_;                       ///< [row], ascending
+  std::vector<std::array<double, 3>> direction_;  ///< [row], unit vectors
+};
+
+}  // namespace misfit::ms_io

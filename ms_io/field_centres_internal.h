@@ -1,0 +1,47 @@
+#pragma once
+
+#include <map>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "ms_io/phase_centre_internal.h"
+#include "ms_io/selection_internal.h"
+
+namespace misfit::ms_io {
+
+/// Finds where the fields of `selected` are phased to, at each of their times where that moves, and how `selection` leads them
+/// to one phase centre: fills `moving` to `remarks`, and the shifts of setups. Where they have to be shifted to a direction
+/// that `selection` does not name, does none of this but remarks, and returns the direction: the rows are to be selected anew
+/// with it. Throws std::runtime_error, which says what would help, where fields have no phase centre in common.
+std::optional<imager::SkyDirection> settle_phase_centre(const casacore::MeasurementSet& set, const std::string& path,
+                                                        const Selection& selection, SelectedRows& selected);
+
+/// λ over the largest baseline, at the highest frequency; 0 without baselines.
+double finest_beam_rad(const casacore::MeasurementSet& set, const SelectedRows& selected);
+
+/// How far what moves has to go to be told of, and targets may part: a thousandth of the finest beam.
+double noticed_motion_rad(const casacore::MeasurementSet& set, const SelectedRows& selected);
+
+/// The centre of an image that moves with a field, at a time.
+FieldCentre followed_centre(FieldDirections& fields, const SelectedRows& selected, int field, const Moment& when);
+
+/// Where a field is phased to at its first selected row or, where it moves, in the middle of its rows.
+FieldCentre usual_centre(FieldDirections& fields, const casacore::MeasurementSet& set, const SelectedRows& selected, int field);
+
+/// The different TIMEs, ascending, at which each of `fields` has selected rows. Throws std::runtime_error for one that is not
+/// finite.
+std::map<int, std::vector<double>> times_of(const casacore::MeasurementSet& set, const std::string& path,
+                                            const SelectedRows& selected, const std::set<int>& fields);
+
+/// The first selected row's.
+int first_field(const casacore::MeasurementSet& set, const SelectedRows& selected);
+
+/// From the first to the last selected row of any field that moves.
+TimeSpan moving_span(const SelectedRows& selected);
+
+/// "1.2 arcsec", for messages.
+std::string angle_words(double angle_rad);
+
+}  // namespace misfit::ms_io

@@ -1,0 +1,88 @@
+#pragma once
+
+#include <casacore/measures/Measures/MDirection.h>
+#include <casacore/measures/Measures/MEpoch.h>
+#include <casacore/measures/Measures/MeasFrame.h>
+#include <casacore/ms/MeasurementSets/MSFieldColumns.h>
+#include <casacore/ms/MeasurementSets/MeasurementSet.h>
+
+#include <cstdint>
+#include <map>
+#include <string>
+
+#include "imager/geometry.h"
+#include "ms_io/ephemeris_internal.h"
+
+namespace misfit::ms_io {
+
+/// Where a field is phased to.
+struct FieldCentre {
+  int field = 0;
+  std::string name;
+  imager::SkyDirection direction;
+  casacore::MEpoch observed;  ///< at which B1950 is taken: it turns against the other frames, by 0.1 arcsec in 30 years
+};
+
+/// How what FIELD says of a direction depends on time: not at all; by a polynomial, an ephemeris or a frame of date, so that it
+/// follows a target; or by a frame that turns with the Earth.
+enum class Motion { none, target, earth };
+
+/// When a field is looked at.
+struct Moment {
+  double time_s = 0;      ///< as TIME stores it
+  std::uint64_t row = 0;  ///< of the field: its telescope is where from
+};
+
+/// The directions of a set's fields at any time, in J2000 where their own frame is neither that nor ICRS or B1950. All throw
+/// std::runtime_error that names the field where there is none of that number, or its direction cannot be found.
+class FieldDirections {
+ public:
+  FieldDirections(const casacore::MeasurementSet& set, const std::string& path);
+
+  /// Of PHASE_DIR.
+  Motion motion(int field) const;
+  /// Of REFERENCE_DIR.
+  Motion pointing_motion(int field) const;
+  /// Where the field is phased to: PHASE_DIR, which is an offset where the field has an ephemeris.
+  FieldCentre centre(int field, const Moment& when);
+  /// Its ephemeris without that offset; where it has none, centre().
+  FieldCentre target(int field, const Moment& when);
+  /// Where the antennas of the field point: REFERENCE_DIR, taken as PHASE_DIR is.
+  imager::SkyDirection pointing(int field, const Moment& when);
+
+  /// "3 (M51)".
+  std::string label(int field) const;
+  std::string name(int field) const;
+  /// TIME as casacore has it.
+  casacore::MEpoch epoch(double time_s) const { return {casacore::MVEpoch(casacore::Quantity(time_s, "s")), time_reference_}; }
+  /// The TIME that the set would store.
+  double time_s(const casacore::MEpoch& epoch) const;
+
+ private:
+  /// From where a row was observed, and when it was asked for.
+  struct Place {
+    casacore::MeasFrame frame;
+    std::string doubt;  ///< see ObservingPlace
+  };
+
+  casacore::rownr_t row_of(int field) const;
+  Motion motion(casacore::rownr_t row, const casacore::ArrayMeasColumn<casacore::MDirection>& column) const;
+  void require_directions(const casacore::ArrayColumn<double>& cells, casacore::rownr_t row) const;
+  double field_time_s(double time_s) const;
+  const Ephemeris* ephemeris_of(casacore::rownr_t row);
+  casacore::MDirection on_ephemeris(const Ephemeris& ephemeris, const casacore::MDirection& offset, const Moment& when) const;
+  FieldCentre seen(int field, const casacore::MDirection& direction, const Moment& when);
+  casacore::MDirection equatorial(const casacore::MDirection& direction, const Moment& when);
+
+  const casacore::MeasurementSet& set_;
+  std::string path_;
+  casacore::MSFieldColumns columns_;
+  casacore::MEpoch::Ref time_reference_;          ///< of TIME
+  std::map<std::string, Ephemeris> ephemerides_;  ///< by the table
+  std::map<std::uint64_t, Place> places_;         ///< by the row
+};
+
+/// The phase centre of `field` at the time of `row`. Throws what FieldDirections does.
+FieldCentre field_centre(const casacore::MeasurementSet& set, const std::string& path, int field, std::uint64_t row);
+
+}  // namespace misfit::ms_io
