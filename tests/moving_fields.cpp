@@ -48,7 +48,10 @@ std::optional<MDirection::Types> own_frame(Path path) {
 /// Of the VLA.
 casacore::MeasFrame frame_at(double time_s) {
   static std::once_flag silent;  // of tables that are missing, which the project's own conversions lack as well
-  std::call_once(silent, [] { casacore::LogSink::globalSink(new casacore::NullLogSink); });
+  std::call_once(silent, [] {
+    casacore::LogSinkInterface* sink = new casacore::NullLogSink;  // owned by casacore from here on
+    casacore::LogSink::globalSink(sink);
+  });
   casacore::MPosition place;
   casacore::MeasTable::Observatory(place, "VLA");
   return {casacore::MEpoch(casacore::MVEpoch(casacore::Quantity(time_s, "s")), casacore::MEpoch::UTC), place};
