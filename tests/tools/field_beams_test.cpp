@@ -23,8 +23,10 @@ constexpr double degree = imager::pi / 180, arcmin = degree / 60, hz = 1.4e9;
 const imager::SkyDirection centre{1.0, 0.7, "FK5"};
 
 ms_io::FieldPointing field_at(const std::string& name, double north_rad, std::uint8_t sort = 0) {
-  return {
-      name, {centre.ra_rad, centre.dec_rad + north_rad, "FK5"}, name, "a.ms", std::abs(north_rad), 25, {{{sort, sort}, 100}}};
+  return {name,   {centre.ra_rad, centre.dec_rad + north_rad, "FK5"},
+          0,      name,
+          "a.ms", std::abs(north_rad),
+          25,     {{{sort, sort}, 100}}};
 }
 
 ms_io::BeamRows fields(const std::vector<imager::AntennaSort>& sorts, const std::vector<ms_io::FieldPointing>& pointings) {
