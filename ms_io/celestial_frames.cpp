@@ -30,6 +30,36 @@ const std::array<std::pair<const char*, MDirection::Types>, 3> further_frames{{
     {"SUPERGAL", MDirection::SUPERGAL},
 }};
 
+/// Galactic coordinates as ICRS has them (ESA 1997, The Hipparcos and Tycho Catalogues, vol. 1, eq. 1.5.11): where their pole
+/// lies, and at which longitude that of the Earth. casacore goes through B1950, where they were defined, with the terms of
+/// aberration in it: 0.4 arcsec away from where FITS, DS9 and astropy have them.
+constexpr double rad_per_deg = imager::pi / 180;
+constexpr double pole_ra_rad = 192.85948 * rad_per_deg, pole_dec_rad = 27.12825 * rad_per_deg,
+                 pole_longitude_rad = 122.93192 * rad_per_deg;
+
+/// The longitude from the other pole and the latitude, of those from one pole.
+std::pair<double, double> about_other_pole(double longitude_rad, double latitude_rad) {
+  const double x = std::cos(latitude_rad) * std::cos(longitude_rad), y = std::cos(latitude_rad) * std::sin(longitude_rad);
+  const double z = std::sin(latitude_rad), c = std::cos(pole_dec_rad), s = std::sin(pole_dec_rad);
+  const double other_x = c * z - s * x;
+  return {std::atan2(y, other_x), std::atan2(s * z + c * x, std::hypot(other_x, y))};
+}
+
+double below_a_turn(double angle_rad) {
+  const double turn = 2 * imager::pi, rest = std::fmod(angle_rad, turn);
+  return rest < 0 ? rest + turn : rest;
+}
+
+imager::SkyDirection galactic_of(const imager::SkyDirection& icrs) {
+  const auto [longitude, latitude] = about_other_pole(icrs.ra_rad - pole_ra_rad, icrs.dec_rad);
+  return {below_a_turn(pole_longitude_rad - longitude), latitude, "GALACTIC"};
+}
+
+imager::SkyDirection icrs_of(const imager::SkyDirection& galactic) {
+  const auto [longitude, latitude] = about_other_pole(pole_longitude_rad - galactic.ra_rad, galactic.dec_rad);
+  return {below_a_turn(pole_ra_rad + longitude), latitude, "ICRS"};
+}
+
 MDirection::Types any_direction_type(const std::string& frame) {
   for (const auto& [name, type] : further_frames)
     if (name == frame) return type;
@@ -65,6 +95,8 @@ MDirection measure_of(const imager::SkyDirection& direction) {
 
 imager::SkyDirection in_frame(const imager::SkyDirection& direction, const std::string& frame) {
   if (direction.frame == frame) return direction;
+  if (direction.frame == "GALACTIC") return in_frame(icrs_of(direction), frame);
+  if (frame == "GALACTIC") return galactic_of(in_frame(direction, "ICRS"));
   const MDirection here(casacore::MVDirection(direction.ra_rad, direction.dec_rad), any_direction_type(direction.frame));
   imager::SkyDirection there = sky_direction(MDirection::Convert(here, MDirection::Ref(any_direction_type(frame)))());
   there.frame = frame;

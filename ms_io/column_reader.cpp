@@ -77,9 +77,11 @@ template <typename T>
 void ColumnReader::require_cell(const Cells<T>& cells, casacore::rownr_t row, const casacore::IPosition& shape) const {
   const bool defined = cells.column.isDefined(row);
   if (defined && cells.column.shape(row).isEqual(shape)) return;
-  throw std::runtime_error("cannot read " + cells.name + " of " + source_->path + ": the cell of row " + std::to_string(row) +
-                           (defined ? " has the shape " + cells.column.shape(row).toString() : " is empty") + "; expected " +
-                           shape.toString() + ", as DATA_DESC_ID says");
+  throw std::runtime_error(
+      "cannot read " + cells.name + " of " + source_->path + ": the cell of row " + std::to_string(row) +
+      (defined ? " has the shape " + cells.column.shape(row).toString() : " is empty") + "; expected " + shape.toString() +
+      ", as DATA_DESC_ID says" +
+      (!defined && cells.name == "CORRECTED_DATA" ? "; where it was never filled, --datacolumn data takes DATA" : ""));
 }
 
 /// Looks at the first of `rows`, or at all of them.

@@ -102,10 +102,12 @@ class CentreSearch {
     double most_rad = 0;
     for (const auto& [field, row] : selected_.first_row_of_field) {
       const double apart_rad = separation_rad(first.direction, centre_of(field).direction);
-      if (apart_rad > close_centre_rad) refuse_apart(first.field, field, apart_rad);
+      if (apart_rad > close_centre_rad && selection_.moving != Selection::Moving::shifted_to_middle)
+        refuse_apart(first.field, field, apart_rad);
       most_rad = std::max(most_rad, apart_rad);
     }
     if (most_rad <= same_centre_rad) return {};
+    if (most_rad > close_centre_rad) return first.direction;  // what stands still on the sky is seen by each about its own
     std::ostringstream remark;
     remark << "fields of " << path_ << " have phase centres up to " << most_rad
            << " rad apart, as if by rounding: all are shifted to that of field " << fields_.label(first.field);

@@ -193,8 +193,13 @@ std::vector<DataColumn> MeasurementSet::data_columns() const {
 std::vector<DataColumn> MeasurementSet::columns_of_zeros(const imager::Ranks& ranks) const {
   std::vector<DataColumn> columns;
   for (const DataColumn& column : data_columns()) {
-    const auto reads = [&](const std::shared_ptr<const OpenSet>& set) { return set->path == column.path && *set->any_data; };
-    if (!imager::any_of(ranks, std::any_of(impl_->sets.begin(), impl_->sets.end(), reads))) columns.push_back(column);
+    const auto any = [&](OpenSet::Read what) {
+      return imager::any_of(ranks, std::any_of(impl_->sets.begin(), impl_->sets.end(), [&](const auto& set) {
+                              return set->path == column.path && *set->read == what;
+                            }));
+    };
+    const bool zeros = any(OpenSet::zeros), data = any(OpenSet::data);
+    if (zeros && !data) columns.push_back(column);
   }
   return columns;
 }

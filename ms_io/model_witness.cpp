@@ -40,12 +40,14 @@ std::vector<Witness> choose_witnesses(const casacore::MeasurementSet& set, const
   const std::string& name = set.tableDesc().isColumn(column.name) ? column.name : column.subtracted_from;
   const Column cells = name.empty() ? Column() : Column(set, name);
   const std::uint64_t step = (selected.rows + most_witnesses - 1) / most_witnesses;
-  std::uint64_t passed = 0, next = 0;  // of the rows selected
+  // One in each of as many equal parts, at a place that no order of baselines, fields or windows repeats.
+  const auto place = [step](std::uint64_t part) { return part * step + Fingerprint().add(part).value() % step; };
+  std::uint64_t passed = 0, part = 0, next = step > 0 ? place(0) : 0;  // of the rows selected
   for (const BlockRows& block : selected.blocks) {
     const Setup& setup = selected.setups[block.setup];
     const std::vector<casacore::Complex> zeros(setup.correlation_types.size());
     for (const Run& run : block.runs) {
-      for (; next < passed + run.count; next += step) {
+      for (; next < passed + run.count; next = place(++part)) {
         const std::uint64_t row = run.first + next - passed, channel = setup.first_channel();
         const std::uint64_t now = name.empty() ? fingerprint(zeros.data(), zeros.size()) : fingerprint(cells, row, channel);
         if (now != 0) witnesses.push_back({row, channel, now, now});

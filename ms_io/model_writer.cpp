@@ -64,7 +64,8 @@ std::string identity_of(const casacore::Table& set, const SelectedRows& selected
 
 /// A fingerprint of the model; "-" where it is not known.
 std::string identity_of(const ModelOrigin& origin) {
-  return origin.fingerprint == 0 ? "-" : hexadecimal(origin.fingerprint);
+  const std::uint64_t fingerprint = origin.model != 0 ? origin.model : origin.fingerprint;
+  return fingerprint == 0 ? "-" : hexadecimal(fingerprint);
 }
 
 /// Where the block lies; rows with a non-finite UVW are put at 0 and marked.
@@ -140,8 +141,12 @@ class ModelWriter {
     here_ = {identity_of(column_.origin),
              translated("cannot read UVW of " + path_, [&] { return identity_of(set_, selected_); }), journal_.command};
     if (column_.origin.fingerprint != 0)  // equal for runs that write the same values into the same cells
-      journal_.identity = hexadecimal(
-          Fingerprint().add(here_.model).add(here_.selection).add(column_.name).add(column_.subtracted_from).value());
+      journal_.identity = hexadecimal(Fingerprint()
+                                          .add(column_.origin.fingerprint)
+                                          .add(here_.selection)
+                                          .add(column_.name)
+                                          .add(column_.subtracted_from)
+                                          .value());
     journal_.rows = selected_.rows;
     journal_.witnesses = translated(doing_(), [&] { return choose_witnesses(set_, column_, selected_); });
     const bool exists = set_.tableDesc().isColumn(column_.name);

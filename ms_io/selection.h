@@ -27,7 +27,8 @@ struct Selection {
   std::string phase_centre_remark = "";  ///< what users should know of `phase_centre`, in a sentence; mostly empty
   /// What becomes of fields whose phase centres move, without a phase_centre. They stay phased to themselves: what moves along
   /// stands still, unless they turn with the Earth, which is refused. Or to what they follow, offsets of ephemerides undone, or
-  /// the Earth. Or they are shifted to where they are in the middle of their rows: the sky stands still.
+  /// the Earth. Or they are shifted to where they are in the middle of their rows: the sky stands still. Several
+  /// fields that stand still themselves are then shifted to the first, and otherwise refused.
   enum class Moving { about_themselves, about_targets, shifted_to_middle };
   Moving moving = Moving::about_themselves;
   /// FITS SPECSYS of the frame in which frequencies count, see parse_spectral_frame(); empty: that of the data.

@@ -12,6 +12,8 @@ std::string parse_spectral_frame(const std::string& name);
 
 /// The channels of one spectral window as another frame has them when its earliest selected row was observed.
 struct SpectralWindow {
+  std::string set;  ///< path
+  int id = 0;
   std::vector<double> frequency_hz;      ///< [selected channel]
   std::vector<double> channel_width_hz;  ///< [selected channel], positive
 };

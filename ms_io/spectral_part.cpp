@@ -37,7 +37,7 @@ double first_time_s(const OpenSet& set) {
 }
 
 SpectralWindow window_at_first_row(const OpenSet& from, const Setup& setup) {
-  SpectralWindow window{setup.frequency_hz, setup.channel_width_hz};
+  SpectralWindow window{from.path, setup.spectral_window, setup.frequency_hz, setup.channel_width_hz};
   if (from.selected.spectral_frame.empty()) return window;
   const double ratio = FrameRatio(from.set, from.path, from.selected, setup).at(first_time_s(from));
   for (double& hz : window.frequency_hz) hz *= ratio;

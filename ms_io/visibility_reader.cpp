@@ -174,7 +174,7 @@ class Reader : public imager::BlockStream {
     for (const Rows& piece : pieces(group.runs, std::max<std::uint64_t>(1, piece_samples / alike.channel_span()))) {
       const std::uint64_t rows = piece.count();
       columns_.read_rows(piece, alike, *read);
-      if (!*source_->any_data && any_not_zero(read->data)) *source_->any_data = true;
+      if (*source_->read != OpenSet::data) *source_->read = any_not_zero(read->data) ? OpenSet::data : OpenSet::zeros;
       beside.get();
       left -= rows;
       if (left == 0) return form(*read, owner, rows);

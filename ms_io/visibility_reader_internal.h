@@ -18,8 +18,9 @@ struct OpenSet {
   SelectedRows selected;
   std::vector<StokesRecipe> recipes;  ///< [setup]
   FileStates files;                   ///< before it was opened
-  /// Whether any value of the data column that was read is not 0.
-  std::shared_ptr<std::atomic<bool>> any_data = std::make_shared<std::atomic<bool>>(false);
+  /// What was read of the data column: nothing, zeros alone, or others too.
+  enum Read { nothing, zeros, data };
+  std::shared_ptr<std::atomic<int>> read = std::make_shared<std::atomic<int>>(nothing);
 };
 
 /// Streams the blocks of `open_set`.

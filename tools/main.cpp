@@ -3,6 +3,7 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cctype>
 #include <cerrno>
 #include <chrono>
 #include <cstdio>
@@ -53,6 +54,15 @@ const CLI::App& called(const CLI::App& program) {
   return *command;
 }
 
+/// Of words that no option takes: the options among them, which come before their values, or all.
+std::string unexpected(const std::vector<std::string>& words) {
+  std::vector<std::string> options;
+  for (const std::string& word : words)
+    if (word.size() > 1 && word.front() == '-' && std::isalpha(static_cast<unsigned char>(word.back())) != 0)
+      options.push_back(word);
+  return CLI::ExtrasError(options.empty() ? words : options).what();
+}
+
 /// What the parser says, or where a subcommand is missing, or is none, those that there are.
 std::string usage_message(const CLI::ParseError& error, const CLI::App& program) {
   const CLI::App& command = called(program);
@@ -60,8 +70,8 @@ std::string usage_message(const CLI::ParseError& error, const CLI::App& program)
   std::vector<std::string> names;
   for (const CLI::App* each : command.get_subcommands({})) names.push_back(each->get_name());
   const std::vector<std::string> rest = command.remaining();
-  if (names.empty() && missing && !rest.empty())
-    return CLI::ExtrasError(rest).what();  // whose right name may be what is missing
+  const bool unknown = error.get_name() == "ExtrasError";
+  if (names.empty() && (missing || unknown) && !rest.empty()) return unexpected(rest);  // may be what is missing, misspelt
   if (names.empty() || !missing) return error.what();
   const std::string word = rest.empty() || rest.front().front() == '-' ? "" : rest.front();
   std::string said = &command == &program ? word : command.get_name() + (word.empty() ? "" : " ") + word;

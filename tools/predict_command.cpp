@@ -45,6 +45,7 @@ struct PredictOptions {
 struct NamedModel {
   ModelVisibilities visibilities;
   ms_io::Fingerprint fingerprint;
+  std::uint64_t model = 0;     ///< a fingerprint that depends neither on accuracy and kernel nor on the order of sources
   bool empty = false;          ///< a list without sources
   ms_io::Selection selection;  ///< with the phase centre that it is about
   std::vector<std::string> remarks;
@@ -86,9 +87,15 @@ NamedModel image_model(const PredictOptions& o, const ms_io::MeasurementSet& set
     if (plane.stokes > imager::Stokes::V)
       throw std::runtime_error(o.model + " has a plane of " + stokes_name(plane.stokes) + "; expected I, Q, U and V alone");
     model[static_cast<std::size_t>(plane.stokes) - 1] = &plane.image;
-    named.fingerprint.add(stokes_name(plane.stokes))
-        .add(plane.image.pixel)
-        .add(std::vector<double>{plane.geometry.cell_rad, plane.geometry.centre.l, plane.geometry.centre.m});
+    const auto add_to = [&](ms_io::Fingerprint& fingerprint) {
+      return fingerprint.add(stokes_name(plane.stokes))
+          .add(plane.image.pixel)
+          .add(std::vector<double>{plane.geometry.cell_rad, plane.geometry.centre.l, plane.geometry.centre.m})
+          .value();
+    };
+    add_to(named.fingerprint);
+    ms_io::Fingerprint alone;
+    named.model += add_to(alone);
   }
   named.visibilities = image_visibilities(model, planes.front().geometry, request, set);
   if (std::string warning = band_warning(planes.front().observation, set.observation(), o.model); !warning.empty())
@@ -101,8 +108,11 @@ NamedModel component_model(const PredictOptions& o, const ms_io::MeasurementSet&
   auto sources = read_stokes_components(o.components, set.observation().phase_centre);
   for (const std::vector<imager::Source>& plane : sources) {
     named.fingerprint.add(plane.size());
-    for (const imager::Source& s : plane)
-      named.fingerprint.add(std::vector<double>{s.position.l, s.position.m, s.flux_jy, s.fwhm_rad});
+    for (const imager::Source& s : plane) {
+      const std::vector<double> values{s.position.l, s.position.m, s.flux_jy, s.fwhm_rad};
+      named.fingerprint.add(values);
+      named.model += ms_io::Fingerprint().add(static_cast<std::uint64_t>(&plane - sources.data())).add(values).value();
+    }
   }
   named.empty = std::all_of(sources.begin(), sources.end(), [](const auto& plane) { return plane.empty(); });
   named.visibilities.predict = [sources = std::move(sources), threads](const imager::SampleCoordinates& at) {
@@ -178,7 +188,7 @@ void predict(const PredictOptions& o, const imager::Ranks& ranks) {
     progress.say("warning: " + o.components +
                  " lists no source: " + (o.subtract ? "the data are written as they are" : "all visibilities written are 0"));
   column.origin = {command_of(o), model.fingerprint.add(MISFIT_VERSION).value(),
-                   [&](const std::string& sentence) { progress.say(sentence); }};
+                   [&](const std::string& sentence) { progress.say(sentence); }, model.model};
   progress.begin(o.subtract ? "subtract" : "predict");
   const auto show = [&](std::uint64_t done, std::uint64_t total) { progress.update(done, total); };
   const ms_io::ModelWriteReport report = ms_io::write_model(

@@ -318,6 +318,19 @@ BOOST_AUTO_TEST_CASE(data_that_lack_a_model_lose_it_once_and_tell_of_it_when_ano
   BOOST_TEST(told(again, 2).empty());
 }
 
+BOOST_AUTO_TEST_CASE(what_the_data_lack_is_known_though_another_program_changed_some_baselines) {
+  for (std::size_t baseline = 0; baseline < baselines; ++baseline) {
+    const MixedSet set;
+    write(set, difference);
+    set.modify([&](casacore::MeasurementSet& ms) {
+      casacore::ArrayColumn<Complex> cells(ms, "CORRECTED_DATA");
+      for (casacore::rownr_t row = baseline; row < ms.nrow(); row += baselines)
+        cells.put(row, casacore::Array<Complex>(cells.shape(row), Complex(1, 1)));
+    });
+    BOOST_TEST(contains(error_of([&] { write(set, {"CORRECTED_DATA", "CORRECTED_DATA"}); }), "lacks a model already"));
+  }
+}
+
 BOOST_AUTO_TEST_CASE(the_command_that_reads_the_data_tells_what_they_lack) {
   const MixedSet set;
   write(set, difference);

@@ -278,6 +278,10 @@ BOOST_AUTO_TEST_CASE(an_option_that_there_is_not_is_named_before_one_that_is_mis
     BOOST_TEST(outcome.err.find("not expected: --no-such-option") != std::string::npos, outcome.err);
   }
   BOOST_TEST(run({"image"}).err.find("--vis is required") != std::string::npos);
+  for (const Arguments& words :
+       {Arguments{"image", "--no-such-option", "3"}, small_image("a.ms", "a") + Arguments{"--cel", "2arcsec"}})
+    BOOST_TEST(run(words).err.find(words[1] == "--vis" ? "not expected: --cel\n" : "not expected: --no-such-option\n") !=
+               std::string::npos);
 }
 
 BOOST_AUTO_TEST_CASE(a_number_given_as_0_is_named) {

@@ -29,7 +29,7 @@ struct MovingSet {
   }
   Arguments image(const std::vector<std::string>& sets = {}) const {
     return Arguments{"image", "--vis"} + (sets.empty() ? Arguments{set} : sets) +
-           Arguments{"--imagename", folder / "a", "--imsize", "128", "--cell", "15arcsec", "--quiet"};
+           Arguments{"--imagename", folder / "a", "--imsize", "128", "--cell", "15arcsec", "--datacolumn", "data", "--quiet"};
   }
   Arguments fixed(const std::vector<std::string>& sets = {}) const {
     return image(sets) + Arguments{"--phasecenter", (way_ == Path::ephemeris ? "ICRS " : "J2000 ") + at_place};
@@ -131,7 +131,8 @@ BOOST_AUTO_TEST_CASE(cubes_and_ranks_see_a_moving_field_as_one_image_does) {
     check_cube();
     succeed_together(size, moving.fixed());
     check_point(pixels_of(moving.folder / "a", "residual"));
-    succeed_together(size, moving.predict({"--components", moving.folder / "fixed.csv", "--subtract", "--column", "LEFT"}));
+    succeed_together(size, moving.predict({"--components", moving.folder / "fixed.csv", "--subtract", "--datacolumn", "data",
+                                           "--column", "LEFT"}));
     BOOST_TEST(rms(moving.set, "LEFT") < 1e-6);
   }
 }
@@ -172,7 +173,7 @@ BOOST_AUTO_TEST_CASE(a_target_is_imaged_about_itself_and_everything_says_so) {
   for (const Arguments& model : {Arguments{"--model", moving.folder / "a.model.fits"},
                                  {"--model", moving.folder / "a.model"},
                                  {"--components", moving.folder / "a.components.csv"}}) {
-    const Arguments predict{"predict", "--vis", first, "--quiet", "--subtract", "--column", "LEFT"};
+    const Arguments predict{"predict", "--vis", first, "--quiet", "--subtract", "--datacolumn", "data", "--column", "LEFT"};
     succeed(predict + model);
     BOOST_TEST(rms(first, "LEFT") < 5e-6);
   }

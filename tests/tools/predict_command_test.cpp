@@ -2,6 +2,7 @@
 #include <array>
 #include <cstring>
 
+#include "tests/moving_fields.h"
 #include "tests/tools/program.h"
 #include "tests/tools/set_changes.h"
 
@@ -168,6 +169,42 @@ BOOST_AUTO_TEST_CASE(subtraction_in_place_is_that_into_another_column_and_refuse
   BOOST_TEST(second.err.find("CORRECTED_DATA of " + copy.set + " lacks a model already: misfit predict --subtract") !=
              std::string::npos);
   BOOST_TEST((visibilities(copy.set, "CORRECTED_DATA") == visibilities(copy.set, "BESIDE")));
+}
+
+BOOST_AUTO_TEST_CASE(a_model_is_known_again_whatever_its_accuracy_or_the_order_of_its_sources) {
+  const Copy copy;
+  succeed(small_image(copy.set, copy.folder / "a") + Arguments{"--niter", "5"});
+  std::ofstream(copy.folder / "one.csv") << "l_arcsec,m_arcsec,flux_jy\n1,2,3\n-1,1,2\n";
+  std::ofstream(copy.folder / "other.csv") << "l_arcsec,m_arcsec,flux_jy\n-1,1,2\n1,2,3\n";
+  const Arguments predict{"predict", "--vis", copy.set, "--subtract"};
+  const Arguments in_place{"--datacolumn", "corrected", "--column", "CORRECTED_DATA"};
+  succeed(predict + Arguments{"--model", copy.folder / "a.model.fits"});
+  succeed(predict + in_place + Arguments{"--components", copy.folder / "one.csv"});
+  for (const Arguments& again : {Arguments{"--model", copy.folder / "a.model.fits", "--accuracy", "1e-3"},
+                                 {"--model", copy.folder / "a.model.fits", "--kernel", "spheroidal", "--accuracy", "1e-2"},
+                                 {"--components", copy.folder / "other.csv"}}) {
+    const Outcome outcome = run(predict + in_place + again);
+    BOOST_TEST(outcome.code == 1);
+    BOOST_TEST(outcome.err.find("lacks a model already") != std::string::npos, outcome.err);
+  }
+}
+
+BOOST_AUTO_TEST_CASE(directions_on_the_sky_are_predicted_for_several_fields_each_about_its_own_centre) {
+  const TemporaryFolder folder;
+  const std::string set = folder / "two.ms";
+  std::ofstream(folder / "none.csv") << "l_arcsec,m_arcsec,flux_jy\n0,0,0\n";
+  succeed({"simulate", "--output", set, "--sky", folder / "none.csv", "--array", "vla-d", "--ra", "10deg", "--dec", "35deg",
+           "--hours", "1", "--interval", "600"});
+  misfit::testing::add_still_field(set, {11.5 * M_PI / 180, 36 * M_PI / 180});
+  misfit::testing::put_fixed_source(set, {}, {10.2 * M_PI / 180, 35.1 * M_PI / 180}, 1);
+  std::ofstream(folder / "fixed.csv") << "ra_deg,dec_deg,flux_jy\n10.2,35.1,1\n";
+  succeed({"predict", "--vis", set, "--components", folder / "fixed.csv", "--subtract"});
+  // The data and the difference are rounded to single precision.
+  BOOST_TEST(rms(visibilities(set, "CORRECTED_DATA")) < 1e-6);
+  std::ofstream(folder / "offsets.csv") << "l_arcsec,m_arcsec,flux_jy\n1,2,3\n";
+  const Outcome offsets = run({"predict", "--vis", set, "--components", folder / "offsets.csv"});
+  BOOST_TEST(offsets.code == 1);
+  BOOST_TEST(offsets.err.find("select one with --field") != std::string::npos, offsets.err);
 }
 
 BOOST_AUTO_TEST_CASE(a_column_that_was_never_filled_is_told_of) {

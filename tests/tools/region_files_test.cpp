@@ -72,6 +72,14 @@ BOOST_AUTO_TEST_CASE(places_are_written_in_every_way_that_casa_and_ds9_know) {
   check_same(here, "wcs;circle(187.7,12.39,6.6\")");
 }
 
+BOOST_AUTO_TEST_CASE(what_ds9_draws_and_says_beside_regions_changes_nothing) {
+  const std::string here = "circle [[30pix, 23pix], 3.3pix]", circle = "circle(31,24,3.3)";
+  for (const char* drawn : {"line(1,2,3,4)", "-line(1,2,3,4)", "+text(3,4) # text={a}", "-vector(1,2,3,4)"})
+    check_same(here, std::string("image\n") + drawn + "\n" + circle);
+  check_same(here, "image\n" + circle + " # color=red tag={a tag} This is a Comment");
+  check_same(here, "image\n" + circle + " # a comment alone");
+}
+
 BOOST_AUTO_TEST_CASE(a_region_is_of_the_correlations_that_it_names) {
   const imager::ImageHeader header = header_in("FK5", "IQUV");
   const std::string regions =

@@ -108,4 +108,19 @@ BOOST_AUTO_TEST_CASE(sets_may_come_in_any_order) {
     check_same(made({late, early}, options, folder / "a", "residual"), made({early, late}, options, folder / "b", "residual"));
 }
 
+BOOST_AUTO_TEST_CASE(windows_beside_the_planes_are_named_and_sets_that_are_not_read_do_not_count_as_empty) {
+  const TemporaryFolder folder;
+  const std::string low = write_set(folder / "low.ms", 1.4e9, {10}), high = write_set(folder / "high.ms", 1.45e9, {0});
+  const Arguments cube{"image",  "--imagename", folder / "a", "--imsize", "16",
+                       "--cell", "20arcsec",    "--specmode", "cube",     "--vis"};
+  const Outcome outcome = run(cube + Arguments{low, high});
+  BOOST_TEST(outcome.code == 0);
+  BOOST_TEST(outcome.err.find("left out is what lies beside the cube's planes") != std::string::npos, outcome.err);
+  BOOST_TEST(outcome.err.find("spectral window 0 of " + low) != std::string::npos, outcome.err);
+  BOOST_TEST(outcome.err.find("never filled") == std::string::npos, outcome.err);
+  const Outcome gap = run(cube + Arguments{low, high, "--start", "1.42GHz", "--nchan", "2"});
+  BOOST_TEST(gap.code == 2);
+  BOOST_TEST(gap.err.find("hold no data: they lie between windows") != std::string::npos, gap.err);
+}
+
 BOOST_AUTO_TEST_SUITE_END()

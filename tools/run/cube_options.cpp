@@ -125,7 +125,8 @@ class AxisMaker {
       refuse_option("chanwidth", o_.chanwidth,
                     "wider planes, or --nchan: it takes " + significant(planes, 3) + " to the end of the data, where " +
                         std::to_string(most_planes) + " are the most");
-    return std::max(1, static_cast<int>(std::round(planes)));
+    constexpr double rounding = 1e-6;  // of a plane: Doppler's shift and where the telescope stands are known less well
+    return std::max(1, static_cast<int>(std::floor(planes + 0.5 + rounding)));
   }
 
   void check() const {
@@ -211,6 +212,29 @@ imager::Decision axis_decision(const imager::CubeSampling& sampling) {
               frequency_text(axis.width_hz(), 6) + " each",
           linear ? "visibilities are interpolated between channels at each integration's own Doppler shift"
                  : "each takes the channels within it at each integration's own Doppler shift"};
+}
+
+std::string windows_left_out(const imager::SpectralAxis& axis, const std::vector<ms_io::SpectralWindow>& windows) {
+  constexpr std::size_t most = 5;
+  const double first = axis.frequency_hz(0), last = axis.frequency_hz(axis.channels - 1), half = 0.5 * axis.width_hz();
+  const double low = std::min(first, last) - half, high = std::max(first, last) + half;
+  std::size_t count = 0;
+  std::string text;
+  for (const ms_io::SpectralWindow& window : windows) {
+    const Band band = band_of({window});
+    if (band.high_hz > low && band.low_hz < high) continue;
+    if (++count > most) continue;
+    text += (text.empty() ? "" : "; ") + std::string("spectral window ") + std::to_string(window.id) + " of " + window.set +
+            ", " + frequency_text(band.low_hz, 8) + " to " + frequency_text(band.high_hz, 8);
+  }
+  if (count == 0) return "";
+  const std::string planes =
+      "the cube's planes, " + frequency_text(low, 8) + " to " + frequency_text(high, 8) + " in " + axis.frame;
+  if (count > most) text += "; and " + std::to_string(count - most) + " more";
+  if (count == windows.size())
+    throw std::invalid_argument(planes + ", hold no data: they lie between windows; expected some within those selected, " +
+                                text);
+  return "left out is what lies beside " + planes + ": " + text;
 }
 
 imager::CubeSampling cube_sampling(const CubeOptions& o, const std::vector<ms_io::SpectralWindow>& windows) {

@@ -39,6 +39,10 @@ void check(const CubeOptions& options);
 /// channels have no width.
 imager::CubeSampling cube_sampling(const CubeOptions& options, const std::vector<ms_io::SpectralWindow>& windows);
 
+/// Which windows have no channel in a plane, and are left out; empty where all have. Throws std::invalid_argument where none
+/// has.
+std::string windows_left_out(const imager::SpectralAxis& axis, const std::vector<ms_io::SpectralWindow>& windows);
+
 /// What the planes are and how data come into them.
 imager::Decision axis_decision(const imager::CubeSampling& sampling);
 

@@ -98,6 +98,7 @@ class CubeRun {
     for (const std::string& sentence : set_->remarks()) warn(sentence);
     windows_ = set_->spectral_windows();
     sampling_ = cube_sampling(o_.cube, windows_);
+    if (const std::string words = windows_left_out(sampling_.axis, windows_); !words.empty()) warn(words);
     header_ = {.geometry = geometry_of(o_, set_->observation().phase_centre),
                .observation = set_->observation(),
                .spectral = sampling_.axis,

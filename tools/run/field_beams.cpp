@@ -100,6 +100,23 @@ double largest_apart_rad(const std::vector<ms_io::FieldPointing>& pointings) {
   return largest;
 }
 
+bool nearer(const ms_io::FieldPointing& a, const ms_io::FieldPointing& b) {
+  return a.from_centre_rad < b.from_centre_rad;
+}
+
+/// That the image's centre lies beyond the first null of the only field, or of several that point alike; else empty.
+std::string far_warning(const ms_io::FieldPointing& nearest, const ms_io::MeasurementSet& set, double frequency_hz) {
+  // No dish has its null nearer than the largest, and none of the pairs beyond 1.3 times λ/D of the smallest.
+  const double null_rad = nearest.smallest_dish_m > 0 ? imager::speed_of_light_m_s / frequency_hz / nearest.smallest_dish_m : 0;
+  if (null_rad == 0 || nearest.from_centre_rad < null_rad) return "";
+  const ms_io::BeamRows rows = set.beam_rows();
+  const auto pointing = std::min_element(rows.pointings.begin(), rows.pointings.end(), nearer);
+  const SeenCentre seen = seen_centre(*pointing, rows, frequency_hz, false);
+  if (!seen.no_beam.empty() || !seen.beyond_null) return "";
+  return "the image's centre lies beyond the first null of the beam: field " + described(seen) + " at " +
+         frequency_text(frequency_hz, 4) + doubts_of({seen}) + "; it may show noise alone";
+}
+
 /// Names of those that do not see the centre.
 std::string names_beyond(const std::vector<SeenCentre>& fields) {
   std::string names;
@@ -157,12 +174,16 @@ FieldNotes notes_on_fields(const ImageOptions& o, const ms_io::MeasurementSet& s
     return notes;
   }
   const double frequency_hz = set.observation().frequency_hz;
-  if (largest_apart_rad(pointings) > rounding_rad)
+  const bool one = std::all_of(pointings.begin(), pointings.end(), [&](const auto& pointing) {
+    return pointing.set == pointings.front().set && pointing.id == pointings.front().id;  // which may move
+  });
+  if (!one && largest_apart_rad(pointings) > rounding_rad)
     notes = notes_on_apart_fields(set.beam_rows(), frequency_hz, o.force_average);
-  const auto nearest = std::min_element(pointings.begin(), pointings.end(),
-                                        [](const auto& a, const auto& b) { return a.from_centre_rad < b.from_centre_rad; });
-  if (std::string warning = pointing_warning(*nearest, geometry, frequency_hz); !warning.empty())
-    notes.warnings.push_back(std::move(warning));
+  if (!notes.warnings.empty()) return notes;
+  const auto nearest = std::min_element(pointings.begin(), pointings.end(), nearer);
+  std::string warning = far_warning(*nearest, set, frequency_hz);
+  if (warning.empty()) warning = pointing_warning(*nearest, geometry, frequency_hz);
+  if (!warning.empty()) notes.warnings.push_back(std::move(warning));
   return notes;
 }
 

@@ -198,6 +198,8 @@ void Ds9Reader::read_statement(std::string_view statement, RegionLine& found) {
   }
   if (word == "tile" && rest == "1") return;
   if (has_no_pixels(word)) return;
+  if (std::string_view behind = statement.substr(1); statement.starts_with('-') || statement.starts_with('+'))
+    if (has_no_pixels(small_letters(take_word(behind)))) return;
   const auto [description, properties] = split_ds9_properties(statement);
   const Ds9Properties own = parse_ds9_properties(properties);
   if (own.background.value_or(background_))

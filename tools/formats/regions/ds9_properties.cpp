@@ -102,6 +102,7 @@ Ds9Properties parse_ds9_properties(std::string_view text) {
       set(properties, name, "1");
       continue;
     }
+    if (whole.find('=') == std::string_view::npos && !name.empty()) break;  // a comment, which may stand behind properties
     const bool list = is_one_of(viewed_lists, name);
     if (!rest.starts_with('=') || !(counts || list || is_one_of(viewed, name)))
       refuse(whole, "properties of DS9's regions, such as color=green, text={a note} or source");
