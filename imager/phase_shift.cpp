@@ -29,7 +29,7 @@ PhaseShift::PhaseShift(const UvwAxes& from, const UvwAxes& to) : none_(from.u ==
   to_ = {dot(moved, from.u), dot(moved, from.v), -dot(moved, moved) / 2};
 }
 
-void PhaseShift::rotate(std::vector<double>& uvw_m, RowRange rows) const {
+void PhaseShift::rotate(std::vector<double>& uvw_m, RowRun rows) const {
   if (none_) return;
   for (std::size_t i = 3 * rows.first; i < 3 * (rows.first + rows.count); i += 3) {
     const UvwAxes::Vector old{uvw_m[i], uvw_m[i + 1], uvw_m[i + 2]};
@@ -52,13 +52,13 @@ void PhaseShift::turn(const SampleCoordinates& old, const Turn& how, std::vector
   }
 }
 
-void PhaseShift::apply(VisibilityBlock& block, RowRange rows) const {
+void PhaseShift::apply(VisibilityBlock& block, RowRun rows) const {
   if (none_) return;
   turn(block, {-1, rows}, block.visibility);
   rotate(block.uvw_m.edit(), rows);
 }
 
-void PhaseShift::undo(const SampleCoordinates& old, std::vector<std::complex<double>>& visibilities, RowRange rows) const {
+void PhaseShift::undo(const SampleCoordinates& old, std::vector<std::complex<double>>& visibilities, RowRun rows) const {
   if (!none_) turn(old, {1, rows}, visibilities);
 }
 

@@ -20,7 +20,7 @@ struct UvwAxes {
 UvwAxes uvw_axes(const SkyDirection& phase_centre);
 
 /// Rows of a block that follow one another.
-struct RowRange {
+struct RowRun {
   std::size_t first = 0;
   std::size_t count = 0;
 };
@@ -38,21 +38,21 @@ class PhaseShift {
   bool none() const { return none_; }
   /// Seen along the new axes: UVW [row][3], metres.
   void rotate(std::vector<double>& uvw_m) const { rotate(uvw_m, {0, uvw_m.size() / 3}); }
-  void rotate(std::vector<double>& uvw_m, RowRange rows) const;
+  void rotate(std::vector<double>& uvw_m, RowRun rows) const;
   /// The block as the new phase centre sees it. The phasors are right to double precision.
   void apply(VisibilityBlock& block) const { apply(block, {0, block.rows()}); }
-  void apply(VisibilityBlock& block, RowRange rows) const;
+  void apply(VisibilityBlock& block, RowRun rows) const;
   /// Visibilities [row][channel] of the new phase centre become those of the old one, where their UVW are `old`.
   void undo(const SampleCoordinates& old, std::vector<std::complex<double>>& visibilities) const {
     undo(old, visibilities, {0, old.rows()});
   }
-  void undo(const SampleCoordinates& old, std::vector<std::complex<double>>& visibilities, RowRange rows) const;
+  void undo(const SampleCoordinates& old, std::vector<std::complex<double>>& visibilities, RowRun rows) const;
 
  private:
   /// How visibilities turn.
   struct Turn {
     double sign = 1;
-    RowRange rows;
+    RowRun rows;
   };
 
   /// Multiplies each visibility [row][channel] of the rows by exp(2πi sign (w' − w)).
@@ -78,7 +78,7 @@ class RowShifts {
  private:
   struct Run {
     const PhaseShift* shift;
-    RowRange rows;
+    RowRun rows;
   };
 
   std::vector<Run> runs_;
