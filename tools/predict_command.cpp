@@ -32,7 +32,7 @@ struct PredictOptions {
   bool subtract = false;
   std::string datacolumn;   ///< empty: DATA
   std::string column;       ///< empty: what column_of() says
-  std::string phasecenter;  ///< as ms_io::phased_to() takes it; empty: see selection_about()
+  std::string phasecenter;  ///< as ms_io::phased_to() takes it; empty: see phased_set()
   ms_io::Selection selection;
   double accuracy = 1e-6;
   bool accuracy_is_typed = false;
@@ -51,15 +51,31 @@ struct NamedModel {
   std::vector<std::string> remarks;
 };
 
-/// The selection, phased to where the model is. Directions on the sky, in a list or the header of an image, stand still where a
-/// field moves; offsets from the phase centre, and images of what a field follows, move along.
-ms_io::Selection selection_about(const PredictOptions& o) {
-  if (!o.phasecenter.empty()) return ms_io::phased_to(o.selection, o.phasecenter, o.vis);
-  const bool stands =
-      o.model.empty() ? lists_directions(o.components) : open_image_file(o.model)->header().observation.moving_at.empty();
+/// What the model is predicted for, and what users should know of that.
+struct PhasedSet {
+  std::unique_ptr<ms_io::MeasurementSet> set;
+  std::vector<std::string> remarks;
+};
+
+/// This rank's part of the set, phased to where the model is. Directions on the sky, in a list or the header of an image, stand
+/// still where a field moves; offsets from the phase centre, and images of what a field follows, move along.
+PhasedSet phased_set(const PredictOptions& o, const imager::Ranks& ranks) {
+  const auto open = [&](const ms_io::Selection& selection) {
+    PhasedSet phased{ms_io::MeasurementSet(o.vis, selection, "").share(ranks), {}};
+    phased.remarks = phased.set->remarks();
+    return phased;
+  };
+  if (!o.phasecenter.empty()) return open(ms_io::phased_to(o.selection, o.phasecenter, o.vis));
+  using Moving = ms_io::Selection::Moving;
   ms_io::Selection selection = o.selection;
-  if (stands) selection.moving = ms_io::Selection::Moving::shifted_to_middle;
-  return selection;
+  if (o.components.empty() || lists_directions(o.components)) selection.moving = Moving::shifted_to_middle;
+  PhasedSet phased = open(selection);
+  selection.phase_centre = phased.set->selection().phase_centre;
+  if (o.model.empty() || !selection.phase_centre) return phased;
+  const auto file = open_image_file(o.model);
+  if (!file->header().observation.moving_at.empty()) return open(o.selection);
+  selection.phase_centre = file->header().geometry.phase_centre;
+  return {open(selection).set, phased.remarks};
 }
 
 /// Where an image has to be centred for this set. One that moves along is centred on where the field was in the middle of
@@ -157,16 +173,10 @@ std::string command_of(const PredictOptions& o) {
 /// Of this rank.
 NamedModel read_model(const PredictOptions& o, const imager::Ranks& ranks) {
   const int threads = o.threads == 0 ? imager::available_threads(ranks.on_these_cores()) : o.threads;
-  ms_io::Selection selection = selection_about(o);
-  std::unique_ptr<ms_io::MeasurementSet> set = ms_io::MeasurementSet(o.vis, selection, "").share(ranks);
-  const std::vector<std::string> remarks = set->remarks();
-  if (!o.model.empty() && selection.moving == ms_io::Selection::Moving::shifted_to_middle && set->selection().phase_centre) {
-    selection.phase_centre = open_image_file(o.model)->header().geometry.phase_centre;
-    set = ms_io::MeasurementSet(o.vis, selection, "").share(ranks);
-  }
-  NamedModel model = o.model.empty() ? component_model(o, *set, threads) : image_model(o, *set, threads);
-  model.selection = set->selection();
-  model.remarks.insert(model.remarks.begin(), remarks.begin(), remarks.end());
+  const PhasedSet phased = phased_set(o, ranks);
+  NamedModel model = o.model.empty() ? component_model(o, *phased.set, threads) : image_model(o, *phased.set, threads);
+  model.selection = phased.set->selection();
+  model.remarks.insert(model.remarks.begin(), phased.remarks.begin(), phased.remarks.end());
   return model;
 }
 
