@@ -215,7 +215,8 @@ void add_still_field(const std::string& set, const SkyPoint& at) {
 void put_fixed_source(const std::string& set, const std::vector<MovingField>& moving, const SkyPoint& source, double flux_jy) {
   constexpr double light_m_s = 299792458;
   casacore::MeasurementSet open = opened(set);
-  const casacore::Vector<double> hz = casacore::ArrayColumn<double>(open.spectralWindow(), "CHAN_FREQ")(0);
+  const casacore::ArrayColumn<double> frequency(open.spectralWindow(), "CHAN_FREQ");
+  const casacore::ScalarColumn<int> window(open.dataDescription(), "SPECTRAL_WINDOW_ID"), description(open, "DATA_DESC_ID");
   const casacore::ScalarColumn<double> time(open, "TIME");
   const casacore::ScalarColumn<int> field(open, "FIELD_ID");
   const casacore::ArrayColumn<double> uvw_column(open, "UVW"), direction(open.field(), "PHASE_DIR");
@@ -226,6 +227,8 @@ void put_fixed_source(const std::string& set, const std::vector<MovingField>& mo
     const SkyPoint centre = moves != moving.end() ? moves->at(time(row)) : SkyPoint{still.data()[0], still.data()[1]};
     const std::array<double, 3> lmn = cosines(source, centre);
     const casacore::Array<double> uvw = uvw_column(row);
+    const int id = window(static_cast<casacore::rownr_t>(description(row)));
+    const casacore::Vector<double> hz = frequency(static_cast<casacore::rownr_t>(id));
     const double delay_s = (uvw.data()[0] * lmn[0] + uvw.data()[1] * lmn[1] + uvw.data()[2] * lmn[2]) / light_m_s;
     casacore::Matrix<casacore::Complex> cell(2, hz.size());
     for (std::size_t c = 0; c < hz.size(); ++c)

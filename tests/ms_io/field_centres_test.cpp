@@ -28,6 +28,20 @@ BOOST_AUTO_TEST_CASE(what_stands_still_on_the_sky_does_so_about_a_direction_howe
   }
 }
 
+// Rows of two windows and two fields alternate, and are read together.
+BOOST_AUTO_TEST_CASE(rows_that_alternate_between_windows_and_fields_keep_their_own_shifts) {
+  for (const Path way : {Path::ephemeris, Path::acceleration}) {
+    const MovingSet set(way);
+    set.add_spectral_window();
+    add_still_field(set.path(), {1.252, -0.501});
+    put_fixed_source(set.path(), {set.moving}, source, flux_jy);
+    for (const std::uint64_t block_samples : {7, 1 << 20}) {
+      const MeasurementSet opened(set.path(), to_direction({1.24, -0.49}, way), "DATA", {imager::Stokes::I}, block_samples);
+      BOOST_TEST(largest_error_jy(opened, source_from(opened.observation().phase_centre)) < roundings_jy);
+    }
+  }
+}
+
 BOOST_AUTO_TEST_CASE(coordinates_and_reach_are_those_that_are_read) {
   for (const Path way : all_paths) {
     const MovingSet set(way);
