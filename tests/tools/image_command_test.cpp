@@ -524,7 +524,7 @@ BOOST_AUTO_TEST_CASE(names_of_any_bytes_are_imaged_and_a_terminal_obeys_none) {
   name_all(set, "\x1b]0;owned\x07\xff\n<b>");
   const Outcome far = run(small_image(set, image) + Arguments{"--phasecenter", "J2000 12h00m00s -80d00m00s"});
   BOOST_TEST(far.code == 0);
-  BOOST_TEST(far.err.find("degrees from the nearest field, ?]0;owned??"
+  BOOST_TEST(far.err.find("beyond the first null of the beam: field 0 (?]0;owned??"
                           "?<b>") != std::string::npos);
   BOOST_TEST(far.err.find('\x1b') == std::string::npos);
   const std::string page = content(image + ".report.html");
