@@ -70,7 +70,7 @@ std::string usage_message(const CLI::ParseError& error, const CLI::App& program)
   std::vector<std::string> names;
   for (const CLI::App* each : command.get_subcommands({})) names.push_back(each->get_name());
   const std::vector<std::string> rest = command.remaining();
-  const bool unknown = error.get_name() == "ExtrasError";
+  const bool unknown = dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr;
   if (names.empty() && (missing || unknown) && !rest.empty()) return unexpected(rest);  // may be what is missing, misspelt
   if (names.empty() || !missing) return error.what();
   const std::string word = rest.empty() || rest.front().front() == '-' ? "" : rest.front();
