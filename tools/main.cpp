@@ -60,7 +60,9 @@ std::string unexpected(const std::vector<std::string>& words) {
   for (const std::string& word : words)
     if (word.size() > 1 && word.front() == '-' && std::isalpha(static_cast<unsigned char>(word.back())) != 0)
       options.push_back(word);
-  return CLI::ExtrasError(options.empty() ? words : options).what();
+  if (options.empty()) options = words;
+  std::reverse(options.begin(), options.end());  // it shows the last first
+  return CLI::ExtrasError(options).what();
 }
 
 /// What the parser says, or where a subcommand is missing, or is none, those that there are.
