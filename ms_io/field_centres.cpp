@@ -99,18 +99,20 @@ class CentreSearch {
   Nowhere shift_from_rounding() {
     const auto centre_of = [&](int field) { return fields_.centre(field, {time_of(row_of(field)), row_of(field)}); };
     const FieldCentre first = centre_of(first_field(set_, selected_));
+    const double close_rad = close_centre_rad(set_, selected_);
     double most_rad = 0;
     for (const auto& [field, row] : selected_.first_row_of_field) {
       const double apart_rad = separation_rad(first.direction, centre_of(field).direction);
-      if (apart_rad > close_centre_rad && selection_.moving != Selection::Moving::shifted_to_middle)
+      if (apart_rad > close_rad && selection_.moving != Selection::Moving::shifted_to_middle)
         refuse_apart(first.field, field, apart_rad);
       most_rad = std::max(most_rad, apart_rad);
     }
     if (most_rad <= same_centre_rad) return {};
-    if (most_rad > close_centre_rad) return first.direction;  // what stands still on the sky is seen by each about its own
+    if (most_rad > close_rad) return first.direction;  // what stands still on the sky is seen by each about its own
     std::ostringstream remark;
     remark << "fields of " << path_ << " have phase centres up to " << most_rad
-           << " rad apart, as if by rounding: all are shifted to that of field " << fields_.label(first.field);
+           << " rad apart, as if by rounding, or far below a pixel: all are shifted to that of field "
+           << fields_.label(first.field);
     selected_.remarks.push_back(remark.str());
     return first.direction;
   }
@@ -202,6 +204,11 @@ double finest_beam_rad(const casacore::MeasurementSet& set, const SelectedRows& 
     for (const double hz : setup.frequency_hz) highest_hz = std::max(highest_hz, hz);
   const double baseline_m = largest_baseline_m(set);
   return baseline_m > 0 ? imager::speed_of_light_m_s / highest_hz / baseline_m : 0;
+}
+
+double close_centre_rad(const casacore::MeasurementSet& set, const SelectedRows& selected) {
+  constexpr double least_rad = 5e-11;
+  return std::max(1e-3 * finest_beam_rad(set, selected), least_rad);
 }
 
 double noticed_motion_rad(const casacore::MeasurementSet& set, const SelectedRows& selected) {

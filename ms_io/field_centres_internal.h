@@ -30,6 +30,11 @@ FieldCentre followed_centre(FieldDirections& fields, const SelectedRows& selecte
 /// Where a field is phased to at its first selected row or, where it moves, in the middle of its rows.
 FieldCentre usual_centre(FieldDirections& fields, const casacore::MeasurementSet& set, const SelectedRows& selected, int field);
 
+/// Nearer than this phase centres are meant as one: a thousandth of the finest beam, far below a pixel, and at least 10
+/// microarcseconds, by which the same direction differs in the matrices by which programs convert between J2000 and ICRS, or in
+/// the digits by which they print it.
+double close_centre_rad(const casacore::MeasurementSet& set, const SelectedRows& selected);
+
 /// The different TIMEs, ascending, at which each of `fields` has selected rows. Throws std::runtime_error for one that is not
 /// finite.
 std::map<int, std::vector<double>> times_of(const casacore::MeasurementSet& set, const std::string& path,

@@ -114,7 +114,8 @@ std::optional<imager::SkyDirection> centre_but_for_rounding(const OpenSet& first
   if (first.selected.follows_field || other.selected.follows_field) return {};
   const imager::SkyDirection centre = describe(first.set, first.path, first.selected).phase_centre;
   const double apart_rad = separation_rad(centre, describe(other.set, other.path, other.selected).phase_centre);
-  if (apart_rad <= same_centre_rad || apart_rad > close_centre_rad) return {};
+  const double close_rad = std::min(close_centre_rad(first.set, first.selected), close_centre_rad(other.set, other.selected));
+  if (apart_rad <= same_centre_rad || apart_rad > close_rad) return {};
   return centre;
 }
 

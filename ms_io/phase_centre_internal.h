@@ -10,10 +10,6 @@ namespace misfit::ms_io {
 /// them 4e-16 apart, in conversions between J2000 and ICRS too.
 constexpr double same_centre_rad = 1e-12;
 
-/// Nearer than this, 10 microarcseconds, phase centres are meant as one: they differ as the same direction does in the matrices
-/// by which programs convert between J2000 and ICRS, or in the digits by which they print it.
-constexpr double close_centre_rad = 5e-11;
-
 /// The angle between two directions, whatever their frames; B1950 as it was in 1950.
 double separation_rad(const imager::SkyDirection& a, const imager::SkyDirection& b);
 
