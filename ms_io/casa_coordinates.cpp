@@ -63,7 +63,7 @@ casacore::ObsInfo obs_info(const imager::Observation& observation, const imager:
 
 /// The slant of a SIN projection; of others, which have no parameters, none.
 std::array<double, 2> slant_of(const casacore::Projection& projection, const std::string& path) {
-  const casacore::Vector<double> parameters = projection.parameters();
+  const casacore::Vector<double>& parameters = projection.parameters();
   if (projection.type() == casacore::Projection::SIN && parameters.size() == 2) return {parameters[0], parameters[1]};
   for (const double parameter : parameters)
     if (parameter != 0)

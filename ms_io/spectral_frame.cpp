@@ -68,7 +68,7 @@ FrameRatio::FrameRatio(const casacore::MeasurementSet& set, const std::string& p
     frame_ = frame_of(set, row);  // shared with the conversion below
     const int field = first_field(set, selected);
     frame_.set(measure_of(selected.phase_centre.value_or(field_centre(set, path, field, row).direction)));
-    if (selected.follows_field) moving_.reset(new Towards{{set, path}, selected, field});
+    if (selected.follows_field) moving_ = std::make_unique<Towards>(set, path, selected, field);
     convert_.emplace(casacore::MFrequency::Ref(spectral_frame_code(setup.spectral_frame), frame_),
                      casacore::MFrequency::Ref(spectral_frame_code(selected.spectral_frame), frame_));
   });

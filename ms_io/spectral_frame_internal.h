@@ -36,6 +36,9 @@ class FrameRatio {
  private:
   /// Where a field is that the image moves with.
   struct Towards {
+    Towards(const casacore::MeasurementSet& set, const std::string& path, const SelectedRows& rows, int of)
+        : fields(set, path), selected(rows), field(of) {}
+
     FieldDirections fields;
     const SelectedRows& selected;
     int field;
