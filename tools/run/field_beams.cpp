@@ -104,12 +104,19 @@ bool nearer(const ms_io::FieldPointing& a, const ms_io::FieldPointing& b) {
   return a.from_centre_rad < b.from_centre_rad;
 }
 
-/// That the image's centre lies beyond the first null of the only field, or of several that point alike; else empty.
+/// That the image's centre lies beyond the first null of the only field, or of several that point alike; empty where it does
+/// not, or the beam is not known.
 std::string far_warning(const ms_io::FieldPointing& nearest, const ms_io::MeasurementSet& set, double frequency_hz) {
-  // No dish has its null nearer than the largest, and none of the pairs beyond 1.3 times λ/D of the smallest.
-  const double null_rad = nearest.smallest_dish_m > 0 ? imager::speed_of_light_m_s / frequency_hz / nearest.smallest_dish_m : 0;
-  if (null_rad == 0 || nearest.from_centre_rad < null_rad) return "";
-  const ms_io::BeamRows rows = set.beam_rows();
+  // The smallest dish's null lies beyond its λ/D: nearer than that the antennas of all rows need not be read.
+  const double least_rad =
+      nearest.smallest_dish_m > 0 ? imager::speed_of_light_m_s / frequency_hz / nearest.smallest_dish_m : 0;
+  if (least_rad == 0 || nearest.from_centre_rad < least_rad) return "";
+  ms_io::BeamRows rows;
+  try {
+    rows = set.beam_rows();
+  } catch (const std::runtime_error&) {  // of FEED and the like, which images do not need
+    return "";
+  }
   const auto pointing = std::min_element(rows.pointings.begin(), rows.pointings.end(), nearer);
   const SeenCentre seen = seen_centre(*pointing, rows, frequency_hz, false);
   if (!seen.no_beam.empty() || !seen.beyond_null) return "";
@@ -173,6 +180,7 @@ FieldNotes notes_on_fields(const ImageOptions& o, const ms_io::MeasurementSet& s
     notes.warnings.push_back("whether the antennas see the image is not known: " + std::string(error.what()));
     return notes;
   }
+  if (pointings.empty()) return notes;
   const double frequency_hz = set.observation().frequency_hz;
   const bool one = std::all_of(pointings.begin(), pointings.end(), [&](const auto& pointing) {
     return pointing.set == pointings.front().set && pointing.id == pointings.front().id;  // which may move
