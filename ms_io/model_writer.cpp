@@ -150,7 +150,8 @@ class ModelWriter {
     journal_.rows = selected_.rows;
     journal_.witnesses = translated(doing_(), [&] { return choose_witnesses(set_, column_, selected_); });
     const bool exists = set_.tableDesc().isColumn(column_.name);
-    if (exists) go_on();
+    const bool goes_on = exists && go_on();
+    if (!goes_on) kept_.forget();  // what a run left that this one does not go on with
     if (journal_.written == 0) tell_of_subtracted();
     if (column_.in_place())  // what tells of changes by others is about to change
       write_subtracted_models(set_, column_.name, subtracted_models(set_, column_.name), {});
@@ -213,10 +214,10 @@ class ModelWriter {
     return found == journal.done_below.end() ? 0 : found->second;
   }
 
-  /// Takes up what an earlier run left, where that is the beginning of this one.
-  void go_on() {
+  /// Takes up what an earlier run left, where that is the beginning of this one. Returns whether it is.
+  bool go_on() {
     const std::optional<ModelJournal> before = read_journal(set_, column_.name);
-    if (!before) return;
+    if (!before) return false;
     const Left left = what_is_left(*before);
     if (column_.in_place() && outlived(set_, *before)) write_subtracted_models(set_, column_.name, {}, {});
     if (column_.in_place() && left != Left::beginning && !outlived(set_, *before))
@@ -232,6 +233,7 @@ class ModelWriter {
                                  : "; this run has another model, selection or option, or other coordinates, and begins anew: "
                                    "rows that it does not select stay as they are";
     if (column_.origin.tell) column_.origin.tell(incompleteness(path_, *before) + fate);
+    return left == Left::beginning;
   }
 
   enum class Left { beginning, other_data, changed, another };

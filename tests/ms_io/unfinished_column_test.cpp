@@ -296,6 +296,19 @@ BOOST_AUTO_TEST_CASE(a_model_is_subtracted_in_place_once_however_often_the_run_i
   BOOST_TEST(incomplete_column(set.path(), "model") == "");
 }
 
+BOOST_AUTO_TEST_CASE(data_that_another_program_wrote_after_a_run_in_place_was_cut_are_not_overwritten_by_what_that_kept) {
+  for (const int stop_after : {0, 1, 2}) {
+    const MixedSet set, equal;
+    for (const MixedSet* one : {&set, &equal}) {
+      for (const char* field : {"0", "1"}) write(*one, plain, {field, ""}, 1 << 20, 7);
+      if (one == &set) write(*one, in_place, selection, stop_after);
+      fill(*one, "MODEL_DATA", Complex(0.5F, 2));
+      write(*one, in_place);
+    }
+    BOOST_TEST((all_of(set, "MODEL_DATA") == all_of(equal, "MODEL_DATA")));
+  }
+}
+
 BOOST_AUTO_TEST_CASE(data_that_lack_a_model_lose_it_once_and_tell_of_it_when_another_is_subtracted) {
   const MixedSet set;
   write(set, difference);
