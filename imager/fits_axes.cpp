@@ -11,7 +11,7 @@
 namespace misfit::imager {
 namespace {
 
-/// Of the axis that counts from 0. Readers differ in where a reference pixel lies that is not stated.
+/// Reads an axis, counted from 0. A reference pixel must be stated: readers differ in where it lies otherwise.
 FitsAxis read_axis(const FitsFile& file, const FitsPlanes& planes, std::size_t axis) {
   const std::string n = std::to_string(axis + 1);
   return {file.text("CTYPE" + n), file.text("CUNIT" + n), file.needed_number("CRPIX" + n), file.needed_number("CRVAL" + n),

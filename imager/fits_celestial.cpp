@@ -40,7 +40,7 @@ CelestialType read_type(const FitsFile& file) {
             "'; expected RA---SIN and DEC--SIN, or GLON and GLAT, or one of TAN, STG, ARC, ZEA and NCP in place of SIN");
 }
 
-/// Whether the axes say nothing of the sky. A step that is no pixel would be one of a coordinate that is not named.
+/// Tells whether the header has no sky coordinates at all. Throws where it has a step without saying of which coordinate.
 bool says_nothing(const FitsFile& file) {
   for (const std::string n : {"1", "2"}) {
     const std::string type = file.text("CTYPE" + n);
@@ -87,8 +87,8 @@ std::string read_frame(const FitsFile& file) {
   return frame;
 }
 
-/// What no projection here has: another point of reference than its pole, and polynomials. PV1_3 and PV1_4 are LONPOLE and
-/// LATPOLE.
+/// Refuses parameters of projections that are not read: another reference point than the pole, polynomials. PV1_3 and PV1_4 are
+/// LONPOLE and LATPOLE.
 void refuse_parameters(const FitsFile& file, bool slanted) {
   for (const int axis : {1, 2})
     for (int m = 0; m < 40; ++m) {

@@ -11,7 +11,7 @@ void write_header(FitsFile& file, const ImageHeader& header);
 
 void write_cards(FitsFile& file, const std::vector<HeaderCard>& cards);
 
-/// What the file says but for its cards, its history, and where it lies on the sky. Throws std::runtime_error as
+/// Reads all that the header states but cards, history, and the place on the sky. Throws std::runtime_error as
 /// read_spectral_axis() and read_stokes() do.
 ImageHeader read_header(const FitsFile& file, const FitsPlanes& planes);
 

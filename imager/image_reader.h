@@ -22,7 +22,7 @@ class ImageReader {
   /// The pixels of a plane; NaN where they have no value. Throws std::runtime_error that names the file where they cannot be
   /// read.
   Image read(const PlaneIndex& at) const { return read_rows(at, 0, header().geometry.height); }
-  /// The same of so many rows of it, as an image of as many.
+  /// Reads `count` rows of a plane, from row `first` on, as an image of that height.
   virtual Image read_rows(const PlaneIndex& at, int first, int count) const = 0;
 };
 

@@ -58,7 +58,7 @@ class PrimaryBeam {
   double half_power_width_rad() const;
   /// sin θ beyond which no dish's main lobe reaches at any frequency: the widest first null; 1 where one has none.
   double main_lobe_sine() const;
-  /// Of sin θ: what the narrowest main lobe has 60 of.
+  /// The step of tables in sin θ, of which the narrowest main lobe has 60.
   double step() const { return 0.02 * narrowest_; }
 
   const std::vector<BeamShare>& shares() const { return shares_; }  ///< as taken together; the weights add up to 1

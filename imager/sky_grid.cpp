@@ -117,7 +117,7 @@ double bent_away(const SkyGrid& grid, const ImageGeometry& upright) {
   return most;
 }
 
-/// What keeps the grid's axes from those of an upright geometry, in words.
+/// Says in words why the grid's axes are not those of an upright geometry.
 std::string turned_in_words(const SkyGrid& grid) {
   const double angle_rad = grid.position_angle_rad();
   if (grid.is_mirrored()) return "its pixels show the sky mirrored (CDELT1 or CDELT2 of the other sign)";

@@ -23,13 +23,13 @@ struct FieldNotes {
   std::vector<std::string> warnings;
 };
 
-/// Of fields with these pointings, at a frequency. Where they point apart, each field's distance from the image's centre and
+/// Lists fields that point apart, at a frequency: each field's distance from the image's centre and
 /// its beam there, that of PrimaryBeamStage for the field's own rows; the distance alone where its antennas have no simple
 /// beam. Throws std::runtime_error that names the fields of which the centre lies beyond the first null, of all their dishes,
 /// unless `force`: they dim whatever others see.
 FieldNotes notes_on_apart_fields(const ms_io::BeamRows& rows, double frequency_hz, bool force);
 
-/// Of the fields of a run; where they point alike, that the antennas hardly see the image, if they do;
+/// Notes on the fields of a run: those that point apart; where they point alike, that the antennas hardly see the image, if so;
 /// or that FIELD or ANTENNA does not say where they pointed. Throws what notes_on_apart_fields() does without --force-average,
 /// and what MeasurementSet::beam_rows() does. Reads antennas of all rows where fields point apart.
 FieldNotes notes_on_fields(const ImageOptions& options, const ms_io::MeasurementSet& set,
