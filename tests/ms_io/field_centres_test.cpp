@@ -56,6 +56,7 @@ BOOST_AUTO_TEST_CASE(coordinates_and_reach_are_those_that_are_read) {
   }
 }
 
+BOOST_TEST_DECORATOR(*boost::unit_test::label("sweep"))
 BOOST_AUTO_TEST_CASE(a_model_that_stands_still_is_written_as_the_moving_field_sees_it) {
   for (const Path way : all_paths)
     for (const bool direction_is_given : {true, false}) {

@@ -92,6 +92,7 @@ BOOST_AUTO_TEST_CASE(what_is_forced_is_judged_where_the_host_keeps_the_image) {
   }
 }
 
+BOOST_TEST_DECORATOR(*boost::unit_test::label("sweep"))
 BOOST_DATA_TEST_CASE(a_target_is_reached_by_the_least_that_does, bdata::make(tools::host_names()), host) {
   const Scene scene;
   for (const char* target : {"1e-2", "3e-3", "1e-3"}) {
@@ -113,6 +114,7 @@ BOOST_DATA_TEST_CASE(a_target_is_reached_by_the_least_that_does, bdata::make(too
   }
 }
 
+BOOST_TEST_DECORATOR(*boost::unit_test::label("sweep"))
 BOOST_DATA_TEST_CASE(a_narrower_kernel_than_is_chosen_for_a_target_misses_it,
                      bdata::make({"wsclean", "ducc", "finufft", "c-header"}), host) {
   const Scene scene;

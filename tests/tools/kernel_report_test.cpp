@@ -63,7 +63,7 @@ BOOST_AUTO_TEST_CASE(wider_least_misfit_functions_err_less_everywhere_they_are_m
     for (std::size_t i = 0; series[k].x[i] <= 0.25; ++i) BOOST_TEST(series[k].y[i] < series[k - 1].y[i]);
 }
 
-BOOST_AUTO_TEST_CASE(tables_err_as_the_law_drawn_beside_them_says) {
+BOOST_AUTO_TEST_CASE(tables_err_as_the_law_drawn_beside_them_says, *boost::unit_test::label("sweep")) {
   const ReportSection section = evaluation_section(solved());
   const auto& series = figure_called(section, "table-rms").series;
   const Series& law = series.back();

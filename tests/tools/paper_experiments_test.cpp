@@ -164,7 +164,7 @@ BOOST_AUTO_TEST_CASE(a_source_outside_leaves_the_alias_that_the_transform_of_the
   }
 }
 
-BOOST_AUTO_TEST_CASE(all_aliases_together_are_the_misfit) {
+BOOST_AUTO_TEST_CASE(all_aliases_together_are_the_misfit, *boost::unit_test::label("sweep")) {
   // E is what aliases leave, and what h loses of the image itself, about E². Beyond the third field they fall as 1/x.
   const DataTable& table = aliases().section.tables.at(0);
   for (std::size_t row = 0; row < table.rows.size(); ++row) {
@@ -201,7 +201,7 @@ BOOST_AUTO_TEST_CASE(a_short_table_is_as_good_as_that_of_casa) {
   BOOST_TEST(std::abs(std::sqrt(added / 2) / (2.617994 / 600) - 1) < 1e-3);
 }
 
-BOOST_AUTO_TEST_CASE(names_of_figures_and_tables_differ) {
+BOOST_AUTO_TEST_CASE(names_of_figures_and_tables_differ, *boost::unit_test::label("sweep")) {
   std::multiset<std::string> names;
   for (const PaperExperiment* experiment : {&misfit_experiment(), &tables(), &aliases(), &degridding(), &casa()}) {
     for (const Figure& figure : experiment->section.figures) names.insert(figure.name);

@@ -61,6 +61,7 @@ constexpr double of_two_images = 3e-6;
 
 }  // namespace
 
+BOOST_TEST_DECORATOR(*boost::unit_test::label("sweep"))
 BOOST_AUTO_TEST_CASE(every_stokes_parameter_looks_like_an_unpolarised_sky_of_its_brightness) {
   for (const auto& [types, lists] : {std::pair(linear, Arguments{"IQUV", "V", "XXYY"}), {circular, {"IQUV", "QU", "LL"}}})
     for (const std::string& list : lists) {
@@ -123,6 +124,7 @@ BOOST_AUTO_TEST_CASE(masks_of_each_stokes_parameter_are_made_and_taken_back) {
              std::string::npos);
 }
 
+BOOST_TEST_DECORATOR(*boost::unit_test::label("sweep"))
 BOOST_AUTO_TEST_CASE(the_model_of_any_stokes_parameters_is_saved_as_all_correlations_show_it) {
   for (const char* stokes : {"V", "QU", "IQUV", "XX", "YY", "XXYY", "LL", "RRLL"}) {
     const bool is_circular = std::string(stokes).find_first_of("RL") != std::string::npos;
