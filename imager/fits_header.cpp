@@ -81,10 +81,14 @@ Observation read_observation(const FitsFile& file, const SpectralAxis& axis) {
 
 void write_header(FitsFile& file, const ImageHeader& header) {
   file.write_text("BUNIT", header.unit);
-  file.write_text("BTYPE", "Intensity");
+  file.write_text("BTYPE", header.quantity);
   write_axes(file, header);
   write_spectral_frame(file, header);
   write_observation(file, header.observation);
+  if (header.taylor.several()) {
+    file.write_integer(taylor_order_key, header.taylor.order, "Taylor term, counted from 0, of");
+    file.write_integer(taylor_terms_key, header.taylor.terms, "terms of spectra");
+  }
   write_cards(file, header.cards);
 }
 
@@ -98,6 +102,8 @@ ImageHeader read_header(const FitsFile& file, const FitsPlanes& planes) {
   header.stokes = read_stokes(file, planes);
   header.observation = read_observation(file, header.spectral);
   header.unit = file.text("BUNIT");
+  header.quantity = file.text("BTYPE");
+  header.taylor = stated_taylor_term(file.number(taylor_order_key).value_or(0), file.number(taylor_terms_key).value_or(1));
   return header;
 }
 

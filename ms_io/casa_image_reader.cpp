@@ -32,6 +32,20 @@ imager::PlaneBeams beams_of(const casacore::ImageInfo& info, const imager::Image
   return beams;
 }
 
+/// What `info` holds under a name, in any kind of number; `otherwise` where it holds none.
+double number_in(const casacore::TableRecord& info, const std::string& name, double otherwise) {
+  if (!info.isDefined(name)) return otherwise;
+  switch (info.dataType(name)) {
+    case casacore::TpInt:
+    case casacore::TpInt64:
+    case casacore::TpFloat:
+    case casacore::TpDouble:
+      return info.asDouble(name);
+    default:
+      return otherwise;
+  }
+}
+
 /// Throws where the files of an image cannot hold its pixels: memory is taken for a plane at once.
 void check_size(const casacore::IPosition& shape, std::size_t pixel_bytes, const std::string& path) {
   double held = 0, needed = static_cast<double>(pixel_bytes);
@@ -57,7 +71,10 @@ class CasaImageReader : public imager::ImageReader {
     header_.observation.phase_centre = header_.geometry.phase_centre;
     header_.unit = image_.units().getName();
     header_.observation.object = image_.imageInfo().objectName();
+    header_.quantity = casacore::ImageInfo::imageType(image_.imageInfo().imageType());
     const casacore::TableRecord& others = image_.miscInfo();
+    header_.taylor = imager::stated_taylor_term(number_in(others, imager::taylor_order_key, 0),
+                                                number_in(others, imager::taylor_terms_key, 1));
     if (others.isDefined(moving_key) && others.dataType(moving_key) == casacore::TpString)
       header_.observation.moving_at = others.asString(moving_key);
     beams_ = beams_of(image_.imageInfo(), header_);

@@ -34,10 +34,10 @@ casacore::ImageBeamSet beam_set(const imager::PlaneBeams& beams) {
   return set;
 }
 
-casacore::ImageInfo image_info(const imager::PlaneBeams& beams, const std::string& object) {
+casacore::ImageInfo image_info(const imager::PlaneBeams& beams, const imager::ImageHeader& header) {
   casacore::ImageInfo info;
-  info.setImageType(casacore::ImageInfo::Intensity);
-  info.setObjectName(object);
+  info.setImageType(casacore::ImageInfo::imageType(header.quantity));
+  info.setObjectName(header.observation.object);
   if (const std::optional<imager::Beam> beam = beams.shared())
     info.setRestoringBeam(casa_beam(*beam));
   else if (beams.any())
@@ -54,6 +54,12 @@ casacore::TableRecord misc_info(const imager::ImageHeader& header) {
   if (!header.observation.moving_at.empty()) {
     record.define(moving_key, header.observation.moving_at);
     record.setComment(moving_key, "UTC of the reference value: the image moves along with its field");
+  }
+  if (header.taylor.several()) {
+    record.define(imager::taylor_order_key, header.taylor.order);
+    record.setComment(imager::taylor_order_key, "Taylor term, counted from 0");
+    record.define(imager::taylor_terms_key, header.taylor.terms);
+    record.setComment(imager::taylor_terms_key, "terms of spectra");
   }
   for (const imager::HeaderCard& card : header.cards) {
     record.define(card.keyword, card.value);
@@ -113,7 +119,7 @@ class CasaImageWriter : public imager::ImageWriter {
         const imager::Image blank = planes_.blank();
         for (const imager::PlaneIndex& at : missing) write_pixels(at, blank);
       }
-      if (!image_->setImageInfo(image_info(planes_.beams(), header_.observation.object)))
+      if (!image_->setImageInfo(image_info(planes_.beams(), header_)))
         throw std::runtime_error("cannot write " + path_ + ": casacore keeps no beams of it");
       image_->setMiscInfo(misc_info(header_));
       for (const std::string& line : header_.history)

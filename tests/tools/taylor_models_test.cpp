@@ -1,5 +1,6 @@
-// Models that are one of several Taylor terms, by their names.
+// Models that are one of several Taylor terms, by their names and by their headers.
 #include "tests/tools/program.h"
+#include "tools/formats/image_file.h"
 
 BOOST_AUTO_TEST_SUITE(taylor_models)
 
@@ -44,7 +45,7 @@ void check_refusal(const Arguments& arguments, const std::vector<std::string>& p
 }  // namespace
 
 BOOST_AUTO_TEST_CASE(a_first_term_is_refused_with_the_names_of_those_that_would_be_left_out) {
-  for (const std::string end : {".fits", "", ".smooth.fits"}) {
+  for (const std::string end : {".fits", "", ".smooth.fits", "_smooth.fits"}) {
     const Model model;
     const std::string first = model.as("x.model.tt0" + end), second = model.as("x.model.tt1" + end),
                       third = model.as("x.model.tt2" + end);
@@ -76,6 +77,53 @@ BOOST_AUTO_TEST_CASE(other_names_are_no_terms) {
     }
   BOOST_TEST(run(model.uses(model.folder() / "x.tt0/a.fits").front()).code == 0);
   check_refusal(model.uses(model.folder() / "none.tt0.fits").front(), {"none.tt0.fits"});
+}
+
+BOOST_AUTO_TEST_CASE(a_name_is_a_term_whatever_parts_it_and_wherever_links_lead) {
+  const Model model;
+  for (const std::string name : {"a_tt0.fits", "b-tt1.fits", "c_tt1", "d-tt0-new.fits", "e.tt0_v2"})
+    check_refusal(model.uses(model.as(name)).front(), {name + " is by its name", "Taylor term"});
+  for (const std::string name : {"x.model.tt0.fits", "x.model.tt1"}) {
+    const std::string link = model.folder() / ("link to " + name.substr(8)), far = link + " again";
+    std::filesystem::create_symlink(model.as(name), link);
+    std::filesystem::create_symlink(link, far);
+    for (const Arguments& use : model.uses(far)) check_refusal(use, {far + " leads to ", name + ", which is by its name"});
+  }
+}
+
+/// All that a run of several terms writes, in both formats.
+BOOST_AUTO_TEST_CASE(headers_say_which_term_an_image_is_and_what_its_pixels_are_and_a_term_is_refused_by_any_name) {
+  const TemporaryFolder folder;
+  succeed({"simulate", "--output", folder / "s.ms", "--channels", "4", "--channel-width", "200MHz"});
+  succeed(small_image(folder / "s.ms", folder / "a") +
+          Arguments{"--niter", "20", "--nterms", "3", "--pbcor", "--outformat", "both"});
+  int terms = 0, indices = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(folder / "")) {
+    const std::string path = entry.path(), name = entry.path().filename();
+    if (name == "s.ms" || !(entry.is_directory() || name.ends_with(".fits"))) continue;
+    const imager::ImageHeader header = tools::open_image_file(path)->header();
+    const std::size_t at = name.find(".tt");
+    const bool is_term = at != std::string::npos, index = name.starts_with("a.alpha"), curve = name.starts_with("a.beta");
+    BOOST_TEST_CONTEXT(path) {
+      BOOST_TEST(header.taylor.terms == (is_term ? 3 : 1));
+      BOOST_TEST(header.taylor.order == (is_term ? name[at + 3] - '0' : 0));
+      const std::string curvature = entry.is_directory() ? "Undefined" : "Spectral Curvature";  // casacore has no name for it
+      BOOST_TEST(header.quantity == (index ? "Spectral Index" : curve ? curvature : "Intensity"));
+      BOOST_TEST(header.unit == (index || curve || name.starts_with("a.pb.") ? ""
+                                 : name.starts_with("a.model")               ? "Jy/pixel"
+                                                                             : "Jy/beam"));
+    }
+    terms += is_term ? 1 : 0;
+    indices += index || curve ? 1 : 0;
+    if (!name.starts_with("a.model")) continue;
+    const std::string copy = folder / ("sky" + std::to_string(terms) + (entry.is_directory() ? "" : ".fits"));
+    std::filesystem::copy(path, copy, std::filesystem::copy_options::recursive);
+    const std::string term = " is by its header Taylor term " + std::to_string(header.taylor.order) + " of 3";
+    check_refusal({"predict", "--vis", folder / "s.ms", "--model", copy}, {copy + term, "--savemodel modelcolumn"});
+    check_refusal(small_image(folder / "s.ms", folder / "b") + Arguments{"--niter", "5", "--startmodel", copy}, {copy + term});
+  }
+  BOOST_TEST(terms == 2 * (5 + 5 * 3));  // PSFs up to order 4; residuals, models, images, corrected images and beams
+  BOOST_TEST(indices == 2 * 5);
 }
 
 /// Flat spectra, which the run changes: what the refusal says is possible.

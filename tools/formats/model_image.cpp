@@ -54,7 +54,12 @@ void check_model(const imager::SkyImage& model, const imager::SkyDirection& cent
   check_finite(model, path);
 }
 
-/// Where a path names its Taylor term: by ".tt" and a number in the file's own name, before a dot or its end.
+bool parts_names(char letter) {
+  return letter == '.' || letter == '_' || letter == '-';
+}
+
+/// Where a path names its Taylor term: by ".tt" and a number in the file's own name, before a dot or its end; "_tt" and "-tt"
+/// are people's own.
 struct TermInName {
   std::string before;  ///< "x.model.tt"
   int term = 0;
@@ -66,15 +71,24 @@ struct TermInName {
 std::optional<TermInName> term_in_name(std::string path) {
   while (path.size() > 1 && path.back() == '/') path.pop_back();
   const std::size_t name = path.rfind('/') == std::string::npos ? 0 : path.rfind('/') + 1;
-  for (std::size_t dot = path.rfind('.'); dot != std::string::npos && dot >= name; dot = path.rfind('.', dot - 1)) {
-    const std::size_t number = dot + 3, end = std::min(path.find('.', dot + 1), path.size());
+  for (std::size_t at = path.size(); at-- > name;) {
+    if (!parts_names(path[at])) continue;
+    const std::size_t number = at + 3;
+    const auto next = std::find_if(path.begin() + static_cast<std::ptrdiff_t>(at) + 1, path.end(), parts_names);
+    const auto end = static_cast<std::size_t>(next - path.begin());
     int term = 0;
-    const bool is_term = end > number && lower(path[dot + 1]) == 't' && lower(path[dot + 2]) == 't' &&
+    const bool is_term = end > number && lower(path[at + 1]) == 't' && lower(path[at + 2]) == 't' &&
                          std::from_chars(path.data() + number, path.data() + end, term).ptr == path.data() + end;
     if (is_term && term >= 0) return TermInName{path.substr(0, number), term, path.substr(end)};
-    if (dot == 0) break;
   }
   return {};
+}
+
+/// The file that `path` leads to by links; `path` itself where it is none.
+std::string behind_links(const std::string& path) {
+  std::error_code none;
+  const std::filesystem::path file = std::filesystem::canonical(path, none);
+  return none ? path : file.string();
 }
 
 /// Of other terms, those that lie beside it.
@@ -86,29 +100,48 @@ std::string other_terms(const TermInName& name) {
   return found;
 }
 
+constexpr const char* models_of_terms =
+    "Models of several terms are not read: misfit image --savemodel modelcolumn predicts all that it finds, and --restart goes "
+    "on from them";
+
+[[noreturn]] void refuse_by_name(const TermInName& name, const std::string& path) {
+  const std::string others = other_terms(name);
+  if (name.term > 0)
+    throw std::runtime_error(path + " is by its name Taylor term " + std::to_string(name.term) +
+                             ", which is how brightness changes with frequency, and no brightness; " +
+                             (others.empty() ? "there is no " + name.path_of(0) + " beside it" : "beside it lies " + others) +
+                             "; expected a model of one term. " + models_of_terms);
+  throw std::runtime_error(path + " is by its name the first of several Taylor terms, " +
+                           (others.empty() ? "but there is no " + name.path_of(1) + " beside it"
+                                           : "and would be taken without " + others + ", as if spectra were flat") +
+                           "; expected a model of one term, which it is under a name without .tt0, of flat spectra. " +
+                           models_of_terms);
+}
+
+[[noreturn]] void refuse_by_header(const imager::TaylorTerm& taylor, const std::string& path) {
+  throw std::runtime_error(
+      path + " is by its header Taylor term " + std::to_string(taylor.order) + " of " + std::to_string(taylor.terms) +
+      ", counted from 0, " +
+      (taylor.order > 0 ? "which is how brightness changes with frequency, and no brightness; expected a model of one term. "
+                        : "and would be taken without the others, as if spectra were flat; expected a model of one term, which "
+                          "it is without " +
+                              std::string(imager::taylor_order_key) + " and " + imager::taylor_terms_key +
+                              " in its header, of flat spectra. ") +
+      models_of_terms);
+}
+
 }  // namespace
 
-void refuse_taylor_term(const std::string& path) {
-  const std::optional<TermInName> name = term_in_name(path);
-  if (!name) return;
-  const std::string others = other_terms(*name);
-  const std::string whole =
-      "Models of several terms are not read: misfit image --savemodel modelcolumn predicts all that it finds, and --restart "
-      "goes on from them";
-  if (name->term > 0)
-    throw std::runtime_error(path + " is by its name Taylor term " + std::to_string(name->term) +
-                             ", which is how brightness changes with frequency, and no brightness; " +
-                             (others.empty() ? "there is no " + name->path_of(0) + " beside it" : "beside it lies " + others) +
-                             "; expected a model of one term. " + whole);
-  throw std::runtime_error(path + " is by its name the first of several Taylor terms, " +
-                           (others.empty() ? "but there is no " + name->path_of(1) + " beside it"
-                                           : "and would be taken without " + others + ", as if spectra were flat") +
-                           "; expected a model of one term, which it is under a name without .tt0, of flat spectra. " + whole);
+void refuse_taylor_term(const imager::ImageReader& file, const std::string& path) {
+  if (const auto name = term_in_name(path)) refuse_by_name(*name, path);
+  const std::string target = behind_links(path);
+  if (const auto name = term_in_name(target)) refuse_by_name(*name, path + " leads to " + target + ", which");
+  if (file.header().taylor.several()) refuse_by_header(file.header().taylor, path);
 }
 
 std::vector<imager::SkyImage> read_stokes_model(const std::string& path, const imager::SkyDirection& centre) {
   const auto file = open_image_file(path);
-  refuse_taylor_term(path);
+  refuse_taylor_term(*file, path);
   const int channels = file->header().spectral.channels;
   if (channels > 1)
     throw std::runtime_error(path + " has planes of " + std::to_string(channels) + " frequencies; expected one");

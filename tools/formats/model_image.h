@@ -14,10 +14,11 @@
 
 namespace misfit::tools {
 
-/// Throws std::runtime_error where the image that `path` names is by that name one of several Taylor terms, x.model.tt0.fits,
-/// or as a CASA image x.model.tt1: models of one term alone are read, and without the others it is half a model. Says which
-/// are left out, as far as they lie beside it, and what can be done.
-void refuse_taylor_term(const std::string& path);
+/// Throws std::runtime_error where an image is one of several Taylor terms: by its header, see imager::TaylorTerm, or by its
+/// name, that of a file which a link leads to included: x.model.tt0.fits, x_tt0.fits, or as a CASA image x.model.tt1. Models of
+/// one term alone are read, and without the others it is half a model. Says which are left out, as far as they lie beside it,
+/// and what can be done.
+void refuse_taylor_term(const imager::ImageReader& file, const std::string& path);
 
 /// A model of one frequency, a FITS or CASA image in Jy/pixel whose reference position is `centre`, with a finite number in
 /// every pixel above the horizon: a plane for each Stokes parameter that the file holds. Throws std::runtime_error that names

@@ -49,7 +49,7 @@ CleanStage::CleanStage(const ImageOptions& options, imager::ImageHeader image, i
     : o_(options), image_(std::move(image)), threads_(threads) {
   if (!o_.startmodel.empty()) {
     start_file_ = open_image_file(o_.startmodel);
-    refuse_taylor_term(o_.startmodel);
+    refuse_taylor_term(*start_file_, o_.startmodel);
   }
   if (!o_.mask.empty()) mask_file_ = std::make_unique<MaskFile>(o_.mask, image_);
 }

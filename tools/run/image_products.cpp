@@ -44,16 +44,15 @@ ImageProducts::ImageProducts(const ImageOptions& options, const imager::ImageGeo
 }
 
 void ImageProducts::add(const std::string& name, const std::string& unit, std::vector<imager::Image> images) {
-  files_.push_back({imagename_ + "." + name, unit, std::move(images), header_.cards});
+  imager::ImageHeader header = header_;
+  header.unit = unit;
+  header.stokes.resize(images.size());
+  files_.push_back({imagename_ + "." + name, std::move(header), std::move(images)});
 }
 
 void ImageProducts::write() const {
   for (const File& file : files_) {
-    imager::ImageHeader header = header_;
-    header.unit = file.unit;
-    header.cards = file.cards;
-    header.stokes.resize(file.planes.size());
-    const auto writer = open_image_files(file.name, header, format_, outformat_);
+    const auto writer = open_image_files(file.name, file.header, format_, outformat_);
     for (std::size_t s = 0; s < file.planes.size(); ++s) writer->write({0, static_cast<int>(s)}, file.planes[s], beam_);
     writer->finish();
   }

@@ -37,6 +37,9 @@ class ImageProducts {
   void set_stokes(const std::vector<imager::Stokes>& stokes) { header_.stokes = stokes; }
   void set_history(std::vector<std::string> lines) { header_.history = std::move(lines); }
   void set_cards(std::vector<imager::HeaderCard> cards) { header_.cards = std::move(cards); }
+  /// What pixels are of, see imager::ImageHeader.
+  void set_quantity(const std::string& quantity) { header_.quantity = quantity; }
+  void set_taylor_term(const imager::TaylorTerm& term) { header_.taylor = term; }
   void set_beam(const imager::Beam& beam) { beam_ = beam; }
 
   /// Images for write(), as files of the name <imagename>.<name>: of the Stokes parameters in their order, or one that serves
@@ -58,9 +61,8 @@ class ImageProducts {
  private:
   struct File {
     std::string name;
-    std::string unit;
+    imager::ImageHeader header;
     std::vector<imager::Image> planes;  ///< [Stokes]
-    std::vector<imager::HeaderCard> cards;
   };
 
   std::string imagename_;

@@ -77,8 +77,8 @@ std::vector<std::string> ProductStage::write(imager::DirtyImages images) {
     add_corrected_terms(pointers_to(taylor_->principal_solution(images.dirty.front())), nullptr);
   if (o_.pbcor && taylor_ == nullptr) add_corrected(images.dirty);
   add_primary_beam();
-  products_.add(named("psf"), "Jy/beam", alone(std::move(images.psf)));
-  products_.add(named("residual"), "Jy/beam", std::move(images.dirty));
+  add("psf", "Jy/beam", alone(std::move(images.psf)));
+  add("residual", "Jy/beam", std::move(images.dirty));
   if (taylor_ != nullptr) {
     add_further("psf", taylor_->images().psf);
     add_further("residual", taylor_->images().dirty);
@@ -120,9 +120,9 @@ std::vector<std::string> ProductStage::write(imager::Image psf, std::vector<imag
     if (!result.mask.pixel.empty()) masks.push_back(std::move(result.mask));
   }
   const bool masked = !masks.empty();
-  products_.add(named("psf"), "Jy/beam", alone(std::move(psf)));
-  products_.add(named("model"), "Jy/pixel", std::move(models));
-  products_.add(named("residual"), "Jy/beam", std::move(residuals));
+  add("psf", "Jy/beam", alone(std::move(psf)));
+  add("model", "Jy/pixel", std::move(models));
+  add("residual", "Jy/beam", std::move(residuals));
   const std::vector<std::string> paths = image_paths(o_.imagename + ".mask", o_.outformat);
   const bool kept = std::any_of(paths.begin(), paths.end(), [&](const std::string& path) { return is_input(o_, path); });
   if (masked && !kept) products_.add("mask", "", std::move(masks));
@@ -133,7 +133,7 @@ std::vector<std::string> ProductStage::write(imager::Image psf, std::vector<imag
   }
   if (o_.pbcor && taylor_ == nullptr) add_corrected(images);
   add_primary_beam();
-  products_.add(named("image"), "Jy/beam", std::move(images));
+  add("image", "Jy/beam", std::move(images));
   if (taylor_ != nullptr) add_taylor(cleaned.front());
   std::vector<std::string> removed = remove_kinds(o_, {taylor_ != nullptr ? "components.csv" : "alpha.png"});
   remove_other_images(o_, products_.paths(), removed);
@@ -144,8 +144,7 @@ std::vector<std::string> ProductStage::write(imager::Image psf, std::vector<imag
 }
 
 void ProductStage::add_primary_beam() {
-  for (std::size_t t = 0; t < primary_beam_.size(); ++t)
-    products_.add(named("pb", static_cast<int>(t)), "", alone(std::move(primary_beam_[t])));
+  for (std::size_t t = 0; t < primary_beam_.size(); ++t) add("pb", "", alone(std::move(primary_beam_[t])), static_cast<int>(t));
 }
 
 void ProductStage::add_corrected(const std::vector<imager::Image>& images) {
@@ -161,17 +160,20 @@ void ProductStage::add_corrected_terms(const std::vector<const imager::Image*>& 
     imager::SpectralImages of_sky = imager::spectral_images_of_sky(sky, *spectra, scene_.threads);
     add_spectra(of_sky, ".pbcor", true);
   }
-  for (std::size_t t = 0; t < sky.size(); ++t)
-    products_.add(named("image", static_cast<int>(t)) + ".pbcor", "Jy/beam", alone(std::move(sky[t])));
+  for (std::size_t t = 0; t < sky.size(); ++t) add("image", "Jy/beam", alone(std::move(sky[t])), static_cast<int>(t), ".pbcor");
 }
 
-std::string ProductStage::named(const std::string& kind, int term) const {
-  return taylor_ == nullptr ? kind : kind + ".tt" + std::to_string(term);
+void ProductStage::add(const std::string& kind, const std::string& unit, std::vector<imager::Image> images, int term,
+                       const std::string& end) {
+  if (taylor_ == nullptr) return products_.add(kind + end, unit, std::move(images));
+  products_.set_taylor_term({term, o_.nterms});
+  products_.add(kind + ".tt" + std::to_string(term) + end, unit, std::move(images));
+  products_.set_taylor_term({});
 }
 
 void ProductStage::add_further(const std::string& kind, std::vector<imager::Image>& images) {
   for (std::size_t t = 0; t < images.size(); ++t)
-    products_.add(named(kind, static_cast<int>(t) + 1), kind == "model" ? "Jy/pixel" : "Jy/beam", alone(std::move(images[t])));
+    add(kind, kind == "model" ? "Jy/pixel" : "Jy/beam", alone(std::move(images[t])), static_cast<int>(t) + 1);
 }
 
 void ProductStage::add_taylor(imager::CleanResult& cleaned) {
@@ -189,9 +191,12 @@ void ProductStage::add_spectra(imager::SpectralImages& spectra, const std::strin
   cards.push_back(corrected ? imager::HeaderCard{"PBCOR", 1, "the primary beam's spectrum is divided out"}
                             : imager::HeaderCard{"PBCOR", 0, "the primary beam's spectrum is still in it"});
   products_.set_cards(std::move(cards));
+  products_.set_quantity("Spectral Index");
   products_.add("alpha" + end, "", alone(std::move(spectra.alpha)));
   if (!spectra.alpha_error.pixel.empty()) products_.add("alpha.error" + end, "", alone(std::move(spectra.alpha_error)));
+  products_.set_quantity("Spectral Curvature");
   if (!spectra.beta.pixel.empty()) products_.add("beta" + end, "", alone(std::move(spectra.beta)));
+  products_.set_quantity(imager::ImageHeader().quantity);
   products_.set_cards(scene_.cards);
 }
 

@@ -76,8 +76,10 @@ class ProductStage {
   void add_spectra(imager::SpectralImages& spectra, const std::string& end, bool corrected);
   void write_components(const std::vector<imager::CleanResult>& cleaned) const;
   imager::Image restored(const imager::CleanResult& cleaned);
-  /// The middle of a file's name, which tells the Taylor term where there are several.
-  std::string named(const std::string& kind, int term = 0) const;
+  /// Images [Stokes] of a Taylor term, or of all where there are not several: the name `kind`, then the term, then `end`, and
+  /// the header tell which.
+  void add(const std::string& kind, const std::string& unit, std::vector<imager::Image> images, int term = 0,
+           const std::string& end = "");
   void add_further(const std::string& kind, std::vector<imager::Image>& images);
   void add_taylor(imager::CleanResult& cleaned);
   std::vector<imager::Source> sources(const imager::ComponentModel& model) const;
