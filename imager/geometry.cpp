@@ -12,9 +12,11 @@ DirectionCosines direction_cosines(const SkyDirection& direction, const SkyDirec
   const double east = direction.ra_rad - centre.ra_rad;
   const double n = std::sin(direction.dec_rad) * std::sin(centre.dec_rad) +
                    std::cos(direction.dec_rad) * std::cos(centre.dec_rad) * std::cos(east);
+  constexpr double degree = pi / 180;
   if (n <= 0)
-    throw std::invalid_argument("direction at right ascension " + std::to_string(direction.ra_rad) + " rad, declination " +
-                                std::to_string(direction.dec_rad) + " rad is not within 90 degrees of the phase centre");
+    throw std::invalid_argument("direction at right ascension " + std::to_string(direction.ra_rad / degree) +
+                                " degrees, declination " + std::to_string(direction.dec_rad / degree) +
+                                " degrees is not within 90 degrees of the phase centre");
   return {std::cos(direction.dec_rad) * std::sin(east),
           std::sin(direction.dec_rad) * std::cos(centre.dec_rad) -
               std::cos(direction.dec_rad) * std::sin(centre.dec_rad) * std::cos(east)};

@@ -109,20 +109,16 @@ class CentreSearch {
     }
     if (most_rad <= same_centre_rad) return {};
     if (most_rad > close_rad) return first.direction;  // what stands still on the sky is seen by each about its own
-    std::ostringstream remark;
-    remark << "fields of " << path_ << " have phase centres up to " << most_rad
-           << " rad apart, as if by rounding, or far below a pixel: all are shifted to that of field "
-           << fields_.label(first.field);
-    selected_.remarks.push_back(remark.str());
+    selected_.remarks.push_back("fields of " + path_ + " have phase centres up to " + angle_words(most_rad) +
+                                " apart, as if by rounding, or far below a pixel: all are shifted to that of field " +
+                                fields_.label(first.field));
     return first.direction;
   }
 
   [[noreturn]] void refuse_apart(int one, int other, double apart_rad) const {
-    std::ostringstream message;
-    message << path_ << ": fields " << fields_.label(std::min(one, other)) << " and " << fields_.label(std::max(one, other))
-            << " have phase centres " << apart_rad
-            << " rad apart; select one with --field, or shift all to one with --phasecenter";
-    throw std::runtime_error(message.str());
+    throw std::runtime_error(path_ + ": fields " + fields_.label(std::min(one, other)) + " and " +
+                             fields_.label(std::max(one, other)) + " have phase centres " + angle_words(apart_rad) +
+                             " apart; select one with --field, or shift all to one with --phasecenter");
   }
 
   /// Fields of which one or more move, and which must be one.

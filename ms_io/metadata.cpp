@@ -8,8 +8,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <sstream>
 
+#include "ms_io/field_centres_internal.h"
 #include "ms_io/followed_field_internal.h"
 #include "ms_io/metadata_internal.h"
 #include "ms_io/table_access_internal.h"
@@ -99,11 +99,9 @@ imager::Observation joined(const OpenSets& sets) {
       throw std::runtime_error("of " + both() +
                                "the phase centre of one moves, and one stands still; shift all to one with --phasecenter");
     const double apart = all.moving_at.empty() ? separation_rad(all.phase_centre, one.phase_centre) : 0;
-    if (apart > same_centre_rad) {
-      std::ostringstream message;
-      message << both() << "have phase centres " << apart << " rad apart; shift all to one with --phasecenter";
-      throw std::runtime_error(message.str());
-    }
+    if (apart > same_centre_rad)
+      throw std::runtime_error(both() + "have phase centres " + angle_words(apart) +
+                               " apart; shift all to one with --phasecenter");
     if (one.spectral_frame != all.spectral_frame) all.spectral_frame.clear();
     lowest = std::min(lowest, one.frequency_hz - one.bandwidth_hz / 2);
     highest = std::max(highest, one.frequency_hz + one.bandwidth_hz / 2);

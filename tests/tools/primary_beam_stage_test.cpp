@@ -201,6 +201,12 @@ BOOST_AUTO_TEST_CASE(what_has_no_simple_beam_is_refused_in_a_line) {
   BOOST_TEST(refusal(mosaic) ==
              "--pbcor, --pblimit: antennas of fields 0 (M51) and 1 (M51b) pointed 6 arcmin apart, which makes a mosaic, and "
              "primary beams of mosaics are not made; select one with --field");
+  mosaic.rows.pointings.front().set = "a.ms";
+  mosaic.rows.pointings.back().set = "b.ms";
+  BOOST_TEST(
+      refusal(mosaic) ==
+      "--pbcor, --pblimit: antennas of fields 0 (M51) of a.ms and 1 (M51b) of b.ms pointed 6 arcmin apart, which makes a "
+      "mosaic, and primary beams of mosaics are not made; select one with --vis");
   mosaic.rows.pointings.back().direction.dec_rad = middle.dec_rad + 1 * arcsec;  // of a beam of 35′
   BOOST_TEST(refusal(mosaic) == "");
   mosaic.rows.pointings = {{"0 (M51)", {middle.ra_rad + imager::pi, -middle.dec_rad, "FK5"}}};

@@ -46,8 +46,8 @@ imager::PrimaryBeam beam_of(const ms_io::FieldPointing& pointing, const std::vec
 }
 
 SeenCentre seen_centre(const ms_io::FieldPointing& pointing, const ms_io::BeamRows& rows, double frequency_hz,
-                       bool several_sets) {
-  SeenCentre seen{pointing.field + (several_sets ? " of " + pointing.set : ""), pointing.from_centre_rad};
+                       const std::vector<ms_io::FieldPointing>& pointings) {
+  SeenCentre seen{field_words(pointing, pointings), pointing.from_centre_rad};
   try {
     const imager::PrimaryBeam beam = beam_of(pointing, rows.sorts, frequency_hz, seen.doubt);
     const double sine = seen.from_centre_rad < imager::pi / 2 ? std::sin(seen.from_centre_rad) : 1;
@@ -118,7 +118,7 @@ std::string far_warning(const ms_io::FieldPointing& nearest, const ms_io::Measur
     return "";
   }
   const auto pointing = std::min_element(rows.pointings.begin(), rows.pointings.end(), nearer);
-  const SeenCentre seen = seen_centre(*pointing, rows, frequency_hz, false);
+  const SeenCentre seen = seen_centre(*pointing, rows, frequency_hz, rows.pointings);
   if (!seen.no_beam.empty() || !seen.beyond_null) return "";
   return "the image's centre lies beyond the first null of the beam: field " + described(seen) + " at " +
          frequency_text(frequency_hz, 4) + doubts_of({seen}) + "; it may show noise alone";
@@ -140,15 +140,19 @@ double angle_between(const imager::SkyDirection& one, const imager::SkyDirection
   return 2 * std::asin(std::min(1.0, std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]) / 2));
 }
 
+std::string field_words(const ms_io::FieldPointing& pointing, const std::vector<ms_io::FieldPointing>& pointings) {
+  const bool several_sets =
+      std::any_of(pointings.begin(), pointings.end(), [&](const auto& other) { return other.set != pointings.front().set; });
+  return pointing.field + (several_sets ? " of " + pointing.set : "");
+}
+
 FieldNotes notes_on_apart_fields(const ms_io::BeamRows& rows, double frequency_hz, bool force) {
   constexpr double same_without_beam_rad = 5e-6;  // an arcsecond
   const std::vector<ms_io::FieldPointing>& pointings = rows.pointings;
-  const bool several_sets = std::any_of(pointings.begin(), pointings.end(),
-                                        [&](const auto& pointing) { return pointing.set != pointings.front().set; });
   std::vector<SeenCentre> fields;
   double narrowest_rad = 0;
   for (const ms_io::FieldPointing& pointing : pointings) {
-    fields.push_back(seen_centre(pointing, rows, frequency_hz, several_sets));
+    fields.push_back(seen_centre(pointing, rows, frequency_hz, pointings));
     const double width_rad = fields.back().width_rad;
     if (width_rad > 0 && (narrowest_rad == 0 || width_rad < narrowest_rad)) narrowest_rad = width_rad;
   }

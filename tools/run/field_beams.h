@@ -17,6 +17,9 @@ constexpr double same_pointing_beams = 1e-3;
 /// The angle between two directions of one frame.
 double angle_between(const imager::SkyDirection& one, const imager::SkyDirection& other);
 
+/// A field in words, "3 (M51) of a.ms"; without its set where all `pointings` are of one.
+std::string field_words(const ms_io::FieldPointing& pointing, const std::vector<ms_io::FieldPointing>& pointings);
+
 /// How the antennas of the fields of an image see its centre.
 struct FieldNotes {
   imager::Plan decisions;

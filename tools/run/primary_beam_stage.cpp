@@ -15,11 +15,11 @@ double apart_rad(imager::DirectionCosines a, imager::DirectionCosines b) {
   return 2 * std::asin(std::min(1.0, chord / 2));
 }
 
-imager::DirectionCosines on_image(const ms_io::FieldPointing& pointing, const imager::ImageGeometry& geometry) {
+imager::DirectionCosines on_image(const ms_io::FieldPointing& pointing, const BeamScene& scene) {
   try {
-    return imager::direction_cosines(pointing.direction, geometry.phase_centre);
+    return imager::direction_cosines(pointing.direction, scene.geometry.phase_centre);
   } catch (const std::invalid_argument&) {
-    throw std::runtime_error("--pbcor, --pblimit: antennas of field " + pointing.field +
+    throw std::runtime_error("--pbcor, --pblimit: antennas of field " + field_words(pointing, scene.rows.pointings) +
                              " pointed more than 90 degrees away from the image; expected one within its hemisphere");
   }
 }
@@ -50,14 +50,16 @@ PrimaryBeamStage::PrimaryBeamStage(const ImageOptions& o, BeamScene scene, int t
 void PrimaryBeamStage::find_pointing() {
   constexpr double beside = 0.01;
   width_rad_ = nominal_beam(scene_.frequency_hz).half_power_width_rad();
-  const ms_io::FieldPointing& first = scene_.rows.pointings.front();
-  view_.pointing = on_image(first, scene_.geometry);
-  for (const ms_io::FieldPointing& other : scene_.rows.pointings) {
-    const double apart = apart_rad(view_.pointing, on_image(other, scene_.geometry));
+  const std::vector<ms_io::FieldPointing>& all = scene_.rows.pointings;
+  const ms_io::FieldPointing& first = all.front();
+  view_.pointing = on_image(first, scene_);
+  for (const ms_io::FieldPointing& other : all) {
+    const double apart = apart_rad(view_.pointing, on_image(other, scene_));
     if (apart > same_pointing_beams * width_rad_)
-      throw std::runtime_error(
-          "--pbcor, --pblimit: antennas of fields " + first.field + " and " + other.field + " pointed " + angle_text(apart, 3) +
-          " apart, which makes a mosaic, and primary beams of mosaics are not made; " + "select one with --field");
+      throw std::runtime_error("--pbcor, --pblimit: antennas of fields " + field_words(first, all) + " and " +
+                               field_words(other, all) + " pointed " + angle_text(apart, 3) +
+                               " apart, which makes a mosaic, and primary beams of mosaics are not made; select one with " +
+                               (first.set == other.set ? "--field" : "--vis"));
   }
   if (scene_.rows.beam_offset_rad > beside * width_rad_)
     throw std::runtime_error("--pbcor, --pblimit: FEED's column BEAM_OFFSET says that beams point " +
