@@ -137,7 +137,9 @@ class ModelWriter {
     require_writable_column(set_, path_, column_);
     selected_ = select_rows(set_, path_, selection, {block_samples, false});
     journal_.column = column_.name;
+    selection_ = one_line(to_text(selection));
     journal_.command = one_line(column_.origin.command);
+    if (!journal_.command.empty() && !selection_.empty()) journal_.command += " " + selection_;
     here_ = {identity_of(column_.origin),
              translated("cannot read UVW of " + path_, [&] { return identity_of(set_, selected_); }), journal_.command};
     if (column_.origin.fingerprint != 0)  // equal for runs that write the same values into the same cells
@@ -269,7 +271,8 @@ class ModelWriter {
       const bool same = one.model != "-" && one.model == here_.model && one.selection == here_.selection;
       if (same && column_.in_place())
         throw std::runtime_error(sentence + "; expected another model or selection, or data that hold this one");
-      if (column_.origin.tell) column_.origin.tell("warning: " + sentence);
+      if (column_.origin.tell)
+        column_.origin.tell("warning: " + sentence + "; this run selects " + (selection_.empty() ? "all rows" : selection_));
     }
   }
 
@@ -337,6 +340,7 @@ class ModelWriter {
   KeptCells kept_;
   SelectedRows selected_;
   ModelJournal journal_;
+  std::string selection_;      ///< in words; empty where that is all
   SubtractedModel here_;       ///< this run's
   bool any_data_ = false;      ///< that are not 0
   std::uint64_t samples_ = 0;  ///< that hold the model

@@ -32,7 +32,7 @@ struct PredictionPace {
 
 /// What a column that was not written to its end is told by.
 struct ModelOrigin {
-  std::string command;                           ///< which writes it, as people are told: "misfit predict --model a.fits"
+  std::string command;  ///< which writes it, as people are told, but for the selection: "misfit predict --model a.fits"
   std::uint64_t fingerprint = 0;                 ///< of the model and of what changes its visibilities; 0: not known
   std::function<void(const std::string&)> tell;  ///< is told in a sentence what an earlier run left, and what becomes of it
   std::uint64_t model = 0;                       ///< a fingerprint of the model alone, however it is predicted; 0: the other

@@ -8,7 +8,7 @@
 namespace misfit::ms_io {
 namespace {
 
-constexpr const char* kind = "subtracted";
+constexpr const char* kind_of_file = "subtracted";
 
 struct Record {
   std::vector<SubtractedModel> models;
@@ -40,7 +40,7 @@ Record record_in(std::istream& text) {
 
 std::vector<SubtractedModel> subtracted_models(const casacore::MeasurementSet& set, const std::string& column) {
   if (!set.tableDesc().isColumn(column)) return {};
-  for (const std::string& path : files_beside(set, kind, column)) {
+  for (const std::string& path : files_beside(set, kind_of_file, column)) {
     std::ifstream file(path);
     if (!file) continue;
     const Record record = record_in(file);
@@ -53,7 +53,7 @@ std::vector<SubtractedModel> subtracted_models(const casacore::MeasurementSet& s
 void write_subtracted_models(const casacore::MeasurementSet& set, const std::string& column,
                              const std::vector<SubtractedModel>& models, const std::vector<Witness>& witnesses) {
   if (models.empty()) {
-    for (const std::string& path : files_beside(set, kind, column)) remove_file(path);
+    for (const std::string& path : files_beside(set, kind_of_file, column)) remove_file(path);
     return;
   }
   std::ostringstream text;
@@ -62,7 +62,8 @@ void write_subtracted_models(const casacore::MeasurementSet& set, const std::str
   for (const SubtractedModel& one : models) text << "model " << one.model << ' ' << one.selection << ' ' << one.command << '\n';
   for (const Witness& cell : witnesses) text << "cell " << cell.row << ' ' << cell.channel << ' ' << cell.after << '\n';
   text << "end\n";
-  for (const std::string& path : files_beside(set, kind, column)) replace_file(path, text.str(), "what the column's data lack");
+  for (const std::string& path : files_beside(set, kind_of_file, column))
+    replace_file(path, text.str(), "what the column's data lack");
 }
 
 std::string lacks_already(const std::string& path, const std::string& column, const SubtractedModel& model) {

@@ -14,7 +14,7 @@ namespace misfit::ms_io {
 struct SubtractedModel {
   std::string model;      ///< a fingerprint; "-" where it is not known
   std::string selection;  ///< a fingerprint of the rows, channels and coordinates
-  std::string command;    ///< that subtracted it, as people are told
+  std::string command;    ///< that subtracted it, as people are told, with its selection
 };
 
 /// The models that the data of a column lack, the first first, as a file `misfit_subtracted_<COLUMN>` in the folder of each

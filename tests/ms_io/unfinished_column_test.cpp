@@ -331,6 +331,26 @@ BOOST_AUTO_TEST_CASE(data_that_lack_a_model_lose_it_once_and_tell_of_it_when_ano
   BOOST_TEST(told(again, 2).empty());
 }
 
+BOOST_AUTO_TEST_CASE(models_that_the_data_lack_are_told_of_with_their_selections_and_that_of_the_run) {
+  const ModelColumn in_place{"MODEL_DATA", "MODEL_DATA"};
+  std::vector<std::pair<Selection, std::string>> parts{
+      {{"1", ""}, "--field '1'"}, {{"", "0:1~2"}, "--spw '0:1~2'"}, {{"0", "1"}, "--field '0' --spw '1'"}, {{}, ""}};
+  for (auto& [part, words] : parts) part.phase_centre = imager::SkyDirection{1.25, -0.5, "FK5"};
+  for (const auto& [first, first_words] : parts)
+    for (const auto& [second, second_words] : parts) {
+      if (first_words == second_words) continue;
+      const MixedSet set;
+      write(set, plain, parts.back().first);
+      write(set, in_place, first);
+      const std::vector<std::string> sentences = write(set, in_place, second).sentences;
+      BOOST_REQUIRE(sentences.size() == 1U);
+      const std::string before = "a.fits" + (first_words.empty() ? "" : " " + first_words);
+      BOOST_TEST(
+          contains(sentences.front(), before + "; this run selects " + (second_words.empty() ? "all rows" : second_words)),
+          sentences.front());
+    }
+}
+
 BOOST_AUTO_TEST_CASE(what_the_data_lack_is_known_though_another_program_changed_some_baselines) {
   for (std::size_t baseline = 0; baseline < baselines; ++baseline) {
     const MixedSet set;
@@ -350,7 +370,8 @@ BOOST_AUTO_TEST_CASE(the_command_that_reads_the_data_tells_what_they_lack) {
   const auto columns = MeasurementSet(set.path(), {"0", ""}, "auto").data_columns();
   BOOST_REQUIRE(columns.size() == 1U);
   BOOST_TEST(columns.front().name == "CORRECTED_DATA");
-  BOOST_TEST(columns.front().subtracted == std::vector<std::string>{"misfit predict --model a.fits"});
+  BOOST_TEST(columns.front().subtracted ==
+             std::vector<std::string>{"misfit predict --model a.fits --field '1' --spw '0~1:1~4'"});
   BOOST_TEST(MeasurementSet(set.path(), {"0", ""}, "data").data_columns().front().subtracted.empty());
 }
 
