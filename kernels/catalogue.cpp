@@ -12,13 +12,21 @@
 
 namespace misfit::kernels {
 
-Kernel KernelFamily::make(int width, double x0) const {
+void KernelFamily::require_width(int width) const {
   if (width < min_width || width > max_width)
     throw std::invalid_argument("kernel width " + std::to_string(width) + " not in [" + std::to_string(min_width) + ", " +
                                 std::to_string(max_width) + "], which kernel " + name + " offers");
+}
+
+void KernelFamily::require_x0(double x0) const {
   if (!(x0 >= min_x0 && x0 <= max_x0))
     throw std::invalid_argument("x0 = " + text_of(x0) + " not in [" + text_of(min_x0) + ", " + text_of(max_x0) +
                                 "], which kernel " + name + " offers");
+}
+
+Kernel KernelFamily::make(int width, double x0) const {
+  require_width(width);
+  require_x0(x0);
   return solve(width, x0);
 }
 

@@ -19,7 +19,10 @@ struct KernelFamily {
   std::function<Kernel(int width, double x0)> solve;  ///< for arguments in these ranges
   bool costly = false;                                ///< solving takes longer than reading the solution from a file
 
-  /// The kernel of `width` for `x0`; std::invalid_argument names what lies outside the ranges.
+  /// These throw std::invalid_argument that names what lies outside the ranges.
+  void require_width(int width) const;
+  void require_x0(double x0) const;
+  /// The kernel of `width` for `x0`. Throws what these do.
   Kernel make(int width, double x0) const;
 };
 

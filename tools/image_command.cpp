@@ -4,6 +4,7 @@
 
 #include "tools/base/files.h"
 #include "tools/base/interrupt.h"
+#include "tools/base/value_checks.h"
 #include "tools/command.h"
 #include "tools/formats/config_file.h"
 #include "tools/run/cube_run.h"
@@ -18,13 +19,17 @@ void add_image_command(CLI::App& program, const std::string& command_line, const
   const auto options = std::make_shared<ImageOptions>();
   add_config_option(*command);
   declare(*command, *options);
-  command->callback([command, options, command_line, &ranks] {
+  const auto check_options = [command, options] {
     CLI::Option* accuracy = command->get_option("--accuracy");
     if (accuracy->count() == 0 && kernel_is_given(*options)) {
       options->accuracy = 0;
       accuracy->default_str("0");
     }
     check(*options);
+  };
+  check_before_missing(*command, check_options);
+  command->callback([command, options, check_options, command_line, &ranks] {
+    check_options();
     const bool done = naming(names_of(options->vis), [&] {
       const auto run = options->cube.is_cube() ? run_cube : run_image;
       return run(*options, {command_line, option_values(*command)}, ranks);

@@ -46,19 +46,28 @@ void refuse_outside(int value, int least, int most, const std::string& option) {
   refuse(value < least || value > most, option, std::to_string(value), std::to_string(least) + " to " + std::to_string(most));
 }
 
-/// What holds for every way to make a kernel.
-void check_common(const KernelOptions& o) {
+/// The values that are given, for every way to make a kernel; what is missing is looked for afterwards.
+void check_values(const KernelOptions& o) {
   refuse(o.padding != 0 && !(o.padding > 1 && o.padding <= 500), "padding", significant(o.padding, 6),
          "more than 1, at most 500");
   refuse_outside(o.sampling.per_cell, 1, kernels::kernel_table_max_per_cell, "sampling");
   refuse_outside(o.sampling.interpolation, 0, 3, "interpolation");
   if (o.degree != -1) refuse_outside(o.degree, 0, kernels::highest_degree, "degree");
+  for (const int size : o.job.imsize) refuse_outside(size, 1, 65536, "imsize");
+  refuse(o.job.accuracy != 0 && !(o.job.accuracy > 0 && o.job.accuracy < 1), "accuracy", significant(o.job.accuracy, 6),
+         "a number above 0 and below 1");
+  refuse(o.emit.target_error != 0 && !(o.emit.target_error > 0 && o.emit.target_error < 1), "target-error",
+         significant(o.emit.target_error, 6), "a number above 0 and below 1");
+  refuse(o.emit.host_padding != 0 && !(o.emit.host_padding > 1 && o.emit.host_padding <= 500), "host-padding",
+         significant(o.emit.host_padding, 6), "more than 1, at most 500");
+  const kernels::KernelFamily family = choose_kernel(o.kernel);
+  if (o.width != 0) family.require_width(o.width);
+  if (o.x0 != 0) family.require_x0(o.x0);
 }
 
-void check(const KernelOptions& o) {
+void check_given(const KernelOptions& o) {
   if (o.width == 0) throw std::invalid_argument("expected --width, the number of cells a visibility touches per axis");
   if ((o.x0 == 0) == (o.padding == 0)) throw std::invalid_argument("expected either --x0 or --padding");
-  check_common(o);
 }
 
 /// What looking the table up adds to E.
@@ -162,7 +171,7 @@ void inspect(const KernelOptions& o) {
 }
 
 void make(const KernelOptions& o) {
-  check(o);
+  check_given(o);
   const kernels::KernelFamily family = choose_kernel(o.kernel);
   check_writable_folder(o.output);
   const kernels::Kernel made = family.make(o.width, o.x0 != 0 ? o.x0 : 0.5 / o.padding);
@@ -204,16 +213,11 @@ nlohmann::json json_of(const Emission& e) {
 void check_emission(const KernelOptions& o) {
   const bool targeted = o.emit.target_error != 0;
   if (o.output.empty()) throw std::invalid_argument("--emit " + o.emit.host + ": expected --output, the file to write");
-  refuse(targeted && !(o.emit.target_error > 0 && o.emit.target_error < 1), "target-error", significant(o.emit.target_error, 6),
-         "a number above 0 and below 1");
-  refuse(o.emit.host_padding != 0 && !(o.emit.host_padding > 1 && o.emit.host_padding <= 500), "host-padding",
-         significant(o.emit.host_padding, 6), "more than 1, at most 500");
   if (targeted && (o.width != 0 || o.degree != -1 || o.emit.per_cell != 0))
     throw std::invalid_argument(
         "--target-error chooses width, sampling and degree; expected it without --width, --sampling and --degree");
   if (targeted && o.emit.force)
     throw std::invalid_argument("--force: expected it without --target-error, which makes a kernel for the host's padding");
-  for (const int size : o.job.imsize) refuse_outside(size, 1, 65536, "imsize");
   if (!o.job.imsize.empty() && !find_host(o.emit.host).depends_on_pixels)
     throw std::invalid_argument("--imsize: what --emit " + o.emit.host +
                                 " says does not depend on it; expected it beside --emit wsclean or --accuracy");
@@ -221,7 +225,6 @@ void check_emission(const KernelOptions& o) {
 
 /// Writes the kernel as a host wants it.
 void emit(KernelOptions& o) {
-  check_common(o);
   check_emission(o);
   if (o.x0 != 0 && o.padding != 0) throw std::invalid_argument("expected either --x0 or --padding");
   const kernels::KernelFamily family = choose_kernel(o.kernel);
@@ -309,6 +312,7 @@ void add_kernel_command(CLI::App& program) {
   command->callback([o, sampling, interpolation] {
     const bool choosing = o->job.accuracy != 0;
     if (!o->inspect.empty()) return inspect(*o);
+    check_values(*o);
     if (!o->emit.host.empty()) {
       if (sampling->count() > 0) o->emit.per_cell = o->sampling.per_cell;
       if (interpolation->count() > 0) o->emit.interpolation = o->sampling.interpolation;

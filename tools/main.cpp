@@ -22,6 +22,7 @@
 #include "tools/base/interrupt.h"
 #include "tools/base/standard_streams.h"
 #include "tools/base/text.h"
+#include "tools/base/value_checks.h"
 #include "tools/mpi/world.h"
 #include "tools/program.h"
 
@@ -74,6 +75,8 @@ std::string usage_message(const CLI::ParseError& error, const CLI::App& program)
   const std::vector<std::string> rest = command.remaining();
   const bool unknown = dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr;
   if (names.empty() && (missing || unknown) && !rest.empty()) return unexpected(rest);  // may be what is missing, misspelt
+  if (const auto* const checking = dynamic_cast<const CheckingProgram*>(&program); checking != nullptr && missing)
+    if (std::string wrong = checking->wrong_value(command); !wrong.empty()) return wrong;
   if (names.empty() || !missing) return error.what();
   const std::string word = rest.empty() || rest.front().front() == '-' ? "" : rest.front();
   std::string said = &command == &program ? word : command.get_name() + (word.empty() ? "" : " ") + word;

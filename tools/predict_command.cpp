@@ -14,6 +14,7 @@
 #include "tools/base/option_checks.h"
 #include "tools/base/progress.h"
 #include "tools/base/text.h"
+#include "tools/base/value_checks.h"
 #include "tools/command.h"
 #include "tools/formats/component_list.h"
 #include "tools/formats/image_file.h"
@@ -147,11 +148,11 @@ ms_io::ModelColumn column_of(const PredictOptions& o) {
           !o.column.empty() && !o.datacolumn.empty()};
 }
 
-void check(const PredictOptions& o) {
+/// The values that are given; what is missing is looked for afterwards.
+void check_values(const PredictOptions& o) {
   if (!(o.accuracy > 0 && o.accuracy < 1))
     throw std::invalid_argument("--accuracy " + significant(o.accuracy, 3) + ": expected a number above 0 and below 1");
   if (o.threads < 0) throw std::invalid_argument("--threads " + std::to_string(o.threads) + ": expected 0 (all cores) or more");
-  if (o.model.empty() == o.components.empty()) throw std::invalid_argument("expected either --model or --components");
 }
 
 void print(const PredictOptions& o, const ms_io::ModelWriteReport& report) {
@@ -181,7 +182,8 @@ NamedModel read_model(const PredictOptions& o, const imager::Ranks& ranks) {
 }
 
 void predict(const PredictOptions& o, const imager::Ranks& ranks) {
-  check(o);
+  check_values(o);
+  if (o.model.empty() == o.components.empty()) throw std::invalid_argument("expected either --model or --components");
   ms_io::ModelColumn column = column_of(o);
   if (ranks.first()) ms_io::require_writable(o.vis, column);
   ProgressLine progress(o.quiet || !ranks.first());
@@ -222,7 +224,7 @@ void add_predict_command(CLI::App& program, const imager::Ranks& ranks) {
       ->add_option(
           "--model", o->model,
           "FITS or CASA image in Jy/pixel whose reference position is the phase centre; its STOKES axis may hold I, Q, U and "
-          "V. Of one Taylor term: names with .tt0, .tt1, … are refused")
+          "V. Of one Taylor term: names with .tt0, .tt1, …, and headers with NTERMS above 1, are refused")
       ->type_name(file_type);
   command
       ->add_option(
@@ -255,6 +257,7 @@ void add_predict_command(CLI::App& program, const imager::Ranks& ranks) {
   declare_kernel_folder(*command, o->kernel.folder);
   command->add_option("--threads", o->threads, "Threads; 0 means all cores");
   command->add_flag("--quiet", o->quiet, "Print nothing");
+  check_before_missing(*command, [o] { check_values(*o); });
   command->callback([command, o, &ranks] {
     o->accuracy_is_typed = command->get_option("--accuracy")->count() > 0;
     predict(*o, ranks);

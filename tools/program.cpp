@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <stdexcept>
 
+#include "tools/base/value_checks.h"
 #include "tools/command.h"
 #include "tools/version_text.h"
 
@@ -22,8 +23,8 @@ void refuse_several(CLI::App& command, const imager::Ranks& ranks) {
 }  // namespace
 
 std::unique_ptr<CLI::App> make_program(const std::string& command_line, const imager::Ranks& ranks) {
-  auto program =
-      std::make_unique<CLI::App>("Images radio-interferometry MeasurementSets with least-misfit gridding functions", "misfit");
+  auto program = std::make_unique<CheckingProgram>(
+      "Images radio-interferometry MeasurementSets with least-misfit gridding functions", "misfit");
   program->set_version_flag("--version", version_text, "Print the version, how it was built, and the libraries it runs with");
   program->require_subcommand(1);
   program->option_defaults()->always_capture_default();

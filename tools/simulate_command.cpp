@@ -13,6 +13,7 @@
 #include "tools/base/option_checks.h"
 #include "tools/base/progress.h"
 #include "tools/base/quantity.h"
+#include "tools/base/value_checks.h"
 #include "tools/command.h"
 #include "tools/formats/component_list.h"
 #include "tools/formats/sky.h"
@@ -172,6 +173,7 @@ void add_simulate_command(CLI::App& program) {
   command->add_option("--seed", o->seed, "Seed of the noise");
   command->add_option("--threads", o->threads, "Threads; 0 means all cores");
   command->add_flag("--quiet", o->quiet, "Print nothing");
+  check_before_missing(*command, [o] { check(*o); });
   command->callback([o] { simulate(*o); });
 }
 

@@ -284,6 +284,50 @@ BOOST_AUTO_TEST_CASE(an_option_that_there_is_not_is_named_before_one_that_is_mis
                std::string::npos);
 }
 
+BOOST_AUTO_TEST_CASE(a_wrong_value_is_named_before_an_option_that_is_missing) {
+  const TemporaryFolder folder;
+  const std::string kernel = folder / "k.fits";
+  const std::vector<std::pair<Arguments, std::vector<Arguments>>> commands{
+      {{"image"},
+       {{"--imsize", "0"},
+        {"--cell", "-1arcsec"},
+        {"--imagename", "a/"},
+        {"--gain", "2"},
+        {"--threads", "-1"},
+        {"--accuracy", "3"},
+        {"--kernel", "nosuch"},
+        {"--scales", "0,9", "--niter", "5"},
+        {"--nterms", "7"},
+        {"--uvtaper", "-1arcsec"},
+        {"--nchan", "-5", "--specmode", "cube"}}},
+      {{"predict"}, {{"--accuracy", "2"}, {"--threads", "-1"}}},
+      {{"simulate"}, {{"--channels", "0"}, {"--hours", "-1"}, {"--dec", "100deg"}}},
+      {{"report", "scene"}, {{"--seconds", "-1"}, {"--imsize", "70000"}, {"--robust", "9", "--weighting", "briggs"}}},
+      {{"kernel"},
+       {{"--width", "99"},
+        {"--x0", "0.6"},
+        {"--padding", "0.5"},
+        {"--degree", "99"},
+        {"--kernel", "nosuch"},
+        {"--accuracy", "2"},
+        {"--w-turns", "-1", "--accuracy", "0.1"},
+        {"--samples", "-7", "--accuracy", "0.1"},
+        {"--target-error", "3", "--emit", "ducc"},
+        {"--host-padding", "0.5", "--emit", "ducc"}}},
+      {{"kernel", "--output", kernel}, {{"--width", "99"}, {"--x0", "0.6"}, {"--padding", "0.5"}, {"--sampling", "0"}}}};
+  for (const auto& [command, values] : commands)
+    for (const Arguments& wrong : values) {
+      const Outcome outcome = run(command + wrong);
+      BOOST_TEST_CONTEXT(command.front() << " " << wrong.front() << ": " << outcome.err) {
+        BOOST_TEST(outcome.code == 2);
+        BOOST_TEST(contains(outcome.err, wrong[1]));
+        BOOST_TEST(!contains(outcome.err, "is required"));
+      }
+    }
+  check_refused(small_image("a.ms", "a") + Arguments{"--imsize", "0", "--no-such-option"}, 2, {"--no-such-option"},
+                folder / "");
+}
+
 BOOST_AUTO_TEST_CASE(a_number_given_as_0_is_named) {
   const TemporaryFolder folder;
   for (const char* option : {"--width", "--x0", "--padding", "--accuracy"})

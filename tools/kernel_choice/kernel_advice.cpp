@@ -33,12 +33,15 @@ std::string candidate(const imager::GriddingCandidate& c) {
 imager::GriddingChoice choose_for(const KernelJob& job) {
   constexpr int largest = 65536;
   refuse(!(job.accuracy > 0 && job.accuracy < 1), "accuracy", job.accuracy, "a number above 0 and below 1");
+  for (const int size : job.imsize) refuse(size < 1 || size > largest, "imsize", size, "1 to 65536 pixels");
+  refuse(!(job.w_turns >= 0 && job.w_turns <= 1e6), "w-turns", job.w_turns, "0 (two axes) to 1e6");
+  const auto refuse_samples = [&](bool wrong) {
+    refuse(wrong, "samples", job.samples, "the number of visibilities, 1 to 1e18, beside --accuracy");
+  };
+  refuse_samples(job.samples != 0 && !(job.samples >= 1 && job.samples <= 1e18));
   if (job.imsize.empty())
     throw std::invalid_argument("expected --imsize, the image's width, or width and height, beside --accuracy");
-  for (const int size : job.imsize) refuse(size < 1 || size > largest, "imsize", size, "1 to 65536 pixels");
-  refuse(!(job.samples >= 1 && job.samples <= 1e18), "samples", job.samples,
-         "the number of visibilities, 1 to 1e18, beside --accuracy");
-  refuse(!(job.w_turns >= 0 && job.w_turns <= 1e6), "w-turns", job.w_turns, "0 (two axes) to 1e6");
+  refuse_samples(job.samples == 0);
   imager::GriddingRequest request;
   constexpr double any_cell = 1e-6;
   request.geometry = {job.imsize.front(), job.imsize.back(), any_cell, {}};

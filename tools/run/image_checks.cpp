@@ -17,6 +17,8 @@
 namespace misfit::tools {
 namespace {
 
+constexpr int largest_side = 65536;  ///< of an image, in pixels
+
 void check_sets(const ImageOptions& o) {
   std::set<std::filesystem::path> met;
   for (const std::string& name : o.vis) {
@@ -28,15 +30,15 @@ void check_sets(const ImageOptions& o) {
 void check_image(const ImageOptions& o) {
   check_sets(o);
   const std::string name = std::filesystem::path(o.imagename).filename();
-  if (name.empty() || name == "." || name == "..")
+  if ((name.empty() && !o.imagename.empty()) || name == "." || name == "..")
     refuse_option("imagename", "'" + o.imagename + "'", "a name for files to begin with, not a folder");
-  constexpr int largest = 65536;
   for (const int size : o.imsize)
-    if (size < 1 || size > largest) refuse_option("imsize", std::to_string(size), "1 to 65536 pixels");
+    if (size < 1 || size > largest_side) refuse_option("imsize", std::to_string(size), "1 to 65536 pixels");
   for (const imager::Stokes stokes : imager::parse_stokes(o.stokes))
     if (stokes == imager::Stokes::XY || stokes == imager::Stokes::YX || stokes == imager::Stokes::RL ||
         stokes == imager::Stokes::LR)
       refuse_option("stokes", o.stokes, "no crossed hands, which are complex on the sky: Q, U and V show their parts");
+  if (o.cell.empty()) return;
   if (!(parse_angle_rad(o.cell) > 0)) refuse_option("cell", o.cell, "an angle above 0");
   if (parse_angle_rad(o.cell) > 0.5) refuse_option("cell", o.cell, "less than 0.5 rad");
 }
@@ -51,6 +53,11 @@ void check_cube(const ImageOptions& o) {
   if (o.nterms > 1) refuse_option("nterms", std::to_string(o.nterms), "1 with --specmode cube");
 }
 
+/// In pixels; the largest that there can be where none is given.
+int smallest_side(const ImageOptions& o) {
+  return o.imsize.empty() ? largest_side : *std::min_element(o.imsize.begin(), o.imsize.end());
+}
+
 void check_deconvolver(const ImageOptions& o) {
   const bool multiscale = o.deconvolver == "multiscale";
   const std::string scales = o.scales.empty() ? "" : typed(o.scales.front()) + " …";
@@ -59,8 +66,8 @@ void check_deconvolver(const ImageOptions& o) {
     refuse_option("smallscalebias", typed(o.smallscalebias), "--deconvolver multiscale beside it");
   if (multiscale && o.scales.empty()) refuse_option("deconvolver", o.deconvolver, "--scales beside it, such as 0,5,15");
   for (std::size_t i = 0; i < o.scales.size(); ++i)
-    if (!(o.scales[i] >= 0 && o.scales[i] <= *std::min_element(o.imsize.begin(), o.imsize.end())) ||
-        (i > 0 && !(o.scales[i] > o.scales[i - 1])) || (o.scales[i] > 0 && o.scales[i] < 3))
+    if (!(o.scales[i] >= 0 && o.scales[i] <= smallest_side(o)) || (i > 0 && !(o.scales[i] > o.scales[i - 1])) ||
+        (o.scales[i] > 0 && o.scales[i] < 3))
       refuse_option("scales", typed(o.scales[i]), "pixels in ascending order, each 0 or from 3 to the image's size");
   if (!(o.smallscalebias >= 0 && o.smallscalebias < 1))
     refuse_option("smallscalebias", typed(o.smallscalebias), "0 or more, and below 1");
@@ -81,7 +88,7 @@ void check_clean(const ImageOptions& o) {
   if (!(parse_flux_jy(o.threshold) >= 0)) refuse_option("threshold", o.threshold, "0 or more");  // as it was typed
   imager::check(clean_options(o, 1), "--");
   if (restoring_beam(o) && o.niter == 0) refuse_option("restoringbeam", o.restoringbeam, "--niter above 0 beside it");
-  const int smallest = *std::min_element(o.imsize.begin(), o.imsize.end());
+  const int smallest = smallest_side(o);
   if (o.niter > 0 && smallest < 3 && !restoring_beam(o))
     refuse_option("imsize", std::to_string(smallest), "3 pixels or more to fit a beam to, or --restoringbeam");
   if (!o.startmodel.empty() && o.niter == 0) refuse_option("startmodel", o.startmodel, "--niter above 0 beside it");

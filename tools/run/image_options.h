@@ -100,7 +100,7 @@ ms_io::Selection selection_of(const ImageOptions& options);
 bool kernel_is_given(const ImageOptions& options);
 
 /// Throws std::invalid_argument that names the option, its value and what was expected; std::runtime_error when the kernel is a
-/// file that cannot be used.
+/// file that cannot be used. Passes over options that the command requires and that are not given.
 void check(const ImageOptions& options);
 
 /// The tables that --evaluation names, if it does.

@@ -10,6 +10,7 @@
 #include "tools/base/numbers.h"
 #include "tools/base/option_checks.h"
 #include "tools/base/quantity.h"
+#include "tools/base/value_checks.h"
 #include "tools/kernel_choice/kernel_choice.h"
 #include "tools/run/named_data.h"
 #include "tools/scene/scene_memory.h"
@@ -23,11 +24,16 @@ struct Options {
   std::string output;
 };
 
-void write(const Options& o) {
+/// The values that are given.
+void check_values(const Options& o) {
   check(o.report.scene);
   for (const std::string& kernel : o.report.kernels) choose_kernel({kernel, o.report.scene.kernel.folder});
   if (!(o.report.seconds >= 0 && std::isfinite(o.report.seconds)))
     throw std::invalid_argument("--seconds " + significant(o.report.seconds, 6) + ": expected 0 or more");
+}
+
+void write(const Options& o) {
+  check_values(o);
   check_scene_memory(o.report.scene);
   prepare_report_folder(o.output);
   SceneReportOptions options = o.report;
@@ -67,6 +73,7 @@ void add_scene_report(CLI::App& reports) {
       ->required()
       ->type_name(folder_type)
       ->check(not_empty());
+  check_before_missing(*command, [o] { check_values(*o); });
   command->callback([o] { write(*o); });
 }
 
