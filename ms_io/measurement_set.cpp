@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <set>
 #include <stdexcept>
 #include <utility>
 
@@ -202,6 +203,14 @@ std::vector<DataColumn> MeasurementSet::columns_of_zeros(const imager::Ranks& ra
     if (zeros && !data) columns.push_back(column);
   }
   return columns;
+}
+std::vector<imager::Stokes> MeasurementSet::correlations() const {
+  std::set<imager::Stokes> stored;
+  for (const auto& set : whole().sets)
+    for (const Setup& setup : set->selected.setups)
+      for (const int code : setup.correlation_types)
+        if (imager::is_stokes_code(code)) stored.insert(static_cast<imager::Stokes>(code));
+  return {stored.begin(), stored.end()};
 }
 std::vector<std::string> MeasurementSet::changed_files() const {
   std::vector<std::string> paths;

@@ -76,6 +76,8 @@ class MeasurementSet : public imager::VisibilitySource {
   std::vector<DataColumn> data_columns() const;
   /// Of these, those of which every value is 0 that any of `ranks` has read; they call this together.
   std::vector<DataColumn> columns_of_zeros(const imager::Ranks& ranks) const;
+  /// The correlations that are stored of what is selected, of all sets, in the order of their codes.
+  std::vector<imager::Stokes> correlations() const;
   /// Files of the sets that something changed, removed or made since they were opened: what was read may be neither what was
   /// there before nor what is there now.
   std::vector<std::string> changed_files() const;

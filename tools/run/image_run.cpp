@@ -100,7 +100,8 @@ class ImageRun {
     set_ = std::make_unique<ms_io::MeasurementSet>(o_.vis, selection_of(o_), o_.datacolumn, stokes_);
     if (!ranks_.alone()) set_ = set_->share(ranks_);
     for (const std::string& sentence : set_->incomplete_columns()) warn(sentence);
-    if (const std::string sentence = missing_hand_warning(stokes_); o_.savemodel != "none" && !sentence.empty()) warn(sentence);
+    if (o_.savemodel != "none")
+      if (const std::string words = left_out_of_model_warning(stokes_, set_->correlations()); !words.empty()) warn(words);
     for (const std::string& sentence : set_->remarks()) warn(sentence);
     check_taylor_band(o_, set_->spectral_windows());
     geometry_ = geometry_of(o_, set_->observation().phase_centre);

@@ -34,6 +34,38 @@ bool is_circular(Stokes hand) {
   return hand == Stokes::RR || hand == Stokes::LL;
 }
 
+/// The Stokes parameters of which a correlation is a sum, see ms_io/stokes.h; itself where it is one.
+std::vector<Stokes> held_by(Stokes correlation) {
+  switch (correlation) {
+    case Stokes::XX:
+    case Stokes::YY:
+      return {Stokes::I, Stokes::Q};
+    case Stokes::XY:
+    case Stokes::YX:
+      return {Stokes::U, Stokes::V};
+    case Stokes::RR:
+    case Stokes::LL:
+      return {Stokes::I, Stokes::V};
+    case Stokes::RL:
+    case Stokes::LR:
+      return {Stokes::Q, Stokes::U};
+    default:
+      return {correlation};
+  }
+}
+
+bool has(const std::vector<Stokes>& list, Stokes one) {
+  return std::find(list.begin(), list.end(), one) != list.end();
+}
+
+/// "I, Q and V"
+std::string names(const std::vector<Stokes>& list) {
+  std::string text;
+  for (std::size_t i = 0; i < list.size(); ++i)
+    text += (i == 0 ? "" : i + 1 == list.size() ? " and " : ", ") + stokes_name(list[i]);
+  return text;
+}
+
 bool is_first(Stokes hand) {
   return hand == Stokes::RR || hand == Stokes::XX;
 }
@@ -98,14 +130,17 @@ bool saves_model(const std::vector<Stokes>& stokes) {
          (all(is_hand) && all([&](Stokes s) { return is_circular(s) == is_circular(stokes.front()); }));
 }
 
-std::string missing_hand_warning(const std::vector<Stokes>& stokes) {
-  if (stokes.size() != 1 || !is_hand(stokes.front())) return "";
-  const Stokes hand = stokes.front();
-  const Stokes other = is_circular(hand) ? (is_first(hand) ? Stokes::LL : Stokes::RR)
-                       : is_first(hand)  ? Stokes::YY
-                                         : Stokes::XX;
-  return "--savemodel modelcolumn writes the model of " + stokes_name(hand) + " alone: " + stokes_name(other) +
-         " of MODEL_DATA is 0, where the set has it";
+std::string left_out_of_model_warning(const std::vector<Stokes>& stokes, const std::vector<Stokes>& stored) {
+  if (stokes == std::vector{Stokes::I}) return "";
+  const bool hands = is_hand(stokes.front());
+  std::vector<Stokes> held;
+  for (const Stokes one : stored)
+    for (const Stokes part : hands ? std::vector{one} : held_by(one))
+      if (!has(stokes, part) && !has(held, part)) held.push_back(part);
+  if (held.empty()) return "";
+  std::sort(held.begin(), held.end());
+  return "--savemodel modelcolumn writes the model of " + names(stokes) + " alone: " + names(held) +
+         (held.size() == 1 ? " is 0 in MODEL_DATA" : " are 0 in MODEL_DATA");
 }
 
 void save_model(const ImageOptions& o, const SavedModel& model, const imager::Ranks& ranks, const imager::Progress& progress) {

@@ -25,8 +25,10 @@ struct SavedModel {
 /// Whether a column can be made of images of these: I, Q, U and V, or parallel hands of one kind of feed.
 bool saves_model(const std::vector<imager::Stokes>& stokes);
 
-/// That correlations of which there is no image are written as 0: of one hand the other; else empty.
-std::string missing_hand_warning(const std::vector<imager::Stokes>& stokes);
+/// What of a column with these `stored` correlations is written as 0 since there is no image of it: of images of hands the
+/// other correlations, of Stokes parameters the others that the correlations hold; empty where all is imaged, or I alone, which
+/// makes an unpolarised model.
+std::string left_out_of_model_warning(const std::vector<imager::Stokes>& stokes, const std::vector<imager::Stokes>& stored);
 
 /// Writes the models' visibilities into MODEL_DATA of each set of the run, about its own phase centre: of parallel hands as
 /// those of I = (a + b) / 2 and of Q or V = (a − b) / 2, where a is XX or RR and b is YY or LL, and 0 without an image. Called
