@@ -191,10 +191,9 @@ void ProductStage::add_spectra(imager::SpectralImages& spectra, const std::strin
   cards.push_back(corrected ? imager::HeaderCard{"PBCOR", 1, "the primary beam's spectrum is divided out"}
                             : imager::HeaderCard{"PBCOR", 0, "the primary beam's spectrum is still in it"});
   products_.set_cards(std::move(cards));
-  products_.set_quantity("Spectral Index");
+  products_.set_quantity("Spectral Index");  // of curvature, too, for which casacore has no name of its own
   products_.add("alpha" + end, "", alone(std::move(spectra.alpha)));
   if (!spectra.alpha_error.pixel.empty()) products_.add("alpha.error" + end, "", alone(std::move(spectra.alpha_error)));
-  products_.set_quantity("Spectral Curvature");
   if (!spectra.beta.pixel.empty()) products_.add("beta" + end, "", alone(std::move(spectra.beta)));
   products_.set_quantity(imager::ImageHeader().quantity);
   products_.set_cards(scene_.cards);
