@@ -37,6 +37,7 @@ std::shared_ptr<const OpenSet> open_selected(const std::string& path, const Sele
   if (!data_column.empty()) require_visibility_column(opened->set, path, opened->data_column);
   opened->selected = select_rows(opened->set, path, selection, {block_samples, true});
   if (data_column.empty()) return opened;
+  opened->filled = std::make_shared<FilledData>(opened->selected.setups);
   for (const Setup& setup : opened->selected.setups) {
     try {
       opened->recipes.push_back(stokes_recipe(setup.correlation_types, stokes));
@@ -191,17 +192,11 @@ std::vector<DataColumn> MeasurementSet::data_columns() const {
   }
   return columns;
 }
-std::vector<DataColumn> MeasurementSet::columns_of_zeros(const imager::Ranks& ranks) const {
-  std::vector<DataColumn> columns;
-  for (const DataColumn& column : data_columns()) {
-    const auto any = [&](OpenSet::Read what) {
-      return imager::any_of(ranks, std::any_of(impl_->sets.begin(), impl_->sets.end(), [&](const auto& set) {
-                              return set->path == column.path && *set->read == what;
-                            }));
-    };
-    const bool zeros = any(OpenSet::zeros), data = any(OpenSet::data);
-    if (zeros && !data) columns.push_back(column);
-  }
+std::vector<ZeroColumn> MeasurementSet::columns_of_zeros(const imager::Ranks& ranks) const {
+  std::vector<ZeroColumn> columns;
+  for (const auto& set : whole().sets)  // whose parts learn for it
+    if (Zeros zeros = set->filled->zeros(ranks); !zeros.none())
+      columns.push_back({set->path, set->data_column, std::move(zeros)});
   return columns;
 }
 std::vector<imager::Stokes> MeasurementSet::correlations() const {

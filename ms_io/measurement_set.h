@@ -14,6 +14,7 @@
 #include "ms_io/beam_rows.h"
 #include "ms_io/selection.h"
 #include "ms_io/spectral_frame.h"
+#include "ms_io/zeros.h"
 
 namespace misfit::ms_io {
 
@@ -38,6 +39,13 @@ struct DataColumn {
   std::string path;                     ///< of the set
   std::string name;                     ///< "CORRECTED_DATA"
   std::vector<std::string> subtracted;  ///< commands that subtracted models from these data
+};
+
+/// A column of which all or some was never filled.
+struct ZeroColumn {
+  std::string path;
+  std::string name;
+  Zeros zeros;
 };
 
 /// `data_column`, as MeasurementSet takes it, with the names that these sets have: "CORRECTED_DATA", or one for each set,
@@ -74,8 +82,8 @@ class MeasurementSet : public imager::VisibilitySource {
   std::vector<std::string> incomplete_columns() const;
   /// One for each set.
   std::vector<DataColumn> data_columns() const;
-  /// Of these, those of which every value is 0 that any of `ranks` has read; they call this together.
-  std::vector<DataColumn> columns_of_zeros(const imager::Ranks& ranks) const;
+  /// Of these, those where data are 0 of what any of `ranks` has read; they call this together.
+  std::vector<ZeroColumn> columns_of_zeros(const imager::Ranks& ranks) const;
   /// The correlations that are stored of what is selected, of all sets, in the order of their codes.
   std::vector<imager::Stokes> correlations() const;
   /// Files of the sets that something changed, removed or made since they were opened: what was read may be neither what was

@@ -8,6 +8,7 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "ms_io/filled_data_internal.h"
 #include "ms_io/fingerprint.h"
 #include "ms_io/kept_cells_internal.h"
 #include "ms_io/missing_cells_internal.h"
@@ -136,6 +137,7 @@ class ModelWriter {
       : path_(path), column_(spelt_out(column)), set_(open_measurement_set(path, Access::update)), kept_(set_, column_.name) {
     require_writable_column(set_, path_, column_);
     selected_ = select_rows(set_, path_, selection, {block_samples, false});
+    filled_ = std::make_unique<FilledData>(selected_.setups);
     journal_.column = column_.name;
     selection_ = one_line(to_text(selection));
     journal_.command = one_line(column_.origin.command);
@@ -200,7 +202,7 @@ class ModelWriter {
       write_subtracted_models(set_, column_.name, models_that_are_lacking(), choose_witnesses(set_, {column_.name}, selected_));
     });
     remove_journal(set_, column_.name);
-    report.zero_data = !column_.subtracted_from.empty() && !any_data_ && report.rows_before == 0;
+    if (report.rows_before == 0) report.zeros = {path_, column_.subtracted_from, filled_->zeros(imager::alone())};
     report.rows = journal_.written;
     report.samples = samples_;
     report.nonfinite_uvw_rows = journal_.nonfinite_uvw_rows;
@@ -316,11 +318,18 @@ class ModelWriter {
     shift.append(shift.moves() ? time_s.data() : nullptr, block.rows.count(), block.shifts);
   }
 
+  void look_for_data(const PredictedBlock& block) {
+    casacore::Vector<int> field;
+    translated("cannot read FIELD_ID of " + path_,
+               [&] { read(casacore::ScalarColumn<int>(set_, "FIELD_ID"), block.rows, field); });
+    const std::size_t cell = block.cells.data.size() / block.rows.count();
+    for (std::uint64_t r = 0; r < block.rows.count(); ++r)
+      filled_->look_at(block.setup->data_description, field.data()[r], {block.cells.data.data() + r * cell, nullptr, cell});
+  }
+
   void write(const PredictedBlock& block) {
     const auto setup = static_cast<std::size_t>(block.setup - selected_.setups.data());
-    if (!any_data_)
-      any_data_ = std::any_of(block.cells.data.begin(), block.cells.data.end(),
-                              [](const casacore::Complex& value) { return value != casacore::Complex(0); });
+    if (!column_.subtracted_from.empty() && filled_->in_doubt()) look_for_data(block);
     if (column_.in_place()) kept_.keep(journal_, setup, block.rows, block.cells.data);
     if (foretell(journal_.witnesses, block.rows, *block.setup, block.cells.values)) write_journal(set_, journal_);
     translated(doing_(), [&] {
@@ -340,10 +349,10 @@ class ModelWriter {
   KeptCells kept_;
   SelectedRows selected_;
   ModelJournal journal_;
-  std::string selection_;      ///< in words; empty where that is all
-  SubtractedModel here_;       ///< this run's
-  bool any_data_ = false;      ///< that are not 0
-  std::uint64_t samples_ = 0;  ///< that hold the model
+  std::string selection_;               ///< in words; empty where that is all
+  SubtractedModel here_;                ///< this run's
+  std::unique_ptr<FilledData> filled_;  ///< what the model was subtracted from
+  std::uint64_t samples_ = 0;           ///< that hold the model
   std::unique_ptr<ModelCells> cells_;
   std::unique_ptr<ValueFlush> flush_;
 };

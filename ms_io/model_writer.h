@@ -55,7 +55,7 @@ struct ModelWriteReport {
   std::uint64_t rows_before = 0;         ///< of these, written by an earlier run that this one went on with
   std::uint64_t samples = 0;             ///< Stokes samples: rows × channels
   std::uint64_t nonfinite_uvw_rows = 0;  ///< rows for which the model counts as 0
-  bool zero_data = false;                ///< all data that the model was subtracted from are 0
+  ZeroColumn zeros = {};                 ///< of the data that the model was subtracted from, by a run that did so to all
 };
 
 /// "MODEL_DATA of `path` is incomplete: 12 of 30 rows were written before by …", or nothing where no run was cut short while it

@@ -54,6 +54,7 @@ class BlockBuilder {
     const std::size_t setup = setup_of({at.data_description, by_field_ ? at.field : 0});
     if (setup == not_selected) return;
     ++result_.rows;
+    ++result_.setups[setup].rows_of_field[at.field];
     TimedRow& first = first_of_field_.emplace(at.field, at).first->second;
     if (at.before(first)) first = at;
     BlockRows& block = pending_[setup];

@@ -24,8 +24,9 @@ struct Run {
 /// One DATA_DESC_ID of the selection: what its rows have in common. Of one field where each has a phase shift of its own.
 struct Setup {
   int data_description = 0;
-  int field = 0;     ///< where visibilities are shifted; else 0
-  FieldShift shift;  ///< from where its rows are phased to
+  int field = 0;                               ///< where visibilities are shifted; else 0
+  FieldShift shift;                            ///< from where its rows are phased to
+  std::map<int, std::uint64_t> rows_of_field;  ///< selected
   int spectral_window = 0;
   std::size_t place = 0;                 ///< of the window among those that the selection lists, or among all
   std::string spectral_frame;            ///< FITS SPECSYS

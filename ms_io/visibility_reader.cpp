@@ -17,11 +17,6 @@ namespace {
 /// formed.
 constexpr std::uint64_t piece_samples = 1 << 17;
 
-bool any_not_zero(const casacore::Array<casacore::Complex>& values) {
-  return std::any_of(values.cbegin(), values.cend(),
-                     [](const casacore::Complex& value) { return value != casacore::Complex(0); });
-}
-
 /// A block to which rows are appended, and those of the other Stokes parameters.
 class GrowingBlock {
  public:
@@ -166,6 +161,7 @@ class Reader : public imager::BlockStream {
     const SelectedRows& selected = source_->selected;
     const BlockGroup group = block_group(selected, next_);
     const Setup& alike = selected.setups[selected.blocks[next_].setup];
+    const auto group_begin = selected.blocks.begin() + static_cast<std::ptrdiff_t>(next_);
     auto beside = std::async(std::launch::async, [this, first = next_, count = group.blocks] { make_blocks(first, count); });
     next_ += group.blocks;
     std::uint64_t left = group.rows;
@@ -174,13 +170,27 @@ class Reader : public imager::BlockStream {
     for (const Rows& piece : pieces(group.runs, std::max<std::uint64_t>(1, piece_samples / alike.channel_span()))) {
       const std::uint64_t rows = piece.count();
       columns_.read_rows(piece, alike, *read);
-      if (*source_->read != OpenSet::data) *source_->read = any_not_zero(read->data) ? OpenSet::data : OpenSet::zeros;
+      if (source_->filled->in_doubt()) look_for_data(group_begin, piece, owner, *read);
       beside.get();
       left -= rows;
       if (left == 0) return form(*read, owner, rows);
       beside = std::async(std::launch::async, [this, read, owner, rows] { form(*read, owner, rows); });
       std::swap(read, other);
       if (owner != nullptr) owner += rows;
+    }
+  }
+
+  /// In the rows of a piece that can be used, which belong to blocks from `group` on.
+  void look_for_data(std::vector<BlockRows>::const_iterator group, const Rows& piece, const std::uint16_t* owner,
+                     const StoredRows& stored) {
+    translated("cannot read FIELD_ID of " + source_->path,
+               [&] { read(casacore::ScalarColumn<int>(source_->set, "FIELD_ID"), piece, field_); });
+    const std::size_t cell = stored.data.size() / piece.count();
+    for (std::uint64_t r = 0; r < piece.count(); ++r) {
+      if (stored.flag_row.data()[r] || stored.antenna1.data()[r] == stored.antenna2.data()[r]) continue;
+      const Setup& setup = source_->selected.setups[group[owner == nullptr ? 0 : owner[r]].setup];
+      source_->filled->look_at(setup.data_description, field_.data()[r],
+                               {stored.data.data() + r * cell, stored.flag.data() + r * cell, cell});
     }
   }
 
@@ -200,6 +210,7 @@ class Reader : public imager::BlockStream {
   std::shared_ptr<const OpenSet> source_;
   ColumnReader columns_;
   std::array<StoredRows, 2> stored_;  ///< one is read while Stokes parameters are formed of the other
+  casacore::Vector<int> field_;       ///< [row] of the piece read last, where it was looked at
   std::size_t next_ = 0;              ///< block to be read
   std::deque<GrowingBlock> growing_;  ///< of the group read last, those not yet handed out
 };

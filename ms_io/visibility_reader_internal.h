@@ -1,10 +1,10 @@
 #pragma once
 
-#include <atomic>
 #include <memory>
 #include <string>
 
 #include "ms_io/file_states_internal.h"
+#include "ms_io/filled_data_internal.h"
 #include "ms_io/selection_internal.h"
 #include "ms_io/stokes.h"
 
@@ -16,11 +16,9 @@ struct OpenSet {
   std::string data_column;
   casacore::MeasurementSet set;
   SelectedRows selected;
-  std::vector<StokesRecipe> recipes;  ///< [setup]
-  FileStates files;                   ///< before it was opened
-  /// What was read of the data column: nothing, zeros alone, or others too.
-  enum Read { nothing, zeros, data };
-  std::shared_ptr<std::atomic<int>> read = std::make_shared<std::atomic<int>>(nothing);
+  std::vector<StokesRecipe> recipes;   ///< [setup]
+  FileStates files;                    ///< before it was opened
+  std::shared_ptr<FilledData> filled;  ///< what was read, by this set and parts of it; null without a data column
 };
 
 /// Streams the blocks of `open_set`.

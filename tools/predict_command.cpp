@@ -20,6 +20,7 @@
 #include "tools/formats/image_file.h"
 #include "tools/formats/model_image.h"
 #include "tools/kernel_choice/kernel_choice.h"
+#include "tools/run/data_columns.h"
 #include "tools/run/selection_options.h"
 #include "tools/run/shared_prediction.h"
 
@@ -208,8 +209,7 @@ void predict(const PredictOptions& o, const imager::Ranks& ranks) {
       {model.visibilities.samples_at_once, ranks.size()});
   shared.end();
   progress.end();
-  if (report.zero_data)
-    progress.say("warning: all of " + column.subtracted_from + " that was selected is 0: it was never filled");
+  if (!report.zeros.zeros.none()) progress.say("warning: " + zeros_warning(report.zeros));
   if (!o.quiet) print(o, report);
 }
 

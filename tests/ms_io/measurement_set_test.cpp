@@ -517,6 +517,7 @@ BOOST_AUTO_TEST_CASE(a_column_that_was_never_filled_is_told_from_one_with_a_sing
   const auto columns = empty.columns_of_zeros(imager::alone());
   BOOST_REQUIRE(columns.size() == 1U);
   BOOST_TEST(columns.front().path == set.path());
+  BOOST_TEST(columns.front().zeros.everywhere);
 }
 
 BOOST_AUTO_TEST_SUITE_END()

@@ -234,7 +234,7 @@ class CubeRun {
       counts.outside_grid =
           static_cast<std::uint64_t>(std::ceil(static_cast<double>(taken) * (static_cast<double>(outside_grid_) / in_planes)));
     counts.used = taken - counts.outside_grid;
-    for (const ms_io::DataColumn& column : set_->columns_of_zeros(ranks_)) warn(zeros_warning(column));
+    for (const ms_io::ZeroColumn& column : set_->columns_of_zeros(ranks_)) warn(zeros_warning(column));
   }
 
   void count_traffic() {

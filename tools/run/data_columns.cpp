@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "tools/base/numbers.h"
+
 namespace misfit::tools {
 namespace {
 
@@ -9,6 +11,15 @@ constexpr const char* automatic = "auto";
 
 bool alike(const std::vector<ms_io::DataColumn>& columns) {
   return std::all_of(columns.begin(), columns.end(), [&](const auto& column) { return column.name == columns.front().name; });
+}
+
+/// "field 2 of spectral window 1 (1 200 rows)"
+std::string words_on(const ms_io::SelectionPart& part) {
+  const std::string window = "spectral window " + std::to_string(part.window), field = "field " + std::to_string(part.field);
+  const std::string name = part.field == ms_io::SelectionPart::all    ? window
+                           : part.window == ms_io::SelectionPart::all ? field
+                                                                      : field + " of " + window;
+  return name + " (" + grouped(static_cast<long long>(part.rows)) + (part.rows == 1 ? " row)" : " rows)");
 }
 
 }  // namespace
@@ -38,9 +49,17 @@ std::vector<std::string> history_of(const std::string& command_line, const std::
   return {command_line, "data column: " + columns_text(columns)};
 }
 
-std::string zeros_warning(const ms_io::DataColumn& column) {
-  return "all that was read of " + column.name + " of " + column.path + " is 0: it was never filled" +
-         (column.name == "DATA" ? "" : "; --datacolumn data takes DATA");
+std::string zeros_warning(const ms_io::ZeroColumn& column) {
+  const std::string data = column.name == "DATA" ? "" : "; --datacolumn data takes DATA";
+  if (column.zeros.everywhere)
+    return "all that was read of " + column.name + " of " + column.path + " is 0: it was never filled" + data;
+  constexpr std::size_t most_listed = 20;
+  const std::vector<ms_io::SelectionPart>& parts = column.zeros.parts;
+  std::string list;
+  for (std::size_t i = 0; i < std::min(parts.size(), most_listed); ++i) list += (i == 0 ? "" : ", ") + words_on(parts[i]);
+  if (parts.size() > most_listed) list += " and " + std::to_string(parts.size() - most_listed) + " more";
+  return "all that was read of " + list + " is 0 in " + column.name + " of " + column.path +
+         ": it was never filled there; leave it out by --spw or --field" + (data.empty() ? "" : ", or" + data.substr(1));
 }
 
 }  // namespace misfit::tools

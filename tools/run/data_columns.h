@@ -20,7 +20,7 @@ std::string unlike_columns_warning(const std::vector<ms_io::DataColumn>& columns
 /// The lines of an image's HISTORY: the command and the columns.
 std::vector<std::string> history_of(const std::string& command_line, const std::vector<ms_io::DataColumn>& columns);
 
-/// That nothing has filled the column.
-std::string zeros_warning(const ms_io::DataColumn& column);
+/// That nothing has filled the column, or which windows and fields of it.
+std::string zeros_warning(const ms_io::ZeroColumn& column);
 
 }  // namespace misfit::tools

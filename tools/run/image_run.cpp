@@ -182,7 +182,7 @@ class ImageRun {
     report_.counts.used = sums.used;
     report_.plan.push_back(left_out_decision(report_.counts));
     if (sums.outside_grid > 0) warn(outside_grid_warning(sums.outside_grid, reach_));
-    for (const ms_io::DataColumn& column : set_->columns_of_zeros(ranks_)) warn(zeros_warning(column));
+    for (const ms_io::ZeroColumn& column : set_->columns_of_zeros(ranks_)) warn(zeros_warning(column));
   }
 
   void weigh_primary_beam() {

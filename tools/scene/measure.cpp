@@ -61,7 +61,7 @@ Scene::Scene(const ImageOptions& options, bool quick, const imager::Progress& pr
   while (auto block = stream->next()) visibilities_.append(std::move(block));
   read_s_ = watch.seconds();
   warnings_ = set.incomplete_columns();
-  for (const ms_io::DataColumn& column : set.columns_of_zeros(imager::alone())) warnings_.push_back(zeros_warning(column));
+  for (const ms_io::ZeroColumn& column : set.columns_of_zeros(imager::alone())) warnings_.push_back(zeros_warning(column));
   weigh();
   truth_ =
       std::make_unique<SceneTruth>(visibilities_, geometry_, pixels_for(visibilities_.samples(), quick), threads_, progress);
