@@ -120,24 +120,37 @@ RowsOfFields add_pairs(const OpenSet& open_set, Antennas& antennas, BeamRows& ro
   return of_fields;
 }
 
-/// The mean of the receptors' offsets.
-double offset_rad(const casacore::Matrix<double>& of_receptors) {
-  const double receptors = static_cast<double>(of_receptors.ncolumn());
-  double x = 0, y = 0;
-  for (std::size_t r = 0; r < of_receptors.ncolumn(); ++r) {
-    x += of_receptors(0, r) / receptors;
-    y += of_receptors(1, r) / receptors;
+/// Those that rows of FEED give for the windows that are selected, in the order of the table.
+std::vector<FeedOffset> offsets_in(const OpenSet& open_set) {
+  const casacore::Table& feed = open_set.set.feed();
+  const casacore::ScalarColumn<int> antenna(feed, "ANTENNA_ID"), id(feed, "FEED_ID"), window(feed, "SPECTRAL_WINDOW_ID");
+  const casacore::ArrayColumn<double> offset(feed, "BEAM_OFFSET");
+  const std::vector<Setup>& setups = open_set.selected.setups;
+  std::vector<FeedOffset> offsets;
+  for (casacore::rownr_t r = 0; r < feed.nrow(); ++r) {
+    const bool selected = window(r) < 0 || std::any_of(setups.begin(), setups.end(),
+                                                       [&](const Setup& setup) { return setup.spectral_window == window(r); });
+    if (!selected || !offset.isDefined(r) || offset.ndim(r) != 2 || offset.shape(r)(0) != 2 || offset.shape(r)(1) == 0)
+      continue;
+    const casacore::Matrix<double> of_receptors = offset(r);
+    FeedOffset mean{id(r), 0, 0, antenna(r), open_set.path};
+    for (std::size_t k = 0; k < of_receptors.ncolumn(); ++k) {
+      mean.x_rad += of_receptors(0, k) / static_cast<double>(of_receptors.ncolumn());
+      mean.y_rad += of_receptors(1, k) / static_cast<double>(of_receptors.ncolumn());
+    }
+    offsets.push_back(mean);
   }
-  return std::hypot(x, y);
+  return offsets;
 }
 
 void add_beam_offsets(const OpenSet& open_set, const Antennas& antennas, BeamRows& rows) {
-  const casacore::Table& feed = open_set.set.feed();
-  const casacore::ScalarColumn<int> antenna(feed, "ANTENNA_ID"), id(feed, "FEED_ID");
-  const casacore::ArrayColumn<double> offset(feed, "BEAM_OFFSET");
-  for (casacore::rownr_t r = 0; r < feed.nrow(); ++r)
-    if (antennas.uses(antenna(r), id(r)) && offset.isDefined(r) && offset.ndim(r) == 2 && offset.shape(r)(0) == 2)
-      rows.beam_offset_rad = std::max(rows.beam_offset_rad, offset_rad(offset(r)));
+  for (const FeedOffset& offset : offsets_in(open_set)) {
+    const auto is_this = [&](const FeedOffset& other) {
+      return other.set == offset.set && other.feed == offset.feed && other.x_rad == offset.x_rad && other.y_rad == offset.y_rad;
+    };
+    if (antennas.uses(offset.antenna, offset.feed) && std::none_of(rows.feeds.begin(), rows.feeds.end(), is_this))
+      rows.feeds.push_back(offset);
+  }
 }
 
 }  // namespace
@@ -153,6 +166,14 @@ void add_beam_rows(const OpenSet& open_set, const imager::SkyDirection& centre, 
     pointing.rows = of_fields[pointing.id];
     rows.pointings.push_back(std::move(pointing));
   }
+}
+
+double beam_offset_rad(const OpenSet& open_set) {
+  return translated("cannot read FEED of " + open_set.path, [&] {
+    BeamRows all;
+    all.feeds = offsets_in(open_set);
+    return all.beam_offset_rad();
+  });
 }
 
 }  // namespace misfit::ms_io

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -35,12 +37,31 @@ struct FieldPointing {
   std::vector<SortRows> rows = {};  ///< its rows of two antennas; of BeamRows alone
 };
 
+/// Where a feed's beam points beside its dish's axis, as FEED's BEAM_OFFSET says: the mean of its receptors', on the sky, along
+/// axes of the antenna's frame, which mounts turn.
+struct FeedOffset {
+  int feed = 0;  ///< FEED_ID
+  double x_rad = 0;
+  double y_rad = 0;
+  int antenna = -1;      ///< the first of which that is so; -1: of all
+  std::string set = {};  ///< path
+
+  double rad() const { return std::hypot(x_rad, y_rad); }
+};
+
 /// What rows were observed with, and in which direction.
 struct BeamRows {
   std::vector<imager::AntennaSort> sorts;  ///< of antennas in rows of two antennas
   std::vector<SortPair> pairs;             ///< [row], in the order in which blocks hold them; empty where there is one sort
   std::vector<FieldPointing> pointings;    ///< of all fields with selected rows, see field_pointings()
-  double beam_offset_rad = 0;  ///< the largest by which FEED's BEAM_OFFSET says that a beam points elsewhere, of feeds in use
+  std::vector<FeedOffset> feeds;           ///< of those in use, each different one once for a set
+
+  /// The largest offset of a feed.
+  double beam_offset_rad() const {
+    double largest = 0;
+    for (const FeedOffset& feed : feeds) largest = std::max(largest, feed.rad());
+    return largest;
+  }
 };
 
 }  // namespace misfit::ms_io

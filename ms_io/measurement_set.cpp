@@ -237,6 +237,11 @@ std::vector<FieldPointing> MeasurementSet::field_pointings() const {
       all.push_back(std::move(pointing));
   return all;
 }
+double MeasurementSet::beam_offset_rad() const {
+  double largest = 0;
+  for (const auto& set : whole().sets) largest = std::max(largest, ms_io::beam_offset_rad(*set));
+  return largest;
+}
 BeamRows MeasurementSet::beam_rows() const {
   const auto add_rows = [&](const OpenSets& sets, BeamRows& rows) {
     for (const auto& set : sets) add_beam_rows(*set, impl_->observation.phase_centre, rows);

@@ -103,6 +103,9 @@ class MeasurementSet : public imager::VisibilitySource {
   /// Of the selected fields of all sets; their rows are not counted. Throws std::runtime_error when FIELD or ANTENNA cannot be
   /// read.
   std::vector<FieldPointing> field_pointings() const;
+  /// The largest angle by which FEED says that beams of any feed point beside their dishes' axes; 0 where it is 0 of all, so
+  /// that beam_rows() need not be asked. Throws std::runtime_error when FEED cannot be read.
+  double beam_offset_rad() const;
   /// Reads antennas and feeds of all rows. Throws std::runtime_error when they, ANTENNA, FEED or FIELD cannot be read.
   BeamRows beam_rows() const;
   /// Bounds at the highest channel selected, of rows with finite UVW. Reads UVW, antennas and FLAG_ROW alone. Throws

@@ -37,7 +37,7 @@ BOOST_AUTO_TEST_CASE(antennas_of_one_sort_need_no_pairs) {
   BOOST_TEST(rows.sorts[0].diameter_m == 25.0);
   BOOST_TEST(rows.sorts[0].name == "A0");
   BOOST_TEST(rows.pairs.empty());
-  BOOST_TEST(rows.beam_offset_rad == 0.0);
+  BOOST_TEST(rows.beam_offset_rad() == 0.0);
   BOOST_REQUIRE_EQUAL(rows.pointings.size(), 1U);
   BOOST_TEST(rows.pointings[0].field == "0 (SIMULATED)");
   BOOST_TEST(rows.pointings[0].direction.ra_rad == 1.25);
@@ -163,12 +163,24 @@ BOOST_AUTO_TEST_CASE(offsets_count_of_feeds_that_are_used_as_the_mean_of_their_r
     squint(0, 1) = -1e-3;
     offset.put(0, squint);
   });
-  BOOST_TEST(std::abs(rows_of(set).beam_offset_rad - 5e-3) < 1e-15);
+  const std::vector<FeedOffset> feeds = rows_of(set).feeds;  // of all antennas the same but for one
+  BOOST_REQUIRE_EQUAL(feeds.size(), 2U);
+  BOOST_TEST(feeds[0].rad() == 0.0);
+  BOOST_TEST(feeds[1].antenna == 1);
+  BOOST_TEST(std::abs(feeds[1].x_rad - 3e-3) < 1e-15);
+  BOOST_TEST(std::abs(feeds[1].y_rad + 4e-3) < 1e-15);
+  BOOST_TEST(std::abs(rows_of(set).beam_offset_rad() - 5e-3) < 1e-15);
+  BOOST_TEST(std::abs(MeasurementSet(set.path(), {}, "DATA").beam_offset_rad() - 5e-3) < 1e-15);
   Selection without;
   without.antenna = "A0&A2";
-  BOOST_TEST(rows_of(set, without).beam_offset_rad == 0.0);
+  BOOST_TEST(rows_of(set, without).beam_offset_rad() == 0.0);
   set.modify([](casacore::MeasurementSet& table) { casacore::ScalarColumn<int>(table.feed(), "FEED_ID").put(1, 7); });
-  BOOST_TEST(rows_of(set).beam_offset_rad == 0.0);
+  BOOST_TEST(rows_of(set).beam_offset_rad() == 0.0);
+  set.modify([](casacore::MeasurementSet& table) {
+    casacore::ScalarColumn<int>(table.feed(), "FEED_ID").put(1, 0);
+    casacore::ScalarColumn<int>(table.feed(), "SPECTRAL_WINDOW_ID").put(1, 3);  // which is not selected
+  });
+  BOOST_TEST(rows_of(set).beam_offset_rad() == 0.0);
 }
 
 BOOST_AUTO_TEST_CASE(rows_of_antennas_that_there_are_not_are_refused) {
@@ -183,7 +195,7 @@ BOOST_AUTO_TEST_CASE(real_sets_tell_what_they_were_observed_with) {
   if (!atca.present() || !lofar.present()) return;
   const BeamRows five_beams = MeasurementSet(atca / "atca_sim_tileddata.ms", {}, "DATA").beam_rows();
   BOOST_TEST(five_beams.sorts.at(0).telescope == "ATCA");
-  BOOST_TEST(std::abs(five_beams.beam_offset_rad - std::hypot(0.25, 0.25) * 3.14159265358979 / 180) <
+  BOOST_TEST(std::abs(five_beams.beam_offset_rad() - std::hypot(0.25, 0.25) * 3.14159265358979 / 180) <
              1e-8);  // as it is rounded there
   const BeamRows stations = MeasurementSet(lofar / "lofar_3c295_snapshot.ms", {}, "DATA").beam_rows();
   BOOST_TEST(stations.sorts.at(0).telescope == "LOFAR");

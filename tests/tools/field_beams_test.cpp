@@ -120,6 +120,47 @@ BOOST_DATA_TEST_CASE(fields_are_listed_with_distance_and_dimming_up_to_the_null_
   BOOST_TEST(has(refused, listed), refused);
 }
 
+BOOST_DATA_TEST_CASE(feeds_are_listed_with_their_offsets_and_refused_where_no_turn_of_a_mount_brings_one_to_the_centre,
+                     bdata::make({0.05, 0.6, 0.99, 1.01, 3.0}) * bdata::make({0.0, 0.2}) * bdata::make({0.0, 1.0, 2.5}), nulls,
+                     field_nulls, turn_rad) {
+  const double wavelength_m = imager::speed_of_light_m_s / hz;
+  const imager::Dish dish = imager::dish_model(dishes[0]).dish;
+  const double null_rad = std::asin(imager::first_null_per_m(dish) * wavelength_m);
+  const double offset_rad = nulls * null_rad;
+  ms_io::BeamRows rows = fields({dishes[0]}, {field_at("0 (M51)", field_nulls * null_rad)});
+  rows.feeds = {{0, 0, 0}, {1, offset_rad * std::cos(turn_rad), offset_rad * std::sin(turn_rad)}};
+  const FieldNotes forced = tools::notes_on_feeds(rows, hz, true);
+  BOOST_REQUIRE_EQUAL(forced.warnings.size(), 1U);
+  const double voltage = imager::voltage_pattern(dish, std::sin(offset_rad) / wavelength_m);
+  BOOST_TEST(has(forced.warnings[0], "feed 1, " + tools::angle_text(offset_rad, 3) + " away"), forced.warnings[0]);
+  BOOST_TEST(has(forced.warnings[0], "to " + tools::significant(voltage * voltage, 3)), forced.warnings[0]);
+  BOOST_TEST(has(forced.warnings[0], "feed 0, at it, to 1"), forced.warnings[0]);
+  const bool sees = nulls - field_nulls < 1;
+  if (sees)
+    BOOST_TEST(tools::notes_on_feeds(rows, hz, false).warnings == forced.warnings);
+  else
+    BOOST_CHECK_THROW(tools::notes_on_feeds(rows, hz, false), std::runtime_error);
+  for (ms_io::FeedOffset& feed : rows.feeds) feed.x_rad += 0.1 * null_rad;  // both alike
+  rows.feeds[1] = rows.feeds[0];
+  rows.feeds[1].y_rad += 0.9 * tools::same_pointing_beams * 31 * arcmin;
+  BOOST_TEST(tools::notes_on_feeds(rows, hz, false).warnings.empty());
+}
+
+BOOST_AUTO_TEST_CASE(feeds_of_a_set_that_are_averaged_are_told_of_or_refused) {
+  for (const double offset_rad : {0.0, 10 * arcmin, 2 * degree}) {
+    const TwoFields set(0);
+    add_feed(set.set(), offset_rad, 0);
+    const Outcome outcome = run(set.image());
+    BOOST_TEST_CONTEXT(outcome.err) {
+      BOOST_TEST(outcome.code == (offset_rad > degree ? 1 : 0));
+      BOOST_TEST(has(outcome.err, "feeds that point apart") == (offset_rad > 0));
+      if (offset_rad > degree) BOOST_TEST(has(outcome.err, "but feed 1 cannot see its centre"));
+    }
+    BOOST_TEST(run(set.image({"--force-average"})).code == 0);
+    BOOST_TEST(has(set.warnings(), "feed 1") == (offset_rad > 0), set.warnings());
+  }
+}
+
 BOOST_AUTO_TEST_CASE(fields_that_point_alike_are_as_one_wherever_they_point) {
   for (const double away_rad : {0.0, 10 * arcmin, 5 * degree, 120 * degree}) {
     // A thousandth of a beam of 31′ is 1.9″.

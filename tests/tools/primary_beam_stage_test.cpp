@@ -214,7 +214,7 @@ BOOST_AUTO_TEST_CASE(what_has_no_simple_beam_is_refused_in_a_line) {
              "--pbcor, --pblimit: antennas of field 0 (M51) pointed more than 90 degrees away from the image; "
              "expected one within its hemisphere");
   BeamScene beside_axis = scene({{"ATCA", 22, "ATCA1"}});
-  beside_axis.rows.beam_offset_rad = 0.25 * degree;
+  beside_axis.rows.feeds = {{0, 0.15 * degree, -0.2 * degree}};
   BOOST_TEST(refusal(beside_axis) ==
              "--pbcor, --pblimit: FEED's column BEAM_OFFSET says that beams point 15 arcmin beside the "
              "field's direction; expected beams on the axis of their dishes");

@@ -8,6 +8,7 @@
 #include <casacore/tables/Tables/ArrColDesc.h>
 #include <casacore/tables/Tables/ArrayColumn.h>
 #include <casacore/tables/Tables/ScalarColumn.h>
+#include <casacore/tables/Tables/TableRow.h>
 
 #include <algorithm>
 #include <numeric>
@@ -127,6 +128,23 @@ void point_field(const std::string& set, std::size_t field, double ra_rad, doubl
 void forget_pointing(const std::string& set, std::size_t field) {
   casacore::MeasurementSet open = opened(set);
   casacore::MSFieldColumns(open.field()).referenceDir().put(field, casacore::Matrix<double>(2, 0));
+}
+
+void add_feed(const std::string& set, double x_rad, double y_rad) {
+  casacore::MeasurementSet open = opened(set);
+  casacore::Table& feed = open.feed();
+  const casacore::rownr_t feeds = feed.nrow();
+  feed.addRow(feeds);
+  for (casacore::rownr_t row = 0; row < feeds; ++row) {
+    casacore::TableRow(feed).put(feeds + row, casacore::ROTableRow(feed).get(row));
+    casacore::ScalarColumn<int>(feed, "FEED_ID").put(feeds + row, 1);
+    casacore::Matrix<double> offset(2, casacore::ScalarColumn<int>(feed, "NUM_RECEPTORS")(row));
+    offset.row(0) = x_rad;
+    offset.row(1) = y_rad;
+    casacore::ArrayColumn<double>(feed, "BEAM_OFFSET").put(feeds + row, offset);
+  }
+  for (const char* column : {"FEED1", "FEED2"})
+    for (casacore::rownr_t row = 1; row < open.nrow(); row += 2) casacore::ScalarColumn<int>(open, column).put(row, 1);
 }
 
 void name_telescope(const std::string& set, const std::string& name) {

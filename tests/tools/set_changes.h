@@ -30,6 +30,8 @@ void add_field(const std::string& set, const AddedField& field);
 /// Where its antennas point, in J2000; where it is phased to stays as it is.
 void point_field(const std::string& set, std::size_t field, double ra_rad, double dec_rad);
 void forget_pointing(const std::string& set, std::size_t field);  ///< leaves an empty REFERENCE_DIR
+/// Gives every second row a feed 1, whose beam points beside that of feed 0 by so much.
+void add_feed(const std::string& set, double x_rad, double y_rad);
 void name_telescope(const std::string& set, const std::string& name);
 void set_dish_diameters(const std::string& set, double diameter_m);
 void make_autocorrelation(const std::string& set, std::size_t row);

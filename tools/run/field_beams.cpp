@@ -133,6 +133,63 @@ std::string names_beyond(const std::vector<SeenCentre>& fields) {
   return beyond > most_listed ? names + " and " + std::to_string(beyond - most_listed) + " more" : names;
 }
 
+/// By how much directions may differ and count as one.
+double noticed_apart_rad(const std::vector<SeenCentre>& seen) {
+  constexpr double same_without_beam_rad = 5e-6;  // an arcsecond
+  double narrowest_rad = 0;
+  for (const SeenCentre& one : seen)
+    if (one.width_rad > 0 && (narrowest_rad == 0 || one.width_rad < narrowest_rad)) narrowest_rad = one.width_rad;
+  return narrowest_rad > 0 ? same_pointing_beams * narrowest_rad : same_without_beam_rad;
+}
+
+/// "feed 1", of which antenna where those of its number differ, and of which set where there are several.
+std::string feed_words(const ms_io::FeedOffset& feed, const std::vector<ms_io::FeedOffset>& feeds) {
+  const auto any = [&](const auto& holds) { return std::any_of(feeds.begin(), feeds.end(), holds); };
+  const auto alike = [&](const ms_io::FeedOffset& other) { return other.set == feed.set && other.feed == feed.feed; };
+  std::string words = "feed " + std::to_string(feed.feed);
+  if (feed.antenna >= 0 && std::count_if(feeds.begin(), feeds.end(), alike) > 1)
+    words += " of antenna " + std::to_string(feed.antenna);
+  if (any([&](const ms_io::FeedOffset& other) { return other.set != feed.set; })) words += " of " + feed.set;
+  return words;
+}
+
+/// Words for what points apart: "fields".
+struct ApartWords {
+  std::string what;
+  std::string where;   ///< is seen by them: "the image's centre"
+  std::string remedy;  ///< by which one is taken alone
+};
+
+/// Lists what points apart. Throws std::runtime_error where some see nothing, unless `force`.
+FieldNotes notes_on_averaged(std::vector<SeenCentre> seen, const ApartWords& words, double frequency_hz, bool force) {
+  std::stable_sort(seen.begin(), seen.end(),
+                   [](const SeenCentre& a, const SeenCentre& b) { return a.from_centre_rad > b.from_centre_rad; });
+  const std::string beyond = names_beyond(seen), at = words.where + ", " + frequency_text(frequency_hz, 4) + ": ";
+  const std::string listed = at + described(seen, most_listed) + doubts_of(seen);
+  if (!beyond.empty() && !force)
+    throw std::runtime_error(words.what + " that point apart would be averaged into one image, but " + beyond +
+                             " cannot see its centre, which lies beyond the first null of the beam. Each is dimmed at " +
+                             listed + "; expected " + words.what + " that see it: " + words.remedy +
+                             ", or average all with --force-average, which dims what each sees");
+  return {{{words.what + " averaged", std::to_string(seen.size()) + ", which point apart",
+            "each is dimmed at " + at + described(seen, 0) + doubts_of(seen)}},
+          {words.what + " that point apart are averaged into one image. Each is dimmed at " + listed +
+           (beyond.empty() ? "" : "; --force-average takes those beyond the first null too") + ". No flux is that of one " +
+           words.what.substr(0, words.what.size() - 1) + "; " + words.remedy}};
+}
+
+/// Notes on feeds, of which rows are read where FEED says that any points beside its dish's axis.
+FieldNotes notes_on_feeds_of(const ms_io::MeasurementSet& set, double frequency_hz, bool force) {
+  ms_io::BeamRows rows;
+  try {
+    if (set.beam_offset_rad() == 0) return {};
+    rows = set.beam_rows();
+  } catch (const std::runtime_error&) {  // of FEED and the like, which images do not need
+    return {};
+  }
+  return notes_on_feeds(rows, frequency_hz, force);
+}
+
 }  // namespace
 
 double angle_between(const imager::SkyDirection& one, const imager::SkyDirection& other) {
@@ -147,32 +204,36 @@ std::string field_words(const ms_io::FieldPointing& pointing, const std::vector<
 }
 
 FieldNotes notes_on_apart_fields(const ms_io::BeamRows& rows, double frequency_hz, bool force) {
-  constexpr double same_without_beam_rad = 5e-6;  // an arcsecond
   const std::vector<ms_io::FieldPointing>& pointings = rows.pointings;
   std::vector<SeenCentre> fields;
-  double narrowest_rad = 0;
-  for (const ms_io::FieldPointing& pointing : pointings) {
-    fields.push_back(seen_centre(pointing, rows, frequency_hz, pointings));
-    const double width_rad = fields.back().width_rad;
-    if (width_rad > 0 && (narrowest_rad == 0 || width_rad < narrowest_rad)) narrowest_rad = width_rad;
+  for (const ms_io::FieldPointing& pointing : pointings) fields.push_back(seen_centre(pointing, rows, frequency_hz, pointings));
+  if (largest_apart_rad(pointings) <= noticed_apart_rad(fields)) return {};
+  return notes_on_averaged(std::move(fields), {"fields", "the image's centre", "choose by --field or --vis"}, frequency_hz,
+                           force);
+}
+
+FieldNotes notes_on_feeds(const ms_io::BeamRows& rows, double frequency_hz, bool force) {
+  ms_io::FieldPointing all{"", {}};  // with the rows of all fields
+  for (const ms_io::FieldPointing& pointing : rows.pointings)
+    all.rows.insert(all.rows.end(), pointing.rows.begin(), pointing.rows.end());
+  const double to_field_rad = std::min_element(rows.pointings.begin(), rows.pointings.end(), nearer)->from_centre_rad;
+  std::vector<SeenCentre> feeds;
+  double apart_rad = 0;
+  for (const ms_io::FeedOffset& feed : rows.feeds) {
+    all.field = feed_words(feed, rows.feeds);
+    all.from_centre_rad = std::max(0.0, feed.rad() - to_field_rad);  // at least, whichever way mounts turn it
+    const bool beyond_null = seen_centre(all, rows, frequency_hz, {}).beyond_null;
+    all.from_centre_rad = feed.rad();
+    feeds.push_back(seen_centre(all, rows, frequency_hz, {}));
+    feeds.back().beyond_null = beyond_null;
+    for (const ms_io::FeedOffset& other : rows.feeds)
+      apart_rad = std::max(apart_rad, std::hypot(feed.x_rad - other.x_rad, feed.y_rad - other.y_rad));
   }
-  if (largest_apart_rad(pointings) <= (narrowest_rad > 0 ? same_pointing_beams * narrowest_rad : same_without_beam_rad))
-    return {};
-  std::stable_sort(fields.begin(), fields.end(),
-                   [](const SeenCentre& a, const SeenCentre& b) { return a.from_centre_rad > b.from_centre_rad; });
-  const std::string beyond = names_beyond(fields), at = "the image's centre, " + frequency_text(frequency_hz, 4) + ": ";
-  const std::string listed = at + described(fields, most_listed) + doubts_of(fields);
-  if (!beyond.empty() && !force)
-    throw std::runtime_error("fields that point apart would be averaged into one image, but " + beyond +
-                             " cannot see its centre, which lies beyond the first null of the beam. Each is dimmed at " +
-                             listed +
-                             "; expected fields that see it: choose them by --field or --vis, or average all with "
-                             "--force-average, which dims what each sees");
-  return {{{"fields averaged", std::to_string(fields.size()) + ", which point apart",
-            "each is dimmed at " + at + described(fields, 0) + doubts_of(fields)}},
-          {"fields that point apart are averaged into one image. Each is dimmed at " + listed +
-           (beyond.empty() ? "" : "; --force-average takes those beyond the first null too") +
-           ". No flux is that of one field; choose one by --field or --vis"}};
+  if (feeds.empty() || apart_rad <= noticed_apart_rad(feeds)) return {};
+  return notes_on_averaged(
+      std::move(feeds),
+      {"feeds", "the field's direction", "split the rows of one feed, by FEED1 and FEED2, into a set of their own"},
+      frequency_hz, force);
 }
 
 FieldNotes notes_on_fields(const ImageOptions& o, const ms_io::MeasurementSet& set, const imager::ImageGeometry& geometry) {
@@ -191,11 +252,15 @@ FieldNotes notes_on_fields(const ImageOptions& o, const ms_io::MeasurementSet& s
   });
   if (!one && largest_apart_rad(pointings) > rounding_rad)
     notes = notes_on_apart_fields(set.beam_rows(), frequency_hz, o.force_average);
-  if (!notes.warnings.empty()) return notes;
-  const auto nearest = std::min_element(pointings.begin(), pointings.end(), nearer);
-  std::string warning = far_warning(*nearest, set, frequency_hz);
-  if (warning.empty()) warning = pointing_warning(*nearest, geometry, frequency_hz);
-  if (!warning.empty()) notes.warnings.push_back(std::move(warning));
+  if (notes.warnings.empty()) {
+    const auto nearest = std::min_element(pointings.begin(), pointings.end(), nearer);
+    std::string warning = far_warning(*nearest, set, frequency_hz);
+    if (warning.empty()) warning = pointing_warning(*nearest, geometry, frequency_hz);
+    if (!warning.empty()) notes.warnings.push_back(std::move(warning));
+  }
+  const FieldNotes feeds = notes_on_feeds_of(set, frequency_hz, o.force_average);
+  notes.decisions.insert(notes.decisions.end(), feeds.decisions.begin(), feeds.decisions.end());
+  notes.warnings.insert(notes.warnings.end(), feeds.warnings.begin(), feeds.warnings.end());
   return notes;
 }
 

@@ -32,9 +32,14 @@ struct FieldNotes {
 /// unless `force`: they dim whatever others see.
 FieldNotes notes_on_apart_fields(const ms_io::BeamRows& rows, double frequency_hz, bool force);
 
-/// Notes on the fields of a run: those that point apart; where they point alike, that the antennas hardly see the image, if so;
-/// or that FIELD or ANTENNA does not say where they pointed. Throws what notes_on_apart_fields() does without --force-average,
-/// and what MeasurementSet::beam_rows() does. Reads antennas of all rows where fields point apart.
+/// The same of feeds in use whose BEAM_OFFSETs differ, as much as pointings of fields may not: each with its distance from the
+/// axis of its dish and its beam at the field's direction. Those count as not seeing the image that do not whichever way mounts
+/// turn them.
+FieldNotes notes_on_feeds(const ms_io::BeamRows& rows, double frequency_hz, bool force);
+
+/// Notes on the fields of a run: those that point apart, and feeds that do; where they point alike, that the antennas hardly
+/// see the image, if so; or that FIELD or ANTENNA does not say where they pointed. Throws what notes_on_apart_fields() does
+/// without --force-average, and what MeasurementSet::beam_rows() does. Reads antennas of all rows where fields point apart.
 FieldNotes notes_on_fields(const ImageOptions& options, const ms_io::MeasurementSet& set,
                            const imager::ImageGeometry& geometry);
 

@@ -61,9 +61,9 @@ void PrimaryBeamStage::find_pointing() {
                                " apart, which makes a mosaic, and primary beams of mosaics are not made; select one with " +
                                (first.set == other.set ? "--field" : "--vis"));
   }
-  if (scene_.rows.beam_offset_rad > beside * width_rad_)
+  if (scene_.rows.beam_offset_rad() > beside * width_rad_)
     throw std::runtime_error("--pbcor, --pblimit: FEED's column BEAM_OFFSET says that beams point " +
-                             angle_text(scene_.rows.beam_offset_rad, 3) +
+                             angle_text(scene_.rows.beam_offset_rad(), 3) +
                              " beside the field's direction; expected beams on the axis of their dishes");
 }
 
