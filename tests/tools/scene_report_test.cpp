@@ -148,6 +148,52 @@ BOOST_AUTO_TEST_CASE(kernels_of_libraries_are_compared_and_commands_name_their_f
     BOOST_TEST(page.find("--kernel " + std::string(kernel) + " ") != std::string::npos);
 }
 
+/// Whatever is wrong with a set.
+BOOST_AUTO_TEST_CASE(what_an_image_is_warned_of_a_report_is_too_and_what_is_refused_it_refuses) {
+  const std::map<std::string, std::function<void(const std::string&)>> spoil{
+      {"zeros", [](const std::string& set) { scale_data(set, 0); }},
+      {"fields apart",
+       [](const std::string& set) {
+         add_field(set, {"ASIDE", M_PI / 3, 2 * M_PI / 9 + 5e-4});
+       }},
+      {"zeros in a field",
+       [](const std::string& set) {
+         scale_data(set, 0);
+         add_field(set, {"AGAIN", M_PI / 3, 2 * M_PI / 9});
+         for (const std::size_t row : {0U, 2U, 4U}) put_data(set, row, 1);
+       }},
+      {"feeds apart", [](const std::string& set) { add_feed(set, 5e-4, 0); }},
+      {"fields far apart", [](const std::string& set) {
+         add_field(set, {"ASIDE", M_PI / 3, 2 * M_PI / 9 + 0.1});
+       }}};
+  for (const auto& [what, change] : spoil) {
+    const TemporaryFolder folder;
+    const std::string set = folder / "copy.ms", direction = "J2000 4h00m00s +40d00m00s";
+    std::filesystem::copy(snapshot(), set, std::filesystem::copy_options::recursive);
+    change(set);
+    const Outcome image = run({"image", "--vis", set, "--imagename", folder / "a", "--imsize", "64", "48", "--cell",
+                               "0.1arcsec", "--phasecenter", direction});
+    Arguments arguments = short_report_of_scene(folder / "report");
+    *std::find(arguments.begin(), arguments.end(), snapshot()) = set;
+    const Outcome report = run(arguments + Arguments{"--phasecenter", direction});
+    BOOST_TEST_CONTEXT(what << ": " << image.err << report.err) {
+      BOOST_TEST(report.code == image.code);
+      BOOST_TEST(image.code == (what == "fields far apart" ? 1 : 0));
+      if (image.code != 0) {
+        BOOST_TEST(report.err == image.err);
+        continue;
+      }
+      const auto warnings = report_of(folder / "a")["warnings"];
+      BOOST_TEST(!warnings.empty());
+      const std::string page = content(folder / "report/report.json");
+      for (const std::string warning : warnings) {
+        BOOST_TEST(report.err.find("warning: " + warning) != std::string::npos, warning);
+        BOOST_TEST(nlohmann::json::parse(page).dump().find(nlohmann::json(warning).dump().substr(1, 40)) != std::string::npos);
+      }
+    }
+  }
+}
+
 BOOST_AUTO_TEST_CASE(a_report_that_was_stopped_goes_on_from_what_it_had) {
   const TemporaryFolder folder;
   Child child(report_of_scene(folder / "report"));

@@ -20,12 +20,12 @@
 #include "tools/run/cube_turns.h"
 #include "tools/run/cube_visibilities.h"
 #include "tools/run/data_columns.h"
-#include "tools/run/field_beams.h"
 #include "tools/run/image_files.h"
 #include "tools/run/primary_beam_stage.h"
 #include "tools/run/product_stage.h"
 #include "tools/run/run_messages.h"
 #include "tools/run/run_plan.h"
+#include "tools/run/set_notes.h"
 #include "tools/run/sharing.h"
 #include "tools/run/weighting_options.h"
 #include "tools/run_page/report_page.h"
@@ -94,8 +94,6 @@ class CubeRun {
     const imager::StageTimer timer(times_, "open");
     if (!o_.dry_run && ranks_.first()) name_ = claim_product_paths(o_);
     set_ = std::make_unique<ms_io::MeasurementSet>(o_.vis, selection_of(o_), o_.datacolumn, stokes_);
-    for (const std::string& sentence : set_->incomplete_columns()) warn(sentence);
-    for (const std::string& sentence : set_->remarks()) warn(sentence);
     windows_ = set_->spectral_windows();
     sampling_ = cube_sampling(o_.cube, windows_);
     if (const std::string words = windows_left_out(sampling_.axis, windows_); !words.empty()) warn(words);
@@ -106,8 +104,8 @@ class CubeRun {
                .cards = {},
                .history = history_of(report_.command_line, set_->data_columns())};
     report_.cube = sampling_.axis;
-    fields_ = notes_on_fields(o_, *set_, header_.geometry);
-    for (const std::string& warning : fields_.warnings) warn(warning);
+    notes_ = notes_on_sets(o_, *set_, header_.geometry);
+    for (const std::string& warning : notes_.warnings) warn(warning);
     if (o_.niter > 0)  // so that what is wrong with masks and models is said at once
       for (const std::string& words : CleanStage(o_, header_, threads_).words_on_files()) warn(words);
     if (wants_primary_beam(o_))
@@ -142,7 +140,7 @@ class CubeRun {
                          .enlarged = enlarged};
     plan_ = plan_run(scene, times_, progress_);
     plan_.decisions.push_back(axis_decision(sampling_));
-    plan_.decisions.insert(plan_.decisions.end(), fields_.decisions.begin(), fields_.decisions.end());
+    plan_.decisions.insert(plan_.decisions.end(), notes_.decisions.begin(), notes_.decisions.end());
     if (primary_beam_) {
       plan_.decisions.push_back(primary_beam_->decision());
       for (const std::string& doubt : primary_beam_->doubts()) warn(doubt);
@@ -234,7 +232,7 @@ class CubeRun {
       counts.outside_grid =
           static_cast<std::uint64_t>(std::ceil(static_cast<double>(taken) * (static_cast<double>(outside_grid_) / in_planes)));
     counts.used = taken - counts.outside_grid;
-    for (const ms_io::ZeroColumn& column : set_->columns_of_zeros(ranks_)) warn(zeros_warning(column));
+    for (const std::string& warning : notes_on_data(*set_, ranks_)) warn(warning);
   }
 
   void count_traffic() {
@@ -302,7 +300,7 @@ class CubeRun {
   imager::CubeSampling sampling_;
   imager::ImageHeader header_;
   imager::UvwReach reach_;
-  FieldNotes fields_;
+  FieldNotes notes_;
   RunPlan plan_;
   std::unique_ptr<CubeVisibilities> visibilities_;
   std::shared_ptr<const imager::PlannedTransform> transform_;

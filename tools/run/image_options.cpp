@@ -42,6 +42,9 @@ void declare_scene(CLI::App& command, ImageOptions& o) {
                   "auto (CORRECTED_DATA where a set has it, else DATA), data, corrected, model, or a column's name; or one for "
                   "each set: corrected,data")
       ->check(values_are({"auto", "data", "corrected", "model"}, Others::possible));
+  command.add_flag("--force-average", o.force_average,
+                   "Average fields whose antennas pointed apart even where the image's centre lies beyond the first null of "
+                   "one's beam, which dims what the others see; without it they are refused by name");
   declare_weighting(command, o);
   command.add_option("--gridder", o.gridder, "w planes: auto (where w matters), standard (none), wide (always)")
       ->check(CLI::IsMember({"auto", "standard", "wide"}));
@@ -131,9 +134,6 @@ void declare(CLI::App& command, ImageOptions& o) {
       ->check(CLI::IsMember({"none", "modelcolumn"}));
   command.add_flag("--restart", o.restart,
                    "Go on from the last major cycle of a run that was cut, or ended, with these options");
-  command.add_flag("--force-average", o.force_average,
-                   "Average fields whose antennas pointed apart even where the image's centre lies beyond the first null of "
-                   "one's beam, which dims what the others see; without it they are refused by name");
   command.add_flag(
       "--pbcor", o.pbcor,
       "Write .image.pbcor too, the image divided by the antennas' primary beam, and .pb, the beam: Airy discs, for "

@@ -17,7 +17,6 @@
 #include "tools/run/changed_files.h"
 #include "tools/run/clean_stage.h"
 #include "tools/run/data_columns.h"
-#include "tools/run/field_beams.h"
 #include "tools/run/model_stage.h"
 #include "tools/run/outside_stage.h"
 #include "tools/run/plane_run.h"
@@ -26,6 +25,7 @@
 #include "tools/run/run_messages.h"
 #include "tools/run/run_plan.h"
 #include "tools/run/run_report.h"
+#include "tools/run/set_notes.h"
 #include "tools/run/sharing.h"
 #include "tools/run/taylor_options.h"
 #include "tools/run/taylor_stage.h"
@@ -99,14 +99,12 @@ class ImageRun {
       for (const std::string& set : o_.vis) ms_io::require_writable(set);
     set_ = std::make_unique<ms_io::MeasurementSet>(o_.vis, selection_of(o_), o_.datacolumn, stokes_);
     if (!ranks_.alone()) set_ = set_->share(ranks_);
-    for (const std::string& sentence : set_->incomplete_columns()) warn(sentence);
     if (o_.savemodel != "none")
       if (const std::string words = left_out_of_model_warning(stokes_, set_->correlations()); !words.empty()) warn(words);
-    for (const std::string& sentence : set_->remarks()) warn(sentence);
     check_taylor_band(o_, set_->spectral_windows());
     geometry_ = geometry_of(o_, set_->observation().phase_centre);
-    fields_ = notes_on_fields(o_, *set_, geometry_);
-    for (const std::string& warning : fields_.warnings) warn(warning);
+    notes_ = notes_on_sets(o_, *set_, geometry_);
+    for (const std::string& warning : notes_.warnings) warn(warning);
     reach_ = set_->reach();
     if (wants_primary_beam(o_))
       primary_beam_ = std::make_unique<PrimaryBeamStage>(
@@ -144,7 +142,7 @@ class ImageRun {
                          .share = own / all,
                          .enlarged = enlarged};
     plan_ = plan_run(scene, times_, progress_);
-    plan_.decisions.insert(plan_.decisions.end(), fields_.decisions.begin(), fields_.decisions.end());
+    plan_.decisions.insert(plan_.decisions.end(), notes_.decisions.begin(), notes_.decisions.end());
     if (primary_beam_) plan_.decisions.push_back(primary_beam_->decision());
     for (const std::string& warning : plan_.warnings) warn(warning);
     if (primary_beam_)
@@ -182,7 +180,7 @@ class ImageRun {
     report_.counts.used = sums.used;
     report_.plan.push_back(left_out_decision(report_.counts));
     if (sums.outside_grid > 0) warn(outside_grid_warning(sums.outside_grid, reach_));
-    for (const ms_io::ZeroColumn& column : set_->columns_of_zeros(ranks_)) warn(zeros_warning(column));
+    for (const std::string& warning : notes_on_data(*set_, ranks_)) warn(warning);
   }
 
   void weigh_primary_beam() {
@@ -375,7 +373,7 @@ class ImageRun {
   std::unique_ptr<ms_io::MeasurementSet> set_;
   imager::ImageGeometry geometry_;
   imager::UvwReach reach_;
-  FieldNotes fields_;
+  FieldNotes notes_;
   std::unique_ptr<PrimaryBeamStage> primary_beam_;  ///< null where none is wanted
   std::unique_ptr<CleanStage> clean_;               ///< null without CLEAN, and after it
   std::unique_ptr<TaylorStage> taylor_;             ///< null where there is one term

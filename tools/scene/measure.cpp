@@ -9,7 +9,7 @@
 #include "imager/parallel.h"
 #include "imager/stage_times.h"
 #include "ms_io/measurement_set.h"
-#include "tools/run/data_columns.h"
+#include "tools/run/set_notes.h"
 #include "tools/run/weighting_options.h"
 
 namespace misfit::tools {
@@ -55,13 +55,13 @@ Scene::Scene(const ImageOptions& options, bool quick, const imager::Progress& pr
     : options_(options), threads_(options.threads == 0 ? imager::available_threads() : options.threads) {
   const ms_io::MeasurementSet set(options.vis, selection_of(options), options.datacolumn);
   geometry_ = geometry_of(options, set.observation().phase_centre);
+  warnings_ = notes_on_sets(options, set, geometry_).warnings;
   reach_ = set.reach();
   const imager::Stopwatch watch;
   const auto stream = set.open();
   while (auto block = stream->next()) visibilities_.append(std::move(block));
   read_s_ = watch.seconds();
-  warnings_ = set.incomplete_columns();
-  for (const ms_io::ZeroColumn& column : set.columns_of_zeros(imager::alone())) warnings_.push_back(zeros_warning(column));
+  for (std::string& warning : notes_on_data(set, imager::alone())) warnings_.push_back(std::move(warning));
   weigh();
   truth_ =
       std::make_unique<SceneTruth>(visibilities_, geometry_, pixels_for(visibilities_.samples(), quick), threads_, progress);

@@ -57,7 +57,7 @@ class Scene {
   /// Runs a point once more, all passes of it; the first time its errors are taken.
   void run(PointResult& result, int stretch);
 
-  /// What people should know of the columns that were read.
+  /// What people should know of the sets and of what was read of them, as of an image of them.
   const std::vector<std::string>& warnings() const { return warnings_; }
   std::uint64_t samples() const { return visibilities_.samples(); }
   const Fingerprint& fingerprint() const { return fingerprint_; }

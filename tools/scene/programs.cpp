@@ -50,6 +50,7 @@ Program misfit(const ImageOptions& scene, const std::string& accuracy, int threa
   const std::vector<std::string> weighting = weighting_arguments(scene);
   words.insert(words.end(), weighting.begin(), weighting.end());
   add("--gridder", scene.gridder);
+  if (scene.force_average) words.emplace_back("--force-average");
   add("--accuracy", accuracy);
   add("--threads", std::to_string(threads));
   words.emplace_back("--quiet");

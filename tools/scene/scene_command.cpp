@@ -10,8 +10,10 @@
 #include "tools/base/numbers.h"
 #include "tools/base/option_checks.h"
 #include "tools/base/quantity.h"
+#include "tools/base/text.h"
 #include "tools/base/value_checks.h"
 #include "tools/kernel_choice/kernel_choice.h"
+#include "tools/run/data_columns.h"
 #include "tools/run/named_data.h"
 #include "tools/scene/scene_memory.h"
 #include "tools/scene/scene_report.h"
@@ -23,6 +25,15 @@ struct Options {
   SceneReportOptions report;
   std::string output;
 };
+
+/// Of columns that are named, one for all sets or one for each.
+std::vector<ms_io::DataColumn> named_columns_of(const ImageOptions& scene) {
+  const std::vector<std::string_view> names = split_at_commas(scene.datacolumn);
+  std::vector<ms_io::DataColumn> columns;
+  for (std::size_t i = 0; i < scene.vis.size(); ++i)
+    columns.push_back({scene.vis[i], std::string(names[names.size() == 1 ? 0 : i]), {}});
+  return columns;
+}
 
 /// The values that are given.
 void check_values(const Options& o) {
@@ -39,8 +50,10 @@ void write(const Options& o) {
   SceneReportOptions options = o.report;
   if (!has_unit(options.scene.cell)) options.scene.cell += "arcsec";
   options.scene.datacolumn = ms_io::named_columns(options.scene.vis, options.scene.datacolumn);
+  const std::string unlike = unlike_columns_warning(named_columns_of(options.scene), o.report.scene.datacolumn);
   options.results_file = (std::filesystem::path(o.output) / "measured.json").string();
   ProgressLine progress(options.scene.quiet);
+  if (!unlike.empty()) progress.say("warning: " + unlike);
   const Report report = naming(names_of(options.scene.vis), [&] { return scene_report(options, progress); });
   progress.begin("draw");
   write_report(report, o.output);

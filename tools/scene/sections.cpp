@@ -83,6 +83,7 @@ std::string command_of(const ImageOptions& scene, const ScenePoint& point) {
   add("--datacolumn", scene.datacolumn, "");
   for (const std::string& word : weighting_arguments(scene)) line += " " + shell_quoted(word);
   add("--gridder", scene.gridder, "auto");
+  if (scene.force_average) line += " --force-average";
   add("--kernel-folder", scene.kernel.folder, "");
   return line + " " + options_text(point);
 }
@@ -124,23 +125,25 @@ ReportSection front_section(const ImageOptions& scene, const Scene& measured, co
     table.rows.push_back({r.point.kernel, width_text(r), r.padding, r.evaluation, r.precision, costs[i].cost, spread(r),
                           r.errors.rms, r.errors.max, r.expected_rms, command_of(scene, r.point)});
   }
-  return {.heading = "What is worth its time",
-          .paragraphs = {verdict_on(results),
-                         "Reading the visibilities took " + duration(measured.read_s()) + ", direct sums would take " +
-                             duration(measured.direct_s()) + " for this image. The phase of w reaches " +
-                             significant(measured.w_phase_rad(), 2) +
-                             " rad at its corners. Samples left out: " + left_out_of_all(measured.truth().counts()) + " (" +
-                             left_out_reasons(measured.truth().counts()) + ").",
-                         words_on_noise(results) + " " + words_on_speed(all)},
-          .figures = {error_figure("image-error", "Error of the dirty image against the time it takes",
-                                   "RMS of the difference from the direct transform over the RMS of the image, at random "
-                                   "pixels of the whole image.",
-                                   results, costs),
-                      error_figure("predict-error", "Error of predicted visibilities against the time they take",
-                                   "RMS of the difference from direct sums over the RMS of the visibilities, for a model of "
-                                   "points all over the image.",
-                                   results, predict_costs(results))},
-          .tables = {table}};
+  ReportSection section{
+      .heading = "What is worth its time",
+      .paragraphs = {verdict_on(results),
+                     "Reading the visibilities took " + duration(measured.read_s()) + ", direct sums would take " +
+                         duration(measured.direct_s()) + " for this image. The phase of w reaches " +
+                         significant(measured.w_phase_rad(), 2) + " rad at its corners. Samples left out: " +
+                         left_out_of_all(measured.truth().counts()) + " (" + left_out_reasons(measured.truth().counts()) + ").",
+                     words_on_noise(results) + " " + words_on_speed(all)},
+      .figures = {error_figure("image-error", "Error of the dirty image against the time it takes",
+                               "RMS of the difference from the direct transform over the RMS of the image, at random "
+                               "pixels of the whole image.",
+                               results, costs),
+                  error_figure("predict-error", "Error of predicted visibilities against the time they take",
+                               "RMS of the difference from direct sums over the RMS of the visibilities, for a model of "
+                               "points all over the image.",
+                               results, predict_costs(results))},
+      .tables = {table}};
+  for (const std::string& warning : measured.warnings()) section.paragraphs.push_back("Warning: " + warning + ".");
+  return section;
 }
 
 ReportSection theory_section(const std::vector<PointResult>& all) {
