@@ -66,7 +66,10 @@ ms_io::Selection selection_of(const ImageOptions& o) {
 
 void declare(CLI::App& command, ImageOptions& o) {
   declare_scene(command, o);
-  command.add_option("--imagename", o.imagename, "Names of the output files begin with this")->required()->type_name(path_type);
+  command.add_option("--imagename", o.imagename, "Names of the output files begin with this")
+      ->required()
+      ->type_name(path_type)
+      ->check(not_empty());
   command.add_option("--stokes", o.stokes,
                      "Stokes parameters, or correlations of parallel hands, which share one PSF: I, IQUV, IV, XXYY, RR, …");
   declare(command, o.cube);
