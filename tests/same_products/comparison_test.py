@@ -71,6 +71,8 @@ class Comparison(unittest.TestCase):
             ("both.fits", fits(), fits(changed(PIXELS, (1, 1), 0), "uniform"), "«HISTORY uniform»; element [1, 1]: 5.0 / 0.0"),
             ("e.fits", fits(), fits(table=b"\1\2\3\4\5\7"), "unit 2, byte 5 of 6"),
             ("f.fits", fits(), fits()[:-5760], "2 / 1 header-data units"),
+            ("g.fits", fits(), fits()[:400], "cannot be read: a header without END"),
+            ("d.json", report, report[:-1], "cannot be read: "),
             ("a.json", report, report.replace("0.1}", "0.10000000000000001}"), ".clean.rms: '0.1' / '0.10000000000000001'"),
             ("b.json", report, report.replace('"decision": "4"', '"decision": "5"'), ".plan[0].decision"),
             ("c.json", report, report.replace('"fft"', '"FFT"'), ".timings_s: members"),
@@ -89,6 +91,8 @@ class Comparison(unittest.TestCase):
             ("b.ms", {}, {"data": changed(PIXELS, (0, 0), -0.0)}, "column DATA, row 0: 0.0 / -0.0"),
             ("c.ms", {}, {"flag": False}, "column FLAG, row 1: True / False"),
             ("d.ms", {}, {"keyword": "K"}, "keywords, line 1"),
+            ("e.ms", {}, {"keyword": {"beam": numpy.arange(2000.0)}}, "keywords, line 1"),
+            ("f.ms", {"keyword": {"a": numpy.arange(2000.0)}}, {"keyword": {"a": changed(numpy.arange(2000.0), 999, 1)}}, "keywords"),
         ]
         for name, old, new, place in cases:
             with self.subTest(name):
