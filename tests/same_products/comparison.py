@@ -219,7 +219,7 @@ def file_difference(old, new, builds, ignored):
     contents = [file.read_bytes() for file in (old, new)]
     if contents[0] == contents[1]:
         return None
-    if old.suffix == ".fits":
+    if contents[0].startswith(b"SIMPLE  ="):
         return fits_difference(*contents, builds)
     if old.suffix not in (".err", ".out", ".html", ".json", ".csv", ".ini", ".svg", ".h", ".txt"):
         return byte_difference(*contents)
