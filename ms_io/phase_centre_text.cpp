@@ -11,6 +11,7 @@
 
 #include "ms_io/field_centres_internal.h"
 #include "ms_io/metadata_internal.h"
+#include "ms_io/sexagesimal.h"
 #include "ms_io/table_access_internal.h"
 
 namespace misfit::ms_io {
@@ -29,10 +30,12 @@ std::string frame_named(const std::string& of) {
 
 /// The angle, which must have a unit or be sexagesimal.
 std::optional<double> angle_rad(const std::string& text) {
+  if (is_sexagesimal(text)) return sexagesimal_rad(text, Colons::hours, Parts::some);
+  // Of units of time, which casacore takes for angles, none but the hour is meant for one.
+  const std::string unit = text.substr(std::min(text.find_last_of("0123456789.") + 1, text.size()));
   casacore::Quantity angle;
-  const bool bare =
-      text.find_first_not_of("+-0123456789.") == std::string::npos && std::count(text.begin(), text.end(), '.') < 2;
-  if (bare || !casacore::MVAngle::read(angle, text)) return {};
+  if (unit.empty() || unit == "s" || unit == "m" || !casacore::MVAngle::read(angle, text)) return {};
+  if (!angle.isConform("rad") && unit != "h") return {};
   return angle.getValue("rad");
 }
 
@@ -47,10 +50,9 @@ std::optional<imager::SkyDirection> direction_in(const std::string& text) {
   }
   if (words.size() != 2 || direction.frame.empty()) return {};
   const std::optional<double> ra = angle_rad(words[0]), dec = angle_rad(words[1]);
-  // casacore reads colons as hours, also in a declination.
   constexpr double pole = 1.5707963267948968;
-  if (!ra || !dec || words[1].find(':') != std::string::npos || !(std::abs(*dec) <= pole) || !(std::abs(*ra) <= 4 * pole))
-    return {};
+  const bool hours = words[1].find_first_of(":h") != std::string::npos;  // which a declination does not count
+  if (!ra || !dec || hours || !(std::abs(*dec) <= pole) || !(std::abs(*ra) <= 4 * pole)) return {};
   direction.ra_rad = std::fmod(std::fmod(*ra, 4 * pole) + 4 * pole, 4 * pole);
   direction.dec_rad = *dec;
   return direction;

@@ -62,7 +62,8 @@ BOOST_AUTO_TEST_CASE(directions_are_understood_as_casa_writes_them) {
                                                                  {"12h30m49.4s 12d23m28s", "FK5"},
                                                                  {"ICRS 12:30:49.4 +12.23.28", "ICRS"},
                                                                  {"b1950  12h30m49.4 12d23m28", "FK4"},
-                                                                 {"icrs 187.70583333333333deg 12.391111111111111deg", "ICRS"}};
+                                                                 {"icrs 187.70583333333333deg 12.391111111111111deg", "ICRS"},
+                                                                 {"12.513722222222222h 44608arcsec", "FK5"}};
   for (const auto& [text, frame] : laws) {
     BOOST_TEST_CONTEXT(text) {
       const imager::SkyDirection direction = ms_io::parse_phase_centre(text, set.path());
@@ -73,6 +74,16 @@ BOOST_AUTO_TEST_CASE(directions_are_understood_as_casa_writes_them) {
   }
   BOOST_TEST(std::abs(ms_io::parse_phase_centre("J2000 -10deg -0d30m0s", set.path()).ra_rad - 350 * degree) < 1e-14);
   BOOST_TEST(std::abs(ms_io::parse_phase_centre("J2000 -10deg -0d30m0s", set.path()).dec_rad + 0.5 * degree) < 1e-14);
+}
+
+BOOST_AUTO_TEST_CASE(sixty_seconds_of_a_direction_are_its_next_minute) {
+  const SmallSet set;
+  const imager::SkyDirection whole = ms_io::parse_phase_centre("J2000 12h31m00s -12d24m00s", set.path());
+  for (const char* text : {"J2000 12h30m60.00s -12d23m60.0s", "12:30:60 -12.23.60.00", "J2000 187d44m60s -12d23m60"}) {
+    const imager::SkyDirection direction = ms_io::parse_phase_centre(text, set.path());
+    BOOST_TEST(std::abs(direction.ra_rad - whole.ra_rad) < 1e-15, text);
+    BOOST_TEST(direction.dec_rad == whole.dec_rad, text);
+  }
 }
 
 BOOST_AUTO_TEST_CASE(fields_are_found_by_name_and_id) {
@@ -86,11 +97,30 @@ BOOST_AUTO_TEST_CASE(fields_are_found_by_name_and_id) {
 
 BOOST_AUTO_TEST_CASE(what_is_no_direction_is_refused_with_what_was_expected) {
   const SmallSet set;
-  for (const std::string wrong :
-       {"", "2", "NOBODY", "J2000 12h30m49.4s", "J2000 1.2 0.3", "GALACTIC 1deg 2deg", "J2000 12h 91deg", "J2000 28h 1deg",
-        "J2000 12h30m +12:23:28", "J2000 nan inf", "J2000 1deg 2Jy", "J2000 12h30m49.4s +12d23m28s now"}) {
+  for (const std::string wrong : {"",
+                                  "2",
+                                  "NOBODY",
+                                  "J2000 12h30m49.4s",
+                                  "J2000 1.2 0.3",
+                                  "GALACTIC 1deg 2deg",
+                                  "J2000 12h 91deg",
+                                  "J2000 28h 1deg",
+                                  "J2000 12h30m +12:23:28",
+                                  "J2000 nan inf",
+                                  "J2000 1deg 2Jy",
+                                  "J2000 12h30m49.4s +12d23m28s now",
+                                  "J2000 12h60m49.4s +12d23m28s",
+                                  "J2000 12h30m60.1s +12d23m28s",
+                                  "J2000 12h30m49.4s +12d60m28s",
+                                  "J2000 12:30:49.4 +12.23.61",
+                                  "J2000 12h30m-5s 1deg",
+                                  "J2000 24h00m01s 1deg",
+                                  "J2000 5m 1deg",
+                                  "J2000 1deg 30s",
+                                  "J2000 1deg 1h00m00s",
+                                  "J2000 1deg 1h"}) {
     const std::string error = error_of([&] { ms_io::parse_phase_centre(wrong, set.path()); });
-    BOOST_TEST(contains(error, "--phasecenter '" + wrong + "'"));
+    BOOST_TEST(contains(error, "--phasecenter '" + wrong + "'"), wrong);
     BOOST_TEST(contains(error, "expected J2000, ICRS or B1950 with angles such as 12h30m49.4s +12d23m28s"));
   }
 }
