@@ -14,6 +14,9 @@ casacore::MDirection::Types direction_type(const std::string& frame);
 /// The frame that a code stands for; empty where in_frame() has no name for it.
 std::string frame_name(casacore::MDirection::Types type);
 
+/// The frame, as in_frame() calls it, of directions that have no right ascension and stand still against J2000; else empty.
+std::string still_frame_name(casacore::MDirection::Types type);
+
 /// 0 ≤ ra_rad < 2π. The frame is empty where frame_name() is.
 imager::SkyDirection sky_direction(const casacore::MDirection& direction);
 

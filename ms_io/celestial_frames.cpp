@@ -30,12 +30,14 @@ const std::array<std::pair<const char*, MDirection::Types>, 3> further_frames{{
     {"SUPERGAL", MDirection::SUPERGAL},
 }};
 
-/// Galactic coordinates as ICRS has them (ESA 1997, The Hipparcos and Tycho Catalogues, vol. 1, eq. 1.5.11): where their pole
-/// lies, and at which longitude that of the Earth. casacore goes through B1950, where they were defined, with the terms of
-/// aberration in it: 0.4 arcsec away from where FITS, DS9 and astropy have them.
+/// Galactic coordinates as J2000 has them: where their pole lies, and at which longitude that of the Earth. They were defined
+/// in B1950 (Blaauw et al. 1960, MNRAS 121, 123), by a pole at 12h49m, +27.4° and the longitude 123° of the Earth's; these are
+/// that definition turned to J2000 without the terms of aberration (Murray 1989, A&A 218, 325), as astropy, and to 2 mas
+/// SLALIB, DS9 and CARTA have it. casacore leaves the terms in, and lies 0.5 arcsec away; the Hipparcos Catalogue, and SOFA
+/// after it, takes the first digits for ICRS, 0.025 arcsec away.
 constexpr double rad_per_deg = imager::pi / 180;
-constexpr double pole_ra_rad = 192.85948 * rad_per_deg, pole_dec_rad = 27.12825 * rad_per_deg,
-                 pole_longitude_rad = 122.93192 * rad_per_deg;
+constexpr double pole_ra_rad = 192.8594812065348 * rad_per_deg, pole_dec_rad = 27.12825118085622 * rad_per_deg,
+                 pole_longitude_rad = 122.9319185680026 * rad_per_deg;
 
 /// The longitude from the other pole and the latitude, of those from one pole.
 std::pair<double, double> about_other_pole(double longitude_rad, double latitude_rad) {
@@ -50,14 +52,18 @@ double below_a_turn(double angle_rad) {
   return rest < 0 ? rest + turn : rest;
 }
 
-imager::SkyDirection galactic_of(const imager::SkyDirection& icrs) {
-  const auto [longitude, latitude] = about_other_pole(icrs.ra_rad - pole_ra_rad, icrs.dec_rad);
+imager::SkyDirection galactic_of(const imager::SkyDirection& j2000) {
+  const auto [longitude, latitude] = about_other_pole(j2000.ra_rad - pole_ra_rad, j2000.dec_rad);
   return {below_a_turn(pole_longitude_rad - longitude), latitude, "GALACTIC"};
 }
 
-imager::SkyDirection icrs_of(const imager::SkyDirection& galactic) {
+imager::SkyDirection j2000_of(const imager::SkyDirection& galactic) {
   const auto [longitude, latitude] = about_other_pole(pole_longitude_rad - galactic.ra_rad, galactic.dec_rad);
-  return {below_a_turn(pole_ra_rad + longitude), latitude, "ICRS"};
+  return {below_a_turn(pole_ra_rad + longitude), latitude, "FK5"};
+}
+
+bool is_galactic(const std::string& frame) {
+  return frame == "GALACTIC" || frame == "SUPERGAL";
 }
 
 MDirection::Types any_direction_type(const std::string& frame) {
@@ -80,6 +86,13 @@ std::string frame_name(MDirection::Types type) {
   return "";
 }
 
+std::string still_frame_name(MDirection::Types type) {
+  for (const auto& [name, code] :
+       {std::pair("GALACTIC", MDirection::GALACTIC), {"SUPERGAL", MDirection::SUPERGAL}, {"ECLIPTIC", MDirection::ECLIPTIC}})
+    if (code == type) return name;
+  return "";
+}
+
 imager::SkyDirection sky_direction(const MDirection& direction) {
   const casacore::MVDirection& towards = direction.getValue();
   imager::SkyDirection sky;
@@ -94,9 +107,13 @@ MDirection measure_of(const imager::SkyDirection& direction) {
 }
 
 imager::SkyDirection in_frame(const imager::SkyDirection& direction, const std::string& frame) {
-  if (direction.frame == frame) return direction;
-  if (direction.frame == "GALACTIC") return in_frame(icrs_of(direction), frame);
-  if (frame == "GALACTIC") return galactic_of(in_frame(direction, "ICRS"));
+  const std::string& from = direction.frame;
+  if (from == frame) return direction;
+  if (!(is_galactic(from) && is_galactic(frame))) {  // between which lies a turn, of one sphere
+    if (from == "SUPERGAL" || frame == "SUPERGAL") return in_frame(in_frame(direction, "GALACTIC"), frame);
+    if (from == "GALACTIC") return in_frame(j2000_of(direction), frame);
+    if (frame == "GALACTIC") return galactic_of(in_frame(direction, "FK5"));
+  }
   const MDirection here(casacore::MVDirection(direction.ra_rad, direction.dec_rad), any_direction_type(direction.frame));
   imager::SkyDirection there = sky_direction(MDirection::Convert(here, MDirection::Ref(any_direction_type(frame)))());
   there.frame = frame;

@@ -142,6 +142,11 @@ MDirection FieldDirections::on_ephemeris(const Ephemeris& ephemeris, const MDire
 MDirection FieldDirections::equatorial(const MDirection& direction, const Moment& when) {
   const auto frame = MDirection::castType(direction.getRef().getType());
   if (frame == MDirection::J2000 || frame == MDirection::ICRS || frame == MDirection::B1950) return direction;
+  if (const std::string still = still_frame_name(frame); !still.empty()) {
+    imager::SkyDirection here = sky_direction(direction);
+    here.frame = still;
+    return measure_of(in_frame(here, "FK5"));  // where headers of images have it, too
+  }
   auto known = places_.find(when.row);
   if (known == places_.end()) {
     const ObservingPlace from = observing_place(set_, when.row);
