@@ -7,16 +7,10 @@
 #include <stdexcept>
 
 #include "imager/constants.h"
+#include "imager/fits_spectral.h"
 
 namespace misfit::imager {
 namespace {
-
-/// Reads an axis, counted from 0. A reference pixel must be stated: readers differ in where it lies otherwise.
-FitsAxis read_axis(const FitsFile& file, const FitsPlanes& planes, std::size_t axis) {
-  const std::string n = std::to_string(axis + 1);
-  return {file.text("CTYPE" + n), file.text("CUNIT" + n), file.needed_number("CRPIX" + n), file.needed_number("CRVAL" + n),
-          planes.steps[axis][axis]};
-}
 
 /// An element of a matrix of axes, "PC" or "CD", as it is written now, or as it was (PC001002).
 std::optional<double> element(const FitsFile& file, const std::string& matrix, std::size_t i, std::size_t j) {
@@ -78,41 +72,6 @@ FitsSteps read_steps(const FitsFile& file) {
   return steps;
 }
 
-/// Hz or m/s in one of the axis's unit.
-double unit_of(const FitsFile& file, const FitsAxis& axis) {
-  struct Unit {
-    const char* name;
-    double value;
-  };
-  static constexpr Unit frequency[]{{"", 1}, {"Hz", 1}, {"kHz", 1e3}, {"MHz", 1e6}, {"GHz", 1e9}};
-  static constexpr Unit velocity[]{{"", 1}, {"m/s", 1}, {"m s-1", 1}, {"km/s", 1e3}, {"km s-1", 1e3}};
-  if (axis.type == "FREQ") {
-    for (const Unit& unit : frequency)
-      if (axis.unit == unit.name) return unit.value;
-    file.fail("its FREQ axis has the unit " + axis.unit + "; expected Hz, kHz, MHz or GHz");
-  }
-  for (const Unit& unit : velocity)
-    if (axis.unit == unit.name) return unit.value;
-  file.fail("its " + axis.type + " axis has the unit " + axis.unit + "; expected m/s or km/s");
-}
-
-/// The frequencies that a FREQ or VRAD axis of so many planes states. Both are linear: ν = ν₀ (1 − v/c) (Greisen et al. 2006,
-/// table 3).
-void set_frequencies(const FitsFile& file, FitsAxis axis, SpectralAxis& spectral) {
-  const double unit = unit_of(file, axis);
-  axis.reference_value *= unit;
-  axis.increment *= unit;
-  if (axis.type == "VRAD") {
-    if (!(spectral.rest_frequency_hz > 0)) file.fail("its VRAD axis has no RESTFRQ");
-    axis.reference_value = spectral.rest_frequency_hz * (1 - axis.reference_value / speed_of_light_m_s);
-    axis.increment *= -spectral.rest_frequency_hz / speed_of_light_m_s;
-  }
-  spectral.reference_hz = axis.reference_value + (1 - axis.reference_pixel) * axis.increment;
-  spectral.increment_hz = axis.increment;
-  if (!std::isfinite(spectral.reference_hz) || !std::isfinite(spectral.frequency_hz(spectral.channels - 1)))
-    file.fail("its " + axis.type + " axis has frequencies that are not finite");
-}
-
 Stokes stokes_of(const FitsFile& file, const FitsAxis& axis, long plane) {
   const double code = axis.reference_value + (static_cast<double>(plane) - axis.reference_pixel) * axis.increment;
   const double whole = std::round(code);
@@ -135,6 +94,12 @@ FitsAxis stokes_axis(const std::vector<Stokes>& stokes) {
   return {"STOKES", "", 1, static_cast<double>(code(0)), static_cast<double>(step)};
 }
 
+FitsAxis read_axis(const FitsFile& file, const FitsPlanes& planes, std::size_t axis) {
+  const std::string n = std::to_string(axis + 1);
+  return {file.text("CTYPE" + n), file.text("CUNIT" + n), file.needed_number("CRPIX" + n), file.needed_number("CRVAL" + n),
+          planes.steps[axis][axis]};
+}
+
 FitsPlanes find_planes(const FitsFile& file) {
   const std::vector<long> size = file.size();
   FitsPlanes planes;
@@ -146,11 +111,11 @@ FitsPlanes find_planes(const FitsFile& file) {
     const std::string type = file.text("CTYPE" + std::to_string(i + 1));
     if (type == "STOKES" && !planes.stokes)
       planes.stokes = i;
-    else if ((type == "FREQ" || type == "VRAD") && !planes.spectral)
+    else if (is_spectral(type) && !planes.spectral)
       planes.spectral = i;
-    else if (size[i] > 1)
+    else if (const bool untyped = type.empty() || type == "LINEAR" || type == "PIXEL"; !untyped || size[i] > 1)
       file.fail("its axis " + std::to_string(i + 1) + " of type '" + type + "' has length " + std::to_string(size[i]) +
-                "; expected 1 of all but one STOKES axis and one FREQ or VRAD axis");
+                "; expected one STOKES axis, one of " + spectral_types + ", and others of length 1 without a type");
   }
   if (!is_image) file.fail("its primary image has no two axes of pixels");
   planes.steps = read_steps(file);
@@ -162,18 +127,6 @@ std::vector<long> first_pixel(const FitsPlanes& planes, const PlaneIndex& at) {
   if (planes.spectral) first[*planes.spectral] = at.channel + 1;
   if (planes.stokes) first[*planes.stokes] = at.stokes + 1;
   return first;
-}
-
-SpectralAxis read_spectral_axis(const FitsFile& file, const FitsPlanes& planes) {
-  SpectralAxis spectral;
-  spectral.frame = file.text("SPECSYS");
-  const std::optional<double> rest_hz = file.number("RESTFRQ");
-  spectral.rest_frequency_hz = rest_hz ? *rest_hz : file.number("RESTFREQ").value_or(0);
-  spectral.reference_hz = spectral.rest_frequency_hz;
-  if (!planes.spectral) return spectral;
-  spectral.channels = static_cast<int>(file.size()[*planes.spectral]);
-  set_frequencies(file, read_axis(file, planes, *planes.spectral), spectral);
-  return spectral;
 }
 
 std::vector<Stokes> read_stokes(const FitsFile& file, const FitsPlanes& planes) {

@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "imager/fits_file.h"
-#include "imager/spectral_axis.h"
 #include "imager/stokes.h"
 
 namespace misfit::imager {
@@ -32,22 +31,21 @@ using FitsSteps = std::vector<std::vector<double>>;
 /// Where the planes of a file lie among its axes, which count from 0.
 struct FitsPlanes {
   std::size_t axes = 2;
-  std::optional<std::size_t> spectral;  ///< FREQ or VRAD
+  std::optional<std::size_t> spectral;
   std::optional<std::size_t> stokes;
   FitsSteps steps;
 };
 
-/// Throws std::runtime_error where the primary image has no two axes of pixels, or beyond those any that is longer than 1 but
-/// one spectral axis and one of Stokes parameters, where other axes than the first two depend on each other, or keywords of
-/// their steps contradict each other.
+/// Throws std::runtime_error where the primary image has no two axes of pixels, or beyond those, but one spectral axis (see
+/// fits_spectral.h) and one of Stokes parameters, any that is longer than 1 or has a type, where other axes than the first two
+/// depend on each other, or keywords of their steps contradict each other.
 FitsPlanes find_planes(const FitsFile& file);
+
+/// Reads an axis, counted from 0. A reference pixel must be stated: readers differ in where it lies otherwise.
+FitsAxis read_axis(const FitsFile& file, const FitsPlanes& planes, std::size_t axis);
 
 /// The first pixel of a plane, counted from 1 along each axis.
 std::vector<long> first_pixel(const FitsPlanes& planes, const PlaneIndex& at);
-
-/// The frequencies of the planes; of none, RESTFRQ. Throws std::runtime_error where a velocity has no rest frequency, or a
-/// unit is not known.
-SpectralAxis read_spectral_axis(const FitsFile& file, const FitsPlanes& planes);
 
 /// In the order of the file; I where it has no such axis. Throws std::runtime_error where a plane is none that Stokes names,
 /// or two are of the same.

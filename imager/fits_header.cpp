@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "imager/constants.h"
+#include "imager/fits_spectral.h"
 #include "imager/julian_date.h"
 
 namespace misfit::imager {

@@ -4,6 +4,7 @@
 #include <casacore/coordinates/Coordinates/SpectralCoordinate.h>
 #include <casacore/coordinates/Coordinates/StokesCoordinate.h>
 
+#include <cctype>
 #include <cmath>
 #include <stdexcept>
 
@@ -97,10 +98,16 @@ imager::SkyGrid grid_of(casacore::DirectionCoordinate direction, const casacore:
   return grid;
 }
 
+/// Tells whether the name of an axis, of neither directions, frequencies nor Stokes parameters, means nothing.
+bool says_nothing(std::string name) {
+  for (char& letter : name) letter = static_cast<char>(std::tolower(static_cast<unsigned char>(letter)));
+  return name.empty() || name.rfind("linear", 0) == 0 || name.rfind("pixel", 0) == 0 || name.rfind("axis", 0) == 0;
+}
+
 imager::SpectralAxis spectral_axis_of(casacore::SpectralCoordinate spectral, int channels, const std::string& path) {
   spectral.setWorldAxisUnits(casacore::Vector<casacore::String>(1, "Hz"));
   imager::SpectralAxis axis;
-  axis.increment_hz = spectral.increment()[0];
+  axis.increment_hz = spectral.increment()[0] * spectral.linearTransform()(0, 0);
   axis.reference_hz = spectral.referenceValue()[0] - spectral.referencePixel()[0] * axis.increment_hz;
   axis.channels = channels;
   axis.frame = spectral_frame_of(spectral.frequencySystem(false));
@@ -171,11 +178,15 @@ CasaPlanes find_planes(const casacore::CoordinateSystem& coordinates, const casa
     refuse(path, "its first two axes are not right ascension and declination");
   if (shape.size() < 2 || (planes.stokes >= 0 && planes.stokes < 2) || (planes.spectral >= 0 && planes.spectral < 2))
     refuse(path, "its first two axes are no axes of pixels");
-  for (int axis = 2; axis < static_cast<int>(shape.size()); ++axis)
-    if (axis != planes.stokes && axis != planes.spectral && shape[static_cast<std::size_t>(axis)] > 1)
-      refuse(path, "its axis " + std::to_string(axis + 1) + " has length " +
-                       std::to_string(shape[static_cast<std::size_t>(axis)]) +
-                       "; expected 1 of all but a Stokes and a spectral axis");
+  for (int axis = 2; axis < static_cast<int>(shape.size()); ++axis) {
+    if (axis == planes.stokes || axis == planes.spectral) continue;
+    const casacore::Int world = coordinates.pixelAxisToWorldAxis(static_cast<casacore::uInt>(axis));
+    const std::string name = world < 0 ? "" : coordinates.worldAxisNames()[static_cast<casacore::uInt>(world)];
+    const auto length = shape[static_cast<std::size_t>(axis)];
+    if (length > 1 || !says_nothing(name))
+      refuse(path, "its axis " + std::to_string(axis + 1) + " of type '" + name + "' has length " + std::to_string(length) +
+                       "; expected one Stokes axis, one spectral axis, and others of length 1 without a name");
+  }
   return planes;
 }
 

@@ -31,7 +31,7 @@ struct CasaPlanes {
 };
 
 /// Throws std::runtime_error(`path` …) where a longitude and a latitude are not the first two axes, or another than the Stokes
-/// and the spectral axis is longer than 1.
+/// and the spectral axis is longer than 1 or has a name that means something.
 CasaPlanes find_planes(const casacore::CoordinateSystem& coordinates, const casacore::IPosition& shape,
                        const std::string& path);
 

@@ -1,4 +1,5 @@
 #include <casacore/coordinates/Coordinates/DirectionCoordinate.h>
+#include <casacore/coordinates/Coordinates/LinearCoordinate.h>
 #include <casacore/coordinates/Coordinates/SpectralCoordinate.h>
 #include <casacore/images/Images/FITSImage.h>
 #include <casacore/images/Images/PagedImage.h>
@@ -9,6 +10,7 @@
 #include <memory>
 
 #include "imager/fits_image_writer.h"
+#include "ms_io/casa_coordinates_internal.h"
 #include "ms_io/casa_image.h"
 #include "tests/example_cube.h"
 #include "tests/temporary_folder.h"
@@ -175,6 +177,53 @@ BOOST_AUTO_TEST_CASE(a_casa_image_tells_its_history_and_numbers) {
   for (auto line = casa.logger().begin(); line != casa.logger().end(); ++line) lines.push_back(line->message());
   BOOST_TEST(lines == header.history, boost::test_tools::per_element());
   BOOST_TEST(casa.miscInfo().asDouble("ERRASKED") == 2.5e-7);
+}
+
+BOOST_AUTO_TEST_CASE(planes_have_the_frequencies_that_casacore_finds_for_them) {
+  const ImageHeader header = example_header(5);
+  for (const double times : {1.0, 2.5, -0.5}) {
+    const TemporaryFolder folder;
+    casacore::SpectralCoordinate stretched(casacore::MFrequency::LSRK, header.spectral.reference_hz,
+                                           header.spectral.increment_hz, 1.25, header.spectral.rest_frequency_hz);
+    BOOST_REQUIRE(stretched.setLinearTransform(casacore::Matrix<double>(1, 1, times)));
+    casacore::CoordinateSystem coordinates = ms_io::casa_coordinates(header);
+    coordinates.replaceCoordinate(stretched, static_cast<casacore::uInt>(coordinates.spectralCoordinateNumber()));
+    {
+      casacore::PagedImage<float>(casacore::TiledShape(casacore::IPosition(4, 7, 4, 1, 5)), coordinates, folder / "a.image")
+          .set(0);
+    }
+    const SpectralAxis axis = ms_io::open_casa_image(folder / "a.image")->header().spectral;
+    for (int plane = 0; plane < 5; ++plane) {
+      double hz = 0;
+      BOOST_REQUIRE(stretched.toWorld(hz, static_cast<double>(plane)));
+      BOOST_TEST(std::abs(axis.frequency_hz(plane) - hz) < 1e-6);
+    }
+  }
+}
+
+BOOST_AUTO_TEST_CASE(axes_of_a_casa_image_that_name_something_else_are_refused) {
+  const ImageHeader header = example_header(1);
+  for (const auto& [name, taken] : {std::pair("Nonsense", false), {"Velocity", false}, {"", true}, {"Linear", true}}) {
+    const TemporaryFolder folder;
+    casacore::CoordinateSystem coordinates = ms_io::casa_coordinates(header);
+    coordinates.addCoordinate(
+        casacore::LinearCoordinate(casacore::Vector<casacore::String>(1, name), casacore::Vector<casacore::String>(1, ""),
+                                   casacore::Vector<double>(1, 0.0), casacore::Vector<double>(1, 1.0),
+                                   casacore::Matrix<double>(1, 1, 1.0), casacore::Vector<double>(1, 0.0)));
+    {
+      casacore::PagedImage<float>(casacore::TiledShape(casacore::IPosition(5, 7, 4, 1, 1, 1)), coordinates, folder / "a.image")
+          .set(0);
+    }
+    std::string error;
+    try {
+      ms_io::open_casa_image(folder / "a.image");
+    } catch (const std::runtime_error& caught) {
+      error = caught.what();
+    }
+    BOOST_TEST((error.find("its axis 5 of type '" + std::string(name) + "' has length 1") != std::string::npos) == !taken,
+               error);
+    BOOST_TEST(error.empty() == taken, error);
+  }
 }
 
 BOOST_AUTO_TEST_SUITE_END()
