@@ -180,26 +180,41 @@ BOOST_AUTO_TEST_CASE(a_plane_whose_psf_fits_no_beam_leaves_the_others_alone) {
   }
 }
 
-BOOST_AUTO_TEST_CASE(warnings_of_clean_name_the_plane) {
+BOOST_AUTO_TEST_CASE(all_planes_that_a_mask_closes_are_named) {
   const TemporaryFolder folder;
-  const std::string set = write_point(folder, "point");
+  const std::string set = write_point(folder, "point"), path = folder / "mask.fits";
   const Arguments options{"--niter", "5"};
   succeed(cube(set, folder / "a") + options);
   imager::ImageHeader header = imager::open_fits_image(folder / "a.residual.fits")->header();
   header.cards.clear();
-  const auto mask = imager::create_fits_image(header, folder / "mask.fits", imager::PixelFormat::float32);
-  for (int plane = 0; plane < channels; ++plane) {
-    imager::Image allowed(size, size);
-    if (plane != 2) allowed.pixel.assign(allowed.pixel.size(), 1);
-    mask->write({plane, 0}, allowed, std::nullopt);
+  const std::vector<std::pair<std::vector<int>, std::string>> closed{
+      {{2}, "plane 2: "}, {{1, 3}, "planes 1 and 3: "}, {{0, 1, 2}, "planes 0 to 2: "}, {{0, 1, 2, 3}, "planes 0 to 3: "}};
+  for (const auto& [planes, named] : closed) {
+    const auto mask = imager::create_fits_image(header, path, imager::PixelFormat::float32);
+    const auto is_closed = [&of = planes](int plane) { return std::find(of.begin(), of.end(), plane) != of.end(); };
+    for (int plane = 0; plane < channels; ++plane) {
+      imager::Image allowed(size, size);
+      if (!is_closed(plane)) allowed.pixel.assign(allowed.pixel.size(), 1);
+      mask->write({plane, 0}, allowed, std::nullopt);
+    }
+    mask->finish();
+    const Outcome outcome = run(cube(set, folder / "b") + options + Arguments{"--mask", path});
+    BOOST_TEST(outcome.code == 0);
+    BOOST_TEST(warned(folder / "b", named + "the mask " + path + " allows no pixel of the image: nothing is cleaned"), named);
+    const nlohmann::json report = report_of(folder / "b")["planes"];
+    for (int plane = 0; plane < channels; ++plane)
+      BOOST_TEST(report[static_cast<std::size_t>(plane)]["clean"]["iterations"] == (is_closed(plane) ? 0 : 5));
+    std::filesystem::remove(path);
   }
-  mask->finish();
-  const Outcome outcome = run(cube(set, folder / "b") + options + Arguments{"--mask", folder / "mask.fits"});
-  BOOST_TEST(outcome.code == 0);
-  BOOST_TEST(warned(folder / "b", "plane 2: the mask " + (folder / "mask.fits") + " allows no pixel"));
-  const nlohmann::json planes = report_of(folder / "b")["planes"];
-  for (std::size_t plane = 0; plane < channels; ++plane)
-    BOOST_TEST(planes[plane]["clean"]["iterations"] == (plane == 2 ? 0 : 5));
+}
+
+BOOST_AUTO_TEST_CASE(planes_that_have_no_state_to_go_on_from_are_named) {
+  const TemporaryFolder folder;
+  const std::string set = write_point(folder, "point");
+  succeed(cube(set, folder / "a") + Arguments{"--niter", "5"});
+  for (const int plane : {0, 2}) std::filesystem::remove(folder / ("a.clean/" + std::to_string(plane) + ".state"));
+  succeed(cube(set, folder / "a") + Arguments{"--niter", "7", "--restart"});
+  BOOST_TEST(warned(folder / "a", "planes 0 and 2: there is no state in " + (folder / "a.clean") + " to go on from"));
 }
 
 BOOST_AUTO_TEST_CASE(regions_of_a_range_are_cleaned_in_its_planes_alone) {

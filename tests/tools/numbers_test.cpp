@@ -33,6 +33,14 @@ BOOST_AUTO_TEST_CASE(groups_have_three_digits) {
   BOOST_TEST(grouped(-123456) == "-123\u2009456");
 }
 
+BOOST_AUTO_TEST_CASE(whole_numbers_are_listed_in_runs) {
+  BOOST_TEST(in_runs({}) == "");
+  BOOST_TEST(in_runs({7}) == "7");
+  BOOST_TEST(in_runs({4, 3}) == "3 and 4");
+  BOOST_TEST(in_runs({0, 1, 2, 3}) == "0 to 3");
+  BOOST_TEST(in_runs({9, 0, 2, 1, 2, 5, 6, 10, 11}) == "0 to 2, 5, 6 and 9 to 11");
+}
+
 BOOST_AUTO_TEST_CASE(durations_have_the_unit_a_reader_wants) {
   BOOST_TEST(duration(0.0351) == "35 ms");
   BOOST_TEST(duration(4.207) == "4.21 s");

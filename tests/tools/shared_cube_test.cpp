@@ -34,7 +34,7 @@ CubePlane plane(int channel) {
   plane.report.sums.used = 7;
   plane.components = 12;
   plane.warnings = {"c"};
-  plane.beam_warning = "d";
+  plane.doubts = {"d", "e"};
   plane.times.add("grid", 0.25);
   return plane;
 }
@@ -54,7 +54,7 @@ void check_plane(const CubePlane& is) {
   BOOST_TEST(is.report.sums.used == 7U);
   BOOST_TEST(is.components == 12);
   BOOST_TEST(is.warnings == should.warnings);
-  BOOST_TEST(is.beam_warning == "d");
+  BOOST_TEST(is.doubts == should.doubts);
   BOOST_TEST(is.times.of("grid") == 0.25);
 }
 

@@ -1,5 +1,6 @@
 #include "tools/base/numbers.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdio>
@@ -79,6 +80,21 @@ std::string grouped(long long count) {
   std::string text = std::to_string(count);
   for (int at = static_cast<int>(text.size()) - 3; at > (count < 0 ? 1 : 0); at -= 3)
     text.insert(static_cast<std::size_t>(at), "\u2009");
+  return text;
+}
+
+std::string in_runs(std::vector<int> numbers) {
+  std::sort(numbers.begin(), numbers.end());
+  numbers.erase(std::unique(numbers.begin(), numbers.end()), numbers.end());
+  std::vector<std::string> runs;
+  for (std::size_t i = 0, next; i < numbers.size(); i = next) {
+    for (next = i + 1; next < numbers.size() && numbers[next] == numbers[next - 1] + 1;) ++next;
+    const std::string first = std::to_string(numbers[i]);
+    if (next - i == 2) next = i + 1;  // two are no run
+    runs.push_back(next - i == 1 ? first : first + " to " + std::to_string(numbers[next - 1]));
+  }
+  std::string text;
+  for (std::size_t i = 0; i < runs.size(); ++i) text += (i == 0 ? "" : i + 1 == runs.size() ? " and " : ", ") + runs[i];
   return text;
 }
 

@@ -2,6 +2,7 @@
 
 #include <functional>
 #include <string>
+#include <vector>
 
 #include "imager/geometry.h"
 
@@ -23,6 +24,9 @@ std::string power_of_ten(double value, int digits, const std::function<std::stri
 
 /// `count` with a thin space between groups of three digits.
 std::string grouped(long long count);
+
+/// Whole numbers in ascending order, each once, with runs of three and more shortened: "0 to 3, 5 and 8".
+std::string in_runs(std::vector<int> numbers);
 
 /// A duration with the units a reader wants: 35 ms, 4.21 s, 2 min 05 s, 3 h 07 min.
 std::string duration(double seconds);

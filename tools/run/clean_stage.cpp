@@ -71,16 +71,31 @@ std::vector<std::string> CleanStage::words_on_files() const {
   return words;
 }
 
-std::string CleanStage::warning() const {
+std::string CleanStage::closed_mask_warning() const {
   std::string closed;
   for (std::size_t m = 0; m < masks_.size(); ++m)
     if (imager::mask_is_empty(masks_[m])) closed += (closed.empty() ? "" : ", ") + stokes_name(image_.stokes[m]);
-  if (!closed.empty())
-    return "the mask " + o_.mask + " allows no pixel of the image" +
-           (masks_.size() > 1 ? " of " + closed + ", of which nothing is cleaned" : ": nothing is cleaned");
-  for (std::size_t s = 0; o_.restart && s < image_.stokes.size(); ++s)
-    if (!std::filesystem::exists(state_path(s))) return "there is no " + state_path(s) + " to go on from: CLEAN begins anew";
-  return "";
+  if (closed.empty()) return "";
+  return "the mask " + o_.mask + " allows no pixel of the image" +
+         (masks_.size() > 1 ? " of " + closed + ", of which nothing is cleaned" : ": nothing is cleaned");
+}
+
+std::string CleanStage::missing_states_warning() const {
+  std::string paths, names;
+  for (std::size_t s = 0; o_.restart && s < image_.stokes.size(); ++s) {
+    if (std::filesystem::exists(state_path(s))) continue;
+    paths += (paths.empty() ? "" : ", ") + state_path(s);
+    names += (names.empty() ? " of " : ", ") + stokes_name(image_.stokes[s]);
+  }
+  if (paths.empty()) return "";
+  const std::string of_cube = "state" + (image_.stokes.size() > 1 ? names : "") + " in " + o_.imagename + ".clean";
+  return "there is no " + (o_.cube.is_cube() ? of_cube : paths) + " to go on from: CLEAN begins anew";
+}
+
+std::vector<std::string> CleanStage::warnings() const {
+  std::vector<std::string> words{closed_mask_warning(), missing_states_warning()};
+  words.erase(std::remove(words.begin(), words.end(), ""), words.end());
+  return words;
 }
 
 std::string CleanStage::state_path(std::size_t stokes) const {

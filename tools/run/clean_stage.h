@@ -47,8 +47,8 @@ class CleanStage {
   }
   /// What the user should know of the mask's file, and of which band the start model is, a sentence each.
   std::vector<std::string> words_on_files() const;
-  /// What the user should know before CLEAN begins; empty if nothing.
-  std::string warning() const;
+  /// What the user should know before CLEAN begins, a sentence each; of a cube, the same of all channels of which it is so.
+  std::vector<std::string> warnings() const;
 
   /// `option_values`: those that a saved state belongs to. Throws what imager::clean and read_clean_state do.
   imager::CleanResult run(const CleanScene& scene, const nlohmann::json& option_values, const imager::Progress& progress,
@@ -56,6 +56,8 @@ class CleanStage {
 
  private:
   std::string state_path(std::size_t stokes) const;
+  std::string closed_mask_warning() const;
+  std::string missing_states_warning() const;
   void read_start_model();
   void refuse_start_model(const std::string& has, const std::string& expected) const;
   /// That of a run before, or that of the start model, which it frees.

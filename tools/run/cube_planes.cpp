@@ -65,7 +65,7 @@ void CubePlanes::make(PlaneRun& run, CubePlane& plane) {
   if (scene_.options.verify > 0) run.verify();
   run.choose_beams();
   if (scene_.options.niter > 0 && run.report().beams->restoring) clean(run, plane);
-  plane.beam_warning = products_.write(run);
+  if (const std::string doubt = products_.write(run); !doubt.empty()) plane.doubts.push_back(doubt);
 }
 
 void CubePlanes::clean(PlaneRun& run, CubePlane& plane) {
@@ -76,8 +76,7 @@ void CubePlanes::clean(PlaneRun& run, CubePlane& plane) {
     const std::lock_guard lock(image_files_mutex());
     stage->begin_channel(channel);
   }
-  if (const std::string warning = stage->warning(); !warning.empty())
-    plane.clean_warning = "plane " + std::to_string(channel) + ": " + warning;
+  plane.doubts = stage->warnings();
   run.clean(*stage, scene_.option_values, [&](std::size_t, const imager::CleanState& state) {
     if (state.cycles.size() > 1) ++plane.major_cycles;
   });

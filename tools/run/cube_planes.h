@@ -21,8 +21,7 @@ struct CubePlane {
   double components = 0;              ///< of CLEAN
   double major_cycles = 0;            ///< that predicted and subtracted
   std::vector<std::string> warnings;  ///< in their order
-  std::string clean_warning;          ///< what is so of one plane is mostly so of all; empty if nothing
-  std::string beam_warning;           ///< of the primary beam; the same
+  std::vector<std::string> doubts;    ///< what may be so of several planes, in the same words
   imager::StageTimes times;
 
   bool empty() const { return report.sums.used == 0; }

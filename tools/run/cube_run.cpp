@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -83,9 +84,6 @@ class CubeRun {
   void warn(const std::string& sentence) {
     report_.warnings.push_back(sentence);
     progress_.say("warning: " + sentence);
-  }
-  void warn_once(const std::string& sentence, bool& said) {
-    if (!sentence.empty() && !std::exchange(said, true)) warn(sentence);
   }
   int planes() const { return header_.spectral.channels; }
   int planes_of_a_rank() const { return (planes() + ranks_.size() - 1) / ranks_.size(); }
@@ -206,8 +204,7 @@ class CubeRun {
   /// The next plane, of several threads' one at a time.
   void take(CubePlane&& plane) {
     for (const std::string& sentence : plane.warnings) warn(sentence);
-    warn_once(plane.clean_warning, warned_of_clean_);
-    warn_once(plane.beam_warning, warned_of_beam_);
+    for (const std::string& doubt : plane.doubts) doubts_[doubt].push_back(plane.report.channel);
     for (const auto& [stage, seconds] : plane.times.stages()) times_.add(stage, seconds / at_once_);
     outside_grid_ += plane.outside_grid;
     work_.components += plane.components;
@@ -251,6 +248,8 @@ class CubeRun {
     report_.plan.push_back(left_out_decision(report_.counts));
     if (const std::string warning = changed_files_warning(*set_); !warning.empty()) warn(warning);
     if (outside_grid_ > 0) warn(outside_grid_warning(report_.counts.outside_grid, reach_));
+    for (const auto& [doubt, planes] : doubts_)
+      warn((planes.size() > 1 ? "planes " : "plane ") + in_runs(planes) + ": " + doubt);
     if (empty_ > 0)
       warn(std::to_string(empty_) + " of " + std::to_string(planes()) +
            " planes have no samples: they have no values and no beam");
@@ -312,8 +311,7 @@ class CubeRun {
   std::uint64_t outside_grid_ = 0;
   std::size_t empty_ = 0;  ///< planes
   bool stopped_ = false;
-  bool warned_of_clean_ = false;  ///< what is so of one plane is mostly so of all
-  bool warned_of_beam_ = false;
+  std::map<std::string, std::vector<int>> doubts_;  ///< with the planes of which they are
 };
 
 }  // namespace

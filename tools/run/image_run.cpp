@@ -122,7 +122,7 @@ class ImageRun {
                                           threads_);
     clean_->begin_channel(0);
     for (const std::string& words : clean_->words_on_files()) warn(words);
-    if (const std::string warning = clean_->warning(); !warning.empty()) warn(warning);
+    for (const std::string& words : clean_->warnings()) warn(words);
   }
 
   void plan() {

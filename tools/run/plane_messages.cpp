@@ -104,8 +104,7 @@ void serialize(Archive& archive, PlaneReport& report) {
 
 template <typename Archive>
 void serialize(Archive& archive, CubePlane& plane) {
-  archive(plane.report, plane.outside_grid, plane.components, plane.major_cycles, plane.warnings, plane.clean_warning,
-          plane.beam_warning, plane.times);
+  archive(plane.report, plane.outside_grid, plane.components, plane.major_cycles, plane.warnings, plane.doubts, plane.times);
 }
 
 template <typename Archive>
