@@ -44,7 +44,7 @@ struct Mask {
     imager::Image mask(width, height);
     std::mt19937 random(7);
     for (int row = 1; row + 1 < height; ++row)
-      for (int column = 1; column + 1 < width; ++column) mask.at(row, column) = random() % 2;
+      for (int column = 1; column + 1 < width; ++column) mask.at(row, column) = static_cast<double>(random() % 2);
     return mask;
   }
 
