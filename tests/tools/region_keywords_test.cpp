@@ -1,8 +1,10 @@
+#include <array>
 #include <boost/test/unit_test.hpp>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
-#include "tools/formats/regions/keywords.h"
+#include "tools/formats/regions/spectral_range.h"
 
 BOOST_AUTO_TEST_SUITE(region_keywords)
 
@@ -71,8 +73,9 @@ BOOST_AUTO_TEST_CASE(without_a_range_all_planes_are_meant) {
 }
 
 BOOST_AUTO_TEST_CASE(channels_count_from_0_and_both_ends_are_within) {
-  for (const char* range : {"range=[3chan, 7chan]", "range=[3channel,7channel]", "range=[7, 3]"}) check_span(range, 3, 7);
-  check_span("range=[-4chan, 0chan]", 0, 0);
+  for (const char* range : {"range=[3chan, 7chan]", "range=[3channel,7channel]", "range=[3 chan, 7.0chan]"})
+    check_span(range, 3, 7);
+  check_span("range=[0chan, 0chan]", 0, 0);
   check_span("range=[9chan, 1e12chan]", 9, 9);
 }
 
@@ -84,6 +87,13 @@ BOOST_AUTO_TEST_CASE(frequencies_mean_the_planes_that_they_reach_into) {
   imager::SpectralAxis falling = axis;
   falling.increment_hz = -1e6;
   check_span("range=[1.4174GHz, 1.4157GHz]", 3, 4, falling);
+}
+
+BOOST_AUTO_TEST_CASE(frequencies_and_velocities_may_stand_in_either_order) {
+  for (const auto& [one, other] : {std::pair("1.4226GHz", "1424.3MHz"), {"-421km/s", "421km/s"}, {"1.42GHz", "1421000000Hz"}}) {
+    const PlaneSpan span = span_of(std::string("range=[") + one + ", " + other + "]");
+    check_span(std::string("range=[") + other + ", " + one + "]", span.first, span.last);
+  }
 }
 
 BOOST_AUTO_TEST_CASE(velocities_are_those_of_the_line) {
@@ -120,18 +130,53 @@ BOOST_AUTO_TEST_CASE(one_plane_of_the_whole_band_must_be_reached) {
   BOOST_TEST(refused("range=[1.41GHz, 1.5GHz]", "only plane", one_frequency));
 }
 
+BOOST_AUTO_TEST_CASE(two_ends_of_a_range_are_of_one_kind) {
+  const std::array<std::string, 4> ends{"3chan", "1.423GHz", "20km/s", "4"};  // and a number without a unit is of none
+  for (std::size_t i = 0; i < ends.size(); ++i)
+    for (std::size_t k = 0; k < ends.size(); ++k) {
+      const std::string range = "range=[" + ends[i] + ", " + ends[k] + "]";
+      BOOST_TEST(
+          refused(range, "'" + range + "', expected two channels, two frequencies or two velocities") == (i != k || i == 3),
+          range);
+    }
+}
+
 BOOST_AUTO_TEST_CASE(what_cannot_be_meant_is_refused) {
-  for (const char* range : {"range=3chan", "range=[3chan]", "range=[3chan, 1.42GHz]", "range=[1GHz, 2]", "range=[1GHz, 2GHZ]",
-                            "range=[1deg, 2deg]", "range=[, ]", "range=[1chan, 2chan, 3chan]", "range=[nan, 2chan]"})
-    BOOST_TEST(refused(range, "expected two channels, frequencies or velocities"));
-  BOOST_TEST(refused("range=[1.42GHz, 1.43GHz], frame=BARY", "'frame=BARY', expected the image's, LSRK"));
-  BOOST_TEST(refused("range=[1.42GHz, 1.43GHz], frame=REST", "spectral frame 'REST'"));
+  for (const char* range : {"range=3chan", "range=[3chan]", "range=[1GHz, 2GHZ]", "range=[1deg, 2deg]", "range=[, ]",
+                            "range=[1chan, 2chan, 3chan]", "range=[nanchan, 2chan]", "range=[3pix, 7pix]"})
+    BOOST_TEST(refused(range, "expected two channels, two frequencies or two velocities"), range);
+  BOOST_TEST(refused("range=[7chan, 3chan]", "'range=[7chan, 3chan]', expected the lower channel first"));
+  for (const char* range : {"range=[-4chan, 0chan]", "range=[3.5chan, 7chan]"})
+    BOOST_TEST(refused(range, "expected whole channels, counted from 0"), range);
+  for (const char* range : {"range=[0Hz, 2GHz]", "range=[1.42GHz, -2GHz]"})
+    BOOST_TEST(refused(range, "expected frequencies above 0"), range);
+  for (const char* range : {"range=[3e5km/s, 1km/s]", "range=[1km/s, 3e5km/s], veltype=BETA",
+                            "range=[1km/s, -3e5km/s], veltype=Z", "range=[-3e5km/s, 0km/s], veltype=optical"})
+    BOOST_TEST(refused(range, "at which the line has a frequency above 0"), range);
   BOOST_TEST(refused("range=[1km/s, 2km/s], veltype=GAMMA", "expected RADIO, OPTICAL, Z or BETA"));
-  BOOST_TEST(refused("range=[1km/s, 2km/s], restfreq=7", "expected a frequency"));
+  for (const char* rest : {"7", "-1GHz", "0Hz", "1km/s"})
+    BOOST_TEST(refused(std::string("restfreq=") + rest, "expected a frequency above 0"), rest);
   imager::SpectralAxis no_line = axis;
   no_line.rest_frequency_hz = 0;
   BOOST_TEST(refused("range=[1km/s, 2km/s]", "expected restfreq", no_line));
   check_span("range=[1chan, 2chan], frame=BARY, veltype=Z", 1, 2);  // channels have neither
+}
+
+BOOST_AUTO_TEST_CASE(a_frame_of_frequencies_is_the_image_s_or_refused_with_the_reason) {
+  for (const char* range : {"range=[1.42GHz, 1.43GHz]", "range=[1km/s, 2km/s]"}) {
+    const std::string text(range);
+    BOOST_TEST(refused(text + ", frame=BARY", "'frame=BARY', expected the image's, LSRK"));
+    BOOST_TEST(refused(text + ", frame=REST", "'frame=REST', expected the image's, LSRK: that at rest in the source takes"));
+    BOOST_TEST(refused(text + ", frame=SUN", "spectral frame 'SUN'"));
+    imager::SpectralAxis at_rest = axis, unknown = axis;
+    at_rest.frame = "SOURCE";
+    unknown.frame = "";
+    const PlaneSpan span = span_of(text);
+    for (const char* frame : {"REST", "rest"}) check_span(text + ", frame=" + frame, span.first, span.last, at_rest);
+    check_span(text + ", frame=lsrk", span.first, span.last);
+    BOOST_TEST(refused(text + ", frame=LSRK", "'frame=LSRK', expected none", unknown));
+    check_span(text, span.first, span.last, unknown);
+  }
 }
 
 BOOST_AUTO_TEST_SUITE_END()

@@ -1,10 +1,8 @@
 // What region files say and a mask cannot honour is refused, by line, with what was expected.
-#include <boost/test/unit_test.hpp>
-#include <cmath>
 #include <stdexcept>
 #include <string>
 
-#include "tools/formats/regions/region_text.h"
+#include "tests/tools/region_masks.h"
 
 BOOST_AUTO_TEST_SUITE(region_refusals)
 
@@ -54,10 +52,24 @@ BOOST_AUTO_TEST_CASE(what_casa_region_text_cannot_mean_is_refused) {
   BOOST_TEST(refused(box + ", color=red # corr=[Q]", "expected comments on lines of their own"));
   BOOST_TEST(refused(box + ", frame=SUN", "'SUN'"));
   BOOST_TEST(refused(box + ", veltype=SLOW", "'veltype=SLOW', expected one of RADIO"));
-  BOOST_TEST(refused("global corr=[I, S]\n" + box, "line 1: 'corr=[I, S]'"));
-  BOOST_TEST(refused("global coord=AZEL\n" + box, "line 1: 'coord=AZEL'"));
   BOOST_TEST(refused("circle [[7.7deg, 12.39deg], 3pix]", "'7.7deg, 12.39deg', expected a place within 90 degrees"));
   BOOST_TEST(refused("circle [[12:30:49, 12.39deg], 3pix], coord=GALACTIC", "expected a longitude"));
+}
+
+BOOST_AUTO_TEST_CASE(what_a_global_line_cannot_mean_is_refused_there_whatever_uses_it) {
+  const std::string box =
+      "box [[0pix, 0pix], [1pix, 0pix]], corr=[I], coord=ICRS, range=[0chan, 0chan], frame=LSRK, veltype=Z, "
+      "restfreq=1GHz\n";
+  for (const char* keyword : {"corr=[I, S]", "coord=AZEL", "range=[1chan, 2GHz]", "range=[7, 8]", "range=[7chan, 3chan]",
+                              "range=[1GHz, -2GHz]", "frame=SUN", "veltype=SLOW", "restfreq=7", "colour=red"}) {
+    const std::string name = std::string(keyword).substr(0, std::string(keyword).find('='));
+    const std::string shown = name == "frame" || name == "colour" ? "line 2: " : "line 2: '" + std::string(keyword) + "'";
+    for (const std::string& text : {box + "global " + keyword, box + "global color=red, " + keyword + "\n" + box})
+      BOOST_TEST(refused(text, shown), keyword);
+  }
+  // Of the lines that they go with, others may say what these lack.
+  tools::testing::mask_of("global range=[1.42GHz, 1.43GHz], frame=BARY\n" + box);
+  tools::testing::mask_of("global range=[3chan, 7chan]\n" + box);
 }
 
 BOOST_AUTO_TEST_CASE(what_ds9_regions_cannot_mean_is_refused) {

@@ -7,6 +7,7 @@
 
 #include "tools/base/quantity.h"
 #include "tools/base/text.h"
+#include "tools/formats/regions/spectral_range.h"
 #include "tools/formats/regions/words.h"
 
 namespace misfit::tools::regions {
@@ -188,6 +189,13 @@ bool fits(const Form& form, const std::vector<std::vector<std::string_view>>& ar
   return form.singles == 0 || arguments.back().size() == 1;
 }
 
+/// Refuses keywords that mean nothing, whatever the image.
+void check_meaning(const RegionKeywords& keywords) {
+  spectral_range(keywords);
+  stokes_of_corr(keywords, {});
+  frame_of_coord(keywords, "");
+}
+
 void check_version(std::string_view line) {
   std::string_view version = line.substr(std::string_view("#CRTF").size());
   if (version.starts_with('v')) version.remove_prefix(1);
@@ -209,8 +217,7 @@ RegionLine CrtfReader::read(std::string_view line) {
   if (word == "symbol") return {{}, true};
   if (word != "global") return read_shape(line);
   for (const auto& [name, value] : parse_region_keywords(rest)) global_[name] = value;
-  stokes_of_corr(global_, stokes_);  // what is wrong with them is said on this line
-  frame_of_coord(global_, canvas_.frame());
+  check_meaning(global_);  // what is wrong with them is said on this line
   return {};
 }
 

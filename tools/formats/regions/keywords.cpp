@@ -2,16 +2,7 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
-#include <cmath>
-#include <optional>
-#include <stdexcept>
-#include <utility>
 
-#include "imager/constants.h"
-#include "ms_io/spectral_frame.h"
-#include "tools/base/numbers.h"
-#include "tools/base/quantity.h"
 #include "tools/base/text.h"
 #include "tools/formats/regions/words.h"
 
@@ -37,89 +28,6 @@ std::string listed(const std::array<std::string_view, count>& names) {
   std::string list;
   for (const std::string_view name : names) list += (list.empty() ? "" : ", ") + std::string(name);
   return list;
-}
-
-const std::string ranges_known =
-    "two channels, frequencies or velocities, such as [3chan, 7chan], [1.42GHz, 1.421GHz] or [-10km/s, 20km/s]";
-
-/// Empty where there is none.
-std::string value_of(const RegionKeywords& keywords, const std::string& name) {
-  const auto found = keywords.find(name);
-  return found == keywords.end() ? "" : found->second;
-}
-
-[[noreturn]] void refuse_keyword(const std::string& name, const std::string& value, const std::string& expected) {
-  refuse(name + "=" + value, expected);
-}
-
-/// From the velocities of a range to frequencies.
-class Doppler {
- public:
-  Doppler(const RegionKeywords& keywords, const imager::SpectralAxis& axis) : rest_hz_(axis.rest_frequency_hz) {
-    const std::string type = value_of(keywords, "veltype"), rest = value_of(keywords, "restfreq");
-    type_ = type.empty() ? "RADIO" : type;
-    if (type_ == "GAMMA") refuse_keyword("veltype", type, "RADIO, OPTICAL, Z or BETA: a velocity by its γ has no direction");
-    if (!rest.empty() && !has_unit(rest)) refuse_keyword("restfreq", rest, "a frequency such as 1.420405752GHz");
-    if (!rest.empty()) rest_hz_ = parse_frequency_hz(rest);
-    if (!(rest_hz_ > 0))
-      refuse_keyword("range", value_of(keywords, "range"), "restfreq beside velocities, or --restfreq for the image");
-  }
-
-  double frequency_hz(double velocity_m_s) const {
-    const double beta = velocity_m_s / imager::speed_of_light_m_s;
-    if (type_ == "RADIO") return rest_hz_ * (1 - beta);
-    return type_ == "BETA" ? rest_hz_ * std::sqrt((1 - beta) / (1 + beta)) : rest_hz_ / (1 + beta);
-  }
-
- private:
-  double rest_hz_;
-  std::string type_;
-};
-
-void check_spectral_frame(const RegionKeywords& keywords, const imager::SpectralAxis& axis) {
-  const std::string frame = value_of(keywords, "frame");
-  if (frame.empty() || axis.frame.empty() || ms_io::parse_spectral_frame(frame) == axis.frame) return;
-  refuse_keyword("frame", frame, "the image's, " + axis.frame);
-}
-
-/// Refuses names of frames and velocities that CASA does not know, also where no range needs them.
-void check_names(const RegionKeywords& keywords) {
-  const std::string frame = value_of(keywords, "frame"), type = value_of(keywords, "veltype");
-  if (!frame.empty() && frame != "REST") ms_io::parse_spectral_frame(frame);
-  const std::array<std::string_view, 5> velocities{"RADIO", "OPTICAL", "Z", "BETA", "GAMMA"};
-  if (!type.empty() && !contains(velocities, type)) refuse_keyword("veltype", type, "one of " + listed(velocities));
-}
-
-/// "3chan", "3channel" or "3"; nothing where it is none.
-std::optional<double> channel_number(std::string_view text) {
-  for (const std::string_view unit : {"channel", "chan"})
-    if (text.ends_with(unit)) text.remove_suffix(unit.size());
-  return finite_number(trimmed(text));
-}
-
-/// The fractional plane of a frequency or a velocity.
-double plane_at(const std::string& text, const RegionKeywords& keywords, const imager::SpectralAxis& axis) {
-  if (!has_unit(text)) throw std::invalid_argument(text + " without a unit");
-  const bool velocity = text.ends_with("/s");
-  const double hz = velocity ? Doppler(keywords, axis).frequency_hz(parse_velocity_m_s(text)) : parse_frequency_hz(text);
-  const double plane = axis.plane_of(hz);
-  return std::isnan(plane) ? 0 : plane;  // at the frequency of a plane without width
-}
-
-/// "[a, b]".
-std::pair<std::string, std::string> ends_of(const std::string& range) {
-  const std::size_t comma = range.find(',');
-  if (!range.starts_with('[') || !range.ends_with(']') || comma == std::string::npos)
-    refuse_keyword("range", range, ranges_known);
-  return {std::string(trimmed(std::string_view(range).substr(1, comma - 1))),
-          std::string(trimmed(std::string_view(range).substr(comma + 1, range.size() - comma - 2)))};
-}
-
-/// What the planes are, for errors.
-std::string planes_text(const imager::SpectralAxis& axis) {
-  const double half = 0.5 * axis.width_hz() * axis.channels;
-  const double middle = 0.5 * (axis.frequency_hz(0) + axis.frequency_hz(axis.channels - 1));
-  return frequency_text(middle - half, 8) + " to " + frequency_text(middle + half, 8);
 }
 
 /// Whether `text` begins with the next keyword and its equals sign.
@@ -152,6 +60,15 @@ std::string_view take_value(std::string_view& rest) {
 
 }  // namespace
 
+std::string value_of(const RegionKeywords& keywords, const std::string& name) {
+  const auto found = keywords.find(name);
+  return found == keywords.end() ? "" : found->second;
+}
+
+void refuse_value(const RegionKeywords& keywords, const std::string& name, const std::string& expected) {
+  refuse(name + "=" + value_of(keywords, name), expected);
+}
+
 RegionKeywords parse_region_keywords(std::string_view text) {
   RegionKeywords keywords;
   std::string_view rest = trimmed(text);
@@ -170,33 +87,6 @@ RegionKeywords parse_region_keywords(std::string_view text) {
   return keywords;
 }
 
-PlaneSpan planes_of_range(const RegionKeywords& keywords, const imager::SpectralAxis& axis) {
-  check_names(keywords);
-  const std::string range = value_of(keywords, "range");
-  if (range.empty()) return {0, axis.channels - 1};
-  const auto [one, other] = ends_of(range);
-  const std::optional<double> channel = channel_number(one), last_channel = channel_number(other);
-  double low = channel.value_or(0), high = last_channel.value_or(0);
-  if (channel.has_value() != last_channel.has_value()) refuse_keyword("range", range, ranges_known);
-  if (!channel) {
-    check_spectral_frame(keywords, axis);
-    try {
-      low = plane_at(one, keywords, axis);
-      high = plane_at(other, keywords, axis);
-    } catch (const std::invalid_argument&) {
-      refuse_keyword("range", range, ranges_known);
-    }
-  }
-  if (low > high) std::swap(low, high);
-  constexpr double rounding = 1e-6;  // of a plane: a range that ends where a plane begins does not reach into it
-  PlaneSpan span;
-  span.first = static_cast<int>(std::clamp(std::floor(low + 0.5 + rounding), 0.0, 1.0 * axis.channels));
-  span.last = static_cast<int>(std::clamp(std::ceil(high - 0.5 - rounding), -1.0, axis.channels - 1.0));
-  if (axis.channels == 1 && !span.holds(0))
-    refuse_keyword("range", range, "one that reaches into the image's only plane, " + planes_text(axis) + ", or none");
-  return span;
-}
-
 std::vector<bool> stokes_of_corr(const RegionKeywords& keywords, const std::vector<imager::Stokes>& image) {
   const std::string corr = value_of(keywords, "corr");
   std::vector<bool> named(image.size(), corr.empty());
@@ -204,7 +94,7 @@ std::vector<bool> stokes_of_corr(const RegionKeywords& keywords, const std::vect
   std::string_view list = corr;
   if (list.starts_with('[')) list = list.substr(1, list.size() - 2);
   for (const std::string_view name : split_at_commas(list)) {
-    if (!contains(correlations, name)) refuse_keyword("corr", corr, "some of " + listed(correlations) + ", such as [I, Q]");
+    if (!contains(correlations, name)) refuse_value(keywords, "corr", "some of " + listed(correlations) + ", such as [I, Q]");
     for (std::size_t i = 0; i < image.size(); ++i)
       if (stokes_name(image[i]) == name) named[i] = true;
   }
@@ -226,9 +116,9 @@ std::string frame_of_coord(const RegionKeywords& keywords, const std::string& im
   for (const auto& [name, frame] : frames)
     if (small_letters(coord) == name) return frame;
   const bool of_a_date = small_letters(coord) == "bmean";
-  refuse_keyword("coord", coord,
-                 "J2000 (FK5), B1950 (FK4), B1950_VLA, ICRS, GALACTIC, ECLIPTIC or SUPERGAL" +
-                     std::string(of_a_date ? ": a mean equinox is that of a date, which nothing names" : ""));
+  refuse_value(keywords, "coord",
+               "J2000 (FK5), B1950 (FK4), B1950_VLA, ICRS, GALACTIC, ECLIPTIC or SUPERGAL" +
+                   std::string(of_a_date ? ": a mean equinox is that of a date, which nothing names" : ""));
 }
 
 }  // namespace misfit::tools::regions
