@@ -53,6 +53,8 @@ BOOST_AUTO_TEST_CASE(files_of_carta_and_ds9_are_read_as_they_write_them) {
       "# Region file format: DS9 version 4.1\nimage\n# composite(30,20,0) || composite=1 color=green\n"
       "circle(31,21,7) || # color=red tag={a} tag={b}\nbox(11,11,5,5,0) # source dash=1",
       "circle [[30pix, 20pix], 7pix]\ncenterbox [[10pix, 10pix], [5pix, 5pix]]");
+  check_same("global color=red; image; circle(31,21,7)", "circle [[30pix, 20pix], 7pix]");
+  check_same("Global color=red\ncircle [[30pix, 20pix], 7pix]", "circle [[30pix, 20pix], 7pix]");
   check_same("ellipse 20 20 4 8; box 30 30 6 8 # text='a; b' ; tile 1; line 1 1 4 4",
              "ellipse [[19pix, 19pix], [8pix, 4pix], 0deg]\ncenterbox [[29pix, 29pix], [6pix, 8pix]]");
   check_same("image; ellipse(31,21,4,2,12,6,30); box(11,11,2,2,4,4,n=2)",
@@ -72,9 +74,20 @@ BOOST_AUTO_TEST_CASE(places_are_written_in_every_way_that_casa_and_ds9_know) {
   check_same(here, "wcs;circle(187.7,12.39,6.6\")");
 }
 
+BOOST_AUTO_TEST_CASE(sixty_seconds_of_a_place_are_its_next_minute) {
+  const std::string next = "circle [[12h31m00s, 12d23m00s], 40arcsec]";
+  imager::ImageHeader header = header_in();
+  header.geometry.cell_rad *= 6;
+  for (const char* place : {"12h30m60.00s, 12d22m60.00s", "12:30:60.0, 12.22.60.00", "187d44m60s, +12d22m60.0s"})
+    check_same(next, std::string("circle [[") + place + "], 40arcsec]", header);
+  for (const char* place : {"12:30:60.00, +12:22:60.00", "12h30m60.0s, 12d22m60.00s"})
+    check_same(next, std::string("fk5; circle(") + place + ", 40\")", header);
+}
+
 BOOST_AUTO_TEST_CASE(what_ds9_draws_and_says_beside_regions_changes_nothing) {
   const std::string here = "circle [[30pix, 23pix], 3.3pix]", circle = "circle(31,24,3.3)";
-  for (const char* drawn : {"line(1,2,3,4)", "-line(1,2,3,4)", "+text(3,4) # text={a}", "-vector(1,2,3,4)"})
+  for (const char* drawn : {"line(1,2,3,4)", "-line(1,2,3,4)", "+text(3,4) # text={a}", "-vector(1,2,3,4)",
+                            "point(3,4) # point=circle 10", "-x point 3 4"})
     check_same(here, std::string("image\n") + drawn + "\n" + circle);
   check_same(here, "image\n" + circle + " # color=red tag={a tag} This is a Comment");
   check_same(here, "image\n" + circle + " # a comment alone");
@@ -126,6 +139,31 @@ BOOST_AUTO_TEST_CASE(regions_without_a_pixel_are_told_of) {
   BOOST_TEST(told("regions, line 4: the region of corr=[Q] is of no plane of the image"));
   BOOST_TEST(told("regions, line 5: a symbol holds no pixel and is passed over"));
   BOOST_TEST(RegionText("regions", "circle [[30pix, 20pix], 7pix]", header_in()).doubts().empty());
+}
+
+BOOST_AUTO_TEST_CASE(shapes_without_an_area_are_passed_over_with_a_word_that_names_their_lines) {
+  const auto doubts = [](const std::string& text) { return RegionText("regions", text, header_in()).doubts(); };
+  const std::string crtf = "circle [[30pix, 20pix], 7pix]\n", ds9 = "image\ncircle(31,21,7)\n";
+  for (const char* shape : {"symbol", "line", "polyline", "vector", "text"}) {
+    const std::string line = std::string(shape) + " [[3pix, 4pix], [5pix, 6pix]]\n", name = shape;
+    const std::vector<std::string> one{"regions, line 2: a " + name + " holds no pixel and is passed over"};
+    const std::vector<std::string> several{"regions, lines 2 to 4 and 6: a " + name + " holds no pixel and is passed over"};
+    BOOST_TEST(doubts(crtf + line) == one, boost::test_tools::per_element());
+    BOOST_TEST(doubts(crtf + line + line + line + crtf + line) == several, boost::test_tools::per_element());
+    BOOST_TEST(refused(line, "holds no region with an area"));
+    BOOST_TEST(doubts(crtf + "ann " + line).empty());
+  }
+  for (const char* shape : {"point", "line", "vector", "segment", "projection", "ruler", "compass", "text", "+textbox",
+                            "circle point", "boxcircle point"}) {
+    const std::string line = std::string(shape) + "(3,4,5,6) # color=red\n";
+    const std::string name = line.find("point") != std::string::npos ? "point" : line.substr(0, line.find('('));
+    const std::vector<std::string> one{"regions, line 3: a " + name.substr(name[0] == '+') +
+                                       " holds no pixel and is passed over"};
+    BOOST_TEST(doubts(ds9 + line) == one, boost::test_tools::per_element());
+    BOOST_TEST(doubts("image; circle(31,21,7); " + line).size() == 1U);
+    BOOST_TEST(refused("image\n" + line, "holds no region with an area"));
+    BOOST_TEST(doubts(ds9 + "# " + line).empty());
+  }
 }
 
 BOOST_AUTO_TEST_SUITE_END()

@@ -54,6 +54,10 @@ BOOST_AUTO_TEST_CASE(what_casa_region_text_cannot_mean_is_refused) {
   BOOST_TEST(refused(box + ", veltype=SLOW", "'veltype=SLOW', expected one of RADIO"));
   BOOST_TEST(refused("circle [[7.7deg, 12.39deg], 3pix]", "'7.7deg, 12.39deg', expected a place within 90 degrees"));
   BOOST_TEST(refused("circle [[12:30:49, 12.39deg], 3pix], coord=GALACTIC", "expected a longitude"));
+  for (const char* place : {"12h60m48s, 12d23m24s", "12:30:60.1, 12d23m24s", "12h30m48s, 12d60m24s", "12h30m48s, 12.23.61",
+                            "24h30m48s, 12d23m24s", "12h30m48s, 1h00m00s", "12.30.48, 12d23m24s", "12h30m-5s, 12d23m24s"})
+    BOOST_TEST(refused(std::string("circle [[") + place + "], 3pix]", "', expected a "), place);
+  BOOST_TEST(refused("circle [[547.7deg, 12.39deg], 3pix]", "'547.7deg, 12.39deg', expected a longitude of -360 to 360"));
 }
 
 BOOST_AUTO_TEST_CASE(what_a_global_line_cannot_mean_is_refused_there_whatever_uses_it) {
@@ -73,9 +77,14 @@ BOOST_AUTO_TEST_CASE(what_a_global_line_cannot_mean_is_refused_there_whatever_us
 }
 
 BOOST_AUTO_TEST_CASE(what_ds9_regions_cannot_mean_is_refused) {
-  BOOST_TEST(refused("image\npoint(3,4) # point=circle 10", "line 2: 'point(3,4)', expected an area"));
-  BOOST_TEST(refused("image;circle point 3 4", "expected an area"));
-  BOOST_TEST(refused("image;panda(3,4,0,90,1,2,3,1)", "'panda(3,4,0,90,1,2,3,1)', expected circle"));
+  BOOST_TEST(refused("image;panda(3,4,0,90,1,2,3)", "'panda(3,4,0,90,1,2,3)', expected panda x y start stop n inner outer n"));
+  BOOST_TEST(refused("image;panda(3,4,0,90,1,2,3,1,30)", "expected panda x y start stop n inner outer n"));
+  BOOST_TEST(refused("image;panda(3,4,0,90,0,2,3,1)", "expected 1 sector and 1 ring at least"));
+  BOOST_TEST(refused("image;panda(3,4,0,90,1,2,3,1.5)", "expected 1 sector and 1 ring at least"));
+  BOOST_TEST(refused("image;panda(3,4,0,90,1,3,2,1)", "expected radii that rise"));
+  BOOST_TEST(refused("image;epanda(3,4,0,90,1,2,3,1)", "expected epanda x y start stop n inner inner outer outer n [angle]"));
+  BOOST_TEST(refused("image;bpanda(3,4,0,90,1,2,2,4,4,1,30,1)", "expected bpanda x y start stop n"));
+  BOOST_TEST(refused("image;pie(3,4,0,90)", "'pie(3,4,0,90)', expected circle"));
   BOOST_TEST(refused("azel\ncircle(3,4,5)", "'azel', expected"));
   BOOST_TEST(refused("linear;circle(3,4,5)", "'linear', expected"));
   BOOST_TEST(refused("wcsa;fk5;circle(3,4,5)", "'wcsa', expected"));
@@ -94,6 +103,8 @@ BOOST_AUTO_TEST_CASE(what_ds9_regions_cannot_mean_is_refused) {
   BOOST_TEST(refused("image;circle(3,4,5) # text={a", "expected a closing"));
   BOOST_TEST(refused("fk5;circle(7.7,12,5\")", "expected a place within 90 degrees"));
   BOOST_TEST(refused("fk5;circle(7.7,100,5\")", "'7.7, 100', expected a latitude"));
+  for (const char* place : {"12:60:48,12:23:24", "12:30:61,12:23:24", "12h30m48s,12d60m24s", "12.30.48,12:23:24"})
+    BOOST_TEST(refused(std::string("fk5;circle(") + place + ",5\")", "', expected a coordinate"), place);
 }
 
 BOOST_AUTO_TEST_SUITE_END()

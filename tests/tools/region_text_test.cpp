@@ -104,6 +104,49 @@ BOOST_AUTO_TEST_CASE(turned_shapes_hold_the_pixels_whose_centres_lie_within) {
     }
 }
 
+BOOST_AUTO_TEST_CASE(pandas_hold_what_of_an_annulus_lies_in_their_sector) {
+  for (const double from : {0.0, 33.7, 200.3, -70.2})
+    for (const double span : {20.1, 90.0, 180.0, 291.3, 360.0})
+      for (const double turn : {0.0, 27.4}) {
+        const double column = 30.13, row = 20.37;
+        const auto within = [&](int c, int r, double turned) {
+          const double past = std::atan2(r - row, c - column) / degree - from - turned;
+          return past - 360 * std::floor(past / 360) <= span;
+        };
+        const auto x = [&](int c, int r) {
+          return (c - column) * std::cos(turn * degree) + (r - row) * std::sin(turn * degree);
+        };
+        const auto y = [&](int c, int r) {
+          return (r - row) * std::cos(turn * degree) - (c - column) * std::sin(turn * degree);
+        };
+        for (const char* panda : {"panda", "cpanda"})
+          check_mask(text("image; %s(%g,%g,%g,%g,3,4.3,11.7,2)", panda, column + 1, row + 1, from, from + span),
+                     [&](int c, int r) {
+                       const double radius = std::hypot(c - column, r - row);
+                       return radius <= 11.7 && radius > 4.3 && within(c, r, 0);
+                     });
+        check_mask(text("image; epanda(%g,%g,%g,%g,1,4.3,2.2,14.7,7.6,1,%g)", column + 1, row + 1, from, from + span, turn),
+                   [&](int c, int r) {
+                     return std::hypot(x(c, r) / 14.7, y(c, r) / 7.6) <= 1 && std::hypot(x(c, r) / 4.3, y(c, r) / 2.2) > 1 &&
+                            within(c, r, turn);
+                   });
+        check_mask(text("image; bpanda(%g,%g,%g,%g,1,0,0,24.7,15.6,4,%g)", column + 1, row + 1, from, from + span, turn),
+                   [&](int c, int r) { return std::abs(x(c, r)) <= 12.35 && std::abs(y(c, r)) <= 7.8 && within(c, r, turn); });
+      }
+}
+
+BOOST_AUTO_TEST_CASE(the_sectors_of_a_panda_make_its_annulus) {
+  const std::string annulus = "image; annulus(31,21,3,9)";
+  check_same(annulus, "image; panda(31,21,0,360,4,3,9,2)");
+  check_same(annulus, "image; panda(31,21,45,45,4,3,9,2)");
+  check_same(annulus, "image; panda(31,21,-30,90,1,3,9,1); panda(31,21,90,330,1,3,9,1)");  // borders belong to both
+  check_same("image; ellipse(31,21,3,2,9,6,30)",
+             "image\nepanda(31,21,0,200,2,3,2,9,6,2,30) || # epanda=(0 100 200)(3 2 9 6)(30)"
+             " color=red\nepanda(31,21,200,360,1,3,2,9,6,1,30) # epanda=ignore");
+  // Places on the sky count from the west of the frame, as pixels do where north is up.
+  check_same("image; panda(31,24,20,130,1,3.1,9.2,1)", "fk5; panda(187.7,12.39,20,130,1,6.2\",18.4\",1)");
+}
+
 BOOST_AUTO_TEST_CASE(borders_belong_to_a_shape_however_it_is_written) {
   check_mask("box [[10pix, 5pix], [20pix, 8pix]]", [](int c, int r) { return c >= 10 && c <= 20 && r >= 5 && r <= 8; });
   for (const int quarter : {0, 1, 2, 3, 4, 5, -1, -7}) {

@@ -34,6 +34,7 @@ Point Canvas::at(const Place& place, double latitude_rad) const {
 
 Point Canvas::point(const Place& place) const {
   if (place.x.pixels != place.y.pixels) refuse(place.text, "both in pixels or both on the sky");
+  if (!place.x.pixels && std::abs(place.x.value) > 2 * imager::pi) refuse(place.text, "a longitude of -360 to 360 degrees");
   if (!place.x.pixels && std::abs(place.y.value) > imager::pi / 2) refuse(place.text, "a latitude of -90 to 90 degrees");
   const Point point = place.x.pixels ? Point{place.x.value, place.y.value} : at(place, place.y.value);
   if (!(std::max(std::abs(point.column), std::abs(point.row)) <= farthest_pixels))

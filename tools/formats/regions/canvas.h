@@ -31,8 +31,8 @@ class Canvas {
   explicit Canvas(const imager::ImageGeometry& geometry) : geometry_(geometry) {}
 
   const std::string& frame() const { return geometry_.phase_centre.frame; }
-  /// Refuses places of one coordinate in pixels and the other on the sky, latitudes beyond 90 degrees, and what lies beyond
-  /// the image's horizon, or 1e9 pixels or more away.
+  /// Refuses places of one coordinate in pixels and the other on the sky, longitudes beyond 360 degrees and latitudes beyond
+  /// 90, and what lies beyond the image's horizon, or 1e9 pixels or more away.
   Point point(const Place& place) const;
   /// How far the north of the place's frame is turned there, anticlockwise from the image's columns; 0 of one in pixels.
   double north_rad(const Place& place) const;

@@ -25,21 +25,18 @@ Quantity longitude(std::string_view text, const std::string& frame) {
   const std::string expected = hours
                                    ? "a right ascension such as 12h30m49.4s, 12:30:49.4 or 187.7deg, or a column such as 100pix"
                                    : "a longitude such as 120.47deg, 120d28m03s or 120.28.03.0, or a column such as 100pix";
-  if (text.find('h') != std::string_view::npos) return {false, 15 * degree * parse_sexagesimal(text, hours_letters, expected)};
-  if (hours && text.find(':') != std::string_view::npos)
-    return {false, 15 * degree * parse_sexagesimal(text, colons, expected)};
-  if (text.ends_with('s') && text.find('d') != std::string_view::npos)
-    return {false, degree * parse_sexagesimal(text, degrees_letters, expected)};
-  if (!hours && std::count(text.begin(), text.end(), '.') >= 2)
-    return {false, degree * parse_sexagesimal(text, dots, expected)};
-  return crtf_quantity(text, expected);
+  if (!ms_io::is_sexagesimal(text)) return crtf_quantity(text, expected);
+  const bool colons = text.find(':') != std::string_view::npos;
+  const bool dots = !colons && text.find_first_of("hd") == std::string_view::npos;
+  if (hours ? dots : colons) refuse(text, expected);  // hours or degrees, nobody knows
+  return {false, sexagesimal(text, ms_io::Colons::hours, expected)};
 }
 
 Quantity latitude(std::string_view text) {
   const std::string expected = "a declination such as +12d23m28s, +12.23.28.0 or 12.39deg, or a row such as 100pix";
-  if (text.ends_with('s')) return {false, degree * parse_sexagesimal(text, degrees_letters, expected)};
-  if (std::count(text.begin(), text.end(), '.') >= 2) return {false, degree * parse_sexagesimal(text, dots, expected)};
-  return crtf_quantity(text, expected);
+  if (!ms_io::is_sexagesimal(text)) return crtf_quantity(text, expected);
+  if (text.find_first_of("h:") != std::string_view::npos) refuse(text, expected);
+  return {false, sexagesimal(text, ms_io::Colons::degrees, expected)};
 }
 
 std::string_view unquoted(std::string_view text) {
@@ -118,15 +115,15 @@ class CrtfShape {
       : canvas_(canvas), frame_(std::move(frame)), arguments_(std::move(arguments)) {}
 
   Shape of(std::string_view name) const {
-    if (name == "box") return {box(), {}};
-    if (name == "centerbox") return {polygon_of(rectangle(0)), {}};
-    if (name == "rotbox") return {polygon_of(rectangle(angle(2))), {}};
-    if (name == "poly") return {polygon(), {}};
-    if (name == "circle") return {circle(arguments_[1][0]), {}};
+    if (name == "box") return {box()};
+    if (name == "centerbox") return {polygon_of(rectangle(0))};
+    if (name == "rotbox") return {polygon_of(rectangle(angle(2)))};
+    if (name == "poly") return {polygon()};
+    if (name == "circle") return {circle(arguments_[1][0])};
     if (name == "annulus") return annulus();
     const Place centre = place(0);
     const double y_radius = length(arguments_[1][0]), x_radius = length(arguments_[1][1]);
-    return {Ellipse{canvas_.point(centre), x_radius, y_radius, canvas_.north_rad(centre) + angle(2)}, {}};
+    return {Ellipse{canvas_.point(centre), x_radius, y_radius, canvas_.north_rad(centre) + angle(2)}};
   }
 
  private:
@@ -168,7 +165,7 @@ class CrtfShape {
 
   Shape annulus() const {
     const std::string_view inner = arguments_[1][0], outer = arguments_[1][1];
-    Shape shape{circle(outer), {}};
+    Shape shape{circle(outer)};
     if (quantity(inner).value == 0) return shape;
     if (!(length(inner) < length(outer))) refuse(std::string(inner) + ", " + std::string(outer), "the inner radius first");
     shape.hole = circle(inner);
@@ -213,8 +210,9 @@ RegionLine CrtfReader::read(std::string_view line) {
   if (line.empty() || line.starts_with('#')) return {};
   std::string_view rest = line;
   const std::string word = small_letters(take_word(rest));
-  if (word == "ann" || word == "line" || word == "vector" || word == "text" || word == "polyline") return {};
-  if (word == "symbol") return {{}, true};
+  if (word == "ann") return {};  // which is by its own words for the eye
+  for (const char* shape : {"symbol", "line", "polyline", "vector", "text"})
+    if (word == shape) return {{}, {word}};
   if (word != "global") return read_shape(line);
   for (const auto& [name, value] : parse_region_keywords(rest)) global_[name] = value;
   check_meaning(global_);  // what is wrong with them is said on this line
@@ -239,7 +237,7 @@ RegionLine CrtfReader::read_shape(std::string_view line) const {
   for (const char* name : {"corr", "range"})
     if (const auto found = keywords.find(name); found != keywords.end())
       region.planes += (region.planes.empty() ? "" : ", ") + found->first + "=" + found->second;
-  return {{region}, false};
+  return {{region}, {}};
 }
 
 }  // namespace misfit::tools::regions

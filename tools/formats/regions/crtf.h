@@ -21,7 +21,7 @@ namespace misfit::tools::regions {
 /// at 0, of an ellipse its first half axis, which lies north-south at 0. North is that of the place's own frame at the centre,
 /// or the columns' direction where the centre is given in pixels. A box by its corners has sides of constant coordinates,
 /// drawn as straight lines. Keywords: see keywords.h; those of a line `global` hold for all that follow, unless they have
-/// their own. Annotations, of `ann`, and lines, vectors, texts and symbols, have no pixels.
+/// their own. Annotations, of `ann`, and lines, vectors, texts and symbols, have no pixels, and all but the first are told of.
 class CrtfReader : public RegionReader {
  public:
   explicit CrtfReader(const imager::ImageHeader& image);

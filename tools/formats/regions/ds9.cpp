@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <optional>
 #include <utility>
 
+#include "imager/constants.h"
 #include "tools/base/text.h"
 #include "tools/formats/regions/ds9_properties.h"
 #include "tools/formats/regions/words.h"
@@ -14,8 +16,8 @@ namespace {
 
 const std::string shapes_known =
     "circle x y radius, ellipse x y radius radius [angle], box x y width height [angle], polygon x1 y1 x2 y2 x3 y3 …, annulus "
-    "x y "
-    "inner outer, or one of the frames image, physical, fk5, fk4, icrs, galactic, ecliptic";
+    "x y inner outer, panda x y start stop n inner outer n, epanda or bpanda, or one of the frames image, physical, fk5, fk4, "
+    "icrs, galactic, ecliptic";
 
 /// The frame that a word stands for, or nothing; `own` is the image's.
 std::optional<std::string> frame_of(const std::string& word, const std::string& own) {
@@ -34,11 +36,15 @@ std::optional<std::string> frame_of(const std::string& word, const std::string& 
   return std::nullopt;
 }
 
-/// Lines and the like, which DS9 leaves out of analyses.
-bool has_no_pixels(const std::string& word) {
-  constexpr std::array<std::string_view, 8> drawn{"line",  "vector",  "segment", "projection",
-                                                  "ruler", "compass", "text",    "textbox"};
-  return std::find(drawn.begin(), drawn.end(), word) != drawn.end();
+/// The name of a shape that has no area, which DS9 leaves out of analyses; else empty. A point may have another shape's name
+/// before it, which is how it is drawn.
+std::string shape_without_area(std::string_view statement) {
+  constexpr std::array<std::string_view, 9> drawn{"point", "line",    "vector", "segment", "projection",
+                                                  "ruler", "compass", "text",   "textbox"};
+  if (statement.starts_with('-') || statement.starts_with('+')) statement.remove_prefix(1);
+  const std::string first = small_letters(take_word(statement)), second = small_letters(take_word(statement));
+  if (second == "point") return second;
+  return std::find(drawn.begin(), drawn.end(), first) != drawn.end() ? first : "";
 }
 
 /// The arguments of a description, "(1, 2 3)" or "1 2 3"; n=4, which parts an annulus only, is left out.
@@ -70,20 +76,19 @@ class Ds9Shape {
       : canvas_(canvas), frame_(std::move(frame)), whole_(description), arguments_(std::move(arguments)) {}
 
   Shape of(const std::string& name) const {
-    if (name == "polygon") return {polygon(), {}};
+    if (name == "polygon") return {polygon()};
+    if (name.ends_with("panda")) return panda(name);
     if (name == "circle") {
       if (arguments_.size() != 3) refuse(whole_, "circle x y radius");
-      return {ellipse({2, 2}, 0), {}};
-    }
-    if (name == "annulus") {
-      if (arguments_.size() < 4) refuse(whole_, "annulus x y inner outer");
-      return rings(1, [&](Radii r) -> Outline { return ellipse(r, 0); });
+      return {ellipse({2, 2}, 0)};
     }
     if (arguments_.size() < 4)
-      refuse(whole_, name == "box" ? "box x y width height [angle]" : "ellipse x y radius radius [angle]");
-    const double turn_rad = arguments_.size() % 2 == 1 ? angle(arguments_.back()) : 0;
-    if (name == "box") return rings(2, [&](Radii r) -> Outline { return box(r, turn_rad); });
-    return rings(2, [&](Radii r) -> Outline { return ellipse(r, turn_rad); });
+      refuse(whole_, name == "box"       ? "box x y width height [angle]"
+                     : name == "annulus" ? "annulus x y inner outer"
+                                         : "ellipse x y radius radius [angle]");
+    const std::size_t each = name == "annulus" ? 1 : 2;
+    const double turn_rad = each == 2 && arguments_.size() % 2 == 1 ? angle(arguments_.back()) : 0;
+    return rings({2, (arguments_.size() - 2) / each, each}, name == "box", turn_rad);
   }
 
  private:
@@ -93,15 +98,42 @@ class Ds9Shape {
     std::size_t y;
   };
 
-  /// The outline of the last lengths without that of the first, if there are several; each has so many arguments.
-  template <typename Draw>
-  Shape rings(std::size_t each, const Draw& draw) const {
-    const std::size_t count = (arguments_.size() - 2) / each;
-    const auto radii = [&](std::size_t i) { return Radii{2 + i * each, 2 + i * each + each - 1}; };
-    for (std::size_t i = 2 + each; i < 2 + count * each; ++i)
-      if (size(i) <= size(i - each)) refuse(whole_, "radii that rise from the inner to the outer");
-    Shape shape{draw(radii(count - 1)), {}};
-    if (count > 1 && size(2) != 0) shape.hole = draw(radii(0));
+  /// Which arguments are the lengths of outlines from the inner to the outer: so many, of one or two lengths each.
+  struct Rings {
+    std::size_t first;
+    std::size_t count;
+    std::size_t each;
+
+    Radii radii(std::size_t i) const { return {first + i * each, first + i * each + each - 1}; }
+  };
+
+  /// The outline of the last lengths without that of the first, if there are several.
+  Shape rings(const Rings& of, bool boxes, double turn_rad) const {
+    const auto draw = [&](Radii r) { return boxes ? Outline(box(r, turn_rad)) : Outline(ellipse(r, turn_rad)); };
+    for (std::size_t i = of.first + of.each; i < of.first + of.count * of.each; ++i)
+      if (size(i) <= size(i - of.each)) refuse(whole_, "radii that rise from the inner to the outer");
+    Shape shape{draw(of.radii(of.count - 1))};
+    if (of.count > 1 && size(of.first) != 0) shape.hole = draw(of.radii(0));
+    return shape;
+  }
+
+  /// Rings within a sector; in how many parts of both the viewer shows it does not matter. Where north is turned, DS9 turns the
+  /// sector of ellipses and boxes both with them and by itself.
+  Shape panda(const std::string& name) const {
+    const bool circles = name != "epanda" && name != "bpanda";
+    const std::size_t each = circles ? 1 : 2, parts = 5 + 2 * each, count = arguments_.size();
+    if (count != parts + 1 && (circles || count != parts + 2))
+      refuse(whole_, name + " x y start stop n " + (circles ? "inner outer n" : "inner inner outer outer n [angle]"));
+    for (const std::size_t i : {std::size_t{4}, parts}) {
+      const double number = number_of(arguments_[i], whole_, "whole numbers of sectors and rings");
+      if (!(number >= 1) || number != std::floor(number)) refuse(whole_, "1 sector and 1 ring at least");
+    }
+    const double turn_rad = count == parts + 2 ? angle(arguments_.back()) : 0, north_rad = canvas_.north_rad(centre());
+    const double from_rad = angle(arguments_[2]), whole_turn = 2 * imager::pi;
+    const double span_rad = std::fmod(std::fmod(angle(arguments_[3]) - from_rad, whole_turn) + whole_turn, whole_turn);
+    Shape shape = rings({5, 2, each}, name == "bpanda", turn_rad);
+    shape.sector = {canvas_.point(centre()), from_rad + north_rad + (circles ? 0 : turn_rad + north_rad),
+                    span_rad < 1e-7 ? whole_turn : span_rad};  // from 0 to 360, or to where it begins
     return shape;
   }
 
@@ -130,11 +162,8 @@ class Ds9Shape {
   /// `colons_are_hours`: of a right ascension.
   Quantity coordinate(std::string_view text, bool colons_are_hours) const {
     const std::string expected = "a coordinate such as 100, 187.7d, 3.2r, 100i, 12:30:49.4, 12h30m49.4s or 12d23m28s";
-    if (text.find(':') != std::string_view::npos)
-      return {false, (colons_are_hours ? 15 : 1) * degree * parse_sexagesimal(text, colons, expected)};
-    if (text.find('h') != std::string_view::npos)
-      return {false, 15 * degree * parse_sexagesimal(text, hours_letters, expected)};
-    if (text.ends_with('s')) return {false, degree * parse_sexagesimal(text, degrees_letters, expected)};
+    if (ms_io::is_sexagesimal(text) && text.find_first_of("hd:") != std::string_view::npos)
+      return {false, sexagesimal(text, colons_are_hours ? ms_io::Colons::hours : ms_io::Colons::degrees, expected)};
     Quantity q = number_with_unit(text, "dr", expected);
     if (q.pixels) q.value -= 1;
     return q;
@@ -173,6 +202,10 @@ class Ds9Shape {
 
 }  // namespace
 
+bool is_ds9_frame(const std::string& word) {
+  return frame_of(word, "").has_value();
+}
+
 Ds9Reader::Ds9Reader(const imager::ImageHeader& image)
     : canvas_(image.geometry), stokes_(image.stokes.size(), true), channels_{0, image.spectral.channels - 1} {}
 
@@ -197,9 +230,10 @@ void Ds9Reader::read_statement(std::string_view statement, RegionLine& found) {
     return;
   }
   if (word == "tile" && rest == "1") return;
-  if (has_no_pixels(word)) return;
-  if (std::string_view behind = statement.substr(1); statement.starts_with('-') || statement.starts_with('+'))
-    if (has_no_pixels(small_letters(take_word(behind)))) return;
+  if (const std::string drawn = shape_without_area(statement); !drawn.empty()) {
+    found.passed_over.push_back(drawn);
+    return;
+  }
   const auto [description, properties] = split_ds9_properties(statement);
   const Ds9Properties own = parse_ds9_properties(properties);
   if (own.background.value_or(background_))
@@ -216,10 +250,9 @@ Region Ds9Reader::read_shape(std::string_view description) const {
   region.added = !rest.starts_with('-');
   if (rest.starts_with('-') || rest.starts_with('+')) rest.remove_prefix(1);
   const std::string name = small_letters(take_word(rest));
-  if (name == "point" || small_letters(rest).starts_with("point"))
-    refuse(description, "an area: a point holds no pixel; write circle x y radius");
-  if (name != "circle" && name != "ellipse" && name != "box" && name != "polygon" && name != "annulus")
-    refuse(description, shapes_known);
+  constexpr std::array<std::string_view, 9> areas{"circle", "ellipse", "box",    "polygon", "annulus",
+                                                  "panda",  "cpanda",  "epanda", "bpanda"};
+  if (std::find(areas.begin(), areas.end(), name) == areas.end()) refuse(description, shapes_known);
   region.shape = Ds9Shape(canvas_, frame_, description, arguments_of_ds9(rest, description)).of(name);
   region.channels = channels_;
   region.stokes = stokes_;

@@ -10,6 +10,9 @@
 
 namespace misfit::tools::regions {
 
+/// Whether DS9 knows a word, in small letters, for a frame that is read.
+bool is_ds9_frame(const std::string& word);
+
 /// DS9's regions, as its reference manual's chapter "Regions" defines them:
 ///
 ///     # Region file format: DS9 version 4.1
@@ -22,9 +25,11 @@ namespace misfit::tools::regions {
 /// Pixels count from 1. Angles turn anticlockwise: of a box its width, of an ellipse its first radius, which lie east-west at
 /// 0; north is that of the place's own frame at the centre, or the columns' direction where the centre is given in pixels.
 /// Numbers alone are degrees in a frame of the sky, pixels in `image` and `physical`, which is the same here and the default.
-/// Annuli of several radii, or of n, go from the first to the last; what parts of a composite region are is written as for
-/// others. `-`, or include=0, takes pixels away. Properties of drawing and of the viewer mean nothing here, and lines, vectors,
-/// segments, projections, rulers, compasses and texts have no pixels.
+/// Annuli of several radii, or of n, go from the first to the last; so do panda, cpanda, epanda and bpanda, which hold what of
+/// an annulus lies in a sector, anticlockwise from one angle to another, counted from the west, or the rows' direction. Parts
+/// of a composite region are written as others. `-`, or include=0, takes pixels away. Properties of drawing and of the viewer
+/// mean nothing here. Points, lines, vectors, segments, projections, rulers, compasses and texts have no pixels, and are told
+/// of.
 class Ds9Reader : public RegionReader {
  public:
   explicit Ds9Reader(const imager::ImageHeader& image);

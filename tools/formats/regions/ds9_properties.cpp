@@ -15,7 +15,8 @@ constexpr std::array<std::string_view, 18> viewed{"text",     "color", "dash",  
                                                   "highlite", "fixed", "edit",   "move",      "rotate",     "delete",
                                                   "tag",      "fill",  "format", "textangle", "textrotate", "composite"};
 /// Those of several values.
-constexpr std::array<std::string_view, 7> viewed_lists{"dashlist", "callback", "line", "vector", "ruler", "point", "compass"};
+constexpr std::array<std::string_view, 11> viewed_lists{"dashlist", "callback", "line",   "vector", "ruler", "point",
+                                                        "compass",  "panda",    "cpanda", "epanda", "bpanda"};
 
 template <std::size_t count>
 bool is_one_of(const std::array<std::string_view, count>& names, std::string_view name) {

@@ -27,7 +27,7 @@ struct Region {
 /// What one line of a region file says.
 struct RegionLine {
   std::vector<Region> regions;
-  bool mark = false;  ///< whether it shows a point, which holds no pixel, though it may be meant to
+  std::vector<std::string> passed_over;  ///< shapes that have no area, by name
 };
 
 /// Reads one format, line by line.

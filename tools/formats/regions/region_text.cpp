@@ -1,12 +1,16 @@
 #include "tools/formats/regions/region_text.h"
 
 #include <algorithm>
+#include <array>
 #include <memory>
 #include <stdexcept>
 
+#include "tools/base/numbers.h"
 #include "tools/base/text.h"
 #include "tools/formats/regions/crtf.h"
 #include "tools/formats/regions/ds9.h"
+#include "tools/formats/regions/ds9_properties.h"
+#include "tools/formats/regions/words.h"
 
 namespace misfit::tools {
 namespace {
@@ -24,14 +28,16 @@ bool is_ds9(std::string_view text) {
     const std::string_view line = take_line(text);
     if (line.starts_with("#CRTF")) return false;
     if (line.starts_with("# Region file format: DS9")) return true;
-    if (line.empty() || line.starts_with('#') || line.starts_with("global")) continue;
+    if (line.empty() || line.starts_with('#')) continue;
+    const bool alone = regions::ds9_statements(line).size() == 1;  // semicolons part statements of DS9's alone
+    if (alone && regions::small_letters(line).starts_with("global")) continue;
     return line.substr(0, line.find('#')).find('[') == std::string_view::npos;
   }
   return false;
 }
 
-std::string line_of(const std::string& path, int line) {
-  return path + ", line " + std::to_string(line) + ": ";
+std::string lines_of(const std::string& path, const std::vector<int>& lines) {
+  return path + (lines.front() == lines.back() ? ", line " : ", lines ") + in_runs(lines) + ": ";
 }
 
 }  // namespace
@@ -49,10 +55,13 @@ RegionText::RegionText(const std::string& path, std::string_view text, const ima
     reader = std::make_unique<regions::CrtfReader>(image);
   read_lines(path, text, *reader);
   if (regions_.empty())
-    throw std::runtime_error(path + " holds no region; expected CASA region text such as circle [[100pix, 80pix], 20pix], or " +
-                             "regions of DS9 such as image; circle(101, 81, 20)");
+    throw std::runtime_error(
+        path + " holds no region with an area; expected CASA region text such as circle [[100pix, 80pix], 20pix], or " +
+        "regions of DS9 such as image; circle(101, 81, 20)");
   if (ds9) std::stable_partition(regions_.begin(), regions_.end(), [](const regions::Region& r) { return r.added; });
   look_for_pixels(path, image.stokes);
+  for (const auto& [shape, lines] : passed_over_)
+    doubts_.push_back(lines_of(path, lines) + "a " + shape + " holds no pixel and is passed over");
 }
 
 void RegionText::read_lines(const std::string& path, std::string_view text, regions::RegionReader& reader) {
@@ -66,16 +75,16 @@ void RegionText::read_lines(const std::string& path, std::string_view text, regi
         region.line = line;
         regions_.push_back(std::move(region));
       }
-      if (found.mark) doubts_.push_back(line_of(path, line) + "a symbol holds no pixel and is passed over");
+      for (const std::string& shape : found.passed_over) passed_over_[shape].push_back(line);
     } catch (const std::exception& error) {
-      throw std::runtime_error(line_of(path, line) + error.what());
+      throw std::runtime_error(lines_of(path, {line}) + error.what());
     }
   }
 }
 
 void RegionText::look_for_pixels(const std::string& path, const std::vector<imager::Stokes>& stokes) {
   if (std::none_of(regions_.begin(), regions_.end(), [](const regions::Region& r) { return r.of_planes(); }))
-    throw std::runtime_error(line_of(path, regions_.front().line) + "'" + regions_.front().planes +
+    throw std::runtime_error(lines_of(path, {regions_.front().line}) + "'" + regions_.front().planes +
                              "', expected planes of the image, corr of " + stokes_names(stokes) + " and range within its " +
                              std::to_string(channels_) + (channels_ == 1 ? " channel" : " channels") +
                              ": no region of the file is of any");
@@ -83,8 +92,8 @@ void RegionText::look_for_pixels(const std::string& path, const std::vector<imag
     bool pixels = false;
     regions::for_each_pixel(region.shape, width_, height_, [&](int, int) { pixels = true; });
     if (!region.of_planes())
-      doubts_.push_back(line_of(path, region.line) + "the region of " + region.planes + " is of no plane of the image");
-    if (!pixels) doubts_.push_back(line_of(path, region.line) + "the region holds the centre of no pixel of the image");
+      doubts_.push_back(lines_of(path, {region.line}) + "the region of " + region.planes + " is of no plane of the image");
+    if (!pixels) doubts_.push_back(lines_of(path, {region.line}) + "the region holds the centre of no pixel of the image");
   }
 }
 
@@ -108,6 +117,19 @@ imager::Image RegionText::mask(const imager::PlaneIndex& at) const {
                             [&](int row, int column) { mask.at(row, column) = region.added ? 1 : 0; });
   }
   return mask;
+}
+
+bool begins_regions(std::string_view text) {
+  constexpr std::array<std::string_view, 18> shapes{
+      "box",     "rectangularbox", "centerbox", "rotbox", "rotatedbox", "poly",   "polygon", "circle", "annulus",
+      "ellipse", "panda",          "cpanda",    "epanda", "bpanda",     "symbol", "point",   "line",   "vector"};
+  text = trimmed(text);
+  if (text.starts_with("#CRTF") || text.starts_with("# Region file format")) return true;
+  if (text.starts_with('-') || text.starts_with('+')) text.remove_prefix(1);
+  const std::string word = regions::small_letters(regions::take_word(text));
+  if (text.starts_with('[') || text.starts_with('(')) return std::find(shapes.begin(), shapes.end(), word) != shapes.end();
+  if (word == "global") return text.find(';') != std::string_view::npos;
+  return text.starts_with(';') && regions::is_ds9_frame(word);
 }
 
 }  // namespace misfit::tools

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <map>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -27,18 +28,25 @@ class RegionText {
   bool one_for_all_stokes() const;
   /// 1 in pixels of a plane that the regions allow, 0 elsewhere.
   imager::Image mask(const imager::PlaneIndex& at) const;
-  /// What of the text has no pixel of the image, a sentence each.
+  /// What of the text has no pixel of the image, a sentence each that names its lines.
   const std::vector<std::string>& doubts() const { return doubts_; }
 
  private:
   void read_lines(const std::string& path, std::string_view text, regions::RegionReader& reader);
   void look_for_pixels(const std::string& path, const std::vector<imager::Stokes>& stokes);
 
+  using Lines = std::map<std::string, std::vector<int>>;
+
   int width_;
   int height_;
   int channels_;
   std::vector<regions::Region> regions_;
+  Lines passed_over_;  ///< of shapes without an area, by name
   std::vector<std::string> doubts_;
 };
+
+/// Whether `text` begins as regions do and paths do not: with one of the formats' first lines, a shape and a bracket, or a
+/// frame of DS9's, or `global`, and a semicolon.
+bool begins_regions(std::string_view text);
 
 }  // namespace misfit::tools

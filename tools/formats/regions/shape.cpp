@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "imager/constants.h"
+
 namespace misfit::tools::regions {
 namespace {
 
@@ -86,6 +88,16 @@ void set_columns(const Outline& outline, int row, bool value, std::vector<bool>&
   }
 }
 
+bool holds(const Sector& sector, int column, int row) {
+  const double x = column - sector.centre.column, y = row - sector.centre.row, turn = 2 * imager::pi;
+  const auto beside = [&](double border_rad) {  // the border that lies in this direction
+    const double c = std::cos(border_rad), s = std::sin(border_rad);
+    return std::abs(y * c - x * s) <= on_border && x * c + y * s >= -on_border;
+  };
+  const double past_rad = std::fmod(std::fmod(std::atan2(y, x) - sector.from_rad, turn) + turn, turn);
+  return past_rad <= sector.span_rad || beside(sector.from_rad) || beside(sector.from_rad + sector.span_rad);
+}
+
 }  // namespace
 
 Polygon polygon_of(const Rectangle& r) {
@@ -107,7 +119,7 @@ void for_each_pixel(const Shape& shape, int width, int height, const std::functi
     set_columns(shape.outline, row, true, columns);
     if (shape.hole) set_columns(*shape.hole, row, false, columns);
     for (int column = 0; column < width; ++column)
-      if (columns[static_cast<std::size_t>(column)]) visit(row, column);
+      if (columns[static_cast<std::size_t>(column)] && (!shape.sector || holds(*shape.sector, column, row))) visit(row, column);
   }
 }
 

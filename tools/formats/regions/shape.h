@@ -38,10 +38,19 @@ struct Rectangle {
 };
 Polygon polygon_of(const Rectangle& rectangle);
 
-/// An outline without the hole in it.
+/// Directions from a centre, anticlockwise from one that is turned by `from_rad` from columns over `span_rad`, at most a whole
+/// turn; both borders included.
+struct Sector {
+  Point centre;
+  double from_rad = 0;
+  double span_rad = 0;
+};
+
+/// An outline without the hole in it and, if there is one, within the sector.
 struct Shape {
   Outline outline;
-  std::optional<Outline> hole;
+  std::optional<Outline> hole = {};
+  std::optional<Sector> sector = {};
 };
 
 /// Calls `visit` once for each pixel of an image that the shape holds: those whose centres lie within the outline or on it,

@@ -35,26 +35,10 @@ double number_of(std::string_view text, std::string_view whole, const std::strin
   return *value;
 }
 
-double parse_sexagesimal(std::string_view text, Sexagesimal form, const std::string& expected) {
-  const bool negative = text.starts_with('-');
-  std::string_view rest = text.substr(negative || text.starts_with('+') ? 1 : 0);
-  const auto whole_part = [&](char end) {
-    const std::size_t digits = rest.find_first_not_of("0123456789");
-    if (digits == 0 || digits == std::string_view::npos || rest[digits] != end) refuse(text, expected);
-    const double value = number_of(rest.substr(0, digits), text, expected);
-    rest.remove_prefix(digits + 1);
-    return value;
-  };
-  const double units = whole_part(form.first), minutes = whole_part(form.second);
-  if (form.second == 'm') {
-    if (!rest.ends_with('s')) refuse(text, expected);
-    rest.remove_suffix(1);
-  }
-  if (rest.empty() || std::isdigit(static_cast<unsigned char>(rest.front())) == 0) refuse(text, expected);
-  const double seconds = number_of(rest, text, expected);
-  if (minutes >= 60 || seconds >= 60) refuse(text, expected);
-  const double value = units + minutes / 60 + seconds / 3600;
-  return negative ? -value : value;
+double sexagesimal(std::string_view text, ms_io::Colons colons, const std::string& expected) {
+  const std::optional<double> angle_rad = ms_io::sexagesimal_rad(text, colons);
+  if (!angle_rad) refuse(text, expected + ", with minutes below 60 and seconds of 60 at most");
+  return *angle_rad;
 }
 
 }  // namespace misfit::tools::regions

@@ -4,6 +4,7 @@
 #include <string_view>
 
 #include "imager/constants.h"
+#include "ms_io/sexagesimal.h"
 
 namespace misfit::tools::regions {
 
@@ -21,14 +22,7 @@ std::string_view take_word(std::string_view& text);
 /// The finite number that `text` is; else refuses `whole`, in which it stands.
 double number_of(std::string_view text, std::string_view whole, const std::string& expected);
 
-/// What ends the first two parts of a sexagesimal angle: 12h30m49.4s, 12d23m28s, 12:23:28.0 or 12.23.28.0.
-struct Sexagesimal {
-  char first;
-  char second;  ///< if it is m, an s ends the third
-};
-inline constexpr Sexagesimal hours_letters{'h', 'm'}, degrees_letters{'d', 'm'}, colons{':', ':'}, dots{'.', '.'};
-
-/// Such an angle in units of its first part. Refuses what is none.
-double parse_sexagesimal(std::string_view text, Sexagesimal form, const std::string& expected);
+/// A sexagesimal angle, rad; see ms_io::sexagesimal_rad(). Refuses what is none.
+double sexagesimal(std::string_view text, ms_io::Colons colons, const std::string& expected);
 
 }  // namespace misfit::tools::regions
