@@ -102,6 +102,8 @@ class Clean(unittest.TestCase):
             with self.subTest(message), self.assertRaises(ValueError) as raised:
                 cleaned(**changes)
             self.assertIn(message, str(raised.exception))
+        with self.assertRaisesRegex(TypeError, "clean_mask is 'circle.*', expected an array.*misfit image --mask"):
+            cleaned(clean_mask="circle [[50pix, 50pix], 5pix]")
         with self.assertRaisesRegex(RuntimeError, "no visibility"):
             cleaned(mask=np.zeros((1500, 2), np.uint8))
 

@@ -508,6 +508,21 @@ BOOST_AUTO_TEST_CASE(a_mask_outside_the_image_cleans_nothing_and_says_so) {
   BOOST_TEST(report_of(folder / "a")["clean"]["stop_code"] == 7);
 }
 
+BOOST_AUTO_TEST_CASE(region_text_as_a_mask_is_that_of_a_file_and_of_the_next_run) {
+  const TemporaryFolder folder;
+  const std::string text = "circle [[20pix, 25pix], 3pix], corr=[I], label=\"it's; here\"";
+  std::ofstream(folder / "mask.crtf") << text;
+  const Arguments options{"--niter", "5", "--mask"};
+  succeed(small_image(snapshot(), folder / "a") + options + Arguments{text});
+  succeed(small_image(snapshot(), folder / "b") + options + Arguments{folder / "mask.crtf"});
+  succeed({"image", "--config", folder / "a.last.ini", "--imagename", folder / "c"});
+  const imager::Image mask = imager::read_fits(folder / "b.mask.fits").image;
+  BOOST_TEST(std::count(mask.pixel.begin(), mask.pixel.end(), 1.0) == 29);
+  for (const char* name : {"a", "c"})
+    BOOST_TEST(imager::read_fits(folder / (std::string(name) + ".mask.fits")).image.pixel == mask.pixel);
+  BOOST_TEST(report_of(folder / "c")["options"]["mask"] == text);
+}
+
 BOOST_AUTO_TEST_CASE(a_name_with_blanks_quotes_and_umlauts_is_a_name) {
   const TemporaryFolder folder;
   const std::string odd = folder / "a 'b' \"c\" ü;$(d)";

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "tools/base/files.h"
+#include "tools/base/text.h"
 #include "tools/formats/image_file.h"
 
 namespace misfit::tools {
@@ -23,9 +24,26 @@ bool is_image(const std::string& path) {
   return file.read(begin.data(), 6) && begin == "SIMPLE";
 }
 
+/// Whether a mask is written where its path would stand: as tclean takes regions, where no file has that name.
+bool is_text_itself(const std::string& mask) {
+  std::error_code reason;
+  if (std::filesystem::exists(mask, reason)) return false;
+  if (begins_regions(mask)) return true;
+  if (!reason) reason = std::make_error_code(std::errc::no_such_file_or_directory);
+  throw std::runtime_error("cannot read mask " + mask + ": " + reason.message() +
+                           "; expected a FITS or CASA image, a region file, or region text such as circle [[100pix, 80pix], "
+                           "20pix]");
+}
+
 }  // namespace
 
 MaskFile::MaskFile(const std::string& path, imager::ImageHeader image) : image_(std::move(image)) {
+  if (is_text_itself(path)) {
+    if (path.find_first_of("\r\n") != std::string::npos)
+      throw std::runtime_error("mask " + legible(path) + " has several lines; expected one of region text, or a file of them");
+    regions_ = std::make_unique<RegionText>("--mask", path, image_);
+    return;
+  }
   if (!is_image(path)) {
     regions_ = std::make_unique<RegionText>(path, read_file(path), image_);
     return;

@@ -17,8 +17,9 @@ namespace misfit::tools {
 /// spectral axis and that of Stokes parameters alike; or region text, see regions/region_text.h.
 class MaskFile {
  public:
-  /// Of an image with these pixels, planes and Stokes parameters. Throws std::runtime_error that names the file and what was
-  /// expected.
+  /// Of an image with these pixels, planes and Stokes parameters. `path` may be a line of region text itself, as in tclean,
+  /// such as circle [[100pix, 80pix], 20pix], where no file has that name. Throws std::runtime_error that names the file and
+  /// what was expected.
   MaskFile(const std::string& path, imager::ImageHeader image);
 
   bool one_for_all_channels() const;

@@ -115,10 +115,11 @@ void declare(CLI::App& command, ImageOptions& o) {
           "Restore with this beam: MAJ, or MAJ,MIN,PA such as 0.5arcsec,0.4arcsec,30deg; the fitted one when empty or common")
       ->check(values_are({"common"}, Others::possible));
   command
-      .add_option("--mask", o.mask,
-                  "Where CLEAN finds components: a FITS or CASA image, not 0 there, wherever its coordinates have it, or a "
-                  "region file of "
-                  "CASA (CRTF), CARTA or DS9; CRTF may name planes: corr=[I, Q], range=[3chan, 7chan]")
+      .add_option(
+          "--mask", o.mask,
+          "Where CLEAN finds components: a FITS or CASA image, not 0 there, wherever its coordinates have it, or a "
+          "region file of CASA (CRTF), CARTA or DS9, or one region itself, such as 'circle [[100pix, 80pix], 20pix]'; CRTF "
+          "may name planes: corr=[I, Q], range=[3chan, 7chan]")
       ->type_name(file_type);
   command
       .add_option("--usemask", o.usemask, "user: --mask, or everywhere; auto: from the residuals, as tclean's auto-multithresh")

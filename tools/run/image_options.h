@@ -61,7 +61,7 @@ struct ImageOptions {
   int cycleniter = -1;
   int nmajor = -1;
   std::string restoringbeam;  ///< empty = the fitted one
-  std::string mask;           ///< a file, see mask_file.h; empty = everywhere
+  std::string mask;           ///< a file, or region text, see mask_file.h; empty = everywhere
   std::string usemask = "user";
   double sidelobethreshold = 3;
   double noisethreshold = 5;

@@ -68,6 +68,11 @@ def image(pixels, name, shape):
     """Return pixels as float64, of the shape that is expected; None for None."""
     if pixels is None:
         return None
+    if isinstance(pixels, (str, bytes)):
+        raise TypeError(
+            f"{name} is {pixels!r}, expected an array of shape {tuple(shape)}: its pixels have no place on the sky, where files and "
+            "region text lie, as misfit image --mask takes them"
+        )
     pixels = np.ascontiguousarray(pixels, np.float64)
     if pixels.shape != tuple(shape):
         raise ValueError(f"{name} has the shape {pixels.shape}, expected {tuple(shape)}")
