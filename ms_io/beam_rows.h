@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "imager/antennas.h"
-#include "imager/geometry.h"
+#include "imager/data/antennas.h"
+#include "imager/data/geometry.h"
 
 namespace misfit::ms_io {
 

@@ -8,8 +8,8 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "imager/constants.h"
-#include "imager/julian_date.h"
+#include "imager/numerics/constants.h"
+#include "imager/numerics/julian_date.h"
 #include "ms_io/casa_coordinates_internal.h"
 #include "ms_io/celestial_frame_internal.h"
 #include "ms_io/spectral_frame_internal.h"

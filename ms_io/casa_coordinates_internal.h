@@ -6,9 +6,9 @@
 #include <optional>
 #include <string>
 
-#include "imager/image_header.h"
-#include "imager/image_writer.h"
-#include "imager/sky_grid.h"
+#include "imager/files/image_header.h"
+#include "imager/files/image_writer.h"
+#include "imager/files/sky_grid.h"
 
 namespace misfit::ms_io {
 

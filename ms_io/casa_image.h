@@ -3,8 +3,8 @@
 #include <memory>
 #include <string>
 
-#include "imager/image_reader.h"
-#include "imager/image_writer.h"
+#include "imager/files/image_reader.h"
+#include "imager/files/image_writer.h"
 
 namespace misfit::ms_io {
 

@@ -12,7 +12,7 @@
 #include <sstream>
 #include <stdexcept>
 
-#include "imager/plane_beams.h"
+#include "imager/files/plane_beams.h"
 #include "ms_io/casa_coordinates_internal.h"
 #include "ms_io/casa_image.h"
 #include "ms_io/table_access_internal.h"

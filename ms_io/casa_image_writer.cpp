@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <stdexcept>
 
-#include "imager/written_planes.h"
+#include "imager/files/written_planes.h"
 #include "ms_io/casa_coordinates_internal.h"
 #include "ms_io/casa_image.h"
 #include "ms_io/image_folder_internal.h"

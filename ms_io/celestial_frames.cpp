@@ -8,7 +8,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "imager/constants.h"
+#include "imager/numerics/constants.h"
 #include "ms_io/celestial_frame_internal.h"
 
 namespace misfit::ms_io {

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "imager/geometry.h"
+#include "imager/data/geometry.h"
 
 namespace misfit::ms_io {
 

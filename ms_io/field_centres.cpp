@@ -8,7 +8,7 @@
 #include <sstream>
 #include <utility>
 
-#include "imager/constants.h"
+#include "imager/numerics/constants.h"
 #include "ms_io/field_centres_internal.h"
 #include "ms_io/observing_place_internal.h"
 #include "ms_io/row_columns_internal.h"

@@ -10,7 +10,7 @@
 #include <map>
 #include <string>
 
-#include "imager/geometry.h"
+#include "imager/data/geometry.h"
 #include "ms_io/ephemeris_internal.h"
 
 namespace misfit::ms_io {

@@ -4,7 +4,7 @@
 #include <memory>
 #include <vector>
 
-#include "imager/phase_shift.h"
+#include "imager/data/phase_shift.h"
 
 namespace misfit::ms_io {
 

@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "imager/ranks.h"
+#include "imager/data/ranks.h"
 #include "ms_io/selection_internal.h"
 #include "ms_io/zeros.h"
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "imager/observation.h"
+#include "imager/data/observation.h"
 #include "ms_io/row_shares_internal.h"
 
 namespace misfit::ms_io {

@@ -7,10 +7,10 @@
 #include <string>
 #include <vector>
 
-#include "imager/extent.h"
-#include "imager/observation.h"
-#include "imager/stokes.h"
-#include "imager/visibilities.h"
+#include "imager/data/extent.h"
+#include "imager/data/observation.h"
+#include "imager/data/stokes.h"
+#include "imager/data/visibilities.h"
 #include "ms_io/beam_rows.h"
 #include "ms_io/selection.h"
 #include "ms_io/spectral_frame.h"

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "imager/observation.h"
+#include "imager/data/observation.h"
 #include "ms_io/field_centres_internal.h"
 #include "ms_io/row_shares_internal.h"
 

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "imager/visibilities.h"
+#include "imager/data/visibilities.h"
 #include "ms_io/measurement_set.h"
 
 namespace misfit::ms_io {

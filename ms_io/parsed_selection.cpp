@@ -7,7 +7,7 @@
 #include <cctype>
 #include <cstdlib>
 
-#include "imager/constants.h"
+#include "imager/numerics/constants.h"
 #include "ms_io/parsed_selection_internal.h"
 #include "ms_io/table_access_internal.h"
 

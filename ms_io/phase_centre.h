@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "imager/geometry.h"
+#include "imager/data/geometry.h"
 #include "ms_io/selection.h"
 
 namespace misfit::ms_io {

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "imager/phase_shift.h"
+#include "imager/data/phase_shift.h"
 #include "ms_io/field_directions_internal.h"
 #include "ms_io/phase_centre.h"
 

@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-#include "imager/geometry.h"
+#include "imager/data/geometry.h"
 
 namespace misfit::ms_io {
 

@@ -4,7 +4,7 @@
 #include <charconv>
 #include <cmath>
 
-#include "imager/constants.h"
+#include "imager/numerics/constants.h"
 
 namespace misfit::ms_io {
 namespace {

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "imager/geometry.h"
-#include "imager/visibilities.h"
+#include "imager/data/geometry.h"
+#include "imager/data/visibilities.h"
 
 namespace misfit::ms_io {
 

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "imager/stokes.h"
-#include "imager/visibilities.h"
+#include "imager/data/stokes.h"
+#include "imager/data/visibilities.h"
 
 namespace misfit::ms_io {
 

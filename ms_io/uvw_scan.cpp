@@ -2,7 +2,7 @@
 #include <array>
 #include <cmath>
 
-#include "imager/constants.h"
+#include "imager/numerics/constants.h"
 #include "ms_io/row_columns_internal.h"
 #include "ms_io/uvw_scan_internal.h"
 

@@ -2,7 +2,7 @@
 
 #include <functional>
 
-#include "imager/extent.h"
+#include "imager/data/extent.h"
 #include "ms_io/measurement_set.h"
 #include "ms_io/visibility_reader_internal.h"
 

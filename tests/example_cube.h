@@ -4,10 +4,10 @@
 #include <optional>
 #include <random>
 
-#include "imager/beam.h"
-#include "imager/image.h"
-#include "imager/image_header.h"
-#include "imager/image_writer.h"
+#include "imager/beams/beam.h"
+#include "imager/data/image.h"
+#include "imager/files/image_header.h"
+#include "imager/files/image_writer.h"
 
 namespace misfit::testing {
 

@@ -7,7 +7,7 @@
 #include <map>
 #include <string>
 
-#include "imager/image.h"
+#include "imager/data/image.h"
 
 namespace misfit::testing {
 

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "imager/ranks.h"
+#include "imager/data/ranks.h"
 
 namespace CLI {
 class App;

@@ -1,5 +1,5 @@
 # cmake --install: the program, the libraries with their headers, and the package that find_package(misfit) and pkg-config find.
-# Headers keep their folders: #include "imager/geometry.h" works for a consumer as it does here. What programs run with is of the
+# Headers keep their folders: #include "imager/data/geometry.h" works for a consumer as it does here. What programs run with is of the
 # install component runtime, what they are built with of dev.
 include(CMakePackageConfigHelpers)
 

@@ -4,7 +4,7 @@
 #include <memory>
 
 #include "imager/direct/source_sums.h"
-#include "imager/parallel.h"
+#include "imager/numerics/parallel.h"
 #include "kernels/version.h"
 #include "ms_io/fingerprint.h"
 #include "ms_io/measurement_set.h"

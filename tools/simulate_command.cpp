@@ -4,9 +4,9 @@
 #include <memory>
 #include <numbers>
 
+#include "imager/beams/telescopes.h"
 #include "imager/direct/source_sums.h"
-#include "imager/parallel.h"
-#include "imager/telescopes.h"
+#include "imager/numerics/parallel.h"
 #include "ms_io/simulated_set.h"
 #include "tools/base/array.h"
 #include "tools/base/numbers.h"

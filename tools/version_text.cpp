@@ -2,9 +2,9 @@
 
 #include <Eigen/Core>
 
-#include "imager/fft.h"
-#include "imager/fits_file.h"
-#include "imager/instruction_set.h"
+#include "imager/files/fits_file.h"
+#include "imager/numerics/fft.h"
+#include "imager/numerics/instruction_set.h"
 #include "kernels/version.h"
 #include "ms_io/casacore_version.h"
 #include "tools/build_facts.h"

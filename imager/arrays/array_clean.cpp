@@ -6,10 +6,10 @@
 #include <string>
 
 #include "imager/arrays/array_source.h"
-#include "imager/constants.h"
-#include "imager/parallel.h"
+#include "imager/data/stored_visibilities.h"
+#include "imager/numerics/constants.h"
+#include "imager/numerics/parallel.h"
 #include "imager/plan/accurate_imaging.h"
-#include "imager/stored_visibilities.h"
 
 namespace misfit::imager {
 namespace {

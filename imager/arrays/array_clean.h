@@ -1,7 +1,7 @@
 #pragma once
 
 #include "imager/arrays/array_transform.h"
-#include "imager/beam.h"
+#include "imager/beams/beam.h"
 #include "imager/clean/clean.h"
 #include "imager/clean/deconvolver.h"
 

@@ -8,8 +8,8 @@
 #include <stdexcept>
 #include <string>
 
-#include "imager/constants.h"
-#include "imager/parallel.h"
+#include "imager/numerics/constants.h"
+#include "imager/numerics/parallel.h"
 
 namespace misfit::imager {
 namespace {

@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "imager/arrays/strided.h"
-#include "imager/extent.h"
-#include "imager/parallel.h"
-#include "imager/visibilities.h"
+#include "imager/data/extent.h"
+#include "imager/data/visibilities.h"
+#include "imager/numerics/parallel.h"
 
 namespace misfit::imager {
 

@@ -5,7 +5,7 @@
 #include <limits>
 #include <stdexcept>
 
-#include "imager/parallel.h"
+#include "imager/numerics/parallel.h"
 
 namespace misfit::imager {
 namespace {

@@ -7,8 +7,8 @@
 #include <string>
 #include <utility>
 
-#include "imager/image_statistics.h"
-#include "imager/parallel.h"
+#include "imager/data/image_statistics.h"
+#include "imager/numerics/parallel.h"
 #include "imager/plan/plan_text_internal.h"
 #include "imager/plan/planned_transform.h"
 

@@ -4,9 +4,9 @@
 #include <optional>
 
 #include "imager/arrays/array_samples.h"
-#include "imager/image.h"
+#include "imager/data/image.h"
 #include "imager/plan/gridding_plan.h"
-#include "imager/transform.h"
+#include "imager/transform/transform.h"
 
 namespace misfit::imager {
 

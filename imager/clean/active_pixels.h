@@ -5,8 +5,8 @@
 
 #include "imager/clean/minor_cycle.h"
 #include "imager/clean/psf_core.h"
-#include "imager/image.h"
-#include "imager/noise.h"
+#include "imager/data/image.h"
+#include "imager/data/noise.h"
 
 namespace misfit::imager {
 

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "imager/parallel.h"
+#include "imager/numerics/parallel.h"
 
 namespace misfit::imager {
 namespace {

@@ -6,7 +6,7 @@
 #include "imager/clean/active_pixels.h"
 #include "imager/clean/minor_cycle.h"
 #include "imager/clean/psf_core.h"
-#include "imager/image.h"
+#include "imager/data/image.h"
 #include "imager/taylor/taylor_basis.h"
 
 namespace misfit::imager {

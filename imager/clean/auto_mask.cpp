@@ -7,7 +7,7 @@
 
 #include "imager/clean/gaussian_blur.h"
 #include "imager/clean/mask.h"
-#include "imager/noise.h"
+#include "imager/data/noise.h"
 
 namespace misfit::imager {
 namespace {

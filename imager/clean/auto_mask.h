@@ -1,6 +1,6 @@
 #pragma once
 
-#include "imager/image.h"
+#include "imager/data/image.h"
 
 namespace misfit::imager {
 

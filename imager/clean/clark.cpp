@@ -5,7 +5,7 @@
 #include "imager/clean/active_pixels.h"
 #include "imager/clean/components.h"
 #include "imager/clean/mask.h"
-#include "imager/noise.h"
+#include "imager/data/noise.h"
 
 namespace misfit::imager {
 

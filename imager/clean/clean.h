@@ -6,11 +6,11 @@
 #include <string>
 #include <vector>
 
-#include "imager/beam.h"
+#include "imager/beams/beam.h"
 #include "imager/clean/auto_mask.h"
 #include "imager/clean/components.h"
 #include "imager/clean/minor_cycle.h"
-#include "imager/imaging.h"
+#include "imager/transform/imaging.h"
 
 namespace misfit::imager {
 

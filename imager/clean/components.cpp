@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "imager/clean/gaussian_blur.h"
-#include "imager/parallel.h"
+#include "imager/numerics/parallel.h"
 
 namespace misfit::imager {
 namespace {

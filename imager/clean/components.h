@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "imager/image.h"
+#include "imager/data/image.h"
 #include "imager/taylor/taylor_expansion.h"
 
 namespace misfit::imager {

@@ -3,9 +3,9 @@
 #include <complex>
 #include <functional>
 
-#include "imager/big_array.h"
-#include "imager/fft.h"
-#include "imager/image.h"
+#include "imager/data/image.h"
+#include "imager/numerics/big_array.h"
+#include "imager/numerics/fft.h"
 
 namespace misfit::imager {
 

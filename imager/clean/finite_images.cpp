@@ -4,7 +4,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "imager/noise.h"
+#include "imager/data/noise.h"
 
 namespace misfit::imager {
 namespace {

@@ -7,8 +7,8 @@
 #include <stdexcept>
 #include <string>
 
-#include "imager/fft.h"
-#include "imager/parallel.h"
+#include "imager/numerics/fft.h"
+#include "imager/numerics/parallel.h"
 
 namespace misfit::imager {
 namespace {

@@ -8,9 +8,9 @@
 #include <string>
 #include <utility>
 
-#include "imager/big_array.h"
 #include "imager/clean/mask.h"
-#include "imager/noise.h"
+#include "imager/data/noise.h"
+#include "imager/numerics/big_array.h"
 
 namespace misfit::imager {
 namespace {

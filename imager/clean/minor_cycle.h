@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "imager/clean/components.h"
-#include "imager/image.h"
+#include "imager/data/image.h"
 
 namespace misfit::imager {
 

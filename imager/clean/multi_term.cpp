@@ -8,7 +8,7 @@
 
 #include "imager/clean/components.h"
 #include "imager/clean/mask.h"
-#include "imager/noise.h"
+#include "imager/data/noise.h"
 
 namespace misfit::imager {
 namespace {

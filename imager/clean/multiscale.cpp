@@ -9,7 +9,7 @@
 #include "imager/clean/gaussian_blur.h"
 #include "imager/clean/mask.h"
 #include "imager/clean/scale_places.h"
-#include "imager/noise.h"
+#include "imager/data/noise.h"
 
 namespace misfit::imager {
 namespace {

@@ -8,8 +8,8 @@
 
 #include "imager/clean/gaussian_blur.h"
 #include "imager/clean/mask.h"
-#include "imager/noise.h"
-#include "imager/parallel.h"
+#include "imager/data/noise.h"
+#include "imager/numerics/parallel.h"
 
 namespace misfit::imager {
 namespace {

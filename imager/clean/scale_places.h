@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "imager/image.h"
+#include "imager/data/image.h"
 
 namespace misfit::imager {
 

@@ -1,8 +1,8 @@
 #pragma once
 
 #include "imager/clean/components.h"
-#include "imager/imaging.h"
 #include "imager/taylor/taylor_expansion.h"
+#include "imager/transform/imaging.h"
 
 namespace misfit::imager {
 

@@ -5,9 +5,9 @@
 #include <mutex>
 #include <vector>
 
-#include "imager/big_array.h"
 #include "imager/clean/convolution.h"
-#include "imager/image.h"
+#include "imager/data/image.h"
+#include "imager/numerics/big_array.h"
 
 namespace misfit::imager {
 

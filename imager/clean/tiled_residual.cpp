@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "imager/clean/tiled_residual_loops.h"
-#include "imager/parallel.h"
+#include "imager/numerics/parallel.h"
 
 namespace misfit::imager {
 namespace {

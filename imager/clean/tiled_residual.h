@@ -5,8 +5,8 @@
 
 #include "imager/clean/component_log.h"
 #include "imager/clean/tiled_psf.h"
-#include "imager/image.h"
-#include "imager/noise.h"
+#include "imager/data/image.h"
+#include "imager/data/noise.h"
 
 namespace misfit::imager {
 

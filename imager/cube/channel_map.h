@@ -3,8 +3,8 @@
 #include <cstddef>
 #include <vector>
 
-#include "imager/spectral_axis.h"
-#include "imager/visibilities.h"
+#include "imager/data/spectral_axis.h"
+#include "imager/data/visibilities.h"
 
 namespace misfit::imager {
 

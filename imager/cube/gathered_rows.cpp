@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "imager/cube/row_order.h"
-#include "imager/parallel.h"
+#include "imager/numerics/parallel.h"
 
 namespace misfit::imager {
 namespace {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "imager/cube/channel_map.h"
-#include "imager/visibilities.h"
+#include "imager/data/visibilities.h"
 
 namespace misfit::imager {
 

@@ -5,8 +5,8 @@
 #include <string>
 #include <utility>
 
-#include "imager/parallel.h"
-#include "imager/prefetch.h"
+#include "imager/numerics/parallel.h"
+#include "imager/streaming/prefetch.h"
 
 namespace misfit::imager {
 namespace {

@@ -7,8 +7,8 @@
 
 #include "imager/cube/channel_map.h"
 #include "imager/cube/gathered_rows.h"
-#include "imager/imaging.h"
-#include "imager/stored_visibilities.h"
+#include "imager/data/stored_visibilities.h"
+#include "imager/transform/imaging.h"
 
 namespace misfit::imager {
 

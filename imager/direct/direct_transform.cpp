@@ -3,13 +3,13 @@
 #include <algorithm>
 #include <array>
 
-#include "imager/constants.h"
-#include "imager/horizon.h"
-#include "imager/parallel.h"
-#include "imager/phase.h"
-#include "imager/phasors.h"
-#include "imager/sampling.h"
-#include "imager/span_sums.h"
+#include "imager/data/horizon.h"
+#include "imager/data/phase.h"
+#include "imager/numerics/constants.h"
+#include "imager/numerics/parallel.h"
+#include "imager/numerics/phasors.h"
+#include "imager/transform/sampling.h"
+#include "imager/transform/span_sums.h"
 
 namespace misfit::imager {
 namespace {

@@ -1,8 +1,8 @@
 #pragma once
 
+#include "imager/data/geometry.h"
 #include "imager/direct/source_sums.h"
-#include "imager/geometry.h"
-#include "imager/transform.h"
+#include "imager/transform/transform.h"
 
 namespace misfit::imager {
 

@@ -7,7 +7,7 @@
 // Read anew for each instruction set, so they come after what names it.
 #include <hwy/contrib/math/math-inl.h>
 
-#include "imager/phasor_vectors_internal.h"
+#include "imager/numerics/phasor_vectors_internal.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace misfit::imager::HWY_NAMESPACE {

@@ -8,10 +8,10 @@
 #include <numeric>
 #include <utility>
 
-#include "imager/constants.h"
+#include "imager/data/phase.h"
 #include "imager/direct/source_loops.h"
-#include "imager/parallel.h"
-#include "imager/phase.h"
+#include "imager/numerics/constants.h"
+#include "imager/numerics/parallel.h"
 
 namespace misfit::imager {
 namespace {

@@ -3,8 +3,8 @@
 #include <complex>
 #include <vector>
 
-#include "imager/source.h"
-#include "imager/visibilities.h"
+#include "imager/data/source.h"
+#include "imager/data/visibilities.h"
 
 namespace misfit::imager {
 

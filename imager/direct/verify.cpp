@@ -4,7 +4,7 @@
 #include <cmath>
 #include <random>
 
-#include "imager/noise.h"
+#include "imager/data/noise.h"
 
 namespace misfit::imager {
 namespace {

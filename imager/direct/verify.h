@@ -1,7 +1,7 @@
 #pragma once
 
 #include "imager/direct/direct_transform.h"
-#include "imager/imaging.h"
+#include "imager/transform/imaging.h"
 
 namespace misfit::imager {
 

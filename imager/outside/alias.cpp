@@ -4,8 +4,8 @@
 #include <cmath>
 #include <set>
 
-#include "imager/constants.h"
-#include "imager/extent.h"
+#include "imager/data/extent.h"
+#include "imager/numerics/constants.h"
 #include "kernels/evaluation.h"
 
 namespace misfit::imager {

@@ -3,8 +3,8 @@
 #include <vector>
 
 #include "imager/clean/components.h"
+#include "imager/data/source.h"
 #include "imager/outside/alias.h"
-#include "imager/source.h"
 
 namespace misfit::imager {
 

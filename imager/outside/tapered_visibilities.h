@@ -1,6 +1,6 @@
 #pragma once
 
-#include "imager/visibilities.h"
+#include "imager/data/visibilities.h"
 
 namespace misfit::imager {
 

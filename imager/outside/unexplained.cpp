@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "imager/constants.h"
-#include "imager/sampling.h"
+#include "imager/numerics/constants.h"
+#include "imager/transform/sampling.h"
 
 namespace misfit::imager {
 namespace {

@@ -2,8 +2,8 @@
 
 #include <cmath>
 
-#include "imager/geometry.h"
-#include "imager/imaging.h"
+#include "imager/data/geometry.h"
+#include "imager/transform/imaging.h"
 
 namespace misfit::imager {
 

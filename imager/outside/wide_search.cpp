@@ -7,11 +7,11 @@
 #include "imager/clean/clean.h"
 #include "imager/clean/deconvolver.h"
 #include "imager/clean/shared_model.h"
-#include "imager/constants.h"
-#include "imager/noise.h"
+#include "imager/data/noise.h"
+#include "imager/numerics/constants.h"
 #include "imager/outside/tapered_visibilities.h"
 #include "imager/plan/planned_transform.h"
-#include "imager/sampling.h"
+#include "imager/transform/sampling.h"
 
 namespace misfit::imager {
 namespace {

@@ -3,11 +3,11 @@
 #include <array>
 #include <cstdint>
 
-#include "imager/imaging.h"
 #include "imager/outside/outside.h"
 #include "imager/outside/sidelobes.h"
 #include "imager/outside/unexplained.h"
 #include "imager/plan/gridding_plan.h"
+#include "imager/transform/imaging.h"
 
 namespace misfit::imager {
 

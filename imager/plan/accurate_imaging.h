@@ -1,9 +1,9 @@
 #pragma once
 
-#include "imager/extent.h"
-#include "imager/imaging.h"
+#include "imager/data/extent.h"
 #include "imager/plan/gridding_plan.h"
 #include "imager/plan/planned_transform.h"
+#include "imager/transform/imaging.h"
 
 namespace misfit::imager {
 

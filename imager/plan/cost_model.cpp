@@ -4,9 +4,9 @@
 #include <cmath>
 #include <random>
 
-#include "imager/fft.h"
-#include "imager/stage_times.h"
-#include "imager/transform.h"
+#include "imager/numerics/fft.h"
+#include "imager/numerics/stage_times.h"
+#include "imager/transform/transform.h"
 #include "kernels/catalogue.h"
 
 namespace misfit::imager {
@@ -56,12 +56,12 @@ struct Trial {
 };
 
 Trial time_of(int samples, int pixels, int width, Precision precision) {
-  PlaneTransformOptions options;
+  CoplanarOptions options;
   options.geometry = {pixels, pixels, 1e-6, {}};
   options.nu = options.nv = fast_fft_size(2 * pixels);
   options.kernel_u = options.kernel_v = kernels::kernel_family("least-misfit").make(width, 0.25);
   options.precision = precision;
-  const auto transform = make_plane_transform(options);
+  const auto transform = make_coplanar_transform(options);
   const VisibilityBlock block = random_block(samples, options.geometry.cell_rad);
   const int degree = options.kernel_u.polynomial.degree();
   Trial trial{{double(samples), width, degree, options.nu, options.nv, pixels, precision}, HUGE_VAL};

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "imager/plane/plane_transform.h"
+#include "imager/coplanar/coplanar_transform.h"
 
 namespace misfit::imager {
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "imager/constants.h"
+#include "imager/numerics/constants.h"
 #include "kernels/cheapest_polynomial.h"
 
 namespace misfit::imager {

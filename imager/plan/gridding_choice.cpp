@@ -7,8 +7,8 @@
 #include <map>
 #include <optional>
 
-#include "imager/extent.h"
-#include "imager/fft.h"
+#include "imager/data/extent.h"
+#include "imager/numerics/fft.h"
 
 namespace misfit::imager {
 namespace {

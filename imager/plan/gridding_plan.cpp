@@ -4,7 +4,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "imager/constants.h"
+#include "imager/numerics/constants.h"
 #include "imager/plan/out_of_reach.h"
 #include "imager/plan/plan_text_internal.h"
 
@@ -131,7 +131,7 @@ GriddingPlan with_threads(GriddingPlan plan, int threads) {
   return plan;
 }
 
-std::string evaluation_of(const PlaneTransformOptions& options) {
+std::string evaluation_of(const CoplanarOptions& options) {
   if (!options.lookup) return "polynomials of degree " + std::to_string(options.kernel_u.polynomial.degree());
   return text(*options.lookup);
 }
@@ -171,8 +171,8 @@ GriddingPlan plan_together(const GriddingRequest& request, const std::string& wh
   plan.choice = choose_gridding(request);
   const GriddingCandidate& best = plan.choice.best;
   if (!plan.choice.reached && !request.best_effort) throw std::invalid_argument(out_of_reach(request, plan.choice, what));
-  static_cast<PlaneTransformOptions&>(plan.options) = {request.geometry, best.work.nu,        best.work.nv,    best.u.kernel,
-                                                       best.v.kernel,    best.work.precision, request.threads, request.lookup};
+  static_cast<CoplanarOptions&>(plan.options) = {request.geometry, best.work.nu,        best.work.nv,    best.u.kernel,
+                                                 best.v.kernel,    best.work.precision, request.threads, request.lookup};
   if (best.work.has_w_axis()) {
     plan.options.kernel_w = best.w.kernel;
     plan.options.facets_l = best.faceting.along_l;
@@ -304,7 +304,7 @@ TransformMemory memory_of(const GriddingPlan& plan) {
   }
   const int stokes = std::max(1, plan.request.stokes);
   const auto samples = static_cast<double>(plan.request.samples);
-  if (!plan.options.has_w_axis()) return memory_of(static_cast<const PlaneTransformOptions&>(plan.options), stokes, samples);
+  if (!plan.options.has_w_axis()) return memory_of(static_cast<const CoplanarOptions&>(plan.options), stokes, samples);
   const GriddingCandidate& best = plan.choice.best;
   const std::vector<double>& turns = best.faceting.turns;
   const double most = *std::max_element(turns.begin(), turns.end());

@@ -37,7 +37,7 @@ GriddingPlan plan_gridding(const GriddingRequest& request);
 GriddingPlan with_threads(GriddingPlan plan, int threads);
 
 /// How its taps are had: "polynomials of degree 9", or "cubic tables of 64 entries a cell".
-std::string evaluation_of(const PlaneTransformOptions& options);
+std::string evaluation_of(const CoplanarOptions& options);
 
 /// The memory that the planned transform takes.
 TransformMemory memory_of(const GriddingPlan& plan);

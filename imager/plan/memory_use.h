@@ -4,8 +4,8 @@
 #include <optional>
 #include <string>
 
-#include "imager/plane/plane_transform.h"
-#include "imager/streamed_visibilities.h"
+#include "imager/coplanar/coplanar_transform.h"
+#include "imager/streaming/streamed_visibilities.h"
 
 namespace misfit::imager {
 

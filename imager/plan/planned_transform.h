@@ -4,7 +4,7 @@
 
 #include "imager/direct/direct_transform.h"
 #include "imager/plan/gridding_plan.h"
-#include "imager/transform.h"
+#include "imager/transform/transform.h"
 
 namespace misfit::imager {
 

@@ -4,8 +4,8 @@
 #include <cstddef>
 #include <limits>
 
-#include "imager/noise.h"
-#include "imager/parallel.h"
+#include "imager/data/noise.h"
+#include "imager/numerics/parallel.h"
 
 namespace misfit::imager {
 namespace {

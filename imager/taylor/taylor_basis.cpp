@@ -5,7 +5,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "imager/parallel.h"
+#include "imager/numerics/parallel.h"
 
 namespace misfit::imager {
 namespace {

@@ -3,7 +3,7 @@
 #include <array>
 #include <vector>
 
-#include "imager/image.h"
+#include "imager/data/image.h"
 #include "imager/taylor/taylor_expansion.h"
 
 namespace misfit::imager {

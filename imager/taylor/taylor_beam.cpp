@@ -5,7 +5,7 @@
 #include <cmath>
 #include <cstddef>
 
-#include "imager/horizon.h"
+#include "imager/data/horizon.h"
 
 namespace misfit::imager {
 namespace {

@@ -3,10 +3,10 @@
 #include <array>
 #include <vector>
 
-#include "imager/geometry.h"
-#include "imager/image.h"
-#include "imager/primary_beam.h"
-#include "imager/radial_function.h"
+#include "imager/beams/primary_beam.h"
+#include "imager/beams/radial_function.h"
+#include "imager/data/geometry.h"
+#include "imager/data/image.h"
 #include "imager/taylor/taylor_expansion.h"
 
 namespace misfit::imager {

@@ -3,12 +3,12 @@
 #include <stdexcept>
 #include <utility>
 
-#include "imager/big_array.h"
-#include "imager/image_statistics.h"
-#include "imager/phase.h"
-#include "imager/phasors.h"
+#include "imager/data/image_statistics.h"
+#include "imager/data/phase.h"
+#include "imager/numerics/big_array.h"
+#include "imager/numerics/phasors.h"
 #include "imager/taylor/taylor_prediction.h"
-#include "imager/visibility_pass_internal.h"
+#include "imager/transform/visibility_pass_internal.h"
 
 namespace misfit::imager {
 namespace {

@@ -2,9 +2,9 @@
 
 #include <vector>
 
-#include "imager/geometry.h"
-#include "imager/imaging.h"
+#include "imager/data/geometry.h"
 #include "imager/taylor/taylor_expansion.h"
+#include "imager/transform/imaging.h"
 
 namespace misfit::imager {
 

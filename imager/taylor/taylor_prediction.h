@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "imager/taylor/taylor_expansion.h"
-#include "imager/transform.h"
+#include "imager/transform/transform.h"
 
 namespace misfit::imager {
 

@@ -5,8 +5,8 @@
 #include <limits>
 #include <utility>
 
-#include "imager/constants.h"
-#include "imager/parallel.h"
+#include "imager/numerics/constants.h"
+#include "imager/numerics/parallel.h"
 #include "imager/weighting/cell_factors.h"
 
 namespace misfit::imager {

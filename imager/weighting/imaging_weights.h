@@ -3,9 +3,9 @@
 #include <optional>
 #include <string>
 
-#include "imager/extent.h"
-#include "imager/imaging.h"
-#include "imager/stored_visibilities.h"
+#include "imager/data/extent.h"
+#include "imager/data/stored_visibilities.h"
+#include "imager/transform/imaging.h"
 #include "imager/weighting/uv_density.h"
 #include "imager/weighting/uv_taper.h"
 

@@ -4,7 +4,7 @@
 #include <limits>
 #include <vector>
 
-#include "imager/geometry.h"
+#include "imager/data/geometry.h"
 
 namespace misfit::imager {
 

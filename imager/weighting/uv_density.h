@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "imager/visibilities.h"
+#include "imager/data/visibilities.h"
 #include "imager/weighting/uv_cells.h"
 
 namespace misfit::imager {

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "imager/constants.h"
+#include "imager/numerics/constants.h"
 
 namespace misfit::imager {
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "imager/beam.h"
+#include "imager/beams/beam.h"
 
 namespace misfit::imager {
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "imager/phasors.h"
+#include "imager/numerics/phasors.h"
 
 namespace misfit::imager {
 

@@ -4,8 +4,8 @@
 #include <cstddef>
 #include <vector>
 
-#include "imager/image.h"
-#include "imager/plane/correction.h"
+#include "imager/coplanar/correction.h"
+#include "imager/data/image.h"
 #include "imager/wide/column_loops.h"
 #include "imager/wide/facet.h"
 

@@ -2,7 +2,7 @@
 
 #include <complex>
 
-#include "imager/plane/correction.h"
+#include "imager/coplanar/correction.h"
 #include "imager/wide/facet.h"
 
 namespace misfit::imager {

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "imager/geometry.h"
+#include "imager/data/geometry.h"
 
 namespace misfit::imager {
 

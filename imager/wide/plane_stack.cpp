@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "imager/parallel.h"
+#include "imager/numerics/parallel.h"
 
 namespace misfit::imager {
 

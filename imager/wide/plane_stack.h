@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "imager/big_array.h"
+#include "imager/numerics/big_array.h"
 #include "imager/wide/stack_loops.h"
 
 namespace misfit::imager {

@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <array>
 
-#include "imager/fft.h"
-#include "imager/parallel.h"
-#include "imager/spares.h"
+#include "imager/numerics/fft.h"
+#include "imager/numerics/parallel.h"
+#include "imager/numerics/spares.h"
 
 namespace misfit::imager {
 namespace {

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "imager/image.h"
+#include "imager/data/image.h"
 #include "imager/wide/column_group.h"
 #include "imager/wide/plane_stack.h"
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "imager/plane/batch_taps.h"
+#include "imager/coplanar/batch_taps.h"
 
 // Highway compiles what stands inside HWY_NAMESPACE once for every instruction set and chooses among them at run time.
 #undef HWY_TARGET_INCLUDE

@@ -4,9 +4,9 @@
 #include <cstddef>
 #include <vector>
 
-#include "imager/plane/tap_table.h"
-#include "imager/plane/tile_positions.h"
-#include "imager/visibility_sets.h"
+#include "imager/coplanar/tap_table.h"
+#include "imager/coplanar/tile_positions.h"
+#include "imager/data/visibility_sets.h"
 
 namespace misfit::imager {
 

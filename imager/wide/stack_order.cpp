@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "imager/parallel.h"
-#include "imager/plane/tile_order.h"
+#include "imager/coplanar/tile_order.h"
+#include "imager/numerics/parallel.h"
 
 namespace misfit::imager {
 namespace {

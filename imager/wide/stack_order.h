@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "imager/visibilities.h"
+#include "imager/data/visibilities.h"
 #include "imager/wide/stack_places.h"
 
 namespace misfit::imager {

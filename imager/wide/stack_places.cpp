@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "imager/constants.h"
+#include "imager/numerics/constants.h"
 
 // Highway compiles what stands inside HWY_NAMESPACE once for every instruction set and chooses among them at run time. The
 // compiler vectorises these loops by itself.

@@ -2,7 +2,7 @@
 
 #include <cstdint>
 
-#include "imager/plane/tile_positions.h"
+#include "imager/coplanar/tile_positions.h"
 #include "imager/wide/facet.h"
 #include "imager/wide/plane_stack.h"
 

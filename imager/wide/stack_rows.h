@@ -2,8 +2,8 @@
 
 #include <vector>
 
-#include "imager/fft.h"
-#include "imager/spares.h"
+#include "imager/numerics/fft.h"
+#include "imager/numerics/spares.h"
 #include "imager/wide/plane_stack.h"
 
 namespace misfit::imager {

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <vector>
 
-#include "imager/phasors.h"
+#include "imager/numerics/phasors.h"
 #include "imager/wide/stack_loops.h"
 #include "imager/wide/stack_order.h"
 

@@ -2,15 +2,15 @@
 
 #include <algorithm>
 
-#include "imager/horizon.h"
-#include "imager/parallel.h"
-#include "imager/phase.h"
-#include "imager/phasors.h"
-#include "imager/sampling.h"
-#include "imager/span_sums.h"
-#include "imager/spares.h"
-#include "imager/stage_times.h"
-#include "imager/sum_unit.h"
+#include "imager/data/horizon.h"
+#include "imager/data/phase.h"
+#include "imager/numerics/parallel.h"
+#include "imager/numerics/phasors.h"
+#include "imager/numerics/spares.h"
+#include "imager/numerics/stage_times.h"
+#include "imager/numerics/sum_unit.h"
+#include "imager/transform/sampling.h"
+#include "imager/transform/span_sums.h"
 #include "imager/wide/stack_rows.h"
 #include "imager/wide/tile_sum.h"
 

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 
-#include "imager/parallel.h"
-#include "imager/spares.h"
-#include "imager/stage_times.h"
+#include "imager/numerics/parallel.h"
+#include "imager/numerics/spares.h"
+#include "imager/numerics/stage_times.h"
 #include "imager/wide/stack_rows.h"
 
 namespace misfit::imager {

@@ -72,7 +72,7 @@ double longest_sum(const WideTransformOptions& options, double samples) {
 }
 
 std::unique_ptr<Transform> make_transform(const WideTransformOptions& options) {
-  return options.has_w_axis() ? make_wide_transform(options) : make_plane_transform(options);
+  return options.has_w_axis() ? make_wide_transform(options) : make_coplanar_transform(options);
 }
 
 }  // namespace misfit::imager

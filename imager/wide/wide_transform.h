@@ -1,12 +1,12 @@
 #pragma once
 
-#include "imager/plane/plane_transform.h"
+#include "imager/coplanar/coplanar_transform.h"
 
 namespace misfit::imager {
 
 /// What a WideTransform is made of. The image is split into facets; each is a stack of w planes of its own. `nu` and `nv` are
 /// the FFT lengths of a facet, and the kernels' x0 at least the largest facet's size / (2 · FFT size).
-struct WideTransformOptions : PlaneTransformOptions {
+struct WideTransformOptions : CoplanarOptions {
   kernels::Kernel kernel_w;  ///< its x0 sets the distance of the planes: x0 / (largest |q| of the facet)
   int facets_l = 1;
   int facets_m = 1;

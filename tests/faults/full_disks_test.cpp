@@ -3,7 +3,7 @@
 
 #include <cstring>
 
-#include "imager/fits_image_reader.h"
+#include "imager/files/fits_image_reader.h"
 #include "ms_io/casa_image.h"
 #include "tests/faults/faulty_run.h"
 #include "tests/tools/set_changes.h"

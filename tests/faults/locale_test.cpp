@@ -3,7 +3,7 @@
 #include <cstdlib>
 #include <locale>
 
-#include "imager/fits_image.h"
+#include "imager/files/fits_image.h"
 #include "kernels/catalogue.h"
 #include "kernels/kernel_table.h"
 #include "kernels/whole_file.h"

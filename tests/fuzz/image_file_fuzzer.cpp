@@ -1,7 +1,7 @@
 // FITS images, as --mask, --startmodel and predict --model read them.
 #include <cmath>
 
-#include "imager/fits_image.h"
+#include "imager/files/fits_image.h"
 #include "tests/fuzz/fuzzing.h"
 #include "tools/formats/image_file.h"
 #include "tools/formats/mask_file.h"

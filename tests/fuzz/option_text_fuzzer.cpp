@@ -1,7 +1,7 @@
 // Values of options that are parsed without data: quantities, Stokes parameters, frames, numbers, lists.
 #include <cmath>
 
-#include "imager/stokes.h"
+#include "imager/data/stokes.h"
 #include "ms_io/spectral_frame.h"
 #include "tests/fuzz/fuzzing.h"
 #include "tools/base/quantity.h"

@@ -5,10 +5,10 @@
 #include <complex>
 #include <vector>
 
-#include "imager/constants.h"
+#include "imager/data/visibilities.h"
 #include "imager/direct/direct_transform.h"
+#include "imager/numerics/constants.h"
 #include "imager/plan/gridding_plan.h"
-#include "imager/visibilities.h"
 #include "imager/wide/facet.h"
 
 namespace misfit::imager::testing {

@@ -7,8 +7,8 @@
 #include <random>
 #include <vector>
 
-#include "imager/image.h"
-#include "imager/stored_visibilities.h"
+#include "imager/data/image.h"
+#include "imager/data/stored_visibilities.h"
 
 namespace misfit::imager::testing {
 

@@ -1,7 +1,7 @@
 #include <boost/test/data/test_case.hpp>
 #include <boost/test/unit_test.hpp>
 
-#include "imager/constants.h"
+#include "imager/numerics/constants.h"
 #include "imager/plan/accurate_imaging.h"
 #include "tests/imager/comparison.h"
 #include "tests/imager/random_samples.h"

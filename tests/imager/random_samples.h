@@ -2,8 +2,8 @@
 
 #include <random>
 
-#include "imager/constants.h"
-#include "imager/visibilities.h"
+#include "imager/data/visibilities.h"
+#include "imager/numerics/constants.h"
 
 namespace misfit::imager::testing {
 

@@ -4,7 +4,7 @@
 #include <boost/test/unit_test.hpp>
 
 #include "imager/direct/direct_transform.h"
-#include "imager/fft.h"
+#include "imager/numerics/fft.h"
 #include "imager/wide/wide_transform.h"
 #include "kernels/catalogue.h"
 #include "tests/imager/comparison.h"

@@ -2,9 +2,9 @@
 #include <boost/test/data/test_case.hpp>
 #include <boost/test/unit_test.hpp>
 
-#include "imager/imaging.h"
-#include "imager/noise.h"
+#include "imager/data/noise.h"
 #include "imager/plan/gridding_plan.h"
+#include "imager/transform/imaging.h"
 #include "tests/imager/comparison.h"
 #include "tests/imager/vla_samples.h"
 
@@ -82,7 +82,7 @@ std::unique_ptr<Transform> planned(double accuracy) {
   request.accuracy = accuracy;
   request.samples = scene().block.samples();
   request.threads = 2;
-  return make_plane_transform(plan_gridding(request).options);
+  return make_coplanar_transform(plan_gridding(request).options);
 }
 
 const auto accuracies = bdata::make({1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7});

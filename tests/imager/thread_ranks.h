@@ -14,8 +14,8 @@
 #include <thread>
 #include <vector>
 
-#include "imager/ranks.h"
-#include "imager/stored_visibilities.h"
+#include "imager/data/ranks.h"
+#include "imager/data/stored_visibilities.h"
 
 namespace misfit::imager::testing {
 

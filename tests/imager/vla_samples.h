@@ -2,9 +2,9 @@
 
 #include <cmath>
 
-#include "imager/constants.h"
+#include "imager/data/visibilities.h"
 #include "imager/direct/direct_transform.h"
-#include "imager/visibilities.h"
+#include "imager/numerics/constants.h"
 
 namespace misfit::imager::testing {
 

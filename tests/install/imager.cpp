@@ -9,7 +9,7 @@ int main() {
   request.geometry.width = request.geometry.height = 64;
   request.geometry.cell_rad = 1e-6;
   request.accuracy = 1e-6;
-  const auto transform = make_plane_transform(plan_gridding(request).options);
+  const auto transform = make_coplanar_transform(plan_gridding(request).options);
   Image model(64, 64);
   model.at(32, 32) = 1;  // at the phase centre: V = 1 everywhere
   SampleCoordinates somewhere;

@@ -9,7 +9,7 @@
 #include <cmath>
 #include <memory>
 
-#include "imager/fits_image_writer.h"
+#include "imager/files/fits_image_writer.h"
 #include "ms_io/casa_coordinates_internal.h"
 #include "ms_io/casa_image.h"
 #include "tests/example_cube.h"

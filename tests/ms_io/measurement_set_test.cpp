@@ -5,7 +5,7 @@
 #include <cmath>
 #include <fstream>
 
-#include "imager/constants.h"
+#include "imager/numerics/constants.h"
 #include "ms_io/celestial_frames.h"
 #include "tests/ms_io/small_set.h"
 

@@ -4,8 +4,8 @@
 #include <boost/test/unit_test.hpp>
 #include <cmath>
 
+#include "imager/data/phase_shift.h"
 #include "imager/direct/source_sums.h"
-#include "imager/phase_shift.h"
 #include "ms_io/model_writer.h"
 #include "tests/ms_io/small_set.h"
 

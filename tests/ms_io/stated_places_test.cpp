@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "imager/fits_image_reader.h"
-#include "imager/sky_grid.h"
+#include "imager/files/fits_image_reader.h"
+#include "imager/files/sky_grid.h"
 #include "ms_io/casa_image.h"
 #include "tests/stated_fits.h"
 #include "tests/temporary_folder.h"

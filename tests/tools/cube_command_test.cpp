@@ -1,8 +1,8 @@
 // Cubes by the program itself, of simulated lines.
 #include <cmath>
 
-#include "imager/beam.h"
-#include "imager/fits_image_reader.h"
+#include "imager/beams/beam.h"
+#include "imager/files/fits_image_reader.h"
 #include "ms_io/measurement_set.h"
 #include "ms_io/simulated_set.h"
 #include "tests/tools/program.h"

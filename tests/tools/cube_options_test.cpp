@@ -3,7 +3,7 @@
 #include <boost/test/unit_test.hpp>
 #include <cmath>
 
-#include "imager/constants.h"
+#include "imager/numerics/constants.h"
 
 BOOST_AUTO_TEST_SUITE(cube_options)
 

@@ -4,10 +4,10 @@
 #include <map>
 #include <utility>
 
-#include "imager/constants.h"
-#include "imager/fits_image_reader.h"
-#include "imager/fits_image_writer.h"
-#include "imager/geometry.h"
+#include "imager/data/geometry.h"
+#include "imager/files/fits_image_reader.h"
+#include "imager/files/fits_image_writer.h"
+#include "imager/numerics/constants.h"
 #include "ms_io/simulated_set.h"
 #include "tests/tools/program.h"
 #include "tests/tools/set_changes.h"

@@ -3,9 +3,9 @@
 #include <boost/test/data/test_case.hpp>
 #include <cmath>
 
-#include "imager/constants.h"
-#include "imager/primary_beam.h"
-#include "imager/telescopes.h"
+#include "imager/beams/primary_beam.h"
+#include "imager/beams/telescopes.h"
+#include "imager/numerics/constants.h"
 #include "tests/tools/program.h"
 #include "tests/tools/set_changes.h"
 #include "tools/base/numbers.h"

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "imager/fits_image_reader.h"
+#include "imager/files/fits_image_reader.h"
 #include "ms_io/casa_image.h"
 #include "tests/example_cube.h"
 #include "tests/tools/program.h"

@@ -3,7 +3,7 @@
 #include <boost/test/unit_test.hpp>
 #include <vector>
 
-#include "imager/parallel.h"
+#include "imager/numerics/parallel.h"
 
 BOOST_AUTO_TEST_SUITE(in_order)
 

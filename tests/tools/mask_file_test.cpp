@@ -8,7 +8,7 @@
 #include <fstream>
 #include <functional>
 
-#include "imager/fits_image.h"
+#include "imager/files/fits_image.h"
 #include "tests/example_cube.h"
 #include "tests/temporary_folder.h"
 #include "tools/formats/image_file.h"

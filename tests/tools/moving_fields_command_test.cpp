@@ -1,5 +1,5 @@
 // Sets whose phase centre moves, as images and predictions.
-#include "imager/fits_image_reader.h"
+#include "imager/files/fits_image_reader.h"
 #include "tests/moving_fields.h"
 #include "tests/tools/program.h"
 #include "tests/tools/ranks_program.h"

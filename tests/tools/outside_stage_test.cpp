@@ -4,7 +4,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "imager/noise.h"
+#include "imager/data/noise.h"
 #include "tests/tools/markup.h"
 #include "tests/tools/program.h"
 #include "tools/run_page/outside_section.h"

@@ -7,7 +7,7 @@
 #include <numeric>
 #include <random>
 
-#include "imager/noise.h"
+#include "imager/data/noise.h"
 
 BOOST_AUTO_TEST_SUITE(pixel_histogram)
 

@@ -5,8 +5,8 @@
 #include <boost/test/unit_test.hpp>
 #include <cmath>
 
+#include "imager/coplanar/coplanar_transform.h"
 #include "imager/direct/direct_transform.h"
-#include "imager/plane/plane_transform.h"
 #include "kernels/catalogue.h"
 #include "tools/paper/card_scene.h"
 
@@ -53,11 +53,11 @@ imager::Image gridded(const CardScene& scene, const kernels::Kernel& kernel) {
 
 }  // namespace
 
-BOOST_DATA_TEST_CASE(it_makes_the_image_that_the_plane_transform_makes, bdata::make({1, 2, 3, 6, 7}), width) {
+BOOST_DATA_TEST_CASE(it_makes_the_image_that_the_coplanar_transform_makes, bdata::make({1, 2, 3, 6, 7}), width) {
   const CardScene s = scene("vla-c");
   const kernels::Kernel kernel = kernels::kernel_family("least-misfit").make(width, 0.25);
   const auto plane =
-      imager::make_plane_transform({s.geometry, fft_size, fft_size, kernel, kernel, imager::Precision::double_precision, 1});
+      imager::make_coplanar_transform({s.geometry, fft_size, fft_size, kernel, kernel, imager::Precision::double_precision, 1});
   // Sums of a thousand terms in another order, by FFTs of a hundred: some hundred roundings of 1e-16.
   BOOST_TEST(relative_error(gridded(s, kernel), image_by(*plane, s)) < 1e-13);
 }

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <fstream>
 
-#include "imager/constants.h"
+#include "imager/numerics/constants.h"
 #include "tests/imager/comparison.h"
 #include "tests/imager/random_samples.h"
 #include "tests/tools/program.h"

@@ -18,7 +18,7 @@
 #include <thread>
 #include <vector>
 
-#include "imager/fits_image.h"
+#include "imager/files/fits_image.h"
 #include "tests/observations.h"
 
 namespace misfit::tools::testing {

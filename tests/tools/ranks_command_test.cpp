@@ -1,7 +1,7 @@
 // Runs of several processes that MPI started, by the program itself.
 #include <cstring>
 
-#include "imager/ranks.h"
+#include "imager/data/ranks.h"
 #include "tests/imager/comparison.h"
 #include "tests/tools/ranks_program.h"
 #include "tests/tools/set_changes.h"

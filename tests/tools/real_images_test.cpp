@@ -1,5 +1,5 @@
 // Observations of other people; see Unpacked.
-#include "imager/noise.h"
+#include "imager/data/noise.h"
 #include "tests/tools/program.h"
 
 BOOST_AUTO_TEST_SUITE(real_images)

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <string>
 
-#include "imager/stokes.h"
+#include "imager/data/stokes.h"
 #include "tools/formats/regions/region_text.h"
 
 namespace misfit::tools::testing {

@@ -1,7 +1,7 @@
 // The same samples in another order make the same image.
 #include <cmath>
 
-#include "imager/fits_image_reader.h"
+#include "imager/files/fits_image_reader.h"
 #include "ms_io/simulated_set.h"
 #include "tests/tools/program.h"
 #include "tests/tools/set_changes.h"

@@ -5,7 +5,7 @@
 #include <boost/test/unit_test.hpp>
 #include <stdexcept>
 
-#include "imager/parallel.h"
+#include "imager/numerics/parallel.h"
 #include "tests/imager/thread_ranks.h"
 
 BOOST_AUTO_TEST_SUITE(shared_prediction)

@@ -4,8 +4,8 @@
 #include <boost/test/unit_test.hpp>
 #include <cmath>
 
-#include "imager/constants.h"
-#include "imager/fits_image.h"
+#include "imager/files/fits_image.h"
+#include "imager/numerics/constants.h"
 #include "tests/temporary_folder.h"
 
 BOOST_AUTO_TEST_SUITE(stability_runs)

@@ -1,7 +1,7 @@
 // Images of Stokes parameters, from a model through correlations and back.
 #include <cmath>
 
-#include "imager/stokes.h"
+#include "imager/data/stokes.h"
 #include "tests/tools/program.h"
 #include "tests/tools/set_changes.h"
 

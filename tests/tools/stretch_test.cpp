@@ -5,7 +5,7 @@
 #include <limits>
 #include <random>
 
-#include "imager/noise.h"
+#include "imager/data/noise.h"
 
 BOOST_AUTO_TEST_SUITE(stretch)
 

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <random>
 
-#include "imager/noise.h"
-#include "imager/stored_visibilities.h"
+#include "imager/data/noise.h"
+#include "imager/data/stored_visibilities.h"
 #include "tests/imager/random_samples.h"
 
 BOOST_AUTO_TEST_SUITE(truth)

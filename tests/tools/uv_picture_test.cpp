@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstring>
 
-#include "imager/constants.h"
+#include "imager/numerics/constants.h"
 #include "tests/tools/markup.h"
 #include "tests/tools/program.h"
 #include "tools/drawing/pictures.h"

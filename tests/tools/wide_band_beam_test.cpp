@@ -2,8 +2,8 @@
 #include <array>
 #include <cmath>
 
-#include "imager/constants.h"
-#include "imager/primary_beam.h"
+#include "imager/beams/primary_beam.h"
+#include "imager/numerics/constants.h"
 #include "tests/tools/program.h"
 #include "tools/run/taylor_options.h"
 

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "imager/visibilities.h"
+#include "imager/data/visibilities.h"
 
 namespace misfit::tools {
 

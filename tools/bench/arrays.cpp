@@ -11,8 +11,8 @@
 #include <vector>
 
 #include "imager/arrays/array_transform.h"
-#include "imager/parallel.h"
-#include "imager/stage_times.h"
+#include "imager/numerics/parallel.h"
+#include "imager/numerics/stage_times.h"
 #include "kernels/kernel_cache.h"
 
 namespace {

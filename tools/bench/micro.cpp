@@ -12,12 +12,12 @@
 #include <stdexcept>
 #include <string>
 
+#include "imager/coplanar/batch_taps.h"
+#include "imager/coplanar/coplanar_transform.h"
+#include "imager/coplanar/tile_loops.h"
+#include "imager/coplanar/tile_order.h"
 #include "imager/direct/source_sums.h"
-#include "imager/fft.h"
-#include "imager/plane/batch_taps.h"
-#include "imager/plane/plane_transform.h"
-#include "imager/plane/tile_loops.h"
-#include "imager/plane/tile_order.h"
+#include "imager/numerics/fft.h"
 #include "imager/wide/wide_transform.h"
 #include "kernels/catalogue.h"
 #include "kernels/cheapest_polynomial.h"
@@ -127,14 +127,14 @@ void add_ordering(std::vector<Piece>& pieces) {
 
 /// A transform's whole way through a block that is in memory, its FFT left out.
 void add_transform(Precision precision, std::vector<Piece>& pieces) {
-  PlaneTransformOptions options;
+  CoplanarOptions options;
   options.geometry = {1024, 1024, cell_rad, {}};
   options.nu = options.nv = 2048;
   options.kernel_u = kernels::kernel_family("least-misfit").make(7, x0);
   options.kernel_u.polynomial = kernels::cheapest_polynomial(options.kernel_u, 0.005);
   options.kernel_v = options.kernel_u;
   options.precision = precision;
-  const std::shared_ptr<Transform> transform = make_plane_transform(options);
+  const std::shared_ptr<Transform> transform = make_coplanar_transform(options);
   const auto block = std::make_shared<VisibilityBlock>(block_of(16384));
   const auto samples = static_cast<double>(block->samples());
   const std::string of = std::string("W = 7 ") + (precision == Precision::single_precision ? "single" : "double") + ", block ";

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "imager/clean/deconvolver.h"
-#include "imager/fits_image.h"
-#include "imager/parallel.h"
+#include "imager/files/fits_image.h"
+#include "imager/numerics/parallel.h"
 
 namespace {
 

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "imager/parallel.h"
+#include "imager/numerics/parallel.h"
 #include "imager/plan/accurate_imaging.h"
 #include "kernels/kernel_cache.h"
 #include "ms_io/measurement_set.h"

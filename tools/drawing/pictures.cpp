@@ -6,7 +6,7 @@
 #include <stdexcept>
 #include <system_error>
 
-#include "imager/parallel.h"
+#include "imager/numerics/parallel.h"
 #include "tools/base/files.h"
 #include "tools/drawing/gnuplot.h"
 #include "tools/drawing/picture_script.h"

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "imager/fits_image.h"
-#include "imager/uv_coverage.h"
+#include "imager/files/fits_image.h"
+#include "imager/streaming/uv_coverage.h"
 #include "tools/drawing/picture_layout.h"
 #include "tools/drawing/sketch.h"
 

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "imager/image.h"
+#include "imager/data/image.h"
 #include "tools/drawing/stretch.h"
 
 namespace misfit::tools {

@@ -3,8 +3,8 @@
 #include <string>
 #include <vector>
 
-#include "imager/beam.h"
-#include "imager/geometry.h"
+#include "imager/beams/beam.h"
+#include "imager/data/geometry.h"
 #include "tools/base/numbers.h"
 
 namespace misfit::tools {

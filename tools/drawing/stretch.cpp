@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "imager/noise.h"
+#include "imager/data/noise.h"
 #include "tools/base/numbers.h"
 #include "tools/drawing/ticks.h"
 

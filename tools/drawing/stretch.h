@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "imager/image.h"
+#include "imager/data/image.h"
 
 namespace misfit::tools {
 

@@ -2,7 +2,7 @@
 
 #include <filesystem>
 
-#include "imager/uv_coverage.h"
+#include "imager/streaming/uv_coverage.h"
 
 namespace misfit::tools {
 

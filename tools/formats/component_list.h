@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "imager/source.h"
-#include "imager/stokes.h"
+#include "imager/data/source.h"
+#include "imager/data/stokes.h"
 
 namespace misfit::tools {
 

@@ -6,7 +6,7 @@
 #include <stdexcept>
 #include <system_error>
 
-#include "imager/fits_image_reader.h"
+#include "imager/files/fits_image_reader.h"
 #include "ms_io/casa_image.h"
 #include "tools/base/numbers.h"
 

@@ -3,7 +3,7 @@
 #include <memory>
 #include <string>
 
-#include "imager/image_reader.h"
+#include "imager/files/image_reader.h"
 
 namespace misfit::tools {
 

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "imager/image_header.h"
-#include "imager/image_reader.h"
+#include "imager/files/image_header.h"
+#include "imager/files/image_reader.h"
 #include "tools/formats/mask_placement.h"
 #include "tools/formats/regions/region_text.h"
 

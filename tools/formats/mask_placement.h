@@ -4,8 +4,8 @@
 #include <optional>
 #include <string>
 
-#include "imager/image_reader.h"
-#include "imager/sky_grid.h"
+#include "imager/files/image_reader.h"
+#include "imager/files/sky_grid.h"
 
 namespace misfit::tools {
 

@@ -10,7 +10,7 @@
 #include <stdexcept>
 #include <system_error>
 
-#include "imager/extent.h"
+#include "imager/data/extent.h"
 #include "imager/plan/planned_transform.h"
 #include "imager/taylor/taylor_prediction.h"
 #include "tools/base/numbers.h"

@@ -5,10 +5,10 @@
 #include <string>
 #include <vector>
 
-#include "imager/fits_image.h"
+#include "imager/files/fits_image.h"
 #include "imager/plan/gridding_choice.h"
 #include "imager/taylor/taylor_expansion.h"
-#include "imager/transform.h"
+#include "imager/transform/transform.h"
 #include "ms_io/measurement_set.h"
 #include "ms_io/model_writer.h"
 

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "imager/source.h"
+#include "imager/data/source.h"
 
 namespace misfit::tools {
 

@@ -4,7 +4,7 @@
 #include <numbers>
 #include <stdexcept>
 
-#include "imager/extent.h"
+#include "imager/data/extent.h"
 #include "imager/plan/out_of_reach.h"
 #include "tools/base/numbers.h"
 

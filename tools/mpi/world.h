@@ -3,7 +3,7 @@
 #include <memory>
 #include <string>
 
-#include "imager/ranks.h"
+#include "imager/data/ranks.h"
 
 namespace misfit::tools {
 

@@ -6,11 +6,11 @@
 #include <random>
 #include <tuple>
 
-#include "imager/constants.h"
+#include "imager/coplanar/coplanar_transform.h"
 #include "imager/direct/direct_transform.h"
 #include "imager/direct/source_sums.h"
-#include "imager/parallel.h"
-#include "imager/plane/plane_transform.h"
+#include "imager/numerics/constants.h"
+#include "imager/numerics/parallel.h"
 #include "kernels/map_error.h"
 #include "tools/paper/paper_experiments.h"
 
@@ -79,7 +79,7 @@ class LargestErrors {
 
  private:
   static std::unique_ptr<imager::Transform> plane(const SmallField& field, const kernels::Kernel& kernel) {
-    return imager::make_plane_transform(
+    return imager::make_coplanar_transform(
         {field.geometry, alias_fft_size, alias_fft_size, kernel, kernel, kernels::Precision::double_precision, 1});
   }
   std::vector<double> image_by(const imager::Transform& transform, const std::vector<std::complex<double>>& visibility) const {

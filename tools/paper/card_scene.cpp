@@ -4,9 +4,9 @@
 #include <cstdlib>
 #include <numeric>
 
-#include "imager/constants.h"
 #include "imager/direct/direct_transform.h"
 #include "imager/direct/source_sums.h"
+#include "imager/numerics/constants.h"
 #include "tools/base/array.h"
 #include "tools/formats/sky.h"
 

@@ -5,10 +5,10 @@
 #include <string>
 #include <vector>
 
-#include "imager/geometry.h"
-#include "imager/image.h"
-#include "imager/source.h"
-#include "imager/visibilities.h"
+#include "imager/data/geometry.h"
+#include "imager/data/image.h"
+#include "imager/data/source.h"
+#include "imager/data/visibilities.h"
 
 namespace misfit::tools {
 

@@ -3,9 +3,9 @@
 #include <cmath>
 #include <limits>
 
+#include "imager/coplanar/coplanar_transform.h"
 #include "imager/direct/source_sums.h"
-#include "imager/parallel.h"
-#include "imager/plane/plane_transform.h"
+#include "imager/numerics/parallel.h"
 #include "kernels/map_error.h"
 #include "tools/base/numbers.h"
 #include "tools/paper/paper_experiments.h"
@@ -33,7 +33,7 @@ imager::Image model_of(const CardScene& scene) {
 double measured_error(const CardScene& scene, const kernels::Kernel& kernel, Precision precision) {
   const int size = fft_size_for(scene, paper_x0);
   const auto transform =
-      imager::make_plane_transform({scene.geometry, size, size, kernel, kernel, precision, imager::available_threads()});
+      imager::make_coplanar_transform({scene.geometry, size, size, kernel, kernel, precision, imager::available_threads()});
   const std::vector<std::complex<double>> predicted = transform->predict(model_of(scene))->at(scene.block);
   double difference = 0;
   double norm = 0;

@@ -5,8 +5,8 @@
 #include <map>
 #include <numeric>
 
-#include "imager/parallel.h"
-#include "imager/plane/plane_transform.h"
+#include "imager/coplanar/coplanar_transform.h"
+#include "imager/numerics/parallel.h"
 #include "kernels/map_error.h"
 #include "tools/base/numbers.h"
 #include "tools/paper/paper_experiments.h"
@@ -33,7 +33,7 @@ struct Compared {
 /// The image by gridding and FFT with one kernel on both axes, not divided by Σ w.
 imager::Image gridded_image(const CardScene& scene, const kernels::Kernel& kernel) {
   const int size = fft_size_for(scene, paper_x0);
-  const auto transform = imager::make_plane_transform(
+  const auto transform = imager::make_coplanar_transform(
       {scene.geometry, size, size, kernel, kernel, kernels::Precision::double_precision, imager::available_threads()});
   const auto sum = transform->adjoint({});
   sum->add(scene.block, scene.visibility);

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <functional>
 
-#include "imager/parallel.h"
+#include "imager/numerics/parallel.h"
 #include "kernels/catalogue.h"
 #include "tools/base/numbers.h"
 

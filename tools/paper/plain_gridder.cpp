@@ -4,8 +4,8 @@
 #include <cmath>
 #include <cstdlib>
 
-#include "imager/constants.h"
-#include "imager/fft.h"
+#include "imager/numerics/constants.h"
+#include "imager/numerics/fft.h"
 
 namespace misfit::tools {
 namespace {

@@ -4,9 +4,9 @@
 #include <complex>
 #include <vector>
 
-#include "imager/geometry.h"
-#include "imager/image.h"
-#include "imager/visibilities.h"
+#include "imager/data/geometry.h"
+#include "imager/data/image.h"
+#include "imager/data/visibilities.h"
 #include "kernels/piecewise_polynomial.h"
 
 namespace misfit::tools {

@@ -3,8 +3,8 @@
 #include <cmath>
 #include <limits>
 
-#include "imager/constants.h"
-#include "imager/parallel.h"
+#include "imager/numerics/constants.h"
+#include "imager/numerics/parallel.h"
 #include "kernels/evaluation.h"
 #include "tools/base/numbers.h"
 #include "tools/paper/paper_experiments.h"

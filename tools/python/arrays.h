@@ -5,7 +5,7 @@
 #include <functional>
 
 #include "imager/arrays/strided.h"
-#include "imager/parallel.h"
+#include "imager/numerics/parallel.h"
 
 namespace misfit::python {
 

@@ -2,7 +2,7 @@
 
 #include <pybind11/numpy.h>
 
-#include "imager/image.h"
+#include "imager/data/image.h"
 
 namespace misfit::python {
 

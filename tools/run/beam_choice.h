@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "imager/beam.h"
+#include "imager/beams/beam.h"
 
 namespace misfit::tools {
 

@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "imager/clean/mask.h"
-#include "imager/stokes.h"
+#include "imager/data/stokes.h"
 #include "kernels/version.h"
 #include "tools/base/interrupt.h"
 #include "tools/base/numbers.h"

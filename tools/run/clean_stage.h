@@ -5,12 +5,12 @@
 #include <string>
 #include <vector>
 
-#include "imager/beam.h"
+#include "imager/beams/beam.h"
 #include "imager/clean/clean.h"
 #include "imager/clean/deconvolver.h"
 #include "imager/clean/wide_band_clean.h"
-#include "imager/fits_image.h"
-#include "imager/image_header.h"
+#include "imager/files/fits_image.h"
+#include "imager/files/image_header.h"
 #include "tools/formats/clean_state_file.h"
 #include "tools/formats/mask_file.h"
 #include "tools/run/image_options.h"

@@ -2,7 +2,7 @@
 
 #include <mutex>
 
-#include "imager/primary_beam.h"
+#include "imager/beams/primary_beam.h"
 #include "tools/run/image_files.h"
 #include "tools/run/primary_beam_stage.h"
 

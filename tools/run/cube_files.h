@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "imager/image_writer.h"
+#include "imager/files/image_writer.h"
 #include "tools/run/image_options.h"
 
 namespace misfit::tools {

@@ -9,7 +9,7 @@
 #include <stdexcept>
 #include <tuple>
 
-#include "imager/constants.h"
+#include "imager/numerics/constants.h"
 #include "tools/base/numbers.h"
 #include "tools/base/option_checks.h"
 #include "tools/base/quantity.h"

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <memory>
 
-#include "imager/stokes.h"
+#include "imager/data/stokes.h"
 #include "tools/base/files.h"
 #include "tools/base/numbers.h"
 #include "tools/drawing/pictures.h"

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "imager/image_header.h"
-#include "imager/image_reader.h"
+#include "imager/files/image_header.h"
+#include "imager/files/image_reader.h"
 #include "tools/run/image_options.h"
 #include "tools/run/run_report.h"
 #include "tools/run_page/report_page.h"

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "imager/spares.h"
+#include "imager/numerics/spares.h"
 #include "tools/run/cube_batches.h"
 #include "tools/run/cube_products.h"
 #include "tools/run/plane_run.h"

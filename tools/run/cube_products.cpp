@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <utility>
 
-#include "imager/common_beam.h"
-#include "imager/noise.h"
-#include "imager/parallel.h"
+#include "imager/beams/common_beam.h"
+#include "imager/data/noise.h"
+#include "imager/numerics/parallel.h"
 #include "tools/run/cube_pictures.h"
 #include "tools/run/image_files.h"
 #include "tools/run/left_over.h"

@@ -9,7 +9,7 @@
 #include <optional>
 #include <utility>
 
-#include "imager/parallel.h"
+#include "imager/numerics/parallel.h"
 #include "tools/base/files.h"
 #include "tools/base/interrupt.h"
 #include "tools/base/json_text.h"

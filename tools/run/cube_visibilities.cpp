@@ -5,8 +5,8 @@
 #include <numeric>
 #include <string>
 
-#include "imager/handed_over.h"
-#include "imager/parallel.h"
+#include "imager/data/handed_over.h"
+#include "imager/numerics/parallel.h"
 #include "tools/base/interrupt.h"
 
 namespace misfit::tools {

@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "imager/cube/plane_gatherer.h"
-#include "imager/streamed_visibilities.h"
+#include "imager/streaming/streamed_visibilities.h"
 #include "ms_io/measurement_set.h"
 #include "tools/base/progress.h"
 #include "tools/run/cube_batches.h"

@@ -6,10 +6,10 @@
 #include <optional>
 #include <stdexcept>
 
-#include "imager/constants.h"
-#include "imager/phase_shift.h"
-#include "imager/primary_beam.h"
-#include "imager/telescopes.h"
+#include "imager/beams/primary_beam.h"
+#include "imager/beams/telescopes.h"
+#include "imager/data/phase_shift.h"
+#include "imager/numerics/constants.h"
 #include "tools/base/numbers.h"
 #include "tools/run/run_messages.h"
 

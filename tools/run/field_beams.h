@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "imager/geometry.h"
+#include "imager/data/geometry.h"
 #include "imager/plan/plan.h"
 #include "ms_io/measurement_set.h"
 #include "tools/run/image_options.h"

@@ -5,7 +5,7 @@
 #include <stdexcept>
 #include <system_error>
 
-#include "imager/fits_image_writer.h"
+#include "imager/files/fits_image_writer.h"
 #include "ms_io/casa_image.h"
 
 namespace misfit::tools {

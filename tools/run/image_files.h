@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "imager/image_writer.h"
+#include "imager/files/image_writer.h"
 
 namespace misfit::tools {
 

@@ -9,8 +9,8 @@
 #include <set>
 #include <stdexcept>
 
+#include "imager/data/stokes.h"
 #include "imager/plan/gridding_plan.h"
-#include "imager/stokes.h"
 #include "kernels/kernel_table.h"
 #include "ms_io/phase_centre.h"
 #include "tools/base/option_checks.h"

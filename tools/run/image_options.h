@@ -5,10 +5,10 @@
 #include <string>
 #include <vector>
 
-#include "imager/beam.h"
+#include "imager/beams/beam.h"
 #include "imager/clean/clean.h"
 #include "imager/clean/deconvolver.h"
-#include "imager/geometry.h"
+#include "imager/data/geometry.h"
 #include "imager/plan/gridding_choice.h"
 #include "kernels/lookup_table.h"
 #include "ms_io/measurement_set.h"

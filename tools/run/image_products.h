@@ -5,8 +5,8 @@
 #include <utility>
 #include <vector>
 
-#include "imager/image_header.h"
-#include "imager/image_writer.h"
+#include "imager/files/image_header.h"
+#include "imager/files/image_writer.h"
 #include "tools/drawing/pictures.h"
 #include "tools/run/image_options.h"
 #include "tools/run/run_report.h"

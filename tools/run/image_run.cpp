@@ -6,9 +6,9 @@
 #include <optional>
 #include <utility>
 
-#include "imager/noise.h"
-#include "imager/parallel.h"
-#include "imager/stokes.h"
+#include "imager/data/noise.h"
+#include "imager/data/stokes.h"
+#include "imager/numerics/parallel.h"
 #include "ms_io/model_writer.h"
 #include "tools/base/files.h"
 #include "tools/base/json_text.h"

@@ -3,7 +3,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "imager/ranks.h"
+#include "imager/data/ranks.h"
 #include "tools/run/image_options.h"
 
 namespace misfit::tools {

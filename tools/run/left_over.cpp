@@ -4,7 +4,7 @@
 #include <charconv>
 #include <filesystem>
 
-#include "imager/stokes.h"
+#include "imager/data/stokes.h"
 #include "kernels/whole_file.h"
 #include "tools/run/image_files.h"
 #include "tools/run/taylor_options.h"

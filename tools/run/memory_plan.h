@@ -2,10 +2,10 @@
 
 #include <functional>
 
+#include "imager/data/ranks.h"
 #include "imager/plan/gridding_plan.h"
 #include "imager/plan/memory_use.h"
 #include "imager/plan/plan.h"
-#include "imager/ranks.h"
 #include "tools/run/image_options.h"
 
 namespace misfit::tools {

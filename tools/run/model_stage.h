@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "imager/clean/clean.h"
-#include "imager/geometry.h"
-#include "imager/stokes.h"
+#include "imager/data/geometry.h"
+#include "imager/data/stokes.h"
 #include "tools/run/image_options.h"
 
 namespace misfit::tools {

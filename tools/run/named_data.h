@@ -3,7 +3,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "imager/visibilities.h"
+#include "imager/data/visibilities.h"
 
 namespace misfit::tools {
 

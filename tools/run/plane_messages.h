@@ -4,7 +4,7 @@
 #include <string>
 
 #include "imager/cube/channel_map.h"
-#include "imager/image_writer.h"
+#include "imager/files/image_writer.h"
 #include "tools/run/cube_planes.h"
 
 namespace misfit::tools {

@@ -4,8 +4,8 @@
 #include <optional>
 
 #include "imager/clean/shared_model.h"
+#include "imager/data/stokes_view.h"
 #include "imager/direct/verify.h"
-#include "imager/stokes_view.h"
 #include "tools/base/interrupt.h"
 #include "tools/run/beam_choice.h"
 #include "tools/run/run_messages.h"

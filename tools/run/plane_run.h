@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "imager/extent.h"
+#include "imager/data/extent.h"
 #include "imager/plan/accurate_imaging.h"
-#include "imager/streamed_visibilities.h"
+#include "imager/streaming/streamed_visibilities.h"
 #include "tools/base/progress.h"
 #include "tools/run/clean_stage.h"
 #include "tools/run/image_options.h"

@@ -3,11 +3,11 @@
 #include <string>
 #include <vector>
 
+#include "imager/beams/primary_beam.h"
+#include "imager/beams/telescopes.h"
 #include "imager/plan/plan.h"
-#include "imager/primary_beam.h"
+#include "imager/streaming/weight_shares.h"
 #include "imager/taylor/taylor_beam.h"
-#include "imager/telescopes.h"
-#include "imager/weight_shares.h"
 #include "ms_io/measurement_set.h"
 #include "tools/run/image_options.h"
 

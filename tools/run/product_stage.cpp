@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <string_view>
 
-#include "imager/primary_beam.h"
+#include "imager/beams/primary_beam.h"
 #include "tools/base/files.h"
 #include "tools/formats/component_list.h"
 #include "tools/run/image_files.h"

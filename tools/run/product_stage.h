@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "imager/clean/clean.h"
-#include "imager/imaging.h"
-#include "imager/stage_times.h"
+#include "imager/numerics/stage_times.h"
 #include "imager/taylor/taylor_beam.h"
+#include "imager/transform/imaging.h"
 #include "tools/run/image_options.h"
 #include "tools/run/image_products.h"
 #include "tools/run/name_lock.h"

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "imager/constants.h"
+#include "imager/numerics/constants.h"
 #include "tools/base/left_out.h"
 #include "tools/base/numbers.h"
 

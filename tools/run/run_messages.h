@@ -3,7 +3,7 @@
 #include <string>
 
 #include "imager/clean/clean.h"
-#include "imager/extent.h"
+#include "imager/data/extent.h"
 #include "imager/plan/plan.h"
 #include "ms_io/measurement_set.h"
 #include "tools/run/run_report.h"

@@ -6,12 +6,12 @@
 #include <vector>
 
 #include "imager/clean/clean.h"
+#include "imager/data/noise.h"
+#include "imager/data/spectral_axis.h"
+#include "imager/data/stokes.h"
 #include "imager/direct/verify.h"
-#include "imager/noise.h"
 #include "imager/plan/accurate_imaging.h"
 #include "imager/plan/plan.h"
-#include "imager/spectral_axis.h"
-#include "imager/stokes.h"
 #include "tools/run/beam_choice.h"
 #include "tools/run/outside_stage.h"
 #include "tools/run/time_forecast.h"

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "imager/ranks.h"
+#include "imager/data/ranks.h"
 
 namespace CLI {
 class App;

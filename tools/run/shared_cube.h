@@ -9,7 +9,7 @@
 #include <thread>
 #include <vector>
 
-#include "imager/ranks.h"
+#include "imager/data/ranks.h"
 #include "tools/run/plane_messages.h"
 
 namespace misfit::tools {

@@ -4,7 +4,7 @@
 #include <set>
 #include <stdexcept>
 
-#include "imager/stokes.h"
+#include "imager/data/stokes.h"
 #include "tools/base/numbers.h"
 #include "tools/base/option_checks.h"
 #include "tools/base/quantity.h"

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "imager/observation.h"
+#include "imager/data/observation.h"
 #include "imager/taylor/taylor_expansion.h"
 #include "ms_io/spectral_frame.h"
 #include "tools/run/image_options.h"

@@ -3,9 +3,9 @@
 #include <optional>
 #include <vector>
 
-#include "imager/beam.h"
+#include "imager/beams/beam.h"
 #include "imager/clean/wide_band_clean.h"
-#include "imager/geometry.h"
+#include "imager/data/geometry.h"
 #include "imager/plan/accurate_imaging.h"
 #include "imager/taylor/spectral_index.h"
 #include "imager/taylor/taylor_imaging.h"

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "imager/numerics/stage_times.h"
 #include "imager/plan/gridding_plan.h"
-#include "imager/stage_times.h"
 
 namespace misfit::tools {
 

@@ -4,7 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
-#include "imager/geometry.h"
+#include "imager/data/geometry.h"
 #include "tools/base/numbers.h"
 #include "tools/report/html.h"
 #include "tools/report/html_elements.h"

@@ -7,7 +7,7 @@
 #include <numbers>
 #include <numeric>
 
-#include "imager/parallel.h"
+#include "imager/numerics/parallel.h"
 #include "tools/base/numbers.h"
 
 namespace misfit::tools {

@@ -4,7 +4,7 @@
 #include <nlohmann/json_fwd.hpp>
 #include <vector>
 
-#include "imager/image.h"
+#include "imager/data/image.h"
 #include "tools/report/figure.h"
 
 namespace misfit::tools {

@@ -5,9 +5,9 @@
 #include <memory>
 #include <stdexcept>
 
-#include "imager/noise.h"
-#include "imager/parallel.h"
-#include "imager/stage_times.h"
+#include "imager/data/noise.h"
+#include "imager/numerics/parallel.h"
+#include "imager/numerics/stage_times.h"
 #include "ms_io/measurement_set.h"
 #include "tools/run/set_notes.h"
 #include "tools/run/weighting_options.h"

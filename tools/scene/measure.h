@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "imager/extent.h"
+#include "imager/data/extent.h"
+#include "imager/data/stored_visibilities.h"
 #include "imager/plan/accurate_imaging.h"
-#include "imager/stored_visibilities.h"
 #include "tools/scene/points.h"
 #include "tools/scene/truth.h"
 

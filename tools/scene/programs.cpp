@@ -6,8 +6,8 @@
 #include <filesystem>
 #include <fstream>
 
-#include "imager/fits_image.h"
-#include "imager/stage_times.h"
+#include "imager/files/fits_image.h"
+#include "imager/numerics/stage_times.h"
 #include "ms_io/measurement_set.h"
 #include "tools/base/interrupt.h"
 #include "tools/base/numbers.h"

@@ -6,10 +6,10 @@
 #include <numeric>
 #include <random>
 
-#include "imager/horizon.h"
-#include "imager/noise.h"
-#include "imager/sampling.h"
-#include "imager/stage_times.h"
+#include "imager/data/horizon.h"
+#include "imager/data/noise.h"
+#include "imager/numerics/stage_times.h"
+#include "imager/transform/sampling.h"
 
 namespace misfit::tools {
 namespace {

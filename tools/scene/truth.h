@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "imager/direct/direct_transform.h"
-#include "imager/imaging.h"
+#include "imager/transform/imaging.h"
 
 namespace misfit::tools {
 

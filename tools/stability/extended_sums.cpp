@@ -3,9 +3,9 @@
 #include <cmath>
 #include <numbers>
 
-#include "imager/constants.h"
-#include "imager/parallel.h"
-#include "imager/sampling.h"
+#include "imager/numerics/constants.h"
+#include "imager/numerics/parallel.h"
+#include "imager/transform/sampling.h"
 
 namespace misfit::tools {
 namespace {

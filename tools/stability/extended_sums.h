@@ -3,8 +3,8 @@
 #include <complex>
 #include <vector>
 
+#include "imager/data/visibilities.h"
 #include "imager/direct/direct_transform.h"
-#include "imager/visibilities.h"
 
 namespace misfit::tools {
 

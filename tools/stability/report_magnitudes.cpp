@@ -5,9 +5,9 @@
 #include <random>
 #include <string>
 
-#include "imager/constants.h"
+#include "imager/coplanar/coplanar_transform.h"
 #include "imager/direct/direct_transform.h"
-#include "imager/plane/plane_transform.h"
+#include "imager/numerics/constants.h"
 #include "kernels/catalogue.h"
 #include "tools/base/numbers.h"
 #include "tools/stability/stability_report.h"
@@ -26,7 +26,7 @@ imager::ImageGeometry geometry() {
 
 std::unique_ptr<imager::Transform> plane(imager::Precision precision) {
   const kernels::Kernel kernel = kernels::kernel_family("least-misfit").make(wide_kernel, 0.25);
-  return imager::make_plane_transform({geometry(), 2 * pixels, 2 * pixels, kernel, kernel, precision, 1});
+  return imager::make_coplanar_transform({geometry(), 2 * pixels, 2 * pixels, kernel, kernel, precision, 1});
 }
 
 /// Random visibilities, |u| and |v| up to `reach` times 1/(2 cell).

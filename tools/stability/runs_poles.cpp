@@ -2,7 +2,7 @@
 #include <cmath>
 #include <string>
 
-#include "imager/constants.h"
+#include "imager/numerics/constants.h"
 #include "tools/stability/stability_runs.h"
 
 namespace misfit::tools {

@@ -3,8 +3,8 @@
 #include <random>
 #include <string>
 
-#include "imager/constants.h"
-#include "imager/extent.h"
+#include "imager/data/extent.h"
+#include "imager/numerics/constants.h"
 #include "imager/plan/gridding_choice.h"
 #include "tools/base/numbers.h"
 #include "tools/stability/stability_runs.h"

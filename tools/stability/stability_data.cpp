@@ -5,9 +5,9 @@
 #include <stdexcept>
 #include <utility>
 
-#include "imager/constants.h"
 #include "imager/direct/source_sums.h"
-#include "imager/parallel.h"
+#include "imager/numerics/constants.h"
+#include "imager/numerics/parallel.h"
 #include "ms_io/measurement_set.h"
 #include "tools/base/array.h"
 #include "tools/base/numbers.h"

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "imager/visibilities.h"
+#include "imager/data/visibilities.h"
 #include "tools/stability/stability_run.h"
 
 namespace misfit::tools {

@@ -7,12 +7,12 @@
 #include <utility>
 
 #include "imager/clean/deconvolver.h"
-#include "imager/constants.h"
+#include "imager/data/extent.h"
+#include "imager/data/noise.h"
+#include "imager/data/stored_visibilities.h"
 #include "imager/direct/verify.h"
-#include "imager/extent.h"
-#include "imager/noise.h"
-#include "imager/parallel.h"
-#include "imager/stored_visibilities.h"
+#include "imager/numerics/constants.h"
+#include "imager/numerics/parallel.h"
 #include "tools/run/beam_choice.h"
 #include "tools/stability/extended_sums.h"
 

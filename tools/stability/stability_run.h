@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "imager/clean/clean.h"
-#include "imager/geometry.h"
+#include "imager/data/geometry.h"
+#include "imager/data/visibilities.h"
 #include "imager/plan/accurate_imaging.h"
-#include "imager/visibilities.h"
 
 namespace misfit::tools {
 

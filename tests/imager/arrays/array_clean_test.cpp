@@ -3,7 +3,7 @@
 #include <boost/test/unit_test.hpp>
 #include <limits>
 
-#include "imager/image_statistics.h"
+#include "imager/data/image_statistics.h"
 #include "tests/imager/arrays/array_scene.h"
 #include "tests/imager/comparison.h"
 

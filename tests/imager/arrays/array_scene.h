@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "imager/arrays/array_transform.h"
-#include "imager/constants.h"
+#include "imager/numerics/constants.h"
 
 namespace misfit::imager::testing {
 

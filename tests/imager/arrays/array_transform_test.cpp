@@ -241,7 +241,7 @@ BOOST_AUTO_TEST_CASE(the_padding_stays_within_its_bounds) {
     options.most_padding = most;
     options.kernel_width = 9;
     const ArrayTransform transform(options, at);
-    const PlaneTransformOptions& planned = transform.plan().options;
+    const CoplanarOptions& planned = transform.plan().options;
     constexpr double next_fast_size = 1.05;
     BOOST_TEST(planned.nu >= least * 400);
     BOOST_TEST(planned.nu <= most * 400 * next_fast_size);

@@ -5,9 +5,9 @@
 #include <limits>
 #include <numeric>
 
-#include "imager/beam.h"
+#include "imager/beams/beam.h"
 #include "imager/clean/hogbom.h"
-#include "imager/noise.h"
+#include "imager/data/noise.h"
 #include "imager/plan/gridding_plan.h"
 #include "tests/imager/comparison.h"
 #include "tests/imager/vla_samples.h"
@@ -51,7 +51,7 @@ Scene make_scene(const DirectionCosines& centre) {
   request.threads = 2;
   Scene s;
   s.source = stored({block});
-  s.transform = make_plane_transform(plan_gridding(request).options);
+  s.transform = make_coplanar_transform(plan_gridding(request).options);
   StageTimes times;
   s.images = make_dirty_images(s.source, *s.transform, {.with_psf = true}, ignore_progress, times);
   Image middle(g.width, g.height);

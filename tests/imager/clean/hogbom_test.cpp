@@ -4,7 +4,7 @@
 #include <boost/test/unit_test.hpp>
 #include <limits>
 
-#include "imager/noise.h"
+#include "imager/data/noise.h"
 #include "tests/imager/comparison.h"
 
 BOOST_AUTO_TEST_SUITE(hogbom)

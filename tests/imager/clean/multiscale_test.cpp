@@ -6,7 +6,7 @@
 
 #include "imager/clean/convolution.h"
 #include "imager/clean/gaussian_blur.h"
-#include "imager/noise.h"
+#include "imager/data/noise.h"
 #include "tests/imager/comparison.h"
 
 BOOST_AUTO_TEST_SUITE(multiscale)

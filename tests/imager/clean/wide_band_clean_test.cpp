@@ -2,8 +2,8 @@
 
 #include <boost/test/unit_test.hpp>
 
-#include "imager/beam.h"
-#include "imager/noise.h"
+#include "imager/beams/beam.h"
+#include "imager/data/noise.h"
 #include "imager/plan/gridding_plan.h"
 #include "imager/taylor/spectral_index.h"
 #include "imager/taylor/taylor_imaging.h"
@@ -54,7 +54,7 @@ const Transform& gridding() {
     request.geometry = geometry;
     request.accuracy = 1e-5;
     request.threads = 2;
-    return make_plane_transform(plan_gridding(request).options);
+    return make_coplanar_transform(plan_gridding(request).options);
   }();
   return *made;
 }

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <random>
 
-#include "imager/noise.h"
+#include "imager/data/noise.h"
 #include "tests/imager/comparison.h"
 
 BOOST_AUTO_TEST_SUITE(spectral_index)

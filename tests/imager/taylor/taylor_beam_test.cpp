@@ -6,7 +6,7 @@
 #include <cmath>
 #include <functional>
 
-#include "imager/constants.h"
+#include "imager/numerics/constants.h"
 
 BOOST_AUTO_TEST_SUITE(taylor_beam)
 

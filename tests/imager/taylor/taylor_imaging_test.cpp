@@ -51,7 +51,7 @@ std::unique_ptr<Transform> gridding(const ImageGeometry& g) {
   GriddingRequest request;
   request.geometry = g;
   request.accuracy = accuracy;
-  return make_plane_transform(plan_gridding(request).options);
+  return make_coplanar_transform(plan_gridding(request).options);
 }
 
 /// Gridding errs by the accuracy relative to what random data of this size give; images here are that. Twice it for a sample of

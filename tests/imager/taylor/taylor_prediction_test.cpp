@@ -38,7 +38,7 @@ std::unique_ptr<Transform> gridding() {
   GriddingRequest request;
   request.geometry = geometry;
   request.accuracy = 1e-6;
-  return make_plane_transform(plan_gridding(request).options);
+  return make_coplanar_transform(plan_gridding(request).options);
 }
 
 }  // namespace

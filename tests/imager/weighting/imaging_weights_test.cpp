@@ -4,11 +4,11 @@
 #include <boost/test/unit_test.hpp>
 #include <cmath>
 
-#include "imager/beam.h"
+#include "imager/beams/beam.h"
+#include "imager/data/noise.h"
 #include "imager/direct/direct_transform.h"
-#include "imager/noise.h"
 #include "imager/plan/gridding_plan.h"
-#include "imager/streamed_visibilities.h"
+#include "imager/streaming/streamed_visibilities.h"
 #include "tests/imager/comparison.h"
 #include "tests/imager/random_samples.h"
 #include "tests/imager/weighting/plain_density.h"
@@ -209,7 +209,7 @@ BOOST_DATA_TEST_CASE(the_noise_of_an_image_is_the_one_predicted, bdata::make({0,
   GriddingRequest request;
   request.geometry = image;
   request.accuracy = 1e-4;
-  const auto transform = make_plane_transform(plan_gridding(request).options);
+  const auto transform = make_coplanar_transform(plan_gridding(request).options);
   const DirtyImages made = make_dirty_images(source, *transform, {}, ignore_progress, times);
   if (way == 5) sums = WeightSums::of_natural(made.sums.front().weight);
   BOOST_TEST(std::abs(sums.image / made.sums.front().weight - 1) < 1e-6);

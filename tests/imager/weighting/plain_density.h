@@ -6,8 +6,8 @@
 #include <utility>
 #include <vector>
 
-#include "imager/constants.h"
-#include "imager/visibilities.h"
+#include "imager/data/visibilities.h"
+#include "imager/numerics/constants.h"
 #include "imager/weighting/uv_cells.h"
 
 namespace misfit::imager::testing {

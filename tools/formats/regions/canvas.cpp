@@ -4,7 +4,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "imager/constants.h"
+#include "imager/numerics/constants.h"
 #include "ms_io/celestial_frames.h"
 #include "tools/formats/regions/words.h"
 

@@ -3,7 +3,7 @@
 #include <string>
 #include <string_view>
 
-#include "imager/geometry.h"
+#include "imager/data/geometry.h"
 #include "tools/formats/regions/shape.h"
 
 namespace misfit::tools::regions {

@@ -3,7 +3,7 @@
 #include <string>
 #include <string_view>
 
-#include "imager/image_header.h"
+#include "imager/files/image_header.h"
 #include "tools/formats/regions/canvas.h"
 #include "tools/formats/regions/region.h"
 

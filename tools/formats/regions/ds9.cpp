@@ -6,7 +6,7 @@
 #include <optional>
 #include <utility>
 
-#include "imager/constants.h"
+#include "imager/numerics/constants.h"
 #include "tools/base/text.h"
 #include "tools/formats/regions/ds9_properties.h"
 #include "tools/formats/regions/words.h"

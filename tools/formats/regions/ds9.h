@@ -4,7 +4,7 @@
 #include <string_view>
 #include <vector>
 
-#include "imager/image_header.h"
+#include "imager/files/image_header.h"
 #include "tools/formats/regions/canvas.h"
 #include "tools/formats/regions/region.h"
 

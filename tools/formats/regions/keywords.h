@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-#include "imager/stokes.h"
+#include "imager/data/stokes.h"
 
 namespace misfit::tools::regions {
 

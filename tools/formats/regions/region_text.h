@@ -5,9 +5,9 @@
 #include <string_view>
 #include <vector>
 
-#include "imager/image.h"
-#include "imager/image_header.h"
-#include "imager/image_reader.h"
+#include "imager/data/image.h"
+#include "imager/files/image_header.h"
+#include "imager/files/image_reader.h"
 #include "tools/formats/regions/region.h"
 
 namespace misfit::tools {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-#include "imager/constants.h"
+#include "imager/numerics/constants.h"
 
 namespace misfit::tools::regions {
 namespace {

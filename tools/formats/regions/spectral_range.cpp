@@ -7,7 +7,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "imager/constants.h"
+#include "imager/numerics/constants.h"
 #include "ms_io/spectral_frame.h"
 #include "tools/base/numbers.h"
 #include "tools/base/quantity.h"

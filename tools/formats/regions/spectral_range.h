@@ -2,7 +2,7 @@
 
 #include <optional>
 
-#include "imager/spectral_axis.h"
+#include "imager/data/spectral_axis.h"
 #include "tools/formats/regions/keywords.h"
 
 namespace misfit::tools::regions {

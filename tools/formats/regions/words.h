@@ -3,7 +3,7 @@
 #include <string>
 #include <string_view>
 
-#include "imager/constants.h"
+#include "imager/numerics/constants.h"
 #include "ms_io/sexagesimal.h"
 
 namespace misfit::tools::regions {

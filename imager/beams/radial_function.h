@@ -1,0 +1,41 @@
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <vector>
+
+#include "imager/data/geometry.h"
+
+namespace misfit::imager {
+
+/// A function of the angle θ ≤ 90° from an axis, given sin θ.
+using RadialFunction = std::function<double(double sine)>;
+
+/// sin θ of where the function, which is above `level` on the axis, first falls to it, looked for in steps of `step`; 1 where
+/// it does not.
+double first_sine_at(double level, double step, const RadialFunction& function);
+
+/// A function from its axis to a radius, at points close enough that a cubic through four of them is right to 1e-10 in the main
+/// lobe of a primary beam.
+class RadialTable {
+ public:
+  RadialTable(double reach, int threads, const RadialFunction& function);
+
+  /// At sin θ up to the reach.
+  double operator()(double sine) const;
+  double reach() const { return reach_; }
+
+ private:
+  static constexpr int points = 1024;
+  double step() const { return reach_ / points; }
+
+  double reach_;
+  std::vector<double> value_;  ///< [point + 1]
+};
+
+/// Calls visit(pixel, sin θ) for all pixels of an image whose true angle θ from `axis`, a direction seen from the phase centre,
+/// has a sine of `reach` at most and is below 90°; pixels beyond the horizon are none of these.
+void for_each_within(double reach, DirectionCosines axis, const ImageGeometry& geometry, int threads,
+                     const std::function<void(std::size_t pixel, double sine)>& visit);
+
+}  // namespace misfit::imager

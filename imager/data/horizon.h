@@ -1,0 +1,16 @@
+#pragma once
+
+#include <limits>
+
+#include "imager/data/geometry.h"
+#include "imager/data/image.h"
+
+namespace misfit::imager {
+
+/// Gives `value` to the pixels beyond the horizon.
+void set_beyond_horizon(const ImageGeometry& geometry, double value, Image& image);
+
+/// What pixels beyond the horizon hold in images.
+inline constexpr double no_value = std::numeric_limits<double>::quiet_NaN();
+
+}  // namespace misfit::imager

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <cstddef>
+
+#include "imager/data/image.h"
+
+namespace misfit::imager {
+
+/// What one pass over an image's pixels tells of those that are not NaN.
+struct ImageStatistics {
+  std::size_t count = 0;
+  double square_sum = 0;
+  double least = 0;  ///< 0 where there are none
+  double largest = 0;
+
+  /// √(mean of squares); 0 where there are none.
+  double root_mean_square() const;
+  double largest_magnitude() const;
+};
+
+ImageStatistics statistics_of(const Image& image);
+
+/// Divides all pixels, and tells of what they are then.
+ImageStatistics divide(Image& image, double by);
+
+/// √(mean of squares) of the pixels that are not NaN; 0 where there are none.
+double root_mean_square(const Image& image);
+
+/// The largest magnitude of a pixel; 0 where every pixel is NaN.
+double largest_magnitude(const Image& image);
+
+/// The pixel of largest magnitude.
+struct Peak {
+  int row = 0;
+  int column = 0;
+  double value = 0;
+};
+/// The first of them in row-major order where several are equal. NaN is no peak, unless every pixel is NaN. The image must have
+/// a pixel.
+Peak find_peak(const Image& image);
+/// The same of an image with these statistics.
+Peak find_peak(const Image& image, const ImageStatistics& statistics);
+
+}  // namespace misfit::imager

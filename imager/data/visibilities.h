@@ -1,0 +1,83 @@
+#pragma once
+
+#include <complex>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <stdexcept>
+#include <vector>
+
+#include "imager/data/ranks.h"
+#include "imager/numerics/shared_vector.h"
+
+namespace misfit::imager {
+
+/// What became of the samples read, in Stokes samples (row × channel). Each sample left out is counted once, under the first
+/// of these reasons that applies, in the order in which they stand here.
+struct SampleCounts {
+  std::uint64_t rows_read = 0;
+  std::uint64_t samples_read = 0;
+  std::uint64_t autocorrelations = 0;
+  std::uint64_t flagged = 0;
+  std::uint64_t nonfinite = 0;     ///< NaN or infinity in data, weight or UVW
+  std::uint64_t zero_weight = 0;   ///< weight zero or negative
+  std::uint64_t outside_grid = 0;  ///< |u| or |v| beyond 1/(2 cell); known only once the image is
+  std::uint64_t used = 0;
+
+  SampleCounts& operator+=(const SampleCounts& other);
+  /// Becomes that of all ranks.
+  void add_up(const Ranks& ranks);
+};
+
+/// Thrown where none of the samples read can be used: its message counts why not.
+struct NothingUsable : std::runtime_error {
+  explicit NothingUsable(const SampleCounts& counts);
+};
+
+/// Where samples lie: rows of UVW, each seen at every channel. Those of the same rows share UVW.
+struct SampleCoordinates {
+  SharedVector<double> uvw_m;        ///< [row][3], metres, with the sign stored in the MeasurementSet
+  std::vector<double> frequency_hz;  ///< [channel]
+
+  std::size_t rows() const { return uvw_m.size() / 3; }
+  std::size_t channels() const { return frequency_hz.size(); }
+  std::size_t samples() const { return rows() * channels(); }
+};
+
+/// A run of visibilities of one Stokes parameter that share their channels.
+struct VisibilityBlock : SampleCoordinates {
+  std::vector<std::complex<float>> visibility;  ///< [row][channel], Jy; finite wherever the weight is not 0
+  /// [row][channel]; 0 = unusable, never negative. As read it is 1/(4 σ²), σ the standard deviation of real and imaginary part
+  /// in Jy where the data's own weights are 1/σ²; weighting for an image multiplies it.
+  std::vector<float> weight;
+  SampleCounts counts;  ///< of this block alone
+  /// [row]: a frequency in the image's spectral frame over what it is in the frame of frequency_hz; empty: 1.
+  std::vector<double> frame_ratio;
+  std::vector<double> channel_width_hz;  ///< [channel], positive; empty unless a cube is made of the block
+  /// The other Stokes parameters that are imaged in the same run, of the same samples with the same weights.
+  std::vector<std::shared_ptr<const VisibilityBlock>> other_stokes;
+};
+
+/// Hands out blocks in a fixed order.
+class BlockStream {
+ public:
+  virtual ~BlockStream() = default;
+  /// The next block, or null at the end.
+  virtual std::shared_ptr<const VisibilityBlock> next() = 0;
+};
+
+/// Visibilities that can be read any number of times, always in the same blocks.
+class VisibilitySource {
+ public:
+  virtual ~VisibilitySource() = default;
+  virtual std::unique_ptr<BlockStream> open() const = 0;
+  /// Samples that a full pass hands out, usable or not.
+  virtual std::uint64_t samples() const = 0;
+  /// Those who have the other samples of the same image, with whom whoever adds up samples adds up what came of them.
+  virtual const Ranks& ranks() const { return alone(); }
+  /// To be called by all ranks, each in the thread that exchanges, when it has read a pass to its end: what the source tells of
+  /// its passes is that of all ranks from then on.
+  virtual void end_pass() const {}
+};
+
+}  // namespace misfit::imager

@@ -1,0 +1,60 @@
+#include "imager/files/fits_image_reader.h"
+
+#include <stdexcept>
+
+#include "imager/files/fits_beams.h"
+#include "imager/files/fits_celestial.h"
+#include "imager/files/fits_header.h"
+
+namespace misfit::imager {
+namespace {
+
+class FitsImageReader : public ImageReader {
+ public:
+  FitsImageReader(const std::string& path, Grids grids) : file_("read", path) {
+    file_.open(path);
+    planes_ = find_planes(file_);
+    header_ = read_header(file_, planes_);
+    grid_ = read_sky_grid(file_, planes_.steps);
+    header_.geometry = geometry(grids);
+    header_.observation.phase_centre = header_.geometry.phase_centre;
+    beams_ = read_beams(file_, header_.spectral.channels, static_cast<int>(header_.stokes.size()));
+  }
+
+  const ImageHeader& header() const override { return header_; }
+  std::optional<Beam> beam(const PlaneIndex& at) const override { return beams_.at(at); }
+
+  const std::optional<SkyGrid>& grid() const override { return grid_; }
+
+  Image read_rows(const PlaneIndex& at, int first, int count) const override {
+    Image image(header_.geometry.width, count);
+    std::vector<long> pixel = first_pixel(planes_, at);
+    pixel[1] = first + 1;
+    file_.read_pixels(pixel, image.pixel);
+    return image;
+  }
+
+ private:
+  ImageGeometry geometry(Grids wanted) const {
+    const std::vector<long> size = file_.size();
+    try {
+      return geometry_on(grid_, wanted, {static_cast<int>(size[0]), static_cast<int>(size[1]), 0, {}});
+    } catch (const std::invalid_argument& error) {
+      file_.fail(error.what());
+    }
+  }
+
+  FitsFile file_;
+  FitsPlanes planes_;
+  std::optional<SkyGrid> grid_;
+  ImageHeader header_;
+  PlaneBeams beams_;
+};
+
+}  // namespace
+
+std::unique_ptr<ImageReader> open_fits_image(const std::string& path, Grids grids) {
+  return std::make_unique<FitsImageReader>(path, grids);
+}
+
+}  // namespace misfit::imager

@@ -1,0 +1,120 @@
+#include "imager/transform/imaging.h"
+
+#include <stdexcept>
+
+#include "imager/numerics/big_array.h"
+#include "imager/transform/visibility_pass_internal.h"
+
+namespace misfit::imager {
+namespace {
+
+/// Data − model. [block][row][channel]
+std::vector<std::vector<std::complex<double>>> residuals(const Prediction& prediction, const VisibilityPass::Blocks& blocks) {
+  std::vector<const VisibilityBlock*> plain;
+  for (const auto& block : blocks) plain.push_back(block.get());
+  auto residual = prediction.at_usable_of(plain);
+  for (std::size_t b = 0; b < blocks.size(); ++b)
+    for (std::size_t i = 0; i < residual[b].size(); ++i)
+      residual[b][i] = std::complex<double>(blocks[b]->visibility[i]) - residual[b][i];
+  return residual;
+}
+
+void require_any(const SampleSums& sums) {
+  if (sums.weight != 0) return;
+  if (sums.outside_grid == 0) throw std::runtime_error("no visibility can be imaged: none has a weight above 0");
+  throw NothingInGrid(sums.outside_grid);
+}
+
+/// Divides by Σ w. What the image is then, as rank 0 has it.
+ImageStatistics normalise(Image& image, double weight, const Ranks& ranks) {
+  ImageStatistics statistics = divide(image, weight);
+  share_values(ranks, statistics);
+  return statistics;
+}
+
+/// Divides all by Σ w.
+DirtyImages dirty_images(AdjointResult sum, Image psf, const Ranks& ranks, StageTimes& times) {
+  BigMemory::release();
+  require_any(sum.sums.front());
+  const StageTimer timer(times, "fft");
+  const double weight = sum.sums.front().weight;
+  DirtyImages made{std::move(sum.images), std::move(psf), std::move(sum.sums), {}, {}};
+  for (Image& image : made.dirty) made.dirty_statistics.push_back(normalise(image, weight, ranks));
+  made.psf_statistics = normalise(made.psf, weight, ranks);
+  return made;
+}
+
+}  // namespace
+
+NothingInGrid::NothingInGrid(std::uint64_t samples)
+    : std::runtime_error("no visibility can be imaged: " + std::to_string(samples) +
+                         " usable samples lie beyond 1/(2 cell), none within; expected smaller pixels"),
+      outside_grid(samples) {}
+
+DirtyImages make_dirty_images(const VisibilitySource& source, const Transform& transform, const AdjointOptions& options,
+                              const Progress& progress, StageTimes& times) {
+  VisibilityPass pass(source, progress, times);
+  auto sum = begin_adjoint(transform, options, times);
+  pass.for_each_block([&](const VisibilityBlock& block) {
+    const StageTimer timer(times, "grid");
+    sum->add(block);
+  });
+  AdjointResult result = finish_adjoint(std::move(sum), source.ranks(), times);
+  Image psf = std::move(result.psf);
+  return dirty_images(std::move(result), std::move(psf), source.ranks(), times);
+}
+
+DirtyImages make_dirty_images(const VisibilitySource& source, const Transform& transform, const OwnPsf& psf,
+                              const Progress& progress, StageTimes& times) {
+  VisibilityPass pass(source, progress, times);
+  auto sum = begin_adjoint(transform, {.images = psf.images}, times);
+  auto psf_sum = begin_adjoint(psf.transform, {.images = 0, .with_psf = true}, times);
+  pass.for_each_block([&](const VisibilityBlock& block) {
+    const StageTimer timer(times, "grid");
+    sum->add(block);
+    psf_sum->add(block);
+  });
+  AdjointResult of_psf = finish_adjoint(std::move(psf_sum), source.ranks(), times);
+  AdjointResult result = finish_adjoint(std::move(sum), source.ranks(), times);
+  return dirty_images(std::move(result), std::move(of_psf.psf), source.ranks(), times);
+}
+
+void for_each_residual(const VisibilitySource& source, const MakePrediction& predict, const Progress& progress,
+                       StageTimes& times, const VisitResidual& visit) {
+  VisibilityPass pass(source, progress, times);
+  std::unique_ptr<Prediction> prediction;
+  {
+    const StageTimer timer(times, "degrid");
+    prediction = predict();
+  }
+  pass.for_each_group(prediction->samples_at_once(), [&](const VisibilityPass::Blocks& blocks) {
+    std::vector<std::vector<std::complex<double>>> residual;
+    {
+      const StageTimer timer(times, "degrid");
+      residual = residuals(*prediction, blocks);
+    }
+    for (std::size_t b = 0; b < blocks.size(); ++b) visit(*blocks[b], residual[b]);
+  });
+  times.move("degrid", "fft", prediction->fft_s());
+}
+
+void for_each_residual(const VisibilitySource& source, const Transform& transform, const Image& model, const Progress& progress,
+                       StageTimes& times, const VisitResidual& visit) {
+  for_each_residual(
+      source, [&] { return transform.predict(model); }, progress, times, visit);
+}
+
+Image make_residual_image(const VisibilitySource& source, const Transform& transform, const Image& model,
+                          const Progress& progress, StageTimes& times) {
+  auto sum = begin_adjoint(transform, {}, times);
+  for_each_residual(source, transform, model, progress, times,
+                    [&](const VisibilityBlock& block, const std::vector<std::complex<double>>& residual) {
+                      const StageTimer timer(times, "grid");
+                      sum->add(block, residual);
+                    });
+  AdjointResult result = finish_adjoint(std::move(sum), source.ranks(), times);
+  divide(result.images.front(), result.sums.front().weight);
+  return std::move(result.images.front());
+}
+
+}  // namespace misfit::imager

@@ -1,0 +1,65 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <stdexcept>
+
+#include "imager/data/image_statistics.h"
+#include "imager/numerics/stage_times.h"
+#include "imager/transform/transform.h"
+
+namespace misfit::imager {
+
+/// Told after every block how many samples of how many are done. It may throw to end the work.
+using Progress = std::function<void(std::uint64_t done, std::uint64_t total)>;
+
+/// Thrown where every usable sample lies beyond 1/(2 cell).
+struct NothingInGrid : std::runtime_error {
+  explicit NothingInGrid(std::uint64_t samples);
+  std::uint64_t outside_grid = 0;
+};
+
+/// Where several ranks share the samples, images are at rank 0, and empty at others, here and wherever images are made; all
+/// that else is told is that of all samples, and of the images, at every rank.
+struct DirtyImages {
+  std::vector<Image> dirty;                       ///< [Stokes], Jy/beam: the adjoint over Σ w
+  Image psf;                                      ///< 1 at the centre up to the accuracy; empty unless asked for
+  std::vector<SampleSums> sums;                   ///< [Stokes]
+  std::vector<ImageStatistics> dirty_statistics;  ///< [Stokes], as the images are made
+  ImageStatistics psf_statistics;
+};
+
+/// One pass over the visibilities. Stages timed: "read", "grid", "fft", which counts corrections in. Throws std::runtime_error
+/// when no sample can be used, NothingInGrid where that is why.
+DirtyImages make_dirty_images(const VisibilitySource& source, const Transform& transform, const AdjointOptions& options,
+                              const Progress& progress, StageTimes& times);
+
+/// A PSF made by a transform of its own.
+struct OwnPsf {
+  const Transform& transform;
+  int images = 1;  ///< made by the other transform, see AdjointOptions
+};
+
+/// The same with the PSF by a transform of its own, in the same pass.
+DirtyImages make_dirty_images(const VisibilitySource& source, const Transform& transform, const OwnPsf& psf,
+                              const Progress& progress, StageTimes& times);
+
+/// Given a block and its data − model [row][channel], which is that at usable samples alone.
+using VisitResidual = std::function<void(const VisibilityBlock& block, const std::vector<std::complex<double>>& residual)>;
+
+/// One pass over the visibilities less those of a model, which every rank has. Stages timed: "read", "fft", "degrid".
+void for_each_residual(const VisibilitySource& source, const Transform& transform, const Image& model, const Progress& progress,
+                       StageTimes& times, const VisitResidual& visit);
+
+/// The same of a model whose prediction is made once the pass has begun.
+using MakePrediction = std::function<std::unique_ptr<Prediction>()>;
+void for_each_residual(const VisibilitySource& source, const MakePrediction& predict, const Progress& progress,
+                       StageTimes& times, const VisitResidual& visit);
+
+/// The dirty image of data − model, of the blocks' own Stokes parameter: the model is predicted at every usable sample and
+/// subtracted. Stages timed: "read", "fft", "degrid", "grid".
+Image make_residual_image(const VisibilitySource& source, const Transform& transform, const Image& model,
+                          const Progress& progress, StageTimes& times);
+
+}  // namespace misfit::imager

@@ -1,0 +1,53 @@
+#include "imager/transform/transform.h"
+
+#include <string>
+
+namespace misfit::imager {
+
+SampleSums& SampleSums::operator+=(const SampleSums& other) {
+  used += other.used;
+  outside_grid += other.outside_grid;
+  weight += other.weight;
+  weight_abs += other.weight_abs;
+  weight_square += other.weight_square;
+  weight2_square += other.weight2_square;
+  return *this;
+}
+
+void SampleSums::add_up(const Ranks& ranks) {
+  sum_over(ranks, used, outside_grid, weight, weight_abs, weight_square, weight2_square);
+}
+
+AdjointSum::AdjointSum(const AdjointOptions& options) : options_(options) {
+  const int least = options.with_psf ? 0 : 1;
+  if (options.images < least || options.images > most_stokes)
+    throw std::invalid_argument(std::to_string(options.images) + " images of one adjoint not in [" + std::to_string(least) +
+                                ", " + std::to_string(most_stokes) + "]");
+}
+
+void AdjointSum::add(const VisibilityBlock& block, VisibilitySet visibility) {
+  require_sets(1);
+  add_sets(block, {visibility});
+}
+
+void AdjointSum::add_several(const VisibilityBlock& block, const std::vector<std::vector<std::complex<double>>>& visibilities) {
+  require_sets(visibilities.size());
+  std::vector<VisibilitySet> sets;
+  for (const auto& visibility : visibilities) sets.emplace_back(visibility.data());
+  add_sets(block, sets);
+}
+
+void AdjointSum::require_sets(std::size_t given) const {
+  if (given != static_cast<std::size_t>(options_.images))
+    throw std::invalid_argument(std::to_string(given) + (given == 1 ? " set" : " sets") + " of visibilities for " +
+                                std::to_string(options_.images) + " images; expected one for each");
+}
+
+std::vector<std::vector<std::complex<double>>> Prediction::at_usable_of(
+    const std::vector<const VisibilityBlock*>& blocks) const {
+  std::vector<std::vector<std::complex<double>>> visibility;
+  for (const VisibilityBlock* block : blocks) visibility.push_back(at_usable(*block));
+  return visibility;
+}
+
+}  // namespace misfit::imager

@@ -1,0 +1,109 @@
+#pragma once
+
+#include <complex>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "imager/data/image.h"
+#include "imager/data/ranks.h"
+#include "imager/data/visibility_sets.h"
+
+namespace misfit::imager {
+
+/// Sums over the samples that an adjoint took in.
+struct SampleSums {
+  std::uint64_t used = 0;
+  std::uint64_t outside_grid = 0;  ///< usable samples beyond |u| or |v| = 1/(2 cell), left out unless they are asked for
+  double weight = 0;               ///< Σ w
+  double weight_abs = 0;           ///< Σ w |V|
+  double weight_square = 0;        ///< Σ w |V|²
+  double weight2_square = 0;       ///< Σ w² |V|²
+
+  SampleSums& operator+=(const SampleSums& other);
+  /// Becomes that of all ranks.
+  void add_up(const Ranks& ranks);
+};
+
+/// What an adjoint makes of the samples.
+struct AdjointOptions {
+  int images = 1;  ///< of a block's own Stokes parameter, or of all that it carries, up to most_stokes; 0: the PSF alone
+  bool with_psf = false;
+  /// Whether samples beyond 1/(2 cell) count too, as they do in the definition: pixels are points, whose values are periodic in
+  /// u and v but for the phase of the middle one. What they add is no picture of the sky.
+  bool beyond_grid = false;
+};
+
+/// Images made from all samples added, not yet divided by Σ w.
+struct AdjointResult {
+  /// [Stokes]: Σ w Re[V exp(−2πi(ul+vm+w(n−1)))]; NaN beyond the horizon.
+  std::vector<Image> images;
+  /// The same with V = exp(+2πi(u l_0 + v m_0 + w(n_0−1))), the response to a source of 1 Jy in the image's middle pixel, where
+  /// it is Σ w; empty unless it was asked for. It is NaN where w counts and that pixel lies beyond the horizon.
+  Image psf;
+  std::vector<SampleSums> sums;  ///< [Stokes], of the block's own for a PSF alone: they differ in those of |V| alone
+  double fft_s = 0;              ///< seconds of wall clock that FFTs and corrections took, as samples were added and at the end
+};
+
+/// The adjoint transform, accumulated block by block. Adding the same blocks in the same order gives the same bits.
+class AdjointSum {
+ public:
+  virtual ~AdjointSum() = default;
+  /// Throws std::invalid_argument when several images are made and the block does not carry as many Stokes parameters.
+  void add(const VisibilityBlock& block) { add_sets(block, sets_of(block, static_cast<int>(sets()))); }
+  /// Adds the samples of `block` with `visibility` [row][channel] in place of its own. Throws std::invalid_argument unless one
+  /// image is made.
+  void add(const VisibilityBlock& block, const std::vector<std::complex<double>>& visibility) {
+    add(block, VisibilitySet(visibility.data()));
+  }
+  void add(const VisibilityBlock& block, VisibilitySet visibility);
+  /// The same of several images, with a set of visibilities for each. Throws std::invalid_argument unless there are as many.
+  void add_several(const VisibilityBlock& block, const std::vector<std::vector<std::complex<double>>>& visibilities);
+  /// To be called once, after the last block.
+  virtual AdjointResult finish() = 0;
+
+ protected:
+  /// Throws std::invalid_argument when nothing is to be made, or there are to be too many images.
+  explicit AdjointSum(const AdjointOptions& options);
+  /// Adds a block's samples with a set of visibilities for each image; for a PSF alone with the block's own, of which sums are
+  /// taken.
+  virtual void add_sets(const VisibilityBlock& block, const std::vector<VisibilitySet>& sets) = 0;
+  std::size_t images() const { return static_cast<std::size_t>(options_.images); }
+  std::size_t sets() const { return images() == 0 ? 1 : images(); }
+
+  const AdjointOptions options_;
+
+ private:
+  void require_sets(std::size_t given) const;
+};
+
+/// The forward transform of one model image.
+class Prediction {
+ public:
+  virtual ~Prediction() = default;
+  /// V [row][channel] at every coordinate, beyond 1/(2 cell) too: but for the phase of the image's middle pixel the model is
+  /// periodic in u and v.
+  virtual std::vector<std::complex<double>> at(const SampleCoordinates& coordinates) const = 0;
+  /// V [row][channel] where the block's weight is not 0, and 0 elsewhere.
+  virtual std::vector<std::complex<double>> at_usable(const VisibilityBlock& block) const = 0;
+  /// at_usable of each block. [block][row][channel]
+  virtual std::vector<std::vector<std::complex<double>>> at_usable_of(const std::vector<const VisibilityBlock*>& blocks) const;
+  /// Samples that are best asked for together, where every call takes FFTs; 0 = any number.
+  virtual std::size_t samples_at_once() const { return 0; }
+  /// Seconds of wall clock that FFTs and corrections have taken, from its making on.
+  virtual double fft_s() const { return 0; }
+};
+
+/// The linear operator A of interferometric imaging and its adjoint,
+///   V(u,v,w) = Σ_pixels I(l,m) exp(+2πi(ul+vm+w(n−1))),   u, v, w = UVW · frequency / c,
+/// in one of several implementations. The sum leaves out pixels beyond the horizon, whatever they hold. With the same samples,
+/// ⟨A x, y⟩ = ⟨x, A* y⟩ (real parts) up to rounding.
+class Transform {
+ public:
+  virtual ~Transform() = default;
+  virtual std::unique_ptr<AdjointSum> adjoint(const AdjointOptions& options) const = 0;
+  virtual std::unique_ptr<Prediction> predict(const Image& model) const = 0;
+};
+
+}  // namespace misfit::imager

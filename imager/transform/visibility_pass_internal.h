@@ -1,0 +1,88 @@
+#pragma once
+
+#include <complex>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "imager/transform/imaging.h"
+
+namespace misfit::imager {
+
+/// One pass over visibilities; a source that reads ahead begins when this is made.
+class VisibilityPass {
+ public:
+  using Blocks = std::vector<std::shared_ptr<const VisibilityBlock>>;
+
+  VisibilityPass(const VisibilitySource& source, const Progress& progress, StageTimes& times)
+      : source_(source), stream_(source.open()), progress_(progress), times_(times) {}
+
+  /// Calls visit(block) for every block.
+  template <typename Visit>
+  void for_each_block(const Visit& visit) {
+    for_each_group(0, [&](const Blocks& group) { visit(*group.front()); });
+  }
+  /// Calls visit(blocks) for groups of blocks, of at least `samples` but for the last.
+  template <typename Visit>
+  void for_each_group(std::size_t samples, const Visit& visit) {
+    std::uint64_t done = 0;
+    Blocks group;
+    std::size_t gathered = 0;
+    const auto finish = [&] {
+      visit(group);
+      done += gathered;
+      progress_(done, source_.samples());
+      group.clear();
+      gathered = 0;
+    };
+    while (auto block = next()) {
+      gathered += block->samples();
+      group.push_back(std::move(block));
+      if (gathered >= samples) finish();
+    }
+    if (!group.empty()) finish();
+    source_.end_pass();
+  }
+
+ private:
+  std::shared_ptr<const VisibilityBlock> next() {
+    const StageTimer timer(times_, "read");
+    return stream_->next();
+  }
+
+  const VisibilitySource& source_;
+  std::unique_ptr<BlockStream> stream_;
+  const Progress& progress_;
+  StageTimes& times_;
+};
+
+inline std::unique_ptr<AdjointSum> begin_adjoint(const Transform& transform, const AdjointOptions& options, StageTimes& times) {
+  const StageTimer timer(times, "grid");
+  return transform.adjoint(options);
+}
+
+/// Becomes that of all ranks at rank 0, and empty at others.
+inline void add_up(Image& image, const Ranks& ranks) {
+  ranks.sum_at_first(image.pixel.data(), image.pixel.size());
+  if (!ranks.first()) image = {};
+}
+
+/// Of the samples of all ranks; images at rank 0 alone. Also frees the grid.
+inline AdjointResult finish_adjoint(std::unique_ptr<AdjointSum> sum, const Ranks& ranks, StageTimes& times) {
+  AdjointResult result;
+  {
+    const StageTimer timer(times, "grid");
+    result = sum->finish();
+    sum.reset();
+  }
+  times.move("grid", "fft", result.fft_s);
+  if (ranks.alone()) return result;
+  const StageTimer timer(times, "exchange");
+  for (Image& image : result.images) add_up(image, ranks);
+  add_up(result.psf, ranks);
+  for (SampleSums& sums : result.sums) sums.add_up(ranks);
+  return result;
+}
+
+}  // namespace misfit::imager

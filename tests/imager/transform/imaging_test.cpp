@@ -1,0 +1,102 @@
+#include "imager/transform/imaging.h"
+
+#include <boost/test/unit_test.hpp>
+
+#include "imager/direct/direct_transform.h"
+#include "imager/plan/gridding_plan.h"
+#include "tests/imager/comparison.h"
+#include "tests/imager/random_samples.h"
+
+BOOST_AUTO_TEST_SUITE(imaging)
+
+using namespace misfit::imager;
+using namespace misfit::imager::testing;
+
+namespace {
+
+constexpr double accuracy = 1e-6;
+const ImageGeometry geometry{60, 44, 1e-5, {}};
+
+std::unique_ptr<Transform> gridded() {
+  GriddingRequest request;
+  request.geometry = geometry;
+  request.accuracy = accuracy;
+  request.threads = 2;
+  return make_coplanar_transform(plan_gridding(request).options);
+}
+
+/// Blocks that saw `model`, without error but the rounding of floats.
+std::vector<VisibilityBlock> observed(const Image& model) {
+  std::vector<VisibilityBlock> blocks{random_samples(200, 2, geometry.cell_rad, 1),
+                                      random_samples(70, 5, geometry.cell_rad, 2)};
+  const auto prediction = DirectTransform(geometry, 2).predict(model);
+  for (VisibilityBlock& block : blocks) {
+    const auto exact = prediction->at(block);
+    block.visibility.assign(exact.begin(), exact.end());
+  }
+  return blocks;
+}
+
+}  // namespace
+
+BOOST_AUTO_TEST_CASE(dirty_image_and_psf_are_the_direct_ones_over_the_sum_of_weights) {
+  const std::vector<VisibilityBlock> blocks = observed(random_image(60, 44, 3));
+  StageTimes times;
+  const DirtyImages is = make_dirty_images(stored(blocks), *gridded(), {.with_psf = true}, ignore_progress, times);
+  const auto sum = DirectTransform(geometry, 2).adjoint({.with_psf = true});
+  for (const VisibilityBlock& block : blocks) sum->add(block);
+  AdjointResult should = sum->finish();
+  for (Image* image : {&should.images[0], &should.psf})
+    for (double& pixel : image->pixel) pixel /= should.sums[0].weight;
+  BOOST_TEST(relative_error(is.dirty[0].pixel, should.images[0].pixel) < accuracy);
+  BOOST_TEST(relative_error(is.psf.pixel, should.psf.pixel) < accuracy);
+  BOOST_TEST(is.psf.at(22, 30) == 1, boost::test_tools::tolerance(1e-5));
+  BOOST_TEST(is.sums[0].used == 200U * 2 + 70U * 5);
+}
+
+BOOST_AUTO_TEST_CASE(the_residual_of_the_true_model_is_zero_to_the_accuracy) {
+  const Image model = random_image(60, 44, 4);
+  const StoredVisibilities source = stored(observed(model));
+  const auto transform = gridded();
+  StageTimes times;
+  const Image dirty = make_dirty_images(source, *transform, {}, ignore_progress, times).dirty[0];
+  const Image residual = make_residual_image(source, *transform, model, ignore_progress, times);
+  BOOST_TEST(norm(residual.pixel) < accuracy * norm(dirty.pixel));
+}
+
+BOOST_AUTO_TEST_CASE(the_residual_of_no_model_is_the_dirty_image) {
+  const StoredVisibilities source = stored(observed(random_image(60, 44, 5)));
+  const auto transform = gridded();
+  StageTimes times;
+  const DirtyImages images = make_dirty_images(source, *transform, {}, ignore_progress, times);
+  const Image residual = make_residual_image(source, *transform, Image(60, 44), ignore_progress, times);
+  BOOST_TEST((residual.pixel == images.dirty[0].pixel));
+  BOOST_TEST(images.psf.pixel.empty());
+}
+
+BOOST_AUTO_TEST_CASE(progress_ends_at_all_samples_and_every_stage_is_timed) {
+  const StoredVisibilities source = stored(observed(Image(60, 44)));
+  std::vector<std::uint64_t> seen;
+  const auto progress = [&](std::uint64_t done, std::uint64_t total) {
+    BOOST_TEST(total == source.samples());
+    seen.push_back(done);
+  };
+  StageTimes times;
+  make_dirty_images(source, *gridded(), {}, progress, times);
+  BOOST_TEST((seen == std::vector<std::uint64_t>{400, 750}));
+  std::vector<std::string> stages;
+  for (const auto& [stage, seconds] : times.stages()) stages.push_back(stage);
+  BOOST_TEST((stages == std::vector<std::string>{"grid", "read", "fft"}));
+}
+
+BOOST_AUTO_TEST_CASE(no_usable_sample_is_an_error_that_counts_those_outside) {
+  VisibilityBlock outside = random_samples(5, 2, geometry.cell_rad, 6);
+  for (std::size_t row = 0; row < 5; ++row) outside.uvw_m.edit()[3 * row] = 1e9;
+  StageTimes times;
+  BOOST_CHECK_EXCEPTION(
+      make_dirty_images(stored({outside}), *gridded(), {.with_psf = true}, ignore_progress, times), std::runtime_error,
+      [](const std::exception& error) { return std::string(error.what()).find(" 10 usable samples") != std::string::npos; });
+  BOOST_CHECK_THROW(make_dirty_images(stored({}), *gridded(), {.with_psf = true}, ignore_progress, times), std::runtime_error);
+}
+
+BOOST_AUTO_TEST_SUITE_END()
