@@ -17,17 +17,14 @@ namespace {
 /// formed.
 constexpr std::uint64_t piece_samples = 1 << 17;
 
-/// A block to which rows are appended, and those of the other Stokes parameters.
+/// A block to which rows are appended.
 class GrowingBlock {
  public:
   GrowingBlock(const Setup& setup, const StokesRecipe& recipe, std::uint64_t rows) : setup_(setup), recipe_(recipe) {
     const std::size_t samples = rows * setup.frequency_hz.size();
-    for (std::size_t i = 0; i < recipe.terms.size(); ++i) {
-      blocks_.push_back(std::make_shared<imager::VisibilityBlock>());
-      blocks_.back()->visibility.resize(samples);
-      next_.visibility[i] = blocks_.back()->visibility.data();
-    }
-    imager::VisibilityBlock& block = *blocks_.front();
+    imager::VisibilityBlock& block = *block_;
+    block.visibility.resize(recipe.terms.size() * samples);
+    for (std::size_t i = 0; i < recipe.terms.size(); ++i) next_.visibility[i] = block.visibility.data() + i * samples;
     block.frequency_hz = setup.frequency_hz;
     block.uvw_m.edit().resize(rows * 3);
     block.weight.resize(samples);
@@ -41,7 +38,7 @@ class GrowingBlock {
 
   /// Appends the Stokes parameters of `count` rows, of which `first` is the first of `stored`.
   void append(const StoredRows& stored, std::size_t first, std::size_t count) {
-    imager::SampleCounts& counts = blocks_.front()->counts;
+    imager::SampleCounts& counts = block_->counts;
     const std::size_t channels = setup_.frequency_hz.size(), cell = recipe_.correlations * setup_.channel_span();
     if (!stored.frame_ratio.empty()) append_spectral(stored, first, count);
     if (setup_.shift.moves()) setup_.shift.append(stored.time_s.data() + first, count, shifts_);
@@ -66,23 +63,16 @@ class GrowingBlock {
     }
   }
 
-  /// The block, with the others, as the phase centre of the image sees them.
+  /// The block as the phase centre of the image sees it.
   std::shared_ptr<const imager::VisibilityBlock> finish() {
-    imager::VisibilityBlock& first = *blocks_.front();
-    for (std::size_t i = 1; i < blocks_.size(); ++i) {
-      static_cast<imager::SampleCoordinates&>(*blocks_[i]) = first;
-      blocks_[i]->weight = first.weight;
-      blocks_[i]->counts = first.counts;
-      first.other_stokes.push_back(blocks_[i]);
-    }
-    for (const auto& stokes : blocks_) shifts_.apply(*stokes);
-    return blocks_.front();
+    shifts_.apply(*block_);
+    return block_;
   }
 
  private:
   /// What a cube needs to know.
   void append_spectral(const StoredRows& stored, std::size_t first, std::size_t count) {
-    imager::VisibilityBlock& block = *blocks_.front();
+    imager::VisibilityBlock& block = *block_;
     if (block.channel_width_hz.empty()) block.channel_width_hz = setup_.channel_width_hz;
     const auto begin = stored.frame_ratio.begin() + static_cast<std::ptrdiff_t>(first);
     block.frame_ratio.insert(block.frame_ratio.end(), begin, begin + static_cast<std::ptrdiff_t>(count));
@@ -115,13 +105,13 @@ class GrowingBlock {
       part.flag += offset;
       if (row.weight_per_channel) part.weight += offset;
       part.channels = run.count;
-      form_stokes(recipe_, part, next_, counted ? blocks_.front()->counts : uncounted);
+      form_stokes(recipe_, part, next_, counted ? block_->counts : uncounted);
       advance(run.count);
     }
   }
 
   void advance(std::size_t samples) {
-    for (std::size_t i = 0; i < blocks_.size(); ++i) next_.visibility[i] += samples;
+    for (std::size_t i = 0; i < recipe_.terms.size(); ++i) next_.visibility[i] += samples;
     next_.weight += samples;
   }
 
@@ -134,8 +124,8 @@ class GrowingBlock {
   const StokesRecipe& recipe_;
   std::vector<CountedRun> runs_;
   std::size_t counted_channels_ = 0;
-  std::vector<std::shared_ptr<imager::VisibilityBlock>> blocks_;  ///< [Stokes parameter]
-  StokesSamples next_;                                            ///< where the next samples go
+  std::shared_ptr<imager::VisibilityBlock> block_ = std::make_shared<imager::VisibilityBlock>();
+  StokesSamples next_;  ///< where the next samples go
   double* next_uvw_m_;
   imager::RowShifts shifts_;
 };

@@ -17,7 +17,7 @@ namespace {
 class OneTerm : public CleanProblem {
  public:
   OneTerm(const CleanInput& input, const MinorCycle& minor, const Progress& progress, StageTimes& times)
-      : input_(input), minor_(minor), progress_(progress), times_(times), sharer_(input.source.ranks()) {
+      : input_(input), minor_(minor), progress_(progress), times_(times), sharer_(input.samples.source.ranks()) {
     require_finite_psf(input.psf);
   }
 
@@ -27,7 +27,7 @@ class OneTerm : public CleanProblem {
     if (model.components().empty()) return checked(std::shared_ptr<const Image>(std::shared_ptr<void>(), &input_.dirty));
     sharer_.share(model);
     return checked(std::make_shared<const Image>(
-        make_residual_image(input_.source, input_.transform, model_image(model, threads), progress_, times_)));
+        make_residual_image(input_.samples, input_.transform, model_image(model, threads), progress_, times_)));
   }
   void end() const override { sharer_.end(); }
   MinorCycleReport find(const Residuals& residuals, const MinorCycleOptions& options) const override {

@@ -99,9 +99,9 @@ struct CleanResult {
 
 /// What is to be cleaned. Where several ranks share the samples, rank 0 cleans and the others call follow_clean().
 struct CleanInput {
-  const VisibilitySource& source;
+  OneStokes samples;
   const Transform& transform;
-  const Image& dirty;  ///< of the source's own Stokes parameter
+  const Image& dirty;  ///< of these samples
   const Image& psf;
   double max_sidelobe = 0;      ///< the largest of the PSF
   double accuracy = 1e-7;       ///< of images and prediction, relative; single-precision data have no better

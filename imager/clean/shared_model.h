@@ -22,10 +22,10 @@ class ModelSharer {
 
 /// On ranks after the first: makes the parts of residuals that this rank's samples give, of every model that rank 0 tells of,
 /// until it tells of the end.
-void follow_clean(const VisibilitySource& source, const Transform& transform, int threads, const Progress& progress,
+void follow_clean(const OneStokes& samples, const Transform& transform, int threads, const Progress& progress,
                   StageTimes& times);
 /// The same of Taylor terms.
-void follow_clean(const VisibilitySource& source, const Transform& transform, const TaylorExpansion& expansion, int threads,
+void follow_clean(const OneStokes& samples, const Transform& transform, const TaylorExpansion& expansion, int threads,
                   const Progress& progress, StageTimes& times);
 
 }  // namespace misfit::imager

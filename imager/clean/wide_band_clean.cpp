@@ -17,7 +17,7 @@ class SeveralTerms : public CleanProblem {
  public:
   SeveralTerms(const CleanInput& input, const WideBand& band, const MultiTerm& minor, const Progress& progress,
                StageTimes& times)
-      : input_(input), band_(band), minor_(minor), progress_(progress), times_(times), sharer_(input.source.ranks()) {
+      : input_(input), band_(band), minor_(minor), progress_(progress), times_(times), sharer_(input.samples.source.ranks()) {
     const int terms = band.expansion.terms;
     if (minor.terms() != terms || band.further_dirty.size() + 1 != static_cast<std::size_t>(terms))
       throw std::invalid_argument(std::to_string(terms) + " Taylor terms, dirty images of " +
@@ -35,7 +35,7 @@ class SeveralTerms : public CleanProblem {
       for (const Image& dirty : band_.further_dirty) made.push_back(without_owner(dirty));
     } else {
       sharer_.share(model);
-      for (Image& image : make_taylor_residuals(input_.source, input_.transform, model_images(model, threads), band_.expansion,
+      for (Image& image : make_taylor_residuals(input_.samples, input_.transform, model_images(model, threads), band_.expansion,
                                                 progress_, times_))
         made.push_back(std::make_shared<const Image>(std::move(image)));
     }

@@ -41,7 +41,7 @@ class CoplanarAdjoint : public AdjointSum {
   }
 
  protected:
-  void add_sets(const VisibilityBlock& block, const std::vector<VisibilitySet>& sets) override {
+  void add_sets(const VisibilityBlock& block, const VisibilitySets& sets) override {
     const Wanted wanted = options_.beyond_grid ? Wanted::imaging_beyond : Wanted::imaging;
     const TileOrder order = order_by_tile(block, sets, setup_.shape, setup_.geometry, wanted, setup_.threads);
     for (std::size_t i = 0; i < sums_.size(); ++i) sums_[i] += order.sums[i];
@@ -79,8 +79,7 @@ class CoplanarAdjoint : public AdjointSum {
     }
   }
 
-  void grid_tile(const VisibilityBlock& block, const std::vector<VisibilitySet>& sets, const TileOrder& order,
-                 const TileTask& task) {
+  void grid_tile(const VisibilityBlock& block, const VisibilitySets& sets, const TileOrder& order, const TileTask& task) {
     TileBuffer<double>* const crowded = crowded_.of(task.tile);
     const bool in_place = crowded == nullptr && sparse(order, task);
     TileBuffer<Real> buffer(setup_.shape.tile, setup_.taps_u.padded, in_place ? 0 : plane_count());
@@ -108,7 +107,7 @@ class CoplanarAdjoint : public AdjointSum {
   }
 
   /// The grid holds conj(V), whose backward transform is the image; see tile_order.h for the axes.
-  void set_values(const VisibilityBlock& block, const std::vector<VisibilitySet>& sets, const BatchSamples& samples,
+  void set_values(const VisibilityBlock& block, const VisibilitySets& sets, const BatchSamples& samples,
                   TileBatch<Real>& batch) const {
     double weight[BatchSamples::capacity];
     for (int k = 0; k < batch.count; ++k) weight[k] = block.weight[samples.index[k]];

@@ -66,8 +66,8 @@ class TileFinder {
 /// The runs of a range of rows, in order.
 class RunFinder {
  public:
-  RunFinder(const VisibilityBlock& block, const std::vector<VisibilitySet>& sets, const GridShape& shape,
-            const ImageGeometry& geometry, Wanted wanted)
+  RunFinder(const VisibilityBlock& block, const VisibilitySets& sets, const GridShape& shape, const ImageGeometry& geometry,
+            Wanted wanted)
       : sums(sets.size()), block_(block), sets_(sets), shape_(shape), scale_(shape, geometry), tiles_(shape), wanted_(wanted) {}
 
   void find(std::size_t begin_row, std::size_t end_row) {
@@ -166,7 +166,7 @@ class RunFinder {
   }
 
   const VisibilityBlock& block_;
-  const std::vector<VisibilitySet>& sets_;
+  const VisibilitySets& sets_;
   const GridShape& shape_;
   CellScale scale_;
   TileFinder tiles_;
@@ -184,7 +184,7 @@ void check_channels(std::size_t channels) {
                                 " are supported");
 }
 
-TileOrder order_by_tile(const VisibilityBlock& block, const std::vector<VisibilitySet>& sets, const GridShape& shape,
+TileOrder order_by_tile(const VisibilityBlock& block, const VisibilitySets& sets, const GridShape& shape,
                         const ImageGeometry& geometry, Wanted wanted, int threads) {
   check_channels(block.channels());
   std::vector<RunFinder> part(chunks, RunFinder(block, sets, shape, geometry, wanted));

@@ -75,7 +75,7 @@ enum class Wanted { imaging, imaging_beyond, usable, all };
 
 /// Orders the wanted samples by the tile of their first tap. `block` needs weights unless all are wanted; sums are taken of
 /// each of the sets.
-TileOrder order_by_tile(const VisibilityBlock& block, const std::vector<VisibilitySet>& sets, const GridShape& shape,
+TileOrder order_by_tile(const VisibilityBlock& block, const VisibilitySets& sets, const GridShape& shape,
                         const ImageGeometry& geometry, Wanted wanted, int threads);
 
 /// Cells reduced by the period of the grid to [−n/2, n/2] along u and [0, n/2] along v, as prediction beyond the grid needs.

@@ -56,11 +56,12 @@ const float* append_weights(const VisibilityBlock& from, const MappedRows& rows,
 }
 
 /// Appends the visibilities of rows, those of weight 0 as 0.
-void append_visibilities(const VisibilityBlock& from, const MappedRows& rows, const std::vector<ChannelTap>& taps,
-                         const float* weight, std::vector<std::complex<float>>& to) {
+void append_visibilities(const VisibilityBlock& from, std::size_t stokes, const MappedRows& rows,
+                         const std::vector<ChannelTap>& taps, const float* weight, std::vector<std::complex<float>>& to) {
+  const std::complex<float>* const visibility = from.visibility_of(stokes);
   std::complex<float>* next = extend(to, (rows.end - rows.first) * taps.size());
   const auto append = [&](std::size_t row, const ChannelTap& tap) {
-    *next++ = *weight++ == 0 ? std::complex<float>() : visibility_of(&from.visibility[row * from.channels()], tap);
+    *next++ = *weight++ == 0 ? std::complex<float>() : visibility_of(&visibility[row * from.channels()], tap);
   };
   for_each_tap(rows, taps, append);
 }
@@ -95,16 +96,15 @@ void GatheredRows::add(const VisibilityBlock& block, const std::vector<MappedRow
   }
   const auto append = [&](const MappedRows& some, const PlaneChannels& channels, std::vector<Piece>& plane) {
     if (channels.tap.empty()) return;
-    Piece& piece = piece_of(plane, channels.frequency_hz, 1 + block.other_stokes.size());
+    Piece& piece = piece_of(plane, channels.frequency_hz, block.stokes());
     const Span span{before + some.first, before + some.end};
     if (!piece.spans.empty() && piece.spans.back().end == span.first)
       piece.spans.back().end = span.end;
     else
       piece.spans.push_back(span);
     const float* const weight = append_weights(block, some, channels.tap, piece.weight);
-    append_visibilities(block, some, channels.tap, weight, piece.visibility.front());
-    for (std::size_t i = 0; i < block.other_stokes.size(); ++i)
-      append_visibilities(*block.other_stokes[i], some, channels.tap, weight, piece.visibility[i + 1]);
+    for (std::size_t s = 0; s < block.stokes(); ++s)
+      append_visibilities(block, s, some, channels.tap, weight, piece.visibility[s]);
   };
   const std::size_t groups = std::min(planes_.size(), static_cast<std::size_t>(threads));
   parallel_for(groups, threads, [&](std::size_t g) {
@@ -141,7 +141,6 @@ std::vector<GatheredRows::Place> GatheredRows::places_of(const Piece& piece) con
 std::shared_ptr<const VisibilityBlock> GatheredRows::block_of(const Piece& piece, const std::vector<Place>& places) const {
   const std::size_t channels = piece.frequency_hz.size();
   const auto of_rows = [&](const auto& from, auto& to) {
-    to.reserve(places.size() * channels);
     if (channels == 1) {
       for (const Place& place : places) to.push_back(from[place.in_piece]);
       return;
@@ -160,20 +159,14 @@ std::shared_ptr<const VisibilityBlock> GatheredRows::block_of(const Piece& piece
     for (std::size_t i = 0; i < places.size(); ++i) std::copy_n(&uvw_m_[std::size_t{3} * places[i].ordered], 3, &uvw_m[3 * i]);
     block->uvw_m = std::move(uvw_m);
   }
+  block->weight.reserve(block->samples());
   of_rows(piece.weight, block->weight);
-  of_rows(piece.visibility.front(), block->visibility);
+  block->visibility.reserve(piece.visibility.size() * block->samples());
+  for (const auto& of_stokes : piece.visibility) of_rows(of_stokes, block->visibility);
   block->counts.rows_read = places.size();
   block->counts.samples_read = block->samples();
   block->counts.used =
       block->samples() - static_cast<std::size_t>(std::count(block->weight.begin(), block->weight.end(), 0.0F));
-  for (std::size_t i = 1; i < piece.visibility.size(); ++i) {
-    auto other = std::make_shared<VisibilityBlock>();
-    static_cast<SampleCoordinates&>(*other) = *block;
-    other->weight = block->weight;
-    other->counts = block->counts;
-    of_rows(piece.visibility[i], other->visibility);
-    block->other_stokes.push_back(std::move(other));
-  }
   return block;
 }
 

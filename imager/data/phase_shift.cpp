@@ -38,7 +38,7 @@ void PhaseShift::rotate(std::vector<double>& uvw_m, RowRun rows) const {
 }
 
 template <typename T>
-void PhaseShift::turn(const SampleCoordinates& old, const Turn& how, std::vector<std::complex<T>>& visibilities) const {
+void PhaseShift::turn(const SampleCoordinates& old, const Turn& how, std::complex<T>* visibilities) const {
   const std::size_t channels = old.channels();
   std::vector<double> turns(channels), cosine(channels), sine(channels);
   for (std::size_t row = how.rows.first; row < how.rows.first + how.rows.count; ++row) {
@@ -54,12 +54,12 @@ void PhaseShift::turn(const SampleCoordinates& old, const Turn& how, std::vector
 
 void PhaseShift::apply(VisibilityBlock& block, RowRun rows) const {
   if (none_) return;
-  turn(block, {-1, rows}, block.visibility);
+  for (std::size_t s = 0; s < block.stokes(); ++s) turn(block, {-1, rows}, block.visibility.data() + s * block.samples());
   rotate(block.uvw_m.edit(), rows);
 }
 
 void PhaseShift::undo(const SampleCoordinates& old, std::vector<std::complex<double>>& visibilities, RowRun rows) const {
-  if (!none_) turn(old, {1, rows}, visibilities);
+  if (!none_) turn(old, {1, rows}, visibilities.data());
 }
 
 void RowShifts::append(const PhaseShift& shift, std::size_t rows) {

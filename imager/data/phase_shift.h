@@ -57,7 +57,7 @@ class PhaseShift {
 
   /// Multiplies each visibility [row][channel] of the rows by exp(2πi sign (w' − w)).
   template <typename T>
-  void turn(const SampleCoordinates& old, const Turn& how, std::vector<std::complex<T>>& visibilities) const;
+  void turn(const SampleCoordinates& old, const Turn& how, std::complex<T>* visibilities) const;
 
   bool none_ = true;
   std::array<UvwAxes::Vector, 3> rotation_{};  ///< the new axes as the old ones see them

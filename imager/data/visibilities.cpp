@@ -34,6 +34,13 @@ SampleCounts& SampleCounts::operator+=(const SampleCounts& other) {
   return *this;
 }
 
+const std::complex<float>* VisibilityBlock::visibility_of(std::size_t index) const {
+  if (index >= stokes())
+    throw std::invalid_argument("Stokes parameter " + std::to_string(index) + " of a block that carries " +
+                                std::to_string(stokes()) + "; they count from 0");
+  return visibility.data() + index * samples();
+}
+
 void SampleCounts::add_up(const Ranks& ranks) {
   sum_over(ranks, rows_read, samples_read, autocorrelations, flagged, nonfinite, zero_weight, outside_grid, used);
 }

@@ -44,18 +44,22 @@ struct SampleCoordinates {
   std::size_t samples() const { return rows() * channels(); }
 };
 
-/// A run of visibilities of one Stokes parameter that share their channels.
+/// A run of visibilities that share their channels, of one Stokes parameter or of all that are imaged in the same run.
 struct VisibilityBlock : SampleCoordinates {
-  std::vector<std::complex<float>> visibility;  ///< [row][channel], Jy; finite wherever the weight is not 0
-  /// [row][channel]; 0 = unusable, never negative. As read it is 1/(4 σ²), σ the standard deviation of real and imaginary part
-  /// in Jy where the data's own weights are 1/σ²; weighting for an image multiplies it.
+  /// [Stokes][row][channel], Jy; finite wherever the weight is not 0.
+  std::vector<std::complex<float>> visibility;
+  /// [row][channel], of all Stokes parameters; 0 = unusable, never negative. As read it is 1/(4 σ²), σ the standard deviation
+  /// of real and imaginary part in Jy where the data's own weights are 1/σ²; weighting for an image multiplies it.
   std::vector<float> weight;
   SampleCounts counts;  ///< of this block alone
   /// [row]: a frequency in the image's spectral frame over what it is in the frame of frequency_hz; empty: 1.
   std::vector<double> frame_ratio;
   std::vector<double> channel_width_hz;  ///< [channel], positive; empty unless a cube is made of the block
-  /// The other Stokes parameters that are imaged in the same run, of the same samples with the same weights.
-  std::vector<std::shared_ptr<const VisibilityBlock>> other_stokes;
+
+  /// How many Stokes parameters it carries.
+  std::size_t stokes() const { return samples() == 0 ? 1 : visibility.size() / samples(); }
+  /// [row][channel] of one of them. Throws std::invalid_argument when there are not as many.
+  const std::complex<float>* visibility_of(std::size_t stokes) const;
 };
 
 /// Hands out blocks in a fixed order.
@@ -78,6 +82,14 @@ class VisibilitySource {
   /// To be called by all ranks, each in the thread that exchanges, when it has read a pass to its end: what the source tells of
   /// its passes is that of all ranks from then on.
   virtual void end_pass() const {}
+};
+
+/// One of the Stokes parameters that a source's blocks carry.
+struct OneStokes {
+  OneStokes(const VisibilitySource& from, std::size_t number = 0)  // mostly there is one
+      : source(from), index(number) {}
+  const VisibilitySource& source;
+  std::size_t index;
 };
 
 }  // namespace misfit::imager

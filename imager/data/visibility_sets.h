@@ -1,6 +1,7 @@
 #pragma once
 
 #include <complex>
+#include <cstddef>
 #include <variant>
 #include <vector>
 
@@ -14,8 +15,18 @@ inline constexpr int most_stokes = 4;
 /// Visibilities [row][channel] at the samples of a block, of either precision.
 using VisibilitySet = std::variant<const std::complex<float>*, const std::complex<double>*>;
 
-/// Those that `images` images are made of: the block's own for one image, else also those of its other Stokes parameters.
-/// Throws std::invalid_argument when the block does not carry as many, or not of as many samples.
-std::vector<VisibilitySet> sets_of(const VisibilityBlock& block, int images);
+/// Visibilities at the samples of a block, a set of them for each image.
+class VisibilitySets : public std::vector<VisibilitySet> {
+ public:
+  VisibilitySets() = default;
+  /// The block's own: of its first Stokes parameter for one image, else of all. Throws std::invalid_argument when the block
+  /// does not carry as many.
+  VisibilitySets(const VisibilityBlock& block, int images);
+  /// Those of one image, [row][channel], which stay where they are.
+  VisibilitySets(const std::vector<std::complex<double>>& one) : vector{one.data()} {}
+  VisibilitySets(VisibilitySet one) : vector{one} {}
+  /// Those of several, [image][row][channel].
+  VisibilitySets(const std::vector<std::vector<std::complex<double>>>& several);
+};
 
 }  // namespace misfit::imager

@@ -72,7 +72,7 @@ struct WeightedSamples {
   std::vector<double> weight;
   std::vector<Values> values;  ///< [set]
 
-  WeightedSamples(const VisibilityBlock& block, const std::vector<float>& weights, const std::vector<VisibilitySet>& sets,
+  WeightedSamples(const VisibilityBlock& block, const std::vector<float>& weights, const VisibilitySets& sets,
                   std::size_t begin, std::size_t end)
       : values(sets.size()) {
     for (std::size_t i = begin; i < end; ++i) {
@@ -126,14 +126,15 @@ class DirectAdjoint : public AdjointSum {
   }
 
  protected:
-  void add_sets(const VisibilityBlock& block, const std::vector<VisibilitySet>& sets) override {
+  void add_sets(const VisibilityBlock& block, const VisibilitySets& sets) override {
     SampleSums counted;
     const std::vector<float> weight = imaging_weights(block, {o_.geometry, options_.beyond_grid, o_.threads}, counted);
     for (std::size_t s = 0; s < sets.size(); ++s) {
       result_.sums[s] += counted;
       std::visit([&](const auto* v) { add_span_to_sums(weight.data(), v, weight.size(), result_.sums[s]); }, sets[s]);
     }
-    const std::vector<VisibilitySet> imaged(sets.begin(), sets.begin() + options_.images);
+    VisibilitySets imaged = sets;
+    imaged.resize(images());
     const WeightedSamples samples(block, weight, imaged, 0, weight.size());
     const PhasePosition middle = position_of(o_.geometry.centre, o_.with_w);
     parallel_for(static_cast<std::size_t>(o_.geometry.height), o_.threads, [&](std::size_t r) {
@@ -193,7 +194,7 @@ std::unique_ptr<Prediction> DirectTransform::predict(const Image& model) const {
 void add_direct_pixels(const VisibilityBlock& block, const DirectPixels& at, std::vector<std::vector<double>>& sum) {
   SampleSums unused;
   const std::vector<float> weight = imaging_weights(block, {at.geometry, false, at.threads}, unused);
-  const std::vector<VisibilitySet> sets = sets_of(block, static_cast<int>(sum.size()));
+  const VisibilitySets sets(block, static_cast<int>(sum.size()));
   constexpr std::size_t samples_a_piece = 1 << 14;
   const std::size_t pieces = (weight.size() + samples_a_piece - 1) / samples_a_piece;
   std::vector<WeightedSamples::Sums> part(pieces * at.pixel.size());  // [piece][pixel]

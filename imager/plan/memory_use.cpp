@@ -12,7 +12,6 @@ namespace {
 constexpr double process_bytes = 96e6;
 constexpr double pixel_bytes = sizeof(double);
 constexpr double visibility_bytes = sizeof(std::complex<float>), weight_bytes = sizeof(float);
-constexpr double sample_bytes = visibility_bytes + weight_bytes;
 constexpr double row_bytes = 3 * sizeof(double);
 /// For each sample of the block at hand: its run twice while runs are sorted, at worst one a sample, and room to grow.
 constexpr double order_bytes = 2 * 12 + 8;
@@ -33,12 +32,11 @@ struct Streaming {
   double prediction = 0;  ///< bytes of the visibilities that a prediction hands out
 };
 
-/// The one at hand is let go before the next is read. Of what is read with it, Stokes parameters share their weights until each
-/// block is handed out.
+/// The one at hand is let go before the next is read.
 Streaming streaming_of(const MemoryDemand& d, const StreamingOptions& options) {
   const auto bytes = [&](double samples) {
     const double rows = d.samples == 0 ? 0 : d.rows * samples / d.samples;
-    return d.stokes * (samples * sample_bytes + rows * row_bytes);
+    return samples * (d.stokes * visibility_bytes + weight_bytes) + rows * row_bytes;
   };
   Streaming s;
   s.samples = std::min(d.block_samples, d.samples);
@@ -92,8 +90,8 @@ void add_taylor_stages(const MemoryDemand& d, const Streaming& s, std::vector<Me
 void add_wider_stages(const WiderDemand& d, const Streaming& s, double lasting, std::vector<MemoryUse>& stages) {
   const TransformMemory& t = d.transform;
   const double image = d.pixels * pixel_bytes, kept = s.kept;
-  const double tapered = s.in_flight + s.samples * sample_bytes;  // a copy with other weights
-  constexpr double placed_bytes = 32, growing = 2;                // of each sample, by cells of the uv plane
+  const double tapered = s.in_flight + s.samples * (visibility_bytes + weight_bytes);  // a copy with other weights
+  constexpr double placed_bytes = 32, growing = 2;  // of each sample, by cells of the uv plane
   const double placed = s.in_flight + s.samples * (residual_bytes + growing * placed_bytes);
   stages.push_back({"the wider field is gridded", process_bytes, kept, tapered, t.visibilities + t.psf, 0, lasting});
   stages.push_back(

@@ -23,7 +23,7 @@ struct MemoryDemand {
   double samples = 0;        ///< a row's channels, over all rows
   double block_samples = 0;  ///< in a block at most
   double read_at_once = 0;   ///< samples of the blocks that are read at once; 0: one block
-  int stokes = 1;            ///< Stokes parameters; each has its blocks and its dirty image
+  int stokes = 1;            ///< Stokes parameters; each has its visibilities and its dirty image
   bool verify = false;
   int terms = 1;             ///< Taylor terms; more than one of one Stokes parameter alone
   int clean_scales = 0;      ///< of its components; 0 = no CLEAN

@@ -50,8 +50,8 @@ TaylorImages make_taylor_images(const VisibilitySource& source, const Transform&
   auto psf_sum = begin_adjoint(psf.transform, {.images = of_psf.last}, times);
   pass.for_each_block([&](const VisibilityBlock& block) {
     const StageTimer timer(times, "grid");
-    sum->add_several(block, taylor_sets(expansion, block, {block.visibility.begin(), block.visibility.end()}, of_dirty));
-    psf_sum->add_several(block, taylor_sets(expansion, block, visibilities_of_middle(block, psf), of_psf));
+    sum->add(block, taylor_sets(expansion, block, {block.visibility.begin(), block.visibility.end()}, of_dirty));
+    psf_sum->add(block, taylor_sets(expansion, block, visibilities_of_middle(block, psf), of_psf));
   });
   TaylorImages images;
   images.psf = normalised_images(std::move(psf_sum), source.ranks(), times);
@@ -59,20 +59,19 @@ TaylorImages make_taylor_images(const VisibilitySource& source, const Transform&
   return images;
 }
 
-std::vector<Image> make_taylor_residuals(const VisibilitySource& source, const Transform& transform,
-                                         const std::vector<Image>& models, const TaylorExpansion& expansion,
-                                         const Progress& progress, StageTimes& times) {
+std::vector<Image> make_taylor_residuals(const OneStokes& samples, const Transform& transform, const std::vector<Image>& models,
+                                         const TaylorExpansion& expansion, const Progress& progress, StageTimes& times) {
   auto sum = begin_adjoint(transform, {.images = expansion.terms}, times);
   const TaylorPowers powers{0, expansion.terms - 1};
   std::vector<const Image*> terms;
   for (const Image& model : models) terms.push_back(&model);
   for_each_residual(
-      source, [&] { return std::make_unique<TaylorPrediction>(transform, terms, expansion); }, progress, times,
+      samples, [&] { return std::make_unique<TaylorPrediction>(transform, terms, expansion); }, progress, times,
       [&](const VisibilityBlock& block, const std::vector<std::complex<double>>& residual) {
         const StageTimer timer(times, "grid");
-        sum->add_several(block, taylor_sets(expansion, block, residual, powers));
+        sum->add(block, taylor_sets(expansion, block, residual, powers));
       });
-  return normalised_images(std::move(sum), source.ranks(), times);
+  return normalised_images(std::move(sum), samples.source.ranks(), times);
 }
 
 }  // namespace misfit::imager

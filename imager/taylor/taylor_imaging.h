@@ -31,8 +31,7 @@ TaylorImages make_taylor_images(const VisibilitySource& source, const Transform&
 
 /// The residual images A*(w x^t (V − Σ_s x^s A I_s)) / Σ w [t], of model images [s] of each term, in one pass. Stages timed: as
 /// by make_residual_image.
-std::vector<Image> make_taylor_residuals(const VisibilitySource& source, const Transform& transform,
-                                         const std::vector<Image>& models, const TaylorExpansion& expansion,
-                                         const Progress& progress, StageTimes& times);
+std::vector<Image> make_taylor_residuals(const OneStokes& samples, const Transform& transform, const std::vector<Image>& models,
+                                         const TaylorExpansion& expansion, const Progress& progress, StageTimes& times);
 
 }  // namespace misfit::imager

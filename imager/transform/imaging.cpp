@@ -9,13 +9,15 @@ namespace misfit::imager {
 namespace {
 
 /// Data − model. [block][row][channel]
-std::vector<std::vector<std::complex<double>>> residuals(const Prediction& prediction, const VisibilityPass::Blocks& blocks) {
+std::vector<std::vector<std::complex<double>>> residuals(const Prediction& prediction, const VisibilityPass::Blocks& blocks,
+                                                         std::size_t stokes) {
   std::vector<const VisibilityBlock*> plain;
   for (const auto& block : blocks) plain.push_back(block.get());
   auto residual = prediction.at_usable_of(plain);
-  for (std::size_t b = 0; b < blocks.size(); ++b)
-    for (std::size_t i = 0; i < residual[b].size(); ++i)
-      residual[b][i] = std::complex<double>(blocks[b]->visibility[i]) - residual[b][i];
+  for (std::size_t b = 0; b < blocks.size(); ++b) {
+    const std::complex<float>* const data = blocks[b]->visibility_of(stokes);
+    for (std::size_t i = 0; i < residual[b].size(); ++i) residual[b][i] = std::complex<double>(data[i]) - residual[b][i];
+  }
   return residual;
 }
 
@@ -79,9 +81,9 @@ DirtyImages make_dirty_images(const VisibilitySource& source, const Transform& t
   return dirty_images(std::move(result), std::move(of_psf.psf), source.ranks(), times);
 }
 
-void for_each_residual(const VisibilitySource& source, const MakePrediction& predict, const Progress& progress,
-                       StageTimes& times, const VisitResidual& visit) {
-  VisibilityPass pass(source, progress, times);
+void for_each_residual(const OneStokes& samples, const MakePrediction& predict, const Progress& progress, StageTimes& times,
+                       const VisitResidual& visit) {
+  VisibilityPass pass(samples.source, progress, times);
   std::unique_ptr<Prediction> prediction;
   {
     const StageTimer timer(times, "degrid");
@@ -91,28 +93,28 @@ void for_each_residual(const VisibilitySource& source, const MakePrediction& pre
     std::vector<std::vector<std::complex<double>>> residual;
     {
       const StageTimer timer(times, "degrid");
-      residual = residuals(*prediction, blocks);
+      residual = residuals(*prediction, blocks, samples.index);
     }
     for (std::size_t b = 0; b < blocks.size(); ++b) visit(*blocks[b], residual[b]);
   });
   times.move("degrid", "fft", prediction->fft_s());
 }
 
-void for_each_residual(const VisibilitySource& source, const Transform& transform, const Image& model, const Progress& progress,
+void for_each_residual(const OneStokes& samples, const Transform& transform, const Image& model, const Progress& progress,
                        StageTimes& times, const VisitResidual& visit) {
   for_each_residual(
-      source, [&] { return transform.predict(model); }, progress, times, visit);
+      samples, [&] { return transform.predict(model); }, progress, times, visit);
 }
 
-Image make_residual_image(const VisibilitySource& source, const Transform& transform, const Image& model,
-                          const Progress& progress, StageTimes& times) {
+Image make_residual_image(const OneStokes& samples, const Transform& transform, const Image& model, const Progress& progress,
+                          StageTimes& times) {
   auto sum = begin_adjoint(transform, {}, times);
-  for_each_residual(source, transform, model, progress, times,
+  for_each_residual(samples, transform, model, progress, times,
                     [&](const VisibilityBlock& block, const std::vector<std::complex<double>>& residual) {
                       const StageTimer timer(times, "grid");
                       sum->add(block, residual);
                     });
-  AdjointResult result = finish_adjoint(std::move(sum), source.ranks(), times);
+  AdjointResult result = finish_adjoint(std::move(sum), samples.source.ranks(), times);
   divide(result.images.front(), result.sums.front().weight);
   return std::move(result.images.front());
 }

@@ -49,17 +49,17 @@ DirtyImages make_dirty_images(const VisibilitySource& source, const Transform& t
 using VisitResidual = std::function<void(const VisibilityBlock& block, const std::vector<std::complex<double>>& residual)>;
 
 /// One pass over the visibilities less those of a model, which every rank has. Stages timed: "read", "fft", "degrid".
-void for_each_residual(const VisibilitySource& source, const Transform& transform, const Image& model, const Progress& progress,
+void for_each_residual(const OneStokes& samples, const Transform& transform, const Image& model, const Progress& progress,
                        StageTimes& times, const VisitResidual& visit);
 
 /// The same of a model whose prediction is made once the pass has begun.
 using MakePrediction = std::function<std::unique_ptr<Prediction>()>;
-void for_each_residual(const VisibilitySource& source, const MakePrediction& predict, const Progress& progress,
-                       StageTimes& times, const VisitResidual& visit);
+void for_each_residual(const OneStokes& samples, const MakePrediction& predict, const Progress& progress, StageTimes& times,
+                       const VisitResidual& visit);
 
-/// The dirty image of data − model, of the blocks' own Stokes parameter: the model is predicted at every usable sample and
+/// The dirty image of data − model: the model is predicted at every usable sample and
 /// subtracted. Stages timed: "read", "fft", "degrid", "grid".
-Image make_residual_image(const VisibilitySource& source, const Transform& transform, const Image& model,
-                          const Progress& progress, StageTimes& times);
+Image make_residual_image(const OneStokes& samples, const Transform& transform, const Image& model, const Progress& progress,
+                          StageTimes& times);
 
 }  // namespace misfit::imager

@@ -25,22 +25,11 @@ AdjointSum::AdjointSum(const AdjointOptions& options) : options_(options) {
                                 ", " + std::to_string(most_stokes) + "]");
 }
 
-void AdjointSum::add(const VisibilityBlock& block, VisibilitySet visibility) {
-  require_sets(1);
-  add_sets(block, {visibility});
-}
-
-void AdjointSum::add_several(const VisibilityBlock& block, const std::vector<std::vector<std::complex<double>>>& visibilities) {
-  require_sets(visibilities.size());
-  std::vector<VisibilitySet> sets;
-  for (const auto& visibility : visibilities) sets.emplace_back(visibility.data());
-  add_sets(block, sets);
-}
-
-void AdjointSum::require_sets(std::size_t given) const {
-  if (given != static_cast<std::size_t>(options_.images))
-    throw std::invalid_argument(std::to_string(given) + (given == 1 ? " set" : " sets") + " of visibilities for " +
-                                std::to_string(options_.images) + " images; expected one for each");
+void AdjointSum::add(const VisibilityBlock& block, const VisibilitySets& visibility) {
+  if (visibility.size() != images())
+    throw std::invalid_argument(std::to_string(visibility.size()) + (visibility.size() == 1 ? " set" : " sets") +
+                                " of visibilities for " + std::to_string(images()) + " images; expected one for each");
+  add_sets(block, visibility);
 }
 
 std::vector<std::vector<std::complex<double>>> Prediction::at_usable_of(

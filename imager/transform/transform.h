@@ -51,15 +51,10 @@ class AdjointSum {
  public:
   virtual ~AdjointSum() = default;
   /// Throws std::invalid_argument when several images are made and the block does not carry as many Stokes parameters.
-  void add(const VisibilityBlock& block) { add_sets(block, sets_of(block, static_cast<int>(sets()))); }
-  /// Adds the samples of `block` with `visibility` [row][channel] in place of its own. Throws std::invalid_argument unless one
-  /// image is made.
-  void add(const VisibilityBlock& block, const std::vector<std::complex<double>>& visibility) {
-    add(block, VisibilitySet(visibility.data()));
-  }
-  void add(const VisibilityBlock& block, VisibilitySet visibility);
-  /// The same of several images, with a set of visibilities for each. Throws std::invalid_argument unless there are as many.
-  void add_several(const VisibilityBlock& block, const std::vector<std::vector<std::complex<double>>>& visibilities);
+  void add(const VisibilityBlock& block) { add_sets(block, {block, static_cast<int>(sets())}); }
+  /// Adds the samples of `block` with other visibilities in place of its own, a set for each image. Throws
+  /// std::invalid_argument unless there are as many.
+  void add(const VisibilityBlock& block, const VisibilitySets& visibility);
   /// To be called once, after the last block.
   virtual AdjointResult finish() = 0;
 
@@ -68,14 +63,11 @@ class AdjointSum {
   explicit AdjointSum(const AdjointOptions& options);
   /// Adds a block's samples with a set of visibilities for each image; for a PSF alone with the block's own, of which sums are
   /// taken.
-  virtual void add_sets(const VisibilityBlock& block, const std::vector<VisibilitySet>& sets) = 0;
+  virtual void add_sets(const VisibilityBlock& block, const VisibilitySets& sets) = 0;
   std::size_t images() const { return static_cast<std::size_t>(options_.images); }
   std::size_t sets() const { return images() == 0 ? 1 : images(); }
 
   const AdjointOptions options_;
-
- private:
-  void require_sets(std::size_t given) const;
 };
 
 /// The forward transform of one model image.

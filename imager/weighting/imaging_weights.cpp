@@ -88,11 +88,6 @@ WeightedBlock ImagingWeights::of(std::shared_ptr<const VisibilityBlock> block) c
   WeightedBlock made;
   const std::shared_ptr<VisibilityBlock> first = own(std::move(block));
   weigh(*first, made.totals.sums);
-  for (auto& other : first->other_stokes) {
-    const std::shared_ptr<VisibilityBlock> same = own(std::move(other));
-    same->weight = first->weight;
-    other = same;
-  }
   made.totals.w_spread.add(*first);
   made.block = first;
   return made;

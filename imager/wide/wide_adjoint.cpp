@@ -47,7 +47,7 @@ class WideAdjoint : public AdjointSum {
   }
 
  protected:
-  void add_sets(const VisibilityBlock& block, const std::vector<VisibilitySet>& sets) override {
+  void add_sets(const VisibilityBlock& block, const VisibilitySets& sets) override {
     SampleSums counted;
     const WideTransformOptions& o = setup_.options;
     Gathered g{block, imaging_weights(block, {o.geometry, options_.beyond_grid, o.threads}, counted), {}};

@@ -12,19 +12,21 @@ namespace misfit::imager::testing {
 inline VisibilityBlock with_others(VisibilityBlock first, int others, unsigned seed) {
   std::mt19937_64 random(seed);
   std::normal_distribution<float> normal;
-  for (int i = 0; i < others; ++i) {
-    auto other = std::make_shared<VisibilityBlock>(first);
-    other->other_stokes.clear();
-    for (auto& visibility : other->visibility) visibility = {normal(random), normal(random)};
-    first.other_stokes.push_back(std::move(other));
-  }
+  for (std::size_t left = static_cast<std::size_t>(others) * first.samples(); left > 0; --left)
+    first.visibility.emplace_back(normal(random), normal(random));
   return first;
+}
+
+/// Both, of the same samples, in one block.
+inline VisibilityBlock together(VisibilityBlock one, const VisibilityBlock& other) {
+  one.visibility.insert(one.visibility.end(), other.visibility.begin(), other.visibility.end());
+  return one;
 }
 
 /// The block of one of its Stokes parameters, alone.
 inline VisibilityBlock alone(const VisibilityBlock& block, std::size_t stokes) {
-  VisibilityBlock one = stokes == 0 ? block : *block.other_stokes[stokes - 1];
-  one.other_stokes.clear();
+  VisibilityBlock one = block;
+  one.visibility.assign(block.visibility_of(stokes), block.visibility_of(stokes) + block.samples());
   return one;
 }
 

@@ -68,12 +68,6 @@ std::vector<VisibilityBlock> blocks(int others) {
       block.weight[i] = 0;
       block.visibility[i] = std::numeric_limits<float>::quiet_NaN();
     }
-    for (auto& other : block.other_stokes) {
-      VisibilityBlock same = *other;
-      static_cast<SampleCoordinates&>(same) = block;
-      same.weight = block.weight;
-      other = std::make_shared<VisibilityBlock>(std::move(same));
-    }
     all.push_back(std::move(block));
   }
   return all;
@@ -145,7 +139,7 @@ BOOST_DATA_TEST_CASE(sets_given_are_imaged_as_those_that_blocks_carry, bdata::ma
       const VisibilityBlock one = alone(block, s);
       sets.emplace_back(one.visibility.begin(), one.visibility.end());
     }
-    sum->add_several(block, sets);
+    sum->add(block, sets);
   }
   const AdjointResult given = sum->finish();
   for (std::size_t i = 0; i < 3; ++i) BOOST_TEST(relative_error(given.images[i].pixel, carried.images[i].pixel) < 1e-6);
@@ -190,9 +184,7 @@ BOOST_DATA_TEST_CASE(bits_do_not_depend_on_the_number_of_threads, bdata::make({f
 BOOST_DATA_TEST_CASE(crowded_tiles_and_extreme_sizes_keep_the_bits_of_each_image, bdata::make({false, true}), wide) {
   // More samples of one tile than single precision adds up, and visibilities that take units of their own.
   VisibilityBlock block = with_others(random_samples(10000, 4, centred.cell_rad, 5, 0.1), 2, 6);
-  auto extreme = std::make_shared<VisibilityBlock>(*block.other_stokes[0]);
-  for (auto& visibility : extreme->visibility) visibility *= 1e30F;
-  block.other_stokes[0] = extreme;
+  for (std::size_t i = block.samples(); i < 2 * block.samples(); ++i) block.visibility[i] *= 1e30F;
   const auto transform = make_transform(options(centred, Precision::single_precision, 1, wide));
   const AdjointResult made = together(*transform, {block, block}, {3, true});
   for (std::size_t i = 0; i < 3; ++i)
@@ -207,9 +199,7 @@ BOOST_DATA_TEST_CASE(a_wrong_number_of_visibilities_is_refused, bdata::make(tran
   });
   BOOST_CHECK_THROW(sum->add(two, std::vector<std::complex<double>>(5)), std::invalid_argument);
   VisibilityBlock fewer = two;
-  auto other = std::make_shared<VisibilityBlock>(*two.other_stokes[0]);
-  other->visibility.pop_back();
-  fewer.other_stokes = {other};
+  fewer.visibility.pop_back();
   BOOST_CHECK_THROW(named.transform->adjoint({.images = 2})->add(fewer), std::invalid_argument);
   for (const int images : {0, most_stokes + 1})
     BOOST_CHECK_THROW(named.transform->adjoint({.images = images}), std::invalid_argument);

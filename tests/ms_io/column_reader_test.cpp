@@ -78,12 +78,12 @@ std::map<std::pair<double, bool>, AllSamples> by_window(const MeasurementSet& se
   const auto stream = set.open();
   while (const auto block = stream->next()) {
     for (const bool is_other : {false, true}) {
-      const imager::VisibilityBlock& of = is_other ? *block->other_stokes.front() : *block;
+      const std::complex<float>* const visibility = block->visibility_of(is_other ? 1 : 0);
       AllSamples& all = windows[{block->frequency_hz.front(), is_other}];
       all.counts += block->counts;
       append(all.uvw_m, block->uvw_m);
-      append(all.visibility, of.visibility);
-      append(all.weight, of.weight);
+      all.visibility.insert(all.visibility.end(), visibility, visibility + block->samples());
+      append(all.weight, block->weight);
     }
   }
   return windows;

@@ -121,7 +121,7 @@ void add_ordering(std::vector<Piece>& pieces) {
   for (const Wanted wanted : {Wanted::imaging, Wanted::usable})
     pieces.push_back({std::string("order_by_tile for ") + (wanted == Wanted::imaging ? "imaging" : "prediction"),
                       static_cast<double>(block->samples()), [block, image, wanted] {
-                        order_by_tile(*block, imager::sets_of(*block, 1), {2048, 2048, 7, tile}, image, wanted, 1);
+                        order_by_tile(*block, {*block, 1}, {2048, 2048, 7, tile}, image, wanted, 1);
                       }});
 }
 
@@ -155,8 +155,8 @@ const VisibilityBlock& large_block() {
     VisibilityBlock first = block_of(156250);
     for (std::size_t row = 0; row < first.rows(); ++row)
       first.uvw_m.edit()[3 * row + 2] = first.uvw_m[3 * ((row + 7) % first.rows())];
-    const auto other = std::make_shared<VisibilityBlock>(first);
-    first.other_stokes.assign(most_stokes - 1, other);
+    const std::vector<std::complex<float>> one = first.visibility;
+    for (int s = 1; s < most_stokes; ++s) first.visibility.insert(first.visibility.end(), one.begin(), one.end());
     return first;
   }();
   return block;

@@ -147,8 +147,8 @@ imager::CleanState CleanStage::begin(std::size_t stokes, const CleanStateOwner& 
 }
 
 std::uint64_t CleanStage::checksum_of(const CleanScene& scene) const {
-  const imager::Image* const start = start_model_.empty() ? nullptr : &start_model_[scene.stokes];
-  std::vector<const imager::Image*> images{&scene.dirty, &scene.psf, mask(scene.stokes), start};
+  const imager::Image* const start = start_model_.empty() ? nullptr : &start_model_[scene.samples.index];
+  std::vector<const imager::Image*> images{&scene.dirty, &scene.psf, mask(scene.samples.index), start};
   if (scene.band != nullptr) {
     for (const imager::Image& dirty : scene.band->further_dirty) images.push_back(&dirty);
     images.insert(images.end(), scene.band->psf.begin() + 1, scene.band->psf.end());
@@ -161,7 +161,7 @@ imager::CleanResult CleanStage::run(const CleanScene& scene, const nlohmann::jso
                                     imager::StageTimes& times) {
   imager::CleanOptions options = clean_options(o_, threads_);
   options.stop_requested = interrupted;
-  options.mask = mask(scene.stokes);
+  options.mask = mask(scene.samples.index);
   Minor minor;
   {
     const imager::StageTimer timer(times, "minor cycles");
@@ -170,17 +170,17 @@ imager::CleanResult CleanStage::run(const CleanScene& scene, const nlohmann::jso
   CleanStateOwner owner{MISFIT_VERSION,
                         option_values,
                         0,
-                        scene.source.ranks().size(),
+                        scene.samples.source.ranks().size(),
                         {image_.geometry.width, image_.geometry.height, minor.scale_pixels()}};
   imager::CleanState state;
   double sidelobe = 0;
   {
     const imager::StageTimer timer(times, "CLEAN state");
     owner.checksum = checksum_of(scene);
-    state = begin(scene.stokes, owner);
+    state = begin(scene.samples.index, owner);
     sidelobe = imager::largest_sidelobe(scene.psf, scene.main_lobe, image_.geometry.cell_rad, threads_);
   }
-  const imager::CleanInput input{scene.source,
+  const imager::CleanInput input{scene.samples,
                                  scene.transform,
                                  scene.dirty,
                                  scene.psf,
@@ -189,7 +189,7 @@ imager::CleanResult CleanStage::run(const CleanScene& scene, const nlohmann::jso
                                  mean_width_rad(scene.main_lobe) / image_.geometry.cell_rad};
   const auto save = [&](const imager::CleanState& now) {
     const imager::StageTimer timer(times, "CLEAN state");
-    write_clean_state(state_path(scene.stokes), now, owner);
+    write_clean_state(state_path(scene.samples.index), now, owner);
     cycle_progress(now);
   };
   return scene.band == nullptr

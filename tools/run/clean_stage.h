@@ -19,8 +19,7 @@ namespace misfit::tools {
 
 /// What CLEAN is given by the stages before it, of one Stokes parameter.
 struct CleanScene {
-  std::size_t stokes = 0;  ///< its place in the run's list
-  const imager::VisibilitySource& source;
+  imager::OneStokes samples;
   const imager::Transform& transform;
   const imager::Image& dirty;
   const imager::Image& psf;

@@ -4,7 +4,6 @@
 #include <optional>
 
 #include "imager/clean/shared_model.h"
-#include "imager/data/stokes_view.h"
 #include "imager/direct/verify.h"
 #include "tools/base/interrupt.h"
 #include "tools/run/beam_choice.h"
@@ -113,24 +112,27 @@ void PlaneRun::clean(CleanStage& stage, const nlohmann::json& option_values,
 void PlaneRun::follow_clean() {
   scene_.progress.begin("CLEAN" + name_, true);  // rank 0 decides when it stops
   for (std::size_t s = 0; s < scene_.stokes.size(); ++s) {
-    const imager::StokesView view(source_, static_cast<int>(s));
+    const imager::OneStokes samples(source_, s);
     const imager::Transform& transform = *made_.transform;
     if (taylor_ != nullptr)
-      imager::follow_clean(view, transform, taylor_->expansion(), scene_.threads, scene_.updates(), scene_.times);
+      imager::follow_clean(samples, transform, taylor_->expansion(), scene_.threads, scene_.updates(), scene_.times);
     else
-      imager::follow_clean(view, transform, scene_.threads, scene_.updates(), scene_.times);
+      imager::follow_clean(samples, transform, scene_.threads, scene_.updates(), scene_.times);
   }
 }
 
 imager::CleanResult PlaneRun::clean(CleanStage& stage, std::size_t stokes, const nlohmann::json& option_values,
                                     const imager::CycleProgress& cycle) {
-  const imager::StokesView view(source_, static_cast<int>(stokes));
   std::optional<imager::WideBand> band;
   if (taylor_ != nullptr) band.emplace(taylor_->band());
-  imager::CleanResult result =
-      stage.run({stokes, view, *made_.transform, made_.images.dirty[stokes], made_.images.psf, *report_.beams->main_lobe,
-                 report_.stokes[stokes].theory->expected_rms, band ? &*band : nullptr},
-                option_values, scene_.updates(), cycle, scene_.times);
+  imager::CleanResult result = stage.run({{source_, stokes},
+                                          *made_.transform,
+                                          made_.images.dirty[stokes],
+                                          made_.images.psf,
+                                          *report_.beams->main_lobe,
+                                          report_.stokes[stokes].theory->expected_rms,
+                                          band ? &*band : nullptr},
+                                         option_values, scene_.updates(), cycle, scene_.times);
   made_.images.dirty[stokes] = {};
   if (const imager::Image* const mask = stage.mask(stokes); mask != nullptr) result.mask = *mask;
   return result;

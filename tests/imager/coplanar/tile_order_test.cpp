@@ -80,7 +80,7 @@ BOOST_DATA_TEST_CASE(every_wanted_sample_occurs_once_in_the_tile_of_its_first_ta
   const auto wanted = static_cast<Wanted>(kind);
   const GridShape shape = shape_of(kernel_width);
   const VisibilityBlock block = samples(static_cast<std::size_t>(channels));
-  const TileOrder order = order_by_tile(block, sets_of(block, 1), shape, image(), wanted, 2);
+  const TileOrder order = order_by_tile(block, {block, 1}, shape, image(), wanted, 2);
   std::vector<int> seen(block.samples());
   std::vector<std::size_t> in_tile(order.samples.size());
   std::size_t wrong_tile = 0;
@@ -99,7 +99,7 @@ BOOST_DATA_TEST_CASE(every_wanted_sample_occurs_once_in_the_tile_of_its_first_ta
 
 BOOST_AUTO_TEST_CASE(runs_are_as_long_as_they_can_be_and_follow_the_rows) {
   const VisibilityBlock block = samples();
-  const TileOrder order = order_by_tile(block, sets_of(block, 1), shape_of(6), image(), Wanted::imaging, 2);
+  const TileOrder order = order_by_tile(block, {block, 1}, shape_of(6), image(), Wanted::imaging, 2);
   for (std::size_t tile = 0; tile + 1 < order.begin.size(); ++tile)
     for (std::size_t r = order.begin[tile]; r + 1 < order.begin[tile + 1]; ++r) {
       const SampleRun a = order.run[r], b = order.run[r + 1];
@@ -116,7 +116,7 @@ BOOST_AUTO_TEST_CASE(rows_of_one_channel_make_runs_within_a_tile_which_longer_on
   std::sort(places.begin(), places.end(), [](const auto& a, const auto& b) { return a[1] < b[1]; });
   for (std::size_t i = 0; i < places.size(); ++i) std::copy(places[i].begin(), places[i].end(), &uvw_m[3 * i]);
   const GridShape shape = shape_of(6);
-  const TileOrder order = order_by_tile(block, sets_of(block, 1), shape, image(), Wanted::usable, 2);
+  const TileOrder order = order_by_tile(block, {block, 1}, shape, image(), Wanted::usable, 2);
   std::vector<std::size_t> tile_of(block.rows());
   for_each_sample(order, 1, [&](std::size_t tile, std::size_t sample) { tile_of[sample] = tile; });
   std::size_t longest = 0, needless = 0;
@@ -134,7 +134,7 @@ BOOST_AUTO_TEST_CASE(rows_of_one_channel_make_runs_within_a_tile_which_longer_on
 BOOST_AUTO_TEST_CASE(a_run_of_more_channels_than_its_counter_holds_is_split) {
   VisibilityBlock block = random_samples(1, 10000, cell_rad, 2, 0);
   std::fill(block.frequency_hz.begin(), block.frequency_hz.end(), 1e9);
-  const TileOrder order = order_by_tile(block, sets_of(block, 1), shape_of(6), image(), Wanted::imaging, 1);
+  const TileOrder order = order_by_tile(block, {block, 1}, shape_of(6), image(), Wanted::imaging, 1);
   std::set<std::size_t> seen;
   for_each_sample(order, block.channels(), [&](std::size_t, std::size_t sample) { seen.insert(sample); });
   BOOST_TEST(seen.size() == 10000U);
@@ -143,7 +143,7 @@ BOOST_AUTO_TEST_CASE(a_run_of_more_channels_than_its_counter_holds_is_split) {
 
 BOOST_AUTO_TEST_CASE(sums_are_of_the_samples_in_the_order_and_those_outside_are_counted) {
   const VisibilityBlock block = samples();
-  const TileOrder order = order_by_tile(block, sets_of(block, 1), shape_of(6), image(), Wanted::imaging, 2);
+  const TileOrder order = order_by_tile(block, {block, 1}, shape_of(6), image(), Wanted::imaging, 2);
   std::uint64_t used = 0, outside = 0;
   double weight = 0, weight_abs = 0, weight_square = 0, weight2_square = 0;
   for (std::size_t i = 0; i < block.samples(); ++i) {
@@ -179,10 +179,10 @@ BOOST_AUTO_TEST_CASE(sums_are_of_the_visibilities_given_in_place_of_the_blocks_o
 
 BOOST_AUTO_TEST_CASE(sums_leave_out_what_has_no_weight_even_where_it_is_not_a_number) {
   VisibilityBlock block = samples();
-  const SampleSums should = order_by_tile(block, sets_of(block, 1), shape_of(6), image(), Wanted::imaging, 2).sums[0];
+  const SampleSums should = order_by_tile(block, {block, 1}, shape_of(6), image(), Wanted::imaging, 2).sums[0];
   for (std::size_t i = 0; i < block.samples(); ++i)
     if (block.weight[i] == 0) block.visibility[i] = std::numeric_limits<float>::quiet_NaN();
-  const SampleSums sums = order_by_tile(block, sets_of(block, 1), shape_of(6), image(), Wanted::imaging, 2).sums[0];
+  const SampleSums sums = order_by_tile(block, {block, 1}, shape_of(6), image(), Wanted::imaging, 2).sums[0];
   BOOST_TEST(sums.weight_abs == should.weight_abs);
   BOOST_TEST(sums.weight2_square == should.weight2_square);
 }
@@ -190,7 +190,7 @@ BOOST_AUTO_TEST_CASE(sums_leave_out_what_has_no_weight_even_where_it_is_not_a_nu
 BOOST_AUTO_TEST_CASE(order_and_sums_do_not_depend_on_the_number_of_threads) {
   const VisibilityBlock block = samples();
   const auto order = [&](int threads) {
-    return order_by_tile(block, sets_of(block, 1), shape_of(6), image(), Wanted::imaging, threads);
+    return order_by_tile(block, {block, 1}, shape_of(6), image(), Wanted::imaging, threads);
   };
   const TileOrder one = order(1);
   for (const int threads : {2, 3, 40}) {

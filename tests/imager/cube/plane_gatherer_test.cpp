@@ -27,10 +27,8 @@ VisibilityBlock block_of(unsigned seed) {
   std::fill_n(block.weight.begin() + 5 * channels, channels, 0.0F);  // a row of nothing
   block.channel_width_hz.assign(channels, channel_hz);
   for (std::size_t row = 0; row < rows; ++row) block.frame_ratio.push_back(1 + 1e-4 * static_cast<double>(row / 10));
-  auto other = std::make_shared<VisibilityBlock>(random(seed + 100));
-  other->uvw_m = block.uvw_m;
-  other->weight = block.weight;
-  block.other_stokes.push_back(other);
+  const VisibilityBlock other = random(seed + 100);
+  block.visibility.insert(block.visibility.end(), other.visibility.begin(), other.visibility.end());
   return block;
 }
 
@@ -53,7 +51,7 @@ std::vector<Sample> samples_of(const std::vector<std::shared_ptr<const Visibilit
         if (block->weight[i] == 0) continue;
         const double per_m = block->frequency_hz[c] / misfit::imager::speed_of_light_m_s;
         all.push_back({block->uvw_m[3 * row] * per_m, block->uvw_m[3 * row + 1] * per_m, block->uvw_m[3 * row + 2] * per_m,
-                       block->visibility[i], block->other_stokes.at(0)->visibility[i], block->weight[i]});
+                       block->visibility[i], block->visibility_of(1)[i], block->weight[i]});
       }
   return all;
 }
@@ -69,12 +67,12 @@ std::vector<Sample> expected_sample(const VisibilityBlock& block, const CubeSamp
     return Sample{
         block.uvw_m[3 * row] * per_m, block.uvw_m[3 * row + 1] * per_m, block.uvw_m[3 * row + 2] * per_m, one, other, weight};
   };
-  const VisibilityBlock& second = *block.other_stokes.front();
+  const std::complex<float>* const second = block.visibility_of(1);
   if (at < -0.5 || at > channels - 0.5) return {};
   if (cube.interpolation == SpectralInterpolation::nearest) {
     const std::size_t c = sample(static_cast<std::size_t>(std::lround(at)));
     if (block.weight[c] == 0) return {};
-    return {made(block.frequency_hz[c % channels], block.visibility[c], second.visibility[c], block.weight[c])};
+    return {made(block.frequency_hz[c % channels], block.visibility[c], second[c], block.weight[c])};
   }
   const double low = std::clamp(std::floor(at), 0.0, channels - 2.0);
   const double t = std::clamp(at - low, 0.0, 1.0);
@@ -82,12 +80,11 @@ std::vector<Sample> expected_sample(const VisibilityBlock& block, const CubeSamp
   if ((t < 1 && block.weight[a] == 0) || (t > 0 && block.weight[b] == 0)) return {};
   const auto mixed = [&](const auto& v) { return (1 - t) * std::complex<double>(v[a]) + t * std::complex<double>(v[b]); };
   const double variance = (t < 1 ? (1 - t) * (1 - t) / block.weight[a] : 0) + (t > 0 ? t * t / block.weight[b] : 0);
-  return {made(middle_hz, mixed(block.visibility), mixed(second.visibility), 1 / variance)};
+  return {made(middle_hz, mixed(block.visibility), mixed(second), 1 / variance)};
 }
 
 bool same_bits(const VisibilityBlock& a, const VisibilityBlock& b) {
-  return a.uvw_m == b.uvw_m && a.frequency_hz == b.frequency_hz && a.visibility == b.visibility && a.weight == b.weight &&
-         a.other_stokes.at(0)->visibility == b.other_stokes.at(0)->visibility;
+  return a.uvw_m == b.uvw_m && a.frequency_hz == b.frequency_hz && a.visibility == b.visibility && a.weight == b.weight;
 }
 
 bool same_bits(const StoredVisibilities& a, const StoredVisibilities& b) {

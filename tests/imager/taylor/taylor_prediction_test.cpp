@@ -79,7 +79,7 @@ BOOST_AUTO_TEST_CASE(it_is_the_adjoint_of_imaging_taylor_weighted_visibilities) 
       size += double{block.weight[i]} * std::abs(predicted[i]) * std::abs(visibility[i]);
     }
     auto sum = transform->adjoint({.images = terms});
-    sum->add_several(block, taylor_sets(expansion, block, visibility, {0, terms - 1}));
+    sum->add(block, taylor_sets(expansion, block, visibility, {0, terms - 1}));
     const AdjointResult images = sum->finish();
     double in_images = 0;
     for (std::size_t t = 0; t < of.size(); ++t)
@@ -112,7 +112,7 @@ BOOST_AUTO_TEST_CASE(an_adjoint_refuses_other_numbers_of_sets_than_of_images) {
   const VisibilityBlock block = samples();
   auto sum = gridding()->adjoint({.images = 2});
   const std::vector<std::complex<double>> visibility(block.samples(), 1);
-  BOOST_CHECK_THROW(sum->add_several(block, taylor_sets({reference_hz, 3}, block, visibility, {0, 2})), std::invalid_argument);
+  BOOST_CHECK_THROW(sum->add(block, taylor_sets({reference_hz, 3}, block, visibility, {0, 2})), std::invalid_argument);
 }
 
 BOOST_AUTO_TEST_SUITE_END()

@@ -140,37 +140,19 @@ BOOST_DATA_TEST_CASE(threads_and_whether_blocks_are_kept_leave_every_bit, bdata:
   BOOST_TEST(std::abs(sums.image / weight - 1) < 1e-6);  // single precision
 }
 
-BOOST_AUTO_TEST_CASE(other_stokes_parameters_have_the_same_weights_and_their_own_visibilities) {
-  VisibilityBlock block = some_blocks().front();
-  const auto other = std::make_shared<VisibilityBlock>(block);
-  for (auto& visibility : other->visibility) visibility *= 2;
-  block.other_stokes.push_back(other);
-  const auto made = weighted(*weights_of(stored({block}), every_way[3], 1), block);
-  BOOST_REQUIRE(made->other_stokes.size() == 1);
-  BOOST_CHECK(made->other_stokes[0]->weight == made->weight);
-  BOOST_CHECK(made->other_stokes[0]->visibility == other->visibility);
-  BOOST_CHECK(made->visibility == block.visibility);
-}
-
 BOOST_AUTO_TEST_CASE(blocks_that_nobody_else_holds_are_weighed_where_they_lie_and_others_stay_as_they_are) {
   const auto weights = weights_of(stored(some_blocks()), every_way[0], 1);
-  VisibilityBlock both = some_blocks().front();
-  both.other_stokes = {std::make_shared<VisibilityBlock>(both)};
-  const std::vector<float> natural = both.weight;
-  auto held = std::make_shared<const VisibilityBlock>(both);  // and so is what it carries, by `both` too
+  const VisibilityBlock block = some_blocks().front();
+  const auto held = std::make_shared<const VisibilityBlock>(block);
   const auto copy = weights->of(held).block;
-  BOOST_CHECK(held->weight == natural);
-  BOOST_CHECK(held->other_stokes[0]->weight == natural);
-  BOOST_CHECK(copy->weight != natural);
-  auto alone = std::make_shared<VisibilityBlock>(both);
-  alone->other_stokes = {std::make_shared<VisibilityBlock>(both)};
-  const VisibilityBlock* const block = alone.get();
-  const VisibilityBlock* const other = alone->other_stokes[0].get();
+  BOOST_CHECK(held->weight == block.weight);
+  BOOST_CHECK(copy->weight != block.weight);
+  auto alone = std::make_shared<VisibilityBlock>(block);
+  const VisibilityBlock* const where = alone.get();
   const auto same = weights->of(std::move(alone)).block;
-  BOOST_TEST(same.get() == block);
-  BOOST_TEST(same->other_stokes[0].get() == other);
+  BOOST_TEST(same.get() == where);
   BOOST_CHECK(same->weight == copy->weight);
-  BOOST_CHECK(other->weight == copy->weight);
+  BOOST_CHECK(same->visibility == block.visibility);
 }
 
 BOOST_AUTO_TEST_CASE(evenly_spread_samples_tapered_by_a_beam_have_it_as_their_psf) {
