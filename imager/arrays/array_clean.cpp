@@ -27,8 +27,6 @@ Beam beam_of(const Image& psf, double cell_rad) {
   }
 }
 
-void ignore(std::uint64_t, std::uint64_t) {}
-
 CleanState state_of(const ArrayCleanOptions& options, const std::vector<double>& scale_pixels) {
   const auto& [pixels_x, pixels_y, pixel_x_rad, pixel_y_rad, centre_x, centre_y] = options.transform.image;
   ComponentModel model(pixels_y, pixels_x, scale_pixels);
@@ -54,8 +52,8 @@ struct Dirty {
   double expected_error = 0;  ///< of the dirty image
 };
 
-Dirty dirty_images(const VisibilitySource& source, GriddingPlan plan, double cell_rad, StageTimes& times) {
-  Dirty dirty{make_accurate_images(source, std::move(plan), ignore, times), {}, 0};
+Dirty dirty_images(const VisibilitySource& source, GriddingPlan plan, double cell_rad) {
+  Dirty dirty{make_accurate_images(source, std::move(plan), {}), {}, 0};
   dirty.beam = beam_of(dirty.made.images.psf, cell_rad);
   const DirtyImages& images = dirty.made.images;
   const double rms = images.dirty_statistics.front().root_mean_square();
@@ -100,8 +98,7 @@ ArrayClean clean_arrays(const ArrayCleanOptions& options, const ArrayCoordinates
   const double cell_rad = t.image.pixel_x_rad;
   const int threads = plan.options.threads;
   const StoredVisibilities source = stored(at, values, {cell_rad / plan.options.geometry.cell_rad, threads});
-  StageTimes times;
-  auto [made, beam, expected_error] = dirty_images(source, std::move(plan), cell_rad, times);
+  auto [made, beam, expected_error] = dirty_images(source, std::move(plan), cell_rad);
   const Image& psf = made.images.psf;
   DeconvolverChoice deconvolver = options.deconvolver;
   deconvolver.threads = threads;
@@ -111,19 +108,19 @@ ArrayClean clean_arrays(const ArrayCleanOptions& options, const ArrayCoordinates
     StopCheck::now_and_then();
     return asked && asked();
   };
-  const auto minor = make_deconvolver(deconvolver, psf);
+  const auto minor = make_deconvolver(deconvolver, {&psf});
   ArrayClean result;
   result.sums = made.images.sums.front();
   result.expected_error = expected_error;
-  const CleanInput input{source,
-                         *made.transform,
-                         made.images.dirty.front(),
-                         psf,
-                         largest_sidelobe(psf, beam, cell_rad, threads),
-                         std::max(t.accuracy, expected_error),
-                         std::sqrt(beam.major_rad * beam.minor_rad) / cell_rad};
-  CleanResult cleaned = clean(
-      input, *minor, clean_options, state_of(options, minor->scale_pixels()), ignore, [](const CleanState&) {}, times);
+  const CleanInput input{.samples = source,
+                         .transform = *made.transform,
+                         .dirty = {&made.images.dirty.front()},
+                         .psf = {&psf},
+                         .max_sidelobe = largest_sidelobe(psf, beam, cell_rad, threads),
+                         .accuracy = std::max(t.accuracy, expected_error),
+                         .beam_fwhm_pixels = std::sqrt(beam.major_rad * beam.minor_rad) / cell_rad};
+  CleanResult cleaned =
+      clean(input, *minor, clean_options, state_of(options, minor->scale_pixels()), [](const CleanState&) {}, {});
   result.restored = restored({cleaned.model, cleaned.residual}, beam, cell_rad, threads);
   result.residual = std::move(cleaned.residual);
   result.model = std::move(cleaned.model);

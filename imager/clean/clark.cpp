@@ -11,8 +11,8 @@ namespace misfit::imager {
 
 Clark::Clark(const Image& psf, int threads) : MinorCycle(psf), core_(psf), convolution_(psf, threads), threads_(threads) {}
 
-MinorCycleReport Clark::clean(const Image& residual, const MinorCycleOptions& options) const {
-  require_size(residual, options);
+MinorCycleReport Clark::find(const std::vector<const Image*>& residuals, const MinorCycleOptions& options) const {
+  const Image& residual = *residuals.front();
   MinorCycleReport report;
   Image left = options.mask == nullptr ? residual : masked(residual, *options.mask);
   double peak = largest_magnitude(left);

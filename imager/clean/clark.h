@@ -17,9 +17,10 @@ class Clark : public MinorCycle {
   Clark(const Image& psf, int threads);
 
   const std::vector<double>& scale_pixels() const override { return scale_pixels_; }
-  MinorCycleReport clean(const Image& residual, const MinorCycleOptions& options) const override;
 
  private:
+  MinorCycleReport find(const std::vector<const Image*>& residual, const MinorCycleOptions& options) const override;
+
   std::vector<double> scale_pixels_{0};
   PsfCore core_;
   Convolution<float> convolution_;

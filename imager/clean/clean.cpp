@@ -4,56 +4,8 @@
 #include <cmath>
 #include <sstream>
 #include <stdexcept>
-#include <utility>
-
-#include "imager/clean/finite_images.h"
-#include "imager/clean/major_cycles.h"
-#include "imager/clean/shared_model.h"
 
 namespace misfit::imager {
-namespace {
-
-/// One image.
-class OneTerm : public CleanProblem {
- public:
-  OneTerm(const CleanInput& input, const MinorCycle& minor, const Progress& progress, StageTimes& times)
-      : input_(input), minor_(minor), progress_(progress), times_(times), sharer_(input.samples.source.ranks()) {
-    require_finite_psf(input.psf);
-  }
-
-  const std::vector<double>& scale_pixels() const override { return minor_.scale_pixels(); }
-  /// That of no model is the dirty image.
-  Residuals residuals(const ComponentModel& model, int threads) override {
-    if (model.components().empty()) return checked(std::shared_ptr<const Image>(std::shared_ptr<void>(), &input_.dirty));
-    sharer_.share(model);
-    return checked(std::make_shared<const Image>(
-        make_residual_image(input_.samples, input_.transform, model_image(model, threads), progress_, times_)));
-  }
-  void end() const override { sharer_.end(); }
-  MinorCycleReport find(const Residuals& residuals, const MinorCycleOptions& options) const override {
-    return minor_.clean(*residuals.front(), options);
-  }
-
- private:
-  Image model_image(const ComponentModel& model, int threads) const {
-    const StageTimer timer(times_, "minor cycles");
-    return model.image(threads);
-  }
-  Residuals checked(std::shared_ptr<const Image> residual) const {
-    const StageTimer timer(times_, "statistics");
-    require_finite_residual(*residual, input_.dirty);
-    return {std::move(residual)};
-  }
-
-  const CleanInput& input_;
-  const MinorCycle& minor_;
-  const Progress& progress_;
-  StageTimes& times_;
-  ModelSharer sharer_;
-};
-
-}  // namespace
-
 void check(const CleanOptions& o, const std::string& prefix) {
   const auto expect = [&](bool holds, const char* name, double value, const char* expected) {
     if (holds) return;
@@ -89,12 +41,6 @@ CleanState first_state(const ComponentModel& model) {
   CleanState state;
   state.model = state.best_model = model;
   return state;
-}
-
-CleanResult clean(const CleanInput& input, const MinorCycle& minor, const CleanOptions& options, CleanState state,
-                  const Progress& progress, const CycleProgress& cycle_progress, StageTimes& times) {
-  OneTerm problem(input, minor, progress, times);
-  return run_major_cycles(problem, input, options, std::move(state), cycle_progress, times);
 }
 
 }  // namespace misfit::imager

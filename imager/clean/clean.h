@@ -10,6 +10,7 @@
 #include "imager/clean/auto_mask.h"
 #include "imager/clean/components.h"
 #include "imager/clean/minor_cycle.h"
+#include "imager/taylor/taylor_expansion.h"
 #include "imager/transform/imaging.h"
 
 namespace misfit::imager {
@@ -97,15 +98,17 @@ struct CleanResult {
   std::vector<Image> further_residuals;  ///< [term − 1], Jy/beam
 };
 
-/// What is to be cleaned. Where several ranks share the samples, rank 0 cleans and the others call follow_clean().
+/// What is to be cleaned: an image, or the Taylor terms of one, of which the first is the image. Where several ranks share the
+/// samples, rank 0 cleans and the others call follow_clean().
 struct CleanInput {
   OneStokes samples;
   const Transform& transform;
-  const Image& dirty;  ///< of these samples
-  const Image& psf;
-  double max_sidelobe = 0;      ///< the largest of the PSF
-  double accuracy = 1e-7;       ///< of images and prediction, relative; single-precision data have no better
-  double beam_fwhm_pixels = 1;  ///< of a round beam of its main lobe's area; automask alone needs it
+  TaylorExpansion expansion{};      ///< of the components' spectra
+  std::vector<const Image*> dirty;  ///< of these samples: R_t [term], see TaylorImages
+  std::vector<const Image*> psf;    ///< P_k [k], 2 terms − 1 of them
+  double max_sidelobe = 0;          ///< the largest of the first PSF
+  double accuracy = 1e-7;           ///< of images and prediction, relative; single-precision data have no better
+  double beam_fwhm_pixels = 1;      ///< of a round beam of its main lobe's area; automask alone needs it
 };
 
 /// Told before the first and after every major cycle.
@@ -121,7 +124,8 @@ CleanState first_state(const ComponentModel& model);
 
 /// Cotton–Schwab CLEAN (Schwab 1984, AJ 89, 1076): minor cycles find components in the image; major cycles predict the model's
 /// visibilities, subtract them from the data, and image what is left. It begins with `state`, whose model has the scales of
-/// `minor`.
+/// `minor`. Of several Taylor terms components have spectra, and major cycles predict Σ_t x^t A I_t and image what is left for
+/// each term; peaks, noise, thresholds and masks are those of the first term's residual, as in tclean.
 ///
 /// A major cycle whose residual has a peak 1.5 times the smallest so far (with automask, whose masks grow: 1.5 times that
 /// before, within the same mask) is taken back: the best model is gone on from, and minor cycles go half as far down from the
@@ -130,9 +134,9 @@ CleanState first_state(const ComponentModel& model);
 /// mean square of the residual becomes less in five cycles. Where the last cycle left more than the best, in peak and mean
 /// square, the result is that of the best.
 ///
-/// Stages timed: "minor cycles", "statistics", and those of make_residual_image. Throws std::runtime_error when the PSF or a
-/// residual is not finite.
+/// Stages timed: "minor cycles", "statistics", and those of make_residual_image. Throws std::runtime_error when a PSF or a
+/// residual is not finite, std::invalid_argument unless terms, images and `minor` agree.
 CleanResult clean(const CleanInput& input, const MinorCycle& minor, const CleanOptions& options, CleanState state,
-                  const Progress& progress, const CycleProgress& cycle_progress, StageTimes& times);
+                  const CycleProgress& cycle_progress, const Context& context);
 
 }  // namespace misfit::imager

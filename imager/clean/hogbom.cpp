@@ -9,8 +9,8 @@ namespace misfit::imager {
 
 Hogbom::Hogbom(const Image& psf, int threads) : MinorCycle(psf), psf_(psf, threads), threads_(threads) {}
 
-MinorCycleReport Hogbom::clean(const Image& residual, const MinorCycleOptions& options) const {
-  require_size(residual, options);
+MinorCycleReport Hogbom::find(const std::vector<const Image*>& residuals, const MinorCycleOptions& options) const {
+  const Image& residual = *residuals.front();
   const Image cleanable = options.mask == nullptr ? Image() : masked(residual, *options.mask);
   TiledResidual left(options.mask == nullptr ? residual : cleanable, psf_, threads_);
   Peak peak = left.peak();

@@ -1,16 +1,19 @@
-#include "imager/clean/major_cycles.h"
-
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <memory>
 #include <optional>
 #include <stdexcept>
 #include <string>
 #include <utility>
 
+#include "imager/clean/clean.h"
+#include "imager/clean/finite_images.h"
 #include "imager/clean/mask.h"
+#include "imager/clean/shared_model.h"
 #include "imager/data/noise.h"
 #include "imager/numerics/big_array.h"
+#include "imager/taylor/taylor_imaging.h"
 
 namespace misfit::imager {
 namespace {
@@ -31,13 +34,29 @@ struct Ending {
   std::string reason;
 };
 
+void require_same_terms(const CleanInput& input, const MinorCycle& minor) {
+  const auto terms = static_cast<std::size_t>(input.expansion.terms);
+  if (static_cast<std::size_t>(minor.terms()) != terms || input.dirty.size() != terms || input.psf.size() != 2 * terms - 1)
+    throw std::invalid_argument(std::to_string(terms) + " Taylor terms, dirty images of " + std::to_string(input.dirty.size()) +
+                                ", " + std::to_string(input.psf.size()) + " PSFs and a minor cycle of " +
+                                std::to_string(minor.terms()) +
+                                " terms; expected as many of each, and a PSF for each sum of two");
+}
+
 /// One run of CLEAN.
 class Run {
  public:
-  Run(CleanProblem& problem, const CleanInput& input, const CleanOptions& options, CleanState state, StageTimes& times)
-      : problem_(problem), input_(input), o_(options), times_(times), state_(std::move(state)) {
-    if (state_.model.scale_pixels() != problem.scale_pixels())
+  Run(const CleanInput& input, const MinorCycle& minor, const CleanOptions& options, CleanState state, const Context& context)
+      : input_(input),
+        minor_(minor),
+        o_(options),
+        context_(context),
+        sharer_(input.samples.source.ranks()),
+        state_(std::move(state)) {
+    require_same_terms(input, minor);
+    if (state_.model.scale_pixels() != minor.scale_pixels())
       throw std::invalid_argument("a model of other scales than those of the minor cycle");
+    for (const Image* psf : input.psf) require_finite_psf(*psf);
   }
 
   CleanResult run(const CycleProgress& cycle_progress) {
@@ -57,7 +76,7 @@ class Run {
       return_to_best();
       end_->reason += "; the best model was kept";
     }
-    problem_.end();
+    sharer_.end();
     return result();
   }
 
@@ -66,10 +85,25 @@ class Run {
   const MajorCycle& best() const { return state_.cycles[state_.best]; }
   const Image* mask() const { return o_.automask ? &state_.mask : o_.mask; }
 
-  /// Residuals are made anew, never changed.
+  /// Those of no model are the dirty images. Residuals are made anew, never changed.
   void make_residual() {
     residuals_.clear();
-    residuals_ = problem_.residuals(state_.model, o_.threads);
+    made_.clear();
+    if (state_.model.components().empty()) {
+      residuals_ = input_.dirty;
+    } else {
+      sharer_.share(state_.model);
+      made_ = make_taylor_residuals(input_.samples, input_.transform, model_images(), input_.expansion, context_);
+      for (const Image& residual : made_) residuals_.push_back(&residual);
+    }
+    const StageTimer timer(context_.times, "statistics");
+    for (const Image* residual : residuals_) require_finite_residual(*residual, *input_.dirty.front());
+  }
+  std::vector<Image> model_images() const {
+    const StageTimer timer(context_.times, "minor cycles");
+    std::vector<Image> images;
+    for (int term = 0; term < input_.expansion.terms; ++term) images.push_back(state_.model.image(o_.threads, term));
+    return images;
   }
   /// Of the first term, whose units and noise the thresholds are of.
   const Image& residual() const { return *residuals_.front(); }
@@ -83,7 +117,7 @@ class Run {
 
   /// What the residual is now.
   void measure(MajorCycle& cycle) {
-    const StageTimer timer(times_, "statistics");
+    const StageTimer timer(context_.times, "statistics");
     cycle.rms_jy = robust_noise(residual(), o_.threads);
     cycle.peak_residual_jy = peak_within_mask();
     cycle.mean_square_jy2 = std::pow(root_mean_square(residual()), 2);
@@ -130,7 +164,7 @@ class Run {
   Ending divergence() const {
     constexpr double near = 10;
     const double grew_to = state_.cycles.back().peak_residual_jy;
-    if (grew_to <= near * input_.accuracy * largest_magnitude(input_.dirty))
+    if (grew_to <= near * input_.accuracy * largest_magnitude(*input_.dirty.front()))
       return {CleanStop::no_change,
               "what is left, " + in_jy(grew_to) + ", is the error of the transforms; a smaller --accuracy goes deeper"};
     return {grew_to <= diverged * best().peak_residual_jy ? CleanStop::diverging_from_best : CleanStop::diverging,
@@ -163,13 +197,13 @@ class Run {
     cycle.cycle_threshold_jy = cycle_threshold();
     const int left = o_.max_iterations - now().iterations;
     {
-      const StageTimer timer(times_, "minor cycles");
+      const StageTimer timer(context_.times, "minor cycles");
       const MinorCycleReport found =
-          problem_.find(residuals_, {.gain = o_.gain,
-                                     .max_iterations = o_.cycle_iterations < 0 ? left : std::min(left, o_.cycle_iterations),
-                                     .threshold_jy = cycle.cycle_threshold_jy,
-                                     .mask = mask(),
-                                     .stop_requested = o_.stop_requested});
+          minor_.clean(residuals_, {.gain = o_.gain,
+                                    .max_iterations = o_.cycle_iterations < 0 ? left : std::min(left, o_.cycle_iterations),
+                                    .threshold_jy = cycle.cycle_threshold_jy,
+                                    .mask = mask(),
+                                    .stop_requested = o_.stop_requested});
       state_.found_nothing = found.components.empty();
       cycle.iterations = now().iterations + found.iterations();
       cycle.ended = description(found.end);
@@ -249,20 +283,22 @@ class Run {
     return result;
   }
 
-  CleanProblem& problem_;
   const CleanInput& input_;
+  const MinorCycle& minor_;
   const CleanOptions& o_;
-  StageTimes& times_;
+  const Context& context_;
+  ModelSharer sharer_;
   CleanState state_;
-  Residuals residuals_;  ///< of state_.model
+  std::vector<const Image*> residuals_;  ///< [term], of state_.model
+  std::vector<Image> made_;              ///< the same, where they are not the dirty images
   std::optional<Ending> end_;
 };
 
 }  // namespace
 
-CleanResult run_major_cycles(CleanProblem& problem, const CleanInput& input, const CleanOptions& options, CleanState state,
-                             const CycleProgress& cycle_progress, StageTimes& times) {
-  return Run(problem, input, options, std::move(state), times).run(cycle_progress);
+CleanResult clean(const CleanInput& input, const MinorCycle& minor, const CleanOptions& options, CleanState state,
+                  const CycleProgress& cycle_progress, const Context& context) {
+  return Run(input, minor, options, std::move(state), context).run(cycle_progress);
 }
 
 }  // namespace misfit::imager

@@ -5,15 +5,19 @@
 
 namespace misfit::imager {
 
-void MinorCycle::require_size(const Image& residual, const MinorCycleOptions& options) const {
+MinorCycleReport MinorCycle::clean(const std::vector<const Image*>& residual, const MinorCycleOptions& options) const {
+  if (residual.size() != static_cast<std::size_t>(terms_))
+    throw std::invalid_argument(std::to_string(residual.size()) + " residuals of " + std::to_string(terms_) +
+                                " Taylor terms; expected one for each");
   const auto require = [this](const std::string& name, const Image& image) {
     if (image.width != width_ || image.height != height_)
       throw std::invalid_argument(name + " of " + std::to_string(image.width) + " × " + std::to_string(image.height) +
                                   " pixels: expected the size of the PSF, " + std::to_string(width_) + " × " +
                                   std::to_string(height_));
   };
-  require("residual", residual);
+  for (const Image* image : residual) require("residual", *image);
   if (options.mask != nullptr) require("mask", *options.mask);
+  return find(residual, options);
 }
 
 bool MinorCycleWatch::ends(double peak_jy, MinorCycleReport& report) const {

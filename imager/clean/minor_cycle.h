@@ -46,18 +46,26 @@ class MinorCycle {
 
   /// The scales of its components, see ComponentModel.
   virtual const std::vector<double>& scale_pixels() const = 0;
-  /// Components whose images, convolved with the PSF and taken off `residual` (Jy/beam), leave less. Throws
-  /// std::invalid_argument when an image differs from the PSF in size.
-  virtual MinorCycleReport clean(const Image& residual, const MinorCycleOptions& options) const = 0;
+  /// How many residuals it looks at together: the Taylor terms of an image.
+  int terms() const { return terms_; }
+  /// Components whose images, convolved with the PSF and taken off the residuals [term] (Jy/beam), leave less. Throws
+  /// std::invalid_argument unless there is a residual for each term, and all images have the size of the PSF.
+  MinorCycleReport clean(const std::vector<const Image*>& residual, const MinorCycleOptions& options) const;
+  /// The same of one term.
+  MinorCycleReport clean(const Image& residual, const MinorCycleOptions& options) const { return clean({&residual}, options); }
 
  protected:
-  explicit MinorCycle(const Image& psf) : width_(psf.width), height_(psf.height) {}
-  /// Throws std::invalid_argument unless the images given have the size of the PSF.
-  void require_size(const Image& residual, const MinorCycleOptions& options) const;
+  explicit MinorCycle(const Image& psf, int terms = 1) : width_(psf.width), height_(psf.height), terms_(terms) {}
+  int width() const { return width_; }
+  int height() const { return height_; }
 
  private:
+  /// clean() of images of the right size.
+  virtual MinorCycleReport find(const std::vector<const Image*>& residual, const MinorCycleOptions& options) const = 0;
+
   int width_;
   int height_;
+  int terms_;
 };
 
 /// Says when a minor cycle ends, one way for all of them.

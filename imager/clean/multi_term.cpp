@@ -2,8 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <stdexcept>
-#include <string>
 #include <utility>
 
 #include "imager/clean/components.h"
@@ -29,7 +27,7 @@ TermCores cores_of(const std::vector<const Image*>& psf, double scale_pixels, in
 }  // namespace
 
 MultiTerm::MultiTerm(const std::vector<const Image*>& psf, const MultiscaleOptions& options)
-    : options_(options), width_(psf.front()->width), height_(psf.front()->height), point_(basis_of(psf)) {
+    : MinorCycle(*psf.front(), static_cast<int>(psf.size() + 1) / 2), options_(options), point_(basis_of(psf)) {
   check_scales(options);
   const double largest = options.scale_pixels.back();
   for (const double scale : options.scale_pixels) {
@@ -38,19 +36,6 @@ MultiTerm::MultiTerm(const std::vector<const Image*>& psf, const MultiscaleOptio
     scale_.push_back({largest == 0 ? 1 : 1 - options.small_scale_bias * scale / largest, peak, std::move(cores)});
   }
   for (const Image* image : psf) convolution_.push_back(std::make_unique<Convolution<float>>(*image, options.threads));
-}
-
-void MultiTerm::require_sizes(const std::vector<const Image*>& residual, const MinorCycleOptions& options) const {
-  const auto size = [](int width, int height) { return std::to_string(width) + " × " + std::to_string(height) + " pixels"; };
-  if (residual.size() != static_cast<std::size_t>(terms()))
-    throw std::invalid_argument(std::to_string(residual.size()) + " residuals of " + std::to_string(terms()) +
-                                " Taylor terms; expected one for each");
-  std::vector<const Image*> images = residual;
-  if (options.mask != nullptr) images.push_back(options.mask);
-  for (const Image* image : images)
-    if (image->width != width_ || image->height != height_)
-      throw std::invalid_argument("residual or mask of " + size(image->width, image->height) +
-                                  ": expected the size of the PSFs, " + size(width_, height_));
 }
 
 MultiTerm::Choice MultiTerm::choose(const std::vector<Image>& left, const ScalePlaces& places) const {
@@ -70,8 +55,8 @@ MultiTerm::Choice MultiTerm::choose(const std::vector<Image>& left, const ScaleP
   return best;
 }
 
-void MultiTerm::find(Choice choice, const MinorCycleOptions& options, const MinorCycleWatch& watch,
-                     MinorCycleReport& report) const {
+void MultiTerm::find_of_scale(Choice choice, const MinorCycleOptions& options, const MinorCycleWatch& watch,
+                              MinorCycleReport& report) const {
   constexpr double merit_left = 0.5;
   const Scale& scale = scale_[choice.scale];
   const double scale_pixels = options_.scale_pixels[choice.scale];
@@ -94,9 +79,8 @@ void MultiTerm::subtract(const ComponentModel& found, std::vector<Image>& left) 
   }
 }
 
-MinorCycleReport MultiTerm::clean(const std::vector<const Image*>& residual, const MinorCycleOptions& options) const {
+MinorCycleReport MultiTerm::find(const std::vector<const Image*>& residual, const MinorCycleOptions& options) const {
   constexpr double least_merit = 0.01;  // as in Multiscale
-  require_sizes(residual, options);
   const ScalePlaces allowed = scale_places(*residual.front(), options.mask, options_);
   std::vector<Image> left;
   for (const Image* image : residual) left.push_back(*image);
@@ -114,8 +98,8 @@ MinorCycleReport MultiTerm::clean(const std::vector<const Image*>& residual, con
       break;
     }
     const auto before = static_cast<std::ptrdiff_t>(report.components.size());
-    find(std::move(choice), options, watch, report);
-    ComponentModel found(width_, height_, options_.scale_pixels);
+    find_of_scale(std::move(choice), options, watch, report);
+    ComponentModel found(width(), height(), options_.scale_pixels);
     found.add({report.components.begin() + before, report.components.end()});
     subtract(found, left);
     peak = peak_of();

@@ -23,16 +23,12 @@ namespace misfit::imager {
 /// Components are points, or Gaussians of several scales as in Multiscale, with the merit |y|²/P_ss of a scale's own basis.
 /// They are found among the brightest pixels (ActiveTerms) and then taken off all residuals, convolved with the whole of the
 /// spectral PSFs.
-class MultiTerm {
+class MultiTerm : public MinorCycle {
  public:
   /// Of PSFs P_k [k], images of one size. Throws std::invalid_argument as Multiscale does, and what TaylorBasis does.
   MultiTerm(const std::vector<const Image*>& psf, const MultiscaleOptions& options);
 
-  int terms() const { return point_.terms(); }
-  const std::vector<double>& scale_pixels() const { return options_.scale_pixels; }
-  /// As MinorCycle::clean, of residual images [term]; the threshold is one of |y|, which |R_0| never exceeds. Throws
-  /// std::invalid_argument unless there is a residual for each term, of the PSFs' size.
-  MinorCycleReport clean(const std::vector<const Image*>& residual, const MinorCycleOptions& options) const;
+  const std::vector<double>& scale_pixels() const override { return options_.scale_pixels; }
 
  private:
   struct Scale {
@@ -48,14 +44,14 @@ class MultiTerm {
     std::vector<Image> residual;  ///< [term], convolved with it
     Image brightness;             ///< |y| of that, NaN where it may not be put
   };
-  void require_sizes(const std::vector<const Image*>& residual, const MinorCycleOptions& options) const;
+  /// The threshold is one of |y|, which |R_0| never exceeds.
+  MinorCycleReport find(const std::vector<const Image*>& residual, const MinorCycleOptions& options) const override;
   Choice choose(const std::vector<Image>& left, const ScalePlaces& places) const;
-  void find(Choice choice, const MinorCycleOptions& options, const MinorCycleWatch& watch, MinorCycleReport& report) const;
+  void find_of_scale(Choice choice, const MinorCycleOptions& options, const MinorCycleWatch& watch,
+                     MinorCycleReport& report) const;
   void subtract(const ComponentModel& found, std::vector<Image>& left) const;
 
   MultiscaleOptions options_;
-  int width_;
-  int height_;
   TaylorBasis point_;
   std::vector<Scale> scale_;
   std::vector<std::unique_ptr<Convolution<float>>> convolution_;  ///< [k]

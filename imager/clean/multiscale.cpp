@@ -47,10 +47,10 @@ Multiscale::Choice Multiscale::choose(const Image& left, const ScalePlaces& plac
   return best;
 }
 
-MinorCycleReport Multiscale::clean(const Image& residual, const MinorCycleOptions& options) const {
+MinorCycleReport Multiscale::find(const std::vector<const Image*>& residuals, const MinorCycleOptions& options) const {
+  const Image& residual = *residuals.front();
   constexpr double merit_left = 0.5;
   constexpr double least_merit = 0.01;  // of a point's at the threshold: no scale sees what is left
-  require_size(residual, options);
   const ScalePlaces allowed = scale_places(residual, options.mask, options_);
   const auto peak_of = [&](const Image& image) {
     return largest_magnitude(options.mask == nullptr ? image : masked(image, *options.mask));

@@ -23,9 +23,10 @@ class Multiscale : public MinorCycle {
   Multiscale(const Image& psf, const MultiscaleOptions& options);
 
   const std::vector<double>& scale_pixels() const override { return options_.scale_pixels; }
-  MinorCycleReport clean(const Image& residual, const MinorCycleOptions& options) const override;
 
  private:
+  MinorCycleReport find(const std::vector<const Image*>& residual, const MinorCycleOptions& options) const override;
+
   struct Scale {
     double bias;
     double psf_peak;  ///< P_ss

@@ -46,18 +46,12 @@ void ModelSharer::end() const {
   share_values(ranks_, next);
 }
 
-void follow_clean(const OneStokes& samples, const Transform& transform, int threads, const Progress& progress,
-                  StageTimes& times) {
-  for (ComponentModel model; receive(samples.source.ranks(), model);)
-    make_residual_image(samples, transform, model.image(threads), progress, times);
-}
-
-void follow_clean(const OneStokes& samples, const Transform& transform, const TaylorExpansion& expansion, int threads,
-                  const Progress& progress, StageTimes& times) {
+void follow_clean(const OneStokes& samples, const Transform& transform, const TaylorExpansion& expansion,
+                  const Context& context) {
   for (ComponentModel model; receive(samples.source.ranks(), model);) {
     std::vector<Image> terms;
-    for (int term = 0; term < expansion.terms; ++term) terms.push_back(model.image(threads, term));
-    make_taylor_residuals(samples, transform, terms, expansion, progress, times);
+    for (int term = 0; term < expansion.terms; ++term) terms.push_back(model.image(context.threads, term));
+    make_taylor_residuals(samples, transform, terms, expansion, context);
   }
 }
 

@@ -22,10 +22,7 @@ class ModelSharer {
 
 /// On ranks after the first: makes the parts of residuals that this rank's samples give, of every model that rank 0 tells of,
 /// until it tells of the end.
-void follow_clean(const OneStokes& samples, const Transform& transform, int threads, const Progress& progress,
-                  StageTimes& times);
-/// The same of Taylor terms.
-void follow_clean(const OneStokes& samples, const Transform& transform, const TaylorExpansion& expansion, int threads,
-                  const Progress& progress, StageTimes& times);
+void follow_clean(const OneStokes& samples, const Transform& transform, const TaylorExpansion& expansion,
+                  const Context& context);
 
 }  // namespace misfit::imager

@@ -133,24 +133,24 @@ StoredVisibilities GatheredPlanes::take(int plane) {
   return stored;
 }
 
-GatheredPlanes gather_planes(const VisibilitySource& source, const CubeSampling& sampling, const PlaneRange& range, int threads,
-                             const Progress& progress, StageTimes& times) {
+GatheredPlanes gather_planes(const VisibilitySource& source, const CubeSampling& sampling, const PlaneRange& range,
+                             const Context& context) {
   constexpr std::size_t ahead = 2;
-  PlaneGatherer gatherer(sampling, range, threads, source.samples());
+  PlaneGatherer gatherer(sampling, range, context.threads, source.samples());
   const auto stream = prefetched(source.open(), ahead);
   GatheredPlanes::Counts counts;
   std::uint64_t done = 0;
   const auto next = [&] {
-    const StageTimer timer(times, "read");
+    const StageTimer timer(context.times, "read");
     return stream->next();
   };
   while (const auto block = next()) {
-    const StageTimer timer(times, "planes");
+    const StageTimer timer(context.times, "planes");
     gatherer.add(*block);
     counts.read += block->counts;
-    progress(done += block->samples(), source.samples());
+    context.tell(done += block->samples(), source.samples());
   }
-  const StageTimer timer(times, "planes");
+  const StageTimer timer(context.times, "planes");
   std::vector<std::unique_ptr<GatheredRows>> rows = gatherer.take(true);
   counts.outside_planes = gatherer.outside_planes();
   return {std::move(rows), counts};

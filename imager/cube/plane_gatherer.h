@@ -75,8 +75,8 @@ class GatheredPlanes {
 };
 
 /// One pass over `source`. Stages timed: "read", "planes".
-GatheredPlanes gather_planes(const VisibilitySource& source, const CubeSampling& sampling, const PlaneRange& range, int threads,
-                             const Progress& progress, StageTimes& times);
+GatheredPlanes gather_planes(const VisibilitySource& source, const CubeSampling& sampling, const PlaneRange& range,
+                             const Context& context);
 
 /// One plane of a cube as a source of its own, gathered in every pass over another.
 class PlaneView : public VisibilitySource {

@@ -75,14 +75,14 @@ PixelError relative_pixel_error(const PixelError& error, const Image& dirty) {
 }
 
 MeasuredError measure_error(const VisibilitySource& source, const Transform& transform, const ImageGeometry& geometry,
-                            const DirtyImages& images, int count, int threads, const Progress& progress) {
+                            const DirtyImages& images, int count, const Context& context) {
   std::mt19937_64 random(20200112);
   const Ranks& ranks = source.ranks();
   std::uint64_t all_samples = source.samples();
   sum_over(ranks, all_samples);
   const int predicted = static_cast<int>(std::min(std::uint64_t(count), all_samples));
   const std::vector<Pixel> pixels = random_pixels(geometry, count);
-  const DirectPixels direct_pixels{geometry, pixels, true, threads};
+  const DirectPixels direct_pixels{geometry, pixels, true, context.threads};
   const std::vector<std::uint64_t> chosen = random_samples(source.samples(), predicted, random);
 
   std::vector<std::vector<double>> sum(images.dirty.size(), std::vector<double>(pixels.size()));
@@ -93,7 +93,7 @@ MeasuredError measure_error(const VisibilitySource& source, const Transform& tra
     add_direct_pixels(*block, direct_pixels, sum);
     collect(*block, done, chosen, samples);
     done += block->samples();
-    progress(done, source.samples());
+    context.tell(done, source.samples());
   }
 
   MeasuredError error;
@@ -106,7 +106,7 @@ MeasuredError measure_error(const VisibilitySource& source, const Transform& tra
   Image model(geometry.width, geometry.height);
   for (const Pixel& pixel : pixels) model.at(pixel.row, pixel.column) = random() % 2 == 0 ? 1 : -1;
   const auto gridded = transform.predict(model)->at(samples);
-  const auto direct = DirectTransform(geometry, threads).predict(model)->at(samples);
+  const auto direct = DirectTransform(geometry, context.threads).predict(model)->at(samples);
   double difference = 0;
   double size = 0;
   for (std::size_t i = 0; i < direct.size(); ++i) {

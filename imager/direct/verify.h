@@ -32,6 +32,6 @@ struct MeasuredError {
 /// random samples of each rank, for a model of the same pixels; with all pixels where there are no more, and fewer samples
 /// where there are fewer. The choice depends on `count` alone.
 MeasuredError measure_error(const VisibilitySource& source, const Transform& transform, const ImageGeometry& geometry,
-                            const DirtyImages& images, int count, int threads, const Progress& progress);
+                            const DirtyImages& images, int count, const Context& context);
 
 }  // namespace misfit::imager

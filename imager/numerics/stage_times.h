@@ -57,13 +57,17 @@ void add_seconds_of(double& total, const Step& step) {
 /// Adds the time from its construction to its destruction.
 class StageTimer {
  public:
-  StageTimer(StageTimes& times, std::string stage) : times_(times), stage_(std::move(stage)) {}
-  ~StageTimer() { times_.add(stage_, watch_.seconds()); }
+  StageTimer(StageTimes& times, std::string stage) : StageTimer(&times, std::move(stage)) {}
+  /// Of null nothing is timed.
+  StageTimer(StageTimes* times, std::string stage) : times_(times), stage_(std::move(stage)) {}
+  ~StageTimer() {
+    if (times_ != nullptr) times_->add(stage_, watch_.seconds());
+  }
   StageTimer(const StageTimer&) = delete;
   StageTimer& operator=(const StageTimer&) = delete;
 
  private:
-  StageTimes& times_;
+  StageTimes* times_;
   std::string stage_;
   Stopwatch watch_;
 };

@@ -98,11 +98,11 @@ std::vector<Placed> placed(const VisibilityBlock& block, const std::vector<std::
 }  // namespace
 
 Unexplained unexplained_by(const Image& model, const VisibilitySource& source, const Transform& transform,
-                           const ImageGeometry& field, const Progress& progress, StageTimes& times) {
+                           const ImageGeometry& field, const Context& context) {
   Sums sums;
-  for_each_residual(source, transform, model, progress, times,
+  for_each_residual(source, transform, model, context,
                     [&](const VisibilityBlock& block, const std::vector<std::complex<double>>& residual) {
-                      const StageTimer timer(times, "statistics");
+                      const StageTimer timer(context.times, "statistics");
                       const std::vector<Placed> all = placed(block, residual, field);
                       for (const Placed *at = all.data(), *end = at + all.size(), *next; at != end; at = next) {
                         next = std::find_if(at, end, [at](const Placed& p) { return p.cell != at->cell; });

@@ -25,6 +25,6 @@ struct Unexplained {
 /// Cells are 1/(4 · the field's width) wide and 1/(4 · its height) high: over one of them the phase of a source a whole field
 /// off the middle turns by a quarter. Cells are those of one block. Stages timed: "statistics", and those of for_each_residual.
 Unexplained unexplained_by(const Image& model, const VisibilitySource& source, const Transform& transform,
-                           const ImageGeometry& field, const Progress& progress, StageTimes& times);
+                           const ImageGeometry& field, const Context& context);
 
 }  // namespace misfit::imager

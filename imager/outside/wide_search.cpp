@@ -27,14 +27,14 @@ struct CleanedField {
   double least_jy = 0;
 };
 
-CleanedField clean_wide_field(const VisibilitySource& source, const Transform& transform, const ImageGeometry& g, int threads,
-                              const Progress& progress, StageTimes& times) {
+CleanedField clean_wide_field(const VisibilitySource& source, const Transform& transform, const ImageGeometry& g,
+                              const Context& context) {
   const TaperedVisibilities tapered(source, g.cell_rad);
-  const DirtyImages images = make_dirty_images(tapered, transform, {.with_psf = true}, progress, times);
+  const DirtyImages images = make_dirty_images(tapered, transform, {.with_psf = true}, context);
   const Ranks& ranks = source.ranks();
   CleanedField field;
   if (!ranks.first()) {
-    follow_clean(tapered, transform, threads, progress, times);
+    follow_clean(tapered, transform, {}, context);
     field.model = Image(g.width, g.height);
     ranks.share(field.model.pixel.data(), field.model.pixel.size() * sizeof(double));
     return field;
@@ -47,15 +47,21 @@ CleanedField clean_wide_field(const VisibilitySource& source, const Transform& t
   options.max_major_cycles = 10;
   options.nsigma = 5;
   options.threshold_jy = deep * largest_magnitude(dirty);
-  options.threads = threads;
-  const auto minor = make_deconvolver({.name = "clark", .threads = threads}, images.psf);
+  options.threads = context.threads;
+  const auto minor = make_deconvolver({.name = "clark", .threads = context.threads}, {&images.psf});
   const Sidelobes sidelobes(images.psf);
   CleanResult cleaned = clean(
-      {tapered, transform, dirty, images.psf, sidelobes.from(lobe_pixels), 1e-4}, *minor, options,
-      first_state(ComponentModel(g.width, g.height, minor->scale_pixels())), progress, [](const CleanState&) {}, times);
+      {.samples = tapered,
+       .transform = transform,
+       .dirty = {&dirty},
+       .psf = {&images.psf},
+       .max_sidelobe = sidelobes.from(lobe_pixels),
+       .accuracy = 1e-4},
+      *minor, options, first_state(ComponentModel(g.width, g.height, minor->scale_pixels())), [](const CleanState&) {},
+      context);
   ranks.share(cleaned.model.pixel.data(), cleaned.model.pixel.size() * sizeof(double));
   return {std::move(cleaned.components), std::move(cleaned.model), sidelobes,
-          std::max(5 * robust_noise(cleaned.residual, threads), least_of_peak * largest_magnitude(dirty))};
+          std::max(5 * robust_noise(cleaned.residual, context.threads), least_of_peak * largest_magnitude(dirty))};
 }
 
 }  // namespace
@@ -125,12 +131,11 @@ bool can_be_imaged(const ImageGeometry& field, const VisibilitySource& source) {
   return any_of(source.ranks(), any);
 }
 
-WideSearch search_wide_field(const VisibilitySource& source, const GriddingPlan& plan, const Progress& progress,
-                             StageTimes& times) {
+WideSearch search_wide_field(const VisibilitySource& source, const GriddingPlan& plan, const Context& context) {
   const ImageGeometry& g = plan.request.geometry;
   const PlannedTransform transform(plan);
-  const CleanedField cleaned = clean_wide_field(source, transform, g, plan.request.threads, progress, times);
-  const Unexplained unexplained = unexplained_by(cleaned.model, source, transform, g, progress, times);
+  const CleanedField cleaned = clean_wide_field(source, transform, g, {plan.request.threads, context.times, context.progress});
+  const Unexplained unexplained = unexplained_by(cleaned.model, source, transform, g, context);
   return {cleaned.components.components(), cleaned.sidelobes, cleaned.least_jy, unexplained,
           unexplained.sources_most_jy * cleaned.sidelobes.from(lobe_pixels)};
 }

@@ -59,7 +59,6 @@ struct WideSearch {
 /// Images the wider field of `plan` with weights that fall off towards the edge of its grid, and finds its sources by Clark's
 /// CLEAN with major cycles, down to five times the noise or a five-hundredth of the peak. Ranks after the first get no more
 /// than what is unexplained. Stages timed: "statistics", and those of make_dirty_images and clean. Throws what they throw.
-WideSearch search_wide_field(const VisibilitySource& source, const GriddingPlan& plan, const Progress& progress,
-                             StageTimes& times);
+WideSearch search_wide_field(const VisibilitySource& source, const GriddingPlan& plan, const Context& context);
 
 }  // namespace misfit::imager

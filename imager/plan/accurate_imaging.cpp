@@ -14,29 +14,29 @@ double random_image_rms(const SampleSums& sums) {
   return std::sqrt(0.5 * sums.weight2_square) / sums.weight;
 }
 
-AccurateImages make_images(const VisibilitySource& source, GriddingPlan plan, const Progress& progress, StageTimes& times,
+AccurateImages make_images(const VisibilitySource& source, GriddingPlan plan, const Context& context,
                            std::shared_ptr<const PlannedTransform> transform = nullptr) {
   AccurateImages made;
   made.plan = std::move(plan);
   made.transform = std::move(transform);
   if (!made.transform) {
-    const StageTimer timer(times, "plan");
+    const StageTimer timer(context.times, "plan");
     made.transform = std::make_shared<PlannedTransform>(made.plan);
   }
   if (!made.plan.psf) {
     const AdjointOptions options{made.plan.request.stokes, made.plan.request.psf};
-    made.images = make_dirty_images(source, *made.transform, options, progress, times);
+    made.images = make_dirty_images(source, *made.transform, options, context);
   } else {
     const OwnPsf psf{made.transform->psf(), made.plan.request.stokes};
-    made.images = make_dirty_images(source, *made.transform, psf, progress, times);
+    made.images = make_dirty_images(source, *made.transform, psf, context);
   }
   return made;
 }
 
 /// Errors of the images relative to their RMS as the pixels show it, a few to many so that the direct sums take less than a
 /// second.
-double largest_checked_error(const VisibilitySource& source, const AccurateImages& made, StageTimes& times) {
-  const StageTimer timer(times, "check pixels");
+double largest_checked_error(const VisibilitySource& source, const AccurateImages& made, const Context& context) {
+  const StageTimer timer(context.times, "check pixels");
   const DirtyImages& images = made.images;
   const WideTransformOptions& o = made.plan.options;
   const double affordable = 4e7 / static_cast<double>(images.sums.front().used);
@@ -91,17 +91,17 @@ TheoreticalError theoretical_error(const GriddingPlan& plan, const SampleSums& s
   return error;
 }
 
-AccurateImages make_accurate_images(const VisibilitySource& source, GriddingPlan plan, const Progress& progress,
-                                    StageTimes& times, std::shared_ptr<const PlannedTransform> transform) {
+AccurateImages make_accurate_images(const VisibilitySource& source, GriddingPlan plan, const Context& context,
+                                    std::shared_ptr<const PlannedTransform> transform) {
   const GriddingRequest request = plan.request;
-  AccurateImages made = make_images(source, std::move(plan), progress, times, std::move(transform));
+  AccurateImages made = make_images(source, std::move(plan), context, std::move(transform));
   // The images' largest gridding error over the accuracy, once by theory and once by direct sums at pixels, which may miss half
   // of it.
   const auto excess = [&] {
     const Weakness weak = weakness_of(made.images);
     const double expected = made.plan.expected_error * weak.random / request.accuracy;
     if (expected > 1 || made.plan.expected_error * weak.coherent <= request.accuracy) return expected;
-    return std::max(expected, 2 * largest_checked_error(source, made, times) / request.accuracy);
+    return std::max(expected, 2 * largest_checked_error(source, made, context) / request.accuracy);
   };
   if (request.accuracy == 0) return made;
   const double first = excess();
@@ -118,10 +118,10 @@ AccurateImages make_accurate_images(const VisibilitySource& source, GriddingPlan
   made.transform.reset();  // all comes again, and there may be no room for both
   made.images = {};
   {
-    const StageTimer timer(times, "plan");
+    const StageTimer timer(context.times, "plan");
     plan = plan_gridding(stricter);
   }
-  made = make_images(source, std::move(plan), progress, times);
+  made = make_images(source, std::move(plan), context);
   if (!stricter.psf) {
     made.images.psf = std::move(psf);
     made.images.psf_statistics = psf_statistics;

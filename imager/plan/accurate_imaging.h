@@ -34,7 +34,7 @@ struct AccurateImages {
 /// make_dirty_images.
 ///
 /// `transform`, if there is one, is that of `plan`, which other images have been made by.
-AccurateImages make_accurate_images(const VisibilitySource& source, GriddingPlan plan, const Progress& progress,
-                                    StageTimes& times, std::shared_ptr<const PlannedTransform> transform = nullptr);
+AccurateImages make_accurate_images(const VisibilitySource& source, GriddingPlan plan, const Context& context,
+                                    std::shared_ptr<const PlannedTransform> transform = nullptr);
 
 }  // namespace misfit::imager

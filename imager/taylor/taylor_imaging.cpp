@@ -14,12 +14,12 @@ namespace misfit::imager {
 namespace {
 
 /// The images of a sum, over Σ w.
-std::vector<Image> normalised_images(std::unique_ptr<AdjointSum> sum, const Ranks& ranks, StageTimes& times) {
-  AdjointResult result = finish_adjoint(std::move(sum), ranks, times);
+std::vector<Image> normalised_images(std::unique_ptr<AdjointSum> sum, const Ranks& ranks, const Context& context) {
+  AdjointResult result = finish_adjoint(std::move(sum), ranks, context);
   BigMemory::release();
   const double weight = result.sums.front().weight;
   if (weight == 0) throw std::runtime_error("no visibility can be imaged: none has a weight above 0 within 1/(2 cell)");
-  const StageTimer timer(times, "fft");
+  const StageTimer timer(context.times, "fft");
   for (Image& image : result.images) divide(image, weight);
   return std::move(result.images);
 }
@@ -43,35 +43,40 @@ std::vector<std::complex<double>> visibilities_of_middle(const VisibilityBlock& 
 }  // namespace
 
 TaylorImages make_taylor_images(const VisibilitySource& source, const Transform& transform, const TaylorPsf& psf,
-                                const TaylorExpansion& expansion, const Progress& progress, StageTimes& times) {
+                                const TaylorExpansion& expansion, const Context& context) {
   const TaylorPowers of_dirty{1, expansion.terms - 1}, of_psf{1, 2 * expansion.terms - 2};
-  VisibilityPass pass(source, progress, times);
-  auto sum = begin_adjoint(transform, {.images = of_dirty.last}, times);
-  auto psf_sum = begin_adjoint(psf.transform, {.images = of_psf.last}, times);
+  VisibilityPass pass(source, context);
+  auto sum = begin_adjoint(transform, {.images = of_dirty.last}, context);
+  auto psf_sum = begin_adjoint(psf.transform, {.images = of_psf.last}, context);
   pass.for_each_block([&](const VisibilityBlock& block) {
-    const StageTimer timer(times, "grid");
+    const StageTimer timer(context.times, "grid");
     sum->add(block, taylor_sets(expansion, block, {block.visibility.begin(), block.visibility.end()}, of_dirty));
     psf_sum->add(block, taylor_sets(expansion, block, visibilities_of_middle(block, psf), of_psf));
   });
   TaylorImages images;
-  images.psf = normalised_images(std::move(psf_sum), source.ranks(), times);
-  images.dirty = normalised_images(std::move(sum), source.ranks(), times);
+  images.psf = normalised_images(std::move(psf_sum), source.ranks(), context);
+  images.dirty = normalised_images(std::move(sum), source.ranks(), context);
   return images;
 }
 
 std::vector<Image> make_taylor_residuals(const OneStokes& samples, const Transform& transform, const std::vector<Image>& models,
-                                         const TaylorExpansion& expansion, const Progress& progress, StageTimes& times) {
-  auto sum = begin_adjoint(transform, {.images = expansion.terms}, times);
+                                         const TaylorExpansion& expansion, const Context& context) {
+  if (expansion.terms == 1) {
+    std::vector<Image> residual;
+    residual.push_back(make_residual_image(samples, transform, models.front(), context));
+    return residual;
+  }
+  auto sum = begin_adjoint(transform, {.images = expansion.terms}, context);
   const TaylorPowers powers{0, expansion.terms - 1};
   std::vector<const Image*> terms;
   for (const Image& model : models) terms.push_back(&model);
   for_each_residual(
-      samples, [&] { return std::make_unique<TaylorPrediction>(transform, terms, expansion); }, progress, times,
+      samples, [&] { return std::make_unique<TaylorPrediction>(transform, terms, expansion); }, context,
       [&](const VisibilityBlock& block, const std::vector<std::complex<double>>& residual) {
-        const StageTimer timer(times, "grid");
+        const StageTimer timer(context.times, "grid");
         sum->add(block, taylor_sets(expansion, block, residual, powers));
       });
-  return normalised_images(std::move(sum), samples.source.ranks(), times);
+  return normalised_images(std::move(sum), samples.source.ranks(), context);
 }
 
 }  // namespace misfit::imager

@@ -27,11 +27,11 @@ struct TaylorPsf {
 /// images of |x^t V| rather than to them. Stages timed: "read", "grid", "fft". Throws std::runtime_error when no sample can be
 /// used.
 TaylorImages make_taylor_images(const VisibilitySource& source, const Transform& transform, const TaylorPsf& psf,
-                                const TaylorExpansion& expansion, const Progress& progress, StageTimes& times);
+                                const TaylorExpansion& expansion, const Context& context);
 
 /// The residual images A*(w x^t (V − Σ_s x^s A I_s)) / Σ w [t], of model images [s] of each term, in one pass. Stages timed: as
 /// by make_residual_image.
 std::vector<Image> make_taylor_residuals(const OneStokes& samples, const Transform& transform, const std::vector<Image>& models,
-                                         const TaylorExpansion& expansion, const Progress& progress, StageTimes& times);
+                                         const TaylorExpansion& expansion, const Context& context);
 
 }  // namespace misfit::imager

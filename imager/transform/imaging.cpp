@@ -35,10 +35,10 @@ ImageStatistics normalise(Image& image, double weight, const Ranks& ranks) {
 }
 
 /// Divides all by Σ w.
-DirtyImages dirty_images(AdjointResult sum, Image psf, const Ranks& ranks, StageTimes& times) {
+DirtyImages dirty_images(AdjointResult sum, Image psf, const Ranks& ranks, const Context& context) {
   BigMemory::release();
   require_any(sum.sums.front());
-  const StageTimer timer(times, "fft");
+  const StageTimer timer(context.times, "fft");
   const double weight = sum.sums.front().weight;
   DirtyImages made{std::move(sum.images), std::move(psf), std::move(sum.sums), {}, {}};
   for (Image& image : made.dirty) made.dirty_statistics.push_back(normalise(image, weight, ranks));
@@ -54,67 +54,66 @@ NothingInGrid::NothingInGrid(std::uint64_t samples)
       outside_grid(samples) {}
 
 DirtyImages make_dirty_images(const VisibilitySource& source, const Transform& transform, const AdjointOptions& options,
-                              const Progress& progress, StageTimes& times) {
-  VisibilityPass pass(source, progress, times);
-  auto sum = begin_adjoint(transform, options, times);
+                              const Context& context) {
+  VisibilityPass pass(source, context);
+  auto sum = begin_adjoint(transform, options, context);
   pass.for_each_block([&](const VisibilityBlock& block) {
-    const StageTimer timer(times, "grid");
+    const StageTimer timer(context.times, "grid");
     sum->add(block);
   });
-  AdjointResult result = finish_adjoint(std::move(sum), source.ranks(), times);
+  AdjointResult result = finish_adjoint(std::move(sum), source.ranks(), context);
   Image psf = std::move(result.psf);
-  return dirty_images(std::move(result), std::move(psf), source.ranks(), times);
+  return dirty_images(std::move(result), std::move(psf), source.ranks(), context);
 }
 
 DirtyImages make_dirty_images(const VisibilitySource& source, const Transform& transform, const OwnPsf& psf,
-                              const Progress& progress, StageTimes& times) {
-  VisibilityPass pass(source, progress, times);
-  auto sum = begin_adjoint(transform, {.images = psf.images}, times);
-  auto psf_sum = begin_adjoint(psf.transform, {.images = 0, .with_psf = true}, times);
+                              const Context& context) {
+  VisibilityPass pass(source, context);
+  auto sum = begin_adjoint(transform, {.images = psf.images}, context);
+  auto psf_sum = begin_adjoint(psf.transform, {.images = 0, .with_psf = true}, context);
   pass.for_each_block([&](const VisibilityBlock& block) {
-    const StageTimer timer(times, "grid");
+    const StageTimer timer(context.times, "grid");
     sum->add(block);
     psf_sum->add(block);
   });
-  AdjointResult of_psf = finish_adjoint(std::move(psf_sum), source.ranks(), times);
-  AdjointResult result = finish_adjoint(std::move(sum), source.ranks(), times);
-  return dirty_images(std::move(result), std::move(of_psf.psf), source.ranks(), times);
+  AdjointResult of_psf = finish_adjoint(std::move(psf_sum), source.ranks(), context);
+  AdjointResult result = finish_adjoint(std::move(sum), source.ranks(), context);
+  return dirty_images(std::move(result), std::move(of_psf.psf), source.ranks(), context);
 }
 
-void for_each_residual(const OneStokes& samples, const MakePrediction& predict, const Progress& progress, StageTimes& times,
+void for_each_residual(const OneStokes& samples, const MakePrediction& predict, const Context& context,
                        const VisitResidual& visit) {
-  VisibilityPass pass(samples.source, progress, times);
+  VisibilityPass pass(samples.source, context);
   std::unique_ptr<Prediction> prediction;
   {
-    const StageTimer timer(times, "degrid");
+    const StageTimer timer(context.times, "degrid");
     prediction = predict();
   }
   pass.for_each_group(prediction->samples_at_once(), [&](const VisibilityPass::Blocks& blocks) {
     std::vector<std::vector<std::complex<double>>> residual;
     {
-      const StageTimer timer(times, "degrid");
+      const StageTimer timer(context.times, "degrid");
       residual = residuals(*prediction, blocks, samples.index);
     }
     for (std::size_t b = 0; b < blocks.size(); ++b) visit(*blocks[b], residual[b]);
   });
-  times.move("degrid", "fft", prediction->fft_s());
+  context.move_seconds("degrid", "fft", prediction->fft_s());
 }
 
-void for_each_residual(const OneStokes& samples, const Transform& transform, const Image& model, const Progress& progress,
-                       StageTimes& times, const VisitResidual& visit) {
+void for_each_residual(const OneStokes& samples, const Transform& transform, const Image& model, const Context& context,
+                       const VisitResidual& visit) {
   for_each_residual(
-      samples, [&] { return transform.predict(model); }, progress, times, visit);
+      samples, [&] { return transform.predict(model); }, context, visit);
 }
 
-Image make_residual_image(const OneStokes& samples, const Transform& transform, const Image& model, const Progress& progress,
-                          StageTimes& times) {
-  auto sum = begin_adjoint(transform, {}, times);
-  for_each_residual(samples, transform, model, progress, times,
+Image make_residual_image(const OneStokes& samples, const Transform& transform, const Image& model, const Context& context) {
+  auto sum = begin_adjoint(transform, {}, context);
+  for_each_residual(samples, transform, model, context,
                     [&](const VisibilityBlock& block, const std::vector<std::complex<double>>& residual) {
-                      const StageTimer timer(times, "grid");
+                      const StageTimer timer(context.times, "grid");
                       sum->add(block, residual);
                     });
-  AdjointResult result = finish_adjoint(std::move(sum), samples.source.ranks(), times);
+  AdjointResult result = finish_adjoint(std::move(sum), samples.source.ranks(), context);
   divide(result.images.front(), result.sums.front().weight);
   return std::move(result.images.front());
 }

@@ -6,13 +6,10 @@
 #include <stdexcept>
 
 #include "imager/data/image_statistics.h"
-#include "imager/numerics/stage_times.h"
+#include "imager/numerics/context.h"
 #include "imager/transform/transform.h"
 
 namespace misfit::imager {
-
-/// Told after every block how many samples of how many are done. It may throw to end the work.
-using Progress = std::function<void(std::uint64_t done, std::uint64_t total)>;
 
 /// Thrown where every usable sample lies beyond 1/(2 cell).
 struct NothingInGrid : std::runtime_error {
@@ -33,7 +30,7 @@ struct DirtyImages {
 /// One pass over the visibilities. Stages timed: "read", "grid", "fft", which counts corrections in. Throws std::runtime_error
 /// when no sample can be used, NothingInGrid where that is why.
 DirtyImages make_dirty_images(const VisibilitySource& source, const Transform& transform, const AdjointOptions& options,
-                              const Progress& progress, StageTimes& times);
+                              const Context& context);
 
 /// A PSF made by a transform of its own.
 struct OwnPsf {
@@ -43,23 +40,22 @@ struct OwnPsf {
 
 /// The same with the PSF by a transform of its own, in the same pass.
 DirtyImages make_dirty_images(const VisibilitySource& source, const Transform& transform, const OwnPsf& psf,
-                              const Progress& progress, StageTimes& times);
+                              const Context& context);
 
 /// Given a block and its data − model [row][channel], which is that at usable samples alone.
 using VisitResidual = std::function<void(const VisibilityBlock& block, const std::vector<std::complex<double>>& residual)>;
 
 /// One pass over the visibilities less those of a model, which every rank has. Stages timed: "read", "fft", "degrid".
-void for_each_residual(const OneStokes& samples, const Transform& transform, const Image& model, const Progress& progress,
-                       StageTimes& times, const VisitResidual& visit);
+void for_each_residual(const OneStokes& samples, const Transform& transform, const Image& model, const Context& context,
+                       const VisitResidual& visit);
 
 /// The same of a model whose prediction is made once the pass has begun.
 using MakePrediction = std::function<std::unique_ptr<Prediction>()>;
-void for_each_residual(const OneStokes& samples, const MakePrediction& predict, const Progress& progress, StageTimes& times,
+void for_each_residual(const OneStokes& samples, const MakePrediction& predict, const Context& context,
                        const VisitResidual& visit);
 
 /// The dirty image of data − model: the model is predicted at every usable sample and
 /// subtracted. Stages timed: "read", "fft", "degrid", "grid".
-Image make_residual_image(const OneStokes& samples, const Transform& transform, const Image& model, const Progress& progress,
-                          StageTimes& times);
+Image make_residual_image(const OneStokes& samples, const Transform& transform, const Image& model, const Context& context);
 
 }  // namespace misfit::imager

@@ -15,8 +15,8 @@ class VisibilityPass {
  public:
   using Blocks = std::vector<std::shared_ptr<const VisibilityBlock>>;
 
-  VisibilityPass(const VisibilitySource& source, const Progress& progress, StageTimes& times)
-      : source_(source), stream_(source.open()), progress_(progress), times_(times) {}
+  VisibilityPass(const VisibilitySource& source, const Context& context)
+      : source_(source), stream_(source.open()), context_(context) {}
 
   /// Calls visit(block) for every block.
   template <typename Visit>
@@ -32,7 +32,7 @@ class VisibilityPass {
     const auto finish = [&] {
       visit(group);
       done += gathered;
-      progress_(done, source_.samples());
+      context_.tell(done, source_.samples());
       group.clear();
       gathered = 0;
     };
@@ -47,18 +47,18 @@ class VisibilityPass {
 
  private:
   std::shared_ptr<const VisibilityBlock> next() {
-    const StageTimer timer(times_, "read");
+    const StageTimer timer(context_.times, "read");
     return stream_->next();
   }
 
   const VisibilitySource& source_;
   std::unique_ptr<BlockStream> stream_;
-  const Progress& progress_;
-  StageTimes& times_;
+  const Context& context_;
 };
 
-inline std::unique_ptr<AdjointSum> begin_adjoint(const Transform& transform, const AdjointOptions& options, StageTimes& times) {
-  const StageTimer timer(times, "grid");
+inline std::unique_ptr<AdjointSum> begin_adjoint(const Transform& transform, const AdjointOptions& options,
+                                                 const Context& context) {
+  const StageTimer timer(context.times, "grid");
   return transform.adjoint(options);
 }
 
@@ -69,16 +69,16 @@ inline void add_up(Image& image, const Ranks& ranks) {
 }
 
 /// Of the samples of all ranks; images at rank 0 alone. Also frees the grid.
-inline AdjointResult finish_adjoint(std::unique_ptr<AdjointSum> sum, const Ranks& ranks, StageTimes& times) {
+inline AdjointResult finish_adjoint(std::unique_ptr<AdjointSum> sum, const Ranks& ranks, const Context& context) {
   AdjointResult result;
   {
-    const StageTimer timer(times, "grid");
+    const StageTimer timer(context.times, "grid");
     result = sum->finish();
     sum.reset();
   }
-  times.move("grid", "fft", result.fft_s);
+  context.move_seconds("grid", "fft", result.fft_s);
   if (ranks.alone()) return result;
-  const StageTimer timer(times, "exchange");
+  const StageTimer timer(context.times, "exchange");
   for (Image& image : result.images) add_up(image, ranks);
   add_up(result.psf, ranks);
   for (SampleSums& sums : result.sums) sums.add_up(ranks);

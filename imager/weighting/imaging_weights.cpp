@@ -128,25 +128,24 @@ void ImagingWeights::weigh(VisibilityBlock& block, WeightSums& sums) const {
 }
 
 std::shared_ptr<const ImagingWeights> make_imaging_weights(const VisibilitySource& source, const WeightingOptions& options,
-                                                           const ImageGeometry& geometry, int threads, const Progress& progress,
-                                                           StageTimes& times) {
+                                                           const ImageGeometry& geometry, const Context& context) {
   if (options.none()) return nullptr;
   if (!options.needs_density()) return std::make_shared<ImagingWeights>(geometry, *options.taper);
-  UvDensity density(geometry, threads);
+  UvDensity density(geometry, context.threads);
   std::uint64_t done = 0;
   const auto stream = source.open();
   const auto next = [&] {
-    const StageTimer timer(times, "read");
+    const StageTimer timer(context.times, "read");
     return stream->next();
   };
   while (const auto block = next()) {
-    const StageTimer timer(times, "weights");
+    const StageTimer timer(context.times, "weights");
     density.add(*block);
     done += block->samples();
-    progress(done, source.samples());
+    context.tell(done, source.samples());
   }
   source.end_pass();
-  const StageTimer timer(times, "weights");
+  const StageTimer timer(context.times, "weights");
   density.add_up(source.ranks());
   return std::make_shared<ImagingWeights>(density, options);
 }

@@ -97,7 +97,6 @@ class ImagingWeights {
 /// The weights that `options` ask for, after a pass over `source` where they follow from its density; null where they are the
 /// data's. Stages timed: "read", "weights".
 std::shared_ptr<const ImagingWeights> make_imaging_weights(const VisibilitySource& source, const WeightingOptions& options,
-                                                           const ImageGeometry& geometry, int threads, const Progress& progress,
-                                                           StageTimes& times);
+                                                           const ImageGeometry& geometry, const Context& context);
 
 }  // namespace misfit::imager

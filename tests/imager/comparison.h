@@ -50,6 +50,4 @@ inline StoredVisibilities stored(const std::vector<VisibilityBlock>& blocks) {
   return source;
 }
 
-inline void ignore_progress(std::uint64_t, std::uint64_t) {}
-
 }  // namespace misfit::imager::testing

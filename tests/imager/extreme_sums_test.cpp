@@ -33,14 +33,11 @@ GriddingRequest request(bool wide) {
 /// Images of these blocks, one after the other.
 DirtyImages images_of(const std::vector<VisibilityBlock>& blocks, const GriddingPlan& plan) {
   BOOST_TEST_REQUIRE((plan.options.precision == Precision::single_precision));
-  StageTimes times;
-  return make_dirty_images(stored(blocks), *make_transform(plan.options), {.with_psf = true}, ignore_progress, times);
+  return make_dirty_images(stored(blocks), *make_transform(plan.options), {.with_psf = true}, {});
 }
 
 DirtyImages direct_images_of(const std::vector<VisibilityBlock>& blocks, const GriddingPlan& plan) {
-  StageTimes times;
-  return make_dirty_images(stored(blocks), DirectTransform(plan.options.geometry, 2), {.with_psf = true}, ignore_progress,
-                           times);
+  return make_dirty_images(stored(blocks), DirectTransform(plan.options.geometry, 2), {.with_psf = true}, {});
 }
 
 void check(const std::vector<VisibilityBlock>& blocks, const std::vector<VisibilityBlock>& reference, bool wide) {

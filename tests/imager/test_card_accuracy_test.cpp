@@ -90,9 +90,7 @@ const auto accuracies = bdata::make({1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7});
 }  // namespace
 
 BOOST_DATA_TEST_CASE(the_whole_image_and_psf_keep_the_accuracy_borders_included, accuracies, accuracy) {
-  StageTimes times;
-  const DirtyImages is =
-      make_dirty_images(stored({scene().block}), *planned(accuracy), {.with_psf = true}, ignore_progress, times);
+  const DirtyImages is = make_dirty_images(stored({scene().block}), *planned(accuracy), {.with_psf = true}, {});
   BOOST_TEST(relative_error(is.dirty[0].pixel, scene().dirty.pixel) <= accuracy);
   BOOST_TEST(relative_error(is.psf.pixel, scene().psf.pixel) <= accuracy);
   BOOST_TEST(std::abs(is.psf.at(512, 512) - 1) <= std::max(accuracy, 1e-5));
@@ -106,8 +104,7 @@ BOOST_DATA_TEST_CASE(predicted_visibilities_keep_the_accuracy, accuracies, accur
 }
 
 BOOST_AUTO_TEST_CASE(sources_lie_where_the_card_has_them) {
-  StageTimes times;
-  const Image dirty = make_dirty_images(stored({scene().block}), *planned(1e-6), {}, ignore_progress, times).dirty[0];
+  const Image dirty = make_dirty_images(stored({scene().block}), *planned(1e-6), AdjointOptions{}, {}).dirty[0];
   for (const CardSource& s : card) {
     // The beam is 9 cells wide, and the others' sidelobes can move a peak by a third of it.
     Image around(13, 13);

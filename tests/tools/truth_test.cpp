@@ -38,10 +38,7 @@ SceneTruth truth_of(const imager::VisibilitySource& source, int pixels) {
 }
 
 imager::Image direct_image(const imager::VisibilitySource& source) {
-  imager::StageTimes times;
-  return imager::make_dirty_images(
-             source, imager::DirectTransform(geometry(), 1), {}, [](auto, auto) {}, times)
-      .dirty[0];
+  return imager::make_dirty_images(source, imager::DirectTransform(geometry(), 1), imager::AdjointOptions{}, {}).dirty[0];
 }
 
 /// Errors that grow to its edges, most of them small.

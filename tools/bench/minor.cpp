@@ -44,7 +44,8 @@ int main(int argc, char** argv) {
   try {
     const misfit::imager::Image image = misfit::imager::read_fits(dirty).image;
     const auto start = Clock::now();
-    const auto minor = misfit::imager::make_deconvolver(choice, misfit::imager::read_fits(psf).image);
+    const misfit::imager::Image beam = misfit::imager::read_fits(psf).image;
+    const auto minor = misfit::imager::make_deconvolver(choice, {&beam});
     std::printf("%d × %d pixels, %s, %d threads, made ready in %.3f s\n", image.width, image.height, choice.name.c_str(),
                 choice.threads, seconds_since(start));
     for (const int most : components) measure(*minor, image, most);

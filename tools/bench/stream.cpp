@@ -146,8 +146,7 @@ double run(double samples, const Options& o) {
   const imager::StreamedVisibilities streamed(source, memory.streaming);
   imager::StageTimes times;
   const imager::Stopwatch watch;
-  const imager::AccurateImages made = imager::make_accurate_images(
-      streamed, plan, [](std::uint64_t, std::uint64_t) {}, times);
+  const imager::AccurateImages made = imager::make_accurate_images(streamed, plan, {.times = &times});
   const double seconds = watch.seconds(), a_sample_ns = 1e9 * seconds / static_cast<double>(source.samples());
   std::printf("| %.3g | %.2f | %.2f | %.2f | %d | %.2f | %.2f | %.2f | %s |\n", static_cast<double>(source.samples()), seconds,
               times.of("grid"), times.of("fft"), plan.choice.best.work.gathers, a_sample_ns, memory.peak.total() / tools::gib,

@@ -25,24 +25,6 @@ double mean_width_rad(const imager::Beam& beam) {
   return std::sqrt(beam.major_rad * beam.minor_rad);
 }
 
-/// A minor cycle of one term or of several.
-struct Minor {
-  std::unique_ptr<imager::MinorCycle> of_one_term;
-  std::unique_ptr<imager::MultiTerm> of_several;
-
-  const std::vector<double>& scale_pixels() const {
-    return of_several ? of_several->scale_pixels() : of_one_term->scale_pixels();
-  }
-};
-
-Minor make_minor(const CleanScene& scene, const imager::DeconvolverChoice& choice) {
-  if (scene.band == nullptr) return {imager::make_deconvolver(choice, scene.psf), nullptr};
-  imager::MultiscaleOptions options;  // points
-  if (choice.name == "multiscale") options = {choice.scale_pixels, choice.small_scale_bias};
-  options.threads = choice.threads;
-  return {nullptr, std::make_unique<imager::MultiTerm>(scene.band->psf, options)};
-}
-
 }  // namespace
 
 CleanStage::CleanStage(const ImageOptions& options, imager::ImageHeader image, int threads)
@@ -148,53 +130,49 @@ imager::CleanState CleanStage::begin(std::size_t stokes, const CleanStateOwner& 
 
 std::uint64_t CleanStage::checksum_of(const CleanScene& scene) const {
   const imager::Image* const start = start_model_.empty() ? nullptr : &start_model_[scene.samples.index];
-  std::vector<const imager::Image*> images{&scene.dirty, &scene.psf, mask(scene.samples.index), start};
-  if (scene.band != nullptr) {
-    for (const imager::Image& dirty : scene.band->further_dirty) images.push_back(&dirty);
-    images.insert(images.end(), scene.band->psf.begin() + 1, scene.band->psf.end());
-  }
+  std::vector<const imager::Image*> images{scene.dirty.front(), scene.psf.front(), mask(scene.samples.index), start};
+  images.insert(images.end(), scene.dirty.begin() + 1, scene.dirty.end());
+  images.insert(images.end(), scene.psf.begin() + 1, scene.psf.end());
   return checksum(images);
 }
 
 imager::CleanResult CleanStage::run(const CleanScene& scene, const nlohmann::json& option_values,
-                                    const imager::Progress& progress, const imager::CycleProgress& cycle_progress,
-                                    imager::StageTimes& times) {
+                                    const imager::CycleProgress& cycle_progress, const imager::Context& context) {
   imager::CleanOptions options = clean_options(o_, threads_);
   options.stop_requested = interrupted;
   options.mask = mask(scene.samples.index);
-  Minor minor;
+  std::unique_ptr<imager::MinorCycle> minor;
   {
-    const imager::StageTimer timer(times, "minor cycles");
-    minor = make_minor(scene, deconvolver_choice(o_, threads_));
+    const imager::StageTimer timer(context.times, "minor cycles");
+    minor = imager::make_deconvolver(deconvolver_choice(o_, threads_), scene.psf);
   }
   CleanStateOwner owner{MISFIT_VERSION,
                         option_values,
                         0,
                         scene.samples.source.ranks().size(),
-                        {image_.geometry.width, image_.geometry.height, minor.scale_pixels()}};
+                        {image_.geometry.width, image_.geometry.height, minor->scale_pixels()}};
   imager::CleanState state;
   double sidelobe = 0;
   {
-    const imager::StageTimer timer(times, "CLEAN state");
+    const imager::StageTimer timer(context.times, "CLEAN state");
     owner.checksum = checksum_of(scene);
     state = begin(scene.samples.index, owner);
-    sidelobe = imager::largest_sidelobe(scene.psf, scene.main_lobe, image_.geometry.cell_rad, threads_);
+    sidelobe = imager::largest_sidelobe(*scene.psf.front(), scene.main_lobe, image_.geometry.cell_rad, threads_);
   }
-  const imager::CleanInput input{scene.samples,
-                                 scene.transform,
-                                 scene.dirty,
-                                 scene.psf,
-                                 sidelobe,
-                                 std::max(o_.accuracy, scene.expected_error),
-                                 mean_width_rad(scene.main_lobe) / image_.geometry.cell_rad};
+  const imager::CleanInput input{.samples = scene.samples,
+                                 .transform = scene.transform,
+                                 .expansion = scene.expansion,
+                                 .dirty = scene.dirty,
+                                 .psf = scene.psf,
+                                 .max_sidelobe = sidelobe,
+                                 .accuracy = std::max(o_.accuracy, scene.expected_error),
+                                 .beam_fwhm_pixels = mean_width_rad(scene.main_lobe) / image_.geometry.cell_rad};
   const auto save = [&](const imager::CleanState& now) {
-    const imager::StageTimer timer(times, "CLEAN state");
+    const imager::StageTimer timer(context.times, "CLEAN state");
     write_clean_state(state_path(scene.samples.index), now, owner);
     cycle_progress(now);
   };
-  return scene.band == nullptr
-             ? imager::clean(input, *minor.of_one_term, options, std::move(state), progress, save, times)
-             : imager::clean(input, *scene.band, *minor.of_several, options, std::move(state), progress, save, times);
+  return imager::clean(input, *minor, options, std::move(state), save, context);
 }
 
 }  // namespace misfit::tools

@@ -8,7 +8,6 @@
 #include "imager/beams/beam.h"
 #include "imager/clean/clean.h"
 #include "imager/clean/deconvolver.h"
-#include "imager/clean/wide_band_clean.h"
 #include "imager/files/fits_image.h"
 #include "imager/files/image_header.h"
 #include "tools/formats/clean_state_file.h"
@@ -21,11 +20,11 @@ namespace misfit::tools {
 struct CleanScene {
   imager::OneStokes samples;
   const imager::Transform& transform;
-  const imager::Image& dirty;
-  const imager::Image& psf;
-  imager::Beam main_lobe;                  ///< of the PSF
-  double expected_error = 0;               ///< of the dirty image
-  const imager::WideBand* band = nullptr;  ///< the Taylor terms of all that; null where there is one
+  imager::TaylorExpansion expansion;
+  std::vector<const imager::Image*> dirty;  ///< [term]
+  std::vector<const imager::Image*> psf;    ///< [k], see CleanInput
+  imager::Beam main_lobe;                   ///< of the PSF
+  double expected_error = 0;                ///< of the dirty image
 };
 
 /// CLEAN as `misfit image` runs it, one Stokes parameter after the other, with the files that go into it: mask, start model,
@@ -50,8 +49,8 @@ class CleanStage {
   std::vector<std::string> warnings() const;
 
   /// `option_values`: those that a saved state belongs to. Throws what imager::clean and read_clean_state do.
-  imager::CleanResult run(const CleanScene& scene, const nlohmann::json& option_values, const imager::Progress& progress,
-                          const imager::CycleProgress& cycle_progress, imager::StageTimes& times);
+  imager::CleanResult run(const CleanScene& scene, const nlohmann::json& option_values,
+                          const imager::CycleProgress& cycle_progress, const imager::Context& context);
 
  private:
   std::string state_path(std::size_t stokes) const;

@@ -40,7 +40,7 @@ void CubeVisibilities::gather(const imager::PlaneRange& batch, ProgressLine& pro
   progress.begin("planes " + numbers_of(batch));
   if (const auto part = part_of(batch)) {
     const auto update = [&](std::uint64_t done, std::uint64_t total) { progress.update(done, total); };
-    gathered_ = imager::gather_planes(*part, sampling_, batch, threads_, update, times);
+    gathered_ = imager::gather_planes(*part, sampling_, batch, {threads_, &times, update});
   } else {
     gathered_.emplace();
   }

@@ -236,7 +236,7 @@ class ImageRun {
                             : cleaned.empty() ? imager::robust_noise(made.images.dirty.front(), threads_)
                                               : cleaned.front().report.final_state().rms_jy;
     outside_ = check_outside(*source_, made.plan, *plan_.wider, made.images, {noise_jy, !weighting_options(o_).none()},
-                             scene_->updates(), own);
+                             {threads_, &own, scene_->context().progress});
     progress_.end();
     if (!ranks_.first()) return;
     report_.outside = &outside_;
@@ -288,7 +288,7 @@ class ImageRun {
                            json_text(report_.options),
                            [this](const std::string& sentence) { progress_.say(sentence); },
                            taylor_ ? taylor_->expansion() : imager::TaylorExpansion()};
-    tools::save_model(o_, model, ranks_, scene_->updates());
+    tools::save_model(o_, model, ranks_, scene_->context().progress);
     progress_.end();
   }
 

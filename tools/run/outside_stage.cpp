@@ -98,13 +98,13 @@ imager::Decision search_decision(const imager::WideField& field, double seconds)
 
 OutsideReport check_outside(const imager::VisibilitySource& source, const imager::GriddingPlan& plan,
                             const imager::GriddingPlan& wider, const imager::DirtyImages& images, const PixelNoise& pixels,
-                            const imager::Progress& progress, imager::StageTimes& times) {
+                            const imager::Context& context) {
   const imager::ImageGeometry &image = plan.request.geometry, &field = wider.request.geometry;
   OutsideReport report;
   report.field = field;
   report.searched = imager::can_be_imaged(field, source);
   if (!report.searched) return report;
-  const imager::WideSearch search = imager::search_wide_field(source, wider, progress, times);
+  const imager::WideSearch search = imager::search_wide_field(source, wider, context);
   if (!source.ranks().first()) return report;
   report.least_jy = std::max(search.least_jy, search.sidelobe_jy);
   const double scatter_jy = search.unexplained.image_noise_jy(images.sums.front().weight);

@@ -45,7 +45,7 @@ struct PixelNoise {
 /// Stages timed: those of imaging and CLEAN.
 OutsideReport check_outside(const imager::VisibilitySource& source, const imager::GriddingPlan& plan,
                             const imager::GriddingPlan& wider, const imager::DirtyImages& images, const PixelNoise& pixels,
-                            const imager::Progress& progress, imager::StageTimes& times);
+                            const imager::Context& context);
 
 /// How a field is searched, why, and how long that is expected to take.
 imager::Decision search_decision(const imager::WideField& field, double seconds);

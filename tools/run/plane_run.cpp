@@ -12,11 +12,12 @@
 
 namespace misfit::tools {
 
-imager::Progress PlaneScene::updates() const {
-  return [this](std::uint64_t done, std::uint64_t total) {
+imager::Context PlaneScene::context() const {
+  const auto update = [this](std::uint64_t done, std::uint64_t total) {
     if (given_up && given_up()) throw Interrupted();
     progress.update(done, total);
   };
+  return {threads, &times, update};
 }
 
 PlaneRun::PlaneRun(const PlaneScene& scene, imager::StreamedVisibilities& source, std::string name)
@@ -29,7 +30,7 @@ void PlaneRun::weigh() {
   const imager::WeightingOptions options = weighting_options(scene_.options);
   if (options.none()) return;
   scene_.progress.begin("weights" + name_);
-  weigh(imager::make_imaging_weights(source_, options, scene_.geometry, scene_.threads, scene_.updates(), scene_.times));
+  weigh(imager::make_imaging_weights(source_, options, scene_.geometry, scene_.context()));
   scene_.progress.end();
 }
 
@@ -41,7 +42,7 @@ void PlaneRun::weigh(std::shared_ptr<const imager::ImagingWeights> weights) {
 
 void PlaneRun::make_dirty(imager::GriddingPlan plan, std::shared_ptr<const imager::PlannedTransform> transform) {
   scene_.progress.begin("dirty image and PSF" + name_);
-  made_ = imager::make_accurate_images(source_, std::move(plan), scene_.updates(), scene_.times, std::move(transform));
+  made_ = imager::make_accurate_images(source_, std::move(plan), scene_.context(), std::move(transform));
   scene_.progress.end();
   report_.sums = made_.images.sums.front();
   predict_noise();
@@ -60,7 +61,7 @@ void PlaneRun::make_dirty(imager::GriddingPlan plan, std::shared_ptr<const image
 void PlaneRun::make_terms(TaylorStage& taylor) {
   taylor_ = &taylor;
   scene_.progress.begin("Taylor terms" + name_);
-  taylor.make_images(source_, made_, scene_.updates(), scene_.times);
+  taylor.make_images(source_, made_, scene_.context());
   scene_.progress.end();
 }
 
@@ -79,9 +80,8 @@ void PlaneRun::predict_noise() {
 void PlaneRun::verify() {
   const imager::StageTimer timer(scene_.times, "verify");
   scene_.progress.begin("verify" + name_);
-  const imager::MeasuredError measured =
-      imager::measure_error(source_, made_.transform->images(), scene_.geometry, made_.images, scene_.options.verify,
-                            scene_.threads, scene_.updates());
+  const imager::MeasuredError measured = imager::measure_error(source_, made_.transform->images(), scene_.geometry,
+                                                               made_.images, scene_.options.verify, scene_.context());
   scene_.progress.end();
   for (std::size_t s = 0; s < scene_.stokes.size(); ++s) report_.stokes[s].measured = measured.image[s];
   report_.measured_predict_rms = measured.predict_rms;
@@ -111,28 +111,26 @@ void PlaneRun::clean(CleanStage& stage, const nlohmann::json& option_values,
 
 void PlaneRun::follow_clean() {
   scene_.progress.begin("CLEAN" + name_, true);  // rank 0 decides when it stops
-  for (std::size_t s = 0; s < scene_.stokes.size(); ++s) {
-    const imager::OneStokes samples(source_, s);
-    const imager::Transform& transform = *made_.transform;
-    if (taylor_ != nullptr)
-      imager::follow_clean(samples, transform, taylor_->expansion(), scene_.threads, scene_.updates(), scene_.times);
-    else
-      imager::follow_clean(samples, transform, scene_.threads, scene_.updates(), scene_.times);
-  }
+  const imager::TaylorExpansion expansion = taylor_ == nullptr ? imager::TaylorExpansion{} : taylor_->expansion();
+  for (std::size_t s = 0; s < scene_.stokes.size(); ++s)
+    imager::follow_clean({source_, s}, *made_.transform, expansion, scene_.context());
 }
 
 imager::CleanResult PlaneRun::clean(CleanStage& stage, std::size_t stokes, const nlohmann::json& option_values,
                                     const imager::CycleProgress& cycle) {
-  std::optional<imager::WideBand> band;
-  if (taylor_ != nullptr) band.emplace(taylor_->band());
-  imager::CleanResult result = stage.run({{source_, stokes},
-                                          *made_.transform,
-                                          made_.images.dirty[stokes],
-                                          made_.images.psf,
-                                          *report_.beams->main_lobe,
-                                          report_.stokes[stokes].theory->expected_rms,
-                                          band ? &*band : nullptr},
-                                         option_values, scene_.updates(), cycle, scene_.times);
+  CleanScene clean{.samples = {source_, stokes},
+                   .transform = *made_.transform,
+                   .expansion = {},
+                   .dirty = {&made_.images.dirty[stokes]},
+                   .psf = {&made_.images.psf},
+                   .main_lobe = *report_.beams->main_lobe,
+                   .expected_error = report_.stokes[stokes].theory->expected_rms};
+  if (taylor_ != nullptr) {
+    clean.expansion = taylor_->expansion();
+    for (const imager::Image& dirty : taylor_->images().dirty) clean.dirty.push_back(&dirty);
+    clean.psf = taylor_->psf();
+  }
+  imager::CleanResult result = stage.run(clean, option_values, cycle, scene_.context());
   made_.images.dirty[stokes] = {};
   if (const imager::Image* const mask = stage.mask(stokes); mask != nullptr) result.mask = *mask;
   return result;

@@ -29,7 +29,7 @@ struct PlaneScene {
   std::function<void(const std::string& sentence)> warn;
   std::function<bool()> given_up = {};  ///< whether the plane is of no use any more: its work then ends in Interrupted
 
-  imager::Progress updates() const;
+  imager::Context context() const;
 };
 
 /// What is done for one plane of frequency, of all Stokes parameters: weights, dirty images and PSF, their errors, beam, CLEAN.

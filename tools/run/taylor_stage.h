@@ -4,10 +4,10 @@
 #include <vector>
 
 #include "imager/beams/beam.h"
-#include "imager/clean/wide_band_clean.h"
 #include "imager/data/geometry.h"
 #include "imager/plan/accurate_imaging.h"
 #include "imager/taylor/spectral_index.h"
+#include "imager/taylor/taylor_basis.h"
 #include "imager/taylor/taylor_imaging.h"
 
 namespace misfit::tools {
@@ -30,9 +30,8 @@ class TaylorStage {
   /// Besides the dirty image and the PSF that are made: a pass over the same samples, by the same transforms. The promise of an
   /// accuracy holds for those alone: terms of odd order are weak against their data. Throws std::runtime_error where the
   /// samples' frequencies do not tell the terms apart. `made` stays where it is until CLEAN is over.
-  void make_images(const imager::VisibilitySource& source, const imager::AccurateImages& made, const imager::Progress& progress,
-                   imager::StageTimes& times);
-  imager::WideBand band() const { return {expansion_, images_.dirty, psf_}; }
+  void make_images(const imager::VisibilitySource& source, const imager::AccurateImages& made, const imager::Context& context);
+  const std::vector<const imager::Image*>& psf() const { return psf_; }  ///< [k]
   imager::TaylorImages& images() { return images_; }
 
   /// H⁻¹ R, Jy/beam [term], of the dirty images.

@@ -68,9 +68,7 @@ Scene::Scene(const ImageOptions& options, bool quick, const imager::Progress& pr
 }
 
 void Scene::weigh() {
-  imager::StageTimes none;
-  const auto weights = imager::make_imaging_weights(
-      visibilities_, weighting_options(options_), geometry_, threads_, [](auto, auto) {}, none);
+  const auto weights = imager::make_imaging_weights(visibilities_, weighting_options(options_), geometry_, {threads_});
   if (weights) weights->put_on(visibilities_, threads_);
   const auto stream = visibilities_.open();
   while (const auto block = stream->next()) {
@@ -86,17 +84,14 @@ Scene::Plans Scene::plans_of(const ScenePoint& point) const {
   request.max_abs_w = reach_.max_abs_w;
   Plans plans{imager::plan_gridding(request)};
   if (point.accuracy == 0) return plans;
-  imager::StageTimes none;
-  imager::AccurateImages made = imager::make_accurate_images(
-      visibilities_, plans.front(), [](auto, auto) {}, none);
+  imager::AccurateImages made = imager::make_accurate_images(visibilities_, plans.front(), {});
   if (made.plan.request.accuracy != request.accuracy) plans.push_back(std::move(made.plan));
   return plans;
 }
 
 imager::DirtyImages Scene::image(const imager::Transform& transform, SceneSeconds& seconds) const {
   imager::StageTimes times;
-  imager::DirtyImages made = imager::make_dirty_images(
-      visibilities_, transform, {}, [](auto, auto) {}, times);
+  imager::DirtyImages made = imager::make_dirty_images(visibilities_, transform, imager::AdjointOptions{}, {.times = &times});
   for (const auto& [stage, spent] : times.stages()) (stage == "fft" ? seconds.fft : seconds.grid) += spent;
   return made;
 }

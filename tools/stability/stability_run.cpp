@@ -19,8 +19,6 @@
 namespace misfit::tools {
 namespace {
 
-void ignore_progress(std::uint64_t, std::uint64_t) {}
-
 imager::UvwReach reach_of(const imager::VisibilityBlock& block) {
   imager::UvwReach reach;
   const double highest = *std::max_element(block.frequency_hz.begin(), block.frequency_hz.end());
@@ -141,13 +139,15 @@ imager::CleanReport clean(const StabilityCase& asked, const imager::VisibilitySo
   options.threshold_jy = asked.threshold_jy;
   options.max_major_cycles = asked.max_major_cycles;
   options.threads = imager::available_threads();
-  const auto minor = imager::make_deconvolver({"hogbom", {0}, 0, options.threads}, made.images.psf);
+  const auto minor = imager::make_deconvolver({"hogbom", {0}, 0, options.threads}, {&made.images.psf});
   const imager::ComponentModel empty(asked.geometry.width, asked.geometry.height, minor->scale_pixels());
-  imager::StageTimes times;
-  return imager::clean(
-             {source, *made.transform, made.images.dirty.front(), made.images.psf,
-              max_sidelobe(made.images.psf, asked.geometry.cell_rad), accuracy},
-             *minor, options, imager::first_state(empty), ignore_progress, [](const imager::CleanState&) {}, times)
+  return imager::clean({.samples = source,
+                        .transform = *made.transform,
+                        .dirty = {&made.images.dirty.front()},
+                        .psf = {&made.images.psf},
+                        .max_sidelobe = max_sidelobe(made.images.psf, asked.geometry.cell_rad),
+                        .accuracy = accuracy},
+                       *minor, options, imager::first_state(empty), [](const imager::CleanState&) {}, {})
       .report;
 }
 
@@ -158,11 +158,10 @@ StabilityOutcome run_with(PlanShelf& shelf, const StabilityCase& asked, double a
   outcome.max_iterations = asked.max_iterations;
   imager::StoredVisibilities source;
   for (std::uint64_t i = 0; i < asked.repeats; ++i) source.append(asked.block);
-  imager::StageTimes times;
   PlanOrRefusal planned = shelf.plan(request_of(asked, accuracy));
   outcome.refusal = planned.refusal;
   planned.plan.options.geometry = planned.plan.request.geometry = asked.geometry;
-  const imager::AccurateImages made = imager::make_accurate_images(source, std::move(planned.plan), ignore_progress, times);
+  const imager::AccurateImages made = imager::make_accurate_images(source, std::move(planned.plan), {});
   outcome.single = made.plan.options.precision == imager::Precision::single_precision;
   outcome.promise_kept = made.promise_kept;
   imager::WSpread spread;

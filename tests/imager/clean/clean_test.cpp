@@ -52,8 +52,7 @@ Scene make_scene(const DirectionCosines& centre) {
   Scene s;
   s.source = stored({block});
   s.transform = make_coplanar_transform(plan_gridding(request).options);
-  StageTimes times;
-  s.images = make_dirty_images(s.source, *s.transform, {.with_psf = true}, ignore_progress, times);
+  s.images = make_dirty_images(s.source, *s.transform, {.with_psf = true}, {});
   Image middle(g.width, g.height);
   middle.at(g.centre_row(), g.centre_column()) = 1;
   const Beam beam = fit_beam(s.images.psf, g.cell_rad);
@@ -69,10 +68,15 @@ const Scene& scene() {
 
 CleanResult cleaned(const Scene& of, const CleanOptions& options, const DirtyImages& images, const CleanState& begin,
                     const CycleProgress& cycle_progress) {
-  StageTimes times;
   const Hogbom minor(images.psf, options.threads);
-  const CleanInput input{of.source, *of.transform, images.dirty[0], images.psf, of.max_sidelobe, 1e-5, of.beam_fwhm_pixels};
-  return imager::clean(input, minor, options, begin, ignore_progress, cycle_progress, times);
+  const CleanInput input{.samples = of.source,
+                         .transform = *of.transform,
+                         .dirty = {&images.dirty[0]},
+                         .psf = {&images.psf},
+                         .max_sidelobe = of.max_sidelobe,
+                         .accuracy = 1e-5,
+                         .beam_fwhm_pixels = of.beam_fwhm_pixels};
+  return imager::clean(input, minor, options, begin, cycle_progress, {});
 }
 
 CleanResult cleaned(const Scene& of, const CleanOptions& options, const DirtyImages& images) {
@@ -103,8 +107,7 @@ double total(const Image& image) {
 
 /// The residual's own definition: the dirty image of data − model.
 void check_consistent(const CleanResult& result) {
-  StageTimes times;
-  const Image residual = make_residual_image(scene().source, *scene().transform, result.model, ignore_progress, times);
+  const Image residual = make_residual_image(scene().source, *scene().transform, result.model, {});
   BOOST_TEST((residual.pixel == result.residual.pixel));
   BOOST_TEST(result.report.final_state().peak_residual_jy == peak_magnitude(result.residual));
   BOOST_TEST(result.report.final_state().model_flux_jy == total(result.model));

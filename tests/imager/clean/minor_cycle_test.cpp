@@ -60,7 +60,7 @@ struct Cleaned {
 
 Cleaned cleaned(const std::string& name, const Image& residual, const MinorCycleOptions& options, int threads = 2) {
   const Image beam = psf();
-  const auto minor = make_deconvolver(choice(name, threads), beam);
+  const auto minor = make_deconvolver(choice(name, threads), {&beam});
   Cleaned result{minor->clean(residual, options), {}, residual};
   ComponentModel model(width, height, minor->scale_pixels());
   model.add(result.report.components);
@@ -143,7 +143,7 @@ BOOST_DATA_TEST_CASE(the_user_can_stop_it_at_once, bdata::make(deconvolver_names
 
 BOOST_DATA_TEST_CASE(images_of_other_sizes_than_the_psf_are_refused, bdata::make(deconvolver_names()), name) {
   const Image beam = psf(), other(width, height - 1);
-  const auto minor = make_deconvolver(choice(name), beam);
+  const auto minor = make_deconvolver(choice(name), {&beam});
   BOOST_CHECK_THROW(minor->clean(other, deep()), std::invalid_argument);
   MinorCycleOptions options = deep();
   options.mask = &other;
@@ -158,14 +158,15 @@ BOOST_AUTO_TEST_CASE(a_single_pixel_is_cleaned) {
     MinorCycleOptions options = deep();
     options.max_iterations = 3;
     options.gain = 0.25;
-    const auto minor = make_deconvolver({.name = name}, beam);
+    const auto minor = make_deconvolver({.name = name}, {&beam});
     // A power of two and its products with 3/4 are exact, but a convolution by FFT rounds.
     BOOST_TEST(std::abs(minor->clean(residual, options).peak_jy - 2 * 0.75 * 0.75 * 0.75) < 1e-6);
   }
 }
 
 BOOST_AUTO_TEST_CASE(a_deconvolver_that_is_not_known_is_refused) {
-  BOOST_CHECK_THROW(make_deconvolver(choice("maxent"), psf()), std::invalid_argument);
+  const Image beam = psf();
+  BOOST_CHECK_THROW(make_deconvolver(choice("maxent"), {&beam}), std::invalid_argument);
 }
 
 BOOST_AUTO_TEST_SUITE_END()

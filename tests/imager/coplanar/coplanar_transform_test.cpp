@@ -326,7 +326,7 @@ BOOST_AUTO_TEST_CASE(replaced_visibilities_are_gridded_like_the_blocks_own) {
   const VisibilityBlock block = random_samples(50, 2, cell_rad, 15);
   const auto transform = make_coplanar_transform(o);
   const auto sum = transform->adjoint({});
-  sum->add(block, {block.visibility.begin(), block.visibility.end()});
+  sum->add(block, std::vector<std::complex<double>>(block.visibility.begin(), block.visibility.end()));
   const AdjointResult replaced = sum->finish();
   BOOST_TEST((replaced.images[0].pixel == adjoint_of(*transform, block).images[0].pixel));
   BOOST_TEST(replaced.psf.pixel.empty());

@@ -110,9 +110,7 @@ std::vector<std::shared_ptr<const VisibilityBlock>> blocks_of(PlaneGatherer& gat
 }
 
 GatheredPlanes gathered(const VisibilitySource& source, const CubeSampling& sampling, const PlaneRange& range, int threads) {
-  StageTimes times;
-  return gather_planes(
-      source, sampling, range, threads, [](auto, auto) {}, times);
+  return gather_planes(source, sampling, range, {threads});
 }
 
 }  // namespace

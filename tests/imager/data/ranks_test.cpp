@@ -8,7 +8,7 @@
 #include "imager/clean/clean.h"
 #include "imager/clean/hogbom.h"
 #include "imager/clean/shared_model.h"
-#include "imager/clean/wide_band_clean.h"
+#include "imager/clean/multi_term.h"
 #include "imager/direct/verify.h"
 #include "imager/outside/wide_search.h"
 #include "imager/plan/accurate_imaging.h"
@@ -91,8 +91,7 @@ BOOST_DATA_TEST_CASE(images_and_sums_are_those_of_all_samples, bdata::make({0.0,
   const PlannedTransform transform(plan_of(geometry, accuracy, max_w));
   // Grids of 1e-4 are single.
   check_alike(blocks(max_w), accuracy < 1e-7 ? reordered : 1e-6, [&](const VisibilitySource& source) {
-    StageTimes times;
-    const DirtyImages made = make_dirty_images(source, transform, {.with_psf = true}, ignore_progress, times);
+    const DirtyImages made = make_dirty_images(source, transform, {.with_psf = true}, {});
     const SampleSums& sums = made.sums.front();
     Values values = made.dirty.front().pixel;
     append(values, made.psf.pixel);
@@ -107,10 +106,8 @@ BOOST_AUTO_TEST_CASE(every_rank_is_told_the_same_of_images_that_it_has_not) {
   const PlannedTransform transform(plan_of(geometry, 1e-6));
   std::vector<double> rms(4), weight(4);
   ThreadRanks(4).run([&](const Ranks& ranks) {
-    StageTimes times;
     const auto at = static_cast<std::size_t>(ranks.rank());
-    const DirtyImages made =
-        make_dirty_images(RankShare(blocks(), ranks), transform, {.with_psf = true}, ignore_progress, times);
+    const DirtyImages made = make_dirty_images(RankShare(blocks(), ranks), transform, {.with_psf = true}, {});
     rms[at] = made.dirty_statistics.front().root_mean_square();
     weight[at] = made.sums.front().weight;
   });
@@ -121,10 +118,8 @@ BOOST_AUTO_TEST_CASE(every_rank_is_told_the_same_of_images_that_it_has_not) {
 BOOST_DATA_TEST_CASE(residuals_are_those_of_all_samples, bdata::make({0.0, 3000.0}), max_w) {
   const PlannedTransform transform(plan_of(geometry, 1e-9, max_w));
   const Image model = random_image(geometry.width, geometry.height, 3);
-  check_alike(blocks(max_w), reordered, [&](const VisibilitySource& source) {
-    StageTimes times;
-    return make_residual_image(source, transform, model, ignore_progress, times).pixel;
-  });
+  check_alike(blocks(max_w), reordered,
+              [&](const VisibilitySource& source) { return make_residual_image(source, transform, model, {}).pixel; });
 }
 
 BOOST_TEST_DECORATOR(*boost::unit_test::label("sweep"))
@@ -135,10 +130,9 @@ BOOST_DATA_TEST_CASE(weights_follow_from_the_density_of_all_samples, bdata::make
   const WeightingOptions options{.weighting = ways[which], .taper = UvTaper{1e-10, 2e-10, 0.3}};
   // Weights are single: sums in another order may round some of them otherwise.
   check_alike(blocks(), 1e-6, [&, keep = keep](const VisibilitySource& source) {
-    StageTimes times;
     StreamedVisibilities streamed(source, {.keep = keep, .ahead = 1, .uv_reach_lambda = 5e4});
-    streamed.apply(make_imaging_weights(streamed, options, geometry, 2, ignore_progress, times), 2);
-    const DirtyImages made = make_dirty_images(streamed, transform, {.with_psf = true}, ignore_progress, times);
+    streamed.apply(make_imaging_weights(streamed, options, geometry, {2}), 2);
+    const DirtyImages made = make_dirty_images(streamed, transform, {.with_psf = true}, {});
     Values values = made.psf.pixel;
     append(values, {streamed.weight_sums().noise_jy(), static_cast<double>(streamed.counts().used),
                     static_cast<double>(streamed.counts().flagged)});
@@ -156,8 +150,7 @@ BOOST_AUTO_TEST_CASE(a_second_pass_is_made_by_all) {
   for (auto& visibility : opposite.visibility) visibility *= -0.9999F;
   weak = {weak[1], opposite};
   check_alike(weak, 1e-9, [&](const VisibilitySource& source) {
-    StageTimes times;
-    const AccurateImages made = make_accurate_images(source, plan_of(geometry, 1e-6), ignore_progress, times);
+    const AccurateImages made = make_accurate_images(source, plan_of(geometry, 1e-6), {});
     check(made.plan.decisions.back().item == "second pass", "there was a second pass");
     Values values = made.images.dirty.front().pixel;
     append(values, made.images.psf.pixel);
@@ -174,10 +167,9 @@ BOOST_AUTO_TEST_CASE(samples_that_nobody_can_use_are_counted_over_all_ranks) {
   const PlannedTransform transform(plan_of(geometry, 1e-6));
   ThreadRanks three(3);
   BOOST_CHECK_EXCEPTION(three.run([&](const Ranks& ranks) {
-    StageTimes times;
     const RankShare share(flagged, ranks);
     const StreamedVisibilities streamed(share, {});
-    make_dirty_images(streamed, transform, {.with_psf = true}, ignore_progress, times);
+    make_dirty_images(streamed, transform, {.with_psf = true}, {});
   }),
                         NothingUsable, [](const NothingUsable& error) {
                           return std::string(error.what()).find("left of 459: 459 flagged") != std::string::npos;
@@ -189,9 +181,8 @@ BOOST_AUTO_TEST_CASE(measured_errors_are_those_of_all_samples) {
   const PlannedTransform transform(rough);
   // Grids are single: an error of some 1e-4 changes by 1e-7 of the image.
   check_alike(blocks(), 2e-3, [&](const VisibilitySource& source) {
-    StageTimes times;
-    const DirtyImages made = make_dirty_images(source, transform, {.with_psf = true}, ignore_progress, times);
-    const MeasuredError error = measure_error(source, transform, geometry, made, 100, 2, ignore_progress);
+    const DirtyImages made = make_dirty_images(source, transform, {.with_psf = true}, {});
+    const MeasuredError error = measure_error(source, transform, geometry, made, 100, {2});
     // That of other samples, as ranks choose them.
     check(error.predict_rms > 1e-5 && error.predict_rms < 1e-3, "the error of prediction is that of the kernel");
     check(error.image.size() == 1, "every rank knows the error of the image");
@@ -216,20 +207,23 @@ BOOST_DATA_TEST_CASE(clean_finds_the_same_components, bdata::make({0.0, 3000.0})
   }
   const PlannedTransform transform(plan_of(geometry, 1e-9, max_w));
   check_alike(seen, 1e-9, [&](const VisibilitySource& source) {
-    StageTimes times;
-    const DirtyImages made = make_dirty_images(source, transform, {.with_psf = true}, ignore_progress, times);
+    const DirtyImages made = make_dirty_images(source, transform, {.with_psf = true}, {});
     if (!source.ranks().first()) {
-      follow_clean(source, transform, 2, ignore_progress, times);
+      follow_clean(source, transform, {}, {2});
       return Values();
     }
     CleanOptions options;
     options.max_iterations = 300;
     options.max_major_cycles = 4;
-    const CleanInput input{source, transform, made.dirty.front(), made.psf, 0.3, 1e-9};
+    const CleanInput input{.samples = source,
+                           .transform = transform,
+                           .dirty = {&made.dirty.front()},
+                           .psf = {&made.psf},
+                           .max_sidelobe = 0.3,
+                           .accuracy = 1e-9};
     const Hogbom minor(made.psf, 2);
     const CleanResult result = misfit::imager::clean(
-        input, minor, options, first_state(ComponentModel(geometry.width, geometry.height, {0})), ignore_progress,
-        [](const CleanState&) {}, times);
+        input, minor, options, first_state(ComponentModel(geometry.width, geometry.height, {0})), [](const CleanState&) {}, {});
     Values values = result.residual.pixel;
     append(values, result.model.pixel);
     append(values, {static_cast<double>(result.report.iterations), static_cast<double>(result.report.stop),
@@ -246,12 +240,10 @@ BOOST_AUTO_TEST_CASE(clean_of_taylor_terms_finds_the_same_components) {
   observe({{image.at(10, 30), power_law(1, -0.7, 4e9)}, {image.at(25, 12), power_law(0.5, 0, 4e9)}}, 0, 1, block);
   const PlannedTransform transform(plan_of(image, 1e-9));
   check_alike({block}, 1e-9, [&](const VisibilitySource& source) {
-    StageTimes times;
-    const DirtyImages first = make_dirty_images(source, transform, {.with_psf = true}, ignore_progress, times);
-    const TaylorImages further =
-        make_taylor_images(source, transform, {transform, {}, false}, expansion, ignore_progress, times);
+    const DirtyImages first = make_dirty_images(source, transform, {.with_psf = true}, {});
+    const TaylorImages further = make_taylor_images(source, transform, {transform, {}, false}, expansion, {});
     if (!source.ranks().first()) {
-      follow_clean(source, transform, expansion, 2, ignore_progress, times);
+      follow_clean(source, transform, expansion, {2});
       return Values();
     }
     std::vector<const Image*> psf{&first.psf};
@@ -259,11 +251,16 @@ BOOST_AUTO_TEST_CASE(clean_of_taylor_terms_finds_the_same_components) {
     CleanOptions options;
     options.max_iterations = 200;
     options.max_major_cycles = 3;
-    const CleanInput input{source, transform, first.dirty.front(), first.psf, 0.3, 1e-9};
+    const CleanInput input{.samples = source,
+                           .transform = transform,
+                           .expansion = expansion,
+                           .dirty = {&first.dirty.front(), &further.dirty.front()},
+                           .psf = psf,
+                           .max_sidelobe = 0.3,
+                           .accuracy = 1e-9};
     const MultiTerm minor(psf, {.threads = 2});
     const CleanResult result = misfit::imager::clean(
-        input, {expansion, further.dirty, psf}, minor, options, first_state(ComponentModel(image.width, image.height, {0})),
-        ignore_progress, [](const CleanState&) {}, times);
+        input, minor, options, first_state(ComponentModel(image.width, image.height, {0})), [](const CleanState&) {}, {});
     Values values = result.residual.pixel;
     append(values, result.model.pixel);
     append(values, result.further_models.front().pixel);
@@ -282,7 +279,6 @@ BOOST_AUTO_TEST_CASE(sources_outside_are_found_in_the_samples_of_all) {
   const auto exact = predict_sources({{at, 5}}, seen.front(), 2);
   seen.front().visibility.assign(exact.begin(), exact.end());
   check_alike(seen, 1e-5, [&](const VisibilitySource& source) {
-    StageTimes times;
     WideFieldFinder finder(geometry);
     const auto stream = source.open();
     while (const auto block = stream->next()) finder.add(*block);
@@ -292,7 +288,7 @@ BOOST_AUTO_TEST_CASE(sources_outside_are_found_in_the_samples_of_all) {
     request.geometry = geometry;
     request.samples = 3000;
     request.threads = 2;
-    const WideSearch search = search_wide_field(source, plan_wide_field(field, request), ignore_progress, times);
+    const WideSearch search = search_wide_field(source, plan_wide_field(field, request), {});
     Values values{static_cast<double>(field.geometry.width), field.geometry.cell_rad / geometry.cell_rad, field.reaching};
     check(can_be_imaged(field.geometry, source), "there is a sample to image from");
     if (!source.ranks().first()) return values;

@@ -21,12 +21,11 @@ std::vector<VisibilityBlock> samples() {
 }
 
 DirtyImages images_of(const Transform& transform) {
-  StageTimes times;
-  return make_dirty_images(stored(samples()), transform, {.with_psf = true}, ignore_progress, times);
+  return make_dirty_images(stored(samples()), transform, {.with_psf = true}, {});
 }
 
 MeasuredError measured(const Transform& transform, const DirtyImages& images) {
-  return measure_error(stored(samples()), transform, geometry, images, count, 2, ignore_progress);
+  return measure_error(stored(samples()), transform, geometry, images, count, {2});
 }
 
 std::unique_ptr<Transform> bad_transform(int kernel_width) {
@@ -66,11 +65,9 @@ BOOST_AUTO_TEST_CASE(the_error_of_a_bad_kernel_is_that_of_the_whole_image) {
 BOOST_AUTO_TEST_CASE(no_pixel_of_a_small_image_is_left_out) {
   const auto transform = bad_transform(3);
   const auto few_samples = stored({random_samples(20, 1, geometry.cell_rad, 1)});
-  StageTimes times;
-  const DirtyImages images = make_dirty_images(few_samples, *transform, {.with_psf = true}, ignore_progress, times);
-  const Image exact =
-      make_dirty_images(few_samples, DirectTransform(geometry, 2), {.with_psf = true}, ignore_progress, times).dirty[0];
-  const MeasuredError error = measure_error(few_samples, *transform, geometry, images, 50 * 40, 2, ignore_progress);
+  const DirtyImages images = make_dirty_images(few_samples, *transform, {.with_psf = true}, {});
+  const Image exact = make_dirty_images(few_samples, DirectTransform(geometry, 2), {.with_psf = true}, {}).dirty[0];
+  const MeasuredError error = measure_error(few_samples, *transform, geometry, images, 50 * 40, {2});
   double largest = 0;
   for (std::size_t i = 0; i < exact.pixel.size(); ++i)
     largest = std::max(largest, std::abs(images.dirty[0].pixel[i] - exact.pixel[i]));
@@ -100,12 +97,9 @@ BOOST_AUTO_TEST_CASE(every_stokes_parameter_has_an_error_of_its_own) {
   VisibilityBlock block = with_others(random_samples(100, 3, geometry.cell_rad, 1), 2, 7);
   std::fill_n(block.visibility.end() - static_cast<std::ptrdiff_t>(block.samples()), block.samples(), 0.0F);
   const auto transform = bad_transform(3);
-  StageTimes times;
   const auto error_of = [&](const VisibilityBlock& of, int images) {
     const StoredVisibilities source = stored({of});
-    return measure_error(source, *transform, geometry,
-                         make_dirty_images(source, *transform, {images, true}, ignore_progress, times), count, 2,
-                         ignore_progress);
+    return measure_error(source, *transform, geometry, make_dirty_images(source, *transform, {images, true}, {}), count, {2});
   };
   const MeasuredError all = error_of(block, 3);
   for (const std::size_t i : {0U, 1U}) {
@@ -123,9 +117,8 @@ BOOST_AUTO_TEST_CASE(a_neglected_w_counts_as_error) {
   GriddingRequest request;
   request.geometry = wide;
   const auto transform = make_coplanar_transform(plan_gridding(request).options);
-  StageTimes times;
-  const DirtyImages images = make_dirty_images(stored({block}), *transform, {.with_psf = true}, ignore_progress, times);
-  const MeasuredError error = measure_error(stored({block}), *transform, wide, images, count, 2, ignore_progress);
+  const DirtyImages images = make_dirty_images(stored({block}), *transform, {.with_psf = true}, {});
+  const MeasuredError error = measure_error(stored({block}), *transform, wide, images, count, {2});
   BOOST_TEST(error.image[0].rms > 0.1);
   BOOST_TEST(error.predict_rms > 0.1);
 }
@@ -139,9 +132,8 @@ BOOST_AUTO_TEST_CASE(only_pixels_above_the_horizon_are_compared) {
 
   const StoredVisibilities source = stored({random_samples_with_w(100, 2, sky.cell_rad, 20, 6)});
   const DirectTransform exact(sky, 2);
-  StageTimes times;
-  const DirtyImages images = make_dirty_images(source, exact, {.with_psf = true}, ignore_progress, times);
-  const MeasuredError error = measure_error(source, exact, sky, images, count, 2, ignore_progress);
+  const DirtyImages images = make_dirty_images(source, exact, {.with_psf = true}, {});
+  const MeasuredError error = measure_error(source, exact, sky, images, count, {2});
   // Sums of 200 terms in two orders.
   BOOST_TEST(error.image[0].rms < 1e-13);
   BOOST_TEST(error.image[0].max < 1e-12);

@@ -81,10 +81,9 @@ struct Found {
 Found search(const VisibilityBlock& block, const GriddingPlan& plan) {
   const StoredVisibilities source = stored({block});
   Found found{{}, wide_field(block), {}};
-  StageTimes times;
   GriddingRequest request = plan.request;
   request.samples = block.samples();
-  const WideSearch wide = search_wide_field(source, plan_wide_field(found.field, request), ignore_progress, times);
+  const WideSearch wide = search_wide_field(source, plan_wide_field(found.field, request), {});
   const AliasLevels aliases(plan, found.field.geometry, wide.sidelobes);
   found.sources = sources_outside(wide.components, found.field.geometry, plan.options.geometry, aliases, wide.least_jy);
   found.unexplained = wide.unexplained;

@@ -27,8 +27,7 @@ GriddingRequest request(int width, int height, double accuracy) {
 }
 
 AccurateImages images_of(const VisibilityBlock& block, const GriddingRequest& r) {
-  StageTimes times;
-  return make_accurate_images(stored({block}), plan_gridding(r), ignore_progress, times);
+  return make_accurate_images(stored({block}), plan_gridding(r), {});
 }
 
 Image direct_image(const VisibilityBlock& block, const ImageGeometry& geometry) {
@@ -85,8 +84,7 @@ BOOST_DATA_TEST_CASE(a_single_visibility_anywhere_in_its_cell_keeps_the_promise,
     for (double offset = 0; offset < 1; offset += 0.125) {
       for (std::size_t axis = 0; axis < 2; ++axis)
         block.uvw_m.edit()[axis] = (5 + offset) * lambda_m / ((axis == 0 ? plan.options.nu : plan.options.nv) * cell_rad);
-      StageTimes times;
-      const Image image = make_dirty_images(stored({block}), *transform, {}, ignore_progress, times).dirty[0];
+      const Image image = make_dirty_images(stored({block}), *transform, AdjointOptions{}, {}).dirty[0];
       worst = std::max(worst, relative_error(image.pixel, direct_image(block, r.geometry).pixel));
     }
     BOOST_TEST(worst <= accuracy);

@@ -194,7 +194,7 @@ BOOST_DATA_TEST_CASE(further_stokes_parameters_add_their_grids_blocks_and_images
   BOOST_TEST(peak(d, {false, 0}) == alone + 1e10);
   d.stokes = 3;
   d.block_samples = 0;
-  BOOST_TEST(peak(d, {true, 0}) - peak(d, {false, 0}) == 3 * (1e8 * 12 + 1e6 * 24));
+  BOOST_TEST(peak(d, {true, 0}) - peak(d, {false, 0}) == 1e8 * (3 * 8 + 4) + 1e6 * 24);
 }
 
 BOOST_AUTO_TEST_CASE(many_stokes_parameters_have_the_moment_of_their_last_image) {

@@ -66,9 +66,8 @@ BOOST_AUTO_TEST_CASE(dirty_images_and_psfs_are_direct_sums_with_taylor_weights) 
     for (const int terms : {2, 3}) {
       const ImageGeometry g = geometry(centre);
       const auto transform = gridding(g);
-      StageTimes times;
-      const TaylorImages made = make_taylor_images(stored({block, block}), *transform, {*transform, centre, false},
-                                                   {reference_hz, terms}, ignore_progress, times);
+      const TaylorImages made =
+          make_taylor_images(stored({block, block}), *transform, {*transform, centre, false}, {reference_hz, terms}, {});
       BOOST_REQUIRE(made.dirty.size() + 1 == static_cast<std::size_t>(terms));
       BOOST_REQUIRE(made.psf.size() + 2 == static_cast<std::size_t>(2 * terms));
       for (std::size_t t = 0; t < made.dirty.size(); ++t)
@@ -87,8 +86,7 @@ BOOST_AUTO_TEST_CASE(residuals_are_the_taylor_weighted_images_of_data_less_all_t
   VisibilityBlock block = random_samples(80, 6, cell_rad, 5);
   std::vector<Image> models;
   for (unsigned t = 0; t < terms; ++t) models.push_back(random_image(g.width, g.height, t));
-  StageTimes times;
-  const std::vector<Image> left = make_taylor_residuals(stored({block}), *transform, models, expansion, ignore_progress, times);
+  const std::vector<Image> left = make_taylor_residuals(stored({block}), *transform, models, expansion, {});
   // The same by definition, of visibilities less those of every pixel of every term.
   VisibilityBlock less = block;
   for (std::size_t i = 0; i < block.samples(); ++i) {
@@ -114,10 +112,8 @@ BOOST_AUTO_TEST_CASE(samples_of_no_weight_are_an_error) {
   VisibilityBlock block = random_samples(10, 2, cell_rad, 5);
   std::fill(block.weight.begin(), block.weight.end(), 0.0F);
   const auto transform = gridding(geometry());
-  StageTimes times;
-  BOOST_CHECK_THROW(
-      make_taylor_images(stored({block}), *transform, {*transform, {}, false}, {reference_hz, 2}, ignore_progress, times),
-      std::runtime_error);
+  BOOST_CHECK_THROW(make_taylor_images(stored({block}), *transform, {*transform, {}, false}, {reference_hz, 2}, {}),
+                    std::runtime_error);
 }
 
 BOOST_AUTO_TEST_SUITE_END()

@@ -41,8 +41,7 @@ std::vector<VisibilityBlock> observed(const Image& model) {
 
 BOOST_AUTO_TEST_CASE(dirty_image_and_psf_are_the_direct_ones_over_the_sum_of_weights) {
   const std::vector<VisibilityBlock> blocks = observed(random_image(60, 44, 3));
-  StageTimes times;
-  const DirtyImages is = make_dirty_images(stored(blocks), *gridded(), {.with_psf = true}, ignore_progress, times);
+  const DirtyImages is = make_dirty_images(stored(blocks), *gridded(), {.with_psf = true}, {});
   const auto sum = DirectTransform(geometry, 2).adjoint({.with_psf = true});
   for (const VisibilityBlock& block : blocks) sum->add(block);
   AdjointResult should = sum->finish();
@@ -58,18 +57,16 @@ BOOST_AUTO_TEST_CASE(the_residual_of_the_true_model_is_zero_to_the_accuracy) {
   const Image model = random_image(60, 44, 4);
   const StoredVisibilities source = stored(observed(model));
   const auto transform = gridded();
-  StageTimes times;
-  const Image dirty = make_dirty_images(source, *transform, {}, ignore_progress, times).dirty[0];
-  const Image residual = make_residual_image(source, *transform, model, ignore_progress, times);
+  const Image dirty = make_dirty_images(source, *transform, AdjointOptions{}, {}).dirty[0];
+  const Image residual = make_residual_image(source, *transform, model, {});
   BOOST_TEST(norm(residual.pixel) < accuracy * norm(dirty.pixel));
 }
 
 BOOST_AUTO_TEST_CASE(the_residual_of_no_model_is_the_dirty_image) {
   const StoredVisibilities source = stored(observed(random_image(60, 44, 5)));
   const auto transform = gridded();
-  StageTimes times;
-  const DirtyImages images = make_dirty_images(source, *transform, {}, ignore_progress, times);
-  const Image residual = make_residual_image(source, *transform, Image(60, 44), ignore_progress, times);
+  const DirtyImages images = make_dirty_images(source, *transform, AdjointOptions{}, {});
+  const Image residual = make_residual_image(source, *transform, Image(60, 44), {});
   BOOST_TEST((residual.pixel == images.dirty[0].pixel));
   BOOST_TEST(images.psf.pixel.empty());
 }
@@ -82,7 +79,7 @@ BOOST_AUTO_TEST_CASE(progress_ends_at_all_samples_and_every_stage_is_timed) {
     seen.push_back(done);
   };
   StageTimes times;
-  make_dirty_images(source, *gridded(), {}, progress, times);
+  make_dirty_images(source, *gridded(), {}, {.times = &times, .progress = progress});
   BOOST_TEST((seen == std::vector<std::uint64_t>{400, 750}));
   std::vector<std::string> stages;
   for (const auto& [stage, seconds] : times.stages()) stages.push_back(stage);
@@ -92,11 +89,10 @@ BOOST_AUTO_TEST_CASE(progress_ends_at_all_samples_and_every_stage_is_timed) {
 BOOST_AUTO_TEST_CASE(no_usable_sample_is_an_error_that_counts_those_outside) {
   VisibilityBlock outside = random_samples(5, 2, geometry.cell_rad, 6);
   for (std::size_t row = 0; row < 5; ++row) outside.uvw_m.edit()[3 * row] = 1e9;
-  StageTimes times;
   BOOST_CHECK_EXCEPTION(
-      make_dirty_images(stored({outside}), *gridded(), {.with_psf = true}, ignore_progress, times), std::runtime_error,
+      make_dirty_images(stored({outside}), *gridded(), {.with_psf = true}, {}), std::runtime_error,
       [](const std::exception& error) { return std::string(error.what()).find(" 10 usable samples") != std::string::npos; });
-  BOOST_CHECK_THROW(make_dirty_images(stored({}), *gridded(), {.with_psf = true}, ignore_progress, times), std::runtime_error);
+  BOOST_CHECK_THROW(make_dirty_images(stored({}), *gridded(), {.with_psf = true}, {}), std::runtime_error);
 }
 
 BOOST_AUTO_TEST_SUITE_END()

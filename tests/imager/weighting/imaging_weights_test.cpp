@@ -42,8 +42,7 @@ std::vector<VisibilityBlock> some_blocks() {
 }
 
 std::shared_ptr<const ImagingWeights> weights_of(const VisibilitySource& source, const WeightingOptions& options, int threads) {
-  StageTimes times;
-  return make_imaging_weights(source, options, geometry, threads, ignore_progress, times);
+  return make_imaging_weights(source, options, geometry, {threads});
 }
 
 std::shared_ptr<const VisibilityBlock> weighted(const ImagingWeights& weights, const VisibilityBlock& block) {
@@ -160,8 +159,7 @@ BOOST_AUTO_TEST_CASE(evenly_spread_samples_tapered_by_a_beam_have_it_as_their_ps
   const ImageGeometry image{48, 48, cell_rad, {}};
   const ImagingWeights weights(image, taper_of_beam(asked));
   const StoredVisibilities source = stored({*weighted(weights, even_samples())});
-  StageTimes times;
-  const DirtyImages made = make_dirty_images(source, DirectTransform(image, 2), {.with_psf = true}, ignore_progress, times);
+  const DirtyImages made = make_dirty_images(source, DirectTransform(image, 2), {.with_psf = true}, {});
   double largest = 0;
   const double sine = std::sin(asked.position_angle_rad), cosine = std::cos(asked.position_angle_rad);
   for (int row = 0; row < image.height; ++row)
@@ -183,16 +181,15 @@ BOOST_DATA_TEST_CASE(the_noise_of_an_image_is_the_one_predicted, bdata::make({0,
     for (std::size_t i = 0; i < block.samples(); ++i) block.visibility[i] /= 2 * std::sqrt(block.weight[i]);
   StoredVisibilities source = stored(blocks);
   WeightSums sums;
-  StageTimes times;
   if (way < 5) {
     WeightingOptions options = every_way[static_cast<std::size_t>(way)];
-    sums = make_imaging_weights(source, options, image, 1, ignore_progress, times)->put_on(source, 1).sums;
+    sums = make_imaging_weights(source, options, image, {1})->put_on(source, 1).sums;
   }
   GriddingRequest request;
   request.geometry = image;
   request.accuracy = 1e-4;
   const auto transform = make_coplanar_transform(plan_gridding(request).options);
-  const DirtyImages made = make_dirty_images(source, *transform, {}, ignore_progress, times);
+  const DirtyImages made = make_dirty_images(source, *transform, AdjointOptions{}, {});
   if (way == 5) sums = WeightSums::of_natural(made.sums.front().weight);
   BOOST_TEST(std::abs(sums.image / made.sums.front().weight - 1) < 1e-6);
   // The image has at least as many independent values as the beam of the sparsest of these, 12 pixels wide, leaves: 450; their
