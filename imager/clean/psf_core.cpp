@@ -24,10 +24,9 @@ std::vector<double> largest_beyond(const Image& psf) {
 
 /// See PsfCore.
 int reach_that_pays(const std::vector<double>& beyond) {
-  constexpr int largest_reach = 512;
   constexpr double hardly = 1.1;
   const auto outside = [&](int reach) { return beyond[static_cast<std::size_t>(reach) + 1]; };
-  const int end = std::min(largest_reach, static_cast<int>(beyond.size()) - 2);
+  const int end = std::min(largest_psf_core, static_cast<int>(beyond.size()) - 2);
   int reach = 0;
   while (reach < end && outside(reach) > hardly * outside(end)) ++reach;
   return reach;

@@ -6,10 +6,13 @@
 
 namespace misfit::imager {
 
+/// As many pixels from its peak a PSF still fits a cache.
+inline constexpr int largest_psf_core = 512;
+
 /// The middle of a PSF in single precision, as much of it as pays: all |row|, |column| ≤ reach from its peak.
 class PsfCore {
  public:
-  /// The smallest reach beyond which the PSF is hardly weaker (by a tenth) than beyond 512 pixels, which fit a cache. NaN
+  /// The smallest reach beyond which the PSF is hardly weaker (by a tenth) than beyond largest_psf_core. NaN
   /// counts as 0, as does what lies beyond the PSF.
   explicit PsfCore(const Image& psf);
   /// All up to a reach.

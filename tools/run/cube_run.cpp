@@ -274,8 +274,12 @@ class CubeRun {
       drawn = draw_cube(o_, header_, report_);
       if (!drawn.failure.empty()) warn(drawn.failure);
     }
+    for (const imager::Decision& d : report_.planes[report_.shown].decisions)
+      report_.plan.push_back(
+          {d.item + " of plane " + std::to_string(report_.planes[report_.shown].channel), d.decision, d.because});
     report_.expected = expected();
-    forecast_.learn(work_, times_);
+    const auto made_twice = [](const PlaneReport& plane) { return plane.made_twice; };
+    if (std::none_of(report_.planes.begin(), report_.planes.end(), made_twice)) forecast_.learn(work_, times_);
     report_.wall_clock_s = watch_.seconds();
     const nlohmann::json json = report_json(report_);
     write_file(o_.imagename + ".report.json", json_text(json, 2) + "\n");

@@ -169,7 +169,7 @@ class ImageRun {
     report_.accuracy = o_.accuracy;
     report_.gridding = &made.plan;
     count_samples();
-    for (const imager::Decision& decision : plane_->take_decisions()) report_.plan.push_back(decision);
+    for (const imager::Decision& decision : plane_->report().decisions) report_.plan.push_back(decision);
   }
 
   /// What was read; samples that the pixel size cannot represent, and the pixel size that could.
@@ -345,8 +345,7 @@ class ImageRun {
     if (const std::string failure = products_->finish_pictures(pictures); !failure.empty()) warn(failure);
     if (!ranks_.alone()) report_.plan.push_back(traffic_decision(ranks_.traffic(), times_.of("exchange")));
     report_.expected = expected();
-    const bool one_pass = plane_->made().plan.request.accuracy == o_.accuracy;  // a second asks for more
-    if (one_pass) forecast_.learn(work_, times_);
+    if (!plane_->report().made_twice) forecast_.learn(work_, times_);
     report_.wall_clock_s = watch_.seconds();
     const nlohmann::json json = report_json(report_);
     write_file(o_.imagename + ".report.json", json_text(json, 2) + "\n");

@@ -48,6 +48,11 @@ void serialize(Archive& archive, PixelError& error) {
 }
 
 template <typename Archive>
+void serialize(Archive& archive, Decision& decision) {
+  archive(decision.item, decision.decision, decision.because);
+}
+
+template <typename Archive>
 void serialize(Archive& archive, Peak& peak) {
   archive(peak.row, peak.column, peak.value);
 }
@@ -99,7 +104,7 @@ void serialize(Archive& archive, BeamChoice& beams) {
 template <typename Archive>
 void serialize(Archive& archive, PlaneReport& report) {
   archive(report.channel, report.frequency_hz, report.stokes, report.measured_predict_rms, report.sums,
-          report.predicted_noise_jy, report.beams);
+          report.predicted_noise_jy, report.beams, report.decisions, report.made_twice);
 }
 
 template <typename Archive>

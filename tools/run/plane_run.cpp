@@ -45,6 +45,7 @@ void PlaneRun::make_dirty(imager::GriddingPlan plan, std::shared_ptr<const image
   made_ = imager::make_accurate_images(source_, std::move(plan), scene_.context(), std::move(transform));
   scene_.progress.end();
   report_.sums = made_.images.sums.front();
+  report_.made_twice = made_.plan.request.accuracy != scene_.options.accuracy;  // a second pass asks for more
   predict_noise();
   const imager::StageTimer timer(scene_.times, "statistics");
   const imager::NeglectedPhase phase = imager::neglected_w_phase(scene_.reach, source_.w_spread(), scene_.geometry);
@@ -73,7 +74,7 @@ void PlaneRun::predict_noise() {
                              ": no sample keeps a weight that counts; expected a taper of larger radius in the "
                              "uv plane, or a smaller angle");
   report_.predicted_noise_jy = sums.noise_jy();
-  if (weights_) decisions_.push_back(weights_decision(*weights_, sums));
+  if (weights_) report_.decisions.push_back(weights_decision(*weights_, sums));
   weights_.reset();
 }
 

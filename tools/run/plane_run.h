@@ -61,8 +61,6 @@ class PlaneRun {
   PlaneReport& report() { return report_; }
   imager::AccurateImages& made() { return made_; }
   std::vector<imager::CleanResult>& cleaned() { return cleaned_; }  ///< [Stokes], or none
-  /// What weighting did, where weights are not the data's.
-  imager::Plan take_decisions() { return std::move(decisions_); }
 
  private:
   void predict_noise();
@@ -76,7 +74,6 @@ class PlaneRun {
   imager::AccurateImages made_;
   TaylorStage* taylor_ = nullptr;  ///< null where there is one term
   std::vector<imager::CleanResult> cleaned_;
-  imager::Plan decisions_;
   PlaneReport report_;
 };
 

@@ -5,6 +5,7 @@
 #include <functional>
 #include <optional>
 
+#include "imager/clean/psf_core.h"
 #include "imager/outside/wide_search.h"
 #include "tools/base/memory.h"
 #include "tools/base/numbers.h"
@@ -52,8 +53,7 @@ class RunPlanner {
     decide_columns();
     decide("columns and correlations", "only what Stokes " + o_.stokes + " needs",
            "UVW, antennas, flags, weights and one data column, each read once");
-    if (o_.niter > 0)
-      decide("PSF patch", "none, the whole PSF", "components are subtracted to the image's edges in every minor cycle");
+    if (o_.niter > 0) decide_psf_patch();
     warn_of_neglected_w();
   }
 
@@ -62,6 +62,14 @@ class RunPlanner {
  private:
   void decide(const std::string& item, const std::string& decision, const std::string& because) {
     plan_.decisions.push_back({item, decision, because});
+  }
+
+  /// How much of the PSF minor cycles subtract.
+  void decide_psf_patch() {
+    if (o_.deconvolver == "hogbom" && o_.nterms == 1)
+      return decide("PSF patch", "none, the whole PSF", "components are subtracted to the image's edges in every minor cycle");
+    decide("PSF patch", "at most " + std::to_string(imager::largest_psf_core) + " pixels from its peak, then the whole PSF",
+           "components are found among the brightest pixels with as much of the PSF as pays, until others could be as bright");
   }
 
   /// A search outside shares the memory. Ranks whose plans differed would not exchange the same: all gather as many samples as

@@ -38,6 +38,8 @@ struct PlaneReport {
   imager::SampleSums sums{};      ///< of the first Stokes parameter
   double predicted_noise_jy = 0;  ///< a beam, from the weights; 0 = not known
   std::optional<BeamChoice> beams{};
+  imager::Plan decisions{};  ///< what weighting did, where weights are not the data's
+  bool made_twice = false;   ///< since a first pass did not keep the accuracy
 };
 
 /// What a run of `misfit image` has to tell; a part that does not exist is null in report.json.

@@ -7,8 +7,8 @@
 
 #include "imager/clean/clean.h"
 #include "imager/clean/hogbom.h"
-#include "imager/clean/shared_model.h"
 #include "imager/clean/multi_term.h"
+#include "imager/clean/shared_model.h"
 #include "imager/direct/verify.h"
 #include "imager/outside/wide_search.h"
 #include "imager/plan/accurate_imaging.h"
