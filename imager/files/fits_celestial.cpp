@@ -73,11 +73,19 @@ double reference_rad(const FitsFile& file, const std::string& n, double unit, do
   return value_rad;
 }
 
+/// A year as a number, or as some programs write it, J2000 or B1950. None where there is no card of the key.
+std::optional<double> read_equinox(const FitsFile& file, const std::string& key) {
+  const std::string year = file.text(key);
+  if (year == "J2000" || year == "J2000.0") return 2000;
+  if (year == "B1950" || year == "B1950.0") return 1950;
+  return file.number(key);
+}
+
 /// Calabretta & Greisen 2002, section 3.1; RADECSYS and EPOCH are what older programs write.
 std::string read_frame(const FitsFile& file) {
   const std::string key = file.text("RADESYS").empty() ? "RADECSYS" : "RADESYS";
-  const std::string of_equinox = file.number("EQUINOX") ? "EQUINOX" : "EPOCH";
-  const std::optional<double> equinox = file.number(of_equinox);
+  const std::string of_equinox = file.text("EQUINOX").empty() ? "EPOCH" : "EQUINOX";
+  const std::optional<double> equinox = read_equinox(file, of_equinox);
   std::string frame = file.text(key);
   if (frame.empty()) frame = !equinox ? "ICRS" : *equinox < 1984 ? "FK4" : "FK5";
   if (frame != "ICRS" && frame != "FK5" && frame != "FK4")

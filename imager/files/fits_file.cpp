@@ -12,6 +12,7 @@
 #include <limits>
 #include <stdexcept>
 
+#include "imager/files/fits_text.h"
 #include "kernels/cfitsio_call.h"
 #include "kernels/fits_sizes.h"
 
@@ -49,18 +50,6 @@ bool is_of_the_system(int error) {
   return is_lost_write(error) || std::find(errors.begin(), errors.end(), error) != errors.end();
 }
 
-/// What a header may hold of `text` (FITS 4.0, section 4.1.2): other letters, of UTF-8 or of one byte, become ?.
-std::string header_text(const std::string& text) {
-  std::string kept;
-  bool in_letter = false;
-  for (const char c : text) {
-    const bool continues = in_letter && (c & 0xc0) == 0x80;
-    if (!continues) kept += c >= ' ' && c <= '~' ? c : '?';
-    in_letter = continues || (c & 0xc0) == 0xc0;
-  }
-  return kept;
-}
-
 /// Throws std::runtime_error where headers are not to be trusted.
 void check_sizes(const std::string& path) {
   std::error_code none;
@@ -72,14 +61,16 @@ void check_sizes(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
   if (!file) throw std::runtime_error(std::strerror(errno != 0 ? errno : EIO));
   if (none) return;
-  kernels::check_fits_sizes(
-      {size, [&file](std::uint64_t at, std::size_t count) {
-         std::string bytes(count, '\0');
-         file.clear();
-         file.seekg(static_cast<std::streamoff>(at)).read(bytes.data(), static_cast<std::streamsize>(count));
-         bytes.resize(static_cast<std::size_t>(file.gcount()));
-         return bytes;
-       }});
+  const auto read = [&file](std::uint64_t at, std::size_t count) {
+    std::string bytes(count, '\0');
+    file.clear();
+    file.seekg(static_cast<std::streamoff>(at)).read(bytes.data(), static_cast<std::streamsize>(count));
+    bytes.resize(static_cast<std::size_t>(file.gcount()));
+    return bytes;
+  };
+  if (const std::string how = compression_of(read(0, 8)); !how.empty())
+    throw std::runtime_error("it is no FITS file, but one compressed by " + how);
+  kernels::check_fits_sizes({size, read});
 }
 
 }  // namespace
@@ -179,22 +170,31 @@ void FitsFile::reserve_cards(int count) {
   check(fits_set_hdrsize(handle_->file, count, &status));
 }
 
-bool FitsFile::read_key(const std::string& key, int type, void* value) const {
+std::string FitsFile::text(const std::string& key) const {
   const CallOfCfitsio call;
   int status = 0;
-  fits_read_key(handle_->file, type, key.c_str(), value, nullptr, &status);
-  const bool absent = status == KEY_NO_EXIST || status == VALUE_UNDEFINED;
-  if (absent)
-    fits_clear_errmsg();
-  else
-    check(status);
-  return !absent;
+  std::array names{const_cast<char*>(key.c_str())};
+  std::array<char, FLEN_CARD> card{};
+  std::array<char, FLEN_VALUE> value{};
+  std::optional<std::string> first;
+  check(fits_read_record(handle_->file, 0, card.data(), &status));  // goes to the beginning
+  while (fits_find_nextkey(handle_->file, names.data(), 1, nullptr, 0, card.data(), &status) == 0) {
+    check(fits_parse_value(card.data(), value.data(), nullptr, &status));
+    const std::string text = header_text(bare_header_value(value.data()));
+    if (!first) first = text;
+    if (!same_header_value(*first, text))
+      fail("its header has " + key + " twice, as " + *first + " and as " + text + "; expected one of them");
+  }
+  fits_clear_errmsg();
+  return first.value_or("");
 }
 
 std::optional<double> FitsFile::number(const std::string& key) const {
-  double value = 0;
-  if (!read_key(key, TDOUBLE, &value)) return std::nullopt;
-  if (!std::isfinite(value)) fail("its " + key + " is not finite");
+  const std::string stated = text(key);
+  if (stated.empty()) return std::nullopt;
+  const std::optional<double> value = header_number(stated);
+  if (!value) fail("its " + key + " is '" + stated + "'; expected a number");
+  if (!std::isfinite(*value)) fail("its " + key + " is not finite");
   return value;
 }
 
@@ -202,11 +202,6 @@ double FitsFile::needed_number(const std::string& key) const {
   const std::optional<double> value = number(key);
   if (!value) fail("it has no " + key);
   return *value;
-}
-
-std::string FitsFile::text(const std::string& key) const {
-  std::array<char, FLEN_VALUE> value{};
-  return read_key(key, TSTRING, value.data()) ? header_text(value.data()) : "";
 }
 
 void FitsFile::create_image(std::vector<long> size, PixelFormat format) {

@@ -45,9 +45,11 @@ class FitsFile {
   void write_history(const std::string& line);
   /// Leaves room for so many more cards, so that those written after pixels do not move them.
   void reserve_cards(int count);
+  /// The value of a card; none where there is none, or it has no value. Throws where it is no finite number, and where several
+  /// cards have this key and other values, of which readers take one or the other.
   std::optional<double> number(const std::string& key) const;
   double needed_number(const std::string& key) const;
-  /// Empty where there is none, with ? for control characters.
+  /// Empty where there is none, with ? for control characters. Throws where several cards have this key and other values.
   std::string text(const std::string& key) const;
 
   void create_image(std::vector<long> size, PixelFormat format);
@@ -71,7 +73,6 @@ class FitsFile {
   struct Handle;
 
   void check(int status) const;
-  bool read_key(const std::string& key, int type, void* value) const;
 
   std::string doing_;
   std::string path_;
