@@ -53,10 +53,20 @@ double turn_rad(const FitsFile& file, std::size_t axes, bool has_matrix) {
   return turn * pi / 180;
 }
 
+constexpr std::size_t most_axes = 9;
+
+/// The pixels along each axis of coordinates: 1 along those that the header describes beyond NAXIS.
+std::vector<long> lengths_of_axes(const FitsFile& file) {
+  std::vector<long> lengths = file.size();
+  if (lengths.size() > most_axes)
+    file.fail("it has " + std::to_string(lengths.size()) + " axes; expected at most " + std::to_string(most_axes));
+  for (std::size_t axis = most_axes; axis > lengths.size(); --axis)
+    if (!file.text("CTYPE" + std::to_string(axis)).empty()) lengths.resize(axis, 1);
+  return lengths;
+}
+
 /// Throws where keywords contradict each other.
-FitsSteps read_steps(const FitsFile& file) {
-  const std::size_t axes = file.size().size();
-  if (axes > 9) file.fail("it has " + std::to_string(axes) + " axes; expected at most 9");
+FitsSteps read_steps(const FitsFile& file, std::size_t axes) {
   const std::optional<FitsSteps> cd = read_matrix(file, "CD", axes), pc = read_matrix(file, "PC", axes);
   if (cd && pc) file.fail("it has a matrix CD and a matrix PC of its axes; expected one of them");
   if (cd) return *cd;  // CDELT and CROTA may stand beside it, for programs that do not know it
@@ -102,30 +112,35 @@ FitsAxis read_axis(const FitsFile& file, const FitsPlanes& planes, std::size_t a
 
 FitsPlanes find_planes(const FitsFile& file) {
   const std::vector<long> size = file.size();
+  const auto fits = [](long length) { return length >= 1 && length <= std::numeric_limits<int>::max(); };
+  if (size.size() < 2 || !std::all_of(size.begin(), size.end(), fits))
+    file.fail(
+        "its primary image has no two axes of pixels; expected the image there: copy one that is in an extension into a file "
+        "of "
+        "its own, and uncompress one of fpack with funpack");
   FitsPlanes planes;
   planes.axes = size.size();
-  bool is_image = size.size() >= 2;
-  for (std::size_t i = 0; is_image && i < size.size(); ++i) {
-    is_image = size[i] >= 1 && size[i] <= std::numeric_limits<int>::max();
-    if (i < 2 || !is_image) continue;
+  planes.lengths = lengths_of_axes(file);
+  for (std::size_t i = 2; i < planes.lengths.size(); ++i) {
     const std::string type = file.text("CTYPE" + std::to_string(i + 1));
     if (type == "STOKES" && !planes.stokes)
       planes.stokes = i;
     else if (is_spectral(type) && !planes.spectral)
       planes.spectral = i;
-    else if (const bool untyped = type.empty() || type == "LINEAR" || type == "PIXEL"; !untyped || size[i] > 1)
-      file.fail("its axis " + std::to_string(i + 1) + " of type '" + type + "' has length " + std::to_string(size[i]) +
-                "; expected one STOKES axis, one of " + spectral_types + ", and others of length 1 without a type");
+    else if (const bool untyped = type.empty() || type == "LINEAR" || type == "PIXEL"; !untyped || planes.lengths[i] > 1)
+      file.fail("its axis " + std::to_string(i + 1) + " of type '" + type + "' has length " +
+                std::to_string(planes.lengths[i]) + "; expected one STOKES axis, one of " + spectral_types +
+                ", and others of length 1 without a type");
   }
-  if (!is_image) file.fail("its primary image has no two axes of pixels");
-  planes.steps = read_steps(file);
+  planes.steps = read_steps(file, planes.lengths.size());
   return planes;
 }
 
 std::vector<long> first_pixel(const FitsPlanes& planes, const PlaneIndex& at) {
-  std::vector<long> first(planes.axes, 1);
+  std::vector<long> first(planes.lengths.size(), 1);
   if (planes.spectral) first[*planes.spectral] = at.channel + 1;
   if (planes.stokes) first[*planes.stokes] = at.stokes + 1;
+  first.resize(planes.axes);
   return first;
 }
 
@@ -133,7 +148,7 @@ std::vector<Stokes> read_stokes(const FitsFile& file, const FitsPlanes& planes) 
   if (!planes.stokes) return {Stokes::I};
   const FitsAxis axis = read_axis(file, planes, *planes.stokes);
   std::vector<Stokes> list;
-  for (long plane = 1; plane <= file.size()[*planes.stokes]; ++plane) {
+  for (long plane = 1; plane <= planes.lengths[*planes.stokes]; ++plane) {
     const Stokes stokes = stokes_of(file, axis, plane);
     if (std::find(list.begin(), list.end(), stokes) != list.end()) file.fail("it has two planes of " + stokes_name(stokes));
     list.push_back(stokes);

@@ -30,15 +30,17 @@ using FitsSteps = std::vector<std::vector<double>>;
 
 /// Where the planes of a file lie among its axes, which count from 0.
 struct FitsPlanes {
-  std::size_t axes = 2;
+  std::size_t axes = 2;       ///< of pixels: NAXIS
+  std::vector<long> lengths;  ///< of each axis of coordinates; 1 beyond those of pixels
   std::optional<std::size_t> spectral;
   std::optional<std::size_t> stokes;
   FitsSteps steps;
 };
 
-/// Throws std::runtime_error where the primary image has no two axes of pixels, or beyond those, but one spectral axis (see
-/// fits_spectral.h) and one of Stokes parameters, any that is longer than 1 or has a type, where other axes than the first two
-/// depend on each other, or keywords of their steps contradict each other.
+/// Axes that the header describes beyond those of pixels (FITS 4.0, section 8.2) have one pixel, and say of all pixels which
+/// Stokes parameter and frequency they are of. Throws std::runtime_error where the primary image has no two axes of pixels, or
+/// beyond those, but one spectral axis (see fits_spectral.h) and one of Stokes parameters, any that is longer than 1 or has a
+/// type, where other axes than the first two depend on each other, or keywords of their steps contradict each other.
 FitsPlanes find_planes(const FitsFile& file);
 
 /// Reads an axis, counted from 0. A reference pixel must be stated: readers differ in where it lies otherwise.

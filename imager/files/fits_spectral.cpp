@@ -180,7 +180,7 @@ SpectralAxis read_spectral_axis(const FitsFile& file, const FitsPlanes& planes) 
   spectral.rest_frequency_hz = rest_hz ? *rest_hz : file.number("RESTFREQ").value_or(0);
   spectral.reference_hz = spectral.rest_frequency_hz;
   if (!axis) return spectral;
-  spectral.channels = static_cast<int>(file.size()[*planes.spectral]);
+  spectral.channels = static_cast<int>(planes.lengths[*planes.spectral]);
   Spectral(file, *axis, spectral.rest_frequency_hz).set(spectral);
   return spectral;
 }

@@ -9,7 +9,9 @@
 #include <limits>
 #include <random>
 
+#include "imager/files/fits_image_reader.h"
 #include "tests/imager/fits_cards.h"
+#include "tests/stated_fits.h"
 #include "tests/temporary_folder.h"
 
 BOOST_AUTO_TEST_SUITE(fits_image)
@@ -358,6 +360,38 @@ BOOST_AUTO_TEST_CASE(numbers_may_be_written_and_written_again_in_any_way_of_fits
     BOOST_TEST(read_fits(path).geometry.centre.l == 0, new_card);
     BOOST_TEST(read_fits(path).geometry.phase_centre.frame == "FK5", new_card);
   }
+}
+
+BOOST_AUTO_TEST_CASE(axes_beyond_those_of_pixels_say_of_all_pixels_what_they_are_of) {
+  const TemporaryFolder folder;
+  const std::string path = folder / "a.fits";
+  for (const Stokes stokes : {Stokes::I, Stokes::Q, Stokes::V, Stokes::XX})
+    for (const double reference_pixel : {1.0, 0.0, 3.0})
+      for (const bool stokes_first : {true, false}) {
+        const std::string s = stokes_first ? "3" : "4", f = stokes_first ? "4" : "3";
+        using misfit::testing::stated;
+        misfit::testing::write_stated_fits(path, Image(7, 4),
+                                           {{"CTYPE1", "'RA---SIN'"},
+                                            {"CTYPE2", "'DEC--SIN'"},
+                                            {"CRPIX1", "4."},
+                                            {"CRPIX2", "3."},
+                                            {"CRVAL1", "187."},
+                                            {"CRVAL2", "12."},
+                                            {"CDELT1", "-0.01"},
+                                            {"CDELT2", "0.01"},
+                                            {"CTYPE" + s, "'STOKES'"},
+                                            {"CRPIX" + s, "1."},
+                                            {"CRVAL" + s, stated(fits_stokes_code(stokes))},
+                                            {"CTYPE" + f, "'FREQ'"},
+                                            {"CRPIX" + f, stated(reference_pixel)},
+                                            {"CRVAL" + f, "5.0E9"},
+                                            {"CDELT" + f, "4.0E6"}});
+        const auto file = open_fits_image(path);
+        BOOST_TEST((file->header().stokes == std::vector{stokes}));
+        BOOST_TEST(file->header().spectral.channels == 1);
+        BOOST_TEST(file->header().spectral.reference_hz == 5e9 + (1 - reference_pixel) * 4e6);
+        BOOST_TEST(file->read({0, 0}).width == 7);
+      }
 }
 
 BOOST_AUTO_TEST_CASE(a_stack_of_planes_is_no_image) {
