@@ -78,17 +78,13 @@ imager::SkyGrid grid_of(casacore::DirectionCoordinate direction, const casacore:
   const casacore::Projection projection = direction.projection();
   const auto known = imager::projection_named(projection.name());
   if (!known) refuse(path, "its projection is " + projection.name() + "; expected SIN, TAN, STG, ARC or ZEA");
-  const std::string frame = frame_name(direction.directionType());
-  if (frame.empty())
-    refuse(path, "its directions are in " + casacore::MDirection::showType(direction.directionType()) +
-                     "; expected J2000, ICRS, B1950 or GALACTIC");
   const auto value = direction.referenceValue(), pixel = direction.referencePixel(), increment = direction.increment();
   const casacore::Matrix<double> turn = direction.linearTransform();
   imager::SkyGrid grid;
   grid.width = static_cast<int>(shape[0]);
   grid.height = static_cast<int>(shape[1]);
   grid.projection = *known;
-  grid.reference = {value[0] < 0 ? value[0] + 2 * imager::pi : value[0], value[1], frame};
+  grid.reference = {value[0] < 0 ? value[0] + 2 * imager::pi : value[0], value[1], frame_name(direction.directionType())};
   grid.reference_pixel = {pixel[0], pixel[1]};
   for (std::size_t i = 0; i < 2; ++i)
     for (std::size_t j = 0; j < 2; ++j) grid.step[i][j] = increment[i] * turn(j, i);  // casacore holds PC transposed
@@ -129,6 +125,32 @@ std::vector<imager::Stokes> stokes_of(const casacore::StokesCoordinate& coordina
   return list;
 }
 
+/// What a coordinate says of all pixels where it has an axis of the world and none of pixels; none otherwise.
+std::optional<double> value_without_pixels(const casacore::CoordinateSystem& coordinates, casacore::Coordinate::Type type) {
+  const casacore::Int coordinate = coordinates.findCoordinate(type);
+  if (coordinate < 0) return std::nullopt;
+  const casacore::Int world_axis = coordinates.worldAxes(static_cast<casacore::uInt>(coordinate))[0];
+  if (world_axis < 0 || coordinates.pixelAxes(static_cast<casacore::uInt>(coordinate))[0] >= 0) return std::nullopt;
+  casacore::Vector<double> world(coordinates.nWorldAxes());
+  const casacore::Vector<double> first(coordinates.nPixelAxes(), 0.0);
+  if (!coordinates.toWorld(world, first)) throw std::runtime_error(coordinates.errorMessage());
+  return casacore::Quantity(world[static_cast<std::size_t>(world_axis)],
+                            coordinates.worldAxisUnits()[static_cast<std::size_t>(world_axis)])
+      .getBaseValue();
+}
+
+/// Of all pixels, as header_of() has it.
+void read_axes_without_pixels(const casacore::CoordinateSystem& coordinates, imager::ImageHeader& header,
+                              const std::string& path) {
+  if (const auto frequency_hz = value_without_pixels(coordinates, casacore::Coordinate::SPECTRAL)) {
+    header.spectral = spectral_axis_of(coordinates.spectralCoordinate(), 1, path);
+    header.spectral.reference_hz = *frequency_hz;
+  }
+  if (const auto code = value_without_pixels(coordinates, casacore::Coordinate::STOKES))
+    header.stokes = stokes_of(
+        casacore::StokesCoordinate(casacore::Vector<casacore::Int>(1, static_cast<casacore::Int>(std::lround(*code)))), path);
+}
+
 imager::Observation observation_of(const casacore::ObsInfo& info, const imager::SpectralAxis& axis) {
   imager::Observation observation;
   observation.telescope = info.telescope();
@@ -150,6 +172,18 @@ casacore::CoordinateSystem casa_coordinates(const imager::ImageHeader& header) {
   coordinates.addCoordinate(spectral_coordinate(header));
   coordinates.setObsInfo(obs_info(header.observation, header.geometry.phase_centre));
   return coordinates;
+}
+
+void check_frames(const casacore::RecordInterface& coordinates, const std::string& path) {
+  for (casacore::uInt field = 0; field < coordinates.nfields(); ++field) {
+    if (coordinates.name(field).find("direction") != 0 || coordinates.dataType(field) != casacore::TpRecord) continue;
+    const casacore::RecordInterface& direction = coordinates.asRecord(field);
+    const casacore::String system = direction.isDefined("system") ? direction.asString("system") : casacore::String();
+    casacore::MDirection::Types type{};
+    if (!casacore::MDirection::getType(type, system) || frame_name(type).empty())
+      refuse(path,
+             "its directions are in " + (system.empty() ? "no frame" : system) + "; expected J2000, ICRS, B1950 or GALACTIC");
+  }
 }
 
 casacore::IPosition CasaPlanes::first_pixel(const imager::PlaneIndex& at) const {
@@ -193,6 +227,7 @@ CasaPlanes find_planes(const casacore::CoordinateSystem& coordinates, const casa
 imager::ImageHeader header_of(const casacore::CoordinateSystem& coordinates, const CasaPlanes& planes,
                               const std::string& path) {
   imager::ImageHeader header;
+  read_axes_without_pixels(coordinates, header, path);
   if (planes.spectral >= 0)
     header.spectral = spectral_axis_of(coordinates.spectralCoordinate(),
                                        static_cast<int>(planes.shape[static_cast<std::size_t>(planes.spectral)]), path);

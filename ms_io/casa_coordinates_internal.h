@@ -30,17 +30,22 @@ struct CasaPlanes {
   casacore::IPosition plane_shape() const;
 };
 
+/// Looks at what an image's table holds of its coordinates, in its keyword "coords". Throws std::runtime_error(`path` …) where
+/// directions are in another frame than in_frame() knows: casacore fails over some of them, and does not say of what.
+void check_frames(const casacore::RecordInterface& coordinates, const std::string& path);
+
 /// Throws std::runtime_error(`path` …) where a longitude and a latitude are not the first two axes, or another than the Stokes
 /// and the spectral axis is longer than 1 or has a name that means something.
 CasaPlanes find_planes(const casacore::CoordinateSystem& coordinates, const casacore::IPosition& shape,
                        const std::string& path);
 
-/// What coordinates say, but for the unit and where pixels lie on the sky. Throws std::runtime_error(`path` …) where the
+/// What coordinates say, but for the unit and where pixels lie on the sky. Stokes and spectral coordinates without an axis of
+/// pixels say of all pixels which Stokes parameter and frequency they are of. Throws std::runtime_error(`path` …) where the
 /// spectral axis is not linear.
 imager::ImageHeader header_of(const casacore::CoordinateSystem& coordinates, const CasaPlanes& planes, const std::string& path);
 
-/// Where the pixels lie on the sky; none where the image has no directions. Throws std::runtime_error(`path` …) where they are
-/// in another frame than in_frame() knows, or in another projection than SkyGrid has.
+/// Where the pixels lie on the sky, in a frame that check_frames() knows; none where the image has no directions. Throws
+/// std::runtime_error(`path` …) where they are in another projection than SkyGrid has.
 std::optional<imager::SkyGrid> grid_of(const casacore::CoordinateSystem& coordinates, const CasaPlanes& planes,
                                        const std::string& path);
 

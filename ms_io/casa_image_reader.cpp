@@ -150,6 +150,9 @@ std::unique_ptr<imager::ImageReader> open_table(const std::string& path, imager:
   if (!table.tableDesc().isColumn("map")) throw std::runtime_error("cannot read " + path + ": it has no column of pixels");
   check_tables(table.keywordSet(), table.tableName(), path);
   check_mask(table.keywordSet(), path);
+  const casacore::TableRecord& keywords = table.keywordSet();
+  if (keywords.isDefined("coords") && keywords.dataType("coords") == casacore::TpRecord)
+    check_frames(keywords.subRecord("coords"), path);
   const casacore::DataType type = table.tableDesc()["map"].dataType();
   if (type == casacore::TpFloat) return std::make_unique<CasaImageReader<float>>(path, table, grids);
   if (type == casacore::TpDouble) return std::make_unique<CasaImageReader<double>>(path, table, grids);

@@ -237,6 +237,42 @@ BOOST_AUTO_TEST_CASE(images_that_misfit_could_not_place_are_refused) {
   check_error_names(folder / "complex", "no real numbers", [&] { ms_io::open_casa_image(folder / "complex"); });
 }
 
+BOOST_AUTO_TEST_CASE(coordinates_without_an_axis_of_pixels_say_of_all_pixels_what_they_are_of) {
+  const TemporaryFolder folder;
+  const ImageHeader header = example_header(3, "IQUV");
+  for (const int channel : {0, 2})
+    for (const int stokes : {0, 1, 3}) {
+      casacore::CoordinateSystem coordinates = ms_io::casa_coordinates(header);
+      BOOST_REQUIRE(coordinates.removePixelAxis(3, channel));
+      BOOST_REQUIRE(coordinates.removePixelAxis(2, stokes));
+      const std::string path = folder / std::to_string(10 * channel + stokes);
+      write_foreign<float>(path, coordinates, casacore::IPosition(2, 7, 4));
+      const auto image = ms_io::open_casa_image(path);
+      BOOST_TEST((image->header().stokes == std::vector{header.stokes[static_cast<std::size_t>(stokes)]}));
+      BOOST_TEST(image->header().spectral.channels == 1);
+      BOOST_TEST(std::abs(image->header().spectral.reference_hz - header.spectral.frequency_hz(channel)) < 1e-3);
+      BOOST_TEST(image->header().observation.frequency_hz == image->header().spectral.reference_hz);
+      BOOST_TEST(image->read({0, 0}).at(3, 2) == 3 * 7 + 2);
+    }
+}
+
+BOOST_AUTO_TEST_CASE(frames_that_images_have_not_are_refused_by_name) {
+  const TemporaryFolder folder;
+  for (const char* frame : {"AZEL", "HADEC", "APP", "JTRUE", "JMEAN", "ITRF", "TOPO", "MARS", "ECLIPTIC", "nonsense"}) {
+    const std::string path = folder / frame;
+    casacore::CoordinateSystem flat;
+    flat.addCoordinate(ms_io::casa_coordinates(example_header(1)).directionCoordinate());
+    write_foreign<float>(path, flat, casacore::IPosition(2, 7, 4));
+    {
+      casacore::Table table(path, casacore::Table::Update);
+      table.rwKeywordSet().rwSubRecord("coords").rwSubRecord("direction0").define("system", frame);
+    }
+    for (const Grids grids : {Grids::upright, Grids::any})
+      check_error_names(path, "its directions are in " + std::string(frame) + "; expected J2000, ICRS, B1950 or GALACTIC",
+                        [&] { ms_io::open_casa_image(path, grids); });
+  }
+}
+
 BOOST_AUTO_TEST_CASE(tables_that_an_image_says_are_its_own_lie_in_it) {
   const TemporaryFolder folder;
   const ImageHeader header = example_header(1);
