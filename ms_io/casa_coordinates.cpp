@@ -32,10 +32,10 @@ casacore::DirectionCoordinate direction_coordinate(const imager::ImageGeometry& 
           g.phase_centre.ra_rad,
           g.phase_centre.dec_rad,
           -g.cell_rad,
-          g.cell_rad,
+          g.cell_height_rad(),
           unrotated,
           g.centre_column() + g.centre.l / g.cell_rad,
-          g.centre_row() - g.centre.m / g.cell_rad,
+          g.centre_row() - g.centre.m / g.cell_height_rad(),
           imager::pi,
           g.phase_centre.dec_rad};
 }

@@ -19,8 +19,8 @@ void write_axes(FitsFile& file, const ImageHeader& header) {
   const std::array<FitsAxis, 4> axes{{
       {"RA---SIN", "deg", g.centre_column() + 1 + g.centre.l / g.cell_rad, g.phase_centre.ra_rad / rad_per_deg,
        -g.cell_rad / rad_per_deg},
-      {"DEC--SIN", "deg", g.centre_row() + 1 - g.centre.m / g.cell_rad, g.phase_centre.dec_rad / rad_per_deg,
-       g.cell_rad / rad_per_deg},
+      {"DEC--SIN", "deg", g.centre_row() + 1 - g.centre.m / g.cell_height_rad(), g.phase_centre.dec_rad / rad_per_deg,
+       g.cell_height_rad() / rad_per_deg},
       {"FREQ", "Hz", 1, header.spectral.reference_hz, header.spectral.step_hz()},
       stokes_axis(header.stokes),
   }};

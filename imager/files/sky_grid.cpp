@@ -21,9 +21,6 @@ constexpr std::array<std::pair<Projection, const char*>, 5> known_projections{{{
                                                                                {Projection::arc, "ARC"},
                                                                                {Projection::zea, "ZEA"}}};
 
-/// How far pixels may lie from where an upright geometry has them, in pixels: less than a transform to 1e-7 notices.
-constexpr double same_place_pixels = 1e-3;
-
 using Turn = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
 
 /// Its rows are the unit vectors to the east, to the north, and towards a direction.
@@ -105,26 +102,32 @@ double turned_away(const SkyGrid& grid, const ImageGeometry& upright) {
   return most;
 }
 
-/// The largest distance, pixels, by which the grid's projection differs from SIN. It grows with the distance from the
-/// reference.
+/// The largest distance, pixels, by which the grid's projection differs from SIN without slant. It grows with the distance from
+/// the reference.
 double bent_away(const SkyGrid& grid, const ImageGeometry& upright) {
+  if (grid.projection == Projection::sin && grid.slant == Plane{}) return 0;
   double most = 0;
   for (const DirectionCosines& at : upright.corners()) {
     const Plane point = projected(grid, at.l, at.m, 1 + n_minus_1(at));
-    const double bent = std::hypot(point[0] - at.l, point[1] - at.m) / upright.cell_rad;
+    const double bent = std::hypot(point[0] - at.l, point[1] - at.m) / std::min(upright.cell_rad, upright.cell_height_rad());
     most = bent <= most ? most : bent;  // NaN too
   }
-  return most;
+  return std::isnan(most) ? std::numeric_limits<double>::infinity() : most;
 }
 
-/// Says in words why the grid's axes are not those of an upright geometry.
+/// Says in words what most parts the grid's axes from those of an upright geometry.
 std::string turned_in_words(const SkyGrid& grid) {
-  const double angle_rad = grid.position_angle_rad();
+  const double angle_rad = grid.position_angle_rad(), width_rad = grid.column_step_rad(), height_rad = grid.row_step_rad();
+  const double turned = std::abs(std::sin(angle_rad)), oblong = std::abs(height_rad / width_rad - 1);
+  const double skewed =
+      std::abs(grid.step[0][0] * grid.step[0][1] + grid.step[1][0] * grid.step[1][1]) / (width_rad * height_rad);
+  constexpr double alike = 0.99;  // a skew of rows is a turn of rows
   if (grid.is_mirrored()) return "its pixels show the sky mirrored (CDELT1 or CDELT2 of the other sign)";
-  if (std::cos(angle_rad) < 0 || std::abs(std::sin(angle_rad)) * std::max(grid.width, grid.height) > same_place_pixels)
+  if (std::cos(angle_rad) < 0 || turned >= alike * std::max(oblong, skewed))
     return "its pixels are turned by " + six_digits(angle_rad * 180 / pi) + " degrees from north";
-  return "its pixels are " + arcseconds(grid.column_step_rad()) + "arcsec wide and " + arcseconds(grid.row_step_rad()) +
-         "arcsec high";
+  if (skewed > oblong)
+    return "the sides of its pixels are " + six_digits(std::asin(skewed) * 180 / pi) + " degrees from a right angle";
+  return "its pixels are " + arcseconds(width_rad) + "arcsec wide and " + arcseconds(height_rad) + "arcsec high";
 }
 
 }  // namespace
@@ -167,18 +170,33 @@ SkyGrid grid_of(const ImageGeometry& g) {
 }
 
 UprightGeometry upright_geometry(const SkyGrid& grid) {
+  constexpr double infinite = std::numeric_limits<double>::infinity(), rounding = 1e-9;  // pixels
   const std::string& frame = grid.reference.frame;
-  UprightGeometry upright{{grid.width, grid.height, grid.row_step_rad(), grid.reference}, ""};
+  UprightGeometry upright{{grid.width, grid.height, grid.column_step_rad(), grid.reference}, infinite, ""};
   ImageGeometry& g = upright.geometry;
-  g.centre = {(grid.reference_pixel.column - g.centre_column()) * g.cell_rad,
-              (g.centre_row() - grid.reference_pixel.row) * g.cell_rad};
-  if (frame != "ICRS" && frame != "FK5" && frame != "FK4")
+  const double aspect = grid.row_step_rad() / g.cell_rad;
+  const auto put_centre = [&] {
+    g.centre = {(grid.reference_pixel.column - g.centre_column()) * g.cell_rad,
+                (g.centre_row() - grid.reference_pixel.row) * g.cell_height_rad()};
+  };
+  put_centre();
+  if (frame != "ICRS" && frame != "FK5" && frame != "FK4") {
     upright.difference = "its directions are in " + frame + "; expected ICRS, FK5 (J2000) or FK4 (B1950)";
-  else if (!(turned_away(grid, g) < same_place_pixels))
+    return upright;
+  }
+  const double off_square = turned_away(grid, g);
+  if (off_square < same_place_pixels && std::abs(aspect - 1) * std::max(grid.width, grid.height) > rounding) {
+    g.pixel_aspect = aspect;
+    put_centre();
+  }
+  const double turned = turned_away(grid, g), bent = bent_away(grid, g);
+  upright.off_pixels = turned + bent;
+  if (!(upright.off_pixels > rounding)) return upright;
+  if (turned >= std::min(bent, same_place_pixels))
     upright.difference = turned_in_words(grid) + "; expected square pixels with north up and east on the left";
-  else if (const double bent = bent_away(grid, g); grid.projection != Projection::sin && !(bent < same_place_pixels))
+  else if (grid.projection != Projection::sin)
     upright.difference = "its projection is " + projection_name(grid.projection) + "; expected SIN";
-  else if (grid.slant != Plane{} && !(bent < same_place_pixels))
+  else
     upright.difference = "its SIN projection is slanted by " + six_digits(grid.slant[0]) + ", " + six_digits(grid.slant[1]) +
                          " (PV2_1 and PV2_2, or NCP); expected SIN without slant";
   return upright;
@@ -190,7 +208,7 @@ ImageGeometry geometry_on(const std::optional<SkyGrid>& grid, Grids wanted, cons
     throw std::invalid_argument(
         "it does not say where its pixels lie on the sky; expected right ascension and declination, in SIN");
   UprightGeometry upright = upright_geometry(*grid);
-  if (!upright.difference.empty())
+  if (!(upright.off_pixels < same_place_pixels))
     throw std::invalid_argument(upright.difference + "; regrid it first, as with CASA's imregrid");
   return upright.geometry;
 }

@@ -56,10 +56,16 @@ void set_pole(SkyGrid& grid, double longitude_rad);
 /// The grid of an image's pixels.
 SkyGrid grid_of(const ImageGeometry& geometry);
 
-/// The nearest that an ImageGeometry of square pixels in ICRS, FK5 or FK4 comes to a grid.
+/// How far pixels may lie from where an upright geometry has them, in pixels, for it to stand for a grid. What it does to
+/// predicted visibilities depends on how long baselines are.
+inline constexpr double same_place_pixels = 1e-3;
+
+/// The nearest that an ImageGeometry in ICRS, FK5 or FK4 comes to a grid: it has the grid's reference and its steps along
+/// columns and rows, in SIN, north up and east on the left.
 struct UprightGeometry {
   ImageGeometry geometry;
-  std::string difference;  ///< what the grid has instead, and what was expected; empty where pixels agree to a thousandth
+  double off_pixels = 0;   ///< between a pixel of the grid and that of the geometry, at most; infinite where they are not alike
+  std::string difference;  ///< what the grid has instead, above all, and what was expected; empty where pixels agree
 };
 UprightGeometry upright_geometry(const SkyGrid& grid);
 
@@ -67,8 +73,8 @@ UprightGeometry upright_geometry(const SkyGrid& grid);
 /// geometry holds their size alone.
 enum class Grids { upright, any };
 
-/// The geometry of an image of this size on this grid, or its size alone where any grid will do. Throws std::invalid_argument
-/// that says what the grid has and what was expected.
+/// The geometry of an image of this size on this grid, to same_place_pixels, or its size alone where any grid will do. Throws
+/// std::invalid_argument that says what the grid has and what was expected.
 ImageGeometry geometry_on(const std::optional<SkyGrid>& grid, Grids wanted, const ImageGeometry& size);
 
 /// A turn of the sphere that takes the unit vectors of one frame, (cos dec cos ra, cos dec sin ra, sin dec), to those of

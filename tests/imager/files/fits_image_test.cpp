@@ -186,16 +186,19 @@ BOOST_AUTO_TEST_CASE(an_image_off_the_phase_centre_comes_back_where_it_was) {
   const TemporaryFolder folder;
   SkyImage sky = example();
   const double cell = sky.geometry.cell_rad;
-  for (const auto& [l, m] : {std::pair(2 * cell, -3 * cell), {0.4 * cell, 0.7 * cell}, {-0.31, 0.22}, {0.5, 0.0}}) {
-    sky.geometry.centre = {l, m};
-    write_fits(sky, folder / "a.fits", PixelFormat::float32);
-    const ImageGeometry read = read_fits(folder / "a.fits").geometry;
-    // 15 digits of CRPIX and CDELT are written: each is right to 5e-15.
-    BOOST_TEST(std::abs(read.centre.l - l) < 2e-14 * (std::abs(l) + 7 * cell));
-    BOOST_TEST(std::abs(read.centre.m - m) < 2e-14 * (std::abs(m) + 7 * cell));
-    BOOST_TEST(std::abs(read.phase_centre.ra_rad / sky.geometry.phase_centre.ra_rad - 1) < 1e-14);
-    BOOST_TEST(std::abs(read.phase_centre.dec_rad / sky.geometry.phase_centre.dec_rad - 1) < 1e-14);
-  }
+  for (const double aspect : {1.0, 1.00001})
+    for (const auto& [l, m] : {std::pair(2 * cell, -3 * cell), {0.4 * cell, 0.7 * cell}, {-0.31, 0.22}, {0.5, 0.0}}) {
+      sky.geometry.centre = {l, m};
+      sky.geometry.pixel_aspect = aspect;
+      write_fits(sky, folder / "a.fits", PixelFormat::float32);
+      const ImageGeometry read = read_fits(folder / "a.fits").geometry;
+      // 15 digits of CRPIX and CDELT are written: each is right to 5e-15.
+      BOOST_TEST(std::abs(read.centre.l - l) < 2e-14 * (std::abs(l) + 7 * cell));
+      BOOST_TEST(std::abs(read.centre.m - m) < 2e-14 * (std::abs(m) + 7 * cell));
+      BOOST_TEST(std::abs(read.pixel_aspect / aspect - 1) < 2e-14);
+      BOOST_TEST(std::abs(read.phase_centre.ra_rad / sky.geometry.phase_centre.ra_rad - 1) < 1e-14);
+      BOOST_TEST(std::abs(read.phase_centre.dec_rad / sky.geometry.phase_centre.dec_rad - 1) < 1e-14);
+    }
 }
 
 BOOST_AUTO_TEST_CASE(an_image_on_the_phase_centre_comes_back_exactly_there) {

@@ -144,7 +144,7 @@ BOOST_AUTO_TEST_CASE(a_pole_at_another_native_longitude_turns_the_axes) {
     // Rows count up towards the native longitude of the pole, where north is.
     grid.step = {{{cosine * 1e-3, sine * 1e-3}, {sine * 1e-3, -cosine * 1e-3}}};
     set_pole(grid, pole_deg * degree);
-    BOOST_TEST(upright_geometry(grid).difference == "");
+    BOOST_TEST(upright_geometry(grid).off_pixels < 1e-11);
   }
 }
 
@@ -153,6 +153,7 @@ BOOST_AUTO_TEST_CASE(the_grid_of_an_image_is_that_image) {
     if (g.pixel_aspect != 1) continue;
     const UprightGeometry upright = upright_geometry(grid_of(g));
     BOOST_TEST(upright.difference == "");
+    BOOST_TEST(upright.off_pixels < rounding(g));
     BOOST_TEST((upright.geometry.width == g.width && upright.geometry.height == g.height));
     BOOST_TEST(upright.geometry.cell_rad == g.cell_rad);
     BOOST_TEST(std::abs(upright.geometry.centre.l - g.centre.l) < 1e-15);
@@ -161,7 +162,7 @@ BOOST_AUTO_TEST_CASE(the_grid_of_an_image_is_that_image) {
   }
 }
 
-BOOST_AUTO_TEST_CASE(another_projection_is_that_of_an_image_as_long_as_no_pixel_moves_by_a_thousandth) {
+BOOST_AUTO_TEST_CASE(another_projection_is_as_far_from_an_image_as_its_farthest_corner) {
   for (const double cell_arcsec : {0.01, 0.1, 1.0, 10.0, 60.0})
     for (const int size : {16, 128, 1024}) {
       const ImageGeometry g{size, size, cell_arcsec * arcsec, {1, 0.3, "FK5"}};
@@ -169,10 +170,43 @@ BOOST_AUTO_TEST_CASE(another_projection_is_that_of_an_image_as_long_as_no_pixel_
       grid.projection = Projection::tan;
       const double sine = std::hypot(g.l(0), g.m(0));  // of the farthest corner
       const double moved = (std::tan(std::asin(sine)) - sine) / g.cell_rad;
-      const std::string difference = upright_geometry(grid).difference;
-      BOOST_TEST((difference == "") == (moved < 1e-3));
-      if (moved >= 1e-3) BOOST_TEST(difference == "its projection is TAN; expected SIN");
+      const UprightGeometry upright = upright_geometry(grid);
+      BOOST_TEST(std::abs(upright.off_pixels - moved) < rounding(g) + 1e-6 * moved);
+      BOOST_TEST(upright.difference == (moved > 1e-9 ? "its projection is TAN; expected SIN" : ""));
+      const auto open = [&] { return geometry_on(grid, Grids::upright, g); };
+      if (moved < same_place_pixels)
+        BOOST_TEST(open().width == size);
+      else
+        BOOST_CHECK_THROW(open(), std::invalid_argument);
     }
+}
+
+BOOST_AUTO_TEST_CASE(no_pixel_lies_farther_from_the_geometry_of_a_grid_than_is_told) {
+  const ImageGeometry g{65, 48, 20 * arcsec, {1, 0.3, "FK5"}, {3e-3, -2e-3}};
+  const auto check = [&](const auto& change) {
+    SkyGrid grid = grid_of(g);
+    change(grid);
+    const UprightGeometry upright = upright_geometry(grid);
+    const double is = farthest(GridMap(upright.geometry, grid), g, [](int row, int column) {
+      return PixelPlace{double(column), double(row)};
+    });
+    BOOST_TEST(is < upright.off_pixels * (1 + 1e-6) + rounding(g));
+    BOOST_TEST(is > 0.3 * upright.off_pixels - rounding(g));  // two may lie in other directions
+    BOOST_TEST((upright.difference == "") == (upright.off_pixels < 1e-9));
+    return upright.off_pixels;
+  };
+  for (const double size : {1e-9, 1e-7, 1e-5}) {
+    BOOST_TEST(check([&](SkyGrid& grid) { set_pole(grid, M_PI + size); }) > 30 * size);
+    BOOST_TEST(check([&](SkyGrid& grid) { grid.step[0][1] += size * g.cell_rad; }) > 20 * size);
+    BOOST_TEST(check([&](SkyGrid& grid) { grid.slant = {size, -3 * size}; }) > 0.01 * size);
+    // Cells of other sizes, and a reference elsewhere, are an image's own.
+    BOOST_TEST(check([&](SkyGrid& grid) { grid.step[1][1] *= 1 + size; }) < rounding(g));
+    BOOST_TEST(check([&](SkyGrid& grid) {
+                 for (auto& steps : grid.step)
+                   for (double& step : steps) step *= 1 + size;
+               }) < rounding(g));
+    BOOST_TEST(check([&](SkyGrid& grid) { grid.reference_pixel.column += size; }) < rounding(g));
+  }
 }
 
 BOOST_AUTO_TEST_CASE(what_no_image_has_is_named_with_its_value) {
