@@ -1,5 +1,6 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <array>
 #include <cstdio>
 #include <memory>
 
@@ -21,6 +22,7 @@
 #include "tools/formats/model_image.h"
 #include "tools/kernel_choice/kernel_choice.h"
 #include "tools/run/data_columns.h"
+#include "tools/run/phased_set.h"
 #include "tools/run/selection_options.h"
 #include "tools/run/shared_prediction.h"
 
@@ -34,7 +36,7 @@ struct PredictOptions {
   bool subtract = false;
   std::string datacolumn;   ///< empty: DATA
   std::string column;       ///< empty: what column_of() says
-  std::string phasecenter;  ///< as ms_io::phased_to() takes it; empty: see phased_set()
+  std::string phasecenter;  ///< as ms_io::phased_to() takes it; empty: see set_for_image()
   ms_io::Selection selection;
   double accuracy = 1e-6;
   bool accuracy_is_typed = false;
@@ -53,51 +55,13 @@ struct NamedModel {
   std::vector<std::string> remarks;
 };
 
-/// What the model is predicted for, and what users should know of that.
-struct PhasedSet {
-  std::unique_ptr<ms_io::MeasurementSet> set;
-  std::vector<std::string> remarks;
-};
-
-/// This rank's part of the set, phased to where the model is. Directions on the sky, in a list or the header of an image, stand
-/// still where a field moves; offsets from the phase centre, and images of what a field follows, move along.
-PhasedSet phased_set(const PredictOptions& o, const imager::Ranks& ranks) {
-  const auto open = [&](const ms_io::Selection& selection) {
-    PhasedSet phased{ms_io::MeasurementSet(o.vis, selection, "").share(ranks), {}};
-    phased.remarks = phased.set->remarks();
-    return phased;
-  };
-  if (!o.phasecenter.empty()) return open(ms_io::phased_to(o.selection, o.phasecenter, o.vis));
-  using Moving = ms_io::Selection::Moving;
-  ms_io::Selection selection = o.selection;
-  if (o.components.empty() || lists_directions(o.components)) selection.moving = Moving::shifted_to_middle;
-  PhasedSet phased = open(selection);
-  selection.phase_centre = phased.set->selection().phase_centre;
-  if (o.model.empty() || !selection.phase_centre) return phased;
-  const auto file = open_image_file(o.model);
-  if (!file->header().observation.moving_at.empty()) return open(o.selection);
-  selection.phase_centre = file->header().geometry.phase_centre;
-  return {open(selection).set, phased.remarks};
-}
-
-/// Where an image has to be centred for this set. One that moves along is centred on where the field was in the middle of
-/// another run.
-imager::SkyDirection centre_expected(const PredictOptions& o, const ms_io::MeasurementSet& set) {
-  const auto file = open_image_file(o.model);
-  const imager::ImageHeader& header = file->header();
-  if (!set.observation().moving_at.empty()) return header.geometry.phase_centre;
-  if (header.observation.moving_at.empty()) return set.observation().phase_centre;
-  throw std::runtime_error(o.model + " moves along with its field (TRACKFLD is " + header.observation.moving_at +
-                           "), and what is selected of " + o.vis +
-                           " is phased to a direction; expected a field that moves, or an image that stands still");
-}
-
 NamedModel image_model(const PredictOptions& o, const ms_io::MeasurementSet& set, int threads) {
   imager::GriddingRequest request;
   request.kernel = choose_kernel(o.kernel);
   request.accuracy = is_kernel_file(o.kernel) && !o.accuracy_is_typed ? 0 : o.accuracy;
   request.threads = threads;
-  const std::vector<imager::SkyImage> planes = read_stokes_model(o.model, centre_expected(o, set));
+  const auto file = open_image_file(o.model);
+  const std::vector<imager::SkyImage> planes = read_stokes_model(*file, o.model);
   StokesPlanes model{};
   NamedModel named;
   named.fingerprint.add(o.kernel.name).add(std::vector<double>{request.accuracy});
@@ -108,7 +72,8 @@ NamedModel image_model(const PredictOptions& o, const ms_io::MeasurementSet& set
     const auto add_to = [&](ms_io::Fingerprint& fingerprint) {
       return fingerprint.add(stokes_name(plane.stokes))
           .add(plane.image.pixel)
-          .add(std::vector<double>{plane.geometry.cell_rad, plane.geometry.centre.l, plane.geometry.centre.m})
+          .add(std::vector<double>{plane.geometry.cell_rad, plane.geometry.pixel_aspect, plane.geometry.centre.l,
+                                   plane.geometry.centre.m})
           .value();
     };
     add_to(named.fingerprint);
@@ -116,8 +81,9 @@ NamedModel image_model(const PredictOptions& o, const ms_io::MeasurementSet& set
     named.model += add_to(alone);
   }
   named.visibilities = image_visibilities(model, planes.front().geometry, request, set);
-  if (std::string warning = band_warning(planes.front().observation, set.observation(), o.model); !warning.empty())
-    named.remarks.push_back(std::move(warning));
+  for (std::string& warning : std::array{band_warning(planes.front().observation, set.observation(), o.model),
+                                         misplacement_warning(*file, o.model, set, o.accuracy)})
+    if (!warning.empty()) named.remarks.push_back(std::move(warning));
   return named;
 }
 
@@ -175,7 +141,9 @@ std::string command_of(const PredictOptions& o) {
 /// Of this rank.
 NamedModel read_model(const PredictOptions& o, const imager::Ranks& ranks) {
   const int threads = o.threads == 0 ? imager::available_threads(ranks.on_these_cores()) : o.threads;
-  const PhasedSet phased = phased_set(o, ranks);
+  const PhasedSetRequest request{o.vis, o.phasecenter, o.selection, o.accuracy};
+  const PhasedSet phased =
+      o.model.empty() ? set_for_components(request, o.components, ranks) : set_for_image(request, o.model, ranks);
   NamedModel model = o.model.empty() ? component_model(o, *phased.set, threads) : image_model(o, *phased.set, threads);
   model.selection = phased.set->selection();
   model.remarks.insert(model.remarks.begin(), phased.remarks.begin(), phased.remarks.end());
@@ -223,7 +191,7 @@ void add_predict_command(CLI::App& program, const imager::Ranks& ranks) {
   command
       ->add_option(
           "--model", o->model,
-          "FITS or CASA image in Jy/pixel whose reference position is the phase centre; its STOKES axis may hold I, Q, U and "
+          "FITS or CASA image in Jy/pixel, predicted where its header has it on the sky; its STOKES axis may hold I, Q, U and "
           "V. Of one Taylor term: names with .tt0, .tt1, …, and headers with NTERMS above 1, are refused")
       ->type_name(file_type);
   command

@@ -48,14 +48,13 @@ void require_header(const imager::ImageHeader& header) {
 
 /// As the first plane of the image, or as each of its planes.
 void require_models(const std::string& path) {
-  const imager::SkyDirection centre = image().geometry.phase_centre;
   const auto file = read_or_refused(path, [&] { return tools::open_image_file(path); });
   if (!file) return;
   require_header((*file)->header());
   for (int channel = 0; channel < 3; ++channel) {
     const auto planes = read_or_refused(path, [&] {
-      return tools::read_model_channel(
-          **file, {path, tools::channel_for(**file, "start model " + path, image().spectral, channel)}, centre);
+      return tools::read_model_channel(**file,
+                                       {path, tools::channel_for(**file, "start model " + path, image().spectral, channel)});
     });
     for (std::size_t i = 0; planes && i < planes->size(); ++i)
       require((*planes)[i].image.pixel.size() == (*planes)[i].geometry.pixels(), "a model has the pixels that it says");
@@ -83,7 +82,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const InputFile file(data, size, "a.fits");
   require_mask(file.path());
   require_models(file.path());
-  read_or_refused(file.path(), [&] { return tools::read_stokes_model(file.path(), image().geometry.phase_centre); });
+  read_or_refused(file.path(), [&] { return tools::read_stokes_model(*tools::open_image_file(file.path()), file.path()); });
   require_written_again(file);
   return 0;
 }

@@ -160,7 +160,9 @@ BOOST_AUTO_TEST_CASE(a_kernel_file_must_be_whole_and_is_padded_as_it_needs) {
   bytes[bytes.size() - 2880 + 3] ^= 1;
   std::ofstream(text, std::ios::binary) << bytes;
   scene.unusable("--kernel", text, "does not match its checksum");
-  check_refused({"predict", "--vis", snapshot(), "--model", file, "--kernel", text}, 1, {text, "checksum"}, scene.out);
+  succeed(small_image(snapshot(), scene.folder / "m"));
+  check_refused({"predict", "--vis", snapshot(), "--model", scene.folder / "m.residual.fits", "--kernel", text}, 1,
+                {text, "checksum"}, scene.out);
 }
 
 BOOST_AUTO_TEST_CASE(nothing_left_after_flags_says_what_became_of_the_samples) {
@@ -255,7 +257,7 @@ BOOST_AUTO_TEST_CASE(a_set_that_exists_is_not_simulated_again) {
   check_refused({"simulate", "--output", scene.out + "/x.ms", "--sky", scene.folder / "none.csv"}, 1, {"none.csv"}, scene.out);
 }
 
-BOOST_AUTO_TEST_CASE(a_model_must_be_an_image_on_the_phase_centre) {
+BOOST_AUTO_TEST_CASE(a_model_must_be_an_image_and_lie_where_the_phase_centre_given_is) {
   const Scene scene;
   const TemporaryFolder folder;
   const std::string set = copy_of_snapshot(folder);
@@ -266,7 +268,8 @@ BOOST_AUTO_TEST_CASE(a_model_must_be_an_image_on_the_phase_centre) {
   misfit::imager::SkyImage model = misfit::imager::read_fits(folder / "a.model.fits");
   model.geometry.phase_centre.ra_rad += 0.01;
   misfit::imager::write_fits(model, folder / "moved.fits", misfit::imager::PixelFormat::float32);
-  check_refused(predict(folder / "moved.fits"), 1, {"moved.fits is centred on", "expected the phase centre"}, set);
+  check_refused(predict(folder / "moved.fits") + Arguments{"--phasecenter", "0"}, 1,
+                {"moved.fits is centred on", "expected the --phasecenter given"}, set);
   check_refused(predict(folder / "a.model.fits") + Arguments{"--column", "DATA"}, 1, {"DATA"}, set);
 }
 

@@ -280,6 +280,37 @@ BOOST_AUTO_TEST_CASE(a_mask_that_says_nothing_of_the_sky_is_laid_pixel_by_pixel_
   });
 }
 
+BOOST_AUTO_TEST_CASE(a_mask_that_moves_along_lies_about_the_field_wherever_that_was) {
+  const TemporaryFolder folder;
+  const std::string path = folder / "mask.fits";
+  imager::ImageHeader still, moving;
+  still.geometry = moving.geometry = image;
+  moving.observation.moving_at = "2026-01-31T12:00:00.0";
+  for (const double elsewhere : {0.0, 1e-3, 2.0})
+    for (const int right : {0, 5}) {
+      Mask mask = same;
+      mask.reference.ra_rad += elsewhere;
+      mask.reference.dec_rad -= 0.1 * elsewhere;
+      mask.centre[0] += right;
+      mask.cards = {{"TRACKFLD", "'2026-01-30T07:00:00.0'"}};
+      write_stated_fits(path, mask.pixels(), mask.header());
+      const MaskFile file(path, moving);
+      BOOST_TEST(file.doubts().size() == (right == 0 ? 0U : 1U));
+      const imager::Image is = file.mask({0, 0});
+      for (int row = 0; row < image.height; ++row)
+        for (int column = 0; column + right < image.width; ++column)
+          BOOST_REQUIRE(is.at(row, column) == mask.pixels().at(row, column + right));
+      BOOST_CHECK_EXCEPTION(MaskFile(path, still), std::runtime_error, [](const std::exception& error) {
+        return std::string(error.what()).find("moves along with its field (TRACKFLD is 2026-01-30T07:00:00.0), expected one") !=
+               std::string::npos;
+      });
+    }
+  write_stated_fits(path, same.pixels(), same.header());
+  BOOST_TEST(MaskFile(path, still).doubts().empty());
+  BOOST_REQUIRE(MaskFile(path, moving).doubts().size() == 1U);
+  BOOST_TEST(MaskFile(path, moving).doubts().front().find("the image moves along with its field, and the mask") == 0U);
+}
+
 BOOST_AUTO_TEST_CASE(components_are_found_where_the_masks_coordinates_have_it) {
   const TemporaryFolder folder;
   succeed(small_image(snapshot(), folder / "dirty"));

@@ -188,13 +188,36 @@ BOOST_AUTO_TEST_CASE(what_moves_and_what_stands_still_are_not_taken_for_each_oth
   const std::string copy = moving.folder / "start.fits";
   std::filesystem::copy(model, copy);
   const std::string start = refused(moving.fixed() + Arguments{"--niter", "1", "--startmodel", copy}).err;
-  BOOST_TEST(start.find("moves along with its field, expected one that stands still") != std::string::npos, start);
+  BOOST_TEST(start.find("), expected one that stands still, as this image does") != std::string::npos, start);
   const std::string body = refused(moving.image() + Arguments{"--phasecenter", "JUPITER"}).err;
   BOOST_TEST(body.find("'JUPITER' is a body of the solar system") != std::string::npos, body);
   BOOST_TEST(body.find("TRACKFIELD") != std::string::npos, body);
   const std::string none =
       refused({"predict", "--vis", still, "--components", moving.folder / "fixed.csv", "--phasecenter", "TRACKFIELD"}).err;
   BOOST_TEST(none.find("no selected field of " + still + " moves") != std::string::npos, none);
+}
+
+BOOST_AUTO_TEST_CASE(masks_and_start_models_of_another_part_of_the_way_move_along) {
+  const MovingSet moving(Path::rate);
+  const auto [first_s, last_s] = time_range_s(moving.set);
+  const auto minute = static_cast<int>(std::fmod(0.5 * (first_s + last_s), day_s) / 60);
+  char middle[32];
+  std::snprintf(middle, sizeof middle, "%02d:%02d:00", minute / 60, minute % 60);
+  const Arguments points = moving.image() + Arguments{"--niter", "1", "--gain", "1"};
+  succeed(points + Arguments{"--timerange", "<" + std::string(middle)});
+  imager::SkyImage model = imager::read_fits(moving.folder / "a.model.fits");
+  for (double& pixel : model.image.pixel) pixel = 0;
+  model.image.at(70, 50) = 1;
+  const std::string copy = moving.folder / "m.fits";
+  imager::write_fits(model, copy, imager::PixelFormat::float32);
+  const Arguments later{"--timerange", ">" + std::string(middle)};
+  for (const char* option : {"--mask", "--startmodel"}) {
+    succeed(points + later + Arguments{option, copy});
+    BOOST_TEST(pixels_of(moving.folder / "a", "model").at(70, 50) != 0, option);
+    BOOST_TEST(!warns(moving.folder / "a", copy));
+  }
+  const std::string mask = refused(moving.fixed() + Arguments{"--niter", "1", "--mask", copy}).err;
+  BOOST_TEST(mask.find("mask " + copy + " moves along with its field") != std::string::npos, mask);
 }
 
 BOOST_AUTO_TEST_CASE(fields_of_which_one_moves_predict_about_a_direction_that_is_given) {

@@ -14,8 +14,10 @@ namespace misfit::tools {
 namespace {
 
 std::string described(const imager::SpectralAxis& axis) {
-  return std::to_string(axis.channels) + " planes of " + significant(axis.width_hz(), 6) + " Hz from " +
-         significant(axis.reference_hz, 9) + " Hz on" + (axis.frame.empty() ? "" : " in " + axis.frame);
+  const std::string first = significant(axis.reference_hz, 9) + " Hz", frame = axis.frame.empty() ? "" : " in " + axis.frame;
+  if (axis.channels == 1) return "plane of " + significant(axis.width_hz(), 6) + " Hz at " + first + frame;
+  return std::to_string(axis.channels) + " planes, " + significant(axis.increment_hz, 6) + " Hz apart, from " + first + " on" +
+         frame;
 }
 
 bool same_planes(const imager::SpectralAxis& a, const imager::SpectralAxis& b) {
@@ -38,6 +40,11 @@ int channel_for(const imager::ImageReader& file, const std::string& path, const 
   if (!same_planes(has, axis))
     throw std::runtime_error(path + " has " + described(has) + "; expected one plane, or the image's " + described(axis));
   return channel;
+}
+
+bool bands_apart(const imager::Observation& file, const imager::Observation& data) {
+  const double gap_hz = std::abs(file.frequency_hz - data.frequency_hz) - 0.5 * (file.bandwidth_hz + data.bandwidth_hz);
+  return file.bandwidth_hz > 0 && data.frequency_hz > 0 && gap_hz > 1e-3 * data.frequency_hz;
 }
 
 double cosine_distance(const imager::SkyDirection& one, const imager::SkyDirection& other) {

@@ -50,7 +50,7 @@ MaskFile::MaskFile(const std::string& path, imager::ImageHeader image) : image_(
   }
   file_ = open_image_file(path, imager::Grids::any);
   const imager::ImageHeader& has = file_->header();
-  placement_.emplace(*file_, path, image_.geometry);
+  placement_.emplace(*file_, path, image_);
   channel_for(*file_, "mask " + path, image_.spectral, 0);
   for (const imager::Stokes wanted : image_.stokes)
     if (has.stokes.size() > 1 && std::find(has.stokes.begin(), has.stokes.end(), wanted) == has.stokes.end())

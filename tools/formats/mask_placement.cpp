@@ -1,15 +1,11 @@
 #include "tools/formats/mask_placement.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <numeric>
 #include <stdexcept>
-#include <vector>
 
 #include "imager/clean/mask.h"
-#include "ms_io/celestial_frames.h"
-#include "tools/base/numbers.h"
+#include "tools/formats/grid_offset.h"
 
 namespace misfit::tools {
 namespace {
@@ -24,73 +20,15 @@ constexpr double same_pixel = 0.01, nearest_pixel = 0.45;
 /// Of two pixels as near, the one to the right or above: rounding does not choose.
 constexpr double tie = 1e-6;
 
-/// Takes directions from the frame of the image to another. Frames are turns of each other, but that the terms of aberration in
-/// FK4 shift directions by up to 0.35″: about the middle of the image they leave 1.7e-6 of the distance from it, or 0.014
-/// pixels where it is 16384 wide.
-imager::FrameRotation rotation_to(const std::string& frame, const ImageGeometry& image) {
-  if (frame == image.phase_centre.frame) return {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
-  const imager::SkyDirection middle =
-      imager::beyond_horizon(image.centre) ? image.phase_centre : imager::sky_direction(image.centre, image.phase_centre);
-  const imager::SkyDirection north = imager::sky_direction({0, 1e-3}, middle);
-  return imager::rotation_between({middle, north}, {ms_io::in_frame(middle, frame), ms_io::in_frame(north, frame)});
-}
-
-/// How the pixels of an image lie beside those of a grid: whole pixels (right, up) away from their own numbers, but for so
-/// much.
-struct Offset {
-  bool any = false;  ///< whether the grid has a place for one of them
-  bool all = true;   ///< for each
-  double right = 0, up = 0;
-  double most = 0;  ///< pixels
-};
-
-Offset offset_at(const imager::GridMap& map, const std::vector<int>& rows, const std::vector<int>& columns) {
-  Offset offset;
-  for (const int row : rows)
-    for (const int column : columns) {
-      const PixelPlace place = map(row, column);
-      if (!std::isfinite(place.column) || !std::isfinite(place.row)) {
-        offset.all = false;
-        continue;
-      }
-      const double right = place.column - column, up = place.row - row;
-      if (!offset.any) offset = {true, offset.all, std::round(right), std::round(up), 0};
-      offset.most = std::max({offset.most, std::abs(right - offset.right), std::abs(up - offset.up)});
-    }
-  return offset;
-}
-
-/// A projection departs from another most at the edges, unless they lie beyond the horizon.
-Offset offset_between(const imager::GridMap& map, const ImageGeometry& image) {
-  const Offset edges = offset_at(map, {0, image.centre_row(), image.height - 1}, {0, image.centre_column(), image.width - 1});
-  if (edges.all) return edges;
-  std::vector<int> rows(static_cast<std::size_t>(image.height)), columns(static_cast<std::size_t>(image.width));
-  std::iota(rows.begin(), rows.end(), 0);
-  std::iota(columns.begin(), columns.end(), 0);
-  return offset_at(map, rows, columns);
-}
-
-std::string described(const SkyGrid& grid) {
-  const auto degrees = [](double angle_rad) { return angle_rad * 180 / M_PI; };
-  const double angle = degrees(grid.position_angle_rad());
-  std::string text = significant(3600 * degrees(grid.column_step_rad()), 6) + "arcsec × " +
-                     significant(3600 * degrees(grid.row_step_rad()), 6) + "arcsec, " +
-                     imager::projection_name(grid.projection) + " about " + sexagesimal(grid.reference) + " (" +
-                     grid.reference.frame + ")";
-  if (std::abs(angle) > 1e-9) text += ", turned by " + significant(angle, 6) + " degrees";
-  if (grid.is_mirrored()) text += ", mirrored";
-  if (grid.slant != std::array<double, 2>{}) text += ", slanted";
-  return text;
-}
-
 std::string size_text(int width, int height) {
   return std::to_string(width) + " × " + std::to_string(height);
 }
 
 }  // namespace
 
-MaskPlacement::MaskPlacement(const imager::ImageReader& file, const std::string& path, const ImageGeometry& image)
-    : image_(image), width_(file.header().geometry.width), height_(file.header().geometry.height) {
+MaskPlacement::MaskPlacement(const imager::ImageReader& file, const std::string& path, const imager::ImageHeader& of)
+    : image_(of.geometry), width_(file.header().geometry.width), height_(file.header().geometry.height) {
+  const ImageGeometry& image = image_;
   if (!file.grid()) {
     if (width_ != image.width || height_ != image.height)
       throw std::runtime_error("mask " + path + " of " + size_text(width_, height_) +
@@ -99,9 +37,10 @@ MaskPlacement::MaskPlacement(const imager::ImageReader& file, const std::string&
     sentence_ = "the mask " + path + " does not say where it lies on the sky: it is laid on the image pixel by pixel";
     return;
   }
-  const SkyGrid& grid = *file.grid();
-  map_.emplace(image, grid, rotation_to(grid.reference.frame, image));
-  const Offset offset = offset_between(*map_, image);
+  const GridBeside beside(file, "mask " + path, of);
+  const SkyGrid& grid = beside.grid();
+  map_ = beside.map();
+  const GridOffset offset = offset_between(*map_, image);
   const bool on_pixels = offset.any && offset.most < nearest_pixel && std::abs(offset.right) < 1e9 && std::abs(offset.up) < 1e9;
   if (on_pixels) {
     map_.reset();
@@ -119,6 +58,7 @@ MaskPlacement::MaskPlacement(const imager::ImageReader& file, const std::string&
     sentence_ = "the mask " + path + " of " + size_text(width_, height_) + " pixels begins at column " +
                 std::to_string(-right_) + ", row " + std::to_string(-up_) +
                 " of the image, where its coordinates have it: pixels beside it are not cleaned";
+  if (!beside.remark().empty()) sentence_ = beside.remark() + (sentence_.empty() ? "" : "; " + sentence_);
 }
 
 std::int64_t MaskPlacement::nearest(int row, int column) const {

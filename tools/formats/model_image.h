@@ -20,10 +20,10 @@ namespace misfit::tools {
 /// and what can be done.
 void refuse_taylor_term(const imager::ImageReader& file, const std::string& path);
 
-/// A model of one frequency, a FITS or CASA image in Jy/pixel whose reference position is `centre`, with a finite number in
-/// every pixel above the horizon: a plane for each Stokes parameter that the file holds. Throws std::runtime_error that names
-/// the file and what was expected, and what refuse_taylor_term() does.
-std::vector<imager::SkyImage> read_stokes_model(const std::string& path, const imager::SkyDirection& centre);
+/// A model of one frequency, an image in Jy/pixel with a finite number in every pixel above the horizon, from the file at
+/// `path`: a plane for each Stokes parameter that it holds. Throws std::runtime_error that names the file and what was
+/// expected, and what refuse_taylor_term() does.
+std::vector<imager::SkyImage> read_stokes_model(const imager::ImageReader& file, const std::string& path);
 
 /// A channel of a file of this name.
 struct ModelChannel {
@@ -32,12 +32,16 @@ struct ModelChannel {
 };
 
 /// The same of one channel of a model with several; see channel_for() in image_file.h.
-std::vector<imager::SkyImage> read_model_channel(const imager::ImageReader& file, const ModelChannel& of,
-                                                 const imager::SkyDirection& centre);
+std::vector<imager::SkyImage> read_model_channel(const imager::ImageReader& file, const ModelChannel& of);
 
-/// That the model at `path` is of other frequencies than the data, in words; empty where the bands meet, but for a thousandth
-/// that frames shift them by, or the model states none.
+/// That the model at `path` is of other frequencies than the data, in words; empty where it is not, see bands_apart().
 std::string band_warning(const imager::Observation& model, const imager::Observation& data, const std::string& path);
+
+/// What is wrong by at most with visibilities of `set` that are predicted from the file's pixels, in words, where they do not
+/// lie on an upright grid in SIN (see imager::UprightGeometry) but near enough to be taken for that: 2π · baseline · distance,
+/// as a part of the model's flux. Empty where that is far below the accuracy asked.
+std::string misplacement_warning(const imager::ImageReader& file, const std::string& path, const ms_io::MeasurementSet& set,
+                                 double accuracy);
 
 /// A model as an operator from coordinates to visibilities.
 struct ModelVisibilities {

@@ -13,6 +13,7 @@
 #include "tools/base/interrupt.h"
 #include "tools/base/numbers.h"
 #include "tools/formats/clean_state_file.h"
+#include "tools/formats/grid_offset.h"
 #include "tools/formats/image_file.h"
 #include "tools/formats/mask_file.h"
 #include "tools/formats/model_image.h"
@@ -48,7 +49,10 @@ void CleanStage::begin_channel(int channel) {
 std::vector<std::string> CleanStage::words_on_files() const {
   std::vector<std::string> words;
   if (mask_file_) words = mask_file_->doubts();
-  if (start_file_) words.push_back(band_warning(start_file_->header().observation, image_.observation, o_.startmodel));
+  if (start_file_) {
+    words.push_back(band_warning(start_file_->header().observation, image_.observation, o_.startmodel));
+    words.push_back(GridBeside(*start_file_, "start model " + o_.startmodel, image_).remark());
+  }
   words.erase(std::remove(words.begin(), words.end(), ""), words.end());
   return words;
 }
@@ -92,21 +96,17 @@ void CleanStage::refuse_start_model(const std::string& has, const std::string& e
 
 void CleanStage::read_start_model() {
   const imager::ImageGeometry &own = image_.geometry, &g = start_file_->header().geometry;
-  const double cell_off = std::abs(g.cell_rad / own.cell_rad - 1) * std::max(g.width, g.height);
   const auto size = [](int width, int height) { return std::to_string(width) + " × " + std::to_string(height) + " pixels"; };
   if (g.width != own.width || g.height != own.height)
     refuse_start_model("has " + size(g.width, g.height), size(own.width, own.height));
-  if (!(cell_off < 1e-3))
-    refuse_start_model("has pixels of " + significant(g.cell_rad * 180 / M_PI * 3600, 6) + "arcsec", o_.cell);
-  if (!start_file_->header().observation.moving_at.empty() && image_.observation.moving_at.empty())
-    refuse_start_model("moves along with its field", "one that stands still, as this image does");
-  if (g.off_phase_centre()) {
-    const imager::PixelPlace at = imager::grid_of(g).reference_pixel;  // counted from 1 in files
-    refuse_start_model("has its reference pixel at " + significant(at.column + 1, 9) + ", " + significant(at.row + 1, 9),
-                       std::to_string(g.centre_column() + 1) + ", " + std::to_string(g.centre_row() + 1));
-  }
+  const GridBeside beside(*start_file_, "start model " + o_.startmodel, image_);
+  const GridOffset offset = offset_between(beside.map(), own);
+  // A start is put on the image's own pixels, about which its residual is then exact.
+  if (!offset.any || offset.right != 0 || offset.up != 0 || !(offset.most < imager::same_place_pixels))
+    refuse_start_model("has other pixels, " + described(beside.grid()),
+                       "the image's, " + described(imager::grid_of(own)) + "; regrid it first, as with CASA's imregrid");
   const int channel = channel_for(*start_file_, "start model " + o_.startmodel, image_.spectral, channel_);
-  std::vector<imager::SkyImage> planes = read_model_channel(*start_file_, {o_.startmodel, channel}, own.phase_centre);
+  std::vector<imager::SkyImage> planes = read_model_channel(*start_file_, {o_.startmodel, channel});
   start_model_.clear();
   for (const imager::Stokes wanted : image_.stokes) {
     const auto found = std::find_if(planes.begin(), planes.end(), [&](const auto& plane) { return plane.stokes == wanted; });

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <string>
+
+#include "imager/files/image_header.h"
+#include "imager/files/image_reader.h"
+#include "imager/files/sky_grid.h"
+
+namespace misfit::tools {
+
+/// An image in a file beside one of the run, as both state where they lie.
+class GridBeside {
+ public:
+  /// `what` names the file: "mask a.fits", which says where it lies on the sky. Where both move along with their fields
+  /// (Observation::moving_at), each counts from where its own field was. Throws std::runtime_error where the file moves along
+  /// and the image stands still.
+  GridBeside(const imager::ImageReader& file, const std::string& what, const imager::ImageHeader& image);
+
+  /// Where the file's pixels lie beside the image, which may be elsewhere than the file says.
+  const imager::SkyGrid& grid() const { return grid_; }
+  /// Where the pixels of the image lie among those of the file, in whatever frame.
+  const imager::GridMap& map() const { return map_; }
+  /// What the user should know where the image moves along and the file does not say so; else empty.
+  const std::string& remark() const { return remark_; }
+
+ private:
+  imager::SkyGrid grid_;
+  imager::GridMap map_;
+  std::string remark_;
+};
+
+/// How the pixels of an image lie beside those of a grid: whole pixels (right, up) away from their own numbers, but for so
+/// much.
+struct GridOffset {
+  bool any = false;  ///< whether the grid has a place for one of them
+  bool all = true;   ///< for each
+  double right = 0, up = 0;
+  double most = 0;  ///< pixels
+};
+GridOffset offset_between(const imager::GridMap& map, const imager::ImageGeometry& image);
+
+/// "1arcsec × 1arcsec, SIN about 12h 30m 00.000s +12° 23′ 28.00″ (FK5) at pixel 33, 33", counted from 1.
+std::string described(const imager::SkyGrid& grid);
+
+}  // namespace misfit::tools
