@@ -16,6 +16,7 @@
 #include "ms_io/model_writer.h"
 #include "ms_io/row_shares_internal.h"
 #include "ms_io/spectral_part_internal.h"
+#include "ms_io/stokes_response_internal.h"
 #include "ms_io/subtracted_models_internal.h"
 #include "ms_io/table_access_internal.h"
 #include "ms_io/uvw_scan_internal.h"
@@ -175,6 +176,13 @@ const std::vector<std::string>& MeasurementSet::remarks() const {
 }
 const imager::Observation& MeasurementSet::observation() const {
   return impl_->observation;
+}
+std::vector<imager::Stokes> MeasurementSet::seen_stokes() const {
+  std::vector<int> types;
+  for (const auto& set : whole().sets)
+    for (const Setup& setup : set->selected.setups)
+      types.insert(types.end(), setup.correlation_types.begin(), setup.correlation_types.end());
+  return seen_by(types);
 }
 std::vector<std::string> MeasurementSet::incomplete_columns() const {
   std::vector<std::string> sentences;

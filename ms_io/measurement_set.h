@@ -92,6 +92,8 @@ class MeasurementSet : public imager::VisibilitySource {
   /// What users should know of the directions and frames of what is selected, in sentences: of phase centres that move, or
   /// differ by rounding, and of places from which frequencies cannot be converted as they should.
   const std::vector<std::string>& remarks() const;
+  /// Of I, Q, U and V those that a correlation responds to that is stored of what is selected, of any set.
+  std::vector<imager::Stokes> seen_stokes() const;
   /// The selection, with the phase centre that visibilities are shifted to, also where it names none.
   const Selection& selection() const;
   /// Of the first set, with the band of all; where the image moves with fields, in the middle of their run.

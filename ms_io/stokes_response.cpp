@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <array>
 
 #include "ms_io/stokes_response_internal.h"
@@ -47,6 +48,19 @@ void put(const CorrelationSamples& to, const Value& value) {
 StokesResponse stokes_response(int correlation_type) {
   const auto code = static_cast<std::size_t>(correlation_type);
   return code < responses.size() ? responses[code] : StokesResponse();
+}
+
+std::vector<imager::Stokes> seen_by(const std::vector<int>& correlation_types) {
+  std::vector<imager::Stokes> seen;
+  for (const int plane : {0, 1, 2, 3}) {
+    const auto responds = [&](int type) {
+      const StokesResponse response = stokes_response(type);
+      return response.first == plane || response.second == plane;
+    };
+    if (std::any_of(correlation_types.begin(), correlation_types.end(), responds))
+      seen.push_back(static_cast<imager::Stokes>(plane + 1));
+  }
+  return seen;
 }
 
 void form_correlation(const StokesResponse& response, const StokesVisibilities& model, std::size_t from,

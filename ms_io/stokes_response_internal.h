@@ -2,7 +2,9 @@
 
 #include <complex>
 #include <cstddef>
+#include <vector>
 
+#include "imager/stokes.h"
 #include "ms_io/model_writer.h"
 
 namespace misfit::ms_io {
@@ -20,6 +22,9 @@ struct StokesResponse {
 
 /// Of a correlation with one of casacore's Stokes codes; 0 for codes that are no linear, circular or Stokes product.
 StokesResponse stokes_response(int correlation_type);
+
+/// Of I, Q, U and V those that one of these correlations responds to.
+std::vector<imager::Stokes> seen_by(const std::vector<int>& correlation_types);
 
 /// A run of samples of one correlation.
 struct CorrelationSamples {

@@ -1,6 +1,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdio>
 #include <memory>
 
@@ -55,6 +56,23 @@ struct NamedModel {
   std::vector<std::string> remarks;
 };
 
+/// That no correlation responds to a part of a model, in words, for each of the parts.
+std::vector<std::string> unseen(const PredictOptions& o, const ms_io::MeasurementSet& set,
+                                const std::vector<imager::Stokes>& parts) {
+  const std::vector<imager::Stokes> seen = set.seen_stokes();
+  std::vector<std::string> sentences;
+  for (const imager::Stokes part : parts)
+    if (std::find(seen.begin(), seen.end(), part) == seen.end())
+      sentences.push_back("no correlation that is selected of " + o.vis + " responds to " + stokes_name(part) +
+                          ": that of the model " + (o.model.empty() ? o.components : o.model) + " is left out");
+  return sentences;
+}
+
+/// But for pixels beyond the horizon, which may be NaN.
+bool is_zero(const imager::Image& image) {
+  return std::none_of(image.pixel.begin(), image.pixel.end(), [](double value) { return std::abs(value) > 0; });
+}
+
 NamedModel image_model(const PredictOptions& o, const ms_io::MeasurementSet& set, int threads) {
   imager::GriddingRequest request;
   request.kernel = choose_kernel(o.kernel);
@@ -64,11 +82,13 @@ NamedModel image_model(const PredictOptions& o, const ms_io::MeasurementSet& set
   const std::vector<imager::SkyImage> planes = read_stokes_model(*file, o.model);
   StokesPlanes model{};
   NamedModel named;
+  std::vector<imager::Stokes> parts;
   named.fingerprint.add(o.kernel.name).add(std::vector<double>{request.accuracy});
   for (const imager::SkyImage& plane : planes) {
     if (plane.stokes > imager::Stokes::V)
       throw std::runtime_error(o.model + " has a plane of " + stokes_name(plane.stokes) + "; expected I, Q, U and V alone");
     model[static_cast<std::size_t>(plane.stokes) - 1] = &plane.image;
+    if (!is_zero(plane.image)) parts.push_back(plane.stokes);
     const auto add_to = [&](ms_io::Fingerprint& fingerprint) {
       return fingerprint.add(stokes_name(plane.stokes))
           .add(plane.image.pixel)
@@ -81,6 +101,7 @@ NamedModel image_model(const PredictOptions& o, const ms_io::MeasurementSet& set
     named.model += add_to(alone);
   }
   named.visibilities = image_visibilities(model, planes.front().geometry, request, set);
+  named.remarks = unseen(o, set, parts);
   for (std::string& warning : std::array{band_warning(planes.front().observation, set.observation(), o.model),
                                          misplacement_warning(*file, o.model, set, o.accuracy)})
     if (!warning.empty()) named.remarks.push_back(std::move(warning));
@@ -99,6 +120,11 @@ NamedModel component_model(const PredictOptions& o, const ms_io::MeasurementSet&
     }
   }
   named.empty = std::all_of(sources.begin(), sources.end(), [](const auto& plane) { return plane.empty(); });
+  std::vector<imager::Stokes> parts;
+  for (std::size_t k = 0; k < sources.size(); ++k)
+    if (std::any_of(sources[k].begin(), sources[k].end(), [](const imager::Source& s) { return s.flux_jy != 0; }))
+      parts.push_back(static_cast<imager::Stokes>(k + 1));
+  named.remarks = unseen(o, set, parts);
   named.visibilities.predict = [sources = std::move(sources), threads](const imager::SampleCoordinates& at) {
     ms_io::StokesVisibilities visibilities(imager::predict_sources(sources[0], at, threads));
     for (std::size_t k = 1; k < sources.size(); ++k)

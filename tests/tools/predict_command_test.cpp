@@ -217,6 +217,30 @@ BOOST_AUTO_TEST_CASE(a_column_that_was_never_filled_is_told_of) {
              std::string::npos);
 }
 
+BOOST_AUTO_TEST_CASE(parts_of_a_model_that_no_correlation_sees_are_told_of) {
+  const Copy copy;  // of XX and YY, which see I and Q
+  const std::string list = copy.folder / "m.csv", fits = copy.folder / "m.fits";
+  succeed(small_image(copy.set, copy.folder / "a"));
+  imager::SkyImage model = imager::read_fits(copy.folder / "a.residual.fits");
+  model.unit = "Jy/pixel";
+  for (const imager::Stokes part : {imager::Stokes::I, imager::Stokes::Q, imager::Stokes::U, imager::Stokes::V}) {
+    const std::string name = stokes_name(part);
+    const bool seen = part == imager::Stokes::I || part == imager::Stokes::Q;
+    std::ofstream(list) << "l_arcsec,m_arcsec,flux_jy,flux_q_jy,flux_u_jy,flux_v_jy\n1,1," << (name == "I") << ','
+                        << (name == "Q") << ',' << (name == "U") << ',' << (name == "V") << '\n';
+    model.stokes = part;
+    imager::write_fits(model, fits, imager::PixelFormat::float32);
+    for (const Arguments& source : {Arguments{"--components", list}, {"--model", fits}}) {
+      const Outcome outcome = run(Arguments{"predict", "--vis", copy.set} + source);
+      BOOST_TEST(outcome.code == 0);
+      BOOST_TEST((outcome.err.find("responds to " + name + ": that of the model " + source[1] + " is left out") ==
+                  std::string::npos) == seen,
+                 outcome.err);
+      BOOST_TEST((rms(visibilities(copy.set, "MODEL_DATA")) > 0) == seen);
+    }
+  }
+}
+
 BOOST_AUTO_TEST_CASE(only_the_column_asked_for_changes) {
   const Copy copy;
   std::ofstream(copy.folder / "one.csv") << "l_arcsec,m_arcsec,flux_jy\n1,2,3\n";
