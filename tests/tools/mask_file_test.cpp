@@ -270,6 +270,20 @@ BOOST_AUTO_TEST_CASE(a_mask_of_other_planes_is_refused) {
   refused_for(other, "lies elsewhere");
 }
 
+BOOST_AUTO_TEST_CASE(a_file_that_is_an_image_by_its_name_or_its_bytes_is_no_region_text) {
+  const TemporaryFolder folder;
+  const auto refused_as = [&](const std::string& name, const std::string& bytes, const std::string& part) {
+    std::ofstream(folder / name, std::ios::binary) << bytes;
+    BOOST_CHECK_EXCEPTION(read_mask(folder / name, geometry), std::runtime_error, [&](const std::exception& error) {
+      BOOST_TEST_INFO(error.what());
+      return std::string(error.what()).find("cannot read " + (folder / name) + ": " + part) == 0;
+    });
+  };
+  for (const char* name : {"mask.fits", "mask.fit"}) refused_as(name, "", "it is no FITS file");
+  refused_as("mask.gz", "\x1f\x8b\x08 and more", "it is no FITS file, but one compressed by gzip: uncompress it first");
+  refused_as("mask.fits.bz2", "BZh91AY&SY", "it is no FITS file, but one compressed by bzip2: uncompress it first");
+}
+
 BOOST_AUTO_TEST_CASE(a_pipe_is_no_mask_and_no_model) {
   const TemporaryFolder folder;
   const std::string pipe = folder / "pipe";

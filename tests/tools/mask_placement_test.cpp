@@ -311,6 +311,36 @@ BOOST_AUTO_TEST_CASE(a_mask_that_moves_along_lies_about_the_field_wherever_that_
   BOOST_TEST(MaskFile(path, moving).doubts().front().find("the image moves along with its field, and the mask") == 0U);
 }
 
+BOOST_AUTO_TEST_CASE(a_mask_of_another_stokes_parameter_or_band_is_told_of) {
+  const TemporaryFolder folder;
+  imager::ImageHeader header;
+  header.geometry = image;
+  header.observation.frequency_hz = 1.4e9;
+  header.observation.bandwidth_hz = 1e8;
+  const auto doubts = [&](const StatedCards& cards, const std::string& stokes) {
+    write_stated_fits(folder / "mask.fits", same.pixels(), with(same.header(), cards));
+    std::filesystem::remove_all(folder / "mask.image");
+    copy_to_casa(folder / "mask.fits", folder / "mask.image");
+    header.stokes = imager::parse_stokes(stokes);
+    const auto fits = MaskFile(folder / "mask.fits", header).doubts(), casa = MaskFile(folder / "mask.image", header).doubts();
+    BOOST_TEST(fits.size() == casa.size());
+    return fits.empty() ? "" : fits.front();
+  };
+  const auto of_stokes = [](int code) {
+    return StatedCards{{"CTYPE3", "'STOKES'"}, {"CRPIX3", "1."}, {"CRVAL3", stated(code)}, {"CDELT3", "1."}};
+  };
+  BOOST_TEST(doubts(of_stokes(2), "I").find("mask.fits is of Q, and is laid on I") != std::string::npos);
+  BOOST_TEST(doubts(of_stokes(4), "QU").find("mask.fits is of V, and is laid on QU") != std::string::npos);
+  BOOST_TEST(doubts(of_stokes(2), "Q") == "");
+  for (const char* stokes : {"I", "Q", "IQUV", "XX"}) BOOST_TEST(doubts(of_stokes(1), stokes) == "");
+  const auto of_band = [](double hz) {
+    return StatedCards{{"CTYPE3", "'FREQ'"}, {"CRPIX3", "1."}, {"CRVAL3", stated(hz)}, {"CDELT3", "1.E7"}};
+  };
+  for (const double hz : {1.36e9, 1.4e9, 1.45e9}) BOOST_TEST(doubts(of_band(hz), "I") == "");
+  BOOST_TEST(doubts(of_band(5e9), "I").find("mask.fits is of 5 GHz, and the image of 1.4 GHz: it is laid as it is") !=
+             std::string::npos);
+}
+
 BOOST_AUTO_TEST_CASE(components_are_found_where_the_masks_coordinates_have_it) {
   const TemporaryFolder folder;
   succeed(small_image(snapshot(), folder / "dirty"));

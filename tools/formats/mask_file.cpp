@@ -7,7 +7,9 @@
 #include <system_error>
 #include <utility>
 
+#include "imager/files/fits_text.h"
 #include "tools/base/files.h"
+#include "tools/base/numbers.h"
 #include "tools/base/text.h"
 #include "tools/formats/image_file.h"
 
@@ -19,9 +21,10 @@ bool is_image(const std::string& path) {
   if (std::filesystem::is_directory(path, absent)) return true;
   if (std::filesystem::exists(path, absent) && !std::filesystem::is_regular_file(path, absent))
     throw std::runtime_error("cannot read mask " + path + ": it is no regular file");  // a pipe would give its beginning once
+  if (path.ends_with(".fits") || path.ends_with(".fit")) return true;
   std::ifstream file(path, std::ios::binary);
   std::string begin(6, '\0');
-  return file.read(begin.data(), 6) && begin == "SIMPLE";
+  return file.read(begin.data(), 6) && (begin == "SIMPLE" || !imager::compression_of(begin).empty());
 }
 
 /// Whether a mask is written where its path would stand: as tclean takes regions, where no file has that name.
@@ -37,7 +40,7 @@ bool is_text_itself(const std::string& mask) {
 
 }  // namespace
 
-MaskFile::MaskFile(const std::string& path, imager::ImageHeader image) : image_(std::move(image)) {
+MaskFile::MaskFile(const std::string& path, imager::ImageHeader image) : path_(path), image_(std::move(image)) {
   if (is_text_itself(path)) {
     if (path.find_first_of("\r\n") != std::string::npos)
       throw std::runtime_error("mask " + legible(path) + " has several lines; expected one of region text, or a file of them");
@@ -76,7 +79,22 @@ imager::Image MaskFile::mask(const imager::PlaneIndex& at) const {
 
 std::vector<std::string> MaskFile::doubts() const {
   if (regions_) return regions_->doubts();
-  return placement_->sentence().empty() ? std::vector<std::string>{} : std::vector{placement_->sentence()};
+  std::vector<std::string> sentences{placement_->sentence(), stokes_doubt(), band_doubt()};
+  sentences.erase(std::remove(sentences.begin(), sentences.end(), ""), sentences.end());
+  return sentences;
+}
+
+std::string MaskFile::stokes_doubt() const {
+  const std::vector<imager::Stokes>& has = file_->header().stokes;
+  if (has.size() > 1 || has.front() == imager::Stokes::I || image_.stokes == has) return "";
+  return "the mask " + path_ + " is of " + stokes_name(has.front()) + ", and is laid on " + stokes_names(image_.stokes);
+}
+
+std::string MaskFile::band_doubt() const {
+  const imager::Observation &has = file_->header().observation, &image = image_.observation;
+  if (!one_for_all_channels() || !bands_apart(has, image)) return "";
+  return "the mask " + path_ + " is of " + frequency_text(has.frequency_hz, 6) + ", and the image of " +
+         frequency_text(image.frequency_hz, 6) + ": it is laid as it is";
 }
 
 imager::Image read_mask(const std::string& path, const imager::ImageGeometry& geometry) {

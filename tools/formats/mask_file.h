@@ -26,10 +26,16 @@ class MaskFile {
   bool one_for_all_stokes() const;
   /// Of a plane of the image: 1 where CLEAN may take components from, 0 elsewhere.
   imager::Image mask(const imager::PlaneIndex& at) const;
-  /// What the user should know of where the mask lies, and which of its regions have no pixel of the image, a sentence each.
+  /// What the user should know of where the mask lies and what it is of, and which of its regions have no pixel of the image, a
+  /// sentence each.
   std::vector<std::string> doubts() const;
 
  private:
+  /// That a mask of one plane is of another Stokes parameter than the image, or of another band; else empty.
+  std::string stokes_doubt() const;
+  std::string band_doubt() const;
+
+  std::string path_;
   imager::ImageHeader image_;
   std::unique_ptr<imager::ImageReader> file_;  ///< null where the file is region text
   std::optional<MaskPlacement> placement_;     ///< of it
