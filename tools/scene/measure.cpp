@@ -29,13 +29,15 @@ std::string work_of(const imager::GriddingPlan& plan) {
   return work + (o.precision == imager::Precision::single_precision ? ", single" : ", double");
 }
 
+constexpr std::size_t total_weight = 0, weighted_magnitude = 1;  ///< of a Fingerprint, Σ w and Σ w|V|
+
 void add_to(Fingerprint& print, const imager::VisibilityBlock& block) {
   for (std::size_t i = 0; i < block.samples(); ++i) {
     if (block.weight[i] == 0) continue;
     const double weight{block.weight[i]};
     const std::complex<double> visibility(block.visibility[i]);
-    print[0] += weight;
-    print[1] += weight * std::abs(visibility);
+    print[total_weight] += weight;
+    print[weighted_magnitude] += weight * std::abs(visibility);
     print[2] += weight * visibility.real();
     print[3] += weight * visibility.imag();
   }
@@ -63,6 +65,10 @@ Scene::Scene(const ImageOptions& options, bool quick, const imager::Progress& pr
   read_s_ = watch.seconds();
   for (std::string& warning : notes_on_data(set, imager::alone())) warnings_.push_back(std::move(warning));
   weigh();
+  if (fingerprint_[total_weight] > 0 && fingerprint_[weighted_magnitude] == 0)
+    throw std::runtime_error(names_of(options.vis) + ": all visibilities of " + options.datacolumn +
+                             " that can be used are 0, and so are images of them: there is no error to measure; expected a "
+                             "column that was filled");
   truth_ =
       std::make_unique<SceneTruth>(visibilities_, geometry_, pixels_for(visibilities_.samples(), quick), threads_, progress);
 }
