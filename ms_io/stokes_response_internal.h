@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "imager/stokes.h"
+#include "imager/data/stokes.h"
 #include "ms_io/model_writer.h"
 
 namespace misfit::ms_io {

@@ -38,7 +38,7 @@ struct PixelSide {
   int to_column = 0;
 };
 
-/// The sides that part pixels that `mask` allows from others, see imager/mask.h.
+/// The sides that part pixels that `mask` allows from others, see imager/clean/mask.h.
 std::vector<PixelSide> outline(const imager::Image& mask);
 
 }  // namespace misfit::tools
