@@ -6,7 +6,7 @@
 #include "tests/fuzz/fuzzing.h"
 #include "tools/base/quantity.h"
 #include "tools/base/text.h"
-#include "tools/formats/regions/keywords.h"
+#include "tools/formats/regions/spectral_range.h"
 #include "tools/run/cube_options.h"
 #include "tools/run/image_options.h"
 #include "tools/run/weighting_options.h"

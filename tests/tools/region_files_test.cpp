@@ -141,6 +141,19 @@ BOOST_AUTO_TEST_CASE(regions_without_a_pixel_are_told_of) {
   BOOST_TEST(RegionText("regions", "circle [[30pix, 20pix], 7pix]", header_in()).doubts().empty());
 }
 
+BOOST_AUTO_TEST_CASE(channels_beyond_the_image_s_last_are_told_of) {
+  for (const int channels : {1, 5, 8})
+    for (const int last : {0, 4, 5, 100}) {
+      const std::string range = "range=[0chan, " + std::to_string(last) + "chan]";
+      const RegionText read("regions", "circle [[30pix, 20pix], 7pix], " + range, header_in("FK5", "I", channels));
+      std::vector<std::string> told;
+      if (last >= channels)
+        told = {"regions, line 1: the region of " + range + " names channels beyond the image's last, " +
+                std::to_string(channels - 1) + "chan"};
+      BOOST_TEST(read.doubts() == told, boost::test_tools::per_element());
+    }
+}
+
 BOOST_AUTO_TEST_CASE(shapes_without_an_area_are_passed_over_with_a_word_that_names_their_lines) {
   const auto doubts = [](const std::string& text) { return RegionText("regions", text, header_in()).doubts(); };
   const std::string crtf = "circle [[30pix, 20pix], 7pix]\n", ds9 = "image\ncircle(31,21,7)\n";

@@ -27,6 +27,7 @@ std::string value_of(const RegionKeywords& keywords, const std::string& name);
 struct PlaneSpan {
   int first = 0;
   int last = 0;
+  bool beyond = false;  ///< whether channels behind the image's last were named too
 
   bool empty() const { return first > last; }
   bool holds(int plane) const { return plane >= first && plane <= last; }

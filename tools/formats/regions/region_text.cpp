@@ -93,6 +93,9 @@ void RegionText::look_for_pixels(const std::string& path, const std::vector<imag
     regions::for_each_pixel(region.shape, width_, height_, [&](int, int) { pixels = true; });
     if (!region.of_planes())
       doubts_.push_back(lines_of(path, {region.line}) + "the region of " + region.planes + " is of no plane of the image");
+    if (region.of_planes() && region.channels.beyond)
+      doubts_.push_back(lines_of(path, {region.line}) + "the region of " + region.planes +
+                        " names channels beyond the image's last, " + std::to_string(channels_ - 1) + "chan");
     if (!pixels) doubts_.push_back(lines_of(path, {region.line}) + "the region holds the centre of no pixel of the image");
   }
 }

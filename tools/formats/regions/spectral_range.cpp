@@ -160,6 +160,7 @@ PlaneSpan planes_of_range(const RegionKeywords& keywords, const imager::Spectral
   span.last = static_cast<int>(std::clamp(std::ceil(high - 0.5 - rounding), -1.0, axis.channels - 1.0));
   if (axis.channels == 1 && !span.holds(0))
     refuse_value(keywords, "range", "one that reaches into the image's only plane, " + planes_text(axis) + ", or none");
+  span.beyond = range->kind == Kind::channels && range->other >= axis.channels;
   return span;
 }
 
