@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <iomanip>
 #include <optional>
 #include <sstream>
@@ -91,6 +92,33 @@ MDirection Ephemeris::at(double utc_mjd) const {
   casacore::MVDirection direction(sum[0], sum[1], sum[2]);
   direction.adjust();
   return {direction, frame_};
+}
+
+casacore::MSField without_ephemerides(const casacore::MSField& field) {
+  constexpr const char* column = "EPHEMERIS_ID";
+  if (!field.tableDesc().isColumn(column)) return field;
+  std::vector<casacore::String> others;
+  for (const casacore::String& name : field.tableDesc().columnNames())
+    if (name != column) others.push_back(name);
+  casacore::Block<casacore::String> names(others.size());
+  std::copy(others.begin(), others.end(), names.begin());
+  return casacore::MSField(field.project(names));
+}
+
+std::string ephemeris_path(const casacore::MSField& field, int ephemeris) {
+  const std::string folder = field.tableName(), begin = "EPHEM" + std::to_string(ephemeris) + "_", end = ".tab";
+  std::vector<std::string> found;
+  std::error_code gone;
+  for (std::filesystem::directory_iterator entry(folder, gone), none; !gone && entry != none; entry.increment(gone)) {
+    const std::string name = entry->path().filename();
+    if (name.size() > begin.size() + end.size() - 1 && name.compare(0, begin.size(), begin) == 0 &&
+        name.compare(name.size() - end.size(), end.size(), end) == 0)
+      found.push_back(entry->path());
+  }
+  if (found.size() == 1) return found.front();
+  throw casacore::AipsError("its EPHEMERIS_ID is " + std::to_string(ephemeris) + ", and " + folder + " holds " +
+                            std::to_string(found.size()) + " tables " + begin + "*" + end +
+                            ", expected one, or EPHEMERIS_ID -1 and a direction of its own");
 }
 
 }  // namespace misfit::ms_io

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <casacore/measures/Measures/MDirection.h>
+#include <casacore/ms/MeasurementSets/MSField.h>
 
 #include <array>
 #include <string>
@@ -28,5 +29,13 @@ class Ephemeris {
   std::vector<double> mjd_;                       ///< [row], ascending
   std::vector<std::array<double, 3>> direction_;  ///< [row], unit vectors
 };
+
+/// FIELD without EPHEMERIS_ID. casacore opens the tables of all its fields, selected or not, and gives up FIELD where one is
+/// missing, or is not as it would have written it.
+casacore::MSField without_ephemerides(const casacore::MSField& field);
+
+/// The folder of the table that EPHEMERIS_ID means. Throws casacore::AipsError, which says what was expected, where there is
+/// not one alone.
+std::string ephemeris_path(const casacore::MSField& field, int ephemeris);
 
 }  // namespace misfit::ms_io

@@ -1,3 +1,4 @@
+#include <casacore/ms/MSSel/MSSelectableTable.h>
 #include <casacore/ms/MSSel/MSSelection.h>
 #include <casacore/ms/MeasurementSets/MSSpectralWindow.h>
 #include <casacore/tables/Tables/ScalarColumn.h>
@@ -8,6 +9,7 @@
 #include <cstdlib>
 
 #include "imager/numerics/constants.h"
+#include "ms_io/ephemeris_internal.h"
 #include "ms_io/parsed_selection_internal.h"
 #include "ms_io/table_access_internal.h"
 
@@ -24,6 +26,23 @@ std::vector<std::string> split(const std::string& text, char separator) {
     }
   }
   return parts;
+}
+
+/// What MSSelection reads of a set.
+class Selectable : public casacore::MSInterface {
+ public:
+  explicit Selectable(const casacore::MeasurementSet& set)
+      : casacore::MSInterface(set), field_(without_ephemerides(set.field())) {}
+
+  const casacore::MSField& field() override { return field_; }
+
+ private:
+  casacore::MSField field_;
+};
+
+casacore::TableExprNode rows_of(const casacore::MeasurementSet& set, casacore::MSSelection& selection) {
+  Selectable selectable(set);
+  return selection.toTableExprNode(&selectable);
 }
 
 void parse_uv_ranges(const casacore::MeasurementSet& set, const Selection& selection, ParsedSelection& parsed) {
@@ -65,7 +84,8 @@ void require_channels(const casacore::MeasurementSet& set, const std::string& ex
 void parse_fields(const casacore::MeasurementSet& set, const Selection& selection, ParsedSelection& parsed) {
   casacore::MSSelection expression;
   expression.setFieldExpr(selection.field);
-  for (const int field : expression.getFieldList(&set)) parsed.fields.insert(field);
+  rows_of(set, expression);
+  for (const int field : expression.getFieldList()) parsed.fields.insert(field);
   parsed.all_fields = false;
 }
 
@@ -113,7 +133,7 @@ void parse_alone(const casacore::MeasurementSet& set, const Selection& selection
   if (parser.alone) return parser.alone(set, selection, parsed);
   casacore::MSSelection expression;
   (expression.*parser.give)(selection.*parser.expression);
-  expression.toTableExprNode(&set);
+  rows_of(set, expression);
 }
 
 /// Whether a time of the expression may be one without a date.
@@ -132,7 +152,7 @@ bool in_order_of_time(const casacore::MeasurementSet& set) {
 /// here.
 std::vector<bool> rows_in_order_of_time(const casacore::MeasurementSet& set, casacore::MSSelection& selection) {
   const casacore::MeasurementSet sorted(set.sort("TIME"));
-  const casacore::Table found = sorted(selection.toTableExprNode(&sorted));
+  const casacore::Table found = sorted(rows_of(sorted, selection));
   std::vector<bool> rows(set.nrow(), false);
   for (const casacore::rownr_t row : found.rowNumbers(set)) rows[row] = true;
   return rows;
@@ -185,7 +205,7 @@ ParsedSelection parse_selection(const casacore::MeasurementSet& set, const std::
       if (lacks_date(selection.time_range) && !in_order_of_time(set))
         parsed.listed_rows = rows_in_order_of_time(set, all);
       else
-        parsed.rows = all.toTableExprNode(&set);
+        parsed.rows = rows_of(set, all);
     });
   }
   return parsed;
