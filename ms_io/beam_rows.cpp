@@ -23,7 +23,7 @@ class Antennas {
  public:
   Antennas(const OpenSet& open_set, BeamRows& rows)
       : path_(open_set.path),
-        telescope_(telescope_name(open_set.set, open_set.selected.first_row)),
+        telescope_(telescope_name(open_set.set, observation_of(open_set.set, open_set.selected.first_row))),
         diameter_m_(casacore::ScalarColumn<double>(open_set.set.antenna(), "DISH_DIAMETER").getColumn()),
         name_(casacore::ScalarColumn<casacore::String>(open_set.set.antenna(), "NAME").getColumn()),
         sort_(diameter_m_.nelements(), unknown),

@@ -13,6 +13,8 @@ ColumnReader::ColumnReader(std::shared_ptr<const OpenSet> source) : source_(std:
     const casacore::Table& table = source_->set;
     antenna1_.attach(table, "ANTENNA1");
     antenna2_.attach(table, "ANTENNA2");
+    several_observations_ = source_->set.observation().nrow() > 1;
+    if (several_observations_) observation_.attach(table, "OBSERVATION_ID");
     time_.attach(table, "TIME");
     needs_time_ = !source_->selected.spectral_frame.empty() || source_->selected.shift_moves();
     flag_row_.attach(table, "FLAG_ROW");
@@ -48,16 +50,39 @@ void ColumnReader::read_rows(const Rows& rows, const Setup& setup, StoredRows& s
   reading("FLAG_ROW", [&] { read_flag_rows(rows, stored); });
   read_weights(rows, setup, stored);
   if (needs_time_) reading("TIME", [&] { read(time_, rows, stored.time_s); });
-  if (!source_->selected.spectral_frame.empty()) find_frame_ratios(setup, stored);
+  if (!source_->selected.spectral_frame.empty()) find_frame_ratios(rows, setup, stored);
 }
 
-void ColumnReader::find_frame_ratios(const Setup& setup, StoredRows& stored) {
-  std::unique_ptr<FrameRatio>& ratio = ratio_[setup.spectral_frame];
-  if (!ratio) ratio = std::make_unique<FrameRatio>(source_->set, source_->path, source_->selected, setup);
-  stored.frame_ratio.resize(stored.time_s.size());
+namespace {
+
+/// A row that is flagged may have a time at which a field that moves is nowhere.
+double frame_ratio_of(FrameRatio& ratio, const StoredRows& stored, std::size_t row) {
+  try {
+    return ratio.at(stored.time_s[row]);
+  } catch (const std::runtime_error&) {
+    if (!stored.flag_row[row]) throw;
+    return 1;
+  }
+}
+
+}  // namespace
+
+FrameRatio& ColumnReader::frame_ratio(const Setup& setup, int observation) {
+  std::unique_ptr<FrameRatio>& ratio = ratio_[{setup.spectral_frame, observation}];
+  if (!ratio) ratio = std::make_unique<FrameRatio>(source_->set, source_->path, source_->selected, setup, observation);
+  return *ratio;
+}
+
+void ColumnReader::find_frame_ratios(const Rows& rows, const Setup& setup, StoredRows& stored) {
+  casacore::Vector<int> observation(rows.count(), 0);
+  if (several_observations_) reading("OBSERVATION_ID", [&] { read(observation_, rows, observation); });
+  stored.frame_ratio.resize(rows.count());
   translated("cannot convert frequencies of " + source_->path + " to " + source_->selected.spectral_frame, [&] {
-    std::transform(stored.time_s.begin(), stored.time_s.end(), stored.frame_ratio.begin(),
-                   [&](double time_s) { return ratio->at(time_s); });
+    FrameRatio* ratio = nullptr;
+    for (std::size_t r = 0; r < rows.count(); ++r) {
+      if (r == 0 || observation[r] != observation[r - 1]) ratio = &frame_ratio(setup, observation[r]);
+      stored.frame_ratio[r] = frame_ratio_of(*ratio, stored, r);
+    }
   });
 }
 

@@ -3,6 +3,7 @@
 #include <map>
 #include <memory>
 #include <string>
+#include <utility>
 
 #include "ms_io/row_columns_internal.h"
 #include "ms_io/spectral_frame_internal.h"
@@ -63,14 +64,16 @@ class ColumnReader {
   bool spectrum_defined(casacore::rownr_t row) const;
   std::size_t spectra_defined(const Rows& rows) const;
   void read_weights(const Rows& rows, const Setup& setup, StoredRows& stored);
-  void find_frame_ratios(const Setup& setup, StoredRows& stored);
+  FrameRatio& frame_ratio(const Setup& setup, int observation);
+  void find_frame_ratios(const Rows& rows, const Setup& setup, StoredRows& stored);
   void mix_weights(const Rows& rows, const Setup& setup, StoredRows& stored) const;
 
   std::shared_ptr<const OpenSet> source_;
-  casacore::ScalarColumn<int> antenna1_, antenna2_;
+  casacore::ScalarColumn<int> antenna1_, antenna2_, observation_;
+  bool several_observations_ = false;
   casacore::ScalarColumn<double> time_;
   bool needs_time_ = false;
-  std::map<std::string, std::unique_ptr<FrameRatio>> ratio_;  ///< by the frame of the window
+  std::map<std::pair<std::string, int>, std::unique_ptr<FrameRatio>> ratio_;  ///< by the window's frame and OBSERVATION_ID
   casacore::ScalarColumn<bool> flag_row_;
   bool flag_row_is_dear_ = false;
   Cells<double> uvw_;

@@ -1,6 +1,3 @@
-#include <casacore/measures/Measures/MCEpoch.h>
-#include <casacore/measures/Measures/MeasConvert.h>
-#include <casacore/measures/Measures/MeasTable.h>
 #include <casacore/tables/Tables/ScalarColumn.h>
 
 #include <algorithm>
@@ -10,9 +7,9 @@
 
 #include "imager/numerics/constants.h"
 #include "ms_io/field_centres_internal.h"
-#include "ms_io/observing_place_internal.h"
-#include "ms_io/row_columns_internal.h"
+#include "ms_io/field_doubts_internal.h"
 #include "ms_io/table_access_internal.h"
+#include "ms_io/uvw_scan_internal.h"
 
 namespace misfit::ms_io {
 namespace {
@@ -32,19 +29,25 @@ class CentreSearch {
     for (const auto& [field, row] : selected_.first_row_of_field)
       if (fields_.motion(field) != Motion::none) moving.insert(field);
     if (!moving.empty()) times_ = times_of(set_, path_, selected_, moving);
-    for (const auto& [field, times] : times_) follow_motion(field, times);
+    for (const auto& [field, times] : times_) follow_motion(field, times.used);
     if (selection_.phase_centre) return lead_all([&](int, const Moment&) { return *selection_.phase_centre; });
     if (selection_.moving == Selection::Moving::about_targets) return follow_targets();
-    return times_.empty() ? shift_from_rounding() : follow_one();
+    if (times_.empty() || some_hardly_move()) return shift_from_rounding();
+    return selection_.moving == Selection::Moving::shifted_to_middle ? stand_still() : follow_one();
   }
 
  private:
   using Nowhere = std::optional<imager::SkyDirection>;
   using Centre = FieldCentre (FieldDirections::*)(int, const Moment&);
 
-  std::string label(int field) const { return fields_.label(field) + " of " + path_; }
+  std::string label(int field) const { return fields_.full_label(field); }
   std::uint64_t row_of(int field) const { return selected_.first_row_of_field.at(field); }
   Moment moment(int field, double time_s) const { return {time_s, row_of(field)}; }
+
+  double beam_rad() {
+    if (!selected_.beam_rad) selected_.beam_rad = finest_beam_rad(set_, path_, selected_);
+    return *selected_.beam_rad;
+  }
 
   /// How far a field moves, at some of its times, and what is to be said of that.
   void follow_motion(int field, const std::vector<double>& times) {
@@ -54,18 +57,11 @@ class CentreSearch {
     const std::size_t step = 1 + (times.size() - 1) / enough;
     for (std::size_t t = times.size() - 1; t > 0; t -= std::min(t, step)) {
       const double moved_rad = separation_rad(first, fields_.centre(field, moment(field, times[t])).direction);
+      if (moved_rad > selected_.moved_rad) farthest_ = field;
       selected_.moved_rad = std::max(selected_.moved_rad, moved_rad);
     }
-    if (fields_.motion(field) == Motion::earth) doubt_rotation(field, times.front());
-  }
-
-  /// Without tables of the IERS casacore takes UT1 for UTC, from which it differs by up to 0.9 s: 13.5 arcsec at the equator.
-  void doubt_rotation(int field, double time_s) {
-    const double utc_d = casacore::MEpoch::Convert(fields_.epoch(time_s), casacore::MEpoch::UTC)().get("d").getValue();
-    if (casacore::MeasTable::dUT1(utc_d) != 0) return;
-    selected_.remarks.push_back("the frame of field " + label(field) +
-                                " turns with the Earth, whose rotation casacore has no IERS table of at that time: directions "
-                                "on the sky may be wrong by 13 arcsec, the same way in all programs that lack the table");
+    for (std::string& doubt : doubts_of_motion(set_, fields_, field, moment(field, times.front())))
+      selected_.remarks.push_back(std::move(doubt));
   }
 
   /// Shifts the rows of each field from where they are phased to to where `to` says.
@@ -85,30 +81,53 @@ class CentreSearch {
     const auto at = [&](const Moment& when) { return phase_shift(fields_.centre(field, when), to(field, when)); };
     const auto moving = times_.find(field);
     if (moving == times_.end()) return FieldShift(at({time_of(row_of(field)), row_of(field)}));
-    std::vector<imager::PhaseShift> shifts;
-    for (const double time_s : moving->second) shifts.push_back(at(moment(field, time_s)));
-    const bool none = std::all_of(shifts.begin(), shifts.end(), [](const auto& shift) { return shift.none(); });
-    return none ? FieldShift() : FieldShift(moving->second, std::move(shifts));
+    FieldShift::List shifts;
+    for (const double time_s : moving->second.used) shifts.push_back({time_s, at(moment(field, time_s))});
+    add_idle(field, moving->second.idle, at, shifts);
+    const bool none = std::all_of(shifts.begin(), shifts.end(), [](const auto& one) { return one.shift.none(); });
+    return none ? FieldShift() : FieldShift(std::move(shifts));
+  }
+
+  /// Flagged rows at whose times the field is nowhere stay where they are.
+  template <typename At>
+  void add_idle(int field, const std::vector<double>& times, const At& at, FieldShift::List& shifts) {
+    std::size_t nowhere = 0;
+    for (const double time_s : times) {
+      shifts.push_back({time_s, {}});
+      try {
+        if (!std::isfinite(time_s)) throw std::runtime_error("no time");
+        shifts.back().shift = at(moment(field, time_s));
+      } catch (const std::runtime_error&) {
+        ++nowhere;
+      }
+    }
+    if (nowhere > 0)
+      selected_.remarks.push_back("flagged rows of field " + label(field) + " have " + std::to_string(nowhere) +
+                                  " TIMEs at which that is nowhere: these rows are not shifted");
   }
 
   double time_of(std::uint64_t row) const {
     return translated("cannot read TIME of " + path_, [&] { return casacore::ScalarColumn<double>(set_, "TIME")(row); });
   }
 
-  /// Fields that stand still: nothing where they are phased to one direction, and one to shift to where rounding parts them.
+  /// Whether some fields stand still, and those that may move hardly do.
+  bool some_hardly_move() {
+    return times_.size() < selected_.first_row_of_field.size() && selected_.moved_rad <= noticed_motion_rad(beam_rad());
+  }
+
+  /// Fields that stand still, or hardly move: nothing where they are phased to one direction, and one to shift to where
+  /// rounding parts them.
   Nowhere shift_from_rounding() {
-    const auto centre_of = [&](int field) { return fields_.centre(field, {time_of(row_of(field)), row_of(field)}); };
-    const FieldCentre first = centre_of(first_field(set_, selected_));
-    const double close_rad = close_centre_rad(set_, selected_);
-    double most_rad = 0;
+    const FieldCentre first = usual_centre(fields_, set_, selected_, first_field(set_, selected_));
+    double most_rad = selected_.moved_rad;
     for (const auto& [field, row] : selected_.first_row_of_field) {
-      const double apart_rad = separation_rad(first.direction, centre_of(field).direction);
-      if (apart_rad > close_rad && selection_.moving != Selection::Moving::shifted_to_middle)
-        refuse_apart(first.field, field, apart_rad);
+      const double apart_rad = separation_rad(first.direction, usual_centre(fields_, set_, selected_, field).direction);
       most_rad = std::max(most_rad, apart_rad);
+      if (apart_rad <= same_centre_rad || selection_.moving == Selection::Moving::shifted_to_middle) continue;
+      if (apart_rad > close_centre_rad(beam_rad())) refuse_apart(first.field, field, apart_rad);
     }
     if (most_rad <= same_centre_rad) return {};
-    if (most_rad > close_rad) return first.direction;  // what stands still on the sky is seen by each about its own
+    if (most_rad > close_centre_rad(beam_rad())) return first.direction;  // each sees what stands still about its own
     selected_.remarks.push_back("fields of " + path_ + " have phase centres up to " + angle_words(most_rad) +
                                 " apart, as if by rounding, or far below a pixel: all are shifted to that of field " +
                                 fields_.label(first.field));
@@ -121,17 +140,20 @@ class CentreSearch {
                              " apart; select one with --field, or shift all to one with --phasecenter");
   }
 
+  /// Fields of which one or more move, each about a direction of the sky.
+  Nowhere stand_still() {
+    if (selected_.moved_rad > noticed_motion_rad(beam_rad()))
+      selected_.remarks.push_back("field " + label(farthest_) + " moves by " + angle_words(selected_.moved_rad) +
+                                  " while it is observed: the model stands still on the sky; --phasecenter TRACKFIELD lets it "
+                                  "move along");
+    return usual_centre(fields_, set_, selected_, first_field(set_, selected_)).direction;
+  }
+
   /// Fields of which one or more move, and which must be one.
   Nowhere follow_one() {
     const int field = first_field(set_, selected_);
     require_one(&FieldDirections::centre);
-    if (selection_.moving == Selection::Moving::shifted_to_middle) {
-      selected_.remarks.push_back("field " + label(field) + " moves by " + angle_words(selected_.moved_rad) +
-                                  " while it is observed: the model stands still on the sky; --phasecenter TRACKFIELD lets it "
-                                  "move along");
-      return usual_centre(fields_, set_, selected_, field).direction;
-    }
-    if (fields_.motion(field) == Motion::earth && selected_.moved_rad > 0.1 * finest_beam_rad(set_, selected_))
+    if (fields_.motion(field) == Motion::earth && selected_.moved_rad > 0.1 * beam_rad())
       throw std::runtime_error("field " + label(field) + " is phased to a direction that turns with the Earth, and moves by " +
                                angle_words(selected_.moved_rad) +
                                " over the sky, which is smeared about it; expected --phasecenter with a direction on the sky, "
@@ -158,10 +180,9 @@ class CentreSearch {
       if (times_.count(field) != times_.count(first))
         throw std::runtime_error("of fields " + fields_.label(first) + " and " + label(field) + " one moves, by " +
                                  angle_words(selected_.moved_rad) + ", and one stands still" + remedies);
-      for (const double time_s : {times_.at(field).front(), times_.at(field).back()}) {
+      for (const double time_s : {times_.at(field).used.front(), times_.at(field).used.back()}) {
         const std::optional<double> apart_rad = apart(centre, first, moment(field, time_s), field);
-        if (apart_rad ? *apart_rad <= noticed_motion_rad(set_, selected_) : fields_.name(first) == fields_.name(field))
-          continue;
+        if (apart_rad ? *apart_rad <= noticed_motion_rad(beam_rad()) : fields_.name(first) == fields_.name(field)) continue;
         throw std::runtime_error(
             "fields " + fields_.label(first) + " and " + label(field) + " both move, " +
             (apart_rad ? angle_words(*apart_rad) + " apart" : "and do not say where at each other's times") + remedies);
@@ -184,7 +205,8 @@ class CentreSearch {
   const Selection& selection_;
   SelectedRows& selected_;
   FieldDirections fields_;
-  std::map<int, std::vector<double>> times_;  ///< of fields that move, ascending
+  std::map<int, FieldTimes> times_;  ///< of fields that move
+  int farthest_ = 0;                 ///< the field of these that moves farthest
 };
 
 }  // namespace
@@ -194,51 +216,13 @@ std::optional<imager::SkyDirection> settle_phase_centre(const casacore::Measurem
   return translated("cannot read FIELD of " + path, [&] { return CentreSearch(set, path, selection, selected).settle(); });
 }
 
-double finest_beam_rad(const casacore::MeasurementSet& set, const SelectedRows& selected) {
-  double highest_hz = 0;
-  for (const Setup& setup : selected.setups)
-    for (const double hz : setup.frequency_hz) highest_hz = std::max(highest_hz, hz);
-  const double baseline_m = largest_baseline_m(set);
-  return baseline_m > 0 ? imager::speed_of_light_m_s / highest_hz / baseline_m : 0;
-}
-
-double close_centre_rad(const casacore::MeasurementSet& set, const SelectedRows& selected) {
+double close_centre_rad(double finest_beam_rad) {
   constexpr double least_rad = 5e-11;
-  return std::max(1e-3 * finest_beam_rad(set, selected), least_rad);
+  return std::max(1e-3 * finest_beam_rad, least_rad);
 }
 
-double noticed_motion_rad(const casacore::MeasurementSet& set, const SelectedRows& selected) {
-  return std::max(1e-3 * finest_beam_rad(set, selected), same_centre_rad);
-}
-
-std::map<int, std::vector<double>> times_of(const casacore::MeasurementSet& set, const std::string& path,
-                                            const SelectedRows& selected, const std::set<int>& fields) {
-  constexpr std::uint64_t piece_rows = 1 << 16;
-  std::map<int, std::vector<double>> times;
-  translated("cannot read TIME or FIELD_ID of " + path, [&] {
-    const casacore::ScalarColumn<int> field_column(set, "FIELD_ID");
-    const casacore::ScalarColumn<double> time_column(set, "TIME");
-    casacore::Vector<int> field;
-    casacore::Vector<double> time_s;
-    for (const BlockRows& block : selected.blocks)
-      for (const Rows& piece : pieces(block.runs, piece_rows)) {
-        read(field_column, piece, field);
-        read(time_column, piece, time_s);
-        for (std::uint64_t r = 0; r < piece.count(); ++r) {
-          if (fields.count(field(r)) == 0) continue;
-          if (!std::isfinite(time_s(r)))
-            throw std::runtime_error(path + ": row " + std::to_string(piece[r]) + " has TIME " + std::to_string(time_s(r)) +
-                                     ", and its field " + std::to_string(field(r)) + " moves; expected a finite number");
-          std::vector<double>& of_field = times[field(r)];
-          if (of_field.empty() || of_field.back() != time_s(r)) of_field.push_back(time_s(r));
-        }
-      }
-  });
-  for (auto& [field, of_field] : times) {
-    std::sort(of_field.begin(), of_field.end());
-    of_field.erase(std::unique(of_field.begin(), of_field.end()), of_field.end());
-  }
-  return times;
+double noticed_motion_rad(double finest_beam_rad) {
+  return std::max(1e-3 * finest_beam_rad, same_centre_rad);
 }
 
 FieldCentre followed_centre(FieldDirections& fields, const SelectedRows& selected, int field, const Moment& when) {

@@ -1,11 +1,9 @@
 #pragma once
 
-#include <map>
 #include <optional>
-#include <set>
 #include <string>
-#include <vector>
 
+#include "ms_io/field_times_internal.h"
 #include "ms_io/phase_centre_internal.h"
 #include "ms_io/selection_internal.h"
 
@@ -18,11 +16,8 @@ namespace misfit::ms_io {
 std::optional<imager::SkyDirection> settle_phase_centre(const casacore::MeasurementSet& set, const std::string& path,
                                                         const Selection& selection, SelectedRows& selected);
 
-/// λ over the largest baseline, at the highest frequency; 0 without baselines.
-double finest_beam_rad(const casacore::MeasurementSet& set, const SelectedRows& selected);
-
 /// How far what moves has to go to be told of, and targets may part: a thousandth of the finest beam.
-double noticed_motion_rad(const casacore::MeasurementSet& set, const SelectedRows& selected);
+double noticed_motion_rad(double finest_beam_rad);
 
 /// The centre of an image that moves with a field, at a time.
 FieldCentre followed_centre(FieldDirections& fields, const SelectedRows& selected, int field, const Moment& when);
@@ -33,12 +28,7 @@ FieldCentre usual_centre(FieldDirections& fields, const casacore::MeasurementSet
 /// Nearer than this phase centres are meant as one: a thousandth of the finest beam, far below a pixel, and at least 10
 /// microarcseconds, by which the same direction differs in the matrices by which programs convert between J2000 and ICRS, or in
 /// the digits by which they print it.
-double close_centre_rad(const casacore::MeasurementSet& set, const SelectedRows& selected);
-
-/// The different TIMEs, ascending, at which each of `fields` has selected rows. Throws std::runtime_error for one that is not
-/// finite.
-std::map<int, std::vector<double>> times_of(const casacore::MeasurementSet& set, const std::string& path,
-                                            const SelectedRows& selected, const std::set<int>& fields);
+double close_centre_rad(double finest_beam_rad);
 
 /// The first selected row's.
 int first_field(const casacore::MeasurementSet& set, const SelectedRows& selected);

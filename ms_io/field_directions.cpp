@@ -4,12 +4,17 @@
 #include <casacore/measures/TableMeasures/ArrayMeasColumn.h>
 #include <casacore/measures/TableMeasures/ScalarMeasColumn.h>
 #include <casacore/tables/Tables/ScalarColumn.h>
+#include <casacore/tables/Tables/TableRecord.h>
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <sstream>
 
+#include "imager/numerics/constants.h"
 #include "ms_io/celestial_frame_internal.h"
 #include "ms_io/field_directions_internal.h"
+#include "ms_io/metadata_internal.h"
 #include "ms_io/observing_place_internal.h"
 #include "ms_io/table_access_internal.h"
 
@@ -19,7 +24,7 @@ namespace {
 using casacore::MDirection;
 
 bool is_planet(MDirection::Types frame) {
-  return frame >= MDirection::MERCURY && frame < MDirection::N_Planets;
+  return frame >= MDirection::MERCURY && frame < MDirection::COMET;
 }
 
 Motion motion_of(MDirection::Types frame) {
@@ -44,6 +49,33 @@ Motion motion_of(MDirection::Types frame) {
   }
 }
 
+/// Of a cell.
+MDirection::Types frame_of_cell(const casacore::ArrayMeasColumn<MDirection>& column, casacore::rownr_t row) {
+  try {
+    const casacore::Array<MDirection> directions = column(row);
+    return MDirection::castType(directions.begin()->getRef().getType());
+  } catch (const casacore::AipsError& error) {
+    throw casacore::AipsError("its direction is in no frame that casacore knows: " + error.getMesg());
+  }
+}
+
+/// Throws what says that a cell is no direction, which casacore would take for some other one.
+void require_direction(const casacore::ArrayColumn<double>& cells, const std::vector<double>& values) {
+  constexpr double turn = 2 * imager::pi, pole = turn / 4 + 1e-7;  // as single precision rounds it
+  const casacore::TableRecord& keywords = cells.keywordSet();
+  const casacore::String unit =
+      keywords.isDefined("QuantumUnits") ? *keywords.asArrayString("QuantumUnits").begin() : casacore::String("rad");
+  const double size = casacore::Quantity(1, unit).getValue("rad");
+  if (std::all_of(values.begin(), values.end(), [](double value) { return std::isfinite(value); }) &&
+      std::abs(values[0] * size) <= 2 * turn && std::abs(values[1] * size) <= pole)
+    return;
+  std::ostringstream message;
+  message << cells.columnDesc().name() << " is (";
+  for (std::size_t i = 0; i < values.size(); ++i) message << (i == 0 ? "" : ", ") << values[i];
+  message << ") " << unit << ", expected finite numbers, a longitude within two turns and a latitude from -90 to 90 degrees";
+  throw casacore::AipsError(message.str());
+}
+
 /// Throws what says so where the place of a planet, in whose frame a direction is, cannot be had.
 MDirection from_planet(const MDirection& direction, const MDirection::Ref& to) {
   try {
@@ -59,7 +91,10 @@ MDirection from_planet(const MDirection& direction, const MDirection::Ref& to) {
 }  // namespace
 
 FieldDirections::FieldDirections(const casacore::MeasurementSet& set, const std::string& path)
-    : set_(set), path_(path), columns_(set.field()) {
+    : set_(set), path_(path), plain_(without_ephemerides(set.field())), columns_(plain_) {
+  constexpr const char* ephemeris = "EPHEMERIS_ID";
+  if (set.field().tableDesc().isColumn(ephemeris))
+    ephemeris_id_ = casacore::ScalarColumn<int>(set.field(), ephemeris).getColumn().tovector();
   time_reference_ = casacore::ScalarMeasColumn<casacore::MEpoch>(set, "TIME").getMeasRef();
 }
 
@@ -79,34 +114,46 @@ std::string FieldDirections::label(int field) const {
 
 /// That a field has the directions that NUM_POLY tells of: casacore would look for them without.
 void FieldDirections::require_directions(const casacore::ArrayColumn<double>& cells, casacore::rownr_t row) const {
-  const int powers = columns_.numPoly()(row);
+  const int powers = std::max(columns_.numPoly()(row), 0);
   const casacore::IPosition shape = cells.shape(row);
-  const ssize_t directions = shape.empty() || shape[0] == 0 ? 0 : shape.product() / shape[0];
-  if (directions > std::max(powers, 0)) return;
-  throw casacore::AipsError(std::string(cells.columnDesc().name()) + " has " + std::to_string(directions) +
-                            " directions, expected more than NUM_POLY, " + std::to_string(powers));
+  const ssize_t directions = shape.empty() || shape[0] != 2 ? 0 : shape.product() / 2;
+  if (directions <= powers)
+    throw casacore::AipsError(std::string(cells.columnDesc().name()) + " has " + std::to_string(directions) +
+                              " directions, expected more than NUM_POLY, " + std::to_string(powers));
+  std::vector<double> values = cells(row).tovector();
+  values.resize(2 * static_cast<std::size_t>(powers + 1));
+  require_direction(cells, values);
 }
 
-Motion FieldDirections::motion(casacore::rownr_t row, const casacore::ArrayMeasColumn<MDirection>& column) const {
-  if (columns_.needInterTime(row)) return Motion::target;
-  const casacore::Array<MDirection> directions = column(row);
-  return motion_of(MDirection::castType(directions.begin()->getRef().getType()));
+bool FieldDirections::has_ephemeris(casacore::rownr_t row) const {
+  return row < ephemeris_id_.size() && ephemeris_id_[row] >= 0 && columns_.numPoly()(row) <= 0;  // which goes before
+}
+
+/// Of which one is not 0.
+bool FieldDirections::has_rates(const casacore::ArrayColumn<double>& cells, casacore::rownr_t row) const {
+  const int powers = std::max(columns_.numPoly()(row), 0);
+  const std::vector<double> values = cells(row).tovector();
+  return std::any_of(values.begin() + 2, values.begin() + 2 * (powers + 1), [](double rate) { return rate != 0; });
+}
+
+Motion FieldDirections::motion(casacore::rownr_t row, const casacore::ArrayColumn<double>& cells,
+                               const casacore::ArrayMeasColumn<MDirection>& column) const {
+  require_directions(cells, row);
+  if (has_ephemeris(row)) return Motion::target;
+  const Motion of_frame = motion_of(frame_of_cell(column, row));
+  return of_frame == Motion::none && has_rates(cells, row) ? Motion::target : of_frame;
 }
 
 Motion FieldDirections::motion(int field) const {
   const casacore::rownr_t row = row_of(field);
-  return translated("cannot find the phase centre of field " + std::to_string(field) + " of " + path_, [&] {
-    require_directions(columns_.phaseDir(), row);
-    return motion(row, columns_.phaseDirMeasCol());
-  });
+  return translated("cannot find the phase centre of field " + std::to_string(field) + " of " + path_,
+                    [&] { return motion(row, columns_.phaseDir(), columns_.phaseDirMeasCol()); });
 }
 
 Motion FieldDirections::pointing_motion(int field) const {
   const casacore::rownr_t row = row_of(field);
-  return translated("cannot find where antennas point in field " + std::to_string(field) + " of " + path_, [&] {
-    require_directions(columns_.referenceDir(), row);
-    return motion(row, columns_.referenceDirMeasCol());
-  });
+  return translated("cannot find where antennas point in field " + std::to_string(field) + " of " + path_,
+                    [&] { return motion(row, columns_.referenceDir(), columns_.referenceDirMeasCol()); });
 }
 
 double FieldDirections::time_s(const casacore::MEpoch& epoch) const {
@@ -120,13 +167,16 @@ double FieldDirections::field_time_s(double time_s) const {
   return casacore::MEpoch::Convert(epoch(time_s), clock)().get("s").getValue();
 }
 
+double FieldDirections::since_origin_s(int field, double time_s) const {
+  return goes_by_rates(field) ? field_time_s(time_s) - columns_.time()(row_of(field)) : 0;
+}
+
 /// Null where the field has none.
 const Ephemeris* FieldDirections::ephemeris_of(casacore::rownr_t row) {
-  if (columns_.numPoly()(row) > 0) return nullptr;  // which goes before
-  const casacore::String path = columns_.ephemPath(row);
-  if (path.empty()) return nullptr;
-  auto known = ephemerides_.find(path);
-  if (known == ephemerides_.end()) known = ephemerides_.emplace(path, Ephemeris(path)).first;
+  if (!has_ephemeris(row)) return nullptr;
+  const int id = ephemeris_id_[row];
+  auto known = ephemerides_.find(id);
+  if (known == ephemerides_.end()) known = ephemerides_.emplace(id, Ephemeris(ephemeris_path(set_.field(), id))).first;
   return &known->second;
 }
 
@@ -142,6 +192,8 @@ MDirection FieldDirections::on_ephemeris(const Ephemeris& ephemeris, const MDire
 MDirection FieldDirections::equatorial(const MDirection& direction, const Moment& when) {
   const auto frame = MDirection::castType(direction.getRef().getType());
   if (frame == MDirection::J2000 || frame == MDirection::ICRS || frame == MDirection::B1950) return direction;
+  if (frame == MDirection::COMET)
+    throw casacore::AipsError("it is phased to COMET, without an ephemeris; expected an EPHEMERIS_ID, or another frame");
   if (const std::string still = still_frame_name(frame); !still.empty()) {
     imager::SkyDirection here = sky_direction(direction);
     here.frame = still;
@@ -149,7 +201,7 @@ MDirection FieldDirections::equatorial(const MDirection& direction, const Moment
   }
   auto known = places_.find(when.row);
   if (known == places_.end()) {
-    const ObservingPlace from = observing_place(set_, when.row);
+    const ObservingPlace from = observing_place(set_, observation_of(set_, when.row));
     known = places_.emplace(when.row, Place{{epoch(when.time_s), from.position}, from.doubt}).first;
   }
   const std::string name = MDirection::showType(frame);
@@ -162,7 +214,10 @@ MDirection FieldDirections::equatorial(const MDirection& direction, const Moment
 }
 
 FieldCentre FieldDirections::seen(int field, const MDirection& direction, const Moment& when) {
-  return {field, name(field), sky_direction(equatorial(direction, when)), epoch(when.time_s)};
+  const imager::SkyDirection sky = sky_direction(equatorial(direction, when));
+  if (!std::isfinite(sky.ra_rad) || !std::isfinite(sky.dec_rad))
+    throw casacore::AipsError("it is in no direction at TIME " + std::to_string(when.time_s) + " s");
+  return {field, name(field), sky, epoch(when.time_s)};
 }
 
 FieldCentre FieldDirections::centre(int field, const Moment& when) {

@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <map>
 #include <string>
+#include <vector>
 
 #include "imager/data/geometry.h"
 #include "ms_io/ephemeris_internal.h"
@@ -43,6 +44,10 @@ class FieldDirections {
   Motion motion(int field) const;
   /// Of REFERENCE_DIR.
   Motion pointing_motion(int field) const;
+  /// Whether its direction is a polynomial of time, which is meant for the time of its rows.
+  bool goes_by_rates(int field) const { return has_rates(columns_.phaseDir(), row_of(field)); }
+  /// How far a TIME lies from that of which the field's rates are; 0 without rates.
+  double since_origin_s(int field, double time_s) const;
   /// Where the field is phased to: PHASE_DIR, which is an offset where the field has an ephemeris.
   FieldCentre centre(int field, const Moment& when);
   /// Its ephemeris without that offset; where it has none, centre().
@@ -52,6 +57,8 @@ class FieldDirections {
 
   /// "3 (M51)".
   std::string label(int field) const;
+  /// "3 (M51) of a.ms".
+  std::string full_label(int field) const { return label(field) + " of " + path_; }
   std::string name(int field) const;
   /// TIME as casacore has it.
   casacore::MEpoch epoch(double time_s) const { return {casacore::MVEpoch(casacore::Quantity(time_s, "s")), time_reference_}; }
@@ -66,7 +73,10 @@ class FieldDirections {
   };
 
   casacore::rownr_t row_of(int field) const;
-  Motion motion(casacore::rownr_t row, const casacore::ArrayMeasColumn<casacore::MDirection>& column) const;
+  bool has_ephemeris(casacore::rownr_t row) const;
+  bool has_rates(const casacore::ArrayColumn<double>& cells, casacore::rownr_t row) const;
+  Motion motion(casacore::rownr_t row, const casacore::ArrayColumn<double>& cells,
+                const casacore::ArrayMeasColumn<casacore::MDirection>& column) const;
   void require_directions(const casacore::ArrayColumn<double>& cells, casacore::rownr_t row) const;
   double field_time_s(double time_s) const;
   const Ephemeris* ephemeris_of(casacore::rownr_t row);
@@ -76,10 +86,12 @@ class FieldDirections {
 
   const casacore::MeasurementSet& set_;
   std::string path_;
+  casacore::MSField plain_;  ///< without ephemerides
   casacore::MSFieldColumns columns_;
-  casacore::MEpoch::Ref time_reference_;          ///< of TIME
-  std::map<std::string, Ephemeris> ephemerides_;  ///< by the table
-  std::map<std::uint64_t, Place> places_;         ///< by the row
+  std::vector<int> ephemeris_id_;          ///< [field]; empty: none has one
+  casacore::MEpoch::Ref time_reference_;   ///< of TIME
+  std::map<int, Ephemeris> ephemerides_;   ///< by EPHEMERIS_ID
+  std::map<std::uint64_t, Place> places_;  ///< by the row
 };
 
 /// The phase centre of `field` at the time of `row`. Throws what FieldDirections does.

@@ -38,7 +38,7 @@ class Pointings {
     }
     const auto of_fields = times_of(open_set_.set, open_set_.path, open_set_.selected, {field});
     if (of_fields.empty()) return;  // a rank may have none of its rows
-    const std::vector<double>& times = of_fields.at(field);
+    const std::vector<double>& times = of_fields.at(field).used;
     for (const double time_s : {times.front(), times[times.size() / 2], times.back()})
       add(field, seen(fields_.pointing(field, {time_s, row}), time_s), " at " + utc_text(utc_s(fields_.epoch(time_s))));
   }

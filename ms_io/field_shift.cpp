@@ -9,20 +9,23 @@ namespace misfit::ms_io {
 
 FieldShift::FieldShift() : FieldShift(imager::PhaseShift()) {}
 
-FieldShift::FieldShift(const imager::PhaseShift& always) : FieldShift({}, {always}) {}
+FieldShift::FieldShift(const imager::PhaseShift& always) : table_(std::make_shared<const Table>(Table{{{0, always}}, false})) {}
 
-FieldShift::FieldShift(std::vector<double> time_s, std::vector<imager::PhaseShift> shift)
-    : table_(std::make_shared<const Table>(Table{std::move(time_s), std::move(shift)})) {}
+FieldShift::FieldShift(List list) {
+  std::sort(list.begin(), list.end(), [](const auto& a, const auto& b) { return earlier(a.time_s, b.time_s); });
+  table_ = std::make_shared<const Table>(Table{std::move(list), true});
+}
 
 void FieldShift::append(const double* time_s, std::size_t rows, imager::RowShifts& to) const {
-  const auto& [times, shifts] = *table_;
-  if (times.empty()) return to.append(shifts.front(), rows);
+  const List& list = table_->list;
+  if (!moves()) return to.append(list.front().shift, rows);
   for (std::size_t r = 0; r < rows; ++r) {
-    const auto found = std::lower_bound(times.begin(), times.end(), time_s[r]);
-    if (found == times.end() || *found != time_s[r])
+    const auto found = std::lower_bound(list.begin(), list.end(), time_s[r],
+                                        [](const TimedShift& one, double other_s) { return earlier(one.time_s, other_s); });
+    if (found == list.end() || earlier(time_s[r], found->time_s))
       throw std::runtime_error("a row has TIME " + std::to_string(time_s[r]) +
                                " s, which no row had when its MeasurementSet was opened");
-    to.append(shifts[static_cast<std::size_t>(found - times.begin())], 1);
+    to.append(found->shift, 1);
   }
 }
 

@@ -1,14 +1,19 @@
+#include <casacore/casa/Quanta/MVTime.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <set>
 #include <stdexcept>
+#include <utility>
 
 #include "ms_io/field_centres_internal.h"
 #include "ms_io/followed_field_internal.h"
 #include "ms_io/metadata_internal.h"
 #include "ms_io/observing_place_internal.h"
 #include "ms_io/table_access_internal.h"
+#include "ms_io/uvw_scan_internal.h"
 
 namespace misfit::ms_io {
 namespace {
@@ -22,6 +27,11 @@ class FollowedField {
   casacore::MEpoch first() const { return fields_.epoch(moving_span(from_.selected).first_s); }
   casacore::MEpoch last() const { return fields_.epoch(moving_span(from_.selected).last_s); }
   std::string name() const { return fields_.name(field_); }
+  /// Whether it tells where it goes at a time: rates do while they are observed.
+  bool goes_on(const casacore::MEpoch& when) const {
+    const TimeSpan span = moving_span(from_.selected);
+    return !fields_.goes_by_rates(field_) || (time_s(when) >= span.first_s && time_s(when) <= span.last_s);
+  }
   std::string label() const { return "field " + fields_.label(field_) + " of " + from_.path; }
 
   double time_s(const casacore::MEpoch& when) const { return fields_.time_s(when); }
@@ -44,11 +54,15 @@ class FollowedField {
   FieldDirections fields_;
 };
 
+double beam_of(const OpenSet& set) {
+  return set.selected.beam_rad ? *set.selected.beam_rad : finest_beam_rad(set.set, set.path, set.selected);
+}
+
 void require_one_target(const OpenSets& sets) {
   FollowedField first(*sets.front());
   for (std::size_t s = 1; s < sets.size(); ++s) {
     FollowedField other(*sets[s]);
-    const double noticed_rad = noticed_motion_rad(sets[s]->set, sets[s]->selected);
+    const double noticed_rad = noticed_motion_rad(beam_of(*sets[s]));
     bool told = false;
     for (const casacore::MEpoch& when : {first.first(), first.last(), other.first(), other.last()}) {
       const auto one = first.known_at(when), two = other.known_at(when);
@@ -84,10 +98,23 @@ void centre_in_middle(const OpenSets& sets, imager::Observation& observation) {
   }
 }
 
+/// The phase centre of the first set, where that of the other is to be shifted there.
+std::optional<imager::SkyDirection> centre_but_for_rounding(const OpenSet& first, const OpenSet& other) {
+  const bool one_moves = first.selected.follows_field != other.selected.follows_field;
+  if (first.selected.follows_field && !one_moves) return {};
+  const imager::SkyDirection centre = describe(first.set, first.path, first.selected).phase_centre;
+  const double apart_rad = separation_rad(centre, describe(other.set, other.path, other.selected).phase_centre);
+  if (apart_rad <= same_centre_rad && !one_moves) return {};
+  const double close_rad = close_centre_rad(std::min(beam_of(first), beam_of(other)));
+  const double moved_rad = first.selected.follows_field ? first.selected.moved_rad : other.selected.moved_rad;
+  if (apart_rad > close_rad || (one_moves && moved_rad > close_rad)) return {};
+  return centre;
+}
+
 /// How far an image moves with the field of the set, and what that means, where that is noticed.
 std::string motion_remark(const OpenSet& set, const imager::Observation& observation) {
   const SelectedRows& selected = set.selected;
-  if (!selected.follows_field || selected.moved_rad <= noticed_motion_rad(set.set, selected)) return "";
+  if (!selected.follows_field || selected.moved_rad <= noticed_motion_rad(beam_of(set))) return "";
   return FollowedField(set).label() + " moves by " + angle_words(selected.moved_rad) +
          " while it is observed, and images and models move along: what stands still on the sky is smeared about it, and "
          "headers "
@@ -95,28 +122,44 @@ std::string motion_remark(const OpenSet& set, const imager::Observation& observa
          observation.moving_at + "; --phasecenter with a direction on the sky keeps that still";
 }
 
-/// Where frequencies are converted from or to those of the telescope itself, and it is not known where that stands.
-std::string place_remark(const OpenSet& set) {
+/// Where frequencies are converted from or to those of the telescopes, and it is not known where one stands.
+std::vector<std::string> place_remarks(const OpenSet& set) {
   constexpr const char* own = "TOPOCENT";
   const std::string& frame = set.selected.spectral_frame;
   const auto needs_place = [&](const Setup& setup) { return (setup.spectral_frame == own) != (frame == own); };
-  if (frame.empty() || std::none_of(set.selected.setups.begin(), set.selected.setups.end(), needs_place)) return "";
-  const std::string doubt =
-      translated("cannot read ANTENNA of " + set.path, [&] { return observing_place(set.set, set.selected.first_row).doubt; });
-  if (doubt.empty()) return "";
-  return "frequencies of " + set.path + " are converted to " + frame + " without the Earth's rotation, up to 0.5 km/s, since " +
-         doubt + "; expected a TELESCOPE_NAME that casacore knows, or positions from the Earth's middle";
+  if (frame.empty() || std::none_of(set.selected.setups.begin(), set.selected.setups.end(), needs_place)) return {};
+  std::set<std::string> remarks;  // each once
+  translated("cannot read ANTENNA or OBSERVATION of " + set.path, [&] {
+    for (const int observation : observations_of(set.set, set.selected)) {
+      const ObservingPlace place = observing_place(set.set, observation);
+      if (!place.dispute.empty())
+        remarks.insert("frequencies of " + set.path + " are converted to " + frame + ", and " + place.dispute);
+      if (!place.doubt.empty())
+        remarks.insert("frequencies of " + set.path + " are converted to " + frame +
+                       " without the Earth's rotation, up to 0.5 km/s, since " + place.doubt +
+                       "; expected a TELESCOPE_NAME that casacore knows, or positions from the Earth's middle");
+    }
+  });
+  return {remarks.begin(), remarks.end()};
 }
 
 }  // namespace
 
-std::optional<imager::SkyDirection> centre_but_for_rounding(const OpenSet& first, const OpenSet& other) {
-  if (first.selected.follows_field || other.selected.follows_field) return {};
-  const imager::SkyDirection centre = describe(first.set, first.path, first.selected).phase_centre;
-  const double apart_rad = separation_rad(centre, describe(other.set, other.path, other.selected).phase_centre);
-  const double close_rad = std::min(close_centre_rad(first.set, first.selected), close_centre_rad(other.set, other.selected));
-  if (apart_rad <= same_centre_rad || apart_rad > close_rad) return {};
-  return centre;
+std::vector<std::string> shift_from_rounding(OpenSets& sets, Selection& selection,
+                                             const std::function<std::shared_ptr<const OpenSet>(const OpenSet&)>& reopened) {
+  std::vector<std::string> sentences;
+  if (selection.phase_centre) return sentences;
+  auto& first = sets.front();
+  for (std::size_t s = 1; s < sets.size(); ++s) {
+    const auto centre = centre_but_for_rounding(*first, *sets[s]);
+    if (!centre) continue;
+    selection.phase_centre = centre;
+    sets[s] = reopened(*sets[s]);
+    if (first->selected.follows_field) first = reopened(*first);
+    sentences.push_back("the phase centre of " + sets[s]->path + " differs from that of " + first->path +
+                        " as if by rounding: it is shifted there");
+  }
+  return sentences;
 }
 
 void follow_one_target(const OpenSets& sets, imager::Observation& observation) {
@@ -124,16 +167,21 @@ void follow_one_target(const OpenSets& sets, imager::Observation& observation) {
   centre_in_middle(sets, observation);
 }
 
+std::optional<imager::SkyDirection> followed_at(const OpenSet& set, const std::string& utc) {
+  casacore::Quantity time;
+  if (!set.selected.follows_field || utc.empty() || !casacore::MVTime::read(time, utc)) return {};
+  const casacore::MEpoch when(casacore::MVEpoch(time), casacore::MEpoch::UTC);
+  FollowedField field(set);
+  return field.goes_on(when) ? field.known_at(when) : std::nullopt;
+}
+
 std::vector<std::string> remarks_on(const OpenSets& sets, const Selection& selection, const imager::Observation& observation) {
   std::vector<std::string> remarks{selection.phase_centre_remark};
   for (const auto& set : sets) {
     const SelectedRows& selected = set->selected;
-    if (selected.phase_centre && !selection.phase_centre && selected.remarks.empty())
-      remarks.push_back("the phase centre of " + set->path + " differs from that of " + sets.front()->path +
-                        " as if by rounding: it is shifted there");
     remarks.insert(remarks.end(), selected.remarks.begin(), selected.remarks.end());
     remarks.push_back(motion_remark(*set, observation));
-    remarks.push_back(place_remark(*set));
+    for (std::string& remark : place_remarks(*set)) remarks.push_back(std::move(remark));
   }
   remarks.erase(std::remove(remarks.begin(), remarks.end(), ""), remarks.end());
   return remarks;

@@ -147,16 +147,13 @@ MeasurementSet::MeasurementSet(const std::vector<std::string>& paths, const Sele
   for (std::size_t i = 0; i < paths.size(); ++i)
     impl->sets.push_back(open_selected(paths[i], selection, columns[i], stokes, block_samples));
   sort_by_time(impl->sets);
-  for (auto& set : impl->sets) {
-    if (selection.phase_centre || set == impl->sets.front()) continue;
-    const auto centre = centre_but_for_rounding(*impl->sets.front(), *set);
-    if (!centre) continue;
-    impl->selection.phase_centre = centre;
-    set = open_selected(set->path, impl->selection, set->data_column, stokes, block_samples);
-  }
+  const std::vector<std::string> roundings = shift_from_rounding(impl->sets, impl->selection, [&](const OpenSet& set) {
+    return open_selected(set.path, impl->selection, set.data_column, stokes, block_samples);
+  });
   if (!impl->selection.phase_centre) impl->selection.phase_centre = impl->sets.front()->selected.phase_centre;
   impl->observation = joined(impl->sets);
   impl->remarks = remarks_on(impl->sets, selection, impl->observation);
+  impl->remarks.insert(impl->remarks.end(), roundings.begin(), roundings.end());
   impl_ = impl;
 }
 
@@ -183,6 +180,9 @@ std::vector<imager::Stokes> MeasurementSet::seen_stokes() const {
     for (const Setup& setup : set->selected.setups)
       types.insert(types.end(), setup.correlation_types.begin(), setup.correlation_types.end());
   return seen_by(types);
+}
+std::optional<imager::SkyDirection> MeasurementSet::followed_at(const std::string& utc) const {
+  return ms_io::followed_at(*whole().sets.front(), utc);
 }
 std::vector<std::string> MeasurementSet::incomplete_columns() const {
   std::vector<std::string> sentences;

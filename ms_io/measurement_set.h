@@ -98,6 +98,9 @@ class MeasurementSet : public imager::VisibilitySource {
   const Selection& selection() const;
   /// Of the first set, with the band of all; where the image moves with fields, in the middle of their run.
   const imager::Observation& observation() const;
+  /// Where what an image of the first set moves with is at a time, UTC in ISO 8601; nothing where the image stands still, or
+  /// where that is not told of the time: by an ephemeris that does not reach it, or by rates, which are of the rows' times.
+  std::optional<imager::SkyDirection> followed_at(const std::string& utc) const;
   std::uint64_t rows() const;
   std::uint64_t samples() const override;
   /// Samples of the blocks that are read at once, at most: several blocks where rows of DATA_DESC_IDs alternate.

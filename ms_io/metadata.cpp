@@ -47,8 +47,11 @@ void describe_band(const std::vector<Setup>& setups, imager::Observation& observ
 
 }  // namespace
 
-std::string telescope_name(const casacore::MeasurementSet& set, std::uint64_t row) {
-  const int observation = cell_or<int>(set, "OBSERVATION_ID", static_cast<casacore::Int64>(row), -1);
+int observation_of(const casacore::MeasurementSet& set, std::uint64_t row) {
+  return cell_or<int>(set, "OBSERVATION_ID", static_cast<casacore::Int64>(row), -1);
+}
+
+std::string telescope_name(const casacore::MeasurementSet& set, int observation) {
   return cell_or<casacore::String>(set.observation(), "TELESCOPE_NAME", observation, "");
 }
 
@@ -77,8 +80,8 @@ imager::Observation describe(const casacore::MeasurementSet& set, const std::str
   if (selected.follows_field) centre_on_field(set, path, selected, moving_span(selected).middle_s(), observation);
   describe_band(selected.setups, observation);
   translated("cannot read what " + path + " says of its observation", [&] {
-    const int id = cell_or<int>(set, "OBSERVATION_ID", static_cast<casacore::Int64>(selected.first_row), -1);
-    observation.telescope = telescope_name(set, selected.first_row);
+    const int id = observation_of(set, selected.first_row);
+    observation.telescope = telescope_name(set, id);
     observation.observer = cell_or<casacore::String>(set.observation(), "OBSERVER", id, "");
     observation.date_obs = start_time(set, selected.first_row);
   });

@@ -12,8 +12,11 @@ namespace misfit::ms_io {
 /// middle of the rows. Throws std::runtime_error where that cannot be found.
 imager::Observation describe(const casacore::MeasurementSet& set, const std::string& path, const SelectedRows& selected);
 
-/// TELESCOPE_NAME of the observation of `row`; empty where there is none.
-std::string telescope_name(const casacore::MeasurementSet& set, std::uint64_t row);
+/// OBSERVATION_ID of `row`.
+int observation_of(const casacore::MeasurementSet& set, std::uint64_t row);
+
+/// TELESCOPE_NAME of a row of OBSERVATION; empty where there is none.
+std::string telescope_name(const casacore::MeasurementSet& set, int observation);
 
 /// Seconds of UTC, and these in ISO 8601; empty where they are not finite.
 double utc_s(const casacore::MEpoch& time);

@@ -1,30 +1,26 @@
 #pragma once
 
 #include <casacore/measures/Measures/MPosition.h>
-#include <casacore/measures/Measures/MeasFrame.h>
 #include <casacore/ms/MeasurementSets/MeasurementSet.h>
 
-#include <cstdint>
 #include <string>
 
 namespace misfit::ms_io {
 
-/// From where a set was observed.
+/// From where a set was observed. Antennas stand where POSITION is some Earth's radius from its middle, in ITRF, which it is
+/// not where it is relative to the array's centre, in another unit than it states, or no number.
 struct ObservingPlace {
-  /// Of the telescope, as casacore knows it by its name; else of the first antenna that does not stand far below the Earth's
-  /// surface, as antennas do whose POSITION is relative to the array's centre; else of the telescope by another name, such as
-  /// VLA for EVLA; else of the first antenna.
+  /// Of the telescope, as casacore knows it by its whole name or another one, such as VLA for EVLA, unless it lies farther from
+  /// the antennas that stand than these from each other, and than 50 km; else the median of these antennas; else the middle of
+  /// the Earth. It does not depend on the order of antennas. Where OBSERVATION names several telescopes, a name that is known
+  /// decides, and otherwise antennas count that are in rows of the observation.
   casacore::MPosition position;
-  std::string doubt;  ///< why `position` is none, in words that follow "since"; else empty
+  std::string doubt;         ///< why `position` is the middle of the Earth, in words that follow "since"; else empty
+  std::string dispute;       ///< that the telescope stands elsewhere by its name, in a sentence; else empty
+  bool of_antennas = false;  ///< whether `position` is their median
 };
 
-/// Of the row's telescope.
-ObservingPlace observing_place(const casacore::MeasurementSet& set, std::uint64_t row);
-
-/// When and from where the row was observed.
-casacore::MeasFrame frame_of(const casacore::MeasurementSet& set, std::uint64_t row);
-
-/// The diagonal of the least box that holds all antennas, so that no baseline is longer; 0 without antennas.
-double largest_baseline_m(const casacore::MeasurementSet& set);
+/// Of the telescope of a row of OBSERVATION; of none by name where there is no such row.
+ObservingPlace observing_place(const casacore::MeasurementSet& set, int observation);
 
 }  // namespace misfit::ms_io

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "imager/data/geometry.h"
 #include "ms_io/selection.h"
@@ -8,13 +9,14 @@
 namespace misfit::ms_io {
 
 /// The direction that `text` means, as CASA's tasks take it: "J2000 12h30m49.4s +12d23m28s", with J2000 (also when left out),
-/// ICRS or B1950, angles such as 12h30m49.4s, 12:30:49.4, +12d23m28s, +12.23.28 and 187.7deg; or the id or name of a field of
-/// the MeasurementSet at `path`, for its phase centre, and where that moves, for where it is in the middle of the field's rows.
-/// Throws std::runtime_error that says what was expected.
+/// ICRS or B1950, angles such as 12h30m49.4s, 12:30:49.4, +12d23m28s, +12.23.28 and 187.7deg; or a field of the MeasurementSet
+/// at `path`, by its id or, where that is none, its name, for its phase centre, and where that moves, for where it is in the
+/// middle of the field's rows. Throws std::runtime_error that says what was expected, also where fields of one name are phased
+/// to several directions.
 imager::SkyDirection parse_phase_centre(const std::string& text, const std::string& path);
 
-/// `selection` with its visibilities phased to what `text` means: such a direction, or "TRACKFIELD", for what the fields of the
-/// sets follow. Throws what parse_phase_centre() does.
-Selection phased_to(Selection selection, const std::string& text, const std::string& path);
+/// `selection` with its visibilities phased to what `text` means: such a direction, of a field of the first of the sets at
+/// `paths` that has it; or "TRACKFIELD", for what the fields of the sets follow. Throws what parse_phase_centre() does.
+Selection phased_to(Selection selection, const std::string& text, const std::vector<std::string>& paths);
 
 }  // namespace misfit::ms_io

@@ -58,79 +58,134 @@ std::optional<imager::SkyDirection> direction_in(const std::string& text) {
   return direction;
 }
 
-/// The field with that id or name.
-std::optional<int> field_in(const casacore::MeasurementSet& set, const std::string& text) {
+/// The fields that the text names: the one of that id, as --field takes numbers, or all of that name.
+std::vector<int> fields_in(const casacore::MeasurementSet& set, const std::string& text) {
   const auto names = casacore::ScalarColumn<casacore::String>(set.field(), "NAME").getColumn().tovector();
-  const auto named = std::find(names.begin(), names.end(), casacore::String(text));
-  if (named != names.end()) return static_cast<int>(named - names.begin());
   const bool number = !text.empty() && text.size() < 9 && text.find_first_not_of("0123456789") == std::string::npos;
-  if (number && std::stoul(text) < names.size()) return std::stoi(text);
-  return {};
+  if (number && std::stoul(text) < names.size()) return {std::stoi(text)};
+  std::vector<int> named;
+  for (std::size_t field = 0; field < names.size(); ++field)
+    if (names[field] == casacore::String(text)) named.push_back(static_cast<int>(field));
+  return named;
 }
 
-/// The first row of the field; 0 where it has none.
-std::uint64_t first_row_of(const casacore::MeasurementSet& set, int field) {
-  const casacore::ScalarColumn<int> fields(set, "FIELD_ID");
-  for (std::uint64_t row = 0; row < set.nrow(); ++row) {
-    if (fields(row) == field) return row;
-  }
-  return 0;
+/// The first row of the field, if it has any.
+std::optional<std::uint64_t> first_row_of(const casacore::MeasurementSet& set, int field) {
+  const std::vector<int> fields = casacore::ScalarColumn<int>(set, "FIELD_ID").getColumn().tovector();
+  const auto found = std::find(fields.begin(), fields.end(), field);
+  if (found == fields.end()) return {};
+  return static_cast<std::uint64_t>(found - fields.begin());
 }
 
 /// The direction that a text means.
 struct Meant {
   imager::SkyDirection direction;
-  std::string remark;  ///< empty, but of a field that moves
+  std::string remark = {};  ///< empty, but of a field that moves, or could be taken for another
+  std::string label = {};   ///< of the field
 };
 
 /// Where a field is phased to and, where that moves, in the middle of its rows.
 Meant centre_in(const casacore::MeasurementSet& set, const std::string& path, int field) {
   SelectedRows all;
-  all.first_row = first_row_of(set, field);
+  all.first_row = first_row_of(set, field).value_or(0);
   all.first_row_of_field[field] = all.first_row;
   all.blocks = {{0, {{0, set.nrow()}}, set.nrow()}};
   FieldDirections fields(set, path);
   const bool moves = fields.motion(field) != Motion::none;
-  const auto times = moves ? times_of(set, path, all, {field}) : std::map<int, std::vector<double>>();
-  for (const auto& [moving, times_s] : times) all.moving[moving] = {times_s.front(), times_s.back()};
+  if (moves)
+    for (const auto& [moving, times] : times_of(set, path, all, {field}))
+      all.moving[moving] = {times.used.front(), times.used.back()};
   const FieldCentre centre = usual_centre(fields, set, all, field);
-  if (!moves) return {centre.direction, ""};
-  return {centre.direction, "field " + fields.label(field) + " of " + path +
-                                " moves: --phasecenter takes where it was in the middle of its rows, at " +
-                                utc_text(utc_s(centre.observed)) + "; TRACKFIELD moves along with it"};
+  Meant meant{centre.direction, "", "field " + fields.label(field) + " of " + path};
+  if (moves)
+    meant.remark = meant.label + " moves: --phasecenter takes where it was in the middle of its rows, at " +
+                   utc_text(utc_s(centre.observed)) + "; TRACKFIELD moves along with it";
+  return meant;
 }
 
-Meant meaning_of(const std::string& text, const std::string& path) {
-  if (const auto direction = direction_in(text)) return {*direction, ""};
+/// Directions of fields that are meant as one differ by no more.
+constexpr double meant_as_one_rad = 1e-9;
+
+/// Where the fields of one name are, of which those without rows count only where no other is there; they must be in one place.
+Meant centre_of_namesakes(const casacore::MeasurementSet& set, const std::string& path, std::vector<int> named,
+                          const std::string& text) {
+  const auto has_rows = [&](int field) { return first_row_of(set, field).has_value(); };
+  if (named.size() > 1 && std::any_of(named.begin(), named.end(), has_rows))
+    named.erase(std::remove_if(named.begin(), named.end(), [&](int field) { return !has_rows(field); }), named.end());
+  Meant first = centre_in(set, path, named.front());
+  for (const int field : named) {
+    const double apart_rad = separation_rad(first.direction, centre_in(set, path, field).direction);
+    if (apart_rad > meant_as_one_rad)
+      throw std::runtime_error("--phasecenter '" + text + "' is the name of fields " + std::to_string(named.front()) + " and " +
+                               std::to_string(field) + " of " + path + ", " + angle_words(apart_rad) +
+                               " apart; expected one of them by its id");
+  }
+  return first;
+}
+
+/// Nothing where no field of the set has that id or name.
+std::optional<Meant> field_meant(const std::string& text, const std::string& path) {
   const casacore::MeasurementSet set = open_measurement_set(path, Access::read);
-  const auto field = translated("cannot read FIELD of " + path, [&] { return field_in(set, one_line(text)); });
-  if (field && set.nrow() > 0) return translated("cannot read FIELD of " + path, [&] { return centre_in(set, path, *field); });
+  return translated("cannot read FIELD of " + path, [&]() -> std::optional<Meant> {
+    const std::vector<int> named = fields_in(set, one_line(text));
+    if (named.empty() || set.nrow() == 0) return {};
+    return centre_of_namesakes(set, path, named, text);
+  });
+}
+
+[[noreturn]] void refuse(const std::string& text, const std::vector<std::string>& paths) {
   casacore::MDirection::Types type = casacore::MDirection::J2000;
   const bool body = casacore::MDirection::getType(type, capitals(one_line(text))) && type >= casacore::MDirection::MERCURY;
-  const std::string fields = "one of its " + std::to_string(set.field().nrow()) + " fields by id or name";
+  std::string sets;
+  casacore::rownr_t count = 0;
+  for (const std::string& path : paths) {
+    sets += (sets.empty() ? "" : ", ") + path;
+    count += open_measurement_set(path, Access::read).field().nrow();
+  }
+  const std::string fields =
+      std::string(paths.size() > 1 ? "one of their " : "one of its ") + std::to_string(count) + " fields by id or name";
   if (body)
     throw std::runtime_error("--phasecenter '" + text +
                              "' is a body of the solar system, whose place is not looked up; expected TRACKFIELD, which images "
                              "fields that follow an ephemeris about what they follow, a direction, or " +
                              fields);
-  throw std::runtime_error("--phasecenter '" + text + "' is neither a direction nor a field of " + path +
+  throw std::runtime_error("--phasecenter '" + text + "' is neither a direction nor a field of " + sets +
                            "; expected J2000, ICRS or B1950 with angles such as 12h30m49.4s +12d23m28s or 187.7deg 12.39deg, "
                            "TRACKFIELD, or " +
                            fields);
 }
 
+/// A field of the first set that has it.
+Meant meaning_of(const std::string& text, const std::vector<std::string>& paths) {
+  if (const auto direction = direction_in(text)) return {*direction};
+  std::optional<Meant> first;
+  for (const std::string& path : paths) {
+    const std::optional<Meant> one = field_meant(text, path);
+    if (!first) {
+      first = one;
+    } else if (const double apart_rad = one ? separation_rad(first->direction, one->direction) : 0;
+               apart_rad > meant_as_one_rad) {
+      first->remark += (first->remark.empty() ? "" : "; ") +
+                       ("--phasecenter '" + text + "' is " + first->label + ", the first listed that has it: " + one->label +
+                        " is " + angle_words(apart_rad) + " away");
+    }
+  }
+  if (!first) refuse(text, paths);
+  return *first;
+}
+
 }  // namespace
 
 imager::SkyDirection parse_phase_centre(const std::string& text, const std::string& path) {
-  return meaning_of(text, path).direction;
+  return meaning_of(text, {path}).direction;
 }
 
-Selection phased_to(Selection selection, const std::string& text, const std::string& path) {
+Selection phased_to(Selection selection, const std::string& text, const std::vector<std::string>& paths) {
   if (capitals(one_line(text)) == "TRACKFIELD") {
     selection.moving = Selection::Moving::about_targets;
     return selection;
   }
-  const Meant meant = meaning_of(text, path);
+  const Meant meant = meaning_of(text, paths);
   selection.phase_centre = meant.direction;
   selection.phase_centre_remark = meant.remark;
   return selection;

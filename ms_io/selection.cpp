@@ -25,10 +25,11 @@ struct TimedRow {
   int data_description = 0;
   std::uint64_t row = 0;
 
-  /// Rows without a time come last.
+  /// Rows without a time come last: some writers leave 0 in rows that they flag.
   bool before(const TimedRow& other) const {
     const auto key = [](const TimedRow& r) {
-      return std::tuple(std::isnan(r.time_s), std::isnan(r.time_s) ? 0 : r.time_s, r.field, r.data_description, r.row);
+      const bool timed = std::isfinite(r.time_s) && r.time_s > 0;
+      return std::tuple(!timed, timed ? r.time_s : 0, r.field, r.data_description, r.row);
     };
     return key(*this) < key(other);
   }

@@ -64,10 +64,11 @@ struct SelectedRows {
   std::vector<BlockRows> blocks;  ///< in the order of the table, as far as several setups allow
   std::uint64_t rows = 0;
   std::uint64_t samples = 0;                         ///< rows × selected channels
-  std::uint64_t first_row = 0;                       ///< the earliest row selected, wherever it stands
+  std::uint64_t first_row = 0;                       ///< the earliest row selected that has a time, wherever it stands
   std::map<int, std::uint64_t> first_row_of_field;   ///< the earliest, for the fields that have selected rows
   std::map<int, TimeSpan> moving;                    ///< the fields of these whose phase centres move
   double moved_rad = 0;                              ///< the farthest that one does
+  std::optional<double> beam_rad;                    ///< see finest_beam_rad(); where it was needed
   std::optional<imager::SkyDirection> phase_centre;  ///< where the visibilities are shifted to
   bool follows_field = false;                        ///< instead the image moves with the field of the first row
   bool follows_target = false;                       ///< namely with that field's ephemeris, without offset

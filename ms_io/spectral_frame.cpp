@@ -1,3 +1,4 @@
+#include <casacore/measures/TableMeasures/ScalarMeasColumn.h>
 #include <casacore/tables/Tables/ScalarColumn.h>
 
 #include <array>
@@ -53,7 +54,7 @@ std::string spectral_frame_of(int code) {
 }
 
 FrameRatio::FrameRatio(const casacore::MeasurementSet& set, const std::string& path, const SelectedRows& selected,
-                       const Setup& setup) {
+                       const Setup& setup, int observation) {
   if (setup.spectral_frame == selected.spectral_frame) {
     ratio_ = 1;
     return;
@@ -65,7 +66,8 @@ FrameRatio::FrameRatio(const casacore::MeasurementSet& set, const std::string& p
                              "; expected a frame that can be converted to " + selected.spectral_frame);
   translated("cannot find the frame of frequencies of " + path, [&] {
     const std::uint64_t row = selected.first_row;
-    frame_ = frame_of(set, row);  // shared with the conversion below
+    frame_ = casacore::MeasFrame(casacore::ScalarMeasColumn<casacore::MEpoch>(set, "TIME")(row));  // shared with `convert_`
+    frame_.set(observing_place(set, observation).position);
     const int field = first_field(set, selected);
     frame_.set(measure_of(selected.phase_centre.value_or(field_centre(set, path, field, row).direction)));
     if (selected.follows_field) moving_ = std::make_unique<Towards>(set, path, selected, field);

@@ -21,14 +21,15 @@ std::string spectral_frame_of(int code);
 /// The code of such a frame; Undefined where casacore has none.
 casacore::MFrequency::Types spectral_frame_code(const std::string& spectral_frame);
 
-/// By how much frequencies of a spectral window differ in another frame, at the telescope's place and towards a direction: all
-/// by one factor, that of Doppler's shift, which changes with time. The set and `selected` must outlive it.
+/// By how much frequencies of a spectral window differ in another frame, at the place of one row of OBSERVATION and towards a
+/// direction: all by one factor, that of Doppler's shift, which changes with time. The set and `selected` must outlive it.
 class FrameRatio {
  public:
   FrameRatio(const FrameRatio&) = delete;
   FrameRatio& operator=(const FrameRatio&) = delete;
   /// Throws std::runtime_error, which begins with `path`, where the window's frame is not known or is that of the source.
-  FrameRatio(const casacore::MeasurementSet& set, const std::string& path, const SelectedRows& selected, const Setup& setup);
+  FrameRatio(const casacore::MeasurementSet& set, const std::string& path, const SelectedRows& selected, const Setup& setup,
+             int observation);
 
   /// Frequency in the frame of the selection over that in the window's, at TIME in seconds as the set stores it.
   double at(double time_s);

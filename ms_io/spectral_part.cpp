@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "ms_io/metadata_internal.h"
 #include "ms_io/spectral_frame_internal.h"
 #include "ms_io/spectral_part_internal.h"
 #include "ms_io/table_access_internal.h"
@@ -39,7 +40,8 @@ double first_time_s(const OpenSet& set) {
 SpectralWindow window_at_first_row(const OpenSet& from, const Setup& setup) {
   SpectralWindow window{from.path, setup.spectral_window, setup.frequency_hz, setup.channel_width_hz};
   if (from.selected.spectral_frame.empty()) return window;
-  const double ratio = FrameRatio(from.set, from.path, from.selected, setup).at(first_time_s(from));
+  const double ratio = FrameRatio(from.set, from.path, from.selected, setup, observation_of(from.set, from.selected.first_row))
+                           .at(first_time_s(from));
   for (double& hz : window.frequency_hz) hz *= ratio;
   for (double& hz : window.channel_width_hz) hz *= ratio;
   return window;

@@ -100,4 +100,20 @@ imager::UvwReach scan_uvw(const OpenSet& open_set, ReachOf rows) {
   return reach;
 }
 
+double finest_beam_rad(const casacore::MeasurementSet& set, const std::string& path, const SelectedRows& selected) {
+  double longest = 0;
+  translated("cannot read UVW, antennas or FLAG_ROW of " + path, [&] {
+    UvwScan scan(set);
+    for (const BlockRows& block : selected.blocks) {
+      const std::vector<double>& hz = selected.setups[block.setup].frequency_hz;
+      const double per_m = *std::max_element(hz.begin(), hz.end()) / imager::speed_of_light_m_s;
+      for (const Rows& piece : pieces(block.runs, piece_rows))
+        scan.for_each(piece, ReachOf::usable, [&](const double* uvw_m, std::size_t) {
+          longest = std::max(longest, std::hypot(uvw_m[0], uvw_m[1], uvw_m[2]) * per_m);
+        });
+    }
+  });
+  return longest > 0 ? 1 / longest : 0;
+}
+
 }  // namespace misfit::ms_io

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <string>
 
 #include "imager/data/extent.h"
 #include "ms_io/measurement_set.h"
@@ -12,5 +13,9 @@ namespace misfit::ms_io {
 imager::UvwReach scan_uvw(const OpenSet& open_set, ReachOf rows);
 /// See MeasurementSet::visit_coordinates().
 void visit_uvw(const OpenSet& open_set, const std::function<void(const imager::SampleCoordinates&)>& visit);
+
+/// 1 / √(u² + v² + w²) of the sample where that is largest, in wavelengths, among rows of two antennas that are not flagged; 0
+/// where it is 0 everywhere. UVW tell, since these are what is imaged: antennas' POSITION may be in another unit, or absent.
+double finest_beam_rad(const casacore::MeasurementSet& set, const std::string& path, const SelectedRows& selected);
 
 }  // namespace misfit::ms_io

@@ -72,6 +72,36 @@ BOOST_AUTO_TEST_CASE(about_itself_a_field_that_turns_with_the_earth_is_refused_w
   }
 }
 
+BOOST_AUTO_TEST_CASE(a_field_that_turns_with_the_earth_does_so_whatever_its_rates) {
+  for (const double rate : {0.0, 1e-7}) {
+    const MovingSet set(Path::azimuth);
+    set.modify([&](casacore::MeasurementSet& open) {
+      casacore::MSFieldColumns columns(open.field());
+      columns.numPoly().put(0, 1);
+      columns.time().put(0, set.moving.middle_s());
+      casacore::Array<double> terms = columns.phaseDir()(0);
+      terms.resize(casacore::IPosition(2, 2, 2), true);
+      terms(casacore::IPosition(2, 0, 1)) = terms(casacore::IPosition(2, 1, 1)) = rate;
+      for (auto* const column : {&columns.phaseDir(), &columns.referenceDir(), &columns.delayDir()}) column->put(0, terms);
+    });
+    BOOST_TEST(contains(error_of([&] { MeasurementSet(set.path(), {}, "DATA"); }), "turns with the Earth, and moves by "));
+  }
+}
+
+BOOST_AUTO_TEST_CASE(where_a_target_was_is_known_as_far_as_its_way_is_told) {
+  for (const Path way : {Path::ephemeris, Path::rate, Path::apparent}) {
+    const MovingSet set(way);
+    const MeasurementSet opened(set.path(), with(Moving::about_targets), "DATA");
+    const auto at = opened.followed_at("2014-02-24T23:46:40.000");
+    BOOST_REQUIRE(at.has_value());
+    BOOST_TEST(apart_rad(*at, set.moving.at(time_range_s(set.path())[1])) < 1e-10);
+    BOOST_TEST(opened.followed_at("2014-02-25T05:00:00").has_value() == (way != Path::rate));
+    BOOST_TEST(opened.followed_at("2018-02-25T05:00:00").has_value() == (way == Path::apparent));
+    BOOST_TEST(!opened.followed_at("").has_value());
+    BOOST_TEST(!MeasurementSet(set.path(), to_direction(about, way), "DATA").followed_at("2014-02-24T23:46:40").has_value());
+  }
+}
+
 namespace {
 
 /// Offsets of PHASE_DIR from the ephemeris, as casacore means them: along the circle of declination, and along the meridian.
@@ -158,11 +188,11 @@ BOOST_AUTO_TEST_CASE(sets_of_which_one_moves_are_one_image_about_a_direction_alo
 
 BOOST_AUTO_TEST_CASE(what_is_followed_and_what_is_not_is_said_by_name) {
   const SmallSet still;
-  BOOST_TEST((phased_to({}, "trackfield", still.path()).moving == Moving::about_targets));
+  BOOST_TEST((phased_to({}, "trackfield", {still.path()}).moving == Moving::about_targets));
   const std::string none = error_of([&] { MeasurementSet(still.path(), with(Moving::about_targets), "DATA"); });
   BOOST_TEST(contains(none, "--phasecenter TRACKFIELD: no selected field of " + still.path() + " moves"), none);
   for (const std::string body : {"JUPITER", "Sun", "moon"}) {
-    const std::string error = error_of([&] { phased_to({}, body, still.path()); });
+    const std::string error = error_of([&] { phased_to({}, body, {still.path()}); });
     BOOST_TEST(contains(error, "--phasecenter '" + body + "' is a body of the solar system"), error);
     BOOST_TEST(contains(error, "expected TRACKFIELD"));
   }

@@ -321,7 +321,7 @@ BOOST_AUTO_TEST_CASE(rows_of_one_field_can_be_selected_by_index_and_name) {
 
 BOOST_AUTO_TEST_CASE(fields_with_several_phase_centres_are_refused_by_name) {
   const SmallSet set;
-  set.add_field(1.25 + 1e-6, -0.5);  // a 300th of the beam
+  set.add_field(1.25 + 2e-5, -0.5);  // a 300th of the beam
   const std::string error = error_of(set, {});
   BOOST_TEST(contains(error, "0 (SIMULATED)"));
   BOOST_TEST(contains(error, "1 (OTHER)"));

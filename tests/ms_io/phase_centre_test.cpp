@@ -95,6 +95,54 @@ BOOST_AUTO_TEST_CASE(fields_are_found_by_name_and_id) {
   }
 }
 
+BOOST_AUTO_TEST_CASE(a_number_is_an_id_before_it_is_a_name) {
+  const SmallSet set;
+  set.add_field(1.5, -0.25);
+  const auto name = [&](const std::string& first, const std::string& second) {
+    set.modify([&](casacore::MeasurementSet& open) {
+      casacore::ScalarColumn<casacore::String> names(open.field(), "NAME");
+      names.put(0, first);
+      names.put(1, second);
+    });
+  };
+  name("1", "0");
+  for (const std::string id : {"0", "1"}) {
+    Selection selection;
+    selection.field = id;
+    const double ra_rad = MeasurementSet(set.path(), selection, "DATA").observation().phase_centre.ra_rad;
+    BOOST_TEST(ms_io::parse_phase_centre(id, set.path()).ra_rad == ra_rad);
+  }
+  name("7", "8");
+  BOOST_TEST(ms_io::parse_phase_centre("8", set.path()).ra_rad == 1.5);
+  name("A", "A");
+  const std::string error = error_of([&] { ms_io::parse_phase_centre("A", set.path()); });
+  BOOST_TEST(contains(error, "--phasecenter 'A' is the name of fields 0 and 1 of " + set.path() + ", "), error);
+  BOOST_TEST(contains(error, " apart; expected one of them by its id"));
+  set.modify([](casacore::MeasurementSet& open) {
+    casacore::ScalarColumn<int> field(open, "FIELD_ID");
+    for (casacore::rownr_t row = 0; row < open.nrow(); ++row) field.put(row, 1);
+  });
+  BOOST_TEST(ms_io::parse_phase_centre("A", set.path()).ra_rad == 1.5);
+}
+
+BOOST_AUTO_TEST_CASE(a_field_is_that_of_the_first_set_that_has_it_with_a_word_where_another_has_it_elsewhere) {
+  SimulatedObservation observation = small_observation();
+  observation.phase_centre.dec_rad += 0.001;
+  const SmallSet one, other(observation), same;
+  other.add_field(1.5, -0.25);
+  const auto remark = [](const std::string& text, const std::vector<std::string>& paths) {
+    return phased_to({}, text, paths).phase_centre_remark;
+  };
+  BOOST_TEST(remark("0", {one.path(), other.path()}) == "--phasecenter '0' is field 0 (SIMULATED) of " + one.path() +
+                                                            ", the first listed that has it: field 0 (SIMULATED) of " +
+                                                            other.path() + " is 3.44 arcmin away");
+  BOOST_TEST(remark("0", {one.path(), same.path()}) == "");
+  BOOST_TEST(phased_to({}, "OTHER", {one.path(), other.path()}).phase_centre->ra_rad == 1.5);
+  BOOST_TEST(remark("OTHER", {one.path(), other.path()}) == "");
+  const std::string error = error_of([&] { remark("NOBODY", {one.path(), other.path()}); });
+  BOOST_TEST(contains(error, "nor a field of " + one.path() + ", " + other.path()), error);
+}
+
 BOOST_AUTO_TEST_CASE(what_is_no_direction_is_refused_with_what_was_expected) {
   const SmallSet set;
   for (const std::string wrong : {"",

@@ -61,7 +61,7 @@ std::string names_of(const std::vector<std::string>& vis) {
 ms_io::Selection selection_of(const ImageOptions& o) {
   ms_io::Selection selection = o.selection;
   if (o.cube.is_cube()) selection.spectral_frame = ms_io::parse_spectral_frame(o.cube.outframe);
-  return o.phasecenter.empty() ? selection : ms_io::phased_to(selection, o.phasecenter, o.vis.front());
+  return o.phasecenter.empty() ? selection : ms_io::phased_to(selection, o.phasecenter, o.vis);
 }
 
 void declare(CLI::App& command, ImageOptions& o) {

@@ -24,7 +24,7 @@ PhasedSet opened(const PhasedSetRequest& request, const ms_io::Selection& select
 
 /// Where phase centres are without a model's. What moves along has the field's own.
 ms_io::Selection usual_selection(const PhasedSetRequest& request, bool moves_along) {
-  if (!request.phasecenter.empty()) return ms_io::phased_to(request.selection, request.phasecenter, request.vis);
+  if (!request.phasecenter.empty()) return ms_io::phased_to(request.selection, request.phasecenter, {request.vis});
   ms_io::Selection selection = request.selection;
   if (!moves_along) selection.moving = ms_io::Selection::Moving::shifted_to_middle;
   return selection;
