@@ -125,6 +125,10 @@ NamedModel component_model(const PredictOptions& o, const ms_io::MeasurementSet&
     if (std::any_of(sources[k].begin(), sources[k].end(), [](const imager::Source& s) { return s.flux_jy != 0; }))
       parts.push_back(static_cast<imager::Stokes>(k + 1));
   named.remarks = unseen(o, set, parts);
+  if (set.observation().phase_centre.frame == "FK4" && lists_directions(o.components) && listed_frame(o.components).empty())
+    named.remarks.push_back(
+        "ra_deg and dec_deg of " + o.components +
+        " are taken as B1950, as the phase centre is; a column frame with J2000 or B1950 states what they are");
   named.visibilities.predict = [sources = std::move(sources), threads](const imager::SampleCoordinates& at) {
     ms_io::StokesVisibilities visibilities(imager::predict_sources(sources[0], at, threads));
     for (std::size_t k = 1; k < sources.size(); ++k)

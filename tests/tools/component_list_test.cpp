@@ -8,6 +8,7 @@
 #include <random>
 #include <sstream>
 
+#include "ms_io/celestial_frames.h"
 #include "tests/temporary_folder.h"
 
 BOOST_AUTO_TEST_SUITE(component_list)
@@ -74,6 +75,17 @@ BOOST_AUTO_TEST_CASE(equatorial_positions_become_direction_cosines) {
   const auto expected = imager::direction_cosines({60.5 * degree, 40 * degree, "FK5"}, phase_centre);
   BOOST_TEST(sources[2].position.l == expected.l);
   BOOST_TEST(sources[2].position.l > 0);
+}
+
+BOOST_AUTO_TEST_CASE(directions_are_in_the_frame_that_the_list_states) {
+  for (const auto& [name, radesys] : {std::pair{"J2000", "FK5"}, {"ICRS", "ICRS"}, {"B1950", "FK4"}, {"FK4", "FK4"}}) {
+    const std::string list = std::string("ra_deg,dec_deg,flux_jy,frame\n60,40,1,") + name + "\n";
+    const auto there = ms_io::in_frame({60 * degree, 40 * degree, radesys}, phase_centre.frame);
+    const auto expected = imager::direction_cosines(there, phase_centre);
+    BOOST_TEST(distance(read(list).at(0).position, expected) < 1e-15);
+  }
+  check_error("ra_deg,dec_deg,flux_jy,frame\n60,40,1,APP\n", {"line 2", "frame is 'APP', expected J2000, ICRS or B1950"});
+  check_error("l_arcsec,m_arcsec,flux_jy,frame\n1,2,3,ICRS\n", {"line 1", "a frame of no directions"});
 }
 
 BOOST_AUTO_TEST_CASE(a_scale_is_the_full_width_at_half_maximum_whatever_the_coordinates) {
@@ -182,9 +194,13 @@ BOOST_AUTO_TEST_CASE(what_is_written_is_read_again_near_poles_and_the_origin_of_
 BOOST_AUTO_TEST_CASE(the_first_line_written_names_the_columns_and_right_ascensions_lie_within_a_turn) {
   const TemporaryFolder folder;
   tools::write_component_list(folder / "list.csv", {{{0, 0}, 1.5, 2 * arcsec}, {{-1e-20, 0}, 0.1}}, {0, 0, "FK5"});
-  BOOST_TEST(content(folder / "list.csv") == "ra_deg,dec_deg,flux_jy,scale_arcsec\n0,0,1.5,2\n0,0,0.1,0\n");
+  const std::string columns = "ra_deg,dec_deg,flux_jy,scale_arcsec,frame\n";
+  BOOST_TEST(content(folder / "list.csv") == columns + "0,0,1.5,2,J2000\n0,0,0.1,0,J2000\n");
+  BOOST_TEST(tools::listed_frame(folder / "list.csv") == "FK5");
+  std::ofstream(folder / "list.csv", std::ios::app) << "0,0,1,0,ICRS\n";
+  BOOST_CHECK_THROW(tools::listed_frame(folder / "list.csv"), std::runtime_error);
   tools::write_component_list(folder / "list.csv", {}, phase_centre);
-  BOOST_TEST(content(folder / "list.csv") == "ra_deg,dec_deg,flux_jy,scale_arcsec\n");
+  BOOST_TEST(content(folder / "list.csv") == columns);
 }
 
 BOOST_AUTO_TEST_CASE(what_is_no_source_is_not_written_and_the_list_that_was_there_stays) {

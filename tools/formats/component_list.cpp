@@ -2,14 +2,15 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <limits>
 #include <optional>
 #include <sstream>
 #include <stdexcept>
 #include <string_view>
+#include <utility>
 
+#include "ms_io/celestial_frames.h"
 #include "tools/base/files.h"
 #include "tools/base/numbers.h"
 #include "tools/base/text.h"
@@ -55,13 +56,15 @@ class Columns {
     for (const std::string_view name : {equatorial ? "ra_deg" : "l_arcsec", equatorial ? "dec_deg" : "m_arcsec", "flux_jy"})
       if (!has(name)) fail("no column " + quoted(name) + ", " + expected());
     if (equatorial && (has("l_arcsec") || has("m_arcsec"))) fail("positions are given twice, " + expected());
+    if (has("frame") && !equatorial) fail("a frame of no directions, " + expected());
     if (has("spectral_index") != has("reference_frequency_hz"))
       fail("no column " + quoted(has("spectral_index") ? "reference_frequency_hz" : "spectral_index") +
            ", expected both or neither of spectral_index and reference_frequency_hz");
   }
 
   static std::string expected() {
-    return "expected ra_deg,dec_deg,flux_jy or l_arcsec,m_arcsec,flux_jy, and scale_arcsec if sources are extended, "
+    return "expected ra_deg,dec_deg,flux_jy, and frame where it is not that of the phase centre, or "
+           "l_arcsec,m_arcsec,flux_jy, and scale_arcsec if sources are extended, "
            "spectral_index,reference_frequency_hz if fluxes depend on frequency";
   }
   std::size_t count() const { return names_.size(); }
@@ -73,8 +76,9 @@ class Columns {
   bool equatorial = false;
 
  private:
-  static constexpr std::array<std::string_view, 8> known{"ra_deg",  "dec_deg",      "l_arcsec",       "m_arcsec",
-                                                         "flux_jy", "scale_arcsec", "spectral_index", "reference_frequency_hz"};
+  static constexpr std::array<std::string_view, 9> known{"ra_deg",  "dec_deg",      "l_arcsec",       "m_arcsec",
+                                                         "flux_jy", "scale_arcsec", "spectral_index", "reference_frequency_hz",
+                                                         "frame"};
 
   Fields names_;
 };
@@ -102,6 +106,14 @@ class Line {
     return std::string(x) + " " + quoted(field(x)) + ", " + std::string(y) + " " + quoted(field(y));
   }
 
+  /// FITS RADESYS; empty where the list does not say.
+  std::string frame() const {
+    if (!columns_.has("frame")) return "";
+    for (const auto& [listed, radesys] : frames_of_lists)
+      if (field("frame") == listed) return radesys;
+    fail("frame is " + quoted(field("frame")) + ", expected J2000, ICRS or B1950");
+  }
+
   Source source(const imager::SkyDirection& phase_centre, std::string_view flux = flux_names[0]) const {
     const double scale_arcsec = columns_.has("scale_arcsec") ? number("scale_arcsec", 0, std::numeric_limits<double>::max(),
                                                                       "a full width at half maximum, 0 (a point) or more")
@@ -119,10 +131,12 @@ class Line {
   std::string_view field(std::string_view name) const { return fields_[columns_.place(name)]; }
 
   imager::DirectionCosines equatorial_position(const imager::SkyDirection& phase_centre) const {
+    const std::string own = frame();
     const imager::SkyDirection direction{number("ra_deg", -360, 360, "-360 to 360") * degree,
-                                         number("dec_deg", -90, 90, "-90 to 90") * degree, phase_centre.frame};
+                                         number("dec_deg", -90, 90, "-90 to 90") * degree,
+                                         own.empty() ? phase_centre.frame : own};
     try {
-      return imager::direction_cosines(direction, phase_centre);
+      return imager::direction_cosines(ms_io::in_frame(direction, phase_centre.frame), phase_centre);
     } catch (const std::invalid_argument&) {
       fail(shown("ra_deg", "dec_deg") + ": beyond the horizon, expected a source within 90 degrees of the phase centre, " +
            sexagesimal(phase_centre));
@@ -148,86 +162,38 @@ std::string_view readable(std::string_view text) {
 
 using StokesSources = std::array<std::vector<Source>, 4>;
 
-StokesSources sources_of(std::string_view text, const imager::SkyDirection& phase_centre, Polarised polarised,
-                         int& line_number) {
-  StokesSources sources;
-  std::optional<Columns> columns;
-  for (text = readable(text); !text.empty();) {
-    const std::size_t end = std::min(text.find('\n'), text.size());
-    const std::string_view line = trimmed(text.substr(0, end));
-    text.remove_prefix(std::min(end + 1, text.size()));
-    ++line_number;
-    if (line.empty() || line.starts_with('#')) continue;
-    if (!columns) {
-      columns.emplace(line, polarised);
-      continue;
-    }
-    const Line values(line, *columns);
-    for (std::size_t k = 0; k < flux_names.size(); ++k)
-      if (columns->has(flux_names[k])) sources[k].push_back(values.source(phase_centre, flux_names[k]));
-  }
-  if (!columns) fail("the list ends before a line that names its columns, " + Columns::expected());
-  return sources;
-}
-
-StokesSources read_list(const std::string& path, const imager::SkyDirection& phase_centre, Polarised polarised) {
-  const std::string text = read_file(path);
+/// Calls visit(line, columns) for each line of values of a list, and names the file and line of what it throws.
+template <typename Visit>
+void visit_lines(const std::string& path, Polarised polarised, const Visit& visit) {
+  const std::string list = read_file(path);
   int line_number = 0;
   try {
-    return sources_of(text, phase_centre, polarised, line_number);
+    std::optional<Columns> columns;
+    for (std::string_view text = readable(list); !text.empty();) {
+      const std::size_t end = std::min(text.find('\n'), text.size());
+      const std::string_view line = trimmed(text.substr(0, end));
+      text.remove_prefix(std::min(end + 1, text.size()));
+      ++line_number;
+      if (line.empty() || line.starts_with('#')) continue;
+      if (columns) {
+        visit(Line(line, *columns), *columns);
+      } else {
+        columns.emplace(line, polarised);
+      }
+    }
+    if (!columns) fail("the list ends before a line that names its columns, " + Columns::expected());
   } catch (const std::runtime_error& error) {
     fail(path + ", line " + std::to_string(std::max(line_number, 1)) + ": " + error.what());
   }
 }
 
-/// The shortest text that reads as `value`.
-void append_number(double value, std::string& text) {
-  std::array<char, 32> digits;
-  const auto [end, error] = std::to_chars(digits.data(), digits.data() + digits.size(), value);
-  text.append(digits.data(), end);
-}
-
-std::string flux_column(imager::Stokes stokes) {
-  if (stokes == imager::Stokes::I) return "flux_jy";
-  std::string name = "flux_" + stokes_name(stokes) + "_jy";
-  std::transform(name.begin(), name.end(), name.begin(), [](unsigned char letter) { return std::tolower(letter); });
-  return name;
-}
-
-/// Those of the lists, after that of I.
-std::vector<imager::Stokes> flux_columns(const std::vector<SourcesOf>& lists) {
-  std::vector<imager::Stokes> columns{imager::Stokes::I};
-  for (const SourcesOf& list : lists)
-    if (list.stokes != imager::Stokes::I) columns.push_back(list.stokes);
-  return columns;
-}
-
-/// The position's two values, see write_stokes_components().
-std::vector<double> position_values(const imager::DirectionCosines& at,
-                                    const std::optional<imager::SkyDirection>& phase_centre) {
-  if (!phase_centre) return {at.l / arcsec, at.m / arcsec};
-  const imager::SkyDirection direction = imager::sky_direction(at, *phase_centre);
-  const double ra_deg = direction.ra_rad / degree;
-  return {ra_deg < 360 ? ra_deg : 0, direction.dec_rad / degree};
-}
-
-/// With `fluxes`, one of which is the source's own, and 0 in the other columns.
-void append_line(const Source& source, const std::vector<double>& fluxes,
-                 const std::optional<imager::SkyDirection>& phase_centre, std::string& text) {
-  const auto& [l, m] = source.position;
-  if (!(std::hypot(l, m) < 1))
-    fail("l " + significant(l, 9) + ", m " + significant(m, 9) + ": beyond the horizon, expected l² + m² below 1");
-  if (!std::isfinite(source.flux_jy) || !std::isfinite(source.fwhm_rad) || source.fwhm_rad < 0)
-    fail("flux " + std::to_string(source.flux_jy) + " Jy and width " + std::to_string(source.fwhm_rad) +
-         " rad, expected finite numbers, and a width of 0 or more");
-  std::vector<double> values = position_values(source.position, phase_centre);
-  values.insert(values.end(), fluxes.begin(), fluxes.end());
-  values.push_back(source.fwhm_rad / arcsec);
-  for (const double value : values) {
-    append_number(value, text);
-    text += ',';
-  }
-  text.back() = '\n';
+StokesSources read_list(const std::string& path, const imager::SkyDirection& phase_centre, Polarised polarised) {
+  StokesSources sources;
+  visit_lines(path, polarised, [&](const Line& line, const Columns& columns) {
+    for (std::size_t k = 0; k < flux_names.size(); ++k)
+      if (columns.has(flux_names[k])) sources[k].push_back(line.source(phase_centre, flux_names[k]));
+  });
+  return sources;
 }
 
 }  // namespace
@@ -251,28 +217,14 @@ bool lists_directions(const std::string& path) {
   return false;
 }
 
-void write_component_list(const std::string& path, const std::vector<Source>& sources,
-                          const imager::SkyDirection& phase_centre) {
-  write_stokes_components(path, {{imager::Stokes::I, sources}}, phase_centre);
-}
-
-void write_stokes_components(const std::string& path, const std::vector<SourcesOf>& lists,
-                             const std::optional<imager::SkyDirection>& phase_centre) {
-  const std::vector<imager::Stokes> columns = flux_columns(lists);
-  std::string text = phase_centre ? "ra_deg,dec_deg" : "l_arcsec,m_arcsec";
-  for (const imager::Stokes column : columns) text += "," + flux_column(column);
-  text += ",scale_arcsec\n";
-  int line = 1;
-  for (const SourcesOf& list : lists)
-    for (const Source& source : list.sources) try {
-        ++line;
-        std::vector<double> fluxes;
-        for (const imager::Stokes column : columns) fluxes.push_back(column == list.stokes ? source.flux_jy : 0);
-        append_line(source, fluxes, phase_centre, text);
-      } catch (const std::runtime_error& error) {
-        fail(path + ", line " + std::to_string(line) + ": " + error.what());
-      }
-  write_file(path, text);
+std::string listed_frame(const std::string& path) {
+  std::string frame;
+  visit_lines(path, Polarised::yes, [&](const Line& line, const Columns&) {
+    const std::string own = line.frame();
+    if (!frame.empty() && own != frame) fail("a frame other than that of the first line, expected one list for each frame");
+    frame = own;
+  });
+  return frame;
 }
 
 }  // namespace misfit::tools

@@ -3,6 +3,7 @@
 #include <array>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "imager/data/source.h"
@@ -10,8 +11,13 @@
 
 namespace misfit::tools {
 
-/// The sources of a CSV file. Its first line names the columns, in any order: `flux_jy`; either `ra_deg` and `dec_deg`, in the
-/// frame of `phase_centre`, or `l_arcsec` and `m_arcsec`, direction cosines in units of an arcsecond; and, if there are
+/// Frames of directions by what lists call them, those first that are written, and FITS RADESYS.
+inline constexpr std::array<std::pair<const char*, const char*>, 5> frames_of_lists{
+    {{"J2000", "FK5"}, {"ICRS", "ICRS"}, {"B1950", "FK4"}, {"FK5", "FK5"}, {"FK4", "FK4"}}};
+
+/// The sources of a CSV file. Its first line names the columns, in any order: `flux_jy`; either `ra_deg` and `dec_deg`, with
+/// `frame`, J2000, ICRS or B1950 (as it was in 1950), where that is not the frame of `phase_centre`, or `l_arcsec` and
+/// `m_arcsec`, direction cosines in units of an arcsecond; and, if there are
 /// extended sources, `scale_arcsec`, the full width at half maximum of a circular Gaussian, 0 for a point; and, if there are
 /// spectra, `spectral_index` and `reference_frequency_hz`, which flux_jy is that of. Blank lines and lines that begin with #
 /// are skipped. Throws std::runtime_error that names the file, the line, the value and what was
@@ -27,10 +33,14 @@ std::array<std::vector<imager::Source>, 4> read_stokes_components(const std::str
 /// where it cannot be read.
 bool lists_directions(const std::string& path);
 
-/// Writes a list that `read_component_list` takes, with the columns ra_deg,dec_deg,flux_jy,scale_arcsec and as many digits as
-/// give each number back exactly; 0 ≤ ra_deg < 360, in the frame of `phase_centre`. The file appears under its name only when
-/// complete. Throws std::runtime_error that names the path, and the line of a source that has no place on the sky, or whose
-/// numbers are not finite.
+/// FITS RADESYS of the frame that all lines of the list state; empty where they do not. Throws std::runtime_error where they
+/// differ, and where the list cannot be read.
+std::string listed_frame(const std::string& path);
+
+/// Writes a list that `read_component_list` takes, with the columns ra_deg,dec_deg,flux_jy,scale_arcsec,frame and as many
+/// digits as give each number back exactly; 0 ≤ ra_deg < 360, in the frame of `phase_centre`. The file appears under its name
+/// only when complete. Throws std::runtime_error that names the path, and the line of a source that has no place on the sky, or
+/// whose numbers are not finite.
 void write_component_list(const std::string& path, const std::vector<imager::Source>& sources,
                           const imager::SkyDirection& phase_centre);
 

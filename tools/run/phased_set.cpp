@@ -3,12 +3,14 @@
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
+#include <utility>
 
 #include "ms_io/celestial_frames.h"
 #include "ms_io/phase_centre.h"
 #include "tools/base/numbers.h"
 #include "tools/formats/component_list.h"
 #include "tools/formats/image_file.h"
+#include "tools/run/field_beams.h"
 
 namespace misfit::tools {
 namespace {
@@ -20,6 +22,30 @@ PhasedSet opened(const PhasedSetRequest& request, const ms_io::Selection& select
   PhasedSet phased{ms_io::MeasurementSet(request.vis, selection, "").share(ranks), {}};
   phased.remarks = phased.set->remarks();
   return phased;
+}
+
+/// Where a list of directions states another frame than that of the phase centre, the set opened about a direction in that, to
+/// which visibilities are shifted as the frames lie at their time.
+PhasedSet in_frame_of_list(const PhasedSetRequest& request, PhasedSet phased, const std::string& list,
+                           const imager::Ranks& ranks) {
+  const imager::Observation& observation = phased.set->observation();
+  const std::string frame = lists_directions(list) ? listed_frame(list) : "";
+  if (frame.empty() || frame == observation.phase_centre.frame || !observation.moving_at.empty()) return phased;
+  ms_io::Selection selection = phased.set->selection();
+  selection.phase_centre = ms_io::in_frame(observation.phase_centre, frame);
+  return {opened(request, selection, ranks).set, std::move(phased.remarks)};
+}
+
+/// That an image moves along with what the set follows, and with no other target.
+void require_same_target(const PhasedSetRequest& request, const std::string& model, const imager::ImageHeader& image,
+                         const ms_io::MeasurementSet& set) {
+  const auto followed = set.followed_at(image.observation.moving_at);
+  if (!followed) return;
+  const double apart_rad = angle_between(ms_io::in_frame(image.geometry.phase_centre, followed->frame), *followed);
+  if (apart_rad > image.geometry.cell_rad)
+    throw std::runtime_error(model + " moves along with another target: at its TRACKFLD, " + image.observation.moving_at +
+                             ", it was " + angle_text(apart_rad, 3) + " away from what is selected of " + request.vis +
+                             "; expected an image of the same target");
 }
 
 /// Where phase centres are without a model's. What moves along has the field's own.
@@ -37,7 +63,7 @@ std::string place_text(const imager::SkyDirection& direction) {
 }  // namespace
 
 PhasedSet set_for_components(const PhasedSetRequest& request, const std::string& list, const imager::Ranks& ranks) {
-  return opened(request, usual_selection(request, !lists_directions(list)), ranks);
+  return in_frame_of_list(request, opened(request, usual_selection(request, !lists_directions(list)), ranks), list, ranks);
 }
 
 PhasedSet set_for_image(const PhasedSetRequest& request, const std::string& model, const imager::Ranks& ranks) {
@@ -51,7 +77,10 @@ PhasedSet set_for_image(const PhasedSetRequest& request, const std::string& mode
     throw std::runtime_error(model + " moves along with its field (TRACKFLD is " + moving_at + "), and what is selected of " +
                              request.vis +
                              " is phased to a direction; expected a field that moves, or an image that stands still");
-  if (set_moves) return phased;
+  if (set_moves) {
+    if (!moving_at.empty()) require_same_target(request, model, image, *phased.set);
+    return phased;
+  }
   const imager::SkyDirection &own = image.geometry.phase_centre, &centre = phased.set->observation().phase_centre;
   const double cell_rad = image.geometry.cell_rad;
   const double away = cosine_distance(ms_io::in_frame(own, centre.frame), centre);
