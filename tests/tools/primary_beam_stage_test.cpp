@@ -197,7 +197,7 @@ BOOST_AUTO_TEST_CASE(what_has_no_simple_beam_is_refused_in_a_line) {
       "direction, time and frequency");
   BOOST_TEST(refusal(scene({{"EVLA", 25, "ea01"}})) == "");
   BeamScene mosaic = scene({{"EVLA", 25, "ea01"}});
-  mosaic.rows.pointings.push_back({"1 (M51b)", {middle.ra_rad, middle.dec_rad + 0.1 * degree, "FK5"}});
+  mosaic.rows.pointings.push_back({"1 (M51b)", {middle.ra_rad, middle.dec_rad + 0.1 * degree, "FK5"}, 1});
   BOOST_TEST(refusal(mosaic) ==
              "--pbcor, --pblimit: antennas of fields 0 (M51) and 1 (M51b) pointed 6 arcmin apart, which makes a mosaic, and "
              "primary beams of mosaics are not made; select one with --field");
@@ -207,6 +207,9 @@ BOOST_AUTO_TEST_CASE(what_has_no_simple_beam_is_refused_in_a_line) {
       refusal(mosaic) ==
       "--pbcor, --pblimit: antennas of fields 0 (M51) of a.ms and 1 (M51b) of b.ms pointed 6 arcmin apart, which makes a "
       "mosaic, and primary beams of mosaics are not made; select one with --vis");
+  mosaic.rows.pointings.back().set = mosaic.rows.pointings.front().set;
+  mosaic.rows.pointings.back().id = mosaic.rows.pointings.front().id;
+  BOOST_TEST(refusal(mosaic).find("the field moves: choose some of its time with --timerange") != std::string::npos);
   mosaic.rows.pointings.back().direction.dec_rad = middle.dec_rad + 1 * arcsec;  // of a beam of 35′
   BOOST_TEST(refusal(mosaic) == "");
   mosaic.rows.pointings = {{"0 (M51)", {middle.ra_rad + imager::pi, -middle.dec_rad, "FK5"}}};

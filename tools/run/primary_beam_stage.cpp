@@ -55,11 +55,14 @@ void PrimaryBeamStage::find_pointing() {
   view_.pointing = on_image(first, scene_);
   for (const ms_io::FieldPointing& other : all) {
     const double apart = apart_rad(view_.pointing, on_image(other, scene_));
+    const bool itself = other.set == first.set && other.id == first.id;  // at another time
     if (apart > same_pointing_beams * width_rad_)
       throw std::runtime_error("--pbcor, --pblimit: antennas of fields " + field_words(first, all) + " and " +
                                field_words(other, all) + " pointed " + angle_text(apart, 3) +
-                               " apart, which makes a mosaic, and primary beams of mosaics are not made; select one with " +
-                               (first.set == other.set ? "--field" : "--vis"));
+                               " apart, which makes a mosaic, and primary beams of mosaics are not made; " +
+                               (itself ? "the field moves: choose some of its time with --timerange, or image it about itself, "
+                                         "with --phasecenter TRACKFIELD"
+                                       : "select one with " + std::string(first.set == other.set ? "--field" : "--vis")));
   }
   if (scene_.rows.beam_offset_rad() > beside * width_rad_)
     throw std::runtime_error("--pbcor, --pblimit: FEED's column BEAM_OFFSET says that beams point " +
