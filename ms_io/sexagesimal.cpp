@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <limits>
 
 #include "imager/numerics/constants.h"
 
@@ -68,10 +69,11 @@ std::optional<double> sexagesimal_rad(std::string_view text, Colons colons, Part
   const std::optional<double> minutes = take_number(rest, false);
   if (!minutes) return {};
   const bool more = take(rest, letters ? 'm' : mark), ends = some && rest.empty() && mark != '.' && more == letters;
-  const std::optional<double> seconds = ends ? 0 : more ? take_number(rest, true) : std::nullopt;
+  constexpr double none = std::numeric_limits<double>::quiet_NaN();
+  const double seconds = ends ? 0 : more ? take_number(rest, true).value_or(none) : none;
   if (letters && !ends && !take(rest, 's') && !some) return {};
-  if (!seconds || !rest.empty() || *minutes >= 60 || *seconds > 60) return {};
-  const double value = *units + (60 * *minutes + *seconds) / 3600;
+  if (!(seconds <= 60) || !rest.empty() || *minutes >= 60) return {};
+  const double value = *units + (60 * *minutes + seconds) / 3600;
   if (!(value <= (hours ? 24 : 360))) return {};
   const double angle_rad = value * (hours ? 15 : 1) * (imager::pi / 180);
   return text.front() == '-' ? -angle_rad : angle_rad;
