@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "imager/beams/beam.h"
+#include "imager/clean/clean.h"
 #include "imager/data/geometry.h"
 #include "imager/plan/accurate_imaging.h"
 #include "imager/taylor/spectral_index.h"
