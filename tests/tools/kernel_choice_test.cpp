@@ -4,7 +4,6 @@
 
 #include "kernels/kernel_table.h"
 #include "tests/kernels/kernels.h"
-#include "tests/tools/environment_variable.h"
 #include "tests/tools/program.h"
 #include "tools/kernel_choice/cache_folder.h"
 
@@ -12,9 +11,30 @@ BOOST_AUTO_TEST_SUITE(kernel_choice)
 
 using namespace misfit::tools;
 using misfit::testing::TemporaryFolder;
-using misfit::tools::testing::EnvironmentVariable;
 
 namespace {
+
+/// The value of a variable of the environment, for the length of a test; nullptr unsets it.
+class Variable {
+ public:
+  Variable(const char* name, const char* value) : name_(name) {
+    if (const char* const before = std::getenv(name)) before_ = before;
+    set(value);
+  }
+  Variable(const Variable&) = delete;
+  Variable& operator=(const Variable&) = delete;
+  ~Variable() { set(before_ ? before_->c_str() : nullptr); }
+
+ private:
+  void set(const char* value) const {
+    if (value == nullptr)
+      unsetenv(name_);
+    else
+      setenv(name_, value, 1);
+  }
+  const char* name_;
+  std::optional<std::string> before_;
+};
 
 /// The folder in force, for the length of a test.
 class CurrentFolder {
@@ -43,7 +63,7 @@ bool ends_with(const std::string& text, const std::string& end) {
 }
 
 std::string declared_folder(const char* environment, std::vector<std::string> typed) {
-  const EnvironmentVariable variable("MISFIT_KERNEL_FOLDER", environment);
+  const Variable variable("MISFIT_KERNEL_FOLDER", environment);
   CLI::App command;
   std::string folder;
   declare_kernel_folder(command, folder);
@@ -52,7 +72,7 @@ std::string declared_folder(const char* environment, std::vector<std::string> ty
 }
 
 std::string cache_folder_for(const char* given, const char* xdg, const char* home) {
-  const EnvironmentVariable a("MISFIT_CACHE", given), b("XDG_CACHE_HOME", xdg), c("HOME", home);
+  const Variable a("MISFIT_CACHE", given), b("XDG_CACHE_HOME", xdg), c("HOME", home);
   return default_cache_folder().string();
 }
 
@@ -79,7 +99,7 @@ BOOST_AUTO_TEST_CASE(names_are_of_the_catalogue_and_paths_are_files) {
 
 BOOST_AUTO_TEST_CASE(a_solved_kernel_is_kept_in_the_cache) {
   const TemporaryFolder folder;
-  const EnvironmentVariable cache("MISFIT_CACHE", (folder / "cache").c_str());
+  const Variable cache("MISFIT_CACHE", (folder / "cache").c_str());
   choose_kernel({}).make(3, 0.3);
   BOOST_TEST(std::distance(std::filesystem::directory_iterator(folder / "cache"), {}) == 1);
 }
@@ -102,7 +122,7 @@ BOOST_AUTO_TEST_CASE(a_file_is_a_family_of_its_one_kernel) {
 
 BOOST_AUTO_TEST_CASE(a_library_is_found_in_the_folder_that_the_user_names_and_nowhere_else) {
   const CurrentFolder here(MISFIT_PLUGINS);
-  const EnvironmentVariable path("LD_LIBRARY_PATH", MISFIT_PLUGINS);
+  const Variable path("LD_LIBRARY_PATH", MISFIT_PLUGINS);
   for (const char* folder : {MISFIT_PLUGINS, "."}) {
     BOOST_TEST(choose_kernel({"gauss", folder}).make(6, 0.25).name == "gauss");
     BOOST_TEST(!is_kernel_file({"gauss", folder}));
@@ -122,7 +142,7 @@ BOOST_AUTO_TEST_CASE(the_folder_is_the_one_typed_or_that_of_the_environment) {
 
 BOOST_AUTO_TEST_CASE(a_kernel_of_a_library_is_not_kept_in_the_cache) {
   const TemporaryFolder folder;
-  const EnvironmentVariable cache("MISFIT_CACHE", (folder / "cache").c_str());
+  const Variable cache("MISFIT_CACHE", (folder / "cache").c_str());
   choose_kernel({"gauss", MISFIT_PLUGINS}).make(3, 0.3);
   BOOST_TEST(!std::filesystem::exists(folder / "cache"));
 }

@@ -1,5 +1,4 @@
 // What is so of a run whether it makes one image or the channels of a cube.
-#include "tests/tools/environment_variable.h"
 #include "tests/tools/program.h"
 #include "tests/tools/set_changes.h"
 
@@ -52,7 +51,7 @@ BOOST_AUTO_TEST_CASE(times_of_images_made_twice_teach_nothing) {
       const std::string other = observed.folder / "b.ms", cache = observed.folder / "cache";
       std::filesystem::copy(observed.set, other, std::filesystem::copy_options::recursive);
       scale_data(other, cancelling ? -0.9999F : 1);
-      const EnvironmentVariable own("MISFIT_CACHE", cache.c_str());
+      const EnvironmentVariable own("MISFIT_CACHE", cache);
       succeed(observed.image(how + Arguments{"--vis", other}));
       BOOST_TEST(std::filesystem::exists(cache + "/times.json") == !cancelling);
     }
