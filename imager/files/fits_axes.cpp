@@ -115,9 +115,8 @@ FitsPlanes find_planes(const FitsFile& file) {
   const auto fits = [](long length) { return length >= 1 && length <= std::numeric_limits<int>::max(); };
   if (size.size() < 2 || !std::all_of(size.begin(), size.end(), fits))
     file.fail(
-        "its primary image has no two axes of pixels; expected the image there: copy one that is in an extension into a file "
-        "of "
-        "its own, and uncompress one of fpack with funpack");
+        "its primary image has no two axes of pixels; expected the image there: copy one out of an extension into a file "
+        "of its own, and uncompress one of fpack with funpack");
   FitsPlanes planes;
   planes.axes = size.size();
   planes.lengths = lengths_of_axes(file);
