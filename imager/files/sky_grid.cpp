@@ -184,8 +184,8 @@ UprightGeometry upright_geometry(const SkyGrid& grid) {
     upright.difference = "its directions are in " + frame + "; expected ICRS, FK5 (J2000) or FK4 (B1950)";
     return upright;
   }
-  const double off_square = turned_away(grid, g);
-  if (off_square < same_place_pixels && std::abs(aspect - 1) * std::max(grid.width, grid.height) > rounding) {
+  const double oblong = std::abs(aspect - 1) * 0.5 * std::max(grid.width, grid.height);  // pixels, from the middle to an edge
+  if (oblong > rounding && oblong < same_place_pixels) {
     g.pixel_aspect = aspect;
     put_centre();
   }
