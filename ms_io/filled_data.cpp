@@ -66,7 +66,7 @@ Zeros FilledData::zeros(const imager::Ranks& ranks) const {
   ranks.largest(largest.data(), largest.size());
   std::vector<ReadPart> all;
   for (const auto& [key, part] : parts_)
-    if (largest[part.place] != unread) all.push_back({part.part, largest[part.place] == zero});
+    if (const auto state = static_cast<State>(largest[part.place]); state != unread) all.push_back({part.part, state == zero});
   std::vector<ReadPart> left;
   std::copy_if(all.begin(), all.end(), std::back_inserter(left), [](const ReadPart& one) { return one.zero; });
   Zeros zeros;

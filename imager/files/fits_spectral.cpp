@@ -152,7 +152,7 @@ class Spectral {
 };
 
 std::string stated_frame(const FitsFile& file, const std::string& type) {
-  if (const std::string stated = file.text("SPECSYS"); !stated.empty()) return stated;
+  if (std::string stated = file.text("SPECSYS"); !stated.empty()) return stated;
   if (const Frame* const named = frame_named(parts_of(type).second)) return named->specsys;
   const int velref = static_cast<int>(file.number("VELREF").value_or(0)) % 256;
   for (const Frame& frame : frames)
