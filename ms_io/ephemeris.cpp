@@ -106,7 +106,8 @@ casacore::MSField without_ephemerides(const casacore::MSField& field) {
 }
 
 std::string ephemeris_path(const casacore::MSField& field, int ephemeris) {
-  const std::string folder = field.tableName(), begin = "EPHEM" + std::to_string(ephemeris) + "_", end = ".tab";
+  const std::string& folder = field.tableName();
+  const std::string begin = "EPHEM" + std::to_string(ephemeris) + "_", end = ".tab";
   std::vector<std::string> found;
   std::error_code gone;
   for (std::filesystem::directory_iterator entry(folder, gone), none; !gone && entry != none; entry.increment(gone)) {
