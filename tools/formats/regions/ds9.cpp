@@ -42,7 +42,7 @@ std::string shape_without_area(std::string_view statement) {
   constexpr std::array<std::string_view, 9> drawn{"point", "line",    "vector", "segment", "projection",
                                                   "ruler", "compass", "text",   "textbox"};
   if (statement.starts_with('-') || statement.starts_with('+')) statement.remove_prefix(1);
-  const std::string first = small_letters(take_word(statement)), second = small_letters(take_word(statement));
+  std::string first = small_letters(take_word(statement)), second = small_letters(take_word(statement));
   if (second == "point") return second;
   return std::find(drawn.begin(), drawn.end(), first) != drawn.end() ? first : "";
 }
