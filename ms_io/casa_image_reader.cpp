@@ -20,18 +20,6 @@
 namespace misfit::ms_io {
 namespace {
 
-imager::PlaneBeams beams_of(const casacore::ImageInfo& info, const imager::ImageHeader& header) {
-  imager::PlaneBeams beams(header.spectral.channels, static_cast<int>(header.stokes.size()));
-  if (!info.hasBeam()) return beams;
-  for (int channel = 0; channel < beams.channels(); ++channel)
-    for (int stokes = 0; stokes < beams.stokes(); ++stokes) {
-      const casacore::GaussianBeam beam = info.restoringBeam(channel, stokes);
-      if (!imager::stands_for_no_beam(beam.getMajor("arcsec")))
-        beams.at({channel, stokes}) = imager::Beam{beam.getMajor("rad"), beam.getMinor("rad"), beam.getPA("rad", true)};
-    }
-  return beams;
-}
-
 /// What `info` holds under a name, in any kind of number; `otherwise` where it holds none.
 double number_in(const casacore::TableRecord& info, const std::string& name, double otherwise) {
   if (!info.isDefined(name)) return otherwise;
@@ -77,11 +65,18 @@ class CasaImageReader : public imager::ImageReader {
                                                 number_in(others, imager::taylor_terms_key, 1));
     if (others.isDefined(moving_key) && others.dataType(moving_key) == casacore::TpString)
       header_.observation.moving_at = others.asString(moving_key);
-    beams_ = beams_of(image_.imageInfo(), header_);
   }
 
   const imager::ImageHeader& header() const override { return header_; }
-  std::optional<imager::Beam> beam(const imager::PlaneIndex& at) const override { return beams_.at(at); }
+  std::optional<imager::Beam> beam(const imager::PlaneIndex& at) const override {
+    return translated("cannot read " + path_, [&]() -> std::optional<imager::Beam> {
+      const casacore::ImageInfo& info = image_.imageInfo();
+      if (!info.hasBeam()) return std::nullopt;
+      const casacore::GaussianBeam beam = info.restoringBeam(at.channel, at.stokes);
+      if (imager::stands_for_no_beam(beam.getMajor("arcsec"))) return std::nullopt;
+      return imager::Beam{beam.getMajor("rad"), beam.getMinor("rad"), beam.getPA("rad", true)};
+    });
+  }
 
   const std::optional<imager::SkyGrid>& grid() const override { return grid_; }
 
@@ -117,7 +112,6 @@ class CasaImageReader : public imager::ImageReader {
   CasaPlanes planes_;
   std::optional<imager::SkyGrid> grid_;
   imager::ImageHeader header_;
-  imager::PlaneBeams beams_;
 };
 
 /// The tables that an image holds, of masks and of a log, lie in its folder: casacore would look for others wherever the image

@@ -29,14 +29,13 @@ void write_planes(const Planes& planes, const std::string& path, PixelFormat for
 
 SkyImage sky_image(const ImageReader& file, const PlaneIndex& at) {
   const ImageHeader& header = file.header();
-  const std::optional<Beam> beam = file.beam(at);
   return {file.read(at),
           header.geometry,
           header.observation,
           header.stokes.at(static_cast<std::size_t>(at.stokes)),
           header.unit,
-          beam.has_value(),
-          beam.value_or(Beam{}),
+          false,
+          {},
           {},
           {}};
 }
@@ -72,7 +71,13 @@ std::vector<SkyImage> read_stokes_images(const std::string& path) {
   if (const int channels = file->header().spectral.channels; channels > 1)
     throw std::runtime_error("cannot read " + path + ": it has planes of " + std::to_string(channels) +
                              " frequencies; expected one");
-  return read_channel(*file, 0);
+  std::vector<SkyImage> images = read_channel(*file, 0);
+  for (int s = 0; s < static_cast<int>(images.size()); ++s) {
+    const std::optional<Beam> beam = file->beam({0, s});
+    images[static_cast<std::size_t>(s)].has_beam = beam.has_value();
+    images[static_cast<std::size_t>(s)].beam = beam.value_or(Beam{});
+  }
+  return images;
 }
 
 }  // namespace misfit::imager

@@ -32,11 +32,11 @@ void write_fits(const SkyImage& image, const std::string& path, PixelFormat form
 /// std::invalid_argument when there are none, they differ in size, or their codes are not evenly spaced.
 void write_fits(const std::vector<SkyImage>& planes, const std::string& path, PixelFormat format);
 
-/// The planes of one channel of an image, in the order of its Stokes parameters.
+/// The planes of one channel of an image, in the order of its Stokes parameters, without beams: masks and models need none.
 std::vector<SkyImage> read_channel(const ImageReader& file, int channel);
 
-/// Reads the only plane of a FITS file that open_fits_image() opens. Throws std::runtime_error that names the path where there
-/// are more.
+/// Reads the only plane, and its beam, of a FITS file that open_fits_image() opens. Throws std::runtime_error that names the
+/// path where there are more.
 SkyImage read_fits(const std::string& path);
 
 /// The same for each plane of an image whose STOKES axis may be longer than 1, in the order of the file.

@@ -18,11 +18,14 @@ class FitsImageReader : public ImageReader {
     grid_ = read_sky_grid(file_, planes_.steps);
     header_.geometry = geometry(grids);
     header_.observation.phase_centre = header_.geometry.phase_centre;
-    beams_ = read_beams(file_, header_.spectral.channels, static_cast<int>(header_.stokes.size()));
+    find_beams();
   }
 
   const ImageHeader& header() const override { return header_; }
-  std::optional<Beam> beam(const PlaneIndex& at) const override { return beams_.at(at); }
+  std::optional<Beam> beam(const PlaneIndex& at) const override {
+    if (!no_beams_because_.empty()) throw std::runtime_error(no_beams_because_);
+    return beams_.at(at);
+  }
 
   const std::optional<SkyGrid>& grid() const override { return grid_; }
 
@@ -35,6 +38,16 @@ class FitsImageReader : public ImageReader {
   }
 
  private:
+  /// Masks and models need no beams, and may have kept those of an image that they were cut from.
+  void find_beams() {
+    try {
+      beams_ = read_beams(file_, header_.spectral.channels, static_cast<int>(header_.stokes.size()));
+    } catch (const std::runtime_error& error) {
+      no_beams_because_ = error.what();
+      file_.open_image();
+    }
+  }
+
   ImageGeometry geometry(Grids wanted) const {
     const std::vector<long> size = file_.size();
     try {
@@ -49,6 +62,7 @@ class FitsImageReader : public ImageReader {
   std::optional<SkyGrid> grid_;
   ImageHeader header_;
   PlaneBeams beams_;
+  std::string no_beams_because_;  ///< why they cannot be read
 };
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <fstream>
 #include <limits>
 
+#include "imager/files/fits_image.h"
 #include "imager/files/fits_image_reader.h"
 #include "imager/files/fits_image_writer.h"
 #include "tests/example_cube.h"
@@ -146,6 +147,34 @@ void change(std::string& fits, const std::string& keyword, const std::string& va
 }
 
 }  // namespace
+
+BOOST_AUTO_TEST_CASE(beams_that_are_not_the_images_hinder_only_those_who_ask) {
+  const TemporaryFolder folder;
+  const auto written = [&](int channels) {
+    const ImageHeader header = example_header(channels);
+    const auto writer = create_fits_image(header, folder / "a.fits", PixelFormat::float32);
+    for (int channel = 0; channel < channels; ++channel)
+      writer->write({channel, 0}, example_plane(header, {channel, 0}),
+                    channels == 1 ? std::nullopt : std::optional(example_beam({channel, 0})));
+    writer->finish();
+    return contents(folder / "a.fits");
+  };
+  const std::string cube = written(2), plane = written(1);
+  std::string cut = plane + cube.substr(cube.find("XTENSION")), half = plane;
+  change(half, "BMAJ", "0.01", "OBSERVER");
+  std::string other = cut;
+  other.replace(other.find("'CHAN"), 5, "'NONE");
+  for (const std::string& fits : {cut, half, other}) {
+    std::ofstream(folder / "b.fits", std::ios::binary) << fits;
+    const auto file = open_fits_image(folder / "b.fits");
+    BOOST_TEST((file->read({0, 0}).pixel == example_plane(example_header(1), {0, 0}).pixel));
+    BOOST_TEST(read_channel(*file, 0).size() == 1U);
+    BOOST_CHECK_EXCEPTION(file->beam({0, 0}), std::runtime_error, [&](const std::exception& error) {
+      return std::string(error.what()).find("cannot read " + (folder / "b.fits")) == 0;
+    });
+    BOOST_CHECK_THROW(read_fits(folder / "b.fits"), std::runtime_error);
+  }
+}
 
 BOOST_AUTO_TEST_CASE(velocities_along_the_spectral_axis_are_frequencies) {
   const TemporaryFolder folder;
