@@ -174,20 +174,14 @@ UprightGeometry upright_geometry(const SkyGrid& grid) {
   const std::string& frame = grid.reference.frame;
   UprightGeometry upright{{grid.width, grid.height, grid.column_step_rad(), grid.reference}, infinite, ""};
   ImageGeometry& g = upright.geometry;
-  const double aspect = grid.row_step_rad() / g.cell_rad;
-  const auto put_centre = [&] {
-    g.centre = {(grid.reference_pixel.column - g.centre_column()) * g.cell_rad,
-                (g.centre_row() - grid.reference_pixel.row) * g.cell_height_rad()};
-  };
-  put_centre();
+  const double aspect = grid.row_step_rad() / g.cell_rad, oblong = std::abs(aspect - 1) * grid.height;
+  // Farther than that, square pixels lie half of it away, in the last row or in the first.
+  if (oblong > rounding && oblong < 2 * same_place_pixels) g.pixel_aspect = aspect;
+  g.centre = {(grid.reference_pixel.column - g.centre_column()) * g.cell_rad,
+              (g.centre_row() - grid.reference_pixel.row) * g.cell_height_rad()};
   if (frame != "ICRS" && frame != "FK5" && frame != "FK4") {
     upright.difference = "its directions are in " + frame + "; expected ICRS, FK5 (J2000) or FK4 (B1950)";
     return upright;
-  }
-  const double oblong = std::abs(aspect - 1) * 0.5 * std::max(grid.width, grid.height);  // pixels, from the middle to an edge
-  if (oblong > rounding && oblong < same_place_pixels) {
-    g.pixel_aspect = aspect;
-    put_centre();
   }
   const double turned = turned_away(grid, g), bent = bent_away(grid, g);
   upright.off_pixels = turned + bent;
