@@ -124,7 +124,8 @@ std::string turned_in_words(const SkyGrid& grid) {
   constexpr double alike = 0.99;  // a skew of rows is a turn of rows
   if (grid.is_mirrored()) return "its pixels show the sky mirrored (CDELT1 or CDELT2 of the other sign)";
   if (std::cos(angle_rad) < 0 || turned >= alike * std::max(oblong, skewed))
-    return "its pixels are turned by " + six_digits(angle_rad * 180 / pi) + " degrees from north";
+    return "its pixels are turned by " + six_digits(angle_rad * 180 / pi) + " degrees from north" +
+           (grid.reference.dec_rad < 90 * (pi / 180) ? "" : " (LONPOLE, which is 0 at the north pole where it is not stated)");
   if (skewed > oblong)
     return "the sides of its pixels are " + six_digits(std::asin(skewed) * 180 / pi) + " degrees from a right angle";
   return "its pixels are " + arcseconds(width_rad) + "arcsec wide and " + arcseconds(height_rad) + "arcsec high";

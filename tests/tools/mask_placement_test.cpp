@@ -196,8 +196,9 @@ namespace {
 
 const Mask same{"the image's pixels", image.width, image.height, {12, 10}};
 
-/// What the user is told of a mask, as a FITS and as a CASA image, or what refuses it.
-void check_told(const Mask& mask, const std::string& part) {
+/// What the user is told of a mask, as a FITS and as a CASA image, or what refuses it, must be nothing, or a sentence
+/// with `part` in it and without `other`.
+void check_told(const Mask& mask, const std::string& part, const std::string& other = "\n") {
   const TemporaryFolder folder;
   write_stated_fits(folder / "mask.fits", mask.pixels(), mask.header());
   copy_to_casa(folder / "mask.fits", folder / "mask.image");
@@ -211,7 +212,7 @@ void check_told(const Mask& mask, const std::string& part) {
     } catch (const std::runtime_error& error) {
       told = error.what();
     }
-    BOOST_TEST((part.empty() ? told.empty() : told.find(part) != std::string::npos),
+    BOOST_TEST((part.empty() ? told.empty() : told.find(part) != std::string::npos && told.find(other) == std::string::npos),
                name << " of " << mask.name << ": " << told);
   }
 }
@@ -228,7 +229,13 @@ BOOST_AUTO_TEST_CASE(a_mask_of_the_images_pixels_is_laid_in_silence_and_others_w
   }
   Mask cut = same;
   cut.width -= 2;
-  check_told(cut, "22 × 20 pixels begins at column 0, row 0");
+  check_told(cut, "22 × 20 pixels begins at column 0, row 0 of the image, where its coordinates have it: pixels beside it");
+  Mask larger = same;
+  larger.width += 9;
+  larger.height += 8;
+  larger.centre[0] += 5;
+  larger.centre[1] += 3;
+  check_told(larger, "33 × 28 pixels begins at column -5, row -3 of the image, where its coordinates have it", "beside it");
   for (const Mask& mask : masks)
     if (mask.name == std::string("TAN about another reference"))
       check_told(mask, "has other pixels than the image, 36arcsec × 36arcsec, TAN about");

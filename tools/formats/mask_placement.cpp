@@ -56,8 +56,8 @@ MaskPlacement::MaskPlacement(const imager::ImageReader& file, const std::string&
                 ": each pixel of the image takes the nearest of the mask, and is not cleaned where there is none";
   else if (right_ != 0 || up_ != 0 || width_ != image.width || height_ != image.height)
     sentence_ = "the mask " + path + " of " + size_text(width_, height_) + " pixels begins at column " +
-                std::to_string(-right_) + ", row " + std::to_string(-up_) +
-                " of the image, where its coordinates have it: pixels beside it are not cleaned";
+                std::to_string(-right_) + ", row " + std::to_string(-up_) + " of the image, where its coordinates have it" +
+                (covers_all() ? "" : ": pixels beside it are not cleaned");
   if (!beside.remark().empty()) sentence_ = beside.remark() + (sentence_.empty() ? "" : "; " + sentence_);
 }
 
@@ -81,6 +81,10 @@ bool MaskPlacement::covers_any() const {
     for (int column = 0; column < image_.width; ++column)
       if (nearest(row, column) >= 0) return true;
   return false;
+}
+
+bool MaskPlacement::covers_all() const {
+  return nearest(0, 0) >= 0 && nearest(image_.height - 1, image_.width - 1) >= 0;
 }
 
 imager::Image MaskPlacement::lay(const imager::ImageReader& file, const imager::PlaneIndex& at) const {

@@ -28,6 +28,7 @@ class MaskPlacement {
   /// The pixel of the mask for a pixel of the image, counted along rows from 0; −1 where the mask has none.
   std::int64_t nearest(int row, int column) const;
   bool covers_any() const;
+  bool covers_all() const;  ///< where pixels lie on pixels
 
   imager::ImageGeometry image_;
   int width_ = 0, height_ = 0;          ///< of the mask
