@@ -51,7 +51,7 @@ struct NamedModel {
   ModelVisibilities visibilities;
   ms_io::Fingerprint fingerprint;
   std::uint64_t model = 0;     ///< a fingerprint that depends neither on accuracy and kernel nor on the order of sources
-  bool empty = false;          ///< a list without sources
+  bool empty = false;          ///< a list without sources, or an image of zeros
   ms_io::Selection selection;  ///< with the phase centre that it is about
   std::vector<std::string> remarks;
 };
@@ -101,6 +101,7 @@ NamedModel image_model(const PredictOptions& o, const ms_io::MeasurementSet& set
     named.model += add_to(alone);
   }
   named.visibilities = image_visibilities(model, planes.front().geometry, request, set);
+  named.empty = parts.empty();
   named.remarks = unseen(o, set, parts);
   for (std::string& warning : std::array{band_warning(planes.front().observation, set.observation(), o.model),
                                          misplacement_warning(*file, o.model, set, o.accuracy)})
@@ -196,8 +197,8 @@ void predict(const PredictOptions& o, const imager::Ranks& ranks) {
   SharedPrediction shared(ranks, model.visibilities.predict);
   if (!ranks.first()) return shared.follow();
   if (model.empty)
-    progress.say("warning: " + o.components +
-                 " lists no source: " + (o.subtract ? "the data are written as they are" : "all visibilities written are 0"));
+    progress.say("warning: " + (o.model.empty() ? o.components + " lists no source: " : o.model + " is 0 in every pixel: ") +
+                 (o.subtract ? "the data are written as they are" : "all visibilities written are 0"));
   column.origin = {command_of(o), model.fingerprint.add(MISFIT_VERSION).value(),
                    [&](const std::string& sentence) { progress.say(sentence); }, model.model};
   progress.begin(o.subtract ? "subtract" : "predict");

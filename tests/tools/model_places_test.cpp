@@ -316,6 +316,20 @@ BOOST_AUTO_TEST_CASE(what_pixels_beside_their_places_do_to_visibilities_is_told_
   BOOST_TEST(told({{"LONPOLE", "179.9999"}}, {}) > 1e-6);
 }
 
+BOOST_AUTO_TEST_CASE(brightness_beyond_the_horizon_is_refused_and_a_model_of_none_told_of) {
+  Model m;
+  const Arguments predict{"predict", "--vis", m.set, "--model", m.folder / "m.fits"};
+  m.pixels.at(0, 63) = 3;
+  m.write({{"CDELT1", "-2."}, {"CDELT2", "2."}});
+  BOOST_TEST(refused(run(predict), "has 3 Jy in pixel 64, 1, which lies beyond the horizon"));
+  m.pixels.at(0, 63) = 0;
+  m.write({{"CDELT1", "-2."}, {"CDELT2", "2."}});
+  BOOST_TEST(run(predict).err.find("warning") == std::string::npos);
+  m.pixels = imager::Image(64, 64);
+  m.write({});
+  BOOST_TEST(run(predict).err.find("m.fits is 0 in every pixel: all visibilities written are 0") != std::string::npos);
+}
+
 BOOST_AUTO_TEST_CASE(a_model_of_another_band_is_told_of) {
   const Model m;
   imager::SkyImage model = imager::read_fits(m.folder / "a.residual.fits");

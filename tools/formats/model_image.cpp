@@ -22,14 +22,20 @@ namespace {
 /// Part of the accuracy that the places of pixels may take, at worst.
 constexpr double misplaced_part = 0.3;
 
-void check_finite(const imager::SkyImage& model, const std::string& path) {
+void check_pixels(const imager::SkyImage& model, const std::string& path) {
   for (int row = 0; row < model.image.height; ++row)
-    for (int column = 0; column < model.image.width; ++column)
-      if (!std::isfinite(model.image.at(row, column)) && !imager::beyond_horizon(model.geometry.at(row, column)))
-        throw std::runtime_error(
-            path +
-            " has pixels without a finite number, or that its own mask leaves out; a model needs a number in each pixel "
-            "above the horizon");
+    for (int column = 0; column < model.image.width; ++column) {
+      const double value = model.image.at(row, column);
+      const bool finite = std::isfinite(value), beyond = imager::beyond_horizon(model.geometry.at(row, column));
+      if (!finite && !beyond)
+        throw std::runtime_error(path +
+                                 " has pixels without a finite number, or that its own mask leaves out; a model needs a number "
+                                 "in each pixel above the horizon");
+      if (finite && beyond && value != 0)
+        throw std::runtime_error(path + " has " + significant(value, 6) + " Jy in pixel " + std::to_string(column + 1) + ", " +
+                                 std::to_string(row + 1) +
+                                 ", which lies beyond the horizon of its reference; expected 0 there");
+    }
 }
 
 char lower(char letter) {
@@ -45,7 +51,7 @@ bool is_jy_per_pixel(std::string unit) {
 void check_model(const imager::SkyImage& model, const std::string& path) {
   if (!is_jy_per_pixel(model.unit))
     throw std::runtime_error(path + " has the unit " + (model.unit.empty() ? "none" : model.unit) + ", expected Jy/pixel");
-  check_finite(model, path);
+  check_pixels(model, path);
 }
 
 bool parts_names(char letter) {
