@@ -125,7 +125,7 @@ NamedModel component_model(const PredictOptions& o, const ms_io::MeasurementSet&
   for (std::size_t k = 0; k < sources.size(); ++k)
     if (std::any_of(sources[k].begin(), sources[k].end(), [](const imager::Source& s) { return s.flux_jy != 0; }))
       parts.push_back(static_cast<imager::Stokes>(k + 1));
-  named.remarks = unseen(o, set, parts);
+  for (std::string& sentence : unseen(o, set, parts)) named.remarks.push_back(std::move(sentence));
   if (set.observation().phase_centre.frame == "FK4" && lists_directions(o.components) && listed_frame(o.components).empty())
     named.remarks.push_back(
         "ra_deg and dec_deg of " + o.components +

@@ -315,7 +315,8 @@ BOOST_AUTO_TEST_CASE(a_mask_that_moves_along_lies_about_the_field_wherever_that_
   write_stated_fits(path, same.pixels(), same.header());
   BOOST_TEST(MaskFile(path, still).doubts().empty());
   BOOST_REQUIRE(MaskFile(path, moving).doubts().size() == 1U);
-  BOOST_TEST(MaskFile(path, moving).doubts().front().find("the image moves along with its field, and the mask") == 0U);
+  BOOST_TEST(MaskFile(path, moving).doubts().front().find("mask.fits does not say that it moves along with its field") !=
+             std::string::npos);
 }
 
 BOOST_AUTO_TEST_CASE(a_mask_of_another_stokes_parameter_or_band_is_told_of) {

@@ -59,9 +59,11 @@ GridOffset offset_at(const imager::GridMap& map, const std::vector<int>& rows, c
 GridBeside::GridBeside(const imager::ImageReader& file, const std::string& what, const imager::ImageHeader& image)
     : grid_(grid_beside(file, what, image)), map_(image.geometry, grid_, rotation_to(grid_.reference.frame, image.geometry)) {
   if (!image.observation.moving_at.empty() && file.header().observation.moving_at.empty())
-    remark_ = "the image moves along with its field, and the " + what +
-              " does not say that it does (TRACKFLD): it lies where the sky was about the field at " +
-              image.observation.moving_at;
+    remark_ =
+        "the " + what +
+        " does not say that it moves along with its field (TRACKFLD), as this image does: it is taken to lie where the sky "
+        "was about the field at " +
+        image.observation.moving_at;
 }
 
 /// A projection departs from another most at the edges, unless they lie beyond the horizon.
