@@ -242,30 +242,42 @@ BOOST_AUTO_TEST_CASE(frequencies_without_the_turning_of_the_earth_are_warned_of)
 namespace {
 
 using Positions = std::vector<casacore::Vector<double>>;
+using Change = std::function<void(Positions&)>;
 
-void change_positions(const SmallSet& set, const std::function<void(Positions&)>& change) {
-  set.modify([&](casacore::MeasurementSet& open) {
-    casacore::ArrayColumn<double> column(open.antenna(), "POSITION");
+/// One set under several names, with its antennas moved.
+class Telescope : public SmallSet {
+ public:
+  Telescope() : SmallSet(observed_at_three_times()) {
+    modify([&](casacore::MeasurementSet& open) {
+      const casacore::ArrayColumn<double> column(open.antenna(), "POSITION");
+      for (casacore::rownr_t a = 0; a < antennas; ++a) own_.emplace_back(column(a));
+    });
+  }
+
+  void move(const Change& change) const {
     Positions positions;
-    for (casacore::rownr_t a = 0; a < antennas; ++a) positions.emplace_back(column(a));
+    for (const auto& position : own_) positions.push_back(position.copy());
     change(positions);
-    for (casacore::rownr_t a = 0; a < antennas; ++a) column.put(a, positions[a]);
-  });
-}
+    modify([&](casacore::MeasurementSet& open) {
+      casacore::ArrayColumn<double> column(open.antenna(), "POSITION");
+      for (casacore::rownr_t a = 0; a < antennas; ++a) column.put(a, positions[a]);
+    });
+  }
+  std::vector<double> ratios_of(const std::string& name, const Change& change) const {
+    name_telescope(*this, name);
+    move(change);
+    return ratios(*this, "LSRK");
+  }
+  std::vector<std::string> remarks() const { return MeasurementSet(path(), in_frame("LSRK"), "data").remarks(); }
 
-std::vector<double> ratios_of(const std::string& telescope, const std::function<void(Positions&)>& change,
-                              std::vector<std::string>* remarks = nullptr) {
-  const SmallSet set(observed_at_three_times());
-  name_telescope(set, telescope);
-  change_positions(set, change);
-  if (remarks != nullptr) *remarks = MeasurementSet(set.path(), in_frame("LSRK"), "data").remarks();
-  return ratios(set, "LSRK");
-}
+ private:
+  Positions own_;
+};
 
 const auto as_they_are = [](Positions&) {};
 
 /// Metres for kilometres and the like.
-std::function<void(Positions&)> times(double size) {
+Change times(double size) {
   return [size](Positions& positions) {
     for (auto& position : positions)
       for (double& value : position) value *= size;
@@ -275,37 +287,39 @@ std::function<void(Positions&)> times(double size) {
 }  // namespace
 
 BOOST_AUTO_TEST_CASE(the_place_of_a_telescope_does_not_depend_on_the_order_of_its_antennas) {
+  const Telescope set;
   for (const std::string name : {"NOWHERE", "EVLA", "MeerKAT", ""}) {
-    const std::vector<double> before = ratios_of(name, as_they_are);
+    const std::vector<double> before = set.ratios_of(name, as_they_are);
     for (const std::size_t turn : {1, 2, 3}) {
       const auto turned = [&](Positions& positions) {
         std::rotate(positions.begin(), positions.begin() + static_cast<std::ptrdiff_t>(turn), positions.end());
       };
-      BOOST_TEST(ratios_of(name, turned) == before, boost::test_tools::per_element());
+      BOOST_TEST(set.ratios_of(name, turned) == before, boost::test_tools::per_element());
     }
   }
 }
 
 BOOST_AUTO_TEST_CASE(positions_far_below_and_above_the_ground_are_none) {
-  const std::vector<double> vla = ratios_of("VLA", times(0));
+  const Telescope set;
+  const std::vector<double> vla = set.ratios_of("VLA", times(0));
   for (const double size : {0.0, 1e-3, 0.9, 1.1, 100.0, 1e3, nan_value}) {
-    std::vector<std::string> remarks;
-    for (const double ratio : ratios_of("NOWHERE", times(size), &remarks)) BOOST_TEST(std::isfinite(ratio));
-    BOOST_REQUIRE(remarks.size() == 1U);
-    BOOST_TEST(contains(remarks.front(), "without the Earth's rotation"), remarks.front());
+    for (const double ratio : set.ratios_of("NOWHERE", times(size))) BOOST_TEST(std::isfinite(ratio));
+    BOOST_REQUIRE(set.remarks().size() == 1U);
+    BOOST_TEST(contains(set.remarks().front(), "without the Earth's rotation"));
     for (const std::string name : {"VLA", "EVLA", "evla", "JVLA"}) {
-      BOOST_TEST(ratios_of(name, times(size), &remarks) == vla, boost::test_tools::per_element());
-      BOOST_TEST(remarks.empty());
+      BOOST_TEST(set.ratios_of(name, times(size)) == vla, boost::test_tools::per_element());
+      BOOST_TEST(set.remarks().empty());
     }
   }
 }
 
 // casacore takes the beginning of a name for it.
 BOOST_AUTO_TEST_CASE(antennas_that_stand_far_from_the_telescope_of_that_name_are_believed_with_a_word) {
-  const std::vector<double> antennas_own = ratios_of("NOWHERE", as_they_are);
+  const Telescope set;
+  const std::vector<double> antennas_own = set.ratios_of("NOWHERE", as_they_are);
   for (const std::string name : {"MeerKAT", "WSRT", "SKA1-MID", "SK", "W", "ME", "VLA-sim"}) {
-    std::vector<std::string> remarks;
-    BOOST_TEST(ratios_of(name, as_they_are, &remarks) == antennas_own, boost::test_tools::per_element());
+    BOOST_TEST(set.ratios_of(name, as_they_are) == antennas_own, boost::test_tools::per_element());
+    const std::vector<std::string> remarks = set.remarks();
     const bool whole_name = name.size() > 3 && name != "VLA-sim";
     BOOST_TEST(remarks.size() == (whole_name ? 1U : 0U), name);
     for (const std::string& remark : remarks)
@@ -346,15 +360,15 @@ BOOST_AUTO_TEST_CASE(each_row_is_seen_from_its_own_telescope) {
   };
   struct Law {
     std::string first, second;
-    std::function<void(Positions&)> positions, alone;
+    Change positions, alone;
   };
   for (const Law& law : {Law{"VLA", "ATCA", as_they_are, times(0)}, Law{"NOWHERE", "NEITHER", elsewhere, all_elsewhere}}) {
-    const SmallSet set(observed_at_three_times());
-    change_positions(set, law.positions);
+    const Telescope set;
+    const Change one_alone = law.first == "VLA" ? times(0) : Change(first_two);
+    const std::vector<double> one = set.ratios_of(law.first, one_alone), other = set.ratios_of(law.second, law.alone);
+    set.move(law.positions);
     add_observation(set, law.first, law.second);
-    const bool known = law.first == "VLA";
-    const std::vector<double> one = ratios_of(law.first, known ? times(0) : std::function<void(Positions&)>(first_two));
-    const std::vector<double> other = ratios_of(law.second, law.alone), both = ratios(set, "LSRK");
+    const std::vector<double> both = ratios(set, "LSRK");
     BOOST_REQUIRE(both.size() == one.size());
     for (std::size_t row = 0; row < both.size(); ++row) BOOST_TEST(both[row] == (row % 3 == 1 ? other : one)[row]);
   }
