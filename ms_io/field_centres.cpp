@@ -8,6 +8,7 @@
 #include "imager/numerics/constants.h"
 #include "ms_io/field_centres_internal.h"
 #include "ms_io/field_doubts_internal.h"
+#include "ms_io/observing_place_internal.h"
 #include "ms_io/table_access_internal.h"
 #include "ms_io/uvw_scan_internal.h"
 
@@ -60,8 +61,17 @@ class CentreSearch {
       if (moved_rad > selected_.moved_rad) farthest_ = field;
       selected_.moved_rad = std::max(selected_.moved_rad, moved_rad);
     }
+    if (fields_.motion(field) == Motion::earth) require_one_telescope(field);
     for (std::string& doubt : doubts_of_motion(set_, fields_, field, moment(field, times.front())))
       selected_.remarks.push_back(std::move(doubt));
+  }
+
+  void require_one_telescope(int field) const {
+    if (!in_one_place(set_, observations_of(set_, selected_, field)))
+      throw std::runtime_error(
+          "the frame of field " + label(field) +
+          " turns with the Earth, and its rows are of telescopes in several places; expected those of one, "
+          "by --observation");
   }
 
   /// Shifts the rows of each field from where they are phased to to where `to` says.

@@ -71,14 +71,16 @@ std::map<int, FieldTimes> times_of(const casacore::MeasurementSet& set, const st
   return times;
 }
 
-std::set<int> observations_of(const casacore::MeasurementSet& set, const SelectedRows& selected) {
+std::set<int> observations_of(const casacore::MeasurementSet& set, const SelectedRows& selected, std::optional<int> of_field) {
   if (set.observation().nrow() <= 1) return {0};
-  const casacore::ScalarColumn<int> column(set, "OBSERVATION_ID");
+  const casacore::ScalarColumn<int> observation_column(set, "OBSERVATION_ID"), field_column(set, "FIELD_ID");
   std::set<int> found;
-  casacore::Vector<int> some;
+  casacore::Vector<int> observation, field;
   for_each_piece(selected, [&](const Rows& piece) {
-    read(column, piece, some);
-    found.insert(some.begin(), some.end());
+    read(observation_column, piece, observation);
+    if (of_field) read(field_column, piece, field);
+    for (std::uint64_t r = 0; r < piece.count(); ++r)
+      if (!of_field || field(r) == *of_field) found.insert(observation(r));
   });
   return found;
 }

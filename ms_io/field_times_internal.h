@@ -1,6 +1,7 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <set>
 #include <string>
 #include <vector>
@@ -19,7 +20,8 @@ struct FieldTimes {
 std::map<int, FieldTimes> times_of(const casacore::MeasurementSet& set, const std::string& path, const SelectedRows& selected,
                                    const std::set<int>& fields);
 
-/// The OBSERVATION_IDs of the selected rows; 0 where OBSERVATION has no more than one row.
-std::set<int> observations_of(const casacore::MeasurementSet& set, const SelectedRows& selected);
+/// The OBSERVATION_IDs of the selected rows, of one field where it is given; 0 where OBSERVATION has no more than one row.
+std::set<int> observations_of(const casacore::MeasurementSet& set, const SelectedRows& selected,
+                              std::optional<int> of_field = {});
 
 }  // namespace misfit::ms_io

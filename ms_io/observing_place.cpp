@@ -153,4 +153,12 @@ ObservingPlace observing_place(const casacore::MeasurementSet& set, int observat
   return place;
 }
 
+bool in_one_place(const casacore::MeasurementSet& set, const std::set<int>& observations) {
+  constexpr double apart_m = 1e3;
+  const Point first = point_of(observing_place(set, *observations.begin()).position);
+  return std::all_of(observations.begin(), observations.end(), [&](int observation) {
+    return distance_m(point_of(observing_place(set, observation).position), first) < apart_m;
+  });
+}
+
 }  // namespace misfit::ms_io

@@ -3,6 +3,7 @@
 #include <casacore/measures/Measures/MPosition.h>
 #include <casacore/ms/MeasurementSets/MeasurementSet.h>
 
+#include <set>
 #include <string>
 
 namespace misfit::ms_io {
@@ -22,5 +23,8 @@ struct ObservingPlace {
 
 /// Of the telescope of a row of OBSERVATION; of none by name where there is no such row.
 ObservingPlace observing_place(const casacore::MeasurementSet& set, int observation);
+
+/// Whether observations were made within a kilometre of each other.
+bool in_one_place(const casacore::MeasurementSet& set, const std::set<int>& observations);
 
 }  // namespace misfit::ms_io

@@ -6,6 +6,7 @@
 #include <limits>
 #include <stdexcept>
 #include <tuple>
+#include <utility>
 
 #include "ms_io/field_centres_internal.h"
 #include "ms_io/selection_internal.h"
@@ -190,7 +191,10 @@ SelectedRows select_rows(const casacore::MeasurementSet& set, const std::string&
   Selection shifted = selection;
   shifted.phase_centre = centre;
   SelectedRows again = select_rows(set, path, shifted, use);
-  again.remarks.insert(again.remarks.begin(), selected.remarks.begin(), selected.remarks.end());
+  for (const std::string& remark : again.remarks)
+    if (std::find(selected.remarks.begin(), selected.remarks.end(), remark) == selected.remarks.end())
+      selected.remarks.push_back(remark);
+  again.remarks = std::move(selected.remarks);
   return again;
 }
 

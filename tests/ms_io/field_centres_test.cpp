@@ -122,10 +122,23 @@ BOOST_AUTO_TEST_CASE(where_a_frame_turns_with_the_earth_the_order_of_antennas_do
     BOOST_TEST(!says(opened, "the middle of its antennas"));
   }
   const MovingSet set(Path::azimuth);
-  set.modify([](casacore::MeasurementSet& open) {
-    casacore::ScalarColumn<casacore::String>(open.observation(), "TELESCOPE_NAME").put(0, "NOWHERE");
-  });
-  BOOST_TEST(says(MeasurementSet(set.path(), to_direction(about, Path::azimuth), "DATA"), "the middle of its antennas"));
+  const auto open_as = [&](const std::string& telescope, const std::string& second, const std::string& observation) {
+    set.modify([&](casacore::MeasurementSet& open) {
+      casacore::ScalarColumn<casacore::String> names(open.observation(), "TELESCOPE_NAME");
+      if (open.observation().nrow() == 1 && !second.empty()) open.observation().addRow(1);
+      names.put(0, telescope);
+      if (!second.empty()) names.put(1, second);
+      casacore::ScalarColumn<int>(open, "OBSERVATION_ID").put(7, second.empty() ? 0 : 1);
+    });
+    Selection selection = to_direction(about, Path::azimuth);
+    selection.observation = observation;
+    return MeasurementSet(set.path(), selection, "DATA");
+  };
+  BOOST_TEST(says(open_as("NOWHERE", "", ""), "the middle of its antennas"));
+  BOOST_CHECK_NO_THROW(open_as("VLA", "EVLA", ""));
+  const std::string error = error_of([&] { open_as("VLA", "ATCA", ""); });
+  BOOST_TEST(contains(error, "its rows are of telescopes in several places; expected those of one, by --observation"), error);
+  BOOST_CHECK_NO_THROW(open_as("VLA", "ATCA", "0"));
 }
 
 namespace {
@@ -148,6 +161,7 @@ void put_direction(casacore::ArrayColumn<double>& column, casacore::rownr_t fiel
 
 BOOST_AUTO_TEST_CASE(what_is_no_direction_is_refused_with_its_values) {
   const double nan = nan_value, inf = std::numeric_limits<double>::infinity();
+  const SmallSet set;
   for (const auto& terms : {std::vector<double>{nan, 0.5},
                             {0.1, inf},
                             {0, 1.7},
@@ -156,7 +170,6 @@ BOOST_AUTO_TEST_CASE(what_is_no_direction_is_refused_with_its_values) {
                             {1e9, 0.3},
                             {1.25, -0.5, nan, 0},
                             {1.25, -0.5, 1e-9, inf}}) {
-    const SmallSet set;
     change_field(set, [&](auto& columns) {
       columns.numPoly().put(0, static_cast<int>(terms.size() / 2) - 1);
       put_direction(columns.phaseDir(), 0, terms);
@@ -174,8 +187,10 @@ BOOST_AUTO_TEST_CASE(what_is_no_direction_is_refused_with_its_values) {
     BOOST_TEST(contains(error_of([&] { opened.field_pointings(); }), "REFERENCE_DIR is ("));
   }
   for (const double turns : {-1.0, 0.0, 1.0}) {  // of one direction
-    const SmallSet set;
-    change_field(set, [&](auto& columns) { put_direction(columns.phaseDir(), 0, {1.25 + turns * 360 * degree, -0.5}); });
+    change_field(set, [&](auto& columns) {
+      columns.numPoly().put(0, 0);
+      put_direction(columns.phaseDir(), 0, {1.25 + turns * 360 * degree, -0.5});
+    });
     BOOST_TEST(std::abs(MeasurementSet(set.path(), {}, "DATA").observation().phase_centre.ra_rad - 1.25) < 1e-14);
   }
 }
@@ -194,18 +209,18 @@ BOOST_AUTO_TEST_CASE(rates_that_are_applied_over_years_are_told_of) {
 
 BOOST_AUTO_TEST_CASE(a_field_that_hardly_moves_beside_one_that_stands_still_is_one_image_with_it) {
   // The finest beam is some 7e-3 rad, of which a thousandth is not noticed, in 40 minutes.
-  for (const double rate : {0.0, 1e-16, 1e-14, 1e-10, 1e-9, 1e-8})
+  const SmallSet alone(slow_observation()), mixed(slow_observation()), still(slow_observation());
+  add_still_field(mixed.path(), about);
+  for (const double rate : {0.0, 1e-14, 1e-10, 1e-9, 1e-8})
     for (const bool other_set : {false, true}) {
-      const SmallSet set(slow_observation()), beside(slow_observation());
+      const SmallSet& set = other_set ? alone : mixed;
       change_field(set, [&](auto& columns) {
         columns.numPoly().put(0, 1);
         columns.time().put(0, slow_observation().time_mjd_s[integrations / 2]);
         for (auto* const column : {&columns.phaseDir(), &columns.referenceDir(), &columns.delayDir()})
           put_direction(*column, 0, {about.ra_rad, about.dec_rad, 0, rate});
       });
-      if (!other_set) add_still_field(set.path(), about);
-      std::vector<std::string> paths{set.path()};
-      if (other_set) paths.push_back(beside.path());
+      const auto paths = other_set ? std::vector<std::string>{set.path(), still.path()} : std::vector<std::string>{set.path()};
       const auto open = [&] { return MeasurementSet(paths, {}, "DATA"); };
       if (rate == 1e-8) {
         BOOST_TEST(contains(error_of(open), "one stands still"), error_of(open));
@@ -214,22 +229,21 @@ BOOST_AUTO_TEST_CASE(a_field_that_hardly_moves_beside_one_that_stands_still_is_o
       const MeasurementSet opened = open();
       BOOST_TEST(opened.observation().moving_at == "");
       BOOST_TEST(apart_rad(opened.observation().phase_centre, about) < 1e-12);
-      BOOST_TEST(says(opened, "as if by rounding") == (rate > 1e-15 || (other_set && rate > 0)));
+      BOOST_TEST(says(opened, "as if by rounding") == (rate > 0));
     }
 }
 
 BOOST_AUTO_TEST_CASE(flagged_rows_at_times_when_a_field_is_nowhere_change_nothing) {
-  for (const Path way : {Path::ephemeris, Path::rate, Path::azimuth})
+  for (const Path way : {Path::ephemeris, Path::rate, Path::azimuth}) {
+    const MovingSet set(way);
     for (const double time_s : {0.0, nan_value, 1e12}) {
-      const MovingSet set(way);
       for (const std::size_t row : {std::size_t{0}, std::size_t{7}}) {
         set.put<double>("TIME", row, time_s);
         set.put<bool>("FLAG_ROW", row, true);
       }
       for (const Selection& selection : {to_direction(source, way), with(Moving::about_targets)}) {
         BOOST_TEST_INFO(name_of(way) << " " << time_s);
-        const MeasurementSet opened(set.path(), selection, "DATA");
-        const AllSamples all = read_all(opened);
+        const AllSamples all = read_all(MeasurementSet(set.path(), selection, "DATA"));
         BOOST_TEST(all.counts.flagged == 2 * channels);
         BOOST_TEST(all.counts.used == (rows - 2) * channels);
         if (!selection.phase_centre) continue;
@@ -237,6 +251,7 @@ BOOST_AUTO_TEST_CASE(flagged_rows_at_times_when_a_field_is_nowhere_change_nothin
           if (all.weight[i] > 0) BOOST_TEST(std::abs(all.visibility[i] - std::complex<float>(flux_jy)) < roundings_jy);
       }
     }
+  }
 }
 
 // casacore opens the tables of all fields wherever it looks at FIELD.
@@ -270,17 +285,18 @@ BOOST_AUTO_TEST_CASE(an_ephemeris_that_is_missing_or_odd_concerns_its_own_field_
 }
 
 BOOST_AUTO_TEST_CASE(how_near_counts_as_rounding_does_not_depend_on_the_unit_of_positions) {
-  for (const double size : {1e-3, 1.0, 1e3})
-    for (const double beams : {1e-4, 0.1}) {
-      const SmallSet set;
+  for (const double beams : {1e-4, 0.1}) {
+    const SmallSet set;
+    set.add_field(about.ra_rad, about.dec_rad + beams * 3e-3);
+    for (const double times : {1e-3, 1e3, 1e3}) {
       set.modify([&](casacore::MeasurementSet& open) {
         casacore::ArrayColumn<double> position(open.antenna(), "POSITION");
-        for (casacore::rownr_t a = 0; a < antennas; ++a) position.put(a, position(a) * size);
+        for (casacore::rownr_t a = 0; a < antennas; ++a) position.put(a, position(a) * times);
       });
-      set.add_field(about.ra_rad, about.dec_rad + beams * 3e-3);
       const std::string error = error_of([&] { MeasurementSet(set.path(), {}, "DATA"); });
       BOOST_TEST(contains(error, " apart; select one with --field") == (beams == 0.1), error);
     }
+  }
 }
 
 BOOST_AUTO_TEST_CASE(times_at_which_a_field_is_nowhere_are_refused) {
