@@ -19,14 +19,17 @@ namespace {
 
 using casacore::MDirection;
 
+/// The unit of a column, by either keyword that programs write.
+casacore::String unit_of(const casacore::TableRecord& keywords, const char* usual_unit) {
+  if (keywords.isDefined("QuantumUnits")) return *keywords.asArrayString("QuantumUnits").begin();
+  return keywords.isDefined("UNIT") ? keywords.asString("UNIT") : casacore::String(usual_unit);
+}
+
 /// The values of a column, which is in its usual unit unless it says otherwise.
 std::vector<double> values_of(const casacore::Table& table, const char* name, const char* usual_unit, const char* wanted_unit) {
   const casacore::ScalarColumn<double> column(table, name);
   std::vector<double> values = column.getColumn().tovector();
-  const casacore::TableRecord& keywords = column.keywordSet();
-  const casacore::String unit =
-      keywords.isDefined("QuantumUnits") ? *keywords.asArrayString("QuantumUnits").begin() : casacore::String(usual_unit);
-  const double size = casacore::Quantity(1, unit).getValue(wanted_unit);
+  const double size = casacore::Quantity(1, unit_of(column.keywordSet(), usual_unit)).getValue(wanted_unit);
   for (double& value : values) value *= size;
   return values;
 }
@@ -56,6 +59,8 @@ Ephemeris::Ephemeris(const std::string& path) : path_(path) {
     fail("is in the frame posrefsys '" + std::string(table.keywordSet().asString("posrefsys")) +
          "', expected one such as ICRF/ICRS, ICRF/J2000.0, B1950, APP or TOPO");
   frame_ = *frame;
+  for (const char* const name : {"MJD", "RA", "DEC"})
+    if (!table.tableDesc().isColumn(name)) fail("has no column " + std::string(name) + ", expected MJD, RA and DEC");
   mjd_ = values_of(table, "MJD", "d", "d");
   const std::vector<double> ra_rad = values_of(table, "RA", "deg", "rad"), dec_rad = values_of(table, "DEC", "deg", "rad");
   if (mjd_.size() < 2) fail("has " + std::to_string(mjd_.size()) + " rows, expected two or more");

@@ -107,6 +107,22 @@ BOOST_AUTO_TEST_CASE(the_frame_and_the_units_are_those_that_the_table_states) {
   BOOST_TEST(Ephemeris(table.path()).at(first_mjd).getRef().getType() == casacore::MDirection::J2000);
 }
 
+BOOST_AUTO_TEST_CASE(a_unit_may_stand_in_either_keyword) {
+  for (const std::string keyword : {"QuantumUnits", "UNIT"}) {
+    const Table table(fast, 5);
+    table.change([&](casacore::Table& open) {
+      casacore::ScalarColumn<double> values(open, "RA");
+      for (casacore::rownr_t row = 0; row < open.nrow(); ++row) values.put(row, values(row) * degree);
+      if (keyword == "UNIT") {
+        values.rwKeywordSet().define(keyword, "rad");
+      } else {
+        values.rwKeywordSet().define(keyword, casacore::Vector<casacore::String>(1, "rad"));
+      }
+    });
+    BOOST_TEST(table.largest_error_rad(fast, 5) < 1e-12);
+  }
+}
+
 BOOST_AUTO_TEST_CASE(a_table_that_tells_no_way_is_refused_by_name) {
   const Table table(fast, 5);
   const Ephemeris read(table.path());
@@ -120,6 +136,8 @@ BOOST_AUTO_TEST_CASE(a_table_that_tells_no_way_is_refused_by_name) {
   BOOST_TEST(refused(table).find("is not in the order of MJD at row 3") != std::string::npos);
   table.change([](casacore::Table& open) { Table::put(open, "RA", 2, std::numeric_limits<double>::infinity()); });
   BOOST_TEST(refused(table).find("has numbers that are not finite in row 2") != std::string::npos);
+  table.change([](casacore::Table& open) { open.removeColumn("RA"); });
+  BOOST_TEST(refused(table).find("has no column RA, expected MJD, RA and DEC") != std::string::npos);
   BOOST_TEST(refused(Table(fast, 1)).find("has 1 rows, expected two or more") != std::string::npos);
 }
 
