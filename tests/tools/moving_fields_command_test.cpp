@@ -192,10 +192,10 @@ BOOST_AUTO_TEST_CASE(what_moves_and_what_stands_still_are_not_taken_for_each_oth
   succeed(moving.fixed() + Arguments{"--niter", "1"});
   std::filesystem::copy(moving.folder / "a.model.fits", moving.folder / "still.fits");
   succeed(moving.image() + Arguments{"--niter", "2", "--startmodel", copy});
-  BOOST_TEST(!warns(moving.folder / "a", "does not say that it does"));
+  BOOST_TEST(!warns(moving.folder / "a", "does not say that it moves along"));
   // The centres have to be one; the field passes the image's in the middle of its rows.
   succeed(moving.image() + Arguments{"--niter", "2", "--startmodel", moving.folder / "still.fits"});
-  BOOST_TEST(warns(moving.folder / "a", "still.fits does not say that it does (TRACKFLD)"));
+  BOOST_TEST(warns(moving.folder / "a", "still.fits does not say that it moves along with its field (TRACKFLD)"));
   const std::string body = refused(moving.image() + Arguments{"--phasecenter", "JUPITER"}).err;
   BOOST_TEST(body.find("'JUPITER' is a body of the solar system") != std::string::npos, body);
   BOOST_TEST(body.find("TRACKFIELD") != std::string::npos, body);
