@@ -100,7 +100,7 @@ class ImageRun {
     set_ = std::make_unique<ms_io::MeasurementSet>(o_.vis, selection_of(o_), o_.datacolumn, stokes_);
     if (!ranks_.alone()) set_ = set_->share(ranks_);
     if (o_.savemodel != "none")
-      if (const std::string words = left_out_of_model_warning(stokes_, set_->correlations()); !words.empty()) warn(words);
+      if (const std::string words = left_out_of_model_warning(stokes_, *set_); !words.empty()) warn(words);
     check_taylor_band(o_, set_->spectral_windows());
     geometry_ = geometry_of(o_, set_->observation().phase_centre);
     notes_ = notes_on_sets(o_, *set_, geometry_);

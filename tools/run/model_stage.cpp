@@ -34,26 +34,6 @@ bool is_circular(Stokes hand) {
   return hand == Stokes::RR || hand == Stokes::LL;
 }
 
-/// The Stokes parameters of which a correlation is a sum, see ms_io/stokes.h; itself where it is one.
-std::vector<Stokes> held_by(Stokes correlation) {
-  switch (correlation) {
-    case Stokes::XX:
-    case Stokes::YY:
-      return {Stokes::I, Stokes::Q};
-    case Stokes::XY:
-    case Stokes::YX:
-      return {Stokes::U, Stokes::V};
-    case Stokes::RR:
-    case Stokes::LL:
-      return {Stokes::I, Stokes::V};
-    case Stokes::RL:
-    case Stokes::LR:
-      return {Stokes::Q, Stokes::U};
-    default:
-      return {correlation};
-  }
-}
-
 bool has(const std::vector<Stokes>& list, Stokes one) {
   return std::find(list.begin(), list.end(), one) != list.end();
 }
@@ -130,13 +110,11 @@ bool saves_model(const std::vector<Stokes>& stokes) {
          (all(is_hand) && all([&](Stokes s) { return is_circular(s) == is_circular(stokes.front()); }));
 }
 
-std::string left_out_of_model_warning(const std::vector<Stokes>& stokes, const std::vector<Stokes>& stored) {
+std::string left_out_of_model_warning(const std::vector<Stokes>& stokes, const ms_io::MeasurementSet& set) {
   if (stokes == std::vector{Stokes::I}) return "";
-  const bool hands = is_hand(stokes.front());
   std::vector<Stokes> held;
-  for (const Stokes one : stored)
-    for (const Stokes part : hands ? std::vector{one} : held_by(one))
-      if (!has(stokes, part) && !has(held, part)) held.push_back(part);
+  for (const Stokes part : is_hand(stokes.front()) ? set.correlations() : set.seen_stokes())
+    if (!has(stokes, part) && !has(held, part)) held.push_back(part);
   if (held.empty()) return "";
   std::sort(held.begin(), held.end());
   return "--savemodel modelcolumn writes the model of " + names(stokes) + " alone: " + names(held) +
