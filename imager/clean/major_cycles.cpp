@@ -85,7 +85,7 @@ class Run {
   const MajorCycle& best() const { return state_.cycles[state_.best]; }
   const Image* mask() const { return o_.automask ? &state_.mask : o_.mask; }
 
-  /// Those of no model are the dirty images. Residuals are made anew, never changed.
+  /// The residuals of an empty model are the dirty images. Others are made anew, and never changed.
   void make_residual() {
     residuals_.clear();
     made_.clear();

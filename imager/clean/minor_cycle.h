@@ -51,7 +51,7 @@ class MinorCycle {
   /// Components whose images, convolved with the PSF and taken off the residuals [term] (Jy/beam), leave less. Throws
   /// std::invalid_argument unless there is a residual for each term, and all images have the size of the PSF.
   MinorCycleReport clean(const std::vector<const Image*>& residual, const MinorCycleOptions& options) const;
-  /// The same of one term.
+  /// Finds components in the residual of one term.
   MinorCycleReport clean(const Image& residual, const MinorCycleOptions& options) const { return clean({&residual}, options); }
 
  protected:

@@ -22,10 +22,10 @@ class VisibilitySets : public std::vector<VisibilitySet> {
   /// The block's own: of its first Stokes parameter for one image, else of all. Throws std::invalid_argument when the block
   /// does not carry as many.
   VisibilitySets(const VisibilityBlock& block, int images);
-  /// Those of one image, [row][channel], which stay where they are.
+  /// One set, [row][channel], of one image. No value is copied, here or below.
   VisibilitySets(const std::vector<std::complex<double>>& one) : vector{one.data()} {}
   VisibilitySets(VisibilitySet one) : vector{one} {}
-  /// Those of several, [image][row][channel].
+  /// A set for each of several images, [image][row][channel].
   VisibilitySets(const std::vector<std::vector<std::complex<double>>>& several);
 };
 

@@ -11,7 +11,7 @@
 namespace misfit::imager {
 namespace {
 
-/// What an axis counts.
+/// The quantity in which a spectral axis counts.
 enum class Quantity { frequency, radio, optical, relativistic, redshift, wavelength };
 
 struct Named {

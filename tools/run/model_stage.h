@@ -26,8 +26,9 @@ struct SavedModel {
 /// Whether a column can be made of images of these: I, Q, U and V, or parallel hands of one kind of feed.
 bool saves_model(const std::vector<imager::Stokes>& stokes);
 
-/// What of a column of `set` is written as 0 since there is no image of it: of images of hands the other correlations, of Stokes
-/// parameters the others that correlations respond to; empty where all is imaged, or I alone, which makes an unpolarised model.
+/// What of a column of `set` is written as 0 since there is no image of it: of images of hands the other correlations, of
+/// Stokes parameters the others that correlations respond to; empty where all is imaged, or I alone, which makes an unpolarised
+/// model.
 std::string left_out_of_model_warning(const std::vector<imager::Stokes>& stokes, const ms_io::MeasurementSet& set);
 
 /// Writes the models' visibilities into MODEL_DATA of each set of the run, about its own phase centre: of parallel hands as
