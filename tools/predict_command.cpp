@@ -42,6 +42,7 @@ struct PredictOptions {
   double accuracy = 1e-6;
   bool accuracy_is_typed = false;
   KernelSource kernel;
+  bool kernel_is_typed = false;
   int threads = 0;
   bool quiet = false;
 };
@@ -184,6 +185,8 @@ NamedModel read_model(const PredictOptions& o, const imager::Ranks& ranks) {
 void predict(const PredictOptions& o, const imager::Ranks& ranks) {
   check_values(o);
   if (o.model.empty() == o.components.empty()) throw std::invalid_argument("expected either --model or --components");
+  if (o.model.empty() && o.kernel_is_typed)
+    refuse_option("kernel", o.kernel.name, "no gridding function beside --components, which are summed directly");
   ms_io::ModelColumn column = column_of(o);
   if (ranks.first()) ms_io::require_writable(o.vis, column);
   ProgressLine progress(o.quiet || !ranks.first());
@@ -252,13 +255,14 @@ void add_predict_command(CLI::App& program, const imager::Ranks& ranks) {
                       "have several phase "
                       "centres. When empty: the data's own; where that moves, directions on the sky stand still");
   command->add_option("--accuracy", o->accuracy, "Relative accuracy of the visibilities");
-  list_kernels(*command->add_option("--kernel", o->kernel.name, "Gridding function: a name or a kernel-table file"));
+  list_kernels(*command->add_option("--kernel", o->kernel.name, "Gridding function of --model: a name or a kernel-table file"));
   declare_kernel_folder(*command, o->kernel.folder);
   command->add_option("--threads", o->threads, "Threads; 0 means all cores");
   command->add_flag("--quiet", o->quiet, "Print nothing");
   check_before_missing(*command, [o] { check_values(*o); });
   command->callback([command, o, &ranks] {
     o->accuracy_is_typed = command->get_option("--accuracy")->count() > 0;
+    o->kernel_is_typed = command->get_option("--kernel")->count() > 0;
     predict(*o, ranks);
   });
 }

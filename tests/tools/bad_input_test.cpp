@@ -346,6 +346,7 @@ BOOST_AUTO_TEST_CASE(what_is_subtracted_from_is_not_overwritten) {
   const Arguments predict{"predict", "--vis", set, "--components", list};
   check_refused(predict, 1, {list + ", line 2", "scale_arcsec is '-4'"}, set);
   check_refused(predict + Arguments{"--datacolumn", "data"}, 2, {"--datacolumn", "--subtract"}, set);
+  check_refused(predict + Arguments{"--kernel", "spheroidal"}, 2, {"--kernel spheroidal", "--components"}, set);
   const Arguments subtract = predict + Arguments{"--subtract"};
   check_refused(subtract + Arguments{"--column", "data"}, 1, {"DATA", "such as CORRECTED_DATA"}, set);
   check_refused(subtract + Arguments{"--datacolumn", "corrected"}, 1, {"CORRECTED_DATA", "columns with visibilities: DATA"},
