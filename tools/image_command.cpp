@@ -7,7 +7,7 @@
 #include "tools/base/value_checks.h"
 #include "tools/command.h"
 #include "tools/formats/config_file.h"
-#include "tools/run/cube_run.h"
+#include "tools/run/gridding_options.h"
 #include "tools/run/image_options.h"
 #include "tools/run/image_run.h"
 #include "tools/run/named_data.h"
@@ -31,8 +31,7 @@ void add_image_command(CLI::App& program, const std::string& command_line, const
   command->callback([command, options, check_options, command_line, &ranks] {
     check_options();
     const bool done = naming(names_of(options->vis), [&] {
-      const auto run = options->cube.is_cube() ? run_cube : run_image;
-      return run(*options, {command_line, option_values(*command)}, ranks);
+      return run_image(*options, {command_line, option_values(*command), state_option_values(*command)}, ranks);
     });
     if (!options->dry_run && ranks.first()) write_file(options->imagename + ".last.ini", config_text(*command));
     if (!done) throw Interrupted();

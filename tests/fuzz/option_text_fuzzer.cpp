@@ -7,7 +7,10 @@
 #include "tools/base/quantity.h"
 #include "tools/base/text.h"
 #include "tools/formats/regions/spectral_range.h"
+#include "tools/run/beam_choice.h"
+#include "tools/run/clean_options.h"
 #include "tools/run/cube_options.h"
+#include "tools/run/gridding_options.h"
 #include "tools/run/image_options.h"
 #include "tools/run/weighting_options.h"
 

@@ -158,8 +158,9 @@ BOOST_AUTO_TEST_CASE(runs_write_the_formats_asked_for_with_the_same_pixels_and_r
     const auto fits = imager::open_fits_image(name + ".fits"), casa = ms_io::open_casa_image(name);
     BOOST_TEST((fits->read({0, 0}).pixel == casa->read({0, 0}).pixel));
     BOOST_TEST(fits->header().unit == casa->header().unit);
-    BOOST_TEST(fits->beam({0, 0}).has_value());
-    BOOST_TEST(casa->beam({0, 0}).has_value());
+    const bool seen_with_beam = std::string(kind) != "model";
+    BOOST_TEST(fits->beam({0, 0}).has_value() == seen_with_beam);
+    BOOST_TEST(casa->beam({0, 0}).has_value() == seen_with_beam);
   }
   for (const char* format : {"fits", "casa", "fits"}) {
     const Outcome outcome = run(clean + Arguments{format});

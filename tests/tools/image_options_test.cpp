@@ -6,6 +6,10 @@
 #include <functional>
 #include <nlohmann/json.hpp>
 
+#include "tools/run/beam_choice.h"
+#include "tools/run/clean_options.h"
+#include "tools/run/gridding_options.h"
+
 BOOST_AUTO_TEST_SUITE(image_options)
 
 namespace {
@@ -132,6 +136,19 @@ BOOST_AUTO_TEST_CASE(values_in_force_are_those_typed_or_the_defaults) {
   BOOST_TEST(values.at("gain") == "0.1");
   BOOST_TEST(values.at("quiet") == "true");
   BOOST_TEST(!values.contains("help"));
+}
+
+BOOST_AUTO_TEST_CASE(states_belong_to_options_that_reach_clean) {
+  CLI::App app;
+  app.option_defaults()->always_capture_default();
+  ImageOptions options;
+  declare(app, options);
+  app.parse("--vis a.ms --imagename a --imsize 64 32 --cell 1arcsec --niter 7");
+  const nlohmann::json values = state_option_values(app);
+  for (const char* name : {"vis", "imsize", "gain", "mask", "deconvolver", "stokes"}) BOOST_TEST(values.contains(name), name);
+  for (const char* name : {"niter", "threshold", "nsigma", "nmajor", "savemodel", "restoringbeam", "verify", "threads",
+                           "memory", "quiet", "outformat", "restart", "imagename", "pbcor", "pblimit", "kernel-folder"})
+    BOOST_TEST(!values.contains(name), name);
 }
 
 BOOST_AUTO_TEST_SUITE_END()

@@ -31,7 +31,7 @@ BOOST_AUTO_TEST_CASE(direct_sums_have_no_kernel) {
 
 BOOST_AUTO_TEST_CASE(what_is_not_finite_is_null) {
   tools::RunReport run;
-  imager::TheoreticalError& theory = run.planes.front().stokes.front().theory.emplace();
+  imager::TheoreticalError& theory = run.channels.front().stokes.front().theory.emplace();
   theory.expected_rms = std::numeric_limits<double>::quiet_NaN();
   theory.bound_rms = std::numeric_limits<double>::infinity();
   theory.bound_max = 0.5;
@@ -48,7 +48,7 @@ BOOST_AUTO_TEST_CASE(beams_are_in_arcseconds_and_degrees) {
   beams.restoring = beam;
   beams.how = "given";
   beams.misfit = 0.25;
-  run.planes.front().beams = beams;
+  run.channels.front().beams = beams;
   const json json_beam = tools::report_json(run).at("beam");
   // Each is two or three products away.
   BOOST_TEST(std::abs(json_beam.at("major_arcsec").get<double>() - 1) < 1e-15);
@@ -66,7 +66,7 @@ BOOST_AUTO_TEST_CASE(clean_states_the_cycle_that_was_kept) {
   clean.stop_reason = "it grew";
   clean.cycles = {{0, 3, 0.3, 0, 0, "", 9, 0}, {10, 1, 0.1, 5, 0.5, "deep enough", 1, 0}, {30, 9, 0.9, 7, 0.2, "", 81, 1}};
   clean.kept = 1;
-  run.planes.front().stokes.front().clean = clean;
+  run.channels.front().stokes.front().clean = clean;
   const json report = tools::report_json(run).at("clean");
   BOOST_TEST(report.at("iterations") == 30);
   BOOST_TEST(report.at("major_cycles") == 2);

@@ -5,7 +5,7 @@
 #include "imager/beams/primary_beam.h"
 #include "imager/numerics/constants.h"
 #include "tests/tools/program.h"
-#include "tools/run/taylor_options.h"
+#include "tools/run/product_kinds.h"
 
 BOOST_AUTO_TEST_SUITE(wide_band_beam)
 
@@ -78,6 +78,15 @@ const std::string& seen_through_dishes() {
   return path;
 }
 
+/// The images that there are for the beam of so many terms.
+std::vector<std::string> beam_products(int terms, bool corrected) {
+  std::vector<std::string> names =
+      tools::product_names({.terms = terms, .cleaned = true, .primary_beam = true, .corrected = corrected});
+  const std::vector<std::string> others = tools::product_names({.terms = terms, .cleaned = true});
+  std::erase_if(names, [&](const std::string& name) { return std::count(others.begin(), others.end(), name) > 0; });
+  return names;
+}
+
 }  // namespace
 
 /// What two terms leave of a power law is a curve of α (α − 1)/2 x², at the band's edge 0.006 of the flux for −0.7, and 0 for 0
@@ -139,7 +148,7 @@ BOOST_AUTO_TEST_CASE(dirty_images_are_corrected_as_the_principal_solution) {
 BOOST_AUTO_TEST_CASE(pixels_below_the_limit_and_pixels_without_an_index_have_none) {
   const TemporaryFolder folder;
   succeed(images(seen_through_dishes(), folder / "a", "3") + Arguments{"--pbcor", "--pblimit", "0.45"});
-  const auto made = tools::taylor_beam_products(3, true, true);
+  const auto made = beam_products(3, true);
   const imager::Image beam = pixels_of(folder / "a", "pb.tt0"), apparent = pixels_of(folder / "a", "alpha");
   std::size_t without = 0;
   for (const double value : beam.pixel) {
@@ -163,7 +172,7 @@ BOOST_AUTO_TEST_CASE(pixels_below_the_limit_and_pixels_without_an_index_have_non
 BOOST_AUTO_TEST_CASE(files_are_those_that_are_asked_for_and_a_restart_makes_them) {
   const TemporaryFolder folder;
   const std::string name = folder / "a";
-  const auto all = tools::taylor_beam_products(3, true, true);
+  const auto all = beam_products(3, true);
   const auto check = [&](const std::vector<std::string>& made) {
     for (const std::string& kind : all)
       BOOST_TEST(exists(name, kind) == (std::count(made.begin(), made.end(), kind) > 0), kind);
@@ -171,12 +180,12 @@ BOOST_AUTO_TEST_CASE(files_are_those_that_are_asked_for_and_a_restart_makes_them
   succeed(images(seen_through_dishes(), name, "3") + Arguments{"--pbcor"});
   check(all);
   succeed(images(seen_through_dishes(), name) + Arguments{"--pblimit", "0.3"});
-  check(tools::taylor_beam_products(2, true, false));
+  check(beam_products(2, false));
   BOOST_TEST(run(images(seen_through_dishes(), name)).code == 0);
   check({});
   const imager::Image apparent = pixels_of(name, "alpha");
   succeed(images(seen_through_dishes(), name) + Arguments{"--restart", "--pbcor"});
-  check(tools::taylor_beam_products(2, true, true));
+  check(beam_products(2, true));
   const auto same = [](double a, double b) { return a == b || (std::isnan(a) && std::isnan(b)); };
   const auto again = pixels_of(name, "alpha").pixel;
   BOOST_TEST(std::equal(again.begin(), again.end(), apparent.pixel.begin(), apparent.pixel.end(), same));

@@ -4,7 +4,7 @@
 #include "imager/taylor/taylor_expansion.h"
 #include "tests/tools/program.h"
 #include "tests/tools/set_changes.h"
-#include "tools/run/taylor_options.h"
+#include "tools/run/product_kinds.h"
 
 BOOST_AUTO_TEST_SUITE(wide_band_images)
 
@@ -107,10 +107,10 @@ BOOST_AUTO_TEST_CASE(without_noise_the_index_is_right_to_a_hundredth) {
 
 BOOST_AUTO_TEST_CASE(files_are_those_of_the_terms_and_no_others_stay) {
   const TemporaryFolder folder;
-  const auto all = tools::taylor_products(3, true);
+  const auto all = tools::product_names({.terms = 3, .cleaned = true});
   for (const std::string terms : {"3", "2", "1"}) {
     succeed(images(folder / "a", terms));
-    const auto made = tools::taylor_products(std::stoi(terms), true);
+    const auto made = tools::product_names({.terms = std::stoi(terms), .cleaned = true});
     for (const std::string& kind : all)
       BOOST_TEST(exists(folder / "a", kind) == (std::count(made.begin(), made.end(), kind) > 0));
     for (const char* kind : {"psf", "residual", "model", "image"}) BOOST_TEST(exists(folder / "a", kind) == (terms == "1"));
@@ -128,7 +128,7 @@ BOOST_AUTO_TEST_CASE(without_clean_there_are_dirty_images_and_psfs) {
   dirty("two", "2");
   BOOST_TEST((pixels_of(folder / "one", "residual").pixel == pixels_of(folder / "two", "residual.tt0").pixel));
   BOOST_TEST((pixels_of(folder / "one", "psf").pixel == pixels_of(folder / "two", "psf.tt0").pixel));
-  for (const std::string& kind : tools::taylor_products(2, false)) BOOST_TEST(exists(folder / "two", kind));
+  for (const std::string& kind : tools::product_names({.terms = 2})) BOOST_TEST(exists(folder / "two", kind));
   BOOST_TEST(!exists(folder / "two", "image.tt0"));
   // Channels at ±50, ±150, … MHz from 4 GHz: <x²> = 0.00328125.
   BOOST_TEST(std::abs(pixels_of(folder / "two", "psf.tt2").at(40, 48) / 0.00328125 - 1) < 1e-4);

@@ -41,6 +41,18 @@ CLI::Validator values_are(const std::vector<std::string>& names, Others others) 
   return CLI::Validator([](const std::string&) -> std::string { return ""; }, "{" + list + "}");
 }
 
+CLI::Option* mark(CLI::Option* option, OptionMark mark) {
+  return option->check(CLI::Validator("").name(std::to_string(static_cast<int>(mark))).active(false));
+}
+
+bool has(const CLI::Option& option, OptionMark mark) {
+  try {
+    return const_cast<CLI::Option&>(option).get_validator(std::to_string(static_cast<int>(mark))) != nullptr;
+  } catch (const CLI::OptionNotFound&) {
+    return false;
+  }
+}
+
 void refuse_option(const std::string& option, const std::string& value, const std::string& expected) {
   throw std::invalid_argument("--" + option + " " + value + ": expected " + expected);
 }

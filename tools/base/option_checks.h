@@ -4,8 +4,9 @@
 #include <vector>
 
 namespace CLI {
+class Option;
 class Validator;
-}
+}  // namespace CLI
 
 namespace misfit::tools {
 
@@ -29,6 +30,17 @@ inline constexpr const char* and_others = "…";
 /// No check, for options whose command looks at the value itself: it says in --help, and so in manual pages and to completion,
 /// what can be given.
 CLI::Validator values_are(const std::vector<std::string>& names, Others others = Others::refused);
+
+/// What is so of an option wherever options are handled alike; said where it is declared.
+enum class OptionMark {
+  free_of_state,  ///< it only ends CLEAN or does not reach it: a run that goes on from a state may have another
+  typed_alone,    ///< it comes from no file of options, where others could have put it
+  not_repeated,   ///< it is no part of the run's file of options: whoever repeats a run does without it
+};
+
+/// Returns the option.
+CLI::Option* mark(CLI::Option* option, OptionMark mark);
+bool has(const CLI::Option& option, OptionMark mark);
 
 /// Types of values for Option::type_name(), of options that take a path: by them --help, manual pages and completion know that.
 /// A path is where something is to be, and what its name begins with.

@@ -1,7 +1,6 @@
 #include "tools/formats/clean_state_file.h"
 
 #include <algorithm>
-#include <array>
 #include <bit>
 #include <cstring>
 #include <limits>
@@ -21,10 +20,6 @@ namespace {
 using nlohmann::json;
 
 constexpr const char* format = "misfit CLEAN state 1";
-constexpr std::array free_options = {"niter",   "threshold", "nsigma",       "nmajor",  "savemodel", "restoringbeam",
-                                     "verify",  "threads",   "memory",       "quiet",   "outformat", "restart",
-                                     "dry-run", "nodes",     "visibilities", "network", "imagename", "kernel-folder",
-                                     "pbcor",   "pblimit",   "force-average"};
 
 /// In one line.
 std::string escaped(const std::string& text) {
@@ -243,9 +238,8 @@ void require_same(const std::string& path, const json& file, const CleanStateOwn
   json names = owner.options;
   names.update(has);
   for (const auto& [name, value] : names.items()) {
-    const bool may_differ = std::find(free_options.begin(), free_options.end(), name) != free_options.end();
     const json then = has.value(name, json()), now = owner.options.value(name, json());
-    if (!may_differ && !means_the_same(then, now)) refuse("--" + escaped(name), then, now);
+    if (!means_the_same(then, now)) refuse("--" + escaped(name), then, now);
   }
   const int ranks = file.contains("ranks") ? whole<int>(file, "ranks") : 1;
   if (ranks != owner.ranks) refuse("mpirun -n", ranks, owner.ranks);

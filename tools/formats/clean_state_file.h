@@ -12,7 +12,7 @@ namespace misfit::tools {
 /// What a state of CLEAN belongs to.
 struct CleanStateOwner {
   std::string version;          ///< of the program
-  nlohmann::json options;       ///< {name: value}, as typed or by default
+  nlohmann::json options;       ///< {name: value} of those that must be the same, as typed or by default
   std::uint64_t checksum = 0;   ///< of the dirty image, the PSF, and what CLEAN is given besides
   int ranks = 1;                ///< that summed them, on whose number their last bits depend
   imager::ComponentModel like;  ///< a model of the image's pixels and of the scales that CLEAN looks for
@@ -26,10 +26,8 @@ std::uint64_t checksum(const std::vector<const imager::Image*>& images);
 /// names the path.
 void write_clean_state(const std::string& path, const imager::CleanState& state, const CleanStateOwner& owner);
 
-/// Reads a state for a run of these options and data. Options that only end CLEAN or do not reach it (niter, threshold, nsigma,
-/// nmajor, savemodel, restoringbeam, verify, threads, memory, quiet, outformat, restart), the name of the images, and the
-/// folder of kernels may differ. Throws std::runtime_error that names the file, and the option or what else is different, or
-/// that the file is damaged.
+/// Reads a state for a run of these options and data. Throws std::runtime_error that names the file, and the option or what
+/// else is different, or that the file is damaged.
 imager::CleanState read_clean_state(const std::string& path, const CleanStateOwner& owner);
 
 }  // namespace misfit::tools

@@ -13,8 +13,6 @@
 namespace misfit::tools {
 namespace {
 
-constexpr const char* folder_of_programs = "kernel-folder";  ///< which only who runs misfit names, never a file
-
 std::string trimmed(const std::string& text) {
   const std::size_t first = text.find_first_not_of(" \t\r");
   if (first == std::string::npos) return "";
@@ -51,7 +49,7 @@ void take(CLI::App& command, const std::string& line, std::set<std::string>& tak
   CLI::Option* option = command.get_option_no_throw("--" + name);
   if (name.empty() || option == nullptr || !option->get_configurable())
     throw std::invalid_argument("'" + name + "' is no option of misfit " + command.get_name());
-  if (name == folder_of_programs)
+  if (has(*option, OptionMark::typed_alone))
     throw std::invalid_argument("'" + name + "' names a folder whose programs would be run; expected it on the command line");
   if (!taken.insert(name).second) throw std::invalid_argument("'" + name + "' stands in the file twice");
   if (option->count() > 0) return;
@@ -112,9 +110,11 @@ std::vector<std::pair<std::string, std::string>> options_in_force(const CLI::App
 
 std::string config_text(const CLI::App& command) {
   std::string text;
-  for (const auto& [name, value] : options_in_force(command))
-    if (!value.empty() && name != "restart")
-      text += (name == folder_of_programs ? "# on the command line: --" : "") + name + "=\"" + value + "\"\n";
+  for (const auto& [name, value] : options_in_force(command)) {
+    const CLI::Option& option = *command.get_option("--" + name);
+    if (!value.empty() && !has(option, OptionMark::not_repeated))
+      text += (has(option, OptionMark::typed_alone) ? "# on the command line: --" : "") + name + "=\"" + value + "\"\n";
+  }
   return text;
 }
 

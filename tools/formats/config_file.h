@@ -12,12 +12,12 @@ namespace misfit::tools {
 
 /// Adds --config FILE to `command`, which must have no other option yet: options are taken from the file unless they are typed.
 /// A line is `name = value`; blank lines and lines that begin with # or ; are skipped, and a value may stand in double quotes.
-/// Throws std::invalid_argument that names file, line and option when an option is unknown or `kernel-folder`, and
-/// std::runtime_error when the file cannot be read.
+/// Throws std::invalid_argument that names file, line and option when an option is unknown or only to be typed
+/// (OptionMark::typed_alone), and std::runtime_error when the file cannot be read.
 void add_config_option(CLI::App& command);
 
-/// The options in force, as a file for --config; left out are those that are empty, `restart`, since who repeats
-/// a run begins it anew, and `kernel-folder`, which is a comment.
+/// The options in force, as a file for --config; left out are those that are empty or not_repeated, see
+/// OptionMark; those that are typed_alone are comments.
 std::string config_text(const CLI::App& command);
 
 /// Every option of `command` that a file may hold, with the value in force: several values are separated by blanks, a flag is

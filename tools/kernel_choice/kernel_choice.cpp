@@ -74,11 +74,13 @@ void list_kernels(CLI::Option& option) {
 
 void declare_kernel_folder(CLI::App& command, std::string& folder) {
   if (const char* const given = std::getenv("MISFIT_KERNEL_FOLDER")) folder = given;
-  command
-      .add_option("--kernel-folder", folder,
-                  "Folder with kernels from outside: --kernel NAME there is libmisfit_kernel_NAME.so; or "
-                  "$MISFIT_KERNEL_FOLDER")
-      ->type_name(folder_type);
+  mark(mark(command
+                .add_option("--kernel-folder", folder,
+                            "Folder with kernels from outside: --kernel NAME there is libmisfit_kernel_NAME.so; or "
+                            "$MISFIT_KERNEL_FOLDER")
+                ->type_name(folder_type),
+            OptionMark::free_of_state),
+       OptionMark::typed_alone);
 }
 
 bool is_kernel_file(const KernelSource& kernel) {

@@ -1,8 +1,13 @@
 #include "tools/run/beam_choice.h"
 
+#include <CLI/CLI.hpp>
+#include <cmath>
 #include <stdexcept>
 
 #include "tools/base/numbers.h"
+#include "tools/base/option_checks.h"
+#include "tools/base/quantity.h"
+#include "tools/base/text.h"
 
 namespace misfit::tools {
 namespace {
@@ -30,6 +35,38 @@ void fit(const imager::Image& psf, double cell_rad, BeamChoice& choice) {
 }
 
 }  // namespace
+
+void declare_restoring_beam(CLI::App& command, ImageOptions& o) {
+  mark(command
+           .add_option("--restoringbeam", o.restoringbeam,
+                       "Restore with this beam: MAJ, or MAJ,MIN,PA such as 0.5arcsec,0.4arcsec,30deg; the fitted one when "
+                       "empty or common")
+           ->check(values_are({"common"}, Others::possible)),
+       OptionMark::free_of_state);
+}
+
+std::optional<imager::Beam> restoring_beam(const ImageOptions& o) {
+  if (o.restoringbeam.empty() || o.restoringbeam == "common") return std::nullopt;
+  const auto expect = [&](bool holds) {
+    if (!holds)
+      refuse_option("restoringbeam", o.restoringbeam,
+                    "common, MAJ, or MAJ,MIN,PA such as 0.5arcsec,0.4arcsec,30deg with MAJ at least MIN, and MIN above 0");
+  };
+  const auto angle = [&](std::string_view part) {
+    const std::string text(part);
+    expect(has_unit(text) && quantity(parse_angle_rad)(text).empty());
+    return parse_angle_rad(text);
+  };
+  const std::vector<std::string_view> parts = split_at_commas(o.restoringbeam);
+  expect(parts.size() == 1 || parts.size() == 3);
+  imager::Beam beam;
+  beam.major_rad = angle(parts[0]);
+  beam.minor_rad = parts.size() == 1 ? beam.major_rad : angle(parts[1]);
+  // Half a turn leaves the ellipse as it is.
+  beam.position_angle_rad = parts.size() == 1 ? 0 : std::remainder(angle(parts[2]), M_PI);
+  expect(beam.minor_rad > 0 && beam.major_rad >= beam.minor_rad && beam.major_rad < 1);
+  return beam;
+}
 
 BeamChoice choose_beam(const imager::Image& psf, double cell_rad, const std::optional<imager::Beam>& given, bool needed) {
   constexpr double bad = 0.1;

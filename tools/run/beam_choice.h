@@ -5,8 +5,16 @@
 #include <vector>
 
 #include "imager/beams/beam.h"
+#include "tools/run/image_options.h"
 
 namespace misfit::tools {
+
+/// Declares --restoringbeam.
+void declare_restoring_beam(CLI::App& command, ImageOptions& options);
+
+/// The beam that --restoringbeam names: "0.5arcsec" or "0.5arcsec,0.4arcsec,30deg"; nothing where it is the fitted one. Throws
+/// as check(const ImageOptions&) does.
+std::optional<imager::Beam> restoring_beam(const ImageOptions& options);
 
 /// The beams of a run.
 struct BeamChoice {

@@ -17,6 +17,7 @@
 #include "tools/formats/image_file.h"
 #include "tools/formats/mask_file.h"
 #include "tools/formats/model_image.h"
+#include "tools/run/clean_options.h"
 
 namespace misfit::tools {
 namespace {
@@ -38,6 +39,7 @@ CleanStage::CleanStage(const ImageOptions& options, imager::ImageHeader image, i
 }
 
 void CleanStage::begin_channel(int channel) {
+  if (channel_ == channel) return;
   channel_ = channel;
   if (start_file_) read_start_model();
   if (!mask_file_ || (!masks_.empty() && mask_file_->one_for_all_channels())) return;

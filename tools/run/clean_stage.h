@@ -65,7 +65,7 @@ class CleanStage {
   const ImageOptions& o_;
   imager::ImageHeader image_;
   int threads_;
-  int channel_ = 0;
+  int channel_ = -1;                                 ///< none yet
   std::unique_ptr<MaskFile> mask_file_;              ///< null without a mask
   std::unique_ptr<imager::ImageReader> start_file_;  ///< null without a start model
   std::vector<imager::Image> masks_;                 ///< none, one for all, or [Stokes]

@@ -96,23 +96,15 @@ std::string names_of(const std::vector<std::string>& vis);
 /// What of the sets is imaged, and where it is phased to. Throws std::runtime_error where --phasecenter cannot be understood.
 ms_io::Selection selection_of(const ImageOptions& options);
 
-/// Whether the options leave nothing of the kernel to choose: a file, or width and padding. Then no accuracy need be asked.
-bool kernel_is_given(const ImageOptions& options);
-
 /// Throws std::invalid_argument that names the option, its value and what was expected; std::runtime_error when the kernel is a
 /// file that cannot be used. Passes over options that the command requires and that are not given.
 void check(const ImageOptions& options);
 
-/// The tables that --evaluation names, if it does.
-std::optional<kernels::TableOptions> lookup_of(const ImageOptions& options);
 imager::ImageGeometry geometry_of(const ImageOptions& options, const imager::SkyDirection& phase_centre);
-imager::GriddingRequest gridding_request(const ImageOptions& options, int threads);
-/// The beam that --restoringbeam names: "0.5arcsec" or "0.5arcsec,0.4arcsec,30deg"; nothing where it is the fitted one.
-std::optional<imager::Beam> restoring_beam(const ImageOptions& options);
-imager::CleanOptions clean_options(const ImageOptions& options, int threads);
-imager::DeconvolverChoice deconvolver_choice(const ImageOptions& options, int threads);
 
-/// Every option of `command` with the value in force.
+/// Every option of `command` with the value in force: {name: value}.
 nlohmann::json option_values(const CLI::App& command);
+/// Those of them that a state of CLEAN belongs to, see OptionMark.
+nlohmann::json state_option_values(const CLI::App& command);
 
 }  // namespace misfit::tools

@@ -1,7 +1,10 @@
 #include "tools/run/image_run.h"
 
 #include <algorithm>
+#include <atomic>
+#include <cmath>
 #include <cstdio>
+#include <map>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -11,36 +14,39 @@
 #include "imager/numerics/parallel.h"
 #include "ms_io/model_writer.h"
 #include "tools/base/files.h"
+#include "tools/base/interrupt.h"
 #include "tools/base/json_text.h"
+#include "tools/base/numbers.h"
 #include "tools/base/progress.h"
 #include "tools/kernel_choice/cache_folder.h"
 #include "tools/run/changed_files.h"
-#include "tools/run/clean_stage.h"
+#include "tools/run/channel_maker.h"
+#include "tools/run/channel_queue.h"
 #include "tools/run/data_columns.h"
+#include "tools/run/image_files.h"
 #include "tools/run/model_stage.h"
 #include "tools/run/outside_stage.h"
-#include "tools/run/plane_run.h"
-#include "tools/run/primary_beam_stage.h"
-#include "tools/run/product_stage.h"
+#include "tools/run/products.h"
 #include "tools/run/run_messages.h"
 #include "tools/run/run_plan.h"
 #include "tools/run/run_report.h"
 #include "tools/run/set_notes.h"
 #include "tools/run/sharing.h"
 #include "tools/run/taylor_options.h"
-#include "tools/run/taylor_stage.h"
 #include "tools/run/weighting_options.h"
 #include "tools/run_page/report_page.h"
 
 namespace misfit::tools {
 namespace {
 
-/// One run of `misfit image`, from options to files. The steps are called in the order in which they stand here. Ranks take
-/// them together; what needs images, or writes, the first takes alone.
-class ImageRun {
+/// One run of `misfit image`, from options to files: a list of channels, which is one for the whole band, or those of a cube.
+/// The steps are called in the order in which they stand here. All ranks make the one channel together, each with a part of the
+/// samples; of a cube's channels they make some each. The first puts them together, and writes.
+class ImageRun : private ChannelSink {
  public:
   ImageRun(const ImageOptions& options, const RunCall& call, const imager::Ranks& ranks)
       : o_(options),
+        call_(call),
         ranks_(ranks),
         stokes_(imager::parse_stokes(options.stokes)),
         threads_(options.threads == 0 ? imager::available_threads(ranks.on_these_cores()) : options.threads),
@@ -48,6 +54,7 @@ class ImageRun {
     report_.command_line = call.command_line;
     report_.options = call.option_values;
     report_.times = &times_;
+    report_.channels.clear();
   }
 
   /// Whether all was done, and the user did not stop it.
@@ -67,22 +74,18 @@ class ImageRun {
       if (!o_.quiet && ranks_.first()) print_plan(plan_, expected());
       return true;
     }
-    plane_->weigh();
-    make_dirty();
-    if (taylor_) plane_->make_terms(*taylor_);
-    if (o_.verify > 0) plane_->verify();
-    weigh_primary_beam();
-    if (ranks_.first()) begin_products();
-    if (o_.niter > 0) clean();
-    if (o_.check_outside) look_outside();
-    release_visibilities();
+    begin_channels();
+    if (cube() && !o_.cube.perchanweightdensity) weigh_in_common();
+    make_channels();
+    if (cube()) count_samples();
+    count_traffic();
     if (ranks_.first()) {
-      write_images();
+      finish_products();
       write_report();
     }
     if (o_.savemodel == "modelcolumn") save_model();
-    if (ranks_.first()) summarise();
-    bool done = !stopped();
+    if (ranks_.first() && !o_.quiet) std::printf("%s%s.report.html\n", summary(report_).c_str(), o_.imagename.c_str());
+    bool done = !queue_->stopped();
     imager::share_values(ranks_, done);
     return done;
   }
@@ -92,90 +95,268 @@ class ImageRun {
     progress_.say("warning: " + sentence);
   }
 
+  bool cube() const { return o_.cube.is_cube(); }
+  int channels() const { return header_.spectral.channels; }
+  int channels_of_a_rank() const { return (channels() + ranks_.size() - 1) / ranks_.size(); }
+  /// Whether this rank has whole images of what it makes.
+  bool images_here() const { return cube() || ranks_.first(); }
+
   void open() {
     const imager::StageTimer timer(times_, "open");
     if (!o_.dry_run && ranks_.first()) name_ = claim_product_paths(o_);
     if (o_.savemodel == "modelcolumn" && ranks_.first())
       for (const std::string& set : o_.vis) ms_io::require_writable(set);
     set_ = std::make_unique<ms_io::MeasurementSet>(o_.vis, selection_of(o_), o_.datacolumn, stokes_);
-    if (!ranks_.alone()) set_ = set_->share(ranks_);
+    if (!cube() && !ranks_.alone()) set_ = set_->share(ranks_);
     if (o_.savemodel != "none")
       if (const std::string words = left_out_of_model_warning(stokes_, *set_); !words.empty()) warn(words);
-    check_taylor_band(o_, set_->spectral_windows());
-    geometry_ = geometry_of(o_, set_->observation().phase_centre);
-    notes_ = notes_on_sets(o_, *set_, geometry_);
+    windows_ = set_->spectral_windows();
+    header_ = {.geometry = geometry_of(o_, set_->observation().phase_centre),
+               .observation = set_->observation(),
+               .spectral = list_channels(),
+               .stokes = stokes_,
+               .cards = {},
+               .history = {}};
+    notes_ = notes_on_sets(o_, *set_, header_.geometry);
     for (const std::string& warning : notes_.warnings) warn(warning);
-    reach_ = set_->reach();
     if (wants_primary_beam(o_))
       primary_beam_ = std::make_unique<PrimaryBeamStage>(
-          o_, BeamScene{set_->beam_rows(), geometry_, set_->observation().frequency_hz}, threads_);
-    if (o_.nterms > 1) taylor_ = std::make_unique<TaylorStage>(taylor_expansion(o_, set_->observation()), threads_);
-    if (o_.niter == 0 || !ranks_.first()) return;
-    const imager::Observation& observation = set_->observation();
-    clean_ = std::make_unique<CleanStage>(o_,
-                                          imager::ImageHeader{.geometry = geometry_,
-                                                              .observation = observation,
-                                                              .spectral = whole_band(observation),
-                                                              .stokes = stokes_,
-                                                              .cards = {},
-                                                              .history = {}},
-                                          threads_);
-    clean_->begin_channel(0);
+          o_, BeamScene{set_->beam_rows(), header_.geometry, set_->observation().frequency_hz},
+          std::max(1, threads_ / channels_of_a_rank()));
+    if (o_.niter > 0 && images_here()) open_clean();
+    header_.history = history_of(report_.command_line, set_->data_columns());
+    if (o_.nterms > 1) header_.observation.frequency_hz = taylor_expansion(o_, set_->observation()).reference_hz;
+    if (!cube()) header_.spectral = imager::whole_band(header_.observation);
+    find_reach();
+  }
+
+  /// What is wrong with masks and models is said at once.
+  void open_clean() {
+    clean_ = std::make_unique<CleanStage>(o_, header_, threads_);
+    if (!cube()) clean_->begin_channel(0);
     for (const std::string& words : clean_->words_on_files()) warn(words);
+    if (cube()) return;
     for (const std::string& words : clean_->warnings()) warn(words);
   }
 
+  imager::SpectralAxis list_channels() {
+    if (!cube()) {
+      check_taylor_band(o_, windows_);
+      return imager::whole_band(set_->observation());
+    }
+    sampling_ = cube_sampling(o_.cube, windows_);
+    if (const std::string words = windows_left_out(sampling_.axis, windows_); !words.empty()) warn(words);
+    report_.cube = sampling_.axis;
+    return sampling_.axis;
+  }
+
+  /// Channels of a cube may lie half a channel beyond the data's last.
+  void find_reach() {
+    reach_ = ranks_.alone() || !cube() ? set_->reach() : set_->share(ranks_)->reach();
+    double beyond = 0;
+    for (const ms_io::SpectralWindow& window : windows_)
+      for (std::size_t c = 0; cube() && c < window.frequency_hz.size(); ++c)
+        beyond = std::max(beyond, 0.5 * window.channel_width_hz[c] / window.frequency_hz[c]);
+    for (double* reach : {&reach_.max_abs_u, &reach_.max_abs_v, &reach_.max_abs_w}) *reach *= 1 + beyond;
+  }
+
   void plan() {
-    const bool mask = clean_ && (clean_->mask(0) != nullptr || o_.usemask == "auto");
     const auto own = static_cast<double>(set_->samples());
     double all = own;
-    imager::sum_over(ranks_, all);
+    if (!cube()) imager::sum_over(ranks_, all);
     const double enlarged = o_.scale.enlarged(all);
-    const RunScene scene{.options = o_,
-                         .set = *set_,
-                         .ranks = ranks_,
-                         .geometry = geometry_,
-                         .reach = reach_,
-                         .threads = threads_,
-                         .mask = mask,
-                         .samples = all * enlarged,
-                         .share = own / all,
-                         .enlarged = enlarged};
+    const RunScene scene{
+        .options = o_,
+        .set = *set_,
+        .ranks = ranks_,
+        .geometry = header_.geometry,
+        .reach = reach_,
+        .threads = threads_,
+        .mask = o_.niter > 0 && images_here() && (!o_.mask.empty() || o_.usemask == "auto"),
+        .planes = channels(),
+        .workers = std::min(threads_, channels_of_a_rank()),
+        .samples = enlarged * (cube() ? static_cast<double>(set_->rows()) * samples_of_a_row(sampling_, windows_) : all),
+        .share = own / all,
+        .enlarged = enlarged};
     plan_ = plan_run(scene, times_, progress_);
+    if (cube()) plan_.decisions.push_back(axis_decision(sampling_));
     plan_.decisions.insert(plan_.decisions.end(), notes_.decisions.begin(), notes_.decisions.end());
     if (primary_beam_) plan_.decisions.push_back(primary_beam_->decision());
     for (const std::string& warning : plan_.warnings) warn(warning);
     if (primary_beam_)
       for (const std::string& doubt : primary_beam_->doubts()) warn(doubt);
-    work_ = work_of(scene, plan_);
+    cube() ? plan_batches(scene) : plan_streaming(scene);
     foretell(scene, forecast_, work_, times_, plan_);
     report_.plan = plan_.decisions;
+    report_.accuracy = o_.accuracy;
+    report_.gridding = &plan_.gridding;
     report_.estimated_memory_bytes = plan_.memory.total();
+  }
+
+  /// Of the one channel.
+  void plan_streaming(const RunScene& scene) {
+    workers_ = {1, threads_};
+    work_ = work_of(scene, plan_);
     // Ranks exchange the same in every pass, so that all keep visibilities or none does.
     plan_.streaming.keep = !imager::any_of(ranks_, !plan_.streaming.keep);
-    source_ = std::make_unique<imager::StreamedVisibilities>(*set_, plan_.streaming);
-    scene_ = std::make_unique<PlaneScene>(PlaneScene{o_, geometry_, stokes_, reach_, threads_, progress_, times_,
-                                                     [this](const std::string& sentence) { warn(sentence); }});
-    plane_ = std::make_unique<PlaneRun>(*scene_, *source_, "");
+    visibilities_ = std::make_unique<ChannelVisibilities>(*set_, plan_.streaming);
+    queue_ = make_channel_queue(imager::alone(), {{0, 1}}, *this);
+  }
+
+  /// Of a cube's.
+  void plan_batches(const RunScene& scene) {
+    const ChannelBatches batches = tools::plan_batches(scene, plan_);
+    batches_ = batches_of(channels(), batches);
+    queue_ = make_channel_queue(ranks_, batches_, *this);
+    workers_ = batches.workers;
+    at_once_ = workers_.count;
+    imager::sum_over(ranks_, at_once_);
+    if (!ranks_.alone())
+      plan_.decisions.push_back(
+          plane_sharing_decision(ranks_.size(), channels(), batches.planes, plane_bytes(work_of(scene, plan_))));
+    plan_.gridding = imager::with_threads(std::move(plan_.gridding), workers_.threads);
+    plan_.memory = batches.memory;
+    plan_.decisions.push_back(batches.decision);
+    work_ = work_of(scene, plan_);
+    work_.workers = at_once_;
+    work_.kept = !batches.read_again;
+    visibilities_ = std::make_unique<ChannelVisibilities>(*set_, sampling_, batches, threads_);
   }
 
   std::vector<StageSeconds> expected() const { return expected_seconds(plan_, forecast_, work_); }
 
-  void make_dirty() {
-    plane_->make_dirty(plan_.gridding);
-    const imager::AccurateImages& made = plane_->made();
-    work_.plan = &made.plan;
+  void begin_channels() {
+    scene_ = std::make_unique<ChannelScene>(ChannelScene{.options = o_,
+                                                         .option_values = call_.state_option_values,
+                                                         .header = header_,
+                                                         .reach = reach_,
+                                                         .threads = workers_.threads,
+                                                         .given_up = queue_->given_up(),
+                                                         .told = cube() ? nullptr : &told_});
+    ChannelMeans means{.plan = plan_.gridding,
+                       .transform = nullptr,
+                       .workers = workers_,
+                       .images_here = images_here(),
+                       .primary_beam = primary_beam_.get()};
+    if (cube()) {
+      report_.plan.insert(report_.plan.end(), plan_.gridding.decisions.begin(), plan_.gridding.decisions.end());
+      const imager::StageTimer timer(times_, "plan");
+      means.transform = std::make_shared<imager::PlannedTransform>(plan_.gridding);
+    }
+    maker_ = std::make_unique<ChannelMaker>(*scene_, std::move(means), std::move(clean_));
+    if (cube()) open_products();
+  }
+
+  void open_products() {
+    const imager::StageTimer timer(times_, "write images");
+    products_ = std::make_unique<Products>(
+        o_, header_, primary_beam_.get(), workers_, [this](const ProductKind& kind, const imager::ImageHeader& header) {
+          auto elsewhere = queue_->writer(kind.name);
+          if (elsewhere) return elsewhere;
+          return open_image_files(o_.imagename + "." + kind.name, header, pixel_format(o_.accuracy), o_.outformat);
+        });
+  }
+
+  /// From the density of all channels' samples together.
+  void weigh_in_common() {
+    const imager::WeightingOptions options = weighting_options(o_);
+    if (!options.needs_density()) return;
+    imager::UvDensity density(header_.geometry, threads_);
+    const auto add = [&](const imager::VisibilitySource& channel) {
+      const imager::StageTimer timer(times_, "weights");
+      const auto stream = channel.open();
+      while (const auto block = stream->next()) density.add(*block);
+    };
+    visibilities_->look_through(own_batches(ranks_, batches_), add, progress_, times_);
+    if (!ranks_.alone()) density.add_up(ranks_);
+    maker_->weigh_by(std::make_shared<imager::ImagingWeights>(density, options));
+  }
+
+  /// Until there are no more, or the user stops: channels of a cube that are done by then stay.
+  void make_channels() {
+    try {
+      while (!queue_->stopped()) {
+        const std::optional<imager::PlaneRange> batch = queue_->next();
+        if (!batch) break;
+        make(*batch);
+      }
+    } catch (const Interrupted&) {
+      if (!cube()) throw;
+      queue_->stop();
+    }
+    queue_->finish();
+    if (ranks_.first() && queue_->stopped() && report_.channels.empty()) throw Interrupted();
+  }
+
+  /// As many at a time as there are workers. Rethrows what goes wrong with one, once all at work are over; Interrupted last.
+  void make(const imager::PlaneRange& batch) {
+    visibilities_->begin(batch, progress_, times_);
+    if (cube()) progress_.begin(visibilities_->work_on(batch), o_.niter > 0);
+    const auto count = static_cast<std::size_t>(batch.count);
+    std::atomic<std::uint64_t> done = 0;
+    std::atomic<bool> interrupted = false;
+    imager::parallel_for(count, workers_.count, [&](std::size_t i) {
+      if (queue_->stopped() || interrupted) return;
+      try {
+        make_channel(batch.first + static_cast<int>(i));
+        if (cube()) progress_.update(++done, count);
+      } catch (const Interrupted&) {  // also one that gave up: what another threw comes before it
+        interrupted = true;
+      } catch (...) {
+        queue_->give_up();
+        throw;
+      }
+    });
+    visibilities_->end();
+    if (interrupted) throw Interrupted();
+    if (cube()) progress_.end();
+  }
+
+  void make_channel(int channel) {
+    imager::StageTimes taking;
+    std::unique_ptr<ChannelSamples> samples;
+    {
+      const imager::StageTimer timer(taking, "planes");
+      samples = visibilities_->take(channel);
+    }
+    const std::unique_ptr<ChannelRun> run = maker_->image(channel, std::move(samples));
+    if (cube()) run->times().add("planes", taking.of("planes"));
+    if (!cube()) tell_dirty(*run);
+    maker_->prepare_clean(*run);
+    if (!cube() && ranks_.first()) begin_pictures(*run);
+    maker_->clean(*run);
+    if (o_.check_outside) look_outside(*run);
+    if (run->has_samples() && visibilities_->each_reads()) visibilities_->count(run->samples().counts());
+    run->release_samples();
+    if (!cube() && ranks_.first())
+      if (const std::string warning = changed_files_warning(*set_); !warning.empty()) warn(warning);
+    if (images_here() && !run->made().empty()) write(*run);
+    if (o_.savemodel == "none") run->cleaned().clear();
+    queue_->done(std::move(run->made()));
+  }
+
+  /// Before CLEAN begins, which may take long.
+  void tell_dirty(ChannelRun& run) {
+    const imager::AccurateImages& made = run.images();
+    plan_.gridding = made.plan;
     report_.plan.insert(report_.plan.end(), made.plan.decisions.begin(), made.plan.decisions.end());
-    report_.accuracy = o_.accuracy;
-    report_.gridding = &made.plan;
-    count_samples();
-    for (const imager::Decision& decision : plane_->report().decisions) report_.plan.push_back(decision);
+    count_samples_of(run);
+    for (const imager::Decision& decision : run.report().decisions) report_.plan.push_back(decision);
+  }
+
+  /// Those of what there is before CLEAN are drawn meanwhile.
+  void begin_pictures(ChannelRun& run) {
+    report_.channels = {run.report()};
+    header_.cards = error_cards(report_);
+    report_.channels.clear();
+    pictures_ = std::make_unique<RunPictures>(o_, header_, times_);
+    pictures_->draw_dirty(run);
   }
 
   /// What was read; samples that the pixel size cannot represent, and the pixel size that could.
-  void count_samples() {
-    const imager::SampleSums& sums = plane_->report().sums;
-    report_.counts = source_->counts();
+  void count_samples_of(ChannelRun& run) {
+    const imager::SampleSums& sums = run.report().sums;
+    report_.counts = run.samples().counts();
     report_.counts.outside_grid = sums.outside_grid;
     report_.counts.used = sums.used;
     report_.plan.push_back(left_out_decision(report_.counts));
@@ -183,60 +364,16 @@ class ImageRun {
     for (const std::string& warning : notes_on_data(*set_, ranks_)) warn(warning);
   }
 
-  void weigh_primary_beam() {
-    if (!primary_beam_) return;
-    const imager::StageTimer timer(times_, "primary beam");
-    primary_beam_->weigh(*source_);
-  }
-
-  void begin_products() {
-    plane_->choose_beams();
-    report_.planes = {plane_->report()};
-    imager::Observation observation = set_->observation();
-    if (taylor_) observation.frequency_hz = taylor_->expansion().reference_hz;
-    products_ = std::make_unique<ProductStage>(
-        o_,
-        ProductScene{geometry_, stokes_, observation, history_of(report_.command_line, set_->data_columns()),
-                     error_cards(report_), plane_->report().beams->restoring, threads_},
-        times_);
-    if (taylor_) products_->set_taylor(*taylor_);
-    products_->draw_dirty(source_->uv_coverage(), plane_->made().images,
-                          [this](std::size_t s) { return clean_ ? clean_->mask(s) : nullptr; });
-  }
-
-  void clean() {
-    if (!ranks_.first()) return plane_->follow_clean();
-    std::size_t now = stokes_.size();  // none
-    plane_->clean(*clean_, report_.options, [&](std::size_t stokes, const imager::CleanState& state) {
-      if (stokes != std::exchange(now, stokes)) iterations_before_.reset();
-      count_cycle(state.cycles.back());
-      if (state.cycles.size() > 1) progress_.say("  " + cycle_message(state));
-    });
-    clean_.reset();
-  }
-
-  /// Told of the state with which CLEAN begins, which may be that of a run before, and after every major cycle.
-  void count_cycle(const imager::MajorCycle& cycle) {
-    if (!iterations_before_) {
-      iterations_before_ = cycle.iterations;
-      return;
-    }
-    ++work_.major_cycles;
-    work_.components += cycle.iterations - *iterations_before_;
-    iterations_before_ = cycle.iterations;
-  }
-
-  void look_outside() {
+  void look_outside(ChannelRun& run) {
     const imager::StageTimer timer(times_, "sources outside");
     imager::StageTimes own;  // its gridding is not this image's
     progress_.begin("sources outside", true);
-    const imager::AccurateImages& made = plane_->made();
-    const auto& cleaned = plane_->cleaned();
-    const double noise_jy = !ranks_.first()   ? 0
-                            : cleaned.empty() ? imager::robust_noise(made.images.dirty.front(), threads_)
-                                              : cleaned.front().report.final_state().rms_jy;
-    outside_ = check_outside(*source_, made.plan, *plan_.wider, made.images, {noise_jy, !weighting_options(o_).none()},
-                             {threads_, &own, scene_->context().progress});
+    const imager::AccurateImages& made = run.images();
+    const double noise_jy = !ranks_.first()         ? 0
+                            : run.cleaned().empty() ? imager::robust_noise(made.images.dirty.front(), threads_)
+                                                    : run.cleaned().front().report.final_state().rms_jy;
+    outside_ = check_outside(run.samples(), made.plan, *plan_.wider, made.images, {noise_jy, !weighting_options(o_).none()},
+                             {threads_, &own, run.context().progress});
     progress_.end();
     if (!ranks_.first()) return;
     report_.outside = &outside_;
@@ -248,25 +385,129 @@ class ImageRun {
     for (const std::string& warning : outside_warnings(outside_)) warn(warning);
   }
 
-  /// They make room for the pictures, and are closed before a column is written.
-  void release_visibilities() {
-    if (ranks_.first())
-      if (const std::string warning = changed_files_warning(*set_); !warning.empty()) warn(warning);
-    source_.reset();
-    set_.reset();
-    plane_->made().transform.reset();
+  void write(ChannelRun& run) {
+    if (!cube()) open_products();
+    products_->write(run, pictures_.get());
   }
 
-  bool stopped() const {
-    const auto& cleaned = plane_->cleaned();
-    return std::any_of(cleaned.begin(), cleaned.end(),
-                       [](const auto& result) { return result.report.stop == imager::CleanStop::user; });
+  void write(const std::string& kind, const imager::PlaneIndex& at, const imager::Image& image,
+             const std::optional<imager::Beam>& beam) override {
+    products_->write(kind, at, image, beam);
+  }
+
+  void take(MadeChannel&& channel) override {
+    for (const std::string& sentence : channel.warnings) warn(sentence);
+    for (const std::string& doubt : channel.doubts) doubts_[doubt].push_back(channel.report.channel);
+    for (const auto& [stage, seconds] : channel.times.stages()) times_.add(stage, seconds / at_once_);
+    outside_grid_ += channel.outside_grid;
+    work_.components += channel.components;
+    work_.major_cycles += channel.major_cycles;
+    empty_ += channel.empty() ? 1 : 0;
+    report_.plane_samples += channel.report.sums.used;
+    if (cube() && o_.niter > 0 && !channel.empty()) progress_.say(plane_message(channel.report, channels()));
+    report_.channels.push_back(std::move(channel.report));
+    cleaned_ = std::move(channel.cleaned);
+  }
+
+  /// Each sample read once: what is left out for no reason is used. Of those that channels take, as large a part is outside the
+  /// grid as of the channels' samples.
+  void count_samples() {
+    imager::SampleCounts& counts = report_.counts = visibilities_->counts();
+    report_.outside_planes = visibilities_->outside_channels();
+    counts.add_up(ranks_);
+    imager::sum_over(ranks_, report_.outside_planes);
+    const std::uint64_t taken = counts.samples_read - counts.autocorrelations - counts.flagged - counts.nonfinite -
+                                counts.zero_weight - report_.outside_planes;
+    const double in_planes = static_cast<double>(outside_grid_ + report_.plane_samples);
+    if (outside_grid_ > 0)
+      counts.outside_grid =
+          static_cast<std::uint64_t>(std::ceil(static_cast<double>(taken) * (static_cast<double>(outside_grid_) / in_planes)));
+    counts.used = taken - counts.outside_grid;
+    for (const std::string& warning : notes_on_data(*set_, ranks_)) warn(warning);
+  }
+
+  void count_traffic() {
+    if (ranks_.alone()) return;
+    imager::Traffic all = ranks_.traffic();
+    if (!cube()) return report_.plan.push_back(traffic_decision(all, times_.of("exchange")));
+    imager::sum_over(ranks_, all.bytes, all.exchanges);
+    report_.plan.push_back(plane_traffic_decision(all));
+  }
+
+  void finish_products() {
+    if (report_.channels.size() == empty_) throw_nothing();
+    std::string removed;
+    const std::vector<imager::HeaderCard> cards = cube() ? error_cards(report_) : std::vector<imager::HeaderCard>();
+    for (const std::string& path : products_->finish(report_.channels, cards, times_))
+      removed += (removed.empty() ? "" : ", ") + path;
+    if (!removed.empty()) progress_.say("removed what an earlier run left: " + removed);
+    cube() ? tell_channels() : tell_doubts("");
+  }
+
+  /// What several channels have in common.
+  void tell_channels() {
+    report_.plan.push_back(left_out_decision(report_.counts));
+    if (const std::string warning = changed_files_warning(*set_); !warning.empty()) warn(warning);
+    if (outside_grid_ > 0) warn(outside_grid_warning(report_.counts.outside_grid, reach_));
+    tell_doubts("plane");
+    if (empty_ > 0)
+      warn(std::to_string(empty_) + " of " + std::to_string(channels()) +
+           " planes have no samples: they have no values and no beam");
+    if (const std::size_t left = static_cast<std::size_t>(channels()) - report_.channels.size(); left > 0)
+      warn("stopped by the user: " + std::to_string(left) + " of " + std::to_string(channels()) + " planes have no values");
+  }
+
+  /// With the channels of which they are, unless there is but one.
+  void tell_doubts(const std::string& channel) {
+    for (const auto& [doubt, numbers] : doubts_)
+      warn((channel.empty() ? "" : channel + (numbers.size() > 1 ? "s " : " ") + in_runs(numbers) + ": ") + doubt);
+  }
+
+  [[noreturn]] void throw_nothing() const {
+    if (outside_grid_ > 0) throw imager::NothingInGrid(outside_grid_);
+    throw imager::NothingUsable(report_.counts);
+  }
+
+  void write_report() {
+    report_.shown = brightest_channel(report_.channels);
+    ChannelReport& shown = report_.channels[report_.shown];
+    if (cube()) look_at_shown(shown);
+    PageDrawings drawings;
+    {
+      const imager::StageTimer timer(times_, "draw pictures");
+      (cube() ? drawings.spectrum : drawings.histogram) = cube() ? spectrum_drawing(report_) : histogram_drawing(shown);
+    }
+    std::vector<PagePicture> pictures;
+    if (const std::string failure = pictures_->finish(pictures); !failure.empty()) warn(failure);
+    report_.expected = expected();
+    const auto made_twice = [](const ChannelReport& channel) { return channel.made_twice; };
+    if (std::none_of(report_.channels.begin(), report_.channels.end(), made_twice)) forecast_.learn(work_, times_);
+    report_.wall_clock_s = watch_.seconds();
+    const nlohmann::json json = report_json(report_);
+    write_file(o_.imagename + ".report.json", json_text(json, 2) + "\n");
+    write_file(o_.imagename + ".report.html", report_page(json, pictures, drawings));
+  }
+
+  /// The channel of a cube that its report shows, from files.
+  void look_at_shown(ChannelReport& shown) {
+    {
+      const imager::StageTimer timer(times_, "statistics");
+      const auto residual = open_written(o_, "residual");
+      for (std::size_t s = 0; s < shown.stokes.size() && shown.sums.used > 0; ++s) {
+        PixelHistogram& histogram = shown.stokes[s].histogram;
+        histogram = pixel_histogram(residual->read({shown.channel, static_cast<int>(s)}), histogram.noise_jy, threads_);
+      }
+    }
+    pictures_ = std::make_unique<RunPictures>(o_, header_, times_);
+    pictures_->draw_channel(shown);
+    for (const imager::Decision& d : shown.decisions)
+      report_.plan.push_back({d.item + " of plane " + std::to_string(shown.channel), d.decision, d.because});
   }
 
   /// Gives all ranks the models.
   void share_models() {
-    plane_->cleaned().resize(stokes_.size());
-    for (imager::CleanResult& result : plane_->cleaned()) {
+    cleaned_.resize(stokes_.size());
+    for (imager::CleanResult& result : cleaned_) {
       result.further_models.resize(static_cast<std::size_t>(o_.nterms - 1));
       share_image(result.model);
       for (imager::Image& further : result.further_models) share_image(further);
@@ -279,84 +520,23 @@ class ImageRun {
   }
 
   void save_model() {
+    visibilities_.reset();  // closed before a column is written
+    set_.reset();
     progress_.begin("save model", true);  // a column half written helps no one
     if (!ranks_.alone()) share_models();
-    const SavedModel model{geometry_,
+    const SavedModel model{header_.geometry,
                            threads_,
                            stokes_,
-                           plane_->cleaned(),
+                           cleaned_,
                            json_text(report_.options),
                            [this](const std::string& sentence) { progress_.say(sentence); },
-                           taylor_ ? taylor_->expansion() : imager::TaylorExpansion()};
-    tools::save_model(o_, model, ranks_, scene_->context().progress);
+                           o_.nterms > 1 ? taylor_expansion(o_, header_.observation) : imager::TaylorExpansion()};
+    tools::save_model(o_, model, ranks_, [this](std::uint64_t done, std::uint64_t total) { progress_.update(done, total); });
     progress_.end();
   }
 
-  void write_images() {
-    count_pixels();
-    report_.planes = {plane_->report()};
-    imager::DirtyImages& images = plane_->made().images;
-    auto& cleaned = plane_->cleaned();
-    if (primary_beam_) set_primary_beam();
-    std::string removed;
-    for (const std::string& path :
-         cleaned.empty() ? products_->write(std::move(images)) : products_->write(std::move(images.psf), cleaned))
-      removed += (removed.empty() ? "" : ", ") + path;
-    if (!removed.empty()) progress_.say("removed what an earlier run left: " + removed);
-  }
-
-  void set_primary_beam() {
-    const imager::StageTimer timer(times_, "primary beam");
-    std::vector<imager::Image> beam;  // [term]
-    if (taylor_) {
-      taylor_beam_ = primary_beam_->of_terms(taylor_->expansion());
-      beam = taylor_beam_->terms();
-    } else {
-      beam.push_back(primary_beam_->whole_band());
-    }
-    if (const std::string warning = primary_beam_->warning_of(beam.front()); !warning.empty()) warn(warning);
-    products_->set_primary_beam(std::move(beam), taylor_beam_ ? &*taylor_beam_ : nullptr);
-  }
-
-  void count_pixels() {
-    const imager::StageTimer timer(times_, "statistics");
-    const auto& cleaned = plane_->cleaned();
-    for (std::size_t s = 0; s < stokes_.size(); ++s) {
-      const imager::Image& image = cleaned.empty() ? plane_->made().images.dirty[s] : cleaned[s].residual;
-      const double noise_jy = cleaned.empty() ? imager::sampled_noise(image) : cleaned[s].report.final_state().rms_jy;
-      plane_->report().stokes[s].histogram = pixel_histogram(image, noise_jy, threads_);
-    }
-  }
-
-  /// Nothing where gnuplot cannot draw it.
-  std::string histogram_drawing() {
-    const imager::StageTimer timer(times_, "draw pictures");
-    try {
-      const PixelHistogram& histogram = report_.planes.front().stokes.front().histogram;
-      return histogram.pixels == 0 ? "" : draw_svg(histogram_figure(histogram));
-    } catch (const std::runtime_error&) {  // the pictures say why
-      return "";
-    }
-  }
-
-  void write_report() {
-    const std::string histogram = histogram_drawing();
-    std::vector<PagePicture> pictures;
-    if (const std::string failure = products_->finish_pictures(pictures); !failure.empty()) warn(failure);
-    if (!ranks_.alone()) report_.plan.push_back(traffic_decision(ranks_.traffic(), times_.of("exchange")));
-    report_.expected = expected();
-    if (!plane_->report().made_twice) forecast_.learn(work_, times_);
-    report_.wall_clock_s = watch_.seconds();
-    const nlohmann::json json = report_json(report_);
-    write_file(o_.imagename + ".report.json", json_text(json, 2) + "\n");
-    write_file(o_.imagename + ".report.html", report_page(json, pictures, {histogram, ""}));
-  }
-
-  void summarise() const {
-    if (!o_.quiet) std::printf("%s%s.report.html\n", summary(report_).c_str(), o_.imagename.c_str());
-  }
-
   const ImageOptions& o_;
+  const RunCall& call_;
   const imager::Ranks& ranks_;
   std::unique_ptr<NameLock> name_;  ///< the first rank's
   std::vector<imager::Stokes> stokes_;
@@ -364,25 +544,34 @@ class ImageRun {
   ProgressLine progress_;
   imager::Stopwatch watch_;
   imager::StageTimes times_;
+  ToldAsItGoes told_{progress_, times_, [this](const std::string& sentence) { warn(sentence); }};
   RunReport report_;
   TimeForecast forecast_{default_cache_folder()};
   RunWork work_;
-  std::optional<int> iterations_before_;  ///< this run's CLEAN
 
   std::unique_ptr<ms_io::MeasurementSet> set_;
-  imager::ImageGeometry geometry_;
+  std::vector<ms_io::SpectralWindow> windows_;
+  imager::CubeSampling sampling_;  ///< of a cube
+  imager::ImageHeader header_;
   imager::UvwReach reach_;
   FieldNotes notes_;
   std::unique_ptr<PrimaryBeamStage> primary_beam_;  ///< null where none is wanted
-  std::unique_ptr<CleanStage> clean_;               ///< null without CLEAN, and after it
-  std::unique_ptr<TaylorStage> taylor_;             ///< null where there is one term
-  std::optional<imager::TaylorBeam> taylor_beam_;   ///< of several, where a primary beam is wanted
+  std::unique_ptr<CleanStage> clean_;               ///< until channels begin; null where nothing is cleaned here
   RunPlan plan_;
-  std::unique_ptr<imager::StreamedVisibilities> source_;
-  std::unique_ptr<PlaneScene> scene_;
-  std::unique_ptr<PlaneRun> plane_;
+  std::vector<imager::PlaneRange> batches_;  ///< of a cube
+  ChannelWorkers workers_;
+  int at_once_ = 1;  ///< channels that all ranks make at a time
+  std::unique_ptr<ChannelVisibilities> visibilities_;
+  std::unique_ptr<ChannelQueue> queue_;
+  std::unique_ptr<ChannelScene> scene_;
+  std::unique_ptr<ChannelMaker> maker_;
+  std::unique_ptr<Products> products_;     ///< where there are images
+  std::unique_ptr<RunPictures> pictures_;  ///< of rank 0
   OutsideReport outside_;
-  std::unique_ptr<ProductStage> products_;
+  std::vector<imager::CleanResult> cleaned_;  ///< [Stokes], of the one channel, where --savemodel needs them
+  std::uint64_t outside_grid_ = 0;
+  std::size_t empty_ = 0;                           ///< channels
+  std::map<std::string, std::vector<int>> doubts_;  ///< with the channels of which they are
 };
 
 }  // namespace

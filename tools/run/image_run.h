@@ -11,7 +11,8 @@ namespace misfit::tools {
 /// How a run was called, for HISTORY and the report.
 struct RunCall {
   std::string command_line;
-  nlohmann::json option_values;  ///< {name: value}, as typed or by default
+  nlohmann::json option_values;        ///< {name: value}, as typed or by default
+  nlohmann::json state_option_values;  ///< those that a state of CLEAN belongs to
 };
 
 /// One run of `misfit image`, from options to files; with --dry-run its plan alone, on standard output. All ranks call it; the

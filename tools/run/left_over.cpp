@@ -7,31 +7,85 @@
 #include "imager/data/stokes.h"
 #include "kernels/whole_file.h"
 #include "tools/run/image_files.h"
-#include "tools/run/taylor_options.h"
+#include "tools/run/product_kinds.h"
 
 namespace misfit::tools {
 
 namespace fs = std::filesystem;
 
-std::vector<std::string> image_kinds() {
-  std::vector<std::string> kinds = taylor_products(imager::most_taylor_terms, true);
-  for (const std::string& kind : taylor_beam_products(imager::most_taylor_terms, true, true)) kinds.push_back(kind);
-  for (const char* kind : {"psf", "residual", "model", "image", "mask", "pb", "image.pbcor"}) kinds.emplace_back(kind);
-  return kinds;
+namespace {
+
+/// A name for each Stokes parameter: "dirty.Q.png" of "dirty" and ".png".
+void add_stokes(const std::string& begin, const std::string& end, const std::vector<imager::Stokes>& stokes,
+                std::vector<std::string>& names) {
+  for (const imager::Stokes one : stokes) names.push_back(begin + "." + imager::stokes_name(one) + end);
 }
 
-bool is_input(const ImageOptions& o, const std::string& path) {
-  std::error_code absent;
-  return fs::equivalent(path, o.mask, absent) || fs::equivalent(path, o.startmodel, absent);
+/// Pictures, lists and states, as they follow <imagename>.
+std::vector<std::string> all_names() {
+  std::vector<imager::Stokes> stokes;
+  for (int code = 1; imager::is_stokes_code(code); ++code) stokes.push_back(static_cast<imager::Stokes>(code));
+  std::vector<std::string> names{"psf.png", "uv.png", "alpha.png", "components.csv", "clean.state"};
+  for (const char* picture : {"dirty", "model", "residual", "image"}) {
+    names.push_back(std::string(picture) + ".png");
+    add_stokes(picture, ".png", stokes, names);
+  }
+  add_stokes("clean", ".state", stokes, names);
+  return names;
 }
 
+/// Those of this run.
+std::vector<std::string> own_names(const ImageOptions& o) {
+  const bool cleaned = o.niter > 0;
+  if (o.cube.is_cube()) return {"psf.png", cleaned ? "image.png" : "residual.png"};
+  std::vector<std::string> names{"psf.png", "uv.png"};
+  const std::vector<imager::Stokes> stokes = imager::parse_stokes(o.stokes);
+  const auto add = [&](const std::string& begin, const std::string& end) {
+    if (stokes.size() == 1)
+      names.push_back(begin + end);
+    else
+      add_stokes(begin, end, stokes, names);
+  };
+  if (!cleaned) {
+    add("residual", ".png");
+    return names;
+  }
+  for (const char* picture : {"dirty", "model", "residual", "image"}) add(picture, ".png");
+  add("clean", ".state");
+  names.emplace_back(o.nterms > 1 ? "alpha.png" : "components.csv");
+  return names;
+}
+
+/// The images of other kinds, or in another format.
 void remove_other_images(const ImageOptions& o, const std::vector<std::string>& made, std::vector<std::string>& removed) {
-  for (const std::string& kind : image_kinds())
+  for (const std::string& kind : all_product_names())
     for (const std::string& path : image_paths(o.imagename + "." + kind, "both")) {
       std::error_code failed;
       if (std::count(made.begin(), made.end(), path) > 0 || is_input(o, path) || !is_own_image(path)) continue;
       if (fs::remove_all(path, failed) > 0 && !failed) removed.push_back(path);
     }
+}
+
+/// The states that CLEAN of a cube left of `first` and later channels.
+void remove_cube_states(const ImageOptions& o, int first, std::vector<std::string>& removed) {
+  std::error_code failed;
+  const fs::path folder = o.imagename + ".clean";
+  std::vector<fs::path> states;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder, failed)) states.push_back(entry.path());
+  for (const fs::path& state : states) {
+    const std::string name = state.filename();
+    int channel = -1;
+    std::from_chars(name.data(), name.data() + name.size(), channel);
+    if (state.extension() == ".state" && channel >= first && fs::remove(state, failed)) removed.push_back(state);
+  }
+  fs::remove(folder, failed);  // where nothing is left in it
+}
+
+}  // namespace
+
+bool is_input(const ImageOptions& o, const std::string& path) {
+  std::error_code absent;
+  return fs::equivalent(path, o.mask, absent) || fs::equivalent(path, o.startmodel, absent);
 }
 
 void remove_half_written(const ImageOptions& o) {
@@ -45,40 +99,15 @@ void remove_half_written(const ImageOptions& o) {
   for (const fs::path& half : halves) fs::remove(half, failed);
 }
 
-std::vector<std::string> remove_kinds(const ImageOptions& o, const std::vector<std::string>& kinds) {
-  std::vector<std::string> removed;
-  for (const std::string& kind : kinds) {
-    const std::string path = o.imagename + "." + kind;
+void remove_left_over(const ImageOptions& o, const OwnFiles& own, std::vector<std::string>& removed) {
+  remove_other_images(o, own.images, removed);
+  const std::vector<std::string> made = own_names(o);
+  for (const std::string& name : all_names()) {
+    const std::string path = o.imagename + "." + name;
     std::error_code failed;  // a folder of that name stays
-    if (fs::remove(path, failed)) removed.push_back(path);
+    if (std::count(made.begin(), made.end(), name) == 0 && fs::remove(path, failed)) removed.push_back(path);
   }
-  return removed;
-}
-
-void remove_cube_states(const ImageOptions& o, int first, std::vector<std::string>& removed) {
-  std::error_code failed;
-  const fs::path folder = o.imagename + ".clean";
-  std::vector<fs::path> states;
-  for (const fs::directory_entry& entry : fs::directory_iterator(folder, failed)) states.push_back(entry.path());
-  for (const fs::path& state : states) {
-    const std::string name = state.filename();
-    int plane = -1;
-    std::from_chars(name.data(), name.data() + name.size(), plane);
-    if (state.extension() == ".state" && plane >= first && fs::remove(state, failed)) removed.push_back(state);
-  }
-  fs::remove(folder, failed);  // where nothing is left in it
-}
-
-void remove_left_over_of_cube(const ImageOptions& o, int planes, std::vector<std::string>& removed) {
-  std::vector<std::string> kinds{"dirty.png", "model.png", "uv.png", "alpha.png", "components.csv", "clean.state"};
-  kinds.emplace_back(o.niter > 0 ? "residual.png" : "image.png");
-  for (int code = 1; imager::is_stokes_code(code); ++code) {
-    const std::string stokes = imager::stokes_name(static_cast<imager::Stokes>(code));
-    for (const char* kind : {"dirty.", "model.", "residual.", "image."}) kinds.push_back(kind + stokes + ".png");
-    kinds.push_back("clean." + stokes + ".state");
-  }
-  for (const std::string& path : remove_kinds(o, kinds)) removed.push_back(path);
-  remove_cube_states(o, o.niter > 0 ? planes : 0, removed);
+  remove_cube_states(o, o.niter > 0 ? own.cube_channels : 0, removed);
 }
 
 }  // namespace misfit::tools

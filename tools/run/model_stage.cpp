@@ -8,6 +8,7 @@
 #include "ms_io/model_writer.h"
 #include "tools/base/text.h"
 #include "tools/formats/model_image.h"
+#include "tools/run/gridding_options.h"
 #include "tools/run/shared_prediction.h"
 
 namespace misfit::tools {

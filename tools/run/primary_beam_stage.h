@@ -13,6 +13,12 @@
 
 namespace misfit::tools {
 
+/// Declares --pbcor and --pblimit.
+void declare_primary_beam(CLI::App& command, ImageOptions& options);
+
+/// Throws as check(const ImageOptions&) does.
+void check_primary_beam(const ImageOptions& options);
+
 /// Whether a primary beam is wanted: with --pbcor or --pblimit.
 bool wants_primary_beam(const ImageOptions& options);
 
@@ -45,6 +51,9 @@ class PrimaryBeamStage {
   imager::TaylorBeam of_terms(const imager::TaylorExpansion& expansion) const;
   /// The beam of a plane of a cube: that at its frequency, with as much weight for each row where dishes differ.
   imager::Image at(double frequency_hz) const;
+
+  /// That of an image: whole_band() where samples were weighed, else at its frequency.
+  imager::Image of_image(double frequency_hz) const { return shares_.empty() ? at(frequency_hz) : whole_band(); }
 
   /// That the antennas see nothing of the image; else empty.
   std::string warning_of(const imager::Image& beam) const;

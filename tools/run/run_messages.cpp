@@ -64,7 +64,7 @@ std::string cycle_message(const imager::CleanState& state) {
          ", noise " + with_prefix(cycle.rms_jy, "Jy/beam", 3) + (state.now + 1 == state.cycles.size() ? "" : ": taken back");
 }
 
-std::string plane_message(const PlaneReport& plane, int planes) {
+std::string plane_message(const ChannelReport& plane, int planes) {
   std::string text = "  plane " + std::to_string(plane.channel) + " of " + std::to_string(planes) + ", " +
                      frequency_text(plane.frequency_hz, 9);
   for (const StokesReport& of : plane.stokes) {
@@ -83,7 +83,7 @@ std::string divergence_warning(const imager::CleanReport& report) {
 }
 
 std::string summary(const RunReport& r) {
-  const PlaneReport& plane = r.planes[r.shown];
+  const ChannelReport& plane = r.channels[r.shown];
   const std::string imaged = r.cube ? " samples imaged, as " + counted(r.plane_samples) + " in " +
                                           std::to_string(r.cube->channels) + " planes; at plane " +
                                           std::to_string(plane.channel) + ", the brightest: expected error "

@@ -12,9 +12,11 @@
 #include "tools/base/quantity.h"
 #include "tools/base/text.h"
 #include "tools/run/data_columns.h"
+#include "tools/run/gridding_options.h"
 #include "tools/run/memory_plan.h"
 #include "tools/run/outside_stage.h"
 #include "tools/run/primary_beam_stage.h"
+#include "tools/run/product_kinds.h"
 #include "tools/run/scale_forecast.h"
 #include "tools/run/sharing.h"
 #include "tools/run/taylor_options.h"
@@ -23,11 +25,18 @@
 namespace misfit::tools {
 namespace {
 
-/// Primary beams that a run writes, and images that are divided by them.
+/// Planes that a run writes of one channel, but for masks.
+int written_images(const ImageOptions& o, int stokes) {
+  ProductChoice choice = ProductChoice::of(o);
+  choice.masked = false;
+  return product_planes(choice, stokes);
+}
+
+/// Those among them that there are for the primary beam.
 int beam_images(const ImageOptions& o, int stokes) {
-  if (!wants_primary_beam(o)) return 0;
-  if (o.nterms > 1) return static_cast<int>(taylor_beam_products(o.nterms, o.niter > 0, o.pbcor).size());
-  return 1 + (o.pbcor ? stokes : 0);
+  ProductChoice choice = ProductChoice::of(o), without = choice;
+  without.primary_beam = without.corrected = false;
+  return product_planes(choice, stokes) - product_planes(without, stokes);
 }
 
 /// The decisions of a run, in the order in which they are made.
@@ -237,9 +246,7 @@ RunWork work_of(const RunScene& scene, const RunPlan& plan) {
           .ranks = (scene.planes > 1 ? scene.ranks : scene.set.ranks()).size(),
           .kept = plan.streaming.keep,
           .pixels = static_cast<double>(scene.geometry.pixels()),
-          .images = (o.nterms > 1 ? static_cast<int>(taylor_products(o.nterms, o.niter > 0).size())
-                                  : 1 + stokes * (o.niter > 0 ? 3 : 1)) +
-                    beam_images(o, stokes),
+          .images = written_images(o, stokes),
           .pictures = 2 + stokes * (o.niter > 0 ? 4 : 1) + (o.nterms > 1 && o.niter > 0 ? 1 : 0),
           .threads = scene.threads,
           .verified = static_cast<double>(o.verify),

@@ -47,7 +47,7 @@ json kernel_json(const imager::GriddingPlan* gridding) {
   return kernel;
 }
 
-json error_json(double asked, const PlaneReport& plane, const StokesReport& of) {
+json error_json(double asked, const ChannelReport& plane, const StokesReport& of) {
   json error = {{"requested", asked == 0 ? json() : json(asked)},
                 {"expected_rms", nullptr},
                 {"bound_rms", nullptr},
@@ -69,7 +69,7 @@ json error_json(double asked, const PlaneReport& plane, const StokesReport& of) 
 }
 
 /// What is not known is null.
-json noise_json(const PlaneReport& plane, const StokesReport& of) {
+json noise_json(const ChannelReport& plane, const StokesReport& of) {
   const auto known = [](double noise_jy) { return noise_jy > 0 ? number(noise_jy) : json(); };
   return {{"predicted_jy", known(plane.predicted_noise_jy)}, {"measured_jy", known(of.histogram.noise_jy)}};
 }
@@ -115,7 +115,7 @@ json clean_json(const std::optional<imager::CleanReport>& clean) {
   return report;
 }
 
-json stokes_json(double asked, const PlaneReport& plane) {
+json stokes_json(double asked, const ChannelReport& plane) {
   json list = json::array();
   for (const StokesReport& of : plane.stokes)
     list.push_back({{"stokes", imager::stokes_name(of.stokes)},
@@ -138,7 +138,7 @@ json spectral_json(const std::optional<imager::SpectralAxis>& axis) {
 
 json planes_json(const RunReport& r) {
   json list = json::array();
-  for (const PlaneReport& plane : r.planes) {
+  for (const ChannelReport& plane : r.channels) {
     const StokesReport& first = plane.stokes.front();
     const bool empty = plane.sums.used == 0;
     list.push_back({{"plane", plane.channel},
@@ -182,15 +182,25 @@ json expected_json(const std::vector<StageSeconds>& stages) {
 
 }  // namespace
 
+std::size_t brightest_channel(const std::vector<ChannelReport>& channels) {
+  const auto brightness = [](const ChannelReport& channel) {
+    return channel.sums.used == 0 ? -1 : std::abs(channel.stokes.front().brightest.value);
+  };
+  const auto found = std::max_element(channels.begin(), channels.end(), [&](const ChannelReport& a, const ChannelReport& b) {
+    return brightness(a) < brightness(b);
+  });
+  return static_cast<std::size_t>(found - channels.begin());
+}
+
 double largest_expected_error(const RunReport& r) {
   double largest = 0;
-  for (const PlaneReport& plane : r.planes)
+  for (const ChannelReport& plane : r.channels)
     for (const StokesReport& of : plane.stokes) largest = std::max(largest, of.theory ? of.theory->expected_rms : 0);
   return largest;
 }
 
 json report_json(const RunReport& r) {
-  const PlaneReport& plane = r.planes[r.shown];
+  const ChannelReport& plane = r.channels[r.shown];
   const StokesReport& first = plane.stokes.front();
   return {{"version", MISFIT_VERSION},
           {"command_line", r.command_line},

@@ -29,8 +29,8 @@ struct StokesReport {
   PixelHistogram histogram{};  ///< of the residual, or of the dirty image where nothing was cleaned
 };
 
-/// What it has to tell of one plane of frequency.
-struct PlaneReport {
+/// What it has to tell of one channel.
+struct ChannelReport {
   int channel = 0;
   double frequency_hz = 0;                  ///< its middle
   std::vector<StokesReport> stokes = {{}};  ///< at least one
@@ -50,9 +50,9 @@ struct RunReport {
   std::vector<std::string> warnings;
   double accuracy = 0;  ///< 0 = none was asked
   const imager::GriddingPlan* gridding = nullptr;
-  std::vector<PlaneReport> planes = {{}};      ///< at least one
-  std::size_t shown = 0;                       ///< the plane that is drawn, and told of where one is
-  std::optional<imager::SpectralAxis> cube{};  ///< null where there is one plane, of the whole band
+  std::vector<ChannelReport> channels = {{}};  ///< at least one
+  std::size_t shown = 0;                       ///< the channel that is drawn, and told of where one is
+  std::optional<imager::SpectralAxis> cube{};  ///< null where there is one channel, of the whole band
   std::uint64_t plane_samples = 0;             ///< in them, which interpolation makes of those used
   std::uint64_t outside_planes = 0;            ///< usable samples that lie in none of them
   imager::SampleCounts counts;
@@ -63,7 +63,10 @@ struct RunReport {
   std::vector<StageSeconds> expected;  ///< the same as they were expected, for the cycles and components that there were
 };
 
-/// Of all planes and Stokes parameters, over each image's RMS.
+/// The index of the one with the brightest pixel of the first Stokes parameter; 0 where none has samples.
+std::size_t brightest_channel(const std::vector<ChannelReport>& channels);
+
+/// Of all channels and Stokes parameters, over each image's RMS.
 double largest_expected_error(const RunReport& report);
 
 /// report.json, with the keys of the project's design; `noise` {predicted_jy, measured_jy}, `beam.how`, `beam.misfit`,

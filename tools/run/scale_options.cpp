@@ -14,11 +14,16 @@ constexpr int most_nodes = 1 << 20;
 }  // namespace
 
 void declare(CLI::App& command, ScaleOptions& o) {
-  command.add_option("--nodes", o.nodes,
-                     "With --dry-run: print how long up to so many machines like this one would take, each with --threads and "
-                     "--memory, and where more of them do not help");
-  command.add_option("--visibilities", o.visibilities, "With --nodes: as if the data had so many samples, such as 1e12");
-  command.add_option("--network", o.network_gb_s, "With --nodes: GB/s between machines; 12.5, a network of 100 Gbit/s, when 0");
+  mark(command.add_option(
+           "--nodes", o.nodes,
+           "With --dry-run: print how long up to so many machines like this one would take, each with --threads and "
+           "--memory, and where more of them do not help"),
+       OptionMark::free_of_state);
+  mark(command.add_option("--visibilities", o.visibilities, "With --nodes: as if the data had so many samples, such as 1e12"),
+       OptionMark::free_of_state);
+  mark(command.add_option("--network", o.network_gb_s,
+                          "With --nodes: GB/s between machines; 12.5, a network of 100 Gbit/s, when 0"),
+       OptionMark::free_of_state);
 }
 
 void check(const ScaleOptions& o, bool dry_run) {

@@ -20,10 +20,6 @@ bool is_frequency(const std::string& text) {
   }
 }
 
-void add_terms(const std::string& kind, int count, std::vector<std::string>& names, const std::string& end = "") {
-  for (int t = 0; t < count; ++t) names.push_back(kind + ".tt" + std::to_string(t) + end);
-}
-
 }  // namespace
 
 void declare_taylor(CLI::App& command, ImageOptions& o) {
@@ -45,6 +41,7 @@ void check_taylor(const ImageOptions& o) {
   if (o.nterms == 1 && !o.reffreq.empty()) refuse_option("reffreq", o.reffreq, "--nterms 2 or 3 beside it");
   if (!o.reffreq.empty() && !is_frequency(o.reffreq))
     refuse_option("reffreq", o.reffreq, "a frequency above 0, such as 1.4GHz");
+  if (o.nterms > 1 && o.cube.is_cube()) refuse_option("nterms", std::to_string(o.nterms), "1 with --specmode cube");
   if (o.nterms > 1 && imager::parse_stokes(o.stokes).size() > 1)
     refuse_option("nterms", std::to_string(o.nterms), "--stokes of one parameter beside it, not " + o.stokes);
 }
@@ -63,30 +60,6 @@ void check_taylor_band(const ImageOptions& o, const std::vector<ms_io::SpectralW
 
 imager::TaylorExpansion taylor_expansion(const ImageOptions& o, const imager::Observation& observation) {
   return {o.reffreq.empty() ? observation.frequency_hz : parse_frequency_hz(o.reffreq), o.nterms};
-}
-
-std::vector<std::string> taylor_products(int terms, bool cleaned) {
-  std::vector<std::string> names;
-  if (terms == 1) return names;
-  add_terms("psf", 2 * terms - 1, names);
-  add_terms("residual", terms, names);
-  if (!cleaned) return names;
-  add_terms("model", terms, names);
-  add_terms("image", terms, names);
-  names.insert(names.end(), {"alpha", "alpha.error"});
-  if (terms > 2) names.emplace_back("beta");
-  return names;
-}
-
-std::vector<std::string> taylor_beam_products(int terms, bool cleaned, bool corrected) {
-  std::vector<std::string> names;
-  if (terms == 1) return names;
-  add_terms("pb", terms, names);
-  if (!corrected) return names;
-  add_terms("image", terms, names, ".pbcor");
-  if (cleaned) names.emplace_back("alpha.pbcor");
-  if (cleaned && terms > 2) names.emplace_back("beta.pbcor");
-  return names;
 }
 
 }  // namespace misfit::tools

@@ -22,11 +22,4 @@ void check_taylor_band(const ImageOptions& options, const std::vector<ms_io::Spe
 /// About --reffreq, or the middle of the band imaged, where each sample counts alike: as tclean has it.
 imager::TaylorExpansion taylor_expansion(const ImageOptions& options, const imager::Observation& observation);
 
-/// The names of images between <imagename> and .fits that runs of several Taylor terms write, as tclean's: psf.tt0, alpha, …
-/// Those of a run of one term are none.
-std::vector<std::string> taylor_products(int terms, bool cleaned);
-
-/// The same of what --pblimit and --pbcor write besides: the beam's terms, and where images are `corrected` those of the sky.
-std::vector<std::string> taylor_beam_products(int terms, bool cleaned, bool corrected);
-
 }  // namespace misfit::tools

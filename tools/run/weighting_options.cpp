@@ -85,6 +85,8 @@ void check_weighting(const ImageOptions& o) {
     refuse_option("npixels", std::to_string(o.npixels), "2 to " + std::to_string(most) + " cells, or 0 (6)");
   if (!superuniform && o.npixels != 0)
     refuse_option("npixels", std::to_string(o.npixels), "--weighting superuniform beside it");
+  if (o.cube.is_cube() && !o.cube.perchanweightdensity && o.weighting == "natural")
+    refuse_option("perchanweightdensity", "false", "weights by density beside it, such as --weighting briggs");
   if (o.uvtaper.empty()) return;
   try {
     parse_taper(o.uvtaper);

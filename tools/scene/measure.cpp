@@ -9,6 +9,7 @@
 #include "imager/numerics/parallel.h"
 #include "imager/numerics/stage_times.h"
 #include "ms_io/measurement_set.h"
+#include "tools/run/gridding_options.h"
 #include "tools/run/set_notes.h"
 #include "tools/run/weighting_options.h"
 

@@ -9,6 +9,7 @@
 #include "ms_io/measurement_set.h"
 #include "tools/base/memory.h"
 #include "tools/base/numbers.h"
+#include "tools/run/gridding_options.h"
 #include "tools/run/weighting_options.h"
 
 namespace misfit::tools {

@@ -1,9 +1,9 @@
-#include "tools/run/cube_batches.h"
+#include "tools/run/channel_batches.h"
 
 #include <algorithm>
 #include <boost/test/unit_test.hpp>
 
-BOOST_AUTO_TEST_SUITE(cube_batches)
+BOOST_AUTO_TEST_SUITE(channel_batches)
 
 namespace {
 
@@ -16,7 +16,7 @@ BOOST_AUTO_TEST_CASE(batches_hold_every_plane_once_no_more_than_there_is_room_fo
     for (const int workers : {1, 2, 3, 16})
       for (const int held : {1, 2, 5, 22, 1000}) {
         if (workers > planes || held < workers) continue;
-        tools::CubeBatches batches;
+        tools::ChannelBatches batches;
         batches.planes = std::min(held, planes);
         batches.workers.count = workers;
         BOOST_TEST((tools::batches_of(planes, batches).size() == 1) == (held >= planes));

@@ -13,16 +13,16 @@ namespace misfit::tools {
 int samples_of_a_row(const imager::CubeSampling& sampling, const std::vector<ms_io::SpectralWindow>& windows);
 
 /// How planes share the threads of a run.
-struct PlaneWorkers {
+struct ChannelWorkers {
   int count = 1;    ///< planes that are made at a time
   int threads = 1;  ///< for each of them
 };
 
 /// How a cube's planes come to their visibilities, and are made.
-struct CubeBatches {
+struct ChannelBatches {
   int planes = 1;           ///< whose visibilities are gathered in one pass and held
   bool read_again = false;  ///< there is no room for those of one: it reads the set in every pass of its own
-  PlaneWorkers workers;
+  ChannelWorkers workers;
   imager::MemoryUse memory;  ///< at the peak
   imager::Decision decision;
 };
@@ -33,9 +33,9 @@ struct CubeBatches {
 /// together, one for each worker at least, and fit in that memory too; of several ranks, which take batches in turns, no more
 /// than that each has some turns, and all hold as many as the one with the least room. Called by all ranks. Throws
 /// std::invalid_argument that says how much memory is needed where --memory is less.
-CubeBatches plan_batches(const RunScene& scene, const RunPlan& plan);
+ChannelBatches plan_batches(const RunScene& scene, const RunPlan& plan);
 
 /// The planes in batches of nearly the same size, whole numbers of planes for each worker but for the last.
-std::vector<imager::PlaneRange> batches_of(int planes, const CubeBatches& batches);
+std::vector<imager::PlaneRange> batches_of(int planes, const ChannelBatches& batches);
 
 }  // namespace misfit::tools

@@ -1,4 +1,4 @@
-#include "tools/run/cube_batches.h"
+#include "tools/run/channel_batches.h"
 
 #include <algorithm>
 #include <cmath>
@@ -50,7 +50,7 @@ int planes_dealt_out(const RunScene& scene) {
 }
 
 /// All ranks hold what each has room for.
-void agree(CubeBatches& batches, const imager::Ranks& ranks) {
+void agree(ChannelBatches& batches, const imager::Ranks& ranks) {
   batches.planes = -static_cast<int>(imager::largest_of(ranks, -batches.planes));
   batches.read_again = imager::any_of(ranks, batches.read_again);
 }
@@ -60,7 +60,7 @@ imager::MemoryUse peak_of(const imager::MemoryUse& one, const imager::MemoryUse&
   return one.total() < other.total() ? other : one;
 }
 
-imager::Decision decision_on(const CubeBatches& batches, const RunScene& scene, double plane_bytes) {
+imager::Decision decision_on(const ChannelBatches& batches, const RunScene& scene, double plane_bytes) {
   const auto held = std::to_string(batches.planes) + (batches.planes == 1 ? " is" : " are") + " held";
   const int at_once = batches.workers.count;
   const auto passes = batches_of(scene.planes, batches).size();
@@ -84,7 +84,7 @@ int samples_of_a_row(const imager::CubeSampling& sampling, const std::vector<ms_
   return static_cast<int>(most);
 }
 
-CubeBatches plan_batches(const RunScene& scene, const RunPlan& plan) {
+ChannelBatches plan_batches(const RunScene& scene, const RunPlan& plan) {
   constexpr double enough_bytes = gib / 2;  // each pass over the set reads little more than its planes' channels
   const double wanted = scene.options.memory_gib > 0 ? scene.options.memory_gib * gib : memory_of_a_process(scene.ranks) / 2;
   const double rows = static_cast<double>(scene.set.rows());
@@ -96,7 +96,7 @@ CubeBatches plan_batches(const RunScene& scene, const RunPlan& plan) {
                    {"planes are gathered", plan.memory.process, waiting, flight, 0, 0, 0});
   };
   const auto room = [&](int workers) { return wanted - memory(0, workers).total(); };
-  CubeBatches batches;
+  ChannelBatches batches;
   batches.read_again = !plan.streaming.keep || room(1) < plane;
   int& workers = batches.workers.count;
   if (!batches.read_again)
@@ -120,7 +120,7 @@ CubeBatches plan_batches(const RunScene& scene, const RunPlan& plan) {
   return batches;
 }
 
-std::vector<imager::PlaneRange> batches_of(int planes, const CubeBatches& batches) {
+std::vector<imager::PlaneRange> batches_of(int planes, const ChannelBatches& batches) {
   if (batches.planes >= planes) return {{0, planes}};
   const int at_once = batches.workers.count, most = batches.planes / at_once;
   const int rounds = (planes + at_once - 1) / at_once, count = (rounds + most - 1) / most;

@@ -1,4 +1,4 @@
-#include "tools/run/plane_messages.h"
+#include "tools/run/channel_messages.h"
 
 #include <cereal/types/optional.hpp>
 #include <cereal/types/string.hpp>
@@ -102,40 +102,41 @@ void serialize(Archive& archive, BeamChoice& beams) {
 }
 
 template <typename Archive>
-void serialize(Archive& archive, PlaneReport& report) {
+void serialize(Archive& archive, ChannelReport& report) {
   archive(report.channel, report.frequency_hz, report.stokes, report.measured_predict_rms, report.sums,
           report.predicted_noise_jy, report.beams, report.decisions, report.made_twice);
 }
 
 template <typename Archive>
-void serialize(Archive& archive, CubePlane& plane) {
-  archive(plane.report, plane.outside_grid, plane.components, plane.major_cycles, plane.warnings, plane.doubts, plane.times);
+void serialize(Archive& archive, MadeChannel& channel) {
+  archive(channel.report, channel.outside_grid, channel.components, channel.major_cycles, channel.warnings, channel.doubts,
+          channel.times);
 }
 
 template <typename Archive>
-void serialize(Archive& archive, PlaneMessage& message) {
-  archive(message.kind, message.file, message.at, message.image, message.beam, message.plane);
+void serialize(Archive& archive, ChannelMessage& message) {
+  archive(message.kind, message.image_kind, message.at, message.image, message.beam, message.channel);
 }
 
 template <typename Archive>
-void serialize(Archive& archive, PlaneAnswer& answer) {
-  archive(answer.stop, answer.planes);
+void serialize(Archive& archive, ChannelAnswer& answer) {
+  archive(answer.stop, answer.channels);
 }
 
-std::string bytes_of(const PlaneMessage& message) {
+std::string bytes_of(const ChannelMessage& message) {
   return packed(message);
 }
 
-PlaneMessage plane_message(std::string bytes) {
-  return unpacked<PlaneMessage>(std::move(bytes));
+ChannelMessage channel_message(std::string bytes) {
+  return unpacked<ChannelMessage>(std::move(bytes));
 }
 
-std::string bytes_of(const PlaneAnswer& answer) {
+std::string bytes_of(const ChannelAnswer& answer) {
   return packed(answer);
 }
 
-PlaneAnswer plane_answer(std::string bytes) {
-  return unpacked<PlaneAnswer>(std::move(bytes));
+ChannelAnswer channel_answer(std::string bytes) {
+  return unpacked<ChannelAnswer>(std::move(bytes));
 }
 
 }  // namespace misfit::tools

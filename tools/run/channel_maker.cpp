@@ -1,0 +1,55 @@
+#include "tools/run/channel_maker.h"
+
+#include <stdexcept>
+#include <utility>
+
+namespace misfit::tools {
+
+ChannelMaker::ChannelMaker(const ChannelScene& scene, ChannelMeans means, std::unique_ptr<CleanStage> clean)
+    : scene_(scene), means_(std::move(means)) {
+  if (!clean) return;
+  cleans_.give_back(std::move(clean));
+  for (int i = 1; i < means_.workers.count; ++i)
+    cleans_.give_back(std::make_unique<CleanStage>(scene_.options, scene_.header, scene_.threads));
+}
+
+std::unique_ptr<ChannelRun> ChannelMaker::image(int channel, std::unique_ptr<ChannelSamples> samples) {
+  auto run = std::make_unique<ChannelRun>(scene_, channel, std::move(samples));
+  if (!run->has_samples()) return run;
+  try {
+    if (common_weights_)
+      run->weigh(common_weights_);
+    else
+      run->weigh();
+    run->make_dirty(means_.plan, means_.transform);
+  } catch (const imager::NothingInGrid& nothing) {
+    if (scene_.told != nullptr) throw;
+    run->made().outside_grid = nothing.outside_grid;
+  } catch (const imager::NothingUsable&) {
+    if (scene_.told != nullptr) throw;
+  }
+  return run;
+}
+
+void ChannelMaker::prepare_clean(ChannelRun& run) {
+  if (run.made().empty()) return;
+  run.make_terms();
+  run.verify();
+  if (means_.primary_beam != nullptr && scene_.told != nullptr) {
+    const imager::StageTimer timer(run.times(), "primary beam");
+    means_.primary_beam->weigh(run.samples());
+  }
+  if (!means_.images_here) return;
+  run.choose_beams();
+  if (scene_.options.niter > 0 && run.report().beams->restoring)
+    run.begin_clean(
+        cleans_.take([]() -> std::unique_ptr<CleanStage> { throw std::logic_error("more channels at a time than workers"); }));
+}
+
+void ChannelMaker::clean(ChannelRun& run) {
+  if (scene_.options.niter == 0) return;
+  if (!means_.images_here) return run.follow_clean();
+  if (run.may_clean()) cleans_.give_back(run.clean());
+}
+
+}  // namespace misfit::tools

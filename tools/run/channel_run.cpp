@@ -1,0 +1,197 @@
+#include "tools/run/channel_run.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "imager/clean/shared_model.h"
+#include "imager/direct/verify.h"
+#include "tools/base/interrupt.h"
+#include "tools/run/beam_choice.h"
+#include "tools/run/image_files.h"
+#include "tools/run/run_messages.h"
+#include "tools/run/taylor_options.h"
+#include "tools/run/weighting_options.h"
+
+namespace misfit::tools {
+
+bool MadeChannel::stopped() const {
+  return std::any_of(report.stokes.begin(), report.stokes.end(),
+                     [](const StokesReport& stokes) { return stokes.clean && stokes.clean->stop == imager::CleanStop::user; });
+}
+
+ChannelRun::ChannelRun(const ChannelScene& scene, int channel, std::unique_ptr<ChannelSamples> samples)
+    : scene_(scene),
+      samples_(std::move(samples)),
+      name_(scene.told != nullptr ? "" : " of plane " + std::to_string(channel)),
+      silent_(true) {
+  report().channel = channel;
+  report().frequency_hz = scene.header.spectral.frequency_hz(channel);
+  report().stokes.clear();
+  for (const imager::Stokes stokes : scene.header.stokes) report().stokes.push_back({.stokes = stokes});
+}
+
+imager::Context ChannelRun::context() {
+  const auto update = [this](std::uint64_t done, std::uint64_t total) {
+    if (scene_.given_up) throw Interrupted();
+    progress().update(done, total);
+  };
+  return {scene_.threads, &times(), update};
+}
+
+imager::StageTimes& ChannelRun::times() {
+  return scene_.told != nullptr ? scene_.told->times : made_.times;
+}
+
+ProgressLine& ChannelRun::progress() {
+  return scene_.told != nullptr ? scene_.told->progress : silent_;
+}
+
+void ChannelRun::warn(const std::string& sentence) {
+  if (scene_.told != nullptr)
+    scene_.told->warn(sentence);
+  else
+    made_.warnings.push_back(sentence);
+}
+
+void ChannelRun::weigh() {
+  const imager::WeightingOptions options = weighting_options(scene_.options);
+  if (options.none()) return;
+  progress().begin("weights" + name_);
+  weigh(imager::make_imaging_weights(samples(), options, scene_.header.geometry, context()));
+  progress().end();
+}
+
+void ChannelRun::weigh(std::shared_ptr<const imager::ImagingWeights> weights) {
+  const imager::StageTimer timer(times(), "weights");
+  weights_ = std::move(weights);
+  samples().apply(weights_, scene_.threads);
+}
+
+void ChannelRun::make_dirty(imager::GriddingPlan plan, std::shared_ptr<const imager::PlannedTransform> transform) {
+  progress().begin("dirty image and PSF" + name_);
+  images_ = imager::make_accurate_images(samples(), std::move(plan), context(), std::move(transform));
+  progress().end();
+  report().sums = images_.images.sums.front();
+  made_.outside_grid = report().sums.outside_grid;
+  report().made_twice = images_.plan.request.accuracy != scene_.options.accuracy;  // a second pass asks for more
+  predict_noise();
+  const imager::StageTimer timer(times(), "statistics");
+  const imager::NeglectedPhase phase = imager::neglected_w_phase(scene_.reach, samples().w_spread(), scene_.header.geometry);
+  double expected = 0;
+  for (std::size_t s = 0; s < scene_.header.stokes.size(); ++s) {
+    const double rms = images_.images.dirty_statistics[s].root_mean_square();
+    report().stokes[s].theory = imager::theoretical_error(images_.plan, images_.images.sums[s], rms, phase);
+    expected = std::max(expected, report().stokes[s].theory->expected_rms);
+  }
+  if (!images_.promise_kept) warn(accuracy_warning(scene_.options.accuracy, std::max(images_.judged_error, expected)) + name_);
+}
+
+void ChannelRun::predict_noise() {
+  const imager::WeightSums sums = weights_ ? samples().weight_sums() : imager::WeightSums::of_natural(report().sums.weight);
+  const std::string& taper = scene_.options.uvtaper;
+  if (weights_ && !taper.empty() && !sums.outweigh_least(report().sums.used))
+    throw std::runtime_error("--uvtaper " + taper +
+                             ": no sample keeps a weight that counts; expected a taper of larger radius in the "
+                             "uv plane, or a smaller angle");
+  report().predicted_noise_jy = sums.noise_jy();
+  if (weights_) report().decisions.push_back(weights_decision(*weights_, sums));
+  weights_.reset();
+}
+
+void ChannelRun::make_terms() {
+  if (scene_.options.nterms == 1) return;
+  taylor_.emplace(taylor_expansion(scene_.options, scene_.header.observation), scene_.threads);
+  progress().begin("Taylor terms" + name_);
+  taylor_->make_images(samples(), images_, context());
+  progress().end();
+}
+
+void ChannelRun::verify() {
+  if (scene_.options.verify == 0) return;
+  const imager::StageTimer timer(times(), "verify");
+  progress().begin("verify" + name_);
+  const imager::MeasuredError measured = imager::measure_error(samples(), images_.transform->images(), scene_.header.geometry,
+                                                               images_.images, scene_.options.verify, context());
+  progress().end();
+  for (std::size_t s = 0; s < scene_.header.stokes.size(); ++s) report().stokes[s].measured = measured.image[s];
+  report().measured_predict_rms = measured.predict_rms;
+}
+
+void ChannelRun::choose_beams() {
+  const imager::StageTimer timer(times(), "fit beam");
+  const ImageOptions& o = scene_.options;
+  report().beams =
+      choose_beam(images_.images.psf, scene_.header.geometry.cell_rad, restoring_beam(o), o.niter > 0 && !o.cube.is_cube());
+  const std::string plane = name_.empty() ? "" : name_.substr(std::string(" of ").size()) + ": ";
+  for (const std::string& warning : report().beams->warnings) warn(plane + warning);
+}
+
+void ChannelRun::begin_clean(std::unique_ptr<CleanStage> stage) {
+  stage_ = std::move(stage);
+  {
+    const std::lock_guard lock(image_files_mutex());
+    stage_->begin_channel(report().channel);
+  }
+  if (scene_.told == nullptr) made_.doubts = stage_->warnings();  // else they were told before
+}
+
+std::unique_ptr<CleanStage> ChannelRun::clean() {
+  const std::vector<imager::Stokes>& stokes = scene_.header.stokes;
+  for (std::size_t s = 0; s < stokes.size(); ++s) {
+    const std::string of = stokes.size() > 1 ? " of " + stokes_name(stokes[s]) + name_ : name_;
+    progress().begin("CLEAN" + of, true);
+    iterations_.reset();
+    cleaned().push_back(clean(s));
+    progress().end();
+    const imager::CleanReport& report = cleaned().back().report;
+    this->report().stokes[s].clean = report;
+    if (report.stop == imager::CleanStop::diverging || report.stop == imager::CleanStop::diverging_from_best)
+      warn(divergence_warning(report) + of);
+  }
+  return std::move(stage_);
+}
+
+void ChannelRun::follow_clean() {
+  progress().begin("CLEAN" + name_, true);  // rank 0 decides when it stops
+  const imager::TaylorExpansion expansion = taylor_ ? taylor_->expansion() : imager::TaylorExpansion{};
+  for (std::size_t s = 0; s < scene_.header.stokes.size(); ++s)
+    imager::follow_clean({samples(), s}, *images_.transform, expansion, context());
+}
+
+/// Told of the state with which CLEAN begins, which may be that of a run before, and after every major cycle.
+void ChannelRun::count_cycle(const imager::CleanState& state) {
+  const int iterations = state.cycles.back().iterations;
+  if (iterations_) {
+    ++made_.major_cycles;
+    made_.components += iterations - *iterations_;
+  }
+  iterations_ = iterations;
+  if (scene_.told != nullptr && state.cycles.size() > 1) progress().say("  " + cycle_message(state));
+}
+
+imager::CleanResult ChannelRun::clean(std::size_t stokes) {
+  CleanScene clean{.samples = {samples(), stokes},
+                   .transform = *images_.transform,
+                   .expansion = {},
+                   .dirty = {&images_.images.dirty[stokes]},
+                   .psf = {&images_.images.psf},
+                   .main_lobe = *report().beams->main_lobe,
+                   .expected_error = report().stokes[stokes].theory->expected_rms};
+  if (taylor_) {
+    clean.expansion = taylor_->expansion();
+    for (const imager::Image& dirty : taylor_->images().dirty) clean.dirty.push_back(&dirty);
+    clean.psf = taylor_->psf();
+  }
+  const auto cycle = [this](const imager::CleanState& state) { count_cycle(state); };
+  imager::CleanResult result = stage_->run(clean, scene_.option_values, cycle, context());
+  images_.images.dirty[stokes] = {};
+  if (const imager::Image* const mask = stage_->mask(stokes); mask != nullptr) result.mask = *mask;
+  return result;
+}
+
+void ChannelRun::release_samples() {
+  samples_.reset();
+  images_.transform.reset();
+}
+
+}  // namespace misfit::tools

@@ -1,0 +1,121 @@
+#pragma once
+
+#include <atomic>
+#include <functional>
+#include <memory>
+#include <nlohmann/json_fwd.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "imager/data/extent.h"
+#include "imager/plan/accurate_imaging.h"
+#include "tools/base/progress.h"
+#include "tools/run/channel_visibilities.h"
+#include "tools/run/clean_stage.h"
+#include "tools/run/image_options.h"
+#include "tools/run/run_report.h"
+#include "tools/run/taylor_stage.h"
+
+namespace misfit::tools {
+
+/// What a run says and times while it makes its one channel. Of several channels each keeps that for itself, and the run tells
+/// of one after the other.
+struct ToldAsItGoes {
+  ProgressLine& progress;
+  imager::StageTimes& times;
+  std::function<void(const std::string& sentence)> warn;
+};
+
+/// What the channels of a run share. References must outlive who has it.
+struct ChannelScene {
+  const ImageOptions& options;
+  const nlohmann::json& option_values;  ///< that a state of CLEAN belongs to
+  const imager::ImageHeader& header;
+  imager::UvwReach reach;
+  int threads = 1;                     ///< for each channel
+  const std::atomic<bool>& given_up;   ///< whether channels are of no use any more: their work then ends in Interrupted
+  const ToldAsItGoes* told = nullptr;  ///< null where there may be several channels
+};
+
+/// What came of a channel, for the run that puts channels together.
+struct MadeChannel {
+  ChannelReport report;
+  std::uint64_t outside_grid = 0;              ///< samples
+  double components = 0;                       ///< of CLEAN, of this run
+  double major_cycles = 0;                     ///< that predicted and subtracted
+  std::vector<std::string> warnings;           ///< in their order
+  std::vector<std::string> doubts;             ///< what may be so of several channels, in the same words
+  imager::StageTimes times;                    ///< none where it told as it went
+  std::vector<imager::CleanResult> cleaned{};  ///< [Stokes], where --savemodel needs them; not sent to other ranks
+
+  bool empty() const { return report.sums.used == 0; }
+  /// Whether the user ended its CLEAN.
+  bool stopped() const;
+};
+
+/// What is done for one channel, of all Stokes parameters: weights, dirty images and PSF, their errors, beam, CLEAN. The steps
+/// are called in the order in which they stand here, and tell in report() what came of them. Stages timed: "weights",
+/// "statistics", "verify", "fit beam", and those of the imager's functions.
+class ChannelRun {
+ public:
+  /// `scene` is kept by reference. Without samples, null, it has nothing but its number and frequency.
+  ChannelRun(const ChannelScene& scene, int channel, std::unique_ptr<ChannelSamples> samples);
+
+  /// A pass over the samples where their weights follow from their density.
+  void weigh();
+  /// The same with weights made before.
+  void weigh(std::shared_ptr<const imager::ImagingWeights> weights);
+  /// By `transform`, if it is given, which is that of `plan`.
+  void make_dirty(imager::GriddingPlan plan, std::shared_ptr<const imager::PlannedTransform> transform);
+  /// Those of further Taylor terms, which CLEAN then has too.
+  void make_terms();
+  void verify();
+  /// For rank 0, which has the PSF.
+  void choose_beams();
+  /// Makes the parts of residuals that this rank's samples give, while rank 0 is in clean().
+  void follow_clean();
+  /// Gets CLEAN of this channel ready.
+  void begin_clean(std::unique_ptr<CleanStage> stage);
+  bool may_clean() const { return stage_ != nullptr; }
+  /// One Stokes parameter after the other. Returns the stage, which may serve another channel.
+  std::unique_ptr<CleanStage> clean();
+  /// Frees the samples, and what transforms them.
+  void release_samples();
+
+  imager::Context context();
+  imager::StageTimes& times();
+  ProgressLine& progress();
+  void warn(const std::string& sentence);
+
+  bool has_samples() const { return samples_ != nullptr; }
+  imager::StreamedVisibilities& samples() { return samples_->stream(); }
+  const ImageOptions& options() const { return scene_.options; }
+  const imager::ImageHeader& header() const { return scene_.header; }
+  int threads() const { return scene_.threads; }
+  ChannelReport& report() { return made_.report; }
+  imager::AccurateImages& images() { return images_; }
+  std::vector<imager::CleanResult>& cleaned() { return made_.cleaned; }  ///< [Stokes], or none
+  /// Null where CLEAN may go everywhere, makes its own, or is over.
+  const imager::Image* mask(std::size_t stokes) const { return stage_ ? stage_->mask(stokes) : nullptr; }
+  TaylorStage* taylor() { return taylor_ ? &*taylor_ : nullptr; }  ///< null where there is one term
+  MadeChannel& made() { return made_; }
+
+ private:
+  void predict_noise();
+  void count_cycle(const imager::CleanState& state);
+  imager::CleanResult clean(std::size_t stokes);
+
+  const ChannelScene& scene_;
+  std::unique_ptr<ChannelSamples> samples_;
+  std::string name_;     ///< that follows what messages speak of: " of plane 12"; empty where there is one
+  ProgressLine silent_;  ///< of several channels, whose stages would fill the screen
+  std::shared_ptr<const imager::ImagingWeights> weights_;  ///< until the noise is predicted; null where they are the data's
+  imager::AccurateImages images_;
+  std::optional<TaylorStage> taylor_;  ///< none where there is one term
+  std::unique_ptr<CleanStage> stage_;  ///< from begin_clean() to clean()
+  std::optional<int> iterations_;      ///< of the Stokes parameter in CLEAN, so far
+  MadeChannel made_;
+};
+
+}  // namespace misfit::tools

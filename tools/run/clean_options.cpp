@@ -1,0 +1,156 @@
+#include "tools/run/clean_options.h"
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <limits>
+
+#include "imager/data/stokes.h"
+#include "tools/base/option_checks.h"
+#include "tools/base/quantity.h"
+#include "tools/run/beam_choice.h"
+#include "tools/run/model_stage.h"
+#include "tools/run/taylor_options.h"
+
+namespace misfit::tools {
+namespace {
+
+/// In pixels; the largest that there can be where none is given.
+int smallest_side(const ImageOptions& o) {
+  return o.imsize.empty() ? std::numeric_limits<int>::max() : *std::min_element(o.imsize.begin(), o.imsize.end());
+}
+
+void check_deconvolver(const ImageOptions& o) {
+  const bool multiscale = o.deconvolver == "multiscale";
+  const std::string scales = o.scales.empty() ? "" : typed(o.scales.front()) + " …";
+  if (!multiscale && !o.scales.empty()) refuse_option("scales", scales, "--deconvolver multiscale beside it");
+  if (!multiscale && o.smallscalebias != 0)
+    refuse_option("smallscalebias", typed(o.smallscalebias), "--deconvolver multiscale beside it");
+  if (multiscale && o.scales.empty()) refuse_option("deconvolver", o.deconvolver, "--scales beside it, such as 0,5,15");
+  for (std::size_t i = 0; i < o.scales.size(); ++i)
+    if (!(o.scales[i] >= 0 && o.scales[i] <= smallest_side(o)) || (i > 0 && !(o.scales[i] > o.scales[i - 1])) ||
+        (o.scales[i] > 0 && o.scales[i] < 3))
+      refuse_option("scales", typed(o.scales[i]), "pixels in ascending order, each 0 or from 3 to the image's size");
+  if (!(o.smallscalebias >= 0 && o.smallscalebias < 1))
+    refuse_option("smallscalebias", typed(o.smallscalebias), "0 or more, and below 1");
+}
+
+void check_auto_mask(const ImageOptions& o) {
+  if (o.usemask == "auto" && o.niter == 0) refuse_option("usemask", o.usemask, "--niter above 0 beside it");
+  if (o.usemask == "auto" && !o.mask.empty()) refuse_option("mask", o.mask, "--usemask user, or no mask");
+  if (!(o.sidelobethreshold >= 0)) refuse_option("sidelobethreshold", typed(o.sidelobethreshold), "0 or more");
+  if (!(o.noisethreshold > 0)) refuse_option("noisethreshold", typed(o.noisethreshold), "more than 0");
+  if (!(o.lownoisethreshold > 0 && o.lownoisethreshold <= o.noisethreshold))
+    refuse_option("lownoisethreshold", typed(o.lownoisethreshold), "more than 0 and at most noisethreshold");
+  if (!(o.minbeamfrac >= 0)) refuse_option("minbeamfrac", typed(o.minbeamfrac), "0 or more");
+  if (o.growiterations < 0) refuse_option("growiterations", std::to_string(o.growiterations), "0 or more");
+}
+
+}  // namespace
+
+void declare_clean(CLI::App& command, ImageOptions& o) {
+  command.add_option("--deconvolver", o.deconvolver, "How components are found: hogbom, clark or multiscale")
+      ->check(CLI::IsMember(imager::deconvolver_names()));
+  command
+      .add_option("--scales", o.scales,
+                  "Of multiscale, in pixels: 0,5,15. As wide at half maximum as tclean's, 0.74 of the number; 0 = points")
+      ->delimiter(',');
+  command.add_option("--smallscalebias", o.smallscalebias, "The largest scale counts this part less than points");
+  declare_taylor(command, o);
+  mark(command.add_option("--niter", o.niter, "CLEAN components to find at most; 0 makes the dirty image"),
+       OptionMark::free_of_state);
+  command.add_option("--gain", o.gain, "Part of a peak that a component takes");
+  mark(command
+           .add_option("--threshold", o.threshold,
+                       "Stop when the peak residual reaches this flux density, to 1%; in Jy without a unit")
+           ->check(quantity(parse_flux_jy)),
+       OptionMark::free_of_state);
+  mark(command.add_option("--nsigma", o.nsigma, "Stop when it reaches this many times the noise; 0 = never"),
+       OptionMark::free_of_state);
+  command.add_option("--cyclefactor", o.cyclefactor, "Minor cycles go down to the peak times the largest sidelobe times this");
+  command.add_option("--minpsffraction", o.minpsffraction, "… at most this deep, as a part of the peak");
+  command.add_option("--maxpsffraction", o.maxpsffraction, "… and at least this deep");
+  command.add_option("--cycleniter", o.cycleniter, "Components that a minor cycle finds at most; -1 = no limit");
+  mark(command.add_option("--nmajor", o.nmajor, "Major cycles at most; -1 = no limit"), OptionMark::free_of_state);
+  declare_restoring_beam(command, o);
+  command
+      .add_option(
+          "--mask", o.mask,
+          "Where CLEAN finds components: a FITS or CASA image, not 0 there, wherever its coordinates have it, or a "
+          "region file of CASA (CRTF), CARTA or DS9, or one region itself, such as 'circle [[100pix, 80pix], 20pix]'; CRTF "
+          "may name planes: corr=[I, Q], range=[3chan, 7chan]")
+      ->type_name(file_type);
+  command
+      .add_option("--usemask", o.usemask, "user: --mask, or everywhere; auto: from the residuals, as tclean's auto-multithresh")
+      ->check(CLI::IsMember({"user", "auto"}));
+  command.add_option("--sidelobethreshold", o.sidelobethreshold,
+                     "auto: above this times the largest sidelobe times the peak …");
+  command.add_option("--noisethreshold", o.noisethreshold, "… and above this times the noise");
+  command.add_option("--lownoisethreshold", o.lownoisethreshold, "… grown down to this times the noise");
+  command.add_option("--minbeamfrac", o.minbeamfrac, "… without regions below this part of the beam's area");
+  command.add_option("--growiterations", o.growiterations, "… by this many pixels a major cycle at most");
+  command
+      .add_option("--startmodel", o.startmodel,
+                  "Begin with this model, a FITS or CASA image in Jy/pixel of the same pixels, and of one Taylor term")
+      ->type_name(file_type);
+  mark(command.add_option("--savemodel", o.savemodel, "modelcolumn: write the model's visibilities into MODEL_DATA; none")
+           ->check(CLI::IsMember({"none", "modelcolumn"})),
+       OptionMark::free_of_state);
+  mark(mark(command.add_flag("--restart", o.restart,
+                             "Go on from the last major cycle of a run that was cut, or ended, with these options"),
+            OptionMark::free_of_state),
+       OptionMark::not_repeated);
+}
+
+void check_clean(const ImageOptions& o) {
+  if (!(parse_flux_jy(o.threshold) >= 0)) refuse_option("threshold", o.threshold, "0 or more");  // as it was typed
+  imager::check(clean_options(o, 1), "--");
+  if (restoring_beam(o) && o.niter == 0) refuse_option("restoringbeam", o.restoringbeam, "--niter above 0 beside it");
+  const int smallest = smallest_side(o);
+  if (o.niter > 0 && smallest < 3 && !restoring_beam(o))
+    refuse_option("imsize", std::to_string(smallest), "3 pixels or more to fit a beam to, or --restoringbeam");
+  if (!o.startmodel.empty() && o.niter == 0) refuse_option("startmodel", o.startmodel, "--niter above 0 beside it");
+  if (o.savemodel != "none" && o.cube.is_cube()) refuse_option("savemodel", o.savemodel, "none with --specmode cube");
+  if (o.savemodel != "none" && !saves_model(imager::parse_stokes(o.stokes)))
+    refuse_option(
+        "savemodel", o.savemodel,
+        "--stokes of I, Q, U and V, or of parallel hands, such as XXYY or RR, of which a column's correlations are made");
+  if (o.savemodel != "none" && o.niter == 0) refuse_option("savemodel", o.savemodel, "--niter above 0 beside it");
+  if (!o.mask.empty() && o.niter == 0) refuse_option("mask", o.mask, "--niter above 0 beside it");
+  if (o.restart && o.niter == 0) refuse_option("restart", "true", "--niter above 0 beside it");
+  check_deconvolver(o);
+  check_taylor(o);
+  check_auto_mask(o);
+}
+
+imager::CleanOptions clean_options(const ImageOptions& o, int threads) {
+  imager::CleanOptions clean;
+  clean.max_iterations = o.niter;
+  clean.gain = o.gain;
+  clean.threshold_jy = parse_flux_jy(o.threshold);
+  clean.nsigma = o.nsigma;
+  clean.cycle_factor = o.cyclefactor;
+  clean.min_psf_fraction = o.minpsffraction;
+  clean.max_psf_fraction = o.maxpsffraction;
+  clean.cycle_iterations = o.cycleniter;
+  clean.max_major_cycles = o.nmajor;
+  clean.threads = threads;
+  if (o.usemask == "auto")
+    clean.automask = imager::AutoMaskOptions{.sidelobe_threshold = o.sidelobethreshold,
+                                             .noise_threshold = o.noisethreshold,
+                                             .low_noise_threshold = o.lownoisethreshold,
+                                             .min_beam_fraction = o.minbeamfrac,
+                                             .grow_iterations = o.growiterations};
+  return clean;
+}
+
+imager::DeconvolverChoice deconvolver_choice(const ImageOptions& o, int threads) {
+  imager::DeconvolverChoice choice;
+  choice.name = o.deconvolver;
+  choice.scale_pixels.clear();
+  for (const double scale : o.scales) choice.scale_pixels.push_back(imager::tclean_scale_width * scale);
+  choice.small_scale_bias = o.smallscalebias;
+  choice.threads = threads;
+  return choice;
+}
+
+}  // namespace misfit::tools

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "imager/files/image_header.h"
+#include "tools/run/image_options.h"
+
+namespace misfit::tools {
+
+/// Which images a run leaves.
+struct ProductChoice {
+  int terms = 1;
+  bool cleaned = false;
+  bool masked = false;
+  bool primary_beam = false;
+  bool corrected = false;  ///< for it
+
+  static ProductChoice of(const ImageOptions& options);
+};
+
+/// One of the images of a run.
+struct ProductKind {
+  std::string name;  ///< between <imagename> and .fits: psf, residual, image.tt1.pbcor
+  std::string unit = "Jy/beam";
+  bool each_stokes = true;  ///< or one for all
+  bool beam = true;         ///< whether its pixels are seen with the restoring beam
+  bool restored = false;    ///< made with it: it waits for a beam that is common to all channels
+  imager::TaylorTerm term{};
+  std::string quantity = imager::ImageHeader().quantity;
+};
+
+/// All that such a run leaves. The names are tclean's; of several Taylor terms they say which: psf.tt0, …
+std::vector<ProductKind> product_kinds(const ProductChoice& choice);
+
+std::vector<std::string> product_names(const ProductChoice& choice);
+
+/// The names of all that runs may leave.
+std::vector<std::string> all_product_names();
+
+/// Planes of one channel in them all.
+int product_planes(const ProductChoice& choice, int stokes);
+
+/// A kind's name of a Taylor term: "image.tt1.pbcor"; "image.pbcor" of one.
+std::string product_name(const std::string& kind, const imager::TaylorTerm& term, const std::string& end = "");
+
+}  // namespace misfit::tools

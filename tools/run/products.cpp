@@ -1,0 +1,324 @@
+#include "tools/run/products.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "imager/beams/common_beam.h"
+#include "imager/beams/primary_beam.h"
+#include "imager/data/noise.h"
+#include "imager/numerics/parallel.h"
+#include "tools/base/files.h"
+#include "tools/formats/component_list.h"
+#include "tools/run/image_files.h"
+#include "tools/run/left_over.h"
+
+namespace misfit::tools {
+namespace {
+
+/// Whether it holds what CLEAN made.
+bool cleaned(const ChannelReport& channel) {
+  return channel.stokes.front().clean.has_value();
+}
+
+/// Of the first Taylor term and the further ones.
+std::vector<const imager::Image*> all_terms(const imager::Image& first, const std::vector<imager::Image>& further) {
+  std::vector<const imager::Image*> terms{&first};
+  for (const imager::Image& image : further) terms.push_back(&image);
+  return terms;
+}
+
+std::vector<const imager::Image*> pointers_to(const std::vector<imager::Image>& images) {
+  std::vector<const imager::Image*> pointers;
+  for (const imager::Image& image : images) pointers.push_back(&image);
+  return pointers;
+}
+
+/// What the report of a cube tells of each channel: no more of the histogram than a glance gives.
+void look_at(const imager::Image& residual, const imager::Image& image, double noise_jy, StokesReport& told) {
+  const imager::ImageStatistics of_residual = imager::statistics_of(residual);
+  told.histogram = {.noise_jy = noise_jy, .min_jy = of_residual.least, .max_jy = of_residual.largest, .count = {}};
+  told.brightest = &image == &residual ? imager::find_peak(image, of_residual) : imager::find_peak(image);
+}
+
+/// What CLEAN found, on the sky.
+std::vector<imager::Source> sources(const imager::ComponentModel& model, const imager::ImageGeometry& geometry) {
+  std::vector<imager::Source> sources;
+  for (const imager::Component& c : model.components())
+    sources.push_back(
+        {geometry.at(c.row, c.column), c.flux_jy, model.scale_pixels()[static_cast<std::size_t>(c.scale)] * geometry.cell_rad});
+  return sources;
+}
+
+}  // namespace
+
+std::unique_ptr<NameLock> claim_product_paths(const ImageOptions& o) {
+  check_writable_folder(o.imagename);
+  for (const std::string& name : all_product_names()) check_image_paths(o.imagename + "." + name, o.outformat);
+  auto lock = std::make_unique<NameLock>(o.imagename);
+  remove_half_written(o);
+  return lock;
+}
+
+std::vector<imager::HeaderCard> error_cards(const RunReport& report) {
+  std::vector<imager::HeaderCard> cards;
+  if (report.accuracy != 0) cards.push_back({"ERRASKED", report.accuracy, "accuracy asked: RMS error over image RMS"});
+  // Of all channels and Stokes parameters; channels without samples have none.
+  const auto add_largest = [&](const char* keyword, const auto& part, const auto& number, const char* comment) {
+    double largest = -1;
+    for (const ChannelReport& channel : report.channels)
+      for (const StokesReport& stokes : channel.stokes)
+        if (const auto& has = stokes.*part) largest = std::max(largest, (*has).*number);
+    if (largest >= 0) cards.push_back({keyword, largest, comment});
+  };
+  using Theory = imager::TheoreticalError;
+  using Measured = imager::PixelError;
+  add_largest("ERREXPEC", &StokesReport::theory, &Theory::expected_rms, "expected RMS error over image RMS");
+  add_largest("ERRBOUND", &StokesReport::theory, &Theory::bound_rms, "bound on it, whatever the data");
+  add_largest("ERRBMAX", &StokesReport::theory, &Theory::bound_max, "bound on any pixel's error over image RMS");
+  add_largest("ERRMEAS", &StokesReport::measured, &Measured::rms, "measured RMS error over image RMS");
+  add_largest("ERRMMAX", &StokesReport::measured, &Measured::max, "largest measured error over image RMS");
+  double predicted = -1;
+  for (const ChannelReport& channel : report.channels)
+    predicted = std::max(predicted, channel.measured_predict_rms.value_or(-1));
+  if (predicted >= 0) cards.push_back({"ERRPRED", predicted, "measured RMS error of prediction"});
+  if (!report.cube && report.channels.front().predicted_noise_jy != 0)
+    cards.push_back({"NOISPRED", report.channels.front().predicted_noise_jy, "Jy/beam, noise predicted from the weights"});
+  // An image of zeros has no relative error, and a FITS header no number for that.
+  std::erase_if(cards, [](const imager::HeaderCard& card) { return !std::isfinite(card.value); });
+  return cards;
+}
+
+/// The primary beam of a channel; nothing where none is wanted.
+struct Products::OfBeam {
+  std::vector<imager::Image> terms;              ///< what of it is written [term]
+  std::optional<imager::TaylorBeam> of_terms{};  ///< by which several are corrected
+};
+
+/// What was written of the channels of a cube.
+struct Products::Written {
+  std::unique_ptr<imager::ImageReader> models;
+  std::unique_ptr<imager::ImageReader> residuals;
+};
+
+Products::Products(const ImageOptions& options, const imager::ImageHeader& header, const PrimaryBeamStage* primary_beam,
+                   const ChannelWorkers& workers, const Open& open)
+    : o_(options),
+      header_(header),
+      primary_beam_(primary_beam),
+      workers_(workers),
+      in_common_(options.niter > 0 && options.restoringbeam == "common") {
+  for (const ProductKind& kind : product_kinds(ProductChoice::of(o_))) {
+    const std::vector<std::string> paths = image_paths(o_.imagename + "." + kind.name, o_.outformat);
+    // A mask that the user has under its name stays.
+    if (kind.name == "mask" && std::any_of(paths.begin(), paths.end(), [&](const auto& path) { return is_input(o_, path); }))
+      continue;
+    imager::ImageHeader own = header;
+    own.unit = kind.unit;
+    own.quantity = kind.quantity;
+    own.taylor = kind.term;
+    if (!kind.each_stokes) own.stokes.resize(1);
+    paths_.insert(paths_.end(), paths.begin(), paths.end());
+    files_.emplace(kind.name, File{kind, open(kind, own), {}});
+  }
+}
+
+void Products::write(const std::string& kind, const imager::PlaneIndex& at, const imager::Image& image,
+                     const std::optional<imager::Beam>& beam) {
+  const std::lock_guard lock(image_files_mutex());
+  files_.at(kind).writer->write(at, image, beam);
+}
+
+/// Where there is such a file, and something to write.
+void Products::put(const std::string& kind, const imager::PlaneIndex& at, const imager::Image& image,
+                   const std::optional<imager::Beam>& beam) {
+  const auto file = files_.find(kind);
+  if (file == files_.end() || image.pixel.empty()) return;
+  write(kind, at, image, file->second.kind.beam ? beam : std::nullopt);
+}
+
+void Products::put_terms(const std::string& kind, const imager::PlaneIndex& at, const std::vector<const imager::Image*>& terms,
+                         const std::optional<imager::Beam>& beam, const std::string& end) {
+  for (std::size_t t = 0; t < terms.size(); ++t)
+    put(product_name(kind, {static_cast<int>(t), o_.nterms}, end), at, *terms[t], beam);
+}
+
+/// Headers tell whether the primary beam is divided out of the spectra.
+void Products::put_spectra(const imager::SpectralImages& spectra, const std::string& end, const imager::PlaneIndex& at,
+                           const std::optional<imager::Beam>& beam) {
+  const bool corrected = !end.empty();
+  for (const auto& [name, image] :
+       {std::pair{"alpha", &spectra.alpha}, {"alpha.error", &spectra.alpha_error}, {"beta", &spectra.beta}}) {
+    const auto file = files_.find(name + end);
+    if (file == files_.end()) continue;
+    file->second.cards = {{"ALPHALIM", spectra.level_jy, "Jy/beam of .image.tt0, below which pixels are NaN"},
+                          corrected ? imager::HeaderCard{"PBCOR", 1, "the primary beam's spectrum is divided out"}
+                                    : imager::HeaderCard{"PBCOR", 0, "the primary beam's spectrum is still in it"}};
+    put(name + end, at, *image, beam);
+  }
+}
+
+Products::OfBeam Products::primary_beam_of(ChannelRun& run) const {
+  OfBeam beam;
+  if (primary_beam_ == nullptr) return beam;
+  const imager::StageTimer timer(run.times(), "primary beam");
+  if (TaylorStage* const taylor = run.taylor(); taylor != nullptr) {
+    beam.of_terms = primary_beam_->of_terms(taylor->expansion());
+    beam.terms = beam.of_terms->terms();
+  } else {
+    beam.terms.push_back(primary_beam_->of_image(run.report().frequency_hz));
+  }
+  if (const std::string doubt = primary_beam_->warning_of(beam.terms.front()); !doubt.empty())
+    run.made().doubts.push_back(doubt);
+  return beam;
+}
+
+void Products::write(ChannelRun& run, RunPictures* pictures) {
+  const imager::PlaneIndex at{run.report().channel, 0};
+  const std::optional<imager::Beam>& beam = run.report().beams->restoring;
+  {
+    const imager::StageTimer timer(run.times(), "write images");
+    const imager::Image& psf = run.images().images.psf;
+    put_terms("psf", at, run.taylor() == nullptr ? std::vector{&psf} : all_terms(psf, run.taylor()->images().psf), beam);
+  }
+  const OfBeam primary_beam = primary_beam_of(run);
+  {
+    const imager::StageTimer timer(run.times(), "write images");
+    put_terms("pb", at, pointers_to(primary_beam.terms), beam);
+  }
+  for (std::size_t s = header_.stokes.size(); s-- > 0;)
+    write_stokes(s, primary_beam, run, pictures);  // the first is shown first
+  if (!o_.cube.is_cube() && o_.nterms == 1 && !run.cleaned().empty()) write_components(run.cleaned());
+}
+
+void Products::write_stokes(std::size_t stokes, const OfBeam& primary_beam, ChannelRun& run, RunPictures* pictures) {
+  imager::StageTimes& times = run.times();
+  const std::optional<imager::Beam>& beam = run.report().beams->restoring;
+  const imager::CleanResult* const result = run.cleaned().empty() ? nullptr : &run.cleaned()[stokes];
+  TaylorStage* const taylor = run.taylor();
+  const imager::Image& residual = result != nullptr ? result->residual : run.images().images.dirty[stokes];
+  RestoredTerms restored;
+  if (result != nullptr && !in_common_) {
+    const imager::StageTimer timer(times, "restore");
+    if (taylor != nullptr)
+      restored = taylor->restore(*result, *beam, header_.geometry.cell_rad);
+    else
+      restored.first = restore(result->model, residual, *beam);
+  }
+  {
+    const imager::StageTimer timer(times, "statistics");
+    StokesReport& told = run.report().stokes[stokes];
+    const double noise_jy = told.clean ? told.clean->final_state().rms_jy : imager::sampled_noise(residual);
+    if (o_.cube.is_cube())
+      look_at(residual, restored.first.pixel.empty() ? residual : restored.first, noise_jy, told);
+    else
+      told.histogram = pixel_histogram(residual, noise_jy, workers_.threads);
+  }
+  if (pictures != nullptr && result != nullptr) pictures->draw(stokes, *result, restored);
+  const imager::StageTimer timer(times, "write images");
+  const imager::PlaneIndex at{run.report().channel, static_cast<int>(stokes)};
+  std::vector<imager::Image> principal;  // of terms that are not cleaned
+  std::vector<const imager::Image*> shown{&residual};
+  if (result != nullptr) {
+    put_terms("residual", at, all_terms(residual, result->further_residuals), beam);
+    put_terms("model", at, all_terms(result->model, result->further_models), beam);
+    put("mask", at, result->mask, beam);
+    shown = all_terms(restored.first, restored.further);
+    put_terms("image", at, shown, beam);
+    if (taylor != nullptr) put_spectra(restored.spectra, "", at, beam);
+  } else if (taylor != nullptr) {
+    put_terms("residual", at, all_terms(residual, taylor->images().dirty), beam);
+    if (o_.pbcor) principal = taylor->principal_solution(residual);
+    shown = pointers_to(principal);
+  } else {
+    put("residual", at, residual, beam);
+  }
+  if (o_.pbcor && (result != nullptr || o_.niter == 0))
+    write_corrected(at, primary_beam, shown, result == nullptr ? nullptr : &restored.spectra, beam);
+}
+
+/// Images [term] without the primary beam.
+void Products::write_corrected(const imager::PlaneIndex& at, const OfBeam& primary_beam,
+                               const std::vector<const imager::Image*>& apparent, const imager::SpectralImages* spectra,
+                               const std::optional<imager::Beam>& beam) {
+  if (apparent.front()->pixel.empty()) return;  // it follows
+  if (!primary_beam.of_terms)
+    return put("image.pbcor", at, imager::corrected(*apparent.front(), primary_beam.terms.front()), beam);
+  const std::vector<imager::Image> sky = primary_beam.of_terms->corrected(apparent);
+  put_terms("image", at, pointers_to(sky), beam, ".pbcor");
+  if (spectra == nullptr) return;
+  imager::SpectralImages of_sky = imager::spectral_images_of_sky(sky, *spectra, workers_.threads);
+  put_spectra(of_sky, ".pbcor", at, beam);
+}
+
+void Products::write_components(const std::vector<imager::CleanResult>& cleaned) const {
+  std::vector<SourcesOf> found;
+  for (std::size_t s = 0; s < cleaned.size(); ++s)
+    found.push_back({header_.stokes[s], sources(cleaned[s].components, header_.geometry)});
+  const bool stands = header_.observation.moving_at.empty();
+  write_stokes_components(o_.imagename + ".components.csv", found,
+                          stands ? std::optional(header_.geometry.phase_centre) : std::nullopt);
+}
+
+std::vector<std::string> Products::finish(std::vector<ChannelReport>& channels, const std::vector<imager::HeaderCard>& cards,
+                                          imager::StageTimes& times) {
+  std::vector<std::string> removed;
+  {
+    const imager::StageTimer timer(times, "write images");
+    remove_left_over(o_, {paths_, o_.cube.is_cube() ? header_.spectral.channels : 0}, removed);
+    for (auto& [name, file] : files_) {
+      file.writer->add_cards(cards);
+      file.writer->add_cards(file.cards);
+    }
+    finish_files(false);
+    if (!in_common_) finish_files(true);
+  }
+  if (!in_common_) return removed;
+  const imager::StageTimer timer(times, "restore");
+  restore_in_common(channels);
+  finish_files(true);
+  return removed;
+}
+
+/// Those that are restored, or the others.
+void Products::finish_files(bool restored) {
+  for (auto& [name, file] : files_)
+    if (file.kind.restored == restored) file.writer->finish();
+}
+
+imager::Image Products::restore(const imager::Image& model, const imager::Image& residual, const imager::Beam& beam) const {
+  return imager::restored({model, residual}, beam, header_.geometry.cell_rad, workers_.threads);
+}
+
+/// Of models and residuals as they were written.
+void Products::restore_in_common(std::vector<ChannelReport>& channels) {
+  std::vector<imager::Beam> beams;
+  for (const ChannelReport& channel : channels)
+    if (cleaned(channel)) beams.push_back(*channel.beams->restoring);
+  if (beams.empty()) return;
+  const imager::Beam common = imager::common_beam(beams);
+  const Written written{open_written(o_, "model"), open_written(o_, "residual")};
+  imager::parallel_for(channels.size(), workers_.count, [&](std::size_t i) {
+    if (cleaned(channels[i])) restore_channel(channels[i], common, written);
+  });
+}
+
+void Products::restore_channel(ChannelReport& channel, const imager::Beam& common, const Written& written) {
+  channel.beams->restoring = common;
+  channel.beams->how = "common to all planes";
+  OfBeam primary_beam;
+  if (primary_beam_ != nullptr) primary_beam.terms.push_back(primary_beam_->at(channel.frequency_hz));
+  const auto read = [](const imager::ImageReader& file, const imager::PlaneIndex& at) {
+    const std::lock_guard lock(image_files_mutex());
+    return file.read(at);
+  };
+  for (std::size_t s = 0; s < header_.stokes.size(); ++s) {
+    const imager::PlaneIndex at{channel.channel, static_cast<int>(s)};
+    const imager::Image restored = restore(read(*written.models, at), read(*written.residuals, at), common);
+    channel.stokes[s].brightest = imager::find_peak(restored);
+    put("image", at, restored, common);
+    if (o_.pbcor) write_corrected(at, primary_beam, {&restored}, nullptr, common);
+  }
+}
+
+}  // namespace misfit::tools

@@ -1,0 +1,73 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "imager/files/image_header.h"
+#include "imager/files/image_reader.h"
+#include "tools/drawing/pictures.h"
+#include "tools/run/channel_run.h"
+#include "tools/run/image_options.h"
+#include "tools/run/run_report.h"
+#include "tools/run/taylor_stage.h"
+#include "tools/run_page/report_page.h"
+
+namespace misfit::tools {
+
+/// One of a run's images, in the first of its formats.
+std::unique_ptr<imager::ImageReader> open_written(const ImageOptions& options, const std::string& kind);
+
+/// The pictures of a run, <imagename>.<name>.png, drawn while the caller does other things. Images are looked at until
+/// functions return. Of the whole band all images are drawn as they are made, each Stokes parameter by itself; of a cube the
+/// channel that the report shows, once its images have been written. Stage timed: "draw pictures".
+class RunPictures {
+ public:
+  /// Kept by reference.
+  RunPictures(const ImageOptions& options, const imager::ImageHeader& header, imager::StageTimes& times)
+      : o_(options), header_(header), times_(times) {}
+
+  /// What is there before CLEAN: uv coverage, PSF, dirty images. Where masks are made meanwhile the dirty image is drawn with
+  /// the others.
+  void draw_dirty(ChannelRun& run);
+  /// What CLEAN made of a Stokes parameter, the last of them first.
+  void draw(std::size_t stokes, const imager::CleanResult& cleaned, const RestoredTerms& restored);
+  /// A channel of a cube: its restored image, or the dirty one without CLEAN, and the PSF.
+  void draw_channel(const ChannelReport& channel);
+
+  /// Adds the pictures to `drawn`, the last first, or returns in a sentence why there are none.
+  std::string finish(std::vector<PagePicture>& drawn);
+
+ private:
+  /// What one picture shows.
+  struct Shown {
+    std::string name;  ///< the middle of its file's name
+    std::string title;
+    std::string unit = "Jy/beam";
+    Shades shades = Shades::brightness;
+    const imager::Image* image = nullptr;
+    const Sketch* sketch = nullptr;       ///< in place of an image that is gone
+    const imager::Image* mask = nullptr;  ///< outlined
+  };
+
+  /// Of one Stokes parameter: name and title say which where there are several.
+  Shown of_stokes(std::size_t stokes, Shown shown) const;
+  void add(const std::vector<Shown>& shown);
+
+  const ImageOptions& o_;
+  const imager::ImageHeader& header_;
+  imager::StageTimes& times_;
+  imager::SkyImage about_;  ///< what pictures are of, but for the pixels
+  PictureDrawing drawing_;
+  std::vector<std::pair<std::string, std::string>> titles_and_paths_;
+  std::vector<Sketch>
+      dirty_;  ///< [Stokes], what is left of the dirty images when CLEAN is over, where masks were not known before
+};
+
+/// The histogram of a channel's residuals as an SVG element; empty where gnuplot cannot draw it.
+std::string histogram_drawing(const ChannelReport& channel);
+/// The same of the brightest pixel and the noise of each channel against frequency.
+std::string spectrum_drawing(const RunReport& report);
+
+}  // namespace misfit::tools
