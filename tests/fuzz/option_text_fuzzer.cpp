@@ -30,8 +30,9 @@ void require_quantities(const std::string& text) {
 void require_options(const std::string& text) {
   tools::ImageOptions options;
   options.restoringbeam = text;
-  if (const auto beam = read_or_refused(text, [&] { return tools::restoring_beam(options); }); beam && *beam)
-    require((*beam)->minor_rad > 0 && (*beam)->major_rad >= (*beam)->minor_rad && std::isfinite((*beam)->position_angle_rad),
+  if (const auto beam = read_or_refused(text, [&] { return tools::restoring_beam(options); }); beam && beam->given)
+    require(beam->given->minor_rad > 0 && beam->given->major_rad >= beam->given->minor_rad &&
+                std::isfinite(beam->given->position_angle_rad),
             "a beam is an ellipse");
   options.uvtaper = text;
   if (read_or_refused(text, [&] { return tools::check_weighting(options), true; })) tools::weighting_options(options);

@@ -109,7 +109,7 @@ BOOST_AUTO_TEST_CASE(options_with_impossible_values_are_wrong_usage) {
   scene.usage("--restoringbeam", "1arcsec,2arcsec,0deg", "MAJ at least MIN");
   scene.usage("--restoringbeam", "2arcsec,1arcsec", "MAJ,MIN,PA");
   for (const char* beam : {"0arcsec", "1", "1arcsec,", ",", "2arcsec,1arcsec,30", "2arcsec,1arcsec,3deg,", "100deg"})
-    scene.usage("--restoringbeam", beam, "expected common, MAJ");
+    scene.usage("--restoringbeam", beam, "expected common, circular, MAJ");
   scene.usage("--startmodel", "model.fits", "expected --niter above 0");
   scene.usage("--savemodel", "modelcolumn", "expected --niter above 0");
   scene.usage("--savemodel", "virtual", "modelcolumn");
@@ -203,7 +203,7 @@ BOOST_AUTO_TEST_CASE(a_quantity_that_is_none_is_named_with_its_option) {
   scene.usage("--threshold", "foo",
               "--threshold: 'foo' is no flux density; expected a number with a unit of Jy, mJy, uJy, such as");
   scene.usage("--cell", "foo", "--cell: 'foo' is no angle");
-  scene.usage("--restoringbeam", "foo", "--restoringbeam foo: expected common, MAJ");
+  scene.usage("--restoringbeam", "foo", "--restoringbeam foo: expected common, circular, MAJ");
   for (const char* option : {"--cell", "--ra", "--dec", "--frequency", "--channel-width", "--noise"})
     check_refused({"simulate", "--output", scene.out + "/a.ms", option, "foo"}, 2, {option, "'foo' is no", "such as"},
                   scene.out);

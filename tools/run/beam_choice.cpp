@@ -40,17 +40,18 @@ void declare_restoring_beam(CLI::App& command, ImageOptions& o) {
   mark(command
            .add_option("--restoringbeam", o.restoringbeam,
                        "Restore with this beam: MAJ, or MAJ,MIN,PA such as 0.5arcsec,0.4arcsec,30deg; the fitted one when "
-                       "empty or common")
-           ->check(values_are({"common"}, Others::possible)),
+                       "empty; circular, as wide as the fitted one is long; or common, one for all planes of a cube")
+           ->check(values_are({"common", "circular"}, Others::possible)),
        OptionMark::free_of_state);
 }
 
-std::optional<imager::Beam> restoring_beam(const ImageOptions& o) {
-  if (o.restoringbeam.empty() || o.restoringbeam == "common") return std::nullopt;
+WantedBeam restoring_beam(const ImageOptions& o) {
+  if (o.restoringbeam.empty() || o.restoringbeam == "common") return {};
+  if (o.restoringbeam == "circular") return {.circular = true};
   const auto expect = [&](bool holds) {
     if (!holds)
       refuse_option("restoringbeam", o.restoringbeam,
-                    "common, MAJ, or MAJ,MIN,PA such as 0.5arcsec,0.4arcsec,30deg with MAJ at least MIN, and MIN above 0");
+                    "common, circular, MAJ, or MAJ,MIN,PA such as 0.5arcsec,0.4arcsec,30deg with MAJ at least MIN, and MIN above 0");
   };
   const auto angle = [&](std::string_view part) {
     const std::string text(part);
@@ -65,27 +66,32 @@ std::optional<imager::Beam> restoring_beam(const ImageOptions& o) {
   // Half a turn leaves the ellipse as it is.
   beam.position_angle_rad = parts.size() == 1 ? 0 : std::remainder(angle(parts[2]), M_PI);
   expect(beam.minor_rad > 0 && beam.major_rad >= beam.minor_rad && beam.major_rad < 1);
-  return beam;
+  return {.given = beam};
 }
 
-BeamChoice choose_beam(const imager::Image& psf, double cell_rad, const std::optional<imager::Beam>& given, bool needed) {
+BeamChoice choose_beam(const imager::Image& psf, double cell_rad, const WantedBeam& wanted, bool needed) {
   constexpr double bad = 0.1;
   BeamChoice choice;
   fit(psf, cell_rad, choice);
   choice.restoring = choice.main_lobe;
-  if (given) {
-    choice.restoring = given;
+  if (wanted.given) {
+    choice.restoring = wanted.given;
     choice.how = "given";
-    if (!choice.main_lobe) choice.main_lobe = given;
+    if (!choice.main_lobe) choice.main_lobe = wanted.given;
   }
   if (!choice.restoring) {
     if (needed) throw std::runtime_error(choice.warnings.front() + "; or give --restoringbeam");
     return choice;
   }
-  choice.misfit = imager::beam_misfit(psf, *choice.restoring, cell_rad);
-  if (choice.misfit >= bad && !given)
-    choice.warnings.emplace_back("the beam fits the PSF's main lobe badly: they differ by " + significant(choice.misfit, 2) +
+  const double misfit = imager::beam_misfit(psf, *choice.restoring, cell_rad);
+  if (misfit >= bad && !wanted.given)
+    choice.warnings.emplace_back("the beam fits the PSF's main lobe badly: they differ by " + significant(misfit, 2) +
                                  " of the peak, RMS");
+  if (wanted.circular) {
+    choice.restoring = imager::Beam{choice.main_lobe->major_rad, choice.main_lobe->major_rad, 0};
+    choice.how += ", made circular";
+  }
+  choice.misfit = wanted.circular ? imager::beam_misfit(psf, *choice.restoring, cell_rad) : misfit;
   return choice;
 }
 

@@ -104,9 +104,10 @@ void declare_clean(CLI::App& command, ImageOptions& o) {
 void check_clean(const ImageOptions& o) {
   if (!(parse_flux_jy(o.threshold) >= 0)) refuse_option("threshold", o.threshold, "0 or more");  // as it was typed
   imager::check(clean_options(o, 1), "--");
-  if (restoring_beam(o) && o.niter == 0) refuse_option("restoringbeam", o.restoringbeam, "--niter above 0 beside it");
+  const WantedBeam beam = restoring_beam(o);
+  if (!o.restoringbeam.empty() && o.niter == 0) refuse_option("restoringbeam", o.restoringbeam, "--niter above 0 beside it");
   const int smallest = smallest_side(o);
-  if (o.niter > 0 && smallest < 3 && !restoring_beam(o))
+  if (o.niter > 0 && smallest < 3 && !beam.given)
     refuse_option("imsize", std::to_string(smallest), "3 pixels or more to fit a beam to, or --restoringbeam");
   if (!o.startmodel.empty() && o.niter == 0) refuse_option("startmodel", o.startmodel, "--niter above 0 beside it");
   if (o.savemodel != "none" && o.cube.is_cube()) refuse_option("savemodel", o.savemodel, "none with --specmode cube");
