@@ -151,4 +151,21 @@ BOOST_AUTO_TEST_CASE(states_belong_to_options_that_reach_clean) {
     BOOST_TEST(!values.contains(name), name);
 }
 
+BOOST_AUTO_TEST_CASE(pixels_may_have_two_sides_that_are_equal) {
+  const auto cell = [](const std::string& sides) {
+    CLI::App app;
+    app.option_defaults()->always_capture_default();
+    ImageOptions options;
+    declare(app, options);
+    app.parse("--vis a.ms --imagename a --imsize 64 32 --cell " + sides);
+    return options.cell + " of " + option_values(app).at("cell").get<std::string>();
+  };
+  BOOST_TEST(cell("0.2arcsec") == "0.2arcsec of 0.2arcsec");
+  BOOST_TEST(cell("0.2arcsec 0.2arcsec") == "0.2arcsec of 0.2arcsec 0.2arcsec");
+  BOOST_TEST(cell("200mas 0.2") == "200mas of 200mas 0.2");
+  BOOST_CHECK_EXCEPTION(cell("0.2arcsec 0.3arcsec"), std::invalid_argument, [](const std::exception& error) {
+    return std::string(error.what()).starts_with("--cell 0.2arcsec 0.3arcsec: expected one size, or two that are equal");
+  });
+}
+
 BOOST_AUTO_TEST_SUITE_END()

@@ -32,6 +32,15 @@ void check_sets(const ImageOptions& o) {
   }
 }
 
+/// The first of sizes that must be the same.
+std::string one_cell(const std::vector<std::string>& sides) {
+  constexpr double rounding = 1e-12;  // of 0.2arcsec beside 200mas
+  const double first = parse_angle_rad(sides.front()), last = parse_angle_rad(sides.back());
+  if (std::abs(last - first) > rounding * std::abs(first))
+    refuse_option("cell", sides.front() + " " + sides.back(), "one size, or two that are equal: pixels are square");
+  return sides.front();
+}
+
 void check_image(const ImageOptions& o) {
   check_sets(o);
   const std::string name = std::filesystem::path(o.imagename).filename();
@@ -59,8 +68,12 @@ void declare_scene(CLI::App& command, ImageOptions& o) {
       "Shift the visibilities to a direction, such as 'J2000 12h30m49.4s +12d23m28s', or to the phase centre of a "
       "field by id or name; what is selected may then have several. TRACKFIELD: to what fields with an ephemeris follow");
   command.add_option("--imsize", o.imsize, "Width, or width and height, in pixels")->required()->expected(1, 2);
-  command.add_option("--cell", o.cell, "Size of a pixel: 0.2arcsec, 3mas, …; in arcsec without a unit")
+  command
+      .add_option_function<std::vector<std::string>>(
+          "--cell", [&o](const std::vector<std::string>& sides) { o.cell = one_cell(sides); },
+          "Size of a pixel: 0.2arcsec, 3mas, …, or two that are equal, as pixels are square; in arcsec without a unit")
       ->required()
+      ->expected(1, 2)
       ->check(quantity(parse_angle_rad));
   declare_selection(command, o.selection);
   command
