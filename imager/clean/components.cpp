@@ -107,10 +107,21 @@ Image ComponentModel::image(int threads, int term) const {
 }
 
 std::vector<Component> components_of(const Image& image) {
+  return components_of(std::vector{&image});
+}
+
+std::vector<Component> components_of(const std::vector<const Image*>& terms) {
   std::vector<Component> result;
-  for (int r = 0; r < image.height; ++r)
-    for (int c = 0; c < image.width; ++c)
-      if (const double flux = image.at(r, c); flux != 0 && !std::isnan(flux)) result.push_back({0, r, c, flux});
+  for (int r = 0; r < terms.front()->height; ++r)
+    for (int c = 0; c < terms.front()->width; ++c) {
+      Component component{0, r, c};
+      for (std::size_t t = 0; t < terms.size(); ++t)
+        if (const double flux_jy = terms[t]->at(r, c); !std::isnan(flux_jy))
+          (t == 0 ? component.flux_jy : component.further_jy[t - 1]) = flux_jy;
+      const auto& further = component.further_jy;
+      if (component.flux_jy != 0 || std::any_of(further.begin(), further.end(), [](double x) { return x != 0; }))
+        result.push_back(component);
+    }
   return result;
 }
 

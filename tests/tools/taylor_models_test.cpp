@@ -136,4 +136,36 @@ BOOST_AUTO_TEST_CASE(a_model_without_terms_begins_a_run_of_several) {
   succeed({"predict", "--vis", folder / "s.ms", "--model", folder / "a.model.fits"});
 }
 
+BOOST_AUTO_TEST_CASE(the_terms_of_a_model_begin_where_an_earlier_run_ended) {
+  const TemporaryFolder folder;
+  const std::string set = folder / "s.ms";
+  succeed({"simulate", "--output", set, "--channels", "4", "--channel-width", "100MHz"});
+  for (const std::string format : {"fits", "casa"}) {
+    const auto image = [&](const std::string& name, const Arguments& options) {
+      return small_image(set, folder / name) + Arguments{"--nterms", "2", "--outformat", format} + options;
+    };
+    const auto model = [&](int term) {
+      return folder / ("a.model.tt" + std::to_string(term) + (format == "fits" ? ".fits" : ""));
+    };
+    succeed(image("a", {"--niter", "50", "--nmajor", "1"}));
+    succeed(image("b", {"--niter", "50", "--startmodel", model(0), model(1)}));
+    const nlohmann::json before = report_of(folder / "a")["clean"],
+                         after = report_of(folder / "b")["clean"]["major_cycles_log"][0];
+    // The models passed through files of 32-bit numbers.
+    for (const char* key : {"peak_residual_jy", "rms_jy", "model_flux_jy"})
+      BOOST_TEST(std::abs(after[key].get<double>() / before[key].get<double>() - 1) < 1e-5, key);
+    BOOST_TEST(report_of(folder / "b")["clean"]["peak_residual_jy"] < before["peak_residual_jy"]);
+    const Arguments five{"--niter", "5"};
+    check_refusal(image("b", five + Arguments{"--startmodel", model(1), model(0)}),
+                  {model(1) + " is by its name Taylor term 1", "expected term 0 of 2"});
+    check_refusal(image("b", five + Arguments{"--startmodel", model(0), model(1), "--reffreq", "1.41GHz"}),
+                  {"start model " + model(0) + " has spectra about", "expected spectra about 1.41 GHz, or --reffreq"});
+    Arguments three = image("b", five + Arguments{"--startmodel", model(0), model(1)});
+    *std::find(three.begin(), three.end(), "2") = "3";
+    const Outcome outcome = run(three);
+    BOOST_TEST(outcome.code == 2);
+    BOOST_TEST(outcome.err.find("expected one image, or 3, one for each of --nterms") != std::string::npos, outcome.err);
+  }
+}
+
 BOOST_AUTO_TEST_SUITE_END()

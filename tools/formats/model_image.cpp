@@ -101,8 +101,8 @@ std::string other_terms(const TermInName& name) {
 }
 
 constexpr const char* models_of_terms =
-    "Models of several terms are not read: misfit image --savemodel modelcolumn predicts all that it finds, and --restart goes "
-    "on from them";
+    "misfit predict reads no models of several terms, but misfit image --savemodel modelcolumn predicts all that it finds; "
+    "--startmodel reads all terms of --nterms, named one after the other, and --restart goes on from them";
 
 [[noreturn]] void refuse_by_name(const TermInName& name, const std::string& path) {
   const std::string others = other_terms(name);
@@ -137,6 +137,19 @@ void refuse_taylor_term(const imager::ImageReader& file, const std::string& path
   const std::string target = behind_links(path);
   if (const auto name = term_in_name(target)) refuse_by_name(*name, path + " leads to " + target + ", which");
   if (file.header().taylor.several()) refuse_by_header(file.header().taylor, path);
+}
+
+void require_taylor_term(const imager::ImageReader& file, const std::string& path, const imager::TaylorTerm& expected) {
+  const auto refuse = [&](const std::string& by, const std::string& is) {
+    throw std::runtime_error(path + " is by its " + by + " Taylor term " + is + ", counted from 0; expected term " +
+                             std::to_string(expected.order) + " of " + std::to_string(expected.terms) +
+                             ", as terms are named from the first on and as many as --nterms");
+  };
+  for (const std::string& name : {path, behind_links(path)})
+    if (const auto term = term_in_name(name); term && term->term != expected.order) refuse("name", std::to_string(term->term));
+  const imager::TaylorTerm& stated = file.header().taylor;
+  if (stated.several() && (stated.order != expected.order || stated.terms != expected.terms))
+    refuse("header", std::to_string(stated.order) + " of " + std::to_string(stated.terms));
 }
 
 std::vector<imager::SkyImage> read_stokes_model(const imager::ImageReader& file, const std::string& path) {

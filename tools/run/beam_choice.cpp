@@ -50,8 +50,9 @@ WantedBeam restoring_beam(const ImageOptions& o) {
   if (o.restoringbeam == "circular") return {.circular = true};
   const auto expect = [&](bool holds) {
     if (!holds)
-      refuse_option("restoringbeam", o.restoringbeam,
-                    "common, circular, MAJ, or MAJ,MIN,PA such as 0.5arcsec,0.4arcsec,30deg with MAJ at least MIN, and MIN above 0");
+      refuse_option(
+          "restoringbeam", o.restoringbeam,
+          "common, circular, MAJ, or MAJ,MIN,PA such as 0.5arcsec,0.4arcsec,30deg with MAJ at least MIN, and MIN above 0");
   };
   const auto angle = [&](std::string_view part) {
     const std::string text(part);

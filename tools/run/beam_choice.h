@@ -31,9 +31,9 @@ struct BeamChoice {
   std::vector<std::string> warnings;
 };
 
-/// The beam that is wanted; of none the Gaussian that fits the PSF's main lobe; else, with a warning, the round one that does. A fit that
-/// leaves a tenth of the peak or more is warned of. Where nothing fits and none is given: throws std::runtime_error that says
-/// what would help when CLEAN needs a beam, and warns otherwise.
+/// The beam that is wanted; of none the Gaussian that fits the PSF's main lobe; else, with a warning, the round one that does.
+/// A fit that leaves a tenth of the peak or more is warned of. Where nothing fits and none is given: throws std::runtime_error
+/// that says what would help when CLEAN needs a beam, and warns otherwise.
 BeamChoice choose_beam(const imager::Image& psf, double cell_rad, const WantedBeam& wanted, bool needed);
 
 }  // namespace misfit::tools

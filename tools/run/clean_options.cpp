@@ -89,8 +89,11 @@ void declare_clean(CLI::App& command, ImageOptions& o) {
   command.add_option("--minbeamfrac", o.minbeamfrac, "… without regions below this part of the beam's area");
   command.add_option("--growiterations", o.growiterations, "… by this many pixels a major cycle at most");
   command
-      .add_option("--startmodel", o.startmodel,
-                  "Begin with this model, a FITS or CASA image in Jy/pixel of the same pixels, and of one Taylor term")
+      .add_option(
+          "--startmodel", o.startmodel,
+          "Begin with this model, a FITS or CASA image in Jy/pixel of the same pixels; or, with --nterms 2 or 3, one for "
+          "each term: a.model.tt0.fits a.model.tt1.fits")
+      ->expected(1, imager::most_taylor_terms)
       ->type_name(file_type);
   mark(command.add_option("--savemodel", o.savemodel, "modelcolumn: write the model's visibilities into MODEL_DATA; none")
            ->check(CLI::IsMember({"none", "modelcolumn"})),
@@ -109,7 +112,11 @@ void check_clean(const ImageOptions& o) {
   const int smallest = smallest_side(o);
   if (o.niter > 0 && smallest < 3 && !beam.given)
     refuse_option("imsize", std::to_string(smallest), "3 pixels or more to fit a beam to, or --restoringbeam");
-  if (!o.startmodel.empty() && o.niter == 0) refuse_option("startmodel", o.startmodel, "--niter above 0 beside it");
+  if (!o.startmodel.empty() && o.niter == 0) refuse_option("startmodel", names_of(o.startmodel), "--niter above 0 beside it");
+  if (const auto models = static_cast<int>(o.startmodel.size()); models > 1 && models != o.nterms)
+    refuse_option("startmodel", names_of(o.startmodel),
+                  o.nterms == 1 ? "one image, or --nterms " + std::to_string(models) + " beside it"
+                                : "one image, or " + std::to_string(o.nterms) + ", one for each of --nterms");
   if (o.savemodel != "none" && o.cube.is_cube()) refuse_option("savemodel", o.savemodel, "none with --specmode cube");
   if (o.savemodel != "none" && !saves_model(imager::parse_stokes(o.stokes)))
     refuse_option(

@@ -13,10 +13,7 @@
 #include "tools/base/interrupt.h"
 #include "tools/base/numbers.h"
 #include "tools/formats/clean_state_file.h"
-#include "tools/formats/grid_offset.h"
-#include "tools/formats/image_file.h"
 #include "tools/formats/mask_file.h"
-#include "tools/formats/model_image.h"
 #include "tools/run/clean_options.h"
 
 namespace misfit::tools {
@@ -31,17 +28,14 @@ double mean_width_rad(const imager::Beam& beam) {
 
 CleanStage::CleanStage(const ImageOptions& options, imager::ImageHeader image, int threads)
     : o_(options), image_(std::move(image)), threads_(threads) {
-  if (!o_.startmodel.empty()) {
-    start_file_ = open_image_file(o_.startmodel);
-    refuse_taylor_term(*start_file_, o_.startmodel);
-  }
+  if (!o_.startmodel.empty()) start_model_ = std::make_unique<StartModel>(o_, image_);
   if (!o_.mask.empty()) mask_file_ = std::make_unique<MaskFile>(o_.mask, image_);
 }
 
 void CleanStage::begin_channel(int channel) {
   if (channel_ == channel) return;
   channel_ = channel;
-  if (start_file_) read_start_model();
+  if (start_model_) start_model_->read(channel);
   if (!mask_file_ || (!masks_.empty() && mask_file_->one_for_all_channels())) return;
   masks_.clear();
   const int masks = mask_file_->one_for_all_stokes() ? 1 : static_cast<int>(image_.stokes.size());
@@ -51,10 +45,8 @@ void CleanStage::begin_channel(int channel) {
 std::vector<std::string> CleanStage::words_on_files() const {
   std::vector<std::string> words;
   if (mask_file_) words = mask_file_->doubts();
-  if (start_file_) {
-    words.push_back(band_warning(start_file_->header().observation, image_.observation, o_.startmodel));
-    words.push_back(GridBeside(*start_file_, "start model " + o_.startmodel, image_).remark());
-  }
+  if (start_model_)
+    for (std::string& remark : start_model_->remarks()) words.push_back(std::move(remark));
   words.erase(std::remove(words.begin(), words.end(), ""), words.end());
   return words;
 }
@@ -92,47 +84,22 @@ std::string CleanStage::state_path(std::size_t stokes) const {
   return o_.imagename + ".clean/" + std::to_string(channel_) + of + ".state";
 }
 
-void CleanStage::refuse_start_model(const std::string& has, const std::string& expected) const {
-  throw std::runtime_error("start model " + o_.startmodel + " " + has + ", expected " + expected);
-}
-
-void CleanStage::read_start_model() {
-  const imager::ImageGeometry &own = image_.geometry, &g = start_file_->header().geometry;
-  const auto size = [](int width, int height) { return std::to_string(width) + " × " + std::to_string(height) + " pixels"; };
-  if (g.width != own.width || g.height != own.height)
-    refuse_start_model("has " + size(g.width, g.height), size(own.width, own.height));
-  const GridBeside beside(*start_file_, "start model " + o_.startmodel, image_);
-  const GridOffset offset = offset_between(beside.map(), own);
-  // A start is put on the image's own pixels, about which its residual is then exact.
-  if (!offset.any || offset.right != 0 || offset.up != 0 || !(offset.most < imager::same_place_pixels))
-    refuse_start_model("has other pixels, " + described(beside.grid()),
-                       "the image's, " + described(imager::grid_of(own)) + "; regrid it first, as with CASA's imregrid");
-  const int channel = channel_for(*start_file_, "start model " + o_.startmodel, image_.spectral, channel_);
-  std::vector<imager::SkyImage> planes = read_model_channel(*start_file_, {o_.startmodel, channel});
-  start_model_.clear();
-  for (const imager::Stokes wanted : image_.stokes) {
-    const auto found = std::find_if(planes.begin(), planes.end(), [&](const auto& plane) { return plane.stokes == wanted; });
-    if (found == planes.end())
-      refuse_start_model("has no plane of " + stokes_name(wanted), "one of each in --stokes " + o_.stokes);
-    start_model_.push_back(std::move(found->image));
-  }
-}
-
 imager::CleanState CleanStage::begin(std::size_t stokes, const CleanStateOwner& owner) {
-  imager::Image start;
-  if (!start_model_.empty()) start = std::move(start_model_[stokes]);
+  std::vector<imager::Component> start;
+  if (start_model_) start = start_model_->take(stokes);
   if (o_.restart && std::filesystem::exists(state_path(stokes))) return read_clean_state(state_path(stokes), owner);
   const std::filesystem::path state = state_path(stokes);
   if (o_.cube.is_cube()) std::filesystem::create_directories(state.parent_path());
   std::filesystem::remove(state);
   imager::ComponentModel model = owner.like;
-  if (!start.pixel.empty()) model.add(imager::components_of(start));
+  model.add(start);
   return imager::first_state(model);
 }
 
 std::uint64_t CleanStage::checksum_of(const CleanScene& scene) const {
-  const imager::Image* const start = start_model_.empty() ? nullptr : &start_model_[scene.samples.index];
-  std::vector<const imager::Image*> images{scene.dirty.front(), scene.psf.front(), mask(scene.samples.index), start};
+  std::vector<const imager::Image*> images{scene.dirty.front(), scene.psf.front(), mask(scene.samples.index)};
+  if (start_model_)
+    for (const imager::Image* term : start_model_->images(scene.samples.index)) images.push_back(term);
   images.insert(images.end(), scene.dirty.begin() + 1, scene.dirty.end());
   images.insert(images.end(), scene.psf.begin() + 1, scene.psf.end());
   return checksum(images);

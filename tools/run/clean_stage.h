@@ -8,11 +8,11 @@
 #include "imager/beams/beam.h"
 #include "imager/clean/clean.h"
 #include "imager/clean/deconvolver.h"
-#include "imager/files/fits_image.h"
 #include "imager/files/image_header.h"
 #include "tools/formats/clean_state_file.h"
 #include "tools/formats/mask_file.h"
 #include "tools/run/image_options.h"
+#include "tools/run/start_model.h"
 
 namespace misfit::tools {
 
@@ -56,8 +56,6 @@ class CleanStage {
   std::string state_path(std::size_t stokes) const;
   std::string closed_mask_warning() const;
   std::string missing_states_warning() const;
-  void read_start_model();
-  void refuse_start_model(const std::string& has, const std::string& expected) const;
   /// That of a run before, or that of the start model, which it frees.
   imager::CleanState begin(std::size_t stokes, const CleanStateOwner& owner);
   std::uint64_t checksum_of(const CleanScene& scene) const;
@@ -65,11 +63,10 @@ class CleanStage {
   const ImageOptions& o_;
   imager::ImageHeader image_;
   int threads_;
-  int channel_ = -1;                                 ///< none yet
-  std::unique_ptr<MaskFile> mask_file_;              ///< null without a mask
-  std::unique_ptr<imager::ImageReader> start_file_;  ///< null without a start model
-  std::vector<imager::Image> masks_;                 ///< none, one for all, or [Stokes]
-  std::vector<imager::Image> start_model_;           ///< [Stokes], or none
+  int channel_ = -1;                         ///< none yet
+  std::unique_ptr<MaskFile> mask_file_;      ///< null without a mask
+  std::unique_ptr<StartModel> start_model_;  ///< null without one
+  std::vector<imager::Image> masks_;         ///< none, one for all, or [Stokes]
 };
 
 }  // namespace misfit::tools

@@ -93,9 +93,9 @@ void declare_scene(CLI::App& command, ImageOptions& o) {
   mark(command.add_flag("--quiet", o.quiet, "Print nothing but errors"), OptionMark::free_of_state);
 }
 
-std::string names_of(const std::vector<std::string>& vis) {
+std::string names_of(const std::vector<std::string>& paths) {
   std::string names;
-  for (const std::string& name : vis) names += (names.empty() ? "" : ", ") + name;
+  for (const std::string& name : paths) names += (names.empty() ? "" : ", ") + name;
   return names;
 }
 

@@ -68,7 +68,7 @@ struct ImageOptions {
   double lownoisethreshold = 1.5;
   double minbeamfrac = 0.3;
   int growiterations = 75;
-  std::string startmodel;  ///< an image in Jy/pixel; empty = none
+  std::vector<std::string> startmodel;  ///< images in Jy/pixel, of one or of each Taylor term; empty = none
   std::string savemodel = "none";
   bool restart = false;
   bool force_average = false;
@@ -90,8 +90,8 @@ void declare_scene(CLI::App& command, ImageOptions& options);
 /// Declares all options on `command`.
 void declare(CLI::App& command, ImageOptions& options);
 
-/// The sets, for messages: "A.ms, B.ms".
-std::string names_of(const std::vector<std::string>& vis);
+/// Sets or images, for messages: "A.ms, B.ms".
+std::string names_of(const std::vector<std::string>& paths);
 
 /// What of the sets is imaged, and where it is phased to. Throws std::runtime_error where --phasecenter cannot be understood.
 ms_io::Selection selection_of(const ImageOptions& options);

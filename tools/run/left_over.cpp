@@ -85,7 +85,9 @@ void remove_cube_states(const ImageOptions& o, int first, std::vector<std::strin
 
 bool is_input(const ImageOptions& o, const std::string& path) {
   std::error_code absent;
-  return fs::equivalent(path, o.mask, absent) || fs::equivalent(path, o.startmodel, absent);
+  return fs::equivalent(path, o.mask, absent) ||
+         std::any_of(o.startmodel.begin(), o.startmodel.end(),
+                     [&](const std::string& model) { return fs::equivalent(path, model, absent); });
 }
 
 void remove_half_written(const ImageOptions& o) {

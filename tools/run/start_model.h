@@ -1,0 +1,48 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "imager/clean/components.h"
+#include "imager/files/image_header.h"
+#include "imager/files/image_reader.h"
+#include "tools/run/image_options.h"
+
+namespace misfit::tools {
+
+/// The model that CLEAN begins with, --startmodel: an image in Jy/pixel of the pixels of the image, or one for each Taylor
+/// term.
+class StartModel {
+ public:
+  /// Opens the files of --startmodel, for an image with these planes and Stokes parameters. Throws std::runtime_error that
+  /// names the file and what was expected.
+  StartModel(const ImageOptions& options, const imager::ImageHeader& image);
+
+  /// What the user should know of the files, a sentence each.
+  std::vector<std::string> remarks() const;
+  /// Reads a channel of the image's. Throws as the constructor does.
+  void read(int channel);
+  /// Those of a Stokes parameter [term].
+  std::vector<const imager::Image*> images(std::size_t stokes) const;
+  /// What they hold of it, which is then freed.
+  std::vector<imager::Component> take(std::size_t stokes);
+
+ private:
+  struct File {
+    std::string path;
+    std::string name;  ///< "start model a.fits"
+    std::unique_ptr<imager::ImageReader> reader;
+  };
+
+  void require_term(const File& file, int term) const;
+  void require_same_pixels(const File& file) const;
+  std::vector<imager::Image> planes_of(const File& file, int channel) const;
+
+  const ImageOptions& o_;
+  imager::ImageHeader image_;
+  std::vector<File> files_;                         ///< [term]
+  std::vector<std::vector<imager::Image>> images_;  ///< [term][Stokes]
+};
+
+}  // namespace misfit::tools
