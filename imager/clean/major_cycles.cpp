@@ -96,11 +96,11 @@ class Run {
       made_ = make_taylor_residuals(input_.samples, input_.transform, model_images(), input_.expansion, context_);
       for (const Image& residual : made_) residuals_.push_back(&residual);
     }
-    const StageTimer timer(context_.times, "statistics");
+    const StageTimer timer(context_.times, stage::statistics);
     for (const Image* residual : residuals_) require_finite_residual(*residual, *input_.dirty.front());
   }
   std::vector<Image> model_images() const {
-    const StageTimer timer(context_.times, "minor cycles");
+    const StageTimer timer(context_.times, stage::minor_cycles);
     std::vector<Image> images;
     for (int term = 0; term < input_.expansion.terms; ++term) images.push_back(state_.model.image(o_.threads, term));
     return images;
@@ -117,7 +117,7 @@ class Run {
 
   /// What the residual is now.
   void measure(MajorCycle& cycle) {
-    const StageTimer timer(context_.times, "statistics");
+    const StageTimer timer(context_.times, stage::statistics);
     cycle.rms_jy = robust_noise(residual(), o_.threads);
     cycle.peak_residual_jy = peak_within_mask();
     cycle.mean_square_jy2 = std::pow(root_mean_square(residual()), 2);
@@ -197,7 +197,7 @@ class Run {
     cycle.cycle_threshold_jy = cycle_threshold();
     const int left = o_.max_iterations - now().iterations;
     {
-      const StageTimer timer(context_.times, "minor cycles");
+      const StageTimer timer(context_.times, stage::minor_cycles);
       const MinorCycleReport found =
           minor_.clean(residuals_, {.gain = o_.gain,
                                     .max_iterations = o_.cycle_iterations < 0 ? left : std::min(left, o_.cycle_iterations),

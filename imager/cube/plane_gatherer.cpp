@@ -141,16 +141,16 @@ GatheredPlanes gather_planes(const VisibilitySource& source, const CubeSampling&
   GatheredPlanes::Counts counts;
   std::uint64_t done = 0;
   const auto next = [&] {
-    const StageTimer timer(context.times, "read");
+    const StageTimer timer(context.times, stage::read);
     return stream->next();
   };
   while (const auto block = next()) {
-    const StageTimer timer(context.times, "planes");
+    const StageTimer timer(context.times, stage::planes);
     gatherer.add(*block);
     counts.read += block->counts;
     context.tell(done += block->samples(), source.samples());
   }
-  const StageTimer timer(context.times, "planes");
+  const StageTimer timer(context.times, stage::planes);
   std::vector<std::unique_ptr<GatheredRows>> rows = gatherer.take(true);
   counts.outside_planes = gatherer.outside_planes();
   return {std::move(rows), counts};

@@ -7,6 +7,30 @@
 
 namespace misfit::imager {
 
+/// The stages that are timed, and that a forecast speaks of.
+namespace stage {
+inline constexpr const char* open = "open";
+inline constexpr const char* plan = "plan";
+inline constexpr const char* read = "read";
+inline constexpr const char* planes = "planes";
+inline constexpr const char* weights = "weights";
+inline constexpr const char* grid = "grid";
+inline constexpr const char* degrid = "degrid";
+inline constexpr const char* fft = "fft";
+inline constexpr const char* exchange = "exchange";
+inline constexpr const char* check_pixels = "check pixels";
+inline constexpr const char* statistics = "statistics";
+inline constexpr const char* verify = "verify";
+inline constexpr const char* primary_beam = "primary beam";
+inline constexpr const char* fit_beam = "fit beam";
+inline constexpr const char* sources_outside = "sources outside";
+inline constexpr const char* minor_cycles = "minor cycles";
+inline constexpr const char* clean_state = "CLEAN state";
+inline constexpr const char* restore = "restore";
+inline constexpr const char* write_images = "write images";
+inline constexpr const char* draw_pictures = "draw pictures";
+}  // namespace stage
+
 /// Where the time of a run went.
 class StageTimes {
  public:

@@ -102,7 +102,7 @@ Unexplained unexplained_by(const Image& model, const VisibilitySource& source, c
   Sums sums;
   for_each_residual(source, transform, model, context,
                     [&](const VisibilityBlock& block, const std::vector<std::complex<double>>& residual) {
-                      const StageTimer timer(context.times, "statistics");
+                      const StageTimer timer(context.times, stage::statistics);
                       const std::vector<Placed> all = placed(block, residual, field);
                       for (const Placed *at = all.data(), *end = at + all.size(), *next; at != end; at = next) {
                         next = std::find_if(at, end, [at](const Placed& p) { return p.cell != at->cell; });

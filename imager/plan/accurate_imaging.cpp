@@ -20,7 +20,7 @@ AccurateImages make_images(const VisibilitySource& source, GriddingPlan plan, co
   made.plan = std::move(plan);
   made.transform = std::move(transform);
   if (!made.transform) {
-    const StageTimer timer(context.times, "plan");
+    const StageTimer timer(context.times, stage::plan);
     made.transform = std::make_shared<PlannedTransform>(made.plan);
   }
   if (!made.plan.psf) {
@@ -36,7 +36,7 @@ AccurateImages make_images(const VisibilitySource& source, GriddingPlan plan, co
 /// Errors of the images relative to their RMS as the pixels show it, a few to many so that the direct sums take less than a
 /// second.
 double largest_checked_error(const VisibilitySource& source, const AccurateImages& made, const Context& context) {
-  const StageTimer timer(context.times, "check pixels");
+  const StageTimer timer(context.times, stage::check_pixels);
   const DirtyImages& images = made.images;
   const WideTransformOptions& o = made.plan.options;
   const double affordable = 4e7 / static_cast<double>(images.sums.front().used);
@@ -118,7 +118,7 @@ AccurateImages make_accurate_images(const VisibilitySource& source, GriddingPlan
   made.transform.reset();  // all comes again, and there may be no room for both
   made.images = {};
   {
-    const StageTimer timer(context.times, "plan");
+    const StageTimer timer(context.times, stage::plan);
     plan = plan_gridding(stricter);
   }
   made = make_images(source, std::move(plan), context);

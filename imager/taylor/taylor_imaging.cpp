@@ -19,7 +19,7 @@ std::vector<Image> normalised_images(std::unique_ptr<AdjointSum> sum, const Rank
   BigMemory::release();
   const double weight = result.sums.front().weight;
   if (weight == 0) throw std::runtime_error("no visibility can be imaged: none has a weight above 0 within 1/(2 cell)");
-  const StageTimer timer(context.times, "fft");
+  const StageTimer timer(context.times, stage::fft);
   for (Image& image : result.images) divide(image, weight);
   return std::move(result.images);
 }
@@ -49,7 +49,7 @@ TaylorImages make_taylor_images(const VisibilitySource& source, const Transform&
   auto sum = begin_adjoint(transform, {.images = of_dirty.last}, context);
   auto psf_sum = begin_adjoint(psf.transform, {.images = of_psf.last}, context);
   pass.for_each_block([&](const VisibilityBlock& block) {
-    const StageTimer timer(context.times, "grid");
+    const StageTimer timer(context.times, stage::grid);
     sum->add(block, taylor_sets(expansion, block, {block.visibility.begin(), block.visibility.end()}, of_dirty));
     psf_sum->add(block, taylor_sets(expansion, block, visibilities_of_middle(block, psf), of_psf));
   });
@@ -73,7 +73,7 @@ std::vector<Image> make_taylor_residuals(const OneStokes& samples, const Transfo
   for_each_residual(
       samples, [&] { return std::make_unique<TaylorPrediction>(transform, terms, expansion); }, context,
       [&](const VisibilityBlock& block, const std::vector<std::complex<double>>& residual) {
-        const StageTimer timer(context.times, "grid");
+        const StageTimer timer(context.times, stage::grid);
         sum->add(block, taylor_sets(expansion, block, residual, powers));
       });
   return normalised_images(std::move(sum), samples.source.ranks(), context);

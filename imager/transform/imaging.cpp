@@ -38,7 +38,7 @@ ImageStatistics normalise(Image& image, double weight, const Ranks& ranks) {
 DirtyImages dirty_images(AdjointResult sum, Image psf, const Ranks& ranks, const Context& context) {
   BigMemory::release();
   require_any(sum.sums.front());
-  const StageTimer timer(context.times, "fft");
+  const StageTimer timer(context.times, stage::fft);
   const double weight = sum.sums.front().weight;
   DirtyImages made{std::move(sum.images), std::move(psf), std::move(sum.sums), {}, {}};
   for (Image& image : made.dirty) made.dirty_statistics.push_back(normalise(image, weight, ranks));
@@ -58,7 +58,7 @@ DirtyImages make_dirty_images(const VisibilitySource& source, const Transform& t
   VisibilityPass pass(source, context);
   auto sum = begin_adjoint(transform, options, context);
   pass.for_each_block([&](const VisibilityBlock& block) {
-    const StageTimer timer(context.times, "grid");
+    const StageTimer timer(context.times, stage::grid);
     sum->add(block);
   });
   AdjointResult result = finish_adjoint(std::move(sum), source.ranks(), context);
@@ -72,7 +72,7 @@ DirtyImages make_dirty_images(const VisibilitySource& source, const Transform& t
   auto sum = begin_adjoint(transform, {.images = psf.images}, context);
   auto psf_sum = begin_adjoint(psf.transform, {.images = 0, .with_psf = true}, context);
   pass.for_each_block([&](const VisibilityBlock& block) {
-    const StageTimer timer(context.times, "grid");
+    const StageTimer timer(context.times, stage::grid);
     sum->add(block);
     psf_sum->add(block);
   });
@@ -86,18 +86,18 @@ void for_each_residual(const OneStokes& samples, const MakePrediction& predict, 
   VisibilityPass pass(samples.source, context);
   std::unique_ptr<Prediction> prediction;
   {
-    const StageTimer timer(context.times, "degrid");
+    const StageTimer timer(context.times, stage::degrid);
     prediction = predict();
   }
   pass.for_each_group(prediction->samples_at_once(), [&](const VisibilityPass::Blocks& blocks) {
     std::vector<std::vector<std::complex<double>>> residual;
     {
-      const StageTimer timer(context.times, "degrid");
+      const StageTimer timer(context.times, stage::degrid);
       residual = residuals(*prediction, blocks, samples.index);
     }
     for (std::size_t b = 0; b < blocks.size(); ++b) visit(*blocks[b], residual[b]);
   });
-  context.move_seconds("degrid", "fft", prediction->fft_s());
+  context.move_seconds(stage::degrid, stage::fft, prediction->fft_s());
 }
 
 void for_each_residual(const OneStokes& samples, const Transform& transform, const Image& model, const Context& context,
@@ -110,7 +110,7 @@ Image make_residual_image(const OneStokes& samples, const Transform& transform, 
   auto sum = begin_adjoint(transform, {}, context);
   for_each_residual(samples, transform, model, context,
                     [&](const VisibilityBlock& block, const std::vector<std::complex<double>>& residual) {
-                      const StageTimer timer(context.times, "grid");
+                      const StageTimer timer(context.times, stage::grid);
                       sum->add(block, residual);
                     });
   AdjointResult result = finish_adjoint(std::move(sum), samples.source.ranks(), context);

@@ -47,7 +47,7 @@ class VisibilityPass {
 
  private:
   std::shared_ptr<const VisibilityBlock> next() {
-    const StageTimer timer(context_.times, "read");
+    const StageTimer timer(context_.times, stage::read);
     return stream_->next();
   }
 
@@ -58,7 +58,7 @@ class VisibilityPass {
 
 inline std::unique_ptr<AdjointSum> begin_adjoint(const Transform& transform, const AdjointOptions& options,
                                                  const Context& context) {
-  const StageTimer timer(context.times, "grid");
+  const StageTimer timer(context.times, stage::grid);
   return transform.adjoint(options);
 }
 
@@ -72,13 +72,13 @@ inline void add_up(Image& image, const Ranks& ranks) {
 inline AdjointResult finish_adjoint(std::unique_ptr<AdjointSum> sum, const Ranks& ranks, const Context& context) {
   AdjointResult result;
   {
-    const StageTimer timer(context.times, "grid");
+    const StageTimer timer(context.times, stage::grid);
     result = sum->finish();
     sum.reset();
   }
-  context.move_seconds("grid", "fft", result.fft_s);
+  context.move_seconds(stage::grid, stage::fft, result.fft_s);
   if (ranks.alone()) return result;
-  const StageTimer timer(context.times, "exchange");
+  const StageTimer timer(context.times, stage::exchange);
   for (Image& image : result.images) add_up(image, ranks);
   add_up(result.psf, ranks);
   for (SampleSums& sums : result.sums) sums.add_up(ranks);

@@ -135,17 +135,17 @@ std::shared_ptr<const ImagingWeights> make_imaging_weights(const VisibilitySourc
   std::uint64_t done = 0;
   const auto stream = source.open();
   const auto next = [&] {
-    const StageTimer timer(context.times, "read");
+    const StageTimer timer(context.times, stage::read);
     return stream->next();
   };
   while (const auto block = next()) {
-    const StageTimer timer(context.times, "weights");
+    const StageTimer timer(context.times, stage::weights);
     density.add(*block);
     done += block->samples();
     context.tell(done, source.samples());
   }
   source.end_pass();
-  const StageTimer timer(context.times, "weights");
+  const StageTimer timer(context.times, stage::weights);
   density.add_up(source.ranks());
   return std::make_shared<ImagingWeights>(density, options);
 }

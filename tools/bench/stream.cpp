@@ -149,8 +149,9 @@ double run(double samples, const Options& o) {
   const imager::AccurateImages made = imager::make_accurate_images(streamed, plan, {.times = &times});
   const double seconds = watch.seconds(), a_sample_ns = 1e9 * seconds / static_cast<double>(source.samples());
   std::printf("| %.3g | %.2f | %.2f | %.2f | %d | %.2f | %.2f | %.2f | %s |\n", static_cast<double>(source.samples()), seconds,
-              times.of("grid"), times.of("fft"), plan.choice.best.work.gathers, a_sample_ns, memory.peak.total() / tools::gib,
-              tools::peak_memory_bytes() / tools::gib, memory.streaming.keep ? "kept" : "streamed");
+              times.of(imager::stage::grid), times.of(imager::stage::fft), plan.choice.best.work.gathers, a_sample_ns,
+              memory.peak.total() / tools::gib, tools::peak_memory_bytes() / tools::gib,
+              memory.streaming.keep ? "kept" : "streamed");
   std::fflush(stdout);
   if (made.images.sums.front().used != source.samples()) throw std::runtime_error("samples were lost");
   return a_sample_ns;

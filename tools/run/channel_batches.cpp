@@ -13,12 +13,12 @@
 namespace misfit::tools {
 namespace {
 
-/// Of a plane while it waits; UVW is held once for all.
+/// Of a channel while it waits; UVW is held once for all.
 double gathered_bytes(const RunScene& scene, const RunPlan& plan) {
   return scene.samples * (sizeof(float) + 1.0 * plan.gridding.request.stokes * sizeof(std::complex<float>));
 }
 
-/// Of UVW and the order of rows, which planes share.
+/// Of UVW and the order of rows, which channels share.
 double shared_bytes(double rows) {
   return rows * (3 * sizeof(double) + sizeof(std::uint32_t));
 }
@@ -31,7 +31,7 @@ double in_flight_bytes(const RunScene& scene, const RunPlan& plan) {
   return blocks * static_cast<double>(scene.set.read_at_once()) * (sample + row);
 }
 
-/// While so many planes are imaged at a time, beside `waiting` bytes: each has a copy of its visibilities, grids and images,
+/// While so many channels are imaged at a time, beside `waiting` bytes: each has a copy of its visibilities, grids and images,
 /// and its thread an allocator's memory; buffers of FFTs are the threads' anyway. An image on its way to another rank is there
 /// as an image, as a message, and as that which MPI sends.
 imager::MemoryUse while_imaging(imager::MemoryUse one, double waiting, int workers, double message_bytes) {
@@ -43,15 +43,16 @@ imager::MemoryUse while_imaging(imager::MemoryUse one, double waiting, int worke
   return one;
 }
 
-/// Ranks take planes in turns until there are none, and are done at about the same time.
-int planes_dealt_out(const RunScene& scene) {
+/// Ranks take channels in turns until there are none, and are done at about the same time.
+int channels_dealt_out(const RunScene& scene) {
   constexpr int turns = 3;
-  return scene.ranks.alone() ? scene.planes : (scene.planes + turns * scene.ranks.size() - 1) / (turns * scene.ranks.size());
+  return scene.ranks.alone() ? scene.channels
+                             : (scene.channels + turns * scene.ranks.size() - 1) / (turns * scene.ranks.size());
 }
 
 /// All ranks hold what each has room for.
 void agree(ChannelBatches& batches, const imager::Ranks& ranks) {
-  batches.planes = -static_cast<int>(imager::largest_of(ranks, -batches.planes));
+  batches.channels = -static_cast<int>(imager::largest_of(ranks, -batches.channels));
   batches.read_again = imager::any_of(ranks, batches.read_again);
 }
 
@@ -60,15 +61,15 @@ imager::MemoryUse peak_of(const imager::MemoryUse& one, const imager::MemoryUse&
   return one.total() < other.total() ? other : one;
 }
 
-imager::Decision decision_on(const ChannelBatches& batches, const RunScene& scene, double plane_bytes) {
-  const auto held = std::to_string(batches.planes) + (batches.planes == 1 ? " is" : " are") + " held";
+imager::Decision decision_on(const ChannelBatches& batches, const RunScene& scene, double channel_bytes) {
+  const auto held = std::to_string(batches.channels) + (batches.channels == 1 ? " is" : " are") + " held";
   const int at_once = batches.workers.count;
-  const auto passes = batches_of(scene.planes, batches).size();
+  const auto passes = batches_of(scene.channels, batches).size();
   return {"planes",
-          std::to_string(scene.planes) + ", of which " + held +
+          std::to_string(scene.channels) + ", of which " + held +
               (at_once == 1 ? " at a time" : " and " + std::to_string(at_once) + " imaged at a time"),
           batches.read_again ? "there is no room for the visibilities of one: it reads the set in every pass"
-                             : "the visibilities of one take " + significant(plane_bytes / gib, 2) +
+                             : "the visibilities of one take " + significant(channel_bytes / gib, 2) +
                                    " GiB at most; the set is read in " + std::to_string(passes) +
                                    (passes == 1 ? " pass" : " passes") + (scene.ranks.alone() ? "" : " of all ranks")};
 }
@@ -85,10 +86,10 @@ int samples_of_a_row(const imager::CubeSampling& sampling, const std::vector<ms_
 }
 
 ChannelBatches plan_batches(const RunScene& scene, const RunPlan& plan) {
-  constexpr double enough_bytes = gib / 2;  // each pass over the set reads little more than its planes' channels
+  constexpr double enough_bytes = gib / 2;  // each pass over the set reads little more than its channels need
   const double wanted = scene.options.memory_gib > 0 ? scene.options.memory_gib * gib : memory_of_a_process(scene.ranks) / 2;
   const double rows = static_cast<double>(scene.set.rows());
-  const double plane = gathered_bytes(scene, plan), flight = in_flight_bytes(scene, plan);
+  const double channel = gathered_bytes(scene, plan), flight = in_flight_bytes(scene, plan);
   const double message = scene.ranks.alone() ? 0 : 3 * sizeof(double) * static_cast<double>(scene.geometry.pixels());
   const auto memory = [&](double waiting, int workers) {
     waiting += shared_bytes(rows);
@@ -97,35 +98,35 @@ ChannelBatches plan_batches(const RunScene& scene, const RunPlan& plan) {
   };
   const auto room = [&](int workers) { return wanted - memory(0, workers).total(); };
   ChannelBatches batches;
-  batches.read_again = !plan.streaming.keep || room(1) < plane;
+  batches.read_again = !plan.streaming.keep || room(1) < channel;
   int& workers = batches.workers.count;
   if (!batches.read_again)
-    for (workers = scene.workers; workers > 1 && room(workers) < workers * plane;) --workers;
+    for (workers = scene.workers; workers > 1 && room(workers) < workers * channel;) --workers;
   batches.workers.threads = scene.threads / workers;
   if (!batches.read_again) {
-    const double most = std::max(workers, planes_dealt_out(scene));
-    const double held = std::clamp(std::min(enough_bytes, room(workers)) / plane, 1.0 * workers, most);
-    batches.planes = static_cast<int>(held);
-    if (batches.planes < scene.planes) batches.planes -= batches.planes % workers;
+    const double most = std::max(workers, channels_dealt_out(scene));
+    const double held = std::clamp(std::min(enough_bytes, room(workers)) / channel, 1.0 * workers, most);
+    batches.channels = static_cast<int>(held);
+    if (batches.channels < scene.channels) batches.channels -= batches.channels % workers;
   }
   agree(batches, scene.ranks);
-  // A plane that reads the set holds the rows that are gridded together, and the blocks that are made of them.
+  // A channel that reads the set holds the rows that are gridded together, and the blocks that are made of them.
   const double streamed = 2 * std::min(1.0, static_cast<double>(imager::samples_gathered_at_once) / scene.samples);
-  batches.memory = memory((batches.read_again ? streamed : batches.planes) * plane, workers);
+  batches.memory = memory((batches.read_again ? streamed : batches.channels) * channel, workers);
   if (scene.options.memory_gib > 0 && batches.memory.total() > wanted)
     throw std::invalid_argument("--memory " + significant(scene.options.memory_gib, 6) + ": expected at least " +
                                 significant(std::ceil(batches.memory.total() / gib * 100) / 100, 6) +
                                 " GiB, which a plane of the cube and the samples on their way to it need");
-  batches.decision = decision_on(batches, scene, plane);
+  batches.decision = decision_on(batches, scene, channel);
   return batches;
 }
 
-std::vector<imager::PlaneRange> batches_of(int planes, const ChannelBatches& batches) {
-  if (batches.planes >= planes) return {{0, planes}};
-  const int at_once = batches.workers.count, most = batches.planes / at_once;
-  const int rounds = (planes + at_once - 1) / at_once, count = (rounds + most - 1) / most;
+std::vector<imager::PlaneRange> batches_of(int channels, const ChannelBatches& batches) {
+  if (batches.channels >= channels) return {{0, channels}};
+  const int at_once = batches.workers.count, most = batches.channels / at_once;
+  const int rounds = (channels + at_once - 1) / at_once, count = (rounds + most - 1) / most;
   const auto first = [&](int b) {
-    return std::min(planes, at_once * static_cast<int>(static_cast<long long>(rounds) * b / count));
+    return std::min(channels, at_once * static_cast<int>(static_cast<long long>(rounds) * b / count));
   };
   std::vector<imager::PlaneRange> ranges;
   for (int b = 0; b < count; ++b) ranges.push_back({first(b), first(b + 1) - first(b)});

@@ -9,33 +9,33 @@
 
 namespace misfit::tools {
 
-/// Samples that a row gives to one plane, at most.
+/// Samples that a row gives to one channel, at most.
 int samples_of_a_row(const imager::CubeSampling& sampling, const std::vector<ms_io::SpectralWindow>& windows);
 
-/// How planes share the threads of a run.
+/// How channels share the threads of a run.
 struct ChannelWorkers {
-  int count = 1;    ///< planes that are made at a time
+  int count = 1;    ///< channels that are made at a time
   int threads = 1;  ///< for each of them
 };
 
-/// How a cube's planes come to their visibilities, and are made.
+/// How a cube's channels come to their visibilities, and are made.
 struct ChannelBatches {
-  int planes = 1;           ///< whose visibilities are gathered in one pass and held
+  int channels = 1;         ///< whose visibilities are gathered in one pass and held
   bool read_again = false;  ///< there is no room for those of one: it reads the set in every pass of its own
   ChannelWorkers workers;
   imager::MemoryUse memory;  ///< at the peak
   imager::Decision decision;
 };
 
-/// A plane for each thread is made at a time: that keeps all busy, where a plane would leave them waiting for each other. Fewer
-/// where there are fewer planes, or where --memory, or half of the machine's, has no room for the images and visibilities of so
-/// many; then they share the threads. One where it reads the set itself. As many planes are held as take half a GiB
-/// together, one for each worker at least, and fit in that memory too; of several ranks, which take batches in turns, no more
-/// than that each has some turns, and all hold as many as the one with the least room. Called by all ranks. Throws
-/// std::invalid_argument that says how much memory is needed where --memory is less.
+/// A channel for each thread is made at a time: that keeps all busy, where a channel would leave them waiting for each other.
+/// Fewer where there are fewer channels, or where --memory, or half of the machine's, has no room for the images and
+/// visibilities of so many; then they share the threads. One where it reads the set itself. As many channels are held as take
+/// half a GiB together, one for each worker at least, and fit in that memory too; of several ranks, which take batches in
+/// turns, no more than that each has some turns, and all hold as many as the one with the least room. Called by all ranks.
+/// Throws std::invalid_argument that says how much memory is needed where --memory is less.
 ChannelBatches plan_batches(const RunScene& scene, const RunPlan& plan);
 
-/// The planes in batches of nearly the same size, whole numbers of planes for each worker but for the last.
-std::vector<imager::PlaneRange> batches_of(int planes, const ChannelBatches& batches);
+/// The channels in batches of nearly the same size, whole numbers of channels for each worker but for the last.
+std::vector<imager::PlaneRange> batches_of(int channels, const ChannelBatches& batches);
 
 }  // namespace misfit::tools

@@ -36,7 +36,7 @@ void ChannelMaker::prepare_clean(ChannelRun& run) {
   run.make_terms();
   run.verify();
   if (means_.primary_beam != nullptr && scene_.told != nullptr) {
-    const imager::StageTimer timer(run.times(), "primary beam");
+    const imager::StageTimer timer(run.times(), imager::stage::primary_beam);
     means_.primary_beam->weigh(run.samples());
   }
   if (!means_.images_here) return;

@@ -62,7 +62,7 @@ void ChannelRun::weigh() {
 }
 
 void ChannelRun::weigh(std::shared_ptr<const imager::ImagingWeights> weights) {
-  const imager::StageTimer timer(times(), "weights");
+  const imager::StageTimer timer(times(), imager::stage::weights);
   weights_ = std::move(weights);
   samples().apply(weights_, scene_.threads);
 }
@@ -75,7 +75,7 @@ void ChannelRun::make_dirty(imager::GriddingPlan plan, std::shared_ptr<const ima
   made_.outside_grid = report().sums.outside_grid;
   report().made_twice = images_.plan.request.accuracy != scene_.options.accuracy;  // a second pass asks for more
   predict_noise();
-  const imager::StageTimer timer(times(), "statistics");
+  const imager::StageTimer timer(times(), imager::stage::statistics);
   const imager::NeglectedPhase phase = imager::neglected_w_phase(scene_.reach, samples().w_spread(), scene_.header.geometry);
   double expected = 0;
   for (std::size_t s = 0; s < scene_.header.stokes.size(); ++s) {
@@ -108,7 +108,7 @@ void ChannelRun::make_terms() {
 
 void ChannelRun::verify() {
   if (scene_.options.verify == 0) return;
-  const imager::StageTimer timer(times(), "verify");
+  const imager::StageTimer timer(times(), imager::stage::verify);
   progress().begin("verify" + name_);
   const imager::MeasuredError measured = imager::measure_error(samples(), images_.transform->images(), scene_.header.geometry,
                                                                images_.images, scene_.options.verify, context());
@@ -118,7 +118,7 @@ void ChannelRun::verify() {
 }
 
 void ChannelRun::choose_beams() {
-  const imager::StageTimer timer(times(), "fit beam");
+  const imager::StageTimer timer(times(), imager::stage::fit_beam);
   const ImageOptions& o = scene_.options;
   report().beams =
       choose_beam(images_.images.psf, scene_.header.geometry.cell_rad, restoring_beam(o), o.niter > 0 && !o.cube.is_cube());

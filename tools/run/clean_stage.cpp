@@ -112,7 +112,7 @@ imager::CleanResult CleanStage::run(const CleanScene& scene, const nlohmann::jso
   options.mask = mask(scene.samples.index);
   std::unique_ptr<imager::MinorCycle> minor;
   {
-    const imager::StageTimer timer(context.times, "minor cycles");
+    const imager::StageTimer timer(context.times, imager::stage::minor_cycles);
     minor = imager::make_deconvolver(deconvolver_choice(o_, threads_), scene.psf);
   }
   CleanStateOwner owner{MISFIT_VERSION,
@@ -123,7 +123,7 @@ imager::CleanResult CleanStage::run(const CleanScene& scene, const nlohmann::jso
   imager::CleanState state;
   double sidelobe = 0;
   {
-    const imager::StageTimer timer(context.times, "CLEAN state");
+    const imager::StageTimer timer(context.times, imager::stage::clean_state);
     owner.checksum = checksum_of(scene);
     state = begin(scene.samples.index, owner);
     sidelobe = imager::largest_sidelobe(*scene.psf.front(), scene.main_lobe, image_.geometry.cell_rad, threads_);
@@ -137,7 +137,7 @@ imager::CleanResult CleanStage::run(const CleanScene& scene, const nlohmann::jso
                                  .accuracy = std::max(o_.accuracy, scene.expected_error),
                                  .beam_fwhm_pixels = mean_width_rad(scene.main_lobe) / image_.geometry.cell_rad};
   const auto save = [&](const imager::CleanState& now) {
-    const imager::StageTimer timer(context.times, "CLEAN state");
+    const imager::StageTimer timer(context.times, imager::stage::clean_state);
     write_clean_state(state_path(scene.samples.index), now, owner);
     cycle_progress(now);
   };

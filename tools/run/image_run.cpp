@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <map>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <utility>
 
@@ -102,7 +103,7 @@ class ImageRun : private ChannelSink {
   bool images_here() const { return cube() || ranks_.first(); }
 
   void open() {
-    const imager::StageTimer timer(times_, "open");
+    const imager::StageTimer timer(times_, imager::stage::open);
     if (!o_.dry_run && ranks_.first()) name_ = claim_product_paths(o_);
     if (o_.savemodel == "modelcolumn" && ranks_.first())
       for (const std::string& set : o_.vis) ms_io::require_writable(set);
@@ -173,7 +174,7 @@ class ImageRun : private ChannelSink {
         .reach = reach_,
         .threads = threads_,
         .mask = o_.niter > 0 && images_here() && (!o_.mask.empty() || o_.usemask == "auto"),
-        .planes = channels(),
+        .channels = channels(),
         .workers = std::min(threads_, channels_of_a_rank()),
         .samples = enlarged * (cube() ? static_cast<double>(set_->rows()) * samples_of_a_row(sampling_, windows_) : all),
         .share = own / all,
@@ -213,7 +214,7 @@ class ImageRun : private ChannelSink {
     imager::sum_over(ranks_, at_once_);
     if (!ranks_.alone())
       plan_.decisions.push_back(
-          plane_sharing_decision(ranks_.size(), channels(), batches.planes, plane_bytes(work_of(scene, plan_))));
+          channel_sharing_decision(ranks_.size(), channels(), batches.channels, channel_bytes(work_of(scene, plan_))));
     plan_.gridding = imager::with_threads(std::move(plan_.gridding), workers_.threads);
     plan_.memory = batches.memory;
     plan_.decisions.push_back(batches.decision);
@@ -240,7 +241,7 @@ class ImageRun : private ChannelSink {
                        .primary_beam = primary_beam_.get()};
     if (cube()) {
       report_.plan.insert(report_.plan.end(), plan_.gridding.decisions.begin(), plan_.gridding.decisions.end());
-      const imager::StageTimer timer(times_, "plan");
+      const imager::StageTimer timer(times_, imager::stage::plan);
       means.transform = std::make_shared<imager::PlannedTransform>(plan_.gridding);
     }
     maker_ = std::make_unique<ChannelMaker>(*scene_, std::move(means), std::move(clean_));
@@ -248,7 +249,7 @@ class ImageRun : private ChannelSink {
   }
 
   void open_products() {
-    const imager::StageTimer timer(times_, "write images");
+    const imager::StageTimer timer(times_, imager::stage::write_images);
     products_ = std::make_unique<Products>(
         o_, header_, primary_beam_.get(), workers_, [this](const ProductKind& kind, const imager::ImageHeader& header) {
           auto elsewhere = queue_->writer(kind.name);
@@ -263,7 +264,7 @@ class ImageRun : private ChannelSink {
     if (!options.needs_density()) return;
     imager::UvDensity density(header_.geometry, threads_);
     const auto add = [&](const imager::VisibilitySource& channel) {
-      const imager::StageTimer timer(times_, "weights");
+      const imager::StageTimer timer(times_, imager::stage::weights);
       const auto stream = channel.open();
       while (const auto block = stream->next()) density.add(*block);
     };
@@ -290,7 +291,9 @@ class ImageRun : private ChannelSink {
 
   /// As many at a time as there are workers. Rethrows what goes wrong with one, once all at work are over; Interrupted last.
   void make(const imager::PlaneRange& batch) {
-    visibilities_->begin(batch, progress_, times_);
+    imager::StageTimes reading;
+    visibilities_->begin(batch, progress_, reading);
+    add_times(reading, 1);
     if (cube()) progress_.begin(visibilities_->work_on(batch), o_.niter > 0);
     const auto count = static_cast<std::size_t>(batch.count);
     std::atomic<std::uint64_t> done = 0;
@@ -316,11 +319,11 @@ class ImageRun : private ChannelSink {
     imager::StageTimes taking;
     std::unique_ptr<ChannelSamples> samples;
     {
-      const imager::StageTimer timer(taking, "planes");
+      const imager::StageTimer timer(taking, imager::stage::planes);
       samples = visibilities_->take(channel);
     }
     const std::unique_ptr<ChannelRun> run = maker_->image(channel, std::move(samples));
-    if (cube()) run->times().add("planes", taking.of("planes"));
+    if (cube()) run->times().add(imager::stage::planes, taking.of(imager::stage::planes));
     if (!cube()) tell_dirty(*run);
     maker_->prepare_clean(*run);
     if (!cube() && ranks_.first()) begin_pictures(*run);
@@ -365,7 +368,7 @@ class ImageRun : private ChannelSink {
   }
 
   void look_outside(ChannelRun& run) {
-    const imager::StageTimer timer(times_, "sources outside");
+    const imager::StageTimer timer(times_, imager::stage::sources_outside);
     imager::StageTimes own;  // its gridding is not this image's
     progress_.begin("sources outside", true);
     const imager::AccurateImages& made = run.images();
@@ -398,30 +401,36 @@ class ImageRun : private ChannelSink {
   void take(MadeChannel&& channel) override {
     for (const std::string& sentence : channel.warnings) warn(sentence);
     for (const std::string& doubt : channel.doubts) doubts_[doubt].push_back(channel.report.channel);
-    for (const auto& [stage, seconds] : channel.times.stages()) times_.add(stage, seconds / at_once_);
+    add_times(channel.times, at_once_);
     outside_grid_ += channel.outside_grid;
     work_.components += channel.components;
     work_.major_cycles += channel.major_cycles;
     empty_ += channel.empty() ? 1 : 0;
-    report_.plane_samples += channel.report.sums.used;
-    if (cube() && o_.niter > 0 && !channel.empty()) progress_.say(plane_message(channel.report, channels()));
+    report_.channel_samples += channel.report.sums.used;
+    if (cube() && o_.niter > 0 && !channel.empty()) progress_.say(channel_line(channel.report, channels()));
     report_.channels.push_back(std::move(channel.report));
     cleaned_ = std::move(channel.cleaned);
+  }
+
+  /// Of a part of the work, of which so many are done at a time.
+  void add_times(const imager::StageTimes& times, int at_once) {
+    const std::lock_guard lock(times_mutex_);
+    for (const auto& [stage, seconds] : times.stages()) times_.add(stage, seconds / at_once);
   }
 
   /// Each sample read once: what is left out for no reason is used. Of those that channels take, as large a part is outside the
   /// grid as of the channels' samples.
   void count_samples() {
     imager::SampleCounts& counts = report_.counts = visibilities_->counts();
-    report_.outside_planes = visibilities_->outside_channels();
+    report_.outside_channels = visibilities_->outside_channels();
     counts.add_up(ranks_);
-    imager::sum_over(ranks_, report_.outside_planes);
+    imager::sum_over(ranks_, report_.outside_channels);
     const std::uint64_t taken = counts.samples_read - counts.autocorrelations - counts.flagged - counts.nonfinite -
-                                counts.zero_weight - report_.outside_planes;
-    const double in_planes = static_cast<double>(outside_grid_ + report_.plane_samples);
+                                counts.zero_weight - report_.outside_channels;
+    const double in_channels = static_cast<double>(outside_grid_ + report_.channel_samples);
     if (outside_grid_ > 0)
-      counts.outside_grid =
-          static_cast<std::uint64_t>(std::ceil(static_cast<double>(taken) * (static_cast<double>(outside_grid_) / in_planes)));
+      counts.outside_grid = static_cast<std::uint64_t>(
+          std::ceil(static_cast<double>(taken) * (static_cast<double>(outside_grid_) / in_channels)));
     counts.used = taken - counts.outside_grid;
     for (const std::string& warning : notes_on_data(*set_, ranks_)) warn(warning);
   }
@@ -429,9 +438,9 @@ class ImageRun : private ChannelSink {
   void count_traffic() {
     if (ranks_.alone()) return;
     imager::Traffic all = ranks_.traffic();
-    if (!cube()) return report_.plan.push_back(traffic_decision(all, times_.of("exchange")));
+    if (!cube()) return report_.plan.push_back(traffic_decision(all, times_.of(imager::stage::exchange)));
     imager::sum_over(ranks_, all.bytes, all.exchanges);
-    report_.plan.push_back(plane_traffic_decision(all));
+    report_.plan.push_back(channel_traffic_decision(all));
   }
 
   void finish_products() {
@@ -474,7 +483,7 @@ class ImageRun : private ChannelSink {
     if (cube()) look_at_shown(shown);
     PageDrawings drawings;
     {
-      const imager::StageTimer timer(times_, "draw pictures");
+      const imager::StageTimer timer(times_, imager::stage::draw_pictures);
       (cube() ? drawings.spectrum : drawings.histogram) = cube() ? spectrum_drawing(report_) : histogram_drawing(shown);
     }
     std::vector<PagePicture> pictures;
@@ -491,7 +500,7 @@ class ImageRun : private ChannelSink {
   /// The channel of a cube that its report shows, from files.
   void look_at_shown(ChannelReport& shown) {
     {
-      const imager::StageTimer timer(times_, "statistics");
+      const imager::StageTimer timer(times_, imager::stage::statistics);
       const auto residual = open_written(o_, "residual");
       for (std::size_t s = 0; s < shown.stokes.size() && shown.sums.used > 0; ++s) {
         PixelHistogram& histogram = shown.stokes[s].histogram;
@@ -544,6 +553,7 @@ class ImageRun : private ChannelSink {
   ProgressLine progress_;
   imager::Stopwatch watch_;
   imager::StageTimes times_;
+  std::mutex times_mutex_;  ///< of times_, while channels of other ranks come in
   ToldAsItGoes told_{progress_, times_, [this](const std::string& sentence) { warn(sentence); }};
   RunReport report_;
   TimeForecast forecast_{default_cache_folder()};

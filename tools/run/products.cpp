@@ -161,7 +161,7 @@ void Products::put_spectra(const imager::SpectralImages& spectra, const std::str
 Products::OfBeam Products::primary_beam_of(ChannelRun& run) const {
   OfBeam beam;
   if (primary_beam_ == nullptr) return beam;
-  const imager::StageTimer timer(run.times(), "primary beam");
+  const imager::StageTimer timer(run.times(), imager::stage::primary_beam);
   if (TaylorStage* const taylor = run.taylor(); taylor != nullptr) {
     beam.of_terms = primary_beam_->of_terms(taylor->expansion());
     beam.terms = beam.of_terms->terms();
@@ -177,13 +177,13 @@ void Products::write(ChannelRun& run, RunPictures* pictures) {
   const imager::PlaneIndex at{run.report().channel, 0};
   const std::optional<imager::Beam>& beam = run.report().beams->restoring;
   {
-    const imager::StageTimer timer(run.times(), "write images");
+    const imager::StageTimer timer(run.times(), imager::stage::write_images);
     const imager::Image& psf = run.images().images.psf;
     put_terms("psf", at, run.taylor() == nullptr ? std::vector{&psf} : all_terms(psf, run.taylor()->images().psf), beam);
   }
   const OfBeam primary_beam = primary_beam_of(run);
   {
-    const imager::StageTimer timer(run.times(), "write images");
+    const imager::StageTimer timer(run.times(), imager::stage::write_images);
     put_terms("pb", at, pointers_to(primary_beam.terms), beam);
   }
   for (std::size_t s = header_.stokes.size(); s-- > 0;)
@@ -199,14 +199,14 @@ void Products::write_stokes(std::size_t stokes, const OfBeam& primary_beam, Chan
   const imager::Image& residual = result != nullptr ? result->residual : run.images().images.dirty[stokes];
   RestoredTerms restored;
   if (result != nullptr && !in_common_) {
-    const imager::StageTimer timer(times, "restore");
+    const imager::StageTimer timer(times, imager::stage::restore);
     if (taylor != nullptr)
       restored = taylor->restore(*result, *beam, header_.geometry.cell_rad);
     else
       restored.first = restore(result->model, residual, *beam);
   }
   {
-    const imager::StageTimer timer(times, "statistics");
+    const imager::StageTimer timer(times, imager::stage::statistics);
     StokesReport& told = run.report().stokes[stokes];
     const double noise_jy = told.clean ? told.clean->final_state().rms_jy : imager::sampled_noise(residual);
     if (o_.cube.is_cube())
@@ -215,7 +215,7 @@ void Products::write_stokes(std::size_t stokes, const OfBeam& primary_beam, Chan
       told.histogram = pixel_histogram(residual, noise_jy, workers_.threads);
   }
   if (pictures != nullptr && result != nullptr) pictures->draw(stokes, *result, restored);
-  const imager::StageTimer timer(times, "write images");
+  const imager::StageTimer timer(times, imager::stage::write_images);
   const imager::PlaneIndex at{run.report().channel, static_cast<int>(stokes)};
   std::vector<imager::Image> principal;  // of terms that are not cleaned
   std::vector<const imager::Image*> shown{&residual};
@@ -264,7 +264,7 @@ std::vector<std::string> Products::finish(std::vector<ChannelReport>& channels, 
                                           imager::StageTimes& times) {
   std::vector<std::string> removed;
   {
-    const imager::StageTimer timer(times, "write images");
+    const imager::StageTimer timer(times, imager::stage::write_images);
     remove_left_over(o_, {paths_, o_.cube.is_cube() ? header_.spectral.channels : 0}, removed);
     for (auto& [name, file] : files_) {
       file.writer->add_cards(cards);
@@ -274,7 +274,7 @@ std::vector<std::string> Products::finish(std::vector<ChannelReport>& channels, 
     if (!in_common_) finish_files(true);
   }
   if (!in_common_) return removed;
-  const imager::StageTimer timer(times, "restore");
+  const imager::StageTimer timer(times, imager::stage::restore);
   restore_in_common(channels);
   finish_files(true);
   return removed;

@@ -64,11 +64,11 @@ std::string cycle_message(const imager::CleanState& state) {
          ", noise " + with_prefix(cycle.rms_jy, "Jy/beam", 3) + (state.now + 1 == state.cycles.size() ? "" : ": taken back");
 }
 
-std::string plane_message(const ChannelReport& plane, int planes) {
-  std::string text = "  plane " + std::to_string(plane.channel) + " of " + std::to_string(planes) + ", " +
-                     frequency_text(plane.frequency_hz, 9);
-  for (const StokesReport& of : plane.stokes) {
-    text += plane.stokes.size() > 1 ? "; " + stokes_name(of.stokes) + " " : ": ";
+std::string channel_line(const ChannelReport& channel, int channels) {
+  std::string text = "  plane " + std::to_string(channel.channel) + " of " + std::to_string(channels) + ", " +
+                     frequency_text(channel.frequency_hz, 9);
+  for (const StokesReport& of : channel.stokes) {
+    text += channel.stokes.size() > 1 ? "; " + stokes_name(of.stokes) + " " : ": ";
     if (of.clean)
       text += grouped(of.clean->iterations) + " components, peak residual " +
               with_prefix(of.clean->final_state().peak_residual_jy, "Jy/beam", 3) + ", ";
@@ -84,7 +84,7 @@ std::string divergence_warning(const imager::CleanReport& report) {
 
 std::string summary(const RunReport& r) {
   const ChannelReport& plane = r.channels[r.shown];
-  const std::string imaged = r.cube ? " samples imaged, as " + counted(r.plane_samples) + " in " +
+  const std::string imaged = r.cube ? " samples imaged, as " + counted(r.channel_samples) + " in " +
                                           std::to_string(r.cube->channels) + " planes; at plane " +
                                           std::to_string(plane.channel) + ", the brightest: expected error "
                                     : " samples imaged; expected error ";

@@ -29,7 +29,7 @@ std::string accuracy_warning(double asked, double expected);
 std::string cycle_message(const imager::CleanState& state);
 
 /// Of a plane of a cube that is done.
-std::string plane_message(const ChannelReport& plane, int planes);
+std::string channel_line(const ChannelReport& channel, int channels);
 
 /// That CLEAN diverged, and what may help.
 std::string divergence_warning(const imager::CleanReport& report);

@@ -46,7 +46,7 @@ void RunPictures::add(const std::vector<Shown>& shown) {
 }
 
 void RunPictures::draw_dirty(ChannelRun& run) {
-  const imager::StageTimer timer(times_, "draw pictures");
+  const imager::StageTimer timer(times_, imager::stage::draw_pictures);
   about_.geometry = header_.geometry;
   about_.observation = header_.observation;
   about_.has_beam = run.report().beams->restoring.has_value();
@@ -70,7 +70,7 @@ void RunPictures::draw_dirty(ChannelRun& run) {
 }
 
 void RunPictures::draw(std::size_t stokes, const imager::CleanResult& cleaned, const RestoredTerms& restored) {
-  const imager::StageTimer timer(times_, "draw pictures");
+  const imager::StageTimer timer(times_, imager::stage::draw_pictures);
   const imager::Image* const mask = cleaned.mask.pixel.empty() ? nullptr : &cleaned.mask;
   std::vector<Shown> shown;
   if (o_.usemask == "auto")
@@ -85,7 +85,7 @@ void RunPictures::draw(std::size_t stokes, const imager::CleanResult& cleaned, c
 }
 
 void RunPictures::draw_channel(const ChannelReport& channel) {
-  const imager::StageTimer timer(times_, "draw pictures");
+  const imager::StageTimer timer(times_, imager::stage::draw_pictures);
   about_.geometry = header_.geometry;
   about_.observation = header_.observation;
   about_.observation.frequency_hz = channel.frequency_hz;
@@ -102,7 +102,7 @@ void RunPictures::draw_channel(const ChannelReport& channel) {
 }
 
 std::string RunPictures::finish(std::vector<PagePicture>& pictures) {
-  const imager::StageTimer timer(times_, "draw pictures");
+  const imager::StageTimer timer(times_, imager::stage::draw_pictures);
   std::string failure = drawing_.finish();
   if (!failure.empty()) return failure;
   for (auto picture = titles_and_paths_.rbegin(); picture != titles_and_paths_.rend(); ++picture)

@@ -178,7 +178,7 @@ class RunPlanner {
     plan_.streaming.uv_reach_lambda = std::max(
         least_lambda, std::min(std::max(scene_.reach.max_abs_u, scene_.reach.max_abs_v), 0.5 / scene_.geometry.cell_rad));
     plan_.memory = memory.peak;
-    if (scene_.planes == 1) plan_.decisions.push_back(memory.decision);
+    if (scene_.channels == 1) plan_.decisions.push_back(memory.decision);
   }
 
   void warn_of_neglected_w() {
@@ -197,7 +197,7 @@ class RunPlanner {
 
 double search_seconds(const std::vector<StageSeconds>& stages) {
   for (const StageSeconds& s : stages)
-    if (s.stage == "sources outside") return s.seconds;
+    if (s.stage == imager::stage::sources_outside) return s.seconds;
   return 0;
 }
 
@@ -207,7 +207,7 @@ RunPlan plan_run(const RunScene& scene, imager::StageTimes& times, ProgressLine&
   check(scene.options.scale, scene.ranks);
   RunPlanner planner(scene, progress);
   {
-    const imager::StageTimer timer(times, "plan");
+    const imager::StageTimer timer(times, imager::stage::plan);
     planner.decide_all();
   }
   return planner.take();
@@ -241,9 +241,9 @@ RunWork work_of(const RunScene& scene, const RunPlan& plan) {
   return {.plan = &plan.gridding,
           .rows = static_cast<double>(scene.set.rows()) * scene.enlarged,
           .samples = static_cast<double>(scene.set.samples()) * scene.enlarged,
-          .planes = scene.planes,
-          .workers = scene.planes > 1 ? scene.workers * scene.ranks.size() : 1,
-          .ranks = (scene.planes > 1 ? scene.ranks : scene.set.ranks()).size(),
+          .channels = scene.channels,
+          .workers = scene.channels > 1 ? scene.workers * scene.ranks.size() : 1,
+          .ranks = (scene.channels > 1 ? scene.ranks : scene.set.ranks()).size(),
           .kept = plan.streaming.keep,
           .pixels = static_cast<double>(scene.geometry.pixels()),
           .images = written_images(o, stokes),

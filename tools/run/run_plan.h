@@ -24,9 +24,9 @@ struct RunScene {
   imager::UvwReach reach;
   int threads = 1;
   bool mask = false;    ///< there is or will be one, where components may lie
-  int planes = 1;       ///< of frequency
-  int workers = 1;      ///< planes made at a time, where memory allows; they share the threads
-  double samples = 0;   ///< of a plane at most, in Stokes samples of all ranks: gridding is chosen by them, whoever does it
+  int channels = 1;     ///< of the image
+  int workers = 1;      ///< channels made at a time, where memory allows; they share the threads
+  double samples = 0;   ///< of a channel at most, in Stokes samples of all ranks: gridding is chosen by them, whoever does it
   double share = 1;     ///< the part of them that this rank has
   double enlarged = 1;  ///< samples and rows over those of `set`, where others are planned for; `samples` is of these
 };

@@ -222,8 +222,8 @@ json report_json(const RunReport& r) {
           {"stokes", stokes_json(r.accuracy, plane)},
           {"spectral_axis", spectral_json(r.cube)},
           {"planes", r.cube ? planes_json(r) : json()},
-          {"plane_samples", r.cube ? json(r.plane_samples) : json()},
-          {"samples_outside_planes", r.cube ? json(r.outside_planes) : json()},
+          {"plane_samples", r.cube ? json(r.channel_samples) : json()},
+          {"samples_outside_planes", r.cube ? json(r.outside_channels) : json()},
           {"outside", outside_json(r.outside)},
           {"outside_search", outside_search_json(r.outside)}};
 }

@@ -53,8 +53,8 @@ struct RunReport {
   std::vector<ChannelReport> channels = {{}};  ///< at least one
   std::size_t shown = 0;                       ///< the channel that is drawn, and told of where one is
   std::optional<imager::SpectralAxis> cube{};  ///< null where there is one channel, of the whole band
-  std::uint64_t plane_samples = 0;             ///< in them, which interpolation makes of those used
-  std::uint64_t outside_planes = 0;            ///< usable samples that lie in none of them
+  std::uint64_t channel_samples = 0;           ///< in them, which interpolation makes of those used
+  std::uint64_t outside_channels = 0;          ///< usable samples that lie in none of them
   imager::SampleCounts counts;
   const OutsideReport* outside = nullptr;
   double wall_clock_s = 0;

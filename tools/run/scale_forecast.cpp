@@ -27,9 +27,10 @@ int levels_of(int nodes) {
 
 /// By whom a stage's work is done.
 double& part_of(NodeSeconds& seconds, const std::string& stage) {
-  if (stage == "read") return seconds.read;
-  if (stage == "fft") return seconds.fft;
-  for (const char* shared : {"grid", "degrid", "weights", "verify", "planes", "sources outside", "primary beam"})
+  if (stage == imager::stage::read) return seconds.read;
+  if (stage == imager::stage::fft) return seconds.fft;
+  for (const char* shared : {imager::stage::grid, imager::stage::degrid, imager::stage::weights, imager::stage::verify,
+                             imager::stage::planes, imager::stage::sources_outside, imager::stage::primary_beam})
     if (stage == shared) return seconds.gridding;
   return seconds.first;
 }
@@ -39,7 +40,7 @@ NodeSeconds operator-(const NodeSeconds& a, const NodeSeconds& b) {
 }
 
 bool is_of_files(const StageSeconds& stage) {
-  return stage.stage == "write images" || stage.stage == "draw pictures";
+  return stage.stage == imager::stage::write_images || stage.stage == imager::stage::draw_pictures;
 }
 
 std::string bytes_text(double bytes) {
@@ -131,7 +132,7 @@ void ScaleForecast::set_memory(NodeForecast& forecast, double samples) const {
 }
 
 NodeForecast ScaleForecast::at(int nodes) const {
-  if (scene_.planes > 1) return plane_forecast(nodes);
+  if (scene_.channels > 1) return channel_forecast(nodes);
   NodeForecast node;
   node.sharing.nodes = nodes;
   RunWork work = work_of_a_node(nodes);
@@ -152,26 +153,26 @@ NodeForecast ScaleForecast::at(int nodes) const {
 }
 
 /// Planes wait for no others, but rank 0 gets and writes all.
-NodeForecast ScaleForecast::plane_forecast(int nodes) const {
-  const int planes = (scene_.planes + nodes - 1) / nodes;
+NodeForecast ScaleForecast::channel_forecast(int nodes) const {
+  const int channels = (scene_.channels + nodes - 1) / nodes;
   RunWork work = work_;
-  work.planes = planes;
-  work.samples *= 1.0 * planes / scene_.planes;
-  work.workers = std::min(work_.workers, planes);
+  work.channels = channels;
+  work.samples *= 1.0 * channels / scene_.channels;
+  work.workers = std::min(work_.workers, channels);
   work.ranks = 1;
-  if (planes == 1) work.threads = scene_.threads;
+  if (channels == 1) work.threads = scene_.threads;
   NodeForecast node;
   node.sharing.nodes = nodes;
   set_memory(node, work.samples);
   node.kept = work.kept;
-  node.memory_bytes = plan_.memory.total();  // which holds as many planes as it has room for
+  node.memory_bytes = plan_.memory.total();  // which holds as many channels as it has room for
   for (const StageSeconds& stage : forecast_.expected(work, work_)) {
     double& part = part_of(node.image, stage.stage);
     if (!is_of_files(stage)) (&part == &node.image.first ? node.image.gridding : part) += stage.seconds;
   }
   for (const StageSeconds& stage : forecast_.expected(work_))
     if (is_of_files(stage)) node.image.first += stage.seconds;
-  if (nodes > 1) node.image_bytes = plane_bytes(work) * planes;
+  if (nodes > 1) node.image_bytes = channel_bytes(work) * channels;
   node.image.exchange = node.image_bytes * (nodes - 1) / (scene_.options.scale.network_bytes_s());
   if (!clean_) return node;
   node.cycle = cycle_seconds(work);
@@ -215,7 +216,7 @@ NodeForecast ScaleForecast::best_facets(int nodes) const {
   constexpr int least_side = 256;  // pixels
   const imager::ImageGeometry& g = scene_.geometry;
   NodeForecast best = at(nodes);
-  if (scene_.planes > 1 || plan_.gridding.direct) return best;
+  if (scene_.channels > 1 || plan_.gridding.direct) return best;
   for (int side = 2; side * side <= nodes && std::min(g.width, g.height) / side >= least_side; side *= 2) {
     const NodeForecast one = facet_forecast(nodes, Facets(plan_.gridding.request, side));
     if (one.shown(clean_).total() < best.shown(clean_).total()) best = one;
@@ -248,8 +249,8 @@ std::string ScaleForecast::row(const NodeForecast& node) const {
 std::string ScaleForecast::why(const NodeForecast& node) const {
   const NodeSeconds& s = node.shown(clean_);
   const std::string of = " of " + duration(s.total());
-  if (scene_.planes > 1 && s.first + s.exchange < s.gridding)
-    return "there are " + std::to_string(scene_.planes) + " planes, and a node makes one at least: " + duration(s.gridding) +
+  if (scene_.channels > 1 && s.first + s.exchange < s.gridding)
+    return "there are " + std::to_string(scene_.channels) + " planes, and a node makes one at least: " + duration(s.gridding) +
            of;
   if (s.exchange >= s.fft && s.exchange >= s.first)
     return "images come to rank 0: " + duration(s.exchange) + of + ", for " +
@@ -261,7 +262,7 @@ std::string ScaleForecast::why(const NodeForecast& node) const {
 
 std::string ScaleForecast::table() const {
   const ScaleOptions& asked = scene_.options.scale;
-  const std::string what = scene_.planes > 1 ? (clean_ ? "a major cycle of every plane" : "the cube")
+  const std::string what = scene_.channels > 1 ? (clean_ ? "a major cycle of every plane" : "the cube")
                            : clean_ ? "a major cycle of " + grouped(components_of_a_cycle(scene_.options)) + " components"
                                     : "dirty image and PSF";
   std::string text = "nodes: time of " + what + ", for " + grouped(std::llround(work_.samples)) + " samples on nodes of " +
@@ -280,12 +281,12 @@ std::string ScaleForecast::table() const {
           significant(there.shown(clean_).total() / twice.shown(clean_).total(), 3) + " times as fast; " + why(twice) + "\n";
   const double bytes = clean_ ? at(asked.nodes).cycle_bytes : at(asked.nodes).image_bytes;
   if (const double tree_s = tree_seconds(asked.nodes, bytes);
-      scene_.planes == 1 && sum_seconds(asked.nodes, bytes) < 0.9 * tree_s)
+      scene_.channels == 1 && sum_seconds(asked.nodes, bytes) < 0.9 * tree_s)
     text += "nodes: images are added up on their way along the nodes, in pieces: " + duration(sum_seconds(asked.nodes, bytes)) +
             " of " + grouped(asked.nodes) + " nodes, where a tree would take " + duration(tree_s) + "\n";
   std::optional<int> before;
   for (const int nodes : {asked.nodes, 4 * stop}) {
-    if (before == nodes || scene_.planes > 1) continue;
+    if (before == nodes || scene_.channels > 1) continue;
     before = nodes;
     const NodeForecast rows = at(nodes), facets = best_facets(nodes);
     const std::string of = "nodes: facets shared among " + grouped(nodes);

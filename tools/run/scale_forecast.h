@@ -27,7 +27,7 @@ struct NodeSharing {
 /// A run on such machines, which are like this one.
 struct NodeForecast {
   NodeSharing sharing;
-  NodeSeconds image;        ///< dirty image and PSF, or the planes of a cube, with their files
+  NodeSeconds image;        ///< dirty image and PSF, or the channels of a cube, with their files
   NodeSeconds cycle;        ///< a major cycle; none without CLEAN
   bool kept = true;         ///< whether a node has room for its samples, and reads them once
   double read_bytes = 0;    ///< that a node reads in a pass
@@ -45,7 +45,7 @@ class ScaleForecast {
   /// Kept by reference, but for `work`, the plan's.
   ScaleForecast(const RunScene& scene, const RunPlan& plan, const TimeForecast& forecast, const RunWork& work);
 
-  /// What is built: ranks share samples, or the planes of a cube.
+  /// What is built: ranks share samples, or the channels of a cube.
   NodeForecast at(int nodes) const;
   /// Were the image cut into facets besides: the number of them, a square, by which the shown part takes the least time.
   NodeForecast best_facets(int nodes) const;
@@ -58,7 +58,7 @@ class ScaleForecast {
   class Facets;
 
   RunWork work_of_a_node(int nodes) const;
-  NodeForecast plane_forecast(int nodes) const;
+  NodeForecast channel_forecast(int nodes) const;
   NodeForecast facet_forecast(int nodes, const Facets& facets) const;
   NodeSeconds seconds_of(const RunWork& work) const;
   NodeSeconds cycle_seconds(const RunWork& work) const;

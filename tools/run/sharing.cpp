@@ -33,20 +33,20 @@ imager::Decision sharing_decision(const ms_io::SampleSharing& sharing, const Exc
               " a major cycle, for which it gets the model's components"};
 }
 
-double plane_bytes(const RunWork& work) {
+double channel_bytes(const RunWork& work) {
   return sizeof(double) * work.pixels * work.images;
 }
 
-imager::Decision plane_sharing_decision(int ranks, int planes, int planes_of_a_batch, double plane_bytes) {
+imager::Decision channel_sharing_decision(int ranks, int channels, int channels_of_a_batch, double channel_bytes) {
   const std::string idle =
-      planes >= ranks ? ""
-                      : "; " + std::to_string(ranks - planes) + " of the ranks have nothing to do, as there are few planes";
+      channels >= ranks ? ""
+                        : "; " + std::to_string(ranks - channels) + " of the ranks have nothing to do, as there are few planes";
   return {"shared among ranks",
           std::to_string(ranks) + ", which take " +
-              (planes_of_a_batch == 1 ? "a plane" : std::to_string(planes_of_a_batch) + " planes") + " at a time",
+              (channels_of_a_batch == 1 ? "a plane" : std::to_string(channels_of_a_batch) + " planes") + " at a time",
           "planes do not need each other: whoever is free takes the next and reads its channels alone; images come to rank 0, "
           "which writes, " +
-              mib_text(plane_bytes) + " a plane" + idle};
+              mib_text(channel_bytes) + " a plane" + idle};
 }
 
 imager::Decision traffic_decision(const imager::Traffic& traffic, double seconds) {
@@ -55,7 +55,7 @@ imager::Decision traffic_decision(const imager::Traffic& traffic, double seconds
               " of rank 0, waiting for others included"};
 }
 
-imager::Decision plane_traffic_decision(const imager::Traffic& traffic) {
+imager::Decision channel_traffic_decision(const imager::Traffic& traffic) {
   return {"exchanged among ranks", mib_text(static_cast<double>(traffic.bytes)),
           grouped(static_cast<long long>(traffic.exchanges)) + " messages: batches to make, and the images that come of them"};
 }

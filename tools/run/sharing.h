@@ -18,14 +18,14 @@ ExchangeForecast exchange_of(double pixels, int images, int residuals);
 /// How the ranks share the samples, and what they will exchange.
 imager::Decision sharing_decision(const ms_io::SampleSharing& sharing, const ExchangeForecast& exchange);
 
-/// Of the images of a plane, as ranks send them.
-double plane_bytes(const RunWork& work);
+/// Of the images of a channel, as ranks send them.
+double channel_bytes(const RunWork& work);
 
-/// How the ranks share the planes of a cube, in batches of so many, of each of which rank 0 gets so many bytes.
-imager::Decision plane_sharing_decision(int ranks, int planes, int planes_of_a_batch, double plane_bytes);
+/// How the ranks share the channels of a cube, in batches of so many, of each of which rank 0 gets so many bytes.
+imager::Decision channel_sharing_decision(int ranks, int channels, int channels_of_a_batch, double channel_bytes);
 
-/// What they did exchange: of an image what rank 0 gave, which took so long; of planes what all gave.
+/// What they did exchange: of an image what rank 0 gave, which took so long; of channels what all gave.
 imager::Decision traffic_decision(const imager::Traffic& traffic, double seconds);
-imager::Decision plane_traffic_decision(const imager::Traffic& traffic);
+imager::Decision channel_traffic_decision(const imager::Traffic& traffic);
 
 }  // namespace misfit::tools

@@ -14,6 +14,8 @@
 namespace misfit::tools {
 namespace {
 
+namespace stage = imager::stage;
+
 namespace fs = std::filesystem;
 using nlohmann::json;
 
@@ -84,15 +86,15 @@ void add_pass(const RunWork& w, bool with_psf, double times, std::vector<StageSe
   const int stokes = with_psf ? plan.request.stokes : w.terms;
   if (plan.direct) {
     const double sums = w.samples * w.pixels * (with_psf ? 1 + stokes : stokes);
-    stages.push_back({"grid", "direct sums of images", times * shared(direct_term_s * sums, w.threads)});
+    stages.push_back({stage::grid, "direct sums of images", times * shared(direct_term_s * sums, w.threads)});
     return;
   }
   const TransformSeconds own = transform_seconds(plan, {stokes, with_psf && !plan.psf}, w.threads, w.ranks);
   const TransformSeconds psf =
       with_psf && plan.psf ? transform_seconds(*plan.psf, {0, true}, w.threads, w.ranks) : TransformSeconds();
   const std::string way = way_of(plan.choice.best.work);
-  stages.push_back({"grid", "gridding" + way, times * (own.grid + psf.grid)});
-  stages.push_back({"fft", "FFTs" + way, times * (own.fft + psf.fft)});
+  stages.push_back({stage::grid, "gridding" + way, times * (own.grid + psf.grid)});
+  stages.push_back({stage::fft, "FFTs" + way, times * (own.fft + psf.fft)});
 }
 
 /// The pass for dirty images and PSFs of further Taylor terms.
@@ -101,29 +103,29 @@ void add_taylor_pass(const RunWork& w, std::vector<StageSeconds>& stages) {
   const imager::GriddingPlan& plan = *w.plan;
   const int dirty = w.terms - 1, psfs = 2 * w.terms - 2;
   if (plan.direct) {
-    stages.push_back({"grid", "direct sums of images",
+    stages.push_back({stage::grid, "direct sums of images",
                       shared(direct_term_s * w.samples * w.pixels * static_cast<double>(dirty + psfs), w.threads)});
     return;
   }
   const TransformSeconds own = transform_seconds(plan, {dirty}, w.threads, w.ranks);
   const TransformSeconds psf = transform_seconds(plan.psf ? *plan.psf : plan, {psfs}, w.threads, w.ranks);
   const std::string way = way_of(plan.choice.best.work);
-  stages.push_back({"grid", "gridding" + way, own.grid + psf.grid});
-  stages.push_back({"fft", "FFTs" + way, own.fft + psf.fft});
+  stages.push_back({stage::grid, "gridding" + way, own.grid + psf.grid});
+  stages.push_back({stage::fft, "FFTs" + way, own.fft + psf.fft});
 }
 
 void add_predictions(const RunWork& w, std::vector<StageSeconds>& stages) {
   const imager::GriddingPlan& plan = *w.plan;
   const double model_pixels = std::min(w.components, w.pixels) / 2;  // on average over the cycles
   if (plan.direct || model_pixels <= static_cast<double>(plan.direct_pixels)) {
-    stages.push_back({"degrid", "direct sums of visibilities",
+    stages.push_back({stage::degrid, "direct sums of visibilities",
                       w.terms * w.major_cycles * shared(direct_term_s * w.samples * model_pixels, w.threads)});
     return;
   }
   const TransformSeconds one = transform_seconds(plan, {}, w.threads, w.ranks);
   const std::string way = way_of(plan.choice.best.work);
-  stages.push_back({"degrid", "degridding" + way, w.terms * w.major_cycles * one.grid});
-  stages.push_back({"fft", "FFTs" + way, w.terms * w.major_cycles * one.fft});
+  stages.push_back({stage::degrid, "degridding" + way, w.terms * w.major_cycles * one.grid});
+  stages.push_back({stage::fft, "FFTs" + way, w.terms * w.major_cycles * one.fft});
 }
 
 double minor_seconds(const RunWork& w) {
@@ -154,46 +156,46 @@ double wider_seconds(const RunWork& w) {
   return total_seconds(stages) + minor_seconds(wider) + taper_s * w.samples * (2 * wider.major_cycles);
 }
 
-/// As many images as there are planes, of a part of the samples each, drawn once.
+/// As many images as there are channels, of a part of the samples each, drawn once.
 std::vector<StageSeconds> cube_seconds(const RunWork& w) {
-  RunWork plane = w;
-  plane.planes = 1;
-  plane.workers = 1;
-  plane.ranks = 1;
-  plane.threads = std::max(1, w.ranks * w.threads / w.workers);
-  plane.samples = w.samples / w.planes;
-  std::vector<StageSeconds> stages = counted_seconds(plane);
+  RunWork channel = w;
+  channel.channels = 1;
+  channel.workers = 1;
+  channel.ranks = 1;
+  channel.threads = std::max(1, w.ranks * w.threads / w.workers);
+  channel.samples = w.samples / w.channels;
+  std::vector<StageSeconds> stages = counted_seconds(channel);
   for (StageSeconds& s : stages)
-    if (s.stage != "draw pictures") s.seconds *= 1.0 * w.planes / (s.stage == "read" ? w.ranks : w.workers);
-  stages.push_back({"planes", "dealing out to planes", shared(1e-8 * w.samples / w.ranks, w.threads)});
+    if (s.stage != stage::draw_pictures) s.seconds *= 1.0 * w.channels / (s.stage == stage::read ? w.ranks : w.workers);
+  stages.push_back({stage::planes, "dealing out to planes", shared(1e-8 * w.samples / w.ranks, w.threads)});
   return stages;
 }
 
 }  // namespace
 
 std::vector<StageSeconds> counted_seconds(const RunWork& w) {
-  if (w.planes > 1) return cube_seconds(w);
+  if (w.channels > 1) return cube_seconds(w);
   const double passes = w.kept ? 1 : 1 + (w.density ? 1 : 0) + w.major_cycles;
-  std::vector<StageSeconds> stages{{"read", "reading", passes * (4e-9 * w.samples + 1e-7 * w.rows)}};
-  if (w.density) stages.push_back({"weights", "weighting by density", weight_seconds(w)});
+  std::vector<StageSeconds> stages{{stage::read, "reading", passes * (4e-9 * w.samples + 1e-7 * w.rows)}};
+  if (w.density) stages.push_back({stage::weights, "weighting by density", weight_seconds(w)});
   add_pass(w, true, 1, stages);
   add_taylor_pass(w, stages);
-  stages.push_back({"statistics", "statistics", 8e-9 * w.pixels * (1 + w.major_cycles)});
-  if (w.verified > 0) stages.push_back({"verify", "verifying", shared(direct_term_s * w.samples * w.verified, w.threads)});
-  stages.push_back({"fit beam", "fitting the beam", 5e-3});
+  stages.push_back({stage::statistics, "statistics", 8e-9 * w.pixels * (1 + w.major_cycles)});
+  if (w.verified > 0) stages.push_back({stage::verify, "verifying", shared(direct_term_s * w.samples * w.verified, w.threads)});
+  stages.push_back({stage::fit_beam, "fitting the beam", 5e-3});
   if (w.major_cycles > 0) {
     const std::string several = w.terms > 1 ? " with Taylor terms" : "";
-    stages.push_back({"minor cycles", "minor cycles of " + w.deconvolver + several, minor_seconds(w)});
+    stages.push_back({stage::minor_cycles, "minor cycles of " + w.deconvolver + several, minor_seconds(w)});
     add_predictions(w, stages);
     add_pass(w, false, w.major_cycles, stages);
-    stages.push_back({"CLEAN state", "writing CLEAN's state", 1e-8 * w.pixels + 5e-3 * w.major_cycles});
-    stages.push_back({"restore", "restoring", 1e-8 * w.pixels * w.terms});
+    stages.push_back({stage::clean_state, "writing CLEAN's state", 1e-8 * w.pixels + 5e-3 * w.major_cycles});
+    stages.push_back({stage::restore, "restoring", 1e-8 * w.pixels * w.terms});
   }
-  if (w.wider != nullptr) stages.push_back({"sources outside", "search outside", wider_seconds(w)});
+  if (w.wider != nullptr) stages.push_back({stage::sources_outside, "search outside", wider_seconds(w)});
   if (w.primary_beam)
-    stages.push_back({"primary beam", "primary beams", shared(2e-9 * w.samples + 3e-8 * w.pixels, w.threads)});
-  stages.push_back({"write images", "writing images", 1e-8 * w.pixels * w.images});
-  stages.push_back({"draw pictures", "drawing pictures", 0.07 * w.pictures + 1e-9 * w.pixels * w.pictures});
+    stages.push_back({stage::primary_beam, "primary beams", shared(2e-9 * w.samples + 3e-8 * w.pixels, w.threads)});
+  stages.push_back({stage::write_images, "writing images", 1e-8 * w.pixels * w.images});
+  stages.push_back({stage::draw_pictures, "drawing pictures", 0.07 * w.pictures + 1e-9 * w.pixels * w.pictures});
   return stages;
 }
 

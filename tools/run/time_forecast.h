@@ -15,9 +15,9 @@ struct RunWork {
   const imager::GriddingPlan* plan = nullptr;
   double rows = 0;  ///< of the visibilities
   double samples = 0;
-  int planes = 1;    ///< of frequency; each has a part of the samples, and all that follows is of each
-  int workers = 1;   ///< planes made at a time by all ranks, which share their threads
-  int ranks = 1;     ///< that share the samples of an image, of which these are one's, or the planes of a cube
+  int channels = 1;  ///< of the image; each has a part of the samples, and all that follows is of each
+  int workers = 1;   ///< channels made at a time by all ranks, which share their threads
+  int ranks = 1;     ///< that share the samples of an image, of which these are one's, or the channels of a cube
   bool kept = true;  ///< whether visibilities are read once, or in every pass
   double pixels = 0;
   int images = 2;    ///< files

@@ -17,7 +17,7 @@ BOOST_AUTO_TEST_CASE(batches_hold_every_plane_once_no_more_than_there_is_room_fo
       for (const int held : {1, 2, 5, 22, 1000}) {
         if (workers > planes || held < workers) continue;
         tools::ChannelBatches batches;
-        batches.planes = std::min(held, planes);
+        batches.channels = std::min(held, planes);
         batches.workers.count = workers;
         BOOST_TEST((tools::batches_of(planes, batches).size() == 1) == (held >= planes));
         int next = 0;

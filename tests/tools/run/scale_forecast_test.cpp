@@ -31,7 +31,7 @@ struct Planned {
                            .geometry = geometry_of(options, set.observation().phase_centre),
                            .reach = set.reach(),
                            .threads = 8,
-                           .planes = planes,
+                           .channels = planes,
                            .workers = std::min(8, planes),
                            .samples = samples / planes,
                            .enlarged = samples / static_cast<double>(set.samples())});
