@@ -117,6 +117,20 @@ BOOST_AUTO_TEST_CASE(files_are_those_of_the_terms_and_no_others_stay) {
   }
 }
 
+BOOST_AUTO_TEST_CASE(the_beam_that_is_common_to_one_channel_is_the_fitted_one) {
+  const TemporaryFolder folder;
+  for (const std::string terms : {"1", "2"}) {
+    const Arguments corrected{"--pbcor"};
+    succeed(images(folder / "own", terms) + corrected);
+    succeed(images(folder / "common", terms) + corrected + Arguments{"--restoringbeam", "common"});
+    for (const std::string kind : {"image", "image.pbcor"}) {
+      const std::string name = terms == "1" ? kind : kind == "image" ? "image.tt1" : "image.tt1.pbcor";
+      BOOST_TEST((pixels_of(folder / "own", name).pixel == pixels_of(folder / "common", name).pixel), name);
+    }
+    BOOST_TEST(report_of(folder / "common")["beam"] == report_of(folder / "own")["beam"]);
+  }
+}
+
 /// Those of .tt0 are the dirty image and the PSF of one term.
 BOOST_AUTO_TEST_CASE(without_clean_there_are_dirty_images_and_psfs) {
   const TemporaryFolder folder;

@@ -35,10 +35,10 @@ std::vector<const imager::Image*> pointers_to(const std::vector<imager::Image>& 
 }
 
 /// What the report of a cube tells of each channel: no more of the histogram than a glance gives.
-void look_at(const imager::Image& residual, const imager::Image& image, double noise_jy, StokesReport& told) {
+void look_at(const imager::Image& residual, const imager::Image* restored, double noise_jy, StokesReport& told) {
   const imager::ImageStatistics of_residual = imager::statistics_of(residual);
   told.histogram = {.noise_jy = noise_jy, .min_jy = of_residual.least, .max_jy = of_residual.largest, .count = {}};
-  told.brightest = &image == &residual ? imager::find_peak(image, of_residual) : imager::find_peak(image);
+  told.brightest = restored == nullptr ? imager::find_peak(residual, of_residual) : imager::find_peak(*restored);
 }
 
 /// What CLEAN found, on the sky.
@@ -107,7 +107,7 @@ Products::Products(const ImageOptions& options, const imager::ImageHeader& heade
       header_(header),
       primary_beam_(primary_beam),
       workers_(workers),
-      in_common_(options.niter > 0 && options.restoringbeam == "common") {
+      in_common_(options.cube.is_cube() && options.niter > 0 && options.restoringbeam == "common") {
   for (const ProductKind& kind : product_kinds(ProductChoice::of(o_))) {
     const std::vector<std::string> paths = image_paths(o_.imagename + "." + kind.name, o_.outformat);
     // A mask that the user has under its name stays.
@@ -210,7 +210,7 @@ void Products::write_stokes(std::size_t stokes, const OfBeam& primary_beam, Chan
     StokesReport& told = run.report().stokes[stokes];
     const double noise_jy = told.clean ? told.clean->final_state().rms_jy : imager::sampled_noise(residual);
     if (o_.cube.is_cube())
-      look_at(residual, restored.first.pixel.empty() ? residual : restored.first, noise_jy, told);
+      look_at(residual, restored.first.pixel.empty() ? nullptr : &restored.first, noise_jy, told);
     else
       told.histogram = pixel_histogram(residual, noise_jy, workers_.threads);
   }

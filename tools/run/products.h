@@ -40,7 +40,7 @@ class Products {
            const ChannelWorkers& workers, const Open& open);
 
   /// Writes the images of a channel, and adds to its report what its pixels tell, and to its doubts what is the matter with its
-  /// primary beam. May be called for several channels at the same time.
+  /// primary beam. `pictures` are drawn of it, unless they are null. May be called for several channels at the same time.
   void write(ChannelRun& run, RunPictures* pictures);
   /// A plane that another rank made.
   void write(const std::string& kind, const imager::PlaneIndex& at, const imager::Image& image,
