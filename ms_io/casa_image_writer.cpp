@@ -11,7 +11,7 @@
 #include "ms_io/casa_coordinates_internal.h"
 #include "ms_io/casa_image.h"
 #include "ms_io/image_folder_internal.h"
-#include "ms_io/room_internal.h"
+#include "ms_io/room.h"
 #include "ms_io/storage_managers_internal.h"
 #include "ms_io/table_access_internal.h"
 

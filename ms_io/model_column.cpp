@@ -12,7 +12,7 @@
 
 #include "ms_io/model_column_internal.h"
 #include "ms_io/model_journal_internal.h"
-#include "ms_io/room_internal.h"
+#include "ms_io/room.h"
 #include "ms_io/setup_internal.h"
 #include "ms_io/table_access_internal.h"
 

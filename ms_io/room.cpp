@@ -2,7 +2,7 @@
 #include <stdexcept>
 #include <system_error>
 
-#include "ms_io/room_internal.h"
+#include "ms_io/room.h"
 
 namespace misfit::ms_io {
 

@@ -136,6 +136,23 @@ BOOST_AUTO_TEST_CASE(pixels_beams_and_report_do_not_depend_on_the_number_of_rank
   }
 }
 
+/// Which for themselves would hold unlike numbers of planes.
+BOOST_AUTO_TEST_CASE(ranks_of_unlike_threads_go_together) {
+  if (!has_mpi()) return;
+  const TemporaryFolder folder;
+  const auto options = [&](const std::string& name, const std::string& threads) {
+    return cube(folder / name, threads) + Arguments{"--weighting", "briggs", "--perchanweightdensity", "false", "--quiet"};
+  };
+  succeed(options("one", "1"));
+  for (const auto& [first, second] : {std::pair{"4", "1"}, {"1", "4"}}) {
+    const Arguments two = ranks(1) + options("two", first) + Arguments{":"} + ranks(1, false) + options("two", second);
+    const Outcome outcome = Child(two, "mpirun").wait();
+    BOOST_TEST_INFO(outcome.err);
+    BOOST_REQUIRE_EQUAL(outcome.code, 0);
+    check_same(*tools::open_image_file(folder / "one.residual.fits"), *tools::open_image_file(folder / "two.residual.fits"));
+  }
+}
+
 BOOST_AUTO_TEST_CASE(a_plane_of_another_rank_that_fails_ends_all_and_leaves_no_images) {
   if (!has_mpi()) return;
   const TemporaryFolder folder;

@@ -6,6 +6,13 @@
 #include <stdexcept>
 
 namespace misfit::tools {
+namespace {
+
+std::string name_of(OptionMark mark) {
+  return "mark " + std::to_string(static_cast<int>(mark));
+}
+
+}  // namespace
 
 CLI::Validator quantity(double (*parse)(const std::string&)) {
   return CLI::Validator(
@@ -41,13 +48,14 @@ CLI::Validator values_are(const std::vector<std::string>& names, Others others) 
   return CLI::Validator([](const std::string&) -> std::string { return ""; }, "{" + list + "}");
 }
 
+// CLI11 keeps no marks, but validators with names, of which those that are not active do nothing and are not shown.
 CLI::Option* mark(CLI::Option* option, OptionMark mark) {
-  return option->check(CLI::Validator("").name(std::to_string(static_cast<int>(mark))).active(false));
+  return option->check(CLI::Validator("").name(name_of(mark)).active(false));
 }
 
 bool has(const CLI::Option& option, OptionMark mark) {
   try {
-    return const_cast<CLI::Option&>(option).get_validator(std::to_string(static_cast<int>(mark))) != nullptr;
+    return const_cast<CLI::Option&>(option).get_validator(name_of(mark)) != nullptr;
   } catch (const CLI::OptionNotFound&) {
     return false;
   }

@@ -50,10 +50,12 @@ int channels_dealt_out(const RunScene& scene) {
                              : (scene.channels + turns * scene.ranks.size() - 1) / (turns * scene.ranks.size());
 }
 
-/// All ranks hold what each has room for.
-void agree(ChannelBatches& batches, const imager::Ranks& ranks) {
-  batches.channels = -static_cast<int>(imager::largest_of(ranks, -batches.channels));
-  batches.read_again = imager::any_of(ranks, batches.read_again);
+/// All ranks hold what each has room for, and make no more at a time.
+void agree(ChannelBatches& batches, const RunScene& scene) {
+  batches.channels = -static_cast<int>(imager::largest_of(scene.ranks, -batches.channels));
+  batches.read_again = imager::any_of(scene.ranks, batches.read_again);
+  batches.workers.count = batches.read_again ? 1 : std::min(batches.workers.count, batches.channels);
+  batches.workers.threads = scene.threads / batches.workers.count;
 }
 
 /// The larger of both.
@@ -102,14 +104,13 @@ ChannelBatches plan_batches(const RunScene& scene, const RunPlan& plan) {
   int& workers = batches.workers.count;
   if (!batches.read_again)
     for (workers = scene.workers; workers > 1 && room(workers) < workers * channel;) --workers;
-  batches.workers.threads = scene.threads / workers;
   if (!batches.read_again) {
     const double most = std::max(workers, channels_dealt_out(scene));
     const double held = std::clamp(std::min(enough_bytes, room(workers)) / channel, 1.0 * workers, most);
     batches.channels = static_cast<int>(held);
     if (batches.channels < scene.channels) batches.channels -= batches.channels % workers;
   }
-  agree(batches, scene.ranks);
+  agree(batches, scene);
   // A channel that reads the set holds the rows that are gridded together, and the blocks that are made of them.
   const double streamed = 2 * std::min(1.0, static_cast<double>(imager::samples_gathered_at_once) / scene.samples);
   batches.memory = memory((batches.read_again ? streamed : batches.channels) * channel, workers);

@@ -9,8 +9,7 @@ ChannelMaker::ChannelMaker(const ChannelScene& scene, ChannelMeans means, std::u
     : scene_(scene), means_(std::move(means)) {
   if (!clean) return;
   cleans_.give_back(std::move(clean));
-  for (int i = 1; i < means_.workers.count; ++i)
-    cleans_.give_back(std::make_unique<CleanStage>(scene_.options, scene_.header, scene_.threads));
+  for (int i = 1; i < means_.workers.count; ++i) cleans_.give_back(std::make_unique<CleanStage>(scene_.options, scene_.header));
 }
 
 std::unique_ptr<ChannelRun> ChannelMaker::image(int channel, std::unique_ptr<ChannelSamples> samples) {
@@ -23,10 +22,10 @@ std::unique_ptr<ChannelRun> ChannelMaker::image(int channel, std::unique_ptr<Cha
       run->weigh();
     run->make_dirty(means_.plan, means_.transform);
   } catch (const imager::NothingInGrid& nothing) {
-    if (scene_.told != nullptr) throw;
+    if (scene_.whole_band) throw;
     run->made().outside_grid = nothing.outside_grid;
   } catch (const imager::NothingUsable&) {
-    if (scene_.told != nullptr) throw;
+    if (scene_.whole_band) throw;
   }
   return run;
 }
@@ -35,7 +34,7 @@ void ChannelMaker::prepare_clean(ChannelRun& run) {
   if (run.made().empty()) return;
   run.make_terms();
   run.verify();
-  if (means_.primary_beam != nullptr && scene_.told != nullptr) {
+  if (means_.primary_beam != nullptr && scene_.whole_band) {
     const imager::StageTimer timer(run.times(), imager::stage::primary_beam);
     means_.primary_beam->weigh(run.samples());
   }
@@ -49,7 +48,9 @@ void ChannelMaker::prepare_clean(ChannelRun& run) {
 void ChannelMaker::clean(ChannelRun& run) {
   if (scene_.options.niter == 0) return;
   if (!means_.images_here) return run.follow_clean();
-  if (run.may_clean()) cleans_.give_back(run.clean());
+  if (!run.may_clean()) return;
+  std::unique_ptr<CleanStage> stage = run.clean();
+  if (!scene_.whole_band) cleans_.give_back(std::move(stage));
 }
 
 }  // namespace misfit::tools

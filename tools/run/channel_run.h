@@ -34,8 +34,9 @@ struct ChannelScene {
   const imager::ImageHeader& header;
   imager::UvwReach reach;
   int threads = 1;                     ///< for each channel
+  bool whole_band = true;              ///< whether it has one channel, of the whole band
   const std::atomic<bool>& given_up;   ///< whether channels are of no use any more: their work then ends in Interrupted
-  const ToldAsItGoes* told = nullptr;  ///< null where there may be several channels
+  const ToldAsItGoes* told = nullptr;  ///< null where each keeps what it has to tell
 };
 
 /// What came of a channel, for the run that puts channels together.

@@ -26,8 +26,7 @@ double mean_width_rad(const imager::Beam& beam) {
 
 }  // namespace
 
-CleanStage::CleanStage(const ImageOptions& options, imager::ImageHeader image, int threads)
-    : o_(options), image_(std::move(image)), threads_(threads) {
+CleanStage::CleanStage(const ImageOptions& options, imager::ImageHeader image) : o_(options), image_(std::move(image)) {
   if (!o_.startmodel.empty()) start_model_ = std::make_unique<StartModel>(o_, image_);
   if (!o_.mask.empty()) mask_file_ = std::make_unique<MaskFile>(o_.mask, image_);
 }
@@ -107,13 +106,13 @@ std::uint64_t CleanStage::checksum_of(const CleanScene& scene) const {
 
 imager::CleanResult CleanStage::run(const CleanScene& scene, const nlohmann::json& option_values,
                                     const imager::CycleProgress& cycle_progress, const imager::Context& context) {
-  imager::CleanOptions options = clean_options(o_, threads_);
+  imager::CleanOptions options = clean_options(o_, context.threads);
   options.stop_requested = interrupted;
   options.mask = mask(scene.samples.index);
   std::unique_ptr<imager::MinorCycle> minor;
   {
     const imager::StageTimer timer(context.times, imager::stage::minor_cycles);
-    minor = imager::make_deconvolver(deconvolver_choice(o_, threads_), scene.psf);
+    minor = imager::make_deconvolver(deconvolver_choice(o_, context.threads), scene.psf);
   }
   CleanStateOwner owner{MISFIT_VERSION,
                         option_values,
@@ -126,7 +125,7 @@ imager::CleanResult CleanStage::run(const CleanScene& scene, const nlohmann::jso
     const imager::StageTimer timer(context.times, imager::stage::clean_state);
     owner.checksum = checksum_of(scene);
     state = begin(scene.samples.index, owner);
-    sidelobe = imager::largest_sidelobe(*scene.psf.front(), scene.main_lobe, image_.geometry.cell_rad, threads_);
+    sidelobe = imager::largest_sidelobe(*scene.psf.front(), scene.main_lobe, image_.geometry.cell_rad, context.threads);
   }
   const imager::CleanInput input{.samples = scene.samples,
                                  .transform = scene.transform,

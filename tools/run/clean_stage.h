@@ -33,7 +33,7 @@ class CleanStage {
  public:
   /// Opens the mask and the start model of an image with these planes and Stokes parameters. Throws std::runtime_error that
   /// names the file and what was expected.
-  CleanStage(const ImageOptions& options, imager::ImageHeader image, int threads);
+  CleanStage(const ImageOptions& options, imager::ImageHeader image);
 
   /// From here on everything is of this channel of the image. Reads its mask and start model. To be called before all that
   /// follows.
@@ -62,7 +62,6 @@ class CleanStage {
 
   const ImageOptions& o_;
   imager::ImageHeader image_;
-  int threads_;
   int channel_ = -1;                         ///< none yet
   std::unique_ptr<MaskFile> mask_file_;      ///< null without a mask
   std::unique_ptr<StartModel> start_model_;  ///< null without one

@@ -1,16 +1,10 @@
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
-#include <optional>
 #include <string>
 #include <vector>
 
-#include "imager/beams/beam.h"
-#include "imager/clean/clean.h"
-#include "imager/clean/deconvolver.h"
 #include "imager/data/geometry.h"
-#include "imager/plan/gridding_choice.h"
-#include "kernels/lookup_table.h"
 #include "ms_io/measurement_set.h"
 #include "tools/kernel_choice/kernel_choice.h"
 #include "tools/run/cube_options.h"

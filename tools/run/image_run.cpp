@@ -14,6 +14,7 @@
 #include "imager/data/stokes.h"
 #include "imager/numerics/parallel.h"
 #include "ms_io/model_writer.h"
+#include "ms_io/room.h"
 #include "tools/base/files.h"
 #include "tools/base/interrupt.h"
 #include "tools/base/json_text.h"
@@ -78,6 +79,7 @@ class ImageRun : private ChannelSink {
     begin_channels();
     if (cube() && !o_.cube.perchanweightdensity) weigh_in_common();
     make_channels();
+    maker_.reset();
     if (cube()) count_samples();
     count_traffic();
     if (ranks_.first()) {
@@ -133,7 +135,7 @@ class ImageRun : private ChannelSink {
 
   /// What is wrong with masks and models is said at once.
   void open_clean() {
-    clean_ = std::make_unique<CleanStage>(o_, header_, threads_);
+    clean_ = std::make_unique<CleanStage>(o_, header_);
     if (!cube()) clean_->begin_channel(0);
     for (const std::string& words : clean_->words_on_files()) warn(words);
     if (cube()) return;
@@ -208,6 +210,7 @@ class ImageRun : private ChannelSink {
   void plan_batches(const RunScene& scene) {
     const ChannelBatches batches = tools::plan_batches(scene, plan_);
     batches_ = batches_of(channels(), batches);
+    imager::share_list(ranks_, batches_);  // where ranks have unlike room, or threads
     queue_ = make_channel_queue(ranks_, batches_, *this);
     workers_ = batches.workers;
     at_once_ = workers_.count;
@@ -232,6 +235,7 @@ class ImageRun : private ChannelSink {
                                                          .header = header_,
                                                          .reach = reach_,
                                                          .threads = workers_.threads,
+                                                         .whole_band = !cube(),
                                                          .given_up = queue_->given_up(),
                                                          .told = cube() ? nullptr : &told_});
     ChannelMeans means{.plan = plan_.gridding,
@@ -250,12 +254,20 @@ class ImageRun : private ChannelSink {
 
   void open_products() {
     const imager::StageTimer timer(times_, imager::stage::write_images);
+    if (ranks_.first() && o_.outformat != "fits") ms_io::require_room(o_.imagename, bytes_of_images());
     products_ = std::make_unique<Products>(
         o_, header_, primary_beam_.get(), workers_, [this](const ProductKind& kind, const imager::ImageHeader& header) {
           auto elsewhere = queue_->writer(kind.name);
           if (elsewhere) return elsewhere;
           return open_image_files(o_.imagename + "." + kind.name, header, pixel_format(o_.accuracy), o_.outformat);
         });
+  }
+
+  /// On the disk: all are begun before the first is written.
+  std::uintmax_t bytes_of_images() const {
+    const std::size_t pixel = pixel_format(o_.accuracy) == imager::PixelFormat::float64 ? sizeof(double) : sizeof(float);
+    const int planes = channels() * product_planes(ProductChoice::of(o_), static_cast<int>(stokes_.size()));
+    return (o_.outformat == "both" ? 2 : 1) * pixel * header_.geometry.pixels() * static_cast<std::size_t>(planes);
   }
 
   /// From the density of all channels' samples together.
@@ -334,8 +346,17 @@ class ImageRun : private ChannelSink {
     if (!cube() && ranks_.first())
       if (const std::string warning = changed_files_warning(*set_); !warning.empty()) warn(warning);
     if (images_here() && !run->made().empty()) write(*run);
-    if (o_.savemodel == "none") run->cleaned().clear();
+    keep_models(run->cleaned());
     queue_->done(std::move(run->made()));
+  }
+
+  /// Of what CLEAN found what --savemodel needs.
+  void keep_models(std::vector<imager::CleanResult>& cleaned) const {
+    if (o_.savemodel == "none") return cleaned.clear();
+    for (imager::CleanResult& result : cleaned) {
+      result.residual = result.mask = {};
+      result.further_residuals.clear();
+    }
   }
 
   /// Before CLEAN begins, which may take long.
@@ -572,7 +593,6 @@ class ImageRun : private ChannelSink {
   ChannelWorkers workers_;
   int at_once_ = 1;  ///< channels that all ranks make at a time
   std::unique_ptr<ChannelVisibilities> visibilities_;
-  std::unique_ptr<ChannelQueue> queue_;
   std::unique_ptr<ChannelScene> scene_;
   std::unique_ptr<ChannelMaker> maker_;
   std::unique_ptr<Products> products_;     ///< where there are images
@@ -582,6 +602,7 @@ class ImageRun : private ChannelSink {
   std::uint64_t outside_grid_ = 0;
   std::size_t empty_ = 0;                           ///< channels
   std::map<std::string, std::vector<int>> doubts_;  ///< with the channels of which they are
+  std::unique_ptr<ChannelQueue> queue_;             ///< last: its thread uses what stands before
 };
 
 }  // namespace

@@ -43,7 +43,7 @@ class PrimaryBeamStage {
   std::vector<std::string> doubts() const;
 
   /// Learns by how much each pair of dishes and each frequency weigh in the image, in a pass over its samples as they are
-  /// weighed. To be called before whole_band() and of_terms().
+  /// weighed. To be called before whole_band(), of_terms(), and of_image() of the whole band.
   void weigh(const imager::VisibilitySource& source);
   /// The beam of an image of the whole band: the mean over its samples, by weight.
   imager::Image whole_band() const;

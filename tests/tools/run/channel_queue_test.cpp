@@ -185,6 +185,18 @@ BOOST_DATA_TEST_CASE(a_channel_that_the_user_stopped_stops_all, bdata::make({0, 
   BOOST_TEST(stopped_by(by) == 3);
 }
 
+BOOST_AUTO_TEST_CASE(a_rank_that_is_told_to_stop_while_it_makes_nothing_stops_all) {
+  Deaf sink;
+  std::atomic<int> stopped = 0;
+  ThreadRanks(3).run([&](const imager::Ranks& ranks) {
+    const auto queue = make_channel_queue(ranks, batches, sink);
+    if (ranks.rank() == 2) queue->stop();
+    queue->finish();
+    if (ranks.first() && queue->stopped()) ++stopped;
+  });
+  BOOST_TEST(stopped == 1);
+}
+
 BOOST_AUTO_TEST_CASE(what_fails_with_what_others_send_fails_at_rank_0) {
   class Full : public Sink {
    public:
