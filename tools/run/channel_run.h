@@ -48,7 +48,7 @@ struct MadeChannel {
   std::vector<std::string> warnings;           ///< in their order
   std::vector<std::string> doubts;             ///< what may be so of several channels, in the same words
   imager::StageTimes times;                    ///< none where it told as it went
-  std::vector<imager::CleanResult> cleaned{};  ///< [Stokes], where --savemodel needs them; not sent to other ranks
+  std::vector<imager::CleanResult> cleaned{};  ///< [Stokes], the models that --savemodel needs; not sent to other ranks
 
   bool empty() const { return report.sums.used == 0; }
   /// Whether the user ended its CLEAN.
@@ -96,7 +96,7 @@ class ChannelRun {
   int threads() const { return scene_.threads; }
   ChannelReport& report() { return made_.report; }
   imager::AccurateImages& images() { return images_; }
-  std::vector<imager::CleanResult>& cleaned() { return made_.cleaned; }  ///< [Stokes], or none
+  std::vector<imager::CleanResult>& cleaned() { return cleaned_; }  ///< [Stokes], or none
   /// Null where CLEAN may go everywhere, makes its own, or is over.
   const imager::Image* mask(std::size_t stokes) const { return stage_ ? stage_->mask(stokes) : nullptr; }
   TaylorStage* taylor() { return taylor_ ? &*taylor_ : nullptr; }  ///< null where there is one term
@@ -116,6 +116,7 @@ class ChannelRun {
   std::optional<TaylorStage> taylor_;  ///< none where there is one term
   std::unique_ptr<CleanStage> stage_;  ///< from begin_clean() to clean()
   std::optional<int> iterations_;      ///< of the Stokes parameter in CLEAN, so far
+  std::vector<imager::CleanResult> cleaned_;
   MadeChannel made_;
 };
 

@@ -346,17 +346,17 @@ class ImageRun : private ChannelSink {
     if (!cube() && ranks_.first())
       if (const std::string warning = changed_files_warning(*set_); !warning.empty()) warn(warning);
     if (images_here() && !run->made().empty()) write(*run);
-    keep_models(run->cleaned());
+    if (o_.savemodel != "none") run->made().cleaned = models_of(std::move(run->cleaned()));
     queue_->done(std::move(run->made()));
   }
 
-  /// Of what CLEAN found what --savemodel needs.
-  void keep_models(std::vector<imager::CleanResult>& cleaned) const {
-    if (o_.savemodel == "none") return cleaned.clear();
+  /// What --savemodel needs of what CLEAN found.
+  static std::vector<imager::CleanResult> models_of(std::vector<imager::CleanResult>&& cleaned) {
     for (imager::CleanResult& result : cleaned) {
       result.residual = result.mask = {};
       result.further_residuals.clear();
     }
+    return std::move(cleaned);
   }
 
   /// Before CLEAN begins, which may take long.
@@ -370,9 +370,6 @@ class ImageRun : private ChannelSink {
 
   /// Those of what there is before CLEAN are drawn meanwhile.
   void begin_pictures(ChannelRun& run) {
-    report_.channels = {run.report()};
-    header_.cards = error_cards(report_);
-    report_.channels.clear();
     pictures_ = std::make_unique<RunPictures>(o_, header_, times_);
     pictures_->draw_dirty(run);
   }
@@ -467,8 +464,7 @@ class ImageRun : private ChannelSink {
   void finish_products() {
     if (report_.channels.size() == empty_) throw_nothing();
     std::string removed;
-    const std::vector<imager::HeaderCard> cards = cube() ? error_cards(report_) : std::vector<imager::HeaderCard>();
-    for (const std::string& path : products_->finish(report_.channels, cards, times_))
+    for (const std::string& path : products_->finish(report_.channels, error_cards(report_), times_))
       removed += (removed.empty() ? "" : ", ") + path;
     if (!removed.empty()) progress_.say("removed what an earlier run left: " + removed);
     cube() ? tell_channels() : tell_doubts("");

@@ -45,7 +45,7 @@ class Products {
   /// A plane that another rank made.
   void write(const std::string& kind, const imager::PlaneIndex& at, const imager::Image& image,
              const std::optional<imager::Beam>& beam);
-  /// After the last channel, with numbers for the headers, besides those there. Tells reports of the common beam, where there
+  /// After the last channel, with numbers for the headers. Tells reports of the common beam, where there
   /// is one. Returns the names of files that an earlier run left and this one removed.
   std::vector<std::string> finish(std::vector<ChannelReport>& channels, const std::vector<imager::HeaderCard>& cards,
                                   imager::StageTimes& times);
