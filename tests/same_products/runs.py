@@ -90,6 +90,8 @@ CLEANS = {
         image("narrow", f"{CLEAN} --mask a.mask.fits", "b"),
         image("narrow", f"{CLEAN} --mask a.mask --imsize 150 --cell 0.25arcsec", "c")],
     "start model": [image("narrow", "--niter 60"), image("narrow", f"{CLEAN} --startmodel a.model.fits --deconvolver clark", "b")],
+    "circular beam, two sides of a pixel": [
+        image("narrow", f"{CLEAN} --restoringbeam circular --imsize 128 --cell 0.3arcsec 300mas")],
     "restart": [image("narrow", "--niter 40"), image("narrow", f"{CLEAN} --restart"),
                 image("narrow", "--niter 400 --restart --gain 0.2", step="refused 1")],
     "restart after a kill": [image("narrow", DEEP, step="killed .err components,"), image("narrow", f"{DEEP} --restart")],
@@ -127,6 +129,9 @@ TERMS = {
     "2 terms, scales": [image("band", f"{CLEAN} --nterms 2 --deconvolver multiscale --scales 0,4,9 --outformat both")],
     "3 terms, reference frequency": [
         image("band", f"{CLEAN} --nterms 3 --reffreq 3.5GHz --weighting briggs --nsigma 3 --verify 50")],
+    "2 terms, begun with those of a model": [
+        image("band", f"{CLEAN} --nterms 2 --restoringbeam common"),
+        image("band", f"{CLEAN} --nterms 2 --startmodel a.model.tt0.fits a.model.tt1.fits", "b")],
     "2 terms, pbcor": [image("band", f"{CLEAN} --nterms 2 --pbcor --pblimit 0.1")],
     "2 terms, restarted": [image("band", "--nterms 2 --niter 40"), image("band", "--nterms 2 --niter 120 --restart")],
     "2 terms, auto mask": [image("band", f"{CLEAN} --nterms 2 --usemask auto")],
