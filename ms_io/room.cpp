@@ -1,8 +1,8 @@
+#include "ms_io/room.h"
+
 #include <filesystem>
 #include <stdexcept>
 #include <system_error>
-
-#include "ms_io/room.h"
 
 namespace misfit::ms_io {
 

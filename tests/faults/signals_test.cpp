@@ -34,7 +34,7 @@ BOOST_AUTO_TEST_CASE(the_next_run_removes_what_a_killed_one_was_writing) {
       files += file.path().extension() == ".part" || file.path().extension() == ".lock" ? 1 : 0;
     return files;
   };
-  BOOST_TEST(left() == 4U + 1);  // images, begun together, and the lock
+  BOOST_TEST(left() == 4U + 1);                                // images, begun together, and the lock
   const std::string others = products().path("a.notes.part");  // a name that no run gives
   std::ofstream(others) << "of the user";
   BOOST_TEST(run(products().run()).code == 0);
