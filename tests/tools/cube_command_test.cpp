@@ -208,6 +208,21 @@ BOOST_AUTO_TEST_CASE(each_plane_is_cleaned_and_restarted_by_itself) {
   }
 }
 
+/// Or it would go on from them, once it was killed, in planes that it had not reached.
+BOOST_AUTO_TEST_CASE(a_run_that_begins_anew_leaves_no_states_of_an_earlier_one) {
+  const LineSet data("LSRK");
+  const Arguments options{"--nchan", "4", "--start", "15", "--threads", "1"};
+  succeed(cube(data.set, data.folder / "a") + options + Arguments{"--niter", "10"});
+  const std::string last = data.folder / "a.clean/3.state";
+  BOOST_TEST_REQUIRE(std::filesystem::exists(last));
+  Child anew(cube(data.set, data.folder / "a") + options +
+             Arguments{"--niter", "1000000", "--gain", "0.0001", "--cycleniter", "2", "--quiet"});
+  anew.wait_until([&] { return !std::filesystem::exists(last); });
+  BOOST_TEST(!std::filesystem::exists(last));
+  anew.signal(SIGKILL);
+  BOOST_TEST(anew.wait().code == -SIGKILL);
+}
+
 BOOST_AUTO_TEST_CASE(planes_are_restored_with_one_beam_on_demand) {
   const LineSet data("TOPO");
   const Arguments options{"--outframe", "TOPO", "--nchan", "3", "--start", "1", "--chanwidth", "12", "--niter", "20"};

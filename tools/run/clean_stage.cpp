@@ -89,7 +89,6 @@ imager::CleanState CleanStage::begin(std::size_t stokes, const CleanStateOwner& 
   if (o_.restart && std::filesystem::exists(state_path(stokes))) return read_clean_state(state_path(stokes), owner);
   const std::filesystem::path state = state_path(stokes);
   if (o_.cube.is_cube()) std::filesystem::create_directories(state.parent_path());
-  std::filesystem::remove(state);
   imager::ComponentModel model = owner.like;
   model.add(start);
   return imager::first_state(model);

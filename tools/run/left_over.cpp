@@ -56,14 +56,17 @@ std::vector<std::string> own_names(const ImageOptions& o) {
   return names;
 }
 
-/// The images of other kinds, or in another format.
+/// The images of other kinds, or in another format; but nothing beside an input of the same name.
 void remove_other_images(const ImageOptions& o, const std::vector<std::string>& made, std::vector<std::string>& removed) {
-  for (const std::string& kind : all_product_names())
-    for (const std::string& path : image_paths(o.imagename + "." + kind, "both")) {
+  for (const std::string& kind : all_product_names()) {
+    const std::vector<std::string> paths = image_paths(o.imagename + "." + kind, "both");
+    if (std::any_of(paths.begin(), paths.end(), [&](const std::string& path) { return is_input(o, path); })) continue;
+    for (const std::string& path : paths) {
       std::error_code failed;
-      if (std::count(made.begin(), made.end(), path) > 0 || is_input(o, path) || !is_own_image(path)) continue;
+      if (std::count(made.begin(), made.end(), path) > 0 || !is_own_image(path)) continue;
       if (fs::remove_all(path, failed) > 0 && !failed) removed.push_back(path);
     }
+  }
 }
 
 /// The states that CLEAN of a cube left of `first` and later channels.
@@ -78,7 +81,7 @@ void remove_cube_states(const ImageOptions& o, int first, std::vector<std::strin
     std::from_chars(name.data(), name.data() + name.size(), channel);
     if (state.extension() == ".state" && channel >= first && fs::remove(state, failed)) removed.push_back(state);
   }
-  fs::remove(folder, failed);  // where nothing is left in it
+  if (fs::is_directory(fs::symlink_status(folder, failed))) fs::remove(folder, failed);  // where nothing is left in it
 }
 
 }  // namespace
@@ -99,6 +102,13 @@ void remove_half_written(const ImageOptions& o) {
     if (entry.path().filename().string().rfind(begin, 0) == 0 && kernels::is_temporary(entry.path()))
       halves.push_back(entry.path());
   for (const fs::path& half : halves) fs::remove(half, failed);
+}
+
+void remove_states(const ImageOptions& o) {
+  std::vector<std::string> removed;
+  for (const std::string& name : all_names())
+    if (std::error_code failed; name.ends_with(".state")) fs::remove(o.imagename + "." + name, failed);
+  remove_cube_states(o, 0, removed);
 }
 
 void remove_left_over(const ImageOptions& o, const OwnFiles& own, std::vector<std::string>& removed) {

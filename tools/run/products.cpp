@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <utility>
 
 #include "imager/beams/common_beam.h"
@@ -55,6 +56,9 @@ std::vector<imager::Source> sources(const imager::ComponentModel& model, const i
 std::unique_ptr<NameLock> claim_product_paths(const ImageOptions& o) {
   check_writable_folder(o.imagename);
   for (const std::string& name : all_product_names()) check_image_paths(o.imagename + "." + name, o.outformat);
+  for (const char* end : {".report.json", ".report.html", ".last.ini"})
+    if (std::error_code absent; std::filesystem::is_directory(o.imagename + end, absent))
+      throw std::runtime_error("cannot write " + o.imagename + end + ": it is a folder; expected another --imagename");
   auto lock = std::make_unique<NameLock>(o.imagename);
   remove_half_written(o);
   return lock;

@@ -175,13 +175,24 @@ BOOST_AUTO_TEST_CASE(images_of_others_stay_where_no_image_takes_their_place) {
   const TemporaryFolder folder;
   std::filesystem::create_directory(folder / "a.mask");
   std::ofstream(folder / "a.mask/precious") << "yes";
+  std::ofstream(folder / "a.clean") << "no folder of states";
   succeed(small_image(snapshot(), folder / "a"));
   BOOST_TEST(content(folder / "a.mask/precious") == "yes");
+  BOOST_TEST(content(folder / "a.clean") == "no folder of states");
   const Outcome outcome = run(small_image(snapshot(), folder / "a") + Arguments{"--outformat", "casa"});
   BOOST_TEST(outcome.code == 1);
   BOOST_TEST(outcome.err.find("a.mask: it is there already and no casacore image") != std::string::npos);
   BOOST_TEST(content(folder / "a.mask/precious") == "yes");
   BOOST_TEST(is_there(folder / "a.residual.fits"));
+}
+
+BOOST_AUTO_TEST_CASE(a_folder_where_a_report_is_to_be_is_told_of_before_a_visibility_is_read) {
+  const TemporaryFolder folder;
+  std::filesystem::create_directory(folder / "a.report.json");
+  const Outcome outcome = run(small_image(snapshot(), folder / "a") + Arguments{"--niter", "20"});
+  BOOST_TEST(outcome.code == 1);
+  BOOST_TEST(outcome.err.find("a.report.json: it is a folder; expected another --imagename") != std::string::npos, outcome.err);
+  BOOST_TEST(!is_there(folder / "a.psf.fits"));
 }
 
 BOOST_AUTO_TEST_CASE(masks_and_models_may_be_casa_images_and_stay_as_they_are) {
@@ -197,6 +208,8 @@ BOOST_AUTO_TEST_CASE(masks_and_models_may_be_casa_images_and_stay_as_they_are) {
     return pixels_of(folder / "a", "image").pixel;
   };
   BOOST_TEST((result("own.mask", "own.model") == result("own.fits", "model.fits")));
+  succeed(clean + both + Arguments{"--mask", folder / "a.mask"});
+  BOOST_TEST(is_there(folder / "a.mask.fits"));
   succeed(clean + Arguments{"--mask", folder / "a.mask"});
   BOOST_TEST(is_there(folder / "a.mask"));
   BOOST_TEST(!is_there(folder / "a.image"));
