@@ -125,6 +125,18 @@ BOOST_AUTO_TEST_CASE(what_is_wrong_for_all_ends_all_with_its_message) {
   BOOST_TEST(files_below(folder / "").empty());
 }
 
+BOOST_AUTO_TEST_CASE(ranks_of_unlike_options_are_refused) {
+  if (!has_mpi()) return;
+  const TemporaryFolder folder;
+  const Arguments cube{"--specmode", "cube", "--outframe", "TOPO", "--niter", "5", "--gain"};
+  const Arguments one = image(folder / "a") + cube;
+  const Outcome outcome =
+      Child(ranks(1) + one + Arguments{"0.1", ":"} + ranks(1, false) + one + Arguments{"0.2"}, "mpirun").wait();
+  BOOST_TEST(outcome.code == 2);
+  BOOST_TEST(outcome.err.find("the ranks have unlike options; expected the same of all") != std::string::npos, outcome.err);
+  BOOST_TEST(files_below(folder / "").empty());
+}
+
 /// A rank that dies takes the others with it, whatever they wait for.
 BOOST_AUTO_TEST_CASE(a_killed_rank_ends_the_run_without_an_image) {
   if (!has_mpi()) return;

@@ -26,6 +26,7 @@
 #include "tools/run/channel_queue.h"
 #include "tools/run/data_columns.h"
 #include "tools/run/image_files.h"
+#include "tools/run/left_over.h"
 #include "tools/run/model_stage.h"
 #include "tools/run/outside_stage.h"
 #include "tools/run/products.h"
@@ -104,8 +105,20 @@ class ImageRun : private ChannelSink {
   /// Whether this rank has whole images of what it makes.
   bool images_here() const { return cube() || ranks_.first(); }
 
+  void require_same_options() const {
+    nlohmann::json options = call_.option_values;
+    for (const char* own : {"threads", "memory", "quiet"}) options.erase(own);
+    const std::string text = json_text(options);
+    std::vector<char> first(text.begin(), text.end());
+    imager::share_list(ranks_, first);
+    if (imager::any_of(ranks_, std::string(first.begin(), first.end()) != text))
+      throw std::invalid_argument(
+          "the ranks have unlike options; expected the same of all but --threads, --memory and --quiet");
+  }
+
   void open() {
     const imager::StageTimer timer(times_, imager::stage::open);
+    require_same_options();
     if (!o_.dry_run && ranks_.first()) name_ = claim_product_paths(o_);
     if (o_.savemodel == "modelcolumn" && ranks_.first())
       for (const std::string& set : o_.vis) ms_io::require_writable(set);
@@ -230,6 +243,7 @@ class ImageRun : private ChannelSink {
   std::vector<StageSeconds> expected() const { return expected_seconds(plan_, forecast_, work_); }
 
   void begin_channels() {
+    if (ranks_.first() && o_.niter > 0 && !o_.restart) remove_states(o_);
     scene_ = std::make_unique<ChannelScene>(ChannelScene{.options = o_,
                                                          .option_values = call_.state_option_values,
                                                          .header = header_,
