@@ -8,6 +8,7 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <set>
 #include <utility>
 
 #include "imager/data/noise.h"
@@ -105,15 +106,27 @@ class ImageRun : private ChannelSink {
   /// Whether this rank has whole images of what it makes.
   bool images_here() const { return cube() || ranks_.first(); }
 
+  /// Ranks that were started apart make parts of one image, which have to fit each other.
   void require_same_options() const {
-    nlohmann::json options = call_.option_values;
-    for (const char* own : {"threads", "memory", "quiet"}) options.erase(own);
-    const std::string text = json_text(options);
-    std::vector<char> first(text.begin(), text.end());
-    imager::share_list(ranks_, first);
-    if (imager::any_of(ranks_, std::string(first.begin(), first.end()) != text))
-      throw std::invalid_argument(
-          "the ranks have unlike options; expected the same of all but --threads, --memory and --quiet");
+    if (ranks_.alone()) return;
+    std::string unlike;
+    const std::vector<std::string> all = ranks_.gather_at_first(json_text(call_.option_values));
+    for (std::size_t rank = 1; rank < all.size() && unlike.empty(); ++rank) unlike = unlike_option(all[rank], rank);
+    std::vector<char> words(unlike.begin(), unlike.end());
+    imager::share_list(ranks_, words);
+    if (!words.empty()) throw std::invalid_argument(std::string(words.begin(), words.end()));
+  }
+
+  /// What another rank has that this one has not, in words; empty where they agree.
+  std::string unlike_option(const std::string& options, std::size_t rank) const {
+    const std::set<std::string> own{"threads", "memory", "quiet"};
+    const nlohmann::json others = nlohmann::json::parse(options);
+    for (const auto& [name, value] : others.items())
+      if (const nlohmann::json first = call_.option_values.value(name, nlohmann::json());
+          own.count(name) == 0 && value != first)
+        return "--" + name + " " + json_text(value) + " of rank " + std::to_string(rank) + ": expected " + json_text(first) +
+               ", which rank 0 has; only --threads, --memory and --quiet may differ";
+    return "";
   }
 
   void open() {
