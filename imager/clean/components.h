@@ -49,7 +49,7 @@ class ComponentModel {
 
 /// The pixels of an image that are neither 0 nor NaN as point components of scale 0.
 std::vector<Component> components_of(const Image& image);
-/// The same of the images of Taylor terms, in their order: pixels that are so in one of them.
+/// Makes such components of the images of Taylor terms, in their order: of pixels that are neither in at least one of them.
 std::vector<Component> components_of(const std::vector<const Image*>& terms);
 
 }  // namespace misfit::imager

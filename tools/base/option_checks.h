@@ -31,7 +31,7 @@ inline constexpr const char* and_others = "…";
 /// what can be given.
 CLI::Validator values_are(const std::vector<std::string>& names, Others others = Others::refused);
 
-/// What is so of an option wherever options are handled alike; said where it is declared.
+/// A mark says, where an option is declared, how code that handles all options alike treats this one.
 enum class OptionMark {
   free_of_state,  ///< it only ends CLEAN or does not reach it: a run that goes on from a state may have another
   typed_alone,    ///< it comes from no file of options, where others could have put it

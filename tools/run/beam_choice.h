@@ -12,7 +12,7 @@ namespace misfit::tools {
 /// Declares --restoringbeam.
 void declare_restoring_beam(CLI::App& command, ImageOptions& options);
 
-/// What --restoringbeam asks for.
+/// The beam that --restoringbeam asks for.
 struct WantedBeam {
   std::optional<imager::Beam> given{};  ///< "0.5arcsec" or "0.5arcsec,0.4arcsec,30deg"; nothing: the fitted one
   bool circular = false;                ///< the fitted one, but as wide across as it is long

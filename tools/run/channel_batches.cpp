@@ -13,12 +13,12 @@
 namespace misfit::tools {
 namespace {
 
-/// Of a channel while it waits; UVW is held once for all.
+/// The bytes that a channel takes while it waits, without UVW, which is held once for all.
 double gathered_bytes(const RunScene& scene, const RunPlan& plan) {
   return scene.samples * (sizeof(float) + 1.0 * plan.gridding.request.stokes * sizeof(std::complex<float>));
 }
 
-/// Of UVW and the order of rows, which channels share.
+/// The bytes of UVW and of the order of rows, which channels share.
 double shared_bytes(double rows) {
   return rows * (3 * sizeof(double) + sizeof(std::uint32_t));
 }

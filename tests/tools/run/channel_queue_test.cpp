@@ -66,7 +66,7 @@ imager::Image image(int number) {
 
 const std::vector<imager::PlaneRange> batches{{0, 3}, {3, 3}, {6, 3}, {9, 1}};
 
-/// Of those that queues make.
+/// Checks all that comes to it: channels in their order, with all that make_channels() gave them.
 class Sink : public ChannelSink {
  public:
   void write(const std::string& kind, const imager::PlaneIndex& at, const imager::Image& pixels,
