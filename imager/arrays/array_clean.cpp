@@ -112,8 +112,7 @@ ArrayClean clean_arrays(const ArrayCleanOptions& options, const ArrayCoordinates
   ArrayClean result;
   result.sums = made.images.sums.front();
   result.expected_error = expected_error;
-  const CleanInput input{.samples = source,
-                         .transform = *made.transform,
+  const CleanInput input{.imaged = {source, *made.transform, made.images.normalisation},
                          .dirty = {&made.images.dirty.front()},
                          .psf = {&psf},
                          .max_sidelobe = largest_sidelobe(psf, beam, cell_rad, threads),

@@ -101,8 +101,7 @@ struct CleanResult {
 /// What is to be cleaned: an image, or the Taylor terms of one, of which the first is the image. Where several ranks share the
 /// samples, rank 0 cleans and the others call follow_clean().
 struct CleanInput {
-  OneStokes samples;
-  const Transform& transform;
+  ImagedData imaged;
   TaylorExpansion expansion{};      ///< of the components' spectra
   std::vector<const Image*> dirty;  ///< of these samples: R_t [term], see TaylorImages
   std::vector<const Image*> psf;    ///< P_k [k], 2 terms − 1 of them

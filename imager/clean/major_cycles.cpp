@@ -51,7 +51,7 @@ class Run {
         minor_(minor),
         o_(options),
         context_(context),
-        sharer_(input.samples.source.ranks()),
+        sharer_(input.imaged.samples.source.ranks()),
         state_(std::move(state)) {
     require_same_terms(input, minor);
     if (state_.model.scale_pixels() != minor.scale_pixels())
@@ -93,7 +93,7 @@ class Run {
       residuals_ = input_.dirty;
     } else {
       sharer_.share(state_.model);
-      made_ = make_taylor_residuals(input_.samples, input_.transform, model_images(), input_.expansion, context_);
+      made_ = make_taylor_residuals(input_.imaged, model_images(), input_.expansion, context_);
       for (const Image& residual : made_) residuals_.push_back(&residual);
     }
     const StageTimer timer(context_.times, stage::statistics);

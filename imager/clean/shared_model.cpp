@@ -46,12 +46,11 @@ void ModelSharer::end() const {
   share_values(ranks_, next);
 }
 
-void follow_clean(const OneStokes& samples, const Transform& transform, const TaylorExpansion& expansion,
-                  const Context& context) {
-  for (ComponentModel model; receive(samples.source.ranks(), model);) {
+void follow_clean(const ImagedData& imaged, const TaylorExpansion& expansion, const Context& context) {
+  for (ComponentModel model; receive(imaged.samples.source.ranks(), model);) {
     std::vector<Image> terms;
     for (int term = 0; term < expansion.terms; ++term) terms.push_back(model.image(context.threads, term));
-    make_taylor_residuals(samples, transform, terms, expansion, context);
+    make_taylor_residuals(imaged, std::move(terms), expansion, context);
   }
 }
 

@@ -22,7 +22,6 @@ class ModelSharer {
 
 /// On ranks after the first: makes the parts of residuals that this rank's samples give, of every model that rank 0 tells of,
 /// until it tells of the end.
-void follow_clean(const OneStokes& samples, const Transform& transform, const TaylorExpansion& expansion,
-                  const Context& context);
+void follow_clean(const ImagedData& imaged, const TaylorExpansion& expansion, const Context& context);
 
 }  // namespace misfit::imager

@@ -31,10 +31,11 @@ CleanedField clean_wide_field(const VisibilitySource& source, const Transform& t
                               const Context& context) {
   const TaperedVisibilities tapered(source, g.cell_rad);
   const DirtyImages images = make_dirty_images(tapered, transform, {.with_psf = true}, context);
+  const ImagedData imaged{tapered, transform, images.normalisation};
   const Ranks& ranks = source.ranks();
   CleanedField field;
   if (!ranks.first()) {
-    follow_clean(tapered, transform, {}, context);
+    follow_clean(imaged, {}, context);
     field.model = Image(g.width, g.height);
     ranks.share(field.model.pixel.data(), field.model.pixel.size() * sizeof(double));
     return field;
@@ -51,8 +52,7 @@ CleanedField clean_wide_field(const VisibilitySource& source, const Transform& t
   const auto minor = make_deconvolver({.name = "clark", .threads = context.threads}, {&images.psf});
   const Sidelobes sidelobes(images.psf);
   CleanResult cleaned = clean(
-      {.samples = tapered,
-       .transform = transform,
+      {.imaged = imaged,
        .dirty = {&dirty},
        .psf = {&images.psf},
        .max_sidelobe = sidelobes.from(lobe_pixels),

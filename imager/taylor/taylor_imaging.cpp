@@ -1,9 +1,7 @@
 #include "imager/taylor/taylor_imaging.h"
 
-#include <stdexcept>
 #include <utility>
 
-#include "imager/data/image_statistics.h"
 #include "imager/data/phase.h"
 #include "imager/numerics/big_array.h"
 #include "imager/numerics/phasors.h"
@@ -13,14 +11,11 @@
 namespace misfit::imager {
 namespace {
 
-/// The images of a sum, over Σ w.
-std::vector<Image> normalised_images(std::unique_ptr<AdjointSum> sum, const Ranks& ranks, const Context& context) {
-  AdjointResult result = finish_adjoint(std::move(sum), ranks, context);
+std::vector<Image> normalised_images(std::unique_ptr<AdjointSum> sum, const ImagedData& imaged, const Context& context) {
+  AdjointResult result = finish_adjoint(std::move(sum), imaged.samples.source.ranks(), context);
   BigMemory::release();
-  const double weight = result.sums.front().weight;
-  if (weight == 0) throw std::runtime_error("no visibility can be imaged: none has a weight above 0 within 1/(2 cell)");
   const StageTimer timer(context.times, stage::fft);
-  for (Image& image : result.images) divide(image, weight);
+  for (Image& image : result.images) imaged.normalisation.make_image(image);
   return std::move(result.images);
 }
 
@@ -42,41 +37,43 @@ std::vector<std::complex<double>> visibilities_of_middle(const VisibilityBlock& 
 
 }  // namespace
 
-TaylorImages make_taylor_images(const VisibilitySource& source, const Transform& transform, const TaylorPsf& psf,
-                                const TaylorExpansion& expansion, const Context& context) {
+TaylorImages make_taylor_images(const ImagedData& imaged, const TaylorPsf& psf, const TaylorExpansion& expansion,
+                                const Context& context) {
   const TaylorPowers of_dirty{1, expansion.terms - 1}, of_psf{1, 2 * expansion.terms - 2};
-  VisibilityPass pass(source, context);
-  auto sum = begin_adjoint(transform, {.images = of_dirty.last}, context);
+  VisibilityPass pass(imaged.samples.source, context);
+  auto sum = begin_adjoint(imaged.transform, {.images = of_dirty.last}, context);
   auto psf_sum = begin_adjoint(psf.transform, {.images = of_psf.last}, context);
   pass.for_each_block([&](const VisibilityBlock& block) {
     const StageTimer timer(context.times, stage::grid);
-    sum->add(block, taylor_sets(expansion, block, {block.visibility.begin(), block.visibility.end()}, of_dirty));
+    const std::complex<float>* const data = block.visibility_of(imaged.samples.index);
+    sum->add(block, taylor_sets(expansion, block, {data, data + block.samples()}, of_dirty));
     psf_sum->add(block, taylor_sets(expansion, block, visibilities_of_middle(block, psf), of_psf));
   });
   TaylorImages images;
-  images.psf = normalised_images(std::move(psf_sum), source.ranks(), context);
-  images.dirty = normalised_images(std::move(sum), source.ranks(), context);
+  images.psf = normalised_images(std::move(psf_sum), imaged, context);
+  images.dirty = normalised_images(std::move(sum), imaged, context);
   return images;
 }
 
-std::vector<Image> make_taylor_residuals(const OneStokes& samples, const Transform& transform, const std::vector<Image>& models,
-                                         const TaylorExpansion& expansion, const Context& context) {
+std::vector<Image> make_taylor_residuals(const ImagedData& imaged, std::vector<Image> models, const TaylorExpansion& expansion,
+                                         const Context& context) {
   if (expansion.terms == 1) {
     std::vector<Image> residual;
-    residual.push_back(make_residual_image(samples, transform, models.front(), context));
+    residual.push_back(make_residual_image(imaged, std::move(models.front()), context));
     return residual;
   }
-  auto sum = begin_adjoint(transform, {.images = expansion.terms}, context);
+  for (Image& model : models) imaged.normalisation.make_predicted(model);
+  auto sum = begin_adjoint(imaged.transform, {.images = expansion.terms}, context);
   const TaylorPowers powers{0, expansion.terms - 1};
   std::vector<const Image*> terms;
   for (const Image& model : models) terms.push_back(&model);
   for_each_residual(
-      samples, [&] { return std::make_unique<TaylorPrediction>(transform, terms, expansion); }, context,
+      imaged.samples, [&] { return std::make_unique<TaylorPrediction>(imaged.transform, terms, expansion); }, context,
       [&](const VisibilityBlock& block, const std::vector<std::complex<double>>& residual) {
         const StageTimer timer(context.times, stage::grid);
         sum->add(block, taylor_sets(expansion, block, residual, powers));
       });
-  return normalised_images(std::move(sum), samples.source.ranks(), context);
+  return normalised_images(std::move(sum), imaged, context);
 }
 
 }  // namespace misfit::imager

@@ -24,14 +24,13 @@ struct TaylorPsf {
 /// One pass over the visibilities for all of them: dirty images by `transform`, PSFs by that of `psf`, which may be the same.
 /// For a sky of Taylor coefficients I_t is R_q = Σ_t P_{q+t} ⋆ I_t, the normal equations of Rau & Cornwell (2011). With ν_0 in
 /// the middle of the band R_t and P_k of odd t and k are weak against their data: the transforms' errors are relative to the
-/// images of |x^t V| rather than to them. Stages timed: "read", "grid", "fft". Throws std::runtime_error when no sample can be
-/// used.
-TaylorImages make_taylor_images(const VisibilitySource& source, const Transform& transform, const TaylorPsf& psf,
-                                const TaylorExpansion& expansion, const Context& context);
+/// images of |x^t V| rather than to them. Stages timed: "read", "grid", "fft".
+TaylorImages make_taylor_images(const ImagedData& imaged, const TaylorPsf& psf, const TaylorExpansion& expansion,
+                                const Context& context);
 
 /// The residual images A*(w x^t (V − Σ_s x^s A I_s)) / Σ w [t], of model images [s] of each term, in one pass. Stages timed: as
 /// by make_residual_image.
-std::vector<Image> make_taylor_residuals(const OneStokes& samples, const Transform& transform, const std::vector<Image>& models,
-                                         const TaylorExpansion& expansion, const Context& context);
+std::vector<Image> make_taylor_residuals(const ImagedData& imaged, std::vector<Image> models, const TaylorExpansion& expansion,
+                                         const Context& context);
 
 }  // namespace misfit::imager

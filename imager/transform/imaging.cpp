@@ -27,22 +27,21 @@ void require_any(const SampleSums& sums) {
   throw NothingInGrid(sums.outside_grid);
 }
 
-/// Divides by Σ w. What the image is then, as rank 0 has it.
-ImageStatistics normalise(Image& image, double weight, const Ranks& ranks) {
-  ImageStatistics statistics = divide(image, weight);
+/// What the image is, as rank 0 has it.
+ImageStatistics normalise(Image& adjoint, const Normalisation& by, const Ranks& ranks) {
+  ImageStatistics statistics = by.make_image(adjoint);
   share_values(ranks, statistics);
   return statistics;
 }
 
-/// Divides all by Σ w.
 DirtyImages dirty_images(AdjointResult sum, Image psf, const Ranks& ranks, const Context& context) {
   BigMemory::release();
   require_any(sum.sums.front());
   const StageTimer timer(context.times, stage::fft);
-  const double weight = sum.sums.front().weight;
-  DirtyImages made{std::move(sum.images), std::move(psf), std::move(sum.sums), {}, {}};
-  for (Image& image : made.dirty) made.dirty_statistics.push_back(normalise(image, weight, ranks));
-  made.psf_statistics = normalise(made.psf, weight, ranks);
+  const Normalisation by_weight(sum.sums.front().weight);
+  DirtyImages made{std::move(sum.images), std::move(psf), std::move(sum.sums), {}, {}, by_weight};
+  for (Image& image : made.dirty) made.dirty_statistics.push_back(normalise(image, by_weight, ranks));
+  made.psf_statistics = normalise(made.psf, by_weight, ranks);
   return made;
 }
 
@@ -106,15 +105,16 @@ void for_each_residual(const OneStokes& samples, const Transform& transform, con
       samples, [&] { return transform.predict(model); }, context, visit);
 }
 
-Image make_residual_image(const OneStokes& samples, const Transform& transform, const Image& model, const Context& context) {
-  auto sum = begin_adjoint(transform, {}, context);
-  for_each_residual(samples, transform, model, context,
+Image make_residual_image(const ImagedData& imaged, Image model, const Context& context) {
+  auto sum = begin_adjoint(imaged.transform, {}, context);
+  imaged.normalisation.make_predicted(model);
+  for_each_residual(imaged.samples, imaged.transform, model, context,
                     [&](const VisibilityBlock& block, const std::vector<std::complex<double>>& residual) {
                       const StageTimer timer(context.times, stage::grid);
                       sum->add(block, residual);
                     });
-  AdjointResult result = finish_adjoint(std::move(sum), samples.source.ranks(), context);
-  divide(result.images.front(), result.sums.front().weight);
+  AdjointResult result = finish_adjoint(std::move(sum), imaged.samples.source.ranks(), context);
+  imaged.normalisation.make_image(result.images.front());
   return std::move(result.images.front());
 }
 

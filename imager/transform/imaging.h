@@ -5,8 +5,8 @@
 #include <memory>
 #include <stdexcept>
 
-#include "imager/data/image_statistics.h"
 #include "imager/numerics/context.h"
+#include "imager/transform/normalisation.h"
 #include "imager/transform/transform.h"
 
 namespace misfit::imager {
@@ -20,11 +20,12 @@ struct NothingInGrid : std::runtime_error {
 /// Where several ranks share the samples, images are at rank 0, and empty at others, here and wherever images are made; all
 /// that else is told is that of all samples, and of the images, at every rank.
 struct DirtyImages {
-  std::vector<Image> dirty;                       ///< [Stokes], Jy/beam: the adjoint over Σ w
+  std::vector<Image> dirty;                       ///< [Stokes], Jy/beam: the adjoint, normalised
   Image psf;                                      ///< 1 at the centre up to the accuracy; empty unless asked for
   std::vector<SampleSums> sums;                   ///< [Stokes]
   std::vector<ImageStatistics> dirty_statistics;  ///< [Stokes], as the images are made
   ImageStatistics psf_statistics;
+  Normalisation normalisation{1};  ///< of all of them, which residuals share
 };
 
 /// One pass over the visibilities. Stages timed: "read", "grid", "fft", which counts corrections in. Throws std::runtime_error
@@ -54,8 +55,15 @@ using MakePrediction = std::function<std::unique_ptr<Prediction>()>;
 void for_each_residual(const OneStokes& samples, const MakePrediction& predict, const Context& context,
                        const VisitResidual& visit);
 
+/// Samples of one Stokes parameter, and how models are predicted for them and images made of them.
+struct ImagedData {
+  OneStokes samples;
+  const Transform& transform;
+  Normalisation normalisation;  ///< that of their dirty images
+};
+
 /// The dirty image of data − model: the model is predicted at every usable sample and
 /// subtracted. Stages timed: "read", "fft", "degrid", "grid".
-Image make_residual_image(const OneStokes& samples, const Transform& transform, const Image& model, const Context& context);
+Image make_residual_image(const ImagedData& imaged, Image model, const Context& context);
 
 }  // namespace misfit::imager

@@ -102,7 +102,7 @@ void ChannelRun::make_terms() {
   if (scene_.options.nterms == 1) return;
   taylor_.emplace(taylor_expansion(scene_.options, scene_.header.observation), scene_.threads);
   progress().begin("Taylor terms" + name_);
-  taylor_->make_images(samples(), images_, context());
+  taylor_->make_images(imaged(0), images_, context());
   progress().end();
 }
 
@@ -154,8 +154,7 @@ std::unique_ptr<CleanStage> ChannelRun::clean() {
 void ChannelRun::follow_clean() {
   progress().begin("CLEAN" + name_, true);  // rank 0 decides when it stops
   const imager::TaylorExpansion expansion = taylor_ ? taylor_->expansion() : imager::TaylorExpansion{};
-  for (std::size_t s = 0; s < scene_.header.stokes.size(); ++s)
-    imager::follow_clean({samples(), s}, *images_.transform, expansion, context());
+  for (std::size_t s = 0; s < scene_.header.stokes.size(); ++s) imager::follow_clean(imaged(s), expansion, context());
 }
 
 /// Told of the state with which CLEAN begins, which may be that of a run before, and after every major cycle.
@@ -169,9 +168,12 @@ void ChannelRun::count_cycle(const imager::CleanState& state) {
   if (scene_.told != nullptr && state.cycles.size() > 1) progress().say("  " + cycle_message(state));
 }
 
+imager::ImagedData ChannelRun::imaged(std::size_t stokes) {
+  return {{samples(), stokes}, *images_.transform, images_.images.normalisation};
+}
+
 imager::CleanResult ChannelRun::clean(std::size_t stokes) {
-  CleanScene clean{.samples = {samples(), stokes},
-                   .transform = *images_.transform,
+  CleanScene clean{.imaged = imaged(stokes),
                    .expansion = {},
                    .dirty = {&images_.images.dirty[stokes]},
                    .psf = {&images_.images.psf},

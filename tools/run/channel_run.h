@@ -105,6 +105,7 @@ class ChannelRun {
  private:
   void predict_noise();
   void count_cycle(const imager::CleanState& state);
+  imager::ImagedData imaged(std::size_t stokes);
   imager::CleanResult clean(std::size_t stokes);
 
   const ChannelScene& scene_;

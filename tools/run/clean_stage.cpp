@@ -95,9 +95,9 @@ imager::CleanState CleanStage::begin(std::size_t stokes, const CleanStateOwner& 
 }
 
 std::uint64_t CleanStage::checksum_of(const CleanScene& scene) const {
-  std::vector<const imager::Image*> images{scene.dirty.front(), scene.psf.front(), mask(scene.samples.index)};
+  std::vector<const imager::Image*> images{scene.dirty.front(), scene.psf.front(), mask(scene.imaged.samples.index)};
   if (start_model_)
-    for (const imager::Image* term : start_model_->images(scene.samples.index)) images.push_back(term);
+    for (const imager::Image* term : start_model_->images(scene.imaged.samples.index)) images.push_back(term);
   images.insert(images.end(), scene.dirty.begin() + 1, scene.dirty.end());
   images.insert(images.end(), scene.psf.begin() + 1, scene.psf.end());
   return checksum(images);
@@ -107,7 +107,7 @@ imager::CleanResult CleanStage::run(const CleanScene& scene, const nlohmann::jso
                                     const imager::CycleProgress& cycle_progress, const imager::Context& context) {
   imager::CleanOptions options = clean_options(o_, context.threads);
   options.stop_requested = interrupted;
-  options.mask = mask(scene.samples.index);
+  options.mask = mask(scene.imaged.samples.index);
   std::unique_ptr<imager::MinorCycle> minor;
   {
     const imager::StageTimer timer(context.times, imager::stage::minor_cycles);
@@ -116,18 +116,17 @@ imager::CleanResult CleanStage::run(const CleanScene& scene, const nlohmann::jso
   CleanStateOwner owner{MISFIT_VERSION,
                         option_values,
                         0,
-                        scene.samples.source.ranks().size(),
+                        scene.imaged.samples.source.ranks().size(),
                         {image_.geometry.width, image_.geometry.height, minor->scale_pixels()}};
   imager::CleanState state;
   double sidelobe = 0;
   {
     const imager::StageTimer timer(context.times, imager::stage::clean_state);
     owner.checksum = checksum_of(scene);
-    state = begin(scene.samples.index, owner);
+    state = begin(scene.imaged.samples.index, owner);
     sidelobe = imager::largest_sidelobe(*scene.psf.front(), scene.main_lobe, image_.geometry.cell_rad, context.threads);
   }
-  const imager::CleanInput input{.samples = scene.samples,
-                                 .transform = scene.transform,
+  const imager::CleanInput input{.imaged = scene.imaged,
                                  .expansion = scene.expansion,
                                  .dirty = scene.dirty,
                                  .psf = scene.psf,
@@ -136,7 +135,7 @@ imager::CleanResult CleanStage::run(const CleanScene& scene, const nlohmann::jso
                                  .beam_fwhm_pixels = mean_width_rad(scene.main_lobe) / image_.geometry.cell_rad};
   const auto save = [&](const imager::CleanState& now) {
     const imager::StageTimer timer(context.times, imager::stage::clean_state);
-    write_clean_state(state_path(scene.samples.index), now, owner);
+    write_clean_state(state_path(scene.imaged.samples.index), now, owner);
     cycle_progress(now);
   };
   return imager::clean(input, *minor, options, std::move(state), save, context);

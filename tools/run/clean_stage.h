@@ -18,8 +18,7 @@ namespace misfit::tools {
 
 /// What CLEAN is given by the stages before it, of one Stokes parameter.
 struct CleanScene {
-  imager::OneStokes samples;
-  const imager::Transform& transform;
+  imager::ImagedData imaged;
   imager::TaylorExpansion expansion;
   std::vector<const imager::Image*> dirty;  ///< [term]
   std::vector<const imager::Image*> psf;    ///< [k], see CleanInput

@@ -18,10 +18,10 @@ std::vector<const imager::Image*> all_terms(const imager::Image& first, const st
 
 }  // namespace
 
-void TaylorStage::make_images(const imager::VisibilitySource& source, const imager::AccurateImages& made,
+void TaylorStage::make_images(const imager::ImagedData& imaged, const imager::AccurateImages& made,
                               const imager::Context& context) {
-  images_ = imager::make_taylor_images(source, *made.transform, psf_of(made), expansion_, context);
-  if (!source.ranks().first()) return;  // where the images are
+  images_ = imager::make_taylor_images(imaged, psf_of(made), expansion_, context);
+  if (!imaged.samples.source.ranks().first()) return;  // where the images are
   psf_ = all_terms(made.images.psf, images_.psf);
   basis_ = imager::basis_of(psf_);
 }

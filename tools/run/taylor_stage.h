@@ -31,7 +31,7 @@ class TaylorStage {
   /// Besides the dirty image and the PSF that are made: a pass over the same samples, by the same transforms. The promise of an
   /// accuracy holds for those alone: terms of odd order are weak against their data. Throws std::runtime_error where the
   /// samples' frequencies do not tell the terms apart. `made` stays where it is until CLEAN is over.
-  void make_images(const imager::VisibilitySource& source, const imager::AccurateImages& made, const imager::Context& context);
+  void make_images(const imager::ImagedData& imaged, const imager::AccurateImages& made, const imager::Context& context);
   const std::vector<const imager::Image*>& psf() const { return psf_; }  ///< [k]
   imager::TaylorImages& images() { return images_; }
 

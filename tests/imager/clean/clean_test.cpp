@@ -36,6 +36,8 @@ struct Scene {
   DirtyImages images;
   double max_sidelobe = 0;
   double beam_fwhm_pixels = 0;
+
+  ImagedData imaged() const { return {source, *transform, images.normalisation}; }
 };
 
 Scene make_scene(const DirectionCosines& centre) {
@@ -69,8 +71,7 @@ const Scene& scene() {
 CleanResult cleaned(const Scene& of, const CleanOptions& options, const DirtyImages& images, const CleanState& begin,
                     const CycleProgress& cycle_progress) {
   const Hogbom minor(images.psf, options.threads);
-  const CleanInput input{.samples = of.source,
-                         .transform = *of.transform,
+  const CleanInput input{.imaged = of.imaged(),
                          .dirty = {&images.dirty[0]},
                          .psf = {&images.psf},
                          .max_sidelobe = of.max_sidelobe,
@@ -107,7 +108,7 @@ double total(const Image& image) {
 
 /// The residual's own definition: the dirty image of data − model.
 void check_consistent(const CleanResult& result) {
-  const Image residual = make_residual_image(scene().source, *scene().transform, result.model, {});
+  const Image residual = make_residual_image(scene().imaged(), result.model, {});
   BOOST_TEST((residual.pixel == result.residual.pixel));
   BOOST_TEST(result.report.final_state().peak_residual_jy == peak_magnitude(result.residual));
   BOOST_TEST(result.report.final_state().model_flux_jy == total(result.model));

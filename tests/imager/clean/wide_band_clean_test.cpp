@@ -42,6 +42,8 @@ struct Scene {
   TaylorExpansion expansion;
   Beam beam;
   double max_sidelobe = 0;
+
+  ImagedData imaged() const { return {source, *transform, first.normalisation}; }
 };
 
 constexpr int hour_angles = 5, channels = 8;
@@ -66,7 +68,7 @@ Scene make_scene(int terms, double fraction, double noise_jy, unsigned seed) {
   s.source = stored({block});
   s.transform = &gridding();
   s.first = make_dirty_images(s.source, *s.transform, {.with_psf = true}, {});
-  s.further = make_taylor_images(s.source, *s.transform, {*s.transform, {}, false}, s.expansion, {});
+  s.further = make_taylor_images(s.imaged(), {*s.transform, {}, false}, s.expansion, {});
   s.psf.push_back(&s.first.psf);
   for (const Image& image : s.further.psf) s.psf.push_back(&image);
   Image middle(geometry.width, geometry.height);
@@ -89,8 +91,7 @@ CleanState first() {
 }
 
 CleanInput input_of(const Scene& of) {
-  CleanInput input{.samples = of.source,
-                   .transform = *of.transform,
+  CleanInput input{.imaged = of.imaged(),
                    .expansion = of.expansion,
                    .dirty = {&of.first.dirty[0]},
                    .psf = of.psf,
@@ -205,7 +206,7 @@ BOOST_AUTO_TEST_CASE(residuals_are_those_of_the_models) {
   const CleanResult result = cleaned(scene, options_to(0.02));
   std::vector<Image> models{result.model};
   models.insert(models.end(), result.further_models.begin(), result.further_models.end());
-  const std::vector<Image> left = make_taylor_residuals(scene.source, *scene.transform, models, scene.expansion, {});
+  const std::vector<Image> left = make_taylor_residuals(scene.imaged(), models, scene.expansion, {});
   BOOST_TEST((left[0].pixel == result.residual.pixel));
   for (std::size_t t = 1; t < left.size(); ++t) BOOST_TEST((left[t].pixel == result.further_residuals[t - 1].pixel));
   BOOST_TEST(result.report.final_state().peak_residual_jy == largest_magnitude(result.residual));

@@ -118,8 +118,10 @@ BOOST_AUTO_TEST_CASE(every_rank_is_told_the_same_of_images_that_it_has_not) {
 BOOST_DATA_TEST_CASE(residuals_are_those_of_all_samples, bdata::make({0.0, 3000.0}), max_w) {
   const PlannedTransform transform(plan_of(geometry, 1e-9, max_w));
   const Image model = random_image(geometry.width, geometry.height, 3);
-  check_alike(blocks(max_w), reordered,
-              [&](const VisibilitySource& source) { return make_residual_image(source, transform, model, {}).pixel; });
+  check_alike(blocks(max_w), reordered, [&](const VisibilitySource& source) {
+    const Normalisation normalisation = make_dirty_images(source, transform, AdjointOptions{}, {}).normalisation;
+    return make_residual_image({source, transform, normalisation}, model, {}).pixel;
+  });
 }
 
 BOOST_TEST_DECORATOR(*boost::unit_test::label("sweep"))
@@ -208,19 +210,16 @@ BOOST_DATA_TEST_CASE(clean_finds_the_same_components, bdata::make({0.0, 3000.0})
   const PlannedTransform transform(plan_of(geometry, 1e-9, max_w));
   check_alike(seen, 1e-9, [&](const VisibilitySource& source) {
     const DirtyImages made = make_dirty_images(source, transform, {.with_psf = true}, {});
+    const ImagedData imaged{source, transform, made.normalisation};
     if (!source.ranks().first()) {
-      follow_clean(source, transform, {}, {2});
+      follow_clean(imaged, {}, {2});
       return Values();
     }
     CleanOptions options;
     options.max_iterations = 300;
     options.max_major_cycles = 4;
-    const CleanInput input{.samples = source,
-                           .transform = transform,
-                           .dirty = {&made.dirty.front()},
-                           .psf = {&made.psf},
-                           .max_sidelobe = 0.3,
-                           .accuracy = 1e-9};
+    const CleanInput input{
+        .imaged = imaged, .dirty = {&made.dirty.front()}, .psf = {&made.psf}, .max_sidelobe = 0.3, .accuracy = 1e-9};
     const Hogbom minor(made.psf, 2);
     const CleanResult result = misfit::imager::clean(
         input, minor, options, first_state(ComponentModel(geometry.width, geometry.height, {0})), [](const CleanState&) {}, {});
@@ -241,9 +240,10 @@ BOOST_AUTO_TEST_CASE(clean_of_taylor_terms_finds_the_same_components) {
   const PlannedTransform transform(plan_of(image, 1e-9));
   check_alike({block}, 1e-9, [&](const VisibilitySource& source) {
     const DirtyImages first = make_dirty_images(source, transform, {.with_psf = true}, {});
-    const TaylorImages further = make_taylor_images(source, transform, {transform, {}, false}, expansion, {});
+    const ImagedData imaged{source, transform, first.normalisation};
+    const TaylorImages further = make_taylor_images(imaged, {transform, {}, false}, expansion, {});
     if (!source.ranks().first()) {
-      follow_clean(source, transform, expansion, {2});
+      follow_clean(imaged, expansion, {2});
       return Values();
     }
     std::vector<const Image*> psf{&first.psf};
@@ -251,8 +251,7 @@ BOOST_AUTO_TEST_CASE(clean_of_taylor_terms_finds_the_same_components) {
     CleanOptions options;
     options.max_iterations = 200;
     options.max_major_cycles = 3;
-    const CleanInput input{.samples = source,
-                           .transform = transform,
+    const CleanInput input{.imaged = imaged,
                            .expansion = expansion,
                            .dirty = {&first.dirty.front(), &further.dirty.front()},
                            .psf = psf,

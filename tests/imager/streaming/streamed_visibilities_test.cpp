@@ -94,13 +94,13 @@ BOOST_AUTO_TEST_CASE(images_have_the_same_bits_however_the_visibilities_come) {
   const Counted source(blocks());
   const Image model = random_image(40, 30, 1);
   const DirtyImages plain = make_dirty_images(source, *transform, {.with_psf = true}, {});
-  const Image residual = make_residual_image(source, *transform, model, {});
+  const Image residual = make_residual_image({source, *transform, plain.normalisation}, model, {});
   for (const StreamingOptions& options : {StreamingOptions{true, 2}, {true, 0}, {false, 0}, {false, 1}, {false, 2}}) {
     const StreamedVisibilities streamed(source, options);
     const DirtyImages images = make_dirty_images(streamed, *transform, {.with_psf = true}, {});
     BOOST_CHECK(images.dirty[0].pixel == plain.dirty[0].pixel);
     BOOST_CHECK(images.psf.pixel == plain.psf.pixel);
-    BOOST_CHECK(make_residual_image(streamed, *transform, model, {}).pixel == residual.pixel);
+    BOOST_CHECK(make_residual_image({streamed, *transform, plain.normalisation}, model, {}).pixel == residual.pixel);
   }
 }
 

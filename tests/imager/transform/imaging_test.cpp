@@ -1,6 +1,7 @@
 #include "imager/transform/imaging.h"
 
 #include <boost/test/unit_test.hpp>
+#include <numeric>
 
 #include "imager/direct/direct_transform.h"
 #include "imager/plan/gridding_plan.h"
@@ -57,18 +58,58 @@ BOOST_AUTO_TEST_CASE(the_residual_of_the_true_model_is_zero_to_the_accuracy) {
   const Image model = random_image(60, 44, 4);
   const StoredVisibilities source = stored(observed(model));
   const auto transform = gridded();
-  const Image dirty = make_dirty_images(source, *transform, AdjointOptions{}, {}).dirty[0];
-  const Image residual = make_residual_image(source, *transform, model, {});
-  BOOST_TEST(norm(residual.pixel) < accuracy * norm(dirty.pixel));
+  const DirtyImages images = make_dirty_images(source, *transform, AdjointOptions{}, {});
+  const Image residual = make_residual_image({source, *transform, images.normalisation}, model, {});
+  BOOST_TEST(norm(residual.pixel) < accuracy * norm(images.dirty[0].pixel));
 }
 
 BOOST_AUTO_TEST_CASE(the_residual_of_no_model_is_the_dirty_image) {
   const StoredVisibilities source = stored(observed(random_image(60, 44, 5)));
   const auto transform = gridded();
   const DirtyImages images = make_dirty_images(source, *transform, AdjointOptions{}, {});
-  const Image residual = make_residual_image(source, *transform, Image(60, 44), {});
+  const Image residual = make_residual_image({source, *transform, images.normalisation}, Image(60, 44), {});
   BOOST_TEST((residual.pixel == images.dirty[0].pixel));
   BOOST_TEST(images.psf.pixel.empty());
+}
+
+/// As a mosaic has them: factors G of models, and F of images.
+BOOST_AUTO_TEST_CASE(residuals_are_normalised_by_images_of_factors) {
+  const Image seen = random_image(60, 44, 6), model = random_image(60, 44, 7);
+  const auto of_adjoint = std::make_shared<const Image>(random_image(60, 44, 8));
+  const auto of_model = std::make_shared<const Image>(random_image(60, 44, 9));
+  const std::vector<VisibilityBlock> blocks = observed(seen);
+  const StoredVisibilities source = stored(blocks);
+  const auto transform = gridded();
+  constexpr double weight = 3.5;
+  const Image residual = make_residual_image({source, *transform, Normalisation(weight, of_adjoint, of_model)}, model, {});
+
+  Image left = seen;  // data are those of `seen`
+  for (std::size_t i = 0; i < left.pixel.size(); ++i) left.pixel[i] -= of_model->pixel[i] * model.pixel[i];
+  const auto sum = DirectTransform(geometry, 2).adjoint({});
+  for (const VisibilityBlock& block : observed(left)) sum->add(block);
+  Image should = sum->finish().images[0];
+  for (std::size_t i = 0; i < should.pixel.size(); ++i) should.pixel[i] *= of_adjoint->pixel[i] / weight;
+  BOOST_TEST(relative_error(residual.pixel, should.pixel) < 2 * accuracy);  // of gridding, and of the prediction
+}
+
+/// ⟨V, A F m⟩ = ⟨F A* V, m⟩: CLEAN of an image that is divided by the factor its model is divided by.
+BOOST_AUTO_TEST_CASE(the_same_factors_of_images_and_models_keep_operators_adjoint) {
+  const auto factor = std::make_shared<const Image>(random_image(60, 44, 10));
+  const Normalisation normalisation(1, factor, factor);
+  Image model = random_image(60, 44, 11);
+  const VisibilityBlock block = observed(random_image(60, 44, 12)).front();
+  const DirectTransform transform(geometry, 2);
+  const auto sum = transform.adjoint({});
+  sum->add(block);
+  Image image = sum->finish().images[0];
+  normalisation.make_image(image);
+  const double in_images = std::inner_product(image.pixel.begin(), image.pixel.end(), model.pixel.begin(), 0.0);
+  normalisation.make_predicted(model);
+  const auto predicted = transform.predict(model)->at(block);
+  double in_samples = 0;
+  for (std::size_t i = 0; i < block.samples(); ++i)
+    in_samples += double{block.weight[i]} * (std::conj(std::complex<double>(block.visibility[i])) * predicted[i]).real();
+  BOOST_TEST(in_images == in_samples, boost::test_tools::tolerance(1e-10));
 }
 
 BOOST_AUTO_TEST_CASE(progress_ends_at_all_samples_and_every_stage_is_timed) {
