@@ -21,8 +21,8 @@ void add_image_command(CLI::App& program, const std::string& command_line, const
   declare(*command, *options);
   const auto check_options = [command, options] {
     CLI::Option* accuracy = command->get_option("--accuracy");
-    if (accuracy->count() == 0 && kernel_is_given(*options)) {
-      options->accuracy = 0;
+    if (accuracy->count() == 0 && kernel_is_given(options->gridding)) {
+      options->gridding.accuracy = 0;
       accuracy->default_str("0");
     }
     check(*options);

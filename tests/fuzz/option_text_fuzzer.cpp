@@ -29,13 +29,13 @@ void require_quantities(const std::string& text) {
 /// Options that have a value of their own kind.
 void require_options(const std::string& text) {
   tools::ImageOptions options;
-  options.restoringbeam = text;
-  if (const auto beam = read_or_refused(text, [&] { return tools::restoring_beam(options); }); beam && beam->given)
+  if (const auto beam = read_or_refused(text, [&] { return tools::restoring_beam(text); }); beam && beam->given)
     require(beam->given->minor_rad > 0 && beam->given->major_rad >= beam->given->minor_rad &&
                 std::isfinite(beam->given->position_angle_rad),
             "a beam is an ellipse");
-  options.uvtaper = text;
-  if (read_or_refused(text, [&] { return tools::check_weighting(options), true; })) tools::weighting_options(options);
+  options.weighting.uvtaper = text;
+  if (read_or_refused(text, [&] { return tools::check(options.weighting, options.cube), true; }))
+    tools::weighting_options(options.weighting);
   for (std::string tools::CubeOptions::*option : {&tools::CubeOptions::start, &tools::CubeOptions::chanwidth,
                                                   &tools::CubeOptions::restfreq, &tools::CubeOptions::outframe}) {
     tools::CubeOptions cube;

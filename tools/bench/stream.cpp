@@ -118,7 +118,7 @@ Planned plan_for(const GeneratedSource& source, const Options& o) {
   imager::GriddingRequest request;
   request.geometry = {o.pixels, o.pixels, o.cell_arcsec * M_PI / 180 / 3600, {}};
   request.kernel = kernels::cached(request.kernel, "");
-  request.accuracy = request.psf_accuracy = o.accuracy;
+  request.accuracy = request.psf_accuracy = o.gridding.accuracy;
   request.samples = source.samples();
   request.max_abs_w = source.max_abs_w();
   request.threads = o.threads;
@@ -165,7 +165,7 @@ int main(int count, char** argument) {
   command.add_option("samples", o.samples, "Numbers of samples, in ascending order")->capture_default_str();
   command.add_option("--imsize", o.pixels, "Pixels along a side")->capture_default_str();
   command.add_option("--cell", o.cell_arcsec, "Arcseconds of a pixel")->capture_default_str();
-  command.add_option("--accuracy", o.accuracy, "As misfit image has it")->capture_default_str();
+  command.add_option("--accuracy", o.gridding.accuracy, "As misfit image has it")->capture_default_str();
   command.add_option("--memory", o.memory_gib, "GiB, as misfit image has it")->capture_default_str();
   command.add_option("--threads", o.threads, "0 = all cores")->capture_default_str();
   command.add_flag("--coplanar", o.coplanar, "Without w");

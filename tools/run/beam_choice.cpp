@@ -36,22 +36,22 @@ void fit(const imager::Image& psf, double cell_rad, BeamChoice& choice) {
 
 }  // namespace
 
-void declare_restoring_beam(CLI::App& command, ImageOptions& o) {
+void declare_restoring_beam(CLI::App& command, std::string& typed_beam) {
   mark(command
-           .add_option("--restoringbeam", o.restoringbeam,
+           .add_option("--restoringbeam", typed_beam,
                        "Restore with this beam: MAJ, or MAJ,MIN,PA such as 0.5arcsec,0.4arcsec,30deg; the fitted one when "
                        "empty; circular, as wide as the fitted one is long; or common, one for all planes of a cube")
            ->check(values_are({"common", "circular"}, Others::possible)),
        OptionMark::free_of_state);
 }
 
-WantedBeam restoring_beam(const ImageOptions& o) {
-  if (o.restoringbeam.empty() || o.restoringbeam == "common") return {};
-  if (o.restoringbeam == "circular") return {.circular = true};
+WantedBeam restoring_beam(const std::string& typed_beam) {
+  if (typed_beam.empty() || typed_beam == "common") return {};
+  if (typed_beam == "circular") return {.circular = true};
   const auto expect = [&](bool holds) {
     if (!holds)
       refuse_option(
-          "restoringbeam", o.restoringbeam,
+          "restoringbeam", typed_beam,
           "common, circular, MAJ, or MAJ,MIN,PA such as 0.5arcsec,0.4arcsec,30deg with MAJ at least MIN, and MIN above 0");
   };
   const auto angle = [&](std::string_view part) {
@@ -59,7 +59,7 @@ WantedBeam restoring_beam(const ImageOptions& o) {
     expect(has_unit(text) && quantity(parse_angle_rad)(text).empty());
     return parse_angle_rad(text);
   };
-  const std::vector<std::string_view> parts = split_at_commas(o.restoringbeam);
+  const std::vector<std::string_view> parts = split_at_commas(typed_beam);
   expect(parts.size() == 1 || parts.size() == 3);
   imager::Beam beam;
   beam.major_rad = angle(parts[0]);

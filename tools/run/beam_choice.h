@@ -5,12 +5,16 @@
 #include <vector>
 
 #include "imager/beams/beam.h"
-#include "tools/run/image_options.h"
+#include "imager/data/image.h"
+
+namespace CLI {
+class App;
+}
 
 namespace misfit::tools {
 
 /// Declares --restoringbeam.
-void declare_restoring_beam(CLI::App& command, ImageOptions& options);
+void declare_restoring_beam(CLI::App& command, std::string& typed);
 
 /// The beam that --restoringbeam asks for.
 struct WantedBeam {
@@ -19,7 +23,7 @@ struct WantedBeam {
 };
 
 /// Throws as check(const ImageOptions&) does.
-WantedBeam restoring_beam(const ImageOptions& options);
+WantedBeam restoring_beam(const std::string& typed);
 
 /// The beams of a run.
 struct BeamChoice {

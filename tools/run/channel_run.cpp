@@ -54,7 +54,7 @@ void ChannelRun::warn(const std::string& sentence) {
 }
 
 void ChannelRun::weigh() {
-  const imager::WeightingOptions options = weighting_options(scene_.options);
+  const imager::WeightingOptions options = weighting_options(scene_.options.weighting);
   if (options.none()) return;
   progress().begin("weights" + name_);
   weigh(imager::make_imaging_weights(samples(), options, scene_.header.geometry, context()));
@@ -73,7 +73,7 @@ void ChannelRun::make_dirty(imager::GriddingPlan plan, std::shared_ptr<const ima
   progress().end();
   report().sums = images_.images.sums.front();
   made_.outside_grid = report().sums.outside_grid;
-  report().made_twice = images_.plan.request.accuracy != scene_.options.accuracy;  // a second pass asks for more
+  report().made_twice = images_.plan.request.accuracy != scene_.options.gridding.accuracy;  // a second pass asks for more
   predict_noise();
   const imager::StageTimer timer(times(), imager::stage::statistics);
   const imager::NeglectedPhase phase = imager::neglected_w_phase(scene_.reach, samples().w_spread(), scene_.header.geometry);
@@ -83,12 +83,13 @@ void ChannelRun::make_dirty(imager::GriddingPlan plan, std::shared_ptr<const ima
     report().stokes[s].theory = imager::theoretical_error(images_.plan, images_.images.sums[s], rms, phase);
     expected = std::max(expected, report().stokes[s].theory->expected_rms);
   }
-  if (!images_.promise_kept) warn(accuracy_warning(scene_.options.accuracy, std::max(images_.judged_error, expected)) + name_);
+  if (!images_.promise_kept)
+    warn(accuracy_warning(scene_.options.gridding.accuracy, std::max(images_.judged_error, expected)) + name_);
 }
 
 void ChannelRun::predict_noise() {
   const imager::WeightSums sums = weights_ ? samples().weight_sums() : imager::WeightSums::of_natural(report().sums.weight);
-  const std::string& taper = scene_.options.uvtaper;
+  const std::string& taper = scene_.options.weighting.uvtaper;
   if (weights_ && !taper.empty() && !sums.outweigh_least(report().sums.used))
     throw std::runtime_error("--uvtaper " + taper +
                              ": no sample keeps a weight that counts; expected a taper of larger radius in the "
@@ -99,8 +100,8 @@ void ChannelRun::predict_noise() {
 }
 
 void ChannelRun::make_terms() {
-  if (scene_.options.nterms == 1) return;
-  taylor_.emplace(taylor_expansion(scene_.options, scene_.header.observation), scene_.threads);
+  if (scene_.options.taylor.nterms == 1) return;
+  taylor_.emplace(taylor_expansion(scene_.options.taylor, scene_.header.observation), scene_.threads);
   progress().begin("Taylor terms" + name_);
   taylor_->make_images(imaged(0), images_, context());
   progress().end();
@@ -120,8 +121,8 @@ void ChannelRun::verify() {
 void ChannelRun::choose_beams() {
   const imager::StageTimer timer(times(), imager::stage::fit_beam);
   const ImageOptions& o = scene_.options;
-  report().beams =
-      choose_beam(images_.images.psf, scene_.header.geometry.cell_rad, restoring_beam(o), o.niter > 0 && !o.cube.is_cube());
+  report().beams = choose_beam(images_.images.psf, scene_.header.geometry.cell_rad, restoring_beam(o.clean.restoringbeam),
+                               o.clean.niter > 0 && !o.cube.is_cube());
   const std::string plane = name_.empty() ? "" : name_.substr(std::string(" of ").size()) + ": ";
   for (const std::string& warning : report().beams->warnings) warn(plane + warning);
 }

@@ -8,8 +8,8 @@
 #include "tools/base/option_checks.h"
 #include "tools/base/quantity.h"
 #include "tools/run/beam_choice.h"
+#include "tools/run/image_options.h"
 #include "tools/run/model_stage.h"
-#include "tools/run/taylor_options.h"
 
 namespace misfit::tools {
 namespace {
@@ -19,7 +19,7 @@ int smallest_side(const ImageOptions& o) {
   return o.imsize.empty() ? std::numeric_limits<int>::max() : *std::min_element(o.imsize.begin(), o.imsize.end());
 }
 
-void check_deconvolver(const ImageOptions& o) {
+void check_deconvolver(const TypedClean& o, int smallest_side) {
   const bool multiscale = o.deconvolver == "multiscale";
   const std::string scales = o.scales.empty() ? "" : typed(o.scales.front()) + " …";
   if (!multiscale && !o.scales.empty()) refuse_option("scales", scales, "--deconvolver multiscale beside it");
@@ -27,14 +27,14 @@ void check_deconvolver(const ImageOptions& o) {
     refuse_option("smallscalebias", typed(o.smallscalebias), "--deconvolver multiscale beside it");
   if (multiscale && o.scales.empty()) refuse_option("deconvolver", o.deconvolver, "--scales beside it, such as 0,5,15");
   for (std::size_t i = 0; i < o.scales.size(); ++i)
-    if (!(o.scales[i] >= 0 && o.scales[i] <= smallest_side(o)) || (i > 0 && !(o.scales[i] > o.scales[i - 1])) ||
+    if (!(o.scales[i] >= 0 && o.scales[i] <= smallest_side) || (i > 0 && !(o.scales[i] > o.scales[i - 1])) ||
         (o.scales[i] > 0 && o.scales[i] < 3))
       refuse_option("scales", typed(o.scales[i]), "pixels in ascending order, each 0 or from 3 to the image's size");
   if (!(o.smallscalebias >= 0 && o.smallscalebias < 1))
     refuse_option("smallscalebias", typed(o.smallscalebias), "0 or more, and below 1");
 }
 
-void check_auto_mask(const ImageOptions& o) {
+void check_auto_mask(const TypedClean& o) {
   if (o.usemask == "auto" && o.niter == 0) refuse_option("usemask", o.usemask, "--niter above 0 beside it");
   if (o.usemask == "auto" && !o.mask.empty()) refuse_option("mask", o.mask, "--usemask user, or no mask");
   if (!(o.sidelobethreshold >= 0)) refuse_option("sidelobethreshold", typed(o.sidelobethreshold), "0 or more");
@@ -47,7 +47,7 @@ void check_auto_mask(const ImageOptions& o) {
 
 }  // namespace
 
-void declare_clean(CLI::App& command, ImageOptions& o) {
+void declare(CLI::App& command, TypedClean& o) {
   command.add_option("--deconvolver", o.deconvolver, "How components are found: hogbom, clark or multiscale")
       ->check(CLI::IsMember(imager::deconvolver_names()));
   command
@@ -55,7 +55,6 @@ void declare_clean(CLI::App& command, ImageOptions& o) {
                   "Of multiscale, in pixels: 0,5,15. As wide at half maximum as tclean's, 0.74 of the number; 0 = points")
       ->delimiter(',');
   command.add_option("--smallscalebias", o.smallscalebias, "The largest scale counts this part less than points");
-  declare_taylor(command, o);
   mark(command.add_option("--niter", o.niter, "CLEAN components to find at most; 0 makes the dirty image"),
        OptionMark::free_of_state);
   command.add_option("--gain", o.gain, "Part of a peak that a component takes");
@@ -71,7 +70,7 @@ void declare_clean(CLI::App& command, ImageOptions& o) {
   command.add_option("--maxpsffraction", o.maxpsffraction, "… and at least this deep");
   command.add_option("--cycleniter", o.cycleniter, "Components that a minor cycle finds at most; -1 = no limit");
   mark(command.add_option("--nmajor", o.nmajor, "Major cycles at most; -1 = no limit"), OptionMark::free_of_state);
-  declare_restoring_beam(command, o);
+  declare_restoring_beam(command, o.restoringbeam);
   command
       .add_option(
           "--mask", o.mask,
@@ -105,32 +104,35 @@ void declare_clean(CLI::App& command, ImageOptions& o) {
 }
 
 void check_clean(const ImageOptions& o) {
-  if (!(parse_flux_jy(o.threshold) >= 0)) refuse_option("threshold", o.threshold, "0 or more");  // as it was typed
-  imager::check(clean_options(o, 1), "--");
-  const WantedBeam beam = restoring_beam(o);
-  if (!o.restoringbeam.empty() && o.niter == 0) refuse_option("restoringbeam", o.restoringbeam, "--niter above 0 beside it");
+  if (!(parse_flux_jy(o.clean.threshold) >= 0)) refuse_option("threshold", o.clean.threshold, "0 or more");  // as it was typed
+  imager::check(clean_options(o.clean, 1), "--");
+  const WantedBeam beam = restoring_beam(o.clean.restoringbeam);
+  if (!o.clean.restoringbeam.empty() && o.clean.niter == 0)
+    refuse_option("restoringbeam", o.clean.restoringbeam, "--niter above 0 beside it");
   const int smallest = smallest_side(o);
-  if (o.niter > 0 && smallest < 3 && !beam.given)
+  if (o.clean.niter > 0 && smallest < 3 && !beam.given)
     refuse_option("imsize", std::to_string(smallest), "3 pixels or more to fit a beam to, or --restoringbeam");
-  if (!o.startmodel.empty() && o.niter == 0) refuse_option("startmodel", names_of(o.startmodel), "--niter above 0 beside it");
-  if (const auto models = static_cast<int>(o.startmodel.size()); models > 1 && models != o.nterms)
-    refuse_option("startmodel", names_of(o.startmodel),
-                  o.nterms == 1 ? "one image, or --nterms " + std::to_string(models) + " beside it"
-                                : "one image, or " + std::to_string(o.nterms) + ", one for each of --nterms");
-  if (o.savemodel != "none" && o.cube.is_cube()) refuse_option("savemodel", o.savemodel, "none with --specmode cube");
-  if (o.savemodel != "none" && !saves_model(imager::parse_stokes(o.stokes)))
+  if (!o.clean.startmodel.empty() && o.clean.niter == 0)
+    refuse_option("startmodel", names_of(o.clean.startmodel), "--niter above 0 beside it");
+  if (const auto models = static_cast<int>(o.clean.startmodel.size()); models > 1 && models != o.taylor.nterms)
+    refuse_option("startmodel", names_of(o.clean.startmodel),
+                  o.taylor.nterms == 1 ? "one image, or --nterms " + std::to_string(models) + " beside it"
+                                       : "one image, or " + std::to_string(o.taylor.nterms) + ", one for each of --nterms");
+  if (o.clean.savemodel != "none" && o.cube.is_cube())
+    refuse_option("savemodel", o.clean.savemodel, "none with --specmode cube");
+  if (o.clean.savemodel != "none" && !saves_model(imager::parse_stokes(o.stokes)))
     refuse_option(
-        "savemodel", o.savemodel,
+        "savemodel", o.clean.savemodel,
         "--stokes of I, Q, U and V, or of parallel hands, such as XXYY or RR, of which a column's correlations are made");
-  if (o.savemodel != "none" && o.niter == 0) refuse_option("savemodel", o.savemodel, "--niter above 0 beside it");
-  if (!o.mask.empty() && o.niter == 0) refuse_option("mask", o.mask, "--niter above 0 beside it");
-  if (o.restart && o.niter == 0) refuse_option("restart", "true", "--niter above 0 beside it");
-  check_deconvolver(o);
-  check_taylor(o);
-  check_auto_mask(o);
+  if (o.clean.savemodel != "none" && o.clean.niter == 0)
+    refuse_option("savemodel", o.clean.savemodel, "--niter above 0 beside it");
+  if (!o.clean.mask.empty() && o.clean.niter == 0) refuse_option("mask", o.clean.mask, "--niter above 0 beside it");
+  if (o.clean.restart && o.clean.niter == 0) refuse_option("restart", "true", "--niter above 0 beside it");
+  check_deconvolver(o.clean, smallest_side(o));
+  check_auto_mask(o.clean);
 }
 
-imager::CleanOptions clean_options(const ImageOptions& o, int threads) {
+imager::CleanOptions clean_options(const TypedClean& o, int threads) {
   imager::CleanOptions clean;
   clean.max_iterations = o.niter;
   clean.gain = o.gain;
@@ -151,7 +153,7 @@ imager::CleanOptions clean_options(const ImageOptions& o, int threads) {
   return clean;
 }
 
-imager::DeconvolverChoice deconvolver_choice(const ImageOptions& o, int threads) {
+imager::DeconvolverChoice deconvolver_choice(const TypedClean& o, int threads) {
   imager::DeconvolverChoice choice;
   choice.name = o.deconvolver;
   choice.scale_pixels.clear();

@@ -27,8 +27,8 @@ double mean_width_rad(const imager::Beam& beam) {
 }  // namespace
 
 CleanStage::CleanStage(const ImageOptions& options, imager::ImageHeader image) : o_(options), image_(std::move(image)) {
-  if (!o_.startmodel.empty()) start_model_ = std::make_unique<StartModel>(o_, image_);
-  if (!o_.mask.empty()) mask_file_ = std::make_unique<MaskFile>(o_.mask, image_);
+  if (!o_.clean.startmodel.empty()) start_model_ = std::make_unique<StartModel>(o_, image_);
+  if (!o_.clean.mask.empty()) mask_file_ = std::make_unique<MaskFile>(o_.clean.mask, image_);
 }
 
 void CleanStage::begin_channel(int channel) {
@@ -55,13 +55,13 @@ std::string CleanStage::closed_mask_warning() const {
   for (std::size_t m = 0; m < masks_.size(); ++m)
     if (imager::mask_is_empty(masks_[m])) closed += (closed.empty() ? "" : ", ") + stokes_name(image_.stokes[m]);
   if (closed.empty()) return "";
-  return "the mask " + o_.mask + " allows no pixel of the image" +
+  return "the mask " + o_.clean.mask + " allows no pixel of the image" +
          (masks_.size() > 1 ? " of " + closed + ", of which nothing is cleaned" : ": nothing is cleaned");
 }
 
 std::string CleanStage::missing_states_warning() const {
   std::string paths, names;
-  for (std::size_t s = 0; o_.restart && s < image_.stokes.size(); ++s) {
+  for (std::size_t s = 0; o_.clean.restart && s < image_.stokes.size(); ++s) {
     if (std::filesystem::exists(state_path(s))) continue;
     paths += (paths.empty() ? "" : ", ") + state_path(s);
     names += (names.empty() ? " of " : ", ") + stokes_name(image_.stokes[s]);
@@ -86,7 +86,7 @@ std::string CleanStage::state_path(std::size_t stokes) const {
 imager::CleanState CleanStage::begin(std::size_t stokes, const CleanStateOwner& owner) {
   std::vector<imager::Component> start;
   if (start_model_) start = start_model_->take(stokes);
-  if (o_.restart && std::filesystem::exists(state_path(stokes))) return read_clean_state(state_path(stokes), owner);
+  if (o_.clean.restart && std::filesystem::exists(state_path(stokes))) return read_clean_state(state_path(stokes), owner);
   const std::filesystem::path state = state_path(stokes);
   if (o_.cube.is_cube()) std::filesystem::create_directories(state.parent_path());
   imager::ComponentModel model = owner.like;
@@ -105,13 +105,13 @@ std::uint64_t CleanStage::checksum_of(const CleanScene& scene) const {
 
 imager::CleanResult CleanStage::run(const CleanScene& scene, const nlohmann::json& option_values,
                                     const imager::CycleProgress& cycle_progress, const imager::Context& context) {
-  imager::CleanOptions options = clean_options(o_, context.threads);
+  imager::CleanOptions options = clean_options(o_.clean, context.threads);
   options.stop_requested = interrupted;
   options.mask = mask(scene.imaged.samples.index);
   std::unique_ptr<imager::MinorCycle> minor;
   {
     const imager::StageTimer timer(context.times, imager::stage::minor_cycles);
-    minor = imager::make_deconvolver(deconvolver_choice(o_, context.threads), scene.psf);
+    minor = imager::make_deconvolver(deconvolver_choice(o_.clean, context.threads), scene.psf);
   }
   CleanStateOwner owner{MISFIT_VERSION,
                         option_values,
@@ -131,7 +131,7 @@ imager::CleanResult CleanStage::run(const CleanScene& scene, const nlohmann::jso
                                  .dirty = scene.dirty,
                                  .psf = scene.psf,
                                  .max_sidelobe = sidelobe,
-                                 .accuracy = std::max(o_.accuracy, scene.expected_error),
+                                 .accuracy = std::max(o_.gridding.accuracy, scene.expected_error),
                                  .beam_fwhm_pixels = mean_width_rad(scene.main_lobe) / image_.geometry.cell_rad};
   const auto save = [&](const imager::CleanState& now) {
     const imager::StageTimer timer(context.times, imager::stage::clean_state);

@@ -10,7 +10,7 @@
 namespace misfit::tools {
 namespace {
 
-void check_tables(const ImageOptions& o) {
+void check_tables(const TypedGridding& o) {
   const std::optional<kernels::TableOptions> lookup = lookup_of(o);
   constexpr int most = kernels::kernel_table_max_per_cell;
   if (lookup && !(o.sampling >= 1 && o.sampling <= most))
@@ -22,7 +22,12 @@ void check_tables(const ImageOptions& o) {
 
 }  // namespace
 
-void declare_gridding(CLI::App& command, ImageOptions& o) {
+void declare_gridder(CLI::App& command, TypedGridding& o) {
+  command.add_option("--gridder", o.gridder, "w planes: auto (where w matters), standard (none), wide (always)")
+      ->check(CLI::IsMember({"auto", "standard", "wide"}));
+}
+
+void declare(CLI::App& command, TypedGridding& o) {
   list_kernels(*command.add_option("--kernel", o.kernel.name,
                                    "Gridding function: a name such as least-misfit or spheroidal, or a kernel-table file"));
   declare_kernel_folder(command, o.kernel.folder);
@@ -41,7 +46,7 @@ void declare_gridding(CLI::App& command, ImageOptions& o) {
       ->check(CLI::IsMember({"auto", "single", "double"}));
 }
 
-void check_gridding(const ImageOptions& o) {
+void check(const TypedGridding& o) {
   check_tables(o);
   const bool accuracy_is_free = kernel_is_given(o);
   if (!(o.accuracy > 0 && o.accuracy < 1) && !(o.accuracy == 0 && accuracy_is_free))
@@ -53,18 +58,18 @@ void check_gridding(const ImageOptions& o) {
   imager::check_request(gridding_request(o, 1));
 }
 
-bool kernel_is_given(const ImageOptions& o) {
+bool kernel_is_given(const TypedGridding& o) {
   return is_kernel_file(o.kernel) || (o.kernel_width != 0 && o.padding != 0);
 }
 
-std::optional<kernels::TableOptions> lookup_of(const ImageOptions& o) {
+std::optional<kernels::TableOptions> lookup_of(const TypedGridding& o) {
   const auto& names = kernels::interpolation_names;
   const auto found = std::find(names.begin(), names.end(), o.evaluation);
   if (found == names.end()) return {};
   return kernels::TableOptions{o.sampling, static_cast<kernels::Interpolation>(found - names.begin())};
 }
 
-imager::GriddingRequest gridding_request(const ImageOptions& o, int threads) {
+imager::GriddingRequest gridding_request(const TypedGridding& o, int threads) {
   imager::GriddingRequest request;
   request.accuracy = o.accuracy;
   constexpr double enough = 1e-4;  // to steer minor cycles

@@ -4,22 +4,40 @@
 
 #include "imager/plan/gridding_choice.h"
 #include "kernels/lookup_table.h"
-#include "tools/run/image_options.h"
+#include "tools/kernel_choice/kernel_choice.h"
+
+namespace CLI {
+class App;
+}
 
 namespace misfit::tools {
 
-/// How samples are gridded: --kernel to --precision, and --gridder, which declare_scene() declares.
-void declare_gridding(CLI::App& command, ImageOptions& options);
+/// How samples are gridded, as typed.
+struct TypedGridding {
+  std::string gridder = "auto";  ///< declared by declare_gridder()
+  KernelSource kernel;
+  double accuracy = 1e-6;
+  double psf_accuracy = 0;  ///< 0 = the larger of accuracy and 1e-4
+  int kernel_width = 0;     ///< 0 = chosen
+  double padding = 0;       ///< 0 = chosen
+  std::string evaluation = "polynomial";
+  int sampling = 0;  ///< entries a cell of a table; 0 = none
+  std::string precision = "auto";
+};
+
+void declare_gridder(CLI::App& command, TypedGridding& options);
+/// The others.
+void declare(CLI::App& command, TypedGridding& options);
 
 /// What needs neither the data nor the kernel's solution. Throws as check(const ImageOptions&) does.
-void check_gridding(const ImageOptions& options);
+void check(const TypedGridding& options);
 
 /// Whether the options leave nothing of the kernel to choose: a file, or width and padding. Then no accuracy need be asked.
-bool kernel_is_given(const ImageOptions& options);
+bool kernel_is_given(const TypedGridding& options);
 
 /// The tables that --evaluation names, if it does.
-std::optional<kernels::TableOptions> lookup_of(const ImageOptions& options);
+std::optional<kernels::TableOptions> lookup_of(const TypedGridding& options);
 
-imager::GriddingRequest gridding_request(const ImageOptions& options, int threads);
+imager::GriddingRequest gridding_request(const TypedGridding& options, int threads);
 
 }  // namespace misfit::tools

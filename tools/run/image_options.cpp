@@ -12,12 +12,8 @@
 #include "tools/base/option_checks.h"
 #include "tools/base/quantity.h"
 #include "tools/formats/config_file.h"
-#include "tools/run/clean_options.h"
-#include "tools/run/gridding_options.h"
 #include "tools/run/image_files.h"
-#include "tools/run/primary_beam_stage.h"
 #include "tools/run/selection_options.h"
-#include "tools/run/weighting_options.h"
 
 namespace misfit::tools {
 namespace {
@@ -86,9 +82,8 @@ void declare_scene(CLI::App& command, ImageOptions& o) {
            "Average fields whose antennas pointed apart even where the image's centre lies beyond the first null of "
            "one's beam, which dims what the others see; without it they are refused by name"),
        OptionMark::free_of_state);
-  declare_weighting(command, o);
-  command.add_option("--gridder", o.gridder, "w planes: auto (where w matters), standard (none), wide (always)")
-      ->check(CLI::IsMember({"auto", "standard", "wide"}));
+  declare(command, o.weighting);
+  declare_gridder(command, o.gridding);
   mark(command.add_option("--threads", o.threads, "Threads; 0 means all cores"), OptionMark::free_of_state);
   mark(command.add_flag("--quiet", o.quiet, "Print nothing but errors"), OptionMark::free_of_state);
 }
@@ -115,9 +110,10 @@ void declare(CLI::App& command, ImageOptions& o) {
   command.add_option("--stokes", o.stokes,
                      "Stokes parameters, or correlations of parallel hands, which share one PSF: I, IQUV, IV, XXYY, RR, …");
   declare(command, o.cube);
-  declare_gridding(command, o);
-  declare_clean(command, o);
-  declare_primary_beam(command, o);
+  declare(command, o.gridding);
+  declare(command, o.taylor);
+  declare(command, o.clean);
+  declare(command, o.primary_beam);
   mark(command.add_option(
            "--verify", o.verify,
            "Compare this many random pixels, or all of a smaller image, and visibilities with the direct transform"),
@@ -138,10 +134,11 @@ void declare(CLI::App& command, ImageOptions& o) {
 void check(const ImageOptions& o) {
   check_image(o);
   check(o.cube);
-  check_weighting(o);
+  check(o.weighting, o.cube);
   check_clean(o);
-  check_gridding(o);
-  check_primary_beam(o);
+  check_taylor(o);
+  check(o.gridding);
+  check(o.primary_beam);
   check(o.scale, o.dry_run);
   if (o.check_outside && o.cube.is_cube()) refuse_option("check-outside", "true", "--specmode mfs beside it");
   if (o.verify < 0) refuse_option("verify", std::to_string(o.verify), "0 or more");

@@ -6,9 +6,13 @@
 
 #include "imager/data/geometry.h"
 #include "ms_io/measurement_set.h"
-#include "tools/kernel_choice/kernel_choice.h"
+#include "tools/run/clean_options.h"
 #include "tools/run/cube_options.h"
+#include "tools/run/gridding_options.h"
+#include "tools/run/primary_beam_options.h"
 #include "tools/run/scale_options.h"
+#include "tools/run/taylor_options.h"
+#include "tools/run/weighting_options.h"
 
 namespace CLI {
 class App;
@@ -27,47 +31,12 @@ struct ImageOptions {
   std::string datacolumn = "auto";  ///< as ms_io::MeasurementSet takes it
   std::string stokes = "I";
   CubeOptions cube;
-  std::string weighting = "natural";
-  double robust = 0.5;  ///< of briggs
-  int npixels = 0;      ///< of superuniform, see weighting_options.h; 0 = 6
-  std::string uvtaper;  ///< empty = none
-  KernelSource kernel;
-  double accuracy = 1e-6;
-  double psf_accuracy = 0;  ///< 0 = the larger of accuracy and 1e-4
-  int kernel_width = 0;
-  double padding = 0;
-  std::string evaluation = "polynomial";
-  int sampling = 0;  ///< entries a cell of a table; 0 = none
-  std::string precision = "auto";
-  std::string gridder = "auto";
-  std::string deconvolver = "hogbom";
-  std::vector<double> scales;  ///< of multiscale, in pixels as tclean means them
-  double smallscalebias = 0;
-  int nterms = 1;
-  std::string reffreq;  ///< of the Taylor terms; empty = the middle of the band
-  int niter = 0;
-  double gain = 0.1;
-  std::string threshold = "0Jy";
-  double nsigma = 0;
-  double cyclefactor = 1;
-  double minpsffraction = 0.05;
-  double maxpsffraction = 0.8;
-  int cycleniter = -1;
-  int nmajor = -1;
-  std::string restoringbeam;  ///< empty = the fitted one
-  std::string mask;           ///< a file, or region text, see mask_file.h; empty = everywhere
-  std::string usemask = "user";
-  double sidelobethreshold = 3;
-  double noisethreshold = 5;
-  double lownoisethreshold = 1.5;
-  double minbeamfrac = 0.3;
-  int growiterations = 75;
-  std::vector<std::string> startmodel;  ///< images in Jy/pixel, of one or of each Taylor term; empty = none
-  std::string savemodel = "none";
-  bool restart = false;
+  TypedWeighting weighting;
+  TypedGridding gridding;
+  TypedTaylor taylor;
+  TypedClean clean;
+  TypedPrimaryBeam primary_beam;
   bool force_average = false;
-  bool pbcor = false;
-  double pblimit = 0;  ///< 0: not given, and 0.2 with pbcor; its sign makes no difference
   int verify = 0;
   bool check_outside = false;
   int threads = 0;

@@ -2,13 +2,10 @@
 
 #include <algorithm>
 #include <atomic>
-#include <cmath>
 #include <cstdio>
-#include <map>
 #include <memory>
 #include <mutex>
 #include <optional>
-#include <set>
 #include <utility>
 
 #include "imager/data/noise.h"
@@ -25,6 +22,7 @@
 #include "tools/run/changed_files.h"
 #include "tools/run/channel_maker.h"
 #include "tools/run/channel_queue.h"
+#include "tools/run/channel_tally.h"
 #include "tools/run/data_columns.h"
 #include "tools/run/image_files.h"
 #include "tools/run/left_over.h"
@@ -52,6 +50,7 @@ class ImageRun : private ChannelSink {
       : o_(options),
         call_(call),
         ranks_(ranks),
+        sharing_(ranks, options.cube.is_cube()),
         stokes_(imager::parse_stokes(options.stokes)),
         threads_(options.threads == 0 ? imager::available_threads(ranks.on_these_cores()) : options.threads),
         progress_(options.quiet || !ranks.first()) {
@@ -83,12 +82,12 @@ class ImageRun : private ChannelSink {
     make_channels();
     maker_.reset();
     if (cube()) count_samples();
-    count_traffic();
+    if (!ranks_.alone()) report_.plan.push_back(sharing_.traffic_decision(times_));
     if (ranks_.first()) {
       finish_products();
       write_report();
     }
-    if (o_.savemodel == "modelcolumn") save_model();
+    if (o_.clean.savemodel == "modelcolumn") save_model();
     if (ranks_.first() && !o_.quiet) std::printf("%s%s.report.html\n", summary(report_).c_str(), o_.imagename.c_str());
     bool done = !queue_->stopped();
     imager::share_values(ranks_, done);
@@ -102,42 +101,16 @@ class ImageRun : private ChannelSink {
 
   bool cube() const { return o_.cube.is_cube(); }
   int channels() const { return header_.spectral.channels; }
-  int channels_of_a_rank() const { return (channels() + ranks_.size() - 1) / ranks_.size(); }
-  /// Whether this rank has whole images of what it makes.
-  bool images_here() const { return cube() || ranks_.first(); }
-
-  /// Ranks that were started apart make parts of one image, which have to fit each other.
-  void require_same_options() const {
-    if (ranks_.alone()) return;
-    std::string unlike;
-    const std::vector<std::string> all = ranks_.gather_at_first(json_text(call_.option_values));
-    for (std::size_t rank = 1; rank < all.size() && unlike.empty(); ++rank) unlike = unlike_option(all[rank], rank);
-    std::vector<char> words(unlike.begin(), unlike.end());
-    imager::share_list(ranks_, words);
-    if (!words.empty()) throw std::invalid_argument(std::string(words.begin(), words.end()));
-  }
-
-  /// What another rank has that this one has not, in words; empty where they agree.
-  std::string unlike_option(const std::string& options, std::size_t rank) const {
-    const std::set<std::string> own{"threads", "memory", "quiet"};
-    const nlohmann::json others = nlohmann::json::parse(options);
-    for (const auto& [name, value] : others.items())
-      if (const nlohmann::json first = call_.option_values.value(name, nlohmann::json());
-          own.count(name) == 0 && value != first)
-        return "--" + name + " " + json_text(value) + " of rank " + std::to_string(rank) + ": expected " + json_text(first) +
-               ", which rank 0 has; only --threads, --memory and --quiet may differ";
-    return "";
-  }
 
   void open() {
     const imager::StageTimer timer(times_, imager::stage::open);
-    require_same_options();
+    sharing_.require_same(call_.option_values);
     if (!o_.dry_run && ranks_.first()) name_ = claim_product_paths(o_);
-    if (o_.savemodel == "modelcolumn" && ranks_.first())
+    if (o_.clean.savemodel == "modelcolumn" && ranks_.first())
       for (const std::string& set : o_.vis) ms_io::require_writable(set);
     set_ = std::make_unique<ms_io::MeasurementSet>(o_.vis, selection_of(o_), o_.datacolumn, stokes_);
-    if (!cube() && !ranks_.alone()) set_ = set_->share(ranks_);
-    if (o_.savemodel != "none")
+    if (auto own = sharing_.own_part(*set_)) set_ = std::move(own);
+    if (o_.clean.savemodel != "none")
       if (const std::string words = left_out_of_model_warning(stokes_, *set_); !words.empty()) warn(words);
     windows_ = set_->spectral_windows();
     header_ = {.geometry = geometry_of(o_, set_->observation().phase_centre),
@@ -148,13 +121,13 @@ class ImageRun : private ChannelSink {
                .history = {}};
     notes_ = notes_on_sets(o_, *set_, header_.geometry);
     for (const std::string& warning : notes_.warnings) warn(warning);
-    if (wants_primary_beam(o_))
+    if (o_.primary_beam.wanted())
       primary_beam_ = std::make_unique<PrimaryBeamStage>(
-          o_, BeamScene{set_->beam_rows(), header_.geometry, set_->observation().frequency_hz},
-          std::max(1, threads_ / channels_of_a_rank()));
-    if (o_.niter > 0 && images_here()) open_clean();
+          o_.primary_beam, BeamScene{set_->beam_rows(), header_.geometry, set_->observation().frequency_hz},
+          std::max(1, threads_ / sharing_.channels_here(channels())));
+    if (o_.clean.niter > 0 && sharing_.images_here()) open_clean();
     header_.history = history_of(report_.command_line, set_->data_columns());
-    if (o_.nterms > 1) header_.observation.frequency_hz = taylor_expansion(o_, set_->observation()).reference_hz;
+    if (o_.taylor.nterms > 1) header_.observation.frequency_hz = taylor_expansion(o_.taylor, set_->observation()).reference_hz;
     if (!cube()) header_.spectral = imager::whole_band(header_.observation);
     find_reach();
   }
@@ -170,7 +143,7 @@ class ImageRun : private ChannelSink {
 
   imager::SpectralAxis list_channels() {
     if (!cube()) {
-      check_taylor_band(o_, windows_);
+      check_taylor_band(o_.taylor, windows_);
       return imager::whole_band(set_->observation());
     }
     sampling_ = cube_sampling(o_.cube, windows_);
@@ -181,7 +154,7 @@ class ImageRun : private ChannelSink {
 
   /// Channels of a cube may lie half a channel beyond the data's last.
   void find_reach() {
-    reach_ = ranks_.alone() || !cube() ? set_->reach() : set_->share(ranks_)->reach();
+    reach_ = sharing_.reach(*set_);
     double beyond = 0;
     for (const ms_io::SpectralWindow& window : windows_)
       for (std::size_t c = 0; cube() && c < window.frequency_hz.size(); ++c)
@@ -191,8 +164,7 @@ class ImageRun : private ChannelSink {
 
   void plan() {
     const auto own = static_cast<double>(set_->samples());
-    double all = own;
-    if (!cube()) imager::sum_over(ranks_, all);
+    const double all = sharing_.all_samples(own);
     const double enlarged = o_.scale.enlarged(all);
     const RunScene scene{
         .options = o_,
@@ -201,9 +173,9 @@ class ImageRun : private ChannelSink {
         .geometry = header_.geometry,
         .reach = reach_,
         .threads = threads_,
-        .mask = o_.niter > 0 && images_here() && (!o_.mask.empty() || o_.usemask == "auto"),
+        .mask = o_.clean.niter > 0 && sharing_.images_here() && (!o_.clean.mask.empty() || o_.clean.usemask == "auto"),
         .channels = channels(),
-        .workers = std::min(threads_, channels_of_a_rank()),
+        .workers = std::min(threads_, sharing_.channels_here(channels())),
         .samples = enlarged * (cube() ? static_cast<double>(set_->rows()) * samples_of_a_row(sampling_, windows_) : all),
         .share = own / all,
         .enlarged = enlarged};
@@ -217,7 +189,7 @@ class ImageRun : private ChannelSink {
     cube() ? plan_batches(scene) : plan_streaming(scene);
     foretell(scene, forecast_, work_, times_, plan_);
     report_.plan = plan_.decisions;
-    report_.accuracy = o_.accuracy;
+    report_.accuracy = o_.gridding.accuracy;
     report_.gridding = &plan_.gridding;
     report_.estimated_memory_bytes = plan_.memory.total();
   }
@@ -256,7 +228,7 @@ class ImageRun : private ChannelSink {
   std::vector<StageSeconds> expected() const { return expected_seconds(plan_, forecast_, work_); }
 
   void begin_channels() {
-    if (ranks_.first() && o_.niter > 0 && !o_.restart) remove_states(o_);
+    if (ranks_.first() && o_.clean.niter > 0 && !o_.clean.restart) remove_states(o_);
     scene_ = std::make_unique<ChannelScene>(ChannelScene{.options = o_,
                                                          .option_values = call_.state_option_values,
                                                          .header = header_,
@@ -268,7 +240,7 @@ class ImageRun : private ChannelSink {
     ChannelMeans means{.plan = plan_.gridding,
                        .transform = nullptr,
                        .workers = workers_,
-                       .images_here = images_here(),
+                       .images_here = sharing_.images_here(),
                        .primary_beam = primary_beam_.get()};
     if (cube()) {
       report_.plan.insert(report_.plan.end(), plan_.gridding.decisions.begin(), plan_.gridding.decisions.end());
@@ -286,20 +258,21 @@ class ImageRun : private ChannelSink {
         o_, header_, primary_beam_.get(), workers_, [this](const ProductKind& kind, const imager::ImageHeader& header) {
           auto elsewhere = queue_->writer(kind.name);
           if (elsewhere) return elsewhere;
-          return open_image_files(o_.imagename + "." + kind.name, header, pixel_format(o_.accuracy), o_.outformat);
+          return open_image_files(o_.imagename + "." + kind.name, header, pixel_format(o_.gridding.accuracy), o_.outformat);
         });
   }
 
   /// On the disk: all are begun before the first is written.
   std::uintmax_t bytes_of_images() const {
-    const std::size_t pixel = pixel_format(o_.accuracy) == imager::PixelFormat::float64 ? sizeof(double) : sizeof(float);
+    const std::size_t pixel =
+        pixel_format(o_.gridding.accuracy) == imager::PixelFormat::float64 ? sizeof(double) : sizeof(float);
     const int planes = channels() * product_planes(ProductChoice::of(o_), static_cast<int>(stokes_.size()));
     return (o_.outformat == "both" ? 2 : 1) * pixel * header_.geometry.pixels() * static_cast<std::size_t>(planes);
   }
 
   /// From the density of all channels' samples together.
   void weigh_in_common() {
-    const imager::WeightingOptions options = weighting_options(o_);
+    const imager::WeightingOptions options = weighting_options(o_.weighting);
     if (!options.needs_density()) return;
     imager::UvDensity density(header_.geometry, threads_);
     const auto add = [&](const imager::VisibilitySource& channel) {
@@ -333,7 +306,7 @@ class ImageRun : private ChannelSink {
     imager::StageTimes reading;
     visibilities_->begin(batch, progress_, reading);
     add_times(reading, 1);
-    if (cube()) progress_.begin(visibilities_->work_on(batch), o_.niter > 0);
+    if (cube()) progress_.begin(visibilities_->work_on(batch), o_.clean.niter > 0);
     const auto count = static_cast<std::size_t>(batch.count);
     std::atomic<std::uint64_t> done = 0;
     std::atomic<bool> interrupted = false;
@@ -372,8 +345,8 @@ class ImageRun : private ChannelSink {
     run->release_samples();
     if (!cube() && ranks_.first())
       if (const std::string warning = changed_files_warning(*set_); !warning.empty()) warn(warning);
-    if (images_here() && !run->made().empty()) write(*run);
-    if (o_.savemodel != "none") run->made().cleaned = models_of(std::move(run->cleaned()));
+    if (sharing_.images_here() && !run->made().empty()) write(*run);
+    if (o_.clean.savemodel != "none") run->made().cleaned = models_of(std::move(run->cleaned()));
     queue_->done(std::move(run->made()));
   }
 
@@ -420,8 +393,8 @@ class ImageRun : private ChannelSink {
     const double noise_jy = !ranks_.first()         ? 0
                             : run.cleaned().empty() ? imager::robust_noise(made.images.dirty.front(), threads_)
                                                     : run.cleaned().front().report.final_state().rms_jy;
-    outside_ = check_outside(run.samples(), made.plan, *plan_.wider, made.images, {noise_jy, !weighting_options(o_).none()},
-                             {threads_, &own, run.context().progress});
+    outside_ = check_outside(run.samples(), made.plan, *plan_.wider, made.images,
+                             {noise_jy, !weighting_options(o_.weighting).none()}, {threads_, &own, run.context().progress});
     progress_.end();
     if (!ranks_.first()) return;
     report_.outside = &outside_;
@@ -445,14 +418,11 @@ class ImageRun : private ChannelSink {
 
   void take(MadeChannel&& channel) override {
     for (const std::string& sentence : channel.warnings) warn(sentence);
-    for (const std::string& doubt : channel.doubts) doubts_[doubt].push_back(channel.report.channel);
+    tally_.add(channel);
     add_times(channel.times, at_once_);
-    outside_grid_ += channel.outside_grid;
     work_.components += channel.components;
     work_.major_cycles += channel.major_cycles;
-    empty_ += channel.empty() ? 1 : 0;
-    report_.channel_samples += channel.report.sums.used;
-    if (cube() && o_.niter > 0 && !channel.empty()) progress_.say(channel_line(channel.report, channels()));
+    if (cube() && o_.clean.niter > 0 && !channel.empty()) progress_.say(channel_line(channel.report, channels()));
     report_.channels.push_back(std::move(channel.report));
     cleaned_ = std::move(channel.cleaned);
   }
@@ -463,8 +433,7 @@ class ImageRun : private ChannelSink {
     for (const auto& [stage, seconds] : times.stages()) times_.add(stage, seconds / at_once);
   }
 
-  /// Each sample read once: what is left out for no reason is used. Of those that channels take, as large a part is outside the
-  /// grid as of the channels' samples.
+  /// Each sample read once: what is left out for no reason is used.
   void count_samples() {
     imager::SampleCounts& counts = report_.counts = visibilities_->counts();
     report_.outside_channels = visibilities_->outside_channels();
@@ -472,53 +441,29 @@ class ImageRun : private ChannelSink {
     imager::sum_over(ranks_, report_.outside_channels);
     const std::uint64_t taken = counts.samples_read - counts.autocorrelations - counts.flagged - counts.nonfinite -
                                 counts.zero_weight - report_.outside_channels;
-    const double in_channels = static_cast<double>(outside_grid_ + report_.channel_samples);
-    if (outside_grid_ > 0)
-      counts.outside_grid = static_cast<std::uint64_t>(
-          std::ceil(static_cast<double>(taken) * (static_cast<double>(outside_grid_) / in_channels)));
+    counts.outside_grid = tally_.outside_grid_of(taken);
+    report_.channel_samples = tally_.samples();
     counts.used = taken - counts.outside_grid;
     for (const std::string& warning : notes_on_data(*set_, ranks_)) warn(warning);
   }
 
-  void count_traffic() {
-    if (ranks_.alone()) return;
-    imager::Traffic all = ranks_.traffic();
-    if (!cube()) return report_.plan.push_back(traffic_decision(all, times_.of(imager::stage::exchange)));
-    imager::sum_over(ranks_, all.bytes, all.exchanges);
-    report_.plan.push_back(channel_traffic_decision(all));
-  }
-
   void finish_products() {
-    if (report_.channels.size() == empty_) throw_nothing();
+    tally_.require_any(report_.counts);
     std::string removed;
     for (const std::string& path : products_->finish(report_.channels, error_cards(report_), times_))
       removed += (removed.empty() ? "" : ", ") + path;
     if (!removed.empty()) progress_.say("removed what an earlier run left: " + removed);
-    cube() ? tell_channels() : tell_doubts("");
+    if (cube()) tell_channels();
+    for (const std::string& doubt : tally_.doubts(!cube())) warn(doubt);
+    if (cube())
+      for (const std::string& words : tally_.missing(channels())) warn(words);
   }
 
   /// What several channels have in common.
   void tell_channels() {
     report_.plan.push_back(left_out_decision(report_.counts));
     if (const std::string warning = changed_files_warning(*set_); !warning.empty()) warn(warning);
-    if (outside_grid_ > 0) warn(outside_grid_warning(report_.counts.outside_grid, reach_));
-    tell_doubts("plane");
-    if (empty_ > 0)
-      warn(std::to_string(empty_) + " of " + std::to_string(channels()) +
-           " planes have no samples: they have no values and no beam");
-    if (const std::size_t left = static_cast<std::size_t>(channels()) - report_.channels.size(); left > 0)
-      warn("stopped by the user: " + std::to_string(left) + " of " + std::to_string(channels()) + " planes have no values");
-  }
-
-  /// With the channels of which they are, unless there is but one.
-  void tell_doubts(const std::string& channel) {
-    for (const auto& [doubt, numbers] : doubts_)
-      warn((channel.empty() ? "" : channel + (numbers.size() > 1 ? "s " : " ") + in_runs(numbers) + ": ") + doubt);
-  }
-
-  [[noreturn]] void throw_nothing() const {
-    if (outside_grid_ > 0) throw imager::NothingInGrid(outside_grid_);
-    throw imager::NothingUsable(report_.counts);
+    if (tally_.outside_grid() > 0) warn(outside_grid_warning(report_.counts.outside_grid, reach_));
   }
 
   void write_report() {
@@ -557,33 +502,18 @@ class ImageRun : private ChannelSink {
       report_.plan.push_back({d.item + " of plane " + std::to_string(shown.channel), d.decision, d.because});
   }
 
-  /// Gives all ranks the models.
-  void share_models() {
-    cleaned_.resize(stokes_.size());
-    for (imager::CleanResult& result : cleaned_) {
-      result.further_models.resize(static_cast<std::size_t>(o_.nterms - 1));
-      share_image(result.model);
-      for (imager::Image& further : result.further_models) share_image(further);
-    }
-  }
-
-  void share_image(imager::Image& image) const {
-    imager::share_values(ranks_, image.width, image.height);
-    imager::share_list(ranks_, image.pixel);
-  }
-
   void save_model() {
     visibilities_.reset();  // closed before a column is written
     set_.reset();
     progress_.begin("save model", true);  // a column half written helps no one
-    if (!ranks_.alone()) share_models();
+    sharing_.give_models(stokes_.size(), o_.taylor.nterms, cleaned_);
     const SavedModel model{header_.geometry,
                            threads_,
                            stokes_,
                            cleaned_,
                            json_text(report_.options),
                            [this](const std::string& sentence) { progress_.say(sentence); },
-                           o_.nterms > 1 ? taylor_expansion(o_, header_.observation) : imager::TaylorExpansion()};
+                           o_.taylor.nterms > 1 ? taylor_expansion(o_.taylor, header_.observation) : imager::TaylorExpansion()};
     tools::save_model(o_, model, ranks_, [this](std::uint64_t done, std::uint64_t total) { progress_.update(done, total); });
     progress_.end();
   }
@@ -591,6 +521,7 @@ class ImageRun : private ChannelSink {
   const ImageOptions& o_;
   const RunCall& call_;
   const imager::Ranks& ranks_;
+  Sharing sharing_;
   std::unique_ptr<NameLock> name_;  ///< the first rank's
   std::vector<imager::Stokes> stokes_;
   int threads_;
@@ -622,10 +553,8 @@ class ImageRun : private ChannelSink {
   std::unique_ptr<RunPictures> pictures_;  ///< of rank 0
   OutsideReport outside_;
   std::vector<imager::CleanResult> cleaned_;  ///< [Stokes], of the one channel, where --savemodel needs them
-  std::uint64_t outside_grid_ = 0;
-  std::size_t empty_ = 0;                           ///< channels
-  std::map<std::string, std::vector<int>> doubts_;  ///< with the channels of which they are
-  std::unique_ptr<ChannelQueue> queue_;             ///< last: its thread uses what stands before
+  ChannelTally tally_;
+  std::unique_ptr<ChannelQueue> queue_;  ///< last: its thread uses what stands before
 };
 
 }  // namespace

@@ -36,7 +36,7 @@ std::vector<std::string> all_names() {
 
 /// Those of this run.
 std::vector<std::string> own_names(const ImageOptions& o) {
-  const bool cleaned = o.niter > 0;
+  const bool cleaned = o.clean.niter > 0;
   if (o.cube.is_cube()) return {"psf.png", cleaned ? "image.png" : "residual.png"};
   std::vector<std::string> names{"psf.png", "uv.png"};
   const std::vector<imager::Stokes> stokes = imager::parse_stokes(o.stokes);
@@ -52,7 +52,7 @@ std::vector<std::string> own_names(const ImageOptions& o) {
   }
   for (const char* picture : {"dirty", "model", "residual", "image"}) add(picture, ".png");
   add("clean", ".state");
-  names.emplace_back(o.nterms > 1 ? "alpha.png" : "components.csv");
+  names.emplace_back(o.taylor.nterms > 1 ? "alpha.png" : "components.csv");
   return names;
 }
 
@@ -88,8 +88,8 @@ void remove_cube_states(const ImageOptions& o, int first, std::vector<std::strin
 
 bool is_input(const ImageOptions& o, const std::string& path) {
   std::error_code absent;
-  return fs::equivalent(path, o.mask, absent) ||
-         std::any_of(o.startmodel.begin(), o.startmodel.end(),
+  return fs::equivalent(path, o.clean.mask, absent) ||
+         std::any_of(o.clean.startmodel.begin(), o.clean.startmodel.end(),
                      [&](const std::string& model) { return fs::equivalent(path, model, absent); });
 }
 
@@ -119,7 +119,7 @@ void remove_left_over(const ImageOptions& o, const OwnFiles& own, std::vector<st
     std::error_code failed;  // a folder of that name stays
     if (std::count(made.begin(), made.end(), name) == 0 && fs::remove(path, failed)) removed.push_back(path);
   }
-  remove_cube_states(o, o.niter > 0 ? own.cube_channels : 0, removed);
+  remove_cube_states(o, o.clean.niter > 0 ? own.cube_channels : 0, removed);
 }
 
 }  // namespace misfit::tools

@@ -129,7 +129,8 @@ void save_model(const ImageOptions& o, const SavedModel& model, const imager::Ra
   {
     const auto set = ms_io::MeasurementSet(o.vis, selection, o.datacolumn, model.stokes).share(ranks);
     selection = set->selection();
-    visibilities = image_visibilities(planes.planes, model.geometry, gridding_request(o, model.threads), *set, planes.taylor);
+    visibilities =
+        image_visibilities(planes.planes, model.geometry, gridding_request(o.gridding, model.threads), *set, planes.taylor);
   }
   ranks.meet();  // before sets change
   SharedPrediction shared(ranks, visibilities.predict);

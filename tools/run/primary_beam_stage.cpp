@@ -1,12 +1,10 @@
 #include "tools/run/primary_beam_stage.h"
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
 #include "tools/base/numbers.h"
-#include "tools/base/option_checks.h"
 #include "tools/run/field_beams.h"
 
 namespace misfit::tools {
@@ -28,32 +26,8 @@ imager::DirectionCosines on_image(const ms_io::FieldPointing& pointing, const Be
 
 }  // namespace
 
-void declare_primary_beam(CLI::App& command, ImageOptions& o) {
-  mark(command.add_flag(
-           "--pbcor", o.pbcor,
-           "Write .image.pbcor too, the image divided by the antennas' primary beam, and .pb, the beam: Airy discs, for "
-           "dishes that point alike. With --nterms 2 or 3 each term is divided by the beam's own spectrum too: "
-           ".image.tt0.pbcor, "
-           ".image.tt1.pbcor, …, .alpha.pbcor and .beta.pbcor"),
-       OptionMark::free_of_state);
-  mark(command.add_option(
-           "--pblimit", o.pblimit,
-           "Where the primary beam is lower, .pb and .image.pbcor have no values; 0.2 when 0. Without --pbcor .pb "
-           "alone is written. The sign makes no difference, since no other image is masked"),
-       OptionMark::free_of_state);
-}
-
-void check_primary_beam(const ImageOptions& o) {
-  if (!(std::abs(o.pblimit) < 1)) refuse_option("pblimit", typed(o.pblimit), "a number between 0 and 1, such as 0.2");
-}
-
-bool wants_primary_beam(const ImageOptions& o) {
-  return o.pbcor || o.pblimit != 0;
-}
-
-PrimaryBeamStage::PrimaryBeamStage(const ImageOptions& o, BeamScene scene, int threads) : scene_(std::move(scene)) {
-  constexpr double usual_limit = 0.2;
-  view_.limit = o.pblimit == 0 ? usual_limit : std::abs(o.pblimit);
+PrimaryBeamStage::PrimaryBeamStage(const TypedPrimaryBeam& o, BeamScene scene, int threads) : scene_(std::move(scene)) {
+  view_.limit = o.limit();
   view_.threads = threads;
   if (scene_.rows.sorts.empty())
     throw std::runtime_error("--pbcor, --pblimit: no row of two antennas is selected, and a primary beam needs one");

@@ -9,18 +9,9 @@
 #include "imager/streaming/weight_shares.h"
 #include "imager/taylor/taylor_beam.h"
 #include "ms_io/measurement_set.h"
-#include "tools/run/image_options.h"
+#include "tools/run/primary_beam_options.h"
 
 namespace misfit::tools {
-
-/// Declares --pbcor and --pblimit.
-void declare_primary_beam(CLI::App& command, ImageOptions& options);
-
-/// Throws as check(const ImageOptions&) does.
-void check_primary_beam(const ImageOptions& options);
-
-/// Whether a primary beam is wanted: with --pbcor or --pblimit.
-bool wants_primary_beam(const ImageOptions& options);
 
 /// What a run's samples were observed with, and how that lies on its image.
 struct BeamScene {
@@ -35,7 +26,7 @@ class PrimaryBeamStage {
  public:
   /// Throws std::runtime_error that names what it is about where antennas have no simple beam, fields point in different
   /// directions, which makes a mosaic, or feeds point beside them.
-  PrimaryBeamStage(const ImageOptions& options, BeamScene scene, int threads);
+  PrimaryBeamStage(const TypedPrimaryBeam& options, BeamScene scene, int threads);
 
   /// Which beam is taken, from what, and its width in the middle of the band.
   imager::Decision decision() const;

@@ -30,11 +30,11 @@ void add_spectra(std::vector<ProductKind>& kinds, int terms, const std::string& 
 }  // namespace
 
 ProductChoice ProductChoice::of(const ImageOptions& o) {
-  return {.terms = o.nterms,
-          .cleaned = o.niter > 0,
-          .masked = o.niter > 0 && (o.usemask == "auto" || !o.mask.empty()),
-          .primary_beam = wants_primary_beam(o),
-          .corrected = o.pbcor};
+  return {.terms = o.taylor.nterms,
+          .cleaned = o.clean.niter > 0,
+          .masked = o.clean.niter > 0 && (o.clean.usemask == "auto" || !o.clean.mask.empty()),
+          .primary_beam = o.primary_beam.wanted(),
+          .corrected = o.primary_beam.pbcor};
 }
 
 std::string product_name(const std::string& kind, const imager::TaylorTerm& term, const std::string& end) {

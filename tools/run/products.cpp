@@ -111,7 +111,7 @@ Products::Products(const ImageOptions& options, const imager::ImageHeader& heade
       header_(header),
       primary_beam_(primary_beam),
       workers_(workers),
-      in_common_(options.cube.is_cube() && options.niter > 0 && options.restoringbeam == "common") {
+      in_common_(options.cube.is_cube() && options.clean.niter > 0 && options.clean.restoringbeam == "common") {
   for (const ProductKind& kind : product_kinds(ProductChoice::of(o_))) {
     const std::vector<std::string> paths = image_paths(o_.imagename + "." + kind.name, o_.outformat);
     // A mask that the user has under its name stays.
@@ -144,7 +144,7 @@ void Products::put(const std::string& kind, const imager::PlaneIndex& at, const 
 void Products::put_terms(const std::string& kind, const imager::PlaneIndex& at, const std::vector<const imager::Image*>& terms,
                          const std::optional<imager::Beam>& beam, const std::string& end) {
   for (std::size_t t = 0; t < terms.size(); ++t)
-    put(product_name(kind, {static_cast<int>(t), o_.nterms}, end), at, *terms[t], beam);
+    put(product_name(kind, {static_cast<int>(t), o_.taylor.nterms}, end), at, *terms[t], beam);
 }
 
 /// Headers tell whether the primary beam is divided out of the spectra.
@@ -192,7 +192,7 @@ void Products::write(ChannelRun& run, RunPictures* pictures) {
   }
   for (std::size_t s = header_.stokes.size(); s-- > 0;)
     write_stokes(s, primary_beam, run, pictures);  // the first is shown first
-  if (!o_.cube.is_cube() && o_.nterms == 1 && !run.cleaned().empty()) write_components(run.cleaned());
+  if (!o_.cube.is_cube() && o_.taylor.nterms == 1 && !run.cleaned().empty()) write_components(run.cleaned());
 }
 
 void Products::write_stokes(std::size_t stokes, const OfBeam& primary_beam, ChannelRun& run, RunPictures* pictures) {
@@ -232,12 +232,12 @@ void Products::write_stokes(std::size_t stokes, const OfBeam& primary_beam, Chan
     if (taylor != nullptr) put_spectra(restored.spectra, "", at, beam);
   } else if (taylor != nullptr) {
     put_terms("residual", at, all_terms(residual, taylor->images().dirty), beam);
-    if (o_.pbcor) principal = taylor->principal_solution(residual);
+    if (o_.primary_beam.pbcor) principal = taylor->principal_solution(residual);
     shown = pointers_to(principal);
   } else {
     put("residual", at, residual, beam);
   }
-  if (o_.pbcor && (result != nullptr || o_.niter == 0))
+  if (o_.primary_beam.pbcor && (result != nullptr || o_.clean.niter == 0))
     write_corrected(at, primary_beam, shown, result == nullptr ? nullptr : &restored.spectra, beam);
 }
 
@@ -321,7 +321,7 @@ void Products::restore_channel(ChannelReport& channel, const imager::Beam& commo
     const imager::Image restored = restore(read(*written.models, at), read(*written.residuals, at), common);
     channel.stokes[s].brightest = imager::find_peak(restored);
     put("image", at, restored, common);
-    if (o_.pbcor) write_corrected(at, primary_beam, {&restored}, nullptr, common);
+    if (o_.primary_beam.pbcor) write_corrected(at, primary_beam, {&restored}, nullptr, common);
   }
 }
 

@@ -60,11 +60,12 @@ void RunPictures::draw_dirty(ChannelRun& run) {
   dirty_.resize(images.dirty.size());
   for (std::size_t s = images.dirty.size(); s-- > 0;) {
     const imager::Image& dirty = images.dirty[s];
-    if (o_.usemask == "auto")
+    if (o_.clean.usemask == "auto")
       dirty_[s] = sketch(dirty, Shades::brightness, picture_side);
     else
       shown.push_back(of_stokes(
-          s, {.name = o_.niter == 0 ? "residual" : "dirty", .title = "Dirty image", .image = &dirty, .mask = run.mask(s)}));
+          s,
+          {.name = o_.clean.niter == 0 ? "residual" : "dirty", .title = "Dirty image", .image = &dirty, .mask = run.mask(s)}));
   }
   add(shown);
 }
@@ -73,13 +74,13 @@ void RunPictures::draw(std::size_t stokes, const imager::CleanResult& cleaned, c
   const imager::StageTimer timer(times_, imager::stage::draw_pictures);
   const imager::Image* const mask = cleaned.mask.pixel.empty() ? nullptr : &cleaned.mask;
   std::vector<Shown> shown;
-  if (o_.usemask == "auto")
+  if (o_.clean.usemask == "auto")
     shown.push_back(of_stokes(stokes, {.name = "dirty", .title = "Dirty image", .sketch = &dirty_[stokes], .mask = mask}));
   shown.push_back(of_stokes(stokes, {"model", "Model", "Jy/pixel", Shades::about_zero, &cleaned.model, nullptr, mask}));
   shown.push_back(of_stokes(stokes, {"residual", "Residual", "Jy/beam", Shades::about_zero, &cleaned.residual, nullptr, mask}));
   shown.push_back(
       of_stokes(stokes, {"image", "Restored image", "Jy/beam", Shades::brightness, &restored.first, nullptr, mask}));
-  if (o_.nterms > 1)
+  if (o_.taylor.nterms > 1)
     shown.push_back({"alpha", "Spectral index as seen", "", Shades::about_zero, &restored.spectra.alpha, nullptr, mask});
   add(shown);
 }
@@ -91,7 +92,7 @@ void RunPictures::draw_channel(const ChannelReport& channel) {
   about_.observation.frequency_hz = channel.frequency_hz;
   about_.has_beam = channel.beams && channel.beams->restoring;
   if (about_.has_beam) about_.beam = *channel.beams->restoring;
-  const bool cleaned = o_.niter > 0 && channel.stokes.front().clean;
+  const bool cleaned = o_.clean.niter > 0 && channel.stokes.front().clean;
   const std::string kind = cleaned ? "image" : "residual";
   const std::string of = ", plane " + std::to_string(channel.channel) + " at " + frequency_text(channel.frequency_hz, 7) + " " +
                          header_.spectral.frame;

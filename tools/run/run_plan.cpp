@@ -45,7 +45,7 @@ class RunPlanner {
   RunPlanner(const RunScene& scene, ProgressLine& progress) : scene_(scene), o_(scene.options), progress_(progress) {}
 
   void decide_all() {
-    imager::GriddingRequest request = gridding_request(o_, scene_.threads);
+    imager::GriddingRequest request = gridding_request(o_.gridding, scene_.threads);
     request.geometry = scene_.geometry;
     request.samples = static_cast<std::uint64_t>(scene_.samples);
     request.stokes = static_cast<int>(imager::parse_stokes(o_.stokes).size());
@@ -55,14 +55,14 @@ class RunPlanner {
     plan_.gridding = plan_gridding(request);
     decide_pixels();
     if (!scene_.set.ranks().alone()) decide_sharing();
-    if (o_.nterms > 1) decide_terms();
-    plan_.decisions.push_back(weighting_decision(o_, scene_.geometry));
+    if (o_.taylor.nterms > 1) decide_terms();
+    plan_.decisions.push_back(weighting_decision(o_.weighting, scene_.geometry));
     if (o_.check_outside) plan_search(request);
     decide_memory([&](double bytes) { return least_memory(unlimited, bytes); });
     decide_columns();
     decide("columns and correlations", "only what Stokes " + o_.stokes + " needs",
            "UVW, antennas, flags, weights and one data column, each read once");
-    if (o_.niter > 0) decide_psf_patch();
+    if (o_.clean.niter > 0) decide_psf_patch();
     warn_of_neglected_w();
   }
 
@@ -75,7 +75,7 @@ class RunPlanner {
 
   /// How much of the PSF minor cycles subtract.
   void decide_psf_patch() {
-    if (o_.deconvolver == "hogbom" && o_.nterms == 1)
+    if (o_.clean.deconvolver == "hogbom" && o_.taylor.nterms == 1)
       return decide("PSF patch", "none, the whole PSF", "components are subtracted to the image's edges in every minor cycle");
     decide("PSF patch", "at most " + std::to_string(imager::largest_psf_core) + " pixels from its peak, then the whole PSF",
            "components are found among the brightest pixels with as much of the PSF as pays, until others could be as bright");
@@ -113,19 +113,20 @@ class RunPlanner {
   void decide_sharing() {
     const int stokes = plan_.gridding.request.stokes;
     const ExchangeForecast exchange =
-        exchange_of(static_cast<double>(scene_.geometry.pixels()), 3 * o_.nterms - 2 + stokes, o_.nterms);
+        exchange_of(static_cast<double>(scene_.geometry.pixels()), 3 * o_.taylor.nterms - 2 + stokes, o_.taylor.nterms);
     plan_.decisions.push_back(sharing_decision(scene_.set.sharing(), exchange));
   }
 
   void decide_terms() {
-    const double reference_hz = taylor_expansion(o_, scene_.set.observation()).reference_hz;
-    decide("Taylor terms", std::to_string(o_.nterms) + " about " + significant(reference_hz / 1e9, 9) + " GHz",
-           (o_.reffreq.empty() ? "the middle of the band" : "--reffreq " + o_.reffreq) + "; " +
-               std::to_string(2 * o_.nterms - 1) + " spectral PSFs. --accuracy holds for .tt0");
-    if (o_.niter == 0) return;
+    const double reference_hz = taylor_expansion(o_.taylor, scene_.set.observation()).reference_hz;
+    decide("Taylor terms", std::to_string(o_.taylor.nterms) + " about " + significant(reference_hz / 1e9, 9) + " GHz",
+           (o_.taylor.reffreq.empty() ? "the middle of the band" : "--reffreq " + o_.taylor.reffreq) + "; " +
+               std::to_string(2 * o_.taylor.nterms - 1) + " spectral PSFs. --accuracy holds for .tt0");
+    if (o_.clean.niter == 0) return;
     const std::string seen =
         "as the antennas saw it: their beam narrows with frequency, which adds −1.5 at the half power of an Airy disc";
-    const std::string sky = o_.pbcor ? ".alpha.pbcor is that of the sky" : "--pbcor writes that of the sky, .alpha.pbcor";
+    const std::string sky =
+        o_.primary_beam.pbcor ? ".alpha.pbcor is that of the sky" : "--pbcor writes that of the sky, .alpha.pbcor";
     decide("spectral index .alpha", seen, sky);
     progress_.say(".alpha is the spectral index " + seen + "; " + sky);
   }
@@ -152,11 +153,11 @@ class RunPlanner {
             .read_at_once = static_cast<double>(scene_.set.read_at_once()),
             .stokes = gridding.request.stokes,
             .verify = o_.verify > 0,
-            .terms = o_.nterms,
-            .clean_scales = o_.niter > 0 ? std::max(1, static_cast<int>(o_.scales.size())) : 0,
+            .terms = o_.taylor.nterms,
+            .clean_scales = o_.clean.niter > 0 ? std::max(1, static_cast<int>(o_.clean.scales.size())) : 0,
             .mask = scene_.mask,
-            .start_model = !o_.startmodel.empty(),
-            .density = weighting_options(o_).needs_density(),
+            .start_model = !o_.clean.startmodel.empty(),
+            .density = weighting_options(o_.weighting).needs_density(),
             .beam_images = beam_images(o_, gridding.request.stokes),
             .wider = wider};
   }
@@ -183,7 +184,7 @@ class RunPlanner {
 
   void warn_of_neglected_w() {
     const double phase_rad = imager::max_w_phase_rad(scene_.reach.max_abs_w, scene_.geometry);
-    const bool harms = phase_rad > (o_.accuracy == 0 ? plan_.gridding.worst_error : o_.accuracy);
+    const bool harms = phase_rad > (o_.gridding.accuracy == 0 ? plan_.gridding.worst_error : o_.gridding.accuracy);
     if (!plan_.gridding.options.has_w_axis() && harms)
       plan_.warnings.push_back("w is neglected although its phase reaches " + significant(phase_rad, 2) +
                                " rad at the image's corner: the image's error there is of that size");
@@ -217,7 +218,7 @@ void foretell(const RunScene& scene, const TimeForecast& forecast, const RunWork
               RunPlan& plan) {
   for (const auto& [stage, seconds] : times.stages()) plan.spent.push_back({stage, "", seconds});
   if (plan.wider) plan.decisions.push_back(search_decision(plan.wide_field, search_seconds(forecast.expected(work))));
-  const bool cleans = scene.options.niter > 0;
+  const bool cleans = scene.options.clean.niter > 0;
   plan.decisions.push_back(
       {"expected time", duration(total_seconds(expected_seconds(plan, forecast, work))) + (cleans ? " without CLEAN" : ""),
        forecast.knows(work) ? "from counts of operations, and what earlier runs took on this machine"
@@ -232,7 +233,7 @@ void foretell(const RunScene& scene, const TimeForecast& forecast, const RunWork
 }
 
 int components_of_a_cycle(const ImageOptions& options) {
-  return std::min(options.niter, 1000);
+  return std::min(options.clean.niter, 1000);
 }
 
 RunWork work_of(const RunScene& scene, const RunPlan& plan) {
@@ -247,14 +248,14 @@ RunWork work_of(const RunScene& scene, const RunPlan& plan) {
           .kept = plan.streaming.keep,
           .pixels = static_cast<double>(scene.geometry.pixels()),
           .images = written_images(o, stokes),
-          .pictures = 2 + stokes * (o.niter > 0 ? 4 : 1) + (o.nterms > 1 && o.niter > 0 ? 1 : 0),
+          .pictures = 2 + stokes * (o.clean.niter > 0 ? 4 : 1) + (o.taylor.nterms > 1 && o.clean.niter > 0 ? 1 : 0),
           .threads = scene.threads,
           .verified = static_cast<double>(o.verify),
-          .deconvolver = o.deconvolver,
-          .terms = o.nterms,
-          .density = weighting_options(o).needs_density(),
-          .tapered = !o.uvtaper.empty(),
-          .primary_beam = wants_primary_beam(o),
+          .deconvolver = o.clean.deconvolver,
+          .terms = o.taylor.nterms,
+          .density = weighting_options(o.weighting).needs_density(),
+          .tapered = !o.weighting.uvtaper.empty(),
+          .primary_beam = o.primary_beam.wanted(),
           .wider = plan.wider.get()};
 }
 

@@ -77,7 +77,7 @@ class ScaleForecast::Facets {
 };
 
 ScaleForecast::ScaleForecast(const RunScene& scene, const RunPlan& plan, const TimeForecast& forecast, const RunWork& work)
-    : scene_(scene), plan_(plan), forecast_(forecast), work_(work), clean_(scene.options.niter > 0) {}
+    : scene_(scene), plan_(plan), forecast_(forecast), work_(work), clean_(scene.options.clean.niter > 0) {}
 
 RunWork ScaleForecast::work_of_a_node(int nodes) const {
   RunWork work = work_;
@@ -139,7 +139,7 @@ NodeForecast ScaleForecast::at(int nodes) const {
   set_memory(node, work.samples);
   work.kept = node.kept;
   node.image = seconds_of(work);
-  const int stokes = plan_.gridding.request.stokes, terms = scene_.options.nterms;
+  const int stokes = plan_.gridding.request.stokes, terms = scene_.options.taylor.nterms;
   const ExchangeForecast exchange = exchange_of(work.pixels, 3 * terms - 2 + stokes, terms);
   if (nodes > 1) node.image_bytes = exchange.first_bytes;
   node.image.exchange = sum_seconds(nodes, node.image_bytes);

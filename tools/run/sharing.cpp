@@ -1,7 +1,11 @@
 #include "tools/run/sharing.h"
 
 #include <algorithm>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <stdexcept>
 
+#include "tools/base/json_text.h"
 #include "tools/base/memory.h"
 #include "tools/base/numbers.h"
 
@@ -17,7 +21,67 @@ std::string parts_text(const ms_io::SampleSharing& sharing) {
   return sharing.sets < sharing.samples.size() ? "a set each, as far as there are some" : "whole sets each";
 }
 
+/// What another rank has that rank 0 has not, in words; empty where they agree.
+std::string unlike_option(const nlohmann::json& first, const nlohmann::json& others, std::size_t rank) {
+  const std::set<std::string> own{"threads", "memory", "quiet"};
+  for (const auto& [name, value] : others.items())
+    if (const nlohmann::json expected = first.value(name, nlohmann::json()); own.count(name) == 0 && value != expected)
+      return "--" + name + " " + json_text(value) + " of rank " + std::to_string(rank) + ": expected " + json_text(expected) +
+             ", which rank 0 has; only --threads, --memory and --quiet may differ";
+  return "";
+}
+
+void give_image(const imager::Ranks& ranks, imager::Image& image) {
+  imager::share_values(ranks, image.width, image.height);
+  imager::share_list(ranks, image.pixel);
+}
+
 }  // namespace
+
+std::unique_ptr<ms_io::MeasurementSet> Sharing::own_part(const ms_io::MeasurementSet& set) const {
+  if (of_channels_ || ranks_.alone()) return nullptr;
+  return set.share(ranks_);
+}
+
+imager::UvwReach Sharing::reach(const ms_io::MeasurementSet& own) const {
+  return of_channels_ && !ranks_.alone() ? own.share(ranks_)->reach() : own.reach();
+}
+
+double Sharing::all_samples(double own) const {
+  if (!of_channels_) imager::sum_over(ranks_, own);
+  return own;
+}
+
+void Sharing::require_same(const nlohmann::json& option_values) const {
+  if (ranks_.alone()) return;
+  std::string unlike;
+  const std::vector<std::string> all = ranks_.gather_at_first(json_text(option_values));
+  for (std::size_t rank = 1; rank < all.size() && unlike.empty(); ++rank)
+    unlike = unlike_option(option_values, nlohmann::json::parse(all[rank]), rank);
+  std::vector<char> words(unlike.begin(), unlike.end());
+  imager::share_list(ranks_, words);
+  if (!words.empty()) throw std::invalid_argument(std::string(words.begin(), words.end()));
+}
+
+void Sharing::give_models(std::size_t stokes, int terms, std::vector<imager::CleanResult>& cleaned) const {
+  if (ranks_.alone()) return;
+  cleaned.resize(stokes);
+  for (imager::CleanResult& result : cleaned) {
+    result.further_models.resize(static_cast<std::size_t>(terms - 1));
+    give_image(ranks_, result.model);
+    for (imager::Image& further : result.further_models) give_image(ranks_, further);
+  }
+}
+
+imager::Decision Sharing::traffic_decision(const imager::StageTimes& times) const {
+  imager::Traffic all = ranks_.traffic();
+  if (of_channels_) imager::sum_over(ranks_, all.bytes, all.exchanges);
+  const std::string exchanges = grouped(static_cast<long long>(all.exchanges));
+  return {"exchanged among ranks", mib_text(static_cast<double>(all.bytes)),
+          of_channels_ ? exchanges + " messages: batches to make, and the images that come of them"
+                       : exchanges + " exchanges, in " + duration(times.of(imager::stage::exchange)) +
+                             " of rank 0, waiting for others included"};
+}
 
 ExchangeForecast exchange_of(double pixels, int images, int residuals) {
   return {sizeof(double) * pixels * images, sizeof(double) * pixels * residuals};
@@ -47,17 +111,6 @@ imager::Decision channel_sharing_decision(int ranks, int channels, int channels_
           "planes do not need each other: whoever is free takes the next and reads its channels alone; images come to rank 0, "
           "which writes, " +
               mib_text(channel_bytes) + " a plane" + idle};
-}
-
-imager::Decision traffic_decision(const imager::Traffic& traffic, double seconds) {
-  return {"exchanged among ranks", mib_text(static_cast<double>(traffic.bytes)),
-          grouped(static_cast<long long>(traffic.exchanges)) + " exchanges, in " + duration(seconds) +
-              " of rank 0, waiting for others included"};
-}
-
-imager::Decision channel_traffic_decision(const imager::Traffic& traffic) {
-  return {"exchanged among ranks", mib_text(static_cast<double>(traffic.bytes)),
-          grouped(static_cast<long long>(traffic.exchanges)) + " messages: batches to make, and the images that come of them"};
 }
 
 }  // namespace misfit::tools

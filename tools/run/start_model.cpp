@@ -22,7 +22,7 @@ namespace {
 }  // namespace
 
 StartModel::StartModel(const ImageOptions& options, const imager::ImageHeader& image) : o_(options), image_(image) {
-  for (const std::string& path : o_.startmodel) files_.push_back({path, "start model " + path, open_image_file(path)});
+  for (const std::string& path : o_.clean.startmodel) files_.push_back({path, "start model " + path, open_image_file(path)});
   if (files_.size() == 1) refuse_taylor_term(*files_.front().reader, files_.front().path);
   for (std::size_t term = 0; files_.size() > 1 && term < files_.size(); ++term)
     require_term(files_[term], static_cast<int>(term));
@@ -30,9 +30,9 @@ StartModel::StartModel(const ImageOptions& options, const imager::ImageHeader& i
 
 /// Of as many as the run has, about the same frequency.
 void StartModel::require_term(const File& file, int term) const {
-  require_taylor_term(*file.reader, file.path, {term, o_.nterms});
+  require_taylor_term(*file.reader, file.path, {term, o_.taylor.nterms});
   constexpr double rounding = 1e-9;
-  const double own_hz = taylor_expansion(o_, image_.observation).reference_hz;
+  const double own_hz = taylor_expansion(o_.taylor, image_.observation).reference_hz;
   const double hz = file.reader->header().observation.frequency_hz;
   if (!(std::abs(hz / own_hz - 1) < rounding))
     refuse(file.name, "has spectra about " + frequency_text(hz, 10),

@@ -8,6 +8,7 @@
 #include "tools/base/numbers.h"
 #include "tools/base/option_checks.h"
 #include "tools/base/quantity.h"
+#include "tools/run/image_options.h"
 
 namespace misfit::tools {
 namespace {
@@ -22,7 +23,7 @@ bool is_frequency(const std::string& text) {
 
 }  // namespace
 
-void declare_taylor(CLI::App& command, ImageOptions& o) {
+void declare(CLI::App& command, TypedTaylor& o) {
   command.add_option(
       "--nterms", o.nterms,
       "Terms of spectra, 1 to 3: I(f) is a polynomial of (f - reffreq)/reffreq. With 2 or 3 images are .tt0, .tt1, "
@@ -35,18 +36,19 @@ void declare_taylor(CLI::App& command, ImageOptions& o) {
       "Of the terms: 1.4GHz, …; the middle of the band, between the edges of the outermost channels, when empty");
 }
 
-void check_taylor(const ImageOptions& o) {
+void check_taylor(const ImageOptions& image) {
+  const TypedTaylor& o = image.taylor;
   if (o.nterms < 1 || o.nterms > imager::most_taylor_terms)
     refuse_option("nterms", std::to_string(o.nterms), "1 to " + std::to_string(imager::most_taylor_terms));
   if (o.nterms == 1 && !o.reffreq.empty()) refuse_option("reffreq", o.reffreq, "--nterms 2 or 3 beside it");
   if (!o.reffreq.empty() && !is_frequency(o.reffreq))
     refuse_option("reffreq", o.reffreq, "a frequency above 0, such as 1.4GHz");
-  if (o.nterms > 1 && o.cube.is_cube()) refuse_option("nterms", std::to_string(o.nterms), "1 with --specmode cube");
-  if (o.nterms > 1 && imager::parse_stokes(o.stokes).size() > 1)
-    refuse_option("nterms", std::to_string(o.nterms), "--stokes of one parameter beside it, not " + o.stokes);
+  if (o.nterms > 1 && image.cube.is_cube()) refuse_option("nterms", std::to_string(o.nterms), "1 with --specmode cube");
+  if (o.nterms > 1 && imager::parse_stokes(image.stokes).size() > 1)
+    refuse_option("nterms", std::to_string(o.nterms), "--stokes of one parameter beside it, not " + image.stokes);
 }
 
-void check_taylor_band(const ImageOptions& o, const std::vector<ms_io::SpectralWindow>& windows) {
+void check_taylor_band(const TypedTaylor& o, const std::vector<ms_io::SpectralWindow>& windows) {
   std::set<double> frequencies_hz;
   for (const ms_io::SpectralWindow& window : windows)
     frequencies_hz.insert(window.frequency_hz.begin(), window.frequency_hz.end());
@@ -58,7 +60,7 @@ void check_taylor_band(const ImageOptions& o, const std::vector<ms_io::SpectralW
                            std::to_string(o.nterms) + " or more, or fewer terms");
 }
 
-imager::TaylorExpansion taylor_expansion(const ImageOptions& o, const imager::Observation& observation) {
+imager::TaylorExpansion taylor_expansion(const TypedTaylor& o, const imager::Observation& observation) {
   return {o.reffreq.empty() ? observation.frequency_hz : parse_frequency_hz(o.reffreq), o.nterms};
 }
 

@@ -6,20 +6,30 @@
 #include "imager/data/observation.h"
 #include "imager/taylor/taylor_expansion.h"
 #include "ms_io/spectral_frame.h"
-#include "tools/run/image_options.h"
+
+namespace CLI {
+class App;
+}
 
 namespace misfit::tools {
 
-/// Declares --nterms and --reffreq.
-void declare_taylor(CLI::App& command, ImageOptions& options);
+struct ImageOptions;
+
+/// Terms of spectra, as typed.
+struct TypedTaylor {
+  int nterms = 1;
+  std::string reffreq;  ///< empty = the middle of the band
+};
+
+void declare(CLI::App& command, TypedTaylor& options);
 
 /// Throws std::invalid_argument that names the option, its value and what was expected.
 void check_taylor(const ImageOptions& options);
 
 /// Throws std::runtime_error where data of these windows have fewer frequencies than there are terms to tell apart.
-void check_taylor_band(const ImageOptions& options, const std::vector<ms_io::SpectralWindow>& windows);
+void check_taylor_band(const TypedTaylor& options, const std::vector<ms_io::SpectralWindow>& windows);
 
 /// About --reffreq, or the middle of the band imaged, where each sample counts alike: as tclean has it.
-imager::TaylorExpansion taylor_expansion(const ImageOptions& options, const imager::Observation& observation);
+imager::TaylorExpansion taylor_expansion(const TypedTaylor& options, const imager::Observation& observation);
 
 }  // namespace misfit::tools

@@ -23,7 +23,7 @@ Weighting weighting_of(const std::string& name) {
   return name == "briggs" ? Weighting::briggs : Weighting::natural;
 }
 
-int box_reach(const ImageOptions& o) {
+int box_reach(const TypedWeighting& o) {
   return (o.npixels == 0 ? default_npixels : o.npixels) / 2;
 }
 
@@ -56,17 +56,17 @@ std::string cells_text(const imager::ImageGeometry& geometry) {
 }
 
 /// By what the weight of a sample is divided.
-std::string divisor_text(const ImageOptions& o) {
-  if (o.weighting == "uniform") return "divided by the weight of all samples and conjugates in the cell";
-  if (o.weighting == "briggs") return "divided by 1 + f² times the weight of all samples and conjugates in the cell";
+std::string divisor_text(const TypedWeighting& o) {
+  if (o.scheme == "uniform") return "divided by the weight of all samples and conjugates in the cell";
+  if (o.scheme == "briggs") return "divided by 1 + f² times the weight of all samples and conjugates in the cell";
   const std::string side = std::to_string(2 * box_reach(o) + 1);
   return "divided by the weight of all samples and conjugates in the " + side + " × " + side + " cells about it";
 }
 
 }  // namespace
 
-void declare_weighting(CLI::App& command, ImageOptions& o) {
-  command.add_option("--weighting", o.weighting, "natural, uniform, superuniform or briggs")
+void declare(CLI::App& command, TypedWeighting& o) {
+  command.add_option("--weighting", o.scheme, "natural, uniform, superuniform or briggs")
       ->check(CLI::IsMember({"natural", "uniform", "superuniform", "briggs"}));
   command.add_option("--robust", o.robust, "Of briggs: from -2, nearly uniform, to 2, nearly natural");
   command.add_option("--npixels", o.npixels,
@@ -76,8 +76,8 @@ void declare_weighting(CLI::App& command, ImageOptions& o) {
                      "half width in the uv plane, such as 3klambda; none when empty");
 }
 
-void check_weighting(const ImageOptions& o) {
-  const bool briggs = o.weighting == "briggs", superuniform = o.weighting == "superuniform";
+void check(const TypedWeighting& o, const CubeOptions& cube) {
+  const bool briggs = o.scheme == "briggs", superuniform = o.scheme == "superuniform";
   if (!(o.robust >= -2 && o.robust <= 2)) refuse_option("robust", typed(o.robust), "-2 to 2");
   if (!briggs && o.robust != default_robust) refuse_option("robust", typed(o.robust), "--weighting briggs beside it");
   constexpr int most = 200;
@@ -85,7 +85,7 @@ void check_weighting(const ImageOptions& o) {
     refuse_option("npixels", std::to_string(o.npixels), "2 to " + std::to_string(most) + " cells, or 0 (6)");
   if (!superuniform && o.npixels != 0)
     refuse_option("npixels", std::to_string(o.npixels), "--weighting superuniform beside it");
-  if (o.cube.is_cube() && !o.cube.perchanweightdensity && o.weighting == "natural")
+  if (cube.is_cube() && !cube.perchanweightdensity && o.scheme == "natural")
     refuse_option("perchanweightdensity", "false", "weights by density beside it, such as --weighting briggs");
   if (o.uvtaper.empty()) return;
   try {
@@ -96,30 +96,30 @@ void check_weighting(const ImageOptions& o) {
   }
 }
 
-imager::WeightingOptions weighting_options(const ImageOptions& o) {
+imager::WeightingOptions weighting_options(const TypedWeighting& o) {
   imager::WeightingOptions options;
-  options.weighting = weighting_of(o.weighting);
+  options.weighting = weighting_of(o.scheme);
   options.robust = o.robust;
   options.box_reach = box_reach(o);
   if (!o.uvtaper.empty()) options.taper = parse_taper(o.uvtaper);
   return options;
 }
 
-std::string weighting_text(const ImageOptions& o) {
-  std::string said = o.weighting == "briggs" ? "Briggs, robust " + typed(o.robust) : o.weighting;
+std::string weighting_text(const TypedWeighting& o) {
+  std::string said = o.scheme == "briggs" ? "Briggs, robust " + typed(o.robust) : o.scheme;
   if (!o.uvtaper.empty()) said += ", tapered by " + o.uvtaper;
   return said;
 }
 
-std::vector<std::string> weighting_arguments(const ImageOptions& o) {
-  std::vector<std::string> words{"--weighting", o.weighting};
-  if (o.weighting == "briggs") words.insert(words.end(), {"--robust", typed(o.robust)});
+std::vector<std::string> weighting_arguments(const TypedWeighting& o) {
+  std::vector<std::string> words{"--weighting", o.scheme};
+  if (o.scheme == "briggs") words.insert(words.end(), {"--robust", typed(o.robust)});
   if (o.npixels != 0) words.insert(words.end(), {"--npixels", std::to_string(o.npixels)});
   if (!o.uvtaper.empty()) words.insert(words.end(), {"--uvtaper", o.uvtaper});
   return words;
 }
 
-imager::Decision weighting_decision(const ImageOptions& o, const imager::ImageGeometry& geometry) {
+imager::Decision weighting_decision(const TypedWeighting& o, const imager::ImageGeometry& geometry) {
   if (weighting_options(o).needs_density())
     return {"weighting", weighting_text(o),
             "weights of the data " + divisor_text(o) + "; the image's uv grid has " + cells_text(geometry)};

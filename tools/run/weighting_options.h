@@ -5,26 +5,37 @@
 
 #include "imager/plan/plan.h"
 #include "imager/weighting/imaging_weights.h"
-#include "tools/run/image_options.h"
+#include "tools/run/cube_options.h"
+
+namespace CLI {
+class App;
+}
 
 namespace misfit::tools {
 
-/// Declares --weighting, --robust, --npixels and --uvtaper.
-void declare_weighting(CLI::App& command, ImageOptions& options);
+/// How samples are weighed, as typed.
+struct TypedWeighting {
+  std::string scheme = "natural";
+  double robust = 0.5;  ///< of briggs
+  int npixels = 0;      ///< of superuniform; 0 = 6
+  std::string uvtaper;  ///< empty = none
+};
+
+void declare(CLI::App& command, TypedWeighting& options);
 
 /// Throws std::invalid_argument that names the option, its value and what was expected, also where an option has no effect.
-void check_weighting(const ImageOptions& options);
+void check(const TypedWeighting& options, const CubeOptions& cube);
 
-imager::WeightingOptions weighting_options(const ImageOptions& options);
+imager::WeightingOptions weighting_options(const TypedWeighting& options);
 
 /// "Briggs, robust 0.5, tapered".
-std::string weighting_text(const ImageOptions& options);
+std::string weighting_text(const TypedWeighting& options);
 
 /// As they are typed, without those that have no effect.
-std::vector<std::string> weighting_arguments(const ImageOptions& options);
+std::vector<std::string> weighting_arguments(const TypedWeighting& options);
 
 /// What is known of the weights before the samples are read.
-imager::Decision weighting_decision(const ImageOptions& options, const imager::ImageGeometry& geometry);
+imager::Decision weighting_decision(const TypedWeighting& options, const imager::ImageGeometry& geometry);
 
 /// What they turned out to be, with the noise that they cost.
 imager::Decision weights_decision(const imager::ImagingWeights& weights, const imager::WeightSums& sums);

@@ -75,7 +75,8 @@ Scene::Scene(const ImageOptions& options, bool quick, const imager::Progress& pr
 }
 
 void Scene::weigh() {
-  const auto weights = imager::make_imaging_weights(visibilities_, weighting_options(options_), geometry_, {threads_});
+  const auto weights =
+      imager::make_imaging_weights(visibilities_, weighting_options(options_.weighting), geometry_, {threads_});
   if (weights) weights->put_on(visibilities_, threads_);
   const auto stream = visibilities_.open();
   while (const auto block = stream->next()) {
@@ -85,7 +86,7 @@ void Scene::weigh() {
 }
 
 Scene::Plans Scene::plans_of(const ScenePoint& point) const {
-  imager::GriddingRequest request = gridding_request(options_of(options_, point), threads_);
+  imager::GriddingRequest request = gridding_request(options_of(options_, point).gridding, threads_);
   request.geometry = geometry_;
   request.samples = visibilities_.samples();
   request.max_abs_w = reach_.max_abs_w;

@@ -76,13 +76,13 @@ std::vector<ScenePoint> scene_points(bool quick, const std::vector<std::string>&
 
 ImageOptions options_of(const ImageOptions& scene, const ScenePoint& point) {
   ImageOptions options = scene;
-  options.kernel.name = point.kernel;
-  options.accuracy = point.accuracy;
-  options.kernel_width = point.width;
-  options.padding = point.padding;
-  options.precision = point.precision;
-  options.evaluation = point.evaluation;
-  options.sampling = point.sampling;
+  options.gridding.kernel.name = point.kernel;
+  options.gridding.accuracy = point.accuracy;
+  options.gridding.kernel_width = point.width;
+  options.gridding.padding = point.padding;
+  options.gridding.precision = point.precision;
+  options.gridding.evaluation = point.evaluation;
+  options.gridding.sampling = point.sampling;
   return options;
 }
 

@@ -47,9 +47,9 @@ Program misfit(const ImageOptions& scene, const std::string& accuracy, int threa
   words.insert(words.end(), selection.begin(), selection.end());
   add("--phasecenter", scene.phasecenter);
   add("--datacolumn", scene.datacolumn);
-  const std::vector<std::string> weighting = weighting_arguments(scene);
+  const std::vector<std::string> weighting = weighting_arguments(scene.weighting);
   words.insert(words.end(), weighting.begin(), weighting.end());
-  add("--gridder", scene.gridder);
+  add("--gridder", scene.gridding.gridder);
   if (scene.force_average) words.emplace_back("--force-average");
   add("--accuracy", accuracy);
   add("--threads", std::to_string(threads));
@@ -143,7 +143,7 @@ std::string why_not_wsclean(const ImageOptions& scene) {
   if (!scene.phasecenter.empty()) return "it is not given --phasecenter";
   if (scene.datacolumn != "DATA" && scene.datacolumn != "CORRECTED_DATA")
     return "it is not given --datacolumn " + scene.datacolumn;
-  if (!weighting_options(scene).none()) return "it is given natural weights alone";
+  if (!weighting_options(scene.weighting).none()) return "it is given natural weights alone";
   return is_installed("wsclean") ? "" : "it is not installed";
 }
 

@@ -38,7 +38,7 @@ std::vector<ms_io::DataColumn> named_columns_of(const ImageOptions& scene) {
 /// The values that are given.
 void check_values(const Options& o) {
   check(o.report.scene);
-  for (const std::string& kernel : o.report.kernels) choose_kernel({kernel, o.report.scene.kernel.folder});
+  for (const std::string& kernel : o.report.kernels) choose_kernel({kernel, o.report.scene.gridding.kernel.folder});
   if (!(o.report.seconds >= 0 && std::isfinite(o.report.seconds)))
     throw std::invalid_argument("--seconds " + significant(o.report.seconds, 6) + ": expected 0 or more");
 }
@@ -73,7 +73,7 @@ void add_scene_report(CLI::App& reports) {
   declare_scene(*command, o->report.scene);
   list_kernels(*command->add_option("--kernel", o->report.kernels,
                                     "Kernels to compare besides the usual ones: names or kernel-table files"));
-  declare_kernel_folder(*command, o->report.scene.kernel.folder);
+  declare_kernel_folder(*command, o->report.scene.gridding.kernel.folder);
   command->add_flag("--quick", o->report.quick,
                     "Fewer points and runs: an answer within two minutes for a million visibilities");
   command->add_option(

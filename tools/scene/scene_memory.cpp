@@ -22,7 +22,7 @@ std::string gib_text(double bytes) {
 
 imager::TransformMemory largest_transform(const ImageOptions& scene, const ms_io::MeasurementSet& set,
                                           const imager::ImageGeometry& geometry) {
-  imager::GriddingRequest request = gridding_request(scene, 1);
+  imager::GriddingRequest request = gridding_request(scene.gridding, 1);
   request.geometry = geometry;
   request.samples = set.samples();
   request.max_abs_w = set.reach().max_abs_w;
@@ -47,7 +47,7 @@ void check_scene_memory(const ImageOptions& scene) {
                            .samples = samples,
                            .block_samples = static_cast<double>(ms_io::MeasurementSet::usual_block_samples),
                            .verify = true,
-                           .density = weighting_options(scene).needs_density()},
+                           .density = weighting_options(scene.weighting).needs_density()},
                           {.keep = true});
   const double predicted = samples * sizeof(std::complex<double>);
   const double needed = use.total() + predicted;

@@ -25,7 +25,7 @@ using nlohmann::json;
 json kernel_files(const SceneReportOptions& o) {
   json files = json::object();
   for (const std::string& kernel : o.kernels)
-    if (const std::filesystem::path file = file_of({kernel, o.scene.kernel.folder}); !file.empty())
+    if (const std::filesystem::path file = file_of({kernel, o.scene.gridding.kernel.folder}); !file.empty())
       files[std::filesystem::absolute(file).string()] = std::filesystem::last_write_time(file).time_since_epoch().count();
   return files;
 }
@@ -47,8 +47,8 @@ json owner_of(const SceneReportOptions& o, const Scene& scene) {
           {"--datacolumn", s.datacolumn},
           {"--imsize", s.imsize},
           {"--cell", s.cell},
-          {"--weighting", weighting_text(s)},
-          {"--gridder", s.gridder},
+          {"--weighting", weighting_text(s.weighting)},
+          {"--gridder", s.gridding.gridder},
           {"--threads", scene.threads()},
           {"--quick", o.quick},
           {"files of kernels", kernel_files(o)}};
@@ -166,7 +166,7 @@ Report scene_report(const SceneReportOptions& o, ProgressLine& progress) {
   Report report{.title = "Error against run time",
                 .introduction = names_of(o.scene.vis) + ": " + grouped(static_cast<long long>(scene.samples())) + " samples, " +
                                 std::to_string(g.width) + " × " + std::to_string(g.height) + " pixels of " + o.scene.cell +
-                                ", " + o.scene.datacolumn + ", weighting: " + weighting_text(o.scene) + ", " +
+                                ", " + o.scene.datacolumn + ", weighting: " + weighting_text(o.scene.weighting) + ", " +
                                 std::to_string(scene.threads()) + (scene.threads() == 1 ? " thread" : " threads") +
                                 ". Every point is one way to make the dirty image, run by turns with the others.",
                 .sections = {}};

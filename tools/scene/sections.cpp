@@ -81,10 +81,10 @@ std::string command_of(const ImageOptions& scene, const ScenePoint& point) {
   for (const std::string& word : words_of(scene.selection)) line += " " + shell_quoted(word);
   add("--phasecenter", scene.phasecenter, "");
   add("--datacolumn", scene.datacolumn, "");
-  for (const std::string& word : weighting_arguments(scene)) line += " " + shell_quoted(word);
-  add("--gridder", scene.gridder, "auto");
+  for (const std::string& word : weighting_arguments(scene.weighting)) line += " " + shell_quoted(word);
+  add("--gridder", scene.gridding.gridder, "auto");
   if (scene.force_average) line += " --force-average";
-  add("--kernel-folder", scene.kernel.folder, "");
+  add("--kernel-folder", scene.gridding.kernel.folder, "");
   return line + " " + options_text(point);
 }
 

@@ -41,41 +41,42 @@ bool is_refused(const std::function<void(ImageOptions&)>& change) {
 BOOST_AUTO_TEST_CASE(limits_belong_to_what_is_allowed) {
   BOOST_TEST(!is_refused([](ImageOptions&) {}));
   BOOST_TEST(!is_refused([](ImageOptions& o) { o.imsize = {1, 65536}; }));
-  BOOST_TEST(!is_refused([](ImageOptions& o) { o.gain = 1; }));
-  BOOST_TEST(!is_refused([](ImageOptions& o) { o.nmajor = -1; }));
-  BOOST_TEST(!is_refused([](ImageOptions& o) { o.minpsffraction = o.maxpsffraction = 1; }));
+  BOOST_TEST(!is_refused([](ImageOptions& o) { o.clean.gain = 1; }));
+  BOOST_TEST(!is_refused([](ImageOptions& o) { o.clean.nmajor = -1; }));
+  BOOST_TEST(!is_refused([](ImageOptions& o) { o.clean.minpsffraction = o.clean.maxpsffraction = 1; }));
   BOOST_TEST(is_refused([](ImageOptions& o) { o.imsize = {65537, 1}; }));
   BOOST_TEST(is_refused([](ImageOptions& o) { o.imsize = {64, 0}; }));
-  BOOST_TEST(is_refused([](ImageOptions& o) { o.gain = 1.0001; }));
-  BOOST_TEST(is_refused([](ImageOptions& o) { o.nmajor = -2; }));
-  BOOST_TEST(is_refused([](ImageOptions& o) { o.maxpsffraction = 0.01; }));
-  BOOST_TEST(is_refused([](ImageOptions& o) { o.minpsffraction = 0; }));
+  BOOST_TEST(is_refused([](ImageOptions& o) { o.clean.gain = 1.0001; }));
+  BOOST_TEST(is_refused([](ImageOptions& o) { o.clean.nmajor = -2; }));
+  BOOST_TEST(is_refused([](ImageOptions& o) { o.clean.maxpsffraction = 0.01; }));
+  BOOST_TEST(is_refused([](ImageOptions& o) { o.clean.minpsffraction = 0; }));
 }
 
 BOOST_AUTO_TEST_CASE(options_of_clean_need_what_gives_them_meaning) {
   const auto cleaning = [](const std::function<void(ImageOptions&)>& change) {
-    return is_refused([&](ImageOptions& o) { o.niter = 10, change(o); });
+    return is_refused([&](ImageOptions& o) { o.clean.niter = 10, change(o); });
   };
-  BOOST_TEST(!cleaning([](ImageOptions& o) { o.deconvolver = "multiscale", o.scales = {0, 5, 15}; }));
-  BOOST_TEST(cleaning([](ImageOptions& o) { o.deconvolver = "multiscale"; }));
-  BOOST_TEST(cleaning([](ImageOptions& o) { o.scales = {0, 5}; }));
-  BOOST_TEST(cleaning([](ImageOptions& o) { o.deconvolver = "multiscale", o.scales = {5, 0}; }));
-  BOOST_TEST(cleaning([](ImageOptions& o) { o.deconvolver = "multiscale", o.scales = {0, 65}; }));
-  BOOST_TEST(cleaning([](ImageOptions& o) { o.deconvolver = "multiscale", o.scales = {0}, o.smallscalebias = 1; }));
-  BOOST_TEST(!cleaning([](ImageOptions& o) { o.usemask = "auto"; }));
-  BOOST_TEST(is_refused([](ImageOptions& o) { o.usemask = "auto"; }));
-  BOOST_TEST(cleaning([](ImageOptions& o) { o.usemask = "auto", o.mask = "m.fits"; }));
-  BOOST_TEST(cleaning([](ImageOptions& o) { o.usemask = "auto", o.lownoisethreshold = 6; }));
-  BOOST_TEST(is_refused([](ImageOptions& o) { o.restart = true; }));
+  BOOST_TEST(!cleaning([](ImageOptions& o) { o.clean.deconvolver = "multiscale", o.clean.scales = {0, 5, 15}; }));
+  BOOST_TEST(cleaning([](ImageOptions& o) { o.clean.deconvolver = "multiscale"; }));
+  BOOST_TEST(cleaning([](ImageOptions& o) { o.clean.scales = {0, 5}; }));
+  BOOST_TEST(cleaning([](ImageOptions& o) { o.clean.deconvolver = "multiscale", o.clean.scales = {5, 0}; }));
+  BOOST_TEST(cleaning([](ImageOptions& o) { o.clean.deconvolver = "multiscale", o.clean.scales = {0, 65}; }));
+  BOOST_TEST(
+      cleaning([](ImageOptions& o) { o.clean.deconvolver = "multiscale", o.clean.scales = {0}, o.clean.smallscalebias = 1; }));
+  BOOST_TEST(!cleaning([](ImageOptions& o) { o.clean.usemask = "auto"; }));
+  BOOST_TEST(is_refused([](ImageOptions& o) { o.clean.usemask = "auto"; }));
+  BOOST_TEST(cleaning([](ImageOptions& o) { o.clean.usemask = "auto", o.clean.mask = "m.fits"; }));
+  BOOST_TEST(cleaning([](ImageOptions& o) { o.clean.usemask = "auto", o.clean.lownoisethreshold = 6; }));
+  BOOST_TEST(is_refused([](ImageOptions& o) { o.clean.restart = true; }));
   BOOST_TEST(cleaning([](ImageOptions& o) { o.imsize = {64, 2}; }));
-  BOOST_TEST(!cleaning([](ImageOptions& o) { o.imsize = {1}, o.restoringbeam = "1arcsec"; }));
+  BOOST_TEST(!cleaning([](ImageOptions& o) { o.imsize = {1}, o.clean.restoringbeam = "1arcsec"; }));
 }
 
 BOOST_AUTO_TEST_CASE(scales_are_as_wide_at_half_maximum_as_tcleans) {
   ImageOptions options = good();
-  options.deconvolver = "multiscale";
-  options.scales = {0, 10};
-  const std::vector<double> scales = deconvolver_choice(options, 1).scale_pixels;
+  options.clean.deconvolver = "multiscale";
+  options.clean.scales = {0, 10};
+  const std::vector<double> scales = deconvolver_choice(options.clean, 1).scale_pixels;
   // tclean's kernel is (1 − r²) ψ(r), r = distance / scale, with ψ of Schwab (1984, in Indirect Imaging), m = 6, α = 1: on
   // r ≤ 0.75 his ψ(r) = Σ P_k (r² − 0.75²)^k / Σ Q_k (r² − 0.75²)^k.
   const auto kernel = [](double r) {
@@ -88,10 +89,11 @@ BOOST_AUTO_TEST_CASE(scales_are_as_wide_at_half_maximum_as_tcleans) {
 }
 
 BOOST_AUTO_TEST_CASE(no_accuracy_is_asked_only_where_width_and_padding_are) {
-  BOOST_TEST(is_refused([](ImageOptions& o) { o.accuracy = 0; }));
-  BOOST_TEST(is_refused([](ImageOptions& o) { o.accuracy = 0, o.kernel_width = 5; }));
-  BOOST_TEST(!is_refused([](ImageOptions& o) { o.accuracy = 0, o.kernel_width = 5, o.padding = 1.5; }));
-  BOOST_TEST(is_refused([](ImageOptions& o) { o.accuracy = std::nan(""); }));
+  BOOST_TEST(is_refused([](ImageOptions& o) { o.gridding.accuracy = 0; }));
+  BOOST_TEST(is_refused([](ImageOptions& o) { o.gridding.accuracy = 0, o.gridding.kernel_width = 5; }));
+  BOOST_TEST(
+      !is_refused([](ImageOptions& o) { o.gridding.accuracy = 0, o.gridding.kernel_width = 5, o.gridding.padding = 1.5; }));
+  BOOST_TEST(is_refused([](ImageOptions& o) { o.gridding.accuracy = std::nan(""); }));
 }
 
 BOOST_AUTO_TEST_CASE(one_size_is_a_square_and_two_are_width_and_height) {
@@ -105,15 +107,15 @@ BOOST_AUTO_TEST_CASE(one_size_is_a_square_and_two_are_width_and_height) {
 
 BOOST_AUTO_TEST_CASE(clean_gets_every_option_that_is_its_own) {
   ImageOptions options = good();
-  options.niter = 7;
-  options.gain = 0.25;
-  options.threshold = "3mJy";
-  options.nsigma = 4;
-  options.cyclefactor = 1.5;
-  options.minpsffraction = 0.1;
-  options.maxpsffraction = 0.7;
-  options.nmajor = 9;
-  const misfit::imager::CleanOptions clean = clean_options(options, 3);
+  options.clean.niter = 7;
+  options.clean.gain = 0.25;
+  options.clean.threshold = "3mJy";
+  options.clean.nsigma = 4;
+  options.clean.cyclefactor = 1.5;
+  options.clean.minpsffraction = 0.1;
+  options.clean.maxpsffraction = 0.7;
+  options.clean.nmajor = 9;
+  const misfit::imager::CleanOptions clean = clean_options(options.clean, 3);
   BOOST_TEST(clean.max_iterations == 7);
   BOOST_TEST(clean.gain == 0.25);
   BOOST_TEST(clean.threshold_jy == 3e-3);

@@ -15,7 +15,6 @@ namespace {
 using namespace misfit;
 using namespace misfit::tools::testing;
 using tools::BeamScene;
-using tools::ImageOptions;
 using tools::PrimaryBeamStage;
 
 constexpr double arcsec = imager::pi / 180 / 3600, degree = 3600 * arcsec;
@@ -31,10 +30,7 @@ BeamScene scene(const std::vector<imager::AntennaSort>& sorts) {
 }
 
 PrimaryBeamStage stage(const BeamScene& scene, double pblimit = 0) {
-  ImageOptions options;
-  options.pbcor = true;
-  options.pblimit = pblimit;
-  return {options, scene, 1};
+  return {{.pbcor = true, .pblimit = pblimit}, scene, 1};
 }
 
 std::string refusal(const BeamScene& scene) {

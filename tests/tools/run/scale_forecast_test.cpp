@@ -21,8 +21,8 @@ struct Planned {
     options.vis = {track()};
     options.imsize = {pixels, pixels};
     options.cell = "0.05arcsec";
-    options.accuracy = 1e-4;
-    options.niter = niter;
+    options.gridding.accuracy = 1e-4;
+    options.clean.niter = niter;
     options.memory_gib = 64;
     options.scale.visibilities = samples;
     scene.emplace(RunScene{.options = options,

@@ -12,11 +12,11 @@ namespace {
 using namespace misfit;
 using namespace misfit::tools;
 
-std::string refusal(const std::function<void(ImageOptions&)>& change) {
-  ImageOptions options;
+std::string refusal(const std::function<void(TypedWeighting&)>& change) {
+  TypedWeighting options;
   change(options);
   try {
-    check_weighting(options);
+    check(options, CubeOptions());
   } catch (const std::invalid_argument& error) {
     return error.what();
   }
@@ -24,27 +24,27 @@ std::string refusal(const std::function<void(ImageOptions&)>& change) {
 }
 
 imager::UvTaper taper(const std::string& text) {
-  ImageOptions options;
+  TypedWeighting options;
   options.uvtaper = text;
-  check_weighting(options);
+  check(options, CubeOptions());
   return misfit::tools::weighting_options(options).taper.value();
 }
 
 }  // namespace
 
 BOOST_AUTO_TEST_CASE(an_option_without_effect_or_out_of_range_is_refused_by_name) {
-  BOOST_TEST(refusal([](ImageOptions&) {}) == "");
-  BOOST_TEST(refusal([](ImageOptions& o) { o.weighting = "briggs", o.robust = -2; }) == "");
-  BOOST_TEST(refusal([](ImageOptions& o) { o.weighting = "superuniform", o.npixels = 4; }) == "");
-  BOOST_TEST(refusal([](ImageOptions& o) { o.weighting = "uniform", o.uvtaper = "3klambda"; }) == "");
-  BOOST_TEST(refusal([](ImageOptions& o) { o.robust = 1; }) == "--robust 1: expected --weighting briggs beside it");
-  BOOST_TEST(refusal([](ImageOptions& o) { o.weighting = "briggs", o.robust = 2.5; }) == "--robust 2.5: expected -2 to 2");
-  BOOST_TEST(refusal([](ImageOptions& o) { o.weighting = "uniform", o.npixels = 4; }) ==
+  BOOST_TEST(refusal([](TypedWeighting&) {}) == "");
+  BOOST_TEST(refusal([](TypedWeighting& o) { o.scheme = "briggs", o.robust = -2; }) == "");
+  BOOST_TEST(refusal([](TypedWeighting& o) { o.scheme = "superuniform", o.npixels = 4; }) == "");
+  BOOST_TEST(refusal([](TypedWeighting& o) { o.scheme = "uniform", o.uvtaper = "3klambda"; }) == "");
+  BOOST_TEST(refusal([](TypedWeighting& o) { o.robust = 1; }) == "--robust 1: expected --weighting briggs beside it");
+  BOOST_TEST(refusal([](TypedWeighting& o) { o.scheme = "briggs", o.robust = 2.5; }) == "--robust 2.5: expected -2 to 2");
+  BOOST_TEST(refusal([](TypedWeighting& o) { o.scheme = "uniform", o.npixels = 4; }) ==
              "--npixels 4: expected --weighting superuniform beside it");
-  BOOST_TEST(refusal([](ImageOptions& o) { o.weighting = "superuniform", o.npixels = -1; }) ==
+  BOOST_TEST(refusal([](TypedWeighting& o) { o.scheme = "superuniform", o.npixels = -1; }) ==
              "--npixels -1: expected 2 to 200 cells, or 0 (6)");
   for (const char* wrong : {"5arcsec,", "-1arcsec", "5arcsec,3klambda", "5arcsec,4arcsec,30", "1,2,3deg,4", "5parsec"})
-    BOOST_TEST(refusal([&](ImageOptions& o) {
+    BOOST_TEST(refusal([&](TypedWeighting& o) {
                  o.uvtaper = wrong;
                }).starts_with("--uvtaper " + std::string(wrong) + ": expected MAJ, MAJ,MIN or MAJ,MIN,PA"));
 }
@@ -64,8 +64,8 @@ BOOST_AUTO_TEST_CASE(a_taper_is_one_to_three_values_of_the_sky_or_of_the_uv_plan
 }
 
 BOOST_AUTO_TEST_CASE(arguments_are_what_the_options_say) {
-  ImageOptions options;
-  options.weighting = "briggs";
+  TypedWeighting options;
+  options.scheme = "briggs";
   options.robust = -0.5;
   options.uvtaper = "5arcsec";
   const std::vector<std::string> expected{"--weighting", "briggs", "--robust", "-0.5", "--uvtaper", "5arcsec"};

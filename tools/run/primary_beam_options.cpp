@@ -1,0 +1,34 @@
+#include "tools/run/primary_beam_options.h"
+
+#include <CLI/CLI.hpp>
+#include <cmath>
+
+#include "tools/base/option_checks.h"
+
+namespace misfit::tools {
+
+double TypedPrimaryBeam::limit() const {
+  constexpr double usual = 0.2;
+  return pblimit == 0 ? usual : std::abs(pblimit);
+}
+
+void declare(CLI::App& command, TypedPrimaryBeam& o) {
+  mark(command.add_flag(
+           "--pbcor", o.pbcor,
+           "Write .image.pbcor too, the image divided by the antennas' primary beam, and .pb, the beam: Airy discs, for "
+           "dishes that point alike. With --nterms 2 or 3 each term is divided by the beam's own spectrum too: "
+           ".image.tt0.pbcor, "
+           ".image.tt1.pbcor, …, .alpha.pbcor and .beta.pbcor"),
+       OptionMark::free_of_state);
+  mark(command.add_option(
+           "--pblimit", o.pblimit,
+           "Where the primary beam is lower, .pb and .image.pbcor have no values; 0.2 when 0. Without --pbcor .pb "
+           "alone is written. The sign makes no difference, since no other image is masked"),
+       OptionMark::free_of_state);
+}
+
+void check(const TypedPrimaryBeam& o) {
+  if (!(std::abs(o.pblimit) < 1)) refuse_option("pblimit", typed(o.pblimit), "a number between 0 and 1, such as 0.2");
+}
+
+}  // namespace misfit::tools
