@@ -313,7 +313,7 @@ class ImageRun : private ChannelSink {
     imager::parallel_for(count, workers_.count, [&](std::size_t i) {
       if (queue_->stopped() || interrupted) return;
       try {
-        make_channel(batch.first + static_cast<int>(i));
+        make_group({batch.first + static_cast<int>(i), 1});  // each channel is cleaned alone
         if (cube()) progress_.update(++done, count);
       } catch (const Interrupted&) {  // also one that gave up: what another threw comes before it
         interrupted = true;
@@ -327,27 +327,40 @@ class ImageRun : private ChannelSink {
     if (cube()) progress_.end();
   }
 
-  void make_channel(int channel) {
+  /// Channels that are cleaned together: all are imaged before, and written after.
+  void make_group(const imager::PlaneRange& group) {
+    std::vector<std::unique_ptr<ChannelRun>> runs;
+    for (int channel = group.first; channel < group.first + group.count; ++channel) runs.push_back(image(channel));
+    for (const auto& run : runs) maker_->clean(*run);
+    for (const auto& run : runs) finish(*run);
+  }
+
+  /// All of a channel that comes before CLEAN.
+  std::unique_ptr<ChannelRun> image(int channel) {
     imager::StageTimes taking;
     std::unique_ptr<ChannelSamples> samples;
     {
       const imager::StageTimer timer(taking, imager::stage::planes);
       samples = visibilities_->take(channel);
     }
-    const std::unique_ptr<ChannelRun> run = maker_->image(channel, std::move(samples));
+    std::unique_ptr<ChannelRun> run = maker_->image(channel, std::move(samples));
     if (cube()) run->times().add(imager::stage::planes, taking.of(imager::stage::planes));
     if (!cube()) tell_dirty(*run);
     maker_->prepare_clean(*run);
     if (!cube() && ranks_.first()) begin_pictures(*run);
-    maker_->clean(*run);
-    if (o_.check_outside) look_outside(*run);
-    if (run->has_samples() && visibilities_->each_reads()) visibilities_->count(run->samples().counts());
-    run->release_samples();
+    return run;
+  }
+
+  /// All that comes after it.
+  void finish(ChannelRun& run) {
+    if (o_.check_outside) look_outside(run);
+    if (run.has_samples() && visibilities_->each_reads()) visibilities_->count(run.samples().counts());
+    run.release_samples();
     if (!cube() && ranks_.first())
       if (const std::string warning = changed_files_warning(*set_); !warning.empty()) warn(warning);
-    if (sharing_.images_here() && !run->made().empty()) write(*run);
-    if (o_.clean.savemodel != "none") run->made().cleaned = models_of(std::move(run->cleaned()));
-    queue_->done(std::move(run->made()));
+    if (sharing_.images_here() && !run.made().empty()) write(run);
+    if (o_.clean.savemodel != "none") run.made().cleaned = models_of(std::move(run.cleaned()));
+    queue_->done(std::move(run.made()));
   }
 
   /// What --savemodel needs of what CLEAN found.
