@@ -25,18 +25,24 @@
 namespace misfit::ms_io {
 namespace {
 
-std::shared_ptr<const OpenSet> open_selected(const std::string& path, const Selection& selection,
-                                             const std::string& data_column, const std::vector<imager::Stokes>& stokes,
-                                             std::uint64_t block_samples) {
+struct NamedSet {
+  std::string path;
+  std::size_t place = 0;  ///< among those that are named
+};
+
+std::shared_ptr<const OpenSet> open_selected(const NamedSet& named, const Selection& selection, const std::string& data_column,
+                                             const std::vector<imager::Stokes>& stokes, std::uint64_t block_samples) {
+  const std::string& path = named.path;
   const auto opened = std::make_shared<OpenSet>();
   opened->path = path;
+  opened->place = named.place;
   opened->files.remember(path);
   opened->set = open_measurement_set(path, Access::read);
   opened->data_column = column_name(opened->set, data_column);
   for (const casacore::String& part : opened->set.getPartNames())  // those that it refers to
     if (part != opened->set.tableName()) opened->files.remember(part);
   if (!data_column.empty()) require_visibility_column(opened->set, path, opened->data_column);
-  opened->selected = select_rows(opened->set, path, selection, {block_samples, true});
+  opened->selected = select_rows(opened->set, path, selection.of_set(named.place), {block_samples, true});
   if (data_column.empty()) return opened;
   opened->filled = std::make_shared<FilledData>(opened->selected.setups);
   for (const Setup& setup : opened->selected.setups) {
@@ -142,13 +148,14 @@ MeasurementSet::MeasurementSet(const std::vector<std::string>& paths, const Sele
                                std::uint64_t block_samples) {
   if (paths.empty()) throw std::invalid_argument("no MeasurementSet; expected one or more");
   const auto impl = std::make_shared<Impl>();
+  require_one_or_each(selection, paths.size());
   impl->selection = selection;
   const std::vector<std::string> columns = columns_of(data_column, paths.size());
   for (std::size_t i = 0; i < paths.size(); ++i)
-    impl->sets.push_back(open_selected(paths[i], selection, columns[i], stokes, block_samples));
+    impl->sets.push_back(open_selected({paths[i], i}, selection, columns[i], stokes, block_samples));
   sort_by_time(impl->sets);
   const std::vector<std::string> roundings = shift_from_rounding(impl->sets, impl->selection, [&](const OpenSet& set) {
-    return open_selected(set.path, impl->selection, set.data_column, stokes, block_samples);
+    return open_selected({set.path, set.place}, impl->selection, set.data_column, stokes, block_samples);
   });
   if (!impl->selection.phase_centre) impl->selection.phase_centre = impl->sets.front()->selected.phase_centre;
   impl->observation = joined(impl->sets);

@@ -46,13 +46,14 @@ casacore::TableExprNode rows_of(const casacore::MeasurementSet& set, casacore::M
 }
 
 void parse_uv_ranges(const casacore::MeasurementSet& set, const Selection& selection, ParsedSelection& parsed) {
-  for (const std::string& part : split(selection.uv_range, ',')) {  // MSSelection leaves the end of a lone distance undefined
+  for (const std::string& part :
+       split(selection.uv_range.of(0), ',')) {  // MSSelection leaves the end of a lone distance undefined
     if (part.find_first_of("~<>") == std::string::npos) {
       throw casacore::AipsError("'" + one_line(part) + "' is a distance and no range");
     }
   }
   casacore::MSSelection expression;
-  expression.setUvDistExpr(selection.uv_range);
+  expression.setUvDistExpr(selection.uv_range.of(0));
   const casacore::Matrix<double> ends = expression.getUVList(&set);  // columns of least and most
   const casacore::Vector<bool> in_metres = expression.getUVUnitsList(&set);
   for (std::size_t r = 0; r < in_metres.nelements(); ++r) parsed.uv.push_back({ends(0, r), ends(1, r), in_metres(r)});
@@ -83,7 +84,7 @@ void require_channels(const casacore::MeasurementSet& set, const std::string& ex
 
 void parse_fields(const casacore::MeasurementSet& set, const Selection& selection, ParsedSelection& parsed) {
   casacore::MSSelection expression;
-  expression.setFieldExpr(selection.field);
+  expression.setFieldExpr(selection.field.of(0));
   rows_of(set, expression);
   for (const int field : expression.getFieldList()) parsed.fields.insert(field);
   parsed.all_fields = false;
@@ -91,15 +92,15 @@ void parse_fields(const casacore::MeasurementSet& set, const Selection& selectio
 
 void parse_windows(const casacore::MeasurementSet& set, const Selection& selection, ParsedSelection& parsed) {
   casacore::MSSelection expression;
-  expression.setSpwExpr(selection.spectral_window);
+  expression.setSpwExpr(selection.spectral_window.of(0));
   const casacore::Matrix<int> ranges = expression.getChanList(&set);  // rows of window, start, stop, step
-  require_channels(set, selection.spectral_window);
+  require_channels(set, selection.spectral_window.of(0));
   for (ssize_t r = 0; r < ranges.shape()(0); ++r) {
     const int step = std::max(1, ranges(r, 3));
     for (int c = ranges(r, 1); c <= ranges(r, 2); c += step) parsed.channels[ranges(r, 0)].insert(c);
   }
   parsed.all_windows = false;
-  for (const std::string& part : split(selection.spectral_window, ',')) {  // MSSelection sorts them
+  for (const std::string& part : split(selection.spectral_window.of(0), ',')) {  // MSSelection sorts them
     casacore::MSSelection one;
     one.setSpwExpr(part);
     for (const int window : one.getSpwList(&set))
@@ -109,7 +110,7 @@ void parse_windows(const casacore::MeasurementSet& set, const Selection& selecti
 
 /// What becomes of an expression.
 struct Parser {
-  std::string Selection::*expression;
+  PerSet Selection::*expression;
   casacore::Bool (casacore::MSSelection::*give)(const casacore::String&);  ///< null: it is not MSSelection's
   void (*alone)(const casacore::MeasurementSet&, const Selection&, ParsedSelection&) = nullptr;  ///< null: it is for the rows
 };
@@ -132,7 +133,7 @@ void parse_alone(const casacore::MeasurementSet& set, const Selection& selection
                  ParsedSelection& parsed) {
   if (parser.alone) return parser.alone(set, selection, parsed);
   casacore::MSSelection expression;
-  (expression.*parser.give)(selection.*parser.expression);
+  (expression.*parser.give)((selection.*parser.expression).of(0));
   rows_of(set, expression);
 }
 
@@ -188,7 +189,7 @@ ParsedSelection parse_selection(const casacore::MeasurementSet& set, const std::
   bool among_rows = false;
   casacore::MSSelection all;  // a time without a date has that of the earliest row that the others select
   for (const SelectionKind& kind : selection_kinds) {
-    const std::string& expression = selection.*kind.expression;
+    const std::string& expression = (selection.*kind.expression).of(0);
     if (one_line(expression).empty()) continue;
     const Parser& parser = parser_of(kind);
     try {
@@ -202,7 +203,7 @@ ParsedSelection parse_selection(const casacore::MeasurementSet& set, const std::
   }
   if (among_rows) {
     translated(path + ": " + to_text(selection), [&] {
-      if (lacks_date(selection.time_range) && !in_order_of_time(set))
+      if (lacks_date(selection.time_range.of(0)) && !in_order_of_time(set))
         parsed.listed_rows = rows_in_order_of_time(set, all);
       else
         parsed.rows = rows_of(set, all);

@@ -3,25 +3,47 @@
 #include <array>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "imager/data/geometry.h"
 
 namespace misfit::ms_io {
 
-/// Which samples of a MeasurementSet are meant, in casacore's MSSelection syntax, as CASA's tasks take it; empty means all. A
+/// A selecting expression for all sets of an image, or one for each, in the order in which they are named.
+class PerSet {
+ public:
+  PerSet() = default;
+  PerSet(std::string of_all) : of_set_{std::move(of_all)} {}
+  PerSet(const char* of_all) : of_set_{of_all} {}
+  /// One value is for all sets, however many there are.
+  explicit PerSet(std::vector<std::string> of_set);
+
+  /// Whether it selects all of every set.
+  bool empty() const;
+  const std::string& of(std::size_t set) const { return of_set_.size() == 1 ? of_set_.front() : of_set_.at(set); }
+  /// As given: one, or one for each set.
+  const std::vector<std::string>& values() const { return of_set_; }
+  /// Whether there is one for all, or one for each of so many sets.
+  bool fits(std::size_t sets) const { return of_set_.size() == 1 || of_set_.size() == sets; }
+
+ private:
+  std::vector<std::string> of_set_{""};
+};
+
+/// Which samples of MeasurementSets are meant, in casacore's MSSelection syntax, as CASA's tasks take it; empty means all. A
 /// sample must be in each that is given. As in MSSelection, uv distances are √(u² + v²), those in wavelengths at the
 /// REF_FREQUENCY of the spectral window, whatever the channel; where they are not finite, rows are read, to be counted, but no
 /// model is written. The ends of ranges of time and uv distance belong to them; times are rounded down to milliseconds. A time
 /// without a date has that of the first row that the rest, but for uv_range, selects.
 struct Selection {
-  std::string field;
-  std::string spectral_window;
-  std::string time_range = "";
-  std::string uv_range = "";
-  std::string antenna = "";
-  std::string scan = "";
-  std::string intent = "";  ///< of STATE's OBS_MODE
-  std::string observation = "";
+  PerSet field = {};
+  PerSet spectral_window = {};
+  PerSet time_range = {};
+  PerSet uv_range = {};
+  PerSet antenna = {};
+  PerSet scan = {};
+  PerSet intent = {};  ///< of STATE's OBS_MODE
+  PerSet observation = {};
   /// Where the visibilities are phased to; none: where they are, which must be one direction, or one moving field.
   std::optional<imager::SkyDirection> phase_centre = {};
   std::string phase_centre_remark = "";  ///< what users should know of `phase_centre`, in a sentence; mostly empty
@@ -33,17 +55,23 @@ struct Selection {
   Moving moving = Moving::about_themselves;
   /// FITS SPECSYS of the frame in which frequencies count, see parse_spectral_frame(); empty: that of the data.
   std::string spectral_frame = "";
+
+  /// What is meant of one of the sets.
+  Selection of_set(std::size_t set) const;
 };
 
 /// One of the ways to select.
 struct SelectionKind {
-  const char* option;                  ///< its name in CASA's tasks
-  std::string Selection::*expression;  ///< where it stands
-  const char* expected;                ///< what it may be, for people
+  const char* option;             ///< its name in CASA's tasks
+  PerSet Selection::*expression;  ///< where it stands
+  const char* expected;           ///< what it may be, for people
 };
 
 /// All of them.
 extern const std::array<SelectionKind, 8> selection_kinds;
+
+/// Throws std::invalid_argument that names the option which has neither one expression nor one for each of so many sets.
+void require_one_or_each(const Selection& selection, std::size_t sets);
 
 /// What is given, for messages: "--field '3C*' --scan '3~5'"; empty without any.
 std::string to_text(const Selection& selection);

@@ -1,3 +1,6 @@
+#include <algorithm>
+#include <stdexcept>
+
 #include "ms_io/selection.h"
 
 namespace misfit::ms_io {
@@ -14,11 +17,35 @@ const std::array<SelectionKind, 8> selection_kinds{{
     {"observation", &Selection::observation, "observations by id, such as 0 or 1~2"},
 }};
 
+PerSet::PerSet(std::vector<std::string> of_set) : of_set_(std::move(of_set)) {
+  if (of_set_.empty()) of_set_.emplace_back();
+}
+
+bool PerSet::empty() const {
+  return std::all_of(of_set_.begin(), of_set_.end(), [](const std::string& one) { return one.empty(); });
+}
+
+Selection Selection::of_set(std::size_t set) const {
+  Selection selection = *this;
+  for (const SelectionKind& kind : selection_kinds) selection.*kind.expression = (this->*kind.expression).of(set);
+  return selection;
+}
+
+void require_one_or_each(const Selection& selection, std::size_t sets) {
+  for (const SelectionKind& kind : selection_kinds)
+    if (const PerSet& expression = selection.*kind.expression; !expression.fits(sets))
+      throw std::invalid_argument(std::string("--") + kind.option + ": " + std::to_string(expression.values().size()) +
+                                  " expressions for " + std::to_string(sets) + (sets == 1 ? " set" : " sets") +
+                                  "; expected one for all, or one for each");
+}
+
 std::string to_text(const Selection& selection) {
   std::string text;
   for (const SelectionKind& kind : selection_kinds) {
-    const std::string& expression = selection.*kind.expression;
-    if (!expression.empty()) text += (text.empty() ? "--" : " --") + std::string(kind.option) + " '" + expression + "'";
+    const PerSet& expression = selection.*kind.expression;
+    if (expression.empty()) continue;
+    text += (text.empty() ? "--" : " --") + std::string(kind.option);
+    for (const std::string& value : expression.values()) text += " '" + value + "'";
   }
   return text;
 }

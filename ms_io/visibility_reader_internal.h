@@ -13,6 +13,7 @@ namespace misfit::ms_io {
 /// A MeasurementSet with what is to be read from it. It lives as long as a stream reads it.
 struct OpenSet {
   std::string path;
+  std::size_t place = 0;  ///< among the sets that are named
   std::string data_column;
   casacore::MeasurementSet set;
   SelectedRows selected;

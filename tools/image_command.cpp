@@ -25,6 +25,7 @@ void add_image_command(CLI::App& program, const std::string& command_line, const
       options->gridding.accuracy = 0;
       accuracy->default_str("0");
     }
+    settle_mtmfs(*command, *options);
     check(*options);
   };
   check_before_missing(*command, check_options);

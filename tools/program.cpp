@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <stdexcept>
 
+#include "tools/base/option_checks.h"
 #include "tools/base/value_checks.h"
 #include "tools/command.h"
 #include "tools/version_text.h"
@@ -20,6 +21,13 @@ void refuse_several(CLI::App& command, const imager::Ranks& ranks) {
   });
 }
 
+/// Numbers of other programs' arithmetic, too.
+void take_whole_numbers(CLI::App& command) {
+  for (CLI::Option* option : command.get_options())
+    if (option->get_type_name().find("INT") != std::string::npos) option->transform(whole_number());
+  for (CLI::App* sub : command.get_subcommands({})) take_whole_numbers(*sub);
+}
+
 }  // namespace
 
 std::unique_ptr<CLI::App> make_program(const std::string& command_line, const imager::Ranks& ranks) {
@@ -34,6 +42,7 @@ std::unique_ptr<CLI::App> make_program(const std::string& command_line, const im
   add_kernel_command(*program);
   add_report_command(*program);
   for (CLI::App* command : program->get_subcommands({})) refuse_several(*command, ranks);
+  take_whole_numbers(*program);
   return program;
 }
 

@@ -32,6 +32,13 @@ Stokes leading(std::string_view text, const std::string& whole) {
   refuse(whole, "some of I Q U V RR RL LR LL XX XY YX YY, such as I, IQUV or XXYY");
 }
 
+bool lie_evenly(const std::vector<Stokes>& list) {
+  for (std::size_t i = 2; i < list.size(); ++i)
+    if (fits_stokes_code(list[i]) - fits_stokes_code(list[i - 1]) != fits_stokes_code(list[1]) - fits_stokes_code(list[0]))
+      return false;
+  return true;
+}
+
 }  // namespace
 
 std::string stokes_name(Stokes stokes) {
@@ -75,9 +82,10 @@ std::vector<Stokes> parse_stokes(const std::string& text) {
     rest.remove_prefix(stokes_name(next).size());
   }
   if (list.empty()) refuse(text, "some of I Q U V RR RL LR LL XX XY YX YY, such as I, IQUV or XXYY");
-  for (std::size_t i = 2; i < list.size(); ++i)
-    if (fits_stokes_code(list[i]) - fits_stokes_code(list[i - 1]) != fits_stokes_code(list[1]) - fits_stokes_code(list[0]))
-      refuse(text, "such as lie evenly on the STOKES axis of a FITS file: one, two, IQU, QUV, IQUV, RRLL, XXYY, …");
+  if (lie_evenly(list)) return list;
+  std::sort(list.begin(), list.end());
+  if (!lie_evenly(list))
+    refuse(text, "such as lie evenly on the STOKES axis of a FITS file: one, two, IQU, QUV, IQUV, RRLL, XXYY, …");
   return list;
 }
 

@@ -25,7 +25,8 @@ Stokes stokes_of_fits_code(int fits_code);
 std::string stokes_names(const std::vector<Stokes>& list);
 
 /// The list that a text such as "I", "IQUV", "RRLL" or "XX,YY" names. Throws std::invalid_argument that says what was expected
-/// where it names none, one twice, or some that do not lie evenly on a FITS axis (I Q V).
+/// where it names none, one twice, or some that do not lie evenly on a FITS axis (I Q V). Those that do in another order than
+/// that of the text are in theirs.
 std::vector<Stokes> parse_stokes(const std::string& text);
 
 }  // namespace misfit::imager

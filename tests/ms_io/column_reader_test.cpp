@@ -91,8 +91,9 @@ std::map<std::pair<double, bool>, AllSamples> by_window(const MeasurementSet& se
 
 /// Together, and in blocks of any size, the windows give what each gives alone.
 void check_windows(const SmallSet& set, const std::vector<std::string>& windows) {
-  Selection together;
-  for (const std::string& window : windows) together.spectral_window += (together.spectral_window.empty() ? "" : ",") + window;
+  std::string list;
+  for (const std::string& window : windows) list += (list.empty() ? "" : ",") + window;
+  const Selection together{"", list};
   const std::vector<imager::Stokes> stokes = {imager::Stokes::I, imager::Stokes::Q};
   std::map<std::pair<double, bool>, AllSamples> alone;
   for (const std::string& window : windows)

@@ -379,7 +379,7 @@ BOOST_AUTO_TEST_CASE(a_wrong_selection_is_one_line_that_names_the_expression) {
   for (const Selection& selection : {Selection{"NOBODY", ""}, Selection{"0,", ""}, Selection{"7", ""}, Selection{"", "0:1~~"},
                                      Selection{"", "9"}, Selection{"", "0:2.4~2.5GHz"}}) {
     const std::string error = error_of(set, selection);
-    BOOST_TEST(contains(error, "'" + selection.field + selection.spectral_window + "'"));
+    BOOST_TEST(contains(error, "'" + selection.field.of(0) + selection.spectral_window.of(0) + "'"));
     BOOST_TEST(!contains(error, "\n"));
   }
 }

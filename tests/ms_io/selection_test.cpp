@@ -60,7 +60,7 @@ struct Law {
   std::string query;
 };
 
-Selection one(std::string Selection::*expression, const std::string& value) {
+Selection one(PerSet Selection::*expression, const std::string& value) {
   Selection selection;
   selection.*expression = value;
   return selection;
@@ -210,7 +210,7 @@ BOOST_AUTO_TEST_CASE(ranges_of_frequency_are_the_same_where_channels_descend) {
 
 BOOST_AUTO_TEST_CASE(what_selects_nothing_is_one_line_that_names_what_was_given) {
   const ManySet set;
-  const std::vector<std::pair<std::string Selection::*, std::string>> wrong = {
+  const std::vector<std::pair<PerSet Selection::*, std::string>> wrong = {
       {&Selection::field, "NOBODY"},         {&Selection::spectral_window, "7"},
       {&Selection::time_range, "yesterday"}, {&Selection::time_range, "2014/25/25"},
       {&Selection::uv_range, "500m"},        {&Selection::uv_range, "0~5parsec"},

@@ -58,6 +58,41 @@ BOOST_AUTO_TEST_CASE(what_is_read_is_the_samples_of_one_after_those_of_the_other
   BOOST_TEST(all.counts.used == 2 * rows * channels);
 }
 
+/// In whatever order they are named: the first named is observed last.
+BOOST_AUTO_TEST_CASE(each_set_may_have_a_selection_of_its_own) {
+  const SmallSet first;
+  const OtherSet second;
+  const Selection one_channel{"", "0:0"};
+  const std::size_t channels_of_first = read_all(MeasurementSet(first.path(), one_channel, "DATA")).visibility.size();
+  for (const bool swapped : {false, true}) {
+    std::vector<std::string> paths{first.path(), second.path()}, windows{"0:0", ""};
+    if (swapped) std::swap(paths[0], paths[1]), std::swap(windows[0], windows[1]);
+    const MeasurementSet sets(paths, {"", PerSet(windows)}, "DATA");
+    AllSamples expected = read_all(MeasurementSet(first.path(), one_channel, "DATA"));
+    const AllSamples more = read_all(MeasurementSet(second.path(), {}, "DATA")), all = read_all(sets);
+    expected.visibility.insert(expected.visibility.end(), more.visibility.begin(), more.visibility.end());
+    BOOST_TEST((all.visibility == expected.visibility));
+    BOOST_TEST(more.visibility.size() > channels_of_first);
+  }
+}
+
+BOOST_AUTO_TEST_CASE(there_is_a_selection_for_all_sets_or_one_for_each) {
+  const SmallSet first;
+  const OtherSet second;
+  for (const std::vector<std::string>& scans : {std::vector<std::string>{"1", "1", "1"}, {}, {"1"}}) {
+    Selection selection;
+    selection.scan = PerSet(scans);
+    const bool fits = scans.size() < 2;
+    BOOST_TEST(selection.scan.fits(2) == fits);
+    if (fits) continue;
+    BOOST_CHECK_EXCEPTION(MeasurementSet(std::vector{first.path(), second.path()}, selection, "DATA"), std::invalid_argument,
+                          [](const std::invalid_argument& error) {
+                            return std::string(error.what()) ==
+                                   "--scan: 3 expressions for 2 sets; expected one for all, or one for each";
+                          });
+  }
+}
+
 BOOST_AUTO_TEST_CASE(the_observation_is_that_of_the_first_with_the_band_of_all) {
   const SmallSet first;
   const OtherSet second;

@@ -53,6 +53,24 @@ BOOST_AUTO_TEST_CASE(sets_phased_apart_are_one_image_of_the_source_that_they_are
   BOOST_CHECK(pixels_of(sets.folder / "a", "residual").pixel == pixels_of(sets.folder / "again", "residual").pixel);
 }
 
+BOOST_AUTO_TEST_CASE(each_set_may_have_a_selection_of_its_own) {
+  const TwoSets sets;  // of 1 and 3 channels, and 351 rows each
+  const auto read = [&](const std::string& name) {
+    return report_of(sets.folder / name)["visibilities"]["samples_read"].get<int>();
+  };
+  const Arguments selection{"--spw", "", "0:0, 0:2", "--scan", "1", "--antenna", "!0 ", ""};
+  succeed(sets.shifted() + selection);
+  BOOST_TEST(read("a") == 325 + 2 * 351);  // 26 rows are of antenna 0
+  succeed({"image", "--config", sets.folder / "a.last.ini", "--imagename", sets.folder / "again"});
+  BOOST_TEST(read("again") == read("a"));
+  BOOST_TEST(run(sets.shifted() + Arguments{"--spw", "0", "0", "0"}).err ==
+             "misfit: --spw: 3 expressions for 2 sets; expected one for all, or one for each\n");
+  // A file of options has one expression, whatever is in it, unless it is quoted.
+  std::ofstream(sets.folder / "one.ini") << "spw = 0:0, *:0\n";
+  succeed(sets.shifted() + Arguments{"--config", sets.folder / "one.ini"});
+  BOOST_TEST(read("a") == 2 * 351);
+}
+
 BOOST_AUTO_TEST_CASE(the_model_is_written_into_each_set_as_that_sees_it) {
   const TwoSets sets;
   succeed(sets.shifted() + Arguments{"--niter", "1", "--gain", "1", "--savemodel", "modelcolumn"});

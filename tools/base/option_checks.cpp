@@ -1,6 +1,7 @@
 #include "tools/base/option_checks.h"
 
 #include <CLI/CLI.hpp>
+#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <stdexcept>
@@ -39,6 +40,30 @@ CLI::Validator not_zero(const std::string& expected) {
 
 CLI::Validator not_empty() {
   return CLI::Validator([](const std::string& value) -> std::string { return value.empty() ? "'': expected a name" : ""; }, "");
+}
+
+CLI::Validator also_named(const std::map<std::string, std::string>& names) {
+  return CLI::Validator(
+      [names](std::string& value) -> std::string {
+        if (const auto found = names.find(value); found != names.end()) value = found->second;
+        return "";
+      },
+      "");
+}
+
+CLI::Validator whole_number() {
+  return CLI::Validator(
+      [](std::string& value) -> std::string {
+        constexpr double exact = 9007199254740992;  // 2^53
+        char* end = nullptr;
+        const double number = std::strtod(value.c_str(), &end);
+        const bool is_number = end != value.c_str() && *end == '\0';
+        if (is_number && std::abs(number) <= exact && number == std::floor(number) &&
+            value.find_first_of(".eE") != std::string::npos && value.find_first_of("xX") == std::string::npos)
+          value = std::to_string(static_cast<long long>(number));
+        return "";
+      },
+      "");
 }
 
 CLI::Validator values_are(const std::vector<std::string>& names, Others others) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <map>
 #include <string>
 #include <vector>
 
@@ -21,6 +22,13 @@ CLI::Validator not_zero(const std::string& expected);
 /// That there is one: "" is no file's name.
 CLI::Validator not_empty();
 
+/// Puts the name that an option has for a value in place of others that people know it by, [others'] = ours; for
+/// Option::transform().
+CLI::Validator also_named(const std::map<std::string, std::string>& names);
+
+/// Puts whole numbers in place of what is one, 512.0 or 1e5; for Option::transform().
+CLI::Validator whole_number();
+
 /// Whether an option takes values besides those that --help lists.
 enum class Others { refused, possible };
 
@@ -35,6 +43,7 @@ CLI::Validator values_are(const std::vector<std::string>& names, Others others =
 enum class OptionMark {
   free_of_state,  ///< it only ends CLEAN or does not reach it: a run that goes on from a state may have another
   typed_alone,    ///< it comes from no file of options, where others could have put it
+  one_or_each,    ///< it takes one value for all sets, or one for each: in files of options a list has each in quotes
   not_repeated,   ///< it is no part of the run's file of options: whoever repeats a run does without it
 };
 

@@ -33,12 +33,18 @@ void check_flag(const std::string& name, const std::string& value) {
   }
 }
 
-/// In quotes where a list would take it for several.
-std::string as_one(const std::string& part) {
-  if (part.find_first_of(" \t'") == std::string::npos) return part;
+std::string in_quotes(const std::string& part) {
   std::ostringstream quoted;
   quoted << std::quoted(part, '\'');
   return quoted.str();
+}
+
+/// As it stands in a list of an option's values.
+std::string in_list(const CLI::Option& option, const std::string& part) {
+  const bool one_or_each = has(option, OptionMark::one_or_each);
+  const bool plain =
+      one_or_each ? option.results().size() == 1 && part.substr(0, 1) != "'" : part.find_first_of(" \t'") == std::string::npos;
+  return plain ? part : in_quotes(part);
 }
 
 /// Sets the option that `line` names, unless it was typed. `taken` are the names met before.
@@ -54,7 +60,7 @@ void take(CLI::App& command, const std::string& line, std::set<std::string>& tak
   if (!taken.insert(name).second) throw std::invalid_argument("'" + name + "' stands in the file twice");
   if (option->count() > 0) return;
   if (option->get_items_expected_max() == 0) check_flag(name, value);
-  if (option->get_items_expected_max() == 1) {
+  if (option->get_items_expected_max() == 1 || (has(*option, OptionMark::one_or_each) && value.substr(0, 1) != "'")) {
     option->add_result(value);
     return;
   }
@@ -100,7 +106,8 @@ std::vector<std::pair<std::string, std::string>> options_in_force(const CLI::App
     if (option->count() > 0) {
       value.clear();
       const bool several = option->get_items_expected_max() > 1;
-      for (const std::string& part : option->results()) value += (value.empty() ? "" : " ") + (several ? as_one(part) : part);
+      for (const std::string& part : option->results())
+        value += (value.empty() ? "" : " ") + (several ? in_list(*option, part) : part);
     }
     if (value.empty() && option->get_items_expected_max() == 0) value = "false";
     values.emplace_back(option->get_lnames().front(), value);

@@ -48,8 +48,13 @@ void check_auto_mask(const TypedClean& o) {
 }  // namespace
 
 void declare(CLI::App& command, TypedClean& o) {
-  command.add_option("--deconvolver", o.deconvolver, "How components are found: hogbom, clark or multiscale")
-      ->check(CLI::IsMember(imager::deconvolver_names()));
+  std::vector<std::string> deconvolvers = imager::deconvolver_names();
+  deconvolvers.emplace_back("mtmfs");
+  command
+      .add_option("--deconvolver", o.deconvolver,
+                  "How components are found: hogbom, clark or multiscale; mtmfs, with --nterms (then 2 where it is not given): "
+                  "multiscale where there are --scales, else hogbom")
+      ->check(CLI::IsMember(deconvolvers));
   command
       .add_option("--scales", o.scales,
                   "Of multiscale, in pixels: 0,5,15. As wide at half maximum as tclean's, 0.74 of the number; 0 = points")
@@ -80,6 +85,7 @@ void declare(CLI::App& command, TypedClean& o) {
       ->type_name(file_type);
   command
       .add_option("--usemask", o.usemask, "user: --mask, or everywhere; auto: from the residuals, as tclean's auto-multithresh")
+      ->transform(also_named({{"auto-multithresh", "auto"}}))
       ->check(CLI::IsMember({"user", "auto"}));
   command.add_option("--sidelobethreshold", o.sidelobethreshold,
                      "auto: above this times the largest sidelobe times the peak …");

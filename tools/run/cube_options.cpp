@@ -159,7 +159,7 @@ void declare(CLI::App& command, CubeOptions& o) {
   command.add_option("--start", o.start,
                      "The first plane: a channel of those selected in the first window, a frequency such as 1.4GHz, or a "
                      "radio velocity such as 20km/s, in --outframe; the first channel when empty");
-  command.add_option("--chanwidth", o.chanwidth,
+  command.add_option("--chanwidth,--width", o.chanwidth,
                      "From plane to plane: channels, a frequency or a velocity, negative to go down; one channel when empty");
   command
       .add_option("--outframe", o.outframe,

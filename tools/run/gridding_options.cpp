@@ -24,6 +24,7 @@ void check_tables(const TypedGridding& o) {
 
 void declare_gridder(CLI::App& command, TypedGridding& o) {
   command.add_option("--gridder", o.gridder, "w planes: auto (where w matters), standard (none), wide (always)")
+      ->transform(also_named({{"gridft", "standard"}, {"widefield", "wide"}, {"wproject", "wide"}}))
       ->check(CLI::IsMember({"auto", "standard", "wide"}));
 }
 

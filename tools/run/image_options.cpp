@@ -39,6 +39,7 @@ std::string one_cell(const std::vector<std::string>& sides) {
 
 void check_image(const ImageOptions& o) {
   check_sets(o);
+  if (!o.vis.empty()) ms_io::require_one_or_each(o.selection, o.vis.size());
   const std::string name = std::filesystem::path(o.imagename).filename();
   if ((name.empty() && !o.imagename.empty()) || name == "." || name == "..")
     refuse_option("imagename", "'" + o.imagename + "'", "a name for files to begin with, not a folder");
@@ -56,7 +57,11 @@ void check_image(const ImageOptions& o) {
 }  // namespace
 
 void declare_scene(CLI::App& command, ImageOptions& o) {
-  command.add_option("--vis", o.vis, "MeasurementSet, or several for one image; opened read-only, but to save a model")
+  command
+      .add_option(
+          "--vis", o.vis,
+          "MeasurementSet, or several for one image, each with a selection of its own where --field to --observation have as "
+          "many values; opened read-only, but to save a model")
       ->required()
       ->type_name(folder_type);
   command.add_option(
@@ -71,7 +76,7 @@ void declare_scene(CLI::App& command, ImageOptions& o) {
       ->required()
       ->expected(1, 2)
       ->check(quantity(parse_angle_rad));
-  declare_selection(command, o.selection);
+  declare_selection_of_each(command, o.selection);
   command
       .add_option("--datacolumn", o.datacolumn,
                   "auto (CORRECTED_DATA where a set has it, else DATA), data, corrected, model, or a column's name; or one for "

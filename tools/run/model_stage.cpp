@@ -139,8 +139,8 @@ void save_model(const ImageOptions& o, const SavedModel& model, const imager::Ra
   column.origin = {"misfit image --savemodel modelcolumn --imagename " + shell_quoted(o.imagename),
                    fingerprint_of(model).value(), model.tell};
   const auto predict = [&](const imager::SampleCoordinates& at) { return shared.predict(at); };
-  for (const std::string& set : o.vis)
-    ms_io::write_model(set, selection, column, predict, progress, {visibilities.samples_at_once, ranks.size()});
+  for (std::size_t i = 0; i < o.vis.size(); ++i)
+    ms_io::write_model(o.vis[i], selection.of_set(i), column, predict, progress, {visibilities.samples_at_once, ranks.size()});
   shared.end();
 }
 

@@ -36,6 +36,15 @@ void declare(CLI::App& command, TypedTaylor& o) {
       "Of the terms: 1.4GHz, …; the middle of the band, between the edges of the outermost channels, when empty");
 }
 
+void settle_mtmfs(CLI::App& command, ImageOptions& o) {
+  if (o.clean.deconvolver != "mtmfs") return;
+  o.clean.deconvolver = o.clean.scales.empty() ? "hogbom" : "multiscale";
+  CLI::Option* terms = command.get_option("--nterms");
+  if (terms->count() > 0) return;
+  o.taylor.nterms = 2;
+  terms->default_str("2");
+}
+
 void check_taylor(const ImageOptions& image) {
   const TypedTaylor& o = image.taylor;
   if (o.nterms < 1 || o.nterms > imager::most_taylor_terms)

@@ -23,6 +23,9 @@ struct TypedTaylor {
 
 void declare(CLI::App& command, TypedTaylor& options);
 
+/// What --deconvolver mtmfs stands for. Before options are checked.
+void settle_mtmfs(CLI::App& command, ImageOptions& options);
+
 /// Throws std::invalid_argument that names the option, its value and what was expected.
 void check_taylor(const ImageOptions& options);
 

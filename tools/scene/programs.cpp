@@ -178,7 +178,7 @@ void compare_predictions(const ImageOptions& scene, const SceneTruth& truth, con
   for (const auto& entry : fs::recursive_directory_iterator(set))
     fs::permissions(entry.path(), fs::perms::owner_all, fs::perm_options::add);
   {
-    const ms_io::MeasurementSet opened(set, scene.selection, scene.datacolumn);
+    const ms_io::MeasurementSet opened(set, scene.selection.of_set(0), scene.datacolumn);
     imager::SkyImage sky;
     sky.image = truth.model();
     sky.observation = opened.observation();
@@ -189,7 +189,7 @@ void compare_predictions(const ImageOptions& scene, const SceneTruth& truth, con
   for (Program& program : programs) {
     const bool called_for = program.result.failure.empty() && !program.result.seconds.empty() && !limit.reached();
     if (!called_for || !run_in(folder, program.predict, program.result)) continue;
-    const ms_io::MeasurementSet written(set, scene.selection, "MODEL_DATA");
+    const ms_io::MeasurementSet written(set, scene.selection.of_set(0), "MODEL_DATA");
     const auto stream = written.open();
     std::size_t index = 0;
     while (const auto block = stream->next())

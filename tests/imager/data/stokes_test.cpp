@@ -18,6 +18,8 @@ BOOST_AUTO_TEST_CASE(every_name_is_parsed_alone_and_in_lists) {
   BOOST_TEST((parse_stokes("RRLL") == std::vector{Stokes::RR, Stokes::LL}));
   BOOST_TEST((parse_stokes("IV") == std::vector{Stokes::I, Stokes::V}));
   BOOST_TEST(stokes_names(parse_stokes("QUV")) == "QUV");
+  BOOST_TEST(stokes_names(parse_stokes("QI")) == "QI");  // evenly, down the axis
+  BOOST_TEST(stokes_names(parse_stokes("IVUQ")) == "IQUV");
 }
 
 BOOST_AUTO_TEST_CASE(codes_are_those_of_casacore_and_fits) {

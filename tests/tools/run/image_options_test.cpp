@@ -140,6 +140,38 @@ BOOST_AUTO_TEST_CASE(values_in_force_are_those_typed_or_the_defaults) {
   BOOST_TEST(!values.contains("help"));
 }
 
+/// As other imagers call them.
+BOOST_AUTO_TEST_CASE(options_and_values_have_other_names) {
+  CLI::App app;
+  app.option_defaults()->always_capture_default();
+  ImageOptions options;
+  declare(app, options);
+  app.parse(
+      "--vis a.ms --imagename a --imsize 64 --cell 1arcsec --width 2 --gridder wproject --usemask auto-multithresh "
+      "--deconvolver mtmfs");
+  settle_mtmfs(app, options);
+  BOOST_TEST(options.cube.chanwidth == "2");
+  BOOST_TEST(options.gridding.gridder == "wide");
+  BOOST_TEST(options.clean.usemask == "auto");
+  BOOST_TEST(options.clean.deconvolver == "hogbom");
+  BOOST_TEST(options.taylor.nterms == 2);
+  const nlohmann::json values = option_values(app);  // by ours, so that runs can be compared
+  BOOST_TEST(values.at("chanwidth") == "2");
+  BOOST_TEST(values.at("gridder") == "wide");
+  BOOST_TEST(values.at("usemask") == "auto");
+  BOOST_TEST(values.at("nterms") == "2");
+}
+
+BOOST_AUTO_TEST_CASE(mtmfs_is_multiscale_where_there_are_scales_and_keeps_terms_that_are_given) {
+  CLI::App app;
+  ImageOptions options;
+  declare(app, options);
+  app.parse("--vis a.ms --imagename a --imsize 64 --cell 1arcsec --deconvolver mtmfs --scales 0,5 --nterms 3");
+  settle_mtmfs(app, options);
+  BOOST_TEST(options.clean.deconvolver == "multiscale");
+  BOOST_TEST(options.taylor.nterms == 3);
+}
+
 BOOST_AUTO_TEST_CASE(states_belong_to_options_that_reach_clean) {
   CLI::App app;
   app.option_defaults()->always_capture_default();
