@@ -16,6 +16,7 @@ struct SpectralWindow {
   int id = 0;
   std::vector<double> frequency_hz;      ///< [selected channel]
   std::vector<double> channel_width_hz;  ///< [selected channel], positive
+  std::vector<int> channel;              ///< [selected channel], its number in the window
 };
 
 }  // namespace misfit::ms_io

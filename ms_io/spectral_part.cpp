@@ -38,7 +38,9 @@ double first_time_s(const OpenSet& set) {
 }
 
 SpectralWindow window_at_first_row(const OpenSet& from, const Setup& setup) {
-  SpectralWindow window{from.path, setup.spectral_window, setup.frequency_hz, setup.channel_width_hz};
+  SpectralWindow window{from.path, setup.spectral_window, setup.frequency_hz, setup.channel_width_hz, {}};
+  for (const Run& run : setup.channels)
+    for (std::uint64_t c = 0; c < run.count; ++c) window.channel.push_back(static_cast<int>(run.first + c));
   if (from.selected.spectral_frame.empty()) return window;
   const double ratio = FrameRatio(from.set, from.path, from.selected, setup, observation_of(from.set, from.selected.first_row))
                            .at(first_time_s(from));

@@ -14,7 +14,7 @@
 
 namespace misfit::tools {
 
-void add_image_command(CLI::App& program, const std::string& command_line, const imager::Ranks& ranks) {
+void add_image_command(CLI::App& program, const CommandCall& call) {
   CLI::App* command = program.add_subcommand("image", "Image and CLEAN a MeasurementSet");
   const auto options = std::make_shared<ImageOptions>();
   add_config_option(*command);
@@ -29,13 +29,15 @@ void add_image_command(CLI::App& program, const std::string& command_line, const
     check(*options);
   };
   check_before_missing(*command, check_options);
-  command->callback([command, options, check_options, command_line, &ranks] {
+  command->callback([command, options, check_options, call] {
     check_options();
-    const bool done = naming(names_of(options->vis), [&] {
-      return run_image(*options, {command_line, option_values(*command), state_option_values(*command)}, ranks);
+    Outcome outcome = naming(names_of(options->vis), [&] {
+      return run_image(*options, {call.command_line, option_values(*command), state_option_values(*command)}, call.ranks);
     });
-    if (!options->dry_run && ranks.first()) write_file(options->imagename + ".last.ini", config_text(*command));
-    if (!done) throw Interrupted();
+    const bool complete = outcome.complete;
+    conclude(std::move(outcome), options->quiet || !call.ranks.first(), call.outcome);
+    if (!options->dry_run && call.ranks.first()) write_file(options->imagename + ".last.ini", config_text(*command));
+    if (!complete) throw Interrupted();
   });
 }
 

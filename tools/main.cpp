@@ -2,8 +2,6 @@
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
-#include <algorithm>
-#include <cctype>
 #include <cerrno>
 #include <chrono>
 #include <cstdio>
@@ -17,12 +15,10 @@
 #include <string>
 #include <system_error>
 #include <thread>
-#include <vector>
 
 #include "tools/base/interrupt.h"
 #include "tools/base/standard_streams.h"
 #include "tools/base/text.h"
-#include "tools/base/value_checks.h"
 #include "tools/mpi/world.h"
 #include "tools/program.h"
 
@@ -48,56 +44,6 @@ int fail(const char* message, ExitCode code, const World& world) {
   return code;
 }
 
-/// The command that was called, or the last that was before the word that is none.
-const CLI::App& called(const CLI::App& program) {
-  const CLI::App* command = &program;
-  while (!command->get_subcommands().empty()) command = command->get_subcommands().front();
-  return *command;
-}
-
-/// Of words that no option takes: the options among them, which come before their values, or all.
-std::string unexpected(const std::vector<std::string>& words) {
-  std::vector<std::string> options;
-  for (const std::string& word : words)
-    if (word.size() > 1 && word.front() == '-' && std::isalpha(static_cast<unsigned char>(word.back())) != 0)
-      options.push_back(word);
-  if (options.empty()) options = words;
-  std::reverse(options.begin(), options.end());  // it shows the last first
-  return CLI::ExtrasError(options).what();
-}
-
-/// What the parser says, or where a subcommand is missing, or is none, those that there are.
-std::string usage_message(const CLI::ParseError& error, const CLI::App& program) {
-  const CLI::App& command = called(program);
-  const bool missing = error.get_name() == "RequiredError";
-  std::vector<std::string> names;
-  for (const CLI::App* each : command.get_subcommands({})) names.push_back(each->get_name());
-  const std::vector<std::string> rest = command.remaining();
-  const bool unknown = dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr;
-  if (names.empty() && (missing || unknown) && !rest.empty()) return unexpected(rest);  // may be what is missing, misspelt
-  if (const auto* const checking = dynamic_cast<const CheckingProgram*>(&program); checking != nullptr && missing)
-    if (std::string wrong = checking->wrong_value(command); !wrong.empty()) return wrong;
-  if (names.empty() || !missing) return error.what();
-  const std::string word = rest.empty() || rest.front().front() == '-' ? "" : rest.front();
-  std::string said = &command == &program ? word : command.get_name() + (word.empty() ? "" : " ") + word;
-  said += said.empty() ? "expected " : ": expected ";
-  if (!word.empty()) names = nearest_first(word, names);
-  for (std::size_t i = 0; i < names.size(); ++i) said += (i == 0 ? "" : i + 1 == names.size() ? " or " : ", ") + names[i];
-  return said;
-}
-
-/// What the parser says of a value that is no number, "Could not convert: --option = value", with what was expected.
-std::string conversion_message(const std::string& said, const CLI::App& program) {
-  const std::string before = "Could not convert: ";
-  const std::size_t equals = said.find(" = ");
-  if (said.rfind(before, 0) != 0 || equals == std::string::npos) return said;
-  const std::string name = said.substr(before.size(), equals - before.size());
-  const CLI::Option* option = called(program).get_option_no_throw(name);
-  if (option == nullptr) return said;
-  const bool fraction = option->get_type_name().find("FLOAT") != std::string::npos;
-  return name + ' ' + said.substr(equals + 3) + ": expected a " + (fraction ? "number" : "whole number");
-}
-
 /// For exceptions that nothing can catch: casacore throws some while it closes tables.
 [[noreturn]] void end_at_once() {
   std::string why = "an error that is none";
@@ -116,14 +62,12 @@ std::string conversion_message(const std::string& said, const CLI::App& program)
 int run(int argc, char** argv, const World& world) {
   std::string line = "misfit";
   for (int i = 1; i < argc; ++i) line += std::string(" ") + argv[i];
-  const std::unique_ptr<CLI::App> made = make_program(line, world.ranks());
+  const std::unique_ptr<CLI::App> made = make_program({line, world.ranks()});
   CLI::App& program = *made;
   try {
     program.parse(argc, argv);
     finish_standard_output();
     return done;
-  } catch (const CLI::ConversionError& error) {
-    return fail(conversion_message(error.what(), program).c_str(), wrong_usage, world);
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) {
       if (world.ranks().first()) program.exit(error);

@@ -154,14 +154,21 @@ void check_values(const PredictOptions& o) {
   if (o.threads < 0) throw std::invalid_argument("--threads " + std::to_string(o.threads) + ": expected 0 (all cores) or more");
 }
 
-void print(const PredictOptions& o, const ms_io::ModelWriteReport& report) {
+Outcome outcome_of(const PredictOptions& o, const ms_io::ModelWriteReport& report) {
   const auto count = [](std::uint64_t number) { return grouped(static_cast<long long>(number)); };
-  std::printf("%s: %s%s visibilities in %s rows written to %s\n", o.vis.c_str(), o.subtract ? "data − model of " : "",
-              count(report.samples).c_str(), count(report.rows).c_str(), column_of(o).name.c_str());
-  if (report.rows_before > 0) std::printf("%s of these rows had been written before\n", count(report.rows_before).c_str());
+  std::string words = o.vis + ": " + (o.subtract ? "data − model of " : "") + count(report.samples) + " visibilities in " +
+                      count(report.rows) + " rows written to " + column_of(o).name + "\n";
+  if (report.rows_before > 0) words += count(report.rows_before) + " of these rows had been written before\n";
   if (report.nonfinite_uvw_rows > 0)
-    std::printf("%s rows have UVW that are not finite and %s\n", count(report.nonfinite_uvw_rows).c_str(),
-                o.subtract ? "keep their data" : "got 0");
+    words += count(report.nonfinite_uvw_rows) + " rows have UVW that are not finite and " +
+             (o.subtract ? "keep their data\n" : "got 0\n");
+  return {true,
+          {{"column", column_of(o).name},
+           {"visibilities", report.samples},
+           {"rows", report.rows},
+           {"rows_written_before", report.rows_before},
+           {"rows_of_nonfinite_uvw", report.nonfinite_uvw_rows}},
+          words};
 }
 
 /// As whoever finds its column incomplete is told.
@@ -182,7 +189,8 @@ NamedModel read_model(const PredictOptions& o, const imager::Ranks& ranks) {
   return model;
 }
 
-void predict(const PredictOptions& o, const imager::Ranks& ranks) {
+void predict(const PredictOptions& o, const CommandCall& call) {
+  const imager::Ranks& ranks = call.ranks;
   check_values(o);
   if (o.model.empty() == o.components.empty()) throw std::invalid_argument("expected either --model or --components");
   if (o.model.empty() && o.kernel_is_typed)
@@ -212,12 +220,12 @@ void predict(const PredictOptions& o, const imager::Ranks& ranks) {
   shared.end();
   progress.end();
   if (!report.zeros.zeros.none()) progress.say("warning: " + zeros_warning(report.zeros));
-  if (!o.quiet) print(o, report);
+  conclude(outcome_of(o, report), o.quiet, call.outcome);
 }
 
 }  // namespace
 
-void add_predict_command(CLI::App& program, const imager::Ranks& ranks) {
+void add_predict_command(CLI::App& program, const CommandCall& call) {
   CLI::App* command =
       program.add_subcommand("predict", "Write a model's visibilities, or data without them, into a MeasurementSet");
   const auto o = std::make_shared<PredictOptions>();
@@ -260,10 +268,10 @@ void add_predict_command(CLI::App& program, const imager::Ranks& ranks) {
   command->add_option("--threads", o->threads, "Threads; 0 means all cores");
   command->add_flag("--quiet", o->quiet, "Print nothing");
   check_before_missing(*command, [o] { check_values(*o); });
-  command->callback([command, o, &ranks] {
+  command->callback([command, o, call] {
     o->accuracy_is_typed = command->get_option("--accuracy")->count() > 0;
     o->kernel_is_typed = command->get_option("--kernel")->count() > 0;
-    predict(*o, ranks);
+    predict(*o, call);
   });
 }
 

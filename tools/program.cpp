@@ -1,11 +1,14 @@
 #include "tools/program.h"
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cctype>
 #include <stdexcept>
+#include <vector>
 
 #include "tools/base/option_checks.h"
+#include "tools/base/text.h"
 #include "tools/base/value_checks.h"
-#include "tools/command.h"
 #include "tools/version_text.h"
 
 namespace misfit::tools {
@@ -28,22 +31,73 @@ void take_whole_numbers(CLI::App& command) {
   for (CLI::App* sub : command.get_subcommands({})) take_whole_numbers(*sub);
 }
 
+/// The command that was called, or the last that was before the word that is none.
+const CLI::App& called(const CLI::App& program) {
+  const CLI::App* command = &program;
+  while (!command->get_subcommands().empty()) command = command->get_subcommands().front();
+  return *command;
+}
+
+/// Of words that no option takes: the options among them, which come before their values, or all.
+std::string unexpected(const std::vector<std::string>& words) {
+  std::vector<std::string> options;
+  for (const std::string& word : words)
+    if (word.size() > 1 && word.front() == '-' && std::isalpha(static_cast<unsigned char>(word.back())) != 0)
+      options.push_back(word);
+  if (options.empty()) options = words;
+  std::reverse(options.begin(), options.end());  // it shows the last first
+  return CLI::ExtrasError(options).what();
+}
+
+/// What the parser says of a value that is no number, "Could not convert: --option = value", with what was expected.
+std::string conversion_message(const std::string& said, const CLI::App& program) {
+  const std::string before = "Could not convert: ";
+  const std::size_t equals = said.find(" = ");
+  if (said.rfind(before, 0) != 0 || equals == std::string::npos) return said;
+  const std::string name = said.substr(before.size(), equals - before.size());
+  const CLI::Option* option = called(program).get_option_no_throw(name);
+  if (option == nullptr) return said;
+  const bool fraction = option->get_type_name().find("FLOAT") != std::string::npos;
+  return name + ' ' + said.substr(equals + 3) + ": expected a " + (fraction ? "number" : "whole number");
+}
+
 }  // namespace
 
-std::unique_ptr<CLI::App> make_program(const std::string& command_line, const imager::Ranks& ranks) {
+std::unique_ptr<CLI::App> make_program(const CommandCall& call) {
   auto program = std::make_unique<CheckingProgram>(
       "Images radio-interferometry MeasurementSets with least-misfit gridding functions", "misfit");
   program->set_version_flag("--version", version_text, "Print the version, how it was built, and the libraries it runs with");
   program->require_subcommand(1);
   program->option_defaults()->always_capture_default();
-  add_image_command(*program, command_line, ranks);
-  add_predict_command(*program, ranks);
+  add_image_command(*program, call);
+  add_predict_command(*program, call);
   add_simulate_command(*program);
   add_kernel_command(*program);
   add_report_command(*program);
-  for (CLI::App* command : program->get_subcommands({})) refuse_several(*command, ranks);
+  for (CLI::App* command : program->get_subcommands({})) refuse_several(*command, call.ranks);
   take_whole_numbers(*program);
   return program;
+}
+
+/// Where a subcommand is missing, or is none, those that there are.
+std::string usage_message(const CLI::ParseError& error, const CLI::App& program) {
+  if (dynamic_cast<const CLI::ConversionError*>(&error) != nullptr) return conversion_message(error.what(), program);
+  const CLI::App& command = called(program);
+  const bool missing = error.get_name() == "RequiredError";
+  std::vector<std::string> names;
+  for (const CLI::App* each : command.get_subcommands({})) names.push_back(each->get_name());
+  const std::vector<std::string> rest = command.remaining();
+  const bool unknown = dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr;
+  if (names.empty() && (missing || unknown) && !rest.empty()) return unexpected(rest);  // may be what is missing, misspelt
+  if (const auto* const checking = dynamic_cast<const CheckingProgram*>(&program); checking != nullptr && missing)
+    if (std::string wrong = checking->wrong_value(command); !wrong.empty()) return wrong;
+  if (names.empty() || !missing) return error.what();
+  const std::string word = rest.empty() || rest.front().front() == '-' ? "" : rest.front();
+  std::string said = &command == &program ? word : command.get_name() + (word.empty() ? "" : " ") + word;
+  said += said.empty() ? "expected " : ": expected ";
+  if (!word.empty()) names = nearest_first(word, names);
+  for (std::size_t i = 0; i < names.size(); ++i) said += (i == 0 ? "" : i + 1 == names.size() ? " or " : ", ") + names[i];
+  return said;
 }
 
 }  // namespace misfit::tools

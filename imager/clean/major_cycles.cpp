@@ -64,6 +64,7 @@ class Run {
     if (state_.cycles.empty()) {
       if (o_.automask) state_.mask = Image(residual().width, residual().height);
       MajorCycle start;
+      start.iterations = state_.iterations;
       measure(start);
       keep(std::move(start));
     }

@@ -20,9 +20,11 @@ std::string with_sum(const std::uint8_t* data, std::size_t size) {
 
 void require_promises(const InputFile& file, const std::vector<double>& scales) {
   const tools::CleanStateOwner owner{"1", {{"gain", "0.1"}, {"mask", ""}}, 7, 1, {4, 3, scales}};
-  const auto state = read_or_refused(file.path(), [&] { return tools::read_clean_state(file.path(), owner); });
-  if (!state) return;
-  require(state->now < state->cycles.size() && state->best < state->cycles.size(), "a state has the cycles that it names");
+  const auto read = read_or_refused(file.path(), [&] { return tools::read_clean_state(file.path(), owner); });
+  if (!read) return;
+  const imager::CleanState* const state = &read->state;
+  if (read->changed.empty())
+    require(state->now < state->cycles.size() && state->best < state->cycles.size(), "a state has the cycles that it names");
   require(state->mask.pixel.empty() || state->mask.pixel.size() == 12, "a mask has the image's pixels");
   for (const imager::ComponentModel* model : {&state->model, &state->best_model}) {
     require(model->width() == 4 && model->height() == 3 && model->scale_pixels() == scales, "a model is of the image");
@@ -31,7 +33,7 @@ void require_promises(const InputFile& file, const std::vector<double>& scales) 
   }
   const std::string again = (file.folder() / "again.state").string();
   tools::write_clean_state(again, *state, owner);
-  const imager::CleanState reread = tools::read_clean_state(again, owner);
+  const imager::CleanState reread = tools::read_clean_state(again, owner).state;
   require(reread.cycles.size() == state->cycles.size() && reread.mask.pixel == state->mask.pixel &&
               reread.model.components().size() == state->model.components().size(),
           "a state that was written is read again");

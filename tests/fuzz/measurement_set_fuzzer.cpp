@@ -106,7 +106,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const Arguments typed = command(data[0] % 8, set, folder);
   try {
     Arguments last_first(typed.rbegin(), typed.rend());
-    tools::make_program("misfit")->parse(last_first);
+    tools::make_program({"misfit"})->parse(last_first);
   } catch (const CLI::Error& error) {
     fuzz::require(false, std::string("options are right: ") + error.what());
   } catch (const std::exception& error) {

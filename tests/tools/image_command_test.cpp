@@ -416,11 +416,48 @@ BOOST_AUTO_TEST_CASE(a_run_that_was_cut_goes_on_to_the_same_images) {
     BOOST_TEST(outcome.code == 1);
     return outcome.err;
   };
-  BOOST_TEST(refused({"--gain", "0.2"}).find("--gain") != std::string::npos);
   BOOST_TEST(refused({"--accuracy", "1e-5"}).find("--accuracy") != std::string::npos);
   const Outcome anew = run(small_image(snapshot(), folder / "new") + options + Arguments{"--restart"});
   BOOST_TEST(anew.code == 0);
   BOOST_TEST(anew.err.find("new.clean.state") != std::string::npos);
+}
+
+/// As people do who look at the residual, draw another mask, and go on.
+BOOST_AUTO_TEST_CASE(clean_goes_on_with_another_mask_depth_and_deconvolver) {
+  const TemporaryFolder folder;
+  const auto cleaned = [&](const Arguments& options) {
+    const Outcome outcome = run(small_image(snapshot(), folder / "a") + options);
+    BOOST_TEST_INFO(outcome.err);
+    BOOST_REQUIRE(outcome.code == 0);
+    return outcome.err;
+  };
+  const std::string left = "box[[0pix,0pix],[31pix,63pix]]", right = "box[[32pix,0pix],[63pix,63pix]]";
+  cleaned({"--niter", "40", "--mask", left, "--nmajor", "1"});
+  const json first = report_of(folder / "a")["clean"];
+  const imager::Image of_left = pixels_of(folder / "a", "model");
+  const std::string said = cleaned({"--niter", "200", "--mask", right, "--gain", "0.2", "--cyclefactor", "2", "--deconvolver",
+                                    "multiscale", "--scales", "0,5", "--restart"});
+  BOOST_TEST(contains(said,
+                      "warning: CLEAN goes on from its model with another --cyclefactor, --deconvolver, --gain, --mask, "
+                      "--scales\n"));
+  const json second = report_of(folder / "a")["clean"];
+  BOOST_TEST(second["major_cycles_log"][0]["iterations"] == first["iterations"]);
+  BOOST_TEST(second["major_cycles_log"][0]["model_flux_jy"] == first["model_flux_jy"]);
+  BOOST_TEST(second["iterations"].get<int>() > first["iterations"].get<int>());
+  // What was found on the left stays, and all else lies on the right; Gaussians reach over by 5 pixels.
+  const imager::Image both = pixels_of(folder / "a", "model");
+  double added = 0;
+  for (int row = 0; row < both.height; ++row)
+    for (int column = 0; column < both.width; ++column)
+      if (column < 27)
+        BOOST_REQUIRE(both.at(row, column) == of_left.at(row, column));
+      else
+        added += both.at(row, column) - of_left.at(row, column);
+  BOOST_TEST(added != 0);
+  // A model of another scale cannot go on as points.
+  const Outcome points = run(small_image(snapshot(), folder / "a") + Arguments{"--niter", "200", "--restart"});
+  BOOST_TEST(points.code == 1);
+  BOOST_TEST(contains(points.err, "a.clean.state has components of scale 5: expected that among --scales"));
 }
 
 BOOST_AUTO_TEST_CASE(a_start_model_is_where_an_earlier_run_ended) {

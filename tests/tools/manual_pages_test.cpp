@@ -52,7 +52,7 @@ std::optional<std::string> groff(const std::string& page, const std::vector<std:
 }  // namespace
 
 BOOST_AUTO_TEST_CASE(every_option_of_every_command_is_on_its_page_and_completed) {
-  const auto program = make_program("");
+  const auto program = make_program({});
   const auto pages = misfit::tools::manual_pages(facts_of(*program));
   const std::string completion = bash_completion(facts_of(*program));
   const auto commands = with_commands(*program);
@@ -88,7 +88,7 @@ BOOST_AUTO_TEST_CASE(a_page_says_all_that_an_option_declares) {
 }
 
 BOOST_AUTO_TEST_CASE(pages_are_printed_without_a_warning) {
-  for (const auto& [name, page] : misfit::tools::manual_pages(facts_of(*make_program("")))) {
+  for (const auto& [name, page] : misfit::tools::manual_pages(facts_of(*make_program({})))) {
     const std::optional<std::string> said = groff(page, {"-z"});
     BOOST_TEST(said.value_or("") == "", name);
   }
@@ -107,7 +107,7 @@ BOOST_AUTO_TEST_CASE(text_is_printed_letter_by_letter) {
 }
 
 BOOST_AUTO_TEST_CASE(examples_use_options_that_there_are) {
-  const auto program = make_program("");
+  const auto program = make_program({});
   const auto commands = with_commands(*program);
   for (const auto& [name, command] : commands)
     for (const auto& [shows, typed] : prose_of(name).examples) {

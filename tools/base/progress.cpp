@@ -2,15 +2,33 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstdio>
+#include <utility>
 
 #include "tools/base/interrupt.h"
 #include "tools/base/numbers.h"
 #include "tools/base/text.h"
 
 namespace misfit::tools {
+namespace {
 
-ProgressLine::ProgressLine(bool quiet) : quiet_(quiet), live_(!quiet && isatty(STDERR_FILENO) != 0) {
+std::function<void(const std::string&)> listener;
+
+void tell(const std::string& line) {
+  if (listener)
+    listener(line);
+  else
+    std::fprintf(stderr, "%s\n", line.c_str());
+}
+
+}  // namespace
+
+void tell_lines(std::function<void(const std::string&)> tell) {
+  listener = std::move(tell);
+}
+
+ProgressLine::ProgressLine(bool quiet) : quiet_(quiet), live_(!quiet && !listener && isatty(STDERR_FILENO) != 0) {
   catch_interrupts();
 }
 
@@ -29,7 +47,7 @@ void ProgressLine::begin(const std::string& stage, bool stops_itself) {
 
 void ProgressLine::update(std::uint64_t done, std::uint64_t total) {
   const std::lock_guard lock(mutex_);
-  if (interrupted() && !stops_itself_) throw Interrupted();
+  if (interrupted() && (!stops_itself_ || interrupted_again())) throw Interrupted();
   const auto now = std::chrono::steady_clock::now();
   if (!live_ || done == 0 || total == 0 || now - drawn_ < std::chrono::milliseconds(100)) return;
   drawn_ = now;
@@ -43,14 +61,16 @@ void ProgressLine::end() {
   if (!open_) return;
   open_ = false;
   if (live_) std::fprintf(stderr, "\r\033[K");
-  if (!quiet_) std::fprintf(stderr, "%-24s %s\n", stage_.c_str(), duration(elapsed_s()).c_str());
+  std::string stage = stage_;
+  stage.resize(std::max<std::size_t>(stage.size(), 24), ' ');
+  if (!quiet_) tell(stage + " " + duration(elapsed_s()));
 }
 
 void ProgressLine::say(const std::string& line) {
   if (quiet_) return;
   const std::lock_guard lock(mutex_);
   if (live_) std::fprintf(stderr, "\r\033[K");
-  std::fprintf(stderr, "%s\n", legible(line).c_str());
+  tell(legible(line));
 }
 
 double ProgressLine::elapsed_s() const {

@@ -2,10 +2,15 @@
 
 #include <chrono>
 #include <cstdint>
+#include <functional>
 #include <mutex>
 #include <string>
 
 namespace misfit::tools {
+
+/// Has lines of all runs told to `tell`, which any thread may call, in place of stderr, where then no line is live; empty: on
+/// stderr again. Not while something runs.
+void tell_lines(std::function<void(const std::string&)> tell);
 
 /// Says on stderr what a run is doing: on a terminal one live line with percentage and time left, elsewhere a plain line when a
 /// stage ends. Throws Interrupted from update() once the user asked to stop, unless a stage finishes by itself. Any thread may

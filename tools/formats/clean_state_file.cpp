@@ -10,8 +10,10 @@
 #include <utility>
 #include <vector>
 
+#include "imager/clean/deconvolver.h"
 #include "tools/base/files.h"
 #include "tools/base/json_text.h"
+#include "tools/base/option_checks.h"
 #include "tools/base/text.h"
 
 namespace misfit::tools {
@@ -19,7 +21,7 @@ namespace {
 
 using nlohmann::json;
 
-constexpr const char* format = "misfit CLEAN state 1";
+constexpr const char* format = "misfit CLEAN state 2";
 
 /// In one line.
 std::string escaped(const std::string& text) {
@@ -157,6 +159,41 @@ imager::MajorCycle unpacked_cycle(const json& c) {
   return cycle;
 }
 
+/// Equal, or the same numbers differently written.
+bool means_the_same(const json& a, const json& b) {
+  if (a == b) return true;
+  if (!a.is_string() || !b.is_string()) return false;
+  const auto one = finite_number(a.get<std::string>()), other = finite_number(b.get<std::string>());
+  return one && other && *one == *other;
+}
+
+/// The same components among the scales of another model.
+imager::ComponentModel with_scales_of(const imager::ComponentModel& like, const imager::ComponentModel& model,
+                                      const std::string& path) {
+  std::vector<imager::Component> components = model.components();
+  for (imager::Component& component : components) {
+    const double scale = model.scale_pixels()[static_cast<std::size_t>(component.scale)];
+    const auto found = std::find(like.scale_pixels().begin(), like.scale_pixels().end(), scale);
+    if (found == like.scale_pixels().end())
+      throw std::runtime_error(path + " has components of scale " + typed(scale / imager::tclean_scale_width) +
+                               ": expected that among --scales; without --restart CLEAN begins anew");
+    component.scale = static_cast<int>(found - like.scale_pixels().begin());
+  }
+  imager::ComponentModel same(like.width(), like.height(), like.scale_pixels());
+  same.add(components);
+  return same;
+}
+
+/// Names of options whose values differ, or that one alone has.
+std::vector<std::string> unlike(const json& then, const json& now) {
+  std::vector<std::string> changed;
+  json names = now;
+  names.update(then);
+  for (const auto& [name, value] : names.items())
+    if (!means_the_same(then.value(name, json()), now.value(name, json()))) changed.push_back(name);
+  return changed;
+}
+
 imager::CleanState unpacked_state(const json& file, const imager::ComponentModel& like) {
   imager::CleanState state;
   state.model = unpacked_model(file.at("model"), like);
@@ -220,14 +257,6 @@ json intact_content(std::string_view file) {
   return json::from_cbor(content.begin(), content.end(), true, false);
 }
 
-/// Equal, or the same numbers differently written.
-bool means_the_same(const json& a, const json& b) {
-  if (a == b) return true;
-  if (!a.is_string() || !b.is_string()) return false;
-  const auto one = finite_number(a.get<std::string>()), other = finite_number(b.get<std::string>());
-  return one && other && *one == *other;
-}
-
 void require_same(const std::string& path, const json& file, const CleanStateOwner& owner) {
   const auto refuse = [&path](const std::string& what, const json& has, const json& expected) {
     throw std::runtime_error(path + " was saved with " + what + " " + shown(has) + ", expected that of this run, " +
@@ -235,17 +264,12 @@ void require_same(const std::string& path, const json& file, const CleanStateOwn
   };
   if (file.at("version") != owner.version) refuse("version", file.at("version"), owner.version);
   const json& has = file.at("options");
-  json names = owner.options;
-  names.update(has);
-  for (const auto& [name, value] : names.items()) {
-    const json then = has.value(name, json()), now = owner.options.value(name, json());
-    if (!means_the_same(then, now)) refuse("--" + escaped(name), then, now);
-  }
+  for (const std::string& name : unlike(has, owner.options))
+    refuse("--" + escaped(name), has.value(name, json()), owner.options.value(name, json()));
   const int ranks = file.contains("ranks") ? whole<int>(file, "ranks") : 1;
   if (ranks != owner.ranks) refuse("mpirun -n", ranks, owner.ranks);
   if (file.at("checksum") != owner.checksum)
-    throw std::runtime_error(path +
-                             " was saved with other data: the dirty image, the PSF, the mask or the start model differ; " +
+    throw std::runtime_error(path + " was saved with other data: the dirty image, the PSF or the start model differ; " +
                              "expected the same visibilities, flags and weights, and the same files");
 }
 
@@ -269,6 +293,8 @@ void write_clean_state(const std::string& path, const imager::CleanState& state,
                {"version", owner.version},
                {"options", owner.options},
                {"checksum", owner.checksum},
+               {"ways", owner.ways},
+               {"ways_checksum", owner.ways_checksum},
                {"ranks", owner.ranks},
                {"model", packed_model(state.model)},
                {"best_model", packed_model(state.best_model)},
@@ -286,7 +312,7 @@ void write_clean_state(const std::string& path, const imager::CleanState& state,
   write_file(path, content);
 }
 
-imager::CleanState read_clean_state(const std::string& path, const CleanStateOwner& owner) {
+ReadCleanState read_clean_state(const std::string& path, const CleanStateOwner& owner) {
   const json file = intact_content(read_file(path));
   if (!file.is_object() || file.value("format", json()) != format)
     throw std::runtime_error(path + " is damaged or no state of CLEAN; expected what an earlier run of misfit image saved");
@@ -295,7 +321,17 @@ imager::CleanState read_clean_state(const std::string& path, const CleanStateOwn
   };
   try {
     require_same(path, file, owner);
-    return unpacked_state(file, owner.like);
+    ReadCleanState read;
+    read.changed = unlike(file.at("ways"), owner.ways);
+    if (read.changed.empty() && file.at("ways_checksum") != owner.ways_checksum) read.changed = {"mask"};
+    const auto scales = file.at("model").at("scale_pixels").get<std::vector<double>>();
+    read.state = unpacked_state(file, imager::ComponentModel(owner.like.width(), owner.like.height(), scales));
+    if (read.changed.empty() && scales != owner.like.scale_pixels()) throw std::invalid_argument("its model has other scales");
+    if (read.changed.empty()) return read;
+    const int iterations = read.state.cycles[read.state.now].iterations;
+    read.state = imager::first_state(with_scales_of(owner.like, read.state.model, path));
+    read.state.iterations = iterations;
+    return read;
   } catch (const json::exception& error) {
     damaged(error);
   } catch (const std::invalid_argument& error) {

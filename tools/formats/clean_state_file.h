@@ -16,6 +16,15 @@ struct CleanStateOwner {
   std::uint64_t checksum = 0;   ///< of the dirty image, the PSF, and what CLEAN is given besides
   int ranks = 1;                ///< that summed them, on whose number their last bits depend
   imager::ComponentModel like;  ///< a model of the image's pixels and of the scales that CLEAN looks for
+  nlohmann::json ways =
+      nlohmann::json::object();     ///< {name: value} of the options that may be others, by which CLEAN then goes on
+  std::uint64_t ways_checksum = 0;  ///< of what they name, such as a mask
+};
+
+/// A state that was read.
+struct ReadCleanState {
+  imager::CleanState state;
+  std::vector<std::string> changed;  ///< names of the ways that are others now; then there is a model alone to go on from
 };
 
 /// A number that differs when a bit of any image does; null stands for none. Over the dirty image and the PSF it is that of the
@@ -27,7 +36,7 @@ std::uint64_t checksum(const std::vector<const imager::Image*>& images);
 void write_clean_state(const std::string& path, const imager::CleanState& state, const CleanStateOwner& owner);
 
 /// Reads a state for a run of these options and data. Throws std::runtime_error that names the file, and the option or what
-/// else is different, or that the file is damaged.
-imager::CleanState read_clean_state(const std::string& path, const CleanStateOwner& owner);
+/// else is different, or that the file is damaged; also where its model has scales that CLEAN does not look for any more.
+ReadCleanState read_clean_state(const std::string& path, const CleanStateOwner& owner);
 
 }  // namespace misfit::tools

@@ -18,7 +18,7 @@ int main(int argc, char** argv) {
   }
   unsetenv("MISFIT_KERNEL_FOLDER");  // who builds has other defaults
   try {
-    const CommandFacts program = facts_of(*make_program(""));
+    const CommandFacts program = facts_of(*make_program({}));
     const std::filesystem::path folder = argv[1];
     std::filesystem::create_directories(folder / "man1");
     for (const auto& [name, text] : manual_pages(program)) write_file((folder / "man1" / name).string(), text);

@@ -187,6 +187,7 @@ imager::CleanResult ChannelRun::clean(std::size_t stokes) {
   }
   const auto cycle = [this](const imager::CleanState& state) { count_cycle(state); };
   imager::CleanResult result = stage_->run(clean, scene_.option_values, cycle, context());
+  if (!stage_->words_on_state().empty()) made_.doubts.push_back(stage_->words_on_state());
   images_.images.dirty[stokes] = {};
   if (const imager::Image* const mask = stage_->mask(stokes); mask != nullptr) result.mask = *mask;
   return result;

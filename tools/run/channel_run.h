@@ -30,7 +30,7 @@ struct ToldAsItGoes {
 /// What the channels of a run share. References must outlive who has it.
 struct ChannelScene {
   const ImageOptions& options;
-  const nlohmann::json& option_values;  ///< that a state of CLEAN belongs to
+  const StateOptionValues& option_values;
   const imager::ImageHeader& header;
   imager::UvwReach reach;
   int threads = 1;                     ///< for each channel

@@ -50,19 +50,23 @@ void check_auto_mask(const TypedClean& o) {
 void declare(CLI::App& command, TypedClean& o) {
   std::vector<std::string> deconvolvers = imager::deconvolver_names();
   deconvolvers.emplace_back("mtmfs");
-  command
-      .add_option("--deconvolver", o.deconvolver,
-                  "How components are found: hogbom, clark or multiscale; mtmfs, with --nterms (then 2 where it is not given): "
-                  "multiscale where there are --scales, else hogbom")
-      ->check(CLI::IsMember(deconvolvers));
-  command
-      .add_option("--scales", o.scales,
-                  "Of multiscale, in pixels: 0,5,15. As wide at half maximum as tclean's, 0.74 of the number; 0 = points")
-      ->delimiter(',');
-  command.add_option("--smallscalebias", o.smallscalebias, "The largest scale counts this part less than points");
+  mark(command
+           .add_option(
+               "--deconvolver", o.deconvolver,
+               "How components are found: hogbom, clark or multiscale; mtmfs, with --nterms (then 2 where it is not given): "
+               "multiscale where there are --scales, else hogbom")
+           ->check(CLI::IsMember(deconvolvers)),
+       OptionMark::way_of_clean);
+  mark(command
+           .add_option("--scales", o.scales,
+                       "Of multiscale, in pixels: 0,5,15. As wide at half maximum as tclean's, 0.74 of the number; 0 = points")
+           ->delimiter(','),
+       OptionMark::way_of_clean);
+  mark(command.add_option("--smallscalebias", o.smallscalebias, "The largest scale counts this part less than points"),
+       OptionMark::way_of_clean);
   mark(command.add_option("--niter", o.niter, "CLEAN components to find at most; 0 makes the dirty image"),
        OptionMark::free_of_state);
-  command.add_option("--gain", o.gain, "Part of a peak that a component takes");
+  mark(command.add_option("--gain", o.gain, "Part of a peak that a component takes"), OptionMark::way_of_clean);
   mark(command
            .add_option("--threshold", o.threshold,
                        "Stop when the peak residual reaches this flux density, to 1%; in Jy without a unit")
@@ -70,29 +74,41 @@ void declare(CLI::App& command, TypedClean& o) {
        OptionMark::free_of_state);
   mark(command.add_option("--nsigma", o.nsigma, "Stop when it reaches this many times the noise; 0 = never"),
        OptionMark::free_of_state);
-  command.add_option("--cyclefactor", o.cyclefactor, "Minor cycles go down to the peak times the largest sidelobe times this");
-  command.add_option("--minpsffraction", o.minpsffraction, "… at most this deep, as a part of the peak");
-  command.add_option("--maxpsffraction", o.maxpsffraction, "… and at least this deep");
-  command.add_option("--cycleniter", o.cycleniter, "Components that a minor cycle finds at most; -1 = no limit");
+  mark(command.add_option("--cyclefactor", o.cyclefactor,
+                          "Minor cycles go down to the peak times the largest sidelobe times this"),
+       OptionMark::way_of_clean);
+  mark(command.add_option("--minpsffraction", o.minpsffraction, "… at most this deep, as a part of the peak"),
+       OptionMark::way_of_clean);
+  mark(command.add_option("--maxpsffraction", o.maxpsffraction, "… and at least this deep"), OptionMark::way_of_clean);
+  mark(command.add_option("--cycleniter", o.cycleniter, "Components that a minor cycle finds at most; -1 = no limit"),
+       OptionMark::way_of_clean);
   mark(command.add_option("--nmajor", o.nmajor, "Major cycles at most; -1 = no limit"), OptionMark::free_of_state);
   declare_restoring_beam(command, o.restoringbeam);
-  command
-      .add_option(
-          "--mask", o.mask,
-          "Where CLEAN finds components: a FITS or CASA image, not 0 there, wherever its coordinates have it, or a "
-          "region file of CASA (CRTF), CARTA or DS9, or one region itself, such as 'circle [[100pix, 80pix], 20pix]'; CRTF "
-          "may name planes: corr=[I, Q], range=[3chan, 7chan]")
-      ->type_name(file_type);
-  command
-      .add_option("--usemask", o.usemask, "user: --mask, or everywhere; auto: from the residuals, as tclean's auto-multithresh")
-      ->transform(also_named({{"auto-multithresh", "auto"}}))
-      ->check(CLI::IsMember({"user", "auto"}));
-  command.add_option("--sidelobethreshold", o.sidelobethreshold,
-                     "auto: above this times the largest sidelobe times the peak …");
-  command.add_option("--noisethreshold", o.noisethreshold, "… and above this times the noise");
-  command.add_option("--lownoisethreshold", o.lownoisethreshold, "… grown down to this times the noise");
-  command.add_option("--minbeamfrac", o.minbeamfrac, "… without regions below this part of the beam's area");
-  command.add_option("--growiterations", o.growiterations, "… by this many pixels a major cycle at most");
+  mark(
+      command
+          .add_option(
+              "--mask", o.mask,
+              "Where CLEAN finds components: a FITS or CASA image, not 0 there, wherever its coordinates have it, or a "
+              "region file of CASA (CRTF), CARTA or DS9, or one region itself, such as 'circle [[100pix, 80pix], 20pix]'; CRTF "
+              "may name planes: corr=[I, Q], range=[3chan, 7chan]")
+          ->type_name(file_type),
+      OptionMark::way_of_clean);
+  mark(command
+           .add_option("--usemask", o.usemask,
+                       "user: --mask, or everywhere; auto: from the residuals, as tclean's auto-multithresh")
+           ->transform(also_named({{"auto-multithresh", "auto"}}))
+           ->check(CLI::IsMember({"user", "auto"})),
+       OptionMark::way_of_clean);
+  mark(command.add_option("--sidelobethreshold", o.sidelobethreshold,
+                          "auto: above this times the largest sidelobe times the peak …"),
+       OptionMark::way_of_clean);
+  mark(command.add_option("--noisethreshold", o.noisethreshold, "… and above this times the noise"), OptionMark::way_of_clean);
+  mark(command.add_option("--lownoisethreshold", o.lownoisethreshold, "… grown down to this times the noise"),
+       OptionMark::way_of_clean);
+  mark(command.add_option("--minbeamfrac", o.minbeamfrac, "… without regions below this part of the beam's area"),
+       OptionMark::way_of_clean);
+  mark(command.add_option("--growiterations", o.growiterations, "… by this many pixels a major cycle at most"),
+       OptionMark::way_of_clean);
   command
       .add_option(
           "--startmodel", o.startmodel,

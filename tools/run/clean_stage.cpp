@@ -86,7 +86,13 @@ std::string CleanStage::state_path(std::size_t stokes) const {
 imager::CleanState CleanStage::begin(std::size_t stokes, const CleanStateOwner& owner) {
   std::vector<imager::Component> start;
   if (start_model_) start = start_model_->take(stokes);
-  if (o_.clean.restart && std::filesystem::exists(state_path(stokes))) return read_clean_state(state_path(stokes), owner);
+  words_on_state_.clear();
+  if (o_.clean.restart && std::filesystem::exists(state_path(stokes))) {
+    ReadCleanState read = read_clean_state(state_path(stokes), owner);
+    for (const std::string& name : read.changed) words_on_state_ += (words_on_state_.empty() ? "--" : ", --") + name;
+    if (!read.changed.empty()) words_on_state_ = "CLEAN goes on from its model with another " + words_on_state_;
+    return std::move(read.state);
+  }
   const std::filesystem::path state = state_path(stokes);
   if (o_.cube.is_cube()) std::filesystem::create_directories(state.parent_path());
   imager::ComponentModel model = owner.like;
@@ -95,7 +101,7 @@ imager::CleanState CleanStage::begin(std::size_t stokes, const CleanStateOwner& 
 }
 
 std::uint64_t CleanStage::checksum_of(const CleanScene& scene) const {
-  std::vector<const imager::Image*> images{scene.dirty.front(), scene.psf.front(), mask(scene.imaged.samples.index)};
+  std::vector<const imager::Image*> images{scene.dirty.front(), scene.psf.front()};
   if (start_model_)
     for (const imager::Image* term : start_model_->images(scene.imaged.samples.index)) images.push_back(term);
   images.insert(images.end(), scene.dirty.begin() + 1, scene.dirty.end());
@@ -103,7 +109,7 @@ std::uint64_t CleanStage::checksum_of(const CleanScene& scene) const {
   return checksum(images);
 }
 
-imager::CleanResult CleanStage::run(const CleanScene& scene, const nlohmann::json& option_values,
+imager::CleanResult CleanStage::run(const CleanScene& scene, const StateOptionValues& option_values,
                                     const imager::CycleProgress& cycle_progress, const imager::Context& context) {
   imager::CleanOptions options = clean_options(o_.clean, context.threads);
   options.stop_requested = interrupted;
@@ -114,15 +120,18 @@ imager::CleanResult CleanStage::run(const CleanScene& scene, const nlohmann::jso
     minor = imager::make_deconvolver(deconvolver_choice(o_.clean, context.threads), scene.psf);
   }
   CleanStateOwner owner{MISFIT_VERSION,
-                        option_values,
+                        option_values.owners,
                         0,
                         scene.imaged.samples.source.ranks().size(),
-                        {image_.geometry.width, image_.geometry.height, minor->scale_pixels()}};
+                        {image_.geometry.width, image_.geometry.height, minor->scale_pixels()},
+                        option_values.ways,
+                        0};
   imager::CleanState state;
   double sidelobe = 0;
   {
     const imager::StageTimer timer(context.times, imager::stage::clean_state);
     owner.checksum = checksum_of(scene);
+    owner.ways_checksum = checksum({mask(scene.imaged.samples.index)});
     state = begin(scene.imaged.samples.index, owner);
     sidelobe = imager::largest_sidelobe(*scene.psf.front(), scene.main_lobe, image_.geometry.cell_rad, context.threads);
   }

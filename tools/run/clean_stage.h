@@ -44,11 +44,13 @@ class CleanStage {
   }
   /// What the user should know of the mask's file, and of which band the start model is, a sentence each.
   std::vector<std::string> words_on_files() const;
+  /// Of the last run(): what the user should know of the state that it went on from; mostly empty.
+  const std::string& words_on_state() const { return words_on_state_; }
   /// What the user should know before CLEAN begins, a sentence each; of a cube, the same of all channels of which it is so.
   std::vector<std::string> warnings() const;
 
-  /// `option_values`: those that a saved state belongs to. Throws what imager::clean and read_clean_state do.
-  imager::CleanResult run(const CleanScene& scene, const nlohmann::json& option_values,
+  /// Throws what imager::clean and read_clean_state do.
+  imager::CleanResult run(const CleanScene& scene, const StateOptionValues& option_values,
                           const imager::CycleProgress& cycle_progress, const imager::Context& context);
 
  private:
@@ -61,6 +63,7 @@ class CleanStage {
 
   const ImageOptions& o_;
   imager::ImageHeader image_;
+  std::string words_on_state_;
   int channel_ = -1;                         ///< none yet
   std::unique_ptr<MaskFile> mask_file_;      ///< null without a mask
   std::unique_ptr<StartModel> start_model_;  ///< null without one

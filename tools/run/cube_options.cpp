@@ -18,18 +18,20 @@ namespace misfit::tools {
 namespace {
 
 /// What --start and --chanwidth may be given in.
-enum class SpectralUnit { none, channels, frequency, velocity };
+enum class SpectralUnit { none, channels, window_channels, frequency, velocity };
 
 struct SpectralQuantity {
   SpectralUnit unit = SpectralUnit::none;
-  double value = 0;  ///< channels, Hz or m/s
+  double value = 0;  ///< channels selected, or of the window, Hz or m/s
 };
 
 SpectralQuantity parse(const std::string& option, const std::string& text) {
   if (text.empty()) return {};
   int channels = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), channels);
-  if (error == std::errc() && end == text.data() + text.size()) return {SpectralUnit::channels, 1.0 * channels};
+  const std::string_view rest = error == std::errc() ? std::string_view(end) : "no number";
+  if (rest.empty()) return {SpectralUnit::channels, 1.0 * channels};
+  if (rest == "chan" && option == "start") return {SpectralUnit::window_channels, 1.0 * channels};
   try {
     if (text.ends_with("/s")) return {SpectralUnit::velocity, parse_velocity_m_s(text)};
     if (has_unit(text)) return {SpectralUnit::frequency, parse_frequency_hz(text)};
@@ -109,12 +111,26 @@ class AxisMaker {
     if (start_.unit == SpectralUnit::frequency) return start_.value;
     if (start_.unit == SpectralUnit::velocity) return axis_.rest_frequency_hz * (1 - start_.value / imager::speed_of_light_m_s);
     const bool backwards = axis_.increment_hz * channel_width_hz() < 0;
-    const int channel = start_.unit == SpectralUnit::channels ? static_cast<int>(start_.value) : backwards ? channels - 1 : 0;
+    const int channel = start_.unit == SpectralUnit::channels          ? static_cast<int>(start_.value)
+                        : start_.unit == SpectralUnit::window_channels ? place_of(static_cast<int>(start_.value))
+                        : backwards                                    ? channels - 1
+                                                                       : 0;
     if (channel < 0 || channel >= channels)
       refuse_option("start", o_.start, "0 to " + std::to_string(channels - 1) + ", a channel of the first window selected");
     const double hz = first_.frequency_hz[static_cast<std::size_t>(channel)];
     // The first plane begins where the first channel does.
     return hz + 0.5 * (axis_.increment_hz - std::copysign(std::abs(channel_width_hz()), axis_.increment_hz));
+  }
+
+  /// Of a channel of the window among those that are selected.
+  int place_of(int channel) const {
+    const auto found = std::find(first_.channel.begin(), first_.channel.end(), channel);
+    if (found == first_.channel.end())
+      refuse_option("start", o_.start,
+                    "a channel that is selected of window " + std::to_string(first_.id) + ", which begin with " +
+                        std::to_string(first_.channel.front()) + "chan and end with " + std::to_string(first_.channel.back()) +
+                        "chan");
+    return static_cast<int>(found - first_.channel.begin());
   }
 
   /// So many that the last one holds the middle of the last data, or reaches half-way into them.
@@ -157,7 +173,8 @@ void declare(CLI::App& command, CubeOptions& o) {
       ->check(CLI::IsMember({"mfs", "cube"}));
   command.add_option("--nchan", o.nchan, "Planes of a cube; -1 = to the end of the data");
   command.add_option("--start", o.start,
-                     "The first plane: a channel of those selected in the first window, a frequency such as 1.4GHz, or a "
+                     "The first plane: a channel of those selected in the first window, such as 3, or of all of it, 3chan; a "
+                     "frequency such as 1.4GHz, or a "
                      "radio velocity such as 20km/s, in --outframe; the first channel when empty");
   command.add_option("--chanwidth,--width", o.chanwidth,
                      "From plane to plane: channels, a frequency or a velocity, negative to go down; one channel when empty");

@@ -17,7 +17,7 @@ namespace misfit::tools {
 struct CubeOptions {
   std::string specmode = "mfs";
   int nchan = -1;                        ///< planes; −1 = to the end of the data
-  std::string start;                     ///< a channel, "1.4GHz" or "20km/s"; empty = the first channel
+  std::string start;                     ///< a channel, "3chan", "1.4GHz" or "20km/s"; empty = the first channel
   std::string chanwidth;                 ///< channels, "1MHz" or "2km/s"; empty = one channel
   std::string outframe = "LSRK";         ///< as ms_io::parse_spectral_frame() takes it
   std::string restfreq;                  ///< of the line, for velocities; empty = none
@@ -33,10 +33,10 @@ void declare(CLI::App& command, CubeOptions& options);
 void check(const CubeOptions& options);
 
 /// The planes, of data with these windows in the frame of --outframe. Channels count from 0 among those selected of the first
-/// window, whose width and direction are one channel's. Velocities are radio's, c (1 − f/f_rest). Where --start is a velocity,
-/// planes go up in velocity; where it is a frequency, up in frequency; else as channels do; a negative --chanwidth turns them
-/// about. Throws std::invalid_argument where no plane holds data or a frequency is not positive, std::runtime_error where
-/// channels have no width.
+/// window, or, "3chan", among all of it, whose width and direction are one channel's. Velocities are radio's, c (1 − f/f_rest).
+/// Where --start is a velocity, planes go up in velocity; where it is a frequency, up in frequency; else as channels do; a
+/// negative --chanwidth turns them about. Throws std::invalid_argument where no plane holds data or a frequency is not
+/// positive, std::runtime_error where channels have no width.
 imager::CubeSampling cube_sampling(const CubeOptions& options, const std::vector<ms_io::SpectralWindow>& windows);
 
 /// Which windows have no channel in a plane, and are left out; empty where all have. Throws std::invalid_argument where none

@@ -119,6 +119,11 @@ void declare(CLI::App& command, ImageOptions& o) {
   declare(command, o.taylor);
   declare(command, o.clean);
   declare(command, o.primary_beam);
+  mark(command.add_flag(
+           "--sumwt", o.sumwt,
+           "Write .sumwt too, an image of one pixel: the sum of the weights of each plane, as tclean does; of natural weights "
+           "noise is 1/sqrt of it"),
+       OptionMark::free_of_state);
   mark(command.add_option(
            "--verify", o.verify,
            "Compare this many random pixels, or all of a smaller image, and visibilities with the direct transform"),
@@ -162,10 +167,15 @@ nlohmann::json option_values(const CLI::App& command) {
   return values;
 }
 
-nlohmann::json state_option_values(const CLI::App& command) {
-  nlohmann::json values = option_values(command);
-  for (const CLI::Option* option : command.get_options())
-    if (!option->get_lnames().empty() && has(*option, OptionMark::free_of_state)) values.erase(option->get_lnames().front());
+StateOptionValues state_option_values(const CLI::App& command) {
+  StateOptionValues values{option_values(command), nlohmann::json::object()};
+  for (const CLI::Option* option : command.get_options()) {
+    if (option->get_lnames().empty()) continue;
+    const std::string& name = option->get_lnames().front();
+    const bool way = has(*option, OptionMark::way_of_clean);
+    if (way) values.ways[name] = values.owners.at(name);
+    if (way || has(*option, OptionMark::free_of_state)) values.owners.erase(name);
+  }
   return values;
 }
 

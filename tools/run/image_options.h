@@ -1,6 +1,6 @@
 #pragma once
 
-#include <nlohmann/json_fwd.hpp>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
@@ -37,6 +37,7 @@ struct ImageOptions {
   TypedClean clean;
   TypedPrimaryBeam primary_beam;
   bool force_average = false;
+  bool sumwt = false;
   int verify = 0;
   bool check_outside = false;
   int threads = 0;
@@ -67,7 +68,11 @@ imager::ImageGeometry geometry_of(const ImageOptions& options, const imager::Sky
 
 /// Every option of `command` with the value in force: {name: value}.
 nlohmann::json option_values(const CLI::App& command);
-/// Those of them that a state of CLEAN belongs to, see OptionMark.
-nlohmann::json state_option_values(const CLI::App& command);
+/// Those of them that matter to states of CLEAN, see OptionMark.
+struct StateOptionValues {
+  nlohmann::json owners;  ///< that a state belongs to
+  nlohmann::json ways;    ///< by which CLEAN goes on
+};
+StateOptionValues state_option_values(const CLI::App& command);
 
 }  // namespace misfit::tools

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <atomic>
-#include <cstdio>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -60,23 +59,20 @@ class ImageRun : private ChannelSink {
     report_.channels.clear();
   }
 
-  /// Whether all was done, and the user did not stop it.
-  bool run() {
+  Outcome run() {
     try {
-      return take_steps();
+      take_steps();
+      return std::move(outcome_);
     } catch (const std::runtime_error&) {
       rethrow_with_changed_files(ranks_.first() ? set_.get() : nullptr);
     }
   }
 
  private:
-  bool take_steps() {
+  void take_steps() {
     open();
     plan();
-    if (o_.dry_run) {
-      if (!o_.quiet && ranks_.first()) print_plan(plan_, expected());
-      return true;
-    }
+    if (o_.dry_run) return tell_plan();
     begin_channels();
     if (cube() && !o_.cube.perchanweightdensity) weigh_in_common();
     make_channels();
@@ -88,10 +84,17 @@ class ImageRun : private ChannelSink {
       write_report();
     }
     if (o_.clean.savemodel == "modelcolumn") save_model();
-    if (ranks_.first() && !o_.quiet) std::printf("%s%s.report.html\n", summary(report_).c_str(), o_.imagename.c_str());
-    bool done = !queue_->stopped();
-    imager::share_values(ranks_, done);
-    return done;
+    outcome_.words = summary(report_) + o_.imagename + ".report.html\n";
+    outcome_.complete = !queue_->stopped();
+    imager::share_values(ranks_, outcome_.complete);
+  }
+
+  void tell_plan() {
+    const std::vector<StageSeconds> seconds = expected();
+    outcome_.words = plan_text(plan_, seconds);
+    report_.plan.insert(report_.plan.end(), plan_.gridding.decisions.begin(), plan_.gridding.decisions.end());
+    report_.expected = seconds;
+    outcome_.report = plan_json(report_);
   }
 
   void warn(const std::string& sentence) {
@@ -121,15 +124,24 @@ class ImageRun : private ChannelSink {
                .history = {}};
     notes_ = notes_on_sets(o_, *set_, header_.geometry);
     for (const std::string& warning : notes_.warnings) warn(warning);
-    if (o_.primary_beam.wanted())
-      primary_beam_ = std::make_unique<PrimaryBeamStage>(
-          o_.primary_beam, BeamScene{set_->beam_rows(), header_.geometry, set_->observation().frequency_hz},
-          std::max(1, threads_ / sharing_.channels_here(channels())));
+    if (o_.primary_beam.wanted()) find_primary_beam();
     if (o_.clean.niter > 0 && sharing_.images_here()) open_clean();
     header_.history = history_of(report_.command_line, set_->data_columns());
     if (o_.taylor.nterms > 1) header_.observation.frequency_hz = taylor_expansion(o_.taylor, set_->observation()).reference_hz;
     if (!cube()) header_.spectral = imager::whole_band(header_.observation);
     find_reach();
+  }
+
+  void find_primary_beam() {
+    try {
+      primary_beam_ = std::make_unique<PrimaryBeamStage>(
+          o_.primary_beam, BeamScene{set_->beam_rows(), header_.geometry, set_->observation().frequency_hz},
+          std::max(1, threads_ / sharing_.channels_here(channels())));
+    } catch (const std::runtime_error& error) {
+      if (o_.primary_beam.required()) throw;
+      warn(std::string("no .pb is written: ") + error.what());
+      o_.primary_beam = {};
+    }
   }
 
   /// What is wrong with masks and models is said at once.
@@ -494,9 +506,9 @@ class ImageRun : private ChannelSink {
     const auto made_twice = [](const ChannelReport& channel) { return channel.made_twice; };
     if (std::none_of(report_.channels.begin(), report_.channels.end(), made_twice)) forecast_.learn(work_, times_);
     report_.wall_clock_s = watch_.seconds();
-    const nlohmann::json json = report_json(report_);
-    write_file(o_.imagename + ".report.json", json_text(json, 2) + "\n");
-    write_file(o_.imagename + ".report.html", report_page(json, pictures, drawings));
+    outcome_.report = report_json(report_);
+    write_file(o_.imagename + ".report.json", json_text(outcome_.report, 2) + "\n");
+    write_file(o_.imagename + ".report.html", report_page(outcome_.report, pictures, drawings));
   }
 
   /// The channel of a cube that its report shows, from files.
@@ -531,7 +543,7 @@ class ImageRun : private ChannelSink {
     progress_.end();
   }
 
-  const ImageOptions& o_;
+  ImageOptions o_;  ///< less a primary beam that the antennas do not have
   const RunCall& call_;
   const imager::Ranks& ranks_;
   Sharing sharing_;
@@ -544,6 +556,7 @@ class ImageRun : private ChannelSink {
   std::mutex times_mutex_;  ///< of times_, while channels of other ranks come in
   ToldAsItGoes told_{progress_, times_, [this](const std::string& sentence) { warn(sentence); }};
   RunReport report_;
+  Outcome outcome_;
   TimeForecast forecast_{default_cache_folder()};
   RunWork work_;
 
@@ -572,7 +585,7 @@ class ImageRun : private ChannelSink {
 
 }  // namespace
 
-bool run_image(const ImageOptions& options, const RunCall& call, const imager::Ranks& ranks) {
+Outcome run_image(const ImageOptions& options, const RunCall& call, const imager::Ranks& ranks) {
   return ImageRun(options, call, ranks).run();
 }
 

@@ -10,9 +10,11 @@ namespace misfit::tools {
 struct TypedPrimaryBeam {
   bool pbcor = false;
   double pblimit = 0;  ///< 0: not given; its sign makes no difference
+  bool pb = false;     ///< .pb is wanted where antennas have a simple beam
 
-  /// Whether one is wanted: with --pbcor or --pblimit.
-  bool wanted() const { return pbcor || pblimit != 0; }
+  bool wanted() const { return pb || required(); }
+  /// Whether a run without it is of no use: with --pbcor or --pblimit, but for --pb.
+  bool required() const { return pbcor || (pblimit != 0 && !pb); }
   /// The value below which images have no values.
   double limit() const;
 };

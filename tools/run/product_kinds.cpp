@@ -34,7 +34,8 @@ ProductChoice ProductChoice::of(const ImageOptions& o) {
           .cleaned = o.clean.niter > 0,
           .masked = o.clean.niter > 0 && (o.clean.usemask == "auto" || !o.clean.mask.empty()),
           .primary_beam = o.primary_beam.wanted(),
-          .corrected = o.primary_beam.pbcor};
+          .corrected = o.primary_beam.pbcor,
+          .weights = o.sumwt};
 }
 
 std::string product_name(const std::string& kind, const imager::TaylorTerm& term, const std::string& end) {
@@ -48,6 +49,7 @@ std::vector<ProductKind> product_kinds(const ProductChoice& choice) {
   add(kinds, {.name = "residual"}, n, n);
   if (choice.primary_beam) add(kinds, {.name = "pb", .unit = "", .each_stokes = false, .beam = false}, n, n);
   if (choice.corrected) add(kinds, {.name = "image", .restored = true}, n, n, ".pbcor");
+  if (choice.weights) add(kinds, {.name = "sumwt", .unit = "", .beam = false, .one_pixel = true}, 1, n);
   if (!choice.cleaned) return kinds;
   add(kinds, {.name = "model", .unit = "Jy/pixel", .beam = false}, n, n);
   add(kinds, {.name = "image", .restored = true}, n, n);
@@ -64,7 +66,7 @@ std::vector<std::string> product_names(const ProductChoice& choice) {
 }
 
 std::vector<std::string> all_product_names() {
-  ProductChoice choice{.cleaned = true, .masked = true, .primary_beam = true, .corrected = true};
+  ProductChoice choice{.cleaned = true, .masked = true, .primary_beam = true, .corrected = true, .weights = true};
   std::vector<std::string> names = product_names(choice);
   choice.terms = imager::most_taylor_terms;
   for (const std::string& name : product_names(choice))

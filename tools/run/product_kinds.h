@@ -15,6 +15,7 @@ struct ProductChoice {
   bool masked = false;
   bool primary_beam = false;
   bool corrected = false;  ///< for it
+  bool weights = false;    ///< sums of them
 
   static ProductChoice of(const ImageOptions& options);
 };
@@ -25,6 +26,7 @@ struct ProductKind {
   std::string unit = "Jy/beam";
   bool each_stokes = true;  ///< or one for all
   bool beam = true;         ///< whether its pixels are seen with the restoring beam
+  bool one_pixel = false;   ///< or all of the image's
   bool restored = false;    ///< made with it: it waits for a beam that is common to all channels
   imager::TaylorTerm term{};
   std::string quantity = imager::ImageHeader().quantity;

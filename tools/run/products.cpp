@@ -122,6 +122,7 @@ Products::Products(const ImageOptions& options, const imager::ImageHeader& heade
     own.quantity = kind.quantity;
     own.taylor = kind.term;
     if (!kind.each_stokes) own.stokes.resize(1);
+    if (kind.one_pixel) own.geometry.width = own.geometry.height = 1;
     paths_.insert(paths_.end(), paths.begin(), paths.end());
     files_.emplace(kind.name, File{kind, open(kind, own), {}});
   }
@@ -221,6 +222,9 @@ void Products::write_stokes(std::size_t stokes, const OfBeam& primary_beam, Chan
   if (pictures != nullptr && result != nullptr) pictures->draw(stokes, *result, restored);
   const imager::StageTimer timer(times, imager::stage::write_images);
   const imager::PlaneIndex at{run.report().channel, static_cast<int>(stokes)};
+  imager::Image weight(1, 1);
+  weight.pixel.front() = 4 * run.images().images.sums[stokes].weight;  // w is 1/(4 σ²), see VisibilityBlock::weight
+  put_terms("sumwt", at, {&weight}, {});
   std::vector<imager::Image> principal;  // of terms that are not cleaned
   std::vector<const imager::Image*> shown{&residual};
   if (result != nullptr) {

@@ -265,13 +265,16 @@ std::vector<StageSeconds> expected_seconds(const RunPlan& plan, const TimeForeca
   return stages;
 }
 
-void print_plan(const RunPlan& plan, const std::vector<StageSeconds>& expected) {
+std::string plan_text(const RunPlan& plan, const std::vector<StageSeconds>& expected) {
+  std::string text;
   for (const imager::Plan* decisions : {&plan.decisions, &plan.gridding.decisions})
-    for (const imager::Decision& d : *decisions)
-      std::printf("%s\n", legible(d.item + ": " + d.decision + "; " + d.because).c_str());
-  for (const StageSeconds& s : expected) std::printf("expected: %-16s %s\n", s.stage.c_str(), duration(s.seconds).c_str());
-  std::printf("expected: %-16s %s\n", "total", duration(total_seconds(expected)).c_str());
-  std::printf("%s%s", memory_table(plan.memory).c_str(), plan.scale.c_str());
+    for (const imager::Decision& d : *decisions) text += legible(d.item + ": " + d.decision + "; " + d.because) + "\n";
+  const auto line = [](std::string stage, double seconds) {
+    stage.resize(std::max<std::size_t>(stage.size(), 16), ' ');
+    return "expected: " + stage + " " + duration(seconds) + "\n";
+  };
+  for (const StageSeconds& s : expected) text += line(s.stage, s.seconds);
+  return text + line("total", total_seconds(expected)) + memory_table(plan.memory) + plan.scale;
 }
 
 }  // namespace misfit::tools

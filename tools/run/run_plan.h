@@ -62,7 +62,7 @@ RunWork work_of(const RunScene& scene, const RunPlan& plan);
 /// The seconds of all stages: those of `plan.spent`, and those expected of `work`.
 std::vector<StageSeconds> expected_seconds(const RunPlan& plan, const TimeForecast& forecast, const RunWork& work);
 
-/// Prints every decision, the seconds expected and the memory, a line each; and what --nodes asks for.
-void print_plan(const RunPlan& plan, const std::vector<StageSeconds>& expected);
+/// Every decision, the seconds expected and the memory, a line each; and what --nodes asks for.
+std::string plan_text(const RunPlan& plan, const std::vector<StageSeconds>& expected);
 
 }  // namespace misfit::tools

@@ -199,33 +199,38 @@ double largest_expected_error(const RunReport& r) {
   return largest;
 }
 
-json report_json(const RunReport& r) {
-  const ChannelReport& plane = r.channels[r.shown];
-  const StokesReport& first = plane.stokes.front();
+json plan_json(const RunReport& r) {
   return {{"version", MISFIT_VERSION},
           {"command_line", r.command_line},
           {"options", r.options},
           {"plan", plan_json(r.plan)},
           {"warnings", r.warnings},
-          {"kernel", kernel_json(r.gridding)},
-          {"error", error_json(r.accuracy, plane, first)},
-          {"noise", noise_json(plane, first)},
-          {"visibilities", counts_json(r.counts)},
-          {"timings_s", timings_json(r)},
           {"timings_expected_s", expected_json(r.expected)},
-          {"memory_gib_peak", peak_memory_bytes() / gib},
-          {"memory_gib_estimated", r.estimated_memory_bytes / gib},
-          {"beam", restoring_json(plane.beams)},
-          {"beam_by_quadrant", plane.beams ? beam_json(plane.beams->quadrant) : json()},
-          {"clean", clean_json(first.clean)},
-          {"residual_histogram", histogram_json(first.histogram)},
-          {"stokes", stokes_json(r.accuracy, plane)},
-          {"spectral_axis", spectral_json(r.cube)},
-          {"planes", r.cube ? planes_json(r) : json()},
-          {"plane_samples", r.cube ? json(r.channel_samples) : json()},
-          {"samples_outside_planes", r.cube ? json(r.outside_channels) : json()},
-          {"outside", outside_json(r.outside)},
-          {"outside_search", outside_search_json(r.outside)}};
+          {"memory_gib_estimated", r.estimated_memory_bytes / gib}};
+}
+
+json report_json(const RunReport& r) {
+  const ChannelReport& plane = r.channels[r.shown];
+  const StokesReport& first = plane.stokes.front();
+  json report = plan_json(r);
+  report.update(json{{"kernel", kernel_json(r.gridding)},
+                     {"error", error_json(r.accuracy, plane, first)},
+                     {"noise", noise_json(plane, first)},
+                     {"visibilities", counts_json(r.counts)},
+                     {"timings_s", timings_json(r)},
+                     {"memory_gib_peak", peak_memory_bytes() / gib},
+                     {"beam", restoring_json(plane.beams)},
+                     {"beam_by_quadrant", plane.beams ? beam_json(plane.beams->quadrant) : json()},
+                     {"clean", clean_json(first.clean)},
+                     {"residual_histogram", histogram_json(first.histogram)},
+                     {"stokes", stokes_json(r.accuracy, plane)},
+                     {"spectral_axis", spectral_json(r.cube)},
+                     {"planes", r.cube ? planes_json(r) : json()},
+                     {"plane_samples", r.cube ? json(r.channel_samples) : json()},
+                     {"samples_outside_planes", r.cube ? json(r.outside_channels) : json()},
+                     {"outside", outside_json(r.outside)},
+                     {"outside_search", outside_search_json(r.outside)}});
+  return report;
 }
 
 }  // namespace misfit::tools

@@ -80,5 +80,8 @@ double largest_expected_error(const RunReport& report);
 /// stage together over the number of planes made at a time, so that the stages add up to the run's wall clock, as far as all
 /// were busy.
 nlohmann::json report_json(const RunReport& report);
+/// What of it is known before the run: version, command_line, options, plan, warnings, timings_expected_s,
+/// memory_gib_estimated.
+nlohmann::json plan_json(const RunReport& report);
 
 }  // namespace misfit::tools

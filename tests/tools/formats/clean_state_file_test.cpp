@@ -58,7 +58,7 @@ BOOST_AUTO_TEST_CASE(spectra_come_back_bit_for_bit) {
   imager::CleanState was = some_state();
   was.model.add({{0, 1, 1, 0, {-0.7, 1.0 / 3}}, {1, 2, 3, 2, {0.1, 0}}});
   write_clean_state(folder / "a.state", was, owner());
-  const imager::CleanState is = read_clean_state(folder / "a.state", owner());
+  const imager::CleanState is = read_clean_state(folder / "a.state", owner()).state;
   for (const int term : {0, 1, 2}) BOOST_TEST((is.model.image(1, term).pixel == was.model.image(1, term).pixel));
   BOOST_TEST(same(is.best_model, was.best_model));
 }
@@ -67,7 +67,7 @@ BOOST_AUTO_TEST_CASE(a_state_comes_back_bit_for_bit) {
   const misfit::testing::TemporaryFolder folder;
   const imager::CleanState was = some_state();
   write_clean_state(folder / "a.state", was, owner());
-  const imager::CleanState is = read_clean_state(folder / "a.state", owner());
+  const imager::CleanState is = read_clean_state(folder / "a.state", owner()).state;
   BOOST_TEST(same(is.model, was.model));
   BOOST_TEST(same(is.best_model, was.best_model));
   BOOST_TEST((is.mask.width == 7 && is.mask.pixel == was.mask.pixel));
@@ -139,6 +139,32 @@ BOOST_AUTO_TEST_CASE(numbers_may_be_written_differently) {
   CleanStateOwner other = owner();
   other.options["gain"] = "1e-1";
   BOOST_TEST(refusal([&] { read_clean_state(folder / "a.state", other); }) == "");
+}
+
+BOOST_AUTO_TEST_CASE(with_other_ways_there_is_the_model_to_go_on_from) {
+  const misfit::testing::TemporaryFolder folder;
+  CleanStateOwner was = owner();
+  was.ways = {{"cyclefactor", "1"}, {"scales", "0 5"}};
+  was.ways_checksum = 5;
+  const imager::CleanState state = some_state();
+  write_clean_state(folder / "a.state", state, was);
+  BOOST_TEST(read_clean_state(folder / "a.state", was).changed.empty());
+  CleanStateOwner other = was;
+  other.ways["cyclefactor"] = "2";
+  other.like = {7, 5, {0, 2.5, 3.7}};  // among them the same scales
+  const ReadCleanState read = read_clean_state(folder / "a.state", other);
+  BOOST_TEST(read.changed == std::vector<std::string>{"cyclefactor"}, boost::test_tools::per_element());
+  BOOST_TEST(read.state.cycles.empty());
+  BOOST_TEST(read.state.iterations == 10);
+  BOOST_TEST((read.state.model.image(1).pixel == state.model.image(1).pixel));
+  BOOST_TEST((read.state.best_model.image(1).pixel == state.model.image(1).pixel));
+  other = was;
+  other.ways_checksum = 6;  // of a mask whose file is another
+  BOOST_TEST(read_clean_state(folder / "a.state", other).changed == std::vector<std::string>{"mask"},
+             boost::test_tools::per_element());
+  other.like = {7, 5, {0}};
+  BOOST_TEST(refusal([&] { read_clean_state(folder / "a.state", other); }).find("has components of scale") !=
+             std::string::npos);
 }
 
 BOOST_AUTO_TEST_CASE(the_checksum_notices_every_pixel) {

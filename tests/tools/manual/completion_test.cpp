@@ -26,7 +26,7 @@ using Words = std::set<std::string>;
 /// those of `folder`.
 Words offered(const std::vector<std::string>& line, const std::string& folder) {
   const misfit::testing::TemporaryFolder work;
-  write_file(work / "completion", bash_completion(facts_of(*make_program(""))));
+  write_file(work / "completion", bash_completion(facts_of(*make_program({}))));
   std::string words;
   for (const std::string& word : line) words += ' ' + shell_quoted(word);
   const std::string script = ". ./completion; cd " + shell_quoted(folder) + "; COMP_WORDS=(misfit" + words +
@@ -105,7 +105,7 @@ BOOST_AUTO_TEST_CASE(paths_are_completed_where_an_option_takes_one) {
 
 BOOST_AUTO_TEST_CASE(options_that_speak_of_files_take_paths) {
   const std::regex speaks("(^|[^a-z])(file|folder|measurementset)s?($|[^a-z])", std::regex::icase);
-  for (const OptionFacts& option : options_below(facts_of(*make_program("")))) {
+  for (const OptionFacts& option : options_below(facts_of(*make_program({})))) {
     const bool other = option.most == 0 || (!option.choices.empty() && !option.others);
     if (other || !std::regex_search(option.description, speaks)) continue;
     BOOST_TEST((option.takes_file() || option.takes_folder()), option.names.back() << ": " << option.description);

@@ -178,8 +178,11 @@ BOOST_AUTO_TEST_CASE(states_belong_to_options_that_reach_clean) {
   ImageOptions options;
   declare(app, options);
   app.parse("--vis a.ms --imagename a --imsize 64 32 --cell 1arcsec --niter 7");
-  const nlohmann::json values = state_option_values(app);
-  for (const char* name : {"vis", "imsize", "gain", "mask", "deconvolver", "stokes"}) BOOST_TEST(values.contains(name), name);
+  const auto [values, ways] = state_option_values(app);
+  for (const char* name : {"vis", "imsize", "nterms", "weighting", "stokes"}) BOOST_TEST(values.contains(name), name);
+  for (const char* name : {"gain", "mask", "usemask", "deconvolver", "scales", "cyclefactor"})
+    BOOST_TEST((ways.contains(name) && !values.contains(name)), name);
+  BOOST_TEST(ways.size() == 15U);
   for (const char* name : {"niter", "threshold", "nsigma", "nmajor", "savemodel", "restoringbeam", "verify", "threads",
                            "memory", "quiet", "outformat", "restart", "imagename", "pbcor", "pblimit", "kernel-folder"})
     BOOST_TEST(!values.contains(name), name);

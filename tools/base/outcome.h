@@ -1,0 +1,18 @@
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+
+namespace misfit::tools {
+
+/// What came of a command, for whoever called it, at the first rank.
+struct Outcome {
+  bool complete = true;   ///< at all ranks: all was done, and the user did not stop it
+  nlohmann::json report;  ///< null where there is none
+  std::string words;      ///< for people, whole lines
+};
+
+/// Where outcomes go: to the caller, or, null, their words on standard output unless they are to be quiet.
+void conclude(Outcome&& outcome, bool quiet, Outcome* caller);
+
+}  // namespace misfit::tools
