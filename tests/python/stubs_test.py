@@ -38,6 +38,10 @@ back: npt.NDArray[np.complex128] = misfit.dirty2vis(
 cleaned: misfit.CleanResult = misfit.clean(
     uvw=uvw, freq=freq, vis=vis, npix_x=8, npix_y=8, pixsize_x=1e-5, pixsize_y=1e-5, scales=[0, 5])
 beam: tuple[float, float, float] = cleaned.beam
+summary: dict[str, object] = misfit.tclean(
+    ["a.ms", pathlib.Path("b.ms")], spw=["0", "1:3~5"], imagename="a", imsize=[64, 64], cell=["1arcsec"], start=3, dryrun=True)
+written: dict[str, object] = misfit.predict("a.ms", model=pathlib.Path("a.model"))
+written = misfit.subtract("a.ms", components="a.csv", column="DATA")
 """
 
 

@@ -1,5 +1,5 @@
 """
-Gridding functions, transforms and CLEAN of the imager misfit, for numpy arrays.
+The imager misfit: tclean() and others for MeasurementSets; gridding functions, transforms and CLEAN for numpy arrays.
 
 help() of each name says more; tutorial.py, among the sources and in share/doc/misfit, shows them at work.
 """
@@ -7,6 +7,8 @@ help() of each name says more; tutorial.py, among the sources and in share/doc/m
 from ._clean import CleanResult, clean
 from ._kernels import kernel, kernel_names, read_kernel
 from ._misfit import Kernel, __version__
+from ._predict import predict, subtract
+from ._tclean import tclean
 from ._transforms import AccuracyWarning, dirty2vis, vis2dirty
 
 __all__ = [
@@ -18,6 +20,9 @@ __all__ = [
     "dirty2vis",
     "kernel",
     "kernel_names",
+    "predict",
     "read_kernel",
+    "subtract",
+    "tclean",
     "vis2dirty",
 ]

@@ -1,0 +1,316 @@
+"""misfit.tclean: what is called is what the program makes, and what is returned is what tclean returns."""
+
+import contextlib
+import io
+import json
+import logging
+import os
+import signal
+import subprocess
+import sys
+import tempfile
+import threading
+import time
+import unittest
+from pathlib import Path
+
+import numpy as np
+
+import misfit
+
+try:
+    from astropy.io import fits
+except ImportError:
+    fits = None
+
+PROGRAM = os.environ.get("MISFIT_PROGRAM", "misfit")
+CALLS = Path(os.environ.get("MISFIT_TEST_DATA") or Path(__file__).parents[3] / "shared" / "data", "tclean_calls.json")
+RETURNED = {"cleanstate", "cyclefactor", "cycleiterdone", "cycleniter", "cyclethreshold", "interactiveiterdone",
+            "interactivemode", "interactiveniter", "interactivethreshold", "iterdone", "loopgain", "maxpsffraction",
+            "maxpsfsidelobe", "minpsffraction", "niter", "nmajordone", "nsigma", "stopcode", "stopDescription",
+            "summarymajor", "summaryminor", "threshold", "misfit"}
+
+
+def run(*arguments):
+    return subprocess.run([PROGRAM, *map(str, arguments)], check=True, capture_output=True, text=True)
+
+
+class Sets(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        folder = tempfile.TemporaryDirectory()
+        cls.addClassCleanup(folder.cleanup)
+        cls.folder = Path(folder.name)
+        cls.sets = [str(cls.folder / name) for name in ("a.ms", "b.ms")]
+        for path, frequency in zip(cls.sets, ("4GHz", "4.02GHz")):
+            run("simulate", "--output", path, "--frequency", frequency, "--channels", 4, "--channel-width", "1MHz", "--noise",
+                "10mJy", "--hours", 0.1, "--quiet")
+
+    def name(self, name):
+        return str(self.folder / name)
+
+    def tclean(self, name, **parameters):
+        given = dict(vis=self.sets[0], imagename=self.name(name), imsize=64, cell="0.2arcsec")
+        return misfit.tclean(**{**given, **parameters})
+
+    def refusal(self, error=ValueError, **parameters):
+        with self.assertRaises(error) as refused:
+            self.tclean("refused", **parameters)
+        return str(refused.exception)
+
+    def files(self, name):
+        return {path.name[len(name):] for path in self.folder.glob(name + ".*")}
+
+
+class Program(Sets):
+    """It is the program that runs."""
+
+    @unittest.skipIf(fits is None, "there is no python3-astropy")
+    def test_bits_are_those_of_the_program(self):
+        clean = dict(niter=50, gain=0.2, threshold="1mJy")
+        options = ["--niter", 50, "--gain", 0.2, "--threshold", "1mJy", "--imsize", 64, 48, "--cell", "0.2arcsec"]
+        cases = {
+            "mfs": (dict(vis=self.sets, spw=["0:1~2", "0"], weighting="briggs", robust=-0.5),
+                    ["--vis", *self.sets, "--spw", "0:1~2", "0", "--weighting", "briggs", "--robust", -0.5, "--gridder",
+                     "standard"]),
+            "cube": (dict(specmode="cube", start=2, nchan=2, restoringbeam="common", gridder="wproject"),
+                     ["--vis", self.sets[0], "--specmode", "cube", "--start", "2", "--nchan", 2, "--restoringbeam", "common",
+                      "--gridder", "wide"]),
+            "terms": (dict(deconvolver="mtmfs", scales=[0, 5], stokes="I"),
+                      ["--vis", self.sets[0], "--nterms", 2, "--deconvolver", "multiscale", "--scales", "0,5", "--gridder",
+                       "standard"]),
+        }
+        for name, (parameters, words) in cases.items():
+            with self.subTest(name):
+                self.tclean(name, imsize=[64, 48], outformat="fits", **clean, **parameters)
+                run("image", "--imagename", self.name("p" + name), *options, *words, "--quiet")
+                end = ".tt0" if name == "terms" else ""
+                for kind in ("psf", "residual", "model", "image"):
+                    ours, programs = (fits.getdata(self.name(f"{which}.{kind}{end}.fits")) for which in (name, "p" + name))
+                    np.testing.assert_array_equal(ours, programs, kind)
+
+    def test_images_have_the_names_of_tclean(self):
+        self.tclean("names", niter=5, pbcor=True, mask="circle[[32pix,32pix],20pix]")
+        wanted = {".psf", ".residual", ".model", ".image", ".mask", ".pb", ".image.pbcor", ".sumwt"}
+        self.assertLessEqual(wanted, self.files("names"))
+        self.assertFalse({name for name in self.files("names") if name.endswith(".fits")})
+        self.tclean("ofterms", niter=5, deconvolver="mtmfs")
+        self.assertLessEqual({".psf.tt2", ".residual.tt1", ".model.tt0", ".image.tt1", ".alpha", ".sumwt.tt0", ".pb.tt0"},
+                             self.files("ofterms"))
+
+    @unittest.skipIf(fits is None, "there is no python3-astropy")
+    def test_sums_of_weights_are_those_of_the_samples(self):
+        report = self.tclean("sums", specmode="cube", outformat="fits", imsize=32)["misfit"]
+        sums = fits.getdata(self.name("sums.sumwt.fits"))
+        self.assertEqual(sums.shape, (1, 4, 1, 1))
+        # Of natural weights noise is 1/√Σw.
+        np.testing.assert_allclose(sums.ravel(), [plane["noise"]["predicted_jy"] ** -2 for plane in report["planes"]], rtol=1e-6)
+
+    def test_what_it_says_goes_to_the_logger(self):
+        with self.assertLogs("misfit", logging.INFO) as said:
+            self.tclean("said", cell="1arcsec", parallel=True, wprojplanes=128)
+        self.assertTrue(any("lie beyond 1/(2 cell)" in line for line in said.output if line.startswith("WARNING")))
+        self.assertTrue(any("wprojplanes=128 changes nothing" in line for line in said.output))
+        with self.assertLogs("misfit", logging.INFO) as said:
+            self.tclean("said", wprojplanes=128)
+        self.assertFalse(any("wprojplanes" in line for line in said.output))  # said once
+
+    def test_other_threads_run_meanwhile_and_calls_wait_for_each_other(self):
+        counted = []
+        done = threading.Event()
+
+        def count():
+            while not done.is_set():
+                counted.append(time.monotonic())
+                time.sleep(0.001)
+
+        threads = [threading.Thread(target=self.tclean, args=(f"thread{i}",), kwargs=dict(niter=20)) for i in range(2)]
+        counter = threading.Thread(target=count)
+        for thread in (counter, *threads):
+            thread.start()
+        for thread in threads:
+            thread.join()
+        done.set()
+        counter.join()
+        self.assertGreater(len(counted), 20)
+        self.assertLessEqual({".image"}, self.files("thread0") & self.files("thread1"))
+
+    def test_a_dry_run_returns_the_plan_and_writes_nothing(self):
+        plan = self.tclean("dry", niter=10, dryrun=True)
+        self.assertIn("kernel width", [decision["item"] for decision in plan["plan"]])
+        self.assertGreater(plan["timings_expected_s"]["total"], 0)
+        self.assertFalse(self.files("dry"))
+
+    def test_ctrl_c_ends_clean_with_its_images_and_python_goes_on(self):
+        code = """
+import misfit, sys
+try:
+    misfit.tclean(sys.argv[1], imagename=sys.argv[2], imsize=512, cell="0.02arcsec", niter=100000000, gain=1e-5, cycleniter=2000)
+except KeyboardInterrupt as stopped:
+    print("stopped:", stopped)
+try:
+    import os, signal
+    os.kill(os.getpid(), signal.SIGINT)  # Python's own again
+    print("not caught")
+except KeyboardInterrupt:
+    print("caught")
+"""
+        python = subprocess.Popen([sys.executable, "-c", code, self.sets[0], self.name("stopped")], stdout=subprocess.PIPE,
+                                  text=True)
+        state = Path(self.name("stopped.clean.state"))
+        for _ in range(600):
+            if state.exists() or python.poll() is not None:
+                break
+            time.sleep(0.05)
+        python.send_signal(signal.SIGINT)
+        said, _ = python.communicate(timeout=60)
+        self.assertIn("stopped: ", said)
+        self.assertIn("\ncaught", said)
+        self.assertLessEqual({".image", ".model", ".residual"}, self.files("stopped"))
+
+    def test_models_are_predicted_and_subtracted(self):
+        self.tclean("model", niter=20)
+        written = misfit.predict(self.sets[0], model=self.name("model.model"), spw="0:1~2")
+        self.assertEqual((written["column"], written["visibilities"]), ("MODEL_DATA", 2 * written["rows"]))
+        again = misfit.subtract(self.sets[0], model=self.name("model.model"))
+        self.assertEqual(again["column"], "CORRECTED_DATA")
+        with self.assertRaisesRegex(ValueError, "expected either model or components"):
+            misfit.predict(self.sets[0])
+
+
+class Returned(Sets):
+    """What tclean returns."""
+
+    def test_the_dictionary_is_that_of_the_cycles(self):
+        made = self.tclean("made", niter=100, cycleniter=30, fullsummary=True)
+        self.assertEqual(set(made), RETURNED)
+        log = made["misfit"]["clean"]["major_cycles_log"]
+        plane = made["summaryminor"][0][0][0]
+        self.assertEqual(plane["iterDone"], [30, 30, 30, 10])
+        self.assertEqual(list(made["summarymajor"]), [0, 30, 60, 90, 100])
+        self.assertEqual((made["iterdone"], made["nmajordone"], made["stopcode"]), (100, 5, 1))
+        self.assertEqual(plane["peakRes"], [cycle["peak_residual_jy"] for cycle in log[1:]])
+        self.assertEqual(plane["startPeakRes"], [cycle["peak_residual_jy"] for cycle in log[:-1]])
+        self.assertEqual(plane["stopCode"], [1, 1, 1, 1])
+        brief = self.tclean("made2", niter=100, cycleniter=30)["summaryminor"][0][0][0]
+        self.assertEqual(set(brief), {"iterDone", "peakRes", "modelFlux", "cycleThresh"})
+
+    def test_planes_and_stokes_have_each_their_lists(self):
+        made = self.tclean("planes", specmode="cube", stokes="IQ", niter=30, threshold="50mJy", nchan=3)
+        minor = made["summaryminor"][0]
+        self.assertEqual(set(minor), {0, 1, 2})
+        self.assertTrue(all(set(of) == {0, 1} for of in minor.values()))
+        self.assertEqual(made["iterdone"], sum(sum(plane["iterDone"]) for of in minor.values() for plane in of.values()))
+        self.assertEqual(made["iterdone"], made["summarymajor"][-1])
+
+    def test_stop_codes_are_those_of_tclean(self):
+        self.assertEqual(self.tclean("s1", niter=1)["stopcode"], 1)
+        self.assertEqual(self.tclean("s2", niter=5000, threshold=1.0)["stopcode"], 2)
+        self.assertEqual(self.tclean("s8", niter=1000, nsigma=10)["stopcode"], 8)
+        self.assertEqual(self.tclean("s9", niter=1000, nmajor=1, cycleniter=3)["stopcode"], 9)
+        none = self.tclean("s0")
+        self.assertEqual((none["iterdone"], none["nmajordone"], none["summaryminor"]), (0, 1, {0: {0: {}}}))
+
+    def test_start_counts_the_channels_of_the_window(self):
+        for start, spw in ((2, "0:1~3"), ("2", "0:1~3"), (2, "")):
+            plane = self.tclean("start", specmode="cube", start=start, nchan=1, spw=spw, outframe="TOPO")["misfit"]["planes"][0]
+            self.assertAlmostEqual(plane["frequency_hz"], 4e9 + 2e6, delta=1)
+        self.assertIn("start 0chan: expected a channel that is selected of window 0",
+                      self.refusal(specmode="cube", start=0, spw="0:1~3"))
+
+
+class GoingOn(Sets):
+    """Runs of the same name."""
+
+    def test_clean_goes_on_from_the_model_on_disk(self):
+        first = self.tclean("on", niter=10, cycleniter=10)
+        flux = first["misfit"]["clean"]["model_flux_jy"]
+        second = self.tclean("on", niter=10, cycleniter=10, calcres=False, calcpsf=False)
+        log = second["misfit"]["clean"]["major_cycles_log"]
+        self.assertAlmostEqual(log[0]["model_flux_jy"] / flux, 1, places=6)  # a model in single precision
+        self.assertAlmostEqual(log[0]["peak_residual_jy"] / first["misfit"]["clean"]["peak_residual_jy"], 1, places=5)
+        both = self.tclean("both", niter=20, cycleniter=10)["misfit"]["clean"]
+        self.assertAlmostEqual(second["misfit"]["clean"]["model_flux_jy"] / both["model_flux_jy"], 1, places=5)
+        self.assertIn("restart=True begins with", self.refusal(imagename=self.name("on"), startmodel="m.fits", niter=1))
+
+    def test_without_restart_images_are_written_beside(self):
+        self.tclean("beside", niter=2)
+        self.tclean("beside", niter=2, restart=False)
+        self.tclean("beside", niter=2, restart=False)
+        for end in ("", "_1", "_2"):
+            self.assertIn(".image", self.files("beside" + end))
+
+    def test_images_that_are_to_be_there_are_named(self):
+        self.assertIn("refused.psf, which is not there, or calcpsf=True", self.refusal(calcpsf=False))
+        self.assertIn("refused.residual.tt0, which", self.refusal(calcres=False, deconvolver="mtmfs"))
+
+
+class Refused(Sets):
+    """One line that names parameter, value and what was expected."""
+
+    def test_what_is_not_made_yet_is_refused_by_name(self):
+        for parameters in (dict(gridder="mosaic"), dict(gridder="awproject"), dict(weighting="briggsbwtaper"),
+                           dict(stokes="pseudoI"), dict(specmode="cubedata"), dict(specmode="cubesource"), dict(veltype="optical"),
+                           dict(usemask="pb"), dict(usemask="auto-multithresh", negativethreshold=7.0, niter=1),
+                           dict(outlierfile="o.txt"), dict(interactive=True), dict(projection="NCP"), dict(usepointing=True),
+                           dict(deconvolver="mem"), dict(savemodel="virtual", niter=1), dict(pbmask=0.2), dict(niter=-1),
+                           dict(cell=["1arcsec", "2arcsec"]), dict(imsize=[64.5]), dict(gain=2, niter=1),
+                           dict(datacolumn="residual"), dict(mask=["a", "b"], niter=1), dict(restoration=False, niter=1),
+                           dict(threshold=[1], niter=1), dict(vis=[]), dict(imagename=""), dict(spw=["0", "0", "0"])):
+            with self.subTest(parameters):
+                words = self.refusal(**parameters)
+                self.assertEqual(len(words.splitlines()), 1)
+                self.assertIn(next(name for name in parameters if name not in ("usemask", "niter") or len(parameters) == 1), words)
+                self.assertIn("expected", words)
+                self.assertNotIn("--", words)
+        self.assertEqual(self.files("refused"), set())
+
+    def test_data_that_cannot_be_used_are_named(self):
+        self.assertEqual(self.refusal(RuntimeError, vis="nosuch.ms"), "nosuch.ms does not exist; expected a MeasurementSet")
+        self.assertIn("spw '7' selects nothing", self.refusal(RuntimeError, spw="7"))
+
+
+@unittest.skipUnless(CALLS.exists(), f"there is no {CALLS}")
+class Pipelines(Sets):
+    """The calls that a pipeline made, with names, places, channels and sizes of their own."""
+
+    REPLACED = ("sets", "same_spw_in_all_sets", "calls", "origin")
+
+    @classmethod
+    def setUpClass(cls):
+        super().setUpClass()
+        file = json.loads(CALLS.read_text())
+        cls.calls = {}
+        for kind in file["kinds"]:
+            call = {**file["the_same_in_all_calls"], **kind}
+            sets = min(2, call["sets"])
+            cube = call["specmode"] == "cube"
+            for name in cls.REPLACED:
+                call.pop(name, None)
+            call.update(vis=cls.sets[:sets], field="", spw=["0"] * sets, antenna=[""] * sets, scan=[""] * sets, intent="",
+                        imsize=[32, 24], cell=["0.2arcsec"], phasecenter="", nchan=2 if cube else -1, start="", width="",
+                        niter=min(20, call["niter"]), gridder="standard", reffreq="",
+                        weighting="briggs" if call["weighting"] == "briggsbwtaper" else call["weighting"])
+            form = {name: value for name, value in call.items() if name not in ("threshold", "robust")}
+            cls.calls[json.dumps(form, sort_keys=True)] = call  # kinds that differ in such or what is replaced are one
+
+    def test_each_runs_or_says_in_one_line_what_is_not_made_yet(self):
+        self.assertGreater(len(self.calls), 5)
+        for number, call in enumerate(self.calls.values()):
+            with self.subTest(number), contextlib.redirect_stderr(io.StringIO()):
+                name = f"kind{number}"
+                with self.assertRaisesRegex(ValueError, "^(negativethreshold|minpercentchange|fastnoise)=.*: expected .* yet|so far$"):
+                    misfit.tclean(**call, imagename=self.name(name))
+                masked = dict(call, usemask="user", imagename=self.name(name))
+                misfit.tclean(**dict(masked, niter=0, calcres=True, calcpsf=True))
+                made = misfit.tclean(**masked)
+                self.assertEqual(set(made), RETURNED)
+                end = ".tt0" if call["deconvolver"] == "mtmfs" else ""
+                wanted = {f".{kind}{end}" for kind in ("psf", "residual", "pb", "sumwt")}
+                if call["niter"]:
+                    wanted |= {f".model{end}", f".image{end}", ".alpha" if end else ".image.pbcor"}
+                self.assertLessEqual(wanted, self.files(name))
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,109 @@
+// The program in the process of Python: a module of its own, since it takes casacore, which arrays need not.
+#include <malloc.h>
+#include <pybind11/functional.h>
+#include <pybind11/pybind11.h>
+#include <pybind11/stl.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cstdlib>
+#include <iostream>
+#include <mutex>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "tools/base/interrupt.h"
+#include "tools/base/progress.h"
+#include "tools/program.h"
+
+namespace py = pybind11;
+
+namespace {
+
+using namespace misfit::tools;
+
+/// Raised as ValueError.
+struct WrongUsage : std::invalid_argument {
+  using std::invalid_argument::invalid_argument;
+};
+
+/// As the program does when it begins, see main.cpp.
+void prepare_process() {
+  mallopt(M_MMAP_THRESHOLD, 32 << 20);
+  mallopt(M_TRIM_THRESHOLD, 32 << 20);
+  setenv("HOME", "/", 0);
+}
+
+/// What casacore says on stderr of failures that it throws, too, as long as it lives.
+class QuietErrors {
+ public:
+  QuietErrors() : before_(std::cerr.rdbuf(nullptr)) {}
+  QuietErrors(const QuietErrors&) = delete;
+  QuietErrors& operator=(const QuietErrors&) = delete;
+  ~QuietErrors() { std::cerr.rdbuf(before_); }
+
+ private:
+  std::streambuf* before_;
+};
+
+/// Lines go to `tell` as long as it lives.
+class ToldLines {
+ public:
+  explicit ToldLines(std::function<void(const std::string&)> tell) { tell_lines(std::move(tell)); }
+  ToldLines(const ToldLines&) = delete;
+  ToldLines& operator=(const ToldLines&) = delete;
+  ~ToldLines() { tell_lines({}); }
+};
+
+/// Runs the command that `words` are, as the program does; nothing of it is Python's.
+void run_words(std::vector<std::string> words, Outcome& outcome) {
+  std::string line = "misfit";
+  for (const std::string& word : words) line += " " + word;
+  const std::unique_ptr<CLI::App> program = make_program({line, misfit::imager::alone(), &outcome});
+  std::reverse(words.begin(), words.end());  // as the parser takes them
+  try {
+    program->parse(std::move(words));
+  } catch (const CLI::ParseError& error) {
+    throw WrongUsage(usage_message(error, *program));
+  } catch (const std::invalid_argument& error) {
+    throw WrongUsage(error.what());
+  }
+}
+
+/// Returns (report as JSON, words, whether the user stopped it). One at a time: others wait.
+py::tuple run(const std::vector<std::string>& words, const py::function& tell, bool in_main_thread) {
+  static std::mutex one_at_a_time;
+  static std::once_flag prepared;
+  std::call_once(prepared, prepare_process);
+  Outcome outcome;
+  bool stopped = false;
+  {
+    const py::gil_scoped_release others_run;
+    const std::lock_guard alone(one_at_a_time);
+    const QuietErrors quiet;
+    const BorrowedProcess borrowed(!in_main_thread);
+    const ToldLines told([&tell](const std::string& line) {
+      const py::gil_scoped_acquire python;
+      try {
+        tell(line);
+      } catch (py::error_already_set& error) {
+        error.discard_as_unraisable("misfit");
+      }
+    });
+    try {
+      run_words(words, outcome);
+    } catch (const Interrupted&) {
+      stopped = true;
+    }
+  }
+  return py::make_tuple(outcome.report.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace), outcome.words, stopped);
+}
+
+}  // namespace
+
+PYBIND11_MODULE(_imaging, m) {
+  m.doc() = "The program misfit, compiled for Python.";
+  py::register_exception<WrongUsage>(m, "WrongUsage", PyExc_ValueError);
+  m.def("run", &run, py::arg("words"), py::arg("tell"), py::arg("in_main_thread"));
+}

@@ -1,0 +1,656 @@
+"""CASA's tclean, as misfit does it."""
+
+import logging
+import numbers
+import os
+from pathlib import Path
+
+import numpy as np
+
+from . import _program
+
+_log = logging.getLogger("misfit")
+
+# Parameters that change nothing here, with tclean's defaults and why.
+_UNNEEDED = {
+    "facets": (1, "w is exact without"),
+    "wprojplanes": (1, "w is exact whatever their number"),
+    "vptable": ("", "primary beams are chosen by telescope"),
+    "mosweight": (True, "one field is imaged"),
+    "aterm": (True, "it is of gridders for mosaics"),
+    "psterm": (False, "it is of gridders for mosaics"),
+    "wbawp": (True, "it is of gridders for mosaics"),
+    "conjbeams": (False, "it is of gridders for mosaics"),
+    "cfcache": ("", "convolution functions are not kept"),
+    "computepastep": (360.0, "it is of gridders for mosaics"),
+    "rotatepastep": (360.0, "it is of gridders for mosaics"),
+    "pointingoffsetsigdev": ([], "it is of gridders for mosaics"),
+    "normtype": ("flatnoise", "of one field all are the same"),
+    "psfcutoff": (0.35, "beams are fitted to the whole main lobe"),
+    "parallel": (False, "all cores share a run in any case"),
+    "verbose": (False, "loggers are set up where they are used"),
+}
+_told_unneeded = set()
+
+# Parameters that can have one value so far, with what else they might be.
+_SINGLE = {
+    "projection": ("SIN", "other projections are not made"),
+    "psfphasecenter": ("", "it is of mosaics, which are not made yet"),
+    "outlierfile": ("", "one field is imaged at a time"),
+    "interactive": (False, "CLEAN asks nothing: nmajor=1 and another mask go on by hand"),
+    "usepointing": (False, "it is of mosaics, which are not made yet"),
+    "veltype": ("radio", "optical velocities are not made yet"),
+    "pbmask": (0.0, "masks by primary beam are not made yet"),
+}
+
+# What tclean's automatic masks have that ours do not yet.
+_AUTO_MASK = {
+    "negativethreshold": (0.0, "absorption is not masked yet"),
+    "smoothfactor": (1.0, "masks are not smoothed yet"),
+    "cutthreshold": (0.01, "masks are not smoothed yet"),
+    "dogrowprune": (True, "grown masks are not pruned yet"),
+    "minpercentchange": (-1.0, "masks follow every residual so far"),
+    "fastnoise": (True, "noise is the robust one of all pixels so far"),
+}
+
+_GRIDDERS = {"standard": "standard", "ft": "standard", "gridft": "standard", "wproject": "wide", "widefield": "wide",
+             "wprojectft": "wide", "auto": "auto"}
+_DECONVOLVERS = ("hogbom", "clark", "multiscale", "mtmfs")
+_SELECTION = ("field", "spw", "timerange", "uvrange", "antenna", "scan", "observation", "intent")
+_COLUMNS = {"corrected": "auto", "data": "data", "observed": "data", "model": "model"}
+
+
+def _refuse(name, value, expected):
+    raise ValueError(f"{name}={value!r}: expected {expected}")
+
+
+def _is_list(value):
+    return isinstance(value, (list, tuple, np.ndarray))
+
+
+def _items(value):
+    return list(value) if _is_list(value) else [value]
+
+
+def _number(value):
+    return f"{float(value):.17g}"
+
+
+def _quantity(name, value, unit=""):
+    """A number, a text, or a dictionary as casatools' quanta.quantity() and measures make it."""
+    if isinstance(value, dict):
+        value = value.get("m0", value)
+        if "value" not in value:
+            _refuse(name, value, "a quantity with 'value' and 'unit'")
+        return _number(value["value"]) + value.get("unit", unit)
+    if isinstance(value, numbers.Real) and not isinstance(value, bool):
+        return _number(value) + unit
+    if not isinstance(value, str):
+        _refuse(name, value, "a number, text or quantity")
+    return value
+
+
+def _whole(name, value):
+    if isinstance(value, bool) or not isinstance(value, (numbers.Real, str)):
+        _refuse(name, value, "a whole number")
+    return value if isinstance(value, str) else _number(value)
+
+
+class _Words:
+    """The command line, option by option."""
+
+    def __init__(self):
+        self.words = ["image"]
+
+    def give(self, option, *values):
+        self.words += ["--" + option, *(str(value) for value in values)]
+
+    def flag(self, option, wanted):
+        if wanted:
+            self.words.append("--" + option)
+
+
+def _check_simple(p):
+    for table in (_SINGLE, _AUTO_MASK if p["usemask"] == "auto-multithresh" else {}):
+        for name, (only, why) in table.items():
+            if p[name] != only:
+                _refuse(name, p[name], f"{only!r}: {why}")
+    for name, (usual, why) in _UNNEEDED.items():
+        if name not in _told_unneeded and list(_items(p[name])) != list(_items(usual)):
+            _told_unneeded.add(name)
+            _log.info("%s=%r changes nothing: %s", name, p[name], why)
+
+
+def _give_data(words, p):
+    sets = [os.fspath(one) for one in _items(p["vis"])]
+    if not sets or not all(sets):
+        _refuse("vis", p["vis"], "a MeasurementSet, or several")
+    words.give("vis", *sets)
+    for name in _SELECTION if p["selectdata"] else ("field", "spw"):
+        values = ["" if one is None else str(one) for one in _items(p[name])]
+        if any(values):
+            words.give(name, *values)
+    column = p["datacolumn"]
+    if column not in _COLUMNS:
+        _refuse("datacolumn", column, "one of " + ", ".join(map(repr, _COLUMNS)))
+    words.give("datacolumn", _COLUMNS[column])
+
+
+def _give_image(words, p):
+    words.give("imsize", *(_whole("imsize", side) for side in _items(p["imsize"])))
+    words.give("cell", *(_quantity("cell", side, "arcsec") for side in _items(p["cell"])))
+    if p["phasecenter"] != "":
+        words.give("phasecenter", p["phasecenter"])
+    stokes = p["stokes"]
+    if stokes.lower() == "pseudoi":
+        _refuse("stokes", stokes, "I, Q, U, V or hands: pseudoI is not made yet")
+    words.give("stokes", stokes)
+
+
+def _give_spectrum(words, p):
+    specmode = p["specmode"]
+    if specmode not in ("mfs", "cube"):
+        _refuse("specmode", specmode, "'mfs' or 'cube'" + (": it is not made yet" if specmode.startswith("cube") else ""))
+    restfreq = [one for one in _items(p["restfreq"]) if one != ""]
+    if specmode == "mfs":
+        return
+    words.give("specmode", "cube")
+    words.give("nchan", _whole("nchan", p["nchan"]))
+    start = p["start"]
+    if isinstance(start, numbers.Integral) or (isinstance(start, str) and start.isdigit()):
+        words.give("start", f"{int(start)}chan")  # of the whole window
+    elif start != "":
+        words.give("start", _quantity("start", start))
+    width = p["width"]
+    if isinstance(width, numbers.Integral):
+        words.give("width", width)
+    elif width != "":
+        words.give("width", _quantity("width", width))
+    words.give("outframe", p["outframe"] or "LSRK")
+    if restfreq:
+        words.give("restfreq", _quantity("restfreq", restfreq[0], "Hz"))
+    words.give("interpolation", p["interpolation"])
+    if not p["perchanweightdensity"] and p["weighting"] != "natural":
+        words.give("perchanweightdensity", "false")
+
+
+def _give_weights(words, p):
+    weighting = p["weighting"]
+    if weighting not in ("natural", "uniform", "superuniform", "briggs"):
+        _refuse("weighting", weighting, "'natural', 'uniform', 'superuniform' or 'briggs'")
+    words.give("weighting", weighting)
+    if weighting == "briggs":
+        words.give("robust", _number(p["robust"]))
+    if p["npixels"]:
+        words.give("npixels", p["npixels"])
+    taper = [_quantity("uvtaper", one, "arcsec") for one in _items(p["uvtaper"]) if one != ""]
+    if taper:
+        words.give("uvtaper", ",".join(taper))
+    gridder = p["gridder"]
+    if gridder not in _GRIDDERS:
+        _refuse("gridder", gridder, "'standard', 'wproject' or 'widefield': mosaics are not made yet")
+    words.give("gridder", _GRIDDERS[gridder])
+
+
+def _give_deconvolver(words, p):
+    deconvolver = p["deconvolver"]
+    if deconvolver not in _DECONVOLVERS:
+        _refuse("deconvolver", deconvolver, "one of " + ", ".join(map(repr, _DECONVOLVERS)))
+    scales = [float(scale) for scale in _items(p["scales"])]
+    terms = deconvolver == "mtmfs"
+    multiscale = deconvolver == "multiscale" or (terms and any(scales))
+    words.give("deconvolver", "multiscale" if multiscale else "hogbom" if terms else deconvolver)
+    if multiscale:
+        words.give("scales", ",".join(_number(scale) for scale in scales or [0.0]))
+        words.give("smallscalebias", _number(p["smallscalebias"]))
+    if terms:
+        words.give("nterms", p["nterms"])
+    if p["reffreq"] != "":
+        words.give("reffreq", _quantity("reffreq", p["reffreq"], "Hz"))
+
+
+def _give_clean(words, p):
+    words.give("niter", _whole("niter", p["niter"]))
+    words.give("gain", _number(p["gain"]))
+    words.give("threshold", _quantity("threshold", p["threshold"], "Jy"))
+    words.give("nsigma", _number(p["nsigma"]))
+    words.give("cyclefactor", _number(p["cyclefactor"]))
+    words.give("minpsffraction", _number(p["minpsffraction"]))
+    words.give("maxpsffraction", _number(p["maxpsffraction"]))
+    words.give("cycleniter", _whole("cycleniter", p["cycleniter"]))
+    words.give("nmajor", _whole("nmajor", p["nmajor"]))
+    _give_deconvolver(words, p)
+    usemask = p["usemask"]
+    if usemask not in ("user", "auto-multithresh"):
+        _refuse("usemask", usemask, "'user' or 'auto-multithresh'")
+    if not p["restoration"] and float(p["niter"]):
+        _refuse("restoration", p["restoration"], "True: restored images come with every model")
+    beam = [_quantity("restoringbeam", one, "arcsec") for one in _items(p["restoringbeam"]) if one != ""]
+    masks = [os.fspath(mask) for mask in _items(p["mask"]) if mask != ""]
+    if len(masks) > 1:
+        _refuse("mask", p["mask"], "one mask: lists of them are not taken yet")
+    if not float(p["niter"]):
+        return
+    if beam:
+        words.give("restoringbeam", ",".join(beam))
+    if masks:
+        words.give("mask", masks[0])
+    if usemask == "auto-multithresh":
+        words.give("usemask", usemask)
+        for name in ("sidelobethreshold", "noisethreshold", "lownoisethreshold", "minbeamfrac"):
+            words.give(name, _number(p[name]))
+        words.give("growiterations", p["growiterations"])
+    savemodel = p["savemodel"]
+    if savemodel not in ("none", "modelcolumn"):
+        _refuse("savemodel", savemodel, "'none' or 'modelcolumn'")
+    words.give("savemodel", savemodel)
+
+
+def _existing(imagename, kind, terms):
+    """The images of a kind that there are, in Taylor terms' order, as CASA images or FITS files; None where one is missing."""
+    found = []
+    for name in [f"{imagename}.{kind}.tt{term}" for term in range(terms)] if terms > 1 else [f"{imagename}.{kind}"]:
+        path = next((path for path in (name, name + ".fits") if Path(path).exists()), None)
+        if path is None:
+            return None
+        found.append(path)
+    return found
+
+
+def _name_beside(imagename):
+    """The first of imagename, imagename_1, … of which there are no images."""
+    name, number = imagename, 0
+    while any(Path(name + "." + kind + end).exists() for kind in ("psf", "psf.tt0", "residual", "image")
+              for end in ("", ".fits")):
+        number += 1
+        name = f"{imagename}_{number}"
+    return name
+
+
+def _give_beginning(words, p):
+    """What CLEAN begins with: a model given, or the one that a run of the same imagename left."""
+    imagename = os.fspath(p["imagename"])
+    if not imagename:
+        _refuse("imagename", imagename, "a name for images to begin with")
+    terms = int(p["nterms"]) if p["deconvolver"] == "mtmfs" else 1
+    start = [os.fspath(one) for one in _items(p["startmodel"]) if one != ""]
+    if not p["restart"]:
+        imagename = _name_beside(imagename)
+    else:
+        for name, kind in (("calcpsf", "psf"), ("calcres", "residual")):
+            if not p[name] and _existing(imagename, kind, terms) is None:
+                _refuse(name, p[name], f"{imagename}.{kind}{'.tt0' if terms > 1 else ''}, which is not there, or {name}=True")
+        model = _existing(imagename, "model", terms)
+        if model is not None and start:
+            _refuse("startmodel", p["startmodel"],
+                    f"none, as {model[0]} is what restart=True begins with; or restart=False")
+        if model is not None and float(p["niter"]):
+            start = model
+            _log.info("CLEAN goes on from %s", ", ".join(model))
+    words.give("imagename", imagename)
+    if start and float(p["niter"]):
+        words.give("startmodel", *start)
+
+
+def _words_of(p):
+    _check_simple(p)
+    words = _Words()
+    for give in (_give_data, _give_image, _give_spectrum, _give_weights, _give_clean, _give_beginning):
+        give(words, p)
+    words.flag("pbcor", p["pbcor"])
+    words.give("pblimit", _number(abs(p["pblimit"]) or 0.2))
+    words.flag("pb", True)
+    words.flag("sumwt", True)
+    words.give("outformat", p["outformat"])
+    for name in ("accuracy", "threads", "memory", "verify"):
+        if p[name] is not None:
+            words.give(name, p[name])
+    words.flag("dry-run", p["dryrun"])
+    return words.words
+
+
+# Global stop codes from the one that matters most: what ended a cube is what ended the plane that it says most of.
+_STOPS_FIRST = (3, 5, 6, 1, 9, 4, 8, 2, 7)
+_STOP_TEXT = {
+    1: "Reached the iteration limit.",
+    2: "Reached threshold.",
+    3: "Force stop.",
+    4: "No change in peak residual across two major cycles.",
+    5: "Peak residual increased by more than 3 times from the previous major cycle.",
+    6: "Peak residual increased by more than 3 times from the minimum reached.",
+    7: "Zero mask.",
+    8: "Reached n-sigma threshold.",
+    9: "Reached the major cycle limit.",
+}
+_MINOR_STOPS = {"reached its depth": 2, "found as many components as allowed": 1, "its peak grew threefold": 4}
+
+
+def _minor_stop(ended):
+    return next((code for text, code in _MINOR_STOPS.items() if ended.startswith(text)), 5)
+
+
+def _summary_of_plane(log, full):
+    """tclean's lists, over the sets of minor cycles of one plane."""
+    cycles = log[1:]
+    before = [log[cycle["from"]] for cycle in cycles]
+    done = [float(cycle["iterations"] - start["iterations"]) for cycle, start in zip(cycles, before)]
+    summary = {
+        "iterDone": done,
+        "peakRes": [cycle["peak_residual_jy"] for cycle in cycles],
+        "modelFlux": [cycle["model_flux_jy"] for cycle in cycles],
+        "cycleThresh": [cycle["cycle_threshold_jy"] for cycle in cycles],
+    }
+    if full:
+        started = [sum(done[:index]) for index in range(len(done))]
+        summary.update({
+            "cycleStartIters": started,
+            "startIterDone": started,
+            "startPeakRes": [start["peak_residual_jy"] for start in before],
+            "startModelFlux": [start["model_flux_jy"] for start in before],
+            "stopCode": [float(_minor_stop(cycle["ended"])) for cycle in cycles],
+        })
+    return summary
+
+
+def _dictionary(report, p):
+    """What tclean returns, from the report of a run."""
+    planes = report["planes"] or [{"plane": 0, "stokes": report["stokes"]}]
+    logs = {
+        plane["plane"]: {index: stokes["clean"]["major_cycles_log"] for index, stokes in enumerate(plane["stokes"])
+                         if stokes["clean"]}
+        for plane in planes
+    }
+    minor = {number: {index: _summary_of_plane(log, p["fullsummary"]) for index, log in of.items()}
+             for number, of in logs.items()}
+    all_minor = [summary for of in minor.values() for summary in of.values()]
+    major = 1 + max((len(summary["iterDone"]) for summary in all_minor), default=0)
+    totals = [sum(sum(summary["iterDone"][:cycle]) for summary in all_minor) for cycle in range(major)]
+    cleans = [stokes["clean"] for plane in planes for stokes in plane["stokes"] if stokes["clean"]]
+    codes = {clean["stop_code"] for clean in cleans}
+    code = next((code for code in _STOPS_FIRST if code in codes), 1)
+    thresholds = [summary["cycleThresh"][-1] for summary in all_minor if summary["cycleThresh"]]
+    return {
+        "cleanstate": "running",
+        "cyclefactor": float(p["cyclefactor"]),
+        "cycleiterdone": 0,
+        "cycleniter": int(float(p["cycleniter"])),
+        "cyclethreshold": max(thresholds, default=0.0),
+        "interactiveiterdone": 0,
+        "interactivemode": False,
+        "interactiveniter": 0,
+        "interactivethreshold": 0.0,
+        "iterdone": int(totals[-1]),
+        "loopgain": float(p["gain"]),
+        "maxpsffraction": float(p["maxpsffraction"]),
+        "maxpsfsidelobe": max((clean["max_sidelobe"] or 0.0 for clean in cleans), default=0.0),
+        "minpsffraction": float(p["minpsffraction"]),
+        "niter": int(float(p["niter"])),
+        "nmajordone": major,
+        "nsigma": float(p["nsigma"]),
+        "stopcode": code,
+        "stopDescription": _STOP_TEXT[code],
+        "summarymajor": np.array(totals, dtype=int),
+        "summaryminor": {0: minor},
+        "threshold": p["threshold"],
+        "misfit": report,
+    }
+
+
+def tclean(
+    vis,
+    selectdata=True,
+    field="",
+    spw="",
+    timerange="",
+    uvrange="",
+    antenna="",
+    scan="",
+    observation="",
+    intent="",
+    datacolumn="corrected",
+    imagename="",
+    imsize=(100,),
+    cell="1arcsec",
+    phasecenter="",
+    stokes="I",
+    projection="SIN",
+    startmodel="",
+    specmode="mfs",
+    reffreq="",
+    nchan=-1,
+    start="",
+    width="",
+    outframe="LSRK",
+    veltype="radio",
+    restfreq=(),
+    interpolation="linear",
+    perchanweightdensity=True,
+    gridder="standard",
+    facets=1,
+    psfphasecenter="",
+    wprojplanes=1,
+    vptable="",
+    mosweight=True,
+    aterm=True,
+    psterm=False,
+    wbawp=True,
+    conjbeams=False,
+    cfcache="",
+    usepointing=False,
+    computepastep=360.0,
+    rotatepastep=360.0,
+    pointingoffsetsigdev=(),
+    pblimit=0.2,
+    normtype="flatnoise",
+    deconvolver="hogbom",
+    scales=(),
+    nterms=2,
+    smallscalebias=0.0,
+    restoration=True,
+    restoringbeam=(),
+    pbcor=False,
+    outlierfile="",
+    weighting="natural",
+    robust=0.5,
+    noise="1.0Jy",
+    npixels=0,
+    uvtaper=("",),
+    niter=0,
+    gain=0.1,
+    threshold=0.0,
+    nsigma=0.0,
+    cycleniter=-1,
+    cyclefactor=1.0,
+    minpsffraction=0.05,
+    maxpsffraction=0.8,
+    interactive=False,
+    nmajor=-1,
+    fullsummary=False,
+    usemask="user",
+    mask="",
+    pbmask=0.0,
+    sidelobethreshold=3.0,
+    noisethreshold=5.0,
+    lownoisethreshold=1.5,
+    negativethreshold=0.0,
+    smoothfactor=1.0,
+    minbeamfrac=0.3,
+    cutthreshold=0.01,
+    growiterations=75,
+    dogrowprune=True,
+    minpercentchange=-1.0,
+    verbose=False,
+    fastnoise=True,
+    restart=True,
+    savemodel="none",
+    calcres=True,
+    calcpsf=True,
+    psfcutoff=0.35,
+    parallel=False,
+    *,
+    outformat="casa",
+    accuracy=None,
+    threads=None,
+    memory=None,
+    verify=None,
+    dryrun=False,
+):
+    """
+    Image and CLEAN MeasurementSets: a call of CASA's tclean, with misfit's own program in this process.
+
+    Parameters have tclean's names, values and defaults, and CASA's documentation describes them at length. Those that misfit
+    does not have yet are refused by name and value; those that change nothing here are taken, and told of once. What the run
+    says goes to the logger "misfit".
+
+    Images are CASA's, with its names: .psf, .residual, .model, .image, .mask (where there is one), .pb (where the antennas'
+    beam is known), .image.pbcor, .sumwt, or with .tt0, .tt1, … of nterms.
+
+    Parameters
+    ----------
+    vis : path or list of paths
+        MeasurementSets, of which one image is made.
+    selectdata : bool
+        Whether the selections from `timerange` to `intent` count.
+    field, spw, timerange, uvrange, antenna, scan, observation, intent : str or list of str
+        What is imaged, as CASA's tasks take it: for all sets, or for each.
+    datacolumn : str
+        "corrected" (or data where a set has none), "data" or "model".
+    imagename : path
+        What the names of images begin with.
+    imsize : int or list of int
+        Width, or width and height, in pixels.
+    cell : str, number or list
+        Size of a pixel, in arcsec without a unit; two must be equal.
+    phasecenter : str or int
+        Direction or field that the visibilities are shifted to.
+    stokes : str
+        Stokes parameters or hands, in any order.
+    projection : str
+        "SIN".
+    startmodel : path or list of paths
+        Model that CLEAN begins with, in Jy/pixel; one for each of nterms.
+    specmode : str
+        "mfs" or "cube".
+    reffreq : str
+        Reference frequency of Taylor terms.
+    nchan : int
+        Planes of a cube; -1: to the end of the data.
+    start, width : str, int or quantity
+        First plane and step: a channel, counted in the whole window, a frequency or a velocity.
+    outframe, veltype : str
+        Frame of the planes' frequencies; "radio".
+    restfreq : str or list of str
+        Of the line; the first counts.
+    interpolation : str
+        "linear" or "nearest", between channels.
+    perchanweightdensity : bool
+        Whether each plane's weights follow from its own samples.
+    gridder : str
+        "standard" leaves w out, "wproject" and "widefield" have it exactly.
+    facets, psfphasecenter, wprojplanes, vptable, mosweight, aterm, psterm, wbawp, conjbeams, cfcache : various
+        Not needed, or of mosaics.
+    usepointing, computepastep, rotatepastep, pointingoffsetsigdev : various
+        Of mosaics.
+    pblimit : float
+        Below it .pb and .image.pbcor have no values.
+    normtype : str
+        Not needed of one field.
+    deconvolver : str
+        "hogbom", "clark", "multiscale" or "mtmfs".
+    scales : list of float
+        Of multiscale and mtmfs, in pixels; none: points.
+    nterms : int
+        Taylor terms of mtmfs.
+    smallscalebias : float
+        The largest scale counts this part less than points.
+    restoration : bool
+        True: a model comes with its restored image.
+    restoringbeam : str or list of str
+        Beam of restored images, or "common".
+    pbcor : bool
+        Whether .image.pbcor is made.
+    outlierfile : str
+        "": one field at a time.
+    weighting : str
+        "natural", "uniform", "superuniform" or "briggs".
+    robust : float
+        Of briggs.
+    noise : str
+        Of briggsabs, which is not made yet.
+    npixels : int
+        Of superuniform.
+    uvtaper : list of str
+        Taper: one to three values.
+    niter : int
+        Components to find at most, in each plane of a cube; 0 makes the dirty image.
+    gain : float
+        Part of a peak that a component takes.
+    threshold : str or number
+        Peak of the residual to stop at, in Jy without a unit.
+    nsigma : float
+        The same in units of the noise.
+    cycleniter : int
+        Components of a minor cycle at most.
+    cyclefactor, minpsffraction, maxpsffraction : float
+        How deep minor cycles go.
+    interactive : bool
+        False.
+    nmajor : int
+        Major cycles at most.
+    fullsummary : bool
+        Whether summaryminor has all keys.
+    usemask : str
+        "user" or "auto-multithresh".
+    mask : path or str
+        Mask image, region file, or region.
+    pbmask : float
+        0.
+    sidelobethreshold, noisethreshold, lownoisethreshold, negativethreshold, smoothfactor, minbeamfrac, cutthreshold : float
+        Of auto-multithresh.
+    growiterations, dogrowprune, minpercentchange, verbose, fastnoise : various
+        Of auto-multithresh.
+    restart : bool
+        Whether CLEAN goes on from a .model of the same imagename; else images are written beside, as imagename_1 and so on.
+    savemodel : str
+        "none" or "modelcolumn".
+    calcres, calcpsf : bool
+        False: images of the same imagename must be there. They are made anew all the same.
+    psfcutoff : float
+        Not needed.
+    parallel : bool
+        Not needed.
+    outformat : str
+        "casa", "fits" or "both".
+    accuracy : float, optional
+        Largest error of the whole image relative to the direct transform, RMS over RMS; 1e-6 where it is None.
+    threads : int, optional
+        Threads; all cores where it is None.
+    memory : float, optional
+        GiB that the run may take; half of the machine's where it is None.
+    verify : int, optional
+        Pixels and visibilities to compare with the direct transform.
+    dryrun : bool
+        Make nothing: return the plan.
+
+    Returns
+    -------
+    dict
+        As tclean's: stopcode, stopDescription, iterdone, nmajordone (the first residual included), summarymajor,
+        summaryminor[field][channel][stokes][key], a list over sets of minor cycles, and others; peakRes is that of the residual
+        which the next major cycle made. Under "misfit" stands the run's own report, as in <imagename>.report.json. Of a dry
+        run: "plan" and what else is known before.
+
+    Raises
+    ------
+    ValueError
+        For a parameter that is wrong, or not taken.
+    RuntimeError
+        For data or files that cannot be used.
+    KeyboardInterrupt
+        After Ctrl-C. CLEAN ends with its major cycle, and writes its images before.
+    """
+    parameters = dict(locals())
+    words = _words_of(parameters)
+    report, said = _program.run(words)
+    _program.tell_all(said)
+    return report if dryrun else _dictionary(report, parameters)
