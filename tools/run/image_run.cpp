@@ -84,7 +84,7 @@ class ImageRun : private ChannelSink {
       write_report();
     }
     if (o_.clean.savemodel == "modelcolumn") save_model();
-    outcome_.words = summary(report_) + o_.imagename + ".report.html\n";
+    if (ranks_.first()) outcome_.words = summary(report_) + o_.imagename + ".report.html\n";
     outcome_.complete = !queue_->stopped();
     imager::share_values(ranks_, outcome_.complete);
   }
