@@ -18,7 +18,6 @@ class Normalisation {
   Normalisation(double weight, std::shared_ptr<const Image> of_adjoint, std::shared_ptr<const Image> of_model)
       : weight_(weight), of_adjoint_(std::move(of_adjoint)), of_model_(std::move(of_model)) {}
 
-  double weight() const { return weight_; }
   /// Makes the image of an adjoint. Returns what it is then.
   ImageStatistics make_image(Image& adjoint) const;
   /// Makes what is predicted of a model image.

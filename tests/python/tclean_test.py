@@ -35,6 +35,12 @@ def run(*arguments):
     return subprocess.run([PROGRAM, *map(str, arguments)], check=True, capture_output=True, text=True)
 
 
+@contextlib.contextmanager
+def misfit_files(folder, name, kinds):
+    """The pixels of images before something is done."""
+    yield {kind: fits.getdata(folder / f"{name}.{kind}.fits").copy() for kind in kinds}
+
+
 class Sets(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
@@ -116,23 +122,27 @@ class Program(Sets):
         self.assertFalse(any("wprojplanes" in line for line in said.output))  # said once
 
     def test_other_threads_run_meanwhile_and_calls_wait_for_each_other(self):
-        counted = []
-        done = threading.Event()
+        said, seen = threading.Event(), threading.Event()
 
-        def count():
-            while not done.is_set():
-                counted.append(time.monotonic())
-                time.sleep(0.001)
+        class Waiting(logging.Handler):
+            def emit(self, record):  # the run goes on once another thread has seen that it said something
+                said.set()
+                seen.wait(30)
 
+        handler, log = Waiting(), logging.getLogger("misfit")
+        log.addHandler(handler)
+        self.addCleanup(log.removeHandler, handler)
+        level = log.level
+        log.setLevel(logging.INFO)
+        self.addCleanup(log.setLevel, level)
         threads = [threading.Thread(target=self.tclean, args=(f"thread{i}",), kwargs=dict(niter=20)) for i in range(2)]
-        counter = threading.Thread(target=count)
-        for thread in (counter, *threads):
+        for thread in threads:
             thread.start()
+        self.assertTrue(said.wait(30))
+        self.assertFalse(self.files("thread0") & self.files("thread1"))
+        seen.set()
         for thread in threads:
             thread.join()
-        done.set()
-        counter.join()
-        self.assertGreater(len(counted), 20)
         self.assertLessEqual({".image"}, self.files("thread0") & self.files("thread1"))
 
     def test_a_dry_run_returns_the_plan_and_writes_nothing(self):
@@ -168,6 +178,23 @@ except KeyboardInterrupt:
         self.assertIn("\ncaught", said)
         self.assertLessEqual({".image", ".model", ".residual"}, self.files("stopped"))
 
+    def test_ctrl_c_that_comes_late_is_not_lost(self):
+        code = """
+import logging, misfit, os, signal, sys
+class Late(logging.Handler):
+    def emit(self, record):  # the last that a dirty image says before its files are written
+        os.kill(os.getpid(), signal.SIGINT)
+logging.getLogger("misfit").addHandler(Late())
+logging.getLogger("misfit").setLevel(logging.INFO)
+try:
+    misfit.tclean(sys.argv[1], imagename=sys.argv[2], imsize=64, cell="0.2arcsec")
+    print("lost")
+except KeyboardInterrupt:
+    print("stopped")
+"""
+        said = subprocess.run([sys.executable, "-c", code, self.sets[0], self.name("late")], capture_output=True, text=True).stdout
+        self.assertEqual(said, "stopped\n")
+
     def test_models_are_predicted_and_subtracted(self):
         self.tclean("model", niter=20)
         written = misfit.predict(self.sets[0], model=self.name("model.model"), spw="0:1~2")
@@ -189,11 +216,15 @@ class Returned(Sets):
         self.assertEqual(plane["iterDone"], [30, 30, 30, 10])
         self.assertEqual(list(made["summarymajor"]), [0, 30, 60, 90, 100])
         self.assertEqual((made["iterdone"], made["nmajordone"], made["stopcode"]), (100, 5, 1))
-        self.assertEqual(plane["peakRes"], [cycle["peak_residual_jy"] for cycle in log[1:]])
+        self.assertEqual(plane["cycleStartIters"], [0, 30, 60, 90])
         self.assertEqual(plane["startPeakRes"], [cycle["peak_residual_jy"] for cycle in log[:-1]])
         self.assertEqual(plane["stopCode"], [1, 1, 1, 1])
-        brief = self.tclean("made2", niter=100, cycleniter=30)["summaryminor"][0][0][0]
+        brief = self.tclean("made2", niter=100, cycleniter=30, outformat="fits")["summaryminor"][0][0][0]
         self.assertEqual(set(brief), {"iterDone", "peakRes", "modelFlux", "cycleThresh"})
+        if fits is not None:
+            residual, model = (fits.getdata(self.name(f"made2.{kind}.fits")).astype(float) for kind in ("residual", "model"))
+            self.assertAlmostEqual(brief["peakRes"][-1] / np.abs(residual).max(), 1, places=6)
+            self.assertAlmostEqual(brief["modelFlux"][-1] / model.sum(), 1, places=6)
 
     def test_planes_and_stokes_have_each_their_lists(self):
         made = self.tclean("planes", specmode="cube", stokes="IQ", niter=30, threshold="50mJy", nchan=3)
@@ -215,6 +246,12 @@ class Returned(Sets):
         for start, spw in ((2, "0:1~3"), ("2", "0:1~3"), (2, "")):
             plane = self.tclean("start", specmode="cube", start=start, nchan=1, spw=spw, outframe="TOPO")["misfit"]["planes"][0]
             self.assertAlmostEqual(plane["frequency_hz"], 4e9 + 2e6, delta=1)
+        for start in (2.0, np.float32(2), " 2 ", {"unit": "GHz", "value": 4.002},
+                      {"m0": {"unit": "GHz", "value": 4.002}, "refer": "TOPO", "type": "frequency"}):
+            plane = self.tclean("start", specmode="cube", start=start, nchan=1, spw="0:1~3", outframe="TOPO")["misfit"]["planes"][0]
+            self.assertAlmostEqual(plane["frequency_hz"], 4e9 + 2e6, delta=1)
+        self.assertIn("expected a measure in LSRK, as outframe says",
+                      self.refusal(specmode="cube", start={"m0": {"unit": "GHz", "value": 4.002}, "refer": "TOPO"}))
         self.assertIn("start 0chan: expected a channel that is selected of window 0",
                       self.refusal(specmode="cube", start=0, spw="0:1~3"))
 
@@ -232,6 +269,30 @@ class GoingOn(Sets):
         both = self.tclean("both", niter=20, cycleniter=10)["misfit"]["clean"]
         self.assertAlmostEqual(second["misfit"]["clean"]["model_flux_jy"] / both["model_flux_jy"], 1, places=5)
         self.assertIn("restart=True begins with", self.refusal(imagename=self.name("on"), startmodel="m.fits", niter=1))
+
+    @unittest.skipIf(fits is None, "there is no python3-astropy")
+    def test_a_model_is_restored_corrected_and_predicted_without_more_components(self):
+        first = self.tclean("zero", niter=30, mask="circle[[32pix,32pix],6pix]", outformat="fits")
+        with misfit_files(self.folder, "zero", ("model", "mask", "residual", "image")) as before:
+            made = self.tclean("zero", pbcor=True, savemodel="modelcolumn", outformat="fits")
+        self.assertEqual((made["iterdone"], made["stopcode"], made["nmajordone"]), (0, 1, 1))
+        self.assertAlmostEqual(made["misfit"]["clean"]["model_flux_jy"] / first["misfit"]["clean"]["model_flux_jy"], 1, places=6)
+        self.assertIn(".image.pbcor.fits", self.files("zero"))
+        for kind, pixels in before.items():
+            np.testing.assert_allclose(fits.getdata(self.name(f"zero.{kind}.fits")), pixels, atol=1e-6 * np.nanmax(np.abs(pixels)))
+
+    def test_a_mask_on_disk_is_kept_to(self):
+        self.tclean("masked", niter=10, mask="circle[[20pix,32pix],6pix]")
+        with self.assertLogs("misfit", logging.INFO) as said:
+            again = self.tclean("masked", niter=10)
+        self.assertTrue(any("CLEAN keeps to" in line for line in said.output))
+        self.assertIn(".mask", self.files("masked"))
+        self.assertTrue(again["misfit"]["options"]["mask"].endswith("masked.mask"))
+
+    def test_another_number_of_terms_is_refused_beside_a_model(self):
+        self.tclean("number", niter=2)
+        self.assertIn("number.model, which restart=True goes on from", self.refusal(imagename=self.name("number"), niter=2,
+                                                                                    deconvolver="mtmfs"))
 
     def test_without_restart_images_are_written_beside(self):
         self.tclean("beside", niter=2)
@@ -253,14 +314,15 @@ class Refused(Sets):
                            dict(stokes="pseudoI"), dict(specmode="cubedata"), dict(specmode="cubesource"), dict(veltype="optical"),
                            dict(usemask="pb"), dict(usemask="auto-multithresh", negativethreshold=7.0, niter=1),
                            dict(outlierfile="o.txt"), dict(interactive=True), dict(projection="NCP"), dict(usepointing=True),
-                           dict(deconvolver="mem"), dict(savemodel="virtual", niter=1), dict(pbmask=0.2), dict(niter=-1),
+                           dict(deconvolver="mem"), dict(pbmask=0.2), dict(niter=-1),
                            dict(cell=["1arcsec", "2arcsec"]), dict(imsize=[64.5]), dict(gain=2, niter=1),
-                           dict(datacolumn="residual"), dict(mask=["a", "b"], niter=1), dict(restoration=False, niter=1),
+                           dict(datacolumn="residual"), dict(mask=["a", "b"], niter=1), dict(restoration=False, niter=1), dict(savemodel="virtual"), dict(savemodel="modelcolumn"), dict(reffreq="1GHz"),
+                           dict(mask=5, niter=1), dict(pblimit=-1), dict(specmode="cube", start=1.5), dict(imagename=None),
                            dict(threshold=[1], niter=1), dict(vis=[]), dict(imagename=""), dict(spw=["0", "0", "0"])):
             with self.subTest(parameters):
                 words = self.refusal(**parameters)
                 self.assertEqual(len(words.splitlines()), 1)
-                self.assertIn(next(name for name in parameters if name not in ("usemask", "niter") or len(parameters) == 1), words)
+                self.assertIn(next(name for name in parameters if name not in ("usemask", "niter", "specmode") or len(parameters) == 1), words)
                 self.assertIn("expected", words)
                 self.assertNotIn("--", words)
         self.assertEqual(self.files("refused"), set())
@@ -299,7 +361,7 @@ class Pipelines(Sets):
         for number, call in enumerate(self.calls.values()):
             with self.subTest(number), contextlib.redirect_stderr(io.StringIO()):
                 name = f"kind{number}"
-                with self.assertRaisesRegex(ValueError, "^(negativethreshold|minpercentchange|fastnoise)=.*: expected .* yet|so far$"):
+                with self.assertRaisesRegex(ValueError, "^(negativethreshold|minpercentchange|fastnoise)=.*: expected .*(?:yet|so far)$"):
                     misfit.tclean(**call, imagename=self.name(name))
                 masked = dict(call, usemask="user", imagename=self.name(name))
                 misfit.tclean(**dict(masked, niter=0, calcres=True, calcpsf=True))

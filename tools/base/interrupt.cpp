@@ -49,6 +49,10 @@ BorrowedProcess::BorrowedProcess(bool in_other_thread) {
   ours.sa_handler = remember_each;
   ours.sa_flags = SA_RESTART;
   if (is_caught) sigaction(SIGINT, &ours, &process_own);
+  if (is_caught && process_own.sa_handler == SIG_IGN) {  // as nohup and shells have it
+    sigaction(SIGINT, &process_own, nullptr);
+    is_caught = false;
+  }
 }
 
 BorrowedProcess::~BorrowedProcess() {

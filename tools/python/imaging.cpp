@@ -81,6 +81,10 @@ py::tuple run(const std::vector<std::string>& words, const py::function& tell, b
   {
     const py::gil_scoped_release others_run;
     const std::lock_guard alone(one_at_a_time);
+    {
+      const py::gil_scoped_acquire python;
+      if (PyErr_CheckSignals() != 0) throw py::error_already_set();  // of the time until now
+    }
     const QuietErrors quiet;
     const BorrowedProcess borrowed(!in_main_thread);
     const ToldLines told([&tell](const std::string& line) {
@@ -93,6 +97,7 @@ py::tuple run(const std::vector<std::string>& words, const py::function& tell, b
     });
     try {
       run_words(words, outcome);
+      stopped = interrupted();  // where nothing waited for it
     } catch (const Interrupted&) {
       stopped = true;
     }

@@ -40,13 +40,13 @@ void ChannelMaker::prepare_clean(ChannelRun& run) {
   }
   if (!means_.images_here) return;
   run.choose_beams();
-  if (scene_.options.clean.niter > 0 && run.report().beams->restoring)
+  if (scene_.options.clean.runs() && run.report().beams->restoring)
     run.begin_clean(
         cleans_.take([]() -> std::unique_ptr<CleanStage> { throw std::logic_error("more channels at a time than workers"); }));
 }
 
 void ChannelMaker::clean(ChannelRun& run) {
-  if (scene_.options.clean.niter == 0) return;
+  if (!scene_.options.clean.runs()) return;
   if (!means_.images_here) return run.follow_clean();
   if (!run.may_clean()) return;
   std::unique_ptr<CleanStage> stage = run.clean();

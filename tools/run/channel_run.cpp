@@ -122,7 +122,7 @@ void ChannelRun::choose_beams() {
   const imager::StageTimer timer(times(), imager::stage::fit_beam);
   const ImageOptions& o = scene_.options;
   report().beams = choose_beam(images_.images.psf, scene_.header.geometry.cell_rad, restoring_beam(o.clean.restoringbeam),
-                               o.clean.niter > 0 && !o.cube.is_cube());
+                               o.clean.runs() && !o.cube.is_cube());
   const std::string plane = name_.empty() ? "" : name_.substr(std::string(" of ").size()) + ": ";
   for (const std::string& warning : report().beams->warnings) warn(plane + warning);
 }

@@ -15,7 +15,6 @@ class ChannelTally {
   /// In the order of channels.
   void add(const MadeChannel& channel);
 
-  int channels() const { return channels_; }
   std::uint64_t samples() const { return samples_; }            ///< of channels, in their images
   std::uint64_t outside_grid() const { return outside_grid_; }  ///< of channels
   /// Of so many samples that the sets have in channels, those outside the grid: as large a part as of the channels' samples,

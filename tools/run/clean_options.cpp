@@ -64,7 +64,9 @@ void declare(CLI::App& command, TypedClean& o) {
        OptionMark::way_of_clean);
   mark(command.add_option("--smallscalebias", o.smallscalebias, "The largest scale counts this part less than points"),
        OptionMark::way_of_clean);
-  mark(command.add_option("--niter", o.niter, "CLEAN components to find at most; 0 makes the dirty image"),
+  mark(command.add_option(
+           "--niter", o.niter,
+           "CLEAN components to find at most; 0 makes the dirty image, or, with --startmodel, what that model leaves"),
        OptionMark::free_of_state);
   mark(command.add_option("--gain", o.gain, "Part of a peak that a component takes"), OptionMark::way_of_clean);
   mark(command
@@ -129,13 +131,11 @@ void check_clean(const ImageOptions& o) {
   if (!(parse_flux_jy(o.clean.threshold) >= 0)) refuse_option("threshold", o.clean.threshold, "0 or more");  // as it was typed
   imager::check(clean_options(o.clean, 1), "--");
   const WantedBeam beam = restoring_beam(o.clean.restoringbeam);
-  if (!o.clean.restoringbeam.empty() && o.clean.niter == 0)
-    refuse_option("restoringbeam", o.clean.restoringbeam, "--niter above 0 beside it");
+  if (!o.clean.restoringbeam.empty() && !o.clean.runs())
+    refuse_option("restoringbeam", o.clean.restoringbeam, "--niter above 0, or --startmodel, beside it");
   const int smallest = smallest_side(o);
-  if (o.clean.niter > 0 && smallest < 3 && !beam.given)
+  if (o.clean.runs() && smallest < 3 && !beam.given)
     refuse_option("imsize", std::to_string(smallest), "3 pixels or more to fit a beam to, or --restoringbeam");
-  if (!o.clean.startmodel.empty() && o.clean.niter == 0)
-    refuse_option("startmodel", names_of(o.clean.startmodel), "--niter above 0 beside it");
   if (const auto models = static_cast<int>(o.clean.startmodel.size()); models > 1 && models != o.taylor.nterms)
     refuse_option("startmodel", names_of(o.clean.startmodel),
                   o.taylor.nterms == 1 ? "one image, or --nterms " + std::to_string(models) + " beside it"
@@ -146,9 +146,10 @@ void check_clean(const ImageOptions& o) {
     refuse_option(
         "savemodel", o.clean.savemodel,
         "--stokes of I, Q, U and V, or of parallel hands, such as XXYY or RR, of which a column's correlations are made");
-  if (o.clean.savemodel != "none" && o.clean.niter == 0)
-    refuse_option("savemodel", o.clean.savemodel, "--niter above 0 beside it");
-  if (!o.clean.mask.empty() && o.clean.niter == 0) refuse_option("mask", o.clean.mask, "--niter above 0 beside it");
+  if (o.clean.savemodel != "none" && !o.clean.runs())
+    refuse_option("savemodel", o.clean.savemodel, "--niter above 0, or --startmodel, beside it");
+  if (!o.clean.mask.empty() && !o.clean.runs())
+    refuse_option("mask", o.clean.mask, "--niter above 0, or --startmodel, beside it");
   if (o.clean.restart && o.clean.niter == 0) refuse_option("restart", "true", "--niter above 0 beside it");
   check_deconvolver(o.clean, smallest_side(o));
   check_auto_mask(o.clean);

@@ -39,6 +39,9 @@ struct TypedClean {
   std::vector<std::string> startmodel;  ///< images in Jy/pixel, of one or of each Taylor term; empty = none
   std::string savemodel = "none";
   bool restart = false;
+
+  /// Whether there is a CLEAN, if only of a model to begin with, whose residual and restored image are then made.
+  bool runs() const { return niter > 0 || !startmodel.empty(); }
 };
 
 void declare(CLI::App& command, TypedClean& options);

@@ -125,7 +125,7 @@ class ImageRun : private ChannelSink {
     notes_ = notes_on_sets(o_, *set_, header_.geometry);
     for (const std::string& warning : notes_.warnings) warn(warning);
     if (o_.primary_beam.wanted()) find_primary_beam();
-    if (o_.clean.niter > 0 && sharing_.images_here()) open_clean();
+    if (o_.clean.runs() && sharing_.images_here()) open_clean();
     header_.history = history_of(report_.command_line, set_->data_columns());
     if (o_.taylor.nterms > 1) header_.observation.frequency_hz = taylor_expansion(o_.taylor, set_->observation()).reference_hz;
     if (!cube()) header_.spectral = imager::whole_band(header_.observation);
@@ -133,13 +133,13 @@ class ImageRun : private ChannelSink {
   }
 
   void find_primary_beam() {
+    BeamScene scene{set_->beam_rows(), header_.geometry, set_->observation().frequency_hz};
     try {
-      primary_beam_ = std::make_unique<PrimaryBeamStage>(
-          o_.primary_beam, BeamScene{set_->beam_rows(), header_.geometry, set_->observation().frequency_hz},
-          std::max(1, threads_ / sharing_.channels_here(channels())));
-    } catch (const std::runtime_error& error) {
-      if (o_.primary_beam.required()) throw;
-      warn(std::string("no .pb is written: ") + error.what());
+      primary_beam_ = std::make_unique<PrimaryBeamStage>(o_.primary_beam, std::move(scene),
+                                                         std::max(1, threads_ / sharing_.channels_here(channels())));
+    } catch (const NoPrimaryBeam& none) {
+      if (o_.primary_beam.required()) throw std::runtime_error(std::string("--pbcor, --pblimit: ") + none.what());
+      warn(std::string("no .pb is written: ") + none.what());
       o_.primary_beam = {};
     }
   }
@@ -185,7 +185,7 @@ class ImageRun : private ChannelSink {
         .geometry = header_.geometry,
         .reach = reach_,
         .threads = threads_,
-        .mask = o_.clean.niter > 0 && sharing_.images_here() && (!o_.clean.mask.empty() || o_.clean.usemask == "auto"),
+        .mask = o_.clean.runs() && sharing_.images_here() && (!o_.clean.mask.empty() || o_.clean.usemask == "auto"),
         .channels = channels(),
         .workers = std::min(threads_, sharing_.channels_here(channels())),
         .samples = enlarged * (cube() ? static_cast<double>(set_->rows()) * samples_of_a_row(sampling_, windows_) : all),
@@ -240,7 +240,7 @@ class ImageRun : private ChannelSink {
   std::vector<StageSeconds> expected() const { return expected_seconds(plan_, forecast_, work_); }
 
   void begin_channels() {
-    if (ranks_.first() && o_.clean.niter > 0 && !o_.clean.restart) remove_states(o_);
+    if (ranks_.first() && o_.clean.runs() && !o_.clean.restart) remove_states(o_);
     scene_ = std::make_unique<ChannelScene>(ChannelScene{.options = o_,
                                                          .option_values = call_.state_option_values,
                                                          .header = header_,
@@ -318,7 +318,7 @@ class ImageRun : private ChannelSink {
     imager::StageTimes reading;
     visibilities_->begin(batch, progress_, reading);
     add_times(reading, 1);
-    if (cube()) progress_.begin(visibilities_->work_on(batch), o_.clean.niter > 0);
+    if (cube()) progress_.begin(visibilities_->work_on(batch), o_.clean.runs());
     const auto count = static_cast<std::size_t>(batch.count);
     std::atomic<std::uint64_t> done = 0;
     std::atomic<bool> interrupted = false;
@@ -447,7 +447,7 @@ class ImageRun : private ChannelSink {
     add_times(channel.times, at_once_);
     work_.components += channel.components;
     work_.major_cycles += channel.major_cycles;
-    if (cube() && o_.clean.niter > 0 && !channel.empty()) progress_.say(channel_line(channel.report, channels()));
+    if (cube() && o_.clean.runs() && !channel.empty()) progress_.say(channel_line(channel.report, channels()));
     report_.channels.push_back(std::move(channel.report));
     cleaned_ = std::move(channel.cleaned);
   }

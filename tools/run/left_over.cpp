@@ -36,7 +36,7 @@ std::vector<std::string> all_names() {
 
 /// Those of this run.
 std::vector<std::string> own_names(const ImageOptions& o) {
-  const bool cleaned = o.clean.niter > 0;
+  const bool cleaned = o.clean.runs();
   if (o.cube.is_cube()) return {"psf.png", cleaned ? "image.png" : "residual.png"};
   std::vector<std::string> names{"psf.png", "uv.png"};
   const std::vector<imager::Stokes> stokes = imager::parse_stokes(o.stokes);
@@ -119,7 +119,7 @@ void remove_left_over(const ImageOptions& o, const OwnFiles& own, std::vector<st
     std::error_code failed;  // a folder of that name stays
     if (std::count(made.begin(), made.end(), name) == 0 && fs::remove(path, failed)) removed.push_back(path);
   }
-  remove_cube_states(o, o.clean.niter > 0 ? own.cube_channels : 0, removed);
+  remove_cube_states(o, o.clean.runs() ? own.cube_channels : 0, removed);
 }
 
 }  // namespace misfit::tools

@@ -19,8 +19,8 @@ imager::DirectionCosines on_image(const ms_io::FieldPointing& pointing, const Be
   try {
     return imager::direction_cosines(pointing.direction, scene.geometry.phase_centre);
   } catch (const std::invalid_argument&) {
-    throw std::runtime_error("--pbcor, --pblimit: antennas of field " + field_words(pointing, scene.rows.pointings) +
-                             " pointed more than 90 degrees away from the image; expected one within its hemisphere");
+    throw NoPrimaryBeam("antennas of field " + field_words(pointing, scene.rows.pointings) +
+                        " pointed more than 90 degrees away from the image; expected one within its hemisphere");
   }
 }
 
@@ -29,13 +29,12 @@ imager::DirectionCosines on_image(const ms_io::FieldPointing& pointing, const Be
 PrimaryBeamStage::PrimaryBeamStage(const TypedPrimaryBeam& o, BeamScene scene, int threads) : scene_(std::move(scene)) {
   view_.limit = o.limit();
   view_.threads = threads;
-  if (scene_.rows.sorts.empty())
-    throw std::runtime_error("--pbcor, --pblimit: no row of two antennas is selected, and a primary beam needs one");
+  if (scene_.rows.sorts.empty()) throw NoPrimaryBeam("no row of two antennas is selected, and a primary beam needs one");
   for (const imager::AntennaSort& sort : scene_.rows.sorts) {
     try {
       models_.push_back(imager::dish_model(sort));
     } catch (const imager::NoSimpleBeam& error) {
-      throw std::runtime_error("--pbcor, --pblimit: " + std::string(error.what()));
+      throw NoPrimaryBeam(error.what());
     }
   }
   find_pointing();
@@ -52,17 +51,15 @@ void PrimaryBeamStage::find_pointing() {
     const double apart = apart_rad(view_.pointing, on_image(other, scene_));
     const bool itself = other.set == first.set && other.id == first.id;  // at another time
     if (apart > same_pointing_beams * width_rad_)
-      throw std::runtime_error("--pbcor, --pblimit: antennas of fields " + field_words(first, all) + " and " +
-                               field_words(other, all) + " pointed " + angle_text(apart, 3) +
-                               " apart, which makes a mosaic, and primary beams of mosaics are not made; " +
-                               (itself ? "the field moves: choose some of its time with --timerange, or image it about itself, "
-                                         "with --phasecenter TRACKFIELD"
-                                       : "select one with " + std::string(first.set == other.set ? "--field" : "--vis")));
+      throw NoPrimaryBeam("antennas of fields " + field_words(first, all) + " and " + field_words(other, all) + " pointed " +
+                          angle_text(apart, 3) + " apart, which makes a mosaic, and primary beams of mosaics are not made; " +
+                          (itself ? "the field moves: choose some of its time with --timerange, or image it about itself, "
+                                    "with --phasecenter TRACKFIELD"
+                                  : "select one with " + std::string(first.set == other.set ? "--field" : "--vis")));
   }
   if (scene_.rows.beam_offset_rad() > beside * width_rad_)
-    throw std::runtime_error("--pbcor, --pblimit: FEED's column BEAM_OFFSET says that beams point " +
-                             angle_text(scene_.rows.beam_offset_rad(), 3) +
-                             " beside the field's direction; expected beams on the axis of their dishes");
+    throw NoPrimaryBeam("FEED's column BEAM_OFFSET says that beams point " + angle_text(scene_.rows.beam_offset_rad(), 3) +
+                        " beside the field's direction; expected beams on the axis of their dishes");
 }
 
 std::uint32_t PrimaryBeamStage::kind_of(std::uint64_t row) const {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -13,6 +14,11 @@
 
 namespace misfit::tools {
 
+/// Why a run has none, in words.
+struct NoPrimaryBeam : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
 /// What a run's samples were observed with, and how that lies on its image.
 struct BeamScene {
   ms_io::BeamRows rows;
@@ -24,7 +30,7 @@ struct BeamScene {
 /// who calls it.
 class PrimaryBeamStage {
  public:
-  /// Throws std::runtime_error that names what it is about where antennas have no simple beam, fields point in different
+  /// Throws NoPrimaryBeam that names what it is about where antennas have no simple beam, fields point in different
   /// directions, which makes a mosaic, or feeds point beside them.
   PrimaryBeamStage(const TypedPrimaryBeam& options, BeamScene scene, int threads);
 

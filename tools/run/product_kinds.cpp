@@ -31,8 +31,8 @@ void add_spectra(std::vector<ProductKind>& kinds, int terms, const std::string& 
 
 ProductChoice ProductChoice::of(const ImageOptions& o) {
   return {.terms = o.taylor.nterms,
-          .cleaned = o.clean.niter > 0,
-          .masked = o.clean.niter > 0 && (o.clean.usemask == "auto" || !o.clean.mask.empty()),
+          .cleaned = o.clean.runs(),
+          .masked = o.clean.runs() && (o.clean.usemask == "auto" || !o.clean.mask.empty()),
           .primary_beam = o.primary_beam.wanted(),
           .corrected = o.primary_beam.pbcor,
           .weights = o.sumwt};
@@ -76,7 +76,8 @@ std::vector<std::string> all_product_names() {
 
 int product_planes(const ProductChoice& choice, int stokes) {
   int planes = 0;
-  for (const ProductKind& kind : product_kinds(choice)) planes += kind.each_stokes ? stokes : 1;
+  for (const ProductKind& kind : product_kinds(choice))
+    if (!kind.one_pixel) planes += kind.each_stokes ? stokes : 1;
   return planes;
 }
 

@@ -111,7 +111,7 @@ Products::Products(const ImageOptions& options, const imager::ImageHeader& heade
       header_(header),
       primary_beam_(primary_beam),
       workers_(workers),
-      in_common_(options.cube.is_cube() && options.clean.niter > 0 && options.clean.restoringbeam == "common") {
+      in_common_(options.cube.is_cube() && options.clean.runs() && options.clean.restoringbeam == "common") {
   for (const ProductKind& kind : product_kinds(ProductChoice::of(o_))) {
     const std::vector<std::string> paths = image_paths(o_.imagename + "." + kind.name, o_.outformat);
     // A mask that the user has under its name stays.
@@ -241,7 +241,7 @@ void Products::write_stokes(std::size_t stokes, const OfBeam& primary_beam, Chan
   } else {
     put("residual", at, residual, beam);
   }
-  if (o_.primary_beam.pbcor && (result != nullptr || o_.clean.niter == 0))
+  if (o_.primary_beam.pbcor && (result != nullptr || !o_.clean.runs()))
     write_corrected(at, primary_beam, shown, result == nullptr ? nullptr : &restored.spectra, beam);
 }
 

@@ -64,8 +64,7 @@ void RunPictures::draw_dirty(ChannelRun& run) {
       dirty_[s] = sketch(dirty, Shades::brightness, picture_side);
     else
       shown.push_back(of_stokes(
-          s,
-          {.name = o_.clean.niter == 0 ? "residual" : "dirty", .title = "Dirty image", .image = &dirty, .mask = run.mask(s)}));
+          s, {.name = !o_.clean.runs() ? "residual" : "dirty", .title = "Dirty image", .image = &dirty, .mask = run.mask(s)}));
   }
   add(shown);
 }
@@ -92,7 +91,7 @@ void RunPictures::draw_channel(const ChannelReport& channel) {
   about_.observation.frequency_hz = channel.frequency_hz;
   about_.has_beam = channel.beams && channel.beams->restoring;
   if (about_.has_beam) about_.beam = *channel.beams->restoring;
-  const bool cleaned = o_.clean.niter > 0 && channel.stokes.front().clean;
+  const bool cleaned = o_.clean.runs() && channel.stokes.front().clean;
   const std::string kind = cleaned ? "image" : "residual";
   const std::string of = ", plane " + std::to_string(channel.channel) + " at " + frequency_text(channel.frequency_hz, 7) + " " +
                          header_.spectral.frame;

@@ -62,7 +62,7 @@ class RunPlanner {
     decide_columns();
     decide("columns and correlations", "only what Stokes " + o_.stokes + " needs",
            "UVW, antennas, flags, weights and one data column, each read once");
-    if (o_.clean.niter > 0) decide_psf_patch();
+    if (o_.clean.runs()) decide_psf_patch();
     warn_of_neglected_w();
   }
 
@@ -122,7 +122,7 @@ class RunPlanner {
     decide("Taylor terms", std::to_string(o_.taylor.nterms) + " about " + significant(reference_hz / 1e9, 9) + " GHz",
            (o_.taylor.reffreq.empty() ? "the middle of the band" : "--reffreq " + o_.taylor.reffreq) + "; " +
                std::to_string(2 * o_.taylor.nterms - 1) + " spectral PSFs. --accuracy holds for .tt0");
-    if (o_.clean.niter == 0) return;
+    if (!o_.clean.runs()) return;
     const std::string seen =
         "as the antennas saw it: their beam narrows with frequency, which adds −1.5 at the half power of an Airy disc";
     const std::string sky =
@@ -154,7 +154,7 @@ class RunPlanner {
             .stokes = gridding.request.stokes,
             .verify = o_.verify > 0,
             .terms = o_.taylor.nterms,
-            .clean_scales = o_.clean.niter > 0 ? std::max(1, static_cast<int>(o_.clean.scales.size())) : 0,
+            .clean_scales = o_.clean.runs() ? std::max(1, static_cast<int>(o_.clean.scales.size())) : 0,
             .mask = scene_.mask,
             .start_model = !o_.clean.startmodel.empty(),
             .density = weighting_options(o_.weighting).needs_density(),
@@ -218,7 +218,7 @@ void foretell(const RunScene& scene, const TimeForecast& forecast, const RunWork
               RunPlan& plan) {
   for (const auto& [stage, seconds] : times.stages()) plan.spent.push_back({stage, "", seconds});
   if (plan.wider) plan.decisions.push_back(search_decision(plan.wide_field, search_seconds(forecast.expected(work))));
-  const bool cleans = scene.options.clean.niter > 0;
+  const bool cleans = scene.options.clean.runs();
   plan.decisions.push_back(
       {"expected time", duration(total_seconds(expected_seconds(plan, forecast, work))) + (cleans ? " without CLEAN" : ""),
        forecast.knows(work) ? "from counts of operations, and what earlier runs took on this machine"
@@ -248,7 +248,7 @@ RunWork work_of(const RunScene& scene, const RunPlan& plan) {
           .kept = plan.streaming.keep,
           .pixels = static_cast<double>(scene.geometry.pixels()),
           .images = written_images(o, stokes),
-          .pictures = 2 + stokes * (o.clean.niter > 0 ? 4 : 1) + (o.taylor.nterms > 1 && o.clean.niter > 0 ? 1 : 0),
+          .pictures = 2 + stokes * (o.clean.runs() ? 4 : 1) + (o.taylor.nterms > 1 && o.clean.runs() ? 1 : 0),
           .threads = scene.threads,
           .verified = static_cast<double>(o.verify),
           .deconvolver = o.clean.deconvolver,

@@ -77,7 +77,7 @@ class ScaleForecast::Facets {
 };
 
 ScaleForecast::ScaleForecast(const RunScene& scene, const RunPlan& plan, const TimeForecast& forecast, const RunWork& work)
-    : scene_(scene), plan_(plan), forecast_(forecast), work_(work), clean_(scene.options.clean.niter > 0) {}
+    : scene_(scene), plan_(plan), forecast_(forecast), work_(work), clean_(scene.options.clean.runs()) {}
 
 RunWork ScaleForecast::work_of_a_node(int nodes) const {
   RunWork work = work_;

@@ -1,6 +1,7 @@
 #include "tools/run/taylor_options.h"
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <set>
 #include <stdexcept>
 
@@ -38,7 +39,9 @@ void declare(CLI::App& command, TypedTaylor& o) {
 
 void settle_mtmfs(CLI::App& command, ImageOptions& o) {
   if (o.clean.deconvolver != "mtmfs") return;
-  o.clean.deconvolver = o.clean.scales.empty() ? "hogbom" : "multiscale";
+  const bool points = std::all_of(o.clean.scales.begin(), o.clean.scales.end(), [](double scale) { return scale == 0; });
+  if (points) o.clean.scales.clear();
+  o.clean.deconvolver = points ? "hogbom" : "multiscale";
   CLI::Option* terms = command.get_option("--nterms");
   if (terms->count() > 0) return;
   o.taylor.nterms = 2;

@@ -11,7 +11,8 @@ _OWN_NAMES = {"chanwidth": "width"}
 
 def _tell(line):
     warning = line.startswith("warning: ")
-    log.log(logging.WARNING if warning else logging.INFO, "%s", line[len("warning: "):] if warning else line)
+    line = _in_python(line[len("warning: "):] if warning else line)
+    log.log(logging.WARNING if warning else logging.INFO, "%s", line)
 
 
 def tell_all(said):
@@ -25,7 +26,7 @@ def _in_python(message):
     def parameter(option):
         return _OWN_NAMES.get(option[1], option[1].replace("-", "_"))
 
-    return re.sub(r"--([a-z][a-z-]*[a-z])", parameter, message)
+    return re.sub(r"(?<![^\s(,;'])--([a-z][a-z-]*[a-z])\b", parameter, message)
 
 
 def run(words):

@@ -26,11 +26,10 @@ _UNNEEDED = {
     "rotatepastep": (360.0, "it is of gridders for mosaics"),
     "pointingoffsetsigdev": ([], "it is of gridders for mosaics"),
     "normtype": ("flatnoise", "of one field all are the same"),
-    "psfcutoff": (0.35, "beams are fitted to the whole main lobe"),
     "parallel": (False, "all cores share a run in any case"),
     "verbose": (False, "loggers are set up where they are used"),
 }
-_told_unneeded = set()
+_told = set()  # (name, value) of those
 
 # Parameters that can have one value so far, with what else they might be.
 _SINGLE = {
@@ -76,9 +75,15 @@ def _number(value):
     return f"{float(value):.17g}"
 
 
-def _quantity(name, value, unit=""):
-    """A number, a text, or a dictionary as casatools' quanta.quantity() and measures make it."""
+def _quantity(name, value, unit="", frame=None):
+    """
+    A number, a text, or a dictionary as casatools' quanta.quantity() and measures make it; of measures, in this frame. Numbers
+    get `unit`, in texts too.
+    """
     if isinstance(value, dict):
+        refer = value.get("refer", frame)
+        if refer != frame and refer != "RADIO":
+            _refuse(name, value, f"a measure in {frame}, as outframe says")
         value = value.get("m0", value)
         if "value" not in value:
             _refuse(name, value, "a quantity with 'value' and 'unit'")
@@ -87,13 +92,38 @@ def _quantity(name, value, unit=""):
         return _number(value) + unit
     if not isinstance(value, str):
         _refuse(name, value, "a number, text or quantity")
-    return value
+    try:
+        return _number(value) + unit
+    except ValueError:
+        return value
+
+
+def _ellipse(name, values, unit):
+    """One to three values as the program takes them: two sizes and a position angle."""
+    parts = [one for one in _items(values) if one is not None and one != ""]
+    return ",".join(_quantity(name, one, "deg" if index == 2 else unit) for index, one in enumerate(parts))
+
+
+def _channel(value):
+    """The number of a channel, or None for something else."""
+    if isinstance(value, str):
+        value = value.strip()
+        return int(value) if value.lstrip("-").isdigit() else None
+    if isinstance(value, numbers.Real) and not isinstance(value, bool) and float(value).is_integer():
+        return int(value)
+    return None
 
 
 def _whole(name, value):
     if isinstance(value, bool) or not isinstance(value, (numbers.Real, str)):
         _refuse(name, value, "a whole number")
     return value if isinstance(value, str) else _number(value)
+
+
+def _tell_once(level, sentence):
+    if sentence not in _told:
+        _told.add(sentence)
+        _log.log(level, "%s", sentence)
 
 
 class _Words:
@@ -116,9 +146,10 @@ def _check_simple(p):
             if p[name] != only:
                 _refuse(name, p[name], f"{only!r}: {why}")
     for name, (usual, why) in _UNNEEDED.items():
-        if name not in _told_unneeded and list(_items(p[name])) != list(_items(usual)):
-            _told_unneeded.add(name)
-            _log.info("%s=%r changes nothing: %s", name, p[name], why)
+        if _items(p[name]) != _items(usual):
+            _tell_once(logging.INFO, f"{name}={p[name]!r} changes nothing: {why}")
+    if p["psfcutoff"] != 0.35:
+        _tell_once(logging.WARNING, f"psfcutoff={p['psfcutoff']!r} changes nothing: beams are fitted to the whole main lobe")
 
 
 def _give_data(words, p):
@@ -147,6 +178,12 @@ def _give_image(words, p):
     words.give("stokes", stokes)
 
 
+def _spectral(name, value, frame):
+    if isinstance(value, numbers.Real):
+        _refuse(name, value, "a whole number of channels, a frequency such as '1.4GHz' or a velocity such as '20km/s'")
+    return _quantity(name, value, "", frame)
+
+
 def _give_spectrum(words, p):
     specmode = p["specmode"]
     if specmode not in ("mfs", "cube"):
@@ -156,17 +193,17 @@ def _give_spectrum(words, p):
         return
     words.give("specmode", "cube")
     words.give("nchan", _whole("nchan", p["nchan"]))
-    start = p["start"]
-    if isinstance(start, numbers.Integral) or (isinstance(start, str) and start.isdigit()):
-        words.give("start", f"{int(start)}chan")  # of the whole window
+    frame = p["outframe"] or "LSRK"
+    start, width = p["start"], p["width"]
+    if _channel(start) is not None:
+        words.give("start", f"{_channel(start)}chan")  # of the whole window
     elif start != "":
-        words.give("start", _quantity("start", start))
-    width = p["width"]
-    if isinstance(width, numbers.Integral):
-        words.give("width", width)
+        words.give("start", _spectral("start", start, frame))
+    if _channel(width) is not None:
+        words.give("width", _channel(width))
     elif width != "":
-        words.give("width", _quantity("width", width))
-    words.give("outframe", p["outframe"] or "LSRK")
+        words.give("width", _spectral("width", width, frame))
+    words.give("outframe", frame)
     if restfreq:
         words.give("restfreq", _quantity("restfreq", restfreq[0], "Hz"))
     words.give("interpolation", p["interpolation"])
@@ -183,9 +220,9 @@ def _give_weights(words, p):
         words.give("robust", _number(p["robust"]))
     if p["npixels"]:
         words.give("npixels", p["npixels"])
-    taper = [_quantity("uvtaper", one, "arcsec") for one in _items(p["uvtaper"]) if one != ""]
+    taper = _ellipse("uvtaper", p["uvtaper"], "lambda")
     if taper:
-        words.give("uvtaper", ",".join(taper))
+        words.give("uvtaper", taper)
     gridder = p["gridder"]
     if gridder not in _GRIDDERS:
         _refuse("gridder", gridder, "'standard', 'wproject' or 'widefield': mosaics are not made yet")
@@ -206,6 +243,8 @@ def _give_deconvolver(words, p):
     if terms:
         words.give("nterms", p["nterms"])
     if p["reffreq"] != "":
+        if not terms:
+            _refuse("reffreq", p["reffreq"], "deconvolver='mtmfs' beside it")
         words.give("reffreq", _quantity("reffreq", p["reffreq"], "Hz"))
 
 
@@ -223,27 +262,26 @@ def _give_clean(words, p):
     usemask = p["usemask"]
     if usemask not in ("user", "auto-multithresh"):
         _refuse("usemask", usemask, "'user' or 'auto-multithresh'")
-    if not p["restoration"] and float(p["niter"]):
+    if not p["restoration"] and p["cleans"]:
         _refuse("restoration", p["restoration"], "True: restored images come with every model")
-    beam = [_quantity("restoringbeam", one, "arcsec") for one in _items(p["restoringbeam"]) if one != ""]
-    masks = [os.fspath(mask) for mask in _items(p["mask"]) if mask != ""]
-    if len(masks) > 1:
-        _refuse("mask", p["mask"], "one mask: lists of them are not taken yet")
-    if not float(p["niter"]):
+    beam = "common" if list(_items(p["restoringbeam"])) == ["common"] else _ellipse("restoringbeam", p["restoringbeam"], "arcsec")
+    savemodel = p["savemodel"]
+    if savemodel not in ("none", "modelcolumn"):
+        _refuse("savemodel", savemodel, "'none' or 'modelcolumn'")
+    if not p["cleans"]:
+        if savemodel != "none":
+            _refuse("savemodel", savemodel, "niter above 0, or a model to begin with")
         return
     if beam:
-        words.give("restoringbeam", ",".join(beam))
-    if masks:
-        words.give("mask", masks[0])
-    if usemask == "auto-multithresh":
+        words.give("restoringbeam", beam)
+    words.give("savemodel", savemodel)
+    if p["masks"]:
+        words.give("mask", p["masks"][0])
+    if usemask == "auto-multithresh" and float(p["niter"]):
         words.give("usemask", usemask)
         for name in ("sidelobethreshold", "noisethreshold", "lownoisethreshold", "minbeamfrac"):
             words.give(name, _number(p[name]))
         words.give("growiterations", p["growiterations"])
-    savemodel = p["savemodel"]
-    if savemodel not in ("none", "modelcolumn"):
-        _refuse("savemodel", savemodel, "'none' or 'modelcolumn'")
-    words.give("savemodel", savemodel)
 
 
 def _existing(imagename, kind, terms):
@@ -267,38 +305,60 @@ def _name_beside(imagename):
     return name
 
 
-def _give_beginning(words, p):
-    """What CLEAN begins with: a model given, or the one that a run of the same imagename left."""
-    imagename = os.fspath(p["imagename"])
+def _paths(name, value):
+    try:
+        return [os.fspath(one) for one in _items(value) if one is not None and one != ""]
+    except TypeError:
+        _refuse(name, value, "a name, or several")
+
+
+def _settle_beginning(p):
+    """
+    What CLEAN begins with: the model and mask given, or those that runs of the same imagename left. Adds to the parameters
+    `models`, `masks` and `cleans`, and changes imagename where that is to lie beside.
+    """
+    p["imagename"] = imagename = "".join(_paths("imagename", p["imagename"])[:1])
     if not imagename:
         _refuse("imagename", imagename, "a name for images to begin with")
     terms = int(p["nterms"]) if p["deconvolver"] == "mtmfs" else 1
-    start = [os.fspath(one) for one in _items(p["startmodel"]) if one != ""]
+    start, masks = _paths("startmodel", p["startmodel"]), _paths("mask", p["mask"])
+    if len(masks) > 1:
+        _refuse("mask", p["mask"], "one mask: lists of them are not taken yet")
     if not p["restart"]:
-        imagename = _name_beside(imagename)
+        p["imagename"] = _name_beside(imagename)
     else:
         for name, kind in (("calcpsf", "psf"), ("calcres", "residual")):
             if not p[name] and _existing(imagename, kind, terms) is None:
                 _refuse(name, p[name], f"{imagename}.{kind}{'.tt0' if terms > 1 else ''}, which is not there, or {name}=True")
-        model = _existing(imagename, "model", terms)
+        model, mask = _existing(imagename, "model", terms), _existing(imagename, "mask", 1)
+        other = _existing(imagename, "model", 1 if terms > 1 else 2)
+        if model is None and other is not None:
+            _refuse("deconvolver", p["deconvolver"], f"that of {other[0]}, which restart=True goes on from; or another imagename")
         if model is not None and start:
-            _refuse("startmodel", p["startmodel"],
-                    f"none, as {model[0]} is what restart=True begins with; or restart=False")
-        if model is not None and float(p["niter"]):
+            _refuse("startmodel", p["startmodel"], f"none, as {model[0]} is what restart=True begins with; or restart=False")
+        if model is not None:
             start = model
             _log.info("CLEAN goes on from %s", ", ".join(model))
-    words.give("imagename", imagename)
-    if start and float(p["niter"]):
-        words.give("startmodel", *start)
+        if mask is not None and not masks and p["usemask"] == "user":
+            masks = mask
+            _log.info("CLEAN keeps to %s", mask[0])
+    p.update(models=start, masks=masks, cleans=bool(float(p["niter"]) or start))
 
 
 def _words_of(p):
     _check_simple(p)
+    _settle_beginning(p)
     words = _Words()
-    for give in (_give_data, _give_image, _give_spectrum, _give_weights, _give_clean, _give_beginning):
+    for give in (_give_data, _give_image, _give_spectrum, _give_weights, _give_clean):
         give(words, p)
+    words.give("imagename", p["imagename"])
+    if p["models"]:
+        words.give("startmodel", *p["models"])
+    limit = p["pblimit"]
+    if not -1 < limit < 1:
+        _refuse("pblimit", limit, "a number between -1 and 1, such as 0.2")
     words.flag("pbcor", p["pbcor"])
-    words.give("pblimit", _number(abs(p["pblimit"]) or 0.2))
+    words.give("pblimit", _number(abs(limit) or 1e-6))
     words.flag("pb", True)
     words.flag("sumwt", True)
     words.give("outformat", p["outformat"])
@@ -341,10 +401,8 @@ def _summary_of_plane(log, full):
         "cycleThresh": [cycle["cycle_threshold_jy"] for cycle in cycles],
     }
     if full:
-        started = [sum(done[:index]) for index in range(len(done))]
         summary.update({
-            "cycleStartIters": started,
-            "startIterDone": started,
+            "startIterDone": [float(sum(done[:index])) for index in range(len(done))],
             "startPeakRes": [start["peak_residual_jy"] for start in before],
             "startModelFlux": [start["model_flux_jy"] for start in before],
             "stopCode": [float(_minor_stop(cycle["ended"])) for cycle in cycles],
@@ -365,9 +423,14 @@ def _dictionary(report, p):
     all_minor = [summary for of in minor.values() for summary in of.values()]
     major = 1 + max((len(summary["iterDone"]) for summary in all_minor), default=0)
     totals = [sum(sum(summary["iterDone"][:cycle]) for summary in all_minor) for cycle in range(major)]
+    for summary in all_minor if p["fullsummary"] else ():
+        summary["cycleStartIters"] = [float(total) for total in totals[:len(summary["iterDone"])]]
     cleans = [stokes["clean"] for plane in planes for stokes in plane["stokes"] if stokes["clean"]]
     codes = {clean["stop_code"] for clean in cleans}
     code = next((code for code in _STOPS_FIRST if code in codes), 1)
+    if code == 1 and len(cleans) > 1 and float(p["niter"]):
+        _log.warning("niter=%s was reached: it is of each of %d planes and Stokes parameters, not of all together", p["niter"],
+                     len(cleans))
     thresholds = [summary["cycleThresh"][-1] for summary in all_minor if summary["cycleThresh"]]
     return {
         "cleanstate": "running",
@@ -552,7 +615,7 @@ def tclean(
     usepointing, computepastep, rotatepastep, pointingoffsetsigdev : various
         Of mosaics.
     pblimit : float
-        Below it .pb and .image.pbcor have no values.
+        Where the beam is lower .pb and .image.pbcor have no values; its sign makes no difference: other images are not masked.
     normtype : str
         Not needed of one field.
     deconvolver : str
@@ -580,9 +643,9 @@ def tclean(
     npixels : int
         Of superuniform.
     uvtaper : list of str
-        Taper: one to three values.
+        Taper: one to three values; in wavelengths without a unit.
     niter : int
-        Components to find at most, in each plane of a cube; 0 makes the dirty image.
+        Components to find at most, in each plane of a cube and Stokes parameter; 0 makes the dirty image, or what a model leaves.
     gain : float
         Part of a peak that a component takes.
     threshold : str or number
@@ -598,7 +661,7 @@ def tclean(
     nmajor : int
         Major cycles at most.
     fullsummary : bool
-        Whether summaryminor has all keys.
+        Whether summaryminor has cycleStartIters, startIterDone, startPeakRes, startModelFlux and stopCode too.
     usemask : str
         "user" or "auto-multithresh".
     mask : path or str
@@ -610,7 +673,8 @@ def tclean(
     growiterations, dogrowprune, minpercentchange, verbose, fastnoise : various
         Of auto-multithresh.
     restart : bool
-        Whether CLEAN goes on from a .model of the same imagename; else images are written beside, as imagename_1 and so on.
+        Whether CLEAN goes on from a .model of the same imagename, within its .mask where no other is given; else images are
+        written beside, as imagename_1 and so on.
     savemodel : str
         "none" or "modelcolumn".
     calcres, calcpsf : bool
@@ -638,7 +702,7 @@ def tclean(
         As tclean's: stopcode, stopDescription, iterdone, nmajordone (the first residual included), summarymajor,
         summaryminor[field][channel][stokes][key], a list over sets of minor cycles, and others; peakRes is that of the residual
         which the next major cycle made. Under "misfit" stands the run's own report, as in <imagename>.report.json. Of a dry
-        run: "plan" and what else is known before.
+        run: "plan" and what else is known before. The report's memory_gib_peak is that of the whole process, ever.
 
     Raises
     ------
