@@ -216,6 +216,8 @@ class Returned(Sets):
         self.assertEqual(plane["iterDone"], [30, 30, 30, 10])
         self.assertEqual(list(made["summarymajor"]), [0, 30, 60, 90, 100])
         self.assertEqual((made["iterdone"], made["nmajordone"], made["stopcode"]), (100, 5, 1))
+        for threshold, jy in (("3.5mJy", 3.5e-3), (2, 2), ("0.5", 0.5), ({"value": 5, "unit": "uJy"}, 5e-6)):
+            self.assertAlmostEqual(self.tclean("flux", threshold=threshold, dryrun=False)["threshold"] / jy, 1)
         self.assertEqual(plane["cycleStartIters"], [0, 30, 60, 90])
         self.assertEqual(plane["startPeakRes"], [cycle["peak_residual_jy"] for cycle in log[:-1]])
         self.assertEqual(plane["stopCode"], [1, 1, 1, 1])
@@ -304,6 +306,47 @@ class GoingOn(Sets):
     def test_images_that_are_to_be_there_are_named(self):
         self.assertIn("refused.psf, which is not there, or calcpsf=True", self.refusal(calcpsf=False))
         self.assertIn("refused.residual.tt0, which", self.refusal(calcres=False, deconvolver="mtmfs"))
+        self.tclean("half", niter=2, deconvolver="mtmfs", outformat="fits")
+        os.remove(self.name("half.model.tt1.fits"))
+        self.assertIn("half.model.tt1 is not there: expected it beside",
+                      self.refusal(imagename=self.name("half"), niter=2, deconvolver="mtmfs"))
+
+    def test_the_newer_of_both_formats_goes_on(self):
+        fluxes = [self.tclean("formats", niter=5, cycleniter=5, outformat=form)["misfit"]["clean"]["model_flux_jy"]
+                  for form in ("casa", "fits", "fits", "casa")]
+        self.assertEqual(fluxes, sorted(fluxes))
+        self.assertEqual(len(set(fluxes)), 4)
+
+    def test_calls_at_once_of_one_name_go_on_from_each_other(self):
+        fluxes = []
+
+        def call():
+            fluxes.append(self.tclean("atonce", niter=5, cycleniter=5)["misfit"]["clean"]["model_flux_jy"])
+
+        threads = [threading.Thread(target=call) for _ in range(2)]
+        for thread in threads:
+            thread.start()
+        for thread in threads:
+            thread.join()
+        self.assertEqual(len(set(fluxes)), 2)
+
+    def test_a_call_within_a_call_is_refused(self):
+        class Calling(logging.Handler):
+            def __init__(self, call):
+                super().__init__()
+                self.call, self.said = call, None
+
+            def emit(self, record):
+                try:
+                    self.call()
+                except RuntimeError as error:
+                    self.said = str(error)
+
+        handler, log = Calling(lambda: self.tclean("within")), logging.getLogger("misfit")
+        log.addHandler(handler)
+        self.addCleanup(log.removeHandler, handler)
+        self.tclean("outer", cell="1arcsec")  # which warns
+        self.assertIn("a run of misfit is going on in this thread", handler.said)
 
 
 class Refused(Sets):
@@ -317,7 +360,9 @@ class Refused(Sets):
                            dict(deconvolver="mem"), dict(pbmask=0.2), dict(niter=-1),
                            dict(cell=["1arcsec", "2arcsec"]), dict(imsize=[64.5]), dict(gain=2, niter=1),
                            dict(datacolumn="residual"), dict(mask=["a", "b"], niter=1), dict(restoration=False, niter=1), dict(savemodel="virtual"), dict(savemodel="modelcolumn"), dict(reffreq="1GHz"),
-                           dict(mask=5, niter=1), dict(pblimit=-1), dict(specmode="cube", start=1.5), dict(imagename=None),
+                           dict(mask=5, niter=1), dict(scales="0,5"), dict(stokes=["I"]), dict(gain=None),
+                           dict(imsize=[]), dict(datacolumn=["data", "data"]), dict(niter=""), dict(pblimit="x"),
+                           dict(pblimit=-1), dict(specmode="cube", start=1.5), dict(imagename=None),
                            dict(threshold=[1], niter=1), dict(vis=[]), dict(imagename=""), dict(spw=["0", "0", "0"])):
             with self.subTest(parameters):
                 words = self.refusal(**parameters)

@@ -110,7 +110,6 @@ BOOST_AUTO_TEST_CASE(options_with_impossible_values_are_wrong_usage) {
   scene.usage("--restoringbeam", "2arcsec,1arcsec", "MAJ,MIN,PA");
   for (const char* beam : {"0arcsec", "1", "1arcsec,", ",", "2arcsec,1arcsec,30", "2arcsec,1arcsec,3deg,", "100deg"})
     scene.usage("--restoringbeam", beam, "expected common, circular, MAJ");
-  scene.usage("--startmodel", "model.fits", "expected --niter above 0");
   scene.usage("--savemodel", "modelcolumn", "expected --niter above 0");
   scene.usage("--savemodel", "virtual", "modelcolumn");
   scene.usage("--mask", "mask.crtf", "expected --niter above 0");

@@ -187,22 +187,20 @@ BOOST_AUTO_TEST_CASE(a_plane_has_the_beam_of_its_frequency) {
 }
 
 BOOST_AUTO_TEST_CASE(what_has_no_simple_beam_is_refused_in_a_line) {
-  BOOST_TEST(
-      refusal(scene({{"LOFAR", 31.26, "CS001HBA0"}})) ==
-      "--pbcor, --pblimit: LOFAR has no simple primary beam: its stations are arrays of dipoles, whose beams change with "
-      "direction, time and frequency");
+  BOOST_TEST(refusal(scene({{"LOFAR", 31.26, "CS001HBA0"}})) ==
+             "LOFAR has no simple primary beam: its stations are arrays of dipoles, whose beams change with "
+             "direction, time and frequency");
   BOOST_TEST(refusal(scene({{"EVLA", 25, "ea01"}})) == "");
   BeamScene mosaic = scene({{"EVLA", 25, "ea01"}});
   mosaic.rows.pointings.push_back({"1 (M51b)", {middle.ra_rad, middle.dec_rad + 0.1 * degree, "FK5"}, 1});
   BOOST_TEST(refusal(mosaic) ==
-             "--pbcor, --pblimit: antennas of fields 0 (M51) and 1 (M51b) pointed 6 arcmin apart, which makes a mosaic, and "
+             "antennas of fields 0 (M51) and 1 (M51b) pointed 6 arcmin apart, which makes a mosaic, and "
              "primary beams of mosaics are not made; select one with --field");
   mosaic.rows.pointings.front().set = "a.ms";
   mosaic.rows.pointings.back().set = "b.ms";
-  BOOST_TEST(
-      refusal(mosaic) ==
-      "--pbcor, --pblimit: antennas of fields 0 (M51) of a.ms and 1 (M51b) of b.ms pointed 6 arcmin apart, which makes a "
-      "mosaic, and primary beams of mosaics are not made; select one with --vis");
+  BOOST_TEST(refusal(mosaic) ==
+             "antennas of fields 0 (M51) of a.ms and 1 (M51b) of b.ms pointed 6 arcmin apart, which makes a "
+             "mosaic, and primary beams of mosaics are not made; select one with --vis");
   mosaic.rows.pointings.back().set = mosaic.rows.pointings.front().set;
   mosaic.rows.pointings.back().id = mosaic.rows.pointings.front().id;
   BOOST_TEST(refusal(mosaic).find("the field moves: choose some of its time with --timerange") != std::string::npos);
@@ -210,12 +208,12 @@ BOOST_AUTO_TEST_CASE(what_has_no_simple_beam_is_refused_in_a_line) {
   BOOST_TEST(refusal(mosaic) == "");
   mosaic.rows.pointings = {{"0 (M51)", {middle.ra_rad + imager::pi, -middle.dec_rad, "FK5"}}};
   BOOST_TEST(refusal(mosaic) ==
-             "--pbcor, --pblimit: antennas of field 0 (M51) pointed more than 90 degrees away from the image; "
+             "antennas of field 0 (M51) pointed more than 90 degrees away from the image; "
              "expected one within its hemisphere");
   BeamScene beside_axis = scene({{"ATCA", 22, "ATCA1"}});
   beside_axis.rows.feeds = {{0, 0.15 * degree, -0.2 * degree}};
   BOOST_TEST(refusal(beside_axis) ==
-             "--pbcor, --pblimit: FEED's column BEAM_OFFSET says that beams point 15 arcmin beside the "
+             "FEED's column BEAM_OFFSET says that beams point 15 arcmin beside the "
              "field's direction; expected beams on the axis of their dishes");
   BOOST_TEST(refusal(scene({})).find("no row of two antennas is selected") != std::string::npos);
 }

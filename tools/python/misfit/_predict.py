@@ -10,7 +10,8 @@ def _write(vis, options, flags=()):
     for name, value in options.items():
         if value is not None and value != "":
             words += ["--" + name, str(value)]
-    report, said = _program.run(words)
+    with _program.turn.taken():
+        report, said = _program.run(words)
     _program.tell_all(said)
     return report
 

@@ -1,12 +1,37 @@
 """The program in this process."""
 
+import contextlib
 import json
 import logging
+import os
 import re
+import signal
 import threading
 
 log = logging.getLogger("misfit")
 _OWN_NAMES = {"chanwidth": "width"}
+
+
+class _Turn:
+    """One run at a time, with all that it finds and leaves on disk: others wait, and Ctrl-C ends their waiting."""
+
+    def __init__(self):
+        self._lock = threading.Lock()
+        self._owner = None
+
+    @contextlib.contextmanager
+    def taken(self):
+        if self._owner == threading.get_ident():
+            raise RuntimeError("a run of misfit is going on in this thread, which called this function; expected a call after it")
+        with self._lock:
+            self._owner = threading.get_ident()
+            try:
+                yield
+            finally:
+                self._owner = None
+
+
+turn = _Turn()
 
 
 def _tell(line):
@@ -26,12 +51,12 @@ def _in_python(message):
     def parameter(option):
         return _OWN_NAMES.get(option[1], option[1].replace("-", "_"))
 
-    return re.sub(r"(?<![^\s(,;'])--([a-z][a-z-]*[a-z])\b", parameter, message)
+    return re.sub(r"(?<![^\s(,;])--([a-z][a-z-]*[a-z])\b", parameter, message)
 
 
 def run(words):
     """
-    Run a command of the program, here, while other Python threads run.
+    Run a command of the program, here, while other Python threads run, in a turn that the caller has taken.
 
     Its lines go to the logger "misfit": warnings as such, the rest as information. Ctrl-C ends CLEAN after its major cycle, and
     all else, or CLEAN when it comes twice, soon.
@@ -59,13 +84,19 @@ def run(words):
     """
     from . import _imaging  # takes casacore, which arrays need not
 
-    main = threading.current_thread() is threading.main_thread()
     try:
-        report, said, stopped = _imaging.run(words, _tell, main)
+        os.getcwd()
+    except FileNotFoundError:
+        raise RuntimeError("the current folder is not there any more; expected one, as casacore needs it") from None
+    # Who has a handler of their own keeps it.
+    usual = threading.current_thread() is threading.main_thread() and signal.getsignal(signal.SIGINT) is signal.default_int_handler
+    try:
+        report, said, stopped = _imaging.run(words, _tell, usual)
     except _imaging.WrongUsage as error:
         raise ValueError(_in_python(str(error))) from None
     except RuntimeError as error:
         raise RuntimeError(_in_python(str(error))) from None
     if stopped:
-        raise KeyboardInterrupt(said or "stopped by the user")
+        tell_all(said)
+        raise KeyboardInterrupt("stopped by the user")
     return json.loads(report), said

@@ -3,6 +3,7 @@
 import logging
 import numbers
 import os
+import re
 from pathlib import Path
 
 import numpy as np
@@ -73,6 +74,14 @@ def _items(value):
 
 def _number(value):
     return f"{float(value):.17g}"
+
+
+def _real(p, name):
+    """A parameter that is a number, as text."""
+    try:
+        return _number(p[name])
+    except (TypeError, ValueError):
+        _refuse(name, p[name], "a number")
 
 
 def _quantity(name, value, unit="", frame=None):
@@ -162,17 +171,22 @@ def _give_data(words, p):
         if any(values):
             words.give(name, *values)
     column = p["datacolumn"]
-    if column not in _COLUMNS:
+    if not isinstance(column, str) or column not in _COLUMNS:
         _refuse("datacolumn", column, "one of " + ", ".join(map(repr, _COLUMNS)))
     words.give("datacolumn", _COLUMNS[column])
 
 
 def _give_image(words, p):
-    words.give("imsize", *(_whole("imsize", side) for side in _items(p["imsize"])))
-    words.give("cell", *(_quantity("cell", side, "arcsec") for side in _items(p["cell"])))
+    sides, cells = _items(p["imsize"]), [side for side in _items(p["cell"]) if side != ""]
+    if not sides:
+        _refuse("imsize", p["imsize"], "a width, or width and height")
+    words.give("imsize", *(_whole("imsize", side) for side in sides))
+    words.give("cell", *(_quantity("cell", side, "arcsec") for side in cells or ["1arcsec"]))
     if p["phasecenter"] != "":
         words.give("phasecenter", p["phasecenter"])
     stokes = p["stokes"]
+    if not isinstance(stokes, str):
+        _refuse("stokes", stokes, "a text such as 'IQUV'")
     if stokes.lower() == "pseudoi":
         _refuse("stokes", stokes, "I, Q, U, V or hands: pseudoI is not made yet")
     words.give("stokes", stokes)
@@ -217,7 +231,7 @@ def _give_weights(words, p):
         _refuse("weighting", weighting, "'natural', 'uniform', 'superuniform' or 'briggs'")
     words.give("weighting", weighting)
     if weighting == "briggs":
-        words.give("robust", _number(p["robust"]))
+        words.give("robust", _real(p, "robust"))
     if p["npixels"]:
         words.give("npixels", p["npixels"])
     taper = _ellipse("uvtaper", p["uvtaper"], "lambda")
@@ -233,13 +247,16 @@ def _give_deconvolver(words, p):
     deconvolver = p["deconvolver"]
     if deconvolver not in _DECONVOLVERS:
         _refuse("deconvolver", deconvolver, "one of " + ", ".join(map(repr, _DECONVOLVERS)))
-    scales = [float(scale) for scale in _items(p["scales"])]
+    try:
+        scales = [float(scale) for scale in _items(() if p["scales"] is None else p["scales"])]
+    except (TypeError, ValueError):
+        _refuse("scales", p["scales"], "a list of numbers, in pixels")
     terms = deconvolver == "mtmfs"
     multiscale = deconvolver == "multiscale" or (terms and any(scales))
     words.give("deconvolver", "multiscale" if multiscale else "hogbom" if terms else deconvolver)
     if multiscale:
         words.give("scales", ",".join(_number(scale) for scale in scales or [0.0]))
-        words.give("smallscalebias", _number(p["smallscalebias"]))
+        words.give("smallscalebias", _real(p, "smallscalebias"))
     if terms:
         words.give("nterms", p["nterms"])
     if p["reffreq"] != "":
@@ -250,12 +267,9 @@ def _give_deconvolver(words, p):
 
 def _give_clean(words, p):
     words.give("niter", _whole("niter", p["niter"]))
-    words.give("gain", _number(p["gain"]))
     words.give("threshold", _quantity("threshold", p["threshold"], "Jy"))
-    words.give("nsigma", _number(p["nsigma"]))
-    words.give("cyclefactor", _number(p["cyclefactor"]))
-    words.give("minpsffraction", _number(p["minpsffraction"]))
-    words.give("maxpsffraction", _number(p["maxpsffraction"]))
+    for name in ("gain", "nsigma", "cyclefactor", "minpsffraction", "maxpsffraction"):
+        words.give(name, _real(p, name))
     words.give("cycleniter", _whole("cycleniter", p["cycleniter"]))
     words.give("nmajor", _whole("nmajor", p["nmajor"]))
     _give_deconvolver(words, p)
@@ -280,18 +294,21 @@ def _give_clean(words, p):
     if usemask == "auto-multithresh" and float(p["niter"]):
         words.give("usemask", usemask)
         for name in ("sidelobethreshold", "noisethreshold", "lownoisethreshold", "minbeamfrac"):
-            words.give(name, _number(p[name]))
+            words.give(name, _real(p, name))
         words.give("growiterations", p["growiterations"])
 
 
 def _existing(imagename, kind, terms):
-    """The images of a kind that there are, in Taylor terms' order, as CASA images or FITS files; None where one is missing."""
-    found = []
-    for name in [f"{imagename}.{kind}.tt{term}" for term in range(terms)] if terms > 1 else [f"{imagename}.{kind}"]:
-        path = next((path for path in (name, name + ".fits") if Path(path).exists()), None)
-        if path is None:
-            return None
-        found.append(path)
+    """The images of a kind that there are, in Taylor terms' order, of CASA images and FITS files the newer; None where there are
+    none."""
+    names = [f"{imagename}.{kind}.tt{term}" for term in range(terms)] if terms > 1 else [f"{imagename}.{kind}"]
+    found = [max((path for path in (name, name + ".fits") if Path(path).exists()), key=os.path.getmtime, default=None)
+             for name in names]
+    if all(path is None for path in found):
+        return None
+    if None in found:
+        raise ValueError(f"{names[found.index(None)]} is not there: expected it beside "
+                         f"{next(path for path in found if path is not None)}, or restart=False")
     return found
 
 
@@ -310,6 +327,13 @@ def _paths(name, value):
         return [os.fspath(one) for one in _items(value) if one is not None and one != ""]
     except TypeError:
         _refuse(name, value, "a name, or several")
+
+
+def _flux_jy(value):
+    """A threshold in Jy, as the program has taken it."""
+    text = _quantity("threshold", value, "Jy").strip()
+    number = re.match(r"[-+.\deE]*\d[.]?", text)[0]
+    return float(number) * {"mJy": 1e-3, "uJy": 1e-6, "nJy": 1e-9, "kJy": 1e3}.get(text[len(number):].strip(), 1.0)
 
 
 def _settle_beginning(p):
@@ -342,7 +366,7 @@ def _settle_beginning(p):
         if mask is not None and not masks and p["usemask"] == "user":
             masks = mask
             _log.info("CLEAN keeps to %s", mask[0])
-    p.update(models=start, masks=masks, cleans=bool(float(p["niter"]) or start))
+    p.update(models=start, masks=masks, cleans=bool(float(_real(p, "niter")) or start))
 
 
 def _words_of(p):
@@ -354,7 +378,7 @@ def _words_of(p):
     words.give("imagename", p["imagename"])
     if p["models"]:
         words.give("startmodel", *p["models"])
-    limit = p["pblimit"]
+    limit = float(_real(p, "pblimit"))
     if not -1 < limit < 1:
         _refuse("pblimit", limit, "a number between -1 and 1, such as 0.2")
     words.flag("pbcor", p["pbcor"])
@@ -454,7 +478,7 @@ def _dictionary(report, p):
         "stopDescription": _STOP_TEXT[code],
         "summarymajor": np.array(totals, dtype=int),
         "summaryminor": {0: minor},
-        "threshold": p["threshold"],
+        "threshold": _flux_jy(p["threshold"]),
         "misfit": report,
     }
 
@@ -714,7 +738,7 @@ def tclean(
         After Ctrl-C. CLEAN ends with its major cycle, and writes its images before.
     """
     parameters = dict(locals())
-    words = _words_of(parameters)
-    report, said = _program.run(words)
+    with _program.turn.taken():
+        report, said = _program.run(_words_of(parameters))
     _program.tell_all(said)
     return report if dryrun else _dictionary(report, parameters)
