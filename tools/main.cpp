@@ -8,7 +8,6 @@
 #include <cstdlib>
 #include <cstring>
 #include <exception>
-#include <filesystem>
 #include <iostream>
 #include <memory>
 #include <new>
@@ -94,9 +93,6 @@ int run(int argc, char** argv, const World& world) {
 /// The run among the processes that share it, which have all left it when this returns.
 int run_together(int argc, char** argv) {
   try {
-    std::error_code gone;
-    std::filesystem::current_path(gone);
-    if (gone) throw std::runtime_error("the current folder is not there any more; expected one, as casacore needs it");
     const World world;
     return run(argc, argv, world);
   } catch (const std::exception& error) {

@@ -93,7 +93,7 @@ CLEANS = {
     "circular beam, two sides of a pixel": [
         image("narrow", f"{CLEAN} --restoringbeam circular --imsize 128 --cell 0.3arcsec 300mas")],
     "restart": [image("narrow", "--niter 40"), image("narrow", f"{CLEAN} --restart"),
-                image("narrow", "--niter 400 --restart --gain 0.2", step="refused 1")],
+                image("narrow", "--niter 400 --restart --weighting uniform", step="refused 1")],
     "restart after a kill": [image("narrow", DEEP, step="killed .err components,"), image("narrow", f"{DEEP} --restart")],
 }
 

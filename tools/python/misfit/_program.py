@@ -82,12 +82,12 @@ def run(words):
     KeyboardInterrupt
         Where the user stopped it; images that CLEAN had then are written.
     """
-    from . import _imaging  # takes casacore, which arrays need not
-
     try:
         os.getcwd()
     except FileNotFoundError:
         raise RuntimeError("the current folder is not there any more; expected one, as casacore needs it") from None
+    from . import _imaging  # takes casacore, which arrays need not
+
     # Who has a handler of their own keeps it.
     usual = threading.current_thread() is threading.main_thread() and signal.getsignal(signal.SIGINT) is signal.default_int_handler
     try:
