@@ -84,15 +84,18 @@ BOOST_AUTO_TEST_CASE(the_model_is_written_into_each_set_as_that_sees_it) {
 
 BOOST_AUTO_TEST_CASE(a_phase_centre_that_the_antennas_hardly_see_is_warned_of) {
   const TemporaryFolder folder;  // the snapshot's field lies at +40d; λ/D is 0.17 degrees
-  const auto warnings_at = [&](const std::string& dec) {
-    succeed(small_image(snapshot(), folder / "a") + Arguments{"--phasecenter", "J2000 4h00m00s " + dec});
-    return report_of(folder / "a")["warnings"].dump();
-  };
-  BOOST_TEST(warnings_at("+40d06m00s").find("first null") == std::string::npos);  // 0.6 λ/D: within the main lobe
-  const std::string far = warnings_at("+42d00m00s");
-  BOOST_TEST(far.find("beyond the first null of the beam: field 0 (SIMULATED), 120 arcmin away (11.4 beam widths)") !=
-                 std::string::npos,
-             far);
+  for (const char* specmode : {"mfs", "cube"}) {
+    const auto warnings_at = [&](const std::string& dec) {
+      succeed(small_image(snapshot(), folder / "a") +
+              Arguments{"--phasecenter", "J2000 4h00m00s " + dec, "--specmode", specmode});
+      return report_of(folder / "a")["warnings"].dump();
+    };
+    BOOST_TEST(warnings_at("+40d06m00s").find("first null") == std::string::npos);  // 0.6 λ/D: within the main lobe
+    const std::string far = warnings_at("+42d00m00s");
+    BOOST_TEST(far.find("beyond the first null of the beam: field 0 (SIMULATED), 120 arcmin away (11.4 beam widths)") !=
+                   std::string::npos,
+               far);
+  }
 }
 
 BOOST_AUTO_TEST_CASE(what_cannot_be_one_image_is_one_line_that_says_why) {
