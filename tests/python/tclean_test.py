@@ -349,6 +349,52 @@ class GoingOn(Sets):
         self.assertIn("a run of misfit is going on in this thread", handler.said)
 
 
+@unittest.skipIf(fits is None, "there is no python3-astropy")
+class ByHand(Sets):
+    """CLEAN a major cycle at a time."""
+
+    def test_cycles_without_masks_are_those_of_one_run(self):
+        whole = self.tclean("whole", niter=60, cycleniter=20, outformat="fits")
+        cycles = list(misfit.clean_cycles(self.sets[0], imagename=self.name("cycles"), imsize=64, cell="0.2arcsec", niter=60,
+                                          cycleniter=20))
+        self.assertEqual([cycle.number for cycle in cycles], [0, 1, 2, 3])
+        np.testing.assert_array_equal(cycles[-1].residual, fits.getdata(self.name("whole.residual.fits")))
+        for cycle, peak in zip(cycles[1:], whole["summaryminor"][0][0][0]["peakRes"]):
+            self.assertAlmostEqual(np.abs(cycle.residual).max() / peak, 1, places=6)
+
+    def test_each_cycle_keeps_to_the_mask_that_was_drawn(self):
+        drawn = np.zeros((64, 64), bool)
+        models = []
+        for cycle in misfit.clean_cycles(self.sets[0], imagename=self.name("drawn"), imsize=64, cell="0.2arcsec", niter=90,
+                                         cycleniter=15):
+            if cycle.number:
+                models.append(fits.getdata(self.name("drawn.model.fits"))[0, 0])
+            drawn[:, 20 * min(2, cycle.number):20 * min(2, cycle.number) + 20] = True  # a strip more each time
+            cycle.mask = drawn if cycle.number < 3 else cycle.mask
+            if cycle.number == 4:
+                break
+        for model, strips in zip(models, (20, 40, 60, 60)):
+            self.assertFalse(model[:, strips:].any())
+            self.assertTrue(model[:, :strips].any())
+        self.assertEqual(cycle.result["misfit"]["clean"]["iterations"], 60)
+
+    def test_it_begins_anew_alone(self):
+        self.tclean("begun", niter=2, outformat="fits")
+        arguments = dict(imagename=self.name("begun"), imsize=64, cell="0.2arcsec")
+        for parameters, words in ((dict(niter=5), "expected one without a model"), (dict(nmajor=2), "clean_cycles() decides it"),
+                                  (dict(outformat="casa"), "expected 'fits' or 'both'")):
+            with self.assertRaises(ValueError) as refused:
+                next(misfit.clean_cycles(self.sets[0], **{**arguments, **parameters}))
+            self.assertIn(words, str(refused.exception))
+
+    def test_the_example_runs(self):
+        example = Path(misfit.__file__).parents[1] / "clean_by_hand.py"
+        said = subprocess.run([sys.executable, example, self.sets[0], self.name("hand"), "64", "0.2arcsec"], check=True,
+                              capture_output=True, text=True).stdout.splitlines()
+        self.assertIn("after 0 major cycles", said[0])
+        self.assertIn("after 1 major cycles", said[1])
+
+
 class Refused(Sets):
     """One line that names parameter, value and what was expected."""
 

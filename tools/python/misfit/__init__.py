@@ -5,6 +5,7 @@ help() of each name says more; tutorial.py, among the sources and in share/doc/m
 """
 
 from ._clean import CleanResult, clean
+from ._cycles import CleanCycle, clean_cycles
 from ._kernels import kernel, kernel_names, read_kernel
 from ._misfit import Kernel, __version__
 from ._predict import predict, subtract
@@ -13,10 +14,12 @@ from ._transforms import AccuracyWarning, dirty2vis, vis2dirty
 
 __all__ = [
     "AccuracyWarning",
+    "CleanCycle",
     "CleanResult",
     "Kernel",
     "__version__",
     "clean",
+    "clean_cycles",
     "dirty2vis",
     "kernel",
     "kernel_names",

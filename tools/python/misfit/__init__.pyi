@@ -1,5 +1,5 @@
 import os
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from typing import Any, NamedTuple, Optional, Union, overload
 
 import numpy as np
@@ -308,6 +308,14 @@ def tclean(
     verify: Optional[int] = None,
     dryrun: bool = False,
 ) -> dict[str, Any]: ...
+class CleanCycle:
+    number: int
+    residual: npt.NDArray[np.float64]
+    mask: Optional[npt.ArrayLike]
+    noise: float
+    result: dict[str, Any]
+
+def clean_cycles(vis: Union[_Path, Sequence[_Path]], **parameters: Any) -> Iterator[CleanCycle]: ...
 def predict(
     vis: _Path,
     *,

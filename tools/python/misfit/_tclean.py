@@ -1,5 +1,6 @@
 """CASA's tclean, as misfit does it."""
 
+import inspect
 import logging
 import numbers
 import os
@@ -372,6 +373,10 @@ def _settle_beginning(p):
 def _words_of(p):
     _check_simple(p)
     _settle_beginning(p)
+    return _program_words(p)
+
+
+def _program_words(p):
     words = _Words()
     for give in (_give_data, _give_image, _give_spectrum, _give_weights, _give_clean):
         give(words, p)
@@ -391,6 +396,11 @@ def _words_of(p):
             words.give(name, p[name])
     words.flag("dry-run", p["dryrun"])
     return words.words
+
+
+def words_of_cycle(p, nmajor, mask):
+    """The command line of one more major cycle of clean_cycles(), which begins the first and goes on with --restart."""
+    return _program_words({**p, "nmajor": nmajor, "models": [], "masks": [mask] if mask else [], "cleans": True})
 
 
 # Global stop codes from the one that matters most: what ended a cube is what ended the plane that it says most of.
@@ -434,7 +444,7 @@ def _summary_of_plane(log, full):
     return summary
 
 
-def _dictionary(report, p):
+def dictionary(report, p):
     """What tclean returns, from the report of a run."""
     planes = report["planes"] or [{"plane": 0, "stokes": report["stokes"]}]
     logs = {
@@ -741,4 +751,10 @@ def tclean(
     with _program.turn.taken():
         report, said = _program.run(_words_of(parameters))
     _program.tell_all(said)
-    return report if dryrun else _dictionary(report, parameters)
+    return report if dryrun else dictionary(report, parameters)
+
+
+def defaults():
+    """tclean's parameters that have one."""
+    return {name: parameter.default for name, parameter in inspect.signature(tclean).parameters.items()
+            if parameter.default is not inspect.Parameter.empty}
