@@ -46,8 +46,8 @@ casacore::TableExprNode rows_of(const casacore::MeasurementSet& set, casacore::M
 }
 
 void parse_uv_ranges(const casacore::MeasurementSet& set, const Selection& selection, ParsedSelection& parsed) {
-  for (const std::string& part :
-       split(selection.uv_range.of(0), ',')) {  // MSSelection leaves the end of a lone distance undefined
+  // MSSelection leaves the end of a lone distance undefined.
+  for (const std::string& part : split(selection.uv_range.of(0), ',')) {
     if (part.find_first_of("~<>") == std::string::npos) {
       throw casacore::AipsError("'" + one_line(part) + "' is a distance and no range");
     }

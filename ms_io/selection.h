@@ -18,12 +18,12 @@ class PerSet {
   /// One value is for all sets, however many there are.
   explicit PerSet(std::vector<std::string> of_set);
 
-  /// Whether it selects all of every set.
+  /// Whether the expression is empty for every set, which selects all.
   bool empty() const;
   const std::string& of(std::size_t set) const { return of_set_.size() == 1 ? of_set_.front() : of_set_.at(set); }
   /// As given: one, or one for each set.
   const std::vector<std::string>& values() const { return of_set_; }
-  /// Whether there is one for all, or one for each of so many sets.
+  /// Whether so many sets can have it: it is one for all, or there is one for each.
   bool fits(std::size_t sets) const { return of_set_.size() == 1 || of_set_.size() == sets; }
 
  private:
@@ -56,7 +56,7 @@ struct Selection {
   /// FITS SPECSYS of the frame in which frequencies count, see parse_spectral_frame(); empty: that of the data.
   std::string spectral_frame = "";
 
-  /// What is meant of one of the sets.
+  /// The same with the expressions of one of the sets alone.
   Selection of_set(std::size_t set) const;
 };
 

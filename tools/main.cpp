@@ -1,4 +1,3 @@
-#include <malloc.h>
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
@@ -17,6 +16,7 @@
 #include <thread>
 
 #include "tools/base/interrupt.h"
+#include "tools/base/process.h"
 #include "tools/base/standard_streams.h"
 #include "tools/base/text.h"
 #include "tools/mpi/world.h"
@@ -26,13 +26,6 @@ namespace {
 
 using namespace misfit::tools;
 namespace imager = misfit::imager;
-
-/// Pages fresh from the system are as dear as what is done with them: images of every major cycle lie where those before lay.
-/// The largest blocks that glibc takes from its heap are of 32 MiB.
-void keep_memory() {
-  mallopt(M_MMAP_THRESHOLD, 32 << 20);
-  mallopt(M_TRIM_THRESHOLD, 32 << 20);
-}
 
 /// Says why, and ends the other ranks, too. What is wrong for all is said by the first, which the others give time for that.
 int fail(const char* message, ExitCode code, const World& world) {
@@ -114,7 +107,6 @@ int main(int argc, char** argv) {
   hold_standard_streams();
   std::set_terminate(end_at_once);
   std::cerr.rdbuf(nullptr);  // where casacore tells of failures that it throws, too
-  keep_memory();
-  setenv("HOME", "/", 0);  // casacore looks for its settings there, and ends where there is none
+  prepare_process();
   end_process(run_together(argc, argv));
 }

@@ -71,7 +71,7 @@ struct CleanState {
   ComponentModel best_model;       ///< that which a cycle is taken back to
   Image mask;                      ///< made from the residuals so far; empty unless CleanOptions::automask
   std::vector<MajorCycle> cycles;  ///< [0] is the state before the first; empty before that
-  int iterations = 0;              ///< that `model` has taken before that
+  int iterations = 0;              ///< those of `model` where there are no cycles yet
   std::size_t now = 0;             ///< the cycle whose model is `model`: the last unless it was taken back
   std::size_t best = 0;            ///< the cycle whose model is `best_model`
   bool found_nothing = false;      ///< the last minor cycle did

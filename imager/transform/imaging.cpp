@@ -27,7 +27,7 @@ void require_any(const SampleSums& sums) {
   throw NothingInGrid(sums.outside_grid);
 }
 
-/// What the image is, as rank 0 has it.
+/// Makes the image of an adjoint. Returns its statistics, which rank 0 alone can take, at every rank.
 ImageStatistics normalise(Image& adjoint, const Normalisation& by, const Ranks& ranks) {
   ImageStatistics statistics = by.make_image(adjoint);
   share_values(ranks, statistics);

@@ -7,8 +7,8 @@
 
 namespace misfit::imager {
 
-/// What makes images in Jy/beam of adjoints, and of model images what is predicted: a number, Σ w, or that and images of
-/// factors, as a mosaic has them, whose pixels were seen with unlike beams.
+/// How adjoints become images in Jy/beam, and model images what is predicted. That takes a number, Σ w. A mosaic, whose pixels
+/// were seen with unlike beams, takes images of factors besides.
 class Normalisation {
  public:
   /// An image is the adjoint over Σ w, and a model is predicted as it is.
@@ -18,7 +18,7 @@ class Normalisation {
   Normalisation(double weight, std::shared_ptr<const Image> of_adjoint, std::shared_ptr<const Image> of_model)
       : weight_(weight), of_adjoint_(std::move(of_adjoint)), of_model_(std::move(of_model)) {}
 
-  /// Makes the image of an adjoint. Returns what it is then.
+  /// Makes the image of an adjoint. Returns its statistics.
   ImageStatistics make_image(Image& adjoint) const;
   /// Makes what is predicted of a model image.
   void make_predicted(Image& model) const;

@@ -120,6 +120,9 @@ class Program(Sets):
         with self.assertLogs("misfit", logging.INFO) as said:
             self.tclean("said", wprojplanes=128)
         self.assertFalse(any("wprojplanes" in line for line in said.output))  # said once
+        with self.assertLogs("misfit", logging.WARNING) as said:
+            self.tclean("said", restfreq="1.42GHz")
+        self.assertTrue(any("restfreq='1.42GHz' changes nothing of specmode='mfs'" in line for line in said.output))
 
     def test_other_threads_run_meanwhile_and_calls_wait_for_each_other(self):
         said, seen = threading.Event(), threading.Event()
@@ -399,7 +402,7 @@ class Refused(Sets):
     """One line that names parameter, value and what was expected."""
 
     def test_what_is_not_made_yet_is_refused_by_name(self):
-        for parameters in (dict(gridder="mosaic"), dict(gridder="awproject"), dict(weighting="briggsbwtaper"),
+        for parameters in (dict(gridder="mosaic"), dict(facets=4), dict(gridder="awproject"), dict(weighting="briggsbwtaper"),
                            dict(stokes="pseudoI"), dict(specmode="cubedata"), dict(specmode="cubesource"), dict(veltype="optical"),
                            dict(usemask="pb"), dict(usemask="auto-multithresh", negativethreshold=7.0, niter=1),
                            dict(outlierfile="o.txt"), dict(interactive=True), dict(projection="NCP"), dict(usepointing=True),

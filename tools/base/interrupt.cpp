@@ -41,10 +41,10 @@ bool interrupted_again() {
   return again;
 }
 
-BorrowedProcess::BorrowedProcess(bool in_other_thread) {
+BorrowedProcess::BorrowedProcess(bool catches_interrupts) {
   borrowed = true;
   flag = again = false;
-  is_caught = !in_other_thread;
+  is_caught = catches_interrupts;
   struct sigaction ours = {};
   ours.sa_handler = remember_each;
   ours.sa_flags = SA_RESTART;

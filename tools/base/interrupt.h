@@ -13,15 +13,14 @@ struct Interrupted : std::runtime_error {
 /// the process at once, whoever calls this again.
 void catch_interrupts();
 bool interrupted();
-/// Whether the user presses it again, in a process that is another's: nothing is to be waited for.
+/// Whether the user pressed Ctrl-C twice, in a process that is another's: then stages end at once that else stop by themselves.
 bool interrupted_again();
 
 /// As long as it lives, work is done in a process that is another program's, such as Python's. catch_interrupts() does nothing
-/// then; SIGINT is caught, unless it is `in_other_thread` than that which the process catches it in, and is the process's own
-/// again after. One at a time.
+/// then. SIGINT is caught where the process lets it be, and is the process's own again after. One at a time.
 class BorrowedProcess {
  public:
-  explicit BorrowedProcess(bool in_other_thread);
+  explicit BorrowedProcess(bool catches_interrupts);
   BorrowedProcess(const BorrowedProcess&) = delete;
   BorrowedProcess& operator=(const BorrowedProcess&) = delete;
   ~BorrowedProcess();

@@ -5,7 +5,7 @@
 
 namespace misfit::tools {
 
-/// What came of a command, for whoever called it, at the first rank.
+/// A command returns this to its caller, at the first rank.
 struct Outcome {
   bool complete = true;   ///< at all ranks: all was done, and the user did not stop it
   nlohmann::json report;  ///< null where there is none

@@ -1,12 +1,10 @@
 // The program in the process of Python: a module of its own, since it takes casacore, which arrays need not.
-#include <malloc.h>
 #include <pybind11/functional.h>
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <cstdlib>
 #include <iostream>
 #include <mutex>
 #include <stdexcept>
@@ -14,6 +12,7 @@
 #include <vector>
 
 #include "tools/base/interrupt.h"
+#include "tools/base/process.h"
 #include "tools/base/progress.h"
 #include "tools/program.h"
 
@@ -27,13 +26,6 @@ using namespace misfit::tools;
 struct WrongUsage : std::invalid_argument {
   using std::invalid_argument::invalid_argument;
 };
-
-/// As the program does when it begins, see main.cpp.
-void prepare_process() {
-  mallopt(M_MMAP_THRESHOLD, 32 << 20);
-  mallopt(M_TRIM_THRESHOLD, 32 << 20);
-  setenv("HOME", "/", 0);
-}
 
 /// What casacore says on stderr of failures that it throws, too, as long as it lives.
 class QuietErrors {
@@ -71,22 +63,16 @@ void run_words(std::vector<std::string> words, Outcome& outcome) {
   }
 }
 
-/// Returns (report as JSON, words, whether the user stopped it). One at a time: others wait.
-py::tuple run(const std::vector<std::string>& words, const py::function& tell, bool in_main_thread) {
-  static std::mutex one_at_a_time;
+/// Returns (report as JSON, words, whether the user stopped it). One call at a time, which misfit/_program.py sees to.
+py::tuple run(const std::vector<std::string>& words, const py::function& tell, bool catches_interrupts) {
   static std::once_flag prepared;
   std::call_once(prepared, prepare_process);
   Outcome outcome;
   bool stopped = false;
   {
     const py::gil_scoped_release others_run;
-    const std::lock_guard alone(one_at_a_time);
-    {
-      const py::gil_scoped_acquire python;
-      if (PyErr_CheckSignals() != 0) throw py::error_already_set();  // of the time until now
-    }
     const QuietErrors quiet;
-    const BorrowedProcess borrowed(!in_main_thread);
+    const BorrowedProcess borrowed(catches_interrupts);
     const ToldLines told([&tell](const std::string& line) {
       const py::gil_scoped_acquire python;
       try {
@@ -110,5 +96,5 @@ py::tuple run(const std::vector<std::string>& words, const py::function& tell, b
 PYBIND11_MODULE(_imaging, m) {
   m.doc() = "The program misfit, compiled for Python.";
   py::register_exception<WrongUsage>(m, "WrongUsage", PyExc_ValueError);
-  m.def("run", &run, py::arg("words"), py::arg("tell"), py::arg("in_main_thread"));
+  m.def("run", &run, py::arg("words"), py::arg("tell"), py::arg("catches_interrupts"));
 }

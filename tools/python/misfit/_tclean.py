@@ -15,8 +15,7 @@ _log = logging.getLogger("misfit")
 
 # Parameters that change nothing here, with tclean's defaults and why.
 _UNNEEDED = {
-    "facets": (1, "w is exact without"),
-    "wprojplanes": (1, "w is exact whatever their number"),
+    "wprojplanes": (1, "w is exact with 'wproject' and 'widefield', whatever their number"),
     "vptable": ("", "primary beams are chosen by telescope"),
     "mosweight": (True, "one field is imaged"),
     "aterm": (True, "it is of gridders for mosaics"),
@@ -31,14 +30,14 @@ _UNNEEDED = {
     "parallel": (False, "all cores share a run in any case"),
     "verbose": (False, "loggers are set up where they are used"),
 }
-_told = set()  # (name, value) of those
+_told = set()  # what was said once
 
 # Parameters that can have one value so far, with what else they might be.
 _SINGLE = {
     "projection": ("SIN", "other projections are not made"),
     "psfphasecenter": ("", "it is of mosaics, which are not made yet"),
     "outlierfile": ("", "one field is imaged at a time"),
-    "interactive": (False, "CLEAN asks nothing: nmajor=1 and another mask go on by hand"),
+    "interactive": (False, "misfit.clean_cycles() is CLEAN by hand"),
     "usepointing": (False, "it is of mosaics, which are not made yet"),
     "veltype": ("radio", "optical velocities are not made yet"),
     "pbmask": (0.0, "masks by primary beam are not made yet"),
@@ -158,6 +157,10 @@ def _check_simple(p):
     for name, (usual, why) in _UNNEEDED.items():
         if _items(p[name]) != _items(usual):
             _tell_once(logging.INFO, f"{name}={p[name]!r} changes nothing: {why}")
+    if p["facets"] != 1:
+        if _GRIDDERS.get(p["gridder"]) == "standard":
+            _refuse("facets", p["facets"], "1, or gridder='wproject', which has w exactly")
+        _tell_once(logging.INFO, f"facets={p['facets']!r} changes nothing: w is exact without")
     if p["psfcutoff"] != 0.35:
         _tell_once(logging.WARNING, f"psfcutoff={p['psfcutoff']!r} changes nothing: beams are fitted to the whole main lobe")
 
@@ -205,6 +208,9 @@ def _give_spectrum(words, p):
         _refuse("specmode", specmode, "'mfs' or 'cube'" + (": it is not made yet" if specmode.startswith("cube") else ""))
     restfreq = [one for one in _items(p["restfreq"]) if one != ""]
     if specmode == "mfs":
+        for name, usual in (("restfreq", []), ("outframe", "LSRK")):
+            if p[name] != "" and _items(p[name]) != _items(usual):
+                _tell_once(logging.WARNING, f"{name}={p[name]!r} changes nothing of specmode='mfs': headers have the data's frame")
         return
     words.give("specmode", "cube")
     words.give("nchan", _whole("nchan", p["nchan"]))
