@@ -16,10 +16,16 @@ namespace misfit::ms_io {
 std::unique_ptr<imager::ImageWriter> create_casa_image(const imager::ImageHeader& header, const std::string& path,
                                                        imager::PixelFormat format = imager::PixelFormat::float32);
 
+/// What is read where a CASA image's default mask is false.
+enum class Masks {
+  applied,  ///< NaN
+  ignored,  ///< the pixels beneath
+};
+
 /// Opens a CASA image whose pixels lie on the sky as `grids` wants, with planes along a linear spectral axis and a Stokes axis
-/// if there are any. What its default mask leaves out is NaN. Throws std::runtime_error that names the path and what was
-/// expected.
-std::unique_ptr<imager::ImageReader> open_casa_image(const std::string& path, imager::Grids grids = imager::Grids::upright);
+/// if there are any. Throws std::runtime_error that names the path and what was expected.
+std::unique_ptr<imager::ImageReader> open_casa_image(const std::string& path, imager::Grids grids = imager::Grids::upright,
+                                                     Masks masks = Masks::applied);
 
 /// Whether a casacore image lies at `path`, whoever wrote it. Throws std::runtime_error where it is a table that casacore must
 /// not read.

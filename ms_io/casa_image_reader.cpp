@@ -50,7 +50,8 @@ void check_size(const casacore::IPosition& shape, std::size_t pixel_bytes, const
 template <typename Pixel>
 class CasaImageReader : public imager::ImageReader {
  public:
-  CasaImageReader(const std::string& path, casacore::Table& table, imager::Grids grids) : path_(path), image_(table) {
+  CasaImageReader(const std::string& path, casacore::Table& table, imager::Grids grids, Masks masks)
+      : path_(path), image_(table), masks_(masks) {
     check_size(image_.shape(), sizeof(Pixel), path);
     planes_ = find_planes(image_.coordinates(), image_.shape(), path);
     header_ = header_of(image_.coordinates(), planes_, path);
@@ -89,7 +90,7 @@ class CasaImageReader : public imager::ImageReader {
       const casacore::Array<Pixel> pixels = image_.getSlice(plane);
       imager::Image image(header_.geometry.width, count);
       std::copy(pixels.begin(), pixels.end(), image.pixel.begin());
-      if (!image_.isMasked()) return image;
+      if (masks_ == Masks::ignored || !image_.isMasked()) return image;
       const casacore::Array<bool> mask = image_.getMaskSlice(plane);
       std::transform(image.pixel.begin(), image.pixel.end(), mask.begin(), image.pixel.begin(),
                      [](double value, bool valid) { return valid ? value : std::numeric_limits<double>::quiet_NaN(); });
@@ -109,6 +110,7 @@ class CasaImageReader : public imager::ImageReader {
 
   std::string path_;
   casacore::PagedImage<Pixel> image_;
+  Masks masks_;
   CasaPlanes planes_;
   std::optional<imager::SkyGrid> grid_;
   imager::ImageHeader header_;
@@ -139,7 +141,7 @@ void check_mask(const casacore::TableRecord& keywords, const std::string& path) 
                              ", expected a stored mask, LCPagedMask");
 }
 
-std::unique_ptr<imager::ImageReader> open_table(const std::string& path, imager::Grids grids) {
+std::unique_ptr<imager::ImageReader> open_table(const std::string& path, imager::Grids grids, Masks masks) {
   casacore::Table table(path, casacore::TableLock(casacore::TableLock::NoLocking));
   if (!table.tableDesc().isColumn("map")) throw std::runtime_error("cannot read " + path + ": it has no column of pixels");
   check_tables(table.keywordSet(), table.tableName(), path);
@@ -148,17 +150,17 @@ std::unique_ptr<imager::ImageReader> open_table(const std::string& path, imager:
   if (keywords.isDefined("coords") && keywords.dataType("coords") == casacore::TpRecord)
     check_frames(keywords.subRecord("coords"), path);
   const casacore::DataType type = table.tableDesc()["map"].dataType();
-  if (type == casacore::TpFloat) return std::make_unique<CasaImageReader<float>>(path, table, grids);
-  if (type == casacore::TpDouble) return std::make_unique<CasaImageReader<double>>(path, table, grids);
+  if (type == casacore::TpFloat) return std::make_unique<CasaImageReader<float>>(path, table, grids, masks);
+  if (type == casacore::TpDouble) return std::make_unique<CasaImageReader<double>>(path, table, grids, masks);
   throw std::runtime_error("cannot read " + path + ": its pixels are no real numbers");
 }
 
 }  // namespace
 
-std::unique_ptr<imager::ImageReader> open_casa_image(const std::string& path, imager::Grids grids) {
+std::unique_ptr<imager::ImageReader> open_casa_image(const std::string& path, imager::Grids grids, Masks masks) {
   if (!is_casa_image(path))
     throw std::runtime_error("cannot read " + path + ": it is no casacore image; expected the folder of one");
-  return translated("cannot read " + path, [&] { return open_table(path, grids); });
+  return translated("cannot read " + path, [&] { return open_table(path, grids, masks); });
 }
 
 }  // namespace misfit::ms_io

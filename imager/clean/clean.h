@@ -105,6 +105,7 @@ struct CleanInput {
   ImagedData imaged;
   TaylorExpansion expansion{};      ///< of the components' spectra
   std::vector<const Image*> dirty;  ///< of these samples: R_t [term], see TaylorImages
+  bool of_start = false;            ///< `dirty` are what the state's model leaves, and not the empty one
   std::vector<const Image*> psf;    ///< P_k [k], 2 terms − 1 of them
   double max_sidelobe = 0;          ///< the largest of the first PSF
   double accuracy = 1e-7;           ///< of images and prediction, relative; single-precision data have no better

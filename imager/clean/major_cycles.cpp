@@ -86,11 +86,13 @@ class Run {
   const MajorCycle& best() const { return state_.cycles[state_.best]; }
   const Image* mask() const { return o_.automask ? &state_.mask : o_.mask; }
 
-  /// The residuals of an empty model are the dirty images. Others are made anew, and never changed.
+  /// The residuals of an empty model are the dirty images, unless these are those of the first. Others are made anew, and never
+  /// changed.
   void make_residual() {
+    const bool first = residuals_.empty();
     residuals_.clear();
     made_.clear();
-    if (state_.model.components().empty()) {
+    if (input_.of_start ? first : state_.model.components().empty()) {
       residuals_ = input_.dirty;
     } else {
       sharer_.share(state_.model);

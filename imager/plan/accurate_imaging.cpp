@@ -15,7 +15,7 @@ double random_image_rms(const SampleSums& sums) {
 }
 
 AccurateImages make_images(const VisibilitySource& source, GriddingPlan plan, const Context& context,
-                           std::shared_ptr<const PlannedTransform> transform = nullptr) {
+                           std::shared_ptr<const PlannedTransform> transform = nullptr, TakenImages taken = {}) {
   AccurateImages made;
   made.plan = std::move(plan);
   made.transform = std::move(transform);
@@ -23,13 +23,14 @@ AccurateImages make_images(const VisibilitySource& source, GriddingPlan plan, co
     const StageTimer timer(context.times, stage::plan);
     made.transform = std::make_shared<PlannedTransform>(made.plan);
   }
-  if (!made.plan.psf) {
-    const AdjointOptions options{made.plan.request.stokes, made.plan.request.psf};
-    made.images = make_dirty_images(source, *made.transform, options, context);
-  } else {
-    const OwnPsf psf{made.transform->psf(), made.plan.request.stokes};
-    made.images = make_dirty_images(source, *made.transform, psf, context);
-  }
+  const std::unique_ptr<Transform> middle = taken.dirty || taken.psf ? middle_transform(made.plan) : nullptr;
+  const Transform& images = taken.dirty ? *middle : made.transform->images();
+  const Transform& psf = taken.psf ? *middle : made.transform->psf();
+  const int stokes = made.plan.request.stokes;
+  const bool with_psf = made.plan.request.psf || taken.psf;
+  made.images = with_psf && &psf != &images ? make_dirty_images(source, images, OwnPsf{psf, stokes}, context)
+                                            : make_dirty_images(source, images, AdjointOptions{stokes, with_psf}, context);
+  take(std::move(taken), made.plan.request, source.ranks(), made.images);
   return made;
 }
 
@@ -92,9 +93,10 @@ TheoreticalError theoretical_error(const GriddingPlan& plan, const SampleSums& s
 }
 
 AccurateImages make_accurate_images(const VisibilitySource& source, GriddingPlan plan, const Context& context,
-                                    std::shared_ptr<const PlannedTransform> transform) {
+                                    std::shared_ptr<const PlannedTransform> transform, TakenImages taken) {
   const GriddingRequest request = plan.request;
-  AccurateImages made = make_images(source, std::move(plan), context, std::move(transform));
+  const bool dirty_taken = taken.dirty.has_value(), psf_taken = taken.psf.has_value();
+  AccurateImages made = make_images(source, std::move(plan), context, std::move(transform), std::move(taken));
   // The images' largest gridding error over the accuracy, once by theory and once by direct sums at pixels, which may miss half
   // of it.
   const auto excess = [&] {
@@ -103,7 +105,7 @@ AccurateImages make_accurate_images(const VisibilitySource& source, GriddingPlan
     if (expected > 1 || made.plan.expected_error * weak.coherent <= request.accuracy) return expected;
     return std::max(expected, 2 * largest_checked_error(source, made, context) / request.accuracy);
   };
-  if (request.accuracy == 0) return made;
+  if (request.accuracy == 0 || dirty_taken) return made;
   const double first = excess();
   if (first <= 1) return made;
   GriddingRequest stricter = request;
@@ -111,7 +113,8 @@ AccurateImages make_accurate_images(const VisibilitySource& source, GriddingPlan
   stricter.best_effort = true;
   Image psf;
   const ImageStatistics psf_statistics = made.images.psf_statistics;
-  if (made.plan.psf) {  // it is exact enough
+  const bool psf_stays = made.plan.psf || psf_taken;  // it is exact enough
+  if (psf_stays) {
     psf = std::move(made.images.psf);
     stricter.psf = false;
   }
@@ -122,7 +125,7 @@ AccurateImages make_accurate_images(const VisibilitySource& source, GriddingPlan
     plan = plan_gridding(stricter);
   }
   made = make_images(source, std::move(plan), context);
-  if (!stricter.psf) {
+  if (psf_stays) {
     made.images.psf = std::move(psf);
     made.images.psf_statistics = psf_statistics;
   }

@@ -3,6 +3,7 @@
 #include "imager/data/extent.h"
 #include "imager/plan/gridding_plan.h"
 #include "imager/plan/planned_transform.h"
+#include "imager/plan/taken_images.h"
 #include "imager/transform/imaging.h"
 
 namespace misfit::imager {
@@ -33,8 +34,9 @@ struct AccurateImages {
 /// that is right by as much, or, where there is none, by the best. Stages timed: "plan", "check pixels", and those of
 /// make_dirty_images.
 ///
-/// `transform`, if there is one, is that of `plan`, which other images have been made by.
+/// `transform`, if there is one, is that of `plan`, which other images have been made by. Images that are `taken`, see there, are
+/// not made; their plan need have none.
 AccurateImages make_accurate_images(const VisibilitySource& source, GriddingPlan plan, const Context& context,
-                                    std::shared_ptr<const PlannedTransform> transform = nullptr);
+                                    std::shared_ptr<const PlannedTransform> transform = nullptr, TakenImages taken = {});
 
 }  // namespace misfit::imager

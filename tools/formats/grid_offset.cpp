@@ -94,4 +94,18 @@ std::string described(const SkyGrid& grid) {
   return text;
 }
 
+void require_same_pixels(const imager::ImageReader& file, const std::string& what, const imager::ImageHeader& image) {
+  const ImageGeometry &own = image.geometry, &has = file.header().geometry;
+  const auto size = [](const ImageGeometry& g) {
+    return std::to_string(g.width) + " × " + std::to_string(g.height) + " pixels";
+  };
+  if (has.width != own.width || has.height != own.height)
+    throw std::runtime_error(what + " has " + size(has) + ", expected " + size(own));
+  const GridBeside beside(file, what, image);
+  const GridOffset offset = offset_between(beside.map(), own);
+  if (!offset.any || offset.right != 0 || offset.up != 0 || !(offset.most < imager::same_place_pixels))
+    throw std::runtime_error(what + " has other pixels, " + described(beside.grid()) + ", expected the image's, " +
+                             described(imager::grid_of(own)) + "; regrid it first, as with CASA's imregrid");
+}
+
 }  // namespace misfit::tools

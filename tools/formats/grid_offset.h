@@ -39,6 +39,9 @@ struct GridOffset {
 };
 GridOffset offset_between(const imager::GridMap& map, const imager::ImageGeometry& image);
 
+/// Throws std::runtime_error that begins with `what`, which names the file, unless its pixels are those of the image.
+void require_same_pixels(const imager::ImageReader& file, const std::string& what, const imager::ImageHeader& image);
+
 /// "1arcsec × 1arcsec, SIN about 12h 30m 00.000s +12° 23′ 28.00″ (FK5) at pixel 33, 33", counted from 1.
 std::string described(const imager::SkyGrid& grid);
 

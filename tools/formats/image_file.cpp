@@ -7,7 +7,6 @@
 #include <system_error>
 
 #include "imager/files/fits_image_reader.h"
-#include "ms_io/casa_image.h"
 #include "tools/base/numbers.h"
 
 namespace misfit::tools {
@@ -28,9 +27,9 @@ bool same_planes(const imager::SpectralAxis& a, const imager::SpectralAxis& b) {
 
 }  // namespace
 
-std::unique_ptr<imager::ImageReader> open_image_file(const std::string& path, imager::Grids grids) {
+std::unique_ptr<imager::ImageReader> open_image_file(const std::string& path, imager::Grids grids, ms_io::Masks masks) {
   std::error_code absent;
-  return std::filesystem::is_directory(path, absent) ? ms_io::open_casa_image(path, grids)
+  return std::filesystem::is_directory(path, absent) ? ms_io::open_casa_image(path, grids, masks)
                                                      : imager::open_fits_image(path, grids);
 }
 

@@ -4,12 +4,14 @@
 #include <string>
 
 #include "imager/files/image_reader.h"
+#include "ms_io/casa_image.h"
 
 namespace misfit::tools {
 
 /// Opens an image whose pixels lie on the sky as `grids` wants: a CASA image where `path` is a folder, a FITS image otherwise.
 /// Throws what open_casa_image() and open_fits_image() throw.
-std::unique_ptr<imager::ImageReader> open_image_file(const std::string& path, imager::Grids grids = imager::Grids::upright);
+std::unique_ptr<imager::ImageReader> open_image_file(const std::string& path, imager::Grids grids = imager::Grids::upright,
+                                                     ms_io::Masks masks = ms_io::Masks::applied);
 
 /// The channel of `file` for channel `channel` of an image with this spectral axis: the only one, or the same one where the
 /// file has the image's planes, to a tenth of their width. Throws std::runtime_error(`path` …) where it has others.

@@ -139,7 +139,9 @@ void refuse_taylor_term(const imager::ImageReader& file, const std::string& path
   if (file.header().taylor.several()) refuse_by_header(file.header().taylor, path);
 }
 
-void require_taylor_term(const imager::ImageReader& file, const std::string& path, const imager::TaylorTerm& expected) {
+void require_taylor_term(const imager::ImageReader& file, const std::string& path, int order,
+                         const imager::TaylorExpansion& expansion) {
+  const imager::TaylorTerm expected{order, expansion.terms};
   const auto refuse = [&](const std::string& by, const std::string& is) {
     throw std::runtime_error(path + " is by its " + by + " Taylor term " + is + ", counted from 0; expected term " +
                              std::to_string(expected.order) + " of " + std::to_string(expected.terms) +
@@ -150,6 +152,11 @@ void require_taylor_term(const imager::ImageReader& file, const std::string& pat
   const imager::TaylorTerm& stated = file.header().taylor;
   if (stated.several() && (stated.order != expected.order || stated.terms != expected.terms))
     refuse("header", std::to_string(stated.order) + " of " + std::to_string(stated.terms));
+  constexpr double rounding = 1e-9;
+  const double hz = file.header().observation.frequency_hz;
+  if (!(std::abs(hz / expansion.reference_hz - 1) < rounding))
+    throw std::runtime_error(path + " has spectra about " + frequency_text(hz, 10) + ", expected spectra about " +
+                             frequency_text(expansion.reference_hz, 10) + ", or --reffreq " + significant(hz / 1e9, 12) + "GHz");
 }
 
 std::vector<imager::SkyImage> read_stokes_model(const imager::ImageReader& file, const std::string& path) {

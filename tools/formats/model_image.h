@@ -20,8 +20,10 @@ namespace misfit::tools {
 /// and what can be done.
 void refuse_taylor_term(const imager::ImageReader& file, const std::string& path);
 
-/// Throws std::runtime_error where an image states, the same ways, that it is another Taylor term than the one expected.
-void require_taylor_term(const imager::ImageReader& file, const std::string& path, const imager::TaylorTerm& expected);
+/// Throws std::runtime_error where an image states, the same ways, that it is another Taylor term of this expansion than the one
+/// of this order, or one about another frequency.
+void require_taylor_term(const imager::ImageReader& file, const std::string& path, int order,
+                         const imager::TaylorExpansion& expansion);
 
 /// A model of one frequency, an image in Jy/pixel with a finite number in every pixel above the horizon and nothing beyond,
 /// from the file at `path`: a plane for each Stokes parameter that it holds. Throws std::runtime_error that names the file and

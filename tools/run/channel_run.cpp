@@ -69,7 +69,12 @@ void ChannelRun::weigh(std::shared_ptr<const imager::ImagingWeights> weights) {
 
 void ChannelRun::make_dirty(imager::GriddingPlan plan, std::shared_ptr<const imager::PlannedTransform> transform) {
   progress().begin("dirty image and PSF" + name_);
-  images_ = imager::make_accurate_images(samples(), std::move(plan), context(), std::move(transform));
+  try {
+    images_ = imager::make_accurate_images(samples(), std::move(plan), context(), std::move(transform), taken());
+  } catch (const imager::UnlikeSamples& unlike) {
+    scene_.taken->refuse(unlike);
+  }
+  if (scene_.taken != nullptr && scene_.images_here) scene_.taken->require_weights(report().channel, images_.images.sums);
   progress().end();
   report().sums = images_.images.sums.front();
   made_.outside_grid = report().sums.outside_grid;
@@ -85,6 +90,10 @@ void ChannelRun::make_dirty(imager::GriddingPlan plan, std::shared_ptr<const ima
   }
   if (!images_.promise_kept)
     warn(accuracy_warning(scene_.options.gridding.accuracy, std::max(images_.judged_error, expected)) + name_);
+}
+
+imager::TakenImages ChannelRun::taken() const {
+  return scene_.taken == nullptr ? imager::TakenImages() : scene_.taken->read(made_.report.channel, scene_.images_here);
 }
 
 void ChannelRun::predict_noise() {
@@ -103,7 +112,9 @@ void ChannelRun::make_terms() {
   if (scene_.options.taylor.nterms == 1) return;
   taylor_.emplace(taylor_expansion(scene_.options.taylor, scene_.header.observation), scene_.threads);
   progress().begin("Taylor terms" + name_);
-  taylor_->make_images(imaged(0), images_, context());
+  TakenTerms taken;
+  if (scene_.taken != nullptr) taken = {scene_.taken->further_dirty(), scene_.taken->further_psf()};
+  taylor_->make_images(imaged(0), images_, std::move(taken), context());
   progress().end();
 }
 
@@ -177,6 +188,7 @@ imager::CleanResult ChannelRun::clean(std::size_t stokes) {
   CleanScene clean{.imaged = imaged(stokes),
                    .expansion = {},
                    .dirty = {&images_.images.dirty[stokes]},
+                   .of_start = !scene_.options.taken.calcres && !scene_.options.clean.startmodel.empty(),
                    .psf = {&images_.images.psf},
                    .main_lobe = *report().beams->main_lobe,
                    .expected_error = report().stokes[stokes].theory->expected_rms};

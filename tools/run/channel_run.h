@@ -15,6 +15,7 @@
 #include "tools/run/clean_stage.h"
 #include "tools/run/image_options.h"
 #include "tools/run/run_report.h"
+#include "tools/run/taken_files.h"
 #include "tools/run/taylor_stage.h"
 
 namespace misfit::tools {
@@ -34,7 +35,9 @@ struct ChannelScene {
   const imager::ImageHeader& header;
   imager::UvwReach reach;
   int threads = 1;                     ///< for each channel
+  bool images_here = true;             ///< or at rank 0 alone
   bool whole_band = true;              ///< whether it has one channel, of the whole band
+  const TakenFiles* taken = nullptr;   ///< null where all images are made
   const std::atomic<bool>& given_up;   ///< whether channels are of no use any more: their work then ends in Interrupted
   const ToldAsItGoes* told = nullptr;  ///< null where each keeps what it has to tell
 };
@@ -67,7 +70,8 @@ class ChannelRun {
   void weigh();
   /// The same with weights made before.
   void weigh(std::shared_ptr<const imager::ImagingWeights> weights);
-  /// By `transform`, if it is given, which is that of `plan`.
+  /// By `transform`, if it is given, which is that of `plan`. Throws std::runtime_error where images that are to be taken are not
+  /// those of the samples.
   void make_dirty(imager::GriddingPlan plan, std::shared_ptr<const imager::PlannedTransform> transform);
   /// Those of further Taylor terms, which CLEAN then has too.
   void make_terms();
@@ -103,6 +107,7 @@ class ChannelRun {
   MadeChannel& made() { return made_; }
 
  private:
+  imager::TakenImages taken() const;
   void predict_noise();
   void count_cycle(const imager::CleanState& state);
   imager::ImagedData imaged(std::size_t stokes);

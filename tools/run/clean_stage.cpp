@@ -138,6 +138,7 @@ imager::CleanResult CleanStage::run(const CleanScene& scene, const StateOptionVa
   const imager::CleanInput input{.imaged = scene.imaged,
                                  .expansion = scene.expansion,
                                  .dirty = scene.dirty,
+                                 .of_start = scene.of_start,
                                  .psf = scene.psf,
                                  .max_sidelobe = sidelobe,
                                  .accuracy = std::max(o_.gridding.accuracy, scene.expected_error),

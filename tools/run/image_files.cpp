@@ -52,6 +52,19 @@ std::vector<std::string> image_paths(const std::string& name, const std::string&
   return paths;
 }
 
+std::optional<std::string> newest_image(const std::string& name) {
+  std::optional<std::string> newest;
+  std::filesystem::file_time_type changed;
+  for (const std::string& path : image_paths(name, "both")) {
+    std::error_code absent;
+    const auto at = std::filesystem::last_write_time(path, absent);
+    if (absent || (newest && at <= changed)) continue;
+    newest = path;
+    changed = at;
+  }
+  return newest;
+}
+
 bool is_own_image(const std::string& path) {
   if (!path.ends_with(".fits")) return ms_io::is_own_casa_image(path);
   std::ifstream file(path, std::ios::binary);

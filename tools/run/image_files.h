@@ -2,6 +2,7 @@
 
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -20,6 +21,9 @@ imager::PixelFormat pixel_format(double accuracy);
 
 /// The paths of an image's files: `name`.fits, or the CASA image `name`, or both.
 std::vector<std::string> image_paths(const std::string& name, const std::string& outformat);
+
+/// Where an image lies, of both formats the newer; nothing where there is none.
+std::optional<std::string> newest_image(const std::string& name);
 
 /// Whether a file of images at such a path was written here: people keep masks and models of theirs under our names too.
 bool is_own_image(const std::string& path);

@@ -119,6 +119,7 @@ void declare(CLI::App& command, ImageOptions& o) {
   declare(command, o.taylor);
   declare(command, o.clean);
   declare(command, o.primary_beam);
+  declare(command, o.taken);
   mark(command.add_flag(
            "--sumwt", o.sumwt,
            "Write .sumwt too, an image of one pixel: the sum of the weights of each plane, as tclean does; of natural weights "
@@ -149,6 +150,7 @@ void check(const ImageOptions& o) {
   check_taylor(o);
   check(o.gridding);
   check(o.primary_beam);
+  check_taken(o);
   check(o.scale, o.dry_run);
   if (o.check_outside && o.cube.is_cube()) refuse_option("check-outside", "true", "--specmode mfs beside it");
   if (o.verify < 0) refuse_option("verify", std::to_string(o.verify), "0 or more");

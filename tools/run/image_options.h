@@ -11,6 +11,7 @@
 #include "tools/run/gridding_options.h"
 #include "tools/run/primary_beam_options.h"
 #include "tools/run/scale_options.h"
+#include "tools/run/taken_files.h"
 #include "tools/run/taylor_options.h"
 #include "tools/run/weighting_options.h"
 
@@ -36,6 +37,7 @@ struct ImageOptions {
   TypedTaylor taylor;
   TypedClean clean;
   TypedPrimaryBeam primary_beam;
+  TypedTaken taken;
   bool force_average = false;
   bool sumwt = false;
   int verify = 0;

@@ -126,6 +126,7 @@ class ImageRun : private ChannelSink {
     for (const std::string& warning : notes_.warnings) warn(warning);
     if (o_.primary_beam.wanted()) find_primary_beam();
     if (o_.clean.runs() && sharing_.images_here()) open_clean();
+    if (o_.taken.any()) taken_ = std::make_unique<TakenFiles>(o_, header_);
     header_.history = history_of(report_.command_line, set_->data_columns());
     if (o_.taylor.nterms > 1) header_.observation.frequency_hz = taylor_expansion(o_.taylor, set_->observation()).reference_hz;
     if (!cube()) header_.spectral = imager::whole_band(header_.observation);
@@ -186,6 +187,7 @@ class ImageRun : private ChannelSink {
         .reach = reach_,
         .threads = threads_,
         .mask = o_.clean.runs() && sharing_.images_here() && (!o_.clean.mask.empty() || o_.clean.usemask == "auto"),
+        .taken = taken_.get(),
         .channels = channels(),
         .workers = std::min(threads_, sharing_.channels_here(channels())),
         .samples = enlarged * (cube() ? static_cast<double>(set_->rows()) * samples_of_a_row(sampling_, windows_) : all),
@@ -246,7 +248,9 @@ class ImageRun : private ChannelSink {
                                                          .header = header_,
                                                          .reach = reach_,
                                                          .threads = workers_.threads,
+                                                         .images_here = sharing_.images_here(),
                                                          .whole_band = !cube(),
+                                                         .taken = taken_.get(),
                                                          .given_up = queue_->given_up(),
                                                          .told = cube() ? nullptr : &told_});
     ChannelMeans means{.plan = plan_.gridding,
@@ -567,6 +571,7 @@ class ImageRun : private ChannelSink {
   imager::UvwReach reach_;
   FieldNotes notes_;
   std::unique_ptr<PrimaryBeamStage> primary_beam_;  ///< null where none is wanted
+  std::unique_ptr<TakenFiles> taken_;               ///< null where all images are made
   std::unique_ptr<CleanStage> clean_;               ///< until channels begin; null where nothing is cleaned here
   RunPlan plan_;
   std::vector<imager::PlaneRange> batches_;  ///< of a cube

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "imager/files/image_header.h"
+#include "imager/transform/transform.h"
 #include "tools/run/image_options.h"
 
 namespace misfit::tools {
@@ -42,6 +43,11 @@ std::vector<std::string> all_product_names();
 
 /// Planes of one channel in them all.
 int product_planes(const ProductChoice& choice, int stokes);
+
+/// What .sumwt holds of samples with these sums: as in tclean natural weights are 1/σ², where ours are 1/(4 σ²).
+inline double sumwt_of(const imager::SampleSums& sums) {
+  return 4 * sums.weight;
+}
 
 /// A kind's name of a Taylor term: "image.tt1.pbcor"; "image.pbcor" of one.
 std::string product_name(const std::string& kind, const imager::TaylorTerm& term, const std::string& end = "");

@@ -223,7 +223,7 @@ void Products::write_stokes(std::size_t stokes, const OfBeam& primary_beam, Chan
   const imager::StageTimer timer(times, imager::stage::write_images);
   const imager::PlaneIndex at{run.report().channel, static_cast<int>(stokes)};
   imager::Image weight(1, 1);
-  weight.pixel.front() = 4 * run.images().images.sums[stokes].weight;  // w is 1/(4 σ²), see VisibilityBlock::weight
+  weight.pixel.front() = sumwt_of(run.images().images.sums[stokes]);
   put_terms("sumwt", at, {&weight}, {});
   std::vector<imager::Image> principal;  // of terms that are not cleaned
   std::vector<const imager::Image*> shown{&residual};

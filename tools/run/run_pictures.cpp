@@ -22,7 +22,8 @@ std::string drawn(const Figure& figure) {
 }  // namespace
 
 std::unique_ptr<imager::ImageReader> open_written(const ImageOptions& o, const std::string& kind) {
-  return open_image_file(image_paths(o.imagename + "." + kind, o.outformat).front());
+  return open_image_file(image_paths(o.imagename + "." + kind, o.outformat).front(), imager::Grids::upright,
+                         ms_io::Masks::ignored);
 }
 
 RunPictures::Shown RunPictures::of_stokes(std::size_t stokes, Shown shown) const {

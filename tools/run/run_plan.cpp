@@ -49,6 +49,7 @@ class RunPlanner {
     request.geometry = scene_.geometry;
     request.samples = static_cast<std::uint64_t>(scene_.samples);
     request.stokes = static_cast<int>(imager::parse_stokes(o_.stokes).size());
+    request.psf = o_.taken.calcpsf;
     request.max_abs_w = scene_.reach.max_abs_w;
     const imager::GriddingRequest unlimited = request;
     if (o_.memory_gib > 0) limit_memory(o_.memory_gib * gib, request);
@@ -56,6 +57,8 @@ class RunPlanner {
     decide_pixels();
     if (!scene_.set.ranks().alone()) decide_sharing();
     if (o_.taylor.nterms > 1) decide_terms();
+    if (scene_.taken != nullptr)
+      for (imager::Decision& taken : scene_.taken->decisions()) plan_.decisions.push_back(std::move(taken));
     plan_.decisions.push_back(weighting_decision(o_.weighting, scene_.geometry));
     if (o_.check_outside) plan_search(request);
     decide_memory([&](double bytes) { return least_memory(unlimited, bytes); });
@@ -251,6 +254,7 @@ RunWork work_of(const RunScene& scene, const RunPlan& plan) {
           .pictures = 2 + stokes * (o.clean.runs() ? 4 : 1) + (o.taylor.nterms > 1 && o.clean.runs() ? 1 : 0),
           .threads = scene.threads,
           .verified = static_cast<double>(o.verify),
+          .residual_taken = !o.taken.calcres,
           .deconvolver = o.clean.deconvolver,
           .terms = o.taylor.nterms,
           .density = weighting_options(o.weighting).needs_density(),

@@ -24,6 +24,7 @@ struct RunScene {
   imager::UvwReach reach;
   int threads = 1;
   bool mask = false;    ///< there is or will be one, where components may lie
+  const TakenFiles* taken = nullptr;  ///< null where all images are made
   int channels = 1;     ///< of the image
   int workers = 1;      ///< channels made at a time, where memory allows; they share the threads
   double samples = 0;   ///< of a channel at most, in Stokes samples of all ranks: gridding is chosen by them, whoever does it

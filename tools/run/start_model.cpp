@@ -25,18 +25,8 @@ StartModel::StartModel(const ImageOptions& options, const imager::ImageHeader& i
   for (const std::string& path : o_.clean.startmodel) files_.push_back({path, "start model " + path, open_image_file(path)});
   if (files_.size() == 1) refuse_taylor_term(*files_.front().reader, files_.front().path);
   for (std::size_t term = 0; files_.size() > 1 && term < files_.size(); ++term)
-    require_term(files_[term], static_cast<int>(term));
-}
-
-/// Of as many as the run has, about the same frequency.
-void StartModel::require_term(const File& file, int term) const {
-  require_taylor_term(*file.reader, file.path, {term, o_.taylor.nterms});
-  constexpr double rounding = 1e-9;
-  const double own_hz = taylor_expansion(o_.taylor, image_.observation).reference_hz;
-  const double hz = file.reader->header().observation.frequency_hz;
-  if (!(std::abs(hz / own_hz - 1) < rounding))
-    refuse(file.name, "has spectra about " + frequency_text(hz, 10),
-           "spectra about " + frequency_text(own_hz, 10) + ", or --reffreq " + significant(hz / 1e9, 12) + "GHz");
+    require_taylor_term(*files_[term].reader, files_[term].name, static_cast<int>(term),
+                        taylor_expansion(o_.taylor, image_.observation));
 }
 
 std::vector<std::string> StartModel::remarks() const {
@@ -48,21 +38,8 @@ std::vector<std::string> StartModel::remarks() const {
   return remarks;
 }
 
-void StartModel::require_same_pixels(const File& file) const {
-  const imager::ImageGeometry &own = image_.geometry, &g = file.reader->header().geometry;
-  const auto size = [](int width, int height) { return std::to_string(width) + " × " + std::to_string(height) + " pixels"; };
-  if (g.width != own.width || g.height != own.height)
-    refuse(file.name, "has " + size(g.width, g.height), size(own.width, own.height));
-  const GridBeside beside(*file.reader, file.name, image_);
-  const GridOffset offset = offset_between(beside.map(), own);
-  // A start is put on the image's own pixels, about which its residual is then exact.
-  if (!offset.any || offset.right != 0 || offset.up != 0 || !(offset.most < imager::same_place_pixels))
-    refuse(file.name, "has other pixels, " + described(beside.grid()),
-           "the image's, " + described(imager::grid_of(own)) + "; regrid it first, as with CASA's imregrid");
-}
-
 std::vector<imager::Image> StartModel::planes_of(const File& file, int channel) const {
-  require_same_pixels(file);
+  require_same_pixels(*file.reader, file.name, image_);  // about which its residual is exact
   const int of_file = channel_for(*file.reader, file.name, image_.spectral, channel);
   std::vector<imager::SkyImage> planes = read_model_channel(*file.reader, {file.path, of_file});
   std::vector<imager::Image> images;

@@ -35,8 +35,6 @@ class StartModel {
     std::unique_ptr<imager::ImageReader> reader;
   };
 
-  void require_term(const File& file, int term) const;
-  void require_same_pixels(const File& file) const;
   std::vector<imager::Image> planes_of(const File& file, int channel) const;
 
   const ImageOptions& o_;

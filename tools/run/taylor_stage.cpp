@@ -18,9 +18,11 @@ std::vector<const imager::Image*> all_terms(const imager::Image& first, const st
 
 }  // namespace
 
-void TaylorStage::make_images(const imager::ImagedData& imaged, const imager::AccurateImages& made,
+void TaylorStage::make_images(const imager::ImagedData& imaged, const imager::AccurateImages& made, TakenTerms taken,
                               const imager::Context& context) {
-  images_ = imager::make_taylor_images(imaged, psf_of(made), expansion_, context);
+  if (!taken.dirty || !taken.psf) images_ = imager::make_taylor_images(imaged, psf_of(made), expansion_, context);
+  if (taken.dirty) images_.dirty = std::move(*taken.dirty);
+  if (taken.psf) images_.psf = std::move(*taken.psf);
   if (!imaged.samples.source.ranks().first()) return;  // where the images are
   psf_ = all_terms(made.images.psf, images_.psf);
   basis_ = imager::basis_of(psf_);

@@ -20,6 +20,12 @@ struct RestoredTerms {
   imager::SpectralImages spectra;
 };
 
+/// Images of terms after the first that are taken instead of new ones; see TaylorImages.
+struct TakenTerms {
+  std::optional<std::vector<imager::Image>> dirty;
+  std::optional<std::vector<imager::Image>> psf;
+};
+
 /// The Taylor terms of a run of --nterms above 1. As tclean does, restored images have the principal solution H⁻¹ R of the
 /// residuals R, whose files have R itself. Stages timed: those of make_taylor_images, and "restore".
 class TaylorStage {
@@ -30,8 +36,10 @@ class TaylorStage {
 
   /// Besides the dirty image and the PSF that are made: a pass over the same samples, by the same transforms. The promise of an
   /// accuracy holds for those alone: terms of odd order are weak against their data. Throws std::runtime_error where the
-  /// samples' frequencies do not tell the terms apart. `made` stays where it is until CLEAN is over.
-  void make_images(const imager::ImagedData& imaged, const imager::AccurateImages& made, const imager::Context& context);
+  /// samples' frequencies do not tell the terms apart. `made` stays where it is until CLEAN is over. What is `taken` is not
+  /// made, if both are.
+  void make_images(const imager::ImagedData& imaged, const imager::AccurateImages& made, TakenTerms taken,
+                   const imager::Context& context);
   const std::vector<const imager::Image*>& psf() const { return psf_; }  ///< [k]
   imager::TaylorImages& images() { return images_; }
 

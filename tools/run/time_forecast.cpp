@@ -47,6 +47,7 @@ struct Images {
 };
 
 TransformSeconds transform_seconds(const imager::GriddingPlan& plan, const Images& images, int threads, int ranks) {
+  if (images.stokes == 0 && !images.psf) return {};
   imager::GriddingWork work = plan.choice.best.work;
   work.samples /= ranks;
   work.gathers = (work.gathers + ranks - 1) / ranks;
@@ -83,15 +84,16 @@ constexpr double direct_term_s = 0.5e-9;  ///< measured, in vectors; CostModel's
 /// A pass that images: the first makes the PSF and all Stokes parameters, others all Taylor terms.
 void add_pass(const RunWork& w, bool with_psf, double times, std::vector<StageSeconds>& stages) {
   const imager::GriddingPlan& plan = *w.plan;
-  const int stokes = with_psf ? plan.request.stokes : w.terms;
+  const bool makes_psf = with_psf && plan.request.psf;
+  const int stokes = !with_psf ? w.terms : w.residual_taken ? 0 : plan.request.stokes;
   if (plan.direct) {
-    const double sums = w.samples * w.pixels * (with_psf ? 1 + stokes : stokes);
+    const double sums = w.samples * w.pixels * (makes_psf ? 1 + stokes : stokes);
     stages.push_back({stage::grid, "direct sums of images", times * shared(direct_term_s * sums, w.threads)});
     return;
   }
-  const TransformSeconds own = transform_seconds(plan, {stokes, with_psf && !plan.psf}, w.threads, w.ranks);
+  const TransformSeconds own = transform_seconds(plan, {stokes, makes_psf && !plan.psf}, w.threads, w.ranks);
   const TransformSeconds psf =
-      with_psf && plan.psf ? transform_seconds(*plan.psf, {0, true}, w.threads, w.ranks) : TransformSeconds();
+      makes_psf && plan.psf ? transform_seconds(*plan.psf, {0, true}, w.threads, w.ranks) : TransformSeconds();
   const std::string way = way_of(plan.choice.best.work);
   stages.push_back({stage::grid, "gridding" + way, times * (own.grid + psf.grid)});
   stages.push_back({stage::fft, "FFTs" + way, times * (own.fft + psf.fft)});
@@ -99,8 +101,8 @@ void add_pass(const RunWork& w, bool with_psf, double times, std::vector<StageSe
 
 /// The pass for dirty images and PSFs of further Taylor terms.
 void add_taylor_pass(const RunWork& w, std::vector<StageSeconds>& stages) {
-  if (w.terms == 1) return;
   const imager::GriddingPlan& plan = *w.plan;
+  if (w.terms == 1 || (w.residual_taken && !plan.request.psf)) return;
   const int dirty = w.terms - 1, psfs = 2 * w.terms - 2;
   if (plan.direct) {
     stages.push_back({stage::grid, "direct sums of images",

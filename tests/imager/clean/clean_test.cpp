@@ -69,10 +69,11 @@ const Scene& scene() {
 }
 
 CleanResult cleaned(const Scene& of, const CleanOptions& options, const DirtyImages& images, const CleanState& begin,
-                    const CycleProgress& cycle_progress) {
+                    const CycleProgress& cycle_progress, bool of_start = false) {
   const Hogbom minor(images.psf, options.threads);
   const CleanInput input{.imaged = of.imaged(),
                          .dirty = {&images.dirty[0]},
+                         .of_start = of_start,
                          .psf = {&images.psf},
                          .max_sidelobe = of.max_sidelobe,
                          .accuracy = 1e-5,
@@ -361,6 +362,32 @@ BOOST_AUTO_TEST_CASE(a_run_goes_on_from_any_of_its_states) {
     BOOST_TEST(rest.report.cycles.size() == whole.report.cycles.size());
     BOOST_TEST(rest.report.stop_reason == whole.report.stop_reason);
   }
+}
+
+/// The residual of its model is where CLEAN begins, and no other is made of it.
+BOOST_AUTO_TEST_CASE(a_run_goes_on_from_a_residual_that_was_made_before) {
+  CleanOptions options = deep();
+  options.max_major_cycles = 4;
+  const CleanResult whole = cleaned(options);
+  options.max_major_cycles = 2;
+  CleanResult half = cleaned(options);
+  const auto rest = [&](Image residual) {
+    DirtyImages images = scene().images;
+    images.dirty[0] = std::move(residual);
+    ComponentModel model(geometry.width, geometry.height, {0});
+    model.add(components_of({&half.model}));
+    return cleaned(scene(), options, images, first_state(model), [](const CleanState&) {}, true);
+  };
+  const CleanResult same = rest(half.residual);
+  BOOST_TEST(relative_error(same.model.pixel, whole.model.pixel) < 1e-12);
+  BOOST_TEST(relative_error(same.residual.pixel, whole.residual.pixel) < 1e-9);
+  BOOST_TEST(same.report.cycles.front().peak_residual_jy == half.report.final_state().peak_residual_jy);
+  // What is wrong with it the next major cycle mends.
+  options.max_major_cycles = -1;
+  half.residual.at(10, 10) += 0.05;
+  const CleanResult mended = rest(half.residual);
+  BOOST_TEST(mended.report.cycles.front().peak_residual_jy > 0.04);
+  BOOST_TEST(mended.report.final_state().peak_residual_jy <= (1 + threshold_tolerance) * options.threshold_jy);
 }
 
 BOOST_AUTO_TEST_CASE(a_mask_of_its_own_making_holds_the_sources_and_the_components) {
