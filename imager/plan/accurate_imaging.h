@@ -34,8 +34,8 @@ struct AccurateImages {
 /// that is right by as much, or, where there is none, by the best. Stages timed: "plan", "check pixels", and those of
 /// make_dirty_images.
 ///
-/// `transform`, if there is one, is that of `plan`, which other images have been made by. Images that are `taken`, see there, are
-/// not made; their plan need have none.
+/// `transform`, if there is one, is that of `plan`, which other images have been made by. Images that are `taken`, see there,
+/// are not made; their plan need have none.
 AccurateImages make_accurate_images(const VisibilitySource& source, GriddingPlan plan, const Context& context,
                                     std::shared_ptr<const PlannedTransform> transform = nullptr, TakenImages taken = {});
 

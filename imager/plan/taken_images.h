@@ -28,10 +28,10 @@ struct UnlikeSamples : std::runtime_error {
 /// of this plan.
 std::unique_ptr<Transform> middle_transform(const GriddingPlan& plan);
 
-/// Puts the images taken into the place of their middles in `made`, which middle_transform() made, with which they are compared.
-/// What selects or weighs other samples changes the main lobe, or what is seen with it: PSFs may differ by 1e-3 of their peak,
-/// dirty images by 1e-2 of their RMS, or ten times the accuracy where that is more, RMS over the middle. Those of a model are not
-/// compared. Throws UnlikeSamples, at rank 0.
+/// Puts the images taken into the place of their middles in `made`, which middle_transform() made, with which they are
+/// compared. What selects or weighs other samples changes the main lobe, or what is seen with it: PSFs may differ by 1e-3 of
+/// their peak, dirty images by 1e-2 of their RMS, or ten times the accuracy where that is more, RMS over the middle. Those of a
+/// model are not compared. Throws UnlikeSamples, at rank 0.
 void take(TakenImages taken, const GriddingRequest& request, const Ranks& ranks, DirtyImages& made);
 
 }  // namespace misfit::imager

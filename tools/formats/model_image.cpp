@@ -156,7 +156,8 @@ void require_taylor_term(const imager::ImageReader& file, const std::string& pat
   const double hz = file.header().observation.frequency_hz;
   if (!(std::abs(hz / expansion.reference_hz - 1) < rounding))
     throw std::runtime_error(path + " has spectra about " + frequency_text(hz, 10) + ", expected spectra about " +
-                             frequency_text(expansion.reference_hz, 10) + ", or --reffreq " + significant(hz / 1e9, 12) + "GHz");
+                             frequency_text(expansion.reference_hz, 10) + ", or --reffreq " + significant(hz / 1e9, 12) +
+                             "GHz");
 }
 
 std::vector<imager::SkyImage> read_stokes_model(const imager::ImageReader& file, const std::string& path) {

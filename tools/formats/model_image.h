@@ -20,8 +20,8 @@ namespace misfit::tools {
 /// and what can be done.
 void refuse_taylor_term(const imager::ImageReader& file, const std::string& path);
 
-/// Throws std::runtime_error where an image states, the same ways, that it is another Taylor term of this expansion than the one
-/// of this order, or one about another frequency.
+/// Throws std::runtime_error where an image states, the same ways, that it is another Taylor term of this expansion than the
+/// one of this order, or one about another frequency.
 void require_taylor_term(const imager::ImageReader& file, const std::string& path, int order,
                          const imager::TaylorExpansion& expansion);
 

@@ -70,8 +70,8 @@ class ChannelRun {
   void weigh();
   /// The same with weights made before.
   void weigh(std::shared_ptr<const imager::ImagingWeights> weights);
-  /// By `transform`, if it is given, which is that of `plan`. Throws std::runtime_error where images that are to be taken are not
-  /// those of the samples.
+  /// By `transform`, if it is given, which is that of `plan`. Throws std::runtime_error where images that are to be taken are
+  /// not those of the samples.
   void make_dirty(imager::GriddingPlan plan, std::shared_ptr<const imager::PlannedTransform> transform);
   /// Those of further Taylor terms, which CLEAN then has too.
   void make_terms();

@@ -21,14 +21,16 @@ namespace misfit::tools {
 
 void declare(CLI::App& command, TypedTaken& o) {
   command
-      .add_option("--calcpsf", o.calcpsf,
-                  "false: take <imagename>.psf, which must be that of these samples and weights, to 1e-3 of its peak, instead of "
-                  "making it")
+      .add_option(
+          "--calcpsf", o.calcpsf,
+          "false: take <imagename>.psf, which must be that of these samples and weights, to 1e-3 of its peak, instead of "
+          "making it")
       ->check(values_are({"true", "false"}));
   command
-      .add_option("--calcres", o.calcres,
-                  "false: take <imagename>.residual, which must be that of these samples to 1e-2 of its RMS; or with --startmodel "
-                  "what that model leaves, which is believed until the next major cycle")
+      .add_option(
+          "--calcres", o.calcres,
+          "false: take <imagename>.residual, which must be that of these samples to 1e-2 of its RMS; or with --startmodel "
+          "what that model leaves, which is believed until the next major cycle")
       ->check(values_are({"true", "false"}));
 }
 
@@ -44,7 +46,8 @@ namespace {
 
 std::size_t index_of(const std::vector<imager::Stokes>& all, imager::Stokes wanted, const std::string& path) {
   const auto found = std::find(all.begin(), all.end(), wanted);
-  if (found == all.end()) throw std::runtime_error(path + " has no plane of " + stokes_name(wanted) + ", which --stokes asks for");
+  if (found == all.end())
+    throw std::runtime_error(path + " has no plane of " + stokes_name(wanted) + ", which --stokes asks for");
   return static_cast<std::size_t>(found - all.begin());
 }
 
@@ -151,7 +154,8 @@ void TakenFiles::require_weights(int channel, const std::vector<imager::SampleSu
     const double has = read(*sumwt_, channel, stokes).pixel.front(), expected = sumwt_of(sums[s]);
     if (!(std::abs(has / expected - 1) < rounding))
       throw std::runtime_error(sumwt_->path + " is " + significant(has, 8) + ", where these samples weigh " +
-                               significant(expected, 8) + "; expected the same selection and weighting, or --calcpsf true and "
+                               significant(expected, 8) +
+                               "; expected the same selection and weighting, or --calcpsf true and "
                                "--calcres true");
   }
 }

@@ -23,7 +23,7 @@ struct RunWork {
   int images = 2;    ///< files
   int pictures = 2;  ///< drawn
   int threads = 1;
-  double verified = 0;  ///< pixels and samples of --verify
+  double verified = 0;          ///< pixels and samples of --verify
   bool residual_taken = false;  ///< from a file; `plan` says whether a PSF is made
   std::string deconvolver;
   int terms = 1;         ///< Taylor terms
