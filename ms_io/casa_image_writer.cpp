@@ -109,6 +109,16 @@ class CasaImageWriter : public imager::ImageWriter {
     translated("cannot write " + path_, [&] { write_pixels(at, image); });
   }
 
+  void mask_like(const imager::ImageReader& other) override {
+    for (int channel = 0; channel < header_.spectral.channels; ++channel) {
+      const imager::Image values = other.read({channel, 0});
+      for (int stokes = 0; stokes < static_cast<int>(header_.stokes.size()); ++stokes)
+        translated("cannot write " + path_, [&] {
+          for_each_band({channel, stokes}, values, [&](const Band& band) { mask_band(values, band); });
+        });
+    }
+  }
+
   void add_cards(const std::vector<imager::HeaderCard>& cards) override {
     header_.cards.insert(header_.cards.end(), cards.begin(), cards.end());
   }
@@ -140,23 +150,33 @@ class CasaImageWriter : public imager::ImageWriter {
     image_->setUnits(casacore::Unit(header_.unit));
   }
 
-  /// In bands as high as tiles are, so that little is copied at a time.
   void write_pixels(const imager::PlaneIndex& at, const imager::Image& image) {
+    for_each_band(at, image, [&](const Band& band) {
+      image_->putSlice(values_of<Pixel>(image, band, [](double pixel) { return static_cast<Pixel>(pixel); }), band.first);
+      mask_band(image, band);
+    });
+  }
+
+  /// Calls visit(band) for bands as high as tiles are, so that little is copied at a time.
+  template <typename Visit>
+  void for_each_band(const imager::PlaneIndex& at, const imager::Image& image, const Visit& visit) {
     for (int row = 0; row < image.height; row += tile_side) {
       Band band{layout_.first_pixel(at), layout_.plane_shape(), static_cast<std::size_t>(image.row(row) - image.row(0)), 0};
       band.first[1] = row;
       band.shape[1] = std::min<ssize_t>(tile_side, image.height - row);
       band.end = band.begin + static_cast<std::size_t>(band.shape.product());
-      write_band(image, band);
+      visit(band);
     }
   }
 
-  void write_band(const imager::Image& image, const Band& band) {
-    image_->putSlice(values_of<Pixel>(image, band, [](double pixel) { return static_cast<Pixel>(pixel); }), band.first);
+  /// Leaves out what has no value in `image`, of the image's planes, beside what is left out before.
+  void mask_band(const imager::Image& image, const Band& band) {
     const auto valueless = [](double pixel) { return std::isnan(pixel); };
     if (std::none_of(image.pixel.data() + band.begin, image.pixel.data() + band.end, valueless)) return;
     if (!image_->hasPixelMask()) image_->makeMask("mask0", true, true, true, true);
-    image_->pixelMask().putSlice(values_of<bool>(image, band, [&](double pixel) { return !valueless(pixel); }), band.first);
+    casacore::Array<bool> mask = image_->pixelMask().getSlice(casacore::Slicer(band.first, band.shape));
+    mask = mask && values_of<bool>(image, band, [&](double pixel) { return !valueless(pixel); });
+    image_->pixelMask().putSlice(mask, band.first);
   }
 
   /// Tables that are to be deleted are not written when they are closed, which on a full disk would throw where nobody catches.

@@ -26,6 +26,7 @@ void add_image_command(CLI::App& program, const CommandCall& call) {
       accuracy->default_str("0");
     }
     settle_mtmfs(*command, *options);
+    options->primary_beam.where_known = options->all_products();
     check(*options);
   };
   check_before_missing(*command, check_options);

@@ -98,10 +98,14 @@ class Program(Sets):
     def test_images_have_the_names_of_tclean(self):
         self.tclean("names", niter=5, pbcor=True, mask="circle[[32pix,32pix],20pix]")
         wanted = {".psf", ".residual", ".model", ".image", ".mask", ".pb", ".image.pbcor", ".sumwt"}
+        self.tclean("unmasked", niter=5, pbcor=True)
+        self.assertLessEqual(wanted, self.files("unmasked"))
+        self.tclean("dirty")
+        self.assertLessEqual({".psf", ".residual", ".image", ".pb", ".sumwt"}, self.files("dirty"))
         self.assertLessEqual(wanted, self.files("names"))
         self.assertFalse({name for name in self.files("names") if name.endswith(".fits")})
         self.tclean("ofterms", niter=5, deconvolver="mtmfs")
-        self.assertLessEqual({".psf.tt2", ".residual.tt1", ".model.tt0", ".image.tt1", ".alpha", ".sumwt.tt0", ".pb.tt0"},
+        self.assertLessEqual({".psf.tt2", ".residual.tt1", ".model.tt0", ".image.tt1", ".alpha", ".sumwt.tt2", ".pb.tt0"},
                              self.files("ofterms"))
 
     @unittest.skipIf(fits is None, "there is no python3-astropy")
@@ -307,12 +311,45 @@ class GoingOn(Sets):
             self.assertIn(".image", self.files("beside" + end))
 
     def test_images_that_are_to_be_there_are_named(self):
-        self.assertIn("refused.psf, which is not there, or calcpsf=True", self.refusal(calcpsf=False))
-        self.assertIn("refused.residual.tt0, which", self.refusal(calcres=False, deconvolver="mtmfs"))
+        self.assertIn("refused.psf is not there", self.refusal(RuntimeError, calcpsf=False))
+        self.assertIn("refused.residual.tt0 is not there", self.refusal(RuntimeError, calcres=False, deconvolver="mtmfs", vis=self.sets))
         self.tclean("half", niter=2, deconvolver="mtmfs", outformat="fits")
         os.remove(self.name("half.model.tt1.fits"))
         self.assertIn("half.model.tt1 is not there: expected it beside",
                       self.refusal(imagename=self.name("half"), niter=2, deconvolver="mtmfs"))
+
+    @unittest.skipIf(fits is None, "there is no python3-astropy")
+    def test_a_pipelines_sequence_makes_the_image_of_one_call(self):
+        mask = "circle[[32pix,32pix],24pix]"
+        taken = dict(calcpsf=False, calcres=False)
+        for number, kind in enumerate((dict(weighting="briggs"), dict(deconvolver="mtmfs"), dict(specmode="cube", outframe="LSRK"))):
+            with self.subTest(**kind):
+                given = dict(kind, vis=self.sets, niter=2000, cycleniter=40, outformat="fits")
+                whole, first, steps = (f"{name}{number}" for name in ("whole", "first", "steps"))
+                self.tclean(whole, **given, nmajor=4, threshold="1mJy", pbcor=True, mask=mask)
+                self.tclean(first, **dict(given, niter=0))
+                for path in self.folder.glob(first + ".*.fits"):
+                    path.rename(self.folder / path.name.replace(first, steps))
+                self.assertEqual(self.tclean(steps, **given, **taken, nmajor=1, threshold="9mJy", mask=mask)["nmajordone"], 2)
+                self.tclean(steps, **given, **taken, nmajor=2, threshold="2mJy")
+                self.tclean(steps, **given, **taken, nmajor=1, threshold="1mJy")
+                self.tclean(steps, **dict(given, niter=0), **taken, pbcor=True)
+                names = {path.name[len(whole):] for path in self.folder.glob(whole + ".*.fits")}
+                self.assertLessEqual(names, self.files(steps))
+                for end in names - {".alpha.fits", ".alpha.error.fits", ".alpha.pbcor.fits"}:  # what noise makes of quotients
+                    pixels = fits.getdata(self.name(whole + end))
+                    np.testing.assert_allclose(fits.getdata(self.name(steps + end)), pixels, err_msg=end,
+                                               atol=3e-6 * np.nanmax(np.abs(pixels)))
+
+    def test_what_is_taken_is_of_the_same_samples_and_weights(self):
+        self.tclean("taken", weighting="briggs")
+        for change, refused in ((dict(weighting="natural"), "taken.psf is .* where these samples give"),
+                                (dict(weighting="briggs", spw="0:0~2"), "taken.(psf|residual|sumwt) .*is .* where"),
+                                (dict(weighting="briggs", cell="0.21arcsec"), "taken.psf has other pixels"),
+                                (dict(weighting="briggs", imsize=32), "taken.psf has 64 × 64 pixels"),
+                                (dict(weighting="briggs", robust=0.49), "taken.(psf|sumwt) is")):
+            message = self.refusal(RuntimeError, **{**dict(imagename=self.name("taken"), calcpsf=False, calcres=False), **change})
+            self.assertRegex(message, refused)
 
     def test_the_newer_of_both_formats_goes_on(self):
         fluxes = [self.tclean("formats", niter=5, cycleniter=5, outformat=form)["misfit"]["clean"]["model_flux_jy"]

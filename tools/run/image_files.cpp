@@ -18,6 +18,9 @@ class SeveralWriters : public imager::ImageWriter {
   void write(const imager::PlaneIndex& at, const imager::Image& image, const std::optional<imager::Beam>& beam) override {
     for (const auto& writer : writers_) writer->write(at, image, beam);
   }
+  void mask_like(const imager::ImageReader& other) override {
+    for (const auto& writer : writers_) writer->mask_like(other);
+  }
   void add_cards(const std::vector<imager::HeaderCard>& cards) override {
     for (const auto& writer : writers_) writer->add_cards(cards);
   }

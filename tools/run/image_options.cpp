@@ -13,6 +13,7 @@
 #include "tools/base/quantity.h"
 #include "tools/formats/config_file.h"
 #include "tools/run/image_files.h"
+#include "tools/run/product_kinds.h"
 #include "tools/run/selection_options.h"
 
 namespace misfit::tools {
@@ -120,10 +121,13 @@ void declare(CLI::App& command, ImageOptions& o) {
   declare(command, o.clean);
   declare(command, o.primary_beam);
   declare(command, o.taken);
-  mark(command.add_flag(
-           "--sumwt", o.sumwt,
-           "Write .sumwt too, an image of one pixel: the sum of the weights of each plane, as tclean does; of natural weights "
-           "noise is 1/sqrt of it"),
+  mark(command
+           .add_option(
+               "--products", o.products,
+               "Images besides those needed: tclean adds .sumwt, one pixel for the sum of each plane's weights, of natural "
+               "ones 1/noise²; .pb where the antennas' beam is known; .mask of ones where CLEAN may go everywhere; and "
+               ".image of a dirty image")
+           ->check(CLI::IsMember(product_sets())),
        OptionMark::free_of_state);
   mark(command.add_option(
            "--verify", o.verify,

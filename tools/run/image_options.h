@@ -39,15 +39,17 @@ struct ImageOptions {
   TypedPrimaryBeam primary_beam;
   TypedTaken taken;
   bool force_average = false;
-  bool sumwt = false;
   int verify = 0;
   bool check_outside = false;
   int threads = 0;
   double memory_gib = 0;
-  std::string outformat = "fits";  ///< of images, see image_files.h
+  std::string products = "needed";  ///< see product_kinds.h
+  std::string outformat = "fits";   ///< of images, see image_files.h
   bool dry_run = false;
   ScaleOptions scale;
   bool quiet = false;
+
+  bool all_products() const { return products == "tclean"; }
 };
 
 /// Declares the options that say which samples make which image, and --threads and --quiet.

@@ -23,11 +23,9 @@ void declare(CLI::App& command, TypedPrimaryBeam& o) {
   mark(command.add_option(
            "--pblimit", o.pblimit,
            "Where the primary beam is lower, .pb and .image.pbcor have no values; 0.2 when 0. Without --pbcor .pb "
-           "alone is written. The sign makes no difference, since no other image is masked"),
-       OptionMark::free_of_state);
-  mark(command.add_flag("--pb", o.pb,
-                        "Write .pb where the antennas' beam is known, and warn where it is not, which --pblimit without --pb "
-                        "refuses"),
+           "alone is written. Above 0 it goes for the masks of CASA images .image and .residual too, whose pixels stay; the "
+           "sign "
+           "makes no other difference"),
        OptionMark::free_of_state);
 }
 

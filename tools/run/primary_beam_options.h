@@ -9,12 +9,14 @@ namespace misfit::tools {
 /// What is to be made of the primary beam, as typed.
 struct TypedPrimaryBeam {
   bool pbcor = false;
-  double pblimit = 0;  ///< 0: not given; its sign makes no difference
-  bool pb = false;     ///< .pb is wanted where antennas have a simple beam
+  double pblimit = 0;        ///< 0: not given; below 0 other images than .pb and .image.pbcor are not masked
+  bool where_known = false;  ///< .pb is wanted, but only where antennas have a simple beam: that of --products
 
-  bool wanted() const { return pb || required(); }
-  /// Whether a run without it is of no use: with --pbcor or --pblimit, but for --pb.
-  bool required() const { return pbcor || (pblimit != 0 && !pb); }
+  bool wanted() const { return where_known || required(); }
+  /// Whether a run without it is of no use: with --pbcor, or --pblimit alone.
+  bool required() const { return pbcor || (pblimit != 0 && !where_known); }
+  /// Whether masks say where other images lie below the limit.
+  bool masks_others() const { return wanted() && pblimit > 0; }
   /// The value below which images have no values.
   double limit() const;
 };

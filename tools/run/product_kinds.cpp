@@ -29,13 +29,20 @@ void add_spectra(std::vector<ProductKind>& kinds, int terms, const std::string& 
 
 }  // namespace
 
+const std::vector<std::string>& product_sets() {
+  static const std::vector<std::string> names{"needed", "tclean"};
+  return names;
+}
+
 ProductChoice ProductChoice::of(const ImageOptions& o) {
+  const bool all = o.all_products();
   return {.terms = o.taylor.nterms,
           .cleaned = o.clean.runs(),
-          .masked = o.clean.runs() && (o.clean.usemask == "auto" || !o.clean.mask.empty()),
+          .masked = o.clean.runs() && (all || o.clean.usemask == "auto" || !o.clean.mask.empty()),
+          .restored = all || o.clean.runs(),
           .primary_beam = o.primary_beam.wanted(),
           .corrected = o.primary_beam.pbcor,
-          .weights = o.sumwt};
+          .weights = all};
 }
 
 std::string product_name(const std::string& kind, const imager::TaylorTerm& term, const std::string& end) {
@@ -46,13 +53,13 @@ std::vector<ProductKind> product_kinds(const ProductChoice& choice) {
   std::vector<ProductKind> kinds;
   const int n = choice.terms;
   add(kinds, {.name = "psf", .each_stokes = false}, 2 * n - 1, n);
-  add(kinds, {.name = "residual"}, n, n);
+  add(kinds, {.name = "residual", .masked_by_beam = true}, n, n);
   if (choice.primary_beam) add(kinds, {.name = "pb", .unit = "", .each_stokes = false, .beam = false}, n, n);
   if (choice.corrected) add(kinds, {.name = "image", .restored = true}, n, n, ".pbcor");
-  if (choice.weights) add(kinds, {.name = "sumwt", .unit = "", .beam = false, .one_pixel = true}, 1, n);
+  if (choice.weights) add(kinds, {.name = "sumwt", .unit = "", .beam = false, .one_pixel = true}, 2 * n - 1, n);
+  if (choice.restored) add(kinds, {.name = "image", .restored = true, .masked_by_beam = true}, n, n);
   if (!choice.cleaned) return kinds;
   add(kinds, {.name = "model", .unit = "Jy/pixel", .beam = false}, n, n);
-  add(kinds, {.name = "image", .restored = true}, n, n);
   if (choice.masked) kinds.push_back({.name = "mask", .unit = "", .beam = false});
   if (n > 1) add_spectra(kinds, n, "");
   if (n > 1 && choice.corrected) add_spectra(kinds, n, ".pbcor");
@@ -66,7 +73,8 @@ std::vector<std::string> product_names(const ProductChoice& choice) {
 }
 
 std::vector<std::string> all_product_names() {
-  ProductChoice choice{.cleaned = true, .masked = true, .primary_beam = true, .corrected = true, .weights = true};
+  ProductChoice choice{
+      .cleaned = true, .masked = true, .restored = true, .primary_beam = true, .corrected = true, .weights = true};
   std::vector<std::string> names = product_names(choice);
   choice.terms = imager::most_taylor_terms;
   for (const std::string& name : product_names(choice))

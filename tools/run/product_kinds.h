@@ -9,11 +9,15 @@
 
 namespace misfit::tools {
 
+/// What --products names: those that a run is made for, or all that tclean leaves.
+const std::vector<std::string>& product_sets();
+
 /// Which images a run leaves.
 struct ProductChoice {
   int terms = 1;
   bool cleaned = false;
-  bool masked = false;
+  bool masked = false;    ///< there is a mask, if only one of ones
+  bool restored = false;  ///< there is an image with the beam of the PSF, if only the dirty one
   bool primary_beam = false;
   bool corrected = false;  ///< for it
   bool weights = false;    ///< sums of them
@@ -25,13 +29,18 @@ struct ProductChoice {
 struct ProductKind {
   std::string name;  ///< between <imagename> and .fits: psf, residual, image.tt1.pbcor
   std::string unit = "Jy/beam";
-  bool each_stokes = true;  ///< or one for all
-  bool beam = true;         ///< whether its pixels are seen with the restoring beam
-  bool one_pixel = false;   ///< or all of the image's
-  bool restored = false;    ///< made with it: it waits for a beam that is common to all channels
+  bool each_stokes = true;      ///< or one for all
+  bool beam = true;             ///< whether its pixels are seen with the restoring beam
+  bool one_pixel = false;       ///< or all of the image's
+  bool restored = false;        ///< made with it: it waits for a beam that is common to all channels
+  bool masked_by_beam = false;  ///< where --pblimit is above 0: the primary beam's
   imager::TaylorTerm term{};
   std::string quantity = imager::ImageHeader().quantity;
 };
+
+inline bool is_primary_beam(const ProductKind& kind) {
+  return kind.name.rfind("pb", 0) == 0;
+}
 
 /// All that such a run leaves. The names are tclean's; of several Taylor terms they say which: psf.tt0, …
 std::vector<ProductKind> product_kinds(const ProductChoice& choice);

@@ -222,27 +222,45 @@ void Products::write_stokes(std::size_t stokes, const OfBeam& primary_beam, Chan
   if (pictures != nullptr && result != nullptr) pictures->draw(stokes, *result, restored);
   const imager::StageTimer timer(times, imager::stage::write_images);
   const imager::PlaneIndex at{run.report().channel, static_cast<int>(stokes)};
-  imager::Image weight(1, 1);
-  weight.pixel.front() = sumwt_of(run.images().images.sums[stokes]);
-  put_terms("sumwt", at, {&weight}, {});
+  put_weights(at, run);
+  const ProductChoice choice = ProductChoice::of(o_);
   std::vector<imager::Image> principal;  // of terms that are not cleaned
   std::vector<const imager::Image*> shown{&residual};
   if (result != nullptr) {
     put_terms("residual", at, all_terms(residual, result->further_residuals), beam);
     put_terms("model", at, all_terms(result->model, result->further_models), beam);
-    put("mask", at, result->mask, beam);
+    if (choice.masked) put("mask", at, result->mask.pixel.empty() ? mask_of_ones() : result->mask, beam);
     shown = all_terms(restored.first, restored.further);
     put_terms("image", at, shown, beam);
     if (taylor != nullptr) put_spectra(restored.spectra, "", at, beam);
   } else if (taylor != nullptr) {
     put_terms("residual", at, all_terms(residual, taylor->images().dirty), beam);
-    if (o_.primary_beam.pbcor) principal = taylor->principal_solution(residual);
+    if (o_.primary_beam.pbcor || choice.restored) principal = taylor->principal_solution(residual);
     shown = pointers_to(principal);
   } else {
     put("residual", at, residual, beam);
   }
+  if (result == nullptr && choice.restored && beam) put_terms("image", at, shown, beam);
   if (o_.primary_beam.pbcor && (result != nullptr || !o_.clean.runs()))
     write_corrected(at, primary_beam, shown, result == nullptr ? nullptr : &restored.spectra, beam);
+}
+
+imager::Image Products::mask_of_ones() const {
+  imager::Image ones(header_.geometry.width, header_.geometry.height);
+  std::fill(ones.pixel.begin(), ones.pixel.end(), 1);
+  return ones;
+}
+
+/// Σ w, and of Taylor terms Σ w x^k as the middles of their PSFs have it.
+void Products::put_weights(const imager::PlaneIndex& at, ChannelRun& run) {
+  std::vector<imager::Image> sums(1, imager::Image(1, 1));
+  const double weight = sums.front().pixel.front() = sumwt_of(run.images().images.sums[static_cast<std::size_t>(at.stokes)]);
+  if (run.taylor() != nullptr)
+    for (const imager::Image& psf : run.taylor()->images().psf) {
+      sums.emplace_back(1, 1);
+      sums.back().pixel.front() = weight * psf.at(psf.height / 2, psf.width / 2);
+    }
+  put_terms("sumwt", at, pointers_to(sums), {});
 }
 
 /// Images [term] without the primary beam.
@@ -278,20 +296,25 @@ std::vector<std::string> Products::finish(std::vector<ChannelReport>& channels, 
       file.writer->add_cards(cards);
       file.writer->add_cards(file.cards);
     }
-    finish_files(false);
-    if (!in_common_) finish_files(true);
+    finish_files([](const ProductKind& kind) { return is_primary_beam(kind); });
+    finish_files([](const ProductKind& kind) { return !kind.restored && !is_primary_beam(kind); });
+    if (!in_common_) finish_files([](const ProductKind& kind) { return kind.restored; });
   }
   if (!in_common_) return removed;
   const imager::StageTimer timer(times, imager::stage::restore);
   restore_in_common(channels);
-  finish_files(true);
+  finish_files([](const ProductKind& kind) { return kind.restored; });
   return removed;
 }
 
-/// Those that are restored, or the others.
-void Products::finish_files(bool restored) {
-  for (auto& [name, file] : files_)
-    if (file.kind.restored == restored) file.writer->finish();
+/// With a mask by the primary beam, whose image is there before.
+void Products::finish_files(const std::function<bool(const ProductKind&)>& which) {
+  for (auto& [name, file] : files_) {
+    if (!which(file.kind)) continue;
+    if (file.kind.masked_by_beam && o_.primary_beam.masks_others() && o_.outformat != "fits")
+      file.writer->mask_like(*open_written(o_, product_name("pb", {0, o_.taylor.nterms})));
+    file.writer->finish();
+  }
 }
 
 imager::Image Products::restore(const imager::Image& model, const imager::Image& residual, const imager::Beam& beam) const {

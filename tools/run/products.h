@@ -70,11 +70,13 @@ class Products {
   void write_corrected(const imager::PlaneIndex& at, const OfBeam& primary_beam,
                        const std::vector<const imager::Image*>& apparent, const imager::SpectralImages* spectra,
                        const std::optional<imager::Beam>& beam);
+  imager::Image mask_of_ones() const;
+  void put_weights(const imager::PlaneIndex& at, ChannelRun& run);
   void write_components(const std::vector<imager::CleanResult>& cleaned) const;
   imager::Image restore(const imager::Image& model, const imager::Image& residual, const imager::Beam& beam) const;
   void restore_in_common(std::vector<ChannelReport>& channels);
   void restore_channel(ChannelReport& channel, const imager::Beam& common, const Written& written);
-  void finish_files(bool restored);
+  void finish_files(const std::function<bool(const ProductKind&)>& which);
 
   const ImageOptions& o_;
   imager::ImageHeader header_;

@@ -75,7 +75,7 @@ TakenFiles::File TakenFiles::open(const std::string& kind, int order, const char
   const imager::TaylorTerm term{order, o_.taylor.nterms};
   const std::string name = o_.imagename + "." + product_name(kind, term);
   const std::optional<std::string> path = newest_image(name);
-  if (!path) throw std::runtime_error(name + " is not there; expected it beside --" + option + " false");
+  if (!path) throw std::runtime_error(name + " is not there; expected it, or --" + option + " true");
   File file{*path, open_image_file(*path, imager::Grids::upright, ms_io::Masks::ignored)};
   if (term.several()) require_taylor_term(*file.reader, *path, order, taylor_expansion(o_.taylor, image_.observation));
   require_same_pixels(*file.reader, *path, image_);

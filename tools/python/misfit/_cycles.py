@@ -57,8 +57,8 @@ def clean_cycles(vis, **parameters):
     vis : path or list of paths
         MeasurementSets.
     parameters : various
-        Those of `tclean`, but for `mask`, `nmajor`, `restart` and `dryrun`: CLEAN begins anew, and images are FITS files where
-        `outformat` is not "both". `niter` is that of all cycles together.
+        Those of `tclean`, but for `mask`, `nmajor`, `restart`, `calcpsf`, `calcres` and `dryrun`: CLEAN begins anew, and images
+        are FITS files where `outformat` is not "both". `niter` is that of all cycles together.
 
     Yields
     ------
@@ -73,7 +73,7 @@ def clean_cycles(vis, **parameters):
         Without astropy.
     """
     fits = _fits()
-    for name in ("mask", "nmajor", "restart", "dryrun"):
+    for name in ("mask", "nmajor", "restart", "calcpsf", "calcres", "dryrun"):
         if name in parameters:
             raise ValueError(f"{name}={parameters[name]!r}: expected none, as clean_cycles() decides it")
     parameters.setdefault("outformat", "fits")

@@ -259,6 +259,8 @@ def _give_deconvolver(words, p):
     except (TypeError, ValueError):
         _refuse("scales", p["scales"], "a list of numbers, in pixels")
     terms = deconvolver == "mtmfs"
+    if terms and _whole("nterms", p["nterms"]) == "1":
+        _refuse("nterms", p["nterms"], "2 or 3, or deconvolver='hogbom' or 'multiscale', whose images have no .tt0 in their names")
     multiscale = deconvolver == "multiscale" or (terms and any(scales))
     words.give("deconvolver", "multiscale" if multiscale else "hogbom" if terms else deconvolver)
     if multiscale:
@@ -358,9 +360,6 @@ def _settle_beginning(p):
     if not p["restart"]:
         p["imagename"] = _name_beside(imagename)
     else:
-        for name, kind in (("calcpsf", "psf"), ("calcres", "residual")):
-            if not p[name] and _existing(imagename, kind, terms) is None:
-                _refuse(name, p[name], f"{imagename}.{kind}{'.tt0' if terms > 1 else ''}, which is not there, or {name}=True")
         model, mask = _existing(imagename, "model", terms), _existing(imagename, "mask", 1)
         other = _existing(imagename, "model", 1 if terms > 1 else 2)
         if model is None and other is not None:
@@ -393,9 +392,11 @@ def _program_words(p):
     if not -1 < limit < 1:
         _refuse("pblimit", limit, "a number between -1 and 1, such as 0.2")
     words.flag("pbcor", p["pbcor"])
-    words.give("pblimit", _number(abs(limit) or 1e-6))
-    words.flag("pb", True)
-    words.flag("sumwt", True)
+    words.give("pblimit", _number(limit or 1e-6))
+    words.give("products", "tclean")
+    for name in ("calcpsf", "calcres"):
+        if not p[name]:
+            words.give(name, "false")
     words.give("outformat", p["outformat"])
     for name in ("accuracy", "threads", "memory", "verify"):
         if p[name] is not None:
@@ -605,8 +606,8 @@ def tclean(
     does not have yet are refused by name and value; those that change nothing here are taken, and told of once. What the run
     says goes to the logger "misfit".
 
-    Images are CASA's, with its names: .psf, .residual, .model, .image, .mask (where there is one), .pb (where the antennas'
-    beam is known), .image.pbcor, .sumwt, or with .tt0, .tt1, … of nterms.
+    Images are CASA's, with its names: .psf, .residual, .model and .mask (of CLEAN), .image, .pb (where the antennas' beam is
+    known), .image.pbcor, .sumwt, or with .tt0, .tt1, … of nterms.
 
     Parameters
     ----------
@@ -655,7 +656,8 @@ def tclean(
     usepointing, computepastep, rotatepastep, pointingoffsetsigdev : various
         Of mosaics.
     pblimit : float
-        Where the beam is lower .pb and .image.pbcor have no values; its sign makes no difference: other images are not masked.
+        Where the beam is lower .pb and .image.pbcor have no values; above 0 .residual and .image are masked there, too, but
+        keep their values.
     normtype : str
         Not needed of one field.
     deconvolver : str
@@ -718,7 +720,8 @@ def tclean(
     savemodel : str
         "none" or "modelcolumn".
     calcres, calcpsf : bool
-        False: images of the same imagename must be there. They are made anew all the same.
+        False: .residual and .psf of the same imagename are taken, which must be those of these samples and weights; the
+        residual of a model is believed.
     psfcutoff : float
         Not needed.
     parallel : bool

@@ -1,0 +1,108 @@
+// Which images a run leaves with --products tclean, and what is masked in them.
+#include <cmath>
+
+#include "ms_io/casa_image.h"
+#include "tests/tools/program.h"
+
+BOOST_AUTO_TEST_SUITE(products_command)
+
+namespace {
+
+using namespace misfit;
+using namespace misfit::tools::testing;
+namespace bdata = boost::unit_test::data;
+
+/// A field as wide as the dishes' beam.
+const std::string& wide_set() {
+  static const TemporaryFolder folder;
+  static const std::string path = [] {
+    const std::string made = folder / "wide.ms";
+    succeed({"simulate", "--output", made, "--array", "vla-d", "--cell", "20arcsec", "--frequency", "1.4GHz", "--channels", "2",
+             "--channel-width", "50MHz", "--noise", "10mJy", "--quiet"});
+    return made;
+  }();
+  return path;
+}
+
+Arguments all_products(const std::string& name, const Arguments& options) {
+  return Arguments{"image",  "--vis",    wide_set(),   "--imagename", name,          "--imsize", "64",
+                   "--cell", "30arcsec", "--products", "tclean",      "--outformat", "casa"} +
+         options;
+}
+
+std::unique_ptr<imager::ImageReader> opened(const std::string& path, ms_io::Masks masks) {
+  return ms_io::open_casa_image(path, imager::Grids::upright, masks);
+}
+
+/// Calls look(masked, pixels beneath, primary beam) for each plane of an image.
+template <typename Look>
+void look_at_planes(const std::string& image, const std::string& beam, const Look& look) {
+  const auto masked = opened(image, ms_io::Masks::applied), whole = opened(image, ms_io::Masks::ignored),
+             pb = opened(beam, ms_io::Masks::applied);
+  const imager::ImageHeader& header = masked->header();
+  for (int channel = 0; channel < header.spectral.channels; ++channel)
+    for (int stokes = 0; stokes < static_cast<int>(header.stokes.size()); ++stokes)
+      look(masked->read({channel, stokes}), whole->read({channel, stokes}), pb->read({channel, 0}));
+}
+
+std::size_t valueless(const imager::Image& image) {
+  return static_cast<std::size_t>(
+      std::count_if(image.pixel.begin(), image.pixel.end(), [](double pixel) { return std::isnan(pixel); }));
+}
+
+}  // namespace
+
+/// As in tclean: masks say where the primary beam is below a positive limit, and the pixels stay.
+BOOST_AUTO_TEST_CASE(a_limit_above_0_masks_casa_images_and_keeps_their_pixels) {
+  const std::pair<Arguments, std::string> runs[] = {
+      {{"--niter", "5"}, ""},
+      {{"--niter", "5", "--nterms", "2"}, ".tt0"},
+      {{"--specmode", "cube", "--niter", "5", "--stokes", "XXYY", "--restoringbeam", "common"}, ""},
+      {{"--specmode", "cube"}, ""}};
+  for (const auto& [options, end] : runs) {
+    const TemporaryFolder folder;
+    const std::string name = folder / "a", other = folder / "b", beam = name + ".pb" + end;
+    succeed(all_products(name, options + Arguments{"--pblimit", "0.3"}));
+    succeed(all_products(other, options + Arguments{"--pblimit", "-0.3"}));
+    for (const std::string kind : {".residual", ".image"}) {
+      BOOST_TEST_INFO(kind << end);
+      look_at_planes(name + kind + end, beam,
+                     [](const imager::Image& masked, const imager::Image& whole, const imager::Image& pb) {
+                       BOOST_TEST(valueless(whole) == 0U);
+                       const std::size_t beyond = valueless(pb);
+                       BOOST_TEST((beyond > 0 && beyond < pb.pixel.size()));
+                       bool same = true;
+                       for (std::size_t i = 0; i < pb.pixel.size(); ++i)
+                         same = same && std::isnan(pb.pixel[i]) == std::isnan(masked.pixel[i]) &&
+                                (std::isnan(masked.pixel[i]) || masked.pixel[i] == whole.pixel[i]);
+                       BOOST_TEST(same);
+                     });
+      const auto one = opened(name + kind + end, ms_io::Masks::ignored),
+                 two = opened(other + kind + end, ms_io::Masks::applied);
+      BOOST_TEST((one->read({0, 0}).pixel == two->read({0, 0}).pixel));
+    }
+    BOOST_TEST(valueless(opened(other + ".pb" + end, ms_io::Masks::applied)->read({0, 0})) > 0U);
+  }
+}
+
+BOOST_AUTO_TEST_CASE(a_dirty_image_is_its_residual_with_a_beam) {
+  const TemporaryFolder folder;
+  succeed(all_products(folder / "a", {}));
+  const auto image = opened(folder / "a.image", ms_io::Masks::applied),
+             residual = opened(folder / "a.residual", ms_io::Masks::applied);
+  BOOST_TEST((image->read({0, 0}).pixel == residual->read({0, 0}).pixel));
+  BOOST_TEST(image->beam({0, 0}).has_value());
+  BOOST_TEST(!std::filesystem::exists(folder / "a.model"));
+}
+
+BOOST_AUTO_TEST_CASE(a_mask_of_ones_says_that_clean_may_go_everywhere_and_changes_nothing) {
+  const TemporaryFolder folder;
+  succeed(all_products(folder / "a", {"--niter", "20"}));
+  for (const double pixel : opened(folder / "a.mask", ms_io::Masks::applied)->read({0, 0}).pixel)
+    BOOST_TEST_REQUIRE(pixel == 1);
+  succeed(all_products(folder / "b", {"--niter", "20", "--mask", folder / "a.mask"}));
+  const auto image = [&](const char* name) { return opened(folder / name, ms_io::Masks::applied)->read({0, 0}).pixel; };
+  BOOST_TEST((image("a.image") == image("b.image")));
+}
+
+BOOST_AUTO_TEST_SUITE_END()
