@@ -27,6 +27,7 @@ void add_image_command(CLI::App& program, const CommandCall& call) {
     }
     settle_mtmfs(*command, *options);
     options->primary_beam.where_known = options->all_products();
+    require_text(*command);
     check(*options);
   };
   check_before_missing(*command, check_options);

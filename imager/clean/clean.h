@@ -62,6 +62,8 @@ struct MajorCycle {
   std::string ended;              ///< why its minor cycle ended; empty before the first
   double mean_square_jy2 = 0;     ///< of the residual
   std::size_t from = 0;           ///< the cycle whose model it began with
+  double peak_anywhere_jy = 0;    ///< peak_residual_jy of the whole image
+  std::size_t mask_pixels = 0;    ///< where the next minor cycle may find components
 };
 
 /// All that CLEAN carries from one major cycle to the next: with the same data and options it goes on from here with the same

@@ -123,6 +123,7 @@ class Run {
     const StageTimer timer(context_.times, stage::statistics);
     cycle.rms_jy = robust_noise(residual(), o_.threads);
     cycle.peak_residual_jy = peak_within_mask();
+    cycle.peak_anywhere_jy = largest_magnitude(residual());
     cycle.mean_square_jy2 = std::pow(root_mean_square(residual()), 2);
     cycle.model_flux_jy = state_.model.flux_jy();
   }
@@ -138,6 +139,7 @@ class Run {
                   state_.mask);
       cycle.peak_residual_jy = peak_within_mask();
     }
+    cycle.mask_pixels = mask() != nullptr ? allowed_pixels(*mask()) : residual().pixel.size();
     state_.cycles.push_back(std::move(cycle));
     state_.now = state_.cycles.size() - 1;
   }

@@ -12,6 +12,10 @@ bool mask_allows(double value) {
   return value != 0 && !std::isnan(value);
 }
 
+std::size_t allowed_pixels(const Image& mask) {
+  return static_cast<std::size_t>(std::count_if(mask.pixel.begin(), mask.pixel.end(), mask_allows));
+}
+
 bool mask_is_empty(const Image& mask) {
   return std::none_of(mask.pixel.begin(), mask.pixel.end(), mask_allows);
 }

@@ -124,9 +124,10 @@ class Program(Sets):
         with self.assertLogs("misfit", logging.INFO) as said:
             self.tclean("said", wprojplanes=128)
         self.assertFalse(any("wprojplanes" in line for line in said.output))  # said once
-        with self.assertLogs("misfit", logging.WARNING) as said:
-            self.tclean("said", restfreq="1.42GHz")
-        self.assertTrue(any("restfreq='1.42GHz' changes nothing of specmode='mfs'" in line for line in said.output))
+        with self.assertLogs("misfit", logging.INFO) as said:
+            self.tclean("said", outframe="BARY", restoration=False)
+        for told in ("outframe='BARY' changes nothing of specmode='mfs'", "restoration=False changes nothing"):
+            self.assertTrue(any(told in line for line in said.output))
 
     def test_other_threads_run_meanwhile_and_calls_wait_for_each_other(self):
         said, seen = threading.Event(), threading.Event()
@@ -228,6 +229,13 @@ class Returned(Sets):
         self.assertEqual(plane["cycleStartIters"], [0, 30, 60, 90])
         self.assertEqual(plane["startPeakRes"], [cycle["peak_residual_jy"] for cycle in log[:-1]])
         self.assertEqual(plane["stopCode"], [1, 1, 1, 1])
+        self.assertEqual(plane["startPeakResNM"][1:], plane["peakResNM"][:-1])
+        self.assertEqual(plane["peakResNM"], plane["peakRes"])  # without a mask
+        self.assertEqual(plane["masksum"], [64 * 64] * 4)
+        masked = self.tclean("made3", niter=40, cycleniter=20, fullsummary=True, mask="box[[0pix,0pix],[9pix,9pix]]")
+        plane = masked["summaryminor"][0][0][0]
+        self.assertEqual(plane["masksum"], [100, 100])
+        self.assertGreater(plane["peakResNM"][-1], plane["peakRes"][-1])
         brief = self.tclean("made2", niter=100, cycleniter=30, outformat="fits")["summaryminor"][0][0][0]
         self.assertEqual(set(brief), {"iterDone", "peakRes", "modelFlux", "cycleThresh"})
         if fits is not None:
@@ -236,18 +244,25 @@ class Returned(Sets):
             self.assertAlmostEqual(brief["modelFlux"][-1] / model.sum(), 1, places=6)
 
     def test_planes_and_stokes_have_each_their_lists(self):
-        made = self.tclean("planes", specmode="cube", stokes="IQ", niter=30, threshold="50mJy", nchan=3)
+        made = self.tclean("planes", specmode="cube", stokes="IQ", niter=30, threshold="50mJy", nchan=3, fullsummary=True)
         minor = made["summaryminor"][0]
         self.assertEqual(set(minor), {0, 1, 2})
         self.assertTrue(all(set(of) == {0, 1} for of in minor.values()))
         self.assertEqual(made["iterdone"], sum(sum(plane["iterDone"]) for of in minor.values() for plane in of.values()))
         self.assertEqual(made["iterdone"], made["summarymajor"][-1])
+        # Iterations are counted through all planes.
+        starts = sorted((start, done) for of in minor.values() for plane in of.values()
+                        for start, done in zip(plane["startIterDone"], plane["iterDone"]))
+        self.assertEqual([start for start, done in starts], [sum(done for _, done in starts[:i]) for i in range(len(starts))])
 
     def test_stop_codes_are_those_of_tclean(self):
         self.assertEqual(self.tclean("s1", niter=1)["stopcode"], 1)
         self.assertEqual(self.tclean("s2", niter=5000, threshold=1.0)["stopcode"], 2)
         self.assertEqual(self.tclean("s8", niter=1000, nsigma=10)["stopcode"], 8)
         self.assertEqual(self.tclean("s9", niter=1000, nmajor=1, cycleniter=3)["stopcode"], 9)
+        if fits is not None:
+            self.tclean("rest", restfreq="1.42GHz", outformat="fits")
+            self.assertEqual(fits.getheader(self.name("rest.image.fits"))["RESTFRQ"], 1.42e9)
         none = self.tclean("s0")
         self.assertEqual((none["iterdone"], none["nmajordone"], none["summaryminor"]), (0, 1, {0: {0: {}}}))
 
@@ -445,7 +460,8 @@ class Refused(Sets):
                            dict(outlierfile="o.txt"), dict(interactive=True), dict(projection="NCP"), dict(usepointing=True),
                            dict(deconvolver="mem"), dict(pbmask=0.2), dict(niter=-1),
                            dict(cell=["1arcsec", "2arcsec"]), dict(imsize=[64.5]), dict(gain=2, niter=1),
-                           dict(datacolumn="residual"), dict(mask=["a", "b"], niter=1), dict(restoration=False, niter=1), dict(savemodel="virtual"), dict(savemodel="modelcolumn"), dict(reffreq="1GHz"),
+                           dict(datacolumn="residual"), dict(mask=["a", "b"], niter=1), dict(savemodel="virtual"), dict(deconvolver="mtmfs", nterms=1), dict(imagename="a\nb"),
+                           dict(savemodel="modelcolumn"), dict(reffreq="1GHz"),
                            dict(mask=5, niter=1), dict(scales="0,5"), dict(stokes=["I"]), dict(gain=None),
                            dict(imsize=[]), dict(datacolumn=["data", "data"]), dict(niter=""), dict(pblimit="x"),
                            dict(pblimit=-1), dict(specmode="cube", start=1.5), dict(imagename=None),

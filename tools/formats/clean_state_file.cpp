@@ -21,7 +21,7 @@ namespace {
 
 using nlohmann::json;
 
-constexpr const char* format = "misfit CLEAN state 2";
+constexpr const char* format = "misfit CLEAN state 3";
 
 /// In one line.
 std::string escaped(const std::string& text) {
@@ -143,7 +143,9 @@ json packed_cycle(const imager::MajorCycle& c) {
           {"depth_jy", c.cycle_threshold_jy},
           {"ended", c.ended},
           {"mean_square_jy2", c.mean_square_jy2},
-          {"from", c.from}};
+          {"from", c.from},
+          {"peak_anywhere_jy", c.peak_anywhere_jy},
+          {"mask_pixels", c.mask_pixels}};
 }
 
 imager::MajorCycle unpacked_cycle(const json& c) {
@@ -156,6 +158,8 @@ imager::MajorCycle unpacked_cycle(const json& c) {
   cycle.ended = c.at("ended");
   cycle.mean_square_jy2 = c.at("mean_square_jy2");
   cycle.from = whole<std::size_t>(c, "from");
+  cycle.peak_anywhere_jy = c.at("peak_anywhere_jy");
+  cycle.mask_pixels = whole<std::size_t>(c, "mask_pixels");
   return cycle;
 }
 

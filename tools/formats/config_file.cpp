@@ -125,4 +125,10 @@ std::string config_text(const CLI::App& command) {
   return text;
 }
 
+void require_text(const CLI::App& command) {
+  for (const auto& [name, value] : options_in_force(command))
+    if (const std::string found = control_character_of(value); !found.empty())
+      throw std::invalid_argument("--" + name + " '" + legible(value) + "': it has " + found + ", expected text");
+}
+
 }  // namespace misfit::tools

@@ -20,6 +20,10 @@ void add_config_option(CLI::App& command);
 /// OptionMark; those that are typed_alone are comments.
 std::string config_text(const CLI::App& command);
 
+/// Throws std::invalid_argument that names an option whose value has a line break or another control character, which no such
+/// file can hold.
+void require_text(const CLI::App& command);
+
 /// Every option of `command` that a file may hold, with the value in force: several values are separated by blanks, a flag is
 /// "true" or "false".
 std::vector<std::pair<std::string, std::string>> options_in_force(const CLI::App& command);

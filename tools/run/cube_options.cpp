@@ -40,13 +40,6 @@ SpectralQuantity parse(const std::string& option, const std::string& text) {
   refuse_option(option, text, "a number of channels, a frequency such as 1.4GHz, or a velocity such as 20km/s");
 }
 
-double rest_frequency_hz(const CubeOptions& o) {
-  if (o.restfreq.empty()) return 0;
-  const double hz = parse_frequency_hz(o.restfreq);
-  if (!(hz > 0) || !has_unit(o.restfreq)) refuse_option("restfreq", o.restfreq, "a frequency such as 1.420405752GHz");
-  return hz;
-}
-
 /// The band of all windows, edges included.
 struct Band {
   double low_hz = std::numeric_limits<double>::infinity();
@@ -182,7 +175,7 @@ void declare(CLI::App& command, CubeOptions& o) {
       .add_option("--outframe", o.outframe,
                   "Where planes have their frequencies: LSRK, LSRD, BARY, GEO, TOPO, GALACTO, LGROUP or CMB")
       ->check(values_are({"LSRK", "LSRD", "BARY", "GEO", "TOPO", "GALACTO", "LGROUP", "CMB"}));
-  command.add_option("--restfreq", o.restfreq, "Of the line: velocities are relative to it, and headers state it");
+  command.add_option("--restfreq", o.restfreq, "Of the line: headers state it, and velocities are relative to it");
   command
       .add_option("--interpolation", o.interpolation,
                   "linear: planes take visibilities interpolated between channels; nearest: the channels within them")
@@ -193,6 +186,13 @@ void declare(CLI::App& command, CubeOptions& o) {
       ->check(values_are({"true", "false"}));
 }
 
+double rest_frequency_hz(const CubeOptions& o) {
+  if (o.restfreq.empty()) return 0;
+  const double hz = parse_frequency_hz(o.restfreq);
+  if (!(hz > 0) || !has_unit(o.restfreq)) refuse_option("restfreq", o.restfreq, "a frequency such as 1.420405752GHz");
+  return hz;
+}
+
 void check(const CubeOptions& o) {
   const CubeOptions usual;
   const auto only_of_cubes = [&](const char* option, const std::string& value, bool given) {
@@ -200,7 +200,6 @@ void check(const CubeOptions& o) {
   };
   only_of_cubes("nchan", std::to_string(o.nchan), o.nchan != usual.nchan);
   only_of_cubes("start", o.start, !o.start.empty());
-  only_of_cubes("restfreq", o.restfreq, !o.restfreq.empty());
   only_of_cubes("chanwidth", o.chanwidth, !o.chanwidth.empty());
   only_of_cubes("outframe", o.outframe, o.outframe != usual.outframe);
   only_of_cubes("interpolation", o.interpolation, o.interpolation != usual.interpolation);

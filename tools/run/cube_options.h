@@ -20,7 +20,7 @@ struct CubeOptions {
   std::string start;                     ///< a channel, "3chan", "1.4GHz" or "20km/s"; empty = the first channel
   std::string chanwidth;                 ///< channels, "1MHz" or "2km/s"; empty = one channel
   std::string outframe = "LSRK";         ///< as ms_io::parse_spectral_frame() takes it
-  std::string restfreq;                  ///< of the line, for velocities; empty = none
+  std::string restfreq;                  ///< of the line, for headers and velocities; empty = none
   std::string interpolation = "linear";  ///< or nearest
   bool perchanweightdensity = true;      ///< each plane's weights follow from its own samples; or from those of all
 
@@ -31,6 +31,9 @@ void declare(CLI::App& command, CubeOptions& options);
 
 /// Throws std::invalid_argument that names the option, its value and what was expected.
 void check(const CubeOptions& options);
+
+/// That of --restfreq, which goes for images of the whole band too; 0 where none is given. Throws as check() does.
+double rest_frequency_hz(const CubeOptions& options);
 
 /// The planes, of data with these windows in the frame of --outframe. Channels count from 0 among those selected of the first
 /// window, or, "3chan", among all of it, whose width and direction are one channel's. Velocities are radio's, c (1 − f/f_rest).

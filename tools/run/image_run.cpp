@@ -129,7 +129,7 @@ class ImageRun : private ChannelSink {
     if (o_.taken.any()) taken_ = std::make_unique<TakenFiles>(o_, header_);
     header_.history = history_of(report_.command_line, set_->data_columns());
     if (o_.taylor.nterms > 1) header_.observation.frequency_hz = taylor_expansion(o_.taylor, set_->observation()).reference_hz;
-    if (!cube()) header_.spectral = imager::whole_band(header_.observation);
+    if (!cube()) header_.spectral = whole_band(header_.observation);
     find_reach();
   }
 
@@ -154,10 +154,16 @@ class ImageRun : private ChannelSink {
     for (const std::string& words : clean_->warnings()) warn(words);
   }
 
+  imager::SpectralAxis whole_band(const imager::Observation& observation) const {
+    imager::SpectralAxis axis = imager::whole_band(observation);
+    axis.rest_frequency_hz = rest_frequency_hz(o_.cube);
+    return axis;
+  }
+
   imager::SpectralAxis list_channels() {
     if (!cube()) {
       check_taylor_band(o_.taylor, windows_);
-      return imager::whole_band(set_->observation());
+      return whole_band(set_->observation());
     }
     sampling_ = cube_sampling(o_.cube, windows_);
     if (const std::string words = windows_left_out(sampling_.axis, windows_); !words.empty()) warn(words);

@@ -96,7 +96,9 @@ json cycle_json(const imager::MajorCycle& cycle) {
           {"model_flux_jy", number(cycle.model_flux_jy)},
           {"cycle_threshold_jy", number(cycle.cycle_threshold_jy)},
           {"ended", cycle.ended},
-          {"from", cycle.from}};
+          {"from", cycle.from},
+          {"peak_anywhere_jy", number(cycle.peak_anywhere_jy)},
+          {"mask_pixels", cycle.mask_pixels}};
 }
 
 json clean_json(const std::optional<imager::CleanReport>& clean) {
@@ -104,7 +106,7 @@ json clean_json(const std::optional<imager::CleanReport>& clean) {
   json log = json::array();
   for (const imager::MajorCycle& cycle : clean->cycles) log.push_back(cycle_json(cycle));
   json report = cycle_json(clean->final_state());
-  for (const char* of_a_cycle : {"cycle_threshold_jy", "ended", "from"}) report.erase(of_a_cycle);
+  for (const char* of_a_cycle : {"cycle_threshold_jy", "ended", "from", "peak_anywhere_jy", "mask_pixels"}) report.erase(of_a_cycle);
   report["iterations"] = clean->iterations;
   report["major_cycles"] = clean->cycles.size() - 1;
   report["kept_cycle"] = clean->kept;

@@ -234,6 +234,8 @@ BOOST_AUTO_TEST_CASE(components_lie_within_the_mask_and_sources_outside_stay) {
   BOOST_TEST(result.report.final_state().peak_residual_jy == within);
   BOOST_TEST(within <= (1 + threshold_tolerance) * options.threshold_jy);
   BOOST_TEST(std::abs(result.residual.at(sky[1].row, sky[1].column)) > 0.3);  // of 0.5 Jy, and sidelobes
+  BOOST_TEST(result.report.final_state().peak_anywhere_jy == peak_magnitude(result.residual));
+  BOOST_TEST(result.report.final_state().mask_pixels == 256U);
   BOOST_TEST(result.report.final_state().rms_jy == robust_noise(result.residual));
 }
 

@@ -90,6 +90,19 @@ BOOST_AUTO_TEST_CASE(errors_name_the_file_the_line_and_the_option) {
   check_error("number=1\nname=\x1b[31m\n", ", line 2: it has the control character 0x1b, expected text");
 }
 
+BOOST_AUTO_TEST_CASE(what_no_file_can_hold_is_refused_when_it_is_typed) {
+  for (const std::string name : {"two\nlines", "\x1b[31m", "end\r"}) {
+    Command typed;
+    typed.parse({"--number", "1", "--name", name});
+    BOOST_CHECK_EXCEPTION(require_text(*typed.command), std::invalid_argument, [](const std::invalid_argument& error) {
+      return std::string(error.what()).find("--name '") == 0 && std::string(error.what()).find("control character") > 0;
+    });
+  }
+  Command typed;
+  typed.parse({"--number", "1", "--name", "a\tb ü"});
+  BOOST_CHECK_NO_THROW(require_text(*typed.command));
+}
+
 BOOST_AUTO_TEST_CASE(wrong_values_are_refused_as_when_they_are_typed) {
   const ConfigFile file("number=many\n");
   BOOST_CHECK_THROW(Command().parse({"--config", file.path}), CLI::ConversionError);

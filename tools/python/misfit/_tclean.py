@@ -207,10 +207,11 @@ def _give_spectrum(words, p):
     if specmode not in ("mfs", "cube"):
         _refuse("specmode", specmode, "'mfs' or 'cube'" + (": it is not made yet" if specmode.startswith("cube") else ""))
     restfreq = [one for one in _items(p["restfreq"]) if one != ""]
+    if restfreq:
+        words.give("restfreq", _quantity("restfreq", restfreq[0], "Hz"))
     if specmode == "mfs":
-        for name, usual in (("restfreq", []), ("outframe", "LSRK")):
-            if p[name] != "" and _items(p[name]) != _items(usual):
-                _tell_once(logging.WARNING, f"{name}={p[name]!r} changes nothing of specmode='mfs': headers have the data's frame")
+        if p["outframe"] not in ("", "LSRK"):
+            _tell_once(logging.WARNING, f"outframe={p['outframe']!r} changes nothing of specmode='mfs': headers have the data's frame")
         return
     words.give("specmode", "cube")
     words.give("nchan", _whole("nchan", p["nchan"]))
@@ -225,8 +226,6 @@ def _give_spectrum(words, p):
     elif width != "":
         words.give("width", _spectral("width", width, frame))
     words.give("outframe", frame)
-    if restfreq:
-        words.give("restfreq", _quantity("restfreq", restfreq[0], "Hz"))
     words.give("interpolation", p["interpolation"])
     if not p["perchanweightdensity"] and p["weighting"] != "natural":
         words.give("perchanweightdensity", "false")
@@ -285,8 +284,8 @@ def _give_clean(words, p):
     usemask = p["usemask"]
     if usemask not in ("user", "auto-multithresh"):
         _refuse("usemask", usemask, "'user' or 'auto-multithresh'")
-    if not p["restoration"] and p["cleans"]:
-        _refuse("restoration", p["restoration"], "True: restored images come with every model")
+    if not p["restoration"]:
+        _tell_once(logging.INFO, "restoration=False changes nothing: restored images come with every model")
     beam = "common" if list(_items(p["restoringbeam"])) == ["common"] else _ellipse("restoringbeam", p["restoringbeam"], "arcsec")
     savemodel = p["savemodel"]
     if savemodel not in ("none", "modelcolumn"):
@@ -443,12 +442,26 @@ def _summary_of_plane(log, full):
     }
     if full:
         summary.update({
-            "startIterDone": [float(sum(done[:index])) for index in range(len(done))],
             "startPeakRes": [start["peak_residual_jy"] for start in before],
             "startModelFlux": [start["model_flux_jy"] for start in before],
+            "startPeakResNM": [start["peak_anywhere_jy"] for start in before],
+            "peakResNM": [cycle["peak_anywhere_jy"] for cycle in cycles],
+            "masksum": [start["mask_pixels"] for start in before],
             "stopCode": [float(_minor_stop(cycle["ended"])) for cycle in cycles],
         })
     return summary
+
+
+def _count_through(planes, totals):
+    """Counts iterations plane after plane, in one set of minor cycles after the other."""
+    for summary in planes:
+        summary["cycleStartIters"] = [float(total) for total in totals[:len(summary["iterDone"])]]
+        summary["startIterDone"] = []
+    for cycle, done in enumerate(totals):
+        for summary in planes:
+            if cycle < len(summary["iterDone"]):
+                summary["startIterDone"].append(float(done))
+                done += summary["iterDone"][cycle]
 
 
 def dictionary(report, p):
@@ -464,8 +477,8 @@ def dictionary(report, p):
     all_minor = [summary for of in minor.values() for summary in of.values()]
     major = 1 + max((len(summary["iterDone"]) for summary in all_minor), default=0)
     totals = [sum(sum(summary["iterDone"][:cycle]) for summary in all_minor) for cycle in range(major)]
-    for summary in all_minor if p["fullsummary"] else ():
-        summary["cycleStartIters"] = [float(total) for total in totals[:len(summary["iterDone"])]]
+    if p["fullsummary"]:
+        _count_through(all_minor, totals)
     cleans = [stokes["clean"] for plane in planes for stokes in plane["stokes"] if stokes["clean"]]
     codes = {clean["stop_code"] for clean in cleans}
     code = next((code for code in _STOPS_FIRST if code in codes), 1)
@@ -669,7 +682,7 @@ def tclean(
     smallscalebias : float
         The largest scale counts this part less than points.
     restoration : bool
-        True: a model comes with its restored image.
+        Not needed: restored images come with every model.
     restoringbeam : str or list of str
         Beam of restored images, or "common".
     pbcor : bool
@@ -703,7 +716,8 @@ def tclean(
     nmajor : int
         Major cycles at most.
     fullsummary : bool
-        Whether summaryminor has cycleStartIters, startIterDone, startPeakRes, startModelFlux and stopCode too.
+        Whether summaryminor has cycleStartIters, startIterDone, startPeakRes, startModelFlux, startPeakResNM, peakResNM,
+        masksum and stopCode too.
     usemask : str
         "user" or "auto-multithresh".
     mask : path or str
