@@ -30,7 +30,7 @@ AccurateImages make_images(const VisibilitySource& source, GriddingPlan plan, co
   const bool with_psf = made.plan.request.psf || taken.psf;
   made.images = with_psf && &psf != &images ? make_dirty_images(source, images, OwnPsf{psf, stokes}, context)
                                             : make_dirty_images(source, images, AdjointOptions{stokes, with_psf}, context);
-  take(std::move(taken), made.plan.request, source.ranks(), made.images);
+  made.dirty_middles = take(std::move(taken), made.plan.request, source.ranks(), made.images);
   return made;
 }
 

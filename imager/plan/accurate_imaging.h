@@ -22,6 +22,7 @@ struct AccurateImages {
   GriddingPlan plan;
   std::shared_ptr<const PlannedTransform> transform;
   DirtyImages images;
+  std::vector<Image> dirty_middles{};  ///< [Stokes], where residuals of a model were taken in place of `images.dirty`
   double judged_error = 0;   ///< over the images' RMS, where they were made twice: by theory, or twice that of pixels checked
   bool promise_kept = true;  ///< whether the gridding error is within the accuracy, judged by the images that came out
 };

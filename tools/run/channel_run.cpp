@@ -197,12 +197,25 @@ imager::CleanResult ChannelRun::clean(std::size_t stokes) {
     for (const imager::Image& dirty : taylor_->images().dirty) clean.dirty.push_back(&dirty);
     clean.psf = taylor_->psf();
   }
+  if (clean.of_start) check_start(stokes, clean);
   const auto cycle = [this](const imager::CleanState& state) { count_cycle(state); };
   imager::CleanResult result = stage_->run(clean, scene_.option_values, cycle, context());
   if (!stage_->words_on_state().empty()) made_.doubts.push_back(stage_->words_on_state());
   images_.images.dirty[stokes] = {};
   if (const imager::Image* const mask = stage_->mask(stokes); mask != nullptr) result.mask = *mask;
   return result;
+}
+
+/// Whether the residual that was taken is what the start model leaves, where the PSF tells.
+void ChannelRun::check_start(std::size_t stokes, const CleanScene& clean) {
+  const imager::GriddingPlan& plan = images_.plan;
+  if (plan.direct || plan.options.has_w_axis()) return;
+  const imager::ModelResidual of{stage_->start(stokes), clean.psf, images_.dirty_middles.at(stokes)};
+  try {
+    imager::require_residual_of(of, plan.request, stokes, *clean.dirty.front());
+  } catch (const imager::UnlikeSamples& unlike) {
+    scene_.taken->refuse(unlike);
+  }
 }
 
 void ChannelRun::release_samples() {

@@ -112,6 +112,7 @@ class ChannelRun {
   void count_cycle(const imager::CleanState& state);
   imager::ImagedData imaged(std::size_t stokes);
   imager::CleanResult clean(std::size_t stokes);
+  void check_start(std::size_t stokes, const CleanScene& clean);
 
   const ChannelScene& scene_;
   std::unique_ptr<ChannelSamples> samples_;

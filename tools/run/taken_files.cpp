@@ -30,7 +30,7 @@ void declare(CLI::App& command, TypedTaken& o) {
       .add_option(
           "--calcres", o.calcres,
           "false: take <imagename>.residual, which must be that of these samples to 1e-2 of its RMS; or with --startmodel "
-          "what that model leaves, which is believed until the next major cycle")
+          "what that model leaves, which where w counts is believed until the next major cycle")
       ->check(values_are({"true", "false"}));
 }
 
@@ -92,7 +92,7 @@ imager::Plan TakenFiles::decisions() const {
   add("PSF", psf_, "calcpsf", "its middle is compared with direct sums");
   add("residual", residual_, "calcres",
       o_.clean.startmodel.empty() ? "its middle is compared with direct sums"
-                                  : "it is believed to be what the start model leaves, until a major cycle makes it anew");
+                                  : "its middle is compared with what the start model leaves, but where w counts");
   return decisions;
 }
 
@@ -142,7 +142,9 @@ void TakenFiles::refuse(const imager::UnlikeSamples& unlike) const {
   const std::string of = unlike.stokes && image_.stokes.size() > 1 ? " of " + stokes_name(image_.stokes[*unlike.stokes]) : "";
   const bool residual = unlike.stokes.has_value();
   throw std::runtime_error((residual ? residual_ : psf_).front().path + of + " " + unlike.what() + "; expected " +
-                           (residual ? "the residual of the same data, selection and weighting, or --calcres true"
+                           (residual ? std::string("the residual of the same data, selection") +
+                                           (o_.clean.startmodel.empty() ? " and weighting" : ", weighting and start model") +
+                                           ", or --calcres true"
                                      : "the PSF of the same selection and weighting, or --calcpsf true"));
 }
 

@@ -2,6 +2,7 @@
 
 #include <boost/test/data/test_case.hpp>
 #include <boost/test/unit_test.hpp>
+#include <tuple>
 
 #include "imager/plan/accurate_imaging.h"
 #include "tests/imager/comparison.h"
@@ -85,6 +86,34 @@ BOOST_AUTO_TEST_CASE(those_of_other_data_are_refused_but_not_those_of_a_model) {
   BOOST_CHECK_EXCEPTION(scene.made(taken), UnlikeSamples, is_of_second);
   taken.of_model = true;
   BOOST_TEST((scene.made(taken).images.dirty[1].pixel == (*taken.dirty)[1].pixel));
+}
+
+/// Without w the PSF says what a model leaves, wherever its components lie.
+BOOST_AUTO_TEST_CASE(a_residual_is_known_to_be_that_of_its_model) {
+  Scene scene(48, 32, 1e-5);
+  scene.request.gridder = Gridder::standard;
+  scene.request.psf_accuracy = 1e-4;
+  for (std::size_t row = 0; row < scene.block.rows(); ++row) scene.block.uvw_m.edit()[3 * row + 2] = 0;
+  const AccurateImages made = scene.made();
+  Image model(48, 32);
+  for (const auto& [row, column, jy] : {std::tuple{0, 0, 1.0}, {31, 47, -2.0}, {16, 24, 0.5}, {3, 30, 1.5}})
+    model.at(row, column) = jy;
+  const StoredVisibilities samples = stored({scene.block});
+  for (std::size_t s = 0; s < 2; ++s) {
+    const ImagedData imaged{{samples, s}, *made.transform, made.images.normalisation};
+    const Image residual = make_residual_image(imaged, model, {});
+    TakenImages taken{made.images.dirty, std::nullopt, true};
+    (*taken.dirty)[s] = residual;
+    const AccurateImages begun = scene.made(taken);
+    const auto check = [&](const Image& of) {
+      require_residual_of({{&of}, {&begun.images.psf}, begun.dirty_middles.at(s)}, scene.request, s, begun.images.dirty[s]);
+    };
+    BOOST_CHECK_NO_THROW(check(model));
+    Image other = model;
+    other.at(3, 30) += 1;
+    BOOST_CHECK_THROW(check(other), UnlikeSamples);
+    BOOST_CHECK_THROW(check(Image(48, 32)), UnlikeSamples);
+  }
 }
 
 BOOST_AUTO_TEST_CASE(what_is_no_number_is_refused) {
