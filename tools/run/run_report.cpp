@@ -106,7 +106,8 @@ json clean_json(const std::optional<imager::CleanReport>& clean) {
   json log = json::array();
   for (const imager::MajorCycle& cycle : clean->cycles) log.push_back(cycle_json(cycle));
   json report = cycle_json(clean->final_state());
-  for (const char* of_a_cycle : {"cycle_threshold_jy", "ended", "from", "peak_anywhere_jy", "mask_pixels"}) report.erase(of_a_cycle);
+  for (const char* of_a_cycle : {"cycle_threshold_jy", "ended", "from", "peak_anywhere_jy", "mask_pixels"})
+    report.erase(of_a_cycle);
   report["iterations"] = clean->iterations;
   report["major_cycles"] = clean->cycles.size() - 1;
   report["kept_cycle"] = clean->kept;
