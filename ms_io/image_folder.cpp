@@ -1,3 +1,7 @@
+#include <casacore/casa/OS/Path.h>
+#include <casacore/tables/Tables/PlainTable.h>
+#include <casacore/tables/Tables/TableCache.h>
+
 #include <stdexcept>
 #include <system_error>
 
@@ -63,6 +67,13 @@ void ImageFolder::put_in_place() {
   if (error && replaces) fs::rename(old(), target_, ignored);
   if (error) fail(error.message());
   fs::remove_all(old(), ignored);
+  forget_open_tables();
+}
+
+/// Who opens the path from here on gets what lies there now: casacore goes on with a table of that name which is still open.
+void ImageFolder::forget_open_tables() const {
+  casacore::TableCache& open = casacore::PlainTable::tableCache();
+  for (const char* part : {"", "/mask0", "/logtable"}) open.remove(casacore::Path(target_.string() + part).absoluteName());
 }
 
 }  // namespace misfit::ms_io

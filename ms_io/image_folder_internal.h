@@ -24,6 +24,7 @@ class ImageFolder {
   std::filesystem::path old() const;
   [[noreturn]] void fail(const std::string& reason) const;
   void require_image_or_nothing() const;
+  void forget_open_tables() const;
   void remove_left(const std::filesystem::path& left) const;
 
   std::string path_;

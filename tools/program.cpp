@@ -61,6 +61,26 @@ std::string conversion_message(const std::string& said, const CLI::App& program)
   return name + ' ' + said.substr(equals + 3) + ": expected a " + (fraction ? "number" : "whole number");
 }
 
+std::string in_words(const CLI::ParseError& error, const CLI::App& program) {
+  if (dynamic_cast<const CLI::ConversionError*>(&error) != nullptr) return conversion_message(error.what(), program);
+  const CLI::App& command = called(program);
+  const bool missing = error.get_name() == "RequiredError";
+  std::vector<std::string> names;
+  for (const CLI::App* each : command.get_subcommands({})) names.push_back(each->get_name());
+  const std::vector<std::string> rest = command.remaining();
+  const bool unknown = dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr;
+  if (names.empty() && (missing || unknown) && !rest.empty()) return unexpected(rest);  // may be what is missing, misspelt
+  if (const auto* const checking = dynamic_cast<const CheckingProgram*>(&program); checking != nullptr && missing)
+    if (std::string wrong = checking->wrong_value(command); !wrong.empty()) return wrong;
+  if (names.empty() || !missing) return error.what();
+  const std::string word = rest.empty() || rest.front().front() == '-' ? "" : rest.front();
+  std::string said = &command == &program ? word : command.get_name() + (word.empty() ? "" : " ") + word;
+  said += said.empty() ? "expected " : ": expected ";
+  if (!word.empty()) names = nearest_first(word, names);
+  for (std::size_t i = 0; i < names.size(); ++i) said += (i == 0 ? "" : i + 1 == names.size() ? " or " : ", ") + names[i];
+  return said;
+}
+
 }  // namespace
 
 std::unique_ptr<CLI::App> make_program(const CommandCall& call) {
@@ -81,23 +101,7 @@ std::unique_ptr<CLI::App> make_program(const CommandCall& call) {
 
 /// Where a subcommand is missing, or is none, those that there are.
 std::string usage_message(const CLI::ParseError& error, const CLI::App& program) {
-  if (dynamic_cast<const CLI::ConversionError*>(&error) != nullptr) return conversion_message(error.what(), program);
-  const CLI::App& command = called(program);
-  const bool missing = error.get_name() == "RequiredError";
-  std::vector<std::string> names;
-  for (const CLI::App* each : command.get_subcommands({})) names.push_back(each->get_name());
-  const std::vector<std::string> rest = command.remaining();
-  const bool unknown = dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr;
-  if (names.empty() && (missing || unknown) && !rest.empty()) return unexpected(rest);  // may be what is missing, misspelt
-  if (const auto* const checking = dynamic_cast<const CheckingProgram*>(&program); checking != nullptr && missing)
-    if (std::string wrong = checking->wrong_value(command); !wrong.empty()) return wrong;
-  if (names.empty() || !missing) return error.what();
-  const std::string word = rest.empty() || rest.front().front() == '-' ? "" : rest.front();
-  std::string said = &command == &program ? word : command.get_name() + (word.empty() ? "" : " ") + word;
-  said += said.empty() ? "expected " : ": expected ";
-  if (!word.empty()) names = nearest_first(word, names);
-  for (std::size_t i = 0; i < names.size(); ++i) said += (i == 0 ? "" : i + 1 == names.size() ? " or " : ", ") + names[i];
-  return said;
+  return legible(in_words(error, program));  // it may hold what was typed
 }
 
 }  // namespace misfit::tools

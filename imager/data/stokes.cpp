@@ -63,6 +63,12 @@ Stokes stokes_of_fits_code(int fits_code) {
   return at_index(static_cast<std::size_t>(std::find(fits_codes.begin(), fits_codes.end(), fits_code) - fits_codes.begin()));
 }
 
+std::optional<int> plane_of(const std::vector<Stokes>& list, Stokes wanted) {
+  const auto found = std::find(list.begin(), list.end(), wanted);
+  if (found == list.end()) return std::nullopt;
+  return static_cast<int>(found - list.begin());
+}
+
 std::string stokes_names(const std::vector<Stokes>& list) {
   std::string text;
   for (const Stokes stokes : list) text += stokes_name(stokes);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -20,6 +21,9 @@ int fits_stokes_code(Stokes stokes);
 bool is_stokes_code(int casacore_code);
 bool is_fits_stokes_code(int fits_code);
 Stokes stokes_of_fits_code(int fits_code);
+
+/// Where a list has one; nothing where it has not.
+std::optional<int> plane_of(const std::vector<Stokes>& list, Stokes wanted);
 
 /// "IQUV" for I, Q, U and V.
 std::string stokes_names(const std::vector<Stokes>& list);

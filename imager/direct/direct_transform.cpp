@@ -111,6 +111,18 @@ struct WeightedSamples {
   }
 };
 
+/// The weights of the samples that take part in imaging; adds to the sums of each set.
+std::vector<float> counted_weights(const VisibilityBlock& block, const VisibilitySets& sets, const ImagedSamples& imaged,
+                                   std::vector<SampleSums>& sums) {
+  SampleSums counted;
+  std::vector<float> weight = imaging_weights(block, imaged, counted);
+  for (std::size_t s = 0; s < sets.size(); ++s) {
+    sums[s] += counted;
+    std::visit([&](const auto* v) { add_span_to_sums(weight.data(), v, weight.size(), sums[s]); }, sets[s]);
+  }
+  return weight;
+}
+
 class DirectAdjoint : public AdjointSum {
  public:
   DirectAdjoint(const DirectSums& o, const AdjointOptions& options) : AdjointSum(options), o_(o) {
@@ -127,12 +139,8 @@ class DirectAdjoint : public AdjointSum {
 
  protected:
   void add_sets(const VisibilityBlock& block, const VisibilitySets& sets) override {
-    SampleSums counted;
-    const std::vector<float> weight = imaging_weights(block, {o_.geometry, options_.beyond_grid, o_.threads}, counted);
-    for (std::size_t s = 0; s < sets.size(); ++s) {
-      result_.sums[s] += counted;
-      std::visit([&](const auto* v) { add_span_to_sums(weight.data(), v, weight.size(), result_.sums[s]); }, sets[s]);
-    }
+    const std::vector<float> weight =
+        counted_weights(block, sets, {o_.geometry, options_.beyond_grid, o_.threads}, result_.sums);
     VisibilitySets imaged = sets;
     imaged.resize(images());
     const WeightedSamples samples(block, weight, imaged, 0, weight.size());
@@ -152,6 +160,65 @@ class DirectAdjoint : public AdjointSum {
 
  private:
   DirectSums o_;
+  AdjointResult result_;
+};
+
+/// What the samples of a block add at some pixels, in pieces that threads share: the same bits for any number of them.
+struct PixelSums {
+  std::vector<WeightedSamples::Sums> of_sets;  ///< [pixel]
+  std::vector<double> of_psf;                  ///< [pixel], where it was wanted
+};
+
+PixelSums sums_at_pixels(const VisibilityBlock& block, const std::vector<float>& weight, const VisibilitySets& sets,
+                         const DirectPixels& at, bool with_psf) {
+  constexpr std::size_t samples_a_piece = 1 << 14;
+  const std::size_t pixels = at.pixel.size(), pieces = (weight.size() + samples_a_piece - 1) / samples_a_piece;
+  const PhasePosition middle = position_of(at.geometry.centre, at.with_w);
+  std::vector<PixelSums> part(pieces, {std::vector<WeightedSamples::Sums>(pixels), std::vector<double>(pixels)});
+  parallel_for(pieces, at.threads, [&](std::size_t p) {
+    const std::size_t begin = p * samples_a_piece;
+    const WeightedSamples samples(block, weight, sets, begin, std::min(begin + samples_a_piece, weight.size()));
+    for (std::size_t k = 0; k < pixels; ++k) {
+      const PhasePosition to = position_of(at.geometry.at(at.pixel[k].row, at.pixel[k].column), at.with_w);
+      if (!sets.empty()) part[p].of_sets[k] = samples.images_at(to);
+      if (with_psf) part[p].of_psf[k] = samples.beam_at(relative(to, middle));
+    }
+  });
+  PixelSums all{std::vector<WeightedSamples::Sums>(pixels), std::vector<double>(pixels)};
+  for (const PixelSums& one : part)
+    for (std::size_t k = 0; k < pixels; ++k) {
+      for (std::size_t s = 0; s < sets.size(); ++s) all.of_sets[k][s] += one.of_sets[k][s];
+      all.of_psf[k] += one.of_psf[k];
+    }
+  return all;
+}
+
+class PixelAdjoint : public AdjointSum {
+ public:
+  PixelAdjoint(const DirectPixels& at, const AdjointOptions& options) : AdjointSum(options), at_(at) {
+    const Image none(static_cast<int>(at.pixel.size()), 1);
+    result_.images.assign(images(), none);
+    result_.sums.resize(sets());
+    if (options.with_psf) result_.psf = none;
+  }
+
+  AdjointResult finish() override { return std::move(result_); }
+
+ protected:
+  void add_sets(const VisibilityBlock& block, const VisibilitySets& sets) override {
+    const std::vector<float> weight =
+        counted_weights(block, sets, {at_.geometry, options_.beyond_grid, at_.threads}, result_.sums);
+    VisibilitySets imaged = sets;
+    imaged.resize(images());
+    const PixelSums sums = sums_at_pixels(block, weight, imaged, at_, options_.with_psf);
+    for (std::size_t k = 0; k < at_.pixel.size(); ++k) {
+      for (std::size_t s = 0; s < imaged.size(); ++s) result_.images[s].pixel[k] += sums.of_sets[k][s];
+      if (options_.with_psf) result_.psf.pixel[k] += sums.of_psf[k];
+    }
+  }
+
+ private:
+  const DirectPixels& at_;
   AdjointResult result_;
 };
 
@@ -191,22 +258,17 @@ std::unique_ptr<Prediction> DirectTransform::predict(const Image& model) const {
   return std::make_unique<DirectPrediction>(std::move(sources), sums_.with_w, sums_.threads);
 }
 
+std::unique_ptr<AdjointSum> PixelTransform::adjoint(const AdjointOptions& options) const {
+  return std::make_unique<PixelAdjoint>(at_, options);
+}
+
 void add_direct_pixels(const VisibilityBlock& block, const DirectPixels& at, std::vector<std::vector<double>>& sum) {
   SampleSums unused;
   const std::vector<float> weight = imaging_weights(block, {at.geometry, false, at.threads}, unused);
   const VisibilitySets sets(block, static_cast<int>(sum.size()));
-  constexpr std::size_t samples_a_piece = 1 << 14;
-  const std::size_t pieces = (weight.size() + samples_a_piece - 1) / samples_a_piece;
-  std::vector<WeightedSamples::Sums> part(pieces * at.pixel.size());  // [piece][pixel]
-  parallel_for(pieces, at.threads, [&](std::size_t p) {
-    const std::size_t begin = p * samples_a_piece;
-    const WeightedSamples samples(block, weight, sets, begin, std::min(begin + samples_a_piece, weight.size()));
-    for (std::size_t k = 0; k < at.pixel.size(); ++k)
-      part[p * at.pixel.size() + k] =
-          samples.images_at(position_of(at.geometry.at(at.pixel[k].row, at.pixel[k].column), at.with_w));
-  });
-  for (std::size_t i = 0; i < part.size(); ++i)
-    for (std::size_t image = 0; image < sum.size(); ++image) sum[image][i % at.pixel.size()] += part[i][image];
+  const PixelSums added = sums_at_pixels(block, weight, sets, at, false);
+  for (std::size_t image = 0; image < sum.size(); ++image)
+    for (std::size_t k = 0; k < at.pixel.size(); ++k) sum[image][k] += added.of_sets[k][image];
 }
 
 }  // namespace misfit::imager

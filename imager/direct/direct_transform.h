@@ -1,5 +1,7 @@
 #pragma once
 
+#include <utility>
+
 #include "imager/data/geometry.h"
 #include "imager/direct/source_sums.h"
 #include "imager/transform/transform.h"
@@ -39,6 +41,20 @@ struct DirectPixels {
   std::vector<Pixel> pixel;
   bool with_w = true;
   int threads = 1;
+};
+
+/// Some pixels of an image, by direct sums: an adjoint's images are as many pixels wide and one high. What is predicted is left
+/// to another transform, of the whole image, which stays where it is.
+class PixelTransform : public Transform {
+ public:
+  PixelTransform(DirectPixels at, const Transform& whole) : at_(std::move(at)), whole_(whole) {}
+
+  std::unique_ptr<AdjointSum> adjoint(const AdjointOptions& options) const override;
+  std::unique_ptr<Prediction> predict(const Image& model) const override { return whole_.predict(model); }
+
+ private:
+  DirectPixels at_;
+  const Transform& whole_;
 };
 
 /// Adds the direct sums of `block`, for one image or of all its Stokes parameters: sum[image][k] += Σ w Re[V

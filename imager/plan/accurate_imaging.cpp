@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <optional>
 
 #include "imager/direct/verify.h"
 
@@ -14,8 +15,35 @@ double random_image_rms(const SampleSums& sums) {
   return std::sqrt(0.5 * sums.weight2_square) / sums.weight;
 }
 
+/// Becomes `taken`, at rank 0. Returns its statistics, at every rank.
+ImageStatistics replace(Image& image, Image& taken, const Ranks& ranks) {
+  image = std::move(taken);
+  ImageStatistics statistics = ranks.first() ? statistics_of(image) : ImageStatistics();
+  share_values(ranks, statistics);
+  return statistics;
+}
+
+/// Puts images that are taken into the place of their pixels.
+void take(const TakenImages& taken, const ComparedPixels& pixels, const Ranks& ranks, AccurateImages& made) {
+  FormerImages former;
+  former.dirty.resize(made.images.dirty.size());
+  if (ranks.first()) former = taken.read();
+  const GriddingRequest& request = made.plan.request;
+  if (taken.psf) {
+    if (ranks.first())
+      pixels.require(former.psf, made.images.psf, root_mean_square(former.psf), request.psf_accuracy, {.psf = true});
+    made.images.psf_statistics = replace(made.images.psf, former.psf, ranks);
+  }
+  for (std::size_t s = 0; taken.dirty && s < made.images.dirty.size(); ++s) {
+    Image& image = former.dirty.at(s);
+    if (ranks.first() && !taken.of_model)
+      pixels.require(image, made.images.dirty[s], root_mean_square(image), request.accuracy, {.stokes = s});
+    made.images.dirty_statistics[s] = replace(made.images.dirty[s], image, ranks);
+  }
+}
+
 AccurateImages make_images(const VisibilitySource& source, GriddingPlan plan, const Context& context,
-                           std::shared_ptr<const PlannedTransform> transform = nullptr, TakenImages taken = {}) {
+                           std::shared_ptr<const PlannedTransform> transform = nullptr, const TakenImages& taken = {}) {
   AccurateImages made;
   made.plan = std::move(plan);
   made.transform = std::move(transform);
@@ -23,14 +51,15 @@ AccurateImages make_images(const VisibilitySource& source, GriddingPlan plan, co
     const StageTimer timer(context.times, stage::plan);
     made.transform = std::make_shared<PlannedTransform>(made.plan);
   }
-  const std::unique_ptr<Transform> middle = taken.dirty || taken.psf ? middle_transform(made.plan) : nullptr;
-  const Transform& images = taken.dirty ? *middle : made.transform->images();
-  const Transform& psf = taken.psf ? *middle : made.transform->psf();
+  std::optional<ComparedPixels> pixels;
+  if (taken.any()) pixels.emplace(made.plan, made.transform->images());
+  const Transform& images = taken.dirty ? pixels->transform() : made.transform->images();
+  const Transform& psf = taken.psf ? pixels->transform() : made.transform->psf();
   const int stokes = made.plan.request.stokes;
   const bool with_psf = made.plan.request.psf || taken.psf;
   made.images = with_psf && &psf != &images ? make_dirty_images(source, images, OwnPsf{psf, stokes}, context)
                                             : make_dirty_images(source, images, AdjointOptions{stokes, with_psf}, context);
-  made.dirty_middles = take(std::move(taken), made.plan.request, source.ranks(), made.images);
+  if (pixels) take(taken, *pixels, source.ranks(), made);
   return made;
 }
 
@@ -93,10 +122,9 @@ TheoreticalError theoretical_error(const GriddingPlan& plan, const SampleSums& s
 }
 
 AccurateImages make_accurate_images(const VisibilitySource& source, GriddingPlan plan, const Context& context,
-                                    std::shared_ptr<const PlannedTransform> transform, TakenImages taken) {
+                                    std::shared_ptr<const PlannedTransform> transform, const TakenImages& taken) {
   const GriddingRequest request = plan.request;
-  const bool dirty_taken = taken.dirty.has_value(), psf_taken = taken.psf.has_value();
-  AccurateImages made = make_images(source, std::move(plan), context, std::move(transform), std::move(taken));
+  AccurateImages made = make_images(source, std::move(plan), context, std::move(transform), taken);
   // The images' largest gridding error over the accuracy, once by theory and once by direct sums at pixels, which may miss half
   // of it.
   const auto excess = [&] {
@@ -105,7 +133,7 @@ AccurateImages make_accurate_images(const VisibilitySource& source, GriddingPlan
     if (expected > 1 || made.plan.expected_error * weak.coherent <= request.accuracy) return expected;
     return std::max(expected, 2 * largest_checked_error(source, made, context) / request.accuracy);
   };
-  if (request.accuracy == 0 || dirty_taken) return made;
+  if (request.accuracy == 0 || taken.dirty) return made;
   const double first = excess();
   if (first <= 1) return made;
   GriddingRequest stricter = request;
@@ -113,7 +141,7 @@ AccurateImages make_accurate_images(const VisibilitySource& source, GriddingPlan
   stricter.best_effort = true;
   Image psf;
   const ImageStatistics psf_statistics = made.images.psf_statistics;
-  const bool psf_stays = made.plan.psf || psf_taken;  // it is exact enough
+  const bool psf_stays = made.plan.psf || taken.psf;  // it is exact enough
   if (psf_stays) {
     psf = std::move(made.images.psf);
     stricter.psf = false;

@@ -22,7 +22,6 @@ struct AccurateImages {
   GriddingPlan plan;
   std::shared_ptr<const PlannedTransform> transform;
   DirtyImages images;
-  std::vector<Image> dirty_middles{};  ///< [Stokes], where residuals of a model were taken in place of `images.dirty`
   double judged_error = 0;   ///< over the images' RMS, where they were made twice: by theory, or twice that of pixels checked
   bool promise_kept = true;  ///< whether the gridding error is within the accuracy, judged by the images that came out
 };
@@ -35,9 +34,9 @@ struct AccurateImages {
 /// that is right by as much, or, where there is none, by the best. Stages timed: "plan", "check pixels", and those of
 /// make_dirty_images.
 ///
-/// `transform`, if there is one, is that of `plan`, which other images have been made by. Images that are `taken`, see there,
-/// are not made; their plan need have none.
+/// `transform`, if there is one, is that of `plan`, which other images have been made by. Images that are taken are not made,
+/// and need not be planned for; of a residual that is taken no error is known but that of the comparison, see ComparedPixels.
 AccurateImages make_accurate_images(const VisibilitySource& source, GriddingPlan plan, const Context& context,
-                                    std::shared_ptr<const PlannedTransform> transform = nullptr, TakenImages taken = {});
+                                    std::shared_ptr<const PlannedTransform> transform = nullptr, const TakenImages& taken = {});
 
 }  // namespace misfit::imager

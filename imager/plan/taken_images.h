@@ -1,49 +1,64 @@
 #pragma once
 
-#include <memory>
+#include <functional>
 #include <optional>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
+#include "imager/direct/direct_transform.h"
 #include "imager/plan/gridding_plan.h"
-#include "imager/transform/imaging.h"
 
 namespace misfit::imager {
 
-/// Images of a run before that are taken instead of new ones. Ranks but the first, which have no images, have empty ones.
+/// Images that a run before made.
+struct FormerImages {
+  std::vector<Image> dirty;  ///< [Stokes], Jy/beam
+  Image psf;
+};
+
+/// Which of them are taken instead of new ones, once they are seen to be of the same samples.
 struct TakenImages {
-  std::optional<std::vector<Image>> dirty;  ///< [Stokes], Jy/beam; none: they are made
-  std::optional<Image> psf;                 ///< none: it is made
-  bool of_model = false;                    ///< `dirty` are what a model leaves, which the samples alone do not tell
+  bool dirty = false;
+  bool psf = false;
+  bool of_model = false;  ///< `dirty` are what a model leaves, which the data alone do not tell
+  /// Called at rank 0, once there are samples that make an image.
+  std::function<FormerImages()> read;
+
+  bool any() const { return dirty || psf; }
+};
+
+/// Which image is meant.
+struct ImageKind {
+  bool psf = false;        ///< or a residual
+  std::size_t stokes = 0;  ///< of a residual
+  int order = 0;           ///< of its Taylor term, or of a PSF's power
 };
 
 /// Thrown where an image that was to be taken is not that of the samples.
 struct UnlikeSamples : std::runtime_error {
-  UnlikeSamples(std::optional<std::size_t> of_stokes, const std::string& what) : std::runtime_error(what), stokes(of_stokes) {}
-  std::optional<std::size_t> stokes;  ///< of the dirty image; none: the PSF
+  UnlikeSamples(const ImageKind& of_kind, const std::string& what) : std::runtime_error(what), kind(of_kind) {}
+  ImageKind kind;
 };
 
-/// Makes the middle pixels of images by direct sums, a few to many so that they take about a tenth of a second, for images
-/// of this plan.
-std::unique_ptr<Transform> middle_transform(const GriddingPlan& plan);
+/// Pixels of images of a plan, by direct sums, with which images are compared: those about the middle, where the PSF's main
+/// lobe is, and others at random, a few to many so that they take about a tenth of a second.
+class ComparedPixels {
+ public:
+  /// What is predicted is left to `whole`, which stays where it is.
+  ComparedPixels(const GriddingPlan& plan, const Transform& whole);
 
-/// Puts the images taken into the place of their middles in `made`, which middle_transform() made, with which they are
-/// compared. What selects or weighs other samples changes the main lobe, or what is seen with it: PSFs may differ by 1e-3 of
-/// their peak, dirty images by 1e-2 of their RMS, or ten times the accuracy where that is more, RMS over the middle. Returns
-/// the middles of dirty images [Stokes] where those of a model are taken, which are not compared here. Throws UnlikeSamples, at
-/// rank 0.
-std::vector<Image> take(TakenImages taken, const GriddingRequest& request, const Ranks& ranks, DirtyImages& made);
+  /// Whose adjoints are images of these pixels alone.
+  const Transform& transform() const { return transform_; }
+  /// Throws UnlikeSamples unless `image` has these `values`: the difference may be 1e-2 of `rms`, that of the image or what its
+  /// errors are relative to, RMS over the pixels, or three times the accuracy where that is more, but no more than a tenth. Two
+  /// runs that keep the accuracy differ by twice that at most, and RMS over a few pixels may be more than over all. Pixels
+  /// beyond the horizon do not count.
+  void require(const Image& image, const Image& values, double rms, double accuracy, const ImageKind& kind) const;
 
-/// A model, and what is known of its residual.
-struct ModelResidual {
-  std::vector<const Image*> model;  ///< Jy/pixel [term]
-  std::vector<const Image*> psf;    ///< [k], see CleanInput; that of k = t is the response to term t
-  const Image& dirty_middle;        ///< of the data
+ private:
+  std::vector<Pixel> pixels_;
+  PixelTransform transform_;
 };
-
-/// Compares a residual of a model with D − Σ_t P_t ⋆ I_t in its middle, which without w is what that model leaves, to the error
-/// of the PSF times the model's flux and what take() bears. Throws UnlikeSamples.
-void require_residual_of(const ModelResidual& of, const GriddingRequest& request, std::size_t stokes, const Image& residual);
 
 }  // namespace misfit::imager

@@ -368,4 +368,23 @@ BOOST_AUTO_TEST_CASE(what_is_no_casacore_image_is_refused_and_left_alone) {
   BOOST_TEST(entries(folder) == 3);
 }
 
+/// casacore has a cache of open tables by their names.
+BOOST_AUTO_TEST_CASE(a_path_leads_to_the_image_that_lies_there_while_one_before_is_open) {
+  const TemporaryFolder folder;
+  const imager::ImageHeader header = example_header(1);
+  imager::Image image = example_plane(header, {0, 0});
+  const auto write = [&] {
+    const auto writer = ms_io::create_casa_image(header, folder / "a.image");
+    writer->write({0, 0}, image, std::nullopt);
+    writer->finish();
+  };
+  write();
+  const auto before = ms_io::open_casa_image(folder / "a.image");
+  const double was = before->read({0, 0}).pixel[3];
+  image.pixel[3] = 2;
+  write();
+  BOOST_TEST(ms_io::open_casa_image(folder / "a.image")->read({0, 0}).pixel[3] == 2);
+  BOOST_TEST(before->read({0, 0}).pixel[3] == was);
+}
+
 BOOST_AUTO_TEST_SUITE_END()

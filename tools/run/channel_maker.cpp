@@ -33,6 +33,7 @@ std::unique_ptr<ChannelRun> ChannelMaker::image(int channel, std::unique_ptr<Cha
 void ChannelMaker::prepare_clean(ChannelRun& run) {
   if (run.made().empty()) return;
   run.make_terms();
+  run.check_start();
   run.verify();
   if (means_.primary_beam != nullptr && scene_.whole_band) {
     const imager::StageTimer timer(run.times(), imager::stage::primary_beam);

@@ -9,6 +9,7 @@
 #include "tools/run/beam_choice.h"
 #include "tools/run/image_files.h"
 #include "tools/run/run_messages.h"
+#include "tools/run/start_model.h"
 #include "tools/run/taylor_options.h"
 #include "tools/run/weighting_options.h"
 
@@ -69,11 +70,8 @@ void ChannelRun::weigh(std::shared_ptr<const imager::ImagingWeights> weights) {
 
 void ChannelRun::make_dirty(imager::GriddingPlan plan, std::shared_ptr<const imager::PlannedTransform> transform) {
   progress().begin("dirty image and PSF" + name_);
-  try {
-    images_ = imager::make_accurate_images(samples(), std::move(plan), context(), std::move(transform), taken());
-  } catch (const imager::UnlikeSamples& unlike) {
-    scene_.taken->refuse(unlike);
-  }
+  naming_taken(
+      [&] { images_ = imager::make_accurate_images(samples(), std::move(plan), context(), std::move(transform), taken()); });
   if (scene_.taken != nullptr && scene_.images_here) scene_.taken->require_weights(report().channel, images_.images.sums);
   progress().end();
   report().sums = images_.images.sums.front();
@@ -85,6 +83,7 @@ void ChannelRun::make_dirty(imager::GriddingPlan plan, std::shared_ptr<const ima
   double expected = 0;
   for (std::size_t s = 0; s < scene_.header.stokes.size(); ++s) {
     const double rms = images_.images.dirty_statistics[s].root_mean_square();
+    if (!scene_.options.taken.calcres) continue;  // its errors are not of this run's making
     report().stokes[s].theory = imager::theoretical_error(images_.plan, images_.images.sums[s], rms, phase);
     expected = std::max(expected, report().stokes[s].theory->expected_rms);
   }
@@ -92,8 +91,25 @@ void ChannelRun::make_dirty(imager::GriddingPlan plan, std::shared_ptr<const ima
     warn(accuracy_warning(scene_.options.gridding.accuracy, std::max(images_.judged_error, expected)) + name_);
 }
 
-imager::TakenImages ChannelRun::taken() const {
-  return scene_.taken == nullptr ? imager::TakenImages() : scene_.taken->read(made_.report.channel, scene_.images_here);
+imager::TakenImages ChannelRun::taken() {
+  const ImageOptions& o = scene_.options;
+  const auto read = [this] {
+    former_ = scene_.taken->read(report().channel);
+    imager::FormerImages first;
+    if (!former_.psf.empty()) first.psf = std::move(former_.psf.front());
+    if (!former_.residual.empty()) first.dirty = std::move(former_.residual.front());
+    return first;
+  };
+  return {!o.taken.calcres, !o.taken.calcpsf, !o.clean.startmodel.empty(), read};
+}
+
+/// Those after the first.
+TakenTerms ChannelRun::taken_terms() {
+  TakenTerms terms{taken(), {}};
+  for (std::size_t k = 1; k < former_.psf.size(); ++k) terms.images.psf.push_back(std::move(former_.psf[k]));
+  for (std::size_t t = 1; t < former_.residual.size(); ++t)
+    terms.images.dirty.push_back(std::move(former_.residual[t].front()));
+  return terms;
 }
 
 void ChannelRun::predict_noise() {
@@ -112,10 +128,43 @@ void ChannelRun::make_terms() {
   if (scene_.options.taylor.nterms == 1) return;
   taylor_.emplace(taylor_expansion(scene_.options.taylor, scene_.header.observation), scene_.threads);
   progress().begin("Taylor terms" + name_);
-  TakenTerms taken;
-  if (scene_.taken != nullptr) taken = {scene_.taken->further_dirty(), scene_.taken->further_psf()};
-  taylor_->make_images(imaged(0), images_, std::move(taken), context());
+  naming_taken([&] { taylor_->make_images(imaged(0), images_, taken_terms(), context()); });
   progress().end();
+}
+
+/// Every rank reads the start model, which all predict.
+void ChannelRun::check_start() {
+  const ImageOptions& o = scene_.options;
+  if (o.taken.calcres || o.clean.startmodel.empty()) return;
+  StartModel start(o, scene_.header);
+  {
+    const std::lock_guard lock(image_files_mutex());
+    start.read(report().channel);
+  }
+  const imager::ComparedPixels pixels(images_.plan, images_.transform->images());
+  const imager::TaylorExpansion expansion = taylor_ ? taylor_->expansion() : imager::TaylorExpansion{};
+  const auto terms = static_cast<std::size_t>(expansion.terms);
+  progress().begin("check of the residual" + name_);
+  for (std::size_t s = 0; s < scene_.header.stokes.size(); ++s) {
+    std::vector<imager::Image> model;
+    for (const imager::Image* term : start.images(s)) model.push_back(*term);
+    model.resize(terms, imager::Image(model.front().width, model.front().height));
+    const std::vector<imager::Image> values = imager::make_taylor_residuals(
+        {{samples(), s}, pixels.transform(), images_.images.normalisation}, std::move(model), expansion, context());
+    if (samples().ranks().first()) naming_taken([&] { compare_residuals(s, pixels, values); });
+  }
+  progress().end();
+}
+
+/// With what the start model leaves in some pixels [term].
+void ChannelRun::compare_residuals(std::size_t stokes, const imager::ComparedPixels& pixels,
+                                   const std::vector<imager::Image>& values) {
+  const imager::Image& first = images_.images.dirty[stokes];
+  for (std::size_t t = 0; t < values.size(); ++t) {
+    const imager::Image& residual = t == 0 ? first : taylor_->images().dirty[t - 1];
+    const double rms = std::max(root_mean_square(residual), t == 0 ? 0 : taylor_->distance_rms(t) * root_mean_square(first));
+    pixels.require(residual, values[t], rms, images_.plan.request.accuracy, {false, stokes, static_cast<int>(t)});
+  }
 }
 
 void ChannelRun::verify() {
@@ -185,37 +234,25 @@ imager::ImagedData ChannelRun::imaged(std::size_t stokes) {
 }
 
 imager::CleanResult ChannelRun::clean(std::size_t stokes) {
+  const auto& theory = report().stokes[stokes].theory;
   CleanScene clean{.imaged = imaged(stokes),
                    .expansion = {},
                    .dirty = {&images_.images.dirty[stokes]},
                    .of_start = !scene_.options.taken.calcres && !scene_.options.clean.startmodel.empty(),
                    .psf = {&images_.images.psf},
                    .main_lobe = *report().beams->main_lobe,
-                   .expected_error = report().stokes[stokes].theory->expected_rms};
+                   .expected_error = theory ? theory->expected_rms : images_.plan.expected_error};
   if (taylor_) {
     clean.expansion = taylor_->expansion();
     for (const imager::Image& dirty : taylor_->images().dirty) clean.dirty.push_back(&dirty);
     clean.psf = taylor_->psf();
   }
-  if (clean.of_start) check_start(stokes, clean);
   const auto cycle = [this](const imager::CleanState& state) { count_cycle(state); };
   imager::CleanResult result = stage_->run(clean, scene_.option_values, cycle, context());
   if (!stage_->words_on_state().empty()) made_.doubts.push_back(stage_->words_on_state());
   images_.images.dirty[stokes] = {};
   if (const imager::Image* const mask = stage_->mask(stokes); mask != nullptr) result.mask = *mask;
   return result;
-}
-
-/// Whether the residual that was taken is what the start model leaves, where the PSF tells.
-void ChannelRun::check_start(std::size_t stokes, const CleanScene& clean) {
-  const imager::GriddingPlan& plan = images_.plan;
-  if (plan.direct || plan.options.has_w_axis()) return;
-  const imager::ModelResidual of{stage_->start(stokes), clean.psf, images_.dirty_middles.at(stokes)};
-  try {
-    imager::require_residual_of(of, plan.request, stokes, *clean.dirty.front());
-  } catch (const imager::UnlikeSamples& unlike) {
-    scene_.taken->refuse(unlike);
-  }
 }
 
 void ChannelRun::release_samples() {

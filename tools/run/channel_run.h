@@ -75,6 +75,8 @@ class ChannelRun {
   void make_dirty(imager::GriddingPlan plan, std::shared_ptr<const imager::PlannedTransform> transform);
   /// Those of further Taylor terms, which CLEAN then has too.
   void make_terms();
+  /// Compares a residual that was taken with what the start model leaves, where there is one: a prediction for each.
+  void check_start();
   void verify();
   /// For rank 0, which has the PSF.
   void choose_beams();
@@ -107,12 +109,22 @@ class ChannelRun {
   MadeChannel& made() { return made_; }
 
  private:
-  imager::TakenImages taken() const;
+  imager::TakenImages taken();
+  TakenTerms taken_terms();
+  void compare_residuals(std::size_t stokes, const imager::ComparedPixels& pixels, const std::vector<imager::Image>& values);
+  /// What `act` does, which may find that an image is not that of the samples.
+  template <typename Act>
+  void naming_taken(const Act& act) {
+    try {
+      act();
+    } catch (const imager::UnlikeSamples& unlike) {
+      scene_.taken->refuse(unlike);
+    }
+  }
   void predict_noise();
   void count_cycle(const imager::CleanState& state);
   imager::ImagedData imaged(std::size_t stokes);
   imager::CleanResult clean(std::size_t stokes);
-  void check_start(std::size_t stokes, const CleanScene& clean);
 
   const ChannelScene& scene_;
   std::unique_ptr<ChannelSamples> samples_;
@@ -120,6 +132,7 @@ class ChannelRun {
   ProgressLine silent_;  ///< of several channels, whose stages would fill the screen
   std::shared_ptr<const imager::ImagingWeights> weights_;  ///< until the noise is predicted; null where they are the data's
   imager::AccurateImages images_;
+  TakenPlanes former_;                 ///< what was taken from files, until it stands among the images
   std::optional<TaylorStage> taylor_;  ///< none where there is one term
   std::unique_ptr<CleanStage> stage_;  ///< from begin_clean() to clean()
   std::optional<int> iterations_;      ///< of the Stokes parameter in CLEAN, so far

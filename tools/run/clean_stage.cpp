@@ -95,6 +95,8 @@ imager::CleanState CleanStage::begin(std::size_t stokes, const CleanStateOwner& 
   }
   const std::filesystem::path state = state_path(stokes);
   if (o_.cube.is_cube()) std::filesystem::create_directories(state.parent_path());
+  std::error_code failed;
+  std::filesystem::remove(state, failed);  // that of a run before, which this one does not go on from
   imager::ComponentModel model = owner.like;
   model.add(start);
   return imager::first_state(model);
@@ -145,7 +147,7 @@ imager::CleanResult CleanStage::run(const CleanScene& scene, const StateOptionVa
                                  .beam_fwhm_pixels = mean_width_rad(scene.main_lobe) / image_.geometry.cell_rad};
   const auto save = [&](const imager::CleanState& now) {
     const imager::StageTimer timer(context.times, imager::stage::clean_state);
-    write_clean_state(state_path(scene.imaged.samples.index), now, owner);
+    if (o_.taken.calcres) write_clean_state(state_path(scene.imaged.samples.index), now, owner);
     cycle_progress(now);
   };
   return imager::clean(input, *minor, options, std::move(state), save, context);

@@ -43,10 +43,6 @@ class CleanStage {
   const imager::Image* mask(std::size_t stokes) const {
     return masks_.empty() ? nullptr : &masks_[masks_.size() == 1 ? 0 : stokes];
   }
-  /// The start model's images of a Stokes parameter [term]; none without one.
-  std::vector<const imager::Image*> start(std::size_t stokes) const {
-    return start_model_ ? start_model_->images(stokes) : std::vector<const imager::Image*>();
-  }
   /// What the user should know of the mask's file, and of which band the start model is, a sentence each.
   std::vector<std::string> words_on_files() const;
   /// Of the last run(): what the user should know of the state that it went on from; mostly empty.

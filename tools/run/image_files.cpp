@@ -1,5 +1,6 @@
 #include "tools/run/image_files.h"
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <stdexcept>
@@ -55,15 +56,28 @@ std::vector<std::string> image_paths(const std::string& name, const std::string&
   return paths;
 }
 
+namespace {
+
+/// When a file, or one in a folder, was last changed.
+std::optional<std::filesystem::file_time_type> last_change(const std::string& path) {
+  std::error_code absent;
+  std::filesystem::file_time_type last = std::filesystem::last_write_time(path, absent);
+  if (absent) return std::nullopt;
+  for (const auto& entry : std::filesystem::directory_iterator(path, absent))
+    if (const auto changed = entry.last_write_time(absent); !absent) last = std::max(last, changed);
+  return last;
+}
+
+}  // namespace
+
 std::optional<std::string> newest_image(const std::string& name) {
   std::optional<std::string> newest;
   std::filesystem::file_time_type changed;
   for (const std::string& path : image_paths(name, "both")) {
-    std::error_code absent;
-    const auto at = std::filesystem::last_write_time(path, absent);
-    if (absent || (newest && at <= changed)) continue;
+    const auto at = last_change(path);
+    if (!at || (newest && *at <= changed)) continue;
     newest = path;
-    changed = at;
+    changed = *at;
   }
   return newest;
 }

@@ -13,7 +13,6 @@
 #include "tools/base/quantity.h"
 #include "tools/formats/config_file.h"
 #include "tools/run/image_files.h"
-#include "tools/run/product_kinds.h"
 #include "tools/run/selection_options.h"
 
 namespace misfit::tools {
@@ -127,7 +126,7 @@ void declare(CLI::App& command, ImageOptions& o) {
                "Images besides those needed: tclean adds .sumwt, one pixel for the sum of each plane's weights, of natural "
                "ones 1/noise²; .pb where the antennas' beam is known; .mask of ones where CLEAN may go everywhere; and "
                ".image of a dirty image")
-           ->check(CLI::IsMember(product_sets())),
+           ->check(CLI::IsMember({"needed", "tclean"})),
        OptionMark::free_of_state);
   mark(command.add_option(
            "--verify", o.verify,

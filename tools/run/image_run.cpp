@@ -248,7 +248,6 @@ class ImageRun : private ChannelSink {
   std::vector<StageSeconds> expected() const { return expected_seconds(plan_, forecast_, work_); }
 
   void begin_channels() {
-    if (ranks_.first() && o_.clean.runs() && !o_.clean.restart) remove_states(o_);
     scene_ = std::make_unique<ChannelScene>(ChannelScene{.options = o_,
                                                          .option_values = call_.state_option_values,
                                                          .header = header_,
@@ -514,7 +513,8 @@ class ImageRun : private ChannelSink {
     if (const std::string failure = pictures_->finish(pictures); !failure.empty()) warn(failure);
     report_.expected = expected();
     const auto made_twice = [](const ChannelReport& channel) { return channel.made_twice; };
-    if (std::none_of(report_.channels.begin(), report_.channels.end(), made_twice)) forecast_.learn(work_, times_);
+    if (!o_.taken.any() && std::none_of(report_.channels.begin(), report_.channels.end(), made_twice))
+      forecast_.learn(work_, times_);
     report_.wall_clock_s = watch_.seconds();
     outcome_.report = report_json(report_);
     write_file(o_.imagename + ".report.json", json_text(outcome_.report, 2) + "\n");

@@ -24,8 +24,7 @@ void declare(CLI::App& command, TypedPrimaryBeam& o) {
            "--pblimit", o.pblimit,
            "Where the primary beam is lower, .pb and .image.pbcor have no values; 0.2 when 0. Without --pbcor .pb "
            "alone is written. Above 0 it goes for the masks of CASA images .image and .residual too, whose pixels stay; the "
-           "sign "
-           "makes no other difference"),
+           "sign makes no other difference"),
        OptionMark::free_of_state);
 }
 

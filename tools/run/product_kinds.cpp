@@ -20,7 +20,8 @@ void add(std::vector<ProductKind>& kinds, const ProductKind& kind, int count, in
 /// Indices, and of three terms curvatures, for which casacore has no name of its own.
 void add_spectra(std::vector<ProductKind>& kinds, int terms, const std::string& end) {
   const auto add = [&](const std::string& name) {
-    kinds.push_back({.name = name, .unit = "", .each_stokes = false, .restored = true, .quantity = "Spectral Index"});
+    kinds.push_back(
+        {.name = name, .unit = "", .each_stokes = false, .completed = Completed::with_beam, .quantity = "Spectral Index"});
   };
   add("alpha" + end);
   if (end.empty()) add("alpha.error");
@@ -28,11 +29,6 @@ void add_spectra(std::vector<ProductKind>& kinds, int terms, const std::string& 
 }
 
 }  // namespace
-
-const std::vector<std::string>& product_sets() {
-  static const std::vector<std::string> names{"needed", "tclean"};
-  return names;
-}
 
 ProductChoice ProductChoice::of(const ImageOptions& o) {
   const bool all = o.all_products();
@@ -54,10 +50,11 @@ std::vector<ProductKind> product_kinds(const ProductChoice& choice) {
   const int n = choice.terms;
   add(kinds, {.name = "psf", .each_stokes = false}, 2 * n - 1, n);
   add(kinds, {.name = "residual", .masked_by_beam = true}, n, n);
-  if (choice.primary_beam) add(kinds, {.name = "pb", .unit = "", .each_stokes = false, .beam = false}, n, n);
-  if (choice.corrected) add(kinds, {.name = "image", .restored = true}, n, n, ".pbcor");
+  if (choice.primary_beam)
+    add(kinds, {.name = "pb", .unit = "", .each_stokes = false, .beam = false, .completed = Completed::first}, n, n);
+  if (choice.corrected) add(kinds, {.name = "image", .completed = Completed::with_beam}, n, n, ".pbcor");
   if (choice.weights) add(kinds, {.name = "sumwt", .unit = "", .beam = false, .one_pixel = true}, 2 * n - 1, n);
-  if (choice.restored) add(kinds, {.name = "image", .restored = true, .masked_by_beam = true}, n, n);
+  if (choice.restored) add(kinds, {.name = "image", .completed = Completed::with_beam, .masked_by_beam = true}, n, n);
   if (!choice.cleaned) return kinds;
   add(kinds, {.name = "model", .unit = "Jy/pixel", .beam = false}, n, n);
   if (choice.masked) kinds.push_back({.name = "mask", .unit = "", .beam = false});

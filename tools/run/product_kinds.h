@@ -9,9 +9,6 @@
 
 namespace misfit::tools {
 
-/// What --products names: those that a run is made for, or all that tclean leaves.
-const std::vector<std::string>& product_sets();
-
 /// Which images a run leaves.
 struct ProductChoice {
   int terms = 1;
@@ -25,22 +22,25 @@ struct ProductChoice {
   static ProductChoice of(const ImageOptions& options);
 };
 
+/// When the file of an image is complete.
+enum class Completed {
+  first,      ///< others take their masks from it
+  as_usual,   ///< with the last channel
+  with_beam,  ///< once it is restored, which may wait for a beam that is common to all channels
+};
+
 /// One of the images of a run.
 struct ProductKind {
   std::string name;  ///< between <imagename> and .fits: psf, residual, image.tt1.pbcor
   std::string unit = "Jy/beam";
-  bool each_stokes = true;      ///< or one for all
-  bool beam = true;             ///< whether its pixels are seen with the restoring beam
-  bool one_pixel = false;       ///< or all of the image's
-  bool restored = false;        ///< made with it: it waits for a beam that is common to all channels
+  bool each_stokes = true;  ///< or one for all
+  bool beam = true;         ///< whether its pixels are seen with the restoring beam
+  bool one_pixel = false;   ///< or all of the image's
+  Completed completed = Completed::as_usual;
   bool masked_by_beam = false;  ///< where --pblimit is above 0: the primary beam's
   imager::TaylorTerm term{};
   std::string quantity = imager::ImageHeader().quantity;
 };
-
-inline bool is_primary_beam(const ProductKind& kind) {
-  return kind.name.rfind("pb", 0) == 0;
-}
 
 /// All that such a run leaves. The names are tclean's; of several Taylor terms they say which: psf.tt0, …
 std::vector<ProductKind> product_kinds(const ProductChoice& choice);
@@ -53,7 +53,8 @@ std::vector<std::string> all_product_names();
 /// Planes of one channel in them all.
 int product_planes(const ProductChoice& choice, int stokes);
 
-/// What .sumwt holds of samples with these sums: as in tclean natural weights are 1/σ², where ours are 1/(4 σ²).
+/// The sum of weights that .sumwt states of samples with these sums: as in tclean natural weights are 1/σ², where ours are 1/(4
+/// σ²).
 inline double sumwt_of(const imager::SampleSums& sums) {
   return 4 * sums.weight;
 }

@@ -296,21 +296,20 @@ std::vector<std::string> Products::finish(std::vector<ChannelReport>& channels, 
       file.writer->add_cards(cards);
       file.writer->add_cards(file.cards);
     }
-    finish_files([](const ProductKind& kind) { return is_primary_beam(kind); });
-    finish_files([](const ProductKind& kind) { return !kind.restored && !is_primary_beam(kind); });
-    if (!in_common_) finish_files([](const ProductKind& kind) { return kind.restored; });
+    finish_files(Completed::first);
+    finish_files(Completed::as_usual);
+    if (!in_common_) finish_files(Completed::with_beam);
   }
   if (!in_common_) return removed;
   const imager::StageTimer timer(times, imager::stage::restore);
   restore_in_common(channels);
-  finish_files([](const ProductKind& kind) { return kind.restored; });
+  finish_files(Completed::with_beam);
   return removed;
 }
 
-/// With a mask by the primary beam, whose image is there before.
-void Products::finish_files(const std::function<bool(const ProductKind&)>& which) {
+void Products::finish_files(Completed which) {
   for (auto& [name, file] : files_) {
-    if (!which(file.kind)) continue;
+    if (file.kind.completed != which) continue;
     if (file.kind.masked_by_beam && o_.primary_beam.masks_others() && o_.outformat != "fits")
       file.writer->mask_like(*open_written(o_, product_name("pb", {0, o_.taylor.nterms})));
     file.writer->finish();

@@ -76,7 +76,7 @@ class Products {
   imager::Image restore(const imager::Image& model, const imager::Image& residual, const imager::Beam& beam) const;
   void restore_in_common(std::vector<ChannelReport>& channels);
   void restore_channel(ChannelReport& channel, const imager::Beam& common, const Written& written);
-  void finish_files(const std::function<bool(const ProductKind&)>& which);
+  void finish_files(Completed which);
 
   const ImageOptions& o_;
   imager::ImageHeader header_;

@@ -1,5 +1,9 @@
 #include "tools/run/taylor_stage.h"
 
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
 namespace misfit::tools {
 namespace {
 
@@ -20,12 +24,43 @@ std::vector<const imager::Image*> all_terms(const imager::Image& first, const st
 
 void TaylorStage::make_images(const imager::ImagedData& imaged, const imager::AccurateImages& made, TakenTerms taken,
                               const imager::Context& context) {
-  if (!taken.dirty || !taken.psf) images_ = imager::make_taylor_images(imaged, psf_of(made), expansion_, context);
-  if (taken.dirty) images_.dirty = std::move(*taken.dirty);
-  if (taken.psf) images_.psf = std::move(*taken.psf);
+  const imager::TakenImages& which = taken.which;
+  std::optional<imager::ComparedPixels> pixels;
+  if (which.any()) pixels.emplace(made.plan, imaged.transform);
+  imager::TaylorPsf psf = psf_of(made);
+  images_ = imager::make_taylor_images(
+      {imaged.samples, which.dirty ? pixels->transform() : imaged.transform, imaged.normalisation},
+      {which.psf ? pixels->transform() : psf.transform, psf.middle, psf.with_w}, expansion_, context);
   if (!imaged.samples.source.ranks().first()) return;  // where the images are
+  if (pixels) take(std::move(taken), *pixels, made);
   psf_ = all_terms(made.images.psf, images_.psf);
   basis_ = imager::basis_of(psf_);
+}
+
+/// Puts images that are taken into the place of their pixels. An image of x^k has the errors of one of |x|^k.
+void TaylorStage::take(TakenTerms taken, const imager::ComparedPixels& pixels, const imager::AccurateImages& made) {
+  const imager::GriddingRequest& request = made.plan.request;
+  const auto middle = [](const imager::Image& image) { return image.at(image.height / 2, image.width / 2); };
+  const std::vector<imager::Image>& powers = taken.which.psf ? taken.images.psf : images_.psf;
+  x_rms_ = std::sqrt(std::abs(middle(powers.at(1)) / middle(made.images.psf)));
+  const auto compare = [&](const imager::Image& first, const std::vector<imager::Image>& images,
+                           const std::vector<imager::Image>& values, double accuracy, bool psf) {
+    for (std::size_t k = 0; k < images.size(); ++k) {
+      const double rms = std::max(root_mean_square(images[k]), distance_rms(k + 1) * root_mean_square(first));
+      pixels.require(images[k], values[k], rms, accuracy, {psf, 0, static_cast<int>(k) + 1});
+    }
+  };
+  if (taken.which.psf) {
+    compare(made.images.psf, taken.images.psf, images_.psf, request.psf_accuracy, true);
+    images_.psf = std::move(taken.images.psf);
+  }
+  if (!taken.which.dirty) return;
+  if (!taken.which.of_model) compare(made.images.dirty.front(), taken.images.dirty, images_.dirty, request.accuracy, false);
+  images_.dirty = std::move(taken.images.dirty);
+}
+
+double TaylorStage::distance_rms(std::size_t power) const {
+  return std::pow(x_rms_, static_cast<double>(power));
 }
 
 std::vector<imager::Image> TaylorStage::principal_solution(const imager::Image& dirty) const {

@@ -20,10 +20,10 @@ struct RestoredTerms {
   imager::SpectralImages spectra;
 };
 
-/// Images of terms after the first that are taken instead of new ones; see TaylorImages.
+/// Images of terms after the first that are taken instead of new ones, at rank 0; see TaylorImages.
 struct TakenTerms {
-  std::optional<std::vector<imager::Image>> dirty;
-  std::optional<std::vector<imager::Image>> psf;
+  imager::TakenImages which;  ///< what is read is in `images`
+  imager::TaylorImages images;
 };
 
 /// The Taylor terms of a run of --nterms above 1. As tclean does, restored images have the principal solution H⁻¹ R of the
@@ -36,12 +36,15 @@ class TaylorStage {
 
   /// Besides the dirty image and the PSF that are made: a pass over the same samples, by the same transforms. The promise of an
   /// accuracy holds for those alone: terms of odd order are weak against their data. Throws std::runtime_error where the
-  /// samples' frequencies do not tell the terms apart. `made` stays where it is until CLEAN is over. What is `taken` is not
-  /// made, if both are.
+  /// samples' frequencies do not tell the terms apart. `made` stays where it is until CLEAN is over. Images
+  /// that are taken are compared, but for residuals of a model. Throws UnlikeSamples.
   void make_images(const imager::ImagedData& imaged, const imager::AccurateImages& made, TakenTerms taken,
                    const imager::Context& context);
   const std::vector<const imager::Image*>& psf() const { return psf_; }  ///< [k]
   imager::TaylorImages& images() { return images_; }
+
+  /// RMS of x over the samples, to a power: about what an image of x^power is of that of the first term.
+  double distance_rms(std::size_t power) const;
 
   /// H⁻¹ R, Jy/beam [term], of the dirty images.
   std::vector<imager::Image> principal_solution(const imager::Image& dirty) const;
@@ -49,6 +52,9 @@ class TaylorStage {
   RestoredTerms restore(const imager::CleanResult& cleaned, const imager::Beam& beam, double cell_rad) const;
 
  private:
+  void take(TakenTerms taken, const imager::ComparedPixels& pixels, const imager::AccurateImages& made);
+
+  double x_rms_ = 0;  ///< of the samples
   imager::TaylorExpansion expansion_;
   int threads_;
   imager::TaylorImages images_;

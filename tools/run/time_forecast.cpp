@@ -101,8 +101,8 @@ void add_pass(const RunWork& w, bool with_psf, double times, std::vector<StageSe
 
 /// The pass for dirty images and PSFs of further Taylor terms.
 void add_taylor_pass(const RunWork& w, std::vector<StageSeconds>& stages) {
+  if (w.terms == 1) return;
   const imager::GriddingPlan& plan = *w.plan;
-  if (w.terms == 1 || (w.residual_taken && !plan.request.psf)) return;
   const int dirty = w.terms - 1, psfs = 2 * w.terms - 2;
   if (plan.direct) {
     stages.push_back({stage::grid, "direct sums of images",

@@ -56,6 +56,8 @@ _AUTO_MASK = {
 _GRIDDERS = {"standard": "standard", "ft": "standard", "gridft": "standard", "wproject": "wide", "widefield": "wide",
              "wprojectft": "wide", "auto": "auto"}
 _DECONVOLVERS = ("hogbom", "clark", "multiscale", "mtmfs")
+_TEXTS = ("projection", "specmode", "outframe", "veltype", "interpolation", "gridder", "normtype", "deconvolver", "weighting",
+          "usemask", "savemodel", "outformat", "outlierfile", "vptable", "cfcache")
 _SELECTION = ("field", "spw", "timerange", "uvrange", "antenna", "scan", "observation", "intent")
 _COLUMNS = {"corrected": "auto", "data": "data", "observed": "data", "model": "model"}
 
@@ -124,9 +126,11 @@ def _channel(value):
 
 
 def _whole(name, value):
-    if isinstance(value, bool) or not isinstance(value, (numbers.Real, str)):
+    if isinstance(value, str) and re.fullmatch(r"\s*[-+]?\d+\s*", value):
+        return value.strip()
+    if not isinstance(value, numbers.Real) or isinstance(value, bool) or not float(value).is_integer():
         _refuse(name, value, "a whole number")
-    return value if isinstance(value, str) else _number(value)
+    return _number(value)
 
 
 def _tell_once(level, sentence):
@@ -149,6 +153,16 @@ class _Words:
             self.words.append("--" + option)
 
 
+def _check_types(p):
+    for name, usual in defaults().items():
+        value = p[name]
+        if isinstance(usual, bool):
+            if not isinstance(value, (bool, np.bool_)) and not (isinstance(value, numbers.Integral) and value in (0, 1)):
+                _refuse(name, value, "True or False")
+        elif name in _TEXTS and not isinstance(value, str):
+            _refuse(name, value, "a text")
+
+
 def _check_simple(p):
     for table in (_SINGLE, _AUTO_MASK if p["usemask"] == "auto-multithresh" else {}):
         for name, (only, why) in table.items():
@@ -166,8 +180,8 @@ def _check_simple(p):
 
 
 def _give_data(words, p):
-    sets = [os.fspath(one) for one in _items(p["vis"])]
-    if not sets or not all(sets):
+    sets = _paths("vis", p["vis"])
+    if not sets:
         _refuse("vis", p["vis"], "a MeasurementSet, or several")
     words.give("vis", *sets)
     for name in _SELECTION if p["selectdata"] else ("field", "spw"):
@@ -306,11 +320,16 @@ def _give_clean(words, p):
         words.give("growiterations", p["growiterations"])
 
 
+def _last_change(path):
+    """Of a file, or of those in a folder: pixels of CASA images change without it."""
+    return max(os.path.getmtime(one) for one in (path, *Path(path).glob("*")))
+
+
 def _existing(imagename, kind, terms):
     """The images of a kind that there are, in Taylor terms' order, of CASA images and FITS files the newer; None where there are
     none."""
     names = [f"{imagename}.{kind}.tt{term}" for term in range(terms)] if terms > 1 else [f"{imagename}.{kind}"]
-    found = [max((path for path in (name, name + ".fits") if Path(path).exists()), key=os.path.getmtime, default=None)
+    found = [max((path for path in (name, name + ".fits") if Path(path).exists()), key=_last_change, default=None)
              for name in names]
     if all(path is None for path in found):
         return None
@@ -332,9 +351,12 @@ def _name_beside(imagename):
 
 def _paths(name, value):
     try:
-        return [os.fspath(one) for one in _items(value) if one is not None and one != ""]
+        paths = [os.fspath(one) for one in _items(value) if one is not None and one != ""]
+        if all(isinstance(path, str) and path.isprintable() for path in paths):
+            return paths
     except TypeError:
-        _refuse(name, value, "a name, or several")
+        pass
+    _refuse(name, value, "a name, or several")
 
 
 def _flux_jy(value):
@@ -352,11 +374,14 @@ def _settle_beginning(p):
     p["imagename"] = imagename = "".join(_paths("imagename", p["imagename"])[:1])
     if not imagename:
         _refuse("imagename", imagename, "a name for images to begin with")
-    terms = int(p["nterms"]) if p["deconvolver"] == "mtmfs" else 1
+    terms = int(_whole("nterms", p["nterms"])) if p["deconvolver"] == "mtmfs" else 1
     start, masks = _paths("startmodel", p["startmodel"]), _paths("mask", p["mask"])
     if len(masks) > 1:
         _refuse("mask", p["mask"], "one mask: lists of them are not taken yet")
     if not p["restart"]:
+        for name in ("calcpsf", "calcres"):
+            if not p[name]:
+                _refuse(name, p[name], "True beside restart=False, which begins beside all images that there are")
         p["imagename"] = _name_beside(imagename)
     else:
         model, mask = _existing(imagename, "model", terms), _existing(imagename, "mask", 1)
@@ -375,6 +400,7 @@ def _settle_beginning(p):
 
 
 def _words_of(p):
+    _check_types(p)
     _check_simple(p)
     _settle_beginning(p)
     return _program_words(p)
