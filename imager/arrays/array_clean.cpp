@@ -117,7 +117,8 @@ ArrayClean clean_arrays(const ArrayCleanOptions& options, const ArrayCoordinates
                          .psf = {&psf},
                          .max_sidelobe = largest_sidelobe(psf, beam, cell_rad, threads),
                          .accuracy = std::max(t.accuracy, expected_error),
-                         .beam_fwhm_pixels = std::sqrt(beam.major_rad * beam.minor_rad) / cell_rad};
+                         .beam = beam,
+                         .cell_rad = cell_rad};
   CleanResult cleaned =
       clean(input, *minor, clean_options, state_of(options, minor->scale_pixels()), [](const CleanState&) {}, {});
   result.restored = restored({cleaned.model, cleaned.residual}, beam, cell_rad, threads);

@@ -2,10 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstddef>
+#include <limits>
+#include <optional>
+#include <utility>
 #include <vector>
 
-#include "imager/clean/gaussian_blur.h"
 #include "imager/clean/mask.h"
 #include "imager/data/noise.h"
 
@@ -18,7 +19,13 @@ struct Region {
   int height = 0;
   std::vector<char> in;  ///< [height][width]
 
-  explicit Region(const Image& like) : width(like.width), height(like.height), in(like.pixel.size()) {}
+  /// Where of(pixel) is.
+  template <typename Of>
+  Region(const Image& image, const Of& of) : width(image.width), height(image.height), in(image.pixel.size()) {
+    std::transform(image.pixel.begin(), image.pixel.end(), in.begin(), of);
+  }
+
+  bool empty() const { return std::find(in.begin(), in.end(), 1) == in.end(); }
 
   /// Calls visit(place) for the up to four neighbours of a place.
   template <typename Visit>
@@ -32,13 +39,17 @@ struct Region {
 };
 
 Region above(const Image& image, double level) {
-  Region result(image);
-  for (std::size_t i = 0; i < result.in.size(); ++i) result.in[i] = image.pixel[i] > level;
-  return result;
+  return {image, [level](double pixel) { return pixel > level; }};
 }
 
+struct Pieces {
+  int all = 0;
+  int dropped = 0;
+};
+
 /// Takes out what is connected over fewer pixels.
-void drop_small(double fewest_pixels, Region& region) {
+Pieces drop_small(double fewest_pixels, Region& region) {
+  Pieces pieces;
   std::vector<char> seen(region.in.size());
   std::vector<std::size_t> piece;
   for (std::size_t first = 0; first < region.in.size(); ++first) {
@@ -50,9 +61,12 @@ void drop_small(double fewest_pixels, Region& region) {
         if (region.in[place] && !seen[place]) piece.push_back(place);
         seen[place] |= region.in[place];
       });
-    if (static_cast<double>(piece.size()) < fewest_pixels)
-      for (const std::size_t place : piece) region.in[place] = 0;
+    ++pieces.all;
+    if (static_cast<double>(piece.size()) >= fewest_pixels) continue;
+    ++pieces.dropped;
+    for (const std::size_t place : piece) region.in[place] = 0;
   }
+  return pieces;
 }
 
 /// Adds, `times` over, the neighbours that lie in `into`.
@@ -71,29 +85,146 @@ void grow(const Region& into, int times, Region& region) {
   }
 }
 
-/// What the beam carries beyond its edges, down to a hundredth of the largest.
-void spread(double beam_fwhm_pixels, int threads, Region& region) {
-  constexpr double cut = 0.01;
-  Image image(region.width, region.height);
-  std::copy(region.in.begin(), region.in.end(), image.pixel.begin());
-  if (std::find(region.in.begin(), region.in.end(), 1) == region.in.end()) return;
-  image = gaussian_blur(image, beam_fwhm_pixels, threads);
-  region = above(image, cut * *std::max_element(image.pixel.begin(), image.pixel.end()));
+void keep_within(const Region& other, Region& region) {
+  for (std::size_t i = 0; i < region.in.size(); ++i) region.in[i] &= other.in[i];
+}
+
+/// z with count · erfc(z/√2) = ½, by bisection.
+double chauvenet_deviations(double count) {
+  double low = 0, high = 40;
+  for (int step = 0; step < 60; ++step) {
+    const double z = 0.5 * (low + high);
+    (count * std::erfc(z / std::sqrt(2.0)) > 0.5 ? low : high) = z;
+  }
+  return low;
+}
+
+/// One extension of a mask.
+class Extension {
+ public:
+  Extension(const Image& residual, const AutoMaskOptions& options, const AutoMaskScene& scene)
+      : residual_(residual), o_(options), scene_(scene) {
+    const double noise = scene.noise_jy, sidelobes = o_.sidelobe_threshold * scene.max_sidelobe * largest_magnitude(residual);
+    high_ = std::max(sidelobes, o_.noise_threshold * noise);
+    low_ = std::max(sidelobes, o_.low_noise_threshold * noise);
+    deep_ = -std::max(sidelobes, o_.negative_threshold * noise);
+    told_.threshold_jy = high_;
+    told_.by_sidelobes = sidelobes > o_.noise_threshold * noise;
+    fewest_pixels_ = o_.min_beam_fraction * M_PI / (4 * std::log(2.0)) * scene.beam.major_rad * scene.beam.minor_rad /
+                     (scene.cell_rad * scene.cell_rad);
+  }
+
+  Region bright() {
+    Region region = above(residual_, high_);
+    const Pieces pieces = drop_small(fewest_pixels_, region);
+    told_.regions = pieces.all;
+    told_.pruned = pieces.dropped;
+    spread(region);
+    return region;
+  }
+
+  /// Of the positive part of the mask.
+  Region grown(Region region) {
+    const Region faint = above(residual_, low_);
+    grow(faint, o_.grow_iterations, region);
+    keep_within(faint, region);
+    const Pieces pieces = drop_small(o_.grow_prune ? fewest_pixels_ : 0, region);
+    told_.grown_regions = pieces.all;
+    told_.grown_pruned = pieces.dropped;
+    spread(region);
+    return region;
+  }
+
+  Region absorption() {
+    Region region(residual_, [this](double pixel) { return pixel <= deep_; });
+    told_.negative = static_cast<std::size_t>(std::count(region.in.begin(), region.in.end(), 1));
+    spread(region);
+    return region;
+  }
+
+  const MaskExtension& told() const { return told_; }
+
+ private:
+  /// By a beam, and cut.
+  void spread(Region& region) const {
+    if (o_.smooth_factor == 0 || region.empty()) return;
+    Image image(region.width, region.height);
+    std::copy(region.in.begin(), region.in.end(), image.pixel.begin());
+    Beam beam = scene_.beam;
+    beam.major_rad *= o_.smooth_factor;
+    beam.minor_rad *= o_.smooth_factor;
+    image = convolve_with_beam(image, beam, scene_.cell_rad, scene_.threads);
+    region = above(image, o_.cut_threshold * *std::max_element(image.pixel.begin(), image.pixel.end()));
+  }
+
+  const Image& residual_;
+  const AutoMaskOptions& o_;
+  const AutoMaskScene& scene_;
+  double high_, low_, deep_;
+  double fewest_pixels_;
+  MaskExtension told_;
+};
+
+/// Leaves out, as often as there are any, pixels farther from the mean than one of so many would be in half of all draws from a
+/// Gaussian.
+void drop_outliers(Image& image) {
+  for (;;) {
+    double count = 0, sum = 0, square = 0;
+    for (const double pixel : image.pixel)
+      if (!std::isnan(pixel)) {
+        ++count;
+        sum += pixel;
+      }
+    const double mean = sum / count;
+    for (const double pixel : image.pixel)
+      if (!std::isnan(pixel)) square += (pixel - mean) * (pixel - mean);
+    const double farthest = chauvenet_deviations(count) * std::sqrt(square / (count - 1));
+    bool dropped = false;
+    for (double& pixel : image.pixel)
+      if (std::abs(pixel - mean) > farthest) {
+        pixel = std::numeric_limits<double>::quiet_NaN();
+        dropped = true;
+      }
+    if (!dropped) return;
+  }
 }
 
 }  // namespace
 
-void extend_mask(const Image& residual, const AutoMaskOptions& options, const AutoMaskScene& scene, Image& mask) {
-  const double sidelobes = options.sidelobe_threshold * scene.max_sidelobe * largest_magnitude(residual);
-  Region found = above(residual, std::max(sidelobes, options.noise_threshold * scene.noise_jy));
-  const double beam_area = M_PI / (4 * std::log(2.0)) * scene.beam_fwhm_pixels * scene.beam_fwhm_pixels;
-  drop_small(options.min_beam_fraction * beam_area, found);
-  spread(scene.beam_fwhm_pixels, scene.threads, found);
-  Region old(mask);
-  std::transform(mask.pixel.begin(), mask.pixel.end(), old.in.begin(), mask_allows);
-  grow(above(residual, std::max(sidelobes, options.low_noise_threshold * scene.noise_jy)), options.grow_iterations, old);
-  for (std::size_t i = 0; i < mask.pixel.size(); ++i)
-    mask.pixel[i] = (found.in[i] || old.in[i]) && !std::isnan(residual.pixel[i]) ? 1 : 0;
+MaskExtension extend_mask(const Image& residual, const AutoMaskOptions& options, const AutoMaskScene& scene,
+                          GrowingMask& mask) {
+  std::vector<double>&allowed = mask.allowed.pixel, &negative = mask.negative.pixel;
+  const bool absorbs = options.negative_threshold > 0;
+  if (absorbs && negative.empty()) mask.negative = Image(mask.allowed.width, mask.allowed.height);
+  Region positive(mask.allowed, mask_allows);
+  for (std::size_t i = 0; i < negative.size(); ++i) positive.in[i] &= negative[i] == 0;
+  Extension extension(residual, options, scene);
+  const Region bright = extension.bright(), grown = extension.grown(positive);
+  std::optional<Region> absorption;
+  if (absorbs) absorption = extension.absorption();
+  MaskExtension told = extension.told();
+  for (std::size_t i = 0; i < allowed.size(); ++i) {
+    const bool was = mask_allows(allowed[i]);
+    const bool may = !std::isnan(residual.pixel[i]) && (scene.within == nullptr || mask_allows(scene.within->pixel[i]));
+    const bool in_positive = may && (positive.in[i] || bright.in[i] || grown.in[i]);
+    const bool in_negative = may && !in_positive && absorbs && (negative[i] != 0 || absorption->in[i]);
+    allowed[i] = in_positive || in_negative ? 1 : 0;
+    if (absorbs) negative[i] = in_negative ? 1 : 0;
+    told.added += (in_positive || in_negative) && !was ? 1 : 0;
+  }
+  return told;
+}
+
+double mask_noise(const Image& residual, const Image& mask, const Image* within, int threads) {
+  Image kept = residual;
+  if (mask_is_empty(mask)) {
+    drop_outliers(kept);
+    return robust_noise(kept, threads);
+  }
+  for (std::size_t i = 0; i < kept.pixel.size(); ++i)
+    if (mask_allows(mask.pixel[i]) || (within != nullptr && !mask_allows(within->pixel[i])))
+      kept.pixel[i] = std::numeric_limits<double>::quiet_NaN();
+  return robust_noise(kept, threads);
 }
 
 }  // namespace misfit::imager

@@ -31,7 +31,7 @@ struct CleanOptions {
   int cycle_iterations = -1;                ///< cycleniter: components that a minor cycle finds at most; −1 = no limit
   int max_major_cycles = -1;                ///< nmajor; −1 = no limit
   const Image* mask = nullptr;              ///< where components may lie, see mask.h; null = everywhere
-  std::optional<AutoMaskOptions> automask;  ///< the mask is made from the residuals; `mask` must be null
+  std::optional<AutoMaskOptions> automask;  ///< the mask is made from the residuals, within `mask`
   int threads = 1;
   std::function<bool()> stop_requested;  ///< the user's wish to end; may be empty
 };
@@ -64,6 +64,7 @@ struct MajorCycle {
   std::size_t from = 0;           ///< the cycle whose model it began with
   double peak_anywhere_jy = 0;    ///< peak_residual_jy of the whole image
   std::size_t mask_pixels = 0;    ///< where the next minor cycle may find components
+  MaskExtension masked{};         ///< how CleanOptions::automask came to them
 };
 
 /// All that CLEAN carries from one major cycle to the next: with the same data and options it goes on from here with the same
@@ -71,7 +72,7 @@ struct MajorCycle {
 struct CleanState {
   ComponentModel model;
   ComponentModel best_model;       ///< that which a cycle is taken back to
-  Image mask;                      ///< made from the residuals so far; empty unless CleanOptions::automask
+  GrowingMask mask;                ///< made from the residuals so far; empty unless CleanOptions::automask
   std::vector<MajorCycle> cycles;  ///< [0] is the state before the first; empty before that
   int iterations = 0;              ///< those of `model` where there are no cycles yet
   std::size_t now = 0;             ///< the cycle whose model is `model`: the last unless it was taken back
@@ -111,7 +112,8 @@ struct CleanInput {
   std::vector<const Image*> psf;    ///< P_k [k], 2 terms − 1 of them
   double max_sidelobe = 0;          ///< the largest of the first PSF
   double accuracy = 1e-7;           ///< of images and prediction, relative; single-precision data have no better
-  double beam_fwhm_pixels = 1;      ///< of a round beam of its main lobe's area; automask alone needs it
+  Beam beam{};                      ///< its main lobe; automask alone needs it
+  double cell_rad = 0;              ///< pixel size, for that
 };
 
 /// Told before the first and after every major cycle.

@@ -62,7 +62,7 @@ class Run {
   CleanResult run(const CycleProgress& cycle_progress) {
     make_residual();
     if (state_.cycles.empty()) {
-      if (o_.automask) state_.mask = Image(residual().width, residual().height);
+      if (o_.automask) state_.mask.allowed = Image(residual().width, residual().height);
       MajorCycle start;
       start.iterations = state_.iterations;
       measure(start);
@@ -84,7 +84,7 @@ class Run {
  private:
   const MajorCycle& now() const { return state_.cycles[state_.now]; }
   const MajorCycle& best() const { return state_.cycles[state_.best]; }
-  const Image* mask() const { return o_.automask ? &state_.mask : o_.mask; }
+  const Image* mask() const { return o_.automask ? &state_.mask.allowed : o_.mask; }
 
   /// The residuals of an empty model are the dirty images, unless these are those of the first. Others are made anew, and never
   /// changed.
@@ -131,17 +131,30 @@ class Run {
   /// Goes on from a cycle that was measured, within a mask that its residual has grown.
   void keep(MajorCycle cycle) {
     if (o_.automask) {
-      extend_mask(residual(), *o_.automask,
-                  {.max_sidelobe = input_.max_sidelobe,
-                   .noise_jy = cycle.rms_jy,
-                   .beam_fwhm_pixels = input_.beam_fwhm_pixels,
-                   .threads = o_.threads},
-                  state_.mask);
+      if (!state_.mask.final) extend(cycle);
       cycle.peak_residual_jy = peak_within_mask();
     }
     cycle.mask_pixels = mask() != nullptr ? allowed_pixels(*mask()) : residual().pixel.size();
     state_.cycles.push_back(std::move(cycle));
     state_.now = state_.cycles.size() - 1;
+  }
+
+  void extend(MajorCycle& cycle) {
+    const AutoMaskOptions& o = *o_.automask;
+    const std::size_t before = allowed_pixels(state_.mask.allowed);
+    cycle.masked =
+        extend_mask(residual(), o,
+                    {.max_sidelobe = input_.max_sidelobe,
+                     .noise_jy = o.fast_noise ? cycle.rms_jy : mask_noise(residual(), state_.mask.allowed, o_.mask, o_.threads),
+                     .beam = input_.beam,
+                     .cell_rad = input_.cell_rad,
+                     .within = o_.mask,
+                     .threads = o_.threads},
+                    state_.mask);
+    const bool at_the_end = cycle.cycle_threshold_jy > 0 && cycle.cycle_threshold_jy <= o_.threshold_jy;
+    const double changed =
+        100 * static_cast<double>(cycle.masked.added) / static_cast<double>(std::max<std::size_t>(before, 1));
+    state_.mask.final = at_the_end && changed < o.min_percent_change;
   }
 
   /// What ends CLEAN before another minor cycle, if anything.
@@ -284,7 +297,7 @@ class Run {
     result.report.kept = state_.now;
     result.report.cycles = std::move(state_.cycles);
     result.components = std::move(state_.model);
-    result.mask = std::move(state_.mask);
+    result.mask = std::move(state_.mask.allowed);
     return result;
   }
 

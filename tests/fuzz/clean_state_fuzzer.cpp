@@ -25,7 +25,7 @@ void require_promises(const InputFile& file, const std::vector<double>& scales) 
   const imager::CleanState* const state = &read->state;
   if (read->changed.empty())
     require(state->now < state->cycles.size() && state->best < state->cycles.size(), "a state has the cycles that it names");
-  require(state->mask.pixel.empty() || state->mask.pixel.size() == 12, "a mask has the image's pixels");
+  require(state->mask.allowed.pixel.empty() || state->mask.allowed.pixel.size() == 12, "a mask has the image's pixels");
   for (const imager::ComponentModel* model : {&state->model, &state->best_model}) {
     require(model->width() == 4 && model->height() == 3 && model->scale_pixels() == scales, "a model is of the image");
     for (const imager::Component& c : model->components())
@@ -34,7 +34,7 @@ void require_promises(const InputFile& file, const std::vector<double>& scales) 
   const std::string again = (file.folder() / "again.state").string();
   tools::write_clean_state(again, *state, owner);
   const imager::CleanState reread = tools::read_clean_state(again, owner).state;
-  require(reread.cycles.size() == state->cycles.size() && reread.mask.pixel == state->mask.pixel &&
+  require(reread.cycles.size() == state->cycles.size() && reread.mask.allowed.pixel == state->mask.allowed.pixel &&
               reread.model.components().size() == state->model.components().size(),
           "a state that was written is read again");
 }

@@ -456,9 +456,9 @@ class Refused(Sets):
     def test_what_is_not_made_yet_is_refused_by_name(self):
         for parameters in (dict(gridder="mosaic"), dict(facets=4), dict(gridder="awproject"), dict(weighting="briggsbwtaper"),
                            dict(stokes="pseudoI"), dict(specmode="cubedata"), dict(specmode="cubesource"), dict(veltype="optical"),
-                           dict(usemask="pb"), dict(usemask="auto-multithresh", negativethreshold=7.0, niter=1),
+                           dict(usemask="shape"), dict(usemask="auto-multithresh", negativethreshold=-7.0, niter=1),
                            dict(outlierfile="o.txt"), dict(interactive=True), dict(projection="NCP"), dict(usepointing=True),
-                           dict(deconvolver="mem"), dict(pbmask=0.2), dict(niter=-1),
+                           dict(deconvolver="mem"), dict(pbmask=0.1, niter=1), dict(niter=-1),
                            dict(cell=["1arcsec", "2arcsec"]), dict(imsize=[64.5]), dict(gain=2, niter=1),
                            dict(datacolumn="residual"), dict(mask=["a", "b"], niter=1), dict(savemodel="virtual"), dict(deconvolver="mtmfs", nterms=1), dict(imagename="a\nb"), dict(calcpsf="False"),
                            dict(specmode=5), dict(gridder=[]), dict(vis=5), dict(vis=b"x"), dict(nterms=None, deconvolver="mtmfs"),
@@ -471,7 +471,7 @@ class Refused(Sets):
             with self.subTest(parameters):
                 words = self.refusal(**parameters)
                 self.assertEqual(len(words.splitlines()), 1)
-                self.assertIn(next(name for name in parameters if name not in ("usemask", "niter", "specmode") or len(parameters) == 1), words)
+                self.assertIn(next(name for name in parameters if name not in ("niter", "specmode", "usemask") or len(parameters) == 1), words)
                 self.assertIn("expected", words)
                 self.assertNotIn("--", words)
         self.assertEqual(self.files("refused"), set())
@@ -505,14 +505,12 @@ class Pipelines(Sets):
             form = {name: value for name, value in call.items() if name not in ("threshold", "robust")}
             cls.calls[json.dumps(form, sort_keys=True)] = call  # kinds that differ in such or what is replaced are one
 
-    def test_each_runs_or_says_in_one_line_what_is_not_made_yet(self):
+    def test_each_runs_whole(self):
         self.assertGreater(len(self.calls), 5)
         for number, call in enumerate(self.calls.values()):
             with self.subTest(number), contextlib.redirect_stderr(io.StringIO()):
                 name = f"kind{number}"
-                with self.assertRaisesRegex(ValueError, "^(negativethreshold|minpercentchange|fastnoise)=.*: expected .*(?:yet|so far)$"):
-                    misfit.tclean(**call, imagename=self.name(name))
-                masked = dict(call, usemask="user", imagename=self.name(name))
+                masked = dict(call, imagename=self.name(name))
                 misfit.tclean(**dict(masked, niter=0, calcres=True, calcpsf=True))
                 made = misfit.tclean(**masked)
                 self.assertEqual(set(made), RETURNED)

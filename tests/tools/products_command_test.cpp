@@ -1,5 +1,6 @@
 // Which images a run leaves with --products tclean, and what is masked in them.
 #include <cmath>
+#include <numeric>
 
 #include "ms_io/casa_image.h"
 #include "tests/tools/program.h"
@@ -103,6 +104,35 @@ BOOST_AUTO_TEST_CASE(a_mask_of_ones_says_that_clean_may_go_everywhere_and_change
   succeed(all_products(folder / "b", {"--niter", "20", "--mask", folder / "a.mask"}));
   const auto image = [&](const char* name) { return opened(folder / name, ms_io::Masks::applied)->read({0, 0}).pixel; };
   BOOST_TEST((image("a.image") == image("b.image")));
+}
+
+/// --pbmask limits every mask, of each plane by its own beam.
+BOOST_AUTO_TEST_CASE(clean_keeps_to_where_the_primary_beam_is) {
+  const TemporaryFolder folder;
+  const auto plane = [&](const std::string& kind, int channel) {
+    return opened(folder / ("a." + kind), ms_io::Masks::ignored)->read({channel, 0});
+  };
+  for (const Arguments& mask : {Arguments{"--usemask", "pb"}, Arguments{"--usemask", "auto", "--noisethreshold", "3"},
+                                Arguments{"--mask", "box [[0pix, 0pix], [40pix, 63pix]]"}}) {
+    succeed(all_products(folder / "a",
+                         mask + Arguments{"--pbmask", "0.5", "--pblimit", "0.3", "--niter", "30", "--specmode", "cube"}));
+    std::vector<double> allowed;
+    for (const int channel : {0, 1}) {
+      const imager::Image made = plane("mask", channel), model = plane("model", channel), beam = plane("pb", channel);
+      bool within = true, all = true;
+      for (std::size_t i = 0; i < made.pixel.size(); ++i) {
+        const bool is = made.pixel[i] != 0, may = beam.pixel[i] >= 0.5;
+        const bool asked = mask.front() != "--mask" || static_cast<int>(i) % made.width <= 40;
+        within = within && (!is || may) && (model.pixel[i] == 0 || is);
+        all = all && is == (may && asked);
+      }
+      BOOST_TEST(within);
+      BOOST_TEST((all || mask[1] == "auto"));
+      allowed.push_back(std::accumulate(made.pixel.begin(), made.pixel.end(), 0.0));
+    }
+    BOOST_TEST(allowed[0] > 0);
+    if (mask[1] == "pb") BOOST_TEST(allowed[0] > allowed[1]);  // beams narrow with frequency
+  }
 }
 
 BOOST_AUTO_TEST_SUITE_END()

@@ -135,6 +135,24 @@ imager::Image unpacked_mask(const json& value, const imager::ComponentModel& lik
   return mask;
 }
 
+json packed_extension(const imager::MaskExtension& m) {
+  return {{"threshold_jy", m.threshold_jy},   {"by_sidelobes", m.by_sidelobes}, {"regions", m.regions},   {"pruned", m.pruned},
+          {"grown_regions", m.grown_regions}, {"grown_pruned", m.grown_pruned}, {"negative", m.negative}, {"added", m.added}};
+}
+
+imager::MaskExtension unpacked_extension(const json& m) {
+  imager::MaskExtension masked;
+  masked.threshold_jy = m.at("threshold_jy");
+  masked.by_sidelobes = m.at("by_sidelobes");
+  masked.regions = whole<int>(m, "regions");
+  masked.pruned = whole<int>(m, "pruned");
+  masked.grown_regions = whole<int>(m, "grown_regions");
+  masked.grown_pruned = whole<int>(m, "grown_pruned");
+  masked.negative = whole<std::size_t>(m, "negative");
+  masked.added = whole<std::size_t>(m, "added");
+  return masked;
+}
+
 json packed_cycle(const imager::MajorCycle& c) {
   return {{"iterations", c.iterations},
           {"peak_residual_jy", c.peak_residual_jy},
@@ -145,7 +163,8 @@ json packed_cycle(const imager::MajorCycle& c) {
           {"mean_square_jy2", c.mean_square_jy2},
           {"from", c.from},
           {"peak_anywhere_jy", c.peak_anywhere_jy},
-          {"mask_pixels", c.mask_pixels}};
+          {"mask_pixels", c.mask_pixels},
+          {"masked", packed_extension(c.masked)}};
 }
 
 imager::MajorCycle unpacked_cycle(const json& c) {
@@ -160,6 +179,7 @@ imager::MajorCycle unpacked_cycle(const json& c) {
   cycle.from = whole<std::size_t>(c, "from");
   cycle.peak_anywhere_jy = c.at("peak_anywhere_jy");
   cycle.mask_pixels = whole<std::size_t>(c, "mask_pixels");
+  cycle.masked = unpacked_extension(c.at("masked"));
   return cycle;
 }
 
@@ -202,7 +222,7 @@ imager::CleanState unpacked_state(const json& file, const imager::ComponentModel
   imager::CleanState state;
   state.model = unpacked_model(file.at("model"), like);
   state.best_model = unpacked_model(file.at("best_model"), like);
-  state.mask = unpacked_mask(file.at("mask"), like);
+  state.mask = {unpacked_mask(file.at("mask"), like), unpacked_mask(file.at("negative_mask"), like), file.at("final_mask")};
   for (const json& cycle : file.at("cycles")) state.cycles.push_back(unpacked_cycle(cycle));
   state.now = whole<std::size_t>(file, "now");
   state.best = whole<std::size_t>(file, "best");
@@ -302,7 +322,9 @@ void write_clean_state(const std::string& path, const imager::CleanState& state,
                {"ranks", owner.ranks},
                {"model", packed_model(state.model)},
                {"best_model", packed_model(state.best_model)},
-               {"mask", packed_mask(state.mask)},
+               {"mask", packed_mask(state.mask.allowed)},
+               {"negative_mask", packed_mask(state.mask.negative)},
+               {"final_mask", state.mask.final},
                {"cycles", json::array()},
                {"now", state.now},
                {"best", state.best},

@@ -103,11 +103,11 @@ void require_same_pixels(const imager::ImageReader& file, const std::string& wha
     throw std::runtime_error(what + " has " + size(has) + ", expected " + size(own));
   const GridBeside beside(file, what, image);
   const GridOffset offset = offset_between(beside.map(), own);
+  if (offset.any && offset.right == 0 && offset.up == 0 && offset.most < imager::same_place_pixels) return;
   const std::string distance =
-      offset.any ? " (" + significant(std::hypot(offset.right, offset.up) + offset.most, 2) + " pixels off)" : "";
-  if (!offset.any || offset.right != 0 || offset.up != 0 || !(offset.most < imager::same_place_pixels))
-    throw std::runtime_error(what + " has other pixels, " + described(beside.grid()) + distance + ", expected the image's, " +
-                             described(imager::grid_of(own)) + "; regrid it first, as with CASA's imregrid");
+      offset.any ? ", " + significant(std::hypot(offset.right, offset.up) + offset.most, 2) + " pixels away" : "";
+  throw std::runtime_error(what + " has other pixels, " + described(beside.grid()) + ", expected the image's, " +
+                           described(imager::grid_of(own)) + distance + "; regrid it first, as with CASA's imregrid");
 }
 
 }  // namespace misfit::tools

@@ -32,7 +32,7 @@ Prose image_prose() {
       "Stopped by Ctrl-C, it finishes the major cycle and writes everything; --restart goes on from there."};
   prose.files = {{"NAME.psf.fits, NAME.residual.fits", "The PSF; the dirty image, or what CLEAN leaves of it."},
                  {"NAME.model.fits, NAME.image.fits", "What CLEAN found, in Jy/pixel; the restored image. Both with --niter."},
-                 {"NAME.mask.fits", "Where CLEAN looked, with --usemask auto."},
+                 {"NAME.mask.fits", "Where CLEAN looked, with --mask, --usemask or --pbmask."},
                  {"NAME.components.csv", "The components that CLEAN found, which misfit predict takes."},
                  {"NAME.clean.state", "The last major cycle, which --restart goes on from."},
                  {"NAME.report.html, NAME.report.json", "The run with its plan, pictures and times; the same for machines."},

@@ -41,9 +41,12 @@ void ChannelMaker::prepare_clean(ChannelRun& run) {
   }
   if (!means_.images_here) return;
   run.choose_beams();
-  if (scene_.options.clean.runs() && run.report().beams->restoring)
-    run.begin_clean(
-        cleans_.take([]() -> std::unique_ptr<CleanStage> { throw std::logic_error("more channels at a time than workers"); }));
+  if (!scene_.options.clean.runs() || !run.report().beams->restoring) return;
+  run.begin_clean(
+      cleans_.take([]() -> std::unique_ptr<CleanStage> { throw std::logic_error("more channels at a time than workers"); }));
+  if (scene_.options.primary_beam.pbmask == 0) return;
+  const imager::StageTimer timer(run.times(), imager::stage::primary_beam);
+  run.limit_clean(means_.primary_beam->of_image(run.report().frequency_hz));
 }
 
 void ChannelMaker::clean(ChannelRun& run) {

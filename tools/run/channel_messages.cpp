@@ -58,9 +58,15 @@ void serialize(Archive& archive, Peak& peak) {
 }
 
 template <typename Archive>
+void serialize(Archive& archive, MaskExtension& masked) {
+  archive(masked.threshold_jy, masked.by_sidelobes, masked.regions, masked.pruned, masked.grown_regions, masked.grown_pruned,
+          masked.negative, masked.added);
+}
+
+template <typename Archive>
 void serialize(Archive& archive, MajorCycle& cycle) {
   archive(cycle.iterations, cycle.peak_residual_jy, cycle.rms_jy, cycle.model_flux_jy, cycle.cycle_threshold_jy, cycle.ended,
-          cycle.mean_square_jy2, cycle.from, cycle.peak_anywhere_jy, cycle.mask_pixels);
+          cycle.mean_square_jy2, cycle.from, cycle.peak_anywhere_jy, cycle.mask_pixels, cycle.masked);
 }
 
 template <typename Archive>

@@ -251,7 +251,8 @@ imager::CleanResult ChannelRun::clean(std::size_t stokes) {
   imager::CleanResult result = stage_->run(clean, scene_.option_values, cycle, context());
   if (!stage_->words_on_state().empty()) made_.doubts.push_back(stage_->words_on_state());
   images_.images.dirty[stokes] = {};
-  if (const imager::Image* const mask = stage_->mask(stokes); mask != nullptr) result.mask = *mask;
+  const imager::Image* const mask = stage_->mask(stokes);
+  if (result.mask.pixel.empty() && mask != nullptr) result.mask = *mask;  // else it made one within that
   return result;
 }
 

@@ -84,6 +84,8 @@ class ChannelRun {
   void follow_clean();
   /// Gets CLEAN of this channel ready.
   void begin_clean(std::unique_ptr<CleanStage> stage);
+  /// To where this primary beam is --pbmask or more.
+  void limit_clean(const imager::Image& primary_beam) { stage_->limit_to(primary_beam); }
   bool may_clean() const { return stage_ != nullptr; }
   /// One Stokes parameter after the other. Returns the stage, which may serve another channel.
   std::unique_ptr<CleanStage> clean();

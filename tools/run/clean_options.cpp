@@ -42,6 +42,11 @@ void check_auto_mask(const TypedClean& o) {
   if (!(o.lownoisethreshold > 0 && o.lownoisethreshold <= o.noisethreshold))
     refuse_option("lownoisethreshold", typed(o.lownoisethreshold), "more than 0 and at most noisethreshold");
   if (!(o.minbeamfrac >= 0)) refuse_option("minbeamfrac", typed(o.minbeamfrac), "0 or more");
+  if (!(o.negativethreshold >= 0)) refuse_option("negativethreshold", typed(o.negativethreshold), "0 (none) or more");
+  if (!(o.smoothfactor >= 0)) refuse_option("smoothfactor", typed(o.smoothfactor), "0 or more");
+  if (!(o.cutthreshold >= 0 && o.cutthreshold < 1))
+    refuse_option("cutthreshold", typed(o.cutthreshold), "0 or more, and below 1");
+  if (!(o.minpercentchange <= 100)) refuse_option("minpercentchange", typed(o.minpercentchange), "-1 (never) to 100");
   if (o.growiterations < 0) refuse_option("growiterations", std::to_string(o.growiterations), "0 or more");
 }
 
@@ -97,9 +102,11 @@ void declare(CLI::App& command, TypedClean& o) {
       OptionMark::way_of_clean);
   mark(command
            .add_option("--usemask", o.usemask,
-                       "user: --mask, or everywhere; auto: from the residuals, as tclean's auto-multithresh")
+                       "user: --mask, or everywhere; pb: where the primary beam is --pbmask or more; auto: from the residuals, "
+                       "as tclean's "
+                       "auto-multithresh")
            ->transform(also_named({{"auto-multithresh", "auto"}}))
-           ->check(CLI::IsMember({"user", "auto"})),
+           ->check(CLI::IsMember({"user", "auto", "pb"})),
        OptionMark::way_of_clean);
   mark(command.add_option("--sidelobethreshold", o.sidelobethreshold,
                           "auto: above this times the largest sidelobe times the peak …"),
@@ -111,6 +118,26 @@ void declare(CLI::App& command, TypedClean& o) {
        OptionMark::way_of_clean);
   mark(command.add_option("--growiterations", o.growiterations, "… by this many pixels a major cycle at most"),
        OptionMark::way_of_clean);
+  const auto either = [](CLI::Option* option) {
+    mark(option->default_str("true")->check(CLI::IsMember({"true", "false"}, CLI::ignore_case)), OptionMark::way_of_clean);
+  };
+  either(command.add_option("--dogrowprune", o.dogrowprune, "auto: regions of what was grown are as large, too"));
+  mark(command.add_option("--smoothfactor", o.smoothfactor, "auto: regions are smoothed by this many beams, …"),
+       OptionMark::way_of_clean);
+  mark(command.add_option("--cutthreshold", o.cutthreshold, "… and cut at this part of their largest value then"),
+       OptionMark::way_of_clean);
+  mark(command.add_option("--negativethreshold", o.negativethreshold,
+                          "auto: absorption deeper than this times the noise is in the mask, too; 0 = none is"),
+       OptionMark::way_of_clean);
+  mark(command.add_option(
+           "--minpercentchange", o.minpercentchange,
+           "auto: a mask that grows by less than this percentage is final, once minor cycles go down to --threshold; "
+           "-1 = never"),
+       OptionMark::way_of_clean);
+  either(
+      command.add_option("--fastnoise", o.fastnoise,
+                         "auto: noise is that of all pixels; false: of those outside the mask and inside the primary beam, or "
+                         "before there is a mask of those that Chauvenet's criterion leaves"));
   command
       .add_option(
           "--startmodel", o.startmodel,
@@ -148,6 +175,10 @@ void check_clean(const ImageOptions& o) {
         "--stokes of I, Q, U and V, or of parallel hands, such as XXYY or RR, of which a column's correlations are made");
   if (o.clean.savemodel != "none" && !o.clean.runs())
     refuse_option("savemodel", o.clean.savemodel, "--niter above 0, or --startmodel, beside it");
+  if (o.primary_beam.pbmask != 0 && !o.clean.runs())
+    refuse_option("pbmask", typed(o.primary_beam.pbmask), "--niter above 0, or --startmodel, beside it");
+  if (o.clean.usemask == "pb" && (o.primary_beam.pbmask == 0 || !o.clean.mask.empty()))
+    refuse_option("usemask", o.clean.usemask, o.clean.mask.empty() ? "--pbmask above 0 beside it" : "user beside --mask");
   if (!o.clean.mask.empty() && !o.clean.runs())
     refuse_option("mask", o.clean.mask, "--niter above 0, or --startmodel, beside it");
   if (o.clean.restart && o.clean.niter == 0) refuse_option("restart", "true", "--niter above 0 beside it");
@@ -171,8 +202,14 @@ imager::CleanOptions clean_options(const TypedClean& o, int threads) {
     clean.automask = imager::AutoMaskOptions{.sidelobe_threshold = o.sidelobethreshold,
                                              .noise_threshold = o.noisethreshold,
                                              .low_noise_threshold = o.lownoisethreshold,
+                                             .negative_threshold = o.negativethreshold,
+                                             .smooth_factor = o.smoothfactor,
+                                             .cut_threshold = o.cutthreshold,
                                              .min_beam_fraction = o.minbeamfrac,
-                                             .grow_iterations = o.growiterations};
+                                             .grow_iterations = o.growiterations,
+                                             .grow_prune = o.dogrowprune,
+                                             .min_percent_change = o.minpercentchange,
+                                             .fast_noise = o.fastnoise};
   return clean;
 }
 

@@ -34,8 +34,14 @@ struct TypedClean {
   double sidelobethreshold = 3;
   double noisethreshold = 5;
   double lownoisethreshold = 1.5;
+  double negativethreshold = 0;
+  double smoothfactor = 1;
   double minbeamfrac = 0.3;
+  double cutthreshold = 0.01;
   int growiterations = 75;
+  bool dogrowprune = true;
+  double minpercentchange = -1;
+  bool fastnoise = true;
   std::vector<std::string> startmodel;  ///< images in Jy/pixel, of one or of each Taylor term; empty = none
   std::string savemodel = "none";
   bool restart = false;

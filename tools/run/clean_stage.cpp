@@ -17,14 +17,6 @@
 #include "tools/run/clean_options.h"
 
 namespace misfit::tools {
-namespace {
-
-/// That of a round beam of the same area.
-double mean_width_rad(const imager::Beam& beam) {
-  return std::sqrt(beam.major_rad * beam.minor_rad);
-}
-
-}  // namespace
 
 CleanStage::CleanStage(const ImageOptions& options, imager::ImageHeader image) : o_(options), image_(std::move(image)) {
   if (!o_.clean.startmodel.empty()) start_model_ = std::make_unique<StartModel>(o_, image_);
@@ -34,11 +26,23 @@ CleanStage::CleanStage(const ImageOptions& options, imager::ImageHeader image) :
 void CleanStage::begin_channel(int channel) {
   if (channel_ == channel) return;
   channel_ = channel;
+  limited_.clear();
   if (start_model_) start_model_->read(channel);
   if (!mask_file_ || (!masks_.empty() && mask_file_->one_for_all_channels())) return;
   masks_.clear();
   const int masks = mask_file_->one_for_all_stokes() ? 1 : static_cast<int>(image_.stokes.size());
   for (int stokes = 0; stokes < masks; ++stokes) masks_.push_back(mask_file_->mask({channel, stokes}));
+}
+
+void CleanStage::limit_to(const imager::Image& primary_beam) {
+  limited_ = masks_;
+  if (limited_.empty()) {
+    limited_.emplace_back(primary_beam.width, primary_beam.height);
+    std::fill(limited_.front().pixel.begin(), limited_.front().pixel.end(), 1);
+  }
+  for (imager::Image& mask : limited_)
+    for (std::size_t i = 0; i < mask.pixel.size(); ++i)
+      if (!(primary_beam.pixel[i] >= o_.primary_beam.pbmask)) mask.pixel[i] = 0;
 }
 
 std::vector<std::string> CleanStage::words_on_files() const {
@@ -144,7 +148,8 @@ imager::CleanResult CleanStage::run(const CleanScene& scene, const StateOptionVa
                                  .psf = scene.psf,
                                  .max_sidelobe = sidelobe,
                                  .accuracy = std::max(o_.gridding.accuracy, scene.expected_error),
-                                 .beam_fwhm_pixels = mean_width_rad(scene.main_lobe) / image_.geometry.cell_rad};
+                                 .beam = scene.main_lobe,
+                                 .cell_rad = image_.geometry.cell_rad};
   const auto save = [&](const imager::CleanState& now) {
     const imager::StageTimer timer(context.times, imager::stage::clean_state);
     if (o_.taken.calcres) write_clean_state(state_path(scene.imaged.samples.index), now, owner);

@@ -38,10 +38,13 @@ class CleanStage {
   /// From here on everything is of this channel of the image. Reads its mask and start model. To be called before all that
   /// follows.
   void begin_channel(int channel);
+  /// Keeps masks of this channel to where its primary beam is --pbmask or more.
+  void limit_to(const imager::Image& primary_beam);
 
-  /// Null where CLEAN may go everywhere, or makes its own.
+  /// Null where CLEAN may go everywhere; within it CLEAN may make its own.
   const imager::Image* mask(std::size_t stokes) const {
-    return masks_.empty() ? nullptr : &masks_[masks_.size() == 1 ? 0 : stokes];
+    const std::vector<imager::Image>& masks = limited_.empty() ? masks_ : limited_;
+    return masks.empty() ? nullptr : &masks[masks.size() == 1 ? 0 : stokes];
   }
   /// What the user should know of the mask's file, and of which band the start model is, a sentence each.
   std::vector<std::string> words_on_files() const;
@@ -69,6 +72,7 @@ class CleanStage {
   std::unique_ptr<MaskFile> mask_file_;      ///< null without a mask
   std::unique_ptr<StartModel> start_model_;  ///< null without one
   std::vector<imager::Image> masks_;         ///< none, one for all, or [Stokes]
+  std::vector<imager::Image> limited_;       ///< the same, or one, within the primary beam; none where that does not limit them
 };
 
 }  // namespace misfit::tools

@@ -183,6 +183,7 @@ void declare(CLI::App& command, CubeOptions& o) {
   command
       .add_option("--perchanweightdensity", o.perchanweightdensity,
                   "true: the weights of each plane follow from its own density of samples; false: from that of all planes")
+      ->default_str("true")
       ->check(CLI::IsMember({"true", "false"}, CLI::ignore_case));
 }
 

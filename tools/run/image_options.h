@@ -49,6 +49,8 @@ struct ImageOptions {
   ScaleOptions scale;
   bool quiet = false;
 
+  /// Whether CLEAN keeps to a mask, given or made.
+  bool masks_clean() const { return !clean.mask.empty() || clean.usemask == "auto" || primary_beam.pbmask > 0; }
   bool all_products() const { return products == "tclean"; }
 };
 

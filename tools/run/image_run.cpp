@@ -139,7 +139,7 @@ class ImageRun : private ChannelSink {
       primary_beam_ = std::make_unique<PrimaryBeamStage>(o_.primary_beam, std::move(scene),
                                                          std::max(1, threads_ / sharing_.channels_here(channels())));
     } catch (const NoPrimaryBeam& none) {
-      if (o_.primary_beam.required()) throw std::runtime_error(std::string("--pbcor, --pblimit: ") + none.what());
+      if (o_.primary_beam.required()) throw std::runtime_error(std::string("--pbcor, --pblimit, --pbmask: ") + none.what());
       warn(std::string("no .pb is written: ") + none.what());
       o_.primary_beam = {};
     }
@@ -192,7 +192,7 @@ class ImageRun : private ChannelSink {
         .geometry = header_.geometry,
         .reach = reach_,
         .threads = threads_,
-        .mask = o_.clean.runs() && sharing_.images_here() && (!o_.clean.mask.empty() || o_.clean.usemask == "auto"),
+        .mask = o_.clean.runs() && sharing_.images_here() && o_.masks_clean(),
         .taken = taken_.get(),
         .channels = channels(),
         .workers = std::min(threads_, sharing_.channels_here(channels())),

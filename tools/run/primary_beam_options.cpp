@@ -26,9 +26,15 @@ void declare(CLI::App& command, TypedPrimaryBeam& o) {
            "alone is written. Above 0 it goes for the masks of CASA images .image and .residual too, whose pixels stay; the "
            "sign makes no other difference"),
        OptionMark::free_of_state);
+  mark(command.add_option(
+           "--pbmask", o.pbmask,
+           "CLEAN finds components only where the primary beam is this or more, in whatever mask; 0 = everywhere"),
+       OptionMark::way_of_clean);
 }
 
 void check(const TypedPrimaryBeam& o) {
+  if (o.pbmask != 0 && !(o.pbmask >= o.limit() && o.pbmask < 1))
+    refuse_option("pbmask", typed(o.pbmask), "at least --pblimit, " + typed(o.limit()) + ", and below 1; or 0");
   if (!(std::abs(o.pblimit) < 1)) refuse_option("pblimit", typed(o.pblimit), "a number between 0 and 1, such as 0.2");
 }
 

@@ -34,7 +34,7 @@ ProductChoice ProductChoice::of(const ImageOptions& o) {
   const bool all = o.all_products();
   return {.terms = o.taylor.nterms,
           .cleaned = o.clean.runs(),
-          .masked = o.clean.runs() && (all || o.clean.usemask == "auto" || !o.clean.mask.empty()),
+          .masked = o.clean.runs() && (all || o.masks_clean()),
           .restored = all || o.clean.runs(),
           .primary_beam = o.primary_beam.wanted(),
           .corrected = o.primary_beam.pbcor,

@@ -89,6 +89,19 @@ json restoring_json(const std::optional<BeamChoice>& beams) {
   return beam;
 }
 
+/// Null where no residual made it.
+json extension_json(const imager::MaskExtension& masked) {
+  if (masked.threshold_jy == 0) return nullptr;
+  return {{"threshold_jy", number(masked.threshold_jy)},
+          {"by_sidelobes", masked.by_sidelobes},
+          {"regions", masked.regions},
+          {"pruned", masked.pruned},
+          {"grown_regions", masked.grown_regions},
+          {"grown_pruned", masked.grown_pruned},
+          {"negative_pixels", masked.negative},
+          {"added_pixels", masked.added}};
+}
+
 json cycle_json(const imager::MajorCycle& cycle) {
   return {{"iterations", cycle.iterations},
           {"peak_residual_jy", number(cycle.peak_residual_jy)},
@@ -98,7 +111,8 @@ json cycle_json(const imager::MajorCycle& cycle) {
           {"ended", cycle.ended},
           {"from", cycle.from},
           {"peak_anywhere_jy", number(cycle.peak_anywhere_jy)},
-          {"mask_pixels", cycle.mask_pixels}};
+          {"mask_pixels", cycle.mask_pixels},
+          {"mask_extension", extension_json(cycle.masked)}};
 }
 
 json clean_json(const std::optional<imager::CleanReport>& clean) {
@@ -106,7 +120,7 @@ json clean_json(const std::optional<imager::CleanReport>& clean) {
   json log = json::array();
   for (const imager::MajorCycle& cycle : clean->cycles) log.push_back(cycle_json(cycle));
   json report = cycle_json(clean->final_state());
-  for (const char* of_a_cycle : {"cycle_threshold_jy", "ended", "from", "peak_anywhere_jy", "mask_pixels"})
+  for (const char* of_a_cycle : {"cycle_threshold_jy", "ended", "from", "peak_anywhere_jy", "mask_pixels", "mask_extension"})
     report.erase(of_a_cycle);
   report["iterations"] = clean->iterations;
   report["major_cycles"] = clean->cycles.size() - 1;

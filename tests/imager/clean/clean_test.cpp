@@ -35,7 +35,7 @@ struct Scene {
   std::unique_ptr<Transform> transform;
   DirtyImages images;
   double max_sidelobe = 0;
-  double beam_fwhm_pixels = 0;
+  Beam beam;
 
   ImagedData imaged() const { return {source, *transform, images.normalisation}; }
 };
@@ -59,7 +59,7 @@ Scene make_scene(const DirectionCosines& centre) {
   middle.at(g.centre_row(), g.centre_column()) = 1;
   const Beam beam = fit_beam(s.images.psf, g.cell_rad);
   s.max_sidelobe = largest_sidelobe(s.images.psf, convolve_with_beam(middle, beam, g.cell_rad, 1));
-  s.beam_fwhm_pixels = std::sqrt(beam.major_rad * beam.minor_rad) / g.cell_rad;
+  s.beam = beam;
   return s;
 }
 
@@ -77,7 +77,8 @@ CleanResult cleaned(const Scene& of, const CleanOptions& options, const DirtyIma
                          .psf = {&images.psf},
                          .max_sidelobe = of.max_sidelobe,
                          .accuracy = 1e-5,
-                         .beam_fwhm_pixels = of.beam_fwhm_pixels};
+                         .beam = of.beam,
+                         .cell_rad = geometry.cell_rad};
   return imager::clean(input, minor, options, begin, cycle_progress, {});
 }
 

@@ -97,7 +97,8 @@ CleanInput input_of(const Scene& of) {
                    .psf = of.psf,
                    .max_sidelobe = of.max_sidelobe,
                    .accuracy = 1e-5,
-                   .beam_fwhm_pixels = 5};
+                   .beam = {5, 5, 0},
+                   .cell_rad = 1};
   for (const Image& dirty : of.further.dirty) input.dirty.push_back(&dirty);
   return input;
 }

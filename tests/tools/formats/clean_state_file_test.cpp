@@ -22,9 +22,11 @@ imager::CleanState some_state() {
   model.add({{0, 1, 2, 0.1}, {1, 4, 6, -1.0 / 3}, {0, 0, 0, 1e-300}});
   imager::CleanState state = imager::first_state(model);
   state.model.add({{0, 3, 3, 2}});
-  state.mask = imager::Image(7, 5);
-  for (const std::size_t i : {0U, 1U, 8U, 33U, 34U}) state.mask.pixel[i] = 1;
-  state.cycles = {{0, 3, 0.3, 0, 0, "", 9, 0}, {10, 1.0 / 3, 0.1, 5, 0.5, "reached its depth", 1, 0, 0.4, 33}};
+  state.mask = {imager::Image(7, 5), imager::Image(7, 5), true};
+  for (const std::size_t i : {0U, 1U, 8U, 33U, 34U}) state.mask.allowed.pixel[i] = 1;
+  state.mask.negative.pixel[8] = 1;
+  state.cycles = {{0, 3, 0.3, 0, 0, "", 9, 0},
+                  {10, 1.0 / 3, 0.1, 5, 0.5, "reached its depth", 1, 0, 0.4, 33, {0.2, true, 5, 3, 4, 2, 1, 9}}};
   state.cycles[0].rms_jy = std::numeric_limits<double>::quiet_NaN();
   state.now = 1;
   state.best = 1;
@@ -70,7 +72,11 @@ BOOST_AUTO_TEST_CASE(a_state_comes_back_bit_for_bit) {
   const imager::CleanState is = read_clean_state(folder / "a.state", owner()).state;
   BOOST_TEST(same(is.model, was.model));
   BOOST_TEST(same(is.best_model, was.best_model));
-  BOOST_TEST((is.mask.width == 7 && is.mask.pixel == was.mask.pixel));
+  BOOST_TEST((is.mask.allowed.width == 7 && is.mask.allowed.pixel == was.mask.allowed.pixel));
+  BOOST_TEST((is.mask.negative.pixel == was.mask.negative.pixel && is.mask.final));
+  const imager::MaskExtension& masked = is.cycles[1].masked;
+  BOOST_TEST((masked.threshold_jy == 0.2 && masked.by_sidelobes && masked.regions == 5 && masked.pruned == 3));
+  BOOST_TEST((masked.grown_regions == 4 && masked.grown_pruned == 2 && masked.negative == 1 && masked.added == 9));
   BOOST_REQUIRE(is.cycles.size() == 2U);
   BOOST_TEST(std::isnan(is.cycles[0].rms_jy));
   BOOST_TEST(is.cycles[1].peak_residual_jy == was.cycles[1].peak_residual_jy);

@@ -28,7 +28,7 @@ _UNNEEDED = {
     "pointingoffsetsigdev": ([], "it is of gridders for mosaics"),
     "normtype": ("flatnoise", "of one field all are the same"),
     "parallel": (False, "all cores share a run in any case"),
-    "verbose": (False, "loggers are set up where they are used"),
+    "verbose": (False, "how masks grew stands in the report, under misfit, cycle by cycle"),
 }
 _told = set()  # what was said once
 
@@ -40,17 +40,6 @@ _SINGLE = {
     "interactive": (False, "misfit.clean_cycles() is CLEAN by hand"),
     "usepointing": (False, "it is of mosaics, which are not made yet"),
     "veltype": ("radio", "optical velocities are not made yet"),
-    "pbmask": (0.0, "masks by primary beam are not made yet"),
-}
-
-# What tclean's automatic masks have that ours do not yet.
-_AUTO_MASK = {
-    "negativethreshold": (0.0, "absorption is not masked yet"),
-    "smoothfactor": (1.0, "masks are not smoothed yet"),
-    "cutthreshold": (0.01, "masks are not smoothed yet"),
-    "dogrowprune": (True, "grown masks are not pruned yet"),
-    "minpercentchange": (-1.0, "masks follow every residual so far"),
-    "fastnoise": (True, "noise is the robust one of all pixels so far"),
 }
 
 _GRIDDERS = {"standard": "standard", "ft": "standard", "gridft": "standard", "wproject": "wide", "widefield": "wide",
@@ -164,10 +153,9 @@ def _check_types(p):
 
 
 def _check_simple(p):
-    for table in (_SINGLE, _AUTO_MASK if p["usemask"] == "auto-multithresh" else {}):
-        for name, (only, why) in table.items():
-            if p[name] != only:
-                _refuse(name, p[name], f"{only!r}: {why}")
+    for name, (only, why) in _SINGLE.items():
+        if p[name] != only:
+            _refuse(name, p[name], f"{only!r}: {why}")
     for name, (usual, why) in _UNNEEDED.items():
         if _items(p[name]) != _items(usual):
             _tell_once(logging.INFO, f"{name}={p[name]!r} changes nothing: {why}")
@@ -296,8 +284,8 @@ def _give_clean(words, p):
     words.give("nmajor", _whole("nmajor", p["nmajor"]))
     _give_deconvolver(words, p)
     usemask = p["usemask"]
-    if usemask not in ("user", "auto-multithresh"):
-        _refuse("usemask", usemask, "'user' or 'auto-multithresh'")
+    if usemask not in ("user", "pb", "auto-multithresh"):
+        _refuse("usemask", usemask, "'user', 'pb' or 'auto-multithresh'")
     if not p["restoration"]:
         _tell_once(logging.INFO, "restoration=False changes nothing: restored images come with every model")
     beam = "common" if list(_items(p["restoringbeam"])) == ["common"] else _ellipse("restoringbeam", p["restoringbeam"], "arcsec")
@@ -313,11 +301,18 @@ def _give_clean(words, p):
     words.give("savemodel", savemodel)
     if p["masks"]:
         words.give("mask", p["masks"][0])
+    if float(_real(p, "pbmask")):
+        words.give("pbmask", _real(p, "pbmask"))
+    if usemask == "pb":
+        words.give("usemask", usemask)
     if usemask == "auto-multithresh" and float(p["niter"]):
         words.give("usemask", usemask)
-        for name in ("sidelobethreshold", "noisethreshold", "lownoisethreshold", "minbeamfrac"):
+        for name in ("sidelobethreshold", "noisethreshold", "lownoisethreshold", "negativethreshold", "smoothfactor",
+                     "minbeamfrac", "cutthreshold", "minpercentchange"):
             words.give(name, _real(p, name))
-        words.give("growiterations", p["growiterations"])
+        words.give("growiterations", _whole("growiterations", p["growiterations"]))
+        for name in ("dogrowprune", "fastnoise"):
+            words.give(name, "true" if p[name] else "false")
 
 
 def _last_change(path):
@@ -745,11 +740,11 @@ def tclean(
         Whether summaryminor has cycleStartIters, startIterDone, startPeakRes, startModelFlux, startPeakResNM, peakResNM,
         masksum and stopCode too.
     usemask : str
-        "user" or "auto-multithresh".
+        "user", "pb" or "auto-multithresh".
     mask : path or str
         Mask image, region file, or region.
     pbmask : float
-        0.
+        CLEAN finds components only where the primary beam is at least this, in whatever mask; at least `pblimit`, or 0.
     sidelobethreshold, noisethreshold, lownoisethreshold, negativethreshold, smoothfactor, minbeamfrac, cutthreshold : float
         Of auto-multithresh.
     growiterations, dogrowprune, minpercentchange, verbose, fastnoise : various
