@@ -112,8 +112,10 @@ BOOST_AUTO_TEST_CASE(clean_keeps_to_where_the_primary_beam_is) {
   const auto plane = [&](const std::string& kind, int channel) {
     return opened(folder / ("a." + kind), ms_io::Masks::ignored)->read({channel, 0});
   };
-  for (const Arguments& mask : {Arguments{"--usemask", "pb"}, Arguments{"--usemask", "auto", "--noisethreshold", "3"},
-                                Arguments{"--mask", "box [[0pix, 0pix], [40pix, 63pix]]"}}) {
+  for (const Arguments& mask :
+       {Arguments{"--usemask", "pb"},
+        Arguments{"--usemask", "auto", "--sidelobethreshold", "0.5", "--noisethreshold", "3", "--minbeamfrac", "0"},
+        Arguments{"--mask", "box [[0pix, 0pix], [40pix, 63pix]]"}}) {
     succeed(all_products(folder / "a",
                          mask + Arguments{"--pbmask", "0.5", "--pblimit", "0.3", "--niter", "30", "--specmode", "cube"}));
     std::vector<double> allowed;
