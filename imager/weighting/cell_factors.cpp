@@ -73,6 +73,13 @@ double briggs_f2(const UvDensity& density, double robust) {
   return square > 0 ? numerator * numerator * sum / square : 0;
 }
 
+std::vector<float> briggs_abs_factors(const UvDensity& density, double robust, double noise_jy) {
+  std::vector<float> factor;
+  for (const double weight : density.weights())
+    factor.push_back(weight > 0 ? static_cast<float>(1 / (4 * weight * robust * robust + 2 * noise_jy * noise_jy)) : 0);
+  return factor;
+}
+
 std::vector<float> briggs_factors(const UvDensity& density, double f2) {
   const std::vector<double>& weight = density.weights();
   std::vector<float> factor(weight.size());

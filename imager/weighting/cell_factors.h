@@ -17,6 +17,9 @@ std::vector<float> uniform_factors(const UvDensity& density, int reach = 0);
 /// Mexico Tech), section 3.
 double briggs_f2(const UvDensity& density, double robust);
 
+/// 1/(4 W_k R² + 2 σ²): of CASA's briggsabs, whose weights are four times ours.
+std::vector<float> briggs_abs_factors(const UvDensity& density, double robust, double noise_jy);
+
 /// 1/(1 + W_k f²).
 std::vector<float> briggs_factors(const UvDensity& density, double f2);
 

@@ -16,8 +16,19 @@ namespace {
 constexpr float least = std::numeric_limits<float>::min();
 
 std::vector<float> factors_of(const UvDensity& density, const WeightingOptions& options, double f2) {
-  if (options.weighting == Weighting::briggs) return briggs_factors(density, f2);
+  if (options.weighting == Weighting::briggs_abs) return briggs_abs_factors(density, options.robust, options.noise_jy);
+  if (f2 > 0) return briggs_factors(density, f2);
   return uniform_factors(density, options.weighting == Weighting::superuniform ? options.box_reach : 0);
+}
+
+bool has_f2(Weighting weighting) {
+  return weighting == Weighting::briggs || weighting == Weighting::briggs_bandwidth_taper;
+}
+
+/// 1/(1 + W f²/m) at r, where 1/(1 + W f²) is `briggs`.
+double bandwidth_tapered(double briggs, double r) {
+  const double m = r >= 1 ? r + 0.5 : (4 - r) / (4 - 2 * r);
+  return m * briggs / (1 + (m - 1) * briggs);
 }
 
 /// −ln of the taper's factor for a row's channels. [channel]
@@ -79,7 +90,8 @@ ImagingWeights::ImagingWeights(const ImageGeometry& geometry, const UvTaper& tap
 ImagingWeights::ImagingWeights(const UvDensity& density, const WeightingOptions& options)
     : cells_(density.cells()),
       taper_(options.taper),
-      f2_(options.weighting == Weighting::briggs ? briggs_f2(density, options.robust) : 0),
+      f2_(has_f2(options.weighting) ? briggs_f2(density, options.robust) : 0),
+      fractional_bandwidth_(options.weighting == Weighting::briggs_bandwidth_taper ? options.fractional_bandwidth : 0),
       factor_(factors_of(density, options, f2_)) {
   filled_ = static_cast<std::uint64_t>(std::count_if(factor_.begin(), factor_.end(), [](float x) { return x > 0; }));
 }
@@ -120,7 +132,10 @@ void ImagingWeights::weigh(VisibilityBlock& block, WeightSums& sums) const {
       if (natural == 0) continue;
       weight = least;
       if (cell[c] == UvCells::outside) continue;
-      const double factor = (factor_.empty() ? 1 : double{factor_[cell[c]]}) * taper.at(c);
+      double factor = factor_.empty() ? 1 : double{factor_[cell[c]]};
+      if (fractional_bandwidth_ > 0)
+        factor = bandwidth_tapered(factor, fractional_bandwidth_ * cells_.distance(&block.uvw_m[3 * row], turns[c]));
+      factor *= taper.at(c);
       weight = std::max(least, static_cast<float>(natural * factor));
       sums += {natural, natural * factor, natural * factor * factor};
     }

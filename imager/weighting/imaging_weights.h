@@ -11,18 +11,24 @@
 
 namespace misfit::imager {
 
-enum class Weighting { natural, uniform, superuniform, briggs };
+enum class Weighting { natural, uniform, superuniform, briggs, briggs_abs, briggs_bandwidth_taper };
 
 /// How the weights of an image follow from those of the data, w. With W_k, the density of the sample's cell (see UvDensity):
 ///   natural       w
 ///   uniform       w / W_k
 ///   superuniform  w / Σ W, over the cells within `box_reach` of it
 ///   briggs        w / (1 + W_k f²), see briggs_f2
-/// each times the taper. The taper does not enter the density, in CASA neither.
+///   briggs_abs    w / (W_k R² + 2 σ²), where weights are 1/σ² as CASA has them: four times ours
+///   briggs_bandwidth_taper   w / (1 + W_k f²/m), with r = Δν/ν_c √(u² + v²) in cells, m = r + ½ where r ≥ 1, and below
+///                 m = (4 − r)/(4 − 2r): weights of a cube's plane as those of its whole band would be
+/// each times the taper, which does not enter the density, in CASA neither. All but natural and uniform as the documentation of
+/// CASA's tclean has them.
 struct WeightingOptions {
   Weighting weighting = Weighting::natural;
-  double robust = 0.5;  ///< briggs: −2, nearly uniform, to 2, nearly natural
-  int box_reach = 3;    ///< superuniform: columns and rows on either side
+  double robust = 0.5;              ///< R of briggs: −2, nearly uniform, to 2, nearly natural
+  double noise_jy = 1;              ///< σ of briggs_abs
+  double fractional_bandwidth = 0;  ///< Δν/ν_c of briggs_bandwidth_taper: of the whole cube
+  int box_reach = 3;                ///< superuniform: columns and rows on either side
   std::optional<UvTaper> taper{};
 
   bool needs_density() const { return weighting != Weighting::natural; }
@@ -80,7 +86,7 @@ class ImagingWeights {
   /// Does so with all blocks.
   WeightTotals put_on(StoredVisibilities& visibilities, int threads) const;
 
-  double f2() const { return f2_; }                       ///< of Briggs weights, else 0
+  double f2() const { return f2_; }                       ///< of Briggs weights that have it, else 0
   std::uint64_t cells_filled() const { return filled_; }  ///< of the half plane's; 0 without a density
   const UvCells& cells() const { return cells_; }
 
@@ -90,6 +96,7 @@ class ImagingWeights {
   UvCells cells_;
   std::optional<UvTaper> taper_;
   double f2_ = 0;
+  double fractional_bandwidth_ = 0;  ///< not 0: factors depend on where in the plane a sample lies, too
   std::uint64_t filled_ = 0;
   std::vector<float> factor_;  ///< [v][u]; empty: 1
 };

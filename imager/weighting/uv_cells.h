@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <limits>
 #include <vector>
@@ -30,6 +31,11 @@ class UvCells {
 
   /// What a metre is at each frequency, in turns per pixel. [channel]
   std::vector<double> turns_per_m(const std::vector<double>& frequency_hz) const;
+  /// How far from u = v = 0 a sample lies where a metre is this many turns per pixel, in cells.
+  double distance(const double* uvw_m, double turns_per_m) const {
+    return turns_per_m * std::hypot(width_ * uvw_m[0], height_ * uvw_m[1]);
+  }
+
   /// The cell, row-major [v][u], of a row's samples at each channel.
   void of_row(const double* uvw_m, const std::vector<double>& turns_per_m, std::uint32_t* cell) const;
 

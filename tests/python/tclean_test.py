@@ -454,7 +454,7 @@ class Refused(Sets):
     """One line that names parameter, value and what was expected."""
 
     def test_what_is_not_made_yet_is_refused_by_name(self):
-        for parameters in (dict(gridder="mosaic"), dict(facets=4), dict(gridder="awproject"), dict(weighting="briggsbwtaper"),
+        for parameters in (dict(gridder="mosaic"), dict(facets=4), dict(gridder="awproject"), dict(weighting="radial"),
                            dict(stokes="pseudoI"), dict(specmode="cubedata"), dict(specmode="cubesource"), dict(veltype="optical"),
                            dict(usemask="shape"), dict(usemask="auto-multithresh", negativethreshold=-7.0, niter=1),
                            dict(outlierfile="o.txt"), dict(interactive=True), dict(projection="NCP"), dict(usepointing=True),
@@ -500,8 +500,7 @@ class Pipelines(Sets):
                 call.pop(name, None)
             call.update(vis=cls.sets[:sets], field="", spw=["0"] * sets, antenna=[""] * sets, scan=[""] * sets, intent="",
                         imsize=[32, 24], cell=["0.2arcsec"], phasecenter="", nchan=2 if cube else -1, start="", width="",
-                        niter=min(20, call["niter"]), gridder="standard", reffreq="",
-                        weighting="briggs" if call["weighting"] == "briggsbwtaper" else call["weighting"])
+                        niter=min(20, call["niter"]), gridder="standard", reffreq="")
             form = {name: value for name, value in call.items() if name not in ("threshold", "robust")}
             cls.calls[json.dumps(form, sort_keys=True)] = call  # kinds that differ in such or what is replaced are one
 

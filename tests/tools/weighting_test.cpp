@@ -137,6 +137,31 @@ BOOST_AUTO_TEST_CASE(psfs_and_beams_of_real_sets_agree_with_wsclean) {
   }
 }
 
+/// With the robustness that is usual for cubes; near uniform weights it is the outer samples that gain, and the beam is
+/// smaller.
+BOOST_AUTO_TEST_CASE(a_bandwidth_taper_lies_between_briggs_and_natural) {
+  const TemporaryFolder folder;
+  const std::string set = folder / "cube.ms", name = folder / "a";
+  succeed({"simulate", "--output", set, "--frequency", "1GHz", "--channels", "8", "--channel-width", "50MHz", "--hours", "0.5",
+           "--interval", "60"});
+  std::vector<double> noise, major;
+  for (const Arguments& weighting :
+       {Arguments{"briggs", "--robust", "0.5"}, {"briggsbwtaper", "--robust", "0.5"}, {"natural"}}) {
+    succeed(Arguments{"image", "--vis", set, "--imagename", name, "--imsize", "512", "--cell", "0.2arcsec", "--specmode",
+                      "cube", "--outframe", "TOPO", "--weighting"} +
+            weighting);
+    const nlohmann::json plane = report_of(name)["planes"][4];
+    noise.push_back(plane["noise"]["predicted_jy"]);
+    major.push_back(plane["beam"]["major_arcsec"]);
+  }
+  BOOST_TEST((noise[0] > noise[1] && noise[1] > noise[2]));
+  BOOST_TEST((major[0] < major[1] && major[1] < major[2]));
+  const Outcome band = run(
+      {"image", "--vis", set, "--imagename", name, "--imsize", "64", "--cell", "0.2arcsec", "--weighting", "briggsbwtaper"});
+  BOOST_TEST(band.code == 2);
+  BOOST_TEST(band.err.find("--weighting briggsbwtaper: expected --specmode cube beside it") != std::string::npos);
+}
+
 BOOST_AUTO_TEST_CASE(the_noise_of_simulated_noise_is_the_one_predicted) {
   const Observation data;
   const json natural = data.image({})["noise"];

@@ -55,7 +55,7 @@ void ChannelRun::warn(const std::string& sentence) {
 }
 
 void ChannelRun::weigh() {
-  const imager::WeightingOptions options = weighting_options(scene_.options.weighting);
+  const imager::WeightingOptions options = weighting_options(scene_.options.weighting, scene_.header.spectral);
   if (options.none()) return;
   progress().begin("weights" + name_);
   weigh(imager::make_imaging_weights(samples(), options, scene_.header.geometry, context()));

@@ -1,6 +1,7 @@
 #include "tools/run/weighting_options.h"
 
 #include <CLI/CLI.hpp>
+#include <cmath>
 #include <cstdio>
 #include <stdexcept>
 
@@ -20,6 +21,8 @@ constexpr int default_npixels = 6;
 Weighting weighting_of(const std::string& name) {
   if (name == "uniform") return Weighting::uniform;
   if (name == "superuniform") return Weighting::superuniform;
+  if (name == "briggsabs") return Weighting::briggs_abs;
+  if (name == "briggsbwtaper") return Weighting::briggs_bandwidth_taper;
   return name == "briggs" ? Weighting::briggs : Weighting::natural;
 }
 
@@ -59,6 +62,13 @@ std::string cells_text(const imager::ImageGeometry& geometry) {
 std::string divisor_text(const TypedWeighting& o) {
   if (o.scheme == "uniform") return "divided by the weight of all samples and conjugates in the cell";
   if (o.scheme == "briggs") return "divided by 1 + f² times the weight of all samples and conjugates in the cell";
+  if (o.scheme == "briggsbwtaper")
+    return "divided by 1 + f²/m times the weight of all samples and conjugates in the cell, where m grows with the bandwidth "
+           "of "
+           "the cube times the distance in the uv plane";
+  if (o.scheme == "briggsabs")
+    return "divided by " + typed(o.robust * o.robust) + " times the weight of all samples and conjugates in the cell and 2 (" +
+           o.noise + ")²";
   const std::string side = std::to_string(2 * box_reach(o) + 1);
   return "divided by the weight of all samples and conjugates in the " + side + " × " + side + " cells about it";
 }
@@ -66,9 +76,14 @@ std::string divisor_text(const TypedWeighting& o) {
 }  // namespace
 
 void declare(CLI::App& command, TypedWeighting& o) {
-  command.add_option("--weighting", o.scheme, "natural, uniform, superuniform or briggs")
-      ->check(CLI::IsMember({"natural", "uniform", "superuniform", "briggs"}));
-  command.add_option("--robust", o.robust, "Of briggs: from -2, nearly uniform, to 2, nearly natural");
+  command
+      .add_option("--weighting", o.scheme,
+                  "natural, uniform, superuniform, briggs, briggsbwtaper (of a cube: its planes are weighed about as its whole "
+                  "band would be) or briggsabs, as tclean has them")
+      ->check(CLI::IsMember({"natural", "uniform", "superuniform", "briggs", "briggsbwtaper", "briggsabs"}));
+  command.add_option("--robust", o.robust,
+                     "Of briggs and briggsbwtaper: from -2, nearly uniform, to 2, nearly natural; of briggsabs: from -2 to 0");
+  command.add_option("--noise", o.noise, "Of briggsabs, in Jy without a unit")->check(quantity(parse_flux_jy));
   command.add_option("--npixels", o.npixels,
                      "Of superuniform: density is summed from -npixels/2 to npixels/2 cells about a sample's; 0 means 6");
   command.add_option("--uvtaper", o.uvtaper,
@@ -77,9 +92,17 @@ void declare(CLI::App& command, TypedWeighting& o) {
 }
 
 void check(const TypedWeighting& o, const CubeOptions& cube) {
-  const bool briggs = o.scheme == "briggs", superuniform = o.scheme == "superuniform";
+  const bool briggs = o.scheme.rfind("briggs", 0) == 0, superuniform = o.scheme == "superuniform";
   if (!(o.robust >= -2 && o.robust <= 2)) refuse_option("robust", typed(o.robust), "-2 to 2");
   if (!briggs && o.robust != default_robust) refuse_option("robust", typed(o.robust), "--weighting briggs beside it");
+  const bool absolute = o.scheme == "briggsabs";
+  if (absolute && !(parse_flux_jy(o.noise) >= 0)) refuse_option("noise", o.noise, "0 or more");
+  if (absolute && o.robust == 0 && parse_flux_jy(o.noise) == 0)
+    refuse_option("noise", o.noise, "more than 0, or --robust other than 0");
+  if (!absolute && o.noise != TypedWeighting().noise) refuse_option("noise", o.noise, "--weighting briggsabs beside it");
+  if (o.scheme == "briggsbwtaper" && (!cube.is_cube() || !cube.perchanweightdensity))
+    refuse_option("weighting", o.scheme,
+                  "--specmode cube beside it" + std::string(cube.is_cube() ? ", with --perchanweightdensity true" : ""));
   constexpr int most = 200;
   if (o.npixels < 0 || o.npixels == 1 || o.npixels > most)
     refuse_option("npixels", std::to_string(o.npixels), "2 to " + std::to_string(most) + " cells, or 0 (6)");
@@ -100,20 +123,32 @@ imager::WeightingOptions weighting_options(const TypedWeighting& o) {
   imager::WeightingOptions options;
   options.weighting = weighting_of(o.scheme);
   options.robust = o.robust;
+  options.noise_jy = parse_flux_jy(o.noise);
   options.box_reach = box_reach(o);
   if (!o.uvtaper.empty()) options.taper = parse_taper(o.uvtaper);
   return options;
 }
 
+/// Between the middles of the outermost planes, as CASA has it.
+imager::WeightingOptions weighting_options(const TypedWeighting& o, const imager::SpectralAxis& cube) {
+  imager::WeightingOptions options = weighting_options(o);
+  const double first = cube.frequency_hz(0), last = cube.frequency_hz(cube.channels - 1);
+  options.fractional_bandwidth = 2 * std::abs(last - first) / (last + first);
+  return options;
+}
+
 std::string weighting_text(const TypedWeighting& o) {
   std::string said = o.scheme == "briggs" ? "Briggs, robust " + typed(o.robust) : o.scheme;
+  if (o.scheme == "briggsbwtaper" || o.scheme == "briggsabs") said += ", robust " + typed(o.robust);
+  if (o.scheme == "briggsabs") said += ", noise " + o.noise;
   if (!o.uvtaper.empty()) said += ", tapered by " + o.uvtaper;
   return said;
 }
 
 std::vector<std::string> weighting_arguments(const TypedWeighting& o) {
   std::vector<std::string> words{"--weighting", o.scheme};
-  if (o.scheme == "briggs") words.insert(words.end(), {"--robust", typed(o.robust)});
+  if (o.scheme.rfind("briggs", 0) == 0) words.insert(words.end(), {"--robust", typed(o.robust)});
+  if (o.scheme == "briggsabs") words.insert(words.end(), {"--noise", o.noise});
   if (o.npixels != 0) words.insert(words.end(), {"--npixels", std::to_string(o.npixels)});
   if (!o.uvtaper.empty()) words.insert(words.end(), {"--uvtaper", o.uvtaper});
   return words;

@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "imager/data/spectral_axis.h"
 #include "imager/plan/plan.h"
 #include "imager/weighting/imaging_weights.h"
 #include "tools/run/cube_options.h"
@@ -16,9 +17,10 @@ namespace misfit::tools {
 /// How samples are weighed, as typed.
 struct TypedWeighting {
   std::string scheme = "natural";
-  double robust = 0.5;  ///< of briggs
-  int npixels = 0;      ///< of superuniform; 0 = 6
-  std::string uvtaper;  ///< empty = none
+  double robust = 0.5;          ///< of those of Briggs
+  std::string noise = "1.0Jy";  ///< of briggsabs
+  int npixels = 0;              ///< of superuniform; 0 = 6
+  std::string uvtaper;          ///< empty = none
 };
 
 void declare(CLI::App& command, TypedWeighting& options);
@@ -27,6 +29,8 @@ void declare(CLI::App& command, TypedWeighting& options);
 void check(const TypedWeighting& options, const CubeOptions& cube);
 
 imager::WeightingOptions weighting_options(const TypedWeighting& options);
+/// The same for the planes of a cube, whose bandwidth may matter.
+imager::WeightingOptions weighting_options(const TypedWeighting& options, const imager::SpectralAxis& cube);
 
 /// "Briggs, robust 0.5, tapered".
 std::string weighting_text(const TypedWeighting& options);

@@ -102,6 +102,43 @@ BOOST_AUTO_TEST_CASE(weights_are_their_formulas_times_the_taper) {
   }
 }
 
+/// briggsbwtaper and briggsabs as CASA's documentation writes them, with weights of 1/σ², four times ours.
+BOOST_DATA_TEST_CASE(further_weights_of_briggs_are_their_formulas, bdata::make({1e-3, 0.02, 0.1, 1.5}), bandwidth) {
+  const std::vector<VisibilityBlock> blocks = some_blocks();
+  const PlainDensity plain(geometry, blocks);
+  const double robust = -0.7, noise_jy = 0.3;
+  const auto tapered = weights_of(
+                 stored(blocks),
+                 {.weighting = Weighting::briggs_bandwidth_taper, .robust = robust, .fractional_bandwidth = bandwidth}, 1),
+             absolute =
+                 weights_of(stored(blocks), {.weighting = Weighting::briggs_abs, .robust = robust, .noise_jy = noise_jy}, 1);
+  double sum_square = 0, sum = 0;
+  for (const auto& [cell, weight] : plain.cells()) {
+    sum_square += std::pow(4 * weight, 2);
+    sum += 4 * weight;
+  }
+  const double f2 = std::pow(5 * std::pow(10, -robust), 2) / (sum_square / sum);
+  bool near = false, far = false;
+  for (const VisibilityBlock& block : blocks) {
+    const auto by_taper = weighted(*tapered, block), by_absolute = weighted(*absolute, block);
+    plain.for_each(block, [&](std::size_t row, std::size_t channel, const PlainDensity::Cell& cell, std::uint32_t) {
+      const std::size_t i = row * block.channels() + channel;
+      const double w = 4 * double{block.weight[i]}, density = 4 * plain.at(cell);
+      const double lambda_m = speed_of_light_m_s / block.frequency_hz[channel];
+      const double u_cells = block.uvw_m[3 * row] / lambda_m * geometry.width * cell_rad,
+                   v_cells = block.uvw_m[3 * row + 1] / lambda_m * geometry.height * cell_rad;
+      const double r = bandwidth * std::sqrt(u_cells * u_cells + v_cells * v_cells);
+      const double m = r < 1 ? (4 - r) / (4 - 2 * r) : r + 0.5;
+      (r < 1 ? near : far) = true;
+      // Three roundings to single precision.
+      BOOST_TEST(std::abs(4 * by_taper->weight[i] / (w / (1 + density * f2 / m)) - 1) < 3e-7);
+      BOOST_TEST(std::abs(4 * by_absolute->weight[i] / (w / (density * robust * robust + 2 * noise_jy * noise_jy)) - 1) < 3e-7);
+    });
+  }
+  if (bandwidth <= 0.1) BOOST_TEST(near);
+  if (bandwidth >= 0.1) BOOST_TEST(far);
+}
+
 BOOST_DATA_TEST_CASE(what_is_usable_stays_usable, bdata::xrange(every_way.size()), way) {
   const std::vector<VisibilityBlock> blocks = some_blocks();
   WeightingOptions options = every_way[way];

@@ -44,6 +44,7 @@ _SINGLE = {
 
 _GRIDDERS = {"standard": "standard", "ft": "standard", "gridft": "standard", "wproject": "wide", "widefield": "wide",
              "wprojectft": "wide", "auto": "auto"}
+_WEIGHTINGS = ("natural", "uniform", "superuniform", "briggs", "briggsbwtaper", "briggsabs")
 _DECONVOLVERS = ("hogbom", "clark", "multiscale", "mtmfs")
 _TEXTS = ("projection", "specmode", "outframe", "veltype", "interpolation", "gridder", "normtype", "deconvolver", "weighting",
           "usemask", "savemodel", "outformat", "outlierfile", "vptable", "cfcache")
@@ -235,11 +236,13 @@ def _give_spectrum(words, p):
 
 def _give_weights(words, p):
     weighting = p["weighting"]
-    if weighting not in ("natural", "uniform", "superuniform", "briggs"):
-        _refuse("weighting", weighting, "'natural', 'uniform', 'superuniform' or 'briggs'")
+    if weighting not in _WEIGHTINGS:
+        _refuse("weighting", weighting, "one of " + ", ".join(map(repr, _WEIGHTINGS)))
     words.give("weighting", weighting)
-    if weighting == "briggs":
+    if weighting.startswith("briggs"):
         words.give("robust", _real(p, "robust"))
+    if weighting == "briggsabs":
+        words.give("noise", _quantity("noise", p["noise"], "Jy"))
     if p["npixels"]:
         words.give("npixels", p["npixels"])
     taper = _ellipse("uvtaper", p["uvtaper"], "lambda")
@@ -711,11 +714,11 @@ def tclean(
     outlierfile : str
         "": one field at a time.
     weighting : str
-        "natural", "uniform", "superuniform" or "briggs".
+        "natural", "uniform", "superuniform", "briggs", "briggsbwtaper" or "briggsabs".
     robust : float
-        Of briggs.
+        Of Briggs' weights.
     noise : str
-        Of briggsabs, which is not made yet.
+        Of briggsabs.
     npixels : int
         Of superuniform.
     uvtaper : list of str
