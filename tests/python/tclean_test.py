@@ -460,7 +460,7 @@ class Refused(Sets):
                            dict(outlierfile="o.txt"), dict(interactive=True), dict(projection="NCP"), dict(usepointing=True),
                            dict(deconvolver="mem"), dict(pbmask=0.1, niter=1), dict(niter=-1),
                            dict(cell=["1arcsec", "2arcsec"]), dict(imsize=[64.5]), dict(gain=2, niter=1),
-                           dict(datacolumn="residual"), dict(mask=["a", "b"], niter=1), dict(savemodel="virtual"), dict(deconvolver="mtmfs", nterms=1), dict(imagename="a\nb"), dict(calcpsf="False"),
+                           dict(datacolumn="residual"), dict(savemodel="virtual"), dict(deconvolver="mtmfs", nterms=1), dict(imagename="a\nb"), dict(calcpsf="False"),
                            dict(specmode=5), dict(gridder=[]), dict(vis=5), dict(vis=b"x"), dict(nterms=None, deconvolver="mtmfs"),
                            dict(imagename="x\udcff"), dict(restart=False, calcres=False), dict(imsize="6\n4"),
                            dict(savemodel="modelcolumn"), dict(reffreq="1GHz"),

@@ -11,7 +11,7 @@ namespace {
 
 using namespace misfit;
 using namespace misfit::tools::testing;
-namespace bdata = boost::unit_test::data;
+namespace fs = std::filesystem;
 
 /// A field as wide as the dishes' beam.
 const std::string& wide_set() {
@@ -104,6 +104,25 @@ BOOST_AUTO_TEST_CASE(a_mask_of_ones_says_that_clean_may_go_everywhere_and_change
   succeed(all_products(folder / "b", {"--niter", "20", "--mask", folder / "a.mask"}));
   const auto image = [&](const char* name) { return opened(folder / name, ms_io::Masks::applied)->read({0, 0}).pixel; };
   BOOST_TEST((image("a.image") == image("b.image")));
+}
+
+BOOST_AUTO_TEST_CASE(several_masks_allow_what_any_of_them_does) {
+  const TemporaryFolder folder;
+  const auto mask = [&](const Arguments& masks) {
+    succeed(all_products(folder / "a", Arguments{"--niter", "5", "--mask"} + masks));
+    const imager::Image made = opened(folder / "a.mask", ms_io::Masks::applied)->read({0, 0});
+    fs::copy(folder / "a.mask", folder / std::to_string(masks.size()) + ".mask", fs::copy_options::recursive);
+    return made;
+  };
+  const std::string circle = "circle [[20pix, 20pix], 6pix]", box = "box [[30pix, 10pix], [50pix, 30pix]]";
+  const imager::Image one = mask({circle}), both = mask({circle, box}), three = mask({folder / "1.mask", box, circle});
+  const auto allowed = [](const imager::Image& image) { return std::accumulate(image.pixel.begin(), image.pixel.end(), 0.0); };
+  BOOST_TEST(allowed(both) == allowed(one) + 21 * 21);
+  BOOST_TEST((three.pixel == both.pixel));
+  // The file of options says so again.
+  fs::rename(folder / "a.last.ini", folder / "a.ini");
+  succeed({"image", "--config", folder / "a.ini", "--imagename", folder / "again"});
+  BOOST_TEST((opened(folder / "again.mask", ms_io::Masks::applied)->read({0, 0}).pixel == both.pixel));
 }
 
 /// --pbmask limits every mask, of each plane by its own beam.

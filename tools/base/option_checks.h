@@ -44,7 +44,7 @@ enum class OptionMark {
   free_of_state,  ///< it only ends CLEAN or does not reach it: a run that goes on from a state may have another
   way_of_clean,   ///< it is how CLEAN goes on: so may a run with another, which then looks at its residual anew
   typed_alone,    ///< it comes from no file of options, where others could have put it
-  one_or_each,    ///< it takes one value for all sets, or one for each: in files of options a list has each in quotes
+  one_or_each,    ///< it takes one value, with blanks perhaps, or several: in files of options a list has each in quotes
   not_repeated,   ///< it is no part of the run's file of options: whoever repeats a run does without it
 };
 

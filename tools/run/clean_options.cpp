@@ -14,6 +14,8 @@
 namespace misfit::tools {
 namespace {
 
+constexpr int most_masks = 1000;
+
 /// In pixels; the largest that there can be where none is given.
 int smallest_side(const ImageOptions& o) {
   return o.imsize.empty() ? std::numeric_limits<int>::max() : *std::min_element(o.imsize.begin(), o.imsize.end());
@@ -36,7 +38,7 @@ void check_deconvolver(const TypedClean& o, int smallest_side) {
 
 void check_auto_mask(const TypedClean& o) {
   if (o.usemask == "auto" && o.niter == 0) refuse_option("usemask", o.usemask, "--niter above 0 beside it");
-  if (o.usemask == "auto" && !o.mask.empty()) refuse_option("mask", o.mask, "--usemask user, or no mask");
+  if (o.usemask == "auto" && !o.mask.empty()) refuse_option("mask", names_of(o.mask), "--usemask user, or no mask");
   if (!(o.sidelobethreshold >= 0)) refuse_option("sidelobethreshold", typed(o.sidelobethreshold), "0 or more");
   if (!(o.noisethreshold > 0)) refuse_option("noisethreshold", typed(o.noisethreshold), "more than 0");
   if (!(o.lownoisethreshold > 0 && o.lownoisethreshold <= o.noisethreshold))
@@ -92,14 +94,16 @@ void declare(CLI::App& command, TypedClean& o) {
   mark(command.add_option("--nmajor", o.nmajor, "Major cycles at most; -1 = no limit"), OptionMark::free_of_state);
   declare_restoring_beam(command, o.restoringbeam);
   mark(
-      command
-          .add_option(
-              "--mask", o.mask,
-              "Where CLEAN finds components: a FITS or CASA image, not 0 there, wherever its coordinates have it, or a "
-              "region file of CASA (CRTF), CARTA or DS9, or one region itself, such as 'circle [[100pix, 80pix], 20pix]'; CRTF "
-              "may name planes: corr=[I, Q], range=[3chan, 7chan]")
-          ->type_name(file_type),
-      OptionMark::way_of_clean);
+      mark(command
+               .add_option(
+                   "--mask", o.mask,
+                   "Where CLEAN finds components: a FITS or CASA image, not 0 there, wherever its coordinates have it, or a "
+                   "region file of CASA (CRTF), CARTA or DS9, or one region itself, such as 'circle [[100pix, 80pix], 20pix]'; "
+                   "CRTF may name planes: corr=[I, Q], range=[3chan, 7chan]. Several allow what any of them does")
+               ->expected(1, most_masks)
+               ->type_name(file_type),
+           OptionMark::way_of_clean),
+      OptionMark::one_or_each);
   mark(command
            .add_option("--usemask", o.usemask,
                        "user: --mask, or everywhere; pb: where the primary beam is --pbmask or more; auto: from the residuals, "
@@ -180,7 +184,7 @@ void check_clean(const ImageOptions& o) {
   if (o.clean.usemask == "pb" && (o.primary_beam.pbmask == 0 || !o.clean.mask.empty()))
     refuse_option("usemask", o.clean.usemask, o.clean.mask.empty() ? "--pbmask above 0 beside it" : "user beside --mask");
   if (!o.clean.mask.empty() && !o.clean.runs())
-    refuse_option("mask", o.clean.mask, "--niter above 0, or --startmodel, beside it");
+    refuse_option("mask", names_of(o.clean.mask), "--niter above 0, or --startmodel, beside it");
   if (o.clean.restart && o.clean.niter == 0) refuse_option("restart", "true", "--niter above 0 beside it");
   check_deconvolver(o.clean, smallest_side(o));
   check_auto_mask(o.clean);

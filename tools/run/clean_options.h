@@ -28,8 +28,8 @@ struct TypedClean {
   double maxpsffraction = 0.8;
   int cycleniter = -1;
   int nmajor = -1;
-  std::string restoringbeam;  ///< see beam_choice.h; empty = the fitted one
-  std::string mask;           ///< a file, or region text, see mask_file.h; empty = everywhere
+  std::string restoringbeam;      ///< see beam_choice.h; empty = the fitted one
+  std::vector<std::string> mask;  ///< files, or region text, see mask_file.h, all of which allow pixels; empty = everywhere
   std::string usemask = "user";
   double sidelobethreshold = 3;
   double noisethreshold = 5;

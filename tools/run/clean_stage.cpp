@@ -20,7 +20,7 @@ namespace misfit::tools {
 
 CleanStage::CleanStage(const ImageOptions& options, imager::ImageHeader image) : o_(options), image_(std::move(image)) {
   if (!o_.clean.startmodel.empty()) start_model_ = std::make_unique<StartModel>(o_, image_);
-  if (!o_.clean.mask.empty()) mask_file_ = std::make_unique<MaskFile>(o_.clean.mask, image_);
+  for (const std::string& mask : o_.clean.mask) mask_files_.push_back(std::make_unique<MaskFile>(mask, image_));
 }
 
 void CleanStage::begin_channel(int channel) {
@@ -28,10 +28,24 @@ void CleanStage::begin_channel(int channel) {
   channel_ = channel;
   limited_.clear();
   if (start_model_) start_model_->read(channel);
-  if (!mask_file_ || (!masks_.empty() && mask_file_->one_for_all_channels())) return;
+  const auto all = [&](bool (MaskFile::*is)() const) {
+    return std::all_of(mask_files_.begin(), mask_files_.end(), [is](const auto& file) { return (*file.*is)(); });
+  };
+  if (mask_files_.empty() || (!masks_.empty() && all(&MaskFile::one_for_all_channels))) return;
   masks_.clear();
-  const int masks = mask_file_->one_for_all_stokes() ? 1 : static_cast<int>(image_.stokes.size());
-  for (int stokes = 0; stokes < masks; ++stokes) masks_.push_back(mask_file_->mask({channel, stokes}));
+  const int masks = all(&MaskFile::one_for_all_stokes) ? 1 : static_cast<int>(image_.stokes.size());
+  for (int stokes = 0; stokes < masks; ++stokes) masks_.push_back(mask_of_files({channel, stokes}));
+}
+
+/// Where any of them allows components.
+imager::Image CleanStage::mask_of_files(const imager::PlaneIndex& at) const {
+  imager::Image mask = mask_files_.front()->mask(at);
+  for (std::size_t file = 1; file < mask_files_.size(); ++file) {
+    const imager::Image other = mask_files_[file]->mask(at);
+    for (std::size_t i = 0; i < mask.pixel.size(); ++i)
+      if (imager::mask_allows(other.pixel[i])) mask.pixel[i] = 1;
+  }
+  return mask;
 }
 
 void CleanStage::limit_to(const imager::Image& primary_beam) {
@@ -47,7 +61,8 @@ void CleanStage::limit_to(const imager::Image& primary_beam) {
 
 std::vector<std::string> CleanStage::words_on_files() const {
   std::vector<std::string> words;
-  if (mask_file_) words = mask_file_->doubts();
+  for (const auto& file : mask_files_)
+    for (std::string& doubt : file->doubts()) words.push_back(std::move(doubt));
   if (start_model_)
     for (std::string& remark : start_model_->remarks()) words.push_back(std::move(remark));
   words.erase(std::remove(words.begin(), words.end(), ""), words.end());
@@ -59,7 +74,7 @@ std::string CleanStage::closed_mask_warning() const {
   for (std::size_t m = 0; m < masks_.size(); ++m)
     if (imager::mask_is_empty(masks_[m])) closed += (closed.empty() ? "" : ", ") + stokes_name(image_.stokes[m]);
   if (closed.empty()) return "";
-  return "the mask " + o_.clean.mask + " allows no pixel of the image" +
+  return "the mask " + names_of(o_.clean.mask) + " allows no pixel of the image" +
          (masks_.size() > 1 ? " of " + closed + ", of which nothing is cleaned" : ": nothing is cleaned");
 }
 

@@ -60,6 +60,7 @@ class CleanStage {
  private:
   std::string state_path(std::size_t stokes) const;
   std::string closed_mask_warning() const;
+  imager::Image mask_of_files(const imager::PlaneIndex& at) const;
   std::string missing_states_warning() const;
   /// That of a run before, or that of the start model, which it frees.
   imager::CleanState begin(std::size_t stokes, const CleanStateOwner& owner);
@@ -68,11 +69,11 @@ class CleanStage {
   const ImageOptions& o_;
   imager::ImageHeader image_;
   std::string words_on_state_;
-  int channel_ = -1;                         ///< none yet
-  std::unique_ptr<MaskFile> mask_file_;      ///< null without a mask
-  std::unique_ptr<StartModel> start_model_;  ///< null without one
-  std::vector<imager::Image> masks_;         ///< none, one for all, or [Stokes]
-  std::vector<imager::Image> limited_;       ///< the same, or one, within the primary beam; none where that does not limit them
+  int channel_ = -1;                                   ///< none yet
+  std::vector<std::unique_ptr<MaskFile>> mask_files_;  ///< none without a mask
+  std::unique_ptr<StartModel> start_model_;            ///< null without one
+  std::vector<imager::Image> masks_;                   ///< none, one for all, or [Stokes]
+  std::vector<imager::Image> limited_;  ///< the same, or one, within the primary beam; none where that does not limit them
 };
 
 }  // namespace misfit::tools

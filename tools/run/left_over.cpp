@@ -88,9 +88,9 @@ void remove_cube_states(const ImageOptions& o, int first, std::vector<std::strin
 
 bool is_input(const ImageOptions& o, const std::string& path) {
   std::error_code absent;
-  return fs::equivalent(path, o.clean.mask, absent) ||
-         std::any_of(o.clean.startmodel.begin(), o.clean.startmodel.end(),
-                     [&](const std::string& model) { return fs::equivalent(path, model, absent); });
+  const auto leads_to = [&](const std::string& input) { return fs::equivalent(path, input, absent); };
+  return std::any_of(o.clean.mask.begin(), o.clean.mask.end(), leads_to) ||
+         std::any_of(o.clean.startmodel.begin(), o.clean.startmodel.end(), leads_to);
 }
 
 void remove_half_written(const ImageOptions& o) {

@@ -303,7 +303,7 @@ def _give_clean(words, p):
         words.give("restoringbeam", beam)
     words.give("savemodel", savemodel)
     if p["masks"]:
-        words.give("mask", p["masks"][0])
+        words.give("mask", *p["masks"])
     if float(_real(p, "pbmask")):
         words.give("pbmask", _real(p, "pbmask"))
     if usemask == "pb":
@@ -374,8 +374,6 @@ def _settle_beginning(p):
         _refuse("imagename", imagename, "a name for images to begin with")
     terms = int(_whole("nterms", p["nterms"])) if p["deconvolver"] == "mtmfs" else 1
     start, masks = _paths("startmodel", p["startmodel"]), _paths("mask", p["mask"])
-    if len(masks) > 1:
-        _refuse("mask", p["mask"], "one mask: lists of them are not taken yet")
     if not p["restart"]:
         for name in ("calcpsf", "calcres"):
             if not p[name]:
@@ -744,8 +742,8 @@ def tclean(
         masksum and stopCode too.
     usemask : str
         "user", "pb" or "auto-multithresh".
-    mask : path or str
-        Mask image, region file, or region.
+    mask : path, str or list
+        Mask image, region file or region, or several, which all allow components.
     pbmask : float
         CLEAN finds components only where the primary beam is at least this, in whatever mask; at least `pblimit`, or 0.
     sidelobethreshold, noisethreshold, lownoisethreshold, negativethreshold, smoothfactor, minbeamfrac, cutthreshold : float
