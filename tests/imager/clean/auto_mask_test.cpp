@@ -201,20 +201,19 @@ class Documented {
   Mask smoothed(const Mask& mask) {
     const double pa = scene_.beam.position_angle_rad, factor = o_.smooth_factor * o_.smooth_factor / (4 * std::log(2.0));
     const double major2 = factor * std::pow(scene_.beam.major_rad, 2), minor2 = factor * std::pow(scene_.beam.minor_rad, 2);
+    std::vector<double> beam;  // [north + side][west + side]
+    for (int north = -side; north < side; ++north)
+      for (int west = -side; west < side; ++west) {
+        const double along = north * std::cos(pa) - west * std::sin(pa), across = -north * std::sin(pa) - west * std::cos(pa);
+        beam.push_back(std::exp(-along * along / major2 - across * across / minor2));
+      }
     std::vector<std::vector<double>> sum(side, std::vector<double>(side));
     double largest = 0;
-    for (int r = 0; r < side; ++r)
-      for (int c = 0; c < side; ++c) {
-        for (int y = 0; y < side; ++y)
-          for (int x = 0; x < side; ++x) {
-            if (!mask[y][x]) continue;
-            const double north = r - y, east = x - c;  // columns run to the west
-            const double along = north * std::cos(pa) + east * std::sin(pa),
-                         across = -north * std::sin(pa) + east * std::cos(pa);
-            sum[r][c] += std::exp(-along * along / major2 - across * across / minor2);
-          }
-        largest = std::max(largest, sum[r][c]);
-      }
+    for (int y = 0; y < side; ++y)
+      for (int x = 0; x < side; ++x)
+        for (int r = 0; mask[y][x] != 0 && r < side; ++r)
+          for (int c = 0; c < side; ++c) sum[r][c] += beam[static_cast<std::size_t>((r - y + side) * 2 * side + c - x + side)];
+    for (const auto& row : sum) largest = std::max(largest, *std::max_element(row.begin(), row.end()));
     Mask cut(side, std::vector<int>(side));
     for (int r = 0; largest > 0 && r < side; ++r)
       for (int c = 0; c < side; ++c) {
