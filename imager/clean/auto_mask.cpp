@@ -104,7 +104,8 @@ class Extension {
  public:
   Extension(const Image& residual, const AutoMaskOptions& options, const AutoMaskScene& scene)
       : residual_(residual), o_(options), scene_(scene) {
-    const double noise = scene.noise_jy, sidelobes = o_.sidelobe_threshold * scene.max_sidelobe * largest_magnitude(residual);
+    const double peak = largest_magnitude(scene.within == nullptr ? residual : masked(residual, *scene.within));
+    const double noise = scene.noise_jy, sidelobes = o_.sidelobe_threshold * scene.max_sidelobe * peak;
     high_ = std::max(sidelobes, o_.noise_threshold * noise);
     low_ = std::max(sidelobes, o_.low_noise_threshold * noise);
     deep_ = -std::max(sidelobes, o_.negative_threshold * noise);
@@ -136,7 +137,7 @@ class Extension {
   }
 
   Region absorption() {
-    Region region(residual_, [this](double pixel) { return pixel <= deep_; });
+    Region region(residual_, [this](double pixel) { return pixel <= deep_ && pixel < 0; });
     told_.negative = static_cast<std::size_t>(std::count(region.in.begin(), region.in.end(), 1));
     spread(region);
     return region;

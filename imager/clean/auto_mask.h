@@ -18,8 +18,8 @@ struct AutoMaskOptions {
   double min_beam_fraction = 0.3;    ///< regions of a smaller part of the beam's area are dropped
   int grow_iterations = 75;          ///< pixels that a region grows by at most
   bool grow_prune = true;            ///< whether small regions of what was grown are dropped too
-  double min_percent_change = -1;    ///< a mask that changes by less, at the threshold of CLEAN, is final; −1: none is
-  bool fast_noise = true;            ///< noise is that of all pixels; else see mask_noise()
+  double min_percent_change = -1;  ///< a mask by noise that grows by less, once CLEAN is at its depth, is final; −1: none is
+  bool fast_noise = true;          ///< noise is that of all pixels; else see mask_noise()
 };
 
 /// What the thresholds are relative to.

@@ -151,10 +151,10 @@ class Run {
                      .within = o_.mask,
                      .threads = o_.threads},
                     state_.mask);
-    const bool at_the_end = cycle.cycle_threshold_jy > 0 && cycle.cycle_threshold_jy <= o_.threshold_jy;
+    const bool at_the_end = cycle.cycle_threshold_jy > 0 && cycle.cycle_threshold_jy <= last_depth(state_.cycles[cycle.from]);
     const double changed =
         100 * static_cast<double>(cycle.masked.added) / static_cast<double>(std::max<std::size_t>(before, 1));
-    state_.mask.final = at_the_end && changed < o.min_percent_change;
+    state_.mask.final = at_the_end && !cycle.masked.by_sidelobes && changed < o.min_percent_change;
   }
 
   /// What ends CLEAN before another minor cycle, if anything.
@@ -207,8 +207,10 @@ class Run {
   double cycle_threshold() const {
     const double fraction = std::clamp(o_.cycle_factor * input_.max_sidelobe, o_.min_psf_fraction, o_.max_psf_fraction);
     const double tightened = 1 - std::ldexp(1 - fraction, -state_.tightened);
-    return std::max({tightened * now().peak_residual_jy, o_.threshold_jy, 0.95 * o_.nsigma * now().rms_jy});
+    return std::max(tightened * now().peak_residual_jy, last_depth(now()));
   }
+  /// That of the last minor cycles, which threshold and nsigma allow.
+  double last_depth(const MajorCycle& begun) const { return std::max(o_.threshold_jy, 0.95 * o_.nsigma * begun.rms_jy); }
 
   void one_cycle() {
     MajorCycle cycle;

@@ -1,5 +1,6 @@
 #include "tools/run/channel_maker.h"
 
+#include <optional>
 #include <stdexcept>
 #include <utility>
 
@@ -42,11 +43,14 @@ void ChannelMaker::prepare_clean(ChannelRun& run) {
   if (!means_.images_here) return;
   run.choose_beams();
   if (!scene_.options.clean.runs() || !run.report().beams->restoring) return;
+  std::optional<imager::Image> primary_beam;
+  if (scene_.options.primary_beam.pbmask > 0) {
+    const imager::StageTimer timer(run.times(), imager::stage::primary_beam);
+    primary_beam = means_.primary_beam->of_image(run.report().frequency_hz);
+  }
   run.begin_clean(
-      cleans_.take([]() -> std::unique_ptr<CleanStage> { throw std::logic_error("more channels at a time than workers"); }));
-  if (scene_.options.primary_beam.pbmask == 0) return;
-  const imager::StageTimer timer(run.times(), imager::stage::primary_beam);
-  run.limit_clean(means_.primary_beam->of_image(run.report().frequency_hz));
+      cleans_.take([]() -> std::unique_ptr<CleanStage> { throw std::logic_error("more channels at a time than workers"); }),
+      primary_beam ? &*primary_beam : nullptr);
 }
 
 void ChannelMaker::clean(ChannelRun& run) {

@@ -136,23 +136,25 @@ void ChannelRun::make_terms() {
 void ChannelRun::check_start() {
   const ImageOptions& o = scene_.options;
   if (o.taken.calcres || o.clean.startmodel.empty()) return;
-  StartModel start(o, scene_.header);
-  {
+  std::optional<StartModel> start;
+  const auto locked = [](const auto& act) {  // files are opened and closed in it, too
     const std::lock_guard lock(image_files_mutex());
-    start.read(report().channel);
-  }
+    act();
+  };
+  locked([&] { start.emplace(o, scene_.header).read(report().channel); });
   const imager::ComparedPixels pixels(images_.plan, images_.transform->images());
   const imager::TaylorExpansion expansion = taylor_ ? taylor_->expansion() : imager::TaylorExpansion{};
   const auto terms = static_cast<std::size_t>(expansion.terms);
   progress().begin("check of the residual" + name_);
   for (std::size_t s = 0; s < scene_.header.stokes.size(); ++s) {
     std::vector<imager::Image> model;
-    for (const imager::Image* term : start.images(s)) model.push_back(*term);
+    for (const imager::Image* term : start->images(s)) model.push_back(*term);
     model.resize(terms, imager::Image(model.front().width, model.front().height));
     const std::vector<imager::Image> values = imager::make_taylor_residuals(
         {{samples(), s}, pixels.transform(), images_.images.normalisation}, std::move(model), expansion, context());
     if (samples().ranks().first()) naming_taken([&] { compare_residuals(s, pixels, values); });
   }
+  locked([&] { start.reset(); });
   progress().end();
 }
 
@@ -160,10 +162,14 @@ void ChannelRun::check_start() {
 void ChannelRun::compare_residuals(std::size_t stokes, const imager::ComparedPixels& pixels,
                                    const std::vector<imager::Image>& values) {
   const imager::Image& first = images_.images.dirty[stokes];
+  const imager::SampleSums& sums = images_.images.sums[stokes];
+  // What was subtracted is as exact as images of the data are, about so bright.
+  const double data_rms = images_.images.psf_statistics.root_mean_square() * std::sqrt(sums.weight_square / sums.weight);
   for (std::size_t t = 0; t < values.size(); ++t) {
     const imager::Image& residual = t == 0 ? first : taylor_->images().dirty[t - 1];
     const double rms = std::max(root_mean_square(residual), t == 0 ? 0 : taylor_->distance_rms(t) * root_mean_square(first));
-    pixels.require(residual, values[t], rms, images_.plan.request.accuracy, {false, stokes, static_cast<int>(t)});
+    const double accuracy = images_.plan.request.accuracy * std::max(1.0, data_rms / rms);
+    pixels.require(residual, values[t], rms, accuracy, {false, stokes, static_cast<int>(t)});
   }
 }
 
@@ -187,13 +193,17 @@ void ChannelRun::choose_beams() {
   for (const std::string& warning : report().beams->warnings) warn(plane + warning);
 }
 
-void ChannelRun::begin_clean(std::unique_ptr<CleanStage> stage) {
+void ChannelRun::begin_clean(std::unique_ptr<CleanStage> stage, const imager::Image* primary_beam) {
   stage_ = std::move(stage);
   {
     const std::lock_guard lock(image_files_mutex());
     stage_->begin_channel(report().channel);
   }
-  if (scene_.told == nullptr) made_.doubts = stage_->warnings();  // else they were told before
+  if (primary_beam != nullptr) stage_->limit_to(*primary_beam);
+  if (scene_.told == nullptr)
+    made_.doubts = stage_->warnings();  // else they were told before, but for that of the limit
+  else if (const std::string closed = stage_->closed_mask_warning(); primary_beam != nullptr && !closed.empty())
+    warn(closed);
 }
 
 std::unique_ptr<CleanStage> ChannelRun::clean() {

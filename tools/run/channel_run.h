@@ -82,10 +82,8 @@ class ChannelRun {
   void choose_beams();
   /// Makes the parts of residuals that this rank's samples give, while rank 0 is in clean().
   void follow_clean();
-  /// Gets CLEAN of this channel ready.
-  void begin_clean(std::unique_ptr<CleanStage> stage);
-  /// To where this primary beam is --pbmask or more.
-  void limit_clean(const imager::Image& primary_beam) { stage_->limit_to(primary_beam); }
+  /// Gets CLEAN of this channel ready, with its primary beam where --pbmask limits masks to that, else null.
+  void begin_clean(std::unique_ptr<CleanStage> stage, const imager::Image* primary_beam);
   bool may_clean() const { return stage_ != nullptr; }
   /// One Stokes parameter after the other. Returns the stage, which may serve another channel.
   std::unique_ptr<CleanStage> clean();

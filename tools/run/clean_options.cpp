@@ -133,15 +133,15 @@ void declare(CLI::App& command, TypedClean& o) {
   mark(command.add_option("--negativethreshold", o.negativethreshold,
                           "auto: absorption deeper than this times the noise is in the mask, too; 0 = none is"),
        OptionMark::way_of_clean);
-  mark(command.add_option(
-           "--minpercentchange", o.minpercentchange,
-           "auto: a mask that grows by less than this percentage is final, once minor cycles go down to --threshold; "
-           "-1 = never"),
-       OptionMark::way_of_clean);
-  either(
-      command.add_option("--fastnoise", o.fastnoise,
-                         "auto: noise is that of all pixels; false: of those outside the mask and inside the primary beam, or "
-                         "before there is a mask of those that Chauvenet's criterion leaves"));
+  mark(
+      command.add_option("--minpercentchange", o.minpercentchange,
+                         "auto: a mask by noise that grows by less than this percentage is final, once minor cycles go down to "
+                         "--threshold or --nsigma; -1 = never"),
+      OptionMark::way_of_clean);
+  either(command.add_option(
+      "--fastnoise", o.fastnoise,
+      "auto: noise is that of all pixels; false: of those outside the mask, and within --pbmask, or before there is "
+      "a mask of those that Chauvenet's criterion leaves"));
   command
       .add_option(
           "--startmodel", o.startmodel,

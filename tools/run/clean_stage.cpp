@@ -70,12 +70,16 @@ std::vector<std::string> CleanStage::words_on_files() const {
 }
 
 std::string CleanStage::closed_mask_warning() const {
+  const std::vector<imager::Image>& masks = limited_.empty() ? masks_ : limited_;
   std::string closed;
-  for (std::size_t m = 0; m < masks_.size(); ++m)
-    if (imager::mask_is_empty(masks_[m])) closed += (closed.empty() ? "" : ", ") + stokes_name(image_.stokes[m]);
+  for (std::size_t m = 0; m < masks.size(); ++m)
+    if (imager::mask_is_empty(masks[m])) closed += (closed.empty() ? "" : ", ") + stokes_name(image_.stokes[m]);
   if (closed.empty()) return "";
-  return "the mask " + names_of(o_.clean.mask) + " allows no pixel of the image" +
-         (masks_.size() > 1 ? " of " + closed + ", of which nothing is cleaned" : ": nothing is cleaned");
+  const std::string limit = limited_.empty() ? "" : "--pbmask " + significant(o_.primary_beam.pbmask, 3);
+  const std::string what =
+      o_.clean.mask.empty() ? limit : "the mask " + names_of(o_.clean.mask) + (limit.empty() ? "" : " with " + limit);
+  return what + " allows no pixel of the image" +
+         (masks.size() > 1 ? " of " + closed + ", of which nothing is cleaned" : ": nothing is cleaned");
 }
 
 std::string CleanStage::missing_states_warning() const {

@@ -50,6 +50,8 @@ class CleanStage {
   std::vector<std::string> words_on_files() const;
   /// Of the last run(): what the user should know of the state that it went on from; mostly empty.
   const std::string& words_on_state() const { return words_on_state_; }
+  /// That the mask, or the primary beam's, allows no pixel; else empty.
+  std::string closed_mask_warning() const;
   /// What the user should know before CLEAN begins, a sentence each; of a cube, the same of all channels of which it is so.
   std::vector<std::string> warnings() const;
 
@@ -59,7 +61,6 @@ class CleanStage {
 
  private:
   std::string state_path(std::size_t stokes) const;
-  std::string closed_mask_warning() const;
   imager::Image mask_of_files(const imager::PlaneIndex& at) const;
   std::string missing_states_warning() const;
   /// That of a run before, or that of the start model, which it frees.

@@ -28,14 +28,15 @@ void declare(CLI::App& command, TypedPrimaryBeam& o) {
        OptionMark::free_of_state);
   mark(command.add_option(
            "--pbmask", o.pbmask,
-           "CLEAN finds components only where the primary beam is this or more, in whatever mask; 0 = everywhere"),
+           "CLEAN finds components only where the primary beam is this or more, in whatever mask; at least --pblimit; 0 = "
+           "everywhere"),
        OptionMark::way_of_clean);
 }
 
 void check(const TypedPrimaryBeam& o) {
+  if (!(std::abs(o.pblimit) < 1)) refuse_option("pblimit", typed(o.pblimit), "a number between 0 and 1, such as 0.2");
   if (o.pbmask != 0 && !(o.pbmask >= o.limit() && o.pbmask < 1))
     refuse_option("pbmask", typed(o.pbmask), "at least --pblimit, " + typed(o.limit()) + ", and below 1; or 0");
-  if (!(std::abs(o.pblimit) < 1)) refuse_option("pblimit", typed(o.pblimit), "a number between 0 and 1, such as 0.2");
 }
 
 }  // namespace misfit::tools

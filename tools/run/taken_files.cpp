@@ -46,7 +46,8 @@ void declare(CLI::App& command, TypedTaken& o) {
       "these samples and weights, and may differ by a hundredth of its RMS"));
   flag(command.add_option(
       "--calcres", o.calcres,
-      "false: the same of <imagename>.residual: the dirty image, or with --startmodel what that model leaves"));
+      "false: the same of <imagename>.residual: the dirty image, or with --startmodel what that model leaves. No state "
+      "is kept for --restart"));
 }
 
 void check_taken(const ImageOptions& o) {

@@ -82,7 +82,8 @@ void declare(CLI::App& command, TypedWeighting& o) {
                   "band would be) or briggsabs, as tclean has them")
       ->check(CLI::IsMember({"natural", "uniform", "superuniform", "briggs", "briggsbwtaper", "briggsabs"}));
   command.add_option("--robust", o.robust,
-                     "Of briggs and briggsbwtaper: from -2, nearly uniform, to 2, nearly natural; of briggsabs: from -2 to 0");
+                     "Of briggs and briggsbwtaper: from -2, nearly uniform, to 2, nearly natural; of briggsabs R, "
+                     "whose sign makes no difference");
   command.add_option("--noise", o.noise, "Of briggsabs, in Jy without a unit")->check(quantity(parse_flux_jy));
   command.add_option("--npixels", o.npixels,
                      "Of superuniform: density is summed from -npixels/2 to npixels/2 cells about a sample's; 0 means 6");
@@ -97,8 +98,9 @@ void check(const TypedWeighting& o, const CubeOptions& cube) {
   if (!briggs && o.robust != default_robust) refuse_option("robust", typed(o.robust), "--weighting briggs beside it");
   const bool absolute = o.scheme == "briggsabs";
   if (absolute && !(parse_flux_jy(o.noise) >= 0)) refuse_option("noise", o.noise, "0 or more");
-  if (absolute && o.robust == 0 && parse_flux_jy(o.noise) == 0)
-    refuse_option("noise", o.noise, "more than 0, or --robust other than 0");
+  constexpr double least_jy = 1e-12;  // single precision has its inverse square
+  if (absolute && std::abs(o.robust) < least_jy && parse_flux_jy(o.noise) < least_jy)
+    refuse_option("noise", o.noise, "1e-12Jy or more, or --robust other than 0");
   if (!absolute && o.noise != TypedWeighting().noise) refuse_option("noise", o.noise, "--weighting briggsabs beside it");
   if (o.scheme == "briggsbwtaper" && (!cube.is_cube() || !cube.perchanweightdensity))
     refuse_option("weighting", o.scheme,

@@ -406,6 +406,23 @@ BOOST_AUTO_TEST_CASE(a_mask_of_its_own_making_holds_the_sources_and_the_componen
   BOOST_TEST(total(result.mask) < 0.5 * static_cast<double>(result.mask.pixel.size()));
 }
 
+/// Once minor cycles go as deep as threshold, or nsigma, lets them.
+BOOST_AUTO_TEST_CASE(a_mask_that_hardly_grows_at_the_end_is_final) {
+  for (const double nsigma : {0.0, 4.0})
+    for (const double percent : {-1.0, 100.0}) {
+      CleanOptions options = deep();
+      options.automask = AutoMaskOptions{.sidelobe_threshold = 0.01, .min_percent_change = percent};
+      options.nsigma = nsigma;
+      if (nsigma > 0) options.threshold_jy = 0;
+      options.max_major_cycles = 8;
+      std::vector<bool> final;
+      cleaned(scene(), options, scene().images, first_state(ComponentModel(geometry.width, geometry.height, {0})),
+              [&](const CleanState& state) { final.push_back(state.mask.final); });
+      BOOST_TEST(!final.front());
+      BOOST_TEST(final.back() == (percent > 0));
+    }
+}
+
 BOOST_AUTO_TEST_CASE(the_largest_sidelobe_is_what_the_beam_does_not_explain) {
   Image psf(5, 5), beam(5, 5);
   psf.at(2, 2) = beam.at(2, 2) = 1;
