@@ -118,8 +118,6 @@ imager::CleanState CleanStage::begin(std::size_t stokes, const CleanStateOwner& 
   }
   const std::filesystem::path state = state_path(stokes);
   if (o_.cube.is_cube()) std::filesystem::create_directories(state.parent_path());
-  std::error_code failed;
-  std::filesystem::remove(state, failed);  // that of a run before, which this one does not go on from
   imager::ComponentModel model = owner.like;
   model.add(start);
   return imager::first_state(model);

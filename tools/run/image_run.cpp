@@ -248,6 +248,7 @@ class ImageRun : private ChannelSink {
   std::vector<StageSeconds> expected() const { return expected_seconds(plan_, forecast_, work_); }
 
   void begin_channels() {
+    if (ranks_.first() && o_.clean.runs() && !o_.clean.restart && states_went_at_first()) remove_states(o_);
     scene_ = std::make_unique<ChannelScene>(ChannelScene{.options = o_,
                                                          .option_values = call_.state_option_values,
                                                          .header = header_,
@@ -352,9 +353,17 @@ class ImageRun : private ChannelSink {
   void make_group(const imager::PlaneRange& group) {
     std::vector<std::unique_ptr<ChannelRun>> runs;
     for (int channel = group.first; channel < group.first + group.count; ++channel) runs.push_back(image(channel));
+    std::call_once(states_removed_, [this] { remove_states_before(); });
     for (const auto& run : runs) maker_->clean(*run);
     for (const auto& run : runs) finish(*run);
   }
+
+  /// Those of a run before stay until there is something to clean: it may be refused. Ranks that share a cube's channels do not
+  /// wait for each other, so that it is done before any of them begins.
+  void remove_states_before() {
+    if (ranks_.first() && o_.clean.runs() && !o_.clean.restart && !states_went_at_first()) remove_states(o_);
+  }
+  bool states_went_at_first() const { return cube() && !ranks_.alone(); }
 
   /// All of a channel that comes before CLEAN.
   std::unique_ptr<ChannelRun> image(int channel) {
@@ -586,6 +595,7 @@ class ImageRun : private ChannelSink {
   std::unique_ptr<ChannelVisibilities> visibilities_;
   std::unique_ptr<ChannelScene> scene_;
   std::unique_ptr<ChannelMaker> maker_;
+  std::once_flag states_removed_;          ///< of a run before
   std::unique_ptr<Products> products_;     ///< where there are images
   std::unique_ptr<RunPictures> pictures_;  ///< of rank 0
   OutsideReport outside_;

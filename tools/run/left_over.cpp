@@ -104,6 +104,13 @@ void remove_half_written(const ImageOptions& o) {
   for (const fs::path& half : halves) fs::remove(half, failed);
 }
 
+void remove_states(const ImageOptions& o) {
+  std::vector<std::string> removed;
+  for (const std::string& name : all_names())
+    if (std::error_code failed; name.ends_with(".state")) fs::remove(o.imagename + "." + name, failed);
+  remove_cube_states(o, 0, removed);
+}
+
 void remove_left_over(const ImageOptions& o, const OwnFiles& own, std::vector<std::string>& removed) {
   remove_other_images(o, own.images, removed);
   const std::vector<std::string> made = own_names(o);

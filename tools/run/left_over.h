@@ -13,6 +13,9 @@ bool is_input(const ImageOptions& options, const std::string& path);
 /// Removes files that a run of this name was writing when it was killed.
 void remove_half_written(const ImageOptions& options);
 
+/// Removes the states that CLEAN of earlier runs of this name left, so that nothing goes on from them.
+void remove_states(const ImageOptions& options);
+
 /// What of a run's files is its own.
 struct OwnFiles {
   std::vector<std::string> images;  ///< paths
