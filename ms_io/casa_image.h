@@ -16,10 +16,10 @@ namespace misfit::ms_io {
 std::unique_ptr<imager::ImageWriter> create_casa_image(const imager::ImageHeader& header, const std::string& path,
                                                        imager::PixelFormat format = imager::PixelFormat::float32);
 
-/// What is read where a CASA image's default mask is false.
+/// How pixels are read that a CASA image's default mask leaves out.
 enum class Masks {
-  applied,  ///< NaN
-  ignored,  ///< the pixels beneath
+  applied,  ///< as NaN
+  ignored,  ///< as they are stored
 };
 
 /// Opens a CASA image whose pixels lie on the sky as `grids` wants, with planes along a linear spectral axis and a Stokes axis

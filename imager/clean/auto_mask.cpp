@@ -124,7 +124,7 @@ class Extension {
     return region;
   }
 
-  /// Of the positive part of the mask.
+  /// Grows the mask so far, without what absorption made.
   Region grown(Region region) {
     const Region faint = above(residual_, low_);
     grow(faint, o_.grow_iterations, region);
@@ -146,7 +146,7 @@ class Extension {
   const MaskExtension& told() const { return told_; }
 
  private:
-  /// By a beam, and cut.
+  /// Smooths a region by a beam, and cuts it.
   void spread(Region& region) const {
     if (o_.smooth_factor == 0 || region.empty()) return;
     Image image(region.width, region.height);

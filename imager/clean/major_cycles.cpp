@@ -209,7 +209,7 @@ class Run {
     const double tightened = 1 - std::ldexp(1 - fraction, -state_.tightened);
     return std::max(tightened * now().peak_residual_jy, last_depth(now()));
   }
-  /// That of the last minor cycles, which threshold and nsigma allow.
+  /// The depth below which threshold and nsigma let no minor cycle go.
   double last_depth(const MajorCycle& begun) const { return std::max(o_.threshold_jy, 0.95 * o_.nsigma * begun.rms_jy); }
 
   void one_cycle() {

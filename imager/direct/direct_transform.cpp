@@ -163,7 +163,8 @@ class DirectAdjoint : public AdjointSum {
   AdjointResult result_;
 };
 
-/// What the samples of a block add at some pixels, in pieces that threads share: the same bits for any number of them.
+/// The sums that the samples of a block add at some pixels. Threads share the samples in pieces of one size, so that any number
+/// of threads gives the same bits.
 struct PixelSums {
   std::vector<WeightedSamples::Sums> of_sets;  ///< [pixel]
   std::vector<double> of_psf;                  ///< [pixel], where it was wanted

@@ -10,7 +10,7 @@ namespace misfit::imager {
 namespace {
 
 std::vector<Pixel> compared_pixels(const ImageGeometry& geometry, std::uint64_t samples) {
-  constexpr double affordable = 4e7;  // sums, as in a tenth of a second
+  constexpr double affordable = 4e7;  // sums of a sample and a pixel; more are taken where that is less than 16 pixels
   constexpr int near = 4;             // pixels in a row
   const int random = static_cast<int>(std::clamp(affordable / static_cast<double>(samples + 1), 16.0, 256.0));
   std::vector<Pixel> pixels = random_pixels(geometry, random);

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <functional>
-#include <optional>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -42,13 +41,13 @@ struct UnlikeSamples : std::runtime_error {
 };
 
 /// Pixels of images of a plan, by direct sums, with which images are compared: those about the middle, where the PSF's main
-/// lobe is, and others at random, a few to many so that they take about a tenth of a second.
+/// lobe is, and others at random, fewer where there are many samples.
 class ComparedPixels {
  public:
-  /// What is predicted is left to `whole`, which stays where it is.
+  /// `whole` predicts models for transform(), and stays where it is.
   ComparedPixels(const GriddingPlan& plan, const Transform& whole);
 
-  /// Whose adjoints are images of these pixels alone.
+  /// A transform whose adjoints are images of these pixels alone.
   const Transform& transform() const { return transform_; }
   /// Throws UnlikeSamples unless `image` has these `values`: the difference may be 1e-2 of `rms`, that of the image or what its
   /// errors are relative to, RMS over the pixels, or three times the accuracy where that is more, but no more than a tenth. Two

@@ -15,14 +15,14 @@ namespace {
 /// Of a sample that is usable.
 constexpr float least = std::numeric_limits<float>::min();
 
-std::vector<float> factors_of(const UvDensity& density, const WeightingOptions& options, double f2) {
-  if (options.weighting == Weighting::briggs_abs) return briggs_abs_factors(density, options.robust, options.noise_jy);
-  if (f2 > 0) return briggs_factors(density, f2);
-  return uniform_factors(density, options.weighting == Weighting::superuniform ? options.box_reach : 0);
-}
-
 bool has_f2(Weighting weighting) {
   return weighting == Weighting::briggs || weighting == Weighting::briggs_bandwidth_taper;
+}
+
+std::vector<float> factors_of(const UvDensity& density, const WeightingOptions& options, double f2) {
+  if (options.weighting == Weighting::briggs_abs) return briggs_abs_factors(density, options.robust, options.noise_jy);
+  if (has_f2(options.weighting)) return briggs_factors(density, f2);
+  return uniform_factors(density, options.weighting == Weighting::superuniform ? options.box_reach : 0);
 }
 
 /// 1/(1 + W f²/m) at r, where 1/(1 + W f²) is `briggs`.

@@ -74,7 +74,7 @@ BOOST_AUTO_TEST_CASE(a_run_reads_what_it_wrote_and_not_what_it_took) {
   succeed(image(folder / "taken", first + taken));
   for (const std::string kind : {".residual", ".model", ".image"})
     check_same(folder / "anew" + kind, folder / "taken" + kind, {1, 0});
-  // The same of a model with which CLEAN begins.
+  // A start model, too, lies where the run puts another.
   fs::copy(folder / "anew.model", folder / "start.model", fs::copy_options::recursive);
   succeed(image(folder / "anew", first + Arguments{"--startmodel", folder / "start.model"}));
   succeed(image(folder / "taken", first + taken + Arguments{"--startmodel", folder / "taken.model"}));

@@ -103,7 +103,7 @@ imager::TakenImages ChannelRun::taken() {
   return {!o.taken.calcres, !o.taken.calcpsf, !o.clean.startmodel.empty(), read};
 }
 
-/// Those after the first.
+/// The images of terms after the first, which make_dirty() read with those of the first.
 TakenTerms ChannelRun::taken_terms() {
   TakenTerms terms{taken(), {}};
   for (std::size_t k = 1; k < former_.psf.size(); ++k) terms.images.psf.push_back(std::move(former_.psf[k]));
@@ -158,7 +158,7 @@ void ChannelRun::check_start() {
   progress().end();
 }
 
-/// With what the start model leaves in some pixels [term].
+/// Compares residuals that were taken with `values` [term], what the start model leaves in some pixels.
 void ChannelRun::compare_residuals(std::size_t stokes, const imager::ComparedPixels& pixels,
                                    const std::vector<imager::Image>& values) {
   const imager::Image& first = images_.images.dirty[stokes];

@@ -107,8 +107,7 @@ void declare(CLI::App& command, TypedClean& o) {
   mark(command
            .add_option("--usemask", o.usemask,
                        "user: --mask, or everywhere; pb: where the primary beam is --pbmask or more; auto: from the residuals, "
-                       "as tclean's "
-                       "auto-multithresh")
+                       "as tclean's auto-multithresh")
            ->transform(also_named({{"auto-multithresh", "auto"}}))
            ->check(CLI::IsMember({"user", "auto", "pb"})),
        OptionMark::way_of_clean);

@@ -37,7 +37,7 @@ void CleanStage::begin_channel(int channel) {
   for (int stokes = 0; stokes < masks; ++stokes) masks_.push_back(mask_of_files({channel, stokes}));
 }
 
-/// Where any of them allows components.
+/// A mask that allows what any of the files does.
 imager::Image CleanStage::mask_of_files(const imager::PlaneIndex& at) const {
   imager::Image mask = mask_files_.front()->mask(at);
   for (std::size_t file = 1; file < mask_files_.size(); ++file) {

@@ -358,8 +358,8 @@ class ImageRun : private ChannelSink {
     for (const auto& run : runs) finish(*run);
   }
 
-  /// Those of a run before stay until there is something to clean: it may be refused. Ranks that share a cube's channels do not
-  /// wait for each other, so that it is done before any of them begins.
+  /// States of a run before stay until there is something to clean, as this run may be refused before. Ranks that share a
+  /// cube's channels do not wait for each other: there they went before any of them began.
   void remove_states_before() {
     if (ranks_.first() && o_.clean.runs() && !o_.clean.restart && !states_went_at_first()) remove_states(o_);
   }

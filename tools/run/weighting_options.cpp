@@ -63,9 +63,8 @@ std::string divisor_text(const TypedWeighting& o) {
   if (o.scheme == "uniform") return "divided by the weight of all samples and conjugates in the cell";
   if (o.scheme == "briggs") return "divided by 1 + f² times the weight of all samples and conjugates in the cell";
   if (o.scheme == "briggsbwtaper")
-    return "divided by 1 + f²/m times the weight of all samples and conjugates in the cell, where m grows with the bandwidth "
-           "of "
-           "the cube times the distance in the uv plane";
+    return "divided by 1 + f²/m times the weight of all samples and conjugates in the cell; m grows with the bandwidth of the "
+           "cube times the distance in the uv plane";
   if (o.scheme == "briggsabs")
     return "divided by " + typed(o.robust * o.robust) + " times the weight of all samples and conjugates in the cell and 2 (" +
            o.noise + ")²";

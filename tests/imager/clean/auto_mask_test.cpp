@@ -308,7 +308,7 @@ BOOST_AUTO_TEST_CASE(masks_keep_within_limits) {
     for (int c = 0; c < side; ++c) BOOST_TEST_REQUIRE(mask.at(r, c) == 0);
 }
 
-/// Of the noise that is there: of all pixels half of which hold a source it would be far too large.
+/// Where sources fill half of the image, the deviation of all its pixels is theirs.
 BOOST_AUTO_TEST_CASE(the_noise_of_masks_leaves_sources_out) {
   Image image = observed({}, 7, scene), mask(side, side);
   for (int r = 0; r < side; ++r)

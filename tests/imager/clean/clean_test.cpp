@@ -386,7 +386,7 @@ BOOST_AUTO_TEST_CASE(a_run_goes_on_from_a_residual_that_was_made_before) {
   BOOST_TEST(relative_error(same.model.pixel, whole.model.pixel) < 1e-12);
   BOOST_TEST(relative_error(same.residual.pixel, whole.residual.pixel) < 1e-9);
   BOOST_TEST(same.report.cycles.front().peak_residual_jy == half.report.final_state().peak_residual_jy);
-  // What is wrong with it the next major cycle mends.
+  // A residual that is too bright is mended by the next major cycle.
   options.max_major_cycles = -1;
   for (double& pixel : half.residual.pixel) pixel *= 1.5;
   const CleanResult mended = rest(half.residual);

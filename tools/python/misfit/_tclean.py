@@ -756,8 +756,8 @@ def tclean(
     savemodel : str
         "none" or "modelcolumn".
     calcres, calcpsf : bool
-        False: .residual and .psf of the same imagename are taken, which must be those of these samples and weights. Beside a
-        .model the residual is to be what that leaves; where w counts, this is believed until the next major cycle.
+        False: .residual and .psf of the same imagename are taken, which must be those of these samples and weights; beside a
+        .model the residual must be what that leaves.
     psfcutoff : float
         Not needed.
     parallel : bool
