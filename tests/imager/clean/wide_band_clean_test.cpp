@@ -2,9 +2,11 @@
 
 #include "imager/beams/beam.h"
 #include "imager/clean/clean.h"
+#include "imager/clean/multi_term.h"
 #include "imager/data/noise.h"
 #include "imager/plan/gridding_plan.h"
 #include "imager/taylor/spectral_index.h"
+#include "imager/taylor/taylor_basis.h"
 #include "imager/taylor/taylor_imaging.h"
 #include "tests/imager/comparison.h"
 #include "tests/imager/taylor/wide_band.h"
