@@ -158,8 +158,8 @@ MemoryUse peak_memory(const MemoryDemand& d, const StreamingOptions& streaming) 
     // Factors that blocks are weighed by as they are read, in single precision for half the plane.
     if (!streaming.keep)
       for (MemoryUse& stage : stages) stage.grids += image / 4;
-    // The density, its sums along an axis, and the factors; a block's runs, sorted too. Weights are put into the blocks.
-    stages.push_back({"the weights are made", process_bytes, kept, s.in_flight + s.samples * 2 * 16, 2.5 * image / 2, 0, 0});
+    // The density, and the factors before and after a rank filter; a block's runs, sorted too. Weights are put into the blocks.
+    stages.push_back({"the weights are made", process_bytes, kept, s.in_flight + s.samples * 2 * 16, 2 * image / 2, 0, 0});
   }
   stages.push_back({"the pictures are drawn", process_bytes, 0, 0, 0, 0, (drawn_images + n.drawn()) * image});
   return *std::max_element(stages.begin(), stages.end(),

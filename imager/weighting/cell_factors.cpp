@@ -2,48 +2,100 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace misfit::imager {
 namespace {
 
-/// Rows of a half plane that are sums over `2 reach + 1` neighbours in u and v of another's.
+/// Sums of value(k), which belongs to cell k and its conjugate, over boxes of n = 2 reach + 1 columns and rows. Any n values in
+/// a row are the tail of one block of n and the head of the next. The sums of tails and heads take additions whose number does
+/// not grow with n, and nothing is subtracted, so that small sums beside large ones stay exact (van Herk 1992, Pattern
+/// Recognition Letters 13, 517, finds maxima so).
+template <typename Value>
 class BoxSums {
  public:
-  BoxSums(const UvDensity& density, int reach)
-      : cells_(density.cells()), reach_(reach), weight_(density.weights()), along_u_(sums_along_u()) {}
+  BoxSums(const UvCells& cells, int reach, Value value)
+      : cells_(cells),
+        reach_(reach),
+        value_(std::move(value)),
+        columns_(static_cast<std::size_t>(cells.columns())),
+        line_(columns_ + 2 * static_cast<std::size_t>(reach)),
+        along_u_(columns_),
+        head_(columns_),
+        tail_(static_cast<std::size_t>(box()), std::vector<double>(columns_)),
+        sum_(columns_) {}
 
-  double at(int row, int column) const {
-    double sum = 0;
-    for (int r = row - reach_; r <= row + reach_; ++r) sum += along_u(r, column);
-    return sum;
+  /// The sums about the cells of the next row, from row 0 on. [column]
+  const std::vector<double>& next_row() {
+    const int in_block = row_ % box();
+    if (in_block == 0)
+      begin_block();
+    else
+      add(along_u(row_ + reach_), head_);
+    ++row_;
+    sum_ = tail_[static_cast<std::size_t>(in_block)];
+    add(head_, sum_);
+    return sum_;
   }
 
  private:
-  /// In the half below v = 0, the conjugate's.
-  double along_u(int row, int column) const {
-    if (row < 0) {
-      row = -1 - row;
-      column = cells_.conjugate_column(column);
+  int box() const { return 2 * reach_ + 1; }
+
+  void begin_block() {
+    std::fill(head_.begin(), head_.end(), 0);
+    for (int i = box() - 1; i >= 0; --i) {
+      std::vector<double>& tail = tail_[static_cast<std::size_t>(i)];
+      tail = along_u(row_ - reach_ + i);
+      if (i + 1 < box()) add(tail_[static_cast<std::size_t>(i) + 1], tail);
     }
-    if (row >= cells_.rows() || column < 0 || column >= cells_.columns()) return 0;
-    return along_u_[index(row, column)];
   }
-  std::vector<double> sums_along_u() const {
-    std::vector<double> sums(weight_.size());
-    for (int row = 0; row < cells_.rows(); ++row)
-      for (int column = 0; column < cells_.columns(); ++column)
-        for (int c = std::max(0, column - reach_); c <= std::min(cells_.columns() - 1, column + reach_); ++c)
-          sums[index(row, column)] += weight_[index(row, c)];
-    return sums;
+
+  /// The sums over n columns about each cell of a row, which may lie below v = 0 or beyond the plane.
+  const std::vector<double>& along_u(int row) {
+    fill_line(row);
+    const auto n = static_cast<std::size_t>(box());
+    for (std::size_t begin = 0; begin < columns_; begin += n) {
+      const std::size_t end = std::min(begin + n, columns_);
+      double tail = 0, head = 0;
+      for (std::size_t i = begin + n; i-- > begin;) {
+        tail += line_[i];
+        if (i < end) along_u_[i] = tail;
+      }
+      for (std::size_t i = begin + 1; i < end; ++i) {
+        head += line_[i + n - 1];
+        along_u_[i] += head;
+      }
+    }
+    return along_u_;
   }
-  std::size_t index(int row, int column) const {
-    return static_cast<std::size_t>(row) * static_cast<std::size_t>(cells_.columns()) + static_cast<std::size_t>(column);
+
+  /// The values of a row from `reach` columns before its first to as many behind its last.
+  void fill_line(int row) {
+    const bool lower_half = row < 0;
+    const int held = lower_half ? -1 - row : row;
+    std::fill(line_.begin(), line_.end(), 0);
+    if (held >= cells_.rows()) return;
+    const std::size_t first = static_cast<std::size_t>(held) * columns_;
+    for (std::size_t i = 0; i < line_.size(); ++i) {
+      const int at = static_cast<int>(i) - reach_, column = lower_half ? cells_.conjugate_column(at) : at;
+      if (column >= 0 && column < cells_.columns()) line_[i] = value_(first + static_cast<std::size_t>(column));
+    }
+  }
+
+  static void add(const std::vector<double>& more, std::vector<double>& sum) {
+    for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += more[i];
   }
 
   const UvCells& cells_;
   const int reach_;
-  const std::vector<double>& weight_;
-  const std::vector<double> along_u_;
+  const Value value_;
+  const std::size_t columns_;
+  int row_ = 0;
+  std::vector<double> line_;     ///< a row, with `reach` columns more on either side
+  std::vector<double> along_u_;  ///< [column]
+  std::vector<double> head_;
+  std::vector<std::vector<double>> tail_;  ///< [row in the block][column]
+  std::vector<double> sum_;
 };
 
 }  // namespace
@@ -55,11 +107,12 @@ std::vector<float> uniform_factors(const UvDensity& density, int reach) {
     for (std::size_t k = 0; k < weight.size(); ++k) factor[k] = weight[k] > 0 ? static_cast<float>(1 / weight[k]) : 0;
     return factor;
   }
-  const BoxSums box(density, reach);
-  std::size_t k = 0;
-  for (int row = 0; row < density.cells().rows(); ++row)
-    for (int column = 0; column < density.cells().columns(); ++column, ++k)
-      if (weight[k] > 0) factor[k] = static_cast<float>(1 / box.at(row, column));
+  BoxSums box(density.cells(), reach, [&](std::size_t cell) { return weight[cell]; });
+  for (std::size_t k = 0; k < weight.size();)
+    for (const double sum : box.next_row()) {
+      if (weight[k] > 0) factor[k] = static_cast<float>(1 / sum);
+      ++k;
+    }
   return factor;
 }
 
@@ -75,6 +128,7 @@ double briggs_f2(const UvDensity& density, double robust) {
 
 std::vector<float> briggs_abs_factors(const UvDensity& density, double robust, double noise_jy) {
   std::vector<float> factor;
+  factor.reserve(density.weights().size());
   for (const double weight : density.weights())
     factor.push_back(weight > 0 ? static_cast<float>(1 / (4 * weight * robust * robust + 2 * noise_jy * noise_jy)) : 0);
   return factor;
@@ -86,6 +140,18 @@ std::vector<float> briggs_factors(const UvDensity& density, double f2) {
   for (std::size_t k = 0; k < weight.size(); ++k)
     if (weight[k] > 0) factor[k] = static_cast<float>(1 / (1 + weight[k] * f2));
   return factor;
+}
+
+std::vector<float> rank_filtered(const UvCells& cells, const std::vector<float>& factor, const RankFilter& filter) {
+  BoxSums factors(cells, filter.reach, [&](std::size_t cell) { return double{factor[cell]}; });
+  BoxSums filled(cells, filter.reach, [&](std::size_t cell) { return factor[cell] > 0 ? 1. : 0.; });
+  std::vector<float> filtered(factor.size());
+  for (std::size_t k = 0; k < factor.size();) {
+    const std::vector<double>&sum = factors.next_row(), &count = filled.next_row();
+    for (std::size_t column = 0; column < sum.size(); ++column, ++k)
+      if (factor[k] > 0) filtered[k] = std::min(factor[k], static_cast<float>(filter.level * sum[column] / count[column]));
+  }
+  return filtered;
 }
 
 }  // namespace misfit::imager

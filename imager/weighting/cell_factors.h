@@ -23,4 +23,14 @@ std::vector<float> briggs_abs_factors(const UvDensity& density, double robust, d
 /// 1/(1 + W_k f²).
 std::vector<float> briggs_factors(const UvDensity& density, double f2);
 
+/// How far factors may rise above those about them. WSClean's rank filter, which keeps sparse cells from outweighing others.
+struct RankFilter {
+  double level = 3;  ///< above 0
+  int reach = 8;     ///< columns and rows on either side
+};
+
+/// min(F_k, level × mean F), the mean over the cells with samples within `reach` columns and rows of k, k among them. The whole
+/// plane counts, across v = 0 too.
+std::vector<float> rank_filtered(const UvCells& cells, const std::vector<float>& factor, const RankFilter& filter);
+
 }  // namespace misfit::imager

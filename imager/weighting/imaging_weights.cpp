@@ -7,7 +7,6 @@
 
 #include "imager/numerics/constants.h"
 #include "imager/numerics/parallel.h"
-#include "imager/weighting/cell_factors.h"
 
 namespace misfit::imager {
 namespace {
@@ -19,10 +18,16 @@ bool has_f2(Weighting weighting) {
   return weighting == Weighting::briggs || weighting == Weighting::briggs_bandwidth_taper;
 }
 
-std::vector<float> factors_of(const UvDensity& density, const WeightingOptions& options, double f2) {
+std::vector<float> factors_before_filter(const UvDensity& density, const WeightingOptions& options, double f2) {
   if (options.weighting == Weighting::briggs_abs) return briggs_abs_factors(density, options.robust, options.noise_jy);
   if (has_f2(options.weighting)) return briggs_factors(density, f2);
   return uniform_factors(density, options.weighting == Weighting::superuniform ? options.box_reach : 0);
+}
+
+std::vector<float> factors_of(const UvDensity& density, const WeightingOptions& options, double f2) {
+  std::vector<float> factor = factors_before_filter(density, options, f2);
+  if (options.rank_filter) factor = rank_filtered(density.cells(), factor, *options.rank_filter);
+  return factor;
 }
 
 /// 1/(1 + W f²/m) at r, where 1/(1 + W f²) is `briggs`.
@@ -31,21 +36,30 @@ double bandwidth_tapered(double briggs, double r) {
   return m * briggs / (1 + (m - 1) * briggs);
 }
 
-/// −ln of the taper's factor for a row's channels. [channel]
+/// What the taper and the window multiply the weights of a row's channels by. [channel]
 class RowTaper {
  public:
-  RowTaper(const std::optional<UvTaper>& taper, const std::vector<double>& frequency_hz) : taper_(taper) {
-    for (const double frequency : frequency_hz) per_m2_.push_back(std::pow(frequency / speed_of_light_m_s, 2));
+  RowTaper(const std::optional<UvTaper>& taper, const UvWindow& window, const std::vector<double>& frequency_hz)
+      : taper_(taper), window_(window), windowed_(!window.is_whole_plane()) {
+    for (const double frequency : frequency_hz) per_m_.push_back(frequency / speed_of_light_m_s);
   }
   void set_row(const double* uvw_m) {
     if (taper_) exponent_m2_ = taper_exponent_m2(*taper_, uvw_m[0], uvw_m[1]);
+    if (windowed_) r_m_ = std::hypot(uvw_m[0], uvw_m[1]);
   }
-  double at(std::size_t channel) const { return taper_ ? std::exp(-exponent_m2_ * per_m2_[channel]) : 1; }
+  double at(std::size_t channel) const {
+    const double per_m = per_m_[channel];
+    const double gaussian = taper_ ? std::exp(-exponent_m2_ * (per_m * per_m)) : 1;
+    return windowed_ ? gaussian * window_.factor(r_m_ * per_m) : gaussian;
+  }
 
  private:
   const std::optional<UvTaper>& taper_;
-  std::vector<double> per_m2_;
-  double exponent_m2_ = 0;
+  const UvWindow& window_;
+  const bool windowed_;
+  std::vector<double> per_m_;  ///< wavelengths
+  double exponent_m2_ = 0;     ///< −ln of the taper's factor
+  double r_m_ = 0;
 };
 
 /// What nobody else holds, else a copy. Whoever held it before handed it over under a lock.
@@ -85,11 +99,13 @@ double WeightSums::natural_noise_jy() const {
   return 1 / (2 * std::sqrt(natural));
 }
 
-ImagingWeights::ImagingWeights(const ImageGeometry& geometry, const UvTaper& taper) : cells_(geometry), taper_(taper) {}
+ImagingWeights::ImagingWeights(const ImageGeometry& geometry, const WeightingOptions& options)
+    : cells_(geometry), taper_(options.taper), window_(options.window) {}
 
 ImagingWeights::ImagingWeights(const UvDensity& density, const WeightingOptions& options)
     : cells_(density.cells()),
       taper_(options.taper),
+      window_(options.window),
       f2_(has_f2(options.weighting) ? briggs_f2(density, options.robust) : 0),
       fractional_bandwidth_(options.weighting == Weighting::briggs_bandwidth_taper ? options.fractional_bandwidth : 0),
       factor_(factors_of(density, options, f2_)) {
@@ -121,7 +137,7 @@ WeightTotals ImagingWeights::put_on(StoredVisibilities& visibilities, int thread
 void ImagingWeights::weigh(VisibilityBlock& block, WeightSums& sums) const {
   const std::size_t channels = block.channels();
   const std::vector<double> turns = cells_.turns_per_m(block.frequency_hz);
-  RowTaper taper(taper_, block.frequency_hz);
+  RowTaper taper(taper_, window_, block.frequency_hz);
   std::vector<std::uint32_t> cell(channels);
   for (std::size_t row = 0; row < block.rows(); ++row) {
     cells_.of_row(&block.uvw_m[3 * row], turns, cell.data());
@@ -145,7 +161,7 @@ void ImagingWeights::weigh(VisibilityBlock& block, WeightSums& sums) const {
 std::shared_ptr<const ImagingWeights> make_imaging_weights(const VisibilitySource& source, const WeightingOptions& options,
                                                            const ImageGeometry& geometry, const Context& context) {
   if (options.none()) return nullptr;
-  if (!options.needs_density()) return std::make_shared<ImagingWeights>(geometry, *options.taper);
+  if (!options.needs_density()) return std::make_shared<ImagingWeights>(geometry, options);
   UvDensity density(geometry, context.threads);
   std::uint64_t done = 0;
   const auto stream = source.open();

@@ -6,8 +6,10 @@
 #include "imager/data/extent.h"
 #include "imager/data/stored_visibilities.h"
 #include "imager/transform/imaging.h"
+#include "imager/weighting/cell_factors.h"
 #include "imager/weighting/uv_density.h"
 #include "imager/weighting/uv_taper.h"
+#include "imager/weighting/uv_window.h"
 
 namespace misfit::imager {
 
@@ -21,19 +23,24 @@ enum class Weighting { natural, uniform, superuniform, briggs, briggs_abs, brigg
 ///   briggs_abs    w / (W_k R² + 2 σ²), where weights are 1/σ² as CASA has them: four times ours
 ///   briggs_bandwidth_taper   w / (1 + W_k f²/m), with r = Δν/ν_c √(u² + v²) in cells, m = r + ½ where r ≥ 1, and below
 ///                 m = (4 − r)/(4 − 2r): weights of a cube's plane as those of its whole band would be
-/// each times the taper, which does not enter the density, in CASA neither. All but natural and uniform as the documentation of
-/// CASA's tclean has them.
+/// each times the factors of the taper and the window. The density counts every sample as if there were no taper and no window,
+/// as CASA's and WSClean's does. A rank filter cuts what a cell multiplies w by before they act. The documentation of CASA's
+/// tclean has these equations, but for natural and uniform.
 struct WeightingOptions {
   Weighting weighting = Weighting::natural;
-  double robust = 0.5;              ///< R of briggs: −2, nearly uniform, to 2, nearly natural
-  double noise_jy = 1;              ///< σ of briggs_abs
-  double fractional_bandwidth = 0;  ///< Δν/ν_c of briggs_bandwidth_taper: of the whole cube
-  int box_reach = 3;                ///< superuniform: columns and rows on either side
+  double robust = 0.5;                      ///< R of briggs: −2, nearly uniform, to 2, nearly natural
+  double noise_jy = 1;                      ///< σ of briggs_abs
+  double fractional_bandwidth = 0;          ///< Δν/ν_c of briggs_bandwidth_taper: of the whole cube
+  int box_reach = 3;                        ///< superuniform: columns and rows on either side
+  std::optional<RankFilter> rank_filter{};  ///< not of natural, nor of briggs_bandwidth_taper, whose factors vary in a cell
   std::optional<UvTaper> taper{};
+  UvWindow window{};
 
   bool needs_density() const { return weighting != Weighting::natural; }
   /// Whether the data's weights stay as they are.
-  bool none() const { return !needs_density() && !taper; }
+  bool none() const { return !needs_density() && !tapers(); }
+  /// Whether weights depend on where in the uv plane a sample lies, besides its cell.
+  bool tapers() const { return taper || !window.is_whole_plane(); }
 };
 
 /// Sums over samples within 1/(2 cell): w those of the data, w' those of the image.
@@ -74,14 +81,14 @@ struct WeightedBlock {
 /// The weights of an image.
 class ImagingWeights {
  public:
-  /// Natural ones, tapered.
-  ImagingWeights(const ImageGeometry& geometry, const UvTaper& taper);
+  /// Natural ones, by the taper and the window of `options`.
+  ImagingWeights(const ImageGeometry& geometry, const WeightingOptions& options);
   /// By density; `options.weighting` is not natural.
   ImagingWeights(const UvDensity& density, const WeightingOptions& options);
 
   /// `block`, with its other Stokes parameters and the weights of the image: the same block where nobody else holds it, else a
-  /// copy. What is usable stays so: samples beyond 1/(2 cell), and what a taper leaves nothing of, keep the smallest weight
-  /// that there is.
+  /// copy. What is usable stays so: samples beyond 1/(2 cell) or outside the window, and what a taper leaves nothing of, keep
+  /// the smallest weight that there is.
   WeightedBlock of(std::shared_ptr<const VisibilityBlock> block) const;
   /// Does so with all blocks.
   WeightTotals put_on(StoredVisibilities& visibilities, int threads) const;
@@ -95,6 +102,7 @@ class ImagingWeights {
 
   UvCells cells_;
   std::optional<UvTaper> taper_;
+  UvWindow window_;
   double f2_ = 0;
   double fractional_bandwidth_ = 0;  ///< not 0: factors depend on where in the plane a sample lies, too
   std::uint64_t filled_ = 0;

@@ -129,7 +129,10 @@ BOOST_DATA_TEST_CASE(weights_follow_from_the_density_of_all_samples, bdata::make
                      which, keep) {
   constexpr Weighting ways[] = {Weighting::natural, Weighting::uniform, Weighting::superuniform, Weighting::briggs};
   const PlannedTransform transform(plan_of(geometry, 1e-9));
-  const WeightingOptions options{.weighting = ways[which], .taper = UvTaper{1e-10, 2e-10, 0.3}};
+  const WeightingOptions options{.weighting = ways[which],
+                                 .rank_filter = RankFilter{2, 3},
+                                 .taper = UvTaper{1e-10, 2e-10, 0.3},
+                                 .window = {1e3, 45e3, 2e3, 5e3}};
   // Weights are single: sums in another order may round some of them otherwise.
   check_alike(blocks(), 1e-6, [&, keep = keep](const VisibilitySource& source) {
     StreamedVisibilities streamed(source, {.keep = keep, .ahead = 1, .uv_reach_lambda = 5e4});
