@@ -33,9 +33,12 @@ void require_options(const std::string& text) {
     require(beam->given->minor_rad > 0 && beam->given->major_rad >= beam->given->minor_rad &&
                 std::isfinite(beam->given->position_angle_rad),
             "a beam is an ellipse");
-  options.weighting.uvtaper = text;
-  if (read_or_refused(text, [&] { return tools::check(options.weighting, options.cube), true; }))
-    tools::weighting_options(options.weighting);
+  for (std::string tools::TypedWeighting::*option : {&tools::TypedWeighting::uvtaper, &tools::TypedWeighting::maxuv_l}) {
+    options.weighting = {};
+    options.weighting.*option = text;
+    if (read_or_refused(text, [&] { return tools::check(options.weighting, options.cube), true; }))
+      tools::weighting_options(options.weighting);
+  }
   for (std::string tools::CubeOptions::*option : {&tools::CubeOptions::start, &tools::CubeOptions::chanwidth,
                                                   &tools::CubeOptions::restfreq, &tools::CubeOptions::outframe}) {
     tools::CubeOptions cube;

@@ -66,6 +66,8 @@ WEIGHTS = {
     "natural": [image("narrow")],
     "uniform, uv taper": [image("narrow", "--weighting uniform --uvtaper 2arcsec")],
     "superuniform": [image("narrow", "--weighting superuniform --npixels 4")],
+    "uniform, rank filter, uv limits with edges": [image("narrow", "--weighting uniform --weighting-rank-filter 2 --minuv-l 500 "
+                                                         "--maxuv-l 20klambda --taper-tukey 5klambda --taper-inner-tukey 300")],
     "briggs, verified, sources outside": [image("narrow", "--weighting briggs --robust 0 --verify 100 --check-outside")],
     "selected": [image("narrow", "--spw 0:1~2 --uvrange >500m --antenna !0 --timerange >04:30:00 --scan 1 --stokes XX "
                                  "--imsize 100 80 --cell 0.25arcsec")],

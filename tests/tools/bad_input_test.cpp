@@ -301,6 +301,7 @@ BOOST_AUTO_TEST_CASE(a_wrong_value_is_named_before_an_option_that_is_missing) {
         {"--scales", "0,9,5", "--niter", "5", "--deconvolver", "multiscale"},
         {"--nterms", "7"},
         {"--uvtaper", "-1arcsec"},
+        {"--maxuv-l", "5arcsec"},
         {"--nchan", "-5", "--specmode", "cube"}}},
       {{"predict"}, {{"--accuracy", "2"}, {"--threads", "-1"}}},
       {{"simulate"}, {{"--channels", "0"}, {"--hours", "-1"}, {"--dec", "100deg"}}},

@@ -71,7 +71,7 @@ double parse_velocity_m_s(const std::string& text) {
 }
 
 double parse_uv_distance_lambda(const std::string& text) {
-  return parse(text, "distance in the uv plane", "3klambda", {{"lambda", 1}, {"klambda", 1e3}, {"Mlambda", 1e6}});
+  return parse(text, "distance in the uv plane", "3klambda", {{"", 1}, {"lambda", 1}, {"klambda", 1e3}, {"Mlambda", 1e6}});
 }
 
 bool has_unit(const std::string& text) {

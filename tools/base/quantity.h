@@ -10,7 +10,7 @@ double parse_angle_rad(const std::string& text);           ///< deg, amin, asec,
 double parse_flux_jy(const std::string& text);             ///< Jy, mJy, uJy; alone: Jy
 double parse_frequency_hz(const std::string& text);        ///< Hz, kHz, MHz, GHz; alone: Hz
 double parse_velocity_m_s(const std::string& text);        ///< m/s, km/s; none alone
-double parse_uv_distance_lambda(const std::string& text);  ///< lambda, klambda, Mlambda: wavelengths; none alone
+double parse_uv_distance_lambda(const std::string& text);  ///< lambda, klambda, Mlambda; alone: wavelengths
 
 /// Whether such a quantity ends in a unit.
 bool has_unit(const std::string& text);

@@ -114,11 +114,7 @@ TakenTerms ChannelRun::taken_terms() {
 
 void ChannelRun::predict_noise() {
   const imager::WeightSums sums = weights_ ? samples().weight_sums() : imager::WeightSums::of_natural(report().sums.weight);
-  const std::string& taper = scene_.options.weighting.uvtaper;
-  if (weights_ && !taper.empty() && !sums.outweigh_least(report().sums.used))
-    throw std::runtime_error("--uvtaper " + taper +
-                             ": no sample keeps a weight that counts; expected a taper of larger radius in the "
-                             "uv plane, or a smaller angle");
+  if (weights_) require_weight(scene_.options.weighting, sums, report().sums.used, name_);
   report().predicted_noise_jy = sums.noise_jy();
   if (weights_) report().decisions.push_back(weights_decision(*weights_, sums));
   weights_.reset();

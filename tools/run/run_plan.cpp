@@ -258,7 +258,7 @@ RunWork work_of(const RunScene& scene, const RunPlan& plan) {
           .deconvolver = o.clean.deconvolver,
           .terms = o.taylor.nterms,
           .density = weighting_options(o.weighting).needs_density(),
-          .tapered = !o.weighting.uvtaper.empty(),
+          .tapered = weighting_options(o.weighting).tapers(),
           .primary_beam = o.primary_beam.wanted(),
           .wider = plan.wider.get()};
 }

@@ -17,6 +17,7 @@ using imager::Weighting;
 
 constexpr double default_robust = 0.5;
 constexpr int default_npixels = 6;
+constexpr int largest_box = 200;  ///< of superuniform weights and the rank filter
 
 Weighting weighting_of(const std::string& name) {
   if (name == "uniform") return Weighting::uniform;
@@ -52,6 +53,72 @@ imager::UvTaper parse_taper(const std::string& values) {
   return uv ? imager::taper_of_radii({first, second, angle}) : imager::taper_of_beam({first, second, angle});
 }
 
+/// A limit in the uv plane, or the width of its edge; throws std::invalid_argument that names the option.
+double distance_lambda(const std::string& option, const std::string& value) {
+  const std::string expected = "more than 0 wavelengths, such as 3klambda or 3000";
+  double distance = 0;
+  try {
+    distance = parse_uv_distance_lambda(value);
+  } catch (const std::invalid_argument& wrong) {
+    refuse_option(option, value, expected + "; " + wrong.what());
+  }
+  if (!(distance > 0)) refuse_option(option, value, expected);
+  return distance;
+}
+
+imager::UvWindow window_of(const TypedWeighting& o) {
+  imager::UvWindow window;
+  const auto set = [](double& wavelengths, const char* option, const std::string& value) {
+    if (!value.empty()) wavelengths = distance_lambda(option, value);
+  };
+  set(window.min_lambda, "minuv-l", o.minuv_l);
+  set(window.max_lambda, "maxuv-l", o.maxuv_l);
+  set(window.inner_edge_lambda, "taper-inner-tukey", o.taper_inner_tukey);
+  set(window.outer_edge_lambda, "taper-tukey", o.taper_tukey);
+  if (window.min_lambda >= window.max_lambda) refuse_option("minuv-l", o.minuv_l, "less than --maxuv-l " + o.maxuv_l);
+  if (window.outer_edge_lambda > 0 && o.maxuv_l.empty())
+    refuse_option("taper-tukey", o.taper_tukey, "--maxuv-l beside it, where the taper ends");
+  return window;
+}
+
+/// The options by which weights depend on where in the uv plane a sample lies, as they are typed.
+std::vector<std::string> taper_arguments(const TypedWeighting& o) {
+  std::vector<std::string> words;
+  const auto add = [&](const char* option, const std::string& value) {
+    if (!value.empty()) words.insert(words.end(), {option, value});
+  };
+  add("--uvtaper", o.uvtaper);
+  add("--minuv-l", o.minuv_l);
+  add("--maxuv-l", o.maxuv_l);
+  add("--taper-tukey", o.taper_tukey);
+  add("--taper-inner-tukey", o.taper_inner_tukey);
+  return words;
+}
+
+/// "5klambda", also where the unit is left out.
+std::string with_lambda(const std::string& distance) {
+  return has_unit(distance) ? distance : distance + "lambda";
+}
+
+/// ", tapered by 5arcsec, from 80lambda, up to 7klambda with a Tukey edge of 1klambda".
+std::string taper_text(const TypedWeighting& o) {
+  const auto edge = [](const std::string& width) { return width.empty() ? "" : " with a Tukey edge of " + with_lambda(width); };
+  std::string said;
+  if (!o.uvtaper.empty()) said += ", tapered by " + o.uvtaper;
+  if (!o.minuv_l.empty() || !o.taper_inner_tukey.empty())
+    said += ", from " + with_lambda(o.minuv_l.empty() ? "0" : o.minuv_l) + edge(o.taper_inner_tukey);
+  if (!o.maxuv_l.empty()) said += ", up to " + with_lambda(o.maxuv_l) + edge(o.taper_tukey);
+  return said;
+}
+
+/// What is done with the weights of the data beside weighing them by density.
+std::string taper_reason(const TypedWeighting& o) {
+  std::string said = o.uvtaper.empty() ? "" : " times a Gaussian";
+  if (!o.minuv_l.empty() || !o.maxuv_l.empty()) said += ", 0 outside the limits in the uv plane";
+  if (!o.taper_tukey.empty() || !o.taper_inner_tukey.empty()) said += ", with the edges of a Tukey window";
+  return said;
+}
+
 std::string cells_text(const imager::ImageGeometry& geometry) {
   const imager::UvCells cells(geometry);
   return std::to_string(geometry.width) + " × " + std::to_string(geometry.height) + " cells of " +
@@ -72,6 +139,30 @@ std::string divisor_text(const TypedWeighting& o) {
   return "divided by the weight of all samples and conjugates in the " + side + " × " + side + " cells about it";
 }
 
+void check_rank_filter(const TypedWeighting& o) {
+  const std::string option = "weighting-rank-filter", size_option = "weighting-rank-filter-size";
+  if (!(o.rank_filter >= 0 && std::isfinite(o.rank_filter)))
+    refuse_option(option, typed(o.rank_filter), "a number above 0, such as 3, or 0 (none)");
+  const std::string size = std::to_string(o.rank_filter_size);
+  if (o.rank_filter_size < 2 || o.rank_filter_size > largest_box)
+    refuse_option(size_option, size, "2 to " + std::to_string(largest_box) + " cells");
+  if (o.rank_filter == 0 && o.rank_filter_size != TypedWeighting().rank_filter_size)
+    refuse_option(size_option, size, "--" + option + " beside it");
+  if (o.rank_filter > 0 && (o.scheme == "natural" || o.scheme == "briggsbwtaper"))
+    refuse_option(option, typed(o.rank_filter), "--weighting uniform, superuniform, briggs or briggsabs beside it");
+}
+
+void check_tapers(const TypedWeighting& o) {
+  window_of(o);
+  if (o.uvtaper.empty()) return;
+  try {
+    parse_taper(o.uvtaper);
+  } catch (const std::invalid_argument& wrong) {
+    refuse_option("uvtaper", o.uvtaper,
+                  std::string("MAJ, MAJ,MIN or MAJ,MIN,PA such as 5arcsec,4arcsec,30deg or 3klambda; ") + wrong.what());
+  }
+}
+
 }  // namespace
 
 void declare(CLI::App& command, TypedWeighting& o) {
@@ -86,9 +177,23 @@ void declare(CLI::App& command, TypedWeighting& o) {
   command.add_option("--noise", o.noise, "Of briggsabs, in Jy without a unit")->check(quantity(parse_flux_jy));
   command.add_option("--npixels", o.npixels,
                      "Of superuniform: density is summed from -npixels/2 to npixels/2 cells about a sample's; 0 means 6");
+  command.add_option(
+      "--weighting-rank-filter", o.rank_filter,
+      "Of uniform, superuniform, briggs and briggsabs: a cell multiplies the weights of its samples by no more than "
+      "so many times the mean of what the cells with samples about it do; 0 means no such limit");
+  command.add_option("--weighting-rank-filter-size", o.rank_filter_size,
+                     "The mean goes from -SIZE/2 to SIZE/2 cells about a sample's");
   command.add_option("--uvtaper", o.uvtaper,
                      "Taper by a Gaussian, MAJ[,MIN[,PA]]: its full width at half maximum on the sky, such as 5arcsec, or its "
                      "half width in the uv plane, such as 3klambda; none when empty");
+  command.add_option("--minuv-l", o.minuv_l,
+                     "Image no samples nearer to u = v = 0 than so many wavelengths, at each channel's own frequency: such as "
+                     "80 or 3klambda; density counts them nevertheless");
+  command.add_option("--maxuv-l", o.maxuv_l, "Image no samples farther from u = v = 0 than so many wavelengths, likewise");
+  command.add_option("--taper-tukey", o.taper_tukey,
+                     "Let weights fall to 0 along half a period of a cosine, so many wavelengths wide, that ends at --maxuv-l");
+  command.add_option("--taper-inner-tukey", o.taper_inner_tukey,
+                     "Let weights rise from 0 likewise, from --minuv-l outwards, or from u = v = 0");
 }
 
 void check(const TypedWeighting& o, const CubeOptions& cube) {
@@ -104,20 +209,14 @@ void check(const TypedWeighting& o, const CubeOptions& cube) {
   if (o.scheme == "briggsbwtaper" && (!cube.is_cube() || !cube.perchanweightdensity))
     refuse_option("weighting", o.scheme,
                   "--specmode cube beside it" + std::string(cube.is_cube() ? ", with --perchanweightdensity true" : ""));
-  constexpr int most = 200;
-  if (o.npixels < 0 || o.npixels == 1 || o.npixels > most)
-    refuse_option("npixels", std::to_string(o.npixels), "2 to " + std::to_string(most) + " cells, or 0 (6)");
+  if (o.npixels < 0 || o.npixels == 1 || o.npixels > largest_box)
+    refuse_option("npixels", std::to_string(o.npixels), "2 to " + std::to_string(largest_box) + " cells, or 0 (6)");
   if (!superuniform && o.npixels != 0)
     refuse_option("npixels", std::to_string(o.npixels), "--weighting superuniform beside it");
   if (cube.is_cube() && !cube.perchanweightdensity && o.scheme == "natural")
     refuse_option("perchanweightdensity", "false", "weights by density beside it, such as --weighting briggs");
-  if (o.uvtaper.empty()) return;
-  try {
-    parse_taper(o.uvtaper);
-  } catch (const std::invalid_argument& wrong) {
-    refuse_option("uvtaper", o.uvtaper,
-                  std::string("MAJ, MAJ,MIN or MAJ,MIN,PA such as 5arcsec,4arcsec,30deg or 3klambda; ") + wrong.what());
-  }
+  check_rank_filter(o);
+  check_tapers(o);
 }
 
 imager::WeightingOptions weighting_options(const TypedWeighting& o) {
@@ -127,6 +226,8 @@ imager::WeightingOptions weighting_options(const TypedWeighting& o) {
   options.noise_jy = parse_flux_jy(o.noise);
   options.box_reach = box_reach(o);
   if (!o.uvtaper.empty()) options.taper = parse_taper(o.uvtaper);
+  options.window = window_of(o);
+  if (o.rank_filter > 0) options.rank_filter = {o.rank_filter, o.rank_filter_size / 2};
   return options;
 }
 
@@ -142,8 +243,8 @@ std::string weighting_text(const TypedWeighting& o) {
   std::string said = o.scheme == "briggs" ? "Briggs, robust " + typed(o.robust) : o.scheme;
   if (o.scheme == "briggsbwtaper" || o.scheme == "briggsabs") said += ", robust " + typed(o.robust);
   if (o.scheme == "briggsabs") said += ", noise " + o.noise;
-  if (!o.uvtaper.empty()) said += ", tapered by " + o.uvtaper;
-  return said;
+  if (o.rank_filter > 0) said += ", rank filter " + typed(o.rank_filter);
+  return said + taper_text(o);
 }
 
 std::vector<std::string> weighting_arguments(const TypedWeighting& o) {
@@ -151,17 +252,39 @@ std::vector<std::string> weighting_arguments(const TypedWeighting& o) {
   if (o.scheme.rfind("briggs", 0) == 0) words.insert(words.end(), {"--robust", typed(o.robust)});
   if (o.scheme == "briggsabs") words.insert(words.end(), {"--noise", o.noise});
   if (o.npixels != 0) words.insert(words.end(), {"--npixels", std::to_string(o.npixels)});
-  if (!o.uvtaper.empty()) words.insert(words.end(), {"--uvtaper", o.uvtaper});
+  if (o.rank_filter > 0)
+    words.insert(words.end(), {"--weighting-rank-filter", typed(o.rank_filter), "--weighting-rank-filter-size",
+                               std::to_string(o.rank_filter_size)});
+  const std::vector<std::string> tapers = taper_arguments(o);
+  words.insert(words.end(), tapers.begin(), tapers.end());
   return words;
 }
 
+void require_weight(const TypedWeighting& o, const imager::WeightSums& sums, std::uint64_t samples, const std::string& of) {
+  const std::vector<std::string> tapers = taper_arguments(o);
+  if (tapers.empty() || sums.outweigh_least(samples)) return;
+  std::string words, expected;
+  for (const std::string& word : tapers) words += (words.empty() ? "" : " ") + word;
+  if (tapers.size() > 2 || o.uvtaper.empty()) expected = "limits in the uv plane that samples lie well within";
+  if (!o.uvtaper.empty())
+    expected +=
+        (expected.empty() ? "" : ", and ") + std::string("a taper of larger radius in the uv plane, or a smaller angle");
+  throw std::runtime_error(words + ": no sample" + of + " keeps a weight that counts; expected " + expected);
+}
+
 imager::Decision weighting_decision(const TypedWeighting& o, const imager::ImageGeometry& geometry) {
-  if (weighting_options(o).needs_density())
+  const std::string tapered = taper_reason(o);
+  if (!weighting_options(o).needs_density())
     return {"weighting", weighting_text(o),
-            "weights of the data " + divisor_text(o) + "; the image's uv grid has " + cells_text(geometry)};
+            "weights of the data" + (tapered.empty() ? " as they are, which give the least noise" : tapered)};
+  std::string filter;
+  if (o.rank_filter > 0) {
+    const std::string side = std::to_string(o.rank_filter_size / 2 * 2 + 1);
+    filter = "; no cell's factor is above " + typed(o.rank_filter) + " times the mean of those in the " + side + " × " + side +
+             " cells about it";
+  }
   return {"weighting", weighting_text(o),
-          o.uvtaper.empty() ? "weights of the data as they are, which give the least noise"
-                            : "weights of the data times a Gaussian"};
+          "weights of the data " + divisor_text(o) + filter + "; the image's uv grid has " + cells_text(geometry)};
 }
 
 imager::Decision weights_decision(const imager::ImagingWeights& weights, const imager::WeightSums& sums) {

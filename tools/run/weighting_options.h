@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -20,7 +21,13 @@ struct TypedWeighting {
   double robust = 0.5;          ///< of those of Briggs
   std::string noise = "1.0Jy";  ///< of briggsabs
   int npixels = 0;              ///< of superuniform; 0 = 6
-  std::string uvtaper;          ///< empty = none
+  double rank_filter = 0;       ///< its level; 0 = none
+  int rank_filter_size = 16;    ///< cells across its box
+  std::string uvtaper;          ///< here and below, empty = none
+  std::string minuv_l;
+  std::string maxuv_l;
+  std::string taper_tukey;        ///< width of the edge at maxuv_l
+  std::string taper_inner_tukey;  ///< width of the edge at minuv_l, or at 0
 };
 
 void declare(CLI::App& command, TypedWeighting& options);
@@ -37,6 +44,11 @@ std::string weighting_text(const TypedWeighting& options);
 
 /// As they are typed, without those that have no effect.
 std::vector<std::string> weighting_arguments(const TypedWeighting& options);
+
+/// Throws std::runtime_error that names the taper and the limits where they leave no weight that counts, which `sums` over so
+/// many samples tell; `of` says which samples: "", or " of plane 12".
+void require_weight(const TypedWeighting& options, const imager::WeightSums& sums, std::uint64_t samples,
+                    const std::string& of = "");
 
 /// What is known of the weights before the samples are read.
 imager::Decision weighting_decision(const TypedWeighting& options, const imager::ImageGeometry& geometry);

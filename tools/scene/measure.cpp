@@ -77,7 +77,7 @@ Scene::Scene(const ImageOptions& options, bool quick, const imager::Progress& pr
 void Scene::weigh() {
   const auto weights =
       imager::make_imaging_weights(visibilities_, weighting_options(options_.weighting), geometry_, {threads_});
-  if (weights) weights->put_on(visibilities_, threads_);
+  if (weights) require_weight(options_.weighting, weights->put_on(visibilities_, threads_).sums, visibilities_.samples());
   const auto stream = visibilities_.open();
   while (const auto block = stream->next()) {
     w_spread_.add(*block);

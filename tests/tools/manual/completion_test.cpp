@@ -66,7 +66,7 @@ BOOST_AUTO_TEST_CASE(commands_and_options_are_completed_where_they_can_stand) {
   check_offered({"report", "s"}, {"scene", "stability"});
   check_offered({"image", "--niter", "100", "--nite"}, {"--niter"});
   check_offered({"image", "--vis", "a.ms", "b.ms", "--restart", "--min"},
-                {"--minbeamfrac", "--minpercentchange", "--minpsffraction"});
+                {"--minbeamfrac", "--minpercentchange", "--minpsffraction", "--minuv-l"});
   check_offered({"report", "stability", "--quick", "--v"}, {"--vis"});
   BOOST_TEST(offered({"image", "--niter", "-1", ""}).contains("--vis"));
   BOOST_TEST(offered({"image", "--quiet", ""}).contains("--vis"));
