@@ -8,38 +8,15 @@
 #include <vector>
 
 #include "imager/clean/mask.h"
+#include "imager/clean/region.h"
 #include "imager/data/noise.h"
+#include "imager/numerics/parallel.h"
 
 namespace misfit::imager {
 namespace {
 
-/// Pixels of an image that stand for true.
-struct Region {
-  int width = 0;
-  int height = 0;
-  std::vector<char> in;  ///< [height][width]
-
-  /// Where of(pixel) is.
-  template <typename Of>
-  Region(const Image& image, const Of& of) : width(image.width), height(image.height), in(image.pixel.size()) {
-    std::transform(image.pixel.begin(), image.pixel.end(), in.begin(), of);
-  }
-
-  bool empty() const { return std::find(in.begin(), in.end(), 1) == in.end(); }
-
-  /// Calls visit(place) for the up to four neighbours of a place.
-  template <typename Visit>
-  void for_each_neighbour(std::size_t place, const Visit& visit) const {
-    const auto columns = static_cast<std::size_t>(width);
-    if (place >= columns) visit(place - columns);
-    if (place + columns < in.size()) visit(place + columns);
-    if (place % columns != 0) visit(place - 1);
-    if (place % columns + 1 != columns) visit(place + 1);
-  }
-};
-
-Region above(const Image& image, double level) {
-  return {image, [level](double pixel) { return pixel > level; }};
+Region above(const Image& image, double level, int threads) {
+  return {image, threads, [level](double pixel) { return pixel > level; }};
 }
 
 struct Pieces {
@@ -116,7 +93,7 @@ class Extension {
   }
 
   Region bright() {
-    Region region = above(residual_, high_);
+    Region region = above(residual_, high_, scene_.threads);
     const Pieces pieces = drop_small(fewest_pixels_, region);
     told_.regions = pieces.all;
     told_.pruned = pieces.dropped;
@@ -126,7 +103,7 @@ class Extension {
 
   /// Grows the mask so far, without what absorption made.
   Region grown(Region region) {
-    const Region faint = above(residual_, low_);
+    const Region faint = above(residual_, low_, scene_.threads);
     grow(faint, o_.grow_iterations, region);
     keep_within(faint, region);
     const Pieces pieces = drop_small(o_.grow_prune ? fewest_pixels_ : 0, region);
@@ -137,7 +114,7 @@ class Extension {
   }
 
   Region absorption() {
-    Region region(residual_, [this](double pixel) { return pixel <= deep_ && pixel < 0; });
+    Region region(residual_, scene_.threads, [this](double pixel) { return pixel <= deep_ && pixel < 0; });
     told_.negative = static_cast<std::size_t>(std::count(region.in.begin(), region.in.end(), 1));
     spread(region);
     return region;
@@ -146,16 +123,12 @@ class Extension {
   const MaskExtension& told() const { return told_; }
 
  private:
-  /// Smooths a region by a beam, and cuts it.
   void spread(Region& region) const {
-    if (o_.smooth_factor == 0 || region.empty()) return;
-    Image image(region.width, region.height);
-    std::copy(region.in.begin(), region.in.end(), image.pixel.begin());
+    if (o_.smooth_factor == 0) return;
     Beam beam = scene_.beam;
     beam.major_rad *= o_.smooth_factor;
     beam.minor_rad *= o_.smooth_factor;
-    image = convolve_with_beam(image, beam, scene_.cell_rad, scene_.threads);
-    region = above(image, o_.cut_threshold * *std::max_element(image.pixel.begin(), image.pixel.end()));
+    smooth_and_cut({beam, scene_.cell_rad, o_.cut_threshold, scene_.threads}, region);
   }
 
   const Image& residual_;
@@ -197,22 +170,27 @@ MaskExtension extend_mask(const Image& residual, const AutoMaskOptions& options,
   std::vector<double>&allowed = mask.allowed.pixel, &negative = mask.negative.pixel;
   const bool absorbs = options.negative_threshold > 0;
   if (absorbs && negative.empty()) mask.negative = Image(mask.allowed.width, mask.allowed.height);
-  Region positive(mask.allowed, mask_allows);
+  Region positive(mask.allowed, scene.threads, mask_allows);
   for (std::size_t i = 0; i < negative.size(); ++i) positive.in[i] &= negative[i] == 0;
   Extension extension(residual, options, scene);
   const Region bright = extension.bright(), grown = extension.grown(positive);
   std::optional<Region> absorption;
   if (absorbs) absorption = extension.absorption();
+  std::vector<std::size_t> added(static_cast<std::size_t>(residual.height));  // [row]
+  parallel_for(added.size(), scene.threads, [&](std::size_t r) {
+    const auto width = static_cast<std::size_t>(residual.width);
+    for (std::size_t i = r * width; i < (r + 1) * width; ++i) {
+      const bool was = mask_allows(allowed[i]);
+      const bool may = !std::isnan(residual.pixel[i]) && (scene.within == nullptr || mask_allows(scene.within->pixel[i]));
+      const bool in_positive = may && (positive.in[i] || bright.in[i] || grown.in[i]);
+      const bool in_negative = may && !in_positive && absorbs && (negative[i] != 0 || absorption->in[i]);
+      allowed[i] = in_positive || in_negative ? 1 : 0;
+      if (absorbs) negative[i] = in_negative ? 1 : 0;
+      added[r] += (in_positive || in_negative) && !was ? 1 : 0;
+    }
+  });
   MaskExtension told = extension.told();
-  for (std::size_t i = 0; i < allowed.size(); ++i) {
-    const bool was = mask_allows(allowed[i]);
-    const bool may = !std::isnan(residual.pixel[i]) && (scene.within == nullptr || mask_allows(scene.within->pixel[i]));
-    const bool in_positive = may && (positive.in[i] || bright.in[i] || grown.in[i]);
-    const bool in_negative = may && !in_positive && absorbs && (negative[i] != 0 || absorption->in[i]);
-    allowed[i] = in_positive || in_negative ? 1 : 0;
-    if (absorbs) negative[i] = in_negative ? 1 : 0;
-    told.added += (in_positive || in_negative) && !was ? 1 : 0;
-  }
+  for (const std::size_t pixels : added) told.added += pixels;
   return told;
 }
 
