@@ -195,14 +195,16 @@ MaskExtension extend_mask(const Image& residual, const AutoMaskOptions& options,
 }
 
 double mask_noise(const Image& residual, const Image& mask, const Image* within, int threads) {
-  Image kept = residual;
-  if (mask_is_empty(mask)) {
+  Image kept = within == nullptr || mask_is_empty(*within) ? residual : masked(residual, *within);
+  const auto counts = [&](std::size_t i) { return !mask_allows(mask.pixel[i]) && !std::isnan(kept.pixel[i]); };
+  std::size_t outside = 0;
+  for (std::size_t i = 0; i < kept.pixel.size(); ++i) outside += counts(i) ? 1 : 0;
+  if (outside == 0 || mask_is_empty(mask)) {
     drop_outliers(kept);
-    return robust_noise(kept, threads);
+  } else {
+    for (std::size_t i = 0; i < kept.pixel.size(); ++i)
+      if (!counts(i)) kept.pixel[i] = std::numeric_limits<double>::quiet_NaN();
   }
-  for (std::size_t i = 0; i < kept.pixel.size(); ++i)
-    if (mask_allows(mask.pixel[i]) || (within != nullptr && !mask_allows(within->pixel[i])))
-      kept.pixel[i] = std::numeric_limits<double>::quiet_NaN();
   return robust_noise(kept, threads);
 }
 

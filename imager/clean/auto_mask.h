@@ -57,10 +57,10 @@ struct MaskExtension {
 /// negative threshold, smoothed and cut. Regions hang together by their sides, not by their corners. NaN is never in it.
 MaskExtension extend_mask(const Image& residual, const AutoMaskOptions& options, const AutoMaskScene& scene, GrowingMask& mask);
 
-/// The noise as tclean has it where fastnoise is false, each time 1.4826 × the median absolute deviation from the median: where
-/// the mask is empty, of the pixels that remain when those are left out which are farther from the mean than one of so many
-/// would be in half of all draws (Chauvenet's criterion), as often as there are any; else of the pixels outside the mask and
-/// within `within`.
+/// The noise as tclean has it where fastnoise is false, of pixels within `within`, or of all where that is null or allows none:
+/// 1.4826 × the median absolute deviation from the median, of those outside the mask. Where the mask is empty, or holds all of
+/// them, pixels are left out instead that are farther from the mean than one of so many would be in half of all draws
+/// (Chauvenet's criterion), as often as there are any.
 double mask_noise(const Image& residual, const Image& mask, const Image* within, int threads);
 
 }  // namespace misfit::imager

@@ -32,6 +32,7 @@ struct CleanOptions {
   int max_major_cycles = -1;                ///< nmajor; −1 = no limit
   const Image* mask = nullptr;              ///< where components may lie, see mask.h; null = everywhere
   std::optional<AutoMaskOptions> automask;  ///< the mask is made from the residuals, within `mask`
+  const Image* noise_within = nullptr;      ///< where mask_noise() measures it, as a mask; null = everywhere
   int threads = 1;
   std::function<bool()> stop_requested;  ///< the user's wish to end; may be empty
 };

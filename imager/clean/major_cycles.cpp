@@ -142,15 +142,15 @@ class Run {
   void extend(MajorCycle& cycle) {
     const AutoMaskOptions& o = *o_.automask;
     const std::size_t before = allowed_pixels(state_.mask.allowed);
-    cycle.masked =
-        extend_mask(residual(), o,
-                    {.max_sidelobe = input_.max_sidelobe,
-                     .noise_jy = o.fast_noise ? cycle.rms_jy : mask_noise(residual(), state_.mask.allowed, o_.mask, o_.threads),
-                     .beam = input_.beam,
-                     .cell_rad = input_.cell_rad,
-                     .within = o_.mask,
-                     .threads = o_.threads},
-                    state_.mask);
+    cycle.masked = extend_mask(
+        residual(), o,
+        {.max_sidelobe = input_.max_sidelobe,
+         .noise_jy = o.fast_noise ? cycle.rms_jy : mask_noise(residual(), state_.mask.allowed, o_.noise_within, o_.threads),
+         .beam = input_.beam,
+         .cell_rad = input_.cell_rad,
+         .within = o_.mask,
+         .threads = o_.threads},
+        state_.mask);
     const bool at_the_end = cycle.cycle_threshold_jy > 0 && cycle.cycle_threshold_jy <= last_depth(state_.cycles[cycle.from]);
     const double changed =
         100 * static_cast<double>(cycle.masked.added) / static_cast<double>(std::max<std::size_t>(before, 1));

@@ -1,7 +1,10 @@
-// Masks that CLEAN makes, in whole runs: what it finds in them, against what it finds in masks drawn about the sources.
+// Masks that CLEAN makes, in whole runs: what it finds in them, against what it finds in masks drawn about the sources, and
+// where their noise is measured.
 #include <cmath>
 #include <numeric>
 
+#include "imager/clean/auto_mask.h"
+#include "imager/data/noise.h"
 #include "imager/direct/source_sums.h"
 #include "imager/files/fits_image_reader.h"
 #include "imager/numerics/constants.h"
@@ -39,9 +42,10 @@ std::vector<imager::Source> sources_of(const std::vector<Drawn>& drawn) {
 }
 
 /// Four hours of the VLA in its D configuration, with w = 0.
-void write_set(const std::string& path, const Scene& scene) {
+void write_set(const std::string& path, const Scene& scene, const std::string& telescope = "EVLA") {
   const tools::AntennaArray array = tools::antenna_array("vla-d");
   ms_io::SimulatedObservation o;
+  o.telescope = telescope;
   o.antenna_name = array.name;
   o.antenna_itrf_m = array.itrf_m;
   o.phase_centre = {1.0, 0.7, "FK5"};
@@ -142,8 +146,8 @@ void check_fluxes(const Scene& scene, const Arguments& options) {
 
 }  // namespace
 
-/// Points and Gaussians of 100 to 300 times the noise. The default thresholds are for compact arrays of many antennas, as this is:
-/// its largest sidelobe is 0.14.
+/// Points and Gaussians of 100 to 300 times the noise. The default thresholds are for compact arrays of many antennas, as this
+/// is: its largest sidelobe is 0.14.
 BOOST_AUTO_TEST_CASE(emission_has_the_flux_that_a_mask_by_hand_gives) {
   check_fluxes({{{100, 90, 0.3}, {180, 150, 0.1}, {60, 170, 1.5, 15}, {150, 60, 0.8, 9}}}, {});
 }
@@ -157,6 +161,51 @@ BOOST_AUTO_TEST_CASE(absorption_has_the_flux_that_a_mask_by_hand_gives) {
 /// A line whose emission moves, and channels without any, by the default thresholds.
 BOOST_AUTO_TEST_CASE(a_line_has_in_each_channel_the_flux_that_a_mask_by_hand_gives) {
   check_fluxes({{}, {{90, 120, 0.3}}, {{110, 125, 1.5, 14}, {170, 140, 0.2}}, {}, {{140, 130, 0.8, 9}}, {}}, {});
+}
+
+/// As tclean's documentation has it: outside the mask, of which there is none yet, and inside the primary beam. Sources fill
+/// the image's edge with their sidelobes.
+BOOST_AUTO_TEST_CASE(without_fastnoise_the_noise_of_masks_is_that_inside_the_primary_beam) {
+  const TemporaryFolder folder;
+  const std::string set = folder / "a.ms", station = folder / "b.ms";
+  Scene scene(1);
+  for (int i = 0; i < 30; ++i)
+    scene[0].push_back({128 + static_cast<int>(110 * std::cos(i)), 128 + static_cast<int>(110 * std::sin(i)), 0.05});
+  write_set(set, scene);
+  write_set(station, scene, "LOFAR");
+  const auto image = [&](const std::string& vis, const Arguments& options) {
+    const std::string name = folder / "a";
+    const Outcome outcome =
+        run(Arguments{"image", "--vis", vis, "--imagename", name, "--imsize", std::to_string(side), "--cell", "10arcsec"} +
+            options);
+    BOOST_TEST_INFO(outcome.err);
+    BOOST_TEST(outcome.code == 0);
+    return name;
+  };
+  const auto noise_of_mask = [&](const std::string& vis, const Arguments& options) {
+    const nlohmann::json report = report_of(image(
+        vis, Arguments{"--niter", "1", "--usemask", "auto", "--fastnoise", "false", "--sidelobethreshold", "0"} + options));
+    return report["clean"]["major_cycles_log"][0]["mask_extension"]["threshold_jy"].get<double>() / 5;
+  };
+  const auto within = [&](const std::string& limit) {
+    imager::Image beam = pixels_of(image(set, {"--pblimit", limit}), "pb");
+    for (double& pixel : beam.pixel) pixel = std::isnan(pixel) ? 0 : 1;
+    return beam;
+  };
+  const imager::Image inner = within("0.7"), outer = within("0.2");
+  const imager::Image dirty = pixels_of(folder / "a", "residual"), no_mask(side, side);
+  const auto expected = [&](const imager::Image* where) { return imager::mask_noise(dirty, no_mask, where, 1); };
+  BOOST_TEST(expected(&inner) < 0.9 * expected(&outer));
+  BOOST_TEST(std::abs(expected(&outer) / expected(nullptr) - 1) > 0.05);
+  const auto same = [](double a, double b) { return std::abs(a / b - 1) < 1e-5; };  // single precision of the image
+  BOOST_TEST(same(noise_of_mask(set, {"--pblimit", "0.7"}), expected(&inner)));
+  BOOST_TEST(same(noise_of_mask(set, {"--pblimit", "-0.7"}), expected(&inner)));
+  BOOST_TEST(same(noise_of_mask(set, {"--pbmask", "0.7"}), expected(&inner)));
+  BOOST_TEST(same(noise_of_mask(set, {}), expected(&outer)));
+  BOOST_TEST(!std::filesystem::exists(folder / "a.pb.fits"));
+  BOOST_TEST(same(noise_of_mask(station, {}), expected(nullptr)));
+  BOOST_TEST(report_of(folder / "a")["warnings"].dump().find("masks have the noise of all of the image: LOFAR has no simple") !=
+             std::string::npos);
 }
 
 BOOST_AUTO_TEST_SUITE_END()

@@ -36,15 +36,16 @@ void ChannelMaker::prepare_clean(ChannelRun& run) {
   run.make_terms();
   run.check_start();
   run.verify();
-  if (means_.primary_beam != nullptr && scene_.whole_band) {
+  const ImageOptions& o = scene_.options;
+  if (o.primary_beam.wanted() && scene_.whole_band) {
     const imager::StageTimer timer(run.times(), imager::stage::primary_beam);
     means_.primary_beam->weigh(run.samples());
   }
   if (!means_.images_here) return;
   run.choose_beams();
-  if (!scene_.options.clean.runs() || !run.report().beams->restoring) return;
+  if (!o.clean.runs() || !run.report().beams->restoring) return;
   std::optional<imager::Image> primary_beam;
-  if (scene_.options.primary_beam.pbmask > 0) {
+  if (o.primary_beam.pbmask > 0 || (o.measures_noise_in_beam() && means_.primary_beam != nullptr)) {
     const imager::StageTimer timer(run.times(), imager::stage::primary_beam);
     primary_beam = means_.primary_beam->of_image(run.report().frequency_hz);
   }

@@ -15,7 +15,7 @@ struct ChannelMeans {
   std::shared_ptr<const imager::PlannedTransform> transform;  ///< of `plan`; null where there is one channel, which makes it
   ChannelWorkers workers;
   bool images_here = true;                   ///< or at rank 0 alone, which cleans and writes them
-  PrimaryBeamStage* primary_beam = nullptr;  ///< null where none is wanted
+  PrimaryBeamStage* primary_beam = nullptr;  ///< null where neither images nor masks need it
 };
 
 /// Makes the channels of a run: as many at a time as there are workers, in any order, each in a thread of its own. What comes

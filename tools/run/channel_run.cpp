@@ -195,10 +195,10 @@ void ChannelRun::begin_clean(std::unique_ptr<CleanStage> stage, const imager::Im
     const std::lock_guard lock(image_files_mutex());
     stage_->begin_channel(report().channel);
   }
-  if (primary_beam != nullptr) stage_->limit_to(*primary_beam);
+  if (primary_beam != nullptr) stage_->keep_within(*primary_beam);
   if (scene_.told == nullptr)
     made_.doubts = stage_->warnings();  // else they were told before, but for that of the limit
-  else if (const std::string closed = stage_->closed_mask_warning(); primary_beam != nullptr && !closed.empty())
+  else if (const std::string closed = stage_->closed_mask_warning(); options().primary_beam.pbmask > 0 && !closed.empty())
     warn(closed);
 }
 

@@ -82,7 +82,7 @@ class ChannelRun {
   void choose_beams();
   /// Makes the parts of residuals that this rank's samples give, while rank 0 is in clean().
   void follow_clean();
-  /// Gets CLEAN of this channel ready, with its primary beam where --pbmask limits masks to that, else null.
+  /// Gets CLEAN of this channel ready, with its primary beam where masks or their noise keep within that, else null.
   void begin_clean(std::unique_ptr<CleanStage> stage, const imager::Image* primary_beam);
   bool may_clean() const { return stage_ != nullptr; }
   /// One Stokes parameter after the other. Returns the stage, which may serve another channel.

@@ -139,8 +139,8 @@ void declare(CLI::App& command, TypedClean& o) {
       OptionMark::way_of_clean);
   either(command.add_option(
       "--fastnoise", o.fastnoise,
-      "auto: noise is that of all pixels; false: of those outside the mask, and within --pbmask, or before there is "
-      "a mask of those that Chauvenet's criterion leaves"));
+      "auto: noise is that of all pixels; false: of those outside the mask and, where the primary beam is known, inside "
+      "--pblimit and --pbmask; before there is a mask, of those that Chauvenet's criterion leaves"));
   command
       .add_option(
           "--startmodel", o.startmodel,

@@ -27,6 +27,7 @@ void CleanStage::begin_channel(int channel) {
   if (channel_ == channel) return;
   channel_ = channel;
   limited_.clear();
+  noise_within_ = {};
   if (start_model_) start_model_->read(channel);
   const auto all = [&](bool (MaskFile::*is)() const) {
     return std::all_of(mask_files_.begin(), mask_files_.end(), [is](const auto& file) { return (*file.*is)(); });
@@ -48,7 +49,13 @@ imager::Image CleanStage::mask_of_files(const imager::PlaneIndex& at) const {
   return mask;
 }
 
-void CleanStage::limit_to(const imager::Image& primary_beam) {
+void CleanStage::keep_within(const imager::Image& primary_beam) {
+  if (o_.measures_noise_in_beam()) {
+    const double least = std::max(o_.primary_beam.pbmask, o_.primary_beam.limit());
+    noise_within_ = primary_beam;
+    for (double& pixel : noise_within_.pixel) pixel = pixel >= least ? 1 : 0;
+  }
+  if (o_.primary_beam.pbmask == 0) return;
   limited_ = masks_;
   if (limited_.empty()) {
     limited_.emplace_back(primary_beam.width, primary_beam.height);
@@ -137,6 +144,7 @@ imager::CleanResult CleanStage::run(const CleanScene& scene, const StateOptionVa
   imager::CleanOptions options = clean_options(o_.clean, context.threads);
   options.stop_requested = interrupted;
   options.mask = mask(scene.imaged.samples.index);
+  options.noise_within = noise_within_.pixel.empty() ? nullptr : &noise_within_;
   std::unique_ptr<imager::MinorCycle> minor;
   {
     const imager::StageTimer timer(context.times, imager::stage::minor_cycles);
@@ -154,7 +162,7 @@ imager::CleanResult CleanStage::run(const CleanScene& scene, const StateOptionVa
   {
     const imager::StageTimer timer(context.times, imager::stage::clean_state);
     owner.checksum = checksum_of(scene);
-    owner.ways_checksum = checksum({mask(scene.imaged.samples.index)});
+    owner.ways_checksum = checksum({options.mask, options.noise_within});
     state = begin(scene.imaged.samples.index, owner);
     sidelobe = imager::largest_sidelobe(*scene.psf.front(), scene.main_lobe, image_.geometry.cell_rad, context.threads);
   }

@@ -38,8 +38,9 @@ class CleanStage {
   /// From here on everything is of this channel of the image. Reads its mask and start model. To be called before all that
   /// follows.
   void begin_channel(int channel);
-  /// Keeps masks of this channel to where its primary beam is --pbmask or more.
-  void limit_to(const imager::Image& primary_beam);
+  /// Keeps masks of this channel to where its primary beam is --pbmask or more, and what masks take for noise to where it is
+  /// that and --pblimit or more.
+  void keep_within(const imager::Image& primary_beam);
 
   /// Null where CLEAN may go everywhere; within it CLEAN may make its own.
   const imager::Image* mask(std::size_t stokes) const {
@@ -75,6 +76,7 @@ class CleanStage {
   std::unique_ptr<StartModel> start_model_;            ///< null without one
   std::vector<imager::Image> masks_;                   ///< none, one for all, or [Stokes]
   std::vector<imager::Image> limited_;  ///< the same, or one, within the primary beam; none where that does not limit them
+  imager::Image noise_within_;          ///< see CleanOptions; empty where that is null
 };
 
 }  // namespace misfit::tools

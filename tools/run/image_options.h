@@ -51,6 +51,8 @@ struct ImageOptions {
 
   /// Whether CLEAN keeps to a mask, given or made.
   bool masks_clean() const { return !clean.mask.empty() || clean.usemask == "auto" || primary_beam.pbmask > 0; }
+  /// Whether masks need the noise within the primary beam, wherever that is known.
+  bool measures_noise_in_beam() const { return clean.runs() && clean.usemask == "auto" && !clean.fastnoise; }
   bool all_products() const { return products == "tclean"; }
 };
 

@@ -124,7 +124,7 @@ class ImageRun : private ChannelSink {
                .history = {}};
     notes_ = notes_on_sets(o_, *set_, header_.geometry);
     for (const std::string& warning : notes_.warnings) warn(warning);
-    if (o_.primary_beam.wanted()) find_primary_beam();
+    if (o_.primary_beam.wanted() || o_.measures_noise_in_beam()) find_primary_beam();
     if (o_.clean.runs() && sharing_.images_here()) open_clean();
     if (o_.taken.any()) taken_ = std::make_unique<TakenFiles>(o_, header_);
     header_.history = history_of(report_.command_line, set_->data_columns());
@@ -140,7 +140,8 @@ class ImageRun : private ChannelSink {
                                                          std::max(1, threads_ / sharing_.channels_here(channels())));
     } catch (const NoPrimaryBeam& none) {
       if (o_.primary_beam.required()) throw std::runtime_error(std::string("--pbcor, --pblimit, --pbmask: ") + none.what());
-      warn(std::string("no .pb is written: ") + none.what());
+      if (o_.primary_beam.wanted()) warn(std::string("no .pb is written: ") + none.what());
+      if (o_.measures_noise_in_beam()) warn(std::string("masks have the noise of all of the image: ") + none.what());
       o_.primary_beam = {};
     }
   }
@@ -276,8 +277,9 @@ class ImageRun : private ChannelSink {
   void open_products() {
     const imager::StageTimer timer(times_, imager::stage::write_images);
     if (ranks_.first() && o_.outformat != "fits") ms_io::require_room(o_.imagename, bytes_of_images());
+    const PrimaryBeamStage* const written = o_.primary_beam.wanted() ? primary_beam_.get() : nullptr;
     products_ = std::make_unique<Products>(
-        o_, header_, primary_beam_.get(), workers_, [this](const ProductKind& kind, const imager::ImageHeader& header) {
+        o_, header_, written, workers_, [this](const ProductKind& kind, const imager::ImageHeader& header) {
           auto elsewhere = queue_->writer(kind.name);
           if (elsewhere) return elsewhere;
           return open_image_files(o_.imagename + "." + kind.name, header, pixel_format(o_.gridding.accuracy), o_.outformat);
@@ -585,7 +587,7 @@ class ImageRun : private ChannelSink {
   imager::ImageHeader header_;
   imager::UvwReach reach_;
   FieldNotes notes_;
-  std::unique_ptr<PrimaryBeamStage> primary_beam_;  ///< null where none is wanted
+  std::unique_ptr<PrimaryBeamStage> primary_beam_;  ///< null where neither images nor masks need it
   std::unique_ptr<TakenFiles> taken_;               ///< null where all images are made
   std::unique_ptr<CleanStage> clean_;               ///< until channels begin; null where nothing is cleaned here
   RunPlan plan_;

@@ -324,4 +324,28 @@ BOOST_AUTO_TEST_CASE(the_noise_of_masks_leaves_sources_out) {
   BOOST_TEST(std::abs(mask_noise(spikes, Image(side, side), nullptr, 1) / quiet - 1) < 0.03);  // of a thirtieth fewer pixels
 }
 
+/// Pixels beyond, ten times as noisy, do not count, before there is a mask and after.
+BOOST_AUTO_TEST_CASE(the_noise_of_masks_is_that_within_limits) {
+  Image image = observed({}, 9, scene), within(side, side), mask(side, side), inner(60, side), inner_mask(60, side);
+  for (int r = 0; r < side; ++r)
+    for (int c = 0; c < side; ++c) {
+      const bool is_within = c < 60;
+      if (r < 20 && c < 70) {
+        image.at(r, c) += 100;
+        mask.at(r, c) = 1;
+      }
+      if (!is_within) image.at(r, c) *= 10;
+      if (!is_within) continue;
+      within.at(r, c) = 1;
+      inner.at(r, c) = image.at(r, c);
+      inner_mask.at(r, c) = mask.at(r, c);
+    }
+  const Image none(side, side);
+  BOOST_TEST(mask_noise(image, mask, &within, 1) == mask_noise(inner, inner_mask, nullptr, 1));
+  BOOST_TEST(mask_noise(image, none, &within, 1) == mask_noise(inner, Image(60, side), nullptr, 1));
+  BOOST_TEST(mask_noise(image, mask, nullptr, 1) > 2 * mask_noise(image, mask, &within, 1));
+  BOOST_TEST(mask_noise(image, mask, &none, 1) == mask_noise(image, mask, nullptr, 1));
+  BOOST_TEST(mask_noise(image, within, &within, 1) == mask_noise(image, none, &within, 1));  // no pixel is outside
+}
+
 BOOST_AUTO_TEST_SUITE_END()

@@ -406,6 +406,21 @@ BOOST_AUTO_TEST_CASE(a_mask_of_its_own_making_holds_the_sources_and_the_componen
   BOOST_TEST(total(result.mask) < 0.5 * static_cast<double>(result.mask.pixel.size()));
 }
 
+BOOST_AUTO_TEST_CASE(masks_of_its_own_making_have_the_noise_of_where_it_is_wanted) {
+  const Image& dirty = scene().images.dirty[0];
+  Image corner(geometry.width, geometry.height);
+  for (int r = 0; r < 30; ++r) std::fill_n(corner.row(r), 40, 1.0);
+  CleanOptions options = deep();
+  options.automask = AutoMaskOptions{.sidelobe_threshold = 0, .fast_noise = false};
+  options.max_major_cycles = 0;
+  const auto noise = [&] { return cleaned(options).report.cycles.front().masked.threshold_jy / 5; };
+  const auto expected = [&](const Image* within) { return mask_noise(dirty, Image(dirty.width, dirty.height), within, 1); };
+  BOOST_TEST(std::abs(expected(&corner) / expected(nullptr) - 1) > 0.05);
+  BOOST_TEST(noise() == expected(nullptr), boost::test_tools::tolerance(1e-15));
+  options.noise_within = &corner;
+  BOOST_TEST(noise() == expected(&corner), boost::test_tools::tolerance(1e-15));
+}
+
 /// Once minor cycles go as deep as threshold, or nsigma, lets them.
 BOOST_AUTO_TEST_CASE(a_mask_that_hardly_grows_at_the_end_is_final) {
   for (const double nsigma : {0.0, 4.0})
