@@ -47,7 +47,8 @@ std::shared_ptr<const OpenSet> open_selected(const NamedSet& named, const Select
   opened->filled = std::make_shared<FilledData>(opened->selected.setups);
   for (const Setup& setup : opened->selected.setups) {
     try {
-      opened->recipes.push_back(stokes_recipe(setup.correlation_types, stokes));
+      opened->recipes.push_back(
+          stokes_recipe(setup.correlation_types, stokes, selection.either_hand ? Hands::either : Hands::both));
     } catch (const std::runtime_error& error) {
       throw std::runtime_error(path + ", DATA_DESC_ID " + std::to_string(setup.data_description) + ": " + error.what());
     }

@@ -53,7 +53,13 @@ struct Selection {
   /// fields that stand still themselves are then shifted to the first, and otherwise refused.
   enum class Moving { about_themselves, about_targets, shifted_to_middle };
   Moving moving = Moving::about_themselves;
-  /// FITS SPECSYS of the frame in which frequencies count, see parse_spectral_frame(); empty: that of the data.
+  /// What all fields follow with about_targets, whether they move or not: the name of a planet, or the path of an ephemeris;
+  /// empty: each what it is phased to.
+  std::string body = "";
+  /// Whether a sample of Stokes I of which one parallel hand cannot be used counts by the other, as CASA's pseudoI has it.
+  bool either_hand = false;
+  /// FITS SPECSYS of the frame in which frequencies count, see parse_spectral_frame(), or SOURCE: of what is followed, or else
+  /// of the field's ephemeris; empty: that of the data.
   std::string spectral_frame = "";
 
   /// The same with the expressions of one of the sets alone.

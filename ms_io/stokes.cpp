@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <stdexcept>
 #include <utility>
 
@@ -79,6 +80,18 @@ std::vector<std::complex<float>> factors(const std::vector<int>& types, Stokes w
                            listed(types) + (is_correlation ? "" : "; it needs " + needed_for(wanted)));
 }
 
+/// Of one parallel hand, where one alone is stored and Stokes I is not.
+std::optional<Stokes> only_hand(const std::vector<int>& types) {
+  const auto stored = [&](Stokes stokes) { return std::find(types.begin(), types.end(), code(stokes)) != types.end(); };
+  if (stored(Stokes::I)) return {};
+  for (const auto& [first, second] : {std::pair{Stokes::XX, Stokes::YY}, {Stokes::RR, Stokes::LL}}) {
+    if (stored(first) && stored(second)) return {};
+    if (stored(first)) return first;
+    if (stored(second)) return second;
+  }
+  return {};
+}
+
 /// 0 when x is finite, NaN otherwise.
 inline float probe(float x) {
   return x - x;
@@ -137,6 +150,46 @@ void form_pair(const StokesRecipe& recipe, const float* __restrict data, const u
 bool is_pair(const StokesRecipe& recipe) {
   return recipe.terms.size() == 1 && recipe.used.size() == 2 && recipe.share[0] == 1 && recipe.share[1] == 1 &&
          recipe.terms[0][0].imag() == 0 && recipe.terms[0][1].imag() == 0;
+}
+
+/// Stokes I of two correlations, or of one of them where the other cannot be used.
+void form_either(const StokesRecipe& recipe, const StoredSamples& stored, const StokesSamples& formed,
+                 imager::SampleCounts& counts) {
+  struct Hand {
+    std::complex<float> value;
+    float weight;
+    std::uint32_t flag, finite, weighted;
+
+    bool usable() const { return (flag == 0U) && finite != 0 && weighted != 0; }
+  };
+  const float uvw_probe = stored.uvw_is_finite ? 0.0F : std::numeric_limits<float>::quiet_NaN();
+  const auto hand = [&](std::size_t c, std::size_t k) {
+    const std::size_t at = c * recipe.correlations + recipe.used[k];
+    Hand one{stored.data[at], stored.weight[stored.weight_per_channel ? at : recipe.used[k]], stored.flag[at] ? 1U : 0U, 0, 0};
+    one.finite = probe(one.value.real()) + probe(one.value.imag()) + probe(one.weight) + uvw_probe == 0 ? 1U : 0U;
+    one.weighted = one.weight / 4 > 0 ? 1U : 0U;
+    return one;
+  };
+  Unusable unusable;
+  for (std::size_t c = 0; c < stored.channels; ++c) {
+    const Hand a = hand(c, 0), b = hand(c, 1);
+    std::complex<float>& visibility = formed.visibility[0][c];
+    float& weight = formed.weight[c];
+    if (a.usable() && b.usable()) {
+      const float low = std::min(a.weight, b.weight), high = std::max(a.weight, b.weight);
+      visibility = recipe.terms[0][0] * a.value + recipe.terms[0][1] * b.value;
+      weight = low / (1 + low / high);
+    } else if (a.usable() || b.usable()) {
+      const Hand& alone = a.usable() ? a : b;
+      visibility = alone.value;
+      weight = alone.weight / 4;
+    } else {
+      visibility = 0;
+      weight = 0;
+      unusable.count(a.flag | b.flag, a.finite & b.finite, a.weighted & b.weighted);
+    }
+  }
+  unusable.add_to(counts, stored.channels);
 }
 
 /// Otherwise channels are dealt with so many at a time, in arrays that stay in the cache.
@@ -244,7 +297,13 @@ std::string correlation_name(int correlation_type) {
                                                   : "code " + std::to_string(correlation_type);
 }
 
-StokesRecipe stokes_recipe(const std::vector<int>& correlation_types, const std::vector<Stokes>& wanted) {
+StokesRecipe stokes_recipe(const std::vector<int>& correlation_types, const std::vector<Stokes>& wanted, Hands hands) {
+  if (hands == Hands::either) {
+    if (const std::optional<Stokes> only = only_hand(correlation_types)) return stokes_recipe(correlation_types, {*only});
+    StokesRecipe recipe = stokes_recipe(correlation_types, {Stokes::I});
+    if (recipe.used.size() == 2) recipe.hands = Hands::either;
+    return recipe;
+  }
   StokesRecipe recipe;
   recipe.correlations = correlation_types.size();
   std::vector<std::vector<std::complex<float>>> all;  // [Stokes parameter][correlation]
@@ -263,6 +322,7 @@ StokesRecipe stokes_recipe(const std::vector<int>& correlation_types, const std:
 
 void form_stokes(const StokesRecipe& recipe, const StoredSamples& stored, const StokesSamples& formed,
                  imager::SampleCounts& counts) {
+  if (recipe.hands == Hands::either) return form_either(recipe, stored, formed, counts);
   switch (recipe.correlations) {
     case 1:
       return form<1>(recipe, stored, formed, counts);

@@ -15,6 +15,10 @@ namespace misfit::ms_io {
 /// `used` belongs to StokesRecipe.
 using StokesTerms = std::vector<std::complex<float>>;
 
+/// Which of the two correlations of a sum Stokes I takes a sample from: both, of which each must be usable; or, where one is
+/// not, the other alone.
+enum class Hands { both, either };
+
 /// How Stokes parameters are formed from the correlations of one polarisation setup, with
 ///   XX = I + Q, XY = U + iV, YX = U − iV, YY = I − Q;  RR = I + V, RL = Q + iU, LR = Q − iU, LL = I − V
 /// (Hamaker & Bregman 1996, for feeds along and across the meridian: correlations are taken as they are, parallactic angles are
@@ -25,11 +29,15 @@ struct StokesRecipe {
   std::vector<std::size_t> used;   ///< their indices, ascending
   std::vector<float> share;        ///< [used] 4 × the mean of |factor|²
   std::vector<StokesTerms> terms;  ///< [Stokes parameter][used]
+  Hands hands = Hands::both;       ///< either: there are two in use, each with the factor 1/2
 };
 
 /// The recipe for correlations given by casacore's Stokes codes (CORR_TYPE). A Stokes parameter is taken as it is where it is
-/// stored. Throws std::runtime_error, which lists the correlations there are, when one of `wanted` cannot be formed.
-StokesRecipe stokes_recipe(const std::vector<int>& correlation_types, const std::vector<imager::Stokes>& wanted);
+/// stored. Throws std::runtime_error, which lists the correlations there are, when one of `wanted` cannot be formed. With
+/// Hands::either Stokes I alone is wanted, for which one of XX, YY, RR and LL is enough: what is not polarised is the same in
+/// each, and its weight is that of I from one correlation, 1/(4 σ²).
+StokesRecipe stokes_recipe(const std::vector<int>& correlation_types, const std::vector<imager::Stokes>& wanted,
+                           Hands hands = Hands::both);
 
 /// "XX" for 9, and so on; "code 99" for a code that is no linear, circular or Stokes product.
 std::string correlation_name(int correlation_type);

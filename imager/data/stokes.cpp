@@ -29,7 +29,7 @@ Stokes leading(std::string_view text, const std::string& whole) {
   for (std::size_t letters = 2; letters > 0; --letters)
     for (std::size_t i = 0; i < names.size(); ++i)
       if (text.substr(0, letters) == names[i]) return at_index(i);
-  refuse(whole, "some of I Q U V RR RL LR LL XX XY YX YY, such as I, IQUV or XXYY");
+  refuse(whole, "some of I Q U V RR RL LR LL XX XY YX YY, such as I, IQUV or XXYY, or pseudoI");
 }
 
 bool lie_evenly(const std::vector<Stokes>& list) {
@@ -75,7 +75,14 @@ std::string stokes_names(const std::vector<Stokes>& list) {
   return text;
 }
 
+bool is_pseudo_i(const std::string& text) {
+  constexpr std::string_view name = "pseudoi";
+  return std::equal(text.begin(), text.end(), name.begin(), name.end(),
+                    [](char letter, char small) { return letter == small || letter == small - 'a' + 'A'; });
+}
+
 std::vector<Stokes> parse_stokes(const std::string& text) {
+  if (is_pseudo_i(text)) return {Stokes::I};
   std::vector<Stokes> list;
   for (std::string_view rest = text; !rest.empty();) {
     if (rest.front() == ',' || rest.front() == ' ') {
@@ -87,7 +94,7 @@ std::vector<Stokes> parse_stokes(const std::string& text) {
     list.push_back(next);
     rest.remove_prefix(stokes_name(next).size());
   }
-  if (list.empty()) refuse(text, "some of I Q U V RR RL LR LL XX XY YX YY, such as I, IQUV or XXYY");
+  if (list.empty()) refuse(text, "some of I Q U V RR RL LR LL XX XY YX YY, such as I, IQUV or XXYY, or pseudoI");
   if (lie_evenly(list)) return list;
   std::sort(list.begin(), list.end());
   if (!lie_evenly(list))

@@ -30,7 +30,10 @@ std::string stokes_names(const std::vector<Stokes>& list);
 
 /// The list that a text such as "I", "IQUV", "RRLL" or "XX,YY" names. Throws std::invalid_argument that says what was expected
 /// where it names none, one twice, or some that do not lie evenly on a FITS axis (I Q V). Those that do in another order than
-/// that of the text are in theirs.
+/// that of the text are in theirs. "pseudoI" is I, see is_pseudo_i().
 std::vector<Stokes> parse_stokes(const std::string& text);
+
+/// Whether a text, in capitals or not, asks for CASA's pseudoI: Stokes I also of samples that have one parallel hand alone.
+bool is_pseudo_i(const std::string& text);
 
 }  // namespace misfit::imager

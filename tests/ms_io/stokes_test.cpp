@@ -212,6 +212,59 @@ BOOST_AUTO_TEST_CASE(extreme_values_do_not_overflow) {
   BOOST_TEST(formed.counts.used == 1U);
 }
 
+BOOST_AUTO_TEST_CASE(either_hand_alone_makes_stokes_i) {
+  for (const std::vector<int>& types : std::vector<std::vector<int>>{{9, 10, 11, 12}, {12, 9}, {5, 8}, {8, 7, 6, 5}}) {
+    const StokesRecipe recipe = stokes_recipe(types, {Stokes::I}, Hands::either);
+    BOOST_TEST_REQUIRE(recipe.used.size() == 2U);
+    constexpr std::size_t states = 4;  // usable, flagged, not finite, without weight
+    for (std::size_t one = 0; one < states; ++one)
+      for (std::size_t other = 0; other < states; ++other)
+        for (const bool per_channel : {false, true}) {
+          const std::size_t n = types.size();
+          std::vector<std::complex<float>> data(n, {7, 7});
+          std::vector<float> weights(n, 0);  // crossed hands are not looked at
+          const std::unique_ptr<bool[]> flag(new bool[n]());
+          std::fill_n(flag.get(), n, true);
+          const std::array<std::complex<float>, 2> values{{{3, 1}, {1, -2}}};
+          for (std::size_t h = 0; h < 2; ++h) {
+            const std::size_t k = recipe.used[h], state = h == 0 ? one : other;
+            data[k] = state == 2 ? std::complex<float>(1, std::numeric_limits<float>::infinity()) : values[h];
+            weights[k] = state == 3 ? 0.0F : h == 0 ? 2.0F : 6.0F;
+            flag[k] = state == 1;
+          }
+          std::complex<float> visibility;
+          float weight = -1;
+          StokesSamples out;
+          out.visibility[0] = &visibility;
+          out.weight = &weight;
+          imager::SampleCounts counts;
+          form_stokes(recipe, {data.data(), flag.get(), weights.data(), per_channel, true, 1}, out, counts);
+          BOOST_TEST_CONTEXT(one << " and " << other) {
+            // 1/(4 σ²) with σ² of I: 1/(1/w + 1/w') of both, w/4 of one.
+            const std::complex<float> expected = one == 0 && other == 0 ? std::complex<float>(2, -0.5F)
+                                                 : one == 0             ? values[0]
+                                                 : other == 0           ? values[1]
+                                                                        : std::complex<float>(0);
+            BOOST_TEST(visibility == expected);
+            BOOST_TEST(weight == (one == 0 && other == 0 ? 1.5F : one == 0 ? 0.5F : other == 0 ? 1.5F : 0.0F));
+            BOOST_TEST(counts.used == (one == 0 || other == 0 ? 1U : 0U));
+            BOOST_TEST(counts.used + counts.flagged + counts.nonfinite + counts.zero_weight == 1U);
+          }
+        }
+  }
+}
+
+BOOST_AUTO_TEST_CASE(of_one_hand_that_is_stored_either_is_that) {
+  for (const int type : {5, 8, 9, 12}) {
+    const Formed formed(stokes_recipe({type}, {Stokes::I}, Hands::either), {{3, -1}}, {2});
+    BOOST_TEST(formed.visibility[0] == std::complex<float>(3, -1));
+    BOOST_TEST(formed.weight == 0.5F);
+  }
+  BOOST_CHECK_THROW(stokes_recipe({10, 11}, {Stokes::I}, Hands::either), std::runtime_error);
+  const Formed stored(stokes_recipe({1}, {Stokes::I}, Hands::either), {{3, -1}}, {2});
+  BOOST_TEST(stored.weight == 0.5F);
+}
+
 BOOST_AUTO_TEST_SUITE_END()
 
 }  // namespace misfit::ms_io
