@@ -68,7 +68,7 @@ double frame_ratio_of(FrameRatio& ratio, const StoredRows& stored, std::size_t r
 }  // namespace
 
 FrameRatio& ColumnReader::frame_ratio(const Setup& setup, int observation) {
-  std::unique_ptr<FrameRatio>& ratio = ratio_[{setup.spectral_frame, observation}];
+  std::unique_ptr<FrameRatio>& ratio = ratio_[{setup.spectral_frame, setup.field, observation}];
   if (!ratio) ratio = std::make_unique<FrameRatio>(source_->set, source_->path, source_->selected, setup, observation);
   return *ratio;
 }

@@ -3,6 +3,7 @@
 #include <map>
 #include <memory>
 #include <string>
+#include <tuple>
 #include <utility>
 
 #include "ms_io/row_columns_internal.h"
@@ -73,7 +74,8 @@ class ColumnReader {
   bool several_observations_ = false;
   casacore::ScalarColumn<double> time_;
   bool needs_time_ = false;
-  std::map<std::pair<std::string, int>, std::unique_ptr<FrameRatio>> ratio_;  ///< by the window's frame and OBSERVATION_ID
+  /// By the window's frame, the field, see Setup::field, and OBSERVATION_ID.
+  std::map<std::tuple<std::string, int, int>, std::unique_ptr<FrameRatio>> ratio_;
   casacore::ScalarColumn<bool> flag_row_;
   bool flag_row_is_dear_ = false;
   Cells<double> uvw_;

@@ -71,14 +71,20 @@ Ephemeris::Ephemeris(const std::string& path) : path_(path) {
     direction_.push_back({std::cos(dec_rad[row]) * std::cos(ra_rad[row]), std::cos(dec_rad[row]) * std::sin(ra_rad[row]),
                           std::sin(dec_rad[row])});
   }
+  const casacore::TableRecord& keywords = table.keywordSet();
+  geocentric_ = frame_ != MDirection::TOPO && !(keywords.isDefined("GeoDist") && keywords.asDouble("GeoDist") != 0);
+  const auto column = [&](const char* name, const char* usual_unit, const char* wanted_unit) {
+    return table.tableDesc().isColumn(name) ? values_of(table, name, usual_unit, wanted_unit) : std::vector<double>();
+  };
+  rho_m_ = column("Rho", "AU", "m");
+  recession_m_s_ = column("RadVel", "AU/d", "m/s");
 }
 
 void Ephemeris::fail(const std::string& what) const {
   throw casacore::AipsError("its ephemeris " + path_ + " " + what);
 }
 
-/// Lagrange's polynomial through the rows about the time, normalised.
-MDirection Ephemeris::at(double utc_mjd) const {
+Ephemeris::Stencil Ephemeris::stencil(double utc_mjd) const {
   if (!(utc_mjd >= mjd_.front() && utc_mjd <= mjd_.back())) {
     std::ostringstream what;
     what << std::setprecision(11) << "goes from MJD " << mjd_.front() << " to " << mjd_.back() << ", not to " << utc_mjd;
@@ -86,17 +92,34 @@ MDirection Ephemeris::at(double utc_mjd) const {
   }
   const std::size_t points = std::min<std::size_t>(4, mjd_.size());
   const auto next = static_cast<std::size_t>(std::upper_bound(mjd_.begin(), mjd_.end(), utc_mjd) - mjd_.begin());
-  const std::size_t first = std::min(next - std::min<std::size_t>(next, points / 2), mjd_.size() - points);
-  std::array<double, 3> sum{};
-  for (std::size_t row = first; row < first + points; ++row) {
+  Stencil made{std::min(next - std::min<std::size_t>(next, points / 2), mjd_.size() - points), {}};
+  for (std::size_t row = made.first; row < made.first + points; ++row) {
     double weight = 1;
-    for (std::size_t other = first; other < first + points; ++other)
+    for (std::size_t other = made.first; other < made.first + points; ++other)
       if (other != row) weight *= (utc_mjd - mjd_[other]) / (mjd_[row] - mjd_[other]);
-    for (std::size_t i = 0; i < 3; ++i) sum[i] += weight * direction_[row][i];
+    made.weight.push_back(weight);
   }
+  return made;
+}
+
+/// A polynomial through unit vectors, normalised.
+MDirection Ephemeris::at(double utc_mjd) const {
+  const Stencil rows = stencil(utc_mjd);
+  std::array<double, 3> sum{};
+  for (std::size_t row = 0; row < rows.weight.size(); ++row)
+    for (std::size_t i = 0; i < 3; ++i) sum[i] += rows.weight[row] * direction_[rows.first + row][i];
   casacore::MVDirection direction(sum[0], sum[1], sum[2]);
   direction.adjust();
   return {direction, frame_};
+}
+
+double Ephemeris::interpolated(const std::vector<double>& column, const char* name, double utc_mjd) const {
+  if (column.empty()) fail("has no column " + std::string(name) + ", expected one");
+  const Stencil rows = stencil(utc_mjd);
+  double sum = 0;
+  for (std::size_t row = 0; row < rows.weight.size(); ++row) sum += rows.weight[row] * column[rows.first + row];
+  if (!std::isfinite(sum)) fail("has values of " + std::string(name) + " that are not finite, expected finite ones");
+  return sum;
 }
 
 casacore::MSField without_ephemerides(const casacore::MSField& field) {

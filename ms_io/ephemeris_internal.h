@@ -4,6 +4,7 @@
 #include <casacore/ms/MeasurementSets/MSField.h>
 
 #include <array>
+#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -11,7 +12,7 @@ namespace misfit::ms_io {
 
 /// Where a body of the solar system goes: a table of right ascensions and declinations such as CASA keeps beside FIELD. Between
 /// its rows directions are cubic polynomials of time, through the four rows about it: where the body goes by δ between rows,
-/// they err by some 0.02 δ⁴, and straight lines, as casacore draws them, by δ²/8.
+/// they err by some 0.02 δ⁴, and straight lines, as casacore draws them, by δ²/8. So are its other columns.
 class Ephemeris {
  public:
   /// Reads the table at `path`. Throws casacore::AipsError that names it and what was expected where it does not have two rows
@@ -20,14 +21,30 @@ class Ephemeris {
 
   /// Seen from the middle of the Earth, or from where the table says. Throws casacore::AipsError outside the table's times.
   casacore::MDirection at(double utc_mjd) const;
+  /// Whether it is seen from the middle of the Earth.
+  bool geocentric() const { return geocentric_; }
+  /// Rho, from there. Throws what at() does, and where the table has no such column.
+  double distance_m(double utc_mjd) const { return interpolated(rho_m_, "Rho", utc_mjd); }
+  /// RadVel, positive away from there. Throws what distance_m() does.
+  double recession_m_s(double utc_mjd) const { return interpolated(recession_m_s_, "RadVel", utc_mjd); }
 
  private:
+  /// Rows about a time, and Lagrange's polynomials through them at that time.
+  struct Stencil {
+    std::size_t first = 0;
+    std::vector<double> weight;
+  };
+
   [[noreturn]] void fail(const std::string& what) const;
+  Stencil stencil(double utc_mjd) const;
+  double interpolated(const std::vector<double>& column, const char* name, double utc_mjd) const;
 
   std::string path_;
   casacore::MDirection::Types frame_;
+  bool geocentric_ = true;
   std::vector<double> mjd_;                       ///< [row], ascending
   std::vector<std::array<double, 3>> direction_;  ///< [row], unit vectors
+  std::vector<double> rho_m_, recession_m_s_;     ///< [row]; empty: there is no such column
 };
 
 /// FIELD without EPHEMERIS_ID. casacore opens the tables of all its fields, selected or not, and gives up FIELD where one is

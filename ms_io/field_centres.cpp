@@ -23,12 +23,12 @@ constexpr const char* remedies =
 class CentreSearch {
  public:
   CentreSearch(const casacore::MeasurementSet& set, const std::string& path, const Selection& selection, SelectedRows& selected)
-      : set_(set), path_(path), selection_(selection), selected_(selected), fields_(set, path) {}
+      : set_(set), path_(path), selection_(selection), selected_(selected), fields_(set, path, body_in(selected)) {}
 
   std::optional<imager::SkyDirection> settle() {
     std::set<int> moving;
     for (const auto& [field, row] : selected_.first_row_of_field)
-      if (fields_.motion(field) != Motion::none) moving.insert(field);
+      if (selected_.body || fields_.motion(field) != Motion::none) moving.insert(field);
     if (!moving.empty()) times_ = times_of(set_, path_, selected_, moving);
     for (const auto& [field, times] : times_) follow_motion(field, times.used);
     if (selection_.phase_centre) return lead_all([&](int, const Moment&) { return *selection_.phase_centre; });
@@ -41,6 +41,11 @@ class CentreSearch {
   using Nowhere = std::optional<imager::SkyDirection>;
   using Centre = FieldCentre (FieldDirections::*)(int, const Moment&);
 
+  static std::shared_ptr<const Body> body_in(SelectedRows& selected) {
+    if (!selected.body_name.empty()) selected.body = make_body(selected.body_name);
+    return selected.body;
+  }
+
   std::string label(int field) const { return fields_.full_label(field); }
   std::uint64_t row_of(int field) const { return selected_.first_row_of_field.at(field); }
   Moment moment(int field, double time_s) const { return {time_s, row_of(field)}; }
@@ -50,20 +55,37 @@ class CentreSearch {
     return *selected_.beam_rad;
   }
 
-  /// How far a field moves, at some of its times, and what is to be said of that.
+  /// Where the centre of an image of the field's rows is, unless they are all shifted to one direction.
+  imager::SkyDirection moving_centre(int field, double time_s) {
+    const FieldCentre there =
+        selected_.body ? fields_.target(field, moment(field, time_s)) : fields_.centre(field, moment(field, time_s));
+    return there.direction;
+  }
+
+  /// How far a field, or what it follows, moves at some of its times, and what is to be said of that.
   void follow_motion(int field, const std::vector<double>& times) {
     constexpr std::size_t enough = 64;
     selected_.moving[field] = {times.front(), times.back()};
-    const imager::SkyDirection first = fields_.centre(field, moment(field, times.front())).direction;
+    const imager::SkyDirection first = moving_centre(field, times.front());
     const std::size_t step = 1 + (times.size() - 1) / enough;
     for (std::size_t t = times.size() - 1; t > 0; t -= std::min(t, step)) {
-      const double moved_rad = separation_rad(first, fields_.centre(field, moment(field, times[t])).direction);
+      const double moved_rad = separation_rad(first, moving_centre(field, times[t]));
       if (moved_rad > selected_.moved_rad) farthest_ = field;
       selected_.moved_rad = std::max(selected_.moved_rad, moved_rad);
     }
     if (fields_.motion(field) == Motion::earth) require_one_telescope(field);
+    if (selected_.body) say_place_doubt(moment(field, times.front()));
+    if (fields_.motion(field) == Motion::none) return;
     for (std::string& doubt : doubts_of_motion(set_, fields_, field, moment(field, times.front())))
       selected_.remarks.push_back(std::move(doubt));
+  }
+
+  void say_place_doubt(const Moment& first) {
+    const std::string doubt = fields_.place_doubt(first);
+    const std::string remark =
+        selected_.body_name + " is seen from the middle of the Earth, as it is not from its surface, since " + doubt;
+    std::vector<std::string>& said = selected_.remarks;
+    if (!doubt.empty() && std::find(said.begin(), said.end(), remark) == said.end()) said.push_back(remark);
   }
 
   void require_one_telescope(int field) const {
@@ -176,7 +198,7 @@ class CentreSearch {
     if (times_.empty())
       throw std::runtime_error("--phasecenter TRACKFIELD: no selected field of " + path_ +
                                " moves; expected one with an ephemeris or NUM_POLY above 0, or no --phasecenter");
-    require_one(&FieldDirections::target);
+    if (!selected_.body) require_one(&FieldDirections::target);
     selected_.follows_field = selected_.follows_target = true;
     return lead_all([&](int field, const Moment& when) { return fields_.target(field, when).direction; });
   }

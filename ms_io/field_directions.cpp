@@ -10,6 +10,7 @@
 #include <array>
 #include <cmath>
 #include <sstream>
+#include <utility>
 
 #include "imager/numerics/constants.h"
 #include "ms_io/celestial_frame_internal.h"
@@ -22,10 +23,6 @@ namespace misfit::ms_io {
 namespace {
 
 using casacore::MDirection;
-
-bool is_planet(MDirection::Types frame) {
-  return frame >= MDirection::MERCURY && frame < MDirection::COMET;
-}
 
 Motion motion_of(MDirection::Types frame) {
   switch (frame) {
@@ -76,22 +73,18 @@ void require_direction(const casacore::ArrayColumn<double>& cells, const std::ve
   throw casacore::AipsError(message.str());
 }
 
-/// Throws what says so where the place of a planet, in whose frame a direction is, cannot be had.
-MDirection from_planet(const MDirection& direction, const MDirection::Ref& to) {
-  try {
-    return MDirection::Convert(direction, to)();
-  } catch (const casacore::AipsError&) {
-    throw casacore::AipsError("it is phased to " + MDirection::showType(direction.getRef().getType()) +
-                              ", whose place casacore takes from the tables DE200 or DE405, which are not in the folder of "
-                              "its data, or do not reach that time; expected these tables there, or a field with an "
-                              "ephemeris or a direction of its own");
-  }
+/// An offset along the circle of declination and along the meridian, `true_angle` of its right ascension too.
+MDirection beside(const MDirection& direction, const MDirection& offset, bool true_angle) {
+  casacore::MVDirection moved = direction.getValue();
+  const casacore::Vector<double> angles = offset.getAngle().getValue();
+  if (angles(0) != 0 || angles(1) != 0) moved.shift(angles(0), angles(1), true_angle);
+  return {moved, direction.getRef()};
 }
 
 }  // namespace
 
-FieldDirections::FieldDirections(const casacore::MeasurementSet& set, const std::string& path)
-    : set_(set), path_(path), plain_(without_ephemerides(set.field())), columns_(plain_) {
+FieldDirections::FieldDirections(const casacore::MeasurementSet& set, const std::string& path, std::shared_ptr<const Body> body)
+    : set_(set), path_(path), body_(std::move(body)), plain_(without_ephemerides(set.field())), columns_(plain_) {
   constexpr const char* ephemeris = "EPHEMERIS_ID";
   if (set.field().tableDesc().isColumn(ephemeris))
     ephemeris_id_ = casacore::ScalarColumn<int>(set.field(), ephemeris).getColumn().tovector();
@@ -182,11 +175,7 @@ const Ephemeris* FieldDirections::ephemeris_of(casacore::rownr_t row) {
 
 MDirection FieldDirections::on_ephemeris(const Ephemeris& ephemeris, const MDirection& offset, const Moment& when) const {
   const casacore::MEpoch utc = casacore::MEpoch::Convert(epoch(when.time_s), casacore::MEpoch::UTC)();
-  const MDirection followed = ephemeris.at(utc.get("d").getValue());
-  casacore::MVDirection direction = followed.getValue();
-  const casacore::Vector<double> angles = offset.getAngle().getValue();
-  if (angles(0) != 0 || angles(1) != 0) direction.shift(angles(0), angles(1), true);  // true angles, as casacore has it
-  return {direction, followed.getRef()};
+  return beside(ephemeris.at(utc.get("d").getValue()), offset, true);  // as casacore has it
 }
 
 MDirection FieldDirections::equatorial(const MDirection& direction, const Moment& when) {
@@ -199,18 +188,23 @@ MDirection FieldDirections::equatorial(const MDirection& direction, const Moment
     here.frame = still;
     return measure_of(in_frame(here, "FK5"));  // where headers of images have it, too
   }
+  const std::string name = MDirection::showType(frame);
+  Place& place = place_of(when);
+  if (motion_of(frame) == Motion::earth && !place.doubt.empty())
+    throw casacore::AipsError("its frame " + name + " turns with the Earth, and " + place.doubt);
+  if (is_body_name(name))
+    return beside(make_body(name)->seen_from(place.frame, epoch(when.time_s)), direction, false);  // as casacore has it
+  return MDirection::Convert(direction, MDirection::Ref(MDirection::J2000, place.frame))();
+}
+
+FieldDirections::Place& FieldDirections::place_of(const Moment& when) {
   auto known = places_.find(when.row);
   if (known == places_.end()) {
     const ObservingPlace from = observing_place(set_, observation_of(set_, when.row));
     known = places_.emplace(when.row, Place{{epoch(when.time_s), from.position}, from.doubt}).first;
   }
-  const std::string name = MDirection::showType(frame);
-  Place& place = known->second;
-  if (motion_of(frame) == Motion::earth && !place.doubt.empty())
-    throw casacore::AipsError("its frame " + name + " turns with the Earth, and " + place.doubt);
-  place.frame.resetEpoch(epoch(when.time_s));
-  const MDirection::Ref j2000(MDirection::J2000, place.frame);
-  return is_planet(frame) ? from_planet(direction, j2000) : MDirection::Convert(direction, j2000)();
+  known->second.frame.resetEpoch(epoch(when.time_s));
+  return known->second;
 }
 
 FieldCentre FieldDirections::seen(int field, const MDirection& direction, const Moment& when) {
@@ -232,10 +226,25 @@ FieldCentre FieldDirections::centre(int field, const Moment& when) {
 
 FieldCentre FieldDirections::target(int field, const Moment& when) {
   const casacore::rownr_t row = row_of(field);
+  if (body_)
+    return translated("cannot find what the image of field " + std::to_string(field) + " of " + path_ + " moves with",
+                      [&] { return seen(field, body_->seen_from(place_of(when).frame, epoch(when.time_s)), when); });
   return translated("cannot find the ephemeris of field " + std::to_string(field) + " of " + path_, [&] {
     const Ephemeris* const ephemeris = ephemeris_of(row);
     const MDirection no_offset(casacore::MVDirection(0.0, 0.0), MDirection::J2000);
     return ephemeris == nullptr ? centre(field, when) : seen(field, on_ephemeris(*ephemeris, no_offset, when), when);
+  });
+}
+
+Recession FieldDirections::recession(int field, const Moment& when) {
+  const casacore::rownr_t row = row_of(field);
+  return translated("cannot find the velocity of field " + std::to_string(field) + " of " + path_, [&] {
+    const casacore::MEpoch at = epoch(when.time_s);
+    if (body_) return body_->recession(at);
+    if (const Ephemeris* const ephemeris = ephemeris_of(row))
+      return recession_of(*ephemeris, casacore::MEpoch::Convert(at, casacore::MEpoch::UTC)().get("d").getValue());
+    throw casacore::AipsError(
+        "it has no ephemeris; expected one, or --phasecenter with the name of a planet or the path of an ephemeris");
   });
 }
 

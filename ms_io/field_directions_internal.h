@@ -8,11 +8,12 @@
 
 #include <cstdint>
 #include <map>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "imager/data/geometry.h"
-#include "ms_io/ephemeris_internal.h"
+#include "ms_io/body_internal.h"
 
 namespace misfit::ms_io {
 
@@ -38,7 +39,8 @@ struct Moment {
 /// std::runtime_error that names the field where there is none of that number, or its direction cannot be found.
 class FieldDirections {
  public:
-  FieldDirections(const casacore::MeasurementSet& set, const std::string& path);
+  /// What images of the fields move with is `body`, or else what each follows.
+  FieldDirections(const casacore::MeasurementSet& set, const std::string& path, std::shared_ptr<const Body> body = nullptr);
 
   /// Of PHASE_DIR.
   Motion motion(int field) const;
@@ -50,8 +52,13 @@ class FieldDirections {
   double since_origin_s(int field, double time_s) const;
   /// Where the field is phased to: PHASE_DIR, which is an offset where the field has an ephemeris.
   FieldCentre centre(int field, const Moment& when);
-  /// Its ephemeris without that offset; where it has none, centre().
+  /// Where the body is, as seen from the field's telescope; else the field's ephemeris without that offset or, where it has
+  /// none, centre().
   FieldCentre target(int field, const Moment& when);
+  /// Of the body, else by the field's ephemeris. Throws where there is neither.
+  Recession recession(int field, const Moment& when);
+  /// Why the place of the field's telescope is not known, see ObservingPlace; empty where it is.
+  std::string place_doubt(const Moment& when) { return place_of(when).doubt; }
   /// Where the antennas of the field point: REFERENCE_DIR, taken as PHASE_DIR is.
   imager::SkyDirection pointing(int field, const Moment& when);
 
@@ -83,10 +90,12 @@ class FieldDirections {
   casacore::MDirection on_ephemeris(const Ephemeris& ephemeris, const casacore::MDirection& offset, const Moment& when) const;
   FieldCentre seen(int field, const casacore::MDirection& direction, const Moment& when);
   casacore::MDirection equatorial(const casacore::MDirection& direction, const Moment& when);
+  Place& place_of(const Moment& when);
 
   const casacore::MeasurementSet& set_;
   std::string path_;
-  casacore::MSField plain_;  ///< without ephemerides
+  std::shared_ptr<const Body> body_;  ///< null: each follows its own
+  casacore::MSField plain_;           ///< without ephemerides
   casacore::MSFieldColumns columns_;
   std::vector<int> ephemeris_id_;          ///< [field]; empty: none has one
   casacore::MEpoch::Ref time_reference_;   ///< of TIME

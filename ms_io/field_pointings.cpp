@@ -27,7 +27,7 @@ class Pointings {
       : open_set_(open_set),
         centre_(centre),
         dish_m_(smallest_dish_m(open_set.set, open_set.path)),
-        fields_(open_set.set, open_set.path) {}
+        fields_(open_set.set, open_set.path, open_set.selected.body) {}
 
   /// One direction or, where the field moves, three in the course of time.
   void add(int field, std::uint64_t row) {

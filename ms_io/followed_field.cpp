@@ -22,7 +22,7 @@ namespace {
 class FollowedField {
  public:
   explicit FollowedField(const OpenSet& from)
-      : from_(from), field_(first_field(from.set, from.selected)), fields_(from.set, from.path) {}
+      : from_(from), field_(first_field(from.set, from.selected)), fields_(from.set, from.path, from.selected.body) {}
 
   casacore::MEpoch first() const { return fields_.epoch(moving_span(from_.selected).first_s); }
   casacore::MEpoch last() const { return fields_.epoch(moving_span(from_.selected).last_s); }
@@ -30,9 +30,12 @@ class FollowedField {
   /// Whether it tells where it goes at a time: rates do while they are observed.
   bool goes_on(const casacore::MEpoch& when) const {
     const TimeSpan span = moving_span(from_.selected);
-    return !fields_.goes_by_rates(field_) || (time_s(when) >= span.first_s && time_s(when) <= span.last_s);
+    return from_.selected.body || !fields_.goes_by_rates(field_) ||
+           (time_s(when) >= span.first_s && time_s(when) <= span.last_s);
   }
-  std::string label() const { return "field " + fields_.label(field_) + " of " + from_.path; }
+  std::string label() const {
+    return from_.selected.body ? from_.selected.body_name : "field " + fields_.label(field_) + " of " + from_.path;
+  }
 
   double time_s(const casacore::MEpoch& when) const { return fields_.time_s(when); }
   imager::SkyDirection at(const casacore::MEpoch& when) {
@@ -59,6 +62,7 @@ double beam_of(const OpenSet& set) {
 }
 
 void require_one_target(const OpenSets& sets) {
+  if (sets.front()->selected.body) return;
   FollowedField first(*sets.front());
   for (std::size_t s = 1; s < sets.size(); ++s) {
     FollowedField other(*sets[s]);

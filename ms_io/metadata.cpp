@@ -66,7 +66,7 @@ std::string utc_text(double utc_s) {
 
 void centre_on_field(const casacore::MeasurementSet& set, const std::string& path, const SelectedRows& selected, double time_s,
                      imager::Observation& observation) {
-  FieldDirections fields(set, path);
+  FieldDirections fields(set, path, selected.body);
   const FieldCentre centre = followed_centre(fields, selected, first_field(set, selected), {time_s, selected.first_row});
   observation.phase_centre = centre.direction;
   observation.moving_at = utc_text(utc_s(centre.observed));

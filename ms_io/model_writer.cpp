@@ -53,7 +53,7 @@ std::string identity_of(const casacore::Table& set, const SelectedRows& selected
   Fingerprint all;
   if (const auto& centre = selected.phase_centre)
     all.add(std::vector<double>{centre->ra_rad, centre->dec_rad}).add(centre->frame);
-  if (selected.follows_target) all.add(std::string("TRACKFIELD"));
+  if (selected.follows_target) all.add(selected.body ? selected.body_name : std::string("TRACKFIELD"));
   for (std::size_t s = 0; s < setups.size(); ++s) {
     all.add(setups[s].value())
         .add(static_cast<std::uint64_t>(selected.setups[s].data_description))

@@ -14,6 +14,7 @@
 #include <utility>
 #include <vector>
 
+#include "ms_io/capitals.h"
 #include "ms_io/metadata_internal.h"
 #include "ms_io/observing_place_internal.h"
 
@@ -41,11 +42,10 @@ double radius_m(const Point& point) {
 
 /// Capitals and digits of a telescope's name, by which it is known.
 std::string bare(const std::string& name) {
-  std::string capitals;
+  std::string letters;
   for (const char c : name)
-    if (std::isalnum(static_cast<unsigned char>(c)) != 0)
-      capitals += static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
-  return capitals;
+    if (std::isalnum(static_cast<unsigned char>(c)) != 0) letters += c;
+  return capitals(letters);
 }
 
 /// Telescopes that casacore knows by another name.

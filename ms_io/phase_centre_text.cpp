@@ -1,14 +1,15 @@
 #include <casacore/casa/Quanta/MVAngle.h>
 #include <casacore/casa/Quanta/Quantum.h>
-#include <casacore/measures/Measures/MDirection.h>
 #include <casacore/tables/Tables/ScalarColumn.h>
+#include <casacore/tables/Tables/Table.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <optional>
 #include <sstream>
 
+#include "ms_io/body_internal.h"
+#include "ms_io/capitals.h"
 #include "ms_io/field_centres_internal.h"
 #include "ms_io/metadata_internal.h"
 #include "ms_io/sexagesimal.h"
@@ -16,11 +17,6 @@
 
 namespace misfit::ms_io {
 namespace {
-
-std::string capitals(std::string text) {
-  for (char& letter : text) letter = static_cast<char>(std::toupper(static_cast<unsigned char>(letter)));
-  return text;
-}
 
 /// FITS RADESYS of a frame's name in CASA; empty for others.
 std::string frame_named(const std::string& of) {
@@ -134,8 +130,6 @@ std::optional<Meant> field_meant(const std::string& text, const std::string& pat
 }
 
 [[noreturn]] void refuse(const std::string& text, const std::vector<std::string>& paths) {
-  casacore::MDirection::Types type = casacore::MDirection::J2000;
-  const bool body = casacore::MDirection::getType(type, capitals(one_line(text))) && type >= casacore::MDirection::MERCURY;
   std::string sets;
   casacore::rownr_t count = 0;
   for (const std::string& path : paths) {
@@ -144,20 +138,15 @@ std::optional<Meant> field_meant(const std::string& text, const std::string& pat
   }
   const std::string fields =
       std::string(paths.size() > 1 ? "one of their " : "one of its ") + std::to_string(count) + " fields by id or name";
-  if (body)
-    throw std::runtime_error("--phasecenter '" + text +
-                             "' is a body of the solar system, whose place is not looked up; expected TRACKFIELD, which images "
-                             "fields that follow an ephemeris about what they follow, a direction, or " +
-                             fields);
-  throw std::runtime_error("--phasecenter '" + text + "' is neither a direction nor a field of " + sets +
+  throw std::runtime_error("--phasecenter '" + text +
+                           "' is neither a direction, a planet nor the table of an ephemeris, and no field of " + sets +
                            "; expected J2000, ICRS or B1950 with angles such as 12h30m49.4s +12d23m28s or 187.7deg 12.39deg, "
-                           "TRACKFIELD, or " +
+                           "TRACKFIELD, a planet such as JUPITER, the path of an ephemeris, or " +
                            fields);
 }
 
-/// A field of the first set that has it.
-Meant meaning_of(const std::string& text, const std::vector<std::string>& paths) {
-  if (const auto direction = direction_in(text)) return {*direction};
+/// The first set that has such a field has the say.
+std::optional<Meant> field_of_sets(const std::string& text, const std::vector<std::string>& paths) {
   std::optional<Meant> first;
   for (const std::string& path : paths) {
     const std::optional<Meant> one = field_meant(text, path);
@@ -170,24 +159,52 @@ Meant meaning_of(const std::string& text, const std::vector<std::string>& paths)
                         " is " + angle_words(apart_rad) + " away");
     }
   }
-  if (!first) refuse(text, paths);
-  return *first;
+  return first;
+}
+
+std::optional<Meant> meaning_of(const std::string& text, const std::vector<std::string>& paths) {
+  if (const auto direction = direction_in(text)) return Meant{*direction};
+  return field_of_sets(text, paths);
+}
+
+/// What names a planet, which goes before fields that are called so; in capitals.
+std::string follow_planet(const std::string& text, const std::vector<std::string>& paths, Selection& selection) {
+  const bool field = field_of_sets(text, paths).has_value();
+  if (field)
+    selection.phase_centre_remark =
+        "--phasecenter '" + text +
+        "' is taken for the body of the solar system, not for the field of that name; its id means the field";
+  return capitals(one_line(text));
+}
+
+bool is_table(const std::string& path) {
+  return !path.empty() && casacore::Table::isReadable(path);
 }
 
 }  // namespace
 
 imager::SkyDirection parse_phase_centre(const std::string& text, const std::string& path) {
-  return meaning_of(text, {path}).direction;
+  const std::optional<Meant> meant = meaning_of(text, {path});
+  if (!meant) refuse(text, {path});
+  return meant->direction;
 }
 
 Selection phased_to(Selection selection, const std::string& text, const std::vector<std::string>& paths) {
-  if (capitals(one_line(text)) == "TRACKFIELD") {
+  const bool own = capitals(one_line(text)) == "TRACKFIELD", planet = is_body_name(one_line(text));
+  if (own || planet) {
     selection.moving = Selection::Moving::about_targets;
+    if (planet) selection.body = follow_planet(text, paths, selection);
     return selection;
   }
-  const Meant meant = meaning_of(text, paths);
-  selection.phase_centre = meant.direction;
-  selection.phase_centre_remark = meant.remark;
+  if (const std::optional<Meant> meant = meaning_of(text, paths)) {
+    selection.phase_centre = meant->direction;
+    selection.phase_centre_remark = meant->remark;
+    return selection;
+  }
+  if (!is_table(text)) refuse(text, paths);
+  selection.moving = Selection::Moving::about_targets;
+  selection.body = text;
+  translated("cannot follow --phasecenter " + text, [&] { make_body(text); });
   return selection;
 }
 

@@ -11,6 +11,7 @@
 #include "ms_io/field_centres_internal.h"
 #include "ms_io/selection_internal.h"
 #include "ms_io/setup_internal.h"
+#include "ms_io/spectral_frame_internal.h"
 #include "ms_io/table_access_internal.h"
 
 namespace misfit::ms_io {
@@ -40,12 +41,12 @@ struct TimedRow {
 class BlockBuilder {
  public:
   BlockBuilder(const SetupTable& table, const ParsedSelection& parsed, const Selection& selection, const RowUse& use)
-      : table_(table),
-        parsed_(parsed),
-        use_(use),
-        by_field_(selection.phase_centre || selection.moving == Selection::Moving::about_targets) {
+      : table_(table), parsed_(parsed), use_(use) {
+    result_.by_field = selection.phase_centre || selection.moving == Selection::Moving::about_targets ||
+                       selection.spectral_frame == source_frame;
     result_.phase_centre = selection.phase_centre;
     result_.spectral_frame = selection.spectral_frame;
+    result_.body_name = selection.body;
   }
 
   /// `uvw_m` is looked at only where the selection asks for it.
@@ -53,7 +54,7 @@ class BlockBuilder {
     if (!parsed_.has_field(at.field)) return;
     if (!parsed_.uv.empty() && !has_uv(uvw_m, at.data_description)) return;
     if (!parsed_.has_row(at.row)) return;
-    const std::size_t setup = setup_of({at.data_description, by_field_ ? at.field : 0});
+    const std::size_t setup = setup_of({at.data_description, result_.by_field ? at.field : 0});
     if (setup == not_selected) return;
     ++result_.rows;
     ++result_.setups[setup].rows_of_field[at.field];
@@ -122,7 +123,6 @@ class BlockBuilder {
   const SetupTable& table_;
   const ParsedSelection& parsed_;
   RowUse use_;
-  bool by_field_;  ///< each is shifted in a way of its own
   SelectedRows result_;
   std::map<int, TimedRow> first_of_field_;
   std::map<Key, std::size_t> setup_;

@@ -6,10 +6,12 @@
 #include <cstddef>
 #include <cstdint>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "ms_io/body_internal.h"
 #include "ms_io/field_shift_internal.h"
 #include "ms_io/measurement_set.h"
 
@@ -21,10 +23,10 @@ struct Run {
   std::uint64_t count = 0;
 };
 
-/// One DATA_DESC_ID of the selection: what its rows have in common. Of one field where each has a phase shift of its own.
+/// One DATA_DESC_ID of the selection: what its rows have in common.
 struct Setup {
   int data_description = 0;
-  int field = 0;                               ///< where visibilities are shifted; else 0
+  int field = 0;                               ///< where SelectedRows::by_field; else 0
   FieldShift shift;                            ///< from where its rows are phased to
   std::map<int, std::uint64_t> rows_of_field;  ///< selected
   int spectral_window = 0;
@@ -61,17 +63,20 @@ struct TimeSpan {
 /// The selection, resolved into what is to be read.
 struct SelectedRows {
   std::vector<Setup> setups;
+  bool by_field = false;          ///< whether each setup is of one field: visibilities are shifted, or go by its ephemeris
   std::vector<BlockRows> blocks;  ///< in the order of the table, as far as several setups allow
   std::uint64_t rows = 0;
   std::uint64_t samples = 0;                         ///< rows × selected channels
   std::uint64_t first_row = 0;                       ///< the earliest row selected that has a time, wherever it stands
   std::map<int, std::uint64_t> first_row_of_field;   ///< the earliest, for the fields that have selected rows
-  std::map<int, TimeSpan> moving;                    ///< the fields of these whose phase centres move
+  std::map<int, TimeSpan> moving;                    ///< the fields of these whose phase centres move, or that follow what does
   double moved_rad = 0;                              ///< the farthest that one does
   std::optional<double> beam_rad;                    ///< see finest_beam_rad(); where it was needed
   std::optional<imager::SkyDirection> phase_centre;  ///< where the visibilities are shifted to
   bool follows_field = false;                        ///< instead the image moves with the field of the first row
-  bool follows_target = false;                       ///< namely with that field's ephemeris, without offset
+  bool follows_target = false;                       ///< namely with `body`, or that field's ephemeris, without offset
+  std::shared_ptr<const Body> body;                  ///< what all fields follow; null: each its own
+  std::string body_name;                             ///< "JUPITER"; or the path of its ephemeris
   std::vector<std::string> remarks;                  ///< what users should know of phase centres, in sentences
   std::string spectral_frame;                        ///< in which frequencies count; empty: that of each window
 

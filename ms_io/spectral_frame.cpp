@@ -2,8 +2,11 @@
 #include <casacore/tables/Tables/ScalarColumn.h>
 
 #include <array>
+#include <cmath>
 #include <stdexcept>
 
+#include "imager/numerics/constants.h"
+#include "ms_io/capitals.h"
 #include "ms_io/celestial_frame_internal.h"
 #include "ms_io/field_centres_internal.h"
 #include "ms_io/observing_place_internal.h"
@@ -32,12 +35,11 @@ constexpr std::array<FrameName, 9> frames{{{"", "SOURCE"},
 }  // namespace
 
 std::string parse_spectral_frame(const std::string& name) {
-  std::string capitals = name, known;
-  for (char& c : capitals)
-    if (c >= 'a' && c <= 'z') c = static_cast<char>(c - 'a' + 'A');
+  const std::string wanted = capitals(name);
+  std::string known;
   for (const FrameName& frame : frames) {
     if (frame.casa[0] == '\0') continue;
-    if (capitals == frame.casa) return frame.fits;
+    if (wanted == frame.casa) return frame.fits;
     known += (known.empty() ? "" : ", ") + std::string(frame.casa);
   }
   throw std::invalid_argument("spectral frame '" + name + "'; expected one of " + known);
@@ -54,38 +56,45 @@ std::string spectral_frame_of(int code) {
 }
 
 FrameRatio::FrameRatio(const casacore::MeasurementSet& set, const std::string& path, const SelectedRows& selected,
-                       const Setup& setup, int observation) {
+                       const Setup& setup, int observation)
+    : selected_(selected), fields_(set, path, selected.body) {
   if (setup.spectral_frame == selected.spectral_frame) {
     ratio_ = 1;
     return;
   }
-  if (setup.spectral_frame.empty() || setup.spectral_frame == "SOURCE")
+  if (setup.spectral_frame.empty() || setup.spectral_frame == source_frame)
     throw std::runtime_error(path + ": spectral window " + std::to_string(setup.spectral_window) + " has frequencies " +
                              (setup.spectral_frame.empty() ? "of no frame that is known"
                                                            : "at rest in the source, whose velocity it does not tell") +
                              "; expected a frame that can be converted to " + selected.spectral_frame);
   translated("cannot find the frame of frequencies of " + path, [&] {
-    const std::uint64_t row = selected.first_row;
-    frame_ = casacore::MeasFrame(casacore::ScalarMeasColumn<casacore::MEpoch>(set, "TIME")(row));  // shared with `convert_`
+    field_ = selected.by_field ? setup.field : first_field(set, selected);
+    row_ = selected.first_row_of_field.at(field_);
+    const Moment first{casacore::ScalarColumn<double>(set, "TIME")(row_), row_};
+    frame_ = casacore::MeasFrame(fields_.epoch(first.time_s));  // shared with `convert_`
     frame_.set(observing_place(set, observation).position);
-    const int field = first_field(set, selected);
-    frame_.set(measure_of(selected.phase_centre.value_or(field_centre(set, path, field, row).direction)));
-    if (selected.follows_field) moving_ = std::make_unique<Towards>(set, path, selected, field);
+    frame_.set(measure_of(selected.phase_centre.value_or(fields_.centre(field_, first).direction)));
+    const auto to = selected.spectral_frame == source_frame ? fields_.recession(field_, first).from
+                                                            : spectral_frame_code(selected.spectral_frame);
     convert_.emplace(casacore::MFrequency::Ref(spectral_frame_code(setup.spectral_frame), frame_),
-                     casacore::MFrequency::Ref(spectral_frame_code(selected.spectral_frame), frame_));
+                     casacore::MFrequency::Ref(to, frame_));
   });
+}
+
+/// From where a source's velocity is measured from to itself; else 1.
+double FrameRatio::doppler(double time_s) {
+  if (selected_.spectral_frame != source_frame) return 1;
+  const double of_light = fields_.recession(field_, {time_s, row_}).m_s / imager::speed_of_light_m_s;
+  return std::sqrt((1 + of_light) / (1 - of_light));
 }
 
 double FrameRatio::at(double time_s) {
   if (!convert_ || (ratio_ != 0 && time_s == time_s_)) return ratio_;
   constexpr double any_hz = 1e9;
   frame_.resetEpoch(casacore::MVEpoch(casacore::Quantity(time_s, "s")));
-  if (moving_) {
-    const Moment moment{time_s, moving_->selected.first_row};
-    const FieldCentre centre = followed_centre(moving_->fields, moving_->selected, moving_->field, moment);
-    frame_.resetDirection(measure_of(centre.direction));
-  }
-  ratio_ = (*convert_)(any_hz).getValue().getValue() / any_hz;
+  if (selected_.follows_field)
+    frame_.resetDirection(measure_of(followed_centre(fields_, selected_, field_, {time_s, row_}).direction));
+  ratio_ = (*convert_)(any_hz).getValue().getValue() / any_hz * doppler(time_s);
   time_s_ = time_s;
   return ratio_;
 }

@@ -21,13 +21,19 @@ std::string spectral_frame_of(int code);
 /// The code of such a frame; Undefined where casacore has none.
 casacore::MFrequency::Types spectral_frame_code(const std::string& spectral_frame);
 
+/// FITS SPECSYS of what is at rest in the source, as SelectedRows::spectral_frame asks for it.
+constexpr const char* source_frame = "SOURCE";
+
 /// By how much frequencies of a spectral window differ in another frame, at the place of one row of OBSERVATION and towards a
-/// direction: all by one factor, that of Doppler's shift, which changes with time. The set and `selected` must outlive it.
+/// direction: all by one factor, that of Doppler's shift, which changes with time. To the source's frame it is that of the
+/// velocity v at which the source recedes, √((1 + v/c)/(1 − v/c)), and that of the way to where v is measured from. The set and
+/// `selected` must outlive it.
 class FrameRatio {
  public:
   FrameRatio(const FrameRatio&) = delete;
   FrameRatio& operator=(const FrameRatio&) = delete;
-  /// Throws std::runtime_error, which begins with `path`, where the window's frame is not known or is that of the source.
+  /// Throws std::runtime_error, which begins with `path`, where the window's frame is not known or is that of the source, or
+  /// the source's velocity is not known.
   FrameRatio(const casacore::MeasurementSet& set, const std::string& path, const SelectedRows& selected, const Setup& setup,
              int observation);
 
@@ -35,18 +41,14 @@ class FrameRatio {
   double at(double time_s);
 
  private:
-  /// Where a field is that the image moves with.
-  struct Towards {
-    Towards(const casacore::MeasurementSet& set, const std::string& path, const SelectedRows& rows, int of)
-        : fields(set, path), selected(rows), field(of) {}
+  double doppler(double time_s);
 
-    FieldDirections fields;
-    const SelectedRows& selected;
-    int field;
-  };
+  const SelectedRows& selected_;
+  int field_ = 0;          ///< of the rows; or of the first
+  std::uint64_t row_ = 0;  ///< its first
+  FieldDirections fields_;
 
   casacore::MeasFrame frame_;
-  std::unique_ptr<Towards> moving_;                       ///< null where the direction stays
   std::optional<casacore::MFrequency::Convert> convert_;  ///< none where the frames are the same
   double time_s_ = 0;                                     ///< of ratio_
   double ratio_ = 0;                                      ///< 0: not known yet

@@ -11,9 +11,10 @@ namespace misfit::ms_io {
 namespace {
 
 /// The setup with those of its channels that, as `window` has them, may come into a range: the telescope's velocity
-/// changes by 61 km/s in a year and a day, and interpolation takes a channel beyond.
-Setup between(const Setup& setup, const SpectralWindow& window, const FrequencyRange& range) {
-  constexpr double doppler = 61e3 / 2.99792458e8;
+/// changes by 61 km/s in a year and a day, and that of a source, on its orbit about the Sun, by some 300 km/s more at the most;
+/// and interpolation takes a channel beyond.
+Setup between(const Setup& setup, const SpectralWindow& window, const FrequencyRange& range, bool of_source) {
+  const double doppler = (of_source ? 400e3 : 61e3) / 2.99792458e8;
   Setup part = setup;
   part.channels.clear();
   part.frequency_hz.clear();
@@ -30,11 +31,14 @@ Setup between(const Setup& setup, const SpectralWindow& window, const FrequencyR
   return part;
 }
 
+double time_s(const OpenSet& set, std::uint64_t row) {
+  return translated("cannot read TIME of " + set.path, [&] { return casacore::ScalarColumn<double>(set.set, "TIME")(row); });
+}
+
 }  // namespace
 
 double first_time_s(const OpenSet& set) {
-  return translated("cannot read TIME of " + set.path,
-                    [&] { return casacore::ScalarColumn<double>(set.set, "TIME")(set.selected.first_row); });
+  return time_s(set, set.selected.first_row);
 }
 
 SpectralWindow window_at_first_row(const OpenSet& from, const Setup& setup) {
@@ -42,8 +46,10 @@ SpectralWindow window_at_first_row(const OpenSet& from, const Setup& setup) {
   for (const Run& run : setup.channels)
     for (std::uint64_t c = 0; c < run.count; ++c) window.channel.push_back(static_cast<int>(run.first + c));
   if (from.selected.spectral_frame.empty()) return window;
-  const double ratio = FrameRatio(from.set, from.path, from.selected, setup, observation_of(from.set, from.selected.first_row))
-                           .at(first_time_s(from));
+  const bool of_source = from.selected.spectral_frame == source_frame;  // of which one field may not tell at another's times
+  const std::uint64_t row = of_source ? from.selected.first_row_of_field.at(setup.field) : from.selected.first_row;
+  const double ratio =
+      FrameRatio(from.set, from.path, from.selected, setup, observation_of(from.set, row)).at(time_s(from, row));
   for (double& hz : window.frequency_hz) hz *= ratio;
   for (double& hz : window.channel_width_hz) hz *= ratio;
   return window;
@@ -54,11 +60,12 @@ std::shared_ptr<const OpenSet> channels_between(const OpenSet& set, const Freque
   const auto part = std::make_shared<OpenSet>(set);
   SelectedRows& selected = part->selected;
   selected.rows = selected.samples = 0;
+  const bool of_source = selected.spectral_frame == source_frame;
   for (Setup& setup : selected.setups) {
     const SpectralWindow window = window_at_first_row(set, setup);
     Setup before;
-    if (counted) before = between(setup, window, *counted);
-    setup = between(setup, window, range);
+    if (counted) before = between(setup, window, *counted, of_source);
+    setup = between(setup, window, range, of_source);
     if (!before.channels.empty()) setup.uncounted = {before.first_channel(), before.channel_span()};
   }
   const auto without = [&](const BlockRows& block) { return selected.setups[block.setup].channels.empty(); };

@@ -2,6 +2,7 @@
 #include <set>
 
 #include "ms_io/filled_data_internal.h"
+#include "ms_io/model_writer.h"
 #include "tests/ms_io/small_set.h"
 
 namespace misfit::ms_io {

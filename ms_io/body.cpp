@@ -1,0 +1,108 @@
+#include <casacore/measures/Measures/MCDirection.h>
+#include <casacore/measures/Measures/MCEpoch.h>
+#include <casacore/measures/Measures/MCPosition.h>
+#include <casacore/measures/Measures/MeasConvert.h>
+
+#include "ms_io/body_internal.h"
+#include "ms_io/planets_internal.h"
+
+namespace misfit::ms_io {
+namespace {
+
+using casacore::MDirection;
+
+double utc_mjd(const casacore::MEpoch& when) {
+  return casacore::MEpoch::Convert(when, casacore::MEpoch::UTC)().get("d").getValue();
+}
+
+/// From the middle of the Earth to the observer, in metres and along the axes of J2000. Aberration turns a direction and its
+/// opposite alike, so that half their difference is free of it but for 1e-8.
+casacore::MVPosition observer_m(const casacore::MeasFrame& frame) {
+  const casacore::MVPosition here =
+      casacore::MPosition::Convert(*dynamic_cast<const casacore::MPosition*>(frame.position()), casacore::MPosition::ITRF)()
+          .getValue();
+  const double radius_m = here.getLength().getValue("m");
+  if (radius_m == 0) return here;
+  MDirection::Convert to_sky(MDirection::Ref(MDirection::ITRF, frame), MDirection::Ref(MDirection::J2000, frame));
+  const casacore::MVDirection up(here), down(-here);
+  casacore::MVPosition axis(to_sky(up).getValue());
+  axis -= casacore::MVPosition(to_sky(down).getValue());
+  axis.adjust();
+  axis *= radius_m;
+  return axis;
+}
+
+/// What an ephemeris tells of.
+class TabledBody : public Body {
+ public:
+  explicit TabledBody(const std::string& path) : ephemeris_(path) {}
+
+  Recession recession(const casacore::MEpoch& when) const override { return recession_of(ephemeris_, utc_mjd(when)); }
+
+ protected:
+  Place place(const casacore::MEpoch& when) const override {
+    const double mjd = utc_mjd(when);
+    return {ephemeris_.at(mjd), ephemeris_.geocentric() ? ephemeris_.distance_m(mjd) : 0};
+  }
+
+ private:
+  Ephemeris ephemeris_;
+};
+
+/// A body of the tables of JPL.
+class Planet : public Body {
+ public:
+  explicit Planet(MDirection::Types which) : which_(which) {}
+
+  /// The change of the distance that light crosses, over some minutes about the time.
+  Recession recession(const casacore::MEpoch& when) const override {
+    constexpr double step_s = 100, day_s = 86400;
+    const double tdb = tdb_mjd(when);
+    const double later_m = planet_place(which_, tdb + step_s / day_s).distance_m;
+    return {(later_m - planet_place(which_, tdb - step_s / day_s).distance_m) / (2 * step_s), casacore::MFrequency::GEO};
+  }
+
+ protected:
+  Place place(const casacore::MEpoch& when) const override {
+    const PlanetPlace there = planet_place(which_, tdb_mjd(when));
+    return {there.direction, there.distance_m};
+  }
+
+ private:
+  static double tdb_mjd(const casacore::MEpoch& when) {
+    return casacore::MEpoch::Convert(when, casacore::MEpoch::TDB)().get("d").getValue();
+  }
+
+  MDirection::Types which_;
+};
+
+}  // namespace
+
+Recession recession_of(const Ephemeris& ephemeris, double utc_mjd) {
+  return {ephemeris.recession_m_s(utc_mjd), ephemeris.geocentric() ? casacore::MFrequency::GEO : casacore::MFrequency::TOPO};
+}
+
+MDirection Body::seen_from(const casacore::MeasFrame& frame, const casacore::MEpoch& when) const {
+  const Place there = place(when);
+  const auto own = MDirection::castType(there.direction.getRef().getType());
+  const MDirection direction = own == MDirection::J2000 || own == MDirection::ICRS
+                                   ? there.direction
+                                   : MDirection::Convert(there.direction, MDirection::Ref(MDirection::J2000, frame))();
+  if (there.distance_m == 0) return direction;
+  casacore::MVPosition from_here(direction.getValue());
+  from_here *= there.distance_m;
+  from_here -= observer_m(frame);
+  from_here.adjust();
+  return {casacore::MVDirection(from_here), direction.getRef()};
+}
+
+bool is_body_name(const std::string& name) {
+  return planet_named(name).has_value();
+}
+
+std::shared_ptr<const Body> make_body(const std::string& name) {
+  if (const auto planet = planet_named(name)) return std::make_shared<Planet>(*planet);
+  return std::make_shared<TabledBody>(name);
+}
+
+}  // namespace misfit::ms_io
