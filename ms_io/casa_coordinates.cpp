@@ -49,7 +49,11 @@ casacore::StokesCoordinate stokes_coordinate(const std::vector<imager::Stokes>& 
 casacore::SpectralCoordinate spectral_coordinate(const imager::ImageHeader& header) {
   const imager::SpectralAxis& axis = header.spectral;
   const double rest_hz = axis.rest_frequency_hz > 0 ? axis.rest_frequency_hz : header.observation.frequency_hz;
-  return {spectral_frame_code(axis.frame), axis.reference_hz, axis.step_hz(), 0, rest_hz};
+  const casacore::MFrequency::Types frame = spectral_frame_code(axis.frame);
+  if (!axis.in_wavelength || axis.channels == 1) return {frame, axis.reference_hz, axis.step_hz(), 0, rest_hz};
+  casacore::Vector<double> listed(static_cast<std::size_t>(axis.channels));
+  for (int plane = 0; plane < axis.channels; ++plane) listed[static_cast<std::size_t>(plane)] = axis.frequency_hz(plane);
+  return {frame, listed, rest_hz};
 }
 
 casacore::ObsInfo obs_info(const imager::Observation& observation, const imager::SkyDirection& phase_centre) {
@@ -100,6 +104,23 @@ bool says_nothing(std::string name) {
   return name.empty() || name.rfind("linear", 0) == 0 || name.rfind("pixel", 0) == 0 || name.rfind("axis", 0) == 0;
 }
 
+bool lie_on(const imager::SpectralAxis& axis, const casacore::Vector<double>& listed_hz) {
+  for (std::size_t k = 0; k < listed_hz.size(); ++k) {
+    const int plane = static_cast<int>(k);
+    if (!(std::abs(listed_hz[k] - axis.frequency_hz(plane)) < 1e-3 * axis.width_hz(plane))) return false;
+  }
+  return true;
+}
+
+/// Of frequencies that are listed, the evenly spaced wavelengths from the first to the last.
+imager::SpectralAxis through_ends_in_wavelength(imager::SpectralAxis axis, const casacore::Vector<double>& listed_hz) {
+  const double first = listed_hz[0], last = listed_hz[listed_hz.size() - 1];
+  axis.in_wavelength = true;
+  axis.reference_hz = first;
+  axis.increment_hz = first * (1 - first / last) / static_cast<double>(listed_hz.size() - 1);
+  return axis;
+}
+
 imager::SpectralAxis spectral_axis_of(casacore::SpectralCoordinate spectral, int channels, const std::string& path) {
   spectral.setWorldAxisUnits(casacore::Vector<casacore::String>(1, "Hz"));
   imager::SpectralAxis axis;
@@ -109,10 +130,11 @@ imager::SpectralAxis spectral_axis_of(casacore::SpectralCoordinate spectral, int
   axis.frame = spectral_frame_of(spectral.frequencySystem(false));
   axis.rest_frequency_hz = spectral.restFrequency();
   const casacore::Vector<double> listed = spectral.worldValues();
-  for (std::size_t k = 0; k < listed.size(); ++k)
-    if (!(std::abs(listed[k] - axis.frequency_hz(static_cast<int>(k))) < 1e-3 * axis.width_hz()))
-      refuse(path, "the frequencies of its planes are not evenly spaced");
-  return axis;
+  if (lie_on(axis, listed)) return axis;
+  const imager::SpectralAxis in_wavelength = through_ends_in_wavelength(axis, listed);
+  if (!lie_on(in_wavelength, listed))
+    refuse(path, "the frequencies of its planes are evenly spaced neither in frequency nor in wavelength");
+  return in_wavelength;
 }
 
 std::vector<imager::Stokes> stokes_of(const casacore::StokesCoordinate& coordinate, const std::string& path) {
@@ -157,8 +179,8 @@ imager::Observation observation_of(const casacore::ObsInfo& info, const imager::
   observation.observer = info.observer();
   const casacore::MVEpoch date = info.obsDate().getValue();
   if (date.get() > 0) observation.date_obs = casacore::MVTime(date).string(casacore::MVTime::FITS, 9);
-  observation.frequency_hz = axis.frequency_hz(0) + 0.5 * (axis.channels - 1) * axis.increment_hz;
-  observation.bandwidth_hz = axis.channels * axis.width_hz();
+  observation.frequency_hz = axis.band().middle_hz();
+  observation.bandwidth_hz = axis.band().width_hz();
   observation.spectral_frame = axis.frame;
   return observation;
 }

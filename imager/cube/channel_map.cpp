@@ -88,19 +88,8 @@ class Ladder {
   double widest_hz_ = 0;
 };
 
-/// From the lower to the upper edge of a plane; adjacent planes meet at the same number.
-struct PlaneEdges {
-  double low_hz, high_hz;
-
-  PlaneEdges(const SpectralAxis& axis, int plane)
-      : low_hz(axis.reference_hz + (plane - 0.5) * axis.increment_hz),
-        high_hz(axis.reference_hz + (plane + 0.5) * axis.increment_hz) {
-    if (low_hz > high_hz) std::swap(low_hz, high_hz);
-  }
-};
-
 PlaneChannels nearest(const SpectralAxis& axis, int plane, const Ladder& ladder, const Channels& channels) {
-  const PlaneEdges edges(axis, plane);
+  const FrequencyBand edges = axis.planes(plane, 1);  // adjacent planes meet at the same number
   auto [first, end] = ladder.within(edges.low_hz, edges.high_hz);
   if (first == end) {
     const std::optional<std::size_t> step = ladder.covering(axis.frequency_hz(plane));
@@ -118,14 +107,15 @@ PlaneChannels nearest(const SpectralAxis& axis, int plane, const Ladder& ladder,
 }
 
 PlaneChannels linear(const SpectralAxis& axis, int plane, const Ladder& ladder) {
-  const PlaneEdges edges(axis, plane);
-  const double middle = axis.frequency_hz(plane);
+  const FrequencyBand edges = axis.planes(plane, 1);  // adjacent planes meet at the same number
+  const double middle = axis.in_wavelength ? edges.middle_hz() : axis.frequency_hz(plane);
+  const double step_hz = axis.in_wavelength ? std::copysign(edges.width_hz(), axis.increment_hz) : axis.increment_hz;
   const std::optional<double> width = ladder.mean_width_hz(edges.low_hz, edges.high_hz);
   if (!width) return {};
-  const double places = std::max(1.0, std::round(axis.width_hz() / *width));
+  const double places = std::max(1.0, std::round(std::abs(step_hz) / *width));
   double first = 0, end = places;
   if (places > 1) {  // beside the channels there is nothing, however far a plane reaches
-    const auto place_of = [&](double hz) { return ((hz - middle) / axis.increment_hz + 0.5) * places; };
+    const auto place_of = [&](double hz) { return ((hz - middle) / step_hz + 0.5) * places; };
     const auto [low_hz, high_hz] = ladder.reach_hz();
     const auto [one, other] = std::minmax({place_of(low_hz), place_of(high_hz)});
     first = std::max(first, std::floor(one) - 1);
@@ -133,7 +123,7 @@ PlaneChannels linear(const SpectralAxis& axis, int plane, const Ladder& ladder) 
   }
   PlaneChannels taken;
   for (double i = first; i < end; ++i) {
-    const double hz = middle + ((i + 0.5) / places - 0.5) * axis.increment_hz;
+    const double hz = middle + ((i + 0.5) / places - 0.5) * step_hz;
     if (const std::optional<ChannelTap> tap = ladder.interpolated(hz)) {
       taken.frequency_hz.push_back(hz);
       taken.tap.push_back(*tap);

@@ -17,7 +17,8 @@ constexpr std::size_t rows_dealt_at_once = 256;
 /// Of a window: fewer where a plane takes several channels.
 std::size_t rows_at_once_of(const CubeSampling& sampling, const std::vector<double>& channel_width_hz) {
   constexpr auto rows = static_cast<double>(samples_gathered_at_once);
-  const double plane_hz = sampling.axis.width_hz();
+  const SpectralAxis& axis = sampling.axis;
+  const double plane_hz = std::max(axis.width_hz(), axis.width_hz(axis.channels - 1));
   double narrowest_hz = plane_hz;
   for (const double width_hz : channel_width_hz) narrowest_hz = std::min(narrowest_hz, width_hz);
   return static_cast<std::size_t>(plane_hz > 0 ? std::max(1.0, rows * narrowest_hz / plane_hz) : rows);

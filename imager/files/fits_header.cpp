@@ -14,6 +14,14 @@ namespace {
 constexpr double rad_per_deg = pi / 180;
 constexpr const char* moving_key = "TRACKFLD";
 
+/// Of planes that are evenly spaced in wavelength, the optical velocity.
+FitsAxis frequency_axis(const SpectralAxis& axis) {
+  if (!axis.in_wavelength) return {"FREQ", "Hz", 1, axis.reference_hz, axis.step_hz()};
+  const double of_line = axis.rest_frequency_hz / axis.reference_hz;
+  return {"VOPT", "m/s", 1, speed_of_light_m_s * (of_line - 1),
+          -speed_of_light_m_s * of_line * axis.increment_hz / axis.reference_hz};
+}
+
 void write_axes(FitsFile& file, const ImageHeader& header) {
   const ImageGeometry& g = header.geometry;
   const std::array<FitsAxis, 4> axes{{
@@ -21,7 +29,7 @@ void write_axes(FitsFile& file, const ImageHeader& header) {
        -g.cell_rad / rad_per_deg},
       {"DEC--SIN", "deg", g.centre_row() + 1 - g.centre.m / g.cell_height_rad(), g.phase_centre.dec_rad / rad_per_deg,
        g.cell_height_rad() / rad_per_deg},
-      {"FREQ", "Hz", 1, header.spectral.reference_hz, header.spectral.step_hz()},
+      frequency_axis(header.spectral),
       stokes_axis(header.stokes),
   }};
   for (std::size_t i = 0; i < axes.size(); ++i) {
@@ -47,7 +55,7 @@ void write_spectral_frame(FitsFile& file, const ImageHeader& header) {
   const double rest_hz = axis.rest_frequency_hz > 0 ? axis.rest_frequency_hz : header.observation.frequency_hz;
   file.write_number("RESTFRQ", rest_hz, "Hz");
   const int frame = axis.frame == "LSRK" ? 1 : axis.frame == "BARYCENT" ? 2 : axis.frame == "TOPOCENT" ? 3 : 0;
-  if (axis.channels == 1 || frame == 0 || !(rest_hz > 0)) return;
+  if (axis.channels == 1 || axis.in_wavelength || frame == 0 || !(rest_hz > 0)) return;
   file.write_integer("VELREF", 256 + frame, "1 LSR, 2 HEL, 3 OBS; + 256 radio");
   file.write_number("ALTRVAL", speed_of_light_m_s * (1 - axis.reference_hz / rest_hz), "m/s, radio velocity of plane 1");
   file.write_number("ALTRPIX", 1);
@@ -73,8 +81,8 @@ Observation read_observation(const FitsFile& file, const SpectralAxis& axis) {
   observation.date_obs = file.text("DATE-OBS");
   observation.moving_at = file.text(moving_key);
   observation.spectral_frame = axis.frame;
-  observation.frequency_hz = axis.reference_hz + 0.5 * (axis.channels - 1) * axis.increment_hz;
-  observation.bandwidth_hz = axis.channels * axis.width_hz();
+  observation.frequency_hz = axis.band().middle_hz();
+  observation.bandwidth_hz = axis.band().width_hz();
   return observation;
 }
 

@@ -71,9 +71,11 @@ class Spectral {
 
   void set(SpectralAxis& spectral) const {
     const bool even = in_frequency_ || quantity_ == Quantity::frequency || quantity_ == Quantity::radio;
-    if (spectral.channels > 1 && !even)
-      file_.fail("its " + std::to_string(spectral.channels) + " planes of " + axis_.type +
-                 " are not evenly spaced in frequency; expected an axis of FREQ or VRAD");
+    spectral.in_wavelength = spectral.channels > 1 && !even;
+    if (spectral.in_wavelength && quantity_ == Quantity::relativistic)
+      file_.fail(
+          "its " + std::to_string(spectral.channels) + " planes of " + axis_.type +
+          " are evenly spaced neither in frequency nor in wavelength; expected an axis of FREQ, VRAD, VOPT, ZOPT or WAVE");
     const double pixels = 1 - axis_.reference_pixel;  // from the reference to the first plane
     if (even) {
       spectral.increment_hz = axis_.increment * slope_at(axis_.reference_value);

@@ -12,6 +12,8 @@
 #include <limits>
 #include <map>
 
+#include "imager/files/fits_image_reader.h"
+#include "imager/files/fits_image_writer.h"
 #include "ms_io/casa_coordinates_internal.h"
 #include "tests/example_cube.h"
 #include "tests/temporary_folder.h"
@@ -128,6 +130,25 @@ BOOST_AUTO_TEST_CASE(the_header_comes_back) {
       BOOST_TEST(read.observation.object == "M87");
       BOOST_TEST(read.observation.date_obs.find("2026-01-31T12:00:00") == 0);
     }
+}
+
+BOOST_AUTO_TEST_CASE(planes_evenly_spaced_in_wavelength_come_back) {
+  const TemporaryFolder folder;
+  for (const double increment_hz : {1e6, -4e6}) {
+    ImageHeader header = example_header(9);
+    header.spectral.in_wavelength = true;
+    header.spectral.increment_hz = increment_hz;
+    header.spectral.rest_frequency_hz = 1.42e9;
+    ms_io::create_casa_image(header, folder / "a.image")->finish();
+    create_fits_image(header, folder / "a.fits", PixelFormat::float32)->finish();
+    const auto casa = ms_io::open_casa_image(folder / "a.image");
+    const auto fits = open_fits_image(folder / "a.fits", Grids::any);
+    for (const SpectralAxis& read : {casa->header().spectral, fits->header().spectral}) {
+      BOOST_TEST(read.in_wavelength);
+      for (int plane = 0; plane < 9; ++plane)  // a few roundings of frequencies of 1e9 Hz
+        BOOST_TEST(std::abs(read.frequency_hz(plane) - header.spectral.frequency_hz(plane)) < 1e-5);
+    }
+  }
 }
 
 BOOST_AUTO_TEST_CASE(planes_never_written_are_nan_and_have_no_beam) {

@@ -15,14 +15,14 @@ namespace {
 std::string described(const imager::SpectralAxis& axis) {
   const std::string first = significant(axis.reference_hz, 9) + " Hz", frame = axis.frame.empty() ? "" : " in " + axis.frame;
   if (axis.channels == 1) return "plane of " + significant(axis.width_hz(), 6) + " Hz at " + first + frame;
-  return std::to_string(axis.channels) + " planes, " + significant(axis.increment_hz, 6) + " Hz apart, from " + first + " on" +
-         frame;
+  return std::to_string(axis.channels) + " planes, " + significant(axis.increment_hz, 6) + " Hz apart" +
+         (axis.in_wavelength ? " and evenly spaced in wavelength" : "") + ", from " + first + " on" + frame;
 }
 
 bool same_planes(const imager::SpectralAxis& a, const imager::SpectralAxis& b) {
   const auto near = [&](int plane) { return std::abs(b.plane_of(a.frequency_hz(plane)) - plane) < 0.1; };
   const bool frames = a.frame.empty() || b.frame.empty() || a.frame == b.frame;
-  return frames && a.channels == b.channels && near(0) && near(a.channels - 1);
+  return frames && a.channels == b.channels && near(0) && near(a.channels / 2) && near(a.channels - 1);
 }
 
 }  // namespace

@@ -8,9 +8,8 @@
 namespace misfit::tools {
 
 ms_io::FrequencyRange ChannelVisibilities::frequencies_of(const imager::PlaneRange& range) const {
-  const double first = sampling_->axis.frequency_hz(range.first);
-  const double last = sampling_->axis.frequency_hz(range.first + range.count - 1), half = 0.5 * sampling_->axis.width_hz();
-  return {std::min(first, last) - half, std::max(first, last) + half};
+  const imager::FrequencyBand band = sampling_->axis.planes(range.first, range.count);
+  return {band.low_hz, band.high_hz};
 }
 
 /// What of the set such channels need; null where it has nothing for them. What channels before them need too is counted for

@@ -149,6 +149,7 @@ json spectral_json(const std::optional<imager::SpectralAxis>& axis) {
   return {{"frame", axis->frame},
           {"reference_hz", axis->reference_hz},
           {"increment_hz", axis->increment_hz},
+          {"in_wavelength", axis->in_wavelength},
           {"channels", axis->channels},
           {"rest_frequency_hz", axis->rest_frequency_hz > 0 ? json(axis->rest_frequency_hz) : json()}};
 }

@@ -42,6 +42,12 @@ html::Row row_of(const json& plane, bool cleaned) {
   return row;
 }
 
+/// The frame of the planes' frequencies, where they were made in one.
+std::string frame_of(const json& axis) {
+  const std::string frame = plain(member(axis, "frame"));
+  return frame.empty() ? "" : " in " + frame;
+}
+
 }  // namespace
 
 std::string cube_section(const json& report) {
@@ -51,11 +57,10 @@ std::string cube_section(const json& report) {
   const bool cleaned =
       std::any_of(planes.begin(), planes.end(), [](const json& plane) { return member(plane, "clean").is_object(); });
   const bool many = planes.size() > most_rows;
-  std::string content =
-      html::tag("p", std::to_string(planes.size()) + " planes in " + plain(member(axis, "frame")) + ", from " +
-                         frequency(member(axis, "reference_hz")) +
-                         (many ? "; the table shows the first " + std::to_string(most_rows) : "") +
-                         ". What the rest of this page says of images is of the plane with the brightest pixel.");
+  std::string content = html::tag(
+      "p", std::to_string(planes.size()) + " planes" + frame_of(axis) + ", from " + frequency(member(axis, "reference_hz")) +
+               (many ? "; the table shows the first " + std::to_string(most_rows) : "") +
+               ". What the rest of this page says of images is of the plane with the brightest pixel.");
   std::vector<std::string> heads{"#Plane", "#Frequency", "#Samples", "Beam", "#Noise", "#Brightest pixel"};
   if (cleaned) heads.insert(heads.end(), {"#Components", "#Model flux", "CLEAN ended"});
   std::vector<html::Row> rows;

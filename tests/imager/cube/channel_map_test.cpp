@@ -143,4 +143,31 @@ BOOST_AUTO_TEST_CASE(a_plane_far_wider_than_the_data_takes_what_there_is_at_once
   }
 }
 
+BOOST_AUTO_TEST_CASE(planes_evenly_spaced_in_wavelength_share_all_channels) {
+  const Window window(1.2e9, 1e6, 400);
+  for (const double step : {2e6, -2e6, 5.3e6, -0.7e6}) {
+    const double first = step > 0 ? 1.2e9 : 1.6e9;
+    const int planes = static_cast<int>(std::ceil((1 - first / (step > 0 ? 1.65e9 : 1.15e9)) * first / step));
+    const SpectralAxis axis{first, step, planes, "LSRK", 1.4e9, true};
+    for (int plane = 1; plane < planes; ++plane)
+      BOOST_TEST(std::abs(1 / axis.frequency_hz(plane) - 1 / axis.frequency_hz(plane - 1) + step / (first * first)) <
+                 1e-13 / first);
+    std::vector<int> taken(400);
+    for (const auto& plane : map_of({axis, SpectralInterpolation::nearest}, window).planes)
+      for (const ChannelTap& tap : plane.tap) ++taken[tap.channel];
+    const auto planes_of = map_of({axis, SpectralInterpolation::linear}, window).planes;
+    for (std::size_t c = 3; c + 3 < 400; ++c)
+      BOOST_TEST((std::abs(step) < 1.7e6 ? taken[c] >= 1 : taken[c] == 1), "channel " << c << " of planes by " << step);
+    for (int plane = 0; plane < planes; ++plane) {
+      const PlaneChannels& of = planes_of[static_cast<std::size_t>(plane)];
+      const FrequencyBand band = axis.planes(plane, 1);
+      for (std::size_t i = 0; i < of.tap.size(); ++i) {
+        BOOST_TEST(std::abs(frequency_of(of.tap[i], window) - of.frequency_hz[i]) <
+                   1e-6 * 1e6 + 0.51e6 * (of.tap[i].part == 0));
+        BOOST_TEST((of.frequency_hz[i] > band.low_hz && of.frequency_hz[i] < band.high_hz));
+      }
+    }
+  }
+}
+
 BOOST_AUTO_TEST_SUITE_END()

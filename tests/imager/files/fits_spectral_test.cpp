@@ -25,7 +25,7 @@ struct Kind {
   const char* type;
   const char* velref;
   double (*value)(double hz);
-  bool in_frequency;  ///< whether planes that are evenly spaced in frequency may be of it
+  bool in_frequency;  ///< whether its planes are evenly spaced in frequency
 };
 
 double radio(double hz) {
@@ -102,19 +102,28 @@ BOOST_AUTO_TEST_CASE(one_plane_has_its_frequency_and_width_whatever_its_axis_cou
     }
 }
 
-BOOST_AUTO_TEST_CASE(planes_evenly_spaced_in_frequency_have_theirs_and_others_are_refused) {
+BOOST_AUTO_TEST_CASE(planes_evenly_spaced_in_frequency_or_wavelength_have_theirs_and_others_are_refused) {
   constexpr int planes = 7;
   constexpr double reference = 4;
   const TemporaryFolder folder;
   for (const Kind& kind : kinds) {
     const StatedCards cards = cards_of(kind, first_hz + (reference - 1) * step_hz, reference);
-    const std::string part = std::string("its 7 planes of ") + kind.type + " are not evenly spaced in frequency";
-    BOOST_TEST(has(refusal_of(folder, cards, planes), part) != kind.in_frequency, kind.type);
-    if (!kind.in_frequency) continue;
+    const std::string part = std::string("its 7 planes of ") + kind.type + " are evenly spaced neither in frequency nor";
+    const bool neither = !kind.in_frequency && kind.value == relativistic;
+    BOOST_TEST(has(refusal_of(folder, cards, planes), part) == neither, kind.type);
+    if (neither) continue;
     const SpectralAxis axis = read(folder, cards, planes).spectral;
     BOOST_TEST(axis.channels == planes);
-    for (int plane = 0; plane < planes; ++plane)
-      BOOST_TEST(std::abs(axis.frequency_hz(plane) - first_hz - plane * step_hz) < 1e-7 * std::abs(step_hz), kind.type);
+    BOOST_TEST(axis.in_wavelength != kind.in_frequency);
+    for (int plane = 0; plane < planes; ++plane) {
+      if (kind.in_frequency) {
+        BOOST_TEST(std::abs(axis.frequency_hz(plane) - first_hz - plane * step_hz) < 1e-7 * std::abs(step_hz), kind.type);
+      } else {
+        const double at = first_hz + (reference - 1) * step_hz, step = step_at(at, kind);
+        const double value = kind.value(at) + (plane + 1 - reference) * step;
+        BOOST_TEST(std::abs(kind.value(axis.frequency_hz(plane)) - value) < 1e-7 * std::abs(step), kind.type);
+      }
+    }
   }
 }
 

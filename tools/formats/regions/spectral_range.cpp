@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "imager/numerics/constants.h"
+#include "ms_io/capitals.h"
 #include "ms_io/spectral_frame.h"
 #include "tools/base/numbers.h"
 #include "tools/base/quantity.h"
@@ -23,19 +24,14 @@ constexpr const char* ranges_known =
     "two channels, two frequencies or two velocities, each with its unit, such as [3chan, 7chan], [1.42GHz, 1.421GHz] or "
     "[-10km/s, 20km/s]";
 
-std::string capitals(std::string text) {
-  for (char& letter : text) letter = static_cast<char>(std::toupper(static_cast<unsigned char>(letter)));
-  return text;
-}
-
 /// FITS SPECSYS of `frame`; empty where there is none.
 std::string frame_of(const RegionKeywords& keywords) {
   const std::string frame = value_of(keywords, "frame");
-  return frame.empty() ? "" : capitals(frame) == "REST" ? "SOURCE" : ms_io::parse_spectral_frame(frame);
+  return frame.empty() ? "" : ms_io::capitals(frame) == "REST" ? "SOURCE" : ms_io::parse_spectral_frame(frame);
 }
 
 std::string velocity_type(const RegionKeywords& keywords) {
-  const std::string type = capitals(value_of(keywords, "veltype"));
+  const std::string type = ms_io::capitals(value_of(keywords, "veltype"));
   for (const char* known : {"", "RADIO", "OPTICAL", "Z", "BETA", "GAMMA"})
     if (type == known) return type.empty() ? "RADIO" : type;
   refuse_value(keywords, "veltype", "one of RADIO, OPTICAL, Z, BETA, GAMMA");
@@ -113,9 +109,8 @@ void check_frame(const RegionKeywords& keywords, const imager::SpectralAxis& axi
 
 /// What the planes are, for errors.
 std::string planes_text(const imager::SpectralAxis& axis) {
-  const double half = 0.5 * axis.width_hz() * axis.channels;
-  const double middle = 0.5 * (axis.frequency_hz(0) + axis.frequency_hz(axis.channels - 1));
-  return frequency_text(middle - half, 8) + " to " + frequency_text(middle + half, 8);
+  const imager::FrequencyBand band = axis.band();
+  return frequency_text(band.low_hz, 8) + " to " + frequency_text(band.high_hz, 8);
 }
 
 /// The fractional planes of a range's ends.
