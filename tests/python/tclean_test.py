@@ -243,6 +243,25 @@ class Returned(Sets):
             self.assertAlmostEqual(brief["peakRes"][-1] / np.abs(residual).max(), 1, places=6)
             self.assertAlmostEqual(brief["modelFlux"][-1] / model.sum(), 1, places=6)
 
+    @unittest.skipIf(fits is None, "there is no python3-astropy")
+    def test_modes_of_spectra_are_those_of_the_program(self):
+        velocities = dict(restfreq="4.002GHz", start="-100km/s", width="50km/s", nchan=3)
+        asked = ["--restfreq", "4.002GHz", "--start", "-100km/s", "--width", "50km/s", "--nchan", 3]
+        for name, parameters, words in (
+                ("cubedata", dict(specmode="cubedata", outframe="LSRK", veltype="optical"), ["--specmode", "cubedata"]),
+                ("optical", dict(specmode="cube", veltype="Z", **velocities), ["--specmode", "cube", "--veltype", "optical", *asked]),
+                ("jupiter", dict(specmode="cubesource", outframe="REST", phasecenter="JUPITER"),
+                 ["--specmode", "cubesource", "--phasecenter", "Jupiter"]),
+                ("pseudo", dict(stokes="pseudoI"), ["--stokes", "pseudoI"])):
+            with self.subTest(name):
+                self.tclean(name, outformat="fits", **parameters)
+                run("image", "--vis", self.sets[0], "--imagename", self.name("p" + name), "--imsize", 64, "--cell", "0.2arcsec",
+                    "--gridder", "standard", *words, "--quiet")
+                ours, programs = (fits.open(self.name(f"{which}.residual.fits"))[0] for which in (name, "p" + name))
+                np.testing.assert_array_equal(ours.data, programs.data)
+                for key in ("CTYPE3", "CRVAL3", "CDELT3", "SPECSYS", "TRACKFLD", "CRVAL1", "CTYPE4", "CRVAL4"):
+                    self.assertEqual(ours.header.get(key), programs.header.get(key), key)
+
     def test_planes_and_stokes_have_each_their_lists(self):
         made = self.tclean("planes", specmode="cube", stokes="IQ", niter=30, threshold="50mJy", nchan=3, fullsummary=True)
         minor = made["summaryminor"][0]
@@ -457,7 +476,8 @@ class Refused(Sets):
 
     def test_what_is_not_made_yet_is_refused_by_name(self):
         for parameters in (dict(gridder="mosaic"), dict(facets=4), dict(gridder="awproject"), dict(weighting="radial"),
-                           dict(stokes="pseudoI"), dict(specmode="cubedata"), dict(specmode="cubesource"), dict(veltype="optical"),
+                           dict(stokes="pseudoQ"), dict(specmode="cubesky"), dict(specmode="cubesource"), dict(outframe="REST", specmode="cube"),
+                           dict(veltype="beta", specmode="cube", start="3km/s", restfreq="4GHz"), dict(outframe="BARY", specmode="cubedata"),
                            dict(usemask="shape"), dict(usemask="auto-multithresh", negativethreshold=-7.0, niter=1),
                            dict(outlierfile="o.txt"), dict(interactive=True), dict(projection="NCP"), dict(usepointing=True),
                            dict(deconvolver="mem"), dict(pbmask=0.1, niter=1), dict(niter=-1),

@@ -10,6 +10,7 @@
 #include <tuple>
 
 #include "imager/numerics/constants.h"
+#include "ms_io/capitals.h"
 #include "tools/base/numbers.h"
 #include "tools/base/option_checks.h"
 #include "tools/base/quantity.h"
@@ -60,6 +61,23 @@ Band band_of(const std::vector<ms_io::SpectralWindow>& windows) {
   return band;
 }
 
+bool at_rest(const CubeOptions& o) {
+  return ms_io::capitals(o.outframe) == "REST";
+}
+
+bool optical(const CubeOptions& o) {
+  return ms_io::capitals(o.veltype) == "OPTICAL";
+}
+
+/// Of the planes; empty: as the data have it.
+std::string plane_frame(const CubeOptions& o) {
+  return at_rest(o) ? "SOURCE" : spectral_frame(o);
+}
+
+std::string in_frame_text(const imager::SpectralAxis& axis) {
+  return axis.frame.empty() ? "" : " in " + axis.frame;
+}
+
 /// The axis, option by option.
 class AxisMaker {
  public:
@@ -69,13 +87,18 @@ class AxisMaker {
         band_(band_of(windows)),
         start_(parse("start", o.start)),
         width_(parse("chanwidth", o.chanwidth)) {
-    axis_.frame = ms_io::parse_spectral_frame(o.outframe);
+    axis_.frame = plane_frame(o);
     axis_.rest_frequency_hz = rest_frequency_hz(o);
+    const bool velocities = width_.unit == SpectralUnit::velocity ||
+                            (start_.unit == SpectralUnit::velocity && width_.unit != SpectralUnit::frequency);
+    axis_.in_wavelength = optical(o) && velocities;
   }
 
   imager::SpectralAxis make() {
+    axis_.reference_hz = start_.unit == SpectralUnit::velocity ? frequency_of(start_.value) : first_.frequency_hz.front();
     axis_.increment_hz = increment_hz();
     axis_.reference_hz = start_hz();
+    axis_.increment_hz = increment_hz();
     axis_.channels = o_.nchan > 0 ? o_.nchan : planes_to_end();
     check();
     return axis_;
@@ -96,13 +119,19 @@ class AxisMaker {
     if (width_.unit == SpectralUnit::none) return up;
     if (width_.unit == SpectralUnit::channels) return up * width_.value;
     if (width_.unit == SpectralUnit::frequency) return width_.value;
-    return -axis_.rest_frequency_hz * width_.value / imager::speed_of_light_m_s;
+    const double of_line = optical(o_) ? std::pow(axis_.reference_hz / axis_.rest_frequency_hz, 2) : 1;
+    return -axis_.rest_frequency_hz * of_line * width_.value / imager::speed_of_light_m_s;
+  }
+
+  double frequency_of(double velocity_m_s) const {
+    const double beta = velocity_m_s / imager::speed_of_light_m_s;
+    return axis_.rest_frequency_hz * (optical(o_) ? 1 / (1 + beta) : 1 - beta);
   }
 
   double start_hz() const {
     const auto channels = static_cast<int>(first_.frequency_hz.size());
     if (start_.unit == SpectralUnit::frequency) return start_.value;
-    if (start_.unit == SpectralUnit::velocity) return axis_.rest_frequency_hz * (1 - start_.value / imager::speed_of_light_m_s);
+    if (start_.unit == SpectralUnit::velocity) return frequency_of(start_.value);
     const bool backwards = axis_.increment_hz * channel_width_hz() < 0;
     const int channel = start_.unit == SpectralUnit::channels          ? static_cast<int>(start_.value)
                         : start_.unit == SpectralUnit::window_channels ? place_of(static_cast<int>(start_.value))
@@ -129,7 +158,7 @@ class AxisMaker {
   /// So many that the last one holds the middle of the last data, or reaches half-way into them.
   int planes_to_end() const {
     const double end = axis_.increment_hz > 0 ? band_.high_hz : band_.low_hz;
-    const double planes = (end - (axis_.reference_hz - 0.5 * axis_.increment_hz)) / axis_.increment_hz;
+    const double planes = axis_.plane_of(end) + 0.5;
     if (planes > most_planes)
       refuse_option("chanwidth", o_.chanwidth,
                     "wider planes, or --nchan: it takes " + significant(planes, 3) + " to the end of the data, where " +
@@ -139,10 +168,9 @@ class AxisMaker {
   }
 
   void check() const {
-    const double first = axis_.frequency_hz(0), last = axis_.frequency_hz(axis_.channels - 1);
-    const double low = std::min(first, last) - 0.5 * axis_.width_hz(), high = std::max(first, last) + 0.5 * axis_.width_hz();
+    const auto [low, high] = axis_.band();
     const std::string planes =
-        "the cube's planes, " + frequency_text(low, 8) + " to " + frequency_text(high, 8) + " in " + axis_.frame;
+        "the cube's planes, " + frequency_text(low, 8) + " to " + frequency_text(high, 8) + in_frame_text(axis_);
     if (!(low > 0))
       throw std::invalid_argument(planes + ", reach frequencies that are not positive; expected fewer, or another --start");
     if (!(high > band_.low_hz && low < band_.high_hz))
@@ -162,19 +190,30 @@ class AxisMaker {
 }  // namespace
 
 void declare(CLI::App& command, CubeOptions& o) {
-  command.add_option("--specmode", o.specmode, "mfs: one image of the whole band; cube: planes of frequency")
-      ->check(CLI::IsMember({"mfs", "cube"}));
+  command
+      .add_option("--specmode", o.specmode,
+                  "mfs: one image of the whole band; cube: planes of frequency, in --outframe; cubedata: planes of the data's "
+                  "frequencies as they are; cubesource: planes at rest in what an ephemeris or a planet's name tells of")
+      ->check(CLI::IsMember({"mfs", "cube", "cubedata", "cubesource"}));
   command.add_option("--nchan", o.nchan, "Planes of a cube; -1 = to the end of the data");
   command.add_option("--start", o.start,
                      "The first plane: a channel of those selected in the first window, such as 3, or of all of it, 3chan; a "
                      "frequency such as 1.4GHz, or a "
-                     "radio velocity such as 20km/s, in --outframe; the first channel when empty");
+                     "velocity such as 20km/s, in --outframe; the first channel when empty");
   command.add_option("--chanwidth,--width", o.chanwidth,
                      "From plane to plane: channels, a frequency or a velocity, negative to go down; one channel when empty");
   command
-      .add_option("--outframe", o.outframe,
-                  "Where planes have their frequencies: LSRK, LSRD, BARY, GEO, TOPO, GALACTO, LGROUP or CMB")
-      ->check(values_are({"LSRK", "LSRD", "BARY", "GEO", "TOPO", "GALACTO", "LGROUP", "CMB"}));
+      .add_option(
+          "--outframe", o.outframe,
+          "Where planes have their frequencies: LSRK, LSRD, BARY, GEO, TOPO, GALACTO, LGROUP or CMB; REST for data that "
+          "are at rest in the source already")
+      ->check(values_are({"LSRK", "LSRD", "BARY", "GEO", "TOPO", "GALACTO", "LGROUP", "CMB", "REST"}));
+  command
+      .add_option(
+          "--veltype", o.veltype,
+          "What velocities of --start and --chanwidth are: radio, c (1 - f/restfreq); or optical, c (restfreq/f - 1), in "
+          "which planes are then evenly spaced")
+      ->check(CLI::IsMember({"radio", "optical"}, CLI::ignore_case));
   command.add_option("--restfreq", o.restfreq, "Of the line: headers state it, and velocities are relative to it");
   command
       .add_option("--interpolation", o.interpolation,
@@ -203,6 +242,7 @@ void check(const CubeOptions& o) {
   only_of_cubes("start", o.start, !o.start.empty());
   only_of_cubes("chanwidth", o.chanwidth, !o.chanwidth.empty());
   only_of_cubes("outframe", o.outframe, o.outframe != usual.outframe);
+  only_of_cubes("veltype", o.veltype, optical(o));
   only_of_cubes("interpolation", o.interpolation, o.interpolation != usual.interpolation);
   only_of_cubes("perchanweightdensity", "false", !o.perchanweightdensity);
   if (o.nchan != -1 && (o.nchan < 1 || o.nchan > 65536)) refuse_option("nchan", std::to_string(o.nchan), "1 to 65536, or -1");
@@ -211,11 +251,17 @@ void check(const CubeOptions& o) {
   const double rest_hz = rest_frequency_hz(o);
   for (const auto& [option, given, text] : {std::tuple{"start", start, o.start}, {"chanwidth", width, o.chanwidth}})
     if (given.unit == SpectralUnit::velocity && rest_hz == 0) refuse_option(option, text, "--restfreq beside a velocity");
+  if (optical(o) && start.unit != SpectralUnit::velocity && width.unit != SpectralUnit::velocity)
+    refuse_option("veltype", o.veltype, "a velocity in --start or --chanwidth beside it");
   if (start.unit == SpectralUnit::channels && start.value < 0) refuse_option("start", o.start, "a channel from 0 on");
+  if (o.specmode == "cubedata" && o.outframe != usual.outframe)
+    refuse_option("outframe", o.outframe, "none with --specmode cubedata, whose frequencies stay as they are");
+  if (o.specmode == "cubesource" && o.outframe != usual.outframe && !at_rest(o))
+    refuse_option("outframe", o.outframe, "REST or none with --specmode cubesource");
   try {
-    ms_io::parse_spectral_frame(o.outframe);
+    plane_frame(o);
   } catch (const std::invalid_argument&) {
-    refuse_option("outframe", o.outframe, "LSRK, LSRD, BARY, GEO, TOPO, GALACTO, LGROUP or CMB");
+    refuse_option("outframe", o.outframe, "LSRK, LSRD, BARY, GEO, TOPO, GALACTO, LGROUP, CMB or REST");
   }
 }
 
@@ -225,16 +271,17 @@ imager::Decision axis_decision(const imager::CubeSampling& sampling) {
   const bool linear = sampling.interpolation == imager::SpectralInterpolation::linear;
   return {"frequencies",
           std::to_string(axis.channels) + (axis.channels == 1 ? " plane" : " planes") + " from " +
-              frequency_text(axis.reference_hz, 9) + " to " + frequency_text(last, 9) + " in " + axis.frame + ", " +
-              frequency_text(axis.width_hz(), 6) + " each",
-          linear ? "visibilities are interpolated between channels at each integration's own Doppler shift"
-                 : "each takes the channels within it at each integration's own Doppler shift"};
+              frequency_text(axis.reference_hz, 9) + " to " + frequency_text(last, 9) + in_frame_text(axis) + ", " +
+              frequency_text(axis.width_hz(), 6) +
+              (axis.in_wavelength ? " the first, and evenly spaced in wavelength" : " each"),
+          (linear ? "visibilities are interpolated between channels" : "each takes the channels within it") +
+              std::string(axis.frame.empty() ? ", whose frequencies are taken as they are"
+                                             : " at each integration's own Doppler shift")};
 }
 
 std::string windows_left_out(const imager::SpectralAxis& axis, const std::vector<ms_io::SpectralWindow>& windows) {
   constexpr std::size_t most = 5;
-  const double first = axis.frequency_hz(0), last = axis.frequency_hz(axis.channels - 1), half = 0.5 * axis.width_hz();
-  const double low = std::min(first, last) - half, high = std::max(first, last) + half;
+  const auto [low, high] = axis.band();
   std::size_t count = 0;
   std::string text;
   for (const ms_io::SpectralWindow& window : windows) {
@@ -254,7 +301,18 @@ std::string windows_left_out(const imager::SpectralAxis& axis, const std::vector
   return "left out is what lies beside " + planes + ": " + text;
 }
 
-imager::CubeSampling cube_sampling(const CubeOptions& o, const std::vector<ms_io::SpectralWindow>& windows) {
+std::string spectral_frame(const CubeOptions& o) {
+  if (o.specmode == "cubesource") return "SOURCE";
+  return o.specmode == "cube" && !at_rest(o) ? ms_io::parse_spectral_frame(o.outframe) : "";
+}
+
+imager::CubeSampling cube_sampling(const CubeOptions& o, const std::vector<ms_io::SpectralWindow>& windows,
+                                   const std::string& data_frame) {
+  if (o.specmode == "cube" && at_rest(o) && data_frame != "SOURCE")
+    refuse_option("outframe", o.outframe,
+                  "data at rest in the source, MEAS_FREQ_REF 0, and these are " +
+                      (data_frame.empty() ? "in no one frame" : "in " + data_frame) +
+                      "; --specmode cubesource converts what has an ephemeris");
   return {AxisMaker(o, windows).make(),
           o.interpolation == "nearest" ? imager::SpectralInterpolation::nearest : imager::SpectralInterpolation::linear};
 }

@@ -67,7 +67,8 @@ void declare_scene(CLI::App& command, ImageOptions& o) {
   command.add_option(
       "--phasecenter", o.phasecenter,
       "Shift the visibilities to a direction, such as 'J2000 12h30m49.4s +12d23m28s', or to the phase centre of a "
-      "field by id or name; what is selected may then have several. TRACKFIELD: to what fields with an ephemeris follow");
+      "field by id or name; what is selected may then have several. The image moves along with a planet, SUN or MOON by name, "
+      "with the ephemeris at a path, or with TRACKFIELD what each field follows");
   command.add_option("--imsize", o.imsize, "Width, or width and height, in pixels")->required()->expected(1, 2);
   command
       .add_option_function<std::vector<std::string>>(
@@ -101,7 +102,8 @@ std::string names_of(const std::vector<std::string>& paths) {
 
 ms_io::Selection selection_of(const ImageOptions& o) {
   ms_io::Selection selection = o.selection;
-  if (o.cube.is_cube()) selection.spectral_frame = ms_io::parse_spectral_frame(o.cube.outframe);
+  selection.spectral_frame = spectral_frame(o.cube);
+  selection.either_hand = imager::is_pseudo_i(o.stokes);
   return o.phasecenter.empty() ? selection : ms_io::phased_to(selection, o.phasecenter, o.vis);
 }
 
@@ -112,8 +114,10 @@ void declare(CLI::App& command, ImageOptions& o) {
            ->type_name(path_type)
            ->check(not_empty()),
        OptionMark::free_of_state);
-  command.add_option("--stokes", o.stokes,
-                     "Stokes parameters, or correlations of parallel hands, which share one PSF: I, IQUV, IV, XXYY, RR, …");
+  command.add_option(
+      "--stokes", o.stokes,
+      "Stokes parameters, or correlations of parallel hands, which share one PSF: I, IQUV, IV, XXYY, RR, …; or pseudoI: "
+      "I also of samples of which one parallel hand is flagged");
   declare(command, o.cube);
   declare(command, o.gridding);
   declare(command, o.taylor);

@@ -166,7 +166,7 @@ class ImageRun : private ChannelSink {
       check_taylor_band(o_.taylor, windows_);
       return whole_band(set_->observation());
     }
-    sampling_ = cube_sampling(o_.cube, windows_);
+    sampling_ = cube_sampling(o_.cube, windows_, set_->observation().spectral_frame);
     if (const std::string words = windows_left_out(sampling_.axis, windows_); !words.empty()) warn(words);
     report_.cube = sampling_.axis;
     return sampling_.axis;

@@ -33,7 +33,7 @@ CubeOptions cube(const std::string& start = "", const std::string& width = "", i
 
 imager::SpectralAxis axis_of(const CubeOptions& o, double step_hz = 1e6) {
   check(o);
-  return cube_sampling(o, {window(step_hz > 0 ? 1.4e9 : 1.409e9, step_hz, 10)}).axis;
+  return cube_sampling(o, {window(step_hz > 0 ? 1.4e9 : 1.409e9, step_hz, 10)}, "TOPOCENT").axis;
 }
 
 struct Expected {
@@ -85,8 +85,71 @@ BOOST_AUTO_TEST_CASE(frequencies_go_up_and_velocities_too) {
   compare(axis_of(cube("-1000km/s", "", 4)), {1.4e9 * (1 + 1e6 / c), -1e6, 4});
 }
 
+BOOST_AUTO_TEST_CASE(optical_velocities_are_evenly_spaced) {
+  const double c = imager::speed_of_light_m_s;
+  for (const double step_m_s : {1e5, -1e5})
+    for (const std::string start : {"-1000km/s", "4"}) {
+      CubeOptions o = cube(start, step_m_s > 0 ? "100km/s" : "-100km/s", 12);
+      o.veltype = "Optical";
+      const imager::SpectralAxis axis = axis_of(o);
+      BOOST_TEST(axis.in_wavelength);
+      const double first_m_s = c * (1.4e9 / axis.reference_hz - 1);
+      if (start == "4") {  // the first plane begins where its channel does, whose own width is 214 km/s
+        BOOST_TEST(std::abs(axis.reference_hz - 1.404e9) < 0.5e6);
+      } else {
+        BOOST_TEST(std::abs(first_m_s + 1e6) < 1e-3);
+      }
+      for (int plane = 0; plane < axis.channels; ++plane)
+        BOOST_TEST(std::abs(c * (1.4e9 / axis.frequency_hz(plane) - 1) - first_m_s - plane * step_m_s) < 1e-3);
+    }
+  CubeOptions by_channel = cube("-1000km/s", "", 4);
+  by_channel.veltype = "optical";
+  compare(axis_of(by_channel), {1.4e9 / (1 - 1e6 / c), -1e6, 4});
+  CubeOptions by_frequency = cube("-1000km/s", "1MHz", 4);
+  by_frequency.veltype = "optical";
+  BOOST_TEST(!axis_of(by_frequency).in_wavelength);
+  CubeOptions to_the_end = cube("-1000km/s", "100km/s");
+  to_the_end.veltype = "optical";
+  // From 1.404685 GHz, −1000 km/s, to the edge at 1.3995 GHz, 107 km/s, are 11.07 planes.
+  BOOST_TEST(axis_of(to_the_end).channels == 11);
+}
+
+BOOST_AUTO_TEST_CASE(planes_have_the_frame_that_their_mode_says) {
+  const auto frame_of = [](const std::string& specmode, const std::string& outframe, const std::string& data) {
+    CubeOptions o = cube();
+    o.specmode = specmode;
+    if (!outframe.empty()) o.outframe = outframe;
+    check(o);
+    return cube_sampling(o, {window(1.4e9, 1e6, 10)}, data).axis.frame;
+  };
+  BOOST_TEST(frame_of("cube", "", "TOPOCENT") == "LSRK");
+  BOOST_TEST(frame_of("cube", "bary", "TOPOCENT") == "BARYCENT");
+  BOOST_TEST(frame_of("cube", "rest", "SOURCE") == "SOURCE");
+  BOOST_TEST(frame_of("cubedata", "", "TOPOCENT") == "");
+  BOOST_TEST(frame_of("cubesource", "", "TOPOCENT") == "SOURCE");
+  BOOST_TEST(frame_of("cubesource", "REST", "SOURCE") == "SOURCE");
+  for (const std::string data : {"TOPOCENT", ""}) {
+    try {
+      frame_of("cube", "REST", data);
+      BOOST_TEST(false);
+    } catch (const std::invalid_argument& error) {
+      BOOST_TEST(std::string(error.what()).find("--outframe REST: expected data at rest in the source") != std::string::npos,
+                 error.what());
+    }
+  }
+  CubeOptions o = cube();
+  o.specmode = "cubedata";
+  o.outframe = "BARY";
+  BOOST_TEST(refusal(o).find("none with --specmode cubedata") != std::string::npos);
+  o.specmode = "cubesource";
+  BOOST_TEST(refusal(o).find("REST or none with --specmode cubesource") != std::string::npos);
+  CubeOptions no_velocity = cube("3");
+  no_velocity.veltype = "optical";
+  BOOST_TEST(refusal(no_velocity).find("--veltype optical: expected a velocity") != std::string::npos);
+}
+
 BOOST_AUTO_TEST_CASE(all_windows_count_for_the_end) {
-  const auto axis = cube_sampling(cube(), {window(1.4e9, 1e6, 10), window(1.42e9, 1e6, 10)}).axis;
+  const auto axis = cube_sampling(cube(), {window(1.4e9, 1e6, 10), window(1.42e9, 1e6, 10)}, "TOPOCENT").axis;
   BOOST_TEST(axis.channels == 30);
 }
 
@@ -118,7 +181,7 @@ BOOST_AUTO_TEST_CASE(what_cannot_be_is_refused_in_one_line) {
 BOOST_AUTO_TEST_CASE(channels_without_width_are_refused) {
   ms_io::SpectralWindow flat = window(1.4e9, 1e6, 3);
   flat.channel_width_hz[1] = 0;
-  BOOST_CHECK_THROW(cube_sampling(cube(), {flat}), std::runtime_error);
+  BOOST_CHECK_THROW(cube_sampling(cube(), {flat}, "TOPOCENT"), std::runtime_error);
 }
 
 BOOST_AUTO_TEST_SUITE_END()

@@ -39,7 +39,6 @@ _SINGLE = {
     "outlierfile": ("", "one field is imaged at a time"),
     "interactive": (False, "misfit.clean_cycles() is CLEAN by hand"),
     "usepointing": (False, "it is of mosaics, which are not made yet"),
-    "veltype": ("radio", "optical velocities are not made yet"),
 }
 
 _GRIDDERS = {"standard": "standard", "ft": "standard", "gridft": "standard", "wproject": "wide", "widefield": "wide",
@@ -83,7 +82,7 @@ def _quantity(name, value, unit="", frame=None):
     """
     if isinstance(value, dict):
         refer = value.get("refer", frame)
-        if refer != frame and refer != "RADIO":
+        if refer != frame and refer not in ("RADIO", "OPTICAL", "Z"):  # kinds of velocities, which veltype names
             _refuse(name, value, f"a measure in {frame}, as outframe says")
         value = value.get("m0", value)
         if "value" not in value:
@@ -194,8 +193,6 @@ def _give_image(words, p):
     stokes = p["stokes"]
     if not isinstance(stokes, str):
         _refuse("stokes", stokes, "a text such as 'IQUV'")
-    if stokes.lower() == "pseudoi":
-        _refuse("stokes", stokes, "I, Q, U, V or hands: pseudoI is not made yet")
     words.give("stokes", stokes)
 
 
@@ -205,10 +202,29 @@ def _spectral(name, value, frame):
     return _quantity(name, value, "", frame)
 
 
+def _velocities(veltype):
+    """CASA's names of velocities; by ratio, beta and gamma no axis of a cube is even."""
+    known = {"radio": "radio", "optical": "optical", "z": "optical"}
+    if veltype.lower() not in known:
+        _refuse("veltype", veltype, "'radio', 'optical' or 'z'")
+    return known[veltype.lower()]
+
+
+def _frame(p):
+    """In which start and width are; the data's own is undefined."""
+    specmode, frame = p["specmode"], p["outframe"]
+    if specmode == "cube":
+        return frame or "LSRK"
+    if frame.upper() not in ("", "LSRK") + (("REST", "SOURCE") if specmode == "cubesource" else ()):
+        _refuse("outframe", frame, f"none with specmode={specmode!r}, whose planes have the frequencies "
+                                   f"{'of the source at rest' if specmode == 'cubesource' else 'that the data have'}")
+    return "REST" if specmode == "cubesource" else ""
+
+
 def _give_spectrum(words, p):
     specmode = p["specmode"]
-    if specmode not in ("mfs", "cube"):
-        _refuse("specmode", specmode, "'mfs' or 'cube'" + (": it is not made yet" if specmode.startswith("cube") else ""))
+    if specmode not in ("mfs", "cube", "cubedata", "cubesource"):
+        _refuse("specmode", specmode, "'mfs', 'cube', 'cubedata' or 'cubesource'")
     restfreq = [one for one in _items(p["restfreq"]) if one != ""]
     if restfreq:
         words.give("restfreq", _quantity("restfreq", restfreq[0], "Hz"))
@@ -216,19 +232,22 @@ def _give_spectrum(words, p):
         if p["outframe"] not in ("", "LSRK"):
             _tell_once(logging.WARNING, f"outframe={p['outframe']!r} changes nothing of specmode='mfs': headers have the data's frame")
         return
-    words.give("specmode", "cube")
+    words.give("specmode", specmode)
     words.give("nchan", _whole("nchan", p["nchan"]))
-    frame = p["outframe"] or "LSRK"
-    start, width = p["start"], p["width"]
-    if _channel(start) is not None:
-        words.give("start", f"{_channel(start)}chan")  # of the whole window
-    elif start != "":
-        words.give("start", _spectral("start", start, frame))
-    if _channel(width) is not None:
-        words.give("width", _channel(width))
-    elif width != "":
-        words.give("width", _spectral("width", width, frame))
-    words.give("outframe", frame)
+    frame = _frame(p)
+    velocities = False
+    for name, channels in (("start", "{}chan"), ("width", "{}")):  # a channel of the whole window
+        value = p[name]
+        if _channel(value) is not None:
+            words.give(name, channels.format(_channel(value)))
+        elif value != "":
+            text = _spectral(name, value, frame)
+            velocities = velocities or text.strip().endswith("/s")
+            words.give(name, text)
+    if specmode == "cube":
+        words.give("outframe", frame)
+    if velocities:
+        words.give("veltype", _velocities(p["veltype"]))
     words.give("interpolation", p["interpolation"])
     if not p["perchanweightdensity"] and p["weighting"] != "natural":
         words.give("perchanweightdensity", "false")
@@ -661,15 +680,17 @@ def tclean(
     cell : str, number or list
         Size of a pixel, in arcsec without a unit; two must be equal.
     phasecenter : str or int
-        Direction or field that the visibilities are shifted to.
+        Direction or field that the visibilities are shifted to; or "TRACKFIELD", a planet's name or an ephemeris' path: what the
+        image moves along with.
     stokes : str
-        Stokes parameters or hands, in any order.
+        Stokes parameters or hands, in any order; or "pseudoI".
     projection : str
         "SIN".
     startmodel : path or list of paths
         Model that CLEAN begins with, in Jy/pixel; one for each of nterms.
     specmode : str
-        "mfs" or "cube".
+        "mfs"; "cube", of planes in outframe; "cubedata", of the data's frequencies as they are; or "cubesource", at rest in what an
+        ephemeris or a planet's name tells of.
     reffreq : str
         Reference frequency of Taylor terms.
     nchan : int
@@ -677,7 +698,7 @@ def tclean(
     start, width : str, int or quantity
         First plane and step: a channel, counted in the whole window, a frequency or a velocity.
     outframe, veltype : str
-        Frame of the planes' frequencies; "radio".
+        Frame of the planes' frequencies, of "cube"; "radio", or "optical" or "z", in whose velocities planes are then even.
     restfreq : str or list of str
         Of the line; the first counts.
     interpolation : str
