@@ -3,6 +3,8 @@
 #include <casacore/measures/Measures/MCPosition.h>
 #include <casacore/measures/Measures/MeasConvert.h>
 
+#include <filesystem>
+
 #include "ms_io/body_internal.h"
 #include "ms_io/planets_internal.h"
 
@@ -10,10 +12,6 @@ namespace misfit::ms_io {
 namespace {
 
 using casacore::MDirection;
-
-double utc_mjd(const casacore::MEpoch& when) {
-  return casacore::MEpoch::Convert(when, casacore::MEpoch::UTC)().get("d").getValue();
-}
 
 /// From the middle of the Earth to the observer, in metres and along the axes of J2000. Aberration turns a direction and its
 /// opposite alike, so that half their difference is free of it but for 1e-8.
@@ -25,28 +23,38 @@ casacore::MVPosition observer_m(const casacore::MeasFrame& frame) {
   if (radius_m == 0) return here;
   MDirection::Convert to_sky(MDirection::Ref(MDirection::ITRF, frame), MDirection::Ref(MDirection::J2000, frame));
   const casacore::MVDirection up(here), down(-here);
-  casacore::MVPosition axis(to_sky(up).getValue());
-  axis -= casacore::MVPosition(to_sky(down).getValue());
+  casacore::MVDirection axis = to_sky(up).getValue();
+  axis -= to_sky(down).getValue();
   axis.adjust();
-  axis *= radius_m;
-  return axis;
+  casacore::MVPosition there(axis);
+  there *= radius_m;
+  return there;
 }
 
-/// What an ephemeris tells of.
+bool is_beside_field(const std::string& path) {
+  const std::filesystem::path table = std::filesystem::absolute(path).lexically_normal();
+  const std::filesystem::path named = table.has_filename() ? table : table.parent_path();
+  return named.parent_path().filename() == "FIELD" && named.filename().string().rfind("EPHEM", 0) == 0;
+}
+
+/// The target of an ephemeris' table.
 class TabledBody : public Body {
  public:
-  explicit TabledBody(const std::string& path) : ephemeris_(path) {}
+  explicit TabledBody(const std::string& path)
+      : ephemeris_(path), as_phased_to_(is_beside_field(path) || !ephemeris_.geocentric()) {}
 
-  Recession recession(const casacore::MEpoch& when) const override { return recession_of(ephemeris_, utc_mjd(when)); }
+  double recession_m_s(const casacore::MEpoch& when) const override { return ephemeris_.recession_m_s(utc_mjd(when)); }
+  casacore::MFrequency::Types velocity_frame() const override { return ms_io::velocity_frame(ephemeris_); }
 
  protected:
   Place place(const casacore::MEpoch& when) const override {
     const double mjd = utc_mjd(when);
-    return {ephemeris_.at(mjd), ephemeris_.geocentric() ? ephemeris_.distance_m(mjd) : 0};
+    return {ephemeris_.at(mjd), as_phased_to_ ? 0 : ephemeris_.distance_m(mjd)};
   }
 
  private:
   Ephemeris ephemeris_;
+  bool as_phased_to_;  ///< whether it lists directions that the telescope sees
 };
 
 /// A body of the tables of JPL.
@@ -55,11 +63,11 @@ class Planet : public Body {
   explicit Planet(MDirection::Types which) : which_(which) {}
 
   /// The change of the distance that light crosses, over some minutes about the time.
-  Recession recession(const casacore::MEpoch& when) const override {
+  double recession_m_s(const casacore::MEpoch& when) const override {
     constexpr double step_s = 100, day_s = 86400;
     const double tdb = tdb_mjd(when);
     const double later_m = planet_place(which_, tdb + step_s / day_s).distance_m;
-    return {(later_m - planet_place(which_, tdb - step_s / day_s).distance_m) / (2 * step_s), casacore::MFrequency::GEO};
+    return (later_m - planet_place(which_, tdb - step_s / day_s).distance_m) / (2 * step_s);
   }
 
  protected:
@@ -78,8 +86,8 @@ class Planet : public Body {
 
 }  // namespace
 
-Recession recession_of(const Ephemeris& ephemeris, double utc_mjd) {
-  return {ephemeris.recession_m_s(utc_mjd), ephemeris.geocentric() ? casacore::MFrequency::GEO : casacore::MFrequency::TOPO};
+casacore::MFrequency::Types velocity_frame(const Ephemeris& ephemeris) {
+  return ephemeris.geocentric() ? casacore::MFrequency::GEO : casacore::MFrequency::TOPO;
 }
 
 MDirection Body::seen_from(const casacore::MeasFrame& frame, const casacore::MEpoch& when) const {
@@ -92,8 +100,9 @@ MDirection Body::seen_from(const casacore::MeasFrame& frame, const casacore::MEp
   casacore::MVPosition from_here(direction.getValue());
   from_here *= there.distance_m;
   from_here -= observer_m(frame);
-  from_here.adjust();
-  return {casacore::MVDirection(from_here), direction.getRef()};
+  casacore::MVDirection seen(from_here);
+  seen.adjust();
+  return {seen, direction.getRef()};
 }
 
 bool is_body_name(const std::string& name) {

@@ -12,17 +12,11 @@
 
 namespace misfit::ms_io {
 
-/// How fast a body recedes.
-struct Recession {
-  double m_s = 0;
-  casacore::MFrequency::Types from = casacore::MFrequency::GEO;  ///< the middle of the Earth or, TOPO, the observer
-};
+/// The frame of frequencies in which velocities of an ephemeris are: GEO, or TOPO where it is seen from the telescope.
+casacore::MFrequency::Types velocity_frame(const Ephemeris& ephemeris);
 
-/// The velocity that an ephemeris tells of. Throws what Ephemeris::recession_m_s() does.
-Recession recession_of(const Ephemeris& ephemeris, double utc_mjd);
-
-/// What moves over the sky by itself, whatever fields are phased to: a planet, the Sun, the Moon, or what the table of an
-/// ephemeris tells of. All throw casacore::AipsError where it is not known where that is at a time.
+/// Something that moves over the sky by itself, whatever fields are phased to: a planet, the Sun, the Moon, or the target of an
+/// ephemeris' table. All functions throw casacore::AipsError at times at which its place is not known.
 class Body {
  public:
   Body() = default;
@@ -33,7 +27,9 @@ class Body {
   /// As an observer at the epoch and the position of `frame` has to phase to it: astrometric, so without aberration, which
   /// turns all directions of a field alike; seen from the place, and not from the middle of the Earth.
   casacore::MDirection seen_from(const casacore::MeasFrame& frame, const casacore::MEpoch& when) const;
-  virtual Recession recession(const casacore::MEpoch& when) const = 0;
+  /// Positive away from the middle of the Earth or, where velocity_frame() is TOPO, from the observer.
+  virtual double recession_m_s(const casacore::MEpoch& when) const = 0;
+  virtual casacore::MFrequency::Types velocity_frame() const { return casacore::MFrequency::GEO; }
 
  protected:
   struct Place {
@@ -46,8 +42,9 @@ class Body {
 /// Whether casacore has a body of this name, such as "JUPITER", in capitals or not.
 bool is_body_name(const std::string& name);
 
-/// The body of such a name or, where it is none, of the table of an ephemeris at that path. Throws casacore::AipsError that
-/// says what was expected where there is no such table, or casacore has none of where planets go.
+/// The body of such a name or, where it is none, of the table of an ephemeris at that path. What CASA keeps beside FIELD
+/// (FIELD/EPHEM*.tab) lists directions to which telescopes phased, and is taken as it is; other tables are seen from the middle
+/// of the Earth unless they say otherwise. Throws casacore::AipsError that says what was expected where there is no such table.
 std::shared_ptr<const Body> make_body(const std::string& name);
 
 }  // namespace misfit::ms_io

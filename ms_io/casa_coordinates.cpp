@@ -112,7 +112,7 @@ bool lie_on(const imager::SpectralAxis& axis, const casacore::Vector<double>& li
   return true;
 }
 
-/// Of frequencies that are listed, the evenly spaced wavelengths from the first to the last.
+/// The axis evenly spaced in wavelength from the first to the last of listed frequencies.
 imager::SpectralAxis through_ends_in_wavelength(imager::SpectralAxis axis, const casacore::Vector<double>& listed_hz) {
   const double first = listed_hz[0], last = listed_hz[listed_hz.size() - 1];
   axis.in_wavelength = true;

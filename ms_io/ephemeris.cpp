@@ -1,5 +1,7 @@
 #include <casacore/casa/Quanta/MVDirection.h>
 #include <casacore/casa/Quanta/Quantum.h>
+#include <casacore/measures/Measures/MCEpoch.h>
+#include <casacore/measures/Measures/MeasConvert.h>
 #include <casacore/tables/Tables/ScalarColumn.h>
 #include <casacore/tables/Tables/Table.h>
 #include <casacore/tables/Tables/TableRecord.h>
@@ -23,15 +25,6 @@ using casacore::MDirection;
 casacore::String unit_of(const casacore::TableRecord& keywords, const char* usual_unit) {
   if (keywords.isDefined("QuantumUnits")) return *keywords.asArrayString("QuantumUnits").begin();
   return keywords.isDefined("UNIT") ? keywords.asString("UNIT") : casacore::String(usual_unit);
-}
-
-/// The values of a column, which is in its usual unit unless it says otherwise.
-std::vector<double> values_of(const casacore::Table& table, const char* name, const char* usual_unit, const char* wanted_unit) {
-  const casacore::ScalarColumn<double> column(table, name);
-  std::vector<double> values = column.getColumn().tovector();
-  const double size = casacore::Quantity(1, unit_of(column.keywordSet(), usual_unit)).getValue(wanted_unit);
-  for (double& value : values) value *= size;
-  return values;
 }
 
 /// As casacore finds it, but that it takes frames that it does not know for apparent places.
@@ -61,8 +54,8 @@ Ephemeris::Ephemeris(const std::string& path) : path_(path) {
   frame_ = *frame;
   for (const char* const name : {"MJD", "RA", "DEC"})
     if (!table.tableDesc().isColumn(name)) fail("has no column " + std::string(name) + ", expected MJD, RA and DEC");
-  mjd_ = values_of(table, "MJD", "d", "d");
-  const std::vector<double> ra_rad = values_of(table, "RA", "deg", "rad"), dec_rad = values_of(table, "DEC", "deg", "rad");
+  mjd_ = values_of(table, {"MJD", "d", "d"});
+  const std::vector<double> ra_rad = values_of(table, {"RA", "deg", "rad"}), dec_rad = values_of(table, {"DEC", "deg", "rad"});
   if (mjd_.size() < 2) fail("has " + std::to_string(mjd_.size()) + " rows, expected two or more");
   for (std::size_t row = 0; row < mjd_.size(); ++row) {
     if (!std::isfinite(mjd_[row]) || !std::isfinite(ra_rad[row]) || !std::isfinite(dec_rad[row]))
@@ -73,11 +66,27 @@ Ephemeris::Ephemeris(const std::string& path) : path_(path) {
   }
   const casacore::TableRecord& keywords = table.keywordSet();
   geocentric_ = frame_ != MDirection::TOPO && !(keywords.isDefined("GeoDist") && keywords.asDouble("GeoDist") != 0);
-  const auto column = [&](const char* name, const char* usual_unit, const char* wanted_unit) {
-    return table.tableDesc().isColumn(name) ? values_of(table, name, usual_unit, wanted_unit) : std::vector<double>();
-  };
-  rho_m_ = column("Rho", "AU", "m");
-  recession_m_s_ = column("RadVel", "AU/d", "m/s");
+}
+
+std::vector<double> Ephemeris::values_of(const casacore::Table& table, const Column& column) const {
+  const casacore::ScalarColumn<double> cells(table, column.name);
+  const casacore::Quantity unit(1, unit_of(cells.keywordSet(), column.usual_unit));
+  if (!unit.isConform(column.wanted_unit))
+    fail("has " + std::string(column.name) + " in " + std::string(unit.getUnit()) + ", expected a unit such as " + column.usual_unit);
+  std::vector<double> values = cells.getColumn().tovector();
+  for (double& value : values) value *= unit.getValue(column.wanted_unit);
+  return values;
+}
+
+/// A column that nobody asks for is not looked at.
+const std::vector<double>& Ephemeris::values_of(const Column& column) const {
+  auto known = others_.find(column.name);
+  if (known != others_.end()) return known->second;
+  const casacore::Table table(path_, casacore::TableLock(casacore::TableLock::NoLocking));
+  if (!table.tableDesc().isColumn(column.name)) fail("has no column " + std::string(column.name) + ", expected one");
+  std::vector<double> values = values_of(table, column);
+  if (values.size() != mjd_.size()) fail("changed while it was read");
+  return others_.emplace(column.name, std::move(values)).first->second;
 }
 
 void Ephemeris::fail(const std::string& what) const {
@@ -113,13 +122,17 @@ MDirection Ephemeris::at(double utc_mjd) const {
   return {direction, frame_};
 }
 
-double Ephemeris::interpolated(const std::vector<double>& column, const char* name, double utc_mjd) const {
-  if (column.empty()) fail("has no column " + std::string(name) + ", expected one");
+double Ephemeris::interpolated(const Column& column, double utc_mjd) const {
+  const std::vector<double>& values = values_of(column);
   const Stencil rows = stencil(utc_mjd);
   double sum = 0;
-  for (std::size_t row = 0; row < rows.weight.size(); ++row) sum += rows.weight[row] * column[rows.first + row];
-  if (!std::isfinite(sum)) fail("has values of " + std::string(name) + " that are not finite, expected finite ones");
+  for (std::size_t row = 0; row < rows.weight.size(); ++row) sum += rows.weight[row] * values[rows.first + row];
+  if (!std::isfinite(sum)) fail("has values of " + std::string(column.name) + " that are not finite, expected finite ones");
   return sum;
+}
+
+double utc_mjd(const casacore::MEpoch& when) {
+  return casacore::MEpoch::Convert(when, casacore::MEpoch::UTC)().get("d").getValue();
 }
 
 casacore::MSField without_ephemerides(const casacore::MSField& field) {

@@ -1,10 +1,12 @@
 #pragma once
 
 #include <casacore/measures/Measures/MDirection.h>
+#include <casacore/measures/Measures/MEpoch.h>
 #include <casacore/ms/MeasurementSets/MSField.h>
 
 #include <array>
 #include <cstddef>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -24,9 +26,9 @@ class Ephemeris {
   /// Whether it is seen from the middle of the Earth.
   bool geocentric() const { return geocentric_; }
   /// Rho, from there. Throws what at() does, and where the table has no such column.
-  double distance_m(double utc_mjd) const { return interpolated(rho_m_, "Rho", utc_mjd); }
+  double distance_m(double utc_mjd) const { return interpolated({"Rho", "AU", "m"}, utc_mjd); }
   /// RadVel, positive away from there. Throws what distance_m() does.
-  double recession_m_s(double utc_mjd) const { return interpolated(recession_m_s_, "RadVel", utc_mjd); }
+  double recession_m_s(double utc_mjd) const { return interpolated({"RadVel", "AU/d", "m/s"}, utc_mjd); }
 
  private:
   /// Rows about a time, and Lagrange's polynomials through them at that time.
@@ -35,17 +37,29 @@ class Ephemeris {
     std::vector<double> weight;
   };
 
+  /// With the unit that it has unless it says otherwise, and that in which it is wanted.
+  struct Column {
+    const char* name;
+    const char* usual_unit;
+    const char* wanted_unit;
+  };
+
   [[noreturn]] void fail(const std::string& what) const;
   Stencil stencil(double utc_mjd) const;
-  double interpolated(const std::vector<double>& column, const char* name, double utc_mjd) const;
+  std::vector<double> values_of(const casacore::Table& table, const Column& column) const;
+  const std::vector<double>& values_of(const Column& column) const;
+  double interpolated(const Column& column, double utc_mjd) const;
 
   std::string path_;
   casacore::MDirection::Types frame_;
   bool geocentric_ = true;
-  std::vector<double> mjd_;                       ///< [row], ascending
-  std::vector<std::array<double, 3>> direction_;  ///< [row], unit vectors
-  std::vector<double> rho_m_, recession_m_s_;     ///< [row]; empty: there is no such column
+  std::vector<double> mjd_;                                    ///< [row], ascending
+  std::vector<std::array<double, 3>> direction_;               ///< [row], unit vectors
+  mutable std::map<std::string, std::vector<double>> others_;  ///< columns that were asked for, by name; [row]
 };
+
+/// Days, as an ephemeris counts them.
+double utc_mjd(const casacore::MEpoch& when);
 
 /// FIELD without EPHEMERIS_ID. casacore opens the tables of all its fields, selected or not, and gives up FIELD where one is
 /// missing, or is not as it would have written it.

@@ -73,8 +73,11 @@ class CentreSearch {
       if (moved_rad > selected_.moved_rad) farthest_ = field;
       selected_.moved_rad = std::max(selected_.moved_rad, moved_rad);
     }
-    if (fields_.motion(field) == Motion::earth) require_one_telescope(field);
-    if (selected_.body) say_place_doubt(moment(field, times.front()));
+    const bool earth = fields_.motion(field) == Motion::earth, body = selected_.body || fields_.is_phased_to_body(field);
+    if (earth || body)
+      require_one_telescope(field, earth ? "the frame of field " + label(field) + " turns with the Earth"
+                                         : "field " + label(field) + " is to see " + body_words());
+    if (body) say_place_doubt(moment(field, times.front()));
     if (fields_.motion(field) == Motion::none) return;
     for (std::string& doubt : doubts_of_motion(set_, fields_, field, moment(field, times.front())))
       selected_.remarks.push_back(std::move(doubt));
@@ -83,17 +86,17 @@ class CentreSearch {
   void say_place_doubt(const Moment& first) {
     const std::string doubt = fields_.place_doubt(first);
     const std::string remark =
-        selected_.body_name + " is seen from the middle of the Earth, as it is not from its surface, since " + doubt;
+        body_words() + " is seen from the middle of the Earth, without the parallax of the telescope, since " + doubt;
     std::vector<std::string>& said = selected_.remarks;
     if (!doubt.empty() && std::find(said.begin(), said.end(), remark) == said.end()) said.push_back(remark);
   }
 
-  void require_one_telescope(int field) const {
+  std::string body_words() const { return selected_.body ? selected_.body_name : "the body that it is phased to"; }
+
+  void require_one_telescope(int field, const std::string& why) const {
     if (!in_one_place(set_, observations_of(set_, selected_, field)))
-      throw std::runtime_error(
-          "the frame of field " + label(field) +
-          " turns with the Earth, and its rows are of telescopes in several places; expected those of one, "
-          "by --observation");
+      throw std::runtime_error(why +
+                               ", and its rows are of telescopes in several places; expected those of one, by --observation");
   }
 
   /// Shifts the rows of each field from where they are phased to to where `to` says.

@@ -174,8 +174,7 @@ const Ephemeris* FieldDirections::ephemeris_of(casacore::rownr_t row) {
 }
 
 MDirection FieldDirections::on_ephemeris(const Ephemeris& ephemeris, const MDirection& offset, const Moment& when) const {
-  const casacore::MEpoch utc = casacore::MEpoch::Convert(epoch(when.time_s), casacore::MEpoch::UTC)();
-  return beside(ephemeris.at(utc.get("d").getValue()), offset, true);  // as casacore has it
+  return beside(ephemeris.at(utc_mjd(epoch(when.time_s))), offset, true);  // as casacore has it
 }
 
 MDirection FieldDirections::equatorial(const MDirection& direction, const Moment& when) {
@@ -236,15 +235,28 @@ FieldCentre FieldDirections::target(int field, const Moment& when) {
   });
 }
 
-Recession FieldDirections::recession(int field, const Moment& when) {
-  const casacore::rownr_t row = row_of(field);
+const Ephemeris& FieldDirections::ephemeris_with_velocities(int field) {
+  if (const Ephemeris* const ephemeris = ephemeris_of(row_of(field))) return *ephemeris;
+  throw casacore::AipsError(
+      "it has no ephemeris; expected one, or --phasecenter with the name of a planet or the path of an ephemeris");
+}
+
+double FieldDirections::recession_m_s(int field, double time_s) {
   return translated("cannot find the velocity of field " + std::to_string(field) + " of " + path_, [&] {
-    const casacore::MEpoch at = epoch(when.time_s);
-    if (body_) return body_->recession(at);
-    if (const Ephemeris* const ephemeris = ephemeris_of(row))
-      return recession_of(*ephemeris, casacore::MEpoch::Convert(at, casacore::MEpoch::UTC)().get("d").getValue());
-    throw casacore::AipsError(
-        "it has no ephemeris; expected one, or --phasecenter with the name of a planet or the path of an ephemeris");
+    const casacore::MEpoch when = epoch(time_s);
+    return body_ ? body_->recession_m_s(when) : ephemeris_with_velocities(field).recession_m_s(utc_mjd(when));
+  });
+}
+
+casacore::MFrequency::Types FieldDirections::velocity_frame(int field) {
+  return translated("cannot find the velocity of field " + std::to_string(field) + " of " + path_,
+                    [&] { return body_ ? body_->velocity_frame() : ms_io::velocity_frame(ephemeris_with_velocities(field)); });
+}
+
+bool FieldDirections::is_phased_to_body(int field) const {
+  const casacore::rownr_t row = row_of(field);
+  return translated("cannot find the phase centre of field " + std::to_string(field) + " of " + path_, [&] {
+    return !has_ephemeris(row) && is_body_name(MDirection::showType(frame_of_cell(columns_.phaseDirMeasCol(), row)));
   });
 }
 

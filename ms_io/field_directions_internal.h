@@ -55,8 +55,11 @@ class FieldDirections {
   /// Where the body is, as seen from the field's telescope; else the field's ephemeris without that offset or, where it has
   /// none, centre().
   FieldCentre target(int field, const Moment& when);
-  /// Of the body, else by the field's ephemeris. Throws where there is neither.
-  Recession recession(int field, const Moment& when);
+  /// Of the body, else by the field's ephemeris, see Body. Both throw where there is neither.
+  double recession_m_s(int field, double time_s);
+  casacore::MFrequency::Types velocity_frame(int field);
+  /// Whether the field's own frame is that of a planet, so that it depends on the place of its telescope.
+  bool is_phased_to_body(int field) const;
   /// Why the place of the field's telescope is not known, see ObservingPlace; empty where it is.
   std::string place_doubt(const Moment& when) { return place_of(when).doubt; }
   /// Where the antennas of the field point: REFERENCE_DIR, taken as PHASE_DIR is.
@@ -87,6 +90,7 @@ class FieldDirections {
   void require_directions(const casacore::ArrayColumn<double>& cells, casacore::rownr_t row) const;
   double field_time_s(double time_s) const;
   const Ephemeris* ephemeris_of(casacore::rownr_t row);
+  const Ephemeris& ephemeris_with_velocities(int field);
   casacore::MDirection on_ephemeris(const Ephemeris& ephemeris, const casacore::MDirection& offset, const Moment& when) const;
   FieldCentre seen(int field, const casacore::MDirection& direction, const Moment& when);
   casacore::MDirection equatorial(const casacore::MDirection& direction, const Moment& when);

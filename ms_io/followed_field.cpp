@@ -12,6 +12,7 @@
 #include "ms_io/followed_field_internal.h"
 #include "ms_io/metadata_internal.h"
 #include "ms_io/observing_place_internal.h"
+#include "ms_io/spectral_frame_internal.h"
 #include "ms_io/table_access_internal.h"
 #include "ms_io/uvw_scan_internal.h"
 
@@ -130,7 +131,14 @@ std::string motion_remark(const OpenSet& set, const imager::Observation& observa
 std::vector<std::string> place_remarks(const OpenSet& set) {
   constexpr const char* own = "TOPOCENT";
   const std::string& frame = set.selected.spectral_frame;
-  const auto needs_place = [&](const Setup& setup) { return (setup.spectral_frame == own) != (frame == own); };
+  const auto to_own = [&](const Setup& setup) {
+    if (frame != source_frame) return frame == own;
+    FieldDirections fields(set.set, set.path, set.selected.body);
+    return fields.velocity_frame(setup.field) == casacore::MFrequency::TOPO;
+  };
+  const auto needs_place = [&](const Setup& setup) {
+    return setup.spectral_frame != frame && (setup.spectral_frame == own) != to_own(setup);
+  };
   if (frame.empty() || std::none_of(set.selected.setups.begin(), set.selected.setups.end(), needs_place)) return {};
   std::set<std::string> remarks;  // each once
   translated("cannot read ANTENNA or OBSERVATION of " + set.path, [&] {

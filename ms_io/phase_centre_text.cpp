@@ -167,10 +167,14 @@ std::optional<Meant> meaning_of(const std::string& text, const std::vector<std::
   return field_of_sets(text, paths);
 }
 
-/// What names a planet, which goes before fields that are called so; in capitals.
+bool names_a_field(const std::string& text, const std::string& path) {
+  const casacore::MeasurementSet set = open_measurement_set(path, Access::read);
+  return translated("cannot read FIELD of " + path, [&] { return !fields_in(set, one_line(text)).empty(); });
+}
+
+/// The planet that a text names, in capitals. It goes before fields of that name, and `selection` then says so.
 std::string follow_planet(const std::string& text, const std::vector<std::string>& paths, Selection& selection) {
-  const bool field = field_of_sets(text, paths).has_value();
-  if (field)
+  if (std::any_of(paths.begin(), paths.end(), [&](const std::string& path) { return names_a_field(text, path); }))
     selection.phase_centre_remark =
         "--phasecenter '" + text +
         "' is taken for the body of the solar system, not for the field of that name; its id means the field";

@@ -46,7 +46,7 @@ class PackagedData : public casacore::AppState {
 };
 
 /// Whether casacore has a table of planets, which it then keeps.
-bool has_tables(MeasJPL::Files file) {
+bool has_table(MeasJPL::Files file) {
   double any = 0;
   try {
     return MeasJPL::getConst(any, file, MeasJPL::AU);
@@ -55,15 +55,29 @@ bool has_tables(MeasJPL::Files file) {
   }
 }
 
+/// DE405, or DE200 where there is no other; nothing without both.
+std::optional<MeasJPL::Files> best_table() {
+  static const std::optional<MeasJPL::Files> best = []() -> std::optional<MeasJPL::Files> {
+    find_planet_tables();
+    if (has_table(MeasJPL::DE405)) return MeasJPL::DE405;
+    if (has_table(MeasJPL::DE200)) return MeasJPL::DE200;
+    return std::nullopt;
+  }();
+  return best;
+}
+
+[[noreturn]] void refuse_without_tables() {
+  throw casacore::AipsError(
+      "casacore takes the place of planets from the tables DE200 or DE405, which are not in the folder of its data, nor in " +
+      std::string(packaged_data) +
+      ", or do not reach that time; expected these tables there, as the packages casacore-data-jpl-de200 and -de405 bring "
+      "them, or the table of an ephemeris");
+}
+
 /// AU from the middle of the solar system.
 std::array<double, 3> position_au(MeasJPL::Files file, MeasJPL::Types body, double tdb_mjd) {
   casacore::Vector<double> values(6);
-  if (!has_tables(file) || !MeasJPL::get(values, file, body, casacore::MVEpoch(tdb_mjd)))
-    throw casacore::AipsError(
-        "casacore takes the place of planets from the tables DE200 or DE405, which are not in the folder of its data, nor in " +
-        std::string(packaged_data) +
-        ", or do not reach that time; expected these tables there, as the packages casacore-data-jpl-de200 and -de405 bring "
-        "them, or the table of an ephemeris");
+  if (!MeasJPL::get(values, file, body, casacore::MVEpoch(tdb_mjd))) refuse_without_tables();
   return {values(0), values(1), values(2)};
 }
 
@@ -77,38 +91,39 @@ std::optional<MDirection::Types> planet_named(const std::string& name) {
 }
 
 PlanetPlace planet_place(MDirection::Types planet, double tdb_mjd) {
-  find_planet_tables();
+  const std::optional<MeasJPL::Files> file = best_table();
+  if (!file) refuse_without_tables();
   const auto* const known =
       std::find_if(planets.begin(), planets.end(), [&](const KnownPlanet& one) { return one.code == planet; });
   if (known == planets.end()) throw casacore::AipsError("no planet has the code " + std::to_string(planet));
-  const MeasJPL::Files file = has_tables(MeasJPL::DE405) ? MeasJPL::DE405 : MeasJPL::DE200;
-  const std::array<double, 3> earth = position_au(file, MeasJPL::EARTH, tdb_mjd);
+  const std::array<double, 3> earth = position_au(*file, MeasJPL::EARTH, tdb_mjd);
   double au_km = 0;
-  MeasJPL::getConst(au_km, file, MeasJPL::AU);
-  const double au_m = 1e3 * au_km;
+  MeasJPL::getConst(au_km, *file, MeasJPL::AU);
   std::array<double, 3> away{};
-  double distance_m = 0, before_m = -1;
-  while (std::abs(distance_m - before_m) > 1e-3) {  // each step is 1e-4, the planet's speed over light's, of that before
-    before_m = distance_m;
+  double distance_m = 0;
+  // Each step leaves of the distance's error 1e-4, the planet's speed over light's, of 1e13 m at first; times are stored to
+  // 1e-6 s, in which a planet goes some centimetres.
+  constexpr int steps = 5;
+  for (int step = 0; step < steps; ++step) {
     constexpr double day_s = 86400;
     const std::array<double, 3> then =
-        position_au(file, known->in_tables, tdb_mjd - distance_m / imager::speed_of_light_m_s / day_s);
+        position_au(*file, known->in_tables, tdb_mjd - distance_m / imager::speed_of_light_m_s / day_s);
     for (std::size_t i = 0; i < 3; ++i) away[i] = then[i] - earth[i];
-    distance_m = au_m * std::hypot(away[0], away[1], away[2]);
+    distance_m = 1e3 * au_km * std::hypot(away[0], away[1], away[2]);
   }
   casacore::MVDirection direction(away[0], away[1], away[2]);
   direction.adjust();
-  return {{direction, file == MeasJPL::DE405 ? MDirection::ICRS : MDirection::J2000}, distance_m};
+  return {{direction, *file == MeasJPL::DE405 ? MDirection::ICRS : MDirection::J2000}, distance_m};
 }
 
 void find_planet_tables() {
   static std::once_flag once;
   std::call_once(once, [] {
-    const bool both = has_tables(MeasJPL::DE405) && has_tables(MeasJPL::DE200);
-    if (both) return;
-    casacore::AppStateSource::initialize(new PackagedData);  // which casacore owns from here on
-    has_tables(MeasJPL::DE405);
-    has_tables(MeasJPL::DE200);
+    const bool both = has_table(MeasJPL::DE405) && has_table(MeasJPL::DE200);
+    if (both || casacore::AppStateSource::fetch().initialized()) return;  // whose folders somebody else has set
+    casacore::AppStateSource::initialize(new PackagedData);               // which casacore owns from here on
+    has_table(MeasJPL::DE405);
+    has_table(MeasJPL::DE200);
     casacore::AppStateSource::initialize(new casacore::AppState);
   });
 }

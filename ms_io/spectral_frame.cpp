@@ -70,21 +70,27 @@ FrameRatio::FrameRatio(const casacore::MeasurementSet& set, const std::string& p
   translated("cannot find the frame of frequencies of " + path, [&] {
     field_ = selected.by_field ? setup.field : first_field(set, selected);
     row_ = selected.first_row_of_field.at(field_);
-    const Moment first{casacore::ScalarColumn<double>(set, "TIME")(row_), row_};
-    frame_ = casacore::MeasFrame(fields_.epoch(first.time_s));  // shared with `convert_`
+    const double first_s = casacore::ScalarColumn<double>(set, "TIME")(row_);
+    frame_ = casacore::MeasFrame(fields_.epoch(first_s));  // shared with `convert_`
     frame_.set(observing_place(set, observation).position);
-    frame_.set(measure_of(selected.phase_centre.value_or(fields_.centre(field_, first).direction)));
-    const auto to = selected.spectral_frame == source_frame ? fields_.recession(field_, first).from
-                                                            : spectral_frame_code(selected.spectral_frame);
+    if (selected.phase_centre) {
+      frame_.set(measure_of(*selected.phase_centre));
+    } else if (selected.follows_field) {
+      frame_.set(casacore::MDirection());  // until at() says where, which may not be known of a flagged first row
+    } else {
+      frame_.set(measure_of(fields_.centre(field_, {first_s, row_}).direction));
+    }
+    const auto to =
+        selected.spectral_frame == source_frame ? fields_.velocity_frame(field_) : spectral_frame_code(selected.spectral_frame);
     convert_.emplace(casacore::MFrequency::Ref(spectral_frame_code(setup.spectral_frame), frame_),
                      casacore::MFrequency::Ref(to, frame_));
   });
 }
 
-/// From where a source's velocity is measured from to itself; else 1.
+/// The factor from where a source's velocity is measured to the source's own frame; 1 for other frames.
 double FrameRatio::doppler(double time_s) {
   if (selected_.spectral_frame != source_frame) return 1;
-  const double of_light = fields_.recession(field_, {time_s, row_}).m_s / imager::speed_of_light_m_s;
+  const double of_light = fields_.recession_m_s(field_, time_s) / imager::speed_of_light_m_s;
   return std::sqrt((1 + of_light) / (1 - of_light));
 }
 

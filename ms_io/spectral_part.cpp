@@ -46,10 +46,12 @@ SpectralWindow window_at_first_row(const OpenSet& from, const Setup& setup) {
   for (const Run& run : setup.channels)
     for (std::uint64_t c = 0; c < run.count; ++c) window.channel.push_back(static_cast<int>(run.first + c));
   if (from.selected.spectral_frame.empty()) return window;
-  const bool of_source = from.selected.spectral_frame == source_frame;  // of which one field may not tell at another's times
+  // An ephemeris may not tell of another field's times, nor of those of flagged rows.
+  const bool of_source = from.selected.spectral_frame == source_frame;
   const std::uint64_t row = of_source ? from.selected.first_row_of_field.at(setup.field) : from.selected.first_row;
-  const double ratio =
-      FrameRatio(from.set, from.path, from.selected, setup, observation_of(from.set, row)).at(time_s(from, row));
+  const auto moving = from.selected.moving.find(setup.field);
+  const double when_s = of_source && moving != from.selected.moving.end() ? moving->second.first_s : time_s(from, row);
+  const double ratio = FrameRatio(from.set, from.path, from.selected, setup, observation_of(from.set, row)).at(when_s);
   for (double& hz : window.frequency_hz) hz *= ratio;
   for (double& hz : window.channel_width_hz) hz *= ratio;
   return window;

@@ -80,7 +80,7 @@ std::vector<std::complex<float>> factors(const std::vector<int>& types, Stokes w
                            listed(types) + (is_correlation ? "" : "; it needs " + needed_for(wanted)));
 }
 
-/// Of one parallel hand, where one alone is stored and Stokes I is not.
+/// The parallel hand that is stored, if there is just one, and Stokes I is not.
 std::optional<Stokes> only_hand(const std::vector<int>& types) {
   const auto stored = [&](Stokes stokes) { return std::find(types.begin(), types.end(), code(stokes)) != types.end(); };
   if (stored(Stokes::I)) return {};

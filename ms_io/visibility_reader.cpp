@@ -26,6 +26,7 @@ class GrowingBlock {
     block.visibility.resize(recipe.terms.size() * samples);
     for (std::size_t i = 0; i < recipe.terms.size(); ++i) next_.visibility[i] = block.visibility.data() + i * samples;
     block.frequency_hz = setup.frequency_hz;
+    block.channel_width_hz = setup.channel_width_hz;
     block.uvw_m.edit().resize(rows * 3);
     block.weight.resize(samples);
     find_counted();
@@ -73,7 +74,6 @@ class GrowingBlock {
   /// What a cube needs to know.
   void append_spectral(const StoredRows& stored, std::size_t first, std::size_t count) {
     imager::VisibilityBlock& block = *block_;
-    if (block.channel_width_hz.empty()) block.channel_width_hz = setup_.channel_width_hz;
     const auto begin = stored.frame_ratio.begin() + static_cast<std::ptrdiff_t>(first);
     block.frame_ratio.insert(block.frame_ratio.end(), begin, begin + static_cast<std::ptrdiff_t>(count));
   }

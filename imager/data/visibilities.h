@@ -54,7 +54,7 @@ struct VisibilityBlock : SampleCoordinates {
   SampleCounts counts;  ///< of this block alone
   /// [row]: a frequency in the image's spectral frame over what it is in the frame of frequency_hz; empty: 1.
   std::vector<double> frame_ratio;
-  std::vector<double> channel_width_hz;  ///< [channel], positive; empty unless a cube is made of the block
+  std::vector<double> channel_width_hz;  ///< [channel], positive; may be empty unless a cube is made of the block
 
   /// How many Stokes parameters it carries.
   std::size_t stokes() const { return samples() == 0 ? 1 : visibility.size() / samples(); }

@@ -14,9 +14,12 @@ namespace {
 constexpr double rad_per_deg = pi / 180;
 constexpr const char* moving_key = "TRACKFLD";
 
-/// Of planes that are evenly spaced in wavelength, the optical velocity.
+/// Planes that are evenly spaced in wavelength are so in optical velocity, which takes a line.
 FitsAxis frequency_axis(const SpectralAxis& axis) {
   if (!axis.in_wavelength) return {"FREQ", "Hz", 1, axis.reference_hz, axis.step_hz()};
+  const double wavelength_m = speed_of_light_m_s / axis.reference_hz;
+  if (!(axis.rest_frequency_hz > 0))
+    return {"WAVE", "m", 1, wavelength_m, -wavelength_m * axis.increment_hz / axis.reference_hz};
   const double of_line = axis.rest_frequency_hz / axis.reference_hz;
   return {"VOPT", "m/s", 1, speed_of_light_m_s * (of_line - 1),
           -speed_of_light_m_s * of_line * axis.increment_hz / axis.reference_hz};
@@ -69,7 +72,7 @@ void write_observation(FitsFile& file, const Observation& observation) {
   file.write_text("DATE-OBS", observation.date_obs);
   if (const std::optional<double> date = modified_julian_date(observation.date_obs)) file.write_number("MJD-OBS", *date, "d");
   if (!observation.moving_at.empty())
-    file.write_text(moving_key, observation.moving_at, "UTC of CRVAL1 and CRVAL2: the image moves along with its field");
+    file.write_text(moving_key, observation.moving_at, "UTC of CRVAL1 and CRVAL2: the image moves with its target");
   file.write_text("ORIGIN", "misfit");
 }
 

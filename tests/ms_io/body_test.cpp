@@ -11,9 +11,11 @@
 
 #include <boost/test/unit_test.hpp>
 #include <cmath>
+#include <set>
 
 #include "ms_io/body_internal.h"
 #include "ms_io/phase_centre.h"
+#include "ms_io/phase_centre_internal.h"
 #include "ms_io/planets_internal.h"
 #include "ms_io/spectral_frame.h"
 #include "ms_io/table_access_internal.h"
@@ -80,21 +82,31 @@ Selection following(const std::string& what, const std::string& set) {
 
 }  // namespace
 
+// casacore's own way is from DE200, with parallax above the telescope, which the step back to J2000 does not undo. DE200 was
+// fitted to what was seen up to 1980, and the outer planets have left it since (Standish 1990, A&A 233, 252): by so much in
+// 2014.
 BOOST_AUTO_TEST_CASE(planets_are_where_casacore_has_them_above_the_telescope) {
   silence_casacore();
   find_planet_tables();
-  for (const char* const name : {"MERCURY", "Venus", "mars", "JUPITER", "SATURN", "URANUS", "NEPTUNE", "PLUTO", "SUN", "MOON"})
+  for (const auto& [name, departed_arcsec] : {std::pair{"MERCURY", 0.2},
+                                              {"Venus", 0.2},
+                                              {"mars", 0.2},
+                                              {"JUPITER", 0.2},
+                                              {"SATURN", 0.5},
+                                              {"URANUS", 0.8},
+                                              {"NEPTUNE", 1.4},
+                                              {"PLUTO", 8},
+                                              {"SUN", 0.2},
+                                              {"MOON", 0.6}})
     for (const double time_s : {4.9e9, 4.9e9 + 40000, 4.9e9 + 1.2e7}) {
       const casacore::MEpoch when = utc(time_s);
       const casacore::MeasFrame frame(when, vla());
-      // casacore's own way: from DE200, with parallax above the telescope, which the second step does not undo.
       const MDirection::Ref here(MDirection::TOPO, frame), j2000(MDirection::J2000, frame);
       const MDirection above = MDirection::Convert(MDirection(*planet_named(name)), here)();
       const MDirection expected = MDirection::Convert(above, j2000)();
       const MDirection found = MDirection::Convert(make_body(name)->seen_from(frame, when), j2000)();
-      const double apart_rad = found.getValue().separation(expected.getValue());
-      std::printf("%s %g %.4f\n", name, time_s, apart_rad / arcsec);
-      BOOST_TEST(apart_rad < 0.5 * arcsec, name << " " << apart_rad / arcsec);
+      const double apart_arcsec = found.getValue().separation(expected.getValue()) / arcsec;
+      BOOST_TEST(apart_arcsec < departed_arcsec, name << " " << apart_arcsec);
     }
 }
 
@@ -117,10 +129,10 @@ BOOST_AUTO_TEST_CASE(planets_recede_as_the_tables_have_their_velocities) {
         along += unit * (planet(i + 3) - earth(i + 3)) * au_m / day_s;
         of_planet += unit * planet(i + 3) * au_m / day_s;
       }
-      const Recession found = make_body(name)->recession(utc(time_s));
-      BOOST_TEST(std::abs(found.m_s - along / (1 + of_planet / light_m_s)) < 0.01,
-                 name);  // of the change over 200 s, the third
-      BOOST_TEST((found.from == casacore::MFrequency::GEO));
+      const auto body = make_body(name);
+      // The third order of the change over 200 s, and centimetres of rounding over these.
+      BOOST_TEST(std::abs(body->recession_m_s(utc(time_s)) - along / (1 + of_planet / light_m_s)) < 0.01, name);
+      BOOST_TEST((body->velocity_frame() == casacore::MFrequency::GEO));
     }
 }
 
@@ -140,12 +152,13 @@ BOOST_AUTO_TEST_CASE(what_is_near_is_seen_from_the_telescope) {
   const casacore::MVDirection geocentric = read.at(time_s / day_s).getValue();
   casacore::MVPosition expected(geocentric);
   for (std::size_t i = 0; i < 3; ++i) expected(i) = geocentric.getValue()(i) * of.rho_au * au_m - observer_m[i];
+  casacore::MVDirection from_there(expected);
+  from_there.adjust();
   const casacore::MVDirection found = make_body(path)->seen_from(frame, when).getValue();
   BOOST_TEST(found.separation(geocentric) > 600 * arcsec);
   // Without tables of the IERS the Earth's rotation is 0.16 s off, 60 m there: 0.03 arcsec; casacore's precession and nutation
   // are those of 1976, some 0.05 arcsec off, of a parallax of 1e-2.
-  BOOST_TEST(found.separation(casacore::MVDirection(expected)) < 0.05 * arcsec,
-             found.separation(casacore::MVDirection(expected)) / arcsec);
+  BOOST_TEST(found.separation(from_there) < 0.05 * arcsec, found.separation(from_there) / arcsec);
   std::filesystem::remove_all(path);
   of.topocentric = true;
   write_table(path, of);
@@ -223,7 +236,7 @@ BOOST_AUTO_TEST_CASE(frequencies_come_to_rest_by_the_velocity_of_what_is_followe
     const double of_light = of.rho_rate * au_m / day_s / light_m_s;
     BOOST_TEST_REQUIRE(found.size() == rows);
     for (std::size_t row = 0; row < rows; ++row)
-      BOOST_TEST(std::abs(found[row] / (before[row] * std::sqrt((1 + of_light) / (1 - of_light))) - 1) < 1e-14);
+      BOOST_TEST(std::abs(found[row] / (before[row] * std::sqrt((1 + of_light) / (1 - of_light))) - 1) < 1e-13);  // 0.03 mm/s
     const MeasurementSet opened(set.path(), at_rest, "DATA");
     BOOST_TEST(opened.spectral_windows()[0].frequency_hz[0] == 1e9 * found[0]);
     std::filesystem::remove_all(table);
@@ -248,7 +261,66 @@ BOOST_AUTO_TEST_CASE(frequencies_come_to_rest_by_the_ephemeris_of_the_field_what
     const std::vector<double> found = ratios(MeasurementSet(set.path(), at_rest, "DATA"));
     const std::vector<double> before = ratios(MeasurementSet(set.path(), geocentric, "DATA"));
     BOOST_TEST_REQUIRE(found.size() == rows);
-    for (std::size_t row = 0; row < rows; ++row) BOOST_TEST(std::abs(found[row] / (before[row] * factor) - 1) < 1e-14);
+    for (std::size_t row = 0; row < rows; ++row)
+      BOOST_TEST(std::abs(found[row] / (before[row] * factor) - 1) < 1e-13);  // 0.03 mm/s
+  }
+}
+
+// Each has its own velocity, in integrations by turns; the first three, which are flagged, are before both ephemerides.
+BOOST_AUTO_TEST_CASE(frequencies_of_fields_come_to_rest_each_by_its_own_ephemeris) {
+  const MovingSet set(Path::ephemeris);
+  add_still_field(set.path(), about);
+  const MovingField other(set.path(), 1, Path::ephemeris, about);
+  for (const int field : {0, 1}) {
+    casacore::Table table(set.path() + "/FIELD/EPHEM" + std::to_string(field) + "_Object.tab", casacore::Table::Update);
+    casacore::ScalarColumn<double>(table, "RadVel").fillColumn(0.01 * (field + 1));
+    const casacore::Vector<double> mjd = casacore::ScalarColumn<double>(table, "MJD").getColumn();
+    std::vector<casacore::rownr_t> before;
+    for (casacore::rownr_t row = 0; row < table.nrow(); ++row)
+      if (mjd(row) * day_s < middle_s - 1) before.push_back(row);
+    table.removeRow(casacore::Vector<casacore::rownr_t>(before));
+  }
+  std::vector<int> field_of_row;
+  set.modify([&](casacore::MeasurementSet& open) {
+    for (casacore::rownr_t row = 0; row < 3 * baselines; ++row) casacore::ScalarColumn<bool>(open, "FLAG_ROW").put(row, true);
+    field_of_row = casacore::ScalarColumn<int>(open, "FIELD_ID").getColumn().tovector();
+  });
+  BOOST_TEST_REQUIRE(std::count(field_of_row.begin(), field_of_row.end(), 1) > 0);
+  Selection at_rest = with(Moving::about_targets), geocentric = at_rest;
+  at_rest.spectral_frame = "SOURCE";
+  geocentric.spectral_frame = "GEOCENTR";
+  const MeasurementSet rest(set.path(), at_rest, "DATA"), geo(set.path(), geocentric, "DATA");
+  const auto one = rest.open(), two = geo.open();
+  std::set<double> factors;
+  while (const auto block = one->next()) {
+    const auto same = two->next();
+    for (std::size_t row = 0; row < block->rows(); ++row)
+      if (block->weight[row * block->channels()] != 0) factors.insert(block->frame_ratio[row] / same->frame_ratio[row]);
+  }
+  for (const double factor : factors) {
+    const auto expected = [](double au_per_day) {
+      const double of_light = au_per_day * au_m / day_s / light_m_s;
+      return std::sqrt((1 + of_light) / (1 - of_light));
+    };
+    BOOST_TEST((std::abs(factor / expected(0.01) - 1) < 1e-14 || std::abs(factor / expected(0.02) - 1) < 1e-14), factor);
+  }
+  BOOST_TEST(*factors.rbegin() - *factors.begin() > 1e-6);
+}
+
+BOOST_AUTO_TEST_CASE(an_ephemeris_beside_field_is_taken_as_telescopes_phased_to_it) {
+  const MovingSet set(Path::ephemeris);
+  const MeasurementSet tracked(set.path(), with(Moving::about_targets), "DATA");
+  const MeasurementSet named(set.path(), following(set.path() + "/FIELD/EPHEM0_Object.tab", set.path()), "DATA");
+  BOOST_TEST(separation_rad(tracked.observation().phase_centre, named.observation().phase_centre) < 1e-12);
+}
+
+BOOST_AUTO_TEST_CASE(the_way_of_light_is_found_at_all_times) {
+  silence_casacore();
+  for (int day = 0; day < 20000; ++day) {
+    const double mjd = 45000 + 0.7 * day;
+    const PlanetPlace one = planet_place(MDirection::MARS, mjd), next = planet_place(MDirection::MARS, mjd + 1e-3);
+    // Mars and the Earth approach each other by 19 km/s at most.
+    BOOST_TEST_REQUIRE(std::abs(next.distance_m - one.distance_m) < 20e3 * 1e-3 * day_s);
   }
 }
 
@@ -261,6 +333,9 @@ BOOST_AUTO_TEST_CASE(a_planet_goes_before_a_field_of_its_name) {
   BOOST_TEST(says(opened, "--phasecenter 'Jupiter' is taken for the body of the solar system, not for the field of that name"));
   BOOST_TEST(says(opened, "JUPITER moves by "));
   BOOST_TEST(following("0", set.path()).body.empty());
+  set.add_field(1.5, -0.25);  // another of that name, elsewhere
+  set.modify([](casacore::MeasurementSet& open) { casacore::MSFieldColumns(open.field()).name().put(1, "Jupiter"); });
+  BOOST_TEST(following("JUPITER", set.path()).body == "JUPITER");
 }
 
 BOOST_AUTO_TEST_SUITE_END()

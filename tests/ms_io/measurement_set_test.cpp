@@ -524,6 +524,28 @@ BOOST_AUTO_TEST_CASE(a_column_that_was_never_filled_is_told_from_one_with_a_sing
   BOOST_TEST(columns.front().zeros.everywhere);
 }
 
+BOOST_AUTO_TEST_CASE(samples_of_one_hand_count_where_either_is_asked_for) {
+  const SmallSet set;
+  set.modify([](casacore::MeasurementSet& open) {
+    casacore::ArrayColumn<bool> flag(open, "FLAG");
+    casacore::Matrix<bool> cell = flag(0);
+    cell(0, 2) = cell(1, 3) = true;
+    cell(0, 4) = cell(1, 4) = true;
+    flag.put(0, cell);
+  });
+  const AllSamples strict = misfit::ms_io::testing::read_all(MeasurementSet(set.path(), {}, "DATA"));
+  Selection selection;
+  selection.either_hand = true;
+  const AllSamples either = misfit::ms_io::testing::read_all(MeasurementSet(set.path(), selection, "DATA"));
+  for (std::size_t c = 0; c < channels; ++c) {
+    BOOST_TEST((strict.weight[c] == 0) == (c >= 2 && c <= 4));
+    BOOST_TEST((either.weight[c] == 0) == (c == 4));
+    if (c != 2 && c != 3) BOOST_TEST(either.visibility[c] == strict.visibility[c]);
+  }
+  BOOST_TEST(either.visibility[2] == set.cell("DATA", 0)(1, 2));
+  BOOST_TEST(either.visibility[3] == set.cell("DATA", 0)(0, 3));
+}
+
 BOOST_AUTO_TEST_SUITE_END()
 
 }  // namespace misfit::ms_io

@@ -140,7 +140,7 @@ BOOST_AUTO_TEST_CASE(a_field_is_that_of_the_first_set_that_has_it_with_a_word_wh
   BOOST_TEST(phased_to({}, "OTHER", {one.path(), other.path()}).phase_centre->ra_rad == 1.5);
   BOOST_TEST(remark("OTHER", {one.path(), other.path()}) == "");
   const std::string error = error_of([&] { remark("NOBODY", {one.path(), other.path()}); });
-  BOOST_TEST(contains(error, "nor a field of " + one.path() + ", " + other.path()), error);
+  BOOST_TEST(contains(error, "and no field of " + one.path() + ", " + other.path()), error);
 }
 
 BOOST_AUTO_TEST_CASE(what_is_no_direction_is_refused_with_what_was_expected) {

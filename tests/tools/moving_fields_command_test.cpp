@@ -184,7 +184,7 @@ BOOST_AUTO_TEST_CASE(what_moves_and_what_stands_still_are_not_taken_for_each_oth
   succeed(moving.image() + Arguments{"--niter", "1"});
   const std::string still = moving.simulate_another("still.ms"), model = moving.folder / "a.model.fits";
   const std::string along = refused({"predict", "--vis", still, "--model", model}).err;
-  BOOST_TEST(along.find(model + " moves along with its field (TRACKFLD is ") != std::string::npos, along);
+  BOOST_TEST(along.find(model + " moves along with its target (TRACKFLD is ") != std::string::npos, along);
   const std::string copy = moving.folder / "start.fits";
   std::filesystem::copy(model, copy);
   const std::string start = refused(moving.fixed() + Arguments{"--niter", "1", "--startmodel", copy}).err;

@@ -16,7 +16,7 @@ std::string described(const imager::SpectralAxis& axis) {
   const std::string first = significant(axis.reference_hz, 9) + " Hz", frame = axis.frame.empty() ? "" : " in " + axis.frame;
   if (axis.channels == 1) return "plane of " + significant(axis.width_hz(), 6) + " Hz at " + first + frame;
   return std::to_string(axis.channels) + " planes, " + significant(axis.increment_hz, 6) + " Hz apart" +
-         (axis.in_wavelength ? " and evenly spaced in wavelength" : "") + ", from " + first + " on" + frame;
+         (axis.in_wavelength ? " at first, evenly in wavelength," : ",") + " from " + first + " on" + frame;
 }
 
 bool same_planes(const imager::SpectralAxis& a, const imager::SpectralAxis& b) {

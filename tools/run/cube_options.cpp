@@ -69,7 +69,7 @@ bool optical(const CubeOptions& o) {
   return ms_io::capitals(o.veltype) == "OPTICAL";
 }
 
-/// Of the planes; empty: as the data have it.
+/// FITS SPECSYS of the planes' frequencies; empty where they are the data's, in whatever frame.
 std::string plane_frame(const CubeOptions& o) {
   return at_rest(o) ? "SOURCE" : spectral_frame(o);
 }
@@ -193,7 +193,7 @@ void declare(CLI::App& command, CubeOptions& o) {
   command
       .add_option("--specmode", o.specmode,
                   "mfs: one image of the whole band; cube: planes of frequency, in --outframe; cubedata: planes of the data's "
-                  "frequencies as they are; cubesource: planes at rest in what an ephemeris or a planet's name tells of")
+                  "frequencies as they are; cubesource: planes in the rest frame of a planet or of an ephemeris' target")
       ->check(CLI::IsMember({"mfs", "cube", "cubedata", "cubesource"}));
   command.add_option("--nchan", o.nchan, "Planes of a cube; -1 = to the end of the data");
   command.add_option("--start", o.start,
@@ -241,7 +241,8 @@ void check(const CubeOptions& o) {
   only_of_cubes("nchan", std::to_string(o.nchan), o.nchan != usual.nchan);
   only_of_cubes("start", o.start, !o.start.empty());
   only_of_cubes("chanwidth", o.chanwidth, !o.chanwidth.empty());
-  only_of_cubes("outframe", o.outframe, o.outframe != usual.outframe);
+  const bool other_frame = ms_io::capitals(o.outframe) != usual.outframe;
+  only_of_cubes("outframe", o.outframe, other_frame);
   only_of_cubes("veltype", o.veltype, optical(o));
   only_of_cubes("interpolation", o.interpolation, o.interpolation != usual.interpolation);
   only_of_cubes("perchanweightdensity", "false", !o.perchanweightdensity);
@@ -254,9 +255,9 @@ void check(const CubeOptions& o) {
   if (optical(o) && start.unit != SpectralUnit::velocity && width.unit != SpectralUnit::velocity)
     refuse_option("veltype", o.veltype, "a velocity in --start or --chanwidth beside it");
   if (start.unit == SpectralUnit::channels && start.value < 0) refuse_option("start", o.start, "a channel from 0 on");
-  if (o.specmode == "cubedata" && o.outframe != usual.outframe)
+  if (o.specmode == "cubedata" && other_frame)
     refuse_option("outframe", o.outframe, "none with --specmode cubedata, whose frequencies stay as they are");
-  if (o.specmode == "cubesource" && o.outframe != usual.outframe && !at_rest(o))
+  if (o.specmode == "cubesource" && other_frame && !at_rest(o))
     refuse_option("outframe", o.outframe, "REST or none with --specmode cubesource");
   try {
     plane_frame(o);

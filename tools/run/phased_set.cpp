@@ -74,9 +74,10 @@ PhasedSet set_for_image(const PhasedSetRequest& request, const std::string& mode
   PhasedSet phased = opened(request, selection, ranks);
   const bool set_moves = !phased.set->observation().moving_at.empty();
   if (!moving_at.empty() && !set_moves)
-    throw std::runtime_error(model + " moves along with its field (TRACKFLD is " + moving_at + "), and what is selected of " +
-                             request.vis +
-                             " is phased to a direction; expected a field that moves, or an image that stands still");
+    throw std::runtime_error(
+        model + " moves along with its target (TRACKFLD is " + moving_at + "), and what is selected of " + request.vis +
+        " is phased to a direction; expected a field that moves, --phasecenter with the planet or ephemeris that the "
+        "image moves with, or an image that stands still");
   if (set_moves) {
     if (!moving_at.empty()) require_same_target(request, model, image, *phased.set);
     return phased;

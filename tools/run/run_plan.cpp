@@ -259,7 +259,7 @@ RunWork work_of(const RunScene& scene, const RunPlan& plan) {
           .terms = o.taylor.nterms,
           .density = weighting_options(o.weighting).needs_density(),
           .tapered = weighting_options(o.weighting).tapers(),
-          .primary_beam = o.primary_beam.wanted(),
+          .primary_beam = o.primary_beam.wanted() || o.measures_noise_in_beam(),
           .wider = plan.wider.get()};
 }
 

@@ -186,10 +186,12 @@ void declare(CLI::App& command, TypedWeighting& o) {
   command.add_option("--uvtaper", o.uvtaper,
                      "Taper by a Gaussian, MAJ[,MIN[,PA]]: its full width at half maximum on the sky, such as 5arcsec, or its "
                      "half width in the uv plane, such as 3klambda; none when empty");
-  command.add_option("--minuv-l", o.minuv_l,
-                     "Image no samples nearer to u = v = 0 than so many wavelengths, at each channel's own frequency: such as "
-                     "80 or 3klambda; density counts them nevertheless");
-  command.add_option("--maxuv-l", o.maxuv_l, "Image no samples farther from u = v = 0 than so many wavelengths, likewise");
+  command.add_option(
+      "--minuv-l", o.minuv_l,
+      "Give no weight to samples nearer to u = v = 0 than so many wavelengths, at each channel's own frequency: such as "
+      "80 or 3klambda; density counts them nevertheless");
+  command.add_option("--maxuv-l", o.maxuv_l,
+                     "Give no weight to samples farther from u = v = 0 than so many wavelengths, likewise");
   command.add_option("--taper-tukey", o.taper_tukey,
                      "Let weights fall to 0 along half a period of a cosine, so many wavelengths wide, that ends at --maxuv-l");
   command.add_option("--taper-inner-tukey", o.taper_inner_tukey,

@@ -75,15 +75,16 @@ def _real(p, name):
         _refuse(name, p[name], "a number")
 
 
-def _quantity(name, value, unit="", frame=None):
+def _quantity(name, value, unit="", frame=None, doppler=None):
     """
-    A number, a text, or a dictionary as casatools' quanta.quantity() and measures make it; of measures, in this frame. Numbers
-    get `unit`, in texts too.
+    A number, a text, or a dictionary as casatools' quanta.quantity() and measures make it; of measures, in this frame, or of this
+    kind of velocity. Numbers get `unit`, in texts too.
     """
     if isinstance(value, dict):
         refer = value.get("refer", frame)
-        if refer != frame and refer not in ("RADIO", "OPTICAL", "Z"):  # kinds of velocities, which veltype names
-            _refuse(name, value, f"a measure in {frame}, as outframe says")
+        if refer != frame and refer != doppler:
+            _refuse(name, value, "a quantity, or a measure " + (f"in {frame}, as outframe says" if frame else "without a frame") +
+                    (f", or a velocity that is {doppler}, as veltype says" if doppler else ""))
         value = value.get("m0", value)
         if "value" not in value:
             _refuse(name, value, "a quantity with 'value' and 'unit'")
@@ -196,10 +197,10 @@ def _give_image(words, p):
     words.give("stokes", stokes)
 
 
-def _spectral(name, value, frame):
+def _spectral(name, value, frame, veltype):
     if isinstance(value, numbers.Real):
         _refuse(name, value, "a whole number of channels, a frequency such as '1.4GHz' or a velocity such as '20km/s'")
-    return _quantity(name, value, "", frame)
+    return _quantity(name, value, "", frame, veltype.upper())
 
 
 def _velocities(veltype):
@@ -225,6 +226,7 @@ def _give_spectrum(words, p):
     specmode = p["specmode"]
     if specmode not in ("mfs", "cube", "cubedata", "cubesource"):
         _refuse("specmode", specmode, "'mfs', 'cube', 'cubedata' or 'cubesource'")
+    veltype = _velocities(p["veltype"])
     restfreq = [one for one in _items(p["restfreq"]) if one != ""]
     if restfreq:
         words.give("restfreq", _quantity("restfreq", restfreq[0], "Hz"))
@@ -241,13 +243,13 @@ def _give_spectrum(words, p):
         if _channel(value) is not None:
             words.give(name, channels.format(_channel(value)))
         elif value != "":
-            text = _spectral(name, value, frame)
+            text = _spectral(name, value, frame, p["veltype"])
             velocities = velocities or text.strip().endswith("/s")
             words.give(name, text)
     if specmode == "cube":
         words.give("outframe", frame)
     if velocities:
-        words.give("veltype", _velocities(p["veltype"]))
+        words.give("veltype", veltype)
     words.give("interpolation", p["interpolation"])
     if not p["perchanweightdensity"] and p["weighting"] != "natural":
         words.give("perchanweightdensity", "false")
