@@ -2,6 +2,7 @@
 #include <limits>
 
 #include "ms_io/block_group_internal.h"
+#include "ms_io/spectral_frame_internal.h"
 
 namespace misfit::ms_io {
 namespace {
@@ -16,6 +17,12 @@ constexpr std::ptrdiff_t most_blocks = std::numeric_limits<std::uint16_t>::max()
 
 bool scattered(const BlockRows& block) {
   return block.rows < long_run * block.runs.size();
+}
+
+/// Whether a row's frequencies differ from those in the frame of the selection by the same factor in both.
+bool share_frame_ratio(const SelectedRows& selected, const Setup& a, const Setup& b) {
+  if (selected.spectral_frame.empty()) return true;
+  return a.spectral_frame == b.spectral_frame && (selected.spectral_frame != source_frame || a.field == b.field);
 }
 
 /// Whether the same slice of the cells of both is read, and the cells have one shape.
@@ -34,7 +41,7 @@ std::size_t end_of_group(const SelectedRows& selected, std::size_t first) {
     const Setup& other = selected.setups[end->setup];
     samples += end->rows * other.frequency_hz.size();
     const bool joins = end - begin < most_blocks && scattered(*begin) && scattered(*end) && alike(setup, other) &&
-                       samples <= most_samples &&
+                       share_frame_ratio(selected, setup, other) && samples <= most_samples &&
                        std::none_of(begin, end, [&](const BlockRows& block) { return block.setup == end->setup; });
     if (end != begin && !joins) break;
     ++end;

@@ -14,6 +14,7 @@
 #include <sstream>
 #include <utility>
 
+#include "imager/numerics/constants.h"
 #include "ms_io/ephemeris_internal.h"
 
 namespace misfit::ms_io {
@@ -25,6 +26,12 @@ using casacore::MDirection;
 casacore::String unit_of(const casacore::TableRecord& keywords, const char* usual_unit) {
   if (keywords.isDefined("QuantumUnits")) return *keywords.asArrayString("QuantumUnits").begin();
   return keywords.isDefined("UNIT") ? keywords.asString("UNIT") : casacore::String(usual_unit);
+}
+
+std::string number(double value) {
+  std::ostringstream text;
+  text << value;
+  return text.str();
 }
 
 /// As casacore finds it, but that it takes frames that it does not know for apparent places.
@@ -61,18 +68,33 @@ Ephemeris::Ephemeris(const std::string& path) : path_(path) {
     if (!std::isfinite(mjd_[row]) || !std::isfinite(ra_rad[row]) || !std::isfinite(dec_rad[row]))
       fail("has numbers that are not finite in row " + std::to_string(row));
     if (row > 0 && !(mjd_[row] > mjd_[row - 1])) fail("is not in the order of MJD at row " + std::to_string(row));
+    constexpr double turn = 2 * imager::pi;
+    if (!(std::abs(dec_rad[row]) <= turn / 4 + 1e-9 && std::abs(ra_rad[row]) <= 2 * turn))
+      fail("has RA " + number(ra_rad[row] * 360 / turn) + " and DEC " + number(dec_rad[row] * 360 / turn) + " degrees in row " +
+           std::to_string(row) + ", expected RA within two turns and DEC from -90 to 90");
     direction_.push_back({std::cos(dec_rad[row]) * std::cos(ra_rad[row]), std::cos(dec_rad[row]) * std::sin(ra_rad[row]),
                           std::sin(dec_rad[row])});
   }
   const casacore::TableRecord& keywords = table.keywordSet();
-  geocentric_ = frame_ != MDirection::TOPO && !(keywords.isDefined("GeoDist") && keywords.asDouble("GeoDist") != 0);
+  const double from_middle_km = keywords.isDefined("GeoDist") ? keywords.asDouble("GeoDist") : 0;
+  if (!(from_middle_km >= 0)) fail("has GeoDist " + number(from_middle_km) + " km, expected 0 or more");
+  geocentric_ = frame_ != MDirection::TOPO && from_middle_km == 0;
 }
 
 std::vector<double> Ephemeris::values_of(const casacore::Table& table, const Column& column) const {
-  const casacore::ScalarColumn<double> cells(table, column.name);
-  const casacore::Quantity unit(1, unit_of(cells.keywordSet(), column.usual_unit));
+  casacore::ScalarColumn<double> cells;
+  casacore::Quantity unit;
+  try {
+    cells.attach(table, column.name);
+    unit = casacore::Quantity(1, unit_of(cells.keywordSet(), column.usual_unit));
+  } catch (const casacore::AipsError& error) {
+    fail("has a column " + std::string(column.name) +
+         " that cannot be read, expected one of double precision in a unit such as " + column.usual_unit + ": " +
+         std::string(error.getMesg()));
+  }
   if (!unit.isConform(column.wanted_unit))
-    fail("has " + std::string(column.name) + " in " + std::string(unit.getUnit()) + ", expected a unit such as " + column.usual_unit);
+    fail("has " + std::string(column.name) + " in " + std::string(unit.getUnit()) + ", expected a unit such as " +
+         column.usual_unit);
   std::vector<double> values = cells.getColumn().tovector();
   for (double& value : values) value *= unit.getValue(column.wanted_unit);
   return values;
@@ -96,7 +118,8 @@ void Ephemeris::fail(const std::string& what) const {
 Ephemeris::Stencil Ephemeris::stencil(double utc_mjd) const {
   if (!(utc_mjd >= mjd_.front() && utc_mjd <= mjd_.back())) {
     std::ostringstream what;
-    what << std::setprecision(11) << "goes from MJD " << mjd_.front() << " to " << mjd_.back() << ", not to " << utc_mjd;
+    what << std::setprecision(11) << "goes from MJD " << mjd_.front() << " to " << mjd_.back() << ", not to " << utc_mjd
+         << "; --timerange selects rows within it";
     fail(what.str());
   }
   const std::size_t points = std::min<std::size_t>(4, mjd_.size());
@@ -111,15 +134,38 @@ Ephemeris::Stencil Ephemeris::stencil(double utc_mjd) const {
   return made;
 }
 
-/// A polynomial through unit vectors, normalised.
+/// A polynomial through unit vectors, normalised. Of rows 5 degrees apart it errs by 0.2 arcsec.
 MDirection Ephemeris::at(double utc_mjd) const {
   const Stencil rows = stencil(utc_mjd);
+  for (std::size_t row = rows.first + 1; row < rows.first + rows.weight.size(); ++row) {
+    constexpr double most_rad = 5 * imager::pi / 180;
+    const std::array<double, 3>&one = direction_[row - 1], &next = direction_[row];
+    const double apart_rad = 2 * std::asin(std::min(1.0, std::hypot(one[0] - next[0], one[1] - next[1], one[2] - next[2]) / 2));
+    if (apart_rad > most_rad)
+      fail("moves by " + number(apart_rad * 180 / imager::pi) + " degrees between rows " + std::to_string(row - 1) + " and " +
+           std::to_string(row) + ", expected rows so near that it moves by no more than 5");
+  }
   std::array<double, 3> sum{};
   for (std::size_t row = 0; row < rows.weight.size(); ++row)
     for (std::size_t i = 0; i < 3; ++i) sum[i] += rows.weight[row] * direction_[rows.first + row][i];
   casacore::MVDirection direction(sum[0], sum[1], sum[2]);
   direction.adjust();
   return {direction, frame_};
+}
+
+double Ephemeris::distance_m(double utc_mjd) const {
+  constexpr double earth_m = 6.4e6;
+  const double distance_m = interpolated({"Rho", "AU", "m"}, utc_mjd);
+  if (!(distance_m > earth_m))
+    fail("has Rho " + number(distance_m) + " m at MJD " + number(utc_mjd) + ", expected more than the Earth's radius");
+  return distance_m;
+}
+
+double Ephemeris::recession_m_s(double utc_mjd) const {
+  const double m_s = interpolated({"RadVel", "AU/d", "m/s"}, utc_mjd);
+  if (!(std::abs(m_s) < imager::speed_of_light_m_s))
+    fail("has RadVel " + number(m_s) + " m/s at MJD " + number(utc_mjd) + ", expected less than light's");
+  return m_s;
 }
 
 double Ephemeris::interpolated(const Column& column, double utc_mjd) const {

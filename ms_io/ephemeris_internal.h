@@ -26,9 +26,11 @@ class Ephemeris {
   /// Whether it is seen from the middle of the Earth.
   bool geocentric() const { return geocentric_; }
   /// Rho, from there. Throws what at() does, and where the table has no such column.
-  double distance_m(double utc_mjd) const { return interpolated({"Rho", "AU", "m"}, utc_mjd); }
+  /// Throws also where it lies within the Earth.
+  double distance_m(double utc_mjd) const;
   /// RadVel, positive away from there. Throws what distance_m() does.
-  double recession_m_s(double utc_mjd) const { return interpolated({"RadVel", "AU/d", "m/s"}, utc_mjd); }
+  /// Throws also where it is that of light or more.
+  double recession_m_s(double utc_mjd) const;
 
  private:
   /// Rows about a time, and Lagrange's polynomials through them at that time.

@@ -73,11 +73,16 @@ void centre_on_field(const casacore::MeasurementSet& set, const std::string& pat
 }
 
 imager::Observation describe(const casacore::MeasurementSet& set, const std::string& path, const SelectedRows& selected) {
-  const FieldCentre centre = field_centre(set, path, first_field(set, selected), selected.first_row);
+  const int field = first_field(set, selected);
   imager::Observation observation;
-  observation.phase_centre = selected.phase_centre.value_or(centre.direction);
-  observation.object = centre.name;
-  if (selected.follows_field) centre_on_field(set, path, selected, moving_span(selected).middle_s(), observation);
+  observation.object = translated("cannot read FIELD of " + path, [&] { return FieldDirections(set, path).name(field); });
+  if (selected.phase_centre) {
+    observation.phase_centre = *selected.phase_centre;
+  } else if (selected.follows_field) {
+    centre_on_field(set, path, selected, moving_span(selected).middle_s(), observation);
+  } else {
+    observation.phase_centre = field_centre(set, path, field, selected.first_row).direction;
+  }
   describe_band(selected.setups, observation);
   translated("cannot read what " + path + " says of its observation", [&] {
     const int id = observation_of(set, selected.first_row);

@@ -129,7 +129,8 @@ BOOST_AUTO_TEST_CASE(a_table_that_tells_no_way_is_refused_by_name) {
   BOOST_CHECK_NO_THROW(read.at(first_mjd + 4 * step_d));
   BOOST_CHECK_EXCEPTION(read.at(first_mjd + 5 * step_d), casacore::AipsError, [&](const auto& error) {
     return std::string(error.what()) ==
-           "its ephemeris " + table.path() + " goes from MJD 57000 to 57000.083333, not to 57000.104167";
+           "its ephemeris " + table.path() +
+               " goes from MJD 57000 to 57000.083333, not to 57000.104167; --timerange selects rows within it";
   });
   BOOST_CHECK_THROW(read.at(std::numeric_limits<double>::quiet_NaN()), casacore::AipsError);
   table.change([](casacore::Table& open) { Table::put(open, "MJD", 3, first_mjd); });

@@ -476,7 +476,9 @@ class Refused(Sets):
 
     def test_what_is_not_made_yet_is_refused_by_name(self):
         for parameters in (dict(gridder="mosaic"), dict(facets=4), dict(gridder="awproject"), dict(weighting="radial"),
-                           dict(stokes="pseudoQ"), dict(specmode="cubesky"), dict(specmode="cubesource"), dict(outframe="REST", specmode="cube"),
+                           dict(stokes="pseudoQ"), dict(cell={"value": None, "unit": "arcsec"}), dict(phasecenter=3.2), dict(phasecenter=None),
+                           dict(specmode="cube", width={"m0": 5}), dict(specmode="cube", start={"value": "x", "unit": "GHz"}),
+                           dict(specmode="cube", start={"m0": {"value": 5, "unit": "km/s"}, "refer": "OPTICAL"}), dict(specmode="cubesky"), dict(outframe="REST", specmode="cube"),
                            dict(veltype="beta", specmode="cube", start="3km/s", restfreq="4GHz"), dict(outframe="BARY", specmode="cubedata"),
                            dict(usemask="shape"), dict(usemask="auto-multithresh", negativethreshold=-7.0, niter=1),
                            dict(outlierfile="o.txt"), dict(interactive=True), dict(projection="NCP"), dict(usepointing=True),

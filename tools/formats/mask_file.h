@@ -22,6 +22,9 @@ class MaskFile {
   /// what was expected.
   MaskFile(const std::string& path, imager::ImageHeader image);
 
+  const std::string& path() const { return path_; }
+  /// Null where it is region text.
+  const imager::ImageReader* file() const { return file_.get(); }
   bool one_for_all_channels() const;
   bool one_for_all_stokes() const;
   /// Of a plane of the image: 1 where CLEAN may take components from, 0 elsewhere.

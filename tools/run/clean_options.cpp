@@ -157,9 +157,32 @@ void declare(CLI::App& command, TypedClean& o) {
        OptionMark::not_repeated);
 }
 
+/// Options of masks that are made from residuals change nothing of other masks.
+void check_of_auto_masks(const TypedClean& o) {
+  if (o.usemask == "auto") return;
+  const TypedClean usual;
+  const auto only_auto = [](const char* option, const auto& value, const auto& unless) {
+    if (value != unless) refuse_option(option, typed(1.0 * value), "--usemask auto beside it");
+  };
+  only_auto("sidelobethreshold", o.sidelobethreshold, usual.sidelobethreshold);
+  only_auto("noisethreshold", o.noisethreshold, usual.noisethreshold);
+  only_auto("lownoisethreshold", o.lownoisethreshold, usual.lownoisethreshold);
+  only_auto("negativethreshold", o.negativethreshold, usual.negativethreshold);
+  only_auto("minbeamfrac", o.minbeamfrac, usual.minbeamfrac);
+  only_auto("growiterations", o.growiterations, usual.growiterations);
+  only_auto("smoothfactor", o.smoothfactor, usual.smoothfactor);
+  only_auto("cutthreshold", o.cutthreshold, usual.cutthreshold);
+  only_auto("minpercentchange", o.minpercentchange, usual.minpercentchange);
+  if (!o.dogrowprune) refuse_option("dogrowprune", "false", "--usemask auto beside it");
+  if (!o.fastnoise) refuse_option("fastnoise", "false", "--usemask auto beside it");
+}
+
 void check_clean(const ImageOptions& o) {
   if (!(parse_flux_jy(o.clean.threshold) >= 0)) refuse_option("threshold", o.clean.threshold, "0 or more");  // as it was typed
   imager::check(clean_options(o.clean, 1), "--");
+  check_of_auto_masks(o.clean);
+  constexpr double largest_smoothfactor = 100;
+  if (o.clean.smoothfactor > largest_smoothfactor) refuse_option("smoothfactor", typed(o.clean.smoothfactor), "0 to 100 beams");
   const WantedBeam beam = restoring_beam(o.clean.restoringbeam);
   if (!o.clean.restoringbeam.empty() && !o.clean.runs())
     refuse_option("restoringbeam", o.clean.restoringbeam, "--niter above 0, or --startmodel, beside it");

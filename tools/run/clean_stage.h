@@ -42,6 +42,7 @@ class CleanStage {
   /// that and --pblimit or more.
   void keep_within(const imager::Image& primary_beam);
 
+  const std::vector<std::unique_ptr<MaskFile>>& mask_files() const { return mask_files_; }
   /// Null where CLEAN may go everywhere; within it CLEAN may make its own.
   const imager::Image* mask(std::size_t stokes) const {
     const std::vector<imager::Image>& masks = limited_.empty() ? masks_ : limited_;

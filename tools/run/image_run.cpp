@@ -17,6 +17,7 @@
 #include "tools/base/json_text.h"
 #include "tools/base/numbers.h"
 #include "tools/base/progress.h"
+#include "tools/formats/image_file.h"
 #include "tools/kernel_choice/cache_folder.h"
 #include "tools/run/changed_files.h"
 #include "tools/run/channel_maker.h"
@@ -27,6 +28,7 @@
 #include "tools/run/left_over.h"
 #include "tools/run/model_stage.h"
 #include "tools/run/outside_stage.h"
+#include "tools/run/phased_set.h"
 #include "tools/run/products.h"
 #include "tools/run/run_messages.h"
 #include "tools/run/run_plan.h"
@@ -148,7 +150,11 @@ class ImageRun : private ChannelSink {
 
   /// What is wrong with masks and models is said at once.
   void open_clean() {
+    for (const std::string& model : o_.clean.startmodel)
+      require_same_target(model, *open_image_file(model, imager::Grids::any), *set_, names_of(o_.vis));
     clean_ = std::make_unique<CleanStage>(o_, header_);
+    for (const auto& mask : clean_->mask_files())
+      if (mask->file() != nullptr) require_same_target("mask " + mask->path(), *mask->file(), *set_, names_of(o_.vis));
     if (!cube()) clean_->begin_channel(0);
     for (const std::string& words : clean_->words_on_files()) warn(words);
     if (cube()) return;

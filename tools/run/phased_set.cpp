@@ -36,18 +36,6 @@ PhasedSet in_frame_of_list(const PhasedSetRequest& request, PhasedSet phased, co
   return {opened(request, selection, ranks).set, std::move(phased.remarks)};
 }
 
-/// That an image moves along with what the set follows, and with no other target.
-void require_same_target(const PhasedSetRequest& request, const std::string& model, const imager::ImageHeader& image,
-                         const ms_io::MeasurementSet& set) {
-  const auto followed = set.followed_at(image.observation.moving_at);
-  if (!followed) return;
-  const double apart_rad = angle_between(ms_io::in_frame(image.geometry.phase_centre, followed->frame), *followed);
-  if (apart_rad > image.geometry.cell_rad)
-    throw std::runtime_error(model + " moves along with another target: at its TRACKFLD, " + image.observation.moving_at +
-                             ", it was " + angle_text(apart_rad, 3) + " away from what is selected of " + request.vis +
-                             "; expected an image of the same target");
-}
-
 /// Where phase centres are without a model's. What moves along has the field's own.
 ms_io::Selection usual_selection(const PhasedSetRequest& request, bool moves_along) {
   if (!request.phasecenter.empty()) return ms_io::phased_to(request.selection, request.phasecenter, {request.vis});
@@ -61,6 +49,18 @@ std::string place_text(const imager::SkyDirection& direction) {
 }
 
 }  // namespace
+
+void require_same_target(const std::string& path, const imager::ImageReader& file, const ms_io::MeasurementSet& set,
+                         const std::string& sets) {
+  const std::string& moving_at = file.header().observation.moving_at;
+  const auto followed = set.followed_at(moving_at);
+  if (!followed || !file.grid()) return;
+  const double apart_rad = angle_between(ms_io::in_frame(file.grid()->reference, followed->frame), *followed);
+  if (apart_rad > file.grid()->column_step_rad())
+    throw std::runtime_error(path + " moves along with another target: at its TRACKFLD, " + moving_at + ", it was " +
+                             angle_text(apart_rad, 3) + " away from what is selected of " + sets +
+                             "; expected an image of the same target");
+}
 
 PhasedSet set_for_components(const PhasedSetRequest& request, const std::string& list, const imager::Ranks& ranks) {
   return in_frame_of_list(request, opened(request, usual_selection(request, !lists_directions(list)), ranks), list, ranks);
@@ -79,7 +79,7 @@ PhasedSet set_for_image(const PhasedSetRequest& request, const std::string& mode
         " is phased to a direction; expected a field that moves, --phasecenter with the planet or ephemeris that the "
         "image moves with, or an image that stands still");
   if (set_moves) {
-    if (!moving_at.empty()) require_same_target(request, model, image, *phased.set);
+    if (!moving_at.empty()) require_same_target(model, *file, *phased.set, request.vis);
     return phased;
   }
   const imager::SkyDirection &own = image.geometry.phase_centre, &centre = phased.set->observation().phase_centre;

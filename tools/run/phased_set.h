@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "imager/data/ranks.h"
+#include "imager/files/image_reader.h"
 #include "ms_io/measurement_set.h"
 
 namespace misfit::tools {
@@ -21,6 +22,11 @@ struct PhasedSetRequest {
   ms_io::Selection selection;
   double accuracy = 1e-6;  ///< of what is predicted
 };
+
+/// Throws std::runtime_error where the image `file`, which `path` names, moves along with another target than the set, as far
+/// as its way is told. `sets` names them.
+void require_same_target(const std::string& path, const imager::ImageReader& file, const ms_io::MeasurementSet& set,
+                         const std::string& sets);
 
 /// This rank's part of the set, phased to what the components of a list are about, unless `phasecenter` says to what.
 /// Directions on the sky stand still where a field moves, and offsets from the phase centre move along.

@@ -203,7 +203,8 @@ BOOST_AUTO_TEST_CASE(what_has_no_simple_beam_is_refused_in_a_line) {
              "mosaic, and primary beams of mosaics are not made; select one with --vis");
   mosaic.rows.pointings.back().set = mosaic.rows.pointings.front().set;
   mosaic.rows.pointings.back().id = mosaic.rows.pointings.front().id;
-  BOOST_TEST(refusal(mosaic).find("field and image move past each other: choose some of its time with --timerange") != std::string::npos);
+  BOOST_TEST(refusal(mosaic).find("field and image move past each other: choose some of its time with --timerange") !=
+             std::string::npos);
   mosaic.rows.pointings.back().direction.dec_rad = middle.dec_rad + 1 * arcsec;  // of a beam of 35′
   BOOST_TEST(refusal(mosaic) == "");
   mosaic.rows.pointings = {{"0 (M51)", {middle.ra_rad + imager::pi, -middle.dec_rad, "FK5"}}};

@@ -85,10 +85,11 @@ def _quantity(name, value, unit="", frame=None, doppler=None):
         if refer != frame and refer != doppler:
             _refuse(name, value, "a quantity, or a measure " + (f"in {frame}, as outframe says" if frame else "without a frame") +
                     (f", or a velocity that is {doppler}, as veltype says" if doppler else ""))
-        value = value.get("m0", value)
-        if "value" not in value:
-            _refuse(name, value, "a quantity with 'value' and 'unit'")
-        return _number(value["value"]) + value.get("unit", unit)
+        quantity = value.get("m0", value)
+        try:
+            return _number(quantity["value"]) + (quantity.get("unit", unit) + "")
+        except (AttributeError, KeyError, TypeError, ValueError):
+            _refuse(name, value, "a quantity with a number as its 'value' and a text as its 'unit'")
     if isinstance(value, numbers.Real) and not isinstance(value, bool):
         return _number(value) + unit
     if not isinstance(value, str):
@@ -189,8 +190,11 @@ def _give_image(words, p):
         _refuse("imsize", p["imsize"], "a width, or width and height")
     words.give("imsize", *(_whole("imsize", side) for side in sides))
     words.give("cell", *(_quantity("cell", side, "arcsec") for side in cells or ["1arcsec"]))
-    if p["phasecenter"] != "":
-        words.give("phasecenter", p["phasecenter"])
+    centre = p["phasecenter"]
+    if isinstance(centre, bool) or not isinstance(centre, (str, os.PathLike, numbers.Integral)):
+        _refuse("phasecenter", centre, "a text such as 'J2000 12h30m49.4s +12d23m28s', or the number of a field")
+    if centre != "":
+        words.give("phasecenter", centre)
     stokes = p["stokes"]
     if not isinstance(stokes, str):
         _refuse("stokes", stokes, "a text such as 'IQUV'")
