@@ -83,8 +83,8 @@ def _quantity(name, value, unit="", frame=None, doppler=None):
     if isinstance(value, dict):
         refer = value.get("refer", frame)
         if refer != frame and refer != doppler:
-            _refuse(name, value, "a quantity, or a measure " + (f"in {frame}, as outframe says" if frame else "without a frame") +
-                    (f", or a velocity that is {doppler}, as veltype says" if doppler else ""))
+            measure = f"a measure in {frame}, as outframe says" if frame else "a quantity without a frame"
+            _refuse(name, value, measure + (f", or {doppler} velocity, as veltype says" if doppler else ""))
         quantity = value.get("m0", value)
         try:
             return _number(quantity["value"]) + (quantity.get("unit", unit) + "")
