@@ -131,7 +131,7 @@ imager::SpectralAxis spectral_axis_of(casacore::SpectralCoordinate spectral, int
   axis.rest_frequency_hz = spectral.restFrequency();
   const casacore::Vector<double> listed = spectral.worldValues();
   if (lie_on(axis, listed)) return axis;
-  const imager::SpectralAxis in_wavelength = through_ends_in_wavelength(axis, listed);
+  imager::SpectralAxis in_wavelength = through_ends_in_wavelength(axis, listed);
   if (!lie_on(in_wavelength, listed))
     refuse(path, "the frequencies of its planes are evenly spaced neither in frequency nor in wavelength");
   return in_wavelength;

@@ -69,7 +69,7 @@ class Smoothing {
       while (first < last && beam[first] == 0) ++first;
       while (first < last && beam[last - 1] == 0) --last;
       for (const Run& run : runs_[static_cast<std::size_t>(other)]) {
-        line.resize(static_cast<std::size_t>(width_ + stamp_.width));
+        line.resize(static_cast<std::size_t>(width_) + static_cast<std::size_t>(stamp_.width));
         double* const begin = line.data() + run.begin;
         double* const end = line.data() + run.end;
         for (int k = first; k < last; ++k) begin[k] += beam[k];
@@ -90,7 +90,8 @@ class Smoothing {
     row.near.push_back({std::max(near.begin, 0), std::min(near.end, width_)});
     double sum = 0;
     for (int c = near.begin; c < row.near.back().end; ++c) {
-      sum += line[static_cast<std::size_t>(c + reach_)];
+      const int at = c + reach_;
+      sum += line[static_cast<std::size_t>(at)];
       if (c < 0) continue;
       row.sum.push_back(sum);
       row.largest = std::max(row.largest, sum);
