@@ -74,19 +74,23 @@ std::optional<MeasJPL::Files> best_table() {
       "them, or the table of an ephemeris");
 }
 
-/// The Moon's place less that of the Earth over what casacore 3.5 gives: it adds the way from the Earth to the Moon to the
-/// place of their centre of mass, which lies 1/(1 + EMRAT) of that way from the Earth.
-double of_moon_way(MeasJPL::Files file) {
-  double earth_over_moon = 0;
-  MeasJPL::getConst(earth_over_moon, file, casacore::String("EMRAT"));
-  return (1 + earth_over_moon) / (2 + earth_over_moon);
-}
-
-/// AU from the middle of the solar system.
-std::array<double, 3> position_au(MeasJPL::Files file, MeasJPL::Types body, double tdb_mjd) {
+/// AU from the middle of the solar system, as the table has it.
+std::array<double, 3> tabled_au(MeasJPL::Files file, MeasJPL::Types body, double tdb_mjd) {
   casacore::Vector<double> values(6);
   if (!MeasJPL::get(values, file, body, casacore::MVEpoch(tdb_mjd))) refuse_without_tables();
   return {values(0), values(1), values(2)};
+}
+
+/// AU from the middle of the solar system. The Moon's place follows from the Earth's and that of the centre of mass of both,
+/// which lies 1/(1 + EMRAT) of the way to the Moon from the Earth: casacore 3.5 adds the whole way to the latter, 1/82 too far.
+std::array<double, 3> position_au(MeasJPL::Files file, MeasJPL::Types body, double tdb_mjd) {
+  if (body != MeasJPL::MOON) return tabled_au(file, body, tdb_mjd);
+  double earth_over_moon = 0;
+  MeasJPL::getConst(earth_over_moon, file, casacore::String("EMRAT"));
+  const std::array<double, 3> earth = tabled_au(file, MeasJPL::EARTH, tdb_mjd);
+  std::array<double, 3> moon = tabled_au(file, MeasJPL::BARYEARTH, tdb_mjd);
+  for (std::size_t i = 0; i < 3; ++i) moon[i] = earth[i] + (1 + earth_over_moon) * (moon[i] - earth[i]);
+  return moon;
 }
 
 }  // namespace
@@ -107,7 +111,6 @@ PlanetPlace planet_place(MDirection::Types planet, double tdb_mjd) {
   const std::array<double, 3> earth = position_au(*file, MeasJPL::EARTH, tdb_mjd);
   double au_km = 0;
   MeasJPL::getConst(au_km, *file, MeasJPL::AU);
-  const double part = planet == MDirection::MOON ? of_moon_way(*file) : 1;
   std::array<double, 3> away{};
   double distance_m = 0;
   // Each step leaves of the distance's error 1e-4, the planet's speed over light's, of 1e13 m at first; times are stored to
@@ -117,7 +120,7 @@ PlanetPlace planet_place(MDirection::Types planet, double tdb_mjd) {
     constexpr double day_s = 86400;
     const std::array<double, 3> then =
         position_au(*file, known->in_tables, tdb_mjd - distance_m / imager::speed_of_light_m_s / day_s);
-    for (std::size_t i = 0; i < 3; ++i) away[i] = part * (then[i] - earth[i]);
+    for (std::size_t i = 0; i < 3; ++i) away[i] = then[i] - earth[i];
     distance_m = 1e3 * au_km * std::hypot(away[0], away[1], away[2]);
   }
   casacore::MVDirection direction(away[0], away[1], away[2]);

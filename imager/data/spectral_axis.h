@@ -8,7 +8,7 @@
 
 namespace misfit::imager {
 
-/// From its lower to its upper edge.
+/// A range of frequencies between two edges.
 struct FrequencyBand {
   double low_hz = 0;
   double high_hz = 0;
@@ -36,7 +36,7 @@ struct SpectralAxis {
   double step_hz() const { return increment_hz != 0 ? increment_hz : 1; }
   /// The fractional plane at a frequency; plane k reaches from k − 0.5 to k + 0.5.
   double plane_of(double hz) const { return (hz - reference_hz) / increment_hz * (in_wavelength ? reference_hz / hz : 1); }
-  /// What `count` planes cover.
+  /// The frequencies that `count` planes cover together.
   FrequencyBand planes(int first, int count) const {
     const double one = frequency_hz(first - 0.5), other = frequency_hz(first + count - 0.5);
     return {std::min(one, other), std::max(one, other)};

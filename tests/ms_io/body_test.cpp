@@ -117,9 +117,9 @@ BOOST_AUTO_TEST_CASE(the_moon_is_as_far_away_as_it_is) {
        {std::pair{4.9e9, 366440.05}, {4.9e9 + 40000, 364783.26}, {4.9e9 + 1.2e7, 358475.93}}) {
     const double tdb = casacore::MEpoch::Convert(utc(time_s), casacore::MEpoch::TDB)().get("d").getValue();
     const PlanetPlace moon = planet_place(MDirection::MOON, tdb);
-    BOOST_TEST(std::abs(moon.distance_m / 1e3 - distance_km) < 50, moon.distance_m);
-    // From the middle of the Earth casacore's direction is right, but for the way that the Moon goes while light is late by a
-    // hundredth of a second more.
+    BOOST_TEST(std::abs(moon.distance_m / 1e3 - distance_km) < 10, moon.distance_m);
+    // casacore's direction from the middle of the Earth is right but for where the Moon goes, and DE200 has it, by half an
+    // arcsec.
     const casacore::MeasFrame frame(utc(time_s), vla());
     const MDirection::Ref j2000(MDirection::J2000, frame);
     const MDirection there = MDirection::Convert(MDirection(MDirection::MOON), j2000)();
@@ -189,20 +189,13 @@ BOOST_AUTO_TEST_CASE(fields_that_stand_still_are_shifted_to_what_is_followed) {
   write_table(table, {});
   const std::shared_ptr<const Body> comet = make_body(table);
   set.modify([&](casacore::MeasurementSet& open) {
-    casacore::ArrayColumn<casacore::Complex> data(open, "DATA");
     const casacore::ScalarColumn<double> time(open, "TIME");
     for (casacore::rownr_t row = 0; row < rows; ++row) {
       const casacore::MeasFrame frame(utc(time(row)), vla());
       const MDirection there =
           MDirection::Convert(comet->seen_from(frame, utc(time(row))), MDirection::Ref(MDirection::J2000, frame))();
       const casacore::Vector<double> at = there.getAngle().getValue();
-      const imager::Source of{imager::direction_cosines({at(0), at(1), "FK5"}, small_observation().phase_centre), flux_jy};
-      const imager::SampleCoordinates where{casacore::ArrayColumn<double>(open, "UVW")(row).tovector(),
-                                            small_observation().frequency_hz};
-      const auto values = imager::predict_sources({of}, where, 1);
-      casacore::Matrix<casacore::Complex> cell(2, channels);
-      for (std::size_t c = 0; c < channels; ++c) cell(0, c) = cell(1, c) = casacore::Complex(values[c]);
-      data.put(row, cell);
+      put_point(open, row, {at(0), at(1)}, small_observation().phase_centre);
     }
   });
   const MeasurementSet opened(set.path(), following(table, set.path()), "DATA");

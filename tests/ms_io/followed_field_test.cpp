@@ -114,20 +114,13 @@ void put_target(const SmallSet& set, const MovingField& target) {
     direction(0, 0) = offset.ra_rad;
     direction(1, 0) = offset.dec_rad;
     casacore::MSFieldColumns(open.field()).phaseDir().put(0, direction);
-    casacore::ArrayColumn<casacore::Complex> data(open, "DATA");
     const casacore::ScalarColumn<double> time(open, "TIME");
     for (casacore::rownr_t row = 0; row < rows; ++row) {
       const SkyPoint at = target.at(time(row));
       casacore::MVDirection beside(at.ra_rad, at.dec_rad);
       beside.shift(casacore::Vector<double>(std::vector<double>{offset.ra_rad, offset.dec_rad}), true);
       const imager::SkyDirection centre{beside.getLong(), beside.getLat(), "ICRS"};
-      const imager::Source of{imager::direction_cosines({at.ra_rad, at.dec_rad, "ICRS"}, centre), flux_jy};
-      const imager::SampleCoordinates where{casacore::ArrayColumn<double>(open, "UVW")(row).tovector(),
-                                            small_observation().frequency_hz};
-      const auto values = imager::predict_sources({of}, where, 1);
-      casacore::Matrix<casacore::Complex> cell(2, channels);
-      for (std::size_t c = 0; c < channels; ++c) cell(0, c) = cell(1, c) = casacore::Complex(values[c]);
-      data.put(row, cell);
+      put_point(open, row, at, centre);
     }
   });
 }

@@ -75,6 +75,18 @@ inline double apart_rad(const imager::SkyDirection& one, const SkyPoint& other) 
   return std::hypot(at.l, at.m);
 }
 
+/// The row's DATA become those of a source at `at`, seen about a centre in the same frame.
+inline void put_point(casacore::MeasurementSet& open, casacore::rownr_t row, const SkyPoint& at,
+                      const imager::SkyDirection& centre) {
+  const imager::Source of{imager::direction_cosines({at.ra_rad, at.dec_rad, centre.frame}, centre), flux_jy};
+  const imager::SampleCoordinates where{casacore::ArrayColumn<double>(open, "UVW")(row).tovector(),
+                                        small_observation().frequency_hz};
+  const auto values = imager::predict_sources({of}, where, 1);
+  casacore::Matrix<casacore::Complex> cell(2, channels);
+  for (std::size_t c = 0; c < channels; ++c) cell(0, c) = cell(1, c) = casacore::Complex(values[c]);
+  casacore::ArrayColumn<casacore::Complex>(open, "DATA").put(row, cell);
+}
+
 inline bool says(const MeasurementSet& set, const std::string& part) {
   for (const std::string& sentence : set.remarks())
     if (contains(sentence, part)) return true;

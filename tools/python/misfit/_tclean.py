@@ -695,8 +695,8 @@ def tclean(
     startmodel : path or list of paths
         Model that CLEAN begins with, in Jy/pixel; one for each of nterms.
     specmode : str
-        "mfs"; "cube", of planes in outframe; "cubedata", of the data's frequencies as they are; or "cubesource", at rest in what an
-        ephemeris or a planet's name tells of.
+        "mfs"; "cube", of planes in outframe; "cubedata", of the data's frequencies as they are; or "cubesource", in the rest
+        frame of a planet or of an ephemeris' target.
     reffreq : str
         Reference frequency of Taylor terms.
     nchan : int
