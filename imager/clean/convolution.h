@@ -1,11 +1,7 @@
 #pragma once
 
-#include <complex>
-#include <functional>
-
+#include "imager/clean/padded_fft.h"
 #include "imager/data/image.h"
-#include "imager/numerics/big_array.h"
-#include "imager/numerics/fft.h"
 
 namespace misfit::imager {
 
@@ -17,29 +13,21 @@ class Convolution {
   Convolution(const Image& psf, int threads);
   Image operator()(const Image& image) const;
 
-  /// The same of an image that is read and written by rows: by several threads, each row once. Pixels to be read are 0 before;
-  /// none may be NaN. All are read before any is written, and what is written may be changed.
-  using Read = std::function<void(int row, Real* pixels)>;
-  using Write = std::function<void(int row, Real* pixels)>;
-  void operator()(const Read& read, const Write& write) const;
-
  private:
-  using Complex = std::complex<Real>;
-
-  void transform_rows(const Read& read, Complex* plane) const;
-  void transform_psf_columns(const Complex* plane);
-  void convolve_columns(Complex* plane) const;
-  void transform_back_rows(const Complex* plane, const Write& write) const;
-
   int width_;
   int height_;
-  int threads_;
-  int nu_;  ///< lengths of the FFTs
-  int nv_;
-  std::ptrdiff_t columns_;  ///< from a row of a plane [height][nu/2 + 1] to the next
-  Fft<Real> along_u_;
-  Fft<Real> along_v_;
-  BigArray<Complex> psf_;  ///< its transform / (nu · nv), [nu/2 + 1][nv]
+  PaddedFft<Real> fft_;
+  typename PaddedFft<Real>::Spectrum psf_;
 };
+
+/// Copies a row of an image, 0 in place of NaN.
+template <typename Real>
+void read_row(const Image& image, int row, Real* to);
+
+/// to[v] = a[v] · b[v], or to[v] += that.
+template <typename Real>
+void set_products(const std::complex<Real>* a, const std::complex<Real>* b, int count, std::complex<Real>* to);
+template <typename Real>
+void add_products(const std::complex<Real>* a, const std::complex<Real>* b, int count, std::complex<Real>* to);
 
 }  // namespace misfit::imager

@@ -1,11 +1,9 @@
 #include "imager/clean/deconvolver.h"
 
+#include <algorithm>
 #include <stdexcept>
 
-#include "imager/clean/clark.h"
-#include "imager/clean/hogbom.h"
-#include "imager/clean/multi_term.h"
-#include "imager/clean/multiscale.h"
+#include "imager/clean/joint_clean.h"
 
 namespace misfit::imager {
 
@@ -14,15 +12,13 @@ std::vector<std::string> deconvolver_names() {
 }
 
 std::unique_ptr<MinorCycle> make_deconvolver(const DeconvolverChoice& choice, const std::vector<const Image*>& psf) {
-  const bool multiscale = choice.name == "multiscale";
+  const std::vector<std::string> names = deconvolver_names();
+  if (std::find(names.begin(), names.end(), choice.name) == names.end())
+    throw std::invalid_argument("deconvolver " + choice.name + ": expected hogbom, clark or multiscale");
   MultiscaleOptions options;  // points
-  if (multiscale) options = {choice.scale_pixels, choice.small_scale_bias};
+  if (choice.name == "multiscale") options = {choice.scale_pixels, choice.small_scale_bias};
   options.threads = choice.threads;
-  if (psf.size() > 1) return std::make_unique<MultiTerm>(psf, options);
-  if (choice.name == "hogbom") return std::make_unique<Hogbom>(*psf.front(), choice.threads);
-  if (choice.name == "clark") return std::make_unique<Clark>(*psf.front(), choice.threads);
-  if (multiscale) return std::make_unique<Multiscale>(*psf.front(), options);
-  throw std::invalid_argument("deconvolver " + choice.name + ": expected hogbom, clark or multiscale");
+  return std::make_unique<JointClean>(psf, options);
 }
 
 }  // namespace misfit::imager

@@ -223,6 +223,7 @@ class Run {
                                     .max_iterations = o_.cycle_iterations < 0 ? left : std::min(left, o_.cycle_iterations),
                                     .threshold_jy = cycle.cycle_threshold_jy,
                                     .mask = mask(),
+                                    .to_the_last = cycle.cycle_threshold_jy <= last_depth(now()),
                                     .stop_requested = o_.stop_requested});
       state_.found_nothing = found.components.empty();
       cycle.iterations = now().iterations + found.iterations();

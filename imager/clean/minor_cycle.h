@@ -11,8 +11,11 @@ namespace misfit::imager {
 struct MinorCycleOptions {
   double gain = 0.1;  ///< part of a peak that a component takes
   int max_iterations = 0;
-  double threshold_jy = 0;               ///< in Jy/beam; ends when no pixel that may be cleaned exceeds it in magnitude
-  const Image* mask = nullptr;           ///< where components may lie, see mask.h; null = everywhere
+  double threshold_jy = 0;      ///< in Jy/beam; ends when no pixel that may be cleaned exceeds it in magnitude
+  const Image* mask = nullptr;  ///< where components may lie, see mask.h; null = everywhere
+  /// Whether no pixel may exceed the threshold, by more than half a percent, in the end. Else those may that were far below it
+  /// until sidelobes went: a residual that is made anew shows them, too.
+  bool to_the_last = true;
   std::function<bool()> stop_requested;  ///< asked now and then; may be empty
 };
 

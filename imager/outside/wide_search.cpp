@@ -49,7 +49,7 @@ CleanedField clean_wide_field(const VisibilitySource& source, const Transform& t
   options.nsigma = 5;
   options.threshold_jy = deep * largest_magnitude(dirty);
   options.threads = context.threads;
-  const auto minor = make_deconvolver({.name = "clark", .threads = context.threads}, {&images.psf});
+  const auto minor = make_deconvolver({.threads = context.threads}, {&images.psf});
   const Sidelobes sidelobes(images.psf);
   CleanResult cleaned = clean(
       {.imaged = imaged,

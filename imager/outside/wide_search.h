@@ -56,7 +56,7 @@ struct WideSearch {
   double sidelobe_jy = 0;
 };
 
-/// Images the wider field of `plan` with weights that fall off towards the edge of its grid, and finds its sources by Clark's
+/// Images the wider field of `plan` with weights that fall off towards the edge of its grid, and finds its sources by Högbom's
 /// CLEAN with major cycles, down to five times the noise or a five-hundredth of the peak. Ranks after the first get no more
 /// than what is unexplained. Stages timed: "statistics", and those of make_dirty_images and clean. Throws what they throw.
 WideSearch search_wide_field(const VisibilitySource& source, const GriddingPlan& plan, const Context& context);

@@ -17,10 +17,24 @@ constexpr double row_bytes = 3 * sizeof(double);
 constexpr double order_bytes = 2 * 12 + 8;
 constexpr double residual_bytes = 2 * sizeof(double);
 constexpr double component_bytes = sizeof(Component);
-/// Minor cycles take: the residual; for a convolution, what is convolved and what comes of it. In single precision the residual
-/// and a transform of 3/2 the size either way pass; the PSF's transform, or the PSF, is kept through major cycles.
-constexpr double minor_images = 3, minor_passing_images = 2, minor_kept_images = 1.25;
-constexpr double core_bytes = sizeof(float) * 1025. * 1025;  // of a PSF, see PsfCore
+
+/// What minor cycles take, in images: those of single precision count half, and FFTs of real images have 3/2 the size either
+/// way.
+struct MinorMemory {
+  double kept = 0;     ///< through major cycles
+  double passing = 0;  ///< while one runs
+};
+MinorMemory minor_memory(double pixels, int scales, int terms) {
+  constexpr double spectrum = 9. / 8, half_spectrum = 3. / 4;  // of a PSF; of rows alone
+  constexpr double core_bytes = sizeof(float) * 1281. * 1281, image_bytes = pixel_bytes;
+  const double psfs = 2 * terms - 1;
+  MinorMemory memory;
+  memory.kept = psfs * spectrum * image_bytes * pixels;
+  memory.kept += psfs * (scales == 1 ? pixels * image_bytes / 2 : scales * (scales + 1) / 2 * core_bytes);
+  const double model = scales == 1 ? 0 : 1;
+  memory.passing = (terms * scales / 2. + (terms + 1) * half_spectrum + model) * image_bytes * pixels;
+  return memory;
+}
 
 /// Blocks while they stream by.
 struct Streaming {
@@ -61,18 +75,10 @@ struct Terms {
   double further() const { return terms - 1; }
   double psfs() const { return 2 * terms - 1; }
   double lasting() const { return further() + psfs() - 1; }  ///< dirty images and PSFs besides the first
-  /// Of a minor cycle: residuals; the same convolved, and their brightness, twice; what goes into a convolution and comes out.
-  double minor() const { return terms == 1 ? minor_images : terms + 2 * (terms + 1) + 2; }
-  double cores() const { return terms * (terms + 1) / 2; }
   /// Drawn and written, besides those of one term: PSFs and dirty images that last, models, residuals and restored images, the
   /// principal solution, and those of the spectrum.
   double drawn() const { return terms == 1 ? 0 : lasting() + 3 * further() + terms + 4; }
 };
-
-/// Each scale has cores of its own.
-double minor_kept_bytes(double image, int scales, const Terms& n = {}) {
-  return minor_kept_images * n.psfs() * image + scales * n.cores() * core_bytes;
-}
 
 /// The pass for images of further Taylor terms; every image has a grid as large as the first one's.
 void add_taylor_stages(const MemoryDemand& d, const Streaming& s, std::vector<MemoryUse>& stages) {
@@ -96,9 +102,9 @@ void add_wider_stages(const WiderDemand& d, const Streaming& s, double lasting, 
   stages.push_back({"the wider field is gridded", process_bytes, kept, tapered, t.visibilities + t.psf, 0, lasting});
   stages.push_back(
       {"the wider field's images are made", process_bytes, kept, 0, t.visibilities + t.psf, t.fft, lasting + 2 * image});
-  const double minor = minor_kept_bytes(image, 1);
-  stages.push_back({"the wider field is cleaned", process_bytes, kept, 0, minor + minor_passing_images * image, 0,
-                    lasting + (2 + minor_images) * image});
+  const MinorMemory of_minor = minor_memory(d.pixels, 1, 1);
+  const double minor = of_minor.kept;
+  stages.push_back({"the wider field is cleaned", process_bytes, kept, 0, minor + of_minor.passing, 0, lasting + 3 * image});
   // Dirty image, PSF, model and residual.
   stages.push_back({"the wider field's residual is made", process_bytes, kept, tapered + s.samples * residual_bytes,
                     2 * t.visibilities + minor, t.fft, lasting + 4 * image});
@@ -138,9 +144,10 @@ MemoryUse peak_memory(const MemoryDemand& d, const StreamingOptions& streaming) 
     // Where every pixel is a component of the model, those of two models and of what they are sorted in.
     const double components = d.start_model ? 3 * component_bytes / pixel_bytes : 0;
     const double lasting = masks + components + 2 + n.lasting();  // dirty image and PSF
-    const double minor = minor_kept_bytes(image, d.clean_scales, n);
-    stages.push_back({"the minor cycles run", process_bytes, kept, 0, minor + minor_passing_images * image, 0,
-                      finished + (lasting + n.further() + n.minor()) * image});
+    const MinorMemory of_minor = minor_memory(d.pixels, d.clean_scales, n.terms);
+    const double minor = of_minor.kept;
+    stages.push_back({"the minor cycles run", process_bytes, kept, 0, minor + of_minor.passing, 0,
+                      finished + (lasting + n.further() + n.terms) * image});
     // Of model images.
     const double sets = n.terms == 1 ? 0 : n.terms * s.samples * residual_bytes;
     stages.push_back({"the residual is gridded", process_bytes, kept, s.gathered + s.prediction + sets,

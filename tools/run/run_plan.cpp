@@ -5,7 +5,6 @@
 #include <functional>
 #include <optional>
 
-#include "imager/clean/psf_core.h"
 #include "imager/outside/wide_search.h"
 #include "tools/base/memory.h"
 #include "tools/base/numbers.h"
@@ -78,10 +77,8 @@ class RunPlanner {
 
   /// How much of the PSF minor cycles subtract.
   void decide_psf_patch() {
-    if (o_.clean.deconvolver == "hogbom" && o_.taylor.nterms == 1)
-      return decide("PSF patch", "none, the whole PSF", "components are subtracted to the image's edges in every minor cycle");
-    decide("PSF patch", "at most " + std::to_string(imager::largest_psf_core) + " pixels from its peak, then the whole PSF",
-           "components are found among the brightest pixels with as much of the PSF as pays, until others could be as bright");
+    decide("PSF patch", "none, the whole PSF",
+           "components are taken off bright pixels alone, of which there are few; at the threshold, off all");
   }
 
   /// A search outside shares the memory. Ranks whose plans differed would not exchange the same: all gather as many samples as

@@ -131,8 +131,9 @@ void add_predictions(const RunWork& w, std::vector<StageSeconds>& stages) {
 }
 
 double minor_seconds(const RunWork& w) {
-  const double component_s = w.deconvolver == "multiscale" ? 1e-4 : 2e-5;
-  return w.terms * w.terms * (component_s * w.components + 3e-8 * w.pixels * w.major_cycles);
+  const bool multiscale = w.deconvolver == "multiscale";
+  const double component_s = multiscale ? 3e-5 : 1e-5, pixel_s = multiscale ? 8e-8 : 3e-8;
+  return w.terms * (component_s * w.components + pixel_s * w.pixels * w.major_cycles);
 }
 
 /// The density of samples, the factors of its cells, and the samples' weights from them.
@@ -146,7 +147,7 @@ double wider_seconds(const RunWork& w) {
   RunWork wider = w;
   wider.plan = w.wider;
   wider.pixels = static_cast<double>(w.wider->request.geometry.pixels());
-  wider.deconvolver = "clark";
+  wider.deconvolver = "hogbom";
   wider.components = 500;
   wider.major_cycles = 5;
   wider.terms = 1;

@@ -6,7 +6,7 @@
 #include <numeric>
 
 #include "imager/beams/beam.h"
-#include "imager/clean/hogbom.h"
+#include "imager/clean/joint_clean.h"
 #include "imager/data/noise.h"
 #include "imager/plan/gridding_plan.h"
 #include "tests/imager/comparison.h"
@@ -70,7 +70,7 @@ const Scene& scene() {
 
 CleanResult cleaned(const Scene& of, const CleanOptions& options, const DirtyImages& images, const CleanState& begin,
                     const CycleProgress& cycle_progress, bool of_start = false) {
-  const Hogbom minor(images.psf, options.threads);
+  const JointClean minor({&images.psf}, {.threads = options.threads});
   const CleanInput input{.imaged = of.imaged(),
                          .dirty = {&images.dirty[0]},
                          .of_start = of_start,

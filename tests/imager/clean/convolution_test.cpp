@@ -1,6 +1,5 @@
 #include "imager/clean/convolution.h"
 
-#include <algorithm>
 #include <boost/test/data/test_case.hpp>
 #include <boost/test/unit_test.hpp>
 #include <limits>
@@ -53,15 +52,6 @@ BOOST_AUTO_TEST_CASE(it_is_the_same_bit_for_bit_for_any_number_of_threads) {
   const Image image = random_image(50, 70, 1), psf = random_image(50, 70, 2);
   const std::vector<double> one = Convolution<float>(psf, 1)(image).pixel;
   for (const int threads : {2, 3, 7}) BOOST_TEST((Convolution<float>(psf, threads)(image).pixel == one));
-}
-
-BOOST_AUTO_TEST_CASE(rows_are_convolved_as_the_image_is) {
-  const Image image = random_image(50, 70, 1), psf = random_image(50, 70, 2);
-  const Convolution<double> convolution(psf, 3);
-  Image rows(50, 70);
-  convolution([&](int row, double* pixels) { std::copy_n(image.row(row), 50, pixels); },
-              [&](int row, const double* pixels) { std::copy_n(pixels, 50, rows.row(row)); });
-  BOOST_TEST((rows.pixel == convolution(image).pixel));
 }
 
 BOOST_AUTO_TEST_SUITE_END()

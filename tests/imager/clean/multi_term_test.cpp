@@ -1,10 +1,9 @@
-#include "imager/clean/multi_term.h"
-
 #include <boost/test/unit_test.hpp>
 #include <cmath>
 
-#include "imager/clean/clark.h"
+#include "imager/clean/convolution.h"
 #include "imager/clean/gaussian_blur.h"
+#include "imager/clean/joint_clean.h"
 #include "imager/data/noise.h"
 #include "tests/imager/comparison.h"
 
@@ -57,6 +56,10 @@ struct Sky {
   std::vector<double> coefficient;
 };
 
+Image at_scale(const Image& image, double scale_pixels) {
+  return scale_pixels == 0 ? image : gaussian_blur(image, scale_pixels, 2);
+}
+
 /// R_q = Σ_t P_{q+t} ⋆ I_t, by convolutions in double precision.
 std::vector<Image> residuals(const Beams& of, const std::vector<Sky>& sky, const std::vector<double>& scale_pixels, int terms) {
   std::vector<Image> result(static_cast<std::size_t>(terms), Image(side, side));
@@ -65,7 +68,7 @@ std::vector<Image> residuals(const Beams& of, const std::vector<Sky>& sky, const
     for (const Sky& s : sky) {
       Image one(side, side);
       one.at(s.row, s.column) = s.coefficient[t];
-      add(1, blurred(one, scale_pixels[static_cast<std::size_t>(s.scale)], 2), image);
+      add(1, at_scale(one, scale_pixels[static_cast<std::size_t>(s.scale)]), image);
     }
     for (std::size_t q = 0; q < result.size(); ++q) add(1, Convolution<double>(of.psf[q + t], 2)(image), result[q]);
   }
@@ -85,7 +88,7 @@ const std::vector<Sky> points{{40, 30, 0, {1, -0.7, 0.6}}, {60, 66, 0, {0.5, 0, 
 BOOST_AUTO_TEST_CASE(points_without_noise_give_their_taylor_coefficients) {
   for (const int terms : {2, 3}) {
     const Beams of = beams(terms);
-    const MultiTerm minor(of.pointers(), {.threads = 2});
+    const JointClean minor(of.pointers(), {.threads = 2});
     const std::vector<Image> residual = residuals(of, points, {0}, terms);
     const MinorCycleReport report =
         minor.clean(pointers(residual), {.gain = 0.2, .max_iterations = 20000, .threshold_jy = 1e-4, .stop_requested = {}});
@@ -117,7 +120,7 @@ BOOST_AUTO_TEST_CASE(points_without_noise_give_their_taylor_coefficients) {
 BOOST_AUTO_TEST_CASE(the_brightest_pixel_left_is_that_of_the_residuals_less_the_components) {
   constexpr int terms = 2;
   const Beams of = beams(terms);
-  const MultiTerm minor(of.pointers(), {.threads = 2});
+  const JointClean minor(of.pointers(), {.threads = 2});
   std::vector<Image> left = residuals(of, points, {0}, terms);
   const double before = largest_magnitude(brightness(basis_of(of.pointers()), pointers(left), 1));
   const MinorCycleReport report =
@@ -137,7 +140,7 @@ BOOST_AUTO_TEST_CASE(the_brightest_pixel_left_is_that_of_the_residuals_less_the_
 BOOST_AUTO_TEST_CASE(the_first_component_is_the_principal_solution_of_the_brightest_pixel) {
   constexpr int terms = 3;
   const Beams of = beams(terms);
-  const MultiTerm minor(of.pointers(), {.threads = 2});
+  const JointClean minor(of.pointers(), {.threads = 2});
   const std::vector<Image> residual = residuals(of, points, {0}, terms);
   const TaylorBasis basis = basis_of(of.pointers());
   const Peak peak = find_peak(brightness(basis, pointers(residual), 1));
@@ -151,26 +154,12 @@ BOOST_AUTO_TEST_CASE(the_first_component_is_the_principal_solution_of_the_bright
     BOOST_TEST(std::abs(c.coefficient_jy(int(t)) - principal[t].at(c.row, c.column)) < 1e-5);
 }
 
-BOOST_AUTO_TEST_CASE(of_one_term_it_is_clarks) {
-  const Beams of = beams(1);
-  const std::vector<Image> residual = residuals(of, points, {0}, 1);
-  const MinorCycleOptions options{.gain = 0.1, .max_iterations = 200, .threshold_jy = 0.01, .stop_requested = {}};
-  const MinorCycleReport one = MultiTerm(of.pointers(), {.threads = 2}).clean(pointers(residual), options);
-  const MinorCycleReport clark = Clark(of.psf.front(), 2).clean(residual.front(), options);
-  BOOST_REQUIRE(one.iterations() == clark.iterations());
-  for (std::size_t i = 0; i < one.components.size(); ++i) {
-    const Component &a = one.components[i], &b = clark.components[i];
-    BOOST_TEST((a.row == b.row && a.column == b.column));
-    BOOST_TEST(std::abs(a.flux_jy - b.flux_jy) < 1e-6);  // single precision
-  }
-}
-
 /// Two Gaussians of one scale and different spectra.
 BOOST_AUTO_TEST_CASE(a_gaussian_is_found_at_its_scale_with_its_coefficients) {
   constexpr int terms = 2;
   const Beams of = beams(terms);
   const std::vector<double> scales{0, 6, 12};
-  const MultiTerm minor(of.pointers(), {.scale_pixels = scales, .threads = 2});
+  const JointClean minor(of.pointers(), {.scale_pixels = scales, .threads = 2});
   const std::vector<Sky> sky{{44, 50, 2, {5, -3.5}}};
   const std::vector<Image> residual = residuals(of, sky, scales, terms);
   const MinorCycleReport report =
@@ -191,8 +180,8 @@ BOOST_AUTO_TEST_CASE(components_do_not_depend_on_the_number_of_threads_and_lie_w
     for (int c = 60; c < 72; ++c) mask.at(r, c) = 1;
   const MinorCycleOptions options{
       .gain = 0.1, .max_iterations = 300, .threshold_jy = 0.01, .mask = &mask, .stop_requested = {}};
-  const MinorCycleReport one = MultiTerm(of.pointers(), {.threads = 1}).clean(pointers(residual), options);
-  const MinorCycleReport two = MultiTerm(of.pointers(), {.threads = 2}).clean(pointers(residual), options);
+  const MinorCycleReport one = JointClean(of.pointers(), {.threads = 1}).clean(pointers(residual), options);
+  const MinorCycleReport two = JointClean(of.pointers(), {.threads = 2}).clean(pointers(residual), options);
   BOOST_REQUIRE(one.iterations() == two.iterations());
   BOOST_TEST(one.iterations() > 0);
   for (std::size_t i = 0; i < one.components.size(); ++i) {
@@ -204,7 +193,7 @@ BOOST_AUTO_TEST_CASE(components_do_not_depend_on_the_number_of_threads_and_lie_w
 
 BOOST_AUTO_TEST_CASE(residuals_of_other_numbers_or_sizes_are_refused) {
   const Beams of = beams(2);
-  const MultiTerm minor(of.pointers(), {.threads = 1});
+  const JointClean minor(of.pointers(), {.threads = 1});
   const Image right(side, side), wrong(side, side + 1);
   BOOST_CHECK_THROW(minor.clean({&right}, {}), std::invalid_argument);
   BOOST_CHECK_THROW(minor.clean({&right, &wrong}, {}), std::invalid_argument);

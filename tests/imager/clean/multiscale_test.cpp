@@ -1,11 +1,10 @@
-#include "imager/clean/multiscale.h"
-
 #include <algorithm>
 #include <boost/test/unit_test.hpp>
 #include <limits>
 
 #include "imager/clean/convolution.h"
 #include "imager/clean/gaussian_blur.h"
+#include "imager/clean/joint_clean.h"
 #include "imager/data/noise.h"
 #include "tests/imager/comparison.h"
 
@@ -48,7 +47,7 @@ BOOST_AUTO_TEST_CASE(a_gaussian_of_ten_beams_keeps_its_flux_and_leaves_no_bowl) 
   sky.at(125, 131) = flux;
   sky = gaussian_blur(sky, 10 * beam_pixels, 2);
   const Image beam = psf(), dirty = observed(sky, beam, noise);
-  const Multiscale minor(beam, {.scale_pixels = {0, 6, 15, 35}, .small_scale_bias = 0, .threads = 2});
+  const JointClean minor({&beam}, {.scale_pixels = {0, 6, 15, 35}, .small_scale_bias = 0, .threads = 2});
   const MinorCycleReport report =
       minor.clean(dirty, {.gain = 0.1, .max_iterations = 5000, .threshold_jy = 4 * noise, .stop_requested = {}});
   ComponentModel model(side, side, minor.scale_pixels());
@@ -66,7 +65,7 @@ BOOST_AUTO_TEST_CASE(a_point_source_becomes_points) {
   Image sky(side, side);
   sky.at(125, 131) = 1;
   const Image beam = psf(), dirty = observed(sky, beam, 1e-4);
-  const Multiscale minor(beam, {.scale_pixels = {0, 6, 15}, .small_scale_bias = 0, .threads = 2});
+  const JointClean minor({&beam}, {.scale_pixels = {0, 6, 15}, .small_scale_bias = 0, .threads = 2});
   const MinorCycleReport report =
       minor.clean(dirty, {.gain = 0.2, .max_iterations = 100, .threshold_jy = 0.01, .stop_requested = {}});
   for (const Component& c : report.components) BOOST_TEST((c.scale == 0 && c.row == 125 && c.column == 131));
@@ -78,7 +77,7 @@ BOOST_AUTO_TEST_CASE(gain_one_takes_a_component_of_its_own_scale_at_once) {
   sky.at(120, 140) = 5;
   sky = gaussian_blur(sky, 15, 2);
   const Image beam = psf(), dirty = observed(sky, beam, 1e-9);
-  const Multiscale minor(beam, {.scale_pixels = {0, 6, 15}, .small_scale_bias = 0, .threads = 2});
+  const JointClean minor({&beam}, {.scale_pixels = {0, 6, 15}, .small_scale_bias = 0, .threads = 2});
   const MinorCycleReport report =
       minor.clean(dirty, {.gain = 1, .max_iterations = 1, .threshold_jy = 0.01, .stop_requested = {}});
   BOOST_REQUIRE(report.iterations() == 1);
@@ -95,7 +94,7 @@ BOOST_AUTO_TEST_CASE(the_bias_favours_small_scales) {
   sky = gaussian_blur(sky, 13, 2);
   const Image beam = psf(), dirty = observed(sky, beam, 1e-9);
   const auto first_scale = [&](double bias) {
-    const Multiscale minor(beam, {.scale_pixels = {0, 6, 15}, .small_scale_bias = bias, .threads = 2});
+    const JointClean minor({&beam}, {.scale_pixels = {0, 6, 15}, .small_scale_bias = bias, .threads = 2});
     return minor.clean(dirty, {.gain = 0.1, .max_iterations = 1, .threshold_jy = 0.01, .stop_requested = {}})
         .components.front()
         .scale;
@@ -110,7 +109,7 @@ BOOST_AUTO_TEST_CASE(wide_components_keep_off_edges_and_masks) {
   sky.at(128, 128) = 10;
   sky = gaussian_blur(sky, 60, 2);
   const Image beam = psf(), dirty = observed(sky, beam, 1e-3);
-  const Multiscale minor(beam, {.scale_pixels = {0, 15}, .small_scale_bias = 0, .threads = 2});
+  const JointClean minor({&beam}, {.scale_pixels = {0, 15}, .small_scale_bias = 0, .threads = 2});
   const MinorCycleReport report =
       minor.clean(dirty, {.gain = 0.1, .max_iterations = 500, .threshold_jy = 0.01, .mask = &mask, .stop_requested = {}});
   // σ = 15/2.355 pixels: a straight edge 1.28 σ away leaves nine tenths.
@@ -125,7 +124,7 @@ BOOST_AUTO_TEST_CASE(what_no_scale_can_reach_ends_it) {
   Image sky(side, side);
   sky.at(2, 100) = 1;
   const Image beam = psf(), dirty = observed(sky, beam, 1e-6);
-  const Multiscale minor(beam, {.scale_pixels = {15}, .small_scale_bias = 0, .threads = 2});
+  const JointClean minor({&beam}, {.scale_pixels = {15}, .small_scale_bias = 0, .threads = 2});
   const MinorCycleReport report =
       minor.clean(dirty, {.gain = 0.1, .max_iterations = 1000000, .threshold_jy = 0.1, .stop_requested = {}});
   BOOST_TEST((report.end == MinorCycleEnd::no_place));
@@ -136,9 +135,9 @@ BOOST_AUTO_TEST_CASE(scales_that_make_no_sense_are_refused) {
   const Image beam = psf();
   for (const std::vector<double>& scales :
        std::vector<std::vector<double>>{{}, {-1}, {5, 5}, {5, 0}, {0, std::numeric_limits<double>::infinity()}})
-    BOOST_CHECK_THROW(Multiscale(beam, {.scale_pixels = scales, .small_scale_bias = 0}), std::invalid_argument);
+    BOOST_CHECK_THROW(JointClean({&beam}, {.scale_pixels = scales, .small_scale_bias = 0}), std::invalid_argument);
   for (const double bias : {-0.1, 1.0, std::numeric_limits<double>::quiet_NaN()})
-    BOOST_CHECK_THROW(Multiscale(beam, {.scale_pixels = {0}, .small_scale_bias = bias}), std::invalid_argument);
+    BOOST_CHECK_THROW(JointClean({&beam}, {.scale_pixels = {0}, .small_scale_bias = bias}), std::invalid_argument);
 }
 
 BOOST_AUTO_TEST_SUITE_END()

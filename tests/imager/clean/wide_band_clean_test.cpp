@@ -2,7 +2,7 @@
 
 #include "imager/beams/beam.h"
 #include "imager/clean/clean.h"
-#include "imager/clean/multi_term.h"
+#include "imager/clean/joint_clean.h"
 #include "imager/data/noise.h"
 #include "imager/plan/gridding_plan.h"
 #include "imager/taylor/spectral_index.h"
@@ -108,7 +108,7 @@ CleanInput input_of(const Scene& of) {
 CleanResult cleaned(
     const Scene& of, const CleanOptions& options, const CleanState& begin = first(),
     const CycleProgress& cycle_progress = [](const CleanState&) {}) {
-  const MultiTerm minor(of.psf, {.threads = options.threads});
+  const JointClean minor(of.psf, {.threads = options.threads});
   return imager::clean(input_of(of), minor, options, begin, cycle_progress, {});
 }
 
@@ -244,7 +244,7 @@ BOOST_AUTO_TEST_CASE(a_run_goes_on_from_any_of_its_states) {
 
 BOOST_AUTO_TEST_CASE(a_minor_cycle_of_other_terms_is_refused) {
   const Scene two = make_scene(2, 0.2, 0, 1), three = make_scene(3, 0.2, 0, 1);
-  const MultiTerm minor(three.psf, {.threads = 1});
+  const JointClean minor(three.psf, {.threads = 1});
   BOOST_CHECK_THROW(imager::clean(input_of(two), minor, options_to(0.1), first(), [](const CleanState&) {}, {}),
                     std::invalid_argument);
 }

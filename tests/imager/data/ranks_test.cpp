@@ -6,8 +6,7 @@
 #include <mutex>
 
 #include "imager/clean/clean.h"
-#include "imager/clean/hogbom.h"
-#include "imager/clean/multi_term.h"
+#include "imager/clean/joint_clean.h"
 #include "imager/clean/shared_model.h"
 #include "imager/direct/verify.h"
 #include "imager/outside/wide_search.h"
@@ -223,7 +222,7 @@ BOOST_DATA_TEST_CASE(clean_finds_the_same_components, bdata::make({0.0, 3000.0})
     options.max_major_cycles = 4;
     const CleanInput input{
         .imaged = imaged, .dirty = {&made.dirty.front()}, .psf = {&made.psf}, .max_sidelobe = 0.3, .accuracy = 1e-9};
-    const Hogbom minor(made.psf, 2);
+    const JointClean minor({&made.psf}, {.threads = 2});
     const CleanResult result = misfit::imager::clean(
         input, minor, options, first_state(ComponentModel(geometry.width, geometry.height, {0})), [](const CleanState&) {}, {});
     Values values = result.residual.pixel;
@@ -260,7 +259,7 @@ BOOST_AUTO_TEST_CASE(clean_of_taylor_terms_finds_the_same_components) {
                            .psf = psf,
                            .max_sidelobe = 0.3,
                            .accuracy = 1e-9};
-    const MultiTerm minor(psf, {.threads = 2});
+    const JointClean minor(psf, {.threads = 2});
     const CleanResult result = misfit::imager::clean(
         input, minor, options, first_state(ComponentModel(image.width, image.height, {0})), [](const CleanState&) {}, {});
     Values values = result.residual.pixel;

@@ -1,0 +1,103 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "imager/clean/scaled_psf.h"
+#include "imager/clean/scaled_residual.h"
+#include "imager/taylor/taylor_expansion.h"
+
+namespace misfit::imager {
+
+/// The brightest places of a residual at all its scales, among which components are found without a look at the others. They
+/// lie in tiles; a component is at once taken off those in tiles near it, and off the others when it has become worth their
+/// while. Brightness is √merit, which of points with one Taylor term is the residual's magnitude; in units of the residual.
+class BrightPlaces {
+ public:
+  /// Those of at least this brightness. What is given must outlive this.
+  BrightPlaces(const ScaledResidual& residual, const ScaledPsf& psf, double brightness, int threads);
+
+  /// Where the next component is best put.
+  struct Place {
+    std::size_t index = 0;
+    std::size_t tile = 0;
+    std::size_t scale = 0;
+    int row = 0;
+    int column = 0;
+    TaylorValues residual{};
+  };
+  Place brightest() const;
+  double brightness() const;        ///< of that place; 0 where there is none
+  double point_brightness() const;  ///< of the brightest point, whether components may be points or not; 0 where there is none
+
+  /// Takes a component of a spectrum off tiles near its place.
+  void subtract(const Place& at, const TaylorValues& coefficient);
+  /// What components that have not been taken off far tiles may have changed there, as a brightness: three standard deviations,
+  /// as if sidelobes met at random, or the strongest alone.
+  double outstanding() const;
+  /// How bright other places may have become by all components, but for those near them: as many deviations above what they
+  /// were.
+  double of_others() const;
+  /// Takes these off far tiles. Returns false, and does nothing, where the PSF that far is not known, or a convolution of the
+  /// whole residual costs less.
+  bool subtract_outstanding();
+
+ private:
+  struct Tile {
+    int row;  ///< of its first pixel
+    int column;
+    float brightest = -1;  ///< merits
+    float brightest_point = -1;
+  };
+  struct Found;
+
+  void find(const ScaledResidual& residual, float merit, int tile_row, std::vector<Found>& found) const;
+  void keep(std::vector<Found>& found);
+  std::size_t range_at(std::size_t tile, std::size_t scale) const { return tile * psf_.scales().size() + scale; }
+  BrightRange range(std::size_t tile, std::size_t scale);
+  ReachingComponent component(const Place& from, const TaylorValues& coefficient, std::size_t to_scale, const Tile& tile) const;
+  void subtract(const Place& at, const TaylorValues& coefficient, std::size_t tile);
+  void look_at(std::size_t tile, std::size_t scale, float merit);
+  void look_at_row(int tile_row);
+  bool is_near(const Tile& a, const Tile& b) const;
+
+  const ScaledPsf& psf_;
+  int threads_;
+  int near_tiles_;
+  int tiles_u_;
+  int tiles_v_;
+  double pixels_;                                ///< of the residual
+  double brightness_;                            ///< of the faintest
+  std::vector<Tile> tile_;                       ///< [row][column]
+  std::vector<std::size_t> first_;               ///< [tile][scale], one more than these
+  std::vector<std::int32_t> offset_;             ///< [place]
+  std::vector<float> value_[most_taylor_terms];  ///< [term][place]
+  std::vector<float> merit_;
+  std::vector<float> brightest_in_row_, brightest_point_in_row_;  ///< [row of tiles]
+
+  struct Outstanding {
+    Place place;
+    TaylorValues coefficient{};
+  };
+  std::vector<Outstanding> outstanding_;
+  std::vector<std::int32_t> outstanding_at_;  ///< [place], in outstanding_; −1
+
+  /// Flux of components by tile, since sidelobes of neighbours do not meet at random.
+  class Flux {
+   public:
+    void reset(std::size_t tiles, std::size_t scales);
+    void add(std::size_t tile, std::size_t scale, double jy);
+    double square(std::size_t scale) const { return square_[scale]; }    ///< Σ flux²
+    double largest(std::size_t scale) const { return largest_[scale]; }  ///< |flux|
+
+   private:
+    std::vector<double> in_tile_;  ///< [tile][scale]
+    std::vector<double> square_;
+    std::vector<double> largest_;
+  };
+  Flux outstanding_flux_;
+  Flux flux_;  ///< of all
+};
+
+}  // namespace misfit::imager

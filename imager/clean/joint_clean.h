@@ -1,0 +1,47 @@
+#pragma once
+
+#include <vector>
+
+#include "imager/clean/minor_cycle.h"
+#include "imager/clean/scaled_psf.h"
+#include "imager/clean/scaled_residual.h"
+
+namespace misfit::imager {
+
+/// CLEAN of points, or of Gaussians of several scales, with one or more Taylor terms: again and again the place and scale where
+/// a component takes most off χ² gives `gain` times what fits best there to the model, and that, convolved with the PSF, is
+/// subtracted everywhere.
+///
+/// Of points with one term the next is the brightest pixel, positive or negative (Högbom 1974, A&AS 15, 417). Of several scales
+/// (Cornwell 2008, IEEE J. Sel. Top. Signal Process. 2, 793) with R_s the residual and P_ss the PSF's peak when they are
+/// convolved with a scale's unit Gaussian once and twice, a component of flux R_s(x)/P_ss takes R_s(x)²/P_ss off what the
+/// residual could lose; that, times the scale's bias, is its merit. Of n terms (Rau & Cornwell 2011, A&A 532, A71) components
+/// have spectra, and are found in the residuals R_q of all of them with the 2n − 1 spectral PSFs P_k,
+///
+///     R_q = Σ_t P_{q+t} ⋆ I_t + noise,
+///
+/// where Rᵀ H⁻¹ R of TaylorBasis says how much the principal solution takes off χ². Not where the principal solution's I_0 is
+/// largest: with three terms over an even band its noise is half as large again as that of R_0.
+///
+/// Components are found among BrightPlaces alone, as Clark did (1980, A&A 89, 377): all that have a third of the threshold, or
+/// as many as are quickly looked at. When these are done, all components are convolved with the PSF and taken off the whole
+/// residual, which shows whether there are others. A Gaussian is put only where nine tenths of it lie within the mask, and two
+/// of its widths within the image. Ends when the points' |y| of TaylorBasis, with one term the residual's magnitude, reaches
+/// the threshold.
+class JointClean : public MinorCycle {
+ public:
+  /// Of PSFs P_k [k], images of one size. Throws std::invalid_argument when there is no scale, one is not finite or negative,
+  /// they do not ascend, or the bias is not in [0, 1); and what TaylorBasis does.
+  JointClean(const std::vector<const Image*>& psf, const MultiscaleOptions& options);
+
+  const std::vector<double>& scale_pixels() const override { return options_.scale_pixels; }
+
+ private:
+  MinorCycleReport find(const std::vector<const Image*>& residual, const MinorCycleOptions& options) const override;
+
+  MultiscaleOptions options_;
+  ScaledPsf psf_;
+  ScaledFft fft_;
+};
+
+}  // namespace misfit::imager

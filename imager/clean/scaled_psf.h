@@ -1,0 +1,64 @@
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "imager/clean/bright_loops.h"
+#include "imager/clean/scales.h"
+#include "imager/data/image.h"
+#include "imager/taylor/taylor_basis.h"
+
+namespace misfit::imager {
+
+/// What a component of one scale adds to residuals that are convolved with another: the spectral PSFs P_k, convolved with the
+/// Gaussians of both, in single precision. Of points alone the whole PSFs; of several scales what lies near their middle.
+class ScaledPsf {
+ public:
+  /// Of PSFs P_k [k]; see MinorCycle. NaN counts as 0.
+  ScaledPsf(const std::vector<const Image*>& psf, const MultiscaleOptions& options);
+
+  struct Scale {
+    LookedAt looked_at;
+    TaylorBasis basis;  ///< of the PSFs convolved twice with it
+    MeritForm form;     ///< of the merit bias · Rᵀ H⁻¹ R
+  };
+  const std::vector<Scale>& scales() const { return scale_; }
+  int terms() const { return terms_; }
+
+  /// How many tiles away it is known at least.
+  int near_tiles() const { return near_tiles_; }
+  bool is_whole() const { return scale_.size() == 1; }
+
+  /// P_k at that distance from the middle, between two scales. What lies up to a tile's side beyond its reach is 0.
+  const float* at(std::size_t from, std::size_t to, int k, int row, int column) const {
+    return core_[(from * scale_.size() + to) * psfs() + static_cast<std::size_t>(k)] + row * stride_ + column;
+  }
+  int stride() const { return static_cast<int>(stride_); }  ///< from a row of it to the next
+  /// Whether it reaches any pixel of a tile whose first lies so far from a component.
+  bool reaches(int row, int column) const;
+
+  /// How strong it is between two scales, in √merit of the other scale, for 1 Jy.
+  struct Strength {
+    double rms = 0;         ///< anywhere but at its peak
+    double rms_beyond = 0;  ///< farther away than near_tiles
+    double largest_beyond = 0;
+  };
+  const Strength& strength(std::size_t from, std::size_t to) const { return strength_[from * scale_.size() + to]; }
+
+ private:
+  std::size_t psfs() const { return static_cast<std::size_t>(2 * terms_ - 1); }
+  void keep_core(const Image& psf, int reach_row, int reach_column);
+  Strength strength_of(const float* core) const;
+
+  int terms_;
+  int near_tiles_ = 0;
+  std::vector<Scale> scale_;
+  int first_row_ = 0, last_row_ = 0;  ///< of what is known, from the middle
+  int first_column_ = 0, last_column_ = 0;
+  std::ptrdiff_t stride_ = 0;
+  std::vector<std::vector<float>> kept_;
+  std::vector<const float*> core_;  ///< [from][to][k], their middle
+  std::vector<Strength> strength_;  ///< [from][to]
+};
+
+}  // namespace misfit::imager
