@@ -116,6 +116,8 @@ ArrayClean clean_arrays(const ArrayCleanOptions& options, const ArrayCoordinates
                          .dirty = {&made.images.dirty.front()},
                          .psf = {&psf},
                          .max_sidelobe = largest_sidelobe(psf, beam, cell_rad, threads),
+                         .coarser = made.transform->coarser(),
+                         .data_jy = made.images.sums.front().data_jy(),
                          .accuracy = std::max(t.accuracy, expected_error),
                          .beam = beam,
                          .cell_rad = cell_rad};

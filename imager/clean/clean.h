@@ -62,6 +62,7 @@ struct MajorCycle {
   double cycle_threshold_jy = 0;  ///< how deep its minor cycle was to go, in Jy/beam
   std::string ended;              ///< why its minor cycle ended; empty before the first
   double mean_square_jy2 = 0;     ///< of the residual
+  double accuracy = 0;            ///< of the transforms that made it; 0 = as exact as any, see CleanInput
   std::size_t from = 0;           ///< the cycle whose model it began with
   double peak_anywhere_jy = 0;    ///< peak_residual_jy of the whole image
   std::size_t mask_pixels = 0;    ///< where the next minor cycle may find components
@@ -112,9 +113,13 @@ struct CleanInput {
   bool of_start = false;            ///< `dirty` are what the state's model leaves, and not the empty one
   std::vector<const Image*> psf;    ///< P_k [k], 2 terms − 1 of them
   double max_sidelobe = 0;          ///< the largest of the first PSF
-  double accuracy = 1e-7;           ///< of images and prediction, relative; single-precision data have no better
-  Beam beam{};                      ///< its main lobe; automask alone needs it
-  double cell_rad = 0;              ///< pixel size, for that
+  /// For residuals that decide where minor cycles go next, the least exact first; what CLEAN ends with is made by that of
+  /// `imaged`.
+  std::vector<CoarserTransform> coarser{};
+  double data_jy = 0;      ///< root mean square of the visibilities
+  double accuracy = 1e-7;  ///< of images and prediction, relative; single-precision data have no better
+  Beam beam{};             ///< its main lobe; automask alone needs it
+  double cell_rad = 0;     ///< pixel size, for that
 };
 
 /// Told before the first and after every major cycle.
@@ -139,6 +144,10 @@ CleanState first_state(const ComponentModel& model);
 /// dirty image's or less, since then what is left is the error of the transforms. So it does where neither the peak nor the
 /// mean square of the residual becomes less in five cycles. Where the last cycle left more than the best, in peak and mean
 /// square, the result is that of the best.
+///
+/// A residual from which minor cycles are to go on is made by the least exact of the transforms whose error, by theory, is at
+/// most a fiftieth of the depth to which they will go. One that ends CLEAN is made anew as exactly as was asked; then it is
+/// seen whether it does.
 ///
 /// Stages timed: "minor cycles", "statistics", and those of make_residual_image. Throws std::runtime_error when a PSF or a
 /// residual is not finite, std::invalid_argument unless terms, images and `minor` agree.

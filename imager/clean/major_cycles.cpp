@@ -21,6 +21,7 @@ namespace {
 constexpr double grown = 1.5;   // a residual this many times the best is taken back
 constexpr double diverged = 3;  // tclean's factor between its codes
 constexpr int most_tightenings = 3;
+constexpr double exact = 0;          // accuracy of transforms that are as exact as any
 constexpr std::size_t patience = 5;  // cycles without any progress
 
 std::string in_jy(double value) {
@@ -57,10 +58,12 @@ class Run {
     if (state_.model.scale_pixels() != minor.scale_pixels())
       throw std::invalid_argument("a model of other scales than those of the minor cycle");
     for (const Image* psf : input.psf) require_finite_psf(*psf);
+    psf_rms_ = root_mean_square(*input.psf.front());
+    dirty_rms_ = root_mean_square(*input.dirty.front());
   }
 
   CleanResult run(const CycleProgress& cycle_progress) {
-    make_residual();
+    make_residual(state_.cycles.empty() ? exact : now().accuracy);
     if (state_.cycles.empty()) {
       if (o_.automask) state_.mask.allowed = Image(residual().width, residual().height);
       MajorCycle start;
@@ -69,14 +72,16 @@ class Run {
       keep(std::move(start));
     }
     cycle_progress(state_);
-    while (!(end_ = ending())) {
-      one_cycle();
-      cycle_progress(state_);
-    }
-    if (is_worse_than_best()) {
-      return_to_best();
-      end_->reason += "; the best model was kept";
-    }
+    bool kept_best = false;
+    do {
+      while (!(end_ = ending())) {
+        one_cycle();
+        cycle_progress(state_);
+      }
+      kept_best = is_worse_than_best();
+      if (kept_best) return_to_best();
+    } while (!is_exact());
+    if (kept_best) end_->reason += "; the best model was kept";
     sharer_.end();
     return result();
   }
@@ -86,21 +91,53 @@ class Run {
   const MajorCycle& best() const { return state_.cycles[state_.best]; }
   const Image* mask() const { return o_.automask ? &state_.mask.allowed : o_.mask; }
 
+  /// Makes the residual exact where it was not. Returns whether it was.
+  bool is_exact() {
+    MajorCycle& cycle = state_.cycles[state_.now];
+    if (cycle.accuracy == exact) return true;
+    make_residual(exact);
+    cycle.accuracy = exact;
+    measure(cycle);
+    return false;
+  }
+
+  /// How exact the residual of a model must be for minor cycles that follow one of this depth: its error shall be a small part
+  /// of theirs. It is in proportion to images of the data and of the model as if their phases were random.
+  double accuracy_for_next(double depth_jy) const {
+    constexpr double small = 0.02;
+    const double next = std::max(depth_fraction() * depth_jy, last_depth(now()));
+    double square = 0;
+    for (const Component& c : state_.model.components()) square += c.flux_jy * c.flux_jy;
+    const double visibilities_jy = std::max(input_.data_jy, std::sqrt(square));
+    return small * next / std::max(psf_rms_ * visibilities_jy, dirty_rms_);
+  }
+  int coarser_of(double accuracy) const {
+    const auto& coarser = input_.coarser;
+    const auto enough = [accuracy](const CoarserTransform& c) { return c.accuracy <= accuracy; };
+    const auto found = std::find_if(coarser.begin(), coarser.end(), enough);
+    return found == coarser.end() ? -1 : static_cast<int>(found - coarser.begin());
+  }
+
   /// The residuals of an empty model are the dirty images, unless these are those of the first. Others are made anew, and never
-  /// changed.
-  void make_residual() {
+  /// changed. Returns with which accuracy.
+  double make_residual(double accuracy) {
     const bool first = residuals_.empty();
     residuals_.clear();
     made_.clear();
     if (input_.of_start ? first : state_.model.components().empty()) {
       residuals_ = input_.dirty;
+      accuracy = exact;
     } else {
-      sharer_.share(state_.model);
-      made_ = make_taylor_residuals(input_.imaged, model_images(), input_.expansion, context_);
+      const int coarser = coarser_of(accuracy);
+      accuracy = coarser < 0 ? exact : input_.coarser[static_cast<std::size_t>(coarser)].accuracy;
+      sharer_.share(state_.model, coarser);
+      made_ =
+          make_taylor_residuals(by_coarser(input_.imaged, input_.coarser, coarser), model_images(), input_.expansion, context_);
       for (const Image& residual : made_) residuals_.push_back(&residual);
     }
     const StageTimer timer(context_.times, stage::statistics);
     for (const Image* residual : residuals_) require_finite_residual(*residual, *input_.dirty.front());
+    return accuracy;
   }
   std::vector<Image> model_images() const {
     const StageTimer timer(context_.times, stage::minor_cycles);
@@ -204,10 +241,10 @@ class Run {
 
   /// The depth of the next minor cycle: where the sidelobes of the brightest source could pass for sources. Five percent below
   /// the nsigma limit, since the noise falls as sources go, and cycles that chase it by less are wasted.
-  double cycle_threshold() const {
+  double cycle_threshold() const { return std::max(depth_fraction() * now().peak_residual_jy, last_depth(now())); }
+  double depth_fraction() const {
     const double fraction = std::clamp(o_.cycle_factor * input_.max_sidelobe, o_.min_psf_fraction, o_.max_psf_fraction);
-    const double tightened = 1 - std::ldexp(1 - fraction, -state_.tightened);
-    return std::max(tightened * now().peak_residual_jy, last_depth(now()));
+    return 1 - std::ldexp(1 - fraction, -state_.tightened);
   }
   /// The depth below which threshold and nsigma let no minor cycle go.
   double last_depth(const MajorCycle& begun) const { return std::max(o_.threshold_jy, 0.95 * o_.nsigma * begun.rms_jy); }
@@ -231,7 +268,8 @@ class Run {
       state_.model.add(found.components);
     }
     cycle.from = state_.now;
-    make_residual();
+    const bool is_last = cycle.iterations >= o_.max_iterations;
+    cycle.accuracy = make_residual(is_last ? exact : accuracy_for_next(cycle.cycle_threshold_jy));
     judge(std::move(cycle));
   }
 
@@ -275,7 +313,7 @@ class Run {
   void return_to_best() {
     state_.model = state_.best_model;
     state_.now = state_.best;
-    make_residual();
+    make_residual(now().accuracy);
   }
 
   /// Cycles may leave somewhat more than the best, on the way to less. CLEAN shall not end there. Masks that grow compare
@@ -313,6 +351,8 @@ class Run {
   std::vector<const Image*> residuals_;  ///< [term], of state_.model
   std::vector<Image> made_;              ///< the same, where they are not the dirty images
   std::optional<Ending> end_;
+  double psf_rms_ = 0;
+  double dirty_rms_ = 0;
 };
 
 }  // namespace

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <vector>
+
 #include "imager/clean/components.h"
 #include "imager/taylor/taylor_expansion.h"
 #include "imager/transform/imaging.h"
@@ -12,7 +14,8 @@ class ModelSharer {
  public:
   /// Kept by reference.
   explicit ModelSharer(const Ranks& ranks) : ranks_(ranks) {}
-  void share(const ComponentModel& model) const;
+  /// `coarser`: which of the coarser transforms is to be taken; −1 = none of them.
+  void share(const ComponentModel& model, int coarser) const;
   /// Others stop following.
   void end() const;
 
@@ -22,6 +25,10 @@ class ModelSharer {
 
 /// On ranks after the first: makes the parts of residuals that this rank's samples give, of every model that rank 0 tells of,
 /// until it tells of the end.
-void follow_clean(const ImagedData& imaged, const TaylorExpansion& expansion, const Context& context);
+void follow_clean(const ImagedData& imaged, const std::vector<CoarserTransform>& coarser, const TaylorExpansion& expansion,
+                  const Context& context);
+
+/// The same samples, imaged by a coarser transform; −1 = by their own.
+ImagedData by_coarser(const ImagedData& imaged, const std::vector<CoarserTransform>& coarser, int which);
 
 }  // namespace misfit::imager

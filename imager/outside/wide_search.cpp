@@ -35,7 +35,7 @@ CleanedField clean_wide_field(const VisibilitySource& source, const Transform& t
   const Ranks& ranks = source.ranks();
   CleanedField field;
   if (!ranks.first()) {
-    follow_clean(imaged, {}, context);
+    follow_clean(imaged, {}, {}, context);
     field.model = Image(g.width, g.height);
     ranks.share(field.model.pixel.data(), field.model.pixel.size() * sizeof(double));
     return field;

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "imager/plan/cost_model.h"
+
 namespace misfit::imager {
 namespace {
 
@@ -10,12 +12,41 @@ std::unique_ptr<Transform> transform_of(const GriddingPlan& plan, const DirectSu
   return make_transform(plan.options);
 }
 
+/// Of making a residual image.
+double residual_cost_s(const GriddingPlan& plan) {
+  GriddingWork work = plan.choice.best.work;
+  work.stokes = 1;
+  work.psf = false;
+  return CostModel().seconds(work);
+}
+
 }  // namespace
 
 PlannedTransform::PlannedTransform(const GriddingPlan& plan)
-    : direct_{plan.options.geometry, true, plan.options.threads}, direct_pixels_(plan.direct_pixels) {
+    : direct_{plan.options.geometry, true, plan.options.threads}, direct_pixels_(plan.direct_pixels), request_(plan.request) {
   images_ = transform_of(plan, direct_);
   if (plan.psf) psf_ = make_transform(plan.psf->options);
+  if (!plan.direct) residual_cost_s_ = residual_cost_s(plan);
+}
+
+const std::vector<CoarserTransform>& PlannedTransform::coarser() const {
+  constexpr double pays = 0.85;  // of the cost of the next more exact
+  std::call_once(planned_coarser_, [this] {
+    if (residual_cost_s_ == 0 || request_.kernel_width != 0 || request_.padding != 0) return;
+    GriddingRequest request = request_;
+    request.stokes = 1;
+    request.psf = false;
+    double least_cost_s = residual_cost_s_;
+    for (const double accuracy : {1e-4, 1e-3, 1e-2}) {
+      if (accuracy < 2 * request_.accuracy) continue;
+      request.accuracy = accuracy;
+      const GriddingPlan plan = plan_gridding(request);
+      if (plan.direct || residual_cost_s(plan) > pays * least_cost_s) continue;
+      least_cost_s = residual_cost_s(plan);
+      coarser_.insert(coarser_.begin(), {accuracy, std::make_shared<PlannedTransform>(plan)});
+    }
+  });
+  return coarser_;
 }
 
 std::unique_ptr<Prediction> PlannedTransform::predict(const Image& model) const {

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <memory>
+#include <mutex>
+#include <vector>
 
 #include "imager/direct/direct_transform.h"
 #include "imager/plan/gridding_plan.h"
@@ -18,6 +20,9 @@ class PlannedTransform : public Transform {
   std::unique_ptr<Prediction> predict(const Image& model) const override;
   /// What makes images, and predicts larger models.
   const Transform& images() const { return *images_; }
+  /// Transforms of the same samples for residuals that need not be as exact, and are made in less time: the least exact first.
+  /// None where kernel or padding were given. Planned when they are first asked for.
+  const std::vector<CoarserTransform>& coarser() const;
   /// What makes PSFs: the same, or one of their own.
   const Transform& psf() const { return psf_ ? *psf_ : *images_; }
 
@@ -26,6 +31,10 @@ class PlannedTransform : public Transform {
   std::unique_ptr<Transform> psf_;  ///< null where images and PSF share one
   DirectSums direct_;
   std::uint64_t direct_pixels_;
+  GriddingRequest request_;
+  double residual_cost_s_ = 0;
+  mutable std::once_flag planned_coarser_;
+  mutable std::vector<CoarserTransform> coarser_;
 };
 
 }  // namespace misfit::imager

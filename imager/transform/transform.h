@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <complex>
 #include <cstddef>
 #include <cstdint>
@@ -21,6 +22,8 @@ struct SampleSums {
   double weight_square = 0;        ///< Σ w |V|²
   double weight2_square = 0;       ///< Σ w² |V|²
 
+  /// Root mean square of the visibilities, in Jy; 0 where there are none.
+  double data_jy() const { return weight > 0 ? std::sqrt(weight_square / weight) : 0; }
   SampleSums& operator+=(const SampleSums& other);
   /// Becomes that of all ranks.
   void add_up(const Ranks& ranks);
@@ -96,6 +99,12 @@ class Transform {
   virtual ~Transform() = default;
   virtual std::unique_ptr<AdjointSum> adjoint(const AdjointOptions& options) const = 0;
   virtual std::unique_ptr<Prediction> predict(const Image& model) const = 0;
+};
+
+/// A transform that costs less than another, and is less exact.
+struct CoarserTransform {
+  double accuracy;  ///< see GriddingRequest
+  std::shared_ptr<const Transform> transform;
 };
 
 }  // namespace misfit::imager

@@ -161,6 +161,7 @@ json packed_cycle(const imager::MajorCycle& c) {
           {"depth_jy", c.cycle_threshold_jy},
           {"ended", c.ended},
           {"mean_square_jy2", c.mean_square_jy2},
+          {"accuracy", c.accuracy},
           {"from", c.from},
           {"peak_anywhere_jy", c.peak_anywhere_jy},
           {"mask_pixels", c.mask_pixels},
@@ -176,6 +177,7 @@ imager::MajorCycle unpacked_cycle(const json& c) {
   cycle.cycle_threshold_jy = c.at("depth_jy");
   cycle.ended = c.at("ended");
   cycle.mean_square_jy2 = c.at("mean_square_jy2");
+  cycle.accuracy = c.value("accuracy", 0.0);
   cycle.from = whole<std::size_t>(c, "from");
   cycle.peak_anywhere_jy = c.at("peak_anywhere_jy");
   cycle.mask_pixels = whole<std::size_t>(c, "mask_pixels");

@@ -66,7 +66,7 @@ void serialize(Archive& archive, MaskExtension& masked) {
 template <typename Archive>
 void serialize(Archive& archive, MajorCycle& cycle) {
   archive(cycle.iterations, cycle.peak_residual_jy, cycle.rms_jy, cycle.model_flux_jy, cycle.cycle_threshold_jy, cycle.ended,
-          cycle.mean_square_jy2, cycle.from, cycle.peak_anywhere_jy, cycle.mask_pixels, cycle.masked);
+          cycle.mean_square_jy2, cycle.accuracy, cycle.from, cycle.peak_anywhere_jy, cycle.mask_pixels, cycle.masked);
 }
 
 template <typename Archive>

@@ -221,7 +221,8 @@ std::unique_ptr<CleanStage> ChannelRun::clean() {
 void ChannelRun::follow_clean() {
   progress().begin("CLEAN" + name_, true);  // rank 0 decides when it stops
   const imager::TaylorExpansion expansion = taylor_ ? taylor_->expansion() : imager::TaylorExpansion{};
-  for (std::size_t s = 0; s < scene_.header.stokes.size(); ++s) imager::follow_clean(imaged(s), expansion, context());
+  for (std::size_t s = 0; s < scene_.header.stokes.size(); ++s)
+    imager::follow_clean(imaged(s), images_.transform->coarser(), expansion, context());
 }
 
 /// Told of the state with which CLEAN begins, which may be that of a run before, and after every major cycle.
@@ -247,6 +248,8 @@ imager::CleanResult ChannelRun::clean(std::size_t stokes) {
                    .of_start = !scene_.options.taken.calcres && !scene_.options.clean.startmodel.empty(),
                    .psf = {&images_.images.psf},
                    .main_lobe = *report().beams->main_lobe,
+                   .coarser = images_.transform->coarser(),
+                   .data_jy = images_.images.sums[stokes].data_jy(),
                    .expected_error = theory ? theory->expected_rms : images_.plan.expected_error};
   if (taylor_) {
     clean.expansion = taylor_->expansion();

@@ -172,6 +172,8 @@ imager::CleanResult CleanStage::run(const CleanScene& scene, const StateOptionVa
                                  .of_start = scene.of_start,
                                  .psf = scene.psf,
                                  .max_sidelobe = sidelobe,
+                                 .coarser = scene.coarser,
+                                 .data_jy = scene.data_jy,
                                  .accuracy = std::max(o_.gridding.accuracy, scene.expected_error),
                                  .beam = scene.main_lobe,
                                  .cell_rad = image_.geometry.cell_rad};

@@ -20,11 +20,13 @@ namespace misfit::tools {
 struct CleanScene {
   imager::ImagedData imaged;
   imager::TaylorExpansion expansion;
-  std::vector<const imager::Image*> dirty;  ///< [term]
-  bool of_start = false;                    ///< see CleanInput
-  std::vector<const imager::Image*> psf;    ///< [k], see CleanInput
-  imager::Beam main_lobe;                   ///< of the PSF
-  double expected_error = 0;                ///< of the dirty image
+  std::vector<const imager::Image*> dirty;          ///< [term]
+  bool of_start = false;                            ///< see CleanInput
+  std::vector<const imager::Image*> psf;            ///< [k], see CleanInput
+  imager::Beam main_lobe;                           ///< of the PSF
+  std::vector<imager::CoarserTransform> coarser{};  ///< see CleanInput
+  double data_jy = 0;                               ///< see CleanInput
+  double expected_error = 0;                        ///< of the dirty image
 };
 
 /// CLEAN as `misfit image` runs it, one Stokes parameter after the other, with the files that go into it: mask, start model,

@@ -110,6 +110,7 @@ json cycle_json(const imager::MajorCycle& cycle) {
           {"cycle_threshold_jy", number(cycle.cycle_threshold_jy)},
           {"ended", cycle.ended},
           {"from", cycle.from},
+          {"accuracy", cycle.accuracy == 0 ? json() : number(cycle.accuracy)},
           {"peak_anywhere_jy", number(cycle.peak_anywhere_jy)},
           {"mask_pixels", cycle.mask_pixels},
           {"mask_extension", extension_json(cycle.masked)}};
@@ -120,7 +121,8 @@ json clean_json(const std::optional<imager::CleanReport>& clean) {
   json log = json::array();
   for (const imager::MajorCycle& cycle : clean->cycles) log.push_back(cycle_json(cycle));
   json report = cycle_json(clean->final_state());
-  for (const char* of_a_cycle : {"cycle_threshold_jy", "ended", "from", "peak_anywhere_jy", "mask_pixels", "mask_extension"})
+  for (const char* of_a_cycle :
+       {"cycle_threshold_jy", "ended", "from", "accuracy", "peak_anywhere_jy", "mask_pixels", "mask_extension"})
     report.erase(of_a_cycle);
   report["iterations"] = clean->iterations;
   report["major_cycles"] = clean->cycles.size() - 1;

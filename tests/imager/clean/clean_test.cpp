@@ -33,6 +33,7 @@ constexpr Sky sky[] = {{48, 64, 1}, {20, 100, 0.5}, {70, 30, 0.3}, {80, 90, -0.2
 struct Scene {
   StoredVisibilities source;
   std::unique_ptr<Transform> transform;
+  std::vector<CoarserTransform> coarser;
   DirtyImages images;
   double max_sidelobe = 0;
   Beam beam;
@@ -54,6 +55,10 @@ Scene make_scene(const DirectionCosines& centre) {
   Scene s;
   s.source = stored({block});
   s.transform = make_coplanar_transform(plan_gridding(request).options);
+  for (const double accuracy : {1e-2, 1e-3, 1e-4}) {
+    request.accuracy = accuracy;
+    s.coarser.push_back({accuracy, make_coplanar_transform(plan_gridding(request).options)});
+  }
   s.images = make_dirty_images(s.source, *s.transform, {.with_psf = true}, {});
   Image middle(g.width, g.height);
   middle.at(g.centre_row(), g.centre_column()) = 1;
@@ -76,6 +81,8 @@ CleanResult cleaned(const Scene& of, const CleanOptions& options, const DirtyIma
                          .of_start = of_start,
                          .psf = {&images.psf},
                          .max_sidelobe = of.max_sidelobe,
+                         .coarser = of.coarser,
+                         .data_jy = images.sums.front().data_jy(),
                          .accuracy = 1e-5,
                          .beam = of.beam,
                          .cell_rad = geometry.cell_rad};
@@ -129,6 +136,29 @@ BOOST_AUTO_TEST_CASE(the_peak_residual_falls_to_the_threshold_and_the_flux_is_re
       for (int c = s.column - 1; c <= s.column + 1; ++c) flux += result.model.at(r, c);
     // The residual at the source is what its components lack; sidelobes of the others' residuals add a little.
     BOOST_TEST(std::abs(flux - s.flux_jy) < 2 * 0.01);
+  }
+}
+
+/// Residuals on the way are as exact as the next depth takes, and that at the end as exact as any.
+BOOST_AUTO_TEST_CASE(residuals_that_steer_are_made_by_coarser_transforms) {
+  CleanOptions options = deep();
+  options.threshold_jy = 1e-4;
+  std::vector<CleanState> states;
+  const CleanResult result = cleaned(scene(), options, scene().images,
+                                     first_state(ComponentModel(geometry.width, geometry.height, {0})),
+                                     [&](const CleanState& state) { states.push_back(state); });
+  BOOST_TEST((result.report.stop == CleanStop::threshold));
+  check_consistent(result);
+  BOOST_TEST(result.report.final_state().accuracy == 0);
+  const std::vector<MajorCycle>& cycles = result.report.cycles;
+  BOOST_REQUIRE(cycles.size() > 3);
+  BOOST_TEST(cycles[1].accuracy >= 1e-3);
+  for (std::size_t i = 2; i + 1 < cycles.size(); ++i) BOOST_TEST(cycles[i].accuracy <= cycles[i - 1].accuracy);
+  // What they err by is a small part of the depth to which minor cycles went from them.
+  for (std::size_t i = 1; i + 1 < states.size(); ++i) {
+    const Image residual = make_residual_image(scene().imaged(), states[i].model.image(1), {});
+    BOOST_TEST(std::abs(peak_magnitude(residual) - states[i].cycles.back().peak_residual_jy) <
+               0.1 * states[i + 1].cycles.back().cycle_threshold_jy);
   }
 }
 

@@ -214,7 +214,7 @@ BOOST_DATA_TEST_CASE(clean_finds_the_same_components, bdata::make({0.0, 3000.0})
     const DirtyImages made = make_dirty_images(source, transform, {.with_psf = true}, {});
     const ImagedData imaged{source, transform, made.normalisation};
     if (!source.ranks().first()) {
-      follow_clean(imaged, {}, {2});
+      follow_clean(imaged, {}, {}, {2});
       return Values();
     }
     CleanOptions options;
@@ -245,7 +245,7 @@ BOOST_AUTO_TEST_CASE(clean_of_taylor_terms_finds_the_same_components) {
     const ImagedData imaged{source, transform, first.normalisation};
     const TaylorImages further = make_taylor_images(imaged, {transform, {}, false}, expansion, {});
     if (!source.ranks().first()) {
-      follow_clean(imaged, expansion, {2});
+      follow_clean(imaged, {}, expansion, {2});
       return Values();
     }
     std::vector<const Image*> psf{&first.psf};
