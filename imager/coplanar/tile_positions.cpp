@@ -13,7 +13,6 @@ namespace misfit::imager::HWY_NAMESPACE {
 struct Line {
   double per_hz;
   double origin;
-  double tie;
 };
 
 template <typename Real>
@@ -21,7 +20,7 @@ HWY_ATTR HWY_INLINE void positions_along(Line line, int tile, const double* HWY_
                                          int* HWY_RESTRICT cell, Real* HWY_RESTRICT t) {
   for (int i = 0; i < count; ++i) {
     const double position = line.per_hz * frequency_hz[i] - line.origin;
-    int whole = static_cast<int>(position + line.tie);
+    int whole = static_cast<int>(position);
     whole = whole < 0 ? 0 : whole;
     whole = whole < tile ? whole : tile - 1;
     cell[i] = whole;
@@ -32,8 +31,8 @@ HWY_ATTR HWY_INLINE void positions_along(Line line, int tile, const double* HWY_
 template <typename Real>
 HWY_ATTR void append(const RowInTile& row, const double* frequency_hz, int count, TilePlaces<Real>& places) {
   const int at = places.count;
-  positions_along({row.u_per_hz, row.u_origin, row.tie}, row.tile, frequency_hz, count, places.column + at, places.tu + at);
-  positions_along({row.v_per_hz, row.v_origin, row.tie}, row.tile, frequency_hz, count, places.row + at, places.tv + at);
+  positions_along({row.u_per_hz, row.u_origin}, row.tile, frequency_hz, count, places.column + at, places.tu + at);
+  positions_along({row.v_per_hz, row.v_origin}, row.tile, frequency_hz, count, places.row + at, places.tv + at);
   places.count += count;
 }
 
@@ -111,7 +110,7 @@ struct PositionAlong {
   int cell;
   double t;
 
-  PositionAlong(double position, double tie, int tile) : cell(static_cast<int>(position + tie)) {
+  PositionAlong(double position, int tile) : cell(static_cast<int>(position)) {
     cell = cell < 0 ? 0 : cell;
     cell = cell < tile ? cell : tile - 1;
     t = position - cell - 0.5;
@@ -120,8 +119,8 @@ struct PositionAlong {
 
 template <typename Real>
 void append_one(const RowInTile& row, double frequency_hz, TilePlaces<Real>& places) {
-  const PositionAlong u(row.u_per_hz * frequency_hz - row.u_origin, row.tie, row.tile);
-  const PositionAlong v(row.v_per_hz * frequency_hz - row.v_origin, row.tie, row.tile);
+  const PositionAlong u(row.u_per_hz * frequency_hz - row.u_origin, row.tile);
+  const PositionAlong v(row.v_per_hz * frequency_hz - row.v_origin, row.tile);
   const int at = places.count++;
   places.column[at] = u.cell;
   places.row[at] = v.cell;

@@ -14,15 +14,13 @@ struct TilePlaces {
 };
 
 /// A row of samples as a tile sees it: at frequency f, u_per_hz · f − u_origin is the position along u of the sample's first
-/// tap in [0, tile), whose whole part is the column and whose fraction is t + ½; so along v, with the row. Where that is whole
-/// up to rounding, so that the sample lies where two cells meet, the sign of `tie` says in which, and t may exceed ±½ by |tie|.
+/// tap in [0, tile), whose whole part is the column and whose fraction is t + ½; so along v, with the row.
 struct RowInTile {
   double u_per_hz = 0;
   double u_origin = 0;
   double v_per_hz = 0;
   double v_origin = 0;
   int tile = 0;
-  double tie = 0;
 };
 
 /// Appends to places, which must have room, the columns, rows, tu and tv of the samples at `count` frequencies. Positions

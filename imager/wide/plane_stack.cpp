@@ -29,8 +29,9 @@ void PlaneStack<Real>::use_rows(const std::vector<RowRange>& ranges, int threads
 
 template <typename Real>
 bool PlaneStack<Real>::holds(int q) const {
-  bool used = false;
-  for_rows(q, [&](int r) { used |= row_used[static_cast<std::size_t>(r)] != 0; });
+  const auto is_used = [&](int r) { return row_used[static_cast<std::size_t>(r)] != 0; };
+  bool used = is_used(q + shape.margin());
+  for_mirrored_rows(q, [&](int r) { used |= is_used(r); });
   return used;
 }
 

@@ -9,7 +9,7 @@
 
 namespace misfit::imager {
 
-/// The shape of a grid over the whole uv plane. Cell (p, q) stands for u = −p/(nu · cell), v = q/(nv · cell), both taken modulo
+/// The shape of half a grid, v ≥ 0. Cell (p, q) stands for u = −p/(nu · cell), v = q/(nv · cell), q ≤ nv/2, both taken modulo
 /// the grid; a margin keeps the taps that leave it, and is folded in before the FFT.
 struct StackShape {
   int nu = 0;     ///< length of the FFT along u
@@ -19,7 +19,9 @@ struct StackShape {
 
   int margin() const { return width / 2; }
   int tiles_u() const { return (nu + 2 * margin() + 1) / tile + 1; }
-  int tiles_v() const { return (nv + 2 * margin() + 1) / tile + 1; }
+  int tiles_v() const { return (nv / 2 + 2 * margin() + 1) / tile + 1; }
+  /// Rows of storage that taps may reach.
+  int filled_rows() const { return (nv + 1) / 2 + 2 * margin() + 1; }
   /// Storage, margins included: room for a whole tile with the taps that leave it.
   int chunks() const { return tiles_u() + 1; }
   int columns() const { return chunks() * tile; }
@@ -33,9 +35,11 @@ struct RowRange {
   int end = 0;
 };
 
-/// Some neighbouring planes of constant w, each with one or more complex grids. What a tile holds of one row lies together:
-/// [row][chunk][plane][grid][column in chunk], a chunk being as wide as a tile. Memory is used again from one facet to the
-/// next, and by the FFTs: between the transforms along u and v, row q + margin holds row q of the grid by columns of the image.
+/// Half planes of constant w, each with one or more complex grids, plane i at the opposite w of plane planes − 1 − i: its other
+/// half, v < 0, is the conjugate of that one's mirror image, G_i(−p, −q) = conj G_{planes−1−i}(p, q). What a tile holds of one
+/// row lies together: [row][chunk][plane][grid][column in chunk], a chunk being as wide as a tile. Memory is used again from one
+/// facet to the next, and by the FFTs: between the transforms along u and v, row q + margin holds row q of the grid by columns
+/// of the image.
 template <typename Real>
 class PlaneStack {
  public:
@@ -56,11 +60,15 @@ class PlaneStack {
 
   std::size_t bytes_a_row() const { return offset(1, 0, 0, 0) * sizeof(std::complex<Real>); }
 
-  /// Calls visit(r) for the rows of storage that stand for row q of the grid: its own first, and margins.
+  int opposite(int plane) const { return planes - 1 - plane; }
+
+  /// Calls visit(r) for the rows of storage whose mirror image is row q of the grid.
   template <typename Visit>
-  void for_rows(int q, const Visit& visit) const {
-    for (const int other : {q, q - shape.nv, q + shape.nv})
-      if (other >= -shape.margin() && other <= shape.nv + shape.margin()) visit(other + shape.margin());
+  void for_mirrored_rows(int q, const Visit& visit) const {
+    for (const int other : {-q, shape.nv - q}) {
+      const int row = other + shape.margin();
+      if (row >= 0 && row < shape.filled_rows()) visit(row);
+    }
   }
   /// Whether row q of any grid may hold something.
   bool holds(int q) const;

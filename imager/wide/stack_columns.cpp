@@ -33,38 +33,56 @@ auto* group_of_row(Stack& stack, int group, int q, int plane, int grid) {
   return stack.chunk(q + stack.shape.margin(), first / tile, plane, grid) + first % tile;
 }
 
-/// Brings a group of columns to contiguous memory, a few rows at a time, so that what is written lies together too.
-template <typename Real>
-void gather_columns(const PlaneStack<Real>& stack, const std::vector<char>& used, int group, int plane, int grid,
-                    const Columns<Real>& column) {
+/// Brings rows [begin, end) of a group of columns to contiguous memory, a few at a time, so that what is written lies together
+/// too. Beyond nv/2 rows are the conjugates of the opposite plane's.
+template <typename Real, bool beyond>
+void gather_rows(const PlaneStack<Real>& stack, const std::vector<char>& used, int group, int plane, int grid, RowRange range,
+                 const Columns<Real>& column) {
   constexpr int rows_at_once = 8, ahead = 2 * rows_at_once;  // memory brings rows while others are copied
-  const int nv = stack.shape.nv;
   const std::array<std::complex<Real>, columns_at_once> zeros{};
-  for (int begin = 0; begin < nv; begin += rows_at_once) {
-    const int rows = std::min(rows_at_once, nv - begin);
+  const auto source = [&](int q) {
+    return beyond ? group_of_row(stack, group, stack.shape.nv - q, stack.opposite(plane), grid)
+                  : group_of_row(stack, group, q, plane, grid);
+  };
+  for (int begin = range.begin; begin < range.end; begin += rows_at_once) {
+    const int rows = std::min(rows_at_once, range.end - begin);
     const std::complex<Real>* row[rows_at_once];
     for (int i = 0; i < rows; ++i) {
       const int q = begin + i;
-      row[i] = used[static_cast<std::size_t>(q)] != 0 ? group_of_row(stack, group, q, plane, grid) : zeros.data();
-      if (q + ahead < nv) {
-        const std::complex<Real>* later = group_of_row(stack, group, q + ahead, plane, grid);
+      row[i] = used[static_cast<std::size_t>(beyond ? stack.shape.nv - q : q)] != 0 ? source(q) : zeros.data();
+      if (q + ahead < range.end) {
+        const std::complex<Real>* later = source(q + ahead);
         hwy::Prefetch(later);
         hwy::Prefetch(later + columns_at_once / 2);
       }
     }
     for (int c = 0; c < columns_at_once; ++c) {
       std::complex<Real>* to = column[static_cast<std::size_t>(c)].get() + begin;
-      for (int i = 0; i < rows; ++i) to[i] = row[i][c];
+      for (int i = 0; i < rows; ++i) to[i] = beyond ? std::conj(row[i][c]) : row[i][c];
     }
   }
 }
 
-/// Its transpose.
+template <typename Real>
+void gather_columns(const PlaneStack<Real>& stack, const std::vector<char>& used, int group, int plane, int grid,
+                    const Columns<Real>& column) {
+  const int half = stack.shape.nv / 2 + 1;
+  gather_rows<Real, false>(stack, used, group, plane, grid, {0, half}, column);
+  gather_rows<Real, true>(stack, used, group, plane, grid, {half, stack.shape.nv}, column);
+}
+
+/// Its transpose, to a plane and the opposite one.
 template <typename Real>
 void scatter_columns(const Columns<Real>& column, int group, int plane, PlaneStack<Real>& stack) {
-  for (int q = 0; q < stack.shape.nv; ++q) {
+  const int nv = stack.shape.nv;
+  for (int q = 0; q <= nv / 2; ++q) {
+    const int mirrored = q == 0 ? 0 : nv - q;
     std::complex<Real>* row = group_of_row(stack, group, q, plane, 0);
-    for (std::size_t c = 0; c < columns_at_once; ++c) row[c] = column[c].get()[q];
+    std::complex<Real>* opposite = group_of_row(stack, group, q, stack.opposite(plane), 0);
+    for (std::size_t c = 0; c < columns_at_once; ++c) {
+      row[c] = column[c].get()[q];
+      opposite[c] = std::conj(column[c].get()[mirrored]);
+    }
   }
 }
 
@@ -86,7 +104,7 @@ void stack_to_images(const PlaneStack<Real>& stack, const StackedFacet& stacked,
                      const std::vector<Image*>& images) {
   const StackShape& s = stack.shape;
   std::vector<char> used;
-  for (int q = 0; q < s.nv; ++q) used.push_back(stack.holds(q));
+  for (int q = 0; q <= s.nv / 2; ++q) used.push_back(stack.holds(q));
   const Fft<Real> along_v(s.nv);
   Spares<ColumnWork<Real>> spares;
   in_groups(stacked.facet.geometry.width, threads, [&](int group, int begin, int end) {
@@ -95,7 +113,7 @@ void stack_to_images(const PlaneStack<Real>& stack, const StackedFacet& stacked,
     pixels.begin(stacked, begin, end);
     for (int grid = 0; grid < stack.grids; ++grid) {
       pixels.clear();
-      for (int plane = stack.planes - 1; plane >= 0; --plane) {
+      for (int plane = stack.planes - 1; plane >= stack.planes / 2; --plane) {
         gather_columns(stack, used, group, plane, grid, column);
         for (int c = begin; c < end; ++c) {
           std::complex<Real>* values = column[static_cast<std::size_t>(c - begin)].get();
@@ -119,7 +137,7 @@ void image_to_stack(const Image& image, const StackedFacet& stacked, int first_p
     auto& [column, pixels] = *work;
     pixels.begin(stacked, begin, end);
     pixels.load(image, stacked.facet, first_plane);
-    for (int plane = 0; plane < stack.planes; ++plane) {
+    for (int plane = stack.planes / 2; plane < stack.planes; ++plane) {
       for (int c = begin; c < end; ++c) {
         std::complex<Real>* values = column[static_cast<std::size_t>(c - begin)].get();
         std::fill_n(values, s.nv, std::complex<Real>(0));

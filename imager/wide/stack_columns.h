@@ -8,8 +8,8 @@ namespace misfit::imager {
 
 /// The FFTs along v of a stack whose rows have been transformed (StackRows), and the step between planes and image:
 ///   image_i(x, y) += h_u h_v h_w Re Σ_k Σ_{p,q} G_{k,i}(p, q) exp(+2πi(px/nu + qy/nv + w_k q_w(x, y))),
-/// w_k = (first_plane + k + ½) plane_step, for the i-th grid of every plane; q_w is the facet's curvature. Pixels beyond the
-/// horizon become NaN.
+/// w_k = (first_plane + k + ½) plane_step, for the i-th grid of every plane in the upper half of the stack, k = 0 being the
+/// first of these; q_w is the facet's curvature. Pixels beyond the horizon become NaN.
 template <typename Real>
 void stack_to_images(const PlaneStack<Real>& stack, const StackedFacet& facet, int first_plane, int threads,
                      const std::vector<Image*>& images);

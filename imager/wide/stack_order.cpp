@@ -34,30 +34,24 @@ std::vector<TiledRun> find_runs(const Piece& piece, const WantedSamples& samples
   std::vector<TiledRun> runs;
   const SampleCoordinates& at = *samples.at;
   const std::size_t channels = at.channels();
-  std::vector<std::int32_t> tile(channels), plane(channels);
+  std::vector<std::int32_t> tile(channels), plane(channels), mirrored(channels);
   std::vector<double> period(channels);
   for (std::size_t r = piece.begin_row; r < piece.end_row; ++r) {
     const float* weight = samples.weight == nullptr ? nullptr : samples.weight + r * channels;
     if (weight != nullptr && std::all_of(weight, weight + channels, [](float w) { return w == 0; })) continue;
-    for (const bool mirrored : {false, true}) {
-      const StackRow row(&at.uvw_m[3 * r], mirrored, o.scale);
-      first_taps(row, o.shape, o.width_w, at.frequency_hz.data(), static_cast<int>(channels),
-                 {tile.data(), plane.data(), period.data()});
-      bool open = false;
-      for (std::size_t c = 0; c < channels; ++c) {
-        const bool wanted = weight == nullptr || weight[c] != 0;
-        if (!wanted || plane[c] + o.width_w <= 0) {
-          open = false;
-          continue;
-        }
-        if (open && tile[c] == tile[c - 1] && plane[c] == plane[c - 1] && period[c] == period[c - 1] &&
-            runs.back().run.count < longest_run) {
-          ++runs.back().run.count;
-        } else {
-          runs.push_back(
-              {static_cast<std::uint32_t>(tile[c]),
-               {piece.block, static_cast<std::uint32_t>(r), plane[c], static_cast<std::uint32_t>(c) & 0xFFFFF, 1, mirrored}});
-        }
+    first_taps(StackRow(&at.uvw_m[3 * r], false, o.scale), o.shape, o.width_w, at.frequency_hz.data(),
+               static_cast<int>(channels), {tile.data(), plane.data(), mirrored.data(), period.data()});
+    bool open = false;
+    for (std::size_t c = 0; c < channels; ++c) {
+      if (weight != nullptr && weight[c] == 0) {
+        open = false;
+      } else if (open && tile[c] == tile[c - 1] && plane[c] == plane[c - 1] && period[c] == period[c - 1] &&
+                 runs.back().run.count < longest_run) {
+        ++runs.back().run.count;
+      } else {
+        runs.push_back({static_cast<std::uint32_t>(tile[c]),
+                        {piece.block, static_cast<std::uint32_t>(r), plane[c], static_cast<std::uint32_t>(c) & 0xFFFFF, 1,
+                         static_cast<std::uint32_t>(mirrored[c]) & 1}});
         open = true;
       }
     }
@@ -65,17 +59,19 @@ std::vector<TiledRun> find_runs(const Piece& piece, const WantedSamples& samples
   return runs;
 }
 
-void mark_planes(StackOrder& order, int width_w) {
-  std::ptrdiff_t planes = 0;
-  for (const StackRun& run : order.run) planes = std::max<std::ptrdiff_t>(planes, run.plane + width_w);
-  std::vector<char> first_tap(static_cast<std::size_t>(planes + width_w));
-  const auto plane_0 = first_tap.begin() + width_w;
-  for (const StackRun& run : order.run) plane_0[run.plane] = 1;
-  order.plane_used.resize(static_cast<std::size_t>(planes));
-  int since = width_w;  // planes since the last one that holds a first tap
-  for (std::ptrdiff_t k = -width_w; k < planes; ++k) {
-    since = plane_0[k] != 0 ? 0 : since + 1;
-    if (k >= 0) order.plane_used[static_cast<std::size_t>(k)] = since < width_w ? 1 : 0;
+void mark_pairs(StackOrder& order, int width_w) {
+  std::int32_t lowest = 0, highest = -1;
+  for (const StackRun& run : order.run) {
+    lowest = std::min(lowest, run.plane);
+    highest = std::max(highest, run.plane + width_w - 1);
+  }
+  const std::ptrdiff_t pairs = std::max(highest + 1, -lowest);
+  std::vector<char> first_tap(static_cast<std::size_t>(2 * pairs));
+  for (const StackRun& run : order.run) first_tap[static_cast<std::size_t>(run.plane + pairs)] = 1;
+  order.pair_used.resize(static_cast<std::size_t>(pairs));
+  for (std::ptrdiff_t first = -pairs; first < pairs; ++first) {
+    if (first_tap[static_cast<std::size_t>(first + pairs)] == 0) continue;
+    for (std::ptrdiff_t k = first; k < first + width_w; ++k) order.pair_used[static_cast<std::size_t>(k < 0 ? -1 - k : k)] = 1;
   }
 }
 
@@ -102,7 +98,7 @@ StackOrder order_for_stack(const std::vector<WantedSamples>& blocks, const Stack
     std::stable_sort(at(order.begin[tile]), at(order.begin[tile + 1]),
                      [](const StackRun& a, const StackRun& b) { return a.plane < b.plane; });
   });
-  mark_planes(order, options.width_w);
+  mark_pairs(order, options.width_w);
   return order;
 }
 

@@ -8,12 +8,12 @@
 
 namespace misfit::imager {
 
-/// Consecutive channels of one row, or of its mirror image, that fall into one tile and one
-/// period of the grid, and have one first plane.
+/// Consecutive channels of one row, or of its mirror image, that fall into one tile and one period of the grid, and have one
+/// first plane.
 struct StackRun {
   std::uint32_t block;
   std::uint32_t row;
-  std::int32_t plane;  ///< of the first tap; may lie below 0
+  std::int32_t plane;  ///< of the first tap
   std::uint32_t first : 20;
   std::uint32_t count : 11;
   std::uint32_t mirrored : 1;
@@ -24,7 +24,7 @@ struct StackRun {
 struct StackOrder {
   std::vector<std::size_t> begin;  ///< [tile + 1]
   std::vector<StackRun> run;
-  std::vector<char> plane_used;  ///< [plane]: whether any tap falls there
+  std::vector<char> pair_used;  ///< [k]: whether any tap falls on plane k or on the opposite one, −1 − k
 };
 
 struct StackOrderOptions {
@@ -40,7 +40,7 @@ struct WantedSamples {
   const float* weight = nullptr;
 };
 
-/// Orders wanted samples and their mirror images, those that touch a plane, by the tile and the plane of their first tap.
+/// Orders wanted samples, or where these have v < 0 their mirror images, by the tile and the plane of their first tap.
 StackOrder order_for_stack(const std::vector<WantedSamples>& blocks, const StackOrderOptions& options);
 
 }  // namespace misfit::imager

@@ -1,6 +1,5 @@
 #include "imager/wide/stack_places.h"
 
-#include <algorithm>
 #include <cmath>
 
 #include "imager/numerics/constants.h"
@@ -15,46 +14,35 @@
 HWY_BEFORE_NAMESPACE();
 namespace misfit::imager::HWY_NAMESPACE {
 
-struct Axis {
-  double cells_per_hz;
-  int length;
-  int width;
-  int tile;
-  double tie;
-};
+/// The place along an axis of the tile that holds the first tap.
+struct TileAxis {
+  double to_storage;
+  double per_cell;
 
-/// The tile of the first tap, and the period.
-HWY_ATTR HWY_INLINE void tiles_along(Axis axis, const double* HWY_RESTRICT frequency_hz, int count,
-                                     std::int32_t* HWY_RESTRICT tile, double* HWY_RESTRICT period) {
-  const double n = axis.length, to_storage = 1 - 0.5 * axis.width + axis.width / 2;
-  for (int i = 0; i < count; ++i) {
-    const double cells = axis.cells_per_hz * frequency_hz[i] + axis.tie;
-    period[i] = std::floor(cells / n);
-    tile[i] = static_cast<std::int32_t>(cells - n * period[i] + to_storage) / axis.tile;
+  TileAxis(const StackShape& s) : to_storage(1 - 0.5 * s.width + s.width / 2), per_cell(1.0 / s.tile) {}
+  /// The whole part of cell / tile: half a cell is more than rounding takes off.
+  HWY_INLINE std::int32_t tile(double cells) const {
+    return static_cast<std::int32_t>((static_cast<std::int32_t>(cells + to_storage) + 0.5) * per_cell);
   }
-}
+};
 
 HWY_ATTR void places(const StackRow& row, const StackShape& s, int width_w, const double* HWY_RESTRICT frequency_hz, int count,
                      const FirstTaps& out) {
-  constexpr int at_once = 128;
-  std::int32_t tile_v[at_once];
-  double period_v[at_once];
-  const double sign = row.mirrored ? -1 : 1, to_first = 0.5 - 0.5 * width_w;
-  const int last = row.mirrored ? -width_w : 0;
-  for (int begin = 0; begin < count; begin += at_once) {
-    const int some = std::min(at_once, count - begin);
-    const double* HWY_RESTRICT frequency = frequency_hz + begin;
-    std::int32_t* HWY_RESTRICT tile = out.tile + begin;
-    std::int32_t* HWY_RESTRICT plane = out.plane + begin;
-    double* HWY_RESTRICT period = out.period + begin;
-    tiles_along({row.u_per_hz, s.nu, s.width, s.tile, row.tie()}, frequency, some, tile, period);
-    tiles_along({row.v_per_hz, s.nv, s.width, s.tile, row.tie()}, frequency, some, tile_v, period_v);
-    for (int i = 0; i < some; ++i) {
-      tile[i] += tile_v[i] * s.tiles_u();
-      period[i] += 1e6 * period_v[i];
-      const double first = std::floor(sign * row.w_per_hz * frequency[i] + to_first);
-      plane[i] = last + static_cast<std::int32_t>(sign * first);
-    }
+  const double nu = s.nu, nv = s.nv, to_first = 0.5 - 0.5 * width_w;
+  const std::int32_t tiles_u = s.tiles_u();
+  const TileAxis axis(s);
+  std::int32_t* HWY_RESTRICT const tile = out.tile;
+  std::int32_t* HWY_RESTRICT const plane = out.plane;
+  std::int32_t* HWY_RESTRICT const mirrored = out.mirrored;
+  double* HWY_RESTRICT const period = out.period;
+  for (int i = 0; i < count; ++i) {
+    const double v = row.v_per_hz * frequency_hz[i], half = std::floor(2 * v / nv), odd = half - 2 * std::floor(0.5 * half);
+    const double sign = 1 - 2 * odd, u = sign * (row.u_per_hz * frequency_hz[i]), period_u = std::floor(u / nu);
+    const std::int32_t tile_u = axis.tile(u - nu * period_u), tile_v = axis.tile(sign * v - nv * std::floor(sign * v / nv));
+    tile[i] = tile_u + tile_v * tiles_u;
+    plane[i] = static_cast<std::int32_t>(std::floor(sign * (row.w_per_hz * frequency_hz[i]) + to_first));
+    mirrored[i] = static_cast<std::int32_t>(odd);
+    period[i] = period_u + 1e6 * half;
   }
 }
 
@@ -73,8 +61,8 @@ StackScale::StackScale(const StackShape& shape, const Facet& at, double plane_st
       turns_per_m_hz(1 / speed_of_light_m_s),
       facet(at) {}
 
-StackRow::StackRow(const double* uvw_m, bool mirror, const StackScale& scale) : mirrored(mirror) {
-  const double sign = mirror ? -1 : 1;
+StackRow::StackRow(const double* uvw_m, bool mirrored, const StackScale& scale) {
+  const double sign = mirrored ? -1 : 1;
   const double u = sign * uvw_m[0], v = sign * uvw_m[1], w = sign * uvw_m[2];
   const Facet& f = scale.facet;
   u_per_hz = (u + f.slope_l * w) * scale.u_cells_per_m_hz;
@@ -90,10 +78,9 @@ void first_taps(const StackRow& row, const StackShape& shape, int width_w, const
 
 RowInTile row_in_tile(const StackRow& row, const StackShape& s, int tile_u, int tile_v, double frequency_hz) {
   const auto origin = [&](double per_hz, int tile, int length) {
-    return tile * s.tile - s.margin() + 0.5 * s.width - 1 + length * std::floor((per_hz * frequency_hz + row.tie()) / length);
+    return tile * s.tile - s.margin() + 0.5 * s.width - 1 + length * std::floor(per_hz * frequency_hz / length);
   };
-  return {row.u_per_hz, origin(row.u_per_hz, tile_u, s.nu), row.v_per_hz, origin(row.v_per_hz, tile_v, s.nv), s.tile,
-          row.tie()};
+  return {row.u_per_hz, origin(row.u_per_hz, tile_u, s.nu), row.v_per_hz, origin(row.v_per_hz, tile_v, s.nv), s.tile};
 }
 
 }  // namespace misfit::imager

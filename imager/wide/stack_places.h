@@ -19,31 +19,26 @@ struct StackScale {
   Facet facet;
 };
 
-/// A row of UVW at unit frequency, sheared for the facet. Planes lie at w = (k + ½) steps, and those of k < 0 are left out,
-/// since V(−u, −v, −w) = conj V(u, v, w): what a sample has to do with them, its mirror image has to do with plane −1 − k.
+/// A row of UVW at unit frequency, sheared for the facet. Planes lie at w = (k + ½) steps, whole k of either sign.
 struct StackRow {
   double u_per_hz = 0;      ///< cells
   double v_per_hz = 0;      ///< cells
   double w_per_hz = 0;      ///< steps of planes
   double turns_per_hz = 0;  ///< u l_0 + v m_0 + w middle: the phase of the facet's middle pixel
-  bool mirrored = false;
 
   /// Of the mirror image (u, v, w) are negated, and the visibility is the conjugate.
   StackRow(const double* uvw_m, bool mirrored, const StackScale& scale);
-
-  /// Of a sample where two cells meet, the mirror image must lie in the mirrored cell, or the planes on both sides of w = 0
-  /// make one sum of the taps of two cells, which no kernel's error bounds. See RowInTile.
-  double tie() const { return mirrored ? -1e-9 : 1e-9; }
 };
 
-/// Where the samples of a row have their first taps.
+/// Where samples of a row, or their mirror images, have their first taps.
 struct FirstTaps {
-  std::int32_t* tile;   ///< row of tiles × tiles in a row + column
-  std::int32_t* plane;  ///< may lie below 0
-  double* period;       ///< which of the grid's periods along u and v; equal where both are
+  std::int32_t* tile;      ///< row of tiles × tiles in a row + column
+  std::int32_t* plane;     ///< k
+  std::int32_t* mirrored;  ///< 1 where the sample falls into the half of the grid with v < 0, so that its mirror image is taken
+  double* period;          ///< which of the grid's periods along u and v; equal where both are
 };
 
-/// Writes the first taps at `count` frequencies, of kernels of `width_w` planes along w.
+/// Writes the first taps at `count` frequencies of a row that is not mirrored, for kernels of `width_w` planes along w.
 void first_taps(const StackRow& row, const StackShape& shape, int width_w, const double* frequency_hz, int count,
                 const FirstTaps& out);
 

@@ -8,8 +8,8 @@
 
 namespace misfit::imager {
 
-/// The FFTs along u of a stack, of which an image keeps `width` columns; a few rows at a time, while the nearer caches still
-/// hold what was gridded there, or will be degridded.
+/// The FFTs along u of a stack, rows 0 … nv/2 of each half plane, of which an image keeps `width` columns; a few rows at a
+/// time, while the nearer caches still hold what was gridded there, or will be degridded.
 template <typename Real>
 class StackRows {
  public:

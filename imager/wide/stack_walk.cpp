@@ -2,14 +2,14 @@
 
 namespace misfit::imager {
 
-std::vector<Slab> slabs_of(const StackOrder& order, int most_planes) {
+std::vector<Slab> slabs_of(const StackOrder& order, int most_pairs) {
   std::vector<Slab> slabs;
-  for (std::size_t k = 0; k < order.plane_used.size(); ++k) {
-    if (order.plane_used[k] == 0) continue;
+  for (std::size_t k = 0; k < order.pair_used.size(); ++k) {
+    if (order.pair_used[k] == 0) continue;
     const int plane = static_cast<int>(k);
-    if (slabs.empty() || slabs.back().planes == most_planes || slabs.back().first + slabs.back().planes != plane)
+    if (slabs.empty() || slabs.back().pairs == most_pairs || slabs.back().first + slabs.back().pairs != plane)
       slabs.push_back({plane, 0});
-    ++slabs.back().planes;
+    ++slabs.back().pairs;
   }
   return slabs;
 }
@@ -25,25 +25,26 @@ std::vector<Band> bands_of(const StackShape& shape, std::size_t bytes_a_row) {
 
 std::vector<std::vector<StackTask>> tasks_of(const StackOrder& order, const StackShape& shape, const Slab& slab, int width_w,
                                              const Band& band) {
-  std::vector<std::vector<StackTask>> colours(4);
+  std::vector<std::vector<StackTask>> colours;
+  const auto at = [&](std::size_t i) { return order.run.begin() + static_cast<std::ptrdiff_t>(i); };
+  const auto index = [&](auto run) { return static_cast<std::size_t>(run - order.run.begin()); };
   const auto below = [](const StackRun& run, int plane) { return run.plane < plane; };
-  std::size_t tile = static_cast<std::size_t>(band.begin) * static_cast<std::size_t>(shape.tiles_u());
-  for (int v = band.begin; v < band.end; ++v)
-    for (int u = 0; u < shape.tiles_u(); ++u, ++tile) {
-      const auto first = order.run.begin() + static_cast<std::ptrdiff_t>(order.begin[tile]);
-      const auto last = order.run.begin() + static_cast<std::ptrdiff_t>(order.begin[tile + 1]);
-      if (first == last) continue;
-      const auto begin = std::lower_bound(first, last, slab.first - width_w + 1, below);
-      const auto end = std::lower_bound(begin, last, slab.first + slab.planes, below);
-      if (begin == end) continue;
-      const int lowest = std::max(begin->plane, slab.first);
-      const int highest = std::min((end - 1)->plane + width_w, slab.first + slab.planes);
-      colours[static_cast<std::size_t>(v % 2 * 2 + u % 2)].push_back({u,
-                                                                      v,
-                                                                      static_cast<std::size_t>(begin - order.run.begin()),
-                                                                      static_cast<std::size_t>(end - order.run.begin()),
-                                                                      {lowest, highest - lowest}});
-    }
+  for (const PlaneRange& range : slab.ranges()) {
+    const std::size_t first_colour = colours.size();
+    colours.resize(first_colour + 4);
+    const int range_end = range.first + range.planes;
+    std::size_t tile = static_cast<std::size_t>(band.begin) * static_cast<std::size_t>(shape.tiles_u());
+    for (int v = band.begin; v < band.end; ++v)
+      for (int u = 0; u < shape.tiles_u(); ++u, ++tile) {
+        if (order.begin[tile] == order.begin[tile + 1]) continue;
+        const auto begin = std::lower_bound(at(order.begin[tile]), at(order.begin[tile + 1]), range.first - width_w + 1, below);
+        const auto end = std::lower_bound(begin, at(order.begin[tile + 1]), range_end, below);
+        if (begin == end) continue;
+        const int lowest = std::max(begin->plane, range.first), highest = std::min((end - 1)->plane + width_w, range_end);
+        colours[first_colour + static_cast<std::size_t>(v % 2 * 2 + u % 2)].push_back(
+            {u, v, index(begin), index(end), {lowest, highest - lowest}});
+      }
+  }
   for (std::vector<StackTask>& tasks : colours)
     std::stable_sort(tasks.begin(), tasks.end(),
                      [](const StackTask& a, const StackTask& b) { return a.end - a.begin > b.end - b.begin; });

@@ -11,10 +11,24 @@
 
 namespace misfit::imager {
 
-/// Neighbouring planes that are held at a time.
-struct Slab {
+/// Neighbouring planes.
+struct PlaneRange {
   int first = 0;
   int planes = 0;
+};
+
+/// Planes `first` … first + pairs − 1 and the opposite ones, which a stack holds at a time, from the lowest to the highest.
+struct Slab {
+  int first = 0;
+  int pairs = 0;
+
+  /// The one or two ranges of planes that it consists of.
+  std::vector<PlaneRange> ranges() const {
+    if (first == 0) return {{-pairs, 2 * pairs}};
+    return {{-first - pairs, pairs}, {first, pairs}};
+  }
+  /// The place of a plane in the stack.
+  int place(int plane) const { return plane < 0 ? plane + first + pairs : plane - first + pairs; }
 };
 
 /// A tile's runs that reach into a slab, and the planes of it that they touch.
@@ -23,11 +37,11 @@ struct StackTask {
   int tile_v;
   std::size_t begin;
   std::size_t end;
-  Slab planes;
+  PlaneRange planes;
 };
 
-/// The planes that hold anything, at most so many at a time.
-std::vector<Slab> slabs_of(const StackOrder& order, int most_planes);
+/// The pairs of planes that hold anything, at most so many at a time.
+std::vector<Slab> slabs_of(const StackOrder& order, int most_pairs);
 
 /// Neighbouring rows of tiles, [begin, end).
 struct Band {
@@ -38,7 +52,8 @@ struct Band {
 /// All rows of tiles, in bands that a cache shared among processors can hold.
 std::vector<Band> bands_of(const StackShape& shape, std::size_t bytes_a_row);
 
-/// A band's tasks in four colours of tiles whose buffers cannot touch, the fullest of a colour first.
+/// A band's tasks in four colours of tiles whose buffers cannot touch, the fullest of a colour first; for each of the slab's
+/// ranges of planes, since a sample may touch both.
 std::vector<std::vector<StackTask>> tasks_of(const StackOrder& order, const StackShape& shape, const Slab& slab, int width_w,
                                              const Band& band);
 

@@ -21,11 +21,11 @@ template <typename Real>
 class TileSum {
  public:
   /// All that is given must outlive it.
-  TileSum(const WideSetup<Real>& setup, const StackTask& task, int first_plane, bool in_place, StackBuffer<Real>& buffer,
+  TileSum(const WideSetup<Real>& setup, const StackTask& task, const Slab& slab, bool in_place, StackBuffer<Real>& buffer,
           PlaneStack<Real>& stack)
       : setup_(setup),
         task_(task),
-        plane_(task.planes.first - first_plane),
+        plane_(slab.place(task.planes.first)),
         in_place_(in_place),
         buffer_(buffer),
         stack_(stack),

@@ -140,8 +140,8 @@ class WideAdjoint : public AdjointSum {
     for (const StackedFacet& f : setup_.facets) {
       const StackOrderOptions ordering = setup_.ordering(f);
       const StackOrder order = order_for_stack(blocks, ordering);
-      for (const Slab& slab : slabs_of(order, most_planes(setup_, grids))) {
-        stack.reserve(slab.planes);
+      for (const Slab& slab : slabs_of(order, most_pairs(setup_, grids))) {
+        stack.reserve(2 * slab.pairs);
         StackRows<Real> rows(stack, f.facet.geometry.width, threads);
         for (const Band& band : bands_of(setup_.shape, stack.bytes_a_row())) {
           const auto colours = tasks_of(order, setup_.shape, slab, ordering.width_w, band);
@@ -149,7 +149,7 @@ class WideAdjoint : public AdjointSum {
           for (const std::vector<StackTask>& tasks : colours)
             parallel_for(tasks.size(), threads, [&](std::size_t i) {
               auto buffer = spares.take([&] { return std::make_unique<StackBuffer<Real>>(buffer_of(setup_, grids)); });
-              grid_tile({blocks, order, ordering}, tasks[i], slab.first, *buffer, stack);
+              grid_tile({blocks, order, ordering}, tasks[i], slab, *buffer, stack);
               spares.give_back(std::move(buffer));
             });
           add_seconds_of(result_.fft_s, [&] { rows.to_image(band.end * setup_.shape.tile); });
@@ -172,9 +172,9 @@ class WideAdjoint : public AdjointSum {
     return rows;
   }
 
-  void grid_tile(const StackSamples& samples, const StackTask& task, int first_plane, StackBuffer<Real>& buffer,
+  void grid_tile(const StackSamples& samples, const StackTask& task, const Slab& slab, StackBuffer<Real>& buffer,
                  PlaneStack<Real>& stack) const {
-    TileSum<Real> sum(setup_, task, first_plane, is_sparse(samples.order, task), buffer, stack);
+    TileSum<Real> sum(setup_, task, slab, is_sparse(samples.order, task), buffer, stack);
     const auto ahead = [&](std::uint32_t block, std::size_t sample) {
       for (const auto& weighted : gathered_[block].weighted) hwy::Prefetch(&weighted[sample]);
     };

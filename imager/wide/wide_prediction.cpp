@@ -33,24 +33,17 @@ class WidePrediction : public Prediction {
  private:
   using Visibilities = std::vector<std::vector<std::complex<double>>>;  ///< [block][sample]
 
-  /// What samples and their mirror images gather in different tiles, by different threads.
-  struct Halves {
-    Visibilities direct;
-    Visibilities mirrored;
-  };
-
   Visibilities degrid(const std::vector<WantedSamples>& blocks) const {
-    Halves halves;
-    for (const WantedSamples& block : blocks) halves.direct.emplace_back(block.at->samples());
-    halves.mirrored = halves.direct;
+    Visibilities visibilities;
+    for (const WantedSamples& block : blocks) visibilities.emplace_back(block.at->samples());
     const int threads = setup_.options.threads;
     PlaneStack<Real> stack(setup_.shape, 1);
     Spares<StackBuffer<Real>> spares;
     for (const StackedFacet& f : setup_.facets) {
       const StackOrderOptions ordering = setup_.ordering(f);
       const StackOrder order = order_for_stack(blocks, ordering);
-      for (const Slab& slab : slabs_of(order, most_planes(setup_, 1))) {
-        stack.reserve(slab.planes);
+      for (const Slab& slab : slabs_of(order, most_pairs(setup_, 1))) {
+        stack.reserve(2 * slab.pairs);
         add_seconds_of(fft_s_, [&] { image_to_stack(model_, f, slab.first, threads, stack); });
         StackRows<Real> rows(stack, f.facet.geometry.width, threads);
         for (const Band& band : bands_of(setup_.shape, stack.bytes_a_row())) {
@@ -58,27 +51,25 @@ class WidePrediction : public Prediction {
           for (const std::vector<StackTask>& tasks : tasks_of(order, setup_.shape, slab, ordering.width_w, band))
             parallel_for(tasks.size(), threads, [&](std::size_t i) {
               auto buffer = spares.take([&] { return std::make_unique<StackBuffer<Real>>(buffer_of(setup_, 1)); });
-              degrid_tile({blocks, order, ordering}, tasks[i], slab.first, stack, *buffer, halves);
+              degrid_tile({blocks, order, ordering}, tasks[i], slab, stack, *buffer, visibilities);
               spares.give_back(std::move(buffer));
             });
         }
       }
     }
-    for (std::size_t b = 0; b < blocks.size(); ++b)
-      for (std::size_t i = 0; i < halves.direct[b].size(); ++i) halves.direct[b][i] += std::conj(halves.mirrored[b][i]);
-    return std::move(halves.direct);
+    return visibilities;
   }
 
-  void degrid_tile(const StackSamples& samples, const StackTask& task, int first_plane, const PlaneStack<Real>& stack,
-                   StackBuffer<Real>& buffer, Halves& halves) const {
+  void degrid_tile(const StackSamples& samples, const StackTask& task, const Slab& slab, const PlaneStack<Real>& stack,
+                   StackBuffer<Real>& buffer, Visibilities& visibilities) const {
     const StackShape& s = setup_.shape;
-    StackCells<const std::complex<Real>> cells =
-        stack.cells_of(task.tile_u, task.tile_v, task.planes.first - first_plane, task.planes.planes);
+    const int lowest = slab.place(task.planes.first);
+    StackCells<const std::complex<Real>> cells = stack.cells_of(task.tile_u, task.tile_v, lowest, task.planes.planes);
     if (!is_sparse(samples.order, task)) {
       buffer.reset(task.planes.planes);
       for_each_chunk(s, task, 1, [&](int row, int chunk, int plane, int grid, int count) {
-        std::copy_n(stack.chunk(task.tile_v * s.tile + row, task.tile_u + chunk, task.planes.first - first_plane + plane, grid),
-                    count, buffer.row(plane, row, grid) + chunk * s.tile);
+        std::copy_n(stack.chunk(task.tile_v * s.tile + row, task.tile_u + chunk, lowest + plane, grid), count,
+                    buffer.row(plane, row, grid) + chunk * s.tile);
       });
       cells = buffer.cells();
     }
@@ -86,11 +77,12 @@ class WidePrediction : public Prediction {
     for_each_batch<Real>(samples, task, ahead, [&](StackBatch<Real>& batch, const BatchPhases& phases) {
       interpolate(setup_.taps, cells, batch);
       for (const BatchRun& run : phases.run) {
-        std::complex<double>* visibility = &(run.mirrored ? halves.mirrored : halves.direct)[run.block][run.sample];
+        std::complex<double>* visibility = &visibilities[run.block][run.sample];
+        const double sign = run.mirrored ? -1 : 1;
         for (int k = run.begin; k < run.end; ++k, ++visibility) {
           const double re = double{batch.value[0][k].real()}, im = double{batch.value[0][k].imag()};
-          *visibility +=
-              std::complex<double>(re * phases.cosine[k] + im * phases.sine[k], re * phases.sine[k] - im * phases.cosine[k]);
+          *visibility += std::complex<double>(re * phases.cosine[k] + im * phases.sine[k],
+                                              sign * (re * phases.sine[k] - im * phases.cosine[k]));
         }
       }
     });

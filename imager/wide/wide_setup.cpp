@@ -2,9 +2,9 @@
 
 namespace misfit::imager {
 
-// Of a prediction: both halves of its visibilities; and at worst a run each for a sample and its mirror image, twice while they
-// are sorted. An adjoint takes less for the first Stokes parameter, and w V for each of the others.
-static_assert(wide_bytes_a_sample == 2 * sizeof(std::complex<double>) + 2 * (2 * sizeof(StackRun) + 8));
+// Of a prediction: its visibilities, and at worst a run for each sample, twice while they are sorted. An adjoint takes less for
+// the first Stokes parameter, and w V for each of the others.
+static_assert(wide_bytes_a_sample == sizeof(std::complex<double>) + 2 * sizeof(StackRun) + 8);
 static_assert(wide_bytes_a_value == sizeof(std::complex<double>));
 
 StackShape stack_shape_of(const WideTransformOptions& o) {

@@ -28,11 +28,11 @@ StackShape stack_shape_of(const WideTransformOptions& options);
 template <typename Real>
 WideSetup<Real> wide_setup(const WideTransformOptions& options);
 
-/// Planes of one facet that memory can hold.
+/// Pairs of opposite half planes of one facet that memory can hold.
 template <typename Real>
-int most_planes(const WideSetup<Real>& setup, int grids) {
-  const double plane_bytes = grids * static_cast<double>(setup.shape.cells()) * sizeof(std::complex<Real>);
-  return std::max(1, static_cast<int>(static_cast<double>(setup.options.stack_bytes) / plane_bytes));
+int most_pairs(const WideSetup<Real>& setup, int grids) {
+  const double pair_bytes = 2.0 * grids * static_cast<double>(setup.shape.cells()) * sizeof(std::complex<Real>);
+  return std::max(1, static_cast<int>(static_cast<double>(setup.options.stack_bytes) / pair_bytes));
 }
 
 /// Calls visit(row, chunk, plane, grid, cells) for what a tile's buffer and a stack share, in the stack's order.

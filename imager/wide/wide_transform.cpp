@@ -55,7 +55,7 @@ TransformMemory memory_of(const WideTransformOptions& o, const WideDemand& deman
   const bool single = o.precision == Precision::single_precision;
   const double complex_bytes = single ? sizeof(std::complex<float>) : sizeof(std::complex<double>);
   const double at_once = std::min(demand.samples, static_cast<double>(o.samples_at_once));
-  const double plane = static_cast<double>(stack_shape_of(o).cells()) * complex_bytes;
+  const double plane = 2.0 * static_cast<double>(stack_shape_of(o).cells()) * complex_bytes;  // two halves
   const double image = static_cast<double>(o.geometry.pixels()) * sizeof(double);
   const auto stack = [&](int grids) {
     return std::min(grids * demand.planes * plane, std::max(grids * plane, static_cast<double>(o.stack_bytes)));

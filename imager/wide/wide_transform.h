@@ -23,7 +23,7 @@ std::unique_ptr<Transform> make_wide_transform(const WideTransformOptions& optio
 
 /// Bytes that a WideTransform takes at most for each of the samples that it orders at once, and for each Stokes parameter but
 /// the first besides.
-inline constexpr int wide_bytes_a_sample = 112, wide_bytes_a_value = 16;
+inline constexpr int wide_bytes_a_sample = 56, wide_bytes_a_value = 16;
 
 /// What a WideTransform has to do, as far as its memory depends on it.
 struct WideDemand {
