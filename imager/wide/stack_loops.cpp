@@ -11,6 +11,10 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+// Arrays of vectors stay in registers only where every loop over them is unrolled.
+#undef MISFIT_UNROLL
+#define MISFIT_UNROLL _Pragma("GCC unroll 64")
+
 HWY_BEFORE_NAMESPACE();
 namespace misfit::imager::HWY_NAMESPACE {
 
@@ -49,22 +53,13 @@ using TapsTag = hn::CappedTag<Real, lanes_of<Real> == 1 ? 1 : lanes_of<Real> / 2
 template <typename Real>
 constexpr int taps_at_once = static_cast<int>(hn::MaxLanes(TapsTag<Real>()));
 
-/// Samples whose taps a plane holds, plane by plane: a plane of the buffer fits the nearest cache where all of them do not.
-/// visit(plane, sample, tap along w).
-template <typename Real, typename Visit>
-HWY_ATTR HWY_INLINE void for_each_plane(const StackTaps<Real>& taps, const StackBatch<Real>& samples, const Along<Real>& along,
-                                        int planes, const Visit& visit) {
-  constexpr int stride = 16;  // neighbouring channels fall on each other's cells, and would wait for each other
-  if (samples.count == 0) return;
-  const auto [lowest, highest] = std::minmax_element(samples.plane, samples.plane + samples.count);
-  const int begin = std::max(0, *lowest), end = std::min(planes, *highest + taps.w.width);
-  for (int plane = begin; plane < end; ++plane)
-    for (int first = 0; first < stride; ++first)
-      for (int i = first; i < samples.count; i += stride) {
-        const int tap = plane - samples.plane[i];
-        if (tap >= 0 && tap < taps.w.width) visit(plane, i, along.w.value[i * taps.w.padded + tap]);
-      }
-}
+/// The taps along w, [begin, end), of a sample that lie within the planes.
+struct TapsWithin {
+  int begin;
+  int end;
+
+  TapsWithin(int plane, int width, int planes) : begin(std::max(0, -plane)), end(std::min(width, planes - plane)) {}
+};
 
 /// A sample's taps along u in the two groups of columns that they may lie in.
 template <typename Real, int Numbers>
@@ -78,11 +73,94 @@ HWY_INLINE int numbers_within(int column, int width, int columns) {
   return 2 * std::min(width, columns - column);
 }
 
+/// Samples [begin, end) of a batch whose first taps share a cell and a plane.
+struct SameCell {
+  int begin;
+  int end;
+};
+
+template <typename Real>
+HWY_INLINE SameCell next_cell(const StackBatch<Real>& samples, int begin) {
+  int end = begin + 1;
+  while (end < samples.count && samples.column[end] == samples.column[begin] && samples.row[end] == samples.row[begin] &&
+         samples.plane[end] == samples.plane[begin])
+    ++end;
+  return {begin, end};
+}
+
+/// Samples' value · C_u for one or two grids, and their taps along the other axes: [sample], a stride apart.
+template <typename Real>
+struct TapRows {
+  const Real* u;
+  int stride_u;
+  int grid_u;  ///< from one grid to the next
+  const Real* v;
+  int stride_v;
+  const Real* w;
+  int stride_w;
+};
+
+/// Adds `Rows` rows of the taps of some samples of one cell in one plane, summed in registers, so that memory is touched once
+/// for all of them.
+template <typename Real, int Vectors, int Grids, int Rows>
+HWY_ATTR HWY_INLINE void add_rows(const TapRows<Real>& taps, int samples, Real* cell, std::ptrdiff_t line,
+                                  std::ptrdiff_t grid) {
+  const Tag<Real> d;
+  constexpr int lanes = lanes_of<Real>;
+  hn::Vec<Tag<Real>> sum[Rows][Grids][Vectors];
+  MISFIT_UNROLL for (int j = 0; j < Rows; ++j) {
+    MISFIT_UNROLL for (int g = 0; g < Grids; ++g) {
+      MISFIT_UNROLL for (int k = 0; k < Vectors; ++k) sum[j][g][k] = hn::LoadU(d, cell + j * line + g * grid + k * lanes);
+    }
+  }
+  const Real *u = taps.u, *v = taps.v, *w = taps.w;
+  for (int i = 0; i < samples; ++i, u += taps.stride_u, v += taps.stride_v, w += taps.stride_w) {
+    const auto height = hn::Set(d, *w);
+    hn::Vec<Tag<Real>> term[Grids][Vectors];
+    MISFIT_UNROLL for (int g = 0; g < Grids; ++g) {
+      MISFIT_UNROLL for (int k = 0; k < Vectors; ++k) term[g][k] =
+          hn::Mul(height, hn::LoadU(d, u + g * taps.grid_u + k * lanes));
+    }
+    MISFIT_UNROLL for (int j = 0; j < Rows; ++j) {
+      const auto factor = hn::Set(d, v[j]);
+      MISFIT_UNROLL for (int g = 0; g < Grids; ++g) {
+        MISFIT_UNROLL for (int k = 0; k < Vectors; ++k) sum[j][g][k] = hn::MulAdd(factor, term[g][k], sum[j][g][k]);
+      }
+    }
+  }
+  MISFIT_UNROLL for (int j = 0; j < Rows; ++j) {
+    MISFIT_UNROLL for (int g = 0; g < Grids; ++g) {
+      MISFIT_UNROLL for (int k = 0; k < Vectors; ++k) hn::StoreU(sum[j][g][k], d, cell + j * line + g * grid + k * lanes);
+    }
+  }
+}
+
+/// Sums that fit the registers beside a sample's terms.
+constexpr int most_sums = 12;
+
+template <typename Real, int Vectors, int Grids>
+HWY_ATTR HWY_INLINE void add_plane(TapRows<Real> taps, int samples, int width, Real* cell, std::ptrdiff_t line,
+                                   std::ptrdiff_t grid) {
+  constexpr int rows = std::clamp(most_sums / (Vectors * Grids), 1, 4);
+  int j = 0;
+  for (; j + rows <= width; j += rows, taps.v += rows, cell += rows * line)
+    add_rows<Real, Vectors, Grids, rows>(taps, samples, cell, line, grid);
+  switch (width - j) {
+    case 1:
+      return add_rows<Real, Vectors, Grids, 1>(taps, samples, cell, line, grid);
+    case 2:
+      return add_rows<Real, Vectors, Grids, std::min(rows, 2)>(taps, samples, cell, line, grid);
+    case 3:
+      return add_rows<Real, Vectors, Grids, std::min(rows, 3)>(taps, samples, cell, line, grid);
+    default:
+      return;
+  }
+}
+
 /// To `Grids` grids from `first_grid` on.
 template <typename Real, int Vectors, int Grids>
 HWY_ATTR void spread_samples(const StackTaps<Real>& taps, const StackBatch<Real>& samples, const Along<Real>& along,
                              const StackCells<std::complex<Real>>& cells, int first_grid) {
-  const Tag<Real> d;
   const TapsTag<Real> dt;
   constexpr int lanes = lanes_of<Real>, numbers = Vectors * lanes;
   const int width = taps.v.width;
@@ -101,69 +179,88 @@ HWY_ATTR void spread_samples(const StackTaps<Real>& taps, const StackBatch<Real>
       std::fill(whole + within, whole + numbers, Real(0));
     }
   }
-  const std::ptrdiff_t line = 2 * cells.row;
-  const auto add = [&](const Real* taps_u, Real along_w, const Real* along_v, Real* cell) HWY_ATTR {
-    const auto height = hn::Set(d, along_w);
-    hn::Vec<Tag<Real>> term[Vectors];
-    for (int k = 0; k < Vectors; ++k) term[k] = hn::Mul(height, hn::LoadU(d, taps_u + k * lanes));
-    for (int j = 0; j < width; ++j, cell += line) {
-      const auto factor = hn::Set(d, along_v[j]);
-      for (int k = 0; k < Vectors; ++k)
-        hn::StoreU(hn::MulAdd(factor, term[k], hn::LoadU(d, cell + k * lanes)), d, cell + k * lanes);
-    }
-  };
-  for_each_plane(taps, samples, along, cells.planes, [&](int plane, int i, Real along_w) HWY_ATTR {
-    const Real* v = along.v.value + i * taps.v.padded;
+  // Cell by cell, and each cell plane by plane: the next one's sums wait for none that are still on their way to memory.
+  for (SameCell same = next_cell(samples, 0); same.begin < samples.count; same = next_cell(samples, same.end)) {
+    const int i = same.begin, count = same.end - same.begin;
     const bool crosses = numbers_within(samples.column[i], width, cells.columns) < 2 * width;
-    for (int g = 0; g < Grids; ++g) {
-      std::complex<Real>* group =
-          cells.first + plane * cells.plane + samples.row[i] * cells.row + (first_grid + g) * cells.grid;
-      add(row[i][g].whole, along_w, v, reinterpret_cast<Real*>(group + samples.column[i]));
-      if (crosses) add(row[i][g].beyond, along_w, v, reinterpret_cast<Real*>(group + cells.next));
+    const TapsWithin within(samples.plane[i], taps.w.width, cells.planes);
+    for (int tap = within.begin; tap < within.end; ++tap) {
+      TapRows<Real> rows{row[i][0].whole,
+                         Grids * sizeof(Halves<Real, numbers>) / sizeof(Real),
+                         sizeof(Halves<Real, numbers>) / sizeof(Real),
+                         along.v.value + i * taps.v.padded,
+                         taps.v.padded,
+                         along.w.value + i * taps.w.padded + tap,
+                         taps.w.padded};
+      std::complex<Real>* const group =
+          cells.first + (samples.plane[i] + tap) * cells.plane + samples.row[i] * cells.row + first_grid * cells.grid;
+      add_plane<Real, Vectors, Grids>(rows, count, width, reinterpret_cast<Real*>(group + samples.column[i]), 2 * cells.row,
+                                      2 * cells.grid);
+      if (!crosses) continue;
+      rows.u = row[i][0].beyond;
+      add_plane<Real, Vectors, Grids>(rows, count, width, reinterpret_cast<Real*>(group + cells.next), 2 * cells.row,
+                                      2 * cells.grid);
     }
-  });
+  }
+}
+
+/// A sample's taps along v, and those along w that lie within the planes.
+template <typename Real>
+struct HeightTaps {
+  const Real* v;
+  int width;
+  const Real* w;
+  int planes;
+};
+
+/// sums = Σ C_v C_w · cell, from the first tap's cell on.
+template <typename Real, int Vectors>
+HWY_ATTR HWY_INLINE void sum_rows(const HeightTaps<Real>& taps, const StackCells<const std::complex<Real>>& cells,
+                                  const std::complex<Real>* first, Real* sums) {
+  const Tag<Real> d;
+  constexpr int lanes = lanes_of<Real>;
+  hn::Vec<Tag<Real>> sum[Vectors];
+  MISFIT_UNROLL for (int k = 0; k < Vectors; ++k) sum[k] = hn::Zero(d);
+  for (int tap = 0; tap < taps.planes; ++tap, first += cells.plane) {
+    const Real* cell = reinterpret_cast<const Real*>(first);
+    hn::Vec<Tag<Real>> of_plane[Vectors];
+    MISFIT_UNROLL for (int k = 0; k < Vectors; ++k) of_plane[k] = hn::Zero(d);
+    for (int j = 0; j < taps.width; ++j, cell += 2 * cells.row) {
+      const auto factor = hn::Set(d, taps.v[j]);
+      MISFIT_UNROLL for (int k = 0; k < Vectors; ++k) of_plane[k] =
+          hn::MulAdd(factor, hn::LoadU(d, cell + k * lanes), of_plane[k]);
+    }
+    const auto height = hn::Set(d, taps.w[tap]);
+    MISFIT_UNROLL for (int k = 0; k < Vectors; ++k) sum[k] = hn::MulAdd(height, of_plane[k], sum[k]);
+  }
+  MISFIT_UNROLL for (int k = 0; k < Vectors; ++k) hn::StoreU(sum[k], d, sums + k * lanes);
 }
 
 template <typename Real, int Vectors>
 HWY_ATTR void interpolate_samples(const StackTaps<Real>& taps, const StackCells<const std::complex<Real>>& cells,
                                   StackBatch<Real>& samples) {
-  const Tag<Real> d;
-  constexpr int lanes = lanes_of<Real>, numbers = Vectors * lanes;
+  constexpr int numbers = Vectors * lanes_of<Real>;
   const int width = taps.v.width;
   const Along<Real> along(taps, samples);
-  alignas(64) Halves<Real, numbers> row[TilePlaces<Real>::capacity];  // Σ C_v C_w · cell
-  for (int i = 0; i < samples.count; ++i) {
-    std::fill_n(row[i].whole, numbers, Real(0));
-    std::fill_n(row[i].beyond, numbers, Real(0));
-  }
-  const std::ptrdiff_t line = 2 * cells.row;
-  const auto add = [&](const Real* cell, Real along_w, const Real* along_v, Real* sums) HWY_ATTR {
-    hn::Vec<Tag<Real>> sum[Vectors];
-    for (int k = 0; k < Vectors; ++k) sum[k] = hn::Zero(d);
-    for (int j = 0; j < width; ++j, cell += line) {
-      const auto factor = hn::Set(d, along_v[j]);
-      for (int k = 0; k < Vectors; ++k) sum[k] = hn::MulAdd(factor, hn::LoadU(d, cell + k * lanes), sum[k]);
-    }
-    const auto height = hn::Set(d, along_w);
-    for (int k = 0; k < Vectors; ++k)
-      hn::StoreU(hn::MulAdd(height, sum[k], hn::LoadU(d, sums + k * lanes)), d, sums + k * lanes);
-  };
-  for_each_plane(taps, samples, along, cells.planes, [&](int plane, int i, Real along_w) HWY_ATTR {
-    const Real* v = along.v.value + i * taps.v.padded;
-    const std::complex<Real>* group = cells.first + plane * cells.plane + samples.row[i] * cells.row;
-    add(reinterpret_cast<const Real*>(group + samples.column[i]), along_w, v, row[i].whole);
-    if (numbers_within(samples.column[i], width, cells.columns) < 2 * width)
-      add(reinterpret_cast<const Real*>(group + cells.next), along_w, v, row[i].beyond);
-  });
   const TapsTag<Real> dt;
   for (int i = 0; i < samples.count; ++i) {
+    alignas(64) Halves<Real, numbers> row;
+    const TapsWithin along_w(samples.plane[i], taps.w.width, cells.planes);
+    const HeightTaps<Real> height{along.v.value + i * taps.v.padded, width, along.w.value + i * taps.w.padded + along_w.begin,
+                                  along_w.end - along_w.begin};
+    const std::complex<Real>* group =
+        cells.first + (samples.plane[i] + along_w.begin) * cells.plane + samples.row[i] * cells.row;
+    sum_rows<Real, Vectors>(height, cells, group + samples.column[i], row.whole);
     const int within = numbers_within(samples.column[i], width, cells.columns);
-    if (within < 2 * width) std::copy_n(row[i].beyond, numbers - within, row[i].whole + within);
+    if (within < 2 * width) {
+      sum_rows<Real, Vectors>(height, cells, group + cells.next, row.beyond);
+      std::copy_n(row.beyond, numbers - within, row.whole + within);
+    }
     auto real_sum = hn::Zero(dt), imaginary_sum = real_sum;
     for (int k = 0; k < numbers / 2; k += taps_at_once<Real>) {
       const auto u = hn::LoadU(dt, along.u.value + i * taps.u.padded + k);
       hn::Vec<TapsTag<Real>> real, imaginary;
-      hn::LoadInterleaved2(dt, row[i].whole + 2 * k, real, imaginary);
+      hn::LoadInterleaved2(dt, row.whole + 2 * k, real, imaginary);
       real_sum = hn::MulAdd(real, u, real_sum);
       imaginary_sum = hn::MulAdd(imaginary, u, imaginary_sum);
     }
