@@ -12,7 +12,7 @@ std::vector<double> axis_correction(const kernels::Kernel& kernel, int pixels, i
   return {h.begin(), h.end()};
 }
 
-SmoothCorrection::SmoothCorrection(const kernels::Kernel& kernel) {
+SmoothCorrection::SmoothCorrection(const kernels::Kernel& kernel, double tolerance) {
   const double end = std::min(0.4999, 1.01 * kernel.x0);
   scale = 2 / (end * end);
   constexpr int nodes = 64;
@@ -25,7 +25,7 @@ SmoothCorrection::SmoothCorrection(const kernels::Kernel& kernel) {
     double sum = 0;
     for (int i = 0; i < nodes; ++i) sum += h[i] * std::cos(pi * k * (i + 0.5) / nodes);
     coefficient.push_back((k == 0 ? 1.0 : 2.0) / nodes * sum);
-    if (std::abs(coefficient.back()) > 1e-16 * size) terms = k + 1;
+    if (std::abs(coefficient.back()) > tolerance * size) terms = k + 1;
   }
   coefficient.resize(static_cast<std::size_t>(terms));
 }

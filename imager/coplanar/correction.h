@@ -10,12 +10,12 @@ namespace misfit::imager {
 std::vector<double> axis_correction(const kernels::Kernel& kernel, int pixels, int fft_size);
 
 /// The optimal correction h(x) of a kernel at any |x| ≤ x0, as a Chebyshev series in x²: quick where every pixel has an x of
-/// its own. True to the rounding of doubles, slightly beyond x0 too.
+/// its own. True to `tolerance` times its largest value, slightly beyond x0 too.
 struct SmoothCorrection {
   double scale = 0;                 ///< x² times this, less 1, is the series' argument
   std::vector<double> coefficient;  ///< of Chebyshev polynomials
 
-  explicit SmoothCorrection(const kernels::Kernel& kernel);
+  SmoothCorrection(const kernels::Kernel& kernel, double tolerance);
 };
 
 }  // namespace misfit::imager

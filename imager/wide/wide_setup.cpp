@@ -1,5 +1,7 @@
 #include "imager/wide/wide_setup.h"
 
+#include <limits>
+
 namespace misfit::imager {
 
 // Of a prediction: its visibilities, and at worst a run for each sample, twice while they are sorted. An adjoint takes less for
@@ -19,7 +21,7 @@ WideSetup<Real> wide_setup(const WideTransformOptions& o) {
                     {TapTable<Real>(o.kernel_u.polynomial, o.lookup), TapTable<Real>(o.kernel_v.polynomial, o.lookup),
                      TapTable<Real>(o.kernel_w.polynomial, o.lookup)},
                     {}};
-  const SmoothCorrection h_w(o.kernel_w);
+  const SmoothCorrection h_w(o.kernel_w, std::numeric_limits<Real>::epsilon() / 8);
   for (const Facet& facet : split_into_facets(o.geometry, o.facets_l, o.facets_m)) {
     if (facet.empty) continue;
     constexpr double flat = 1e-15;  // a facet of one pixel has no curvature
