@@ -10,26 +10,37 @@ template <typename Real>
 void PlaneStack<Real>::reserve(int plane_count) {
   planes = plane_count;
   cell_.reserve(shape.cells() * static_cast<std::size_t>(planes * grids));
-  row_used.assign(static_cast<std::size_t>(shape.rows()), 0);
+  chunk_used_.assign(chunk_number(shape.rows(), 0), 0);
 }
 
 template <typename Real>
-void PlaneStack<Real>::use_rows(const std::vector<RowRange>& ranges, int threads) {
-  std::vector<int> fresh;
-  for (const RowRange& range : ranges)
-    for (int r = range.begin; r < range.end; ++r) {
-      char& used = row_used[static_cast<std::size_t>(r)];
-      if (used == 0) fresh.push_back(r);
-      used = 1;
-    }
-  const std::size_t row_cells = offset(1, 0, 0, 0);
-  parallel_for(fresh.size(), threads,
-               [&](std::size_t i) { std::fill_n(chunk(fresh[i], 0, 0, 0), row_cells, std::complex<Real>(0)); });
+void PlaneStack<Real>::use_tiles(const std::vector<TilePlace>& tiles, int threads) {
+  struct Chunk {
+    int row;
+    int index;
+  };
+  std::vector<Chunk> fresh;
+  for (const TilePlace& tile : tiles)
+    for (int row = tile.v * shape.tile; row < (tile.v + 1) * shape.tile + shape.width - 1; ++row)
+      for (const int index : {tile.u, tile.u + 1}) {
+        char& used = chunk_used_[chunk_number(row, index)];
+        if (used == 0) fresh.push_back({row, index});
+        used = 1;
+      }
+  const std::size_t chunk_cells = offset(0, 1, 0, 0);
+  constexpr std::size_t at_once = 256;
+  parallel_for((fresh.size() + at_once - 1) / at_once, threads, [&](std::size_t piece) {
+    for (std::size_t i = piece * at_once; i < std::min(fresh.size(), (piece + 1) * at_once); ++i)
+      std::fill_n(chunk(fresh[i].row, fresh[i].index, 0, 0), chunk_cells, std::complex<Real>(0));
+  });
 }
 
 template <typename Real>
 bool PlaneStack<Real>::holds(int q) const {
-  const auto is_used = [&](int r) { return row_used[static_cast<std::size_t>(r)] != 0; };
+  const auto is_used = [&](int r) {
+    const auto first = chunk_used_.begin() + static_cast<std::ptrdiff_t>(chunk_number(r, 0));
+    return std::any_of(first, first + shape.chunks(), [](char used) { return used != 0; });
+  };
   bool used = is_used(q + shape.margin());
   for_mirrored_rows(q, [&](int r) { used |= is_used(r); });
   return used;

@@ -29,17 +29,17 @@ struct StackShape {
   std::size_t cells() const { return static_cast<std::size_t>(columns()) * static_cast<std::size_t>(rows()); }
 };
 
-/// Rows of storage, [begin, end).
-struct RowRange {
-  int begin = 0;
-  int end = 0;
+/// A tile's column and row among the tiles.
+struct TilePlace {
+  int u = 0;
+  int v = 0;
 };
 
 /// Half planes of constant w, each with one or more complex grids, plane i at the opposite w of plane planes − 1 − i: its other
 /// half, v < 0, is the conjugate of that one's mirror image, G_i(−p, −q) = conj G_{planes−1−i}(p, q). What a tile holds of one
-/// row lies together: [row][chunk][plane][grid][column in chunk], a chunk being as wide as a tile. Memory is used again from one
-/// facet to the next, and by the FFTs: between the transforms along u and v, row q + margin holds row q of the grid by columns
-/// of the image.
+/// row lies together: [row][chunk][plane][grid][column in chunk], a chunk being as wide as a tile. Memory is used again from
+/// one facet to the next, and by the FFTs: between the transforms along u and v, row q + margin holds row q of the grid by
+/// columns of the image.
 template <typename Real>
 class PlaneStack {
  public:
@@ -47,8 +47,8 @@ class PlaneStack {
 
   /// Makes room for that many planes, no row of which is used.
   void reserve(int plane_count);
-  /// Makes rows zero that were not used before.
-  void use_rows(const std::vector<RowRange>& ranges, int threads);
+  /// Makes zero what taps of the tiles can reach and was not used before.
+  void use_tiles(const std::vector<TilePlace>& tiles, int threads);
 
   /// The cells of the tile at (tile_u, tile_v) from a plane on.
   StackCells<std::complex<Real>> cells_of(int tile_u, int tile_v, int plane, int plane_count) {
@@ -72,6 +72,8 @@ class PlaneStack {
   }
   /// Whether row q of any grid may hold something.
   bool holds(int q) const;
+  /// Whether a chunk of a row of storage may hold something; the content of others is undefined.
+  bool uses(int row, int index) const { return chunk_used_[chunk_number(row, index)] != 0; }
 
   std::complex<Real>* chunk(int row, int index, int plane, int grid) { return cell_.data() + offset(row, index, plane, grid); }
   const std::complex<Real>* chunk(int row, int index, int plane, int grid) const {
@@ -81,9 +83,11 @@ class PlaneStack {
   StackShape shape;
   int planes = 0;
   int grids = 1;
-  std::vector<char> row_used;  ///< [row]: whether any plane may hold something there; the content of others is undefined
 
  private:
+  std::size_t chunk_number(int row, int index) const {
+    return static_cast<std::size_t>(row) * static_cast<std::size_t>(shape.chunks()) + static_cast<std::size_t>(index);
+  }
   template <typename Complex>
   StackCells<Complex> cells_at(Complex* first, int plane_count) const {
     const std::ptrdiff_t chunk_cells = shape.tile * planes * grids;
@@ -96,6 +100,7 @@ class PlaneStack {
   }
 
   BigArray<std::complex<Real>> cell_;
+  std::vector<char> chunk_used_;  ///< [row][chunk]
 };
 
 }  // namespace misfit::imager

@@ -33,7 +33,13 @@ auto* group_of_row(Stack& stack, int group, int q, int plane, int grid) {
   return stack.chunk(q + stack.shape.margin(), first / tile, plane, grid) + first % tile;
 }
 
-/// Brings rows [begin, end) of a group of columns to contiguous memory, a few at a time, so that what is written lies together
+/// Rows of a plane, [begin, end).
+struct RowRange {
+  int begin;
+  int end;
+};
+
+/// Brings rows of a group of columns to contiguous memory, a few at a time, so that what is written lies together
 /// too. Beyond nv/2 rows are the conjugates of the opposite plane's.
 template <typename Real, bool beyond>
 void gather_rows(const PlaneStack<Real>& stack, const std::vector<char>& used, int group, int plane, int grid, RowRange range,

@@ -33,10 +33,14 @@ template <typename Real>
 void gather_stored(const PlaneStack<Real>& stack, int row, int plane, int grid, std::complex<Real>* line) {
   const StackShape& s = stack.shape;
   std::fill_n(line, s.nu, std::complex<Real>(0));
-  if (stack.row_used[static_cast<std::size_t>(row)] == 0) return;
   for_chunks(
-      s, [&](int chunk, int p) { add_cells(stack.chunk(row, chunk, plane, grid), s.tile, line + p); },
-      [&](int chunk, int c, int p) { line[p] += stack.chunk(row, chunk, plane, grid)[c]; });
+      s,
+      [&](int chunk, int p) {
+        if (stack.uses(row, chunk)) add_cells(stack.chunk(row, chunk, plane, grid), s.tile, line + p);
+      },
+      [&](int chunk, int c, int p) {
+        if (stack.uses(row, chunk)) line[p] += stack.chunk(row, chunk, plane, grid)[c];
+      });
 }
 
 /// Its transpose: a row of storage, margins along u filled by periodicity.

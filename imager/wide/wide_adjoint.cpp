@@ -145,7 +145,7 @@ class WideAdjoint : public AdjointSum {
         StackRows<Real> rows(stack, f.facet.geometry.width, threads);
         for (const Band& band : bands_of(setup_.shape, stack.bytes_a_row())) {
           const auto colours = tasks_of(order, setup_.shape, slab, ordering.width_w, band);
-          stack.use_rows(rows_of(colours), threads);
+          stack.use_tiles(tiles_of(colours), threads);
           for (const std::vector<StackTask>& tasks : colours)
             parallel_for(tasks.size(), threads, [&](std::size_t i) {
               auto buffer = spares.take([&] { return std::make_unique<StackBuffer<Real>>(buffer_of(setup_, grids)); });
@@ -164,19 +164,20 @@ class WideAdjoint : public AdjointSum {
     samples_ = 0;
   }
 
-  std::vector<RowRange> rows_of(const std::vector<std::vector<StackTask>>& colours) const {
-    const StackShape& s = setup_.shape;
-    std::vector<RowRange> rows;
+  static std::vector<TilePlace> tiles_of(const std::vector<std::vector<StackTask>>& colours) {
+    std::vector<TilePlace> tiles;
     for (const std::vector<StackTask>& tasks : colours)
-      for (const StackTask& task : tasks) rows.push_back({task.tile_v * s.tile, (task.tile_v + 1) * s.tile + s.width - 1});
-    return rows;
+      for (const StackTask& task : tasks) tiles.push_back({task.tile_u, task.tile_v});
+    return tiles;
   }
 
   void grid_tile(const StackSamples& samples, const StackTask& task, const Slab& slab, StackBuffer<Real>& buffer,
                  PlaneStack<Real>& stack) const {
     TileSum<Real> sum(setup_, task, slab, is_sparse(samples.order, task), buffer, stack);
     const auto ahead = [&](std::uint32_t block, std::size_t sample) {
-      for (const auto& weighted : gathered_[block].weighted) hwy::Prefetch(&weighted[sample]);
+      const Gathered& g = gathered_[block];
+      for (const auto& weighted : g.weighted) hwy::Prefetch(&weighted[sample]);
+      if (with_psf_) hwy::Prefetch(&g.weight[sample]);
     };
     const auto done = [&](StackBatch<Real>& batch, BatchPhases& phases) {
       for (std::size_t i = 0; i < images(); ++i) set_values(phases, i, batch.value[i]);

@@ -52,7 +52,7 @@ struct Places {
   Places(int width, int grids) : buffer(tile, width, grids), stack({96, 96, width, tile}, grids) {
     buffer.reset(planes);
     stack.reserve(planes);
-    stack.use_rows({{0, stack.shape.rows()}}, 1);
+    stack.use_tiles({{1, 1}}, 1);
   }
   std::complex<Real>& in_buffer(int plane, int row, int grid, int column) { return buffer.row(plane, row, grid)[column]; }
   std::complex<Real>& in_stack(int plane, int row, int grid, int column) {
