@@ -22,10 +22,10 @@ void require_finite_psf(const Image& psf) {
   if (!std::isfinite(peak)) refuse("the PSF's largest pixel", peak);
 }
 
-void require_finite_residual(const Image& residual, const Image& dirty) {
-  if (const double peak = find_peak(residual).value; !std::isfinite(peak)) refuse("the residual image's peak in Jy/beam", peak);
-  for (std::size_t i = 0; i < dirty.pixel.size(); ++i)
-    if (std::isnan(residual.pixel[i]) && !std::isnan(dirty.pixel[i])) refuse("a pixel of the residual image", NAN);
+void require_finite_residual(const ImageStatistics& residual, const ImageStatistics& dirty) {
+  const double peak = residual.count == 0 ? NAN : residual.largest_magnitude();
+  if (!std::isfinite(peak)) refuse("the residual image's peak in Jy/beam", peak);
+  if (residual.count < dirty.count) refuse("a pixel of the residual image", NAN);
 }
 
 }  // namespace misfit::imager

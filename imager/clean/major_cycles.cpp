@@ -59,7 +59,7 @@ class Run {
       throw std::invalid_argument("a model of other scales than those of the minor cycle");
     for (const Image* psf : input.psf) require_finite_psf(*psf);
     psf_rms_ = root_mean_square(*input.psf.front());
-    dirty_rms_ = root_mean_square(*input.dirty.front());
+    dirty_ = statistics_of(*input.dirty.front(), o_.threads);
   }
 
   CleanResult run(const CycleProgress& cycle_progress) {
@@ -91,6 +91,14 @@ class Run {
   const MajorCycle& best() const { return state_.cycles[state_.best]; }
   const Image* mask() const { return o_.automask ? &state_.mask.allowed : o_.mask; }
 
+  /// At the limit of iterations; or at the last depth for the second time, the first having left what sidelobes had hidden.
+  bool is_likely_last(const MajorCycle& cycle) const {
+    const auto at_last_depth = [this](const MajorCycle& c) {
+      return c.cycle_threshold_jy <= last_depth(state_.cycles[c.from]);
+    };
+    return cycle.iterations >= o_.max_iterations || (at_last_depth(cycle) && state_.now > 0 && at_last_depth(now()));
+  }
+
   /// Makes the residual exact where it was not. Returns whether it was.
   bool is_exact() {
     MajorCycle& cycle = state_.cycles[state_.now];
@@ -109,7 +117,7 @@ class Run {
     double square = 0;
     for (const Component& c : state_.model.components()) square += c.flux_jy * c.flux_jy;
     const double visibilities_jy = std::max(input_.data_jy, std::sqrt(square));
-    return small * next / std::max(psf_rms_ * visibilities_jy, dirty_rms_);
+    return small * next / std::max(psf_rms_ * visibilities_jy, dirty_.root_mean_square());
   }
   int coarser_of(double accuracy) const {
     const auto& coarser = input_.coarser;
@@ -136,7 +144,7 @@ class Run {
       for (const Image& residual : made_) residuals_.push_back(&residual);
     }
     const StageTimer timer(context_.times, stage::statistics);
-    for (const Image* residual : residuals_) require_finite_residual(*residual, *input_.dirty.front());
+    for (const Image* residual : residuals_) require_finite_residual(statistics_of(*residual, o_.threads), dirty_);
     return accuracy;
   }
   std::vector<Image> model_images() const {
@@ -152,7 +160,8 @@ class Run {
   /// Of the whole image where the mask is empty.
   double peak_within_mask() const {
     const bool everywhere = mask() == nullptr || mask_is_empty();
-    return largest_magnitude(everywhere ? residual() : masked(residual(), *mask()));
+    return everywhere ? statistics_of(residual(), o_.threads).largest_magnitude()
+                      : largest_magnitude_within(*mask(), residual(), o_.threads);
   }
 
   /// What the residual is now.
@@ -160,8 +169,9 @@ class Run {
     const StageTimer timer(context_.times, stage::statistics);
     cycle.rms_jy = robust_noise(residual(), o_.threads);
     cycle.peak_residual_jy = peak_within_mask();
-    cycle.peak_anywhere_jy = largest_magnitude(residual());
-    cycle.mean_square_jy2 = std::pow(root_mean_square(residual()), 2);
+    const ImageStatistics statistics = statistics_of(residual(), o_.threads);
+    cycle.peak_anywhere_jy = statistics.largest_magnitude();
+    cycle.mean_square_jy2 = std::pow(statistics.root_mean_square(), 2);
     cycle.model_flux_jy = state_.model.flux_jy();
   }
 
@@ -219,7 +229,7 @@ class Run {
   Ending divergence() const {
     constexpr double near = 10;
     const double grew_to = state_.cycles.back().peak_residual_jy;
-    if (grew_to <= near * input_.accuracy * largest_magnitude(*input_.dirty.front()))
+    if (grew_to <= near * input_.accuracy * dirty_.largest_magnitude())
       return {CleanStop::no_change,
               "what is left, " + in_jy(grew_to) + ", is the error of the transforms; a smaller --accuracy goes deeper"};
     return {grew_to <= diverged * best().peak_residual_jy ? CleanStop::diverging_from_best : CleanStop::diverging,
@@ -268,8 +278,7 @@ class Run {
       state_.model.add(found.components);
     }
     cycle.from = state_.now;
-    const bool is_last = cycle.iterations >= o_.max_iterations;
-    cycle.accuracy = make_residual(is_last ? exact : accuracy_for_next(cycle.cycle_threshold_jy));
+    cycle.accuracy = make_residual(is_likely_last(cycle) ? exact : accuracy_for_next(cycle.cycle_threshold_jy));
     judge(std::move(cycle));
   }
 
@@ -352,7 +361,7 @@ class Run {
   std::vector<Image> made_;              ///< the same, where they are not the dirty images
   std::optional<Ending> end_;
   double psf_rms_ = 0;
-  double dirty_rms_ = 0;
+  ImageStatistics dirty_;
 };
 
 }  // namespace

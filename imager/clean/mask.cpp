@@ -5,6 +5,9 @@
 #include <limits>
 #include <stdexcept>
 #include <string>
+#include <vector>
+
+#include "imager/numerics/parallel.h"
 
 namespace misfit::imager {
 
@@ -18,6 +21,16 @@ std::size_t allowed_pixels(const Image& mask) {
 
 bool mask_is_empty(const Image& mask) {
   return std::none_of(mask.pixel.begin(), mask.pixel.end(), mask_allows);
+}
+
+double largest_magnitude_within(const Image& mask, const Image& image, int threads) {
+  std::vector<double> largest(static_cast<std::size_t>(image.height));
+  parallel_for(largest.size(), threads, [&](std::size_t row) {
+    const int r = static_cast<int>(row);
+    for (int c = 0; c < image.width; ++c)
+      if (mask_allows(mask.at(r, c))) largest[row] = std::fmax(largest[row], std::abs(image.at(r, c)));
+  });
+  return *std::max_element(largest.begin(), largest.end());
 }
 
 Image masked(Image image, const Image& mask) {

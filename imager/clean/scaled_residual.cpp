@@ -36,8 +36,8 @@ std::vector<float> transform_of(double fwhm_pixels, int n) {
 }
 
 /// A power of two, so that it rounds nothing.
-double unit_of(const Image& residual) {
-  const double peak = largest_magnitude(residual);
+double unit_of(const Image& residual, int threads) {
+  const double peak = statistics_of(residual, threads).largest_magnitude();
   return peak > 0 ? std::ldexp(1.0, std::ilogb(peak)) : 1;
 }
 
@@ -92,7 +92,7 @@ ScaledResidual::ScaledResidual(const std::vector<const Image*>& residual, const 
       threads_(threads),
       width_(residual.front()->width),
       height_(residual.front()->height),
-      unit_jy_(unit_of(*residual.front())) {
+      unit_jy_(unit_of(*residual.front(), threads)) {
   for (const ScaledPsf::Scale& scale : psf.scales()) {
     Plane& plane = plane_.emplace_back();
     plane.step = scale.looked_at.step;

@@ -6,6 +6,8 @@
 #include <type_traits>
 #include <vector>
 
+#include "imager/numerics/parallel.h"
+
 // Highway compiles what stands inside HWY_NAMESPACE once for every instruction set and chooses among them at run time.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "imager/data/image_statistics.cpp"
@@ -113,6 +115,25 @@ double ImageStatistics::largest_magnitude() const {
 
 ImageStatistics statistics_of(const Image& image) {
   return HWY_DYNAMIC_DISPATCH(look_at_pixels)(image.pixel.data(), image.pixel.size());
+}
+
+ImageStatistics statistics_of(const Image& image, int threads) {
+  constexpr std::size_t together = std::size_t{1} << 18;
+  const std::size_t pixels = image.pixel.size();
+  std::vector<ImageStatistics> part((pixels + together - 1) / together);
+  parallel_for(part.size(), threads, [&](std::size_t i) {
+    part[i] =
+        HWY_DYNAMIC_DISPATCH(look_at_pixels)(image.pixel.data() + i * together, std::min(together, pixels - i * together));
+  });
+  ImageStatistics all;
+  for (const ImageStatistics& some : part) {
+    if (some.count == 0) continue;
+    all.least = all.count == 0 ? some.least : std::min(all.least, some.least);
+    all.largest = all.count == 0 ? some.largest : std::max(all.largest, some.largest);
+    all.square_sum += some.square_sum;
+    all.count += some.count;
+  }
+  return all;
 }
 
 ImageStatistics divide(Image& image, double by) {

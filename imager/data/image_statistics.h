@@ -19,6 +19,8 @@ struct ImageStatistics {
 };
 
 ImageStatistics statistics_of(const Image& image);
+/// By several threads; the same for any number of them.
+ImageStatistics statistics_of(const Image& image, int threads);
 
 /// Divides all pixels, and tells of what they are then.
 ImageStatistics divide(Image& image, double by);

@@ -126,7 +126,7 @@ std::vector<float> counted_weights(const VisibilityBlock& block, const Visibilit
 class DirectAdjoint : public AdjointSum {
  public:
   DirectAdjoint(const DirectSums& o, const AdjointOptions& options) : AdjointSum(options), o_(o) {
-    result_.images.assign(images(), Image(o.geometry.width, o.geometry.height));
+    for (std::size_t i = 0; i < images(); ++i) result_.images.emplace_back(o.geometry.width, o.geometry.height);
     result_.sums.resize(sets());
     if (options.with_psf) result_.psf = Image(o.geometry.width, o.geometry.height);
   }

@@ -26,7 +26,7 @@ class WideAdjoint : public AdjointSum {
         with_psf_(options.with_psf && !beyond_horizon(setup.options.geometry.centre)),
         value_unit_(images()) {
     const ImageGeometry& g = setup.options.geometry;
-    result_.images.assign(images(), Image(g.width, g.height));
+    for (std::size_t i = 0; i < images(); ++i) result_.images.emplace_back(g.width, g.height);
     result_.sums.resize(sets());
     if (options.with_psf) result_.psf = Image(g.width, g.height);
   }

@@ -144,9 +144,9 @@ BOOST_AUTO_TEST_CASE(residuals_that_steer_are_made_by_coarser_transforms) {
   CleanOptions options = deep();
   options.threshold_jy = 1e-4;
   std::vector<CleanState> states;
-  const CleanResult result = cleaned(scene(), options, scene().images,
-                                     first_state(ComponentModel(geometry.width, geometry.height, {0})),
-                                     [&](const CleanState& state) { states.push_back(state); });
+  const CleanResult result =
+      cleaned(scene(), options, scene().images, first_state(ComponentModel(geometry.width, geometry.height, {0})),
+              [&](const CleanState& state) { states.push_back(state); });
   BOOST_TEST((result.report.stop == CleanStop::threshold));
   check_consistent(result);
   BOOST_TEST(result.report.final_state().accuracy == 0);
@@ -412,9 +412,10 @@ BOOST_AUTO_TEST_CASE(a_run_goes_on_from_a_residual_that_was_made_before) {
     return cleaned(
         scene(), options, images, first_state(model), [](const CleanState&) {}, true);
   };
+  // The whole run went on from a residual by a coarser transform, of 1e-4 at most, which errs by as much of what cycles find.
   const CleanResult same = rest(half.residual);
-  BOOST_TEST(relative_error(same.model.pixel, whole.model.pixel) < 1e-12);
-  BOOST_TEST(relative_error(same.residual.pixel, whole.residual.pixel) < 1e-9);
+  BOOST_TEST(relative_error(same.model.pixel, whole.model.pixel) < 1e-5);
+  BOOST_TEST(relative_error(same.residual.pixel, whole.residual.pixel) < 1e-3);
   BOOST_TEST(same.report.cycles.front().peak_residual_jy == half.report.final_state().peak_residual_jy);
   // A residual that is too bright is mended by the next major cycle.
   options.max_major_cycles = -1;
