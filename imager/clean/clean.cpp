@@ -4,6 +4,9 @@
 #include <cmath>
 #include <sstream>
 #include <stdexcept>
+#include <vector>
+
+#include "imager/numerics/parallel.h"
 
 namespace misfit::imager {
 void check(const CleanOptions& o, const std::string& prefix) {
@@ -31,10 +34,24 @@ double largest_sidelobe(const Image& psf, const Image& beam) {
   return largest;
 }
 
+/// Without the beam where that is below 1e-8.
 double largest_sidelobe(const Image& psf, const Beam& beam, double cell_rad, int threads) {
-  Image point(psf.width, psf.height);
-  point.at(psf.height / 2, psf.width / 2) = 1;
-  return largest_sidelobe(psf, convolve_with_beam(point, beam, cell_rad, threads));
+  const int reach = static_cast<int>(std::ceil(2.6 * beam.major_rad / cell_rad)) + 1;
+  const int row = psf.height / 2, column = psf.width / 2;
+  const int first_row = std::max(0, row - reach), last_row = std::min(psf.height - 1, row + reach);
+  const int first_column = std::max(0, column - reach), last_column = std::min(psf.width - 1, column + reach);
+  Image middle(last_column - first_column + 1, last_row - first_row + 1), point(middle.width, middle.height);
+  point.at(row - first_row, column - first_column) = 1;
+  for (int r = 0; r < middle.height; ++r) std::copy_n(psf.row(first_row + r) + first_column, middle.width, middle.row(r));
+  std::vector<double> largest(static_cast<std::size_t>(psf.height));
+  parallel_for(largest.size(), threads, [&](std::size_t at) {
+    const int r = static_cast<int>(at);
+    const bool beside = r >= first_row && r <= last_row;
+    for (int c = 0; c < psf.width; ++c)
+      if (!beside || c < first_column || c > last_column) largest[at] = std::max(largest[at], std::abs(psf.at(r, c)));
+  });
+  return std::max(largest_sidelobe(middle, convolve_with_beam(point, beam, cell_rad, 1)),
+                  *std::max_element(largest.begin(), largest.end()));
 }
 
 CleanState first_state(const ComponentModel& model) {

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "imager/clean/gaussian_blur.h"
+#include "imager/numerics/parallel.h"
 
 namespace misfit::imager {
 namespace {
@@ -26,21 +27,25 @@ Cut whole(const Image& psf) {
   return {-row, psf.height - 1 - row, -column, psf.width - 1 - column};
 }
 
-/// A cut of a PSF, convolved with a Gaussian, as if nothing lay beyond the PSF.
-Image convolved_cut(const Image& psf, const Cut& cut, double fwhm_pixels, int threads) {
-  const int margin = fwhm_pixels == 0 ? 0 : static_cast<int>(gaussian_taps(fwhm_pixels).size()) - 1;
-  const Cut from = cut.grown(margin).within(whole(psf));
+/// An image whose middle pixel, as of a PSF, lies at (row, column).
+struct Placed {
+  Image image;
+  int row, column;
+};
+
+/// What a PSF convolved with a Gaussian is in a cut, as if nothing lay beyond the PSF.
+Placed convolved(const Image& psf, const Cut& cut, double fwhm_pixels, int threads) {
+  const Cut from = cut.grown(static_cast<int>(gaussian_taps(fwhm_pixels).size()) - 1).within(whole(psf));
   Image taken(from.columns(), from.rows());
-  for (int r = 0; r < taken.height; ++r) {
-    const double* const row = psf.row(r + from.first_row + psf.height / 2) + from.first_column + psf.width / 2;
-    std::transform(row, row + taken.width, taken.row(r), [](double x) { return std::isnan(x) ? 0 : x; });
-  }
-  if (margin > 0) taken = gaussian_blur(taken, fwhm_pixels, threads);
-  Image result(cut.columns(), cut.rows());
-  for (int r = 0; r < result.height; ++r)
-    std::copy_n(taken.row(r + cut.first_row - from.first_row) + cut.first_column - from.first_column, result.width,
-                result.row(r));
-  return result;
+  for (int r = 0; r < taken.height; ++r)
+    std::copy_n(psf.row(r + from.first_row + psf.height / 2) + from.first_column + psf.width / 2, taken.width, taken.row(r));
+  return {gaussian_blur(taken, fwhm_pixels, threads), -from.first_row, -from.first_column};
+}
+
+double peak_of(const Image& psf, double fwhm_pixels, int threads) {
+  if (fwhm_pixels == 0) return psf.at(psf.height / 2, psf.width / 2);
+  const Placed middle = convolved(psf, {0, 0, 0, 0}, fwhm_pixels, threads);
+  return middle.image.at(middle.row, middle.column);
 }
 
 MeritForm merit_form(const TaylorBasis& basis, double bias) {
@@ -71,28 +76,26 @@ ScaledPsf::ScaledPsf(const std::vector<const Image*>& psf, const MultiscaleOptio
   if (scales > 1) cut = cut.within({-reach, reach, -reach, reach});
   first_row_ = cut.first_row, last_row_ = cut.last_row;
   first_column_ = cut.first_column, last_column_ = cut.last_column;
-  constexpr int margin = bright_tile_side;
   stride_ = cut.columns() + 2 * margin;
   core_.resize(scales * scales * psfs());
   strength_.resize(scales * scales);
   for (std::size_t s = 0; s < scales; ++s) {
     std::vector<double> peaks;
-    for (const Image* image : psf)
-      peaks.push_back(convolved_cut(*image, {0, 0, 0, 0}, std::sqrt(2.0) * looked_at[s].pixels, options.threads).at(0, 0));
+    for (const Image* image : psf) peaks.push_back(peak_of(*image, std::sqrt(2.0) * looked_at[s].pixels, options.threads));
     const TaylorBasis basis(peaks);
     scale_.push_back({looked_at[s], basis, merit_form(basis, looked_at[s].bias)});
   }
   for (std::size_t a = 0; a < scales; ++a)
     for (std::size_t b = 0; b <= a; ++b) {
+      const double fwhm = std::hypot(looked_at[a].pixels, looked_at[b].pixels);
       for (std::size_t k = 0; k < psfs(); ++k) {
-        const Image of_both =
-            convolved_cut(*psf[k], cut, std::hypot(looked_at[a].pixels, looked_at[b].pixels), options.threads);
-        std::vector<float>& kept =
-            kept_.emplace_back(static_cast<std::size_t>(cut.rows() + 2 * margin) * static_cast<std::size_t>(stride_));
-        for (int r = 0; r < of_both.height; ++r)
-          std::copy_n(of_both.row(r), of_both.width, kept.data() + (r + margin) * stride_ + margin);
-        const float* const middle = kept.data() + (margin - first_row_) * stride_ + margin - first_column_;
-        core_[(a * scales + b) * psfs() + k] = core_[(b * scales + a) * psfs() + k] = middle;
+        if (fwhm == 0) {
+          keep(*psf[k], psf[k]->height / 2, psf[k]->width / 2, options.threads);
+        } else {
+          const Placed of_both = convolved(*psf[k], cut, fwhm, options.threads);
+          keep(of_both.image, of_both.row, of_both.column, options.threads);
+        }
+        core_[(a * scales + b) * psfs() + k] = core_[(b * scales + a) * psfs() + k] = middle_of(kept_.back());
       }
       const Strength strength = strength_of(at(a, b, 0, 0, 0));
       const auto in_merit = [&](std::size_t to) {
@@ -102,6 +105,25 @@ ScaledPsf::ScaledPsf(const std::vector<const Image*>& psf, const MultiscaleOptio
       strength_[a * scales + b] = in_merit(b);
       strength_[b * scales + a] = in_merit(a);
     }
+}
+
+void ScaledPsf::keep(const Image& psf, int middle_row, int middle_column, int threads) {
+  const int rows = last_row_ - first_row_ + 1;
+  BigArray<float>& kept = kept_.emplace_back();
+  kept.reserve(static_cast<std::size_t>(rows + 2 * margin) * static_cast<std::size_t>(stride_));
+  parallel_for(static_cast<std::size_t>(rows + 2 * margin), threads, [&](std::size_t at) {
+    const int row = static_cast<int>(at) - margin + first_row_;
+    float* const to = kept.data() + static_cast<std::ptrdiff_t>(at) * stride_;
+    std::fill_n(to, stride_, 0.0F);
+    if (row < first_row_ || row > last_row_) return;
+    const double* const from = psf.row(row + middle_row) + middle_column;
+    for (int c = first_column_; c <= last_column_; ++c)
+      if (!std::isnan(from[c])) to[margin + c - first_column_] = static_cast<float>(from[c]);
+  });
+}
+
+const float* ScaledPsf::middle_of(const BigArray<float>& kept) const {
+  return kept.data() + (margin - first_row_) * stride_ + margin - first_column_;
 }
 
 bool ScaledPsf::reaches(int row, int column) const {

@@ -1,11 +1,13 @@
 #pragma once
 
 #include <cstddef>
+#include <deque>
 #include <vector>
 
 #include "imager/clean/bright_loops.h"
 #include "imager/clean/scales.h"
 #include "imager/data/image.h"
+#include "imager/numerics/big_array.h"
 #include "imager/taylor/taylor_basis.h"
 
 namespace misfit::imager {
@@ -47,8 +49,12 @@ class ScaledPsf {
 
  private:
   std::size_t psfs() const { return static_cast<std::size_t>(2 * terms_ - 1); }
-  void keep_core(const Image& psf, int reach_row, int reach_column);
+  /// As much of an image as is to be known, whose middle pixel lies at that place.
+  void keep(const Image& psf, int middle_row, int middle_column, int threads);
+  const float* middle_of(const BigArray<float>& kept) const;
   Strength strength_of(const float* core) const;
+
+  static constexpr int margin = bright_tile_side;
 
   int terms_;
   int near_tiles_ = 0;
@@ -56,9 +62,9 @@ class ScaledPsf {
   int first_row_ = 0, last_row_ = 0;  ///< of what is known, from the middle
   int first_column_ = 0, last_column_ = 0;
   std::ptrdiff_t stride_ = 0;
-  std::vector<std::vector<float>> kept_;
-  std::vector<const float*> core_;  ///< [from][to][k], their middle
-  std::vector<Strength> strength_;  ///< [from][to]
+  std::deque<BigArray<float>> kept_;  ///< [row + margin][column + margin], beyond what is known 0
+  std::vector<const float*> core_;    ///< [from][to][k], their middle
+  std::vector<Strength> strength_;    ///< [from][to]
 };
 
 }  // namespace misfit::imager
