@@ -91,12 +91,15 @@ class Run {
   const MajorCycle& best() const { return state_.cycles[state_.best]; }
   const Image* mask() const { return o_.automask ? &state_.mask.allowed : o_.mask; }
 
-  /// At the limit of iterations; or at the last depth for the second time, the first having left what sidelobes had hidden.
+  /// At the limit of iterations or of major cycles; or at the last depth for the second time, the first having left what
+  /// sidelobes had hidden.
   bool is_likely_last(const MajorCycle& cycle) const {
     const auto at_last_depth = [this](const MajorCycle& c) {
       return c.cycle_threshold_jy <= last_depth(state_.cycles[c.from]);
     };
-    return cycle.iterations >= o_.max_iterations || (at_last_depth(cycle) && state_.now > 0 && at_last_depth(now()));
+    const bool at_limit = cycle.iterations >= o_.max_iterations ||
+                          (o_.max_major_cycles >= 0 && static_cast<int>(state_.cycles.size()) >= o_.max_major_cycles);
+    return at_limit || (at_last_depth(cycle) && state_.now > 0 && at_last_depth(now()));
   }
 
   /// Makes the residual exact where it was not. Returns whether it was.

@@ -64,7 +64,7 @@ class RunPlanner {
     decide_columns();
     decide("columns and correlations", "only what Stokes " + o_.stokes + " needs",
            "UVW, antennas, flags, weights and one data column, each read once");
-    if (o_.clean.runs()) decide_psf_patch();
+    if (o_.clean.runs()) decide_clean();
     warn_of_neglected_w();
   }
 
@@ -75,8 +75,14 @@ class RunPlanner {
     plan_.decisions.push_back({item, decision, because});
   }
 
-  /// How much of the PSF minor cycles subtract.
-  void decide_psf_patch() {
+  /// How much of the PSF minor cycles subtract, and how exactly major cycles do.
+  void decide_clean() {
+    const std::string asked = significant(o_.gridding.accuracy, 3);
+    if (o_.gridding.kernel_width == 0 && o_.gridding.padding == 0)
+      decide("residuals", "the last to " + asked + ", those before as exactly as the next depth takes",
+             "their errors are at most a fiftieth of the depth to which components are then found; the report has each accuracy");
+    else
+      decide("residuals", "all alike", "kernel or padding were given");
     decide("PSF patch", "none, the whole PSF",
            "components are taken off bright pixels alone, of which there are few; at the threshold, off all");
   }

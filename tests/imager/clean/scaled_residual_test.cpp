@@ -93,8 +93,8 @@ double largest_difference(const ScaledResidual& left, std::size_t scale, std::si
 
 }  // namespace
 
-BOOST_DATA_TEST_CASE(each_scale_is_the_residual_convolved_with_its_gaussian, bdata::make({150, 161, 96}) ^ bdata::make({120, 97, 200}),
-                     width, height) {
+BOOST_DATA_TEST_CASE(each_scale_is_the_residual_convolved_with_its_gaussian,
+                     bdata::make({150, 161, 96}) ^ bdata::make({120, 97, 200}), width, height) {
   const Scene scene(width, height, 2, {0, 2.5, 11, 23});
   ScaledResidual left = scene.left();
   ComponentModel model(width, height, scene.options.scale_pixels);
@@ -139,7 +139,11 @@ BOOST_DATA_TEST_CASE(bright_places_lose_what_the_residual_loses, bdata::make({1,
     const BrightPlaces::Place at = bright.brightest();
     const TaylorValues coefficient{0.9 * at.residual[0], terms > 1 ? -0.3 : 0, terms > 2 ? 0.2 : 0};
     bright.subtract(at, coefficient);
-    model.add({{0, at.row, at.column, coefficient[0] * left.unit_jy(), {coefficient[1] * left.unit_jy(), coefficient[2] * left.unit_jy()}}});
+    model.add({{0,
+                at.row,
+                at.column,
+                coefficient[0] * left.unit_jy(),
+                {coefficient[1] * left.unit_jy(), coefficient[2] * left.unit_jy()}}});
   }
   BOOST_TEST(bright.outstanding() > 0);
   BOOST_REQUIRE(bright.subtract_outstanding());
@@ -149,7 +153,8 @@ BOOST_DATA_TEST_CASE(bright_places_lose_what_the_residual_loses, bdata::make({1,
   for (std::size_t t = 0; t < should.size(); ++t)
     BOOST_TEST(std::abs(left.unit_jy() * at.residual[t] - should[t].at(at.row, at.column)) < 1e-4);
   const TaylorBasis& basis = scene.scaled.scales().front().basis;
-  BOOST_TEST(std::abs(left.unit_jy() * bright.point_brightness() - largest_magnitude(brightness(basis, pointers(should), 2))) < 1e-3);
+  BOOST_TEST(std::abs(left.unit_jy() * bright.point_brightness() - largest_magnitude(brightness(basis, pointers(should), 2))) <
+             1e-3);
 }
 
 /// A component of one scale is taken off places of all.
@@ -160,8 +165,8 @@ BOOST_AUTO_TEST_CASE(bright_places_of_all_scales_lose_a_component) {
   for (int i = 0; i < 30; ++i) {
     const BrightPlaces::Place at = bright.brightest();
     const LookedAt& scale = scene.scaled.scales()[at.scale].looked_at;
-    const TaylorValues coefficient = scene.scaled.scales()[at.scale].basis.coefficients(
-        scene.scaled.scales()[at.scale].basis.coordinates(at.residual));
+    const TaylorValues coefficient =
+        scene.scaled.scales()[at.scale].basis.coefficients(scene.scaled.scales()[at.scale].basis.coordinates(at.residual));
     bright.subtract(at, coefficient);
     ComponentModel model(300, 280, scene.options.scale_pixels);
     model.add({{scale.index, at.row, at.column, coefficient[0] * left.unit_jy(), {coefficient[1] * left.unit_jy()}}});

@@ -26,7 +26,7 @@ imager::CleanState some_state() {
   for (const std::size_t i : {0U, 1U, 8U, 33U, 34U}) state.mask.allowed.pixel[i] = 1;
   state.mask.negative.pixel[8] = 1;
   state.cycles = {{0, 3, 0.3, 0, 0, "", 9, 0},
-                  {10, 1.0 / 3, 0.1, 5, 0.5, "reached its depth", 1, 0, 0.4, 33, {0.2, true, 5, 3, 4, 2, 1, 9}}};
+                  {10, 1.0 / 3, 0.1, 5, 0.5, "reached its depth", 1, 1e-3, 0, 0.4, 33, {0.2, true, 5, 3, 4, 2, 1, 9}}};
   state.cycles[0].rms_jy = std::numeric_limits<double>::quiet_NaN();
   state.now = 1;
   state.best = 1;
@@ -82,6 +82,7 @@ BOOST_AUTO_TEST_CASE(a_state_comes_back_bit_for_bit) {
   BOOST_TEST(is.cycles[1].peak_residual_jy == was.cycles[1].peak_residual_jy);
   BOOST_TEST(is.cycles[1].ended == was.cycles[1].ended);
   BOOST_TEST(is.cycles[1].mean_square_jy2 == was.cycles[1].mean_square_jy2);
+  BOOST_TEST(is.cycles[1].accuracy == was.cycles[1].accuracy);
   BOOST_TEST((is.cycles[1].peak_anywhere_jy == 0.4 && is.cycles[1].mask_pixels == 33));
   BOOST_TEST((is.now == 1 && is.best == 1 && is.tightened == 2 && is.found_nothing));
 }
