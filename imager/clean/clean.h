@@ -80,6 +80,7 @@ struct CleanState {
   std::size_t now = 0;             ///< the cycle whose model is `model`: the last unless it was taken back
   std::size_t best = 0;            ///< the cycle whose model is `best_model`
   bool found_nothing = false;      ///< the last minor cycle did
+  std::size_t exact_from = 0;      ///< coarser transforms misled it before this cycle, and are not taken since; 0 = they are
   int tightened = 0;               ///< how often the depth was made less since the residual grew
 };
 
@@ -146,8 +147,8 @@ CleanState first_state(const ComponentModel& model);
 /// square, the result is that of the best.
 ///
 /// A residual from which minor cycles are to go on is made by the least exact of the transforms whose error, by theory, is at
-/// most a fiftieth of the depth to which they will go. One that ends CLEAN is made anew as exactly as was asked; then it is
-/// seen whether it does.
+/// most a fiftieth of the depth to which they will go. One that ends CLEAN is made anew as exactly as was asked; where that
+/// does not end it, and where a residual grew, all that follow are made so, since sources outside the image may err by more.
 ///
 /// Stages timed: "minor cycles", "statistics", and those of make_residual_image. Throws std::runtime_error when a PSF or a
 /// residual is not finite, std::invalid_argument unless terms, images and `minor` agree.

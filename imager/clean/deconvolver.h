@@ -21,9 +21,8 @@ struct DeconvolverChoice {
 
 std::vector<std::string> deconvolver_names();
 
-/// Makes the minor cycle of a PSF, or of the spectral PSFs P_k [k] of several Taylor terms. For those it is MultiTerm, of
-/// points or of the scales of multiscale. Throws std::invalid_argument when there is none of that name, or it refuses the
-/// scales.
+/// Makes the minor cycle of a PSF, or of the spectral PSFs P_k [k] of several Taylor terms. Throws std::invalid_argument when
+/// there is none of that name, or it refuses the scales.
 std::unique_ptr<MinorCycle> make_deconvolver(const DeconvolverChoice& choice, const std::vector<const Image*>& psf);
 
 }  // namespace misfit::imager

@@ -5,6 +5,7 @@
 
 #include "imager/clean/bright_places.h"
 #include "imager/clean/components.h"
+#include "imager/clean/finite_images.h"
 #include "imager/numerics/parallel.h"
 
 namespace misfit::imager {
@@ -38,21 +39,24 @@ class BrightnessCount {
   std::vector<std::size_t> count_;
 };
 
-/// Calls visit(scale, brightness of each place of a row [column]) for the rows of all scales; rows are shared among threads by
-/// pieces, whose number is told.
+/// Calls visit(piece, scale, merit of each place of a row [column]) for the rows of all scales. Threads share pieces of rows.
+constexpr int rows_a_piece = 64;
+
+std::size_t pieces_of(const ScaledResidual& residual) {
+  return static_cast<std::size_t>((residual.height() + rows_a_piece - 1) / rows_a_piece);
+}
+
 template <typename Visit>
 void for_each_row(const ScaledResidual& residual, const ScaledPsf& psf, int threads, const Visit& visit) {
-  constexpr int rows_together = 64;
   const auto terms = static_cast<std::size_t>(psf.terms());
-  const int pieces = (residual.height() + rows_together - 1) / rows_together;
-  parallel_for(static_cast<std::size_t>(pieces), threads, [&](std::size_t piece) {
+  parallel_for(pieces_of(residual), threads, [&](std::size_t piece) {
     std::vector<float> merit;
     for (std::size_t s = 0; s < psf.scales().size(); ++s) {
       const ScaledResidual::Plane& plane = residual.plane(s);
       const MeritForm& form = psf.scales()[s].form;
       merit.resize(static_cast<std::size_t>(plane.width));
-      const int first = static_cast<int>(piece) * rows_together / plane.step;
-      for (int r = first; r < std::min(plane.height, first + rows_together / plane.step); ++r) {
+      const int first = static_cast<int>(piece) * rows_a_piece / plane.step;
+      for (int r = first; r < std::min(plane.height, first + rows_a_piece / plane.step); ++r) {
         std::fill(merit.begin(), merit.end(), 0.0F);
         for (std::size_t a = 0; a < terms; ++a)
           for (int c = 0; c < plane.width; ++c) {
@@ -66,15 +70,11 @@ void for_each_row(const ScaledResidual& residual, const ScaledPsf& psf, int thre
   });
 }
 
-constexpr int most_pieces(int height) {
-  return (height + 63) / 64;
-}
-
 Brightness brightness_of(const ScaledResidual& residual, const ScaledPsf& psf, int threads) {
   struct Merits {
     float point = 0, best = 0;
   };
-  std::vector<Merits> of_piece(static_cast<std::size_t>(most_pieces(residual.height())));
+  std::vector<Merits> of_piece(pieces_of(residual));
   for_each_row(residual, psf, threads, [&](std::size_t piece, std::size_t scale, const std::vector<float>& merit) {
     float most = 0;
     for (const float m : merit) most = m > most ? m : most;
@@ -91,8 +91,7 @@ Brightness brightness_of(const ScaledResidual& residual, const ScaledPsf& psf, i
 double level_for(const ScaledResidual& residual, const ScaledPsf& psf, double lowest, double highest, std::size_t most,
                  int threads) {
   if (!(highest > lowest)) return lowest;
-  std::vector<BrightnessCount> of_piece(static_cast<std::size_t>(most_pieces(residual.height())),
-                                        BrightnessCount(lowest, highest));
+  std::vector<BrightnessCount> of_piece(pieces_of(residual), BrightnessCount(lowest, highest));
   const auto least_merit = static_cast<float>(lowest * lowest);
   for_each_row(residual, psf, threads, [&](std::size_t piece, std::size_t, const std::vector<float>& merit) {
     for (const float m : merit)
@@ -103,12 +102,17 @@ double level_for(const ScaledResidual& residual, const ScaledPsf& psf, double lo
   return all.level_of(most);
 }
 
-/// Finds components among bright places until none exceeds `stop`, or what others may have become by now. Returns the points'
-/// brightness.
-double find_among(BrightPlaces& bright, const ScaledPsf& psf, const MinorCycleOptions& o, double unit_jy, double stop,
-                  double stop_at_any, const MinorCycleWatch& watch, MinorCycleReport& report) {
+/// How far down components are found: until no point is brighter, where that is not 0, or no place is.
+struct Depth {
+  double points;
+  double any;
+};
+
+/// Finds components among bright places to a depth, or until others may have become as bright. Returns the points' brightness.
+double find_among(BrightPlaces& bright, const ScaledPsf& psf, const MinorCycleOptions& o, double unit_jy, const Depth& depth,
+                  const MinorCycleWatch& watch, MinorCycleReport& report) {
   constexpr double bearable = 0.2;
-  const double first = bright.point_brightness();
+  const double first = bright.brightness();
   do {
     const BrightPlaces::Place at = bright.brightest();
     const ScaledPsf::Scale& scale = psf.scales()[at.scale];
@@ -120,18 +124,25 @@ double find_among(BrightPlaces& bright, const ScaledPsf& psf, const MinorCycleOp
     report.components.push_back(component);
     bright.subtract(at, coefficient);
     if (bright.outstanding() > bearable * bright.brightness() && !bright.subtract_outstanding()) break;
-  } while (bright.point_brightness() > stop && bright.brightness() > std::max(stop_at_any, bright.of_others()) &&
-           bright.point_brightness() <= minor_cycle_divergence * first && !watch.is_at_limit(report));
+  } while ((depth.points == 0 || bright.point_brightness() > depth.points) &&
+           bright.brightness() > std::max(depth.any, bright.of_others()) &&
+           bright.brightness() <= minor_cycle_divergence * first && !watch.is_at_limit(report));
   return bright.point_brightness();
+}
+
+const MultiscaleOptions& checked(const std::vector<const Image*>& psf, const MultiscaleOptions& options) {
+  check_scales(options);
+  for (const Image* image : psf) require_finite_psf(*image);
+  return options;
 }
 
 }  // namespace
 
 JointClean::JointClean(const std::vector<const Image*>& psf, const MultiscaleOptions& options)
     : MinorCycle(*psf.front(), static_cast<int>(psf.size() + 1) / 2),
-      options_((check_scales(options), options)),
+      options_(checked(psf, options)),
       psf_(psf, options),
-      fft_(psf, scales_looked_at(options), options.threads) {}
+      fft_(psf, psf_.looked_at(), options.threads) {}
 
 MinorCycleReport JointClean::find(const std::vector<const Image*>& residual, const MinorCycleOptions& o) const {
   constexpr double as_good_as = 1.005;  // a convolution costs as much for the last pixels as for the first
@@ -159,8 +170,15 @@ MinorCycleReport JointClean::find(const std::vector<const Image*>& residual, con
     const double level = level_for(left, psf_, target / deep, now.brightest, most, options_.threads);
     const auto before = static_cast<std::ptrdiff_t>(report.components.size());
     BrightPlaces bright(left, psf_, level, options_.threads);
-    const double peak = find_among(bright, psf_, o, unit, std::max(threshold, level), points ? level : target, watch, report);
-    if (!o.to_the_last && peak <= threshold) {
+    if (bright.brightness() == 0) {
+      report.end = MinorCycleEnd::no_place;
+      break;
+    }
+    // Points end it only where all that exceed the threshold are in view.
+    const bool sees_points = level <= threshold;
+    const double peak = find_among(bright, psf_, o, unit,
+                                   {sees_points ? threshold : 0, points ? level : std::max(level, target)}, watch, report);
+    if (!o.to_the_last && sees_points && peak <= threshold) {
       report.peak_jy = peak * unit;
       report.end = MinorCycleEnd::threshold;
       break;

@@ -72,16 +72,22 @@ class Run {
       keep(std::move(start));
     }
     cycle_progress(state_);
-    bool kept_best = false;
-    do {
+    while (true) {
       while (!(end_ = ending())) {
         one_cycle();
         cycle_progress(state_);
       }
-      kept_best = is_worse_than_best();
-      if (kept_best) return_to_best();
-    } while (!is_exact());
-    if (kept_best) end_->reason += "; the best model was kept";
+      if (is_worse_than_best()) {
+        return_to_best();
+        make_exact();
+        end_->reason += "; the best model was kept";
+        break;
+      }
+      if (now().accuracy == exact) break;
+      make_exact();
+      stay_exact();
+      if ((end_ = ending())) break;
+    }
     sharer_.end();
     return result();
   }
@@ -91,32 +97,34 @@ class Run {
   const MajorCycle& best() const { return state_.cycles[state_.best]; }
   const Image* mask() const { return o_.automask ? &state_.mask.allowed : o_.mask; }
 
-  /// At the limit of iterations or of major cycles; or at the last depth for the second time, the first having left what
-  /// sidelobes had hidden.
+  /// At the limit of iterations, or at the last depth for the second time, the first having left what sidelobes had hidden.
   bool is_likely_last(const MajorCycle& cycle) const {
     const auto at_last_depth = [this](const MajorCycle& c) {
       return c.cycle_threshold_jy <= last_depth(state_.cycles[c.from]);
     };
-    const bool at_limit = cycle.iterations >= o_.max_iterations ||
-                          (o_.max_major_cycles >= 0 && static_cast<int>(state_.cycles.size()) >= o_.max_major_cycles);
-    return at_limit || (at_last_depth(cycle) && state_.now > 0 && at_last_depth(now()));
+    return cycle.iterations >= o_.max_iterations || (at_last_depth(cycle) && state_.now > 0 && at_last_depth(now()));
   }
 
-  /// Makes the residual exact where it was not. Returns whether it was.
-  bool is_exact() {
+  /// From here on no coarser transforms are taken, and what they had left does not count against CLEAN.
+  void stay_exact() {
+    if (state_.exact_from == 0) state_.exact_from = state_.cycles.size();
+    state_.tightened = 0;
+  }
+
+  /// Makes the residual, and what was measured of it, as exact as any.
+  void make_exact() {
     MajorCycle& cycle = state_.cycles[state_.now];
-    if (cycle.accuracy == exact) return true;
+    if (cycle.accuracy == exact) return;
     make_residual(exact);
     cycle.accuracy = exact;
     measure(cycle);
-    return false;
   }
 
   /// How exact the residual of a model must be for minor cycles that follow one of this depth: its error shall be a small part
   /// of theirs. It is in proportion to images of the data and of the model as if their phases were random.
   double accuracy_for_next(double depth_jy) const {
-    constexpr double small = 0.02;
-    const double next = std::max(depth_fraction() * depth_jy, last_depth(now()));
+    constexpr double small = 0.02, less_noise = 0.5;  // the noise falls as sources go
+    const double next = std::max(depth_fraction() * depth_jy, less_noise * last_depth(now()));
     double square = 0;
     for (const Component& c : state_.model.components()) square += c.flux_jy * c.flux_jy;
     const double visibilities_jy = std::max(input_.data_jy, std::sqrt(square));
@@ -243,11 +251,13 @@ class Run {
   /// Whether one of the last cycles left a smaller peak, or less power, than all before them.
   bool progresses() const {
     const std::vector<MajorCycle>& cycles = state_.cycles;
-    if (cycles.size() <= patience) return true;
+    const std::size_t since = state_.exact_from == 0 ? 0 : state_.exact_from - 1;
+    if (cycles.size() - since <= patience) return true;
+    const auto first = cycles.begin() + static_cast<std::ptrdiff_t>(since);
     const auto recent = cycles.end() - static_cast<std::ptrdiff_t>(patience);
     const auto fell = [&](double MajorCycle::*what) {
       const auto less = [what](const MajorCycle& a, const MajorCycle& b) { return a.*what < b.*what; };
-      return (*std::min_element(recent, cycles.end(), less)).*what < (*std::min_element(cycles.begin(), recent, less)).*what;
+      return (*std::min_element(recent, cycles.end(), less)).*what < (*std::min_element(first, recent, less)).*what;
     };
     return fell(&MajorCycle::peak_residual_jy) || fell(&MajorCycle::mean_square_jy2);
   }
@@ -263,11 +273,14 @@ class Run {
   double last_depth(const MajorCycle& begun) const { return std::max(o_.threshold_jy, 0.95 * o_.nsigma * begun.rms_jy); }
 
   void one_cycle() {
+    constexpr double hardly_less = 0.9;
     MajorCycle cycle;
     cycle.cycle_threshold_jy = cycle_threshold();
     const int left = o_.max_iterations - now().iterations;
+    bool reached_depth = false;
     {
       const StageTimer timer(context_.times, stage::minor_cycles);
+      BigMemory::release();
       const MinorCycleReport found =
           minor_.clean(residuals_, {.gain = o_.gain,
                                     .max_iterations = o_.cycle_iterations < 0 ? left : std::min(left, o_.cycle_iterations),
@@ -278,10 +291,17 @@ class Run {
       state_.found_nothing = found.components.empty();
       cycle.iterations = now().iterations + found.iterations();
       cycle.ended = description(found.end);
+      reached_depth = found.end == MinorCycleEnd::threshold;
       state_.model.add(found.components);
     }
     cycle.from = state_.now;
-    cycle.accuracy = make_residual(is_likely_last(cycle) ? exact : accuracy_for_next(cycle.cycle_threshold_jy));
+    cycle.accuracy =
+        make_residual(state_.exact_from != 0 || is_likely_last(cycle) ? exact : accuracy_for_next(cycle.cycle_threshold_jy));
+    // What is as bright as before, although it was taken off, may be of the transform's making.
+    if (cycle.accuracy != exact && reached_depth && peak_within_mask() > hardly_less * now().peak_residual_jy) {
+      stay_exact();
+      cycle.accuracy = make_residual(exact);
+    }
     judge(std::move(cycle));
   }
 
@@ -318,7 +338,10 @@ class Run {
   void take_back(MajorCycle cycle) {
     cycle.ended += "; the residual grew, taken back";
     state_.cycles.push_back(std::move(cycle));
-    ++state_.tightened;
+    if (state_.exact_from == 0 && !input_.coarser.empty())
+      stay_exact();
+    else
+      ++state_.tightened;
     return_to_best();
   }
 

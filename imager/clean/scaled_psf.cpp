@@ -69,8 +69,16 @@ int near_tiles_of(double largest_scale_pixels) {
 
 ScaledPsf::ScaledPsf(const std::vector<const Image*>& psf, const MultiscaleOptions& options)
     : terms_(static_cast<int>(psf.size() + 1) / 2), near_tiles_(near_tiles_of(options.scale_pixels.back())) {
-  const std::vector<LookedAt> looked_at = scales_looked_at(options);
-  const std::size_t scales = looked_at.size();
+  constexpr double least_peak = 1e-4;
+  for (const LookedAt& scale : scales_looked_at(options)) {
+    std::vector<double> peaks;
+    for (const Image* image : psf) peaks.push_back(peak_of(*image, std::sqrt(2.0) * scale.pixels, options.threads));
+    if (!scale_.empty() && !(peaks.front() > least_peak * scale_.front().basis.peak())) continue;
+    const TaylorBasis basis(peaks);
+    scale_.push_back({scale, basis, merit_form(basis, scale.bias)});
+  }
+  const std::vector<LookedAt> looked_at = this->looked_at();
+  const std::size_t scales = scale_.size();
   Cut cut = whole(*psf.front());
   const int reach = (near_tiles_ + 1) * bright_tile_side;
   if (scales > 1) cut = cut.within({-reach, reach, -reach, reach});
@@ -79,12 +87,6 @@ ScaledPsf::ScaledPsf(const std::vector<const Image*>& psf, const MultiscaleOptio
   stride_ = cut.columns() + 2 * margin;
   core_.resize(scales * scales * psfs());
   strength_.resize(scales * scales);
-  for (std::size_t s = 0; s < scales; ++s) {
-    std::vector<double> peaks;
-    for (const Image* image : psf) peaks.push_back(peak_of(*image, std::sqrt(2.0) * looked_at[s].pixels, options.threads));
-    const TaylorBasis basis(peaks);
-    scale_.push_back({looked_at[s], basis, merit_form(basis, looked_at[s].bias)});
-  }
   for (std::size_t a = 0; a < scales; ++a)
     for (std::size_t b = 0; b <= a; ++b) {
       const double fwhm = std::hypot(looked_at[a].pixels, looked_at[b].pixels);
@@ -105,6 +107,12 @@ ScaledPsf::ScaledPsf(const std::vector<const Image*>& psf, const MultiscaleOptio
       strength_[a * scales + b] = in_merit(b);
       strength_[b * scales + a] = in_merit(a);
     }
+}
+
+std::vector<LookedAt> ScaledPsf::looked_at() const {
+  std::vector<LookedAt> result;
+  for (const Scale& scale : scale_) result.push_back(scale.looked_at);
+  return result;
 }
 
 void ScaledPsf::keep(const Image& psf, int middle_row, int middle_column, int threads) {

@@ -24,7 +24,9 @@ class ScaledPsf {
     TaylorBasis basis;  ///< of the PSFs convolved twice with it
     MeritForm form;     ///< of the merit bias · Rᵀ H⁻¹ R
   };
+  /// All but those of which the PSF, convolved twice, leaves less than 1e-4 of its peak: the array does not see them.
   const std::vector<Scale>& scales() const { return scale_; }
+  std::vector<LookedAt> looked_at() const;
   int terms() const { return terms_; }
 
   /// How many tiles away it is known at least.

@@ -2,8 +2,6 @@
 
 #include <vector>
 
-#include "imager/data/image.h"
-
 namespace misfit::imager {
 
 struct MultiscaleOptions {

@@ -32,7 +32,9 @@ MinorMemory minor_memory(double pixels, int scales, int terms) {
   memory.kept = psfs * spectrum * image_bytes * pixels;
   memory.kept += psfs * (scales == 1 ? pixels * image_bytes / 2 : scales * (scales + 1) / 2 * core_bytes);
   const double model = scales == 1 ? 0 : 1;
-  memory.passing = (terms * scales / 2. + (terms + 1) * half_spectrum + model) * image_bytes * pixels;
+  // Bright places, as they are found and in the order of tiles, with room to grow.
+  const double places = std::max(65536., pixels / 128), place_bytes = 3 * (12 + 4 * terms);
+  memory.passing = (terms * scales / 2. + (terms + 1) * half_spectrum + model) * image_bytes * pixels + places * place_bytes;
   return memory;
 }
 

@@ -26,7 +26,7 @@ struct MemoryDemand {
   int stokes = 1;            ///< Stokes parameters; each has its visibilities and its dirty image
   bool verify = false;
   int terms = 1;             ///< Taylor terms; more than one of one Stokes parameter alone
-  int clean_scales = 0;      ///< of its components; 0 = no CLEAN
+  int clean_scales = 0;      ///< that minor cycles look at; 0 = no CLEAN
   bool mask = false;         ///< where components may lie
   bool start_model = false;  ///< that CLEAN begins with
   bool density = false;      ///< from which weights follow

@@ -29,7 +29,7 @@ std::vector<std::vector<StackTask>> tasks_of(const StackOrder& order, const Stac
   const auto at = [&](std::size_t i) { return order.run.begin() + static_cast<std::ptrdiff_t>(i); };
   const auto index = [&](auto run) { return static_cast<std::size_t>(run - order.run.begin()); };
   const auto below = [](const StackRun& run, int plane) { return run.plane < plane; };
-  for (const PlaneRange& range : slab.ranges()) {
+  for (const StackPlanes& range : slab.ranges()) {
     const std::size_t first_colour = colours.size();
     colours.resize(first_colour + 4);
     const int range_end = range.first + range.planes;

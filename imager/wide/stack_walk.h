@@ -12,7 +12,7 @@
 namespace misfit::imager {
 
 /// Neighbouring planes.
-struct PlaneRange {
+struct StackPlanes {
   int first = 0;
   int planes = 0;
 };
@@ -23,7 +23,7 @@ struct Slab {
   int pairs = 0;
 
   /// The one or two ranges of planes that it consists of.
-  std::vector<PlaneRange> ranges() const {
+  std::vector<StackPlanes> ranges() const {
     if (first == 0) return {{-pairs, 2 * pairs}};
     return {{-first - pairs, pairs}, {first, pairs}};
   }
@@ -37,7 +37,7 @@ struct StackTask {
   int tile_v;
   std::size_t begin;
   std::size_t end;
-  PlaneRange planes;
+  StackPlanes planes;
 };
 
 /// The pairs of planes that hold anything, at most so many at a time.

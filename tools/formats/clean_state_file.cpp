@@ -230,7 +230,10 @@ imager::CleanState unpacked_state(const json& file, const imager::ComponentModel
   state.best = whole<std::size_t>(file, "best");
   state.tightened = whole<int>(file, "tightened");
   state.found_nothing = file.at("found_nothing");
-  if (state.now >= state.cycles.size() || state.best >= state.cycles.size())
+  state.exact_from = file.contains("exact_from") ? whole<std::size_t>(file, "exact_from") : 0;
+  const auto is_beyond = [&](std::size_t cycle) { return cycle >= state.cycles.size(); };
+  if (is_beyond(state.now) || is_beyond(state.best) || state.exact_from > state.cycles.size() ||
+      std::any_of(state.cycles.begin(), state.cycles.end(), [&](const imager::MajorCycle& c) { return is_beyond(c.from); }))
     throw std::invalid_argument("it names major cycles that are not in it");
   return state;
 }
@@ -329,6 +332,7 @@ void write_clean_state(const std::string& path, const imager::CleanState& state,
                {"final_mask", state.mask.final},
                {"cycles", json::array()},
                {"now", state.now},
+               {"exact_from", state.exact_from},
                {"best", state.best},
                {"tightened", state.tightened},
                {"found_nothing", state.found_nothing}};

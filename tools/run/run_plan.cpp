@@ -5,6 +5,7 @@
 #include <functional>
 #include <optional>
 
+#include "imager/clean/scales.h"
 #include "imager/outside/wide_search.h"
 #include "tools/base/memory.h"
 #include "tools/base/numbers.h"
@@ -75,12 +76,17 @@ class RunPlanner {
     plan_.decisions.push_back({item, decision, because});
   }
 
+  std::vector<imager::LookedAt> scales_looked_at() const {
+    return imager::scales_looked_at({deconvolver_choice(o_.clean, 1).scale_pixels});
+  }
+
   /// How much of the PSF minor cycles subtract, and how exactly major cycles do.
   void decide_clean() {
     const std::string asked = significant(o_.gridding.accuracy, 3);
     if (o_.gridding.kernel_width == 0 && o_.gridding.padding == 0)
-      decide("residuals", "the last to " + asked + ", those before as exactly as the next depth takes",
-             "their errors are at most a fiftieth of the depth to which components are then found; the report has each accuracy");
+      decide(
+          "residuals", "the last to " + asked + ", those before as exactly as the next depth takes",
+          "their errors are at most a fiftieth of the depth to which components are then found; the report has each accuracy");
     else
       decide("residuals", "all alike", "kernel or padding were given");
     decide("PSF patch", "none, the whole PSF",
@@ -160,7 +166,7 @@ class RunPlanner {
             .stokes = gridding.request.stokes,
             .verify = o_.verify > 0,
             .terms = o_.taylor.nterms,
-            .clean_scales = o_.clean.runs() ? std::max(1, static_cast<int>(o_.clean.scales.size())) : 0,
+            .clean_scales = o_.clean.runs() ? static_cast<int>(scales_looked_at().size()) : 0,
             .mask = scene_.mask,
             .start_model = !o_.clean.startmodel.empty(),
             .density = weighting_options(o_.weighting).needs_density(),

@@ -162,6 +162,53 @@ BOOST_AUTO_TEST_CASE(residuals_that_steer_are_made_by_coarser_transforms) {
   }
 }
 
+/// The images of a transform with a point that is not there, as an alias from outside would be.
+class Haunted : public Transform {
+ public:
+  explicit Haunted(const Transform& transform) : transform_(transform) {}
+  std::unique_ptr<AdjointSum> adjoint(const AdjointOptions& options) const override {
+    return std::make_unique<Sum>(transform_.adjoint(options), options);
+  }
+  std::unique_ptr<Prediction> predict(const Image& model) const override { return transform_.predict(model); }
+
+ private:
+  class Sum : public AdjointSum {
+   public:
+    Sum(std::unique_ptr<AdjointSum> sum, const AdjointOptions& options) : AdjointSum(options), sum_(std::move(sum)) {}
+    AdjointResult finish() override {
+      AdjointResult result = sum_->finish();
+      const Image& psf = scene().images.psf;
+      Image& image = result.images.front();
+      for (int r = 0; r < image.height; ++r)
+        for (int c = 0; c < image.width; ++c) {
+          const int row = r - 60 + psf.height / 2, column = c - 40 + psf.width / 2;
+          if (row >= 0 && row < psf.height && column >= 0 && column < psf.width)
+            image.at(r, c) += 0.05 * result.sums.front().weight * psf.at(row, column);
+        }
+      return result;
+    }
+
+   private:
+    void add_sets(const VisibilityBlock& block, const VisibilitySets& sets) override { sum_->add(block, sets); }
+    std::unique_ptr<AdjointSum> sum_;
+  };
+  const Transform& transform_;
+};
+
+BOOST_AUTO_TEST_CASE(transforms_that_mislead_it_are_not_asked_again) {
+  Scene misled = make_scene({});
+  for (CoarserTransform& coarser : misled.coarser)
+    coarser.transform =
+        std::make_shared<Haunted>(*scene().coarser[static_cast<std::size_t>(&coarser - misled.coarser.data())].transform);
+  const CleanResult result = cleaned(misled, deep(), misled.images);
+  BOOST_TEST((result.report.stop == CleanStop::threshold));
+  check_consistent(result);
+  double ghost = 0;
+  for (int r = 58; r <= 62; ++r)
+    for (int c = 38; c <= 42; ++c) ghost += result.model.at(r, c);
+  BOOST_TEST(std::abs(ghost) < 2 * 0.01);
+}
+
 BOOST_AUTO_TEST_CASE(a_residual_within_a_hundredth_of_the_threshold_has_reached_it) {
   CleanOptions options = deep();
   const double peak = peak_magnitude(scene().images.dirty[0]);

@@ -119,6 +119,42 @@ BOOST_AUTO_TEST_CASE(wide_components_keep_off_edges_and_masks) {
   }
 }
 
+/// More places of wide scales are brighter than any point than are looked at together.
+BOOST_AUTO_TEST_CASE(what_fills_the_image_is_cleaned_to_the_threshold) {
+  constexpr int wide = 512;
+  Image point(wide, wide), sky(wide, wide);
+  point.at(wide / 2, wide / 2) = sky.at(wide / 2, wide / 2) = 1;
+  Image beam = gaussian_blur(point, beam_pixels, 2), dirty = gaussian_blur(sky, 300, 2);
+  for (Image* image : {&beam, &dirty}) {
+    const double peak = image->at(wide / 2, wide / 2);
+    for (double& pixel : image->pixel) pixel /= peak;
+  }
+  const JointClean minor({&beam}, {.scale_pixels = {0, 5, 20}, .threads = 2});
+  const MinorCycleReport report = minor.clean(
+      dirty, {.gain = 0.2, .max_iterations = 100000, .threshold_jy = 0.1, .to_the_last = false, .stop_requested = {}});
+  BOOST_TEST((report.end == MinorCycleEnd::threshold));
+  ComponentModel model(wide, wide, minor.scale_pixels());
+  model.add(report.components);
+  subtract(imager::Convolution<double>(beam, 2)(model.image(2)), dirty);
+  BOOST_TEST(largest_magnitude(dirty) < 0.15);
+  BOOST_TEST(report.peak_jy > 0.05);
+}
+
+/// The PSF of an array without short baselines leaves nothing of a wide Gaussian but its own errors.
+BOOST_AUTO_TEST_CASE(a_scale_that_the_array_does_not_see_is_left_out) {
+  Image beam = psf();
+  subtract(gaussian_blur(beam, 30, 2), beam);
+  const double peak = beam.at(side / 2, side / 2);
+  for (double& pixel : beam.pixel) pixel /= peak;
+  Image sky(side, side);
+  sky.at(125, 131) = 1;
+  const JointClean minor({&beam}, {.scale_pixels = {0, 6, 120}, .threads = 2});
+  const MinorCycleReport report =
+      minor.clean(observed(sky, beam, 1e-4), {.gain = 0.2, .max_iterations = 1000, .threshold_jy = 0.01, .stop_requested = {}});
+  BOOST_TEST((report.end == MinorCycleEnd::threshold));
+  for (const Component& c : report.components) BOOST_TEST(c.scale < 2);
+}
+
 /// Without points in the list, nothing can be done about a source at the border; nor is it tried for ever.
 BOOST_AUTO_TEST_CASE(what_no_scale_can_reach_ends_it) {
   Image sky(side, side);

@@ -31,6 +31,7 @@ imager::CleanState some_state() {
   state.now = 1;
   state.best = 1;
   state.tightened = 2;
+  state.exact_from = 2;
   state.found_nothing = true;
   return state;
 }

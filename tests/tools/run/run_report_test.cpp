@@ -64,7 +64,8 @@ BOOST_AUTO_TEST_CASE(clean_states_the_cycle_that_was_kept) {
   clean.iterations = 30;
   clean.stop = imager::CleanStop::diverging;
   clean.stop_reason = "it grew";
-  clean.cycles = {{0, 3, 0.3, 0, 0, "", 9, 0}, {10, 1, 0.1, 5, 0.5, "deep enough", 1, 0}, {30, 9, 0.9, 7, 0.2, "", 81, 1e-3, 1}};
+  clean.cycles = {
+      {0, 3, 0.3, 0, 0, "", 9, 0}, {10, 1, 0.1, 5, 0.5, "deep enough", 1, 0}, {30, 9, 0.9, 7, 0.2, "", 81, 1e-3, 1}};
   clean.kept = 1;
   run.channels.front().stokes.front().clean = clean;
   const json report = tools::report_json(run).at("clean");
