@@ -35,6 +35,10 @@ MinorMemory minor_memory(double pixels, int scales, int terms) {
   // Bright places, as they are found and in the order of tiles, with room to grow.
   const double places = std::max(65536., pixels / 128), place_bytes = 3 * (12 + 4 * terms);
   memory.passing = (terms * scales / 2. + (terms + 1) * half_spectrum + model) * image_bytes * pixels + places * place_bytes;
+  // FFTs and planes lie in whole huge pages.
+  constexpr double page = 2 << 20;
+  memory.kept += 2 * psfs * page;
+  memory.passing += (terms * scales + terms + 1) * page;
   return memory;
 }
 
