@@ -11,7 +11,6 @@ namespace misfit::imager::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
 using Tag = hn::CappedTag<float, BrightRange::multiple>;
-using Value = hn::VFromD<Tag>;
 
 /// hn::Max of a number and NaN is its second argument on x86 and the number on Arm.
 template <int terms>

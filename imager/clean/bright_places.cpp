@@ -48,7 +48,6 @@ BrightPlaces::BrightPlaces(const ScaledResidual& residual, const ScaledPsf& psf,
   outstanding_at_.assign(offset_.size(), -1);
 }
 
-/// In whole vectors, so that the loop can tell where there is nothing without a branch for each pixel.
 void BrightPlaces::find(const ScaledResidual& residual, float merit, int tile_row, std::vector<Found>& found) const {
   const auto terms = static_cast<std::size_t>(psf_.terms());
   for (int tile_column = 0; tile_column < tiles_u_; ++tile_column) {

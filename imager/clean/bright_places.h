@@ -12,10 +12,10 @@ namespace misfit::imager {
 
 /// The brightest places of a residual at all its scales, among which components are found without a look at the others. They
 /// lie in tiles; a component is at once taken off those in tiles near it, and off the others when it has become worth their
-/// while. Brightness is √merit, which of points with one Taylor term is the residual's magnitude; in units of the residual.
+/// while. Brightness is √merit in units of the residual: the residual's magnitude where components are points of one term.
 class BrightPlaces {
  public:
-  /// Those of at least this brightness. What is given must outlive this.
+  /// Finds the places of at least this brightness. Residual and PSF must outlive this.
   BrightPlaces(const ScaledResidual& residual, const ScaledPsf& psf, double brightness, int threads);
 
   /// Where the next component is best put.

@@ -14,11 +14,15 @@ void read_row(const Image& image, int row, Real* to) {
 template void read_row<float>(const Image&, int, float*);
 template void read_row<double>(const Image&, int, double*);
 
+namespace {
+
 /// By hand: operator* would look for infinities.
 template <typename Real>
-static std::complex<Real> product(std::complex<Real> a, std::complex<Real> b) {
+std::complex<Real> product(std::complex<Real> a, std::complex<Real> b) {
   return {a.real() * b.real() - a.imag() * b.imag(), a.real() * b.imag() + a.imag() * b.real()};
 }
+
+}  // namespace
 
 template <typename Real>
 void set_products(const std::complex<Real>* a, const std::complex<Real>* b, int count, std::complex<Real>* to) {

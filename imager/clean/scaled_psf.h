@@ -16,7 +16,7 @@ namespace misfit::imager {
 /// Gaussians of both, in single precision. Of points alone the whole PSFs; of several scales what lies near their middle.
 class ScaledPsf {
  public:
-  /// Of PSFs P_k [k]; see MinorCycle. NaN counts as 0.
+  /// Takes PSFs P_k [k]; see MinorCycle. NaN counts as 0.
   ScaledPsf(const std::vector<const Image*>& psf, const MultiscaleOptions& options);
 
   struct Scale {
@@ -29,7 +29,7 @@ class ScaledPsf {
   std::vector<LookedAt> looked_at() const;
   int terms() const { return terms_; }
 
-  /// How many tiles away it is known at least.
+  /// The PSF is known at least so many tiles away.
   int near_tiles() const { return near_tiles_; }
   bool is_whole() const { return scale_.size() == 1; }
 

@@ -14,7 +14,7 @@ namespace misfit::imager {
 /// Fourier transforms by which residuals of several Taylor terms are convolved with scales, and components taken off them.
 class ScaledFft {
  public:
-  /// Of PSFs P_k [k].
+  /// Takes PSFs P_k [k].
   ScaledFft(const std::vector<const Image*>& psf, const std::vector<LookedAt>& scales, int threads);
 
   using Half = PaddedFft<float>::Half;
@@ -37,8 +37,8 @@ class ScaledFft {
   std::vector<std::vector<float>> along_v_;
 };
 
-/// The residuals of all Taylor terms, convolved with each scale, in single precision: NaN where no component may lie. In units
-/// that make the brightest pixel as good as 1.
+/// The residuals of all Taylor terms, convolved with each scale, in single precision: NaN where no component may lie. Its
+/// units make the brightest pixel as good as 1.
 class ScaledResidual {
  public:
   /// `residual` [term]; components may lie where `mask`, if there is one, allows, and no residual is NaN.

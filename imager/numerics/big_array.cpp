@@ -39,16 +39,17 @@ BigMemory::~BigMemory() {
 
 void BigMemory::reserve(std::size_t bytes) {
   if (bytes <= block_.bytes) return;
-  constexpr std::size_t huge_page = std::size_t{1} << 21;
-  const std::size_t whole = (bytes + huge_page - 1) / huge_page * huge_page;
+  constexpr std::size_t huge_page = std::size_t{1} << 21, line = 64;
+  const std::size_t page = bytes < huge_page ? line : huge_page;  // what is small shares pages
+  const std::size_t whole = (bytes + page - 1) / page * page;
   block_ = Block();  // what is too small makes room first
   block_ = spare().take();
   if (whole <= block_.bytes) return;
   block_ = Block();
-  block_.memory.reset(std::aligned_alloc(huge_page, whole));
+  block_.memory.reset(std::aligned_alloc(page, whole));
   if (!block_.memory) throw std::bad_alloc();
   block_.bytes = whole;
-  madvise(block_.memory.get(), whole, MADV_HUGEPAGE);  // a hint: without it small pages serve
+  if (page == huge_page) madvise(block_.memory.get(), whole, MADV_HUGEPAGE);  // a hint: without it small pages serve
 }
 
 void BigMemory::release() {

@@ -33,10 +33,11 @@ MinorMemory minor_memory(double pixels, int scales, int terms) {
   memory.kept += psfs * (scales == 1 ? pixels * image_bytes / 2 : scales * (scales + 1) / 2 * core_bytes);
   const double model = scales == 1 ? 0 : 1;
   // Bright places, as they are found and in the order of tiles, with room to grow.
-  const double places = std::max(65536., pixels / 128), place_bytes = 3 * (12 + 4 * terms);
+  const double places = std::min(pixels * scales, std::max(65536., pixels / 128)), place_bytes = 3 * (12 + 4 * terms);
   memory.passing = (terms * scales / 2. + (terms + 1) * half_spectrum + model) * image_bytes * pixels + places * place_bytes;
-  // FFTs and planes lie in whole huge pages.
-  constexpr double page = 2 << 20;
+  // FFTs and planes that fill a huge page lie in whole ones.
+  constexpr double huge_page = 2 << 20;
+  const double page = image_bytes * pixels < huge_page ? 0 : huge_page;
   memory.kept += 2 * psfs * page;
   memory.passing += (terms * scales + terms + 1) * page;
   return memory;
