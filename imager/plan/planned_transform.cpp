@@ -22,17 +22,22 @@ double residual_cost_s(const GriddingPlan& plan) {
 
 }  // namespace
 
+bool may_be_coarser(const GriddingPlan& plan) {
+  constexpr double worth_s = 0.1;
+  return !plan.direct && plan.request.kernel_width == 0 && plan.request.padding == 0 && residual_cost_s(plan) >= worth_s;
+}
+
 PlannedTransform::PlannedTransform(const GriddingPlan& plan)
     : direct_{plan.options.geometry, true, plan.options.threads}, direct_pixels_(plan.direct_pixels), request_(plan.request) {
   images_ = transform_of(plan, direct_);
   if (plan.psf) psf_ = make_transform(plan.psf->options);
-  if (!plan.direct) residual_cost_s_ = residual_cost_s(plan);
+  if (may_be_coarser(plan)) residual_cost_s_ = residual_cost_s(plan);
 }
 
 const std::vector<CoarserTransform>& PlannedTransform::coarser() const {
   constexpr double pays = 0.85;  // of the cost of the next more exact
   std::call_once(planned_coarser_, [this] {
-    if (residual_cost_s_ == 0 || request_.kernel_width != 0 || request_.padding != 0) return;
+    if (residual_cost_s_ == 0) return;
     GriddingRequest request = request_;
     request.stokes = 1;
     request.psf = false;

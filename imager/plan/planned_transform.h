@@ -10,6 +10,9 @@
 
 namespace misfit::imager {
 
+/// Whether residuals of a plan take so long that coarser ones are worth it, and its kernel and padding were not given.
+bool may_be_coarser(const GriddingPlan& plan);
+
 /// The transform of a plan: gridding and FFTs, or direct sums where the plan found them cheaper.
 class PlannedTransform : public Transform {
  public:
@@ -21,7 +24,7 @@ class PlannedTransform : public Transform {
   /// What makes images, and predicts larger models.
   const Transform& images() const { return *images_; }
   /// Transforms of the same samples for residuals that need not be as exact, and are made in less time: the least exact first.
-  /// None where kernel or padding were given. Planned when they are first asked for.
+  /// None unless may_be_coarser(). Planned when they are first asked for.
   const std::vector<CoarserTransform>& coarser() const;
   /// What makes PSFs: the same, or one of their own.
   const Transform& psf() const { return psf_ ? *psf_ : *images_; }
@@ -32,7 +35,7 @@ class PlannedTransform : public Transform {
   DirectSums direct_;
   std::uint64_t direct_pixels_;
   GriddingRequest request_;
-  double residual_cost_s_ = 0;
+  double residual_cost_s_ = 0;  ///< 0 where none may be coarser
   mutable std::once_flag planned_coarser_;
   mutable std::vector<CoarserTransform> coarser_;
 };

@@ -57,7 +57,7 @@ BOOST_AUTO_TEST_CASE(times_of_images_made_twice_teach_nothing) {
     }
 }
 
-BOOST_AUTO_TEST_CASE(the_plan_says_what_minor_cycles_subtract_and_how_exactly_major_cycles_do) {
+BOOST_AUTO_TEST_CASE(the_plan_says_what_minor_cycles_subtract) {
   for (const Arguments& how : {one_image, a_cube})
     for (const std::string deconvolver : {"hogbom", "clark", "multiscale"}) {
       const Observed observed;
@@ -65,7 +65,6 @@ BOOST_AUTO_TEST_CASE(the_plan_says_what_minor_cycles_subtract_and_how_exactly_ma
                                          "--cell", "5arcsec", "--niter", "10", "--dry-run", "--deconvolver", deconvolver} +
                                (deconvolver == "multiscale" ? Arguments{"--scales", "0,5"} : Arguments{}) + how);
       BOOST_TEST((plan.out.find("PSF patch: none, the whole PSF") != std::string::npos), plan.out);
-      BOOST_TEST((plan.out.find("residuals: the last to 1e-06") != std::string::npos), plan.out);
     }
 }
 

@@ -7,6 +7,7 @@
 
 #include "imager/clean/scales.h"
 #include "imager/outside/wide_search.h"
+#include "imager/plan/planned_transform.h"
 #include "tools/base/memory.h"
 #include "tools/base/numbers.h"
 #include "tools/base/quantity.h"
@@ -65,7 +66,10 @@ class RunPlanner {
     decide_columns();
     decide("columns and correlations", "only what Stokes " + o_.stokes + " needs",
            "UVW, antennas, flags, weights and one data column, each read once");
-    if (o_.clean.runs()) decide_clean();
+    if (o_.clean.runs()) {
+      decide_psf_patch();
+      decide_residuals();
+    }
     warn_of_neglected_w();
   }
 
@@ -80,17 +84,17 @@ class RunPlanner {
     return imager::scales_looked_at({deconvolver_choice(o_.clean, 1).scale_pixels});
   }
 
-  /// How much of the PSF minor cycles subtract, and how exactly major cycles do.
-  void decide_clean() {
-    const std::string asked = significant(o_.gridding.accuracy, 3);
-    if (o_.gridding.kernel_width == 0 && o_.gridding.padding == 0)
-      decide(
-          "residuals", "the last to " + asked + ", those before as exactly as the next depth takes",
-          "their errors are at most a fiftieth of the depth to which components are then found; the report has each accuracy");
-    else
-      decide("residuals", "all alike", "kernel or padding were given");
+  /// How much of the PSF minor cycles subtract.
+  void decide_psf_patch() {
     decide("PSF patch", "none, the whole PSF",
            "components are taken off bright pixels alone, of which there are few; at the threshold, off all");
+  }
+
+  /// How exactly major cycles subtract.
+  void decide_residuals() {
+    if (!imager::may_be_coarser(plan_.gridding)) return;
+    decide("residuals", "the last to " + significant(o_.gridding.accuracy, 3) + ", those before as exactly as is needed",
+           "their errors are at most a fiftieth of the depth to which components are then found; the report has each accuracy");
   }
 
   /// A search outside shares the memory. Ranks whose plans differed would not exchange the same: all gather as many samples as
