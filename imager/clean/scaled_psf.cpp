@@ -116,10 +116,10 @@ std::vector<LookedAt> ScaledPsf::looked_at() const {
 }
 
 void ScaledPsf::keep(const Image& psf, int middle_row, int middle_column, int threads) {
-  const int rows = last_row_ - first_row_ + 1;
+  const std::size_t rows = static_cast<std::size_t>(last_row_ - first_row_) + 1 + std::size_t{2} * margin;
   BigArray<float>& kept = kept_.emplace_back();
-  kept.reserve(static_cast<std::size_t>(rows + 2 * margin) * static_cast<std::size_t>(stride_));
-  parallel_for(static_cast<std::size_t>(rows + 2 * margin), threads, [&](std::size_t at) {
+  kept.reserve(rows * static_cast<std::size_t>(stride_));
+  parallel_for(rows, threads, [&](std::size_t at) {
     const int row = static_cast<int>(at) - margin + first_row_;
     float* const to = kept.data() + static_cast<std::ptrdiff_t>(at) * stride_;
     std::fill_n(to, stride_, 0.0F);
