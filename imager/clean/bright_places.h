@@ -33,8 +33,8 @@ class BrightPlaces {
 
   /// Takes a component of a spectrum off tiles near its place.
   void subtract(const Place& at, const TaylorValues& coefficient);
-  /// What components that have not been taken off far tiles may have changed there, as a brightness: three standard deviations,
-  /// as if sidelobes met at random, or the strongest alone.
+  /// The change, as a brightness, that is outstanding in far tiles, off which components have not been taken yet: three
+  /// standard deviations, as if sidelobes met at random, or the strongest sidelobe alone.
   double outstanding() const;
   /// How bright other places may have become by all components, but for those near them: as many deviations above what they
   /// were.

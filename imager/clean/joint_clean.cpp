@@ -39,13 +39,13 @@ class BrightnessCount {
   std::vector<std::size_t> count_;
 };
 
-/// Calls visit(piece, scale, merit of each place of a row [column]) for the rows of all scales. Threads share pieces of rows.
 constexpr int rows_a_piece = 64;
 
 std::size_t pieces_of(const ScaledResidual& residual) {
   return static_cast<std::size_t>((residual.height() + rows_a_piece - 1) / rows_a_piece);
 }
 
+/// Calls visit(piece, scale, merit of each place of a row [column]) for the rows of all scales. Threads share pieces of rows.
 template <typename Visit>
 void for_each_row(const ScaledResidual& residual, const ScaledPsf& psf, int threads, const Visit& visit) {
   const auto terms = static_cast<std::size_t>(psf.terms());
@@ -166,7 +166,7 @@ MinorCycleReport JointClean::find(const std::vector<const Image*>& residual, con
       break;
     }
     // Without points to put there may be no place as bright as the brightest point.
-    const double target = points ? std::max(threshold, 0.0) : std::min(threshold, now.brightest / 2);
+    const double target = points ? threshold : std::min(threshold, now.brightest / 2);
     const double level = level_for(left, psf_, target / deep, now.brightest, most, options_.threads);
     const auto before = static_cast<std::ptrdiff_t>(report.components.size());
     BrightPlaces bright(left, psf_, level, options_.threads);

@@ -297,7 +297,7 @@ class Run {
     cycle.from = state_.now;
     cycle.accuracy =
         make_residual(state_.exact_from != 0 || is_likely_last(cycle) ? exact : accuracy_for_next(cycle.cycle_threshold_jy));
-    // What is as bright as before, although it was taken off, may be of the transform's making.
+    // A peak that is as bright as before, although it was cleaned, may be of the transform's making.
     if (cycle.accuracy != exact && reached_depth && peak_within_mask() > hardly_less * now().peak_residual_jy) {
       stay_exact();
       cycle.accuracy = make_residual(exact);
@@ -335,14 +335,17 @@ class Run {
     return "";
   }
 
+  /// The first time it may be coarser transforms that misled CLEAN; after that its minor cycles go too deep.
   void take_back(MajorCycle cycle) {
     cycle.ended += "; the residual grew, taken back";
     state_.cycles.push_back(std::move(cycle));
-    if (state_.exact_from == 0 && !input_.coarser.empty())
+    const bool may_be_misled = state_.exact_from == 0 && !input_.coarser.empty();
+    if (may_be_misled)
       stay_exact();
     else
       ++state_.tightened;
     return_to_best();
+    if (may_be_misled) make_exact();
   }
 
   void return_to_best() {

@@ -13,8 +13,8 @@ struct MinorCycleOptions {
   int max_iterations = 0;
   double threshold_jy = 0;      ///< in Jy/beam; ends when no pixel that may be cleaned exceeds it in magnitude
   const Image* mask = nullptr;  ///< where components may lie, see mask.h; null = everywhere
-  /// Whether no pixel may exceed the threshold, by more than half a percent, in the end. Else those may that were far below it
-  /// until sidelobes went: a residual that is made anew shows them, too.
+  /// Whether the whole residual is looked at in the end, so that no pixel exceeds the threshold by more than half a percent.
+  /// Otherwise pixels may exceed it that were faint until sidelobes went; a residual that is made anew shows them, too.
   bool to_the_last = true;
   std::function<bool()> stop_requested;  ///< asked now and then; may be empty
 };

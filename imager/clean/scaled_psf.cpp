@@ -33,7 +33,7 @@ struct Placed {
   int row, column;
 };
 
-/// What a PSF convolved with a Gaussian is in a cut, as if nothing lay beyond the PSF.
+/// Makes a cut of a PSF that is convolved with a Gaussian, as if nothing lay beyond the PSF.
 Placed convolved(const Image& psf, const Cut& cut, double fwhm_pixels, int threads) {
   const Cut from = cut.grown(static_cast<int>(gaussian_taps(fwhm_pixels).size()) - 1).within(whole(psf));
   Image taken(from.columns(), from.rows());

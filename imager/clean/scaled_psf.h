@@ -12,7 +12,7 @@
 
 namespace misfit::imager {
 
-/// What a component of one scale adds to residuals that are convolved with another: the spectral PSFs P_k, convolved with the
+/// The response of residuals at one scale to components of another: the spectral PSFs P_k, convolved with the
 /// Gaussians of both, in single precision. Of points alone the whole PSFs; of several scales what lies near their middle.
 class ScaledPsf {
  public:
@@ -38,7 +38,7 @@ class ScaledPsf {
     return core_[(from * scale_.size() + to) * psfs() + static_cast<std::size_t>(k)] + row * stride_ + column;
   }
   int stride() const { return static_cast<int>(stride_); }  ///< from a row of it to the next
-  /// Whether it reaches any pixel of a tile whose first lies so far from a component.
+  /// Whether the PSF reaches any pixel of a tile whose first pixel lies so far from a component.
   bool reaches(int row, int column) const;
 
   /// How strong it is between two scales, in √merit of the other scale, for 1 Jy.

@@ -166,7 +166,7 @@ void ScaledResidual::forbid(const std::vector<const Image*>& residual, const Ima
   }
 }
 
-/// Of points there are few in a row.
+/// Points are read from the list, since few lie in a row; Gaussians are drawn first.
 void ScaledResidual::transform(const ComponentModel& found, int term, ScaledFft::Half& to) const {
   const std::vector<Component>& component = found.components();
   if (std::all_of(component.begin(), component.end(),

@@ -28,7 +28,7 @@ class ModelSharer {
 void follow_clean(const ImagedData& imaged, const std::vector<CoarserTransform>& coarser, const TaylorExpansion& expansion,
                   const Context& context);
 
-/// The same samples, imaged by a coarser transform; −1 = by their own.
+/// Returns the same samples with one of the coarser transforms; −1 = with their own.
 ImagedData by_coarser(const ImagedData& imaged, const std::vector<CoarserTransform>& coarser, int which);
 
 }  // namespace misfit::imager
