@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 
 #include "imager/taylor/taylor_expansion.h"
@@ -32,6 +33,17 @@ struct ReachingComponent {
 struct MeritForm {
   float row[most_taylor_terms][most_taylor_terms];
 };
+
+/// The merits of `count` places of a row, of residuals [term][column] from column `first` on.
+inline void set_merits(const MeritForm& form, int terms, const float* const* row, int first, int count, float* merit) {
+  std::fill_n(merit, count, 0.0F);
+  for (int a = 0; a < terms; ++a)
+    for (int c = 0; c < count; ++c) {
+      float y = 0;
+      for (int q = 0; q <= a; ++q) y += form.row[a][q] * row[q][first + c];
+      merit[c] += y * y;
+    }
+}
 
 /// Takes components off: R_q −= Σ_t P_{q+t} I_t. Returns the largest merit; −1 where there is none.
 float subtract(const ReachingComponent* component, int components, const MeritForm& form, int terms, const BrightRange& range);

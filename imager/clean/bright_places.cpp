@@ -63,14 +63,10 @@ void BrightPlaces::find(const ScaledResidual& residual, float merit, int tile_ro
       for (int r = first_row; r < last_row; ++r) {
         const float* row[most_taylor_terms];
         for (std::size_t t = 0; t < terms; ++t) row[t] = plane.row(t, r);
+        float of_row[side];
+        set_merits(form, psf_.terms(), row, first_column, last_column - first_column, of_row);
         for (int c = first_column; c < last_column; ++c) {
-          float of_place = 0;
-          for (std::size_t a = 0; a < terms; ++a) {
-            float y = 0;
-            for (std::size_t q = 0; q <= a; ++q) y += form.row[a][q] * row[q][c];
-            of_place += y * y;
-          }
-          if (!(of_place >= merit)) continue;
+          if (!(of_row[c - first_column] >= merit)) continue;
           of_tile.offset.push_back((r - first_row) * step * psf_.stride() + (c - first_column) * step);
           for (std::size_t t = 0; t < terms; ++t) of_tile.value[t].push_back(row[t][c]);
         }
