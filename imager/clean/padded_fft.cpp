@@ -1,6 +1,7 @@
 #include "imager/clean/padded_fft.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <deque>
 
@@ -56,6 +57,12 @@ class Columns {
   int count_;
   typename Fft<Real>::ComplexBuffer column_[most];
 };
+
+/// By hand: operator* would look for infinities.
+template <typename Real>
+std::complex<Real> product(std::complex<Real> a, std::complex<Real> b) {
+  return {a.real() * b.real() - a.imag() * b.imag(), a.real() * b.imag() + a.imag() * b.real()};
+}
 
 }  // namespace
 
@@ -165,6 +172,28 @@ void PaddedFft<Real>::backward(const std::vector<const Half*>& from, const Combi
     }
   });
 }
+
+template <typename Real>
+void read_row(const Image& image, int row, Real* to) {
+  std::transform(image.row(row), image.row(row) + image.width, to,
+                 [](double value) { return std::isnan(value) ? Real(0) : static_cast<Real>(value); });
+}
+template void read_row<float>(const Image&, int, float*);
+template void read_row<double>(const Image&, int, double*);
+
+template <typename Real>
+void set_products(const std::complex<Real>* a, const std::complex<Real>* b, int count, std::complex<Real>* to) {
+  for (int v = 0; v < count; ++v) to[v] = product(a[v], b[v]);
+}
+template void set_products<float>(const std::complex<float>*, const std::complex<float>*, int, std::complex<float>*);
+template void set_products<double>(const std::complex<double>*, const std::complex<double>*, int, std::complex<double>*);
+
+template <typename Real>
+void add_products(const std::complex<Real>* a, const std::complex<Real>* b, int count, std::complex<Real>* to) {
+  for (int v = 0; v < count; ++v) to[v] += product(a[v], b[v]);
+}
+template void add_products<float>(const std::complex<float>*, const std::complex<float>*, int, std::complex<float>*);
+template void add_products<double>(const std::complex<double>*, const std::complex<double>*, int, std::complex<double>*);
 
 template class PaddedFft<float>;
 template class PaddedFft<double>;

@@ -6,6 +6,7 @@
 #include <memory>
 #include <vector>
 
+#include "imager/data/image.h"
 #include "imager/numerics/big_array.h"
 #include "imager/numerics/fft.h"
 
@@ -57,5 +58,15 @@ class PaddedFft {
   int nv_;
   std::map<int, std::unique_ptr<Plans>> plans_;  ///< by step
 };
+
+/// Copies a row of an image, 0 in place of NaN.
+template <typename Real>
+void read_row(const Image& image, int row, Real* to);
+
+/// to[v] = a[v] · b[v], or to[v] += that.
+template <typename Real>
+void set_products(const std::complex<Real>* a, const std::complex<Real>* b, int count, std::complex<Real>* to);
+template <typename Real>
+void add_products(const std::complex<Real>* a, const std::complex<Real>* b, int count, std::complex<Real>* to);
 
 }  // namespace misfit::imager

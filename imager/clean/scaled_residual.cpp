@@ -4,7 +4,6 @@
 #include <cmath>
 #include <limits>
 
-#include "imager/clean/convolution.h"
 #include "imager/clean/gaussian_blur.h"
 #include "imager/clean/mask.h"
 #include "imager/data/noise.h"

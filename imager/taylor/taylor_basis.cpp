@@ -87,16 +87,6 @@ TaylorValues TaylorBasis::coefficients(const TaylorValues& y) const {
   return coefficient;
 }
 
-TaylorBasis::Matrix TaylorBasis::response(const std::vector<double>& psf) const {
-  const auto n = static_cast<std::size_t>(terms_);
-  Matrix s{};
-  for (std::size_t a = 0; a < n; ++a)
-    for (std::size_t b = 0; b < n; ++b)
-      for (std::size_t q = 0; q <= a; ++q)
-        for (std::size_t t = 0; t <= b; ++t) s[a][b] += inverse_factor_[a][q] * psf[q + t] * inverse_factor_[b][t];
-  return s;
-}
-
 TaylorBasis basis_of(const std::vector<const Image*>& psf) {
   std::vector<double> peaks;
   for (const Image* image : psf) peaks.push_back(image->at(image->height / 2, image->width / 2));

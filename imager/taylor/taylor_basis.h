@@ -20,8 +20,6 @@ namespace misfit::imager {
 ///
 /// |y| is what |R_0| is to a single term: of a point source of one term it is the brightness of its peak in Jy/beam, and its
 /// square says by how much χ² would fall. L⁻¹ makes of the powers x^t those polynomials that are orthonormal over the samples.
-/// A component of coordinates y at p takes S(q − p) y off those at q, where S = L⁻¹ P L⁻ᵀ, P_ab = P_{a+b}, is the unit matrix
-/// at 0.
 class TaylorBasis {
  public:
   using Matrix = std::array<TaylorValues, most_taylor_terms>;  ///< [row][column]
@@ -37,8 +35,6 @@ class TaylorBasis {
   TaylorValues coordinates(const TaylorValues& residual) const;
   /// I, of y.
   TaylorValues coefficients(const TaylorValues& y) const;
-  /// S, of P_k at a pixel [k].
-  Matrix response(const std::vector<double>& psf) const;
 
  private:
   int terms_;

@@ -1,4 +1,4 @@
-#include "imager/clean/convolution.h"
+#include "tests/imager/clean/convolution.h"
 
 #include <boost/test/data/test_case.hpp>
 #include <boost/test/unit_test.hpp>

@@ -5,8 +5,8 @@
 #include <limits>
 #include <numeric>
 
-#include "imager/clean/convolution.h"
 #include "imager/data/noise.h"
+#include "tests/imager/clean/convolution.h"
 #include "tests/imager/comparison.h"
 
 BOOST_AUTO_TEST_SUITE(joint_clean)
@@ -97,7 +97,7 @@ Image bright_sources_on_faint_noise(int width, int height) {
 Image crowded_field(const Image& psf) {
   Image sky(psf.width, psf.height);
   for (int i = 0; i < 300; ++i) sky.at((7919 * i + 13) % psf.height, (104729 * i + 7) % psf.width) += 10.0 / (1 + i);
-  Image image = imager::Convolution<double>(psf, 2)(sky);
+  Image image = Convolution<double>(psf, 2)(sky);
   const Image noise = random_image(psf.width, psf.height, 6);
   for (std::size_t i = 0; i < noise.pixel.size(); ++i) image.pixel[i] += 0.01 * noise.pixel[i];
   return image;
@@ -108,7 +108,7 @@ double flux_of(const Cleaned& cleaned) {
 }
 
 Image left_by(const Cleaned& cleaned, Image residual, const Image& psf) {
-  subtract(imager::Convolution<double>(psf, 2)(cleaned.model), residual);
+  subtract(Convolution<double>(psf, 2)(cleaned.model), residual);
   return residual;
 }
 

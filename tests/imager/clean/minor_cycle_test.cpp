@@ -4,9 +4,9 @@
 #include <boost/test/unit_test.hpp>
 #include <limits>
 
-#include "imager/clean/convolution.h"
 #include "imager/clean/deconvolver.h"
 #include "imager/data/noise.h"
+#include "tests/imager/clean/convolution.h"
 #include "tests/imager/comparison.h"
 
 BOOST_AUTO_TEST_SUITE(minor_cycle)
@@ -38,7 +38,7 @@ Image dirty() {
   sky.at(31, 40) = -0.5;
   sky.at(90, 110) = 0.7;
   sky.at(92, 113) = 0.4;
-  const Image smooth = imager::Convolution<double>(psf(), 2)(sky);
+  const Image smooth = Convolution<double>(psf(), 2)(sky);
   Image noise = random_image(width, height, 7);
   for (std::size_t i = 0; i < noise.pixel.size(); ++i) noise.pixel[i] = smooth.pixel[i] + 0.002 * noise.pixel[i];
   return noise;
@@ -65,7 +65,7 @@ Cleaned cleaned(const std::string& name, const Image& residual, const MinorCycle
   ComponentModel model(width, height, minor->scale_pixels());
   model.add(result.report.components);
   result.model = model.image(1);
-  subtract(imager::Convolution<double>(beam, 1)(result.model), result.left);
+  subtract(Convolution<double>(beam, 1)(result.model), result.left);
   return result;
 }
 

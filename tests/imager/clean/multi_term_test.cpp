@@ -1,10 +1,10 @@
 #include <boost/test/unit_test.hpp>
 #include <cmath>
 
-#include "imager/clean/convolution.h"
 #include "imager/clean/gaussian_blur.h"
 #include "imager/clean/joint_clean.h"
 #include "imager/data/noise.h"
+#include "tests/imager/clean/convolution.h"
 #include "tests/imager/comparison.h"
 
 BOOST_AUTO_TEST_SUITE(multi_term)

@@ -2,10 +2,10 @@
 #include <boost/test/unit_test.hpp>
 #include <limits>
 
-#include "imager/clean/convolution.h"
 #include "imager/clean/gaussian_blur.h"
 #include "imager/clean/joint_clean.h"
 #include "imager/data/noise.h"
+#include "tests/imager/clean/convolution.h"
 #include "tests/imager/comparison.h"
 
 BOOST_AUTO_TEST_SUITE(multiscale)
@@ -33,7 +33,7 @@ Image psf() {
 Image observed(const Image& sky, const Image& beam, double noise_jy) {
   Image noise = gaussian_blur(random_image(side, side, 11), beam_pixels, 2);
   const double scale = noise_jy / robust_noise(noise);
-  Image dirty = imager::Convolution<double>(beam, 2)(sky);
+  Image dirty = Convolution<double>(beam, 2)(sky);
   for (std::size_t i = 0; i < dirty.pixel.size(); ++i) dirty.pixel[i] += scale * noise.pixel[i];
   return dirty;
 }
@@ -55,7 +55,7 @@ BOOST_AUTO_TEST_CASE(a_gaussian_of_ten_beams_keeps_its_flux_and_leaves_no_bowl) 
   BOOST_TEST((report.end == MinorCycleEnd::threshold));
   BOOST_TEST(std::abs(model.flux_jy() / flux - 1) < 0.02);
   Image left = dirty;
-  subtract(imager::Convolution<double>(beam, 2)(model.image(2)), left);
+  subtract(Convolution<double>(beam, 2)(model.image(2)), left);
   // Averaged over a beam or two, a bowl stands out of the noise.
   const Image smooth = gaussian_blur(left, 2 * beam_pixels, 2);
   BOOST_TEST(*std::min_element(smooth.pixel.begin(), smooth.pixel.end()) > -3 * noise);
@@ -135,7 +135,7 @@ BOOST_AUTO_TEST_CASE(what_fills_the_image_is_cleaned_to_the_threshold) {
   BOOST_TEST((report.end == MinorCycleEnd::threshold));
   ComponentModel model(wide, wide, minor.scale_pixels());
   model.add(report.components);
-  subtract(imager::Convolution<double>(beam, 2)(model.image(2)), dirty);
+  subtract(Convolution<double>(beam, 2)(model.image(2)), dirty);
   BOOST_TEST(largest_magnitude(dirty) < 0.15);
   BOOST_TEST(report.peak_jy > 0.05);
 }

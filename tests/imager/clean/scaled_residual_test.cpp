@@ -5,9 +5,9 @@
 #include <limits>
 
 #include "imager/clean/bright_places.h"
-#include "imager/clean/convolution.h"
 #include "imager/clean/gaussian_blur.h"
 #include "imager/data/noise.h"
+#include "tests/imager/clean/convolution.h"
 #include "tests/imager/comparison.h"
 
 BOOST_AUTO_TEST_SUITE(scaled_residual)
@@ -67,7 +67,7 @@ struct Scene {
     std::vector<Image> result = residual;
     for (std::size_t t = 0; t < residual.size(); ++t)
       for (std::size_t q = 0; q < residual.size(); ++q)
-        subtract(imager::Convolution<double>(psf[q + t], 2)(model.image(2, static_cast<int>(t))), result[q]);
+        subtract(Convolution<double>(psf[q + t], 2)(model.image(2, static_cast<int>(t))), result[q]);
     return result;
   }
 };

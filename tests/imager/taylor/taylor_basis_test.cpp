@@ -101,32 +101,6 @@ BOOST_AUTO_TEST_CASE(the_square_of_the_brightness_is_what_the_fit_takes_off_the_
   }
 }
 
-BOOST_AUTO_TEST_CASE(a_source_at_the_peak_is_taken_off_its_pixel_as_it_is) {
-  const Band of = band();
-  for (const int terms : {1, 2, 3}) {
-    const TaylorBasis::Matrix s = TaylorBasis(of.peaks(terms)).response(of.peaks(terms));
-    for (std::size_t a = 0; a < static_cast<std::size_t>(terms); ++a)
-      for (std::size_t b = 0; b < static_cast<std::size_t>(terms); ++b)
-        BOOST_TEST(std::abs(s[a][b] - (a == b ? 1 : 0)) < 1e-11);
-  }
-}
-
-/// What R_q = Σ_t P_{q+t} I_t is in coordinates y.
-BOOST_AUTO_TEST_CASE(the_response_of_a_component_is_that_of_its_coefficients) {
-  const Band of = band();
-  constexpr int terms = 3;
-  const TaylorBasis basis(of.peaks(terms));
-  const std::vector<double> psf{0.3, -0.02, 0.01, 0.004, -0.001};  // at some pixel
-  const TaylorValues y{0.4, -1.2, 0.7}, coefficient = basis.coefficients(y);
-  TaylorValues residual{};
-  for (std::size_t q = 0; q < terms; ++q)
-    for (std::size_t t = 0; t < terms; ++t) residual[q] += psf[q + t] * coefficient[t];
-  const TaylorValues there = basis.coordinates(residual);
-  const TaylorBasis::Matrix s = basis.response(psf);
-  for (std::size_t a = 0; a < terms; ++a)
-    BOOST_TEST(std::abs(there[a] - (s[a][0] * y[0] + s[a][1] * y[1] + s[a][2] * y[2])) < 1e-11);
-}
-
 BOOST_AUTO_TEST_CASE(of_one_term_the_brightness_is_the_residual_and_the_coefficient_that_over_the_peak) {
   const TaylorBasis basis({0.8});
   BOOST_TEST(std::abs(basis.coordinates({0.3})[0] - 0.3) < 1e-15);
