@@ -242,7 +242,7 @@ imager::CleanOptions clean_options(const TypedClean& o, int threads) {
 imager::DeconvolverChoice deconvolver_choice(const TypedClean& o, int threads) {
   imager::DeconvolverChoice choice;
   choice.name = o.deconvolver;
-  choice.scale_pixels.clear();
+  if (!o.scales.empty()) choice.scale_pixels.clear();
   for (const double scale : o.scales) choice.scale_pixels.push_back(imager::tclean_scale_width * scale);
   choice.small_scale_bias = o.smallscalebias;
   choice.threads = threads;

@@ -72,6 +72,10 @@ BOOST_AUTO_TEST_CASE(options_of_clean_need_what_gives_them_meaning) {
   BOOST_TEST(!cleaning([](ImageOptions& o) { o.imsize = {1}, o.clean.restoringbeam = "1arcsec"; }));
 }
 
+BOOST_AUTO_TEST_CASE(components_are_points_where_no_scales_are_asked) {
+  BOOST_TEST(deconvolver_choice(good().clean, 1).scale_pixels == std::vector<double>{0}, boost::test_tools::per_element());
+}
+
 BOOST_AUTO_TEST_CASE(scales_are_as_wide_at_half_maximum_as_tcleans) {
   ImageOptions options = good();
   options.clean.deconvolver = "multiscale";
