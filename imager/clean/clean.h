@@ -21,12 +21,14 @@ constexpr double threshold_tolerance = 0.01;
 
 /// Parameters of CLEAN with the names and meaning of CASA's tclean.
 struct CleanOptions {
-  int max_iterations = 0;          ///< niter
-  double gain = 0.1;               ///< part of a peak that a component takes
-  double threshold_jy = 0;         ///< stop when the peak residual exceeds it by threshold_tolerance at most
-  double nsigma = 0;               ///< or not above this many times the robust noise
-  double cycle_factor = 1;         ///< a minor cycle goes down to the peak × largest sidelobe × cycle factor …
-  double min_psf_fraction = 0.05;  ///< … that fraction of the peak clamped to [min, max]
+  int max_iterations = 0;   ///< niter
+  double gain = 0.1;        ///< part of a peak that a component takes
+  double threshold_jy = 0;  ///< stop when the peak residual exceeds it by threshold_tolerance at most
+  double nsigma = 0;        ///< or not above this many times the robust noise
+  /// A minor cycle goes down to the peak × largest sidelobe × cycle factor, that fraction of the peak clamped to [min, max].
+  /// Where the cycle before left less than half the largest sidelobe above its depth, twice that counts in place of it.
+  double cycle_factor = 1;
+  double min_psf_fraction = 0.05;
   double max_psf_fraction = 0.8;
   int cycle_iterations = -1;                ///< cycleniter: components that a minor cycle finds at most; −1 = no limit
   int max_major_cycles = -1;                ///< nmajor; −1 = no limit
@@ -111,6 +113,7 @@ struct CleanInput {
   ImagedData imaged;
   TaylorExpansion expansion{};      ///< of the components' spectra
   std::vector<const Image*> dirty;  ///< of these samples: R_t [term], see TaylorImages
+  double dirty_accuracy = 0;        ///< relative, of `dirty`; 0 = as exact as `imaged` makes them
   bool of_start = false;            ///< `dirty` are what the state's model leaves, and not the empty one
   std::vector<const Image*> psf;    ///< P_k [k], 2 terms − 1 of them
   double max_sidelobe = 0;          ///< the largest of the first PSF
@@ -147,8 +150,9 @@ CleanState first_state(const ComponentModel& model);
 /// square, the result is that of the best.
 ///
 /// A residual from which minor cycles are to go on is made by the least exact of the transforms whose error, by theory, is at
-/// most a fiftieth of the depth to which they will go. One that ends CLEAN is made anew as exactly as was asked; where that
-/// does not end it, and where a residual grew, all that follow are made so, since sources outside the image may err by more.
+/// most a fiftieth of the depth to which they will go, and so may be the dirty image. One that ends CLEAN is made anew as
+/// exactly as was asked; where that does not end it, and where a residual grew, all that follow are made so, since sources
+/// outside the image may err by more.
 ///
 /// Stages timed: "minor cycles", "statistics", and those of make_residual_image. Throws std::runtime_error when a PSF or a
 /// residual is not finite, std::invalid_argument unless terms, images and `minor` agree.

@@ -63,14 +63,10 @@ class Run {
   }
 
   CleanResult run(const CycleProgress& cycle_progress) {
-    make_residual(state_.cycles.empty() ? exact : now().accuracy);
-    if (state_.cycles.empty()) {
-      if (o_.automask) state_.mask.allowed = Image(residual().width, residual().height);
-      MajorCycle start;
-      start.iterations = state_.iterations;
-      measure(start);
-      keep(std::move(start));
-    }
+    if (state_.cycles.empty())
+      begin();
+    else
+      make_residual(now().accuracy);
     cycle_progress(state_);
     while (true) {
       while (!(end_ = ending())) {
@@ -97,12 +93,19 @@ class Run {
   const MajorCycle& best() const { return state_.cycles[state_.best]; }
   const Image* mask() const { return o_.automask ? &state_.mask.allowed : o_.mask; }
 
+  void begin() {
+    MajorCycle start;
+    start.iterations = state_.iterations;
+    start.accuracy = make_residual(input_.dirty_accuracy);
+    if (o_.automask) state_.mask.allowed = Image(residual().width, residual().height);
+    measure(start);
+    keep(std::move(start));
+    if (now().accuracy > accuracy_for_next(now().peak_residual_jy)) make_exact();
+  }
+
   /// At the limit of iterations, or at the last depth for the second time, the first having left what sidelobes had hidden.
   bool is_likely_last(const MajorCycle& cycle) const {
-    const auto at_last_depth = [this](const MajorCycle& c) {
-      return c.cycle_threshold_jy <= last_depth(state_.cycles[c.from]);
-    };
-    return cycle.iterations >= o_.max_iterations || (at_last_depth(cycle) && state_.now > 0 && at_last_depth(now()));
+    return cycle.iterations >= o_.max_iterations || (is_at_last_depth(now()) && cycle.cycle_threshold_jy <= last_depth(now()));
   }
 
   /// From here on no coarser transforms are taken, and what they had left does not count against CLEAN.
@@ -124,7 +127,7 @@ class Run {
   /// of theirs. It is in proportion to images of the data and of the model as if their phases were random.
   double accuracy_for_next(double depth_jy) const {
     constexpr double small = 0.02, less_noise = 0.5;  // the noise falls as sources go
-    const double next = std::max(depth_fraction() * depth_jy, less_noise * last_depth(now()));
+    const double next = std::max(o_.min_psf_fraction * depth_jy, less_noise * last_depth(now()));
     double square = 0;
     for (const Component& c : state_.model.components()) square += c.flux_jy * c.flux_jy;
     const double visibilities_jy = std::max(input_.data_jy, std::sqrt(square));
@@ -143,9 +146,9 @@ class Run {
     const bool first = residuals_.empty();
     residuals_.clear();
     made_.clear();
-    if (input_.of_start ? first : state_.model.components().empty()) {
+    if (accuracy >= input_.dirty_accuracy && (input_.of_start ? first : state_.model.components().empty())) {
       residuals_ = input_.dirty;
-      accuracy = exact;
+      accuracy = input_.dirty_accuracy;
     } else {
       const int coarser = coarser_of(accuracy);
       accuracy = coarser < 0 ? exact : input_.coarser[static_cast<std::size_t>(coarser)].accuracy;
@@ -262,15 +265,31 @@ class Run {
     return fell(&MajorCycle::peak_residual_jy) || fell(&MajorCycle::mean_square_jy2);
   }
 
-  /// The depth of the next minor cycle: where the sidelobes of the brightest source could pass for sources. Five percent below
-  /// the nsigma limit, since the noise falls as sources go, and cycles that chase it by less are wasted.
+  /// The depth of the next minor cycle: where what it takes off wrongly could pass for sources.
   double cycle_threshold() const { return std::max(depth_fraction() * now().peak_residual_jy, last_depth(now())); }
   double depth_fraction() const {
-    const double fraction = std::clamp(o_.cycle_factor * input_.max_sidelobe, o_.min_psf_fraction, o_.max_psf_fraction);
+    const double fraction = std::clamp(o_.cycle_factor * wrong_part(), o_.min_psf_fraction, o_.max_psf_fraction);
     return 1 - std::ldexp(1 - fraction, -state_.tightened);
   }
-  /// The depth below which threshold and nsigma let no minor cycle go.
-  double last_depth(const MajorCycle& begun) const { return std::max(o_.threshold_jy, 0.95 * o_.nsigma * begun.rms_jy); }
+  /// Which part of a peak minor cycles may take off wrongly. Before anything is known it is as in tclean the largest sidelobe;
+  /// then twice what the last cycle left above its depth, if that is less. Masks that grow let in what it did not clean.
+  double wrong_part() const {
+    constexpr double safe = 2;
+    if (state_.now == 0 || o_.automask) return input_.max_sidelobe;
+    const double left = now().peak_residual_jy - now().cycle_threshold_jy;
+    return std::min(input_.max_sidelobe, safe * left / state_.cycles[now().from].peak_residual_jy);
+  }
+  /// Whether the minor cycle that left this went as deep as threshold and nsigma ask.
+  bool is_at_last_depth(const MajorCycle& cycle) const {
+    return cycle.cycle_threshold_jy > 0 && cycle.cycle_threshold_jy <= std::max(o_.threshold_jy, o_.nsigma * cycle.rms_jy);
+  }
+  /// The depth below which threshold and nsigma let no minor cycle go. Cycles that chase them by less than five percent are
+  /// wasted: below nsigma all go by as much, since the noise falls as sources go, and below the threshold those that follow one
+  /// that went down to it.
+  double last_depth(const MajorCycle& begun) const {
+    constexpr double deeper = 0.95;
+    return std::max((is_at_last_depth(begun) ? deeper : 1) * o_.threshold_jy, deeper * o_.nsigma * begun.rms_jy);
+  }
 
   void one_cycle() {
     constexpr double hardly_less = 0.9;

@@ -43,7 +43,8 @@ void take(const TakenImages& taken, const ComparedPixels& pixels, const Ranks& r
 }
 
 AccurateImages make_images(const VisibilitySource& source, GriddingPlan plan, const Context& context,
-                           std::shared_ptr<const PlannedTransform> transform = nullptr, const TakenImages& taken = {}) {
+                           std::shared_ptr<const PlannedTransform> transform = nullptr, const TakenImages& taken = {},
+                           bool begin_clean = false) {
   AccurateImages made;
   made.plan = std::move(plan);
   made.transform = std::move(transform);
@@ -53,8 +54,10 @@ AccurateImages make_images(const VisibilitySource& source, GriddingPlan plan, co
   }
   std::optional<ComparedPixels> pixels;
   if (taken.any()) pixels.emplace(made.plan, made.transform->images());
-  const Transform& images = taken.dirty ? pixels->transform() : made.transform->images();
+  if (begin_clean && !pixels && made.plan.psf && may_be_coarser(made.plan))
+    made.dirty_accuracy = made.plan.psf->request.accuracy;
   const Transform& psf = taken.psf ? pixels->transform() : made.transform->psf();
+  const Transform& images = made.dirty_accuracy != 0 ? psf : taken.dirty ? pixels->transform() : made.transform->images();
   const int stokes = made.plan.request.stokes;
   const bool with_psf = made.plan.request.psf || taken.psf;
   made.images = with_psf && &psf != &images ? make_dirty_images(source, images, OwnPsf{psf, stokes}, context)
@@ -105,6 +108,14 @@ Weakness weakness_of(const DirtyImages& images) {
   return largest;
 }
 
+/// Whether dirty images made together with the PSF tell that those of the plan would keep their promise.
+bool would_keep_promise(const AccurateImages& made) {
+  constexpr double known = 0.02;  // an image's RMS
+  const Weakness weak = weakness_of(made.images);
+  const double weakest = std::max(weak.random, weak.coherent);
+  return made.plan.psf->expected_error * weakest <= known && made.plan.expected_error * weakest <= made.plan.request.accuracy;
+}
+
 }  // namespace
 
 TheoreticalError theoretical_error(const GriddingPlan& plan, const SampleSums& sums, double image_rms,
@@ -121,10 +132,24 @@ TheoreticalError theoretical_error(const GriddingPlan& plan, const SampleSums& s
   return error;
 }
 
+void make_dirty_exact(const VisibilitySource& source, const Context& context, AccurateImages& made) {
+  DirtyImages exact =
+      make_dirty_images(source, made.transform->images(), AdjointOptions{made.plan.request.stokes, false}, context);
+  exact.psf = std::move(made.images.psf);
+  exact.psf_statistics = made.images.psf_statistics;
+  made.images = std::move(exact);
+  made.dirty_accuracy = 0;
+}
+
 AccurateImages make_accurate_images(const VisibilitySource& source, GriddingPlan plan, const Context& context,
-                                    std::shared_ptr<const PlannedTransform> transform, const TakenImages& taken) {
+                                    std::shared_ptr<const PlannedTransform> transform, const TakenImages& taken,
+                                    bool begin_clean) {
   const GriddingRequest request = plan.request;
-  AccurateImages made = make_images(source, std::move(plan), context, std::move(transform), taken);
+  AccurateImages made = make_images(source, std::move(plan), context, std::move(transform), taken, begin_clean);
+  if (made.dirty_accuracy != 0) {
+    if (would_keep_promise(made)) return made;
+    make_dirty_exact(source, context, made);
+  }
   // The images' largest gridding error over the accuracy, once by theory and once by direct sums at pixels, which may miss half
   // of it.
   const auto excess = [&] {

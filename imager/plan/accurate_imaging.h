@@ -22,8 +22,9 @@ struct AccurateImages {
   GriddingPlan plan;
   std::shared_ptr<const PlannedTransform> transform;
   DirtyImages images;
-  double judged_error = 0;   ///< over the images' RMS, where they were made twice: by theory, or twice that of pixels checked
-  bool promise_kept = true;  ///< whether the gridding error is within the accuracy, judged by the images that came out
+  double dirty_accuracy = 0;  ///< of the dirty images, where CLEAN alone is to begin with them; 0 = that of the plan
+  double judged_error = 0;    ///< over the images' RMS, where they were made twice: by theory, or twice that of pixels checked
+  bool promise_kept = true;   ///< whether the gridding error is within the accuracy, judged by the images that came out
 };
 
 /// Dirty images of the Stokes parameters that `plan` was asked for, and PSF, to its accuracy. Where an image turns out weak
@@ -36,7 +37,14 @@ struct AccurateImages {
 ///
 /// `transform`, if there is one, is that of `plan`, which other images have been made by. Images that are taken are not made,
 /// and need not be planned for; of a residual that is taken no error is known but that of the comparison, see ComparedPixels.
+///
+/// Dirty images that only `begin_clean` need not be as exact: where the PSF has a transform of its own, they are made together
+/// with it, unless that leaves open whether they will be weak against their data.
 AccurateImages make_accurate_images(const VisibilitySource& source, GriddingPlan plan, const Context& context,
-                                    std::shared_ptr<const PlannedTransform> transform = nullptr, const TakenImages& taken = {});
+                                    std::shared_ptr<const PlannedTransform> transform = nullptr, const TakenImages& taken = {},
+                                    bool begin_clean = false);
+
+/// Makes dirty images that were only to begin CLEAN as exactly as the plan says. Stages timed: those of make_dirty_images.
+void make_dirty_exact(const VisibilitySource& source, const Context& context, AccurateImages& made);
 
 }  // namespace misfit::imager

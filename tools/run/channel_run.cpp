@@ -20,6 +20,17 @@ bool MadeChannel::stopped() const {
                      [](const StokesReport& stokes) { return stokes.clean && stokes.clean->stop == imager::CleanStop::user; });
 }
 
+namespace {
+
+/// Whether the dirty images are nothing but what CLEAN begins with. Of several Stokes parameters some may have nothing to
+/// clean.
+bool images_begin_clean(const ChannelScene& scene) {
+  const TypedClean& o = scene.options.clean;
+  return o.niter > 0 && o.startmodel.empty() && scene.header.stokes.size() == 1;
+}
+
+}  // namespace
+
 ChannelRun::ChannelRun(const ChannelScene& scene, int channel, std::unique_ptr<ChannelSamples> samples)
     : scene_(scene),
       samples_(std::move(samples)),
@@ -70,8 +81,10 @@ void ChannelRun::weigh(std::shared_ptr<const imager::ImagingWeights> weights) {
 
 void ChannelRun::make_dirty(imager::GriddingPlan plan, std::shared_ptr<const imager::PlannedTransform> transform) {
   progress().begin("dirty image and PSF" + name_);
-  naming_taken(
-      [&] { images_ = imager::make_accurate_images(samples(), std::move(plan), context(), std::move(transform), taken()); });
+  naming_taken([&] {
+    images_ = imager::make_accurate_images(samples(), std::move(plan), context(), std::move(transform), taken(),
+                                           images_begin_clean(scene_));
+  });
   if (scene_.taken != nullptr && scene_.images_here) scene_.taken->require_weights(report().channel, images_.images.sums);
   progress().end();
   report().sums = images_.images.sums.front();
@@ -89,6 +102,10 @@ void ChannelRun::make_dirty(imager::GriddingPlan plan, std::shared_ptr<const ima
   }
   if (!images_.promise_kept)
     warn(accuracy_warning(scene_.options.gridding.accuracy, std::max(images_.judged_error, expected)) + name_);
+}
+
+void ChannelRun::require_exact_dirty() {
+  if (images_.dirty_accuracy != 0) imager::make_dirty_exact(samples(), context(), images_);
 }
 
 imager::TakenImages ChannelRun::taken() {
@@ -124,7 +141,9 @@ void ChannelRun::make_terms() {
   if (scene_.options.taylor.nterms == 1) return;
   taylor_.emplace(taylor_expansion(scene_.options.taylor, scene_.header.observation), scene_.threads);
   progress().begin("Taylor terms" + name_);
-  naming_taken([&] { taylor_->make_images(imaged(0), images_, taken_terms(), context()); });
+  const imager::Transform& transform = images_.dirty_accuracy != 0 ? images_.transform->psf() : *images_.transform;
+  const imager::ImagedData imaged{{samples(), 0}, transform, images_.images.normalisation};
+  naming_taken([&] { taylor_->make_images(imaged, images_, taken_terms(), context()); });
   progress().end();
 }
 
@@ -173,8 +192,12 @@ void ChannelRun::verify() {
   if (scene_.options.verify == 0) return;
   const imager::StageTimer timer(times(), imager::stage::verify);
   progress().begin("verify" + name_);
-  const imager::MeasuredError measured = imager::measure_error(samples(), images_.transform->images(), scene_.header.geometry,
-                                                               images_.images, scene_.options.verify, context());
+  std::optional<imager::DirtyImages> exact;  // where CLEAN begins with others, and shall with or without this
+  if (images_.dirty_accuracy != 0)
+    exact = imager::make_dirty_images(samples(), images_.transform->images(), imager::AdjointOptions{}, context());
+  const imager::MeasuredError measured =
+      imager::measure_error(samples(), images_.transform->images(), scene_.header.geometry, exact ? *exact : images_.images,
+                            scene_.options.verify, context());
   progress().end();
   for (std::size_t s = 0; s < scene_.header.stokes.size(); ++s) report().stokes[s].measured = measured.image[s];
   report().measured_predict_rms = measured.predict_rms;
@@ -245,6 +268,7 @@ imager::CleanResult ChannelRun::clean(std::size_t stokes) {
   CleanScene clean{.imaged = imaged(stokes),
                    .expansion = {},
                    .dirty = {&images_.images.dirty[stokes]},
+                   .dirty_accuracy = images_.dirty_accuracy,
                    .of_start = !scene_.options.taken.calcres && !scene_.options.clean.startmodel.empty(),
                    .psf = {&images_.images.psf},
                    .main_lobe = *report().beams->main_lobe,

@@ -169,6 +169,7 @@ imager::CleanResult CleanStage::run(const CleanScene& scene, const StateOptionVa
   const imager::CleanInput input{.imaged = scene.imaged,
                                  .expansion = scene.expansion,
                                  .dirty = scene.dirty,
+                                 .dirty_accuracy = scene.dirty_accuracy,
                                  .of_start = scene.of_start,
                                  .psf = scene.psf,
                                  .max_sidelobe = sidelobe,

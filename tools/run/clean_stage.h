@@ -21,6 +21,7 @@ struct CleanScene {
   imager::ImagedData imaged;
   imager::TaylorExpansion expansion;
   std::vector<const imager::Image*> dirty;          ///< [term]
+  double dirty_accuracy = 0;                        ///< see CleanInput
   bool of_start = false;                            ///< see CleanInput
   std::vector<const imager::Image*> psf;            ///< [k], see CleanInput
   imager::Beam main_lobe;                           ///< of the PSF

@@ -35,6 +35,7 @@ struct Scene {
   std::unique_ptr<Transform> transform;
   std::vector<CoarserTransform> coarser;
   DirtyImages images;
+  double dirty_accuracy = 0;
   double max_sidelobe = 0;
   Beam beam;
 
@@ -78,6 +79,7 @@ CleanResult cleaned(const Scene& of, const CleanOptions& options, const DirtyIma
   const JointClean minor({&images.psf}, {.threads = options.threads});
   const CleanInput input{.imaged = of.imaged(),
                          .dirty = {&images.dirty[0]},
+                         .dirty_accuracy = of.dirty_accuracy,
                          .of_start = of_start,
                          .psf = {&images.psf},
                          .max_sidelobe = of.max_sidelobe,
@@ -96,6 +98,15 @@ CleanResult cleaned(const Scene& of, const CleanOptions& options, const DirtyIma
 
 CleanResult cleaned(const CleanOptions& options, const DirtyImages& images = scene().images) {
   return cleaned(scene(), options, images);
+}
+
+/// Beginning with dirty images that a coarser transform made.
+CleanResult cleaned_from_coarse(std::size_t coarser, const CleanOptions& options) {
+  const CoarserTransform& by = scene().coarser[coarser];
+  Scene of = make_scene({});
+  of.images.dirty = make_dirty_images(of.source, *by.transform, AdjointOptions{}, {}).dirty;
+  of.dirty_accuracy = by.accuracy;
+  return cleaned(of, options, of.images);
 }
 
 /// Options that stop at 1% of the brightest source.
@@ -128,7 +139,7 @@ void check_consistent(const CleanResult& result) {
 BOOST_AUTO_TEST_CASE(the_peak_residual_falls_to_the_threshold_and_the_flux_is_recovered) {
   const CleanResult result = cleaned(deep());
   BOOST_TEST((result.report.stop == CleanStop::threshold));
-  BOOST_TEST(peak_magnitude(result.residual) <= 0.01);
+  BOOST_TEST(peak_magnitude(result.residual) <= (1 + threshold_tolerance) * 0.01);
   check_consistent(result);
   for (const Sky& s : sky) {
     double flux = 0;
@@ -194,6 +205,40 @@ class Haunted : public Transform {
   };
   const Transform& transform_;
 };
+
+BOOST_AUTO_TEST_CASE(it_begins_with_a_dirty_image_as_exact_as_needed_and_ends_exactly) {
+  CleanOptions options = deep();
+  const CleanResult begun = cleaned_from_coarse(2, options);
+  BOOST_TEST(begun.report.cycles.front().accuracy == scene().coarser[2].accuracy);
+  BOOST_TEST(begun.report.final_state().accuracy == 0);
+  check_consistent(begun);
+
+  // A minor cycle to a thousandth needs more than a hundredth of the image's RMS.
+  options.min_psf_fraction = options.max_psf_fraction = 0.001;
+  BOOST_TEST(cleaned_from_coarse(0, options).report.cycles.front().accuracy == 0);
+
+  options.threshold_jy = 10;
+  const CleanResult nothing = cleaned_from_coarse(2, options);
+  BOOST_TEST(nothing.report.iterations == 0);
+  BOOST_TEST((nothing.residual.pixel == scene().images.dirty.front().pixel));
+}
+
+BOOST_AUTO_TEST_CASE(minor_cycles_go_deeper_once_they_are_seen_to_leave_little) {
+  CleanOptions options = deep();
+  options.threshold_jy = 1e-5;
+  options.min_psf_fraction = 0.02;
+  const std::vector<MajorCycle> cycles = cleaned(options).report.cycles;
+  BOOST_TEST_REQUIRE(cycles.size() > 3U);
+  BOOST_TEST(cycles[1].cycle_threshold_jy == scene().max_sidelobe * cycles[0].peak_residual_jy,
+             boost::test_tools::tolerance(1e-12));
+  for (std::size_t k = 2; k < cycles.size(); ++k) {
+    if (cycles[k].cycle_threshold_jy == options.threshold_jy) continue;
+    const MajorCycle& before = cycles[k - 1];
+    const double part = cycles[k].cycle_threshold_jy / before.peak_residual_jy;
+    const double wrong = (before.peak_residual_jy - before.cycle_threshold_jy) / cycles[before.from].peak_residual_jy;
+    BOOST_TEST(part == std::clamp(2 * wrong, 0.02, scene().max_sidelobe), boost::test_tools::tolerance(1e-12));
+  }
+}
 
 BOOST_AUTO_TEST_CASE(transforms_that_mislead_it_are_not_asked_again) {
   Scene misled = make_scene({});
@@ -268,6 +313,7 @@ BOOST_AUTO_TEST_CASE(no_minor_cycle_finds_more_components_than_it_may) {
 
 BOOST_AUTO_TEST_CASE(the_limit_of_major_cycles_is_not_passed) {
   CleanOptions options = deep();
+  options.min_psf_fraction = 0.5;
   for (const int limit : {0, 1, 2}) {
     options.max_major_cycles = limit;
     const CleanResult result = cleaned(options);

@@ -47,14 +47,18 @@ VisibilityBlock samples_of_a_source(std::size_t rows, double west, double north,
 }
 
 /// Every sample twice, the second time with −0.9999 of its visibility: the image is 1e4 times weaker than the data.
-VisibilityBlock nearly_cancelling(unsigned seed) {
-  VisibilityBlock block = random_samples(200, 1, cell_rad, seed);
-  for (std::size_t row = 0; row < 200; ++row) {
+VisibilityBlock nearly_cancelling(VisibilityBlock block) {
+  const std::size_t rows = block.rows();
+  for (std::size_t row = 0; row < rows; ++row) {
     for (std::size_t axis = 0; axis < 3; ++axis) block.uvw_m.edit().push_back(block.uvw_m[3 * row + axis]);
     block.visibility.push_back(block.visibility[row] * -0.9999F);
     block.weight.push_back(block.weight[row]);
   }
   return block;
+}
+
+VisibilityBlock nearly_cancelling(unsigned seed) {
+  return nearly_cancelling(random_samples(200, 1, cell_rad, seed));
 }
 
 bool has_second_pass(const GriddingPlan& plan) {
@@ -129,6 +133,38 @@ BOOST_DATA_TEST_CASE(the_promise_holds_for_every_stokes_parameter_one_of_zeros_t
   BOOST_TEST(made.images.psf.at(20, 20) == 1, boost::test_tools::tolerance(1e-2));
   const TheoreticalError none = theoretical_error(made.plan, made.images.sums[2], root_mean_square(made.images.dirty[2]), {});
   BOOST_TEST(none.bound_max == 0);
+}
+
+BOOST_AUTO_TEST_CASE(images_that_begin_clean_are_as_exact_as_the_psf_unless_that_leaves_the_promise_open) {
+  GriddingRequest r = request(300, 300, 1e-8);
+  r.geometry.cell_rad = 1e-3;
+  r.psf_accuracy = 1e-2;
+  r.samples = 1'000'000;  // as if they took long
+  r.max_abs_w = 300;
+  const auto made_of = [&r](const VisibilityBlock& block) {
+    AccurateImages made = make_accurate_images(stored({block}), plan_gridding(r), {}, nullptr, {}, true);
+    BOOST_TEST_REQUIRE(made.plan.psf);
+    return made;
+  };
+  const VisibilityBlock block = random_samples_with_w(100, 1, r.geometry.cell_rad, 200, 3);
+  AccurateImages made = made_of(block);
+  const Image exact = direct_image(block, r.geometry);
+  const Image psf = made.images.psf;
+  BOOST_TEST(made.promise_kept);
+  BOOST_TEST(made.dirty_accuracy == 1e-2);
+  BOOST_TEST(relative_error(made.images.dirty[0].pixel, exact.pixel) <= 1e-2);
+  make_dirty_exact(stored({block}), {}, made);
+  BOOST_TEST(made.dirty_accuracy == 0);
+  BOOST_TEST(relative_error(made.images.dirty[0].pixel, exact.pixel) <= 1e-8);
+  BOOST_TEST((made.images.psf.pixel == psf.pixel));
+
+  r.accuracy = 1e-6;
+  const VisibilityBlock cancelling = nearly_cancelling(block);
+  const AccurateImages weak = made_of(cancelling);
+  BOOST_TEST(weak.dirty_accuracy == 0);
+  BOOST_TEST(weak.promise_kept);
+  BOOST_TEST(has_second_pass(weak.plan));
+  BOOST_TEST(relative_error(weak.images.dirty[0].pixel, direct_image(cancelling, r.geometry).pixel) <= 1e-6);
 }
 
 BOOST_AUTO_TEST_CASE(an_image_too_weak_for_any_kernel_is_said_to_be) {

@@ -89,4 +89,25 @@ BOOST_AUTO_TEST_CASE(a_kernel_or_a_way_that_was_asked_for_is_used) {
   BOOST_TEST(!is_direct([](GriddingRequest& r) { r.samples = 0; }));
 }
 
+BOOST_AUTO_TEST_CASE(coarser_transforms_are_as_exact_as_they_say_and_there_are_none_where_residuals_are_quick) {
+  const VisibilityBlock block = random_samples_with_w(1000, 4, field.cell_rad, 200, 2);
+  GriddingRequest request = request_for(block, 300);
+  BOOST_TEST(PlannedTransform(plan_gridding(request)).coarser().empty());
+  request.samples = 20'000'000;
+  const PlannedTransform transform(plan_gridding(request));
+  const AdjointResult direct = adjoint_of(DirectTransform(field, 2), block);
+  const Image model = model_of(5000);
+  const auto predicted = DirectTransform(field, 2).predict(model)->at(block);
+  BOOST_TEST_REQUIRE(!transform.coarser().empty());
+  double before = 1;
+  for (const CoarserTransform& coarser : transform.coarser()) {
+    BOOST_TEST(coarser.accuracy < before);
+    before = coarser.accuracy;
+    BOOST_TEST(relative_error(adjoint_of(*coarser.transform, block).images[0].pixel, direct.images[0].pixel) <= before);
+    BOOST_TEST(relative_error(coarser.transform->predict(model)->at(block), predicted) <= before);
+  }
+  request.padding = 2;
+  BOOST_TEST(PlannedTransform(plan_gridding(request)).coarser().empty());
+}
+
 BOOST_AUTO_TEST_SUITE_END()
