@@ -12,7 +12,7 @@
 #include "imager/clean/mask.h"
 #include "imager/clean/shared_model.h"
 #include "imager/data/noise.h"
-#include "imager/numerics/big_array.h"
+#include "imager/numerics/page_pool.h"
 #include "imager/taylor/taylor_imaging.h"
 
 namespace misfit::imager {
@@ -299,7 +299,6 @@ class Run {
     bool reached_depth = false;
     {
       const StageTimer timer(context_.times, stage::minor_cycles);
-      BigMemory::release();
       const MinorCycleReport found =
           minor_.clean(residuals_, {.gain = o_.gain,
                                     .max_iterations = o_.cycle_iterations < 0 ? left : std::min(left, o_.cycle_iterations),
@@ -380,7 +379,7 @@ class Run {
   }
 
   CleanResult result() {
-    BigMemory::release();
+    PagePool::release();
     CleanResult result;
     result.model = state_.model.image(o_.threads);
     result.residual = residual();

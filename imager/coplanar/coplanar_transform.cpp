@@ -31,9 +31,7 @@ class CoplanarTransform : public Transform {
   std::unique_ptr<AdjointSum> adjoint(const AdjointOptions& options) const override {
     return make_coplanar_adjoint<Real>(setup_, options);
   }
-  std::unique_ptr<Prediction> predict(const Image& model) const override {
-    return make_coplanar_prediction<Real>(setup_, model);
-  }
+  std::unique_ptr<Prediction> predict(Image model) const override { return make_coplanar_prediction<Real>(setup_, model); }
 
  private:
   CoplanarSetup<Real> setup_;

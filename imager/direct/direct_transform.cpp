@@ -250,7 +250,7 @@ std::unique_ptr<AdjointSum> DirectTransform::adjoint(const AdjointOptions& optio
   return std::make_unique<DirectAdjoint>(sums_, options);
 }
 
-std::unique_ptr<Prediction> DirectTransform::predict(const Image& model) const {
+std::unique_ptr<Prediction> DirectTransform::predict(Image model) const {
   std::vector<Source> sources;
   for (int row = 0; row < model.height; ++row)
     for (int column = 0; column < model.width; ++column)

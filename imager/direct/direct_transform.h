@@ -23,7 +23,7 @@ class DirectTransform : public Transform {
 
   std::unique_ptr<AdjointSum> adjoint(const AdjointOptions& options) const override;
   /// Only the pixels that are not 0 cost time.
-  std::unique_ptr<Prediction> predict(const Image& model) const override;
+  std::unique_ptr<Prediction> predict(Image model) const override;
 
  private:
   DirectSums sums_;
@@ -50,7 +50,7 @@ class PixelTransform : public Transform {
   PixelTransform(DirectPixels at, const Transform& whole) : at_(std::move(at)), whole_(whole) {}
 
   std::unique_ptr<AdjointSum> adjoint(const AdjointOptions& options) const override;
-  std::unique_ptr<Prediction> predict(const Image& model) const override { return whole_.predict(model); }
+  std::unique_ptr<Prediction> predict(Image model) const override { return whole_.predict(std::move(model)); }
 
  private:
   DirectPixels at_;

@@ -1,59 +1,30 @@
 #include "imager/numerics/big_array.h"
 
-#include <sys/mman.h>
-
 #include <cstdlib>
-#include <mutex>
 #include <new>
-#include <utility>
+
+#include "imager/numerics/page_pool.h"
 
 namespace misfit::imager {
 
-/// One block, the largest that was given back.
-struct BigMemory::Spare {
-  std::mutex mutex;
-  Block block;
-
-  Block take() {
-    const std::lock_guard lock(mutex);
-    return std::exchange(block, Block());
-  }
-  void give(Block given) {
-    const std::lock_guard lock(mutex);
-    if (given.bytes > block.bytes) std::swap(block, given);
-  }
-};
-
-BigMemory::Spare& BigMemory::spare() {
-  static Spare one;
-  return one;
-}
-
 void BigMemory::Free::operator()(void* memory) const {
-  std::free(memory);
-}
-
-BigMemory::~BigMemory() {
-  spare().give(std::move(block_));
+  if (!PagePool::give(memory)) std::free(memory);
 }
 
 void BigMemory::reserve(std::size_t bytes) {
-  if (bytes <= block_.bytes) return;
-  constexpr std::size_t huge_page = std::size_t{1} << 21, line = 64;
-  const std::size_t page = bytes < huge_page ? line : huge_page;  // what is small shares pages
-  const std::size_t whole = (bytes + page - 1) / page * page;
-  block_ = Block();  // what is too small makes room first
-  block_ = spare().take();
-  if (whole <= block_.bytes) return;
-  block_ = Block();
-  block_.memory.reset(std::aligned_alloc(page, whole));
-  if (!block_.memory) throw std::bad_alloc();
-  block_.bytes = whole;
-  if (page == huge_page) madvise(block_.memory.get(), whole, MADV_HUGEPAGE);  // a hint: without it small pages serve
-}
-
-void BigMemory::release() {
-  spare().take();
+  if (bytes <= bytes_) return;
+  constexpr std::size_t line = 64;
+  memory_.reset();  // what is too small makes room first
+  bytes_ = 0;
+  const std::size_t lines = (bytes + line - 1) / line * line;
+#ifdef MISFIT_SANITIZED  // sanitizers watch the C library's alone
+  constexpr bool may_share_pages = true;
+#else
+  const bool may_share_pages = bytes < PagePool::page_bytes;
+#endif
+  memory_.reset(may_share_pages ? std::aligned_alloc(line, lines) : PagePool::take(bytes));
+  if (!memory_) throw std::bad_alloc();
+  bytes_ = bytes;
 }
 
 }  // namespace misfit::imager

@@ -5,36 +5,25 @@
 
 namespace misfit::imager {
 
-/// Memory for grids, not initialised, in huge pages where the system lends them: a tile's rows lie pages apart. What one grid
-/// gives back the next one takes, since pages fresh from the system are as dear as gridding into them.
+/// Memory for grids, not initialised, in huge pages where it fills any: a tile's rows lie pages apart.
 class BigMemory {
  public:
   BigMemory() = default;
   BigMemory(const BigMemory&) = delete;
   BigMemory& operator=(const BigMemory&) = delete;
-  ~BigMemory();
 
   /// Room for that many bytes, their content lost where more room is needed.
   void reserve(std::size_t bytes);
-  void* data() { return block_.memory.get(); }
-  const void* data() const { return block_.memory.get(); }
-
-  /// Gives what lies spare back to the system.
-  static void release();
+  void* data() { return memory_.get(); }
+  const void* data() const { return memory_.get(); }
 
  private:
   struct Free {
     void operator()(void* memory) const;
   };
-  struct Block {
-    std::unique_ptr<void, Free> memory;
-    std::size_t bytes = 0;
-  };
-  struct Spare;
 
-  static Spare& spare();
-
-  Block block_;
+  std::unique_ptr<void, Free> memory_;
+  std::size_t bytes_ = 0;
 };
 
 /// The same as an array of values.

@@ -1,6 +1,7 @@
 #include "imager/plan/planned_transform.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "imager/plan/cost_model.h"
 
@@ -54,10 +55,10 @@ const std::vector<CoarserTransform>& PlannedTransform::coarser() const {
   return coarser_;
 }
 
-std::unique_ptr<Prediction> PlannedTransform::predict(const Image& model) const {
+std::unique_ptr<Prediction> PlannedTransform::predict(Image model) const {
   const auto pixels = std::count_if(model.pixel.begin(), model.pixel.end(), [](double x) { return x != 0; });
-  if (static_cast<std::uint64_t>(pixels) <= direct_pixels_) return DirectTransform(direct_).predict(model);
-  return images_->predict(model);
+  if (static_cast<std::uint64_t>(pixels) <= direct_pixels_) return DirectTransform(direct_).predict(std::move(model));
+  return images_->predict(std::move(model));
 }
 
 }  // namespace misfit::imager

@@ -3,7 +3,6 @@
 #include <utility>
 
 #include "imager/data/phase.h"
-#include "imager/numerics/big_array.h"
 #include "imager/numerics/phasors.h"
 #include "imager/taylor/taylor_prediction.h"
 #include "imager/transform/visibility_pass_internal.h"
@@ -13,7 +12,6 @@ namespace {
 
 std::vector<Image> normalised_images(std::unique_ptr<AdjointSum> sum, const ImagedData& imaged, const Context& context) {
   AdjointResult result = finish_adjoint(std::move(sum), imaged.samples.source.ranks(), context);
-  BigMemory::release();
   const StageTimer timer(context.times, stage::fft);
   for (Image& image : result.images) imaged.normalisation.make_image(image);
   return std::move(result.images);
@@ -65,10 +63,9 @@ std::vector<Image> make_taylor_residuals(const ImagedData& imaged, std::vector<I
   for (Image& model : models) imaged.normalisation.make_predicted(model);
   auto sum = begin_adjoint(imaged.transform, {.images = expansion.terms}, context);
   const TaylorPowers powers{0, expansion.terms - 1};
-  std::vector<const Image*> terms;
-  for (const Image& model : models) terms.push_back(&model);
   for_each_residual(
-      imaged.samples, [&] { return std::make_unique<TaylorPrediction>(imaged.transform, terms, expansion); }, context,
+      imaged.samples, [&] { return std::make_unique<TaylorPrediction>(imaged.transform, std::move(models), expansion); },
+      context,
       [&](const VisibilityBlock& block, const std::vector<std::complex<double>>& residual) {
         const StageTimer timer(context.times, stage::grid);
         sum->add(block, taylor_sets(expansion, block, residual, powers));

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 namespace misfit::imager {
 namespace {
@@ -29,13 +30,12 @@ void horner_step(const std::vector<double>& x, const Visibilities& next, Visibil
 
 }  // namespace
 
-TaylorPrediction::TaylorPrediction(const Transform& transform, const std::vector<const Image*>& models,
-                                   const TaylorExpansion& expansion)
+TaylorPrediction::TaylorPrediction(const Transform& transform, std::vector<Image> models, const TaylorExpansion& expansion)
     : expansion_(expansion) {
   if (expansion.terms < 1 || models.size() != static_cast<std::size_t>(expansion.terms))
     throw std::invalid_argument(std::to_string(models.size()) + " models of " + std::to_string(expansion.terms) +
                                 " Taylor terms; expected one for each");
-  for (const Image* model : models) term_.push_back(transform.predict(*model));
+  for (Image& model : models) term_.push_back(transform.predict(std::move(model)));
 }
 
 std::vector<std::complex<double>> TaylorPrediction::at(const SampleCoordinates& coordinates) const {

@@ -12,7 +12,7 @@ namespace misfit::imager {
 class TaylorPrediction : public Prediction {
  public:
   /// Throws std::invalid_argument unless there is a model for each term.
-  TaylorPrediction(const Transform& transform, const std::vector<const Image*>& models, const TaylorExpansion& expansion);
+  TaylorPrediction(const Transform& transform, std::vector<Image> models, const TaylorExpansion& expansion);
 
   std::vector<std::complex<double>> at(const SampleCoordinates& coordinates) const override;
   std::vector<std::complex<double>> at_usable(const VisibilityBlock& block) const override;

@@ -1,8 +1,9 @@
 #include "imager/transform/imaging.h"
 
 #include <stdexcept>
+#include <utility>
 
-#include "imager/numerics/big_array.h"
+#include "imager/numerics/page_pool.h"
 #include "imager/transform/visibility_pass_internal.h"
 
 namespace misfit::imager {
@@ -35,7 +36,7 @@ ImageStatistics normalise(Image& adjoint, const Normalisation& by, const Ranks& 
 }
 
 DirtyImages dirty_images(AdjointResult sum, Image psf, const Ranks& ranks, const Context& context) {
-  BigMemory::release();
+  PagePool::release();
   require_any(sum.sums.front());
   const StageTimer timer(context.times, stage::fft);
   const Normalisation by_weight(sum.sums.front().weight);
@@ -99,16 +100,16 @@ void for_each_residual(const OneStokes& samples, const MakePrediction& predict, 
   context.move_seconds(stage::degrid, stage::fft, prediction->fft_s());
 }
 
-void for_each_residual(const OneStokes& samples, const Transform& transform, const Image& model, const Context& context,
+void for_each_residual(const OneStokes& samples, const Transform& transform, Image model, const Context& context,
                        const VisitResidual& visit) {
   for_each_residual(
-      samples, [&] { return transform.predict(model); }, context, visit);
+      samples, [&] { return transform.predict(std::move(model)); }, context, visit);
 }
 
 Image make_residual_image(const ImagedData& imaged, Image model, const Context& context) {
   auto sum = begin_adjoint(imaged.transform, {}, context);
   imaged.normalisation.make_predicted(model);
-  for_each_residual(imaged.samples, imaged.transform, model, context,
+  for_each_residual(imaged.samples, imaged.transform, std::move(model), context,
                     [&](const VisibilityBlock& block, const std::vector<std::complex<double>>& residual) {
                       const StageTimer timer(context.times, stage::grid);
                       sum->add(block, residual);

@@ -47,7 +47,7 @@ DirtyImages make_dirty_images(const VisibilitySource& source, const Transform& t
 using VisitResidual = std::function<void(const VisibilityBlock& block, const std::vector<std::complex<double>>& residual)>;
 
 /// One pass over the visibilities less those of a model, which every rank has. Stages timed: "read", "fft", "degrid".
-void for_each_residual(const OneStokes& samples, const Transform& transform, const Image& model, const Context& context,
+void for_each_residual(const OneStokes& samples, const Transform& transform, Image model, const Context& context,
                        const VisitResidual& visit);
 
 /// The same of a model whose prediction is made once the pass has begun.

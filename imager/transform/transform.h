@@ -98,7 +98,7 @@ class Transform {
  public:
   virtual ~Transform() = default;
   virtual std::unique_ptr<AdjointSum> adjoint(const AdjointOptions& options) const = 0;
-  virtual std::unique_ptr<Prediction> predict(const Image& model) const = 0;
+  virtual std::unique_ptr<Prediction> predict(Image model) const = 0;
 };
 
 /// A transform that costs less than another, and is less exact.

@@ -1,6 +1,7 @@
 #include "imager/wide/wide_prediction.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "imager/numerics/parallel.h"
 #include "imager/numerics/spares.h"
@@ -13,7 +14,7 @@ namespace {
 template <typename Real>
 class WidePrediction : public Prediction {
  public:
-  WidePrediction(const WideSetup<Real>& setup, const Image& model) : setup_(setup), model_(model) {}
+  WidePrediction(const WideSetup<Real>& setup, Image model) : setup_(setup), model_(std::move(model)) {}
 
   std::vector<std::complex<double>> at(const SampleCoordinates& coordinates) const override {
     return degrid({{&coordinates}}).front();
@@ -96,10 +97,10 @@ class WidePrediction : public Prediction {
 }  // namespace
 
 template <typename Real>
-std::unique_ptr<Prediction> make_wide_prediction(const WideSetup<Real>& setup, const Image& model) {
+std::unique_ptr<Prediction> make_wide_prediction(const WideSetup<Real>& setup, Image model) {
   return std::make_unique<WidePrediction<Real>>(setup, model);
 }
-template std::unique_ptr<Prediction> make_wide_prediction<float>(const WideSetup<float>&, const Image&);
-template std::unique_ptr<Prediction> make_wide_prediction<double>(const WideSetup<double>&, const Image&);
+template std::unique_ptr<Prediction> make_wide_prediction<float>(const WideSetup<float>&, Image);
+template std::unique_ptr<Prediction> make_wide_prediction<double>(const WideSetup<double>&, Image);
 
 }  // namespace misfit::imager

@@ -6,8 +6,8 @@
 
 namespace misfit::imager {
 
-/// The prediction of a wide transform from a copy of the model; `setup` must outlive it.
+/// The prediction of a wide transform of a model; `setup` must outlive it.
 template <typename Real>
-std::unique_ptr<Prediction> make_wide_prediction(const WideSetup<Real>& setup, const Image& model);
+std::unique_ptr<Prediction> make_wide_prediction(const WideSetup<Real>& setup, Image model);
 
 }  // namespace misfit::imager

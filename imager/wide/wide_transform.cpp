@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 #include "imager/wide/facet.h"
 #include "imager/wide/tile_sum.h"
@@ -20,7 +21,9 @@ class WideTransform : public Transform {
   std::unique_ptr<AdjointSum> adjoint(const AdjointOptions& options) const override {
     return make_wide_adjoint<Real>(setup_, options);
   }
-  std::unique_ptr<Prediction> predict(const Image& model) const override { return make_wide_prediction<Real>(setup_, model); }
+  std::unique_ptr<Prediction> predict(Image model) const override {
+    return make_wide_prediction<Real>(setup_, std::move(model));
+  }
 
  private:
   WideSetup<Real> setup_;

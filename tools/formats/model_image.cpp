@@ -9,6 +9,7 @@
 #include <optional>
 #include <stdexcept>
 #include <system_error>
+#include <utility>
 
 #include "imager/data/extent.h"
 #include "imager/plan/planned_transform.h"
@@ -211,9 +212,9 @@ ModelVisibilities image_visibilities(const StokesPlanes& planes, const imager::I
     if (further.empty()) {
       model.predictions[k] = model.transform->predict(*planes[k]);
     } else {
-      std::vector<const imager::Image*> terms{planes[k]};
-      terms.insert(terms.end(), further.begin(), further.end());
-      model.predictions[k] = std::make_unique<imager::TaylorPrediction>(*model.transform, terms, taylor.expansion);
+      std::vector<imager::Image> terms{*planes[k]};
+      for (const imager::Image* term : further) terms.push_back(*term);
+      model.predictions[k] = std::make_unique<imager::TaylorPrediction>(*model.transform, std::move(terms), taylor.expansion);
     }
     of[k] = model.predictions[k].get();
     model.samples_at_once = std::max<std::uint64_t>(model.samples_at_once, of[k]->samples_at_once());

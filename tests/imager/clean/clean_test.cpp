@@ -180,7 +180,7 @@ class Haunted : public Transform {
   std::unique_ptr<AdjointSum> adjoint(const AdjointOptions& options) const override {
     return std::make_unique<Sum>(transform_.adjoint(options), options);
   }
-  std::unique_ptr<Prediction> predict(const Image& model) const override { return transform_.predict(model); }
+  std::unique_ptr<Prediction> predict(Image model) const override { return transform_.predict(std::move(model)); }
 
  private:
   class Sum : public AdjointSum {

@@ -24,12 +24,6 @@ std::vector<Image> models(int terms) {
   return result;
 }
 
-std::vector<const Image*> pointers(const std::vector<Image>& images) {
-  std::vector<const Image*> result;
-  for (const Image& image : images) result.push_back(&image);
-  return result;
-}
-
 VisibilityBlock samples() {
   return random_samples(60, 5, geometry.cell_rad, 3);
 }
@@ -48,7 +42,7 @@ BOOST_AUTO_TEST_CASE(it_is_the_sum_of_the_terms_predictions_times_powers_of_x) {
   const VisibilityBlock block = samples();
   for (const int terms : {1, 2, 3}) {
     const std::vector<Image> of = models(terms);
-    const TaylorPrediction prediction(transform, pointers(of), {reference_hz, terms});
+    const TaylorPrediction prediction(transform, of, {reference_hz, terms});
     std::vector<std::complex<double>> sum(block.samples());
     for (int t = 0; t < terms; ++t) {
       const auto one = transform.predict(of[static_cast<std::size_t>(t)])->at(block);
@@ -72,7 +66,7 @@ BOOST_AUTO_TEST_CASE(it_is_the_adjoint_of_imaging_taylor_weighted_visibilities) 
   for (const std::shared_ptr<Transform>& transform :
        {std::shared_ptr<Transform>(std::make_shared<DirectTransform>(DirectSums{geometry, true, 1})),
         std::shared_ptr<Transform>(gridding())}) {
-    const auto predicted = TaylorPrediction(*transform, pointers(of), expansion).at_usable(block);
+    const auto predicted = TaylorPrediction(*transform, of, expansion).at_usable(block);
     double in_data = 0, size = 0;
     for (std::size_t i = 0; i < predicted.size(); ++i) {
       in_data += double{block.weight[i]} * (predicted[i] * std::conj(visibility[i])).real();
@@ -104,7 +98,7 @@ BOOST_AUTO_TEST_CASE(sets_are_visibilities_times_powers_of_x) {
 BOOST_AUTO_TEST_CASE(a_model_is_needed_for_each_term) {
   const DirectTransform transform({geometry, true, 1});
   const std::vector<Image> of = models(2);
-  BOOST_CHECK_THROW(TaylorPrediction(transform, pointers(of), {reference_hz, 3}), std::invalid_argument);
+  BOOST_CHECK_THROW(TaylorPrediction(transform, of, {reference_hz, 3}), std::invalid_argument);
 }
 
 /// As many sets of visibilities as images.

@@ -1,0 +1,21 @@
+#pragma once
+
+#include <cstddef>
+
+namespace misfit::imager {
+
+/// Memory in huge pages, for what is large. What one block gives back others take, whatever their sizes, since the system
+/// clears every page that it lends, which takes as long as gridding into it. It never holds more than blocks had taken at once.
+class PagePool {
+ public:
+  static constexpr std::size_t page_bytes = std::size_t{1} << 21;
+
+  /// A block of that many bytes, in whole pages and not initialised; null where the system has no room.
+  static void* take(std::size_t bytes) noexcept;
+  /// Whether `memory` is a block taken before, which it gives back then.
+  static bool give(void* memory) noexcept;
+  /// Gives what lies spare back to the system.
+  static void release() noexcept;
+};
+
+}  // namespace misfit::imager

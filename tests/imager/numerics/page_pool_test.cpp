@@ -1,0 +1,90 @@
+#include "imager/numerics/page_pool.h"
+
+#include <algorithm>
+#include <boost/test/unit_test.hpp>
+#include <cstdint>
+#include <cstdlib>
+#include <random>
+#include <thread>
+#include <vector>
+
+BOOST_AUTO_TEST_SUITE(page_pool)
+
+using misfit::imager::PagePool;
+
+namespace {
+
+struct Block {
+  std::uint64_t* words;
+  std::size_t count;
+  std::uint64_t mark;
+
+  void write() {
+    for (std::size_t i = 0; i < count; ++i) words[i] = mark + i;
+  }
+  bool is_whole() const {
+    for (std::size_t i = 0; i < count; ++i)
+      if (words[i] != mark + i) return false;
+    return true;
+  }
+};
+
+void give(void* memory) {
+  BOOST_REQUIRE(PagePool::give(memory));
+}
+
+/// Takes and gives back blocks of any size, many at a time. Returns whether each kept what was written into it.
+bool blocks_stay_whole(unsigned seed) {
+  std::mt19937 random(seed);
+  std::vector<Block> blocks;
+  bool whole = true;
+  for (int step = 0; step < 300; ++step) {
+    if (blocks.size() > 5 || (!blocks.empty() && random() % 2 == 0)) {
+      std::swap(blocks[random() % blocks.size()], blocks.back());
+      whole = whole && blocks.back().is_whole();
+      give(blocks.back().words);
+      blocks.pop_back();
+    } else {
+      const std::size_t count = 1 + random() % (4 * PagePool::page_bytes / sizeof(std::uint64_t));
+      blocks.push_back({static_cast<std::uint64_t*>(PagePool::take(count * sizeof(std::uint64_t))), count, random()});
+      blocks.back().write();
+    }
+  }
+  for (const Block& block : blocks) {
+    whole = whole && block.is_whole();
+    give(block.words);
+  }
+  return whole;
+}
+
+}  // namespace
+
+BOOST_AUTO_TEST_CASE(blocks_begin_with_a_page_and_keep_what_is_written_also_beside_other_threads) {
+  void* const block = PagePool::take(1);
+  BOOST_TEST_REQUIRE(block != nullptr);
+  BOOST_TEST(reinterpret_cast<std::uintptr_t>(block) % PagePool::page_bytes == 0U);
+  give(block);
+  bool beside = false;
+  std::thread other([&beside] { beside = blocks_stay_whole(1); });
+  BOOST_TEST(blocks_stay_whole(2));
+  other.join();
+  BOOST_TEST(beside);
+  PagePool::release();
+  BOOST_TEST(blocks_stay_whole(3));
+}
+
+BOOST_AUTO_TEST_CASE(what_is_not_of_the_pool_stays_as_it_is) {
+  int here = 0;
+  BOOST_TEST(!PagePool::give(&here));
+  BOOST_TEST(!PagePool::give(nullptr));
+  void* const aligned = std::aligned_alloc(PagePool::page_bytes, PagePool::page_bytes);
+  BOOST_TEST(!PagePool::give(aligned));
+  std::free(aligned);
+}
+
+BOOST_AUTO_TEST_CASE(more_than_there_can_be_is_refused) {
+  BOOST_TEST(PagePool::take(~std::size_t{0}) == nullptr);
+  BOOST_TEST(PagePool::take(std::size_t{1} << 50) == nullptr);
+}
+
+BOOST_AUTO_TEST_SUITE_END()
