@@ -25,8 +25,8 @@ struct CleanOptions {
   double gain = 0.1;        ///< part of a peak that a component takes
   double threshold_jy = 0;  ///< stop when the peak residual exceeds it by threshold_tolerance at most
   double nsigma = 0;        ///< or not above this many times the robust noise
-  /// A minor cycle goes down to the peak × largest sidelobe × cycle factor, that fraction of the peak clamped to [min, max].
-  /// Where the cycle before left less than half the largest sidelobe above its depth, twice that counts in place of it.
+  /// A minor cycle goes down to the peak × largest sidelobe × cycle factor, that fraction of the peak clamped to [min, max],
+  /// but not below the threshold, or 5 % below it where the cycle before went down to it.
   double cycle_factor = 1;
   double min_psf_fraction = 0.05;
   double max_psf_fraction = 0.8;

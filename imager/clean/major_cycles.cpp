@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <iterator>
 #include <memory>
 #include <optional>
 #include <stdexcept>
@@ -12,7 +13,6 @@
 #include "imager/clean/mask.h"
 #include "imager/clean/shared_model.h"
 #include "imager/data/noise.h"
-#include "imager/numerics/page_pool.h"
 #include "imager/taylor/taylor_imaging.h"
 
 namespace misfit::imager {
@@ -99,8 +99,11 @@ class Run {
     start.accuracy = make_residual(input_.dirty_accuracy);
     if (o_.automask) state_.mask.allowed = Image(residual().width, residual().height);
     measure(start);
+    if (start.accuracy > accuracy_for_next(start.peak_residual_jy, start)) {
+      start.accuracy = make_residual(exact);
+      measure(start);
+    }
     keep(std::move(start));
-    if (now().accuracy > accuracy_for_next(now().peak_residual_jy)) make_exact();
   }
 
   /// At the limit of iterations, or at the last depth for the second time, the first having left what sidelobes had hidden.
@@ -125,9 +128,9 @@ class Run {
 
   /// How exact the residual of a model must be for minor cycles that follow one of this depth: its error shall be a small part
   /// of theirs. It is in proportion to images of the data and of the model as if their phases were random.
-  double accuracy_for_next(double depth_jy) const {
+  double accuracy_for_next(double depth_jy, const MajorCycle& before) const {
     constexpr double small = 0.02, less_noise = 0.5;  // the noise falls as sources go
-    const double next = std::max(o_.min_psf_fraction * depth_jy, less_noise * last_depth(now()));
+    const double next = std::max(depth_fraction() * depth_jy, less_noise * last_depth(before));
     double square = 0;
     for (const Component& c : state_.model.components()) square += c.flux_jy * c.flux_jy;
     const double visibilities_jy = std::max(input_.data_jy, std::sqrt(square));
@@ -265,19 +268,11 @@ class Run {
     return fell(&MajorCycle::peak_residual_jy) || fell(&MajorCycle::mean_square_jy2);
   }
 
-  /// The depth of the next minor cycle: where what it takes off wrongly could pass for sources.
+  /// The depth of the next minor cycle: where the sidelobes of the brightest source could pass for sources.
   double cycle_threshold() const { return std::max(depth_fraction() * now().peak_residual_jy, last_depth(now())); }
   double depth_fraction() const {
-    const double fraction = std::clamp(o_.cycle_factor * wrong_part(), o_.min_psf_fraction, o_.max_psf_fraction);
+    const double fraction = std::clamp(o_.cycle_factor * input_.max_sidelobe, o_.min_psf_fraction, o_.max_psf_fraction);
     return 1 - std::ldexp(1 - fraction, -state_.tightened);
-  }
-  /// Which part of a peak minor cycles may take off wrongly. Before anything is known it is as in tclean the largest sidelobe;
-  /// then twice what the last cycle left above its depth, if that is less. Masks that grow let in what it did not clean.
-  double wrong_part() const {
-    constexpr double safe = 2;
-    if (state_.now == 0 || o_.automask) return input_.max_sidelobe;
-    const double left = now().peak_residual_jy - now().cycle_threshold_jy;
-    return std::min(input_.max_sidelobe, safe * left / state_.cycles[now().from].peak_residual_jy);
   }
   /// Whether the minor cycle that left this went as deep as threshold and nsigma ask.
   bool is_at_last_depth(const MajorCycle& cycle) const {
@@ -313,8 +308,8 @@ class Run {
       state_.model.add(found.components);
     }
     cycle.from = state_.now;
-    cycle.accuracy =
-        make_residual(state_.exact_from != 0 || is_likely_last(cycle) ? exact : accuracy_for_next(cycle.cycle_threshold_jy));
+    cycle.accuracy = make_residual(
+        state_.exact_from != 0 || is_likely_last(cycle) ? exact : accuracy_for_next(cycle.cycle_threshold_jy, now()));
     // A peak that is as bright as before, although it was cleaned, may be of the transform's making.
     if (cycle.accuracy != exact && reached_depth && peak_within_mask() > hardly_less * now().peak_residual_jy) {
       stay_exact();
@@ -363,7 +358,7 @@ class Run {
     else
       ++state_.tightened;
     return_to_best();
-    if (may_be_misled) make_exact();
+    if (state_.exact_from != 0) make_exact();
   }
 
   void return_to_best() {
@@ -379,14 +374,13 @@ class Run {
   }
 
   CleanResult result() {
-    PagePool::release();
     CleanResult result;
+    if (made_.empty())
+      for (const Image* residual : residuals_) made_.push_back(*residual);
+    result.residual = std::move(made_.front());
+    result.further_residuals.assign(std::make_move_iterator(made_.begin() + 1), std::make_move_iterator(made_.end()));
     result.model = state_.model.image(o_.threads);
-    result.residual = residual();
-    for (std::size_t t = 1; t < residuals_.size(); ++t) {
-      result.further_models.push_back(state_.model.image(o_.threads, static_cast<int>(t)));
-      result.further_residuals.push_back(*residuals_[t]);
-    }
+    for (int t = 1; t < input_.expansion.terms; ++t) result.further_models.push_back(state_.model.image(o_.threads, t));
     result.report.iterations = now().iterations;
     result.report.stop = end_->stop;
     result.report.stop_reason = end_->reason;

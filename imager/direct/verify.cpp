@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <random>
+#include <utility>
 
 #include "imager/data/noise.h"
 
@@ -105,8 +106,8 @@ MeasuredError measure_error(const VisibilitySource& source, const Transform& tra
 
   Image model(geometry.width, geometry.height);
   for (const Pixel& pixel : pixels) model.at(pixel.row, pixel.column) = random() % 2 == 0 ? 1 : -1;
-  const auto gridded = transform.predict(model)->at(samples);
   const auto direct = DirectTransform(geometry, context.threads).predict(model)->at(samples);
+  const auto gridded = transform.predict(std::move(model))->at(samples);
   double difference = 0;
   double size = 0;
   for (std::size_t i = 0; i < direct.size(); ++i) {

@@ -8,6 +8,7 @@
 #include <map>
 #include <mutex>
 #include <new>
+#include <utility>
 #include <vector>
 
 namespace misfit::imager {
@@ -30,13 +31,18 @@ struct PlainAllocator {
   bool operator==(const PlainAllocator& /*other*/) const { return true; }
 };
 
-/// Whole pages, one after the other.
+/// Whole pages, one after the other, that the system knows as one mapping: of those alone some can be moved at once.
 struct Pages {
   char* begin;
   std::size_t bytes;
 };
+using Pieces = std::vector<Pages, PlainAllocator<Pages>>;
 
-/// Fresh ones, that begin at a multiple of their size; null where there is no room.
+void give_to_system(const Pieces& pieces) {
+  for (const Pages& pages : pieces) munmap(pages.begin, pages.bytes);
+}
+
+/// Fresh pages; null where there is no room.
 char* pages_of_system(std::size_t bytes) {
   void* const mapped = mmap(nullptr, bytes + page_bytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
   if (mapped == MAP_FAILED) return nullptr;
@@ -50,30 +56,33 @@ char* pages_of_system(std::size_t bytes) {
 
 struct Pool {
   std::mutex mutex;
-  std::map<void*, std::size_t, std::less<>, PlainAllocator<std::pair<void* const, std::size_t>>> taken;
-  std::vector<Pages, PlainAllocator<Pages>> spare;
+  std::map<void*, Pieces, std::less<>, PlainAllocator<std::pair<void* const, Pieces>>> taken;
+  Pieces spare;
 
-  void release() {
-    for (const Pages& pages : spare) munmap(pages.begin, pages.bytes);
-    spare.clear();
-  }
-
-  /// A block of whole pages, of spare ones as far as there are; null where there is no room.
-  char* block(std::size_t bytes) {
-    char* const begin = pages_of_system(bytes);
-    for (char *at = begin, *const end = begin + bytes; begin != nullptr && at < end && !spare.empty();) {
-      Pages& last = spare.back();
-      const auto moved = std::min(static_cast<std::size_t>(end - at), last.bytes);
-      last.bytes -= moved;
-      if (mremap(last.begin + last.bytes, moved, moved, MREMAP_MAYMOVE | MREMAP_FIXED, at) == MAP_FAILED) {
-        munmap(last.begin + last.bytes, moved);
-        munmap(begin, bytes);
-        return nullptr;
+  /// A block of whole pages, of spare ones as far as there are; none where there is no room.
+  Pieces block(std::size_t bytes) {
+    Pieces pieces;
+    char* at = pages_of_system(bytes);
+    if (at == nullptr) return pieces;
+    pieces.reserve(spare.size() + 1);
+    for (char* const end = at + bytes; at < end;) {
+      if (spare.empty()) {
+        pieces.push_back({at, static_cast<std::size_t>(end - at)});
+        break;
       }
-      if (last.bytes == 0) spare.pop_back();
-      at += moved;
+      const std::size_t moved = std::min(static_cast<std::size_t>(end - at), spare.back().bytes);
+      Pages& from = spare.back();
+      if (mremap(from.begin, moved, moved, MREMAP_MAYMOVE | MREMAP_FIXED, at) == MAP_FAILED) {
+        // What became of the pages at `at` is not known, and others may have them by now.
+        pieces.push_back({at + moved, static_cast<std::size_t>(end - at) - moved});
+        give_to_system(pieces);
+        return {};
+      }
+      pieces.push_back({at, moved});
+      from.begin += moved, from.bytes -= moved, at += moved;
+      if (from.bytes == 0) spare.pop_back();
     }
-    return begin;
+    return pieces;
   }
 };
 
@@ -86,46 +95,51 @@ Pool& pool() {
 
 }  // namespace
 
-void* PagePool::take(std::size_t bytes) noexcept {
+void* PagePool::take(std::size_t bytes) noexcept try {
   const std::size_t whole = (bytes + page_bytes - 1) / page_bytes * page_bytes;
-  if (whole < bytes) return nullptr;
+  if (whole < bytes || whole == 0) return nullptr;
   Pool& p = pool();
   const std::lock_guard lock(p.mutex);
-  char* block = p.block(whole);
-  if (block == nullptr) {
-    p.release();
+  Pieces block = p.block(whole);
+  if (block.empty()) {
+    give_to_system(p.spare);
+    p.spare.clear();
     block = p.block(whole);
   }
-  if (block == nullptr) return nullptr;
-  try {
-    p.taken.emplace(block, whole);
-  } catch (const std::bad_alloc&) {
-    munmap(block, whole);
-    return nullptr;
-  }
-  return block;
+  if (block.empty()) return nullptr;
+  void* const begin = block.front().begin;
+  p.taken.emplace(begin, std::move(block));
+  return begin;
+} catch (const std::bad_alloc&) {
+  return nullptr;
 }
 
 bool PagePool::give(void* memory) noexcept {
+  constexpr std::size_t most_pieces = 4096;  // a process may have some 65 000
   if (memory == nullptr || reinterpret_cast<std::uintptr_t>(memory) % page_bytes != 0) return false;
   Pool& p = pool();
   const std::lock_guard lock(p.mutex);
   const auto found = p.taken.find(memory);
   if (found == p.taken.end()) return false;
-  const Pages pages{static_cast<char*>(memory), found->second};
+  const Pieces pieces = std::move(found->second);
   p.taken.erase(found);
   try {
-    p.spare.push_back(pages);
+    if (p.spare.size() + pieces.size() > most_pieces) throw std::bad_alloc();
+    p.spare.insert(p.spare.end(), pieces.begin(), pieces.end());
   } catch (const std::bad_alloc&) {
-    munmap(pages.begin, pages.bytes);
+    give_to_system(pieces);
   }
   return true;
 }
 
 void PagePool::release() noexcept {
   Pool& p = pool();
-  const std::lock_guard lock(p.mutex);
-  p.release();
+  Pieces spare;
+  {
+    const std::lock_guard lock(p.mutex);
+    spare.swap(p.spare);
+  }
+  give_to_system(spare);
 }
 
 }  // namespace misfit::imager

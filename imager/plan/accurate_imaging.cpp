@@ -54,7 +54,8 @@ AccurateImages make_images(const VisibilitySource& source, GriddingPlan plan, co
   }
   std::optional<ComparedPixels> pixels;
   if (taken.any()) pixels.emplace(made.plan, made.transform->images());
-  if (begin_clean && !pixels && made.plan.psf && may_be_coarser(made.plan))
+  if (begin_clean && !pixels && made.plan.psf && may_be_coarser(made.plan) &&
+      made.plan.psf->request.accuracy > made.plan.request.accuracy)
     made.dirty_accuracy = made.plan.psf->request.accuracy;
   const Transform& psf = taken.psf ? pixels->transform() : made.transform->psf();
   const Transform& images = made.dirty_accuracy != 0 ? psf : taken.dirty ? pixels->transform() : made.transform->images();
@@ -116,6 +117,17 @@ bool would_keep_promise(const AccurateImages& made) {
   return made.plan.psf->expected_error * weakest <= known && made.plan.expected_error * weakest <= made.plan.request.accuracy;
 }
 
+/// Makes dirty images, in place of those made together with the PSF, as exactly as the plan says.
+void make_dirty_exact(const VisibilitySource& source, const Context& context, AccurateImages& made) {
+  made.images.dirty.clear();  // there may be no room for both
+  DirtyImages exact =
+      make_dirty_images(source, made.transform->images(), AdjointOptions{made.plan.request.stokes, false}, context);
+  exact.psf = std::move(made.images.psf);
+  exact.psf_statistics = made.images.psf_statistics;
+  made.images = std::move(exact);
+  made.dirty_accuracy = 0;
+}
+
 }  // namespace
 
 TheoreticalError theoretical_error(const GriddingPlan& plan, const SampleSums& sums, double image_rms,
@@ -130,15 +142,6 @@ TheoreticalError theoretical_error(const GriddingPlan& plan, const SampleSums& s
   error.bound_rms = ((1 + plan.bound_rms) * (1 + phase_max) - 1) * flux;
   error.bound_max = ((1 + plan.bound_max) * (1 + phase_max) - 1) * flux;
   return error;
-}
-
-void make_dirty_exact(const VisibilitySource& source, const Context& context, AccurateImages& made) {
-  DirtyImages exact =
-      make_dirty_images(source, made.transform->images(), AdjointOptions{made.plan.request.stokes, false}, context);
-  exact.psf = std::move(made.images.psf);
-  exact.psf_statistics = made.images.psf_statistics;
-  made.images = std::move(exact);
-  made.dirty_accuracy = 0;
 }
 
 AccurateImages make_accurate_images(const VisibilitySource& source, GriddingPlan plan, const Context& context,

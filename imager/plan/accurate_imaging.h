@@ -44,7 +44,4 @@ AccurateImages make_accurate_images(const VisibilitySource& source, GriddingPlan
                                     std::shared_ptr<const PlannedTransform> transform = nullptr, const TakenImages& taken = {},
                                     bool begin_clean = false);
 
-/// Makes dirty images that were only to begin CLEAN as exactly as the plan says. Stages timed: those of make_dirty_images.
-void make_dirty_exact(const VisibilitySource& source, const Context& context, AccurateImages& made);
-
 }  // namespace misfit::imager

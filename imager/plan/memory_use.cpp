@@ -149,6 +149,8 @@ MemoryUse peak_memory(const MemoryDemand& d, const StreamingOptions& streaming) 
     stages.push_back({"prediction is verified", process_bytes, kept, 0, t.visibilities, t.fft, others + verified * image});
   add_taylor_stages(d, s, stages);
   if (d.clean_scales > 0) {
+    // Where the PSF's transform did not make the dirty image exactly enough.
+    stages.push_back({"the dirty image is made anew", process_bytes, kept, s.in_flight, t.visibilities, t.fft, 2 * image});
     const double masks = d.mask ? 2 : 0;  // it, and the residual within
     // Where every pixel is a component of the model, those of two models and of what they are sorted in.
     const double components = d.start_model ? 3 * component_bytes / pixel_bytes : 0;

@@ -3,7 +3,6 @@
 #include <stdexcept>
 #include <utility>
 
-#include "imager/numerics/page_pool.h"
 #include "imager/transform/visibility_pass_internal.h"
 
 namespace misfit::imager {
@@ -36,7 +35,6 @@ ImageStatistics normalise(Image& adjoint, const Normalisation& by, const Ranks& 
 }
 
 DirtyImages dirty_images(AdjointResult sum, Image psf, const Ranks& ranks, const Context& context) {
-  PagePool::release();
   require_any(sum.sums.front());
   const StageTimer timer(context.times, stage::fft);
   const Normalisation by_weight(sum.sums.front().weight);

@@ -98,7 +98,7 @@ class WidePrediction : public Prediction {
 
 template <typename Real>
 std::unique_ptr<Prediction> make_wide_prediction(const WideSetup<Real>& setup, Image model) {
-  return std::make_unique<WidePrediction<Real>>(setup, model);
+  return std::make_unique<WidePrediction<Real>>(setup, std::move(model));
 }
 template std::unique_ptr<Prediction> make_wide_prediction<float>(const WideSetup<float>&, Image);
 template std::unique_ptr<Prediction> make_wide_prediction<double>(const WideSetup<double>&, Image);

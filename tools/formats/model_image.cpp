@@ -212,7 +212,8 @@ ModelVisibilities image_visibilities(const StokesPlanes& planes, const imager::I
     if (further.empty()) {
       model.predictions[k] = model.transform->predict(*planes[k]);
     } else {
-      std::vector<imager::Image> terms{*planes[k]};
+      std::vector<imager::Image> terms;
+      terms.push_back(*planes[k]);
       for (const imager::Image* term : further) terms.push_back(*term);
       model.predictions[k] = std::make_unique<imager::TaylorPrediction>(*model.transform, std::move(terms), taylor.expansion);
     }

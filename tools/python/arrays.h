@@ -5,6 +5,7 @@
 #include <functional>
 
 #include "imager/arrays/strided.h"
+#include "imager/numerics/page_pool.h"
 #include "imager/numerics/parallel.h"
 
 namespace misfit::python {
@@ -37,6 +38,10 @@ auto without_gil(const Work& work) {
     const pybind11::gil_scoped_acquire python;
     if (PyErr_CheckSignals() != 0) throw pybind11::error_already_set();
   });
+  struct Release {
+    ~Release() { imager::PagePool::release(); }
+  };
+  const Release at_the_end;
   return work();
 }
 

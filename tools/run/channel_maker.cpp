@@ -43,8 +43,7 @@ void ChannelMaker::prepare_clean(ChannelRun& run) {
   }
   if (!means_.images_here) return;
   run.choose_beams();
-  if (!o.clean.runs()) return;
-  if (!run.report().beams->restoring) return run.require_exact_dirty();
+  if (!o.clean.runs() || !run.report().beams->restoring) return;
   std::optional<imager::Image> primary_beam;
   if (o.primary_beam.pbmask > 0 || (o.measures_noise_in_beam() && means_.primary_beam != nullptr)) {
     const imager::StageTimer timer(run.times(), imager::stage::primary_beam);

@@ -5,6 +5,7 @@
 
 #include "imager/clean/shared_model.h"
 #include "imager/direct/verify.h"
+#include "imager/numerics/page_pool.h"
 #include "tools/base/interrupt.h"
 #include "tools/run/beam_choice.h"
 #include "tools/run/image_files.h"
@@ -22,11 +23,11 @@ bool MadeChannel::stopped() const {
 
 namespace {
 
-/// Whether the dirty images are nothing but what CLEAN begins with. Of several Stokes parameters some may have nothing to
-/// clean.
+/// Whether the dirty image is nothing but what CLEAN begins with. Of several Stokes parameters or channels some may have
+/// nothing to clean.
 bool images_begin_clean(const ChannelScene& scene) {
   const TypedClean& o = scene.options.clean;
-  return o.niter > 0 && o.startmodel.empty() && scene.header.stokes.size() == 1;
+  return o.niter > 0 && o.startmodel.empty() && scene.header.stokes.size() == 1 && !scene.options.cube.is_cube();
 }
 
 }  // namespace
@@ -102,10 +103,6 @@ void ChannelRun::make_dirty(imager::GriddingPlan plan, std::shared_ptr<const ima
   }
   if (!images_.promise_kept)
     warn(accuracy_warning(scene_.options.gridding.accuracy, std::max(images_.judged_error, expected)) + name_);
-}
-
-void ChannelRun::require_exact_dirty() {
-  if (images_.dirty_accuracy != 0) imager::make_dirty_exact(samples(), context(), images_);
 }
 
 imager::TakenImages ChannelRun::taken() {
@@ -192,9 +189,12 @@ void ChannelRun::verify() {
   if (scene_.options.verify == 0) return;
   const imager::StageTimer timer(times(), imager::stage::verify);
   progress().begin("verify" + name_);
-  std::optional<imager::DirtyImages> exact;  // where CLEAN begins with others, and shall with or without this
+  // CLEAN may begin with a less exact image, and shall with or without this.
+  std::optional<imager::DirtyImages> exact;
+  imager::StageTimes within;  // they are this stage's
   if (images_.dirty_accuracy != 0)
-    exact = imager::make_dirty_images(samples(), images_.transform->images(), imager::AdjointOptions{}, context());
+    exact = imager::make_dirty_images(samples(), images_.transform->images(), imager::AdjointOptions{},
+                                      {.threads = scene_.threads, .times = &within});
   const imager::MeasuredError measured =
       imager::measure_error(samples(), images_.transform->images(), scene_.header.geometry, exact ? *exact : images_.images,
                             scene_.options.verify, context());
@@ -292,6 +292,7 @@ imager::CleanResult ChannelRun::clean(std::size_t stokes) {
 void ChannelRun::release_samples() {
   samples_.reset();
   images_.transform.reset();
+  if (scene_.told != nullptr) imager::PagePool::release();  // nothing as large follows
 }
 
 }  // namespace misfit::tools

@@ -73,8 +73,6 @@ class ChannelRun {
   /// By `transform`, if it is given, which is that of `plan`. Throws std::runtime_error where images that are to be taken are
   /// not those of the samples.
   void make_dirty(imager::GriddingPlan plan, std::shared_ptr<const imager::PlannedTransform> transform);
-  /// Makes the dirty image anew where it was made for CLEAN alone, which there will not be.
-  void require_exact_dirty();
   /// Those of further Taylor terms, which CLEAN then has too.
   void make_terms();
   /// Compares a residual that was taken with what the start model leaves, where there is one: a prediction for each.

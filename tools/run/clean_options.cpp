@@ -83,10 +83,8 @@ void declare(CLI::App& command, TypedClean& o) {
        OptionMark::free_of_state);
   mark(command.add_option("--nsigma", o.nsigma, "Stop when it reaches this many times the noise; 0 = never"),
        OptionMark::free_of_state);
-  mark(command.add_option(
-           "--cyclefactor", o.cyclefactor,
-           "Minor cycles go down to the peak times this times the largest sidelobe, or times less once they are seen "
-           "to err less"),
+  mark(command.add_option("--cyclefactor", o.cyclefactor,
+                          "Minor cycles go down to the peak times the largest sidelobe times this"),
        OptionMark::way_of_clean);
   mark(command.add_option("--minpsffraction", o.minpsffraction, "… at most this deep, as a part of the peak"),
        OptionMark::way_of_clean);

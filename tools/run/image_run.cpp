@@ -530,7 +530,8 @@ class ImageRun : private ChannelSink {
     if (const std::string failure = pictures_->finish(pictures); !failure.empty()) warn(failure);
     report_.expected = expected();
     const auto made_twice = [](const ChannelReport& channel) { return channel.made_twice; };
-    if (!o_.taken.any() && std::none_of(report_.channels.begin(), report_.channels.end(), made_twice))
+    const bool as_planned = !o_.clean.runs() || !imager::may_be_coarser(plan_.gridding);
+    if (!o_.taken.any() && as_planned && std::none_of(report_.channels.begin(), report_.channels.end(), made_twice))
       forecast_.learn(work_, times_);
     report_.wall_clock_s = watch_.seconds();
     outcome_.report = report_json(report_);

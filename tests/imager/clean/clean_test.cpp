@@ -223,23 +223,6 @@ BOOST_AUTO_TEST_CASE(it_begins_with_a_dirty_image_as_exact_as_needed_and_ends_ex
   BOOST_TEST((nothing.residual.pixel == scene().images.dirty.front().pixel));
 }
 
-BOOST_AUTO_TEST_CASE(minor_cycles_go_deeper_once_they_are_seen_to_leave_little) {
-  CleanOptions options = deep();
-  options.threshold_jy = 1e-5;
-  options.min_psf_fraction = 0.02;
-  const std::vector<MajorCycle> cycles = cleaned(options).report.cycles;
-  BOOST_TEST_REQUIRE(cycles.size() > 3U);
-  BOOST_TEST(cycles[1].cycle_threshold_jy == scene().max_sidelobe * cycles[0].peak_residual_jy,
-             boost::test_tools::tolerance(1e-12));
-  for (std::size_t k = 2; k < cycles.size(); ++k) {
-    if (cycles[k].cycle_threshold_jy == options.threshold_jy) continue;
-    const MajorCycle& before = cycles[k - 1];
-    const double part = cycles[k].cycle_threshold_jy / before.peak_residual_jy;
-    const double wrong = (before.peak_residual_jy - before.cycle_threshold_jy) / cycles[before.from].peak_residual_jy;
-    BOOST_TEST(part == std::clamp(2 * wrong, 0.02, scene().max_sidelobe), boost::test_tools::tolerance(1e-12));
-  }
-}
-
 BOOST_AUTO_TEST_CASE(transforms_that_mislead_it_are_not_asked_again) {
   Scene misled = make_scene({});
   for (CoarserTransform& coarser : misled.coarser)
@@ -313,7 +296,6 @@ BOOST_AUTO_TEST_CASE(no_minor_cycle_finds_more_components_than_it_may) {
 
 BOOST_AUTO_TEST_CASE(the_limit_of_major_cycles_is_not_passed) {
   CleanOptions options = deep();
-  options.min_psf_fraction = 0.5;
   for (const int limit : {0, 1, 2}) {
     options.max_major_cycles = limit;
     const CleanResult result = cleaned(options);

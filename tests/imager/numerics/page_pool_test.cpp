@@ -73,6 +73,33 @@ BOOST_AUTO_TEST_CASE(blocks_begin_with_a_page_and_keep_what_is_written_also_besi
   BOOST_TEST(blocks_stay_whole(3));
 }
 
+/// Pages of the system are clear, and those that come again are not.
+BOOST_AUTO_TEST_CASE(pages_come_again_in_blocks_of_any_size) {
+  PagePool::release();
+  constexpr std::size_t page_words = PagePool::page_bytes / sizeof(std::uint64_t);
+  std::vector<void*> blocks;
+  const auto take = [&blocks](std::size_t pages) { blocks.push_back(PagePool::take(pages * PagePool::page_bytes)); };
+  const auto word = [&blocks](std::size_t block, std::size_t page) -> std::uint64_t& {
+    return static_cast<std::uint64_t*>(blocks[block])[page * page_words];
+  };
+  const auto give_all = [&blocks] {
+    for (void* const block : blocks) give(block);
+    blocks.clear();
+  };
+  take(2), take(3), take(1);
+  for (const auto& [block, pages] : {std::pair(0, 2), {1, 3}, {2, 1}})
+    for (int page = 0; page < pages; ++page) word(block, page) = 1;
+  give_all();
+  take(6);
+  for (int page = 0; page < 6; ++page) BOOST_TEST(word(0, page) == 1U);
+  give_all();
+  take(4), take(2), take(1);
+  for (int page = 0; page < 4; ++page) BOOST_TEST(word(0, page) == 1U);
+  for (int page = 0; page < 2; ++page) BOOST_TEST(word(1, page) == 1U);
+  BOOST_TEST(word(2, 0) == 0U);
+  give_all();
+}
+
 BOOST_AUTO_TEST_CASE(what_is_not_of_the_pool_stays_as_it_is) {
   int here = 0;
   BOOST_TEST(!PagePool::give(&here));

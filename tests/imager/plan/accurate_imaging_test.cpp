@@ -147,16 +147,15 @@ BOOST_AUTO_TEST_CASE(images_that_begin_clean_are_as_exact_as_the_psf_unless_that
     return made;
   };
   const VisibilityBlock block = random_samples_with_w(100, 1, r.geometry.cell_rad, 200, 3);
-  AccurateImages made = made_of(block);
+  const AccurateImages made = made_of(block);
   const Image exact = direct_image(block, r.geometry);
-  const Image psf = made.images.psf;
   BOOST_TEST(made.promise_kept);
   BOOST_TEST(made.dirty_accuracy == 1e-2);
   BOOST_TEST(relative_error(made.images.dirty[0].pixel, exact.pixel) <= 1e-2);
-  make_dirty_exact(stored({block}), {}, made);
-  BOOST_TEST(made.dirty_accuracy == 0);
-  BOOST_TEST(relative_error(made.images.dirty[0].pixel, exact.pixel) <= 1e-8);
-  BOOST_TEST((made.images.psf.pixel == psf.pixel));
+  const AccurateImages shown = images_of(block, r);
+  BOOST_TEST(shown.dirty_accuracy == 0);
+  BOOST_TEST(relative_error(shown.images.dirty[0].pixel, exact.pixel) <= 1e-8);
+  BOOST_TEST(relative_error(shown.images.psf.pixel, made.images.psf.pixel) <= 2e-2);
 
   r.accuracy = 1e-6;
   const VisibilityBlock cancelling = nearly_cancelling(block);

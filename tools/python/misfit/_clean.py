@@ -118,8 +118,7 @@ def clean(
     smallscalebias : float
         By which part the largest scale counts less than points.
     cyclefactor, minpsffraction, maxpsffraction : float
-        A minor cycle goes down to the peak × largest sidelobe × `cyclefactor`, that fraction clamped to the other two. Where
-        the one before left less above its depth, twice that part of the peak counts in place of the largest sidelobe.
+        A minor cycle goes down to the peak × largest sidelobe × `cyclefactor`, that fraction clamped to the other two.
     cycleniter, nmajor : int
         Components of a minor cycle, and major cycles, at most; −1: any number.
     clean_mask : array, (npix_x, npix_y), optional
