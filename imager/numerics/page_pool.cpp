@@ -62,9 +62,9 @@ struct Pool {
   /// A block of whole pages, of spare ones as far as there are; none where there is no room.
   Pieces block(std::size_t bytes) {
     Pieces pieces;
+    pieces.reserve(spare.size() + 1);
     char* at = pages_of_system(bytes);
     if (at == nullptr) return pieces;
-    pieces.reserve(spare.size() + 1);
     for (char* const end = at + bytes; at < end;) {
       if (spare.empty()) {
         pieces.push_back({at, static_cast<std::size_t>(end - at)});
