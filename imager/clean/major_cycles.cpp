@@ -274,7 +274,7 @@ class Run {
     const double fraction = std::clamp(o_.cycle_factor * input_.max_sidelobe, o_.min_psf_fraction, o_.max_psf_fraction);
     return 1 - std::ldexp(1 - fraction, -state_.tightened);
   }
-  /// Whether the minor cycle that left this went as deep as threshold and nsigma ask.
+  /// Whether the minor cycle that left this state went as deep as threshold and nsigma ask.
   bool is_at_last_depth(const MajorCycle& cycle) const {
     return cycle.cycle_threshold_jy > 0 && cycle.cycle_threshold_jy <= std::max(o_.threshold_jy, o_.nsigma * cycle.rms_jy);
   }

@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::size_t page_bytes = PagePool::page_bytes;
 
-/// Of the C library: operator new may be made of the pool.
+/// Takes memory of the C library, since operator new may itself take that of the pool.
 template <typename T>
 struct PlainAllocator {
   using value_type = T;
@@ -31,7 +31,7 @@ struct PlainAllocator {
   bool operator==(const PlainAllocator& /*other*/) const { return true; }
 };
 
-/// Whole pages, one after the other, that the system knows as one mapping: of those alone some can be moved at once.
+/// Whole pages, one after the other, that the system knows as one mapping: before Linux 6.17 only such can be moved at once.
 struct Pages {
   char* begin;
   std::size_t bytes;
@@ -73,7 +73,7 @@ struct Pool {
       const std::size_t moved = std::min(static_cast<std::size_t>(end - at), spare.back().bytes);
       Pages& from = spare.back();
       if (mremap(from.begin, moved, moved, MREMAP_MAYMOVE | MREMAP_FIXED, at) == MAP_FAILED) {
-        // What became of the pages at `at` is not known, and others may have them by now.
+        // The system may have lent the pages at `at` to another thread by now: they are left alone.
         pieces.push_back({at + moved, static_cast<std::size_t>(end - at) - moved});
         give_to_system(pieces);
         return {};

@@ -12,7 +12,7 @@ class PagePool {
 
   /// A block of that many bytes, in whole pages and not initialised; null where the system has no room.
   static void* take(std::size_t bytes) noexcept;
-  /// Whether `memory` is a block taken before, which it gives back then.
+  /// Gives `memory` back if it is a block taken before; returns whether it is.
   static bool give(void* memory) noexcept;
   /// Gives what lies spare back to the system.
   static void release() noexcept;

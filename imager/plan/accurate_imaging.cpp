@@ -109,7 +109,7 @@ Weakness weakness_of(const DirtyImages& images) {
   return largest;
 }
 
-/// Whether dirty images made together with the PSF tell that those of the plan would keep their promise.
+/// Tells from dirty images made together with the PSF whether those of the plan would keep their promise.
 bool would_keep_promise(const AccurateImages& made) {
   constexpr double known = 0.02;  // an image's RMS
   const Weakness weak = weakness_of(made.images);

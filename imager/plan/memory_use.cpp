@@ -143,7 +143,7 @@ MemoryUse peak_memory(const MemoryDemand& d, const StreamingOptions& streaming) 
   if (d.stokes > 1)
     stages.push_back({"the last dirty image is made", process_bytes, kept, 0, t.visibilities + t.psf, t.fft, others + image});
   stages.push_back({"the PSF is made", process_bytes, kept, 0, t.psf, t.fft, others + 2 * image});
-  // Of a model image; CLEAN may begin with a less exact dirty image, which is kept.
+  // A model image is predicted beside dirty image and PSF, and the less exact dirty image that CLEAN may begin with.
   const double verified = d.clean_scales > 0 ? 4 : 3;
   if (d.verify)
     stages.push_back({"prediction is verified", process_bytes, kept, 0, t.visibilities, t.fft, others + verified * image});

@@ -38,7 +38,7 @@ auto without_gil(const Work& work) {
     const pybind11::gil_scoped_acquire python;
     if (PyErr_CheckSignals() != 0) throw pybind11::error_already_set();
   });
-  struct Release {
+  struct Release {  // grids are no use to Python until the next call
     ~Release() { imager::PagePool::release(); }
   };
   const Release at_the_end;

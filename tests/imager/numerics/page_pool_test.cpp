@@ -29,10 +29,6 @@ struct Block {
   }
 };
 
-void give(void* memory) {
-  BOOST_REQUIRE(PagePool::give(memory));
-}
-
 /// Takes and gives back blocks of any size, many at a time. Returns whether each kept what was written into it.
 bool blocks_stay_whole(unsigned seed) {
   std::mt19937 random(seed);
@@ -41,8 +37,7 @@ bool blocks_stay_whole(unsigned seed) {
   for (int step = 0; step < 300; ++step) {
     if (blocks.size() > 5 || (!blocks.empty() && random() % 2 == 0)) {
       std::swap(blocks[random() % blocks.size()], blocks.back());
-      whole = whole && blocks.back().is_whole();
-      give(blocks.back().words);
+      whole = whole && blocks.back().is_whole() && PagePool::give(blocks.back().words);
       blocks.pop_back();
     } else {
       const std::size_t count = 1 + random() % (4 * PagePool::page_bytes / sizeof(std::uint64_t));
@@ -50,10 +45,7 @@ bool blocks_stay_whole(unsigned seed) {
       blocks.back().write();
     }
   }
-  for (const Block& block : blocks) {
-    whole = whole && block.is_whole();
-    give(block.words);
-  }
+  for (const Block& block : blocks) whole = whole && block.is_whole() && PagePool::give(block.words);
   return whole;
 }
 
@@ -63,7 +55,7 @@ BOOST_AUTO_TEST_CASE(blocks_begin_with_a_page_and_keep_what_is_written_also_besi
   void* const block = PagePool::take(1);
   BOOST_TEST_REQUIRE(block != nullptr);
   BOOST_TEST(reinterpret_cast<std::uintptr_t>(block) % PagePool::page_bytes == 0U);
-  give(block);
+  BOOST_TEST(PagePool::give(block));
   bool beside = false;
   std::thread other([&beside] { beside = blocks_stay_whole(1); });
   BOOST_TEST(blocks_stay_whole(2));
@@ -83,7 +75,7 @@ BOOST_AUTO_TEST_CASE(pages_come_again_in_blocks_of_any_size) {
     return static_cast<std::uint64_t*>(blocks[block])[page * page_words];
   };
   const auto give_all = [&blocks] {
-    for (void* const block : blocks) give(block);
+    for (void* const block : blocks) BOOST_TEST(PagePool::give(block));
     blocks.clear();
   };
   take(2), take(3), take(1);
