@@ -32,8 +32,11 @@ BrightPlaces::BrightPlaces(const ScaledResidual& residual, const ScaledPsf& psf,
       near_tiles_(psf.near_tiles()),
       tiles_u_(tiles_along(residual.width())),
       tiles_v_(tiles_along(residual.height())),
-      pixels_(double{1} * residual.width() * residual.height()),
-      brightness_(brightness) {
+      width_(residual.width()),
+      height_(residual.height()),
+      brightness_(brightness),
+      outstanding_flux_(width_, height_, psf.scales().size()),
+      flux_(outstanding_flux_) {
   const auto tiles = static_cast<std::size_t>(tiles_u_) * static_cast<std::size_t>(tiles_v_);
   std::vector<Found> found(tiles);
   parallel_for(static_cast<std::size_t>(tiles_v_), threads, [&](std::size_t row) {
@@ -43,8 +46,6 @@ BrightPlaces::BrightPlaces(const ScaledResidual& residual, const ScaledPsf& psf,
   // Few places are brought up to date at once, wherever they lie.
   constexpr std::size_t few = 2048;
   if (psf.is_whole() && offset_.size() <= few) near_tiles_ = std::max(tiles_u_, tiles_v_);
-  flux_.reset(tiles, psf.scales().size());
-  outstanding_flux_.reset(tiles, psf.scales().size());
   outstanding_at_.assign(offset_.size(), -1);
 }
 
@@ -179,21 +180,8 @@ void BrightPlaces::subtract(const Place& at, const TaylorValues& coefficient, st
   }
 }
 
-void BrightPlaces::Flux::reset(std::size_t tiles, std::size_t scales) {
-  in_tile_.assign(tiles * scales, 0);
-  square_.assign(scales, 0);
-  largest_.assign(scales, 0);
-}
-
-void BrightPlaces::Flux::add(std::size_t tile, std::size_t scale, double jy) {
-  double& flux = in_tile_[tile * square_.size() + scale];
-  square_[scale] = std::max(0.0, square_[scale] + jy * (2 * flux + jy));
-  flux += jy;
-  largest_[scale] = std::max(largest_[scale], std::abs(flux));
-}
-
 void BrightPlaces::subtract(const Place& at, const TaylorValues& coefficient) {
-  flux_.add(at.tile, at.scale, coefficient[0]);
+  flux_.add(at.row, at.column, at.scale, coefficient[0]);
   const int tile_row = at.row / side, tile_column = at.column / side;
   const int first_row = std::max(0, tile_row - near_tiles_), last_row = std::min(tiles_v_ - 1, tile_row + near_tiles_);
   const int first = std::max(0, tile_column - near_tiles_), last = std::min(tiles_u_ - 1, tile_column + near_tiles_);
@@ -210,7 +198,7 @@ void BrightPlaces::subtract(const Place& at, const TaylorValues& coefficient) {
   }
   for (std::size_t t = 0; t < most_taylor_terms; ++t)
     outstanding_[static_cast<std::size_t>(known)].coefficient[t] += coefficient[t];
-  outstanding_flux_.add(at.tile, at.scale, coefficient[0]);
+  outstanding_flux_.add(at.row, at.column, at.scale, coefficient[0]);
 }
 
 double BrightPlaces::outstanding() const {
@@ -246,7 +234,7 @@ bool BrightPlaces::is_near(const Tile& a, const Tile& b) const {
 bool BrightPlaces::subtract_outstanding() {
   constexpr double convolution_cost = 16;  // of a pixel, over that of a place and a component, as measured
   const double pairs = static_cast<double>(outstanding_.size()) * static_cast<double>(offset_.size());
-  if (!psf_.is_whole() || pairs > convolution_cost * pixels_) return false;
+  if (!psf_.is_whole() || pairs > convolution_cost * width_ * height_) return false;
   std::sort(outstanding_.begin(), outstanding_.end(),
             [](const Outstanding& a, const Outstanding& b) { return a.place.index < b.place.index; });
   parallel_for(tile_.size(), threads_, [&](std::size_t tile) {
@@ -270,7 +258,7 @@ bool BrightPlaces::subtract_outstanding() {
   for (int row = 0; row < tiles_v_; ++row) look_at_row(row);
   for (const Outstanding& o : outstanding_) outstanding_at_[o.place.index] = -1;
   outstanding_.clear();
-  outstanding_flux_.reset(tile_.size(), psf_.scales().size());
+  outstanding_flux_ = FoundFlux(width_, height_, psf_.scales().size());
   return true;
 }
 

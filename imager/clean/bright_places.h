@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "imager/clean/found_flux.h"
 #include "imager/clean/scaled_psf.h"
 #include "imager/clean/scaled_residual.h"
 #include "imager/taylor/taylor_expansion.h"
@@ -67,7 +68,8 @@ class BrightPlaces {
   int near_tiles_;
   int tiles_u_;
   int tiles_v_;
-  double pixels_;                                ///< of the residual
+  int width_;  ///< of the residual
+  int height_;
   double brightness_;                            ///< of the faintest
   std::vector<Tile> tile_;                       ///< [row][column]
   std::vector<std::size_t> first_;               ///< [tile][scale], one more than these
@@ -83,21 +85,8 @@ class BrightPlaces {
   std::vector<Outstanding> outstanding_;
   std::vector<std::int32_t> outstanding_at_;  ///< [place], in outstanding_; −1
 
-  /// Flux of components by tile, since sidelobes of neighbours do not meet at random.
-  class Flux {
-   public:
-    void reset(std::size_t tiles, std::size_t scales);
-    void add(std::size_t tile, std::size_t scale, double jy);
-    double square(std::size_t scale) const { return square_[scale]; }    ///< Σ flux²
-    double largest(std::size_t scale) const { return largest_[scale]; }  ///< |flux|
-
-   private:
-    std::vector<double> in_tile_;  ///< [tile][scale]
-    std::vector<double> square_;
-    std::vector<double> largest_;
-  };
-  Flux outstanding_flux_;
-  Flux flux_;  ///< of all
+  FoundFlux outstanding_flux_;
+  FoundFlux flux_;  ///< of all components
 };
 
 }  // namespace misfit::imager

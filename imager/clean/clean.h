@@ -26,7 +26,9 @@ struct CleanOptions {
   double threshold_jy = 0;  ///< stop when the peak residual exceeds it by threshold_tolerance at most
   double nsigma = 0;        ///< or not above this many times the robust noise
   /// A minor cycle goes down to the peak × largest sidelobe × cycle factor, that fraction of the peak clamped to [min, max],
-  /// but not below the threshold, or 5 % below it where the cycle before went down to it.
+  /// and on to the least fraction while what it finds may be trusted: down to 6 × cycle factor × RMS of the PSF × √Σ f², f being
+  /// the flux found in squares of 64 pixels. It goes not below the threshold, or 5 % below it where the cycle before went down
+  /// to it.
   double cycle_factor = 1;
   double min_psf_fraction = 0.05;
   double max_psf_fraction = 0.8;

@@ -11,16 +11,22 @@
 namespace misfit::imager {
 namespace {
 
-/// How far down components are found: until no point is brighter, where that is not 0, or no place is.
-struct Depth {
-  double points;
-  double any;
+/// Bright places, as bright as this and brighter, and what becomes of them.
+struct InView {
+  BrightPlaces& bright;
+  double level;
+  double unit_jy;
+
+  /// Whether all points are as faint as that, those not in view included.
+  bool points_are_below(double jy) const { return level <= jy / unit_jy && bright.point_brightness() <= jy / unit_jy; }
 };
 
-/// Finds components among bright places to a depth, or until others may have become as bright. Returns the points' brightness.
-double find_among(BrightPlaces& bright, const ScaledPsf& psf, const MinorCycleOptions& o, double unit_jy, const Depth& depth,
-                  const MinorCycleWatch& watch, MinorCycleReport& report) {
+/// Finds components among bright places until points are as deep as they are to go, or no place is brighter than `lowest`, or
+/// others may have become as bright.
+void find_among(const InView& view, const ScaledPsf& psf, const MinorCycleOptions& o, double lowest, MinorCycleWatch& watch,
+                MinorCycleReport& report) {
   constexpr double bearable = 0.2;
+  BrightPlaces& bright = view.bright;
   const double first = bright.brightness();
   do {
     const BrightPlaces::Place at = bright.brightest();
@@ -28,15 +34,14 @@ double find_among(BrightPlaces& bright, const ScaledPsf& psf, const MinorCycleOp
     TaylorValues y = scale.basis.coordinates(at.residual);
     for (double& of_term : y) of_term *= o.gain;
     const TaylorValues coefficient = scale.basis.coefficients(y);
-    Component component{scale.looked_at.index, at.row, at.column, coefficient.front() * unit_jy};
-    for (std::size_t t = 1; t < most_taylor_terms; ++t) component.further_jy[t - 1] = coefficient[t] * unit_jy;
+    Component component{scale.looked_at.index, at.row, at.column, coefficient.front() * view.unit_jy};
+    for (std::size_t t = 1; t < most_taylor_terms; ++t) component.further_jy[t - 1] = coefficient[t] * view.unit_jy;
     report.components.push_back(component);
+    watch.add(component);
     bright.subtract(at, coefficient);
     if (bright.outstanding() > bearable * bright.brightness() && !bright.subtract_outstanding()) break;
-  } while ((depth.points == 0 || bright.point_brightness() > depth.points) &&
-           bright.brightness() > std::max(depth.any, bright.of_others()) &&
+  } while (!view.points_are_below(watch.depth_jy()) && bright.brightness() > std::max(lowest, bright.of_others()) &&
            bright.brightness() <= minor_cycle_divergence * first && !watch.is_at_limit(report));
-  return bright.point_brightness();
 }
 
 const MultiscaleOptions& checked(const std::vector<const Image*>& psf, const MultiscaleOptions& options) {
@@ -64,9 +69,9 @@ MinorCycleReport JointClean::find(const std::vector<const Image*>& residual, con
   const double unit = left.unit_jy(), threshold = o.threshold_jy / unit;
   MinorCycleReport report;
   Brightness now = brightness_of(left, psf_, options_.threads);
-  const MinorCycleWatch watch(o, now.points * unit);
+  MinorCycleWatch watch(o, width(), height(), now.points * unit);
   while (!watch.ends(now.points * unit, report)) {
-    if (report.iterations() > 0 && now.points <= as_good_as * threshold) {
+    if (report.iterations() > 0 && now.points * unit <= as_good_as * watch.depth_jy()) {
       report.end = MinorCycleEnd::threshold;
       break;
     }
@@ -83,12 +88,11 @@ MinorCycleReport JointClean::find(const std::vector<const Image*>& residual, con
       report.end = MinorCycleEnd::no_place;
       break;
     }
-    // Points end it only where all that exceed the threshold are in view.
-    const bool sees_points = level <= threshold;
-    const double peak = find_among(bright, psf_, o, unit,
-                                   {sees_points ? threshold : 0, points ? level : std::max(level, target)}, watch, report);
-    if (!o.to_the_last && sees_points && peak <= threshold) {
-      report.peak_jy = peak * unit;
+    const InView view{bright, level, unit};
+    find_among(view, psf_, o, points ? level : std::max(level, target), watch, report);
+    const bool last = o.to_the_last && watch.depth_jy() == o.threshold_jy;
+    if (!last && view.points_are_below(watch.depth_jy())) {
+      report.peak_jy = bright.point_brightness() * unit;
       report.end = MinorCycleEnd::threshold;
       break;
     }
@@ -97,6 +101,7 @@ MinorCycleReport JointClean::find(const std::vector<const Image*>& residual, con
     left.subtract(found);
     now = brightness_of(left, psf_, options_.threads);
   }
+  report.depth_jy = watch.depth_jy();
   return report;
 }
 

@@ -268,8 +268,20 @@ class Run {
     return fell(&MajorCycle::peak_residual_jy) || fell(&MajorCycle::mean_square_jy2);
   }
 
-  /// The depth of the next minor cycle: where the sidelobes of the brightest source could pass for sources.
-  double cycle_threshold() const { return std::max(depth_fraction() * now().peak_residual_jy, last_depth(now())); }
+  /// The depth to which the next minor cycle goes in any case: where the sidelobes of the brightest source could pass for
+  /// sources.
+  double sure_depth() const { return std::max(depth_fraction() * now().peak_residual_jy, last_depth(now())); }
+  /// That to which it goes while those of all that it has found could not.
+  double deepest() const {
+    if (state_.tightened > 0) return sure_depth();
+    return std::max(o_.min_psf_fraction * now().peak_residual_jy, last_depth(now()));
+  }
+  /// Of a minor cycle: its components' sidelobes, which the PSF tells wrongly where sources see another, or not at all where
+  /// they lie farther apart than half the image, err by about as much as if none of them had been taken off.
+  double doubt() const {
+    constexpr double deviations = 6;
+    return deviations * o_.cycle_factor * psf_rms_;
+  }
   double depth_fraction() const {
     const double fraction = std::clamp(o_.cycle_factor * input_.max_sidelobe, o_.min_psf_fraction, o_.max_psf_fraction);
     return 1 - std::ldexp(1 - fraction, -state_.tightened);
@@ -289,7 +301,7 @@ class Run {
   void one_cycle() {
     constexpr double hardly_less = 0.9;
     MajorCycle cycle;
-    cycle.cycle_threshold_jy = cycle_threshold();
+    const double deepest = this->deepest();
     const int left = o_.max_iterations - now().iterations;
     bool reached_depth = false;
     {
@@ -297,12 +309,15 @@ class Run {
       const MinorCycleReport found =
           minor_.clean(residuals_, {.gain = o_.gain,
                                     .max_iterations = o_.cycle_iterations < 0 ? left : std::min(left, o_.cycle_iterations),
-                                    .threshold_jy = cycle.cycle_threshold_jy,
+                                    .threshold_jy = deepest,
+                                    .doubt = doubt(),
+                                    .sure_jy = sure_depth(),
                                     .mask = mask(),
-                                    .to_the_last = cycle.cycle_threshold_jy <= last_depth(now()),
+                                    .to_the_last = deepest <= last_depth(now()),
                                     .stop_requested = o_.stop_requested});
       state_.found_nothing = found.components.empty();
       cycle.iterations = now().iterations + found.iterations();
+      cycle.cycle_threshold_jy = found.depth_jy;
       cycle.ended = description(found.end);
       reached_depth = found.end == MinorCycleEnd::threshold;
       state_.model.add(found.components);

@@ -22,7 +22,7 @@ MinorCycleReport MinorCycle::clean(const std::vector<const Image*>& residual, co
 
 bool MinorCycleWatch::ends(double peak_jy, MinorCycleReport& report) const {
   report.peak_jy = peak_jy;
-  if (!(peak_jy > options_.threshold_jy))
+  if (!(peak_jy > depth_jy()))
     report.end = MinorCycleEnd::threshold;
   else if (!(peak_jy <= minor_cycle_divergence * first_peak_jy_))
     report.end = MinorCycleEnd::diverging;

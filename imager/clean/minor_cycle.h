@@ -1,9 +1,12 @@
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <functional>
 #include <vector>
 
 #include "imager/clean/components.h"
+#include "imager/clean/found_flux.h"
 #include "imager/data/image.h"
 
 namespace misfit::imager {
@@ -11,7 +14,11 @@ namespace misfit::imager {
 struct MinorCycleOptions {
   double gain = 0.1;  ///< part of a peak that a component takes
   int max_iterations = 0;
-  double threshold_jy = 0;      ///< in Jy/beam; ends when no pixel that may be cleaned exceeds it in magnitude
+  double threshold_jy = 0;  ///< in Jy/beam; ends when no pixel that may be cleaned exceeds it in magnitude
+  /// Residuals made anew differ from what is left here by some part of √Σ f², f being the flux found in each square of
+  /// bright_tile_side pixels: it ends when no pixel exceeds `doubt` times that. But down to `sure_jy` it goes in any case.
+  double doubt = 0;
+  double sure_jy = 0;  ///< in Jy/beam; 0 = down to the threshold, whatever the doubt
   const Image* mask = nullptr;  ///< where components may lie, see mask.h; null = everywhere
   /// Whether the whole residual is looked at in the end, so that no pixel exceeds the threshold by more than half a percent.
   /// Otherwise pixels may exceed it that were faint until sidelobes went; a residual that is made anew shows them, too.
@@ -33,6 +40,7 @@ constexpr double minor_cycle_divergence = 3;
 struct MinorCycleReport {
   std::vector<Component> components;  ///< in the order in which they were found; places repeat
   double peak_jy = 0;                 ///< magnitude of the brightest pixel left that may be cleaned
+  double depth_jy = 0;                ///< down to which it was to go: the threshold, or what doubt made of it
   MinorCycleEnd end = MinorCycleEnd::threshold;
 
   int iterations() const { return static_cast<int>(components.size()); }
@@ -74,8 +82,15 @@ class MinorCycle {
 /// Says when a minor cycle ends, one way for all of them.
 class MinorCycleWatch {
  public:
-  MinorCycleWatch(const MinorCycleOptions& options, double first_peak_jy) : options_(options), first_peak_jy_(first_peak_jy) {}
+  /// Of an image of so many pixels.
+  MinorCycleWatch(const MinorCycleOptions& options, int width, int height, double first_peak_jy)
+      : options_(options), found_(width, height), first_peak_jy_(first_peak_jy) {}
 
+  void add(const Component& found) { found_.add(found.row, found.column, 0, found.flux_jy); }
+  /// How deep it is to go with what it found so far.
+  double depth_jy() const {
+    return std::max(options_.threshold_jy, std::min(options_.sure_jy, options_.doubt * std::sqrt(found_.square(0))));
+  }
   /// Whether no further component is to be taken now that the brightest pixel has this magnitude; if so, `report` says why.
   bool ends(double peak_jy, MinorCycleReport& report) const;
   /// Whether there are as many components as allowed, or the user wishes to end; if so, `report` says which.
@@ -83,6 +98,7 @@ class MinorCycleWatch {
 
  private:
   const MinorCycleOptions& options_;
+  FoundFlux found_;
   double first_peak_jy_;
 };
 

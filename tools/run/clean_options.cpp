@@ -83,12 +83,15 @@ void declare(CLI::App& command, TypedClean& o) {
        OptionMark::free_of_state);
   mark(command.add_option("--nsigma", o.nsigma, "Stop when it reaches this many times the noise; 0 = never"),
        OptionMark::free_of_state);
-  mark(command.add_option("--cyclefactor", o.cyclefactor,
-                          "Minor cycles go down to the peak times the largest sidelobe times this"),
+  mark(command.add_option(
+           "--cyclefactor", o.cyclefactor,
+           "Minor cycles go down to the peak times the largest sidelobe times this, and on while sidelobes of what they "
+           "found, times this, are fainter"),
        OptionMark::way_of_clean);
-  mark(command.add_option("--minpsffraction", o.minpsffraction, "… at most this deep, as a part of the peak"),
+  mark(command.add_option("--minpsffraction", o.minpsffraction, "Minor cycles go no deeper than to this part of the peak"),
        OptionMark::way_of_clean);
-  mark(command.add_option("--maxpsffraction", o.maxpsffraction, "… and at least this deep"), OptionMark::way_of_clean);
+  mark(command.add_option("--maxpsffraction", o.maxpsffraction, "Minor cycles go at least down to this part of the peak"),
+       OptionMark::way_of_clean);
   mark(command.add_option("--cycleniter", o.cycleniter, "Components that a minor cycle finds at most; -1 = no limit"),
        OptionMark::way_of_clean);
   mark(command.add_option("--nmajor", o.nmajor, "Major cycles at most; -1 = no limit"), OptionMark::free_of_state);
