@@ -112,17 +112,17 @@ ArrayClean clean_arrays(const ArrayCleanOptions& options, const ArrayCoordinates
   ArrayClean result;
   result.sums = made.images.sums.front();
   result.expected_error = expected_error;
-  const CleanInput input{.imaged = {source, *made.transform, made.images.normalisation},
-                         .dirty = {&made.images.dirty.front()},
-                         .psf = {&psf},
-                         .max_sidelobe = largest_sidelobe(psf, beam, cell_rad, threads),
-                         .coarser = made.transform->coarser(),
-                         .data_jy = made.images.sums.front().data_jy(),
-                         .accuracy = std::max(t.accuracy, expected_error),
-                         .beam = beam,
-                         .cell_rad = cell_rad};
+  CleanInput input{.imaged = {source, *made.transform, made.images.normalisation},
+                   .dirty = std::move(made.images.dirty),
+                   .psf = {&psf},
+                   .max_sidelobe = largest_sidelobe(psf, beam, cell_rad, threads),
+                   .coarser = made.transform->coarser(),
+                   .data_jy = made.images.sums.front().data_jy(),
+                   .accuracy = std::max(t.accuracy, expected_error),
+                   .beam = beam,
+                   .cell_rad = cell_rad};
   CleanResult cleaned =
-      clean(input, *minor, clean_options, state_of(options, minor->scale_pixels()), [](const CleanState&) {}, {});
+      clean(std::move(input), *minor, clean_options, state_of(options, minor->scale_pixels()), [](const CleanState&) {}, {});
   result.restored = restored({cleaned.model, cleaned.residual}, beam, cell_rad, threads);
   result.residual = std::move(cleaned.residual);
   result.model = std::move(cleaned.model);

@@ -227,6 +227,11 @@ double BrightPlaces::of_others() const {
   return brightness_ + deviations * std::sqrt(most);
 }
 
+bool BrightPlaces::sees_all_above(double brightness) const {
+  constexpr double surer = 3;  // than of_others() is
+  return outstanding_.empty() && brightness_ + surer * (of_others() - brightness_) <= brightness;
+}
+
 bool BrightPlaces::is_near(const Tile& a, const Tile& b) const {
   return std::abs(a.row - b.row) <= near_tiles_ * side && std::abs(a.column - b.column) <= near_tiles_ * side;
 }

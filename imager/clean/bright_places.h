@@ -40,6 +40,8 @@ class BrightPlaces {
   /// How bright other places may have become by all components, but for those near them: as many deviations above what they
   /// were.
   double of_others() const;
+  /// Whether all places that may be as bright as that are here, by nine deviations, and none has components outstanding.
+  bool sees_all_above(double brightness) const;
   /// Takes these off far tiles. Returns false, and does nothing, where the PSF that far is not known, or a convolution of the
   /// whole residual costs less.
   bool subtract_outstanding();

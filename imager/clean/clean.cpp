@@ -54,6 +54,17 @@ double largest_sidelobe(const Image& psf, const Beam& beam, double cell_rad, int
                   *std::max_element(largest.begin(), largest.end()));
 }
 
+double largest_far_sidelobe(const Image& psf) {
+  double largest = 0;
+  for (int r = 0; r < psf.height; ++r) {
+    const bool far_row = 4 * std::abs(r - psf.height / 2) >= psf.height;
+    const double* const row = psf.row(r);
+    for (int c = 0; c < psf.width; ++c)
+      if ((far_row || 4 * std::abs(c - psf.width / 2) >= psf.width) && std::abs(row[c]) > largest) largest = std::abs(row[c]);
+  }
+  return largest;
+}
+
 CleanState first_state(const ComponentModel& model) {
   CleanState state;
   state.model = state.best_model = model;

@@ -25,10 +25,11 @@ struct CleanOptions {
   double gain = 0.1;        ///< part of a peak that a component takes
   double threshold_jy = 0;  ///< stop when the peak residual exceeds it by threshold_tolerance at most
   double nsigma = 0;        ///< or not above this many times the robust noise
-  /// A minor cycle goes down to the peak × largest sidelobe × cycle factor, that fraction of the peak clamped to [min, max],
-  /// and on to the least fraction while what it finds may be trusted: down to 6 × cycle factor × RMS of the PSF × √Σ f², f being
-  /// the flux found in squares of 64 pixels. It goes not below the threshold, or 5 % below it where the cycle before went down
-  /// to it.
+  /// A minor cycle goes down to the peak × largest sidelobe × cycle factor, that fraction of the peak clamped to [min, max]. It
+  /// goes on to the least fraction, but no deeper than cycle factor × the greater of 6 √Σ f² × RMS of the PSF, f being the flux
+  /// found in each square of 64 pixels, and the largest f × largest_far_sidelobe(), if these sidelobes are at most a quarter of
+  /// the largest, and no cycle has left more than 1.5 times its depth. It goes not below the threshold, or 5 % below it where
+  /// the cycle before went down to it.
   double cycle_factor = 1;
   double min_psf_fraction = 0.05;
   double max_psf_fraction = 0.8;
@@ -113,12 +114,12 @@ struct CleanResult {
 /// samples, rank 0 cleans and the others call follow_clean().
 struct CleanInput {
   ImagedData imaged;
-  TaylorExpansion expansion{};      ///< of the components' spectra
-  std::vector<const Image*> dirty;  ///< of these samples: R_t [term], see TaylorImages
-  double dirty_accuracy = 0;        ///< relative, of `dirty`; 0 = as exact as `imaged` makes them
-  bool of_start = false;            ///< `dirty` are what the state's model leaves, and not the empty one
-  std::vector<const Image*> psf;    ///< P_k [k], 2 terms − 1 of them
-  double max_sidelobe = 0;          ///< the largest of the first PSF
+  TaylorExpansion expansion{};    ///< of the components' spectra
+  std::vector<Image> dirty;       ///< of these samples: R_t [term], see TaylorImages; CLEAN takes them as its first residuals
+  double dirty_accuracy = 0;      ///< relative, of `dirty`; 0 = as exact as `imaged` makes them
+  bool of_start = false;          ///< `dirty` are what the state's model leaves, and not the empty one
+  std::vector<const Image*> psf;  ///< P_k [k], 2 terms − 1 of them
+  double max_sidelobe = 0;        ///< the largest of the first PSF
   /// For residuals that decide where minor cycles go next, the least exact first; what CLEAN ends with is made by that of
   /// `imaged`.
   std::vector<CoarserTransform> coarser{};
@@ -135,6 +136,9 @@ using CycleProgress = std::function<void(const CleanState&)>;
 double largest_sidelobe(const Image& psf, const Image& beam);
 /// The same of a beam about the middle pixel, on pixels of this size.
 double largest_sidelobe(const Image& psf, const Beam& beam, double cell_rad, int threads);
+
+/// Largest magnitude of the PSF from a quarter of its width or height on; NaN does not count.
+double largest_far_sidelobe(const Image& psf);
 
 /// The state with which CLEAN begins: a model of the minor cycle's scales, of these points.
 CleanState first_state(const ComponentModel& model);
@@ -158,7 +162,7 @@ CleanState first_state(const ComponentModel& model);
 ///
 /// Stages timed: "minor cycles", "statistics", and those of make_residual_image. Throws std::runtime_error when a PSF or a
 /// residual is not finite, std::invalid_argument unless terms, images and `minor` agree.
-CleanResult clean(const CleanInput& input, const MinorCycle& minor, const CleanOptions& options, CleanState state,
+CleanResult clean(CleanInput input, const MinorCycle& minor, const CleanOptions& options, CleanState state,
                   const CycleProgress& cycle_progress, const Context& context);
 
 }  // namespace misfit::imager

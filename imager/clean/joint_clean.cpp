@@ -28,6 +28,10 @@ void find_among(const InView& view, const ScaledPsf& psf, const MinorCycleOption
   constexpr double bearable = 0.2;
   BrightPlaces& bright = view.bright;
   const double first = bright.brightness();
+  const auto is_deep_enough = [&] {
+    if (!view.points_are_below(watch.depth_jy())) return false;
+    return !o.to_the_last || !bright.subtract_outstanding() || view.points_are_below(watch.depth_jy());
+  };
   do {
     const BrightPlaces::Place at = bright.brightest();
     const ScaledPsf::Scale& scale = psf.scales()[at.scale];
@@ -40,7 +44,7 @@ void find_among(const InView& view, const ScaledPsf& psf, const MinorCycleOption
     watch.add(component);
     bright.subtract(at, coefficient);
     if (bright.outstanding() > bearable * bright.brightness() && !bright.subtract_outstanding()) break;
-  } while (!view.points_are_below(watch.depth_jy()) && bright.brightness() > std::max(lowest, bright.of_others()) &&
+  } while (!is_deep_enough() && bright.brightness() > std::max(lowest, bright.of_others()) &&
            bright.brightness() <= minor_cycle_divergence * first && !watch.is_at_limit(report));
 }
 
@@ -91,7 +95,7 @@ MinorCycleReport JointClean::find(const std::vector<const Image*>& residual, con
     const InView view{bright, level, unit};
     find_among(view, psf_, o, points ? level : std::max(level, target), watch, report);
     const bool last = o.to_the_last && watch.depth_jy() == o.threshold_jy;
-    if (!last && view.points_are_below(watch.depth_jy())) {
+    if (view.points_are_below(watch.depth_jy()) && (!last || bright.sees_all_above(watch.depth_jy() / unit))) {
       report.peak_jy = bright.point_brightness() * unit;
       report.end = MinorCycleEnd::threshold;
       break;

@@ -30,6 +30,12 @@ std::string in_jy(double value) {
   return text;
 }
 
+std::vector<const Image*> pointers_to(const std::vector<Image>& images) {
+  std::vector<const Image*> pointers;
+  for (const Image& image : images) pointers.push_back(&image);
+  return pointers;
+}
+
 struct Ending {
   CleanStop stop;
   std::string reason;
@@ -47,19 +53,20 @@ void require_same_terms(const CleanInput& input, const MinorCycle& minor) {
 /// One run of CLEAN.
 class Run {
  public:
-  Run(const CleanInput& input, const MinorCycle& minor, const CleanOptions& options, CleanState state, const Context& context)
-      : input_(input),
+  Run(CleanInput input, const MinorCycle& minor, const CleanOptions& options, CleanState state, const Context& context)
+      : input_(std::move(input)),
         minor_(minor),
         o_(options),
         context_(context),
-        sharer_(input.imaged.samples.source.ranks()),
+        sharer_(input_.imaged.samples.source.ranks()),
         state_(std::move(state)) {
-    require_same_terms(input, minor);
+    require_same_terms(input_, minor);
     if (state_.model.scale_pixels() != minor.scale_pixels())
       throw std::invalid_argument("a model of other scales than those of the minor cycle");
-    for (const Image* psf : input.psf) require_finite_psf(*psf);
-    psf_rms_ = root_mean_square(*input.psf.front());
-    dirty_ = statistics_of(*input.dirty.front(), o_.threads);
+    for (const Image* psf : input_.psf) require_finite_psf(*psf);
+    psf_rms_ = root_mean_square(*input_.psf.front());
+    far_sidelobe_ = largest_far_sidelobe(*input_.psf.front());
+    dirty_ = statistics_of(input_.dirty.front(), o_.threads);
   }
 
   CleanResult run(const CycleProgress& cycle_progress) {
@@ -143,25 +150,28 @@ class Run {
     return found == coarser.end() ? -1 : static_cast<int>(found - coarser.begin());
   }
 
-  /// The residuals of an empty model are the dirty images, unless these are those of the first. Others are made anew, and never
-  /// changed. Returns with which accuracy.
+  /// Whether the dirty images are those of the model now, as a run from its beginning has them.
+  bool begins_with_dirty() const {
+    return residuals_.empty() && (input_.of_start || (state_.model.components().empty() && state_.cycles.size() <= 1));
+  }
+
+  /// Returns with which accuracy. What was made is never changed.
   double make_residual(double accuracy) {
-    const bool first = residuals_.empty();
+    const bool dirty = begins_with_dirty() && accuracy >= input_.dirty_accuracy;
     residuals_.clear();
-    made_.clear();
-    if (accuracy >= input_.dirty_accuracy && (input_.of_start ? first : state_.model.components().empty())) {
-      residuals_ = input_.dirty;
+    if (dirty) {
+      residuals_ = std::move(input_.dirty);
       accuracy = input_.dirty_accuracy;
     } else {
+      input_.dirty.clear();
       const int coarser = coarser_of(accuracy);
       accuracy = coarser < 0 ? exact : input_.coarser[static_cast<std::size_t>(coarser)].accuracy;
       sharer_.share(state_.model, coarser);
-      made_ =
+      residuals_ =
           make_taylor_residuals(by_coarser(input_.imaged, input_.coarser, coarser), model_images(), input_.expansion, context_);
-      for (const Image& residual : made_) residuals_.push_back(&residual);
     }
     const StageTimer timer(context_.times, stage::statistics);
-    for (const Image* residual : residuals_) require_finite_residual(statistics_of(*residual, o_.threads), dirty_);
+    for (const Image& residual : residuals_) require_finite_residual(statistics_of(residual, o_.threads), dirty_);
     return accuracy;
   }
   std::vector<Image> model_images() const {
@@ -171,7 +181,7 @@ class Run {
     return images;
   }
   /// Of the first term, whose units and noise the thresholds are of.
-  const Image& residual() const { return *residuals_.front(); }
+  const Image& residual() const { return residuals_.front(); }
 
   bool mask_is_empty() const { return mask() != nullptr && imager::mask_is_empty(*mask()); }
   /// Of the whole image where the mask is empty.
@@ -271,16 +281,27 @@ class Run {
   /// The depth to which the next minor cycle goes in any case: where the sidelobes of the brightest source could pass for
   /// sources.
   double sure_depth() const { return std::max(depth_fraction() * now().peak_residual_jy, last_depth(now())); }
+  /// Whether no sidelobe but those near the peak could pass for a source, and residuals have nearly become what minor cycles
+  /// promised.
+  bool components_are_trusted() const {
+    constexpr double far_less = 0.25, nearly = 1.5;
+    const DoubtfulSidelobes doubtful = doubtful_sidelobes();
+    if (!(std::max(doubtful.rms, doubtful.largest) <= far_less * o_.cycle_factor * input_.max_sidelobe)) return false;
+    if (state_.tightened > 0 || state_.exact_from != 0) return false;
+    return std::all_of(state_.cycles.begin(), state_.cycles.end(), [](const MajorCycle& cycle) {
+      return cycle.cycle_threshold_jy == 0 || cycle.peak_residual_jy <= nearly * cycle.cycle_threshold_jy;
+    });
+  }
   /// That to which it goes while those of all that it has found could not.
   double deepest() const {
-    if (state_.tightened > 0) return sure_depth();
+    if (!components_are_trusted()) return sure_depth();
     return std::max(o_.min_psf_fraction * now().peak_residual_jy, last_depth(now()));
   }
-  /// Of a minor cycle: its components' sidelobes, which the PSF tells wrongly where sources see another, or not at all where
-  /// they lie farther apart than half the image, err by about as much as if none of them had been taken off.
-  double doubt() const {
+  /// Far from the phase centre sidelobes are others than the PSF's, and beyond half the image it has none. At random both leave
+  /// no more than if none had been taken off, and of one source what the PSF has farthest out.
+  DoubtfulSidelobes doubtful_sidelobes() const {
     constexpr double deviations = 6;
-    return deviations * o_.cycle_factor * psf_rms_;
+    return {deviations * o_.cycle_factor * psf_rms_, o_.cycle_factor * far_sidelobe_};
   }
   double depth_fraction() const {
     const double fraction = std::clamp(o_.cycle_factor * input_.max_sidelobe, o_.min_psf_fraction, o_.max_psf_fraction);
@@ -306,11 +327,11 @@ class Run {
     bool reached_depth = false;
     {
       const StageTimer timer(context_.times, stage::minor_cycles);
-      const MinorCycleReport found =
-          minor_.clean(residuals_, {.gain = o_.gain,
+      const MinorCycleReport found = minor_.clean(
+          pointers_to(residuals_), {.gain = o_.gain,
                                     .max_iterations = o_.cycle_iterations < 0 ? left : std::min(left, o_.cycle_iterations),
                                     .threshold_jy = deepest,
-                                    .doubt = doubt(),
+                                    .doubtful = doubtful_sidelobes(),
                                     .sure_jy = sure_depth(),
                                     .mask = mask(),
                                     .to_the_last = deepest <= last_depth(now()),
@@ -390,10 +411,8 @@ class Run {
 
   CleanResult result() {
     CleanResult result;
-    if (made_.empty())
-      for (const Image* residual : residuals_) made_.push_back(*residual);
-    result.residual = std::move(made_.front());
-    result.further_residuals.assign(std::make_move_iterator(made_.begin() + 1), std::make_move_iterator(made_.end()));
+    result.residual = std::move(residuals_.front());
+    result.further_residuals.assign(std::make_move_iterator(residuals_.begin() + 1), std::make_move_iterator(residuals_.end()));
     result.model = state_.model.image(o_.threads);
     for (int t = 1; t < input_.expansion.terms; ++t) result.further_models.push_back(state_.model.image(o_.threads, t));
     result.report.iterations = now().iterations;
@@ -407,24 +426,24 @@ class Run {
     return result;
   }
 
-  const CleanInput& input_;
+  CleanInput input_;
   const MinorCycle& minor_;
   const CleanOptions& o_;
   const Context& context_;
   ModelSharer sharer_;
   CleanState state_;
-  std::vector<const Image*> residuals_;  ///< [term], of state_.model
-  std::vector<Image> made_;              ///< the same, where they are not the dirty images
+  std::vector<Image> residuals_;  ///< [term], of state_.model
   std::optional<Ending> end_;
   double psf_rms_ = 0;
+  double far_sidelobe_ = 0;  ///< the largest from a quarter of the image on
   ImageStatistics dirty_;
 };
 
 }  // namespace
 
-CleanResult clean(const CleanInput& input, const MinorCycle& minor, const CleanOptions& options, CleanState state,
+CleanResult clean(CleanInput input, const MinorCycle& minor, const CleanOptions& options, CleanState state,
                   const CycleProgress& cycle_progress, const Context& context) {
-  return Run(input, minor, options, std::move(state), context).run(cycle_progress);
+  return Run(std::move(input), minor, options, std::move(state), context).run(cycle_progress);
 }
 
 }  // namespace misfit::imager

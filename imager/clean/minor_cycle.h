@@ -11,14 +11,21 @@
 
 namespace misfit::imager {
 
+/// Sidelobes that the PSF of a minor cycle may tell wrongly, or not at all.
+struct DoubtfulSidelobes {
+  double rms = 0;
+  double largest = 0;
+};
+
 struct MinorCycleOptions {
   double gain = 0.1;  ///< part of a peak that a component takes
   int max_iterations = 0;
   double threshold_jy = 0;  ///< in Jy/beam; ends when no pixel that may be cleaned exceeds it in magnitude
-  /// Residuals made anew differ from what is left here by some part of √Σ f², f being the flux found in each square of
-  /// bright_tile_side pixels: it ends when no pixel exceeds `doubt` times that. But down to `sure_jy` it goes in any case.
-  double doubt = 0;
-  double sure_jy = 0;  ///< in Jy/beam; 0 = down to the threshold, whatever the doubt
+  /// It ends when no pixel exceeds what it may leave of doubtful sidelobes: their RMS × √Σ f², f being the flux, all of one
+  /// sign, that it found in each square of bright_tile_side pixels, or the largest × f. But down to `sure_jy` it goes in any
+  /// case.
+  DoubtfulSidelobes doubtful;
+  double sure_jy = 0;           ///< in Jy/beam; 0 = down to the threshold, whatever the doubt
   const Image* mask = nullptr;  ///< where components may lie, see mask.h; null = everywhere
   /// Whether the whole residual is looked at in the end, so that no pixel exceeds the threshold by more than half a percent.
   /// Otherwise pixels may exceed it that were faint until sidelobes went; a residual that is made anew shows them, too.
@@ -86,10 +93,12 @@ class MinorCycleWatch {
   MinorCycleWatch(const MinorCycleOptions& options, int width, int height, double first_peak_jy)
       : options_(options), found_(width, height), first_peak_jy_(first_peak_jy) {}
 
-  void add(const Component& found) { found_.add(found.row, found.column, 0, found.flux_jy); }
+  void add(const Component& found) { found_.add(found.row, found.column, 0, std::abs(found.flux_jy)); }
   /// How deep it is to go with what it found so far.
   double depth_jy() const {
-    return std::max(options_.threshold_jy, std::min(options_.sure_jy, options_.doubt * std::sqrt(found_.square(0))));
+    const DoubtfulSidelobes& doubtful = options_.doubtful;
+    const double left_jy = std::max(doubtful.rms * std::sqrt(found_.square(0)), doubtful.largest * found_.largest(0));
+    return std::max(options_.threshold_jy, std::min(options_.sure_jy, left_jy));
   }
   /// Whether no further component is to be taken now that the brightest pixel has this magnitude; if so, `report` says why.
   bool ends(double peak_jy, MinorCycleReport& report) const;

@@ -53,7 +53,7 @@ CleanedField clean_wide_field(const VisibilitySource& source, const Transform& t
   const Sidelobes sidelobes(images.psf);
   CleanResult cleaned = clean(
       {.imaged = imaged,
-       .dirty = {&dirty},
+       .dirty = {dirty},
        .psf = {&images.psf},
        .max_sidelobe = sidelobes.from(lobe_pixels),
        .accuracy = 1e-4},

@@ -1,5 +1,7 @@
 #include "imager/taylor/taylor_imaging.h"
 
+#include <algorithm>
+#include <iterator>
 #include <utility>
 
 #include "imager/data/phase.h"
@@ -38,18 +40,29 @@ std::vector<std::complex<double>> visibilities_of_middle(const VisibilityBlock& 
 TaylorImages make_taylor_images(const ImagedData& imaged, const TaylorPsf& psf, const TaylorExpansion& expansion,
                                 const Context& context) {
   const TaylorPowers of_dirty{1, expansion.terms - 1}, of_psf{1, 2 * expansion.terms - 2};
+  const bool together = &imaged.transform == &psf.transform && of_dirty.last + of_psf.last <= most_stokes;
   VisibilityPass pass(imaged.samples.source, context);
-  auto sum = begin_adjoint(imaged.transform, {.images = of_dirty.last}, context);
-  auto psf_sum = begin_adjoint(psf.transform, {.images = of_psf.last}, context);
+  auto sum = begin_adjoint(imaged.transform, {.images = of_dirty.last + (together ? of_psf.last : 0)}, context);
+  auto psf_sum = together ? nullptr : begin_adjoint(psf.transform, {.images = of_psf.last}, context);
   pass.for_each_block([&](const VisibilityBlock& block) {
     const StageTimer timer(context.times, stage::grid);
     const std::complex<float>* const data = block.visibility_of(imaged.samples.index);
-    sum->add(block, taylor_sets(expansion, block, {data, data + block.samples()}, of_dirty));
-    psf_sum->add(block, taylor_sets(expansion, block, visibilities_of_middle(block, psf), of_psf));
+    auto dirty_sets = taylor_sets(expansion, block, {data, data + block.samples()}, of_dirty);
+    auto psf_sets = taylor_sets(expansion, block, visibilities_of_middle(block, psf), of_psf);
+    if (together)
+      std::move(psf_sets.begin(), psf_sets.end(), std::back_inserter(dirty_sets));
+    else
+      psf_sum->add(block, psf_sets);
+    sum->add(block, dirty_sets);
   });
   TaylorImages images;
-  images.psf = normalised_images(std::move(psf_sum), imaged, context);
+  if (psf_sum) images.psf = normalised_images(std::move(psf_sum), imaged, context);
   images.dirty = normalised_images(std::move(sum), imaged, context);
+  if (together && !images.dirty.empty()) {
+    const auto first_psf = images.dirty.begin() + of_dirty.last;
+    std::move(first_psf, images.dirty.end(), std::back_inserter(images.psf));
+    images.dirty.erase(first_psf, images.dirty.end());
+  }
   return images;
 }
 

@@ -267,7 +267,7 @@ imager::CleanResult ChannelRun::clean(std::size_t stokes) {
   const auto& theory = report().stokes[stokes].theory;
   CleanScene clean{.imaged = imaged(stokes),
                    .expansion = {},
-                   .dirty = {&images_.images.dirty[stokes]},
+                   .dirty = {},
                    .dirty_accuracy = images_.dirty_accuracy,
                    .of_start = !scene_.options.taken.calcres && !scene_.options.clean.startmodel.empty(),
                    .psf = {&images_.images.psf},
@@ -275,15 +275,15 @@ imager::CleanResult ChannelRun::clean(std::size_t stokes) {
                    .coarser = images_.transform->coarser(),
                    .data_jy = images_.images.sums[stokes].data_jy(),
                    .expected_error = theory ? theory->expected_rms : images_.plan.expected_error};
+  clean.dirty.push_back(std::move(images_.images.dirty[stokes]));
   if (taylor_) {
     clean.expansion = taylor_->expansion();
-    for (const imager::Image& dirty : taylor_->images().dirty) clean.dirty.push_back(&dirty);
+    for (imager::Image& dirty : taylor_->images().dirty) clean.dirty.push_back(std::move(dirty));
     clean.psf = taylor_->psf();
   }
   const auto cycle = [this](const imager::CleanState& state) { count_cycle(state); };
-  imager::CleanResult result = stage_->run(clean, scene_.option_values, cycle, context());
+  imager::CleanResult result = stage_->run(std::move(clean), scene_.option_values, cycle, context());
   if (!stage_->words_on_state().empty()) made_.doubts.push_back(stage_->words_on_state());
-  images_.images.dirty[stokes] = {};
   const imager::Image* const mask = stage_->mask(stokes);
   if (result.mask.pixel.empty() && mask != nullptr) result.mask = *mask;  // else it made one within that
   return result;

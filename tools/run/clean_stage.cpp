@@ -131,15 +131,15 @@ imager::CleanState CleanStage::begin(std::size_t stokes, const CleanStateOwner& 
 }
 
 std::uint64_t CleanStage::checksum_of(const CleanScene& scene) const {
-  std::vector<const imager::Image*> images{scene.dirty.front(), scene.psf.front()};
+  std::vector<const imager::Image*> images{&scene.dirty.front(), scene.psf.front()};
   if (start_model_)
     for (const imager::Image* term : start_model_->images(scene.imaged.samples.index)) images.push_back(term);
-  images.insert(images.end(), scene.dirty.begin() + 1, scene.dirty.end());
+  for (std::size_t t = 1; t < scene.dirty.size(); ++t) images.push_back(&scene.dirty[t]);
   images.insert(images.end(), scene.psf.begin() + 1, scene.psf.end());
   return checksum(images);
 }
 
-imager::CleanResult CleanStage::run(const CleanScene& scene, const StateOptionValues& option_values,
+imager::CleanResult CleanStage::run(CleanScene scene, const StateOptionValues& option_values,
                                     const imager::CycleProgress& cycle_progress, const imager::Context& context) {
   imager::CleanOptions options = clean_options(o_.clean, context.threads);
   options.stop_requested = interrupted;
@@ -166,24 +166,24 @@ imager::CleanResult CleanStage::run(const CleanScene& scene, const StateOptionVa
     state = begin(scene.imaged.samples.index, owner);
     sidelobe = imager::largest_sidelobe(*scene.psf.front(), scene.main_lobe, image_.geometry.cell_rad, context.threads);
   }
-  const imager::CleanInput input{.imaged = scene.imaged,
-                                 .expansion = scene.expansion,
-                                 .dirty = scene.dirty,
-                                 .dirty_accuracy = scene.dirty_accuracy,
-                                 .of_start = scene.of_start,
-                                 .psf = scene.psf,
-                                 .max_sidelobe = sidelobe,
-                                 .coarser = scene.coarser,
-                                 .data_jy = scene.data_jy,
-                                 .accuracy = std::max(o_.gridding.accuracy, scene.expected_error),
-                                 .beam = scene.main_lobe,
-                                 .cell_rad = image_.geometry.cell_rad};
+  imager::CleanInput input{.imaged = scene.imaged,
+                           .expansion = scene.expansion,
+                           .dirty = std::move(scene.dirty),
+                           .dirty_accuracy = scene.dirty_accuracy,
+                           .of_start = scene.of_start,
+                           .psf = scene.psf,
+                           .max_sidelobe = sidelobe,
+                           .coarser = scene.coarser,
+                           .data_jy = scene.data_jy,
+                           .accuracy = std::max(o_.gridding.accuracy, scene.expected_error),
+                           .beam = scene.main_lobe,
+                           .cell_rad = image_.geometry.cell_rad};
   const auto save = [&](const imager::CleanState& now) {
     const imager::StageTimer timer(context.times, imager::stage::clean_state);
     if (o_.taken.calcres) write_clean_state(state_path(scene.imaged.samples.index), now, owner);
     cycle_progress(now);
   };
-  return imager::clean(input, *minor, options, std::move(state), save, context);
+  return imager::clean(std::move(input), *minor, options, std::move(state), save, context);
 }
 
 }  // namespace misfit::tools

@@ -20,7 +20,7 @@ namespace misfit::tools {
 struct CleanScene {
   imager::ImagedData imaged;
   imager::TaylorExpansion expansion;
-  std::vector<const imager::Image*> dirty;          ///< [term]
+  std::vector<imager::Image> dirty;                 ///< [term]
   double dirty_accuracy = 0;                        ///< see CleanInput
   bool of_start = false;                            ///< see CleanInput
   std::vector<const imager::Image*> psf;            ///< [k], see CleanInput
@@ -61,8 +61,8 @@ class CleanStage {
   std::vector<std::string> warnings() const;
 
   /// Throws what imager::clean and read_clean_state do.
-  imager::CleanResult run(const CleanScene& scene, const StateOptionValues& option_values,
-                          const imager::CycleProgress& cycle_progress, const imager::Context& context);
+  imager::CleanResult run(CleanScene scene, const StateOptionValues& option_values, const imager::CycleProgress& cycle_progress,
+                          const imager::Context& context);
 
  private:
   std::string state_path(std::size_t stokes) const;

@@ -142,7 +142,7 @@ imager::CleanReport clean(const StabilityCase& asked, const imager::VisibilitySo
   const auto minor = imager::make_deconvolver({"hogbom", {0}, 0, options.threads}, {&made.images.psf});
   const imager::ComponentModel empty(asked.geometry.width, asked.geometry.height, minor->scale_pixels());
   return imager::clean({.imaged = {source, *made.transform, made.images.normalisation},
-                        .dirty = {&made.images.dirty.front()},
+                        .dirty = {made.images.dirty.front()},
                         .psf = {&made.images.psf},
                         .max_sidelobe = max_sidelobe(made.images.psf, asked.geometry.cell_rad),
                         .accuracy = accuracy},

@@ -78,7 +78,7 @@ CleanResult cleaned(const Scene& of, const CleanOptions& options, const DirtyIma
                     const CycleProgress& cycle_progress, bool of_start = false) {
   const JointClean minor({&images.psf}, {.threads = options.threads});
   const CleanInput input{.imaged = of.imaged(),
-                         .dirty = {&images.dirty[0]},
+                         .dirty = {images.dirty[0]},
                          .dirty_accuracy = of.dirty_accuracy,
                          .of_start = of_start,
                          .psf = {&images.psf},

@@ -95,13 +95,13 @@ CleanState first() {
 CleanInput input_of(const Scene& of) {
   CleanInput input{.imaged = of.imaged(),
                    .expansion = of.expansion,
-                   .dirty = {&of.first.dirty[0]},
+                   .dirty = {of.first.dirty[0]},
                    .psf = of.psf,
                    .max_sidelobe = of.max_sidelobe,
                    .accuracy = 1e-5,
                    .beam = {5, 5, 0},
                    .cell_rad = 1};
-  for (const Image& dirty : of.further.dirty) input.dirty.push_back(&dirty);
+  for (const Image& dirty : of.further.dirty) input.dirty.push_back(dirty);
   return input;
 }
 

@@ -220,8 +220,7 @@ BOOST_DATA_TEST_CASE(clean_finds_the_same_components, bdata::make({0.0, 3000.0})
     CleanOptions options;
     options.max_iterations = 300;
     options.max_major_cycles = 4;
-    const CleanInput input{
-        .imaged = imaged, .dirty = {&made.dirty.front()}, .psf = {&made.psf}, .max_sidelobe = 0.3, .accuracy = 1e-9};
+    const CleanInput input{.imaged = imaged, .dirty = made.dirty, .psf = {&made.psf}, .max_sidelobe = 0.3, .accuracy = 1e-9};
     const JointClean minor({&made.psf}, {.threads = 2});
     const CleanResult result = misfit::imager::clean(
         input, minor, options, first_state(ComponentModel(geometry.width, geometry.height, {0})), [](const CleanState&) {}, {});
@@ -255,7 +254,7 @@ BOOST_AUTO_TEST_CASE(clean_of_taylor_terms_finds_the_same_components) {
     options.max_major_cycles = 3;
     const CleanInput input{.imaged = imaged,
                            .expansion = expansion,
-                           .dirty = {&first.dirty.front(), &further.dirty.front()},
+                           .dirty = {first.dirty.front(), further.dirty.front()},
                            .psf = psf,
                            .max_sidelobe = 0.3,
                            .accuracy = 1e-9};
