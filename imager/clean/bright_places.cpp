@@ -36,7 +36,8 @@ BrightPlaces::BrightPlaces(const ScaledResidual& residual, const ScaledPsf& psf,
       height_(residual.height()),
       brightness_(brightness),
       outstanding_flux_(width_, height_, psf.scales().size()),
-      flux_(outstanding_flux_) {
+      flux_(outstanding_flux_),
+      flux_magnitude_(outstanding_flux_) {
   const auto tiles = static_cast<std::size_t>(tiles_u_) * static_cast<std::size_t>(tiles_v_);
   std::vector<Found> found(tiles);
   parallel_for(static_cast<std::size_t>(tiles_v_), threads, [&](std::size_t row) {
@@ -182,6 +183,7 @@ void BrightPlaces::subtract(const Place& at, const TaylorValues& coefficient, st
 
 void BrightPlaces::subtract(const Place& at, const TaylorValues& coefficient) {
   flux_.add(at.row, at.column, at.scale, coefficient[0]);
+  flux_magnitude_.add(at.row, at.column, at.scale, std::abs(coefficient[0]));
   const int tile_row = at.row / side, tile_column = at.column / side;
   const int first_row = std::max(0, tile_row - near_tiles_), last_row = std::min(tiles_v_ - 1, tile_row + near_tiles_);
   const int first = std::max(0, tile_column - near_tiles_), last = std::min(tiles_u_ - 1, tile_column + near_tiles_);
@@ -216,20 +218,24 @@ double BrightPlaces::outstanding() const {
   return most;
 }
 
-double BrightPlaces::of_others() const {
+double BrightPlaces::change(const FoundFlux& flux) const {
   const std::size_t scales = psf_.scales().size();
   double most = 0;
   for (std::size_t to = 0; to < scales; ++to) {
     double variance = 0;
-    for (std::size_t from = 0; from < scales; ++from) variance += std::pow(psf_.strength(from, to).rms, 2) * flux_.square(from);
+    for (std::size_t from = 0; from < scales; ++from) variance += std::pow(psf_.strength(from, to).rms, 2) * flux.square(from);
     most = std::max(most, variance);
   }
-  return brightness_ + deviations * std::sqrt(most);
+  return std::sqrt(most);
+}
+
+double BrightPlaces::of_others() const {
+  return brightness_ + deviations * change(flux_);
 }
 
 bool BrightPlaces::sees_all_above(double brightness) const {
   constexpr double surer = 3;  // than of_others() is
-  return outstanding_.empty() && brightness_ + surer * (of_others() - brightness_) <= brightness;
+  return outstanding_.empty() && brightness_ + surer * deviations * change(flux_magnitude_) <= brightness;
 }
 
 bool BrightPlaces::is_near(const Tile& a, const Tile& b) const {

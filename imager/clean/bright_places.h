@@ -40,7 +40,8 @@ class BrightPlaces {
   /// How bright other places may have become by all components, but for those near them: as many deviations above what they
   /// were.
   double of_others() const;
-  /// Whether all places that may be as bright as that are here, by nine deviations, and none has components outstanding.
+  /// Whether no other place has become as bright as that, by nine deviations of sidelobes that meet at random although fluxes
+  /// of neighbours have one sign, and none here has components outstanding.
   bool sees_all_above(double brightness) const;
   /// Takes these off far tiles. Returns false, and does nothing, where the PSF that far is not known, or a convolution of the
   /// whole residual costs less.
@@ -63,6 +64,8 @@ class BrightPlaces {
   void subtract(const Place& at, const TaylorValues& coefficient, std::size_t tile);
   void look_at(std::size_t tile, std::size_t scale, float merit);
   void look_at_row(int tile_row);
+  /// Standard deviation of the brightness of a place, by sidelobes that meet at random.
+  double change(const FoundFlux& flux) const;
   bool is_near(const Tile& a, const Tile& b) const;
 
   const ScaledPsf& psf_;
@@ -89,6 +92,7 @@ class BrightPlaces {
 
   FoundFlux outstanding_flux_;
   FoundFlux flux_;  ///< of all components
+  FoundFlux flux_magnitude_;
 };
 
 }  // namespace misfit::imager

@@ -25,11 +25,12 @@ struct CleanOptions {
   double gain = 0.1;        ///< part of a peak that a component takes
   double threshold_jy = 0;  ///< stop when the peak residual exceeds it by threshold_tolerance at most
   double nsigma = 0;        ///< or not above this many times the robust noise
-  /// A minor cycle goes down to the peak × largest sidelobe × cycle factor, that fraction of the peak clamped to [min, max]. It
-  /// goes on to the least fraction, but no deeper than cycle factor × the greater of 6 √Σ f² × RMS of the PSF, f being the flux
-  /// found in each square of 64 pixels, and the largest f × largest_far_sidelobe(), if these sidelobes are at most a quarter of
-  /// the largest, and no cycle has left more than 1.5 times its depth. It goes not below the threshold, or 5 % below it where
-  /// the cycle before went down to it.
+  /// A minor cycle goes down to the peak × largest sidelobe × cycle factor, that fraction of the peak clamped to [min, max];
+  /// but not below the threshold, or 5 % below it where the cycle before went down to it. While components are trusted it goes
+  /// on to the least fraction, but no deeper than cycle factor × the greater of 6 √Σ f² × RMS of the PSF, f being the flux
+  /// found in each square of 64 pixels, and the largest f × largest_far_sidelobe(). They are where 6 × RMS, main lobe included,
+  /// and the far sidelobe are at most a quarter of the largest, until a cycle leaves more than 1.5 times its depth (with
+  /// automask: in the mask that it leaves), or makes the residual grow, or coarser transforms are no longer taken.
   double cycle_factor = 1;
   double min_psf_fraction = 0.05;
   double max_psf_fraction = 0.8;
@@ -64,7 +65,7 @@ struct MajorCycle {
   double peak_residual_jy = 0;  ///< within the mask; of the whole image where that is empty
   double rms_jy = 0;            ///< robust noise of the residual, within the mask and without
   double model_flux_jy = 0;
-  double cycle_threshold_jy = 0;  ///< how deep its minor cycle was to go, in Jy/beam
+  double cycle_threshold_jy = 0;  ///< how deep its minor cycle was to go, or went where it was cut short, in Jy/beam
   std::string ended;              ///< why its minor cycle ended; empty before the first
   double mean_square_jy2 = 0;     ///< of the residual
   double accuracy = 0;            ///< of the transforms that made it; 0 = as exact as any, see CleanInput
@@ -156,9 +157,9 @@ CleanState first_state(const ComponentModel& model);
 /// square, the result is that of the best.
 ///
 /// A residual from which minor cycles are to go on is made by the least exact of the transforms whose error, by theory, is at
-/// most a fiftieth of the depth to which they will go, and so may be the dirty image. One that ends CLEAN is made anew as
-/// exactly as was asked; where that does not end it, and where a residual grew, all that follow are made so, since sources
-/// outside the image may err by more.
+/// most a fiftieth of the depth to which they will go, or a twentieth where components are trusted; it may be the dirty image.
+/// One that ends CLEAN is made anew as exactly as was asked; where that does not end it, and where a residual grew, all that
+/// follow are made so, since sources outside the image may err by more.
 ///
 /// Stages timed: "minor cycles", "statistics", and those of make_residual_image. Throws std::runtime_error when a PSF or a
 /// residual is not finite, std::invalid_argument unless terms, images and `minor` agree.

@@ -17,7 +17,7 @@ struct InView {
   double level;
   double unit_jy;
 
-  /// Whether all points are as faint as that, those not in view included.
+  /// Whether all points are as faint as that; those not in view were, to begin with.
   bool points_are_below(double jy) const { return level <= jy / unit_jy && bright.point_brightness() <= jy / unit_jy; }
 };
 
@@ -30,7 +30,7 @@ void find_among(const InView& view, const ScaledPsf& psf, const MinorCycleOption
   const double first = bright.brightness();
   const auto is_deep_enough = [&] {
     if (!view.points_are_below(watch.depth_jy())) return false;
-    return !o.to_the_last || !bright.subtract_outstanding() || view.points_are_below(watch.depth_jy());
+    return !watch.is_to_the_last() || !bright.subtract_outstanding() || view.points_are_below(watch.depth_jy());
   };
   do {
     const BrightPlaces::Place at = bright.brightest();
@@ -94,8 +94,8 @@ MinorCycleReport JointClean::find(const std::vector<const Image*>& residual, con
     }
     const InView view{bright, level, unit};
     find_among(view, psf_, o, points ? level : std::max(level, target), watch, report);
-    const bool last = o.to_the_last && watch.depth_jy() == o.threshold_jy;
-    if (view.points_are_below(watch.depth_jy()) && (!last || bright.sees_all_above(watch.depth_jy() / unit))) {
+    if (view.points_are_below(watch.depth_jy()) &&
+        (!watch.is_to_the_last() || bright.sees_all_above(watch.depth_jy() / unit))) {
       report.peak_jy = bright.point_brightness() * unit;
       report.end = MinorCycleEnd::threshold;
       break;
@@ -105,7 +105,8 @@ MinorCycleReport JointClean::find(const std::vector<const Image*>& residual, con
     left.subtract(found);
     now = brightness_of(left, psf_, options_.threads);
   }
-  report.depth_jy = watch.depth_jy();
+  const bool cut = report.end == MinorCycleEnd::iterations || report.end == MinorCycleEnd::stopped;
+  report.depth_jy = cut ? std::max(watch.depth_jy(), report.peak_jy) : watch.depth_jy();
   return report;
 }
 

@@ -136,8 +136,10 @@ class Run {
   /// How exact the residual of a model must be for minor cycles that follow one of this depth: its error shall be a small part
   /// of theirs. It is in proportion to images of the data and of the model as if their phases were random.
   double accuracy_for_next(double depth_jy, const MajorCycle& before) const {
-    constexpr double small = 0.02, less_noise = 0.5;  // the noise falls as sources go
-    const double next = std::max(depth_fraction() * depth_jy, less_noise * last_depth(before));
+    constexpr double less_noise = 0.5;  // it falls as sources go
+    const bool trusted = components_are_trusted();
+    const double small = trusted ? 0.05 : 0.02, fraction = trusted ? o_.min_psf_fraction : depth_fraction();
+    const double next = std::max(fraction * depth_jy, less_noise * last_depth(before));
     double square = 0;
     for (const Component& c : state_.model.components()) square += c.flux_jy * c.flux_jy;
     const double visibilities_jy = std::max(input_.data_jy, std::sqrt(square));
@@ -155,7 +157,7 @@ class Run {
     return residuals_.empty() && (input_.of_start || (state_.model.components().empty() && state_.cycles.size() <= 1));
   }
 
-  /// Returns with which accuracy. What was made is never changed.
+  /// Returns with which accuracy.
   double make_residual(double accuracy) {
     const bool dirty = begins_with_dirty() && accuracy >= input_.dirty_accuracy;
     residuals_.clear();
@@ -281,12 +283,12 @@ class Run {
   /// The depth to which the next minor cycle goes in any case: where the sidelobes of the brightest source could pass for
   /// sources.
   double sure_depth() const { return std::max(depth_fraction() * now().peak_residual_jy, last_depth(now())); }
-  /// Whether no sidelobe but those near the peak could pass for a source, and residuals have nearly become what minor cycles
-  /// promised.
+  /// Whether sidelobes far from the PSF's peak are faint beside those near it, and residuals have become nearly what minor
+  /// cycles promised.
   bool components_are_trusted() const {
     constexpr double far_less = 0.25, nearly = 1.5;
     const DoubtfulSidelobes doubtful = doubtful_sidelobes();
-    if (!(std::max(doubtful.rms, doubtful.largest) <= far_less * o_.cycle_factor * input_.max_sidelobe)) return false;
+    if (!(std::max(doubtful.of_many, doubtful.of_one) <= far_less * o_.cycle_factor * input_.max_sidelobe)) return false;
     if (state_.tightened > 0 || state_.exact_from != 0) return false;
     return std::all_of(state_.cycles.begin(), state_.cycles.end(), [](const MajorCycle& cycle) {
       return cycle.cycle_threshold_jy == 0 || cycle.peak_residual_jy <= nearly * cycle.cycle_threshold_jy;
@@ -297,11 +299,11 @@ class Run {
     if (!components_are_trusted()) return sure_depth();
     return std::max(o_.min_psf_fraction * now().peak_residual_jy, last_depth(now()));
   }
-  /// Far from the phase centre sidelobes are others than the PSF's, and beyond half the image it has none. At random both leave
-  /// no more than if none had been taken off, and of one source what the PSF has farthest out.
+  /// Far from the phase centre sidelobes differ from the PSF's, and beyond half the image the PSF has none. Those of many
+  /// sources leave no more than if none were taken off at all; those of one no more than the largest that lie far from it.
   DoubtfulSidelobes doubtful_sidelobes() const {
     constexpr double deviations = 6;
-    return {deviations * o_.cycle_factor * psf_rms_, o_.cycle_factor * far_sidelobe_};
+    return {.of_many = deviations * o_.cycle_factor * psf_rms_, .of_one = o_.cycle_factor * far_sidelobe_};
   }
   double depth_fraction() const {
     const double fraction = std::clamp(o_.cycle_factor * input_.max_sidelobe, o_.min_psf_fraction, o_.max_psf_fraction);
@@ -344,8 +346,10 @@ class Run {
       state_.model.add(found.components);
     }
     cycle.from = state_.now;
-    cycle.accuracy = make_residual(
-        state_.exact_from != 0 || is_likely_last(cycle) ? exact : accuracy_for_next(cycle.cycle_threshold_jy, now()));
+    cycle.accuracy = state_.found_nothing ? now().accuracy
+                                          : make_residual(state_.exact_from != 0 || is_likely_last(cycle)
+                                                              ? exact
+                                                              : accuracy_for_next(cycle.cycle_threshold_jy, now()));
     // A peak that is as bright as before, although it was cleaned, may be of the transform's making.
     if (cycle.accuracy != exact && reached_depth && peak_within_mask() > hardly_less * now().peak_residual_jy) {
       stay_exact();

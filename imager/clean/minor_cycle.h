@@ -11,24 +11,24 @@
 
 namespace misfit::imager {
 
-/// Sidelobes that the PSF of a minor cycle may tell wrongly, or not at all.
+/// What sidelobes of components may leave that a minor cycle's PSF does not have, or has wrongly: Jy/beam for each Jy.
 struct DoubtfulSidelobes {
-  double rms = 0;
-  double largest = 0;
+  double of_many = 0;  ///< × √Σ f², f being the |flux| found in each square of bright_tile_side pixels
+  double of_one = 0;   ///< × f
 };
 
 struct MinorCycleOptions {
   double gain = 0.1;  ///< part of a peak that a component takes
   int max_iterations = 0;
   double threshold_jy = 0;  ///< in Jy/beam; ends when no pixel that may be cleaned exceeds it in magnitude
-  /// It ends when no pixel exceeds what it may leave of doubtful sidelobes: their RMS × √Σ f², f being the flux, all of one
-  /// sign, that it found in each square of bright_tile_side pixels, or the largest × f. But down to `sure_jy` it goes in any
+  /// It ends when no pixel exceeds what doubtful sidelobes of all that it found may leave. But down to `sure_jy` it goes in any
   /// case.
   DoubtfulSidelobes doubtful;
   double sure_jy = 0;           ///< in Jy/beam; 0 = down to the threshold, whatever the doubt
   const Image* mask = nullptr;  ///< where components may lie, see mask.h; null = everywhere
-  /// Whether the whole residual is looked at in the end, so that no pixel exceeds the threshold by more than half a percent.
-  /// Otherwise pixels may exceed it that were faint until sidelobes went; a residual that is made anew shows them, too.
+  /// Whether pixels that were faint are looked at in the end, if by nine standard deviations sidelobes of all that was found
+  /// may have made them exceed the threshold; what it finds then exceeds it by half a percent at most. Otherwise pixels may
+  /// exceed it that were faint until sidelobes went; a residual that is made anew shows them, too.
   bool to_the_last = true;
   std::function<bool()> stop_requested;  ///< asked now and then; may be empty
 };
@@ -47,7 +47,8 @@ constexpr double minor_cycle_divergence = 3;
 struct MinorCycleReport {
   std::vector<Component> components;  ///< in the order in which they were found; places repeat
   double peak_jy = 0;                 ///< magnitude of the brightest pixel left that may be cleaned
-  double depth_jy = 0;                ///< down to which it was to go: the threshold, or what doubt made of it
+  double depth_jy = 0;  ///< down to which it was to go: the threshold, or above it what doubts allow; or how far it
+                        ///< came before it was to end
   MinorCycleEnd end = MinorCycleEnd::threshold;
 
   int iterations() const { return static_cast<int>(components.size()); }
@@ -97,9 +98,11 @@ class MinorCycleWatch {
   /// How deep it is to go with what it found so far.
   double depth_jy() const {
     const DoubtfulSidelobes& doubtful = options_.doubtful;
-    const double left_jy = std::max(doubtful.rms * std::sqrt(found_.square(0)), doubtful.largest * found_.largest(0));
+    const double left_jy = std::max(doubtful.of_many * std::sqrt(found_.square(0)), doubtful.of_one * found_.largest(0));
     return std::max(options_.threshold_jy, std::min(options_.sure_jy, left_jy));
   }
+  /// Whether that is the threshold, below which faint pixels are to be looked at, too.
+  bool is_to_the_last() const { return options_.to_the_last && depth_jy() == options_.threshold_jy; }
   /// Whether no further component is to be taken now that the brightest pixel has this magnitude; if so, `report` says why.
   bool ends(double peak_jy, MinorCycleReport& report) const;
   /// Whether there are as many components as allowed, or the user wishes to end; if so, `report` says which.

@@ -52,11 +52,7 @@ CleanedField clean_wide_field(const VisibilitySource& source, const Transform& t
   const auto minor = make_deconvolver({.threads = context.threads}, {&images.psf});
   const Sidelobes sidelobes(images.psf);
   CleanResult cleaned = clean(
-      {.imaged = imaged,
-       .dirty = {dirty},
-       .psf = {&images.psf},
-       .max_sidelobe = sidelobes.from(lobe_pixels),
-       .accuracy = 1e-4},
+      {.imaged = imaged, .dirty = {dirty}, .psf = {&images.psf}, .max_sidelobe = sidelobes.from(lobe_pixels), .accuracy = 1e-4},
       *minor, options, first_state(ComponentModel(g.width, g.height, minor->scale_pixels())), [](const CleanState&) {},
       context);
   ranks.share(cleaned.model.pixel.data(), cleaned.model.pixel.size() * sizeof(double));

@@ -138,7 +138,7 @@ void ChannelRun::make_terms() {
   if (scene_.options.taylor.nterms == 1) return;
   taylor_.emplace(taylor_expansion(scene_.options.taylor, scene_.header.observation), scene_.threads);
   progress().begin("Taylor terms" + name_);
-  const imager::Transform& transform = images_.dirty_accuracy != 0 ? images_.transform->psf() : *images_.transform;
+  const imager::Transform& transform = images_.dirty_accuracy != 0 ? images_.transform->psf() : images_.transform->images();
   const imager::ImagedData imaged{{samples(), 0}, transform, images_.images.normalisation};
   naming_taken([&] { taylor_->make_images(imaged, images_, taken_terms(), context()); });
   progress().end();

@@ -3,9 +3,12 @@
 #include <algorithm>
 #include <boost/test/unit_test.hpp>
 #include <limits>
+#include <map>
 #include <numeric>
+#include <utility>
 
 #include "imager/beams/beam.h"
+#include "imager/clean/bright_loops.h"
 #include "imager/clean/joint_clean.h"
 #include "imager/data/noise.h"
 #include "imager/plan/gridding_plan.h"
@@ -166,6 +169,69 @@ BOOST_AUTO_TEST_CASE(components_err_by_less_than_their_sidelobes) {
     for (std::size_t p = 0; p < after.pixel.size(); ++p) square += std::pow(after.pixel[p] - before.pixel[p], 2);
     BOOST_TEST(is.peak_residual_jy <= 1.01 * is.cycle_threshold_jy + 6 * psf_rms * std::sqrt(square));
   }
+}
+
+/// The states of a run to 1e-4 Jy, which takes the largest sidelobe for that.
+std::vector<CleanState> states_with(double max_sidelobe,
+                                    const CleanState& begin = first_state(ComponentModel(geometry.width, geometry.height,
+                                                                                         {0}))) {
+  Scene of = make_scene({});
+  of.max_sidelobe = max_sidelobe;
+  CleanOptions options = deep();
+  options.threshold_jy = 1e-4;
+  std::vector<CleanState> states;
+  cleaned(of, options, of.images, begin, [&](const CleanState& state) { states.push_back(state); });
+  return states;
+}
+
+/// Beside sidelobes of 4 the PSF's far ones are faint.
+BOOST_AUTO_TEST_CASE(minor_cycles_go_deeper_than_sidelobes_while_components_are_trusted) {
+  constexpr double sure = 0.8;  // maxpsffraction
+  const std::vector<CleanState> trusted = states_with(4);
+  const double peak = trusted[0].cycles.back().peak_residual_jy, depth = trusted[1].cycles.back().cycle_threshold_jy;
+  std::map<std::pair<int, int>, double> flux;
+  for (const Component& c : trusted[1].model.components())
+    flux[{c.row / bright_tile_side, c.column / bright_tile_side}] += std::abs(c.flux_jy);
+  double square = 0, most = 0;
+  for (const auto& [where, jy] : flux) square += jy * jy, most = std::max(most, jy);
+  const double doubted =
+      std::max(6 * root_mean_square(scene().images.psf) * std::sqrt(square), largest_far_sidelobe(scene().images.psf) * most);
+  BOOST_TEST(depth < 0.9 * sure * peak);
+  BOOST_TEST(depth == std::max(doubted, 0.05 * peak), boost::test_tools::tolerance(1e-9));
+
+  // Far sidelobes that are no fainter than a quarter of the largest.
+  for (const double sidelobe : {scene().max_sidelobe, 0.8}) {
+    const std::vector<CleanState> states = states_with(sidelobe);
+    BOOST_TEST(states[1].cycles.back().cycle_threshold_jy == sidelobe * peak, boost::test_tools::tolerance(1e-12));
+  }
+
+  // A cycle that left more than it should have.
+  CleanState misled = trusted[1];
+  misled.cycles.back().cycle_threshold_jy = misled.cycles.back().peak_residual_jy / 1.6;
+  const std::vector<CleanState> states = states_with(4, misled);
+  BOOST_TEST(states[1].cycles.back().cycle_threshold_jy == sure * misled.cycles.back().peak_residual_jy,
+             boost::test_tools::tolerance(1e-12));
+}
+
+BOOST_AUTO_TEST_CASE(far_sidelobes_are_those_from_a_quarter_of_the_image_on) {
+  Image psf(40, 20);
+  psf.at(10, 20) = 1, psf.at(10, 29) = -0.9, psf.at(14, 20) = 0.8;
+  BOOST_TEST(largest_far_sidelobe(psf) == 0);
+  for (const auto& [row, column] : {std::pair(10, 30), std::pair(10, 10), std::pair(15, 20), std::pair(5, 20)}) {
+    psf.at(row, column) = -0.3;
+    BOOST_TEST(largest_far_sidelobe(psf) == 0.3);
+    psf.at(row, column) = std::numeric_limits<double>::quiet_NaN();
+    BOOST_TEST(largest_far_sidelobe(psf) == 0);
+  }
+}
+
+/// What a cut minor cycle had not come to is no depth of it.
+BOOST_AUTO_TEST_CASE(a_minor_cycle_that_is_cut_short_says_how_far_it_came) {
+  CleanOptions options = deep();
+  options.cycle_iterations = 3;
+  options.max_iterations = 9;
+  for (const MajorCycle& cycle : cleaned(options).report.cycles)
+    if (cycle.iterations > 0) BOOST_TEST(cycle.cycle_threshold_jy > 0.5 * cycle.peak_residual_jy);
 }
 
 /// Residuals on the way are as exact as the next depth takes, and that at the end as exact as any.
