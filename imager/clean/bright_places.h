@@ -40,8 +40,8 @@ class BrightPlaces {
   /// How bright other places may have become by all components, but for those near them: as many deviations above what they
   /// were.
   double of_others() const;
-  /// Whether no other place has become as bright as that, by nine deviations of sidelobes that meet at random although fluxes
-  /// of neighbours have one sign, and none here has components outstanding.
+  /// True if every place as bright as that is in the list and up to date. Other places may have brightened since: nine standard
+  /// deviations are allowed for, of sidelobes that meet at random where the fluxes of neighbours have one sign.
   bool sees_all_above(double brightness) const;
   /// Takes these off far tiles. Returns false, and does nothing, where the PSF that far is not known, or a convolution of the
   /// whole residual costs less.
@@ -64,7 +64,7 @@ class BrightPlaces {
   void subtract(const Place& at, const TaylorValues& coefficient, std::size_t tile);
   void look_at(std::size_t tile, std::size_t scale, float merit);
   void look_at_row(int tile_row);
-  /// Standard deviation of the brightness of a place, by sidelobes that meet at random.
+  /// By how much sidelobes of this flux change the brightness of a place: the standard deviation where they meet at random.
   double change(const FoundFlux& flux) const;
   bool is_near(const Tile& a, const Tile& b) const;
 

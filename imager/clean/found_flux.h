@@ -13,7 +13,7 @@ namespace misfit::imager {
 class FoundFlux {
  public:
   FoundFlux() = default;
-  /// Of an image of so many pixels.
+  /// Begins without flux, in an image of this width and height.
   FoundFlux(int width, int height, std::size_t scales = 1)
       : across_((width + bright_tile_side - 1) / bright_tile_side), square_(scales), largest_(scales) {
     const int down = (height + bright_tile_side - 1) / bright_tile_side;

@@ -17,7 +17,7 @@ struct InView {
   double level;
   double unit_jy;
 
-  /// Whether all points are as faint as that; those not in view were, to begin with.
+  /// True if no point of the list exceeds `jy`, and those outside it did not when it was made.
   bool points_are_below(double jy) const { return level <= jy / unit_jy && bright.point_brightness() <= jy / unit_jy; }
 };
 

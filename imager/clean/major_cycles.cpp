@@ -152,7 +152,7 @@ class Run {
     return found == coarser.end() ? -1 : static_cast<int>(found - coarser.begin());
   }
 
-  /// Whether the dirty images are those of the model now, as a run from its beginning has them.
+  /// True while no residual was made and the model is that which the dirty images are of.
   bool begins_with_dirty() const {
     return residuals_.empty() && (input_.of_start || (state_.model.components().empty() && state_.cycles.size() <= 1));
   }
@@ -283,8 +283,8 @@ class Run {
   /// The depth to which the next minor cycle goes in any case: where the sidelobes of the brightest source could pass for
   /// sources.
   double sure_depth() const { return std::max(depth_fraction() * now().peak_residual_jy, last_depth(now())); }
-  /// Whether sidelobes far from the PSF's peak are faint beside those near it, and residuals have become nearly what minor
-  /// cycles promised.
+  /// True while minor cycles may go deeper than the largest sidelobe allows: the PSF's far sidelobes are faint beside its near
+  /// ones, and every residual so far came out nearly as its minor cycle promised.
   bool components_are_trusted() const {
     constexpr double far_less = 0.25, nearly = 1.5;
     const DoubtfulSidelobes doubtful = doubtful_sidelobes();
@@ -294,7 +294,8 @@ class Run {
       return cycle.cycle_threshold_jy == 0 || cycle.peak_residual_jy <= nearly * cycle.cycle_threshold_jy;
     });
   }
-  /// That to which it goes while those of all that it has found could not.
+  /// The depth that the next minor cycle does not pass. Above it, it ends where sidelobes of all that it found could pass for
+  /// sources.
   double deepest() const {
     if (!components_are_trusted()) return sure_depth();
     return std::max(o_.min_psf_fraction * now().peak_residual_jy, last_depth(now()));
@@ -309,7 +310,7 @@ class Run {
     const double fraction = std::clamp(o_.cycle_factor * input_.max_sidelobe, o_.min_psf_fraction, o_.max_psf_fraction);
     return 1 - std::ldexp(1 - fraction, -state_.tightened);
   }
-  /// Whether the minor cycle that left this state went as deep as threshold and nsigma ask.
+  /// True if the minor cycle that left this state went as deep as threshold and nsigma ask.
   bool is_at_last_depth(const MajorCycle& cycle) const {
     return cycle.cycle_threshold_jy > 0 && cycle.cycle_threshold_jy <= std::max(o_.threshold_jy, o_.nsigma * cycle.rms_jy);
   }

@@ -11,7 +11,7 @@
 
 namespace misfit::imager {
 
-/// What sidelobes of components may leave that a minor cycle's PSF does not have, or has wrongly: Jy/beam for each Jy.
+/// Sidelobes that a minor cycle's PSF lacks or has wrongly, in Jy/beam for each Jy of components.
 struct DoubtfulSidelobes {
   double of_many = 0;  ///< × √Σ f², f being the |flux| found in each square of bright_tile_side pixels
   double of_one = 0;   ///< × f
@@ -90,7 +90,7 @@ class MinorCycle {
 /// Says when a minor cycle ends, one way for all of them.
 class MinorCycleWatch {
  public:
-  /// Of an image of so many pixels.
+  /// Watches a minor cycle in an image of this width and height, whose brightest pixel is first_peak_jy to begin with.
   MinorCycleWatch(const MinorCycleOptions& options, int width, int height, double first_peak_jy)
       : options_(options), found_(width, height), first_peak_jy_(first_peak_jy) {}
 
@@ -101,7 +101,7 @@ class MinorCycleWatch {
     const double left_jy = std::max(doubtful.of_many * std::sqrt(found_.square(0)), doubtful.of_one * found_.largest(0));
     return std::max(options_.threshold_jy, std::min(options_.sure_jy, left_jy));
   }
-  /// Whether that is the threshold, below which faint pixels are to be looked at, too.
+  /// True where the depth is the threshold, and pixels that were faint are to be looked at in the end.
   bool is_to_the_last() const { return options_.to_the_last && depth_jy() == options_.threshold_jy; }
   /// Whether no further component is to be taken now that the brightest pixel has this magnitude; if so, `report` says why.
   bool ends(double peak_jy, MinorCycleReport& report) const;
