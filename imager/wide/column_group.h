@@ -8,10 +8,9 @@
 #include "imager/data/image.h"
 #include "imager/wide/column_loops.h"
 #include "imager/wide/facet.h"
+#include "imager/wide/image_planes.h"
 
 namespace misfit::imager {
-
-inline constexpr int columns_at_once = 16;  ///< a cache line or two of each row while columns are brought to contiguous memory
 
 /// A facet with the distance of its planes in wavelengths, and the corrections of the kernels over its pixels.
 struct StackedFacet {

@@ -7,10 +7,32 @@
 namespace misfit::imager {
 
 template <typename Real>
-void PlaneStack<Real>::reserve(int plane_count) {
+void PlaneStack<Real>::reserve(int plane_count, int band_tiles) {
   planes = plane_count;
-  cell_.reserve(shape.cells() * static_cast<std::size_t>(planes * grids));
+  first_ = 0;
+  held_ = shape.held_rows(band_tiles);
+  cell_.reserve(offset(held_, 0, 0, 0));
   chunk_used_.assign(chunk_number(shape.rows(), 0), 0);
+}
+
+template <typename Real>
+void PlaneStack<Real>::advance(int first, int threads) {
+  const int from = first_, kept = std::clamp(held_ - (first - from), 0, shape.rows() - first);
+  if (first == from) return;
+  first_ = first;
+  const auto chunks = static_cast<std::size_t>(shape.chunks());
+  const std::size_t chunk_cells = offset(0, 1, 0, 0);
+  // From chunk to chunk of the same column, row after row, so that none is written over before it was brought.
+  parallel_for(chunks, threads, [&](std::size_t i) {
+    const int index = static_cast<int>(i);
+    for (int row = first; row < first + kept; ++row)
+      if (uses(row, index)) std::copy_n(cell_.data() + offset(row - from, index, 0, 0), chunk_cells, chunk(row, index, 0, 0));
+  });
+}
+
+template <typename Real>
+void PlaneStack<Real>::use_row(int row) {
+  std::fill_n(chunk_used_.begin() + static_cast<std::ptrdiff_t>(chunk_number(row, 0)), shape.chunks(), char{1});
 }
 
 template <typename Real>

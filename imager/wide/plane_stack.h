@@ -18,6 +18,8 @@ struct StackShape {
   int tile = 0;   ///< side of a tile, in cells; at least `width`
 
   int margin() const { return width / 2; }
+  /// Cells along an axis that the taps of a tile may fall on.
+  int reach() const { return tile + width - 1; }
   int tiles_u() const { return (nu + 2 * margin() + 1) / tile + 1; }
   int tiles_v() const { return (nv / 2 + 2 * margin() + 1) / tile + 1; }
   /// Rows of storage that taps may reach.
@@ -26,7 +28,9 @@ struct StackShape {
   int chunks() const { return tiles_u() + 1; }
   int columns() const { return chunks() * tile; }
   int rows() const { return (tiles_v() + 1) * tile; }
-  std::size_t cells() const { return static_cast<std::size_t>(columns()) * static_cast<std::size_t>(rows()); }
+  /// Rows of storage held for a band of so many tiles: those that its taps reach, and what rows of the grid take that wait for
+  /// their mirror images.
+  int held_rows(int tiles) const { return tiles * tile + 3 * width + 4; }
 };
 
 /// A tile's column and row among the tiles.
@@ -35,20 +39,23 @@ struct TilePlace {
   int v = 0;
 };
 
-/// Half planes of constant w, each with one or more complex grids, plane i at the opposite w of plane planes − 1 − i: its other
-/// half, v < 0, is the conjugate of that one's mirror image, G_i(−p, −q) = conj G_{planes−1−i}(p, q). What a tile holds of one
-/// row lies together: [row][chunk][plane][grid][column in chunk], a chunk being as wide as a tile. Memory is used again from
-/// one facet to the next, and by the FFTs: between the transforms along u and v, row q + margin holds row q of the grid by
-/// columns of the image.
+/// A band of rows of half planes of constant w, each with one or more complex grids, plane i at the opposite w of plane
+/// planes − 1 − i: its other half, v < 0, is the conjugate of that one's mirror image, G_i(−p, −q) = conj G_{planes−1−i}(p, q).
+/// What a tile holds of one row lies together: [row][chunk][plane][grid][column in chunk], a chunk being as wide as a tile.
+/// Bands follow each other from the first row to the last in one piece of memory, which caches hold.
 template <typename Real>
 class PlaneStack {
  public:
   PlaneStack(const StackShape& stack_shape, int grid_count) : shape(stack_shape), grids(grid_count) {}
 
-  /// Makes room for that many planes, no row of which is used.
-  void reserve(int plane_count);
+  /// Makes room for that many planes and bands of so many tiles, from row 0 on; no row is used.
+  void reserve(int plane_count, int band_tiles);
+  /// Lets go of the rows before `first`, which is no less than any given before.
+  void advance(int first, int threads);
   /// Makes zero what taps of the tiles can reach and was not used before.
   void use_tiles(const std::vector<TilePlace>& tiles, int threads);
+  /// Takes a row into use whose content is undefined.
+  void use_row(int row);
 
   /// The cells of the tile at (tile_u, tile_v) from a plane on.
   StackCells<std::complex<Real>> cells_of(int tile_u, int tile_v, int plane, int plane_count) {
@@ -57,8 +64,6 @@ class PlaneStack {
   StackCells<const std::complex<Real>> cells_of(int tile_u, int tile_v, int plane, int plane_count) const {
     return cells_at(chunk(tile_v * shape.tile, tile_u, plane, 0), plane_count);
   }
-
-  std::size_t bytes_a_row() const { return offset(1, 0, 0, 0) * sizeof(std::complex<Real>); }
 
   int opposite(int plane) const { return planes - 1 - plane; }
 
@@ -75,9 +80,11 @@ class PlaneStack {
   /// Whether a chunk of a row of storage may hold something; the content of others is undefined.
   bool uses(int row, int index) const { return chunk_used_[chunk_number(row, index)] != 0; }
 
-  std::complex<Real>* chunk(int row, int index, int plane, int grid) { return cell_.data() + offset(row, index, plane, grid); }
+  std::complex<Real>* chunk(int row, int index, int plane, int grid) {
+    return cell_.data() + offset(row - first_, index, plane, grid);
+  }
   const std::complex<Real>* chunk(int row, int index, int plane, int grid) const {
-    return cell_.data() + offset(row, index, plane, grid);
+    return cell_.data() + offset(row - first_, index, plane, grid);
   }
 
   StackShape shape;
@@ -100,7 +107,9 @@ class PlaneStack {
   }
 
   BigArray<std::complex<Real>> cell_;
-  std::vector<char> chunk_used_;  ///< [row][chunk]
+  std::vector<char> chunk_used_;  ///< [row][chunk], of all rows that ever were
+  int first_ = 0;                 ///< row held
+  int held_ = 0;                  ///< rows
 };
 
 }  // namespace misfit::imager

@@ -292,14 +292,20 @@ template <typename Real>
 using VectorCounts = std::make_integer_sequence<int, vectors_of<Real>(most_taps)>;
 
 template <typename Real>
-HWY_ATTR void add_any(const std::complex<Real>* from, int count, std::complex<Real>* to) {
+HWY_ATTR void move_any(std::complex<Real>* from, int count, std::complex<Real>* to) {
   const hn::ScalableTag<Real> d;
   const int lanes = static_cast<int>(hn::Lanes(d));
-  const Real* in = reinterpret_cast<const Real*>(from);
+  Real* in = reinterpret_cast<Real*>(from);
   Real* out = reinterpret_cast<Real*>(to);
   int i = 0;
-  for (; i + lanes <= 2 * count; i += lanes) hn::StoreU(hn::Add(hn::LoadU(d, in + i), hn::LoadU(d, out + i)), d, out + i);
-  for (; i < 2 * count; ++i) out[i] += in[i];
+  for (; i + lanes <= 2 * count; i += lanes) {
+    hn::StoreU(hn::Add(hn::LoadU(d, in + i), hn::LoadU(d, out + i)), d, out + i);
+    hn::StoreU(hn::Zero(d), d, in + i);
+  }
+  for (; i < 2 * count; ++i) {
+    out[i] += in[i];
+    in[i] = 0;
+  }
 }
 
 HWY_ATTR void stack_spread_float(const StackTaps<float>& t, const StackBatch<float>& s,
@@ -318,11 +324,11 @@ HWY_ATTR void stack_interpolate_double(const StackTaps<double>& t, const StackCe
                                        StackBatch<double>& s) {
   interpolate_any(VectorCounts<double>(), t, b, s);
 }
-HWY_ATTR void stack_add_float(const std::complex<float>* from, int count, std::complex<float>* to) {
-  add_any(from, count, to);
+HWY_ATTR void stack_move_float(std::complex<float>* from, int count, std::complex<float>* to) {
+  move_any(from, count, to);
 }
-HWY_ATTR void stack_add_double(const std::complex<double>* from, int count, std::complex<double>* to) {
-  add_any(from, count, to);
+HWY_ATTR void stack_move_double(std::complex<double>* from, int count, std::complex<double>* to) {
+  move_any(from, count, to);
 }
 
 }  // namespace misfit::imager::HWY_NAMESPACE
@@ -335,8 +341,8 @@ HWY_EXPORT(stack_spread_float);
 HWY_EXPORT(stack_spread_double);
 HWY_EXPORT(stack_interpolate_float);
 HWY_EXPORT(stack_interpolate_double);
-HWY_EXPORT(stack_add_float);
-HWY_EXPORT(stack_add_double);
+HWY_EXPORT(stack_move_float);
+HWY_EXPORT(stack_move_double);
 
 void spread(const StackTaps<float>& taps, const StackBatch<float>& samples, const StackCells<std::complex<float>>& cells) {
   HWY_DYNAMIC_DISPATCH(stack_spread_float)(taps, samples, cells);
@@ -351,11 +357,11 @@ void interpolate(const StackTaps<double>& taps, const StackCells<const std::comp
                  StackBatch<double>& samples) {
   HWY_DYNAMIC_DISPATCH(stack_interpolate_double)(taps, cells, samples);
 }
-void add_cells(const std::complex<float>* from, int count, std::complex<float>* to) {
-  HWY_DYNAMIC_DISPATCH(stack_add_float)(from, count, to);
+void move_cells(std::complex<float>* from, int count, std::complex<float>* to) {
+  HWY_DYNAMIC_DISPATCH(stack_move_float)(from, count, to);
 }
-void add_cells(const std::complex<double>* from, int count, std::complex<double>* to) {
-  HWY_DYNAMIC_DISPATCH(stack_add_double)(from, count, to);
+void move_cells(std::complex<double>* from, int count, std::complex<double>* to) {
+  HWY_DYNAMIC_DISPATCH(stack_move_double)(from, count, to);
 }
 
 }  // namespace misfit::imager

@@ -38,7 +38,7 @@ struct StackCells {
 };
 
 /// A tile's private piece of a stack of one or more grids a plane, with room for the taps that leave the tile:
-/// [plane][row][grid][column].
+/// [plane][row][grid][column]. All of it is zero, but for what a user has put there and not moved on.
 template <typename Real>
 struct StackBuffer {
   int planes = 0;
@@ -50,10 +50,10 @@ struct StackBuffer {
   StackBuffer(int tile, int width, int grid_count)
       : grids(grid_count), rows(tile + width), columns(tile + most_columns(width)) {}
 
-  /// Makes room for that many planes, all zero.
-  void reset(int plane_count) {
+  /// Makes room for that many planes.
+  void reserve(int plane_count) {
     planes = plane_count;
-    cell.assign(offset(planes, 0, 0), std::complex<Real>(0));
+    if (cell.size() < offset(planes, 0, 0)) cell.resize(offset(planes, 0, 0));
   }
   StackCells<std::complex<Real>> cells() {
     return {cell.data(), rows * grids * columns, grids * columns, columns, planes, grids, columns, 0};
@@ -89,8 +89,8 @@ void interpolate(const StackTaps<float>& taps, const StackCells<const std::compl
 void interpolate(const StackTaps<double>& taps, const StackCells<const std::complex<double>>& cells,
                  StackBatch<double>& samples);
 
-/// to[i] += from[i].
-void add_cells(const std::complex<float>* from, int count, std::complex<float>* to);
-void add_cells(const std::complex<double>* from, int count, std::complex<double>* to);
+/// to[i] += from[i], from[i] = 0.
+void move_cells(std::complex<float>* from, int count, std::complex<float>* to);
+void move_cells(std::complex<double>* from, int count, std::complex<double>* to);
 
 }  // namespace misfit::imager

@@ -1,5 +1,7 @@
 #include "imager/wide/stack_rows.h"
 
+#include <hwy/cache_control.h>
+
 #include <algorithm>
 
 #include "imager/numerics/parallel.h"
@@ -14,29 +16,53 @@ int canonical(const StackShape& s, int column) {
   return p < 0 ? p + s.nu : p;
 }
 
-/// Calls visit(chunk, p) for the chunks that stand for canonical columns p … p + tile − 1, and edge(chunk, column in chunk, p)
-/// for the columns of the others, which wrap.
+/// The chunks none of whose columns wraps, [begin, end), and the canonical columns that they stand for, [first, last).
+struct WholeChunks {
+  int begin, end;
+  int first, last;
+
+  explicit WholeChunks(const StackShape& s)
+      : begin((s.margin() + s.tile - 1) / s.tile),
+        end(std::max(begin, (s.nu + s.margin()) / s.tile)),
+        first(begin == end ? 0 : begin * s.tile - s.margin()),
+        last(first + (end - begin) * s.tile) {}
+};
+
+/// Calls visit(chunk, p) for the chunks that stand for canonical columns p … p + tile − 1, and then edge(chunk, column in
+/// chunk, p) for the columns of the others.
 template <typename Chunk, typename Column>
 void for_chunks(const StackShape& s, const Chunk& visit, const Column& edge) {
-  for (int chunk = 0; chunk < s.chunks(); ++chunk) {
-    const int p = chunk * s.tile - s.margin();
-    if (p >= 0 && p + s.tile <= s.nu) {
-      visit(chunk, p);
-    } else {
+  const WholeChunks whole(s);
+  for (int chunk = whole.begin; chunk < whole.end; ++chunk) visit(chunk, chunk * s.tile - s.margin());
+  for (int chunk = 0; chunk < s.chunks(); ++chunk)
+    if (chunk < whole.begin || chunk >= whole.end)
       for (int c = 0; c < s.tile; ++c) edge(chunk, c, canonical(s, chunk * s.tile + c));
-    }
-  }
+}
+
+/// Memory brings a piece of a row, which lies apart from the one before, while others are copied.
+template <typename Real>
+void prefetch(const std::complex<Real>* piece, int count) {
+  const char* const bytes = reinterpret_cast<const char*>(piece);
+  for (std::size_t i = 0; i < static_cast<std::size_t>(count) * sizeof(std::complex<Real>); i += 64) hwy::Prefetch(bytes + i);
 }
 
 /// line = a row of storage, margins along u folded in.
 template <typename Real>
 void gather_stored(const PlaneStack<Real>& stack, int row, int plane, int grid, std::complex<Real>* line) {
   const StackShape& s = stack.shape;
-  std::fill_n(line, s.nu, std::complex<Real>(0));
+  const WholeChunks whole(s);
+  constexpr int ahead = 4;
+  std::fill_n(line, whole.first, std::complex<Real>(0));
+  std::fill(line + whole.last, line + s.nu, std::complex<Real>(0));
   for_chunks(
       s,
       [&](int chunk, int p) {
-        if (stack.uses(row, chunk)) add_cells(stack.chunk(row, chunk, plane, grid), s.tile, line + p);
+        const int later = std::min(chunk + ahead, whole.end - 1);
+        if (stack.uses(row, later)) prefetch(stack.chunk(row, later, plane, grid), s.tile);
+        if (stack.uses(row, chunk))
+          std::copy_n(stack.chunk(row, chunk, plane, grid), s.tile, line + p);
+        else
+          std::fill_n(line + p, s.tile, std::complex<Real>(0));
       },
       [&](int chunk, int c, int p) {
         if (stack.uses(row, chunk)) line[p] += stack.chunk(row, chunk, plane, grid)[c];
@@ -81,27 +107,19 @@ void scatter_row(const std::complex<Real>* line, int q, int plane, std::complex<
   });
 }
 
-/// Calls visit(values, begin, count) for the pieces of a row of the grid between the two transforms of its FFT.
-template <typename Stack, typename Visit>
-void for_kept_row(Stack& stack, int q, int plane, int grid, int width, const Visit& visit) {
-  const StackShape& s = stack.shape;
-  for (int begin = 0; begin < width; begin += s.tile)
-    visit(stack.chunk(q + s.margin(), begin / s.tile, plane, grid), begin, std::min(s.tile, width - begin));
+/// Calls visit(first, values) for the groups of columns of row q.
+template <typename Planes, typename Visit>
+void for_groups(Planes& image, int plane, int grid, int q, const Visit& visit) {
+  for (int group = 0, first = 0; first < image.width; ++group, first += columns_at_once)
+    visit(first, image.row(group, plane, grid, q));
 }
 
-/// Pixels of an image's row lie at the end of an FFT's, and then at its beginning.
-template <typename Real>
-void fft_to_image(const std::complex<Real>* in, int length, int width, std::complex<Real>* out) {
+/// Pixels of an image's row lie at the end of an FFT's, and then at its beginning: calls visit(at, in image, count) for both.
+template <typename Visit>
+void for_halves(int width, int length, const Visit& visit) {
   const int left = width / 2;
-  std::copy_n(in + length - left, left, out);
-  std::copy_n(in, width - left, out + left);
-}
-template <typename Real>
-void image_to_fft(const std::complex<Real>* in, int width, int length, std::complex<Real>* out) {
-  const int left = width / 2;
-  std::copy_n(in + left, width - left, out);
-  std::fill(out + width - left, out + length - left, std::complex<Real>(0));
-  std::copy_n(in, left, out + length - left);
+  visit(length - left, 0, left);
+  visit(0, left, width - left);
 }
 
 }  // namespace
@@ -111,18 +129,18 @@ template <typename Real>
 struct StackRows<Real>::Work {
   typename Fft<Real>::ComplexBuffer line[2];  ///< of a plane and the opposite one
   typename Fft<Real>::ComplexBuffer spare;
-  std::vector<std::complex<Real>> image_row;
+  std::vector<std::complex<Real>> image_row;  ///< whole groups of columns
 
   Work(const Fft<Real>& fft, int width)
       : line{fft.complex_buffer(), fft.complex_buffer()},
         spare(fft.complex_buffer()),
-        image_row(static_cast<std::size_t>(width)) {}
+        image_row(static_cast<std::size_t>(width + columns_at_once)) {}
 };
 
 template <typename Real>
-StackRows<Real>::StackRows(PlaneStack<Real>& stack, int width, int threads)
+StackRows<Real>::StackRows(PlaneStack<Real>& stack, ImagePlanes<Real>& image, int threads)
     : stack_(stack),
-      width_(width),
+      image_(image),
       threads_(threads),
       along_u_(stack.shape.nu),
       done_(static_cast<std::size_t>(stack.shape.nv / 2 + 1)) {}
@@ -135,7 +153,7 @@ template <typename Transform>
 void StackRows<Real>::for_each(const std::vector<int>& rows, const Transform& transform) {
   constexpr std::size_t at_once = 4;
   parallel_for((rows.size() + at_once - 1) / at_once, threads_, [&](std::size_t piece) {
-    auto work = spares_.take([&] { return std::make_unique<Work>(along_u_, width_); });
+    auto work = spares_.take([&] { return std::make_unique<Work>(along_u_, image_.width); });
     for (std::size_t i = piece * at_once; i < std::min(rows.size(), (piece + 1) * at_once); ++i)
       for (int plane = 0; plane < stack_.planes / 2; ++plane)
         for (int grid = 0; grid < stack_.grids; ++grid) transform(rows[i], plane, grid, *work);
@@ -152,39 +170,61 @@ void StackRows<Real>::to_image(int filled) {
     stack_.for_mirrored_rows(q, [&](int r) { complete &= r < filled; });
     if (!complete) continue;
     done_[i] = 1;
-    if (stack_.holds(q)) rows.push_back(q);
+    if (!stack_.holds(q)) continue;
+    image_.holds[i] = 1;
+    rows.push_back(q);
   }
   for_each(rows, [&](int q, int first, int grid, Work& work) {
     const int planes[] = {first, stack_.opposite(first)};
     for (int i = 0; i < 2; ++i) gather_row(stack_, q, planes[i], grid, work.spare.get(), work.line[i].get());
     for (int i = 0; i < 2; ++i) {
       along_u_.complex_to_complex(work.line[i].get(), Fft<Real>::Sign::backward);
-      fft_to_image(work.line[i].get(), stack_.shape.nu, width_, work.image_row.data());
-      for_kept_row(stack_, q, planes[i], grid, width_, [&](std::complex<Real>* values, int begin, int count) {
-        std::copy_n(work.image_row.begin() + begin, count, values);
+      for_halves(image_.width, stack_.shape.nu, [&](int at, int pixel, int count) {
+        std::copy_n(work.line[i].get() + at, count, work.image_row.begin() + pixel);
+      });
+      for_groups(image_, planes[i], grid, q, [&](int column, std::complex<Real>* values) {
+        std::copy_n(work.image_row.begin() + column, columns_at_once, values);
       });
     }
   });
 }
 
 template <typename Real>
+int StackRows<Real>::first_awaited() const {
+  int first = stack_.shape.rows();
+  for (std::size_t i = 0; i < done_.size(); ++i) {
+    if (done_[i] != 0) continue;
+    const int q = static_cast<int>(i);
+    first = std::min(first, q + stack_.shape.margin());
+    stack_.for_mirrored_rows(q, [&](int r) { first = std::min(first, r); });
+  }
+  return first;
+}
+
+template <typename Real>
 void StackRows<Real>::to_grid(int needed) {
   std::vector<int> rows;
   for (std::size_t i = 0; i < done_.size(); ++i) {
-    const int q = static_cast<int>(i);
-    bool shown = q + stack_.shape.margin() < needed;
+    const int q = static_cast<int>(i), own = q + stack_.shape.margin();
+    bool shown = own < needed;
     stack_.for_mirrored_rows(q, [&](int r) { shown |= r < needed; });
-    if (done_[i] == 0 && shown) rows.push_back(q);
-    done_[i] |= shown ? 1 : 0;
+    if (done_[i] != 0 || !shown) continue;
+    done_[i] = 1;
+    rows.push_back(q);
+    stack_.use_row(own);
+    stack_.for_mirrored_rows(q, [&](int r) { stack_.use_row(r); });
   }
   for_each(rows, [&](int q, int first, int grid, Work& work) {
     const int planes[] = {first, stack_.opposite(first)};
     for (int i = 0; i < 2; ++i) {
-      for_kept_row(stack_, q, planes[i], grid, width_, [&](const std::complex<Real>* values, int begin, int count) {
-        std::copy_n(values, count, work.image_row.begin() + begin);
+      for_groups(image_, planes[i], grid, q, [&](int column, const std::complex<Real>* values) {
+        std::copy_n(values, columns_at_once, work.image_row.begin() + column);
       });
-      image_to_fft(work.image_row.data(), width_, stack_.shape.nu, work.line[i].get());
-      along_u_.complex_to_complex(work.line[i].get(), Fft<Real>::Sign::forward);
+      std::complex<Real>* const line = work.line[i].get();
+      std::fill_n(line, stack_.shape.nu, std::complex<Real>(0));
+      for_halves(image_.width, stack_.shape.nu,
+                 [&](int at, int pixel, int count) { std::copy_n(work.image_row.begin() + pixel, count, line + at); });
+      along_u_.complex_to_complex(line, Fft<Real>::Sign::forward);
     }
     for (int i = 0; i < 2; ++i) scatter_row(work.line[i].get(), q, planes[i], work.spare.get(), stack_);
   });

@@ -4,21 +4,25 @@
 
 #include "imager/numerics/fft.h"
 #include "imager/numerics/spares.h"
+#include "imager/wide/image_planes.h"
 #include "imager/wide/plane_stack.h"
 
 namespace misfit::imager {
 
-/// The FFTs along u of a stack, rows 0 … nv/2 of each half plane, of which an image keeps `width` columns; a few rows at a
-/// time, while the nearer caches still hold what was gridded there, or will be degridded.
+/// The FFTs along u between a band of a stack and the columns that an image keeps of it, a few rows at a time, while the nearer
+/// caches still hold what was gridded there, or will be degridded.
 template <typename Real>
 class StackRows {
  public:
-  StackRows(PlaneStack<Real>& stack, int width, int threads);
+  /// Both must outlive it, and have as many planes and grids.
+  StackRows(PlaneStack<Real>& stack, ImagePlanes<Real>& image, int threads);
   ~StackRows();
 
   /// Σ_p G(p, q) exp(+2πi px/nu) for the used rows q that have not been transformed yet and to which rows of storage from
   /// `filled` on add nothing.
   void to_image(int filled);
+  /// The first row of storage that rows not transformed yet take.
+  int first_awaited() const;
   /// The adjoint, for a stack of one grid a plane: G(p, q) for the rows q not transformed yet that rows of storage up to
   /// `needed` show, margins filled by periodicity.
   void to_grid(int needed);
@@ -29,7 +33,7 @@ class StackRows {
   void for_each(const std::vector<int>& rows, const Transform& transform);
 
   PlaneStack<Real>& stack_;
-  int width_;
+  ImagePlanes<Real>& image_;
   int threads_;
   Fft<Real> along_u_;
   std::vector<char> done_;  ///< [q]

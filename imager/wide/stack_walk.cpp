@@ -14,10 +14,7 @@ std::vector<Slab> slabs_of(const StackOrder& order, int most_pairs) {
   return slabs;
 }
 
-std::vector<Band> bands_of(const StackShape& shape, std::size_t bytes_a_row) {
-  constexpr std::size_t cache = std::size_t{12} << 20;
-  const std::size_t tile_bytes = bytes_a_row * static_cast<std::size_t>(shape.tile);
-  const int tiles = static_cast<int>(std::clamp<std::size_t>(cache / tile_bytes, 1, 16));
+std::vector<Band> bands_of(const StackShape& shape, int tiles) {
   std::vector<Band> bands;
   for (int v = 0; v < shape.tiles_v(); v += tiles) bands.push_back({v, std::min(v + tiles, shape.tiles_v())});
   return bands;

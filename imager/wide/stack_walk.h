@@ -49,8 +49,8 @@ struct Band {
   int end = 0;
 };
 
-/// All rows of tiles, in bands that a cache shared among processors can hold.
-std::vector<Band> bands_of(const StackShape& shape, std::size_t bytes_a_row);
+/// All rows of tiles, in bands of so many.
+std::vector<Band> bands_of(const StackShape& shape, int tiles);
 
 /// A band's tasks in four colours of tiles whose buffers cannot touch, the fullest of a colour first; for each of the slab's
 /// ranges of planes, since a sample may touch both.

@@ -30,15 +30,12 @@ class TileSum {
         buffer_(buffer),
         stack_(stack),
         touched_(setup.taps, buffer, task.planes.planes) {
-    if (!in_place_) buffer_.reset(task.planes.planes);
+    buffer_.reserve(task.planes.planes);
   }
 
   void add(const StackBatch<Real>& batch) {
     touched_.add(batch);
-    if (in_place_ && is_dense()) {
-      in_place_ = false;
-      buffer_.reset(task_.planes.planes);
-    }
+    if (is_dense()) in_place_ = false;
     spread(setup_.taps, batch, in_place_ ? in_stack() : buffer_.cells());
     if (!in_place_ && (touched_.samples() >= most_in_buffer || is_dense())) empty_buffer();
   }
@@ -62,13 +59,16 @@ class TileSum {
   void empty_buffer() {
     if (is_dense() && !exact_) {
       exact_.emplace(setup_.shape.tile, setup_.shape.width, buffer_.grids);
-      exact_->reset(task_.planes.planes);
+      exact_->reserve(task_.planes.planes);
     }
     if (exact_) {
       move_to(*exact_);
     } else {
-      add_to_stack(buffer_);
-      buffer_.reset(task_.planes.planes);
+      const int tile = setup_.shape.tile;
+      for_each_chunk(setup_.shape, touched_.row, touched_.plane, stack_.grids,
+                     [&](int row, int chunk, int plane, int grid, int count) {
+                       move_cells(buffer_.row(plane, row, grid) + chunk * tile, count, in_stack(row, chunk, plane, grid));
+                     });
     }
     touched_.clear();
   }
@@ -86,17 +86,17 @@ class TileSum {
         }
   }
 
-  template <typename Sum>
-  void add_to_stack(const StackBuffer<Sum>& buffer) {
-    const int tile = setup_.shape.tile;
-    for_each_chunk(setup_.shape, task_, stack_.grids, [&](int row, int chunk, int plane, int grid, int count) {
-      const std::complex<Sum>* const from = buffer.row(plane, row, grid) + chunk * tile;
-      std::complex<Real>* const to = stack_.chunk(task_.tile_v * tile + row, task_.tile_u + chunk, plane_ + plane, grid);
-      if constexpr (std::is_same_v<Sum, Real>)
-        add_cells(from, count, to);
-      else
-        for (int c = 0; c < count; ++c) to[c] = std::complex<Real>(std::complex<double>(to[c]) + from[c]);
-    });
+  void add_to_stack(const StackBuffer<double>& exact) {
+    const StackShape& s = setup_.shape;
+    for_each_chunk(s, {0, s.reach()}, {0, task_.planes.planes}, stack_.grids,
+                   [&](int row, int chunk, int plane, int grid, int count) {
+                     const std::complex<double>* const from = exact.row(plane, row, grid) + chunk * s.tile;
+                     std::complex<Real>* const to = in_stack(row, chunk, plane, grid);
+                     for (int c = 0; c < count; ++c) to[c] = std::complex<Real>(std::complex<double>(to[c]) + from[c]);
+                   });
+  }
+  std::complex<Real>* in_stack(int row, int chunk, int plane, int grid) {
+    return stack_.chunk(task_.tile_v * setup_.shape.tile + row, task_.tile_u + chunk, plane_ + plane, grid);
   }
 
   const WideSetup<Real>& setup_;

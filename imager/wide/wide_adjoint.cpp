@@ -136,14 +136,18 @@ class WideAdjoint : public AdjointSum {
     if (with_psf_) of_grid.push_back(&result_.psf);
     const int grids = static_cast<int>(of_grid.size()), threads = setup_.options.threads;
     PlaneStack<Real> stack(setup_.shape, grids);
+    ImagePlanes<Real> planes(setup_.shape.nv, grids);
     Spares<StackBuffer<Real>> spares;
     for (const StackedFacet& f : setup_.facets) {
       const StackOrderOptions ordering = setup_.ordering(f);
       const StackOrder order = order_for_stack(blocks, ordering);
-      for (const Slab& slab : slabs_of(order, most_pairs(setup_, grids))) {
-        stack.reserve(2 * slab.pairs);
-        StackRows<Real> rows(stack, f.facet.geometry.width, threads);
-        for (const Band& band : bands_of(setup_.shape, stack.bytes_a_row())) {
+      for (const Slab& slab : slabs_of(order, most_pairs(setup_.options, grids))) {
+        const int band_tiles = tiles_a_band(setup_.options, slab.pairs, grids);
+        stack.reserve(2 * slab.pairs, band_tiles);
+        planes.reserve(f.facet.geometry.width, 2 * slab.pairs);
+        StackRows<Real> rows(stack, planes, threads);
+        for (const Band& band : bands_of(setup_.shape, band_tiles)) {
+          stack.advance(std::min(band.begin * setup_.shape.tile, rows.first_awaited()), threads);
           const auto colours = tasks_of(order, setup_.shape, slab, ordering.width_w, band);
           stack.use_tiles(tiles_of(colours), threads);
           for (const std::vector<StackTask>& tasks : colours)
@@ -156,7 +160,7 @@ class WideAdjoint : public AdjointSum {
         }
         add_seconds_of(result_.fft_s, [&] {
           rows.to_image(setup_.shape.rows());
-          stack_to_images(stack, f, slab.first, threads, of_grid);
+          planes_to_images(planes, f, slab.first, threads, of_grid);
         });
       }
     }

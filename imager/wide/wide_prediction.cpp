@@ -39,15 +39,19 @@ class WidePrediction : public Prediction {
     for (const WantedSamples& block : blocks) visibilities.emplace_back(block.at->samples());
     const int threads = setup_.options.threads;
     PlaneStack<Real> stack(setup_.shape, 1);
+    ImagePlanes<Real> planes(setup_.shape.nv, 1);
     Spares<StackBuffer<Real>> spares;
     for (const StackedFacet& f : setup_.facets) {
       const StackOrderOptions ordering = setup_.ordering(f);
       const StackOrder order = order_for_stack(blocks, ordering);
-      for (const Slab& slab : slabs_of(order, most_pairs(setup_, 1))) {
-        stack.reserve(2 * slab.pairs);
-        add_seconds_of(fft_s_, [&] { image_to_stack(model_, f, slab.first, threads, stack); });
-        StackRows<Real> rows(stack, f.facet.geometry.width, threads);
-        for (const Band& band : bands_of(setup_.shape, stack.bytes_a_row())) {
+      for (const Slab& slab : slabs_of(order, most_pairs(setup_.options, 1))) {
+        const int band_tiles = tiles_a_band(setup_.options, slab.pairs, 1);
+        stack.reserve(2 * slab.pairs, band_tiles);
+        planes.reserve(f.facet.geometry.width, 2 * slab.pairs);
+        add_seconds_of(fft_s_, [&] { image_to_planes(model_, f, slab.first, threads, planes); });
+        StackRows<Real> rows(stack, planes, threads);
+        for (const Band& band : bands_of(setup_.shape, band_tiles)) {
+          stack.advance(band.begin * setup_.shape.tile, threads);
           add_seconds_of(fft_s_, [&] { rows.to_grid(band.end * setup_.shape.tile + setup_.shape.width); });
           for (const std::vector<StackTask>& tasks : tasks_of(order, setup_.shape, slab, ordering.width_w, band))
             parallel_for(tasks.size(), threads, [&](std::size_t i) {
@@ -67,8 +71,8 @@ class WidePrediction : public Prediction {
     const int lowest = slab.place(task.planes.first);
     StackCells<const std::complex<Real>> cells = stack.cells_of(task.tile_u, task.tile_v, lowest, task.planes.planes);
     if (!is_sparse(samples.order, task)) {
-      buffer.reset(task.planes.planes);
-      for_each_chunk(s, task, 1, [&](int row, int chunk, int plane, int grid, int count) {
+      buffer.reserve(task.planes.planes);
+      for_each_chunk(s, {0, s.reach()}, {0, task.planes.planes}, 1, [&](int row, int chunk, int plane, int grid, int count) {
         std::copy_n(stack.chunk(task.tile_v * s.tile + row, task.tile_u + chunk, lowest + plane, grid), count,
                     buffer.row(plane, row, grid) + chunk * s.tile);
       });

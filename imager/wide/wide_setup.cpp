@@ -14,6 +14,40 @@ StackShape stack_shape_of(const WideTransformOptions& o) {
   return {o.nu, o.nv, o.kernel_u.width(), std::max(tile, o.kernel_u.width())};
 }
 
+namespace {
+
+/// Bytes of a row of a pair, and of what the image keeps of a whole pair.
+struct PairBytes {
+  double stored_row;
+  double kept;
+
+  PairBytes(const WideTransformOptions& o, int grids) {
+    const bool single = o.precision == Precision::single_precision;
+    const double cell = 2.0 * grids * (single ? sizeof(std::complex<float>) : sizeof(std::complex<double>));
+    stored_row = cell * stack_shape_of(o).columns();
+    kept = cell * (o.nv / 2 + 1) * (largest_facet(o.geometry.width, o.facets_l) + columns_at_once - 1);
+  }
+};
+
+}  // namespace
+
+int most_pairs(const WideTransformOptions& o, int grids) {
+  const PairBytes pair(o, grids);
+  const double bytes = pair.kept + pair.stored_row * stack_shape_of(o).held_rows(1);
+  return std::max(1, static_cast<int>(static_cast<double>(o.stack_bytes) / bytes));
+}
+
+int tiles_a_band(const WideTransformOptions& o, int pairs, int grids) {
+  constexpr double cache = 12 << 20;
+  const double tile_row = pairs * PairBytes(o, grids).stored_row * stack_shape_of(o).tile;
+  return static_cast<int>(std::clamp(std::min(cache, static_cast<double>(o.stack_bytes)) / tile_row, 1.0, 16.0));
+}
+
+double bytes_of_pairs(const WideTransformOptions& o, int pairs, int grids) {
+  const PairBytes pair(o, grids);
+  return pairs * (pair.kept + pair.stored_row * stack_shape_of(o).held_rows(tiles_a_band(o, pairs, grids)));
+}
+
 template <typename Real>
 WideSetup<Real> wide_setup(const WideTransformOptions& o) {
   WideSetup<Real> s{o,

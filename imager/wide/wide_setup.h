@@ -5,6 +5,7 @@
 
 #include "imager/wide/stack_columns.h"
 #include "imager/wide/stack_walk.h"
+#include "imager/wide/touched_cells.h"
 #include "imager/wide/wide_transform.h"
 
 namespace misfit::imager {
@@ -28,21 +29,21 @@ StackShape stack_shape_of(const WideTransformOptions& options);
 template <typename Real>
 WideSetup<Real> wide_setup(const WideTransformOptions& options);
 
-/// Pairs of opposite half planes of one facet that memory can hold.
-template <typename Real>
-int most_pairs(const WideSetup<Real>& setup, int grids) {
-  const double pair_bytes = 2.0 * grids * static_cast<double>(setup.shape.cells()) * sizeof(std::complex<Real>);
-  return std::max(1, static_cast<int>(static_cast<double>(setup.options.stack_bytes) / pair_bytes));
-}
+/// Pairs of opposite half planes of one facet, of so many grids each, that memory can hold.
+int most_pairs(const WideTransformOptions& options, int grids);
+/// Rows of tiles in a band: as many as a cache shared among processors can hold.
+int tiles_a_band(const WideTransformOptions& options, int pairs, int grids);
+/// Bytes of so many pairs' band and of what the image keeps of it.
+double bytes_of_pairs(const WideTransformOptions& options, int pairs, int grids);
 
-/// Calls visit(row, chunk, plane, grid, cells) for what a tile's buffer and a stack share, in the stack's order.
+/// Calls visit(row, chunk, plane, grid, cells) for rows and planes that a tile's buffer and a stack share, in the stack's
+/// order.
 template <typename Visit>
-void for_each_chunk(const StackShape& s, const StackTask& task, int grids, const Visit& visit) {
-  const int reach = s.tile + s.width - 1;
-  for (int row = 0; row < reach; ++row)
+void for_each_chunk(const StackShape& s, const TouchedRange& rows, const TouchedRange& planes, int grids, const Visit& visit) {
+  for (int row = rows.begin; row < rows.end; ++row)
     for (int chunk = 0; chunk < 2; ++chunk)
-      for (int plane = 0; plane < task.planes.planes; ++plane)
-        for (int grid = 0; grid < grids; ++grid) visit(row, chunk, plane, grid, std::min(s.tile, reach - chunk * s.tile));
+      for (int plane = planes.begin; plane < planes.end; ++plane)
+        for (int grid = 0; grid < grids; ++grid) visit(row, chunk, plane, grid, std::min(s.tile, s.reach() - chunk * s.tile));
 }
 
 template <typename Real>

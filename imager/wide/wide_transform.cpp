@@ -55,14 +55,11 @@ std::unique_ptr<Transform> make_wide_transform(const WideTransformOptions& o) {
 }
 
 TransformMemory memory_of(const WideTransformOptions& o, const WideDemand& demand) {
-  const bool single = o.precision == Precision::single_precision;
-  const double complex_bytes = single ? sizeof(std::complex<float>) : sizeof(std::complex<double>);
+  const double complex_bytes =
+      o.precision == Precision::single_precision ? sizeof(std::complex<float>) : sizeof(std::complex<double>);
   const double at_once = std::min(demand.samples, static_cast<double>(o.samples_at_once));
-  const double plane = 2.0 * static_cast<double>(stack_shape_of(o).cells()) * complex_bytes;  // two halves
   const double image = static_cast<double>(o.geometry.pixels()) * sizeof(double);
-  const auto stack = [&](int grids) {
-    return std::min(grids * demand.planes * plane, std::max(grids * plane, static_cast<double>(o.stack_bytes)));
-  };
+  const auto stack = [&](int grids) { return bytes_of_pairs(o, std::min(demand.planes, most_pairs(o, grids)), grids); };
   const int others = demand.stokes - 1;
   const double column = 6.0 * largest_facet(o.geometry.height, o.facets_m) * sizeof(double) + o.nv * complex_bytes;
   return {at_once * wide_bytes_a_sample + stack(1) + image, stack(demand.stokes + 1) - stack(demand.stokes) + image,

@@ -50,8 +50,8 @@ struct Places {
   PlaneStack<Real> stack;
 
   Places(int width, int grids) : buffer(tile, width, grids), stack({96, 96, width, tile}, grids) {
-    buffer.reset(planes);
-    stack.reserve(planes);
+    buffer.reserve(planes);
+    stack.reserve(planes, 3);
     stack.use_tiles({{1, 1}}, 1);
   }
   std::complex<Real>& in_buffer(int plane, int row, int grid, int column) { return buffer.row(plane, row, grid)[column]; }
