@@ -135,12 +135,36 @@ HWY_ATTR HWY_INLINE void add_rows(const TapRows<Real>& taps, int samples, Real* 
   }
 }
 
+/// Adds the taps of one sample in one plane, row after row.
+template <typename Real, int Vectors, int Grids>
+HWY_ATTR HWY_INLINE void add_sample(const TapRows<Real>& taps, int width, Real* cell, std::ptrdiff_t line,
+                                    std::ptrdiff_t grid) {
+  const Tag<Real> d;
+  constexpr int lanes = lanes_of<Real>;
+  hn::Vec<Tag<Real>> term[Grids][Vectors];
+  const auto height = hn::Set(d, *taps.w);
+  MISFIT_UNROLL for (int g = 0; g < Grids; ++g) {
+    MISFIT_UNROLL for (int k = 0; k < Vectors; ++k) term[g][k] =
+        hn::Mul(height, hn::LoadU(d, taps.u + g * taps.grid_u + k * lanes));
+  }
+  for (const Real *v = taps.v, *const end = v + width; v != end; ++v, cell += line) {
+    const auto factor = hn::Set(d, *v);
+    MISFIT_UNROLL for (int g = 0; g < Grids; ++g) {
+      MISFIT_UNROLL for (int k = 0; k < Vectors; ++k) {
+        Real* const at = cell + g * grid + k * lanes;
+        hn::StoreU(hn::MulAdd(factor, term[g][k], hn::LoadU(d, at)), d, at);
+      }
+    }
+  }
+}
+
 /// Sums that fit the registers beside a sample's terms.
 constexpr int most_sums = 12;
 
 template <typename Real, int Vectors, int Grids>
 HWY_ATTR HWY_INLINE void add_plane(TapRows<Real> taps, int samples, int width, Real* cell, std::ptrdiff_t line,
                                    std::ptrdiff_t grid) {
+  if (samples == 1) return add_sample<Real, Vectors, Grids>(taps, width, cell, line, grid);
   constexpr int rows = std::clamp(most_sums / (Vectors * Grids), 1, 4);
   int j = 0;
   for (; j + rows <= width; j += rows, taps.v += rows, cell += rows * line)
