@@ -39,20 +39,20 @@ class ColumnGroup {
   template <typename Real>
   void turn_and_add(int c, const std::complex<Real>* column, int n) {
     in_fft_order(c, n, [&](std::size_t i, int place, int count) {
-      imager::turn_and_add(sum().from(i), step().from(i), column + place, count);
+      imager::turn_and_add(sum().from(i), half_step().from(i), column + place, count);
     });
   }
   template <typename Real>
   void store_and_turn(int c, std::complex<Real>* column, int n) {
     in_fft_order(c, n, [&](std::size_t i, int place, int count) {
-      imager::store_and_turn(sum().from(i), step().from(i), column + place, count);
+      imager::store_and_turn(sum().from(i), half_step().from(i), column + place, count);
     });
   }
 
  private:
   std::size_t at(int c) const { return static_cast<std::size_t>(c - begin_) * static_cast<std::size_t>(height_); }
   ColumnPhasors sum() { return {sum_re_.data(), sum_im_.data()}; }
-  ColumnPhasors step() { return {step_re_.data(), step_im_.data()}; }
+  ColumnPhasors half_step() { return {half_step_re_.data(), half_step_im_.data()}; }
 
   template <typename Visit>
   void in_fft_order(int c, int n, const Visit& visit) {
@@ -60,11 +60,12 @@ class ColumnGroup {
     visit(at(c), n - below, below);
     visit(at(c) + static_cast<std::size_t>(below), 0, height_ - below);
   }
-  void first_phasors(int c, int first_plane);
+  /// sum *= exp(2πi q planes).
+  void turn(int planes);
 
   int begin_ = 0, end_ = 0, height_;
-  std::vector<double> q_, h_, step_re_, step_im_, sum_re_, sum_im_;  ///< [column in group][row]; q in planes
-  std::vector<double> turns_, first_re_, first_im_;                  ///< [row]
+  std::vector<double> q_, h_, half_step_re_, half_step_im_, sum_re_, sum_im_;  ///< [column in group][row]; q in planes
+  std::vector<double> half_;                                                   ///< [row]: q/2
 };
 
 }  // namespace misfit::imager

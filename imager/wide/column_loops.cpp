@@ -84,9 +84,16 @@ HWY_ATTR void store_complex(D /*tag*/, V real, V imaginary, std::complex<float>*
   hn::StoreInterleaved2(hn::DemoteTo(narrow, real), hn::DemoteTo(narrow, imaginary), narrow, reinterpret_cast<float*>(z));
 }
 
+template <typename D, typename V>
+HWY_ATTR void load_step(D d, const ColumnPhasors& half_step, int i, V& real, V& imaginary) {
+  const auto re = hn::LoadU(d, half_step.real + i), im = hn::LoadU(d, half_step.imaginary + i);
+  real = hn::MulSub(re, re, hn::Mul(im, im));
+  imaginary = hn::Mul(hn::Add(re, re), im);
+}
+
 template <typename Real>
 struct AddLoop {
-  ColumnPhasors sum, step;
+  ColumnPhasors sum, half_step;
   const std::complex<Real>* value;
 
   template <typename D>
@@ -94,7 +101,8 @@ struct AddLoop {
     hn::Vec<D> re, im;
     load_complex(d, value + i, re, im);
     const auto sum_re = hn::LoadU(d, sum.real + i), sum_im = hn::LoadU(d, sum.imaginary + i);
-    const auto step_re = hn::LoadU(d, step.real + i), step_im = hn::LoadU(d, step.imaginary + i);
+    hn::Vec<D> step_re, step_im;
+    load_step(d, half_step, i, step_re, step_im);
     hn::StoreU(hn::NegMulAdd(sum_im, step_im, hn::MulAdd(sum_re, step_re, re)), d, sum.real + i);
     hn::StoreU(hn::MulAdd(sum_im, step_re, hn::MulAdd(sum_re, step_im, im)), d, sum.imaginary + i);
   }
@@ -102,13 +110,14 @@ struct AddLoop {
 
 template <typename Real>
 struct StoreLoop {
-  ColumnPhasors sum, step;
+  ColumnPhasors sum, half_step;
   std::complex<Real>* value;
 
   template <typename D>
   HWY_ATTR void operator()(D d, int i) const {
     const auto sum_re = hn::LoadU(d, sum.real + i), sum_im = hn::LoadU(d, sum.imaginary + i);
-    const auto step_re = hn::LoadU(d, step.real + i), step_im = hn::LoadU(d, step.imaginary + i);
+    hn::Vec<D> step_re, step_im;
+    load_step(d, half_step, i, step_re, step_im);
     store_complex(d, sum_re, sum_im, value + i);
     hn::StoreU(hn::MulAdd(sum_im, step_im, hn::Mul(sum_re, step_re)), d, sum.real + i);
     hn::StoreU(hn::NegMulAdd(sum_re, step_im, hn::Mul(sum_im, step_re)), d, sum.imaginary + i);
@@ -121,17 +130,18 @@ HWY_ATTR void curvature(const Facet& f, double l, double* q) {
 HWY_ATTR void correction(const SmoothCorrection& series, double scale, const double* q, int count, double* h) {
   for_vectors(count, CorrectionLoop{series, scale, q, h});
 }
-HWY_ATTR void add_float(const ColumnPhasors& sum, const ColumnPhasors& step, const std::complex<float>* value, int count) {
-  for_vectors(count, AddLoop<float>{sum, step, value});
+HWY_ATTR void add_float(const ColumnPhasors& sum, const ColumnPhasors& half_step, const std::complex<float>* value, int count) {
+  for_vectors(count, AddLoop<float>{sum, half_step, value});
 }
-HWY_ATTR void add_double(const ColumnPhasors& sum, const ColumnPhasors& step, const std::complex<double>* value, int count) {
-  for_vectors(count, AddLoop<double>{sum, step, value});
+HWY_ATTR void add_double(const ColumnPhasors& sum, const ColumnPhasors& half_step, const std::complex<double>* value,
+                         int count) {
+  for_vectors(count, AddLoop<double>{sum, half_step, value});
 }
-HWY_ATTR void store_float(const ColumnPhasors& sum, const ColumnPhasors& step, std::complex<float>* value, int count) {
-  for_vectors(count, StoreLoop<float>{sum, step, value});
+HWY_ATTR void store_float(const ColumnPhasors& sum, const ColumnPhasors& half_step, std::complex<float>* value, int count) {
+  for_vectors(count, StoreLoop<float>{sum, half_step, value});
 }
-HWY_ATTR void store_double(const ColumnPhasors& sum, const ColumnPhasors& step, std::complex<double>* value, int count) {
-  for_vectors(count, StoreLoop<double>{sum, step, value});
+HWY_ATTR void store_double(const ColumnPhasors& sum, const ColumnPhasors& half_step, std::complex<double>* value, int count) {
+  for_vectors(count, StoreLoop<double>{sum, half_step, value});
 }
 
 }  // namespace misfit::imager::HWY_NAMESPACE
@@ -153,17 +163,17 @@ void curvature_of_column(const Facet& facet, int column, double* q) {
 void correction_of_column(const SmoothCorrection& series, double scale, const double* q, int count, double* h) {
   HWY_DYNAMIC_DISPATCH(correction)(series, scale, q, count, h);
 }
-void turn_and_add(const ColumnPhasors& sum, const ColumnPhasors& step, const std::complex<float>* value, int count) {
-  HWY_DYNAMIC_DISPATCH(add_float)(sum, step, value, count);
+void turn_and_add(const ColumnPhasors& sum, const ColumnPhasors& half_step, const std::complex<float>* value, int count) {
+  HWY_DYNAMIC_DISPATCH(add_float)(sum, half_step, value, count);
 }
-void turn_and_add(const ColumnPhasors& sum, const ColumnPhasors& step, const std::complex<double>* value, int count) {
-  HWY_DYNAMIC_DISPATCH(add_double)(sum, step, value, count);
+void turn_and_add(const ColumnPhasors& sum, const ColumnPhasors& half_step, const std::complex<double>* value, int count) {
+  HWY_DYNAMIC_DISPATCH(add_double)(sum, half_step, value, count);
 }
-void store_and_turn(const ColumnPhasors& sum, const ColumnPhasors& step, std::complex<float>* value, int count) {
-  HWY_DYNAMIC_DISPATCH(store_float)(sum, step, value, count);
+void store_and_turn(const ColumnPhasors& sum, const ColumnPhasors& half_step, std::complex<float>* value, int count) {
+  HWY_DYNAMIC_DISPATCH(store_float)(sum, half_step, value, count);
 }
-void store_and_turn(const ColumnPhasors& sum, const ColumnPhasors& step, std::complex<double>* value, int count) {
-  HWY_DYNAMIC_DISPATCH(store_double)(sum, step, value, count);
+void store_and_turn(const ColumnPhasors& sum, const ColumnPhasors& half_step, std::complex<double>* value, int count) {
+  HWY_DYNAMIC_DISPATCH(store_double)(sum, half_step, value, count);
 }
 
 }  // namespace misfit::imager

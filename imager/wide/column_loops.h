@@ -21,12 +21,12 @@ struct ColumnPhasors {
   ColumnPhasors from(std::size_t i) const { return {real + i, imaginary + i}; }
 };
 
-/// One step of Horner's rule: sum[i] = sum[i] · step[i] + value[i].
-void turn_and_add(const ColumnPhasors& sum, const ColumnPhasors& step, const std::complex<float>* value, int count);
-void turn_and_add(const ColumnPhasors& sum, const ColumnPhasors& step, const std::complex<double>* value, int count);
+/// One step of Horner's rule: sum[i] = sum[i] · half_step[i]² + value[i].
+void turn_and_add(const ColumnPhasors& sum, const ColumnPhasors& half_step, const std::complex<float>* value, int count);
+void turn_and_add(const ColumnPhasors& sum, const ColumnPhasors& half_step, const std::complex<double>* value, int count);
 
-/// Its transpose: value[i] = sum[i], then sum[i] = sum[i] · conj(step[i]).
-void store_and_turn(const ColumnPhasors& sum, const ColumnPhasors& step, std::complex<float>* value, int count);
-void store_and_turn(const ColumnPhasors& sum, const ColumnPhasors& step, std::complex<double>* value, int count);
+/// Its transpose: value[i] = sum[i], then sum[i] = sum[i] · conj(half_step[i]²).
+void store_and_turn(const ColumnPhasors& sum, const ColumnPhasors& half_step, std::complex<float>* value, int count);
+void store_and_turn(const ColumnPhasors& sum, const ColumnPhasors& half_step, std::complex<double>* value, int count);
 
 }  // namespace misfit::imager

@@ -30,34 +30,99 @@ std::vector<Piece> pieces_of(const std::vector<WantedSamples>& blocks) {
   return pieces;
 }
 
-std::vector<TiledRun> find_runs(const Piece& piece, const WantedSamples& samples, const StackOrderOptions& o) {
-  std::vector<TiledRun> runs;
-  const SampleCoordinates& at = *samples.at;
-  const std::size_t channels = at.channels();
-  std::vector<std::int32_t> tile(channels), plane(channels), mirrored(channels);
-  std::vector<double> period(channels);
-  for (std::size_t r = piece.begin_row; r < piece.end_row; ++r) {
-    const float* weight = samples.weight == nullptr ? nullptr : samples.weight + r * channels;
-    if (weight != nullptr && std::all_of(weight, weight + channels, [](float w) { return w == 0; })) continue;
-    first_taps(StackRow(&at.uvw_m[3 * r], false, o.scale), o.shape, o.width_w, at.frequency_hz.data(),
-               static_cast<int>(channels), {tile.data(), plane.data(), mirrored.data(), period.data()});
-    bool open = false;
-    for (std::size_t c = 0; c < channels; ++c) {
-      if (weight != nullptr && weight[c] == 0) {
-        open = false;
-      } else if (open && tile[c] == tile[c - 1] && plane[c] == plane[c - 1] && period[c] == period[c - 1] &&
-                 runs.back().run.count < longest_run) {
-        ++runs.back().run.count;
-      } else {
-        runs.push_back({static_cast<std::uint32_t>(tile[c]),
-                        {piece.block, static_cast<std::uint32_t>(r), plane[c], static_cast<std::uint32_t>(c) & 0xFFFFF, 1,
-                         static_cast<std::uint32_t>(mirrored[c]) & 1}});
-        open = true;
-      }
-    }
+/// Finds the runs of rows of one block. Places are asked for at few channels: where they are the same at two of them they are
+/// so between, since along rising or falling frequencies everything of a place rises or falls.
+class RunFinder {
+ public:
+  RunFinder(const Piece& piece, const WantedSamples& samples, const StackOrderOptions& options)
+      : piece_(piece), samples_(samples), o_(options), channels_(samples.at->channels()) {
+    const std::vector<double>& frequency = samples.at->frequency_hz;
+    every_ = !std::is_sorted(frequency.begin(), frequency.end()) && !std::is_sorted(frequency.rbegin(), frequency.rend());
+    for (auto* values : {&tile_, &plane_, &mirrored_}) values->resize(channels_);
+    period_.resize(channels_);
   }
-  return runs;
-}
+
+  std::vector<TiledRun> find() {
+    for (std::size_t row = piece_.begin_row; row < piece_.end_row; ++row) add_row(row);
+    return std::move(runs_);
+  }
+
+ private:
+  void add_row(std::size_t row) {
+    const float* const weight = samples_.weight == nullptr ? nullptr : samples_.weight + row * channels_;
+    const auto wanted = [weight](std::size_t c) { return weight == nullptr || weight[c] != 0; };
+    std::size_t first = 0;
+    while (first < channels_ && !wanted(first)) ++first;
+    if (first == channels_) return;
+    find_changes(StackRow(&samples_.at->uvw_m[3 * row], false, o_.scale));
+    for (std::size_t i = 0; i + 1 < change_.size(); ++i)
+      for (std::size_t begin = std::max(change_[i], first); begin < change_[i + 1];) {
+        std::size_t end = begin;
+        while (end < change_[i + 1] && end - begin < longest_run && wanted(end)) ++end;
+        if (end > begin) add_run(row, change_[i], begin, end);
+        begin = std::max(end, begin + 1);
+      }
+  }
+
+  /// The channels at which the place is not that of the one before, from the first to the one after the last.
+  void find_changes(const StackRow& row) {
+    change_.assign(1, 0);
+    if (every_) {
+      locate(row, 0, channels_);
+      for (std::size_t c = 1; c < channels_; ++c)
+        if (!same(c - 1, c)) change_.push_back(c);
+    } else {
+      locate(row, 0, 1);
+      locate(row, channels_ - 1, channels_);
+      find_between(row, 0, channels_ - 1);
+    }
+    change_.push_back(channels_);
+  }
+
+  /// Those of [low + 1, high], both ends being located.
+  void find_between(const StackRow& row, std::size_t low, std::size_t high) {
+    if (low >= high || same(low, high)) return;
+    if (high - low <= at_once) {
+      locate(row, low + 1, high);
+      for (std::size_t c = low + 1; c <= high; ++c)
+        if (!same(c - 1, c)) change_.push_back(c);
+      return;
+    }
+    const std::size_t middle = low + (high - low) / 2;
+    locate(row, middle, middle + 1);
+    find_between(row, low, middle);
+    find_between(row, middle, high);
+  }
+
+  void locate(const StackRow& row, std::size_t begin, std::size_t end) {
+    if (begin < end)
+      first_taps(row, o_.shape, o_.width_w, &samples_.at->frequency_hz[begin], static_cast<int>(end - begin),
+                 {&tile_[begin], &plane_[begin], &mirrored_[begin], &period_[begin]});
+  }
+  bool same(std::size_t a, std::size_t b) const {
+    return tile_[a] == tile_[b] && plane_[a] == plane_[b] && period_[a] == period_[b];
+  }
+
+  /// At the place that channel `known` has.
+  void add_run(std::size_t row, std::size_t known, std::size_t begin, std::size_t end) {
+    runs_.push_back(
+        {static_cast<std::uint32_t>(tile_[known]),
+         {piece_.block, static_cast<std::uint32_t>(row), plane_[known], static_cast<std::uint32_t>(begin) & 0xFFFFF,
+          static_cast<std::uint32_t>(end - begin) & longest_run, static_cast<std::uint32_t>(mirrored_[known]) & 1}});
+  }
+
+  static constexpr std::size_t at_once = 8;  ///< channels located together: vectors take several in the time of one
+
+  const Piece& piece_;
+  const WantedSamples& samples_;
+  const StackOrderOptions& o_;
+  std::size_t channels_;
+  bool every_;                                         ///< frequencies neither rise nor fall throughout
+  std::vector<std::int32_t> tile_, plane_, mirrored_;  ///< [channel], where located
+  std::vector<double> period_;
+  std::vector<std::size_t> change_;
+  std::vector<TiledRun> runs_;
+};
 
 void mark_pairs(StackOrder& order, int width_w) {
   std::int32_t lowest = 0, highest = -1;
@@ -82,7 +147,7 @@ StackOrder order_for_stack(const std::vector<WantedSamples>& blocks, const Stack
   const std::vector<Piece> pieces = pieces_of(blocks);
   std::vector<std::vector<TiledRun>> part(pieces.size());
   parallel_for(pieces.size(), options.threads,
-               [&](std::size_t i) { part[i] = find_runs(pieces[i], blocks[pieces[i].block], options); });
+               [&](std::size_t i) { part[i] = RunFinder(pieces[i], blocks[pieces[i].block], options).find(); });
   const auto tiles = static_cast<std::size_t>(options.shape.tiles_u()) * static_cast<std::size_t>(options.shape.tiles_v());
   StackOrder order;
   order.begin.resize(tiles + 1);

@@ -107,19 +107,17 @@ void scatter_row(const std::complex<Real>* line, int q, int plane, std::complex<
   });
 }
 
-/// Calls visit(first, values) for the groups of columns of row q.
+/// Calls visit(at, values, count) for row q of an image's columns, in pieces that lie together there and, from `at` on, in a
+/// line of the FFT, at whose end pixels left of the middle lie.
 template <typename Planes, typename Visit>
-void for_groups(Planes& image, int plane, int grid, int q, const Visit& visit) {
-  for (int group = 0, first = 0; first < image.width; ++group, first += columns_at_once)
-    visit(first, image.row(group, plane, grid, q));
-}
-
-/// Pixels of an image's row lie at the end of an FFT's, and then at its beginning: calls visit(at, in image, count) for both.
-template <typename Visit>
-void for_halves(int width, int length, const Visit& visit) {
-  const int left = width / 2;
-  visit(length - left, 0, left);
-  visit(0, left, width - left);
+void for_pieces(Planes& image, int plane, int grid, int q, int length, const Visit& visit) {
+  const int left = image.width / 2;
+  for (int group = 0, first = 0; first < image.width; ++group, first += columns_at_once) {
+    auto* const values = image.row(group, plane, grid, q);
+    const int end = std::min(first + columns_at_once, image.width), wraps = std::clamp(left, first, end);
+    if (first < wraps) visit(length - left + first, values, wraps - first);
+    if (wraps < end) visit(wraps - left, values + (wraps - first), end - wraps);
+  }
 }
 
 }  // namespace
@@ -129,12 +127,8 @@ template <typename Real>
 struct StackRows<Real>::Work {
   typename Fft<Real>::ComplexBuffer line[2];  ///< of a plane and the opposite one
   typename Fft<Real>::ComplexBuffer spare;
-  std::vector<std::complex<Real>> image_row;  ///< whole groups of columns
 
-  Work(const Fft<Real>& fft, int width)
-      : line{fft.complex_buffer(), fft.complex_buffer()},
-        spare(fft.complex_buffer()),
-        image_row(static_cast<std::size_t>(width + columns_at_once)) {}
+  explicit Work(const Fft<Real>& fft) : line{fft.complex_buffer(), fft.complex_buffer()}, spare(fft.complex_buffer()) {}
 };
 
 template <typename Real>
@@ -153,7 +147,7 @@ template <typename Transform>
 void StackRows<Real>::for_each(const std::vector<int>& rows, const Transform& transform) {
   constexpr std::size_t at_once = 4;
   parallel_for((rows.size() + at_once - 1) / at_once, threads_, [&](std::size_t piece) {
-    auto work = spares_.take([&] { return std::make_unique<Work>(along_u_, image_.width); });
+    auto work = spares_.take([&] { return std::make_unique<Work>(along_u_); });
     for (std::size_t i = piece * at_once; i < std::min(rows.size(), (piece + 1) * at_once); ++i)
       for (int plane = 0; plane < stack_.planes / 2; ++plane)
         for (int grid = 0; grid < stack_.grids; ++grid) transform(rows[i], plane, grid, *work);
@@ -178,13 +172,10 @@ void StackRows<Real>::to_image(int filled) {
     const int planes[] = {first, stack_.opposite(first)};
     for (int i = 0; i < 2; ++i) gather_row(stack_, q, planes[i], grid, work.spare.get(), work.line[i].get());
     for (int i = 0; i < 2; ++i) {
-      along_u_.complex_to_complex(work.line[i].get(), Fft<Real>::Sign::backward);
-      for_halves(image_.width, stack_.shape.nu, [&](int at, int pixel, int count) {
-        std::copy_n(work.line[i].get() + at, count, work.image_row.begin() + pixel);
-      });
-      for_groups(image_, planes[i], grid, q, [&](int column, std::complex<Real>* values) {
-        std::copy_n(work.image_row.begin() + column, columns_at_once, values);
-      });
+      std::complex<Real>* const line = work.line[i].get();
+      along_u_.complex_to_complex(line, Fft<Real>::Sign::backward);
+      for_pieces(image_, planes[i], grid, q, stack_.shape.nu,
+                 [&](int at, std::complex<Real>* values, int count) { std::copy_n(line + at, count, values); });
     }
   });
 }
@@ -217,13 +208,11 @@ void StackRows<Real>::to_grid(int needed) {
   for_each(rows, [&](int q, int first, int grid, Work& work) {
     const int planes[] = {first, stack_.opposite(first)};
     for (int i = 0; i < 2; ++i) {
-      for_groups(image_, planes[i], grid, q, [&](int column, const std::complex<Real>* values) {
-        std::copy_n(values, columns_at_once, work.image_row.begin() + column);
-      });
       std::complex<Real>* const line = work.line[i].get();
-      std::fill_n(line, stack_.shape.nu, std::complex<Real>(0));
-      for_halves(image_.width, stack_.shape.nu,
-                 [&](int at, int pixel, int count) { std::copy_n(work.image_row.begin() + pixel, count, line + at); });
+      const int left = image_.width / 2;
+      std::fill(line + image_.width - left, line + stack_.shape.nu - left, std::complex<Real>(0));
+      for_pieces(image_, planes[i], grid, q, stack_.shape.nu,
+                 [&](int at, const std::complex<Real>* values, int count) { std::copy_n(values, count, line + at); });
       along_u_.complex_to_complex(line, Fft<Real>::Sign::forward);
     }
     for (int i = 0; i < 2; ++i) scatter_row(work.line[i].get(), q, planes[i], work.spare.get(), stack_);

@@ -83,7 +83,7 @@ struct StackSamples {
   const StackOrderOptions& ordering;
 };
 
-/// Walks through a task's samples in batches: ahead(block, sample) for the first of a run some time before done(batch, phases),
+/// Walks through a task's samples in batches: ahead(block, first sample, last) of a run some time before done(batch, phases),
 /// phases computed, for the batches that hold it. Batches have up to `most` samples, which done may change.
 template <typename Real, typename Ahead, typename Done>
 void for_each_batch(const StackSamples& samples, const StackTask& task, const Ahead& ahead, const Done& done,
@@ -105,7 +105,8 @@ void for_each_batch(const StackSamples& samples, const StackTask& task, const Ah
       const StackRun later = samples.order.run[r + runs_ahead];
       const SampleCoordinates& at = *samples.blocks[later.block].at;
       hwy::Prefetch(&at.uvw_m[std::size_t{3} * later.row]);
-      ahead(later.block, later.row * at.channels() + later.first);
+      const std::size_t first = later.row * at.channels() + later.first;
+      ahead(later.block, first, first + later.count - 1);
     }
     const StackRun run = samples.order.run[r];
     const SampleCoordinates& at = *samples.blocks[run.block].at;

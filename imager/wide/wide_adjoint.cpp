@@ -178,10 +178,12 @@ class WideAdjoint : public AdjointSum {
   void grid_tile(const StackSamples& samples, const StackTask& task, const Slab& slab, StackBuffer<Real>& buffer,
                  PlaneStack<Real>& stack) const {
     TileSum<Real> sum(setup_, task, slab, is_sparse(samples.order, task), buffer, stack);
-    const auto ahead = [&](std::uint32_t block, std::size_t sample) {
+    const auto ahead = [&](std::uint32_t block, std::size_t first, std::size_t last) {
       const Gathered& g = gathered_[block];
-      for (const auto& weighted : g.weighted) hwy::Prefetch(&weighted[sample]);
-      if (with_psf_) hwy::Prefetch(&g.weight[sample]);
+      for (const std::size_t sample : {first, last}) {
+        for (const auto& weighted : g.weighted) hwy::Prefetch(&weighted[sample]);
+        if (with_psf_) hwy::Prefetch(&g.weight[sample]);
+      }
     };
     const auto done = [&](StackBatch<Real>& batch, BatchPhases& phases) {
       for (std::size_t i = 0; i < images(); ++i) set_values(phases, i, batch.value[i]);

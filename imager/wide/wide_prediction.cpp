@@ -78,7 +78,9 @@ class WidePrediction : public Prediction {
       });
       cells = buffer.cells();
     }
-    const auto ahead = [](std::uint32_t, std::size_t) {};
+    const auto ahead = [&](std::uint32_t block, std::size_t first, std::size_t last) {
+      for (const std::size_t sample : {first, last}) hwy::Prefetch(&visibilities[block][sample]);
+    };
     for_each_batch<Real>(samples, task, ahead, [&](StackBatch<Real>& batch, const BatchPhases& phases) {
       interpolate(setup_.taps, cells, batch);
       for (const BatchRun& run : phases.run) {
