@@ -181,12 +181,12 @@ Products::OfBeam Products::primary_beam_of(ChannelRun& run) const {
 void Products::write(ChannelRun& run, RunPictures* pictures) {
   const imager::PlaneIndex at{run.report().channel, 0};
   const std::optional<imager::Beam>& beam = run.report().beams->restoring;
-  {
-    const imager::StageTimer timer(run.times(), imager::stage::write_images);
+  std::future<void> psfs = beside([&] {
     const imager::Image& psf = run.images().images.psf;
     put_terms("psf", at, run.taylor() == nullptr ? std::vector{&psf} : all_terms(psf, run.taylor()->images().psf), beam);
-  }
+  });
   const OfBeam primary_beam = primary_beam_of(run);
+  wait_for(psfs, run);
   {
     const imager::StageTimer timer(run.times(), imager::stage::write_images);
     put_terms("pb", at, pointers_to(primary_beam.terms), beam);
@@ -194,6 +194,15 @@ void Products::write(ChannelRun& run, RunPictures* pictures) {
   for (std::size_t s = header_.stokes.size(); s-- > 0;)
     write_stokes(s, primary_beam, run, pictures);  // the first is shown first
   if (!o_.cube.is_cube() && o_.taylor.nterms == 1 && !run.cleaned().empty()) write_components(run.cleaned());
+}
+
+std::future<void> Products::beside(std::function<void()> work) const {
+  return std::async(workers_.threads > 1 ? std::launch::async : std::launch::deferred, std::move(work));
+}
+
+void Products::wait_for(std::future<void>& work, ChannelRun& run) {
+  const imager::StageTimer timer(run.times(), imager::stage::write_images);
+  work.get();
 }
 
 void Products::write_stokes(std::size_t stokes, const OfBeam& primary_beam, ChannelRun& run, RunPictures* pictures) {
@@ -210,6 +219,7 @@ void Products::write_stokes(std::size_t stokes, const OfBeam& primary_beam, Chan
     else
       restored.first = restore(result->model, residual, *beam);
   }
+  std::future<void> images = beside([&] { put_images(stokes, primary_beam, restored, run); });
   {
     const imager::StageTimer timer(times, imager::stage::statistics);
     StokesReport& told = run.report().stokes[stokes];
@@ -220,7 +230,14 @@ void Products::write_stokes(std::size_t stokes, const OfBeam& primary_beam, Chan
       told.histogram = pixel_histogram(residual, noise_jy, workers_.threads);
   }
   if (pictures != nullptr && result != nullptr) pictures->draw(stokes, *result, restored);
-  const imager::StageTimer timer(times, imager::stage::write_images);
+  wait_for(images, run);
+}
+
+void Products::put_images(std::size_t stokes, const OfBeam& primary_beam, const RestoredTerms& restored, ChannelRun& run) {
+  const std::optional<imager::Beam>& beam = run.report().beams->restoring;
+  const imager::CleanResult* const result = run.cleaned().empty() ? nullptr : &run.cleaned()[stokes];
+  TaylorStage* const taylor = run.taylor();
+  const imager::Image& residual = result != nullptr ? result->residual : run.images().images.dirty[stokes];
   const imager::PlaneIndex at{run.report().channel, static_cast<int>(stokes)};
   put_weights(at, run);
   const ProductChoice choice = ProductChoice::of(o_);

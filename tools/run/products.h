@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <future>
 #include <map>
 #include <memory>
 #include <optional>
@@ -66,7 +67,11 @@ class Products {
   void put_spectra(const imager::SpectralImages& spectra, const std::string& end, const imager::PlaneIndex& at,
                    const std::optional<imager::Beam>& beam);
   OfBeam primary_beam_of(ChannelRun& run) const;
+  /// Work on files goes on beside other work, where there is more than one thread.
+  std::future<void> beside(std::function<void()> work) const;
+  static void wait_for(std::future<void>& work, ChannelRun& run);
   void write_stokes(std::size_t stokes, const OfBeam& primary_beam, ChannelRun& run, RunPictures* pictures);
+  void put_images(std::size_t stokes, const OfBeam& primary_beam, const RestoredTerms& restored, ChannelRun& run);
   void write_corrected(const imager::PlaneIndex& at, const OfBeam& primary_beam,
                        const std::vector<const imager::Image*>& apparent, const imager::SpectralImages* spectra,
                        const std::optional<imager::Beam>& beam);

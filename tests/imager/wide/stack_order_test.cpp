@@ -59,11 +59,11 @@ BOOST_DATA_TEST_CASE(every_wanted_sample_lies_in_one_run_of_its_place,
       std::vector<double> periods;
       for (std::size_t c = run.first; c < run.first + run.count; ++c) {
         ++seen[run.row * n + c];
-        std::int32_t of_tile = 0, plane = 0, mirrored = 0;
+        std::int32_t of_tile = 0, plane = 0, mirrored = -1;
         double period = 0;
         first_taps(row, shape, options.width_w, &block.frequency_hz[c], 1, {&of_tile, &plane, &mirrored, &period});
         periods.push_back(period);
-        placed = placed && of_tile == static_cast<std::int32_t>(tile) && plane == run.plane &&
+        placed = placed && static_cast<std::size_t>(of_tile) == tile && plane == run.plane &&
                  mirrored == static_cast<std::int32_t>(run.mirrored);
       }
       placed = placed && std::all_of(periods.begin(), periods.end(), [&](double p) { return p == periods.front(); });
