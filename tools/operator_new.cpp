@@ -12,7 +12,7 @@ namespace {
 
 void* allocate(std::size_t bytes) noexcept {
   constexpr std::size_t large = 8 * misfit::imager::PagePool::page_bytes;
-  return bytes < large ? std::malloc(bytes == 0 ? 1 : bytes) : misfit::imager::PagePool::take(bytes);
+  return bytes < large ? std::malloc(bytes == 0 ? 1 : bytes) : misfit::imager::PagePool::take_to_fill(bytes);
 }
 
 }  // namespace

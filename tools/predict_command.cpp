@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "imager/direct/source_sums.h"
+#include "imager/numerics/page_pool.h"
 #include "imager/numerics/parallel.h"
 #include "kernels/version.h"
 #include "ms_io/fingerprint.h"
@@ -180,6 +181,7 @@ std::string command_of(const PredictOptions& o) {
 /// Of this rank.
 NamedModel read_model(const PredictOptions& o, const imager::Ranks& ranks) {
   const int threads = o.threads == 0 ? imager::available_threads(ranks.on_these_cores()) : o.threads;
+  imager::PagePool::fill_by(threads);
   const PhasedSetRequest request{o.vis, o.phasecenter, o.selection, o.accuracy};
   const PhasedSet phased =
       o.model.empty() ? set_for_components(request, o.components, ranks) : set_for_image(request, o.model, ranks);

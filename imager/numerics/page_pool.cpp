@@ -3,11 +3,13 @@
 #include <sys/mman.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cstdint>
 #include <cstdlib>
 #include <map>
 #include <mutex>
 #include <new>
+#include <thread>
 #include <utility>
 #include <vector>
 
@@ -93,11 +95,38 @@ Pool& pool() {
   return *one;
 }
 
-}  // namespace
+std::atomic<int> filling_threads{1};
 
-void* PagePool::take(std::size_t bytes) noexcept try {
+/// Has the system lend and clear pages now. Where it cannot, it will as they are written to.
+void clear([[maybe_unused]] const Pages& fresh) noexcept {
+#ifdef MADV_POPULATE_WRITE  // Linux 5.14
+  const std::size_t pages = fresh.bytes / page_bytes;
+  const std::size_t threads = std::min(static_cast<std::size_t>(std::max(1, filling_threads.load())), pages);
+  if (threads < 2) return;
+  const auto clear_part = [&](std::size_t i) {
+    const std::size_t begin = pages * i / threads * page_bytes, end = pages * (i + 1) / threads * page_bytes;
+    madvise(fresh.begin + begin, end - begin, MADV_POPULATE_WRITE);
+  };
+  std::vector<std::thread> others;
+  try {
+    others.reserve(threads);
+    for (std::size_t i = 1; i < threads; ++i) others.emplace_back(clear_part, i);
+  } catch (const std::exception&) {  // what no thread takes is cleared later
+  }
+  clear_part(0);
+  for (std::thread& other : others) other.join();
+#endif
+}
+
+/// Whole pages, and those at their end that the system may not have lent yet; null where there is no room.
+struct Block {
+  void* begin = nullptr;
+  Pages fresh{};
+};
+
+Block take_block(std::size_t bytes) noexcept try {
   const std::size_t whole = (bytes + page_bytes - 1) / page_bytes * page_bytes;
-  if (whole < bytes || whole == 0) return nullptr;
+  if (whole < bytes || whole == 0) return {};
   Pool& p = pool();
   const std::lock_guard lock(p.mutex);
   Pieces block = p.block(whole);
@@ -106,12 +135,28 @@ void* PagePool::take(std::size_t bytes) noexcept try {
     p.spare.clear();
     block = p.block(whole);
   }
-  if (block.empty()) return nullptr;
-  void* const begin = block.front().begin;
-  p.taken.emplace(begin, std::move(block));
-  return begin;
+  if (block.empty()) return {};
+  const Block taken{block.front().begin, p.spare.empty() ? block.back() : Pages{}};
+  p.taken.emplace(taken.begin, std::move(block));
+  return taken;
 } catch (const std::bad_alloc&) {
-  return nullptr;
+  return {};
+}
+
+}  // namespace
+
+void* PagePool::take(std::size_t bytes) noexcept {
+  return take_block(bytes).begin;
+}
+
+void* PagePool::take_to_fill(std::size_t bytes) noexcept {
+  const Block block = take_block(bytes);
+  if (block.fresh.bytes > 0) clear(block.fresh);
+  return block.begin;
+}
+
+void PagePool::fill_by(int threads) noexcept {
+  filling_threads = threads;
 }
 
 bool PagePool::give(void* memory) noexcept {

@@ -12,6 +12,10 @@ class PagePool {
 
   /// A block of that many bytes, in whole pages and not initialised; null where the system has no room.
   static void* take(std::size_t bytes) noexcept;
+  /// The same of a block that is written to at once: the threads of `fill_by` share what the system has to clear.
+  static void* take_to_fill(std::size_t bytes) noexcept;
+  /// Threads that take_to_fill may use; one before the first call.
+  static void fill_by(int threads) noexcept;
   /// Gives `memory` back if it is a block taken before; returns whether it is.
   static bool give(void* memory) noexcept;
   /// Gives what lies spare back to the system.

@@ -9,6 +9,7 @@
 
 #include "imager/data/noise.h"
 #include "imager/data/stokes.h"
+#include "imager/numerics/page_pool.h"
 #include "imager/numerics/parallel.h"
 #include "ms_io/model_writer.h"
 #include "ms_io/room.h"
@@ -55,6 +56,7 @@ class ImageRun : private ChannelSink {
         stokes_(imager::parse_stokes(options.stokes)),
         threads_(options.threads == 0 ? imager::available_threads(ranks.on_these_cores()) : options.threads),
         progress_(options.quiet || !ranks.first()) {
+    imager::PagePool::fill_by(threads_);
     report_.command_line = call.command_line;
     report_.options = call.option_values;
     report_.times = &times_;

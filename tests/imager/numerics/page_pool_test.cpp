@@ -1,5 +1,8 @@
 #include "imager/numerics/page_pool.h"
 
+#include <sys/mman.h>
+#include <unistd.h>
+
 #include <algorithm>
 #include <boost/test/unit_test.hpp>
 #include <cstdint>
@@ -41,7 +44,9 @@ bool blocks_stay_whole(unsigned seed) {
       blocks.pop_back();
     } else {
       const std::size_t count = 1 + random() % (4 * PagePool::page_bytes / sizeof(std::uint64_t));
-      blocks.push_back({static_cast<std::uint64_t*>(PagePool::take(count * sizeof(std::uint64_t))), count, random()});
+      const std::size_t bytes = count * sizeof(std::uint64_t);
+      void* const block = random() % 2 == 0 ? PagePool::take(bytes) : PagePool::take_to_fill(bytes);
+      blocks.push_back({static_cast<std::uint64_t*>(block), count, random()});
       blocks.back().write();
     }
   }
@@ -57,6 +62,7 @@ BOOST_AUTO_TEST_CASE(blocks_begin_with_a_page_and_keep_what_is_written_also_besi
   BOOST_TEST(reinterpret_cast<std::uintptr_t>(block) % PagePool::page_bytes == 0U);
   BOOST_TEST(PagePool::give(block));
   bool beside = false;
+  PagePool::fill_by(3);
   std::thread other([&beside] { beside = blocks_stay_whole(1); });
   BOOST_TEST(blocks_stay_whole(2));
   other.join();
@@ -90,6 +96,23 @@ BOOST_AUTO_TEST_CASE(pages_come_again_in_blocks_of_any_size) {
   for (int page = 0; page < 2; ++page) BOOST_TEST(word(1, page) == 1U);
   BOOST_TEST(word(2, 0) == 0U);
   give_all();
+}
+
+/// Where the system lends pages on demand.
+BOOST_AUTO_TEST_CASE(blocks_to_fill_have_all_their_pages_and_those_are_clear) {
+  PagePool::release();
+  PagePool::fill_by(3);
+  constexpr std::size_t bytes = 7 * PagePool::page_bytes;
+  void* const block = PagePool::take_to_fill(bytes);
+  std::vector<unsigned char> resident(bytes / static_cast<std::size_t>(sysconf(_SC_PAGESIZE)));
+  BOOST_TEST(mincore(block, bytes, resident.data()) == 0);
+#ifdef MADV_POPULATE_WRITE
+  if (madvise(nullptr, 0, MADV_POPULATE_WRITE) == 0)
+    BOOST_TEST(std::all_of(resident.begin(), resident.end(), [](unsigned char page) { return (page & 1) != 0; }));
+#endif
+  const auto* const words = static_cast<const std::uint64_t*>(block);
+  BOOST_TEST(std::all_of(words, words + bytes / sizeof *words, [](std::uint64_t word) { return word == 0; }));
+  BOOST_TEST(PagePool::give(block));
 }
 
 BOOST_AUTO_TEST_CASE(what_is_not_of_the_pool_stays_as_it_is) {

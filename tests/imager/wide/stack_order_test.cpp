@@ -57,7 +57,7 @@ BOOST_DATA_TEST_CASE(every_wanted_sample_lies_in_one_run_of_its_place,
       const StackRun& run = order.run[r];
       const StackRow row(&block.uvw_m[std::size_t{3} * run.row], false, options.scale);
       std::vector<double> periods;
-      for (std::size_t c = run.first; c < run.first + run.count; ++c) {
+      for (std::size_t c = run.first; c < std::size_t{run.first} + run.count; ++c) {
         ++seen[run.row * n + c];
         std::int32_t of_tile = 0, plane = 0, mirrored = -1;
         double period = 0;
