@@ -52,6 +52,8 @@ int fail(const char* message, ExitCode code, const World& world) {
   _exit(unusable_data);
 }
 
+constexpr const char* out_of_memory = "out of memory; expected fewer pixels or channels, or more memory";
+
 int run(int argc, char** argv, const World& world) {
   std::string line = "misfit";
   for (int i = 1; i < argc; ++i) line += std::string(" ") + argv[i];
@@ -73,7 +75,7 @@ int run(int argc, char** argv, const World& world) {
   } catch (const std::invalid_argument& error) {
     return fail(error.what(), wrong_usage, world);
   } catch (const std::bad_alloc&) {
-    return fail("out of memory; expected fewer pixels or channels, or more memory", unusable_data, world);
+    return fail(out_of_memory, unusable_data, world);
   } catch (const std::system_error& error) {
     if (error.code() != std::errc::resource_unavailable_try_again) return fail(error.what(), unusable_data, world);
     return fail("the system refuses another thread; expected more memory, or a higher limit of processes (ulimit -u)",
@@ -88,6 +90,9 @@ int run_together(int argc, char** argv) {
   try {
     const World world;
     return run(argc, argv, world);
+  } catch (const std::bad_alloc&) {  // before there is a run
+    std::fprintf(stderr, "misfit: %s\n", out_of_memory);
+    return unusable_data;
   } catch (const std::exception& error) {
     std::fprintf(stderr, "misfit: %s\n", legible(error.what()).c_str());
     return unusable_data;
