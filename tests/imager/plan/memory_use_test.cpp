@@ -5,7 +5,6 @@
 
 #include "imager/coplanar/half_grid.h"
 #include "imager/plan/gridding_plan.h"
-#include "imager/wide/wide_setup.h"
 
 BOOST_AUTO_TEST_SUITE(memory_use)
 
@@ -180,16 +179,14 @@ BOOST_DATA_TEST_CASE(further_stokes_parameters_add_their_grids_blocks_and_images
   request.max_abs_w = max_abs_w;
   const TransformMemory one = memory_of(plan_gridding(request));
   request.stokes = 3;
-  const GriddingPlan plan_of_three = plan_gridding(request);
-  const TransformMemory three = memory_of(plan_of_three);
+  const TransformMemory three = memory_of(plan_gridding(request));
   BOOST_TEST(one.other_stokes == 0);
   BOOST_TEST(three.visibilities <= one.visibilities);  // of w planes fewer stand in memory at a time
   // A grid and, where w planes share stack_bytes, an image and what is gathered for each.
   BOOST_TEST(three.other_stokes >= 2 * 8. * 2000 * 2000);
   BOOST_TEST(three.other_stokes <= 2 * three.visibilities);
-  // Whole pairs of planes share stack_bytes: up to one pair less than fits.
-  const double pair = plan_of_three.options.has_w_axis() ? bytes_of_pairs(plan_of_three.options, 1, 3) : 0;
-  BOOST_TEST(three.visibilities + three.other_stokes >= one.visibilities - pair);
+  // With a w axis more grids may mean smaller facets, of fewer planes.
+  if (max_abs_w == 0) BOOST_TEST(three.visibilities + three.other_stokes >= one.visibilities);
   BOOST_TEST(three.visibilities + three.other_stokes <= 3 * one.visibilities);
   MemoryDemand d = demand();
   d.transform = {8e9, 4e9, 1e7};
