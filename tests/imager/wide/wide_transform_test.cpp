@@ -248,9 +248,10 @@ BOOST_DATA_TEST_CASE(result_does_not_depend_on_threads, bdata::make({true, false
 }
 
 BOOST_AUTO_TEST_CASE(little_memory_changes_nothing_but_rounding) {
-  WideTransformOptions o = options({field, 8, 1.5});
-  const VisibilityBlock a = random_samples_with_w(300, 4, field.cell_rad, most_w, 7);
-  const VisibilityBlock b = random_samples_with_w(200, 1, field.cell_rad, most_w, 8);
+  const ImageGeometry tall{48, 200, 0.002, {}};  // several rows of tiles
+  WideTransformOptions o = options({tall, 8, 1.5});
+  const VisibilityBlock a = random_samples_with_w(300, 4, tall.cell_rad, most_w, 7);
+  const VisibilityBlock b = random_samples_with_w(200, 1, tall.cell_rad, most_w, 8);
   const auto image_of = [&] {
     const auto transform = make_wide_transform(o);
     const auto sum = transform->adjoint({.with_psf = true});
@@ -258,10 +259,13 @@ BOOST_AUTO_TEST_CASE(little_memory_changes_nothing_but_rounding) {
     sum->add(b);
     return sum->finish().images[0].pixel;
   };
+  const auto predicted = [&] { return make_wide_transform(o)->predict(random_image(tall.width, tall.height, 9))->at(a); };
   const std::vector<double> roomy = image_of();
-  o.stack_bytes = 1;
+  const auto roomily_predicted = predicted();
+  o.stack_bytes = 1;  // one pair of planes at a time, in bands of one row of tiles
   o.samples_at_once = 1;
   BOOST_TEST(relative_error(image_of(), roomy) < 1e-13);
+  BOOST_TEST(relative_error(predicted(), roomily_predicted) < 1e-13);
 }
 
 BOOST_AUTO_TEST_SUITE_END()
