@@ -22,7 +22,7 @@ void PlaneStack<Real>::advance(int first, int threads) {
   first_ = first;
   const auto chunks = static_cast<std::size_t>(shape.chunks());
   const std::size_t chunk_cells = offset(0, 1, 0, 0);
-  // From chunk to chunk of the same column, row after row, so that none is written over before it was brought.
+  // Each column of chunks is moved row after row, from the lowest up, so that none is written over before it has been moved.
   parallel_for(chunks, threads, [&](std::size_t i) {
     const int index = static_cast<int>(i);
     for (int row = first; row < first + kept; ++row)

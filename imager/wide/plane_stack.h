@@ -42,7 +42,8 @@ struct TilePlace {
 /// A band of rows of half planes of constant w, each with one or more complex grids, plane i at the opposite w of plane
 /// planes − 1 − i: its other half, v < 0, is the conjugate of that one's mirror image, G_i(−p, −q) = conj G_{planes−1−i}(p, q).
 /// What a tile holds of one row lies together: [row][chunk][plane][grid][column in chunk], a chunk being as wide as a tile.
-/// Bands follow each other from the first row to the last in one piece of memory, which caches hold.
+/// Bands follow each other from the first row to the last in one piece of memory: as many rows of tiles as caches hold, one at
+/// least.
 template <typename Real>
 class PlaneStack {
  public:
@@ -54,7 +55,7 @@ class PlaneStack {
   void advance(int first, int threads);
   /// Makes zero what taps of the tiles can reach and was not used before.
   void use_tiles(const std::vector<TilePlace>& tiles, int threads);
-  /// Takes a row into use whose content is undefined.
+  /// Marks a row as used; its content is undefined until somebody writes it.
   void use_row(int row);
 
   /// The cells of the tile at (tile_u, tile_v) from a plane on.

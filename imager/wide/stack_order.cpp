@@ -79,7 +79,7 @@ class RunFinder {
     change_.push_back(channels_);
   }
 
-  /// Those of [low + 1, high], both ends being located.
+  /// Finds the changes among channels low + 1 … high, both of which ends have been located.
   void find_between(const StackRow& row, std::size_t low, std::size_t high) {
     if (low >= high || same(low, high)) return;
     if (high - low <= at_once) {
@@ -103,7 +103,7 @@ class RunFinder {
     return tile_[a] == tile_[b] && plane_[a] == plane_[b] && period_[a] == period_[b];
   }
 
-  /// At the place that channel `known` has.
+  /// Adds a run at the place that channel `known` has.
   void add_run(std::size_t row, std::size_t known, std::size_t begin, std::size_t end) {
     runs_.push_back(
         {static_cast<std::uint32_t>(tile_[known]),

@@ -20,7 +20,7 @@ inline constexpr int most_in_single_cell = 32;
 template <typename Real>
 class TileSum {
  public:
-  /// All that is given must outlive it.
+  /// All that is given must outlive it. The buffer must be zero, and is so again after finish().
   TileSum(const WideSetup<Real>& setup, const StackTask& task, const Slab& slab, bool in_place, StackBuffer<Real>& buffer,
           PlaneStack<Real>& stack)
       : setup_(setup),

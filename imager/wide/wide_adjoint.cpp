@@ -158,10 +158,7 @@ class WideAdjoint : public AdjointSum {
             });
           add_seconds_of(result_.fft_s, [&] { rows.to_image(band.end * setup_.shape.tile); });
         }
-        add_seconds_of(result_.fft_s, [&] {
-          rows.to_image(setup_.shape.rows());
-          planes_to_images(planes, f, slab.first, threads, of_grid);
-        });
+        add_seconds_of(result_.fft_s, [&] { planes_to_images(planes, f, slab.first, threads, of_grid); });
       }
     }
     gathered_.clear();

@@ -197,7 +197,8 @@ void Products::write(ChannelRun& run, RunPictures* pictures) {
 }
 
 std::future<void> Products::beside(std::function<void()> work) const {
-  return std::async(workers_.threads > 1 ? std::launch::async : std::launch::deferred, std::move(work));
+  const auto either = std::launch::async | std::launch::deferred;  // the latter where no further thread is to be had
+  return std::async(workers_.threads > 1 ? either : std::launch::deferred, std::move(work));
 }
 
 void Products::wait_for(std::future<void>& work, ChannelRun& run) {

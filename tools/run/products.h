@@ -67,8 +67,9 @@ class Products {
   void put_spectra(const imager::SpectralImages& spectra, const std::string& end, const imager::PlaneIndex& at,
                    const std::optional<imager::Beam>& beam);
   OfBeam primary_beam_of(ChannelRun& run) const;
-  /// Work on files goes on beside other work, where there is more than one thread.
+  /// Begins work on files, which goes on meanwhile where there is more than one thread.
   std::future<void> beside(std::function<void()> work) const;
+  /// Ends that work, and rethrows what it threw.
   static void wait_for(std::future<void>& work, ChannelRun& run);
   void write_stokes(std::size_t stokes, const OfBeam& primary_beam, ChannelRun& run, RunPictures* pictures);
   void put_images(std::size_t stokes, const OfBeam& primary_beam, const RestoredTerms& restored, ChannelRun& run);

@@ -26,7 +26,8 @@ struct Kernels {
         taps{TapTable<Real>(u), TapTable<Real>(v), TapTable<Real>(w)} {}
 };
 
-/// All over a tile, and over planes that lie below, within and above those held; as many as fill no vector.
+/// All over a tile, alone in their cells and up to six in one, and over planes that lie below, within and above those held; as
+/// many as fill no vector.
 template <typename Real>
 StackBatch<Real> random_batch(int width_w, unsigned seed) {
   std::mt19937_64 random(seed);
@@ -37,6 +38,11 @@ StackBatch<Real> random_batch(int width_w, unsigned seed) {
     batch.column[i] = i < 2 ? 31 * i : static_cast<int>(random() % tile);
     batch.row[i] = i < 2 ? 31 * i : static_cast<int>(random() % tile);
     batch.plane[i] = static_cast<int>(random() % static_cast<unsigned>(planes + width_w + 1)) - width_w;
+    if (i % 8 >= 3) {
+      batch.column[i] = batch.column[i - 1];
+      batch.row[i] = batch.row[i - 1];
+      batch.plane[i] = batch.plane[i - 1];
+    }
     for (Real* t : {batch.tu, batch.tv, batch.tw}) t[i] = uniform(random) / 2;
     for (auto& grid : batch.value) grid[i] = {uniform(random), uniform(random)};
   }
