@@ -90,7 +90,7 @@ int run_together(int argc, char** argv) {
   try {
     const World world;
     return run(argc, argv, world);
-  } catch (const std::bad_alloc&) {  // before there is a run
+  } catch (const std::bad_alloc&) {  // the run has not begun, and nobody else says it
     std::fprintf(stderr, "misfit: %s\n", out_of_memory);
     return unusable_data;
   } catch (const std::exception& error) {

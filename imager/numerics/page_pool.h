@@ -12,7 +12,8 @@ class PagePool {
 
   /// A block of that many bytes, in whole pages and not initialised; null where the system has no room.
   static void* take(std::size_t bytes) noexcept;
-  /// The same of a block that is written to at once: the threads of `fill_by` share what the system has to clear.
+  /// Takes a block all of which is going to be written to. The pages that the system has to clear for it are cleared now, by as
+  /// many threads as fill_by was given.
   static void* take_to_fill(std::size_t bytes) noexcept;
   /// Threads that take_to_fill may use; one before the first call.
   static void fill_by(int threads) noexcept;

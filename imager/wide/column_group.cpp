@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "imager/numerics/phasors.h"
+#include "imager/wide/image_planes.h"
 
 namespace misfit::imager {
 namespace {

@@ -8,7 +8,6 @@
 #include "imager/data/image.h"
 #include "imager/wide/column_loops.h"
 #include "imager/wide/facet.h"
-#include "imager/wide/image_planes.h"
 
 namespace misfit::imager {
 

@@ -41,7 +41,7 @@ struct TilePlace {
 
 /// A band of rows of half planes of constant w, each with one or more complex grids, plane i at the opposite w of plane
 /// planes − 1 − i: its other half, v < 0, is the conjugate of that one's mirror image, G_i(−p, −q) = conj G_{planes−1−i}(p, q).
-/// What a tile holds of one row lies together: [row][chunk][plane][grid][column in chunk], a chunk being as wide as a tile.
+/// Cells of one row and one tile lie together: [row][chunk][plane][grid][column in chunk], a chunk being as wide as a tile.
 /// Bands follow each other from the first row to the last in one piece of memory: as many rows of tiles as caches hold, one at
 /// least.
 template <typename Real>
@@ -108,9 +108,9 @@ class PlaneStack {
   }
 
   BigArray<std::complex<Real>> cell_;
-  std::vector<char> chunk_used_;  ///< [row][chunk], of all rows that ever were
-  int first_ = 0;                 ///< row held
-  int held_ = 0;                  ///< rows
+  std::vector<char> chunk_used_;  ///< [row][chunk], of all rows of storage, held or not
+  int first_ = 0;                 ///< the first row that is held
+  int held_ = 0;                  ///< how many rows are held
 };
 
 }  // namespace misfit::imager

@@ -5,7 +5,6 @@
 #include <algorithm>
 
 #include "imager/numerics/parallel.h"
-#include "imager/wide/stack_loops.h"
 
 namespace misfit::imager {
 namespace {

@@ -59,7 +59,12 @@ TransformMemory memory_of(const WideTransformOptions& o, const WideDemand& deman
       o.precision == Precision::single_precision ? sizeof(std::complex<float>) : sizeof(std::complex<double>);
   const double at_once = std::min(demand.samples, static_cast<double>(o.samples_at_once));
   const double image = static_cast<double>(o.geometry.pixels()) * sizeof(double);
-  const auto stack = [&](int grids) { return bytes_of_pairs(o, std::min(demand.planes, most_pairs(o, grids)), grids); };
+  // Where fewer pairs of planes fit, more grids may take less memory; what they are told to take grows with their number.
+  const auto stack = [&](int grids) {
+    double bytes = 0;
+    for (int g = 1; g <= grids; ++g) bytes = std::max(bytes, bytes_of_pairs(o, std::min(demand.planes, most_pairs(o, g)), g));
+    return bytes;
+  };
   const int others = demand.stokes - 1;
   const double column = 6.0 * largest_facet(o.geometry.height, o.facets_m) * sizeof(double) + o.nv * complex_bytes;
   return {at_once * wide_bytes_a_sample + stack(1) + image, stack(demand.stokes + 1) - stack(demand.stokes) + image,
