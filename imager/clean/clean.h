@@ -109,6 +109,9 @@ struct CleanResult {
   CleanReport report;
   std::vector<Image> further_models;     ///< of Taylor terms after the first [term − 1], Jy/pixel; none of one term
   std::vector<Image> further_residuals;  ///< [term − 1], Jy/beam
+
+  std::vector<const Image*> models() const { return all_terms(model, further_models); }           ///< [term]
+  std::vector<const Image*> residuals() const { return all_terms(residual, further_residuals); }  ///< [term]
 };
 
 /// What is to be cleaned: an image, or the Taylor terms of one, of which the first is the image. Where several ranks share the

@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <iterator>
 #include <memory>
 #include <optional>
@@ -9,6 +8,7 @@
 #include <utility>
 
 #include "imager/clean/clean.h"
+#include "imager/clean/cycle_rules.h"
 #include "imager/clean/finite_images.h"
 #include "imager/clean/mask.h"
 #include "imager/clean/shared_model.h"
@@ -18,28 +18,8 @@
 namespace misfit::imager {
 namespace {
 
-constexpr double grown = 1.5;   // a residual this many times the best is taken back
-constexpr double diverged = 3;  // tclean's factor between its codes
-constexpr int most_tightenings = 3;
-constexpr double exact = 0;          // accuracy of transforms that are as exact as any
-constexpr std::size_t patience = 5;  // cycles without any progress
-
-std::string in_jy(double value) {
-  char text[40];
-  std::snprintf(text, sizeof text, "%.3g Jy/beam", value);
-  return text;
-}
-
-std::vector<const Image*> pointers_to(const std::vector<Image>& images) {
-  std::vector<const Image*> pointers;
-  for (const Image& image : images) pointers.push_back(&image);
-  return pointers;
-}
-
-struct Ending {
-  CleanStop stop;
-  std::string reason;
-};
+constexpr double grown = 1.5;  // a residual this many times the best is taken back
+constexpr double exact = 0;    // accuracy of transforms that are as exact as any
 
 void require_same_terms(const CleanInput& input, const MinorCycle& minor) {
   const auto terms = static_cast<std::size_t>(input.expansion.terms);
@@ -64,9 +44,7 @@ class Run {
     if (state_.model.scale_pixels() != minor.scale_pixels())
       throw std::invalid_argument("a model of other scales than those of the minor cycle");
     for (const Image* psf : input_.psf) require_finite_psf(*psf);
-    psf_rms_ = root_mean_square(*input_.psf.front());
-    far_sidelobe_ = largest_far_sidelobe(*input_.psf.front());
-    dirty_ = statistics_of(input_.dirty.front(), o_.threads);
+    rules_.emplace(input_, o_, state_);
   }
 
   CleanResult run(const CycleProgress& cycle_progress) {
@@ -76,11 +54,11 @@ class Run {
       make_residual(now().accuracy);
     cycle_progress(state_);
     while (true) {
-      while (!(end_ = ending())) {
+      while (!(end_ = rules_->ending(mask_is_empty()))) {
         one_cycle();
         cycle_progress(state_);
       }
-      if (is_worse_than_best()) {
+      if (rules_->is_worse_than_best()) {
         return_to_best();
         make_exact();
         end_->reason += "; the best model was kept";
@@ -89,7 +67,7 @@ class Run {
       if (now().accuracy == exact) break;
       make_exact();
       stay_exact();
-      if ((end_ = ending())) break;
+      if ((end_ = rules_->ending(mask_is_empty()))) break;
     }
     sharer_.end();
     return result();
@@ -106,16 +84,11 @@ class Run {
     start.accuracy = make_residual(input_.dirty_accuracy);
     if (o_.automask) state_.mask.allowed = Image(residual().width, residual().height);
     measure(start);
-    if (start.accuracy > accuracy_for_next(start.peak_residual_jy, start)) {
+    if (start.accuracy > rules_->accuracy_for_next(start.peak_residual_jy, start)) {
       start.accuracy = make_residual(exact);
       measure(start);
     }
     keep(std::move(start));
-  }
-
-  /// At the limit of iterations, or at the last depth for the second time, the first having left what sidelobes had hidden.
-  bool is_likely_last(const MajorCycle& cycle) const {
-    return cycle.iterations >= o_.max_iterations || (is_at_last_depth(now()) && cycle.cycle_threshold_jy <= last_depth(now()));
   }
 
   /// From here on no coarser transforms are taken, and what they had left does not count against CLEAN.
@@ -133,18 +106,6 @@ class Run {
     measure(cycle);
   }
 
-  /// How exact the residual of a model must be for minor cycles that follow one of this depth: its error shall be a small part
-  /// of theirs. It is in proportion to images of the data and of the model as if their phases were random.
-  double accuracy_for_next(double depth_jy, const MajorCycle& before) const {
-    constexpr double less_noise = 0.5;  // it falls as sources go
-    const bool trusted = components_are_trusted();
-    const double small = trusted ? 0.05 : 0.02, fraction = trusted ? o_.min_psf_fraction : depth_fraction();
-    const double next = std::max(fraction * depth_jy, less_noise * last_depth(before));
-    double square = 0;
-    for (const Component& c : state_.model.components()) square += c.flux_jy * c.flux_jy;
-    const double visibilities_jy = std::max(input_.data_jy, std::sqrt(square));
-    return small * next / std::max(psf_rms_ * visibilities_jy, dirty_.root_mean_square());
-  }
   int coarser_of(double accuracy) const {
     const auto& coarser = input_.coarser;
     const auto enough = [accuracy](const CoarserTransform& c) { return c.accuracy <= accuracy; };
@@ -173,7 +134,7 @@ class Run {
           make_taylor_residuals(by_coarser(input_.imaged, input_.coarser, coarser), model_images(), input_.expansion, context_);
     }
     const StageTimer timer(context_.times, stage::statistics);
-    for (const Image& residual : residuals_) require_finite_residual(statistics_of(residual, o_.threads), dirty_);
+    for (const Image& residual : residuals_) require_finite_residual(statistics_of(residual, o_.threads), rules_->dirty());
     return accuracy;
   }
   std::vector<Image> model_images() const {
@@ -227,105 +188,17 @@ class Run {
          .within = o_.mask,
          .threads = o_.threads},
         state_.mask);
-    const bool at_the_end = cycle.cycle_threshold_jy > 0 && cycle.cycle_threshold_jy <= last_depth(state_.cycles[cycle.from]);
+    const bool at_the_end =
+        cycle.cycle_threshold_jy > 0 && cycle.cycle_threshold_jy <= rules_->last_depth(state_.cycles[cycle.from]);
     const double changed =
         100 * static_cast<double>(cycle.masked.added) / static_cast<double>(std::max<std::size_t>(before, 1));
     state_.mask.final = at_the_end && !cycle.masked.by_sidelobes && changed < o.min_percent_change;
   }
 
-  /// What ends CLEAN before another minor cycle, if anything.
-  std::optional<Ending> ending() const {
-    if (mask_is_empty())
-      return Ending{CleanStop::empty_mask, std::string(o_.automask ? "nothing in the residual exceeds the mask's thresholds"
-                                                                   : "the mask allows no pixel") +
-                                               "; the peak residual is that of the whole image"};
-    if (o_.stop_requested && o_.stop_requested()) return Ending{CleanStop::user, "stopped by the user"};
-    if (now().peak_residual_jy <= (1 + threshold_tolerance) * o_.threshold_jy)
-      return Ending{CleanStop::threshold, "the peak residual reached the threshold"};
-    if (o_.nsigma > 0 && now().peak_residual_jy <= o_.nsigma * now().rms_jy)
-      return Ending{CleanStop::nsigma, "the peak residual reached nsigma times the noise"};
-    if (now().iterations >= o_.max_iterations) return Ending{CleanStop::iteration_limit, "the iteration limit was reached"};
-    if (o_.max_major_cycles >= 0 && static_cast<int>(state_.cycles.size()) > o_.max_major_cycles)
-      return Ending{CleanStop::major_cycle_limit, "the limit of major cycles was reached"};
-    if (state_.found_nothing) return Ending{CleanStop::no_change, "a minor cycle found nothing to clean"};
-    if (state_.tightened > most_tightenings) return divergence();
-    if (!progresses())
-      return Ending{CleanStop::no_change,
-                    "neither peak nor mean square of the residual fell in " + std::to_string(patience) + " major cycles"};
-    return std::nullopt;
-  }
-
-  Ending divergence() const {
-    constexpr double near = 10;
-    const double grew_to = state_.cycles.back().peak_residual_jy;
-    if (grew_to <= near * input_.accuracy * dirty_.largest_magnitude())
-      return {CleanStop::no_change,
-              "what is left, " + in_jy(grew_to) + ", is the error of the transforms; a smaller --accuracy goes deeper"};
-    return {grew_to <= diverged * best().peak_residual_jy ? CleanStop::diverging_from_best : CleanStop::diverging,
-            "the residual grew from " + in_jy(best().peak_residual_jy) + " to " + in_jy(grew_to) +
-                " although minor cycles had been made less deep; the best model was kept"};
-  }
-
-  /// Whether one of the last cycles left a smaller peak, or less power, than all before them.
-  bool progresses() const {
-    const std::vector<MajorCycle>& cycles = state_.cycles;
-    const std::size_t since = state_.exact_from == 0 ? 0 : state_.exact_from - 1;
-    if (cycles.size() - since <= patience) return true;
-    const auto first = cycles.begin() + static_cast<std::ptrdiff_t>(since);
-    const auto recent = cycles.end() - static_cast<std::ptrdiff_t>(patience);
-    const auto fell = [&](double MajorCycle::*what) {
-      const auto less = [what](const MajorCycle& a, const MajorCycle& b) { return a.*what < b.*what; };
-      return (*std::min_element(recent, cycles.end(), less)).*what < (*std::min_element(first, recent, less)).*what;
-    };
-    return fell(&MajorCycle::peak_residual_jy) || fell(&MajorCycle::mean_square_jy2);
-  }
-
-  /// The depth to which the next minor cycle goes in any case: where the sidelobes of the brightest source could pass for
-  /// sources.
-  double sure_depth() const { return std::max(depth_fraction() * now().peak_residual_jy, last_depth(now())); }
-  /// True while minor cycles may go deeper than the largest sidelobe allows: the PSF's far sidelobes are faint beside its near
-  /// ones, and every residual so far came out nearly as its minor cycle promised.
-  bool components_are_trusted() const {
-    constexpr double far_less = 0.25, nearly = 1.5;
-    const DoubtfulSidelobes doubtful = doubtful_sidelobes();
-    if (!(std::max(doubtful.of_many, doubtful.of_one) <= far_less * o_.cycle_factor * input_.max_sidelobe)) return false;
-    if (state_.tightened > 0 || state_.exact_from != 0) return false;
-    return std::all_of(state_.cycles.begin(), state_.cycles.end(), [](const MajorCycle& cycle) {
-      return cycle.cycle_threshold_jy == 0 || cycle.peak_residual_jy <= nearly * cycle.cycle_threshold_jy;
-    });
-  }
-  /// The depth that the next minor cycle does not pass. Above it, it ends where sidelobes of all that it found could pass for
-  /// sources.
-  double deepest() const {
-    if (!components_are_trusted()) return sure_depth();
-    return std::max(o_.min_psf_fraction * now().peak_residual_jy, last_depth(now()));
-  }
-  /// Far from the phase centre sidelobes differ from the PSF's, and beyond half the image the PSF has none. Those of many
-  /// sources leave no more than if none were taken off at all; those of one no more than the largest that lie far from it.
-  DoubtfulSidelobes doubtful_sidelobes() const {
-    constexpr double deviations = 6;
-    return {.of_many = deviations * o_.cycle_factor * psf_rms_, .of_one = o_.cycle_factor * far_sidelobe_};
-  }
-  double depth_fraction() const {
-    const double fraction = std::clamp(o_.cycle_factor * input_.max_sidelobe, o_.min_psf_fraction, o_.max_psf_fraction);
-    return 1 - std::ldexp(1 - fraction, -state_.tightened);
-  }
-  /// True if the minor cycle that left this state went as deep as threshold and nsigma ask.
-  bool is_at_last_depth(const MajorCycle& cycle) const {
-    return cycle.cycle_threshold_jy > 0 && cycle.cycle_threshold_jy <= std::max(o_.threshold_jy, o_.nsigma * cycle.rms_jy);
-  }
-  /// The depth below which threshold and nsigma let no minor cycle go. Cycles that chase them by less than five percent are
-  /// wasted: below nsigma all go by as much, since the noise falls as sources go, and below the threshold those that follow one
-  /// that went down to it.
-  double last_depth(const MajorCycle& begun) const {
-    constexpr double deeper = 0.95;
-    return std::max((is_at_last_depth(begun) ? deeper : 1) * o_.threshold_jy, deeper * o_.nsigma * begun.rms_jy);
-  }
-
   void one_cycle() {
     constexpr double hardly_less = 0.9;
     MajorCycle cycle;
-    const double deepest = this->deepest();
+    const double deepest = rules_->deepest();
     const int left = o_.max_iterations - now().iterations;
     bool reached_depth = false;
     {
@@ -334,10 +207,10 @@ class Run {
           pointers_to(residuals_), {.gain = o_.gain,
                                     .max_iterations = o_.cycle_iterations < 0 ? left : std::min(left, o_.cycle_iterations),
                                     .threshold_jy = deepest,
-                                    .doubtful = doubtful_sidelobes(),
-                                    .sure_jy = sure_depth(),
+                                    .doubtful = rules_->doubtful_sidelobes(),
+                                    .sure_jy = rules_->sure_depth(),
                                     .mask = mask(),
-                                    .to_the_last = deepest <= last_depth(now()),
+                                    .to_the_last = deepest <= rules_->last_depth(now()),
                                     .stop_requested = o_.stop_requested});
       state_.found_nothing = found.components.empty();
       cycle.iterations = now().iterations + found.iterations();
@@ -348,9 +221,9 @@ class Run {
     }
     cycle.from = state_.now;
     cycle.accuracy = state_.found_nothing ? now().accuracy
-                                          : make_residual(state_.exact_from != 0 || is_likely_last(cycle)
+                                          : make_residual(state_.exact_from != 0 || rules_->is_likely_last(cycle)
                                                               ? exact
-                                                              : accuracy_for_next(cycle.cycle_threshold_jy, now()));
+                                                              : rules_->accuracy_for_next(cycle.cycle_threshold_jy, now()));
     // A peak that is as bright as before, although it was cleaned, may be of the transform's making.
     if (cycle.accuracy != exact && reached_depth && peak_within_mask() > hardly_less * now().peak_residual_jy) {
       stay_exact();
@@ -408,12 +281,6 @@ class Run {
     make_residual(now().accuracy);
   }
 
-  /// Cycles may leave somewhat more than the best, on the way to less. CLEAN shall not end there. Masks that grow compare
-  /// nothing.
-  bool is_worse_than_best() const {
-    return !o_.automask && now().peak_residual_jy > best().peak_residual_jy && now().mean_square_jy2 > best().mean_square_jy2;
-  }
-
   CleanResult result() {
     CleanResult result;
     result.residual = std::move(residuals_.front());
@@ -438,10 +305,8 @@ class Run {
   ModelSharer sharer_;
   CleanState state_;
   std::vector<Image> residuals_;  ///< [term], of state_.model
-  std::optional<Ending> end_;
-  double psf_rms_ = 0;
-  double far_sidelobe_ = 0;  ///< the largest from a quarter of the image on
-  ImageStatistics dirty_;
+  std::optional<CleanEnding> end_;
+  std::optional<CycleRules> rules_;  ///< made once the input has been checked
 };
 
 }  // namespace

@@ -23,6 +23,19 @@ struct Image {
   double at(int r, int column) const { return row(r)[column]; }
 };
 
+/// Images as functions take them that do not ask where each lies.
+inline std::vector<const Image*> pointers_to(const std::vector<Image>& images) {
+  std::vector<const Image*> pointers;
+  for (const Image& image : images) pointers.push_back(&image);
+  return pointers;
+}
+/// The images of all Taylor terms, or of all powers, where the first is kept by itself.
+inline std::vector<const Image*> all_terms(const Image& first, const std::vector<Image>& further) {
+  std::vector<const Image*> terms{&first};
+  for (const Image& image : further) terms.push_back(&image);
+  return terms;
+}
+
 /// Takes an image off another of the same size.
 inline void subtract(const Image& image, Image& from) {
   for (std::size_t i = 0; i < from.pixel.size(); ++i) from.pixel[i] -= image.pixel[i];

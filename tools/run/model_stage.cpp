@@ -21,12 +21,6 @@ using imager::Stokes;
 /// The model of a Stokes parameter or hand: one image for each Taylor term.
 using Terms = std::vector<const Image*>;
 
-Terms terms_of(const imager::CleanResult& cleaned) {
-  Terms terms{&cleaned.model};
-  for (const Image& further : cleaned.further_models) terms.push_back(&further);
-  return terms;
-}
-
 bool is_hand(Stokes stokes) {
   return stokes == Stokes::RR || stokes == Stokes::LL || stokes == Stokes::XX || stokes == Stokes::YY;
 }
@@ -57,7 +51,7 @@ class ModelPlanes {
   explicit ModelPlanes(const SavedModel& model) {
     taylor.expansion = model.expansion;
     if (!is_hand(model.stokes.front())) {
-      for (std::size_t s = 0; s < model.stokes.size(); ++s) put(model.stokes[s], terms_of(model.cleaned[s]));
+      for (std::size_t s = 0; s < model.stokes.size(); ++s) put(model.stokes[s], model.cleaned[s].models());
       return;
     }
     put(Stokes::I, half(model, 1));
@@ -83,7 +77,7 @@ class ModelPlanes {
       const Image& like = model.cleaned.front().model;
       Image& sum = made_.emplace_back(like.width, like.height);
       for (std::size_t s = 0; s < model.stokes.size(); ++s) {
-        const Image& hand = *terms_of(model.cleaned[s])[t];
+        const Image& hand = *model.cleaned[s].models()[t];
         const double factor = is_first(model.stokes[s]) ? 0.5 : 0.5 * sign;
         for (std::size_t i = 0; i < sum.pixel.size(); ++i) sum.pixel[i] += factor * hand.pixel[i];
       }
@@ -99,7 +93,7 @@ ms_io::Fingerprint fingerprint_of(const SavedModel& model) {
   ms_io::Fingerprint fingerprint;
   fingerprint.add(std::string(MISFIT_VERSION)).add(model.option_values);
   for (const imager::CleanResult& cleaned : model.cleaned)
-    for (const Image* term : terms_of(cleaned)) fingerprint.add(term->pixel);
+    for (const Image* term : cleaned.models()) fingerprint.add(term->pixel);
   return fingerprint;
 }
 

@@ -22,19 +22,6 @@ bool cleaned(const ChannelReport& channel) {
   return channel.stokes.front().clean.has_value();
 }
 
-/// Of the first Taylor term and the further ones.
-std::vector<const imager::Image*> all_terms(const imager::Image& first, const std::vector<imager::Image>& further) {
-  std::vector<const imager::Image*> terms{&first};
-  for (const imager::Image& image : further) terms.push_back(&image);
-  return terms;
-}
-
-std::vector<const imager::Image*> pointers_to(const std::vector<imager::Image>& images) {
-  std::vector<const imager::Image*> pointers;
-  for (const imager::Image& image : images) pointers.push_back(&image);
-  return pointers;
-}
-
 /// What the report of a cube tells of each channel: no more of the histogram than a glance gives.
 void look_at(const imager::Image& residual, const imager::Image* restored, double noise_jy, StokesReport& told) {
   const imager::ImageStatistics of_residual = imager::statistics_of(residual);
@@ -245,8 +232,8 @@ void Products::put_images(std::size_t stokes, const OfBeam& primary_beam, const 
   std::vector<imager::Image> principal;  // of terms that are not cleaned
   std::vector<const imager::Image*> shown{&residual};
   if (result != nullptr) {
-    put_terms("residual", at, all_terms(residual, result->further_residuals), beam);
-    put_terms("model", at, all_terms(result->model, result->further_models), beam);
+    put_terms("residual", at, result->residuals(), beam);
+    put_terms("model", at, result->models(), beam);
     if (choice.masked) put("mask", at, result->mask.pixel.empty() ? mask_of_ones() : result->mask, beam);
     shown = all_terms(restored.first, restored.further);
     put_terms("image", at, shown, beam);

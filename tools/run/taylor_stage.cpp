@@ -13,13 +13,6 @@ imager::TaylorPsf psf_of(const imager::AccurateImages& made) {
   return {made.transform->psf(), plan.options.geometry.centre, with_w};
 }
 
-/// Of the first term and the further ones.
-std::vector<const imager::Image*> all_terms(const imager::Image& first, const std::vector<imager::Image>& further) {
-  std::vector<const imager::Image*> terms{&first};
-  for (const imager::Image& image : further) terms.push_back(&image);
-  return terms;
-}
-
 }  // namespace
 
 void TaylorStage::make_images(const imager::ImagedData& imaged, const imager::AccurateImages& made, TakenTerms taken,
@@ -68,10 +61,9 @@ std::vector<imager::Image> TaylorStage::principal_solution(const imager::Image& 
 }
 
 RestoredTerms TaylorStage::restore(const imager::CleanResult& cleaned, const imager::Beam& beam, double cell_rad) const {
-  const std::vector<imager::Image> left =
-      imager::principal_solution(*basis_, all_terms(cleaned.residual, cleaned.further_residuals), threads_);
+  const std::vector<imager::Image> left = imager::principal_solution(*basis_, cleaned.residuals(), threads_);
   std::vector<imager::Image> images;
-  for (const imager::Image* model : all_terms(cleaned.model, cleaned.further_models))
+  for (const imager::Image* model : cleaned.models())
     images.push_back(imager::restored({*model, left[images.size()]}, beam, cell_rad, threads_));
   RestoredTerms terms;
   terms.spectra = imager::spectral_images(images, left, threads_);

@@ -1,0 +1,74 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "imager/clean/clean.h"
+#include "imager/data/image_statistics.h"
+
+namespace misfit::imager {
+
+/// Why CLEAN ends.
+struct CleanEnding {
+  CleanStop stop;
+  std::string reason;
+};
+
+/// How deep the next minor cycle of CLEAN goes, how exact the residual after it must be, and when CLEAN ends: what CleanOptions
+/// and CleanInput say of these, applied to what the cycles so far have left. It looks at no image but in its constructor.
+class CycleRules {
+ public:
+  /// Of one run of CLEAN; the options and the state, as it is at each call, are looked up by reference.
+  CycleRules(const CleanInput& input, const CleanOptions& options, const CleanState& state);
+
+  /// Of the dirty image.
+  const ImageStatistics& dirty() const { return dirty_; }
+
+  /// The depth to which the next minor cycle goes in any case: where the sidelobes of the brightest source could pass for
+  /// sources.
+  double sure_depth() const;
+  /// The depth that the next minor cycle does not pass. Above it, it ends where sidelobes of all that it found could pass for
+  /// sources.
+  double deepest() const;
+  /// Far from the phase centre sidelobes differ from the PSF's, and beyond half the image the PSF has none. Those of many
+  /// sources leave no more than if none were taken off at all; those of one no more than the largest that lie far from it.
+  DoubtfulSidelobes doubtful_sidelobes() const;
+  /// The depth below which threshold and nsigma let no minor cycle go that begins with what `begun` left. Cycles that chase
+  /// them by less than five percent are wasted: below nsigma all go by as much, since the noise falls as sources go, and below
+  /// the threshold those that follow one that went down to it.
+  double last_depth(const MajorCycle& begun) const;
+
+  /// Whether a cycle reached the limit of iterations, or the last depth for the second time, the first having left what
+  /// sidelobes had hidden.
+  bool is_likely_last(const MajorCycle& cycle) const;
+  /// How exact the residual of a model must be for minor cycles that follow one of this depth, which began with what `before`
+  /// left: its error shall be a small part of their depth. The error is in proportion to images of the data and of the model
+  /// as if their phases were random.
+  double accuracy_for_next(double depth_jy, const MajorCycle& before) const;
+
+  /// What ends CLEAN before another minor cycle, if anything.
+  std::optional<CleanEnding> ending(bool mask_is_empty) const;
+  /// Whether CLEAN would end with more than its best cycle left, in peak and mean square. Cycles may leave somewhat more on
+  /// the way to less. With automask, whose masks grow, nothing can be compared.
+  bool is_worse_than_best() const;
+
+ private:
+  const MajorCycle& now() const { return state_.cycles[state_.now]; }
+  const MajorCycle& best() const { return state_.cycles[state_.best]; }
+  bool components_are_trusted() const;
+  double depth_fraction() const;
+  bool is_at_last_depth(const MajorCycle& cycle) const;
+  bool progresses() const;
+  CleanEnding divergence() const;
+
+  const CleanOptions& o_;
+  const CleanState& state_;
+  double max_sidelobe_;
+  double data_jy_;
+  double accuracy_;
+  double psf_rms_;
+  double far_sidelobe_;  ///< the largest from a quarter of the image on
+  ImageStatistics dirty_;
+};
+
+}  // namespace misfit::imager
