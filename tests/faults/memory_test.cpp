@@ -63,6 +63,30 @@ BOOST_AUTO_TEST_CASE(no_thread_begins_that_has_nothing_to_do) {
   BOOST_TEST(threads == 0U);
 }
 
+/// What threads would have done is done by those that there are, but for reading ahead, which says that it cannot.
+BOOST_AUTO_TEST_CASE(a_run_that_gets_no_more_threads_goes_on_or_says_so) {
+  const TemporaryFolder folder;
+  const Arguments image = small_image(snapshot(), folder / "a") + Arguments{"--niter", "20", "--threads", "2", "--quiet"};
+  std::size_t all = 0, done = 0;
+  const std::vector<long> begins_thread{SYS_clone, SYS_clone3};
+  run_with_faults(image, begins_thread, [&](const SystemCall&) {
+    ++all;
+    return Answer{};
+  });
+  BOOST_TEST(all > 10U);
+  for (std::size_t first = 0; first < all; first += std::max<std::size_t>(1, all / 12)) {
+    std::size_t calls = 0;
+    const Outcome outcome =
+        run_with_faults(image, begins_thread, [&](const SystemCall&) { return Answer{calls++ >= first ? EAGAIN : 0}; });
+    BOOST_TEST_CONTEXT("thread " << first << " of " << all << " and later ones: " << outcome.err) {
+      BOOST_TEST((outcome.code == 0 || outcome.err.find("thread") != std::string::npos));
+      BOOST_TEST(std::count(outcome.err.begin(), outcome.err.end(), '\n') == outcome.code);
+    }
+    done += outcome.code == 0 ? 1 : 0;
+  }
+  BOOST_TEST(done > 0U);
+}
+
 /// From what the program cannot begin with to what a run needs. Whatever libraries it came with, it ends: seconds are plenty.
 BOOST_AUTO_TEST_CASE(a_process_of_little_memory_says_so_and_leaves_nothing) {
   const TemporaryFolder folder;

@@ -183,9 +183,10 @@ void Products::write(ChannelRun& run, RunPictures* pictures) {
   if (!o_.cube.is_cube() && o_.taylor.nterms == 1 && !run.cleaned().empty()) write_components(run.cleaned());
 }
 
-std::future<void> Products::beside(std::function<void()> work) const {
-  const auto either = std::launch::async | std::launch::deferred;  // the latter where no further thread is to be had
-  return std::async(workers_.threads > 1 ? either : std::launch::deferred, std::move(work));
+std::future<void> Products::beside(const std::function<void()>& work) const {
+  // Deferred where no further thread is to be had. Then `work` is taken a second time, and must not have been moved away.
+  const auto either = std::launch::async | std::launch::deferred;
+  return std::async(workers_.threads > 1 ? either : std::launch::deferred, work);
 }
 
 void Products::wait_for(std::future<void>& work, ChannelRun& run) {

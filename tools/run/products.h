@@ -68,7 +68,7 @@ class Products {
                    const std::optional<imager::Beam>& beam);
   OfBeam primary_beam_of(ChannelRun& run) const;
   /// Begins work on files, which goes on meanwhile where there is more than one thread.
-  std::future<void> beside(std::function<void()> work) const;
+  std::future<void> beside(const std::function<void()>& work) const;
   /// Ends that work, and rethrows what it threw.
   static void wait_for(std::future<void>& work, ChannelRun& run);
   void write_stokes(std::size_t stokes, const OfBeam& primary_beam, ChannelRun& run, RunPictures* pictures);
