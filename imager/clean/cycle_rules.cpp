@@ -117,7 +117,7 @@ CleanEnding CycleRules::divergence() const {
               " although minor cycles had been made less deep; the best model was kept"};
 }
 
-/// Whether one of the last cycles left a smaller peak, or less power, than all before them.
+/// True if one of the last cycles left a smaller peak, or less power, than all before them.
 bool CycleRules::progresses() const {
   const std::vector<MajorCycle>& cycles = state_.cycles;
   const std::size_t since = state_.exact_from == 0 ? 0 : state_.exact_from - 1;

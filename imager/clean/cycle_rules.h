@@ -18,10 +18,10 @@ struct CleanEnding {
 /// and CleanInput say of these, applied to what the cycles so far have left. It looks at no image but in its constructor.
 class CycleRules {
  public:
-  /// Of one run of CLEAN; the options and the state, as it is at each call, are looked up by reference.
+  /// The rules of one run of CLEAN. Options and state are kept by reference: what the state is at a call decides.
   CycleRules(const CleanInput& input, const CleanOptions& options, const CleanState& state);
 
-  /// Of the dirty image.
+  /// What the dirty image's pixels scatter by.
   const ImageStatistics& dirty() const { return dirty_; }
 
   /// The depth to which the next minor cycle goes in any case: where the sidelobes of the brightest source could pass for
@@ -38,7 +38,7 @@ class CycleRules {
   /// the threshold those that follow one that went down to it.
   double last_depth(const MajorCycle& begun) const;
 
-  /// Whether a cycle reached the limit of iterations, or the last depth for the second time, the first having left what
+  /// True if a cycle reached the limit of iterations, or the last depth for the second time: the first time it leaves what
   /// sidelobes had hidden.
   bool is_likely_last(const MajorCycle& cycle) const;
   /// How exact the residual of a model must be for minor cycles that follow one of this depth, which began with what `before`
@@ -46,10 +46,10 @@ class CycleRules {
   /// as if their phases were random.
   double accuracy_for_next(double depth_jy, const MajorCycle& before) const;
 
-  /// What ends CLEAN before another minor cycle, if anything.
+  /// Tells what ends CLEAN before another minor cycle; nothing where it goes on.
   std::optional<CleanEnding> ending(bool mask_is_empty) const;
-  /// Whether CLEAN would end with more than its best cycle left, in peak and mean square. Cycles may leave somewhat more on
-  /// the way to less. With automask, whose masks grow, nothing can be compared.
+  /// True if CLEAN would end with more than its best cycle left, in peak and mean square: cycles may leave somewhat more on the
+  /// way to less. Masks of automask grow, so that peaks cannot be compared; then it is false.
   bool is_worse_than_best() const;
 
  private:

@@ -21,31 +21,31 @@ namespace {
 constexpr double grown = 1.5;  // a residual this many times the best is taken back
 constexpr double exact = 0;    // accuracy of transforms that are as exact as any
 
-void require_same_terms(const CleanInput& input, const MinorCycle& minor) {
+/// `input`, which fits the minor cycle and the state that CLEAN begins with.
+CleanInput checked(CleanInput input, const MinorCycle& minor, const CleanState& state) {
   const auto terms = static_cast<std::size_t>(input.expansion.terms);
   if (static_cast<std::size_t>(minor.terms()) != terms || input.dirty.size() != terms || input.psf.size() != 2 * terms - 1)
     throw std::invalid_argument(std::to_string(terms) + " Taylor terms, dirty images of " + std::to_string(input.dirty.size()) +
                                 ", " + std::to_string(input.psf.size()) + " PSFs and a minor cycle of " +
                                 std::to_string(minor.terms()) +
                                 " terms; expected as many of each, and a PSF for each sum of two");
+  if (state.model.scale_pixels() != minor.scale_pixels())
+    throw std::invalid_argument("a model of other scales than those of the minor cycle");
+  for (const Image* psf : input.psf) require_finite_psf(*psf);
+  return input;
 }
 
 /// One run of CLEAN.
 class Run {
  public:
   Run(CleanInput input, const MinorCycle& minor, const CleanOptions& options, CleanState state, const Context& context)
-      : input_(std::move(input)),
+      : input_(checked(std::move(input), minor, state)),
         minor_(minor),
         o_(options),
         context_(context),
         sharer_(input_.imaged.samples.source.ranks()),
-        state_(std::move(state)) {
-    require_same_terms(input_, minor);
-    if (state_.model.scale_pixels() != minor.scale_pixels())
-      throw std::invalid_argument("a model of other scales than those of the minor cycle");
-    for (const Image* psf : input_.psf) require_finite_psf(*psf);
-    rules_.emplace(input_, o_, state_);
-  }
+        state_(std::move(state)),
+        rules_(input_, options, state_) {}
 
   CleanResult run(const CycleProgress& cycle_progress) {
     if (state_.cycles.empty())
@@ -54,11 +54,11 @@ class Run {
       make_residual(now().accuracy);
     cycle_progress(state_);
     while (true) {
-      while (!(end_ = rules_->ending(mask_is_empty()))) {
+      while (!(end_ = rules_.ending(mask_is_empty()))) {
         one_cycle();
         cycle_progress(state_);
       }
-      if (rules_->is_worse_than_best()) {
+      if (rules_.is_worse_than_best()) {
         return_to_best();
         make_exact();
         end_->reason += "; the best model was kept";
@@ -67,7 +67,7 @@ class Run {
       if (now().accuracy == exact) break;
       make_exact();
       stay_exact();
-      if ((end_ = rules_->ending(mask_is_empty()))) break;
+      if ((end_ = rules_.ending(mask_is_empty()))) break;
     }
     sharer_.end();
     return result();
@@ -84,7 +84,7 @@ class Run {
     start.accuracy = make_residual(input_.dirty_accuracy);
     if (o_.automask) state_.mask.allowed = Image(residual().width, residual().height);
     measure(start);
-    if (start.accuracy > rules_->accuracy_for_next(start.peak_residual_jy, start)) {
+    if (start.accuracy > rules_.accuracy_for_next(start.peak_residual_jy, start)) {
       start.accuracy = make_residual(exact);
       measure(start);
     }
@@ -134,7 +134,7 @@ class Run {
           make_taylor_residuals(by_coarser(input_.imaged, input_.coarser, coarser), model_images(), input_.expansion, context_);
     }
     const StageTimer timer(context_.times, stage::statistics);
-    for (const Image& residual : residuals_) require_finite_residual(statistics_of(residual, o_.threads), rules_->dirty());
+    for (const Image& residual : residuals_) require_finite_residual(statistics_of(residual, o_.threads), rules_.dirty());
     return accuracy;
   }
   std::vector<Image> model_images() const {
@@ -189,7 +189,7 @@ class Run {
          .threads = o_.threads},
         state_.mask);
     const bool at_the_end =
-        cycle.cycle_threshold_jy > 0 && cycle.cycle_threshold_jy <= rules_->last_depth(state_.cycles[cycle.from]);
+        cycle.cycle_threshold_jy > 0 && cycle.cycle_threshold_jy <= rules_.last_depth(state_.cycles[cycle.from]);
     const double changed =
         100 * static_cast<double>(cycle.masked.added) / static_cast<double>(std::max<std::size_t>(before, 1));
     state_.mask.final = at_the_end && !cycle.masked.by_sidelobes && changed < o.min_percent_change;
@@ -198,7 +198,7 @@ class Run {
   void one_cycle() {
     constexpr double hardly_less = 0.9;
     MajorCycle cycle;
-    const double deepest = rules_->deepest();
+    const double deepest = rules_.deepest();
     const int left = o_.max_iterations - now().iterations;
     bool reached_depth = false;
     {
@@ -207,10 +207,10 @@ class Run {
           pointers_to(residuals_), {.gain = o_.gain,
                                     .max_iterations = o_.cycle_iterations < 0 ? left : std::min(left, o_.cycle_iterations),
                                     .threshold_jy = deepest,
-                                    .doubtful = rules_->doubtful_sidelobes(),
-                                    .sure_jy = rules_->sure_depth(),
+                                    .doubtful = rules_.doubtful_sidelobes(),
+                                    .sure_jy = rules_.sure_depth(),
                                     .mask = mask(),
-                                    .to_the_last = deepest <= rules_->last_depth(now()),
+                                    .to_the_last = deepest <= rules_.last_depth(now()),
                                     .stop_requested = o_.stop_requested});
       state_.found_nothing = found.components.empty();
       cycle.iterations = now().iterations + found.iterations();
@@ -221,9 +221,9 @@ class Run {
     }
     cycle.from = state_.now;
     cycle.accuracy = state_.found_nothing ? now().accuracy
-                                          : make_residual(state_.exact_from != 0 || rules_->is_likely_last(cycle)
+                                          : make_residual(state_.exact_from != 0 || rules_.is_likely_last(cycle)
                                                               ? exact
-                                                              : rules_->accuracy_for_next(cycle.cycle_threshold_jy, now()));
+                                                              : rules_.accuracy_for_next(cycle.cycle_threshold_jy, now()));
     // A peak that is as bright as before, although it was cleaned, may be of the transform's making.
     if (cycle.accuracy != exact && reached_depth && peak_within_mask() > hardly_less * now().peak_residual_jy) {
       stay_exact();
@@ -304,9 +304,9 @@ class Run {
   const Context& context_;
   ModelSharer sharer_;
   CleanState state_;
+  CycleRules rules_;
   std::vector<Image> residuals_;  ///< [term], of state_.model
   std::optional<CleanEnding> end_;
-  std::optional<CycleRules> rules_;  ///< made once the input has been checked
 };
 
 }  // namespace

@@ -23,7 +23,7 @@ struct Image {
   double at(int r, int column) const { return row(r)[column]; }
 };
 
-/// Images as functions take them that do not ask where each lies.
+/// Functions that need not know where each image lies take pointers to them.
 inline std::vector<const Image*> pointers_to(const std::vector<Image>& images) {
   std::vector<const Image*> pointers;
   for (const Image& image : images) pointers.push_back(&image);
