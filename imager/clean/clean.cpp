@@ -54,15 +54,19 @@ double largest_sidelobe(const Image& psf, const Beam& beam, double cell_rad, int
                   *std::max_element(largest.begin(), largest.end()));
 }
 
-double largest_far_sidelobe(const Image& psf) {
-  double largest = 0;
+FarSidelobes far_sidelobes(const Image& psf, double from_part) {
+  double square_sum = 0, count = 0, largest = 0;
   for (int r = 0; r < psf.height; ++r) {
-    const bool far_row = 4 * std::abs(r - psf.height / 2) >= psf.height;
-    const double* const row = psf.row(r);
-    for (int c = 0; c < psf.width; ++c)
-      if ((far_row || 4 * std::abs(c - psf.width / 2) >= psf.width) && std::abs(row[c]) > largest) largest = std::abs(row[c]);
+    const bool far_row = std::abs(r - psf.height / 2) >= from_part * psf.height;
+    for (int c = 0; c < psf.width; ++c) {
+      const double value = psf.at(r, c);
+      if (!(far_row || std::abs(c - psf.width / 2) >= from_part * psf.width) || std::isnan(value)) continue;
+      square_sum += value * value;
+      count += 1;
+      largest = std::max(largest, std::abs(value));
+    }
   }
-  return largest;
+  return {std::sqrt(square_sum / std::max(1.0, count)), largest};
 }
 
 CleanState first_state(const ComponentModel& model) {

@@ -24,13 +24,17 @@ struct CleanOptions {
   int max_iterations = 0;   ///< niter
   double gain = 0.1;        ///< part of a peak that a component takes
   double threshold_jy = 0;  ///< stop when the peak residual exceeds it by threshold_tolerance at most
-  double nsigma = 0;        ///< or not above this many times the robust noise
+  /// Stop when it is not above this many times the robust noise. Minor cycles without a mask go as deep as the noise of what
+  /// they leave lets them.
+  double nsigma = 0;
   /// A minor cycle goes down to the peak × largest sidelobe × cycle factor, that fraction of the peak clamped to [min, max];
   /// but not below the threshold, or 5 % below it where the cycle before went down to it. While components are trusted it goes
-  /// on to the least fraction, but no deeper than cycle factor × the greater of 6 √Σ f² × RMS of the PSF, f being the flux
-  /// found in each square of 64 pixels, and the largest f × largest_far_sidelobe(). They are where 6 × RMS, main lobe included,
-  /// and the far sidelobe are at most a quarter of the largest, until a cycle leaves more than 1.5 times its depth (with
-  /// automask: in the mask that it leaves), or makes the residual grow, or coarser transforms are no longer taken.
+  /// on to the least fraction, but no deeper than cycle factor × the greater of 6 √Σ f² × RMS of doubtful sidelobes, f being
+  /// the flux found in each square of 64 pixels, and the largest f × the largest of those. With w the RMS is that of the whole
+  /// PSF, and the largest that from a quarter of the image on; where w is left out both are those of the last eighth before
+  /// half the image, beyond which the PSF is not known. Components are trusted where 6 × RMS and the largest are at most a
+  /// quarter of the largest sidelobe, until a cycle leaves more than 1.5 times its depth (with automask: in the mask that it
+  /// leaves), or makes the residual grow, or coarser transforms are no longer taken.
   double cycle_factor = 1;
   double min_psf_fraction = 0.05;
   double max_psf_fraction = 0.8;
@@ -124,6 +128,7 @@ struct CleanInput {
   bool of_start = false;          ///< `dirty` are what the state's model leaves, and not the empty one
   std::vector<const Image*> psf;  ///< P_k [k], 2 terms − 1 of them
   double max_sidelobe = 0;        ///< the largest of the first PSF
+  bool same_sidelobes = false;    ///< the first PSF's are right for sources anywhere, as where w is left out
   /// For residuals that decide where minor cycles go next, the least exact first; what CLEAN ends with is made by that of
   /// `imaged`.
   std::vector<CoarserTransform> coarser{};
@@ -141,8 +146,13 @@ double largest_sidelobe(const Image& psf, const Image& beam);
 /// The same of a beam about the middle pixel, on pixels of this size.
 double largest_sidelobe(const Image& psf, const Beam& beam, double cell_rad, int threads);
 
-/// Largest magnitude of the PSF from a quarter of its width or height on; NaN does not count.
-double largest_far_sidelobe(const Image& psf);
+/// Sidelobes of a PSF far from its middle; NaN does not count.
+struct FarSidelobes {
+  double root_mean_square = 0;
+  double largest = 0;  ///< in magnitude
+};
+/// Of those from this part of its width or height on.
+FarSidelobes far_sidelobes(const Image& psf, double from_part);
 
 /// The state with which CLEAN begins: a model of the minor cycle's scales, of these points.
 CleanState first_state(const ComponentModel& model);

@@ -7,6 +7,7 @@
 namespace misfit::imager {
 namespace {
 
+constexpr double deeper = 0.95;
 constexpr double diverged = 3;  // tclean's factor between its codes
 constexpr int most_tightenings = 3;
 constexpr std::size_t patience = 5;  // cycles without any progress
@@ -15,6 +16,16 @@ std::string in_jy(double value) {
   char text[40];
   std::snprintf(text, sizeof text, "%.3g Jy/beam", value);
   return text;
+}
+
+/// With w sidelobes far from the phase centre differ from the PSF's: those of many sources leave no more than if none were
+/// taken off at all, those of one no more than the largest that lie far from it. Without w it is those beyond half the image
+/// alone that the PSF lacks: they resemble the last that it has.
+DoubtfulSidelobes doubtful_sidelobes(const CleanInput& input, double psf_rms, double cycle_factor) {
+  constexpr double deviations = 6, far = 0.25, last = 0.375;
+  const FarSidelobes sidelobes = far_sidelobes(*input.psf.front(), input.same_sidelobes ? last : far);
+  const double rms = input.same_sidelobes ? sidelobes.root_mean_square : psf_rms;
+  return {.of_many = deviations * cycle_factor * rms, .of_one = cycle_factor * sidelobes.largest};
 }
 
 }  // namespace
@@ -26,33 +37,33 @@ CycleRules::CycleRules(const CleanInput& input, const CleanOptions& options, con
       data_jy_(input.data_jy),
       accuracy_(input.accuracy),
       psf_rms_(root_mean_square(*input.psf.front())),
-      far_sidelobe_(largest_far_sidelobe(*input.psf.front())),
+      doubtful_(doubtful_sidelobes(input, psf_rms_, options.cycle_factor)),
       dirty_(statistics_of(input.dirty.front(), options.threads)) {}
 
-double CycleRules::sure_depth() const {
-  return std::max(depth_fraction() * now().peak_residual_jy, last_depth(now()));
-}
-
-double CycleRules::deepest() const {
-  if (!components_are_trusted()) return sure_depth();
-  return std::max(o_.min_psf_fraction * now().peak_residual_jy, last_depth(now()));
+MinorCycleOptions CycleRules::next() const {
+  const double peak = now().peak_residual_jy, sure = std::max(depth_fraction() * peak, last_threshold(now()));
+  const double deepest = components_are_trusted() ? std::max(o_.min_psf_fraction * peak, last_threshold(now())) : sure;
+  const int left = o_.max_iterations - now().iterations;
+  return {.gain = o_.gain,
+          .max_iterations = o_.cycle_iterations < 0 ? left : std::min(left, o_.cycle_iterations),
+          .threshold_jy = deepest,
+          .nsigma = deeper * o_.nsigma,
+          .noise_jy = now().rms_jy,
+          .doubtful = doubtful_,
+          .sure_jy = sure,
+          .to_the_last = deepest <= last_depth(now()),
+          .stop_requested = o_.stop_requested};
 }
 
 /// True while minor cycles may go deeper than the largest sidelobe allows: the PSF's far sidelobes are faint beside its near
 /// ones, and every residual so far came out nearly as its minor cycle promised.
 bool CycleRules::components_are_trusted() const {
   constexpr double far_less = 0.25, nearly = 1.5;
-  const DoubtfulSidelobes doubtful = doubtful_sidelobes();
-  if (!(std::max(doubtful.of_many, doubtful.of_one) <= far_less * o_.cycle_factor * max_sidelobe_)) return false;
+  if (!(std::max(doubtful_.of_many, doubtful_.of_one) <= far_less * o_.cycle_factor * max_sidelobe_)) return false;
   if (state_.tightened > 0 || state_.exact_from != 0) return false;
   return std::all_of(state_.cycles.begin(), state_.cycles.end(), [](const MajorCycle& cycle) {
     return cycle.cycle_threshold_jy == 0 || cycle.peak_residual_jy <= nearly * cycle.cycle_threshold_jy;
   });
-}
-
-DoubtfulSidelobes CycleRules::doubtful_sidelobes() const {
-  constexpr double deviations = 6;
-  return {.of_many = deviations * o_.cycle_factor * psf_rms_, .of_one = o_.cycle_factor * far_sidelobe_};
 }
 
 double CycleRules::depth_fraction() const {
@@ -65,9 +76,12 @@ bool CycleRules::is_at_last_depth(const MajorCycle& cycle) const {
   return cycle.cycle_threshold_jy > 0 && cycle.cycle_threshold_jy <= std::max(o_.threshold_jy, o_.nsigma * cycle.rms_jy);
 }
 
+double CycleRules::last_threshold(const MajorCycle& begun) const {
+  return (is_at_last_depth(begun) ? deeper : 1) * o_.threshold_jy;
+}
+
 double CycleRules::last_depth(const MajorCycle& begun) const {
-  constexpr double deeper = 0.95;
-  return std::max((is_at_last_depth(begun) ? deeper : 1) * o_.threshold_jy, deeper * o_.nsigma * begun.rms_jy);
+  return std::max(last_threshold(begun), deeper * o_.nsigma * begun.rms_jy);
 }
 
 bool CycleRules::is_likely_last(const MajorCycle& cycle) const {
@@ -78,7 +92,7 @@ double CycleRules::accuracy_for_next(double depth_jy, const MajorCycle& before) 
   constexpr double less_noise = 0.5;  // it falls as sources go
   const bool trusted = components_are_trusted();
   const double small = trusted ? 0.05 : 0.02, fraction = trusted ? o_.min_psf_fraction : depth_fraction();
-  const double next = std::max(fraction * depth_jy, less_noise * last_depth(before));
+  const double next = std::max(fraction * depth_jy, less_noise * std::min(last_depth(before), depth_jy));
   double square = 0;
   for (const Component& c : state_.model.components()) square += c.flux_jy * c.flux_jy;
   const double visibilities_jy = std::max(data_jy_, std::sqrt(square));

@@ -24,15 +24,9 @@ class CycleRules {
   /// What the dirty image's pixels scatter by.
   const ImageStatistics& dirty() const { return dirty_; }
 
-  /// The depth to which the next minor cycle goes in any case: where the sidelobes of the brightest source could pass for
-  /// sources.
-  double sure_depth() const;
-  /// The depth that the next minor cycle does not pass. Above it, it ends where sidelobes of all that it found could pass for
-  /// sources.
-  double deepest() const;
-  /// Far from the phase centre sidelobes differ from the PSF's, and beyond half the image the PSF has none. Those of many
-  /// sources leave no more than if none were taken off at all; those of one no more than the largest that lie far from it.
-  DoubtfulSidelobes doubtful_sidelobes() const;
+  /// The next minor cycle, but for its mask: in any case it goes to where sidelobes of the brightest source could pass for
+  /// sources, and from there on, while components are trusted, to where those of all that it found could.
+  MinorCycleOptions next() const;
   /// The depth below which threshold and nsigma let no minor cycle go that begins with what `begun` left. Cycles that chase
   /// them by less than five percent are wasted: below nsigma all go by as much, since the noise falls as sources go, and below
   /// the threshold those that follow one that went down to it.
@@ -57,6 +51,7 @@ class CycleRules {
   const MajorCycle& best() const { return state_.cycles[state_.best]; }
   bool components_are_trusted() const;
   double depth_fraction() const;
+  double last_threshold(const MajorCycle& begun) const;
   bool is_at_last_depth(const MajorCycle& cycle) const;
   bool progresses() const;
   CleanEnding divergence() const;
@@ -67,7 +62,7 @@ class CycleRules {
   double data_jy_;
   double accuracy_;
   double psf_rms_;
-  double far_sidelobe_;  ///< the largest from a quarter of the image on
+  DoubtfulSidelobes doubtful_;
   ImageStatistics dirty_;
 };
 

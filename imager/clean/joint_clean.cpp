@@ -67,10 +67,10 @@ MinorCycleReport JointClean::find(const std::vector<const Image*>& residual, con
   constexpr double deep = 3;            // places are looked at from this part of the threshold on
   constexpr double least_merit = 0.01;  // of a point's at the threshold: no scale sees what is left
   constexpr std::size_t least_places = 65536;
-  const std::size_t most = std::max(least_places, residual.front()->pixel.size() / 128);
+  const std::size_t most = std::max(least_places, residual.front()->pixel.size() / 64);
   const bool points = psf_.scales().front().looked_at.index >= 0;
   ScaledResidual left(residual, o.mask, psf_, fft_, options_.threads);
-  const double unit = left.unit_jy(), threshold = o.threshold_jy / unit;
+  const double unit = left.unit_jy();
   MinorCycleReport report;
   Brightness now = brightness_of(left, psf_, options_.threads);
   MinorCycleWatch watch(o, width(), height(), now.points * unit);
@@ -79,6 +79,7 @@ MinorCycleReport JointClean::find(const std::vector<const Image*>& residual, con
       report.end = MinorCycleEnd::threshold;
       break;
     }
+    const double threshold = watch.least_depth_jy() / unit;
     if (!(now.brightest * now.brightest > least_merit * threshold * threshold)) {
       report.end = MinorCycleEnd::no_place;
       break;
@@ -94,7 +95,7 @@ MinorCycleReport JointClean::find(const std::vector<const Image*>& residual, con
     }
     const InView view{bright, level, unit};
     find_among(view, psf_, o, points ? level : std::max(level, target), watch, report);
-    if (view.points_are_below(watch.depth_jy()) &&
+    if (view.points_are_below(watch.depth_jy()) && !watch.may_follow_noise() &&
         (!watch.is_to_the_last() || bright.sees_all_above(watch.depth_jy() / unit))) {
       report.peak_jy = bright.point_brightness() * unit;
       report.end = MinorCycleEnd::threshold;
@@ -103,6 +104,7 @@ MinorCycleReport JointClean::find(const std::vector<const Image*>& residual, con
     ComponentModel found(width(), height(), options_.scale_pixels);
     found.add({report.components.begin() + before, report.components.end()});
     left.subtract(found);
+    if (o.mask == nullptr) watch.see_noise(left.noise_jy());
     now = brightness_of(left, psf_, options_.threads);
   }
   const bool cut = report.end == MinorCycleEnd::iterations || report.end == MinorCycleEnd::stopped;

@@ -134,7 +134,10 @@ class Run {
           make_taylor_residuals(by_coarser(input_.imaged, input_.coarser, coarser), model_images(), input_.expansion, context_);
     }
     const StageTimer timer(context_.times, stage::statistics);
-    for (const Image& residual : residuals_) require_finite_residual(statistics_of(residual, o_.threads), rules_.dirty());
+    for (std::size_t t = residuals_.size(); t-- > 0;) {
+      statistics_ = statistics_of(residuals_[t], o_.threads);
+      require_finite_residual(statistics_, rules_.dirty());
+    }
     return accuracy;
   }
   std::vector<Image> model_images() const {
@@ -150,8 +153,7 @@ class Run {
   /// Of the whole image where the mask is empty.
   double peak_within_mask() const {
     const bool everywhere = mask() == nullptr || mask_is_empty();
-    return everywhere ? statistics_of(residual(), o_.threads).largest_magnitude()
-                      : largest_magnitude_within(*mask(), residual(), o_.threads);
+    return everywhere ? statistics_.largest_magnitude() : largest_magnitude_within(*mask(), residual(), o_.threads);
   }
 
   /// What the residual is now.
@@ -159,9 +161,8 @@ class Run {
     const StageTimer timer(context_.times, stage::statistics);
     cycle.rms_jy = robust_noise(residual(), o_.threads);
     cycle.peak_residual_jy = peak_within_mask();
-    const ImageStatistics statistics = statistics_of(residual(), o_.threads);
-    cycle.peak_anywhere_jy = statistics.largest_magnitude();
-    cycle.mean_square_jy2 = std::pow(statistics.root_mean_square(), 2);
+    cycle.peak_anywhere_jy = statistics_.largest_magnitude();
+    cycle.mean_square_jy2 = std::pow(statistics_.root_mean_square(), 2);
     cycle.model_flux_jy = state_.model.flux_jy();
   }
 
@@ -198,20 +199,12 @@ class Run {
   void one_cycle() {
     constexpr double hardly_less = 0.9;
     MajorCycle cycle;
-    const double deepest = rules_.deepest();
-    const int left = o_.max_iterations - now().iterations;
     bool reached_depth = false;
     {
       const StageTimer timer(context_.times, stage::minor_cycles);
-      const MinorCycleReport found = minor_.clean(
-          pointers_to(residuals_), {.gain = o_.gain,
-                                    .max_iterations = o_.cycle_iterations < 0 ? left : std::min(left, o_.cycle_iterations),
-                                    .threshold_jy = deepest,
-                                    .doubtful = rules_.doubtful_sidelobes(),
-                                    .sure_jy = rules_.sure_depth(),
-                                    .mask = mask(),
-                                    .to_the_last = deepest <= rules_.last_depth(now()),
-                                    .stop_requested = o_.stop_requested});
+      MinorCycleOptions options = rules_.next();
+      options.mask = mask();
+      const MinorCycleReport found = minor_.clean(pointers_to(residuals_), options);
       state_.found_nothing = found.components.empty();
       cycle.iterations = now().iterations + found.iterations();
       cycle.cycle_threshold_jy = found.depth_jy;
@@ -306,6 +299,7 @@ class Run {
   CleanState state_;
   CycleRules rules_;
   std::vector<Image> residuals_;  ///< [term], of state_.model
+  ImageStatistics statistics_;    ///< of the first
   std::optional<CleanEnding> end_;
 };
 

@@ -21,6 +21,10 @@ struct MinorCycleOptions {
   double gain = 0.1;  ///< part of a peak that a component takes
   int max_iterations = 0;
   double threshold_jy = 0;  ///< in Jy/beam; ends when no pixel that may be cleaned exceeds it in magnitude
+  /// It goes no deeper than this many times the robust noise of the residual either: of what is left, as sources go; of what
+  /// it began with where there is a mask.
+  double nsigma = 0;
+  double noise_jy = 0;  ///< of the residual that it begins with
   /// It ends when no pixel exceeds what doubtful sidelobes of all that it found may leave. But down to `sure_jy` it goes in any
   /// case.
   DoubtfulSidelobes doubtful;
@@ -92,17 +96,29 @@ class MinorCycleWatch {
  public:
   /// Watches a minor cycle in an image of this width and height, whose brightest pixel is first_peak_jy to begin with.
   MinorCycleWatch(const MinorCycleOptions& options, int width, int height, double first_peak_jy)
-      : options_(options), found_(width, height), first_peak_jy_(first_peak_jy) {}
+      : options_(options), found_(width, height), first_peak_jy_(first_peak_jy), noise_jy_(options.noise_jy) {}
 
   void add(const Component& found) { found_.add(found.row, found.column, 0, std::abs(found.flux_jy)); }
+  /// Learns the noise of what is left.
+  void see_noise(double noise_jy) {
+    constexpr double hardly_less = 0.98;
+    noise_falls_ = noise_jy < hardly_less * noise_jy_;
+    noise_jy_ = std::min(noise_jy_, noise_jy);
+  }
   /// How deep it is to go with what it found so far.
   double depth_jy() const {
     const DoubtfulSidelobes& doubtful = options_.doubtful;
     const double left_jy = std::max(doubtful.of_many * std::sqrt(found_.square(0)), doubtful.of_one * found_.largest(0));
-    return std::max(options_.threshold_jy, std::min(options_.sure_jy, left_jy));
+    return std::max(least_depth_jy(), std::min(options_.sure_jy, left_jy));
   }
-  /// True where the depth is the threshold, and pixels that were faint are to be looked at in the end.
-  bool is_to_the_last() const { return options_.to_the_last && depth_jy() == options_.threshold_jy; }
+  /// The depth that neither threshold nor noise let it pass.
+  double least_depth_jy() const { return std::max(options_.threshold_jy, options_.nsigma * noise_jy_); }
+  /// True where the depth is the least, and pixels that were faint are to be looked at in the end.
+  bool is_to_the_last() const { return options_.to_the_last && depth_jy() == least_depth_jy(); }
+  /// True where less noise would let it go deeper, and there may be less by now.
+  bool may_follow_noise() const {
+    return noise_falls_ && options_.mask == nullptr && depth_jy() == options_.nsigma * noise_jy_;
+  }
   /// Whether no further component is to be taken now that the brightest pixel has this magnitude; if so, `report` says why.
   bool ends(double peak_jy, MinorCycleReport& report) const;
   /// Whether there are as many components as allowed, or the user wishes to end; if so, `report` says which.
@@ -112,6 +128,8 @@ class MinorCycleWatch {
   const MinorCycleOptions& options_;
   FoundFlux found_;
   double first_peak_jy_;
+  double noise_jy_;
+  bool noise_falls_ = true;  ///< as far as it is known
 };
 
 }  // namespace misfit::imager

@@ -188,6 +188,11 @@ void ScaledResidual::transform(const ComponentModel& found, int term, ScaledFft:
       to);
 }
 
+double ScaledResidual::noise_jy() const {
+  const std::size_t pixels = static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_);
+  return unit_jy_ * sampled_noise(plane_.front().row(0, 0), pixels);
+}
+
 void ScaledResidual::subtract(const ComponentModel& found) {
   const std::size_t terms = plane_.front().residual.size();
   std::deque<ScaledFft::Half> halves;

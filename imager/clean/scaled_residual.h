@@ -58,6 +58,9 @@ class ScaledResidual {
   int width() const { return width_; }
   int height() const { return height_; }
 
+  /// Robust noise of the first term where components may lie, of a sample of its pixels.
+  double noise_jy() const;
+
   /// Takes components off everything.
   void subtract(const ComponentModel& found);
 

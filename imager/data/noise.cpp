@@ -12,6 +12,13 @@ namespace {
 
 constexpr std::size_t chunk_pixels = std::size_t{1} << 16;
 
+/// The step that spreads so many samples over an image, or some more; odd, so that they lie in every column of images whose
+/// width is a power of two.
+std::size_t step_of_sample(std::size_t pixels, std::size_t samples) {
+  const std::size_t step = std::max<std::size_t>(pixels / samples, 1);
+  return step - (step + 1) % 2;
+}
+
 /// Values within bounds, and how many there are below them and in all. NaN does not count.
 struct Bracket {
   double low = -std::numeric_limits<double>::infinity();
@@ -50,13 +57,15 @@ struct Bracket {
 /// Bounds between which the middle value all but certainly lies, as a sample shows.
 template <typename ValueOf>
 Bracket around_median(const Image& image, const ValueOf& value_of) {
-  constexpr std::size_t samples = 4096, reach = 184;  // 5.7 standard deviations of the middle's place in a random sample
+  constexpr std::size_t samples = 32768;
   Bracket sample;
-  const std::size_t step = image.pixel.size() / samples;
-  for (std::size_t i = 0; step > 0 && i < samples; ++i) sample.look(&image.pixel[i * step], 1, value_of);
+  const std::size_t step = step_of_sample(image.pixel.size(), samples);
+  for (std::size_t i = 0; i < image.pixel.size(); i += step) sample.look(&image.pixel[i], 1, value_of);
   std::vector<double>& value = sample.within;
   if (value.size() < samples / 2) return {};
   std::sort(value.begin(), value.end());
+  // 5.7 standard deviations of the middle's place in a random sample
+  const auto reach = static_cast<std::size_t>(2.85 * std::sqrt(static_cast<double>(value.size())));
   return {value[value.size() / 2 - reach], value[value.size() / 2 + reach], 0, 0, {}};
 }
 
@@ -80,6 +89,15 @@ double median(const Image& image, int threads, const ValueOf& value_of) {
   }
 }
 
+template <typename Real>
+double noise_of_sample(const Real* pixel, std::size_t pixels) {
+  constexpr std::size_t enough = std::size_t{1} << 18;
+  const std::size_t step = step_of_sample(pixels, enough);
+  Image some;
+  for (std::size_t i = 0; i < pixels; i += step) some.pixel.push_back(double{pixel[i]});
+  return robust_noise(some);
+}
+
 }  // namespace
 
 double robust_noise(const Image& image, int threads) {
@@ -89,11 +107,11 @@ double robust_noise(const Image& image, int threads) {
 }
 
 double sampled_noise(const Image& image) {
-  constexpr std::size_t enough = std::size_t{1} << 18;
-  const std::size_t step = image.pixel.size() / enough | 1;  // odd, so that it meets every column
-  Image some;
-  for (std::size_t i = 0; i < image.pixel.size(); i += step) some.pixel.push_back(image.pixel[i]);
-  return robust_noise(some);
+  return noise_of_sample(image.pixel.data(), image.pixel.size());
+}
+
+double sampled_noise(const float* pixel, std::size_t pixels) {
+  return noise_of_sample(pixel, pixels);
 }
 
 }  // namespace misfit::imager

@@ -132,9 +132,9 @@ void make_dirty_exact(const VisibilitySource& source, const Context& context, Ac
 
 TheoreticalError theoretical_error(const GriddingPlan& plan, const SampleSums& sums, double image_rms,
                                    const NeglectedPhase& w) {
-  const bool neglected = !plan.direct && !plan.options.has_w_axis();
-  const double phase_rms = neglected ? std::min(w.rms_rad, std::sqrt(2.0)) : 0;  // unit phasors at random are √2 apart
-  const double phase_max = neglected ? std::min(w.max_rad, 2.0) : 0;
+  const double phase_rms =
+      plan.leaves_w_out() ? std::min(w.rms_rad, std::sqrt(2.0)) : 0;  // unit phasors at random are √2 apart
+  const double phase_max = plan.leaves_w_out() ? std::min(w.max_rad, 2.0) : 0;
   const auto over_image = [image_rms](double x) { return x == 0 ? 0 : x / image_rms; };
   const double flux = over_image(sums.weight_abs / sums.weight);
   TheoreticalError error;

@@ -23,6 +23,8 @@ struct GriddingPlan {
   std::uint64_t direct_pixels = 0;          ///< a model of no more pixels is predicted by direct sums
   std::shared_ptr<const GriddingPlan> psf;  ///< of the PSF, where it has a transform of its own
   Plan decisions;
+
+  bool leaves_w_out() const { return !direct && !options.has_w_axis(); }
 };
 
 /// Throws std::invalid_argument when the kernel's width, the padding or the accuracy lie outside what can be asked; whether the

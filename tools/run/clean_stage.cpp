@@ -173,6 +173,7 @@ imager::CleanResult CleanStage::run(CleanScene scene, const StateOptionValues& o
                            .of_start = scene.of_start,
                            .psf = scene.psf,
                            .max_sidelobe = sidelobe,
+                           .same_sidelobes = scene.same_sidelobes,
                            .coarser = scene.coarser,
                            .data_jy = scene.data_jy,
                            .accuracy = std::max(o_.gridding.accuracy, scene.expected_error),

@@ -24,6 +24,7 @@ struct CleanScene {
   double dirty_accuracy = 0;                        ///< see CleanInput
   bool of_start = false;                            ///< see CleanInput
   std::vector<const imager::Image*> psf;            ///< [k], see CleanInput
+  bool same_sidelobes = false;                      ///< see CleanInput
   imager::Beam main_lobe;                           ///< of the PSF
   std::vector<imager::CoarserTransform> coarser{};  ///< see CleanInput
   double data_jy = 0;                               ///< see CleanInput
