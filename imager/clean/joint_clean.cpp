@@ -67,7 +67,7 @@ MinorCycleReport JointClean::find(const std::vector<const Image*>& residual, con
   constexpr double deep = 3;            // places are looked at from this part of the threshold on
   constexpr double least_merit = 0.01;  // of a point's at the threshold: no scale sees what is left
   constexpr std::size_t least_places = 65536;
-  const std::size_t most = std::max(least_places, residual.front()->pixel.size() / 64);
+  const std::size_t most = std::max(least_places, residual.front()->pixel.size() / (64 * residual.size()));
   const bool points = psf_.scales().front().looked_at.index >= 0;
   ScaledResidual left(residual, o.mask, psf_, fft_, options_.threads);
   const double unit = left.unit_jy();
