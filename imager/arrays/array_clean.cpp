@@ -97,7 +97,6 @@ ArrayClean clean_arrays(const ArrayCleanOptions& options, const ArrayCoordinates
   GriddingPlan plan = plan_of(t, at, true);
   const double cell_rad = t.image.pixel_x_rad;
   const int threads = plan.options.threads;
-  const bool same_sidelobes = plan.leaves_w_out();
   const StoredVisibilities source = stored(at, values, {cell_rad / plan.options.geometry.cell_rad, threads});
   auto [made, beam, expected_error] = dirty_images(source, std::move(plan), cell_rad);
   const Image& psf = made.images.psf;
@@ -117,7 +116,7 @@ ArrayClean clean_arrays(const ArrayCleanOptions& options, const ArrayCoordinates
                    .dirty = std::move(made.images.dirty),
                    .psf = {&psf},
                    .max_sidelobe = largest_sidelobe(psf, beam, cell_rad, threads),
-                   .same_sidelobes = same_sidelobes,
+                   .same_sidelobes = made.plan.leaves_w_out(),
                    .coarser = made.transform->coarser(),
                    .data_jy = made.images.sums.front().data_jy(),
                    .accuracy = std::max(t.accuracy, expected_error),

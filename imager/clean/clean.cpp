@@ -10,11 +10,13 @@
 
 namespace misfit::imager {
 void check(const CleanOptions& o, const std::string& prefix) {
-  const auto expect = [&](bool holds, const char* name, double value, const char* expected) {
-    if (holds) return;
+  const auto text_of = [](double value) {
     std::ostringstream typed;
     typed << value;
-    throw std::invalid_argument(prefix + name + " " + typed.str() + ": expected " + expected);
+    return typed.str();
+  };
+  const auto expect = [&](bool holds, const char* name, double value, const std::string& expected) {
+    if (!holds) throw std::invalid_argument(prefix + name + " " + text_of(value) + ": expected " + expected);
   };
   expect(o.max_iterations >= 0, "niter", o.max_iterations, "0 or more");
   expect(o.gain > 0 && o.gain <= 1, "gain", o.gain, "more than 0 and at most 1");
@@ -23,7 +25,7 @@ void check(const CleanOptions& o, const std::string& prefix) {
   expect(o.cycle_factor > 0, "cyclefactor", o.cycle_factor, "more than 0");
   expect(o.min_psf_fraction > 0 && o.min_psf_fraction <= 1, "minpsffraction", o.min_psf_fraction, "more than 0 and at most 1");
   expect(o.max_psf_fraction >= o.min_psf_fraction && o.max_psf_fraction <= 1, "maxpsffraction", o.max_psf_fraction,
-         "minpsffraction to 1");
+         "at most 1, and at least minpsffraction, " + text_of(o.min_psf_fraction));
   expect(o.cycle_iterations == -1 || o.cycle_iterations >= 1, "cycleniter", o.cycle_iterations, "-1 (no limit), 1 or more");
   expect(o.max_major_cycles >= -1, "nmajor", o.max_major_cycles, "-1 (no limit) or more");
 }

@@ -51,7 +51,7 @@ MinorCycleOptions CycleRules::next() const {
           .noise_jy = now().rms_jy,
           .doubtful = doubtful_,
           .sure_jy = sure,
-          .to_the_last = deepest <= last_depth(now()),
+          .to_the_last = deepest <= last_threshold(now()),
           .stop_requested = o_.stop_requested};
 }
 
@@ -88,11 +88,12 @@ bool CycleRules::is_likely_last(const MajorCycle& cycle) const {
   return cycle.iterations >= o_.max_iterations || (is_at_last_depth(now()) && cycle.cycle_threshold_jy <= last_depth(now()));
 }
 
-double CycleRules::accuracy_for_next(double depth_jy, const MajorCycle& before) const {
+double CycleRules::accuracy_for_next(double depth_jy, double noise_jy, const MajorCycle& before) const {
   constexpr double less_noise = 0.5;  // it falls as sources go
   const bool trusted = components_are_trusted();
   const double small = trusted ? 0.05 : 0.02, fraction = trusted ? o_.min_psf_fraction : depth_fraction();
-  const double next = std::max(fraction * depth_jy, less_noise * std::min(last_depth(before), depth_jy));
+  const double last = std::max(last_threshold(before), deeper * o_.nsigma * noise_jy);
+  const double next = std::max(fraction * depth_jy, less_noise * std::min(last, depth_jy));
   double square = 0;
   for (const Component& c : state_.model.components()) square += c.flux_jy * c.flux_jy;
   const double visibilities_jy = std::max(data_jy_, std::sqrt(square));

@@ -27,18 +27,18 @@ class CycleRules {
   /// The next minor cycle, but for its mask: in any case it goes to where sidelobes of the brightest source could pass for
   /// sources, and from there on, while components are trusted, to where those of all that it found could.
   MinorCycleOptions next() const;
-  /// The depth below which threshold and nsigma let no minor cycle go that begins with what `begun` left. Cycles that chase
-  /// them by less than five percent are wasted: below nsigma all go by as much, since the noise falls as sources go, and below
-  /// the threshold those that follow one that went down to it.
+  /// The depth below which threshold and nsigma let no minor cycle go that begins with what `begun` left, unless the noise
+  /// falls while sources go. Cycles that chase them by less than five percent are wasted: below nsigma all go by as much, since
+  /// the noise falls as sources go, and below the threshold those that follow one that went down to it.
   double last_depth(const MajorCycle& begun) const;
 
   /// True if a cycle reached the limit of iterations, or the last depth for the second time: the first time it leaves what
   /// sidelobes had hidden.
   bool is_likely_last(const MajorCycle& cycle) const;
   /// How exact the residual of a model must be for minor cycles that follow one of this depth, which began with what `before`
-  /// left: its error shall be a small part of their depth. The error is in proportion to images of the data and of the model
-  /// as if their phases were random.
-  double accuracy_for_next(double depth_jy, const MajorCycle& before) const;
+  /// left and saw this noise last: its error shall be a small part of their depth. The error is in proportion to images of the
+  /// data and of the model as if their phases were random.
+  double accuracy_for_next(double depth_jy, double noise_jy, const MajorCycle& before) const;
 
   /// Tells what ends CLEAN before another minor cycle; nothing where it goes on.
   std::optional<CleanEnding> ending(bool mask_is_empty) const;

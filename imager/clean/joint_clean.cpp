@@ -95,7 +95,7 @@ MinorCycleReport JointClean::find(const std::vector<const Image*>& residual, con
     }
     const InView view{bright, level, unit};
     find_among(view, psf_, o, points ? level : std::max(level, target), watch, report);
-    if (view.points_are_below(watch.depth_jy()) && !watch.may_follow_noise() &&
+    if (view.points_are_below(watch.depth_jy()) && !watch.may_go_deeper() &&
         (!watch.is_to_the_last() || bright.sees_all_above(watch.depth_jy() / unit))) {
       report.peak_jy = bright.point_brightness() * unit;
       report.end = MinorCycleEnd::threshold;
@@ -104,10 +104,11 @@ MinorCycleReport JointClean::find(const std::vector<const Image*>& residual, con
     ComponentModel found(width(), height(), options_.scale_pixels);
     found.add({report.components.begin() + before, report.components.end()});
     left.subtract(found);
-    if (o.mask == nullptr) watch.see_noise(left.noise_jy());
+    if (watch.follows_noise()) watch.see_noise(left.noise_jy());
     now = brightness_of(left, psf_, options_.threads);
   }
   const bool cut = report.end == MinorCycleEnd::iterations || report.end == MinorCycleEnd::stopped;
+  report.noise_jy = watch.noise_jy();
   report.depth_jy = cut ? std::max(watch.depth_jy(), report.peak_jy) : watch.depth_jy();
   return report;
 }

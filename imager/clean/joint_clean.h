@@ -25,10 +25,10 @@ namespace misfit::imager {
 /// worse guide: with three terms over an even band its noise is half as large again as that of R_0.
 ///
 /// Components are found among BrightPlaces alone, as Clark did (1980, A&A 89, 377): all places that have a third of the
-/// threshold, or as many as are quickly looked at. When these are done, and others may have become as bright, all components
+/// least depth, or as many as are quickly looked at. When these are done, and others may have become as bright, all components
 /// are convolved with the PSF and taken off the whole residual, which shows whether they have. A Gaussian is put only where
 /// nine tenths of it lie within the mask, and two of its widths within the image. It ends when the points' |y| of TaylorBasis,
-/// with one term the residual's magnitude, reaches the threshold.
+/// with one term the residual's magnitude, reaches the depth of MinorCycleOptions.
 class JointClean : public MinorCycle {
  public:
   /// Takes PSFs P_k [k], images of one size. Throws std::invalid_argument when there is no scale, one is not finite or

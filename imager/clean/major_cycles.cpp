@@ -84,7 +84,7 @@ class Run {
     start.accuracy = make_residual(input_.dirty_accuracy);
     if (o_.automask) state_.mask.allowed = Image(residual().width, residual().height);
     measure(start);
-    if (start.accuracy > rules_.accuracy_for_next(start.peak_residual_jy, start)) {
+    if (start.accuracy > rules_.accuracy_for_next(start.peak_residual_jy, start.rms_jy, start)) {
       start.accuracy = make_residual(exact);
       measure(start);
     }
@@ -200,6 +200,7 @@ class Run {
     constexpr double hardly_less = 0.9;
     MajorCycle cycle;
     bool reached_depth = false;
+    double noise_jy = 0;
     {
       const StageTimer timer(context_.times, stage::minor_cycles);
       MinorCycleOptions options = rules_.next();
@@ -209,14 +210,16 @@ class Run {
       cycle.iterations = now().iterations + found.iterations();
       cycle.cycle_threshold_jy = found.depth_jy;
       cycle.ended = description(found.end);
+      noise_jy = found.noise_jy;
       reached_depth = found.end == MinorCycleEnd::threshold;
       state_.model.add(found.components);
     }
     cycle.from = state_.now;
-    cycle.accuracy = state_.found_nothing ? now().accuracy
-                                          : make_residual(state_.exact_from != 0 || rules_.is_likely_last(cycle)
-                                                              ? exact
-                                                              : rules_.accuracy_for_next(cycle.cycle_threshold_jy, now()));
+    cycle.accuracy = state_.found_nothing
+                         ? now().accuracy
+                         : make_residual(state_.exact_from != 0 || rules_.is_likely_last(cycle)
+                                             ? exact
+                                             : rules_.accuracy_for_next(cycle.cycle_threshold_jy, noise_jy, now()));
     // A peak that is as bright as before, although it was cleaned, may be of the transform's making.
     if (cycle.accuracy != exact && reached_depth && peak_within_mask() > hardly_less * now().peak_residual_jy) {
       stay_exact();

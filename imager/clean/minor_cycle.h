@@ -31,8 +31,9 @@ struct MinorCycleOptions {
   double sure_jy = 0;           ///< in Jy/beam; 0 = down to the threshold, whatever the doubt
   const Image* mask = nullptr;  ///< where components may lie, see mask.h; null = everywhere
   /// Whether pixels that were faint are looked at in the end, if by nine standard deviations sidelobes of all that was found
-  /// may have made them exceed the threshold; what it finds then exceeds it by half a percent at most. Otherwise pixels may
-  /// exceed it that were faint until sidelobes went; a residual that is made anew shows them, too.
+  /// may have made them exceed the threshold, as they are where the noise sets the depth; what it finds then exceeds it by half
+  /// a percent at most. Otherwise pixels may exceed it that were faint until sidelobes went; a residual that is made anew shows
+  /// them, too.
   bool to_the_last = true;
   std::function<bool()> stop_requested;  ///< asked now and then; may be empty
 };
@@ -51,8 +52,9 @@ constexpr double minor_cycle_divergence = 3;
 struct MinorCycleReport {
   std::vector<Component> components;  ///< in the order in which they were found; places repeat
   double peak_jy = 0;                 ///< magnitude of the brightest pixel left that may be cleaned
-  double depth_jy = 0;  ///< down to which it was to go: the threshold, or above it what doubts allow; or how far it
+  double depth_jy = 0;  ///< down to which it was to go: the threshold, or above it what noise or doubts allow; or how far it
                         ///< came before it was to end
+  double noise_jy = 0;  ///< of the residual, as far as it was followed
   MinorCycleEnd end = MinorCycleEnd::threshold;
 
   int iterations() const { return static_cast<int>(components.size()); }
@@ -113,11 +115,15 @@ class MinorCycleWatch {
   }
   /// The depth that neither threshold nor noise let it pass.
   double least_depth_jy() const { return std::max(options_.threshold_jy, options_.nsigma * noise_jy_); }
-  /// True where the depth is the least, and pixels that were faint are to be looked at in the end.
-  bool is_to_the_last() const { return options_.to_the_last && depth_jy() == least_depth_jy(); }
-  /// True where less noise would let it go deeper, and there may be less by now.
-  bool may_follow_noise() const {
-    return noise_falls_ && options_.mask == nullptr && depth_jy() == options_.nsigma * noise_jy_;
+  /// True where less noise would let it go deeper than now.
+  bool follows_noise() const { return options_.mask == nullptr && options_.nsigma * noise_jy_ > options_.threshold_jy; }
+  /// True where it has come to the depth that the noise sets, and there may be less noise by now.
+  bool may_go_deeper() const { return noise_falls_ && follows_noise() && depth_jy() == options_.nsigma * noise_jy_; }
+  double noise_jy() const { return noise_jy_; }
+  /// True where pixels that were faint are to be looked at in the end.
+  bool is_to_the_last() const {
+    const double depth = depth_jy();
+    return depth == options_.threshold_jy ? options_.to_the_last : depth == options_.nsigma * noise_jy_;
   }
   /// Whether no further component is to be taken now that the brightest pixel has this magnitude; if so, `report` says why.
   bool ends(double peak_jy, MinorCycleReport& report) const;

@@ -94,6 +94,7 @@ double noise_of_sample(const Real* pixel, std::size_t pixels) {
   constexpr std::size_t enough = std::size_t{1} << 18;
   const std::size_t step = step_of_sample(pixels, enough);
   Image some;
+  some.pixel.reserve(pixels / step + 1);
   for (std::size_t i = 0; i < pixels; i += step) some.pixel.push_back(double{pixel[i]});
   return robust_noise(some);
 }

@@ -444,7 +444,7 @@ BOOST_AUTO_TEST_CASE(components_lie_within_the_mask_and_sources_outside_stay) {
   BOOST_TEST(result.report.final_state().rms_jy == robust_noise(result.residual));
 }
 
-BOOST_AUTO_TEST_CASE(a_mask_that_allows_every_pixel_changes_nothing) {
+BOOST_AUTO_TEST_CASE(a_mask_that_allows_every_pixel_changes_nothing_but_for_nsigma) {
   Image mask(geometry.width, geometry.height);
   std::fill(mask.pixel.begin(), mask.pixel.end(), 1.0);
   CleanOptions options = deep();

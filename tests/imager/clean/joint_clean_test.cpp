@@ -155,7 +155,7 @@ BOOST_AUTO_TEST_CASE(it_goes_as_deep_as_the_noise_of_what_is_left_lets_it) {
   for (const Component& c : report.components) is.model.at(c.row, c.column) += c.flux_jy;
   const double left = robust_noise(left_by(is, residual, psf));
   BOOST_TEST(left < 0.5 * before);
-  // The median of a quarter of a million pixels is right to 0.2 %, and noise that has fallen by 2 % or less is not followed.
+  // Noise that has fallen by 2 % or less is not followed.
   BOOST_TEST(report.depth_jy > 0.99 * nsigma * left);
   BOOST_TEST(report.depth_jy < 1.03 * nsigma * left);
   BOOST_TEST(report.peak_jy <= 1.005 * report.depth_jy);
