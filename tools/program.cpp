@@ -3,7 +3,9 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cctype>
+#include <limits>
 #include <stdexcept>
+#include <string>
 #include <vector>
 
 #include "tools/base/option_checks.h"
@@ -57,8 +59,11 @@ std::string conversion_message(const std::string& said, const CLI::App& program)
   const std::string name = said.substr(before.size(), equals - before.size());
   const CLI::Option* option = called(program).get_option_no_throw(name);
   if (option == nullptr) return said;
+  const std::string value = said.substr(equals + 3);
   const bool fraction = option->get_type_name().find("FLOAT") != std::string::npos;
-  return name + ' ' + said.substr(equals + 3) + ": expected a " + (fraction ? "number" : "whole number");
+  const bool too_large = !fraction && value.find_first_not_of("+-0123456789") == std::string::npos;
+  return name + ' ' + value + ": expected a " + (fraction ? "number" : "whole number") +
+         (too_large ? " of magnitude " + std::to_string(std::numeric_limits<int>::max()) + " at most" : "");
 }
 
 std::string in_words(const CLI::ParseError& error, const CLI::App& program) {

@@ -93,7 +93,7 @@ class Clean(unittest.TestCase):
             ("niter -1: expected 0 or more", {"niter": -1}),
             ("gain 5: expected more than 0 and at most 1", {"gain": 5.0}),
             ("threshold nan: expected 0 or more", {"threshold": np.nan}),
-            ("maxpsffraction 0.01: expected minpsffraction to 1", {"maxpsffraction": 0.01}),
+            ("maxpsffraction 0.01: expected at most 1, and at least minpsffraction, 0.05", {"maxpsffraction": 0.01}),
             ("cycleniter 0", {"cycleniter": 0}),
             ("expected multiscale", {"scales": (0, 5)}),
             ("expected 0 to 96", {"deconvolver": "multiscale", "scales": (0, 1e9)}),

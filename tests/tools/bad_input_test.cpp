@@ -94,6 +94,7 @@ BOOST_AUTO_TEST_CASE(options_with_impossible_values_are_wrong_usage) {
   scene.usage("--padding", "0.5", "not in [1.02, 10]");
   scene.usage("--niter", "-1", "expected 0 or more");
   scene.usage("--niter", "1.5e0", "--niter 1.5e0: expected a whole number");
+  scene.usage("--niter", "99999999999", "--niter 99999999999: expected a whole number of magnitude 2147483647 at most");
   scene.usage("--gain", "much", "--gain much: expected a number");
   scene.usage("--niter", "many", "");
   scene.usage("--gain", "0", "expected more than 0");
