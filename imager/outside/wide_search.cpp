@@ -42,7 +42,7 @@ CleanedField clean_wide_field(const VisibilitySource& source, const Transform& t
   }
   const Image& dirty = images.dirty.front();
   constexpr double deep = 2e-3;           // a source between pixels leaves hardly more of itself
-  constexpr double least_of_peak = 5e-3;  // what is fainter may be made of what such sources leave
+  constexpr double least_of_peak = 7e-3;  // what is fainter may be made of what such sources leave
   CleanOptions options;
   options.max_iterations = 5000;
   options.max_major_cycles = 10;
