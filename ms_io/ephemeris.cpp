@@ -40,12 +40,12 @@ std::optional<MDirection::Types> frame_in(const casacore::TableRecord& keywords)
     return keywords.isDefined("GeoDist") && keywords.asDouble("GeoDist") != 0 ? MDirection::TOPO : MDirection::APP;
   casacore::String name = keywords.asString("posrefsys");
   name.upcase();
-  constexpr std::pair<const char*, MDirection::Types> frames[] = {{"J2000", MDirection::J2000},
-                                                                  {"B1950", MDirection::B1950},
-                                                                  {"APP", MDirection::APP},
-                                                                  {"ICRS", MDirection::ICRS},
-                                                                  {"TOPO", MDirection::TOPO}};
-  for (const auto& [part, frame] : frames)
+  constexpr std::pair<const char*, MDirection::Types> known[] = {{"J2000", MDirection::J2000},
+                                                                 {"B1950", MDirection::B1950},
+                                                                 {"APP", MDirection::APP},
+                                                                 {"ICRS", MDirection::ICRS},
+                                                                 {"TOPO", MDirection::TOPO}};
+  for (const auto& [part, frame] : known)
     if (name.contains(part)) return frame;
   return {};
 }

@@ -21,6 +21,7 @@
 #include "ms_io/table_access_internal.h"
 #include "ms_io/uvw_scan_internal.h"
 #include "ms_io/visibility_reader_internal.h"
+#include "ms_io/zenith_turns_internal.h"
 
 namespace misfit::ms_io {
 namespace {
@@ -272,6 +273,14 @@ BeamRows MeasurementSet::beam_rows() const {
   }
   if (rows.sorts.size() <= 1) rows.pairs = {};
   return rows;
+}
+std::vector<float> MeasurementSet::zenith_turns() const {
+  std::vector<float> turns;
+  for (const auto& set : impl_->sets) {
+    const std::vector<float> of_set = ms_io::zenith_turns(*set, impl_->observation.phase_centre);
+    turns.insert(turns.end(), of_set.begin(), of_set.end());
+  }
+  return turns;
 }
 imager::UvwReach MeasurementSet::reach(ReachOf rows) const {
   imager::UvwReach all;

@@ -113,6 +113,10 @@ class MeasurementSet : public imager::VisibilitySource {
   double beam_offset_rad() const;
   /// Reads antennas and feeds of all rows. Throws std::runtime_error when they, ANTENNA, FEED or FIELD cannot be read.
   BeamRows beam_rows() const;
+  /// Where the zenith was for each row, in the order in which blocks hold them: its position angle from north through east, by
+  /// which dishes on alt-azimuth mounts turn, as seen from where the row's field points; 0 of other mounts. Reads times,
+  /// fields and antennas of all rows. Throws std::runtime_error when they cannot be read.
+  std::vector<float> zenith_turns() const;
   /// Bounds at the highest channel selected, of rows with finite UVW. Reads UVW, antennas and FLAG_ROW alone. Throws
   /// std::runtime_error when they cannot be read.
   imager::UvwReach reach(ReachOf rows = ReachOf::usable) const;

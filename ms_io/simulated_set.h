@@ -30,7 +30,8 @@ struct SimulatedObservation {
 
 /// UVW in metres [baseline][3] of one integration; baselines run over antenna1 < antenna2, antenna2 fastest.
 using BaselineUvw = std::function<std::vector<double>(std::size_t integration)>;
-/// Stokes I visibilities [row][channel], Jy, at the coordinates given.
+/// Stokes I visibilities [row][channel], Jy, at the coordinates given, those of the integration of which BaselineUvw was asked
+/// last.
 using ExactVisibilities = std::function<std::vector<std::complex<double>>(const imager::SampleCoordinates&)>;
 
 /// Writes a new MeasurementSet at `path`, with all of the required subtables filled. WEIGHT is 1/noise² (1 without noise),

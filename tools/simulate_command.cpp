@@ -4,7 +4,6 @@
 #include <memory>
 #include <numbers>
 
-#include "imager/beams/telescopes.h"
 #include "imager/direct/source_sums.h"
 #include "imager/numerics/parallel.h"
 #include "ms_io/simulated_set.h"
@@ -17,6 +16,7 @@
 #include "tools/command.h"
 #include "tools/formats/component_list.h"
 #include "tools/formats/sky.h"
+#include "tools/run/dish_beams.h"
 
 namespace misfit::tools {
 namespace {
@@ -30,6 +30,7 @@ struct SimulateOptions {
   bool coplanar = false;
   bool noncoplanar = false;
   bool primary_beam = false;
+  std::string beam;
   std::string cell = "0.05arcsec";
   std::string ra = "60deg";
   std::string dec = "40deg";
@@ -49,6 +50,9 @@ void check(const SimulateOptions& o) {
   if (!(o.hours >= 0)) throw std::invalid_argument("--hours " + std::to_string(o.hours) + ": expected 0 (a snapshot) or more");
   if (!(o.interval > 0))
     throw std::invalid_argument("--interval " + std::to_string(o.interval) + ": expected more than 0 seconds");
+  check_beam(o.beam);
+  if (!o.beam.empty() && !o.primary_beam)
+    throw std::invalid_argument("--beam " + o.beam + " without --primary-beam: expected both, or neither");
   if (o.threads < 0) throw std::invalid_argument("--threads " + std::to_string(o.threads) + ": expected 0 (all cores) or more");
   constexpr double most_integrations = 1e7;
   constexpr int most_channels = 1 << 20;
@@ -87,20 +91,29 @@ ms_io::SimulatedObservation observation_of(const SimulateOptions& o, const Anten
   return observation;
 }
 
-/// The sources as dishes that point to the phase centre see them at a frequency.
-std::vector<imager::Source> attenuated(std::vector<imager::Source> sources, const imager::Dish& dish, double frequency_hz) {
-  const imager::PrimaryBeam beam({{dish, dish, frequency_hz, 1}});
-  for (imager::Source& source : sources) source.flux_jy *= beam.power(std::hypot(source.position.l, source.position.m));
+/// Dishes that point to the phase centre, while the zenith is there: a position angle.
+struct PointedDishes {
+  imager::Pattern pattern;
+  double zenith_rad = 0;
+};
+
+/// The sources as dishes see them at a frequency.
+std::vector<imager::Source> attenuated(std::vector<imager::Source> sources, const PointedDishes& dishes, double frequency_hz) {
+  for (imager::Source& source : sources) {
+    const auto [l, m] = source.position;
+    source.flux_jy *=
+        std::pow(dishes.pattern->voltage_at(std::hypot(l, m), std::atan2(l, m) - dishes.zenith_rad, frequency_hz), 2);
+  }
   return sources;
 }
 
 /// Their visibilities [row][channel], each channel with its own beam.
-std::vector<std::complex<double>> predict_attenuated(const std::vector<imager::Source>& sources, const imager::Dish& dish,
+std::vector<std::complex<double>> predict_attenuated(const std::vector<imager::Source>& sources, const PointedDishes& dishes,
                                                      const imager::SampleCoordinates& at, int threads) {
   const std::size_t channels = at.channels();
   std::vector<std::complex<double>> visibilities(at.samples());
   for (std::size_t c = 0; c < channels; ++c) {
-    const auto seen = attenuated(sources, dish, at.frequency_hz[c]);
+    const auto seen = attenuated(sources, dishes, at.frequency_hz[c]);
     const auto of_channel = imager::predict_sources(seen, {at.uvw_m, {at.frequency_hz[c]}}, threads);
     for (std::size_t row = 0; row < at.rows(); ++row) visibilities[row * channels + c] = of_channel[row];
   }
@@ -119,16 +132,18 @@ void simulate(const SimulateOptions& o) {
 
   ProgressLine progress(o.quiet);
   progress.begin("simulate");
+  PointedDishes dishes{DishBeams(o.beam).of({array.telescope, array.dish_diameter_m}).pattern};
   const auto baselines = [&](std::size_t integration) {
-    const double hour_angle = hour_angle_rad(array, observation.phase_centre, observation.time_mjd_s[integration]);
-    std::vector<double> baseline = uvw(array, {hour_angle, observation.phase_centre.dec_rad});
+    const LocalDirection source{hour_angle_rad(array, observation.phase_centre, observation.time_mjd_s[integration]),
+                                observation.phase_centre.dec_rad};
+    dishes.zenith_rad = parallactic_angle_rad(array, source);
+    std::vector<double> baseline = uvw(array, source);
     if (coplanar)
       for (std::size_t i = 2; i < baseline.size(); i += 3) baseline[i] = 0;
     return baseline;
   };
-  const imager::Dish dish = imager::dish_model({array.telescope, array.dish_diameter_m}).dish;
   const auto exact = [&](const imager::SampleCoordinates& at) {
-    return o.primary_beam ? predict_attenuated(sources, dish, at, threads) : imager::predict_sources(sources, at, threads);
+    return o.primary_beam ? predict_attenuated(sources, dishes, at, threads) : imager::predict_sources(sources, at, threads);
   };
   ms_io::write_simulated_set(o.output, observation, baselines, exact,
                              [&](std::size_t done, std::size_t total) { progress.update(done, total); });
@@ -157,9 +172,12 @@ void add_simulate_command(CLI::App& program) {
       ->check(values_are({"vla-a", "vla-b", "vla-c", "vla-d"}));
   CLI::Option* coplanar = command->add_flag("--coplanar", o->coplanar, "Set w to 0 (the default with the test card)");
   command->add_flag("--noncoplanar", o->noncoplanar, "Keep w (the default otherwise)")->excludes(coplanar);
-  command->add_flag("--primary-beam", o->primary_beam,
-                    "Let the dishes attenuate the sources by their Airy disc around the phase centre, at the frequency of each "
-                    "channel; Gaussians as at their middle");
+  command->add_flag(
+      "--primary-beam", o->primary_beam,
+      "Let the dishes attenuate the sources by their primary beam around the phase centre, at the frequency of each "
+      "channel; Gaussians as at their middle");
+  command->add_option("--beam", o->beam, "The primary beam of --primary-beam in place of the VLA's, as of `misfit image`")
+      ->type_name(name_or_file_type);
   command->add_option("--cell", o->cell, "The test card's cell")->check(quantity(parse_angle_rad));
   command->add_option("--ra", o->ra, "Right ascension of the phase centre, J2000")->check(quantity(parse_angle_rad));
   command->add_option("--dec", o->dec, "Its declination")->check(quantity(parse_angle_rad));

@@ -2,70 +2,58 @@
 
 #include <vector>
 
+#include "imager/beams/voltage_pattern.h"
 #include "imager/data/geometry.h"
 #include "imager/data/image.h"
 
 namespace misfit::imager {
 
-/// A dish as its beam shows it: a circular aperture, uniformly lit, but for a dark disc in its middle.
-struct Dish {
-  double diameter_m = 0;  ///< effective: with which the beam is as wide as it is seen to be
-  double blockage_m = 0;  ///< of the disc; 0: none
-};
-
-inline bool operator==(const Dish& a, const Dish& b) {
-  return a.diameter_m == b.diameter_m && a.blockage_m == b.blockage_m;
-}
-
-/// The voltage that a source off axis gives, relative to the same on axis: the transform of the lit ring (Born & Wolf 1999,
-/// Principles of Optics, section 8.6.2; Thompson, Moran & Swenson 2017, Interferometry and Synthesis in Radio Astronomy),
-///
-///     V(x) = (2 J₁(x)/x − b² 2 J₁(bx)/(bx)) / (1 − b²),   x = π D sin θ / λ,   b = blockage / D.
-///
-/// Without blockage V² is the Airy disc: ½ at 0.514 497 λ/D, 0 at 1.219 670 λ/D. `sin_per_wavelength` is sin θ / λ, 1/m.
-/// CASA (PBMath1DAiry) takes J₁ of x/b there, not of bx, which makes beams wider: of ALMA's dishes by 0.9 % at half power.
-double voltage_pattern(const Dish& dish, double sin_per_wavelength);
-
-/// sin θ / λ, 1/m, at which the voltage is first 0: 1.219 670/D of an open dish, nearer where there is a blockage.
-double first_null_per_m(const Dish& dish);
-
 /// What part of an image pairs of two dishes make at a frequency.
 struct BeamShare {
-  Dish one;
-  Dish other;
+  Pattern one;
+  Pattern other;
   double frequency_hz = 0;
-  double weight = 0;  ///< Σ of the image's weights over their samples, in any unit
+  double weight = 0;    ///< Σ of the image's weights over their samples, in any unit
+  double turn_rad = 0;  ///< where the zenith is, from north through east, for patterns that are not round
 };
 
-/// Vₒₙₑ Vₒₜₕₑᵣ of the two at an angle θ ≤ 90° from the axis, of which `sine` is sin θ.
+/// Vₒₙₑ Vₒₜₕₑᵣ of the two, of patterns that are not round the mean over position angles, at an angle θ ≤ 90° from the axis, of
+/// which `sine` is sin θ.
 double power(const BeamShare& share, double sine);
 
 /// The power that an array sees of a source off axis, relative to the same on axis: the mean of Vₒₙₑ Vₒₜₕₑᵣ over all that make
-/// the image, by their weights. A source's dirty image is its flux times this, and so is what CLEAN finds. The same at all
-/// position angles.
+/// the image, by their weights. A source's dirty image is its flux times this, and so is what CLEAN finds. Patterns that are
+/// not round are turned as the zenith was.
 class PrimaryBeam {
  public:
   /// Shares of frequencies less than `apart` of themselves from each other may be taken together, at their mean, which changes
-  /// the main lobe by less than 1e-6 where that is a thousandth. Throws std::invalid_argument where the weights do not add up
-  /// to more than 0, a frequency is not positive, or a dish is none: 0 ≤ blockage < diameter.
+  /// the main lobe by less than 1e-6 where that is a thousandth; where patterns are not round, eight times as far, which
+  /// changes it by less than 1e-4. Throws std::invalid_argument where the weights do not add up to more than 0, or a frequency
+  /// is not positive.
   explicit PrimaryBeam(const std::vector<BeamShare>& shares, double apart = 1e-3);
 
-  /// At an angle θ ≤ 90° from the axis, of which `sine` is sin θ.
+  bool is_round() const;
+  /// At an angle θ ≤ 90° from the axis, of which `sine` is sin θ; the mean over position angles.
   double power(double sine) const;
   /// sin θ of where it first falls to `level`, which is above 0 and below 1; 1 where it does not.
   double sine_at(double level) const;
   /// The whole angle between its half-power points; 180° where there are none.
   double half_power_width_rad() const;
-  /// sin θ beyond which no dish's main lobe reaches at any frequency: the widest first null; 1 where one has none.
+  /// sin θ beyond which no dish's main lobe reaches at any frequency.
   double main_lobe_sine() const;
-  /// The step of tables in sin θ, of which the narrowest main lobe has 60.
+  /// The step of tables in sin θ, of which the narrowest main lobe has about 60.
   double step() const { return 0.02 * narrowest_; }
 
+  /// sin θ to which all patterns are known in all directions, of those that are not round.
+  double known_sine() const;
+
   const std::vector<BeamShare>& shares() const { return shares_; }  ///< as taken together; the weights add up to 1
+  double apart() const { return apart_; }
 
  private:
+  double apart_;
   std::vector<BeamShare> shares_;
-  double narrowest_ = 0;  ///< λ/D of the largest dish at the highest frequency
+  double narrowest_ = 1;  ///< sin θ of the finest details of all patterns
 };
 
 /// How a primary beam lies on an image.
@@ -79,7 +67,7 @@ struct BeamOnImage {
 void require_limit(const BeamOnImage& view);
 
 /// The beam in each pixel, by the true angle between it and the axis. NaN beyond where it first falls to the limit, sidelobes
-/// included, whose shape no simple model has, and beyond the horizon. Right to 1e-9.
+/// included, whose shape no simple model has, and beyond the horizon. Right to 1e-9, of patterns that are not round 1e-5.
 Image primary_beam_image(const PrimaryBeam& beam, const ImageGeometry& geometry, const BeamOnImage& view);
 
 /// The image with each pixel divided by the beam's; NaN where that is.

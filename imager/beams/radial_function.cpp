@@ -1,8 +1,10 @@
 #include "imager/beams/radial_function.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
+#include "imager/beams/cubic_weights.h"
 #include "imager/numerics/parallel.h"
 
 namespace misfit::imager {
@@ -45,22 +47,45 @@ RadialTable::RadialTable(double reach, int threads, const RadialFunction& functi
 double RadialTable::operator()(double sine) const {
   const double place = sine / step();
   const int cell = std::min(static_cast<int>(place), points - 1);
-  const double t = place - cell;
+  const std::array<double, 4> weight = cubic_weights(place - cell);
   const double* const v = value_.data() + cell;  // at −1, 0, 1, 2
-  return -t * (t - 1) * (t - 2) / 6 * v[0] + (t + 1) * (t - 1) * (t - 2) / 2 * v[1] - (t + 1) * t * (t - 2) / 2 * v[2] +
-         (t + 1) * t * (t - 1) / 6 * v[3];
+  return weight[0] * v[0] + weight[1] * v[1] + weight[2] * v[2] + weight[3] * v[3];
 }
 
-void for_each_within(double reach, DirectionCosines axis, const ImageGeometry& geometry, int threads,
-                     const std::function<void(std::size_t pixel, double sine)>& visit) {
+namespace {
+
+template <typename Visit>
+void for_each_direction(double reach, DirectionCosines axis, const ImageGeometry& geometry, int threads, const Visit& visit) {
   const Towards towards(axis);
   const auto width = static_cast<std::size_t>(geometry.width);
   parallel_for(static_cast<std::size_t>(geometry.height), threads, [&](std::size_t row) {
     for (std::size_t column = 0; column < width; ++column) {
-      const DirectionCosines at = geometry.at(static_cast<int>(row), static_cast<int>(column));
-      const double sine = sine_between(Towards(at), towards);  // not a number beyond the horizon
-      if (sine <= reach) visit(row * width + column, sine);
+      const Towards at(geometry.at(static_cast<int>(row), static_cast<int>(column)));
+      const double sine = sine_between(at, towards);  // not a number beyond the horizon
+      if (sine <= reach) visit(row * width + column, sine, at);
     }
+  });
+}
+
+}  // namespace
+
+void for_each_within(double reach, DirectionCosines axis, const ImageGeometry& geometry, int threads,
+                     const std::function<void(std::size_t pixel, double sine)>& visit) {
+  for_each_direction(reach, axis, geometry, threads,
+                     [&](std::size_t pixel, double sine, const Towards&) { visit(pixel, sine); });
+}
+
+void for_each_off_axis(double reach, DirectionCosines axis, const ImageGeometry& geometry, int threads,
+                       const std::function<void(std::size_t pixel, double sine, double angle_rad)>& visit) {
+  const Towards a(axis);
+  const double dec = geometry.phase_centre.dec_rad, pole_m = std::cos(dec), pole_n = std::sin(dec);
+  const double along = pole_m * a.m + pole_n * a.n;  // the pole's part along the axis: what is left of it points north there
+  double north_l = -along * a.l, north_m = pole_m - along * a.m, north_n = pole_n - along * a.n;
+  if (std::hypot(north_l, north_m, north_n) < 1e-9) north_l = 0, north_m = 1, north_n = 0;  // at a pole: as the image has it
+  const double east_l = north_m * a.n - north_n * a.m, east_m = north_n * a.l - north_l * a.n,
+               east_n = north_l * a.m - north_m * a.l;
+  for_each_direction(reach, axis, geometry, threads, [&](std::size_t pixel, double sine, const Towards& d) {
+    visit(pixel, sine, std::atan2(d.l * east_l + d.m * east_m + d.n * east_n, d.l * north_l + d.m * north_m + d.n * north_n));
   });
 }
 

@@ -33,6 +33,11 @@ class RadialTable {
   std::vector<double> value_;  ///< [point + 1]
 };
 
+/// Calls visit(pixel, sin θ, position angle) for the pixels that for_each_within() visits. The angle is that of the direction
+/// about the axis, from the north there through the east.
+void for_each_off_axis(double reach, DirectionCosines axis, const ImageGeometry& geometry, int threads,
+                       const std::function<void(std::size_t pixel, double sine, double angle_rad)>& visit);
+
 /// Calls visit(pixel, sin θ) for all pixels of an image whose true angle θ from `axis`, a direction seen from the phase centre,
 /// has a sine of `reach` at most and is below 90°; pixels beyond the horizon are none of these.
 void for_each_within(double reach, DirectionCosines axis, const ImageGeometry& geometry, int threads,

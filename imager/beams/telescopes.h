@@ -3,16 +3,19 @@
 #include <stdexcept>
 #include <string>
 
-#include "imager/beams/primary_beam.h"
+#include "imager/beams/voltage_pattern.h"
 #include "imager/data/antennas.h"
 
 namespace misfit::imager {
 
-/// The dish that stands for antennas, and why it does.
-struct DishModel {
-  Dish dish;
+/// The pattern that stands for antennas, and why it does.
+struct BeamModel {
+  Pattern pattern;
   std::string because;
-  std::string doubt = {};  ///< a sentence where the beam may be wrong by more than a few percent at half power; else empty
+  std::string doubt = {};  ///< a sentence where it may be wrong by more than a few percent at half power at any frequency
+
+  /// Sentences on what may be wrong with it at a frequency; mostly empty.
+  std::string doubt_at(double frequency_hz) const { return doubt.empty() ? pattern->doubt(frequency_hz) : doubt; }
 };
 
 /// Antennas that have no beam which a dish describes.
@@ -20,10 +23,19 @@ struct NoSimpleBeam : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// Of antennas of a telescope that is known, the dish as wide as its measured beam asks, or that CASA takes; of others, one of
-/// their own diameter, uniformly lit, with a doubt. Throws NoSimpleBeam, naming the telescope and the reason, for stations and
-/// tiles of dipoles, cylinders and dishes that do not track, and for antennas that are not known and whose diameter is none
-/// that a dish has. Names count as CASA writes them, whatever their capitals, blanks and dashes.
-DishModel dish_model(const AntennaSort& antennas);
+/// Of antennas of a telescope that is known, the beam that was fitted to its measurements, or that CASA takes; of others, that
+/// of a dish of their own diameter, uniformly lit, with a doubt. Throws NoSimpleBeam, naming the telescope and the reason, for
+/// stations and tiles of dipoles, cylinders and dishes that do not track, and for antennas that are not known and whose
+/// diameter is none that a dish has. Names count as CASA writes them, whatever their capitals, blanks and dashes.
+BeamModel beam_model(const AntennaSort& antennas);
+
+/// The beam that a user asks for by name in place of the antennas' own: a telescope that is known, whatever the antennas are;
+/// "airy", a uniformly lit dish of the antennas' own diameter; or "airy:D" and "airy:D:B", one of D metres with a dark middle
+/// of B metres. Throws std::invalid_argument unless is_beam_name(), and NoSimpleBeam where the antennas have no diameter.
+BeamModel named_beam(const std::string& name, const AntennaSort& antennas);
+
+bool is_beam_name(const std::string& name);
+/// What names there are, in words.
+std::string expected_beam_names();
 
 }  // namespace misfit::imager

@@ -32,13 +32,6 @@ double apart_of(const std::vector<BeamShare>& shares) {
   return high_hz > low_hz && low_hz > 0 ? std::min(most, std::log(high_hz / low_hz) / parts) : most;
 }
 
-/// Σ w x^k B / Σ w at an angle from the axis.
-double moment_at(const PrimaryBeam& beam, const TaylorExpansion& expansion, int k, double sine) {
-  double sum = 0;
-  for (const BeamShare& s : beam.shares()) sum += s.weight * std::pow(expansion.x(s.frequency_hz), k) * power(s, sine);
-  return sum;
-}
-
 }  // namespace
 
 TaylorBeam::TaylorBeam(const std::vector<BeamShare>& shares, const TaylorExpansion& expansion, const ImageGeometry& geometry,
@@ -46,17 +39,19 @@ TaylorBeam::TaylorBeam(const std::vector<BeamShare>& shares, const TaylorExpansi
     : expansion_(expansion), geometry_(geometry), view_(view) {
   require_limit(view);
   const PrimaryBeam beam(shares, apart_of(shares));
-  const int moments = 2 * expansion.terms - 1;
-  const auto moment = [&](int k, double sine) { return moment_at(beam, expansion, k, sine); };
-  for (int k = 0; k < moments; ++k) weight_moment_[static_cast<std::size_t>(k)] = moment(k, 0);  // B is 1 on the axis
+  std::vector<BeamTables::Factor> powers;
+  for (int k = 0; k < 2 * expansion.terms - 1; ++k) {
+    powers.emplace_back([=](double frequency_hz) { return std::pow(expansion.x(frequency_hz), k); });
+    for (const BeamShare& s : beam.shares())  // B is 1 on the axis
+      weight_moment_[static_cast<std::size_t>(k)] += s.weight * powers.back()(s.frequency_hz);
+  }
   const TermVector first = matrix_of(weight_moment_, expansion.terms).ldlt().solve(TermVector::Unit(expansion.terms, 0));
-  const double reach = first_sine_at(view.limit, beam.step(), [&](double sine) {
-    double b_0 = 0;
-    for (int q = 0; q < expansion.terms; ++q) b_0 += first(q) * moment(q, sine);
-    return b_0;
-  });
-  for (int k = 0; k < moments; ++k)
-    beam_moment_.emplace_back(reach, view.threads, [&](double sine) { return moment(k, sine); });
+  const auto b_0 = [&](const double* moment) {
+    double sum = 0;
+    for (int q = 0; q < expansion.terms; ++q) sum += first(q) * moment[q];
+    return sum;
+  };
+  beam_moment_.emplace(beam, powers, view.limit, b_0, view.threads);
 }
 
 template <typename TermsAt>
@@ -64,9 +59,9 @@ std::vector<Image> TaylorBeam::images_of(const TermsAt& terms_at) const {
   Image without_values(geometry_.width, geometry_.height);
   std::fill(without_values.pixel.begin(), without_values.pixel.end(), no_value);
   std::vector<Image> images(static_cast<std::size_t>(expansion_.terms), without_values);
-  for_each_within(beam_moment_.front().reach(), view_.pointing, geometry_, view_.threads, [&](std::size_t pixel, double sine) {
+  beam_moment_->for_each_pixel(view_.pointing, geometry_, view_.threads, [&](std::size_t pixel, const double* moment) {
     Moments moments{};
-    for (std::size_t k = 0; k < beam_moment_.size(); ++k) moments[k] = beam_moment_[k](sine);
+    std::copy_n(moment, 2 * expansion_.terms - 1, moments.begin());
     const TermVector terms = terms_at(pixel, moments);
     for (std::size_t t = 0; t < images.size(); ++t) images[t].pixel[pixel] = terms(static_cast<Eigen::Index>(t));
   });

@@ -1,10 +1,11 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <vector>
 
+#include "imager/beams/beam_tables.h"
 #include "imager/beams/primary_beam.h"
-#include "imager/beams/radial_function.h"
 #include "imager/data/geometry.h"
 #include "imager/data/image.h"
 #include "imager/taylor/taylor_expansion.h"
@@ -49,8 +50,8 @@ class TaylorBeam {
   TaylorExpansion expansion_;
   ImageGeometry geometry_;
   BeamOnImage view_;
-  Moments weight_moment_{};               ///< Σ w x^k / Σ w
-  std::vector<RadialTable> beam_moment_;  ///< Σ w x^k B / Σ w [k], 2 terms − 1 of them
+  Moments weight_moment_{};                ///< Σ w x^k / Σ w
+  std::optional<BeamTables> beam_moment_;  ///< Σ w x^k B / Σ w [k], 2 terms − 1 of them
 };
 
 }  // namespace misfit::imager

@@ -2,7 +2,7 @@
 #include <array>
 #include <cmath>
 
-#include "imager/beams/primary_beam.h"
+#include "imager/beams/airy_pattern.h"
 #include "imager/numerics/constants.h"
 #include "tests/tools/program.h"
 #include "tools/run/product_kinds.h"
@@ -16,6 +16,7 @@ using namespace misfit::tools::testing;
 
 constexpr double reference_hz = 1.5e9, arcsec = imager::pi / 180 / 3600, cell_arcsec = 15;
 constexpr int side = 128;
+const std::string beam_name = "airy:25:2.36";
 
 /// A source on a pixel, so many to the west and to the north of the middle.
 struct Seen {
@@ -25,10 +26,10 @@ struct Seen {
   int row() const { return side / 2 + north; }
   int column() const { return side / 2 + west; }
   double from(const imager::Image& image) const { return image.at(row(), column()); }
-  /// What the VLA's dishes, pointing to the middle, see of it at a frequency.
+  /// What dishes as of the VLA, pointing to the middle, see of it at a frequency, in an Airy disc.
   double beam(double hz) const {
     const double sine = std::hypot(west, north) * cell_arcsec * arcsec;
-    const double voltage = imager::voltage_pattern({25, 2.36}, sine * hz / imager::speed_of_light_m_s);
+    const double voltage = imager::airy_voltage({25, 2.36}, sine * hz / imager::speed_of_light_m_s);
     return voltage * voltage;
   }
   /// d ln beam / d ln frequency.
@@ -54,9 +55,26 @@ void simulate_seen(const std::string& path, const std::vector<Seen>& sky, double
            << "\n";
   }
   const double width = bandwidth_mhz / 16;
-  succeed({"simulate", "--output", path, "--sky", path + ".csv", "--array", "vla-d", "--primary-beam", "--frequency",
-           std::to_string(1500 - 7.5 * width) + "MHz", "--channels", "16", "--channel-width", std::to_string(width) + "MHz",
-           "--hours", "2", "--interval", "600"});
+  succeed({"simulate",
+           "--output",
+           path,
+           "--sky",
+           path + ".csv",
+           "--array",
+           "vla-d",
+           "--primary-beam",
+           "--beam",
+           beam_name,
+           "--frequency",
+           std::to_string(1500 - 7.5 * width) + "MHz",
+           "--channels",
+           "16",
+           "--channel-width",
+           std::to_string(width) + "MHz",
+           "--hours",
+           "2",
+           "--interval",
+           "600"});
 }
 
 Arguments images(const std::string& vis, const std::string& imagename, const std::string& terms = "2") {
@@ -97,7 +115,7 @@ BOOST_AUTO_TEST_CASE(fluxes_and_indices_of_the_sky_are_those_of_its_sources_wher
     const TemporaryFolder folder;
     const std::vector<Seen> sky = sources(turn);
     simulate_seen(folder / "seen.ms", sky, 300);
-    succeed(images(folder / "seen.ms", folder / "a") + Arguments{"--pbcor"});
+    succeed(images(folder / "seen.ms", folder / "a") + Arguments{"--pbcor", "--beam", beam_name});
     const auto pixels = [&](const std::string& kind) { return pixels_of(folder / "a", kind); };
     const imager::Image first = pixels("image.tt0.pbcor"), second = pixels("image.tt1.pbcor"), alpha = pixels("alpha.pbcor"),
                         apparent = pixels("alpha"), beam = pixels("pb.tt0"), slope = pixels("pb.tt1");
@@ -118,7 +136,7 @@ BOOST_AUTO_TEST_CASE(fluxes_and_indices_of_the_sky_are_those_of_its_sources_wher
 
 BOOST_AUTO_TEST_CASE(three_terms_have_the_curvature_of_the_sky_too) {
   const TemporaryFolder folder;
-  succeed(images(seen_through_dishes(), folder / "a", "3") + Arguments{"--pbcor"});
+  succeed(images(seen_through_dishes(), folder / "a", "3") + Arguments{"--pbcor", "--beam", beam_name});
   const imager::Image alpha = pixels_of(folder / "a", "alpha.pbcor"), beta = pixels_of(folder / "a", "beta.pbcor"),
                       apparent = pixels_of(folder / "a", "beta");
   for (const Seen& s : sources(0)) {
@@ -136,7 +154,7 @@ BOOST_AUTO_TEST_CASE(dirty_images_are_corrected_as_the_principal_solution) {
   simulate_seen(folder / "seen.ms", {source}, 1000);
   for (const Arguments& weights : {Arguments{}, Arguments{"--weighting", "uniform"}}) {
     succeed(Arguments{"image", "--vis", folder / "seen.ms", "--imagename", folder / "a", "--imsize", "128", "--cell",
-                      "15arcsec", "--nterms", "2", "--pbcor"} +
+                      "15arcsec", "--nterms", "2", "--pbcor", "--beam", beam_name} +
             weights);
     // A power law of 1 is one of two terms. PSFs are right to 1e-4, of which the basis makes the coefficients.
     BOOST_TEST(std::abs(source.from(pixels_of(folder / "a", "image.tt0.pbcor")) / 2 - 1) < 2e-3);
@@ -147,7 +165,7 @@ BOOST_AUTO_TEST_CASE(dirty_images_are_corrected_as_the_principal_solution) {
 
 BOOST_AUTO_TEST_CASE(pixels_below_the_limit_and_pixels_without_an_index_have_none) {
   const TemporaryFolder folder;
-  succeed(images(seen_through_dishes(), folder / "a", "3") + Arguments{"--pbcor", "--pblimit", "0.45"});
+  succeed(images(seen_through_dishes(), folder / "a", "3") + Arguments{"--pbcor", "--beam", beam_name, "--pblimit", "0.45"});
   const auto made = beam_products(3, true);
   const imager::Image beam = pixels_of(folder / "a", "pb.tt0"), apparent = pixels_of(folder / "a", "alpha");
   std::size_t without = 0;
@@ -177,7 +195,7 @@ BOOST_AUTO_TEST_CASE(files_are_those_that_are_asked_for_and_a_restart_makes_them
     for (const std::string& kind : all)
       BOOST_TEST(exists(name, kind) == (std::count(made.begin(), made.end(), kind) > 0), kind);
   };
-  succeed(images(seen_through_dishes(), name, "3") + Arguments{"--pbcor"});
+  succeed(images(seen_through_dishes(), name, "3") + Arguments{"--pbcor", "--beam", beam_name});
   check(all);
   succeed(images(seen_through_dishes(), name) + Arguments{"--pblimit", "0.3"});
   check(beam_products(2, false));
@@ -203,7 +221,7 @@ BOOST_AUTO_TEST_CASE(headers_plan_and_run_say_which_index_is_whose) {
   BOOST_TEST(has_card("alpha", "PBCOR ", "0. / the primary beam's spectrum is still in it"));
   BOOST_TEST(has_card("alpha", "ALPHALIM", "Jy/beam of .image.tt0"));
   BOOST_TEST(!has_card("image.tt0", "PBCOR ", ""));
-  outcome = run(images(seen_through_dishes(), folder / "a") + Arguments{"--pbcor"});
+  outcome = run(images(seen_through_dishes(), folder / "a") + Arguments{"--pbcor", "--beam", beam_name});
   BOOST_TEST(outcome.err.find(".alpha.pbcor is that of the sky") != std::string::npos, outcome.err);
   BOOST_TEST(has_card("alpha", "PBCOR ", "0. / the primary beam's spectrum is still in it"));
   BOOST_TEST(has_card("alpha.pbcor", "PBCOR ", "1. / the primary beam's spectrum is divided out"));

@@ -39,7 +39,7 @@ Vector vla_itrf_m(const Vector& east_north_up_m) {
 }
 
 AntennaArray vla(double arm_length_m) {
-  AntennaArray array{"EVLA", {}, {}, 25};
+  AntennaArray array{"EVLA", {}, {}, 25, vla_latitude_rad};
   for (const Arm& arm : vla_arms)
     for (int i = 1; i <= stations_per_arm; ++i) {
       const double r = arm_length_m * std::pow(double(i) / stations_per_arm, 1.716);
@@ -99,6 +99,12 @@ double greenwich_mean_sidereal_time_rad(double mjd_s) {
 double hour_angle_rad(const AntennaArray& array, const imager::SkyDirection& direction, double mjd_s) {
   const double angle = greenwich_mean_sidereal_time_rad(mjd_s) + longitude_rad(array) - direction.ra_rad;
   return std::remainder(angle, 2 * M_PI);
+}
+
+double parallactic_angle_rad(const AntennaArray& array, const LocalDirection& source) {
+  const double latitude = array.latitude_rad, dec = source.dec_rad, hour = source.hour_angle_rad;
+  return std::atan2(std::cos(latitude) * std::sin(hour),
+                    std::sin(latitude) * std::cos(dec) - std::cos(latitude) * std::sin(dec) * std::cos(hour));
 }
 
 double transit_mjd_s(const AntennaArray& array, const imager::SkyDirection& direction, double mjd_s) {

@@ -13,6 +13,7 @@ struct AntennaArray {
   std::vector<std::string> name;
   std::vector<std::array<double, 3>> itrf_m;
   double dish_diameter_m = 0;
+  double latitude_rad = 0;  ///< geodetic
 };
 
 /// A direction as the array sees it: local hour angle at the longitude of the array's mean position, and declination.
@@ -37,6 +38,9 @@ double greenwich_mean_sidereal_time_rad(double mjd_s);
 /// Local hour angle in [−π, π]. The direction is taken to be of date: J2000 positions are 0.014° a year off since 2000, so
 /// simulate near then when UVW should be those of the real sky.
 double hour_angle_rad(const AntennaArray& array, const imager::SkyDirection& direction, double mjd_s);
+
+/// The position angle of the zenith, from north through east, as seen from a direction: the parallactic angle.
+double parallactic_angle_rad(const AntennaArray& array, const LocalDirection& source);
 
 /// The transit of `direction` nearest to `mjd_s`.
 double transit_mjd_s(const AntennaArray& array, const imager::SkyDirection& direction, double mjd_s);

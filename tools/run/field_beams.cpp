@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 #include <optional>
 #include <stdexcept>
 
@@ -32,24 +33,27 @@ struct SeenCentre {
 
 /// By the pointing's rows. Throws imager::NoSimpleBeam.
 imager::PrimaryBeam beam_of(const ms_io::FieldPointing& pointing, const std::vector<imager::AntennaSort>& sorts,
-                            double frequency_hz, std::string& doubt) {
+                            const ApartOptions& o, std::string& doubt) {
+  std::map<std::uint8_t, imager::Pattern> patterns;  // of these rows' antennas alone: others may have none
   const auto dish = [&](std::uint8_t sort) {
-    const imager::DishModel model = imager::dish_model(sorts.at(sort));
-    if (!model.doubt.empty()) doubt = model.doubt;
-    return model.dish;
+    imager::Pattern& pattern = patterns[sort];
+    if (pattern) return pattern;
+    const imager::BeamModel model = o.beams.of(sorts.at(sort));
+    if (const std::string told = model.doubt_at(o.frequency_hz); !told.empty()) doubt = told;
+    return pattern = model.pattern;
   };
   std::vector<imager::BeamShare> shares;
   for (const ms_io::SortRows& some : pointing.rows)
-    shares.push_back({dish(some.pair.one), dish(some.pair.other), frequency_hz, static_cast<double>(some.rows)});
+    shares.push_back({dish(some.pair.one), dish(some.pair.other), o.frequency_hz, static_cast<double>(some.rows)});
   if (shares.empty()) throw imager::NoSimpleBeam("no row of two antennas is selected");
   return imager::PrimaryBeam(shares);
 }
 
-SeenCentre seen_centre(const ms_io::FieldPointing& pointing, const ms_io::BeamRows& rows, double frequency_hz,
+SeenCentre seen_centre(const ms_io::FieldPointing& pointing, const ms_io::BeamRows& rows, const ApartOptions& o,
                        const std::vector<ms_io::FieldPointing>& pointings) {
   SeenCentre seen{field_words(pointing, pointings), pointing.from_centre_rad};
   try {
-    const imager::PrimaryBeam beam = beam_of(pointing, rows.sorts, frequency_hz, seen.doubt);
+    const imager::PrimaryBeam beam = beam_of(pointing, rows.sorts, o, seen.doubt);
     const double sine = seen.from_centre_rad < imager::pi / 2 ? std::sin(seen.from_centre_rad) : 1;
     const bool behind = seen.from_centre_rad >= imager::pi / 2;
     seen.width_rad = beam.half_power_width_rad();
@@ -106,10 +110,10 @@ bool nearer(const ms_io::FieldPointing& a, const ms_io::FieldPointing& b) {
 
 /// That the image's centre lies beyond the first null of the only field, or of several that point alike; empty where it does
 /// not, or the beam is not known.
-std::string far_warning(const ms_io::FieldPointing& nearest, const ms_io::MeasurementSet& set, double frequency_hz) {
+std::string far_warning(const ms_io::FieldPointing& nearest, const ms_io::MeasurementSet& set, const ApartOptions& o) {
   // The smallest dish's null lies beyond its λ/D: nearer than that the antennas of all rows need not be read.
   const double least_rad =
-      nearest.smallest_dish_m > 0 ? imager::speed_of_light_m_s / frequency_hz / nearest.smallest_dish_m : 0;
+      nearest.smallest_dish_m > 0 ? imager::speed_of_light_m_s / o.frequency_hz / nearest.smallest_dish_m : 0;
   if (least_rad == 0 || nearest.from_centre_rad < least_rad) return "";
   ms_io::BeamRows rows;
   try {
@@ -118,10 +122,10 @@ std::string far_warning(const ms_io::FieldPointing& nearest, const ms_io::Measur
     return "";
   }
   const auto pointing = std::min_element(rows.pointings.begin(), rows.pointings.end(), nearer);
-  const SeenCentre seen = seen_centre(*pointing, rows, frequency_hz, rows.pointings);
+  const SeenCentre seen = seen_centre(*pointing, rows, o, rows.pointings);
   if (!seen.no_beam.empty() || !seen.beyond_null) return "";
   return "the image's centre lies beyond the first null of the beam: field " + described(seen) + " at " +
-         frequency_text(frequency_hz, 4) + doubts_of({seen}) + "; it may show noise alone";
+         frequency_text(o.frequency_hz, 4) + doubts_of({seen}) + "; it may show noise alone";
 }
 
 /// Names of those that do not see the centre.
@@ -161,12 +165,12 @@ struct ApartWords {
 };
 
 /// Lists what points apart. Throws std::runtime_error where some see nothing, unless `force`.
-FieldNotes notes_on_averaged(std::vector<SeenCentre> seen, const ApartWords& words, double frequency_hz, bool force) {
+FieldNotes notes_on_averaged(std::vector<SeenCentre> seen, const ApartWords& words, const ApartOptions& o) {
   std::stable_sort(seen.begin(), seen.end(),
                    [](const SeenCentre& a, const SeenCentre& b) { return a.from_centre_rad > b.from_centre_rad; });
-  const std::string beyond = names_beyond(seen), at = words.where + ", " + frequency_text(frequency_hz, 4) + ": ";
+  const std::string beyond = names_beyond(seen), at = words.where + ", " + frequency_text(o.frequency_hz, 4) + ": ";
   const std::string listed = at + described(seen, most_listed) + doubts_of(seen);
-  if (!beyond.empty() && !force)
+  if (!beyond.empty() && !o.force)
     throw std::runtime_error(words.what + " that point apart would be averaged into one image, but " + beyond +
                              " cannot see its centre, which lies beyond the first null of the beam. Each is dimmed at " +
                              listed + "; expected " + words.what + " that see it: " + words.remedy +
@@ -179,7 +183,7 @@ FieldNotes notes_on_averaged(std::vector<SeenCentre> seen, const ApartWords& wor
 }
 
 /// Notes on feeds, of which rows are read where FEED says that any points beside its dish's axis.
-FieldNotes notes_on_feeds_of(const ms_io::MeasurementSet& set, double frequency_hz, bool force) {
+FieldNotes notes_on_feeds_of(const ms_io::MeasurementSet& set, const ApartOptions& o) {
   ms_io::BeamRows rows;
   try {
     if (set.beam_offset_rad() == 0) return {};
@@ -187,7 +191,7 @@ FieldNotes notes_on_feeds_of(const ms_io::MeasurementSet& set, double frequency_
   } catch (const std::runtime_error&) {  // of FEED and the like, which images do not need
     return {};
   }
-  return notes_on_feeds(rows, frequency_hz, force);
+  return notes_on_feeds(rows, o);
 }
 
 }  // namespace
@@ -203,16 +207,15 @@ std::string field_words(const ms_io::FieldPointing& pointing, const std::vector<
   return pointing.field + (several_sets ? " of " + pointing.set : "");
 }
 
-FieldNotes notes_on_apart_fields(const ms_io::BeamRows& rows, double frequency_hz, bool force) {
+FieldNotes notes_on_apart_fields(const ms_io::BeamRows& rows, const ApartOptions& o) {
   const std::vector<ms_io::FieldPointing>& pointings = rows.pointings;
   std::vector<SeenCentre> fields;
-  for (const ms_io::FieldPointing& pointing : pointings) fields.push_back(seen_centre(pointing, rows, frequency_hz, pointings));
+  for (const ms_io::FieldPointing& pointing : pointings) fields.push_back(seen_centre(pointing, rows, o, pointings));
   if (largest_apart_rad(pointings) <= noticed_apart_rad(fields)) return {};
-  return notes_on_averaged(std::move(fields), {"fields", "the image's centre", "choose by --field or --vis"}, frequency_hz,
-                           force);
+  return notes_on_averaged(std::move(fields), {"fields", "the image's centre", "choose by --field or --vis"}, o);
 }
 
-FieldNotes notes_on_feeds(const ms_io::BeamRows& rows, double frequency_hz, bool force) {
+FieldNotes notes_on_feeds(const ms_io::BeamRows& rows, const ApartOptions& o) {
   ms_io::FieldPointing all{"", {}};  // with the rows of all fields
   for (const ms_io::FieldPointing& pointing : rows.pointings)
     all.rows.insert(all.rows.end(), pointing.rows.begin(), pointing.rows.end());
@@ -222,9 +225,9 @@ FieldNotes notes_on_feeds(const ms_io::BeamRows& rows, double frequency_hz, bool
   for (const ms_io::FeedOffset& feed : rows.feeds) {
     all.field = feed_words(feed, rows.feeds);
     all.from_centre_rad = std::max(0.0, feed.rad() - to_field_rad);  // at least, whichever way mounts turn it
-    const bool beyond_null = seen_centre(all, rows, frequency_hz, {}).beyond_null;
+    const bool beyond_null = seen_centre(all, rows, o, {}).beyond_null;
     all.from_centre_rad = feed.rad();
-    feeds.push_back(seen_centre(all, rows, frequency_hz, {}));
+    feeds.push_back(seen_centre(all, rows, o, {}));
     feeds.back().beyond_null = beyond_null;
     for (const ms_io::FeedOffset& other : rows.feeds)
       apart_rad = std::max(apart_rad, std::hypot(feed.x_rad - other.x_rad, feed.y_rad - other.y_rad));
@@ -232,11 +235,11 @@ FieldNotes notes_on_feeds(const ms_io::BeamRows& rows, double frequency_hz, bool
   if (feeds.empty() || apart_rad <= noticed_apart_rad(feeds)) return {};
   return notes_on_averaged(
       std::move(feeds),
-      {"feeds", "the field's direction", "split the rows of one feed, by FEED1 and FEED2, into a set of their own"},
-      frequency_hz, force);
+      {"feeds", "the field's direction", "split the rows of one feed, by FEED1 and FEED2, into a set of their own"}, o);
 }
 
-FieldNotes notes_on_fields(const ImageOptions& o, const ms_io::MeasurementSet& set, const imager::ImageGeometry& geometry) {
+FieldNotes notes_on_fields(const ImageOptions& options, const ms_io::MeasurementSet& set,
+                           const imager::ImageGeometry& geometry) {
   FieldNotes notes;
   std::vector<ms_io::FieldPointing> pointings;
   try {
@@ -246,19 +249,18 @@ FieldNotes notes_on_fields(const ImageOptions& o, const ms_io::MeasurementSet& s
     return notes;
   }
   if (pointings.empty()) return notes;
-  const double frequency_hz = set.observation().frequency_hz;
+  const ApartOptions o{set.observation().frequency_hz, options.force_average, DishBeams(options.primary_beam.beam)};
   const bool one = std::all_of(pointings.begin(), pointings.end(), [&](const auto& pointing) {
     return pointing.set == pointings.front().set && pointing.id == pointings.front().id;  // which may move
   });
-  if (!one && largest_apart_rad(pointings) > rounding_rad)
-    notes = notes_on_apart_fields(set.beam_rows(), frequency_hz, o.force_average);
+  if (!one && largest_apart_rad(pointings) > rounding_rad) notes = notes_on_apart_fields(set.beam_rows(), o);
   if (notes.warnings.empty()) {
     const auto nearest = std::min_element(pointings.begin(), pointings.end(), nearer);
-    std::string warning = far_warning(*nearest, set, frequency_hz);
-    if (warning.empty()) warning = pointing_warning(*nearest, geometry, frequency_hz);
+    std::string warning = far_warning(*nearest, set, o);
+    if (warning.empty()) warning = pointing_warning(*nearest, geometry, o.frequency_hz);
     if (!warning.empty()) notes.warnings.push_back(std::move(warning));
   }
-  const FieldNotes feeds = notes_on_feeds_of(set, frequency_hz, o.force_average);
+  const FieldNotes feeds = notes_on_feeds_of(set, o);
   notes.decisions.insert(notes.decisions.end(), feeds.decisions.begin(), feeds.decisions.end());
   notes.warnings.insert(notes.warnings.end(), feeds.warnings.begin(), feeds.warnings.end());
   return notes;

@@ -6,6 +6,7 @@
 #include "imager/data/geometry.h"
 #include "imager/plan/plan.h"
 #include "ms_io/measurement_set.h"
+#include "tools/run/dish_beams.h"
 #include "tools/run/image_options.h"
 
 namespace misfit::tools {
@@ -26,16 +27,23 @@ struct FieldNotes {
   std::vector<std::string> warnings;
 };
 
-/// Lists fields that point apart, at a frequency: each field's distance from the image's centre and
+/// How they are looked at.
+struct ApartOptions {
+  double frequency_hz = 0;
+  bool force = false;    ///< take those that do not see the image, too
+  DishBeams beams = {};  ///< of their antennas
+};
+
+/// Lists fields that point apart: each field's distance from the image's centre and
 /// its beam there, that of PrimaryBeamStage for the field's own rows; the distance alone where its antennas have no simple
 /// beam. Throws std::runtime_error that names the fields of which the centre lies beyond the first null, of all their dishes,
-/// unless `force`: they dim whatever others see.
-FieldNotes notes_on_apart_fields(const ms_io::BeamRows& rows, double frequency_hz, bool force);
+/// unless forced: they dim whatever others see.
+FieldNotes notes_on_apart_fields(const ms_io::BeamRows& rows, const ApartOptions& options);
 
 /// The same of feeds in use whose BEAM_OFFSETs differ, as much as pointings of fields may not: each with its distance from the
 /// axis of its dish and its beam at the field's direction. Those count as not seeing the image that do not whichever way mounts
 /// turn them.
-FieldNotes notes_on_feeds(const ms_io::BeamRows& rows, double frequency_hz, bool force);
+FieldNotes notes_on_feeds(const ms_io::BeamRows& rows, const ApartOptions& options);
 
 /// Notes on the fields of a run: those that point apart, and feeds that do; where they point alike, that the antennas hardly
 /// see the image, if so; or that FIELD or ANTENNA does not say where they pointed. Throws what notes_on_apart_fields() does

@@ -138,7 +138,8 @@ class ImageRun : private ChannelSink {
   }
 
   void find_primary_beam() {
-    BeamScene scene{set_->beam_rows(), header_.geometry, set_->observation().frequency_hz};
+    BeamScene scene{set_->beam_rows(), header_.geometry, set_->observation().frequency_hz,
+                    [this] { return set_->zenith_turns(); }};
     try {
       primary_beam_ = std::make_unique<PrimaryBeamStage>(o_.primary_beam, std::move(scene),
                                                          std::max(1, threads_ / sharing_.channels_here(channels())));

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <string>
+
 namespace CLI {
 class App;
 }
@@ -10,12 +12,13 @@ namespace misfit::tools {
 struct TypedPrimaryBeam {
   bool pbcor = false;
   double pblimit = 0;        ///< 0: not given; below 0 other images than .pb and .image.pbcor are not masked
+  std::string beam{};        ///< see DishBeams; empty: those of the antennas
   double pbmask = 0;         ///< CLEAN keeps to where the beam is at least so; 0 = it does not
   bool where_known = false;  ///< .pb is wanted, but only where antennas have a simple beam: that of --products
 
   bool wanted() const { return where_known || required(); }
-  /// Whether a run without it is of no use: with --pbcor or --pbmask, or --pblimit alone.
-  bool required() const { return pbcor || pbmask > 0 || (pblimit != 0 && !where_known); }
+  /// Whether a run without it is of no use: with --pbcor, --pbmask or --beam, or --pblimit alone.
+  bool required() const { return pbcor || pbmask > 0 || !beam.empty() || (pblimit != 0 && !where_known); }
   /// Whether masks say where other images lie below the limit.
   bool masks_others() const { return wanted() && pblimit > 0; }
   /// The value below which images have no values.

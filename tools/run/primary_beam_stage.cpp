@@ -4,11 +4,15 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "imager/numerics/constants.h"
 #include "tools/base/numbers.h"
+#include "tools/run/dish_beams.h"
 #include "tools/run/field_beams.h"
 
 namespace misfit::tools {
 namespace {
+
+constexpr std::uint32_t degrees = 360;
 
 double apart_rad(imager::DirectionCosines a, imager::DirectionCosines b) {
   const double chord = std::hypot(a.l - b.l, a.m - b.m, imager::n_minus_1(a) - imager::n_minus_1(b));
@@ -30,13 +34,16 @@ PrimaryBeamStage::PrimaryBeamStage(const TypedPrimaryBeam& o, BeamScene scene, i
   view_.limit = o.limit();
   view_.threads = threads;
   if (scene_.rows.sorts.empty()) throw NoPrimaryBeam("no row of two antennas is selected, and a primary beam needs one");
+  const DishBeams beams(o.beam);
   for (const imager::AntennaSort& sort : scene_.rows.sorts) {
     try {
-      models_.push_back(imager::dish_model(sort));
+      models_.push_back(beams.of(sort));
     } catch (const imager::NoSimpleBeam& error) {
       throw NoPrimaryBeam(error.what());
     }
   }
+  const bool round = std::all_of(models_.begin(), models_.end(), [](const auto& model) { return model.pattern->is_round(); });
+  if (!round && scene_.zenith_turns) turn_rad_ = scene_.zenith_turns();
   find_pointing();
 }
 
@@ -63,20 +70,30 @@ void PrimaryBeamStage::find_pointing() {
                         " beside the field's direction; expected beams on the axis of their dishes");
 }
 
+std::uint32_t PrimaryBeamStage::kinds() const {
+  const auto sorts = static_cast<std::uint32_t>(models_.size());
+  return sorts * sorts * (turn_rad_.empty() ? 1 : degrees);
+}
+
 std::uint32_t PrimaryBeamStage::kind_of(std::uint64_t row) const {
-  const ms_io::SortPair& pair = scene_.rows.pairs[row];
-  return static_cast<std::uint32_t>(pair.one) * static_cast<std::uint32_t>(models_.size()) + pair.other;
+  const ms_io::SortPair pair = scene_.rows.pairs.empty() ? ms_io::SortPair{} : scene_.rows.pairs[row];
+  const auto of_pair = static_cast<std::uint32_t>(pair.one) * static_cast<std::uint32_t>(models_.size()) + pair.other;
+  if (turn_rad_.empty()) return of_pair;
+  const long turn = std::lround(turn_rad_[row] * degrees / (2 * imager::pi));
+  return of_pair * degrees + static_cast<std::uint32_t>((turn + degrees) % degrees);
 }
 
 imager::BeamShare PrimaryBeamStage::beam_share(std::uint32_t kind, double frequency_hz, double weight) const {
   const auto sorts = static_cast<std::uint32_t>(models_.size());
-  return {models_[kind / sorts].dish, models_[kind % sorts].dish, frequency_hz, weight};
+  const std::uint32_t pair = turn_rad_.empty() ? kind : kind / degrees;
+  const double turn_rad = turn_rad_.empty() ? 0 : (kind % degrees) * 2 * imager::pi / degrees;
+  return {models_[pair / sorts].pattern, models_[pair % sorts].pattern, frequency_hz, weight, turn_rad};
 }
 
 imager::PrimaryBeam PrimaryBeamStage::nominal_beam(double frequency_hz) const {
-  std::vector<double> rows(models_.size() * models_.size());  // [kind]
-  for (std::uint64_t row = 0; row < scene_.rows.pairs.size(); ++row) ++rows[kind_of(row)];
-  if (scene_.rows.pairs.empty()) rows[0] = 1;
+  std::vector<double> rows(kinds());  // [kind]
+  for (std::uint64_t row = 0; row < std::max(scene_.rows.pairs.size(), turn_rad_.size()); ++row) ++rows[kind_of(row)];
+  if (std::all_of(rows.begin(), rows.end(), [](double count) { return count == 0; })) rows[0] = 1;
   std::vector<imager::BeamShare> shares;
   for (std::uint32_t kind = 0; kind < rows.size(); ++kind) shares.push_back(beam_share(kind, frequency_hz, rows[kind]));
   return imager::PrimaryBeam(shares);
@@ -84,26 +101,28 @@ imager::PrimaryBeam PrimaryBeamStage::nominal_beam(double frequency_hz) const {
 
 imager::Decision PrimaryBeamStage::decision() const {
   std::string because;
-  for (const imager::DishModel& model : models_) because += (because.empty() ? "" : "; ") + model.because;
+  for (const imager::BeamModel& model : models_)
+    if (because.find(model.because) == std::string::npos) because += (because.empty() ? "" : "; ") + model.because;
   const double away_rad = apart_rad(view_.pointing, {});
   if (away_rad > 0) because += "; its axis is " + angle_text(away_rad, 3) + " from the phase centre";
   return {"primary beam",
-          "Airy disc, " + angle_text(width_rad_, 4) + " wide at half power at " + significant(scene_.frequency_hz / 1e9, 6) +
+          angle_text(width_rad_, 4) + " wide at half power at " + significant(scene_.frequency_hz / 1e9, 6) +
               " GHz, where it is " + significant(view_.limit, 3) + " or more",
           because};
 }
 
 std::vector<std::string> PrimaryBeamStage::doubts() const {
   std::vector<std::string> doubts;
-  for (const imager::DishModel& model : models_)
-    if (!model.doubt.empty() && std::find(doubts.begin(), doubts.end(), model.doubt) == doubts.end())
-      doubts.push_back(model.doubt);
+  for (const imager::BeamModel& model : models_) {
+    const std::string doubt = model.doubt_at(scene_.frequency_hz);
+    if (!doubt.empty() && std::find(doubts.begin(), doubts.end(), doubt) == doubts.end()) doubts.push_back(doubt);
+  }
   return doubts;
 }
 
 void PrimaryBeamStage::weigh(const imager::VisibilitySource& source) {
   imager::ShareOptions options{scene_.geometry.cell_rad, {}, view_.threads};
-  if (models_.size() > 1) options.kind_of = [this](std::uint64_t row) { return kind_of(row); };
+  if (kinds() > 1) options.kind_of = [this](std::uint64_t row) { return kind_of(row); };
   shares_ = imager::weight_shares(source, options);
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -24,6 +25,8 @@ struct BeamScene {
   ms_io::BeamRows rows;
   imager::ImageGeometry geometry;
   double frequency_hz = 0;  ///< middle of the band, for what is told before weights are known
+  /// Where the zenith was for each row, see MeasurementSet::zenith_turns(); called where beams are not round.
+  std::function<std::vector<float>()> zenith_turns = {};
 };
 
 /// The primary beam of a run, from what its sets tell about antennas to images of it. Its stage is timed as "primary beam" by
@@ -61,12 +64,15 @@ class PrimaryBeamStage {
   std::vector<imager::BeamShare> beam_shares() const;
   imager::BeamShare beam_share(std::uint32_t kind, double frequency_hz, double weight) const;
   imager::Image image_of(const imager::PrimaryBeam& beam) const;
+  std::uint32_t kinds() const;
+  /// Of its pair of dishes, and to a degree of its turn.
   std::uint32_t kind_of(std::uint64_t row) const;
   void find_pointing();
 
   BeamScene scene_;
   imager::BeamOnImage view_;
-  std::vector<imager::DishModel> models_;  ///< [sort of antennas]
+  std::vector<imager::BeamModel> models_;  ///< [sort of antennas]
+  std::vector<float> turn_rad_;            ///< [row], of the zenith; empty where all beams are round
   double width_rad_ = 0;                   ///< between half-power points of the nominal beam
   std::vector<imager::WeightShare> shares_;
 };

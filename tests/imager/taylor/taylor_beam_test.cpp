@@ -6,6 +6,7 @@
 #include <cmath>
 #include <functional>
 
+#include "imager/beams/airy_pattern.h"
 #include "imager/numerics/constants.h"
 
 BOOST_AUTO_TEST_SUITE(taylor_beam)
@@ -16,7 +17,7 @@ using namespace misfit::imager;
 namespace {
 
 constexpr double reference_hz = 1.5e9;
-const Dish plain{25, 0}, blocked{25, 2.36}, small{12, 0.75};
+const Pattern plain = airy_pattern({25, 0}), blocked = airy_pattern({25, 2.36}), small = airy_pattern({12, 0.75});
 
 /// 32 channels of weights that differ, over `fraction` of the reference frequency about it, of two sorts of dishes by turns
 /// where they are mixed.

@@ -3,6 +3,7 @@
 #include <boost/test/data/test_case.hpp>
 #include <cmath>
 
+#include "imager/beams/airy_pattern.h"
 #include "imager/beams/primary_beam.h"
 #include "imager/beams/telescopes.h"
 #include "imager/numerics/constants.h"
@@ -38,7 +39,7 @@ ms_io::BeamRows fields(const std::vector<imager::AntennaSort>& sorts, const std:
 
 std::string refusal(const ms_io::BeamRows& rows) {
   try {
-    tools::notes_on_apart_fields(rows, hz, false);
+    tools::notes_on_apart_fields(rows, {hz, false});
   } catch (const std::runtime_error& error) {
     return error.what();
   }
@@ -98,14 +99,13 @@ const std::vector<imager::AntennaSort> dishes{
 /// Inside half power, between that and the null, and beyond it: in parts of the null's angle.
 BOOST_DATA_TEST_CASE(fields_are_listed_with_distance_and_dimming_up_to_the_null_and_refused_beyond,
                      bdata::xrange(dishes.size()) * bdata::make({0.05, 0.3, 0.6, 0.99, 1.01, 1.5, 7.0}), which, nulls) {
-  const imager::Dish dish = imager::dish_model(dishes[which]).dish;
-  const double wavelength_m = imager::speed_of_light_m_s / hz;
-  const double away_rad = nulls * std::asin(imager::first_null_per_m(dish) * wavelength_m);
+  const imager::Pattern pattern = imager::beam_model(dishes[which]).pattern;
+  const double away_rad = nulls * std::asin(pattern->main_lobe_sine(hz));
   const ms_io::BeamRows rows = fields({dishes[which]}, {field_at("0 (M51)", 0), field_at("1 (M51b)", away_rad)});
-  const double voltage = imager::voltage_pattern(dish, std::sin(away_rad) / wavelength_m);
+  const double voltage = pattern->voltage(std::sin(away_rad), hz);
   const std::string listed = "1 (M51b), " + tools::angle_text(away_rad, 3) + " away (",
                     dimming = "to " + tools::significant(voltage * voltage, 3);
-  const FieldNotes forced = tools::notes_on_apart_fields(rows, hz, true);
+  const FieldNotes forced = tools::notes_on_apart_fields(rows, {hz, true});
   BOOST_REQUIRE_EQUAL(forced.warnings.size(), 1U);
   BOOST_REQUIRE_EQUAL(forced.decisions.size(), 1U);
   for (const std::string& text : {forced.warnings[0], forced.decisions[0].because}) {
@@ -123,27 +123,26 @@ BOOST_DATA_TEST_CASE(fields_are_listed_with_distance_and_dimming_up_to_the_null_
 BOOST_DATA_TEST_CASE(feeds_are_listed_with_their_offsets_and_refused_where_no_turn_of_a_mount_brings_one_to_the_centre,
                      bdata::make({0.05, 0.6, 0.99, 1.01, 3.0}) * bdata::make({0.0, 0.2}) * bdata::make({0.0, 1.0, 2.5}), nulls,
                      field_nulls, turn_rad) {
-  const double wavelength_m = imager::speed_of_light_m_s / hz;
-  const imager::Dish dish = imager::dish_model(dishes[0]).dish;
-  const double null_rad = std::asin(imager::first_null_per_m(dish) * wavelength_m);
+  const imager::Pattern pattern = imager::beam_model(dishes[0]).pattern;
+  const double null_rad = std::asin(pattern->main_lobe_sine(hz));
   const double offset_rad = nulls * null_rad;
   ms_io::BeamRows rows = fields({dishes[0]}, {field_at("0 (M51)", field_nulls * null_rad)});
   rows.feeds = {{0, 0, 0}, {1, offset_rad * std::cos(turn_rad), offset_rad * std::sin(turn_rad)}};
-  const FieldNotes forced = tools::notes_on_feeds(rows, hz, true);
+  const FieldNotes forced = tools::notes_on_feeds(rows, {hz, true});
   BOOST_REQUIRE_EQUAL(forced.warnings.size(), 1U);
-  const double voltage = imager::voltage_pattern(dish, std::sin(offset_rad) / wavelength_m);
+  const double voltage = pattern->voltage(std::sin(offset_rad), hz);
   BOOST_TEST(has(forced.warnings[0], "feed 1, " + tools::angle_text(offset_rad, 3) + " away"), forced.warnings[0]);
   BOOST_TEST(has(forced.warnings[0], "to " + tools::significant(voltage * voltage, 3)), forced.warnings[0]);
   BOOST_TEST(has(forced.warnings[0], "feed 0, at it, to 1"), forced.warnings[0]);
   const bool sees = nulls - field_nulls < 1;
   if (sees)
-    BOOST_TEST(tools::notes_on_feeds(rows, hz, false).warnings == forced.warnings);
+    BOOST_TEST(tools::notes_on_feeds(rows, {hz, false}).warnings == forced.warnings);
   else
-    BOOST_CHECK_THROW(tools::notes_on_feeds(rows, hz, false), std::runtime_error);
+    BOOST_CHECK_THROW(tools::notes_on_feeds(rows, {hz, false}), std::runtime_error);
   for (ms_io::FeedOffset& feed : rows.feeds) feed.x_rad += 0.1 * null_rad;  // both alike
   rows.feeds[1] = rows.feeds[0];
   rows.feeds[1].y_rad += 0.9 * tools::same_pointing_beams * 31 * arcmin;
-  BOOST_TEST(tools::notes_on_feeds(rows, hz, false).warnings.empty());
+  BOOST_TEST(tools::notes_on_feeds(rows, {hz, false}).warnings.empty());
 }
 
 BOOST_AUTO_TEST_CASE(feeds_of_a_set_that_are_averaged_are_told_of_or_refused) {
@@ -166,7 +165,7 @@ BOOST_AUTO_TEST_CASE(fields_that_point_alike_are_as_one_wherever_they_point) {
     // A thousandth of a beam of 31′ is 1.9″.
     const ms_io::BeamRows rows =
         fields({dishes[0]}, {field_at("0 (M51)", away_rad), field_at("1 (M51)", away_rad + 1.5 * arcmin / 60)});
-    const FieldNotes notes = tools::notes_on_apart_fields(rows, hz, false);
+    const FieldNotes notes = tools::notes_on_apart_fields(rows, {hz, false});
     BOOST_TEST(notes.warnings.empty());
     BOOST_TEST(notes.decisions.empty());
   }
@@ -183,17 +182,17 @@ BOOST_AUTO_TEST_CASE(each_field_has_the_beam_of_its_own_dishes_and_the_null_of_t
   BOOST_TEST(refusal(rows({{{1, 1}, 9}})) == "");
   BOOST_TEST(refusal(rows({{{0, 0}, 9}, {{0, 1}, 5}})) == "");  // the small ones may see something
   const auto voltage = [&](double diameter_m) {
-    return imager::voltage_pattern({diameter_m, 0.75}, std::sin(away_rad) * hz / imager::speed_of_light_m_s);
+    return imager::airy_voltage({diameter_m, 0.75}, std::sin(away_rad) * hz / imager::speed_of_light_m_s);
   };
   const double mean = (9 * voltage(10.7) * voltage(10.7) + 5 * voltage(10.7) * voltage(6.25)) / 14;
-  const std::string warning = tools::notes_on_apart_fields(rows({{{0, 0}, 9}, {{0, 1}, 5}}), hz, false).warnings.at(0);
+  const std::string warning = tools::notes_on_apart_fields(rows({{{0, 0}, 9}, {{0, 1}, 5}}), {hz, false}).warnings.at(0);
   BOOST_TEST(has(warning, "to " + tools::significant(mean, 3)), warning);
 }
 
 BOOST_AUTO_TEST_CASE(where_beams_are_not_known_angles_stand) {
   const ms_io::BeamRows rows = fields({{"LOFAR", 31, "CS001"}, dishes[0]},
                                       {field_at("0 (A)", 0), field_at("1 (B)", 4 * degree), field_at("2 (C)", 10 * arcmin, 1)});
-  const std::string warning = tools::notes_on_apart_fields(rows, hz, false).warnings.at(0);
+  const std::string warning = tools::notes_on_apart_fields(rows, {hz, false}).warnings.at(0);
   BOOST_TEST(has(warning, "1 (B), 4 deg away; 2 (C), 10 arcmin away ("), warning);
   BOOST_TEST(has(warning, "LOFAR has no simple primary beam"), warning);
   ms_io::BeamRows beyond = rows;
@@ -204,7 +203,7 @@ BOOST_AUTO_TEST_CASE(where_beams_are_not_known_angles_stand) {
 BOOST_AUTO_TEST_CASE(of_many_fields_the_farthest_are_named_and_the_plan_has_all) {
   std::vector<ms_io::FieldPointing> many;
   for (int i = 0; i < 30; ++i) many.push_back(field_at(std::to_string(i) + " (F)", i * 0.5 * arcmin));
-  const FieldNotes notes = tools::notes_on_apart_fields(fields({dishes[0]}, many), hz, false);
+  const FieldNotes notes = tools::notes_on_apart_fields(fields({dishes[0]}, many), {hz, false});
   for (int i = 0; i < 30; ++i) {
     const std::string name = std::to_string(i) + " (F), ";
     BOOST_TEST(has(notes.decisions.at(0).because, name));

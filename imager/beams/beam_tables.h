@@ -1,0 +1,38 @@
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <optional>
+#include <vector>
+
+#include "imager/beams/polar_table.h"
+#include "imager/beams/primary_beam.h"
+#include "imager/beams/radial_function.h"
+
+namespace misfit::imager {
+
+/// A primary beam around its axis, Σ w f(ν) Vₒₙₑ Vₒₜₕₑᵣ for each of some factors f, as tables that images are drawn from.
+class BeamTables {
+ public:
+  using Factor = std::function<double(double frequency_hz)>;
+  /// What is made of the values for all factors; 1 on the axis, or about so.
+  using Level = std::function<double(const double* value)>;
+  using Visit = std::function<void(std::size_t pixel, const double* value)>;
+
+  /// As far from the axis as `level` has not fallen to `limit`; of patterns that are not round also no farther than they are
+  /// known.
+  BeamTables(const PrimaryBeam& beam, const std::vector<Factor>& factors, double limit, const Level& level, int threads);
+
+  /// Calls visit(pixel, value [factor]) for all pixels of an image within. Several threads do.
+  void for_each_pixel(DirectionCosines axis, const ImageGeometry& geometry, int threads, const Visit& visit) const;
+
+ private:
+  void make_round(const PrimaryBeam& beam, const std::vector<Factor>& factors, double limit, const Level& level, int threads);
+  void make_turned(const PrimaryBeam& beam, const std::vector<Factor>& factors, double limit, const Level& level, int threads);
+
+  std::vector<RadialTable> radial_;  ///< [factor], of round beams
+  std::vector<PolarTable> polar_;    ///< [factor], of others
+  std::optional<LobeEdge> edge_;     ///< of others
+};
+
+}  // namespace misfit::imager

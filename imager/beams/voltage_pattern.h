@@ -1,0 +1,40 @@
+#pragma once
+
+#include <memory>
+#include <string>
+
+namespace misfit::imager {
+
+/// The voltage that a sort of dishes gives of a source off axis, over that of the same source on axis: signed, 1 on the axis.
+/// What a pair of dishes sees is the product of their two.
+class VoltagePattern {
+ public:
+  virtual ~VoltagePattern() = default;
+
+  /// At an angle θ ≤ 90° from the axis, of which `sine` is sin θ. Of a pattern that is not round, the root of its mean power
+  /// at this θ.
+  virtual double voltage(double sine, double frequency_hz) const = 0;
+  /// Whether it is the same at all position angles.
+  virtual bool is_round() const { return true; }
+  /// At a position angle in the dish's own frame: from where the zenith is to where east is when the zenith is north.
+  virtual double voltage_at(double sine, double /*angle_rad*/, double frequency_hz) const {
+    return voltage(sine, frequency_hz);
+  }
+  /// sin θ of where the main lobe ends: the first null; or as far as a formula holds that has none, beyond which the voltage
+  /// is 0. 1 where it reaches the horizon.
+  virtual double main_lobe_sine(double frequency_hz) const = 0;
+  /// sin θ as small as the pattern's finest details, λ/D of an aperture of diameter D.
+  virtual double detail_sine(double frequency_hz) const = 0;
+  /// A sentence where it may be wrong by more than a few percent at half power at this frequency; else empty.
+  virtual std::string doubt(double frequency_hz) const;
+};
+
+/// Sorts of dishes whose patterns are one object are alike.
+using Pattern = std::shared_ptr<const VoltagePattern>;
+
+/// θ in arcmin times the frequency in GHz, in which beams are tabulated.
+double arcmin_ghz(double sine, double frequency_hz);
+/// sin θ of such a product; 1 where θ is 90° or more.
+double sine_of_arcmin_ghz(double product, double frequency_hz);
+
+}  // namespace misfit::imager

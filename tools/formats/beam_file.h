@@ -1,0 +1,19 @@
+#pragma once
+
+#include <string>
+
+#include "imager/beams/voltage_pattern.h"
+
+namespace misfit::tools {
+
+/// What a beam's pixels are.
+enum class BeamPixels { power, voltage };
+
+/// Reads a beam from a FITS image, or a cube whose third or fourth axis is the frequency: its pixels are a power or a voltage,
+/// 1 on the axis, at the axes' reference pixel. The first two axes are angles in deg, arcmin, arcsec or rad, or direction
+/// cosines (SIN, or no unit); the first counts to the east where the zenith is north, or to the west where its CDELT is below
+/// 0. An image of one plane states its frequency on an axis or by RESTFRQ. Throws std::runtime_error that names the file, the
+/// card and what was expected.
+imager::Pattern read_beam_file(const std::string& path, BeamPixels pixels);
+
+}  // namespace misfit::tools
