@@ -25,7 +25,7 @@ struct CleanOptions {
   double gain = 0.1;        ///< part of a peak that a component takes
   double threshold_jy = 0;  ///< stop when the peak residual exceeds it by threshold_tolerance at most
   /// Stop when it is not above this many times the robust noise. Minor cycles without a mask, even one that allows all pixels,
-  /// go as deep as the noise of what they leave lets them.
+  /// go on where the noise falls as sources go: to this many times the noise of what they leave, and to five times at least.
   double nsigma = 0;
   /// A minor cycle goes down to the peak × largest sidelobe × cycle factor, that fraction of the peak clamped to [min, max];
   /// but not below the threshold, or 5 % below it where the cycle before went down to it. While components are trusted it goes

@@ -21,13 +21,13 @@ struct MinorCycleOptions {
   double gain = 0.1;  ///< part of a peak that a component takes
   int max_iterations = 0;
   double threshold_jy = 0;  ///< in Jy/beam; ends when no pixel that may be cleaned exceeds it in magnitude
-  /// It goes no deeper than this many times the robust noise of the residual either: of what is left, as sources go; of what
-  /// it began with where there is a mask.
+  /// It goes no deeper than this many times the robust noise of the residual that it begins with; or, without a mask, than so
+  /// many times the noise of what is left as sources go, and five times at least: what is fainter may be that noise.
   double nsigma = 0;
   double noise_jy = 0;  ///< of the residual that it begins with
   /// It ends when no pixel exceeds what doubtful sidelobes of all that it found may leave. But down to `sure_jy` it goes in any
   /// case.
-  DoubtfulSidelobes doubtful;
+  DoubtfulSidelobes doubtful{};
   double sure_jy = 0;           ///< in Jy/beam; 0 = down to the threshold, whatever the doubt
   const Image* mask = nullptr;  ///< where components may lie, see mask.h; null = everywhere
   /// Whether pixels that were faint are looked at in the end, if by nine standard deviations sidelobes of all that was found
@@ -114,16 +114,16 @@ class MinorCycleWatch {
     return std::max(least_depth_jy(), std::min(options_.sure_jy, left_jy));
   }
   /// The depth that neither threshold nor noise let it pass.
-  double least_depth_jy() const { return std::max(options_.threshold_jy, options_.nsigma * noise_jy_); }
+  double least_depth_jy() const { return std::max(options_.threshold_jy, noise_depth_jy()); }
   /// True where less noise would let it go deeper than now.
-  bool follows_noise() const { return options_.mask == nullptr && options_.nsigma * noise_jy_ > options_.threshold_jy; }
+  bool follows_noise() const { return options_.mask == nullptr && noise_depth_jy() > options_.threshold_jy; }
   /// True where it has come to the depth that the noise sets, and there may be less noise by now.
-  bool may_go_deeper() const { return noise_falls_ && follows_noise() && depth_jy() == options_.nsigma * noise_jy_; }
+  bool may_go_deeper() const { return noise_falls_ && follows_noise() && depth_jy() == noise_depth_jy(); }
   double noise_jy() const { return noise_jy_; }
   /// True where pixels that were faint are to be looked at in the end.
   bool is_to_the_last() const {
     const double depth = depth_jy();
-    return depth == options_.threshold_jy ? options_.to_the_last : depth == options_.nsigma * noise_jy_;
+    return depth == options_.threshold_jy ? options_.to_the_last : depth == noise_depth_jy();
   }
   /// Whether no further component is to be taken now that the brightest pixel has this magnitude; if so, `report` says why.
   bool ends(double peak_jy, MinorCycleReport& report) const;
@@ -131,6 +131,11 @@ class MinorCycleWatch {
   bool is_at_limit(MinorCycleReport& report) const;
 
  private:
+  double noise_depth_jy() const {
+    constexpr double surely_sources = 5;  // deviations
+    return std::min(options_.nsigma * options_.noise_jy, std::max(options_.nsigma, surely_sources) * noise_jy_);
+  }
+
   const MinorCycleOptions& options_;
   FoundFlux found_;
   double first_peak_jy_;
