@@ -46,7 +46,7 @@ class Zenith {
   imager::SkyDirection at(double time_s, const std::string& frame) const {
     const casacore::MeasFrame here(casacore::MEpoch(casacore::Quantity(time_s, "s"), clock_), place_);
     const MDirection overhead(casacore::Quantity(0, "deg"), casacore::Quantity(90, "deg"),
-                              MDirection::Ref(MDirection::AZEL, here));
+                              MDirection::Ref(MDirection::AZELGEO, here));
     return sky_direction(MDirection::Convert(overhead, MDirection::Ref(direction_type(frame), here))());
   }
 

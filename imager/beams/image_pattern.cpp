@@ -70,6 +70,14 @@ class ImagePattern : public VoltagePattern {
     const double edge = edge_ * lowest_hz / frequency_hz;
     return grid_.of_sines ? std::min(1.0, edge) : std::sin(std::min(pi / 2, edge));
   }
+  std::string doubt(double frequency_hz) const override {
+    constexpr double near = 1.1;
+    const double low_hz = grid_.planes.front().frequency_hz, high_hz = grid_.planes.back().frequency_hz;
+    if (frequency_hz * near >= low_hz && frequency_hz <= near * high_hz) return "";
+    const auto mhz = [](double hz) { return std::to_string(std::lround(hz / 1e6)); };
+    return "the beam that is given is of " + mhz(low_hz) + (high_hz > low_hz ? " to " + mhz(high_hz) : "") + " MHz: at " +
+           mhz(frequency_hz) + " MHz it is taken to scale with frequency";
+  }
   double detail_sine(double frequency_hz) const override { return main_lobe_sine(frequency_hz) / 16; }
 
  private:

@@ -21,8 +21,8 @@ int turned(int angle) {
 }  // namespace
 
 PolarTable::PolarTable(double reach, int threads, const PolarFunction& function)
-    : reach_(reach), value_(static_cast<std::size_t>(radii + 2) * angles) {
-  parallel_for(static_cast<std::size_t>(radii + 2), threads, [&](std::size_t radius) {
+    : reach_(reach), value_((std::size_t{radii} + 2) * angles) {
+  parallel_for(std::size_t{radii} + 2, threads, [&](std::size_t radius) {
     for (int a = 0; a < angles; ++a)
       value_[radius * angles + static_cast<std::size_t>(a)] =
           function(std::min(1.0, static_cast<double>(radius) * reach / radii), a * angle_step);

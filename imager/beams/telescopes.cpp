@@ -1,5 +1,6 @@
 #include "imager/beams/telescopes.h"
 
+#include <algorithm>
 #include <cctype>
 #include <cmath>
 #include <optional>
@@ -45,8 +46,8 @@ const std::vector<KnownBeam>& known_beams() {
         {"JVLA", 25, of_vla, vla},
         {"ALMA", 12, of_12_m, alma_12_m},
         {"ALMA", 7, of_7_m, alma_7_m},
-        {"ACA", 12, of_12_m, alma_12_m},
         {"ACA", 7, of_7_m, alma_7_m},
+        {"ACA", 12, of_12_m, alma_12_m},
         {"GMRT", 45, of_gmrt, gmrt},
         {"UGMRT", 45, of_gmrt, gmrt},
         {"ATCA", 22, polynomial_pattern(atca_beams()),
@@ -137,14 +138,13 @@ std::optional<Dish> named_dish(const std::string& name) {
   return is_read && dish.blockage_m >= 0 && dish.blockage_m < dish.diameter_m ? std::optional(dish) : std::nullopt;
 }
 
-/// The sort of a telescope whose diameter is nearest; null where it is not known.
-const KnownBeam* nearest_sort(const std::string& telescope, double diameter_m) {
-  const KnownBeam* nearest = nullptr;
-  for (const KnownBeam& known : known_beams())
-    if (telescope == known.telescope &&
-        (nearest == nullptr || std::abs(known.diameter_m - diameter_m) < std::abs(nearest->diameter_m - diameter_m)))
-      nearest = &known;
-  return nearest;
+/// The sort of a telescope that has this diameter, or its first; null where it is not known.
+const KnownBeam* named_sort(const std::string& telescope, double diameter_m) {
+  if (const KnownBeam* alike = find_beam(telescope, diameter_m)) return alike;
+  const auto& beams = known_beams();
+  const auto first =
+      std::find_if(beams.begin(), beams.end(), [&](const KnownBeam& known) { return telescope == known.telescope; });
+  return first == beams.end() ? nullptr : &*first;
 }
 
 }  // namespace
@@ -165,7 +165,7 @@ BeamModel beam_model(const AntennaSort& antennas) {
 
 BeamModel named_beam(const std::string& name, const AntennaSort& antennas) {
   const std::string asked = "--beam " + name + ": ";
-  if (const KnownBeam* known = nearest_sort(bare(name), antennas.diameter_m))
+  if (const KnownBeam* known = named_sort(bare(name), antennas.diameter_m))
     return {known->pattern, asked + known->source, known->doubt};
   if (name == "airy") {
     const double own_m = own_diameter_m(antennas);
@@ -177,7 +177,7 @@ BeamModel named_beam(const std::string& name, const AntennaSort& antennas) {
 }
 
 bool is_beam_name(const std::string& name) {
-  return name == "airy" || named_dish(name) || nearest_sort(bare(name), 0) != nullptr;
+  return name == "airy" || named_dish(name) || named_sort(bare(name), 0) != nullptr;
 }
 
 std::string expected_beam_names() {

@@ -47,7 +47,7 @@ BOOST_AUTO_TEST_CASE(dishes_that_follow_the_zenith_turn_by_the_parallactic_angle
     // The pole of J2000 is 0.08° from that of 2014, and the place that of the VLA: a thousandth of a radian at this
     // declination.
     const double apart = turns[row] - parallactic_angle(o.time_mjd_s[row / baselines]);
-    BOOST_TEST(std::abs(std::remainder(apart, 2 * M_PI)) < 5e-3);
+    BOOST_TEST(std::abs(std::remainder(apart, 2 * M_PI)) < 2e-3);
   }
   BOOST_TEST(std::abs(turns.front() - turns.back()) > 0.3F);
 }

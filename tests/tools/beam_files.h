@@ -20,8 +20,15 @@ struct BeamFile {
   double step = 0.02;
   double east = 1;  ///< sign of CDELT1
   double reference = 61;
+  double rotation = 0;
   std::vector<double> frequencies_hz{1.4e9};  ///< evenly spaced; none: no axis
+  std::string frequency_unit = "Hz";          ///< in which they are
 };
+
+/// The second axis' type.
+inline std::string second_type(const std::string& first) {
+  return first.rfind("RA", 0) == 0 ? "DEC--SIN" : first == "AZ" ? "EL" : first == "L" ? "M" : "Y";
+}
 
 /// Of a function of what axes count to the east and to the north, in their unit, and the frequency.
 inline void write_beam_file(const std::string& path, const BeamFile& beam,
@@ -34,15 +41,17 @@ inline void write_beam_file(const std::string& path, const BeamFile& beam,
   if (planes > 0) size.push_back(planes);
   file.create_image(size, imager::PixelFormat::float64);
   for (const char* axis : {"1", "2"}) {
-    file.write_text("CTYPE" + std::string(axis), beam.type);
+    file.write_text("CTYPE" + std::string(axis), *axis == '1' ? beam.type : second_type(beam.type));
     file.write_text("CUNIT" + std::string(axis), beam.unit);
     file.write_number("CRPIX" + std::string(axis), beam.reference);
     file.write_number("CRVAL" + std::string(axis), 0);
   }
+  if (beam.rotation != 0) file.write_number("CROTA2", beam.rotation);
   file.write_number("CDELT1", beam.east * beam.step);
   file.write_number("CDELT2", beam.step);
   if (planes > 0) {
     file.write_text("CTYPE3", "FREQ");
+    file.write_text("CUNIT3", beam.frequency_unit);
     file.write_number("CRPIX3", 1);
     file.write_number("CRVAL3", beam.frequencies_hz.front());
     file.write_number("CDELT3", planes > 1 ? beam.frequencies_hz[1] - beam.frequencies_hz[0] : 1e6);

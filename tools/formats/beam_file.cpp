@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "imager/beams/image_pattern.h"
@@ -36,6 +38,33 @@ double unit_rad(const imager::FitsFile& file, int axis) {
   return known->second;
 }
 
+/// 1 where the axis counts to the east, or north, when the zenith is north; −1 of azimuths, which count to the west there.
+double direction_of(const imager::FitsFile& file, int axis) {
+  const std::vector<std::pair<std::string, double>> known[] = {{{"", 1}, {"RA", 1}, {"X", 1}, {"L", 1}, {"AZ", -1}},
+                                                               {{"", 1}, {"DEC", 1}, {"Y", 1}, {"M", 1}, {"EL", 1}}};
+  const std::string type = file.text(card("CTYPE", axis)), name = type.substr(0, type.find('-'));
+  for (const auto& [accepted, sign] : known[axis - 1])
+    if (name == accepted) return sign;
+  file.fail(card("CTYPE", axis) + " is '" + type + "'; expected " + (axis == 1 ? "RA, X, L or AZ" : "DEC, Y, M or EL"));
+}
+
+/// Axes that are turned would need another frame than the dish's.
+void require_upright(const imager::FitsFile& file) {
+  for (const char* key : {"CROTA1", "CROTA2", "PC1_2", "PC2_1", "CD1_1", "CD1_2", "CD2_1", "CD2_2"})
+    if (const auto value = file.number(key); value && *value != 0)
+      file.fail(std::string(key) + " is " + significant(*value, 6) +
+                "; expected axes that are not turned, by CDELT1 and CDELT2");
+}
+
+/// Hz of an axis' unit.
+double unit_hz(const imager::FitsFile& file, int axis) {
+  static const std::map<std::string, double> units{{"", 1}, {"Hz", 1}, {"kHz", 1e3}, {"MHz", 1e6}, {"GHz", 1e9}};
+  const std::string unit = file.text(card("CUNIT", axis));
+  const auto known = units.find(unit);
+  if (known == units.end()) file.fail(card("CUNIT", axis) + " is '" + unit + "'; expected Hz, kHz, MHz or GHz");
+  return known->second;
+}
+
 bool is_of_sines(const imager::FitsFile& file, int axis) {
   const std::string type = file.text(card("CTYPE", axis));
   return (type.size() > 4 && type.compare(type.size() - 3, 3, "SIN") == 0) || file.text(card("CUNIT", axis)).empty();
@@ -62,11 +91,15 @@ std::vector<double> frequencies_hz(const imager::FitsFile& file, const std::vect
     if (!hz || !(*hz > 0)) file.fail("it states no frequency; expected an axis FREQ, or RESTFRQ");
     return {*hz};
   }
+  const double unit = unit_hz(file, axis);
+  const long planes = size[static_cast<std::size_t>(axis) - 1];
+  if (planes > 1 && file.needed_number(card("CDELT", axis)) == 0)
+    file.fail(card("CDELT", axis) + " is 0; expected the step of " + std::to_string(planes) + " frequencies");
   std::vector<double> hz;
-  for (long k = 0; k < size[static_cast<std::size_t>(axis) - 1]; ++k)
-    hz.push_back(file.needed_number(card("CRVAL", axis)) +
-                 (static_cast<double>(k + 1) - file.needed_number(card("CRPIX", axis))) *
-                     file.needed_number(card("CDELT", axis)));
+  for (long k = 0; k < planes; ++k)
+    hz.push_back(unit * (file.needed_number(card("CRVAL", axis)) +
+                         (static_cast<double>(k + 1) - file.needed_number(card("CRPIX", axis))) *
+                             file.needed_number(card("CDELT", axis))));
   for (const double value : hz)
     if (!(value > 0)) file.fail("its frequencies include " + significant(value, 6) + " Hz; expected positive ones");
   return hz;
@@ -75,18 +108,19 @@ std::vector<double> frequencies_hz(const imager::FitsFile& file, const std::vect
 }  // namespace
 
 imager::Pattern read_beam_file(const std::string& path, BeamPixels pixels) {
-  constexpr double near_1 = 0.02;
+  constexpr double near_1 = 0.02, largest = 1.1;
   imager::FitsFile file("read", path);
   file.open(path);
   const std::vector<long> size = file.size();
   if (size.size() < 2) file.fail("it has " + std::to_string(size.size()) + " axes; expected two of the sky, and the frequency");
+  require_upright(file);
   imager::PatternGrid grid;
   grid.width = static_cast<int>(size[0]);
   grid.height = static_cast<int>(size[1]);
   grid.axis_column = file.needed_number("CRPIX1") - 1;
   grid.axis_row = file.needed_number("CRPIX2") - 1;
-  grid.column_rad = file.needed_number("CDELT1") * unit_rad(file, 1);
-  grid.row_rad = file.needed_number("CDELT2") * unit_rad(file, 2);
+  grid.column_rad = direction_of(file, 1) * file.needed_number("CDELT1") * unit_rad(file, 1);
+  grid.row_rad = direction_of(file, 2) * file.needed_number("CDELT2") * unit_rad(file, 2);
   if (grid.column_rad == 0 || grid.row_rad == 0) file.fail("CDELT1 and CDELT2 are the size of a pixel; expected other than 0");
   grid.of_sines = is_of_sines(file, 1);
   const int axis = frequency_axis(file, size);
@@ -99,6 +133,7 @@ imager::Pattern read_beam_file(const std::string& path, BeamPixels pixels) {
     file.read_pixels(first, plane.voltage);
     for (double& value : plane.voltage) {
       if (std::isnan(value)) value = 0;
+      if (!(std::abs(value) <= largest)) file.fail("it has a pixel of " + significant(value, 4) + "; expected 1 at most");
       if (pixels == BeamPixels::power) value = std::sqrt(std::max(0.0, value));
     }
     grid.planes.push_back(std::move(plane));

@@ -32,7 +32,8 @@ imager::BeamModel DishBeams::of(const imager::AntennaSort& antennas) const {
 
 void check_beam(const std::string& beam) {
   if (beam.empty() || imager::is_beam_name(beam) || std::filesystem::is_regular_file(path_of(beam))) return;
-  refuse_option("beam", "'" + beam + "'", imager::expected_beam_names() + "; or a FITS file, or voltage:FILE");
+  refuse_option("beam", "'" + beam + "'",
+                imager::expected_beam_names() + "; or a FITS file, or voltage:FILE, and there is no file " + path_of(beam));
 }
 
 }  // namespace misfit::tools

@@ -78,6 +78,8 @@ BOOST_AUTO_TEST_CASE(a_beam_by_name_takes_the_place_of_the_antennas_own) {
   const AntennaSort station{"LOFAR", 31.26, "CS001"};
   BOOST_TEST(named_beam("gmrt", station).pattern == beam_model({"GMRT", 45}).pattern);
   BOOST_TEST(beam_model({"uGMRT", 45}).pattern == beam_model({"GMRT", 45}).pattern);
+  BOOST_TEST(named_beam("aca", station).pattern == beam_model({"ACA", 7}).pattern);
+  BOOST_TEST(named_beam("alma", station).pattern == beam_model({"ALMA", 12}).pattern);
   BOOST_TEST(named_beam("Alma", {"ALMA", 7}).pattern == beam_model({"ALMA", 7}).pattern);
   const auto is_airy = [&](const std::string& name, const Dish& dish) {
     return named_beam(name, station).pattern->voltage(0.01, 1e9) == airy_voltage(dish, 0.01 * 1e9 / speed_of_light_m_s);

@@ -45,7 +45,7 @@ BOOST_AUTO_TEST_CASE(axes_count_as_their_cards_say) {
     bool sines;
   };
   for (const Axes& a :
-       {Axes{"X", "deg", 1, 1, false}, Axes{"RA---SIN", "deg", 1, -1, true}, Axes{"AZ", "arcmin", 1.0 / 60, 1, false},
+       {Axes{"X", "deg", 1, 1, false}, Axes{"RA---SIN", "deg", 1, -1, true}, Axes{"AZ", "arcmin", 1.0 / 60, -1, false},
         Axes{"L", "", 1 / degree, -1, true}, Axes{"X", "rad", 1 / degree, 1, false}}) {
     BeamFile file;
     file.type = a.type;
@@ -53,7 +53,8 @@ BOOST_AUTO_TEST_CASE(axes_count_as_their_cards_say) {
     file.step = 0.02 / a.unit_degrees;
     file.east = a.east;
     write_beam_file(path, file, [&](double east, double north, double) {
-      return std::pow(voltage(east * a.unit_degrees, north * a.unit_degrees), 2);
+      const double mirrored = a.type == std::string("AZ") ? -1 : 1;  // azimuths count to the west of a zenith in the north
+      return std::pow(voltage(mirrored * east * a.unit_degrees, north * a.unit_degrees), 2);
     });
     const imager::Pattern pattern = read_beam_file(path, BeamPixels::power);
     for (const double east : {-0.4, 0.0, 0.3})
@@ -83,6 +84,14 @@ BOOST_AUTO_TEST_CASE(a_cube_has_the_beam_of_its_frequencies_and_a_voltage_its_si
       negative = negative || is < -0.01;
     }
   BOOST_TEST(negative);
+  file.frequency_unit = "GHz";
+  for (double& at : file.frequencies_hz) at /= 1e9;
+  write_beam_file(folder / "beam.fits", file,
+                  [&](double east, double north, double ghz) { return narrowing(east, north, 1e9 * ghz); });
+  const imager::Pattern same = read_beam_file(folder / "beam.fits", BeamPixels::voltage);
+  BOOST_TEST(std::abs(same->voltage_at(0.005, 1, 1.2e9) - pattern->voltage_at(0.005, 1, 1.2e9)) < 1e-9);
+  BOOST_TEST(pattern->doubt(1.5e9) == "");
+  BOOST_TEST(pattern->doubt(4e9).find("1000 to 2000 MHz") != std::string::npos);
 }
 
 BOOST_AUTO_TEST_CASE(what_is_no_beam_is_refused_by_name) {
@@ -104,6 +113,14 @@ BOOST_AUTO_TEST_CASE(what_is_no_beam_is_refused_by_name) {
   BOOST_TEST(has(refused([](BeamFile&) {}, 0.8), "on its axis, at the reference pixel, it is 0.8 at 1.4 GHz; expected 1"));
   BOOST_TEST(has(refused([](BeamFile& f) { f.reference = 500; }), "whose axis is at"));
   BOOST_TEST(has(refused([](BeamFile& f) { f.step = 0; }), "CDELT1 and CDELT2"));
+  BOOST_TEST(has(refused([](BeamFile& f) { f.frequency_unit = "furlong"; }), "CUNIT3 is 'furlong'; expected Hz"));
+  BOOST_TEST(has(refused([](BeamFile& f) { f.rotation = 30; }), "CROTA2 is 30; expected axes that are not turned"));
+  BOOST_TEST(has(refused([](BeamFile& f) { f.type = "GLON"; }), "CTYPE1 is 'GLON'; expected RA, X, L or AZ"));
+  BOOST_TEST(has(refused([](BeamFile& f) {
+                   f.frequencies_hz = {1e9, 1e9};
+                 }),
+                 "CDELT3 is 0; expected the step of 2 frequencies"));
+  BOOST_TEST(has(refused([](BeamFile&) {}, 3), "it has a pixel of "));
   BOOST_TEST(has(refusal(folder / "none.fits"), "none.fits"));
 }
 
