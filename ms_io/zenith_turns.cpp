@@ -23,7 +23,7 @@ namespace {
 
 using casacore::MDirection;
 
-/// Of antennas whose MOUNT says nothing, too.
+/// An antenna whose MOUNT says nothing counts as one on an alt-azimuth mount.
 bool turns_with_zenith(const std::string& mount) {
   const std::string name = capitals(mount);
   return name.empty() || (name.rfind("ALT-AZ", 0) == 0 && name.find("ROTATOR") == std::string::npos);

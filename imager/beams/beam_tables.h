@@ -15,7 +15,7 @@ namespace misfit::imager {
 class BeamTables {
  public:
   using Factor = std::function<double(double frequency_hz)>;
-  /// What is made of the values for all factors; 1 on the axis, or about so.
+  /// Makes one number of the values for all factors, about 1 on the axis: where it falls to the limit the tables end.
   using Level = std::function<double(const double* value)>;
   using Visit = std::function<void(std::size_t pixel, const double* value)>;
 

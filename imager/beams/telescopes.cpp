@@ -138,8 +138,10 @@ std::optional<Dish> named_dish(const std::string& name) {
   return is_read && dish.blockage_m >= 0 && dish.blockage_m < dish.diameter_m ? std::optional(dish) : std::nullopt;
 }
 
-/// The sort of a telescope that has this diameter, or its first; null where it is not known.
-const KnownBeam* named_sort(const std::string& telescope, double diameter_m) {
+/// The sort of a telescope that has this diameter, or its first; null where it is not known, or the name may be a file's.
+const KnownBeam* named_sort(const std::string& name, double diameter_m) {
+  if (name.find_first_of("./") != std::string::npos) return nullptr;
+  const std::string telescope = bare(name);
   if (const KnownBeam* alike = find_beam(telescope, diameter_m)) return alike;
   const auto& beams = known_beams();
   const auto first =
@@ -165,7 +167,7 @@ BeamModel beam_model(const AntennaSort& antennas) {
 
 BeamModel named_beam(const std::string& name, const AntennaSort& antennas) {
   const std::string asked = "--beam " + name + ": ";
-  if (const KnownBeam* known = named_sort(bare(name), antennas.diameter_m))
+  if (const KnownBeam* known = named_sort(name, antennas.diameter_m))
     return {known->pattern, asked + known->source, known->doubt};
   if (name == "airy") {
     const double own_m = own_diameter_m(antennas);
@@ -177,7 +179,7 @@ BeamModel named_beam(const std::string& name, const AntennaSort& antennas) {
 }
 
 bool is_beam_name(const std::string& name) {
-  return name == "airy" || named_dish(name) || named_sort(bare(name), 0) != nullptr;
+  return name == "airy" || named_dish(name) || named_sort(name, 0) != nullptr;
 }
 
 std::string expected_beam_names() {

@@ -35,7 +35,7 @@ BeamModel beam_model(const AntennaSort& antennas);
 BeamModel named_beam(const std::string& name, const AntennaSort& antennas);
 
 bool is_beam_name(const std::string& name);
-/// What names there are, in words.
+/// Lists the names that named_beam() takes, for messages.
 std::string expected_beam_names();
 
 }  // namespace misfit::imager

@@ -151,7 +151,7 @@ struct FarSidelobes {
   double root_mean_square = 0;
   double largest = 0;  ///< in magnitude
 };
-/// Of those from this part of its width or height on.
+/// Measures the sidelobes that lie this part of the PSF's width or height from its middle, or farther.
 FarSidelobes far_sidelobes(const Image& psf, double from_part);
 
 /// The state with which CLEAN begins: a model of the minor cycle's scales, of these points.

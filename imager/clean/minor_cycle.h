@@ -115,7 +115,7 @@ class MinorCycleWatch {
   }
   /// The depth that neither threshold nor noise let it pass.
   double least_depth_jy() const { return std::max(options_.threshold_jy, noise_depth_jy()); }
-  /// True where less noise would let it go deeper than now.
+  /// True while the noise, and not the threshold, sets the least depth, so that less noise lets it go deeper.
   bool follows_noise() const { return options_.mask == nullptr && noise_depth_jy() > options_.threshold_jy; }
   /// True where it has come to the depth that the noise sets, and there may be less noise by now.
   bool may_go_deeper() const { return noise_falls_ && follows_noise() && depth_jy() == noise_depth_jy(); }

@@ -9,7 +9,8 @@ namespace misfit::imager {
 /// Pixels that are not finite do not count.
 double robust_noise(const Image& image, int threads = 1);
 
-/// The same of a quarter of a million of its pixels or somewhat more, evenly spread: right to 2e-3 where that is noise.
+/// Measures the robust noise of a quarter of a million pixels or somewhat more, evenly spread: right to 2e-3 where they are
+/// noise.
 double sampled_noise(const Image& image);
 double sampled_noise(const float* pixel, std::size_t pixels);
 

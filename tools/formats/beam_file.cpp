@@ -133,7 +133,8 @@ imager::Pattern read_beam_file(const std::string& path, BeamPixels pixels) {
     file.read_pixels(first, plane.voltage);
     for (double& value : plane.voltage) {
       if (std::isnan(value)) value = 0;
-      if (!(std::abs(value) <= largest)) file.fail("it has a pixel of " + significant(value, 4) + "; expected 1 at most");
+      if (!(std::abs(value) <= largest))
+        file.fail("it has a pixel of " + significant(value, 4) + "; expected a magnitude of 1 at most");
       if (pixels == BeamPixels::power) value = std::sqrt(std::max(0.0, value));
     }
     grid.planes.push_back(std::move(plane));

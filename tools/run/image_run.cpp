@@ -144,7 +144,8 @@ class ImageRun : private ChannelSink {
       primary_beam_ = std::make_unique<PrimaryBeamStage>(o_.primary_beam, std::move(scene),
                                                          std::max(1, threads_ / sharing_.channels_here(channels())));
     } catch (const NoPrimaryBeam& none) {
-      if (o_.primary_beam.required()) throw std::runtime_error(std::string("--pbcor, --pblimit, --pbmask: ") + none.what());
+      if (o_.primary_beam.required())
+        throw std::runtime_error(std::string("--pbcor, --pblimit, --pbmask, --beam: ") + none.what());
       if (o_.primary_beam.wanted()) warn(std::string("no .pb is written: ") + none.what());
       if (o_.measures_noise_in_beam()) warn(std::string("masks have the noise of all of the image: ") + none.what());
       o_.primary_beam = {};

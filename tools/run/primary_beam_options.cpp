@@ -34,7 +34,8 @@ void declare(CLI::App& command, TypedPrimaryBeam& o) {
                "lit "
                "dish of the antennas' diameter, airy:D of D metres, airy:D:B with a dark middle of B metres; or a FITS image "
                "of a "
-               "power pattern, or a cube with its frequencies, which turns with the zenith; voltage:FILE of a voltage pattern")
+               "power pattern, or a cube with its frequencies, which turns with the zenith; voltage:FILE of a voltage pattern. "
+               "Writes .pb, as --pblimit does")
            ->type_name(name_or_file_type),
        OptionMark::free_of_state);
   mark(command.add_option(

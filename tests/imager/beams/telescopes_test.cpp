@@ -87,8 +87,8 @@ BOOST_AUTO_TEST_CASE(a_beam_by_name_takes_the_place_of_the_antennas_own) {
   BOOST_TEST(is_airy("airy", {31.26, 0}));
   BOOST_TEST(is_airy("airy:25", {25, 0}));
   BOOST_TEST(is_airy("airy:25.5:2.36", {25.5, 2.36}));
-  for (const char* wrong :
-       {"", "none", "airy:", "airy:x", "airy:25:", "airy:25:25", "airy:-3", "airy:25;3", "airy:25:3:1", "airy:0"}) {
+  for (const char* wrong : {"", "./vla", "alma.fits", "none", "airy:", "airy:x", "airy:25:", "airy:25:25", "airy:-3",
+                            "airy:25;3", "airy:25:3:1", "airy:0"}) {
     BOOST_TEST(!is_beam_name(wrong), wrong);
     BOOST_CHECK_THROW(named_beam(wrong, station), std::invalid_argument);
   }
