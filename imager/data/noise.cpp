@@ -63,10 +63,13 @@ Bracket around_median(const Image& image, const ValueOf& value_of) {
   for (std::size_t i = 0; i < image.pixel.size(); i += step) sample.look(&image.pixel[i], 1, value_of);
   std::vector<double>& value = sample.within;
   if (value.size() < samples / 2) return {};
-  std::sort(value.begin(), value.end());
   // 5.7 standard deviations of the middle's place in a random sample
-  const auto reach = static_cast<std::size_t>(2.85 * std::sqrt(static_cast<double>(value.size())));
-  return {value[value.size() / 2 - reach], value[value.size() / 2 + reach], 0, 0, {}};
+  const auto reach = static_cast<std::ptrdiff_t>(2.85 * std::sqrt(static_cast<double>(value.size())));
+  const auto low = value.begin() + static_cast<std::ptrdiff_t>(value.size() / 2) - reach;
+  const auto high = low + 2 * reach;
+  std::nth_element(value.begin(), low, value.end());
+  std::nth_element(low + 1, high, value.end());
+  return {*low, *high, 0, 0, {}};
 }
 
 /// The middle of the values of all pixels, the upper one of two; 0 where there is none. Only values near it are put in order.
