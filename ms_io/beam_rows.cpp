@@ -18,16 +18,26 @@ namespace {
 
 constexpr std::uint64_t piece_rows = 1 << 16;
 
+/// As ANTENNA lists them.
+std::vector<imager::AntennaSort> listed_antennas(const OpenSet& open_set) {
+  const std::string telescope = telescope_name(open_set.set, observation_of(open_set.set, open_set.selected.first_row));
+  const casacore::Vector<double> diameter_m =
+      casacore::ScalarColumn<double>(open_set.set.antenna(), "DISH_DIAMETER").getColumn();
+  const casacore::Vector<casacore::String> name =
+      casacore::ScalarColumn<casacore::String>(open_set.set.antenna(), "NAME").getColumn();
+  std::vector<imager::AntennaSort> sorts;
+  for (std::size_t a = 0; a < diameter_m.nelements(); ++a) sorts.push_back({telescope, diameter_m(a), name(a)});
+  return sorts;
+}
+
 /// The antennas of a set, by what their beams depend on.
 class Antennas {
  public:
   Antennas(const OpenSet& open_set, BeamRows& rows)
       : path_(open_set.path),
-        telescope_(telescope_name(open_set.set, observation_of(open_set.set, open_set.selected.first_row))),
-        diameter_m_(casacore::ScalarColumn<double>(open_set.set.antenna(), "DISH_DIAMETER").getColumn()),
-        name_(casacore::ScalarColumn<casacore::String>(open_set.set.antenna(), "NAME").getColumn()),
-        sort_(diameter_m_.nelements(), unknown),
-        feeds_(diameter_m_.nelements()),
+        listed_(listed_antennas(open_set)),
+        sort_(listed_.size(), unknown),
+        feeds_(listed_.size()),
         rows_(rows) {}
 
   /// Notes that an antenna was used with a feed. Returns its sort.
@@ -62,23 +72,17 @@ class Antennas {
 
   int find_sort(std::size_t antenna) {
     constexpr std::size_t most = 256;
-    const double diameter_m = diameter_m_(antenna);
-    for (std::size_t s = 0; s < rows_.sorts.size(); ++s) {
-      const imager::AntennaSort& sort = rows_.sorts[s];
-      const bool alike = sort.diameter_m == diameter_m || (std::isnan(sort.diameter_m) && std::isnan(diameter_m));
-      if (alike && sort.telescope == telescope_) return static_cast<int>(s);
-    }
+    for (std::size_t s = 0; s < rows_.sorts.size(); ++s)
+      if (imager::alike(rows_.sorts[s], listed_[antenna])) return static_cast<int>(s);
     if (rows_.sorts.size() == most)
       throw std::runtime_error(path_ + ": antennas of more than " + std::to_string(most) +
                                " different diameters; expected a few sorts of dishes");
-    rows_.sorts.push_back({telescope_, diameter_m, name_(antenna)});
+    rows_.sorts.push_back(listed_[antenna]);
     return static_cast<int>(rows_.sorts.size() - 1);
   }
 
   std::string path_;
-  std::string telescope_;
-  casacore::Vector<double> diameter_m_;
-  casacore::Vector<casacore::String> name_;
+  std::vector<imager::AntennaSort> listed_;
   std::vector<int> sort_;                ///< [antenna]
   std::vector<std::vector<int>> feeds_;  ///< [antenna], in use
   BeamRows& rows_;
@@ -166,6 +170,10 @@ void add_beam_rows(const OpenSet& open_set, const imager::SkyDirection& centre, 
     pointing.rows = of_fields[pointing.id];
     rows.pointings.push_back(std::move(pointing));
   }
+}
+
+std::vector<imager::AntennaSort> antenna_sorts(const OpenSet& open_set) {
+  return translated("cannot read ANTENNA of " + open_set.path, [&] { return listed_antennas(open_set); });
 }
 
 double beam_offset_rad(const OpenSet& open_set) {

@@ -12,6 +12,9 @@ namespace misfit::ms_io {
 /// ANTENNA lacks, or there are more than 256 sorts.
 void add_beam_rows(const OpenSet& open_set, const imager::SkyDirection& centre, BeamRows& rows);
 
+/// What ANTENNA says of each antenna. Throws std::runtime_error where it cannot be read.
+std::vector<imager::AntennaSort> antenna_sorts(const OpenSet& open_set);
+
 /// The largest that FEED gives for any feed, in use or not: no rows of the set are read. Throws std::runtime_error where FEED
 /// cannot be read.
 double beam_offset_rad(const OpenSet& open_set);

@@ -274,6 +274,9 @@ BeamRows MeasurementSet::beam_rows() const {
   if (rows.sorts.size() <= 1) rows.pairs = {};
   return rows;
 }
+std::vector<imager::AntennaSort> MeasurementSet::antennas() const {
+  return antenna_sorts(*whole().sets.front());
+}
 std::vector<float> MeasurementSet::zenith_turns() const {
   std::vector<float> turns;
   for (const auto& set : impl_->sets) {

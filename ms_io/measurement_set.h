@@ -113,6 +113,8 @@ class MeasurementSet : public imager::VisibilitySource {
   double beam_offset_rad() const;
   /// Reads antennas and feeds of all rows. Throws std::runtime_error when they, ANTENNA, FEED or FIELD cannot be read.
   BeamRows beam_rows() const;
+  /// What ANTENNA says of each antenna of the first set. Throws std::runtime_error where it cannot be read.
+  std::vector<imager::AntennaSort> antennas() const;
   /// Where the zenith was for each row, in the order in which blocks hold them: its position angle from north through east, by
   /// which dishes on alt-azimuth mounts turn, as seen from where the row's field points; 0 of other mounts. Reads times,
   /// fields and antennas of all rows. Throws std::runtime_error when they cannot be read.

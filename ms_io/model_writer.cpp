@@ -19,6 +19,7 @@
 #include "ms_io/subtracted_models_internal.h"
 #include "ms_io/table_access_internal.h"
 #include "ms_io/value_flush_internal.h"
+#include "ms_io/zenith_turns_internal.h"
 
 namespace misfit::ms_io {
 namespace {
@@ -168,7 +169,9 @@ class ModelWriter {
     }
   }
 
-  ModelWriteReport write(const Predict& predict, int at_once, const Progress& progress) {
+  ModelWriteReport write(const Predict& predict, const PredictionPace& pace, const Progress& progress) {
+    if (pace.sights_from)
+      sights_ = std::make_unique<SightReader>(OpenSet{path_, 0, "", set_, selected_, {}, {}, {}}, *pace.sights_from);
     cells_ = std::make_unique<ModelCells>(translated(doing_(), [&] { return ModelCells(set_, column_); }));
     flush_ = std::make_unique<ValueFlush>(set_, column_.name);
     if (column_.in_place()) take_back_block_that_was_cut();
@@ -184,7 +187,7 @@ class ModelWriter {
       under_way.pop_front();
       if (progress) progress(samples_, selected_.samples);
     };
-    const auto together = static_cast<std::size_t>(at_once);
+    const auto together = static_cast<std::size_t>(pace.at_once);
     for (const BlockRows& rows : selected_.blocks) {
       const BlockRows rest = rows_between(rows, done_below(journal_, rows), set_.nrow());
       samples_ += (rows.rows - rest.rows) * selected_.setups[rows.setup].frequency_hz.size();
@@ -305,6 +308,9 @@ class ModelWriter {
   void prepare(const casacore::ArrayColumn<double>& uvw, PredictedBlock& block) {
     block.where =
         translated("cannot read UVW of " + path_, [&] { return coordinates(uvw, block.rows, *block.setup, block.unknown); });
+    if (sights_)
+      translated("cannot read antennas, fields or times of " + path_,
+                 [&] { block.where.sights = sights_->sights(block.rows); });
     translated("cannot read TIME of " + path_, [&] { find_shifts(block); });
     translated("cannot read " + column_.subtracted_from + " of " + path_,
                [&] { block.cells.data.reference(cells_->data(block.rows, *block.setup)); });
@@ -355,6 +361,7 @@ class ModelWriter {
   std::uint64_t samples_ = 0;           ///< that hold the model
   std::unique_ptr<ModelCells> cells_;
   std::unique_ptr<ValueFlush> flush_;
+  std::unique_ptr<SightReader> sights_;  ///< where predictions need them
 };
 
 }  // namespace
@@ -377,7 +384,7 @@ void require_writable(const std::string& path, const ModelColumn& column) {
 ModelWriteReport write_model(const std::string& path, const Selection& selection, const ModelColumn& column,
                              const Predict& predict, const std::function<void(std::uint64_t, std::uint64_t)>& progress,
                              const PredictionPace& pace) {
-  return ModelWriter(path, selection, column, pace.block_samples).write(predict, pace.at_once, progress);
+  return ModelWriter(path, selection, column, pace.block_samples).write(predict, pace, progress);
 }
 
 }  // namespace misfit::ms_io

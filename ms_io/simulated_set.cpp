@@ -40,6 +40,12 @@ void require_complete(const SimulatedObservation& observation) {
   require(antennas >= 2, std::to_string(antennas) + " antennas; expected 2 or more");
   require(observation.antenna_itrf_m.size() == antennas,
           std::to_string(observation.antenna_itrf_m.size()) + " antenna positions; expected " + std::to_string(antennas));
+  require(!observation.fields.empty(), "no field; expected 1 or more");
+  for (const SimulatedField& field : observation.fields)
+    require(field.phase_centre.frame == observation.fields.front().phase_centre.frame,
+            "fields in " + field.phase_centre.frame + " and " + observation.fields.front().phase_centre.frame +
+                "; expected one frame");
+  require(!observation.dish_diameter_m.empty(), "no diameter of dishes; expected 1 or more");
   require(!observation.time_mjd_s.empty(), "no integrations; expected 1 or more");
   require(!observation.frequency_hz.empty(), "no channels; expected 1 or more");
   for (const double f : observation.frequency_hz) {
@@ -94,6 +100,7 @@ void fill_bookkeeping(casacore::MeasurementSet& set, const SimulatedObservation&
       for (std::size_t b = a + 1; b < antennas; ++b) {
         const casacore::rownr_t row = antenna1.size();
         columns.time().put(row, observation.time_mjd_s[t]);
+        columns.fieldId().put(row, static_cast<int>(observation.field_of(t)));
         columns.timeCentroid().put(row, observation.time_mjd_s[t]);
         antenna1.push_back(static_cast<int>(a));
         antenna2.push_back(static_cast<int>(b));
@@ -104,9 +111,8 @@ void fill_bookkeeping(casacore::MeasurementSet& set, const SimulatedObservation&
   columns.antenna2().putColumn(casacore::Vector<int>(antenna2));
   columns.interval().fillColumn(observation.interval_s);
   columns.exposure().fillColumn(observation.interval_s);
-  for (casacore::ScalarColumn<int>* column :
-       {&columns.arrayId(), &columns.dataDescId(), &columns.feed1(), &columns.feed2(), &columns.fieldId(),
-        &columns.observationId(), &columns.processorId(), &columns.stateId()}) {
+  for (casacore::ScalarColumn<int>* column : {&columns.arrayId(), &columns.dataDescId(), &columns.feed1(), &columns.feed2(),
+                                              &columns.observationId(), &columns.processorId(), &columns.stateId()}) {
     column->fillColumn(0);
   }
   columns.scanNumber().fillColumn(1);
@@ -142,6 +148,15 @@ void require_size(const char* what, std::size_t found, std::size_t expected) {
                               std::to_string(found) + " values; expected " + std::to_string(expected));
 }
 
+/// Of the rows of an integration.
+std::vector<imager::RowSight> sights_of(const SimulatedObservation& observation, std::size_t integration) {
+  const int antennas = static_cast<int>(observation.antenna_name.size());
+  std::vector<imager::RowSight> sights;
+  for (int a = 0; a < antennas; ++a)
+    for (int b = a + 1; b < antennas; ++b) sights.push_back({a, b, static_cast<int>(observation.field_of(integration)), 0});
+  return sights;
+}
+
 /// Fills UVW, DATA and FLAG, one integration at a time.
 void observe(casacore::MeasurementSet& set, const SimulatedObservation& observation, const BaselineUvw& uvw,
              const ExactVisibilities& visibilities, const std::function<void(std::size_t, std::size_t)>& progress) {
@@ -152,7 +167,7 @@ void observe(casacore::MeasurementSet& set, const SimulatedObservation& observat
   std::mt19937_64 generator(observation.seed);
   for (std::size_t t = 0; t < observation.time_mjd_s.size(); ++t) {
     const std::vector<double> uvw_m = uvw(t);
-    const imager::SampleCoordinates where{uvw_m, observation.frequency_hz};
+    const imager::SampleCoordinates where{uvw_m, observation.frequency_hz, sights_of(observation, t)};
     require_size("UVW", where.uvw_m.size(), 3 * count);
     const std::vector<std::complex<double>> exact = visibilities(where);
     require_size("visibilities", exact.size(), where.samples());

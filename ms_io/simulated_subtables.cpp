@@ -31,7 +31,7 @@ void fill_antennas(casacore::MSAntenna& table, const SimulatedObservation& obser
     columns.mount().put(a, "ALT-AZ");
     columns.position().put(a, Vector<double>(std::vector<double>(position.begin(), position.end())));
     columns.offset().put(a, Vector<double>(3, 0.0));
-    columns.dishDiameter().put(a, observation.dish_diameter_m);
+    columns.dishDiameter().put(a, observation.dish_diameter_m[a % observation.dish_diameter_m.size()]);
     columns.flagRow().put(a, false);
   }
 }
@@ -58,25 +58,28 @@ void fill_feeds(casacore::MSFeed& table, const SimulatedObservation& observation
   }
 }
 
-void fill_field(casacore::MSField& table, const SimulatedObservation& observation) {
+void fill_fields(casacore::MSField& table, const SimulatedObservation& observation) {
   casacore::MSFieldColumns columns(table);
-  const imager::SkyDirection& centre = observation.phase_centre;
-  columns.setDirectionRef(centre.frame == "ICRS"  ? casacore::MDirection::ICRS
-                          : centre.frame == "FK4" ? casacore::MDirection::B1950
-                                                  : casacore::MDirection::J2000);
-  table.addRow(1);  // only now: the frame of a column with rows is fixed
-  Matrix<double> direction(2, 1);
-  direction(0, 0) = centre.ra_rad;
-  direction(1, 0) = centre.dec_rad;
-  columns.name().put(0, observation.field_name);
-  columns.code().put(0, "");
-  columns.time().put(0, observation.time_mjd_s.front());
-  columns.numPoly().put(0, 0);
-  columns.phaseDir().put(0, direction);
-  columns.delayDir().put(0, direction);
-  columns.referenceDir().put(0, direction);
-  columns.sourceId().put(0, -1);
-  columns.flagRow().put(0, false);
+  const std::string& frame = observation.fields.front().phase_centre.frame;
+  columns.setDirectionRef(frame == "ICRS"  ? casacore::MDirection::ICRS
+                          : frame == "FK4" ? casacore::MDirection::B1950
+                                           : casacore::MDirection::J2000);
+  table.addRow(observation.fields.size());  // only now: the frame of a column with rows is fixed
+  for (std::size_t f = 0; f < observation.fields.size(); ++f) {
+    const SimulatedField& field = observation.fields[f];
+    Matrix<double> direction(2, 1);
+    direction(0, 0) = field.phase_centre.ra_rad;
+    direction(1, 0) = field.phase_centre.dec_rad;
+    columns.name().put(f, field.name);
+    columns.code().put(f, "");
+    columns.time().put(f, observation.time_mjd_s.front());
+    columns.numPoly().put(f, 0);
+    columns.phaseDir().put(f, direction);
+    columns.delayDir().put(f, direction);
+    columns.referenceDir().put(f, direction);
+    columns.sourceId().put(f, -1);
+    columns.flagRow().put(f, false);
+  }
 }
 
 void fill_spectral_window(casacore::MSSpectralWindow& table, const SimulatedObservation& observation) {
@@ -150,7 +153,7 @@ void fill_state_and_processor(casacore::MeasurementSet& set) {
 void fill_subtables(casacore::MeasurementSet& set, const SimulatedObservation& observation) {
   fill_antennas(set.antenna(), observation);
   fill_feeds(set.feed(), observation);
-  fill_field(set.field(), observation);
+  fill_fields(set.field(), observation);
   fill_spectral_window(set.spectralWindow(), observation);
   fill_polarization(set.polarization());
   fill_observation(set.observation(), observation);

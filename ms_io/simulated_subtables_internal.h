@@ -6,7 +6,7 @@
 
 namespace misfit::ms_io {
 
-/// Fills every required subtable of `set`, which are empty, for one field, one spectral window, and XX and YY.
+/// Fills every required subtable of `set`, which are empty, for one spectral window and XX and YY.
 void fill_subtables(casacore::MeasurementSet& set, const SimulatedObservation& observation);
 
 }  // namespace misfit::ms_io

@@ -55,40 +55,74 @@ class Zenith {
   casacore::MEpoch::Ref clock_;
 };
 
+constexpr const char* reading = "cannot read ANTENNA, or the times of the rows of ";
+
 }  // namespace
+
+class SightReader::Columns {
+ public:
+  Columns(const OpenSet& open_set, const imager::SkyDirection& centre)
+      : zenith_(open_set),
+        mount_(casacore::ScalarColumn<casacore::String>(open_set.set.antenna(), "MOUNT").getColumn()),
+        antenna_one_(open_set.set, "ANTENNA1"),
+        antenna_other_(open_set.set, "ANTENNA2"),
+        field_(open_set.set, "FIELD_ID"),
+        time_(open_set.set, "TIME") {
+    for (const FieldPointing& pointing : field_pointings(open_set, centre)) of_field_.insert({pointing.id, pointing.direction});
+  }
+
+  std::vector<imager::RowSight> sights(const Rows& rows) {
+    casacore::Vector<int> one, other, field;
+    casacore::Vector<double> time_s;
+    read(antenna_one_, rows, one);
+    read(antenna_other_, rows, other);
+    read(field_, rows, field);
+    read(time_, rows, time_s);
+    std::vector<imager::RowSight> sights;
+    for (std::size_t r = 0; r < rows.count(); ++r)
+      sights.push_back({one(r), other(r), field(r), turns(one(r)) ? zenith_rad(time_s(r), field(r)) : 0});
+    return sights;
+  }
+
+ private:
+  bool turns(int antenna) const {
+    return antenna >= 0 && static_cast<std::size_t>(antenna) < mount_.nelements() &&
+           turns_with_zenith(mount_(static_cast<std::size_t>(antenna)));
+  }
+
+  float zenith_rad(double time_s, int field) {
+    const auto from = of_field_.find(field);
+    if (from == of_field_.end()) return 0;
+    const auto [at, is_new] = known_.insert({{time_s, field}, 0.0F});
+    if (is_new) at->second = static_cast<float>(position_angle(zenith_.at(time_s, from->second.frame), from->second));
+    return at->second;
+  }
+
+  Zenith zenith_;
+  casacore::Vector<casacore::String> mount_;
+  casacore::ScalarColumn<int> antenna_one_, antenna_other_, field_;
+  casacore::ScalarColumn<double> time_;
+  std::map<int, imager::SkyDirection> of_field_;
+  std::map<std::pair<double, int>, float> known_;
+};
+
+SightReader::SightReader(const OpenSet& open_set, const imager::SkyDirection& centre)
+    : columns_(translated(reading + open_set.path, [&] { return std::make_unique<Columns>(open_set, centre); })) {}
+
+SightReader::~SightReader() = default;
+
+std::vector<imager::RowSight> SightReader::sights(const Rows& rows) {
+  return columns_->sights(rows);
+}
 
 std::vector<float> zenith_turns(const OpenSet& open_set, const imager::SkyDirection& centre) {
   constexpr std::uint64_t piece_rows = 1 << 16;
-  std::map<int, imager::SkyDirection> of_field;
-  for (const FieldPointing& pointing : field_pointings(open_set, centre)) of_field.insert({pointing.id, pointing.direction});
-  return translated("cannot read ANTENNA, or the times of the rows of " + open_set.path, [&] {
-    const Zenith zenith(open_set);
-    const casacore::Vector<casacore::String> mount =
-        casacore::ScalarColumn<casacore::String>(open_set.set.antenna(), "MOUNT").getColumn();
-    const casacore::ScalarColumn<int> antenna(open_set.set, "ANTENNA1"), field(open_set.set, "FIELD_ID");
-    const casacore::ScalarColumn<double> time(open_set.set, "TIME");
-    casacore::Vector<int> antennas, fields;
-    casacore::Vector<double> times;
-    std::map<std::pair<double, int>, float> known;
+  SightReader reader(open_set, centre);
+  return translated(reading + open_set.path, [&] {
     std::vector<float> turns;
     for (const BlockRows& block : open_set.selected.blocks)
-      for (const Rows& piece : pieces(block.runs, piece_rows)) {
-        read(antenna, piece, antennas);
-        read(field, piece, fields);
-        read(time, piece, times);
-        for (std::size_t r = 0; r < piece.count(); ++r) {
-          const auto from = of_field.find(fields(r));
-          const bool turned = antennas(r) >= 0 && static_cast<std::size_t>(antennas(r)) < mount.nelements() &&
-                              turns_with_zenith(mount(static_cast<std::size_t>(antennas(r))));
-          if (!turned || from == of_field.end()) {
-            turns.push_back(0);
-            continue;
-          }
-          const auto [at, is_new] = known.insert({{times(r), fields(r)}, 0.0F});
-          if (is_new) at->second = static_cast<float>(position_angle(zenith.at(times(r), from->second.frame), from->second));
-          turns.push_back(at->second);
-        }
-      }
+      for (const Rows& piece : pieces(block.runs, piece_rows))
+        for (const imager::RowSight& sight : reader.sights(piece)) turns.push_back(sight.zenith_rad);
     return turns;
   });
 }

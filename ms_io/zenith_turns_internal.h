@@ -1,10 +1,30 @@
 #pragma once
 
+#include <memory>
 #include <vector>
 
+#include "imager/data/visibilities.h"
+#include "ms_io/row_columns_internal.h"
 #include "ms_io/visibility_reader_internal.h"
 
 namespace misfit::ms_io {
+
+/// With what, and in which direction, the rows of a set were observed.
+class SightReader {
+ public:
+  /// Of an image with this phase centre, in whose frame directions are seen. Throws std::runtime_error where ANTENNA or FIELD
+  /// cannot be read.
+  SightReader(const OpenSet& open_set, const imager::SkyDirection& centre);
+  ~SightReader();
+
+  /// [row]. The zenith is 0 of antennas that do not turn with it: those on other mounts than alt-azimuth. Throws
+  /// casacore::AipsError where columns of these rows cannot be read.
+  std::vector<imager::RowSight> sights(const Rows& rows);
+
+ private:
+  class Columns;
+  std::unique_ptr<Columns> columns_;
+};
 
 /// Position angles of the zenith [row], from north through east, seen from where each row's field points in the frame of
 /// `centre`: by these dishes turn that stand on alt-azimuth mounts. 0 of other mounts. The rows are in the order of blocks.

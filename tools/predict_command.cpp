@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 #include <memory>
+#include <optional>
 
 #include "imager/direct/source_sums.h"
 #include "imager/numerics/page_pool.h"
@@ -24,7 +25,9 @@
 #include "tools/formats/model_image.h"
 #include "tools/kernel_choice/kernel_choice.h"
 #include "tools/run/data_columns.h"
+#include "tools/run/dish_beams.h"
 #include "tools/run/phased_set.h"
+#include "tools/run/seen_model.h"
 #include "tools/run/selection_options.h"
 #include "tools/run/shared_prediction.h"
 
@@ -44,6 +47,8 @@ struct PredictOptions {
   bool accuracy_is_typed = false;
   KernelSource kernel;
   bool kernel_is_typed = false;
+  bool apply_beam = false;
+  std::string beam;  ///< see DishBeams
   int threads = 0;
   bool quiet = false;
 };
@@ -56,6 +61,7 @@ struct NamedModel {
   bool empty = false;          ///< a list without sources, or an image of zeros
   ms_io::Selection selection;  ///< with the phase centre that it is about
   std::vector<std::string> remarks;
+  std::optional<imager::SkyDirection> sights_from;  ///< where dishes' beams are applied, see PredictionPace
 };
 
 /// That no correlation responds to a part of a model, in words, for each of the parts.
@@ -68,6 +74,17 @@ std::vector<std::string> unseen(const PredictOptions& o, const ms_io::Measuremen
       sentences.push_back("no correlation that is selected of " + o.vis + " responds to " + stokes_name(part) +
                           ": that of the model " + (o.model.empty() ? o.components : o.model) + " is left out");
   return sentences;
+}
+
+/// The beams that --apply-beam takes; tells the model of them.
+imager::RowBeams beams_of(const PredictOptions& o, const ms_io::MeasurementSet& set, NamedModel& named) {
+  SetBeams beams = set_beams(set, DishBeams(o.beam));
+  named.remarks.insert(named.remarks.end(), beams.doubts.begin(), beams.doubts.end());
+  named.sights_from = set.observation().phase_centre;
+  const std::uint64_t of_beam = ms_io::Fingerprint().add("beam " + o.beam).value();
+  named.fingerprint.add(of_beam);
+  named.model += of_beam;
+  return std::move(beams.rows);
 }
 
 /// But for pixels beyond the horizon, which may be NaN.
@@ -102,7 +119,9 @@ NamedModel image_model(const PredictOptions& o, const ms_io::MeasurementSet& set
     ms_io::Fingerprint alone;
     named.model += add_to(alone);
   }
-  named.visibilities = image_visibilities(model, planes.front().geometry, request, set);
+  const imager::ImageGeometry& geometry = planes.front().geometry;
+  named.visibilities = o.apply_beam ? seen_image(model, geometry, request, set, beams_of(o, set, named))
+                                    : image_visibilities(model, geometry, request, set);
   named.empty = parts.empty();
   named.remarks = unseen(o, set, parts);
   for (std::string& warning : std::array{band_warning(planes.front().observation, set.observation(), o.model),
@@ -132,6 +151,10 @@ NamedModel component_model(const PredictOptions& o, const ms_io::MeasurementSet&
     named.remarks.push_back(
         "ra_deg and dec_deg of " + o.components +
         " are taken as B1950, as the phase centre is; a column frame with J2000 or B1950 states what they are");
+  if (o.apply_beam) {
+    named.visibilities.predict = seen_sources({sources.begin(), sources.end()}, beams_of(o, set, named), threads);
+    return named;
+  }
   named.visibilities.predict = [sources = std::move(sources), threads](const imager::SampleCoordinates& at) {
     ms_io::StokesVisibilities visibilities(imager::predict_sources(sources[0], at, threads));
     for (std::size_t k = 1; k < sources.size(); ++k)
@@ -152,6 +175,9 @@ ms_io::ModelColumn column_of(const PredictOptions& o) {
 void check_values(const PredictOptions& o) {
   if (!(o.accuracy > 0 && o.accuracy < 1))
     throw std::invalid_argument("--accuracy " + significant(o.accuracy, 3) + ": expected a number above 0 and below 1");
+  check_beam(o.beam);
+  if (!o.beam.empty() && !o.apply_beam)
+    throw std::invalid_argument("--beam " + o.beam + " without --apply-beam: expected both, or neither");
   if (o.threads < 0) throw std::invalid_argument("--threads " + std::to_string(o.threads) + ": expected 0 (all cores) or more");
 }
 
@@ -175,7 +201,8 @@ Outcome outcome_of(const PredictOptions& o, const ms_io::ModelWriteReport& repor
 /// As whoever finds its column incomplete is told.
 std::string command_of(const PredictOptions& o) {
   return "misfit predict " + std::string(o.subtract ? "--subtract " : "") +
-         (o.model.empty() ? "--components " + shell_quoted(o.components) : "--model " + shell_quoted(o.model));
+         (o.model.empty() ? "--components " + shell_quoted(o.components) : "--model " + shell_quoted(o.model)) +
+         (o.apply_beam ? " --apply-beam" : "") + (o.beam.empty() ? "" : " --beam " + shell_quoted(o.beam));
 }
 
 /// Of this rank.
@@ -218,7 +245,7 @@ void predict(const PredictOptions& o, const CommandCall& call) {
   const auto show = [&](std::uint64_t done, std::uint64_t total) { progress.update(done, total); };
   const ms_io::ModelWriteReport report = ms_io::write_model(
       o.vis, model.selection, column, [&](const imager::SampleCoordinates& at) { return shared.predict(at); }, show,
-      {model.visibilities.samples_at_once, ranks.size()});
+      {model.visibilities.samples_at_once, ranks.size(), model.sights_from});
   shared.end();
   progress.end();
   if (!report.zeros.zeros.none()) progress.say("warning: " + zeros_warning(report.zeros));
@@ -245,6 +272,14 @@ void add_predict_command(CLI::App& program, const CommandCall& call) {
           "half maximum of a circular Gaussian (0: a point), summed directly with w; polarised ones have flux_q_jy, flux_u_jy, "
           "flux_v_jy too")
       ->type_name(file_type);
+  CLI::Option* apply_beam =
+      command->add_flag("--apply-beam", o->apply_beam,
+                        "The model is the sky without a primary beam, as .image.pbcor has it: each row sees it through its "
+                        "dishes' beams where its "
+                        "field points, at the frequency of each channel; Gaussians of --components as at their middle");
+  command->add_option("--beam", o->beam, "The primary beam of --apply-beam in place of the antennas' own, as of `misfit image`")
+      ->type_name(name_or_file_type)
+      ->needs(apply_beam);
   CLI::Option* subtract =
       command->add_flag("--subtract", o->subtract,
                         "Write data − model instead: each correlation loses what the model is to it, XX = I + Q and so on");

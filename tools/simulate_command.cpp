@@ -3,9 +3,11 @@
 #include <cstdio>
 #include <memory>
 #include <numbers>
+#include <optional>
 
 #include "imager/direct/source_sums.h"
 #include "imager/numerics/parallel.h"
+#include "imager/pointing/seen_sources.h"
 #include "ms_io/simulated_set.h"
 #include "tools/base/array.h"
 #include "tools/base/numbers.h"
@@ -15,6 +17,7 @@
 #include "tools/base/value_checks.h"
 #include "tools/command.h"
 #include "tools/formats/component_list.h"
+#include "tools/formats/pointings.h"
 #include "tools/formats/sky.h"
 #include "tools/run/dish_beams.h"
 
@@ -31,6 +34,9 @@ struct SimulateOptions {
   bool noncoplanar = false;
   bool primary_beam = false;
   std::string beam;
+  std::string telescope;       ///< empty: the array's own
+  std::vector<double> dishes;  ///< diameters in metres, of the antennas by turns; empty: the array's own
+  std::string pointings;       ///< see pointings(); empty: one, --ra and --dec
   std::string cell = "0.05arcsec";
   std::string ra = "60deg";
   std::string dec = "40deg";
@@ -53,6 +59,13 @@ void check(const SimulateOptions& o) {
   check_beam(o.beam);
   if (!o.beam.empty() && !o.primary_beam)
     throw std::invalid_argument("--beam " + o.beam + " without --primary-beam: expected both, or neither");
+  for (const double dish_m : o.dishes)
+    if (!(dish_m > 0 && std::isfinite(dish_m)))
+      throw std::invalid_argument("--dishes " + significant(dish_m, 3) + ": expected diameters above 0, in metres");
+  if (!o.pointings.empty()) check_pointings(o.pointings);
+  if (!o.pointings.empty() && o.coplanar)
+    throw std::invalid_argument("--pointings " + o.pointings +
+                                " with --coplanar: expected one of them, since w is 0 about one phase centre alone");
   if (o.threads < 0) throw std::invalid_argument("--threads " + std::to_string(o.threads) + ": expected 0 (all cores) or more");
   constexpr double most_integrations = 1e7;
   constexpr int most_channels = 1 << 20;
@@ -70,54 +83,66 @@ void check(const SimulateOptions& o) {
     throw std::invalid_argument("--dec " + o.dec + ": expected -90deg to 90deg");
 }
 
+imager::SkyDirection centre_of(const SimulateOptions& o) {
+  return {parse_angle_rad(o.ra), parse_angle_rad(o.dec), "FK5"};
+}
+
+std::vector<ms_io::SimulatedField> fields_of(const SimulateOptions& o) {
+  if (o.pointings.empty()) return {{"SIMULATED", centre_of(o)}};
+  std::vector<ms_io::SimulatedField> fields;
+  for (const imager::SkyDirection& direction : pointings(o.pointings, centre_of(o)))
+    fields.push_back({"P" + std::to_string(fields.size()), direction});
+  return fields;
+}
+
 ms_io::SimulatedObservation observation_of(const SimulateOptions& o, const AntennaArray& array) {
   ms_io::SimulatedObservation observation;
-  observation.telescope = array.telescope;
+  observation.telescope = o.telescope.empty() ? array.telescope : o.telescope;
   observation.antenna_name = array.name;
   observation.antenna_itrf_m = array.itrf_m;
-  observation.dish_diameter_m = array.dish_diameter_m;
-  observation.phase_centre = {parse_angle_rad(o.ra), parse_angle_rad(o.dec), "FK5"};
+  observation.dish_diameter_m = o.dishes.empty() ? std::vector<double>{array.dish_diameter_m} : o.dishes;
+  observation.fields = fields_of(o);
   observation.interval_s = o.interval;
   observation.channel_width_hz = parse_frequency_hz(o.channel_width);
   for (int channel = 0; channel < o.channels; ++channel)
     observation.frequency_hz.push_back(parse_frequency_hz(o.frequency) + channel * observation.channel_width_hz);
   observation.noise_jy = parse_flux_jy(o.noise);
   observation.seed = o.seed;
-  const double transit = transit_mjd_s(array, observation.phase_centre, j2000_mjd_s);
-  const auto integrations = std::max(1L, std::lround(o.hours * 3600 / o.interval));
+  const double transit = transit_mjd_s(array, centre_of(o), j2000_mjd_s);
+  const auto visits = static_cast<long>(observation.fields.size());  // each field is seen once at least
+  const auto integrations = std::max(visits, std::lround(o.hours * 3600 / o.interval));
   for (long i = 0; i < integrations; ++i)
     observation.time_mjd_s.push_back(transit +
                                      (static_cast<double>(i) - 0.5 * static_cast<double>(integrations - 1)) * o.interval);
   return observation;
 }
 
-/// Dishes that point to the phase centre, while the zenith is there: a position angle.
-struct PointedDishes {
-  imager::Pattern pattern;
-  double zenith_rad = 0;
-};
-
-/// The sources as dishes see them at a frequency.
-std::vector<imager::Source> attenuated(std::vector<imager::Source> sources, const PointedDishes& dishes, double frequency_hz) {
-  for (imager::Source& source : sources) {
-    const auto [l, m] = source.position;
-    source.flux_jy *=
-        std::pow(dishes.pattern->voltage_at(std::hypot(l, m), std::atan2(l, m) - dishes.zenith_rad, frequency_hz), 2);
-  }
-  return sources;
+/// How the rows of an observation see, about each field's own phase centre.
+imager::RowBeams beams_of(const SimulateOptions& o, const ms_io::SimulatedObservation& observation) {
+  const DishBeams beams(o.beam);
+  std::vector<imager::Pattern> of_diameter, of_antenna;
+  for (const double diameter_m : observation.dish_diameter_m)
+    of_diameter.push_back(beams.of({observation.telescope, diameter_m}).pattern);
+  for (std::size_t a = 0; a < observation.antenna_name.size(); ++a) of_antenna.push_back(of_diameter[a % of_diameter.size()]);
+  std::vector<imager::AxisFrame> frames;
+  for (const ms_io::SimulatedField& field : observation.fields) frames.push_back({{}, field.phase_centre.dec_rad});
+  return {std::move(of_antenna), std::move(frames)};
 }
 
-/// Their visibilities [row][channel], each channel with its own beam.
-std::vector<std::complex<double>> predict_attenuated(const std::vector<imager::Source>& sources, const PointedDishes& dishes,
-                                                     const imager::SampleCoordinates& at, int threads) {
-  const std::size_t channels = at.channels();
-  std::vector<std::complex<double>> visibilities(at.samples());
-  for (std::size_t c = 0; c < channels; ++c) {
-    const auto seen = attenuated(sources, dishes, at.frequency_hz[c]);
-    const auto of_channel = imager::predict_sources(seen, {at.uvw_m, {at.frequency_hz[c]}}, threads);
-    for (std::size_t row = 0; row < at.rows(); ++row) visibilities[row * channels + c] = of_channel[row];
+/// Sources about `from`, as seen from another phase centre; without those beyond its horizon.
+std::vector<imager::Source> moved(const std::vector<imager::Source>& sources, const imager::SkyDirection& from,
+                                  const imager::SkyDirection& to) {
+  if (from.ra_rad == to.ra_rad && from.dec_rad == to.dec_rad) return sources;
+  std::vector<imager::Source> seen;
+  for (imager::Source source : sources) {
+    try {
+      source.position = imager::direction_cosines(imager::sky_direction(source.position, from), to);
+    } catch (const std::invalid_argument&) {
+      continue;
+    }
+    seen.push_back(source);
   }
-  return visibilities;
+  return seen;
 }
 
 void simulate(const SimulateOptions& o) {
@@ -125,35 +150,42 @@ void simulate(const SimulateOptions& o) {
   const AntennaArray array = antenna_array(o.array);
   const ms_io::SimulatedObservation observation = observation_of(o, array);
   const bool test_card_sky = o.sky == "testcard";
-  const bool coplanar = o.coplanar || (test_card_sky && !o.noncoplanar);
+  const bool coplanar = o.coplanar || (test_card_sky && !o.noncoplanar && o.pointings.empty());
   const std::vector<imager::Source> sources =
-      test_card_sky ? test_card(parse_angle_rad(o.cell)) : read_component_list(o.sky, observation.phase_centre);
+      test_card_sky ? test_card(parse_angle_rad(o.cell)) : read_component_list(o.sky, centre_of(o));
+  std::vector<std::vector<imager::Source>> of_field;
+  for (const ms_io::SimulatedField& field : observation.fields)
+    of_field.push_back(moved(sources, centre_of(o), field.phase_centre));
   const int threads = o.threads == 0 ? imager::available_threads() : o.threads;
 
   ProgressLine progress(o.quiet);
   progress.begin("simulate");
-  PointedDishes dishes{DishBeams(o.beam).of({array.telescope, array.dish_diameter_m}).pattern};
+  const std::optional<imager::RowBeams> beams = o.primary_beam ? std::optional(beams_of(o, observation)) : std::nullopt;
+  float zenith_rad = 0;
   const auto baselines = [&](std::size_t integration) {
-    const LocalDirection source{hour_angle_rad(array, observation.phase_centre, observation.time_mjd_s[integration]),
-                                observation.phase_centre.dec_rad};
-    dishes.zenith_rad = parallactic_angle_rad(array, source);
+    const imager::SkyDirection& centre = observation.fields[observation.field_of(integration)].phase_centre;
+    const LocalDirection source{hour_angle_rad(array, centre, observation.time_mjd_s[integration]), centre.dec_rad};
+    zenith_rad = static_cast<float>(parallactic_angle_rad(array, source));
     std::vector<double> baseline = uvw(array, source);
     if (coplanar)
       for (std::size_t i = 2; i < baseline.size(); i += 3) baseline[i] = 0;
     return baseline;
   };
-  const auto exact = [&](const imager::SampleCoordinates& at) {
-    return o.primary_beam ? predict_attenuated(sources, dishes, at, threads) : imager::predict_sources(sources, at, threads);
+  const auto exact = [&](imager::SampleCoordinates at) {
+    const std::vector<imager::Source>& here = of_field[static_cast<std::size_t>(at.sights.front().field)];
+    for (imager::RowSight& sight : at.sights) sight.zenith_rad = zenith_rad;
+    return beams ? imager::predict_seen_sources(here, *beams, at, threads) : imager::predict_sources(here, at, threads);
   };
   ms_io::write_simulated_set(o.output, observation, baselines, exact,
                              [&](std::size_t done, std::size_t total) { progress.update(done, total); });
   progress.end();
   const std::size_t antennas = array.name.size();
   const auto visibilities = antennas * (antennas - 1) / 2 * observation.time_mjd_s.size() * observation.frequency_hz.size();
+  const std::size_t fields = observation.fields.size();
   if (!o.quiet)
-    std::printf("%s: %s visibilities of %zu sources, %s, w %s\n", o.output.c_str(),
+    std::printf("%s: %s visibilities of %zu sources, %s%s, w %s\n", o.output.c_str(),
                 grouped(static_cast<long long>(visibilities)).c_str(), sources.size(), o.array.c_str(),
-                coplanar ? "= 0" : "kept");
+                fields == 1 ? "" : (", " + std::to_string(fields) + " pointings").c_str(), coplanar ? "= 0" : "kept");
 }
 
 }  // namespace
@@ -174,9 +206,18 @@ void add_simulate_command(CLI::App& program) {
   command->add_flag("--noncoplanar", o->noncoplanar, "Keep w (the default otherwise)")->excludes(coplanar);
   command->add_flag(
       "--primary-beam", o->primary_beam,
-      "Let the dishes attenuate the sources by their primary beam around the phase centre, at the frequency of each "
-      "channel; Gaussians as at their middle");
-  command->add_option("--beam", o->beam, "The primary beam of --primary-beam in place of the VLA's, as of `misfit image`")
+      "Let the dishes attenuate the sources by their primary beam around where they point, at the frequency of each channel; "
+      "Gaussians as at their middle");
+  command->add_option("--beam", o->beam, "The primary beam of --primary-beam in place of the telescope's, as of `misfit image`")
+      ->type_name(name_or_file_type);
+  command->add_option("--telescope", o->telescope, "The telescope that the set names in place of EVLA, such as ALMA");
+  command->add_option("--dishes", o->dishes, "Diameters in metres, of the antennas by turns: 12,7; 25 when not given")
+      ->delimiter(',');
+  command
+      ->add_option(
+          "--pointings", o->pointings,
+          "hex,N,SPACING: the N nearest pointings of a hexagonal lattice about --ra and --dec, SPACING apart; or a CSV "
+          "file of ra_deg,dec_deg. Each is a field, and they are visited by turns, an integration each, once at least")
       ->type_name(name_or_file_type);
   command->add_option("--cell", o->cell, "The test card's cell")->check(quantity(parse_angle_rad));
   command->add_option("--ra", o->ra, "Right ascension of the phase centre, J2000")->check(quantity(parse_angle_rad));

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <string>
 
 namespace misfit::imager {
@@ -10,5 +11,11 @@ struct AntennaSort {
   double diameter_m = 0;  ///< as in the set; not positive where it does not say
   std::string name = {};  ///< of one of them, for messages
 };
+
+/// Whether they are one sort, whatever their names.
+inline bool alike(const AntennaSort& a, const AntennaSort& b) {
+  const bool as_large = a.diameter_m == b.diameter_m || (std::isnan(a.diameter_m) && std::isnan(b.diameter_m));
+  return as_large && a.telescope == b.telescope;
+}
 
 }  // namespace misfit::imager

@@ -34,10 +34,19 @@ struct NothingUsable : std::runtime_error {
   explicit NothingUsable(const SampleCounts& counts);
 };
 
+/// With what a row was observed, and in which direction, by numbers of the MeasurementSet.
+struct RowSight {
+  std::int32_t antenna_one = 0;
+  std::int32_t antenna_other = 0;
+  std::int32_t field = 0;
+  float zenith_rad = 0;  ///< position angle of the zenith, from north through east, by which the dishes are turned
+};
+
 /// Where samples lie: rows of UVW, each seen at every channel. Those of the same rows share UVW.
 struct SampleCoordinates {
-  SharedVector<double> uvw_m;        ///< [row][3], metres, with the sign stored in the MeasurementSet
-  std::vector<double> frequency_hz;  ///< [channel]
+  SharedVector<double> uvw_m;         ///< [row][3], metres, with the sign stored in the MeasurementSet
+  std::vector<double> frequency_hz;   ///< [channel]
+  std::vector<RowSight> sights = {};  ///< [row] where they were asked for, else empty
 
   std::size_t rows() const { return uvw_m.size() / 3; }
   std::size_t channels() const { return frequency_hz.size(); }

@@ -118,7 +118,7 @@ BOOST_AUTO_TEST_CASE(every_field_that_is_selected_has_its_pointing_seen_from_the
   BOOST_TEST(std::abs(all[0].from_centre_rad - 0.01) < 1e-12);
   BOOST_REQUIRE_EQUAL(pointings("0").size(), 2U);
   BOOST_TEST(pointings("0")[0].field == "0 (SIMULATED)");
-  BOOST_TEST(all[0].smallest_dish_m == small_observation().dish_diameter_m);
+  BOOST_TEST(all[0].smallest_dish_m == small_observation().dish_diameter_m.front());
   first.modify([](casacore::MeasurementSet& table) {
     casacore::ScalarColumn<double>(table.antenna(), "DISH_DIAMETER").fillColumn(0);
     casacore::ScalarColumn<double>(table.antenna(), "DISH_DIAMETER").put(1, 12);

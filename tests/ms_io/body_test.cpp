@@ -195,7 +195,7 @@ BOOST_AUTO_TEST_CASE(fields_that_stand_still_are_shifted_to_what_is_followed) {
       const MDirection there =
           MDirection::Convert(comet->seen_from(frame, utc(time(row))), MDirection::Ref(MDirection::J2000, frame))();
       const casacore::Vector<double> at = there.getAngle().getValue();
-      put_point(open, row, {at(0), at(1)}, small_observation().phase_centre);
+      put_point(open, row, {at(0), at(1)}, small_observation().fields.front().phase_centre);
     }
   });
   const MeasurementSet opened(set.path(), following(table, set.path()), "DATA");

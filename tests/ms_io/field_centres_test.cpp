@@ -373,7 +373,7 @@ BOOST_AUTO_TEST_CASE(sets_that_differ_by_rounding_are_one_image_about_the_first)
   put_fixed_source(first.path(), {}, source, flux_jy);
   for (const double apart : {1e-11, 4e-11, 1e-8}) {
     SimulatedObservation beside = small_observation();
-    beside.phase_centre.ra_rad += apart;
+    beside.fields.front().phase_centre.ra_rad += apart;
     const SmallSet second(beside);
     put_fixed_source(second.path(), {}, source, flux_jy);
     const MeasurementSet both({first.path(), second.path()}, {}, "DATA");

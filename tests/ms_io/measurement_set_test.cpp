@@ -447,7 +447,7 @@ BOOST_AUTO_TEST_CASE(the_observation_is_described_from_its_first_row) {
 BOOST_AUTO_TEST_CASE(the_frame_of_the_phase_centre_is_kept) {
   for (const std::string frame : {"FK5", "ICRS", "FK4"}) {
     SimulatedObservation observation = small_observation();
-    observation.phase_centre.frame = frame;
+    observation.fields.front().phase_centre.frame = frame;
     const SmallSet set(observation);
     const imager::SkyDirection centre = MeasurementSet(set.path(), {}, "DATA").observation().phase_centre;
     BOOST_TEST(centre.frame == frame);

@@ -127,7 +127,7 @@ BOOST_AUTO_TEST_CASE(a_number_is_an_id_before_it_is_a_name) {
 
 BOOST_AUTO_TEST_CASE(a_field_is_that_of_the_first_set_that_has_it_with_a_word_where_another_has_it_elsewhere) {
   SimulatedObservation observation = small_observation();
-  observation.phase_centre.dec_rad += 0.001;
+  observation.fields.front().phase_centre.dec_rad += 0.001;
   const SmallSet one, other(observation), same;
   other.add_field(1.5, -0.25);
   const auto remark = [](const std::string& text, const std::vector<std::string>& paths) {
@@ -240,7 +240,7 @@ BOOST_AUTO_TEST_CASE(between_b1950_and_j2000_a_calibrator_stays_where_it_is_and_
   BOOST_TEST(std::abs(turn) > 1e-3);
   for (const bool set_is_b1950 : {true, false}) {
     SimulatedObservation observation = small_observation();
-    observation.phase_centre = j2000;
+    observation.fields.front().phase_centre = j2000;
     for (double& time : observation.time_mjd_s) time += epoch_mjd_s - 4.9e9;
     const SmallSet set(observation);
     if (set_is_b1950) set.phase_to_b1950(b1950.ra_rad, b1950.dec_rad);
@@ -279,7 +279,7 @@ BOOST_AUTO_TEST_CASE(a_model_about_the_shifted_centre_is_written_as_each_field_s
 
 BOOST_AUTO_TEST_CASE(sets_apart_are_one_image_where_they_are_shifted) {
   SimulatedObservation elsewhere = small_observation();
-  elsewhere.phase_centre.dec_rad += 0.01;
+  elsewhere.fields.front().phase_centre.dec_rad += 0.01;
   const SmallSet first, second(elsewhere);
   const std::vector<std::string> paths{first.path(), second.path()};
   BOOST_TEST(!error_of([&] { MeasurementSet(paths, {}, "DATA"); }).empty());

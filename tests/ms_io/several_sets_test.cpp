@@ -16,16 +16,17 @@ namespace {
 /// Of another telescope, date, band and feed.
 class OtherSet : public SmallSet {
  public:
-  explicit OtherSet(const imager::SkyDirection& centre = small_observation().phase_centre) : SmallSet(other(centre)) {
+  explicit OtherSet(const imager::SkyDirection& centre = small_observation().fields.front().phase_centre)
+      : SmallSet(other(centre)) {
     store_correlations({5, 6, 7, 8});
   }
 
  private:
   static SimulatedObservation other(const imager::SkyDirection& centre) {
     SimulatedObservation observation = small_observation();
-    observation.phase_centre = centre;
+    observation.fields.front().phase_centre = centre;
     observation.telescope = "VLBA";
-    observation.field_name = "AGAIN";
+    observation.fields.front().name = "AGAIN";
     for (double& f : observation.frequency_hz) f += 0.5e9;
     for (double& t : observation.time_mjd_s) t += 86400;
     return observation;

@@ -138,6 +138,38 @@ BOOST_AUTO_TEST_CASE(progress_counts_integrations) {
   BOOST_TEST(done == (std::vector<std::size_t>{1, 2, 3, 4, 5}), boost::test_tools::per_element());
 }
 
+BOOST_AUTO_TEST_CASE(fields_are_visited_by_turns_by_dishes_of_several_sorts) {
+  SimulatedObservation observation = small_observation();
+  observation.fields = {{"A", {1, 0.5}}, {"B", {1.01, 0.5}}, {"C", {1, 0.51}}};
+  observation.dish_diameter_m = {12, 7};
+  std::vector<std::vector<imager::RowSight>> sights;
+  const TemporaryFolder folder;
+  const auto note = [&](const imager::SampleCoordinates& where) {
+    sights.push_back(where.sights);
+    return small_visibilities(where);
+  };
+  write_simulated_set((folder / "a.ms"), observation, small_uvw, note, {});
+  const casacore::MeasurementSet set(folder / "a.ms");
+  const casacore::MSMainColumns rows_of(set);
+  BOOST_REQUIRE_EQUAL(sights.size(), integrations);
+  for (std::size_t row = 0; row < rows; ++row) {
+    const imager::RowSight& sight = sights[row / baselines][row % baselines];
+    BOOST_TEST(rows_of.fieldId()(row) == static_cast<int>(row / baselines % 3));
+    BOOST_TEST(sight.field == rows_of.fieldId()(row));
+    BOOST_TEST(sight.antenna_one == rows_of.antenna1()(row));
+    BOOST_TEST(sight.antenna_other == rows_of.antenna2()(row));
+  }
+  Selection third;
+  third.field = "C";
+  const MeasurementSet of_third(folder / "a.ms", third, "DATA");
+  BOOST_TEST(of_third.observation().phase_centre.dec_rad == 0.51);
+  BOOST_TEST(of_third.antennas().at(3).diameter_m == 7);
+  BOOST_TEST(of_third.beam_rows().sorts.size() == 2U);
+  observation.fields.back().phase_centre.frame = "ICRS";
+  BOOST_CHECK_THROW(write_simulated_set((folder / "b.ms"), observation, small_uvw, small_visibilities, {}),
+                    std::invalid_argument);
+}
+
 BOOST_AUTO_TEST_SUITE_END()
 
 }  // namespace misfit::ms_io

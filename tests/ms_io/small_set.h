@@ -32,7 +32,7 @@ constexpr std::size_t antennas = 4, baselines = 6, integrations = 5, channels = 
 
 inline SimulatedObservation small_observation() {
   SimulatedObservation observation;
-  observation.phase_centre = {1.25, -0.5, "FK5"};
+  observation.fields.front().phase_centre = {1.25, -0.5, "FK5"};
   for (std::size_t a = 0; a < antennas; ++a) {
     observation.antenna_name.push_back("A" + std::to_string(a));
     observation.antenna_itrf_m.push_back({-1601185.0 + 100.0 * static_cast<double>(a * a), -5041977.0, 3554875.0});

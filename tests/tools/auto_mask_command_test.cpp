@@ -48,15 +48,16 @@ void write_set(const std::string& path, const Scene& scene, const std::string& t
   o.telescope = telescope;
   o.antenna_name = array.name;
   o.antenna_itrf_m = array.itrf_m;
-  o.phase_centre = {1.0, 0.7, "FK5"};
-  for (int i = -12; i < 12; ++i) o.time_mjd_s.push_back(tools::transit_mjd_s(array, o.phase_centre, 4.5e9) + 600 * i);
+  o.fields.front().phase_centre = {1.0, 0.7, "FK5"};
+  for (int i = -12; i < 12; ++i)
+    o.time_mjd_s.push_back(tools::transit_mjd_s(array, o.fields.front().phase_centre, 4.5e9) + 600 * i);
   for (std::size_t c = 0; c < scene.size(); ++c) o.frequency_hz.push_back(line_hz + channel_hz * static_cast<double>(c));
   o.channel_width_hz = channel_hz;
   const std::size_t rows = array.name.size() * (array.name.size() - 1) / 2;
   o.noise_jy = noise_jy * std::sqrt(2.0 * static_cast<double>(rows * o.time_mjd_s.size()));  // Stokes I is the mean of two
   const auto coordinates = [&](std::size_t integration) {
-    const double hour_angle = tools::hour_angle_rad(array, o.phase_centre, o.time_mjd_s[integration]);
-    std::vector<double> all = tools::uvw(array, {hour_angle, o.phase_centre.dec_rad});
+    const double hour_angle = tools::hour_angle_rad(array, o.fields.front().phase_centre, o.time_mjd_s[integration]);
+    std::vector<double> all = tools::uvw(array, {hour_angle, o.fields.front().phase_centre.dec_rad});
     for (std::size_t i = 2; i < all.size(); i += 3) all[i] = 0;
     return all;
   };

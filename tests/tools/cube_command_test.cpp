@@ -28,7 +28,7 @@ std::vector<double> times() {
 
 ms_io::SimulatedObservation observation() {
   ms_io::SimulatedObservation o;
-  o.phase_centre = {1.25, 0.3, "FK5"};
+  o.fields.front().phase_centre = {1.25, 0.3, "FK5"};
   for (std::size_t a = 0; a < antennas; ++a) {
     const double east = 90.0 * static_cast<double>(a * a);
     o.antenna_name.push_back("A" + std::to_string(a));

@@ -43,7 +43,7 @@ std::vector<double> uvw(std::size_t integration) {
 /// A point of 1 Jy in the phase centre.
 std::string write_point(const TemporaryFolder& folder, const std::string& name) {
   ms_io::SimulatedObservation o;
-  o.phase_centre = {1.25, 0.3, "FK5"};
+  o.fields.front().phase_centre = {1.25, 0.3, "FK5"};
   for (int a = 0; a < 5; ++a) {
     o.antenna_name.push_back("A" + std::to_string(a));
     o.antenna_itrf_m.push_back({-1601185.4 + 90.0 * a * a, -5041977.5, 3554875.9});

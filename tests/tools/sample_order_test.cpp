@@ -29,7 +29,7 @@ std::vector<double> uvw(std::size_t integration) {
 /// Three points, seen on some days.
 std::string write_set(const std::string& path, double first_hz, const std::vector<double>& days) {
   ms_io::SimulatedObservation o;
-  o.phase_centre = {1.25, 0.3, "FK5"};
+  o.fields.front().phase_centre = {1.25, 0.3, "FK5"};
   for (std::size_t a = 0; a < antennas; ++a) {
     o.antenna_name.push_back("A" + std::to_string(a));
     o.antenna_itrf_m.push_back({-1601185.4 + 90.0 * static_cast<double>(a * a), -5041977.5, 3554875.9});

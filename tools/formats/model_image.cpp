@@ -195,16 +195,22 @@ std::string misplacement_warning(const imager::ImageReader& file, const std::str
          "; regrid it first, as with CASA's imregrid";
 }
 
-ModelVisibilities image_visibilities(const StokesPlanes& planes, const imager::ImageGeometry& geometry,
-                                     imager::GriddingRequest request, const ms_io::MeasurementSet& set,
-                                     const TaylorTerms& taylor) {
+imager::GriddingRequest prediction_request(imager::GriddingRequest request, const imager::ImageGeometry& geometry,
+                                           const ms_io::MeasurementSet& set) {
   request.geometry = geometry;
   const std::vector<std::uint64_t> samples = set.sharing().samples;
   request.samples = std::accumulate(samples.begin(), samples.end(), std::uint64_t{0});
   request.psf = false;
   request.max_abs_w = set.reach(ms_io::ReachOf::all).max_abs_w;
+  return request;
+}
+
+ModelVisibilities image_visibilities(const StokesPlanes& planes, const imager::ImageGeometry& geometry,
+                                     const imager::GriddingRequest& request, const ms_io::MeasurementSet& set,
+                                     const TaylorTerms& taylor) {
   ModelVisibilities model;
-  model.transform = std::make_unique<imager::PlannedTransform>(imager::plan_gridding(request));
+  model.transform =
+      std::make_unique<imager::PlannedTransform>(imager::plan_gridding(prediction_request(request, geometry, set)));
   std::array<const imager::Prediction*, 4> of{};
   for (std::size_t k = 0; k < planes.size(); ++k) {
     if (planes[k] == nullptr) continue;

@@ -65,9 +65,13 @@ struct TaylorTerms {
   std::array<std::vector<const imager::Image*>, 4> further;  ///< [plane][term − 1]; empty where there is one term
 };
 
+/// `request` for a prediction of an image at all selected samples of `set`, flagged or not.
+imager::GriddingRequest prediction_request(imager::GriddingRequest request, const imager::ImageGeometry& geometry,
+                                           const ms_io::MeasurementSet& set);
+
 /// The visibilities of a model at all selected samples of `set`, flagged or not, as `request` would have them gridded.
 ModelVisibilities image_visibilities(const StokesPlanes& model, const imager::ImageGeometry& geometry,
-                                     imager::GriddingRequest request, const ms_io::MeasurementSet& set,
+                                     const imager::GriddingRequest& request, const ms_io::MeasurementSet& set,
                                      const TaylorTerms& taylor = {});
 
 }  // namespace misfit::tools

@@ -17,6 +17,8 @@ template <typename Archive>
 void save(Archive& archive, const SampleCoordinates& where) {
   archive(static_cast<std::uint64_t>(where.uvw_m.size()));
   archive(cereal::binary_data(where.uvw_m.data(), where.uvw_m.size() * sizeof(double)), where.frequency_hz);
+  archive(static_cast<std::uint64_t>(where.sights.size()));
+  archive(cereal::binary_data(where.sights.data(), where.sights.size() * sizeof(RowSight)));
 }
 
 template <typename Archive>
@@ -26,6 +28,9 @@ void load(Archive& archive, SampleCoordinates& where) {
   std::vector<double> uvw_m(size);
   archive(cereal::binary_data(uvw_m.data(), uvw_m.size() * sizeof(double)), where.frequency_hz);
   where.uvw_m = std::move(uvw_m);
+  archive(size);
+  where.sights.resize(size);
+  archive(cereal::binary_data(where.sights.data(), where.sights.size() * sizeof(RowSight)));
 }
 
 }  // namespace misfit::imager

@@ -1,0 +1,50 @@
+#pragma once
+
+#include <cmath>
+
+#include "imager/data/geometry.h"
+
+namespace misfit::imager {
+
+/// Directions as they lie about an axis, by true angles: those of dishes that point there.
+class AxisFrame {
+ public:
+  /// Where a direction is: sin θ of its angle θ from the axis, and its position angle about it, from the north there through
+  /// the east.
+  struct Place {
+    double sine;
+    double angle_rad;
+  };
+
+  /// Of an axis that is seen from a phase centre of this declination. About a pole north is where the image has it.
+  AxisFrame(DirectionCosines axis, double phase_centre_dec_rad);
+
+  /// sin θ; 2 where the direction is farther away than 90°, and NaN where it lies beyond the horizon of the phase centre.
+  double sine(DirectionCosines at) const { return sine(Towards(at)); }
+  /// The position angle of a direction within 90° that is not the axis itself.
+  double angle_rad(DirectionCosines at) const {
+    const Towards d(at);
+    return std::atan2(d.along(east_), d.along(north_));
+  }
+  /// Both.
+  Place place(DirectionCosines at) const { return {sine(at), angle_rad(at)}; }
+
+ private:
+  /// A vector to the east, to the north, and to the phase centre.
+  struct Towards {
+    double l = 0, m = 0, n = 0;
+    Towards() = default;
+    explicit Towards(DirectionCosines at) : l(at.l), m(at.m), n(1 + n_minus_1(at)) {}
+    double along(const Towards& other) const { return l * other.l + m * other.m + n * other.n; }
+  };
+
+  /// From the chord, which keeps small angles.
+  double sine(const Towards& at) const {
+    const double l = at.l - axis_.l, m = at.m - axis_.m, n = at.n - axis_.n, chord2 = l * l + m * m + n * n;
+    return chord2 > 2 ? 2 : std::sqrt(chord2 * (1 - chord2 / 4));
+  }
+
+  Towards axis_, north_, east_;
+};
+
+}  // namespace misfit::imager

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <functional>
+#include <vector>
+
+namespace misfit::imager {
+
+/// Frequencies between which something smooth follows by a polynomial from its values at a few.
+struct FrequencySpan {
+  double low_hz = 0;
+  double high_hz = 0;
+  std::vector<double> node_hz;  ///< ascending
+
+  bool holds(double frequency_hz) const { return frequency_hz >= low_hz && frequency_hz <= high_hz; }
+  /// What the values at the nodes count for at a frequency, by Lagrange's formula.
+  std::vector<double> weights(double frequency_hz) const;
+};
+
+/// Values at a frequency, always as many.
+using ValuesAtFrequency = std::function<std::vector<double>(double frequency_hz)>;
+
+/// The fewest spans and nodes that were found by which `values` follow at all of these frequencies, in any order, to
+/// `tolerance`: Chebyshev's points of ever shorter spans, and the frequencies themselves where they are few. Values may jump
+/// between two of them.
+std::vector<FrequencySpan> frequency_spans(std::vector<double> frequency_hz, const ValuesAtFrequency& values, double tolerance);
+
+}  // namespace misfit::imager

@@ -1,0 +1,57 @@
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "imager/beams/axis_frame.h"
+#include "imager/beams/voltage_pattern.h"
+#include "imager/data/source.h"
+#include "imager/data/visibilities.h"
+
+namespace misfit::imager {
+
+/// How a pair of dishes that point alike sees the sky.
+struct PairBeam {
+  Pattern one;
+  Pattern other;
+  AxisFrame frame;        ///< about where they point
+  double zenith_rad = 0;  ///< where the zenith is, from north through east; of no matter where both patterns are round
+
+  bool is_round() const { return one->is_round() && other->is_round(); }
+  /// Vₒₙₑ Vₒₜₕₑᵣ, signed, of a direction that is seen from the phase centre; 0 where it is 90° or more from the axis, or beyond
+  /// the horizon.
+  double power(DirectionCosines at, double frequency_hz) const;
+};
+
+/// The sources as they seem to the pair at a frequency; Gaussians as at their middle.
+std::vector<Source> seen_by(const PairBeam& beam, std::vector<Source> sources, double frequency_hz);
+
+/// From what is known of rows to how they see.
+class RowBeams {
+ public:
+  /// Rows that see alike.
+  struct Group {
+    PairBeam beam;
+    int field = 0;  ///< that these rows have
+    std::vector<std::size_t> rows;
+  };
+
+  /// Patterns [antenna], and frames about where antennas pointed [field], of whatever numbers rows have.
+  RowBeams(std::vector<Pattern> of_antenna, std::vector<AxisFrame> of_field)
+      : of_antenna_(std::move(of_antenna)), of_field_(std::move(of_field)) {}
+
+  /// In the order in which their first rows come. Where patterns are not round, rows see alike whose zeniths differ by less
+  /// than `turn_rad`; 0: that are the same. Throws std::out_of_range for antennas and fields that it was not given.
+  std::vector<Group> groups(const std::vector<RowSight>& sights, double turn_rad = 0) const;
+
+  const std::vector<Pattern>& of_antenna() const { return of_antenna_; }
+
+ private:
+  std::vector<Pattern> of_antenna_;
+  std::vector<AxisFrame> of_field_;
+};
+
+/// The rows of these coordinates with these numbers.
+SampleCoordinates rows_of(const SampleCoordinates& at, const std::vector<std::size_t>& rows);
+
+}  // namespace misfit::imager

@@ -1,0 +1,139 @@
+#include "tools/run/seen_model.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <memory>
+#include <stdexcept>
+#include <utility>
+
+#include "imager/numerics/constants.h"
+#include "imager/plan/planned_transform.h"
+#include "imager/pointing/seen_image.h"
+#include "imager/pointing/seen_sources.h"
+#include "tools/base/numbers.h"
+#include "tools/run/field_beams.h"
+
+namespace misfit::tools {
+namespace {
+
+/// [antenna]; of those that no row of two antennas has, the first sort's.
+std::vector<imager::Pattern> patterns_of(const ms_io::MeasurementSet& set, const ms_io::BeamRows& rows, const DishBeams& beams,
+                                         std::vector<std::string>& doubts) {
+  std::vector<imager::BeamModel> models;
+  for (const imager::AntennaSort& sort : rows.sorts) {
+    models.push_back(beams.of(sort));
+    const std::string doubt = models.back().doubt_at(set.observation().frequency_hz);
+    if (!doubt.empty() && std::find(doubts.begin(), doubts.end(), doubt) == doubts.end()) doubts.push_back(doubt);
+  }
+  std::vector<imager::Pattern> patterns;
+  for (const imager::AntennaSort& antenna : set.antennas()) {
+    const auto sort = std::find_if(rows.sorts.begin(), rows.sorts.end(),
+                                   [&](const imager::AntennaSort& one) { return imager::alike(one, antenna); });
+    const bool known = sort != rows.sorts.end();
+    patterns.push_back(models[known ? static_cast<std::size_t>(sort - rows.sorts.begin()) : 0].pattern);
+  }
+  return patterns;
+}
+
+/// The narrowest of the beams between half-power points, about.
+double narrowest_rad(const std::vector<imager::Pattern>& patterns, double frequency_hz) {
+  double narrowest = 1;
+  for (const imager::Pattern& pattern : patterns) narrowest = std::min(narrowest, pattern->detail_sine(frequency_hz));
+  return narrowest;
+}
+
+void require_still(const std::vector<ms_io::FieldPointing>& pointings, double width_rad) {
+  for (const ms_io::FieldPointing& one : pointings)
+    for (const ms_io::FieldPointing& other : pointings)
+      if (one.id == other.id && angle_between(one.direction, other.direction) > same_pointing_beams * width_rad)
+        throw std::runtime_error("antennas of field " + field_words(one, pointings) + " and " + field_words(other, pointings) +
+                                 " pointed " + angle_text(angle_between(one.direction, other.direction), 3) +
+                                 " apart: beams that move past the model are not applied; expected some of its time with "
+                                 "--timerange");
+}
+
+std::vector<imager::AxisFrame> frames_of(const std::vector<ms_io::FieldPointing>& pointings,
+                                         const imager::SkyDirection& centre) {
+  std::vector<imager::AxisFrame> frames;
+  for (const ms_io::FieldPointing& pointing : pointings) {
+    const auto place = static_cast<std::size_t>(pointing.id);
+    if (frames.size() <= place) frames.resize(place + 1, imager::AxisFrame({}, centre.dec_rad));
+    try {
+      frames[place] = {imager::direction_cosines(pointing.direction, centre), centre.dec_rad};
+    } catch (const std::invalid_argument&) {
+      throw std::runtime_error("antennas of field " + field_words(pointing, pointings) +
+                               " pointed more than 90 degrees away from the model; expected --field without it");
+    }
+  }
+  return frames;
+}
+
+/// What a prediction through beams needs as long as it is asked.
+struct SeenPlanes {
+  std::array<imager::Image, 4> plane;
+  imager::PlannedTransform transform;
+  imager::RowBeams beams;
+  std::array<std::unique_ptr<imager::SeenImage>, 4> seen;
+
+  SeenPlanes(const imager::GriddingRequest& request, imager::RowBeams of_rows)
+      : transform(imager::plan_gridding(request)), beams(std::move(of_rows)) {}
+};
+
+std::vector<double> frequencies_of(const ms_io::MeasurementSet& set) {
+  std::vector<double> all;
+  for (const ms_io::SpectralWindow& window : set.spectral_windows())
+    all.insert(all.end(), window.frequency_hz.begin(), window.frequency_hz.end());
+  return all;
+}
+
+}  // namespace
+
+SetBeams set_beams(const ms_io::MeasurementSet& set, const DishBeams& beams) {
+  constexpr double beside = 0.01;
+  const ms_io::BeamRows rows = set.beam_rows();
+  if (rows.sorts.empty())
+    throw std::runtime_error("no row of two antennas is selected; expected some, of which --apply-beam takes the beam");
+  std::vector<std::string> doubts;
+  std::vector<imager::Pattern> patterns = patterns_of(set, rows, beams, doubts);
+  const double width_rad = narrowest_rad(patterns, set.observation().frequency_hz);
+  if (rows.beam_offset_rad() > beside * width_rad)
+    throw std::runtime_error("FEED's column BEAM_OFFSET says that beams point " + angle_text(rows.beam_offset_rad(), 3) +
+                             " beside the field's direction; expected beams on the axis of their dishes");
+  require_still(rows.pointings, width_rad);
+  return {{std::move(patterns), frames_of(rows.pointings, set.observation().phase_centre)}, std::move(doubts)};
+}
+
+ms_io::Predict seen_sources(std::vector<std::vector<imager::Source>> sources, imager::RowBeams beams, int threads) {
+  return [sources = std::move(sources), beams = std::move(beams), threads](const imager::SampleCoordinates& at) {
+    ms_io::StokesVisibilities visibilities(imager::predict_seen_sources(sources[0], beams, at, threads));
+    for (std::size_t k = 1; k < sources.size(); ++k)
+      if (!sources[k].empty()) visibilities.plane[k] = imager::predict_seen_sources(sources[k], beams, at, threads);
+    return visibilities;
+  };
+}
+
+ModelVisibilities seen_image(const StokesPlanes& planes, const imager::ImageGeometry& geometry,
+                             const imager::GriddingRequest& request, const ms_io::MeasurementSet& set, imager::RowBeams beams) {
+  constexpr double part_of_accuracy = 0.1, degree = imager::pi / 180;
+  const auto state = std::make_shared<SeenPlanes>(prediction_request(request, geometry, set), std::move(beams));
+  const imager::SeenImageOptions options{part_of_accuracy * (request.accuracy > 0 ? request.accuracy : 1e-6), degree / 4,
+                                         request.threads};
+  ModelVisibilities model;
+  for (std::size_t k = 0; k < planes.size(); ++k) {
+    if (planes[k] == nullptr) continue;
+    state->plane[k] = *planes[k];
+    state->seen[k] = std::make_unique<imager::SeenImage>(state->transform, state->plane[k], geometry, state->beams,
+                                                         frequencies_of(set), options);
+    model.samples_at_once = std::max<std::uint64_t>(model.samples_at_once, state->seen[k]->samples_at_once());
+  }
+  model.predict = [state](const imager::SampleCoordinates& at) {
+    ms_io::StokesVisibilities visibilities;
+    for (std::size_t k = 0; k < state->seen.size(); ++k)
+      if (state->seen[k]) visibilities.plane[k] = state->seen[k]->at(at);
+    return visibilities;
+  };
+  return model;
+}
+
+}  // namespace misfit::tools
