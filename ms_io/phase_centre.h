@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -7,6 +8,10 @@
 #include "ms_io/selection.h"
 
 namespace misfit::ms_io {
+
+/// The direction that `text` states: a frame and angles, as parse_phase_centre() takes them, which looks for fields of a name
+/// besides. Nothing where it is none.
+std::optional<imager::SkyDirection> parse_direction(const std::string& text);
 
 /// The direction that `text` means, as CASA's tasks take it: "J2000 12h30m49.4s +12d23m28s", with J2000 (also when left out),
 /// ICRS or B1950, angles such as 12h30m49.4s, 12:30:49.4, +12d23m28s, +12.23.28 and 187.7deg; or a field of the MeasurementSet

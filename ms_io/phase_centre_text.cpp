@@ -35,25 +35,6 @@ std::optional<double> angle_rad(const std::string& text) {
   return angle.getValue("rad");
 }
 
-std::optional<imager::SkyDirection> direction_in(const std::string& text) {
-  std::istringstream stream(text);
-  std::vector<std::string> words;
-  for (std::string word; stream >> word;) words.push_back(word);
-  imager::SkyDirection direction;
-  if (words.size() == 3) {
-    direction.frame = frame_named(words.front());
-    words.erase(words.begin());
-  }
-  if (words.size() != 2 || direction.frame.empty()) return {};
-  const std::optional<double> ra = angle_rad(words[0]), dec = angle_rad(words[1]);
-  constexpr double pole = 1.5707963267948968;
-  const bool hours = words[1].find_first_of(":h") != std::string::npos;  // which a declination does not count
-  if (!ra || !dec || hours || !(std::abs(*dec) <= pole) || !(std::abs(*ra) <= 4 * pole)) return {};
-  direction.ra_rad = std::fmod(std::fmod(*ra, 4 * pole) + 4 * pole, 4 * pole);
-  direction.dec_rad = *dec;
-  return direction;
-}
-
 /// The fields that the text names: the one of that id, as --field takes numbers, or all of that name.
 std::vector<int> fields_in(const casacore::MeasurementSet& set, const std::string& text) {
   const auto names = casacore::ScalarColumn<casacore::String>(set.field(), "NAME").getColumn().tovector();
@@ -163,7 +144,7 @@ std::optional<Meant> field_of_sets(const std::string& text, const std::vector<st
 }
 
 std::optional<Meant> meaning_of(const std::string& text, const std::vector<std::string>& paths) {
-  if (const auto direction = direction_in(text)) return Meant{*direction};
+  if (const auto direction = parse_direction(text)) return Meant{*direction};
   return field_of_sets(text, paths);
 }
 
@@ -186,6 +167,25 @@ bool is_table(const std::string& path) {
 }
 
 }  // namespace
+
+std::optional<imager::SkyDirection> parse_direction(const std::string& text) {
+  std::istringstream stream(text);
+  std::vector<std::string> words;
+  for (std::string word; stream >> word;) words.push_back(word);
+  imager::SkyDirection direction;
+  if (words.size() == 3) {
+    direction.frame = frame_named(words.front());
+    words.erase(words.begin());
+  }
+  if (words.size() != 2 || direction.frame.empty()) return {};
+  const std::optional<double> ra = angle_rad(words[0]), dec = angle_rad(words[1]);
+  constexpr double pole = 1.5707963267948968;
+  const bool hours = words[1].find_first_of(":h") != std::string::npos;  // which a declination does not count
+  if (!ra || !dec || hours || !(std::abs(*dec) <= pole) || !(std::abs(*ra) <= 4 * pole)) return {};
+  direction.ra_rad = std::fmod(std::fmod(*ra, 4 * pole) + 4 * pole, 4 * pole);
+  direction.dec_rad = *dec;
+  return direction;
+}
 
 imager::SkyDirection parse_phase_centre(const std::string& text, const std::string& path) {
   const std::optional<Meant> meant = meaning_of(text, {path});

@@ -96,6 +96,7 @@ std::unique_ptr<CLI::App> make_program(const CommandCall& call) {
   program->option_defaults()->always_capture_default();
   add_image_command(*program, call);
   add_predict_command(*program, call);
+  add_mosaic_command(*program, call);
   add_simulate_command(*program);
   add_kernel_command(*program);
   add_report_command(*program);

@@ -90,14 +90,14 @@ bool is_own_image(const std::string& path) {
   return header.find("ORIGIN  = 'misfit") != std::string::npos;
 }
 
-void check_image_paths(const std::string& name, const std::string& outformat) {
+void check_image_paths(const std::string& name, const std::string& outformat, const std::string& option) {
   std::error_code absent;
   for (const std::string& path : image_paths(name, outformat)) {
     if (!std::filesystem::exists(path, absent)) continue;
     const bool fits = path.ends_with(".fits");
     if (fits ? !std::filesystem::is_regular_file(path, absent) : !ms_io::is_casa_image(path))
       throw std::runtime_error("cannot write " + path + ": it is there already and no " +
-                               (fits ? "regular file" : "casacore image") + "; expected another --imagename");
+                               (fits ? "regular file" : "casacore image") + "; expected another " + option);
   }
 }
 

@@ -28,8 +28,8 @@ std::optional<std::string> newest_image(const std::string& name);
 /// Whether a file of images at such a path was written here: people keep masks and models of theirs under our names too.
 bool is_own_image(const std::string& path);
 
-/// Throws std::runtime_error where something lies at such a path that no image may take the place of.
-void check_image_paths(const std::string& name, const std::string& outformat);
+/// Throws std::runtime_error where something lies at such a path that no image may take the place of; `option` gave the name.
+void check_image_paths(const std::string& name, const std::string& outformat, const std::string& option = "--imagename");
 
 /// Begins the files of an image at these paths. One writer writes them all, and finish() leaves all under their names. Throws
 /// what create_fits_image() and create_casa_image() throw.

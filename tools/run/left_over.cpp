@@ -93,8 +93,8 @@ bool is_input(const ImageOptions& o, const std::string& path) {
          std::any_of(o.clean.startmodel.begin(), o.clean.startmodel.end(), leads_to);
 }
 
-void remove_half_written(const ImageOptions& o) {
-  const fs::path name = o.imagename;
+void remove_half_written(const std::string& imagename) {
+  const fs::path name = imagename;
   const std::string begin = name.filename().string() + ".";
   std::error_code failed;
   std::vector<fs::path> halves;

@@ -11,7 +11,7 @@ namespace misfit::tools {
 bool is_input(const ImageOptions& options, const std::string& path);
 
 /// Removes files that a run of this name was writing when it was killed.
-void remove_half_written(const ImageOptions& options);
+void remove_half_written(const std::string& imagename);
 
 /// Removes the states that CLEAN of earlier runs of this name left, so that nothing goes on from them.
 void remove_states(const ImageOptions& options);

@@ -39,7 +39,7 @@ std::string own_name() {
 
 }  // namespace
 
-NameLock::NameLock(const std::string& imagename) : path_(imagename + ".lock") {
+NameLock::NameLock(const std::string& imagename, const std::string& option) : path_(imagename + ".lock") {
   do {
     if (file_ >= 0) close(file_);
     file_ = open(path_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0666);
@@ -48,8 +48,8 @@ NameLock::NameLock(const std::string& imagename) : path_(imagename + ".lock") {
     if (errno != EWOULDBLOCK) return;
     const std::string who = holder(file_);
     close(file_);
-    throw std::runtime_error("another run is making " + imagename + ".*" + who +
-                             "; expected another --imagename, or the end of that run");
+    throw std::runtime_error("another run is making " + imagename + ".*" + who + "; expected another " + option +
+                             ", or the end of that run");
   } while (!is_in_place(file_, path_));
   const std::string name = own_name();
   if (ftruncate(file_, 0) == 0) static_cast<void>(pwrite(file_, name.data(), name.size(), 0));  // a courtesy, and no more

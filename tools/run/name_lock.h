@@ -8,9 +8,9 @@ namespace misfit::tools {
 /// that ends. The file goes with it, unless the process is killed.
 class NameLock {
  public:
-  /// Throws std::runtime_error that names the run that holds the name, or the file where it cannot be made. Where the file
-  /// system knows no locks, nothing is kept from anyone.
-  explicit NameLock(const std::string& imagename);
+  /// Throws std::runtime_error that names the run that holds the name, which `option` gave, or the file where it cannot be
+  /// made. Where the file system knows no locks, nothing is kept from anyone.
+  explicit NameLock(const std::string& imagename, const std::string& option = "--imagename");
   NameLock(const NameLock&) = delete;
   NameLock& operator=(const NameLock&) = delete;
   ~NameLock();

@@ -47,7 +47,7 @@ std::unique_ptr<NameLock> claim_product_paths(const ImageOptions& o) {
     if (std::error_code absent; std::filesystem::is_directory(o.imagename + end, absent))
       throw std::runtime_error("cannot write " + o.imagename + end + ": it is a folder; expected another --imagename");
   auto lock = std::make_unique<NameLock>(o.imagename);
-  remove_half_written(o);
+  remove_half_written(o.imagename);
   return lock;
 }
 

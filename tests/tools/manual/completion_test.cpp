@@ -61,7 +61,7 @@ std::vector<OptionFacts> options_below(const CommandFacts& command) {
 }  // namespace
 
 BOOST_AUTO_TEST_CASE(commands_and_options_are_completed_where_they_can_stand) {
-  check_offered({""}, {"image", "predict", "simulate", "kernel", "report", "-h", "--help", "--version"});
+  check_offered({""}, {"image", "predict", "mosaic", "simulate", "kernel", "report", "-h", "--help", "--version"});
   check_offered({"re"}, {"report"});
   check_offered({"report", "s"}, {"scene", "stability"});
   check_offered({"image", "--niter", "100", "--nite"}, {"--niter"});

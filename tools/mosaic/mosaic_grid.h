@@ -1,0 +1,30 @@
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "imager/beams/beam.h"
+#include "imager/files/image_header.h"
+#include "tools/mosaic/mosaic_options.h"
+#include "tools/mosaic/pointing_beam.h"
+#include "tools/mosaic/pointing_image.h"
+
+namespace misfit::tools {
+
+/// An image and its beam.
+struct Pointing {
+  std::unique_ptr<PointingImage> image;
+  std::unique_ptr<PointingBeam> beam;
+};
+
+/// The header of the mosaic: that of the first image on the pixels that options ask for, or else around the middle of the
+/// pointings, with the smallest of the images' cells, square and of an even number, as far as any beam is at the limit or
+/// above and its image reaches, to a thousandth of the width. Throws std::runtime_error where pointings do not lie in one
+/// hemisphere, where no beam reaches the limit within its image, or the mosaic would have more than 65536 pixels on a side.
+imager::ImageHeader mosaic_header(const MosaicOptions& options, const std::vector<Pointing>& pointings, int threads);
+
+/// A beam as it is about the north of the mosaic's phase centre, where it was about that of the image's reference direction, or
+/// the other way: position angles there are larger by so much.
+double north_turn_rad(const PointingImage& image, const imager::ImageGeometry& mosaic);
+
+}  // namespace misfit::tools

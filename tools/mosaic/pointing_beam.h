@@ -1,0 +1,33 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "imager/data/image.h"
+#include "imager/files/image_header.h"
+#include "tools/mosaic/pointing_image.h"
+
+namespace misfit::tools {
+
+/// The primary beam with which an image was seen.
+class PointingBeam {
+ public:
+  virtual ~PointingBeam() = default;
+  /// The beam at the image's channel in the pixels of the mosaic; NaN where it is not known, or below LinearMosaic::least_beam.
+  /// Throws std::runtime_error that names the image.
+  virtual imager::Image on(const imager::ImageHeader& mosaic, int channel, int threads) const = 0;
+  /// Where it comes from, in words.
+  virtual std::string origin() const = 0;
+  /// What may be wrong with it, a sentence each.
+  virtual std::vector<std::string> doubts() const { return {}; }
+};
+
+/// That of `asked`, as --beam names it; where that is empty, the image .pb beside the image, which holds the weights, dishes
+/// and turns with which the image was made; and where there is none, that of the telescope in the header, at the header's
+/// frequencies, each of which counts alike, around its reference direction. The mean over position angles of beams that are
+/// not round, with a doubt. Keeps `image` by reference. Throws std::runtime_error that names the image and what was expected
+/// where none is to be had.
+std::unique_ptr<PointingBeam> pointing_beam(const PointingImage& image, const std::string& asked);
+
+}  // namespace misfit::tools
