@@ -98,10 +98,9 @@ void add_reach(const Pointing& pointing, int channel, const imager::ImageHeader&
     }
 }
 
-/// The reach of beams within `outer`, to a pixel of so many on a side; of a cube at its two ends.
-Reach reach_of_beams(const std::vector<Pointing>& pointings, imager::ImageHeader header, const Reach& outer, double limit,
-                     int threads) {
-  constexpr int side = 1000;
+/// The reach of beams within `outer`, to a pixel of `side` across; of a cube at its two ends.
+Reach reach_of_beams(const std::vector<Pointing>& pointings, imager::ImageHeader header, const Reach& outer, int side,
+                     double limit, int threads) {
   const int last = header.spectral.channels - 1;
   ImageGeometry& geometry = header.geometry;
   geometry.width = geometry.height = side + 4;
@@ -118,7 +117,8 @@ Reach reach_of_beams(const std::vector<Pointing>& pointings, imager::ImageHeader
 }
 
 int even_side(double reach, double cell_rad) {
-  const double half = std::ceil(reach / cell_rad);
+  constexpr double rounding = 1e-6;  // pixels
+  const double half = std::ceil(reach / cell_rad - rounding);
   if (2 * half > largest_side)
     throw std::runtime_error("the mosaic would be " + significant(2 * half, 6) + " pixels wide or high; expected " +
                              std::to_string(largest_side) + " at most: give a larger --cell, or --imsize");
@@ -139,7 +139,7 @@ imager::ImageHeader mosaic_header(const MosaicOptions& o, const std::vector<Poin
     return header;
   }
   Reach reach = reach_of_images(pointings, geometry.phase_centre);
-  for (int pass = 0; pass < 2; ++pass) reach = reach_of_beams(pointings, header, reach, o.pblimit, threads);
+  for (const int side : {250, 1000}) reach = reach_of_beams(pointings, header, reach, side, o.pblimit, threads);
   geometry.width = even_side(reach.l, geometry.cell_rad);
   geometry.height = even_side(reach.m, geometry.cell_rad);
   return header;

@@ -228,7 +228,7 @@ class MosaicRun {
     const double noise_jy = given ? asked_noises_jy_[p] * after_jy / before_jy : after_jy;
     if (!(noise_jy > 0 && std::isfinite(noise_jy)))
       throw std::runtime_error((residual ? image.residual_path() : image.path()) + " has a noise of " +
-                               with_prefix(after_jy, "Jy/beam", 3) + " in its plane " + plane_words(at) +
+                               with_prefix(after_jy, "Jy/beam", 3) + " in plane " + plane_words(at) +
                                "; expected more than 0, or --rms");
     return noise_jy;
   }

@@ -9,6 +9,7 @@
 
 #include "tools/base/numbers.h"
 #include "tools/formats/image_file.h"
+#include "tools/run/image_files.h"
 
 namespace misfit::tools {
 namespace {
@@ -43,10 +44,13 @@ std::string beside(const std::string& path, const std::string& product) {
   return "";
 }
 
+/// By its name, and by what lies beside it.
 void check_name(const std::string& path) {
   const std::string name = path.substr(path.rfind('/') == std::string::npos ? 0 : path.rfind('/') + 1);
   if (lower(name).find("pbcor") != std::string::npos)
     refuse(path, "is divided by the primary beam, by its name", "the image before that, such as X.image.fits");
+  if (const std::string weight = beside(path, "weight"); is_there(weight) && is_own_image(path))
+    refuse(path, "is a mosaic already, as " + weight + " beside it says", "the images that it was made of");
 }
 
 void check_alone(const imager::ImageReader& file, const std::string& path) {

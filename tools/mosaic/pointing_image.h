@@ -19,8 +19,8 @@ struct KnownPlane {
 class PointingImage {
  public:
   /// Opens it. Throws std::runtime_error that names the file and what was expected, where it cannot be read, is divided by the
-  /// primary beam or a Taylor term above 0, is not in Jy/beam, does not say where it lies on the sky, has no restoring beam,
-  /// or a residual beside it has other planes.
+  /// primary beam, a mosaic or a Taylor term above 0, is not in Jy/beam, does not say where it lies on the sky, has no
+  /// restoring beam, or a residual beside it has other planes.
   explicit PointingImage(const std::string& path);
 
   const std::string& path() const { return path_; }
