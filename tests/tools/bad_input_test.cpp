@@ -212,9 +212,10 @@ BOOST_AUTO_TEST_CASE(a_quantity_that_is_none_is_named_with_its_option) {
 BOOST_AUTO_TEST_CASE(an_output_without_a_name_is_refused) {
   const Scene scene;
   const Arguments none{"--output", ""};
-  for (const Arguments& command : {Arguments{"report", "scene", "--vis", snapshot(), "--imsize", "64", "--cell", "1arcsec"},
-                                   Arguments{"report", "stability"}, Arguments{"report", "kernels"}, Arguments{"simulate"},
-                                   Arguments{"kernel", "--width", "4", "--padding", "2"}})
+  for (const Arguments& command :
+       {Arguments{"report", "scene", "--vis", snapshot(), "--imsize", "64", "--cell", "1arcsec"},
+        Arguments{"report", "stability"}, Arguments{"report", "kernels"}, Arguments{"simulate"},
+        Arguments{"mosaic", "a.fits", "b.fits"}, Arguments{"kernel", "--width", "4", "--padding", "2"}})
     check_refused(command + none, 2, {"--output: '': expected a name"}, scene.out);
 }
 
@@ -275,7 +276,7 @@ BOOST_AUTO_TEST_CASE(a_model_must_be_an_image_and_lie_where_the_phase_centre_giv
 
 BOOST_AUTO_TEST_CASE(an_option_that_there_is_not_is_named_before_one_that_is_missing) {
   const TemporaryFolder folder;
-  for (const char* command : {"image", "predict", "simulate"}) {
+  for (const char* command : {"image", "predict", "mosaic", "simulate"}) {
     const Outcome outcome = run({command, "--no-such-option"});
     BOOST_TEST(outcome.code == 2);
     BOOST_TEST(outcome.err.find("not expected: --no-such-option") != std::string::npos, outcome.err);
@@ -305,6 +306,7 @@ BOOST_AUTO_TEST_CASE(a_wrong_value_is_named_before_an_option_that_is_missing) {
         {"--maxuv-l", "5arcsec"},
         {"--nchan", "-5", "--specmode", "cube"}}},
       {{"predict"}, {{"--accuracy", "2"}, {"--threads", "-1"}}},
+      {{"mosaic"}, {{"--pblimit", "2"}, {"--threads", "-1"}, {"--imsize", "0"}, {"--rms", "-1"}, {"--phasecenter", "M31"}}},
       {{"simulate"}, {{"--channels", "0"}, {"--hours", "-1"}, {"--dec", "100deg"}}},
       {{"report", "scene"}, {{"--seconds", "-1"}, {"--imsize", "70000"}, {"--robust", "9", "--weighting", "briggs"}}},
       {{"kernel"},

@@ -59,6 +59,28 @@ Prose predict_prose() {
   return prose;
 }
 
+Prose mosaic_prose() {
+  Prose prose;
+  prose.description = {
+      "Makes one image of those of several pointings, which misfit, tclean or WSClean made and did not divide by the primary "
+      "beam: "
+      "in each pixel sum(B D / s^2) / sum(B^2 / s^2), of the images D with beams B and noises s. Pointings take part where "
+      "their beam is 0.05 or more, and images are regridded exactly, in whatever projection, frame and turn they are.",
+      "Images whose restoring beams differ by more than a thousandth are convolved to the least beam that encloses all. The "
+      "axis "
+      "of a beam that no image .pb shows is the header's reference direction. CLEAN each image as deep as the mosaic "
+      "is to be: what is left of sources does not average down."};
+  prose.files = {{"NAME.image.fits", "The mosaic, in Jy/beam."},
+                 {"NAME.weight.fits", "The sum of B^2 / s^2, in 1/(Jy/beam)^2."},
+                 {"NAME.noise.fits", "One over its root, the noise of the mosaic in Jy/beam."},
+                 {"NAME.pb.fits", "Its root over the largest, the joint beam; below --pblimit all four have no values."}};
+  prose.examples = {{"Three pointings, each with its .pb and .residual beside it",
+                     "misfit mosaic a.image.fits b.image.fits c.image.fits --output field"},
+                    {"Images without .pb, of dishes of 22 m, with noises that are known",
+                     "misfit mosaic a.fits b.fits --output field --beam airy:22 --rms 20uJy,31uJy"}};
+  return prose;
+}
+
 Prose kernel_prose() {
   Prose prose;
   prose.description = {
@@ -105,6 +127,7 @@ Prose prose_of(const std::string& command) {
       {"misfit", program_prose()},
       {"misfit image", image_prose()},
       {"misfit predict", predict_prose()},
+      {"misfit mosaic", mosaic_prose()},
       {"misfit kernel", kernel_prose()},
       {"misfit simulate", simulate_prose()},
       {"misfit report kernels",

@@ -188,7 +188,8 @@ class MosaicRun {
         throw std::runtime_error(image.path() + " has no restoring beam for its plane " + plane_words(at) +
                                  ", which has values; expected one");
       std::optional<imager::BeamChange> change;
-      if (differ) change = imager::BeamChange{turned(*beams[p], -turns_rad_[p]), turned(*to, -turns_rad_[p])};
+      if (differ && !imager::of_one_resolution({*beams[p], *to}))
+        change = imager::BeamChange{turned(*beams[p], -turns_rad_[p]), turned(*to, -turns_rad_[p])};
       add(p, at, std::move(plane), change, mosaic);
     }
     write(at, mosaic.finished(o_.pblimit), to);
@@ -216,7 +217,7 @@ class MosaicRun {
 
   /// σ of a plane as it is added. What is given is of the plane before its beam is changed, and scaled as what is measured.
   double noise_of(std::size_t p, const imager::PlaneIndex& at, const imager::Image& shown,
-                  const std::optional<imager::BeamChange>& change) const {
+                  const std::optional<imager::BeamChange>& change) {
     const PointingImage& image = *pointings_[p].image;
     const bool given = !asked_noises_jy_.empty();
     if (given && !change) return asked_noises_jy_[p];
@@ -225,18 +226,28 @@ class MosaicRun {
     const double before_jy = imager::robust_noise(noise, threads_);
     if (change) noise = imager::with_beam(noise, *change, residual ? image.residual_grid() : image.grid(), threads_);
     const double after_jy = change ? imager::robust_noise(noise, threads_) : before_jy;
-    const double noise_jy = given ? asked_noises_jy_[p] * after_jy / before_jy : after_jy;
-    if (!(noise_jy > 0 && std::isfinite(noise_jy)))
+    if (given) return asked_noises_jy_[p] * (before_jy > 0 && after_jy > 0 ? after_jy / before_jy : 1);
+    if (!(after_jy > 0))
       throw std::runtime_error((residual ? image.residual_path() : image.path()) + " has a noise of " +
                                with_prefix(after_jy, "Jy/beam", 3) + " in plane " + plane_words(at) +
                                "; expected more than 0, or --rms");
-    return noise_jy;
+    if (residual && !change) warn_of_cleaned_noise(image, before_jy, imager::robust_noise(shown, threads_));
+    return after_jy;
+  }
+
+  /// CLEAN that goes on into the noise takes it out of the residual, and leaves it in the image.
+  void warn_of_cleaned_noise(const PointingImage& image, double residual_jy, double image_jy) {
+    constexpr double much = 1.2;
+    if (!(image_jy > much * residual_jy) || !doubts_.insert(image.path()).second) return;
+    progress_.say("warning: the noise of " + image.residual_path() + " is " + with_prefix(residual_jy, "Jy/beam", 3) +
+                  ", and that of " + image.path() + " " + with_prefix(image_jy, "Jy/beam", 3) +
+                  ": CLEAN may have taken noise out of the residual, or sources fill the image; --rms tells which");
   }
 
   void write(const imager::PlaneIndex& at, const imager::MosaicPlane& plane, const std::optional<imager::Beam>& beam) {
     const std::optional<imager::Beam> own = has_values(plane.sky) ? beam : std::nullopt;
     files_.at("image")->write(at, plane.sky, own);
-    files_.at("weight")->write(at, plane.weight, own);
+    files_.at("weight")->write(at, plane.weight, std::nullopt);
     files_.at("noise")->write(at, plane.noise, own);
     files_.at("pb")->write(at, plane.beam, std::nullopt);
     for (const double noise_jy : plane.noise.pixel)
