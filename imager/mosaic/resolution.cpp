@@ -33,11 +33,11 @@ Matrix between(const BeamChange& change, const SkyGrid& grid) {
 
 /// A plane times a scale, convolved with a Gaussian of unit sum.
 Image blurred(const PaddedFft<double>& fft, const PaddedFft<double>::Read& read, const Matrix& gaussian, const Image& like) {
-  using Complex = PaddedFft<double>::Complex;
+  using Value = PaddedFft<double>::Complex;
   PaddedFft<double>::Half half;
   fft.forward(read, half);
   const int nu = fft.nu(), nv = fft.nv();
-  const auto multiply = [&](int u, const Complex* const* spectrum, Complex* result) {
+  const auto multiply = [&](int u, const Value* const* spectrum, Value* result) {
     const double fu = static_cast<double>(u) / nu;
     for (int v = 0; v < nv; ++v) {
       const double fv = static_cast<double>(v <= nv / 2 ? v : v - nv) / nv;

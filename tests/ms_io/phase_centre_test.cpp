@@ -76,6 +76,16 @@ BOOST_AUTO_TEST_CASE(directions_are_understood_as_casa_writes_them) {
   BOOST_TEST(std::abs(ms_io::parse_phase_centre("J2000 -10deg -0d30m0s", set.path()).dec_rad + 0.5 * degree) < 1e-14);
 }
 
+BOOST_AUTO_TEST_CASE(directions_are_told_from_other_texts_without_a_set) {
+  const auto direction = parse_direction("B1950 12h30m00s +30deg");
+  BOOST_REQUIRE(direction.has_value());
+  BOOST_TEST(direction->ra_rad == 187.5 * degree, boost::test_tools::tolerance(1e-12));
+  BOOST_TEST(direction->dec_rad == 30 * degree, boost::test_tools::tolerance(1e-12));
+  BOOST_TEST(direction->frame == "FK4");
+  for (const char* text : {"", "0", "JUPITER", "TRACKFIELD", "M31", "J2000 12h30m00s", "GALACTIC 1deg 2deg"})
+    BOOST_TEST(!parse_direction(text).has_value(), text);
+}
+
 BOOST_AUTO_TEST_CASE(sixty_seconds_of_a_direction_are_its_next_minute) {
   const SmallSet set;
   const imager::SkyDirection whole = ms_io::parse_phase_centre("J2000 12h31m00s -12d24m00s", set.path());

@@ -13,6 +13,7 @@
 #include "imager/files/fits_image_writer.h"
 #include "imager/mosaic/linear_mosaic.h"
 #include "ms_io/casa_image.h"
+#include "tests/tools/beam_files.h"
 #include "tests/tools/program.h"
 
 BOOST_AUTO_TEST_SUITE(mosaic_command)
@@ -212,6 +213,59 @@ BOOST_AUTO_TEST_CASE(points_have_the_beam_that_the_header_states_where_beams_dif
     }
   BOOST_TEST(defined > 20000);
   BOOST_TEST(largest < 1e-3 * 3.4);  // the brightest is of 3.4 Jy
+}
+
+/// Between its pixels a beam is a polynomial through four by four, right to 1e-7 where it is a hundred wide.
+BOOST_AUTO_TEST_CASE(beams_of_images_are_taken_before_formulas) {
+  const imager::Beam beam{45 * arcsec, 45 * arcsec, 0};
+  const Triple triple({beam, beam, beam});
+  const imager::Pattern pattern = imager::airy_pattern({40, 0});
+  const TemporaryFolder folder;
+  const std::vector<std::string> paths = triple.write_all(folder, *pattern);
+  const Arguments how{"--rms", "1mJy", "--imsize", "180"};
+  succeed(mosaic_of(paths, folder / "formula") + how + Arguments{"--beam", "airy:40"});
+  for (std::size_t p = 0; p < 3; ++p) {
+    const imager::ImageGeometry& geometry = triple.pointings[p].geometry;
+    imager::Image power_image(geometry.width, geometry.height);
+    for (int r = 0; r < geometry.height; ++r)
+      for (int c = 0; c < geometry.width; ++c) power_image.at(r, c) = power(*pattern, geometry.at(r, c));
+    std::string path = paths[p];
+    write(path.replace(path.find(".image"), 6, ".pb"), triple.pointings[p], power_image);
+  }
+  const Outcome outcome = run(mosaic_of(paths, folder / "images") + how);
+  BOOST_TEST(outcome.code == 0, outcome.err);
+  BOOST_TEST(outcome.out.find("primary beam " + (folder / "a.pb.fits")) != std::string::npos, outcome.out);
+  const imager::Image formula = product(folder / "formula", "image").image, images = product(folder / "images", "image").image;
+  const imager::Image joint = product(folder / "formula", "pb").image;
+  double largest = 0;
+  for (std::size_t i = 0; i < formula.pixel.size(); ++i)
+    if (joint.pixel[i] > 0.5) largest = std::max(largest, std::abs(images.pixel[i] - formula.pixel[i]));
+  BOOST_TEST(largest < 1e-5);  // of up to 3.4 Jy; pixels are written in single precision
+}
+
+/// An image does not say how the dishes were turned, and one plane of a file none of the other frequencies.
+BOOST_AUTO_TEST_CASE(beams_that_are_not_round_are_their_mean_with_a_warning) {
+  const imager::Beam beam{45 * arcsec, 45 * arcsec, 0};
+  const Triple triple({beam, beam, beam});
+  const TemporaryFolder folder;
+  const std::vector<std::string> paths = triple.write_all(folder, *imager::airy_pattern({40, 0}));
+  const Arguments how{"--rms", "1mJy", "--imsize", "120", "--beam"};
+  const auto write_elliptical = [&](const std::string& name, double ratio) {
+    write_beam_file(folder / name, {.step = 0.01}, [ratio](double east, double north, double) {
+      return std::exp(-4 * std::log(2.0) * (east * east * ratio + north * north / ratio) / (0.3 * 0.3));
+    });
+  };
+  write_elliptical("round.fits", 1);
+  write_elliptical("elliptical.fits", 1.2);
+  const Outcome round = run(mosaic_of(paths, folder / "r") + how + Arguments{folder / "round.fits"});
+  const Outcome elliptical = run(mosaic_of(paths, folder / "e") + how + Arguments{folder / "elliptical.fits"});
+  BOOST_TEST(round.code == 0, round.err);
+  BOOST_TEST(elliptical.code == 0, elliptical.err);
+  BOOST_TEST(round.err.find("warning: ") == std::string::npos, round.err);
+  BOOST_TEST(elliptical.err.find("is not round") != std::string::npos, elliptical.err);
+  BOOST_TEST(elliptical.err.find("its mean over position angles is taken") != std::string::npos, elliptical.err);
+  BOOST_TEST(product(folder / "e", "weight").image.at(60, 60) / product(folder / "r", "weight").image.at(60, 60) == 1,
+             boost::test_tools::tolerance(0.02));
 }
 
 /// Simulated, imaged and cleaned one at a time; sources lie on pixels of the mosaic, and between those of the images.

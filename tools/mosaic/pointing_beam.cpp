@@ -58,13 +58,19 @@ class FormulaBeam : public PointingBeam {
                                "or an image " + beam_name(image) + " beside it");
     pattern_ = model.pattern->is_round() ? model.pattern : std::make_shared<MeanPattern>(model.pattern);
     if (const std::string doubt = model.doubt_at(hz); !doubt.empty()) doubts_.push_back(doubt);
-    if (model.pattern->is_round()) return;
+    if (!model.pattern->is_round()) doubt_roundness(*model.pattern, hz);
+  }
+
+  /// Pixels of a round beam make it round to a thousandth or so.
+  void doubt_roundness(const imager::VoltagePattern& pattern, double hz) {
+    constexpr double little = 5e-3;
     const double half = 0.5 * imager::PrimaryBeam({{pattern_, pattern_, hz, 1}}).half_power_width_rad();
+    const double away = departure(pattern, std::sin(half), hz);
+    if (away < little) return;
     doubts_.push_back(because_ +
                       " is not round, and images do not say how it was turned: its mean over position angles is "
                       "taken, from which it departs by " +
-                      significant(100 * departure(*model.pattern, std::sin(half), hz), 2) +
-                      " % where that is a half, which images .pb of misfit image --beam know");
+                      significant(100 * away, 2) + " % where that is a half, which images .pb of misfit image --beam know");
   }
 
   imager::Image on(const imager::ImageHeader& mosaic, int channel, int threads) const override {
