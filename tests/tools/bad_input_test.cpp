@@ -306,7 +306,7 @@ BOOST_AUTO_TEST_CASE(a_wrong_value_is_named_before_an_option_that_is_missing) {
         {"--maxuv-l", "5arcsec"},
         {"--nchan", "-5", "--specmode", "cube"}}},
       {{"predict"}, {{"--accuracy", "2"}, {"--threads", "-1"}}},
-      {{"mosaic"}, {{"--pblimit", "2"}, {"--threads", "-1"}, {"--imsize", "0"}, {"--rms", "-1"}, {"--phasecenter", "M31"}}},
+      {{"mosaic"}, {{"--pblimit", "2"}, {"--threads", "-1"}, {"--imsize", "0"}, {"--rms", "0"}, {"--phasecenter", "M31"}}},
       {{"simulate"}, {{"--channels", "0"}, {"--hours", "-1"}, {"--dec", "100deg"}}},
       {{"report", "scene"}, {{"--seconds", "-1"}, {"--imsize", "70000"}, {"--robust", "9", "--weighting", "briggs"}}},
       {{"kernel"},
