@@ -25,7 +25,7 @@ std::vector<double> MosaicOptions::noises_jy() const {
   std::vector<double> noises;
   if (rms.empty()) return noises;
   for (const std::string_view part : split_at_commas(rms)) noises.push_back(parse_flux_jy(std::string(part)));
-  if (noises.size() == 1) noises.resize(images.size(), noises.front());
+  if (noises.size() == 1 && !images.empty()) noises.resize(images.size(), noises.front());
   return noises;
 }
 
