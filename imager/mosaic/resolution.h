@@ -9,7 +9,7 @@
 
 namespace misfit::imager {
 
-/// Whether beams are the same for pixels: none is longer than another in any direction by more than a thousandth.
+/// True where no beam is longer than another in any direction by more than a thousandth.
 bool of_one_resolution(const std::vector<Beam>& beams);
 
 /// From one beam to another that encloses it, both with position angles about the grid's north.

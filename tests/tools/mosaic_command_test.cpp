@@ -434,6 +434,7 @@ BOOST_AUTO_TEST_CASE(what_is_no_image_of_a_pointing_is_refused_in_one_line) {
   };
   const auto nothing = [](imager::ImageHeader&) {};
   refused(variant("b.image.pbcor.fits", nothing), "is divided by the primary beam");
+  refused(variant("b-image-pb.fits", nothing), "is divided by the primary beam");
   refused(variant("unit.fits", [](auto& header) { header.unit = "Jy/pixel"; }), "unit Jy/pixel; expected Jy/beam");
   refused(variant("nobeam.fits", nothing, false), "has no restoring beam");
   refused(variant("term.fits", [](auto& header) { header.taylor = {1, 2}; }), "Taylor term 1");

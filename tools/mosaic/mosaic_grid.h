@@ -23,8 +23,8 @@ struct Pointing {
 /// hemisphere, where no beam reaches the limit within its image, or the mosaic would have more than 65536 pixels on a side.
 imager::ImageHeader mosaic_header(const MosaicOptions& options, const std::vector<Pointing>& pointings, int threads);
 
-/// A beam as it is about the north of the mosaic's phase centre, where it was about that of the image's reference direction, or
-/// the other way: position angles there are larger by so much.
+/// By how much the position angle of a direction is larger about the north of the mosaic than about the north of the image's
+/// reference direction, where both are seen.
 double north_turn_rad(const PointingImage& image, const imager::ImageGeometry& mosaic);
 
 }  // namespace misfit::tools

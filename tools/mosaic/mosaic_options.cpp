@@ -37,7 +37,7 @@ void declare(CLI::App& command, MosaicOptions& o) {
           "stand without the option's name")
       ->required()
       ->type_name(file_type);
-  command.add_option("--output", o.output, "What the names of the mosaic begin with: NAME.image, .weight, .noise and .pb")
+  command.add_option("--output", o.output, "The names of the mosaic begin with this: NAME.image, .weight, .noise and .pb")
       ->required()
       ->type_name(path_type)
       ->check(not_empty());

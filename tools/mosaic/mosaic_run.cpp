@@ -10,7 +10,7 @@
 #include <system_error>
 
 #include "imager/beams/common_beam.h"
-#include "imager/data/noise.h"
+#include "imager/data/image_statistics.h"
 #include "imager/mosaic/band_limited_image.h"
 #include "imager/mosaic/linear_mosaic.h"
 #include "imager/mosaic/resolution.h"
@@ -20,6 +20,7 @@
 #include "tools/base/progress.h"
 #include "tools/formats/grid_offset.h"
 #include "tools/mosaic/mosaic_grid.h"
+#include "tools/mosaic/pointing_noise.h"
 #include "tools/run/image_files.h"
 #include "tools/run/left_over.h"
 #include "tools/run/name_lock.h"
@@ -82,7 +83,7 @@ class MosaicRun {
   }
 
  private:
-  /// What came of an image.
+  /// An image's part in the mosaic.
   struct Tally {
     Range noise;
     std::size_t pixels = 0;  ///< of the mosaic, to which it adds
@@ -164,20 +165,23 @@ class MosaicRun {
     return beams;
   }
 
-  /// The beam of a plane of the mosaic; nothing where no image has one there.
-  std::optional<imager::Beam> beam_of_plane(const std::vector<std::optional<imager::Beam>>& beams, bool& differ) const {
+  /// The beam of a plane of the mosaic.
+  struct PlaneBeam {
+    std::optional<imager::Beam> beam;  ///< nothing where no image has one there
+    bool differ = false;               ///< images have others
+  };
+  static PlaneBeam beam_of_plane(const std::vector<std::optional<imager::Beam>>& beams) {
     std::vector<imager::Beam> known;
     for (const auto& beam : beams)
       if (beam) known.push_back(*beam);
-    differ = !imager::of_one_resolution(known);
-    if (known.empty()) return std::nullopt;
-    return differ ? imager::common_beam(known) : known.front();
+    if (known.empty()) return {};
+    if (imager::of_one_resolution(known)) return {known.front(), false};
+    return {imager::common_beam(known), true};
   }
 
   void make_plane(const imager::PlaneIndex& at) {
-    bool differ = false;
     const std::vector<std::optional<imager::Beam>> beams = beams_at(at);
-    const std::optional<imager::Beam> to = beam_of_plane(beams, differ);
+    const auto [to, differ] = beam_of_plane(beams);
     imager::LinearMosaic mosaic(header_.geometry.width, header_.geometry.height);
     for (std::size_t p = 0; p < pointings_.size(); ++p) {
       progress_.update(done_++, total());
@@ -185,7 +189,7 @@ class MosaicRun {
       KnownPlane plane = image.read(at);
       if (!has_values(plane.shown)) continue;
       if (!beams[p])
-        throw std::runtime_error(image.path() + " has no restoring beam for its plane " + plane_words(at) +
+        throw std::runtime_error(image.path() + " has no restoring beam for its plane " + plane_words(image, at) +
                                  ", which has values; expected one");
       std::optional<imager::BeamChange> change;
       if (differ && !imager::of_one_resolution({*beams[p], *to}))
@@ -215,33 +219,13 @@ class MosaicRun {
     mosaic.add({apparent, beam, noise_jy}, threads_);
   }
 
-  /// σ of a plane as it is added. What is given is of the plane before its beam is changed, and scaled as what is measured.
   double noise_of(std::size_t p, const imager::PlaneIndex& at, const imager::Image& shown,
                   const std::optional<imager::BeamChange>& change) {
-    const PointingImage& image = *pointings_[p].image;
-    const bool given = !asked_noises_jy_.empty();
-    if (given && !change) return asked_noises_jy_[p];
-    const bool residual = !image.residual_path().empty();
-    imager::Image noise = residual ? image.read_residual(at) : shown;
-    const double before_jy = imager::robust_noise(noise, threads_);
-    if (change) noise = imager::with_beam(noise, *change, residual ? image.residual_grid() : image.grid(), threads_);
-    const double after_jy = change ? imager::robust_noise(noise, threads_) : before_jy;
-    if (given) return asked_noises_jy_[p] * (before_jy > 0 && after_jy > 0 ? after_jy / before_jy : 1);
-    if (!(after_jy > 0))
-      throw std::runtime_error((residual ? image.residual_path() : image.path()) + " has a noise of " +
-                               with_prefix(after_jy, "Jy/beam", 3) + " in plane " + plane_words(at) +
-                               "; expected more than 0, or --rms");
-    if (residual && !change) warn_of_cleaned_noise(image, before_jy, imager::robust_noise(shown, threads_));
-    return after_jy;
-  }
-
-  /// CLEAN that goes on into the noise takes it out of the residual, and leaves it in the image.
-  void warn_of_cleaned_noise(const PointingImage& image, double residual_jy, double image_jy) {
-    constexpr double much = 1.2;
-    if (!(image_jy > much * residual_jy) || !doubts_.insert(image.path()).second) return;
-    progress_.say("warning: the noise of " + image.residual_path() + " is " + with_prefix(residual_jy, "Jy/beam", 3) +
-                  ", and that of " + image.path() + " " + with_prefix(image_jy, "Jy/beam", 3) +
-                  ": CLEAN may have taken noise out of the residual, or sources fill the image; --rms tells which");
+    NoiseRequest request{{}, change, threads_};
+    if (!asked_noises_jy_.empty()) request.given_jy = asked_noises_jy_[p];
+    const PlaneNoise noise = noise_of_plane(*pointings_[p].image, at, shown, request);
+    if (!noise.doubt.empty() && doubted_noises_.insert(p).second) progress_.say("warning: " + noise.doubt);
+    return noise.noise_jy;
   }
 
   void write(const imager::PlaneIndex& at, const imager::MosaicPlane& plane, const std::optional<imager::Beam>& beam) {
@@ -292,10 +276,6 @@ class MosaicRun {
     return std::to_string(header_.geometry.width) + " × " + std::to_string(header_.geometry.height) + " pixels";
   }
 
-  std::string plane_words(const imager::PlaneIndex& at) const {
-    return std::to_string(at.channel) + " of Stokes " + stokes_name(header_.stokes[static_cast<std::size_t>(at.stokes)]);
-  }
-
   std::uint64_t total() const {
     return pointings_.size() * static_cast<std::uint64_t>(header_.spectral.channels) * header_.stokes.size();
   }
@@ -311,9 +291,10 @@ class MosaicRun {
   std::vector<imager::GridMap> maps_;  ///< [image], from the mosaic's pixels to its own
   std::vector<double> turns_rad_;      ///< [image], see north_turn_rad()
   std::map<std::string, std::unique_ptr<imager::ImageWriter>> files_;
-  std::vector<Tally> tallies_;  ///< [image]
-  std::set<std::string> doubts_;
-  std::vector<imager::Beam> beams_;  ///< of planes with values
+  std::vector<Tally> tallies_;            ///< [image]
+  std::set<std::string> doubts_;          ///< that were said
+  std::set<std::size_t> doubted_noises_;  ///< images whose noises were doubted
+  std::vector<imager::Beam> beams_;       ///< of planes with values
   std::uint64_t done_ = 0;
   double least_noise_jy_ = 0;
 };

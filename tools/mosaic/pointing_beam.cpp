@@ -165,7 +165,7 @@ class ImageBeam : public PointingBeam {
   std::unique_ptr<imager::ImageReader> file_;
 };
 
-/// Of the telescope that the header names. A header does not say how large the dishes are.
+/// The beam of the telescope that the header names. A header does not say how large the dishes are.
 imager::BeamModel telescope_beam(const PointingImage& image) {
   const std::string& telescope = image.header().observation.telescope;
   const std::string expected = "; expected the image " + FormulaBeam::beam_name(image) + " beside it, or --beam";

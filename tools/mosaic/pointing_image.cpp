@@ -47,7 +47,8 @@ std::string beside(const std::string& path, const std::string& product) {
 /// By its name, and by what lies beside it.
 void check_name(const std::string& path) {
   const std::string name = path.substr(path.rfind('/') == std::string::npos ? 0 : path.rfind('/') + 1);
-  if (lower(name).find("pbcor") != std::string::npos)
+  const bool of_wsclean = name.ends_with("-image-pb.fits");
+  if (lower(name).find("pbcor") != std::string::npos || of_wsclean)
     refuse(path, "is divided by the primary beam, by its name", "the image before that, such as X.image.fits");
   if (const std::string weight = beside(path, "weight"); is_there(weight) && is_own_image(path))
     refuse(path, "is a mosaic already, as " + weight + " beside it says", "the images that it was made of");
