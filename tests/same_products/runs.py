@@ -168,6 +168,8 @@ WIDE = {
 }
 
 MODELS = {
+    "mosaic": [image("narrow", CLEAN), image("narrow", f"{CLEAN} --restoringbeam 1.5arcsec --pbcor", name="b"),
+               "misfit mosaic a.image.fits b.image.fits --output m --outformat both --threads 2"],
     "predict": ["copy narrow", image("narrow", CLEAN), predict("narrow", "--model a.model.fits"),
                 predict("narrow", "--components a.components.csv --column EXACT"),
                 predict("narrow", "--components in/points.csv --column POINTS --field 0 --spw 0:1~2")],
