@@ -169,7 +169,8 @@ BOOST_AUTO_TEST_CASE(what_is_near_is_seen_from_the_telescope) {
   const Ephemeris read(path);
   const casacore::MVDirection geocentric = read.at(time_s / day_s).getValue();
   casacore::MVPosition expected(geocentric);
-  for (std::size_t i = 0; i < 3; ++i) expected(i) = geocentric.getValue()(i) * of.rho_au * au_m - observer_m[i];
+  for (std::size_t i = 0; i < 3; ++i)
+    expected(static_cast<casacore::uInt>(i)) = geocentric.getValue()(i) * of.rho_au * au_m - observer_m[i];
   casacore::MVDirection from_there(expected);
   from_there.adjust();
   const casacore::MVDirection found = make_body(path)->seen_from(frame, when).getValue();

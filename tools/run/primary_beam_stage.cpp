@@ -58,12 +58,13 @@ void PrimaryBeamStage::find_pointing() {
     const double apart = apart_rad(view_.pointing, on_image(other, scene_));
     const bool itself = other.set == first.set && other.id == first.id;  // at another time
     if (apart > same_pointing_beams * width_rad_)
-      throw NoPrimaryBeam("antennas of fields " + field_words(first, all) + " and " + field_words(other, all) + " pointed " +
-                          angle_text(apart, 3) + " apart, which makes a mosaic, and primary beams of mosaics are not made; " +
-                          (itself
-                               ? "field and image move past each other: choose some of its time with --timerange, or an image "
-                                 "that moves as the field does, without --phasecenter or with TRACKFIELD"
-                               : "select one with " + std::string(first.set == other.set ? "--field" : "--vis")));
+      throw NoPrimaryBeam(
+          "antennas of fields " + field_words(first, all) + " and " + field_words(other, all) + " pointed " +
+          angle_text(apart, 3) + " apart" +
+          (itself ? "; field and image move past each other: choose some of its time with --timerange, or an image "
+                    "that moves as the field does, without --phasecenter or with TRACKFIELD"
+                  : ", and misfit mosaic joins images of one pointing each; select one with " +
+                        std::string(first.set == other.set ? "--field" : "--vis")));
   }
   if (scene_.rows.beam_offset_rad() > beside * width_rad_)
     throw NoPrimaryBeam("FEED's column BEAM_OFFSET says that beams point " + angle_text(scene_.rows.beam_offset_rad(), 3) +

@@ -34,7 +34,7 @@ struct BeamScene {
 class PrimaryBeamStage {
  public:
   /// Throws NoPrimaryBeam that names what it is about where antennas have no simple beam, fields point in different
-  /// directions, which makes a mosaic, or feeds point beside them.
+  /// directions or feeds point beside them.
   PrimaryBeamStage(const TypedPrimaryBeam& options, BeamScene scene, int threads);
 
   /// Which beam is taken, from what, and its width in the middle of the band.
