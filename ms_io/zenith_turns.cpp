@@ -7,6 +7,8 @@
 
 #include <cmath>
 #include <map>
+#include <stdexcept>
+#include <string>
 #include <utility>
 
 #include "ms_io/capitals.h"
@@ -62,7 +64,8 @@ constexpr const char* reading = "cannot read ANTENNA, or the times of the rows o
 class SightReader::Columns {
  public:
   Columns(const OpenSet& open_set, const imager::SkyDirection& centre)
-      : zenith_(open_set),
+      : path_(open_set.path),
+        zenith_(open_set),
         mount_(casacore::ScalarColumn<casacore::String>(open_set.set.antenna(), "MOUNT").getColumn()),
         antenna_one_(open_set.set, "ANTENNA1"),
         antenna_other_(open_set.set, "ANTENNA2"),
@@ -79,16 +82,22 @@ class SightReader::Columns {
     read(field_, rows, field);
     read(time_, rows, time_s);
     std::vector<imager::RowSight> sights;
-    for (std::size_t r = 0; r < rows.count(); ++r)
+    for (std::size_t r = 0; r < rows.count(); ++r) {
+      require_antenna(one(r));
+      require_antenna(other(r));
       sights.push_back({one(r), other(r), field(r), turns(one(r)) ? zenith_rad(time_s(r), field(r)) : 0});
+    }
     return sights;
   }
 
  private:
-  bool turns(int antenna) const {
-    return antenna >= 0 && static_cast<std::size_t>(antenna) < mount_.nelements() &&
-           turns_with_zenith(mount_(static_cast<std::size_t>(antenna)));
+  void require_antenna(int antenna) const {
+    if (antenna < 0 || static_cast<std::size_t>(antenna) >= mount_.nelements())
+      throw std::runtime_error(path_ + " has rows of antenna " + std::to_string(antenna) + ", but ANTENNA has " +
+                               std::to_string(mount_.nelements()) + " rows");
   }
+
+  bool turns(int antenna) const { return turns_with_zenith(mount_(static_cast<std::size_t>(antenna))); }
 
   float zenith_rad(double time_s, int field) {
     const auto from = of_field_.find(field);
@@ -98,6 +107,7 @@ class SightReader::Columns {
     return at->second;
   }
 
+  std::string path_;
   Zenith zenith_;
   casacore::Vector<casacore::String> mount_;
   casacore::ScalarColumn<int> antenna_one_, antenna_other_, field_;

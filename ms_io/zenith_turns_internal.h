@@ -18,7 +18,7 @@ class SightReader {
   ~SightReader();
 
   /// [row]. The zenith is 0 of antennas that do not turn with it: those on other mounts than alt-azimuth. Throws
-  /// casacore::AipsError where columns of these rows cannot be read.
+  /// casacore::AipsError where columns of these rows cannot be read, std::runtime_error for antennas that ANTENNA lacks.
   std::vector<imager::RowSight> sights(const Rows& rows);
 
  private:

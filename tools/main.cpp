@@ -20,6 +20,7 @@
 #include "tools/base/standard_streams.h"
 #include "tools/base/text.h"
 #include "tools/mpi/world.h"
+#include "tools/operator_new.h"
 #include "tools/program.h"
 
 namespace {
@@ -109,6 +110,7 @@ extern "C" [[gnu::visibility("default")]] int openblas_num_threads_env() {
 }
 
 int main(int argc, char** argv) {
+  begin_to_throw_bad_alloc();
   hold_standard_streams();
   std::set_terminate(end_at_once);
   std::cerr.rdbuf(nullptr);  // where casacore tells of failures that it throws, too

@@ -1,5 +1,9 @@
 // Gives images, and what else is large, memory of the pool of pages: pages fresh from the system took a sixth of a CLEAN run's
 // time.
+#include "tools/operator_new.h"
+
+#include <unistd.h>
+
 #include <cstddef>
 #include <cstdlib>
 #include <new>
@@ -9,6 +13,15 @@
 #ifndef MISFIT_SANITIZED  // sanitizers watch operators of their own
 
 namespace {
+
+bool begun = false;  ///< main
+
+/// Where libraries are loaded nobody catches what is thrown.
+void end_before_main() noexcept {
+  constexpr char message[] = "misfit: out of memory while the program is loaded; expected more of it\n";
+  static_cast<void>(!write(STDERR_FILENO, message, sizeof message - 1));
+  _exit(1);
+}
 
 void* allocate(std::size_t bytes) noexcept {
   constexpr std::size_t large = 8 * misfit::imager::PagePool::page_bytes;
@@ -21,6 +34,7 @@ void* operator new(std::size_t bytes) {
   while (true) {
     if (void* const memory = allocate(bytes); memory != nullptr) return memory;
     const std::new_handler make_room = std::get_new_handler();
+    if (make_room == nullptr && !begun) end_before_main();
     if (make_room == nullptr) throw std::bad_alloc();
     make_room();
   }
@@ -33,5 +47,13 @@ void operator delete(void* memory) noexcept {
 void operator delete(void* memory, std::size_t) noexcept {
   operator delete(memory);
 }
+
+void misfit::tools::begin_to_throw_bad_alloc() noexcept {
+  begun = true;
+}
+
+#else
+
+void misfit::tools::begin_to_throw_bad_alloc() noexcept {}
 
 #endif

@@ -76,15 +76,39 @@ std::vector<std::string> unseen(const PredictOptions& o, const ms_io::Measuremen
   return sentences;
 }
 
-/// The beams that --apply-beam takes; tells the model of them.
-imager::RowBeams beams_of(const PredictOptions& o, const ms_io::MeasurementSet& set, NamedModel& named) {
+/// The beams that --apply-beam takes for a model that shines at these places; tells the model of them.
+imager::RowBeams beams_of(const PredictOptions& o, const ms_io::MeasurementSet& set,
+                          const std::vector<imager::DirectionCosines>& places, NamedModel& named) {
   SetBeams beams = set_beams(set, DishBeams(o.beam));
   named.remarks.insert(named.remarks.end(), beams.doubts.begin(), beams.doubts.end());
+  if (!places.empty() && !sees_any(beams, places, set.observation()))
+    named.remarks.push_back("the beams of no field selected of " + o.vis + " reach the model " +
+                            (o.model.empty() ? o.components : o.model) + ": its visibilities are 0");
   named.sights_from = set.observation().phase_centre;
-  const std::uint64_t of_beam = ms_io::Fingerprint().add("beam " + o.beam).value();
-  named.fingerprint.add(of_beam);
-  named.model += of_beam;
+  const std::uint64_t of_beams = ms_io::Fingerprint().add(told_apart_by(beams, set.observation())).value();
+  named.fingerprint.add(of_beams);
+  named.model += of_beams;
   return std::move(beams.rows);
+}
+
+/// Pixels that are not 0, of many some all over the image.
+std::vector<imager::DirectionCosines> bright_places(const std::vector<imager::SkyImage>& planes) {
+  constexpr std::size_t enough = 100000;
+  std::vector<imager::DirectionCosines> all, some;
+  for (const imager::SkyImage& plane : planes)
+    for (int row = 0; row < plane.image.height; ++row)
+      for (int column = 0; column < plane.image.width; ++column)
+        if (std::abs(plane.image.at(row, column)) > 0) all.push_back(plane.geometry.at(row, column));
+  for (std::size_t i = 0; i < all.size(); i += 1 + all.size() / enough) some.push_back(all[i]);
+  return some;
+}
+
+std::vector<imager::DirectionCosines> bright_places(const std::array<std::vector<imager::Source>, 4>& sources) {
+  std::vector<imager::DirectionCosines> places;
+  for (const std::vector<imager::Source>& plane : sources)
+    for (const imager::Source& source : plane)
+      if (source.flux_jy != 0) places.push_back(source.position);
+  return places;
 }
 
 /// But for pixels beyond the horizon, which may be NaN.
@@ -120,10 +144,10 @@ NamedModel image_model(const PredictOptions& o, const ms_io::MeasurementSet& set
     named.model += add_to(alone);
   }
   const imager::ImageGeometry& geometry = planes.front().geometry;
-  named.visibilities = o.apply_beam ? seen_image(model, geometry, request, set, beams_of(o, set, named))
+  named.visibilities = o.apply_beam ? seen_image(model, geometry, request, set, beams_of(o, set, bright_places(planes), named))
                                     : image_visibilities(model, geometry, request, set);
   named.empty = parts.empty();
-  named.remarks = unseen(o, set, parts);
+  for (std::string& sentence : unseen(o, set, parts)) named.remarks.push_back(std::move(sentence));
   for (std::string& warning : std::array{band_warning(planes.front().observation, set.observation(), o.model),
                                          misplacement_warning(*file, o.model, set, o.accuracy)})
     if (!warning.empty()) named.remarks.push_back(std::move(warning));
@@ -152,7 +176,8 @@ NamedModel component_model(const PredictOptions& o, const ms_io::MeasurementSet&
         "ra_deg and dec_deg of " + o.components +
         " are taken as B1950, as the phase centre is; a column frame with J2000 or B1950 states what they are");
   if (o.apply_beam) {
-    named.visibilities.predict = seen_sources({sources.begin(), sources.end()}, beams_of(o, set, named), threads);
+    named.visibilities.predict =
+        seen_sources({sources.begin(), sources.end()}, beams_of(o, set, bright_places(sources), named), threads);
     return named;
   }
   named.visibilities.predict = [sources = std::move(sources), threads](const imager::SampleCoordinates& at) {

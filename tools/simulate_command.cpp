@@ -4,6 +4,7 @@
 #include <memory>
 #include <numbers>
 #include <optional>
+#include <set>
 
 #include "imager/direct/source_sums.h"
 #include "imager/numerics/parallel.h"
@@ -117,12 +118,18 @@ ms_io::SimulatedObservation observation_of(const SimulateOptions& o, const Anten
   return observation;
 }
 
-/// How the rows of an observation see, about each field's own phase centre.
-imager::RowBeams beams_of(const SimulateOptions& o, const ms_io::SimulatedObservation& observation) {
+/// How the rows of an observation see, about each field's own phase centre; tells what may be wrong with the beams.
+imager::RowBeams beams_of(const SimulateOptions& o, const ms_io::SimulatedObservation& observation, ProgressLine& progress) {
   const DishBeams beams(o.beam);
   std::vector<imager::Pattern> of_diameter, of_antenna;
-  for (const double diameter_m : observation.dish_diameter_m)
-    of_diameter.push_back(beams.of({observation.telescope, diameter_m}).pattern);
+  std::set<std::string> doubts;
+  for (const double diameter_m : observation.dish_diameter_m) {
+    const imager::BeamModel model = beams.of({observation.telescope, diameter_m});
+    of_diameter.push_back(model.pattern);
+    for (const double hz : {observation.frequency_hz.front(), observation.frequency_hz.back()})
+      if (const std::string doubt = model.doubt_at(hz); !doubt.empty() && doubts.insert(doubt).second)
+        progress.say("warning: " + doubt);
+  }
   for (std::size_t a = 0; a < observation.antenna_name.size(); ++a) of_antenna.push_back(of_diameter[a % of_diameter.size()]);
   std::vector<imager::AxisFrame> frames;
   for (const ms_io::SimulatedField& field : observation.fields) frames.push_back({{}, field.phase_centre.dec_rad});
@@ -149,18 +156,25 @@ void simulate(const SimulateOptions& o) {
   check(o);
   const AntennaArray array = antenna_array(o.array);
   const ms_io::SimulatedObservation observation = observation_of(o, array);
+  if (o.dishes.size() > array.name.size())
+    throw std::invalid_argument("--dishes with " + std::to_string(o.dishes.size()) + " diameters: expected at most " +
+                                std::to_string(array.name.size()) + ", as many as " + o.array + " has antennas");
   const bool test_card_sky = o.sky == "testcard";
   const bool coplanar = o.coplanar || (test_card_sky && !o.noncoplanar && o.pointings.empty());
   const std::vector<imager::Source> sources =
       test_card_sky ? test_card(parse_angle_rad(o.cell)) : read_component_list(o.sky, centre_of(o));
-  std::vector<std::vector<imager::Source>> of_field;
-  for (const ms_io::SimulatedField& field : observation.fields)
-    of_field.push_back(moved(sources, centre_of(o), field.phase_centre));
   const int threads = o.threads == 0 ? imager::available_threads() : o.threads;
 
   ProgressLine progress(o.quiet);
+  std::size_t unseen = 0;
+  for (const ms_io::SimulatedField& field : observation.fields)
+    unseen += sources.size() - moved(sources, centre_of(o), field.phase_centre).size();
+  if (unseen > 0)
+    progress.say("warning: sources lie beyond the horizons of pointings, and are left out there: " + std::to_string(unseen) +
+                 " in all");
   progress.begin("simulate");
-  const std::optional<imager::RowBeams> beams = o.primary_beam ? std::optional(beams_of(o, observation)) : std::nullopt;
+  const std::optional<imager::RowBeams> beams =
+      o.primary_beam ? std::optional(beams_of(o, observation, progress)) : std::nullopt;
   float zenith_rad = 0;
   const auto baselines = [&](std::size_t integration) {
     const imager::SkyDirection& centre = observation.fields[observation.field_of(integration)].phase_centre;
@@ -172,7 +186,8 @@ void simulate(const SimulateOptions& o) {
     return baseline;
   };
   const auto exact = [&](imager::SampleCoordinates at) {
-    const std::vector<imager::Source>& here = of_field[static_cast<std::size_t>(at.sights.front().field)];
+    const auto field = static_cast<std::size_t>(at.sights.front().field);
+    const std::vector<imager::Source> here = moved(sources, centre_of(o), observation.fields[field].phase_centre);
     for (imager::RowSight& sight : at.sights) sight.zenith_rad = zenith_rad;
     return beams ? imager::predict_seen_sources(here, *beams, at, threads) : imager::predict_sources(here, at, threads);
   };

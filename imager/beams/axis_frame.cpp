@@ -7,14 +7,14 @@ AxisFrame::AxisFrame(DirectionCosines axis, double phase_centre_dec_rad) : axis_
   Towards pole;
   pole.m = std::cos(phase_centre_dec_rad);
   pole.n = std::sin(phase_centre_dec_rad);
-  const double along = pole.along(axis_);  // what is left of the pole without it points north at the axis
-  north_.l = pole.l - along * axis_.l;
-  north_.m = pole.m - along * axis_.m;
-  north_.n = pole.n - along * axis_.n;
-  if (std::sqrt(north_.along(north_)) < at_a_pole) {
-    north_ = {};
-    north_.m = 1;
+  north_ = pole.across(axis_);
+  if (north_.along(north_) < at_a_pole * at_a_pole) {
+    pole = {};
+    pole.m = 1;
+    north_ = pole.across(axis_);
   }
+  const double length = std::sqrt(north_.along(north_));
+  north_ = {north_.l / length, north_.m / length, north_.n / length};
   east_.l = north_.m * axis_.n - north_.n * axis_.m;
   east_.m = north_.n * axis_.l - north_.l * axis_.n;
   east_.n = north_.l * axis_.m - north_.m * axis_.l;

@@ -34,8 +34,14 @@ class AxisFrame {
   struct Towards {
     double l = 0, m = 0, n = 0;
     Towards() = default;
+    Towards(double east, double north, double centre) : l(east), m(north), n(centre) {}
     explicit Towards(DirectionCosines at) : l(at.l), m(at.m), n(1 + n_minus_1(at)) {}
     double along(const Towards& other) const { return l * other.l + m * other.m + n * other.n; }
+    /// What is left of it without its part along another of length 1.
+    Towards across(const Towards& other) const {
+      const double part = along(other);
+      return {l - part * other.l, m - part * other.m, n - part * other.n};
+    }
   };
 
   /// From the chord, which keeps small angles.

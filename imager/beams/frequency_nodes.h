@@ -11,16 +11,18 @@ struct FrequencySpan {
   double high_hz = 0;
   std::vector<double> node_hz;  ///< ascending
 
+  /// Whether the nodes are all the frequencies that it was made for.
+  bool is_exact() const { return node_hz.front() == low_hz && node_hz.back() == high_hz; }
   bool holds(double frequency_hz) const { return frequency_hz >= low_hz && frequency_hz <= high_hz; }
   /// What the values at the nodes count for at a frequency, by Lagrange's formula.
   std::vector<double> weights(double frequency_hz) const;
 };
 
-/// Values at a frequency, always as many.
+/// Values at a frequency, always as many. One that is NaN at a frequency of a span is not looked at in this span.
 using ValuesAtFrequency = std::function<std::vector<double>(double frequency_hz)>;
 
 /// The fewest spans and nodes that were found by which `values` follow at all of these frequencies, in any order, to
-/// `tolerance`: Chebyshev's points of ever shorter spans, and the frequencies themselves where they are few. Values may jump
+/// `tolerance`: Chebyshev's points of ever shorter spans, and the frequencies themselves where they are few. Values may step
 /// between two of them.
 std::vector<FrequencySpan> frequency_spans(std::vector<double> frequency_hz, const ValuesAtFrequency& values, double tolerance);
 

@@ -70,6 +70,7 @@ class ImagePattern : public VoltagePattern {
     const double edge = edge_ * lowest_hz / frequency_hz;
     return grid_.of_sines ? std::min(1.0, edge) : std::sin(std::min(pi / 2, edge));
   }
+  double continuous_sine(double frequency_hz) const override { return main_lobe_sine(frequency_hz); }
   std::string doubt(double frequency_hz) const override {
     constexpr double near = 1.1;
     const double low_hz = grid_.planes.front().frequency_hz, high_hz = grid_.planes.back().frequency_hz;

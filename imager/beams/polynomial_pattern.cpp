@@ -24,6 +24,10 @@ class PolynomialPattern : public VoltagePattern {
     const Fits at = fits_at(frequency_hz);
     return sine_of_arcmin_ghz(std::max(ends_[at.band][at.one], ends_[at.band][at.other]), frequency_hz);
   }
+  double continuous_sine(double frequency_hz) const override {
+    const Fits at = fits_at(frequency_hz);
+    return sine_of_arcmin_ghz(std::min(ends_[at.band][at.one], ends_[at.band][at.other]), frequency_hz);
+  }
   double detail_sine(double frequency_hz) const override { return main_lobe_sine(frequency_hz) / 2; }
 
   std::string doubt(double frequency_hz) const override {

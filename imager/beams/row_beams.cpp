@@ -2,6 +2,8 @@
 
 #include <cmath>
 #include <map>
+#include <stdexcept>
+#include <string>
 #include <tuple>
 
 namespace misfit::imager {
@@ -22,20 +24,26 @@ std::vector<Source> seen_by(const PairBeam& beam, std::vector<Source> sources, d
   return sources;
 }
 
-std::vector<RowBeams::Group> RowBeams::groups(const std::vector<RowSight>& sights, double turn_rad) const {
+std::vector<RowBeams::Group> RowBeams::groups(const SampleCoordinates& at, double turn_rad) const {
+  if (at.sights.size() != at.rows())
+    throw std::invalid_argument(std::to_string(at.sights.size()) + " sights of " + std::to_string(at.rows()) +
+                                " rows; expected one for each");
   using Key = std::tuple<const VoltagePattern*, const VoltagePattern*, int, double>;
   std::map<Key, std::size_t> place;
   std::vector<Group> groups;
-  for (std::size_t row = 0; row < sights.size(); ++row) {
-    const RowSight& sight = sights[row];
+  for (std::size_t row = 0; row < at.sights.size(); ++row) {
+    const RowSight& sight = at.sights[row];
     const Pattern& one = of_antenna_.at(static_cast<std::size_t>(sight.antenna_one));
     const Pattern& other = of_antenna_.at(static_cast<std::size_t>(sight.antenna_other));
+    if (!one || !other)
+      throw std::invalid_argument("rows of antenna " + std::to_string(one ? sight.antenna_other : sight.antenna_one) +
+                                  ", which has no simple primary beam; expected rows of others");
     const AxisFrame& frame = of_field_.at(static_cast<std::size_t>(sight.field));
     double zenith_rad = one->is_round() && other->is_round() ? 0 : double{sight.zenith_rad};
     if (turn_rad > 0) zenith_rad = turn_rad * std::round(zenith_rad / turn_rad);
-    const auto [at, is_new] = place.insert({{one.get(), other.get(), sight.field, zenith_rad}, groups.size()});
+    const auto [group, is_new] = place.insert({{one.get(), other.get(), sight.field, zenith_rad}, groups.size()});
     if (is_new) groups.push_back({{one, other, frame, zenith_rad}, sight.field, {}});
-    groups[at->second].rows.push_back(row);
+    groups[group->second].rows.push_back(row);
   }
   return groups;
 }

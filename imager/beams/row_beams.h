@@ -36,15 +36,18 @@ class RowBeams {
     std::vector<std::size_t> rows;
   };
 
-  /// Patterns [antenna], and frames about where antennas pointed [field], of whatever numbers rows have.
+  /// Patterns [antenna], null of those that no row has, and frames about where antennas pointed [field], of whatever numbers
+  /// rows have.
   RowBeams(std::vector<Pattern> of_antenna, std::vector<AxisFrame> of_field)
       : of_antenna_(std::move(of_antenna)), of_field_(std::move(of_field)) {}
 
   /// In the order in which their first rows come. Where patterns are not round, rows see alike whose zeniths differ by less
-  /// than `turn_rad`; 0: that are the same. Throws std::out_of_range for antennas and fields that it was not given.
-  std::vector<Group> groups(const std::vector<RowSight>& sights, double turn_rad = 0) const;
+  /// than `turn_rad`; 0: that are the same. Throws std::invalid_argument where coordinates come without the sights of their
+  /// rows, or antennas without a pattern, std::out_of_range for antennas and fields that it was not given.
+  std::vector<Group> groups(const SampleCoordinates& at, double turn_rad = 0) const;
 
   const std::vector<Pattern>& of_antenna() const { return of_antenna_; }
+  const std::vector<AxisFrame>& of_field() const { return of_field_; }
 
  private:
   std::vector<Pattern> of_antenna_;

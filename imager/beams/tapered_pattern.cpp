@@ -61,6 +61,7 @@ class Gaussian : public VoltagePattern {
   double main_lobe_sine(double frequency_hz) const override {
     return std::sin(std::min(pi / 2, end_widths() * width_rad(frequency_hz)));
   }
+  double continuous_sine(double frequency_hz) const override { return main_lobe_sine(frequency_hz); }
   double detail_sine(double frequency_hz) const override { return std::min(1.0, width_rad(frequency_hz)); }
 
  private:

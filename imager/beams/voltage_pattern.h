@@ -23,6 +23,8 @@ class VoltagePattern {
   /// sin θ of where the main lobe ends: the first null; or as far as a formula holds that has none, beyond which the voltage
   /// is 0. 1 where it reaches the horizon.
   virtual double main_lobe_sine(double frequency_hz) const = 0;
+  /// sin θ up to which it is known in all directions and has no step: where a formula ends, if it ends in one; else 1.
+  virtual double continuous_sine(double /*frequency_hz*/) const { return 1; }
   /// sin θ as small as the pattern's finest details, λ/D of an aperture of diameter D.
   virtual double detail_sine(double frequency_hz) const = 0;
   /// A sentence where it may be wrong by more than a few percent at half power at this frequency; else empty.

@@ -106,6 +106,13 @@ void FitsFile::open(const std::string& name) {
   check(fits_open_diskfile(&handle_->file, std::filesystem::absolute(name).c_str(), READONLY, &status));
 }
 
+void FitsFile::abandon() {
+  if (handle_->file == nullptr) return;
+  FITSfile& file = *handle_->file->Fptr;
+  file.writemode = READONLY;
+  std::fill(std::begin(file.dirty), std::end(file.dirty), 0);
+}
+
 void FitsFile::close() {
   const CallOfCfitsio call;
   int status = 0;

@@ -35,6 +35,8 @@ class FitsFile {
   void create(const std::string& name);
   void open(const std::string& name);
   void close();
+  /// Lets what is not yet written of a file be lost: CFITSIO otherwise fills a file that is closed early up to its full size.
+  void abandon();
   [[noreturn]] void fail(const std::string& reason) const;
 
   void write_number(const std::string& key, double value, const std::string& comment = "");

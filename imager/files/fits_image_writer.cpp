@@ -82,6 +82,7 @@ class FitsImageWriter : public ImageWriter {
   }
 
   void remove_unfinished() {
+    file_.abandon();
     std::error_code ignored;
     std::filesystem::remove(temporary_, ignored);
   }

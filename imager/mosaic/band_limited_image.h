@@ -13,7 +13,7 @@ namespace misfit::imager {
 /// where g is 1 up to 0.4, falls as a raised cosine to 0 at 0.6, and g(½ + t) + g(½ − t) = 1. A plane that has nothing beyond
 /// 0.4 is interpolated exactly; of a Gaussian four pixels wide 2e-5 lies beyond, of three 1e-3. Pixels keep their values
 /// whatever they hold. Evaluated by degridding: F is divided by the taper of a least-misfit function of 8 cells and
-/// transformed to twice as many pixels, and 8 × 8 of these make a value, right to 1.3e-7 of the plane (RMS). Up to 35 bytes a
+/// transformed to twice as many pixels, and 8 × 8 of these make a value, right to 1.3e-7 of the plane (RMS). Up to 37 bytes a
 /// pixel while it is made, 17 afterwards.
 class BandLimitedImage {
  public:

@@ -54,13 +54,15 @@ Image blurred(const PaddedFft<double>& fft, const PaddedFft<double>::Read& read,
 
 bool of_one_resolution(const std::vector<Beam>& beams) {
   constexpr double alike = 2e-3;  // of squares
-  for (const Beam& one : beams)
-    for (const Beam& other : beams) {
-      const Matrix root = Matrix(covariance(other).llt().matrixL()).inverse();
-      const Eigen::SelfAdjointEigenSolver<Matrix> axes(root * covariance(one) * root.transpose(), Eigen::EigenvaluesOnly);
-      if (!(axes.eigenvalues().maxCoeff() < 1 + alike)) return false;
-    }
-  return true;
+  if (beams.empty()) return true;
+  const Matrix root = Matrix(covariance(beams.front()).llt().matrixL()).inverse();
+  double least = 1, most = 1;  // of squares of widths over those of the first
+  for (const Beam& one : beams) {
+    const Eigen::SelfAdjointEigenSolver<Matrix> axes(root * covariance(one) * root.transpose(), Eigen::EigenvaluesOnly);
+    least = std::min(least, axes.eigenvalues().minCoeff());
+    most = std::max(most, axes.eigenvalues().maxCoeff());
+  }
+  return most < (1 + alike) * least;
 }
 
 Image with_beam(const Image& image, const BeamChange& change, const SkyGrid& grid, int threads) {
@@ -68,10 +70,13 @@ Image with_beam(const Image& image, const BeamChange& change, const SkyGrid& gri
   const Matrix gaussian = between(change, grid);
   const double scale = change.to.major_rad * change.to.minor_rad / (change.from.major_rad * change.from.minor_rad);
   const PaddedFft<double> fft(image.width, image.height, {1}, threads);
-  Image result = blurred(
-      fft, [&](int row, double* to) { read_row(image, row, to); }, gaussian, image);
+  const auto read_finite = [&](int row, double* to) {
+    std::transform(image.row(row), image.row(row) + image.width, to,
+                   [](double value) { return std::isfinite(value) ? value : 0; });
+  };
+  Image result = blurred(fft, read_finite, gaussian, image);
   const auto read_known = [&](int row, double* to) {
-    std::transform(image.row(row), image.row(row) + image.width, to, [](double value) { return std::isnan(value) ? 0 : 1; });
+    std::transform(image.row(row), image.row(row) + image.width, to, [](double value) { return std::isfinite(value) ? 1 : 0; });
   };
   const Image known = blurred(fft, read_known, gaussian, image);
   for (std::size_t i = 0; i < result.pixel.size(); ++i)

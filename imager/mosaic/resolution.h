@@ -9,7 +9,7 @@
 
 namespace misfit::imager {
 
-/// True where no beam is longer than another in any direction by more than a thousandth.
+/// True where no beam is longer than another by more than a thousandth, as all compare with the first.
 bool of_one_resolution(const std::vector<Beam>& beams);
 
 /// From one beam to another that encloses it, both with position angles about the grid's north.

@@ -2,6 +2,7 @@
 
 #include <complex>
 #include <list>
+#include <map>
 #include <memory>
 #include <tuple>
 #include <vector>
@@ -13,8 +14,9 @@
 namespace misfit::imager {
 
 struct SeenImageOptions {
-  double tolerance = 1e-7;  ///< to which beams between frequencies follow, over their peak
-  double turn_rad = 0;      ///< beams that are not round are turned by steps of this; 0: for each zenith anew
+  /// Over the beam's peak: to which beams follow between frequencies, and four times of which they may be turned wrongly.
+  double tolerance = 1e-7;
+  std::size_t bytes = std::size_t{1} << 32;  ///< that kept predictions may take, about; one is kept in any case
   int threads = 1;
 };
 
@@ -22,14 +24,16 @@ struct SeenImageOptions {
 Image seen_by(const PairBeam& beam, const Image& model, const ImageGeometry& geometry, double frequency_hz, int threads);
 
 /// The forward transform of a model image that dishes see through their beams, V = A (B · I) with the beam B of each row and
-/// channel. Beams are made at a few frequencies, from which all others follow. By one thread at a time.
+/// channel. Beams are made at a few frequencies and turns, from which all others follow; but at each channel where the model
+/// shines where a formula's beam ends in a step. By one thread at a time.
 class SeenImage {
  public:
   /// To be asked for these frequencies. The transform, the model and the beams are kept by reference.
   SeenImage(const Transform& transform, const Image& model, const ImageGeometry& geometry, const RowBeams& beams,
             const std::vector<double>& frequency_hz, const SeenImageOptions& options);
 
-  /// [row][channel], in Jy; the coordinates have the sights of their rows.
+  /// [row][channel], in Jy; the coordinates have the sights of their rows. Throws std::invalid_argument where they have not,
+  /// or another frequency.
   std::vector<std::complex<double>> at(const SampleCoordinates& coordinates);
   /// See Prediction.
   std::size_t samples_at_once() const { return samples_at_once_; }
@@ -43,6 +47,8 @@ class SeenImage {
 
   /// Of the model that a group sees at a frequency.
   const Prediction& prediction(const RowBeams::Group& group, double frequency_hz);
+  /// Whether the model shines where the beam of a group ends in a step at some frequency of a span.
+  bool shines_at_steps(const RowBeams::Group& group, const FrequencySpan& span);
   void add(const RowBeams::Group& group, const FrequencySpan& span, const SampleCoordinates& at,
            std::vector<std::complex<double>>& visibilities);
 
@@ -52,6 +58,9 @@ class SeenImage {
   const RowBeams& beams_;
   const SeenImageOptions options_;
   std::vector<FrequencySpan> spans_;
+  std::map<std::tuple<const VoltagePattern*, const VoltagePattern*, int, double>, bool> shines_at_steps_;  ///< by low_hz
+  double turn_rad_;  ///< steps in which beams that are not round are turned
+  std::size_t most_kept_;
   std::list<Kept> kept_;  ///< the one used last comes first
   std::size_t samples_at_once_;
 };

@@ -8,7 +8,7 @@ std::vector<std::complex<double>> predict_seen_sources(const std::vector<Source>
                                                        const SampleCoordinates& at, int threads) {
   const std::size_t channels = at.channels();
   std::vector<std::complex<double>> visibilities(at.samples());
-  for (const RowBeams::Group& group : beams.groups(at.sights)) {
+  for (const RowBeams::Group& group : beams.groups(at)) {
     SampleCoordinates here = rows_of(at, group.rows);
     for (std::size_t c = 0; c < channels; ++c) {
       here.frequency_hz = {at.frequency_hz[c]};

@@ -29,9 +29,12 @@ std::optional<Hexagon> hexagon(const std::string& text) {
   if (part.size() != 3 || part[0] != "hex") return {};
   const std::optional<double> count = finite_number(part[1]);
   if (!count || *count < 1 || *count > most || *count != std::floor(*count)) return {};
-  const Hexagon hexagon{static_cast<int>(*count), parse_angle_rad(std::string(part[2]))};
-  if (!(hexagon.spacing_rad > 0)) return {};
-  return hexagon;
+  try {
+    const Hexagon hexagon{static_cast<int>(*count), parse_angle_rad(std::string(part[2]))};
+    if (hexagon.spacing_rad > 0) return hexagon;
+  } catch (const std::invalid_argument&) {  // which could not name the option
+  }
+  return {};
 }
 
 /// The points of a lattice whose neighbours are 1 apart, nearest first, those at one distance from the east through the north.

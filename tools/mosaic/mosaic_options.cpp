@@ -70,7 +70,7 @@ void declare(CLI::App& command, MosaicOptions& o) {
 namespace {
 
 void check_noises(const MosaicOptions& o) {
-  constexpr const char* expected = "flux densities above 0, as 20uJy, for all images or for each";
+  constexpr const char* expected = "flux densities from 1e-15Jy to 1e15Jy, as 20uJy, for all images or for each";
   std::vector<double> noises;
   try {
     noises = o.noises_jy();
@@ -78,7 +78,7 @@ void check_noises(const MosaicOptions& o) {
     refuse_option("rms", o.rms, expected);
   }
   for (const double noise : noises)
-    if (!(noise > 0)) refuse_option("rms", o.rms, expected);
+    if (!(noise >= 1e-15 && noise <= 1e15)) refuse_option("rms", o.rms, expected);  // weights are in single precision
   if (o.images.empty() || noises.empty() || noises.size() == o.images.size()) return;
   refuse_option("rms", o.rms,
                 "one value, or one for each of " + std::to_string(o.images.size()) + " images; there are " +

@@ -21,6 +21,7 @@
 #include "tools/formats/grid_offset.h"
 #include "tools/mosaic/mosaic_grid.h"
 #include "tools/mosaic/pointing_noise.h"
+#include "tools/run/field_beams.h"
 #include "tools/run/image_files.h"
 #include "tools/run/left_over.h"
 #include "tools/run/name_lock.h"
@@ -28,8 +29,8 @@
 namespace misfit::tools {
 namespace {
 
-/// The images that are written, as they follow NAME.
-constexpr std::array products{"image", "weight", "noise", "pb"};
+/// The images that are written, as they follow NAME; the mosaic itself appears last.
+constexpr std::array products{"weight", "noise", "pb", "image"};
 
 std::string beam_text(const imager::Beam& beam) {
   return angle_text(beam.major_rad, 4) + " × " + angle_text(beam.minor_rad, 4) + ", " +
@@ -43,6 +44,10 @@ imager::Beam turned(imager::Beam beam, double by_rad) {
 
 bool has_values(const imager::Image& image) {
   return std::any_of(image.pixel.begin(), image.pixel.end(), [](double value) { return !std::isnan(value); });
+}
+
+bool is_zero(const imager::Image& image) {
+  return std::all_of(image.pixel.begin(), image.pixel.end(), [](double value) { return value == 0 || std::isnan(value); });
 }
 
 /// A number of an image over its planes.
@@ -78,7 +83,7 @@ class MosaicRun {
       for (int stokes = 0; stokes < static_cast<int>(header_.stokes.size()); ++stokes) make_plane({channel, stokes});
     progress_.end();
     say_what_is_left_out();
-    for (auto& [name, writer] : files_) writer->finish();
+    for (const char* product : products) files_.at(product)->finish();
     conclude(outcome(), o_.quiet, call_.outcome);
   }
 
@@ -96,12 +101,39 @@ class MosaicRun {
       Pointing& pointing = pointings_.emplace_back();
       pointing.image = std::make_unique<PointingImage>(path);
       require_alike(*pointing.image, *pointings_.front().image);
+      require_new(path);
       pointing.beam = pointing_beam(*pointing.image, o_.beam);
       for (const std::string& doubt : pointing.beam->doubts())
         if (doubts_.insert(doubt).second) progress_.say("warning: " + doubt);
       warn_of_coarse_pixels(*pointing.image);
     }
     tallies_.resize(pointings_.size());
+    warn_of_shared_references();
+  }
+
+  /// That the last image is not one of those before.
+  void require_new(const std::string& path) const {
+    for (std::size_t p = 0; p + 1 < pointings_.size(); ++p)
+      if (std::error_code absent; std::filesystem::equivalent(path, pointings_[p].image->path(), absent))
+        throw std::runtime_error(path + " is " + pointings_[p].image->path() + " again; expected each image once");
+  }
+
+  /// Images of several pointings that were phased to one direction.
+  void warn_of_shared_references() {
+    constexpr double rounding_rad = 1e-8;
+    const Pointing* before = nullptr;
+    for (const Pointing& pointing : pointings_) {
+      if (!pointing.beam->is_about_reference()) continue;
+      if (before != nullptr &&
+          angle_between(before->image->grid().reference, pointing.image->grid().reference) < rounding_rad) {
+        progress_.say(
+            "warning: " + before->image->path() + " and " + pointing.image->path() + " have one reference direction, " +
+            sexagesimal(pointing.image->grid().reference) +
+            ", and count as seen by beams about it; where their antennas pointed elsewhere, expected .pb beside each");
+        return;
+      }
+      before = &pointing;
+    }
   }
 
   void warn_of_coarse_pixels(const PointingImage& image) {
@@ -188,6 +220,7 @@ class MosaicRun {
       const PointingImage& image = *pointings_[p].image;
       KnownPlane plane = image.read(at);
       if (!has_values(plane.shown)) continue;
+      if (!beams[p] && is_zero(plane.shown)) continue;  // as channels without samples are written
       if (!beams[p])
         throw std::runtime_error(image.path() + " has no restoring beam for its plane " + plane_words(image, at) +
                                  ", which has values; expected one");
@@ -245,6 +278,10 @@ class MosaicRun {
     if (pixels == 0)
       throw std::runtime_error("no image reaches the mosaic, " + size_text() + " about " +
                                sexagesimal(header_.geometry.phase_centre) + "; expected another --phasecenter or --imsize");
+    if (beams_.empty())
+      throw std::runtime_error("no pixel of the mosaic has a value: noises are from " +
+                               with_prefix(tallies_.front().noise.least, "Jy/beam", 3) +
+                               " on; expected some whose squares are numbers");
     for (std::size_t p = 0; p < tallies_.size(); ++p)
       if (tallies_[p].pixels == 0)
         progress_.say(

@@ -77,7 +77,8 @@ class FormulaBeam : public PointingBeam {
     return imager::primary_beam_image(imager::PrimaryBeam(shares(channel)), mosaic.geometry,
                                       {axis_on(mosaic.geometry), imager::LinearMosaic::least_beam, threads});
   }
-  std::string origin() const override { return because_; }
+  std::string origin() const override { return because_ + ", about its reference direction"; }
+  bool is_about_reference() const override { return true; }
   std::vector<std::string> doubts() const override { return doubts_; }
 
   static std::string beam_name(const PointingImage& image) { return image.beam_path().empty() ? "X.pb" : image.beam_path(); }
@@ -124,6 +125,10 @@ class ImageBeam : public PointingBeam {
                                " planes of frequency; expected " + std::to_string(axis.channels) + " as " + image.path() +
                                " has, or --beam");
     if (axis.channels > 1) channel_for(*file_, path_, axis, 0);
+    if (bands_apart(file_->header().observation, image.header().observation))
+      throw std::runtime_error(path_ + " is of " + frequency_text(file_->header().observation.frequency_hz, 6) + "; expected " +
+                               frequency_text(image.header().observation.frequency_hz, 6) + " as " + image.path() +
+                               " has, or --beam");
   }
 
   imager::Image on(const imager::ImageHeader& mosaic, int channel, int threads) const override {
@@ -143,6 +148,7 @@ class ImageBeam : public PointingBeam {
     return on;
   }
   std::string origin() const override { return path_; }
+  bool is_about_reference() const override { return false; }
 
  private:
   /// The polynomial through four by four pixels: a beam is smooth over many.

@@ -14,15 +14,18 @@ bool is_voltage(const std::string& beam) {
   return beam.rfind(voltage_prefix, 0) == 0;
 }
 
-std::string path_of(const std::string& beam) {
+/// The file that --beam names; empty where it names none.
+std::string beam_path(const std::string& beam) {
+  if (beam.empty() || imager::is_beam_name(beam)) return "";
   return is_voltage(beam) ? beam.substr(sizeof voltage_prefix - 1) : beam;
 }
 
 }  // namespace
 
 DishBeams::DishBeams(const std::string& beam) : beam_(beam) {
-  if (beam.empty() || imager::is_beam_name(beam)) return;
-  of_file_ = read_beam_file(path_of(beam), is_voltage(beam) ? BeamPixels::voltage : BeamPixels::power);
+  const std::string path = beam_path(beam);
+  if (path.empty()) return;
+  of_file_ = read_beam_file(path, is_voltage(beam) ? BeamPixels::voltage : BeamPixels::power);
 }
 
 imager::BeamModel DishBeams::of(const imager::AntennaSort& antennas) const {
@@ -31,9 +34,10 @@ imager::BeamModel DishBeams::of(const imager::AntennaSort& antennas) const {
 }
 
 void check_beam(const std::string& beam) {
-  if (beam.empty() || imager::is_beam_name(beam) || std::filesystem::is_regular_file(path_of(beam))) return;
+  const std::string path = beam_path(beam);
+  if (path.empty() || std::filesystem::is_regular_file(path)) return;
   refuse_option("beam", "'" + beam + "'",
-                imager::expected_beam_names() + "; or a FITS file, or voltage:FILE, and there is no file " + path_of(beam));
+                imager::expected_beam_names() + "; or a FITS file, or voltage:FILE, and there is no file " + path);
 }
 
 }  // namespace misfit::tools

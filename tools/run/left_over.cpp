@@ -58,7 +58,9 @@ std::vector<std::string> own_names(const ImageOptions& o) {
 
 /// The images of other kinds, or in another format; but nothing beside an input of the same name.
 void remove_other_images(const ImageOptions& o, const std::vector<std::string>& made, std::vector<std::string>& removed) {
-  for (const std::string& kind : all_product_names()) {
+  std::vector<std::string> kinds = all_product_names();
+  for (const char* of_mosaics : {"weight", "noise"}) kinds.emplace_back(of_mosaics);
+  for (const std::string& kind : kinds) {
     const std::vector<std::string> paths = image_paths(o.imagename + "." + kind, "both");
     if (std::any_of(paths.begin(), paths.end(), [&](const std::string& path) { return is_input(o, path); })) continue;
     for (const std::string& path : paths) {

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 #include <memory>
+#include <set>
 #include <stdexcept>
 #include <utility>
 
@@ -17,7 +19,7 @@
 namespace misfit::tools {
 namespace {
 
-/// [antenna]; of those that no row of two antennas has, the first sort's.
+/// [antenna]; null of those that no row of two antennas has, and that have no simple beam.
 std::vector<imager::Pattern> patterns_of(const ms_io::MeasurementSet& set, const ms_io::BeamRows& rows, const DishBeams& beams,
                                          std::vector<std::string>& doubts) {
   std::vector<imager::BeamModel> models;
@@ -30,8 +32,15 @@ std::vector<imager::Pattern> patterns_of(const ms_io::MeasurementSet& set, const
   for (const imager::AntennaSort& antenna : set.antennas()) {
     const auto sort = std::find_if(rows.sorts.begin(), rows.sorts.end(),
                                    [&](const imager::AntennaSort& one) { return imager::alike(one, antenna); });
-    const bool known = sort != rows.sorts.end();
-    patterns.push_back(models[known ? static_cast<std::size_t>(sort - rows.sorts.begin()) : 0].pattern);
+    if (sort != rows.sorts.end()) {
+      patterns.push_back(models[static_cast<std::size_t>(sort - rows.sorts.begin())].pattern);
+      continue;
+    }
+    try {
+      patterns.push_back(beams.of(antenna).pattern);
+    } catch (const imager::NoSimpleBeam&) {
+      patterns.push_back(nullptr);
+    }
   }
   return patterns;
 }
@@ -80,6 +89,12 @@ struct SeenPlanes {
       : transform(imager::plan_gridding(request)), beams(std::move(of_rows)) {}
 };
 
+/// The ends and the middle of its band.
+std::vector<double> frequencies_in(const imager::Observation& observation) {
+  const double middle = observation.frequency_hz, half = observation.bandwidth_hz / 2;
+  return {middle - half, middle, middle + half};
+}
+
 std::vector<double> frequencies_of(const ms_io::MeasurementSet& set) {
   std::vector<double> all;
   for (const ms_io::SpectralWindow& window : set.spectral_windows())
@@ -101,7 +116,49 @@ SetBeams set_beams(const ms_io::MeasurementSet& set, const DishBeams& beams) {
     throw std::runtime_error("FEED's column BEAM_OFFSET says that beams point " + angle_text(rows.beam_offset_rad(), 3) +
                              " beside the field's direction; expected beams on the axis of their dishes");
   require_still(rows.pointings, width_rad);
-  return {{std::move(patterns), frames_of(rows.pointings, set.observation().phase_centre)}, std::move(doubts)};
+  std::vector<int> fields;
+  for (const ms_io::FieldPointing& pointing : rows.pointings) fields.push_back(pointing.id);
+  return {
+      {std::move(patterns), frames_of(rows.pointings, set.observation().phase_centre)}, std::move(fields), std::move(doubts)};
+}
+
+std::vector<double> told_apart_by(const SetBeams& beams, const imager::Observation& observation) {
+  constexpr int radii = 64, angles = 12;
+  std::vector<double> numbers;
+  std::map<const imager::VoltagePattern*, double> known;
+  for (const imager::Pattern& pattern : beams.rows.of_antenna()) {
+    const auto [number, is_new] = known.insert({pattern.get(), static_cast<double>(known.size())});
+    numbers.push_back(number->second);
+    if (!is_new || !pattern) continue;
+    const double reach = std::min(1.0, 4 * pattern->detail_sine(observation.frequency_hz));
+    for (const double hz : frequencies_in(observation))
+      for (int r = 0; r <= radii; ++r)
+        for (int a = 0; a < angles; ++a)
+          numbers.push_back(pattern->voltage_at(reach * r / radii, 2 * imager::pi * a / angles, hz));
+  }
+  for (const int field : beams.fields) {
+    const imager::AxisFrame& frame = beams.rows.of_field()[static_cast<std::size_t>(field)];
+    for (const imager::DirectionCosines at : {imager::DirectionCosines{0, 0}, {1e-3, 0}, {0, 1e-3}})
+      numbers.push_back(frame.sine(at));
+    numbers.push_back(field);
+  }
+  return numbers;
+}
+
+bool sees_any(const SetBeams& beams, const std::vector<imager::DirectionCosines>& places,
+              const imager::Observation& observation) {
+  constexpr double nothing = 1e-9;
+  const std::vector<imager::Pattern>& patterns = beams.rows.of_antenna();
+  const std::set<imager::Pattern> different(patterns.begin(), patterns.end());
+  for (const int field : beams.fields)
+    for (const imager::Pattern& pattern : different) {
+      if (!pattern) continue;
+      const imager::PairBeam beam{pattern, pattern, beams.rows.of_field()[static_cast<std::size_t>(field)], 0};
+      for (const double hz : frequencies_in(observation))
+        if (std::any_of(places.begin(), places.end(), [&](const auto& at) { return beam.power(at, hz) > nothing; }))
+          return true;
+    }
+  return false;
 }
 
 ms_io::Predict seen_sources(std::vector<std::vector<imager::Source>> sources, imager::RowBeams beams, int threads) {
@@ -115,10 +172,12 @@ ms_io::Predict seen_sources(std::vector<std::vector<imager::Source>> sources, im
 
 ModelVisibilities seen_image(const StokesPlanes& planes, const imager::ImageGeometry& geometry,
                              const imager::GriddingRequest& request, const ms_io::MeasurementSet& set, imager::RowBeams beams) {
-  constexpr double part_of_accuracy = 0.1, degree = imager::pi / 180;
+  constexpr double part_of_accuracy = 0.1;
+  constexpr std::size_t bytes = std::size_t{1} << 32;
   const auto state = std::make_shared<SeenPlanes>(prediction_request(request, geometry, set), std::move(beams));
-  const imager::SeenImageOptions options{part_of_accuracy * (request.accuracy > 0 ? request.accuracy : 1e-6), degree / 4,
-                                         request.threads};
+  const auto different = static_cast<std::size_t>(std::count_if(planes.begin(), planes.end(), [](const auto* p) { return p; }));
+  const imager::SeenImageOptions options{part_of_accuracy * (request.accuracy > 0 ? request.accuracy : 1e-6),
+                                         bytes / std::max<std::size_t>(1, different), request.threads};
   ModelVisibilities model;
   for (std::size_t k = 0; k < planes.size(); ++k) {
     if (planes[k] == nullptr) continue;

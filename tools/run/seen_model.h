@@ -16,6 +16,7 @@ namespace misfit::tools {
 /// How the rows of a set see what lies about its phase centre.
 struct SetBeams {
   imager::RowBeams rows;
+  std::vector<int> fields;          ///< that are selected
   std::vector<std::string> doubts;  ///< what may be wrong with the beams, a sentence each
 };
 
@@ -23,6 +24,14 @@ struct SetBeams {
 /// antennas have no simple beam, FEED has beams beside the axes of dishes, a field's antennas pointed more than 90° from the
 /// phase centre, or a field moves past it.
 SetBeams set_beams(const ms_io::MeasurementSet& set, const DishBeams& beams);
+
+/// Numbers by which beams are told from others, however they were asked for: what patterns are at many places over a band, and
+/// where they point.
+std::vector<double> told_apart_by(const SetBeams& beams, const imager::Observation& observation);
+
+/// Whether any field's antennas see any of these places, seen from the phase centre, anywhere in the band.
+bool sees_any(const SetBeams& beams, const std::vector<imager::DirectionCosines>& places,
+              const imager::Observation& observation);
 
 /// The visibilities of sources [Stokes I, Q, U, V] that dishes see; a list may be empty.
 ms_io::Predict seen_sources(std::vector<std::vector<imager::Source>> sources, imager::RowBeams beams, int threads);

@@ -47,6 +47,10 @@ OnSphere on_sphere(const SkyDirection& of, const SkyDirection& about) {
   return {std::atan2(std::hypot(x, y), z), std::atan2(x, y)};
 }
 
+SampleCoordinates rows_with(const std::vector<RowSight>& sights) {
+  return {std::vector<double>(3 * sights.size()), {hz}, sights};
+}
+
 }  // namespace
 
 BOOST_AUTO_TEST_CASE(directions_lie_about_an_axis_as_on_the_sphere) {
@@ -66,7 +70,11 @@ BOOST_AUTO_TEST_CASE(directions_lie_about_an_axis_as_on_the_sphere) {
       BOOST_TEST(std::isnan(frame.sine({0.9, 0.9})));
     }
   }
-  BOOST_TEST(AxisFrame({}, pi / 2).angle_rad({0.1, 0}) == pi / 2);  // about the pole itself: as the image has it
+  // About the pole itself, north is where the image has it.
+  BOOST_TEST(AxisFrame({}, pi / 2).angle_rad({0.1, 0}) == pi / 2);
+  const AxisFrame pole({0, std::cos(1.2)}, 1.2);
+  BOOST_TEST(std::abs(pole.angle_rad({0.001, std::cos(1.2)}) - pi / 2) < 1e-3);
+  BOOST_TEST(std::abs(pole.angle_rad({0, std::cos(1.2) + 0.001})) < 1e-9);
 }
 
 BOOST_AUTO_TEST_CASE(a_pair_sees_the_product_of_its_voltages_turned_as_the_zenith_is) {
@@ -95,7 +103,7 @@ BOOST_AUTO_TEST_CASE(rows_that_see_alike_are_one_group) {
   const RowBeams beams({large, large, small, turns}, {AxisFrame({}, 0), AxisFrame({0.1, 0}, 0)});
   const auto rows_of_groups = [&](const std::vector<RowSight>& sights, double turn_rad = 0) {
     std::vector<std::vector<std::size_t>> rows;
-    for (const RowBeams::Group& group : beams.groups(sights, turn_rad)) rows.push_back(group.rows);
+    for (const RowBeams::Group& group : beams.groups(rows_with(sights), turn_rad)) rows.push_back(group.rows);
     return rows;
   };
   using Rows = std::vector<std::vector<std::size_t>>;
@@ -105,8 +113,9 @@ BOOST_AUTO_TEST_CASE(rows_that_see_alike_are_one_group) {
   const std::vector<RowSight> turned{{3, 0, 0, 0.1F}, {3, 0, 0, 0.104F}, {3, 0, 0, 0.2F}, {3, 0, 0, 0.1F}};
   BOOST_TEST((rows_of_groups(turned) == Rows{{0, 3}, {1}, {2}}));
   BOOST_TEST((rows_of_groups(turned, 0.02) == Rows{{0, 1, 3}, {2}}));
-  BOOST_CHECK_THROW(beams.groups({{0, 4, 0, 0}}), std::out_of_range);
-  BOOST_CHECK_THROW(beams.groups({{0, 1, 2, 0}}), std::out_of_range);
+  BOOST_CHECK_THROW(rows_of_groups({{0, 4, 0, 0}}), std::out_of_range);
+  BOOST_CHECK_THROW(rows_of_groups({{0, 1, 2, 0}}), std::out_of_range);
+  BOOST_CHECK_THROW(beams.groups({std::vector<double>(3), {hz}}), std::invalid_argument);
 }
 
 BOOST_AUTO_TEST_SUITE_END()
