@@ -32,7 +32,7 @@ def cases(part):
 
 class Definition(unittest.TestCase):
     def test_images_equal_direct_sums_to_epsilon(self):
-        for i, epsilon, scene in cases(39):
+        for i, epsilon, scene in cases(79):
             wgt, mask = (scene.wgt if i % 2 else None), (scene.mask if i % 3 == 0 else None)
             truth = scene.image(wgt, mask)
             if not truth.any():
@@ -43,7 +43,7 @@ class Definition(unittest.TestCase):
                 self.assertLessEqual(relative_error(image, truth), epsilon)
 
     def test_visibilities_equal_direct_sums_to_epsilon(self):
-        for i, epsilon, scene in cases(39):
+        for i, epsilon, scene in cases(79):
             wgt, mask = (scene.wgt if i % 2 else None), (scene.mask if i % 3 == 0 else None)
             truth = scene.visibilities(wgt, mask)
             if not truth.any():
@@ -101,7 +101,7 @@ class Definition(unittest.TestCase):
 
 class Adjointness(unittest.TestCase):
     def test_holds_to_rounding(self):
-        for i, epsilon, scene in cases(39):
+        for i, epsilon, scene in cases(79):
             single = scene.dirty.dtype == np.float32
             options = dict(wgt=scene.wgt, mask=scene.mask, nthreads=1 + i // 2 % 2)
             image = misfit.vis2dirty(**scene.image_options(epsilon, **options)).astype(np.float64)
