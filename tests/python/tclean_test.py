@@ -209,6 +209,10 @@ except KeyboardInterrupt:
         self.assertEqual((written["column"], written["visibilities"]), ("MODEL_DATA", 2 * written["rows"]))
         again = misfit.subtract(self.sets[0], model=self.name("model.model"))
         self.assertEqual(again["column"], "CORRECTED_DATA")
+        seen = misfit.predict(self.sets[0], model=self.name("model.model"), column="SEEN", apply_beam=True, beam="airy:25")
+        self.assertEqual(seen["column"], "SEEN")
+        with self.assertRaisesRegex(ValueError, "beam requires apply_beam"):
+            misfit.predict(self.sets[0], model=self.name("model.model"), beam="airy:25")
         with self.assertRaisesRegex(ValueError, "expected either model or components"):
             misfit.predict(self.sets[0])
 

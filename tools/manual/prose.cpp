@@ -55,7 +55,9 @@ Prose predict_prose() {
       "Writes what a model's visibilities are at the samples of a MeasurementSet, flagged or not, into a column; or the data "
       "without them. A run that was stopped leaves a set that opens, and the same command goes on where it was."};
   prose.examples = {{"Fill MODEL_DATA from an image", "misfit predict --vis my.ms --model out.model.fits"},
-                    {"Take sources out of the data", "misfit predict --vis my.ms --components sky.csv --subtract"}};
+                    {"Take sources out of the data", "misfit predict --vis my.ms --components sky.csv --subtract"},
+                    {"The same of sources with the fluxes of the sky, in a mosaic's data",
+                     "misfit predict --vis my.ms --components sky.csv --apply-beam --phasecenter 0 --subtract"}};
   return prose;
 }
 

@@ -31,6 +31,8 @@ def predict(
     intent="",
     observation="",
     phasecenter="",
+    apply_beam=False,
+    beam="",
     accuracy=None,
     kernel=None,
     threads=None,
@@ -50,6 +52,10 @@ def predict(
         What is written: selections as CASA's tasks take them.
     phasecenter : str
         What the model is about, where it does not say so itself; see `misfit predict --help`.
+    apply_beam : bool
+        The model is the sky without a primary beam, which each row sees through its own dishes' beams.
+    beam : str
+        The primary beam of `apply_beam` in place of the antennas' own, as `misfit image --beam` takes it.
     accuracy : float, optional
         Relative accuracy of the visibilities.
     kernel : str, optional
@@ -73,7 +79,8 @@ def predict(
     """
     return _write(vis, dict(model=model, components=components, column=column, field=field, spw=spw, timerange=timerange,
                             uvrange=uvrange, antenna=antenna, scan=scan, intent=intent, observation=observation,
-                            phasecenter=phasecenter, accuracy=accuracy, kernel=kernel, threads=threads))
+                            phasecenter=phasecenter, beam=beam, accuracy=accuracy, kernel=kernel, threads=threads),
+                  ["--apply-beam"] if apply_beam else [])
 
 
 def subtract(
@@ -92,6 +99,8 @@ def subtract(
     intent="",
     observation="",
     phasecenter="",
+    apply_beam=False,
+    beam="",
     accuracy=None,
     kernel=None,
     threads=None,
@@ -113,6 +122,10 @@ def subtract(
         What is written: selections as CASA's tasks take them.
     phasecenter : str
         What the model is about, where it does not say so itself.
+    apply_beam : bool
+        As of `predict`.
+    beam : str
+        As of `predict`.
     accuracy : float, optional
         Relative accuracy of the visibilities.
     kernel : str, optional
@@ -132,5 +145,5 @@ def subtract(
     """
     return _write(vis, dict(model=model, components=components, datacolumn=datacolumn, column=column, field=field, spw=spw,
                             timerange=timerange, uvrange=uvrange, antenna=antenna, scan=scan, intent=intent,
-                            observation=observation, phasecenter=phasecenter, accuracy=accuracy, kernel=kernel,
-                            threads=threads), ["--subtract"])
+                            observation=observation, phasecenter=phasecenter, beam=beam, accuracy=accuracy, kernel=kernel,
+                            threads=threads), ["--subtract"] + (["--apply-beam"] if apply_beam else []))
