@@ -15,13 +15,13 @@
 #include "ms_io/metadata_internal.h"
 #include "ms_io/model_writer.h"
 #include "ms_io/row_shares_internal.h"
+#include "ms_io/row_sights_internal.h"
 #include "ms_io/spectral_part_internal.h"
 #include "ms_io/stokes_response_internal.h"
 #include "ms_io/subtracted_models_internal.h"
 #include "ms_io/table_access_internal.h"
 #include "ms_io/uvw_scan_internal.h"
 #include "ms_io/visibility_reader_internal.h"
-#include "ms_io/zenith_turns_internal.h"
 
 namespace misfit::ms_io {
 namespace {

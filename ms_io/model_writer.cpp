@@ -16,10 +16,10 @@
 #include "ms_io/model_column_internal.h"
 #include "ms_io/model_journal_internal.h"
 #include "ms_io/row_shares_internal.h"
+#include "ms_io/row_sights_internal.h"
 #include "ms_io/subtracted_models_internal.h"
 #include "ms_io/table_access_internal.h"
 #include "ms_io/value_flush_internal.h"
-#include "ms_io/zenith_turns_internal.h"
 
 namespace misfit::ms_io {
 namespace {

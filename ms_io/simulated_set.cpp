@@ -148,7 +148,7 @@ void require_size(const char* what, std::size_t found, std::size_t expected) {
                               std::to_string(found) + " values; expected " + std::to_string(expected));
 }
 
-/// Of the rows of an integration.
+/// How the rows of an integration see the sky.
 std::vector<imager::RowSight> sights_of(const SimulatedObservation& observation, std::size_t integration) {
   const int antennas = static_cast<int>(observation.antenna_name.size());
   std::vector<imager::RowSight> sights;

@@ -201,8 +201,6 @@ void check_values(const PredictOptions& o) {
   if (!(o.accuracy > 0 && o.accuracy < 1))
     throw std::invalid_argument("--accuracy " + significant(o.accuracy, 3) + ": expected a number above 0 and below 1");
   check_beam(o.beam);
-  if (!o.beam.empty() && !o.apply_beam)
-    throw std::invalid_argument("--beam " + o.beam + " without --apply-beam: expected both, or neither");
   if (o.threads < 0) throw std::invalid_argument("--threads " + std::to_string(o.threads) + ": expected 0 (all cores) or more");
 }
 

@@ -9,25 +9,18 @@ namespace misfit::imager {
 /// Directions as they lie about an axis, by true angles: those of dishes that point there.
 class AxisFrame {
  public:
-  /// Where a direction is: sin θ of its angle θ from the axis, and its position angle about it, from the north there through
-  /// the east.
-  struct Place {
-    double sine;
-    double angle_rad;
-  };
-
-  /// Of an axis that is seen from a phase centre of this declination. About a pole north is where the image has it.
+  /// The frame of an axis as a phase centre of this declination sees it. About a pole, north is where the image has it.
   AxisFrame(DirectionCosines axis, double phase_centre_dec_rad);
 
-  /// sin θ; 2 where the direction is farther away than 90°, and NaN where it lies beyond the horizon of the phase centre.
+  /// sin θ of the angle θ between a direction and the axis; 2 where the direction is farther away than 90°, and NaN where it
+  /// lies beyond the horizon of the phase centre.
   double sine(DirectionCosines at) const { return sine(Towards(at)); }
-  /// The position angle of a direction within 90° that is not the axis itself.
+  /// The position angle about the axis, from the north there through the east, of a direction within 90° that is not the axis
+  /// itself.
   double angle_rad(DirectionCosines at) const {
     const Towards d(at);
     return std::atan2(d.along(east_), d.along(north_));
   }
-  /// Both.
-  Place place(DirectionCosines at) const { return {sine(at), angle_rad(at)}; }
 
  private:
   /// A vector to the east, to the north, and to the phase centre.
@@ -37,7 +30,7 @@ class AxisFrame {
     Towards(double east, double north, double centre) : l(east), m(north), n(centre) {}
     explicit Towards(DirectionCosines at) : l(at.l), m(at.m), n(1 + n_minus_1(at)) {}
     double along(const Towards& other) const { return l * other.l + m * other.m + n * other.n; }
-    /// What is left of it without its part along another of length 1.
+    /// The part of this vector that is perpendicular to another of length 1.
     Towards across(const Towards& other) const {
       const double part = along(other);
       return {l - part * other.l, m - part * other.m, n - part * other.n};

@@ -18,7 +18,7 @@ struct Known {
   std::vector<std::vector<double>> values;
 };
 
-/// Those from `begin` on, before `end`.
+/// The known frequencies from `begin` on, before `end`.
 struct Part {
   std::size_t begin;
   std::size_t end;

@@ -11,10 +11,10 @@ struct FrequencySpan {
   double high_hz = 0;
   std::vector<double> node_hz;  ///< ascending
 
-  /// Whether the nodes are all the frequencies that it was made for.
+  /// True where the nodes are all the frequencies that the span was made for.
   bool is_exact() const { return node_hz.front() == low_hz && node_hz.back() == high_hz; }
   bool holds(double frequency_hz) const { return frequency_hz >= low_hz && frequency_hz <= high_hz; }
-  /// What the values at the nodes count for at a frequency, by Lagrange's formula.
+  /// By how much the value at each node counts at a frequency: Lagrange's formula.
   std::vector<double> weights(double frequency_hz) const;
 };
 

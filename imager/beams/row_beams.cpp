@@ -24,6 +24,14 @@ std::vector<Source> seen_by(const PairBeam& beam, std::vector<Source> sources, d
   return sources;
 }
 
+const Pattern& RowBeams::of_antenna(int antenna) const {
+  const auto place = static_cast<std::size_t>(antenna);
+  if (antenna < 0 || place >= of_antenna_.size() || !of_antenna_[place])
+    throw std::runtime_error("rows of antenna " + std::to_string(antenna) +
+                             ", of which no primary beam is known; expected rows of antennas with one");
+  return of_antenna_[place];
+}
+
 std::vector<RowBeams::Group> RowBeams::groups(const SampleCoordinates& at, double turn_rad) const {
   if (at.sights.size() != at.rows())
     throw std::invalid_argument(std::to_string(at.sights.size()) + " sights of " + std::to_string(at.rows()) +
@@ -33,11 +41,8 @@ std::vector<RowBeams::Group> RowBeams::groups(const SampleCoordinates& at, doubl
   std::vector<Group> groups;
   for (std::size_t row = 0; row < at.sights.size(); ++row) {
     const RowSight& sight = at.sights[row];
-    const Pattern& one = of_antenna_.at(static_cast<std::size_t>(sight.antenna_one));
-    const Pattern& other = of_antenna_.at(static_cast<std::size_t>(sight.antenna_other));
-    if (!one || !other)
-      throw std::invalid_argument("rows of antenna " + std::to_string(one ? sight.antenna_other : sight.antenna_one) +
-                                  ", which has no simple primary beam; expected rows of others");
+    const Pattern& one = of_antenna(sight.antenna_one);
+    const Pattern& other = of_antenna(sight.antenna_other);
     const AxisFrame& frame = of_field_.at(static_cast<std::size_t>(sight.field));
     double zenith_rad = one->is_round() && other->is_round() ? 0 : double{sight.zenith_rad};
     if (turn_rad > 0) zenith_rad = turn_rad * std::round(zenith_rad / turn_rad);

@@ -43,13 +43,15 @@ class RowBeams {
 
   /// In the order in which their first rows come. Where patterns are not round, rows see alike whose zeniths differ by less
   /// than `turn_rad`; 0: that are the same. Throws std::invalid_argument where coordinates come without the sights of their
-  /// rows, or antennas without a pattern, std::out_of_range for antennas and fields that it was not given.
+  /// rows, std::runtime_error that names an antenna without a pattern, std::out_of_range for fields that it was not given.
   std::vector<Group> groups(const SampleCoordinates& at, double turn_rad = 0) const;
 
-  const std::vector<Pattern>& of_antenna() const { return of_antenna_; }
-  const std::vector<AxisFrame>& of_field() const { return of_field_; }
+  const std::vector<Pattern>& of_antennas() const { return of_antenna_; }
+  const std::vector<AxisFrame>& of_fields() const { return of_field_; }
 
  private:
+  const Pattern& of_antenna(int antenna) const;
+
   std::vector<Pattern> of_antenna_;
   std::vector<AxisFrame> of_field_;
 };

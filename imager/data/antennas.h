@@ -12,7 +12,7 @@ struct AntennaSort {
   std::string name = {};  ///< of one of them, for messages
 };
 
-/// Whether they are one sort, whatever their names.
+/// True where two antennas are of one sort, whatever their names.
 inline bool alike(const AntennaSort& a, const AntennaSort& b) {
   const bool as_large = a.diameter_m == b.diameter_m || (std::isnan(a.diameter_m) && std::isnan(b.diameter_m));
   return as_large && a.telescope == b.telescope;

@@ -31,7 +31,7 @@ double farthest_sine(const ImageGeometry& geometry, const std::vector<AxisFrame>
 ValuesAtFrequency sampled_patterns(const RowBeams& beams, double reach) {
   constexpr int radii = 96, angles = 8;
   std::set<const VoltagePattern*> different;
-  for (const Pattern& pattern : beams.of_antenna())
+  for (const Pattern& pattern : beams.of_antennas())
     if (pattern) different.insert(pattern.get());
   return [different, reach](double hz) {
     std::vector<double> values;
@@ -56,7 +56,7 @@ double steepest_turn(const RowBeams& beams, double reach, double frequency_hz) {
   constexpr int radii = 48, angles = 90;
   constexpr double step_rad = 2 * pi / angles;
   double steepest = 0;
-  for (const Pattern& pattern : beams.of_antenna()) {
+  for (const Pattern& pattern : beams.of_antennas()) {
     if (!pattern || pattern->is_round()) continue;
     for (int r = 1; r <= radii; ++r)
       for (int a = 0; a < angles; ++a) {
@@ -79,7 +79,8 @@ std::size_t prediction_bytes(const Image& model) {
   return std::max<std::size_t>(1, 32 * model.pixel.size());
 }
 
-/// Whether a table of a round beam is as good as the beam itself over an image that reaches so far from the axis, and quicker.
+/// True where a table of a round beam is as good as the beam itself over an image that reaches so far from the axis, and
+/// quicker.
 bool takes_table(const PairBeam& beam, const Image& model, double reach, double frequency_hz) {
   constexpr double points_of_detail = 60, points = 1024;
   constexpr std::ptrdiff_t many = 1 << 14;
@@ -117,9 +118,9 @@ SeenImage::SeenImage(const Transform& transform, const Image& model, const Image
       geometry_(geometry),
       beams_(beams),
       options_(options),
-      spans_(
-          frequency_spans(frequency_hz, sampled_patterns(beams, farthest_sine(geometry, beams.of_field())), options.tolerance)),
-      turn_rad_(turn_step(beams, farthest_sine(geometry, beams.of_field()), spans_.back().high_hz, options.tolerance)),
+      spans_(frequency_spans(frequency_hz, sampled_patterns(beams, farthest_sine(geometry, beams.of_fields())),
+                             options.tolerance)),
+      turn_rad_(turn_step(beams, farthest_sine(geometry, beams.of_fields()), spans_.back().high_hz, options.tolerance)),
       most_kept_(std::max<std::size_t>(1, options.bytes / prediction_bytes(model))),
       samples_at_once_(transform.predict(model)->samples_at_once()) {}
 
@@ -138,7 +139,8 @@ const Prediction& SeenImage::prediction(const RowBeams::Group& group, double fre
 
 bool SeenImage::shines_at_steps(const RowBeams::Group& group, const FrequencySpan& span) {
   const PairBeam& beam = group.beam;
-  const auto [known, is_new] = shines_at_steps_.insert({{beam.one.get(), beam.other.get(), group.field, span.low_hz}, false});
+  const auto [known, is_new] =
+      shines_at_steps_.insert({{beam.one.get(), beam.other.get(), group.field, beam.zenith_rad, span.low_hz}, false});
   if (!is_new) return known->second;
   const std::array<double, 4> hz{span.low_hz, span.node_hz.front(), span.node_hz.back(), span.high_hz};
   double within = 1;

@@ -39,13 +39,14 @@ class SeenImage {
   std::size_t samples_at_once() const { return samples_at_once_; }
 
  private:
+  /// The pair, field, zenith and frequency, or lowest frequency of a span.
   using Key = std::tuple<const VoltagePattern*, const VoltagePattern*, int, double, double>;
   struct Kept {
     Key key;
     std::unique_ptr<Prediction> prediction;
   };
 
-  /// Of the model that a group sees at a frequency.
+  /// The prediction of the model as a group sees it at a frequency.
   const Prediction& prediction(const RowBeams::Group& group, double frequency_hz);
   /// Whether the model shines where the beam of a group ends in a step at some frequency of a span.
   bool shines_at_steps(const RowBeams::Group& group, const FrequencySpan& span);
@@ -58,7 +59,7 @@ class SeenImage {
   const RowBeams& beams_;
   const SeenImageOptions options_;
   std::vector<FrequencySpan> spans_;
-  std::map<std::tuple<const VoltagePattern*, const VoltagePattern*, int, double>, bool> shines_at_steps_;  ///< by low_hz
+  std::map<Key, bool> shines_at_steps_;
   double turn_rad_;  ///< steps in which beams that are not round are turned
   std::size_t most_kept_;
   std::list<Kept> kept_;  ///< the one used last comes first

@@ -126,7 +126,7 @@ std::vector<double> told_apart_by(const SetBeams& beams, const imager::Observati
   constexpr int radii = 64, angles = 12;
   std::vector<double> numbers;
   std::map<const imager::VoltagePattern*, double> known;
-  for (const imager::Pattern& pattern : beams.rows.of_antenna()) {
+  for (const imager::Pattern& pattern : beams.rows.of_antennas()) {
     const auto [number, is_new] = known.insert({pattern.get(), static_cast<double>(known.size())});
     numbers.push_back(number->second);
     if (!is_new || !pattern) continue;
@@ -137,7 +137,7 @@ std::vector<double> told_apart_by(const SetBeams& beams, const imager::Observati
           numbers.push_back(pattern->voltage_at(reach * r / radii, 2 * imager::pi * a / angles, hz));
   }
   for (const int field : beams.fields) {
-    const imager::AxisFrame& frame = beams.rows.of_field()[static_cast<std::size_t>(field)];
+    const imager::AxisFrame& frame = beams.rows.of_fields()[static_cast<std::size_t>(field)];
     for (const imager::DirectionCosines at : {imager::DirectionCosines{0, 0}, {1e-3, 0}, {0, 1e-3}})
       numbers.push_back(frame.sine(at));
     numbers.push_back(field);
@@ -148,12 +148,12 @@ std::vector<double> told_apart_by(const SetBeams& beams, const imager::Observati
 bool sees_any(const SetBeams& beams, const std::vector<imager::DirectionCosines>& places,
               const imager::Observation& observation) {
   constexpr double nothing = 1e-9;
-  const std::vector<imager::Pattern>& patterns = beams.rows.of_antenna();
+  const std::vector<imager::Pattern>& patterns = beams.rows.of_antennas();
   const std::set<imager::Pattern> different(patterns.begin(), patterns.end());
   for (const int field : beams.fields)
     for (const imager::Pattern& pattern : different) {
       if (!pattern) continue;
-      const imager::PairBeam beam{pattern, pattern, beams.rows.of_field()[static_cast<std::size_t>(field)], 0};
+      const imager::PairBeam beam{pattern, pattern, beams.rows.of_fields()[static_cast<std::size_t>(field)], 0};
       for (const double hz : frequencies_in(observation))
         if (std::any_of(places.begin(), places.end(), [&](const auto& at) { return beam.power(at, hz) > nothing; }))
           return true;

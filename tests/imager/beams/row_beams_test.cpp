@@ -113,7 +113,8 @@ BOOST_AUTO_TEST_CASE(rows_that_see_alike_are_one_group) {
   const std::vector<RowSight> turned{{3, 0, 0, 0.1F}, {3, 0, 0, 0.104F}, {3, 0, 0, 0.2F}, {3, 0, 0, 0.1F}};
   BOOST_TEST((rows_of_groups(turned) == Rows{{0, 3}, {1}, {2}}));
   BOOST_TEST((rows_of_groups(turned, 0.02) == Rows{{0, 1, 3}, {2}}));
-  BOOST_CHECK_THROW(rows_of_groups({{0, 4, 0, 0}}), std::out_of_range);
+  BOOST_CHECK_THROW(rows_of_groups({{0, 4, 0, 0}}), std::runtime_error);
+  BOOST_CHECK_THROW(rows_of_groups({{-1, 0, 0, 0}}), std::runtime_error);
   BOOST_CHECK_THROW(rows_of_groups({{0, 1, 2, 0}}), std::out_of_range);
   BOOST_CHECK_THROW(beams.groups({std::vector<double>(3), {hz}}), std::invalid_argument);
 }

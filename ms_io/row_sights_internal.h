@@ -12,13 +12,13 @@ namespace misfit::ms_io {
 /// With what, and in which direction, the rows of a set were observed.
 class SightReader {
  public:
-  /// Of an image with this phase centre, in whose frame directions are seen. Throws std::runtime_error where ANTENNA or FIELD
-  /// cannot be read.
+  /// Reads of an image with this phase centre, in whose frame directions are seen. Throws std::runtime_error where ANTENNA or
+  /// FIELD cannot be read.
   SightReader(const OpenSet& open_set, const imager::SkyDirection& centre);
   ~SightReader();
 
   /// [row]. The zenith is 0 of antennas that do not turn with it: those on other mounts than alt-azimuth. Throws
-  /// casacore::AipsError where columns of these rows cannot be read, std::runtime_error for antennas that ANTENNA lacks.
+  /// casacore::AipsError where columns of these rows cannot be read.
   std::vector<imager::RowSight> sights(const Rows& rows);
 
  private:

@@ -7,8 +7,6 @@
 
 #include <cmath>
 #include <map>
-#include <stdexcept>
-#include <string>
 #include <utility>
 
 #include "ms_io/capitals.h"
@@ -16,9 +14,8 @@
 #include "ms_io/field_pointings_internal.h"
 #include "ms_io/metadata_internal.h"
 #include "ms_io/observing_place_internal.h"
-#include "ms_io/row_columns_internal.h"
+#include "ms_io/row_sights_internal.h"
 #include "ms_io/table_access_internal.h"
-#include "ms_io/zenith_turns_internal.h"
 
 namespace misfit::ms_io {
 namespace {
@@ -64,8 +61,7 @@ constexpr const char* reading = "cannot read ANTENNA, or the times of the rows o
 class SightReader::Columns {
  public:
   Columns(const OpenSet& open_set, const imager::SkyDirection& centre)
-      : path_(open_set.path),
-        zenith_(open_set),
+      : zenith_(open_set),
         mount_(casacore::ScalarColumn<casacore::String>(open_set.set.antenna(), "MOUNT").getColumn()),
         antenna_one_(open_set.set, "ANTENNA1"),
         antenna_other_(open_set.set, "ANTENNA2"),
@@ -82,22 +78,16 @@ class SightReader::Columns {
     read(field_, rows, field);
     read(time_, rows, time_s);
     std::vector<imager::RowSight> sights;
-    for (std::size_t r = 0; r < rows.count(); ++r) {
-      require_antenna(one(r));
-      require_antenna(other(r));
+    for (std::size_t r = 0; r < rows.count(); ++r)
       sights.push_back({one(r), other(r), field(r), turns(one(r)) ? zenith_rad(time_s(r), field(r)) : 0});
-    }
     return sights;
   }
 
  private:
-  void require_antenna(int antenna) const {
-    if (antenna < 0 || static_cast<std::size_t>(antenna) >= mount_.nelements())
-      throw std::runtime_error(path_ + " has rows of antenna " + std::to_string(antenna) + ", but ANTENNA has " +
-                               std::to_string(mount_.nelements()) + " rows");
+  bool turns(int antenna) const {
+    return antenna >= 0 && static_cast<std::size_t>(antenna) < mount_.nelements() &&
+           turns_with_zenith(mount_(static_cast<std::size_t>(antenna)));
   }
-
-  bool turns(int antenna) const { return turns_with_zenith(mount_(static_cast<std::size_t>(antenna))); }
 
   float zenith_rad(double time_s, int field) {
     const auto from = of_field_.find(field);
@@ -107,7 +97,6 @@ class SightReader::Columns {
     return at->second;
   }
 
-  std::string path_;
   Zenith zenith_;
   casacore::Vector<casacore::String> mount_;
   casacore::ScalarColumn<int> antenna_one_, antenna_other_, field_;
