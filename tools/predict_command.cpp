@@ -91,16 +91,20 @@ imager::RowBeams beams_of(const PredictOptions& o, const ms_io::MeasurementSet& 
   return std::move(beams.rows);
 }
 
-/// Pixels that are not 0, of many some all over the image.
+/// Places of pixels that are not 0; of many, some all over the image.
 std::vector<imager::DirectionCosines> bright_places(const std::vector<imager::SkyImage>& planes) {
-  constexpr std::size_t enough = 100000;
-  std::vector<imager::DirectionCosines> all, some;
-  for (const imager::SkyImage& plane : planes)
+  constexpr std::ptrdiff_t enough = 100000;
+  const auto is_bright = [](double value) { return std::abs(value) > 0; };
+  std::vector<imager::DirectionCosines> places;
+  for (const imager::SkyImage& plane : planes) {
+    const std::vector<double>& pixel = plane.image.pixel;
+    const std::ptrdiff_t step = 1 + std::count_if(pixel.begin(), pixel.end(), is_bright) / enough;
+    std::ptrdiff_t bright = 0;
     for (int row = 0; row < plane.image.height; ++row)
       for (int column = 0; column < plane.image.width; ++column)
-        if (std::abs(plane.image.at(row, column)) > 0) all.push_back(plane.geometry.at(row, column));
-  for (std::size_t i = 0; i < all.size(); i += 1 + all.size() / enough) some.push_back(all[i]);
-  return some;
+        if (is_bright(plane.image.at(row, column)) && bright++ % step == 0) places.push_back(plane.geometry.at(row, column));
+  }
+  return places;
 }
 
 std::vector<imager::DirectionCosines> bright_places(const std::array<std::vector<imager::Source>, 4>& sources) {
