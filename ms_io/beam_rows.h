@@ -37,6 +37,12 @@ struct FieldPointing {
   std::vector<SortRows> rows = {};  ///< its rows of two antennas; of BeamRows alone
 };
 
+/// The lists in which the numbers of rows' sights, see imager::RowSight, are places.
+struct SightTable {
+  std::vector<imager::AntennaSort> antennas;  ///< all antennas of one set after those of the other, as ANTENNA lists them
+  std::vector<FieldPointing> pointings;       ///< one of each field of each set, see field_pointings(); their rows not counted
+};
+
 /// Where a feed's beam points beside its dish's axis, as FEED's BEAM_OFFSET says: the mean of its receptors', on the sky, along
 /// axes of the antenna's frame, which mounts turn.
 struct FeedOffset {

@@ -21,8 +21,9 @@ struct StoredRows {
   casacore::Array<bool> flag;                ///< [row][channel][correlation]
   casacore::Array<float> weight;             ///< [row][channel][correlation] or [row][correlation]
   bool weight_per_channel = false;
-  casacore::Vector<double> time_s;  ///< [row]; empty where no spectral frame is selected and no phase centre moves
-  std::vector<double> frame_ratio;  ///< [row], see FrameRatio; empty where no spectral frame is selected
+  casacore::Vector<double> time_s;       ///< [row]; empty where no spectral frame is selected and no phase centre moves
+  std::vector<double> frame_ratio;       ///< [row], see FrameRatio; empty where no spectral frame is selected
+  std::vector<imager::RowSight> sights;  ///< [row]; empty where they are not asked for
 };
 
 /// Reads the columns that visibilities are formed of, some rows at a time.

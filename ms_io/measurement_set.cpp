@@ -16,6 +16,7 @@
 #include "ms_io/model_writer.h"
 #include "ms_io/row_shares_internal.h"
 #include "ms_io/row_sights_internal.h"
+#include "ms_io/sight_numbers_internal.h"
 #include "ms_io/spectral_part_internal.h"
 #include "ms_io/stokes_response_internal.h"
 #include "ms_io/subtracted_models_internal.h"
@@ -44,6 +45,7 @@ std::shared_ptr<const OpenSet> open_selected(const NamedSet& named, const Select
     if (part != opened->set.tableName()) opened->files.remember(part);
   if (!data_column.empty()) require_visibility_column(opened->set, path, opened->data_column);
   opened->selected = select_rows(opened->set, path, selection.of_set(named.place), {block_samples, true});
+  if (selection.sights) opened->sights = std::make_shared<SightNumbers>();
   if (data_column.empty()) return opened;
   opened->filled = std::make_shared<FilledData>(opened->selected.setups);
   for (const Setup& setup : opened->selected.setups) {
@@ -136,7 +138,8 @@ struct MeasurementSet::Impl {
   Selection selection;
   imager::Observation observation;
   std::vector<std::string> remarks;
-  std::shared_ptr<const Impl> whole;  ///< of which this is the share of a rank; null where it is all
+  std::shared_ptr<const SightTable> sights;  ///< null where they are not asked for
+  std::shared_ptr<const Impl> whole;         ///< of which this is the share of a rank; null where it is all
   const imager::Ranks* ranks = &imager::alone();
   SampleSharing sharing;  ///< empty where it is all
 };
@@ -163,6 +166,7 @@ MeasurementSet::MeasurementSet(const std::vector<std::string>& paths, const Sele
   impl->observation = joined(impl->sets);
   impl->remarks = remarks_on(impl->sets, selection, impl->observation);
   impl->remarks.insert(impl->remarks.end(), roundings.begin(), roundings.end());
+  if (selection.sights) impl->sights = std::make_shared<SightTable>(number_sights(impl->sets, impl->observation.phase_centre));
   impl_ = impl;
 }
 
@@ -277,6 +281,10 @@ BeamRows MeasurementSet::beam_rows() const {
 std::vector<imager::AntennaSort> MeasurementSet::antennas() const {
   return antenna_sorts(*whole().sets.front());
 }
+const SightTable& MeasurementSet::sight_table() const {
+  if (!impl_->sights) throw std::logic_error("sights of rows were not asked for; expected a Selection with sights");
+  return *impl_->sights;
+}
 std::vector<float> MeasurementSet::zenith_turns() const {
   std::vector<float> turns;
   for (const auto& set : impl_->sets) {
@@ -314,6 +322,7 @@ std::unique_ptr<MeasurementSet> MeasurementSet::part(const FrequencyRange& range
   const auto part = std::make_shared<Impl>();
   part->selection = impl_->selection;
   part->observation = impl_->observation;
+  part->sights = impl_->sights;
   for (const auto& set : impl_->sets)
     if (auto some = channels_between(*set, range, counted)) part->sets.push_back(std::move(some));
   if (part->sets.empty()) return nullptr;
@@ -326,6 +335,7 @@ std::unique_ptr<MeasurementSet> MeasurementSet::share(const imager::Ranks& ranks
   share->selection = impl_->selection;
   share->observation = impl_->observation;
   share->remarks = impl_->remarks;
+  share->sights = impl_->sights;
   share->whole = impl_;
   share->ranks = &ranks;
   share->sharing = {shares.samples(), impl_->sets.size(), shares.whole_sets()};

@@ -17,6 +17,7 @@
 #include "ms_io/model_journal_internal.h"
 #include "ms_io/row_shares_internal.h"
 #include "ms_io/row_sights_internal.h"
+#include "ms_io/sight_numbers_internal.h"
 #include "ms_io/subtracted_models_internal.h"
 #include "ms_io/table_access_internal.h"
 #include "ms_io/value_flush_internal.h"
@@ -170,8 +171,10 @@ class ModelWriter {
   }
 
   ModelWriteReport write(const Predict& predict, const PredictionPace& pace, const Progress& progress) {
-    if (pace.sights_from)
-      sights_ = std::make_unique<SightReader>(OpenSet{path_, 0, "", set_, selected_, {}, {}, {}}, *pace.sights_from);
+    if (pace.sights_from) {
+      const OpenSet open_set{path_, 0, "", set_, selected_, {}, {}, {}, {}};
+      sights_ = std::make_unique<SightReader>(open_set, numbers_by_id(open_set, *pace.sights_from));
+    }
     cells_ = std::make_unique<ModelCells>(translated(doing_(), [&] { return ModelCells(set_, column_); }));
     flush_ = std::make_unique<ValueFlush>(set_, column_.name);
     if (column_.in_place()) take_back_block_that_was_cut();

@@ -29,7 +29,8 @@ using Predict = std::function<StokesVisibilities(const imager::SampleCoordinates
 struct PredictionPace {
   std::uint64_t block_samples = MeasurementSet::usual_block_samples;  ///< about so many samples at a time
   int at_once = 1;                                                    ///< by so many threads
-  /// Where it is given, coordinates tell how each row saw the sky, by directions in this one's frame.
+  /// Where it is given, coordinates tell how each row saw the sky, by ids of ANTENNA and FIELD, and by directions in this one's
+  /// frame.
   std::optional<imager::SkyDirection> sights_from = {};
 };
 

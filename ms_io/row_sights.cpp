@@ -11,7 +11,6 @@
 
 #include "ms_io/capitals.h"
 #include "ms_io/celestial_frame_internal.h"
-#include "ms_io/field_pointings_internal.h"
 #include "ms_io/metadata_internal.h"
 #include "ms_io/observing_place_internal.h"
 #include "ms_io/row_sights_internal.h"
@@ -60,15 +59,14 @@ constexpr const char* reading = "cannot read ANTENNA, or the times of the rows o
 
 class SightReader::Columns {
  public:
-  Columns(const OpenSet& open_set, const imager::SkyDirection& centre)
-      : zenith_(open_set),
+  Columns(const OpenSet& open_set, std::shared_ptr<const SightNumbers> numbers)
+      : numbers_(std::move(numbers)),
+        zenith_(open_set),
         mount_(casacore::ScalarColumn<casacore::String>(open_set.set.antenna(), "MOUNT").getColumn()),
         antenna_one_(open_set.set, "ANTENNA1"),
         antenna_other_(open_set.set, "ANTENNA2"),
         field_(open_set.set, "FIELD_ID"),
-        time_(open_set.set, "TIME") {
-    for (const FieldPointing& pointing : field_pointings(open_set, centre)) of_field_.insert({pointing.id, pointing.direction});
-  }
+        time_(open_set.set, "TIME") {}
 
   std::vector<imager::RowSight> sights(const Rows& rows) {
     casacore::Vector<int> one, other, field;
@@ -78,35 +76,37 @@ class SightReader::Columns {
     read(field_, rows, field);
     read(time_, rows, time_s);
     std::vector<imager::RowSight> sights;
-    for (std::size_t r = 0; r < rows.count(); ++r)
-      sights.push_back({one(r), other(r), field(r), turns(one(r)) ? zenith_rad(time_s(r), field(r)) : 0});
+    sights.reserve(rows.count());
+    for (std::size_t r = 0; r < rows.count(); ++r) {
+      const int pointing = numbers_->pointing(field(r));
+      sights.push_back({antenna(one(r)), antenna(other(r)), pointing, turns(one(r)) ? zenith_rad(time_s(r), pointing) : 0});
+    }
     return sights;
   }
 
  private:
-  bool turns(int antenna) const {
-    return antenna >= 0 && static_cast<std::size_t>(antenna) < mount_.nelements() &&
-           turns_with_zenith(mount_(static_cast<std::size_t>(antenna)));
-  }
+  bool is_listed(int id) const { return id >= 0 && static_cast<std::size_t>(id) < mount_.nelements(); }
+  int antenna(int id) const { return is_listed(id) ? numbers_->first_antenna + id : -1; }
+  bool turns(int id) const { return is_listed(id) && turns_with_zenith(mount_(static_cast<std::size_t>(id))); }
 
-  float zenith_rad(double time_s, int field) {
-    const auto from = of_field_.find(field);
-    if (from == of_field_.end()) return 0;
-    const auto [at, is_new] = known_.insert({{time_s, field}, 0.0F});
+  float zenith_rad(double time_s, int pointing) {
+    const auto from = numbers_->direction.find(pointing);
+    if (from == numbers_->direction.end() || !std::isfinite(time_s)) return 0;
+    const auto [at, is_new] = known_.insert({{time_s, pointing}, 0.0F});
     if (is_new) at->second = static_cast<float>(position_angle(zenith_.at(time_s, from->second.frame), from->second));
     return at->second;
   }
 
+  std::shared_ptr<const SightNumbers> numbers_;
   Zenith zenith_;
   casacore::Vector<casacore::String> mount_;
   casacore::ScalarColumn<int> antenna_one_, antenna_other_, field_;
   casacore::ScalarColumn<double> time_;
-  std::map<int, imager::SkyDirection> of_field_;
   std::map<std::pair<double, int>, float> known_;
 };
 
-SightReader::SightReader(const OpenSet& open_set, const imager::SkyDirection& centre)
-    : columns_(translated(reading + open_set.path, [&] { return std::make_unique<Columns>(open_set, centre); })) {}
+SightReader::SightReader(const OpenSet& open_set, std::shared_ptr<const SightNumbers> numbers)
+    : columns_(translated(reading + open_set.path, [&] { return std::make_unique<Columns>(open_set, std::move(numbers)); })) {}
 
 SightReader::~SightReader() = default;
 
@@ -116,7 +116,7 @@ std::vector<imager::RowSight> SightReader::sights(const Rows& rows) {
 
 std::vector<float> zenith_turns(const OpenSet& open_set, const imager::SkyDirection& centre) {
   constexpr std::uint64_t piece_rows = 1 << 16;
-  SightReader reader(open_set, centre);
+  SightReader reader(open_set, numbers_by_id(open_set, centre));
   return translated(reading + open_set.path, [&] {
     std::vector<float> turns;
     for (const BlockRows& block : open_set.selected.blocks)

@@ -5,6 +5,7 @@
 
 #include "imager/data/visibilities.h"
 #include "ms_io/row_columns_internal.h"
+#include "ms_io/sight_numbers_internal.h"
 #include "ms_io/visibility_reader_internal.h"
 
 namespace misfit::ms_io {
@@ -12,9 +13,8 @@ namespace misfit::ms_io {
 /// With what, and in which direction, the rows of a set were observed.
 class SightReader {
  public:
-  /// Reads of an image with this phase centre, in whose frame directions are seen. Throws std::runtime_error where ANTENNA or
-  /// FIELD cannot be read.
-  SightReader(const OpenSet& open_set, const imager::SkyDirection& centre);
+  /// Throws std::runtime_error where ANTENNA cannot be read.
+  SightReader(const OpenSet& open_set, std::shared_ptr<const SightNumbers> numbers);
   ~SightReader();
 
   /// [row]. The zenith is 0 of antennas that do not turn with it: those on other mounts than alt-azimuth. Throws

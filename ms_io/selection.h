@@ -61,6 +61,7 @@ struct Selection {
   /// FITS SPECSYS of the frame in which frequencies count, see parse_spectral_frame(), or SOURCE: of what is followed, or else
   /// of the field's ephemeris; empty: that of the data.
   std::string spectral_frame = "";
+  bool sights = false;  ///< whether blocks tell the sights of their rows, see MeasurementSet::sight_table()
 
   /// The same with the expressions of one of the sets alone.
   Selection of_set(std::size_t set) const;

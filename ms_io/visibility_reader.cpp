@@ -7,6 +7,7 @@
 
 #include "ms_io/block_group_internal.h"
 #include "ms_io/column_reader_internal.h"
+#include "ms_io/row_sights_internal.h"
 #include "ms_io/visibility_reader_internal.h"
 
 namespace misfit::ms_io {
@@ -41,7 +42,8 @@ class GrowingBlock {
   void append(const StoredRows& stored, std::size_t first, std::size_t count) {
     imager::SampleCounts& counts = block_->counts;
     const std::size_t channels = setup_.frequency_hz.size(), cell = recipe_.correlations * setup_.channel_span();
-    if (!stored.frame_ratio.empty()) append_spectral(stored, first, count);
+    append_some(stored.frame_ratio, first, count, block_->frame_ratio);
+    append_some(stored.sights, first, count, block_->sights);
     if (setup_.shift.moves()) setup_.shift.append(stored.time_s.data() + first, count, shifts_);
     const std::size_t weight_cell = stored.weight_per_channel ? cell : recipe_.correlations;
     const int* const antenna1 = stored.antenna1.data();
@@ -71,11 +73,12 @@ class GrowingBlock {
   }
 
  private:
-  /// What a cube needs to know.
-  void append_spectral(const StoredRows& stored, std::size_t first, std::size_t count) {
-    imager::VisibilityBlock& block = *block_;
-    const auto begin = stored.frame_ratio.begin() + static_cast<std::ptrdiff_t>(first);
-    block.frame_ratio.insert(block.frame_ratio.end(), begin, begin + static_cast<std::ptrdiff_t>(count));
+  /// Appends what `count` rows from `first` on have, where rows have any.
+  template <typename T>
+  static void append_some(const std::vector<T>& of_rows, std::size_t first, std::size_t count, std::vector<T>& to) {
+    if (of_rows.empty()) return;
+    const auto begin = of_rows.begin() + static_cast<std::ptrdiff_t>(first);
+    to.insert(to.end(), begin, begin + static_cast<std::ptrdiff_t>(count));
   }
 
   /// Cuts the runs of selected channels where samples begin or cease to be counted.
@@ -133,7 +136,9 @@ class GrowingBlock {
 /// Reads a group of blocks at once, a piece of their rows at a time, and hands them out one by one.
 class Reader : public imager::BlockStream {
  public:
-  explicit Reader(std::shared_ptr<const OpenSet> source) : source_(std::move(source)), columns_(source_) {}
+  explicit Reader(std::shared_ptr<const OpenSet> source) : source_(std::move(source)), columns_(source_) {
+    if (source_->sights) sights_ = std::make_unique<SightReader>(*source_, source_->sights);
+  }
 
   std::shared_ptr<const imager::VisibilityBlock> next() override {
     if (growing_.empty()) {
@@ -160,6 +165,8 @@ class Reader : public imager::BlockStream {
     for (const Rows& piece : pieces(group.runs, std::max<std::uint64_t>(1, piece_samples / alike.channel_span()))) {
       const std::uint64_t rows = piece.count();
       columns_.read_rows(piece, alike, *read);
+      if (sights_)
+        translated("cannot read antennas, fields or times of " + source_->path, [&] { read->sights = sights_->sights(piece); });
       if (source_->filled->in_doubt()) look_for_data(group_begin, piece, owner, *read);
       beside.get();
       left -= rows;
@@ -199,10 +206,11 @@ class Reader : public imager::BlockStream {
 
   std::shared_ptr<const OpenSet> source_;
   ColumnReader columns_;
-  std::array<StoredRows, 2> stored_;  ///< one is read while Stokes parameters are formed of the other
-  casacore::Vector<int> field_;       ///< [row] of the piece read last, where it was looked at
-  std::size_t next_ = 0;              ///< block to be read
-  std::deque<GrowingBlock> growing_;  ///< of the group read last, those not yet handed out
+  std::unique_ptr<SightReader> sights_;  ///< null where they are not asked for
+  std::array<StoredRows, 2> stored_;     ///< one is read while Stokes parameters are formed of the other
+  casacore::Vector<int> field_;          ///< [row] of the piece read last, where it was looked at
+  std::size_t next_ = 0;                 ///< block to be read
+  std::deque<GrowingBlock> growing_;     ///< of the group read last, those not yet handed out
 };
 
 }  // namespace

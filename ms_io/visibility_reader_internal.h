@@ -10,6 +10,8 @@
 
 namespace misfit::ms_io {
 
+struct SightNumbers;
+
 /// A MeasurementSet with what is to be read from it. It lives as long as a stream reads it.
 struct OpenSet {
   std::string path;
@@ -17,9 +19,10 @@ struct OpenSet {
   std::string data_column;
   casacore::MeasurementSet set;
   SelectedRows selected;
-  std::vector<StokesRecipe> recipes;   ///< [setup]
-  FileStates files;                    ///< before it was opened
-  std::shared_ptr<FilledData> filled;  ///< what was read, by this set and parts of it; null without a data column
+  std::vector<StokesRecipe> recipes;          ///< [setup]
+  FileStates files;                           ///< before it was opened
+  std::shared_ptr<FilledData> filled;         ///< what was read, by this set and parts of it; null without a data column
+  std::shared_ptr<SightNumbers> sights = {};  ///< filled once all sets are open; null where blocks do not tell sights
 };
 
 /// Streams the blocks of `open_set`.

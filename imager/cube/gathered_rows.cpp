@@ -93,6 +93,8 @@ void GatheredRows::add(const VisibilityBlock& block, const std::vector<MappedRow
     const double* const from = block.uvw_m.data();
     std::transform(from + 3 * some.first, from + 3 * some.end, extend(uvw_m_.edit(), 3 * (some.end - some.first)),
                    [scale](double metres) { return metres * scale; });
+    if (!block.sights.empty())
+      std::copy_n(&block.sights[some.first], some.end - some.first, extend(sights_, some.end - some.first));
   }
   const auto append = [&](const MappedRows& some, const PlaneChannels& channels, std::vector<Piece>& plane) {
     if (channels.tap.empty()) return;
@@ -119,6 +121,11 @@ void GatheredRows::set_order() {
   std::vector<double> ordered(uvw_m_.size());
   for (std::size_t i = 0; i < order_.size(); ++i) std::copy_n(&uvw_m_[std::size_t{3} * order_[i]], 3, &ordered[3 * i]);
   uvw_m_ = std::move(ordered);
+  if (sights_.empty()) return;
+  std::vector<RowSight> of_ordered;
+  of_ordered.reserve(order_.size());
+  for (const std::uint32_t row : order_) of_ordered.push_back(sights_.at(row));
+  sights_ = std::move(of_ordered);
 }
 
 std::vector<GatheredRows::Place> GatheredRows::places_of(const Piece& piece) const {
@@ -158,6 +165,10 @@ std::shared_ptr<const VisibilityBlock> GatheredRows::block_of(const Piece& piece
     std::vector<double> uvw_m(3 * places.size());
     for (std::size_t i = 0; i < places.size(); ++i) std::copy_n(&uvw_m_[std::size_t{3} * places[i].ordered], 3, &uvw_m[3 * i]);
     block->uvw_m = std::move(uvw_m);
+  }
+  if (!sights_.empty()) {
+    block->sights.reserve(places.size());
+    for (const Place& place : places) block->sights.push_back(sights_[place.ordered]);
   }
   block->weight.reserve(block->samples());
   of_rows(piece.weight, block->weight);

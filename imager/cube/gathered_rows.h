@@ -17,8 +17,8 @@ struct MappedRows {
   std::shared_ptr<const ChannelMap> map;
 };
 
-/// Rows of one spectral window, with the samples that they give to the planes of a cube. UVW and the order in which planes are
-/// gridded are held once for all of them.
+/// Rows of one spectral window, with the samples that they give to the planes of a cube. UVW, sights
+/// and the order in which planes are gridded are held once for all of them.
 ///
 /// An interpolated visibility (1 − t) V + t V' needs both samples, and has the weight of that sum, 1/((1 − t)²/w + t²/w').
 class GatheredRows {
@@ -26,7 +26,7 @@ class GatheredRows {
   /// Planes are counted from the first of a range. `expected_rows` make room for as many beforehand.
   GatheredRows(int planes, std::size_t expected_rows);
 
-  /// `rows` cover the block. What planes get is shared among threads.
+  /// `rows` cover the block, which tells the sights of its rows if others do. What planes get is shared among threads.
   void add(const VisibilityBlock& block, const std::vector<MappedRows>& rows, int threads);
   std::size_t rows() const { return uvw_m_.size() / 3; }
   /// To be called after the last add(), and before what follows.
@@ -62,6 +62,7 @@ class GatheredRows {
   std::shared_ptr<const VisibilityBlock> block_of(const Piece& piece, const std::vector<Place>& places) const;
 
   SharedVector<double> uvw_m_;              ///< [row][3], scaled as ChannelMap says; in order once that is set
+  std::vector<RowSight> sights_;            ///< [row], in order once that is set; empty where blocks tell none
   std::vector<std::uint32_t> order_;        ///< [row]
   std::vector<std::vector<Piece>> planes_;  ///< [plane]
   std::size_t expected_rows_;

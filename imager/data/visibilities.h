@@ -34,12 +34,13 @@ struct NothingUsable : std::runtime_error {
   explicit NothingUsable(const SampleCounts& counts);
 };
 
-/// With what a row was observed, and in which direction, by numbers of the MeasurementSet.
+/// With what a row was observed, and in which direction. Numbers are places in lists that whoever hands out the rows explains;
+/// -1 is in no list.
 struct RowSight {
   std::int32_t antenna_one = 0;
   std::int32_t antenna_other = 0;
-  std::int32_t field = 0;
-  float zenith_rad = 0;  ///< position angle of the zenith, from north through east, by which the dishes are turned
+  std::int32_t field = 0;  ///< or pointing: where the dishes of the row looked
+  float zenith_rad = 0;    ///< position angle of the zenith, from north through east, by which the dishes are turned
 };
 
 /// Where samples lie: rows of UVW, each seen at every channel. Those of the same rows share UVW.

@@ -192,6 +192,32 @@ BOOST_AUTO_TEST_CASE(samples_in_no_plane_are_counted_once_by_the_ranges_together
   BOOST_TEST(counted({2, 1}) == above);
 }
 
+BOOST_AUTO_TEST_CASE(rows_keep_their_sights) {
+  std::vector<VisibilityBlock> blocks{block_of(7), block_of(8)};
+  for (VisibilityBlock& block : blocks)
+    for (std::size_t row = 0; row < rows; ++row)
+      block.sights.push_back(
+          {static_cast<int>(row), 0, 0, static_cast<float>(std::atan2(block.uvw_m[3 * row + 1], block.uvw_m[3 * row]))});
+  PlaneGatherer gatherer(cube(SpectralInterpolation::nearest), {0, 6}, 2),
+      without(cube(SpectralInterpolation::nearest), {0, 6}, 2);
+  for (VisibilityBlock& block : blocks) {
+    gatherer.add(block);
+    block.sights.clear();
+    without.add(block);
+  }
+  const auto some = gatherer.take(true);
+  for (int plane = 0; plane < 6; ++plane)
+    for (const auto& gathered : some)
+      for (const auto& block : gathered->blocks(plane)) {
+        BOOST_TEST_REQUIRE(block->sights.size() == block->rows());
+        for (std::size_t row = 0; row < block->rows(); ++row) {  // UVW is scaled, by the same in u and v
+          const double angle = std::atan2(block->uvw_m[3 * row + 1], block->uvw_m[3 * row]);
+          BOOST_TEST(std::abs(angle - block->sights[row].zenith_rad) < 1e-6);  // single precision
+        }
+      }
+  for (const auto& block : blocks_of(without, 2)) BOOST_TEST(block->sights.empty());
+}
+
 BOOST_AUTO_TEST_CASE(blocks_must_tell_the_widths_of_channels) {
   VisibilityBlock block = block_of(6);
   block.channel_width_hz.clear();
