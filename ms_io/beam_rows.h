@@ -25,7 +25,7 @@ struct SortRows {
 
 /// Where the antennas of a field pointed: its REFERENCE_DIR; where that moves, at one of three times, and where the image moves
 /// along, where it stands in the image. It stays where it is when visibilities are shifted to another phase centre, which moves
-/// PHASE_DIR. The table POINTING is not looked at, as in tclean by default.
+/// PHASE_DIR. The table POINTING is looked at where Selection::pointing_tolerance_rad is given, and then only for a SightTable.
 struct FieldPointing {
   std::string field;                ///< "3 (M51)", or "3 (M51) at 2026-01-02T03:04:05"
   imager::SkyDirection direction;   ///< in the frame of the image
@@ -40,7 +40,7 @@ struct FieldPointing {
 /// The lists in which the numbers of rows' sights, see imager::RowSight, are places.
 struct SightTable {
   std::vector<imager::AntennaSort> antennas;  ///< all antennas of one set after those of the other, as ANTENNA lists them
-  std::vector<FieldPointing> pointings;       ///< one of each field of each set, see field_pointings(); their rows not counted
+  std::vector<FieldPointing> pointings;       ///< of one set after those of the other; their rows are not counted
 };
 
 /// Where a feed's beam points beside its dish's axis, as FEED's BEAM_OFFSET says: the mean of its receptors', on the sky, along

@@ -166,7 +166,9 @@ MeasurementSet::MeasurementSet(const std::vector<std::string>& paths, const Sele
   impl->observation = joined(impl->sets);
   impl->remarks = remarks_on(impl->sets, selection, impl->observation);
   impl->remarks.insert(impl->remarks.end(), roundings.begin(), roundings.end());
-  if (selection.sights) impl->sights = std::make_shared<SightTable>(number_sights(impl->sets, impl->observation.phase_centre));
+  if (selection.sights)
+    impl->sights = std::make_shared<SightTable>(
+        number_sights(impl->sets, impl->observation.phase_centre, selection.pointing_tolerance_rad, impl->remarks));
   impl_ = impl;
 }
 

@@ -115,9 +115,11 @@ class MeasurementSet : public imager::VisibilitySource {
   BeamRows beam_rows() const;
   /// What ANTENNA says of each antenna of the first set. Throws std::runtime_error where it cannot be read.
   std::vector<imager::AntennaSort> antennas() const;
-  /// Antennas and pointings, one set after the other, by whose places blocks tell the sights of their rows. A field that moves
-  /// has one pointing, at the middle one of its rows' times. It is the same for parts and shares. Throws std::logic_error
-  /// unless the selection asks for sights; where they cannot be told, opening throws std::runtime_error.
+  /// Antennas and pointings, one set after the other, by whose places blocks tell the sights of their rows. Each selected
+  /// field has one pointing; where it moves, at the middle one of its rows' times. With Selection::pointing_tolerance_rad they
+  /// are where antennas pointed, in the order in which rows did, as first seen in some field at some time. The table is that of
+  /// the whole for parts and shares, too. Throws std::logic_error unless the selection asks for sights; where they cannot be
+  /// told, opening throws std::runtime_error.
   const SightTable& sight_table() const;
   /// Where the zenith was for each row, in the order in which blocks hold them: its position angle from north through east, by
   /// which dishes on alt-azimuth mounts turn, as seen from where the row's field points; 0 of other mounts. Reads times,

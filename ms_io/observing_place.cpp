@@ -153,6 +153,15 @@ ObservingPlace observing_place(const casacore::MeasurementSet& set, int observat
   return place;
 }
 
+std::optional<MPosition> antenna_place(const casacore::MeasurementSet& set, int antenna, const ObservingPlace& telescope) {
+  const casacore::MSAntennaColumns antennas(set.antenna());
+  const std::vector<Point> own =
+      standing(antennas, [&](casacore::rownr_t a) { return a == static_cast<casacore::rownr_t>(antenna); });
+  if (!own.empty()) return MPosition(casacore::MVPosition(own[0][0], own[0][1], own[0][2]), MPosition::ITRF);
+  if (!telescope.doubt.empty()) return {};
+  return telescope.position;
+}
+
 bool in_one_place(const casacore::MeasurementSet& set, const std::set<int>& observations) {
   constexpr double apart_m = 1e3;
   const Point first = point_of(observing_place(set, *observations.begin()).position);

@@ -3,6 +3,7 @@
 #include <casacore/measures/Measures/MPosition.h>
 #include <casacore/ms/MeasurementSets/MeasurementSet.h>
 
+#include <optional>
 #include <set>
 #include <string>
 
@@ -23,6 +24,10 @@ struct ObservingPlace {
 
 /// Of the telescope of a row of OBSERVATION; of none by name where there is no such row.
 ObservingPlace observing_place(const casacore::MeasurementSet& set, int observation);
+
+/// POSITION of an antenna where it stands there, else the telescope's place; nothing where that is in doubt.
+std::optional<casacore::MPosition> antenna_place(const casacore::MeasurementSet& set, int antenna,
+                                                 const ObservingPlace& telescope);
 
 /// Whether observations were made within a kilometre of each other.
 bool in_one_place(const casacore::MeasurementSet& set, const std::set<int>& observations);

@@ -78,7 +78,7 @@ class SightReader::Columns {
     std::vector<imager::RowSight> sights;
     sights.reserve(rows.count());
     for (std::size_t r = 0; r < rows.count(); ++r) {
-      const int pointing = numbers_->pointing(field(r));
+      const int pointing = numbers_->pointing(rows[r], field(r));
       sights.push_back({antenna(one(r)), antenna(other(r)), pointing, turns(one(r)) ? zenith_rad(time_s(r), pointing) : 0});
     }
     return sights;

@@ -62,6 +62,9 @@ struct Selection {
   /// of the field's ephemeris; empty: that of the data.
   std::string spectral_frame = "";
   bool sights = false;  ///< whether blocks tell the sights of their rows, see MeasurementSet::sight_table()
+  /// With sights: where POINTING has the antennas of rows point, which are grouped to this tolerance, on-the-fly scans too;
+  /// none: where the fields of rows do.
+  std::optional<double> pointing_tolerance_rad = {};
 
   /// The same with the expressions of one of the sets alone.
   Selection of_set(std::size_t set) const;
