@@ -150,8 +150,14 @@ void PointingTable::read() {
   const casacore::ArrayMeasColumn<MDirection> measures(table, "DIRECTION");
   const bool frames_vary = measures.measDesc().isRefCodeVariable();
   const auto frame = MDirection::castType(measures.getMeasRef().getType());
+  const auto antennas = static_cast<int>(open_set_.set.antenna().nrow());
   casacore::Matrix<double> cell;
   for (casacore::rownr_t row = 0; row < table.nrow(); ++row) {
+    const int id = antenna(row);
+    if (id < 0 || id >= antennas) {
+      ++strange_;
+      continue;
+    }
     Entry entry{time(row), interval(row), 0, 0, frame, nullptr};
     if (!std::isfinite(entry.time_s) || !direction.isDefined(row)) continue;
     const casacore::IPosition shape = direction.shape(row);
@@ -162,7 +168,7 @@ void PointingTable::read() {
     if (!std::isfinite(entry.longitude_rad) || !std::isfinite(entry.latitude_rad)) continue;
     if (frames_vary) entry.frame = MDirection::castType((*measures(row).begin()).getRef().getType());
     if (shape(1) > 1) entry.course = std::make_shared<Course>(Course{origin(row), cell.copy()});
-    of_antenna_[antenna(row)].push_back(std::move(entry));
+    of_antenna_[id].push_back(std::move(entry));
   }
   for (auto& [id, entries] : of_antenna_)
     std::stable_sort(entries.begin(), entries.end(), [](const Entry& a, const Entry& b) { return a.time_s < b.time_s; });
@@ -174,18 +180,17 @@ std::string PointingTable::label(int antenna) const {
   return "antenna " + std::to_string(antenna) + " (" + name + ")";
 }
 
-void PointingTable::refuse(int antenna, const RowTime& when) const {
-  throw std::runtime_error(open_set_.path + ": POINTING does not say where " + label(antenna) + " pointed at " +
-                           utc_text(utc_s(places_->epoch(when.time_s))) + remedy);
+void PointingTable::refuse(const std::string& lack) const {
+  const std::string strange = strange_ == 0 ? "" : ", and " + std::to_string(strange_) + " of antennas that ANTENNA lacks";
+  throw std::runtime_error(open_set_.path + ": POINTING has no entries " + lack + strange + remedy);
 }
 
 imager::SkyDirection PointingTable::at(int antenna, const RowTime& when) {
   const auto found = of_antenna_.find(antenna);
-  if (found == of_antenna_.end())
-    throw std::runtime_error(open_set_.path + ": POINTING has no entries of " + label(antenna) + ", which rows have" + remedy);
+  if (found == of_antenna_.end()) refuse("of " + label(antenna) + ", which rows have");
   const std::vector<Entry>& entries = found->second;
   const auto on_sky = [&](const MVDirection& towards, const Entry& entry) {
-    return translated("cannot find where " + label(antenna) + " of " + open_set_.path + " pointed",
+    return translated("cannot find where antenna " + std::to_string(antenna) + " of " + open_set_.path + " pointed",
                       [&] { return places_->on_sky(towards, entry.frame, antenna, when.time_s); });
   };
   const double at_s = places_->pointing_time_s(when.time_s), row_s = when.interval_s;
@@ -201,7 +206,8 @@ imager::SkyDirection PointingTable::at(int antenna, const RowTime& when) {
                       (at_s - near->time_s) * (far->time_s - at_s) >= 0 &&
                       apart_s <= near->reach_s(row_s) + far->reach_s(row_s);
   if (is_way) return on_sky(between(near->at(at_s), far->at(at_s), std::abs(at_s - near->time_s) / apart_s), *near);
-  if (std::abs(at_s - near->time_s) > near->reach_s(row_s)) refuse(antenna, when);
+  if (std::abs(at_s - near->time_s) > near->reach_s(row_s))
+    refuse("that tell where " + label(antenna) + " pointed at " + utc_text(utc_s(places_->epoch(when.time_s))));
   return on_sky(near->at(at_s), *near);
 }
 

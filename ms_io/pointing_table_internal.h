@@ -2,7 +2,7 @@
 
 #include <casacore/measures/Measures/MDirection.h>
 
-#include <array>
+#include <cstdint>
 #include <map>
 #include <memory>
 #include <optional>
@@ -43,10 +43,11 @@ class PointingTable {
 
   void read();
   std::string label(int antenna) const;
-  [[noreturn]] void refuse(int antenna, const RowTime& when) const;
+  [[noreturn]] void refuse(const std::string& lack) const;
 
   const OpenSet& open_set_;
   std::map<int, std::vector<Entry>> of_antenna_;  ///< earliest first
+  std::uint64_t strange_ = 0;                     ///< entries of antennas that ANTENNA lacks
   std::unique_ptr<Places> places_;
 };
 

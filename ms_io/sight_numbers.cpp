@@ -26,7 +26,7 @@ int SightNumbers::pointing(std::uint64_t row, int field) const {
     return found == of_field.end() ? -1 : found->second;
   }
   const auto after = std::upper_bound(of_rows.begin(), of_rows.end(), row,
-                                      [](std::uint64_t row, const NumberedRows& some) { return row < some.first; });
+                                      [](std::uint64_t one, const NumberedRows& some) { return one < some.first; });
   return after == of_rows.begin() ? -1 : (after - 1)->pointing;
 }
 
