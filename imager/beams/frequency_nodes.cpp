@@ -10,12 +10,11 @@
 namespace misfit::imager {
 namespace {
 
-constexpr std::size_t most_nodes = 12;
-
 /// Frequencies of which some that follow one another are looked at, with the values at each.
 struct Known {
   std::vector<double> hz;
   std::vector<std::vector<double>> values;
+  std::size_t most_nodes;  ///< of a span
 };
 
 /// The known frequencies from `begin` on, before `end`.
@@ -57,7 +56,7 @@ bool is_true(const FrequencySpan& span, const Known& known, Part part, const Val
 /// The span of a part with the fewest nodes that do; with none where that takes too many, but for two frequencies or one.
 FrequencySpan span_of(const Known& known, Part part, const ValuesAtFrequency& values, double tolerance) {
   FrequencySpan span{known.hz[part.begin], known.hz[part.end - 1], {}};
-  for (std::size_t nodes = 1; nodes <= most_nodes && nodes < part.count(); ++nodes) {
+  for (std::size_t nodes = 1; nodes <= known.most_nodes && nodes < part.count(); ++nodes) {
     span.node_hz = chebyshev_points(span.low_hz, span.high_hz, nodes);
     if (is_true(span, known, part, values, tolerance)) return span;
   }
@@ -98,11 +97,11 @@ std::vector<double> FrequencySpan::weights(double frequency_hz) const {
 }
 
 std::vector<FrequencySpan> frequency_spans(std::vector<double> frequency_hz, const ValuesAtFrequency& values,
-                                           double tolerance) {
+                                           double tolerance, std::size_t most_nodes) {
   if (frequency_hz.empty()) throw std::invalid_argument("no frequency; expected at least one");
   std::sort(frequency_hz.begin(), frequency_hz.end());
   frequency_hz.erase(std::unique(frequency_hz.begin(), frequency_hz.end()), frequency_hz.end());
-  Known known{frequency_hz, {}};
+  Known known{frequency_hz, {}, most_nodes};
   for (const double hz : frequency_hz) known.values.push_back(values(hz));
   std::vector<FrequencySpan> spans;
   for (std::size_t begin = 0; begin < known.hz.size();) {

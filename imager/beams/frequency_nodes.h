@@ -23,7 +23,8 @@ using ValuesAtFrequency = std::function<std::vector<double>(double frequency_hz)
 
 /// The fewest spans and nodes that were found by which `values` follow at all of these frequencies, in any order, to
 /// `tolerance`: Chebyshev's points of ever shorter spans, and the frequencies themselves where they are few. Values may step
-/// between two of them.
-std::vector<FrequencySpan> frequency_spans(std::vector<double> frequency_hz, const ValuesAtFrequency& values, double tolerance);
+/// between two of them. The more nodes a span may have, the fewer spans there are.
+std::vector<FrequencySpan> frequency_spans(std::vector<double> frequency_hz, const ValuesAtFrequency& values, double tolerance,
+                                           std::size_t most_nodes = 12);
 
 }  // namespace misfit::imager

@@ -6,6 +6,7 @@
 
 #include "imager/coplanar/coplanar_adjoint.h"
 #include "imager/coplanar/coplanar_prediction.h"
+#include "imager/transform/unit_source.h"
 #include "imager/coplanar/crowded_tiles.h"
 
 namespace misfit::imager {
@@ -32,6 +33,10 @@ class CoplanarTransform : public Transform {
     return make_coplanar_adjoint<Real>(setup_, options);
   }
   std::unique_ptr<Prediction> predict(Image model) const override { return make_coplanar_prediction<Real>(setup_, model); }
+  std::vector<std::complex<double>> psf_source(const SampleCoordinates& at) const override {
+    const DirectionCosines middle = setup_.geometry.centre;
+    return unit_source(at, {middle.l, middle.m, 0}, setup_.threads);
+  }
 
  private:
   CoplanarSetup<Real> setup_;

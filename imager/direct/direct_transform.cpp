@@ -10,6 +10,7 @@
 #include "imager/numerics/phasors.h"
 #include "imager/transform/sampling.h"
 #include "imager/transform/span_sums.h"
+#include "imager/transform/unit_source.h"
 
 namespace misfit::imager {
 namespace {
@@ -70,7 +71,8 @@ struct WeightedSamples {
 
   Wavelengths at;
   std::vector<double> weight;
-  std::vector<Values> values;  ///< [set]
+  std::vector<Values> values;          ///< [set]
+  std::vector<std::size_t> of_sample;  ///< of the block
 
   WeightedSamples(const VisibilityBlock& block, const std::vector<float>& weights, const VisibilitySets& sets,
                   std::size_t begin, std::size_t end)
@@ -79,6 +81,7 @@ struct WeightedSamples {
       if (weights[i] == 0) continue;
       at.push_back(&block.uvw_m[3 * (i / block.channels())], block.frequency_hz[i % block.channels()]);
       weight.push_back(weights[i]);
+      of_sample.push_back(i);
       for (std::size_t s = 0; s < sets.size(); ++s) {
         const auto v = std::visit([i](const auto* visibility) { return std::complex<double>(visibility[i]); }, sets[s]);
         values[s].real.push_back(weight.back() * v.real());
@@ -89,8 +92,23 @@ struct WeightedSamples {
 
   /// Σ w Re[V exp(−2πi(…))].
   Sums images_at(const PhasePosition& to) const {
+    return images_at(to, [](Phasors&) {});
+  }
+  /// Σ w B Re[V exp(−2πi(…))], with what a pixel is seen to.
+  Sums images_at(const PhasePosition& to, const BlockResponse& response, std::size_t pixel) const {
+    return images_at(to, [&](Phasors& p) {
+      for (std::size_t i = 0; i < p.count; ++i) {
+        const double seen = response.at(pixel, of_sample[p.begin + i]);
+        p.cosine[i] *= seen;
+        p.sine[i] *= seen;
+      }
+    });
+  }
+  template <typename Change>
+  Sums images_at(const PhasePosition& to, const Change& change) const {
     Sums sums{};
-    for_phasors(at, to, [&](const Phasors& p) {
+    for_phasors(at, to, [&](Phasors& p) {
+      change(p);
       for (std::size_t s = 0; s < values.size(); ++s) {
         const double* real = &values[s].real[p.begin];
         const double* imaginary = &values[s].imaginary[p.begin];
@@ -175,13 +193,20 @@ PixelSums sums_at_pixels(const VisibilityBlock& block, const std::vector<float>&
   constexpr std::size_t samples_a_piece = 1 << 14;
   const std::size_t pixels = at.pixel.size(), pieces = (weight.size() + samples_a_piece - 1) / samples_a_piece;
   const PhasePosition middle = position_of(at.geometry.centre, at.with_w);
+  BlockResponse response;
+  if (at.response) {
+    std::vector<DirectionCosines> directions;
+    for (const Pixel& pixel : at.pixel) directions.push_back(at.geometry.at(pixel.row, pixel.column));
+    response = at.response->of(block, directions);
+  }
   std::vector<PixelSums> part(pieces, {std::vector<WeightedSamples::Sums>(pixels), std::vector<double>(pixels)});
   parallel_for(pieces, at.threads, [&](std::size_t p) {
     const std::size_t begin = p * samples_a_piece;
     const WeightedSamples samples(block, weight, sets, begin, std::min(begin + samples_a_piece, weight.size()));
     for (std::size_t k = 0; k < pixels; ++k) {
       const PhasePosition to = position_of(at.geometry.at(at.pixel[k].row, at.pixel[k].column), at.with_w);
-      if (!sets.empty()) part[p].of_sets[k] = samples.images_at(to);
+      if (!sets.empty())
+        part[p].of_sets[k] = at.response ? samples.images_at(to, response, k) : samples.images_at(to);
       if (with_psf) part[p].of_psf[k] = samples.beam_at(relative(to, middle));
     }
   });
@@ -257,6 +282,10 @@ std::unique_ptr<Prediction> DirectTransform::predict(Image model) const {
       if (model.at(row, column) != 0 && !beyond_horizon(sums_.geometry.at(row, column)))
         sources.push_back({sums_.geometry.at(row, column), model.at(row, column)});
   return std::make_unique<DirectPrediction>(std::move(sources), sums_.with_w, sums_.threads);
+}
+
+std::vector<std::complex<double>> DirectTransform::psf_source(const SampleCoordinates& at) const {
+  return unit_source(at, position_of(sums_.geometry.centre, sums_.with_w), sums_.threads);
 }
 
 std::unique_ptr<AdjointSum> PixelTransform::adjoint(const AdjointOptions& options) const {

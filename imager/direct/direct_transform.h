@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "imager/data/geometry.h"
+#include "imager/direct/sample_response.h"
 #include "imager/direct/source_sums.h"
 #include "imager/transform/transform.h"
 
@@ -24,6 +25,7 @@ class DirectTransform : public Transform {
   std::unique_ptr<AdjointSum> adjoint(const AdjointOptions& options) const override;
   /// Only the pixels that are not 0 cost time.
   std::unique_ptr<Prediction> predict(Image model) const override;
+  std::vector<std::complex<double>> psf_source(const SampleCoordinates& at) const override;
 
  private:
   DirectSums sums_;
@@ -41,6 +43,7 @@ struct DirectPixels {
   std::vector<Pixel> pixel;
   bool with_w = true;
   int threads = 1;
+  std::shared_ptr<const SampleResponse> response = {};  ///< null: samples see all of them alike
 };
 
 /// Some pixels of an image, by direct sums: an adjoint's images are as many pixels wide and one high. What is predicted is left
@@ -51,14 +54,15 @@ class PixelTransform : public Transform {
 
   std::unique_ptr<AdjointSum> adjoint(const AdjointOptions& options) const override;
   std::unique_ptr<Prediction> predict(Image model) const override { return whole_.predict(std::move(model)); }
+  std::vector<std::complex<double>> psf_source(const SampleCoordinates& at) const override { return whole_.psf_source(at); }
 
  private:
   DirectPixels at_;
   const Transform& whole_;
 };
 
-/// Adds the direct sums of `block`, for one image or of all its Stokes parameters: sum[image][k] += Σ w Re[V
-/// exp(−2πi(ul+vm+w(n−1)))]. Samples beyond 1/(2 cell) are left out, as in imaging.
+/// Adds the direct sums of `block`, for one image or of all its Stokes parameters: sum[image][k] += Σ w B Re[V
+/// exp(−2πi(ul+vm+w(n−1)))] with the response B. Samples beyond 1/(2 cell) are left out, as in imaging.
 void add_direct_pixels(const VisibilityBlock& block, const DirectPixels& at, std::vector<std::vector<double>>& sum);
 
 }  // namespace misfit::imager

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <random>
 #include <utility>
 
@@ -18,18 +19,35 @@ std::vector<std::uint64_t> random_samples(std::uint64_t samples, int count, std:
   return chosen;
 }
 
-/// Frequency at which the chosen samples are gathered: their UVW is scaled so that it is the same in wavelengths.
-constexpr double any_frequency_hz = 1e9;
+/// Chosen samples, a row each, of each frequency.
+using ChosenSamples = std::map<double, SampleCoordinates>;
 
-/// Adds the coordinates of the chosen samples that lie in `block`, whose first sample has index `first`, a row each.
+/// Adds the coordinates of the chosen samples that lie in `block`, whose first sample has index `first`.
 void collect(const VisibilityBlock& block, std::uint64_t first, const std::vector<std::uint64_t>& chosen,
-             SampleCoordinates& found) {
+             ChosenSamples& found) {
   for (auto i = std::lower_bound(chosen.begin(), chosen.end(), first); i != chosen.end() && *i < first + block.samples(); ++i) {
-    const double* uvw_m = &block.uvw_m[3 * ((*i - first) / block.channels())];
-    const double scale = block.frequency_hz[(*i - first) % block.channels()] / any_frequency_hz;
-    if (std::all_of(uvw_m, uvw_m + 3, [](double x) { return std::isfinite(x); }))
-      found.uvw_m.append({uvw_m[0] * scale, uvw_m[1] * scale, uvw_m[2] * scale});
+    const std::size_t row = (*i - first) / block.channels();
+    const double* uvw_m = &block.uvw_m[3 * row];
+    const double hz = block.frequency_hz[(*i - first) % block.channels()];
+    if (!std::all_of(uvw_m, uvw_m + 3, [](double x) { return std::isfinite(x); })) continue;
+    SampleCoordinates& of_frequency = found.insert({hz, {{}, {hz}}}).first->second;
+    of_frequency.uvw_m.append({uvw_m[0], uvw_m[1], uvw_m[2]});
+    if (!block.sights.empty()) of_frequency.sights.push_back(block.sights[row]);
   }
+}
+
+/// What sources give to samples that respond to them so.
+std::vector<std::complex<double>> predict_response(const std::vector<Source>& sources, const SampleCoordinates& at,
+                                                   const SampleResponse& response, int threads) {
+  std::vector<DirectionCosines> directions;
+  for (const Source& source : sources) directions.push_back(source.position);
+  const BlockResponse seen = response.of(at, directions);
+  std::vector<std::complex<double>> sum(at.samples());
+  for (std::size_t k = 0; k < sources.size(); ++k) {
+    const auto one = predict_sources({sources[k]}, at, threads);
+    for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += seen.at(k, i) * one[i];
+  }
+  return sum;
 }
 
 std::vector<Pixel> all_pixels(const ImageGeometry& geometry) {
@@ -57,11 +75,12 @@ std::vector<Pixel> random_pixels(const ImageGeometry& geometry, int count) {
 }
 
 PixelError pixel_error(const Image& dirty, const std::vector<Pixel>& pixels, const std::vector<double>& direct_sums,
-                       double weight) {
+                       const Normalisation& by) {
   PixelError error;
   double square = 0;
   for (std::size_t k = 0; k < pixels.size(); ++k) {
-    const double difference = dirty.at(pixels[k].row, pixels[k].column) - direct_sums[k] / weight;
+    const double difference = dirty.at(pixels[k].row, pixels[k].column) -
+                              by.value(pixels[k].row, pixels[k].column, direct_sums[k]);
     square += difference * difference;
     error.max = std::max(error.max, std::abs(difference));
   }
@@ -76,18 +95,19 @@ PixelError relative_pixel_error(const PixelError& error, const Image& dirty) {
 }
 
 MeasuredError measure_error(const VisibilitySource& source, const Transform& transform, const ImageGeometry& geometry,
-                            const DirtyImages& images, int count, const Context& context) {
+                            const DirtyImages& images, int count, const Context& context,
+                            std::shared_ptr<const SampleResponse> response) {
   std::mt19937_64 random(20200112);
   const Ranks& ranks = source.ranks();
   std::uint64_t all_samples = source.samples();
   sum_over(ranks, all_samples);
   const int predicted = static_cast<int>(std::min(std::uint64_t(count), all_samples));
   const std::vector<Pixel> pixels = random_pixels(geometry, count);
-  const DirectPixels direct_pixels{geometry, pixels, true, context.threads};
+  const DirectPixels direct_pixels{geometry, pixels, true, context.threads, response};
   const std::vector<std::uint64_t> chosen = random_samples(source.samples(), predicted, random);
 
   std::vector<std::vector<double>> sum(images.dirty.size(), std::vector<double>(pixels.size()));
-  SampleCoordinates samples{{}, {any_frequency_hz}};
+  ChosenSamples samples;
   std::uint64_t done = 0;
   const auto stream = source.open();
   while (const auto block = stream->next()) {
@@ -101,18 +121,26 @@ MeasuredError measure_error(const VisibilitySource& source, const Transform& tra
   for (std::vector<double>& of_image : sum) ranks.sum_at_first(of_image.data(), of_image.size());
   for (std::size_t i = 0; ranks.first() && i < sum.size(); ++i)
     error.image.push_back(
-        relative_pixel_error(pixel_error(images.dirty[i], pixels, sum[i], images.sums[i].weight), images.dirty[i]));
+        relative_pixel_error(pixel_error(images.dirty[i], pixels, sum[i], images.normalisation), images.dirty[i]));
   share_list(ranks, error.image);
 
   Image model(geometry.width, geometry.height);
-  for (const Pixel& pixel : pixels) model.at(pixel.row, pixel.column) = random() % 2 == 0 ? 1 : -1;
-  const auto direct = DirectTransform(geometry, context.threads).predict(model)->at(samples);
-  const auto gridded = transform.predict(std::move(model))->at(samples);
+  std::vector<Source> sources;
+  for (const Pixel& pixel : pixels) {
+    model.at(pixel.row, pixel.column) = random() % 2 == 0 ? 1 : -1;
+    sources.push_back({geometry.at(pixel.row, pixel.column), model.at(pixel.row, pixel.column)});
+  }
+  const auto prediction = transform.predict(std::move(model));
   double difference = 0;
   double size = 0;
-  for (std::size_t i = 0; i < direct.size(); ++i) {
-    difference += std::norm(gridded[i] - direct[i]);
-    size += std::norm(direct[i]);
+  for (const auto& [hz, at] : samples) {
+    const auto direct = response ? predict_response(sources, at, *response, context.threads)
+                                 : predict_sources(sources, at, context.threads);
+    const auto gridded = prediction->at(at);
+    for (std::size_t i = 0; i < direct.size(); ++i) {
+      difference += std::norm(gridded[i] - direct[i]);
+      size += std::norm(direct[i]);
+    }
   }
   sum_over(ranks, difference, size);
   error.predict_rms = size == 0 ? 0 : std::sqrt(difference / size);

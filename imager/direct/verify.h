@@ -15,9 +15,9 @@ struct PixelError {
   double max = 0;
 };
 
-/// Of a dirty image whose samples weigh `weight` in all, given Σ w Re[…] at the pixels.
+/// Of a dirty image, given Σ w Re[…] at the pixels.
 PixelError pixel_error(const Image& dirty, const std::vector<Pixel>& pixels, const std::vector<double>& direct_sums,
-                       double weight);
+                       const Normalisation& by);
 
 /// The same over the RMS of the whole dirty image; 0 of an image of zeros that is exact.
 PixelError relative_pixel_error(const PixelError& error, const Image& dirty);
@@ -30,8 +30,9 @@ struct MeasuredError {
 
 /// Compares the dirty images with direct sums at `count` random pixels, and predicted visibilities with direct sums at `count`
 /// random samples of each rank, for a model of the same pixels; with all pixels where there are no more, and fewer samples
-/// where there are fewer. The choice depends on `count` alone.
+/// where there are fewer. The choice depends on `count` alone. A mosaic's samples have a response.
 MeasuredError measure_error(const VisibilitySource& source, const Transform& transform, const ImageGeometry& geometry,
-                            const DirtyImages& images, int count, const Context& context);
+                            const DirtyImages& images, int count, const Context& context,
+                            std::shared_ptr<const SampleResponse> response = nullptr);
 
 }  // namespace misfit::imager

@@ -16,7 +16,9 @@ struct TheoreticalError {
 };
 
 /// The errors of an image made from samples with these sums. The phase of w counts where the plan neglects it.
-TheoreticalError theoretical_error(const GriddingPlan& plan, const SampleSums& sums, double image_rms, const NeglectedPhase& w);
+/// Images of a mosaic are made by its normalisation.
+TheoreticalError theoretical_error(const GriddingPlan& plan, const SampleSums& sums, double image_rms, const NeglectedPhase& w,
+                                   const Normalisation* by = nullptr);
 
 struct AccurateImages {
   GriddingPlan plan;

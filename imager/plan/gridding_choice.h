@@ -1,10 +1,12 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <vector>
 
 #include "imager/plan/gridding_candidate.h"
+#include "imager/pointing/mosaic_beams.h"
 #include "imager/wide/wide_transform.h"
 #include "kernels/catalogue.h"
 
@@ -13,9 +15,18 @@ namespace misfit::imager {
 /// Whether a transform has a w axis: where its phase matters, never, or always.
 enum class Gridder { automatic, standard, wide };
 
+/// That a transform is that of a mosaic, of the same image as the beams.
+struct MosaicRequest {
+  std::shared_ptr<const MosaicBeams> beams;
+  int psf_row = 0;  ///< of the pixel whose source the PSF is the response to
+  int psf_column = 0;
+  bool flat_noise = true;  ///< see MosaicView
+};
+
 /// What is asked of a transform.
 struct GriddingRequest {
   ImageGeometry geometry;
+  std::shared_ptr<const MosaicRequest> mosaic = {};  ///< null: all samples see all pixels alike
   double accuracy = 1e-6;  ///< ε: ‖I − I_DFT‖₂ ≤ ε ‖I_DFT‖₂; 0 = whatever the given width and padding reach
   kernels::KernelFamily kernel = kernels::kernel_family("least-misfit");
   int kernel_width = 0;         ///< cells along u and v; 0 = chosen

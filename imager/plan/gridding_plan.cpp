@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "imager/numerics/constants.h"
+#include "imager/plan/mosaic_plan.h"
 #include "imager/plan/out_of_reach.h"
 #include "imager/plan/plan_text_internal.h"
 
@@ -128,6 +129,11 @@ void check_request(const GriddingRequest& request) {
 GriddingPlan with_threads(GriddingPlan plan, int threads) {
   plan.request.threads = plan.options.threads = threads;
   if (plan.psf) plan.psf = std::make_shared<const GriddingPlan>(with_threads(*plan.psf, threads));
+  if (plan.windows) {
+    auto windows = std::make_shared<WindowsPlan>(*plan.windows);
+    windows->of_window = std::make_shared<const GriddingPlan>(with_threads(*windows->of_window, threads));
+    plan.windows = std::move(windows);
+  }
   return plan;
 }
 
@@ -281,6 +287,7 @@ GriddingPlan plan_images(const GriddingRequest& request) {
 
 GriddingPlan plan_gridding(const GriddingRequest& request) {
   check_request(request);
+  if (request.mosaic) return plan_mosaic(request);
   GriddingPlan plan = plan_images(request);
   const double gridding_s = plan.choice.best.cost_s + (plan.psf ? plan.psf->choice.best.cost_s : 0);
   use_direct_predictions(plan);
@@ -289,6 +296,7 @@ GriddingPlan plan_gridding(const GriddingRequest& request) {
 }
 
 TransformMemory memory_of(const GriddingPlan& plan) {
+  if (plan.windows) return memory_of(*plan.windows, plan.request);
   if (plan.direct) {
     const double image = static_cast<double>(plan.request.geometry.pixels()) * sizeof(double);
     const double samples = static_cast<double>(plan.request.samples), others = plan.request.stokes - 1;

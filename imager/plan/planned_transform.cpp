@@ -4,11 +4,13 @@
 #include <utility>
 
 #include "imager/plan/cost_model.h"
+#include "imager/plan/mosaic_plan.h"
 
 namespace misfit::imager {
 namespace {
 
 std::unique_ptr<Transform> transform_of(const GriddingPlan& plan, const DirectSums& direct) {
+  if (plan.windows) return make_mosaic_transform(plan);
   if (plan.direct) return std::make_unique<DirectTransform>(direct);
   return make_transform(plan.options);
 }
@@ -18,7 +20,7 @@ double residual_cost_s(const GriddingPlan& plan) {
   GriddingWork work = plan.choice.best.work;
   work.stokes = 1;
   work.psf = false;
-  return CostModel().seconds(work);
+  return CostModel().seconds(work) * (plan.windows ? static_cast<double>(plan.windows->windows) : 1);
 }
 
 }  // namespace

@@ -21,6 +21,8 @@ class PlannedTransform : public Transform {
   std::unique_ptr<AdjointSum> adjoint(const AdjointOptions& options) const override { return images_->adjoint(options); }
   /// By direct sums over a model of few pixels, with w even where gridding may leave it out.
   std::unique_ptr<Prediction> predict(Image model) const override;
+  std::vector<std::complex<double>> psf_source(const SampleCoordinates& at) const override { return psf().psf_source(at); }
+  Normalisation normalisation(const AdjointResult& sums) const override { return images_->normalisation(sums); }
   /// What makes images, and predicts larger models.
   const Transform& images() const { return *images_; }
   /// Transforms of the same samples for residuals that need not be as exact, and are made in less time: the least exact first.

@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 #include <optional>
-#include <set>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -25,53 +24,6 @@ double farthest_sine(const ImageGeometry& geometry, const std::vector<AxisFrame>
       farthest = sine <= 1 ? std::max(farthest, sine) : 1;  // beyond a horizon there is none
     }
   return farthest;
-}
-
-/// Voltages of all patterns, and their squares, at radii and angles; NaN from where they end.
-ValuesAtFrequency sampled_patterns(const RowBeams& beams, double reach) {
-  constexpr int radii = 96, angles = 8;
-  std::set<const VoltagePattern*> different;
-  for (const Pattern& pattern : beams.of_antennas())
-    if (pattern) different.insert(pattern.get());
-  return [different, reach](double hz) {
-    std::vector<double> values;
-    for (const VoltagePattern* pattern : different)
-      for (int r = 1; r <= radii; ++r)
-        for (int a = 0; a < (pattern->is_round() ? 1 : angles); ++a) {
-          const double sine = reach * r / radii, angle_rad = 2 * pi * a / angles;
-          if (sine > pattern->continuous_sine(hz)) {
-            values.insert(values.end(), 2, std::nan(""));
-            continue;
-          }
-          const double seen = pattern->is_round() ? pattern->voltage(sine, hz) : pattern->voltage_at(sine, angle_rad, hz);
-          values.push_back(seen);
-          values.push_back(seen * seen);
-        }
-    return values;
-  };
-}
-
-/// By how much the power of any pattern changes with its position angle, at most, per radian.
-double steepest_turn(const RowBeams& beams, double reach, double frequency_hz) {
-  constexpr int radii = 48, angles = 90;
-  constexpr double step_rad = 2 * pi / angles;
-  double steepest = 0;
-  for (const Pattern& pattern : beams.of_antennas()) {
-    if (!pattern || pattern->is_round()) continue;
-    for (int r = 1; r <= radii; ++r)
-      for (int a = 0; a < angles; ++a) {
-        const double one = pattern->voltage_at(reach * r / radii, a * step_rad, frequency_hz);
-        const double next = pattern->voltage_at(reach * r / radii, (a + 1) * step_rad, frequency_hz);
-        steepest = std::max(steepest, std::abs(next * next - one * one) / step_rad);
-      }
-  }
-  return steepest;
-}
-
-/// Steps of turns that are wrong by four times the tolerance at most.
-double turn_step(const RowBeams& beams, double reach, double frequency_hz, double tolerance) {
-  const double steepest = steepest_turn(beams, reach, frequency_hz);
-  return steepest > 0 ? 8 * tolerance / steepest : 0;
 }
 
 /// About as many bytes as a prediction of an image holds: a padded grid, or the image itself.
@@ -118,9 +70,7 @@ SeenImage::SeenImage(const Transform& transform, const Image& model, const Image
       geometry_(geometry),
       beams_(beams),
       options_(options),
-      spans_(frequency_spans(frequency_hz, sampled_patterns(beams, farthest_sine(geometry, beams.of_fields())),
-                             options.tolerance)),
-      turn_rad_(turn_step(beams, farthest_sine(geometry, beams.of_fields()), spans_.back().high_hz, options.tolerance)),
+      steps_(beam_steps(beams, farthest_sine(geometry, beams.of_fields()), frequency_hz, options.tolerance)),
       most_kept_(std::max<std::size_t>(1, options.bytes / prediction_bytes(model))),
       samples_at_once_(transform.predict(model)->samples_at_once()) {}
 
@@ -185,12 +135,12 @@ void SeenImage::add(const RowBeams::Group& group, const FrequencySpan& span, con
 
 std::vector<std::complex<double>> SeenImage::at(const SampleCoordinates& coordinates) {
   for (const double hz : coordinates.frequency_hz)
-    if (std::none_of(spans_.begin(), spans_.end(), [hz](const FrequencySpan& span) { return span.holds(hz); }))
+    if (std::none_of(steps_.spans.begin(), steps_.spans.end(), [hz](const FrequencySpan& span) { return span.holds(hz); }))
       throw std::invalid_argument("an image seen at " + std::to_string(hz) +
                                   " Hz; expected one of the frequencies it was made for");
   std::vector<std::complex<double>> visibilities(coordinates.samples());
-  for (const RowBeams::Group& group : beams_.groups(coordinates, turn_rad_))
-    for (const FrequencySpan& span : spans_) add(group, span, coordinates, visibilities);
+  for (const RowBeams::Group& group : beams_.groups(coordinates, steps_.turn_rad))
+    for (const FrequencySpan& span : steps_.spans) add(group, span, coordinates, visibilities);
   return visibilities;
 }
 

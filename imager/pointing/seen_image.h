@@ -7,8 +7,8 @@
 #include <tuple>
 #include <vector>
 
-#include "imager/beams/frequency_nodes.h"
 #include "imager/beams/row_beams.h"
+#include "imager/pointing/beam_steps.h"
 #include "imager/transform/transform.h"
 
 namespace misfit::imager {
@@ -58,9 +58,8 @@ class SeenImage {
   const ImageGeometry geometry_;
   const RowBeams& beams_;
   const SeenImageOptions options_;
-  std::vector<FrequencySpan> spans_;
+  BeamSteps steps_;
   std::map<Key, bool> shines_at_steps_;
-  double turn_rad_;  ///< steps in which beams that are not round are turned
   std::size_t most_kept_;
   std::list<Kept> kept_;  ///< the one used last comes first
   std::size_t samples_at_once_;

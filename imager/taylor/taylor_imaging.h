@@ -2,7 +2,6 @@
 
 #include <vector>
 
-#include "imager/data/geometry.h"
 #include "imager/taylor/taylor_expansion.h"
 #include "imager/transform/imaging.h"
 
@@ -14,18 +13,11 @@ struct TaylorImages {
   std::vector<Image> psf;    ///< [k − 1], 1 ≤ k ≤ 2 terms − 2: P_k = A*(w x^k) / Σ w, of a source in the middle pixel
 };
 
-/// What makes PSFs: responses to a source in the image's middle pixel.
-struct TaylorPsf {
-  const Transform& transform;
-  DirectionCosines middle;
-  bool with_w = true;  ///< as the transform
-};
-
-/// One pass over the visibilities for all of them: dirty images by `transform`, PSFs by that of `psf`, which may be the same.
+/// One pass over the visibilities for all of them: dirty images by `transform`, PSFs by `psf`, which may be the same.
 /// For a sky of Taylor coefficients I_t is R_q = Σ_t P_{q+t} ⋆ I_t, the normal equations of Rau & Cornwell (2011). With ν_0 in
 /// the middle of the band R_t and P_k of odd t and k are weak against their data: the transforms' errors are relative to the
 /// images of |x^t V| rather than to them. Stages timed: "read", "grid", "fft".
-TaylorImages make_taylor_images(const ImagedData& imaged, const TaylorPsf& psf, const TaylorExpansion& expansion,
+TaylorImages make_taylor_images(const ImagedData& imaged, const Transform& psf, const TaylorExpansion& expansion,
                                 const Context& context);
 
 /// The residual images A*(w x^t (V − Σ_s x^s A I_s)) / Σ w [t], of model images [s] of each term, in one pass. Stages timed: as

@@ -27,20 +27,18 @@ void require_any(const SampleSums& sums) {
   throw NothingInGrid(sums.outside_grid);
 }
 
-/// Makes the image of an adjoint. Returns its statistics, which rank 0 alone can take, at every rank.
-ImageStatistics normalise(Image& adjoint, const Normalisation& by, const Ranks& ranks) {
-  ImageStatistics statistics = by.make_image(adjoint);
-  share_values(ranks, statistics);
-  return statistics;
-}
-
-DirtyImages dirty_images(AdjointResult sum, Image psf, const Ranks& ranks, const Context& context) {
+DirtyImages dirty_images(const Transform& transform, AdjointResult sum, Image psf, const Ranks& ranks,
+                         const Context& context) {
   require_any(sum.sums.front());
   const StageTimer timer(context.times, stage::fft);
-  const Normalisation by_weight(sum.sums.front().weight);
-  DirtyImages made{std::move(sum.images), std::move(psf), std::move(sum.sums), {}, {}, by_weight};
-  for (Image& image : made.dirty) made.dirty_statistics.push_back(normalise(image, by_weight, ranks));
-  made.psf_statistics = normalise(made.psf, by_weight, ranks);
+  const Normalisation by = transform.normalisation(sum);
+  DirtyImages made{std::move(sum.images), std::move(psf), std::move(sum.sums), {}, {}, by};
+  for (Image& image : made.dirty) {
+    made.dirty_statistics.push_back(by.make_image(image));
+    share_values(ranks, made.dirty_statistics.back());
+  }
+  made.psf_statistics = by.make_psf(made.psf);
+  share_values(ranks, made.psf_statistics);
   return made;
 }
 
@@ -54,20 +52,22 @@ NothingInGrid::NothingInGrid(std::uint64_t samples)
 DirtyImages make_dirty_images(const VisibilitySource& source, const Transform& transform, const AdjointOptions& options,
                               const Context& context) {
   VisibilityPass pass(source, context);
-  auto sum = begin_adjoint(transform, options, context);
+  AdjointOptions all = options;
+  all.with_sensitivity = true;
+  auto sum = begin_adjoint(transform, all, context);
   pass.for_each_block([&](const VisibilityBlock& block) {
     const StageTimer timer(context.times, stage::grid);
     sum->add(block);
   });
   AdjointResult result = finish_adjoint(std::move(sum), source.ranks(), context);
   Image psf = std::move(result.psf);
-  return dirty_images(std::move(result), std::move(psf), source.ranks(), context);
+  return dirty_images(transform, std::move(result), std::move(psf), source.ranks(), context);
 }
 
 DirtyImages make_dirty_images(const VisibilitySource& source, const Transform& transform, const OwnPsf& psf,
                               const Context& context) {
   VisibilityPass pass(source, context);
-  auto sum = begin_adjoint(transform, {.images = psf.images}, context);
+  auto sum = begin_adjoint(transform, {.images = psf.images, .with_sensitivity = true}, context);
   auto psf_sum = begin_adjoint(psf.transform, {.images = 0, .with_psf = true}, context);
   pass.for_each_block([&](const VisibilityBlock& block) {
     const StageTimer timer(context.times, stage::grid);
@@ -76,7 +76,7 @@ DirtyImages make_dirty_images(const VisibilitySource& source, const Transform& t
   });
   AdjointResult of_psf = finish_adjoint(std::move(psf_sum), source.ranks(), context);
   AdjointResult result = finish_adjoint(std::move(sum), source.ranks(), context);
-  return dirty_images(std::move(result), std::move(of_psf.psf), source.ranks(), context);
+  return dirty_images(transform, std::move(result), std::move(of_psf.psf), source.ranks(), context);
 }
 
 void for_each_residual(const OneStokes& samples, const MakePrediction& predict, const Context& context,

@@ -10,6 +10,7 @@
 #include "imager/data/image.h"
 #include "imager/data/ranks.h"
 #include "imager/data/visibility_sets.h"
+#include "imager/transform/normalisation.h"
 
 namespace misfit::imager {
 
@@ -36,6 +37,8 @@ struct AdjointOptions {
   /// Whether samples beyond 1/(2 cell) count too, as they do in the definition: pixels are points, whose values are periodic in
   /// u and v but for the phase of the middle one. What they add is no picture of the sky.
   bool beyond_grid = false;
+  /// Whether a transform that does not see all pixels alike tells how well it sees each, see AdjointResult.
+  bool with_sensitivity = false;
 };
 
 /// Images made from all samples added, not yet divided by Σ w.
@@ -46,6 +49,8 @@ struct AdjointResult {
   /// it is Σ w; empty unless it was asked for. It is NaN where w counts and that pixel lies beyond the horizon.
   Image psf;
   std::vector<SampleSums> sums;  ///< [Stokes], of the block's own for a PSF alone: they differ in those of |V| alone
+  /// What a source of 1 Jy in each pixel adds to the sum of that pixel; empty where that is Σ w in all, or was not asked for.
+  Image sensitivity;
   double fft_s = 0;              ///< seconds of wall clock that FFTs and corrections took, as samples were added and at the end
 };
 
@@ -99,6 +104,10 @@ class Transform {
   virtual ~Transform() = default;
   virtual std::unique_ptr<AdjointSum> adjoint(const AdjointOptions& options) const = 0;
   virtual std::unique_ptr<Prediction> predict(Image model) const = 0;
+  /// What the source gives whose response an adjoint makes the PSF of. [row][channel]
+  virtual std::vector<std::complex<double>> psf_source(const SampleCoordinates& at) const = 0;
+  /// How adjoints of this transform become images, given the sums of all samples.
+  virtual Normalisation normalisation(const AdjointResult& sums) const { return Normalisation(sums.sums.front().weight); }
 };
 
 /// A transform that costs less than another, and is less exact.

@@ -81,6 +81,7 @@ inline AdjointResult finish_adjoint(std::unique_ptr<AdjointSum> sum, const Ranks
   const StageTimer timer(context.times, stage::exchange);
   for (Image& image : result.images) add_up(image, ranks);
   add_up(result.psf, ranks);
+  ranks.sum(result.sensitivity.pixel.data(), result.sensitivity.pixel.size());  // which every rank needs
   for (SampleSums& sums : result.sums) sums.add_up(ranks);
   return result;
 }

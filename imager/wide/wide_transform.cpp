@@ -7,6 +7,7 @@
 
 #include "imager/wide/facet.h"
 #include "imager/wide/tile_sum.h"
+#include "imager/transform/unit_source.h"
 #include "imager/wide/wide_adjoint.h"
 #include "imager/wide/wide_prediction.h"
 
@@ -23,6 +24,9 @@ class WideTransform : public Transform {
   }
   std::unique_ptr<Prediction> predict(Image model) const override {
     return make_wide_prediction<Real>(setup_, std::move(model));
+  }
+  std::vector<std::complex<double>> psf_source(const SampleCoordinates& at) const override {
+    return unit_source(at, phase_position(setup_.options.geometry.centre), setup_.options.threads);
   }
 
  private:

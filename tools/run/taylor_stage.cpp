@@ -5,25 +5,14 @@
 #include <utility>
 
 namespace misfit::tools {
-namespace {
-
-imager::TaylorPsf psf_of(const imager::AccurateImages& made) {
-  const imager::GriddingPlan& plan = made.plan;
-  const bool with_w = plan.direct || (plan.psf ? *plan.psf : plan).options.has_w_axis();
-  return {made.transform->psf(), plan.options.geometry.centre, with_w};
-}
-
-}  // namespace
-
 void TaylorStage::make_images(const imager::ImagedData& imaged, const imager::AccurateImages& made, TakenTerms taken,
                               const imager::Context& context) {
   const imager::TakenImages& which = taken.which;
   std::optional<imager::ComparedPixels> pixels;
   if (which.any()) pixels.emplace(made.plan, imaged.transform);
-  imager::TaylorPsf psf = psf_of(made);
   images_ = imager::make_taylor_images(
       {imaged.samples, which.dirty ? pixels->transform() : imaged.transform, imaged.normalisation},
-      {which.psf ? pixels->transform() : psf.transform, psf.middle, psf.with_w}, expansion_, context);
+      which.psf ? pixels->transform() : made.transform->psf(), expansion_, context);
   if (!imaged.samples.source.ranks().first()) return;  // where the images are
   if (pixels) take(std::move(taken), *pixels, made);
   psf_ = all_terms(made.images.psf, images_.psf);

@@ -280,6 +280,7 @@ class Haunted : public Transform {
     return std::make_unique<Sum>(transform_.adjoint(options), options);
   }
   std::unique_ptr<Prediction> predict(Image model) const override { return transform_.predict(std::move(model)); }
+  std::vector<std::complex<double>> psf_source(const SampleCoordinates& at) const override { return transform_.psf_source(at); }
 
  private:
   class Sum : public AdjointSum {

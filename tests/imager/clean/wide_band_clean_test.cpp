@@ -70,7 +70,7 @@ Scene make_scene(int terms, double fraction, double noise_jy, unsigned seed) {
   s.source = stored({block});
   s.transform = &gridding();
   s.first = make_dirty_images(s.source, *s.transform, {.with_psf = true}, {});
-  s.further = make_taylor_images(s.imaged(), {*s.transform, {}, false}, s.expansion, {});
+  s.further = make_taylor_images(s.imaged(), *s.transform, s.expansion, {});
   s.psf.push_back(&s.first.psf);
   for (const Image& image : s.further.psf) s.psf.push_back(&image);
   Image middle(geometry.width, geometry.height);

@@ -242,7 +242,7 @@ BOOST_AUTO_TEST_CASE(clean_of_taylor_terms_finds_the_same_components) {
   check_alike({block}, 1e-9, [&](const VisibilitySource& source) {
     const DirtyImages first = make_dirty_images(source, transform, {.with_psf = true}, {});
     const ImagedData imaged{source, transform, first.normalisation};
-    const TaylorImages further = make_taylor_images(imaged, {transform, {}, false}, expansion, {});
+    const TaylorImages further = make_taylor_images(imaged, transform, expansion, {});
     if (!source.ranks().first()) {
       follow_clean(imaged, {}, expansion, {2});
       return Values();

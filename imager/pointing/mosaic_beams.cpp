@@ -1,0 +1,127 @@
+#include "imager/pointing/mosaic_beams.h"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+#include "imager/numerics/parallel.h"
+
+namespace misfit::imager {
+namespace {
+
+/// Each sample is gridded once for each node.
+constexpr std::size_t most_nodes_of_a_span = 4;
+
+double largest(const std::map<std::tuple<const VoltagePattern*, const VoltagePattern*>, double>& reaches) {
+  double all = 0;
+  for (const auto& [pair, reach] : reaches) all = std::max(all, reach);
+  return all;
+}
+
+/// Where a component of the unit vectors within an angle, whose sine is `reach`, of an axis ends.
+struct Extent {
+  double low;
+  double high;
+};
+Extent extent(double axis, double reach) {
+  const double cosine = std::sqrt(1 - reach * reach), middle = axis * cosine;
+  const double half = std::sqrt(std::max(0.0, 1 - axis * axis)) * reach;
+  // Where the cap holds the end of the axis along which the component is measured, that is where it ends.
+  return {-axis >= cosine ? -1 : middle - half, axis >= cosine ? 1 : middle + half};
+}
+
+/// The first of `size` pixels among `all` that hold those from `low` to `high`, as far as there are any; −1 where none is.
+int first_of(double low, double high, int size, int all) {
+  if (high < 0 || low > all - 1) return -1;
+  const double first = std::floor((low + high - size + 1) / 2);
+  return static_cast<int>(std::clamp(first, 0.0, double(all - size)));
+}
+
+}  // namespace
+
+MosaicBeams::MosaicBeams(MosaicScene scene) : scene_(std::move(scene)) {
+  if (!(scene_.cut > 0 && scene_.cut < 1))
+    throw std::invalid_argument("beams cut off at " + std::to_string(scene_.cut) + " of their peak; expected above 0 and below 1");
+  std::set<const VoltagePattern*> patterns;
+  for (const Pattern& pattern : scene_.beams.of_antennas())
+    if (pattern) patterns.insert(pattern.get());
+  for (const VoltagePattern* one : patterns)
+    for (const VoltagePattern* other : patterns) reach_[{one, other}] = found_reach(*one, *other);
+  steps_ = beam_steps(scene_.beams, largest(reach_), scene_.frequency_hz, scene_.tolerance, most_nodes_of_a_span);
+}
+
+double MosaicBeams::found_reach(const VoltagePattern& one, const VoltagePattern& other) const {
+  const auto [low, high] = std::minmax_element(scene_.frequency_hz.begin(), scene_.frequency_hz.end());
+  const double step = 0.02 * std::min(one.detail_sine(*low), other.detail_sine(*low));
+  const double lobe =
+      first_sine_at(scene_.cut, step, [&](double sine) { return one.voltage(sine, *low) * other.voltage(sine, *low); });
+  return std::min({lobe, one.continuous_sine(*high), other.continuous_sine(*high)});
+}
+
+double MosaicBeams::largest_reach() const {
+  return largest(reach_);
+}
+
+double MosaicBeams::reach(const PairBeam& beam) const {
+  return reach_.at({beam.one.get(), beam.other.get()});
+}
+
+double MosaicBeams::power(const PairBeam& beam, DirectionCosines at, double frequency_hz) const {
+  return beam.frame.sine(at) <= reach(beam) ? beam.power(at, frequency_hz) : 0;
+}
+
+std::optional<Window> MosaicBeams::window(const PairBeam& beam) const {
+  const ImageGeometry& g = scene_.geometry;
+  const double radius = reach(beam);
+  const DirectionCosines axis = beam.frame.axis();
+  const Extent l = extent(axis.l, radius), m = extent(axis.m, radius);
+  constexpr int margin = 4;
+  const auto size_of = [radius](double cell, int all) {
+    return static_cast<int>(std::min(double(all), 2 * std::floor(radius / cell) + margin));
+  };
+  Window window{0, 0, g};
+  window.geometry.width = size_of(g.cell_rad, g.width);
+  window.geometry.height = size_of(g.cell_height_rad(), g.height);
+  const auto column = [&](double at) { return g.centre_column() - (at - g.centre.l) / g.cell_rad; };
+  const auto row = [&](double at) { return g.centre_row() + (at - g.centre.m) / g.cell_height_rad(); };
+  window.first_column = first_of(column(l.high), column(l.low), window.geometry.width, g.width);
+  window.first_row = first_of(row(m.low), row(m.high), window.geometry.height, g.height);
+  if (window.first_column < 0 || window.first_row < 0) return std::nullopt;
+  window.geometry.centre = g.at(window.first_row + window.geometry.centre_row(),
+                                window.first_column + window.geometry.centre_column());
+  return window;
+}
+
+const RadialTable& MosaicBeams::table(const PairBeam& beam, double frequency_hz, int threads) const {
+  const std::lock_guard lock(mutex_);
+  const auto key = std::tuple(beam.one.get(), beam.other.get(), frequency_hz);
+  const auto found = tables_.find(key);
+  if (found != tables_.end()) return found->second;
+  const auto seen = [&](double sine) { return beam.one->voltage(sine, frequency_hz) * beam.other->voltage(sine, frequency_hz); };
+  return tables_.emplace(key, RadialTable(reach(beam), threads, seen)).first->second;
+}
+
+Image MosaicBeams::image(const PairBeam& beam, const Window& window, double frequency_hz, int threads) const {
+  const ImageGeometry& g = window.geometry;
+  Image seen(g.width, g.height);
+  const double radius = reach(beam);
+  const double ends = std::min(beam.one->continuous_sine(frequency_hz), beam.other->continuous_sine(frequency_hz));
+  constexpr double beside = 1.01;  // a table has points beyond its end
+  const RadialTable* const round =
+      beam.is_round() && ends >= std::min(1.0, beside * radius) ? &table(beam, frequency_hz, threads) : nullptr;
+  parallel_for(static_cast<std::size_t>(g.height), threads, [&](std::size_t r) {
+    const int row = static_cast<int>(r);
+    for (int column = 0; column < g.width; ++column) {
+      const DirectionCosines at = g.at(row, column);
+      const double sine = beam.frame.sine(at);
+      if (!(sine <= radius)) continue;
+      seen.at(row, column) = round != nullptr ? (*round)(sine) : beam.power(at, frequency_hz);
+    }
+  });
+  return seen;
+}
+
+}  // namespace misfit::imager

@@ -1,0 +1,72 @@
+#pragma once
+
+#include <map>
+#include <mutex>
+#include <optional>
+#include <tuple>
+#include <vector>
+
+#include "imager/beams/radial_function.h"
+#include "imager/beams/row_beams.h"
+#include "imager/data/image.h"
+#include "imager/pointing/beam_steps.h"
+
+namespace misfit::imager {
+
+/// What a mosaic is made of.
+struct MosaicScene {
+  ImageGeometry geometry;
+  RowBeams beams;
+  std::vector<double> frequency_hz;  ///< that samples have
+  double cut = 1e-3;                 ///< over its peak: beams are 0 beyond where they first fall to this
+  double tolerance = 1e-7;           ///< to which beams follow between frequencies, see beam_steps()
+};
+
+/// A rectangle of an image's pixels.
+struct Window {
+  int first_row = 0;
+  int first_column = 0;
+  ImageGeometry geometry;  ///< of these pixels alone
+};
+
+/// The beams of a mosaic, and the windows on its image that they see. A beam is that of its pair of dishes up to the radius at
+/// which the pair's main lobe falls to the cut at the lowest frequency, and 0 beyond it, at all frequencies: its sidelobes
+/// within that radius count at higher ones. The radius is no larger than that at which a formula ends in a step at any of the
+/// frequencies.
+class MosaicBeams {
+ public:
+  /// Throws std::invalid_argument unless the cut is above 0 and below 1.
+  explicit MosaicBeams(MosaicScene scene);
+
+  const ImageGeometry& geometry() const { return scene_.geometry; }
+  const RowBeams& rows() const { return scene_.beams; }
+  double cut() const { return scene_.cut; }
+  double tolerance() const { return scene_.tolerance; }
+  const std::vector<FrequencySpan>& spans() const { return steps_.spans; }
+  /// The rows that see alike.
+  std::vector<RowBeams::Group> groups(const SampleCoordinates& at) const { return scene_.beams.groups(at, steps_.turn_rad); }
+
+  /// sin θ of the radius.
+  double reach(const PairBeam& beam) const;
+  double largest_reach() const;  ///< of any pair of dishes
+  /// The beam in a direction.
+  double power(const PairBeam& beam, DirectionCosines at, double frequency_hz) const;
+  /// The pixels among which all are that the beam sees; none where it sees no pixel. Windows of a pair have one size.
+  std::optional<Window> window(const PairBeam& beam) const;
+  /// The beam in each pixel of a window. Right to 1e-9 of power() for round beams.
+  Image image(const PairBeam& beam, const Window& window, double frequency_hz, int threads) const;
+
+ private:
+  using Pair = std::tuple<const VoltagePattern*, const VoltagePattern*>;
+
+  const RadialTable& table(const PairBeam& beam, double frequency_hz, int threads) const;
+  double found_reach(const VoltagePattern& one, const VoltagePattern& other) const;
+
+  MosaicScene scene_;
+  std::map<Pair, double> reach_;
+  BeamSteps steps_;
+  mutable std::mutex mutex_;  ///< of the tables
+  mutable std::map<std::tuple<const VoltagePattern*, const VoltagePattern*, double>, RadialTable> tables_;
+};
+
+}  // namespace misfit::imager

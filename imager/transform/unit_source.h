@@ -1,0 +1,14 @@
+#pragma once
+
+#include <complex>
+#include <vector>
+
+#include "imager/data/phase.h"
+#include "imager/data/visibilities.h"
+
+namespace misfit::imager {
+
+/// exp(+2πi(ul+vm+w(n−1))): what a source of 1 Jy gives. [row][channel]
+std::vector<std::complex<double>> unit_source(const SampleCoordinates& at, const PhasePosition& source, int threads);
+
+}  // namespace misfit::imager

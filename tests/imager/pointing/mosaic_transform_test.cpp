@@ -1,0 +1,209 @@
+#include <boost/test/unit_test.hpp>
+#include <cmath>
+
+#include "imager/beams/airy_pattern.h"
+#include "imager/beams/telescopes.h"
+#include "imager/direct/verify.h"
+#include "imager/numerics/constants.h"
+#include "imager/plan/accurate_imaging.h"
+#include "imager/pointing/mosaic_response.h"
+#include "imager/pointing/mosaic_transform.h"
+#include "tests/imager/comparison.h"
+#include "tests/imager/vla_samples.h"
+
+BOOST_AUTO_TEST_SUITE(mosaic_transform)
+
+using namespace misfit::imager;
+using namespace misfit::imager::testing;
+
+namespace {
+
+constexpr double arcmin = pi / 180 / 60;
+constexpr double declination_rad = 0.6;
+
+/// A mosaic of so many pointings on a spiral, of a 25 m and a 12 m sort of dishes, at 1.2 to 1.8 GHz. Beams of the outermost do
+/// not reach those of the others on the opposite side; one pointing more has no data, one sees nothing of the image.
+struct Mosaic {
+  ImageGeometry geometry;
+  std::vector<AxisFrame> fields;
+  std::vector<VisibilityBlock> blocks;
+
+  Mosaic(int pointings, double cell_arcmin, int pixels, double max_w_m) {
+    geometry = {pixels, pixels - 6, cell_arcmin * arcmin, {1, declination_rad}, {0.002, -0.001}};
+    const double reach = 0.4 * pixels * geometry.cell_rad;
+    for (int p = 0; p < pointings; ++p) {
+      const double radius = reach * std::sqrt((p + 0.5) / pointings), angle = 2.4 * p;
+      fields.emplace_back(DirectionCosines{geometry.centre.l + radius * std::cos(angle),
+                                           geometry.centre.m + radius * std::sin(angle)},
+                          declination_rad);
+    }
+    fields.emplace_back(DirectionCosines{0.001, 0.001}, declination_rad);
+    fields.emplace_back(DirectionCosines{-0.6, 0.2}, declination_rad);
+    for (int p = 0; p < pointings; ++p) blocks.push_back(block_of({p}, max_w_m, pixels));
+    blocks.push_back(block_of({0, pointings + 1, pointings - 1}, max_w_m, pixels));  // several in a block
+  }
+
+  MosaicScene scene(double tolerance) const {
+    return {geometry, RowBeams({airy_pattern({25, 2}), airy_pattern({12, 0.75})}, fields), blocks.front().frequency_hz, 1e-3,
+            tolerance};
+  }
+
+ private:
+  VisibilityBlock block_of(const std::vector<int>& of_fields, double max_w_m, int pixels) const {
+    constexpr std::size_t rows = 12;
+    VisibilityBlock block;
+    for (int c = 0; c < 7; ++c) block.frequency_hz.push_back(1.2e9 + 0.1e9 * c);
+    const double reach_m = 0.45 / geometry.cell_rad * speed_of_light_m_s / 1.8e9;
+    const auto at = [&](std::size_t i) { return std::sin(1.7 * static_cast<double>(i * i + 1) + of_fields.front()); };
+    for (std::size_t r = 0; r < rows; ++r) {
+      for (const double coordinate : {reach_m * at(3 * r), reach_m * at(3 * r + 1), max_w_m * at(3 * r + 2)})
+        block.uvw_m.edit().push_back(coordinate);
+      block.sights.push_back({r % 3 == 0 ? 1 : 0, r % 2 == 0 ? 1 : 0, of_fields[r % of_fields.size()], 0});
+    }
+    const Image values = random_image(2 * static_cast<int>(block.channels()), static_cast<int>(rows),
+                                      static_cast<unsigned>(of_fields.front() + pixels));
+    for (std::size_t i = 0; i < block.samples(); ++i) {
+      block.visibility.emplace_back(static_cast<float>(values.pixel[2 * i]), static_cast<float>(values.pixel[2 * i + 1]));
+      block.weight.push_back(i % 11 == 0 ? 0 : 0.5F + 0.1F * static_cast<float>(i % 5));
+    }
+    return block;
+  }
+};
+
+double beam_of(const MosaicBeams& beams, const VisibilityBlock& block, std::size_t row, std::size_t channel,
+               DirectionCosines at) {
+  SampleCoordinates one = rows_of(block, {row});
+  one.sights = {block.sights[row]};
+  return beams.power(beams.rows().groups(one).front().beam, at, block.frequency_hz[channel]);
+}
+
+struct Definition {
+  Image dirty;
+  Image sensitivity;
+  Image psf;
+};
+
+/// Sample by sample and pixel by pixel; the PSF that of a source in a pixel.
+Definition by_definition(const Mosaic& mosaic, const MosaicBeams& beams, int psf_row, int psf_column) {
+  const ImageGeometry& g = mosaic.geometry;
+  Definition sums{Image(g.width, g.height), Image(g.width, g.height), Image(g.width, g.height)};
+  const DirectionCosines source = g.at(psf_row, psf_column);
+  for (const VisibilityBlock& block : mosaic.blocks)
+    for (std::size_t row = 0; row < block.rows(); ++row)
+      for (std::size_t c = 0; c < block.channels(); ++c) {
+        const std::size_t i = row * block.channels() + c;
+        const double weight = block.weight[i], hz = block.frequency_hz[c];
+        if (weight == 0) continue;
+        const double of_source = beam_of(beams, block, row, c, source);
+        SampleCoordinates one = rows_of(block, {row});
+        one.sights = {block.sights[row]};
+        const PairBeam beam = beams.rows().groups(one).front().beam;
+        const double reach = beams.reach(beam);
+        for (int r = 0; r < g.height; ++r)
+          for (int column = 0; column < g.width; ++column) {
+            const DirectionCosines at = g.at(r, column);
+            if (!(beam.frame.sine(at) <= reach)) continue;
+            const double seen = beam.power(at, hz);
+            const double turns = turns_per_hz(&block.uvw_m[3 * row], phase_position(at)) * hz;
+            const double from_source = turns - turns_per_hz(&block.uvw_m[3 * row], phase_position(source)) * hz;
+            const std::complex<double> v = block.visibility[i];
+            sums.dirty.at(r, column) +=
+                weight * seen * (v.real() * std::cos(2 * pi * turns) + v.imag() * std::sin(2 * pi * turns));
+            sums.psf.at(r, column) += weight * seen * of_source * std::cos(2 * pi * from_source);
+            sums.sensitivity.at(r, column) += weight * seen * seen;
+          }
+      }
+  return sums;
+}
+
+GriddingRequest request_of(const Mosaic& mosaic, double accuracy, double max_w_m, int psf_row, int psf_column) {
+  GriddingRequest request;
+  request.geometry = mosaic.geometry;
+  request.mosaic = std::make_shared<const MosaicRequest>(MosaicRequest{
+      std::make_shared<const MosaicBeams>(mosaic.scene(0.1 * accuracy)), psf_row, psf_column, true});
+  request.accuracy = accuracy;
+  request.samples = 100000000;  // so that samples are gridded, few as they are
+  request.max_abs_w = max_w_m * 1.8e9 / speed_of_light_m_s;
+  request.threads = 2;
+  return request;
+}
+
+}  // namespace
+
+/// For narrow windows, over which a plane takes all of w, and for wide ones.
+BOOST_AUTO_TEST_CASE(images_and_predictions_are_those_of_the_definition) {
+  for (const auto& [pointings, cell_arcmin, pixels, max_w_m] :
+       {std::tuple(2, 2.0, 120, 3000.0), {7, 2.0, 150, 10.0}, {37, 1.0, 220, 0.0}}) {
+    const Mosaic mosaic(pointings, cell_arcmin, pixels, max_w_m);
+    const int psf_row = pixels / 2 - 9, psf_column = pixels / 2 + 4;
+    Definition should;
+    for (const double accuracy : {1e-3, 1e-5, 1e-7}) {
+      const GriddingPlan plan = plan_gridding(request_of(mosaic, accuracy, max_w_m, psf_row, psf_column));
+      BOOST_TEST(plan.windows->unseeing == 1);
+      BOOST_TEST(plan.windows->on_planes == (max_w_m < 100));
+      const MosaicBeams& beams = *plan.request.mosaic->beams;
+      if (should.dirty.pixel.empty()) should = by_definition(mosaic, beams, psf_row, psf_column);
+      const PlannedTransform transform(plan);
+      const auto sum = transform.adjoint({.images = 1, .with_psf = true, .with_sensitivity = true});
+      for (const VisibilityBlock& block : mosaic.blocks) sum->add(block);
+      AdjointResult is = sum->finish();
+      BOOST_TEST_CONTEXT(pointings << " pointings, accuracy " << accuracy) {
+        BOOST_TEST(relative_error(is.images[0].pixel, should.dirty.pixel) < accuracy);
+        BOOST_TEST(relative_error(is.psf.pixel, should.psf.pixel) < accuracy);
+        BOOST_TEST(relative_error(is.sensitivity.pixel, should.sensitivity.pixel) < accuracy);
+        const StoredVisibilities source = stored(mosaic.blocks);
+        const DirtyImages images = make_dirty_images(source, transform, {.with_psf = true}, {});
+        const MeasuredError measured = measure_error(source, transform, mosaic.geometry, images, 200, {2},
+                                                     std::make_shared<MosaicResponse>(plan.request.mosaic->beams));
+        BOOST_TEST(measured.image.front().rms < 1.5 * accuracy);  // of some pixels
+        BOOST_TEST(measured.predict_rms < accuracy);
+        BOOST_TEST(images.psf.at(images.psf.height / 2, images.psf.width / 2) == 1,
+                   boost::test_tools::tolerance(10 * accuracy));
+        BOOST_TEST(largest_magnitude(images.psf) < 1 + 0.5);
+      }
+    }
+  }
+}
+
+BOOST_AUTO_TEST_CASE(prediction_and_images_are_adjoint_to_rounding) {
+  for (const double max_w_m : {0.0, 10.0, 3000.0}) {
+    const Mosaic mosaic(7, 2, 90, max_w_m);
+    const PlannedTransform transform(plan_gridding(request_of(mosaic, 1e-4, max_w_m, 40, 40)));
+    const Image model = random_image(mosaic.geometry.width, mosaic.geometry.height, 5);
+    const auto sum = transform.adjoint({.images = 1, .with_psf = true});
+    const auto prediction = transform.predict(model);
+    double in_samples = 0, size = 0;
+    for (const VisibilityBlock& block : mosaic.blocks) {
+      sum->add(block);
+      const auto predicted = prediction->at_usable(block);
+      for (std::size_t i = 0; i < block.samples(); ++i) {
+        const double product =
+            double{block.weight[i]} * (std::conj(std::complex<double>(block.visibility[i])) * predicted[i]).real();
+        in_samples += product;
+        size += std::abs(product);
+      }
+    }
+    const AdjointResult result = sum->finish();
+    double in_images = 0;
+    for (std::size_t i = 0; i < model.pixel.size(); ++i) in_images += result.images[0].pixel[i] * model.pixel[i];
+    BOOST_TEST(std::abs(in_images - in_samples) < 1e-12 * size);
+  }
+}
+
+/// Windows that are given up and begun again add up to the same, and threads give the same bits.
+BOOST_AUTO_TEST_CASE(few_windows_at_once_and_any_threads_make_the_same_images) {
+  const Mosaic mosaic(7, 2, 90, 10);
+  const auto beams = std::make_shared<const MosaicBeams>(mosaic.scene(1e-6));
+  const auto image_by = [&](std::size_t windows_at_once, int threads) {
+    const WindowTransforms direct{[threads](const ImageGeometry& g) { return std::make_shared<DirectTransform>(g, threads); }};
+    const MosaicTransform transform(beams, direct, {40, 40, true, windows_at_once, 0, threads});
+    const auto sum = transform.adjoint({});
+    for (const VisibilityBlock& block : mosaic.blocks) sum->add(block);
+    return sum->finish().images.front().pixel;
+  };
+  const std::vector<double> all = image_by(1000, 1);
+  BOOST_TEST((image_by(1000, 2) == all));
+  BOOST_TEST(relative_error(image_by(1, 2), all) < 1e-13);
+}
+
+BOOST_AUTO_TEST_SUITE_END()
