@@ -96,8 +96,8 @@ std::vector<double> FrequencySpan::weights(double frequency_hz) const {
   return weight;
 }
 
-std::vector<FrequencySpan> frequency_spans(std::vector<double> frequency_hz, const ValuesAtFrequency& values,
-                                           double tolerance, std::size_t most_nodes) {
+std::vector<FrequencySpan> frequency_spans(std::vector<double> frequency_hz, const ValuesAtFrequency& values, double tolerance,
+                                           std::size_t most_nodes) {
   if (frequency_hz.empty()) throw std::invalid_argument("no frequency; expected at least one");
   std::sort(frequency_hz.begin(), frequency_hz.end());
   frequency_hz.erase(std::unique(frequency_hz.begin(), frequency_hz.end()), frequency_hz.end());

@@ -6,8 +6,8 @@
 
 #include "imager/coplanar/coplanar_adjoint.h"
 #include "imager/coplanar/coplanar_prediction.h"
-#include "imager/transform/unit_source.h"
 #include "imager/coplanar/crowded_tiles.h"
+#include "imager/transform/unit_source.h"
 
 namespace misfit::imager {
 namespace {

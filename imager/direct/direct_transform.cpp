@@ -205,8 +205,7 @@ PixelSums sums_at_pixels(const VisibilityBlock& block, const std::vector<float>&
     const WeightedSamples samples(block, weight, sets, begin, std::min(begin + samples_a_piece, weight.size()));
     for (std::size_t k = 0; k < pixels; ++k) {
       const PhasePosition to = position_of(at.geometry.at(at.pixel[k].row, at.pixel[k].column), at.with_w);
-      if (!sets.empty())
-        part[p].of_sets[k] = at.response ? samples.images_at(to, response, k) : samples.images_at(to);
+      if (!sets.empty()) part[p].of_sets[k] = at.response ? samples.images_at(to, response, k) : samples.images_at(to);
       if (with_psf) part[p].of_psf[k] = samples.beam_at(relative(to, middle));
     }
   });

@@ -68,10 +68,6 @@ AccurateImages make_images(const VisibilitySource& source, GriddingPlan plan, co
   return made;
 }
 
-std::shared_ptr<const SampleResponse> response_of(const GriddingPlan& plan) {
-  return plan.request.mosaic ? std::make_shared<const MosaicResponse>(plan.request.mosaic->beams) : nullptr;
-}
-
 /// Errors of the images relative to their RMS as the pixels show it, a few to many so that the direct sums take less than a
 /// second.
 double largest_checked_error(const VisibilitySource& source, const AccurateImages& made, const Context& context) {
@@ -81,8 +77,8 @@ double largest_checked_error(const VisibilitySource& source, const AccurateImage
   const ImageGeometry& geometry = made.plan.request.geometry;
   const double affordable = 4e7 / static_cast<double>(images.sums.front().used);
   const int count = static_cast<int>(std::clamp(affordable, 4.0, 64.0));
-  const DirectPixels at{geometry, random_pixels(geometry, count),
-                        made.plan.direct || made.plan.windows || o.has_w_axis(), o.threads, response_of(made.plan)};
+  const DirectPixels at{geometry, random_pixels(geometry, count), made.plan.direct || made.plan.windows || o.has_w_axis(),
+                        o.threads, response_of(made.plan)};
   std::vector<std::vector<double>> sum(images.dirty.size(), std::vector<double>(at.pixel.size()));
   const auto stream = source.open();
   while (const auto block = stream->next()) add_direct_pixels(*block, at, sum);
@@ -138,8 +134,12 @@ void make_dirty_exact(const VisibilitySource& source, const Context& context, Ac
 
 }  // namespace
 
-TheoreticalError theoretical_error(const GriddingPlan& plan, const SampleSums& sums, double image_rms,
-                                   const NeglectedPhase& w, const Normalisation* by) {
+std::shared_ptr<const SampleResponse> response_of(const GriddingPlan& plan) {
+  return plan.request.mosaic ? std::make_shared<const MosaicResponse>(plan.request.mosaic->beams) : nullptr;
+}
+
+TheoreticalError theoretical_error(const GriddingPlan& plan, const SampleSums& sums, double image_rms, const NeglectedPhase& w,
+                                   const Normalisation* by) {
   const double part = plan.windows ? plan.windows->phase_part : 1;
   const double phase_rms =
       plan.leaves_w_out() ? std::min(part * w.rms_rad, std::sqrt(2.0)) : 0;  // unit phasors at random are √2 apart
@@ -147,10 +147,10 @@ TheoreticalError theoretical_error(const GriddingPlan& plan, const SampleSums& s
   const auto over_image = [image_rms](double x) { return x == 0 ? 0 : x / image_rms; };
   // Of a mosaic, what the pointings p add to a pixel is Σ B_p Σ w|V| at most, and that over √W no more than √(Σ w|V|²).
   const bool mosaic = by != nullptr && by->mosaic() != nullptr;
-  const double flux =
-      over_image(mosaic ? std::sqrt(sums.weight_square / by->weight()) : sums.weight_abs / sums.weight);
+  const double flux = over_image(mosaic ? std::sqrt(sums.weight_square / by->weight()) : sums.weight_abs / sums.weight);
   TheoreticalError error;
-  error.expected_rms = std::hypot(plan.expected_error, phase_rms) * std::max(1.0, over_image(random_image_rms(sums) * (mosaic ? by->noise_factor(sums.weight) : 1)));
+  error.expected_rms = std::hypot(plan.expected_error, phase_rms) *
+                       std::max(1.0, over_image(random_image_rms(sums) * (mosaic ? by->noise_factor(sums.weight) : 1)));
   error.bound_rms = ((1 + plan.bound_rms) * (1 + phase_max) - 1) * flux;
   error.bound_max = ((1 + plan.bound_max) * (1 + phase_max) - 1) * flux;
   return error;

@@ -1,12 +1,16 @@
 #pragma once
 
 #include "imager/data/extent.h"
+#include "imager/direct/sample_response.h"
 #include "imager/plan/gridding_plan.h"
 #include "imager/plan/planned_transform.h"
 #include "imager/plan/taken_images.h"
 #include "imager/transform/imaging.h"
 
 namespace misfit::imager {
+
+/// By how much samples respond to directions as the definition of a plan's images has it; null: all alike.
+std::shared_ptr<const SampleResponse> response_of(const GriddingPlan& plan);
 
 /// Errors of a dirty image that theory gives, relative to its RMS.
 struct TheoreticalError {

@@ -33,8 +33,8 @@ struct GriddingPlan {
   double bound_max = 0;          ///< bound on any pixel's error over Σ w|V| / Σ w, whatever the data
   GriddingChoice choice;         ///< with the neighbours that were rejected
   bool direct = false;           ///< images are made by direct sums, which cost less for so few samples
-  std::uint64_t direct_pixels = 0;          ///< a model of no more pixels is predicted by direct sums
-  std::shared_ptr<const GriddingPlan> psf;  ///< of the PSF, where it has a transform of its own
+  std::uint64_t direct_pixels = 0;             ///< a model of no more pixels is predicted by direct sums
+  std::shared_ptr<const GriddingPlan> psf;     ///< of the PSF, where it has a transform of its own
   std::shared_ptr<const WindowsPlan> windows;  ///< of a mosaic, whose `options` and `choice` are those of a window
   Plan decisions;
 

@@ -5,6 +5,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "imager/numerics/constants.h"
 #include "imager/plan/plan_text_internal.h"
 #include "imager/plan/planned_transform.h"
 #include "imager/pointing/mosaic_transform.h"
@@ -48,12 +49,6 @@ AllWindows all_windows(const MosaicBeams& beams) {
   return all;
 }
 
-std::size_t most_nodes(const std::vector<FrequencySpan>& spans) {
-  std::size_t most = 0;
-  for (const FrequencySpan& span : spans) most = std::max(most, span.node_hz.size());
-  return most;
-}
-
 /// What is asked of the transform of a window.
 GriddingRequest window_request(const GriddingRequest& request, const WindowsPlan& windows) {
   GriddingRequest of_window = request;
@@ -68,8 +63,16 @@ GriddingRequest window_request(const GriddingRequest& request, const WindowsPlan
 }
 
 std::string angle(double rad) {
-  constexpr double arcmin = 3.14159265358979323846 / 180 / 60;
+  constexpr double arcmin = pi / 180 / 60;
   return text("%.3g", rad / arcmin) + " arcmin";
+}
+
+/// As many as take twice the bytes that planes of w may.
+std::size_t windows_at_once(const WindowsPlan& windows, const GriddingRequest& request) {
+  const TransformMemory memory = memory_of(*windows.of_window);
+  const double bytes = memory.visibilities + memory.psf + memory.other_stokes;
+  const double most = 2 * static_cast<double>(request.stack_bytes) / std::max(bytes, 1.0);
+  return std::clamp<std::size_t>(static_cast<std::size_t>(std::min(most, 1e9)), 1, windows.windows * windows.spans);
 }
 
 /// Over how much of the sky a window reaches, and by how much of it its samples are gridded.
@@ -82,13 +85,15 @@ Plan decisions_of(const GriddingPlan& plan, const AllWindows& all) {
       {"mosaic", std::to_string(w.windows) + (w.windows == 1 ? " window" : " windows") + " of pointings and pairs of dishes",
        "each of its samples is gridded on what its beam sees alone, at most " + std::to_string(all.largest.width) + " × " +
            std::to_string(all.largest.height) + " pixels, " + text("%.3g", 100 * part) + "% of the image"},
-      {"beams", "cut off where main lobes fall to " + text("%.3g", beams.cut()) + ", at most " +
-                    angle(std::asin(beams.largest_reach())) + " from their axes",
+      {"beams",
+       "cut off where main lobes fall to " + text("%.3g", beams.cut()) + ", at most " +
+           angle(std::asin(beams.largest_reach())) + " from their axes",
        "so the image is defined; a source of 1 Jy at the cut leaves " + text("%.3g", beams.cut()) + " Jy in its pointing"},
       {"beams between frequencies",
        std::to_string(w.spans) + (w.spans == 1 ? " span" : " spans") + " of at most " + std::to_string(w.nodes) +
            (w.nodes == 1 ? " beam" : " beams"),
-       "from which all channels follow to " + text("%.1g", beams.tolerance()) + " of the peak; each sample is gridded for each"}};
+       "from which all channels follow to " + text("%.1g", beams.tolerance()) +
+           " of the peak; each sample is gridded for each"}};
   if (w.unseeing > 0)
     decisions.push_back({"pointings left out", std::to_string(w.unseeing), "their beams see no pixel of the image"});
   if (w.on_planes && r.max_abs_w > 0)
@@ -106,8 +111,8 @@ GriddingPlan plan_mosaic(const GriddingRequest& request) {
   WindowsPlan windows;
   windows.windows = all.windows;
   windows.unseeing = all.unseeing;
-  windows.spans = beams.spans().size();
-  windows.nodes = most_nodes(beams.spans());
+  windows.spans = beams.all_spans();
+  windows.nodes = beams.most_nodes();
   GriddingRequest of_window = window_request(request, windows);
   of_window.geometry = all.largest;
   of_window.geometry.centre = {};
@@ -133,7 +138,7 @@ GriddingPlan plan_mosaic(const GriddingRequest& request) {
 
 TransformMemory memory_of(const WindowsPlan& windows, const GriddingRequest& request) {
   TransformMemory memory = memory_of(*windows.of_window);
-  const auto held = static_cast<double>(windows.windows * windows.spans);
+  const auto held = static_cast<double>(windows_at_once(windows, request));
   const double images = 3 * static_cast<double>(request.geometry.pixels()) * sizeof(double);
   memory.visibilities = held * (memory.visibilities + memory.psf + memory.other_stokes) + images;
   memory.psf = memory.other_stokes = 0;
@@ -151,7 +156,7 @@ std::unique_ptr<Transform> make_mosaic_transform(const GriddingPlan& plan) {
   const std::size_t at_once = plan.options.has_w_axis() ? plan.request.samples_at_once : 0;
   return std::make_unique<MosaicTransform>(
       mosaic.beams, WindowTransforms{make, plan.windows->on_planes},
-      MosaicOptions{mosaic.psf_row, mosaic.psf_column, mosaic.flat_noise, plan.windows->windows * plan.windows->spans, at_once,
+      MosaicOptions{mosaic.psf_row, mosaic.psf_column, mosaic.flat_noise, windows_at_once(*plan.windows, plan.request), at_once,
                     plan.options.threads});
 }
 

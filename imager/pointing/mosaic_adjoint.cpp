@@ -50,10 +50,8 @@ class MosaicAdjoint : public AdjointSum {
     for (const RowBeams::Group& group : windows_->beams().groups(block)) {
       const std::shared_ptr<const SeenWindow> seen = windows_->seen(group);
       if (!seen) continue;
-      for (const FrequencySpan& span : windows_->beams().spans()) {
-        const WindowSamples samples = windows_->samples(*seen, block, group.rows, span);
-        if (!samples.channels.empty()) add({seen, &span}, samples, block, weight, sets);
-      }
+      for (const FrequencySpan* span : windows_->beams().spans(block.frequency_hz))
+        add({seen, span}, windows_->samples(*seen, block, group.rows, *span), block, weight, sets);
     }
   }
 

@@ -43,22 +43,50 @@ int first_of(double low, double high, int size, int all) {
 }  // namespace
 
 MosaicBeams::MosaicBeams(MosaicScene scene) : scene_(std::move(scene)) {
+  std::sort(scene_.frequency_hz.begin(), scene_.frequency_hz.end());
+  if (scene_.frequency_hz.empty()) throw std::invalid_argument("beams of no frequency; expected one at least");
   if (!(scene_.cut > 0 && scene_.cut < 1))
-    throw std::invalid_argument("beams cut off at " + std::to_string(scene_.cut) + " of their peak; expected above 0 and below 1");
+    throw std::invalid_argument("beams cut off at " + std::to_string(scene_.cut) +
+                                " of their peak; expected above 0 and below 1");
   std::set<const VoltagePattern*> patterns;
   for (const Pattern& pattern : scene_.beams.of_antennas())
     if (pattern) patterns.insert(pattern.get());
   for (const VoltagePattern* one : patterns)
     for (const VoltagePattern* other : patterns) reach_[{one, other}] = found_reach(*one, *other);
+  if (scene_.at_each) scene_.frequency_hz = {scene_.frequency_hz.front(), scene_.frequency_hz.back()};
   steps_ = beam_steps(scene_.beams, largest(reach_), scene_.frequency_hz, scene_.tolerance, most_nodes_of_a_span);
 }
 
 double MosaicBeams::found_reach(const VoltagePattern& one, const VoltagePattern& other) const {
-  const auto [low, high] = std::minmax_element(scene_.frequency_hz.begin(), scene_.frequency_hz.end());
-  const double step = 0.02 * std::min(one.detail_sine(*low), other.detail_sine(*low));
+  const double low = scene_.frequency_hz.front(), high = scene_.frequency_hz.back();
+  const double step = 0.02 * std::min(one.detail_sine(low), other.detail_sine(low));
   const double lobe =
-      first_sine_at(scene_.cut, step, [&](double sine) { return one.voltage(sine, *low) * other.voltage(sine, *low); });
-  return std::min({lobe, one.continuous_sine(*high), other.continuous_sine(*high)});
+      first_sine_at(scene_.cut, step, [&](double sine) { return one.voltage(sine, low) * other.voltage(sine, low); });
+  return std::min({lobe, one.continuous_sine(high), other.continuous_sine(high)});
+}
+
+std::vector<const FrequencySpan*> MosaicBeams::spans(const std::vector<double>& frequency_hz) const {
+  std::vector<const FrequencySpan*> found;
+  if (scene_.at_each) {
+    const std::lock_guard lock(mutex_);
+    for (const double hz : std::set<double>(frequency_hz.begin(), frequency_hz.end()))
+      found.push_back(&at_each_.insert({hz, {hz, hz, {hz}}}).first->second);
+    return found;
+  }
+  for (const double hz : frequency_hz)
+    if (std::none_of(steps_.spans.begin(), steps_.spans.end(), [hz](const FrequencySpan& span) { return span.holds(hz); }))
+      throw std::invalid_argument("a mosaic seen at " + std::to_string(hz) +
+                                  " Hz; expected one of the frequencies of its beams");
+  for (const FrequencySpan& span : steps_.spans)
+    if (std::any_of(frequency_hz.begin(), frequency_hz.end(), [&](double hz) { return span.holds(hz); }))
+      found.push_back(&span);
+  return found;
+}
+
+std::size_t MosaicBeams::most_nodes() const {
+  std::size_t most = 1;
+  for (const FrequencySpan& span : steps_.spans) most = std::max(most, span.node_hz.size());
+  return scene_.at_each ? 1 : most;
 }
 
 double MosaicBeams::largest_reach() const {
@@ -90,8 +118,8 @@ std::optional<Window> MosaicBeams::window(const PairBeam& beam) const {
   window.first_column = first_of(column(l.high), column(l.low), window.geometry.width, g.width);
   window.first_row = first_of(row(m.low), row(m.high), window.geometry.height, g.height);
   if (window.first_column < 0 || window.first_row < 0) return std::nullopt;
-  window.geometry.centre = g.at(window.first_row + window.geometry.centre_row(),
-                                window.first_column + window.geometry.centre_column());
+  window.geometry.centre =
+      g.at(window.first_row + window.geometry.centre_row(), window.first_column + window.geometry.centre_column());
   return window;
 }
 
@@ -100,7 +128,9 @@ const RadialTable& MosaicBeams::table(const PairBeam& beam, double frequency_hz,
   const auto key = std::tuple(beam.one.get(), beam.other.get(), frequency_hz);
   const auto found = tables_.find(key);
   if (found != tables_.end()) return found->second;
-  const auto seen = [&](double sine) { return beam.one->voltage(sine, frequency_hz) * beam.other->voltage(sine, frequency_hz); };
+  const auto seen = [&](double sine) {
+    return beam.one->voltage(sine, frequency_hz) * beam.other->voltage(sine, frequency_hz);
+  };
   return tables_.emplace(key, RadialTable(reach(beam), threads, seen)).first->second;
 }
 

@@ -18,6 +18,7 @@ struct MosaicScene {
   ImageGeometry geometry;
   RowBeams beams;
   std::vector<double> frequency_hz;  ///< that samples have
+  bool at_each = false;              ///< whether beams are made at each frequency itself: samples may have any between these
   double cut = 1e-3;                 ///< over its peak: beams are 0 beyond where they first fall to this
   double tolerance = 1e-7;           ///< to which beams follow between frequencies, see beam_steps()
 };
@@ -40,9 +41,13 @@ class MosaicBeams {
 
   const ImageGeometry& geometry() const { return scene_.geometry; }
   const RowBeams& rows() const { return scene_.beams; }
+  double low_hz() const { return scene_.frequency_hz.front(); }  ///< the lowest frequency
   double cut() const { return scene_.cut; }
   double tolerance() const { return scene_.tolerance; }
-  const std::vector<FrequencySpan>& spans() const { return steps_.spans; }
+  /// Those that hold any of these frequencies, ascending. Throws std::invalid_argument where none holds one.
+  std::vector<const FrequencySpan*> spans(const std::vector<double>& frequency_hz) const;
+  std::size_t all_spans() const { return scene_.at_each ? 1 : steps_.spans.size(); }
+  std::size_t most_nodes() const;  ///< of a span
   /// The rows that see alike.
   std::vector<RowBeams::Group> groups(const SampleCoordinates& at) const { return scene_.beams.groups(at, steps_.turn_rad); }
 
@@ -65,8 +70,9 @@ class MosaicBeams {
   MosaicScene scene_;
   std::map<Pair, double> reach_;
   BeamSteps steps_;
-  mutable std::mutex mutex_;  ///< of the tables
+  mutable std::mutex mutex_;  ///< of what follows
   mutable std::map<std::tuple<const VoltagePattern*, const VoltagePattern*, double>, RadialTable> tables_;
+  mutable std::map<double, FrequencySpan> at_each_;
 };
 
 }  // namespace misfit::imager

@@ -74,12 +74,10 @@ class MosaicPrediction : public Prediction {
       for (const RowBeams::Group& group : windows_->beams().groups(*asked[b].at)) {
         const std::shared_ptr<const SeenWindow> seen = windows_->seen(group);
         if (!seen) continue;
-        for (const FrequencySpan& span : windows_->beams().spans()) {
-          WindowSamples samples = windows_->samples(*seen, *asked[b].at, group.rows, span);
-          if (samples.channels.empty()) continue;
-          auto work = std::find_if(all.begin(), all.end(), [&](const Work& w) { return w.seen == seen && w.span == &span; });
-          if (work == all.end()) work = all.insert(all.end(), {seen, &span, {}});
-          work->parts.push_back({b, std::move(samples)});
+        for (const FrequencySpan* span : windows_->beams().spans(asked[b].at->frequency_hz)) {
+          auto work = std::find_if(all.begin(), all.end(), [&](const Work& w) { return w.seen == seen && w.span == span; });
+          if (work == all.end()) work = all.insert(all.end(), {seen, span, {}});
+          work->parts.push_back({b, windows_->samples(*seen, *asked[b].at, group.rows, *span)});
         }
       }
     return all;

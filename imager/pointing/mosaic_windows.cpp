@@ -60,7 +60,6 @@ WindowSamples MosaicWindows::samples(const SeenWindow& seen, const SampleCoordin
     s.share.push_back(span.weights(block.frequency_hz[c]));
     s.at.frequency_hz.push_back(block.frequency_hz[c]);
   }
-  if (s.channels.empty()) return s;
   if (!transforms_.on_planes) {
     s.at.uvw_m = rows_of(block, rows).uvw_m;
     return s;

@@ -28,7 +28,7 @@ struct MosaicOptions {
   /// Of the pixel whose source the PSF is the response to.
   int psf_row = 0;
   int psf_column = 0;
-  bool flat_noise = true;  ///< see MosaicView
+  bool flat_noise = true;              ///< see MosaicView
   std::size_t windows_at_once = 1000;  ///< that an adjoint or a prediction holds; at least 1
   std::size_t samples_at_once = 0;     ///< see Prediction
   int threads = 1;
@@ -44,8 +44,8 @@ struct SeenWindow {
 
 /// The samples of a group of rows that lie in a span of frequencies, as the transform of their window has them.
 struct WindowSamples {
-  std::vector<std::size_t> rows;      ///< of the block
-  std::vector<std::size_t> channels;  ///< of the block
+  std::vector<std::size_t> rows;           ///< of the block
+  std::vector<std::size_t> channels;       ///< of the block
   std::vector<std::vector<double>> share;  ///< [channel][node]: by how much the beam of each node counts
   SampleCoordinates at;
   /// exp(+2πi(u l_0 + v m_0 + w middle)), which is left to the samples where windows lie on planes, [row][channel]; else empty.

@@ -27,8 +27,7 @@ void require_any(const SampleSums& sums) {
   throw NothingInGrid(sums.outside_grid);
 }
 
-DirtyImages dirty_images(const Transform& transform, AdjointResult sum, Image psf, const Ranks& ranks,
-                         const Context& context) {
+DirtyImages dirty_images(const Transform& transform, AdjointResult sum, Image psf, const Ranks& ranks, const Context& context) {
   require_any(sum.sums.front());
   const StageTimer timer(context.times, stage::fft);
   const Normalisation by = transform.normalisation(sum);

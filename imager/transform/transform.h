@@ -51,7 +51,7 @@ struct AdjointResult {
   std::vector<SampleSums> sums;  ///< [Stokes], of the block's own for a PSF alone: they differ in those of |V| alone
   /// What a source of 1 Jy in each pixel adds to the sum of that pixel; empty where that is Σ w in all, or was not asked for.
   Image sensitivity;
-  double fft_s = 0;              ///< seconds of wall clock that FFTs and corrections took, as samples were added and at the end
+  double fft_s = 0;  ///< seconds of wall clock that FFTs and corrections took, as samples were added and at the end
 };
 
 /// The adjoint transform, accumulated block by block. Adding the same blocks in the same order gives the same bits.

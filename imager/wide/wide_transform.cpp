@@ -5,9 +5,9 @@
 #include <string>
 #include <utility>
 
+#include "imager/transform/unit_source.h"
 #include "imager/wide/facet.h"
 #include "imager/wide/tile_sum.h"
-#include "imager/transform/unit_source.h"
 #include "imager/wide/wide_adjoint.h"
 #include "imager/wide/wide_prediction.h"
 

@@ -4,6 +4,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include "tools/run/mosaic_stage.h"
+
 namespace misfit::tools {
 
 ChannelMaker::ChannelMaker(const ChannelScene& scene, ChannelMeans means, std::unique_ptr<CleanStage> clean)
@@ -37,7 +39,7 @@ void ChannelMaker::prepare_clean(ChannelRun& run) {
   run.check_start();
   run.verify();
   const ImageOptions& o = scene_.options;
-  if (o.primary_beam.wanted() && scene_.whole_band) {
+  if (o.primary_beam.wanted() && scene_.whole_band && means_.primary_beam != nullptr) {
     const imager::StageTimer timer(run.times(), imager::stage::primary_beam);
     means_.primary_beam->weigh(run.samples());
   }
@@ -45,7 +47,9 @@ void ChannelMaker::prepare_clean(ChannelRun& run) {
   run.choose_beams();
   if (!o.clean.runs() || !run.report().beams->restoring) return;
   std::optional<imager::Image> primary_beam;
-  if (o.primary_beam.pbmask > 0 || (o.measures_noise_in_beam() && means_.primary_beam != nullptr)) {
+  if (run.mosaic_beam() != nullptr) {
+    primary_beam = limited_beam(*run.mosaic_beam(), o.primary_beam);
+  } else if (o.primary_beam.pbmask > 0 || (o.measures_noise_in_beam() && means_.primary_beam != nullptr)) {
     const imager::StageTimer timer(run.times(), imager::stage::primary_beam);
     primary_beam = means_.primary_beam->of_image(run.report().frequency_hz);
   }

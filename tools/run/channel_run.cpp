@@ -98,7 +98,8 @@ void ChannelRun::make_dirty(imager::GriddingPlan plan, std::shared_ptr<const ima
   for (std::size_t s = 0; s < scene_.header.stokes.size(); ++s) {
     const double rms = images_.images.dirty_statistics[s].root_mean_square();
     if (!scene_.options.taken.calcres) continue;  // its errors are not of this run's making
-    report().stokes[s].theory = imager::theoretical_error(images_.plan, images_.images.sums[s], rms, phase);
+    report().stokes[s].theory =
+        imager::theoretical_error(images_.plan, images_.images.sums[s], rms, phase, &images_.images.normalisation);
     expected = std::max(expected, report().stokes[s].theory->expected_rms);
   }
   if (!images_.promise_kept)
@@ -129,7 +130,7 @@ TakenTerms ChannelRun::taken_terms() {
 void ChannelRun::predict_noise() {
   const imager::WeightSums sums = weights_ ? samples().weight_sums() : imager::WeightSums::of_natural(report().sums.weight);
   if (weights_) require_weight(scene_.options.weighting, sums, report().sums.used, name_);
-  report().predicted_noise_jy = sums.noise_jy();
+  report().predicted_noise_jy = sums.noise_jy() * images_.images.normalisation.noise_factor(report().sums.weight);
   if (weights_) report().decisions.push_back(weights_decision(*weights_, sums));
   weights_.reset();
 }
@@ -197,7 +198,7 @@ void ChannelRun::verify() {
                                       {.threads = scene_.threads, .times = &within});
   const imager::MeasuredError measured =
       imager::measure_error(samples(), images_.transform->images(), scene_.header.geometry, exact ? *exact : images_.images,
-                            scene_.options.verify, context());
+                            scene_.options.verify, context(), imager::response_of(images_.plan));
   progress().end();
   for (std::size_t s = 0; s < scene_.header.stokes.size(); ++s) report().stokes[s].measured = measured.image[s];
   report().measured_predict_rms = measured.predict_rms;
@@ -271,7 +272,7 @@ imager::CleanResult ChannelRun::clean(std::size_t stokes) {
                    .dirty_accuracy = images_.dirty_accuracy,
                    .of_start = !scene_.options.taken.calcres && !scene_.options.clean.startmodel.empty(),
                    .psf = {&images_.images.psf},
-                   .same_sidelobes = images_.plan.leaves_w_out(),
+                   .same_sidelobes = images_.plan.leaves_w_out() && !images_.plan.windows,
                    .main_lobe = *report().beams->main_lobe,
                    .coarser = images_.transform->coarser(),
                    .data_jy = images_.images.sums[stokes].data_jy(),

@@ -105,6 +105,11 @@ class ChannelRun {
   std::vector<imager::CleanResult>& cleaned() { return cleaned_; }  ///< [Stokes], or none
   /// Null where CLEAN may go everywhere, makes its own, or is over.
   const imager::Image* mask(std::size_t stokes) const { return stage_ ? stage_->mask(stokes) : nullptr; }
+  /// √(W / max W) of a mosaic; null unless it is one.
+  const imager::Image* mosaic_beam() const {
+    const imager::MosaicView* const view = images_.images.normalisation.mosaic();
+    return view == nullptr ? nullptr : view->primary_beam.get();
+  }
   TaylorStage* taylor() { return taylor_ ? &*taylor_ : nullptr; }  ///< null where there is one term
   MadeChannel& made() { return made_; }
 

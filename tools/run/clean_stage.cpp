@@ -55,7 +55,8 @@ void CleanStage::keep_within(const imager::Image& primary_beam) {
     noise_within_ = primary_beam;
     for (double& pixel : noise_within_.pixel) pixel = pixel >= least ? 1 : 0;
   }
-  if (o_.primary_beam.pbmask == 0) return;
+  const double pbmask = std::max(o_.primary_beam.pbmask, o_.mosaic_limit());
+  if (pbmask == 0) return;
   limited_ = masks_;
   if (limited_.empty()) {
     limited_.emplace_back(primary_beam.width, primary_beam.height);
@@ -63,7 +64,7 @@ void CleanStage::keep_within(const imager::Image& primary_beam) {
   }
   for (imager::Image& mask : limited_)
     for (std::size_t i = 0; i < mask.pixel.size(); ++i)
-      if (!(primary_beam.pixel[i] >= o_.primary_beam.pbmask)) mask.pixel[i] = 0;
+      if (!(primary_beam.pixel[i] >= pbmask)) mask.pixel[i] = 0;
 }
 
 std::vector<std::string> CleanStage::words_on_files() const {

@@ -1,5 +1,6 @@
 #include "tools/run/dish_beams.h"
 
+#include <algorithm>
 #include <filesystem>
 
 #include "tools/base/option_checks.h"
@@ -31,6 +32,38 @@ DishBeams::DishBeams(const std::string& beam) : beam_(beam) {
 imager::BeamModel DishBeams::of(const imager::AntennaSort& antennas) const {
   if (of_file_) return {of_file_, "--beam " + beam_};
   return beam_.empty() ? imager::beam_model(antennas) : imager::named_beam(beam_, antennas);
+}
+
+std::vector<imager::Pattern> patterns_of(const std::vector<imager::AntennaSort>& antennas, const WantedPatterns& wanted,
+                                         std::vector<std::string>& doubts) {
+  std::vector<imager::BeamModel> models;
+  for (const imager::AntennaSort& sort : wanted.sorts) {
+    models.push_back(wanted.beams.of(sort));
+    const std::string doubt = models.back().doubt_at(wanted.frequency_hz);
+    if (!doubt.empty() && std::find(doubts.begin(), doubts.end(), doubt) == doubts.end()) doubts.push_back(doubt);
+  }
+  std::vector<imager::Pattern> patterns;
+  for (const imager::AntennaSort& antenna : antennas) {
+    const auto sort = std::find_if(wanted.sorts.begin(), wanted.sorts.end(),
+                                   [&](const imager::AntennaSort& one) { return imager::alike(one, antenna); });
+    if (sort != wanted.sorts.end()) {
+      patterns.push_back(models[static_cast<std::size_t>(sort - wanted.sorts.begin())].pattern);
+      continue;
+    }
+    try {
+      patterns.push_back(wanted.beams.of(antenna).pattern);
+    } catch (const imager::NoSimpleBeam&) {
+      patterns.push_back(nullptr);
+    }
+  }
+  return patterns;
+}
+
+double narrowest_rad(const std::vector<imager::Pattern>& patterns, double frequency_hz) {
+  double narrowest = 1;
+  for (const imager::Pattern& pattern : patterns)
+    if (pattern) narrowest = std::min(narrowest, pattern->detail_sine(frequency_hz));
+  return narrowest;
 }
 
 void check_beam(const std::string& beam) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "imager/beams/telescopes.h"
 
@@ -22,6 +23,21 @@ class DishBeams {
   std::string beam_;
   imager::Pattern of_file_;  ///< null without one
 };
+
+/// Of which antennas patterns are made, and how.
+struct WantedPatterns {
+  const std::vector<imager::AntennaSort>& sorts;  ///< of those that rows of two antennas have
+  const DishBeams& beams;
+  double frequency_hz = 0;  ///< at which doubts are told
+};
+
+/// [antenna]; null of those that no row of two antennas has, and that have no simple beam. Adds what may be wrong with them, a
+/// sentence each, once. Throws imager::NoSimpleBeam.
+std::vector<imager::Pattern> patterns_of(const std::vector<imager::AntennaSort>& antennas, const WantedPatterns& wanted,
+                                         std::vector<std::string>& doubts);
+
+/// The narrowest of the beams between half-power points, about.
+double narrowest_rad(const std::vector<imager::Pattern>& patterns, double frequency_hz);
 
 /// Throws std::invalid_argument that names the option unless `beam` is empty, a name, or a file.
 void check_beam(const std::string& beam);

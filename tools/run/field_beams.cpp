@@ -207,6 +207,17 @@ std::string field_words(const ms_io::FieldPointing& pointing, const std::vector<
   return pointing.field + (several_sets ? " of " + pointing.set : "");
 }
 
+void require_still(const std::vector<ms_io::FieldPointing>& pointings, double width_rad) {
+  for (const ms_io::FieldPointing& one : pointings)
+    for (const ms_io::FieldPointing& other : pointings)
+      if (one.set == other.set && one.id == other.id &&
+          angle_between(one.direction, other.direction) > same_pointing_beams * width_rad)
+        throw std::runtime_error("antennas of field " + field_words(one, pointings) + " and " + field_words(other, pointings) +
+                                 " pointed " + angle_text(angle_between(one.direction, other.direction), 3) +
+                                 " apart: beams that move past the image are not applied; expected some of its time with "
+                                 "--timerange");
+}
+
 FieldNotes notes_on_apart_fields(const ms_io::BeamRows& rows, const ApartOptions& o) {
   const std::vector<ms_io::FieldPointing>& pointings = rows.pointings;
   std::vector<SeenCentre> fields;
@@ -241,6 +252,7 @@ FieldNotes notes_on_feeds(const ms_io::BeamRows& rows, const ApartOptions& o) {
 FieldNotes notes_on_fields(const ImageOptions& options, const ms_io::MeasurementSet& set,
                            const imager::ImageGeometry& geometry) {
   FieldNotes notes;
+  if (options.makes_mosaic()) return notes;  // which refuses feeds that point beside their axes
   std::vector<ms_io::FieldPointing> pointings;
   try {
     pointings = set.field_pointings();

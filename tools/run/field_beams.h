@@ -21,6 +21,9 @@ double angle_between(const imager::SkyDirection& one, const imager::SkyDirection
 /// A field in words, "3 (M51) of a.ms"; without its set where all `pointings` are of one.
 std::string field_words(const ms_io::FieldPointing& pointing, const std::vector<ms_io::FieldPointing>& pointings);
 
+/// Throws std::runtime_error where a field's antennas pointed in directions that are apart, in parts of such a beam width.
+void require_still(const std::vector<ms_io::FieldPointing>& pointings, double width_rad);
+
 /// How the antennas of the fields of an image see its centre.
 struct FieldNotes {
   imager::Plan decisions;

@@ -23,9 +23,17 @@ void check_tables(const TypedGridding& o) {
 }  // namespace
 
 void declare_gridder(CLI::App& command, TypedGridding& o) {
-  command.add_option("--gridder", o.gridder, "w planes: auto (where w matters), standard (none), wide (always)")
-      ->transform(also_named({{"gridft", "standard"}, {"widefield", "wide"}, {"wproject", "wide"}}))
-      ->check(CLI::IsMember({"auto", "standard", "wide"}));
+  command
+      .add_option("--gridder", o.gridder,
+                  "w planes: auto (where w matters), standard (none), wide (always); or mosaic: pointings become one image, "
+                  "each with its "
+                  "beam, which auto makes of fields that point apart with one --phasecenter")
+      ->transform(also_named({{"gridft", "standard"},
+                              {"widefield", "wide"},
+                              {"wproject", "wide"},
+                              {"mosaicft", "mosaic"},
+                              {"ftmosaic", "mosaic"}}))
+      ->check(CLI::IsMember({"auto", "standard", "wide", "mosaic"}));
 }
 
 void declare(CLI::App& command, TypedGridding& o) {

@@ -104,6 +104,7 @@ ms_io::Selection selection_of(const ImageOptions& o) {
   ms_io::Selection selection = o.selection;
   selection.spectral_frame = spectral_frame(o.cube);
   selection.either_hand = imager::is_pseudo_i(o.stokes);
+  selection.sights = o.makes_mosaic();
   return o.phasecenter.empty() ? selection : ms_io::phased_to(selection, o.phasecenter, o.vis);
 }
 
@@ -120,6 +121,7 @@ void declare(CLI::App& command, ImageOptions& o) {
       "I also of samples of which one parallel hand is flagged");
   declare(command, o.cube);
   declare(command, o.gridding);
+  declare(command, o.mosaic);
   declare(command, o.taylor);
   declare(command, o.clean);
   declare(command, o.primary_beam);
@@ -156,6 +158,8 @@ void check(const ImageOptions& o) {
   check_clean(o);
   check_taylor(o);
   check(o.gridding);
+  check(o.mosaic);
+  if (o.makes_mosaic() && o.check_outside) refuse_option("check-outside", "true", "another --gridder than mosaic beside it");
   check(o.primary_beam);
   check_taken(o);
   check(o.scale, o.dry_run);

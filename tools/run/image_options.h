@@ -9,6 +9,7 @@
 #include "tools/run/clean_options.h"
 #include "tools/run/cube_options.h"
 #include "tools/run/gridding_options.h"
+#include "tools/run/mosaic_options.h"
 #include "tools/run/primary_beam_options.h"
 #include "tools/run/scale_options.h"
 #include "tools/run/taken_files.h"
@@ -34,6 +35,7 @@ struct ImageOptions {
   CubeOptions cube;
   TypedWeighting weighting;
   TypedGridding gridding;
+  TypedMosaic mosaic;
   TypedTaylor taylor;
   TypedClean clean;
   TypedPrimaryBeam primary_beam;
@@ -53,6 +55,10 @@ struct ImageOptions {
   bool masks_clean() const { return !clean.mask.empty() || clean.usemask == "auto" || primary_beam.pbmask > 0; }
   /// Whether masks need the noise within the primary beam, wherever that is known.
   bool measures_noise_in_beam() const { return clean.runs() && clean.usemask == "auto" && !clean.fastnoise; }
+  /// Whether pointings become one image; a run decides it where it is left to be chosen.
+  bool makes_mosaic() const { return gridding.gridder == "mosaic"; }
+  /// The primary beam below which nothing of a mosaic is cleaned: --pblimit, unless it is below 0; 0 = none.
+  double mosaic_limit() const { return makes_mosaic() && primary_beam.pblimit >= 0 ? primary_beam.limit() : 0; }
   bool all_products() const { return products == "tclean"; }
 };
 

@@ -28,6 +28,7 @@
 #include "tools/run/image_files.h"
 #include "tools/run/left_over.h"
 #include "tools/run/model_stage.h"
+#include "tools/run/mosaic_stage.h"
 #include "tools/run/outside_stage.h"
 #include "tools/run/phased_set.h"
 #include "tools/run/products.h"
@@ -115,7 +116,12 @@ class ImageRun : private ChannelSink {
     if (!o_.dry_run && ranks_.first()) name_ = claim_product_paths(o_);
     if (o_.clean.savemodel == "modelcolumn" && ranks_.first())
       for (const std::string& set : o_.vis) ms_io::require_writable(set);
-    set_ = std::make_unique<ms_io::MeasurementSet>(o_.vis, selection_of(o_), o_.datacolumn, stokes_);
+    open_set();
+    if (is_mosaic(o_, *set_)) {
+      o_.gridding.gridder = "mosaic";
+      progress_.say("fields point apart: --gridder mosaic");
+      open_set();
+    }
     if (auto own = sharing_.own_part(*set_)) set_ = std::move(own);
     if (o_.clean.savemodel != "none")
       if (const std::string words = left_out_of_model_warning(stokes_, *set_); !words.empty()) warn(words);
@@ -128,13 +134,25 @@ class ImageRun : private ChannelSink {
                .history = {}};
     notes_ = notes_on_sets(o_, *set_, header_.geometry);
     for (const std::string& warning : notes_.warnings) warn(warning);
-    if (o_.primary_beam.wanted() || o_.measures_noise_in_beam()) find_primary_beam();
+    if (!o_.makes_mosaic() && (o_.primary_beam.wanted() || o_.measures_noise_in_beam())) find_primary_beam();
     if (o_.clean.runs() && sharing_.images_here()) open_clean();
     if (o_.taken.any()) taken_ = std::make_unique<TakenFiles>(o_, header_);
+    if (o_.makes_mosaic()) begin_mosaic();
     header_.history = history_of(report_.command_line, set_->data_columns());
     if (o_.taylor.nterms > 1) header_.observation.frequency_hz = taylor_expansion(o_.taylor, set_->observation()).reference_hz;
     if (!cube()) header_.spectral = whole_band(header_.observation);
     find_reach();
+  }
+
+  void open_set() { set_ = std::make_unique<ms_io::MeasurementSet>(o_.vis, selection_of(o_), o_.datacolumn, stokes_); }
+
+  void begin_mosaic() {
+    mosaic_ = mosaic_stage(o_, *set_, header_.geometry);
+    for (const std::string& warning : mosaic_.warnings) warn(warning);
+    if (!o_.taken.any()) return;
+    o_.taken = {};  // files are looked at all the same
+    mosaic_.decisions.push_back(
+        {"PSF and residual", "made again", "those that there are of a mosaic are not compared with its samples"});
   }
 
   void find_primary_beam() {
@@ -204,7 +222,8 @@ class ImageRun : private ChannelSink {
         .reach = reach_,
         .threads = threads_,
         .mask = o_.clean.runs() && sharing_.images_here() && o_.masks_clean(),
-        .taken = taken_.get(),
+        .taken = o_.taken.any() ? taken_.get() : nullptr,
+        .mosaic = mosaic_.request,
         .channels = channels(),
         .workers = std::min(threads_, sharing_.channels_here(channels())),
         .samples = enlarged * (cube() ? static_cast<double>(set_->rows()) * samples_of_a_row(sampling_, windows_) : all),
@@ -213,6 +232,7 @@ class ImageRun : private ChannelSink {
     plan_ = plan_run(scene, times_, progress_);
     if (cube()) plan_.decisions.push_back(axis_decision(sampling_));
     plan_.decisions.insert(plan_.decisions.end(), notes_.decisions.begin(), notes_.decisions.end());
+    plan_.decisions.insert(plan_.decisions.end(), mosaic_.decisions.begin(), mosaic_.decisions.end());
     if (primary_beam_) plan_.decisions.push_back(primary_beam_->decision());
     for (const std::string& warning : plan_.warnings) warn(warning);
     if (primary_beam_)
@@ -267,7 +287,7 @@ class ImageRun : private ChannelSink {
                                                          .threads = workers_.threads,
                                                          .images_here = sharing_.images_here(),
                                                          .whole_band = !cube(),
-                                                         .taken = taken_.get(),
+                                                         .taken = o_.taken.any() ? taken_.get() : nullptr,
                                                          .given_up = queue_->given_up(),
                                                          .told = cube() ? nullptr : &told_});
     ChannelMeans means{.plan = plan_.gridding,
@@ -599,6 +619,7 @@ class ImageRun : private ChannelSink {
   imager::UvwReach reach_;
   FieldNotes notes_;
   std::unique_ptr<PrimaryBeamStage> primary_beam_;  ///< null where neither images nor masks need it
+  MosaicStage mosaic_;                              ///< empty unless pointings become one image
   std::unique_ptr<TakenFiles> taken_;               ///< null where all images are made
   std::unique_ptr<CleanStage> clean_;               ///< until channels begin; null where nothing is cleaned here
   RunPlan plan_;

@@ -36,9 +36,10 @@ ProductChoice ProductChoice::of(const ImageOptions& o) {
           .cleaned = o.clean.runs(),
           .masked = o.clean.runs() && (all || o.masks_clean()),
           .restored = all || o.clean.runs(),
-          .primary_beam = o.primary_beam.wanted(),
+          .primary_beam = o.primary_beam.wanted() || o.makes_mosaic(),
           .corrected = o.primary_beam.pbcor,
-          .weights = all};
+          .weights = all,
+          .mosaic = o.makes_mosaic()};
 }
 
 std::string product_name(const std::string& kind, const imager::TaylorTerm& term, const std::string& end) {
@@ -51,7 +52,9 @@ std::vector<ProductKind> product_kinds(const ProductChoice& choice) {
   add(kinds, {.name = "psf", .each_stokes = false}, 2 * n - 1, n);
   add(kinds, {.name = "residual", .masked_by_beam = true}, n, n);
   if (choice.primary_beam)
-    add(kinds, {.name = "pb", .unit = "", .each_stokes = false, .beam = false, .completed = Completed::first}, n, n);
+    add(kinds, {.name = "pb", .unit = "", .each_stokes = false, .beam = false, .completed = Completed::first},
+        choice.mosaic ? 1 : n, n);
+  if (choice.mosaic) add(kinds, {.name = "weight", .unit = "", .each_stokes = false, .beam = false}, 1, n);
   if (choice.corrected) add(kinds, {.name = "image", .completed = Completed::with_beam}, n, n, ".pbcor");
   if (choice.weights) add(kinds, {.name = "sumwt", .unit = "", .beam = false, .one_pixel = true}, 2 * n - 1, n);
   if (choice.restored) add(kinds, {.name = "image", .completed = Completed::with_beam, .masked_by_beam = true}, n, n);
@@ -72,10 +75,14 @@ std::vector<std::string> product_names(const ProductChoice& choice) {
 std::vector<std::string> all_product_names() {
   ProductChoice choice{
       .cleaned = true, .masked = true, .restored = true, .primary_beam = true, .corrected = true, .weights = true};
-  std::vector<std::string> names = product_names(choice);
-  choice.terms = imager::most_taylor_terms;
-  for (const std::string& name : product_names(choice))
-    if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+  std::vector<std::string> names;
+  for (const int terms : {1, imager::most_taylor_terms})
+    for (const bool mosaic : {false, true}) {
+      choice.terms = terms;
+      choice.mosaic = mosaic;
+      for (const std::string& name : product_names(choice))
+        if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+    }
   return names;
 }
 

@@ -18,6 +18,7 @@ struct ProductChoice {
   bool primary_beam = false;
   bool corrected = false;  ///< for it
   bool weights = false;    ///< sums of them
+  bool mosaic = false;     ///< of several pointings: with its sensitivity, and one primary beam for all Taylor terms
 
   static ProductChoice of(const ImageOptions& options);
 };
@@ -58,6 +59,9 @@ int product_planes(const ProductChoice& choice, int stokes);
 inline double sumwt_of(const imager::SampleSums& sums) {
   return 4 * sums.weight;
 }
+
+/// The keyword of the header of a mosaic's .model that says whether its pixels are the sky times .pb.
+inline constexpr char flat_noise_card[] = "FLATNOIS";
 
 /// A kind's name of a Taylor term: "image.tt1.pbcor"; "image.pbcor" of one.
 std::string product_name(const std::string& kind, const imager::TaylorTerm& term, const std::string& end = "");

@@ -13,6 +13,7 @@
 #include "tools/formats/component_list.h"
 #include "tools/run/image_files.h"
 #include "tools/run/left_over.h"
+#include "tools/run/mosaic_stage.h"
 
 namespace misfit::tools {
 namespace {
@@ -29,13 +30,24 @@ void look_at(const imager::Image& residual, const imager::Image* restored, doubl
   told.brightest = restored == nullptr ? imager::find_peak(residual, of_residual) : imager::find_peak(*restored);
 }
 
-/// What CLEAN found, on the sky.
-std::vector<imager::Source> sources(const imager::ComponentModel& model, const imager::ImageGeometry& geometry) {
+/// What CLEAN found, on the sky. Components of a mosaic of flat noise have the sky times its primary beam.
+std::vector<imager::Source> sources(const imager::ComponentModel& model, const imager::ImageGeometry& geometry,
+                                    const imager::Image* primary_beam) {
   std::vector<imager::Source> sources;
   for (const imager::Component& c : model.components())
-    sources.push_back(
-        {geometry.at(c.row, c.column), c.flux_jy, model.scale_pixels()[static_cast<std::size_t>(c.scale)] * geometry.cell_rad});
+    sources.push_back({geometry.at(c.row, c.column),
+                       c.flux_jy / (primary_beam == nullptr ? 1 : primary_beam->at(c.row, c.column)),
+                       model.scale_pixels()[static_cast<std::size_t>(c.scale)] * geometry.cell_rad});
   return sources;
+}
+
+/// W over Σ w of a mosaic.
+imager::Image sensitivity_of(ChannelRun& run) {
+  if (run.mosaic_beam() == nullptr) return {};
+  imager::Image sensitivity = *run.mosaic_beam();
+  const double most = run.images().images.normalisation.weight() / run.report().sums.weight;
+  for (double& pixel : sensitivity.pixel) pixel = std::isnan(pixel) ? 0 : most * pixel * pixel;
+  return sensitivity;
 }
 
 }  // namespace
@@ -83,13 +95,25 @@ std::vector<imager::HeaderCard> error_cards(const RunReport& report) {
 /// The primary beam of a channel; nothing where none is wanted.
 struct Products::OfBeam {
   std::vector<imager::Image> terms;              ///< what of it is written [term]
-  std::optional<imager::TaylorBeam> of_terms{};  ///< by which several are corrected
+  std::optional<imager::TaylorBeam> of_terms{};  ///< by which several are corrected, unless all are by the same
+  bool divided_out = false;                      ///< whether images have the sky already
+
+  std::vector<imager::Image> corrected(const std::vector<const imager::Image*>& apparent) const {
+    if (of_terms) return of_terms->corrected(apparent);
+    imager::Image by = terms.front();
+    if (divided_out)
+      for (double& pixel : by.pixel) pixel = std::isnan(pixel) ? pixel : 1;
+    std::vector<imager::Image> sky;
+    for (const imager::Image* image : apparent) sky.push_back(imager::corrected(*image, by));
+    return sky;
+  }
 };
 
 /// What was written of the channels of a cube.
 struct Products::Written {
   std::unique_ptr<imager::ImageReader> models;
   std::unique_ptr<imager::ImageReader> residuals;
+  std::unique_ptr<imager::ImageReader> beams;  ///< of a mosaic, else null
 };
 
 Products::Products(const ImageOptions& options, const imager::ImageHeader& header, const PrimaryBeamStage* primary_beam,
@@ -111,7 +135,10 @@ Products::Products(const ImageOptions& options, const imager::ImageHeader& heade
     if (!kind.each_stokes) own.stokes.resize(1);
     if (kind.one_pixel) own.geometry.width = own.geometry.height = 1;
     paths_.insert(paths_.end(), paths.begin(), paths.end());
-    files_.emplace(kind.name, File{kind, open(kind, own), {}});
+    File& file = files_.emplace(kind.name, File{kind, open(kind, own), {}}).first->second;
+    if (o_.makes_mosaic() && kind.name.rfind("model", 0) == 0)
+      file.cards = {
+          {flat_noise_card, o_.mosaic.normtype == "flatnoise" ? 1.0 : 0.0, "1: pixels are the sky times .pb; 0: the sky"}};
   }
 }
 
@@ -152,6 +179,10 @@ void Products::put_spectra(const imager::SpectralImages& spectra, const std::str
 
 Products::OfBeam Products::primary_beam_of(ChannelRun& run) const {
   OfBeam beam;
+  if (run.mosaic_beam() != nullptr) {
+    beam.terms.push_back(limited_beam(*run.mosaic_beam(), o_.primary_beam));
+    beam.divided_out = o_.mosaic.normtype == "flatsky";
+  }
   if (primary_beam_ == nullptr) return beam;
   const imager::StageTimer timer(run.times(), imager::stage::primary_beam);
   if (TaylorStage* const taylor = run.taylor(); taylor != nullptr) {
@@ -173,14 +204,17 @@ void Products::write(ChannelRun& run, RunPictures* pictures) {
     put_terms("psf", at, run.taylor() == nullptr ? std::vector{&psf} : all_terms(psf, run.taylor()->images().psf), beam);
   });
   const OfBeam primary_beam = primary_beam_of(run);
+  const imager::Image sensitivity = sensitivity_of(run);
   wait_for(psfs, run);
   {
     const imager::StageTimer timer(run.times(), imager::stage::write_images);
     put_terms("pb", at, pointers_to(primary_beam.terms), beam);
+    if (run.mosaic_beam() != nullptr) put_terms("weight", at, {&sensitivity}, beam);
   }
   for (std::size_t s = header_.stokes.size(); s-- > 0;)
     write_stokes(s, primary_beam, run, pictures);  // the first is shown first
-  if (!o_.cube.is_cube() && o_.taylor.nterms == 1 && !run.cleaned().empty()) write_components(run.cleaned());
+  if (!o_.cube.is_cube() && o_.taylor.nterms == 1 && !run.cleaned().empty())
+    write_components(run.cleaned(), o_.mosaic.normtype == "flatnoise" ? run.mosaic_beam() : nullptr);
 }
 
 std::future<void> Products::beside(const std::function<void()>& work) const {
@@ -274,19 +308,17 @@ void Products::write_corrected(const imager::PlaneIndex& at, const OfBeam& prima
                                const std::vector<const imager::Image*>& apparent, const imager::SpectralImages* spectra,
                                const std::optional<imager::Beam>& beam) {
   if (apparent.front()->pixel.empty()) return;  // it follows
-  if (!primary_beam.of_terms)
-    return put("image.pbcor", at, imager::corrected(*apparent.front(), primary_beam.terms.front()), beam);
-  const std::vector<imager::Image> sky = primary_beam.of_terms->corrected(apparent);
+  const std::vector<imager::Image> sky = primary_beam.corrected(apparent);
   put_terms("image", at, pointers_to(sky), beam, ".pbcor");
   if (spectra == nullptr) return;
   imager::SpectralImages of_sky = imager::spectral_images_of_sky(sky, *spectra, workers_.threads);
   put_spectra(of_sky, ".pbcor", at, beam);
 }
 
-void Products::write_components(const std::vector<imager::CleanResult>& cleaned) const {
+void Products::write_components(const std::vector<imager::CleanResult>& cleaned, const imager::Image* divided_by) const {
   std::vector<SourcesOf> found;
   for (std::size_t s = 0; s < cleaned.size(); ++s)
-    found.push_back({header_.stokes[s], sources(cleaned[s].components, header_.geometry)});
+    found.push_back({header_.stokes[s], sources(cleaned[s].components, header_.geometry, divided_by)});
   const bool stands = header_.observation.moving_at.empty();
   write_stokes_components(o_.imagename + ".components.csv", found,
                           stands ? std::optional(header_.geometry.phase_centre) : std::nullopt);
@@ -333,7 +365,8 @@ void Products::restore_in_common(std::vector<ChannelReport>& channels) {
     if (cleaned(channel)) beams.push_back(*channel.beams->restoring);
   if (beams.empty()) return;
   const imager::Beam common = imager::common_beam(beams);
-  const Written written{open_written(o_, "model"), open_written(o_, "residual")};
+  const Written written{open_written(o_, "model"), open_written(o_, "residual"),
+                        o_.makes_mosaic() ? open_written(o_, "pb") : nullptr};
   imager::parallel_for(channels.size(), workers_.count, [&](std::size_t i) {
     if (cleaned(channels[i])) restore_channel(channels[i], common, written);
   });
@@ -343,7 +376,13 @@ void Products::restore_channel(ChannelReport& channel, const imager::Beam& commo
   channel.beams->restoring = common;
   channel.beams->how = "common to all planes";
   OfBeam primary_beam;
-  if (primary_beam_ != nullptr) primary_beam.terms.push_back(primary_beam_->at(channel.frequency_hz));
+  if (written.beams) {
+    const std::lock_guard lock(image_files_mutex());
+    primary_beam.terms.push_back(written.beams->read({channel.channel, 0}));
+    primary_beam.divided_out = o_.mosaic.normtype == "flatsky";
+  } else if (primary_beam_ != nullptr) {
+    primary_beam.terms.push_back(primary_beam_->at(channel.frequency_hz));
+  }
   const auto read = [](const imager::ImageReader& file, const imager::PlaneIndex& at) {
     const std::lock_guard lock(image_files_mutex());
     return file.read(at);

@@ -78,7 +78,7 @@ class Products {
                        const std::optional<imager::Beam>& beam);
   imager::Image mask_of_ones() const;
   void put_weights(const imager::PlaneIndex& at, ChannelRun& run);
-  void write_components(const std::vector<imager::CleanResult>& cleaned) const;
+  void write_components(const std::vector<imager::CleanResult>& cleaned, const imager::Image* divided_by) const;
   imager::Image restore(const imager::Image& model, const imager::Image& residual, const imager::Beam& beam) const;
   void restore_in_common(std::vector<ChannelReport>& channels);
   void restore_channel(ChannelReport& channel, const imager::Beam& common, const Written& written);

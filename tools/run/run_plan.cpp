@@ -51,6 +51,7 @@ class RunPlanner {
     request.samples = static_cast<std::uint64_t>(scene_.samples);
     request.stokes = static_cast<int>(imager::parse_stokes(o_.stokes).size());
     request.psf = o_.taken.calcpsf;
+    request.mosaic = scene_.mosaic;
     request.max_abs_w = scene_.reach.max_abs_w;
     const imager::GriddingRequest unlimited = request;
     if (o_.memory_gib > 0) limit_memory(o_.memory_gib * gib, request);
@@ -199,7 +200,8 @@ class RunPlanner {
   }
 
   void warn_of_neglected_w() {
-    const double phase_rad = imager::max_w_phase_rad(scene_.reach.max_abs_w, scene_.geometry);
+    const double part = plan_.gridding.windows ? plan_.gridding.windows->phase_part : 1;
+    const double phase_rad = part * imager::max_w_phase_rad(scene_.reach.max_abs_w, scene_.geometry);
     const bool harms = phase_rad > (o_.gridding.accuracy == 0 ? plan_.gridding.worst_error : o_.gridding.accuracy);
     if (!plan_.gridding.options.has_w_axis() && harms)
       plan_.warnings.push_back("w is neglected although its phase reaches " + significant(phase_rad, 2) +

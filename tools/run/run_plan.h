@@ -23,10 +23,11 @@ struct RunScene {
   imager::ImageGeometry geometry;
   imager::UvwReach reach;
   int threads = 1;
-  bool mask = false;                  ///< there is or will be one, where components may lie
-  const TakenFiles* taken = nullptr;  ///< null where all images are made
-  int channels = 1;                   ///< of the image
-  int workers = 1;                    ///< channels made at a time, where memory allows; they share the threads
+  bool mask = false;                                         ///< there is or will be one, where components may lie
+  const TakenFiles* taken = nullptr;                         ///< null where all images are made
+  std::shared_ptr<const imager::MosaicRequest> mosaic = {};  ///< null where it is none
+  int channels = 1;                                          ///< of the image
+  int workers = 1;      ///< channels made at a time, where memory allows; they share the threads
   double samples = 0;   ///< of a channel at most, in Stokes samples of all ranks: gridding is chosen by them, whoever does it
   double share = 1;     ///< the part of them that this rank has
   double enlarged = 1;  ///< samples and rows over those of `set`, where others are planned for; `samples` is of these

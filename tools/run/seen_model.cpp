@@ -19,49 +19,6 @@
 namespace misfit::tools {
 namespace {
 
-/// [antenna]; null of those that no row of two antennas has, and that have no simple beam.
-std::vector<imager::Pattern> patterns_of(const ms_io::MeasurementSet& set, const ms_io::BeamRows& rows, const DishBeams& beams,
-                                         std::vector<std::string>& doubts) {
-  std::vector<imager::BeamModel> models;
-  for (const imager::AntennaSort& sort : rows.sorts) {
-    models.push_back(beams.of(sort));
-    const std::string doubt = models.back().doubt_at(set.observation().frequency_hz);
-    if (!doubt.empty() && std::find(doubts.begin(), doubts.end(), doubt) == doubts.end()) doubts.push_back(doubt);
-  }
-  std::vector<imager::Pattern> patterns;
-  for (const imager::AntennaSort& antenna : set.antennas()) {
-    const auto sort = std::find_if(rows.sorts.begin(), rows.sorts.end(),
-                                   [&](const imager::AntennaSort& one) { return imager::alike(one, antenna); });
-    if (sort != rows.sorts.end()) {
-      patterns.push_back(models[static_cast<std::size_t>(sort - rows.sorts.begin())].pattern);
-      continue;
-    }
-    try {
-      patterns.push_back(beams.of(antenna).pattern);
-    } catch (const imager::NoSimpleBeam&) {
-      patterns.push_back(nullptr);
-    }
-  }
-  return patterns;
-}
-
-/// The narrowest of the beams between half-power points, about.
-double narrowest_rad(const std::vector<imager::Pattern>& patterns, double frequency_hz) {
-  double narrowest = 1;
-  for (const imager::Pattern& pattern : patterns) narrowest = std::min(narrowest, pattern->detail_sine(frequency_hz));
-  return narrowest;
-}
-
-void require_still(const std::vector<ms_io::FieldPointing>& pointings, double width_rad) {
-  for (const ms_io::FieldPointing& one : pointings)
-    for (const ms_io::FieldPointing& other : pointings)
-      if (one.id == other.id && angle_between(one.direction, other.direction) > same_pointing_beams * width_rad)
-        throw std::runtime_error("antennas of field " + field_words(one, pointings) + " and " + field_words(other, pointings) +
-                                 " pointed " + angle_text(angle_between(one.direction, other.direction), 3) +
-                                 " apart: beams that move past the model are not applied; expected some of its time with "
-                                 "--timerange");
-}
-
 std::vector<imager::AxisFrame> frames_of(const std::vector<ms_io::FieldPointing>& pointings,
                                          const imager::SkyDirection& centre) {
   std::vector<imager::AxisFrame> frames;
@@ -110,7 +67,8 @@ SetBeams set_beams(const ms_io::MeasurementSet& set, const DishBeams& beams) {
   if (rows.sorts.empty())
     throw std::runtime_error("no row of two antennas is selected; expected some, of which --apply-beam takes the beam");
   std::vector<std::string> doubts;
-  std::vector<imager::Pattern> patterns = patterns_of(set, rows, beams, doubts);
+  std::vector<imager::Pattern> patterns =
+      patterns_of(set.antennas(), {rows.sorts, beams, set.observation().frequency_hz}, doubts);
   const double width_rad = narrowest_rad(patterns, set.observation().frequency_hz);
   if (rows.beam_offset_rad() > beside * width_rad)
     throw std::runtime_error("FEED's column BEAM_OFFSET says that beams point " + angle_text(rows.beam_offset_rad(), 3) +

@@ -10,9 +10,9 @@ void TaylorStage::make_images(const imager::ImagedData& imaged, const imager::Ac
   const imager::TakenImages& which = taken.which;
   std::optional<imager::ComparedPixels> pixels;
   if (which.any()) pixels.emplace(made.plan, imaged.transform);
-  images_ = imager::make_taylor_images(
-      {imaged.samples, which.dirty ? pixels->transform() : imaged.transform, imaged.normalisation},
-      which.psf ? pixels->transform() : made.transform->psf(), expansion_, context);
+  images_ =
+      imager::make_taylor_images({imaged.samples, which.dirty ? pixels->transform() : imaged.transform, imaged.normalisation},
+                                 which.psf ? pixels->transform() : made.transform->psf(), expansion_, context);
   if (!imaged.samples.source.ranks().first()) return;  // where the images are
   if (pixels) take(std::move(taken), *pixels, made);
   psf_ = all_terms(made.images.psf, images_.psf);

@@ -57,7 +57,10 @@ TransformSeconds transform_seconds(const imager::GriddingPlan& plan, const Image
   // Every cell is set to 0, and written once where samples are few: this part of what its FFT takes, as measured.
   constexpr double cells = 0.6;
   const double fft_s = model.fft_seconds(work);
-  return {shared(model.gridding_seconds(work) + cells * fft_s, threads), shared(fft_s, threads)};
+  const TransformSeconds one{shared(model.gridding_seconds(work) + cells * fft_s, threads), shared(fft_s, threads)};
+  if (!plan.windows) return one;
+  const auto windows = static_cast<double>(plan.windows->windows), nodes = static_cast<double>(plan.windows->nodes);
+  return {windows * nodes * one.grid, windows * nodes * static_cast<double>(plan.windows->spans) * one.fft};
 }
 
 /// A part of the names of factors.

@@ -1,0 +1,29 @@
+#include "tools/run/mosaic_options.h"
+
+#include <CLI/CLI.hpp>
+
+#include "tools/base/option_checks.h"
+
+namespace misfit::tools {
+
+void declare(CLI::App& command, TypedMosaic& o) {
+  command
+      .add_option("--normtype", o.normtype,
+                  "Images of mosaics are: flatnoise, the sky times .pb, with the same noise everywhere; or flatsky, the sky, "
+                  "with more noise where beams see less")
+      ->check(CLI::IsMember({"flatnoise", "flatsky"}));
+  command.add_option("--psfphasecenter", o.psfphasecenter,
+                     "The PSF of a mosaic is that of a source in this direction, given as --phasecenter; without it in the "
+                     "middle of the image, or where the nearest pointing is if no beam sees that");
+  command.add_option("--beam-cut", o.beam_cut,
+                     "Beams of a mosaic are taken as 0 beyond where their main lobe falls to this part of their peak");
+  command.add_flag("--usepointing", o.usepointing,
+                   "Antennas of a mosaic pointed where the table POINTING says at the time of each row, not where FIELD does");
+}
+
+void check(const TypedMosaic& o) {
+  if (!(o.beam_cut > 0 && o.beam_cut <= 0.5))
+    refuse_option("beam-cut", typed(o.beam_cut), "a number above 0, 0.5 at most, such as 1e-3");
+}
+
+}  // namespace misfit::tools
