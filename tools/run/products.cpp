@@ -310,7 +310,7 @@ void Products::write_corrected(const imager::PlaneIndex& at, const OfBeam& prima
   if (apparent.front()->pixel.empty()) return;  // it follows
   const std::vector<imager::Image> sky = primary_beam.corrected(apparent);
   put_terms("image", at, pointers_to(sky), beam, ".pbcor");
-  if (spectra == nullptr) return;
+  if (spectra == nullptr || sky.size() == 1) return;
   imager::SpectralImages of_sky = imager::spectral_images_of_sky(sky, *spectra, workers_.threads);
   put_spectra(of_sky, ".pbcor", at, beam);
 }
