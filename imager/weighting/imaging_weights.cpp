@@ -18,17 +18,27 @@ bool has_f2(Weighting weighting) {
   return weighting == Weighting::briggs || weighting == Weighting::briggs_bandwidth_taper;
 }
 
-std::vector<float> factors_before_filter(const UvDensity& density, const WeightingOptions& options, double f2) {
+template <template <typename> class Cells>
+Cells<float> factors_before_filter(const Cells<double>& density, const WeightingOptions& options, double f2) {
   if (options.weighting == Weighting::briggs_abs) return briggs_abs_factors(density, options.robust, options.noise_jy);
   if (has_f2(options.weighting)) return briggs_factors(density, f2);
   return uniform_factors(density, options.weighting == Weighting::superuniform ? options.box_reach : 0);
 }
 
-std::vector<float> factors_of(const UvDensity& density, const WeightingOptions& options, double f2) {
-  std::vector<float> factor = factors_before_filter(density, options, f2);
-  if (options.rank_filter) factor = rank_filtered(density.cells(), factor, *options.rank_filter);
-  return factor;
-}
+/// The factors of the cells of one density, with their f² and number.
+template <template <typename> class Cells>
+struct Factors {
+  Factors(const Cells<double>& density, const WeightingOptions& options)
+      : f2(has_f2(options.weighting) ? briggs_f2(density, options.robust) : 0),
+        of_cells(factors_before_filter(density, options, f2)) {
+    if (options.rank_filter) of_cells = rank_filtered(of_cells, *options.rank_filter);
+    of_cells.for_each([this](float factor) { filled += factor > 0 ? 1 : 0; });
+  }
+
+  double f2;
+  Cells<float> of_cells;
+  std::uint64_t filled = 0;
+};
 
 /// 1/(1 + W f²/m) at r, where 1/(1 + W f²) is `briggs`.
 double bandwidth_tapered(double briggs, double r) {
@@ -106,10 +116,27 @@ ImagingWeights::ImagingWeights(const UvDensity& density, const WeightingOptions&
     : cells_(density.cells()),
       taper_(options.taper),
       window_(options.window),
-      f2_(has_f2(options.weighting) ? briggs_f2(density, options.robust) : 0),
-      fractional_bandwidth_(options.weighting == Weighting::briggs_bandwidth_taper ? options.fractional_bandwidth : 0),
-      factor_(factors_of(density, options, f2_)) {
-  filled_ = static_cast<std::uint64_t>(std::count_if(factor_.begin(), factor_.end(), [](float x) { return x > 0; }));
+      fractional_bandwidth_(options.weighting == Weighting::briggs_bandwidth_taper ? options.fractional_bandwidth : 0) {
+  if (density.weights_of_pointings().empty()) {
+    Factors<DenseCells> made(density.weights(), options);
+    factor_ = std::move(made.of_cells);
+    f2_ = {made.f2, made.f2};
+    filled_ = made.filled;
+  } else {
+    factors_from(density.weights_of_pointings(), options, density.threads());
+  }
+}
+
+void ImagingWeights::factors_from(const std::vector<CellTiles<double>>& density, const WeightingOptions& options, int threads) {
+  std::vector<std::optional<Factors<CellTiles>>> made(density.size());
+  parallel_for(density.size(), threads, [&](std::size_t p) { made[p].emplace(density[p], options); });
+  factor_of_pointing_.reserve(density.size());
+  for (std::optional<Factors<CellTiles>>& of_pointing : made) {
+    filled_ += of_pointing->filled;
+    if (const double f2 = of_pointing->f2; f2 > 0)
+      f2_ = {f2_.least > 0 ? std::min(f2_.least, f2) : f2, std::max(f2_.largest, f2)};
+    factor_of_pointing_.push_back(std::move(of_pointing->of_cells));
+  }
 }
 
 WeightedBlock ImagingWeights::of(std::shared_ptr<const VisibilityBlock> block) const {
@@ -139,8 +166,17 @@ void ImagingWeights::weigh(VisibilityBlock& block, WeightSums& sums) const {
   const std::vector<double> turns = cells_.turns_per_m(block.frequency_hz);
   RowTaper taper(taper_, window_, block.frequency_hz);
   std::vector<std::uint32_t> cell(channels);
+  const bool of_pointings = !factor_of_pointing_.empty();
+  if (of_pointings) require_pointings(block, factor_of_pointing_.size());
+  const float* const shared = factor_ ? factor_->data() : nullptr;
   for (std::size_t row = 0; row < block.rows(); ++row) {
-    cells_.of_row(&block.uvw_m[3 * row], turns, cell.data());
+    const CellTiles<float>* own = nullptr;
+    if (of_pointings) {
+      cells_.places_of_row(&block.uvw_m[3 * row], turns, cell.data());
+      own = &factor_of_pointing_[static_cast<std::size_t>(block.sights[row].field)];
+    } else {
+      cells_.of_row(&block.uvw_m[3 * row], turns, cell.data());
+    }
     taper.set_row(&block.uvw_m[3 * row]);
     for (std::size_t c = 0; c < channels; ++c) {
       float& weight = block.weight[row * channels + c];
@@ -148,7 +184,11 @@ void ImagingWeights::weigh(VisibilityBlock& block, WeightSums& sums) const {
       if (natural == 0) continue;
       weight = least;
       if (cell[c] == UvCells::outside) continue;
-      double factor = factor_.empty() ? 1 : double{factor_[cell[c]]};
+      double factor = 1;
+      if (own != nullptr)
+        factor = double{own->at(cell[c])};
+      else if (shared != nullptr)
+        factor = double{shared[cell[c]]};
       if (fractional_bandwidth_ > 0)
         factor = bandwidth_tapered(factor, fractional_bandwidth_ * cells_.distance(&block.uvw_m[3 * row], turns[c]));
       factor *= taper.at(c);
@@ -162,7 +202,7 @@ std::shared_ptr<const ImagingWeights> make_imaging_weights(const VisibilitySourc
                                                            const ImageGeometry& geometry, const Context& context) {
   if (options.none()) return nullptr;
   if (!options.needs_density()) return std::make_shared<ImagingWeights>(geometry, options);
-  UvDensity density(geometry, context.threads);
+  UvDensity density(geometry, context.threads, options.pointings);
   std::uint64_t done = 0;
   const auto stream = source.open();
   const auto next = [&] {

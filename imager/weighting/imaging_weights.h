@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <optional>
 #include <string>
 
@@ -24,8 +25,9 @@ enum class Weighting { natural, uniform, superuniform, briggs, briggs_abs, brigg
 ///   briggs_bandwidth_taper   w / (1 + W_k f²/m), with r = Δν/ν_c √(u² + v²) in cells, m = r + ½ where r ≥ 1, and below
 ///                 m = (4 − r)/(4 − 2r): weights of a cube's plane as those of its whole band would be
 /// each times the factors of the taper and the window. The density counts every sample as if there were no taper and no window,
-/// as CASA's and WSClean's does. A rank filter cuts what a cell multiplies w by before they act. The documentation of CASA's
-/// tclean has these equations, but for natural and uniform.
+/// as CASA's and WSClean's does. Each of several pointings has its own density and f², as CASA's `mosweight` has it. A rank
+/// filter cuts what a cell multiplies w by before they act. The documentation of CASA's tclean has these equations, but for
+/// natural and uniform.
 struct WeightingOptions {
   Weighting weighting = Weighting::natural;
   double robust = 0.5;                      ///< R of briggs: −2, nearly uniform, to 2, nearly natural
@@ -35,6 +37,8 @@ struct WeightingOptions {
   std::optional<RankFilter> rank_filter{};  ///< not of natural, nor of briggs_bandwidth_taper, whose factors vary in a cell
   std::optional<UvTaper> taper{};
   UvWindow window{};
+  /// Each has a density of its own, and the sights of a block tell its rows' pointings; 1: all samples share one density.
+  std::size_t pointings = 1;
 
   bool needs_density() const { return weighting != Weighting::natural; }
   /// Whether the data's weights stay as they are.
@@ -78,6 +82,12 @@ struct WeightedBlock {
   WeightTotals totals;
 };
 
+/// f² of several pointings with samples.
+struct F2Range {
+  double least = 0;
+  double largest = 0;
+};
+
 /// The weights of an image.
 class ImagingWeights {
  public:
@@ -88,25 +98,31 @@ class ImagingWeights {
 
   /// `block`, with its other Stokes parameters and the weights of the image: the same block where nobody else holds it, else a
   /// copy. What is usable stays so: samples beyond 1/(2 cell) or outside the window, and what a taper leaves nothing of, keep
-  /// the smallest weight that there is.
+  /// the smallest weight that there is. Throws std::invalid_argument where there are several pointings, and the block's sights
+  /// do not tell those of its rows.
   WeightedBlock of(std::shared_ptr<const VisibilityBlock> block) const;
   /// Does so with all blocks.
   WeightTotals put_on(StoredVisibilities& visibilities, int threads) const;
 
-  double f2() const { return f2_; }                       ///< of Briggs weights that have it, else 0
-  std::uint64_t cells_filled() const { return filled_; }  ///< of the half plane's; 0 without a density
+  const F2Range& f2() const { return f2_; }  ///< of Briggs weights that have it, else 0
+  /// Cells with samples in half the plane, added up over pointings that have their own density; 0 without a density.
+  std::uint64_t cells_filled() const { return filled_; }
+  /// Pointings that have a density of their own; 1 where all samples share one, or there is none.
+  std::size_t pointings() const { return std::max<std::size_t>(1, factor_of_pointing_.size()); }
   const UvCells& cells() const { return cells_; }
 
  private:
+  void factors_from(const std::vector<CellTiles<double>>& density_of_pointings, const WeightingOptions& options, int threads);
   void weigh(VisibilityBlock& block, WeightSums& sums) const;
 
   UvCells cells_;
   std::optional<UvTaper> taper_;
   UvWindow window_;
-  double f2_ = 0;
+  F2Range f2_;
   double fractional_bandwidth_ = 0;  ///< not 0: factors depend on where in the plane a sample lies, too
   std::uint64_t filled_ = 0;
-  std::vector<float> factor_;  ///< [v][u]; empty: 1
+  std::optional<DenseCells<float>> factor_;           ///< shared by all samples; none: 1
+  std::vector<CellTiles<float>> factor_of_pointing_;  ///< where there are several
 };
 
 /// The weights that `options` ask for, after a pass over `source` where they follow from its density; null where they are the

@@ -39,7 +39,30 @@ class UvCells {
   /// The cell, row-major [v][u], of a row's samples at each channel.
   void of_row(const double* uvw_m, const std::vector<double>& turns_per_m, std::uint32_t* cell) const;
 
+  /// Tiles are squares of cells: near ones have places that lie together. Those at the end of a row or column of tiles may
+  /// reach beyond the cells.
+  static constexpr std::uint32_t tile_side = 8;
+  static constexpr std::uint32_t tile_cells = tile_side * tile_side;
+  std::uint32_t tiles_across() const { return (static_cast<std::uint32_t>(columns()) + tile_side - 1) / tile_side; }
+  std::size_t tiles() const {
+    return std::size_t{tiles_across()} * ((static_cast<std::uint32_t>(rows()) + tile_side - 1) / tile_side);
+  }
+  /// The place of a cell where cells are counted tile by tile, within them and among them row-major [v][u].
+  std::uint32_t place(int row, int column) const {
+    return place(static_cast<std::uint32_t>(row), static_cast<std::uint32_t>(column), tiles_across());
+  }
+  /// The places of a row's samples at each channel, or `outside`.
+  void places_of_row(const double* uvw_m, const std::vector<double>& turns_per_m, std::uint32_t* place) const;
+
  private:
+  static std::uint32_t place(std::uint32_t row, std::uint32_t column, std::uint32_t tiles_across) {
+    const std::uint32_t tile = row / tile_side * tiles_across + column / tile_side;
+    return tile * tile_cells + row % tile_side * tile_side + column % tile_side;
+  }
+  /// Sets number(row, column) of a row's samples at each channel.
+  template <typename Number>
+  void locate(const double* uvw_m, const std::vector<double>& turns_per_m, const Number& number, std::uint32_t* found) const;
+
   int width_;
   int height_;
   double cell_rad_;

@@ -178,6 +178,7 @@ class RankShare : public VisibilitySource {
     for (auto row = static_cast<std::size_t>(ranks_.rank()); row < block.rows();
          row += static_cast<std::size_t>(ranks_.size())) {
       const auto at = static_cast<std::ptrdiff_t>(row * channels), end = at + static_cast<std::ptrdiff_t>(channels);
+      if (!block.sights.empty()) part.sights.push_back(block.sights[row]);
       part.uvw_m.append(&block.uvw_m[3 * row], &block.uvw_m[3 * row] + 3);
       part.visibility.insert(part.visibility.end(), block.visibility.begin() + at, block.visibility.begin() + end);
       part.weight.insert(part.weight.end(), block.weight.begin() + at, block.weight.begin() + end);

@@ -67,9 +67,9 @@ BOOST_DATA_TEST_CASE(factors_are_cut_to_a_multiple_of_the_mean_about_them,
   const UvDensity density = density_of(geometry, blocks);
   constexpr double f2 = 0.1;
   const RankFilter filter{level, reach};
-  const std::vector<float> uniform = rank_filtered(density.cells(), uniform_factors(density), filter);
-  const std::vector<float> briggs = rank_filtered(density.cells(), briggs_factors(density, f2), filter);
-  const std::vector<float> box = uniform_factors(density, reach);
+  const DenseCells<float> uniform = rank_filtered(uniform_factors(density.weights()), filter);
+  const DenseCells<float> briggs = rank_filtered(briggs_factors(density.weights(), f2), filter);
+  const DenseCells<float> box = uniform_factors(density.weights(), reach);
   int cut = 0, next_to_zero = 0;
   std::set<std::uint32_t> seen;
   for (const VisibilityBlock& block : blocks)
@@ -101,7 +101,7 @@ BOOST_AUTO_TEST_CASE(weights_are_filtered_before_they_are_tapered) {
                                  .rank_filter = RankFilter{2, 4},
                                  .taper = taper_of_radii({20e3, 20e3, 0}),
                                  .window = {.max_lambda = 40e3}};
-  const std::vector<float> factor = rank_filtered(density.cells(), uniform_factors(density), *options.rank_filter);
+  const DenseCells<float> factor = rank_filtered(uniform_factors(density.weights()), *options.rank_filter);
   StoredVisibilities source = stored({blocks[0]});
   const ImagingWeights weights(density, options);
   weights.put_on(source, 1);

@@ -67,7 +67,7 @@ BOOST_DATA_TEST_CASE(cells_hold_the_weight_of_all_samples_and_conjugates_in_them
   const VisibilityBlock block = some_samples();
   const PlainDensity plain(geometry, {block});
   const UvDensity density = density_of(geometry, 2, {block});
-  const std::vector<float> uniform = uniform_factors(density), wider = uniform_factors(density, 2);
+  const DenseCells<float> uniform = uniform_factors(density.weights()), wider = uniform_factors(density.weights(), 2);
   plain.for_each(block, [&](std::size_t row, std::size_t, const PlainDensity::Cell& cell, std::uint32_t index) {
     BOOST_TEST_CONTEXT("row " << row) {
       // Sums of doubles in another order; a factor is single.
@@ -81,7 +81,7 @@ BOOST_DATA_TEST_CASE(cells_hold_the_weight_of_all_samples_and_conjugates_in_them
 BOOST_AUTO_TEST_CASE(threads_and_blocks_leave_every_bit) {
   const ImageGeometry geometry{300, 200, cell_rad, {}};
   const VisibilityBlock block = random_samples(30000, 3, cell_rad, 2, 0.1);
-  const std::vector<double> expected = density_of(geometry, 1, {block}).weights();
+  const DenseCells<double> expected = density_of(geometry, 1, {block}).weights();
   BOOST_CHECK(density_of(geometry, 3, {block}).weights() == expected);
   for (const std::size_t rows : {777, 20000}) BOOST_CHECK(density_of(geometry, 2, cut(block, rows)).weights() == expected);
 }
@@ -96,15 +96,15 @@ BOOST_DATA_TEST_CASE(briggs_f2_is_its_formula_over_samples_and_conjugates, bdata
     sum += 2 * double{block.weight[row * block.channels() + channel]};
   });
   const double expected = std::pow(5 * std::pow(10, -robust), 2) / (square / sum);
-  BOOST_TEST(std::abs(briggs_f2(density_of(geometry, 1, {block}), robust) / expected - 1) < 1e-12);
+  BOOST_TEST(std::abs(briggs_f2(density_of(geometry, 1, {block}).weights(), robust) / expected - 1) < 1e-12);
 }
 
 BOOST_AUTO_TEST_CASE(briggs_factors_go_from_uniform_to_natural) {
   const UvDensity density = density_of({64, 48, cell_rad, {}}, 1, {some_samples()});
-  const std::vector<float> uniform = uniform_factors(density);
-  const std::vector<double>& weight = density.weights();
-  const double crowded = briggs_f2(density, -2), sparse = briggs_f2(density, 2);
-  const std::vector<float> low = briggs_factors(density, crowded), high = briggs_factors(density, sparse);
+  const DenseCells<double>& weight = density.weights();
+  const DenseCells<float> uniform = uniform_factors(weight);
+  const double crowded = briggs_f2(weight, -2), sparse = briggs_f2(weight, 2);
+  const DenseCells<float> low = briggs_factors(weight, crowded), high = briggs_factors(weight, sparse);
   for (std::size_t k = 0; k < weight.size(); ++k) {
     if (weight[k] == 0) continue;
     // 1/(1 + W f²) is within 1/(W f²) of uniform / f², and within W f² of 1; and single precision.
