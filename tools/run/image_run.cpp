@@ -328,7 +328,7 @@ class ImageRun : private ChannelSink {
   void weigh_in_common() {
     const imager::WeightingOptions options = weighting_options(o_.weighting);
     if (!options.needs_density()) return;
-    imager::UvDensity density(header_.geometry, threads_);
+    imager::UvDensity density(header_.geometry, threads_, options.pointings);
     const auto add = [&](const imager::VisibilitySource& channel) {
       const imager::StageTimer timer(times_, imager::stage::weights);
       const auto stream = channel.open();

@@ -139,6 +139,13 @@ std::string divisor_text(const TypedWeighting& o) {
   return "divided by the weight of all samples and conjugates in the " + side + " × " + side + " cells about it";
 }
 
+/// Says whose samples a density counts, where there are several pointings.
+std::string pointings_text(const TypedWeighting& o, std::size_t pointings) {
+  if (pointings <= 1) return "";
+  const std::string all = std::to_string(pointings) + " pointings";
+  return o.mosweight ? "; each of the " + all + " has its own density" : "; the density is that of all " + all + " together";
+}
+
 void check_rank_filter(const TypedWeighting& o) {
   const std::string option = "weighting-rank-filter", size_option = "weighting-rank-filter-size";
   if (!(o.rank_filter >= 0 && std::isfinite(o.rank_filter)))
@@ -163,6 +170,13 @@ void check_tapers(const TypedWeighting& o) {
   }
 }
 
+/// ", f² = 0.0123", or its range over pointings; "" where there is none.
+std::string f2_text(const imager::F2Range& f2) {
+  if (f2.largest == 0) return "";
+  const std::string least = significant(f2.least, 4), largest = significant(f2.largest, 4);
+  return least == largest ? ", f² = " + least : ", f² from " + least + " to " + largest;
+}
+
 }  // namespace
 
 void declare(CLI::App& command, TypedWeighting& o) {
@@ -183,6 +197,12 @@ void declare(CLI::App& command, TypedWeighting& o) {
       "so many times the mean of what the cells with samples about it do; 0 means no such limit");
   command.add_option("--weighting-rank-filter-size", o.rank_filter_size,
                      "The mean goes from -SIZE/2 to SIZE/2 cells about a sample's");
+  command
+      .add_option("--mosweight", o.mosweight,
+                  "Of a mosaic weighed by density: true: each pointing's weights follow from the density of its own samples; "
+                  "false: from that of all pointings' samples together")
+      ->default_str("true")
+      ->check(CLI::IsMember({"true", "false"}, CLI::ignore_case));
   command.add_option("--uvtaper", o.uvtaper,
                      "Taper by a Gaussian, MAJ[,MIN[,PA]]: its full width at half maximum on the sky, such as 5arcsec, or its "
                      "half width in the uv plane, such as 3klambda; none when empty");
@@ -217,11 +237,13 @@ void check(const TypedWeighting& o, const CubeOptions& cube) {
     refuse_option("npixels", std::to_string(o.npixels), "--weighting superuniform beside it");
   if (cube.is_cube() && !cube.perchanweightdensity && o.scheme == "natural")
     refuse_option("perchanweightdensity", "false", "weights by density beside it, such as --weighting briggs");
+  if (!o.mosweight && o.scheme == "natural")
+    refuse_option("mosweight", "false", "weights by density beside it, such as --weighting briggs");
   check_rank_filter(o);
   check_tapers(o);
 }
 
-imager::WeightingOptions weighting_options(const TypedWeighting& o) {
+imager::WeightingOptions weighting_options(const TypedWeighting& o, std::size_t pointings) {
   imager::WeightingOptions options;
   options.weighting = weighting_of(o.scheme);
   options.robust = o.robust;
@@ -230,12 +252,13 @@ imager::WeightingOptions weighting_options(const TypedWeighting& o) {
   if (!o.uvtaper.empty()) options.taper = parse_taper(o.uvtaper);
   options.window = window_of(o);
   if (o.rank_filter > 0) options.rank_filter = {o.rank_filter, o.rank_filter_size / 2};
+  if (o.mosweight && options.needs_density()) options.pointings = pointings;
   return options;
 }
 
 /// Between the middles of the outermost planes, as CASA has it.
-imager::WeightingOptions weighting_options(const TypedWeighting& o, const imager::SpectralAxis& cube) {
-  imager::WeightingOptions options = weighting_options(o);
+imager::WeightingOptions weighting_options(const TypedWeighting& o, const imager::SpectralAxis& cube, std::size_t pointings) {
+  imager::WeightingOptions options = weighting_options(o, pointings);
   const double first = cube.frequency_hz(0), last = cube.frequency_hz(cube.channels - 1);
   options.fractional_bandwidth = 2 * std::abs(last - first) / (last + first);
   return options;
@@ -257,6 +280,7 @@ std::vector<std::string> weighting_arguments(const TypedWeighting& o) {
   if (o.rank_filter > 0)
     words.insert(words.end(), {"--weighting-rank-filter", typed(o.rank_filter), "--weighting-rank-filter-size",
                                std::to_string(o.rank_filter_size)});
+  if (!o.mosweight) words.insert(words.end(), {"--mosweight", "false"});
   const std::vector<std::string> tapers = taper_arguments(o);
   words.insert(words.end(), tapers.begin(), tapers.end());
   return words;
@@ -274,7 +298,7 @@ void require_weight(const TypedWeighting& o, const imager::WeightSums& sums, std
   throw std::runtime_error(words + ": no sample" + of + " keeps a weight that counts; expected " + expected);
 }
 
-imager::Decision weighting_decision(const TypedWeighting& o, const imager::ImageGeometry& geometry) {
+imager::Decision weighting_decision(const TypedWeighting& o, const imager::ImageGeometry& geometry, std::size_t pointings) {
   const std::string tapered = taper_reason(o);
   if (!weighting_options(o).needs_density())
     return {"weighting", weighting_text(o),
@@ -286,7 +310,8 @@ imager::Decision weighting_decision(const TypedWeighting& o, const imager::Image
              " cells about it";
   }
   return {"weighting", weighting_text(o),
-          "weights of the data " + divisor_text(o) + filter + "; the image's uv grid has " + cells_text(geometry)};
+          "weights of the data " + divisor_text(o) + pointings_text(o, pointings) + filter + "; the image's uv grid has " +
+              cells_text(geometry)};
 }
 
 imager::Decision weights_decision(const imager::ImagingWeights& weights, const imager::WeightSums& sums) {
@@ -294,7 +319,8 @@ imager::Decision weights_decision(const imager::ImagingWeights& weights, const i
                         with_prefix(sums.natural_noise_jy(), "Jy/beam", 3) + " predicted from the weights";
   if (weights.cells_filled() > 0)
     because += "; " + grouped(static_cast<long long>(weights.cells_filled())) + " cells of half the uv plane hold samples";
-  if (weights.f2() > 0) because += ", f² = " + significant(weights.f2(), 4);
+  if (weights.pointings() > 1) because += ", each counted for every pointing that has samples there";
+  because += f2_text(weights.f2());
   return {"weights", significant(sums.noise_jy() / sums.natural_noise_jy(), 4) + " times the noise of natural weights",
           because};
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -23,6 +24,7 @@ struct TypedWeighting {
   int npixels = 0;              ///< of superuniform; 0 = 6
   double rank_filter = 0;       ///< its level; 0 = none
   int rank_filter_size = 16;    ///< cells across its box
+  bool mosweight = true;        ///< each pointing's weights follow from its own samples; or from those of all
   std::string uvtaper;          ///< here and below, empty = none
   std::string minuv_l;
   std::string maxuv_l;
@@ -35,9 +37,11 @@ void declare(CLI::App& command, TypedWeighting& options);
 /// Throws std::invalid_argument that names the option, its value and what was expected, also where an option has no effect.
 void check(const TypedWeighting& options, const CubeOptions& cube);
 
-imager::WeightingOptions weighting_options(const TypedWeighting& options);
+/// For an image of so many pointings: more than one in a mosaic, whose blocks then tell the sights of their rows.
+imager::WeightingOptions weighting_options(const TypedWeighting& options, std::size_t pointings = 1);
 /// The same for the planes of a cube, whose bandwidth may matter.
-imager::WeightingOptions weighting_options(const TypedWeighting& options, const imager::SpectralAxis& cube);
+imager::WeightingOptions weighting_options(const TypedWeighting& options, const imager::SpectralAxis& cube,
+                                           std::size_t pointings = 1);
 
 /// "Briggs, robust 0.5, tapered".
 std::string weighting_text(const TypedWeighting& options);
@@ -51,7 +55,8 @@ void require_weight(const TypedWeighting& options, const imager::WeightSums& sum
                     const std::string& of = "");
 
 /// What is known of the weights before the samples are read.
-imager::Decision weighting_decision(const TypedWeighting& options, const imager::ImageGeometry& geometry);
+imager::Decision weighting_decision(const TypedWeighting& options, const imager::ImageGeometry& geometry,
+                                    std::size_t pointings = 1);
 
 /// What they turned out to be, with the noise that they cost.
 imager::Decision weights_decision(const imager::ImagingWeights& weights, const imager::WeightSums& sums);

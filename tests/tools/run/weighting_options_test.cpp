@@ -5,6 +5,8 @@
 #include <functional>
 #include <numbers>
 
+#include "tests/imager/random_samples.h"
+
 BOOST_AUTO_TEST_SUITE(weighting_options)
 
 namespace {
@@ -111,6 +113,51 @@ BOOST_AUTO_TEST_CASE(limits_and_a_rank_filter_reach_the_imager_in_its_units) {
   BOOST_TEST(options.rank_filter.value().level == 2.5);
   BOOST_TEST(options.rank_filter.value().reach == 4);
   BOOST_TEST(misfit::tools::weighting_options(TypedWeighting()).none());
+}
+
+BOOST_AUTO_TEST_CASE(pointings_of_a_mosaic_have_their_own_density_unless_mosweight_is_false) {
+  const imager::ImageGeometry geometry{64, 64, 1e-5, {}};
+  const auto because = [&](const TypedWeighting& o, std::size_t pointings) {
+    return weighting_decision(o, geometry, pointings).because;
+  };
+  TypedWeighting typed;
+  typed.scheme = "briggs";
+  const std::string one = because(typed, 1);
+  BOOST_TEST(misfit::tools::weighting_options(typed).pointings == 1U);
+  BOOST_TEST(misfit::tools::weighting_options(typed, 7).pointings == 7U);
+  BOOST_TEST(because(typed, 7).find("; each of the 7 pointings has its own density;") != std::string::npos);
+  typed.mosweight = false;
+  BOOST_CHECK_NO_THROW(check(typed, CubeOptions()));
+  BOOST_TEST(misfit::tools::weighting_options(typed, 7).pointings == 1U);
+  BOOST_TEST(because(typed, 7).find("; the density is that of all 7 pointings together;") != std::string::npos);
+  BOOST_TEST(because(typed, 1) == one);
+  BOOST_TEST(one.find("pointing") == std::string::npos);
+  const std::vector<std::string> expected{"--weighting", "briggs", "--robust", "0.5", "--mosweight", "false"};
+  BOOST_CHECK(weighting_arguments(typed) == expected);
+  BOOST_TEST(misfit::tools::weighting_options(TypedWeighting(), 7).pointings == 1U);
+  BOOST_TEST(refusal([](TypedWeighting& o) { o.mosweight = false; }) ==
+             "--mosweight false: expected weights by density beside it, such as --weighting briggs");
+}
+
+BOOST_AUTO_TEST_CASE(weights_of_pointings_are_told_with_the_range_of_f2) {
+  const imager::ImageGeometry geometry{64, 64, 1e-5, {}};
+  const auto because = [&](std::size_t pointings) {
+    imager::UvDensity density(geometry, 1, pointings);
+    for (const int field : {0, 1, 1}) {  // the second has the same samples, twice
+      imager::VisibilityBlock block = imager::testing::random_samples(1, 1, 1e-5, 1);
+      block.weight = {0.5F};
+      block.sights = {{0, 1, field, 0}};
+      density.add(block);
+    }
+    imager::WeightingOptions options;
+    options.weighting = imager::Weighting::briggs;
+    options.robust = 0;
+    return weights_decision(imager::ImagingWeights(density, options), imager::WeightSums::of_natural(1)).because;
+  };
+  // (5 · 10⁰)² / W, where W is that of the only cell.
+  BOOST_TEST(because(1).ends_with("; 1 cells of half the uv plane hold samples, f² = 16.67"));
+  BOOST_TEST(because(2).ends_with(
+      "; 2 cells of half the uv plane hold samples, each counted for every pointing that has samples there, f² from 25 to 50"));
 }
 
 BOOST_AUTO_TEST_CASE(a_window_without_samples_is_named_as_it_was_typed) {
