@@ -25,12 +25,13 @@ struct MemoryDemand {
   double read_at_once = 0;   ///< samples of the blocks that are read at once; 0: one block
   int stokes = 1;            ///< Stokes parameters; each has its visibilities and its dirty image
   bool verify = false;
-  int terms = 1;             ///< Taylor terms; more than one of one Stokes parameter alone
-  int clean_scales = 0;      ///< that minor cycles look at; 0 = no CLEAN
-  bool mask = false;         ///< where components may lie
-  bool start_model = false;  ///< that CLEAN begins with
-  bool density = false;      ///< from which weights follow
-  int beam_images = 0;       ///< primary beams, and images that are divided by them
+  int terms = 1;              ///< Taylor terms; more than one of one Stokes parameter alone
+  int clean_scales = 0;       ///< that minor cycles look at; 0 = no CLEAN
+  bool mask = false;          ///< where components may lie
+  bool start_model = false;   ///< that CLEAN begins with
+  bool density = false;       ///< from which weights follow
+  std::size_t pointings = 1;  ///< of which each has a density of its own
+  int beam_images = 0;        ///< primary beams, and images that are divided by them
   std::optional<WiderDemand> wider{};
 };
 

@@ -126,6 +126,16 @@ BOOST_AUTO_TEST_CASE(a_density_of_samples_counts_while_it_is_made_and_its_factor
   BOOST_TEST(peak_memory(d, {}).when == "the weights are made");
 }
 
+BOOST_AUTO_TEST_CASE(densities_of_pointings_take_no_more_than_planes_or_than_samples_touch) {
+  MemoryDemand d = demand();
+  const double without = peak(d, {false, 2});
+  d.density = true;
+  d.pointings = 2;
+  BOOST_TEST(peak(d, {false, 2}) == without + 4 * 2 * d.pixels / 2);
+  d.pointings = 1000;
+  BOOST_TEST(peak(d, {false, 2}) == without + 4 * 3 * d.samples);
+}
+
 BOOST_AUTO_TEST_CASE(a_wider_field_counts_beside_the_images_that_stay_while_it_is_searched) {
   MemoryDemand d = demand();
   const double without = peak(d, {});
