@@ -21,7 +21,14 @@ struct MosaicRequest {
   int psf_row = 0;  ///< of the pixel whose source the PSF is the response to
   int psf_column = 0;
   bool flat_noise = true;  ///< see MosaicView
+
+  std::size_t pointings() const { return beams->rows().of_fields().size(); }
 };
+
+/// 1 where it is no mosaic.
+inline std::size_t pointings_of(const std::shared_ptr<const MosaicRequest>& mosaic) {
+  return mosaic ? mosaic->pointings() : 1;
+}
 
 /// What is asked of a transform.
 struct GriddingRequest {

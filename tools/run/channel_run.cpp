@@ -67,7 +67,8 @@ void ChannelRun::warn(const std::string& sentence) {
 }
 
 void ChannelRun::weigh() {
-  const imager::WeightingOptions options = weighting_options(scene_.options.weighting, scene_.header.spectral);
+  const imager::WeightingOptions options =
+      weighting_options(scene_.options.weighting, scene_.header.spectral, scene_.pointings);
   if (options.none()) return;
   progress().begin("weights" + name_);
   weigh(imager::make_imaging_weights(samples(), options, scene_.header.geometry, context()));

@@ -36,6 +36,7 @@ struct ChannelScene {
   imager::UvwReach reach;
   int threads = 1;                     ///< for each channel
   bool images_here = true;             ///< or at rank 0 alone
+  std::size_t pointings = 1;           ///< of a mosaic
   bool whole_band = true;              ///< whether it has one channel, of the whole band
   const TakenFiles* taken = nullptr;   ///< null where all images are made
   const std::atomic<bool>& given_up;   ///< whether channels are of no use any more: their work then ends in Interrupted

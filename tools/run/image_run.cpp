@@ -286,6 +286,7 @@ class ImageRun : private ChannelSink {
                                                          .reach = reach_,
                                                          .threads = workers_.threads,
                                                          .images_here = sharing_.images_here(),
+                                                         .pointings = imager::pointings_of(mosaic_.request),
                                                          .whole_band = !cube(),
                                                          .taken = o_.taken.any() ? taken_.get() : nullptr,
                                                          .given_up = queue_->given_up(),
@@ -326,7 +327,7 @@ class ImageRun : private ChannelSink {
 
   /// From the density of all channels' samples together.
   void weigh_in_common() {
-    const imager::WeightingOptions options = weighting_options(o_.weighting);
+    const imager::WeightingOptions options = weighting_options(o_.weighting, imager::pointings_of(mosaic_.request));
     if (!options.needs_density()) return;
     imager::UvDensity density(header_.geometry, threads_, options.pointings);
     const auto add = [&](const imager::VisibilitySource& channel) {

@@ -15,6 +15,9 @@ namespace misfit::tools {
 /// to one centre, and are not to be averaged.
 bool is_mosaic(const ImageOptions& options, const ms_io::MeasurementSet& set);
 
+/// By how much antennas may point beside each other, and count as one pointing. Reads antennas of all rows.
+double pointing_tolerance_rad(const ImageOptions& options, const ms_io::MeasurementSet& set);
+
 /// From what sets tell of antennas and pointings to what a mosaic is made of.
 struct MosaicStage {
   std::shared_ptr<const imager::MosaicRequest> request;

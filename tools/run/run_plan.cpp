@@ -61,7 +61,7 @@ class RunPlanner {
     if (o_.taylor.nterms > 1) decide_terms();
     if (scene_.taken != nullptr)
       for (imager::Decision& taken : scene_.taken->decisions()) plan_.decisions.push_back(std::move(taken));
-    plan_.decisions.push_back(weighting_decision(o_.weighting, scene_.geometry));
+    plan_.decisions.push_back(weighting_decision(o_.weighting, scene_.geometry, imager::pointings_of(scene_.mosaic)));
     if (o_.check_outside) plan_search(request);
     decide_memory([&](double bytes) { return least_memory(unlimited, bytes); });
     decide_columns();
@@ -175,6 +175,7 @@ class RunPlanner {
             .mask = scene_.mask,
             .start_model = !o_.clean.startmodel.empty(),
             .density = weighting_options(o_.weighting).needs_density(),
+            .pointings = weighting_options(o_.weighting, imager::pointings_of(scene_.mosaic)).pointings,
             .beam_images = beam_images(o_, gridding.request.stokes),
             .wider = wider};
   }
