@@ -144,7 +144,16 @@ class ImageRun : private ChannelSink {
     find_reach();
   }
 
-  void open_set() { set_ = std::make_unique<ms_io::MeasurementSet>(o_.vis, selection_of(o_), o_.datacolumn, stokes_); }
+  void open_set() {
+    ms_io::Selection selection = selection_of(o_);
+    if (o_.makes_mosaic() && o_.mosaic.usepointing) {
+      selection.sights = false;
+      const ms_io::MeasurementSet by_field(o_.vis, selection, "");
+      selection = selection_of(o_);
+      selection.pointing_tolerance_rad = pointing_tolerance_rad(o_, by_field);
+    }
+    set_ = std::make_unique<ms_io::MeasurementSet>(o_.vis, selection, o_.datacolumn, stokes_);
+  }
 
   void begin_mosaic() {
     mosaic_ = mosaic_stage(o_, *set_, header_.geometry);

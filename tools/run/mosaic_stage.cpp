@@ -140,7 +140,9 @@ MosaicStage mosaic_stage(const ImageOptions& o, const ms_io::MeasurementSet& set
       imager::MosaicRequest{beams, psf.row, psf.column, o.mosaic.normtype == "flatnoise"});
   stage.decisions = {
       {"pointings", std::to_string(table.pointings.size()),
-       o.mosaic.usepointing ? "grouped by where POINTING says that antennas looked"
+       o.mosaic.usepointing ? "where POINTING says that antennas looked, grouped to " +
+                                  angle_text(pointing_tolerance_rad(o, set), 3) + ", which changes beams by " +
+                                  significant(150 * pointing_tolerance_rad(o, set) / width_rad, 2) + "% of their peak at most"
                             : "fields, whose antennas looked where FIELD says"},
       {"mosaic's PSF", "of a source at pixel " + std::to_string(psf.column) + ", " + std::to_string(psf.row), psf.where},
       {"normtype", o.mosaic.normtype,
