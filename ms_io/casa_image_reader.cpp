@@ -64,6 +64,7 @@ class CasaImageReader : public imager::ImageReader {
     const casacore::TableRecord& others = image_.miscInfo();
     header_.taylor = imager::stated_taylor_term(number_in(others, imager::taylor_order_key, 0),
                                                 number_in(others, imager::taylor_terms_key, 1));
+    header_.flat_noise = number_in(others, imager::flat_noise_key, 0) == 1;
     if (others.isDefined(moving_key) && others.dataType(moving_key) == casacore::TpString)
       header_.observation.moving_at = others.asString(moving_key);
   }

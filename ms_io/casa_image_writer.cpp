@@ -61,6 +61,10 @@ casacore::TableRecord misc_info(const imager::ImageHeader& header) {
     record.define(imager::taylor_terms_key, header.taylor.terms);
     record.setComment(imager::taylor_terms_key, "terms of spectra");
   }
+  if (header.flat_noise) {
+    record.define(imager::flat_noise_key, 1);
+    record.setComment(imager::flat_noise_key, "pixels are the sky times sqrt(.weight / its maximum)");
+  }
   for (const imager::HeaderCard& card : header.cards) {
     record.define(card.keyword, card.value);
     record.setComment(card.keyword, card.comment);

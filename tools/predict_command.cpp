@@ -147,6 +147,10 @@ NamedModel image_model(const PredictOptions& o, const ms_io::MeasurementSet& set
     ms_io::Fingerprint alone;
     named.model += add_to(alone);
   }
+  if (file->header().flat_noise && !o.apply_beam)
+    named.remarks.push_back(o.model +
+                            " is a mosaic's: visibilities are those of its sky, which no beam dims; --apply-beam shows "
+                            "it as antennas saw it");
   const imager::ImageGeometry& geometry = planes.front().geometry;
   named.visibilities = o.apply_beam ? seen_image(model, geometry, request, set, beams_of(o, set, bright_places(planes), named))
                                     : image_visibilities(model, geometry, request, set);

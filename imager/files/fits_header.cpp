@@ -101,6 +101,7 @@ void write_header(FitsFile& file, const ImageHeader& header) {
     file.write_integer(taylor_order_key, header.taylor.order, "Taylor term, counted from 0, of");
     file.write_integer(taylor_terms_key, header.taylor.terms, "terms of spectra");
   }
+  if (header.flat_noise) file.write_integer(flat_noise_key, 1, "pixels are the sky times sqrt(.weight / its maximum)");
   write_cards(file, header.cards);
 }
 
@@ -116,6 +117,7 @@ ImageHeader read_header(const FitsFile& file, const FitsPlanes& planes) {
   header.unit = file.text("BUNIT");
   header.quantity = file.text("BTYPE");
   header.taylor = stated_taylor_term(file.number(taylor_order_key).value_or(0), file.number(taylor_terms_key).value_or(1));
+  header.flat_noise = file.number(flat_noise_key).value_or(0) == 1;
   return header;
 }
 

@@ -29,6 +29,9 @@ struct TaylorTerm {
 inline constexpr const char* taylor_order_key = "TAYTERM";
 inline constexpr const char* taylor_terms_key = "NTERMS";
 
+/// Keyword of a mosaic's model whose pixels are the sky times its primary beam: 1.
+inline constexpr const char* flat_noise_key = "FLATNOIS";
+
 /// What a header says of its Taylor term, as numbers that may be anything: none where it does not say that there are several.
 inline TaylorTerm stated_taylor_term(double order, double terms) {
   constexpr double most = 1000;
@@ -47,6 +50,7 @@ struct ImageHeader {
   std::vector<std::string> history;
   std::string quantity = "Intensity";  ///< FITS BTYPE, by the name that casacore has for it where it has one
   TaylorTerm taylor = {};
+  bool flat_noise = false;  ///< of a mosaic's model: whether its pixels are the sky times the mosaic's primary beam
 };
 
 }  // namespace misfit::imager

@@ -161,12 +161,48 @@ void require_taylor_term(const imager::ImageReader& file, const std::string& pat
                              "GHz");
 }
 
+namespace {
+
+/// The .weight of a mosaic whose model has this path.
+std::string weight_path(const std::string& model) {
+  constexpr char part[] = ".model";
+  const std::size_t at = model.rfind(part);
+  if (at == std::string::npos) return "";
+  return model.substr(0, at) + ".weight" + model.substr(at + sizeof part - 1);
+}
+
+/// A mosaic's model becomes that of the sky: its pixels are divided by √(W / max W) of the sensitivity W.
+void divide_by_sensitivity(std::vector<imager::SkyImage>& planes, const std::string& path) {
+  const std::string other = weight_path(path);
+  if (std::error_code absent; other.empty() || !std::filesystem::exists(other, absent))
+    throw std::runtime_error(path + " has the sky times a mosaic's primary beam, as its " + imager::flat_noise_key +
+                             " says; expected the mosaic's .weight beside it" + (other.empty() ? "" : ", " + other));
+  const auto file = open_image_file(other);
+  const imager::Image weight = file->read({0, 0});
+  const double most = imager::largest_magnitude(weight);
+  for (imager::SkyImage& plane : planes) {
+    if (weight.width != plane.image.width || weight.height != plane.image.height)
+      throw std::runtime_error(other + " has " + std::to_string(weight.width) + " × " + std::to_string(weight.height) +
+                               " pixels; expected those of " + path);
+    for (std::size_t i = 0; i < plane.image.pixel.size(); ++i) {
+      double& pixel = plane.image.pixel[i];
+      if (pixel == 0) continue;
+      pixel /= std::sqrt(weight.pixel[i] / most);
+      if (!std::isfinite(pixel)) throw std::runtime_error(path + " has flux where " + other + " is 0; expected none there");
+    }
+  }
+}
+
+}  // namespace
+
 std::vector<imager::SkyImage> read_stokes_model(const imager::ImageReader& file, const std::string& path) {
   refuse_taylor_term(file, path);
   const int channels = file.header().spectral.channels;
   if (channels > 1)
     throw std::runtime_error(path + " has planes of " + std::to_string(channels) + " frequencies; expected one");
-  return read_model_channel(file, {path, 0});
+  std::vector<imager::SkyImage> planes = read_model_channel(file, {path, 0});
+  if (file.header().flat_noise) divide_by_sensitivity(planes, path);
+  return planes;
 }
 
 std::vector<imager::SkyImage> read_model_channel(const imager::ImageReader& file, const ModelChannel& of) {

@@ -146,6 +146,8 @@ imager::CleanResult CleanStage::run(CleanScene scene, const StateOptionValues& o
   options.stop_requested = interrupted;
   options.mask = mask(scene.imaged.samples.index);
   options.noise_within = noise_within_.pixel.empty() ? nullptr : &noise_within_;
+  if (const imager::MosaicView* const view = scene.imaged.normalisation.mosaic(); start_model_ && view != nullptr)
+    start_model_->see_through(*view, scene.imaged.samples.index);
   std::unique_ptr<imager::MinorCycle> minor;
   {
     const imager::StageTimer timer(context.times, imager::stage::minor_cycles);

@@ -57,6 +57,8 @@ struct ImageOptions {
   bool measures_noise_in_beam() const { return clean.runs() && clean.usemask == "auto" && !clean.fastnoise; }
   /// Whether pointings become one image; a run decides it where it is left to be chosen.
   bool makes_mosaic() const { return gridding.gridder == "mosaic"; }
+  /// Whether its images, and its model, are the sky times its primary beam.
+  bool makes_flat_noise() const { return makes_mosaic() && mosaic.normtype == "flatnoise"; }
   /// The primary beam below which nothing of a mosaic is cleaned: --pblimit, unless it is below 0; 0 = none.
   double mosaic_limit() const { return makes_mosaic() && primary_beam.pblimit >= 0 ? primary_beam.limit() : 0; }
   bool all_products() const { return products == "tclean"; }

@@ -17,6 +17,7 @@
 #include "tools/base/interrupt.h"
 #include "tools/base/json_text.h"
 #include "tools/base/numbers.h"
+#include "tools/base/option_checks.h"
 #include "tools/base/progress.h"
 #include "tools/formats/image_file.h"
 #include "tools/kernel_choice/cache_folder.h"
@@ -156,6 +157,8 @@ class ImageRun : private ChannelSink {
   }
 
   void begin_mosaic() {
+    if (o_.mosaic.usepointing && o_.clean.savemodel != "none")
+      refuse_option("savemodel", o_.clean.savemodel, "none beside --usepointing: models are predicted where FIELD says");
     mosaic_ = mosaic_stage(o_, *set_, header_.geometry);
     for (const std::string& warning : mosaic_.warnings) warn(warning);
     if (!o_.taken.any()) return;
@@ -431,13 +434,17 @@ class ImageRun : private ChannelSink {
     if (!cube() && ranks_.first())
       if (const std::string warning = changed_files_warning(*set_); !warning.empty()) warn(warning);
     if (sharing_.images_here() && !run.made().empty()) write(run);
-    if (o_.clean.savemodel != "none") run.made().cleaned = models_of(std::move(run.cleaned()));
+    if (o_.clean.savemodel != "none")
+      run.made().cleaned = models_of(std::move(run.cleaned()), run.images().images.normalisation);
     queue_->done(std::move(run.made()));
   }
 
-  /// What --savemodel needs of what CLEAN found.
-  static std::vector<imager::CleanResult> models_of(std::vector<imager::CleanResult>&& cleaned) {
+  /// What --savemodel needs of what CLEAN found: models of what is predicted.
+  static std::vector<imager::CleanResult> models_of(std::vector<imager::CleanResult>&& cleaned,
+                                                    const imager::Normalisation& by) {
     for (imager::CleanResult& result : cleaned) {
+      by.make_predicted(result.model);
+      for (imager::Image& model : result.further_models) by.make_predicted(model);
       result.residual = result.mask = {};
       result.further_residuals.clear();
     }

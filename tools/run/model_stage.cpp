@@ -9,6 +9,7 @@
 #include "tools/base/text.h"
 #include "tools/formats/model_image.h"
 #include "tools/run/gridding_options.h"
+#include "tools/run/mosaic_stage.h"
 #include "tools/run/shared_prediction.h"
 
 namespace misfit::tools {
@@ -118,24 +119,44 @@ std::string left_out_of_model_warning(const std::vector<Stokes>& stokes, const m
 
 void save_model(const ImageOptions& o, const SavedModel& model, const imager::Ranks& ranks, const imager::Progress& progress) {
   const ModelPlanes planes(model);
-  ms_io::Selection selection = selection_of(o);
-  ModelVisibilities visibilities;
-  {
-    const auto set = ms_io::MeasurementSet(o.vis, selection, o.datacolumn, model.stokes).share(ranks);
-    selection = set->selection();
-    visibilities =
-        image_visibilities(planes.planes, model.geometry, gridding_request(o.gridding, model.threads), *set, planes.taylor);
-  }
-  ranks.meet();  // before sets change
-  SharedPrediction shared(ranks, visibilities.predict);
-  if (!ranks.first()) return shared.follow();
   ms_io::ModelColumn column{"MODEL_DATA"};
   column.origin = {"misfit image --savemodel modelcolumn --imagename " + shell_quoted(o.imagename),
                    fingerprint_of(model).value(), model.tell};
-  const auto predict = [&](const imager::SampleCoordinates& at) { return shared.predict(at); };
-  for (std::size_t i = 0; i < o.vis.size(); ++i)
-    ms_io::write_model(o.vis[i], selection.of_set(i), column, predict, progress, {visibilities.samples_at_once, ranks.size()});
-  shared.end();
+  ms_io::Selection selection = selection_of(o);
+  selection.sights = false;  // whoever writes tells them by ids of each set
+  {
+    const ms_io::MeasurementSet all(o.vis, selection, o.datacolumn, model.stokes);
+    selection = all.selection();
+  }
+  // Antennas and fields of a mosaic have ids of their own in each set.
+  const std::size_t sets = o.vis.size(), at_once = o.makes_mosaic() ? 1 : sets;
+  for (std::size_t first = 0; first < sets; first += at_once) {
+    const bool one = at_once < sets;
+    ModelVisibilities visibilities;
+    ms_io::PredictionPace pace{.at_once = ranks.size()};
+    {
+      const auto set = (one ? ms_io::MeasurementSet(o.vis[first], selection.of_set(first), "", model.stokes)
+                            : ms_io::MeasurementSet(o.vis, selection, "", model.stokes))
+                           .share(ranks);
+      imager::GriddingRequest request = gridding_request(o.gridding, model.threads);
+      if (o.makes_mosaic()) {
+        request.mosaic = seen_request(o, *set, model.geometry);
+        pace.sights_from = set->observation().phase_centre;
+      }
+      visibilities = image_visibilities(planes.planes, model.geometry, request, *set, planes.taylor);
+      pace.block_samples = visibilities.samples_at_once;
+    }
+    ranks.meet();  // before sets change
+    SharedPrediction shared(ranks, visibilities.predict);
+    if (!ranks.first()) {
+      shared.follow();
+      continue;
+    }
+    const auto predict = [&](const imager::SampleCoordinates& at) { return shared.predict(at); };
+    for (std::size_t i = first; i < first + at_once; ++i)
+      ms_io::write_model(o.vis[i], selection.of_set(i), column, predict, progress, pace);
+    shared.end();
+  }
 }
 
 }  // namespace misfit::tools

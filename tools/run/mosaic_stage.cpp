@@ -13,6 +13,7 @@
 #include "tools/run/cube_options.h"
 #include "tools/run/dish_beams.h"
 #include "tools/run/field_beams.h"
+#include "tools/run/seen_model.h"
 
 namespace misfit::tools {
 namespace {
@@ -111,6 +112,13 @@ bool is_mosaic(const ImageOptions& o, const ms_io::MeasurementSet& set) {
   return true;
 }
 
+double pointing_tolerance_rad(const ImageOptions& o, const ms_io::MeasurementSet& set) {
+  const DishBeams dishes(o.primary_beam.beam);
+  std::vector<imager::Pattern> patterns;
+  for (const imager::AntennaSort& sort : set.beam_rows().sorts) patterns.push_back(dishes.of(sort).pattern);
+  return std::max(o.gridding.accuracy, same_pointing_beams) * narrowest_rad(patterns, set.observation().frequency_hz);
+}
+
 MosaicStage mosaic_stage(const ImageOptions& o, const ms_io::MeasurementSet& set, const imager::ImageGeometry& geometry) {
   constexpr double beside = 0.01;
   MosaicStage stage;
@@ -149,6 +157,15 @@ MosaicStage mosaic_stage(const ImageOptions& o, const ms_io::MeasurementSet& set
        stage.request->flat_noise ? "images are the sky times .pb, the same noise everywhere; so is .model"
                                  : "images are the sky, with more noise where beams see less"}};
   return stage;
+}
+
+std::shared_ptr<const imager::MosaicRequest> seen_request(const ImageOptions& o, const ms_io::MeasurementSet& set,
+                                                          const imager::ImageGeometry& geometry) {
+  const double accuracy = o.gridding.accuracy > 0 ? o.gridding.accuracy : 1e-6;
+  const auto beams = std::make_shared<const imager::MosaicBeams>(
+      imager::MosaicScene{geometry, set_beams(set, DishBeams(o.primary_beam.beam)).rows, frequencies_of(set), false,
+                          o.mosaic.beam_cut, part_of_accuracy * accuracy});
+  return std::make_shared<const imager::MosaicRequest>(imager::MosaicRequest{beams});
 }
 
 imager::Image limited_beam(const imager::Image& beam, const TypedPrimaryBeam& o) {

@@ -30,6 +30,10 @@ struct MosaicStage {
 /// image.
 MosaicStage mosaic_stage(const ImageOptions& options, const ms_io::MeasurementSet& set, const imager::ImageGeometry& geometry);
 
+/// What a mosaic's model is predicted by for one set, whose rows tell antennas and fields by their ids.
+std::shared_ptr<const imager::MosaicRequest> seen_request(const ImageOptions& options, const ms_io::MeasurementSet& set,
+                                                          const imager::ImageGeometry& geometry);
+
 /// The primary beam of a mosaic as it is written: NaN below --pblimit.
 imager::Image limited_beam(const imager::Image& beam, const TypedPrimaryBeam& options);
 

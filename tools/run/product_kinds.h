@@ -60,9 +60,6 @@ inline double sumwt_of(const imager::SampleSums& sums) {
   return 4 * sums.weight;
 }
 
-/// The keyword of the header of a mosaic's .model that says whether its pixels are the sky times .pb.
-inline constexpr char flat_noise_card[] = "FLATNOIS";
-
 /// A kind's name of a Taylor term: "image.tt1.pbcor"; "image.pbcor" of one.
 std::string product_name(const std::string& kind, const imager::TaylorTerm& term, const std::string& end = "");
 

@@ -132,13 +132,11 @@ Products::Products(const ImageOptions& options, const imager::ImageHeader& heade
     own.unit = kind.unit;
     own.quantity = kind.quantity;
     own.taylor = kind.term;
+    own.flat_noise = o_.makes_flat_noise() && kind.name.rfind("model", 0) == 0;
     if (!kind.each_stokes) own.stokes.resize(1);
     if (kind.one_pixel) own.geometry.width = own.geometry.height = 1;
     paths_.insert(paths_.end(), paths.begin(), paths.end());
-    File& file = files_.emplace(kind.name, File{kind, open(kind, own), {}}).first->second;
-    if (o_.makes_mosaic() && kind.name.rfind("model", 0) == 0)
-      file.cards = {
-          {flat_noise_card, o_.mosaic.normtype == "flatnoise" ? 1.0 : 0.0, "1: pixels are the sky times .pb; 0: the sky"}};
+    files_.emplace(kind.name, File{kind, open(kind, own), {}});
   }
 }
 
@@ -214,7 +212,7 @@ void Products::write(ChannelRun& run, RunPictures* pictures) {
   for (std::size_t s = header_.stokes.size(); s-- > 0;)
     write_stokes(s, primary_beam, run, pictures);  // the first is shown first
   if (!o_.cube.is_cube() && o_.taylor.nterms == 1 && !run.cleaned().empty())
-    write_components(run.cleaned(), o_.mosaic.normtype == "flatnoise" ? run.mosaic_beam() : nullptr);
+    write_components(run.cleaned(), o_.makes_flat_noise() ? run.mosaic_beam() : nullptr);
 }
 
 std::future<void> Products::beside(const std::function<void()>& work) const {

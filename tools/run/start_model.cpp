@@ -23,6 +23,10 @@ namespace {
 
 StartModel::StartModel(const ImageOptions& options, const imager::ImageHeader& image) : o_(options), image_(image) {
   for (const std::string& path : o_.clean.startmodel) files_.push_back({path, "start model " + path, open_image_file(path)});
+  for (const File& file : files_)
+    if (file.reader->header().flat_noise && !o_.makes_flat_noise())
+      refuse(file.name, std::string("is the sky times a mosaic's primary beam, as its ") + imager::flat_noise_key + " says",
+             "a model of the sky, or --gridder mosaic of --normtype flatnoise");
   if (files_.size() == 1) refuse_taylor_term(*files_.front().reader, files_.front().path);
   for (std::size_t term = 0; files_.size() > 1 && term < files_.size(); ++term)
     require_taylor_term(*files_[term].reader, files_[term].name, static_cast<int>(term),
@@ -61,6 +65,18 @@ std::vector<const imager::Image*> StartModel::images(std::size_t stokes) const {
   std::vector<const imager::Image*> images;
   for (const auto& term : images_) images.push_back(&term[stokes]);
   return images;
+}
+
+void StartModel::see_through(const imager::MosaicView& view, std::size_t stokes) {
+  if (!view.flat_noise) return;
+  for (std::size_t term = 0; term < images_.size(); ++term) {
+    if (files_[term].reader->header().flat_noise) continue;
+    imager::Image& image = images_[term][stokes];
+    for (std::size_t i = 0; i < image.pixel.size(); ++i) {
+      const double beam = view.primary_beam->pixel[i];
+      image.pixel[i] = std::isnan(beam) ? 0 : image.pixel[i] * beam;
+    }
+  }
 }
 
 std::vector<imager::Component> StartModel::take(std::size_t stokes) {

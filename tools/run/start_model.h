@@ -7,6 +7,7 @@
 #include "imager/clean/components.h"
 #include "imager/files/image_header.h"
 #include "imager/files/image_reader.h"
+#include "imager/transform/normalisation.h"
 #include "tools/run/image_options.h"
 
 namespace misfit::tools {
@@ -25,6 +26,9 @@ class StartModel {
   void read(int channel);
   /// Those of a Stokes parameter [term].
   std::vector<const imager::Image*> images(std::size_t stokes) const;
+  /// Those of a Stokes parameter become what a mosaic of this view has for a model of the sky, unless the files have that
+  /// already.
+  void see_through(const imager::MosaicView& view, std::size_t stokes);
   /// What they hold of it, which is then freed.
   std::vector<imager::Component> take(std::size_t stokes);
 
