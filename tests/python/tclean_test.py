@@ -2,6 +2,7 @@
 
 import contextlib
 import io
+import itertools
 import json
 import logging
 import os
@@ -42,6 +43,9 @@ def misfit_files(folder, name, kinds):
 
 
 class Sets(unittest.TestCase):
+    SIMULATED = ()
+    GIVEN = dict(imsize=64, cell="0.2arcsec")
+
     @classmethod
     def setUpClass(cls):
         folder = tempfile.TemporaryDirectory()
@@ -50,14 +54,13 @@ class Sets(unittest.TestCase):
         cls.sets = [str(cls.folder / name) for name in ("a.ms", "b.ms")]
         for path, frequency in zip(cls.sets, ("4GHz", "4.02GHz")):
             run("simulate", "--output", path, "--frequency", frequency, "--channels", 4, "--channel-width", "1MHz", "--noise",
-                "10mJy", "--hours", 0.1, "--quiet")
+                "10mJy", "--hours", 0.1, *cls.SIMULATED, "--quiet")
 
     def name(self, name):
         return str(self.folder / name)
 
     def tclean(self, name, **parameters):
-        given = dict(vis=self.sets[0], imagename=self.name(name), imsize=64, cell="0.2arcsec")
-        return misfit.tclean(**{**given, **parameters})
+        return misfit.tclean(**{**self.GIVEN, "vis": self.sets[0], "imagename": self.name(name), **parameters})
 
     def refusal(self, error=ValueError, **parameters):
         with self.assertRaises(error) as refused:
@@ -479,13 +482,15 @@ class Refused(Sets):
     """One line that names parameter, value and what was expected."""
 
     def test_what_is_not_made_yet_is_refused_by_name(self):
-        for parameters in (dict(gridder="mosaic"), dict(facets=4), dict(gridder="awproject"), dict(weighting="radial"),
+        for parameters in (dict(gridder="awp2"), dict(facets=4), dict(gridder="awproject"), dict(weighting="radial"),
                            dict(stokes="pseudoQ"), dict(cell={"value": None, "unit": "arcsec"}), dict(phasecenter=3.2), dict(phasecenter=None),
                            dict(specmode="cube", width={"m0": 5}), dict(specmode="cube", start={"value": "x", "unit": "GHz"}),
                            dict(specmode="cube", start={"m0": {"value": 5, "unit": "km/s"}, "refer": "OPTICAL"}), dict(specmode="cubesky"), dict(outframe="REST", specmode="cube"),
                            dict(veltype="beta", specmode="cube", start="3km/s", restfreq="4GHz"), dict(outframe="BARY", specmode="cubedata"),
                            dict(usemask="shape"), dict(usemask="auto-multithresh", negativethreshold=-7.0, niter=1),
-                           dict(outlierfile="o.txt"), dict(interactive=True), dict(projection="NCP"), dict(usepointing=True),
+                           dict(outlierfile="o.txt"), dict(interactive=True), dict(projection="NCP"), dict(usepointing=True), dict(psfphasecenter=0), dict(usepointing=2),
+                           dict(normtype="pbsquare", gridder="mosaic"), dict(vptable="a.vp", gridder="mosaic"),
+                           dict(psfphasecenter=[1], gridder="mosaic"), dict(psfphasecenter=True, gridder="mosaic"),
                            dict(deconvolver="mem"), dict(pbmask=0.1, niter=1), dict(niter=-1),
                            dict(cell=["1arcsec", "2arcsec"]), dict(imsize=[64.5]), dict(gain=2, niter=1),
                            dict(datacolumn="residual"), dict(savemodel="virtual"), dict(deconvolver="mtmfs", nterms=1), dict(imagename="a\nb"), dict(calcpsf="False"),
@@ -509,11 +514,80 @@ class Refused(Sets):
         self.assertIn("spw '7' selects nothing", self.refusal(RuntimeError, spw="7"))
 
 
+class Pointings(Sets):
+    """Two sets of three pointings of wide dishes, whose beams half overlap."""
+
+    PLACE = "J2000 04h00m00s +40d00m00s"
+    SIMULATED = ("--array", "vla-d", "--dishes", 100, "--pointings", "hex,3,1arcmin", "--primary-beam", "--interval", 60, "--cell",
+                 "0.4arcsec")
+    GIVEN = dict(imsize=[48, 40], cell="5arcsec", phasecenter=PLACE, gridder="mosaic")
+
+
+class Mosaics(Pointings):
+    """Pointings that become one image."""
+
+    @unittest.skipIf(fits is None, "there is no python3-astropy")
+    def test_bits_are_those_of_the_program(self):
+        options = ["--vis", *self.sets, "--imsize", 48, 40, "--cell", "5arcsec", "--phasecenter", self.PLACE, "--gridder", "mosaic"]
+        for name, end, parameters, words in (
+                ("flatsky", "", dict(normtype="flatsky", psfphasecenter=1, weighting="briggs", mosweight=False),
+                 ["--normtype", "flatsky", "--psfphasecenter", 1, "--weighting", "briggs", "--mosweight", "false"]),
+                ("cube", "", dict(gridder="ftmosaic", psfphasecenter=self.PLACE, weighting="uniform", niter=9, specmode="cube", nchan=2),
+                 ["--psfphasecenter", self.PLACE, "--weighting", "uniform", "--niter", 9, "--specmode", "cube", "--nchan", 2]),
+                ("terms", ".tt0", dict(gridder="mosaicft", deconvolver="mtmfs", niter=9, psfphasecenter=[], beam="airy:80:5"),
+                 ["--nterms", 2, "--niter", 9, "--beam", "airy:80:5"])):
+            with self.subTest(name):
+                self.tclean(name, vis=self.sets, outformat="fits", pbcor=True, **parameters)
+                run("image", "--imagename", self.name("p" + name), *options, *words, "--pbcor", "--products", "tclean", "--quiet")
+                for kind in ("psf", "residual", "image", "pb", "weight"):
+                    ours, programs = (fits.getdata(self.name(f"{which}.{kind}{end}.fits")) for which in (name, "p" + name))
+                    np.testing.assert_array_equal(ours, programs, kind)
+
+    def test_images_have_the_names_of_tclean(self):
+        wanted = {".psf", ".residual", ".model", ".image", ".mask", ".pb", ".image.pbcor", ".sumwt", ".weight"}
+        self.tclean("names", niter=5, pbcor=True)
+        self.assertLessEqual(wanted, self.files("names"))
+        self.tclean("ofterms", niter=5, deconvolver="mtmfs")
+        self.assertLessEqual({".psf.tt2", ".image.tt1", ".alpha", ".pb.tt0", ".weight.tt0"}, self.files("ofterms"))
+
+    @unittest.skipIf(fits is None, "there is no python3-astropy")
+    def test_flat_noise_is_the_flat_sky_times_the_beam(self):
+        for normtype in ("flatnoise", "flatsky"):
+            self.tclean(normtype, normtype=normtype, outformat="fits")
+        noise, sky, beam = (fits.getdata(self.name(name + ".fits")) for name in ("flatnoise.residual", "flatsky.residual", "flatsky.pb"))
+        seen = np.isfinite(beam)
+        self.assertGreater(seen.sum(), 1000)
+        np.testing.assert_allclose(noise[seen], (sky * beam)[seen], rtol=0, atol=1e-6 * np.abs(noise).max())
+
+    def test_pointings_are_those_of_the_table_if_asked(self):
+        self.assertIn("POINTING has no rows", self.refusal(RuntimeError, usepointing=True))
+
+    def test_clean_goes_on_from_the_model_on_disk(self):
+        first, second = (self.tclean("on", niter=10, cycleniter=10, calcres=new, calcpsf=new)["misfit"]["clean"] for new in (True, False))
+        self.assertAlmostEqual(second["major_cycles_log"][0]["peak_residual_jy"] / first["peak_residual_jy"], 1, places=5)
+
+    def test_refusals_name_what_there_is(self):
+        self.assertEqual(self.refusal(gridder="awproject"),
+                         "gridder='awproject': expected 'mosaic', which has the beam of each antenna at each frequency")
+        self.assertEqual(self.refusal(normtype="pbsquare"), "normtype='pbsquare': expected 'flatnoise' or 'flatsky'")
+        self.assertEqual(self.refusal(gridder="standard", usepointing=True), "usepointing=True: expected gridder='mosaic' beside it")
+        self.assertEqual(self.refusal(gridder="wproject", psfphasecenter=0), "psfphasecenter=0: expected gridder='mosaic' beside it")
+        self.assertIn("lies outside the image", self.refusal(RuntimeError, psfphasecenter="J2000 04h00m00s +41d00m00s"))
+
+    def test_what_is_not_needed_is_said(self):
+        with self.assertLogs("misfit", logging.INFO) as said:
+            self.tclean("said", mosweight=False, conjbeams=True, wbawp=False, computepastep=5.0)
+        for told in ("mosweight=False changes nothing: natural weights", "conjbeams=True changes nothing: mosaics have each frequency's",
+                     "wbawp=False changes nothing", "computepastep=5.0 changes nothing: it is of gridder='awproject'"):
+            self.assertTrue(any(told in line for line in said.output), told)
+
+
 @unittest.skipUnless(CALLS.exists(), f"there is no {CALLS}")
-class Pipelines(Sets):
+class Pipelines(Pointings):
     """The calls that a pipeline made, with names, places, channels and sizes of their own."""
 
     REPLACED = ("sets", "same_spw_in_all_sets", "calls", "origin")
+    ALIKE = ("threshold", "robust", "niter", "parallel")  # calls that differ in these alone are one
 
     @classmethod
     def setUpClass(cls):
@@ -526,15 +600,16 @@ class Pipelines(Sets):
             cube = call["specmode"] == "cube"
             for name in cls.REPLACED:
                 call.pop(name, None)
-            call.update(vis=cls.sets[:sets], field="", spw=["0"] * sets, antenna=[""] * sets, scan=[""] * sets, intent="",
-                        imsize=[32, 24], cell=["0.2arcsec"], phasecenter="", nchan=2 if cube else -1, start="", width="",
-                        niter=min(20, call["niter"]), gridder="standard", reffreq="")
-            form = {name: value for name, value in call.items() if name not in ("threshold", "robust")}
-            cls.calls[json.dumps(form, sort_keys=True)] = call  # kinds that differ in such or what is replaced are one
+            call.update(cls.GIVEN, vis=cls.sets[:sets], field="", spw=["0"] * sets, antenna=[""] * sets, scan=[""] * sets, intent="",
+                        nchan=2 if cube else -1, start="", width="", niter=min(20, call["niter"]), reffreq="",
+                        gridder=call["gridder"])
+            form = {name: value for name, value in call.items() if name not in cls.ALIKE}
+            kind = {name: value for name, value in form.items() if isinstance(value, (bool, str, list))}
+            cls.calls.setdefault(json.dumps(kind), {})[json.dumps(form)] = call
 
     def test_each_runs_whole(self):
-        self.assertGreater(len(self.calls), 5)
-        for number, call in enumerate(self.calls.values()):
+        self.assertGreater(len(self.calls), 4)
+        for number, (call, *_) in enumerate(alike.values() for alike in self.calls.values()):
             with self.subTest(number), contextlib.redirect_stderr(io.StringIO()):
                 name = f"kind{number}"
                 masked = dict(call, imagename=self.name(name))
@@ -542,10 +617,15 @@ class Pipelines(Sets):
                 made = misfit.tclean(**masked)
                 self.assertEqual(set(made), RETURNED)
                 end = ".tt0" if call["deconvolver"] == "mtmfs" else ""
-                wanted = {f".{kind}{end}" for kind in ("psf", "residual", "pb", "sumwt")}
+                wanted = {f".{kind}{end}" for kind in ("psf", "residual", "pb", "weight", "sumwt")}
                 if call["niter"]:
                     wanted |= {f".model{end}", f".image{end}", ".alpha" if end else ".image.pbcor"}
                 self.assertLessEqual(wanted, self.files(name))
+
+    def test_numbers_of_each_are_taken(self):
+        with contextlib.redirect_stderr(io.StringIO()):
+            for call in itertools.chain(*(alike.values() for alike in self.calls.values())):
+                self.assertIn("plan", misfit.tclean(**dict(call, imagename=self.name("numbers"), calcres=True, calcpsf=True, dryrun=True)))
 
 
 if __name__ == "__main__":

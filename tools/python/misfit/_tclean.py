@@ -15,34 +15,37 @@ _log = logging.getLogger("misfit")
 
 # Parameters that change nothing here, with tclean's defaults and why.
 _UNNEEDED = {
-    "wprojplanes": (1, "w is exact with 'wproject' and 'widefield', whatever their number"),
-    "vptable": ("", "primary beams are chosen by telescope"),
-    "mosweight": (True, "one field is imaged"),
-    "aterm": (True, "it is of gridders for mosaics"),
-    "psterm": (False, "it is of gridders for mosaics"),
-    "wbawp": (True, "it is of gridders for mosaics"),
-    "conjbeams": (False, "it is of gridders for mosaics"),
+    "wprojplanes": (1, "w is exact with all gridders but 'standard', whatever their number"),
+    "aterm": (True, "it is of gridder='awproject', which is not offered"),
+    "psterm": (False, "it is of gridder='awproject', which is not offered"),
+    "wbawp": (True, "mosaics have each frequency's own beam"),
+    "conjbeams": (False, "mosaics have each frequency's own beam, and so the Taylor terms of the sky alone"),
     "cfcache": ("", "convolution functions are not kept"),
-    "computepastep": (360.0, "it is of gridders for mosaics"),
-    "rotatepastep": (360.0, "it is of gridders for mosaics"),
-    "pointingoffsetsigdev": ([], "it is of gridders for mosaics"),
-    "normtype": ("flatnoise", "of one field all are the same"),
+    "computepastep": (360.0, "it is of gridder='awproject', which is not offered"),
+    "rotatepastep": (360.0, "it is of gridder='awproject', which is not offered"),
+    "pointingoffsetsigdev": ([], "it is of gridder='awproject', which is not offered"),
     "parallel": (False, "all cores share a run in any case"),
     "verbose": (False, "how masks grew stands in the report, under misfit, cycle by cycle"),
 }
 _told = set()  # what was said once
 
+# Likewise those of mosaics, with other gridders.
+_UNNEEDED_ALONE = {
+    "vptable": ("", "primary beams are chosen by telescope, or by beam"),
+    "mosweight": (True, "it is of gridder='mosaic'"),
+    "normtype": ("flatnoise", "it is of gridder='mosaic'"),
+}
+
 # Parameters that can have one value so far, with what else they might be.
 _SINGLE = {
     "projection": ("SIN", "other projections are not made"),
-    "psfphasecenter": ("", "it is of mosaics, which are not made yet"),
     "outlierfile": ("", "one field is imaged at a time"),
     "interactive": (False, "misfit.clean_cycles() is CLEAN by hand"),
-    "usepointing": (False, "it is of mosaics, which are not made yet"),
 }
 
 _GRIDDERS = {"standard": "standard", "ft": "standard", "gridft": "standard", "wproject": "wide", "widefield": "wide",
-             "wprojectft": "wide", "auto": "auto"}
+             "wprojectft": "wide", "auto": "auto", "mosaic": "mosaic", "mosaicft": "mosaic", "ftmosaic": "mosaic"}
+_NOT_OFFERED = ("awproject", "awprojectft", "awp2", "awphpg")
 _WEIGHTINGS = ("natural", "uniform", "superuniform", "briggs", "briggsbwtaper", "briggsabs")
 _DECONVOLVERS = ("hogbom", "clark", "multiscale", "mtmfs")
 _TEXTS = ("projection", "specmode", "outframe", "veltype", "interpolation", "gridder", "normtype", "deconvolver", "weighting",
@@ -116,6 +119,15 @@ def _channel(value):
     return None
 
 
+def _direction(name, value):
+    """A direction or field, or "" where none is given."""
+    if _is_list(value) and len(value) == 0:
+        return ""
+    if isinstance(value, bool) or not isinstance(value, (str, os.PathLike, numbers.Integral)):
+        _refuse(name, value, "a text such as 'J2000 12h30m49.4s +12d23m28s', or the number of a field")
+    return value
+
+
 def _whole(name, value):
     if isinstance(value, str) and re.fullmatch(r"\s*[-+]?\d+\s*", value):
         return value.strip()
@@ -154,13 +166,17 @@ def _check_types(p):
             _refuse(name, value, "a text")
 
 
+def _tell_unneeded(p, unneeded):
+    for name, (usual, why) in unneeded.items():
+        if _items(p[name]) != _items(usual):
+            _tell_once(logging.INFO, f"{name}={p[name]!r} changes nothing: {why}")
+
+
 def _check_simple(p):
     for name, (only, why) in _SINGLE.items():
         if p[name] != only:
             _refuse(name, p[name], f"{only!r}: {why}")
-    for name, (usual, why) in _UNNEEDED.items():
-        if _items(p[name]) != _items(usual):
-            _tell_once(logging.INFO, f"{name}={p[name]!r} changes nothing: {why}")
+    _tell_unneeded(p, _UNNEEDED)
     if p["facets"] != 1:
         if _GRIDDERS.get(p["gridder"]) == "standard":
             _refuse("facets", p["facets"], "1, or gridder='wproject', which has w exactly")
@@ -190,9 +206,7 @@ def _give_image(words, p):
         _refuse("imsize", p["imsize"], "a width, or width and height")
     words.give("imsize", *(_whole("imsize", side) for side in sides))
     words.give("cell", *(_quantity("cell", side, "arcsec") for side in cells or ["1arcsec"]))
-    centre = p["phasecenter"]
-    if isinstance(centre, bool) or not isinstance(centre, (str, os.PathLike, numbers.Integral)):
-        _refuse("phasecenter", centre, "a text such as 'J2000 12h30m49.4s +12d23m28s', or the number of a field")
+    centre = _direction("phasecenter", p["phasecenter"])
     if centre != "":
         words.give("phasecenter", centre)
     stokes = p["stokes"]
@@ -273,10 +287,39 @@ def _give_weights(words, p):
     taper = _ellipse("uvtaper", p["uvtaper"], "lambda")
     if taper:
         words.give("uvtaper", taper)
+
+
+def _give_gridder(words, p):
     gridder = p["gridder"]
+    if gridder in _NOT_OFFERED:
+        _refuse("gridder", gridder, "'mosaic', which has the beam of each antenna at each frequency")
     if gridder not in _GRIDDERS:
-        _refuse("gridder", gridder, "'standard', 'wproject' or 'widefield': mosaics are not made yet")
+        _refuse("gridder", gridder, "'standard', 'wproject', 'widefield' or 'mosaic'")
     words.give("gridder", _GRIDDERS[gridder])
+    if _GRIDDERS[gridder] in ("mosaic", "auto"):
+        _give_mosaic(words, p)
+        return
+    _tell_unneeded(p, _UNNEEDED_ALONE)
+    if p["usepointing"]:
+        _refuse("usepointing", p["usepointing"], "gridder='mosaic' beside it")
+    if _direction("psfphasecenter", p["psfphasecenter"]) != "":
+        _refuse("psfphasecenter", p["psfphasecenter"], "gridder='mosaic' beside it")
+
+
+def _give_mosaic(words, p):
+    if p["normtype"] not in ("flatnoise", "flatsky"):
+        _refuse("normtype", p["normtype"], "'flatnoise' or 'flatsky'")
+    words.give("normtype", p["normtype"])
+    centre = _direction("psfphasecenter", p["psfphasecenter"])
+    if centre != "":
+        words.give("psfphasecenter", centre)
+    words.flag("usepointing", p["usepointing"])
+    if p["vptable"]:
+        _refuse("vptable", p["vptable"], "'', as the beams of mosaics are chosen by telescope, or by beam")
+    if not p["mosweight"] and p["weighting"] == "natural":
+        _tell_once(logging.INFO, f"mosweight={p['mosweight']!r} changes nothing: natural weights do not follow from density")
+    elif not p["mosweight"]:
+        words.give("mosweight", "false")
 
 
 def _give_deconvolver(words, p):
@@ -429,7 +472,7 @@ def _words_of(p):
 
 def _program_words(p):
     words = _Words()
-    for give in (_give_data, _give_image, _give_spectrum, _give_weights, _give_clean):
+    for give in (_give_data, _give_image, _give_spectrum, _give_weights, _give_gridder, _give_clean):
         give(words, p)
     words.give("imagename", p["imagename"])
     if p["models"]:
@@ -444,7 +487,7 @@ def _program_words(p):
         if not p[name]:
             words.give(name, "false")
     words.give("outformat", p["outformat"])
-    for name in ("accuracy", "threads", "memory", "verify"):
+    for name in ("beam", "accuracy", "threads", "memory", "verify"):
         if p[name] is not None:
             words.give(name, p[name])
     words.flag("dry-run", p["dryrun"])
@@ -652,6 +695,7 @@ def tclean(
     psfcutoff=0.35,
     parallel=False,
     *,
+    beam=None,
     outformat="casa",
     accuracy=None,
     threads=None,
@@ -667,7 +711,7 @@ def tclean(
     says goes to the logger "misfit".
 
     Images are CASA's, with its names: .psf, .residual, .model and .mask (of CLEAN), .image, .pb (where the antennas' beam is
-    known), .image.pbcor, .sumwt, or with .tt0, .tt1, … of nterms.
+    known), .image.pbcor, .sumwt and, of mosaics, .weight, or with .tt0, .tt1, … of nterms.
 
     Parameters
     ----------
@@ -712,16 +756,34 @@ def tclean(
     perchanweightdensity : bool
         Whether each plane's weights follow from its own samples.
     gridder : str
-        "standard" leaves w out, "wproject" and "widefield" have it exactly.
-    facets, psfphasecenter, wprojplanes, vptable, mosweight, aterm, psterm, wbawp, conjbeams, cfcache : various
-        Not needed, or of mosaics.
-    usepointing, computepastep, rotatepastep, pointingoffsetsigdev : various
-        Of mosaics.
+        "standard" leaves w out, "wproject" and "widefield" have it exactly; "mosaic" makes one image of several pointings, in
+        which antennas have their own beams at each frequency, and has w where it matters.
+    facets : int
+        Not needed.
+    psfphasecenter : str or int
+        Direction or field of the source that a mosaic's PSF is of; "": in the middle of the image, or where the nearest
+        pointing is if no beam sees that.
+    wprojplanes : int
+        Not needed.
+    vptable : str
+        Not needed; with "mosaic" it must be "": beams are chosen by telescope, or by `beam`.
+    mosweight : bool
+        Whether weights of a mosaic follow from the density of each pointing's own samples, or from that of all together.
+    aterm, psterm : bool
+        Of "awproject", which is not offered.
+    wbawp, conjbeams : bool
+        Not needed: each frequency has its own beam, and so Taylor terms of mosaics are the sky's, without the beam's spectrum.
+    cfcache : str
+        Not needed.
+    usepointing : bool
+        Whether the antennas of a mosaic pointed where POINTING says, at the time of each row, in place of where FIELD does.
+    computepastep, rotatepastep, pointingoffsetsigdev : various
+        Of "awproject", which is not offered.
     pblimit : float
         Where the beam is lower .pb and .image.pbcor have no values; above 0 .residual and .image are masked there, too, but
-        keep their values.
+        keep their values, and CLEAN finds no components of mosaics there.
     normtype : str
-        Not needed of one field.
+        Images of mosaics are: "flatnoise", the sky times .pb, or "flatsky", the sky, with more noise where beams see less.
     deconvolver : str
         "hogbom", "clark", "multiscale" or "mtmfs".
     scales : list of float
@@ -784,11 +846,13 @@ def tclean(
         "none" or "modelcolumn".
     calcres, calcpsf : bool
         False: .residual and .psf of the same imagename are taken, which must be those of these samples and weights; beside a
-        .model the residual must be what that leaves.
+        .model the residual must be what that leaves. Of mosaics both are made again.
     psfcutoff : float
         Not needed.
     parallel : bool
         Not needed.
+    beam : str, optional
+        The antennas' primary beam in place of their telescope's, such as "gmrt", "airy:25:2.36" or the path of an image.
     outformat : str
         "casa", "fits" or "both".
     accuracy : float, optional
