@@ -223,7 +223,9 @@ FieldNotes notes_on_apart_fields(const ms_io::BeamRows& rows, const ApartOptions
   std::vector<SeenCentre> fields;
   for (const ms_io::FieldPointing& pointing : pointings) fields.push_back(seen_centre(pointing, rows, o, pointings));
   if (largest_apart_rad(pointings) <= noticed_apart_rad(fields)) return {};
-  return notes_on_averaged(std::move(fields), {"fields", "the image's centre", "choose by --field or --vis"}, o);
+  return notes_on_averaged(
+      std::move(fields),
+      {"fields", "the image's centre", "choose by --field or --vis, or make a mosaic of all by --gridder mosaic"}, o);
 }
 
 FieldNotes notes_on_feeds(const ms_io::BeamRows& rows, const ApartOptions& o) {

@@ -63,7 +63,7 @@ void PrimaryBeamStage::find_pointing() {
           angle_text(apart, 3) + " apart" +
           (itself ? "; field and image move past each other: choose some of its time with --timerange, or an image "
                     "that moves as the field does, without --phasecenter or with TRACKFIELD"
-                  : ", and misfit mosaic joins images of one pointing each; select one with " +
+                  : "; --gridder mosaic makes one image of them, or select one with " +
                         std::string(first.set == other.set ? "--field" : "--vis")));
   }
   if (scene_.rows.beam_offset_rad() > beside * width_rad_)

@@ -196,13 +196,13 @@ BOOST_AUTO_TEST_CASE(what_has_no_simple_beam_is_refused_in_a_line) {
   BeamScene mosaic = scene({{"EVLA", 25, "ea01"}});
   mosaic.rows.pointings.push_back({"1 (M51b)", {middle.ra_rad, middle.dec_rad + 0.1 * degree, "FK5"}, 1});
   BOOST_TEST(refusal(mosaic) ==
-             "antennas of fields 0 (M51) and 1 (M51b) pointed 6 arcmin apart, and misfit mosaic "
-             "joins images of one pointing each; select one with --field");
+             "antennas of fields 0 (M51) and 1 (M51b) pointed 6 arcmin apart; --gridder mosaic "
+             "makes one image of them, or select one with --field");
   mosaic.rows.pointings.front().set = "a.ms";
   mosaic.rows.pointings.back().set = "b.ms";
   BOOST_TEST(refusal(mosaic) ==
-             "antennas of fields 0 (M51) of a.ms and 1 (M51b) of b.ms pointed 6 arcmin apart, and misfit mosaic "
-             "joins images of one pointing each; select one with --vis");
+             "antennas of fields 0 (M51) of a.ms and 1 (M51b) of b.ms pointed 6 arcmin apart; --gridder mosaic "
+             "makes one image of them, or select one with --vis");
   mosaic.rows.pointings.back().set = mosaic.rows.pointings.front().set;
   mosaic.rows.pointings.back().id = mosaic.rows.pointings.front().id;
   BOOST_TEST(refusal(mosaic).find("field and image move past each other: choose some of its time with --timerange") !=
