@@ -167,7 +167,7 @@ BOOST_AUTO_TEST_CASE(planes_of_cubes_and_taylor_terms_keep_their_promise) {
     BOOST_TEST(plane["stokes"][0]["error"]["measured_rms"].get<double>() <= 1e-5);
   succeed(of.image("cube.one", {"--gridder", "mosaic", "--spw", "0:2", "--weighting", "briggs"}));
   succeed(of.image("cube.all", {"--gridder", "mosaic", "--specmode", "cube", "--outframe", "TOPO", "--weighting", "briggs"}));
-  const Image plane = open_image_file(of.folder / "cube.all.residual.fits")->read({2, 0});
+  const Image plane = tools::open_image_file(of.folder / "cube.all.residual.fits")->read({2, 0});
   // Beams end where they do at the lowest frequency of a cube.
   BOOST_TEST(difference(plane, of.pixels_of("cube.one.residual")) < 1e-3);
   succeed(of.image("terms", checked + Arguments{"--nterms", "2", "--niter", "300", "--pbcor"}));

@@ -114,9 +114,8 @@ ExtendedError measure(const StabilityCase& asked, const imager::AccurateImages& 
   const double affordable = 3e6 / static_cast<double>(asked.block->samples());
   const std::vector<imager::Pixel> pixels =
       imager::random_pixels(asked.geometry, static_cast<int>(std::clamp(affordable, 16.0, 200.0)));
-  const imager::PixelError of_pixels =
-      imager::pixel_error(made.images.dirty.front(), pixels, extended_pixels(*asked.block, asked.geometry, pixels),
-                          imager::Normalisation(1));
+  const imager::PixelError of_pixels = imager::pixel_error(
+      made.images.dirty.front(), pixels, extended_pixels(*asked.block, asked.geometry, pixels), imager::Normalisation(1));
   const double image_rms = imager::root_mean_square(made.images.dirty.front());
   return {of_pixels.rms / image_rms, of_pixels.max / image_rms,
           predict_error(*asked.block, made.transform->images(), asked.geometry, pixels)};

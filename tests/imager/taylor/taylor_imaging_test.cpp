@@ -72,8 +72,8 @@ BOOST_AUTO_TEST_CASE(dirty_images_and_psfs_are_direct_sums_with_taylor_weights) 
       const ImageGeometry g = geometry(centre);
       const auto transform = gridding(g);
       const StoredVisibilities twice = stored({block, block});
-      const TaylorImages made = make_taylor_images({twice, *transform, Normalisation(2 * weight_of(block))},
-                                                   *transform, {reference_hz, terms}, {});
+      const TaylorImages made =
+          make_taylor_images({twice, *transform, Normalisation(2 * weight_of(block))}, *transform, {reference_hz, terms}, {});
       BOOST_REQUIRE(made.dirty.size() + 1 == static_cast<std::size_t>(terms));
       BOOST_REQUIRE(made.psf.size() + 2 == static_cast<std::size_t>(2 * terms));
       for (std::size_t t = 0; t < made.dirty.size(); ++t)
