@@ -159,6 +159,7 @@ void check(const ImageOptions& o) {
   check_taylor(o);
   check(o.gridding);
   check(o.mosaic);
+  if (o.gridding.gridder == "standard" || o.gridding.gridder == "wide") refuse_beside_other_gridders(o.mosaic);
   if (o.makes_mosaic() && o.check_outside) refuse_option("check-outside", "true", "another --gridder than mosaic beside it");
   check(o.primary_beam);
   check_taken(o);

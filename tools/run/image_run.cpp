@@ -123,6 +123,7 @@ class ImageRun : private ChannelSink {
       progress_.say("fields point apart: --gridder mosaic");
       open_set();
     }
+    if (!o_.makes_mosaic()) refuse_beside_other_gridders(o_.mosaic);
     if (auto own = sharing_.own_part(*set_)) set_ = std::move(own);
     if (o_.clean.savemodel != "none")
       if (const std::string words = left_out_of_model_warning(stokes_, *set_); !words.empty()) warn(words);

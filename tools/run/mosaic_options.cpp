@@ -21,6 +21,14 @@ void declare(CLI::App& command, TypedMosaic& o) {
                    "Antennas of a mosaic pointed where the table POINTING says at the time of each row, not where FIELD does");
 }
 
+void refuse_beside_other_gridders(const TypedMosaic& o) {
+  constexpr const char* mosaic = "--gridder mosaic beside it, or auto with pointings that make a mosaic";
+  if (o.usepointing) refuse_option("usepointing", "true", mosaic);
+  if (!o.psfphasecenter.empty()) refuse_option("psfphasecenter", o.psfphasecenter, mosaic);
+  if (o.normtype != TypedMosaic().normtype) refuse_option("normtype", o.normtype, mosaic);
+  if (o.beam_cut != TypedMosaic().beam_cut) refuse_option("beam-cut", typed(o.beam_cut), mosaic);
+}
+
 void check(const TypedMosaic& o) {
   if (!(o.beam_cut > 0 && o.beam_cut <= 0.5))
     refuse_option("beam-cut", typed(o.beam_cut), "a number above 0, 0.5 at most, such as 1e-3");

@@ -72,7 +72,9 @@ class TwoFields {
                      "--cell",
                      "15arcsec",
                      "--phasecenter",
-                     "J2000 4h00m00s +40d00m00s"} +
+                     "J2000 4h00m00s +40d00m00s",
+                     "--gridder",
+                     "standard"} +
            more;
   }
   std::string warnings() const { return report_of(folder_ / "a")["warnings"].dump(); }
