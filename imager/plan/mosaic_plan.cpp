@@ -67,10 +67,19 @@ std::string angle(double rad) {
   return text("%.3g", rad / arcmin) + " arcmin";
 }
 
+/// Bytes that a window holds while others are gridded: its grids; where w has planes, samples that wait for them, and images.
+double held_bytes(const GriddingPlan& of_window) {
+  const TransformMemory memory = memory_of(of_window);
+  if (!of_window.options.has_w_axis()) return memory.visibilities + memory.psf + memory.other_stokes;
+  const GriddingRequest& r = of_window.request;
+  const auto samples = static_cast<double>(std::min<std::uint64_t>(r.samples, r.samples_at_once));
+  const double pixels = static_cast<double>(r.geometry.pixels()), images = r.stokes;
+  return samples * (wide_bytes_a_sample + images * wide_bytes_a_value) + images * pixels * sizeof(double);
+}
+
 /// As many as take twice the bytes that planes of w may.
 std::size_t windows_at_once(const WindowsPlan& windows, const GriddingRequest& request) {
-  const TransformMemory memory = memory_of(*windows.of_window);
-  const double bytes = memory.visibilities + memory.psf + memory.other_stokes;
+  const double bytes = held_bytes(*windows.of_window);
   const double most = 2 * static_cast<double>(request.stack_bytes) / std::max(bytes, 1.0);
   return std::clamp<std::size_t>(static_cast<std::size_t>(std::min(most, 1e9)), 1, windows.windows * windows.spans);
 }
@@ -140,7 +149,9 @@ TransformMemory memory_of(const WindowsPlan& windows, const GriddingRequest& req
   TransformMemory memory = memory_of(*windows.of_window);
   const auto held = static_cast<double>(windows_at_once(windows, request));
   const double images = 3 * static_cast<double>(request.geometry.pixels()) * sizeof(double);
-  memory.visibilities = held * (memory.visibilities + memory.psf + memory.other_stokes) + images;
+  const bool planes = windows.of_window->options.has_w_axis();
+  memory.visibilities =
+      held * held_bytes(*windows.of_window) + images + (planes ? memory.visibilities + memory.psf + memory.other_stokes : 0);
   memory.psf = memory.other_stokes = 0;
   return memory;
 }

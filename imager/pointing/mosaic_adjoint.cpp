@@ -17,7 +17,7 @@ struct AddedWindow {
   std::shared_ptr<const SeenWindow> seen;
   const FrequencySpan* span;
   std::vector<std::unique_ptr<AdjointSum>> sums;  ///< of most_stokes images each but the last: [node][image]
-  std::vector<double> weight;                     ///< Σ w of shares [node][node]
+  std::vector<std::vector<double>> weight;        ///< Σ w x^k of shares [power k][node][node]
 };
 
 class MosaicAdjoint : public AdjointSum {
@@ -28,6 +28,8 @@ class MosaicAdjoint : public AdjointSum {
     for (std::size_t i = 0; i < images(); ++i) result_.images.emplace_back(g.width, g.height);
     if (options.with_psf) result_.psf = Image(g.width, g.height);
     if (options.with_sensitivity) result_.sensitivity = Image(g.width, g.height);
+    for (int k = 0; options.with_sensitivity && k < options.sensitivity_powers; ++k)
+      result_.further_sensitivity.emplace_back(g.width, g.height);
     result_.sums.resize(sets());
   }
 
@@ -76,7 +78,8 @@ class MosaicAdjoint : public AdjointSum {
     while (!added_.empty() && added_.size() >= windows_->options().windows_at_once)
       finish_window(added_.front()), added_.pop_front();
     const std::size_t nodes = place.span->node_hz.size();
-    AddedWindow window{place.seen, place.span, {}, std::vector<double>(nodes * nodes)};
+    AddedWindow window{place.seen, place.span, {}, {}};
+    window.weight.resize(1 + result_.further_sensitivity.size(), std::vector<double>(nodes * nodes));
     for (std::size_t left = nodes * images_of_a_node(); left > 0;) {
       const std::size_t some = std::min<std::size_t>(left, most_stokes);
       // Whether a sample counts was decided by its own u and v, which a plane changes.
@@ -100,10 +103,15 @@ class MosaicAdjoint : public AdjointSum {
         here.weight[r * channels + c] = w;
         channel_weight[c] += double{w};
       }
-    for (std::size_t c = 0; c < channels; ++c)
-      for (std::size_t k = 0; k < nodes; ++k)
-        for (std::size_t j = 0; j < nodes; ++j)
-          window.weight[k * nodes + j] += channel_weight[c] * samples.share[c][k] * samples.share[c][j];
+    for (std::size_t c = 0; c < channels; ++c) {
+      double weighed = channel_weight[c];
+      for (std::vector<double>& of_power : window.weight) {
+        for (std::size_t k = 0; k < nodes; ++k)
+          for (std::size_t j = 0; j < nodes; ++j)
+            of_power[k * nodes + j] += weighed * samples.share[c][k] * samples.share[c][j];
+        weighed *= samples.at.frequency_hz[c] / options_.sensitivity_reference_hz - 1;
+      }
+    }
     const std::vector<std::vector<std::complex<double>>> values = values_of(place, samples, block, sets);
     for (std::size_t k = 0, first = 0; k < window.sums.size(); first += most_stokes, ++k) {
       VisibilitySets some;
@@ -170,13 +178,15 @@ class MosaicAdjoint : public AdjointSum {
     }
     if (!options_.with_sensitivity) return;
     const std::size_t nodes = node_hz.size();
-    add_window(seen.window, result_.sensitivity, [&](int row, int column) {
-      double sum = 0;
-      for (std::size_t k = 0; k < nodes; ++k)
-        for (std::size_t j = 0; j < nodes; ++j)
-          sum += added.weight[k * nodes + j] * of_beam[k].at(row, column) * of_beam[j].at(row, column);
-      return sum;
-    });
+    for (std::size_t power = 0; power < added.weight.size(); ++power)
+      add_window(seen.window, power == 0 ? result_.sensitivity : result_.further_sensitivity[power - 1],
+                 [&](int row, int column) {
+                   double sum = 0;
+                   for (std::size_t k = 0; k < nodes; ++k)
+                     for (std::size_t j = 0; j < nodes; ++j)
+                       sum += added.weight[power][k * nodes + j] * of_beam[k].at(row, column) * of_beam[j].at(row, column);
+                   return sum;
+                 });
   }
 
   template <typename Value>

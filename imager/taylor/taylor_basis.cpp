@@ -12,16 +12,15 @@ namespace {
 
 using Matrix = TaylorBasis::Matrix;
 
-/// L of H = L Lᵀ.
-Matrix cholesky_factor(const std::vector<double>& peaks, std::size_t n) {
+/// L of H = L Lᵀ; none where the powers are not told apart.
+template <typename Peaks>
+std::optional<Matrix> cholesky_factor(const Peaks& peaks, std::size_t n) {
   constexpr double least_part = 1e-5;
   Matrix factor{};
   for (std::size_t j = 0; j < n; ++j) {
     double square = peaks[2 * j];
     for (std::size_t k = 0; k < j; ++k) square -= factor[j][k] * factor[j][k];
-    if (!(square > least_part * peaks[2 * j]))
-      throw std::runtime_error("the frequencies of the samples do not tell " + std::to_string(n) +
-                               " Taylor terms apart; expected a wider band, or fewer terms");
+    if (!(square > least_part * peaks[2 * j])) return std::nullopt;
     factor[j][j] = std::sqrt(square);
     for (std::size_t i = j + 1; i < n; ++i) {
       double value = peaks[i + j];
@@ -64,7 +63,18 @@ TaylorBasis::TaylorBasis(const std::vector<double>& psf_peaks)
   if (psf_peaks.size() % 2 != 1 || terms_ > most_taylor_terms)
     throw std::invalid_argument(std::to_string(psf_peaks.size()) + " spectral PSFs; expected 1, 3 or 5");
   const auto n = static_cast<std::size_t>(terms_);
-  inverse_factor_ = inverse(cholesky_factor(psf_peaks, n), n);
+  const std::optional<Matrix> factor = cholesky_factor(psf_peaks, n);
+  if (!factor)
+    throw std::runtime_error("the frequencies of the samples do not tell " + std::to_string(n) +
+                             " Taylor terms apart; expected a wider band, or fewer terms");
+  inverse_factor_ = inverse(*factor, n);
+}
+
+std::optional<TaylorBasis> TaylorBasis::of(const std::array<double, 2 * most_taylor_terms - 1>& psf_peaks, int terms) {
+  const auto n = static_cast<std::size_t>(terms);
+  const std::optional<Matrix> factor = cholesky_factor(psf_peaks, n);
+  if (!factor) return std::nullopt;
+  return TaylorBasis(terms, std::sqrt(psf_peaks.front()), inverse(*factor, n));
 }
 
 TaylorValues TaylorBasis::coordinates(const TaylorValues& residual) const {
@@ -108,6 +118,19 @@ std::vector<Image> principal_solution(const TaylorBasis& basis, const std::vecto
   for_each_pixel(residual, threads, [&](std::size_t i, const TaylorValues& values) {
     const TaylorValues coefficient = basis.coefficients(basis.coordinates(values));
     for (std::size_t t = 0; t < result.size(); ++t) result[t].pixel[i] = coefficient[t];
+  });
+  return result;
+}
+
+std::vector<Image> principal_solution(const std::vector<Image>& relative_peaks, const std::vector<const Image*>& residual,
+                                      int threads) {
+  std::vector<Image> result(residual.size(), Image(residual.front()->width, residual.front()->height));
+  for_each_pixel(residual, threads, [&](std::size_t i, const TaylorValues& values) {
+    std::array<double, 2 * most_taylor_terms - 1> peaks{1};
+    for (std::size_t k = 0; k < relative_peaks.size(); ++k) peaks[k + 1] = relative_peaks[k].pixel[i];
+    const std::optional<TaylorBasis> basis = TaylorBasis::of(peaks, static_cast<int>(residual.size()));
+    const TaylorValues coefficient = basis ? basis->coefficients(basis->coordinates(values)) : TaylorValues{};
+    for (std::size_t t = 0; t < result.size(); ++t) result[t].pixel[i] = basis ? coefficient[t] : std::nan("");
   });
   return result;
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <vector>
 
 #include "imager/data/image.h"
@@ -28,6 +29,8 @@ class TaylorBasis {
   /// std::runtime_error where the samples' frequencies do not tell n terms apart: where what of x^t is orthogonal to lower
   /// powers is less than 1e-5 of its square, which the error of PSFs made to 1e-4 could be.
   explicit TaylorBasis(const std::vector<double>& psf_peaks);
+  /// Of 2n − 1 peaks; none where TaylorBasis() throws.
+  static std::optional<TaylorBasis> of(const std::array<double, 2 * most_taylor_terms - 1>& psf_peaks, int terms);
 
   int terms() const { return terms_; }
   double peak() const { return root_peak_ * root_peak_; }  ///< H_00
@@ -37,10 +40,18 @@ class TaylorBasis {
   TaylorValues coefficients(const TaylorValues& y) const;
 
  private:
+  TaylorBasis(int terms, double root_peak, const Matrix& inverse_factor)
+      : terms_(terms), root_peak_(root_peak), inverse_factor_(inverse_factor) {}
+
   int terms_;
   double root_peak_;         ///< √H_00
   Matrix inverse_factor_{};  ///< L⁻¹
 };
+
+/// The same of a mosaic, where peaks P_k(0) of sources differ from pixel to pixel: `relative_peaks` are images of P_k(0)/P_0(0)
+/// [k − 1], and P_0(0) is 1. NaN where the samples that see a pixel do not tell the terms apart.
+std::vector<Image> principal_solution(const std::vector<Image>& relative_peaks, const std::vector<const Image*>& residual,
+                                      int threads);
 
 /// Of the PSFs' middle pixels. [k], 2n − 1 of them.
 TaylorBasis basis_of(const std::vector<const Image*>& psf);

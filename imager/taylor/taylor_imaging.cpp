@@ -11,9 +11,7 @@ namespace misfit::imager {
 namespace {
 
 /// Of the dirty images' sum, whose last images may be PSFs, of which there are so many.
-std::vector<Image> normalised_images(std::unique_ptr<AdjointSum> sum, const ImagedData& imaged, const Context& context,
-                                     int psfs = 0) {
-  AdjointResult result = finish_adjoint(std::move(sum), imaged.samples.source.ranks(), context);
+std::vector<Image> normalised_images(AdjointResult& result, const ImagedData& imaged, const Context& context, int psfs = 0) {
   const StageTimer timer(context.times, stage::fft);
   const std::size_t first_psf = result.images.size() - static_cast<std::size_t>(psfs);
   for (std::size_t i = 0; i < result.images.size(); ++i) {
@@ -25,6 +23,19 @@ std::vector<Image> normalised_images(std::unique_ptr<AdjointSum> sum, const Imag
   return std::move(result.images);
 }
 
+std::vector<Image> normalised_images(std::unique_ptr<AdjointSum> sum, const ImagedData& imaged, const Context& context,
+                                     int psfs = 0) {
+  AdjointResult result = finish_adjoint(std::move(sum), imaged.samples.source.ranks(), context);
+  return normalised_images(result, imaged, context, psfs);
+}
+
+/// The sensitivities of powers over that of the first.
+std::vector<Image> relative_peaks(AdjointResult& result) {
+  for (Image& further : result.further_sensitivity)
+    for (std::size_t i = 0; i < further.pixel.size(); ++i) further.pixel[i] /= result.sensitivity.pixel[i];
+  return std::move(result.further_sensitivity);
+}
+
 }  // namespace
 
 TaylorImages make_taylor_images(const ImagedData& imaged, const Transform& psf, const TaylorExpansion& expansion,
@@ -32,7 +43,12 @@ TaylorImages make_taylor_images(const ImagedData& imaged, const Transform& psf, 
   const TaylorPowers of_dirty{1, expansion.terms - 1}, of_psf{1, 2 * expansion.terms - 2};
   const bool together = &imaged.transform == &psf && of_dirty.last + of_psf.last <= most_stokes;
   VisibilityPass pass(imaged.samples.source, context);
-  auto sum = begin_adjoint(imaged.transform, {.images = of_dirty.last + (together ? of_psf.last : 0)}, context);
+  auto sum = begin_adjoint(imaged.transform,
+                           {.images = of_dirty.last + (together ? of_psf.last : 0),
+                            .with_sensitivity = true,
+                            .sensitivity_powers = of_psf.last,
+                            .sensitivity_reference_hz = expansion.reference_hz},
+                           context);
   auto psf_sum = together ? nullptr : begin_adjoint(psf, {.images = of_psf.last}, context);
   pass.for_each_block([&](const VisibilityBlock& block) {
     const StageTimer timer(context.times, stage::grid);
@@ -47,7 +63,9 @@ TaylorImages make_taylor_images(const ImagedData& imaged, const Transform& psf, 
   });
   TaylorImages images;
   if (psf_sum) images.psf = normalised_images(std::move(psf_sum), imaged, context, of_psf.last);
-  images.dirty = normalised_images(std::move(sum), imaged, context, together ? of_psf.last : 0);
+  AdjointResult result = finish_adjoint(std::move(sum), imaged.samples.source.ranks(), context);
+  images.dirty = normalised_images(result, imaged, context, together ? of_psf.last : 0);
+  images.relative_peaks = relative_peaks(result);
   if (together && !images.dirty.empty()) {
     const auto first_psf = images.dirty.begin() + of_dirty.last;
     std::move(first_psf, images.dirty.end(), std::back_inserter(images.psf));

@@ -11,6 +11,9 @@ namespace misfit::imager {
 struct TaylorImages {
   std::vector<Image> dirty;  ///< [t − 1], 1 ≤ t < terms: R_t = A*(w x^t V) / Σ w, Jy/beam
   std::vector<Image> psf;    ///< [k − 1], 1 ≤ k ≤ 2 terms − 2: P_k = A*(w x^k) / Σ w, of a source in the middle pixel
+  /// [k − 1], 1 ≤ k ≤ 2 terms − 2: of a mosaic, whose pixels are seen at unlike frequencies, what P_k is over P_0 of a source
+  /// in each pixel; empty where that is the same in all.
+  std::vector<Image> relative_peaks{};
 };
 
 /// One pass over the visibilities for all of them: dirty images by `transform`, PSFs by `psf`, which may be the same.

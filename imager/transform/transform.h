@@ -39,6 +39,9 @@ struct AdjointOptions {
   bool beyond_grid = false;
   /// Whether a transform that does not see all pixels alike tells how well it sees each, see AdjointResult.
   bool with_sensitivity = false;
+  /// Up to which power k it tells that of Σ w x^k besides, with x = ν/ν_0 − 1.
+  int sensitivity_powers = 0;
+  double sensitivity_reference_hz = 0;  ///< ν_0
 };
 
 /// Images made from all samples added, not yet divided by Σ w.
@@ -51,6 +54,7 @@ struct AdjointResult {
   std::vector<SampleSums> sums;  ///< [Stokes], of the block's own for a PSF alone: they differ in those of |V| alone
   /// What a source of 1 Jy in each pixel adds to the sum of that pixel; empty where that is Σ w in all, or was not asked for.
   Image sensitivity;
+  std::vector<Image> further_sensitivity;  ///< [k − 1]: the same with w x^k
   double fft_s = 0;  ///< seconds of wall clock that FFTs and corrections took, as samples were added and at the end
 };
 

@@ -82,6 +82,7 @@ inline AdjointResult finish_adjoint(std::unique_ptr<AdjointSum> sum, const Ranks
   for (Image& image : result.images) add_up(image, ranks);
   add_up(result.psf, ranks);
   ranks.sum(result.sensitivity.pixel.data(), result.sensitivity.pixel.size());  // which every rank needs
+  for (Image& further : result.further_sensitivity) ranks.sum(further.pixel.data(), further.pixel.size());
   for (SampleSums& sums : result.sums) sums.add_up(ranks);
   return result;
 }

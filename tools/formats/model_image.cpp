@@ -171,14 +171,19 @@ std::string weight_path(const std::string& model) {
   return model.substr(0, at) + ".weight" + model.substr(at + sizeof part - 1);
 }
 
-/// A mosaic's model becomes that of the sky: its pixels are divided by √(W / max W) of the sensitivity W.
-void divide_by_sensitivity(std::vector<imager::SkyImage>& planes, const std::string& path) {
+}  // namespace
+
+void divide_by_sensitivity(std::vector<imager::SkyImage>& planes, const ModelChannel& of) {
+  const std::string& path = of.path;
   const std::string other = weight_path(path);
   if (std::error_code absent; other.empty() || !std::filesystem::exists(other, absent))
     throw std::runtime_error(path + " has the sky times a mosaic's primary beam, as its " + imager::flat_noise_key +
                              " says; expected the mosaic's .weight beside it" + (other.empty() ? "" : ", " + other));
   const auto file = open_image_file(other);
-  const imager::Image weight = file->read({0, 0});
+  if (of.channel >= file->header().spectral.channels)
+    throw std::runtime_error(other + " has " + std::to_string(file->header().spectral.channels) +
+                             " planes; expected those of " + path);
+  const imager::Image weight = file->read({of.channel, 0});
   const double most = imager::largest_magnitude(weight);
   for (imager::SkyImage& plane : planes) {
     if (weight.width != plane.image.width || weight.height != plane.image.height)
@@ -193,15 +198,13 @@ void divide_by_sensitivity(std::vector<imager::SkyImage>& planes, const std::str
   }
 }
 
-}  // namespace
-
 std::vector<imager::SkyImage> read_stokes_model(const imager::ImageReader& file, const std::string& path) {
   refuse_taylor_term(file, path);
   const int channels = file.header().spectral.channels;
   if (channels > 1)
     throw std::runtime_error(path + " has planes of " + std::to_string(channels) + " frequencies; expected one");
   std::vector<imager::SkyImage> planes = read_model_channel(file, {path, 0});
-  if (file.header().flat_noise) divide_by_sensitivity(planes, path);
+  if (file.header().flat_noise) divide_by_sensitivity(planes, {path, 0});
   return planes;
 }
 

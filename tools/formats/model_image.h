@@ -39,6 +39,10 @@ struct ModelChannel {
 /// The same of one channel of a model with several; see channel_for() in image_file.h.
 std::vector<imager::SkyImage> read_model_channel(const imager::ImageReader& file, const ModelChannel& of);
 
+/// A mosaic's model, whose header says that it is the sky times the mosaic's primary beam, becomes that of the sky: its pixels
+/// are divided by √(W / max W) of the .weight W beside it. Throws std::runtime_error where there is none such.
+void divide_by_sensitivity(std::vector<imager::SkyImage>& planes, const ModelChannel& of);
+
 /// That the model at `path` is of other frequencies than the data, in words; empty where it is not, see bands_apart().
 std::string band_warning(const imager::Observation& model, const imager::Observation& data, const std::string& path);
 

@@ -160,7 +160,7 @@ void check(const ImageOptions& o) {
   check(o.gridding);
   check(o.mosaic);
   if (o.gridding.gridder == "standard" || o.gridding.gridder == "wide") refuse_beside_other_gridders(o.mosaic);
-  if (o.makes_mosaic() && o.check_outside) refuse_option("check-outside", "true", "another --gridder than mosaic beside it");
+  refuse_outside_of_mosaic(o);
   check(o.primary_beam);
   check_taken(o);
   check(o.scale, o.dry_run);
@@ -169,6 +169,10 @@ void check(const ImageOptions& o) {
   if (o.threads < 0) refuse_option("threads", std::to_string(o.threads), "0 (all cores) or more");
   if (!(o.memory_gib >= 0 && std::isfinite(o.memory_gib)))
     refuse_option("memory", typed(o.memory_gib), "0 (half of the machine's memory) or more, in GiB");
+}
+
+void refuse_outside_of_mosaic(const ImageOptions& o) {
+  if (o.makes_mosaic() && o.check_outside) refuse_option("check-outside", "true", "another --gridder than mosaic beside it");
 }
 
 imager::ImageGeometry geometry_of(const ImageOptions& o, const imager::SkyDirection& phase_centre) {

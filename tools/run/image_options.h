@@ -80,6 +80,9 @@ ms_io::Selection selection_of(const ImageOptions& options);
 /// file that cannot be used. Passes over options that the command requires and that are not given.
 void check(const ImageOptions& options);
 
+/// The same of --check-outside where a mosaic is made, which may be known only once sets are opened.
+void refuse_outside_of_mosaic(const ImageOptions& options);
+
 imager::ImageGeometry geometry_of(const ImageOptions& options, const imager::SkyDirection& phase_centre);
 
 /// Every option of `command` with the value in force: {name: value}.

@@ -124,6 +124,7 @@ class ImageRun : private ChannelSink {
       open_set();
     }
     if (!o_.makes_mosaic()) refuse_beside_other_gridders(o_.mosaic);
+    refuse_outside_of_mosaic(o_);
     if (auto own = sharing_.own_part(*set_)) set_ = std::move(own);
     if (o_.clean.savemodel != "none")
       if (const std::string words = left_out_of_model_warning(stokes_, *set_); !words.empty()) warn(words);

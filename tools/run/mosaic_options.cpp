@@ -15,8 +15,10 @@ void declare(CLI::App& command, TypedMosaic& o) {
   command.add_option("--psfphasecenter", o.psfphasecenter,
                      "The PSF of a mosaic is that of a source in this direction, given as --phasecenter; without it in the "
                      "middle of the image, or where the nearest pointing is if no beam sees that");
-  command.add_option("--beam-cut", o.beam_cut,
-                     "Beams of a mosaic are taken as 0 beyond where their main lobe falls to this part of their peak");
+  command.add_option(
+      "--beam-cut", o.beam_cut,
+      "Beams of a mosaic are taken as 0 beyond where their main lobe falls to this part of its peak at the lowest "
+      "frequency, at the same radius at all frequencies");
   command.add_flag("--usepointing", o.usepointing,
                    "Antennas of a mosaic pointed where the table POINTING says at the time of each row, not where FIELD does");
 }

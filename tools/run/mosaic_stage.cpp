@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 #include <stdexcept>
 #include <utility>
 
@@ -18,8 +19,27 @@
 namespace misfit::tools {
 namespace {
 
-/// Beams follow between frequencies to this part of the accuracy.
-constexpr double part_of_accuracy = 0.1;
+/// Beams follow between frequencies to this part of the accuracy; those that turn, which is done in steps, to less.
+double beam_tolerance(const ImageOptions& o, const std::vector<imager::Pattern>& patterns) {
+  const bool turn = std::any_of(patterns.begin(), patterns.end(), [](const auto& p) { return p && !p->is_round(); });
+  const double accuracy = o.gridding.accuracy > 0 ? o.gridding.accuracy : 1e-6;
+  return (turn ? 0.01 : 0.1) * accuracy;
+}
+
+/// That some pointings see nothing of the image; else empty.
+std::string unseeing(const imager::MosaicBeams& beams, const std::vector<ms_io::FieldPointing>& pointings) {
+  std::set<imager::Pattern> patterns(beams.rows().of_antennas().begin(), beams.rows().of_antennas().end());
+  patterns.erase(nullptr);
+  std::string names;
+  for (std::size_t p = 0; p < pointings.size(); ++p) {
+    const imager::AxisFrame& frame = beams.rows().of_fields()[p];
+    if (std::none_of(patterns.begin(), patterns.end(), [&](const auto& pattern) {
+          return beams.window({pattern, pattern, frame, 0}).has_value();
+        }))
+      names += (names.empty() ? "" : ", ") + field_words(pointings[p], pointings);
+  }
+  return names.empty() ? "" : "antennas of field " + names + " see nothing of the image: their samples add nothing to it";
+}
 
 std::vector<imager::AxisFrame> frames_of(const std::vector<ms_io::FieldPointing>& pointings,
                                          const imager::SkyDirection& centre) {
@@ -70,8 +90,15 @@ PsfPixel psf_pixel(const ImageOptions& o, const imager::MosaicBeams& beams) {
   const imager::ImageGeometry& g = beams.geometry();
   if (!o.mosaic.psfphasecenter.empty()) {
     const std::string where = "--psfphasecenter " + o.mosaic.psfphasecenter;
-    const ms_io::Selection centred = ms_io::phased_to({}, o.mosaic.psfphasecenter, o.vis);
-    if (!centred.phase_centre) throw std::runtime_error(where + " moves; expected a direction, or a field that stands still");
+    ms_io::Selection centred;
+    try {
+      centred = ms_io::phased_to({}, o.mosaic.psfphasecenter, o.vis);
+    } catch (const std::runtime_error&) {  // which names --phasecenter
+    }
+    if (!centred.phase_centre)
+      throw std::runtime_error(where +
+                               ": expected a direction, such as 'J2000 12h30m49.4s +12d23m28s', or a field that stands "
+                               "still, by its id or name");
     try {
       return pixel_at(imager::direction_cosines(ms_io::in_frame(*centred.phase_centre, g.phase_centre.frame), g.phase_centre),
                       g, where);
@@ -139,13 +166,14 @@ MosaicStage mosaic_stage(const ImageOptions& o, const ms_io::MeasurementSet& set
     throw std::runtime_error("FEED's column BEAM_OFFSET says that beams point " + angle_text(rows.beam_offset_rad(), 3) +
                              " beside the field's direction; expected beams on the axis of their dishes");
   if (!o.mosaic.usepointing) require_still(rows.pointings, width_rad);
-  const double accuracy = o.gridding.accuracy > 0 ? o.gridding.accuracy : 1e-6;
+  const double tolerance = beam_tolerance(o, patterns);
   const auto beams = std::make_shared<const imager::MosaicBeams>(
       imager::MosaicScene{geometry, imager::RowBeams(std::move(patterns), frames_of(table.pointings, geometry.phase_centre)),
-                          frequencies_of(set), o.cube.is_cube(), o.mosaic.beam_cut, part_of_accuracy * accuracy});
+                          frequencies_of(set), o.cube.is_cube(), o.mosaic.beam_cut, tolerance});
   const PsfPixel psf = psf_pixel(o, *beams);
   stage.request = std::make_shared<const imager::MosaicRequest>(
       imager::MosaicRequest{beams, psf.row, psf.column, o.mosaic.normtype == "flatnoise"});
+  if (const std::string blind = unseeing(*beams, table.pointings); !blind.empty()) stage.warnings.push_back(blind);
   stage.decisions = {
       {"pointings", std::to_string(table.pointings.size()),
        o.mosaic.usepointing ? "where POINTING says that antennas looked, grouped to " +
@@ -161,10 +189,10 @@ MosaicStage mosaic_stage(const ImageOptions& o, const ms_io::MeasurementSet& set
 
 std::shared_ptr<const imager::MosaicRequest> seen_request(const ImageOptions& o, const ms_io::MeasurementSet& set,
                                                           const imager::ImageGeometry& geometry) {
-  const double accuracy = o.gridding.accuracy > 0 ? o.gridding.accuracy : 1e-6;
+  imager::RowBeams rows = set_beams(set, DishBeams(o.primary_beam.beam)).rows;
+  const double tolerance = beam_tolerance(o, rows.of_antennas());
   const auto beams = std::make_shared<const imager::MosaicBeams>(
-      imager::MosaicScene{geometry, set_beams(set, DishBeams(o.primary_beam.beam)).rows, frequencies_of(set), false,
-                          o.mosaic.beam_cut, part_of_accuracy * accuracy});
+      imager::MosaicScene{geometry, std::move(rows), frequencies_of(set), false, o.mosaic.beam_cut, tolerance});
   return std::make_shared<const imager::MosaicRequest>(imager::MosaicRequest{beams});
 }
 

@@ -140,6 +140,7 @@ class RunPlanner {
            (o_.taylor.reffreq.empty() ? "the middle of the band" : "--reffreq " + o_.taylor.reffreq) + "; " +
                std::to_string(2 * o_.taylor.nterms - 1) + " spectral PSFs. --accuracy holds for .tt0");
     if (!o_.clean.runs()) return;
+    if (o_.makes_mosaic()) return decide("spectral index .alpha", "that of the sky", "a mosaic has the beam of each frequency");
     const std::string seen =
         "as the antennas saw it: their beam narrows with frequency, which adds −1.5 at the half power of an Airy disc";
     const std::string sky =

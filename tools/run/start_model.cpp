@@ -24,9 +24,9 @@ namespace {
 StartModel::StartModel(const ImageOptions& options, const imager::ImageHeader& image) : o_(options), image_(image) {
   for (const std::string& path : o_.clean.startmodel) files_.push_back({path, "start model " + path, open_image_file(path)});
   for (const File& file : files_)
-    if (file.reader->header().flat_noise && !o_.makes_flat_noise())
+    if (file.reader->header().flat_noise && !o_.makes_mosaic())
       refuse(file.name, std::string("is the sky times a mosaic's primary beam, as its ") + imager::flat_noise_key + " says",
-             "a model of the sky, or --gridder mosaic of --normtype flatnoise");
+             "a model of what is imaged, or --gridder mosaic");
   if (files_.size() == 1) refuse_taylor_term(*files_.front().reader, files_.front().path);
   for (std::size_t term = 0; files_.size() > 1 && term < files_.size(); ++term)
     require_taylor_term(*files_[term].reader, files_[term].name, static_cast<int>(term),
@@ -46,6 +46,7 @@ std::vector<imager::Image> StartModel::planes_of(const File& file, int channel) 
   require_same_pixels(*file.reader, file.name, image_);  // about which its residual is exact
   const int of_file = channel_for(*file.reader, file.name, image_.spectral, channel);
   std::vector<imager::SkyImage> planes = read_model_channel(*file.reader, {file.path, of_file});
+  if (file.reader->header().flat_noise) divide_by_sensitivity(planes, {file.path, of_file});
   std::vector<imager::Image> images;
   for (const imager::Stokes wanted : image_.stokes) {
     const auto found = std::find_if(planes.begin(), planes.end(), [&](const auto& plane) { return plane.stokes == wanted; });
@@ -68,13 +69,12 @@ std::vector<const imager::Image*> StartModel::images(std::size_t stokes) const {
 }
 
 void StartModel::see_through(const imager::MosaicView& view, std::size_t stokes) {
-  if (!view.flat_noise) return;
-  for (std::size_t term = 0; term < images_.size(); ++term) {
-    if (files_[term].reader->header().flat_noise) continue;
-    imager::Image& image = images_[term][stokes];
+  for (auto& term : images_) {
+    imager::Image& image = term[stokes];
     for (std::size_t i = 0; i < image.pixel.size(); ++i) {
       const double beam = view.primary_beam->pixel[i];
-      image.pixel[i] = std::isnan(beam) ? 0 : image.pixel[i] * beam;
+      if (std::isnan(beam)) image.pixel[i] = 0;
+      if (view.flat_noise && image.pixel[i] != 0) image.pixel[i] *= beam;
     }
   }
 }

@@ -26,8 +26,7 @@ class StartModel {
   void read(int channel);
   /// Those of a Stokes parameter [term].
   std::vector<const imager::Image*> images(std::size_t stokes) const;
-  /// Those of a Stokes parameter become what a mosaic of this view has for a model of the sky, unless the files have that
-  /// already.
+  /// Those of a Stokes parameter, of the sky, become what a mosaic of this view has for it; what no beam sees is left out.
   void see_through(const imager::MosaicView& view, std::size_t stokes);
   /// What they hold of it, which is then freed.
   std::vector<imager::Component> take(std::size_t stokes);

@@ -46,11 +46,16 @@ double TaylorStage::distance_rms(std::size_t power) const {
 }
 
 std::vector<imager::Image> TaylorStage::principal_solution(const imager::Image& dirty) const {
-  return imager::principal_solution(*basis_, all_terms(dirty, images_.dirty), threads_);
+  return principal_solution(all_terms(dirty, images_.dirty));
+}
+
+std::vector<imager::Image> TaylorStage::principal_solution(const std::vector<const imager::Image*>& residual) const {
+  if (!images_.relative_peaks.empty()) return imager::principal_solution(images_.relative_peaks, residual, threads_);
+  return imager::principal_solution(*basis_, residual, threads_);
 }
 
 RestoredTerms TaylorStage::restore(const imager::CleanResult& cleaned, const imager::Beam& beam, double cell_rad) const {
-  const std::vector<imager::Image> left = imager::principal_solution(*basis_, cleaned.residuals(), threads_);
+  const std::vector<imager::Image> left = principal_solution(cleaned.residuals());
   std::vector<imager::Image> images;
   for (const imager::Image* model : cleaned.models())
     images.push_back(imager::restored({*model, left[images.size()]}, beam, cell_rad, threads_));

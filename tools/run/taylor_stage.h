@@ -52,6 +52,7 @@ class TaylorStage {
   RestoredTerms restore(const imager::CleanResult& cleaned, const imager::Beam& beam, double cell_rad) const;
 
  private:
+  std::vector<imager::Image> principal_solution(const std::vector<const imager::Image*>& residual) const;
   void take(TakenTerms taken, const imager::ComparedPixels& pixels, const imager::AccurateImages& made);
 
   double x_rms_ = 0;  ///< of the samples
