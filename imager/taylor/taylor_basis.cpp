@@ -130,7 +130,8 @@ std::vector<Image> principal_solution(const std::vector<Image>& relative_peaks, 
     for (std::size_t k = 0; k < relative_peaks.size(); ++k) peaks[k + 1] = relative_peaks[k].pixel[i];
     const std::optional<TaylorBasis> basis = TaylorBasis::of(peaks, static_cast<int>(residual.size()));
     const TaylorValues coefficient = basis ? basis->coefficients(basis->coordinates(values)) : TaylorValues{};
-    for (std::size_t t = 0; t < result.size(); ++t) result[t].pixel[i] = basis ? coefficient[t] : std::nan("");
+    result.front().pixel[i] = basis ? coefficient.front() : values.front();
+    for (std::size_t t = 1; t < result.size(); ++t) result[t].pixel[i] = basis ? coefficient[t] : std::nan("");
   });
   return result;
 }

@@ -49,7 +49,8 @@ class TaylorBasis {
 };
 
 /// The same of a mosaic, where peaks P_k(0) of sources differ from pixel to pixel: `relative_peaks` are images of P_k(0)/P_0(0)
-/// [k − 1], and P_0(0) is 1. NaN where the samples that see a pixel do not tell the terms apart.
+/// [k − 1], and P_0(0) is 1. Where the samples that see a pixel do not
+/// tell the terms apart, the first is R_0(p) and others are NaN.
 std::vector<Image> principal_solution(const std::vector<Image>& relative_peaks, const std::vector<const Image*>& residual,
                                       int threads);
 
