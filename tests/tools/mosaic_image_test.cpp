@@ -26,14 +26,14 @@ const std::vector<Point> points{{0, 0, 1}, {-14, -8, 2}, {20, 5, 0.7}, {9, -27, 
 constexpr int pixels = 160;
 
 const Arguments one_centre{"--phasecenter", "J2000 60deg 40deg"};
-const Arguments scene = Arguments{"--imsize", std::to_string(pixels), "--cell", "24arcsec", "--accuracy", "1e-5"} + one_centre;
+const Arguments scene{"--imsize", std::to_string(pixels), "--cell", "24arcsec", "--accuracy", "1e-5"};
 
-/// Seven pointings of two sorts of dishes, over a tenth in frequency.
+/// Seven pointings over a tenth in frequency.
 struct Pointings {
   TemporaryFolder folder;
   std::string set = folder / "a.ms", list = folder / "sky.csv";
 
-  explicit Pointings(const Arguments& more = {}) {
+  explicit Pointings(const Arguments& more = {}, const std::string& dishes_m = "25,20") {
     std::ofstream sky(list);
     sky << "l_arcsec,m_arcsec,flux_jy\n";
     for (const Point& p : points) sky << -24 * p.right << ',' << 24 * p.up << ',' << p.flux_jy << '\n';
@@ -48,7 +48,7 @@ struct Pointings {
                       "--pointings",
                       "hex,7,15arcmin",
                       "--dishes",
-                      "25,20",
+                      dishes_m,
                       "--primary-beam",
                       "--beam",
                       "airy",
@@ -65,7 +65,12 @@ struct Pointings {
             more);
   }
   Arguments image(const std::string& name, const Arguments& more = {}) const {
-    return Arguments{"image", "--vis", set, "--imagename", folder / name, "--beam", "airy"} + scene + more;
+    return averaged(name, Arguments{"--beam", "airy"} + more);
+  }
+  /// Without a beam, which no average has.
+  Arguments averaged(const std::string& name, const Arguments& more) const { return elsewhere(name, one_centre + more); }
+  Arguments elsewhere(const std::string& name, const Arguments& more) const {
+    return Arguments{"image", "--vis", set, "--imagename", folder / name} + scene + more;
   }
   Image pixels_of(const std::string& name) const { return imager::read_fits(folder / (name + ".fits")).image; }
   json report(const std::string& name) const { return json::parse(content(folder / (name + ".report.json"))); }
@@ -126,8 +131,8 @@ BOOST_AUTO_TEST_CASE(sources_of_all_pointings_are_found_and_their_model_explains
                                of.folder / (std::string(start) + ".model.fits")}));
     BOOST_TEST(imager::largest_magnitude(of.pixels_of("again.residual")) < 5e-3);
   }
-  BOOST_TEST(run(of.image("wide", {"--gridder", "wide", "--niter", "1", "--force-average", "--startmodel",
-                                   of.folder / "flatnoise.model.fits"}))
+  BOOST_TEST(run(of.averaged("wide", {"--gridder", "wide", "--niter", "1", "--force-average", "--startmodel",
+                                      of.folder / "flatnoise.model.fits"}))
                  .err.find("is the sky times a mosaic's primary beam") != std::string::npos);
 }
 
@@ -139,7 +144,7 @@ BOOST_AUTO_TEST_CASE(auto_makes_a_mosaic_of_fields_that_point_apart) {
   BOOST_TEST(
       (of.pixels_of("auto.residual").pixel.size() == static_cast<std::size_t>(pixels) * static_cast<std::size_t>(pixels)));
   BOOST_TEST(difference(of.pixels_of("auto.residual"), of.pixels_of("asked.residual")) == 0);  // by any number of threads
-  const Outcome averaged = run(of.image("averaged", {"--force-average"}));
+  const Outcome averaged = run(of.averaged("averaged", {"--force-average"}));
   BOOST_TEST(averaged.code == 0);
   BOOST_TEST(averaged.err.find("averaged into one image") != std::string::npos, averaged.err);
   BOOST_TEST(!std::filesystem::exists(of.folder / "averaged.weight.fits"));
@@ -151,12 +156,12 @@ BOOST_AUTO_TEST_CASE(auto_makes_a_mosaic_of_fields_that_point_apart) {
 
 /// One pointing has the image of a single field: its noise flattened, and its beam.
 BOOST_AUTO_TEST_CASE(a_mosaic_of_one_pointing_is_the_image_of_its_field) {
-  const Pointings of;
-  succeed(of.image("mosaic", {"--gridder", "mosaic", "--field", "0"}));
-  succeed(of.image("field", {"--gridder", "wide", "--field", "0"}));
-  const Image beam = of.pixels_of("mosaic.pb"), field_beam = of.pixels_of("field.pb");
-  BOOST_TEST(difference(beam, field_beam) < 0.02);  // that is the mean of B, where a mosaic has the root of the mean of B²
-  BOOST_TEST(difference(of.pixels_of("mosaic.residual"), of.pixels_of("field.residual")) < 0.02);
+  const Pointings of({}, "25");
+  const Arguments one{"--field", "0", "--spw", "0:1"};
+  succeed(of.image("mosaic", Arguments{"--gridder", "mosaic"} + one));
+  succeed(of.image("field", Arguments{"--gridder", "wide"} + one));
+  BOOST_TEST(difference(of.pixels_of("mosaic.pb"), of.pixels_of("field.pb")) < 1e-6);
+  BOOST_TEST(difference(of.pixels_of("mosaic.residual"), of.pixels_of("field.residual")) < 1e-4);
 }
 
 BOOST_AUTO_TEST_CASE(planes_of_cubes_and_taylor_terms_keep_their_promise) {
@@ -169,7 +174,7 @@ BOOST_AUTO_TEST_CASE(planes_of_cubes_and_taylor_terms_keep_their_promise) {
   succeed(of.image("cube.all", {"--gridder", "mosaic", "--specmode", "cube", "--outframe", "TOPO", "--weighting", "briggs"}));
   const Image plane = tools::open_image_file(of.folder / "cube.all.residual.fits")->read({2, 0});
   // Beams end where they do at the lowest frequency of a cube.
-  BOOST_TEST(difference(plane, of.pixels_of("cube.one.residual")) < 1e-3);
+  BOOST_TEST(difference(plane, of.pixels_of("cube.one.residual")) < 3e-3);
   succeed(of.image("terms", checked + Arguments{"--nterms", "2", "--niter", "300", "--pbcor"}));
   BOOST_TEST(of.report("terms")["error"]["measured_rms"].get<double>() <= 1e-5);
   for (const char* const end : {"pb.tt0", "weight.tt0", "image.tt1.pbcor", "alpha.pbcor", "psf.tt2"})
@@ -188,7 +193,8 @@ BOOST_AUTO_TEST_CASE(what_makes_no_mosaic_is_refused) {
   says({"--usepointing"}, "POINTING");
   says({"--beam-cut", "0"}, "--beam-cut 0: expected a number above 0");
   says({"--psfphasecenter", "J2000 65deg 40deg"}, "lies outside the image");
-  says({"--phasecenter", "J2000 80deg 40deg"}, "no pointing sees any pixel");
+  const Outcome far = run(of.elsewhere("refused", {"--gridder", "mosaic", "--phasecenter", "J2000 80deg 40deg"}));
+  BOOST_TEST(far.err.find("no pointing sees any pixel") != std::string::npos, far.err);
   says({"--check-outside"}, "check-outside");
   says({"--normtype", "pbsquare"}, "pbsquare");
 }
