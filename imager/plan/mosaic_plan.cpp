@@ -103,6 +103,9 @@ Plan decisions_of(const GriddingPlan& plan, const AllWindows& all) {
            (w.nodes == 1 ? " beam" : " beams"),
        "from which all channels follow to " + text("%.1g", beams.tolerance()) +
            " of the peak; each sample is gridded for each"}};
+  decisions.push_back({"a pointing", text("%.2g", static_cast<double>(w.nodes) * plan.choice.best.cost_s) + " s of a core",
+                       "for a pass over its " + text("%.2g", static_cast<double>(w.of_window->request.samples)) +
+                           " samples, by counts of operations"});
   if (w.unseeing > 0)
     decisions.push_back({"pointings left out", std::to_string(w.unseeing), "their beams see no pixel of the image"});
   if (w.on_planes && r.max_abs_w > 0)
