@@ -38,6 +38,8 @@ std::vector<ms_io::DataColumn> named_columns_of(const ImageOptions& scene) {
 /// The values that are given.
 void check_values(const Options& o) {
   check(o.report.scene);
+  if (o.report.scene.makes_mosaic())
+    refuse_option("gridder", "mosaic", "auto, standard or wide: what programs make of one pointing is compared");
   for (const std::string& kernel : o.report.kernels) choose_kernel({kernel, o.report.scene.gridding.kernel.folder});
   if (!(o.report.seconds >= 0 && std::isfinite(o.report.seconds)))
     throw std::invalid_argument("--seconds " + significant(o.report.seconds, 6) + ": expected 0 or more");

@@ -73,9 +73,9 @@ BOOST_AUTO_TEST_CASE(commands_and_options_are_completed_where_they_can_stand) {
 }
 
 BOOST_AUTO_TEST_CASE(values_are_completed_where_there_is_a_list_of_them) {
-  check_offered({"image", "--gridder", ""}, {"auto", "standard", "wide"});
+  check_offered({"image", "--gridder", ""}, {"auto", "mosaic", "standard", "wide"});
   check_offered({"image", "--gridder", "=", "st"}, {"standard"});  // as bash divides --gridder=st
-  check_offered({"image", "--gridder", "="}, {"auto", "standard", "wide"});
+  check_offered({"image", "--gridder", "="}, {"auto", "mosaic", "standard", "wide"});
   check_offered({"simulate", "--array", "vla-"}, {"vla-a", "vla-b", "vla-c", "vla-d"});
   check_offered({"kernel", "--emit", "c"}, {"casacore", "c-header", "csv"});
   check_offered({"image", "--niter", ""}, {});

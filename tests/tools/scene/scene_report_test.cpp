@@ -172,10 +172,10 @@ BOOST_AUTO_TEST_CASE(what_an_image_is_warned_of_a_report_is_too_and_what_is_refu
     std::filesystem::copy(snapshot(), set, std::filesystem::copy_options::recursive);
     change(set);
     const Outcome image = run({"image", "--vis", set, "--imagename", folder / "a", "--imsize", "64", "48", "--cell",
-                               "0.1arcsec", "--phasecenter", direction});
+                               "0.1arcsec", "--phasecenter", direction, "--gridder", "standard"});
     Arguments arguments = short_report_of_scene(folder / "report");
     *std::find(arguments.begin(), arguments.end(), snapshot()) = set;
-    const Outcome report = run(arguments + Arguments{"--phasecenter", direction});
+    const Outcome report = run(arguments + Arguments{"--phasecenter", direction, "--gridder", "standard"});
     BOOST_TEST_CONTEXT(what << ": " << image.err << report.err) {
       BOOST_TEST(report.code == image.code);
       BOOST_TEST(image.code == (what == "fields far apart" ? 1 : 0));
