@@ -117,8 +117,8 @@ class PointingTable::Places {
         throw casacore::AipsError("its frame " + std::string(MDirection::showType(frame)) + " turns with the Earth, and " +
                                   telescope_.doubt);
       const casacore::MeasFrame here(epoch(time_s), *place);
-      MDirection::Convert convert(MDirection::Ref(frame, here), MDirection::Ref(MDirection::J2000, here));
-      found = views_.insert({{antenna, frame}, {here, std::move(convert)}}).first;
+      const MDirection::Convert convert(MDirection::Ref(frame, here), MDirection::Ref(MDirection::J2000, here));
+      found = views_.insert({{antenna, frame}, {here, convert}}).first;
     }
     found->second.here.resetEpoch(epoch(time_s));
     return sky_direction(found->second.to_j2000(towards));

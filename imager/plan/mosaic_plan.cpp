@@ -56,7 +56,7 @@ GriddingRequest window_request(const GriddingRequest& request, const WindowsPlan
   of_window.psf = false;
   of_window.psf_accuracy = 0;
   of_window.samples = std::max<std::uint64_t>(1, request.samples / windows.windows);
-  const auto images = static_cast<std::size_t>(request.stokes + (request.psf ? 1 : 0));
+  const auto images = static_cast<std::size_t>(request.stokes) + (request.psf ? 1 : 0);
   of_window.stokes = static_cast<int>(std::clamp<std::size_t>(windows.nodes * images, 1, most_stokes));
   of_window.samples_at_once = std::max<std::size_t>(std::size_t{1} << 16, request.samples_at_once / windows.windows);
   return of_window;

@@ -1,9 +1,13 @@
 #pragma once
 
 #include <pybind11/pybind11.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <atomic>
 #include <chrono>
+#include <cstdio>
+#include <cstdlib>
 #include <functional>
 #include <future>
 #include <thread>
@@ -13,6 +17,16 @@ namespace misfit::python {
 /// How long Ctrl-C may wait.
 inline constexpr std::chrono::milliseconds patience(50);
 
+/// Calls of interruptibly() whose work goes on.
+inline std::atomic<int> at_work{0};
+
+/// Called as the process ends, with its status: work that goes on unseen must not meet what is destroyed then.
+inline void end_at_once(int status, void* /*nothing*/) {
+  if (at_work == 0) return;
+  std::fflush(nullptr);
+  _exit(status);
+}
+
 /// What `work` returns or throws, called on a thread of its own while other Python threads run. Ctrl-C raises its Python
 /// exception (pybind11::error_already_set) soon; `work` then goes on unseen until it ends or the
 /// process does, so it must own what it uses and keep away from Python.
@@ -20,13 +34,20 @@ template <typename Result>
 Result interruptibly(std::function<Result()> work) {
   std::packaged_task<Result()> task(std::move(work));
   std::future<Result> result = task.get_future();
-  std::thread(std::move(task)).detach();
+  ++at_work;
+  std::thread([task = std::move(task)]() mutable {
+    task();
+    --at_work;
+  }).detach();
   while (true) {
     {
       const pybind11::gil_scoped_release others_run;
       if (result.wait_for(patience) == std::future_status::ready) return result.get();
     }
-    if (PyErr_CheckSignals() != 0) throw pybind11::error_already_set();
+    if (PyErr_CheckSignals() != 0) {
+      on_exit(end_at_once, nullptr);  // now, so that it comes before destructors of what the work has made
+      throw pybind11::error_already_set();
+    }
   }
 }
 
