@@ -95,7 +95,7 @@ Plan decisions_of(const GriddingPlan& plan, const AllWindows& all) {
        "each of its samples is gridded on what its beam sees alone, at most " + std::to_string(all.largest.width) + " × " +
            std::to_string(all.largest.height) + " pixels, " + text("%.3g", 100 * part) + "% of the image"},
       {"beams",
-       "cut off where main lobes fall to " + text("%.3g", beams.cut()) + ", at most " +
+       "cut off where main lobes fall to " + text("%.3g", beams.cut()) + ", or before their formula ends, at most " +
            angle(std::asin(beams.largest_reach())) + " from their axes",
        "so the image is defined; a source of 1 Jy at the cut leaves " + text("%.3g", beams.cut()) + " Jy in its pointing"},
       {"beams between frequencies",

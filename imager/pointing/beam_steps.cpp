@@ -9,26 +9,28 @@
 namespace misfit::imager {
 namespace {
 
-/// Voltages of all patterns, and their squares, at radii and angles; NaN from where they end.
-ValuesAtFrequency sampled_patterns(const RowBeams& beams, double reach) {
+/// What all pairs of patterns see, at radii and angles; NaN from where one of them ends. Voltages themselves are less smooth:
+/// roots of fitted powers.
+ValuesAtFrequency sampled_pairs(const RowBeams& beams, double reach) {
   constexpr int radii = 96, angles = 8;
   std::set<const VoltagePattern*> different;
   for (const Pattern& pattern : beams.of_antennas())
     if (pattern) different.insert(pattern.get());
   return [different, reach](double hz) {
     std::vector<double> values;
-    for (const VoltagePattern* pattern : different)
-      for (int r = 1; r <= radii; ++r)
-        for (int a = 0; a < (pattern->is_round() ? 1 : angles); ++a) {
-          const double sine = reach * r / radii, angle_rad = 2 * pi * a / angles;
-          if (sine > pattern->continuous_sine(hz)) {
-            values.insert(values.end(), 2, std::nan(""));
-            continue;
+    for (auto one = different.begin(); one != different.end(); ++one)
+      for (auto other = one; other != different.end(); ++other) {
+        const bool round = (*one)->is_round() && (*other)->is_round();
+        const double ends = std::min((*one)->continuous_sine(hz), (*other)->continuous_sine(hz));
+        for (int r = 1; r <= radii; ++r)
+          for (int a = 0; a < (round ? 1 : angles); ++a) {
+            const double sine = reach * r / radii, angle_rad = 2 * pi * a / angles;
+            const auto seen = [&](const VoltagePattern& p) {
+              return p.is_round() ? p.voltage(sine, hz) : p.voltage_at(sine, angle_rad, hz);
+            };
+            values.push_back(sine > ends ? std::nan("") : seen(**one) * seen(**other));
           }
-          const double seen = pattern->is_round() ? pattern->voltage(sine, hz) : pattern->voltage_at(sine, angle_rad, hz);
-          values.push_back(seen);
-          values.push_back(seen * seen);
-        }
+      }
     return values;
   };
 }
@@ -60,7 +62,7 @@ double turn_step(const RowBeams& beams, double reach, double frequency_hz, doubl
 
 BeamSteps beam_steps(const RowBeams& beams, double reach, const std::vector<double>& frequency_hz, double tolerance,
                      std::size_t most_nodes) {
-  BeamSteps steps{frequency_spans(frequency_hz, sampled_patterns(beams, reach), tolerance, most_nodes)};
+  BeamSteps steps{frequency_spans(frequency_hz, sampled_pairs(beams, reach), tolerance, most_nodes)};
   steps.turn_rad = turn_step(beams, reach, steps.spans.back().high_hz, tolerance);
   return steps;
 }

@@ -62,7 +62,9 @@ double MosaicBeams::found_reach(const VoltagePattern& one, const VoltagePattern&
   const double step = 0.02 * std::min(one.detail_sine(low), other.detail_sine(low));
   const double lobe =
       first_sine_at(scene_.cut, step, [&](double sine) { return one.voltage(sine, low) * other.voltage(sine, low); });
-  return std::min({lobe, one.continuous_sine(high), other.continuous_sine(high)});
+  constexpr double before_end = 0.97;  // at its very end a fit may be the root of what falls to 0
+  const double ends = std::min(one.continuous_sine(high), other.continuous_sine(high));
+  return ends < lobe ? before_end * ends : lobe;
 }
 
 std::vector<const FrequencySpan*> MosaicBeams::spans(const std::vector<double>& frequency_hz) const {

@@ -32,8 +32,8 @@ struct Window {
 
 /// The beams of a mosaic, and the windows on its image that they see. A beam is that of its pair of dishes up to the radius at
 /// which the pair's main lobe falls to the cut at the lowest frequency, and 0 beyond it, at all frequencies: its sidelobes
-/// within that radius count at higher ones. The radius is no larger than that at which a formula ends in a step at any of the
-/// frequencies.
+/// within that radius count at higher ones. The radius is smaller than that at which a formula ends in a step at any of the
+/// frequencies, by 3%.
 class MosaicBeams {
  public:
   /// Throws std::invalid_argument unless the cut is above 0 and below 1.
