@@ -154,7 +154,7 @@ GriddingRequest request_of(const Mosaic& mosaic, double accuracy, int psf_row, i
 }  // namespace
 
 /// For windows over which w matters; for such over which a plane has all that matters of it; and without w.
-BOOST_AUTO_TEST_CASE(images_and_predictions_are_those_of_the_definition) {
+BOOST_AUTO_TEST_CASE(images_and_predictions_are_those_of_the_definition, *boost::unit_test::label("sweep")) {
   struct Asked {
     Mosaic mosaic;
     std::vector<double> accuracies;
