@@ -83,7 +83,10 @@ std::string CleanStage::closed_mask_warning() const {
   for (std::size_t m = 0; m < masks.size(); ++m)
     if (imager::mask_is_empty(masks[m])) closed += (closed.empty() ? "" : ", ") + stokes_name(image_.stokes[m]);
   if (closed.empty()) return "";
-  const std::string limit = limited_.empty() ? "" : "--pbmask " + significant(o_.primary_beam.pbmask, 3);
+  const bool by_limit = o_.mosaic_limit() > o_.primary_beam.pbmask;
+  const std::string least =
+      by_limit ? "--pblimit " + significant(o_.mosaic_limit(), 3) : "--pbmask " + significant(o_.primary_beam.pbmask, 3);
+  const std::string limit = limited_.empty() ? "" : least;
   const std::string what =
       o_.clean.mask.empty() ? limit : "the mask " + names_of(o_.clean.mask) + (limit.empty() ? "" : " with " + limit);
   return what + " allows no pixel of the image" +
