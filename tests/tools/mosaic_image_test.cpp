@@ -168,7 +168,9 @@ BOOST_AUTO_TEST_CASE(planes_of_cubes_and_taylor_terms_keep_their_promise) {
   const Pointings of({"--noise", "1mJy"});
   const Arguments checked{"--gridder", "mosaic", "--verify", "40"};
   succeed(of.image("cube", checked + Arguments{"--specmode", "cube", "--outframe", "TOPO", "--niter", "50", "--pbcor"}));
-  for (const json& plane : of.report("cube")["planes"])
+  const json cube = of.report("cube");
+  BOOST_TEST(cube["planes"].size() == 4);
+  for (const json& plane : cube["planes"])
     BOOST_TEST(plane["stokes"][0]["error"]["measured_rms"].get<double>() <= 1e-5);
   succeed(of.image("cube.one", {"--gridder", "mosaic", "--spw", "0:2", "--weighting", "briggs"}));
   succeed(of.image("cube.all", {"--gridder", "mosaic", "--specmode", "cube", "--outframe", "TOPO", "--weighting", "briggs"}));
