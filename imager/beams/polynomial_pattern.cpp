@@ -61,9 +61,9 @@ class PolynomialPattern : public VoltagePattern {
     return x <= ends_[band][fit] ? std::sqrt(power(beams_.bands[band].fits[fit], x)) : 0;
   }
 
-  /// In octaves.
+  /// By what factor a frequency lies outside a band; 1 within it.
   static double away(const FittedBand& band, double frequency_hz) {
-    return std::max({0.0, std::log2(band.low_hz / frequency_hz), std::log2(frequency_hz / band.high_hz)});
+    return std::max({1.0, band.low_hz / frequency_hz, frequency_hz / band.high_hz});
   }
 
   Fits fits_at(double frequency_hz) const {

@@ -1,7 +1,6 @@
 #include "imager/beams/radial_function.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "imager/beams/axis_frame.h"
@@ -30,12 +29,10 @@ RadialTable::RadialTable(double reach, int threads, const RadialFunction& functi
   });
 }
 
-double RadialTable::operator()(double sine) const {
-  const double place = sine / step();
-  const int cell = std::min(static_cast<int>(place), points - 1);
-  const std::array<double, 4> weight = cubic_weights(place - cell);
-  const double* const v = value_.data() + cell;  // at −1, 0, 1, 2
-  return weight[0] * v[0] + weight[1] * v[1] + weight[2] * v[2] + weight[3] * v[3];
+RadialTable::Place RadialTable::place(double sine) const {
+  const double at = sine / step();
+  const int cell = std::min(static_cast<int>(at), points - 1);
+  return {cell, cubic_weights(at - cell)};
 }
 
 namespace {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <functional>
 #include <vector>
@@ -21,8 +22,19 @@ class RadialTable {
  public:
   RadialTable(double reach, int threads, const RadialFunction& function);
 
-  /// At sin θ up to the reach.
-  double operator()(double sine) const;
+  /// Which points count at a radius, and by how much: the same in all tables of one reach.
+  struct Place {
+    int cell;
+    std::array<double, 4> weight;  ///< of the points before the cell, at both its ends, and behind it
+  };
+
+  /// Of sin θ up to the reach.
+  Place place(double sine) const;
+  double operator()(const Place& place) const {
+    const double* const v = value_.data() + place.cell;
+    return place.weight[0] * v[0] + place.weight[1] * v[1] + place.weight[2] * v[2] + place.weight[3] * v[3];
+  }
+  double operator()(double sine) const { return (*this)(place(sine)); }
   double reach() const { return reach_; }
 
  private:

@@ -37,7 +37,7 @@ class Search {
     for (const Precision precision : {Precision::single_precision, Precision::double_precision}) {
       if (request_.precision
               ? precision != *request_.precision
-              : precision == Precision::single_precision && request_.accuracy != 0 && request_.accuracy < single_from)
+              : precision == Precision::single_precision && request_.accuracy != 0 && request_.accuracy < request_.single_from)
         continue;
       search(precision);
       if (best_ && request_.accuracy == 0) break;
@@ -155,7 +155,7 @@ class Search {
   /// Where no accuracy is asked, single precision must not be what limits it.
   bool trusted(const GriddingCandidate& c) const {
     if (c.work.precision == Precision::double_precision || request_.accuracy != 0 || request_.precision) return true;
-    return c.worst_error >= single_from && c.rounding < 0.1 * c.worst_error;
+    return c.worst_error >= request_.single_from && c.rounding < 0.1 * c.worst_error;
   }
   void offer(const GriddingCandidate& c) {
     if (trusted(c) && costs_less(c)) best_ = c;

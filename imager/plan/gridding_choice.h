@@ -49,6 +49,7 @@ struct GriddingRequest {
   Gridder gridder = Gridder::automatic;
   double max_abs_w = 0;                         ///< largest |w| of the samples, in wavelengths
   std::optional<Precision> precision;           ///< of taps, grid and FFT; chosen where there is none
+  double single_from = 1e-6;                    ///< no less is asked of single precision where it is chosen
   bool shortest_polynomials = true;             ///< of the lowest degree that costs less than half a percent of E
   std::optional<kernels::TableOptions> lookup;  ///< tables of the full polynomials in their place
   bool facets = true;                           ///< a w axis may split the image
@@ -56,7 +57,6 @@ struct GriddingRequest {
   std::size_t samples_at_once = WideTransformOptions().samples_at_once;  ///< that a w axis gathers
 };
 
-inline constexpr double single_from = 1e-6;  ///< no less is asked of single precision
 
 enum class Rejection { costs_more, not_exact_enough };
 

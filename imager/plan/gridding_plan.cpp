@@ -84,10 +84,11 @@ Plan decisions_of(const GriddingRequest& request, const GriddingPlan& plan) {
       {"kernel evaluation", evaluation_of(o), because_evaluation},
       {"precision of grid and FFT", single ? "single" : "double",
        request.precision ? "as asked; rounding adds " + text("%.1g", plan.rounding)
-       : single          ? "rounding adds " + text("%.1g", plan.rounding)
-                         : "single precision would add " + text("%.1g", in_single.rounding) + " of rounding" +
-                      (request.accuracy < single_from ? ", and is not trusted below " + text("%.0e", single_from)
-                                                      : ", or cost more")},
+       : single
+           ? "rounding adds " + text("%.1g", plan.rounding)
+           : "single precision would add " + text("%.1g", in_single.rounding) + " of rounding" +
+                 (request.accuracy < request.single_from ? ", and is not trusted below " + text("%.0e", request.single_from)
+                                                         : ", or cost more")},
   };
   if (request.stokes > 1)
     decisions.push_back(
@@ -131,7 +132,9 @@ GriddingPlan with_threads(GriddingPlan plan, int threads) {
   if (plan.psf) plan.psf = std::make_shared<const GriddingPlan>(with_threads(*plan.psf, threads));
   if (plan.windows) {
     auto windows = std::make_shared<WindowsPlan>(*plan.windows);
-    windows->of_window = std::make_shared<const GriddingPlan>(with_threads(*windows->of_window, threads));
+    for (auto& of_term : windows->of_term)
+      of_term = std::make_shared<const GriddingPlan>(with_threads(*of_term, threads_of_each_window(*windows, threads)));
+    windows->side_by_side = windows_side_by_side(*windows, threads);
     plan.windows = std::move(windows);
   }
   return plan;
@@ -296,7 +299,7 @@ GriddingPlan plan_gridding(const GriddingRequest& request) {
 }
 
 TransformMemory memory_of(const GriddingPlan& plan) {
-  if (plan.windows) return memory_of(*plan.windows, plan.request);
+  if (plan.windows) return mosaic_memory(plan);
   if (plan.direct) {
     const double image = static_cast<double>(plan.request.geometry.pixels()) * sizeof(double);
     const double samples = static_cast<double>(plan.request.samples), others = plan.request.stokes - 1;

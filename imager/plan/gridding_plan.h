@@ -2,6 +2,7 @@
 
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "imager/plan/gridding_choice.h"
 #include "imager/plan/plan.h"
@@ -13,13 +14,19 @@ struct GriddingPlan;
 
 /// How a mosaic's windows are transformed.
 struct WindowsPlan {
-  std::shared_ptr<const GriddingPlan> of_window;  ///< of the largest, or of that over which w matters most
-  bool on_planes = false;                         ///< see WindowTransforms
+  /// [term of beams, see BeamSpan]: how its part of a window's samples is transformed, in the largest window or in that over
+  /// which w matters most. Each is as exact as its size asks; the first counts most. Those that leave w out have a plane of it,
+  /// see TermTransforms.
+  std::vector<std::shared_ptr<const GriddingPlan>> of_term;
   double phase_part = 1;     ///< of the phase that w makes over the whole image: what w makes over any window beside its plane
   std::size_t windows = 0;   ///< of pointings and pairs of dishes that see the image
   std::size_t unseeing = 0;  ///< pointings that see no pixel of it
   std::size_t spans = 1;     ///< see BeamSteps
-  std::size_t nodes = 1;     ///< of a span at most
+  std::size_t gathers = 1;   ///< times that samples are gathered and all windows transformed
+  int side_by_side = 1;      ///< see MosaicOptions
+
+  /// Transforms of each term that a pass takes.
+  double transforms() const { return static_cast<double>(windows * spans * gathers); }
 };
 
 /// How it will be done: the cheapest that keeps the promise.
@@ -35,7 +42,7 @@ struct GriddingPlan {
   bool direct = false;           ///< images are made by direct sums, which cost less for so few samples
   std::uint64_t direct_pixels = 0;             ///< a model of no more pixels is predicted by direct sums
   std::shared_ptr<const GriddingPlan> psf;     ///< of the PSF, where it has a transform of its own
-  std::shared_ptr<const WindowsPlan> windows;  ///< of a mosaic, whose `options` and `choice` are those of a window
+  std::shared_ptr<const WindowsPlan> windows;  ///< of a mosaic, whose `options` and `choice` are those of a window's first term
   Plan decisions;
 
   bool leaves_w_out() const { return !direct && !options.has_w_axis(); }

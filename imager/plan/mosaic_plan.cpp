@@ -1,11 +1,14 @@
 #include "imager/plan/mosaic_plan.h"
 
 #include <algorithm>
+#include <cmath>
+#include <complex>
 #include <set>
 #include <stdexcept>
 #include <utility>
 
 #include "imager/numerics/constants.h"
+#include "imager/plan/cost_model.h"
 #include "imager/plan/plan_text_internal.h"
 #include "imager/plan/planned_transform.h"
 #include "imager/pointing/mosaic_transform.h"
@@ -55,11 +58,71 @@ GriddingRequest window_request(const GriddingRequest& request, const WindowsPlan
   of_window.mosaic = nullptr;
   of_window.psf = false;
   of_window.psf_accuracy = 0;
-  of_window.samples = std::max<std::uint64_t>(1, request.samples / windows.windows);
-  const auto images = static_cast<std::size_t>(request.stokes) + (request.psf ? 1 : 0);
-  of_window.stokes = static_cast<int>(std::clamp<std::size_t>(windows.nodes * images, 1, most_stokes));
-  of_window.samples_at_once = std::max<std::size_t>(std::size_t{1} << 16, request.samples_at_once / windows.windows);
+  of_window.stokes = std::clamp(request.stokes + (request.psf ? 1 : 0), 1, static_cast<int>(most_stokes));
+  of_window.samples =
+      std::max<std::uint64_t>(1, static_cast<std::uint64_t>(static_cast<double>(request.samples) / windows.transforms()));
+  of_window.stack_bytes = request.stack_bytes / static_cast<std::size_t>(windows.side_by_side);
+  of_window.threads = threads_of_each_window(windows, request.threads);
   return of_window;
+}
+
+/// A window's plan: of the largest, where w leaves nothing beside a plane that counts, or of that over which w matters most.
+GriddingPlan plan_window(GriddingRequest request, const AllWindows& all) {
+  const double max_abs_w = request.max_abs_w;
+  request.geometry = all.largest;
+  request.geometry.centre = {};
+  request.max_abs_w = max_abs_w * std::min(1.0, all.reach / largest_drop(request.geometry));
+  GriddingPlan plan = plan_gridding(request);
+  if (plan.leaves_w_out()) return plan;
+  request.geometry = all.most_curved;
+  request.max_abs_w = max_abs_w;
+  return plan_gridding(request);
+}
+
+/// Plans for each term. What a term is transformed wrongly by counts as it is large; errors of terms, whose kernels differ, add
+/// up by their squares.
+std::vector<std::shared_ptr<const GriddingPlan>> plan_terms(const GriddingRequest& request, std::vector<double> largest,
+                                                            const AllWindows& all) {
+  constexpr double left_out = 0.03;  // of the accuracy: terms that are smaller
+  constexpr double others = 0.2;     // of the squared error, for all terms but the first
+  constexpr double coarsest = 0.1;
+  while (largest.size() > 1 && largest.back() < left_out * request.accuracy) largest.pop_back();
+  std::vector<std::shared_ptr<const GriddingPlan>> plans;
+  for (std::size_t k = 0; k < largest.size(); ++k) {
+    GriddingRequest of_term = request;
+    if (largest.size() > 1 && k == 0) {
+      of_term.accuracy *= std::sqrt(1 - others);
+      of_term.single_from *= std::sqrt(1 - others);
+      of_term.best_effort = true;
+    } else if (k > 0) {
+      const double part = std::sqrt(others / static_cast<double>(largest.size() - 1)) / std::min(1.0, largest[k]);
+      of_term.accuracy = std::min(coarsest, part * request.accuracy);
+      of_term.best_effort = true;
+    }
+    GriddingPlan plan = plan_window(of_term, all);
+    // What is nearly out of reach the first term may take alone.
+    if (k == 0 && !plan.direct && !plan.choice.reached) plan = plan_window(request, all);
+    plans.push_back(std::make_shared<const GriddingPlan>(std::move(plan)));
+  }
+  return plans;
+}
+
+/// The errors of all terms together.
+void add_errors(const std::vector<double>& largest, GriddingPlan& plan) {
+  const auto& of_term = plan.windows->of_term;
+  double expected = 0, worst = 0, rounding = 0;
+  plan.bound_rms = plan.bound_max = 0;
+  for (std::size_t k = 0; k < of_term.size(); ++k) {
+    const double size = k == 0 ? 1 : largest[k];
+    expected = std::hypot(expected, size * of_term[k]->expected_error);
+    worst = std::hypot(worst, size * of_term[k]->worst_error);
+    rounding = std::hypot(rounding, size * of_term[k]->rounding);
+    plan.bound_rms += size * of_term[k]->bound_rms;
+    plan.bound_max += size * of_term[k]->bound_max;
+  }
+  plan.expected_error = expected;
+  plan.worst_error = worst;
+  plan.rounding = rounding;
 }
 
 std::string angle(double rad) {
@@ -67,21 +130,12 @@ std::string angle(double rad) {
   return text("%.3g", rad / arcmin) + " arcmin";
 }
 
-/// Bytes that a window holds while others are gridded: its grids; where w has planes, samples that wait for them, and images.
-double held_bytes(const GriddingPlan& of_window) {
-  const TransformMemory memory = memory_of(of_window);
-  if (!of_window.options.has_w_axis()) return memory.visibilities + memory.psf + memory.other_stokes;
-  const GriddingRequest& r = of_window.request;
-  const auto samples = static_cast<double>(std::min<std::uint64_t>(r.samples, r.samples_at_once));
-  const double pixels = static_cast<double>(r.geometry.pixels()), images = r.stokes;
-  return samples * (wide_bytes_a_sample + images * wide_bytes_a_value) + images * pixels * sizeof(double);
-}
-
-/// As many as take twice the bytes that planes of w may.
-std::size_t windows_at_once(const WindowsPlan& windows, const GriddingRequest& request) {
-  const double bytes = held_bytes(*windows.of_window);
-  const double most = 2 * static_cast<double>(request.stack_bytes) / std::max(bytes, 1.0);
-  return std::clamp<std::size_t>(static_cast<std::size_t>(std::min(most, 1e9)), 1, windows.windows * windows.spans);
+/// Of the first term, and of others: "8, 7, 5, 3".
+std::string widths(const WindowsPlan& windows) {
+  std::string all;
+  for (const auto& of_term : windows.of_term)
+    all += (all.empty() ? "" : ", ") + (of_term->direct ? "direct sums" : std::to_string(of_term->options.kernel_u.width()));
+  return all;
 }
 
 /// Over how much of the sky a window reaches, and by how much of it its samples are gridded.
@@ -99,79 +153,132 @@ Plan decisions_of(const GriddingPlan& plan, const AllWindows& all) {
            angle(std::asin(beams.largest_reach())) + " from their axes",
        "so the image is defined; a source of 1 Jy at the cut leaves " + text("%.3g", beams.cut()) + " Jy in its pointing"},
       {"beams between frequencies",
-       std::to_string(w.spans) + (w.spans == 1 ? " span" : " spans") + " of at most " + std::to_string(w.nodes) +
-           (w.nodes == 1 ? " beam" : " beams"),
-       "from which all channels follow to " + text("%.1g", beams.tolerance()) +
-           " of the peak; each sample is gridded for each"}};
-  decisions.push_back({"a pointing", text("%.2g", static_cast<double>(w.nodes) * plan.choice.best.cost_s) + " s of a core",
-                       "for a pass over its " + text("%.2g", static_cast<double>(w.of_window->request.samples)) +
+       std::to_string(w.spans) + (w.spans == 1 ? " span" : " spans") + " of at most " + std::to_string(w.of_term.size()) +
+           (w.of_term.size() == 1 ? " term" : " terms"),
+       "from which beams of all channels follow to " + text("%.1g", beams.tolerance()) +
+           " of the peak; each sample is gridded for each term, as exactly as its size asks: kernel width " + widths(w)}};
+  decisions.push_back({"a pointing", text("%.2g", mosaic_seconds(w) / static_cast<double>(w.windows)) + " s of a core",
+                       "for a pass over its " + text("%.2g", static_cast<double>(r.samples) / static_cast<double>(w.windows)) +
                            " samples, by counts of operations"});
+  if (w.gathers > 1)
+    decisions.push_back(
+        {"windows", "transformed " + std::to_string(w.gathers) + " times in a pass",
+         "memory gathers no more than " + text("%.2g", static_cast<double>(r.samples_at_once)) + " samples at once"});
   if (w.unseeing > 0)
     decisions.push_back({"pointings left out", std::to_string(w.unseeing), "their beams see no pixel of the image"});
-  if (w.on_planes && r.max_abs_w > 0)
+  if (w.of_term.front()->leaves_w_out() && r.max_abs_w > 0)
     decisions.push_back({"w over windows", "left out beside a plane",
                          "the plane closest to n − 1 over a window leaves " + text("%.2g", w.phase_part) +
                              " of the phase that w makes over the image"});
   return decisions;
 }
 
-}  // namespace
-
-GriddingPlan plan_mosaic(const GriddingRequest& request) {
+/// With one transform for image and PSF.
+GriddingPlan plan_together(const GriddingRequest& request, const AllWindows& all) {
   const MosaicBeams& beams = *request.mosaic->beams;
-  const AllWindows all = all_windows(beams);
   WindowsPlan windows;
   windows.windows = all.windows;
   windows.unseeing = all.unseeing;
   windows.spans = beams.all_spans();
-  windows.nodes = beams.most_nodes();
-  GriddingRequest of_window = window_request(request, windows);
-  of_window.geometry = all.largest;
-  of_window.geometry.centre = {};
-  of_window.max_abs_w = request.max_abs_w * std::min(1.0, all.reach / largest_drop(of_window.geometry));
-  GriddingPlan plan = plan_gridding(of_window);
-  windows.on_planes = !plan.direct && !plan.options.has_w_axis();
-  if (!windows.on_planes) {
-    of_window.geometry = all.most_curved;
-    of_window.max_abs_w = request.max_abs_w;
-    plan = plan_gridding(of_window);
-  }
+  const std::uint64_t at_once = std::max<std::size_t>(1, request.samples_at_once);
+  windows.gathers = std::max<std::uint64_t>(1, (request.samples + at_once - 1) / at_once);
+  windows.side_by_side = windows_side_by_side(windows, request.threads);
+  windows.of_term = plan_terms(window_request(request, windows), beams.largest_terms(), all);
   windows.phase_part = std::min(1.0, all.reach / largest_drop(request.geometry));
-  windows.of_window = std::make_shared<const GriddingPlan>(plan);
+  GriddingPlan plan = *windows.of_term.front();
   plan.request = request;
+  plan.options.threads = request.threads;
   plan.direct = false;
   plan.direct_pixels = 0;
   plan.windows = std::make_shared<const WindowsPlan>(std::move(windows));
+  add_errors(beams.largest_terms(), plan);
   Plan decisions = decisions_of(plan, all);
   for (Decision& of_one : plan.decisions) decisions.push_back(std::move(of_one));
   plan.decisions = std::move(decisions);
   return plan;
 }
 
-TransformMemory memory_of(const WindowsPlan& windows, const GriddingRequest& request) {
-  TransformMemory memory = memory_of(*windows.of_window);
-  const auto held = static_cast<double>(windows_at_once(windows, request));
-  const double images = 3 * static_cast<double>(request.geometry.pixels()) * sizeof(double);
-  const bool planes = windows.of_window->options.has_w_axis();
-  memory.visibilities =
-      held * held_bytes(*windows.of_window) + images + (planes ? memory.visibilities + memory.psf + memory.other_stokes : 0);
-  memory.psf = memory.other_stokes = 0;
+}  // namespace
+
+int windows_side_by_side(const WindowsPlan& windows, int threads) {
+  return static_cast<int>(
+      std::clamp<std::size_t>(windows.windows * windows.spans, 1, static_cast<std::size_t>(std::max(1, threads))));
+}
+
+int threads_of_each_window(const WindowsPlan& windows, int threads) {
+  return std::max(1, threads / windows_side_by_side(windows, threads));
+}
+
+double mosaic_seconds(const WindowsPlan& windows) {
+  double sum = 0;
+  for (const auto& of_term : windows.of_term) sum += CostModel().seconds(of_term->choice.best.work);
+  return windows.transforms() * sum;
+}
+
+GriddingPlan plan_mosaic(const GriddingRequest& request) {
+  const MosaicBeams& beams = *request.mosaic->beams;
+  const AllWindows all = all_windows(beams);
+  GriddingPlan together = plan_together(request, all);
+  const double psf_accuracy = request.psf_accuracy;
+  if (!request.psf || psf_accuracy <= request.accuracy || request.accuracy == 0) return together;
+  GriddingRequest alone = request;
+  alone.psf = false;
+  GriddingPlan apart = plan_together(alone, all);
+  alone.stokes = 0;
+  alone.psf = true;
+  alone.accuracy = psf_accuracy;
+  alone.psf_accuracy = 0;
+  const GriddingPlan psf = plan_together(alone, all);
+  if (mosaic_seconds(*apart.windows) + mosaic_seconds(*psf.windows) >= mosaic_seconds(*together.windows)) return together;
+  apart.request = request;
+  apart.psf = std::make_shared<const GriddingPlan>(psf);
+  apart.decisions.push_back({"PSF", "has its own transform, kernel width " + widths(*psf.windows),
+                             "to " + text("%.2g", psf_accuracy) + " it costs less"});
+  return apart;
+}
+
+TransformMemory mosaic_memory(const GriddingPlan& plan) {
+  const WindowsPlan& windows = *plan.windows;
+  const GriddingRequest& r = plan.request;
+  const double images = r.stokes + (r.psf ? 1 : 0),
+               window_pixels = static_cast<double>(windows.of_term.front()->request.geometry.pixels());
+  double transform = 0;
+  for (const auto& of_term : windows.of_term) {
+    const TransformMemory of = memory_of(*of_term);
+    transform = std::max(transform, of.visibilities + of.psf + of.other_stokes + of.fft);
+  }
+  const double window_samples = static_cast<double>(windows.of_term.front()->request.samples);
+  const double terms = static_cast<double>(windows.of_term.size()) + 1;
+  constexpr double sum_bytes = sizeof(double), sample_bytes = sizeof(std::complex<double>);
+  const double at_work =
+      transform + window_samples * images * 2 * sample_bytes + window_pixels * (terms + 3 * images) * sum_bytes;
+  const double gathered = std::min(static_cast<double>(r.samples), static_cast<double>(r.samples_at_once));
+  TransformMemory memory;
+  memory.visibilities = windows.side_by_side * at_work + gathered * (sizeof(float) + r.stokes * sample_bytes) +
+                        (images + 1) * static_cast<double>(r.geometry.pixels()) * sum_bytes;
+  memory.gathered = gathered;
+  if (plan.psf) {
+    const TransformMemory psf = mosaic_memory(*plan.psf);
+    memory.psf = gathered * sizeof(float);
+    memory.visibilities = std::max(memory.visibilities, psf.visibilities);
+  }
   return memory;
 }
 
 std::unique_ptr<Transform> make_mosaic_transform(const GriddingPlan& plan) {
   const MosaicRequest& mosaic = *plan.request.mosaic;
-  const std::shared_ptr<const GriddingPlan> of_window = plan.windows->of_window;
-  const auto make = [of_window](const ImageGeometry& geometry) {
-    GriddingPlan of = *of_window;
-    of.options.geometry = of.request.geometry = geometry;
-    return std::make_shared<const PlannedTransform>(of);
-  };
-  const std::size_t at_once = plan.options.has_w_axis() ? plan.request.samples_at_once : 0;
+  std::vector<TermTransforms> of_term;
+  for (const std::shared_ptr<const GriddingPlan>& planned : plan.windows->of_term)
+    of_term.push_back({[planned](const ImageGeometry& geometry) {
+                         GriddingPlan of = *planned;
+                         of.options.geometry = of.request.geometry = geometry;
+                         return std::make_shared<const PlannedTransform>(of);
+                       },
+                       planned->leaves_w_out()});
   return std::make_unique<MosaicTransform>(
-      mosaic.beams, WindowTransforms{make, plan.windows->on_planes},
-      MosaicOptions{mosaic.psf_row, mosaic.psf_column, mosaic.flat_noise, windows_at_once(*plan.windows, plan.request), at_once,
-                    plan.options.threads});
+      mosaic.beams, std::move(of_term),
+      MosaicOptions{mosaic.psf_row, mosaic.psf_column, mosaic.flat_noise, plan.request.samples_at_once, plan.request.threads,
+                    plan.windows->side_by_side});
 }
 
 }  // namespace misfit::imager

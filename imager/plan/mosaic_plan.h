@@ -8,8 +8,16 @@ namespace misfit::imager {
 /// pixel of the image.
 GriddingPlan plan_mosaic(const GriddingRequest& request);
 
-/// Of all windows that are held at once.
-TransformMemory memory_of(const WindowsPlan& windows, const GriddingRequest& request);
+/// How many windows are worked on at a time.
+int windows_side_by_side(const WindowsPlan& windows, int threads);
+/// Threads that work on each of them.
+int threads_of_each_window(const WindowsPlan& windows, int threads);
+
+/// Seconds of a core that a pass takes, by the fixed constants of CostModel.
+double mosaic_seconds(const WindowsPlan& windows);
+
+/// Of a mosaic's plan.
+TransformMemory mosaic_memory(const GriddingPlan& plan);
 
 /// The transform of a mosaic's plan.
 std::unique_ptr<Transform> make_mosaic_transform(const GriddingPlan& plan);

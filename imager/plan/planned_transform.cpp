@@ -17,10 +17,11 @@ std::unique_ptr<Transform> transform_of(const GriddingPlan& plan, const DirectSu
 
 /// Of making a residual image.
 double residual_cost_s(const GriddingPlan& plan) {
+  if (plan.windows) return mosaic_seconds(*plan.windows);
   GriddingWork work = plan.choice.best.work;
   work.stokes = 1;
   work.psf = false;
-  return CostModel().seconds(work) * (plan.windows ? static_cast<double>(plan.windows->windows) : 1);
+  return CostModel().seconds(work);
 }
 
 }  // namespace
@@ -33,7 +34,7 @@ bool may_be_coarser(const GriddingPlan& plan) {
 PlannedTransform::PlannedTransform(const GriddingPlan& plan)
     : direct_{plan.options.geometry, true, plan.options.threads}, direct_pixels_(plan.direct_pixels), request_(plan.request) {
   images_ = transform_of(plan, direct_);
-  if (plan.psf) psf_ = make_transform(plan.psf->options);
+  if (plan.psf) psf_ = transform_of(*plan.psf, direct_);
   if (may_be_coarser(plan)) residual_cost_s_ = residual_cost_s(plan);
 }
 

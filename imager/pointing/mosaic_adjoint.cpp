@@ -1,8 +1,9 @@
 #include "imager/pointing/mosaic_adjoint.h"
 
 #include <algorithm>
-#include <list>
+#include <optional>
 #include <utility>
+#include <variant>
 
 #include "imager/data/horizon.h"
 #include "imager/numerics/parallel.h"
@@ -12,12 +13,35 @@
 namespace misfit::imager {
 namespace {
 
-/// Samples of a window that were added, each at every node of its span.
-struct AddedWindow {
+constexpr std::size_t rows_a_piece = 1024;  // that a thread takes at a time
+
+using Values = std::variant<std::vector<std::complex<float>>, std::vector<std::complex<double>>>;
+
+/// Samples of a block that wait for their window to be computed.
+struct Waiting {
+  WindowSamples samples;
+  std::vector<float> weight;   ///< [row][channel]
+  std::vector<Values> values;  ///< [image]: of the block's precision. [row][channel]
+};
+
+/// All that waits for a window, in the order in which it came.
+struct WaitingWindow {
   std::shared_ptr<const SeenWindow> seen;
-  const FrequencySpan* span;
-  std::vector<std::unique_ptr<AdjointSum>> sums;  ///< of most_stokes images each but the last: [node][image]
-  std::vector<std::vector<double>> weight;        ///< Σ w x^k of shares [power k][node][node]
+  const BeamSpan* span;
+  std::vector<Waiting> parts;
+};
+
+/// What a window adds to the images.
+struct WindowImages {
+  std::vector<Image> images;       ///< last the PSF, where the window's beam sees its source
+  std::vector<Image> sensitivity;  ///< [power of x]
+  double fft_s = 0;
+};
+
+/// Some images that are made at once.
+struct Together {
+  std::size_t first;  ///< image
+  std::unique_ptr<AdjointSum> sum;
 };
 
 class MosaicAdjoint : public AdjointSum {
@@ -34,7 +58,7 @@ class MosaicAdjoint : public AdjointSum {
   }
 
   AdjointResult finish() override {
-    while (!added_.empty()) finish_window(added_.front()), added_.pop_front();
+    add_windows();
     for (Image& image : result_.images) set_beyond_horizon(geometry(), no_value, image);
     if (options_.with_psf) set_beyond_horizon(geometry(), no_value, result_.psf);
     return std::move(result_);
@@ -42,165 +66,196 @@ class MosaicAdjoint : public AdjointSum {
 
  protected:
   void add_sets(const VisibilityBlock& block, const VisibilitySets& sets) override {
-    const int threads = windows_->options().threads;
     SampleSums counted;
-    const std::vector<float> weight = imaging_weights(block, {geometry(), options_.beyond_grid, threads}, counted);
+    const std::vector<float> weight = imaging_weights(block, {geometry(), options_.beyond_grid, o().threads}, counted);
     for (std::size_t s = 0; s < sets.size(); ++s) {
       result_.sums[s] += counted;
       std::visit([&](const auto* v) { add_span_to_sums(weight.data(), v, weight.size(), result_.sums[s]); }, sets[s]);
     }
     for (const RowBeams::Group& group : windows_->beams().groups(block)) {
       const std::shared_ptr<const SeenWindow> seen = windows_->seen(group);
-      if (!seen) continue;
-      for (const FrequencySpan* span : windows_->beams().spans(block.frequency_hz))
-        add({seen, span}, windows_->samples(*seen, block, group.rows, *span), block, weight, sets);
+      if (!seen || !is_wanted(*seen)) continue;
+      for (const BeamSpan* span : windows_->beams().spans(block.frequency_hz))
+        keep(waiting(seen, span), windows_->samples(block, group.rows, *span), block.channels(), weight, sets);
     }
+    if (samples_ >= o().samples_at_once) add_windows();
   }
 
  private:
-  struct Place {
-    std::shared_ptr<const SeenWindow> seen;
-    const FrequencySpan* span;
-  };
-
   const ImageGeometry& geometry() const { return windows_->beams().geometry(); }
-  std::size_t images_of_a_node() const { return images() + (options_.with_psf ? 1 : 0); }
+  const MosaicOptions& o() const { return windows_->options(); }
+  /// Powers of x of which sensitivities are made.
+  std::size_t powers() const { return options_.with_sensitivity ? 1 + result_.further_sensitivity.size() : 0; }
+  bool has_psf(const SeenWindow& seen) const { return options_.with_psf && windows_->sees_psf(seen); }
+  bool is_wanted(const SeenWindow& seen) const { return images() > 0 || powers() > 0 || has_psf(seen); }
 
-  /// The window that is added to last comes last.
-  AddedWindow& added(const Place& place) {
-    const auto found = std::find_if(added_.begin(), added_.end(), [&](const AddedWindow& window) {
-      return window.seen == place.seen && window.span == place.span;
+  WaitingWindow& waiting(const std::shared_ptr<const SeenWindow>& seen, const BeamSpan* span) {
+    const auto found = std::find_if(waiting_.begin(), waiting_.end(),
+                                    [&](const WaitingWindow& window) { return window.seen == seen && window.span == span; });
+    return found != waiting_.end() ? *found : waiting_.emplace_back(WaitingWindow{seen, span, {}});
+  }
+
+  void keep(WaitingWindow& window, WindowSamples samples, std::size_t block_channels, const std::vector<float>& block_weight,
+            const VisibilitySets& sets) {
+    const auto of_block = [&](const auto* from, auto& to) {
+      const std::size_t channels = samples.channels.size();
+      to.resize(samples.size());
+      parallel_for((samples.rows.size() + rows_a_piece - 1) / rows_a_piece, o().threads, [&](std::size_t p) {
+        for (std::size_t r = p * rows_a_piece; r < std::min((p + 1) * rows_a_piece, samples.rows.size()); ++r)
+          for (std::size_t c = 0; c < channels; ++c)
+            to[r * channels + c] = from[samples.rows[r] * block_channels + samples.channels[c]];
+      });
+    };
+    Waiting kept;
+    of_block(block_weight.data(), kept.weight);
+    for (std::size_t i = 0; i < images(); ++i)
+      std::visit(
+          [&](const auto* from) {
+            std::vector<std::remove_cv_t<std::remove_pointer_t<decltype(from)>>> values;
+            of_block(from, values);
+            kept.values.emplace_back(std::move(values));
+          },
+          sets[i]);
+    samples_ += samples.size();
+    kept.samples = std::move(samples);
+    window.parts.push_back(std::move(kept));
+  }
+
+  /// Computes all windows that wait, some at a time, and adds them to the images in the order in which they came.
+  void add_windows() {
+    const auto side_by_side = static_cast<std::size_t>(std::max(1, o().side_by_side));
+    for (std::size_t begin = 0; begin < waiting_.size(); begin += 2 * side_by_side) {
+      const std::size_t count = std::min(2 * side_by_side, waiting_.size() - begin);
+      std::vector<WindowImages> made(count);
+      parallel_for(count, o().side_by_side, [&](std::size_t i) {
+        made[i] = images_of(waiting_[begin + i]);
+        waiting_[begin + i].parts = {};
+      });
+      for (std::size_t i = 0; i < count; ++i) add(waiting_[begin + i].seen->window, made[i], std::min(side_by_side, count));
+    }
+    waiting_.clear();
+    samples_ = 0;
+  }
+
+  void add(const Window& window, const WindowImages& of_window, std::size_t side_by_side) {
+    result_.fft_s += of_window.fft_s / static_cast<double>(side_by_side);
+    for (std::size_t i = 0; i < of_window.images.size(); ++i)
+      add_window(window, of_window.images[i], i < images() ? result_.images[i] : result_.psf);
+    for (std::size_t p = 0; p < of_window.sensitivity.size(); ++p)
+      add_window(window, of_window.sensitivity[p], p == 0 ? result_.sensitivity : result_.further_sensitivity[p - 1]);
+  }
+
+  void add_window(const Window& window, const Image& part, Image& image) const {
+    parallel_for(static_cast<std::size_t>(part.height), o().threads, [&](std::size_t r) {
+      const int row = static_cast<int>(r);
+      const double* const from = part.row(row);
+      double* const to = image.row(window.first_row + row) + window.first_column;
+      for (int column = 0; column < part.width; ++column) to[column] += from[column];
     });
-    if (found != added_.end()) {
-      added_.splice(added_.end(), added_, found);
-      return added_.back();
-    }
-    while (!added_.empty() && added_.size() >= windows_->options().windows_at_once)
-      finish_window(added_.front()), added_.pop_front();
-    const std::size_t nodes = place.span->node_hz.size();
-    AddedWindow window{place.seen, place.span, {}, {}};
-    window.weight.resize(1 + result_.further_sensitivity.size(), std::vector<double>(nodes * nodes));
-    for (std::size_t left = nodes * images_of_a_node(); left > 0;) {
-      const std::size_t some = std::min<std::size_t>(left, most_stokes);
+  }
+
+  WindowImages images_of(const WaitingWindow& window) const {
+    const std::vector<Image> terms = windows_->terms(*window.seen, *window.span);
+    const ImageGeometry& g = window.seen->window.geometry;
+    WindowImages made{std::vector<Image>(images() + (has_psf(*window.seen) ? 1 : 0), Image(g.width, g.height)), {}, 0};
+    std::vector<std::vector<std::complex<double>>> psf;  // [part]
+    if (has_psf(*window.seen))
+      for (const Waiting& part : window.parts) psf.push_back(windows_->psf_source(*window.seen, *window.span, part.samples));
+    for (std::size_t k = 0; !made.images.empty() && k < terms.size(); ++k) add_term(window, psf, k, terms[k], made);
+    for (std::size_t power = 0; power < powers(); ++power) made.sensitivity.push_back(sensitivity_of(window, terms, power));
+    return made;
+  }
+
+  /// Adds what the samples make of a term of the beams.
+  void add_term(const WaitingWindow& window, const std::vector<std::vector<std::complex<double>>>& psf, std::size_t term,
+                const Image& beam, WindowImages& made) const {
+    const std::shared_ptr<const Transform> transform = windows_->transform(window.seen->window, term);
+    std::vector<Together> all;
+    for (std::size_t first = 0; first < made.images.size(); first += most_stokes) {
+      const std::size_t some = std::min<std::size_t>(made.images.size() - first, most_stokes);
       // Whether a sample counts was decided by its own u and v, which a plane changes.
-      window.sums.push_back(place.seen->transform->adjoint({.images = static_cast<int>(some), .beyond_grid = true}));
-      left -= some;
+      all.push_back({first, transform->adjoint({.images = static_cast<int>(some), .beyond_grid = true})});
     }
-    return added_.emplace_back(std::move(window));
-  }
-
-  void add(const Place& place, const WindowSamples& samples, const VisibilityBlock& block, const std::vector<float>& weight,
-           const VisibilitySets& sets) {
-    AddedWindow& window = added(place);
-    const std::size_t nodes = place.span->node_hz.size(), channels = samples.channels.size();
-    VisibilityBlock here;
-    static_cast<SampleCoordinates&>(here) = samples.at;
-    here.weight.resize(samples.size());
-    std::vector<double> channel_weight(channels);
-    for (std::size_t r = 0; r < samples.rows.size(); ++r)
-      for (std::size_t c = 0; c < channels; ++c) {
-        const float w = weight[samples.rows[r] * block.channels() + samples.channels[c]];
-        here.weight[r * channels + c] = w;
-        channel_weight[c] += double{w};
-      }
-    for (std::size_t c = 0; c < channels; ++c) {
-      double weighed = channel_weight[c];
-      for (std::vector<double>& of_power : window.weight) {
-        for (std::size_t k = 0; k < nodes; ++k)
-          for (std::size_t j = 0; j < nodes; ++j)
-            of_power[k * nodes + j] += weighed * samples.share[c][k] * samples.share[c][j];
-        weighed *= samples.at.frequency_hz[c] / options_.sensitivity_reference_hz - 1;
+    for (std::size_t p = 0; p < window.parts.size(); ++p) {
+      const Waiting& part = window.parts[p];
+      std::optional<SamplesOnPlane> plane;
+      if (windows_->on_planes(term)) plane = windows_->on_plane(*window.seen, part.samples.at);
+      VisibilityBlock here;
+      static_cast<SampleCoordinates&>(here) = plane ? plane->at : part.samples.at;
+      here.weight = part.weight;
+      for (const Together& some : all) {
+        const std::size_t end = std::min<std::size_t>(made.images.size(), some.first + most_stokes);
+        std::vector<std::vector<std::complex<double>>> values;
+        for (std::size_t i = some.first; i < end; ++i) {
+          const auto share_of = [&](const auto& of) { return shares(part.samples, of, term, plane ? &plane->phase : nullptr); };
+          values.push_back(i < images() ? std::visit(share_of, part.values[i]) : share_of(psf[p]));
+        }
+        some.sum->add(here, values);
       }
     }
-    const std::vector<std::vector<std::complex<double>>> values = values_of(place, samples, block, sets);
-    for (std::size_t k = 0, first = 0; k < window.sums.size(); first += most_stokes, ++k) {
-      VisibilitySets some;
-      for (std::size_t i = first; i < std::min(values.size(), first + most_stokes); ++i) some.emplace_back(values[i].data());
-      window.sums[k]->add(here, some);
+    for (const Together& some : all) {
+      const AdjointResult result = some.sum->finish();
+      made.fft_s += result.fft_s;
+      for (std::size_t i = 0; i < result.images.size(); ++i) add_product(beam, result.images[i], made.images[some.first + i]);
     }
   }
 
-  /// The visibilities of each node's images, as the window has them. [node · images + image][row][channel]
-  std::vector<std::vector<std::complex<double>>> values_of(const Place& place, const WindowSamples& samples,
-                                                           const VisibilityBlock& block, const VisibilitySets& sets) const {
-    const std::size_t nodes = place.span->node_hz.size(), channels = samples.channels.size(), each = images_of_a_node();
-    std::vector<std::complex<double>> psf;
-    if (options_.with_psf) psf = windows_->psf_source(*place.seen, *place.span, samples, block);
-    std::vector<std::vector<std::complex<double>>> values(nodes * each, std::vector<std::complex<double>>(samples.size()));
-    constexpr std::size_t rows_a_piece = 1024;
-    parallel_for((samples.rows.size() + rows_a_piece - 1) / rows_a_piece, windows_->options().threads, [&](std::size_t p) {
-      const std::size_t begin = p * rows_a_piece, end = std::min(begin + rows_a_piece, samples.rows.size());
-      for (std::size_t i = 0; i < each; ++i) {
-        const auto fill = [&](const auto& value) {
-          for (std::size_t r = begin; r < end; ++r)
-            for (std::size_t c = 0; c < channels; ++c) {
-              const std::size_t at = r * channels + c;
-              std::complex<double> v = value(r, c, at);
-              if (!samples.phase.empty()) v *= std::conj(samples.phase[at]);
-              for (std::size_t k = 0; k < nodes; ++k) values[k * each + i][at] = samples.share[c][k] * v;
-            }
-        };
-        if (i == images())
-          fill([&](std::size_t, std::size_t, std::size_t at) { return psf[at]; });
-        else
-          std::visit(
-              [&](const auto* from) {
-                fill([&](std::size_t r, std::size_t c, std::size_t) {
-                  return std::complex<double>(from[samples.rows[r] * block.channels() + samples.channels[c]]);
-                });
-              },
-              sets[i]);
-      }
+  /// What the samples give to a term. [row][channel]
+  template <typename Value>
+  std::vector<std::complex<double>> shares(const WindowSamples& samples, const std::vector<Value>& of, std::size_t term,
+                                           const std::vector<std::complex<double>>* phase) const {
+    std::vector<std::complex<double>> values(samples.size());
+    const std::size_t channels = samples.channels.size();
+    parallel_for((samples.rows.size() + rows_a_piece - 1) / rows_a_piece, o().threads_of_each(), [&](std::size_t p) {
+      for (std::size_t r = p * rows_a_piece; r < std::min((p + 1) * rows_a_piece, samples.rows.size()); ++r)
+        for (std::size_t c = 0; c < channels; ++c) {
+          const std::size_t at = r * channels + c;
+          values[at] = samples.share[c][term] * std::complex<double>(of[at]);
+          if (phase != nullptr) values[at] *= std::conj((*phase)[at]);
+        }
     });
     return values;
   }
 
-  /// Adds what came of a window to the images.
-  void finish_window(AddedWindow& added) {
-    const int threads = windows_->options().threads;
-    const SeenWindow& seen = *added.seen;
-    const std::vector<double>& node_hz = added.span->node_hz;
-    std::vector<Image> of_beam;
-    for (const double hz : node_hz) of_beam.push_back(windows_->beams().image(seen.beam, seen.window, hz, threads));
-    std::size_t number = 0;
-    for (auto& sum : added.sums) {
-      AdjointResult result = sum->finish();
-      sum.reset();
-      result_.fft_s += result.fft_s;
-      for (const Image& image : result.images) {
-        const std::size_t node = number / images_of_a_node(), which = number % images_of_a_node();
-        add_window(seen.window, which < images() ? result_.images[which] : result_.psf, [&](int row, int column) {
-          const double beam = of_beam[node].at(row, column);
-          return beam == 0 ? 0 : beam * image.at(row, column);
-        });
-        ++number;
-      }
-    }
-    if (!options_.with_sensitivity) return;
-    const std::size_t nodes = node_hz.size();
-    for (std::size_t power = 0; power < added.weight.size(); ++power)
-      add_window(seen.window, power == 0 ? result_.sensitivity : result_.further_sensitivity[power - 1],
-                 [&](int row, int column) {
-                   double sum = 0;
-                   for (std::size_t k = 0; k < nodes; ++k)
-                     for (std::size_t j = 0; j < nodes; ++j)
-                       sum += added.weight[power][k * nodes + j] * of_beam[k].at(row, column) * of_beam[j].at(row, column);
-                   return sum;
-                 });
+  /// Where the beam is 0 no window has a value that counts, nor beyond the horizon one at all.
+  void add_product(const Image& beam, const Image& image, Image& sum) const {
+    parallel_for(static_cast<std::size_t>(sum.height), o().threads_of_each(), [&](std::size_t r) {
+      const int row = static_cast<int>(r);
+      for (int column = 0; column < sum.width; ++column)
+        if (beam.at(row, column) != 0) sum.at(row, column) += beam.at(row, column) * image.at(row, column);
+    });
   }
 
-  template <typename Value>
-  void add_window(const Window& window, Image& image, const Value& value) const {
-    parallel_for(static_cast<std::size_t>(window.geometry.height), windows_->options().threads, [&](std::size_t r) {
+  /// Σ w x^power B².
+  Image sensitivity_of(const WaitingWindow& window, const std::vector<Image>& terms, std::size_t power) const {
+    const std::size_t count = terms.size();
+    std::vector<double> weight(count * count);  // Σ w x^power of the products of shares
+    for (const Waiting& part : window.parts)
+      for (std::size_t c = 0, channels = part.samples.channels.size(); c < channels; ++c) {
+        double sum = 0;
+        for (std::size_t r = 0; r < part.samples.rows.size(); ++r) sum += double{part.weight[r * channels + c]};
+        for (std::size_t p = 0; p < power; ++p) sum *= part.samples.at.frequency_hz[c] / options_.sensitivity_reference_hz - 1;
+        for (std::size_t k = 0; k < count; ++k)
+          for (std::size_t j = 0; j <= k; ++j)
+            weight[k * count + j] += (j < k ? 2 : 1) * sum * part.samples.share[c][k] * part.samples.share[c][j];
+      }
+    Image made(terms.front().width, terms.front().height);
+    parallel_for(static_cast<std::size_t>(made.height), o().threads_of_each(), [&](std::size_t r) {
       const int row = static_cast<int>(r);
-      double* const to = image.row(window.first_row + row) + window.first_column;
-      for (int column = 0; column < window.geometry.width; ++column) to[column] += value(row, column);
+      double* const to = made.row(row);
+      for (std::size_t k = 0; k < count; ++k)
+        for (std::size_t j = 0; j <= k; ++j) {
+          const double *const one = terms[k].row(row), *const other = terms[j].row(row);
+          for (int column = 0; column < made.width; ++column) to[column] += weight[k * count + j] * one[column] * other[column];
+        }
     });
+    return made;
   }
 
   std::shared_ptr<const MosaicWindows> windows_;
   AdjointResult result_;
-  std::list<AddedWindow> added_;
+  std::vector<WaitingWindow> waiting_;
+  std::size_t samples_ = 0;  ///< that wait
 };
 
 }  // namespace

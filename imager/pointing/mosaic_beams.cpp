@@ -12,9 +12,6 @@
 namespace misfit::imager {
 namespace {
 
-/// Each sample is gridded once for each node.
-constexpr std::size_t most_nodes_of_a_span = 4;
-
 double largest(const std::map<std::tuple<const VoltagePattern*, const VoltagePattern*>, double>& reaches) {
   double all = 0;
   for (const auto& [pair, reach] : reaches) all = std::max(all, reach);
@@ -54,7 +51,8 @@ MosaicBeams::MosaicBeams(MosaicScene scene) : scene_(std::move(scene)) {
   for (const VoltagePattern* one : patterns)
     for (const VoltagePattern* other : patterns) reach_[{one, other}] = found_reach(*one, *other);
   if (scene_.at_each) scene_.frequency_hz = {scene_.frequency_hz.front(), scene_.frequency_hz.back()};
-  steps_ = beam_steps(scene_.beams, largest(reach_), scene_.frequency_hz, scene_.tolerance, most_nodes_of_a_span);
+  steps_ = beam_steps(scene_.beams, largest(reach_), scene_.frequency_hz, scene_.tolerance);
+  if (scene_.at_each) steps_.largest.resize(1);
 }
 
 double MosaicBeams::found_reach(const VoltagePattern& one, const VoltagePattern& other) const {
@@ -64,31 +62,25 @@ double MosaicBeams::found_reach(const VoltagePattern& one, const VoltagePattern&
       first_sine_at(scene_.cut, step, [&](double sine) { return one.voltage(sine, low) * other.voltage(sine, low); });
   constexpr double before_end = 0.97;  // at its very end a fit may be the root of what falls to 0
   const double ends = std::min(one.continuous_sine(high), other.continuous_sine(high));
-  return ends < lobe ? before_end * ends : lobe;
+  return ends < 1 ? std::min(lobe, before_end * ends) : lobe;
 }
 
-std::vector<const FrequencySpan*> MosaicBeams::spans(const std::vector<double>& frequency_hz) const {
-  std::vector<const FrequencySpan*> found;
+std::vector<const BeamSpan*> MosaicBeams::spans(const std::vector<double>& frequency_hz) const {
+  std::vector<const BeamSpan*> found;
   if (scene_.at_each) {
     const std::lock_guard lock(mutex_);
     for (const double hz : std::set<double>(frequency_hz.begin(), frequency_hz.end()))
-      found.push_back(&at_each_.insert({hz, {hz, hz, {hz}}}).first->second);
+      found.push_back(&at_each_.try_emplace(hz, FrequencySpan{hz, hz, {hz}}).first->second);
     return found;
   }
   for (const double hz : frequency_hz)
     if (std::none_of(steps_.spans.begin(), steps_.spans.end(), [hz](const FrequencySpan& span) { return span.holds(hz); }))
       throw std::invalid_argument("a mosaic seen at " + std::to_string(hz) +
                                   " Hz; expected one of the frequencies of its beams");
-  for (const FrequencySpan& span : steps_.spans)
+  for (const BeamSpan& span : steps_.spans)
     if (std::any_of(frequency_hz.begin(), frequency_hz.end(), [&](double hz) { return span.holds(hz); }))
       found.push_back(&span);
   return found;
-}
-
-std::size_t MosaicBeams::most_nodes() const {
-  std::size_t most = 1;
-  for (const FrequencySpan& span : steps_.spans) most = std::max(most, span.node_hz.size());
-  return scene_.at_each ? 1 : most;
 }
 
 double MosaicBeams::largest_reach() const {
@@ -125,35 +117,51 @@ std::optional<Window> MosaicBeams::window(const PairBeam& beam) const {
   return window;
 }
 
-const RadialTable& MosaicBeams::table(const PairBeam& beam, double frequency_hz, int threads) const {
+const std::vector<RadialTable>& MosaicBeams::tables(const PairBeam& beam, const BeamSpan& span, int threads) const {
   const std::lock_guard lock(mutex_);
-  const auto key = std::tuple(beam.one.get(), beam.other.get(), frequency_hz);
-  const auto found = tables_.find(key);
-  if (found != tables_.end()) return found->second;
-  const auto seen = [&](double sine) {
-    return beam.one->voltage(sine, frequency_hz) * beam.other->voltage(sine, frequency_hz);
-  };
-  return tables_.emplace(key, RadialTable(reach(beam), threads, seen)).first->second;
+  std::vector<RadialTable>& made = tables_[{beam.one.get(), beam.other.get(), &span}];
+  for (std::size_t k = made.size(); k < span.terms(); ++k)
+    made.emplace_back(reach(beam), threads, [&](double sine) {
+      double sum = 0;
+      for (std::size_t j = 0; j < span.node_hz.size(); ++j)
+        sum += span.of_nodes(k)[j] * beam.one->voltage(sine, span.node_hz[j]) * beam.other->voltage(sine, span.node_hz[j]);
+      return sum;
+    });
+  return made;
 }
 
-Image MosaicBeams::image(const PairBeam& beam, const Window& window, double frequency_hz, int threads) const {
+std::vector<Image> MosaicBeams::terms(const PairBeam& beam, const Window& window, const BeamSpan& span, std::size_t count,
+                                      int threads) const {
   const ImageGeometry& g = window.geometry;
-  Image seen(g.width, g.height);
+  std::vector<Image> made(std::min(count, span.terms()), Image(g.width, g.height));
   const double radius = reach(beam);
-  const double ends = std::min(beam.one->continuous_sine(frequency_hz), beam.other->continuous_sine(frequency_hz));
-  constexpr double beside = 1.01;  // a table has points beyond its end
-  const RadialTable* const round =
-      beam.is_round() && ends >= std::min(1.0, beside * radius) ? &table(beam, frequency_hz, threads) : nullptr;
+  const std::vector<RadialTable>* const round = beam.is_round() ? &tables(beam, span, threads) : nullptr;
   parallel_for(static_cast<std::size_t>(g.height), threads, [&](std::size_t r) {
     const int row = static_cast<int>(r);
     for (int column = 0; column < g.width; ++column) {
       const DirectionCosines at = g.at(row, column);
-      const double sine = beam.frame.sine(at);
+      const double sine = beam.frame.sine(at);  // not a number beyond the horizon
       if (!(sine <= radius)) continue;
-      seen.at(row, column) = round != nullptr ? (*round)(sine) : beam.power(at, frequency_hz);
+      if (round != nullptr) {
+        const RadialTable::Place place = round->front().place(sine);
+        for (std::size_t k = 0; k < made.size(); ++k) made[k].at(row, column) = (*round)[k](place);
+      } else {
+        const std::vector<double> values = terms(beam, at, span, count);
+        for (std::size_t k = 0; k < made.size(); ++k) made[k].at(row, column) = values[k];
+      }
     }
   });
-  return seen;
+  return made;
+}
+
+std::vector<double> MosaicBeams::terms(const PairBeam& beam, DirectionCosines at, const BeamSpan& span,
+                                       std::size_t count) const {
+  std::vector<double> terms(std::min(count, span.terms()));
+  for (std::size_t j = 0; j < span.node_hz.size(); ++j) {
+    const double seen = power(beam, at, span.node_hz[j]);
+    for (std::size_t k = 0; k < terms.size(); ++k) terms[k] += span.of_nodes(k)[j] * seen;
+  }
+  return terms;
 }
 
 }  // namespace misfit::imager

@@ -32,8 +32,8 @@ struct Window {
 
 /// The beams of a mosaic, and the windows on its image that they see. A beam is that of its pair of dishes up to the radius at
 /// which the pair's main lobe falls to the cut at the lowest frequency, and 0 beyond it, at all frequencies: its sidelobes
-/// within that radius count at higher ones. The radius is smaller than that at which a formula ends in a step at any of the
-/// frequencies, by 3%.
+/// within that radius count at higher ones. The radius is smaller than that at which a formula ends at any of the frequencies,
+/// by 3% at least.
 class MosaicBeams {
  public:
   /// Throws std::invalid_argument unless the cut is above 0 and below 1.
@@ -45,9 +45,10 @@ class MosaicBeams {
   double cut() const { return scene_.cut; }
   double tolerance() const { return scene_.tolerance; }
   /// Those that hold any of these frequencies, ascending. Throws std::invalid_argument where none holds one.
-  std::vector<const FrequencySpan*> spans(const std::vector<double>& frequency_hz) const;
+  std::vector<const BeamSpan*> spans(const std::vector<double>& frequency_hz) const;
   std::size_t all_spans() const { return scene_.at_each ? 1 : steps_.spans.size(); }
-  std::size_t most_nodes() const;  ///< of a span
+  /// [term of a span, see BeamSpan]: how large it is at most over the beams' peak.
+  const std::vector<double>& largest_terms() const { return steps_.largest; }
   /// The rows that see alike.
   std::vector<RowBeams::Group> groups(const SampleCoordinates& at) const { return scene_.beams.groups(at, steps_.turn_rad); }
 
@@ -58,21 +59,25 @@ class MosaicBeams {
   double power(const PairBeam& beam, DirectionCosines at, double frequency_hz) const;
   /// The pixels among which all are that the beam sees; none where it sees no pixel. Windows of a pair have one size.
   std::optional<Window> window(const PairBeam& beam) const;
-  /// The beam in each pixel of a window. Right to 1e-9 of power() for round beams.
-  Image image(const PairBeam& beam, const Window& window, double frequency_hz, int threads) const;
+  /// The first `count` terms of a beam in each pixel of a window, or all there are. Right to 1e-9 of power() for round beams.
+  std::vector<Image> terms(const PairBeam& beam, const Window& window, const BeamSpan& span, std::size_t count,
+                           int threads) const;
+  /// The same in a direction.
+  std::vector<double> terms(const PairBeam& beam, DirectionCosines at, const BeamSpan& span, std::size_t count) const;
 
  private:
   using Pair = std::tuple<const VoltagePattern*, const VoltagePattern*>;
 
-  const RadialTable& table(const PairBeam& beam, double frequency_hz, int threads) const;
+  /// [term], of a round beam.
+  const std::vector<RadialTable>& tables(const PairBeam& beam, const BeamSpan& span, int threads) const;
   double found_reach(const VoltagePattern& one, const VoltagePattern& other) const;
 
   MosaicScene scene_;
   std::map<Pair, double> reach_;
   BeamSteps steps_;
   mutable std::mutex mutex_;  ///< of what follows
-  mutable std::map<std::tuple<const VoltagePattern*, const VoltagePattern*, double>, RadialTable> tables_;
-  mutable std::map<double, FrequencySpan> at_each_;
+  mutable std::map<std::tuple<const VoltagePattern*, const VoltagePattern*, const BeamSpan*>, std::vector<RadialTable>> tables_;
+  mutable std::map<double, BeamSpan> at_each_;
 };
 
 }  // namespace misfit::imager

@@ -1,7 +1,8 @@
 #include "imager/pointing/mosaic_prediction.h"
 
 #include <algorithm>
-#include <list>
+#include <mutex>
+#include <optional>
 #include <utility>
 
 #include "imager/numerics/parallel.h"
@@ -9,12 +10,7 @@
 namespace misfit::imager {
 namespace {
 
-/// A model as a window's beam shows it at each node of a span.
-struct PredictedWindow {
-  std::shared_ptr<const SeenWindow> seen;
-  const FrequencySpan* span;
-  std::vector<std::unique_ptr<Prediction>> at_node;  ///< null where it shows nothing
-};
+constexpr std::size_t rows_of_a_task = 1024;  // that a thread takes at a time
 
 /// What is asked of a prediction: where, and of which samples.
 struct Asked {
@@ -26,6 +22,13 @@ struct Asked {
 struct BlockPart {
   std::size_t block;
   WindowSamples samples;
+};
+
+/// What is asked of a window.
+struct AskedWindow {
+  std::shared_ptr<const SeenWindow> seen;
+  const BeamSpan* span;
+  std::vector<BlockPart> parts;
 };
 
 class MosaicPrediction : public Prediction {
@@ -48,126 +51,122 @@ class MosaicPrediction : public Prediction {
   std::size_t samples_at_once() const override { return windows_->options().samples_at_once; }
   double fft_s() const override {
     const std::lock_guard lock(mutex_);
-    double sum = past_fft_s_;
-    for (const PredictedWindow& window : kept_) sum += fft_s(window);
-    return sum;
+    return fft_s_;
   }
 
  private:
-  struct Work {
-    std::shared_ptr<const SeenWindow> seen;
-    const FrequencySpan* span;
-    std::vector<BlockPart> parts;
-  };
-
-  static double fft_s(const PredictedWindow& window) {
-    double sum = 0;
-    for (const auto& prediction : window.at_node)
-      if (prediction) sum += prediction->fft_s();
-    return sum;
-  }
-
-  /// The work of each window, in the order in which samples ask for it.
-  std::vector<Work> work_of(const std::vector<Asked>& asked) const {
-    std::vector<Work> all;
+  /// The windows, in the order in which samples ask for them.
+  std::vector<AskedWindow> windows_of(const std::vector<Asked>& asked) const {
+    std::vector<AskedWindow> all;
     for (std::size_t b = 0; b < asked.size(); ++b)
       for (const RowBeams::Group& group : windows_->beams().groups(*asked[b].at)) {
         const std::shared_ptr<const SeenWindow> seen = windows_->seen(group);
-        if (!seen) continue;
-        for (const FrequencySpan* span : windows_->beams().spans(asked[b].at->frequency_hz)) {
-          auto work = std::find_if(all.begin(), all.end(), [&](const Work& w) { return w.seen == seen && w.span == span; });
-          if (work == all.end()) work = all.insert(all.end(), {seen, span, {}});
-          work->parts.push_back({b, windows_->samples(*seen, *asked[b].at, group.rows, *span)});
+        if (!seen || !shines_in(seen->window)) continue;
+        for (const BeamSpan* span : windows_->beams().spans(asked[b].at->frequency_hz)) {
+          auto window =
+              std::find_if(all.begin(), all.end(), [&](const AskedWindow& w) { return w.seen == seen && w.span == span; });
+          if (window == all.end()) window = all.insert(all.end(), {seen, span, {}});
+          window->parts.push_back({b, windows_->samples(*asked[b].at, group.rows, *span)});
         }
       }
     return all;
   }
 
+  bool shines_in(const Window& window) const {
+    for (int row = 0; row < window.geometry.height; ++row) {
+      const double* const from = model_.row(window.first_row + row) + window.first_column;
+      if (std::any_of(from, from + window.geometry.width, [](double pixel) { return pixel != 0; })) return true;
+    }
+    return false;
+  }
+
+  /// Windows have samples of their own, so that several can be predicted at a time.
   std::vector<std::vector<std::complex<double>>> predict(const std::vector<Asked>& asked) const {
-    const std::lock_guard lock(mutex_);
     std::vector<std::vector<std::complex<double>>> visibilities;
     for (const Asked& one : asked) visibilities.emplace_back(one.at->samples());
-    for (const Work& work : work_of(asked)) {
-      const PredictedWindow& window = predicted(work);
-      const std::vector<VisibilityBlock> blocks = blocks_of(work, asked);
-      std::vector<const VisibilityBlock*> pointers;
-      for (const VisibilityBlock& block : blocks) pointers.push_back(&block);
-      for (std::size_t k = 0; k < window.at_node.size(); ++k) {
-        if (!window.at_node[k]) continue;
-        const auto found = window.at_node[k]->at_usable_of(pointers);
-        for (std::size_t p = 0; p < work.parts.size(); ++p)
-          add(work.parts[p].samples, k, found[p], *asked[work.parts[p].block].at, visibilities[work.parts[p].block]);
-      }
-    }
+    const std::vector<AskedWindow> windows = windows_of(asked);
+    const int side_by_side = windows_->options().side_by_side;
+    parallel_for(windows.size(), side_by_side, [&](std::size_t w) {
+      const std::vector<Image> terms = windows_->terms(*windows[w].seen, *windows[w].span);
+      double fft_s = 0;
+      for (std::size_t k = 0; k < terms.size(); ++k) fft_s += add_term(windows[w], asked, k, terms[k], visibilities);
+      const std::lock_guard lock(mutex_);
+      fft_s_ += fft_s / std::max<double>(1, std::min<double>(side_by_side, static_cast<double>(windows.size())));
+    });
     return visibilities;
   }
 
-  /// The samples as the window's transform takes them; those that are not wanted without weight.
-  static std::vector<VisibilityBlock> blocks_of(const Work& work, const std::vector<Asked>& asked) {
+  /// Adds what a window shows of a term of its beam. Returns the seconds of FFTs.
+  double add_term(const AskedWindow& window, const std::vector<Asked>& asked, std::size_t term, const Image& beam,
+                  std::vector<std::vector<std::complex<double>>>& visibilities) const {
+    const auto prediction = windows_->transform(window.seen->window, term)->predict(shown(window.seen->window, beam));
     std::vector<VisibilityBlock> blocks;
-    for (const BlockPart& part : work.parts) {
-      const WindowSamples& s = part.samples;
-      const Asked& of = asked[part.block];
+    std::vector<std::vector<std::complex<double>>> phases(window.parts.size());
+    for (std::size_t p = 0; p < window.parts.size(); ++p) {
+      const WindowSamples& s = window.parts[p].samples;
       VisibilityBlock& block = blocks.emplace_back();
-      static_cast<SampleCoordinates&>(block) = s.at;
-      block.weight.assign(s.size(), 1);
-      if (of.weight == nullptr) continue;
-      for (std::size_t r = 0; r < s.rows.size(); ++r)
-        for (std::size_t c = 0; c < s.channels.size(); ++c)
-          block.weight[r * s.channels.size() + c] = (*of.weight)[s.rows[r] * of.at->channels() + s.channels[c]];
-    }
-    return blocks;
-  }
-
-  void add(const WindowSamples& s, std::size_t node, const std::vector<std::complex<double>>& found,
-           const SampleCoordinates& block, std::vector<std::complex<double>>& to) const {
-    constexpr std::size_t rows_a_piece = 1024;
-    const std::size_t channels = s.channels.size();
-    parallel_for((s.rows.size() + rows_a_piece - 1) / rows_a_piece, windows_->options().threads, [&](std::size_t p) {
-      for (std::size_t r = p * rows_a_piece; r < std::min((p + 1) * rows_a_piece, s.rows.size()); ++r)
-        for (std::size_t c = 0; c < channels; ++c) {
-          const std::size_t at = r * channels + c;
-          const std::complex<double> seen = s.share[c][node] * found[at];
-          to[s.rows[r] * block.channels() + s.channels[c]] += s.phase.empty() ? seen : s.phase[at] * seen;
-        }
-    });
-  }
-
-  /// The window that is asked last comes last.
-  const PredictedWindow& predicted(const Work& work) const {
-    const auto found = std::find_if(kept_.begin(), kept_.end(), [&](const PredictedWindow& window) {
-      return window.seen == work.seen && window.span == work.span;
-    });
-    if (found != kept_.end()) {
-      kept_.splice(kept_.end(), kept_, found);
-      return kept_.back();
-    }
-    while (!kept_.empty() && kept_.size() >= windows_->options().windows_at_once) {
-      past_fft_s_ += fft_s(kept_.front());
-      kept_.pop_front();
-    }
-    PredictedWindow window{work.seen, work.span, {}};
-    for (const double hz : work.span->node_hz) {
-      Image shown = windows_->beams().image(work.seen->beam, work.seen->window, hz, windows_->options().threads);
-      bool shows = false;
-      for (int row = 0; row < shown.height; ++row) {
-        const double* const from = model_.row(work.seen->window.first_row + row) + work.seen->window.first_column;
-        for (int column = 0; column < shown.width; ++column) {
-          double& pixel = shown.at(row, column);
-          pixel = from[column] == 0 ? 0 : pixel * from[column];
-          shows = shows || pixel != 0;
-        }
+      block.weight = weights_of(s, asked[window.parts[p].block]);
+      if (!windows_->on_planes(term)) {
+        static_cast<SampleCoordinates&>(block) = s.at;
+        continue;
       }
-      window.at_node.push_back(shows ? work.seen->transform->predict(std::move(shown)) : nullptr);
+      SamplesOnPlane plane = windows_->on_plane(*window.seen, s.at);
+      static_cast<SampleCoordinates&>(block) = std::move(plane.at);
+      phases[p] = std::move(plane.phase);
     }
-    return kept_.emplace_back(std::move(window));
+    std::vector<const VisibilityBlock*> pointers;
+    for (const VisibilityBlock& block : blocks) pointers.push_back(&block);
+    const auto found = prediction->at_usable_of(pointers);
+    for (std::size_t p = 0; p < window.parts.size(); ++p) {
+      const BlockPart& part = window.parts[p];
+      add(part.samples, term, found[p], phases[p], asked[part.block].at->channels(), visibilities[part.block]);
+    }
+    return prediction->fft_s();
+  }
+
+  /// The model as a term of a window's beam shows it.
+  Image shown(const Window& window, const Image& beam) const {
+    Image shown = beam;
+    parallel_for(static_cast<std::size_t>(shown.height), windows_->options().threads_of_each(), [&](std::size_t r) {
+      const int row = static_cast<int>(r);
+      const double* const from = model_.row(window.first_row + row) + window.first_column;
+      for (int column = 0; column < shown.width; ++column) {
+        double& pixel = shown.at(row, column);
+        pixel = from[column] == 0 ? 0 : pixel * from[column];
+      }
+    });
+    return shown;
+  }
+
+  /// Those of samples that are not wanted are 0.
+  static std::vector<float> weights_of(const WindowSamples& s, const Asked& of) {
+    std::vector<float> weight(s.size(), 1);
+    if (of.weight == nullptr) return weight;
+    for (std::size_t r = 0; r < s.rows.size(); ++r)
+      for (std::size_t c = 0; c < s.channels.size(); ++c)
+        weight[r * s.channels.size() + c] = (*of.weight)[s.rows[r] * of.at->channels() + s.channels[c]];
+    return weight;
+  }
+
+  void add(const WindowSamples& s, std::size_t term, const std::vector<std::complex<double>>& found,
+           const std::vector<std::complex<double>>& phase, std::size_t block_channels,
+           std::vector<std::complex<double>>& to) const {
+    const std::size_t channels = s.channels.size();
+    parallel_for((s.rows.size() + rows_of_a_task - 1) / rows_of_a_task, windows_->options().threads_of_each(),
+                 [&](std::size_t p) {
+                   for (std::size_t r = p * rows_of_a_task; r < std::min((p + 1) * rows_of_a_task, s.rows.size()); ++r)
+                     for (std::size_t c = 0; c < channels; ++c) {
+                       const std::size_t at = r * channels + c;
+                       const std::complex<double> seen = s.share[c][term] * found[at];
+                       to[s.rows[r] * block_channels + s.channels[c]] += phase.empty() ? seen : phase[at] * seen;
+                     }
+                 });
   }
 
   std::shared_ptr<const MosaicWindows> windows_;
   Image model_;
   mutable std::mutex mutex_;  ///< of what follows
-  mutable std::list<PredictedWindow> kept_;
-  mutable double past_fft_s_ = 0;
+  mutable double fft_s_ = 0;
 };
 
 }  // namespace

@@ -18,9 +18,9 @@ std::vector<std::complex<double>> MosaicTransform::psf_source(const SampleCoordi
   for (const RowBeams::Group& group : windows_->beams().groups(at)) {
     const std::shared_ptr<const SeenWindow> seen = windows_->seen(group);
     if (!seen) continue;
-    for (const FrequencySpan* span : windows_->beams().spans(at.frequency_hz)) {
-      const WindowSamples samples = windows_->samples(*seen, at, group.rows, *span);
-      const std::vector<std::complex<double>> some = windows_->psf_source(*seen, *span, samples, at);
+    for (const BeamSpan* span : windows_->beams().spans(at.frequency_hz)) {
+      const WindowSamples samples = windows_->samples(at, group.rows, *span);
+      const std::vector<std::complex<double>> some = windows_->psf_source(*seen, *span, samples);
       for (std::size_t r = 0, i = 0; r < samples.rows.size(); ++r)
         for (const std::size_t c : samples.channels) source[samples.rows[r] * at.channels() + c] = some[i++];
     }

@@ -15,8 +15,9 @@ namespace misfit::imager {
 /// rounding. The PSF is the response to a source of 1 Jy in the pixel of MosaicOptions, as the beams show it to each row.
 class MosaicTransform : public Transform {
  public:
-  MosaicTransform(std::shared_ptr<const MosaicBeams> beams, WindowTransforms transforms, const MosaicOptions& options)
-      : windows_(std::make_shared<const MosaicWindows>(std::move(beams), std::move(transforms), options)) {}
+  /// With the transforms of each term of beams that counts.
+  MosaicTransform(std::shared_ptr<const MosaicBeams> beams, std::vector<TermTransforms> of_term, const MosaicOptions& options)
+      : windows_(std::make_shared<const MosaicWindows>(std::move(beams), std::move(of_term), options)) {}
 
   std::unique_ptr<AdjointSum> adjoint(const AdjointOptions& options) const override;
   std::unique_ptr<Prediction> predict(Image model) const override;

@@ -48,6 +48,16 @@ struct Images {
 
 TransformSeconds transform_seconds(const imager::GriddingPlan& plan, const Images& images, int threads, int ranks) {
   if (images.stokes == 0 && !images.psf) return {};
+  if (plan.windows) {
+    TransformSeconds sum;
+    const Images of_window{images.stokes + (images.psf ? 1 : 0), false};
+    for (const auto& of_term : plan.windows->of_term) {
+      const TransformSeconds one = transform_seconds(*of_term, of_window, threads, ranks);
+      sum.grid += plan.windows->transforms() * one.grid;
+      sum.fft += plan.windows->transforms() * one.fft;
+    }
+    return sum;
+  }
   imager::GriddingWork work = plan.choice.best.work;
   work.samples /= ranks;
   work.gathers = (work.gathers + ranks - 1) / ranks;
@@ -57,10 +67,7 @@ TransformSeconds transform_seconds(const imager::GriddingPlan& plan, const Image
   // Every cell is set to 0, and written once where samples are few: this part of what its FFT takes, as measured.
   constexpr double cells = 0.6;
   const double fft_s = model.fft_seconds(work);
-  const TransformSeconds one{shared(model.gridding_seconds(work) + cells * fft_s, threads), shared(fft_s, threads)};
-  if (!plan.windows) return one;
-  const auto windows = static_cast<double>(plan.windows->windows), nodes = static_cast<double>(plan.windows->nodes);
-  return {windows * nodes * one.grid, windows * nodes * static_cast<double>(plan.windows->spans) * one.fft};
+  return {shared(model.gridding_seconds(work) + cells * fft_s, threads), shared(fft_s, threads)};
 }
 
 /// A part of the names of factors.

@@ -171,7 +171,7 @@ BOOST_AUTO_TEST_CASE(images_and_predictions_are_those_of_the_definition, *boost:
     for (const double accuracy : accuracies) {
       const GriddingPlan plan = plan_gridding(request_of(mosaic, accuracy, psf_row, psf_column));
       BOOST_TEST(plan.windows->unseeing == 1);
-      BOOST_TEST(plan.windows->on_planes == on_planes);
+      BOOST_TEST(plan.windows->of_term.front()->leaves_w_out() == on_planes);
       const MosaicBeams& beams = *plan.request.mosaic->beams;
       if (should.dirty.pixel.empty()) should = by_definition(mosaic, beams, psf_row, psf_column);
       const PlannedTransform transform(plan);
@@ -223,20 +223,22 @@ BOOST_AUTO_TEST_CASE(prediction_and_images_are_adjoint_to_rounding) {
   }
 }
 
-/// Windows that are given up and begun again add up to the same, and threads give the same bits.
-BOOST_AUTO_TEST_CASE(few_windows_at_once_and_any_threads_make_the_same_images) {
+/// Samples may gather at once or in parts, and threads give the same bits.
+BOOST_AUTO_TEST_CASE(few_samples_at_once_and_any_threads_make_the_same_images) {
   const Mosaic mosaic(7, 2, 90, 10);
   const auto beams = std::make_shared<const MosaicBeams>(mosaic.scene(1e-6));
-  const auto image_by = [&](std::size_t windows_at_once, int threads) {
-    const WindowTransforms direct{[threads](const ImageGeometry& g) { return std::make_shared<DirectTransform>(g, threads); }};
-    const MosaicTransform transform(beams, direct, {40, 40, true, windows_at_once, 0, threads});
+  const auto image_by = [&](std::size_t samples_at_once, int threads, int side_by_side) {
+    const TermTransforms direct{[](const ImageGeometry& g) { return std::make_shared<DirectTransform>(g, 1); }};
+    const std::vector<TermTransforms> of_term(beams->largest_terms().size(), direct);
+    const MosaicTransform transform(beams, of_term, {40, 40, true, samples_at_once, threads, side_by_side});
     const auto sum = transform.adjoint({});
     for (const VisibilityBlock& block : mosaic.blocks) sum->add(block);
     return sum->finish().images.front().pixel;
   };
-  const std::vector<double> all = image_by(1000, 1);
-  BOOST_TEST((image_by(1000, 2) == all));
-  BOOST_TEST(relative_error(image_by(1, 2), all) < 1e-13);
+  const std::vector<double> all = image_by(100000, 1, 1);
+  BOOST_TEST((image_by(100000, 3, 3) == all));
+  BOOST_TEST((image_by(100000, 3, 1) == all));
+  BOOST_TEST(relative_error(image_by(1, 2, 2), all) < 1e-13);
 }
 
 BOOST_AUTO_TEST_SUITE_END()
