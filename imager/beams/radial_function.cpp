@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "imager/beams/axis_frame.h"
-#include "imager/beams/cubic_weights.h"
 #include "imager/numerics/parallel.h"
 
 namespace misfit::imager {
@@ -27,12 +26,6 @@ RadialTable::RadialTable(double reach, int threads, const RadialFunction& functi
   parallel_for(value_.size(), threads, [&](std::size_t i) {
     value_[i] = function(std::abs(static_cast<double>(i) - 1) * step());  // even about the axis
   });
-}
-
-RadialTable::Place RadialTable::place(double sine) const {
-  const double at = sine / step();
-  const int cell = std::min(static_cast<int>(at), points - 1);
-  return {cell, cubic_weights(at - cell)};
 }
 
 namespace {

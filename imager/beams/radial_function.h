@@ -1,10 +1,12 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <functional>
 #include <vector>
 
+#include "imager/beams/cubic_weights.h"
 #include "imager/data/geometry.h"
 
 namespace misfit::imager {
@@ -29,7 +31,11 @@ class RadialTable {
   };
 
   /// Of sin θ up to the reach.
-  Place place(double sine) const;
+  Place place(double sine) const {
+    const double at = sine / step();
+    const int cell = std::min(static_cast<int>(at), points - 1);
+    return {cell, cubic_weights(at - cell)};
+  }
   double operator()(const Place& place) const {
     const double* const v = value_.data() + place.cell;
     return place.weight[0] * v[0] + place.weight[1] * v[1] + place.weight[2] * v[2] + place.weight[3] * v[3];

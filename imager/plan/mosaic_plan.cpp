@@ -80,40 +80,40 @@ GriddingPlan plan_window(GriddingRequest request, const AllWindows& all) {
 }
 
 /// Plans for each term. What a term is transformed wrongly by counts as it is large; errors of terms, whose kernels differ, add
-/// up by their squares.
-std::vector<std::shared_ptr<const GriddingPlan>> plan_terms(const GriddingRequest& request, std::vector<double> largest,
+/// up by their squares. Each term may take half of the squared error that is left, the last all of it.
+std::vector<std::shared_ptr<const GriddingPlan>> plan_terms(const GriddingRequest& request, std::vector<double> sizes,
                                                             const AllWindows& all) {
   constexpr double left_out = 0.03;  // of the accuracy: terms that are smaller
-  constexpr double others = 0.2;     // of the squared error, for all terms but the first
+  constexpr double first_part = 0.8;
   constexpr double coarsest = 0.1;
-  while (largest.size() > 1 && largest.back() < left_out * request.accuracy) largest.pop_back();
+  while (sizes.size() > 1 && sizes.back() < left_out * request.accuracy) sizes.pop_back();
+  if (sizes.size() == 1) return {std::make_shared<const GriddingPlan>(plan_window(request, all))};
   std::vector<std::shared_ptr<const GriddingPlan>> plans;
-  for (std::size_t k = 0; k < largest.size(); ++k) {
+  double left = 1;  // of the squared error
+  for (std::size_t k = 0; k < sizes.size(); ++k) {
     GriddingRequest of_term = request;
-    if (largest.size() > 1 && k == 0) {
-      of_term.accuracy *= std::sqrt(1 - others);
-      of_term.single_from *= std::sqrt(1 - others);
-      of_term.best_effort = true;
-    } else if (k > 0) {
-      const double part = std::sqrt(others / static_cast<double>(largest.size() - 1)) / std::min(1.0, largest[k]);
-      of_term.accuracy = std::min(coarsest, part * request.accuracy);
-      of_term.best_effort = true;
-    }
+    of_term.best_effort = true;
+    const double part = std::sqrt(k == 0 ? first_part : k + 1 < sizes.size() ? left / 2 : left);
+    const double size = k == 0 ? 1 : std::min(1.0, sizes[k]);
+    of_term.accuracy = std::min(std::max(coarsest, request.accuracy), part * request.accuracy / size);
+    if (k == 0) of_term.single_from *= part;
     GriddingPlan plan = plan_window(of_term, all);
     // What is nearly out of reach the first term may take alone.
     if (k == 0 && !plan.direct && !plan.choice.reached) plan = plan_window(request, all);
+    if (request.accuracy > 0) left = std::max(0.0, left - std::pow(size * plan.worst_error / request.accuracy, 2));
+    if (left == 0) left = 1 - first_part;  // where the first hardly reaches what is asked
     plans.push_back(std::make_shared<const GriddingPlan>(std::move(plan)));
   }
   return plans;
 }
 
 /// The errors of all terms together.
-void add_errors(const std::vector<double>& largest, GriddingPlan& plan) {
+void add_errors(const std::vector<double>& sizes, GriddingPlan& plan) {
   const auto& of_term = plan.windows->of_term;
   double expected = 0, worst = 0, rounding = 0;
   plan.bound_rms = plan.bound_max = 0;
   for (std::size_t k = 0; k < of_term.size(); ++k) {
-    const double size = k == 0 ? 1 : largest[k];
+    const double size = k == 0 ? 1 : sizes[k];
     expected = std::hypot(expected, size * of_term[k]->expected_error);
     worst = std::hypot(worst, size * of_term[k]->worst_error);
     rounding = std::hypot(rounding, size * of_term[k]->rounding);
@@ -156,7 +156,7 @@ Plan decisions_of(const GriddingPlan& plan, const AllWindows& all) {
        std::to_string(w.spans) + (w.spans == 1 ? " span" : " spans") + " of at most " + std::to_string(w.of_term.size()) +
            (w.of_term.size() == 1 ? " term" : " terms"),
        "from which beams of all channels follow to " + text("%.1g", beams.tolerance()) +
-           " of the peak; each sample is gridded for each term, as exactly as its size asks: kernel width " + widths(w)}};
+           " of themselves; each sample is gridded for each term, as exactly as its size asks: kernel width " + widths(w)}};
   decisions.push_back({"a pointing", text("%.2g", mosaic_seconds(w) / static_cast<double>(w.windows)) + " s of a core",
                        "for a pass over its " + text("%.2g", static_cast<double>(r.samples) / static_cast<double>(w.windows)) +
                            " samples, by counts of operations"});
@@ -183,7 +183,7 @@ GriddingPlan plan_together(const GriddingRequest& request, const AllWindows& all
   const std::uint64_t at_once = std::max<std::size_t>(1, request.samples_at_once);
   windows.gathers = std::max<std::uint64_t>(1, (request.samples + at_once - 1) / at_once);
   windows.side_by_side = windows_side_by_side(windows, request.threads);
-  windows.of_term = plan_terms(window_request(request, windows), beams.largest_terms(), all);
+  windows.of_term = plan_terms(window_request(request, windows), beams.term_sizes(), all);
   windows.phase_part = std::min(1.0, all.reach / largest_drop(request.geometry));
   GriddingPlan plan = *windows.of_term.front();
   plan.request = request;
@@ -191,7 +191,7 @@ GriddingPlan plan_together(const GriddingRequest& request, const AllWindows& all
   plan.direct = false;
   plan.direct_pixels = 0;
   plan.windows = std::make_shared<const WindowsPlan>(std::move(windows));
-  add_errors(beams.largest_terms(), plan);
+  add_errors(beams.term_sizes(), plan);
   Plan decisions = decisions_of(plan, all);
   for (Decision& of_one : plan.decisions) decisions.push_back(std::move(of_one));
   plan.decisions = std::move(decisions);
@@ -218,23 +218,19 @@ double mosaic_seconds(const WindowsPlan& windows) {
 GriddingPlan plan_mosaic(const GriddingRequest& request) {
   const MosaicBeams& beams = *request.mosaic->beams;
   const AllWindows all = all_windows(beams);
-  GriddingPlan together = plan_together(request, all);
-  const double psf_accuracy = request.psf_accuracy;
-  if (!request.psf || psf_accuracy <= request.accuracy || request.accuracy == 0) return together;
+  // Of a PSF that need not be as exact few terms count, and many windows do not see its source.
+  if (!request.psf || request.psf_accuracy <= request.accuracy || request.accuracy == 0) return plan_together(request, all);
   GriddingRequest alone = request;
   alone.psf = false;
-  GriddingPlan apart = plan_together(alone, all);
+  GriddingPlan plan = plan_together(alone, all);
   alone.stokes = 0;
   alone.psf = true;
-  alone.accuracy = psf_accuracy;
-  alone.psf_accuracy = 0;
-  const GriddingPlan psf = plan_together(alone, all);
-  if (mosaic_seconds(*apart.windows) + mosaic_seconds(*psf.windows) >= mosaic_seconds(*together.windows)) return together;
-  apart.request = request;
-  apart.psf = std::make_shared<const GriddingPlan>(psf);
-  apart.decisions.push_back({"PSF", "has its own transform, kernel width " + widths(*psf.windows),
-                             "to " + text("%.2g", psf_accuracy) + " it costs less"});
-  return apart;
+  alone.accuracy = request.psf_accuracy;
+  plan.psf = std::make_shared<const GriddingPlan>(plan_together(alone, all));
+  plan.request = request;
+  plan.decisions.push_back({"PSF", "has its own transform, kernel width " + widths(*plan.psf->windows),
+                            "to " + text("%.2g", request.psf_accuracy) + " it costs less"});
+  return plan;
 }
 
 TransformMemory mosaic_memory(const GriddingPlan& plan) {

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <set>
-#include <utility>
 
 #include "imager/numerics/constants.h"
 
@@ -53,35 +52,16 @@ double steepest_turn(const RowBeams& beams, double reach, double frequency_hz) {
   return steepest;
 }
 
-/// Steps of turns that are wrong by four times the tolerance at most.
+}  // namespace
+
 double turn_step(const RowBeams& beams, double reach, double frequency_hz, double tolerance) {
   const double steepest = steepest_turn(beams, reach, frequency_hz);
   return steepest > 0 ? 8 * tolerance / steepest : 0;
 }
 
-/// Takes in how large the terms of a span are. What NaN is at a node counts in none.
-void take_largest(const BeamSpan& span, const ValuesAtFrequency& seen, std::vector<double>& largest) {
-  std::vector<std::vector<double>> at_node;
-  for (const double hz : span.node_hz) at_node.push_back(seen(hz));
-  largest.resize(std::max(largest.size(), span.terms()));
-  for (std::size_t v = 0; v < at_node.front().size(); ++v)
-    for (std::size_t k = 0; k < span.terms(); ++k) {
-      double term = 0;
-      for (std::size_t j = 0; j < at_node.size(); ++j) term += span.of_nodes(k)[j] * at_node[j][v];
-      if (std::abs(term) > largest[k]) largest[k] = std::abs(term);
-    }
-}
-
-}  // namespace
-
 BeamSteps beam_steps(const RowBeams& beams, double reach, const std::vector<double>& frequency_hz, double tolerance,
                      std::size_t most_nodes) {
-  const ValuesAtFrequency seen = sampled_pairs(beams, reach);
-  BeamSteps steps;
-  for (FrequencySpan& span : frequency_spans(frequency_hz, seen, tolerance, most_nodes)) {
-    steps.spans.emplace_back(std::move(span));
-    take_largest(steps.spans.back(), seen, steps.largest);
-  }
+  BeamSteps steps{frequency_spans(frequency_hz, sampled_pairs(beams, reach), tolerance, most_nodes)};
   steps.turn_rad = turn_step(beams, reach, steps.spans.back().high_hz, tolerance);
   return steps;
 }

@@ -1,29 +1,50 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
+#include <map>
 #include <vector>
 
 #include "imager/beams/frequency_nodes.h"
 
 namespace misfit::imager {
 
-/// A span of frequencies over which a beam is B(θ, ν) = Σ_k T_k(x) t_k(θ), with Chebyshev's polynomials T_k of x, which is −1
-/// at the lowest frequency and 1 at the highest. It is the polynomial through the beams at the span's nodes. Its terms t_k fall
-/// fast with k, and |T_k| ≤ 1: those of high k need be known, in parts of themselves, the less exactly.
-class BeamSpan : public FrequencySpan {
+/// A span of frequencies over which beams are B(θ, ν) = Σ_k s_k(ν) t_k(θ): few terms t_k, of which each is a sum of the beams
+/// at a few of the frequencies, its nodes. Terms are ordered by size, and fall fast; shares |s_k| are 1 at most at the
+/// frequencies that the span was made for. Those that come late need be known, in parts of themselves, the less exactly.
+class BeamSpan {
  public:
-  explicit BeamSpan(FrequencySpan span);
+  /// Of one frequency alone: one term, which is the beam.
+  explicit BeamSpan(double frequency_hz);
 
-  std::size_t terms() const { return node_hz.size(); }
-  /// T_k at a frequency, of the first `count` terms.
-  std::vector<double> shares(double frequency_hz, std::size_t count) const;
+  bool holds(double frequency_hz) const { return frequency_hz >= low_hz_ && frequency_hz <= high_hz_; }
+  std::size_t terms() const { return of_nodes_.size(); }
+  const std::vector<double>& node_hz() const { return node_hz_; }
   /// By how much the beam at each node counts in a term.
   const std::vector<double>& of_nodes(std::size_t term) const { return of_nodes_[term]; }
+  /// [term]: the RMS of its values.
+  const std::vector<double>& sizes() const { return sizes_; }
+  /// [term]: s_k at one of the frequencies that the span was made for; at others what fits the beams there best.
+  std::vector<double> shares(double frequency_hz) const;
 
  private:
-  double position(double frequency_hz) const;
+  friend class SpanMaker;
+  BeamSpan() = default;
 
+  double low_hz_ = 0;
+  double high_hz_ = 0;
+  std::vector<double> node_hz_;
   std::vector<std::vector<double>> of_nodes_;  ///< [term][node]
+  std::vector<double> sizes_;
+  ValuesAtFrequency seen_;
+  std::vector<std::vector<double>> share_of_seen_;  ///< [term][value]: by how much it counts in a share
+  std::map<double, std::vector<double>> share_;     ///< at the frequencies that the span was made for
 };
+
+/// The fewest spans that were found with `most_terms` terms at most each, by which `seen` follows at all of these frequencies
+/// to `tolerance`: what beams are in directions enough, always the same. Nodes are found one by one, each where what the others
+/// explain leaves most; terms are the principal components of what they span.
+std::vector<BeamSpan> beam_spans(std::vector<double> frequency_hz, const ValuesAtFrequency& seen, double tolerance,
+                                 std::size_t most_terms = 16);
 
 }  // namespace misfit::imager

@@ -7,7 +7,9 @@
 #include <string>
 #include <utility>
 
+#include "imager/numerics/constants.h"
 #include "imager/numerics/parallel.h"
+#include "imager/pointing/beam_steps.h"
 
 namespace misfit::imager {
 namespace {
@@ -50,9 +52,44 @@ MosaicBeams::MosaicBeams(MosaicScene scene) : scene_(std::move(scene)) {
     if (pattern) patterns.insert(pattern.get());
   for (const VoltagePattern* one : patterns)
     for (const VoltagePattern* other : patterns) reach_[{one, other}] = found_reach(*one, *other);
-  if (scene_.at_each) scene_.frequency_hz = {scene_.frequency_hz.front(), scene_.frequency_hz.back()};
-  steps_ = beam_steps(scene_.beams, largest(reach_), scene_.frequency_hz, scene_.tolerance);
-  if (scene_.at_each) steps_.largest.resize(1);
+  turn_rad_ = turn_step(scene_.beams, largest(reach_), scene_.frequency_hz.back(), scene_.tolerance);
+  term_sizes_ = {1};
+  if (scene_.at_each) return;
+  // An image of flat noise divides by what is seen: in parts of that beams have to be right.
+  std::vector<double> most(seen(scene_.frequency_hz.front()).size(), scene_.cut * scene_.cut);
+  for (const double hz : scene_.frequency_hz) {
+    const std::vector<double> values = seen(hz);
+    for (std::size_t v = 0; v < most.size(); ++v) most[v] = std::max(most[v], std::abs(values[v]));
+  }
+  const auto relative = [this, most](double hz) {
+    std::vector<double> values = seen(hz);
+    for (std::size_t v = 0; v < most.size(); ++v) values[v] /= most[v];
+    return values;
+  };
+  spans_ = beam_spans(scene_.frequency_hz, relative, scene_.tolerance);
+  for (const BeamSpan& span : spans_) {
+    term_sizes_.resize(std::max(term_sizes_.size(), span.terms()));
+    for (std::size_t k = 0; k < span.terms(); ++k) term_sizes_[k] = std::max(term_sizes_[k], span.sizes()[k]);
+  }
+}
+
+/// What all pairs of patterns see, each as far as it reaches, at radii and angles of equal parts of its disc.
+std::vector<double> MosaicBeams::seen(double frequency_hz) const {
+  constexpr int radii = 96, angles = 8;
+  std::vector<double> values;
+  for (const auto& [pair, reach] : reach_) {
+    const auto& [one, other] = pair;
+    const bool round = one->is_round() && other->is_round();
+    for (int r = 0; r <= radii; ++r)
+      for (int a = 0; a < (round ? 1 : angles); ++a) {
+        const double sine = reach * std::sqrt(double(r) / radii), angle_rad = 2 * pi * a / angles;
+        const auto voltage = [&](const VoltagePattern& p) {
+          return p.is_round() ? p.voltage(sine, frequency_hz) : p.voltage_at(sine, angle_rad, frequency_hz);
+        };
+        values.push_back(voltage(*one) * voltage(*other));
+      }
+  }
+  return values;
 }
 
 double MosaicBeams::found_reach(const VoltagePattern& one, const VoltagePattern& other) const {
@@ -70,14 +107,14 @@ std::vector<const BeamSpan*> MosaicBeams::spans(const std::vector<double>& frequ
   if (scene_.at_each) {
     const std::lock_guard lock(mutex_);
     for (const double hz : std::set<double>(frequency_hz.begin(), frequency_hz.end()))
-      found.push_back(&at_each_.try_emplace(hz, FrequencySpan{hz, hz, {hz}}).first->second);
+      found.push_back(&at_each_.try_emplace(hz, hz).first->second);
     return found;
   }
   for (const double hz : frequency_hz)
-    if (std::none_of(steps_.spans.begin(), steps_.spans.end(), [hz](const FrequencySpan& span) { return span.holds(hz); }))
+    if (std::none_of(spans_.begin(), spans_.end(), [hz](const BeamSpan& span) { return span.holds(hz); }))
       throw std::invalid_argument("a mosaic seen at " + std::to_string(hz) +
                                   " Hz; expected one of the frequencies of its beams");
-  for (const BeamSpan& span : steps_.spans)
+  for (const BeamSpan& span : spans_)
     if (std::any_of(frequency_hz.begin(), frequency_hz.end(), [&](double hz) { return span.holds(hz); }))
       found.push_back(&span);
   return found;
@@ -123,8 +160,8 @@ const std::vector<RadialTable>& MosaicBeams::tables(const PairBeam& beam, const 
   for (std::size_t k = made.size(); k < span.terms(); ++k)
     made.emplace_back(reach(beam), threads, [&](double sine) {
       double sum = 0;
-      for (std::size_t j = 0; j < span.node_hz.size(); ++j)
-        sum += span.of_nodes(k)[j] * beam.one->voltage(sine, span.node_hz[j]) * beam.other->voltage(sine, span.node_hz[j]);
+      for (std::size_t j = 0; j < span.node_hz().size(); ++j)
+        sum += span.of_nodes(k)[j] * beam.one->voltage(sine, span.node_hz()[j]) * beam.other->voltage(sine, span.node_hz()[j]);
       return sum;
     });
   return made;
@@ -157,8 +194,8 @@ std::vector<Image> MosaicBeams::terms(const PairBeam& beam, const Window& window
 std::vector<double> MosaicBeams::terms(const PairBeam& beam, DirectionCosines at, const BeamSpan& span,
                                        std::size_t count) const {
   std::vector<double> terms(std::min(count, span.terms()));
-  for (std::size_t j = 0; j < span.node_hz.size(); ++j) {
-    const double seen = power(beam, at, span.node_hz[j]);
+  for (std::size_t j = 0; j < span.node_hz().size(); ++j) {
+    const double seen = power(beam, at, span.node_hz()[j]);
     for (std::size_t k = 0; k < terms.size(); ++k) terms[k] += span.of_nodes(k)[j] * seen;
   }
   return terms;

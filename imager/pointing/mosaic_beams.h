@@ -9,7 +9,7 @@
 #include "imager/beams/radial_function.h"
 #include "imager/beams/row_beams.h"
 #include "imager/data/image.h"
-#include "imager/pointing/beam_steps.h"
+#include "imager/pointing/beam_terms.h"
 
 namespace misfit::imager {
 
@@ -20,7 +20,9 @@ struct MosaicScene {
   std::vector<double> frequency_hz;  ///< that samples have
   bool at_each = false;              ///< whether beams are made at each frequency itself: samples may have any between these
   double cut = 1e-3;                 ///< over its peak: beams are 0 beyond where they first fall to this
-  double tolerance = 1e-7;           ///< to which beams follow between frequencies, see beam_steps()
+  /// To which beams follow from terms, see beam_spans(), in parts of the largest that they are at any frequency. Those that are
+  /// not round are turned wrongly by four times that, over their peak.
+  double tolerance = 1e-7;
 };
 
 /// A rectangle of an image's pixels.
@@ -46,11 +48,11 @@ class MosaicBeams {
   double tolerance() const { return scene_.tolerance; }
   /// Those that hold any of these frequencies, ascending. Throws std::invalid_argument where none holds one.
   std::vector<const BeamSpan*> spans(const std::vector<double>& frequency_hz) const;
-  std::size_t all_spans() const { return scene_.at_each ? 1 : steps_.spans.size(); }
-  /// [term of a span, see BeamSpan]: how large it is at most over the beams' peak.
-  const std::vector<double>& largest_terms() const { return steps_.largest; }
+  std::size_t all_spans() const { return scene_.at_each ? 1 : spans_.size(); }
+  /// [term of a span, see BeamSpan]: its size, in parts of the beams, at most of all spans.
+  const std::vector<double>& term_sizes() const { return term_sizes_; }
   /// The rows that see alike.
-  std::vector<RowBeams::Group> groups(const SampleCoordinates& at) const { return scene_.beams.groups(at, steps_.turn_rad); }
+  std::vector<RowBeams::Group> groups(const SampleCoordinates& at) const { return scene_.beams.groups(at, turn_rad_); }
 
   /// sin θ of the radius.
   double reach(const PairBeam& beam) const;
@@ -71,10 +73,13 @@ class MosaicBeams {
   /// [term], of a round beam.
   const std::vector<RadialTable>& tables(const PairBeam& beam, const BeamSpan& span, int threads) const;
   double found_reach(const VoltagePattern& one, const VoltagePattern& other) const;
+  std::vector<double> seen(double frequency_hz) const;
 
   MosaicScene scene_;
   std::map<Pair, double> reach_;
-  BeamSteps steps_;
+  std::vector<BeamSpan> spans_;  ///< none where beams are made at each frequency
+  std::vector<double> term_sizes_;
+  double turn_rad_ = 0;
   mutable std::mutex mutex_;  ///< of what follows
   mutable std::map<std::tuple<const VoltagePattern*, const VoltagePattern*, const BeamSpan*>, std::vector<RadialTable>> tables_;
   mutable std::map<double, BeamSpan> at_each_;

@@ -41,7 +41,7 @@ WindowSamples MosaicWindows::samples(const SampleCoordinates& block, const std::
     const double hz = block.frequency_hz[c];
     if (!span.holds(hz)) continue;
     s.channels.push_back(c);
-    s.share.push_back(span.shares(hz, terms(span)));
+    s.share.push_back(span.shares(hz));
     s.at.frequency_hz.push_back(hz);
   }
   s.at.uvw_m = rows_of(block, rows).uvw_m;
@@ -71,7 +71,7 @@ std::vector<std::complex<double>> MosaicWindows::psf_source(const SeenWindow& se
   std::vector<double> power;  // [channel]
   for (const std::vector<double>& share : samples.share) {
     double sum = 0;
-    for (std::size_t k = 0; k < share.size(); ++k) sum += share[k] * terms[k];
+    for (std::size_t k = 0; k < terms.size(); ++k) sum += share[k] * terms[k];
     power.push_back(sum);
   }
   std::vector<std::complex<double>> source =

@@ -229,7 +229,7 @@ BOOST_AUTO_TEST_CASE(few_samples_at_once_and_any_threads_make_the_same_images) {
   const auto beams = std::make_shared<const MosaicBeams>(mosaic.scene(1e-6));
   const auto image_by = [&](std::size_t samples_at_once, int threads, int side_by_side) {
     const TermTransforms direct{[](const ImageGeometry& g) { return std::make_shared<DirectTransform>(g, 1); }};
-    const std::vector<TermTransforms> of_term(beams->largest_terms().size(), direct);
+    const std::vector<TermTransforms> of_term(beams->term_sizes().size(), direct);
     const MosaicTransform transform(beams, of_term, {40, 40, true, samples_at_once, threads, side_by_side});
     const auto sum = transform.adjoint({});
     for (const VisibilityBlock& block : mosaic.blocks) sum->add(block);
