@@ -62,6 +62,19 @@ void parallel_for(std::size_t count, int threads, const std::function<void(std::
   if (failure) std::rethrow_exception(failure);
 }
 
+void parallel_in_order(std::size_t count, int threads, const std::function<void(std::size_t)>& body,
+                       const std::function<void(std::size_t)>& take) {
+  std::mutex mutex;  // of what follows
+  std::vector<bool> done(count);
+  std::size_t next = 0;
+  parallel_for(count, threads, [&](std::size_t i) {
+    body(i);
+    const std::lock_guard lock(mutex);
+    done[i] = true;
+    for (; next < count && done[next]; ++next) take(next);
+  });
+}
+
 int available_threads(int processes) {
   const int all = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
   cpu_set_t mine;

@@ -10,6 +10,10 @@ namespace misfit::imager {
 /// are done; the first exception that a body throws is rethrown, and no further i is begun.
 void parallel_for(std::size_t count, int threads, const std::function<void(std::size_t i)>& body);
 
+/// The same, and take(i) for each i once its body is done, in the order of i and one at a time.
+void parallel_in_order(std::size_t count, int threads, const std::function<void(std::size_t i)>& body,
+                       const std::function<void(std::size_t i)>& take);
+
 /// While it lives, parallel_for calls `check` now and then, on the thread that made this and where that one calls it; what the
 /// check throws ends the loop as a body's exception does.
 class StopCheck {

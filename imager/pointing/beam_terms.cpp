@@ -27,7 +27,7 @@ Explained explain(const MatrixXd& values, double tolerance, Index most) {
   Explained found{{}, MatrixXd(values.rows(), 0), false};
   MatrixXd left = values;
   for (;;) {
-    found.all = left.cwiseAbs().maxCoeff() <= tolerance;
+    found.all = !found.column.empty() && left.cwiseAbs().maxCoeff() <= tolerance;
     if (found.all || static_cast<Index>(found.column.size()) == std::min(most, values.cols())) return found;
     Index next = 0;
     left.colwise().squaredNorm().maxCoeff(&next);

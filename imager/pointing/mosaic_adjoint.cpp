@@ -123,22 +123,23 @@ class MosaicAdjoint : public AdjointSum {
 
   /// Computes all windows that wait, some at a time, and adds them to the images in the order in which they came.
   void add_windows() {
-    const auto side_by_side = static_cast<std::size_t>(std::max(1, o().side_by_side));
-    for (std::size_t begin = 0; begin < waiting_.size(); begin += 2 * side_by_side) {
-      const std::size_t count = std::min(2 * side_by_side, waiting_.size() - begin);
-      std::vector<WindowImages> made(count);
-      parallel_for(count, o().side_by_side, [&](std::size_t i) {
-        made[i] = images_of(waiting_[begin + i]);
-        waiting_[begin + i].parts = {};
-      });
-      for (std::size_t i = 0; i < count; ++i) add(waiting_[begin + i].seen->window, made[i], std::min(side_by_side, count));
-    }
+    std::vector<WindowImages> made(waiting_.size());
+    parallel_in_order(
+        waiting_.size(), o().side_by_side,
+        [&](std::size_t i) {
+          made[i] = images_of(waiting_[i]);
+          waiting_[i].parts = {};
+        },
+        [&](std::size_t i) {
+          add(waiting_[i].seen->window, made[i]);
+          made[i] = {};
+        });
     waiting_.clear();
     samples_ = 0;
   }
 
-  void add(const Window& window, const WindowImages& of_window, std::size_t side_by_side) {
-    result_.fft_s += of_window.fft_s / static_cast<double>(side_by_side);
+  void add(const Window& window, const WindowImages& of_window) {
+    result_.fft_s += of_window.fft_s / std::min<double>(o().side_by_side, static_cast<double>(waiting_.size()));
     for (std::size_t i = 0; i < of_window.images.size(); ++i)
       add_window(window, of_window.images[i], i < images() ? result_.images[i] : result_.psf);
     for (std::size_t p = 0; p < of_window.sensitivity.size(); ++p)
@@ -146,7 +147,7 @@ class MosaicAdjoint : public AdjointSum {
   }
 
   void add_window(const Window& window, const Image& part, Image& image) const {
-    parallel_for(static_cast<std::size_t>(part.height), o().threads, [&](std::size_t r) {
+    parallel_for(static_cast<std::size_t>(part.height), o().threads_of_each(), [&](std::size_t r) {
       const int row = static_cast<int>(r);
       const double* const from = part.row(row);
       double* const to = image.row(window.first_row + row) + window.first_column;

@@ -5,6 +5,7 @@
 #include <memory>
 #include <stdexcept>
 #include <thread>
+#include <vector>
 
 BOOST_AUTO_TEST_SUITE(parallel)
 
@@ -56,6 +57,27 @@ BOOST_AUTO_TEST_CASE(a_check_of_the_caller_s_thread_ends_the_work) {
 
 BOOST_AUTO_TEST_CASE(there_is_always_a_thread_to_run_in) {
   BOOST_TEST(available_threads() >= 1);
+}
+
+BOOST_AUTO_TEST_CASE(what_is_done_side_by_side_is_taken_in_order) {
+  for (const int threads : {1, 3, 8}) {
+    std::vector<std::size_t> made(200), taken;
+    parallel_in_order(
+        made.size(), threads,
+        [&](std::size_t i) {
+          for (std::size_t k = 0; k < 1000 * (i % 7); ++k) made[i] += k;
+          made[i] = i * i;
+        },
+        [&](std::size_t i) { taken.push_back(made[i]); });
+    BOOST_TEST(taken.size() == made.size());
+    for (std::size_t i = 0; i < taken.size(); ++i) BOOST_TEST(taken[i] == i * i);
+  }
+  const auto fail = [](std::size_t i) {
+    if (i == 5) throw std::out_of_range("five");
+  };
+  std::size_t taken = 0;
+  BOOST_CHECK_THROW(parallel_in_order(100, 4, fail, [&](std::size_t) { ++taken; }), std::out_of_range);
+  BOOST_TEST(taken <= 5U);
 }
 
 BOOST_AUTO_TEST_SUITE_END()
