@@ -57,7 +57,6 @@ struct GriddingRequest {
   std::size_t samples_at_once = WideTransformOptions().samples_at_once;  ///< that a w axis gathers
 };
 
-
 enum class Rejection { costs_more, not_exact_enough };
 
 /// A neighbour of the choice that was not taken. One that costs more may not have been judged: its width is then the least that

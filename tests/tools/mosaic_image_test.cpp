@@ -170,8 +170,7 @@ BOOST_AUTO_TEST_CASE(planes_of_cubes_and_taylor_terms_keep_their_promise) {
   succeed(of.image("cube", checked + Arguments{"--specmode", "cube", "--outframe", "TOPO", "--niter", "50", "--pbcor"}));
   const json cube = of.report("cube");
   BOOST_TEST(cube["planes"].size() == 4);
-  for (const json& plane : cube["planes"])
-    BOOST_TEST(plane["stokes"][0]["error"]["measured_rms"].get<double>() <= 1e-5);
+  for (const json& plane : cube["planes"]) BOOST_TEST(plane["stokes"][0]["error"]["measured_rms"].get<double>() <= 1e-5);
   succeed(of.image("cube.one", {"--gridder", "mosaic", "--spw", "0:2", "--weighting", "briggs"}));
   succeed(of.image("cube.all", {"--gridder", "mosaic", "--specmode", "cube", "--outframe", "TOPO", "--weighting", "briggs"}));
   const Image plane = tools::open_image_file(of.folder / "cube.all.residual.fits")->read({2, 0});

@@ -67,7 +67,9 @@ imager::GriddingPlan plan_with_room(imager::GriddingRequest request,
   const double wanted = wanted_bytes(o, machine_bytes);
   const imager::MemoryDemand first = demand(plan);
   const double left = wanted - streaming_within(wanted, first).peak.total();
-  if (!(plan.options.has_w_axis() || plan.windows) || first.samples <= static_cast<double>(request.samples_at_once) || left <= 0) return plan;
+  if (!(plan.options.has_w_axis() || plan.windows) || first.samples <= static_cast<double>(request.samples_at_once) ||
+      left <= 0)
+    return plan;
   const double sample_bytes = imager::wide_bytes_a_sample + (imager::wide_bytes_a_value + 16.0) * std::max(1, request.stokes);
   const std::size_t at_once = request.samples_at_once;
   for (double room = left; room > left / 4; room /= 1.5) {
