@@ -18,6 +18,27 @@ struct NoiseOfTwo {
   double covariance = 0;
 };
 
+/// Noise of two images at each pixel.
+class NoiseAt {
+ public:
+  /// As the images show it where it is the same everywhere, or in units of what it is expected to be.
+  NoiseAt(const Image& first, const Image& second, const std::optional<SolutionNoise>& by, int threads);
+
+  NoiseOfTwo at(std::size_t i) const {
+    if (!by_) return everywhere_;
+    const double of_0 = by_->sigma_0.pixel[i], of_1 = by_->sigma_1.pixel[i];
+    const double more =
+        (by_->correlation.pixel[i] - mean_correlation_) * std::sqrt(everywhere_.variance_0 * everywhere_.variance_1);
+    return {of_0 * of_0 * everywhere_.variance_0, of_1 * of_1 * everywhere_.variance_1,
+            of_0 * of_1 * (everywhere_.covariance + more)};
+  }
+
+ private:
+  const std::optional<SolutionNoise>& by_;
+  NoiseOfTwo everywhere_;
+  double mean_correlation_ = 0;
+};
+
 /// The covariance from the noise of sum and difference, each over its own: robust where covariance itself is not.
 NoiseOfTwo noise_of(const Image& first, const Image& second, int threads) {
   const double sigma_0 = robust_noise(first, threads), sigma_1 = robust_noise(second, threads);
@@ -32,6 +53,24 @@ NoiseOfTwo noise_of(const Image& first, const Image& second, int threads) {
   const double sum = noise_with(1), difference = noise_with(-1);
   noise.covariance = (sum * sum - difference * difference) / 4 * sigma_0 * sigma_1;
   return noise;
+}
+
+Image divided(Image image, const Image& by) {
+  for (std::size_t i = 0; i < image.pixel.size(); ++i) image.pixel[i] /= by.pixel[i];
+  return image;
+}
+
+double mean_of_known(const Image& image) {
+  double sum = 0, known = 0;
+  for (const double pixel : image.pixel)
+    if (!std::isnan(pixel)) sum += pixel, ++known;
+  return known > 0 ? sum / known : 0;
+}
+
+NoiseAt::NoiseAt(const Image& first, const Image& second, const std::optional<SolutionNoise>& by, int threads) : by_(by) {
+  everywhere_ =
+      by ? noise_of(divided(first, by->sigma_0), divided(second, by->sigma_1), threads) : noise_of(first, second, threads);
+  if (by) mean_correlation_ = mean_of_known(by->correlation);
 }
 
 /// α and β of images [term], NaN where `is_known(pixel)` is not so or I_0 is not positive.
@@ -55,14 +94,16 @@ SpectralImages indices_of(const std::vector<Image>& term, int threads, const IsK
 
 }  // namespace
 
-SpectralImages spectral_images(const std::vector<Image>& restored, const std::vector<Image>& residual, int threads) {
-  const NoiseOfTwo noise = noise_of(residual[0], residual[1], threads);
-  const double level_jy = enough * std::sqrt(noise.variance_0);
+SpectralImages spectral_images(const std::vector<Image>& restored, const std::vector<Image>& residual, int threads,
+                               const std::optional<SolutionNoise>& by) {
+  const NoiseAt noise_at(residual[0], residual[1], by, threads);
+  const double level_jy = enough * robust_noise(residual[0], threads);
   SpectralImages made = indices_of(restored, threads, [&](std::size_t i) { return restored[0].pixel[i] >= level_jy; });
   made.level_jy = level_jy;
   made.alpha_error = Image(made.alpha.width, made.alpha.height);
   for (std::size_t i = 0; i < made.alpha.pixel.size(); ++i) {
     const double alpha = made.alpha.pixel[i];
+    const NoiseOfTwo noise = noise_at.at(i);
     const double variance = noise.variance_1 - 2 * alpha * noise.covariance + alpha * alpha * noise.variance_0;
     made.alpha_error.pixel[i] = std::isnan(alpha) ? alpha : std::sqrt(std::fmax(0, variance)) / restored[0].pixel[i];
   }

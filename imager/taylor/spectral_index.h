@@ -1,8 +1,10 @@
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "imager/data/image.h"
+#include "imager/taylor/taylor_basis.h"
 
 namespace misfit::imager {
 
@@ -20,8 +22,10 @@ struct SpectralImages {
 ///
 ///     σ_α² = (σ_1² − 2 α c + α² σ_0²)/I_0²,
 ///
-/// to first order in noise over I_0. NaN where I_0 is less than five times σ_0.
-SpectralImages spectral_images(const std::vector<Image>& restored, const std::vector<Image>& residual, int threads);
+/// to first order in noise over I_0. NaN where I_0 is less than five times σ_0. In a mosaic σ_0, σ_1 and c differ from pixel to
+/// pixel as `by` says.
+SpectralImages spectral_images(const std::vector<Image>& restored, const std::vector<Image>& residual, int threads,
+                               const std::optional<SolutionNoise>& by = std::nullopt);
 
 /// α and β of `sky`, images [term] of the same sources without the beam, where `apparent` has them and I_0 is positive; without
 /// errors: those of `apparent`, up to noise by which the beam's own α does not change.

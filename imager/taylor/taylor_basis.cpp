@@ -122,13 +122,46 @@ std::vector<Image> principal_solution(const TaylorBasis& basis, const std::vecto
   return result;
 }
 
+namespace {
+
+/// Of a mosaic's pixel.
+std::optional<TaylorBasis> basis_at(const std::vector<Image>& relative_peaks, std::size_t i) {
+  std::array<double, 2 * most_taylor_terms - 1> peaks{1};
+  for (std::size_t k = 0; k < relative_peaks.size(); ++k) peaks[k + 1] = relative_peaks[k].pixel[i];
+  return TaylorBasis::of(peaks, static_cast<int>(relative_peaks.size() / 2 + 1));
+}
+
+}  // namespace
+
+SolutionNoise solution_noise(const std::vector<Image>& relative_peaks, int threads) {
+  const Image& like = relative_peaks.front();
+  SolutionNoise noise{Image(like.width, like.height), Image(like.width, like.height), Image(like.width, like.height)};
+  const auto width = static_cast<std::size_t>(like.width);
+  parallel_for(static_cast<std::size_t>(like.height), threads, [&](std::size_t row) {
+    for (std::size_t i = row * width; i < (row + 1) * width; ++i) {
+      const std::optional<TaylorBasis> basis = basis_at(relative_peaks, i);
+      double of_0 = basis ? 0 : std::nan(""), of_1 = of_0, of_both = of_0;
+      for (int j = 0; basis && j < basis->terms(); ++j) {
+        TaylorValues y{};
+        y[static_cast<std::size_t>(j)] = 1;
+        const TaylorValues coefficient = basis->coefficients(y);
+        of_0 += coefficient[0] * coefficient[0];
+        of_1 += coefficient[1] * coefficient[1];
+        of_both += coefficient[0] * coefficient[1];
+      }
+      noise.sigma_0.pixel[i] = std::sqrt(of_0);
+      noise.sigma_1.pixel[i] = std::sqrt(of_1);
+      noise.correlation.pixel[i] = of_both / std::sqrt(of_0 * of_1);
+    }
+  });
+  return noise;
+}
+
 std::vector<Image> principal_solution(const std::vector<Image>& relative_peaks, const std::vector<const Image*>& residual,
                                       int threads) {
   std::vector<Image> result(residual.size(), Image(residual.front()->width, residual.front()->height));
   for_each_pixel(residual, threads, [&](std::size_t i, const TaylorValues& values) {
-    std::array<double, 2 * most_taylor_terms - 1> peaks{1};
-    for (std::size_t k = 0; k < relative_peaks.size(); ++k) peaks[k + 1] = relative_peaks[k].pixel[i];
-    const std::optional<TaylorBasis> basis = TaylorBasis::of(peaks, static_cast<int>(residual.size()));
+    const std::optional<TaylorBasis> basis = basis_at(relative_peaks, i);
     const TaylorValues coefficient = basis ? basis->coefficients(basis->coordinates(values)) : TaylorValues{};
     result.front().pixel[i] = basis ? coefficient.front() : values.front();
     for (std::size_t t = 1; t < result.size(); ++t) result[t].pixel[i] = basis ? coefficient[t] : std::nan("");

@@ -49,10 +49,20 @@ class TaylorBasis {
 };
 
 /// The same of a mosaic, where peaks P_k(0) of sources differ from pixel to pixel: `relative_peaks` are images of P_k(0)/P_0(0)
-/// [k − 1], and P_0(0) is 1. Where the samples that see a pixel do not
-/// tell the terms apart, the first is R_0(p) and others are NaN.
+/// [k − 1], and P_0(0) is 1. Where the samples that see a pixel do not tell the terms apart, the first is R_0(p) and others are
+/// NaN.
 std::vector<Image> principal_solution(const std::vector<Image>& relative_peaks, const std::vector<const Image*>& residual,
                                       int threads);
+
+/// What noise there is in a mosaic's principal solution, in units of that of R_0, of weights that are 1/σ²: with C = H⁻¹ of
+/// each pixel images of √C_00, of √C_11, and of their correlation C_01/√(C_00 C_11). NaN where samples do not tell the terms
+/// apart.
+struct SolutionNoise {
+  Image sigma_0;
+  Image sigma_1;
+  Image correlation;
+};
+SolutionNoise solution_noise(const std::vector<Image>& relative_peaks, int threads);
 
 /// Of the PSFs' middle pixels. [k], 2n − 1 of them.
 TaylorBasis basis_of(const std::vector<const Image*>& psf);

@@ -60,7 +60,9 @@ RestoredTerms TaylorStage::restore(const imager::CleanResult& cleaned, const ima
   for (const imager::Image* model : cleaned.models())
     images.push_back(imager::restored({*model, left[images.size()]}, beam, cell_rad, threads_));
   RestoredTerms terms;
-  terms.spectra = imager::spectral_images(images, left, threads_);
+  std::optional<imager::SolutionNoise> noise;
+  if (!images_.relative_peaks.empty()) noise = imager::solution_noise(images_.relative_peaks, threads_);
+  terms.spectra = imager::spectral_images(images, left, threads_, noise);
   terms.first = std::move(images.front());
   for (std::size_t t = 1; t < images.size(); ++t) terms.further.push_back(std::move(images[t]));
   return terms;

@@ -51,6 +51,35 @@ BOOST_AUTO_TEST_CASE(index_and_curvature_are_those_whose_taylor_coefficients_are
   BOOST_TEST(std::abs(made.beta.at(5, 7) - beta) < 1e-6);
 }
 
+/// Where pixels see the terms apart by different amounts, as in a mosaic, each has the noise of its own H⁻¹.
+BOOST_AUTO_TEST_CASE(the_error_of_the_index_follows_what_each_pixel_sees) {
+  constexpr double flux = 1, alpha = -0.8, sigma = 0.002;
+  std::vector<Image> peaks(2, Image(side, side)), y = noise(sigma, sigma, 0), dirty(2, Image(side, side));
+  for (int row = 0; row < side; ++row)
+    for (int column = 0; column < side; ++column) {
+      const double mean = 0.1 * column / side - 0.05, square = mean * mean + 0.002 + 0.01 * row / side;
+      peaks[0].at(row, column) = mean;
+      peaks[1].at(row, column) = square;
+      // R = L y has the covariance H of noise, for H = L Lᵀ = (1, mean; mean, square)
+      dirty[0].at(row, column) = y[0].at(row, column);
+      dirty[1].at(row, column) = mean * y[0].at(row, column) + std::sqrt(square - mean * mean) * y[1].at(row, column);
+    }
+  const std::vector<Image> residual = principal_solution(peaks, {&dirty[0], &dirty[1]}, 2);
+  std::vector<Image> restored = residual;
+  for (std::size_t i = 0; i < restored[0].pixel.size(); ++i) {
+    restored[0].pixel[i] += flux;
+    restored[1].pixel[i] += alpha * flux;
+  }
+  const SpectralImages made = spectral_images(restored, residual, 2, solution_noise(peaks, 2));
+  for (const int first : {0, side / 2}) {  // of rows that tell the terms apart badly, and better
+    double square = 0;
+    for (int row = first; row < first + side / 4; ++row)
+      for (int column = 0; column < side; ++column)
+        square += std::pow((made.alpha.at(row, column) - alpha) / made.alpha_error.at(row, column), 2);
+    BOOST_TEST(std::sqrt(square / (side / 4 * side)) == 1, boost::test_tools::tolerance(0.03));
+  }
+}
+
 /// The error of α is the scatter that such noise gives it, over 65536 pixels: 1 % for robust noise of that many, and 1 % for
 /// what is of second order in noise over flux, here 1/50.
 BOOST_AUTO_TEST_CASE(the_error_of_the_index_is_its_scatter) {
