@@ -2,6 +2,7 @@
 // time.
 #include "tools/operator_new.h"
 
+#include <sys/mman.h>
 #include <unistd.h>
 
 #include <cstddef>
@@ -22,6 +23,16 @@ void end_before_main() noexcept {
   static_cast<void>(!write(STDERR_FILENO, message, sizeof message - 1));
   _exit(1);
 }
+
+/// Libraries begin before main, and some that get no memory crash or print a riddle: what they take is looked for first.
+void require_memory_for_libraries() noexcept {
+  constexpr std::size_t some = std::size_t{4} << 20;
+  void* const memory = mmap(nullptr, some, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+  if (memory == MAP_FAILED) end_before_main();
+  munmap(memory, some);
+}
+/// Run by the loader before anything of the libraries.
+[[gnu::section(".preinit_array"), gnu::used]] void (*const before_libraries)() = &require_memory_for_libraries;
 
 void* allocate(std::size_t bytes) noexcept {
   constexpr std::size_t large = 8 * misfit::imager::PagePool::page_bytes;
