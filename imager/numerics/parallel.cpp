@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <condition_variable>
 #include <exception>
 #include <mutex>
 #include <system_error>
@@ -64,14 +65,30 @@ void parallel_for(std::size_t count, int threads, const std::function<void(std::
 
 void parallel_in_order(std::size_t count, int threads, const std::function<void(std::size_t)>& body,
                        const std::function<void(std::size_t)>& take) {
+  const std::size_t ahead = 2 * static_cast<std::size_t>(std::max(threads, 1));
   std::mutex mutex;  // of what follows
+  std::condition_variable taken;
   std::vector<bool> done(count);
   std::size_t next = 0;
+  bool failed = false;
   parallel_for(count, threads, [&](std::size_t i) {
-    body(i);
-    const std::lock_guard lock(mutex);
-    done[i] = true;
-    for (; next < count && done[next]; ++next) take(next);
+    try {
+      {
+        std::unique_lock lock(mutex);
+        taken.wait(lock, [&] { return i < next + ahead || failed; });
+        if (failed) return;
+      }
+      body(i);
+      const std::lock_guard lock(mutex);
+      done[i] = true;
+      while (!failed && next < count && done[next]) take(next++);
+    } catch (...) {
+      const std::lock_guard lock(mutex);
+      failed = true;
+      taken.notify_all();
+      throw;
+    }
+    taken.notify_all();
   });
 }
 

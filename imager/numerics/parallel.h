@@ -10,7 +10,8 @@ namespace misfit::imager {
 /// are done; the first exception that a body throws is rethrown, and no further i is begun.
 void parallel_for(std::size_t count, int threads, const std::function<void(std::size_t i)>& body);
 
-/// The same, and take(i) for each i once its body is done, in the order of i and one at a time.
+/// The same, and take(i) for each i once its body is done, in the order of i and one at a time. No body begins that is more
+/// than twice the threads ahead of what was taken.
 void parallel_in_order(std::size_t count, int threads, const std::function<void(std::size_t i)>& body,
                        const std::function<void(std::size_t i)>& take);
 

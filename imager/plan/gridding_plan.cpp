@@ -132,9 +132,7 @@ GriddingPlan with_threads(GriddingPlan plan, int threads) {
   if (plan.psf) plan.psf = std::make_shared<const GriddingPlan>(with_threads(*plan.psf, threads));
   if (plan.windows) {
     auto windows = std::make_shared<WindowsPlan>(*plan.windows);
-    for (auto& of_term : windows->of_term)
-      of_term = std::make_shared<const GriddingPlan>(with_threads(*of_term, threads_of_each_window(*windows, threads)));
-    windows->side_by_side = windows_side_by_side(*windows, threads);
+    share_threads(*windows, threads);
     plan.windows = std::move(windows);
   }
   return plan;

@@ -21,9 +21,10 @@ struct WindowsPlan {
   double phase_part = 1;     ///< of the phase that w makes over the whole image: what w makes over any window beside its plane
   std::size_t windows = 0;   ///< of pointings and pairs of dishes that see the image
   std::size_t unseeing = 0;  ///< pointings that see no pixel of it
-  std::size_t spans = 1;     ///< see BeamSteps
+  std::size_t spans = 1;     ///< see BeamSpan
   std::size_t gathers = 1;   ///< times that samples are gathered and all windows transformed
-  int side_by_side = 1;      ///< see MosaicOptions
+  std::size_t most_at_once = 1;  ///< windows whose work memory has room for
+  int side_by_side = 1;          ///< see MosaicOptions
 
   /// Transforms of each term that a pass takes.
   double transforms() const { return static_cast<double>(windows * spans * gathers); }

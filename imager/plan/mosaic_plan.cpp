@@ -61,8 +61,8 @@ GriddingRequest window_request(const GriddingRequest& request, const WindowsPlan
   of_window.stokes = std::clamp(request.stokes + (request.psf ? 1 : 0), 1, static_cast<int>(most_stokes));
   of_window.samples =
       std::max<std::uint64_t>(1, static_cast<std::uint64_t>(static_cast<double>(request.samples) / windows.transforms()));
-  of_window.stack_bytes = request.stack_bytes / static_cast<std::size_t>(windows.side_by_side);
-  of_window.threads = threads_of_each_window(windows, request.threads);
+  constexpr std::size_t shares = 8;  // however many threads there are: by it sums are split
+  of_window.stack_bytes = request.stack_bytes / shares;
   return of_window;
 }
 
@@ -100,8 +100,9 @@ std::vector<std::shared_ptr<const GriddingPlan>> plan_terms(const GriddingReques
     GriddingPlan plan = plan_window(of_term, all);
     // What is nearly out of reach the first term may take alone.
     if (k == 0 && !plan.direct && !plan.choice.reached) plan = plan_window(request, all);
-    if (request.accuracy > 0) left = std::max(0.0, left - std::pow(size * plan.worst_error / request.accuracy, 2));
-    if (left == 0) left = 1 - first_part;  // where the first hardly reaches what is asked
+    const double error = plan.worst_error + (plan.leaves_w_out() ? plan.choice.borne_phase_rad : 0);
+    if (request.accuracy > 0) left = std::max(0.0, left - std::pow(size * error / request.accuracy, 2));
+    if (k == 0 && left < 1 - first_part) left = 1 - first_part;  // it hardly reaches what is asked
     plans.push_back(std::make_shared<const GriddingPlan>(std::move(plan)));
   }
   return plans;
@@ -156,8 +157,9 @@ Plan decisions_of(const GriddingPlan& plan, const AllWindows& all) {
        std::to_string(w.spans) + (w.spans == 1 ? " span" : " spans") + " of at most " + std::to_string(w.of_term.size()) +
            (w.of_term.size() == 1 ? " term" : " terms"),
        "from which beams of all channels follow to " + text("%.1g", beams.tolerance()) +
-           " of themselves; each sample is gridded for each term, as exactly as its size asks: kernel width " + widths(w)}};
-  decisions.push_back({"a pointing", text("%.2g", mosaic_seconds(w) / static_cast<double>(w.windows)) + " s of a core",
+           " of what they are at most; each sample is gridded for each term, as exactly as its size asks: kernel width " +
+           widths(w)}};
+  decisions.push_back({"a pointing", text("%.2g", mosaic_seconds(w, 0) / static_cast<double>(w.windows)) + " s of a core",
                        "for a pass over its " + text("%.2g", static_cast<double>(r.samples) / static_cast<double>(w.windows)) +
                            " samples, by counts of operations"});
   if (w.gathers > 1)
@@ -173,6 +175,26 @@ Plan decisions_of(const GriddingPlan& plan, const AllWindows& all) {
   return decisions;
 }
 
+/// Bytes that a window takes while it is computed.
+double bytes_at_work(const WindowsPlan& windows, const GriddingRequest& request) {
+  constexpr double sum_bytes = sizeof(double), value_bytes = sizeof(std::complex<double>);
+  const double images = request.stokes + (request.psf ? 1 : 0);
+  const GriddingRequest& first = windows.of_term.front()->request;
+  double transform = 0;
+  for (const auto& of_term : windows.of_term) {
+    const TransformMemory of = memory_of(*of_term);
+    transform = std::max(transform, of.visibilities + of.psf + of.other_stokes + of.fft);
+  }
+  // Its samples need not come evenly: all that it has may have gathered at once.
+  const double samples = std::min(static_cast<double>(request.samples) / static_cast<double>(windows.windows * windows.spans),
+                                  static_cast<double>(request.samples_at_once));
+  const double more = samples - static_cast<double>(first.samples);
+  const double term_images = static_cast<double>(windows.of_term.size()) + 1;
+  return transform + std::max(0.0, more) * (wide_bytes_a_sample + images * wide_bytes_a_value) +
+         samples * images * 2 * value_bytes +
+         static_cast<double>(first.geometry.pixels()) * (term_images + 3 * images) * sum_bytes;
+}
+
 /// With one transform for image and PSF.
 GriddingPlan plan_together(const GriddingRequest& request, const AllWindows& all) {
   const MosaicBeams& beams = *request.mosaic->beams;
@@ -182,8 +204,11 @@ GriddingPlan plan_together(const GriddingRequest& request, const AllWindows& all
   windows.spans = beams.all_spans();
   const std::uint64_t at_once = std::max<std::size_t>(1, request.samples_at_once);
   windows.gathers = std::max<std::uint64_t>(1, (request.samples + at_once - 1) / at_once);
-  windows.side_by_side = windows_side_by_side(windows, request.threads);
   windows.of_term = plan_terms(window_request(request, windows), beams.term_sizes(), all);
+  const auto fit = static_cast<double>(request.stack_bytes) / bytes_at_work(windows, request);
+  windows.most_at_once =
+      std::clamp<std::size_t>(static_cast<std::size_t>(std::min(fit, 1e9)), 1, windows.windows * windows.spans);
+  share_threads(windows, request.threads);
   windows.phase_part = std::min(1.0, all.reach / largest_drop(request.geometry));
   GriddingPlan plan = *windows.of_term.front();
   plan.request = request;
@@ -200,26 +225,35 @@ GriddingPlan plan_together(const GriddingRequest& request, const AllWindows& all
 
 }  // namespace
 
-int windows_side_by_side(const WindowsPlan& windows, int threads) {
-  return static_cast<int>(
-      std::clamp<std::size_t>(windows.windows * windows.spans, 1, static_cast<std::size_t>(std::max(1, threads))));
+void share_threads(WindowsPlan& windows, int threads) {
+  windows.side_by_side =
+      static_cast<int>(std::clamp<std::size_t>(static_cast<std::size_t>(std::max(1, threads)), 1, windows.most_at_once));
+  for (auto& of_term : windows.of_term)
+    of_term = std::make_shared<const GriddingPlan>(with_threads(*of_term, std::max(1, threads / windows.side_by_side)));
 }
 
-int threads_of_each_window(const WindowsPlan& windows, int threads) {
-  return std::max(1, threads / windows_side_by_side(windows, threads));
-}
-
-double mosaic_seconds(const WindowsPlan& windows) {
+double mosaic_seconds(const WindowsPlan& windows, int images) {
   double sum = 0;
-  for (const auto& of_term : windows.of_term) sum += CostModel().seconds(of_term->choice.best.work);
+  for (const auto& of_term : windows.of_term) {
+    GriddingWork work = of_term->choice.best.work;
+    if (images > 0) work.stokes = images;
+    sum += CostModel().seconds(work);
+  }
   return windows.transforms() * sum;
 }
 
 GriddingPlan plan_mosaic(const GriddingRequest& request) {
   const MosaicBeams& beams = *request.mosaic->beams;
   const AllWindows all = all_windows(beams);
+  if (!request.psf || request.psf_accuracy == 0 || request.accuracy == 0) return plan_together(request, all);
+  if (request.psf_accuracy <= request.accuracy) {
+    GriddingRequest both = request;
+    both.accuracy = request.psf_accuracy;
+    GriddingPlan plan = plan_together(both, all);
+    plan.request = request;
+    return plan;
+  }
   // Of a PSF that need not be as exact few terms count, and many windows do not see its source.
-  if (!request.psf || request.psf_accuracy <= request.accuracy || request.accuracy == 0) return plan_together(request, all);
   GriddingRequest alone = request;
   alone.psf = false;
   GriddingPlan plan = plan_together(alone, all);
@@ -228,35 +262,26 @@ GriddingPlan plan_mosaic(const GriddingRequest& request) {
   alone.accuracy = request.psf_accuracy;
   plan.psf = std::make_shared<const GriddingPlan>(plan_together(alone, all));
   plan.request = request;
-  plan.decisions.push_back({"PSF", "has its own transform, kernel width " + widths(*plan.psf->windows),
-                            "to " + text("%.2g", request.psf_accuracy) + " it costs less"});
+  plan.decisions.push_back(
+      {"PSF", "has its own transform, kernel width " + widths(*plan.psf->windows),
+       "it is made to " + text("%.2g", request.psf_accuracy) + ", and of windows that see its source alone"});
   return plan;
 }
 
 TransformMemory mosaic_memory(const GriddingPlan& plan) {
-  const WindowsPlan& windows = *plan.windows;
+  constexpr double row_bytes = 4 * sizeof(double), value_bytes = sizeof(std::complex<double>);  // of a channel, at worst
   const GriddingRequest& r = plan.request;
-  const double images = r.stokes + (r.psf ? 1 : 0),
-               window_pixels = static_cast<double>(windows.of_term.front()->request.geometry.pixels());
-  double transform = 0;
-  for (const auto& of_term : windows.of_term) {
-    const TransformMemory of = memory_of(*of_term);
-    transform = std::max(transform, of.visibilities + of.psf + of.other_stokes + of.fft);
-  }
-  const double window_samples = static_cast<double>(windows.of_term.front()->request.samples);
-  const double terms = static_cast<double>(windows.of_term.size()) + 1;
-  constexpr double sum_bytes = sizeof(double), sample_bytes = sizeof(std::complex<double>);
-  const double at_work =
-      transform + window_samples * images * 2 * sample_bytes + window_pixels * (terms + 3 * images) * sum_bytes;
+  const double images = r.stokes + (r.psf ? 1 : 0);
   const double gathered = std::min(static_cast<double>(r.samples), static_cast<double>(r.samples_at_once));
   TransformMemory memory;
-  memory.visibilities = windows.side_by_side * at_work + gathered * (sizeof(float) + r.stokes * sample_bytes) +
-                        (images + 1) * static_cast<double>(r.geometry.pixels()) * sum_bytes;
+  // However many threads there are: what fits into memory decides on gathers, which images must not depend on.
+  memory.visibilities = static_cast<double>(plan.windows->most_at_once) * bytes_at_work(*plan.windows, r) +
+                        gathered * (row_bytes + sizeof(float) + r.stokes * value_bytes) +
+                        (images + 1) * static_cast<double>(r.geometry.pixels()) * sizeof(double);
   memory.gathered = gathered;
   if (plan.psf) {
-    const TransformMemory psf = mosaic_memory(*plan.psf);
-    memory.psf = gathered * sizeof(float);
-    memory.visibilities = std::max(memory.visibilities, psf.visibilities);
+    memory.psf = gathered * (row_bytes + sizeof(float));
+    memory.visibilities = std::max(memory.visibilities, mosaic_memory(*plan.psf).visibilities);
   }
   return memory;
 }

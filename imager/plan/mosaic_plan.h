@@ -8,13 +8,12 @@ namespace misfit::imager {
 /// pixel of the image.
 GriddingPlan plan_mosaic(const GriddingRequest& request);
 
-/// How many windows are worked on at a time.
-int windows_side_by_side(const WindowsPlan& windows, int threads);
-/// Threads that work on each of them.
-int threads_of_each_window(const WindowsPlan& windows, int threads);
+/// Sets how many windows are worked on at a time, and by how many threads each.
+void share_threads(WindowsPlan& windows, int threads);
 
-/// Seconds of a core that a pass takes, by the fixed constants of CostModel.
-double mosaic_seconds(const WindowsPlan& windows);
+/// Seconds of a core that a pass takes which makes so many images, or as many as were planned, by the fixed constants of
+/// CostModel.
+double mosaic_seconds(const WindowsPlan& windows, int images);
 
 /// Of a mosaic's plan.
 TransformMemory mosaic_memory(const GriddingPlan& plan);

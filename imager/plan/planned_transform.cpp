@@ -17,7 +17,7 @@ std::unique_ptr<Transform> transform_of(const GriddingPlan& plan, const DirectSu
 
 /// Of making a residual image.
 double residual_cost_s(const GriddingPlan& plan) {
-  if (plan.windows) return mosaic_seconds(*plan.windows);
+  if (plan.windows) return mosaic_seconds(*plan.windows, 1);
   GriddingWork work = plan.choice.best.work;
   work.stokes = 1;
   work.psf = false;

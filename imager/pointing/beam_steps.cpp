@@ -59,9 +59,8 @@ double turn_step(const RowBeams& beams, double reach, double frequency_hz, doubl
   return steepest > 0 ? 8 * tolerance / steepest : 0;
 }
 
-BeamSteps beam_steps(const RowBeams& beams, double reach, const std::vector<double>& frequency_hz, double tolerance,
-                     std::size_t most_nodes) {
-  BeamSteps steps{frequency_spans(frequency_hz, sampled_pairs(beams, reach), tolerance, most_nodes)};
+BeamSteps beam_steps(const RowBeams& beams, double reach, const std::vector<double>& frequency_hz, double tolerance) {
+  BeamSteps steps{frequency_spans(frequency_hz, sampled_pairs(beams, reach), tolerance)};
   steps.turn_rad = turn_step(beams, reach, steps.spans.back().high_hz, tolerance);
   return steps;
 }

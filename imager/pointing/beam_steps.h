@@ -21,7 +21,6 @@ double turn_step(const RowBeams& beams, double reach, double frequency_hz, doubl
 /// Steps by which beams follow, over their peak, to `tolerance` between frequencies, and are turned wrongly by four times that
 /// at most, as far as `reach`, sin θ from their axes. Where formulas end in a step nothing is promised. A
 /// span has `most_nodes` at most.
-BeamSteps beam_steps(const RowBeams& beams, double reach, const std::vector<double>& frequency_hz, double tolerance,
-                     std::size_t most_nodes = 12);
+BeamSteps beam_steps(const RowBeams& beams, double reach, const std::vector<double>& frequency_hz, double tolerance);
 
 }  // namespace misfit::imager

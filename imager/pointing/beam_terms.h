@@ -10,8 +10,9 @@
 namespace misfit::imager {
 
 /// A span of frequencies over which beams are B(θ, ν) = Σ_k s_k(ν) t_k(θ): few terms t_k, of which each is a sum of the beams
-/// at a few of the frequencies, its nodes. Terms are ordered by size, and fall fast; shares |s_k| are 1 at most at the
-/// frequencies that the span was made for. Those that come late need be known, in parts of themselves, the less exactly.
+/// at a few of the frequencies, its nodes. Terms come by what they explain of all beams, and fall fast; shares |s_k| are 1 at
+/// most at the frequencies that the span was made for. Those that come late need be known, in parts of themselves, the less
+/// exactly.
 class BeamSpan {
  public:
   /// Of one frequency alone: one term, which is the beam.

@@ -156,13 +156,14 @@ class MosaicAdjoint : public AdjointSum {
   }
 
   WindowImages images_of(const WaitingWindow& window) const {
-    const std::vector<Image> terms = windows_->terms(*window.seen, *window.span);
+    const std::vector<Image> terms = windows_->beam_terms(*window.seen, *window.span);
     const ImageGeometry& g = window.seen->window.geometry;
     WindowImages made{std::vector<Image>(images() + (has_psf(*window.seen) ? 1 : 0), Image(g.width, g.height)), {}, 0};
     std::vector<std::vector<std::complex<double>>> psf;  // [part]
     if (has_psf(*window.seen))
       for (const Waiting& part : window.parts) psf.push_back(windows_->psf_source(*window.seen, *window.span, part.samples));
-    for (std::size_t k = 0; !made.images.empty() && k < terms.size(); ++k) add_term(window, psf, k, terms[k], made);
+    for (std::size_t k = 0; !made.images.empty() && k < windows_->terms(*window.span); ++k)
+      add_term(window, psf, k, terms[k], made);
     for (std::size_t power = 0; power < powers(); ++power) made.sensitivity.push_back(sensitivity_of(window, terms, power));
     return made;
   }

@@ -97,8 +97,12 @@ double MosaicBeams::found_reach(const VoltagePattern& one, const VoltagePattern&
   const double step = 0.02 * std::min(one.detail_sine(low), other.detail_sine(low));
   const double lobe =
       first_sine_at(scene_.cut, step, [&](double sine) { return one.voltage(sine, low) * other.voltage(sine, low); });
-  constexpr double before_end = 0.97;  // at its very end a fit may be the root of what falls to 0
-  const double ends = std::min(one.continuous_sine(high), other.continuous_sine(high));
+  constexpr double before_end = 0.97;                 // at its very end a fit may be the root of what falls to 0
+  std::vector<double> between = scene_.frequency_hz;  // fits have ends of their own
+  constexpr int steps = 256;
+  for (int i = 1; scene_.at_each && i < steps; ++i) between.push_back(low + (high - low) * i / steps);
+  double ends = 1;
+  for (const double hz : between) ends = std::min({ends, one.continuous_sine(hz), other.continuous_sine(hz)});
   return ends < 1 ? std::min(lobe, before_end * ends) : lobe;
 }
 
@@ -167,10 +171,9 @@ const std::vector<RadialTable>& MosaicBeams::tables(const PairBeam& beam, const 
   return made;
 }
 
-std::vector<Image> MosaicBeams::terms(const PairBeam& beam, const Window& window, const BeamSpan& span, std::size_t count,
-                                      int threads) const {
+std::vector<Image> MosaicBeams::terms(const PairBeam& beam, const Window& window, const BeamSpan& span, int threads) const {
   const ImageGeometry& g = window.geometry;
-  std::vector<Image> made(std::min(count, span.terms()), Image(g.width, g.height));
+  std::vector<Image> made(span.terms(), Image(g.width, g.height));
   const double radius = reach(beam);
   const std::vector<RadialTable>* const round = beam.is_round() ? &tables(beam, span, threads) : nullptr;
   parallel_for(static_cast<std::size_t>(g.height), threads, [&](std::size_t r) {
@@ -183,7 +186,7 @@ std::vector<Image> MosaicBeams::terms(const PairBeam& beam, const Window& window
         const RadialTable::Place place = round->front().place(sine);
         for (std::size_t k = 0; k < made.size(); ++k) made[k].at(row, column) = (*round)[k](place);
       } else {
-        const std::vector<double> values = terms(beam, at, span, count);
+        const std::vector<double> values = terms(beam, at, span);
         for (std::size_t k = 0; k < made.size(); ++k) made[k].at(row, column) = values[k];
       }
     }
@@ -191,9 +194,8 @@ std::vector<Image> MosaicBeams::terms(const PairBeam& beam, const Window& window
   return made;
 }
 
-std::vector<double> MosaicBeams::terms(const PairBeam& beam, DirectionCosines at, const BeamSpan& span,
-                                       std::size_t count) const {
-  std::vector<double> terms(std::min(count, span.terms()));
+std::vector<double> MosaicBeams::terms(const PairBeam& beam, DirectionCosines at, const BeamSpan& span) const {
+  std::vector<double> terms(span.terms());
   for (std::size_t j = 0; j < span.node_hz().size(); ++j) {
     const double seen = power(beam, at, span.node_hz()[j]);
     for (std::size_t k = 0; k < terms.size(); ++k) terms[k] += span.of_nodes(k)[j] * seen;

@@ -61,11 +61,11 @@ class MosaicBeams {
   double power(const PairBeam& beam, DirectionCosines at, double frequency_hz) const;
   /// The pixels among which all are that the beam sees; none where it sees no pixel. Windows of a pair have one size.
   std::optional<Window> window(const PairBeam& beam) const;
-  /// The first `count` terms of a beam in each pixel of a window, or all there are. Right to 1e-9 of power() for round beams.
-  std::vector<Image> terms(const PairBeam& beam, const Window& window, const BeamSpan& span, std::size_t count,
-                           int threads) const;
+  /// The terms of a beam in each pixel of a window. What follows from them is right to 1e-9 of power() for round beams, but for
+  /// the tolerance.
+  std::vector<Image> terms(const PairBeam& beam, const Window& window, const BeamSpan& span, int threads) const;
   /// The same in a direction.
-  std::vector<double> terms(const PairBeam& beam, DirectionCosines at, const BeamSpan& span, std::size_t count) const;
+  std::vector<double> terms(const PairBeam& beam, DirectionCosines at, const BeamSpan& span) const;
 
  private:
   using Pair = std::tuple<const VoltagePattern*, const VoltagePattern*>;

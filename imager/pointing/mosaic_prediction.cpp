@@ -87,9 +87,10 @@ class MosaicPrediction : public Prediction {
     const std::vector<AskedWindow> windows = windows_of(asked);
     const int side_by_side = windows_->options().side_by_side;
     parallel_for(windows.size(), side_by_side, [&](std::size_t w) {
-      const std::vector<Image> terms = windows_->terms(*windows[w].seen, *windows[w].span);
+      const std::vector<Image> terms = windows_->beam_terms(*windows[w].seen, *windows[w].span);
       double fft_s = 0;
-      for (std::size_t k = 0; k < terms.size(); ++k) fft_s += add_term(windows[w], asked, k, terms[k], visibilities);
+      for (std::size_t k = 0; k < windows_->terms(*windows[w].span); ++k)
+        fft_s += add_term(windows[w], asked, k, terms[k], visibilities);
       const std::lock_guard lock(mutex_);
       fft_s_ += fft_s / std::max<double>(1, std::min<double>(side_by_side, static_cast<double>(windows.size())));
     });

@@ -67,7 +67,7 @@ bool MosaicWindows::sees_psf(const SeenWindow& seen) const {
 std::vector<std::complex<double>> MosaicWindows::psf_source(const SeenWindow& seen, const BeamSpan& span,
                                                             const WindowSamples& samples) const {
   if (!sees_psf(seen)) return std::vector<std::complex<double>>(samples.size());
-  const std::vector<double> terms = beams_->terms(seen.beam, psf_direction(), span, this->terms(span));
+  const std::vector<double> terms = beams_->terms(seen.beam, psf_direction(), span);
   std::vector<double> power;  // [channel]
   for (const std::vector<double>& share : samples.share) {
     double sum = 0;

@@ -71,6 +71,7 @@ class MosaicWindows {
 
   const MosaicBeams& beams() const { return *beams_; }
   const MosaicOptions& options() const { return options_; }
+  /// Terms that are gridded.
   std::size_t terms(const BeamSpan& span) const { return std::min(span.terms(), of_term_.size()); }
   /// Null where the group sees nothing of the image. The same object for rows that see alike.
   std::shared_ptr<const SeenWindow> seen(const RowBeams::Group& group) const;
@@ -79,9 +80,9 @@ class MosaicWindows {
   bool on_planes(std::size_t term) const { return of_term_[term].on_planes; }
   std::shared_ptr<const Transform> transform(const Window& window, std::size_t term) const;
   SamplesOnPlane on_plane(const SeenWindow& seen, const SampleCoordinates& at) const;
-  /// The terms of a window's beam.
-  std::vector<Image> terms(const SeenWindow& seen, const BeamSpan& span) const {
-    return beams_->terms(seen.beam, seen.window, span, terms(span), options_.threads_of_each());
+  /// All terms of a window's beam.
+  std::vector<Image> beam_terms(const SeenWindow& seen, const BeamSpan& span) const {
+    return beams_->terms(seen.beam, seen.window, span, options_.threads_of_each());
   }
   bool sees_psf(const SeenWindow& seen) const;
   /// What a source of 1 Jy in the PSF's pixel gives these samples. [row][channel]

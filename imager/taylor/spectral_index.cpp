@@ -98,7 +98,9 @@ SpectralImages spectral_images(const std::vector<Image>& restored, const std::ve
                                const std::optional<SolutionNoise>& by) {
   const NoiseAt noise_at(residual[0], residual[1], by, threads);
   const double level_jy = enough * robust_noise(residual[0], threads);
-  SpectralImages made = indices_of(restored, threads, [&](std::size_t i) { return restored[0].pixel[i] >= level_jy; });
+  SpectralImages made = indices_of(restored, threads, [&](std::size_t i) {
+    return restored[0].pixel[i] >= (by ? enough * std::sqrt(noise_at.at(i).variance_0) : level_jy);
+  });
   made.level_jy = level_jy;
   made.alpha_error = Image(made.alpha.width, made.alpha.height);
   for (std::size_t i = 0; i < made.alpha.pixel.size(); ++i) {

@@ -14,7 +14,7 @@ struct SpectralImages {
   Image alpha;          ///< α = I_1/I_0
   Image alpha_error;    ///< one standard deviation of α by noise
   Image beta;           ///< β = I_2/I_0 − α (α − 1)/2; empty of two terms
-  double level_jy = 0;  ///< of I_0, below which the others are NaN
+  double level_jy = 0;  ///< of I_0, below which the others are NaN; in a mosaic each pixel has its own
 };
 
 /// Of restored images [term] of two terms or more, whose noise is that of `residual`, the principal solutions of what CLEAN

@@ -133,7 +133,7 @@ std::optional<TaylorBasis> basis_at(const std::vector<Image>& relative_peaks, st
 
 }  // namespace
 
-SolutionNoise solution_noise(const std::vector<Image>& relative_peaks, int threads) {
+SolutionNoise solution_noise(const std::vector<Image>& relative_peaks, const Image* seen, int threads) {
   const Image& like = relative_peaks.front();
   SolutionNoise noise{Image(like.width, like.height), Image(like.width, like.height), Image(like.width, like.height)};
   const auto width = static_cast<std::size_t>(like.width);
@@ -149,8 +149,9 @@ SolutionNoise solution_noise(const std::vector<Image>& relative_peaks, int threa
         of_1 += coefficient[1] * coefficient[1];
         of_both += coefficient[0] * coefficient[1];
       }
-      noise.sigma_0.pixel[i] = std::sqrt(of_0);
-      noise.sigma_1.pixel[i] = std::sqrt(of_1);
+      const double by = seen != nullptr ? seen->pixel[i] : 1;
+      noise.sigma_0.pixel[i] = std::sqrt(of_0) / by;
+      noise.sigma_1.pixel[i] = std::sqrt(of_1) / by;
       noise.correlation.pixel[i] = of_both / std::sqrt(of_0 * of_1);
     }
   });

@@ -54,15 +54,15 @@ class TaylorBasis {
 std::vector<Image> principal_solution(const std::vector<Image>& relative_peaks, const std::vector<const Image*>& residual,
                                       int threads);
 
-/// What noise there is in a mosaic's principal solution, in units of that of R_0, of weights that are 1/σ²: with C = H⁻¹ of
-/// each pixel images of √C_00, of √C_11, and of their correlation C_01/√(C_00 C_11). NaN where samples do not tell the terms
-/// apart.
+/// What noise there is in a mosaic's principal solution, of weights that are 1/σ²: with C = H⁻¹ of each pixel images of √C_00,
+/// of √C_11, and of their correlation C_01/√(C_00 C_11). The first two are in units of the noise of R_0, or over `seen` where
+/// R_0 was divided by it, a primary beam. NaN where samples do not tell the terms apart.
 struct SolutionNoise {
   Image sigma_0;
   Image sigma_1;
   Image correlation;
 };
-SolutionNoise solution_noise(const std::vector<Image>& relative_peaks, int threads);
+SolutionNoise solution_noise(const std::vector<Image>& relative_peaks, const Image* seen, int threads);
 
 /// Of the PSFs' middle pixels. [k], 2n − 1 of them.
 TaylorBasis basis_of(const std::vector<const Image*>& psf);

@@ -66,6 +66,8 @@ TaylorImages make_taylor_images(const ImagedData& imaged, const Transform& psf, 
   AdjointResult result = finish_adjoint(std::move(sum), imaged.samples.source.ranks(), context);
   images.dirty = normalised_images(result, imaged, context, together ? of_psf.last : 0);
   images.relative_peaks = relative_peaks(result);
+  const MosaicView* const mosaic = imaged.normalisation.mosaic();
+  if (mosaic != nullptr && !mosaic->flat_noise) images.divided_by = mosaic->primary_beam;
   if (together && !images.dirty.empty()) {
     const auto first_psf = images.dirty.begin() + of_dirty.last;
     std::move(first_psf, images.dirty.end(), std::back_inserter(images.psf));

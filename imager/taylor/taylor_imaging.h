@@ -1,5 +1,6 @@
 #pragma once
 
+#include <memory>
 #include <vector>
 
 #include "imager/taylor/taylor_expansion.h"
@@ -14,6 +15,7 @@ struct TaylorImages {
   /// [k − 1], 1 ≤ k ≤ 2 terms − 2: of a mosaic, whose pixels are seen at unlike frequencies, what P_k is over P_0 of a source
   /// in each pixel; empty where that is the same in all.
   std::vector<Image> relative_peaks{};
+  std::shared_ptr<const Image> divided_by{};  ///< a mosaic's primary beam, where images are a flat sky
 };
 
 /// One pass over the visibilities for all of them: dirty images by `transform`, PSFs by `psf`, which may be the same.

@@ -61,7 +61,8 @@ RestoredTerms TaylorStage::restore(const imager::CleanResult& cleaned, const ima
     images.push_back(imager::restored({*model, left[images.size()]}, beam, cell_rad, threads_));
   RestoredTerms terms;
   std::optional<imager::SolutionNoise> noise;
-  if (!images_.relative_peaks.empty()) noise = imager::solution_noise(images_.relative_peaks, threads_);
+  if (!images_.relative_peaks.empty())
+    noise = imager::solution_noise(images_.relative_peaks, images_.divided_by.get(), threads_);
   terms.spectra = imager::spectral_images(images, left, threads_, noise);
   terms.first = std::move(images.front());
   for (std::size_t t = 1; t < images.size(); ++t) terms.further.push_back(std::move(images[t]));

@@ -153,6 +153,51 @@ GriddingRequest request_of(const Mosaic& mosaic, double accuracy, int psf_row, i
 
 }  // namespace
 
+/// What follows from the terms is the beam, in any direction up to its radius, at all frequencies: of fits with ends of their
+/// own in each band, of dishes, and of two sorts of them.
+BOOST_AUTO_TEST_CASE(terms_of_beams_add_up_to_the_beams) {
+  constexpr double tolerance = 1e-6;
+  const auto named = [](const char* name) { return named_beam(name, {"", 25}).pattern; };
+  struct Band {
+    std::vector<Pattern> patterns;
+    double low_hz, high_hz;
+  };
+  for (const Band& band : {Band{{named("VLA")}, 224e6, 480e6},
+                           {{named("VLA")}, 337e6, 357e6},
+                           {{named("VLA")}, 1e9, 2e9},
+                           {{named("VLA")}, 5e9, 6.1e9},
+                           {{named("GMRT")}, 550e6, 850e6},
+                           {{named("airy:25"), named("airy:12:1")}, 1.2e9, 1.8e9}}) {
+    constexpr int channels = 61;
+    std::vector<double> hz;
+    for (int c = 0; c < channels; ++c) hz.push_back(band.low_hz + (band.high_hz - band.low_hz) * c / (channels - 1));
+    const AxisFrame frame({0, 0}, declination_rad);
+    const ImageGeometry image{400, 400, 1 * arcmin, {1, declination_rad}, {0, 0}};
+    const MosaicBeams beams({image, RowBeams(band.patterns, {frame}), hz, false, 1e-3, tolerance});
+    for (const Pattern& one : band.patterns)
+      for (const Pattern& other : band.patterns) {
+        const PairBeam pair{one, other, frame, 0};
+        constexpr int directions = 331;
+        double worst = 0;
+        for (int d = 0; d < directions; ++d) {
+          const double sine = beams.reach(pair) * d / directions;
+          const DirectionCosines at{sine * 0.6, sine * 0.8};
+          std::vector<double> is(hz.size());
+          double most = 1e-6;
+          for (std::size_t c = 0; c < hz.size(); ++c) {
+            const BeamSpan& span = *beams.spans({hz[c]}).front();
+            const std::vector<double> share = span.shares(hz[c]), terms = beams.terms(pair, at, span);
+            for (std::size_t k = 0; k < terms.size(); ++k) is[c] += share[k] * terms[k];
+            most = std::max(most, beams.power(pair, at, hz[c]));
+          }
+          for (std::size_t c = 0; c < hz.size(); ++c)
+            worst = std::max(worst, std::abs(is[c] - beams.power(pair, at, hz[c])) / most);
+        }
+        BOOST_TEST(worst < 3 * tolerance, "at " << band.low_hz << " Hz: " << worst);  // between the directions looked at
+      }
+  }
+}
+
 /// For windows over which w matters; for such over which a plane has all that matters of it; and without w.
 BOOST_AUTO_TEST_CASE(images_and_predictions_are_those_of_the_definition, *boost::unit_test::label("sweep")) {
   struct Asked {

@@ -70,7 +70,7 @@ BOOST_AUTO_TEST_CASE(the_error_of_the_index_follows_what_each_pixel_sees) {
     restored[0].pixel[i] += flux;
     restored[1].pixel[i] += alpha * flux;
   }
-  const SpectralImages made = spectral_images(restored, residual, 2, solution_noise(peaks, 2));
+  const SpectralImages made = spectral_images(restored, residual, 2, solution_noise(peaks, nullptr, 2));
   for (const int first : {0, side / 2}) {  // of rows that tell the terms apart badly, and better
     double square = 0;
     for (int row = first; row < first + side / 4; ++row)
