@@ -269,7 +269,7 @@ GriddingPlan plan_mosaic(const GriddingRequest& request) {
 }
 
 TransformMemory mosaic_memory(const GriddingPlan& plan) {
-  constexpr double row_bytes = 4 * sizeof(double), value_bytes = sizeof(std::complex<double>);  // of a channel, at worst
+  constexpr double value_bytes = sizeof(std::complex<double>), row_bytes = 8;  // of each of four channels
   const GriddingRequest& r = plan.request;
   const double images = r.stokes + (r.psf ? 1 : 0);
   const double gathered = std::min(static_cast<double>(r.samples), static_cast<double>(r.samples_at_once));
