@@ -30,7 +30,7 @@ class RadialTable {
     std::array<double, 4> weight;  ///< of the points before the cell, at both its ends, and behind it
   };
 
-  /// Of sin θ up to the reach.
+  /// Where a direction lies whose sin θ is the reach at most.
   Place place(double sine) const {
     const double at = sine / step();
     const int cell = std::min(static_cast<int>(at), points - 1);

@@ -98,7 +98,7 @@ std::vector<std::shared_ptr<const GriddingPlan>> plan_terms(const GriddingReques
     of_term.accuracy = std::min(std::max(coarsest, request.accuracy), part * request.accuracy / size);
     if (k == 0) of_term.single_from *= part;
     GriddingPlan plan = plan_window(of_term, all);
-    // What is nearly out of reach the first term may take alone.
+    // The first term may take all of an accuracy that is nearly out of reach.
     if (k == 0 && !plan.direct && !plan.choice.reached) plan = plan_window(request, all);
     const double error = plan.worst_error + (plan.leaves_w_out() ? plan.choice.borne_phase_rad : 0);
     if (request.accuracy > 0) left = std::max(0.0, left - std::pow(size * error / request.accuracy, 2));
@@ -131,7 +131,7 @@ std::string angle(double rad) {
   return text("%.3g", rad / arcmin) + " arcmin";
 }
 
-/// Of the first term, and of others: "8, 7, 5, 3".
+/// Lists the kernels' widths of all terms: "8, 7, 5, 3".
 std::string widths(const WindowsPlan& windows) {
   std::string all;
   for (const auto& of_term : windows.of_term)
@@ -253,7 +253,7 @@ GriddingPlan plan_mosaic(const GriddingRequest& request) {
     plan.request = request;
     return plan;
   }
-  // Of a PSF that need not be as exact few terms count, and many windows do not see its source.
+  // A PSF that need not be as exact takes fewer terms, and many windows do not see its source.
   GriddingRequest alone = request;
   alone.psf = false;
   GriddingPlan plan = plan_together(alone, all);

@@ -15,7 +15,7 @@ void share_threads(WindowsPlan& windows, int threads);
 /// CostModel.
 double mosaic_seconds(const WindowsPlan& windows, int images);
 
-/// Of a mosaic's plan.
+/// The memory that a mosaic's transform takes, however many threads share its windows.
 TransformMemory mosaic_memory(const GriddingPlan& plan);
 
 /// The transform of a mosaic's plan.

@@ -15,7 +15,7 @@ namespace misfit::imager {
 /// exactly.
 class BeamSpan {
  public:
-  /// Of one frequency alone: one term, which is the beam.
+  /// Makes the span of one frequency alone, whose one term is the beam.
   explicit BeamSpan(double frequency_hz);
 
   bool holds(double frequency_hz) const { return frequency_hz >= low_hz_ && frequency_hz <= high_hz_; }

@@ -31,7 +31,7 @@ struct WaitingWindow {
   std::vector<Waiting> parts;
 };
 
-/// What a window adds to the images.
+/// The images that are made of a window, which are then added to the whole.
 struct WindowImages {
   std::vector<Image> images;       ///< last the PSF, where the window's beam sees its source
   std::vector<Image> sensitivity;  ///< [power of x]
@@ -175,7 +175,7 @@ class MosaicAdjoint : public AdjointSum {
     std::vector<Together> all;
     for (std::size_t first = 0; first < made.images.size(); first += most_stokes) {
       const std::size_t some = std::min<std::size_t>(made.images.size() - first, most_stokes);
-      // Whether a sample counts was decided by its own u and v, which a plane changes.
+      // The samples were chosen by their own u and v, which a plane changes.
       all.push_back({first, transform->adjoint({.images = static_cast<int>(some), .beyond_grid = true})});
     }
     for (std::size_t p = 0; p < window.parts.size(); ++p) {
