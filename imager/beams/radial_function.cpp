@@ -22,7 +22,8 @@ double first_sine_at(double level, double step, const RadialFunction& function) 
   return after;
 }
 
-RadialTable::RadialTable(double reach, int threads, const RadialFunction& function) : reach_(reach), value_(points + 3) {
+RadialTable::RadialTable(double reach, int threads, const RadialFunction& function, double detail)
+    : points_(static_cast<int>(std::ceil(1024 * detail))), reach_(reach), value_(static_cast<std::size_t>(points_) + 3) {
   parallel_for(value_.size(), threads, [&](std::size_t i) {
     value_[i] = function(std::abs(static_cast<double>(i) - 1) * step());  // even about the axis
   });

@@ -22,7 +22,8 @@ double first_sine_at(double level, double step, const RadialFunction& function);
 /// lobe of a primary beam.
 class RadialTable {
  public:
-  RadialTable(double reach, int threads, const RadialFunction& function);
+  /// `detail` times as many points, for a function that has so much more of it.
+  RadialTable(double reach, int threads, const RadialFunction& function, double detail = 1);
 
   /// Which points count at a radius, and by how much: the same in all tables of one reach.
   struct Place {
@@ -33,7 +34,7 @@ class RadialTable {
   /// Where a direction lies whose sin θ is the reach at most.
   Place place(double sine) const {
     const double at = sine / step();
-    const int cell = std::min(static_cast<int>(at), points - 1);
+    const int cell = std::min(static_cast<int>(at), points_ - 1);
     return {cell, cubic_weights(at - cell)};
   }
   double operator()(const Place& place) const {
@@ -44,9 +45,9 @@ class RadialTable {
   double reach() const { return reach_; }
 
  private:
-  static constexpr int points = 1024;
-  double step() const { return reach_ / points; }
+  double step() const { return reach_ / points_; }
 
+  int points_;
   double reach_;
   std::vector<double> value_;  ///< [point + 1]
 };

@@ -18,10 +18,11 @@ constexpr int most_in_crowded_buffer = 1024;
 template <typename Real>
 class CoplanarAdjoint : public AdjointSum {
  public:
-  CoplanarAdjoint(const CoplanarSetup<Real>& setup, const AdjointOptions& options)
-      : AdjointSum(options), setup_(setup), seen_(setup.geometry), value_unit_(images()), sums_(sets()) {
+  /// Of so many images for each set of visibilities: more than one where samples have shares in them.
+  CoplanarAdjoint(const CoplanarSetup<Real>& setup, const AdjointOptions& options, std::size_t of_each = 1)
+      : AdjointSum(options), setup_(setup), seen_(setup.geometry), of_each_(of_each), value_unit_(images()), sums_(sets()) {
     if (images() == 0) seen_.centre = {};
-    grid_.resize(2 * images() + (options.with_psf ? 1 : 0));
+    grid_.resize(2 * images() * of_each_ + (options.with_psf ? 1 : 0));
     for (auto& plane : grid_) {
       plane.resize(setup.shape.cells());
       planes_.push_back(plane.data());
@@ -33,11 +34,26 @@ class CoplanarAdjoint : public AdjointSum {
     flush_crowded();
     AdjointResult result;
     result.sums = sums_;
-    for (std::size_t i = 0; i < images(); ++i)
-      result.images.push_back(to_image(std::move(grid_[2 * i]), std::move(grid_[2 * i + 1]), value_unit_[i].unit()));
+    for (std::size_t i = 0; i < images(); ++i) result.images.push_back(image_of(i, 0));
     if (options_.with_psf) result.psf = to_image(std::move(grid_.back()), {}, weight_unit_.unit());
     result.fft_s = watch.seconds();
     return result;
+  }
+
+  /// Has the samples of the next blocks these shares in the images; null: one image is all.
+  void set_shares(const SampleShares* shares) { shares_ = shares; }
+
+  void flush_crowded() {
+    const auto tiles_u = static_cast<std::size_t>(setup_.shape.tiles_u());
+    for (std::size_t tile = 0; tile < crowded_.tiles(); ++tile)
+      if (TileBuffer<double>* const sum = crowded_.of(tile); sum != nullptr)
+        flush({static_cast<int>(tile % tiles_u), static_cast<int>(tile / tiles_u), tile}, *sum);
+  }
+
+  /// One of a set's, to be called once for each, last of all.
+  Image image_of(std::size_t set, std::size_t image) {
+    const std::size_t plane = 2 * (set * of_each_ + image);
+    return to_image(std::move(grid_[plane]), std::move(grid_[plane + 1]), value_unit_[set].unit());
   }
 
  protected:
@@ -65,7 +81,8 @@ class CoplanarAdjoint : public AdjointSum {
   /// Brings the grid to the units that hold the samples to come too.
   void make_room(const std::vector<SampleSums>& coming) {
     std::vector<double> by;  // [plane]
-    for (std::size_t i = 0; i < images(); ++i) by.insert(by.end(), 2, value_unit_[i].make_room(coming[i].weight_abs));
+    for (std::size_t i = 0; i < images(); ++i)
+      by.insert(by.end(), 2 * of_each_, value_unit_[i].make_room(coming[i].weight_abs));
     if (options_.with_psf) by.push_back(weight_unit_.make_room(coming.front().weight));
     if (std::all_of(by.begin(), by.end(), [](double factor) { return factor == 1; })) return;
     for (std::size_t plane = 0; plane < by.size(); ++plane)
@@ -111,6 +128,10 @@ class CoplanarAdjoint : public AdjointSum {
                   TileBatch<Real>& batch) const {
     double weight[BatchSamples::capacity];
     for (int k = 0; k < batch.count; ++k) weight[k] = block.weight[samples.index[k]];
+    if (shares_ != nullptr) {
+      set_shared_values(sets, samples, weight, batch);
+      return;
+    }
     for (std::size_t i = 0; i < images(); ++i) {
       const double per_unit = value_unit_[i].per_unit();
       Real *const real = batch.value[2 * i], *const imaginary = batch.value[2 * i + 1];
@@ -129,15 +150,39 @@ class CoplanarAdjoint : public AdjointSum {
     for (int k = 0; k < batch.count; ++k) batch.value[2 * images()][k] = static_cast<Real>(weight[k] * per_unit);
   }
 
-  static void add_up(const TileBuffer<Real>& buffer, TileBuffer<double>& to) {
-    for (std::size_t i = 0; i < buffer.cell.size(); ++i) to.cell[i] += double{buffer.cell[i]};
+  /// c̄_k w V in place of w V.
+  void set_shared_values(const VisibilitySets& sets, const BatchSamples& samples, const double* weight,
+                         TileBatch<Real>& batch) const {
+    BatchShares shares;
+    shares_->write(samples.index, batch.count, shares);
+    for (std::size_t i = 0; i < images(); ++i) {
+      const double per_unit = value_unit_[i].per_unit();
+      double value_real[BatchSamples::capacity], value_imaginary[BatchSamples::capacity], sign[BatchSamples::capacity];
+      std::visit(
+          [&](const auto* visibility) {
+            for (int k = 0; k < batch.count; ++k) {
+              const double scaled = weight[k] * per_unit;
+              const std::complex<double> value = samples.from_middle(std::complex<double>(visibility[samples.index[k]]), k);
+              value_real[k] = scaled * value.real();
+              value_imaginary[k] = scaled * value.imag();
+              sign[k] = samples.conjugate[k] ? 1 : -1;
+            }
+          },
+          sets[i]);
+      for (std::size_t image = 0; image < of_each_; ++image) {
+        Real* const real = batch.value[2 * (i * of_each_ + image)];
+        Real* const imaginary = batch.value[2 * (i * of_each_ + image) + 1];
+        const double *const c = shares.real[image], *const s = shares.imaginary[image];
+        for (int k = 0; k < batch.count; ++k) {
+          real[k] = static_cast<Real>(value_real[k] * c[k] + value_imaginary[k] * s[k]);
+          imaginary[k] = static_cast<Real>(sign[k] * (value_imaginary[k] * c[k] - value_real[k] * s[k]));
+        }
+      }
+    }
   }
 
-  void flush_crowded() {
-    const auto tiles_u = static_cast<std::size_t>(setup_.shape.tiles_u());
-    for (std::size_t tile = 0; tile < crowded_.tiles(); ++tile)
-      if (TileBuffer<double>* const sum = crowded_.of(tile); sum != nullptr)
-        flush({static_cast<int>(tile % tiles_u), static_cast<int>(tile / tiles_u), tile}, *sum);
+  static void add_up(const TileBuffer<Real>& buffer, TileBuffer<double>& to) {
+    for (std::size_t i = 0; i < buffer.cell.size(); ++i) to.cell[i] += double{buffer.cell[i]};
   }
 
   template <typename Sum>
@@ -154,7 +199,9 @@ class CoplanarAdjoint : public AdjointSum {
   }
 
   const CoplanarSetup<Real>& setup_;
-  ImageGeometry seen_;                   ///< from its middle pixel a PSF needs no phases
+  ImageGeometry seen_;  ///< from its middle pixel a PSF needs no phases
+  std::size_t of_each_;
+  const SampleShares* shares_ = nullptr;
   std::vector<std::vector<Real>> grid_;  ///< [plane]: real and imaginary parts of each image; last, for a PSF, weights
   std::vector<Real*> planes_;
   CrowdedTiles<Real> crowded_;
@@ -163,7 +210,43 @@ class CoplanarAdjoint : public AdjointSum {
   std::vector<SampleSums> sums_;           ///< [set]
 };
 
+template <typename Real>
+class CoplanarSharedAdjoint : public SharedAdjoint {
+ public:
+  CoplanarSharedAdjoint(const CoplanarSetup<Real>& setup, std::size_t sets, std::size_t images)
+      : sets_(sets), images_(images), sum_(setup, {.images = static_cast<int>(sets), .beyond_grid = true}, images) {}
+
+  void add(const VisibilityBlock& block, const VisibilitySets& sets, const SampleShares& shares) override {
+    sum_.set_shares(&shares);
+    static_cast<AdjointSum&>(sum_).add(block, sets);
+  }
+  void finish(const std::function<void(std::size_t, std::size_t, const Image&)>& take) override {
+    sum_.flush_crowded();
+    for (std::size_t set = 0; set < sets_; ++set)
+      for (std::size_t image = 0; image < images_; ++image) {
+        const Stopwatch watch;
+        const Image made = sum_.image_of(set, image);
+        fft_s_ += watch.seconds();
+        take(set, image, made);
+      }
+  }
+  double fft_s() const override { return fft_s_; }
+
+ private:
+  std::size_t sets_;
+  std::size_t images_;
+  CoplanarAdjoint<Real> sum_;
+  double fft_s_ = 0;
+};
+
 }  // namespace
+
+template <typename Real>
+std::unique_ptr<SharedAdjoint> make_shared_adjoint(const CoplanarSetup<Real>& setup, std::size_t sets, std::size_t images) {
+  return std::make_unique<CoplanarSharedAdjoint<Real>>(setup, sets, images);
+}
+template std::unique_ptr<SharedAdjoint> make_shared_adjoint<float>(const CoplanarSetup<float>&, std::size_t, std::size_t);
+template std::unique_ptr<SharedAdjoint> make_shared_adjoint<double>(const CoplanarSetup<double>&, std::size_t, std::size_t);
 
 template <typename Real>
 std::unique_ptr<AdjointSum> make_coplanar_adjoint(const CoplanarSetup<Real>& setup, const AdjointOptions& options) {

@@ -10,50 +10,47 @@
 namespace misfit::imager {
 namespace {
 
+/// Images on their grids, from which samples come.
 template <typename Real>
-class CoplanarPrediction : public Prediction {
+class GriddedImages {
  public:
-  CoplanarPrediction(const CoplanarSetup<Real>& setup, const Image& model) : setup_(setup), grid_(setup.shape) {
+  explicit GriddedImages(const CoplanarSetup<Real>& setup) : setup_(setup) {}
+
+  void add(const Image& image) {
     const Stopwatch watch;
-    if (!crosses_horizon(setup.geometry)) {
-      image_to_grid(model, setup.correction, setup.threads, grid_);
+    HalfGrid<Real>& grid = grids_.emplace_back(setup_.shape);
+    if (!crosses_horizon(setup_.geometry)) {
+      image_to_grid(image, setup_.correction, setup_.threads, grid);
     } else {
-      Image seen = model;
-      set_beyond_horizon(setup.geometry, 0, seen);
-      image_to_grid(seen, setup.correction, setup.threads, grid_);
+      Image seen = image;
+      set_beyond_horizon(setup_.geometry, 0, seen);
+      image_to_grid(seen, setup_.correction, setup_.threads, grid);
     }
-    fft_s_ = watch.seconds();
+    planes_.insert(planes_.end(), {grid.real.data(), grid.imaginary.data()});
+    fft_s_ += watch.seconds();
   }
 
-  std::vector<std::complex<double>> at(const SampleCoordinates& coordinates) const override {
-    VisibilityBlock block;
-    static_cast<SampleCoordinates&>(block) = coordinates;
-    return degrid(block, Wanted::all);
-  }
-  std::vector<std::complex<double>> at_usable(const VisibilityBlock& block) const override {
-    return degrid(block, Wanted::usable);
-  }
-  double fft_s() const override { return fft_s_; }
+  double fft_s() const { return fft_s_; }
 
- private:
-  std::vector<std::complex<double>> degrid(const VisibilityBlock& block, Wanted wanted) const {
+  /// V of the one image, or with shares of all.
+  std::vector<std::complex<double>> degrid(const VisibilityBlock& block, Wanted wanted, const SampleShares* shares) const {
     const TileOrder order = order_by_tile(block, {}, setup_.shape, setup_.geometry, wanted, setup_.threads);
     std::vector<std::complex<double>> visibility(block.samples());
-    const std::vector<const Real*> planes{grid_.real.data(), grid_.imaginary.data()};
     std::vector<TileTask> tasks;
     for (const std::vector<TileTask>& colour : coloured_tasks(order, setup_.shape))
       tasks.insert(tasks.end(), colour.begin(), colour.end());
     parallel_for(tasks.size(), setup_.threads, [&](std::size_t i) {
       const bool in_place = sparse(order, tasks[i]);
-      TileBuffer<Real> buffer(setup_.shape.tile, setup_.taps_u.padded, in_place ? 0 : 2);
+      TileBuffer<Real> buffer(setup_.shape.tile, setup_.taps_u.padded, in_place ? 0 : static_cast<int>(planes_.size()));
       if (!in_place) load(tasks[i], buffer);
       const TileCells<const Real> cells =
-          in_place ? cells_of(setup_.shape, tasks[i], planes) : TileCells<const Real>(buffer.cells());
+          in_place ? cells_of(setup_.shape, tasks[i], planes_) : TileCells<const Real>(buffer.cells());
       if (i + 1 < tasks.size() && !sparse(order, tasks[i + 1]))
-        for (const Real* plane : planes) prefetch_tile(setup_.shape, tasks[i + 1], plane);
+        for (const Real* plane : planes_) prefetch_tile(setup_.shape, tasks[i + 1], plane);
       const auto ahead = [&](std::size_t sample) { hwy::Prefetch(&visibility[sample]); };
       const auto done = [&](TileBatch<Real>& batch, const BatchSamples& samples) {
         interpolate(setup_.taps_u, setup_.taps_v, cells, batch);
+        if (shares != nullptr) add_up(*shares, samples, batch);
         for (int k = 0; k < batch.count; ++k) {
           const double imaginary = double{batch.value[1][k]};
           visibility[samples.index[k]] =
@@ -65,18 +62,75 @@ class CoplanarPrediction : public Prediction {
     return visibility;
   }
 
+ private:
+  /// Σ c_k V_k in place of V_0, which is conj V where the sample is not conjugated.
+  void add_up(const SampleShares& of, const BatchSamples& samples, TileBatch<Real>& batch) const {
+    BatchShares shares;
+    of.write(samples.index, batch.count, shares);
+    double real[BatchSamples::capacity] = {}, imaginary[BatchSamples::capacity] = {}, sign[BatchSamples::capacity];
+    for (int k = 0; k < batch.count; ++k) sign[k] = samples.conjugate[k] ? 1 : -1;
+    for (std::size_t image = 0; image < grids_.size(); ++image) {
+      const Real *const re = batch.value[2 * image], *const im = batch.value[2 * image + 1];
+      const double *const c = shares.real[image], *const s = shares.imaginary[image];
+      for (int k = 0; k < batch.count; ++k) {
+        real[k] += re[k] * c[k] - sign[k] * im[k] * s[k];
+        imaginary[k] += im[k] * c[k] + sign[k] * re[k] * s[k];
+      }
+    }
+    for (int k = 0; k < batch.count; ++k) {
+      batch.value[0][k] = static_cast<Real>(real[k]);
+      batch.value[1][k] = static_cast<Real>(imaginary[k]);
+    }
+  }
+
   void load(const TileTask& task, TileBuffer<Real>& buffer) const {
     const int reach = setup_.shape.tile + setup_.shape.width - 1;
     for (int r = 0; r < reach; ++r) {
       const std::size_t start = first_cell(setup_.shape, task, r);
-      std::copy_n(grid_.real.data() + start, reach, buffer.row(r, 0));
-      std::copy_n(grid_.imaginary.data() + start, reach, buffer.row(r, 1));
+      for (int plane = 0; plane < buffer.planes; ++plane)
+        std::copy_n(planes_[static_cast<std::size_t>(plane)] + start, reach, buffer.row(r, plane));
     }
   }
 
   const CoplanarSetup<Real>& setup_;
-  HalfGrid<Real> grid_;
+  std::vector<HalfGrid<Real>> grids_;
+  std::vector<const Real*> planes_;  ///< real and imaginary parts of each image
   double fft_s_ = 0;
+};
+
+template <typename Real>
+class CoplanarPrediction : public Prediction {
+ public:
+  CoplanarPrediction(const CoplanarSetup<Real>& setup, const Image& model) : gridded_(setup) { gridded_.add(model); }
+
+  std::vector<std::complex<double>> at(const SampleCoordinates& coordinates) const override {
+    VisibilityBlock block;
+    static_cast<SampleCoordinates&>(block) = coordinates;
+    return gridded_.degrid(block, Wanted::all, nullptr);
+  }
+  std::vector<std::complex<double>> at_usable(const VisibilityBlock& block) const override {
+    return gridded_.degrid(block, Wanted::usable, nullptr);
+  }
+  double fft_s() const override { return gridded_.fft_s(); }
+
+ private:
+  GriddedImages<Real> gridded_;
+};
+
+template <typename Real>
+class CoplanarSharedPrediction : public SharedPrediction {
+ public:
+  CoplanarSharedPrediction(const CoplanarSetup<Real>& setup, const std::vector<Image>& images) : gridded_(setup) {
+    for (const Image& image : images) gridded_.add(image);
+  }
+
+  std::vector<std::complex<double>> at_usable(const VisibilityBlock& block, const SampleShares& shares) const override {
+    return gridded_.degrid(block, Wanted::usable, &shares);
+  }
+  double fft_s() const override { return gridded_.fft_s(); }
+
+ private:
+  GriddedImages<Real> gridded_;
 };
 
 }  // namespace
@@ -87,5 +141,14 @@ std::unique_ptr<Prediction> make_coplanar_prediction(const CoplanarSetup<Real>& 
 }
 template std::unique_ptr<Prediction> make_coplanar_prediction<float>(const CoplanarSetup<float>&, const Image&);
 template std::unique_ptr<Prediction> make_coplanar_prediction<double>(const CoplanarSetup<double>&, const Image&);
+
+template <typename Real>
+std::unique_ptr<SharedPrediction> make_shared_prediction(const CoplanarSetup<Real>& setup, const std::vector<Image>& images) {
+  return std::make_unique<CoplanarSharedPrediction<Real>>(setup, images);
+}
+template std::unique_ptr<SharedPrediction> make_shared_prediction<float>(const CoplanarSetup<float>&,
+                                                                         const std::vector<Image>&);
+template std::unique_ptr<SharedPrediction> make_shared_prediction<double>(const CoplanarSetup<double>&,
+                                                                          const std::vector<Image>&);
 
 }  // namespace misfit::imager

@@ -7,6 +7,7 @@
 #include "imager/coplanar/coplanar_adjoint.h"
 #include "imager/coplanar/coplanar_prediction.h"
 #include "imager/coplanar/crowded_tiles.h"
+#include "imager/coplanar/shared_transform.h"
 #include "imager/transform/unit_source.h"
 
 namespace misfit::imager {
@@ -19,15 +20,19 @@ GridShape shape_of(const CoplanarOptions& o) {
 }
 
 template <typename Real>
+CoplanarSetup<Real> setup_of(const CoplanarOptions& o) {
+  return {o.geometry,
+          shape_of(o),
+          TapTable<Real>(o.kernel_u.polynomial, o.lookup),
+          TapTable<Real>(o.kernel_v.polynomial, o.lookup),
+          {axis_correction(o.kernel_u, o.geometry.width, o.nu), axis_correction(o.kernel_v, o.geometry.height, o.nv)},
+          o.threads};
+}
+
+template <typename Real>
 class CoplanarTransform : public Transform {
  public:
-  explicit CoplanarTransform(const CoplanarOptions& o)
-      : setup_{o.geometry,
-               shape_of(o),
-               TapTable<Real>(o.kernel_u.polynomial, o.lookup),
-               TapTable<Real>(o.kernel_v.polynomial, o.lookup),
-               {axis_correction(o.kernel_u, o.geometry.width, o.nu), axis_correction(o.kernel_v, o.geometry.height, o.nv)},
-               o.threads} {}
+  explicit CoplanarTransform(const CoplanarOptions& o) : setup_(setup_of<Real>(o)) {}
 
   std::unique_ptr<AdjointSum> adjoint(const AdjointOptions& options) const override {
     return make_coplanar_adjoint<Real>(setup_, options);
@@ -42,6 +47,30 @@ class CoplanarTransform : public Transform {
   CoplanarSetup<Real> setup_;
 };
 
+template <typename Real>
+class CoplanarSharedTransform : public SharedTransform {
+ public:
+  explicit CoplanarSharedTransform(const CoplanarOptions& o) : setup_(setup_of<Real>(o)) {}
+
+  std::unique_ptr<SharedAdjoint> adjoint(std::size_t sets, std::size_t images) const override {
+    check(sets * images);
+    return make_shared_adjoint<Real>(setup_, sets, images);
+  }
+  std::unique_ptr<SharedPrediction> predict(const std::vector<Image>& images) const override {
+    check(images.size());
+    return make_shared_prediction<Real>(setup_, images);
+  }
+
+ private:
+  static void check(std::size_t images) {
+    if (images == 0 || images > most_shared_images)
+      throw std::invalid_argument(std::to_string(images) + " images that share samples not in [1, " +
+                                  std::to_string(most_shared_images) + "]");
+  }
+
+  CoplanarSetup<Real> setup_;
+};
+
 void check_axis(const char* axis, int pixels, int fft_size, const kernels::Kernel& kernel) {
   if (fft_size % 2 != 0 || fft_size < pixels || fft_size < 4 * kernel.width())
     throw std::invalid_argument("FFT length " + std::to_string(fft_size) + " along " + axis +
@@ -53,16 +82,26 @@ void check_axis(const char* axis, int pixels, int fft_size, const kernels::Kerne
                                 ", but the image reaches " + std::to_string(x0));
 }
 
-}  // namespace
-
-std::unique_ptr<Transform> make_coplanar_transform(const CoplanarOptions& options) {
+void check(const CoplanarOptions& options) {
   check_axis("u", options.geometry.width, options.nu, options.kernel_u);
   check_axis("v", options.geometry.height, options.nv, options.kernel_v);
   if (options.kernel_u.width() != options.kernel_v.width())
     throw std::invalid_argument("kernels of widths " + std::to_string(options.kernel_u.width()) + " along u and " +
                                 std::to_string(options.kernel_v.width()) + " along v; one width is expected");
+}
+
+}  // namespace
+
+std::unique_ptr<Transform> make_coplanar_transform(const CoplanarOptions& options) {
+  check(options);
   if (options.precision == Precision::single_precision) return std::make_unique<CoplanarTransform<float>>(options);
   return std::make_unique<CoplanarTransform<double>>(options);
+}
+
+std::unique_ptr<SharedTransform> make_shared_transform(const CoplanarOptions& options) {
+  check(options);
+  if (options.precision == Precision::single_precision) return std::make_unique<CoplanarSharedTransform<float>>(options);
+  return std::make_unique<CoplanarSharedTransform<double>>(options);
 }
 
 double longest_plane_sum(Precision precision, double samples) {

@@ -111,9 +111,10 @@ HWY_ATTR void spread_samples(const TileBatch<Real>& samples, const Evaluated<Rea
   }
 }
 
+/// Of two planes.
 template <typename Real, int Width>
 HWY_ATTR void interpolate_samples(const Evaluated<Real>& along_u, const Evaluated<Real>& along_v,
-                                  const TileCells<const Real>& cells, TileBatch<Real>& samples) {
+                                  const TileCells<const Real>& cells, int first_plane, TileBatch<Real>& samples) {
   using T = TapLanes<Real, Width>;
   const typename T::Tag d;
   for (int i = 0; i < samples.count; ++i) {
@@ -121,7 +122,7 @@ HWY_ATTR void interpolate_samples(const Evaluated<Real>& along_u, const Evaluate
     typename T::Vector imaginary[T::vectors];
     MISFIT_UNROLL for (int k = 0; k < T::vectors; ++k) real[k] = imaginary[k] = hn::Zero(d);
     const std::ptrdiff_t start = samples.row[i] * cells.row + samples.column[i];
-    const Real *real_cell = cells.plane[0] + start, *imaginary_cell = cells.plane[1] + start;
+    const Real *real_cell = cells.plane[first_plane] + start, *imaginary_cell = cells.plane[first_plane + 1] + start;
     MISFIT_UNROLL for (int j = 0; j < Width; ++j, real_cell += cells.row, imaginary_cell += cells.row) {
       const auto factor = hn::Set(d, along_v.value[i * T::padded + j]);
       MISFIT_UNROLL for (int k = 0; k < T::vectors; ++k) {
@@ -136,8 +137,8 @@ HWY_ATTR void interpolate_samples(const Evaluated<Real>& along_u, const Evaluate
       real_sum = hn::MulAdd(real[k], taps, real_sum);
       imaginary_sum = hn::MulAdd(imaginary[k], taps, imaginary_sum);
     }
-    samples.value[0][i] = hn::GetLane(hn::SumOfLanes(d, real_sum));
-    samples.value[1][i] = hn::GetLane(hn::SumOfLanes(d, imaginary_sum));
+    samples.value[first_plane][i] = hn::GetLane(hn::SumOfLanes(d, real_sum));
+    samples.value[first_plane + 1][i] = hn::GetLane(hn::SumOfLanes(d, imaginary_sum));
   }
 }
 
@@ -164,9 +165,9 @@ HWY_ATTR void interpolate_any(std::integer_sequence<int, Before...>, const TapTa
   Evaluated<Real> along_u, along_v;
   evaluate_taps(u, samples.tu, samples.count, along_u.value);
   evaluate_taps(v, samples.tv, samples.count, along_v.value);
-  using Loop = void (*)(const Evaluated<Real>&, const Evaluated<Real>&, const TileCells<const Real>&, TileBatch<Real>&);
+  using Loop = void (*)(const Evaluated<Real>&, const Evaluated<Real>&, const TileCells<const Real>&, int, TileBatch<Real>&);
   constexpr Loop loops[] = {interpolate_samples<Real, Before + 1>...};
-  loops[u.width - 1](along_u, along_v, cells, samples);
+  for (int plane = 0; plane + 1 < cells.planes; plane += 2) loops[u.width - 1](along_u, along_v, cells, plane, samples);
 }
 
 using Widths = std::make_integer_sequence<int, most_taps>;

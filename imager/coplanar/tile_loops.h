@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <vector>
 
+#include "imager/coplanar/sample_shares.h"
 #include "imager/coplanar/tap_table.h"
 #include "imager/coplanar/tile_positions.h"
 #include "imager/data/visibility_sets.h"
@@ -14,7 +15,8 @@ namespace misfit::imager {
 inline constexpr int most_in_registers = 32;
 
 /// Planes of a grid: real and imaginary parts of each image, and last (while gridding a PSF) weights.
-inline constexpr int most_grid_planes = 2 * most_stokes + 1;
+inline constexpr int most_grid_planes = static_cast<int>(2 * most_shared_images) + 1;
+static_assert(most_shared_images >= most_stokes);
 
 /// Samples on their way to or from one tile.
 template <typename Real>
@@ -65,7 +67,7 @@ void spread(const TapTable<float>& u, const TapTable<float>& v, const TileBatch<
 void spread(const TapTable<double>& u, const TapTable<double>& v, const TileBatch<double>& samples,
             const TileCells<double>& cells);
 
-/// Sets every sample's values of the first two planes to Σ C_u · C_v · cell: the transpose of spread.
+/// Sets every sample's values of all pairs of planes to Σ C_u · C_v · cell: the transpose of spread.
 void interpolate(const TapTable<float>& u, const TapTable<float>& v, const TileCells<const float>& cells,
                  TileBatch<float>& samples);
 void interpolate(const TapTable<double>& u, const TapTable<double>& v, const TileCells<const double>& cells,

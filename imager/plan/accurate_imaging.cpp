@@ -140,10 +140,9 @@ std::shared_ptr<const SampleResponse> response_of(const GriddingPlan& plan) {
 
 TheoreticalError theoretical_error(const GriddingPlan& plan, const SampleSums& sums, double image_rms, const NeglectedPhase& w,
                                    const Normalisation* by) {
-  const double part = plan.windows ? plan.windows->phase_part : 1;
   const double phase_rms =
-      plan.leaves_w_out() ? std::min(part * w.rms_rad, std::sqrt(2.0)) : 0;  // unit phasors at random are √2 apart
-  const double phase_max = plan.leaves_w_out() ? std::min(part * w.max_rad, 2.0) : 0;
+      plan.leaves_w_out() ? std::min(w.rms_rad, std::sqrt(2.0)) : 0;  // unit phasors at random are √2 apart
+  const double phase_max = plan.leaves_w_out() ? std::min(w.max_rad, 2.0) : 0;
   const auto over_image = [image_rms](double x) { return x == 0 ? 0 : x / image_rms; };
   // Of a mosaic, what the pointings p add to a pixel is Σ B_p Σ w|V| at most, and that over √W no more than √(Σ w|V|²).
   const bool mosaic = by != nullptr && by->mosaic() != nullptr;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <memory>
 #include <string>
 #include <vector>
@@ -14,20 +15,23 @@ struct GriddingPlan;
 
 /// How a mosaic's windows are transformed.
 struct WindowsPlan {
-  /// [term of beams, see BeamSpan]: how its part of a window's samples is transformed, in the largest window or in that over
-  /// which w matters most. Each is as exact as its size asks; the first counts most. Those that leave w out have a plane of it,
-  /// see TermTransforms.
+  /// How a window's samples are transformed: of all curved terms of beams together, see CurvedTerms, in the largest window; or
+  /// [term of beams, see BeamSpan] one by one, in the largest window or in that over which w matters most. Those are as exact
+  /// as their sizes ask; the first counts most.
   std::vector<std::shared_ptr<const GriddingPlan>> of_term;
-  double phase_part = 1;     ///< of the phase that w makes over the whole image: what w makes over any window beside its plane
-  std::size_t windows = 0;   ///< of pointings and pairs of dishes that see the image
-  std::size_t unseeing = 0;  ///< pointings that see no pixel of it
-  std::size_t spans = 1;     ///< see BeamSpan
-  std::size_t gathers = 1;   ///< times that samples are gathered and all windows transformed
-  std::size_t most_at_once = 1;  ///< windows whose work memory has room for
-  int side_by_side = 1;          ///< see MosaicOptions
+  std::size_t curved = 0;          ///< curved terms; 0: terms of beams one by one
+  std::size_t curved_at_once = 0;  ///< that memory has room for
+  std::size_t windows = 0;         ///< of pointings and pairs of dishes that see the image
+  std::size_t unseeing = 0;        ///< pointings that see no pixel of it
+  std::size_t spans = 1;           ///< see BeamSpan
+  std::size_t gathers = 1;         ///< times that samples are gathered and all windows transformed
+  std::size_t most_at_once = 1;    ///< windows whose work memory has room for
+  int side_by_side = 1;            ///< see MosaicOptions
 
-  /// Transforms of each term that a pass takes.
+  /// Transforms of each of these plans that a pass takes.
   double transforms() const { return static_cast<double>(windows * spans * gathers); }
+  /// Images that each of them makes for each that is asked.
+  int images_each() const { return static_cast<int>(std::max<std::size_t>(1, curved)); }
 };
 
 /// How it will be done: the cheapest that keeps the promise.
@@ -46,7 +50,8 @@ struct GriddingPlan {
   std::shared_ptr<const WindowsPlan> windows;  ///< of a mosaic, whose `options` and `choice` are those of a window's first term
   Plan decisions;
 
-  bool leaves_w_out() const { return !direct && !options.has_w_axis(); }
+  /// Windows of a mosaic know w in full.
+  bool leaves_w_out() const { return !direct && !windows && !options.has_w_axis(); }
 };
 
 /// Throws std::invalid_argument when the kernel's width, the padding or the accuracy lie outside what can be asked; whether the

@@ -66,27 +66,28 @@ GriddingRequest window_request(const GriddingRequest& request, const WindowsPlan
   return of_window;
 }
 
-/// A window's plan: of the largest, where w leaves nothing beside a plane that counts, or of that over which w matters most.
+/// A window's plan: of that over which w matters most.
 GriddingPlan plan_window(GriddingRequest request, const AllWindows& all) {
-  const double max_abs_w = request.max_abs_w;
-  request.geometry = all.largest;
-  request.geometry.centre = {};
-  request.max_abs_w = max_abs_w * std::min(1.0, all.reach / largest_drop(request.geometry));
-  GriddingPlan plan = plan_gridding(request);
-  if (plan.leaves_w_out()) return plan;
   request.geometry = all.most_curved;
-  request.max_abs_w = max_abs_w;
+  GriddingPlan plan = plan_gridding(request);
+  if (!plan.leaves_w_out() || request.max_abs_w == 0) return plan;
+  request.gridder = Gridder::wide;  // in other windows there may be more of it
   return plan_gridding(request);
+}
+
+/// Leaves out terms that count for too little.
+void leave_out_small(double accuracy, std::vector<double>& sizes) {
+  constexpr double part = 0.03;
+  while (sizes.size() > 1 && sizes.back() < part * accuracy) sizes.pop_back();
 }
 
 /// Plans for each term. What a term is transformed wrongly by counts as it is large; errors of terms, whose kernels differ, add
 /// up by their squares. Each term may take half of the squared error that is left, the last all of it.
 std::vector<std::shared_ptr<const GriddingPlan>> plan_terms(const GriddingRequest& request, std::vector<double> sizes,
                                                             const AllWindows& all) {
-  constexpr double left_out = 0.03;  // of the accuracy: terms that are smaller
   constexpr double first_part = 0.8;
   constexpr double coarsest = 0.1;
-  while (sizes.size() > 1 && sizes.back() < left_out * request.accuracy) sizes.pop_back();
+  leave_out_small(request.accuracy, sizes);
   if (sizes.size() == 1) return {std::make_shared<const GriddingPlan>(plan_window(request, all))};
   std::vector<std::shared_ptr<const GriddingPlan>> plans;
   double left = 1;  // of the squared error
@@ -100,12 +101,45 @@ std::vector<std::shared_ptr<const GriddingPlan>> plan_terms(const GriddingReques
     GriddingPlan plan = plan_window(of_term, all);
     // The first term may take all of an accuracy that is nearly out of reach.
     if (k == 0 && !plan.direct && !plan.choice.reached) plan = plan_window(request, all);
-    const double error = plan.worst_error + (plan.leaves_w_out() ? plan.choice.borne_phase_rad : 0);
-    if (request.accuracy > 0) left = std::max(0.0, left - std::pow(size * error / request.accuracy, 2));
+    if (request.accuracy > 0) left = std::max(0.0, left - std::pow(size * plan.worst_error / request.accuracy, 2));
     if (k == 0 && left < 1 - first_part) left = 1 - first_part;  // it hardly reaches what is asked
     plans.push_back(std::make_shared<const GriddingPlan>(std::move(plan)));
   }
   return plans;
+}
+
+/// Plans one transform of all curved terms. Its errors are those of one image: they are of what all terms add up to. Returns
+/// whether there are such terms, and it is exact enough.
+bool plan_curved(const GriddingRequest& mosaic, const AllWindows& all, WindowsPlan& windows) {
+  constexpr double part = 0.98;  // of the accuracy: the rest is for what terms leave
+  GriddingRequest request = window_request(mosaic, windows);
+  const MosaicBeams& beams = *mosaic.mosaic->beams;
+  std::vector<double> sizes = beams.curved_sizes();
+  if (sizes.empty() || beams.max_abs_w() < request.max_abs_w || request.gridder != Gridder::automatic) return false;
+  leave_out_small(request.accuracy, sizes);
+  const int images = request.stokes;
+  request.geometry = all.largest;
+  request.geometry.centre = {};
+  request.max_abs_w = 0;
+  request.gridder = Gridder::standard;
+  request.best_effort = true;
+  request.accuracy *= part;
+  request.single_from *= part;
+  request.stokes = images * static_cast<int>(sizes.size());
+  GriddingPlan plan = plan_gridding(request);
+  if (!plan.choice.reached) return false;
+  plan.request.stokes = images;
+  // Those of an image in the plane do not hold.
+  const auto is_other = [](const Decision& d) { return d.item == "Stokes parameters" || d.item == "w planes"; };
+  plan.decisions.erase(std::remove_if(plan.decisions.begin(), plan.decisions.end(), is_other), plan.decisions.end());
+  windows.curved = sizes.size();
+  const TransformMemory of_one = memory_of(plan.options, 1, static_cast<double>(request.samples));
+  const double term_bytes = of_one.visibilities + static_cast<double>(request.geometry.pixels()) * sizeof(double);
+  constexpr double windows_held = 2;  // at least, by all that there is for them
+  const double fit = std::min(static_cast<double>(mosaic.stack_bytes) / windows_held / term_bytes, double{most_shared_images});
+  windows.curved_at_once = std::max<std::size_t>(1, static_cast<std::size_t>(fit));
+  windows.of_term = {std::make_shared<const GriddingPlan>(std::move(plan))};
+  return true;
 }
 
 /// The errors of all terms together.
@@ -153,12 +187,20 @@ Plan decisions_of(const GriddingPlan& plan, const AllWindows& all) {
        "cut off where main lobes fall to " + text("%.3g", beams.cut()) + ", or before their formula ends, at most " +
            angle(std::asin(beams.largest_reach())) + " from their axes",
        "so the image is defined; a source of 1 Jy at the cut leaves " + text("%.3g", beams.cut()) + " Jy in its pointing"},
-      {"beams between frequencies",
-       std::to_string(w.spans) + (w.spans == 1 ? " span" : " spans") + " of at most " + std::to_string(w.of_term.size()) +
-           (w.of_term.size() == 1 ? " term" : " terms"),
-       "from which beams of all channels follow to " + text("%.1g", beams.tolerance()) +
-           " of what they are at most; each sample is gridded for each term, as exactly as its size asks: kernel width " +
-           widths(w)}};
+      w.curved > 0
+          ? Decision{"beams and w",
+                     std::to_string(w.spans) + (w.spans == 1 ? " span" : " spans") + " of at most " + std::to_string(w.curved) +
+                         (w.curved == 1 ? " term" : " terms"),
+                     "from which beams of all channels, and what w makes over the plane tangent at their axes, follow to " +
+                         text("%.1g", beams.tolerance()) +
+                         "; each sample is gridded for all of them, whose order, coordinates and taps are the same"}
+          : Decision{"beams between frequencies",
+                     std::to_string(w.spans) + (w.spans == 1 ? " span" : " spans") + " of at most " +
+                         std::to_string(w.of_term.size()) + (w.of_term.size() == 1 ? " term" : " terms"),
+                     "from which beams of all channels follow to " + text("%.1g", beams.tolerance()) +
+                         " of what they are at most; each sample is gridded for each term, as exactly as its size asks: kernel "
+                         "width " +
+                         widths(w)}};
   decisions.push_back({"a pointing", text("%.2g", mosaic_seconds(w, 0) / static_cast<double>(w.windows)) + " s of a core",
                        "for a pass over its " + text("%.2g", static_cast<double>(r.samples) / static_cast<double>(w.windows)) +
                            " samples, by counts of operations"});
@@ -168,10 +210,6 @@ Plan decisions_of(const GriddingPlan& plan, const AllWindows& all) {
          "memory gathers no more than " + text("%.2g", static_cast<double>(r.samples_at_once)) + " samples at once"});
   if (w.unseeing > 0)
     decisions.push_back({"pointings left out", std::to_string(w.unseeing), "their beams see no pixel of the image"});
-  if (w.of_term.front()->leaves_w_out() && r.max_abs_w > 0)
-    decisions.push_back({"w over windows", "left out beside a plane",
-                         "the plane closest to n − 1 over a window leaves " + text("%.2g", w.phase_part) +
-                             " of the phase that w makes over the image"});
   return decisions;
 }
 
@@ -180,19 +218,27 @@ double bytes_at_work(const WindowsPlan& windows, const GriddingRequest& request)
   constexpr double sum_bytes = sizeof(double), value_bytes = sizeof(std::complex<double>);
   const double images = request.stokes + (request.psf ? 1 : 0);
   const GriddingRequest& first = windows.of_term.front()->request;
+  const auto pixels = static_cast<double>(first.geometry.pixels());
+  // Its samples need not come evenly: all that it has may have gathered at once.
+  const double samples = std::min(static_cast<double>(request.samples) / static_cast<double>(windows.windows * windows.spans),
+                                  static_cast<double>(request.samples_at_once));
+  if (windows.curved > 0) {
+    constexpr double coordinate_bytes = 3 * sizeof(double);
+    const auto at_once =
+        static_cast<double>(std::min<std::size_t>(windows.curved_at_once, windows.curved * static_cast<std::size_t>(images)));
+    const TransformMemory one = memory_of(windows.of_term.front()->options, 1, samples);
+    return at_once * (one.visibilities + pixels * sum_bytes) + one.fft +
+           samples * (coordinate_bytes + value_bytes + (request.psf ? value_bytes : 0)) + pixels * (2 * images + 3) * sum_bytes;
+  }
   double transform = 0;
   for (const auto& of_term : windows.of_term) {
     const TransformMemory of = memory_of(*of_term);
     transform = std::max(transform, of.visibilities + of.psf + of.other_stokes + of.fft);
   }
-  // Its samples need not come evenly: all that it has may have gathered at once.
-  const double samples = std::min(static_cast<double>(request.samples) / static_cast<double>(windows.windows * windows.spans),
-                                  static_cast<double>(request.samples_at_once));
   const double more = samples - static_cast<double>(first.samples);
   const double term_images = static_cast<double>(windows.of_term.size()) + 1;
   return transform + std::max(0.0, more) * (wide_bytes_a_sample + images * wide_bytes_a_value) +
-         samples * images * 2 * value_bytes +
-         static_cast<double>(first.geometry.pixels()) * (term_images + 3 * images) * sum_bytes;
+         samples * images * 2 * value_bytes + pixels * (term_images + 3 * images) * sum_bytes;
 }
 
 /// With one transform for image and PSF.
@@ -205,11 +251,12 @@ GriddingPlan plan_together(const GriddingRequest& request, const AllWindows& all
   const std::uint64_t at_once = std::max<std::size_t>(1, request.samples_at_once);
   windows.gathers = std::max<std::uint64_t>(1, (request.samples + at_once - 1) / at_once);
   windows.of_term = plan_terms(window_request(request, windows), beams.term_sizes(), all);
+  if (WindowsPlan curved = windows; plan_curved(request, all, curved) && mosaic_seconds(curved, 0) < mosaic_seconds(windows, 0))
+    windows = std::move(curved);
   const auto fit = static_cast<double>(request.stack_bytes) / bytes_at_work(windows, request);
   windows.most_at_once =
       std::clamp<std::size_t>(static_cast<std::size_t>(std::min(fit, 1e9)), 1, windows.windows * windows.spans);
   share_threads(windows, request.threads);
-  windows.phase_part = std::min(1.0, all.reach / largest_drop(request.geometry));
   GriddingPlan plan = *windows.of_term.front();
   plan.request = request;
   plan.options.threads = request.threads;
@@ -236,7 +283,7 @@ double mosaic_seconds(const WindowsPlan& windows, int images) {
   double sum = 0;
   for (const auto& of_term : windows.of_term) {
     GriddingWork work = of_term->choice.best.work;
-    if (images > 0) work.stokes = images;
+    if (images > 0) work.stokes = images * windows.images_each();
     sum += CostModel().seconds(work);
   }
   return windows.transforms() * sum;
@@ -286,18 +333,35 @@ TransformMemory mosaic_memory(const GriddingPlan& plan) {
   return memory;
 }
 
+namespace {
+
+WindowTransforms curved_transforms(const WindowsPlan& windows) {
+  const auto make = [options = CoplanarOptions(windows.of_term.front()->options)](const ImageGeometry& geometry) {
+    CoplanarOptions of = options;
+    of.geometry = geometry;
+    return std::shared_ptr<const SharedTransform>(make_shared_transform(of));
+  };
+  return CurvedTransforms{make, windows.curved, windows.curved_at_once};
+}
+
+WindowTransforms term_transforms(const WindowsPlan& windows) {
+  std::vector<MakeTermTransform> of_term;
+  for (const std::shared_ptr<const GriddingPlan>& planned : windows.of_term)
+    of_term.emplace_back([planned](const ImageGeometry& geometry) {
+      GriddingPlan of = *planned;
+      of.options.geometry = of.request.geometry = geometry;
+      return std::make_shared<const PlannedTransform>(of);
+    });
+  return of_term;
+}
+
+}  // namespace
+
 std::unique_ptr<Transform> make_mosaic_transform(const GriddingPlan& plan) {
   const MosaicRequest& mosaic = *plan.request.mosaic;
-  std::vector<TermTransforms> of_term;
-  for (const std::shared_ptr<const GriddingPlan>& planned : plan.windows->of_term)
-    of_term.push_back({[planned](const ImageGeometry& geometry) {
-                         GriddingPlan of = *planned;
-                         of.options.geometry = of.request.geometry = geometry;
-                         return std::make_shared<const PlannedTransform>(of);
-                       },
-                       planned->leaves_w_out()});
+  const WindowsPlan& windows = *plan.windows;
   return std::make_unique<MosaicTransform>(
-      mosaic.beams, std::move(of_term),
+      mosaic.beams, windows.curved > 0 ? curved_transforms(windows) : term_transforms(windows),
       MosaicOptions{mosaic.psf_row, mosaic.psf_column, mosaic.flat_noise, plan.request.samples_at_once, plan.request.threads,
                     plan.windows->side_by_side});
 }

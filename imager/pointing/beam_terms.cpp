@@ -1,9 +1,9 @@
 #include "imager/pointing/beam_terms.h"
 
-#include <Eigen/Dense>
 #include <algorithm>
-#include <cmath>
 #include <utility>
+
+#include "imager/pointing/principal_terms.h"
 
 namespace misfit::imager {
 namespace {
@@ -14,31 +14,6 @@ using Eigen::VectorXd;
 
 std::vector<double> list_of(const VectorXd& v) {
   return {v.begin(), v.end()};
-}
-
-/// An orthonormal basis of columns of a matrix that explain all others to a tolerance.
-struct Explained {
-  std::vector<Index> column;  ///< that were taken
-  MatrixXd basis;             ///< [row][taken]
-  bool all = false;           ///< whether they explain enough
-};
-
-Explained explain(const MatrixXd& values, double tolerance, Index most) {
-  Explained found{{}, MatrixXd(values.rows(), 0), false};
-  MatrixXd left = values;
-  for (;;) {
-    found.all = !found.column.empty() && left.cwiseAbs().maxCoeff() <= tolerance;
-    if (found.all || static_cast<Index>(found.column.size()) == std::min(most, values.cols())) return found;
-    Index next = 0;
-    left.colwise().squaredNorm().maxCoeff(&next);
-    VectorXd direction = left.col(next);
-    direction -= found.basis * (found.basis.transpose() * direction);  // again, for what rounding left
-    direction.normalize();
-    found.column.push_back(next);
-    found.basis.conservativeResize(Eigen::NoChange, found.basis.cols() + 1);
-    found.basis.rightCols(1) = direction;
-    left -= direction * (direction.transpose() * left);
-  }
 }
 
 }  // namespace
@@ -57,10 +32,9 @@ class SpanMaker {
 
   /// Adds the spans of `count` frequencies from `begin` on, in halves where they take too many terms.
   void add(Index begin, Index count, std::vector<BeamSpan>& spans) const {
-    const MatrixXd values = values_.middleCols(begin, count);
-    const Explained found = explain(values, tolerance_, most_);
-    if (found.all || count == 1) {
-      spans.push_back(span_of(values, found, begin));
+    const PrincipalTerms found = principal_terms(values_.middleCols(begin, count), tolerance_, most_);
+    if (found.enough || count == 1) {
+      spans.push_back(span_of(found, begin, count));
       return;
     }
     add(begin, count / 2, spans);
@@ -70,27 +44,18 @@ class SpanMaker {
  private:
   double hz(Index column) const { return hz_[static_cast<std::size_t>(column)]; }
 
-  BeamSpan span_of(const MatrixXd& values, const Explained& found, Index begin) const {
-    const auto terms = static_cast<Index>(found.column.size());
-    const MatrixXd in_basis = found.basis.transpose() * values;  // [taken][frequency]
-    const Eigen::JacobiSVD<MatrixXd> parts(in_basis, Eigen::ComputeThinU | Eigen::ComputeThinV);
-    const MatrixXd principal = found.basis * parts.matrixU();       // [value][term], orthonormal
-    const MatrixXd along = parts.matrixU().transpose() * in_basis;  // [term][frequency]
-    const VectorXd most = along.cwiseAbs().rowwise().maxCoeff();    // of which shares are parts
-    MatrixXd nodes(terms, terms);                                   // [term][node], of orthonormal terms
-    for (Index j = 0; j < terms; ++j) nodes.col(j) = along.col(found.column[static_cast<std::size_t>(j)]);
-    const MatrixXd of_nodes = nodes.inverse();  // [node][term]: principal = values at nodes · this
+  BeamSpan span_of(const PrincipalTerms& found, Index begin, Index count) const {
     BeamSpan span;
     span.low_hz_ = hz(begin);
-    span.high_hz_ = hz(begin + values.cols() - 1);
+    span.high_hz_ = hz(begin + count - 1);
     span.seen_ = seen_;
-    for (const Index column : found.column) span.node_hz_.push_back(hz(begin + column));
-    for (Index k = 0; k < terms; ++k) {
-      span.of_nodes_.push_back(list_of(most[k] * of_nodes.col(k)));
-      span.sizes_.push_back(most[k] / std::sqrt(static_cast<double>(values.rows())));
-      span.share_of_seen_.push_back(list_of(principal.col(k) / most[k]));
+    span.sizes_ = list_of(found.size);
+    for (const Index column : found.node) span.node_hz_.push_back(hz(begin + column));
+    for (Index k = 0; k < found.terms(); ++k) {
+      span.of_nodes_.push_back(list_of(found.of_nodes.col(k)));
+      span.share_of_seen_.push_back(list_of(found.share_of_value.col(k)));
     }
-    for (Index c = 0; c < values.cols(); ++c) span.share_[hz(begin + c)] = list_of(along.col(c).cwiseQuotient(most));
+    for (Index c = 0; c < count; ++c) span.share_[hz(begin + c)] = list_of(found.share.col(c));
     return span;
   }
 

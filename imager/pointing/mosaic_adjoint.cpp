@@ -1,7 +1,6 @@
 #include "imager/pointing/mosaic_adjoint.h"
 
 #include <algorithm>
-#include <optional>
 #include <utility>
 #include <variant>
 
@@ -155,17 +154,54 @@ class MosaicAdjoint : public AdjointSum {
     });
   }
 
-  WindowImages images_of(const WaitingWindow& window) const {
-    const std::vector<Image> terms = windows_->beam_terms(*window.seen, *window.span);
+  WindowImages images_of(WaitingWindow& window) const {
     const ImageGeometry& g = window.seen->window.geometry;
     WindowImages made{std::vector<Image>(images() + (has_psf(*window.seen) ? 1 : 0), Image(g.width, g.height)), {}, 0};
+    std::vector<Image> terms;
+    if (!windows_->is_curved() || powers() > 0) terms = windows_->beam_terms(*window.seen, *window.span);
+    for (std::size_t power = 0; power < powers(); ++power) made.sensitivity.push_back(sensitivity_of(window, terms, power));
+    if (made.images.empty()) return made;
     std::vector<std::vector<std::complex<double>>> psf;  // [part]
     if (has_psf(*window.seen))
       for (const Waiting& part : window.parts) psf.push_back(windows_->psf_source(*window.seen, *window.span, part.samples));
-    for (std::size_t k = 0; !made.images.empty() && k < windows_->terms(*window.span); ++k)
-      add_term(window, psf, k, terms[k], made);
-    for (std::size_t power = 0; power < powers(); ++power) made.sensitivity.push_back(sensitivity_of(window, terms, power));
+    if (windows_->is_curved())
+      add_curved(window, psf, made);
+    else
+      for (std::size_t k = 0; k < windows_->terms(*window.span); ++k) add_term(window, psf, k, terms[k], made);
     return made;
+  }
+
+  /// Adds what the samples make of all curved terms of the beams.
+  void add_curved(WaitingWindow& window, const std::vector<std::vector<std::complex<double>>>& psf, WindowImages& made) const {
+    const CurvedTerms& curved = windows_->beams().curved(*window.span);
+    const std::size_t terms = windows_->terms(*window.span);
+    const std::shared_ptr<const SharedTransform> transform = windows_->curved_transform(window.seen->window);
+    std::vector<CurvedSamples> samples;
+    for (Waiting& part : window.parts)
+      samples.push_back(windows_->curved_samples(*window.seen, *window.span, part.samples.at, std::move(part.weight)));
+    const std::size_t at_once = std::min(terms, windows_->curved_at_once()), sets = made.images.size();
+    const std::size_t together = std::clamp<std::size_t>(windows_->curved_at_once() / at_once, 1, most_stokes);
+    for (std::size_t term = 0; term < terms; term += at_once) {
+      const std::size_t count = std::min(at_once, terms - term);
+      const std::vector<Image> beams = windows_->curved_images(*window.seen, *window.span, term, count);
+      for (std::size_t first = 0; first < sets; first += together) {
+        const std::size_t some = std::min(together, sets - first);
+        const auto sum = transform->adjoint(some, count);
+        for (std::size_t p = 0; p < window.parts.size(); ++p) {
+          VisibilitySets values;
+          for (std::size_t i = first; i < first + some; ++i)
+            if (i < images())
+              std::visit([&](const auto& of) { values.push_back(of.data()); }, window.parts[p].values[i]);
+            else
+              values.push_back(psf[p].data());
+          sum->add(samples[p].at, values, CurvedShares(curved, samples[p], term, count));
+        }
+        sum->finish([&](std::size_t set, std::size_t k, const Image& image) {
+          add_product(beams[k], image, made.images[first + set]);
+        });
+        made.fft_s += sum->fft_s();
+      }
+    }
   }
 
   /// Adds what the samples make of a term of the beams.
@@ -175,21 +211,19 @@ class MosaicAdjoint : public AdjointSum {
     std::vector<Together> all;
     for (std::size_t first = 0; first < made.images.size(); first += most_stokes) {
       const std::size_t some = std::min<std::size_t>(made.images.size() - first, most_stokes);
-      // The samples were chosen by their own u and v, which a plane changes.
+      // The samples were chosen by the u and v that they have about the phase centre.
       all.push_back({first, transform->adjoint({.images = static_cast<int>(some), .beyond_grid = true})});
     }
     for (std::size_t p = 0; p < window.parts.size(); ++p) {
       const Waiting& part = window.parts[p];
-      std::optional<SamplesOnPlane> plane;
-      if (windows_->on_planes(term)) plane = windows_->on_plane(*window.seen, part.samples.at);
       VisibilityBlock here;
-      static_cast<SampleCoordinates&>(here) = plane ? plane->at : part.samples.at;
+      static_cast<SampleCoordinates&>(here) = part.samples.at;
       here.weight = part.weight;
       for (const Together& some : all) {
         const std::size_t end = std::min<std::size_t>(made.images.size(), some.first + most_stokes);
         std::vector<std::vector<std::complex<double>>> values;
         for (std::size_t i = some.first; i < end; ++i) {
-          const auto share_of = [&](const auto& of) { return shares(part.samples, of, term, plane ? &plane->phase : nullptr); };
+          const auto share_of = [&](const auto& of) { return shares(part.samples, of, term); };
           values.push_back(i < images() ? std::visit(share_of, part.values[i]) : share_of(psf[p]));
         }
         some.sum->add(here, values);
@@ -204,17 +238,13 @@ class MosaicAdjoint : public AdjointSum {
 
   /// What the samples give to a term. [row][channel]
   template <typename Value>
-  std::vector<std::complex<double>> shares(const WindowSamples& samples, const std::vector<Value>& of, std::size_t term,
-                                           const std::vector<std::complex<double>>* phase) const {
+  std::vector<std::complex<double>> shares(const WindowSamples& samples, const std::vector<Value>& of, std::size_t term) const {
     std::vector<std::complex<double>> values(samples.size());
     const std::size_t channels = samples.channels.size();
     parallel_for((samples.rows.size() + rows_a_piece - 1) / rows_a_piece, o().threads_of_each(), [&](std::size_t p) {
       for (std::size_t r = p * rows_a_piece; r < std::min((p + 1) * rows_a_piece, samples.rows.size()); ++r)
-        for (std::size_t c = 0; c < channels; ++c) {
-          const std::size_t at = r * channels + c;
-          values[at] = samples.share[c][term] * std::complex<double>(of[at]);
-          if (phase != nullptr) values[at] *= std::conj((*phase)[at]);
-        }
+        for (std::size_t c = 0; c < channels; ++c)
+          values[r * channels + c] = samples.share[c][term] * std::complex<double>(of[r * channels + c]);
     });
     return values;
   }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <set>
 #include <stdexcept>
 #include <string>
@@ -39,6 +40,23 @@ int first_of(double low, double high, int size, int all) {
   return static_cast<int>(std::clamp(first, 0.0, double(all - size)));
 }
 
+constexpr std::size_t most_curved_terms = 32;
+
+/// Brings sizes of terms to those of others where these are larger.
+void raise(std::vector<double>& sizes, const std::vector<double>& others) {
+  sizes.resize(std::max(sizes.size(), others.size()));
+  for (std::size_t k = 0; k < others.size(); ++k) sizes[k] = std::max(sizes[k], others[k]);
+}
+
+/// Where beams are looked at.
+constexpr int radii = 96;
+double sine_of(double reach, int radius) {
+  return reach * std::sqrt(double(radius) / radii);
+}
+int angles_of(const VoltagePattern& one, const VoltagePattern& other) {
+  return one.is_round() && other.is_round() ? 1 : 8;
+}
+
 }  // namespace
 
 MosaicBeams::MosaicBeams(MosaicScene scene) : scene_(std::move(scene)) {
@@ -54,35 +72,84 @@ MosaicBeams::MosaicBeams(MosaicScene scene) : scene_(std::move(scene)) {
     for (const VoltagePattern* other : patterns) reach_[{one, other}] = found_reach(*one, *other);
   turn_rad_ = turn_step(scene_.beams, largest(reach_), scene_.frequency_hz.back(), scene_.tolerance);
   term_sizes_ = {1};
-  if (scene_.at_each) return;
-  // An image of flat noise divides by what is seen: in parts of that beams have to be right.
-  std::vector<double> most(seen(scene_.frequency_hz.front()).size(), scene_.cut * scene_.cut);
-  for (const double hz : scene_.frequency_hz) {
+  if (!scene_.at_each) {
+    spans_ = beam_spans(scene_.frequency_hz, directions(scene_.frequency_hz).values, scene_.tolerance);
+    for (const BeamSpan& span : spans_) raise(term_sizes_, span.sizes());
+  }
+  find_curved_terms();
+}
+
+/// In all of which what beams are at these frequencies tells what they are in any. An image of flat noise divides by what is
+/// seen: in parts of the largest that beams are in a direction they have to be right.
+BeamDirections MosaicBeams::directions(const std::vector<double>& frequency_hz) const {
+  BeamDirections all;
+  for (const auto& [pair, reach] : reach_) {
+    const int angles = angles_of(*std::get<0>(pair), *std::get<1>(pair));
+    for (int r = 0; r <= radii; ++r) all.sine.insert(all.sine.end(), static_cast<std::size_t>(angles), sine_of(reach, r));
+  }
+  std::vector<double> most(all.sine.size(), scene_.cut * scene_.cut);
+  for (const double hz : frequency_hz) {
     const std::vector<double> values = seen(hz);
     for (std::size_t v = 0; v < most.size(); ++v) most[v] = std::max(most[v], std::abs(values[v]));
   }
-  const auto relative = [this, most](double hz) {
+  all.values = [this, most](double hz) {
     std::vector<double> values = seen(hz);
     for (std::size_t v = 0; v < most.size(); ++v) values[v] /= most[v];
     return values;
   };
-  spans_ = beam_spans(scene_.frequency_hz, relative, scene_.tolerance);
-  for (const BeamSpan& span : spans_) {
-    term_sizes_.resize(std::max(term_sizes_.size(), span.terms()));
-    for (std::size_t k = 0; k < span.terms(); ++k) term_sizes_[k] = std::max(term_sizes_[k], span.sizes()[k]);
+  all.largest_sine = largest(reach_);
+  return all;
+}
+
+void MosaicBeams::find_curved_terms() {
+  constexpr double least_n = 0.2;  // a tangent plane farther from the centre makes much of w
+  if (!scene_.max_abs_w) return;
+  std::set<Pattern> patterns(scene_.beams.of_antennas().begin(), scene_.beams.of_antennas().end());
+  patterns.erase(nullptr);
+  double n = 1;
+  for (const AxisFrame& frame : scene_.beams.of_fields())
+    for (const Pattern& one : patterns)
+      for (const Pattern& other : patterns)
+        if (window({one, other, frame, 0})) n = std::min(n, 1 + n_minus_1(frame.axis()));
+  if (n < least_n) return;
+  constexpr double rounding = 1e-9;
+  most_abs_w_ = (1 + rounding) * *scene_.max_abs_w / n;
+  std::vector<const BeamSpan*> all;
+  if (scene_.at_each)
+    all = spans({scene_.frequency_hz.front(), scene_.frequency_hz.back()});
+  else
+    for (const BeamSpan& span : spans_) all.push_back(&span);
+  for (const BeamSpan* span : all) {
+    const CurvedTerms& terms = curved(*span);
+    raise(curved_sizes_, terms.sizes());
+    if (!terms.enough() || terms.terms() > most_curved_terms) {
+      curved_sizes_.clear();
+      return;
+    }
   }
+}
+
+const CurvedTerms& MosaicBeams::curved(const BeamSpan& span) const {
+  constexpr std::size_t spare = 8;  // between the frequencies that were looked at
+  const std::lock_guard lock(curved_mutex_);
+  const auto found = curved_.find(&span);
+  if (found != curved_.end()) return found->second;
+  std::vector<double> hz;
+  std::copy_if(scene_.frequency_hz.begin(), scene_.frequency_hz.end(), std::back_inserter(hz),
+               [&](double f) { return span.holds(f); });
+  if (scene_.at_each) hz = span.node_hz();
+  return curved_.try_emplace(&span, hz, directions(hz), most_abs_w_, scene_.tolerance, most_curved_terms + spare).first->second;
 }
 
 /// What all pairs of patterns see, each as far as it reaches, at radii and angles of equal parts of its disc.
 std::vector<double> MosaicBeams::seen(double frequency_hz) const {
-  constexpr int radii = 96, angles = 8;
   std::vector<double> values;
   for (const auto& [pair, reach] : reach_) {
     const auto& [one, other] = pair;
-    const bool round = one->is_round() && other->is_round();
+    const int angles = angles_of(*one, *other);
     for (int r = 0; r <= radii; ++r)
-      for (int a = 0; a < (round ? 1 : angles); ++a) {
-        const double sine = reach * std::sqrt(double(r) / radii), angle_rad = 2 * pi * a / angles;
+      for (int a = 0; a < angles; ++a) {
+        const double sine = sine_of(reach, r), angle_rad = 2 * pi * a / angles;
         const auto voltage = [&](const VoltagePattern& p) {
           return p.is_round() ? p.voltage(sine, frequency_hz) : p.voltage_at(sine, angle_rad, frequency_hz);
         };
@@ -168,6 +235,55 @@ const std::vector<RadialTable>& MosaicBeams::tables(const PairBeam& beam, const 
         sum += span.of_nodes(k)[j] * beam.one->voltage(sine, span.node_hz()[j]) * beam.other->voltage(sine, span.node_hz()[j]);
       return sum;
     });
+  return made;
+}
+
+const std::vector<RadialTable>& MosaicBeams::curved_tables(const PairBeam& beam, const BeamSpan& span, int threads) const {
+  constexpr double turns_of_a_beam = 2;  // that a table bears besides
+  const CurvedTerms& curved = this->curved(span);
+  const std::lock_guard lock(mutex_);
+  std::vector<RadialTable>& made = curved_tables_[{beam.one.get(), beam.other.get(), &span}];
+  for (std::size_t k = made.size(); k < curved.terms(); ++k)
+    made.emplace_back(
+        reach(beam), threads,
+        [&](double sine) {
+          double sum = 0;
+          for (std::size_t j = 0; j < curved.nodes().size(); ++j) {
+            const CurvedTerms::Node& node = curved.nodes()[j];
+            sum += curved.of_nodes(k)[j] * beam.one->voltage(sine, node.frequency_hz) *
+                   beam.other->voltage(sine, node.frequency_hz) * node.wave(curved.q(sine));
+          }
+          return sum;
+        },
+        std::max(1.0, curved.most_phase_rad() / turns_of_a_beam));
+  return made;
+}
+
+std::vector<Image> MosaicBeams::curved_images(const PairBeam& beam, const Window& window, const BeamSpan& span,
+                                              std::size_t first, std::size_t count, int threads) const {
+  const CurvedTerms& curved = this->curved(span);
+  const ImageGeometry& g = window.geometry;
+  std::vector<Image> made(count, Image(g.width, g.height));
+  const std::vector<RadialTable>* const round = beam.is_round() ? &curved_tables(beam, span, threads) : nullptr;
+  const double radius = reach(beam);
+  parallel_for(static_cast<std::size_t>(g.height), threads, [&](std::size_t r) {
+    const int row = static_cast<int>(r);
+    for (int column = 0; column < g.width; ++column) {
+      const DirectionCosines at = g.at(row, column);
+      const double sine = beam.frame.sine(at);  // not a number beyond the horizon
+      if (!(sine <= radius)) continue;
+      if (round != nullptr) {
+        const RadialTable::Place place = round->front().place(sine);
+        for (std::size_t k = 0; k < count; ++k) made[k].at(row, column) = (*round)[first + k](place);
+        continue;
+      }
+      for (std::size_t j = 0; j < curved.nodes().size(); ++j) {
+        const CurvedTerms::Node& node = curved.nodes()[j];
+        const double seen = beam.power(at, node.frequency_hz) * node.wave(curved.q(sine));
+        for (std::size_t k = 0; k < count; ++k) made[k].at(row, column) += curved.of_nodes(first + k)[j] * seen;
+      }
+    }
+  });
   return made;
 }
 

@@ -10,6 +10,7 @@
 #include "imager/beams/row_beams.h"
 #include "imager/data/image.h"
 #include "imager/pointing/beam_terms.h"
+#include "imager/pointing/curved_terms.h"
 
 namespace misfit::imager {
 
@@ -23,6 +24,8 @@ struct MosaicScene {
   /// To which beams follow from terms, see beam_spans(), in parts of the largest that they are at any frequency. Those that are
   /// not round are turned wrongly by four times that, over their peak.
   double tolerance = 1e-7;
+  /// The largest |w| of any sample, in wavelengths; none where it is not known, and there are no CurvedTerms then.
+  std::optional<double> max_abs_w = {};
 };
 
 /// A rectangle of an image's pixels.
@@ -46,11 +49,16 @@ class MosaicBeams {
   double low_hz() const { return scene_.frequency_hz.front(); }  ///< the lowest frequency
   double cut() const { return scene_.cut; }
   double tolerance() const { return scene_.tolerance; }
+  double max_abs_w() const { return scene_.max_abs_w.value_or(0); }
   /// Those that hold any of these frequencies, ascending. Throws std::invalid_argument where none holds one.
   std::vector<const BeamSpan*> spans(const std::vector<double>& frequency_hz) const;
   std::size_t all_spans() const { return scene_.at_each ? 1 : spans_.size(); }
   /// [term of a span, see BeamSpan]: its size, in parts of the beams, at most of all spans.
   const std::vector<double>& term_sizes() const { return term_sizes_; }
+  /// The same of curved terms; none where they are not known, or too many to be of use.
+  const std::vector<double>& curved_sizes() const { return curved_sizes_; }
+  /// Those of a span, to be asked for where there are any.
+  const CurvedTerms& curved(const BeamSpan& span) const;
   /// The rows that see alike.
   std::vector<RowBeams::Group> groups(const SampleCoordinates& at) const { return scene_.beams.groups(at, turn_rad_); }
 
@@ -64,25 +72,38 @@ class MosaicBeams {
   /// The terms of a beam in each pixel of a window. What follows from them is right to 1e-9 of power() for round beams, but for
   /// the tolerance.
   std::vector<Image> terms(const PairBeam& beam, const Window& window, const BeamSpan& span, int threads) const;
-  /// The same in a direction.
+  /// `count` of a span's curved terms, from `first` on, in each pixel of a window.
+  std::vector<Image> curved_images(const PairBeam& beam, const Window& window, const BeamSpan& span, std::size_t first,
+                                   std::size_t count, int threads) const;
+  /// The terms of a beam in a direction.
   std::vector<double> terms(const PairBeam& beam, DirectionCosines at, const BeamSpan& span) const;
 
  private:
   using Pair = std::tuple<const VoltagePattern*, const VoltagePattern*>;
 
+  using Tables = std::map<std::tuple<const VoltagePattern*, const VoltagePattern*, const BeamSpan*>, std::vector<RadialTable>>;
+
   /// [term], of a round beam.
   const std::vector<RadialTable>& tables(const PairBeam& beam, const BeamSpan& span, int threads) const;
+  const std::vector<RadialTable>& curved_tables(const PairBeam& beam, const BeamSpan& span, int threads) const;
   double found_reach(const VoltagePattern& one, const VoltagePattern& other) const;
   std::vector<double> seen(double frequency_hz) const;
+  BeamDirections directions(const std::vector<double>& frequency_hz) const;
+  void find_curved_terms();
 
   MosaicScene scene_;
   std::map<Pair, double> reach_;
   std::vector<BeamSpan> spans_;  ///< none where beams are made at each frequency
   std::vector<double> term_sizes_;
   double turn_rad_ = 0;
-  mutable std::mutex mutex_;  ///< of what follows
-  mutable std::map<std::tuple<const VoltagePattern*, const VoltagePattern*, const BeamSpan*>, std::vector<RadialTable>> tables_;
+  double most_abs_w_ = 0;  ///< over tangent planes at the axes of all pointings that see the image
+  std::vector<double> curved_sizes_;
+  mutable std::mutex curved_mutex_;  ///< of curved_
+  mutable std::mutex mutex_;         ///< of what follows
+  mutable Tables tables_;
+  mutable Tables curved_tables_;
   mutable std::map<double, BeamSpan> at_each_;
+  mutable std::map<const BeamSpan*, CurvedTerms> curved_;
 };
 
 }  // namespace misfit::imager

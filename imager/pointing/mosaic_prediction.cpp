@@ -87,47 +87,68 @@ class MosaicPrediction : public Prediction {
     const std::vector<AskedWindow> windows = windows_of(asked);
     const int side_by_side = windows_->options().side_by_side;
     parallel_for(windows.size(), side_by_side, [&](std::size_t w) {
-      const std::vector<Image> terms = windows_->beam_terms(*windows[w].seen, *windows[w].span);
-      double fft_s = 0;
-      for (std::size_t k = 0; k < windows_->terms(*windows[w].span); ++k)
-        fft_s += add_term(windows[w], asked, k, terms[k], visibilities);
+      const double fft_s =
+          windows_->is_curved() ? add_curved(windows[w], asked, visibilities) : add_terms(windows[w], asked, visibilities);
       const std::lock_guard lock(mutex_);
       fft_s_ += fft_s / std::max<double>(1, std::min<double>(side_by_side, static_cast<double>(windows.size())));
     });
     return visibilities;
   }
 
-  /// Adds what a window shows of a term of its beam. Returns the seconds of FFTs.
-  double add_term(const AskedWindow& window, const std::vector<Asked>& asked, std::size_t term, const Image& beam,
-                  std::vector<std::vector<std::complex<double>>>& visibilities) const {
-    const auto prediction = windows_->transform(window.seen->window, term)->predict(shown(window.seen->window, beam));
-    std::vector<VisibilityBlock> blocks;
-    std::vector<std::vector<std::complex<double>>> phases(window.parts.size());
-    for (std::size_t p = 0; p < window.parts.size(); ++p) {
-      const WindowSamples& s = window.parts[p].samples;
-      VisibilityBlock& block = blocks.emplace_back();
-      block.weight = weights_of(s, asked[window.parts[p].block]);
-      if (!windows_->on_planes(term)) {
-        static_cast<SampleCoordinates&>(block) = s.at;
-        continue;
+  /// Adds what a window shows of all curved terms of its beam. Returns the seconds of FFTs.
+  double add_curved(const AskedWindow& window, const std::vector<Asked>& asked,
+                    std::vector<std::vector<std::complex<double>>>& visibilities) const {
+    const CurvedTerms& curved = windows_->beams().curved(*window.span);
+    const std::size_t terms = windows_->terms(*window.span);
+    const std::shared_ptr<const SharedTransform> transform = windows_->curved_transform(window.seen->window);
+    std::vector<CurvedSamples> samples;
+    for (const BlockPart& part : window.parts)
+      samples.push_back(
+          windows_->curved_samples(*window.seen, *window.span, part.samples.at, weights_of(part.samples, asked[part.block])));
+    double fft_s = 0;
+    for (std::size_t term = 0; term < terms; term += windows_->curved_at_once()) {
+      const std::size_t count = std::min(windows_->curved_at_once(), terms - term);
+      std::vector<Image> images = windows_->curved_images(*window.seen, *window.span, term, count);
+      for (Image& image : images) image = shown(window.seen->window, std::move(image));
+      const auto prediction = transform->predict(images);
+      fft_s += prediction->fft_s();
+      for (std::size_t p = 0; p < window.parts.size(); ++p) {
+        const BlockPart& part = window.parts[p];
+        add(part.samples, {}, prediction->at_usable(samples[p].at, CurvedShares(curved, samples[p], term, count)),
+            asked[part.block].at->channels(), visibilities[part.block]);
       }
-      SamplesOnPlane plane = windows_->on_plane(*window.seen, s.at);
-      static_cast<SampleCoordinates&>(block) = std::move(plane.at);
-      phases[p] = std::move(plane.phase);
+    }
+    return fft_s;
+  }
+
+  /// Adds what a window shows of each term of its beam. Returns the seconds of FFTs.
+  double add_terms(const AskedWindow& window, const std::vector<Asked>& asked,
+                   std::vector<std::vector<std::complex<double>>>& visibilities) const {
+    std::vector<Image> terms = windows_->beam_terms(*window.seen, *window.span);
+    std::vector<VisibilityBlock> blocks;
+    for (const BlockPart& part : window.parts) {
+      VisibilityBlock& block = blocks.emplace_back();
+      block.weight = weights_of(part.samples, asked[part.block]);
+      static_cast<SampleCoordinates&>(block) = part.samples.at;
     }
     std::vector<const VisibilityBlock*> pointers;
     for (const VisibilityBlock& block : blocks) pointers.push_back(&block);
-    const auto found = prediction->at_usable_of(pointers);
-    for (std::size_t p = 0; p < window.parts.size(); ++p) {
-      const BlockPart& part = window.parts[p];
-      add(part.samples, term, found[p], phases[p], asked[part.block].at->channels(), visibilities[part.block]);
+    double fft_s = 0;
+    for (std::size_t k = 0; k < windows_->terms(*window.span); ++k) {
+      const auto prediction =
+          windows_->transform(window.seen->window, k)->predict(shown(window.seen->window, std::move(terms[k])));
+      const auto found = prediction->at_usable_of(pointers);
+      for (std::size_t p = 0; p < window.parts.size(); ++p) {
+        const BlockPart& part = window.parts[p];
+        add(part.samples, k, found[p], asked[part.block].at->channels(), visibilities[part.block]);
+      }
+      fft_s += prediction->fft_s();
     }
-    return prediction->fft_s();
+    return fft_s;
   }
 
   /// The model as a term of a window's beam shows it.
-  Image shown(const Window& window, const Image& beam) const {
-    Image shown = beam;
+  Image shown(const Window& window, Image shown) const {
     parallel_for(static_cast<std::size_t>(shown.height), windows_->options().threads_of_each(), [&](std::size_t r) {
       const int row = static_cast<int>(r);
       const double* const from = model_.row(window.first_row + row) + window.first_column;
@@ -149,19 +170,16 @@ class MosaicPrediction : public Prediction {
     return weight;
   }
 
-  void add(const WindowSamples& s, std::size_t term, const std::vector<std::complex<double>>& found,
-           const std::vector<std::complex<double>>& phase, std::size_t block_channels,
-           std::vector<std::complex<double>>& to) const {
+  /// With the shares of a term, or in full.
+  void add(const WindowSamples& s, std::optional<std::size_t> term, const std::vector<std::complex<double>>& found,
+           std::size_t block_channels, std::vector<std::complex<double>>& to) const {
     const std::size_t channels = s.channels.size();
-    parallel_for((s.rows.size() + rows_of_a_task - 1) / rows_of_a_task, windows_->options().threads_of_each(),
-                 [&](std::size_t p) {
-                   for (std::size_t r = p * rows_of_a_task; r < std::min((p + 1) * rows_of_a_task, s.rows.size()); ++r)
-                     for (std::size_t c = 0; c < channels; ++c) {
-                       const std::size_t at = r * channels + c;
-                       const std::complex<double> seen = s.share[c][term] * found[at];
-                       to[s.rows[r] * block_channels + s.channels[c]] += phase.empty() ? seen : phase[at] * seen;
-                     }
-                 });
+    parallel_for(
+        (s.rows.size() + rows_of_a_task - 1) / rows_of_a_task, windows_->options().threads_of_each(), [&](std::size_t p) {
+          for (std::size_t r = p * rows_of_a_task; r < std::min((p + 1) * rows_of_a_task, s.rows.size()); ++r)
+            for (std::size_t c = 0; c < channels; ++c)
+              to[s.rows[r] * block_channels + s.channels[c]] += (term ? s.share[c][*term] : 1) * found[r * channels + c];
+        });
   }
 
   std::shared_ptr<const MosaicWindows> windows_;

@@ -17,9 +17,8 @@ namespace misfit::imager {
 /// each row.
 class MosaicTransform : public Transform {
  public:
-  /// With the transforms of each term of beams that counts.
-  MosaicTransform(std::shared_ptr<const MosaicBeams> beams, std::vector<TermTransforms> of_term, const MosaicOptions& options)
-      : windows_(std::make_shared<const MosaicWindows>(std::move(beams), std::move(of_term), options)) {}
+  MosaicTransform(std::shared_ptr<const MosaicBeams> beams, WindowTransforms transforms, const MosaicOptions& options)
+      : windows_(std::make_shared<const MosaicWindows>(std::move(beams), std::move(transforms), options)) {}
 
   std::unique_ptr<AdjointSum> adjoint(const AdjointOptions& options) const override;
   std::unique_ptr<Prediction> predict(Image model) const override;

@@ -1,25 +1,63 @@
 #include "imager/pointing/mosaic_windows.h"
 
+#include <cmath>
 #include <utility>
 
+#include "imager/data/phase.h"
 #include "imager/transform/unit_source.h"
+#include "imager/wide/facet.h"
 
 namespace misfit::imager {
 
+CurvedShares::CurvedShares(const CurvedTerms& terms, const CurvedSamples& samples, std::size_t first, std::size_t count)
+    : terms_(terms), samples_(samples), first_(first), count_(count) {
+  for (const double hz : samples.at.frequency_hz) of_channel_.push_back(&terms.shares(hz));
+}
+
+void CurvedShares::write(const std::size_t* sample, int count, BatchShares& to) const {
+  constexpr int points = CurvedTerms::Shares::points;
+  const std::size_t channels = of_channel_.size();
+  for (int i = 0; i < count; ++i) {
+    const std::size_t row = sample[i] / channels, channel = sample[i] % channels;
+    const double w = samples_.at.uvw_m[3 * row + 2] * samples_.at.frequency_hz[channel] / speed_of_light_m_s;
+    const CurvedTerms::Shares& shares = *of_channel_[channel];
+    const CurvedTerms::Shares::Place place = terms_.place(std::abs(w));
+    const double* const from = shares.at(place.first) + first_;
+    const std::size_t stride = shares.stride();
+    const std::complex<double> phase = samples_.phase[sample[i]];
+    for (std::size_t k = 0; k < count_; ++k) {
+      double real = 0, imaginary = 0;
+      for (std::size_t p = 0; p < points; ++p) {
+        real += place.weight[p] * from[2 * p * stride + k];
+        imaginary += place.weight[p] * from[(2 * p + 1) * stride + k];
+      }
+      if (w < 0) imaginary = -imaginary;
+      to.real[k][i] = phase.real() * real - phase.imag() * imaginary;
+      to.imaginary[k][i] = phase.real() * imaginary + phase.imag() * real;
+    }
+  }
+}
+
 std::shared_ptr<const Transform> MosaicWindows::transform(const Window& window, std::size_t term) const {
-  const TermTransforms& transforms = of_term_[term];
-  ImageGeometry of = window.geometry;
-  const auto place = transforms.on_planes ? std::pair(0, 0) : std::pair(window.first_row, window.first_column);
-  if (transforms.on_planes) of.centre = {};
-  const auto key = std::tuple(term, of.width, of.height, place.first, place.second);
+  const ImageGeometry& of = window.geometry;
+  const auto key = std::tuple(term, of.width, of.height, window.first_row, window.first_column);
   {
     const std::lock_guard lock(mutex_);
     const auto found = made_.find(key);
     if (found != made_.end()) return found->second;
   }
-  std::shared_ptr<const Transform> made = transforms.make(of);
+  std::shared_ptr<const Transform> made = std::get<0>(transforms_)[term](of);
   const std::lock_guard lock(mutex_);
   return made_.try_emplace(key, std::move(made)).first->second;
+}
+
+std::shared_ptr<const SharedTransform> MosaicWindows::curved_transform(const Window& window) const {
+  ImageGeometry of = window.geometry;
+  of.centre = {};
+  const std::lock_guard lock(mutex_);
+  std::shared_ptr<const SharedTransform>& made = curved_[{of.width, of.height}];
+  if (!made) made = std::get<1>(transforms_).make(of);
+  return made;
 }
 
 std::shared_ptr<const SeenWindow> MosaicWindows::seen(const RowBeams::Group& group) const {
@@ -29,9 +67,8 @@ std::shared_ptr<const SeenWindow> MosaicWindows::seen(const RowBeams::Group& gro
   if (!is_new) return place->second;
   const std::optional<Window> window = beams_->window(beam);
   if (!window) return nullptr;
-  const Facet plane = split_into_facets(window->geometry, 1, 1).front();
-  if (plane.empty) return nullptr;
-  return place->second = std::make_shared<const SeenWindow>(SeenWindow{beam, *window, plane});
+  if (split_into_facets(window->geometry, 1, 1).front().empty) return nullptr;
+  return place->second = std::make_shared<const SeenWindow>(SeenWindow{beam, *window});
 }
 
 WindowSamples MosaicWindows::samples(const SampleCoordinates& block, const std::vector<std::size_t>& rows,
@@ -48,16 +85,26 @@ WindowSamples MosaicWindows::samples(const SampleCoordinates& block, const std::
   return s;
 }
 
-SamplesOnPlane MosaicWindows::on_plane(const SeenWindow& seen, const SampleCoordinates& at) const {
-  std::vector<double> uvw_m(at.uvw_m.size());
+CurvedSamples MosaicWindows::curved_samples(const SeenWindow& seen, const BeamSpan& span, const SampleCoordinates& at,
+                                            std::vector<float> weight) const {
+  const CurvedTerms& terms = beams_->curved(span);
+  const DirectionCosines axis = seen.beam.frame.axis(), middle = seen.window.geometry.centre;
+  const double n = 1 + n_minus_1(axis);
+  // With n = (cos θ − l l_0 − m m_0)/n_0 and cos θ = q + 1 − terms.middle(), this is what w counts by where q = 0.
+  const double by_w = (1 - terms.middle() - axis.l * middle.l - axis.m * middle.m) / n - 1;
+  CurvedSamples samples{{}, unit_source(at, {middle.l, middle.m, by_w}, options_.threads_of_each())};
+  samples.at.frequency_hz = at.frequency_hz;
+  samples.at.weight = std::move(weight);
+  std::vector<double>& uvw_m = samples.at.uvw_m.edit();
+  uvw_m.resize(at.uvw_m.size());
   for (std::size_t r = 0; r < at.rows(); ++r) {
     const double* const from = &at.uvw_m[3 * r];
-    uvw_m[3 * r] = from[0] + seen.plane.slope_l * from[2];
-    uvw_m[3 * r + 1] = from[1] + seen.plane.slope_m * from[2];
+    const double w = from[2] / n;
+    uvw_m[3 * r] = from[0] - w * axis.l;
+    uvw_m[3 * r + 1] = from[1] - w * axis.m;
+    uvw_m[3 * r + 2] = w;
   }
-  const DirectionCosines middle = seen.plane.geometry.centre;
-  return {{std::move(uvw_m), at.frequency_hz},
-          unit_source(at, {middle.l, middle.m, seen.plane.middle}, options_.threads_of_each())};
+  return samples;
 }
 
 bool MosaicWindows::sees_psf(const SeenWindow& seen) const {

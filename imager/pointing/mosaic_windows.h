@@ -8,23 +8,28 @@
 #include <memory>
 #include <mutex>
 #include <tuple>
+#include <variant>
 #include <vector>
 
-#include "imager/data/phase.h"
+#include "imager/coplanar/shared_transform.h"
 #include "imager/pointing/mosaic_beams.h"
 #include "imager/transform/transform.h"
-#include "imager/wide/facet.h"
 
 namespace misfit::imager {
 
-/// The transforms of what windows show of a term of beams, see BeamSpan.
-struct TermTransforms {
-  /// Of a window's pixels.
-  std::function<std::shared_ptr<const Transform>(const ImageGeometry& window)> make;
-  /// Whether they know no w, and windows of one size share one about the phase centre. Of w counts then what the plane makes of
-  /// it that lies closest to n − 1 over a window, see Facet.
-  bool on_planes = false;
+/// Makes the transform of what a window's pixels show of a term of beams, see BeamSpan: each term has its own.
+using MakeTermTransform = std::function<std::shared_ptr<const Transform>(const ImageGeometry& window)>;
+
+/// One transform of what a window shows of all curved terms of its beam, see CurvedTerms.
+struct CurvedTransforms {
+  /// Of a window's pixels about the phase centre, so that windows of one size share it.
+  std::function<std::shared_ptr<const SharedTransform>(const ImageGeometry& window)> make;
+  std::size_t terms = most_shared_images;    ///< that are gridded at most: those that come late count least
+  std::size_t at_once = most_shared_images;  ///< that are gridded at a time
 };
+
+/// How windows are transformed.
+using WindowTransforms = std::variant<std::vector<MakeTermTransform>, CurvedTransforms>;
 
 struct MosaicOptions {
   /// Of the pixel whose source the PSF is the response to.
@@ -43,7 +48,6 @@ struct MosaicOptions {
 struct SeenWindow {
   PairBeam beam;
   Window window;
-  Facet plane;  ///< of the whole window
 };
 
 /// The samples of a group of rows that lie in a span of frequencies.
@@ -56,33 +60,58 @@ struct WindowSamples {
   std::size_t size() const { return rows.size() * channels.size(); }
 };
 
-/// The same samples about a window's middle, where w has become a part of u and v.
-struct SamplesOnPlane {
-  SampleCoordinates at;
-  std::vector<std::complex<double>> phase;  ///< exp(+2πi(u l_0 + v m_0 + w middle)), which is left to them. [row][channel]
+/// The same samples over the plane that is tangent to the sky at their beam's axis, about the window's middle.
+struct CurvedSamples {
+  VisibilityBlock at;                       ///< with u and v along the plane, w/n_0, and weights
+  std::vector<std::complex<double>> phase;  ///< of what w makes of the middle, which is left to them. [row][channel]
+};
+
+/// The shares of some of a span's curved terms.
+class CurvedShares : public SampleShares {
+ public:
+  CurvedShares(const CurvedTerms& terms, const CurvedSamples& samples, std::size_t first, std::size_t count);
+  void write(const std::size_t* sample, int count, BatchShares& to) const override;
+
+ private:
+  const CurvedTerms& terms_;
+  const CurvedSamples& samples_;
+  std::size_t first_;
+  std::size_t count_;
+  std::vector<const CurvedTerms::Shares*> of_channel_;
 };
 
 /// What adjoint and prediction of a mosaic share.
 class MosaicWindows {
  public:
-  /// With the transforms of each term that counts.
-  MosaicWindows(std::shared_ptr<const MosaicBeams> beams, std::vector<TermTransforms> of_term, const MosaicOptions& options)
-      : beams_(std::move(beams)), of_term_(std::move(of_term)), options_(options) {}
+  /// With the transforms of each term that counts, or of all curved ones.
+  MosaicWindows(std::shared_ptr<const MosaicBeams> beams, WindowTransforms transforms, const MosaicOptions& options)
+      : beams_(std::move(beams)), transforms_(std::move(transforms)), options_(options) {}
 
   const MosaicBeams& beams() const { return *beams_; }
   const MosaicOptions& options() const { return options_; }
   /// Terms that are gridded.
-  std::size_t terms(const BeamSpan& span) const { return std::min(span.terms(), of_term_.size()); }
+  std::size_t terms(const BeamSpan& span) const {
+    return is_curved() ? std::min(beams_->curved(span).terms(), std::get<1>(transforms_).terms)
+                       : std::min(span.terms(), std::get<0>(transforms_).size());
+  }
   /// Null where the group sees nothing of the image. The same object for rows that see alike.
   std::shared_ptr<const SeenWindow> seen(const RowBeams::Group& group) const;
   WindowSamples samples(const SampleCoordinates& block, const std::vector<std::size_t>& rows, const BeamSpan& span) const;
 
-  bool on_planes(std::size_t term) const { return of_term_[term].on_planes; }
   std::shared_ptr<const Transform> transform(const Window& window, std::size_t term) const;
-  SamplesOnPlane on_plane(const SeenWindow& seen, const SampleCoordinates& at) const;
+
+  bool is_curved() const { return transforms_.index() == 1; }
+  std::size_t curved_at_once() const { return std::get<1>(transforms_).at_once; }
+  std::shared_ptr<const SharedTransform> curved_transform(const Window& window) const;
+  CurvedSamples curved_samples(const SeenWindow& seen, const BeamSpan& span, const SampleCoordinates& at,
+                               std::vector<float> weight) const;
   /// All terms of a window's beam.
   std::vector<Image> beam_terms(const SeenWindow& seen, const BeamSpan& span) const {
     return beams_->terms(seen.beam, seen.window, span, options_.threads_of_each());
+  }
+  /// Some of the curved ones.
+  std::vector<Image> curved_images(const SeenWindow& seen, const BeamSpan& span, std::size_t first, std::size_t count) const {
+    return beams_->curved_images(seen.beam, seen.window, span, first, count, options_.threads_of_each());
   }
   bool sees_psf(const SeenWindow& seen) const;
   /// What a source of 1 Jy in the PSF's pixel gives these samples. [row][channel]
@@ -93,10 +122,11 @@ class MosaicWindows {
   DirectionCosines psf_direction() const { return beams_->geometry().at(options_.psf_row, options_.psf_column); }
 
   std::shared_ptr<const MosaicBeams> beams_;
-  std::vector<TermTransforms> of_term_;
+  WindowTransforms transforms_;
   MosaicOptions options_;
   mutable std::mutex mutex_;  ///< of what follows
   mutable std::map<std::tuple<std::size_t, int, int, int, int>, std::shared_ptr<const Transform>> made_;
+  mutable std::map<std::tuple<int, int>, std::shared_ptr<const SharedTransform>> curved_;
   mutable std::map<std::tuple<const VoltagePattern*, const VoltagePattern*, int, double>, std::shared_ptr<const SeenWindow>>
       seen_;
 };

@@ -273,7 +273,7 @@ imager::CleanResult ChannelRun::clean(std::size_t stokes) {
                    .dirty_accuracy = images_.dirty_accuracy,
                    .of_start = !scene_.options.taken.calcres && !scene_.options.clean.startmodel.empty(),
                    .psf = {&images_.images.psf},
-                   .same_sidelobes = images_.plan.leaves_w_out() && !images_.plan.windows,
+                   .same_sidelobes = images_.plan.leaves_w_out(),
                    .main_lobe = *report().beams->main_lobe,
                    .coarser = images_.transform->coarser(),
                    .data_jy = images_.images.sums[stokes].data_jy(),

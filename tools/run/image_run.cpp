@@ -140,11 +140,11 @@ class ImageRun : private ChannelSink {
     if (!o_.makes_mosaic() && (o_.primary_beam.wanted() || o_.measures_noise_in_beam())) find_primary_beam();
     if (o_.clean.runs() && sharing_.images_here()) open_clean();
     if (o_.taken.any()) taken_ = std::make_unique<TakenFiles>(o_, header_);
-    if (o_.makes_mosaic()) begin_mosaic();
     header_.history = history_of(report_.command_line, set_->data_columns());
     if (o_.taylor.nterms > 1) header_.observation.frequency_hz = taylor_expansion(o_.taylor, set_->observation()).reference_hz;
     if (!cube()) header_.spectral = whole_band(header_.observation);
     find_reach();
+    if (o_.makes_mosaic()) begin_mosaic();
   }
 
   void open_set() {
@@ -161,7 +161,7 @@ class ImageRun : private ChannelSink {
   void begin_mosaic() {
     if (o_.mosaic.usepointing && o_.clean.savemodel != "none")
       refuse_option("savemodel", o_.clean.savemodel, "none beside --usepointing: models are predicted where FIELD says");
-    mosaic_ = mosaic_stage(o_, *set_, header_.geometry);
+    mosaic_ = mosaic_stage(o_, *set_, header_.geometry, reach_.max_abs_w);
     for (const std::string& warning : mosaic_.warnings) warn(warning);
     if (!o_.taken.any()) return;
     o_.taken = {};  // files are looked at all the same

@@ -146,7 +146,8 @@ double pointing_tolerance_rad(const ImageOptions& o, const ms_io::MeasurementSet
   return std::max(o.gridding.accuracy, same_pointing_beams) * narrowest_rad(patterns, set.observation().frequency_hz);
 }
 
-MosaicStage mosaic_stage(const ImageOptions& o, const ms_io::MeasurementSet& set, const imager::ImageGeometry& geometry) {
+MosaicStage mosaic_stage(const ImageOptions& o, const ms_io::MeasurementSet& set, const imager::ImageGeometry& geometry,
+                         double max_abs_w) {
   constexpr double beside = 0.01;
   MosaicStage stage;
   const ms_io::BeamRows rows = set.beam_rows();
@@ -169,7 +170,7 @@ MosaicStage mosaic_stage(const ImageOptions& o, const ms_io::MeasurementSet& set
   const double tolerance = beam_tolerance(o, patterns);
   const auto beams = std::make_shared<const imager::MosaicBeams>(
       imager::MosaicScene{geometry, imager::RowBeams(std::move(patterns), frames_of(table.pointings, geometry.phase_centre)),
-                          frequencies_of(set), o.cube.is_cube(), o.mosaic.beam_cut, tolerance});
+                          frequencies_of(set), o.cube.is_cube(), o.mosaic.beam_cut, tolerance, max_abs_w});
   const PsfPixel psf = psf_pixel(o, *beams);
   stage.request = std::make_shared<const imager::MosaicRequest>(
       imager::MosaicRequest{beams, psf.row, psf.column, o.mosaic.normtype == "flatnoise"});

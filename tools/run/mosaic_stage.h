@@ -25,10 +25,11 @@ struct MosaicStage {
   std::vector<std::string> warnings;
 };
 
-/// Of sets that tell the sights of their rows. Throws std::runtime_error that names what it is about where antennas have no
-/// simple beam, feeds point beside the axes of their dishes, an antenna pointed more than 90° away, or a field moves past the
-/// image.
-MosaicStage mosaic_stage(const ImageOptions& options, const ms_io::MeasurementSet& set, const imager::ImageGeometry& geometry);
+/// Of sets that tell the sights of their rows, and have |w| of so many wavelengths at most. Throws std::runtime_error that
+/// names what it is about where antennas have no simple beam, feeds point beside the axes of their dishes, an antenna pointed
+/// more than 90° away, or a field moves past the image.
+MosaicStage mosaic_stage(const ImageOptions& options, const ms_io::MeasurementSet& set, const imager::ImageGeometry& geometry,
+                         double max_abs_w);
 
 /// What a mosaic's model is predicted by for one set, whose rows tell antennas and fields by their ids.
 std::shared_ptr<const imager::MosaicRequest> seen_request(const ImageOptions& options, const ms_io::MeasurementSet& set,

@@ -202,10 +202,9 @@ class RunPlanner {
   }
 
   void warn_of_neglected_w() {
-    const double part = plan_.gridding.windows ? plan_.gridding.windows->phase_part : 1;
-    const double phase_rad = part * imager::max_w_phase_rad(scene_.reach.max_abs_w, scene_.geometry);
+    const double phase_rad = imager::max_w_phase_rad(scene_.reach.max_abs_w, scene_.geometry);
     const bool harms = phase_rad > (o_.gridding.accuracy == 0 ? plan_.gridding.worst_error : o_.gridding.accuracy);
-    if (!plan_.gridding.options.has_w_axis() && harms)
+    if (plan_.gridding.leaves_w_out() && harms)
       plan_.warnings.push_back("w is neglected although its phase reaches " + significant(phase_rad, 2) +
                                " rad at the image's corner: the image's error there is of that size");
   }

@@ -50,7 +50,7 @@ TransformSeconds transform_seconds(const imager::GriddingPlan& plan, const Image
   if (images.stokes == 0 && !images.psf) return {};
   if (plan.windows) {
     TransformSeconds sum;
-    const Images of_window{images.stokes + (images.psf ? 1 : 0), false};
+    const Images of_window{plan.windows->images_each() * (images.stokes + (images.psf ? 1 : 0)), false};
     for (const auto& of_term : plan.windows->of_term) {
       const TransformSeconds one = transform_seconds(*of_term, of_window, threads, ranks);
       sum.grid += plan.windows->transforms() * one.grid;
