@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "imager/coplanar/crowded_tiles.h"
+#include "imager/coplanar/share_loops.h"
 #include "imager/coplanar/tile_walk.h"
 #include "imager/data/horizon.h"
 #include "imager/numerics/parallel.h"
@@ -129,7 +130,7 @@ class CoplanarAdjoint : public AdjointSum {
     double weight[BatchSamples::capacity];
     for (int k = 0; k < batch.count; ++k) weight[k] = block.weight[samples.index[k]];
     if (shares_ != nullptr) {
-      set_shared_values(sets, samples, weight, batch);
+      set_shared_values(block, sets, samples, weight, batch);
       return;
     }
     for (std::size_t i = 0; i < images(); ++i) {
@@ -151,33 +152,23 @@ class CoplanarAdjoint : public AdjointSum {
   }
 
   /// c̄_k w V in place of w V.
-  void set_shared_values(const VisibilitySets& sets, const BatchSamples& samples, const double* weight,
-                         TileBatch<Real>& batch) const {
-    BatchShares shares;
-    shares_->write(samples.index, batch.count, shares);
+  void set_shared_values(const VisibilityBlock& block, const VisibilitySets& sets, const BatchSamples& samples,
+                         const double* weight, TileBatch<Real>& batch) const {
+    const SharePlaces<Real> places(*shares_, block, samples.index, samples.conjugate, batch.count);
     for (std::size_t i = 0; i < images(); ++i) {
       const double per_unit = value_unit_[i].per_unit();
-      double value_real[BatchSamples::capacity], value_imaginary[BatchSamples::capacity], sign[BatchSamples::capacity];
+      SharedValues<Real> values;
       std::visit(
           [&](const auto* visibility) {
             for (int k = 0; k < batch.count; ++k) {
               const double scaled = weight[k] * per_unit;
               const std::complex<double> value = samples.from_middle(std::complex<double>(visibility[samples.index[k]]), k);
-              value_real[k] = scaled * value.real();
-              value_imaginary[k] = scaled * value.imag();
-              sign[k] = samples.conjugate[k] ? 1 : -1;
+              values.real[k] = static_cast<Real>(scaled * value.real());
+              values.imaginary[k] = static_cast<Real>(scaled * value.imag());
             }
           },
           sets[i]);
-      for (std::size_t image = 0; image < of_each_; ++image) {
-        Real* const real = batch.value[2 * (i * of_each_ + image)];
-        Real* const imaginary = batch.value[2 * (i * of_each_ + image) + 1];
-        const double *const c = shares.real[image], *const s = shares.imaginary[image];
-        for (int k = 0; k < batch.count; ++k) {
-          real[k] = static_cast<Real>(value_real[k] * c[k] + value_imaginary[k] * s[k]);
-          imaginary[k] = static_cast<Real>(sign[k] * (value_imaginary[k] * c[k] - value_real[k] * s[k]));
-        }
-      }
+      share_out(places, values, batch.value + 2 * i * of_each_);
     }
   }
 

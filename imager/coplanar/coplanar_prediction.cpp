@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "imager/coplanar/share_loops.h"
 #include "imager/coplanar/tile_walk.h"
 #include "imager/data/horizon.h"
 #include "imager/numerics/parallel.h"
@@ -50,11 +51,15 @@ class GriddedImages {
       const auto ahead = [&](std::size_t sample) { hwy::Prefetch(&visibility[sample]); };
       const auto done = [&](TileBatch<Real>& batch, const BatchSamples& samples) {
         interpolate(setup_.taps_u, setup_.taps_v, cells, batch);
-        if (shares != nullptr) add_up(*shares, samples, batch);
+        SharedValues<Real> values;
+        if (shares != nullptr)
+          bring_together({*shares, block, samples.index, samples.conjugate, batch.count}, batch.value, values);
         for (int k = 0; k < batch.count; ++k) {
           const double imaginary = double{batch.value[1][k]};
-          visibility[samples.index[k]] =
-              samples.from_phase_centre({double{batch.value[0][k]}, samples.conjugate[k] ? imaginary : -imaginary}, k);
+          const std::complex<double> value =
+              shares != nullptr ? std::complex<double>(values.real[k], values.imaginary[k])
+                                : std::complex<double>(batch.value[0][k], samples.conjugate[k] ? imaginary : -imaginary);
+          visibility[samples.index[k]] = samples.from_phase_centre(value, k);
         }
       };
       for_each_batch<Real>(setup_.geometry, setup_.shape, block, order, tasks[i], ahead, done);
@@ -63,26 +68,6 @@ class GriddedImages {
   }
 
  private:
-  /// Σ c_k V_k in place of V_0, which is conj V where the sample is not conjugated.
-  void add_up(const SampleShares& of, const BatchSamples& samples, TileBatch<Real>& batch) const {
-    BatchShares shares;
-    of.write(samples.index, batch.count, shares);
-    double real[BatchSamples::capacity] = {}, imaginary[BatchSamples::capacity] = {}, sign[BatchSamples::capacity];
-    for (int k = 0; k < batch.count; ++k) sign[k] = samples.conjugate[k] ? 1 : -1;
-    for (std::size_t image = 0; image < grids_.size(); ++image) {
-      const Real *const re = batch.value[2 * image], *const im = batch.value[2 * image + 1];
-      const double *const c = shares.real[image], *const s = shares.imaginary[image];
-      for (int k = 0; k < batch.count; ++k) {
-        real[k] += re[k] * c[k] - sign[k] * im[k] * s[k];
-        imaginary[k] += im[k] * c[k] + sign[k] * re[k] * s[k];
-      }
-    }
-    for (int k = 0; k < batch.count; ++k) {
-      batch.value[0][k] = static_cast<Real>(real[k]);
-      batch.value[1][k] = static_cast<Real>(imaginary[k]);
-    }
-  }
-
   void load(const TileTask& task, TileBuffer<Real>& buffer) const {
     const int reach = setup_.shape.tile + setup_.shape.width - 1;
     for (int r = 0; r < reach; ++r) {

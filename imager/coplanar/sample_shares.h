@@ -1,27 +1,54 @@
 #pragma once
 
+#include <complex>
 #include <cstddef>
+#include <vector>
 
 #include "imager/coplanar/tile_positions.h"
 
 namespace misfit::imager {
 
-/// Images that are gridded together at most, each of which a sample has a share in.
+/// Images that are gridded together at most, in each of which a sample has a share.
 inline constexpr std::size_t most_shared_images = 32;
 
-/// Shares of the samples of a batch in several images. [image][sample]
-struct BatchShares {
-  static constexpr int capacity = TilePlaces<double>::capacity;
-  double real[most_shared_images][capacity];
-  double imaginary[most_shared_images][capacity];
+/// Shares c_k in several images as functions of w ≥ 0, at equal steps of it, between which they follow by Lagrange's formula of
+/// six points; for −w they are conjugate.
+class ShareTable {
+ public:
+  static constexpr int points = 6;
+  static constexpr int before = points / 2 - 1;  ///< of the first of which the step at w = 0 is
+
+  ShareTable() = default;
+  /// [point][Re, Im][image], of which the first point lies `before` steps below 0, and the last so many and one more above the
+  /// largest w that is asked for.
+  ShareTable(std::size_t images, const std::vector<double>& shares);
+
+  std::size_t images() const { return images_; }
+  /// The largest whole step at or below a w that may be asked for.
+  std::size_t last() const { return last_; }
+  /// Numbers from one point to the next, and from a point's Re to its Im.
+  std::size_t point_stride() const { return 2 * stride_; }
+  std::size_t part_stride() const { return stride_; }
+  /// Re c_k of the first of those points that w from step `step` on takes. What lies behind the images may be read, and is 0 or
+  /// of others.
+  const float* at(std::size_t step, float) const { return single_.data() + step * point_stride(); }
+  const double* at(std::size_t step, double) const { return double_.data() + step * point_stride(); }
+
+ private:
+  std::size_t images_ = 0;
+  std::size_t stride_ = 0;
+  std::size_t last_ = 0;
+  std::vector<float> single_;
+  std::vector<double> double_;
 };
 
 /// By how much the samples of a block count in each of several images I_k that together make visibilities, V = Σ_k c_k A I_k.
-class SampleShares {
- public:
-  virtual ~SampleShares() = default;
-  /// Writes c_k of `count` samples, each row × channels + channel.
-  virtual void write(const std::size_t* sample, int count, BatchShares& to) const = 0;
+struct SampleShares {
+  std::vector<const ShareTable*> of_channel;
+  std::size_t first = 0;  ///< of the table's images
+  std::size_t images = 0;
+  double steps_a_wavelength = 0;                ///< of the tables, whose w is that of the block
+  const std::complex<double>* phase = nullptr;  ///< that all shares of a sample have besides. [row][channel]
 };
 
 }  // namespace misfit::imager

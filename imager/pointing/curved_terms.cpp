@@ -1,8 +1,6 @@
 #include "imager/pointing/curved_terms.h"
 
 #include <algorithm>
-#include <stdexcept>
-#include <string>
 
 #include "imager/pointing/principal_terms.h"
 
@@ -75,49 +73,28 @@ CurvedTerms::CurvedTerms(const std::vector<double>& frequency_hz, const BeamDire
   }
   if (curved) step_ = std::min(1.0, step_of_phase(of_w * tolerance) / most_phase_rad()) * most_abs_w;
   const std::size_t steps = step_ == 0 ? 0 : static_cast<std::size_t>(std::ceil(most_abs_w / step_));
-  const std::size_t points = steps + Shares::points;
+  const std::size_t points = steps + ShareTable::points;
   for (std::size_t point = 0; point < points; ++point)
     for (const bool is_sine : {false, true}) {
-      const Node node{0, (static_cast<double>(point) - Shares::points / 2 + 1) * step_, is_sine};
+      const Node node{0, (static_cast<double>(point) - ShareTable::before) * step_, is_sine};
       for (const double sine : directions_.sine) wave_.push_back(node.wave(q(sine)));
     }
 }
 
-CurvedTerms::Shares::Place CurvedTerms::place(double abs_w) const {
-  if (abs_w > most_abs_w_)
-    throw std::invalid_argument("a sample has w of " + std::to_string(abs_w) +
-                                " wavelengths over its pointing's plane; expected " + std::to_string(most_abs_w_) + " at most");
-  Shares::Place place{0, {1}};
-  if (step_ == 0) return place;
-  const double at = abs_w / step_;
-  const double cell = std::floor(at), t = at - cell;  // points from cell − 2 to cell + 3, of which the first is point `cell`
-  place.first = static_cast<std::size_t>(cell);
-  const double a = t + 2, b = t + 1, c = t, d = t - 1, e = t - 2, f = t - 3;
-  const double left = a * b * c, right = d * e * f;
-  place.weight = {-b * c * right / 120, a * c * right / 24, -a * b * right / 12,
-                  left * e * f / 12,    -left * d * f / 24, left * d * e / 120};
-  return place;
-}
-
-const CurvedTerms::Shares& CurvedTerms::shares(double frequency_hz) const {
+const ShareTable& CurvedTerms::shares(double frequency_hz) const {
   const std::lock_guard lock(mutex_);
   const auto [found, is_new] = shares_.try_emplace(frequency_hz);
   if (!is_new) return found->second;
-  constexpr std::size_t in_vector = 4;
-  Shares& made = found->second;
-  made.stride_ = (terms() + in_vector - 1) / in_vector * in_vector;
   const std::vector<double> beam = directions_.values(frequency_hz);
   const auto count = static_cast<Index>(beam.size());
-  MatrixXd by_wave(static_cast<Index>(made.stride_), count);  // [term][direction]
-  by_wave.setZero();
+  MatrixXd by_wave(static_cast<Index>(terms()), count);  // [term][direction]
   for (std::size_t k = 0; k < terms(); ++k)
     for (std::size_t d = 0; d < beam.size(); ++d)
       by_wave(static_cast<Index>(k), static_cast<Index>(d)) = share_of_value_[k][d] * beam[d];
   const Index waves = static_cast<Index>(wave_.size()) / count;
-  made.value_.resize(made.stride_ * static_cast<std::size_t>(waves));
-  Eigen::Map<MatrixXd>(made.value_.data(), by_wave.rows(), waves) =
-      by_wave * Eigen::Map<const MatrixXd>(wave_.data(), count, waves);
-  return made;
+  std::vector<double> shares(terms() * static_cast<std::size_t>(waves));
+  Eigen::Map<MatrixXd>(shares.data(), by_wave.rows(), waves) = by_wave * Eigen::Map<const MatrixXd>(wave_.data(), count, waves);
+  return found->second = ShareTable(terms(), shares);
 }
 
 }  // namespace misfit::imager

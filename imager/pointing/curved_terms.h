@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <cmath>
 #include <cstddef>
 #include <map>
@@ -8,6 +7,7 @@
 #include <vector>
 
 #include "imager/beams/frequency_nodes.h"
+#include "imager/coplanar/sample_shares.h"
 #include "imager/numerics/constants.h"
 
 namespace misfit::imager {
@@ -36,6 +36,7 @@ class CurvedTerms {
     double wave(double q) const { return is_sine ? std::sin(2 * pi * w * q) : std::cos(2 * pi * w * q); }
   };
 
+  /// To a tolerance, with so many terms at most.
   CurvedTerms(const std::vector<double>& frequency_hz, const BeamDirections& directions, double most_abs_w, double tolerance,
               std::size_t most_terms);
 
@@ -52,26 +53,10 @@ class CurvedTerms {
   double most_abs_w() const { return most_abs_w_; }
   double most_phase_rad() const { return 2 * pi * most_abs_w_ * middle_; }
 
-  /// The shares at a frequency, at steps of w.
-  class Shares {
-   public:
-    static constexpr int points = 6;  ///< of a Lagrange interpolation
-    /// Where w ≥ 0 lies, in steps.
-    struct Place {
-      std::size_t first;                  ///< of the points that count
-      std::array<double, points> weight;  ///< by how much each counts
-    };
-    /// Re c_k, then Im c_k, at a point: rows of two times so many.
-    const double* at(std::size_t point) const { return value_.data() + point * 2 * stride_; }
-    std::size_t stride() const { return stride_; }
-
-   private:
-    friend class CurvedTerms;
-    std::size_t stride_ = 0;  ///< terms, or a few more, which are 0
-    std::vector<double> value_;
-  };
-  const Shares& shares(double frequency_hz) const;
-  Shares::Place place(double abs_w) const;
+  /// The shares at a frequency.
+  const ShareTable& shares(double frequency_hz) const;
+  /// Steps of the tables of shares that a wavelength of w takes.
+  double steps_a_wavelength() const { return step_ == 0 ? 0 : 1 / step_; }
 
  private:
   BeamDirections directions_;
@@ -83,9 +68,9 @@ class CurvedTerms {
   std::vector<std::vector<double>> of_nodes_;  ///< [term][node]
   std::vector<double> sizes_;
   std::vector<std::vector<double>> share_of_value_;  ///< [term][direction]
-  std::vector<double> wave_;                         ///< [point][cosine, sine][direction]
+  std::vector<double> wave_;                         ///< [point of shares][cosine, sine][direction]
   mutable std::mutex mutex_;                         ///< of what follows
-  mutable std::map<double, Shares> shares_;
+  mutable std::map<double, ShareTable> shares_;
 };
 
 }  // namespace misfit::imager

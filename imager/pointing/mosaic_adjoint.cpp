@@ -173,7 +173,6 @@ class MosaicAdjoint : public AdjointSum {
 
   /// Adds what the samples make of all curved terms of the beams.
   void add_curved(WaitingWindow& window, const std::vector<std::vector<std::complex<double>>>& psf, WindowImages& made) const {
-    const CurvedTerms& curved = windows_->beams().curved(*window.span);
     const std::size_t terms = windows_->terms(*window.span);
     const std::shared_ptr<const SharedTransform> transform = windows_->curved_transform(window.seen->window);
     std::vector<CurvedSamples> samples;
@@ -194,7 +193,7 @@ class MosaicAdjoint : public AdjointSum {
               std::visit([&](const auto& of) { values.push_back(of.data()); }, window.parts[p].values[i]);
             else
               values.push_back(psf[p].data());
-          sum->add(samples[p].at, values, CurvedShares(curved, samples[p], term, count));
+          sum->add(samples[p].at, values, samples[p].shares(term, count));
         }
         sum->finish([&](std::size_t set, std::size_t k, const Image& image) {
           add_product(beams[k], image, made.images[first + set]);

@@ -120,25 +120,37 @@ void MosaicBeams::find_curved_terms() {
   else
     for (const BeamSpan& span : spans_) all.push_back(&span);
   for (const BeamSpan* span : all) {
-    const CurvedTerms& terms = curved(*span);
-    raise(curved_sizes_, terms.sizes());
-    if (!terms.enough() || terms.terms() > most_curved_terms) {
+    const std::shared_ptr<const CurvedTerms> terms = curved(*span);
+    raise(curved_sizes_, terms->sizes());
+    if (!terms->enough() || terms->terms() > most_curved_terms) {
       curved_sizes_.clear();
       return;
     }
   }
 }
 
-const CurvedTerms& MosaicBeams::curved(const BeamSpan& span) const {
-  constexpr std::size_t spare = 8;  // between the frequencies that were looked at
+std::shared_ptr<const CurvedTerms> MosaicBeams::curved(const BeamSpan& span) const {
+  std::shared_ptr<CurvedSpan> all = curved_span(span);
+  return {all, &all->terms};
+}
+
+std::shared_ptr<MosaicBeams::CurvedSpan> MosaicBeams::curved_span(const BeamSpan& span) const {
+  constexpr std::size_t spare = 8;       // terms, between the frequencies that were looked at
+  constexpr std::size_t most_kept = 64;  // where each frequency has its own, and there are any number
   const std::lock_guard lock(curved_mutex_);
-  const auto found = curved_.find(&span);
-  if (found != curved_.end()) return found->second;
-  std::vector<double> hz;
-  std::copy_if(scene_.frequency_hz.begin(), scene_.frequency_hz.end(), std::back_inserter(hz),
-               [&](double f) { return span.holds(f); });
-  if (scene_.at_each) hz = span.node_hz();
-  return curved_.try_emplace(&span, hz, directions(hz), most_abs_w_, scene_.tolerance, most_curved_terms + spare).first->second;
+  for (const std::shared_ptr<CurvedSpan>& known : curved_)
+    if (known->span == &span) return known;
+  std::vector<double> hz = span.node_hz();
+  if (!scene_.at_each) {
+    hz.clear();
+    std::copy_if(scene_.frequency_hz.begin(), scene_.frequency_hz.end(), std::back_inserter(hz),
+                 [&](double f) { return span.holds(f); });
+  } else if (curved_.size() == most_kept) {
+    curved_.erase(curved_.begin());
+  }
+  curved_.emplace_back(
+      new CurvedSpan{&span, CurvedTerms(hz, directions(hz), most_abs_w_, scene_.tolerance, most_curved_terms + spare), {}, {}});
+  return curved_.back();
 }
 
 /// What all pairs of patterns see, each as far as it reaches, at radii and angles of equal parts of its disc.
@@ -238,33 +250,34 @@ const std::vector<RadialTable>& MosaicBeams::tables(const PairBeam& beam, const 
   return made;
 }
 
-const std::vector<RadialTable>& MosaicBeams::curved_tables(const PairBeam& beam, const BeamSpan& span, int threads) const {
-  constexpr double turns_of_a_beam = 2;  // that a table bears besides
-  const CurvedTerms& curved = this->curved(span);
-  const std::lock_guard lock(mutex_);
-  std::vector<RadialTable>& made = curved_tables_[{beam.one.get(), beam.other.get(), &span}];
-  for (std::size_t k = made.size(); k < curved.terms(); ++k)
+const std::vector<RadialTable>& MosaicBeams::curved_tables(const PairBeam& beam, CurvedSpan& curved, int threads) const {
+  constexpr double bend_of_a_beam = 2;  // radians of phase that a table bears besides
+  const CurvedTerms& terms = curved.terms;
+  const std::lock_guard lock(curved.mutex);
+  std::vector<RadialTable>& made = curved.tables[{beam.one.get(), beam.other.get()}];
+  for (std::size_t k = made.size(); k < terms.terms(); ++k)
     made.emplace_back(
         reach(beam), threads,
         [&](double sine) {
           double sum = 0;
-          for (std::size_t j = 0; j < curved.nodes().size(); ++j) {
-            const CurvedTerms::Node& node = curved.nodes()[j];
-            sum += curved.of_nodes(k)[j] * beam.one->voltage(sine, node.frequency_hz) *
-                   beam.other->voltage(sine, node.frequency_hz) * node.wave(curved.q(sine));
+          for (std::size_t j = 0; j < terms.nodes().size(); ++j) {
+            const CurvedTerms::Node& node = terms.nodes()[j];
+            sum += terms.of_nodes(k)[j] * beam.one->voltage(sine, node.frequency_hz) *
+                   beam.other->voltage(sine, node.frequency_hz) * node.wave(terms.q(sine));
           }
           return sum;
         },
-        std::max(1.0, curved.most_phase_rad() / turns_of_a_beam));
+        std::max(1.0, terms.most_phase_rad() / bend_of_a_beam));
   return made;
 }
 
 std::vector<Image> MosaicBeams::curved_images(const PairBeam& beam, const Window& window, const BeamSpan& span,
                                               std::size_t first, std::size_t count, int threads) const {
-  const CurvedTerms& curved = this->curved(span);
+  const std::shared_ptr<CurvedSpan> curved = curved_span(span);
+  const CurvedTerms& terms = curved->terms;
   const ImageGeometry& g = window.geometry;
   std::vector<Image> made(count, Image(g.width, g.height));
-  const std::vector<RadialTable>* const round = beam.is_round() ? &curved_tables(beam, span, threads) : nullptr;
+  const std::vector<RadialTable>* const round = beam.is_round() ? &curved_tables(beam, *curved, threads) : nullptr;
   const double radius = reach(beam);
   parallel_for(static_cast<std::size_t>(g.height), threads, [&](std::size_t r) {
     const int row = static_cast<int>(r);
@@ -277,10 +290,10 @@ std::vector<Image> MosaicBeams::curved_images(const PairBeam& beam, const Window
         for (std::size_t k = 0; k < count; ++k) made[k].at(row, column) = (*round)[first + k](place);
         continue;
       }
-      for (std::size_t j = 0; j < curved.nodes().size(); ++j) {
-        const CurvedTerms::Node& node = curved.nodes()[j];
-        const double seen = beam.power(at, node.frequency_hz) * node.wave(curved.q(sine));
-        for (std::size_t k = 0; k < count; ++k) made[k].at(row, column) += curved.of_nodes(first + k)[j] * seen;
+      for (std::size_t j = 0; j < terms.nodes().size(); ++j) {
+        const CurvedTerms::Node& node = terms.nodes()[j];
+        const double seen = beam.power(at, node.frequency_hz) * node.wave(terms.q(sine));
+        for (std::size_t k = 0; k < count; ++k) made[k].at(row, column) += terms.of_nodes(first + k)[j] * seen;
       }
     }
   });

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <map>
+#include <memory>
 #include <mutex>
 #include <optional>
 #include <tuple>
@@ -58,7 +59,7 @@ class MosaicBeams {
   /// The same of curved terms; none where they are not known, or too many to be of use.
   const std::vector<double>& curved_sizes() const { return curved_sizes_; }
   /// Those of a span, to be asked for where there are any.
-  const CurvedTerms& curved(const BeamSpan& span) const;
+  std::shared_ptr<const CurvedTerms> curved(const BeamSpan& span) const;
   /// The rows that see alike.
   std::vector<RowBeams::Group> groups(const SampleCoordinates& at) const { return scene_.beams.groups(at, turn_rad_); }
 
@@ -81,11 +82,18 @@ class MosaicBeams {
  private:
   using Pair = std::tuple<const VoltagePattern*, const VoltagePattern*>;
 
-  using Tables = std::map<std::tuple<const VoltagePattern*, const VoltagePattern*, const BeamSpan*>, std::vector<RadialTable>>;
+  /// The curved terms of a span, and their tables for pairs of round beams.
+  struct CurvedSpan {
+    const BeamSpan* span;
+    CurvedTerms terms;
+    std::mutex mutex;  ///< of tables
+    std::map<Pair, std::vector<RadialTable>> tables;
+  };
 
   /// [term], of a round beam.
   const std::vector<RadialTable>& tables(const PairBeam& beam, const BeamSpan& span, int threads) const;
-  const std::vector<RadialTable>& curved_tables(const PairBeam& beam, const BeamSpan& span, int threads) const;
+  std::shared_ptr<CurvedSpan> curved_span(const BeamSpan& span) const;
+  const std::vector<RadialTable>& curved_tables(const PairBeam& beam, CurvedSpan& curved, int threads) const;
   double found_reach(const VoltagePattern& one, const VoltagePattern& other) const;
   std::vector<double> seen(double frequency_hz) const;
   BeamDirections directions(const std::vector<double>& frequency_hz) const;
@@ -99,11 +107,10 @@ class MosaicBeams {
   double most_abs_w_ = 0;  ///< over tangent planes at the axes of all pointings that see the image
   std::vector<double> curved_sizes_;
   mutable std::mutex curved_mutex_;  ///< of curved_
-  mutable std::mutex mutex_;         ///< of what follows
-  mutable Tables tables_;
-  mutable Tables curved_tables_;
+  mutable std::vector<std::shared_ptr<CurvedSpan>> curved_;
+  mutable std::mutex mutex_;  ///< of what follows
+  mutable std::map<std::tuple<const VoltagePattern*, const VoltagePattern*, const BeamSpan*>, std::vector<RadialTable>> tables_;
   mutable std::map<double, BeamSpan> at_each_;
-  mutable std::map<const BeamSpan*, CurvedTerms> curved_;
 };
 
 }  // namespace misfit::imager

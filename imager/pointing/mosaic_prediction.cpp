@@ -98,7 +98,6 @@ class MosaicPrediction : public Prediction {
   /// Adds what a window shows of all curved terms of its beam. Returns the seconds of FFTs.
   double add_curved(const AskedWindow& window, const std::vector<Asked>& asked,
                     std::vector<std::vector<std::complex<double>>>& visibilities) const {
-    const CurvedTerms& curved = windows_->beams().curved(*window.span);
     const std::size_t terms = windows_->terms(*window.span);
     const std::shared_ptr<const SharedTransform> transform = windows_->curved_transform(window.seen->window);
     std::vector<CurvedSamples> samples;
@@ -114,7 +113,7 @@ class MosaicPrediction : public Prediction {
       fft_s += prediction->fft_s();
       for (std::size_t p = 0; p < window.parts.size(); ++p) {
         const BlockPart& part = window.parts[p];
-        add(part.samples, {}, prediction->at_usable(samples[p].at, CurvedShares(curved, samples[p], term, count)),
+        add(part.samples, {}, prediction->at_usable(samples[p].at, samples[p].shares(term, count)),
             asked[part.block].at->channels(), visibilities[part.block]);
       }
     }

@@ -9,33 +9,10 @@
 
 namespace misfit::imager {
 
-CurvedShares::CurvedShares(const CurvedTerms& terms, const CurvedSamples& samples, std::size_t first, std::size_t count)
-    : terms_(terms), samples_(samples), first_(first), count_(count) {
-  for (const double hz : samples.at.frequency_hz) of_channel_.push_back(&terms.shares(hz));
-}
-
-void CurvedShares::write(const std::size_t* sample, int count, BatchShares& to) const {
-  constexpr int points = CurvedTerms::Shares::points;
-  const std::size_t channels = of_channel_.size();
-  for (int i = 0; i < count; ++i) {
-    const std::size_t row = sample[i] / channels, channel = sample[i] % channels;
-    const double w = samples_.at.uvw_m[3 * row + 2] * samples_.at.frequency_hz[channel] / speed_of_light_m_s;
-    const CurvedTerms::Shares& shares = *of_channel_[channel];
-    const CurvedTerms::Shares::Place place = terms_.place(std::abs(w));
-    const double* const from = shares.at(place.first) + first_;
-    const std::size_t stride = shares.stride();
-    const std::complex<double> phase = samples_.phase[sample[i]];
-    for (std::size_t k = 0; k < count_; ++k) {
-      double real = 0, imaginary = 0;
-      for (std::size_t p = 0; p < points; ++p) {
-        real += place.weight[p] * from[2 * p * stride + k];
-        imaginary += place.weight[p] * from[(2 * p + 1) * stride + k];
-      }
-      if (w < 0) imaginary = -imaginary;
-      to.real[k][i] = phase.real() * real - phase.imag() * imaginary;
-      to.imaginary[k][i] = phase.real() * imaginary + phase.imag() * real;
-    }
-  }
+SampleShares CurvedSamples::shares(std::size_t first, std::size_t count) const {
+  SampleShares shares{{}, first, count, terms->steps_a_wavelength(), phase.data()};
+  for (const double hz : at.frequency_hz) shares.of_channel.push_back(&terms->shares(hz));
+  return shares;
 }
 
 std::shared_ptr<const Transform> MosaicWindows::transform(const Window& window, std::size_t term) const {
@@ -87,12 +64,12 @@ WindowSamples MosaicWindows::samples(const SampleCoordinates& block, const std::
 
 CurvedSamples MosaicWindows::curved_samples(const SeenWindow& seen, const BeamSpan& span, const SampleCoordinates& at,
                                             std::vector<float> weight) const {
-  const CurvedTerms& terms = beams_->curved(span);
+  const std::shared_ptr<const CurvedTerms> terms = beams_->curved(span);
   const DirectionCosines axis = seen.beam.frame.axis(), middle = seen.window.geometry.centre;
   const double n = 1 + n_minus_1(axis);
-  // With n = (cos θ − l l_0 − m m_0)/n_0 and cos θ = q + 1 − terms.middle(), this is what w counts by where q = 0.
-  const double by_w = (1 - terms.middle() - axis.l * middle.l - axis.m * middle.m) / n - 1;
-  CurvedSamples samples{{}, unit_source(at, {middle.l, middle.m, by_w}, options_.threads_of_each())};
+  // With n = (cos θ − l l_0 − m m_0)/n_0 and cos θ = q + 1 − terms->middle(), this is what w counts by where q = 0.
+  const double by_w = (1 - terms->middle() - axis.l * middle.l - axis.m * middle.m) / n - 1;
+  CurvedSamples samples{terms, {}, unit_source(at, {middle.l, middle.m, by_w}, options_.threads_of_each())};
   samples.at.frequency_hz = at.frequency_hz;
   samples.at.weight = std::move(weight);
   std::vector<double>& uvw_m = samples.at.uvw_m.edit();

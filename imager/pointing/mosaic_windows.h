@@ -62,22 +62,12 @@ struct WindowSamples {
 
 /// The same samples over the plane that is tangent to the sky at their beam's axis, about the window's middle.
 struct CurvedSamples {
+  std::shared_ptr<const CurvedTerms> terms;
   VisibilityBlock at;                       ///< with u and v along the plane, w/n_0, and weights
-  std::vector<std::complex<double>> phase;  ///< of what w makes of the middle, which is left to them. [row][channel]
-};
+  std::vector<std::complex<double>> phase;  ///< of the middle, which is left to them. [row][channel]
 
-/// The shares of some of a span's curved terms.
-class CurvedShares : public SampleShares {
- public:
-  CurvedShares(const CurvedTerms& terms, const CurvedSamples& samples, std::size_t first, std::size_t count);
-  void write(const std::size_t* sample, int count, BatchShares& to) const override;
-
- private:
-  const CurvedTerms& terms_;
-  const CurvedSamples& samples_;
-  std::size_t first_;
-  std::size_t count_;
-  std::vector<const CurvedTerms::Shares*> of_channel_;
+  /// Their shares in some of the terms, which look at them.
+  SampleShares shares(std::size_t first, std::size_t count) const;
 };
 
 /// What adjoint and prediction of a mosaic share.
@@ -91,7 +81,7 @@ class MosaicWindows {
   const MosaicOptions& options() const { return options_; }
   /// Terms that are gridded.
   std::size_t terms(const BeamSpan& span) const {
-    return is_curved() ? std::min(beams_->curved(span).terms(), std::get<1>(transforms_).terms)
+    return is_curved() ? std::min(beams_->curved(span)->terms(), std::get<1>(transforms_).terms)
                        : std::min(span.terms(), std::get<0>(transforms_).size());
   }
   /// Null where the group sees nothing of the image. The same object for rows that see alike.

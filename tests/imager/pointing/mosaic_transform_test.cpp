@@ -273,6 +273,99 @@ BOOST_AUTO_TEST_CASE(prediction_and_images_are_adjoint_to_rounding) {
   }
 }
 
+/// Curved terms make what beams and w make, at all frequencies and w.
+BOOST_AUTO_TEST_CASE(curved_terms_add_up_to_beams_and_phases) {
+  constexpr double tolerance = 1e-6;
+  constexpr int channels = 61, directions = 41, steps = 17;
+  const Pattern vla = named_beam("VLA", {"", 25}).pattern;
+  const Pattern one = airy_pattern({25, 2}), other = airy_pattern({12.5, 0});
+  const AxisFrame frame({0.1, -0.2}, declination_rad);
+  const ImageGeometry image{400, 400, 1 * arcmin, {1, declination_rad}, {0.1, -0.2}};
+  struct Scene {
+    std::vector<Pattern> patterns;
+    double low_hz, high_hz, max_abs_w;
+  };
+  for (const Scene& scene : {Scene{{vla}, 1.37e9, 1.43e9, 0},
+                             {{vla}, 1.37e9, 1.43e9, 1e-3},
+                             {{vla}, 1.37e9, 1.43e9, 2e4},
+                             {{vla}, 1e9, 2e9, 2e4},
+                             {{vla}, 1.4e9, 1.4e9, 1.6e5},
+                             {{one, other}, 1.2e9, 1.8e9, 5e3}}) {
+    std::vector<double> hz;
+    for (int c = 0; c < channels; ++c) hz.push_back(scene.low_hz + (scene.high_hz - scene.low_hz) * c / (channels - 1));
+    const bool at_each = scene.low_hz == scene.high_hz;
+    const MosaicBeams beams({image, RowBeams(scene.patterns, {frame}), hz, at_each, 1e-3, tolerance, scene.max_abs_w});
+    BOOST_TEST_CONTEXT(scene.low_hz << " Hz, w of " << scene.max_abs_w) {
+      BOOST_TEST_REQUIRE(!beams.curved_sizes().empty());
+      BOOST_TEST(beams.curved_sizes().size() <= (scene.max_abs_w < 1 ? 5 : 32));
+      const BeamSpan& span = *beams.spans({hz.front()}).front();
+      const std::shared_ptr<const CurvedTerms> terms = beams.curved(span);
+      for (const Pattern& a : scene.patterns)
+        for (const Pattern& b : scene.patterns) {
+          const PairBeam pair{a, b, {{0, 0}, declination_rad}, 0};
+          double worst = 0;
+          for (int d = 0; d < directions; ++d) {
+            const double sine = beams.reach(pair) * d / directions, q = terms->q(sine);
+            const DirectionCosines at{sine * 0.6, sine * 0.8};
+            std::vector<double> term(terms->terms());
+            for (std::size_t k = 0; k < term.size(); ++k)
+              for (std::size_t j = 0; j < term.size(); ++j) {
+                const CurvedTerms::Node& node = terms->nodes()[j];
+                term[k] += terms->of_nodes(k)[j] * beams.power(pair, at, node.frequency_hz) * node.wave(q);
+              }
+            double most = 1e-6;
+            for (const double f : hz) most = std::max(most, beams.power(pair, at, f));
+            for (std::size_t c = 0; c < hz.size(); c += 5)
+              for (int step = 0; step <= steps; ++step) {
+                const double w = terms->most_abs_w() * step / steps;
+                const ShareTable& table = terms->shares(hz[c]);
+                const double place = w * terms->steps_a_wavelength();
+                std::complex<double> is;
+                for (int p = 0; p < ShareTable::points; ++p) {  // by Lagrange's formula
+                  double weight = 1;
+                  for (int other_p = 0; other_p < ShareTable::points; ++other_p)
+                    if (other_p != p) weight *= (place - std::floor(place) + ShareTable::before - other_p) / (p - other_p);
+                  const double* const share = table.at(static_cast<std::size_t>(place), 0.0) + p * table.point_stride();
+                  for (std::size_t k = 0; k < term.size(); ++k)
+                    is += weight * term[k] * std::complex<double>(share[k], share[table.part_stride() + k]);
+                }
+                worst = std::max(worst, std::abs(is - std::polar(beams.power(pair, at, hz[c]), 2 * pi * w * q)) / most);
+              }
+          }
+          BOOST_TEST(worst < 3 * tolerance);  // between the directions looked at
+        }
+    }
+  }
+}
+
+/// The same for all terms at once, and whatever memory has room for.
+BOOST_AUTO_TEST_CASE(few_curved_terms_at_once_and_any_threads_make_the_same_images) {
+  const Mosaic mosaic(7, 2, 90, 10);
+  GriddingRequest request = request_of(mosaic, 1e-5, 40, 40);
+  const auto image_by = [&](std::size_t samples_at_once, int threads, std::size_t stack_bytes) {
+    request.samples_at_once = samples_at_once;
+    request.threads = threads;
+    request.stack_bytes = stack_bytes;
+    const GriddingPlan plan = plan_gridding(request);
+    BOOST_TEST(plan.windows->curved > 1);
+    BOOST_TEST((plan.windows->curved_at_once < plan.windows->curved) == (stack_bytes == 1));
+    const PlannedTransform transform(plan);
+    const auto sum = transform.adjoint({.with_psf = true});
+    for (const VisibilityBlock& block : mosaic.blocks) sum->add(block);
+    AdjointResult made = sum->finish();
+    std::vector<double> all = made.images.front().pixel;
+    all.insert(all.end(), made.psf.pixel.begin(), made.psf.pixel.end());
+    const auto predicted = transform.predict(made.images.front())->at_usable(mosaic.blocks.front());
+    for (const std::complex<double>& v : predicted) all.insert(all.end(), {v.real(), v.imag()});
+    return all;
+  };
+  constexpr std::size_t enough = std::size_t{1} << 30;
+  const std::vector<double> all = image_by(100000, 1, enough);
+  BOOST_TEST((image_by(100000, 3, enough) == all));
+  BOOST_TEST(relative_error(image_by(100, 2, enough), all) < 1e-6);  // of sums in single precision
+  BOOST_TEST(relative_error(image_by(100000, 2, 1), all) < 1e-6);
+}
+
 /// Samples may gather at once or in parts, and threads give the same bits.
 BOOST_AUTO_TEST_CASE(few_samples_at_once_and_any_threads_make_the_same_images) {
   const Mosaic mosaic(7, 2, 90, 10);
