@@ -22,11 +22,19 @@ double first_sine_at(double level, double step, const RadialFunction& function) 
   return after;
 }
 
-RadialTable::RadialTable(double reach, int threads, const RadialFunction& function, double detail)
-    : points_(static_cast<int>(std::ceil(1024 * detail))), reach_(reach), value_(static_cast<std::size_t>(points_) + 3) {
+RadialTable::RadialTable(double reach, int threads, const RadialFunction& function) : reach_(reach), value_(points + 3) {
   parallel_for(value_.size(), threads, [&](std::size_t i) {
     value_[i] = function(std::abs(static_cast<double>(i) - 1) * step());  // even about the axis
   });
+}
+
+RadialTables::RadialTables(double reach, int threads, std::size_t count, const Functions& functions, double detail)
+    : count_(count),
+      points_(static_cast<int>(std::ceil(RadialTable::points * detail))),
+      step_(reach / points_),
+      value_((static_cast<std::size_t>(points_) + 3) * count) {
+  parallel_for(value_.size() / count, threads,
+               [&](std::size_t i) { functions(std::abs(static_cast<double>(i) - 1) * step_, value_.data() + i * count_); });
 }
 
 namespace {

@@ -22,8 +22,7 @@ double first_sine_at(double level, double step, const RadialFunction& function);
 /// lobe of a primary beam.
 class RadialTable {
  public:
-  /// `detail` times as many points, for a function that has so much more of it.
-  RadialTable(double reach, int threads, const RadialFunction& function, double detail = 1);
+  RadialTable(double reach, int threads, const RadialFunction& function);
 
   /// Which points count at a radius, and by how much: the same in all tables of one reach.
   struct Place {
@@ -34,7 +33,7 @@ class RadialTable {
   /// Where a direction lies whose sin θ is the reach at most.
   Place place(double sine) const {
     const double at = sine / step();
-    const int cell = std::min(static_cast<int>(at), points_ - 1);
+    const int cell = std::min(static_cast<int>(at), points - 1);
     return {cell, cubic_weights(at - cell)};
   }
   double operator()(const Place& place) const {
@@ -45,11 +44,39 @@ class RadialTable {
   double reach() const { return reach_; }
 
  private:
-  double step() const { return reach_ / points_; }
+  friend class RadialTables;
+  static constexpr int points = 1024;
+  double step() const { return reach_ / points; }
 
-  int points_;
   double reach_;
   std::vector<double> value_;  ///< [point + 1]
+};
+
+/// Several such functions, whose values lie together.
+class RadialTables {
+ public:
+  /// Writes the values of all functions.
+  using Functions = std::function<void(double sine, double* values)>;
+
+  /// `detail` times as many points as a RadialTable has, for functions that have so much more of it than a primary beam.
+  RadialTables(double reach, int threads, std::size_t count, const Functions& functions, double detail = 1);
+
+  std::size_t count() const { return count_; }
+  /// Writes the values of `some` functions from `first` on in a direction whose sin θ is the reach at most.
+  void write(double sine, std::size_t first, std::size_t some, double* values) const {
+    const double at = sine / step_;
+    const int cell = std::min(static_cast<int>(at), points_ - 1);
+    const std::array<double, 4> weight = cubic_weights(at - cell);
+    const double* const v = value_.data() + static_cast<std::size_t>(cell) * count_ + first;
+    for (std::size_t k = 0; k < some; ++k)
+      values[k] = weight[0] * v[k] + weight[1] * v[count_ + k] + weight[2] * v[2 * count_ + k] + weight[3] * v[3 * count_ + k];
+  }
+
+ private:
+  std::size_t count_;
+  int points_;
+  double step_;
+  std::vector<double> value_;  ///< [point + 1][function]
 };
 
 /// Calls visit(pixel, sin θ, position angle) for the pixels that for_each_within() visits. The angle is that of the direction

@@ -42,10 +42,13 @@ class BeamSpan {
   std::map<double, std::vector<double>> share_;     ///< at the frequencies that the span was made for
 };
 
-/// The fewest spans that were found with `most_terms` terms at most each, by which `seen` follows at all of these frequencies
-/// to `tolerance`: what beams are in directions enough, always the same. Nodes are found one by one, each where what the others
+/// Terms that a span has at most.
+inline constexpr std::size_t most_terms_of_a_span = 16;
+
+/// The fewest spans that were found, of `most_terms` terms at most each, by which `seen` follows at all of these frequencies to
+/// `tolerance`: what beams are in directions enough, always the same. Nodes are found one by one, each where what the others
 /// explain leaves most; terms are the principal components of what they span.
 std::vector<BeamSpan> beam_spans(std::vector<double> frequency_hz, const ValuesAtFrequency& seen, double tolerance,
-                                 std::size_t most_terms = 16);
+                                 std::size_t most_terms = most_terms_of_a_span);
 
 }  // namespace misfit::imager

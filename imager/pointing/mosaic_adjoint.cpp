@@ -157,17 +157,17 @@ class MosaicAdjoint : public AdjointSum {
   WindowImages images_of(WaitingWindow& window) const {
     const ImageGeometry& g = window.seen->window.geometry;
     WindowImages made{std::vector<Image>(images() + (has_psf(*window.seen) ? 1 : 0), Image(g.width, g.height)), {}, 0};
-    std::vector<Image> terms;
-    if (!windows_->is_curved() || powers() > 0) terms = windows_->beam_terms(*window.seen, *window.span);
-    for (std::size_t power = 0; power < powers(); ++power) made.sensitivity.push_back(sensitivity_of(window, terms, power));
+    for (std::size_t power = 0; power < powers(); ++power) made.sensitivity.push_back(sensitivity_of(window, power));
     if (made.images.empty()) return made;
     std::vector<std::vector<std::complex<double>>> psf;  // [part]
     if (has_psf(*window.seen))
       for (const Waiting& part : window.parts) psf.push_back(windows_->psf_source(*window.seen, *window.span, part.samples));
-    if (windows_->is_curved())
+    if (windows_->is_curved()) {
       add_curved(window, psf, made);
-    else
-      for (std::size_t k = 0; k < windows_->terms(*window.span); ++k) add_term(window, psf, k, terms[k], made);
+      return made;
+    }
+    const std::vector<Image> terms = windows_->beam_terms(*window.seen, *window.span);
+    for (std::size_t k = 0; k < windows_->terms(*window.span); ++k) add_term(window, psf, k, terms[k], made);
     return made;
   }
 
@@ -258,8 +258,8 @@ class MosaicAdjoint : public AdjointSum {
   }
 
   /// Σ w x^power B².
-  Image sensitivity_of(const WaitingWindow& window, const std::vector<Image>& terms, std::size_t power) const {
-    const std::size_t count = terms.size();
+  Image sensitivity_of(const WaitingWindow& window, std::size_t power) const {
+    const std::size_t count = window.span->terms();
     std::vector<double> weight(count * count);  // Σ w x^power of the products of shares
     for (const Waiting& part : window.parts)
       for (std::size_t c = 0, channels = part.samples.channels.size(); c < channels; ++c) {
@@ -270,17 +270,7 @@ class MosaicAdjoint : public AdjointSum {
           for (std::size_t j = 0; j <= k; ++j)
             weight[k * count + j] += (j < k ? 2 : 1) * sum * part.samples.share[c][k] * part.samples.share[c][j];
       }
-    Image made(terms.front().width, terms.front().height);
-    parallel_for(static_cast<std::size_t>(made.height), o().threads_of_each(), [&](std::size_t r) {
-      const int row = static_cast<int>(r);
-      double* const to = made.row(row);
-      for (std::size_t k = 0; k < count; ++k)
-        for (std::size_t j = 0; j <= k; ++j) {
-          const double *const one = terms[k].row(row), *const other = terms[j].row(row);
-          for (int column = 0; column < made.width; ++column) to[column] += weight[k * count + j] * one[column] * other[column];
-        }
-    });
-    return made;
+    return windows_->beams().squares(window.seen->beam, window.seen->window, *window.span, weight, o().threads_of_each());
   }
 
   std::shared_ptr<const MosaicWindows> windows_;

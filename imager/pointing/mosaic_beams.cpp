@@ -237,90 +237,110 @@ std::optional<Window> MosaicBeams::window(const PairBeam& beam) const {
   return window;
 }
 
-const std::vector<RadialTable>& MosaicBeams::tables(const PairBeam& beam, const BeamSpan& span, int threads) const {
+std::shared_ptr<const RadialTables> MosaicBeams::tables(const PairBeam& beam, const BeamSpan& span, int threads) const {
   const std::lock_guard lock(mutex_);
-  std::vector<RadialTable>& made = tables_[{beam.one.get(), beam.other.get(), &span}];
-  for (std::size_t k = made.size(); k < span.terms(); ++k)
-    made.emplace_back(reach(beam), threads, [&](double sine) {
-      double sum = 0;
-      for (std::size_t j = 0; j < span.node_hz().size(); ++j)
-        sum += span.of_nodes(k)[j] * beam.one->voltage(sine, span.node_hz()[j]) * beam.other->voltage(sine, span.node_hz()[j]);
-      return sum;
+  std::shared_ptr<const RadialTables>& made = tables_[{beam.one.get(), beam.other.get(), &span}];
+  if (!made)
+    made = std::make_shared<const RadialTables>(reach(beam), threads, span.terms(), [&](double sine, double* values) {
+      std::fill_n(values, span.terms(), 0.0);
+      for (std::size_t j = 0; j < span.node_hz().size(); ++j) {
+        const double seen = beam.one->voltage(sine, span.node_hz()[j]) * beam.other->voltage(sine, span.node_hz()[j]);
+        for (std::size_t k = 0; k < span.terms(); ++k) values[k] += span.of_nodes(k)[j] * seen;
+      }
     });
   return made;
 }
 
-const std::vector<RadialTable>& MosaicBeams::curved_tables(const PairBeam& beam, CurvedSpan& curved, int threads) const {
+std::shared_ptr<const RadialTables> MosaicBeams::curved_tables(const PairBeam& beam, CurvedSpan& curved, int threads) const {
   constexpr double bend_of_a_beam = 2;  // radians of phase that a table bears besides
   const CurvedTerms& terms = curved.terms;
   const std::lock_guard lock(curved.mutex);
-  std::vector<RadialTable>& made = curved.tables[{beam.one.get(), beam.other.get()}];
-  for (std::size_t k = made.size(); k < terms.terms(); ++k)
-    made.emplace_back(
-        reach(beam), threads,
-        [&](double sine) {
-          double sum = 0;
+  std::shared_ptr<const RadialTables>& made = curved.tables[{beam.one.get(), beam.other.get()}];
+  if (!made)
+    made = std::make_shared<const RadialTables>(
+        reach(beam), threads, terms.terms(),
+        [&](double sine, double* values) {
+          std::fill_n(values, terms.terms(), 0.0);
           for (std::size_t j = 0; j < terms.nodes().size(); ++j) {
             const CurvedTerms::Node& node = terms.nodes()[j];
-            sum += terms.of_nodes(k)[j] * beam.one->voltage(sine, node.frequency_hz) *
-                   beam.other->voltage(sine, node.frequency_hz) * node.wave(terms.q(sine));
+            const double seen = beam.one->voltage(sine, node.frequency_hz) * beam.other->voltage(sine, node.frequency_hz) *
+                                node.wave(terms.q(sine));
+            for (std::size_t k = 0; k < terms.terms(); ++k) values[k] += terms.of_nodes(k)[j] * seen;
           }
-          return sum;
         },
         std::max(1.0, terms.most_phase_rad() / bend_of_a_beam));
+  return made;
+}
+
+template <typename Write>
+std::vector<Image> MosaicBeams::images(const PairBeam& beam, const Window& window, std::size_t count, int threads,
+                                       const Write& write) const {
+  const ImageGeometry& g = window.geometry;
+  std::vector<Image> made(count, Image(g.width, g.height));
+  const double radius = reach(beam);
+  parallel_for(static_cast<std::size_t>(g.height), threads, [&](std::size_t r) {
+    const int row = static_cast<int>(r);
+    std::vector<double> values(count);
+    std::vector<double*> to;
+    for (Image& image : made) to.push_back(image.row(row));
+    for (int column = 0; column < g.width; ++column) {
+      const DirectionCosines at = g.at(row, column);
+      const double sine = beam.frame.sine(at);  // not a number beyond the horizon
+      if (!(sine <= radius)) continue;
+      write(sine, at, values.data());
+      for (std::size_t k = 0; k < count; ++k) to[k][column] = values[k];
+    }
+  });
   return made;
 }
 
 std::vector<Image> MosaicBeams::curved_images(const PairBeam& beam, const Window& window, const BeamSpan& span,
                                               std::size_t first, std::size_t count, int threads) const {
   const std::shared_ptr<CurvedSpan> curved = curved_span(span);
+  if (beam.is_round()) {
+    const auto table = curved_tables(beam, *curved, threads);
+    return images(beam, window, count, threads,
+                  [&](double sine, DirectionCosines, double* values) { table->write(sine, first, count, values); });
+  }
   const CurvedTerms& terms = curved->terms;
-  const ImageGeometry& g = window.geometry;
-  std::vector<Image> made(count, Image(g.width, g.height));
-  const std::vector<RadialTable>* const round = beam.is_round() ? &curved_tables(beam, *curved, threads) : nullptr;
-  const double radius = reach(beam);
-  parallel_for(static_cast<std::size_t>(g.height), threads, [&](std::size_t r) {
-    const int row = static_cast<int>(r);
-    for (int column = 0; column < g.width; ++column) {
-      const DirectionCosines at = g.at(row, column);
-      const double sine = beam.frame.sine(at);  // not a number beyond the horizon
-      if (!(sine <= radius)) continue;
-      if (round != nullptr) {
-        const RadialTable::Place place = round->front().place(sine);
-        for (std::size_t k = 0; k < count; ++k) made[k].at(row, column) = (*round)[first + k](place);
-        continue;
-      }
-      for (std::size_t j = 0; j < terms.nodes().size(); ++j) {
-        const CurvedTerms::Node& node = terms.nodes()[j];
-        const double seen = beam.power(at, node.frequency_hz) * node.wave(terms.q(sine));
-        for (std::size_t k = 0; k < count; ++k) made[k].at(row, column) += terms.of_nodes(first + k)[j] * seen;
-      }
+  return images(beam, window, count, threads, [&](double sine, DirectionCosines at, double* values) {
+    std::fill_n(values, count, 0.0);
+    for (std::size_t j = 0; j < terms.nodes().size(); ++j) {
+      const CurvedTerms::Node& node = terms.nodes()[j];
+      const double seen = beam.power(at, node.frequency_hz) * node.wave(terms.q(sine));
+      for (std::size_t k = 0; k < count; ++k) values[k] += terms.of_nodes(first + k)[j] * seen;
     }
   });
-  return made;
 }
 
 std::vector<Image> MosaicBeams::terms(const PairBeam& beam, const Window& window, const BeamSpan& span, int threads) const {
-  const ImageGeometry& g = window.geometry;
-  std::vector<Image> made(span.terms(), Image(g.width, g.height));
-  const double radius = reach(beam);
-  const std::vector<RadialTable>* const round = beam.is_round() ? &tables(beam, span, threads) : nullptr;
-  parallel_for(static_cast<std::size_t>(g.height), threads, [&](std::size_t r) {
-    const int row = static_cast<int>(r);
-    for (int column = 0; column < g.width; ++column) {
-      const DirectionCosines at = g.at(row, column);
-      const double sine = beam.frame.sine(at);  // not a number beyond the horizon
-      if (!(sine <= radius)) continue;
-      if (round != nullptr) {
-        const RadialTable::Place place = round->front().place(sine);
-        for (std::size_t k = 0; k < made.size(); ++k) made[k].at(row, column) = (*round)[k](place);
-      } else {
-        const std::vector<double> values = terms(beam, at, span);
-        for (std::size_t k = 0; k < made.size(); ++k) made[k].at(row, column) = values[k];
-      }
-    }
+  if (beam.is_round()) {
+    const auto table = tables(beam, span, threads);
+    return images(beam, window, span.terms(), threads,
+                  [&](double sine, DirectionCosines, double* values) { table->write(sine, 0, span.terms(), values); });
+  }
+  return images(beam, window, span.terms(), threads, [&](double, DirectionCosines at, double* values) {
+    const std::vector<double> seen = terms(beam, at, span);
+    std::copy(seen.begin(), seen.end(), values);
   });
-  return made;
+}
+
+Image MosaicBeams::squares(const PairBeam& beam, const Window& window, const BeamSpan& span, const std::vector<double>& weight,
+                           int threads) const {
+  const std::size_t count = span.terms();
+  const auto table = beam.is_round() ? tables(beam, span, threads) : nullptr;
+  return std::move(images(beam, window, 1, threads, [&](double sine, DirectionCosines at, double* value) {
+                     double term[most_terms_of_a_span];
+                     if (table != nullptr) {
+                       table->write(sine, 0, count, term);
+                     } else {
+                       const std::vector<double> seen = terms(beam, at, span);
+                       std::copy(seen.begin(), seen.end(), term);
+                     }
+                     *value = 0;
+                     for (std::size_t k = 0; k < count; ++k)
+                       for (std::size_t j = 0; j <= k; ++j) *value += weight[k * count + j] * term[k] * term[j];
+                   }).front());
 }
 
 std::vector<double> MosaicBeams::terms(const PairBeam& beam, DirectionCosines at, const BeamSpan& span) const {

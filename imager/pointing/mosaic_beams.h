@@ -73,6 +73,9 @@ class MosaicBeams {
   /// The terms of a beam in each pixel of a window. What follows from them is right to 1e-9 of power() for round beams, but for
   /// the tolerance.
   std::vector<Image> terms(const PairBeam& beam, const Window& window, const BeamSpan& span, int threads) const;
+  /// Σ_jk weight_jk t_j t_k of the terms t of a beam in each pixel of a window; weight is [term][term], of which j ≤ k count.
+  Image squares(const PairBeam& beam, const Window& window, const BeamSpan& span, const std::vector<double>& weight,
+                int threads) const;
   /// `count` of a span's curved terms, from `first` on, in each pixel of a window.
   std::vector<Image> curved_images(const PairBeam& beam, const Window& window, const BeamSpan& span, std::size_t first,
                                    std::size_t count, int threads) const;
@@ -87,13 +90,17 @@ class MosaicBeams {
     const BeamSpan* span;
     CurvedTerms terms;
     std::mutex mutex;  ///< of tables
-    std::map<Pair, std::vector<RadialTable>> tables;
+    std::map<Pair, std::shared_ptr<const RadialTables>> tables;
   };
 
   /// [term], of a round beam.
-  const std::vector<RadialTable>& tables(const PairBeam& beam, const BeamSpan& span, int threads) const;
+  std::shared_ptr<const RadialTables> tables(const PairBeam& beam, const BeamSpan& span, int threads) const;
+  std::shared_ptr<const RadialTables> curved_tables(const PairBeam& beam, CurvedSpan& curved, int threads) const;
   std::shared_ptr<CurvedSpan> curved_span(const BeamSpan& span) const;
-  const std::vector<RadialTable>& curved_tables(const PairBeam& beam, CurvedSpan& curved, int threads) const;
+  /// Images whose pixels `write`, given sin θ and the direction, sets where the beam reaches them.
+  template <typename Write>
+  std::vector<Image> images(const PairBeam& beam, const Window& window, std::size_t count, int threads,
+                            const Write& write) const;
   double found_reach(const VoltagePattern& one, const VoltagePattern& other) const;
   std::vector<double> seen(double frequency_hz) const;
   BeamDirections directions(const std::vector<double>& frequency_hz) const;
@@ -109,7 +116,9 @@ class MosaicBeams {
   mutable std::mutex curved_mutex_;  ///< of curved_
   mutable std::vector<std::shared_ptr<CurvedSpan>> curved_;
   mutable std::mutex mutex_;  ///< of what follows
-  mutable std::map<std::tuple<const VoltagePattern*, const VoltagePattern*, const BeamSpan*>, std::vector<RadialTable>> tables_;
+  mutable std::map<std::tuple<const VoltagePattern*, const VoltagePattern*, const BeamSpan*>,
+                   std::shared_ptr<const RadialTables>>
+      tables_;
   mutable std::map<double, BeamSpan> at_each_;
 };
 
