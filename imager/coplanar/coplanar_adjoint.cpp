@@ -41,7 +41,7 @@ class CoplanarAdjoint : public AdjointSum {
     return result;
   }
 
-  /// Has the samples of the next blocks these shares in the images; null: one image is all.
+  /// Gives the samples of the next blocks these shares in a set's images; null: the set has one image.
   void set_shares(const SampleShares* shares) { shares_ = shares; }
 
   void flush_crowded() {
@@ -51,7 +51,7 @@ class CoplanarAdjoint : public AdjointSum {
         flush({static_cast<int>(tile % tiles_u), static_cast<int>(tile / tiles_u), tile}, *sum);
   }
 
-  /// One of a set's, to be called once for each, last of all.
+  /// Makes one of the images of a set, which leaves nothing of its grid. All crowded tiles have to be flushed before.
   Image image_of(std::size_t set, std::size_t image) {
     const std::size_t plane = 2 * (set * of_each_ + image);
     return to_image(std::move(grid_[plane]), std::move(grid_[plane + 1]), value_unit_[set].unit());
@@ -210,6 +210,7 @@ class CoplanarSharedAdjoint : public SharedAdjoint {
   void add(const VisibilityBlock& block, const VisibilitySets& sets, const SampleShares& shares) override {
     sum_.set_shares(&shares);
     static_cast<AdjointSum&>(sum_).add(block, sets);
+    sum_.set_shares(nullptr);
   }
   void finish(const std::function<void(std::size_t, std::size_t, const Image&)>& take) override {
     sum_.flush_crowded();

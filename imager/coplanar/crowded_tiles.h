@@ -16,7 +16,8 @@ inline constexpr std::size_t one_by_one = 8;
 
 /// The sums in double precision of those tiles of a single-precision grid that take very many samples. A buffer of one Stokes
 /// parameter and the PSF is some 40 to 60 kB: up to 2 bytes for each of most_in_single samples, 16 where they are added one by
-/// one, as of many small blocks. Each further Stokes parameter adds two thirds of that. There are none in double precision.
+/// one, as of many small blocks. Each further Stokes parameter adds two thirds of that, and so does each image that samples
+/// have shares in. There are none in double precision.
 template <typename Real>
 class CrowdedTiles {
  public:

@@ -2,9 +2,20 @@
 
 namespace misfit::imager {
 
-ShareTable::ShareTable(std::size_t images, const std::vector<double>& shares) : images_(images) {
+namespace {
+
+std::size_t stride_of(std::size_t images) {
   constexpr std::size_t in_vector = 16;
-  stride_ = (images + in_vector - 1) / in_vector * in_vector;
+  return (images + in_vector - 1) / in_vector * in_vector;
+}
+
+}  // namespace
+
+double ShareTable::bytes(std::size_t images, std::size_t points) {
+  return static_cast<double>((2 * points * stride_of(images) + most_shared_images) * (sizeof(float) + sizeof(double)));
+}
+
+ShareTable::ShareTable(std::size_t images, const std::vector<double>& shares) : stride_(stride_of(images)) {
   const std::size_t parts = shares.size() / images;
   last_ = parts / 2 - points;
   double_.resize(parts * stride_ + most_shared_images);  // vectors from a later image on reach behind the last

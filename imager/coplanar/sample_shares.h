@@ -23,7 +23,9 @@ class ShareTable {
   /// largest w that is asked for.
   ShareTable(std::size_t images, const std::vector<double>& shares);
 
-  std::size_t images() const { return images_; }
+  /// Of a table of so many images and points.
+  static double bytes(std::size_t images, std::size_t points);
+
   /// The largest whole step at or below a w that may be asked for.
   std::size_t last() const { return last_; }
   /// Numbers from one point to the next, and from a point's Re to its Im.
@@ -35,7 +37,6 @@ class ShareTable {
   const double* at(std::size_t step, double) const { return double_.data() + step * point_stride(); }
 
  private:
-  std::size_t images_ = 0;
   std::size_t stride_ = 0;
   std::size_t last_ = 0;
   std::vector<float> single_;

@@ -192,11 +192,11 @@ SharePlaces<Real>::SharePlaces(const SampleShares& shares, const SampleCoordinat
     next = sample[i] + 1;
     const double w = at.uvw_m[3 * row + 2] * at.frequency_hz[channel] * steps, place = std::abs(w);
     const ShareTable& table = *shares.of_channel[channel];
-    const auto step = static_cast<std::size_t>(place);
     if (!(place < static_cast<double>(table.last()) + 1))
       throw std::invalid_argument("a sample has w of " + std::to_string(place / shares.steps_a_wavelength) +
                                   " wavelengths over its pointing's plane; expected " +
                                   std::to_string(static_cast<double>(table.last()) / shares.steps_a_wavelength) + " at most");
+    const auto step = static_cast<std::size_t>(place);
     within[i] = static_cast<Real>(place - static_cast<double>(step));
     from[i] = table.at(step, Real()) + shares.first;
     sign[i] = w < 0 ? Real(-1) : Real(1);

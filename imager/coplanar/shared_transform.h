@@ -33,7 +33,7 @@ class SharedPrediction {
 class SharedTransform {
  public:
   virtual ~SharedTransform() = default;
-  /// Of so many sets of visibilities and images, sets × images of most_shared_images at most.
+  /// Of so many sets of visibilities, most_stokes at most, and images; sets × images are most_shared_images at most.
   virtual std::unique_ptr<SharedAdjoint> adjoint(std::size_t sets, std::size_t images) const = 0;
   /// Of images whose number is most_shared_images at most.
   virtual std::unique_ptr<SharedPrediction> predict(const std::vector<Image>& images) const = 0;

@@ -111,7 +111,7 @@ HWY_ATTR void spread_samples(const TileBatch<Real>& samples, const Evaluated<Rea
   }
 }
 
-/// Of two planes.
+/// Sets the values of two planes, the first and the one that follows it.
 template <typename Real, int Width>
 HWY_ATTR void interpolate_samples(const Evaluated<Real>& along_u, const Evaluated<Real>& along_v,
                                   const TileCells<const Real>& cells, int first_plane, TileBatch<Real>& samples) {

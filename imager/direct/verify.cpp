@@ -22,13 +22,15 @@ std::vector<std::uint64_t> random_samples(std::uint64_t samples, int count, std:
 /// Chosen samples, a row each, of each frequency.
 using ChosenSamples = std::map<double, SampleCoordinates>;
 
-/// Adds the coordinates of the chosen samples that lie in `block`, whose first sample has index `first`.
+/// Adds the coordinates of the chosen samples that lie in `block`, whose first sample has index `first`; of usable ones alone:
+/// others may lie where nothing was planned for.
 void collect(const VisibilityBlock& block, std::uint64_t first, const std::vector<std::uint64_t>& chosen,
              ChosenSamples& found) {
   for (auto i = std::lower_bound(chosen.begin(), chosen.end(), first); i != chosen.end() && *i < first + block.samples(); ++i) {
     const std::size_t row = (*i - first) / block.channels();
     const double* uvw_m = &block.uvw_m[3 * row];
     const double hz = block.frequency_hz[(*i - first) % block.channels()];
+    if (block.weight[*i - first] == 0) continue;
     if (!std::all_of(uvw_m, uvw_m + 3, [](double x) { return std::isfinite(x); })) continue;
     SampleCoordinates& of_frequency = found.insert({hz, {{}, {hz}}}).first->second;
     of_frequency.uvw_m.append({uvw_m[0], uvw_m[1], uvw_m[2]});

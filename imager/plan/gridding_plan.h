@@ -15,9 +15,9 @@ struct GriddingPlan;
 
 /// How a mosaic's windows are transformed.
 struct WindowsPlan {
-  /// How a window's samples are transformed: of all curved terms of beams together, see CurvedTerms, in the largest window; or
-  /// [term of beams, see BeamSpan] one by one, in the largest window or in that over which w matters most. Those are as exact
-  /// as their sizes ask; the first counts most.
+  /// How a window's samples are transformed: for all curved terms of beams together, see CurvedTerms, in the largest window; or
+  /// [term of beams, see BeamSpan] for one term after another, in the window over which w matters most, each as exactly as the
+  /// term's size asks.
   std::vector<std::shared_ptr<const GriddingPlan>> of_term;
   std::size_t curved = 0;          ///< curved terms; 0: terms of beams one by one
   std::size_t curved_at_once = 0;  ///< that memory has room for
@@ -30,7 +30,8 @@ struct WindowsPlan {
 
   /// Transforms of each of these plans that a pass takes.
   double transforms() const { return static_cast<double>(windows * spans * gathers); }
-  /// Images that each of them makes for each that is asked.
+  int at_once() const { return static_cast<int>(std::max<std::size_t>(1, curved_at_once)); }
+  /// Images that each of the plans makes for one that is asked.
   int images_each() const { return static_cast<int>(std::max<std::size_t>(1, curved)); }
 };
 

@@ -75,10 +75,12 @@ GriddingPlan plan_window(GriddingRequest request, const AllWindows& all) {
   return plan_gridding(request);
 }
 
-/// Leaves out terms that count for too little.
-void leave_out_small(double accuracy, std::vector<double>& sizes) {
+/// Leaves out terms that count for too little. Returns the RMS of what these make.
+double leave_out_small(double accuracy, std::vector<double>& sizes) {
   constexpr double part = 0.03;
-  while (sizes.size() > 1 && sizes.back() < part * accuracy) sizes.pop_back();
+  double left = 0;
+  for (; sizes.size() > 1 && sizes.back() < part * accuracy; sizes.pop_back()) left = std::hypot(left, sizes.back());
+  return left;
 }
 
 /// Plans for each term. What a term is transformed wrongly by counts as it is large; errors of terms, whose kernels differ, add
@@ -108,15 +110,18 @@ std::vector<std::shared_ptr<const GriddingPlan>> plan_terms(const GriddingReques
   return plans;
 }
 
-/// Plans one transform of all curved terms. Its errors are those of one image: they are of what all terms add up to. Returns
-/// whether there are such terms, and it is exact enough.
+/// Plans one transform of all curved terms. It errs as that of one image would, since its errors are of what all terms add up
+/// to, and terms themselves leave something. Returns whether there are such terms, and all is exact enough.
 bool plan_curved(const GriddingRequest& mosaic, const AllWindows& all, WindowsPlan& windows) {
   constexpr double part = 0.98;  // of the accuracy: the rest is for what terms leave
   GriddingRequest request = window_request(mosaic, windows);
   const MosaicBeams& beams = *mosaic.mosaic->beams;
   std::vector<double> sizes = beams.curved_sizes();
-  if (sizes.empty() || beams.max_abs_w() < request.max_abs_w || request.gridder != Gridder::automatic) return false;
-  leave_out_small(request.accuracy, sizes);
+  const double asked = request.accuracy;
+  constexpr double of_terms = 0.1, rounding = 1e-9;
+  if (sizes.empty() || *beams.max_abs_w() < request.max_abs_w || request.gridder != Gridder::automatic) return false;
+  if (asked > 0 && beams.tolerance() > of_terms * (1 + rounding) * asked) return false;
+  const double left = std::hypot(leave_out_small(asked, sizes), beams.tolerance());
   const int images = request.stokes;
   request.geometry = all.largest;
   request.geometry.centre = {};
@@ -129,13 +134,15 @@ bool plan_curved(const GriddingRequest& mosaic, const AllWindows& all, WindowsPl
   GriddingPlan plan = plan_gridding(request);
   if (!plan.choice.reached) return false;
   plan.request.stokes = images;
-  // Those of an image in the plane do not hold.
+  for (double* error : {&plan.expected_error, &plan.worst_error}) *error = std::hypot(*error, left);
+  for (double* bound : {&plan.bound_rms, &plan.bound_max}) *bound += left;
+  // These tell of one image in the plane, which leaves w out.
   const auto is_other = [](const Decision& d) { return d.item == "Stokes parameters" || d.item == "w planes"; };
   plan.decisions.erase(std::remove_if(plan.decisions.begin(), plan.decisions.end(), is_other), plan.decisions.end());
   windows.curved = sizes.size();
   const TransformMemory of_one = memory_of(plan.options, 1, static_cast<double>(request.samples));
   const double term_bytes = of_one.visibilities + static_cast<double>(request.geometry.pixels()) * sizeof(double);
-  constexpr double windows_held = 2;  // at least, by all that there is for them
+  constexpr double windows_held = 2;  // side by side at least, by all the memory that there is for planes
   const double fit = std::min(static_cast<double>(mosaic.stack_bytes) / windows_held / term_bytes, double{most_shared_images});
   windows.curved_at_once = std::max<std::size_t>(1, static_cast<std::size_t>(fit));
   windows.of_term = {std::make_shared<const GriddingPlan>(std::move(plan))};
@@ -188,12 +195,16 @@ Plan decisions_of(const GriddingPlan& plan, const AllWindows& all) {
            angle(std::asin(beams.largest_reach())) + " from their axes",
        "so the image is defined; a source of 1 Jy at the cut leaves " + text("%.3g", beams.cut()) + " Jy in its pointing"},
       w.curved > 0
-          ? Decision{"beams and w",
+          ? Decision{r.max_abs_w > 0 ? "beams and w" : "beams between frequencies",
                      std::to_string(w.spans) + (w.spans == 1 ? " span" : " spans") + " of at most " + std::to_string(w.curved) +
                          (w.curved == 1 ? " term" : " terms"),
-                     "from which beams of all channels, and what w makes over the plane tangent at their axes, follow to " +
-                         text("%.1g", beams.tolerance()) +
-                         "; each sample is gridded for all of them, whose order, coordinates and taps are the same"}
+                     std::string("from which beams of all channels") +
+                         (r.max_abs_w > 0 ? ", and what w makes over the plane tangent at their axes," : "") + " follow to " +
+                         text("%.1g", beams.tolerance()) + " of what beams are at most; each sample is gridded for " +
+                         (w.curved_at_once < w.curved
+                              ? std::to_string(w.curved_at_once) + " of them at a time, as memory allows"
+                              : "all of them at once") +
+                         ": order, coordinates and taps are the same"}
           : Decision{"beams between frequencies",
                      std::to_string(w.spans) + (w.spans == 1 ? " span" : " spans") + " of at most " +
                          std::to_string(w.of_term.size()) + (w.of_term.size() == 1 ? " term" : " terms"),
@@ -250,9 +261,14 @@ GriddingPlan plan_together(const GriddingRequest& request, const AllWindows& all
   windows.spans = beams.all_spans();
   const std::uint64_t at_once = std::max<std::size_t>(1, request.samples_at_once);
   windows.gathers = std::max<std::uint64_t>(1, (request.samples + at_once - 1) / at_once);
-  windows.of_term = plan_terms(window_request(request, windows), beams.term_sizes(), all);
-  if (WindowsPlan curved = windows; plan_curved(request, all, curved) && mosaic_seconds(curved, 0) < mosaic_seconds(windows, 0))
-    windows = std::move(curved);
+  WindowsPlan curved = windows;
+  const bool has_curved = plan_curved(request, all, curved);
+  GriddingRequest of_window = window_request(request, windows);
+  of_window.best_effort = request.best_effort || has_curved;
+  windows.of_term = plan_terms(of_window, beams.term_sizes(), all);
+  const GriddingPlan& first = *windows.of_term.front();
+  const bool reached = first.direct || first.choice.reached;
+  if (has_curved && (!reached || mosaic_seconds(curved, 0) < mosaic_seconds(windows, 0))) windows = std::move(curved);
   const auto fit = static_cast<double>(request.stack_bytes) / bytes_at_work(windows, request);
   windows.most_at_once =
       std::clamp<std::size_t>(static_cast<std::size_t>(std::min(fit, 1e9)), 1, windows.windows * windows.spans);
@@ -284,7 +300,9 @@ double mosaic_seconds(const WindowsPlan& windows, int images) {
   for (const auto& of_term : windows.of_term) {
     GriddingWork work = of_term->choice.best.work;
     if (images > 0) work.stokes = images * windows.images_each();
-    sum += CostModel().seconds(work);
+    const int passes = windows.curved == 0 ? 1 : (work.stokes + windows.at_once() - 1) / windows.at_once();
+    work.stokes = (work.stokes + passes - 1) / passes;
+    sum += passes * CostModel().seconds(work);
   }
   return windows.transforms() * sum;
 }
@@ -324,7 +342,8 @@ TransformMemory mosaic_memory(const GriddingPlan& plan) {
   // However many threads there are: what fits into memory decides on gathers, which images must not depend on.
   memory.visibilities = static_cast<double>(plan.windows->most_at_once) * bytes_at_work(*plan.windows, r) +
                         gathered * (row_bytes + sizeof(float) + r.stokes * value_bytes) +
-                        (images + 1) * static_cast<double>(r.geometry.pixels()) * sizeof(double);
+                        (images + 1) * static_cast<double>(r.geometry.pixels()) * sizeof(double) +
+                        (plan.windows->curved > 0 ? r.mosaic->beams->curved_bytes() : 0);
   memory.gathered = gathered;
   if (plan.psf) {
     memory.psf = gathered * (row_bytes + sizeof(float));

@@ -32,17 +32,18 @@ class CurvedTerms {
     double w;
     bool is_sine;
 
-    /// By what B counts in it.
+    /// The factor that B has in it.
     double wave(double q) const { return is_sine ? std::sin(2 * pi * w * q) : std::cos(2 * pi * w * q); }
   };
 
-  /// To a tolerance, with so many terms at most.
+  /// To a tolerance, with so many terms at most. Without frequencies B is 1 at all of them, and the terms are those of w alone.
   CurvedTerms(const std::vector<double>& frequency_hz, const BeamDirections& directions, double most_abs_w, double tolerance,
               std::size_t most_terms);
 
-  /// Whether so many terms are enough; otherwise there is no more to be had of this.
+  /// Whether so many terms are enough. Nothing else is known where they are not.
   bool enough() const { return enough_; }
   std::size_t terms() const { return of_nodes_.size(); }
+  /// Nodes of one frequency follow one another.
   const std::vector<Node>& nodes() const { return nodes_; }
   /// [term]: the RMS of its values, falling.
   const std::vector<double>& sizes() const { return sizes_; }
@@ -53,16 +54,19 @@ class CurvedTerms {
   double most_abs_w() const { return most_abs_w_; }
   double most_phase_rad() const { return 2 * pi * most_abs_w_ * middle_; }
 
-  /// The shares at a frequency.
+  /// The shares at a frequency, which have no beam in them where the terms have none.
   const ShareTable& shares(double frequency_hz) const;
+  /// Of the shares at a frequency.
+  double table_bytes() const;
   /// Steps of the tables of shares that a wavelength of w takes.
-  double steps_a_wavelength() const { return step_ == 0 ? 0 : 1 / step_; }
+  double steps_a_wavelength() const { return 1 / step_; }
 
  private:
   BeamDirections directions_;
+  bool waves_alone_;
   double most_abs_w_;
   double middle_;
-  double step_ = 0;  ///< of w between points of shares; 0: w does not matter
+  double step_ = 0;  ///< of w between points of shares
   bool enough_ = false;
   std::vector<Node> nodes_;
   std::vector<std::vector<double>> of_nodes_;  ///< [term][node]

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <iterator>
 #include <set>
 #include <stdexcept>
@@ -40,7 +41,19 @@ int first_of(double low, double high, int size, int all) {
   return static_cast<int>(std::clamp(first, 0.0, double(all - size)));
 }
 
-constexpr std::size_t most_curved_terms = 32;
+/// Writes `count` curved terms from `first` on at a radius; seen(frequency) is the beam there.
+template <typename Seen>
+void add_up(const CurvedTerms& terms, double sine, const Seen& seen, std::size_t first, std::size_t count, double* values) {
+  std::fill_n(values, count, 0.0);
+  double of_hz = -1, beam = 0;
+  for (std::size_t j = 0; j < terms.nodes().size(); ++j) {
+    const CurvedTerms::Node& node = terms.nodes()[j];
+    if (node.frequency_hz != of_hz) beam = seen(node.frequency_hz);
+    of_hz = node.frequency_hz;
+    const double product = beam * node.wave(terms.q(sine));
+    for (std::size_t k = 0; k < count; ++k) values[k] += terms.of_nodes(first + k)[j] * product;
+  }
+}
 
 /// Brings sizes of terms to those of others where these are larger.
 void raise(std::vector<double>& sizes, const std::vector<double>& others) {
@@ -84,7 +97,9 @@ MosaicBeams::MosaicBeams(MosaicScene scene) : scene_(std::move(scene)) {
 BeamDirections MosaicBeams::directions(const std::vector<double>& frequency_hz) const {
   BeamDirections all;
   for (const auto& [pair, reach] : reach_) {
-    const int angles = angles_of(*std::get<0>(pair), *std::get<1>(pair));
+    const auto& [one, other] = pair;
+    if (std::less<>()(other, one)) continue;
+    const int angles = angles_of(*one, *other);
     for (int r = 0; r <= radii; ++r) all.sine.insert(all.sine.end(), static_cast<std::size_t>(angles), sine_of(reach, r));
   }
   std::vector<double> most(all.sine.size(), scene_.cut * scene_.cut);
@@ -114,43 +129,35 @@ void MosaicBeams::find_curved_terms() {
   if (n < least_n) return;
   constexpr double rounding = 1e-9;
   most_abs_w_ = (1 + rounding) * *scene_.max_abs_w / n;
-  std::vector<const BeamSpan*> all;
-  if (scene_.at_each)
-    all = spans({scene_.frequency_hz.front(), scene_.frequency_hz.back()});
-  else
-    for (const BeamSpan& span : spans_) all.push_back(&span);
+  std::vector<const BeamSpan*> all{nullptr};
+  if (!scene_.at_each) all.clear();
+  for (const BeamSpan& span : spans_) all.push_back(&span);
   for (const BeamSpan* span : all) {
-    const std::shared_ptr<const CurvedTerms> terms = curved(*span);
-    raise(curved_sizes_, terms->sizes());
-    if (!terms->enough() || terms->terms() > most_curved_terms) {
+    std::vector<double> hz;
+    if (span != nullptr)
+      std::copy_if(scene_.frequency_hz.begin(), scene_.frequency_hz.end(), std::back_inserter(hz),
+                   [&](double f) { return span->holds(f); });
+    const auto& made = curved_.emplace_back(new CurvedSpan{
+        span, CurvedTerms(hz, directions(scene_.frequency_hz), most_abs_w_, scene_.tolerance, most_shared_images), {}, {}});
+    if (!made->terms.enough()) {
       curved_sizes_.clear();
       return;
     }
+    raise(curved_sizes_, made->terms.sizes());
   }
 }
 
-std::shared_ptr<const CurvedTerms> MosaicBeams::curved(const BeamSpan& span) const {
-  std::shared_ptr<CurvedSpan> all = curved_span(span);
-  return {all, &all->terms};
+double MosaicBeams::curved_bytes() const {
+  double bytes = 0;
+  for (const double hz : scene_.frequency_hz)
+    for (const auto& of : curved_)
+      if (of->span != nullptr && of->span->holds(hz)) bytes += of->terms.table_bytes();
+  return bytes;
 }
 
-std::shared_ptr<MosaicBeams::CurvedSpan> MosaicBeams::curved_span(const BeamSpan& span) const {
-  constexpr std::size_t spare = 8;       // terms, between the frequencies that were looked at
-  constexpr std::size_t most_kept = 64;  // where each frequency has its own, and there are any number
-  const std::lock_guard lock(curved_mutex_);
-  for (const std::shared_ptr<CurvedSpan>& known : curved_)
-    if (known->span == &span) return known;
-  std::vector<double> hz = span.node_hz();
-  if (!scene_.at_each) {
-    hz.clear();
-    std::copy_if(scene_.frequency_hz.begin(), scene_.frequency_hz.end(), std::back_inserter(hz),
-                 [&](double f) { return span.holds(f); });
-  } else if (curved_.size() == most_kept) {
-    curved_.erase(curved_.begin());
-  }
-  curved_.emplace_back(
-      new CurvedSpan{&span, CurvedTerms(hz, directions(hz), most_abs_w_, scene_.tolerance, most_curved_terms + spare), {}, {}});
-  return curved_.back();
+MosaicBeams::CurvedSpan& MosaicBeams::curved_span(const BeamSpan& span) const {
+  return **std::find_if(curved_.begin(), curved_.end(),
+                        [&](const auto& of) { return of->span == nullptr || of->span == &span; });
 }
 
 /// What all pairs of patterns see, each as far as it reaches, at radii and angles of equal parts of its disc.
@@ -158,6 +165,7 @@ std::vector<double> MosaicBeams::seen(double frequency_hz) const {
   std::vector<double> values;
   for (const auto& [pair, reach] : reach_) {
     const auto& [one, other] = pair;
+    if (std::less<>()(other, one)) continue;  // both ways round they see the same
     const int angles = angles_of(*one, *other);
     for (int r = 0; r <= radii; ++r)
       for (int a = 0; a < angles; ++a) {
@@ -237,39 +245,36 @@ std::optional<Window> MosaicBeams::window(const PairBeam& beam) const {
   return window;
 }
 
-std::shared_ptr<const RadialTables> MosaicBeams::tables(const PairBeam& beam, const BeamSpan& span, int threads) const {
+const RadialTables& MosaicBeams::tables(const PairBeam& beam, const BeamSpan& span, int threads) const {
   const std::lock_guard lock(mutex_);
-  std::shared_ptr<const RadialTables>& made = tables_[{beam.one.get(), beam.other.get(), &span}];
+  std::unique_ptr<const RadialTables>& made = tables_[{beam.one.get(), beam.other.get(), &span}];
   if (!made)
-    made = std::make_shared<const RadialTables>(reach(beam), threads, span.terms(), [&](double sine, double* values) {
+    made = std::make_unique<const RadialTables>(reach(beam), threads, span.terms(), [&](double sine, double* values) {
       std::fill_n(values, span.terms(), 0.0);
       for (std::size_t j = 0; j < span.node_hz().size(); ++j) {
         const double seen = beam.one->voltage(sine, span.node_hz()[j]) * beam.other->voltage(sine, span.node_hz()[j]);
         for (std::size_t k = 0; k < span.terms(); ++k) values[k] += span.of_nodes(k)[j] * seen;
       }
     });
-  return made;
+  return *made;
 }
 
-std::shared_ptr<const RadialTables> MosaicBeams::curved_tables(const PairBeam& beam, CurvedSpan& curved, int threads) const {
+const RadialTables& MosaicBeams::curved_tables(const PairBeam& beam, CurvedSpan& curved, int threads) const {
   constexpr double bend_of_a_beam = 2;  // radians of phase that a table bears besides
   const CurvedTerms& terms = curved.terms;
   const std::lock_guard lock(curved.mutex);
-  std::shared_ptr<const RadialTables>& made = curved.tables[{beam.one.get(), beam.other.get()}];
+  std::unique_ptr<const RadialTables>& made = curved.tables[{beam.one.get(), beam.other.get()}];
   if (!made)
-    made = std::make_shared<const RadialTables>(
+    made = std::make_unique<const RadialTables>(
         reach(beam), threads, terms.terms(),
         [&](double sine, double* values) {
-          std::fill_n(values, terms.terms(), 0.0);
-          for (std::size_t j = 0; j < terms.nodes().size(); ++j) {
-            const CurvedTerms::Node& node = terms.nodes()[j];
-            const double seen = beam.one->voltage(sine, node.frequency_hz) * beam.other->voltage(sine, node.frequency_hz) *
-                                node.wave(terms.q(sine));
-            for (std::size_t k = 0; k < terms.terms(); ++k) values[k] += terms.of_nodes(k)[j] * seen;
-          }
+          const auto seen = [&](double hz) {
+            return curved.span == nullptr ? 1 : beam.one->voltage(sine, hz) * beam.other->voltage(sine, hz);
+          };
+          add_up(terms, sine, seen, 0, terms.terms(), values);
         },
         std::max(1.0, terms.most_phase_rad() / bend_of_a_beam));
-  return made;
+  return *made;
 }
 
 template <typename Write>
@@ -296,28 +301,30 @@ std::vector<Image> MosaicBeams::images(const PairBeam& beam, const Window& windo
 
 std::vector<Image> MosaicBeams::curved_images(const PairBeam& beam, const Window& window, const BeamSpan& span,
                                               std::size_t first, std::size_t count, int threads) const {
-  const std::shared_ptr<CurvedSpan> curved = curved_span(span);
-  if (beam.is_round()) {
-    const auto table = curved_tables(beam, *curved, threads);
+  CurvedSpan& curved = curved_span(span);
+  if (!beam.is_round())
+    return images(beam, window, count, threads, [&](double sine, DirectionCosines at, double* values) {
+      const auto seen = [&](double hz) { return beam.power(at, curved.span == nullptr ? span.node_hz().front() : hz); };
+      add_up(curved.terms, sine, seen, first, count, values);
+    });
+  const RadialTables& table = curved_tables(beam, curved, threads);
+  if (curved.span != nullptr)
     return images(beam, window, count, threads,
-                  [&](double sine, DirectionCosines, double* values) { table->write(sine, first, count, values); });
-  }
-  const CurvedTerms& terms = curved->terms;
-  return images(beam, window, count, threads, [&](double sine, DirectionCosines at, double* values) {
-    std::fill_n(values, count, 0.0);
-    for (std::size_t j = 0; j < terms.nodes().size(); ++j) {
-      const CurvedTerms::Node& node = terms.nodes()[j];
-      const double seen = beam.power(at, node.frequency_hz) * node.wave(terms.q(sine));
-      for (std::size_t k = 0; k < count; ++k) values[k] += terms.of_nodes(first + k)[j] * seen;
-    }
+                  [&](double sine, DirectionCosines, double* values) { table.write(sine, first, count, values); });
+  const RadialTables& of_beam = tables(beam, span, threads);
+  return images(beam, window, count, threads, [&](double sine, DirectionCosines, double* values) {
+    double power = 0;
+    of_beam.write(sine, 0, 1, &power);
+    table.write(sine, first, count, values);
+    for (std::size_t k = 0; k < count; ++k) values[k] *= power;
   });
 }
 
 std::vector<Image> MosaicBeams::terms(const PairBeam& beam, const Window& window, const BeamSpan& span, int threads) const {
   if (beam.is_round()) {
-    const auto table = tables(beam, span, threads);
+    const RadialTables& table = tables(beam, span, threads);
     return images(beam, window, span.terms(), threads,
-                  [&](double sine, DirectionCosines, double* values) { table->write(sine, 0, span.terms(), values); });
+                  [&](double sine, DirectionCosines, double* values) { table.write(sine, 0, span.terms(), values); });
   }
   return images(beam, window, span.terms(), threads, [&](double, DirectionCosines at, double* values) {
     const std::vector<double> seen = terms(beam, at, span);
@@ -328,7 +335,7 @@ std::vector<Image> MosaicBeams::terms(const PairBeam& beam, const Window& window
 Image MosaicBeams::squares(const PairBeam& beam, const Window& window, const BeamSpan& span, const std::vector<double>& weight,
                            int threads) const {
   const std::size_t count = span.terms();
-  const auto table = beam.is_round() ? tables(beam, span, threads) : nullptr;
+  const RadialTables* const table = beam.is_round() ? &tables(beam, span, threads) : nullptr;
   return std::move(images(beam, window, 1, threads, [&](double sine, DirectionCosines at, double* value) {
                      double term[most_terms_of_a_span];
                      if (table != nullptr) {

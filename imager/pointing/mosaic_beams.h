@@ -50,16 +50,18 @@ class MosaicBeams {
   double low_hz() const { return scene_.frequency_hz.front(); }  ///< the lowest frequency
   double cut() const { return scene_.cut; }
   double tolerance() const { return scene_.tolerance; }
-  double max_abs_w() const { return scene_.max_abs_w.value_or(0); }
+  const std::optional<double>& max_abs_w() const { return scene_.max_abs_w; }
   /// Those that hold any of these frequencies, ascending. Throws std::invalid_argument where none holds one.
   std::vector<const BeamSpan*> spans(const std::vector<double>& frequency_hz) const;
   std::size_t all_spans() const { return scene_.at_each ? 1 : spans_.size(); }
   /// [term of a span, see BeamSpan]: its size, in parts of the beams, at most of all spans.
   const std::vector<double>& term_sizes() const { return term_sizes_; }
-  /// The same of curved terms; none where they are not known, or too many to be of use.
+  /// The sizes of curved terms, at most of all spans; none where |w| is not known, or takes too many of them.
   const std::vector<double>& curved_sizes() const { return curved_sizes_; }
-  /// Those of a span, to be asked for where there are any.
-  std::shared_ptr<const CurvedTerms> curved(const BeamSpan& span) const;
+  /// Memory that their shares take at all frequencies.
+  double curved_bytes() const;
+  /// The curved terms of a span, of which there must be any.
+  const CurvedTerms& curved(const BeamSpan& span) const { return curved_span(span).terms; }
   /// The rows that see alike.
   std::vector<RowBeams::Group> groups(const SampleCoordinates& at) const { return scene_.beams.groups(at, turn_rad_); }
 
@@ -85,18 +87,19 @@ class MosaicBeams {
  private:
   using Pair = std::tuple<const VoltagePattern*, const VoltagePattern*>;
 
-  /// The curved terms of a span, and their tables for pairs of round beams.
+  /// The curved terms of a span, and their tables for pairs of round beams. Where beams are made at each frequency, all spans
+  /// have one, of waves alone: the terms of a span are those times its beam.
   struct CurvedSpan {
     const BeamSpan* span;
     CurvedTerms terms;
     std::mutex mutex;  ///< of tables
-    std::map<Pair, std::shared_ptr<const RadialTables>> tables;
+    std::map<Pair, std::unique_ptr<const RadialTables>> tables;
   };
 
   /// [term], of a round beam.
-  std::shared_ptr<const RadialTables> tables(const PairBeam& beam, const BeamSpan& span, int threads) const;
-  std::shared_ptr<const RadialTables> curved_tables(const PairBeam& beam, CurvedSpan& curved, int threads) const;
-  std::shared_ptr<CurvedSpan> curved_span(const BeamSpan& span) const;
+  const RadialTables& tables(const PairBeam& beam, const BeamSpan& span, int threads) const;
+  const RadialTables& curved_tables(const PairBeam& beam, CurvedSpan& curved, int threads) const;
+  CurvedSpan& curved_span(const BeamSpan& span) const;
   /// Images whose pixels `write`, given sin θ and the direction, sets where the beam reaches them.
   template <typename Write>
   std::vector<Image> images(const PairBeam& beam, const Window& window, std::size_t count, int threads,
@@ -113,11 +116,10 @@ class MosaicBeams {
   double turn_rad_ = 0;
   double most_abs_w_ = 0;  ///< over tangent planes at the axes of all pointings that see the image
   std::vector<double> curved_sizes_;
-  mutable std::mutex curved_mutex_;  ///< of curved_
-  mutable std::vector<std::shared_ptr<CurvedSpan>> curved_;
+  std::vector<std::unique_ptr<CurvedSpan>> curved_;
   mutable std::mutex mutex_;  ///< of what follows
   mutable std::map<std::tuple<const VoltagePattern*, const VoltagePattern*, const BeamSpan*>,
-                   std::shared_ptr<const RadialTables>>
+                   std::unique_ptr<const RadialTables>>
       tables_;
   mutable std::map<double, BeamSpan> at_each_;
 };

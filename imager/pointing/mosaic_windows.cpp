@@ -64,12 +64,12 @@ WindowSamples MosaicWindows::samples(const SampleCoordinates& block, const std::
 
 CurvedSamples MosaicWindows::curved_samples(const SeenWindow& seen, const BeamSpan& span, const SampleCoordinates& at,
                                             std::vector<float> weight) const {
-  const std::shared_ptr<const CurvedTerms> terms = beams_->curved(span);
+  const CurvedTerms& terms = beams_->curved(span);
   const DirectionCosines axis = seen.beam.frame.axis(), middle = seen.window.geometry.centre;
   const double n = 1 + n_minus_1(axis);
-  // With n = (cos θ − l l_0 − m m_0)/n_0 and cos θ = q + 1 − terms->middle(), this is what w counts by where q = 0.
-  const double by_w = (1 - terms->middle() - axis.l * middle.l - axis.m * middle.m) / n - 1;
-  CurvedSamples samples{terms, {}, unit_source(at, {middle.l, middle.m, by_w}, options_.threads_of_each())};
+  // With n = (cos θ − l l_0 − m m_0)/n_0 and cos θ = q + 1 − terms.middle(), this is what w counts by where q = 0.
+  const double by_w = -(n_minus_1(axis) + terms.middle() + axis.l * middle.l + axis.m * middle.m) / n;
+  CurvedSamples samples{&terms, {}, unit_source(at, {middle.l, middle.m, by_w}, options_.threads_of_each())};
   samples.at.frequency_hz = at.frequency_hz;
   samples.at.weight = std::move(weight);
   std::vector<double>& uvw_m = samples.at.uvw_m.edit();

@@ -62,11 +62,11 @@ struct WindowSamples {
 
 /// The same samples over the plane that is tangent to the sky at their beam's axis, about the window's middle.
 struct CurvedSamples {
-  std::shared_ptr<const CurvedTerms> terms;
+  const CurvedTerms* terms;
   VisibilityBlock at;                       ///< with u and v along the plane, w/n_0, and weights
   std::vector<std::complex<double>> phase;  ///< of the middle, which is left to them. [row][channel]
 
-  /// Their shares in some of the terms, which look at them.
+  /// By how much these samples count in some of the terms. The samples must outlive them.
   SampleShares shares(std::size_t first, std::size_t count) const;
 };
 
@@ -81,7 +81,7 @@ class MosaicWindows {
   const MosaicOptions& options() const { return options_; }
   /// Terms that are gridded.
   std::size_t terms(const BeamSpan& span) const {
-    return is_curved() ? std::min(beams_->curved(span)->terms(), std::get<1>(transforms_).terms)
+    return is_curved() ? std::min(beams_->curved(span).terms(), std::get<1>(transforms_).terms)
                        : std::min(span.terms(), std::get<0>(transforms_).size());
   }
   /// Null where the group sees nothing of the image. The same object for rows that see alike.

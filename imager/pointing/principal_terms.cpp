@@ -39,6 +39,7 @@ Explained explain(const MatrixXd& values, double tolerance, Index most) {
 
 PrincipalTerms principal_terms(const MatrixXd& values, double tolerance, Index most) {
   const Explained found = explain(values, tolerance, most);
+  if (!found.all) return {};
   const auto terms = static_cast<Index>(found.column.size());
   const MatrixXd in_basis = found.basis.transpose() * values;  // [taken][column]
   const Eigen::JacobiSVD<MatrixXd> parts(in_basis, Eigen::ComputeThinU);
@@ -52,7 +53,7 @@ PrincipalTerms principal_terms(const MatrixXd& values, double tolerance, Index m
   made.share_of_value = found.basis * parts.matrixU() * largest.cwiseInverse().asDiagonal();
   made.share = largest.cwiseInverse().asDiagonal() * along;
   made.size = largest / std::sqrt(static_cast<double>(values.rows()));
-  made.enough = found.all;
+  made.enough = true;
   return made;
 }
 

@@ -19,7 +19,7 @@ struct PrincipalTerms {
   Eigen::Index terms() const { return of_nodes.cols(); }
 };
 
-/// With `most` terms at most.
+/// With `most` terms at most; none where those are not enough.
 PrincipalTerms principal_terms(const Eigen::MatrixXd& values, double tolerance, Eigen::Index most);
 
 }  // namespace misfit::imager

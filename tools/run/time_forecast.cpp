@@ -87,7 +87,7 @@ std::optional<int> between_sizes(const std::string& one, const std::string& othe
 constexpr int most_runs = 8;  ///< that count
 
 /// Changes with what is counted: factors between seconds and other counts say nothing.
-constexpr int count_version = 3;
+constexpr int count_version = 4;
 
 constexpr double direct_term_s = 0.5e-9;  ///< measured, in vectors; CostModel's decides what is summed directly, and is wary
 

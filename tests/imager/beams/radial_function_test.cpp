@@ -23,6 +23,29 @@ BOOST_AUTO_TEST_CASE(tables_are_their_functions_up_to_their_reach) {
   for (int i = 0; i <= 1000; ++i) BOOST_TEST(std::abs(table(0.0008 * i) - lobe(0.0008 * i)) < 1e-10);
 }
 
+BOOST_AUTO_TEST_CASE(tables_of_several_functions_are_these_as_finely_as_they_are_asked_to_be) {
+  const auto function = [](double sine, std::size_t k) {
+    return std::exp(-3 * sine * sine) * std::cos(60 * static_cast<double>(k) * sine * sine);
+  };
+  const auto worst = [&](double detail) {
+    const RadialTables table(
+        0.8, 2, 3,
+        [&](double sine, double* values) {
+          for (std::size_t k = 0; k < 3; ++k) values[k] = function(sine, k);
+        },
+        detail);
+    double most = 0;
+    for (int i = 0; i <= 1000; ++i) {
+      double values[2];
+      table.write(0.0008 * i, 1, 2, values);
+      for (std::size_t k = 0; k < 2; ++k) most = std::max(most, std::abs(values[k] - function(0.0008 * i, 1 + k)));
+    }
+    return most;
+  };
+  BOOST_TEST(worst(20) < 1e-8);
+  BOOST_TEST(worst(1) > 1e-6);
+}
+
 /// By the angle between unit vectors.
 BOOST_AUTO_TEST_CASE(pixels_are_visited_once_where_their_true_angle_is_within_reach) {
   const ImageGeometry geometry{50, 40, 0.03, {}};  // beyond the horizon in its corners
