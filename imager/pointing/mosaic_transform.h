@@ -13,8 +13,8 @@ namespace misfit::imager {
 /// window that each beam sees. Rows whose beams see no pixel predict 0 and add nothing. Coordinates have the sights of their
 /// rows. Beams follow from their terms to the tolerance of MosaicBeams, and from those that have a transform as far as these
 /// are all; forward and adjoint are each other's transposes to rounding. With curved terms, predictions and adjoints throw
-/// std::invalid_argument where |w| of a sample is larger than the beams were made for. The PSF is the response to a source of 1 Jy in the pixel of MosaicOptions, as the beams show it to
-/// each row.
+/// std::invalid_argument where |w| of a sample is larger than the beams were made for. The PSF is the response to a source of 1
+/// Jy in the pixel of MosaicOptions, as the beams show it to each row.
 class MosaicTransform : public Transform {
  public:
   /// With the transforms of each term of beams, or of all curved terms.
