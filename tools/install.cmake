@@ -52,5 +52,9 @@ if(TARGET misfit)
   install(DIRECTORY ${misfit_manual}/man1 DESTINATION ${CMAKE_INSTALL_MANDIR} COMPONENT runtime)
   install(FILES ${misfit_manual}/misfit DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions COMPONENT runtime)
 endif()
+if(TARGET misfit_guide)
+  install(DIRECTORY ${misfit_guide}/ DESTINATION ${CMAKE_INSTALL_DOCDIR}/guide COMPONENT runtime
+    FILES_MATCHING PATTERN "*.html" PATTERN "figures/*" PATTERN CMakeFiles EXCLUDE)
+endif()
 install(TARGETS misfit_wsclean LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/misfit COMPONENT runtime)
 install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT licence)  # packages have it in their copyright

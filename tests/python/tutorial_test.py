@@ -14,7 +14,6 @@ import numpy as np
 import misfit
 
 TUTORIAL = Path(misfit.__file__).parent.parent / "tutorial.py"
-README = Path(__file__).parents[2] / "README.md"
 
 
 class Tutorial(unittest.TestCase):
@@ -68,14 +67,6 @@ class Tutorial(unittest.TestCase):
         for line in lines:
             widths = dict(re.findall(r"([a-z-]+) (\d+)", line))
             self.assertEqual(int(widths["least-misfit"]), min(map(int, widths.values())))
-
-
-class Readme(unittest.TestCase):
-    def test_its_example_runs(self):
-        section = re.search(r"## From Python\n(.*?)\n## ", README.read_text(), re.DOTALL)[1]
-        code = "".join(re.findall(r"^    (.*\n)", section, re.MULTILINE))
-        with tempfile.TemporaryDirectory() as folder:
-            subprocess.run([sys.executable, "-c", code], cwd=folder, check=True, capture_output=True)
 
 
 if __name__ == "__main__":

@@ -117,7 +117,7 @@ nlohmann::json found_in(const std::string& dom) {
 
 boost::test_tools::assertion_result browser_is_installed(boost::unit_test::test_unit_id /*test*/) {
   boost::test_tools::assertion_result installed(std::system("command -v chromium >/dev/null") == 0);
-  installed.message() << "there is no chromium; tools/install-packages installs it";
+  installed.message() << "there is no chromium; tools/install-packages test installs it";
   return installed;
 }
 
