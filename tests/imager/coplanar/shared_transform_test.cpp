@@ -2,7 +2,6 @@
 
 #include <boost/test/unit_test.hpp>
 #include <cmath>
-#include <tuple>
 
 #include "imager/numerics/constants.h"
 #include "kernels/catalogue.h"
@@ -72,16 +71,23 @@ struct Shared {
   }
 };
 
+/// Images whose shares begin with that of image `first` of the tables, and a kernel's width.
+struct Asked {
+  std::size_t images;
+  std::size_t first;
+  int width;
+};
+
 }  // namespace
 
 /// Each image is that of a transform of its own, whose samples are multiplied by their shares, and a prediction is the sum of
 /// those of its images with shares; to rounding, in either precision, for any kernel's width.
 BOOST_AUTO_TEST_CASE(images_and_predictions_are_those_of_transforms_one_by_one) {
   for (const Precision precision : {Precision::double_precision, Precision::single_precision})
-    for (const auto& [images, first, width] :
-         {std::tuple<std::size_t, std::size_t, int>{1, 0, 7}, {3, 2, 4}, {17, 0, 12}, {32, 0, 7}}) {
+    for (const Asked& asked : {Asked{1, 0, 7}, {3, 2, 4}, {17, 0, 12}, {32, 0, 7}}) {
+      const std::size_t images = asked.images, first = asked.first;
       const double rounding = precision == Precision::double_precision ? 1e-12 : 3e-6;
-      const CoplanarOptions o = options(precision, width);
+      const CoplanarOptions o = options(precision, asked.width);
       const auto together = make_shared_transform(o);
       const auto alone = make_coplanar_transform(o);
       const Shared samples(first + images);
