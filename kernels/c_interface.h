@@ -12,16 +12,16 @@
 /// A gridding function C(u), u in cells, is symmetric, and 0 beyond |u| = W/2; W, a whole number, is its width. A visibility
 /// adds C(s_r − t) of itself to the W cells around it, r = 0 … W−1, where t is its position from the middle of its cell, in
 /// cells, and s_r = r − (W−1)/2. The image is multiplied by the correction h(x) along each axis, where x is a pixel's offset
-/// from the phase centre over the size of the FFT. What then differs from the exact transform is the map error ℓ(x), the square
-/// of a relative error in one dimension; kernels/map_error.h has the equations. A function is made for |x| ≤ x0, which is
-/// image size / (2 × FFT size), and is scaled so that h(0) = 1.
+/// from the phase centre over the size of the FFT. The map error ℓ(x) is what then still differs from the exact transform, the
+/// square of a relative error in one dimension; kernels/map_error.h has the equations. A function is made for |x| ≤ x0, which
+/// is image size / (2 × FFT size), and is scaled so that h(0) = 1.
 ///
-/// - Status: what may fail returns one. If it did, a kernel asked for is NULL, and other results are not to be read. No C++
-///   exception leaves a function, and a null pointer or a number out of its range is MISFIT_KERNEL_BAD_ARGUMENT.
+/// - Status: functions that may fail return one. After a failure a kernel asked for is NULL, and other results must not be
+///   read. No C++ exception leaves a function, and a null pointer or a number out of its range is MISFIT_KERNEL_BAD_ARGUMENT.
 /// - Ownership: a kernel belongs to the caller, from misfit_kernel_solve or misfit_kernel_read to misfit_kernel_free. Arrays
 ///   are the caller's, and not kept.
-/// - Threads: any may call anything at any time, also with a kernel that others use, as long as none frees it meanwhile.
-///   misfit_kernel_read calls CFITSIO: a program that does so itself in other threads needs one that is built reentrant.
+/// - Threads: any thread may call any function at any time, also with a kernel that other threads use, as long as none frees it
+///   meanwhile. misfit_kernel_read calls CFITSIO: a program whose other threads call it needs a reentrant build of it.
 /// - Later versions of libmisfit_kernels_c.so.0 may add functions and statuses, and change no others.
 
 #include <stddef.h>  // NOLINT(modernize-deprecated-headers): C has no other
@@ -46,18 +46,18 @@ typedef enum MisfitKernelStatus {
   MISFIT_KERNEL_OUT_OF_MEMORY = 3
 } MisfitKernelStatus;
 
-/// Why the last call that failed in this thread did so: a line that names the function, the thing, its value and what was
-/// expected; "" before any failed. It stays until the next that fails in this thread. Each thread has its own, so that none
-/// reads what another writes, and no call takes a buffer. Lines of more than 1023 bytes are cut.
+/// The reason for this thread's last failure: a line that names the function, the thing, its value and what was expected; ""
+/// before any failure. It stays until the next failure in this thread. Each thread has its own line, so that none reads what
+/// another writes, and no call takes a buffer. Lines of more than 1023 bytes are cut.
 MISFIT_KERNEL_API const char* misfit_kernel_last_error(void);
 
-/// Makes the function of a `family`, "least-misfit", "kaiser-bessel", …, of `width` cells for `x0`. What an unknown name is
-/// told lists the families. Most have widths to 20, and all x0 from 0.01 to 0.49. "least-misfit" takes milliseconds at width 7
+/// Makes the function of a `family`, "least-misfit", "kaiser-bessel", …, of `width` cells for `x0`. The error for an unknown
+/// name lists the families. Most have widths to 20, and all x0 from 0.01 to 0.49. "least-misfit" takes milliseconds at width 7
 /// and two seconds at 20, "minimax" ten times as long.
 MISFIT_KERNEL_API MisfitKernelStatus misfit_kernel_solve(const char* family, int width, double x0, MisfitKernel** kernel);
 
-/// Takes the function from a kernel-table file, as `misfit kernel --output` writes it (kernels/kernel_table.h): the same, bit
-/// for bit. A file whose checksum does not match is not used.
+/// Reads the function from a kernel-table file, bit for bit as `misfit kernel --output` wrote it (kernels/kernel_table.h). A
+/// file whose checksum does not match is not used.
 MISFIT_KERNEL_API MisfitKernelStatus misfit_kernel_read(const char* path, MisfitKernel** kernel);
 
 /// Releases the kernel; for NULL it does nothing.
@@ -75,7 +75,7 @@ MISFIT_KERNEL_API MisfitKernelStatus misfit_kernel_max_error(const MisfitKernel*
 
 /// The W values C(s_r − t) at t in [−1/2, 1/2]: taps[r].
 MISFIT_KERNEL_API MisfitKernelStatus misfit_kernel_taps(const MisfitKernel* kernel, double t, double* taps);
-/// The same at t[0 … count−1]: taps[i * W + r]. Here and below arrays may be NULL where `count` is 0.
+/// The taps at t[0 … count−1]: taps[i * W + r]. Here and below arrays may be NULL where `count` is 0.
 MISFIT_KERNEL_API MisfitKernelStatus misfit_kernel_taps_at(const MisfitKernel* kernel, const double* t, size_t count,
                                                            double* taps);
 

@@ -19,10 +19,10 @@ struct KernelFamily {
   std::function<Kernel(int width, double x0)> solve;  ///< for arguments in these ranges
   bool costly = false;                                ///< solving takes longer than reading the solution from a file
 
-  /// These throw std::invalid_argument that names what lies outside the ranges.
+  /// These throw std::invalid_argument that names the argument outside its range.
   void require_width(int width) const;
   void require_x0(double x0) const;
-  /// The kernel of `width` for `x0`. Throws what these do.
+  /// The kernel of `width` for `x0`. Throws what require_width() and require_x0() do.
   Kernel make(int width, double x0) const;
 };
 
@@ -33,8 +33,8 @@ const std::vector<KernelFamily>& kernel_catalogue();
 /// std::invalid_argument lists those there are.
 KernelFamily kernel_family(const std::string& name);
 
-/// The family that holds `kernel` alone: its width, and any x0 up to its own, over which it is judged anew; what
-/// was known of the optimum at its own x0 is dropped.
+/// The family that holds `kernel` alone, for its width and any x0 up to its own. Its errors are judged anew over a smaller x0,
+/// and the facts about the optimum at its own x0 are dropped.
 KernelFamily family_of(const Kernel& kernel);
 
 }  // namespace misfit::kernels

@@ -4,8 +4,8 @@
 
 namespace misfit::kernels {
 
-/// Whoever calls CFITSIO has one of these meanwhile. No other thread calls it then, since builds of it need not be safe in
-/// threads; and numbers have decimal points, whatever the locale of the program: CFITSIO remembers the first that it sees.
+/// Code that calls CFITSIO holds one of these during the call. It keeps other threads out of CFITSIO, whose builds need not be
+/// thread-safe, and gives numbers decimal points, whatever the program's locale: CFITSIO remembers the first point it sees.
 class CfitsioCall {
  public:
   CfitsioCall();

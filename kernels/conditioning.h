@@ -4,14 +4,14 @@
 
 namespace misfit::kernels {
 
-/// C for a given h in doubles, in the two textbook ways, to see what rounding does to each: kernels are solved by
-/// solve_least_misfit, which chooses the arithmetic that it takes. For every t both minimise the mean over |x| ≤ x0 of
+/// These functions find C for a given h in doubles, in the two textbook ways, to show what rounding does to each. Kernels are
+/// solved by solve_least_misfit, which chooses its arithmetic. For every t both minimise the mean over |x| ≤ x0 of
 /// |exp(2πitx) − h(x) Σ_r C_r exp(2πi s_r x)|².
 
-/// By Cholesky's factors L D Lᵀ of the W×W normal equations, whose condition is the square of the design matrix's.
+/// Solves by Cholesky's factors L D Lᵀ of the W×W normal equations, whose condition is the square of the design matrix's.
 TapFunction solve_by_normal_equations(int width, double x0, const Correction& h);
 
-/// By Householder's QR of the design matrix of the cosines and sines.
+/// Solves by Householder's QR of the design matrix of the cosines and sines.
 TapFunction solve_by_orthogonal_factors(int width, double x0, const Correction& h);
 
 /// Taps with their values rounded to single precision, as a table of floats holds them.

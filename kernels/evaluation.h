@@ -11,14 +11,14 @@
 
 namespace misfit::kernels {
 
-/// A way to have a gridding function as values. judge(way.taps, x0, way.judging()) is what it really does.
+/// A way to evaluate a gridding function. judge(way.taps, x0, way.judging()) gives the errors that it really has.
 struct Evaluation {
   std::string name;  ///< as in "cubic table, Ms = 64"
   Precision precision = Precision::double_precision;
   std::size_t bytes = 0;   ///< of the numbers it keeps; 0 where nothing is tabulated
   int steps_per_cell = 0;  ///< see JudgeOptions
   TapFunction taps;
-  /// Σ over the positions of all taps. For measuring time: no cost but that of the taps.
+  /// The sum of all taps over the positions, to measure time: it costs no more than the taps.
   std::function<double(const Eigen::VectorXd& t)> total;
 
   JudgeOptions judging() const { return {steps_per_cell, {}}; }
@@ -31,16 +31,16 @@ Evaluation evaluate_directly(const LeastMisfit& solution, Precision precision);
 /// Looks the taps up; see LookupTable.
 Evaluation evaluate_by_table(const PiecewisePolynomial& kernel, const TableOptions& options, Precision precision);
 
-/// What a table of a function errs by, with the function's correction; `function` is the function's own misfit over |x| ≤ x0.
-/// Tables of up to 512 entries a cell are judged as they are. Of finer ones `mean` and `max` follow table_misfit, and `worst`
-/// and `worst_mean` are bounds: a table of degree d holds exp(2πitx) up to max |binomial(p, d+1)| (2πx/Ms)^(d+1), and repeats
-/// the function's errors at the entries by no more than the sum of the weights' magnitudes.
+/// The errors of a table of a function, with the function's correction; `function` is the function's own misfit over |x| ≤ x0.
+/// Tables of up to 512 entries a cell are judged as they are. For finer tables `mean` and `max` follow table_misfit, and
+/// `worst` and `worst_mean` are bounds: a table of degree d holds exp(2πitx) up to max |binomial(p, d+1)| (2πx/Ms)^(d+1), and
+/// repeats the function's errors at the entries by no more than the sum of the weights' magnitudes.
 Misfit judge_table(const PiecewisePolynomial& kernel, const Misfit& function, const TableOptions& options, double x0);
 
-/// By Horner's rule. Lower degrees are truncations: fit_polynomial(kernel, degree).
+/// Evaluates by Horner's rule. Lower degrees are truncations: fit_polynomial(kernel, degree).
 Evaluation evaluate_by_polynomial(const PiecewisePolynomial& kernel, Precision precision);
 
-/// By Horner's rule in even and odd halves; see EvenOddPolynomial.
+/// Evaluates by Horner's rule in even and odd halves; see EvenOddPolynomial.
 Evaluation evaluate_by_halves(const PiecewisePolynomial& kernel, Precision precision);
 
 }  // namespace misfit::kernels

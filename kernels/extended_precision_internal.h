@@ -11,7 +11,7 @@
 
 namespace misfit::kernels {
 
-/// IEEE binary128, as the compiler has it where it has one: five times as fast as a class.
+/// IEEE binary128: the compiler's type where it has one, which is five times as fast as a class.
 #if defined(__SIZEOF_FLOAT128__) && !defined(__STRICT_ANSI__) && __has_include(<quadmath.h>)
 using Quadruple = boost::multiprecision::number<boost::multiprecision::float128_backend, boost::multiprecision::et_off>;
 #else

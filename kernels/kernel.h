@@ -9,11 +9,11 @@
 
 namespace misfit::kernels {
 
-/// What was known of the gridding function before it was stored, and how it was found.
+/// Facts about the gridding function before it was stored, and how it was found.
 struct Origin {
   double mean_error = 0;                                              ///< E, the mean of ℓ over |x| ≤ x0
   double max_error = 0;                                               ///< largest ℓ over |x| ≤ x0
-  double max_error_bound = std::numeric_limits<double>::quiet_NaN();  ///< below which no function's max ℓ lies, where known
+  double max_error_bound = std::numeric_limits<double>::quiet_NaN();  ///< a lower bound of any function's max ℓ, where known
   double condition = std::numeric_limits<double>::quiet_NaN();        ///< of the normal equations for C, where solved
   double parameter = std::numeric_limits<double>::quiet_NaN();        ///< β or bandwidth of a family that has one
   int iterations = 0;
@@ -36,7 +36,7 @@ struct Kernel {
 /// 1e-7 of itself, as far as doubles and highest_degree hold it. Without an `origin` the function is judged as it is.
 Kernel make_kernel(const std::string& name, double x0, const TapFunction& function, const std::optional<Origin>& origin = {});
 
-/// The kernel with its polynomials cut to `degree`, judged anew, where they are of a higher one.
+/// The kernel with polynomials of at most `degree`: higher ones are cut to it and judged anew.
 Kernel truncated(const Kernel& kernel, int degree);
 
 }  // namespace misfit::kernels

@@ -11,20 +11,20 @@
 /// The function is C(u) for width W and retained fraction 2·x0, symmetric, and 0 beyond W/2. A visibility at u adds
 /// C(u − k) of itself to the W cells k nearest to it. The correction h, the error of images and a fast evaluation are derived
 /// from it, and its scale does not matter.
-/// - It is asked for inside cells only and stored as one polynomial for each: it is to be smooth there, and may jump or bend
+/// - C is evaluated inside cells only and stored as one polynomial a cell: it must be smooth inside cells, and may jump or bend
 ///   where they meet: at whole u for even W, at halves for odd W, where the middle cell is |u| < 1/2.
 /// - ∫ C du must be above 0, and all of h(x) over |x| ≤ x0 finite.
 
-/// Of the interface: of the layout and meaning of what follows. Libraries for another one are refused.
+/// The version of the interface: of the layout and meaning of MisfitKernelPlugin. Libraries for another version are refused.
 #define MISFIT_KERNEL_PLUGIN_VERSION 1
 
 #ifdef __cplusplus
 extern "C" {
 #endif
 
-/// What a library says of its kernel. All bytes are 0 when register_<name> gets it, and what is not mentioned there is to stay
-/// 0. What it points to must last as long as the program. register_<name> may be called more than once. In C++ it and `value`
-/// may throw: the user reads what() of a std::exception as an error.
+/// A library's description of its kernel. All bytes are 0 when register_<name> gets it, and bytes that it has no value for must
+/// stay 0. Its pointers must stay valid as long as the program runs. register_<name> may be called more than once. In C++
+/// register_<name> and `value` may throw: the user reads what() of a std::exception as an error.
 typedef struct MisfitKernelPlugin {
   int version;              ///< MISFIT_KERNEL_PLUGIN_VERSION
   int min_width;            ///< smallest W in cells, 1 or more

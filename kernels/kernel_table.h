@@ -9,8 +9,8 @@
 
 namespace misfit::kernels {
 
-/// Counted up whenever any bit of a kernel that the catalogue makes changes: what older versions left in caches is then made
-/// anew.
+/// Counted up whenever any bit of any kernel of the catalogue changes, so that kernels which older versions left in caches are
+/// made anew.
 inline constexpr int solver_version = 2;
 
 inline constexpr int kernel_table_max_width = 20;
@@ -22,7 +22,7 @@ struct TableSampling {
   int interpolation = 3;  ///< degree of the polynomial through rows next to each other, 0 (nearest row) to 3
 };
 
-/// What a kernel-table file holds. Its HDUs are
+/// The content of a kernel-table file. Its HDUs are
 /// - primary: no data; KERNEL, W, X0, PADDING, E, MAXELL, EOPT, COND, PRECISN and more: all of `Kernel` that is no table;
 /// - POLY: a row for each cell r = 0 … W−1, COEFF = ascending powers of t, as in `PiecewisePolynomial`; the same header;
 /// - CONVFUNC: U, C as in sampled_function(); CORRECT: X, H, ONE_OVER_C, the optimal correction and 1/c over 0 ≤ x ≤ x0;
@@ -36,7 +36,7 @@ struct KernelTable {
   bool checksum_ok = false;               ///< every HDU has a CHECKSUM and a DATASUM, and they match
 };
 
-/// A further table of a file: what a host is given beside the kernel's own.
+/// A further table in a file, for a host, beside the kernel's own tables.
 struct HostTable {
   struct Column {
     std::string name;
@@ -56,7 +56,7 @@ void write_kernel_table(const Kernel& kernel, const std::optional<TableSampling>
 /// Reads POLY and the header: the same kernel bit for bit. Throws std::runtime_error that names the path, the thing and what
 /// was expected when this is no such file. A checksum that does not match is for the caller to judge.
 KernelTable read_kernel_table(const std::filesystem::path& path);
-/// The same for callers that want nothing of a file whose checksum does not match: std::runtime_error that names the path.
+/// Reads as read_kernel_table() does, but throws std::runtime_error that names the path where the checksum does not match.
 KernelTable read_intact_kernel_table(const std::filesystem::path& path);
 
 }  // namespace misfit::kernels

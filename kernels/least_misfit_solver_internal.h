@@ -11,7 +11,7 @@ namespace misfit::kernels {
 /// arithmetic understands: [j][part], each coefficient the sum of its parts, largest first. Empty for h = 1.
 using LogCorrection = Eigen::MatrixXd;
 
-/// What the search for h starts from and aims at.
+/// The start and the goal of the search for h.
 struct MisfitProblem {
   int width = 0;
   double x0 = 0;

@@ -72,7 +72,8 @@ class Solver {
     return log_h;
   }
   VectorOf<Real> moved(const VectorOf<Real>& h, const VectorOf<Real>& step) const { return h.array() * step.array().exp(); }
-  /// The rounding of a residual of order 1 that an h of different sizes amplifies, in E; measured to be 5% of this.
+  /// An upper estimate of E's relative rounding: a residual of order 1 is rounded, and the range of h amplifies that. The
+  /// measured rounding is 5% of it.
   double relative_rounding(const Expansion<Real>& here, const VectorOf<Real>& h) const {
     using std::sqrt;
     return static_cast<double>(std::numeric_limits<Real>::epsilon() * (h.maxCoeff() / h.minCoeff()) /

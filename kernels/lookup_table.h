@@ -10,8 +10,8 @@
 
 namespace misfit::kernels {
 
-/// How a lookup table is read between its entries: the nearest entry, or the polynomial of degree 1, 2, 3 through as many
-/// entries more. The value is the degree.
+/// How a lookup table is read between its entries: the nearest entry, or the polynomial of degree 1, 2 or 3 through 2, 3 or 4
+/// entries. The value is the degree.
 enum class Interpolation { nearest, linear, quadratic, cubic };
 inline constexpr std::array<const char*, 4> interpolation_names{"nearest", "linear", "quadratic", "cubic"};  ///< by degree
 
@@ -43,7 +43,7 @@ struct TablePlace {
 /// C ≈ Σ_j binomial(p, j) Δ^j C_k (Abramowitz & Stegun 1964, eq. 25.2.28; Ye, Gull, Tan & Nikolic 2020, MNRAS 491, 1146,
 /// tabulate so). Every cell of C has a table of its own, continued beyond the cell's end by the cell's polynomial, so that
 /// nothing is interpolated across the jumps of C. C(−u) = C(u): entries for t ≥ 0 serve t < 0 with the taps in reverse, half of
-/// what W cells would take. `Real`, float or double, is what entries and arithmetic are in.
+/// what W cells would take. `Real`, float or double, is the type of entries and arithmetic.
 template <typename Real>
 class LookupTable {
  public:
@@ -84,8 +84,8 @@ extern template class LookupTable<double>;
 /// and 313/362880.
 double interpolation_error_factor(Interpolation interpolation);
 
-/// The E that a table of Ms entries a cell adds to that of its function, whatever the function, as long as the correction is
-/// that of the function:
+/// The E that a table of Ms entries a cell adds to its function's E, for any function, as long as the correction is the
+/// function's:
 ///   e² = κ² (2π x0)^(2d+2) / ((2d+3) Ms^(2d+2)),
 /// since h Σ_r C_r(t) exp(2πi s_r x) is close to exp(2πitx), whose (d+1)-th derivative has the size (2πx)^(d+1), squared and
 /// averaged over |x| ≤ x0.

@@ -12,10 +12,11 @@ namespace misfit::kernels {
 /// h at many x.
 using Correction = std::function<Eigen::VectorXd(const Eigen::VectorXd& x)>;
 
-/// What is judged besides the taps.
+/// How taps are judged.
 struct JudgeOptions {
-  /// The taps are smooth in t only between multiples of 1/(2·steps_per_cell), as those of a lookup table of so many entries a
-  /// cell are; 0 = smooth over the cell. For taps that carry the rounding of single precision, 64 average it to 2%.
+  /// The taps are smooth in t only between multiples of 1/(2·steps_per_cell), as are the taps of a lookup table of
+  /// steps_per_cell entries a cell; 0 = smooth over the cell. For taps that carry the rounding of single precision, 64 average
+  /// it to 2%.
   int steps_per_cell = 0;
   Correction correction = {};  ///< h that the image is multiplied by; empty = the optimal one
 };
@@ -34,7 +35,8 @@ Eigen::VectorXd image_taper(const TapFunction& taps, const Eigen::VectorXd& x, i
 /// The correction in common use, 1/c(x).
 Correction reciprocal_taper(const TapFunction& taps);
 
-/// The same for gridders that divide a visibility's taps by their sum, whose taper is about c(x)/c(0): c(0)/c(x).
+/// The correction in common use of gridders that divide a visibility's taps by their sum, whose taper is about c(x)/c(0):
+/// c(0)/c(x).
 Correction relative_reciprocal_taper(const TapFunction& taps);
 
 /// How far a kernel is from the exact transform over |x| ≤ x0; squares of relative errors of a one-dimensional transform.
@@ -47,8 +49,8 @@ struct Misfit {
 
 Misfit judge(const TapFunction& taps, double x0, const JudgeOptions& options = {});
 
-/// The same over the pixels of an image, x = (−pixels/2 … (pixels−1)/2) / fft_size with integer division: what counts where few
-/// pixels are no continuum.
+/// The misfit over the pixels of an image, x = (−pixels/2 … (pixels−1)/2) / fft_size with integer division, for images whose
+/// pixels are too few to be a continuum.
 Misfit judge_pixels(const TapFunction& taps, int pixels, int fft_size);
 
 /// How much the correction amplifies noise that is white over the cells of the grid, as rounding is, relative to the image of
@@ -56,7 +58,7 @@ Misfit judge_pixels(const TapFunction& taps, int pixels, int fft_size);
 /// 0.
 double noise_gain(const TapFunction& taps, double x0);
 
-/// The same at the x where it is largest: max of |h| over |x| ≤ x0 · √(∫ C² du).
+/// The noise gain at the x where it is largest: max of |h| over |x| ≤ x0 · √(∫ C² du).
 double largest_noise_gain(const TapFunction& taps, double x0);
 
 }  // namespace misfit::kernels

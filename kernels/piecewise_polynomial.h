@@ -27,13 +27,13 @@ inline constexpr int highest_degree = 24;
 /// symmetry C(−u) = C(u) holds exactly in the result. The degree lies in [0, 24] (std::invalid_argument).
 PiecewisePolynomial fit_polynomial(const TapFunction& taps, int degree);
 
-/// The same of the lowest degree that leaves a mean square Σ_r ∫ |fit_r − C_r|² dt of at most `mean_square`, or of
-/// highest_degree.
+/// The best polynomial of the lowest degree that leaves a mean square Σ_r ∫ |fit_r − C_r|² dt of at most `mean_square`; of
+/// highest_degree where none does.
 PiecewisePolynomial fit_polynomial_within(const TapFunction& taps, double mean_square);
 
-/// The part of the polynomials, RMS over RMS, that their Legendre terms of degree 21 to 24 = highest_degree hold. More than
-/// rounding says that the series was cut before it converged, by as much or somewhat more: what it stands for bends or jumps
-/// inside a cell.
+/// The RMS of the polynomials' Legendre terms of degree 21 to 24 = highest_degree over the RMS of the polynomials. A value
+/// above rounding says that the series was cut before it converged, and errs by as much or somewhat more: the function bends or
+/// jumps inside a cell.
 double part_in_last_terms(const PiecewisePolynomial& polynomial);
 
 }  // namespace misfit::kernels

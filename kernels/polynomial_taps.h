@@ -8,7 +8,7 @@
 namespace misfit::kernels {
 
 /// Taps of a polynomial for loops that want no allocation; widths to 20, std::invalid_argument beyond. `Real`, float or double,
-/// is what coefficients and arithmetic are in.
+/// is the type of coefficients and arithmetic.
 
 /// Horner's rule in every cell.
 template <typename Real>
@@ -47,7 +47,7 @@ class EvenOddPolynomial {
   int width_;
   int cells_;               ///< ceil(W/2)
   std::vector<Real> even_;  ///< [power of t², descending][cell]
-  std::vector<Real> odd_;   ///< the same without the middle cell, which is even
+  std::vector<Real> odd_;   ///< [power of t², descending][cell], without the middle cell, which is even
 };
 
 extern template class PlainPolynomial<float>;

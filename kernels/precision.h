@@ -2,7 +2,7 @@
 
 namespace misfit::kernels {
 
-/// What positions, stored numbers and arithmetic are in.
+/// The precision of positions, stored numbers and arithmetic.
 enum class Precision { single_precision, double_precision };
 
 }  // namespace misfit::kernels

@@ -79,7 +79,7 @@ QuadratureOf<Real> gauss_legendre_in(int points, const Real& from, const Real& t
 }
 
 /// The Gauss–Lobatto rule of `points` ≥ 2 points on [from, to], both ends among them, exact for polynomials of degree
-/// 2·points − 3 (ibid., eq. 25.4.32).
+/// 2·points − 3 (Abramowitz & Stegun 1964, eq. 25.4.32).
 template <typename Real>
 QuadratureOf<Real> gauss_lobatto_in(int points, const Real& from, const Real& to) {
   using std::abs;
@@ -107,8 +107,8 @@ QuadratureOf<Real> gauss_lobatto_in(int points, const Real& from, const Real& to
   return rule;
 }
 
-/// In doubles, correctly rounded but for a bit: computed in long double, since Newton's last step and the weights would lose
-/// two digits.
+/// The Gauss–Legendre rule in doubles, correctly rounded but for a bit: it is computed in long double, since Newton's last step
+/// and the weights would lose two digits.
 inline Quadrature gauss_legendre(int points, double from, double to) {
   const QuadratureOf<long double> rule = gauss_legendre_in<long double>(points, from, to);
   return {rule.node.cast<double>(), rule.weight.cast<double>()};

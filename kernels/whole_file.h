@@ -9,12 +9,11 @@ namespace misfit::kernels {
 /// The bytes of the regular file at `path`, at most `limit`. Throws std::runtime_error that names the path.
 std::vector<char> read_whole_file(const std::filesystem::path& path, std::size_t limit);
 
-/// Where a file called `path` is to be written: links are followed. Throws std::runtime_error where something lies that is no
-/// regular file, as a device or a folder, since a new file would take its place.
+/// The path where a file called `path` is to be written: links are followed. Throws std::runtime_error where a device, a folder
+/// or anything else that is no regular file lies there, since a new file would replace it.
 std::filesystem::path writable_target(const std::filesystem::path& path);
 
-/// A name beside `path` that nobody else uses, in another process or on another machine either: of a file that takes the name
-/// `path` when it is complete.
+/// A name beside `path` that no other process on any machine uses, for a file that is renamed to `path` when it is complete.
 std::filesystem::path temporary_beside(const std::filesystem::path& path);
 
 /// Whether a name is one that temporary_beside() gives.
