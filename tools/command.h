@@ -14,8 +14,8 @@ namespace misfit::tools {
 /// How the program was called.
 struct CommandCall {
   std::string command_line;                      ///< that was typed, for HISTORY and reports
-  const imager::Ranks& ranks = imager::alone();  ///< those who share the run
-  Outcome* outcome = nullptr;  ///< gets what came of `image`, `predict` and `mosaic`; null: their words go to standard output
+  const imager::Ranks& ranks = imager::alone();  ///< that share the run
+  Outcome* outcome = nullptr;  ///< gets the outcome of `image`, `predict` and `mosaic`; null: their words go to standard output
 };
 
 /// Each adds one subcommand to the program, which runs when it is the one called. They throw std::invalid_argument for wrong

@@ -22,7 +22,7 @@ class InOrder {
     waiting_.emplace(number, std::move(thing));
     while (!waiting_.empty() && waiting_.begin()->first == next_) hand_on_first();
   }
-  /// Those that wait for others which will not come.
+  /// Hands on all that wait for numbers which will not come.
   void flush() {
     const std::lock_guard lock(mutex_);
     while (!waiting_.empty()) hand_on_first();

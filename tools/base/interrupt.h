@@ -13,11 +13,12 @@ struct Interrupted : std::runtime_error {
 /// the process at once, whoever calls this again.
 void catch_interrupts();
 bool interrupted();
-/// Whether the user pressed Ctrl-C twice, in a process that is another's: then stages end at once that else stop by themselves.
+/// Whether the user pressed Ctrl-C twice in another program's process: stages that stop by themselves then end at once, too.
 bool interrupted_again();
 
-/// As long as it lives, work is done in a process that is another program's, such as Python's. catch_interrupts() does nothing
-/// then. SIGINT is caught where the process lets it be, and is the process's own again after. One at a time.
+/// As long as it lives, work is done in another program's process, such as Python's. catch_interrupts() does nothing then.
+/// SIGINT is caught, if asked, unless the process ignores it, and is the process's own again afterwards. One may live at a
+/// time.
 class BorrowedProcess {
  public:
   explicit BorrowedProcess(bool catches_interrupts);

@@ -19,7 +19,7 @@ std::string all_digits(double value);
 /// to 1000.
 std::string power_of_ten(double value, int digits);
 
-/// The same with the power as `power` writes it, given the exponent.
+/// `value` as "3.2 × " and the power of ten as `power` writes it, given the exponent.
 std::string power_of_ten(double value, int digits, const std::function<std::string(int exponent)>& power);
 
 /// `count` with a thin space between groups of three digits.
@@ -43,10 +43,10 @@ ScaledUnit scaled_unit(double value, const std::string& base);
 /// An angle's unit for something of size `angle_rad`: mas, arcsec, arcmin or deg; `size` is in radians.
 ScaledUnit angle_unit(double angle_rad);
 
-/// `value` in that unit, as "1.2 mJy/beam".
+/// `value` in its scaled_unit(), as "1.2 mJy/beam".
 std::string with_prefix(double value, const std::string& base, int digits);
 
-/// The angle in that unit, as "1.2 arcsec".
+/// The angle in its angle_unit(), as "1.2 arcsec".
 std::string angle_text(double angle_rad, int digits);
 
 /// A frequency in GHz, MHz, kHz or Hz, as "1.42041 GHz".

@@ -11,28 +11,27 @@ class Validator;
 
 namespace misfit::tools {
 
-/// Checks of an option's value; the parser puts the option's name before what they say.
+/// Checks of an option's value; the parser puts the option's name before their messages.
 
-/// That `parse`, one of quantity.h, can read it.
+/// Checks that `parse`, one of quantity.h, can read the value.
 CLI::Validator quantity(double (*parse)(const std::string&));
 
-/// That a number which decides nothing when it is left out is not given as 0: "0: expected …".
+/// Checks that 0, the default that stands for "not given", is not given: "0: expected …".
 CLI::Validator not_zero(const std::string& expected);
 
-/// That there is one: "" is no file's name.
+/// Checks that the value is not "", which is no file's name.
 CLI::Validator not_empty();
 
-/// Puts the name that an option has for a value in place of others that people know it by, [others'] = ours; for
-/// Option::transform().
+/// Replaces names that a value has elsewhere by our name for it, [theirs] = ours; for Option::transform().
 CLI::Validator also_named(const std::map<std::string, std::string>& names);
 
-/// Puts whole numbers in place of what is one, 512.0 or 1e5; for Option::transform().
+/// Writes whole numbers such as 512.0 or 1e5 as 512 or 100000; for Option::transform().
 CLI::Validator whole_number();
 
 /// Whether an option takes values besides those that --help lists.
 enum class Others { refused, possible };
 
-/// Stands in such a list for the others.
+/// Stands for the other values in the list of --help.
 inline constexpr const char* and_others = "…";
 
 /// No check, for options whose command looks at the value itself: it says in --help, and so in manual pages and to completion,
@@ -41,19 +40,19 @@ CLI::Validator values_are(const std::vector<std::string>& names, Others others =
 
 /// A mark says, where an option is declared, how code that handles all options alike treats this one.
 enum class OptionMark {
-  free_of_state,  ///< it only ends CLEAN or does not reach it: a run that goes on from a state may have another
-  way_of_clean,   ///< it is how CLEAN goes on: so may a run with another, which then looks at its residual anew
-  typed_alone,    ///< it comes from no file of options, where others could have put it
-  one_or_each,    ///< it takes one value, with blanks perhaps, or several: in files of options a list has each in quotes
-  not_repeated,   ///< it is no part of the run's file of options: whoever repeats a run does without it
+  free_of_state,  ///< it only ends CLEAN or does not reach it: a run that goes on from a state may have another value
+  way_of_clean,   ///< it says how CLEAN goes on: a run from a state may have another value, and then computes its residual anew
+  typed_alone,    ///< it must be typed: files of options, where others could have put it, may not hold it
+  one_or_each,    ///< it takes one value, perhaps with blanks, or several: files of options have each value of a list in quotes
+  not_repeated,   ///< the run's file of options leaves it out: a repeated run does without it
 };
 
 /// Returns the option.
 CLI::Option* mark(CLI::Option* option, OptionMark mark);
 bool has(const CLI::Option& option, OptionMark mark);
 
-/// Types of values for Option::type_name(), of options that take a path: by them --help, manual pages and completion know that.
-/// A path is where something is to be, and what its name begins with.
+/// Types of values, for Option::type_name(), by which --help, manual pages and completion know options that take a path. A PATH
+/// is the place of something to be written, and its name or the beginning of its name.
 inline constexpr const char* file_type = "FILE";
 inline constexpr const char* folder_type = "FOLDER";
 inline constexpr const char* path_type = "PATH";

@@ -12,7 +12,7 @@ struct Outcome {
   std::string words;      ///< for people, whole lines
 };
 
-/// Where outcomes go: to the caller, or, null, their words on standard output unless they are to be quiet.
+/// Gives the outcome to `caller`; where that is null, prints its words on standard output unless `quiet`.
 void conclude(Outcome&& outcome, bool quiet, Outcome* caller);
 
 }  // namespace misfit::tools

@@ -15,7 +15,7 @@ std::string packed(const Thing& thing) {
   return std::move(bytes).str();
 }
 
-/// The other way. Throws cereal::Exception where there are fewer bytes than the thing has.
+/// The thing that packed() made `bytes` of. Throws cereal::Exception where there are fewer bytes than the thing has.
 template <typename Thing>
 Thing unpacked(std::string packed) {
   std::istringstream bytes(std::move(packed));

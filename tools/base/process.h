@@ -2,8 +2,8 @@
 
 namespace misfit::tools {
 
-/// To be called before anything is computed or opened: what the heap gives back stays with the process, since fresh pages are
-/// as dear as what is done with them; and casacore, which ends where there is no HOME, finds one.
+/// To be called before anything is computed or opened. Freed memory stays with the process, since fresh pages cost as much as
+/// the work on them; and HOME is set, without which casacore ends.
 void prepare_process();
 
 }  // namespace misfit::tools

@@ -8,8 +8,8 @@
 
 namespace misfit::tools {
 
-/// Has lines of all runs told to `tell`, which any thread may call, in place of stderr, where then no line is live; empty: on
-/// stderr again. Not while something runs.
+/// Sends the lines of all runs to `tell`, which any thread may call, and not to stderr; no line is live then. An empty `tell`
+/// stands for stderr again. Not to be called during a run.
 void tell_lines(std::function<void(const std::string&)> tell);
 
 /// Says on stderr what a run is doing: on a terminal one live line with percentage and time left, elsewhere a plain line when a

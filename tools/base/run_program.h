@@ -11,8 +11,8 @@ namespace misfit::tools {
 enum class OnInterrupt { finish, stop };
 
 /// Runs a program found on PATH, or at a path, in `folder`, without input; what it says on both streams is left in the file
-/// "said" there. Returns how it ended as waitpid tells it, which is 0 where it succeeded alone, or nothing where there is no
-/// such program.
+/// "said" there. Returns the status that waitpid tells, 0 only where the program succeeded; nothing where there is no such
+/// program.
 std::optional<int> run_program(std::vector<std::string> words, const std::filesystem::path& folder,
                                OnInterrupt on_interrupt = OnInterrupt::finish);
 

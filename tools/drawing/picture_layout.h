@@ -19,7 +19,7 @@ struct PictureLayout {
   int width = 0;
   int height = 0;
 
-  /// Of a plot whose sides are as these.
+  /// The layout of a plot whose sides have the ratio across : up.
   PictureLayout(int across, int up);
 
   double x(double from_left) const { return from_left / width; }     ///< gnuplot's screen coordinate
@@ -33,7 +33,7 @@ struct PlotAxis {
   double to = 1;
 };
 
-/// Colours for values between `low` and `high`, in gnuplot's syntax, and the words below.
+/// Colours for values between `low` and `high`, in gnuplot's syntax, and the words below the bar.
 struct ColourBar {
   std::string palette;
   double low = 0;

@@ -15,18 +15,18 @@ struct ReducedImage {
 };
 ReducedImage reduce(const imager::Image& image, int most);
 
-/// Each pixel becomes that of largest magnitude no more than `reach` rows and columns away, so that a point is a square that
-/// can be seen.
+/// Each pixel becomes the pixel of largest magnitude within `reach` rows and columns, so that a point is a square that can be
+/// seen.
 imager::Image spread_points(const imager::Image& image, int reach);
 
-/// What a picture shows of an image: so few pixels that to keep them costs nothing, and the stretch that all its pixels ask
-/// for. It outlasts the image.
+/// The part of an image that a picture needs: few enough pixels to keep at no cost, and the stretch that suits all pixels. It
+/// outlasts the image.
 struct Sketch {
   ReducedImage reduced;
   Stretch stretch;
 };
 
-/// For a picture whose longer side has so many screen pixels; points of a sparse image cover five of them or more.
+/// The sketch for a picture whose longer side has `screen_pixels`; points of a sparse image cover five screen pixels or more.
 Sketch sketch(const imager::Image& image, Shades shades, int screen_pixels);
 
 /// A side of a pixel, from one of its corners to the next. Corner (row, column) is where that pixel begins, from the south and
@@ -38,7 +38,7 @@ struct PixelSide {
   int to_column = 0;
 };
 
-/// The sides that part pixels that `mask` allows from others, see imager/clean/mask.h.
+/// The sides between pixels that `mask` allows and other pixels, see imager/clean/mask.h.
 std::vector<PixelSide> outline(const imager::Image& mask);
 
 }  // namespace misfit::tools

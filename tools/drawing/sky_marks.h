@@ -31,7 +31,7 @@ struct SkyOffset {
 /// Half of the smallest upright box around a beam's ellipse at half maximum.
 SkyOffset beam_reach(const imager::Beam& beam);
 
-/// That ellipse about 0 as a closed polygon that begins at the tip which the position angle names.
+/// The beam's ellipse at half maximum about 0, as a closed polygon that begins at the tip which the position angle names.
 std::vector<SkyOffset> beam_ellipse(const imager::Beam& beam);
 
 /// The largest round angle not above `longest_rad`: 1, 2, 5, 10, 20 or 30 arcsec or arcmin; above them 1, 2 or 5 × 10^k deg,

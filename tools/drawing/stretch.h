@@ -10,7 +10,7 @@ namespace misfit::tools {
 /// What the shades of a picture are to show.
 enum class Shades {
   brightness,  ///< sources on noise: from a little below the noise up to the brightest pixel
-  about_zero,  ///< what may be of either sign, such as a residual: as far down as up, 0 in the middle
+  about_zero,  ///< values of either sign, such as a residual: as far down as up, 0 in the middle
 };
 
 /// How pixel values become shades: linear from `low` to `high`, or asinh(value / knee), which is linear below the knee and
@@ -25,10 +25,10 @@ struct Stretch {
 };
 
 /// Limits from the noise, estimated as 1.4826 × the median absolute deviation, and from the pixels that are finite.
-/// Of brightness: low is −3 noise (not below the smallest pixel), high the largest pixel; linear up to a peak of 30 noise, else
-/// asinh with the knee at 3 noise. About zero: ± the largest magnitude, linear up to 8 noise; low is 0 where no pixel is
-/// negative. A sparse image has no noise: its knee is the magnitude that nine tenths of its pixels that are not zero
-/// exceed, but at least 1e-4 of the largest; of brightness its low is −knee, so that 0 stays dark.
+/// For brightness: low is −3 noise (not below the smallest pixel), high the largest pixel; linear up to a peak of 30 noise,
+/// else asinh with the knee at 3 noise. About zero: ± the largest magnitude, linear up to 8 noise; low is 0 where no pixel is
+/// negative. A sparse image has no noise: its knee is the magnitude that nine tenths of its pixels that are not zero exceed,
+/// but at least 1e-4 of the largest; for brightness its low is −knee, so that 0 stays dark.
 Stretch choose_stretch(const imager::Image& image, Shades shades = Shades::brightness);
 
 /// A mark of the colour bar.

@@ -33,8 +33,8 @@ struct TaperNodes {
 };
 TaperNodes taper_nodes(const kernels::PiecewisePolynomial& function);
 
-/// Coefficients of z = −2t in [−1, 1], the highest power first, [power][cell]: what ducc0 and FINUFFT evaluate. At least
-/// `least_degree`, with zeros above.
+/// Coefficients of powers of z = −2t in [−1, 1], which ducc0 and FINUFFT evaluate: [power, descending][cell], of degree
+/// `least_degree` at least, with zeros above the function's degree.
 Eigen::VectorXd horner_coefficients(const kernels::PiecewisePolynomial& function, int least_degree);
 
 }  // namespace misfit::tools

@@ -9,20 +9,20 @@
 
 namespace misfit::tools {
 
-/// All that is said of a gridding function in a host, and written for it.
+/// A gridding function in a host: all that is stated of it and written for it.
 struct Emission {
   const Host* host = nullptr;
   HostKernel table;
   DivisorSeries divisor;               ///< 1/h, optimal for the taps that the host makes
   RealisedError realised;              ///< with the correction of the file, and rounding
-  double rounding = 0;                 ///< about what of it is rounding
+  double rounding = 0;                 ///< about the part of `realised` that is rounding
   std::optional<RealisedError> own;    ///< with the correction that the host works out by itself
-  std::optional<RealisedError> stock;  ///< what the host errs by without us
+  std::optional<RealisedError> stock;  ///< the host's error with its own function
   RealisedError function;              ///< the function's own, without the host
 };
 
-/// Emission::realised alone. Throws std::invalid_argument where the host cannot hold the kernel: its width, degree, table or
-/// padding.
+/// Computes Emission::realised alone. Throws std::invalid_argument where the host cannot hold the kernel: its width, degree,
+/// table or padding.
 RealisedError realised_in(const Host& host, const HostKernel& table);
 
 /// Throws as realised_in() does.
@@ -32,7 +32,7 @@ Emission emission(const Host& host, const HostKernel& table);
 /// |2·x0·padding − 1| > 1e-3.
 void check_padding(const Host& host, double x0, double padding);
 
-/// What is printed, and stands at the head of every file: a line each.
+/// The lines that are printed, and stand at the head of every file.
 std::vector<std::string> statement(const Emission& emission);
 
 }  // namespace misfit::tools

@@ -5,12 +5,12 @@
 
 namespace misfit::tools {
 
-/// What --emit and the options beside it ask for.
+/// The request of --emit and the options beside it.
 struct EmitOptions {
   std::string host;
   double host_padding = 0;  ///< 0 = the host's own, or that of the kernel
   double target_error = 0;  ///< 0 = width and sampling are given
-  bool force = false;       ///< though the kernel is made for another padding
+  bool force = false;       ///< emit a kernel that is made for another padding, too
   int image_size = 1024;
 
   int width = 0;           ///< 0 = the only one of the family, or the target's
@@ -20,7 +20,7 @@ struct EmitOptions {
   int interpolation = -1;  ///< −1 = the nearest entry, or cubic where a host interpolates
 };
 
-/// What is to be written for the host; std::invalid_argument names the option that cannot be meant, or what the host cannot do.
+/// The emission to write; std::invalid_argument names the option that cannot be meant, or what the host cannot do.
 Emission plan_emission(const EmitOptions& options, const kernels::KernelFamily& family);
 
 }  // namespace misfit::tools

@@ -21,7 +21,7 @@ struct HostKernel {
   double x0() const { return 0.5 / padding; }  ///< half of the FFT image that the host keeps
 };
 
-/// What a host does to the data, by its published rule.
+/// A host's taps and correction, by its published rule.
 struct HostRule {
   kernels::TapFunction taps;
   int steps_per_cell = 0;          ///< as in kernels::JudgeOptions
@@ -43,7 +43,7 @@ struct Emission;
 struct Host {
   std::string name;               ///< as given to --emit
   std::string title;              ///< a line's beginning: "casacore's ConvolveGridder"
-  std::string habit;              ///< how it has values, normalises and corrects, in a line
+  std::string habit;              ///< how it evaluates, normalises and corrects, in a line
   std::optional<double> padding;  ///< that it uses unless it is told otherwise
   double min_padding = 1;
   double max_padding = 500;
@@ -52,7 +52,7 @@ struct Host {
   TableSizes table;
   int bits = 53;                   ///< of the mantissa of what it sums up
   bool depends_on_pixels = false;  ///< whether its own correction depends on the image's size
-  /// Lowest and highest degree of the polynomials that it holds for a width; those of hosts with tables do not matter.
+  /// Lowest and highest degree of the polynomials that it holds for a width; not used for hosts with tables.
   std::function<std::pair<int, int>(int width)> degrees;
   std::function<int(int width)> taps_of;           ///< cells that it touches an axis for a kernel of this width
   std::function<double(const HostKernel&)> bytes;  ///< of its tables; empty for hosts with polynomials
@@ -62,17 +62,17 @@ struct Host {
   std::function<kernels::Correction(const HostKernel&)> own_correction;
   /// The correction that its file gives it; empty = the optimal one.
   std::function<kernels::Correction(const HostKernel&)> given_correction;
-  /// What it does without us, at this padding and image size; empty where that is not known.
+  /// Its rule with its own function, at this padding and image size; empty where that is not known.
   std::function<HostRule(const HostKernel&)> stock;
-  std::string stock_name;  ///< that function: "its spheroidal function, 100 entries a cell"
+  std::string stock_name;  ///< its own function: "its spheroidal function, 100 entries a cell"
   /// Writes the file; it appears under its name only when complete.
   std::function<void(const Emission&, const std::string& path)> write;
 };
 
-/// Every host there is. A new one is a line there.
+/// Every host there is. A new one is a line in hosts.cpp.
 const std::vector<Host>& host_catalogue();
 
-/// Their names.
+/// The names of all hosts.
 std::vector<std::string> host_names();
 
 /// The host called `name`; for any other name std::invalid_argument lists those there are.

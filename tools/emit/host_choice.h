@@ -5,12 +5,12 @@
 
 namespace misfit::tools {
 
-/// What a kernel for a host is chosen for.
+/// The needs that a kernel for a host is chosen by.
 struct HostRequest {
   const Host* host = nullptr;
   kernels::KernelFamily family;
   double target_error = 1e-6;  ///< RMS, as RealisedError::rms
-  double padding = 2;          ///< that the host will use
+  double padding = 2;          ///< FFT size over image size that the host will use
   int interpolation = 0;
   int image_size = 1024;
 };

@@ -16,8 +16,8 @@ namespace misfit::tools {
 /// (OptionMark::typed_alone), and std::runtime_error when the file cannot be read.
 void add_config_option(CLI::App& command);
 
-/// The options in force, as a file for --config; left out are those that are empty or not_repeated, see
-/// OptionMark; those that are typed_alone are comments.
+/// The options in force, as a file for --config, without options that are empty or marked not_repeated; options marked
+/// typed_alone are comments (see OptionMark).
 std::string config_text(const CLI::App& command);
 
 /// Throws std::invalid_argument that names an option whose value has a line break or another control character, which no such

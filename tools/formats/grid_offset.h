@@ -8,15 +8,15 @@
 
 namespace misfit::tools {
 
-/// An image in a file beside one of the run, as both state where they lie.
+/// How the pixels of an image in a file lie beside those of an image of the run, by what both state of the sky.
 class GridBeside {
  public:
-  /// `what` names the file: "mask a.fits", which says where it lies on the sky. Where both move along with their fields
+  /// `what` names the file: "mask a.fits". The file must say where it lies on the sky. Where both move along with their fields
   /// (Observation::moving_at), each counts from where its own field was. Throws std::runtime_error where the file moves along
   /// and the image stands still.
   GridBeside(const imager::ImageReader& file, const std::string& what, const imager::ImageHeader& image);
 
-  /// Where the file's pixels lie beside the image, which may be elsewhere than the file says.
+  /// The file's grid; where the file moves along with its field, about the image's phase centre and not where the file says.
   const imager::SkyGrid& grid() const { return grid_; }
   /// Where the pixels of the image lie among those of the file, in whatever frame.
   const imager::GridMap& map() const { return map_; }
@@ -29,11 +29,11 @@ class GridBeside {
   std::string remark_;
 };
 
-/// How the pixels of an image lie beside those of a grid: whole pixels (right, up) away from their own numbers, but for so
-/// much.
+/// The offset of an image's pixels on a grid: whole pixels to the right and up from the place of the same numbers, to within
+/// `most` pixels.
 struct GridOffset {
-  bool any = false;  ///< whether the grid has a place for one of them
-  bool all = true;   ///< for each
+  bool any = false;  ///< whether the grid has a place for any pixel
+  bool all = true;   ///< whether it has one for every pixel
   double right = 0, up = 0;
   double most = 0;  ///< pixels
 };

@@ -14,12 +14,12 @@ namespace misfit::tools {
 /// not say where it lies on the sky is laid on pixel by pixel.
 class MaskPlacement {
  public:
-  /// Of the mask in `file`, which is at `path`, beside an image of this header. Throws std::runtime_error that names it and
-  /// what was expected, where it covers none of the image, or says nothing of the sky and has another size, or moves along with
-  /// its field and the image does not.
+  /// Places the mask in `file`, which is at `path`, beside an image of this header. Throws std::runtime_error that names the
+  /// mask and what was expected, where it covers none of the image, says nothing of the sky and has another size, or moves
+  /// along with its field and the image does not.
   MaskPlacement(const imager::ImageReader& file, const std::string& path, const imager::ImageHeader& image);
 
-  /// What the user should know of it; empty where the mask has the image's pixels.
+  /// A sentence for the user on the placement; empty where the mask has the image's pixels.
   const std::string& sentence() const { return sentence_; }
   /// 1 where the plane of the mask allows components, 0 elsewhere.
   imager::Image lay(const imager::ImageReader& file, const imager::PlaneIndex& at) const;

@@ -10,14 +10,14 @@
 namespace misfit::hosts {
 
 /// casacore's own ConvolveGridder with another table in it: a gridding function of width W ≤ 7, looked up and normalised as
-/// ever, and the optimal correction of what that makes of it. How densely C is sampled limits the accuracy: the error of
-/// nearest entries, √2 e in two dimensions with e of kernels::table_misfit, falls only as 1/per_cell. As in casacore only grids
-/// of two axes work, and degrid() does not know of setOffset().
+/// casacore does, and the optimal correction of the taps that result. How densely C is sampled limits the accuracy: the error
+/// of nearest entries, √2 e in two dimensions with e of kernels::table_misfit, falls only as 1/per_cell. As in casacore only
+/// grids of two axes work, and degrid() does not know of setOffset().
 class ConvolveGridderTable : public casacore::ConvolveGridder<casacore::Double, casacore::Complex> {
  public:
   /// The kernel of a file that `misfit kernel --output` has written, with the number of entries a cell that the file has
   /// (`--sampling`) unless another is given. std::runtime_error that names the path when this is no such file, its checksum
-  /// does not match, it is for no sampling and none is given, or W > 7.
+  /// does not match, it has no sampling and none is given, or W > 7.
   ConvolveGridderTable(const std::filesystem::path& kernel_table, const casacore::IPosition& shape,
                        const casacore::Vector<casacore::Double>& scale, const casacore::Vector<casacore::Double>& offset,
                        std::optional<int> per_cell = {});

@@ -17,7 +17,8 @@ struct KernelJob {
   double w_turns = 0;       ///< range of w in wavelengths times the image's range of n − 1; 0 = two axes
 };
 
-/// The cheapest gridding for the job; std::invalid_argument names what cannot be meant, or what accuracy can be had.
+/// The cheapest gridding for the job; std::invalid_argument names the value that cannot be meant, or the accuracy that can be
+/// had.
 imager::GriddingChoice choose_for(const KernelJob& job);
 
 /// The choice, what it costs by this machine's constants and in operations, and its rejected neighbours, as lines of text.

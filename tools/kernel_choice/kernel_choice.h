@@ -12,16 +12,16 @@ class Option;
 
 namespace misfit::tools {
 
-/// What --kernel and --kernel-folder say.
+/// The values of --kernel and --kernel-folder.
 struct KernelSource {
   std::string name = "least-misfit";  ///< of the catalogue, of a library in `folder`, or a kernel-table file
   std::string folder;                 ///< the only place where libmisfit_kernel_<name>.so is looked for; empty = nowhere
 };
 
-/// Lets --help list the kernels of the catalogue as values of `option`, beside which there are files and others' libraries.
+/// Lets --help list the kernels of the catalogue as values of `option`, which also takes files and names of libraries.
 void list_kernels(CLI::Option& option);
 
-/// Declares --kernel-folder; what is not given there is $MISFIT_KERNEL_FOLDER.
+/// Declares --kernel-folder, whose default is $MISFIT_KERNEL_FOLDER.
 void declare_kernel_folder(CLI::App& command, std::string& folder);
 
 /// Whether the name is a kernel-table file: none of the catalogue, but something with a slash, with the ending .fits, or that

@@ -9,7 +9,7 @@
 
 namespace misfit::tools {
 
-/// What timings hold for: processor and version of misfit.
+/// The name of the machine that timings hold for: processor and version of misfit.
 std::string machine_name();
 
 /// The cost constants of this machine: measured once for a processor and version of misfit, and kept as costs.json in `folder`.
@@ -18,7 +18,7 @@ std::string machine_name();
 imager::CostModel machine_costs(const std::filesystem::path& folder,
                                 const std::function<imager::CostModel()>& measure = imager::measure_costs);
 
-/// Those kept in `folder`, if there are any of this machine.
+/// The cost constants kept in `folder`, if there are any of this machine.
 std::optional<imager::CostModel> kept_costs(const std::filesystem::path& folder);
 
 }  // namespace misfit::tools

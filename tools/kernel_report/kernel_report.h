@@ -10,7 +10,7 @@ namespace misfit::tools {
 /// all computed when called; `with_experiments` adds those of paper_experiments.h. Throws Interrupted.
 Report kernel_report(ProgressLine& progress, bool with_experiments);
 
-/// Its sections, each in a file of its own or with its like.
+/// The report's sections.
 ReportSection paper_section(SolvedKernels& solved);         ///< statements of the paper beside our numbers
 ReportSection classical_section(SolvedKernels& solved);     ///< what was in use before
 ReportSection spheroidal_section(SolvedKernels& solved);    ///< W = 6…14, and its two corrections

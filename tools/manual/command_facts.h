@@ -14,16 +14,16 @@ struct OptionFacts {
   std::vector<std::string> names;  ///< as they are typed: "-h", "--help"
   std::string group;               ///< the heading in --help
   std::string description;
-  std::string type;                  ///< of its values: "INT", "NAME|FILE"; of a flag empty
-  std::vector<std::string> choices;  ///< what its values can be; empty where there is no list
-  bool others = false;               ///< whether they can be something else too
-  int most = 0;                      ///< so many values follow it at most; of a flag 0
+  std::string type;                  ///< of its values: "INT", "NAME|FILE"; empty for a flag
+  std::vector<std::string> choices;  ///< the values that it can have; empty where there is no list
+  bool others = false;               ///< whether it can have other values too
+  int most = 0;                      ///< the number of values that follow it at most; 0 for a flag
   std::string usual;                 ///< the value where it is not given; empty where there is none
   bool required = false;
   std::vector<std::string> needs, excludes;  ///< names of other options
 
-  bool takes_file() const;    ///< or any path
-  bool takes_folder() const;  ///< and no file
+  bool takes_file() const;    ///< a file, or any path
+  bool takes_folder() const;  ///< a folder, and no file
 };
 
 /// A command, or the program, with all that can follow it.

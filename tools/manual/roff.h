@@ -16,7 +16,7 @@ class RoffPage {
   void section(const std::string& title);     ///< "OPTIONS"
   void subsection(const std::string& title);  ///< within a section
   void paragraph(const std::string& text);
-  /// What is explained, in bold as it is typed and in italics as it is replaced, and its explanation.
+  /// An explanation: the words that are typed, in bold, the words that are replaced, in italics, and the text.
   void item(const std::string& typed, const std::string& replaced, const std::string& text);
   void as_typed(const std::string& lines);                     ///< after a paragraph
   void raw(const std::string& line) { text_ += line + '\n'; }  ///< roff

@@ -18,8 +18,8 @@ struct Pointing {
 };
 
 /// The header of the mosaic: that of the first image on the pixels that options ask for, or else around the middle of the
-/// pointings, with the smallest of the images' cells, square and of an even number, as far as any beam is at the limit or
-/// above and its image reaches, to a thousandth of the width. Throws std::runtime_error where pointings do not lie in one
+/// pointings, with the smallest of the images' cells, square and of an even number. It reaches, to a thousandth of its width,
+/// as far as any beam is at the limit or above within its image. Throws std::runtime_error where pointings do not lie in one
 /// hemisphere, where no beam reaches the limit within its image, or the mosaic would have more than 65536 pixels on a side.
 imager::ImageHeader mosaic_header(const MosaicOptions& options, const std::vector<Pointing>& pointings, int threads);
 

@@ -25,11 +25,11 @@ class PointingBeam {
   virtual std::vector<std::string> doubts() const { return {}; }
 };
 
-/// That of `asked`, as --beam names it; where that is empty, the image .pb beside the image, which holds the weights, dishes
-/// and turns with which the image was made; and where there is none, that of the telescope in the header, at the header's
-/// frequencies, each of which counts alike, around its reference direction. The mean over position angles of beams that are
-/// not round, with a doubt. Keeps `image` by reference. Throws std::runtime_error that names the image and what was expected
-/// where none is to be had.
+/// The beam `asked`, as --beam names it; where that is empty, the image .pb beside the image, which holds the weights, dishes
+/// and turns with which the image was made; and where there is none, the beam of the telescope in the header, around the
+/// header's reference direction, at its frequencies, each of which counts alike. The mean over position angles of beams that
+/// are not round, with a doubt. Keeps `image` by reference. Throws std::runtime_error that names the image and what was
+/// expected where none is to be had.
 std::unique_ptr<PointingBeam> pointing_beam(const PointingImage& image, const std::string& asked);
 
 }  // namespace misfit::tools

@@ -14,7 +14,7 @@ inline bool was_launched() {
   return false;
 }
 
-/// How many processes it started together, as far as it tells; 0 where it does not.
+/// How many processes the launcher started together; 0 where it does not tell.
 inline int launched() {
   for (const char* name : {"OMPI_COMM_WORLD_SIZE", "PMI_SIZE", "SLURM_STEP_NUM_TASKS"})
     if (const char* const size = std::getenv(name)) return std::atoi(size);

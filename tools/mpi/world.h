@@ -28,7 +28,7 @@ class World {
   std::unique_ptr<Mpi> mpi_;  ///< null where there are no others
 };
 
-/// Of MPI's library; empty where this program was built without.
+/// The version of MPI's library; empty where this program was built without MPI.
 std::string mpi_version();
 
 }  // namespace misfit::tools

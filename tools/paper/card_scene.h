@@ -43,17 +43,17 @@ struct MisfitProfile {
   double whole = 0;
 };
 
-/// Of `gridded` against the direct sums.
+/// The misfit of `gridded` against the scene's direct sums.
 MisfitProfile measured_misfit(const imager::Image& gridded, const CardScene& scene, int fft_size);
 
-/// What is wrong with the transform along an axis at the offsets of 0, 1 … pixels/2 pixels: the mean over all positions in a
-/// cell of 1 − h Σ_r C_r exp(2πi s_r x), and of its square.
+/// The errors of the transform along an axis at the offsets of 0, 1 … pixels/2 pixels: the mean over all positions in a cell of
+/// 1 − h Σ_r C_r exp(2πi s_r x), and of its square.
 struct AxisErrors {
   Eigen::VectorXd mean_square;  ///< ℓ
   Eigen::VectorXd mean;
 };
 
-/// What is to be expected: the mean scales the image I, and the rest is as random as positions in cells are,
+/// The misfit to be expected: the mean scales the image I, and the rest is as random as positions in cells are,
 ///   (b(x) + b(y))² I² + (ℓ(x) − b(x)² + ℓ(y) − b(y)²) random_rms²
 /// at a pixel for a mean of b, averaged over strips.
 MisfitProfile expected_misfit(const AxisErrors& errors, const CardScene& scene, int fft_size);

@@ -43,7 +43,7 @@ std::vector<DataTable::Cell> hundredfold_row(const std::string& statement, const
 /// "agrees" or "differs: " and why.
 std::string verdict(bool agrees, const std::string& why);
 
-/// The size of the FFT of which the scene's image is 2·x0, rounded to even.
+/// The size of the FFT whose part 2·x0 is the scene's image, rounded to even.
 int fft_size_for(const CardScene& scene, double x0);
 
 }  // namespace misfit::tools

@@ -9,7 +9,7 @@
 
 namespace misfit::python {
 
-/// An option's value; a Python TypeError that names it where it is of another type.
+/// An option's value. Throws a Python TypeError that names the option where the value is of another type.
 template <typename T>
 T option(const pybind11::dict& options, const char* name) {
   try {
@@ -27,7 +27,7 @@ struct CoordinateArrays {
   const pybind11::object& mask;  ///< uint8, or None
 };
 
-/// With the signs of flip_u, flip_v and flip_w, and without w unless do_wgridding.
+/// The coordinates with the signs of flip_u, flip_v and flip_w, and without w unless do_wgridding.
 imager::ArrayCoordinates coordinates_of(CoordinateArrays arrays, const pybind11::dict& options);
 
 /// Options by the names of the functions in misfit/_transforms.py, each of which must be there. `kernel` is a Kernel, or a name

@@ -21,7 +21,7 @@ imager::Strided<const T> table_of(const pybind11::object& array) {
           plane ? static_cast<std::size_t>(a.shape(1)) : 1, a.strides(0) / size, plane ? a.strides(1) / size : 1};
 }
 
-/// The same of an array that is to be written; std::invalid_argument where it may not be.
+/// table_of() for an array that is to be written; std::invalid_argument where it may not be.
 template <typename T>
 imager::Strided<T> writable_table_of(pybind11::array& array) {
   T* const data = static_cast<T*>(array.mutable_data());
@@ -29,8 +29,8 @@ imager::Strided<T> writable_table_of(pybind11::array& array) {
   return {data, table.rows, table.columns, table.row_step, table.column_step};
 }
 
-/// What `work` returns or throws, while other Python threads run. Ctrl-C ends it within some hundredths of a second where it is
-/// in a loop of parallel_for: its Python exception comes as pybind11::error_already_set.
+/// Returns or throws what `work` does, while other Python threads run. Ctrl-C ends it within some hundredths of a second where
+/// it is in a loop of parallel_for: its Python exception comes as pybind11::error_already_set.
 template <typename Work>
 auto without_gil(const Work& work) {
   const pybind11::gil_scoped_release others_run;

@@ -4,8 +4,8 @@
 
 namespace misfit::python {
 
-/// Each adds to the module _misfit what a file beside this one binds. Functions have no defaults and no descriptions: those are
-/// of the functions in misfit/ that call them.
+/// Each adds the bindings of a file beside this one to the module _misfit. Bound functions have no defaults and no
+/// descriptions: the functions in misfit/ that call them do.
 
 /// Kernel, kernel(), read_kernel() and kernel_names().
 void add_kernel(pybind11::module_& m);

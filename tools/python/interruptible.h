@@ -20,14 +20,15 @@ inline constexpr std::chrono::milliseconds patience(50);
 /// Calls of interruptibly() whose work goes on.
 inline std::atomic<int> at_work{0};
 
-/// Called as the process ends, with its status: work that goes on unseen must not meet what is destroyed then.
+/// Called as the process ends, with its status. It ends the process at once where work goes on unseen, which must not meet
+/// objects that are destroyed.
 inline void end_at_once(int status, void* /*nothing*/) {
   if (at_work == 0) return;
   std::fflush(nullptr);
   _exit(status);
 }
 
-/// What `work` returns or throws, called on a thread of its own while other Python threads run. Ctrl-C raises its Python
+/// Returns or throws what `work` does, called on a thread of its own while other Python threads run. Ctrl-C raises its Python
 /// exception (pybind11::error_already_set) soon; `work` then goes on unseen until it ends or the
 /// process does, so it must own what it uses and keep away from Python.
 template <typename Result>

@@ -1,6 +1,6 @@
 #pragma once
 
-/// What help() says of misfit.Kernel. Where a first line is a signature, Python takes it for that.
+/// The texts of help() for misfit.Kernel. Python takes a first line that is a signature for the signature.
 namespace misfit::python::text {
 
 inline constexpr const char* kernel =

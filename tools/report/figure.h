@@ -14,14 +14,14 @@ struct Series {
   std::vector<double> y;
   bool points = false;   ///< marks at its points
   bool line = true;      ///< a line through them
-  bool law = false;      ///< thin, dashed and black: what theory says of the series around it
+  bool law = false;      ///< thin, dashed and black: theory for the series around it
   bool columns = false;  ///< in place of both: filled, from the axis up, side by side about evenly spaced x
 };
 
 struct Axis {
   std::string label;
   bool logarithmic = false;
-  std::optional<double> from{};  ///< without: as the data ask
+  std::optional<double> from{};  ///< nothing: chosen by the data
   std::optional<double> to{};
 };
 
@@ -33,8 +33,8 @@ struct Figure {
   Axis x;
   Axis y;
   std::vector<Series> series;
-  /// Of the drawing, in units of which 15 are a line of text: 10 points where 760 are the 18 cm of a printed page, which holds
-  /// two of this height.
+  /// The drawing's size, in units of 1/15 of a line of text. Where 760 units are the 18 cm of a printed page, a line is 10
+  /// points, and a page holds two figures of this height.
   int width = 760;
   int height = 430;
 };

@@ -40,7 +40,7 @@ Series correction_curve(const std::string& label, const kernels::TapFunction& ta
 /// Places x from 0 to `to`, closer than a printed line is wide.
 Eigen::VectorXd places(double to);
 
-/// A figure of ℓ(x), 0 ≤ x ≤ ½, that has no curves yet; ℓ is shown between these.
+/// A figure of ℓ(x), 0 ≤ x ≤ ½, that has no curves yet; ℓ is shown between `from` and `to`.
 Figure map_error_figure(const std::string& name, const std::string& title, double from, double to);
 
 /// "x₀ = 0.25".

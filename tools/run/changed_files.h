@@ -7,10 +7,10 @@
 
 namespace misfit::tools {
 
-/// That something else wrote to the data while the run read them; empty where no file of theirs changed.
+/// A warning that something else wrote to the data while the run read them; empty where none of their files changed.
 std::string changed_files_warning(const ms_io::MeasurementSet& data);
 
-/// Throws what is being handled again, with that warning where it is a std::runtime_error that it may explain. `data` may be
+/// Rethrows the exception being handled; a std::runtime_error that changed files may explain gets the warning. `data` may be
 /// null.
 [[noreturn]] void rethrow_with_changed_files(const ms_io::MeasurementSet* data);
 

@@ -18,21 +18,21 @@ struct ChannelWorkers {
   int threads = 1;  ///< for each of them
 };
 
-/// How a cube's channels come to their visibilities, and are made.
+/// How a cube's channels get their visibilities, and are made.
 struct ChannelBatches {
   int channels = 1;         ///< whose visibilities are gathered in one pass and held
-  bool read_again = false;  ///< there is no room for those of one: it reads the set in every pass of its own
+  bool read_again = false;  ///< one channel's visibilities do not fit: each channel reads the set in every pass of its own
   ChannelWorkers workers;
   imager::MemoryUse memory;  ///< at the peak
   imager::Decision decision;
 };
 
-/// A channel for each thread is made at a time: that keeps all busy, where a channel would leave them waiting for each other.
-/// Fewer where there are fewer channels, or where --memory, or half of the machine's, has no room for the images and
-/// visibilities of so many; then they share the threads. One where it reads the set itself. As many channels are held as take
-/// half a GiB together, one for each worker at least, and fit in that memory too; of several ranks, which take batches in
-/// turns, no more than that each has some turns, and all hold as many as the one with the least room. Called by all ranks.
-/// Throws std::invalid_argument that says how much memory is needed where --memory is less.
+/// As many channels are made at a time as there are threads: that keeps all threads busy, while threads that share a channel
+/// wait for each other. Fewer are made, and share the threads, where there are fewer channels, or where --memory, or half of
+/// the machine's, has no room for the images and visibilities of so many; one at a time where channels read the set themselves.
+/// As many channels are held as take half a GiB together and fit in that memory, at least one for each worker. Several ranks
+/// take batches in turns: they hold so few channels that each rank has some turns, and all as many as the rank with the least
+/// room. Called by all ranks. Throws std::invalid_argument that says how much memory is needed where --memory is less.
 ChannelBatches plan_batches(const RunScene& scene, const RunPlan& plan);
 
 /// The channels in batches of nearly the same size, whole numbers of channels for each worker but for the last.

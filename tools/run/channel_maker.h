@@ -9,7 +9,7 @@
 
 namespace misfit::tools {
 
-/// With what, and how many at a time, the channels of a run are made. References must outlive who has it.
+/// The means to make the channels of a run. References must outlive it.
 struct ChannelMeans {
   const imager::GriddingPlan& plan;
   std::shared_ptr<const imager::PlannedTransform> transform;  ///< of `plan`; null where there is one channel, which makes it
@@ -18,18 +18,18 @@ struct ChannelMeans {
   PrimaryBeamStage* primary_beam = nullptr;  ///< null where neither images nor masks need it
 };
 
-/// Makes the channels of a run: as many at a time as there are workers, in any order, each in a thread of its own. What comes
-/// of a channel does not depend on the others.
+/// Makes the channels of a run: as many at a time as there are workers, in any order, each in a thread of its own. The result
+/// of a channel does not depend on other channels.
 class ChannelMaker {
  public:
-  /// `clean` is the first worker's, null where nothing is cleaned here; the others' are made as it is.
+  /// `clean` is the first worker's, null where nothing is cleaned here; the other workers' stages are made like it.
   ChannelMaker(const ChannelScene& scene, ChannelMeans means, std::unique_ptr<CleanStage> clean);
 
-  /// From here on channels have these weights, and not such that follow from their own samples.
+  /// From here on channels have these weights, and not weights that follow from their own samples.
   void weigh_by(std::shared_ptr<const imager::ImagingWeights> weights) { common_weights_ = std::move(weights); }
 
-  /// Weighs and images its samples. A channel without any, null, has no values and no beam; so has one whose samples all lie
-  /// beyond the grid, unless there is no other: then NothingUsable or NothingInGrid says so.
+  /// Weighs and images the samples of a channel. A channel without samples, null, has no values and no beam; nor has one whose
+  /// samples all lie beyond the grid, unless it is the only one: then throws NothingUsable or NothingInGrid.
   std::unique_ptr<ChannelRun> image(int channel, std::unique_ptr<ChannelSamples> samples);
   /// All else before CLEAN: Taylor terms, measured errors, beams. Nothing where there are no values.
   void prepare_clean(ChannelRun& run);

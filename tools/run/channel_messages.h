@@ -9,12 +9,12 @@
 
 namespace misfit::tools {
 
-/// What a rank that makes channels tells rank 0.
+/// A message to rank 0 from another rank that makes channels.
 struct ChannelMessage {
   enum class Kind {
     next,     ///< it has nothing to do
     image,    ///< a plane of one of the images
-    channel,  ///< what came of a channel, whose images came before
+    channel,  ///< the results of a channel, whose images came before
     stopped,  ///< the user wants no more
     ended,    ///< it makes no more
   };
@@ -27,13 +27,13 @@ struct ChannelMessage {
   MadeChannel channel{};
 };
 
-/// What rank 0 answers.
+/// The answer of rank 0.
 struct ChannelAnswer {
   bool stop = false;                             ///< the user wants no more
   std::optional<imager::PlaneRange> channels{};  ///< to make next; none where all are given out
 };
 
-/// As ranks of one program send them. Throws cereal::Exception for fewer bytes than such a message has.
+/// Messages and answers as ranks of one program send them. Throws cereal::Exception for fewer bytes than a message has.
 std::string bytes_of(const ChannelMessage& message);
 ChannelMessage channel_message(std::string bytes);
 std::string bytes_of(const ChannelAnswer& answer);

@@ -20,15 +20,15 @@
 
 namespace misfit::tools {
 
-/// What a run says and times while it makes its one channel. Of several channels each keeps that for itself, and the run tells
-/// of one after the other.
+/// Takes the words and times of a run while it makes its one channel. Of several channels each keeps its own, and the run tells
+/// them one channel after the other.
 struct ToldAsItGoes {
   ProgressLine& progress;
   imager::StageTimes& times;
   std::function<void(const std::string& sentence)> warn;
 };
 
-/// What the channels of a run share. References must outlive who has it.
+/// Data that the channels of a run share. References must outlive it.
 struct ChannelScene {
   const ImageOptions& options;
   const StateOptionValues& option_values;
@@ -43,14 +43,14 @@ struct ChannelScene {
   const ToldAsItGoes* told = nullptr;  ///< null where each keeps what it has to tell
 };
 
-/// What came of a channel, for the run that puts channels together.
+/// The results of a channel, for the run that puts channels together.
 struct MadeChannel {
   ChannelReport report;
   std::uint64_t outside_grid = 0;              ///< samples
   double components = 0;                       ///< of CLEAN, of this run
   double major_cycles = 0;                     ///< that predicted and subtracted
   std::vector<std::string> warnings;           ///< in their order
-  std::vector<std::string> doubts;             ///< what may be so of several channels, in the same words
+  std::vector<std::string> doubts;             ///< doubts that several channels may have, in the same words
   imager::StageTimes times;                    ///< none where it told as it went
   std::vector<imager::CleanResult> cleaned{};  ///< [Stokes], the models that --savemodel needs; not sent to other ranks
 
@@ -59,34 +59,35 @@ struct MadeChannel {
   bool stopped() const;
 };
 
-/// What is done for one channel, of all Stokes parameters: weights, dirty images and PSF, their errors, beam, CLEAN. The steps
-/// are called in the order in which they stand here, and tell in report() what came of them. Stages timed: "weights",
-/// "statistics", "verify", "fit beam", and those of the imager's functions.
+/// Makes one channel, of all Stokes parameters: weights, dirty images and PSF, their errors, beam, CLEAN. The steps are called
+/// in the order in which they stand here, and put their results into report(). Stages timed: "weights", "statistics", "verify",
+/// "fit beam", and those of the imager's functions.
 class ChannelRun {
  public:
   /// `scene` is kept by reference. Without samples, null, it has nothing but its number and frequency.
   ChannelRun(const ChannelScene& scene, int channel, std::unique_ptr<ChannelSamples> samples);
 
-  /// A pass over the samples where their weights follow from their density.
+  /// Weighs the samples, with a pass over them where weights follow from their density.
   void weigh();
-  /// The same with weights made before.
+  /// Weighs the samples with weights made before.
   void weigh(std::shared_ptr<const imager::ImagingWeights> weights);
-  /// By `transform`, if it is given, which is that of `plan`. Throws std::runtime_error where images that are to be taken are
-  /// not those of the samples.
+  /// Makes the dirty images and the PSF, by `transform`, if it is given, which is the transform of `plan`. Throws
+  /// std::runtime_error where images taken from files are not images of the samples.
   void make_dirty(imager::GriddingPlan plan, std::shared_ptr<const imager::PlannedTransform> transform);
-  /// Those of further Taylor terms, which CLEAN then has too.
+  /// Makes the images of further Taylor terms, which CLEAN then has too.
   void make_terms();
-  /// Compares a residual that was taken with what the start model leaves, where there is one: a prediction for each.
+  /// Compares a residual that was taken with the residual of the start model, if there is one: a prediction for each Stokes
+  /// parameter.
   void check_start();
   void verify();
-  /// For rank 0, which has the PSF.
+  /// Chooses the beams. For rank 0, which has the PSF.
   void choose_beams();
-  /// Makes the parts of residuals that this rank's samples give, while rank 0 is in clean().
+  /// Makes this rank's parts of residuals, while rank 0 is in clean().
   void follow_clean();
   /// Gets CLEAN of this channel ready, with its primary beam where masks or their noise keep within that, else null.
   void begin_clean(std::unique_ptr<CleanStage> stage, const imager::Image* primary_beam);
   bool may_clean() const { return stage_ != nullptr; }
-  /// One Stokes parameter after the other. Returns the stage, which may serve another channel.
+  /// Cleans one Stokes parameter after the other. Returns the stage, which may serve another channel.
   std::unique_ptr<CleanStage> clean();
   /// Frees the samples, and what transforms them.
   void release_samples();
@@ -118,7 +119,7 @@ class ChannelRun {
   imager::TakenImages taken();
   TakenTerms taken_terms();
   void compare_residuals(std::size_t stokes, const imager::ComparedPixels& pixels, const std::vector<imager::Image>& values);
-  /// What `act` does, which may find that an image is not that of the samples.
+  /// Calls `act`; where it finds that a taken image is not of the samples, the error names its file.
   template <typename Act>
   void naming_taken(const Act& act) {
     try {
@@ -134,11 +135,11 @@ class ChannelRun {
 
   const ChannelScene& scene_;
   std::unique_ptr<ChannelSamples> samples_;
-  std::string name_;     ///< that follows what messages speak of: " of plane 12"; empty where there is one
+  std::string name_;     ///< the channel in messages, " of plane 12"; empty where there is one
   ProgressLine silent_;  ///< of several channels, whose stages would fill the screen
   std::shared_ptr<const imager::ImagingWeights> weights_;  ///< until the noise is predicted; null where they are the data's
   imager::AccurateImages images_;
-  TakenPlanes former_;                 ///< what was taken from files, until it stands among the images
+  TakenPlanes former_;                 ///< planes taken from files, until they stand among the images
   std::optional<TaylorStage> taylor_;  ///< none where there is one term
   std::unique_ptr<CleanStage> stage_;  ///< from begin_clean() to clean()
   std::optional<int> iterations_;      ///< of the Stokes parameter in CLEAN, so far

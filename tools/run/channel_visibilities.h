@@ -15,7 +15,7 @@
 
 namespace misfit::tools {
 
-/// The samples of a channel, with all that they are read from.
+/// The samples of a channel, with the set and the source that they are read from.
 class ChannelSamples {
  public:
   /// `from` must outlive it.
@@ -32,14 +32,14 @@ class ChannelSamples {
   imager::StreamedVisibilities stream_;
 };
 
-/// The visibilities of a run's channels: of the one of the whole band as they stream from the sets; of a cube's as
-/// ChannelBatches says, held for some channels at a time, or read by each again.
+/// The visibilities of a run's channels. Those of the one channel of the whole band stream from the sets; those of a cube's
+/// channels are held for some channels at a time, or read again by each, as ChannelBatches says.
 class ChannelVisibilities {
  public:
-  /// Of one channel. `set` is kept by reference.
+  /// The visibilities of one channel. `set` is kept by reference.
   ChannelVisibilities(const ms_io::MeasurementSet& set, const imager::StreamingOptions& streaming)
       : set_(set), streaming_(streaming) {}
-  /// Of a cube. All but `batches` are kept by reference.
+  /// The visibilities of a cube. All but `batches` are kept by reference.
   ChannelVisibilities(const ms_io::MeasurementSet& set, const imager::CubeSampling& sampling, const ChannelBatches& batches,
                       int threads)
       : set_(set), sampling_(&sampling), batches_(batches), threads_(threads) {}
@@ -49,19 +49,19 @@ class ChannelVisibilities {
   void look_through(const std::vector<imager::PlaneRange>& batches,
                     const std::function<void(const imager::VisibilitySource&)>& visit, ProgressLine& progress,
                     imager::StageTimes& times);
-  /// Gets the channels of a batch ready, which take() then gives. Stages timed: the same.
+  /// Gets the channels of a batch ready, which take() then gives. Stages timed: "read", "planes".
   void begin(const imager::PlaneRange& batch, ProgressLine& progress, imager::StageTimes& times);
-  /// Those of a channel, once; null where there are none. Several threads may call it.
+  /// The samples of a channel, once; null where there are none. Several threads may call it.
   std::unique_ptr<ChannelSamples> take(int channel);
-  /// Done with the batch: what it holds is freed.
+  /// Ends a batch, and frees its visibilities.
   void end() { gathered_.reset(); }
-  /// "images 4 to 7 of 16", what is done with a batch.
+  /// The work on a batch in words, "images 4 to 7 of 16".
   std::string work_on(const imager::PlaneRange& batch) const;
 
-  /// Whether each channel of a cube reads the sets itself; then what it read is to be counted.
+  /// Whether each channel of a cube reads the sets itself; then count() is to be called with what it read.
   bool each_reads() const { return sampling_ != nullptr && batches_.read_again; }
   void count(const imager::SampleCounts& counts);
-  /// Of all that was read so far; those used are the channels' own.
+  /// The counts of all samples read so far; the channels count the used ones themselves.
   const imager::SampleCounts& counts() const { return counts_; }
   /// Usable samples among them that lie in no channel of the cube.
   std::uint64_t outside_channels() const { return outside_channels_; }
@@ -78,7 +78,7 @@ class ChannelVisibilities {
   ChannelBatches batches_;
   int threads_ = 1;
   std::optional<imager::GatheredPlanes> gathered_;  ///< of the batch at hand
-  int first_ = 0;                                   ///< channel of that
+  int first_ = 0;                                   ///< channel of that batch
   imager::SampleCounts counts_;
   std::uint64_t outside_channels_ = 0;
 };

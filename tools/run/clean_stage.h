@@ -16,7 +16,7 @@
 
 namespace misfit::tools {
 
-/// What CLEAN is given by the stages before it, of one Stokes parameter.
+/// The input of CLEAN from the stages before it, for one Stokes parameter.
 struct CleanScene {
   imager::ImagedData imaged;
   imager::TaylorExpansion expansion;
@@ -39,26 +39,26 @@ class CleanStage {
   /// names the file and what was expected.
   CleanStage(const ImageOptions& options, imager::ImageHeader image);
 
-  /// From here on everything is of this channel of the image. Reads its mask and start model. To be called before all that
-  /// follows.
+  /// From here on all functions are about this channel of the image. Reads its mask and start model. To be called before the
+  /// functions below.
   void begin_channel(int channel);
-  /// Keeps masks of this channel to where its primary beam is --pbmask or more, and what masks take for noise to where it is
-  /// that and --pblimit or more.
+  /// Keeps masks of this channel to where its primary beam is --pbmask or more, and the pixels of the masks' noise to where it
+  /// is both --pbmask and --pblimit or more.
   void keep_within(const imager::Image& primary_beam);
 
   const std::vector<std::unique_ptr<MaskFile>>& mask_files() const { return mask_files_; }
-  /// Null where CLEAN may go everywhere; within it CLEAN may make its own.
+  /// Null where CLEAN may go everywhere; CLEAN may make a mask of its own within this one.
   const imager::Image* mask(std::size_t stokes) const {
     const std::vector<imager::Image>& masks = limited_.empty() ? masks_ : limited_;
     return masks.empty() ? nullptr : &masks[masks.size() == 1 ? 0 : stokes];
   }
-  /// What the user should know of the mask's file, and of which band the start model is, a sentence each.
+  /// Sentences for the user on the mask's file, and on the band of the start model.
   std::vector<std::string> words_on_files() const;
-  /// Of the last run(): what the user should know of the state that it went on from; mostly empty.
+  /// Words for the user on the state that the last run() went on from; mostly empty.
   const std::string& words_on_state() const { return words_on_state_; }
-  /// That the mask, or the primary beam's, allows no pixel; else empty.
+  /// A warning that the mask, or the primary beam's, allows no pixel; else empty.
   std::string closed_mask_warning() const;
-  /// What the user should know before CLEAN begins, a sentence each; of a cube, the same of all channels of which it is so.
+  /// Sentences for the user before CLEAN begins; channels of a cube have them in the same words.
   std::vector<std::string> warnings() const;
 
   /// Throws what imager::clean and read_clean_state do.
@@ -69,7 +69,7 @@ class CleanStage {
   std::string state_path(std::size_t stokes) const;
   imager::Image mask_of_files(const imager::PlaneIndex& at) const;
   std::string missing_states_warning() const;
-  /// That of a run before, or that of the start model, which it frees.
+  /// The state that a run before left, or the state of the start model, which it frees.
   imager::CleanState begin(std::size_t stokes, const CleanStateOwner& owner);
   std::uint64_t checksum_of(const CleanScene& scene) const;
 
@@ -80,7 +80,7 @@ class CleanStage {
   std::vector<std::unique_ptr<MaskFile>> mask_files_;  ///< none without a mask
   std::unique_ptr<StartModel> start_model_;            ///< null without one
   std::vector<imager::Image> masks_;                   ///< none, one for all, or [Stokes]
-  std::vector<imager::Image> limited_;  ///< the same, or one, within the primary beam; none where that does not limit them
+  std::vector<imager::Image> limited_;  ///< masks_, or one mask, within the primary beam; none where that does not limit them
   imager::Image noise_within_;          ///< see CleanOptions; empty where that is null
 };
 

@@ -36,15 +36,16 @@ void declare(CLI::App& command, CubeOptions& options);
 /// Throws std::invalid_argument that names the option, its value and what was expected.
 void check(const CubeOptions& options);
 
-/// That of --restfreq, which goes for images of the whole band too; 0 where none is given. Throws as check() does.
+/// The frequency of --restfreq, which images of the whole band may have too; 0 where none is given. Throws as check() does.
 double rest_frequency_hz(const CubeOptions& options);
 
-/// The planes, of data with these windows in the frame of spectral_frame(), which are in `data_frame`, empty where they are in
-/// several. Channels count from 0 among those selected of the first window, or, "3chan", among all of it, whose width and
-/// direction are one channel's. Velocities are radio's, c (1 − f/f_rest), or optical ones, c (f_rest/f − 1): planes are then
-/// evenly spaced in these. Where --start is a velocity, planes go up in velocity; where it is a frequency, up in frequency;
-/// else as channels do; a negative --chanwidth turns them about. Throws std::invalid_argument where no plane holds data, a
-/// frequency is not positive, or --outframe REST is of other data, std::runtime_error where channels have no width.
+/// The planes, of data with these windows in the frame of spectral_frame(); `data_frame` is the data's own frame, empty where
+/// they have several. Channels count from 0 among the selected channels of the first window, or, "3chan", among all its
+/// channels; that window gives the width and the direction of a channel. Velocities are radio's, c (1 − f/f_rest), or optical
+/// ones, c (f_rest/f − 1): planes are then evenly spaced in these. Where --start is a velocity, planes go up in velocity; where
+/// it is a frequency, up in frequency; else as channels do; a negative --chanwidth turns them about. Throws
+/// std::invalid_argument where no plane holds data, a frequency is not positive, or --outframe REST is asked of other data,
+/// std::runtime_error where channels have no width.
 imager::CubeSampling cube_sampling(const CubeOptions& options, const std::vector<ms_io::SpectralWindow>& windows,
                                    const std::string& data_frame);
 
@@ -52,7 +53,7 @@ imager::CubeSampling cube_sampling(const CubeOptions& options, const std::vector
 /// has.
 std::string windows_left_out(const imager::SpectralAxis& axis, const std::vector<ms_io::SpectralWindow>& windows);
 
-/// What the planes are and how data come into them.
+/// The decision on the planes, and on how data come into them.
 imager::Decision axis_decision(const imager::CubeSampling& sampling);
 
 }  // namespace misfit::tools

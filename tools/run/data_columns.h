@@ -14,13 +14,13 @@ std::string columns_text(const std::vector<ms_io::DataColumn>& columns);
 /// The columns that visibilities are read from, why, and which models were subtracted from them; `asked` is --datacolumn.
 imager::Decision data_column_decision(const std::vector<ms_io::DataColumn>& columns, const std::string& asked);
 
-/// That sets are imaged from different columns which nobody named; else empty.
+/// A warning that sets are imaged from different columns which nobody named; else empty.
 std::string unlike_columns_warning(const std::vector<ms_io::DataColumn>& columns, const std::string& asked);
 
 /// The lines of an image's HISTORY: the command and the columns.
 std::vector<std::string> history_of(const std::string& command_line, const std::vector<ms_io::DataColumn>& columns);
 
-/// That nothing has filled the column, or which windows and fields of it.
+/// A warning that nothing has filled the column, or which of its windows and fields.
 std::string zeros_warning(const ms_io::ZeroColumn& column);
 
 }  // namespace misfit::tools

@@ -12,8 +12,8 @@ class DishBeams {
  public:
   /// The antennas' own.
   DishBeams() = default;
-  /// Of --beam: empty, as above; a name as imager::named_beam() takes; "voltage:FILE", or FILE, of a power. Throws what
-  /// read_beam_file() throws.
+  /// The beams of --beam: the antennas' own where it is empty; a name as imager::named_beam() takes; "voltage:FILE", or FILE,
+  /// of a power. Throws what read_beam_file() throws.
   explicit DishBeams(const std::string& beam);
 
   /// Throws imager::NoSimpleBeam.
@@ -24,15 +24,15 @@ class DishBeams {
   imager::Pattern of_file_;  ///< null without one
 };
 
-/// Of which antennas patterns are made, and how.
+/// The antennas whose patterns are made, and how.
 struct WantedPatterns {
-  const std::vector<imager::AntennaSort>& sorts;  ///< of those that rows of two antennas have
+  const std::vector<imager::AntennaSort>& sorts;  ///< of the antennas that rows of two antennas have
   const DishBeams& beams;
   double frequency_hz = 0;  ///< at which doubts are told
 };
 
-/// [antenna]; null of those that no row of two antennas has, and that have no simple beam. Adds what may be wrong with them, a
-/// sentence each, once. Throws imager::NoSimpleBeam.
+/// The patterns, [antenna]; null for an antenna without a simple beam that no row of two antennas has. Adds doubts about them,
+/// a sentence each, once. Throws imager::NoSimpleBeam.
 std::vector<imager::Pattern> patterns_of(const std::vector<imager::AntennaSort>& antennas, const WantedPatterns& wanted,
                                          std::vector<std::string>& doubts);
 

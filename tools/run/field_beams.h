@@ -21,7 +21,8 @@ double angle_between(const imager::SkyDirection& one, const imager::SkyDirection
 /// A field in words, "3 (M51) of a.ms"; without its set where all `pointings` are of one.
 std::string field_words(const ms_io::FieldPointing& pointing, const std::vector<ms_io::FieldPointing>& pointings);
 
-/// Throws std::runtime_error where a field's antennas pointed in directions that are apart, in parts of such a beam width.
+/// Throws std::runtime_error where a field's antennas pointed in directions further apart than same_pointing_beams of a beam's
+/// width.
 void require_still(const std::vector<ms_io::FieldPointing>& pointings, double width_rad);
 
 /// How the antennas of the fields of an image see its centre.
@@ -30,27 +31,27 @@ struct FieldNotes {
   std::vector<std::string> warnings;
 };
 
-/// How they are looked at.
+/// How fields that point apart are looked at.
 struct ApartOptions {
   double frequency_hz = 0;
-  bool force = false;    ///< take those that do not see the image, too
-  DishBeams beams = {};  ///< of their antennas
+  bool force = false;    ///< take fields that do not see the image, too
+  DishBeams beams = {};  ///< of the fields' antennas
 };
 
 /// Lists fields that point apart: each field's distance from the image's centre and
 /// its beam there, that of PrimaryBeamStage for the field's own rows; the distance alone where its antennas have no simple
-/// beam. Throws std::runtime_error that names the fields of which the centre lies beyond the first null, of all their dishes,
-/// unless forced: they dim whatever others see.
+/// beam. Throws std::runtime_error that names the fields whose dishes all have the centre beyond their first null, unless
+/// forced: they dim whatever other fields see.
 FieldNotes notes_on_apart_fields(const ms_io::BeamRows& rows, const ApartOptions& options);
 
-/// The same of feeds in use whose BEAM_OFFSETs differ, as much as pointings of fields may not: each with its distance from the
-/// axis of its dish and its beam at the field's direction. Those count as not seeing the image that do not whichever way mounts
-/// turn them.
+/// Lists feeds in use whose BEAM_OFFSETs differ by more than pointings of fields may: each feed's distance from the axis of its
+/// dish and its beam at the field's direction. A feed counts as not seeing the image only if no turn of its mount lets it see
+/// it.
 FieldNotes notes_on_feeds(const ms_io::BeamRows& rows, const ApartOptions& options);
 
-/// Notes on the fields of a run: those that point apart, and feeds that do; where they point alike, that the antennas hardly
-/// see the image, if so; or that FIELD or ANTENNA does not say where they pointed. Throws what notes_on_apart_fields() does
-/// without --force-average, and what MeasurementSet::beam_rows() does. Reads antennas of all rows where fields point apart.
+/// Notes on the fields of a run: on fields and feeds that point apart; where all point alike, on antennas that hardly see the
+/// image; or on a FIELD or ANTENNA that does not say where they pointed. Throws what notes_on_apart_fields() does without
+/// --force-average, and what MeasurementSet::beam_rows() does. Reads antennas of all rows where fields point apart.
 FieldNotes notes_on_fields(const ImageOptions& options, const ms_io::MeasurementSet& set,
                            const imager::ImageGeometry& geometry);
 

@@ -26,10 +26,10 @@ struct TypedGridding {
 };
 
 void declare_gridder(CLI::App& command, TypedGridding& options);
-/// The others.
+/// Declares the other options.
 void declare(CLI::App& command, TypedGridding& options);
 
-/// What needs neither the data nor the kernel's solution. Throws as check(const ImageOptions&) does.
+/// Checks what needs neither the data nor the kernel's solution. Throws as check(const ImageOptions&) does.
 void check(const TypedGridding& options);
 
 /// Whether the options leave nothing of the kernel to choose: a file, or width and padding. Then no accuracy need be asked.

@@ -10,7 +10,7 @@
 
 namespace misfit::tools {
 
-/// CFITSIO and casacore need not be safe in threads: who reads or writes images while others may do so holds this.
+/// CFITSIO and casacore need not be thread-safe: a thread that reads or writes images while others may do so holds this.
 std::mutex& image_files_mutex();
 
 /// What --outformat names: fits, casa or both.
@@ -22,13 +22,13 @@ imager::PixelFormat pixel_format(double accuracy);
 /// The paths of an image's files: `name`.fits, or the CASA image `name`, or both.
 std::vector<std::string> image_paths(const std::string& name, const std::string& outformat);
 
-/// Where an image lies, of both formats the newer; nothing where there is none.
+/// The path of an image, the newer one of both formats; nothing where there is none.
 std::optional<std::string> newest_image(const std::string& name);
 
-/// Whether a file of images at such a path was written here: people keep masks and models of theirs under our names too.
+/// Whether misfit wrote the image at this path: people keep masks and models of theirs under our names too.
 bool is_own_image(const std::string& path);
 
-/// Throws std::runtime_error where something lies at such a path that no image may take the place of; `option` gave the name.
+/// Throws std::runtime_error where an image's path holds something that no image may replace; `option` gave the name.
 void check_image_paths(const std::string& name, const std::string& outformat, const std::string& option = "--imagename");
 
 /// Begins the files of an image at these paths. One writer writes them all, and finish() leaves all under their names. Throws

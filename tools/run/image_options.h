@@ -73,21 +73,22 @@ void declare(CLI::App& command, ImageOptions& options);
 /// Sets or images, for messages: "A.ms, B.ms".
 std::string names_of(const std::vector<std::string>& paths);
 
-/// What of the sets is imaged, and where it is phased to. Throws std::runtime_error where --phasecenter cannot be understood.
+/// The samples of the sets that are imaged, and the direction that they are phased to. Throws std::runtime_error where
+/// --phasecenter cannot be understood.
 ms_io::Selection selection_of(const ImageOptions& options);
 
 /// Throws std::invalid_argument that names the option, its value and what was expected; std::runtime_error when the kernel is a
 /// file that cannot be used. Passes over options that the command requires and that are not given.
 void check(const ImageOptions& options);
 
-/// The same of --check-outside where a mosaic is made, which may be known only once sets are opened.
+/// Throws std::invalid_argument for --check-outside where a mosaic is made, which may be known only once sets are opened.
 void refuse_outside_of_mosaic(const ImageOptions& options);
 
 imager::ImageGeometry geometry_of(const ImageOptions& options, const imager::SkyDirection& phase_centre);
 
 /// Every option of `command` with the value in force: {name: value}.
 nlohmann::json option_values(const CLI::App& command);
-/// Those of them that matter to states of CLEAN, see OptionMark.
+/// The option values that matter to states of CLEAN, see OptionMark.
 struct StateOptionValues {
   nlohmann::json owners;  ///< that a state belongs to
   nlohmann::json ways;    ///< by which CLEAN goes on

@@ -7,7 +7,7 @@
 
 namespace misfit::tools {
 
-/// Whether the user named it as a mask or a start model: such a file stays as it is.
+/// Whether the user named the file as a mask or a start model: such a file stays as it is.
 bool is_input(const ImageOptions& options, const std::string& path);
 
 /// Removes files that a run of this name was writing when it was killed.
@@ -16,7 +16,7 @@ void remove_half_written(const std::string& imagename);
 /// Removes the states that CLEAN of earlier runs of this name left, so that nothing goes on from them.
 void remove_states(const ImageOptions& options);
 
-/// What of a run's files is its own.
+/// The files that a run makes.
 struct OwnFiles {
   std::vector<std::string> images;  ///< paths
   int cube_channels = 0;            ///< 0: it makes no cube

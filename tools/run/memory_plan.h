@@ -17,25 +17,25 @@ struct MemoryPlan {
   imager::Decision decision;
 };
 
-/// Lets a w axis take no more than parts of `bytes` for its planes and for the samples that it gathers.
+/// Limits a w axis to a quarter of `bytes` for its planes, and to an eighth for the samples that it gathers.
 void limit_memory(double bytes, imager::GriddingRequest& request);
 
-/// Plans the gridding of `request`. A w axis transforms all planes whenever it has gathered as many samples as `request` says:
-/// where it does so again and again, it gathers as many as the memory has room for that --memory, or half of `machine_bytes`,
-/// leaves after all that `demand` makes of a plan.
+/// Plans the gridding of `request`. The planes of a w axis, or the windows of a mosaic, are transformed once for each batch of
+/// samples. If one batch of `request`'s size is not enough, batches are as large as memory allows: --memory, or half of
+/// `machine_bytes`, less all that `demand` counts for a plan.
 imager::GriddingPlan plan_with_room(imager::GriddingRequest request,
                                     const std::function<imager::MemoryDemand(const imager::GriddingPlan&)>& demand,
                                     const ImageOptions& options, double machine_bytes);
 
-/// What a machine has of memory, for one of the processes of a run that share it.
+/// The memory of this machine over the number of the run's processes on it, bytes.
 double memory_of_a_process(const imager::Ranks& ranks);
 
 /// Keeps the visibilities where --memory, or half of `machine_bytes`, allows it; else reads them again in every pass, and
 /// less far ahead where that helps. Nothing of this changes a bit of the images. Throws std::invalid_argument that says how
 /// much memory is needed when --memory, or `machine_bytes`, is less.
 ///
-/// `least_with` gives what a run takes at least when it is planned for so many bytes, which may be more than so many: the
-/// memory that the message names is one that is enough. Without it that of `demand` counts.
+/// `least_with` gives the least bytes that a run takes when it is planned for a number of bytes, which may be more than that
+/// number: the message names a memory that is enough. Without it the memory of `demand` counts.
 MemoryPlan plan_memory(const imager::MemoryDemand& demand, const ImageOptions& options, double machine_bytes,
                        const std::function<double(double)>& least_with = {});
 

@@ -21,7 +21,7 @@ void declare(CLI::App& command, TypedMosaic& options);
 /// Throws as check(const ImageOptions&) does.
 void check(const TypedMosaic& options);
 
-/// Throws the same for any of these that is given where no mosaic is made.
+/// Throws as check() does for any of these options that is given where no mosaic is made.
 void refuse_beside_other_gridders(const TypedMosaic& options);
 
 }  // namespace misfit::tools

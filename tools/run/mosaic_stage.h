@@ -15,23 +15,23 @@ namespace misfit::tools {
 /// to one centre, and are not to be averaged.
 bool is_mosaic(const ImageOptions& options, const ms_io::MeasurementSet& set);
 
-/// By how much antennas may point beside each other, and count as one pointing. Reads antennas of all rows.
+/// The largest angle between antennas' directions that count as one pointing. Reads antennas of all rows.
 double pointing_tolerance_rad(const ImageOptions& options, const ms_io::MeasurementSet& set);
 
-/// From what sets tell of antennas and pointings to what a mosaic is made of.
+/// The request for a mosaic, made from what sets tell of antennas and pointings.
 struct MosaicStage {
   std::shared_ptr<const imager::MosaicRequest> request;
   imager::Plan decisions;
   std::vector<std::string> warnings;
 };
 
-/// Of sets that tell the sights of their rows, and have |w| of so many wavelengths at most. Throws std::runtime_error that
-/// names what it is about where antennas have no simple beam, feeds point beside the axes of their dishes, an antenna pointed
-/// more than 90° away, or a field moves past the image.
+/// Makes the stage for sets that tell the sights of their rows, with |w| ≤ max_abs_w in wavelengths. Throws std::runtime_error
+/// that names the antenna or field where antennas have no simple beam, feeds point beside the axes of their dishes, an antenna
+/// pointed more than 90° away, or a field moves past the image.
 MosaicStage mosaic_stage(const ImageOptions& options, const ms_io::MeasurementSet& set, const imager::ImageGeometry& geometry,
                          double max_abs_w);
 
-/// What a mosaic's model is predicted by for one set, whose rows tell antennas and fields by their ids.
+/// The request by which a mosaic's model is predicted for one set, whose rows tell antennas and fields by their ids.
 std::shared_ptr<const imager::MosaicRequest> seen_request(const ImageOptions& options, const ms_io::MeasurementSet& set,
                                                           const imager::ImageGeometry& geometry);
 

@@ -11,19 +11,19 @@
 
 namespace misfit::tools {
 
-/// What `misfit image --check-outside` found.
+/// The findings of `misfit image --check-outside`.
 struct OutsideReport {
   imager::ImageGeometry field;                  ///< searched, with the image in its middle
-  bool searched = true;                         ///< or no sample was left that its pixels can represent
+  bool searched = true;                         ///< false where no sample was left that its pixels can represent
   std::vector<imager::OutsideSource> sources;   ///< whose aliases may exceed the image's noise, the highest first
   std::vector<imager::OutsideSource> harmless;  ///< whose aliases do not, the brightest first
-  std::size_t doubtful = 0;                     ///< others, which may be sidelobes of what the search did not find
+  std::size_t doubtful = 0;                     ///< others, which may be sidelobes of sources that the search did not find
   std::size_t found() const { return sources.size() + harmless.size(); }
-  double least_jy = 0;          ///< what is fainter is not told from noise, or doubtful
-  double highest_alias_jy = 0;  ///< of one of all found, Jy/beam
-  double all_aliases_jy = 0;    ///< the sum of theirs: those of an extended source's parts may add up
+  double least_jy = 0;          ///< fainter sources are not told from noise, or doubtful
+  double highest_alias_jy = 0;  ///< the highest alias of one source found, Jy/beam
+  double all_aliases_jy = 0;    ///< the sum of all aliases: those of an extended source's parts may add up
   double noise_jy = 0;          ///< of the image, Jy/beam
-  bool noise_of_pixels = true;  ///< as they scatter; or as visibilities do
+  bool noise_of_pixels = true;  ///< noise_jy is from pixels; else from visibilities
   double elsewhere_jy = 0;      ///< flux that is in no source found: at most, or where `elsewhere` about
   bool elsewhere = false;       ///< there certainly is some
 };
@@ -50,14 +50,15 @@ OutsideReport check_outside(const imager::VisibilitySource& source, const imager
 /// How a field is searched, why, and how long that is expected to take.
 imager::Decision search_decision(const imager::WideField& field, double seconds);
 
-/// That nothing outside matters, or how much does.
+/// The decision that nothing outside matters, or how much does.
 imager::Decision outside_decision(const OutsideReport& report);
 
-/// Where the sources lie, a line each, the brightest first; of more than ten how many more there are.
+/// The places of the sources, a line each, the brightest first; beyond ten, the number of the others.
 std::vector<std::string> outside_places(const OutsideReport& report);
 
-/// One for each of the three with the highest aliases, whose last says how many more there are; and one of flux that is in no
-/// source found, where there is some for certain or makes a detection doubtful. Or that nothing was looked for.
+/// A warning for each of the three sources with the highest aliases, the last of which says how many more there are; and one of
+/// flux in no source found, where there is some for certain or it makes a detection doubtful. Or a warning that nothing was
+/// looked for.
 std::vector<std::string> outside_warnings(const OutsideReport& report);
 
 /// `outside` and `outside_search` of report.json: the list of sources, and how they were looked for; null without a search.

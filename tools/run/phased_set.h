@@ -10,7 +10,7 @@
 
 namespace misfit::tools {
 
-/// A set that a model is predicted for, and what users should know of where that is.
+/// A set that a model is predicted for, and remarks for users on the direction that it is phased to.
 struct PhasedSet {
   std::unique_ptr<ms_io::MeasurementSet> set;
   std::vector<std::string> remarks;
@@ -28,7 +28,7 @@ struct PhasedSetRequest {
 void require_same_target(const std::string& path, const imager::ImageReader& file, const ms_io::MeasurementSet& set,
                          const std::string& sets);
 
-/// This rank's part of the set, phased to what the components of a list are about, unless `phasecenter` says to what.
+/// This rank's part of the set, phased to `phasecenter`, or else to the direction that the components of a list are about.
 /// Directions on the sky stand still where a field moves, and offsets from the phase centre move along.
 PhasedSet set_for_components(const PhasedSetRequest& request, const std::string& list, const imager::Ranks& ranks);
 

@@ -13,7 +13,7 @@ struct TypedPrimaryBeam {
   bool pbcor = false;
   double pblimit = 0;        ///< 0: not given; below 0 other images than .pb and .image.pbcor are not masked
   std::string beam{};        ///< see DishBeams; empty: those of the antennas
-  double pbmask = 0;         ///< CLEAN keeps to where the beam is at least so; 0 = it does not
+  double pbmask = 0;         ///< CLEAN keeps to where the beam is at least this; 0 = it does not
   bool where_known = false;  ///< .pb is wanted, but only where antennas have a simple beam: that of --products
 
   bool wanted() const { return where_known || required(); }

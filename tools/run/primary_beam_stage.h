@@ -15,12 +15,12 @@
 
 namespace misfit::tools {
 
-/// Why a run has none, in words.
+/// The reason why a run has no primary beam.
 struct NoPrimaryBeam : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// What a run's samples were observed with, and how that lies on its image.
+/// The antennas and pointings of a run's rows, and its image.
 struct BeamScene {
   ms_io::BeamRows rows;
   imager::ImageGeometry geometry;
@@ -33,13 +33,13 @@ struct BeamScene {
 /// who calls it.
 class PrimaryBeamStage {
  public:
-  /// Throws NoPrimaryBeam that names what it is about where antennas have no simple beam, fields point in different
+  /// Throws NoPrimaryBeam that names the antenna or field where antennas have no simple beam, fields point in different
   /// directions or feeds point beside them.
   PrimaryBeamStage(const TypedPrimaryBeam& options, BeamScene scene, int threads);
 
   /// Which beam is taken, from what, and its width in the middle of the band.
   imager::Decision decision() const;
-  /// What may be wrong with it, a sentence each.
+  /// Doubts about the beam, a sentence each.
   std::vector<std::string> doubts() const;
 
   /// Learns by how much each pair of dishes and each frequency weigh in the image, in a pass over its samples as they are
@@ -49,23 +49,23 @@ class PrimaryBeamStage {
   imager::Image whole_band() const;
   /// The beam of Taylor terms, of the same samples by the same weights.
   imager::TaylorBeam of_terms(const imager::TaylorExpansion& expansion) const;
-  /// The beam of a plane of a cube: that at its frequency, with as much weight for each row where dishes differ.
+  /// The beam of a plane of a cube: the beam at its frequency, with equal weights of all rows where dishes differ.
   imager::Image at(double frequency_hz) const;
 
-  /// That of an image: whole_band() where samples were weighed, else at its frequency.
+  /// The beam of an image: whole_band() where samples were weighed, else at its frequency.
   imager::Image of_image(double frequency_hz) const { return shares_.empty() ? at(frequency_hz) : whole_band(); }
 
-  /// That the antennas see nothing of the image; else empty.
+  /// A warning that the antennas see nothing of the image; else empty.
   std::string warning_of(const imager::Image& beam) const;
 
  private:
-  /// With as much weight for each row.
+  /// The beam with equal weights of all rows.
   imager::PrimaryBeam nominal_beam(double frequency_hz) const;
   std::vector<imager::BeamShare> beam_shares() const;
   imager::BeamShare beam_share(std::uint32_t kind, double frequency_hz, double weight) const;
   imager::Image image_of(const imager::PrimaryBeam& beam) const;
   std::uint32_t kinds() const;
-  /// Of its pair of dishes, and to a degree of its turn.
+  /// A number for the row's pair of dishes and, to a degree, its turn.
   std::uint32_t kind_of(std::uint64_t row) const;
   void find_pointing();
 

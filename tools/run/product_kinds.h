@@ -16,8 +16,8 @@ struct ProductChoice {
   bool masked = false;    ///< there is a mask, if only one of ones
   bool restored = false;  ///< there is an image with the beam of the PSF, if only the dirty one
   bool primary_beam = false;
-  bool corrected = false;  ///< for it
-  bool weights = false;    ///< sums of them
+  bool corrected = false;  ///< for the primary beam
+  bool weights = false;    ///< sums of weights
   bool mosaic = false;     ///< of several pointings: with its sensitivity, and one primary beam for all Taylor terms
 
   static ProductChoice of(const ImageOptions& options);
@@ -43,15 +43,15 @@ struct ProductKind {
   std::string quantity = imager::ImageHeader().quantity;
 };
 
-/// All that such a run leaves. The names are tclean's; of several Taylor terms they say which: psf.tt0, …
+/// The kinds of images that a run leaves. The names are tclean's; of several Taylor terms they say which: psf.tt0, …
 std::vector<ProductKind> product_kinds(const ProductChoice& choice);
 
 std::vector<std::string> product_names(const ProductChoice& choice);
 
-/// The names of all that runs may leave.
+/// The names of all images that runs may leave.
 std::vector<std::string> all_product_names();
 
-/// Planes of one channel in them all.
+/// Planes of one channel in all images.
 int product_planes(const ProductChoice& choice, int stokes);
 
 /// The sum of weights that .sumwt states of samples with these sums: as in tclean natural weights are 1/σ², where ours are 1/(4

@@ -19,9 +19,9 @@
 
 namespace misfit::tools {
 
-/// Keeps the name of the images from other runs, and removes what one that was killed left half written. Throws
-/// std::runtime_error that names it where the folder of the images cannot be written, something lies under the name of one that
-/// none may take the place of, or another run is making them.
+/// Keeps the name of the images from other runs, and removes files that a killed run left half written. Throws
+/// std::runtime_error that names the path where the folder of the images cannot be written, an image's name holds something
+/// that no image may replace, or another run is making the images.
 std::unique_ptr<NameLock> claim_product_paths(const ImageOptions& options);
 
 /// Header cards for the errors and the noise that are known; of errors the largest of all channels and Stokes parameters.
@@ -40,14 +40,14 @@ class Products {
   Products(const ImageOptions& options, const imager::ImageHeader& header, const PrimaryBeamStage* primary_beam,
            const ChannelWorkers& workers, const Open& open);
 
-  /// Writes the images of a channel, and adds to its report what its pixels tell, and to its doubts what is the matter with its
-  /// primary beam. `pictures` are drawn of it, unless they are null. May be called for several channels at the same time.
+  /// Writes the images of a channel. Adds statistics of its pixels to its report, and doubts about its primary beam to its
+  /// doubts. Draws `pictures` of it, unless they are null. May be called for several channels at the same time.
   void write(ChannelRun& run, RunPictures* pictures);
   /// A plane that another rank made.
   void write(const std::string& kind, const imager::PlaneIndex& at, const imager::Image& image,
              const std::optional<imager::Beam>& beam);
-  /// After the last channel, with numbers for the headers. Tells reports of the common beam, where there
-  /// is one. Returns the names of files that an earlier run left and this one removed.
+  /// To be called after the last channel, with cards for the headers. Puts the common beam, if there is one, into the reports.
+  /// Returns the names of files that an earlier run left and this one removed.
   std::vector<std::string> finish(std::vector<ChannelReport>& channels, const std::vector<imager::HeaderCard>& cards,
                                   imager::StageTimes& times);
 
@@ -89,7 +89,7 @@ class Products {
   const PrimaryBeamStage* primary_beam_;
   ChannelWorkers workers_;
   std::map<std::string, File> files_;  ///< by the name of their kind
-  std::vector<std::string> paths_;     ///< of them
+  std::vector<std::string> paths_;     ///< of the files
   bool in_common_;                     ///< whether all channels are restored with one beam, known only once they are there
 };
 

@@ -10,31 +10,31 @@
 
 namespace misfit::tools {
 
-/// What `misfit image` says while it goes on and at its end, in words.
+/// The words of `misfit image` while it runs and at its end.
 
 /// How many samples were left out, and why.
 imager::Decision left_out_decision(const imager::SampleCounts& counts);
 
-/// That the pixel size cannot represent so many samples, and the one that could.
+/// A warning that the pixel size cannot represent so many samples, with the pixel size that could.
 std::string outside_grid_warning(std::uint64_t samples, const imager::UvwReach& reach);
 
-/// That the antennas hardly see the image, since it lies 3 λ/D beyond where they pointed in the nearest field, or 10 degrees
-/// where D is unknown; else empty.
+/// A warning that the antennas hardly see the image, since it lies 3 λ/D beyond where they pointed in the nearest field, or 10
+/// degrees where D is unknown; else empty.
 std::string pointing_warning(const ms_io::FieldPointing& nearest, const imager::ImageGeometry& geometry, double frequency_hz);
 
-/// That the image could not be made to the accuracy asked.
+/// A warning that the image could not be made to the accuracy asked.
 std::string accuracy_warning(double asked, double expected);
 
-/// Of the last major cycle: components, residual, noise, and whether it was taken back.
+/// A line on the last major cycle: components, residual, noise, and whether it was taken back.
 std::string cycle_message(const imager::CleanState& state);
 
-/// Of a plane of a cube that is done.
+/// A line on a plane of a cube that is done.
 std::string channel_line(const ChannelReport& channel, int channels);
 
-/// That CLEAN diverged, and what may help.
+/// A warning that CLEAN diverged, and what may help.
 std::string divergence_warning(const imager::CleanReport& report);
 
-/// Of a run that is over, a line or two: samples, errors, and what CLEAN found.
+/// A line or two on a run that is over: samples, errors, and what CLEAN found.
 std::string summary(const RunReport& report);
 
 }  // namespace misfit::tools

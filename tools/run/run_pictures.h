@@ -24,16 +24,16 @@ std::unique_ptr<imager::ImageReader> open_written(const ImageOptions& options, c
 /// channel that the report shows, once its images have been written. Stage timed: "draw pictures".
 class RunPictures {
  public:
-  /// Kept by reference.
+  /// The arguments are kept by reference.
   RunPictures(const ImageOptions& options, const imager::ImageHeader& header, imager::StageTimes& times)
       : o_(options), header_(header), times_(times) {}
 
-  /// What is there before CLEAN: uv coverage, PSF, dirty images. Where masks are made meanwhile the dirty image is drawn with
-  /// the others.
+  /// Draws what is there before CLEAN: uv coverage, PSF, dirty images. Where masks are made meanwhile the dirty image is drawn
+  /// with the others.
   void draw_dirty(ChannelRun& run);
-  /// What CLEAN made of a Stokes parameter, the last of them first.
+  /// Draws CLEAN's images of a Stokes parameter, the last made first.
   void draw(std::size_t stokes, const imager::CleanResult& cleaned, const RestoredTerms& restored);
-  /// A channel of a cube: its restored image, or the dirty one without CLEAN, and the PSF.
+  /// Draws a channel of a cube: its restored image, or the dirty one without CLEAN, and the PSF.
   void draw_channel(const ChannelReport& channel);
 
   /// Adds the pictures to `drawn`, the last first, or returns in a sentence why there are none.
@@ -51,14 +51,14 @@ class RunPictures {
     const imager::Image* mask = nullptr;  ///< outlined
   };
 
-  /// Of one Stokes parameter: name and title say which where there are several.
+  /// The picture of one Stokes parameter, which name and title state where there are several.
   Shown of_stokes(std::size_t stokes, Shown shown) const;
   void add(const std::vector<Shown>& shown);
 
   const ImageOptions& o_;
   const imager::ImageHeader& header_;
   imager::StageTimes& times_;
-  imager::SkyImage about_;  ///< what pictures are of, but for the pixels
+  imager::SkyImage about_;  ///< the image of the pictures, without its pixels
   PictureDrawing drawing_;
   std::vector<std::pair<std::string, std::string>> titles_and_paths_;
   std::vector<Sketch>
@@ -67,7 +67,7 @@ class RunPictures {
 
 /// The histogram of a channel's residuals as an SVG element; empty where gnuplot cannot draw it.
 std::string histogram_drawing(const ChannelReport& channel);
-/// The same of the brightest pixel and the noise of each channel against frequency.
+/// The brightest pixel and the noise of each channel against frequency, as histogram_drawing() does.
 std::string spectrum_drawing(const RunReport& report);
 
 }  // namespace misfit::tools

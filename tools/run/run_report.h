@@ -19,7 +19,7 @@
 
 namespace misfit::tools {
 
-/// What it has to tell of one Stokes parameter.
+/// The report's part on one Stokes parameter.
 struct StokesReport {
   imager::Stokes stokes = imager::Stokes::I;
   std::optional<imager::TheoreticalError> theory{};
@@ -29,20 +29,20 @@ struct StokesReport {
   PixelHistogram histogram{};  ///< of the residual, or of the dirty image where nothing was cleaned
 };
 
-/// What it has to tell of one channel.
+/// The report's part on one channel.
 struct ChannelReport {
   int channel = 0;
   double frequency_hz = 0;                  ///< its middle
   std::vector<StokesReport> stokes = {{}};  ///< at least one
   std::optional<double> measured_predict_rms{};
   imager::SampleSums sums{};      ///< of the first Stokes parameter
-  double predicted_noise_jy = 0;  ///< a beam, from the weights; 0 = not known
+  double predicted_noise_jy = 0;  ///< Jy/beam, from the weights; 0 = not known
   std::optional<BeamChoice> beams{};
-  imager::Plan decisions{};  ///< what weighting did, where weights are not the data's
+  imager::Plan decisions{};  ///< on the weights, where they are not the data's
   bool made_twice = false;   ///< since a first pass did not keep the accuracy
 };
 
-/// What a run of `misfit image` has to tell; a part that does not exist is null in report.json.
+/// The report of a run of `misfit image`; a part that does not exist is null in report.json.
 struct RunReport {
   std::string command_line;
   nlohmann::json options;
@@ -51,22 +51,22 @@ struct RunReport {
   double accuracy = 0;  ///< 0 = none was asked
   const imager::GriddingPlan* gridding = nullptr;
   std::vector<ChannelReport> channels = {{}};  ///< at least one
-  std::size_t shown = 0;                       ///< the channel that is drawn, and told of where one is
+  std::size_t shown = 0;                       ///< the channel that is drawn, and the one reported where only one is
   std::optional<imager::SpectralAxis> cube{};  ///< null where there is one channel, of the whole band
-  std::uint64_t channel_samples = 0;           ///< in them, which interpolation makes of those used
-  std::uint64_t outside_channels = 0;          ///< usable samples that lie in none of them
+  std::uint64_t channel_samples = 0;           ///< samples in channels, which interpolation makes of the samples used
+  std::uint64_t outside_channels = 0;          ///< usable samples that lie in no channel
   imager::SampleCounts counts;
   const OutsideReport* outside = nullptr;
   double wall_clock_s = 0;
   double estimated_memory_bytes = 0;  ///< at the peak
   const imager::StageTimes* times = nullptr;
-  std::vector<StageSeconds> expected;  ///< the same as they were expected, for the cycles and components that there were
+  std::vector<StageSeconds> expected;  ///< the times that were expected, for the cycles and components that there were
 };
 
-/// The index of the one with the brightest pixel of the first Stokes parameter; 0 where none has samples.
+/// The index of the channel with the brightest pixel of the first Stokes parameter; 0 where none has samples.
 std::size_t brightest_channel(const std::vector<ChannelReport>& channels);
 
-/// Of all channels and Stokes parameters, over each image's RMS.
+/// The largest of all channels and Stokes parameters, over each image's RMS.
 double largest_expected_error(const RunReport& report);
 
 /// report.json, with the keys of the project's design; `noise` {predicted_jy, measured_jy}, `beam.how`, `beam.misfit`,
@@ -80,7 +80,7 @@ double largest_expected_error(const RunReport& report);
 /// stage together over the number of planes made at a time, so that the stages add up to the run's wall clock, as far as all
 /// were busy.
 nlohmann::json report_json(const RunReport& report);
-/// What of it is known before the run: version, command_line, options, plan, warnings, timings_expected_s,
+/// The part of report.json that is known before the run: version, command_line, options, plan, warnings, timings_expected_s,
 /// memory_gib_estimated.
 nlohmann::json plan_json(const RunReport& report);
 

@@ -13,7 +13,7 @@ struct NodeSeconds {
   double gridding = 0;  ///< and degridding, and all else that is done for each sample
   double fft = 0;
   double exchange = 0;  ///< of images, and of the model
-  double first = 0;     ///< what rank 0 does while others wait: statistics, minor cycles, files
+  double first = 0;     ///< rank 0's work while others wait: statistics, minor cycles, files
 
   double total() const { return read + gridding + fft + exchange + first; }
 };
@@ -31,7 +31,7 @@ struct NodeForecast {
   NodeSeconds cycle;        ///< a major cycle; none without CLEAN
   bool kept = true;         ///< whether a node has room for its samples, and reads them once
   double read_bytes = 0;    ///< that a node reads in a pass
-  double image_bytes = 0;   ///< that rank 0 gets from each of the others it hears of, for `image`
+  double image_bytes = 0;   ///< that rank 0 gets from each rank it hears of, for `image`
   double cycle_bytes = 0;   ///< for `cycle`
   double memory_bytes = 0;  ///< of a node at its peak
 
@@ -45,13 +45,15 @@ class ScaleForecast {
   /// Kept by reference, but for `work`, the plan's.
   ScaleForecast(const RunScene& scene, const RunPlan& plan, const TimeForecast& forecast, const RunWork& work);
 
-  /// What is built: ranks share samples, or the channels of a cube.
+  /// The forecast of misfit as it is: ranks share samples, or the channels of a cube.
   NodeForecast at(int nodes) const;
-  /// Were the image cut into facets besides: the number of them, a square, by which the shown part takes the least time.
+  /// The forecast if the image were cut into facets besides, in the square number of them that makes the shown part take the
+  /// least time.
   NodeForecast best_facets(int nodes) const;
-  /// The smallest power of two of nodes of which twice as many are less than 1.25 times as fast.
+  /// The smallest power of two of nodes for which twice as many are less than 1.25 times as fast.
   int limit() const;
-  /// 1, 2, 4 … and the nodes asked for, a line each; where more do not help and why; what facets would gain there.
+  /// A line for each of 1, 2, 4 … and the nodes asked for; the number beyond which nodes do not help, and why; what facets
+  /// would gain.
   std::string table() const;
 
  private:

@@ -8,7 +8,7 @@ class App;
 
 namespace misfit::tools {
 
-/// What --dry-run tells of machines that are not there.
+/// The machines, not there, that --dry-run makes a forecast for.
 struct ScaleOptions {
   int nodes = 0;            ///< machines, a rank on each; 0: nothing is told of any
   double visibilities = 0;  ///< as if the data had so many samples; 0: those that they have
@@ -24,7 +24,7 @@ void declare(CLI::App& command, ScaleOptions& options);
 /// Throws std::invalid_argument that names the option, its value and what was expected.
 void check(const ScaleOptions& options, bool dry_run);
 
-/// Where the run itself is of several ranks: their shares are not those of the nodes.
+/// Throws where the run itself is of several ranks, whose shares are not the nodes' shares.
 void check(const ScaleOptions& options, const imager::Ranks& ranks);
 
 }  // namespace misfit::tools

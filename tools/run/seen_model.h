@@ -20,13 +20,13 @@ struct SetBeams {
   std::vector<std::string> doubts;  ///< what may be wrong with the beams, a sentence each
 };
 
-/// Of the antennas of a set, each where its row's field points. Throws std::runtime_error that names what it is about where
-/// antennas have no simple beam, FEED has beams beside the axes of dishes, a field's antennas pointed more than 90° from the
-/// phase centre, or a field moves past it.
+/// The beams of the antennas of a set, each where its row's field points. Throws std::runtime_error that names the antenna or
+/// field where antennas have no simple beam, FEED has beams beside the axes of dishes, a field's antennas pointed more than 90°
+/// from the phase centre, or a field moves past it.
 SetBeams set_beams(const ms_io::MeasurementSet& set, const DishBeams& beams);
 
-/// Numbers by which beams are told from others, however they were asked for: what patterns are at many places over a band, and
-/// where they point.
+/// Numbers that tell beams apart, however they were asked for: the values of patterns at many places over a band, and where
+/// they point.
 std::vector<double> told_apart_by(const SetBeams& beams, const imager::Observation& observation);
 
 /// Whether any field's antennas see any of these places, seen from the phase centre, anywhere in the band.
@@ -36,8 +36,8 @@ bool sees_any(const SetBeams& beams, const std::vector<imager::DirectionCosines>
 /// The visibilities of sources [Stokes I, Q, U, V] that dishes see; a list may be empty.
 ms_io::Predict seen_sources(std::vector<std::vector<imager::Source>> sources, imager::RowBeams beams, int threads);
 
-/// The visibilities of a model image that dishes see, its planes as image_visibilities() takes them, with the samples that are
-/// best asked for together. The transform of the model that comes with it stays empty.
+/// The visibilities of a model image that dishes see, its planes as image_visibilities() takes them, with the best number of
+/// samples_at_once. ModelVisibilities::transform stays empty.
 ModelVisibilities seen_image(const StokesPlanes& planes, const imager::ImageGeometry& geometry,
                              const imager::GriddingRequest& request, const ms_io::MeasurementSet& set, imager::RowBeams beams);
 

@@ -6,11 +6,11 @@
 
 namespace misfit::tools {
 
-/// Visibilities that ranks predict in turns: rank 0 reads where samples lie and writes what comes of them, and sends blocks to
-/// the others, which have the same model.
+/// Visibilities that ranks predict in turns: rank 0 reads where samples lie, sends blocks of them to the other ranks, which
+/// have the same model, and writes the visibilities.
 class SharedPrediction {
  public:
-  /// Of `own`, which predicts on this rank. Both are kept by reference.
+  /// `own` predicts on this rank. Both arguments are kept by reference.
   SharedPrediction(const imager::Ranks& ranks, const ms_io::Predict& own);
   ~SharedPrediction();
 

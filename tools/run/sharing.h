@@ -12,8 +12,8 @@
 
 namespace misfit::tools {
 
-/// How the ranks of a run share it. Of its one channel each has a part of the samples, and rank 0 the images that come of all;
-/// of a cube's channels each makes some, from all samples. What is said of all ranks is called by all.
+/// How the ranks of a run share it. Of one channel each rank has a part of the samples, and rank 0 the images of all samples;
+/// of a cube's channels each rank makes some, from all samples. Functions about all ranks are called by all ranks.
 class Sharing {
  public:
   /// `ranks` is kept by reference.
@@ -21,21 +21,21 @@ class Sharing {
 
   /// Whether this rank has whole images of what it makes.
   bool images_here() const { return of_channels_ || ranks_.first(); }
-  /// Of so many, those that a rank makes at most.
+  /// The most channels of these that one rank makes.
   int channels_here(int channels) const { return (channels + ranks_.size() - 1) / ranks_.size(); }
-  /// What this rank has of the samples; null: all of `set`.
+  /// This rank's part of the samples; null: all of `set`.
   std::unique_ptr<ms_io::MeasurementSet> own_part(const ms_io::MeasurementSet& set) const;
-  /// How far all that is selected reaches; `own` is this rank's part. Looking through it, ranks share the rows.
+  /// How far all selected samples reach; `own` is this rank's part. Ranks share the rows that are looked through.
   imager::UvwReach reach(const ms_io::MeasurementSet& own) const;
-  /// All samples, of which this rank has so many.
+  /// The number of all samples; this rank has `own` of them.
   double all_samples(double own) const;
 
-  /// Ranks may be started apart, and make parts of one image: throws std::invalid_argument, at all of them, that names the
-  /// option which they have unlike.
+  /// Throws std::invalid_argument, at all ranks, that names an option which they have unlike: ranks that make parts of one
+  /// image may be started apart.
   void require_same(const nlohmann::json& option_values) const;
   /// Gives all ranks the models of `stokes` results of `terms` terms, which rank 0 has.
   void give_models(std::size_t stokes, int terms, std::vector<imager::CleanResult>& cleaned) const;
-  /// What they exchanged: of an image what rank 0 gave, in the time that its stage took; of channels what all gave.
+  /// The bytes that ranks exchanged: for an image rank 0's, in the time that its stage took; for channels all ranks'.
   imager::Decision traffic_decision(const imager::StageTimes& times) const;
 
  private:
@@ -43,22 +43,22 @@ class Sharing {
   bool of_channels_;
 };
 
-/// What ranks send each other of an image.
+/// The bytes that ranks send each other for an image.
 struct ExchangeForecast {
   double first_bytes = 0;  ///< a rank gives for the dirty images and the PSF
   double cycle_bytes = 0;  ///< and for the residuals of a major cycle
 };
 
-/// Of images of so many pixels: `images` with the PSF, and `residuals`.
+/// The bytes for images of so many pixels: `images`, the PSF included, and `residuals`.
 ExchangeForecast exchange_of(double pixels, int images, int residuals);
 
 /// How the ranks share the samples, and what they will exchange.
 imager::Decision sharing_decision(const ms_io::SampleSharing& sharing, const ExchangeForecast& exchange);
 
-/// Of the images of a channel, as ranks send them.
+/// The bytes of the images of a channel, as ranks send them.
 double channel_bytes(const RunWork& work);
 
-/// How the ranks share the channels of a cube, in batches of so many, of each of which rank 0 gets so many bytes.
+/// How the ranks share the channels of a cube, in batches of so many; rank 0 gets `channel_bytes` of each channel.
 imager::Decision channel_sharing_decision(int ranks, int channels, int channels_of_a_batch, double channel_bytes);
 
 }  // namespace misfit::tools

@@ -20,15 +20,16 @@ class StartModel {
   /// names the file and what was expected.
   StartModel(const ImageOptions& options, const imager::ImageHeader& image);
 
-  /// What the user should know of the files, a sentence each.
+  /// Sentences for the user on the files.
   std::vector<std::string> remarks() const;
   /// Reads a channel of the image's. Throws as the constructor does.
   void read(int channel);
-  /// Those of a Stokes parameter [term].
+  /// The images of a Stokes parameter, [term].
   std::vector<const imager::Image*> images(std::size_t stokes) const;
-  /// Those of a Stokes parameter, of the sky, become what a mosaic of this view has for it; what no beam sees is left out.
+  /// Turns the images of a Stokes parameter, of the sky, into what a mosaic of this view has for the sky; what no beam sees
+  /// becomes 0.
   void see_through(const imager::MosaicView& view, std::size_t stokes);
-  /// What they hold of it, which is then freed.
+  /// The components of a Stokes parameter; its images are then freed.
   std::vector<imager::Component> take(std::size_t stokes);
 
  private:

@@ -15,7 +15,7 @@ namespace misfit::tools {
 
 struct ImageOptions;
 
-/// What is made anew, as typed; else images are taken that lie under the same imagename.
+/// Which images are made anew, as typed; the others are taken from files under the same imagename.
 struct TypedTaken {
   bool calcpsf = true;
   bool calcres = true;
@@ -28,29 +28,29 @@ void declare(CLI::App& command, TypedTaken& options);
 /// Throws as check(const ImageOptions&) does.
 void check_taken(const ImageOptions& options);
 
-/// What was taken of a channel.
+/// The planes taken for a channel.
 struct TakenPlanes {
   std::vector<imager::Image> psf;                    ///< [k] of 2 terms − 1; none where they are made
   std::vector<std::vector<imager::Image>> residual;  ///< [term][Stokes]; none where they are made
 };
 
-/// The PSF and the residual that a run before left, or whoever put them there, of which a run takes what --calcpsf and
-/// --calcres say. Of CASA images and FITS files the newer ones. All messages name the file, and what was expected.
+/// The PSF and the residual of a run before, or of whoever put them there, as far as --calcpsf and --calcres ask to take them;
+/// the newer one of a CASA image and a FITS file. All messages name the file, and what was expected.
 class TakenFiles {
  public:
   /// Finds the files for an image with these planes and Stokes parameters. Throws std::runtime_error where one is not there, or
   /// has other pixels, planes or terms.
   TakenFiles(const ImageOptions& options, const imager::ImageHeader& image);
 
-  /// Which are taken, for the plan.
+  /// Decisions for the plan: which files are taken.
   imager::Plan decisions() const;
 
-  /// Throws std::runtime_error where they cannot be read, or have pixels without values above the horizon. Files are open no
-  /// longer than this takes: the run puts others in their places. For several threads.
+  /// Throws std::runtime_error where they cannot be read, or have pixels without values above the horizon. Files are closed
+  /// when it returns: the run puts others in their places. Several threads may call it.
   TakenPlanes read(int channel) const;
-  /// Throws std::runtime_error unless .sumwt, where it was written here and has the plane, says what the samples weigh.
+  /// Throws std::runtime_error where a .sumwt that misfit wrote has the plane, and another sum of weights than the samples.
   void require_weights(int channel, const std::vector<imager::SampleSums>& sums) const;
-  /// Throws std::runtime_error in place of this.
+  /// Throws std::runtime_error that names the file, in place of `unlike`.
   [[noreturn]] void refuse(const imager::UnlikeSamples& unlike) const;
 
  private:

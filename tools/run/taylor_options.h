@@ -23,7 +23,7 @@ struct TypedTaylor {
 
 void declare(CLI::App& command, TypedTaylor& options);
 
-/// What --deconvolver mtmfs stands for. Before options are checked.
+/// Replaces --deconvolver mtmfs by the options that it stands for. To be called before options are checked.
 void settle_mtmfs(CLI::App& command, ImageOptions& options);
 
 /// Throws std::invalid_argument that names the option, its value and what was expected.
@@ -32,7 +32,7 @@ void check_taylor(const ImageOptions& options);
 /// Throws std::runtime_error where data of these windows have fewer frequencies than there are terms to tell apart.
 void check_taylor_band(const TypedTaylor& options, const std::vector<ms_io::SpectralWindow>& windows);
 
-/// About --reffreq, or the middle of the band imaged, where each sample counts alike: as tclean has it.
+/// The expansion about --reffreq or, as in tclean, about the middle of the band imaged, where each sample counts alike.
 imager::TaylorExpansion taylor_expansion(const TypedTaylor& options, const imager::Observation& observation);
 
 }  // namespace misfit::tools

@@ -13,7 +13,7 @@
 
 namespace misfit::tools {
 
-/// What CLEAN found of Taylor terms, at the beam's resolution.
+/// CLEAN's result of Taylor terms, at the beam's resolution.
 struct RestoredTerms {
   imager::Image first;                 ///< the model seen with the beam, and the principal solution of the residuals
   std::vector<imager::Image> further;  ///< [term − 1], the same
@@ -22,7 +22,7 @@ struct RestoredTerms {
 
 /// Images of terms after the first that are taken instead of new ones, at rank 0; see TaylorImages.
 struct TakenTerms {
-  imager::TakenImages which;  ///< what is read is in `images`
+  imager::TakenImages which;  ///< the images read are in `images`
   imager::TaylorImages images;
 };
 
@@ -34,21 +34,22 @@ class TaylorStage {
 
   const imager::TaylorExpansion& expansion() const { return expansion_; }
 
-  /// Besides the dirty image and the PSF that are made: a pass over the same samples, by the same transforms. The promise of an
-  /// accuracy holds for those alone: terms of odd order are weak against their data. Throws std::runtime_error where the
-  /// samples' frequencies do not tell the terms apart. `made` stays where it is until CLEAN is over. Images
+  /// Makes the images of further terms, in a pass over the same samples, by the same transforms as the dirty image and the PSF.
+  /// The promise of an accuracy holds for these two alone: terms of odd order are weak against their data. Throws
+  /// std::runtime_error where the samples' frequencies do not tell the terms apart. `made` stays where it is until CLEAN is
+  /// over. Images
   /// that are taken are compared, but for residuals of a model. Throws UnlikeSamples.
   void make_images(const imager::ImagedData& imaged, const imager::AccurateImages& made, TakenTerms taken,
                    const imager::Context& context);
   const std::vector<const imager::Image*>& psf() const { return psf_; }  ///< [k]
   imager::TaylorImages& images() { return images_; }
 
-  /// RMS of x over the samples, to a power: about what an image of x^power is of that of the first term.
+  /// RMS of x over the samples, to a power: about the size of an image of x^power over the size of the first term's.
   double distance_rms(std::size_t power) const;
 
   /// H⁻¹ R, Jy/beam [term], of the dirty images.
   std::vector<imager::Image> principal_solution(const imager::Image& dirty) const;
-  /// Of all terms of a result.
+  /// Restores all terms of a result.
   RestoredTerms restore(const imager::CleanResult& cleaned, const imager::Beam& beam, double cell_rad) const;
 
  private:

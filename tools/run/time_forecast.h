@@ -10,14 +10,14 @@
 
 namespace misfit::tools {
 
-/// What the time of a run depends on. What CLEAN will need is known only afterwards: before it, all of its own is 0.
+/// The numbers that the time of a run depends on. CLEAN's own are known only afterwards, and are 0 before.
 struct RunWork {
   const imager::GriddingPlan* plan = nullptr;
   double rows = 0;  ///< of the visibilities
   double samples = 0;
-  int channels = 1;  ///< of the image; each has a part of the samples, and all that follows is of each
+  int channels = 1;  ///< of the image; each has a part of the samples, and all that follows is for each channel
   int workers = 1;   ///< channels made at a time by all ranks, which share their threads
-  int ranks = 1;     ///< that share the samples of an image, of which these are one's, or the channels of a cube
+  int ranks = 1;     ///< that share the samples of an image, where `samples` are one rank's, or the channels of a cube
   bool kept = true;  ///< whether visibilities are read once, or in every pass
   double pixels = 0;
   int images = 2;    ///< files
@@ -27,7 +27,7 @@ struct RunWork {
   bool residual_taken = false;  ///< from a file; `plan` says whether a PSF is made
   std::string deconvolver;
   int terms = 1;         ///< Taylor terms
-  bool density = false;  ///< whether weights follow from it
+  bool density = false;  ///< whether weights follow from the samples' density
   bool tapered = false;
   bool primary_beam = false;
   double components = 0;
@@ -38,12 +38,12 @@ struct RunWork {
 /// Seconds of a stage.
 struct StageSeconds {
   std::string stage;
-  std::string kind;  ///< of work: stages of one kind share what was learned of it
+  std::string kind;  ///< of work: stages of one kind share what was learned
   double seconds = 0;
 };
 
-/// What each stage after the plan takes by counts of operations and constants of one machine, fixed. Of pictures what they add
-/// to the run that goes on meanwhile.
+/// The seconds of each stage after the plan, by counts of operations and fixed constants of one machine. Pictures take what
+/// they add to the run that goes on meanwhile.
 std::vector<StageSeconds> counted_seconds(const RunWork& work);
 
 double total_seconds(const std::vector<StageSeconds>& stages);
@@ -60,7 +60,7 @@ class TimeForecast {
   explicit TimeForecast(const std::filesystem::path& folder);
 
   std::vector<StageSeconds> expected(const RunWork& work) const { return expected(work, work); }
-  /// The same by the speed of runs as large as another, so that works of several sizes compare.
+  /// The seconds expected by the speed of runs as large as `as_large`, so that works of several sizes compare.
   std::vector<StageSeconds> expected(const RunWork& work, const RunWork& as_large) const;
   /// Whether runs like this have been timed here.
   bool knows(const RunWork& work) const;
@@ -73,7 +73,7 @@ class TimeForecast {
     int runs = 0;
   };
 
-  /// Of the kind at the size nearest to this one; 0 where it was never timed.
+  /// The factor's logarithm of the kind at the size nearest to this one; 0 where it was never timed.
   double log_factor(const std::string& kind, const std::string& size) const;
 
   std::filesystem::path file_;

@@ -19,7 +19,7 @@ namespace misfit::tools {
 /// How samples are weighed, as typed.
 struct TypedWeighting {
   std::string scheme = "natural";
-  double robust = 0.5;          ///< of those of Briggs
+  double robust = 0.5;          ///< of Briggs' schemes
   std::string noise = "1.0Jy";  ///< of briggsabs
   int npixels = 0;              ///< of superuniform; 0 = 6
   double rank_filter = 0;       ///< its level; 0 = none
@@ -37,16 +37,16 @@ void declare(CLI::App& command, TypedWeighting& options);
 /// Throws std::invalid_argument that names the option, its value and what was expected, also where an option has no effect.
 void check(const TypedWeighting& options, const CubeOptions& cube);
 
-/// For an image of so many pointings: more than one in a mosaic, whose blocks then tell the sights of their rows.
+/// The weighting of an image of so many pointings: more than one in a mosaic, whose blocks then tell the sights of their rows.
 imager::WeightingOptions weighting_options(const TypedWeighting& options, std::size_t pointings = 1);
-/// The same for the planes of a cube, whose bandwidth may matter.
+/// The weighting of the planes of a cube, whose bandwidth may matter.
 imager::WeightingOptions weighting_options(const TypedWeighting& options, const imager::SpectralAxis& cube,
                                            std::size_t pointings = 1);
 
 /// "Briggs, robust 0.5, tapered".
 std::string weighting_text(const TypedWeighting& options);
 
-/// As they are typed, without those that have no effect.
+/// The options as they are typed, without those that have no effect.
 std::vector<std::string> weighting_arguments(const TypedWeighting& options);
 
 /// Throws std::runtime_error that names the taper and the limits where they leave no weight that counts, which `sums` over so
@@ -54,11 +54,11 @@ std::vector<std::string> weighting_arguments(const TypedWeighting& options);
 void require_weight(const TypedWeighting& options, const imager::WeightSums& sums, std::uint64_t samples,
                     const std::string& of = "");
 
-/// What is known of the weights before the samples are read.
+/// The decision on the weights before the samples are read.
 imager::Decision weighting_decision(const TypedWeighting& options, const imager::ImageGeometry& geometry,
                                     std::size_t pointings = 1);
 
-/// What they turned out to be, with the noise that they cost.
+/// The decision on the weights as they turned out, with the noise that they cost.
 imager::Decision weights_decision(const imager::ImagingWeights& weights, const imager::WeightSums& sums);
 
 }  // namespace misfit::tools

@@ -5,7 +5,7 @@
 
 namespace misfit::tools {
 
-/// The state after a major cycle, the first point that before all; NaN where it is not known.
+/// The state after a major cycle; the first point is the state before all cycles. NaN where it is not known.
 struct CurvePoint {
   double iterations = 0;  ///< in all so far
   double peak_jy = 0;     ///< magnitude of the largest residual

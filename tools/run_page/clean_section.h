@@ -5,12 +5,12 @@
 
 namespace misfit::tools {
 
-/// Both tell in HTML what `clean` of report.json holds, and nothing where it is null.
+/// Both show `clean` of report.json in HTML, and nothing where it is null.
 
-/// The course of CLEAN in curves; nothing either of fewer than two states.
+/// The course of CLEAN in curves; nothing for fewer than two states.
 std::string clean_progress(const nlohmann::json& clean);
 
-/// How CLEAN ended, and a table with a row for each major cycle. What a cycle found and cleaned is what it has more than the
+/// How CLEAN ended, and a table with a row for each major cycle. A cycle found and cleaned the difference of its state to the
 /// one before.
 std::string clean_section(const nlohmann::json& clean);
 

@@ -5,7 +5,7 @@
 
 namespace misfit::tools {
 
-/// What report.json tells of a cube's planes, as a sentence and a table; empty where it tells of none. Of many planes the table
+/// The planes of a cube in report.json, as a sentence and a table; empty where there are none. If there are many, the table
 /// shows the first ones, and says so.
 std::string cube_section(const nlohmann::json& report);
 

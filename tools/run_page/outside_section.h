@@ -5,7 +5,8 @@
 
 namespace misfit::tools {
 
-/// What --check-outside found, in HTML: `outside` and `outside_search` of a run's report.json. Nothing where they are null.
+/// The findings of --check-outside, in HTML: `outside` and `outside_search` of a run's report.json. Nothing where they are
+/// null.
 std::string outside_section(const nlohmann::json& report);
 
 }  // namespace misfit::tools

@@ -7,7 +7,7 @@
 
 namespace misfit::tools {
 
-/// What a cube's planes show, [plane], of those that have samples.
+/// The spectrum of a cube's planes that have samples, [plane].
 struct Spectrum {
   std::string frame;                 ///< of the frequencies
   std::vector<double> frequency_hz;  ///< of the planes' middles

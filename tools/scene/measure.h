@@ -19,16 +19,16 @@ struct SceneSeconds {
   double fft = 0;
   double degrid = 0;
   double predict_fft = 0;
-  int stretch = 0;  ///< of runs one after another, for all of which the machine was as fast, as far as can be known
+  int stretch = 0;  ///< of runs one after another, in all of which the machine was equally fast, as far as can be known
 
   double image() const { return grid + fft; }
   double predict() const { return degrid + predict_fft; }
 };
 
-/// What a point is, and what came out; of the last pass where a plan needed two, but for seconds and work.
+/// A point and its results: of the last pass where a plan needed two, except for seconds and work, which are of all passes.
 struct PointResult {
   ScenePoint point;
-  std::string refused;  ///< why it cannot be made; nothing else then holds
+  std::string refused;  ///< why it cannot be made; the other results then mean nothing
   int passes = 1;       ///< 2 where the image turned out weak against its data
   int width = 0;        ///< cells along u
   int width_w = 0;      ///< planes; 0 = w is left out
@@ -36,7 +36,7 @@ struct PointResult {
   double padding = 0;   ///< along u
   std::string evaluation;
   std::string precision;
-  std::string work;         ///< what its operations are: points of one work differ in numbers alone, and take one time
+  std::string work;         ///< its operations: points of one work differ in numbers alone, and take one time
   double memory_bytes = 0;  ///< of grids and buffers
   double expected_rms = 0;  ///< by theory, for random phases
   double bound_rms = 0;     ///< by theory, whatever the data
@@ -57,7 +57,7 @@ class Scene {
   /// Runs a point once more, all passes of it; the first time its errors are taken.
   void run(PointResult& result, int stretch);
 
-  /// What people should know of the sets and of what was read of them, as of an image of them.
+  /// Warnings for people on the sets and on the data read, as for an image of them.
   const std::vector<std::string>& warnings() const { return warnings_; }
   std::uint64_t samples() const { return visibilities_.samples(); }
   const Fingerprint& fingerprint() const { return fingerprint_; }
@@ -70,7 +70,7 @@ class Scene {
   const SceneTruth& truth() const { return *truth_; }
 
  private:
-  /// One for each pass that `misfit image` would make.
+  /// A plan for each pass that `misfit image` would make.
   using Plans = std::vector<imager::GriddingPlan>;
 
   /// Weighs the visibilities for the image.

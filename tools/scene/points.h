@@ -7,7 +7,7 @@
 
 namespace misfit::tools {
 
-/// One way to make the image of a scene: what `misfit image` is asked for.
+/// One way to ask `misfit image` for the image of a scene.
 struct ScenePoint {
   std::string kernel = "least-misfit";
   double accuracy = 0;  ///< asked, and all else left to the plan; 0 = width, padding and precision are given
@@ -20,8 +20,8 @@ struct ScenePoint {
   bool operator==(const ScenePoint&) const = default;
 };
 
-/// What is compared: each kernel at accuracies from 1e-2 to 1e-8 as its plan chooses, and over a grid of widths, paddings and
-/// precisions; for some least-misfit kernels other evaluations. `more` are kernels besides those of the catalogue. A quick
+/// The points to compare: each kernel at accuracies from 1e-2 to 1e-8 as its plan chooses, and over a grid of widths, paddings
+/// and precisions; for some least-misfit kernels other evaluations. `more` are kernels besides those of the catalogue. A quick
 /// comparison leaves out most of the grid.
 std::vector<ScenePoint> scene_points(bool quick, const std::vector<std::string>& more);
 

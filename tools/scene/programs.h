@@ -15,7 +15,7 @@ struct ProgramResult {
   std::vector<std::string> words;  ///< as called, but for the folder of its images
   std::vector<double> seconds;     ///< wall clock of each run, by turns with the others; none where it failed
   SceneErrors errors;              ///< NaN where it failed
-  std::string failure;             ///< the last that it said, if it failed
+  std::string failure;             ///< its last words, if it failed
 
   std::string command() const;
 };
@@ -23,7 +23,7 @@ struct ProgramResult {
 struct ProgramComparison {
   std::vector<ProgramResult> results;
   int rounds = 0;
-  std::vector<std::string> left_out;  ///< a sentence for each thing that was, with the reason
+  std::vector<std::string> left_out;  ///< a sentence for each program that was, with the reason
 };
 
 /// `misfit image` to two accuracies, and WSClean's gridders where it is installed and can be given the same samples: no

@@ -8,11 +8,11 @@
 
 namespace misfit::tools {
 
-/// What was measured so far, so that a comparison that was stopped can go on. `owner`: what the measurements belong to, by
-/// name.
+/// Writes the measurements so far, so that a comparison that was stopped can go on. `owner`: what the measurements belong to,
+/// by name.
 void write_results(const std::string& path, const nlohmann::json& owner, const std::vector<PointResult>& results);
 
-/// What a file of results held.
+/// The content of a file of results.
 struct FoundResults {
   std::size_t runs = 0;
   std::string not_used;  ///< why the file was not: "it is damaged"; empty where it was, and where there is none

@@ -22,12 +22,12 @@ struct SceneErrors {
   double predict_noise = 0;
   double predict_max = 0;
 
-  /// Where nothing was measured: NaN all over.
+  /// The errors where nothing was measured: NaN all over.
   static SceneErrors none();
 };
 
-/// What the direct transform says of a scene: the dirty image at some pixels, and the visibilities of a model of some pixels at
-/// some samples; the choice is the same for the same scene.
+/// The direct transform of a scene: the dirty image at some pixels, and the visibilities of a model of some pixels at some
+/// samples; the choice is the same for the same scene.
 class SceneTruth {
  public:
   /// One pass over the samples. `pixels` of the centre, as many of the border, as many between. Throws imager::NothingUsable.
@@ -36,7 +36,7 @@ class SceneTruth {
 
   /// ±1 Jy in some pixels, the corners among them.
   const imager::Image& model() const { return model_; }
-  /// Of an image in Jy/beam; predicted visibilities are not compared.
+  /// The errors of an image in Jy/beam; predicted visibilities are not compared.
   SceneErrors errors_of(const imager::Image& dirty) const;
   /// Adds what one block of a pass predicted; blocks are to come in their order.
   void compare(std::size_t block, const std::vector<std::complex<double>>& predicted, SceneErrors& errors) const;

@@ -18,8 +18,8 @@ std::string words_on_noise(const std::vector<PointResult>& results);
 /// How much the machine's speed changed, in a sentence. Of results as they were measured, not pooled.
 std::string words_on_speed(const std::vector<PointResult>& results);
 
-/// What the front of error against seconds says of least-misfit and minimax kernels where errors lie within [1e-7, 1e-3]: that
-/// it consists of them, or which others are on it and by how much they are faster; or that times are too noisy to say.
+/// A verdict on the front of error against seconds where errors lie within [1e-7, 1e-3]: that it consists of least-misfit and
+/// minimax kernels, or which others are on it and by how much they are faster; or that times are too noisy to say.
 std::string verdict_on(const std::vector<PointResult>& results);
 
 }  // namespace misfit::tools

@@ -32,7 +32,7 @@ inline constexpr int stability_pixels = 64;  ///< a side of the images
 StabilityCase case_of(const std::string& name, imager::VisibilityBlock block, const imager::ImageGeometry& geometry,
                       double peak_jy = 1);
 
-/// The same on the cell of the data.
+/// An image on the cell of the data.
 StabilityCase case_of(const std::string& name, imager::VisibilityBlock block, const StabilityData& data, double peak_jy = 1);
 
 }  // namespace misfit::tools

@@ -31,11 +31,11 @@ struct ExtendedError {
   double predict_rms = 0;  ///< of prediction, over random samples
 };
 
-/// What became of a case.
+/// The results of a case.
 struct StabilityOutcome {
   std::string name;
   double accuracy = 0;  ///< asked, ε
-  std::string refusal;  ///< why the plan refused it; what follows is then of the most exact way there is
+  std::string refusal;  ///< why the plan refused it; the other results are then of the most exact way there is
   bool single = false;  ///< the grid's precision
   bool promise_kept = true;
   imager::TheoreticalError theory;

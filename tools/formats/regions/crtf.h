@@ -17,11 +17,12 @@ namespace misfit::tools::regions {
 ///     -rotbox [[187.70deg, 12.39deg], [4arcsec, 2arcsec], 30deg] range=[3chan, 7chan], color=red
 ///     ellipse [[100pix, 80pix], [20pix, 10pix], 45deg], coord=GALACTIC
 ///
-/// Pixels count from 0. Angles turn from north through east, which is anticlockwise: of a box its width, which lies east-west
-/// at 0, of an ellipse its first half axis, which lies north-south at 0. North is that of the place's own frame at the centre,
-/// or the columns' direction where the centre is given in pixels. A box by its corners has sides of constant coordinates,
-/// drawn as straight lines. Keywords: see keywords.h; those of a line `global` hold for all that follow, unless they have
-/// their own. Annotations, of `ann`, and lines, vectors, texts and symbols, have no pixels, and all but the first are told of.
+/// Pixels count from 0. Angles turn from north through east, which is anticlockwise: they turn the width of a box, which lies
+/// east-west at 0, and the first half axis of an ellipse, which lies north-south at 0. North is that of the place's own frame
+/// at the centre, or the columns' direction where the centre is given in pixels. A box by its corners has sides of constant
+/// coordinates, drawn as straight lines. Keywords: see keywords.h; those of a line `global` hold for all lines that follow,
+/// unless they have their own. Annotations (`ann`), lines, vectors, texts and symbols have no pixels, and all but annotations
+/// are reported.
 class CrtfReader : public RegionReader {
  public:
   explicit CrtfReader(const imager::ImageHeader& image);

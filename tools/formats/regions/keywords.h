@@ -9,7 +9,7 @@
 
 namespace misfit::tools::regions {
 
-/// What stands behind a region of CASA region text, [name] value: "coord=J2000, range=[3chan, 7chan], label='a, b'". Names are
+/// The keywords behind a region of CASA region text, [name] value: "coord=J2000, range=[3chan, 7chan], label='a, b'". Names are
 /// in small letters, values without quotes.
 using RegionKeywords = std::map<std::string, std::string>;
 
@@ -33,8 +33,9 @@ struct PlaneSpan {
   bool holds(int plane) const { return plane >= first && plane <= last; }
 };
 
-/// [Stokes parameter of the image], whether `corr` names it, such as corr=[I, Q] or corr=[XX]; all where there is none. One
-/// that the image lacks is of no plane. Throws std::runtime_error that says what was expected where it is none of CASA's.
+/// [Stokes parameter of the image], whether `corr` names it, such as corr=[I, Q] or corr=[XX]; all where there is none. A
+/// Stokes parameter that the image lacks names no plane. Throws std::runtime_error that says what was expected where it is none
+/// of CASA's.
 std::vector<bool> stokes_of_corr(const RegionKeywords& keywords, const std::vector<imager::Stokes>& image);
 
 /// The frame of `coord`, as ms_io::in_frame() calls it, or `image`'s where there is none. Throws std::runtime_error that lists

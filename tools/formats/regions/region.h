@@ -15,12 +15,12 @@ struct Region {
   Shape shape;
   bool added = true;
   PlaneSpan channels;
-  std::vector<bool> stokes;  ///< [Stokes parameter of the image], whether it is of it
-  std::string planes;        ///< what names them, as "corr=[Q]"; empty if nothing
+  std::vector<bool> stokes;  ///< [Stokes parameter of the image], whether the region is of it
+  std::string planes;        ///< the words that name its planes, as "corr=[Q]"; empty if none do
   int line = 0;              ///< of the file, counted from 1
 
   bool holds(int channel, std::size_t stokes_index) const { return channels.holds(channel) && stokes[stokes_index]; }
-  /// Whether it is of some plane of the image.
+  /// Whether it is of any plane of the image.
   bool of_planes() const { return !channels.empty() && std::find(stokes.begin(), stokes.end(), true) != stokes.end(); }
 };
 

@@ -12,11 +12,11 @@
 
 namespace misfit::tools {
 
-/// The regions of a text in CASA's format or DS9's (see regions/crtf.h, regions/ds9.h), as masks of an image. DS9's are those
-/// of a text whose header says so, or whose first region has no square brackets.
+/// The regions of a text in CASA's format or DS9's (see regions/crtf.h, regions/ds9.h), as masks of an image. A text is DS9's
+/// if its header says so, or its first region has no square brackets.
 ///
-/// A region adds the pixels whose centres lie within it or on its border, in the planes that it names; one that is taken away
-/// takes them from those before it, or, if it is the first, from the whole image. DS9 takes away last.
+/// A region adds the pixels whose centres lie within it or on its border, in the planes that it names. A region that is taken
+/// away takes them from the regions before it, or, if it is the first, from the whole image; DS9's are taken away last.
 class RegionText {
  public:
   /// Throws std::runtime_error that names the file `path`, the line and what was expected; so, too, where there is no region,
@@ -28,7 +28,7 @@ class RegionText {
   bool one_for_all_stokes() const;
   /// 1 in pixels of a plane that the regions allow, 0 elsewhere.
   imager::Image mask(const imager::PlaneIndex& at) const;
-  /// What of the text has no pixel of the image, a sentence each that names its lines.
+  /// Sentences on the parts of the text without a pixel of the image, with their lines.
   const std::vector<std::string>& doubts() const { return doubts_; }
 
  private:

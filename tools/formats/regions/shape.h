@@ -22,14 +22,14 @@ struct Ellipse {
   double turn_rad = 0;
 };
 
-/// What closed straight sides go round, once or more often: parts that overlap belong to it, as CASA has it.
+/// The area that closed straight sides go round, once or more often: parts that overlap belong to it, as in CASA.
 struct Polygon {
   std::vector<Point> corners;
 };
 
 using Outline = std::variant<Ellipse, Polygon>;
 
-/// A rectangle of so many pixels about a centre, turned anticlockwise by `turn_rad`.
+/// A rectangle about a centre, turned anticlockwise by `turn_rad`.
 struct Rectangle {
   Point centre;
   double width = 0;   ///< pixels
@@ -54,8 +54,8 @@ struct Shape {
 };
 
 /// Calls `visit` once for each pixel of an image that the shape holds: those whose centres lie within the outline or on it,
-/// and not within the hole nor on its border. What is a millionth of a pixel away from a border lies on it, which is above the
-/// rounding of angles and frames.
+/// and not within the hole nor on its border. A centre within a millionth of a pixel of a border lies on it; angles and frames
+/// are rounded by less.
 void for_each_pixel(const Shape& shape, int width, int height, const std::function<void(int row, int column)>& visit);
 
 }  // namespace misfit::tools::regions
